@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/base/settings.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/base/outcome.h"
+
+namespace glint {
+
+const std::vector<ParamSpec>& allParams() {
+  static const std::vector<ParamSpec> params = {
+      {"detect.level", "Contour level", "q", "", 0.5, 0.02, 0.98, 0.01, {},
+       "Fraction of (strongest peak - background) at which contours are taken; the same in all frames, because a limit angle means something only for one level.", "detect"},
+      {"detect.min_area", "Smallest highlight", "", "px^2", 12.0, 1.0, 5000.0, 1.0, {},
+       "Smaller blobs do not constrain the five parameters of an ellipse.", "detect"},
+      {"detect.min_contrast", "Smallest contrast", "", "", 3.0, 1.0, 50.0, 0.5, {},
+       "Peak over the spread of the background; below this a blob is noise or a diffuse bump.", "detect"},
+      {"detect.peak_window", "Peak window", "", "", 0.9, 0.5, 0.99, 0.01, {},
+       "Pixels above this fraction of the peak enter the quadratic fit to log I, whose maximum is the peak.", "detect"},
+      {"detect.clip", "Saturation value", "", "", 0.0, 0.0, 1e9, 0.01, {},
+       "Linear values at or above this are saturated; 0 = the largest code of 8- and 16-bit images, none for float images.", "detect"},
+      {"surface.normals", "Mesh normals", "N", "", std::string("interpolated"), 0, 0, 0, {"facet", "interpolated", "curved"},
+       "Facet: flat triangles. Interpolated: flat positions, vertex normals. Curved: a smooth patch through the vertex normals (Phong tessellation).", "surface"},
+      {"light.solver", "Light", "L", "", std::string("bundle"), 0, 0, 0, {"triangulated", "bundle"},
+       "Triangulated: closest point to the reflected rays. Bundle: all contour points share one limit angle; least squares in pixels.", "light"},
+      {"light.bundle_points", "Bundle points", "", "", 72, 8, 720, 1, {},
+       "Contour points per view in the bundle, equally spaced in arc length.", "light"},
+      {"light.robust_px", "Robust scale", "", "px", 1.0, 0.01, 100.0, 0.1, {},
+       "Residuals beyond this scale count less (Cauchy loss).", "light"},
+      {"fit.solver", "Ellipsoid solver", "", "", std::string("refined"), 0, 0, 0, {"linear", "anchored", "refined"},
+       "Linear: smallest singular vector of s C* = P Q* P^T. Anchored: centre fixed at the light. Refined: contour distances with the light's covariance as prior.", "fit"},
+      {"fit.prior_scale", "Prior weight", "", "", 1.0, 0.001, 1000.0, 0.1, {},
+       "Multiplies the light's standard deviation in the prior on the ellipsoid's centre.", "fit"},
+      {"fit.free_centre", "Free centre", "c", "", false, 0, 0, 0, {},
+       "Refine without a prior on the centre (needs three views).", "fit"},
+      {"predict.directions", "Directions", "n", "", 36, 6, 720, 1, {},
+       "Directions of the walk in the tangent plane (the paper: 36).", "fit"},
+      {"predict.seed_step", "Seed spacing", "", "px", 16.0, 2.0, 128.0, 1.0, {},
+       "Spacing of the ray grid from which brightest points are searched.", "predict"},
+      {"predict.level_set_step", "Level-set grid", "", "px", 4.0, 0.5, 32.0, 0.5, {},
+       "Spacing of the scan that finds the components of a level set; vertices are then polished.", "predict"},
+      {"predict.walk_tolerance", "Walk tolerance", "", "rad", 1e-10, 1e-15, 1e-3, 1e-10, {},
+       "The walk along a direction ends when alpha is this close to the limit angle.", "fit"},
+  };
+  return params;
+}
+
+const ParamSpec& paramSpec(const std::string& key) {
+  for (const ParamSpec& p : allParams())
+    if (p.key == key) return p;
+  throw InputError("", "--set " + key, "no such setting (`glint settings` lists them)");
+}
+
+const SettingValue& Settings::value(const std::string& key) const {
+  if (const auto it = values_.find(key); it != values_.end()) return it->second;
+  for (const ParamSpec& p : allParams())
+    if (p.key == key) return p.defaultValue;
+  throw std::invalid_argument("Settings: no setting '" + key + "'");
+}
+
+namespace {
+template <class T>
+const T& typed(const SettingValue& v, const std::string& key) {
+  const T* t = std::get_if<T>(&v);
+  require(t != nullptr, "Settings: '" + key + "' has another type");
+  return *t;
+}
+std::string number(double v) {
+  char buffer[32];
+  const auto end = std::to_chars(buffer, buffer + sizeof buffer, v).ptr;
+  return {buffer, end};
+}
+}  // namespace
+
+bool Settings::flag(const std::string& key) const { return typed<bool>(value(key), key); }
+int Settings::integer(const std::string& key) const { return typed<int>(value(key), key); }
+double Settings::number(const std::string& key) const {
+  const SettingValue& v = value(key);
+  if (const int* i = std::get_if<int>(&v)) return *i;
+  return typed<double>(v, key);
+}
+const std::string& Settings::text(const std::string& key) const { return typed<std::string>(value(key), key); }
+
+void Settings::set(const std::string& key, const SettingValue& v) {
+  const ParamSpec& spec = paramSpec(key);
+  SettingValue checked = v;
+  if (std::holds_alternative<double>(spec.defaultValue) && std::holds_alternative<int>(v)) checked = double(std::get<int>(v));
+  if (checked.index() != spec.defaultValue.index()) throw InputError("", "--set " + key, "the value has the wrong type");
+  const auto inRange = [&](double x) {
+    if (!(x >= spec.min && x <= spec.max))
+      throw InputError("", "--set " + key, glint::number(x) + " is outside " + glint::number(spec.min) + " .. " + glint::number(spec.max));
+  };
+  if (const int* i = std::get_if<int>(&checked)) inRange(*i);
+  if (const double* d = std::get_if<double>(&checked)) inRange(*d);
+  if (const std::string* s = std::get_if<std::string>(&checked); s && !spec.choices.empty()) {
+    if (std::find(spec.choices.begin(), spec.choices.end(), *s) == spec.choices.end()) {
+      std::string all;
+      for (const std::string& c : spec.choices) all += (all.empty() ? "" : ", ") + c;
+      throw InputError("", "--set " + key, "'" + *s + "' is none of: " + all);
+    }
+  }
+  if (checked == spec.defaultValue) values_.erase(key);
+  else values_[key] = checked;
+}
+
+void Settings::setFromText(const std::string& key, const std::string& text) {
+  const ParamSpec& spec = paramSpec(key);
+  const auto bad = [&](const char* what) -> InputError { return InputError("", "--set " + key, "'" + text + "' is not " + what); };
+  if (std::holds_alternative<bool>(spec.defaultValue)) {
+    if (text == "true" || text == "on" || text == "1") return set(key, true);
+    if (text == "false" || text == "off" || text == "0") return set(key, false);
+    throw bad("true or false");
+  }
+  if (std::holds_alternative<int>(spec.defaultValue)) {
+    int i = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), i);
+    if (error != std::errc() || end != text.data() + text.size()) throw bad("a whole number");
+    return set(key, i);
+  }
+  if (std::holds_alternative<double>(spec.defaultValue)) {
+    double d = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), d);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(d)) throw bad("a number");
+    return set(key, d);
+  }
+  set(key, text);
+}
+
+}  // namespace glint

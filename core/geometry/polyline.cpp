@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/geometry/polyline.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/outcome.h"
+
+namespace glint {
+namespace {
+std::size_t segmentCount(const Polyline& line) {
+  const std::size_t n = line.points.size();
+  return n < 2 ? 0 : line.closed ? n : n - 1;
+}
+double cross(const Pixel& a, const Pixel& b) { return a.x() * b.y() - a.y() * b.x(); }
+}  // namespace
+
+double length(const Polyline& line) {
+  double sum = 0;
+  const std::size_t n = line.points.size();
+  for (std::size_t i = 0; i < segmentCount(line); ++i) sum += (line.points[(i + 1) % n] - line.points[i]).norm();
+  return sum;
+}
+
+double signedArea(const Polyline& line) {
+  const auto& p = line.points;
+  if (p.size() < 3) return 0;
+  double twice = 0;  // relative to the first point, so that far-away shapes lose no digits
+  for (std::size_t i = 1; i + 1 < p.size(); ++i) twice += cross(p[i] - p[0], p[i + 1] - p[0]);
+  return 0.5 * twice;
+}
+
+Pixel centroid(const Polyline& line) {
+  const auto& p = line.points;
+  require(!p.empty(), "centroid: empty polyline");
+  Pixel weighted(0, 0), mean(0, 0);
+  double twice = 0;
+  for (std::size_t i = 1; i + 1 < p.size(); ++i) {
+    const double a = cross(p[i] - p[0], p[i + 1] - p[0]);
+    weighted += a * ((p[i] - p[0]) + (p[i + 1] - p[0])) / 3;
+    twice += a;
+  }
+  const double size = length(line);
+  if (std::abs(twice) > 1e-12 * size * size) return p[0] + weighted / twice;  // thinner than that the area is round-off
+  for (const Pixel& q : p) mean += q;
+  return mean / double(p.size());
+}
+
+bool contains(const Polyline& line, const Pixel& q) {
+  bool inside = false;
+  const auto& p = line.points;
+  for (std::size_t i = 0, j = p.size() - 1; i < p.size(); j = i++) {
+    if ((p[i].y() > q.y()) != (p[j].y() > q.y())) {
+      const double x = p[i].x() + (q.y() - p[i].y()) * (p[j].x() - p[i].x()) / (p[j].y() - p[i].y());
+      if (q.x() < x) inside = !inside;
+    }
+  }
+  return inside;
+}
+
+double distance(const Polyline& line, const Pixel& q) {
+  const auto& p = line.points;
+  double best = std::numeric_limits<double>::infinity();
+  if (p.size() == 1) return (q - p[0]).norm();
+  for (std::size_t i = 0; i < segmentCount(line); ++i) {
+    const Pixel a = p[i], d = p[(i + 1) % p.size()] - a;
+    const double dd = d.squaredNorm();
+    const double t = dd > 0 ? std::clamp((q - a).dot(d) / dd, 0.0, 1.0) : 0.0;
+    best = std::min(best, (a + t * d - q).squaredNorm());
+  }
+  return std::sqrt(best);
+}
+
+std::vector<Pixel> resample(const Polyline& line, int n) {
+  require(n >= 1 && !line.points.empty(), "resample: needs points");
+  const double total = length(line);
+  std::vector<Pixel> out;
+  out.reserve(n);
+  const std::size_t count = line.points.size();
+  std::size_t segment = 0;
+  double start = 0;
+  for (int i = 0; i < n; ++i) {
+    const double s = line.closed ? total * i / n : (n == 1 ? 0 : total * i / (n - 1));
+    while (true) {
+      if (segmentCount(line) == 0) {
+        out.push_back(line.points[0]);
+        break;
+      }
+      const Pixel &a = line.points[segment], &b = line.points[(segment + 1) % count];
+      const double l = (b - a).norm();
+      if (s <= start + l || segment + 1 == segmentCount(line)) {
+        out.push_back(l > 0 ? Pixel(a + std::clamp((s - start) / l, 0.0, 1.0) * (b - a)) : a);
+        break;
+      }
+      start += l;
+      ++segment;
+    }
+  }
+  return out;
+}
+
+Polyline withoutRepeats(const Polyline& line, double tolerance) {
+  Polyline out{{}, line.closed};
+  for (const Pixel& p : line.points)
+    if (out.points.empty() || (p - out.points.back()).norm() > tolerance) out.points.push_back(p);
+  while (out.closed && out.points.size() > 1 && (out.points.front() - out.points.back()).norm() <= tolerance) out.points.pop_back();
+  return out;
+}
+
+}  // namespace glint

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "core/geometry/camera.h"
+
+namespace glint {
+
+/// An ordered chain of pixels. When `closed`, the last point joins the first (which is not repeated).
+struct Polyline {
+  std::vector<Pixel> points;
+  bool closed = true;
+};
+
+double length(const Polyline& line);                              ///< px, includes the closing segment
+double signedArea(const Polyline& line);                          ///< px^2, shoelace, open lines are closed first; positive when clockwise on screen
+Pixel centroid(const Polyline& line);                             ///< area centroid; mean of the points when the area vanishes
+bool contains(const Polyline& line, const Pixel& p);              ///< even-odd rule; boundary points either way
+double distance(const Polyline& line, const Pixel& p);            ///< px to the nearest point of the chain; infinity when empty
+/// n points equally spaced in arc length, first at the first point. Needs >= 1 point.
+std::vector<Pixel> resample(const Polyline& line, int n);
+/// Consecutive repeated points (closer than `tolerancePx`) removed.
+Polyline withoutRepeats(const Polyline& line, double tolerancePx = 1e-9);
+
+}  // namespace glint

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "core/light/light.h"
+#include "core/surface/brightest_point.h"
+
+namespace glint {
+
+/// Reflected ray of an observed brightest point: from P along r = reflect(V, N).
+struct ReflectedRay {
+  Eigen::Vector3d origin;     ///< P
+  Eigen::Vector3d direction;  ///< r, unit
+  Eigen::Vector3d normal;     ///< N, camera's side
+};
+ReflectedRay reflectedRay(const BrightestPoint& brightest, const Camera& camera);
+
+struct Triangulation {
+  Light light;
+  double condition = 0;              ///< smallest over largest eigenvalue of sum (I - r r^T), in (0, 1]; small = nearly parallel
+  Eigen::Matrix3d covariance;        ///< m^2 of the position, from the rays' residual spread (unit variance when exact); zero for a direction
+  double residual = 0;               ///< RMS distance of the rays from the light, m (0 for a direction)
+};
+
+/// Closest point to the reflected rays, min sum |(I - r r^T)(L - P)|^2 (method.md section 4), by a QR or SVD of the stacked
+/// rows. Rays nearly parallel (condition < minCondition) give a light at infinity along their mean.
+/// TooFewViews (< 2 rays); LightBehindSurface (N.(L - P) <= 0 for any ray); NotFinite.
+Outcome<Triangulation> triangulateLight(const std::vector<ReflectedRay>& rays, double minCondition = 1e-8);
+
+/// Contour evidence of one view for the bundle.
+struct BundleView {
+  Camera camera;
+  const Surface* surface = nullptr;
+  std::vector<Pixel> contour;        ///< ideal pixels, about equally spaced
+  std::optional<BrightestPoint> brightest;
+};
+
+struct BundleOptions {
+  int pointsPerView = 72;            ///< contour points used, equally spaced in arc length
+  double robustPx = 1.0;             ///< scale of the Huber/Cauchy loss, px
+  int maxIterations = 100;
+};
+
+struct Bundle {
+  Light light;
+  double limitAngle = 0;             ///< rad
+  Eigen::Matrix<double, 4, 4> covariance;  ///< of (tangent coordinates of L (3), alpha_lim) in the solver's chart; scaled by the residual variance
+  Eigen::Matrix3d positionCovariance;///< m^2; not finite for a light at infinity
+  double rmsPx = 0;
+  std::vector<double> residualPx;    ///< per view, RMS
+  int iterations = 0;
+};
+
+/// Light and limit angle from whole contours (method.md section 4, `bundle`): minimises over (l, w) on the unit sphere, w >= 0,
+/// and alpha_lim the robust sum of ((alpha(P_ij; L) - alpha_lim) / |d alpha / d pixel|)^2, residuals in pixels, by Ceres.
+/// @param start  first guess (the triangulated light); other starts are tried when it converges badly.
+/// TooFewPoints; PeakOffSurface when no contour point hits the surface; NotConverged; LightBehindSurface; NotFinite.
+Outcome<Bundle> bundleLight(const std::vector<BundleView>& views, const Light& start, const BundleOptions& options = {});
+
+}  // namespace glint

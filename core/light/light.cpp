@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/light/light.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+namespace glint {
+
+Light Light::homogeneous(const Eigen::Vector4d& lw) {
+  require(lw.allFinite(), "Light: not finite");
+  const double scale = lw.cwiseAbs().maxCoeff();  // first, so that the norm neither overflows nor underflows
+  require(scale > 0, "Light: zero vector");
+  Light light;
+  light.lw_ = (lw / scale).normalized();
+  if (light.lw_.w() < 0) light.lw_ = -light.lw_;
+  return light;
+}
+
+Light Light::at(const Eigen::Vector3d& p) { return homogeneous(Eigen::Vector4d(p.x(), p.y(), p.z(), 1)); }
+Light Light::towards(const Eigen::Vector3d& d) { return homogeneous(Eigen::Vector4d(d.x(), d.y(), d.z(), 0)); }
+
+double incidentAngle(const Eigen::Vector3d& n, const Eigen::Vector3d& toLight, const Eigen::Vector3d& toCamera) {
+  const Eigen::Vector3d h = toLight + toCamera;
+  const double length = h.norm();
+  if (length == 0) return std::nan("");
+  return std::atan2(n.cross(h).norm(), n.dot(h));
+}
+
+}  // namespace glint

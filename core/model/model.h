@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/settings.h"
+#include "core/geometry/ellipsoid.h"
+#include "core/geometry/plane.h"
+#include "core/highlight/highlight.h"
+#include "core/light/light.h"
+#include "core/surface/brightest_point.h"
+#include "core/surface/surface.h"
+
+namespace glint {
+
+/// One direction of the walk from the brightest point (method.md section 6): a point or a named reason.
+struct DirectionResult {
+  double azimuth = 0;                       ///< rad, in the tangent plane's basis
+  std::optional<double> limitAngle;         ///< alpha at the end of the walk, rad
+  Eigen::Vector3d onSurface{0, 0, 0};       ///< end of the walk on S (valid when limitAngle is set)
+  Eigen::Vector3d onTangentPlane{0, 0, 0};  ///< canonical point on T
+  std::optional<Failure> failure;
+};
+
+/// The contour carried to the tangent plane.
+struct CanonicalContour {
+  std::vector<DirectionResult> directions;
+  std::vector<Pixel> pixels;                ///< canonical points of the directions that succeeded, in the photograph
+  std::optional<Ellipse> ellipse;           ///< fitted to `pixels`
+};
+
+/// One observation used for training: one highlight of one light in one frame, with what was derived from it.
+struct TrainingView {
+  int frame = -1;
+  Camera camera;
+  std::shared_ptr<const Surface> surface;   ///< may be null only for `primal`
+  Highlight highlight;
+  std::optional<BrightestPoint> brightest;  ///< observed
+  std::optional<Plane> tangentPlane;        ///< normal towards the camera
+  std::optional<Projection> virtualCamera;  ///< P M
+  std::optional<CanonicalContour> canonical;
+  std::optional<Failure> failure;           ///< why this view could not be used; nothing else is then trusted
+};
+
+/// What fitting produced; fields that a model does not have stay empty.
+struct ModelFit {
+  std::string model;
+  std::string light;                        ///< id
+  std::optional<std::string> surface;       ///< key, when the model belongs to one surface only
+  std::optional<DualQuadric> quadric;       ///< Q*
+  std::optional<Ellipsoid> ellipsoid;       ///< when Q* is one
+  std::optional<Light> lightEstimate;
+  std::optional<Eigen::Matrix3d> lightCovariance;  ///< m^2, of the position
+  std::optional<double> limitAngle;         ///< rad
+  std::optional<double> roughness;
+  double gapRatio = 0;                      ///< last / second last singular value of the linear system
+  double condition = 0;                     ///< first / second last singular value
+  std::vector<double> singularValues;
+  std::vector<double> residualPx;           ///< per training view, RMS contour distance
+  std::string solver;                       ///< "linear", "anchored", "refined", "bundle", ...
+  std::vector<int> frames;                  ///< frames used
+  double timeUs = 0;
+};
+
+/// One predicted highlight.
+struct PredictedHighlight {
+  Polyline contour;                         ///< the prediction: ideal pixels; closed over gaps for areas
+  std::vector<std::pair<int, int>> gaps;    ///< contour segments (from vertex, to vertex) that bridge failed directions
+  std::optional<Ellipse> ellipse;
+  BrightestPoint brightest;
+  std::optional<Plane> tangentPlane;
+  std::optional<CanonicalContour> canonical;///< directions with their ends on S and T
+  double coverage = 1;                      ///< share of directions that gave a point
+};
+
+/// Prediction of one light in one view: zero or more highlights, or the reason for none.
+struct Prediction {
+  std::vector<PredictedHighlight> highlights;
+  std::optional<Failure> failure;           ///< set when `highlights` is empty
+  double timeUs = 0;
+};
+
+/// A model of the JOLIMAS family or beyond (method.md section 7). Stateless.
+class HighlightModel {
+ public:
+  virtual ~HighlightModel() = default;
+  virtual std::string id() const = 0;             ///< "canonical"
+  virtual std::string title() const = 0;          ///< "Canonical JOLIMAS"
+  virtual std::string assumption() const = 0;     ///< one sentence from method.md section 7
+  virtual std::string reference() const = 0;      ///< paper or "method.md section 7"
+  /// @param views  views of one light; views with `failure` are skipped. Named failures as the model documents.
+  virtual Outcome<ModelFit> fit(const std::vector<TrainingView>& views, const Settings& settings) const = 0;
+  /// @param surface  may be null for `primal`.
+  virtual Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface,
+                             const Settings& settings) const = 0;
+};
+
+/// All models, from simple to rich. The only registration: one line each in registry.cpp.
+const std::vector<std::unique_ptr<HighlightModel>>& allModels();
+/// InputError listing the known names when there is none.
+const HighlightModel& modelByName(const std::string& id);
+
+}  // namespace glint

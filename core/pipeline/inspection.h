@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/base/settings.h"
+#include "core/evaluate/metrics.h"
+#include "core/model/model.h"
+#include "core/scene/scene.h"
+
+namespace glint {
+
+/// Which frames train: parsed from --train SPEC (formats.md).
+struct TrainSpec {
+  std::string text = "first:6";
+  bool perSurface = false;
+  std::vector<int> frames;      ///< sorted, unique; all frames when perSurface
+};
+/// InputError (place "--train") when it does not parse or names a frame that does not exist.
+TrainSpec parseTrainSpec(const std::string& text, const Scene& scene);
+
+/// What to compute. Plain data: the session file stores it, the inspector edits it.
+struct InspectionRequest {
+  std::vector<std::string> models{"primal", "dual", "canonical", "limit-angle"};
+  std::string train = "first:6";
+  std::vector<int> excluded;             ///< frames never used for training nor evaluated
+  FrameSource source = FrameSource::Radiance;
+  Settings settings;
+  double noisePx = 0;                    ///< Gaussian noise on training contours (72 points) and peaks
+  unsigned seed = 1;
+  std::string truthFolder;               ///< --truth DIR, "" = own detection
+};
+
+/// One frame's evidence.
+struct FrameEvidence {
+  int frame = -1;
+  std::vector<Highlight> highlights;     ///< each with its light
+  std::optional<Failure> failure;        ///< NoHighlight, FrameUnreadable, ...
+};
+
+/// Prediction of one model for one light in one frame, compared with the evidence.
+struct FrameComparison {
+  int frame = -1;
+  std::string light;
+  int fit = -1;                          ///< index into ModelResult::fits
+  Prediction prediction;
+  /// One row per matched pair, per missed observed and per spurious predicted highlight.
+  struct Row {
+    int observed = -1;                   ///< index into FrameEvidence::highlights; -1 = spurious
+    int predicted = -1;                  ///< index into prediction.highlights; -1 = missed
+    std::optional<ContourMetrics> metrics;
+    std::optional<Failure> failure;
+  };
+  std::vector<Row> rows;
+  double iou = 0;                        ///< over the union of all regions of this light
+};
+
+struct ModelResult {
+  std::string model;
+  struct Fit {
+    std::string light;
+    std::optional<std::string> surface;
+    std::optional<ModelFit> fit;         ///< exactly one of fit and failure
+    std::optional<Failure> failure;
+  };
+  std::vector<Fit> fits;
+  std::vector<FrameComparison> frames;   ///< every frame, training ones too; `heldOut` tells which count
+};
+
+/// Everything that was computed; the viewer shows all of it.
+struct Inspection {
+  std::shared_ptr<const Scene> scene;
+  std::shared_ptr<const SurfaceCache> surfaces;
+  InspectionRequest request;
+  TrainSpec train;
+  std::vector<FrameEvidence> evidence;                     ///< one per frame
+  std::vector<TrainingView> views;                         ///< one per training highlight
+  std::map<std::string, Light> lights;                     ///< triangulated or bundled, by light id (+ "@surface" when per surface)
+  std::map<std::string, ModelResult> models;
+  bool isTraining(int frame) const;
+  bool isHeldOut(int frame) const;                         ///< counts in summaries
+};
+
+/// scene -> highlight -> brightest point, tangent plane -> light -> virtual camera -> canonical contour -> model fit
+/// -> prediction -> comparison. Pure; throws Stopped when `progress` says so, InputError for wrong requests.
+/// @param previous  result of an earlier run on the same scene: stages whose inputs did not change are taken from it.
+Inspection inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn& progress = {},
+                   const Inspection* previous = nullptr);
+
+}  // namespace glint

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/image.h"
+#include "core/base/outcome.h"
+#include "core/geometry/camera.h"
+#include "core/highlight/highlight.h"
+#include "core/surface/surface.h"
+
+namespace glint {
+
+/// One analytic surface of scene.json (formats.md). Field meaning depends on `type`.
+struct AnalyticSpec {
+  std::string type;                       ///< plane, sphere, ellipsoid, cylinder, sheet, torus, quadric
+  double radius = 0;                      ///< sphere, cylinder
+  Eigen::Vector3d semiAxes{0, 0, 0};      ///< ellipsoid
+  double curvature = 0;                   ///< sheet, 1/m, about local y, > 0 bends towards local -z
+  std::optional<double> length, width;    ///< sheet: along the arc, along local y
+  double majorRadius = 0, minorRadius = 0;///< torus, axis local z
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Zero();  ///< quadric A, x^T A x = 0
+  Eigen::Isometry3d worldFromSurface = Eigen::Isometry3d::Identity();
+};
+
+/// Where a surface comes from: exactly one of the two is set.
+struct SurfaceSource {
+  std::optional<std::filesystem::path> mesh;   ///< absolute
+  std::optional<AnalyticSpec> analytic;
+};
+
+/// One captured view. Paths are absolute; empty = not given.
+struct Frame {
+  std::string id;
+  std::filesystem::path image, radiance, depth, normals, mask;
+  double depthScale = 1;                  ///< metres per stored unit (integer depth)
+  Camera camera;
+  std::string surface;                    ///< id in Scene::surfaces; "" = this frame's own depth map
+  std::vector<std::string> lightsOn;      ///< empty = not stated
+  std::vector<Highlight> highlights;      ///< given ones; used instead of detection when not empty
+};
+
+/// Truth for evaluation and display only; never read by reconstruction or prediction.
+struct TrueLight {
+  std::string id;
+  std::optional<Eigen::Vector3d> position, direction;     ///< direction: from the scene to a light at infinity
+  std::optional<std::array<Eigen::Vector3d, 2>> segment;  ///< tube
+  double radius = 0;
+};
+
+/// Everything a scene file says, checked. Images and surfaces are loaded on demand.
+struct Scene {
+  std::string name;
+  std::filesystem::path file;             ///< as opened
+  std::filesystem::path folder;           ///< absolute folder of the file; all relative paths start here
+  std::vector<Frame> frames;
+  std::map<std::string, SurfaceSource> surfaces;
+  std::vector<TrueLight> lights;
+  std::vector<std::string> warnings;      ///< unknown keys and other oddities, one line each
+  std::string unknownJson;                ///< unknown top-level keys, kept for writing back; "" = none
+};
+
+struct ReadOptions {
+  bool allowOutsidePaths = false;         ///< accept paths that leave the scene's folder
+};
+
+/// Reads any input that Glint knows, recognised by content. InputError with file, place and reason.
+Scene readScene(const std::filesystem::path& input, const ReadOptions& options = {});
+/// Writes scene.json version 1 with relative paths, atomically. InputError when it cannot be written.
+void writeScene(const Scene& scene, const std::filesystem::path& file);
+
+enum class FrameSource { Radiance, Image };
+/// Linear image of a frame: the float radiance as stored, or the 8/16-bit image through the inverse sRGB curve
+/// (16-bit is taken as linear only if the file says so; else sRGB). Three channels stay three.
+/// FrameUnreadable (missing, empty, truncated, another size than the camera's), with the file in the detail.
+Outcome<Image> readLinear(const Frame& frame, FrameSource source);
+/// The display image, 3 channels, sRGB 0..1 (tone-mapped radiance when there is no photograph).
+Outcome<Image> readPhotograph(const Frame& frame);
+/// Non-zero on the glossy object; nothing when the frame has no mask.
+Outcome<std::optional<Image>> readMask(const Frame& frame);
+
+/// Loads surfaces once per (source, policy) and shares them. Thread-safe.
+class SurfaceCache {
+ public:
+  explicit SurfaceCache(const Scene& scene);
+  ~SurfaceCache();
+  /// The surface that a frame sees. NoSurface; InputError when a mesh or depth file cannot be read.
+  Outcome<std::shared_ptr<const Surface>> surfaceOf(int frame, NormalPolicy normals) const;
+  /// A key that is equal for frames that see the same surface ("body"; "depth:0004" for a frame's own depth).
+  std::string keyOf(int frame) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace glint

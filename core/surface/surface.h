@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/outcome.h"
+#include "core/geometry/camera.h"
+
+namespace glint {
+
+/// A point on a surface, world frame.
+struct SurfacePoint {
+  Eigen::Vector3d position;
+  Eigen::Vector3d normal;                ///< unit; side as the surface stores it, see `facing`
+  int element = -1;                      ///< triangle index on a mesh, -1 elsewhere
+  Eigen::Vector2d barycentric{0, 0};     ///< on that triangle: weights of its second and third vertex
+};
+
+/// The same point with the normal on the side of `eye` (method.md section 0: N on the camera's side).
+inline SurfacePoint facing(SurfacePoint p, const Eigen::Vector3d& eye) {
+  if (p.normal.dot(eye - p.position) < 0) p.normal = -p.normal;
+  return p;
+}
+
+/// Principal curvatures, 1/m; positive where the surface bends away from the stored normal (convex seen from there).
+struct Curvature {
+  double k1 = 0, k2 = 0;                 ///< k1 >= k2
+  Eigen::Vector3d direction1, direction2;///< unit, tangent, orthogonal
+};
+
+/// Indexed triangles with vertex normals, for display and for seeds.
+struct TriangleMesh {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<Eigen::Vector3d> normals;  ///< one per vertex, unit, or empty
+  std::vector<Eigen::Vector3i> triangles;
+};
+
+enum class NormalPolicy { Facet, Interpolated, Curved };
+
+/// What the method needs of a surface, whatever its source (analytic, mesh, depth map). Immutable; all
+/// queries are const and may be called from several threads.
+class Surface {
+ public:
+  virtual ~Surface() = default;
+  virtual std::string describe() const = 0;
+
+  /// First intersection of a ray with t > 0. NoHit; NotFinite.
+  virtual Outcome<SurfacePoint> firstHit(const Ray& ray) const = 0;
+  /// firstHit for many rays in one call, possibly in reduced precision (float, 1e-6 of the scene's size): for seeds and
+  /// previews only. Missing hits are empty. The default calls firstHit.
+  virtual std::vector<std::optional<SurfacePoint>> approximateHits(const std::vector<Ray>& rays) const;
+
+  /// Foot of a point along a line: the intersection of { point + s direction, any sign of s } with the surface that
+  /// lies nearest to `previous` (the foot of the step before, or the brightest point). Full double precision.
+  /// SurfaceEnded when the line misses the surface near there.
+  virtual Outcome<SurfacePoint> foot(const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
+                                     const SurfacePoint& previous) const = 0;
+
+  /// Principal curvatures at a point of this surface. NotSupported on facets.
+  virtual Outcome<Curvature> curvatureAt(const SurfacePoint& p) const = 0;
+
+  /// True when the open segment between a surface point and another world point meets the surface.
+  /// A neighbourhood of 1e-6 of the scene's size (or of the segment's length, if smaller) around `from` is ignored.
+  virtual bool occluded(const SurfacePoint& from, const Eigen::Vector3d& to) const = 0;
+
+  /// Bounding box; infinite extents for unbounded analytic types.
+  virtual Eigen::AlignedBox3d bounds() const = 0;
+  /// Triangles for display, clipped to `region` where the surface is unbounded; about `resolution` cells a side.
+  virtual TriangleMesh tessellate(const Eigen::AlignedBox3d& region, int resolution) const = 0;
+};
+
+}  // namespace glint

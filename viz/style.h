@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <string>
+
+namespace glint::viz {
+
+/// sRGB, 0..1.
+using Colour = std::array<double, 3>;
+
+/// Colour-blind safe (Okabe-Ito), the same in every view: primal orange, dual sky blue, canonical bluish green,
+/// limit-angle vermillion, reflectance reddish purple. Grey for an unknown model.
+inline Colour modelColour(const std::string& model) {
+  if (model == "primal") return {0.902, 0.624, 0.000};
+  if (model == "dual") return {0.337, 0.706, 0.914};
+  if (model == "canonical") return {0.000, 0.620, 0.451};
+  if (model == "limit-angle") return {0.835, 0.369, 0.000};
+  if (model == "reflectance") return {0.800, 0.475, 0.655};
+  return {0.6, 0.6, 0.6};
+}
+inline constexpr Colour kObserved{1.0, 1.0, 1.0};       ///< drawn with a dark halo
+inline constexpr Colour kLightColour{0.941, 0.894, 0.259};
+inline constexpr Colour kVirtualCamera{0.337, 0.706, 0.914};
+inline constexpr Colour kTraining{0.000, 0.447, 0.698}; ///< blue: training frames
+inline constexpr Colour kHeldOut{0.55, 0.55, 0.55};
+
+}  // namespace glint::viz
