@@ -15,21 +15,10 @@
 #include "core/base/outcome.h"
 #include "core/geometry/camera.h"
 #include "core/highlight/highlight.h"
+#include "core/surface/analytic.h"
 #include "core/surface/surface.h"
 
 namespace glint {
-
-/// One analytic surface of scene.json (formats.md). Field meaning depends on `type`.
-struct AnalyticSpec {
-  std::string type;                       ///< plane, sphere, ellipsoid, cylinder, sheet, torus, quadric
-  double radius = 0;                      ///< sphere, cylinder
-  Eigen::Vector3d semiAxes{0, 0, 0};      ///< ellipsoid
-  double curvature = 0;                   ///< sheet, 1/m, about local y, > 0 bends towards local -z
-  std::optional<double> length, width;    ///< sheet: along the arc, along local y
-  double majorRadius = 0, minorRadius = 0;///< torus, axis local z
-  Eigen::Matrix4d matrix = Eigen::Matrix4d::Zero();  ///< quadric A, x^T A x = 0
-  Eigen::Isometry3d worldFromSurface = Eigen::Isometry3d::Identity();
-};
 
 /// Where a surface comes from: exactly one of the two is set.
 struct SurfaceSource {
