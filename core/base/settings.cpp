@@ -34,8 +34,6 @@ const std::vector<ParamSpec>& allParams() {
        "Linear: smallest singular vector of s C* = P Q* P^T. Anchored: centre fixed at the light. Refined: contour distances with the light's covariance as prior.", "fit"},
       {"fit.prior_scale", "Prior weight", "", "", 1.0, 0.001, 1000.0, 0.1, {},
        "Multiplies the light's standard deviation in the prior on the ellipsoid's centre.", "fit"},
-      {"fit.free_centre", "Free centre", "c", "", false, 0, 0, 0, {},
-       "Refine without a prior on the centre (needs three views).", "fit"},
       {"predict.directions", "Directions", "n", "", 36, 6, 720, 1, {},
        "Directions of the walk in the tangent plane (the paper: 36).", "fit"},
       {"predict.seed_step", "Seed spacing", "", "px", 16.0, 2.0, 128.0, 1.0, {},

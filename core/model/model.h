@@ -46,6 +46,23 @@ struct TrainingView {
   std::optional<Failure> failure;           ///< why this view could not be used; nothing else is then trusted
 };
 
+/// The light of a set of views, from section 4, with what the bundle adds.
+struct LightEstimate {
+  Light light;
+  std::optional<Eigen::Matrix3d> covariance;///< m^2 of the position; none for a light at infinity
+  double limitAngle = 0;                    ///< rad; robust mean over all contour points
+  double condition = 0;                     ///< of the triangulation
+  double rmsPx = 0;                         ///< of the bundle's residuals, 0 when triangulated
+  std::string solver;                       ///< "triangulated" or "bundle"
+};
+
+/// What a fit may use. Views are of one light (and one surface, when models are per surface).
+struct FitInput {
+  std::vector<TrainingView> views;          ///< those with `failure` are skipped
+  std::optional<LightEstimate> light;       ///< for models with needsLight()
+  std::optional<Failure> lightFailure;      ///< why there is none
+};
+
 /// What fitting produced; fields that a model does not have stay empty.
 struct ModelFit {
   std::string model;
@@ -92,8 +109,10 @@ class HighlightModel {
   virtual std::string title() const = 0;          ///< "Canonical JOLIMAS"
   virtual std::string assumption() const = 0;     ///< one sentence from method.md section 7
   virtual std::string reference() const = 0;      ///< paper or "method.md section 7"
-  /// @param views  views of one light; views with `failure` are skipped. Named failures as the model documents.
-  virtual Outcome<ModelFit> fit(const std::vector<TrainingView>& views, const Settings& settings) const = 0;
+  virtual bool needsLight() const = 0;            ///< the fit uses FitInput::light
+  virtual bool needsCanonicalContours() const = 0;///< the fit uses TrainingView::canonical
+  /// Named failures: TooFewViews and what the solver or the light reports.
+  virtual Outcome<ModelFit> fit(const FitInput& input, const Settings& settings) const = 0;
   /// @param surface  may be null for `primal`.
   virtual Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface,
                              const Settings& settings) const = 0;

@@ -40,7 +40,10 @@ struct InspectionRequest {
 struct FrameEvidence {
   int frame = -1;
   std::vector<Highlight> highlights;     ///< each with its light
+  std::vector<Highlight> truth;          ///< what predictions are compared with when --truth is given; else empty
   std::optional<Failure> failure;        ///< NoHighlight, FrameUnreadable, ...
+  /// What predictions are compared with.
+  const std::vector<Highlight>& scored() const { return truth.empty() ? highlights : truth; }
 };
 
 /// Prediction of one model for one light in one frame, compared with the evidence.
@@ -51,7 +54,7 @@ struct FrameComparison {
   Prediction prediction;
   /// One row per matched pair, per missed observed and per spurious predicted highlight.
   struct Row {
-    int observed = -1;                   ///< index into FrameEvidence::highlights; -1 = spurious
+    int observed = -1;                   ///< index into FrameEvidence::scored(); -1 = spurious
     int predicted = -1;                  ///< index into prediction.highlights; -1 = missed
     std::optional<ContourMetrics> metrics;
     std::optional<Failure> failure;
@@ -80,7 +83,8 @@ struct Inspection {
   TrainSpec train;
   std::vector<FrameEvidence> evidence;                     ///< one per frame
   std::vector<TrainingView> views;                         ///< one per training highlight
-  std::map<std::string, Light> lights;                     ///< triangulated or bundled, by light id (+ "@surface" when per surface)
+  std::map<std::string, LightEstimate> lights;             ///< by light id (+ "@" + surface key when per surface)
+  std::map<std::string, Failure> lightFailures;            ///< the same keys: why a light could not be estimated
   std::map<std::string, ModelResult> models;
   bool isTraining(int frame) const;
   bool isHeldOut(int frame) const;                         ///< counts in summaries
