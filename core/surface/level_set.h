@@ -15,18 +15,19 @@ using PixelField = std::function<std::optional<double>(const Pixel&)>;
 using PixelFieldBatch = std::function<std::vector<std::optional<double>>(const std::vector<Pixel>&)>;
 
 struct LevelSetOptions {
-  double gridStepPx = 4;          ///< spacing of the scan that finds components; smaller ones need a seed inside
-  double marginPx = 0;            ///< how far beyond the image borders the field is followed
-  double sagittaPx = 5e-4;        ///< chords are split until they are this close to the curve
-  double tolerancePx = 1e-9;      ///< root finding along grid edges and normals
-  std::vector<Pixel> seeds;       ///< pixels known to be inside; the grid is refined around them so that small components are found
+  double gridStepPx = 4;      ///< spacing of the scan that finds components; smaller ones need a seed inside
+  double marginPx = 0;        ///< how far beyond the image borders the field is followed
+  double sagittaPx = 5e-4;    ///< chords are split until they are this close to the curve
+  double tolerancePx = 1e-9;  ///< root finding along grid edges and normals
+  std::vector<Pixel> seeds;   ///< pixels known to be inside; the grid is refined around them so that small components are found
 };
 
 /// One connected component of { field < level } in the image, by its outer boundary.
 struct LevelSetComponent {
-  Polyline outline;               ///< closed, positively oriented; every vertex on the level set or on the border of the domain
-  std::vector<char> onBorder;     ///< per vertex: 1 where the field ends there (surface edge, occlusion, image margin), 0 on the level set
-  double minimum = 0;             ///< smallest field value met inside
+  Polyline outline;  ///< closed, positively oriented; every vertex on the level set or on the border of the domain
+  std::vector<char>
+      onBorder;        ///< per vertex: 1 where the field ends there (surface edge, occlusion, image margin), 0 on the level set
+  double minimum = 0;  ///< smallest field value met inside
   Pixel minimumAt{0, 0};
 };
 

@@ -16,9 +16,9 @@ namespace glint {
 /// A point on a surface, world frame.
 struct SurfacePoint {
   Eigen::Vector3d position;
-  Eigen::Vector3d normal;                ///< unit; side as the surface stores it, see `facing`
-  int element = -1;                      ///< triangle index on a mesh, -1 elsewhere
-  Eigen::Vector2d barycentric{0, 0};     ///< on that triangle: weights of its second and third vertex
+  Eigen::Vector3d normal;             ///< unit; side as the surface stores it, see `facing`
+  int element = -1;                   ///< triangle index on a mesh, -1 elsewhere
+  Eigen::Vector2d barycentric{0, 0};  ///< on that triangle: weights of its second and third vertex
 };
 
 /// The same point with the normal on the side of `eye` (method.md section 0: N on the camera's side).
@@ -29,8 +29,8 @@ inline SurfacePoint facing(SurfacePoint p, const Eigen::Vector3d& eye) {
 
 /// Principal curvatures, 1/m; positive where the surface bends away from the stored normal (convex seen from there).
 struct Curvature {
-  double k1 = 0, k2 = 0;                 ///< k1 >= k2
-  Eigen::Vector3d direction1, direction2;///< unit, tangent, orthogonal
+  double k1 = 0, k2 = 0;                   ///< k1 >= k2
+  Eigen::Vector3d direction1, direction2;  ///< unit, tangent, orthogonal
 };
 
 /// Indexed triangles with vertex normals, for display and for seeds.

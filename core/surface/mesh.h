@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include "core/surface/surface.h"
+
+namespace glint {
+
+/// A triangle mesh behind the Surface interface. Ray queries go through Embree in float32 on a centred and scaled copy;
+/// every hit is then polished in double, moving to the neighbour triangle where the double hit lies outside.
+///
+/// Normal policies (method.md section 2):
+/// - Facet: flat positions, one normal per triangle (side of its winding after orientation). No curvature.
+/// - Interpolated: flat positions, normalised linear interpolation of vertex normals: continuous, piecewise smooth.
+/// - Curved: quadratic patch through the vertices and their tangent planes (Phong tessellation with weight 1/2, which
+///   reproduces second-order surfaces to leading order), with the same continuous normals. Border edges bulge with the patch.
+///   @see Boubekeur and Alexa, Phong Tessellation, SIGGRAPH Asia 2008.
+///
+/// Vertex normals are those of the mesh where they are finite and not zero, else angle-weighted means of the triangles around a
+/// position (vertices with equal coordinates count as one). Neighbouring triangles of opposite winding are turned to
+/// agree with the majority of their connected part. Degenerate triangles (zero area, repeated corners) and repeats of a
+/// triangle are ignored by all queries but keep their index, so `element` always indexes `mesh.triangles`. Edges with more
+/// than two triangles connect none of them.
+/// curvatureAt: from the derivatives of the normal field inside the triangle; its sign refers to p.normal.
+/// std::invalid_argument (with the index) for a vertex that is not finite or a corner out of range, when there is no
+/// triangle with an area, or when `normals` is neither empty nor one per vertex.
+std::shared_ptr<const Surface> makeMesh(TriangleMesh mesh, NormalPolicy normals);
+
+}  // namespace glint
