@@ -6,12 +6,14 @@
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "core/pipeline/inspection.h"
 
 class vtkRenderer;
+class vtkRenderWindow;
 
 namespace glint::viz {
 
@@ -41,6 +43,16 @@ struct Picked {
   std::string text;                     ///< lines "name = value unit" for the panel and the clipboard
 };
 
+/// A 3D camera, as sessions store it. World units; `viewAngleDeg` is the vertical field of view.
+struct ViewPoint {
+  Eigen::Vector3d position{0, 0, 1}, focalPoint{0, 0, 0}, up{0, 1, 0};
+  double viewAngleDeg = 30;
+};
+
+/// Makes a render window fit for SceneView: alpha bit planes and no multisampling (depth peeling needs both).
+/// Call before the window's first render.
+void prepareWindow(vtkRenderWindow* window);
+
 /// The 3D picture of an inspection: one actor group per layer, rebuilt only where its input changed. No Qt.
 class SceneView {
  public:
@@ -53,7 +65,20 @@ class SceneView {
   void setLayerVisible(const std::string& name, bool visible);  ///< std::invalid_argument for an unknown name
   bool layerVisible(const std::string& name) const;
   void setDarkBackground(bool dark);
+  /// Models whose parts are drawn; empty = all.
+  void setModels(const std::set<std::string>& models);
+  /// Size of cameras, arrows, points and lines relative to the default for the scene's extent; > 0.
+  void setGlyphScale(double scale);
+  /// A view from outside that holds the surface, the cameras and a light that is not far beyond them.
   void frameAll();
+  /// Looks from a frame's camera along its axis with its vertical field of view.
+  void lookThrough(int frame);
+  ViewPoint viewPoint() const;
+  void setViewPoint(const ViewPoint& viewPoint);
+  /// Brings the actors of all visible layers up to date. Rendering does this by itself; only code that reads actors needs it.
+  void update();
+  /// How often a layer was built since construction; for tests of "rebuilt only where its input changed".
+  int buildCount(const std::string& layer) const;
   std::optional<Picked> pick(int xDisplay, int yDisplay) const;
 
  private:

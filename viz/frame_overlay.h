@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/geometry/camera.h"
+#include "core/pipeline/inspection.h"
+#include "viz/style.h"
+
+namespace glint::viz {
+
+/// What a stroke of the overlay shows; the views toggle by it.
+enum class OverlayRole { ObservedContour, ObservedEllipse, ObservedPeak, PredictedContour, PredictedEllipse, PredictedPeak, CanonicalEllipse };
+
+enum class Dash { Solid, Dashed, Dotted };
+
+/// One polyline over the photograph. Points are photograph pixels as stored in the file (lens distortion applied),
+/// (0, 0) = centre of the top-left pixel; the view scales them. Widths are screen pixels and do not scale with the zoom.
+struct OverlayLine {
+  OverlayRole role = OverlayRole::ObservedContour;
+  std::vector<Pixel> points;
+  bool closed = false;
+  Colour colour{1, 1, 1};
+  double width = 2;             ///< screen px
+  bool halo = false;            ///< draw a dark stroke, 2 screen px wider, beneath
+  Dash dash = Dash::Solid;
+  std::string label;            ///< short text for a tool tip or a legend: "canonical 0.42 %"; may be empty
+  std::string model;            ///< "" for observed
+  std::string light;
+  int highlight = -1;           ///< observed: index into the frame's evidence; predicted: into the prediction's highlights
+};
+
+enum class MarkShape { Cross, Circle };
+
+/// One mark at a pixel (peak, brightest point).
+struct OverlayMark {
+  OverlayRole role = OverlayRole::ObservedPeak;
+  Pixel at{0, 0};
+  MarkShape shape = MarkShape::Cross;
+  Colour colour{1, 1, 1};
+  double size = 5;              ///< half size, screen px
+  double width = 1.5;           ///< screen px
+  bool halo = true;
+  std::string label, model, light;
+  int highlight = -1;
+};
+
+/// One line of text under or beside the photograph: a model's error, or the reason why it did not answer.
+struct OverlayCaption {
+  Colour colour{1, 1, 1};
+  std::string model;            ///< "" for the observation
+  std::string text;             ///< "canonical  0.42 %  0.31 px  IoU 0.981"
+  bool problem = false;         ///< a failure, a missed or a spurious highlight
+};
+
+/// Everything that is drawn over one photograph, in drawing order (later on top). Plain data: no VTK, no Qt.
+struct FrameOverlay {
+  std::vector<OverlayLine> lines;
+  std::vector<OverlayMark> marks;
+  std::vector<OverlayCaption> captions;
+};
+
+struct OverlayOptions {
+  std::set<std::string> models;     ///< models to draw; empty = all
+  std::set<OverlayRole> hidden;     ///< roles left out
+  int ellipseSegments = 96;         ///< samples per ellipse, >= 8
+};
+
+/// Overlay of one frame: observed contours (white with halo), their least-squares ellipses (thin, dashed) and peaks
+/// (crosses); per model in its fixed colour the predicted contours (bridged gaps dotted), ellipses (dashed) and
+/// brightest points (circles). Empty lines and marks for a frame without evidence; the captions then say why.
+/// @param frame  index into scene->frames; std::invalid_argument when it does not exist.
+FrameOverlay frameOverlay(const Inspection& inspection, int frame, const OverlayOptions& options = {});
+
+/// Names of the inspection's models, from simple to rich (method.md section 7), unknown ones last; only those in `only` unless it is empty.
+std::vector<std::string> modelsInOrder(const Inspection& inspection, const std::set<std::string>& only = {});
+
+/// One model's score in one frame over all lights and highlights.
+struct FrameScore {
+  std::optional<double> errorPct, errorPx;  ///< mean over matched highlights
+  std::optional<double> iou;                ///< mean over lights that were predicted
+  int matched = 0, missed = 0, spurious = 0;
+  std::string reason;                       ///< first failure's message when nothing matched; else ""
+};
+FrameScore frameScore(const ModelResult& result, int frame);
+
+}  // namespace glint::viz
