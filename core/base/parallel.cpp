@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/base/parallel.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace glint {
+
+void parallelFor(int n, const std::function<void(int)>& work, const ProgressFn& progress, const std::string& stage) {
+  std::atomic<int> next{0}, done{0};
+  std::atomic<bool> stop{false}, stopped{false};
+  std::exception_ptr error;
+  std::mutex mutex;
+  const auto run = [&] {
+    while (!stop) {
+      const int i = next++;
+      if (i >= n) return;
+      try {
+        work(i);
+      } catch (...) {
+        const std::scoped_lock lock(mutex);
+        if (!error) error = std::current_exception();
+        stop = true;
+        return;
+      }
+      const std::scoped_lock lock(mutex);
+      if (!stop && !report(progress, {stage, ++done, n})) stopped = stop = true;
+    }
+  };
+  if (!report(progress, {stage, 0, n})) throw Stopped{};
+  const int count = std::min<int>(n, std::clamp<int>(static_cast<int>(std::thread::hardware_concurrency()), 1, 8));
+  std::vector<std::thread> threads;
+  for (int t = 1; t < count; ++t) threads.emplace_back(run);
+  run();
+  for (std::thread& t : threads) t.join();
+  if (error) std::rethrow_exception(error);
+  if (stopped) throw Stopped{};
+}
+
+}  // namespace glint

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "core/base/progress.h"
+
+namespace glint {
+
+/// Calls work(i) for i in [0, n) from several threads (the hardware's, at most 8; one when n is 1). Reports progress from
+/// any of them, one at a time; throws Stopped when the progress function says stop, and rethrows the first exception of `work`.
+void parallelFor(int n, const std::function<void(int)>& work, const ProgressFn& progress, const std::string& stage);
+
+}  // namespace glint

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/evaluate/metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace glint {
+namespace {
+
+using Segment = std::pair<Pixel, Pixel>;
+
+/// Segments of a polyline without its gaps and without repeated points' zero-length pieces.
+std::vector<Segment> segmentsOf(const Polyline& line, const std::vector<std::pair<int, int>>& gaps) {
+  std::vector<Segment> out;
+  const int n = static_cast<int>(line.points.size());
+  const int count = n < 2 ? 0 : line.closed ? n : n - 1;
+  for (int i = 0; i < count; ++i) {
+    const int j = (i + 1) % n;
+    if (std::find(gaps.begin(), gaps.end(), std::pair<int, int>(i, j)) != gaps.end()) continue;
+    if ((line.points[j] - line.points[i]).norm() > 1e-12) out.emplace_back(line.points[i], line.points[j]);
+  }
+  return out;
+}
+
+double lengthOf(const std::vector<Segment>& segments) {
+  double sum = 0;
+  for (const Segment& s : segments) sum += (s.second - s.first).norm();
+  return sum;
+}
+
+double distanceTo(const std::vector<Segment>& segments, const Pixel& q) {
+  double best = std::numeric_limits<double>::infinity();
+  for (const Segment& s : segments) {
+    const Pixel d = s.second - s.first;
+    const double t = std::clamp((q - s.first).dot(d) / d.squaredNorm(), 0.0, 1.0);
+    best = std::min(best, (s.first + t * d - q).squaredNorm());
+  }
+  return std::sqrt(best);
+}
+
+struct OneWay {
+  double mean = 0, max = 0;
+};
+
+/// Samples at the centres of equal arc-length pieces of `from` (midpoint rule), distance to `to`.
+OneWay oneWay(const std::vector<Segment>& from, const std::vector<Segment>& to) {
+  const double total = lengthOf(from);
+  // Two samples a pixel resolve what marching squares can show; the bounds keep tiny and huge contours sensible.
+  const int n = std::clamp(static_cast<int>(2 * total), 360, 2000);
+  OneWay result;
+  std::size_t segment = 0;
+  double start = 0, l = (from[0].second - from[0].first).norm();
+  for (int i = 0; i < n; ++i) {
+    const double s = total * (i + 0.5) / n;
+    while (s > start + l && segment + 1 < from.size()) {
+      start += l;
+      ++segment;
+      l = (from[segment].second - from[segment].first).norm();
+    }
+    const Pixel q = from[segment].first + std::clamp((s - start) / l, 0.0, 1.0) * (from[segment].second - from[segment].first);
+    const double d = distanceTo(to, q);
+    result.mean += d / n;
+    result.max = std::max(result.max, d);
+  }
+  return result;
+}
+
+/// Crossings of a horizontal line with closed polylines, as inside intervals of their union (even-odd within each).
+void intervals(const std::vector<Polyline>& shapes, double y, std::vector<std::pair<double, double>>& out) {
+  out.clear();
+  std::vector<double> x;
+  for (const Polyline& shape : shapes) {
+    x.clear();
+    const auto& p = shape.points;
+    for (std::size_t i = 0, j = p.size() - 1; i < p.size(); j = i++)
+      if ((p[i].y() > y) != (p[j].y() > y)) x.push_back(p[i].x() + (y - p[i].y()) * (p[j].x() - p[i].x()) / (p[j].y() - p[i].y()));
+    std::sort(x.begin(), x.end());
+    for (std::size_t k = 0; k + 1 < x.size(); k += 2) out.emplace_back(x[k], x[k + 1]);
+  }
+  std::sort(out.begin(), out.end());
+  std::size_t kept = 0;
+  for (std::size_t k = 1; k < out.size(); ++k) {
+    if (out[k].first <= out[kept].second) out[kept].second = std::max(out[kept].second, out[k].second);
+    else out[++kept] = out[k];
+  }
+  if (!out.empty()) out.resize(kept + 1);
+}
+
+double lengthOf(const std::vector<std::pair<double, double>>& spans) {
+  double sum = 0;
+  for (const auto& [a, b] : spans) sum += b - a;
+  return sum;
+}
+
+double commonLength(const std::vector<std::pair<double, double>>& a, const std::vector<std::pair<double, double>>& b) {
+  double sum = 0;
+  for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
+    sum += std::max(0.0, std::min(a[i].second, b[j].second) - std::max(a[i].first, b[j].first));
+    if (a[i].second < b[j].second) ++i;
+    else ++j;
+  }
+  return sum;
+}
+
+}  // namespace
+
+double regionIou(const std::vector<Polyline>& a, const std::vector<Polyline>& b, double cellPx) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const auto* set : {&a, &b})
+    for (const Polyline& s : *set)
+      for (const Pixel& p : s.points) low = std::min(low, p.y()), high = std::max(high, p.y());
+  if (!(high > low)) return 0;
+  // Exact along each line; the lines sample the height by the midpoint rule.
+  const int rows = std::clamp(static_cast<int>(std::ceil((high - low) / cellPx)), 200, 4000);
+  double common = 0, all = 0;
+  std::vector<std::pair<double, double>> ia, ib;
+  for (int i = 0; i < rows; ++i) {
+    const double y = low + (high - low) * (i + 0.5) / rows;
+    intervals(a, y, ia);
+    intervals(b, y, ib);
+    const double both = commonLength(ia, ib);
+    common += both;
+    all += lengthOf(ia) + lengthOf(ib) - both;
+  }
+  return all > 0 ? common / all : 0;
+}
+
+std::vector<std::pair<int, int>> matchByOverlap(const std::vector<Polyline>& observed, const std::vector<Polyline>& predicted) {
+  struct Candidate {
+    double iou;
+    int o, p;
+  };
+  std::vector<Candidate> candidates;
+  for (int o = 0; o < static_cast<int>(observed.size()); ++o)
+    for (int p = 0; p < static_cast<int>(predicted.size()); ++p)
+      if (const double iou = regionIou({observed[o]}, {predicted[p]}); iou > 0) candidates.push_back({iou, o, p});
+  std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& x, const Candidate& y) { return x.iou > y.iou; });
+  std::vector<char> usedO(observed.size(), 0), usedP(predicted.size(), 0);
+  std::vector<std::pair<int, int>> pairs;
+  for (const Candidate& c : candidates) {
+    if (usedO[c.o] || usedP[c.p]) continue;
+    usedO[c.o] = usedP[c.p] = 1;
+    pairs.emplace_back(c.o, c.p);
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+ContourMetrics compareContours(const Polyline& observed, const Polyline& predicted, const std::vector<std::pair<int, int>>& gaps,
+                               const std::optional<Ellipse>& predictedEllipse, const Pixel& observedPeak,
+                               const Pixel& predictedPeak) {
+  ContourMetrics m;
+  const double nan = std::nan("");
+  m.contourErrorPx = m.contourErrorPct = m.ellipseErrorPct = m.hausdorffPx = m.centreOffsetPx = nan;
+  m.axisRatioError = m.angleErrorDeg = nan;
+  m.peakOffsetPx = (observedPeak - predictedPeak).norm();
+  const std::vector<Segment> o = segmentsOf(observed, {}), p = segmentsOf(predicted, gaps);
+  if (o.empty() || p.empty()) return m;
+  const double diameter = 2 * std::sqrt(std::abs(signedArea(observed)) / std::numbers::pi);
+  const OneWay forth = oneWay(o, p), back = oneWay(p, o);
+  m.contourErrorPx = 0.5 * (forth.mean + back.mean);
+  m.contourErrorPct = diameter > 0 ? 100 * m.contourErrorPx / diameter : nan;
+  m.hausdorffPx = std::max(forth.max, back.max);
+  m.iou = regionIou({observed}, {predicted});
+  m.centreOffsetPx = (centroid(observed) - centroid(predicted)).norm();
+  const Outcome<Ellipse> eo = fitEllipse(observed.points);
+  std::optional<Ellipse> ep = predictedEllipse;
+  if (!ep)
+    if (const Outcome<Ellipse> fitted = fitEllipse(predicted.points)) ep = *fitted;
+  if (eo && ep) {
+    const std::vector<Segment> so = segmentsOf({eo->sample(720), true}, {}), sp = segmentsOf({ep->sample(720), true}, {});
+    if (!so.empty() && !sp.empty())
+      m.ellipseErrorPct = 50 * (oneWay(so, sp).mean + oneWay(sp, so).mean) / std::sqrt(4 * eo->area() / std::numbers::pi);
+    const double ro = eo->semiAxes.y() / eo->semiAxes.x(), rp = ep->semiAxes.y() / ep->semiAxes.x();
+    m.axisRatioError = std::abs(ro - rp);
+    double angle = std::abs(eo->angle - ep->angle) * 180 / std::numbers::pi;
+    angle = std::fmod(angle, 180);
+    m.angleErrorDeg = (ro > 0.99 || rp > 0.99) ? 0 : std::min(angle, 180 - angle);  // a circle has no axis
+  }
+  return m;
+}
+
+}  // namespace glint

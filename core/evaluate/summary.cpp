@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/evaluate/summary.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace glint {
+namespace {
+
+double quantile(const std::vector<double>& sorted, double q) {
+  if (sorted.empty()) return std::nan("");
+  const double at = q * double(sorted.size() - 1);
+  const std::size_t i = static_cast<std::size_t>(at);
+  const double t = at - double(i);
+  return i + 1 < sorted.size() ? (1 - t) * sorted[i] + t * sorted[i + 1] : sorted[i];
+}
+
+}  // namespace
+
+Statistic statisticOf(std::vector<double> values) {
+  std::erase_if(values, [](double v) { return !std::isfinite(v); });
+  std::sort(values.begin(), values.end());
+  Statistic s;
+  s.count = static_cast<int>(values.size());
+  double sum = 0;
+  for (const double v : values) sum += v;
+  s.mean = values.empty() ? std::nan("") : sum / double(values.size());
+  s.median = quantile(values, 0.5);
+  s.p95 = quantile(values, 0.95);
+  s.max = values.empty() ? std::nan("") : values.back();
+  return s;
+}
+
+ModelSummary summarise(const Inspection& inspection, const ModelResult& result) {
+  ModelSummary s;
+  std::vector<double> pct, px, ellipse, hausdorff, peak, coverage, iou, time;
+  for (const FrameComparison& c : result.frames) {
+    if (!inspection.isHeldOut(c.frame)) continue;
+    const bool predicted = !c.prediction.highlights.empty();
+    bool observed = false, unreadable = false;
+    for (const FrameComparison::Row& row : c.rows) {
+      if (row.observed >= 0) observed = true;
+      if (row.failure && row.observed < 0 && row.predicted < 0) unreadable = true;
+      if (row.observed >= 0 && row.predicted >= 0) ++s.matched;
+      else if (row.observed >= 0) ++s.missed;
+      else if (row.predicted >= 0) ++s.spurious;
+      if (!row.metrics) continue;
+      pct.push_back(row.metrics->contourErrorPct);
+      px.push_back(row.metrics->contourErrorPx);
+      ellipse.push_back(row.metrics->ellipseErrorPct);
+      hausdorff.push_back(row.metrics->hausdorffPx);
+      peak.push_back(row.metrics->peakOffsetPx);
+      coverage.push_back(c.prediction.highlights[row.predicted].coverage);
+    }
+    if (!observed && !unreadable) continue;  // nothing was there to predict; what was predicted is spurious
+    ++s.frames;
+    if (predicted && observed) ++s.predicted;
+    if (observed) iou.push_back(c.iou);
+    time.push_back(c.prediction.timeUs);
+  }
+  s.answered = s.predicted > 0;
+  s.contourErrorPct = statisticOf(pct);
+  s.contourErrorPx = statisticOf(px);
+  s.ellipseErrorPct = statisticOf(ellipse);
+  s.hausdorffPx = statisticOf(hausdorff);
+  s.peakOffsetPx = statisticOf(peak);
+  s.coverage = statisticOf(coverage);
+  s.iou = statisticOf(iou);
+  s.timeUs = statisticOf(time);
+  std::sort(time.begin(), time.end());
+  s.timeP99Us = quantile(time, 0.99);
+  if (!s.answered) {
+    for (const ModelResult::Fit& f : result.fits)
+      if (f.failure) {
+        s.reason = f.failure->message();
+        return s;
+      }
+    for (const FrameComparison& c : result.frames)
+      if (inspection.isHeldOut(c.frame) && c.prediction.failure) {
+        s.reason = c.prediction.failure->message();
+        return s;
+      }
+    s.reason = s.frames == 0 ? "no held-out frame has a highlight" : "no frame was predicted";
+  }
+  return s;
+}
+
+}  // namespace glint

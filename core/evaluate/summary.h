@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/pipeline/inspection.h"
+
+namespace glint {
+
+struct Statistic {
+  double mean = 0, median = 0, p95 = 0, max = 0;  ///< NaN when count is 0
+  int count = 0;
+};
+/// NaNs are left out. p95 and median by linear interpolation between order statistics.
+Statistic statisticOf(std::vector<double> values);
+
+/// What `evaluate` prints of one model (formats.md "summary"): held-out frames only, except per surface.
+struct ModelSummary {
+  bool answered = false;           ///< some frame was predicted
+  std::string reason;              ///< why not, when it was not
+  int frames = 0;                  ///< (frame, light) pairs that should be predicted
+  int predicted = 0;               ///< of those, pairs with a prediction
+  int matched = 0, missed = 0, spurious = 0;  ///< highlights
+  Statistic contourErrorPct, contourErrorPx, ellipseErrorPct, hausdorffPx, peakOffsetPx, coverage;  ///< over matched highlights
+  Statistic iou;                   ///< per (frame, light), over the union of all regions
+  Statistic timeUs;
+  double timeP99Us = 0;
+};
+ModelSummary summarise(const Inspection& inspection, const ModelResult& result);
+
+}  // namespace glint

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/model/fit_ellipsoid.h"
+#include "core/model/models.h"
+
+namespace glint {
+namespace {
+
+class Dual final : public HighlightModel {
+ public:
+  std::string id() const override { return "dual"; }
+  std::string title() const override { return "Dual JOLIMAS"; }
+  std::string assumption() const override {
+    return "The image ellipses are outlines of one fixed ellipsoid in the virtual (mirrored) cameras: approximate on constant curvature.";
+  }
+  std::string reference() const override { return "Morgand et al., dual JOLIMAS (2017); method.md section 7"; }
+  bool needsLight() const override { return true; }
+  bool needsCanonicalContours() const override { return false; }
+
+  Outcome<ModelFit> fit(const FitInput& input, const Settings& settings) const override {
+    std::vector<ConicView> conics;
+    ModelFit fit;
+    for (const TrainingView& v : input.views) {
+      if (v.failure || !v.virtualCamera || !v.highlight.ellipse) continue;
+      conics.push_back({*v.virtualCamera, *v.highlight.ellipse, v.highlight.contour.points});
+      fit.frames.push_back(v.frame);
+    }
+    std::optional<CentreAnchor> anchor;
+    if (input.light && !input.light->light.atInfinity()) anchor = CentreAnchor{input.light->light.position(), input.light->covariance};
+    const Outcome<Reconstruction> r = fitEllipsoid(conics, anchor, settings);
+    if (!r) return r.failure();
+    store(*r, fit);
+    return fit;
+  }
+
+  Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {
+    Prediction p;
+    if (!surface) {
+      p.failure = Failure{Reason::NoSurface, ""};
+      return p;
+    }
+    if (!fit.ellipsoid) {
+      p.failure = Failure{Reason::NotAnEllipsoid, fit.quadric ? describe(*fit.quadric) : ""};
+      return p;
+    }
+    // The model stores no light: its brightest point is that of a light at the ellipsoid's centre.
+    const auto brightest = predictedBrightestPoints(*surface, camera, Light::at(fit.ellipsoid->centre()), brightestOptions(settings));
+    if (!brightest) {
+      p.failure = brightest.failure();
+      return p;
+    }
+    for (const BrightestPoint& b : *brightest) {
+      const Plane plane = Plane::through(b.point.position, b.point.normal);
+      const Outcome<Ellipse> e = outlineEllipse(*fit.ellipsoid, virtualCamera(camera, plane));
+      if (!e) {
+        p.failure = e.failure();
+        continue;
+      }
+      PredictedHighlight h = highlightFromEllipse(*e, b);
+      h.tangentPlane = plane;
+      p.highlights.push_back(std::move(h));
+    }
+    if (!p.highlights.empty()) p.failure.reset();
+    return p;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<HighlightModel> makeDual() { return std::make_unique<Dual>(); }
+
+}  // namespace glint

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/model/fit_ellipsoid.h"
+#include "core/model/models.h"
+
+namespace glint {
+namespace {
+
+class Primal final : public HighlightModel {
+ public:
+  std::string id() const override { return "primal"; }
+  std::string title() const override { return "Primal JOLIMAS"; }
+  std::string assumption() const override {
+    return "The image ellipses are outlines of one fixed ellipsoid in the real cameras: true on planes.";
+  }
+  std::string reference() const override { return "Morgand et al., JOLIMAS (2016); method.md section 7"; }
+  bool needsLight() const override { return false; }
+  bool needsCanonicalContours() const override { return false; }
+
+  Outcome<ModelFit> fit(const FitInput& input, const Settings& settings) const override {
+    std::vector<ConicView> conics;
+    ModelFit fit;
+    for (const TrainingView& v : input.views) {
+      // The real camera needs neither P_B nor T: a view that failed there still counts here.
+      if (!v.highlight.ellipse) continue;
+      conics.push_back({v.camera.projection(), *v.highlight.ellipse, v.highlight.contour.points});
+      fit.frames.push_back(v.frame);
+    }
+    const Outcome<Reconstruction> r = fitEllipsoid(conics, anchorFromCentres(input.views), settings);
+    if (!r) return r.failure();
+    store(*r, fit);
+    return fit;
+  }
+
+  Prediction predict(const ModelFit& fit, const Camera& camera, const Surface*, const Settings&) const override {
+    Prediction p;
+    if (!fit.ellipsoid) {
+      p.failure = Failure{Reason::NotAnEllipsoid, fit.quadric ? describe(*fit.quadric) : ""};
+      return p;
+    }
+    const Outcome<Ellipse> e = outlineEllipse(*fit.ellipsoid, camera.projection());
+    if (!e) {
+      p.failure = e.failure();
+      return p;
+    }
+    BrightestPoint brightest;
+    brightest.pixel = e->centre;
+    brightest.point.position = fit.ellipsoid->centre();
+    brightest.point.normal = (camera.centreInWorld() - brightest.point.position).normalized();
+    p.highlights.push_back(highlightFromEllipse(*e, brightest));
+    return p;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<HighlightModel> makePrimal() { return std::make_unique<Primal>(); }
+
+}  // namespace glint

@@ -1,0 +1,367 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/model/walk.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace glint {
+namespace {
+
+constexpr double kStepGrowth = 1.35;     // marching: fast enough for long walks, fine enough not to step over a lobe
+constexpr double kFallFraction = 0.02;   // a fall of alpha by more than this share of the limit is not round-off or mesh noise
+constexpr int kRootIterations = 60;      // bracketed: bisection alone needs 52
+
+/// Root of f in [a, b] with f(a) < 0 <= f(b): regula falsi with the Anderson-Bjorck weights, bisection when it stalls.
+/// `f` returns NaN to give up. Returns the last argument evaluated.
+template <class F>
+double bracketedRoot(F&& f, double a, double fa, double b, double fb, double tolerance) {
+  int side = 0;
+  double x = b;
+  double width = b - a;
+  for (int i = 0; i < kRootIterations; ++i) {
+    x = (fb - fa) != 0 ? (a * fb - b * fa) / (fb - fa) : 0.5 * (a + b);
+    if (!(x > a && x < b) || (i % 4 == 3 && b - a > 0.5 * width)) x = 0.5 * (a + b);
+    if (i % 4 == 3) width = b - a;
+    const double fx = f(x);
+    if (!(std::abs(fx) > tolerance)) return x;  // also leaves on NaN: the caller checks its own state
+    if (fx < 0) {
+      if (side == -1) {
+        const double m = 1 - fx / fa;
+        fb *= m > 0 ? m : 0.5;
+      }
+      a = x; fa = fx; side = -1;
+    } else {
+      if (side == 1) {
+        const double m = 1 - fx / fb;
+        fa *= m > 0 ? m : 0.5;
+      }
+      b = x; fb = fx; side = 1;
+    }
+    if (b - a <= 4e-16 * std::abs(b)) return x;
+  }
+  return x;
+}
+
+}  // namespace
+
+TangentWalk::TangentWalk(const Surface& surface, const Camera& camera, const BrightestPoint& brightest, const Light& light,
+                         const WalkOptions& options)
+    : surface_(surface), camera_(camera), brightest_(brightest), light_(light), options_(options), eye_(camera.centreInWorld()) {
+  brightest_.point = facing(brightest.point, eye_);
+  const Eigen::Vector3d& n = brightest_.point.normal;
+  plane_ = Plane::through(brightest_.point.position, n);
+  const Eigen::Vector3d right = camera.camFromWorld.linear().row(0).transpose();
+  Eigen::Vector3d u = right - right.dot(n) * n;
+  // Looking along the image's x axis: any direction will do, the image then shows T edge-on.
+  u = u.norm() > 1e-8 ? Eigen::Vector3d(u.normalized()) : Eigen::Vector3d(tangentBasis(n).col(0));
+  basis_.col(0) = u;
+  basis_.col(1) = n.cross(u);
+  // Image y points down: keep azimuths turning from +x to +y on the screen.
+  const Eigen::Vector3d down = camera.camFromWorld.linear().row(1).transpose();
+  if (basis_.col(1).dot(down) < 0) basis_.col(1) = -basis_.col(1);
+}
+
+Eigen::Vector3d TangentWalk::direction(double azimuth) const {
+  return std::cos(azimuth) * basis_.col(0) + std::sin(azimuth) * basis_.col(1);
+}
+
+double TangentWalk::azimuthOf(const Eigen::Vector3d& point) const {
+  const Eigen::Vector2d d = basis_.transpose() * (point - brightest_.point.position);
+  return std::atan2(d.y(), d.x());
+}
+
+double TangentWalk::alphaOnPlane(const Eigen::Vector3d& p) const {
+  const Eigen::Vector3d l = light_.directionFrom(p), v = (eye_ - p).normalized();
+  const Eigen::Vector3d& n = plane_.normal;
+  if (!(n.dot(l) > 0) || !(n.dot(v) > 0)) return std::nan("");
+  return incidentAngle(n, l, v);
+}
+
+Outcome<double> TangentWalk::alphaOnSurface(const SurfacePoint& p) const {
+  const Eigen::Vector3d l = light_.directionFrom(p.position), v = (eye_ - p.position).normalized();
+  if (!(p.normal.dot(v) > 0)) return Failure{Reason::Occluded, "the surface turns away from the camera"};
+  if (!(p.normal.dot(l) > 0)) return Failure{Reason::LightBehindSurface, ""};
+  return incidentAngle(p.normal, l, v);
+}
+
+Outcome<SurfacePoint> TangentWalk::foot(const Eigen::Vector3d& onPlane, const SurfacePoint& previous) const {
+  Outcome<SurfacePoint> f = surface_.foot(onPlane, plane_.normal, previous);
+  if (!f) return f;
+  // The side of the normal is carried along the walk: turning it to the eye would hide a fold.
+  if (f->normal.dot(previous.normal) < 0) f->normal = -f->normal;
+  return f;
+}
+
+Outcome<double> TangentWalk::reachOnPlane(const Eigen::Vector3d& d, double limit, double scale) const {
+  const Eigen::Vector3d& origin = brightest_.point.position;
+  const auto f = [&](double s) { return alphaOnPlane(origin + s * d) - limit; };
+  double a = 0, fa = f(0), highest = fa, step = scale;
+  bool below = fa < 0;
+  for (int i = 0; i < options_.maxSteps; ++i) {
+    const double b = a + step, fb = f(b);
+    if (std::isnan(fb)) return Failure{Reason::NotReached, "the tangent plane's walk left the lit side"};
+    if (below && fb >= 0) return bracketedRoot(f, a, fa, b, fb, options_.toleranceRad);
+    if (fb < 0) below = true;
+    if (below && fb < highest - kFallFraction * limit && highest > fa && fb < fa)
+      return Failure{Reason::NotMonotonic, "alpha falls before it reaches the limit on the tangent plane"};
+    if (below) highest = std::max(highest, fb);
+    a = b; fa = fb;
+    step *= kStepGrowth;
+  }
+  return Failure{Reason::NotReached, "alpha stays under the limit on the tangent plane"};
+}
+
+Outcome<TangentWalk::Reach> TangentWalk::reachOnSurface(const Eigen::Vector3d& d, double limit, double scale) const {
+  const Eigen::Vector3d& origin = brightest_.point.position;
+  SurfacePoint at = brightest_.point;
+  Outcome<double> alpha = alphaOnSurface(at);
+  if (!alpha) return alpha.failure();
+  double a = 0, fa = *alpha - limit, step = scale;
+  bool below = fa < 0;
+  double highest = below ? fa : -limit;
+  std::optional<Failure> stopped;
+  for (int i = 0; i < options_.maxSteps; ++i) {
+    double b = a + step;
+    Outcome<SurfacePoint> next = foot(origin + b * d, at);
+    alpha = next ? alphaOnSurface(*next) : Outcome<double>(next.failure());
+    // The border may lie between two steps while the limit is reached before it: approach by halving.
+    for (int halving = 0; !alpha && halving < 12; ++halving) {
+      stopped = alpha.failure();
+      step *= 0.5;
+      b = a + step;
+      next = foot(origin + b * d, at);
+      alpha = next ? alphaOnSurface(*next) : Outcome<double>(next.failure());
+    }
+    if (!alpha) return *stopped;
+    const double fb = *alpha - limit;
+    if (below && fb >= 0) {
+      SurfacePoint best = *next;
+      std::optional<Failure> lost;
+      const double s = bracketedRoot(
+          [&](double x) {
+            const Outcome<SurfacePoint> p = foot(origin + x * d, best);
+            const Outcome<double> here = p ? alphaOnSurface(*p) : Outcome<double>(p.failure());
+            if (!here) {
+              lost = here.failure();
+              return std::nan("");
+            }
+            best = *p;
+            return *here - limit;
+          },
+          a, fa, b, fb, options_.toleranceRad);
+      if (lost) return *lost;
+      return Reach{s, best};
+    }
+    if (fb < 0) below = true;
+    if (below) {
+      if (fb < highest - kFallFraction * limit && i > 0)
+        return Failure{Reason::NotMonotonic, "alpha falls before it reaches the limit"};
+      highest = std::max(highest, fb);
+    }
+    a = b; fa = fb; at = *next;
+    if (stopped && step < 1e-6 * scale) return *stopped;
+    if (!stopped) step *= kStepGrowth;
+  }
+  return stopped ? *stopped : Failure{Reason::NotReached, "alpha stays under the limit"};
+}
+
+Outcome<TangentWalk::Reach> TangentWalk::reachContour(const Eigen::Vector3d& d, const Polyline& contour, double scale) const {
+  const Eigen::Vector3d& origin = brightest_.point.position;
+  const auto& points = contour.points;
+  const std::size_t n = points.size();
+  SurfacePoint at = brightest_.point;
+  std::optional<Pixel> from = camera_.project(origin);
+  if (!from) return Failure{Reason::BehindCamera, ""};
+  if (!contains(contour, *from)) return Failure{Reason::NotReached, "the brightest point lies outside the contour"};
+  double a = 0, step = scale;
+  for (int i = 0; i < options_.maxSteps; ++i) {
+    double b = a + step;
+    Outcome<SurfacePoint> next = foot(origin + b * d, at);
+    for (int halving = 0; !next && halving < 12; ++halving) {
+      step *= 0.5;
+      b = a + step;
+      next = foot(origin + b * d, at);
+    }
+    if (!next) return next.failure();
+    const std::optional<Pixel> to = camera_.project(next->position);
+    if (!to) return Failure{Reason::BehindCamera, ""};
+    // First edge crossed by the step's pixels.
+    double best = 2;
+    std::size_t edge = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      const Pixel &p = points[k], &q = points[(k + 1) % n];
+      const Pixel r = *to - *from, s = q - p, w = p - *from;
+      const double denominator = r.x() * s.y() - r.y() * s.x();
+      if (denominator == 0) continue;
+      const double t = (w.x() * s.y() - w.y() * s.x()) / denominator, u = (w.x() * r.y() - w.y() * r.x()) / denominator;
+      if (t > 0 && t <= 1 && u >= -1e-12 && u <= 1 + 1e-12 && t < best) best = t, edge = k;
+    }
+    if (best <= 1) {
+      // Solve on the line of that edge; when the solution lies on a neighbouring edge instead (the path bends), take that one.
+      SurfacePoint hit = *next;
+      double s = b;
+      for (int move = 0; move < 4; ++move) {
+        const Pixel p = points[edge], q = points[(edge + 1) % n];
+        const Pixel normal(q.y() - p.y(), p.x() - q.x());
+        const double size = normal.norm();
+        if (!(size > 0)) return Failure{Reason::NotConverged, "repeated contour point"};
+        const double sign = normal.dot(*from - p) > 0 ? -1.0 : 1.0;
+        std::optional<Failure> lost;
+        Pixel pixel = *to;
+        const auto f = [&](double x) {
+          const Outcome<SurfacePoint> foot_ = foot(origin + x * d, hit);
+          if (!foot_) {
+            lost = foot_.failure();
+            return std::nan("");
+          }
+          const std::optional<Pixel> here = camera_.project(foot_->position);
+          if (!here) {
+            lost = Failure{Reason::BehindCamera, ""};
+            return std::nan("");
+          }
+          hit = *foot_;
+          pixel = *here;
+          return sign * normal.dot(pixel - p) / size;
+        };
+        const double fa = f(a), fb = f(b);
+        if (lost) return *lost;
+        if (!(fa <= 0 && fb >= 0)) break;  // the line is not crossed within the step: keep the last solution
+        s = bracketedRoot(f, a, fa, b, fb, 1e-11);
+        if (lost) return *lost;
+        const double u = (pixel - p).dot(q - p) / (q - p).squaredNorm();
+        if (u < 0) edge = (edge + n - 1) % n;
+        else if (u > 1) edge = (edge + 1) % n;
+        else break;
+      }
+      return Reach{s, hit};
+    }
+    a = b; at = *next; from = to;
+    step *= kStepGrowth;
+  }
+  return Failure{Reason::NotReached, "the walk did not meet the contour"};
+}
+
+double TangentWalk::metresPerPixel() const {
+  const double f = std::max(camera_.pixelFromRay(0, 0), camera_.pixelFromRay(1, 1));
+  return std::abs(camera_.depth(brightest_.point.position)) / f;
+}
+
+Eigen::Matrix3d TangentWalk::pixelFromPlane() const {
+  Eigen::Matrix<double, 3, 3> world;
+  const Eigen::Matrix3d& r = camera_.camFromWorld.linear();
+  world.leftCols<2>() = r * basis_;
+  world.col(2) = camera_.camFromWorld * brightest_.point.position;
+  return camera_.pixelFromRay * world;
+}
+
+namespace {
+
+void fitPixels(CanonicalContour& c) {
+  if (c.pixels.size() < 5) return;
+  if (const Outcome<Ellipse> e = fitEllipse(c.pixels)) c.ellipse = *e;
+}
+
+}  // namespace
+
+CanonicalContour canonicalContour(const TangentWalk& walk, const Camera& camera, const Polyline& contour, int n) {
+  require(n >= 1, "canonicalContour: needs directions");
+  CanonicalContour result;
+  result.directions.resize(n);
+  const Pixel peak = walk.brightest().pixel;
+  double radius = 0;
+  for (const Pixel& p : contour.points) radius += (p - peak).norm();
+  radius /= std::max<std::size_t>(1, contour.points.size());
+  double scale = 0.25 * radius * walk.metresPerPixel();
+  for (int i = 0; i < n; ++i) {
+    DirectionResult& r = result.directions[i];
+    r.azimuth = 2 * std::numbers::pi * i / n;
+    const Eigen::Vector3d v = walk.direction(r.azimuth);
+    const Outcome<TangentWalk::Reach> reach = walk.reachContour(v, contour, scale);
+    if (!reach) {
+      r.failure = reach.failure();
+      continue;
+    }
+    const Outcome<double> alpha = walk.alphaOnSurface(reach->point);
+    if (!alpha) {
+      r.failure = alpha.failure();
+      continue;
+    }
+    r.onSurface = reach->point.position;
+    const Outcome<double> distance = walk.reachOnPlane(v, *alpha, 0.25 * reach->distance);
+    if (!distance) {
+      r.failure = distance.failure();
+      continue;
+    }
+    r.onTangentPlane = walk.brightest().point.position + *distance * v;
+    const std::optional<Pixel> pixel = camera.project(r.onTangentPlane);
+    if (!pixel) {
+      r.failure = Failure{Reason::BehindCamera, "the canonical point"};
+      continue;
+    }
+    r.limitAngle = *alpha;
+    result.pixels.push_back(*pixel);
+  }
+  fitPixels(result);
+  return result;
+}
+
+CanonicalContour predictFromEllipse(const TangentWalk& walk, const Surface& surface, const Camera& camera, const Ellipse& ellipse,
+                                    int n) {
+  require(n >= 1, "predictFromEllipse: needs directions");
+  CanonicalContour result;
+  result.directions.resize(n);
+  // The ellipse in plane coordinates: x^T H^T C H x = 0; along (a, b) = s (cos, sin) a quadratic in s.
+  const Eigen::Matrix3d h = walk.pixelFromPlane();
+  const Eigen::Matrix3d c = h.transpose() * ellipse.conic().matrix * h;
+  const Eigen::Vector3d origin = walk.brightest().point.position;
+  double ratio = 1;  // reach on S over reach on T, carried from direction to direction as the first guess
+  for (int i = 0; i < n; ++i) {
+    DirectionResult& r = result.directions[i];
+    r.azimuth = 2 * std::numbers::pi * i / n;
+    const Eigen::Vector3d x(std::cos(r.azimuth), std::sin(r.azimuth), 0);
+    const double qa = x.dot(c * x), qb = c.row(2).dot(x), qc = c(2, 2);
+    const double discriminant = qb * qb - qa * qc;
+    double s = -1;
+    if (discriminant >= 0) {
+      const double root = std::sqrt(discriminant), q = -(qb + std::copysign(root, qb));
+      const double s1 = qa != 0 ? q / qa : -1, s2 = q != 0 ? qc / q : -1;
+      // Inside (qc < 0) one root is positive; outside the farther of two positive ones closes the ellipse.
+      s = std::max(s1, s2);
+    }
+    if (!(s > 0) || !std::isfinite(s)) {
+      r.failure = Failure{Reason::NotReached, "the direction misses the ellipsoid's outline"};
+      continue;
+    }
+    const Eigen::Vector3d v = walk.direction(r.azimuth);
+    r.onTangentPlane = origin + s * v;
+    const double limit = walk.alphaOnPlane(r.onTangentPlane);
+    if (!std::isfinite(limit)) {
+      r.failure = Failure{Reason::LightBehindSurface, "at the outline on the tangent plane"};
+      continue;
+    }
+    const Outcome<TangentWalk::Reach> reach = walk.reachOnSurface(v, limit, 0.45 * ratio * s);
+    if (!reach) {
+      r.failure = reach.failure();
+      continue;
+    }
+    if (surface.occluded(reach->point, camera.centreInWorld())) {
+      r.failure = Failure{Reason::Occluded, "another part of the surface is in front"};
+      continue;
+    }
+    const std::optional<Pixel> pixel = camera.project(reach->point.position);
+    if (!pixel) {
+      r.failure = Failure{Reason::BehindCamera, ""};
+      continue;
+    }
+    ratio = std::clamp(reach->distance / s, 0.02, 50.0);
+    r.onSurface = reach->point.position;
+    r.limitAngle = limit;
+    result.pixels.push_back(*pixel);
+  }
+  fitPixels(result);
+  return result;
+}
+
+}  // namespace glint

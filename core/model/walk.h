@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/base/outcome.h"
+#include "core/geometry/plane.h"
+#include "core/geometry/polyline.h"
+#include "core/light/light.h"
+#include "core/model/model.h"
+#include "core/surface/brightest_point.h"
+#include "core/surface/surface.h"
+
+namespace glint {
+
+struct WalkOptions {
+  double toleranceRad = 1e-10;   ///< the walk ends when alpha is this close to the limit angle
+  int maxSteps = 60;             ///< marching steps before NotReached; steps grow, so this spans 1e4 first steps
+};
+
+/// The walks of method.md section 6 from one brightest point: along a direction v of the tangent plane T, either on T
+/// itself (constant normal) or on the surface S by feet orthogonal to T. Holds references: the surface and the camera must
+/// outlive it.
+class TangentWalk {
+ public:
+  /// @param brightest  normal towards the camera.
+  TangentWalk(const Surface& surface, const Camera& camera, const BrightestPoint& brightest, const Light& light,
+              const WalkOptions& options = {});
+
+  const Plane& tangentPlane() const { return plane_; }
+  const BrightestPoint& brightest() const { return brightest_; }
+  /// Unit direction in T; azimuth 0 is the direction that projects closest to +x in the image, so that azimuths are
+  /// comparable between views.
+  Eigen::Vector3d direction(double azimuth) const;
+  /// Azimuth of the orthogonal projection of (point - P_B) on T.
+  double azimuthOf(const Eigen::Vector3d& point) const;
+
+  /// alpha at a point of T, where the normal is that of P_B. NaN where the light or the camera is behind.
+  double alphaOnPlane(const Eigen::Vector3d& pointOnPlane) const;
+  /// alpha at a surface point (normal turned to the camera's side). Named: Occluded (turned away from the camera),
+  /// LightBehindSurface.
+  Outcome<double> alphaOnSurface(const SurfacePoint& p) const;
+
+  /// Distance along `direction` on T at which alpha first rises through `limit`. @param scale first step, m.
+  /// NotReached; NotMonotonic.
+  Outcome<double> reachOnPlane(const Eigen::Vector3d& direction, double limit, double scale) const;
+  /// The same on S. NotReached; NotMonotonic; SurfaceEnded; Occluded; LightBehindSurface.
+  struct Reach {
+    double distance;     ///< along the direction on T, m
+    SurfacePoint point;  ///< foot, normal towards the camera
+  };
+  Outcome<Reach> reachOnSurface(const Eigen::Vector3d& direction, double limit, double scale) const;
+  /// Walk on S until the foot's pixel leaves the contour. @param contour closed, ideal pixels, around the peak.
+  Outcome<Reach> reachContour(const Eigen::Vector3d& direction, const Polyline& contour, double scale) const;
+
+  /// A length on T that corresponds to `pixels` at P_B, m.
+  double metresPerPixel() const;
+  /// Homography from plane coordinates (a, b, 1) - P_B + a u + b v - to pixels.
+  Eigen::Matrix3d pixelFromPlane() const;
+
+ private:
+  Outcome<SurfacePoint> foot(const Eigen::Vector3d& onPlane, const SurfacePoint& previous) const;
+
+  const Surface& surface_;
+  const Camera& camera_;
+  BrightestPoint brightest_;
+  Light light_;
+  WalkOptions options_;
+  Eigen::Vector3d eye_;
+  Plane plane_;
+  Eigen::Matrix<double, 3, 2> basis_;  ///< u, v in T
+};
+
+/// Canonical contour of an observed highlight: for n directions walk on S to the contour, read the limit angle there, and
+/// walk on T to the same angle (method.md section 6). Never fails as a whole: each direction carries its result, and the
+/// ellipse is empty when fewer than five directions succeeded.
+CanonicalContour canonicalContour(const TangentWalk& walk, const Camera& camera, const Polyline& contour, int directions);
+
+/// Inverse: from the ellipse on T (given in pixels; T is fixed by the mirror, so real and virtual camera see the same
+/// pixels) to the predicted points on S (method.md section 8).
+CanonicalContour predictFromEllipse(const TangentWalk& walk, const Surface& surface, const Camera& camera, const Ellipse& ellipse,
+                                    int directions);
+
+}  // namespace glint
