@@ -1,0 +1,95 @@
+# shellcheck shell=bash disable=SC2154
+# SPDX-License-Identifier: BSD-3-Clause
+# Shared by glint-run and glint-test (sourced, bash): what to install, how to configure and build, which display to use.
+# The caller sets `root` to the project's folder.
+
+say() { printf 'glint: %s\n' "$*" >&2; }
+die() { say "$*"; exit 1; }
+
+# Names of the listed packages that are not installed.
+missing_packages() {
+  local package status
+  while read -r package; do
+    case "$package" in ''|'#'*) continue ;; esac
+    status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null) || status=
+    [ "$status" = installed ] || echo "$package"
+  done < "$root/resources/setup/packages-debian12.txt"
+}
+
+# Installs what is missing, and only that. Nothing is removed or upgraded on purpose: --no-remove makes apt refuse instead.
+install_missing() {
+  if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+    say "no apt here: expecting the libraries of resources/setup/packages-debian12.txt to be installed already"
+    return 0
+  fi
+  local missing
+  mapfile -t missing < <(missing_packages)
+  [ ${#missing[@]} -gt 0 ] || return 0
+  local as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || die "missing packages, and neither root nor sudo to install them; as root, run:
+  apt-get install --no-remove --no-install-recommends ${missing[*]}"
+    as_root=(sudo)
+  fi
+  say "installing ${#missing[@]} missing packages: ${missing[*]}"
+  "${as_root[@]}" apt-get update -q </dev/null || say "apt-get update failed; trying with the package lists at hand"
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-remove --no-install-recommends \
+    -o Dpkg::Use-Pty=0 -o DPkg::Lock::Timeout=300 "${missing[@]}" </dev/null ||
+    die "apt-get could not install the packages above"
+}
+
+# Parallel compile jobs: GLINT_JOBS, else one per core, but no more than the memory carries (the largest files take 1.5 GB).
+build_jobs() {
+  if [ -n "${GLINT_JOBS:-}" ]; then
+    case "$GLINT_JOBS" in *[!0-9]*|0*) die "GLINT_JOBS must be a whole number from 1, not '$GLINT_JOBS'" ;; esac
+    echo "$GLINT_JOBS"
+    return
+  fi
+  local cores gigabytes
+  cores=$(nproc 2>/dev/null || echo 1)
+  gigabytes=$(awk '/^MemAvailable:/ {print int($2 / 1572864)}' /proc/meminfo 2>/dev/null)
+  [ -n "$gigabytes" ] || gigabytes=$cores
+  [ "$gigabytes" -ge 1 ] || gigabytes=1
+  if [ "$cores" -le "$gigabytes" ]; then echo "$cores"; else echo "$gigabytes"; fi
+}
+
+# configure PRESET: skipped when the build folder is up to date (ninja itself reconfigures when a CMakeLists.txt changed).
+configure() {
+  local preset=$1 folder="$root/build/$1" home
+  if [ -f "$folder/build.ninja" ] && [ "$folder/build.ninja" -nt "$root/CMakePresets.json" ]; then
+    home=$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' "$folder/CMakeCache.txt")
+    [ "$home" != "$root" ] || return 0
+    say "the project was moved: configuring anew"
+  fi
+  say "configuring (preset $preset)"
+  (cd "$root" && cmake --fresh --preset "$preset")
+}
+
+# build PRESET [TARGET...]: everything, or only the targets.
+build() {
+  local preset=$1 jobs
+  shift
+  jobs=$(build_jobs) || exit 1
+  say "building (preset $preset, $jobs jobs)"
+  local targets=()
+  [ $# -eq 0 ] || targets=(--target "$@")
+  (cd "$root" && cmake --build --preset "$preset" -j "$jobs" "${targets[@]}" </dev/null)
+}
+
+# True when the session has a display that answers: a local one must have its socket.
+have_display() {
+  local number
+  [ -n "${DISPLAY:-}" ] || return 1
+  case "$DISPLAY" in
+    :*) number=${DISPLAY#:}; number=${number%%.*}; [ -S "/tmp/.X11-unix/X$number" ] ;;
+    *) return 0 ;;
+  esac
+}
+
+# on_virtual_display COMMAND...: runs it on a display of its own, drawn in software. Qt's "offscreen" platform is no way out:
+# it leaves VTK's views blank without an error.
+on_virtual_display() {
+  command -v xvfb-run >/dev/null || die "no display, and no xvfb-run to start a virtual one (packages xvfb and xauth)"
+  env -u WAYLAND_DISPLAY QT_QPA_PLATFORM=xcb LIBGL_ALWAYS_SOFTWARE=1 \
+    xvfb-run -a -s "-screen 0 1600x1000x24 -nolisten tcp" "$@" </dev/null
+}
