@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/highlight/background.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace glint {
+namespace {
+
+constexpr double kInner = 1.6;  // in footprints: the lobe is below 0.17 of its peak for level 0.5
+constexpr double kOuter = 4.0;
+constexpr int kLeastPixels = 60;           // several per unknown
+constexpr std::size_t kMostPixels = 8000;  // a denser sample changes the fit by less than its own noise
+constexpr int kRounds = 8;
+
+struct Sample {
+  Eigen::Matrix<double, 9, 1> row;
+  double value;
+};
+
+double medianOf(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+double Background::at(double x, double y) const {
+  const double u = (x - centre.x()) / scale, v = (y - centre.y()) / scale;
+  return coefficients[0] + u * coefficients[1] + v * coefficients[2] + u * u * coefficients[3] + u * v * coefficients[4] +
+         v * v * coefficients[5];
+}
+
+Background fitBackground(const Image& image, const std::vector<char>& usable, const Footprint& footprint, double fallback) {
+  Background result;
+  result.coefficients[0] = fallback;
+  result.centre = footprint.centre;
+  const Eigen::Matrix2d inverse = footprint.shape.inverse();
+  const Pixel reach = kOuter * footprint.shape.diagonal().cwiseSqrt();
+  result.scale = std::max(1.0, reach.maxCoeff());
+  const int x0 = std::max(0, static_cast<int>(footprint.centre.x() - reach.x())),
+            y0 = std::max(0, static_cast<int>(footprint.centre.y() - reach.y()));
+  const int x1 = std::min(image.width - 1, static_cast<int>(footprint.centre.x() + reach.x()) + 1);
+  const int y1 = std::min(image.height - 1, static_cast<int>(footprint.centre.y() + reach.y()) + 1);
+  const double cells = std::max(0, x1 - x0 + 1) * static_cast<double>(std::max(0, y1 - y0 + 1));
+  const int stride = std::max(1, static_cast<int>(std::sqrt(cells / static_cast<double>(kMostPixels))));
+  const double logLevel = std::log(footprint.level);
+
+  std::vector<Sample> samples;
+  for (int y = y0; y <= y1; y += stride)
+    for (int x = x0; x <= x1; x += stride) {
+      if (!usable[static_cast<std::size_t>(y) * image.width + x]) continue;
+      const Pixel d = Pixel(x, y) - footprint.centre;
+      const double rho2 = d.dot(inverse * d);
+      if (rho2 < kInner * kInner || rho2 > kOuter * kOuter) continue;
+      const double u = d.x() / result.scale, v = d.y() / result.scale, tail = std::exp(logLevel * rho2);
+      Sample s;
+      s.row << 1, u, v, u * u, u * v, v * v, tail, u * tail, v * tail;
+      s.value = image.at(x, y);
+      samples.push_back(s);
+    }
+  if (samples.size() < static_cast<std::size_t>(kLeastPixels)) return result;
+
+  // Iteratively reweighted least squares, Tukey's biweight; the first round is unweighted about the median.
+  std::vector<double> residual(samples.size()), absolute(samples.size());
+  std::vector<double> values(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) values[i] = samples[i].value;
+  const double start = medianOf(values);
+  for (std::size_t i = 0; i < samples.size(); ++i) residual[i] = samples[i].value - start;
+  Eigen::Matrix<double, 9, 1> solution = Eigen::Matrix<double, 9, 1>::Zero();
+  double spread = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    for (std::size_t i = 0; i < samples.size(); ++i) absolute[i] = std::abs(residual[i]);
+    spread = 1.4826 * medianOf(absolute);
+    const double cut = 4.685 * std::max(spread, 1e-12 * (std::abs(start) + 1e-300));
+    Eigen::Matrix<double, 9, 9> normal = Eigen::Matrix<double, 9, 9>::Zero();
+    Eigen::Matrix<double, 9, 1> right = Eigen::Matrix<double, 9, 1>::Zero();
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const double t = residual[i] / cut;
+      if (std::abs(t) >= 1) continue;
+      const double w = (1 - t * t) * (1 - t * t);
+      normal += w * samples[i].row * samples[i].row.transpose();
+      right += w * samples[i].value * samples[i].row;
+    }
+    // A trace of damping keeps directions that the pixels do not determine (no tail visible, a thin strip) at zero.
+    normal.diagonal().array() += 1e-9 * normal.trace();
+    solution = normal.ldlt().solve(right);
+    if (!solution.allFinite()) return result;
+    for (std::size_t i = 0; i < samples.size(); ++i) residual[i] = samples[i].value - samples[i].row.dot(solution);
+  }
+  result.coefficients = solution.head<6>();
+  result.spread = spread;
+  result.pixels = static_cast<int>(samples.size());
+  return result;
+}
+
+}  // namespace glint

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/base/image.h"
+#include "core/geometry/camera.h"
+
+namespace glint {
+
+/// Diffuse shading under and around one highlight: a quadratic in pixels, b(x, y).
+struct Background {
+  Eigen::Matrix<double, 6, 1> coefficients = Eigen::Matrix<double, 6, 1>::Zero();  ///< of 1, u, v, u^2, uv, v^2
+  Pixel centre{0, 0};                                                              ///< u = (x - centre.x) / scale, v likewise
+  double scale = 1;
+  double spread = 0;  ///< robust standard deviation of the pixels used about the fit
+  int pixels = 0;     ///< used by the fit; 0 = no fit, b is the constant given
+
+  double at(double x, double y) const;
+};
+
+/// Where a highlight is, roughly: the second moments of the pixels above `level` of its peak.
+struct Footprint {
+  Pixel centre{0, 0};
+  Eigen::Matrix2d shape = Eigen::Matrix2d::Identity();  ///< ellipse x^T shape^-1 x = 1 has the footprint's moments
+  double level = 0.5;
+};
+
+/// Fits the background to the usable pixels around a highlight, together with the lobe's own tail. With rho the distance from
+/// the centre in units of the footprint, a Gaussian lobe is level^(rho^2); the model over rho in [inner, outer] is
+///   I = b(x, y) + (a0 + a1 u + a2 v) level^(rho^2),
+/// linear in its nine unknowns, solved with Tukey weights. Only pixels where the tail is weak (rho >= inner) enter, so the lobe's
+/// true shape matters little.
+/// @param image   one channel, linear.
+/// @param usable  one per pixel, non-zero where the pixel may be used (glossy, finite).
+/// @param fallback  constant returned when fewer than a few dozen pixels are usable.
+Background fitBackground(const Image& image, const std::vector<char>& usable, const Footprint& footprint, double fallback);
+
+}  // namespace glint

@@ -1,0 +1,373 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <opencv2/imgproc.hpp>
+
+#include "core/highlight/background.h"
+#include "core/highlight/highlight.h"
+#include "core/highlight/iso_contour.h"
+#include "core/highlight/peak.h"
+
+namespace glint {
+namespace {
+
+constexpr double kCandidateShare = 0.8;  // candidates are searched somewhat below the level: their own background moves it
+constexpr int kClippedPixels = 3;        // fewer saturated pixels are single hot ones
+constexpr int kRoiMargin = 3;            // px around a candidate's box
+constexpr double kBadReachPx = 1.5;      // an unusable pixel this near to a contour decides on its course
+
+/// One channel, with what may and may not be used of it.
+struct Prepared {
+  Image value;               ///< unusable pixels are 0
+  std::vector<char> usable;  ///< finite, not negative, on the glossy object
+  std::vector<char> bad;     ///< not finite or negative
+  std::vector<char> saturated;
+  int badCount = 0, usableCount = 0;
+};
+
+Prepared prepare(const Image& linear, const Image* mask, double clipValue) {
+  Prepared p;
+  p.value = Image(linear.width, linear.height, 1);
+  const std::size_t n = p.value.data.size();
+  p.usable.assign(n, 0);
+  p.bad.assign(n, 0);
+  p.saturated.assign(n, 0);
+  const int channels = linear.channels;
+  // Just outside the mask the image's own values are kept, so that no contour follows the border of a binary mask.
+  cv::Mat near;
+  if (mask) {
+    cv::Mat on(linear.height, linear.width, CV_8U);
+    for (int y = 0; y < linear.height; ++y)
+      for (int x = 0; x < linear.width; ++x) on.at<unsigned char>(y, x) = mask->at(x, y) != 0.f ? 255 : 0;
+    cv::dilate(on, near, cv::Mat());
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    double sum = 0;
+    bool good = true, full = false;
+    for (int c = 0; c < channels; ++c) {
+      const float v = linear.data[i * static_cast<std::size_t>(channels) + static_cast<std::size_t>(c)];
+      good = good && std::isfinite(v) && v >= 0;
+      full = full || (clipValue > 0 && v >= clipValue);
+      sum += v;
+    }
+    p.bad[i] = !good;
+    p.badCount += !good;
+    if (!good) continue;
+    const std::size_t pixel = i;
+    const bool on = !mask || mask->data[pixel * static_cast<std::size_t>(mask->channels)] != 0.f;
+    p.usable[i] = on;
+    p.usableCount += on;
+    p.saturated[i] = full;
+    if (!mask || near.data[pixel]) p.value.data[i] = static_cast<float>(sum / channels);
+  }
+  return p;
+}
+
+/// Median and 1.4826 MAD of the usable pixels (every k-th of a big image).
+struct Level {
+  double median = 0, spread = 0;
+};
+Level robustLevel(const Prepared& p) {
+  std::vector<float> values;
+  const std::size_t stride = std::max<std::size_t>(1, p.usable.size() / 100000);
+  for (std::size_t i = 0; i < p.usable.size(); i += stride)
+    if (p.usable[i]) values.push_back(p.value.data[i]);
+  if (values.empty()) return {};
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  Level level;
+  level.median = *middle;
+  for (float& v : values) v = std::abs(v - static_cast<float>(level.median));
+  std::nth_element(values.begin(), middle, values.end());
+  level.spread = 1.4826 * *middle;
+  return level;
+}
+
+/// Standard deviation of pixel noise from the median response of a second-difference mask, blind to smooth shading.
+/// @see Immerkaer, Fast noise variance estimation, CVIU 1996 (the mask; the median instead of the mean is for edges).
+double noiseOf(const Prepared& p) {
+  const int w = p.value.width, h = p.value.height;
+  std::vector<float> response;
+  const int stride = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(w) * h / 50000)));
+  for (int y = 1; y + 1 < h; y += stride)
+    for (int x = 1; x + 1 < w; x += stride) {
+      if (!p.usable[static_cast<std::size_t>(y) * w + x]) continue;
+      const auto v = [&](int dx, int dy) { return p.value.at(x + dx, y + dy); };
+      response.push_back(
+          std::abs(v(-1, -1) + v(1, -1) + v(-1, 1) + v(1, 1) - 2 * (v(0, -1) + v(0, 1) + v(-1, 0) + v(1, 0)) + 4 * v(0, 0)));
+    }
+  if (response.empty()) return 0;
+  const auto middle = response.begin() + static_cast<std::ptrdiff_t>(response.size() / 2);
+  std::nth_element(response.begin(), middle, response.end());
+  return 1.4826 * *middle / 6.0;  // the mask's own norm is 6
+}
+
+/// A connected region that may hold one or more highlights, with its background removed.
+struct Candidate {
+  int label = 0;
+  cv::Rect box;  ///< in the image
+  Background background;
+  Image corrected;  ///< I - b inside `box`; 0 on unusable pixels
+  double top = 0;   ///< strongest value: of the fitted peak, else of the pixels
+};
+
+/// Position of the largest 3x3 mean inside the box-local region; hot pixels do not win.
+cv::Point strongestPixel(const Image& roi, const cv::Mat& region) {
+  const cv::Mat values(roi.height, roi.width, CV_32F, const_cast<float*>(roi.data.data()));
+  cv::Mat smooth;
+  cv::GaussianBlur(values, smooth, cv::Size(3, 3), 0, 0, cv::BORDER_REPLICATE);
+  cv::Point at(0, 0);
+  cv::minMaxLoc(smooth, nullptr, nullptr, nullptr, &at, region);
+  return at;
+}
+
+Footprint footprintOf(const cv::Mat& labels, int label, const cv::Rect& box, double level) {
+  Eigen::Vector2d mean(0, 0);
+  Eigen::Matrix2d square = Eigen::Matrix2d::Zero();
+  double n = 0;
+  for (int y = box.y; y < box.y + box.height; ++y)
+    for (int x = box.x; x < box.x + box.width; ++x) {
+      if (labels.at<int>(y, x) != label) continue;
+      const Eigen::Vector2d p(x, y);
+      mean += p;
+      square += p * p.transpose();
+      n += 1;
+    }
+  mean /= n;
+  Footprint footprint;
+  footprint.centre = mean;
+  // A uniform ellipse has second moments of a quarter of its squared semi-axes; 1/12 is a pixel's own.
+  footprint.shape = 4 * (square / n - mean * mean.transpose()) + (1.0 / 3.0) * Eigen::Matrix2d::Identity();
+  footprint.level = level;
+  return footprint;
+}
+
+cv::Rect grown(const cv::Rect& box, int margin, int width, int height) {
+  return cv::Rect(box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin) &
+         cv::Rect(0, 0, width, height);
+}
+
+Image correctedRoi(const Prepared& p, const Background& background, const cv::Rect& box) {
+  Image roi(box.width, box.height, 1);
+  for (int y = 0; y < box.height; ++y)
+    for (int x = 0; x < box.width; ++x) {
+      if (p.bad[static_cast<std::size_t>(y + box.y) * p.value.width + x + box.x]) continue;
+      roi.at(x, y) = static_cast<float>(p.value.at(x + box.x, y + box.y) - background.at(x + box.x, y + box.y));
+    }
+  return roi;
+}
+
+/// Pixels of the region inside a contour given in ROI coordinates.
+cv::Mat filled(const Polyline& line, int width, int height) {
+  cv::Mat region = cv::Mat::zeros(height, width, CV_8U);
+  std::vector<cv::Point> corners;
+  corners.reserve(line.points.size());
+  constexpr int kShift = 8;  // fractional bits of fillPoly
+  for (const Pixel& q : line.points)
+    corners.emplace_back(static_cast<int>(std::lround(q.x() * (1 << kShift))),
+                         static_cast<int>(std::lround(q.y() * (1 << kShift))));
+  cv::fillPoly(region, std::vector<std::vector<cv::Point>>{corners}, cv::Scalar(255), cv::LINE_8, kShift);
+  return region;
+}
+
+/// An unusable pixel inside a contour, or so near that it bends it.
+bool touchesBad(const Prepared& p, const cv::Rect& box, const cv::Mat& region) {
+  cv::Mat reach;
+  const int r = static_cast<int>(std::ceil(kBadReachPx));
+  cv::dilate(region, reach, cv::getStructuringElement(cv::MORPH_RECT, cv::Size(2 * r + 1, 2 * r + 1)));
+  for (int y = 0; y < box.height; ++y)
+    for (int x = 0; x < box.width; ++x)
+      if (reach.at<unsigned char>(y, x) && p.bad[static_cast<std::size_t>(y + box.y) * p.value.width + x + box.x]) return true;
+  return false;
+}
+
+class Detector {
+ public:
+  Detector(const Prepared& prepared, const DetectOptions& options) : p_(prepared), options_(options) {}
+
+  Outcome<std::vector<Highlight>> run() {
+    level_ = robustLevel(p_);
+    noise_ = noiseOf(p_);
+    base_ = options_.removeBackground ? level_.median : 0.0;
+    findCandidates();
+    if (candidates_.empty()) return Failure{Reason::NoHighlight, "nothing rises above the background"};
+    reference_ = 0;
+    for (const Candidate& c : candidates_) reference_ = std::max(reference_, c.top);
+    if (!(reference_ > 0)) return Failure{Reason::NoHighlight, "nothing rises above the local background"};
+    for (const Candidate& c : candidates_) trace(c);
+    removeRepeats();
+    std::erase_if(found_, [&](const Highlight& h) { return h.peakValue < options_.minRelativePeak * reference_ && !h.clipped; });
+    if (found_.empty()) {
+      if (failedByBadPixels_ > 0)
+        return Failure{Reason::NotFinite,
+                       std::to_string(p_.badCount) + " pixels are not finite or negative, and the highlight touches them"};
+      return Failure{Reason::NoHighlight, "no region is large and bright enough"};
+    }
+    return std::move(found_);
+  }
+
+ private:
+  /// Regions above a little less than the level of the brightest 3x3 median (single hot pixels do not set the level).
+  void findCandidates() {
+    const int w = p_.value.width, h = p_.value.height;
+    const cv::Mat values(h, w, CV_32F, const_cast<float*>(p_.value.data.data()));
+    cv::Mat median;
+    cv::medianBlur(values, median, 3);
+    const cv::Mat usable(h, w, CV_8U, const_cast<char*>(p_.usable.data()));
+    double top = 0;
+    cv::minMaxLoc(median, nullptr, &top, nullptr, nullptr, usable);
+    if (!(top - base_ > 0)) return;
+    const double threshold = base_ + kCandidateShare * options_.level * (top - base_);
+    cv::Mat above = values >= threshold, stats, centroids;
+    const int count = cv::connectedComponentsWithStats(above, labels_, stats, centroids, 4, CV_32S);
+    for (int label = 1; label < count; ++label) {
+      if (stats.at<int>(label, cv::CC_STAT_AREA) < 0.5 * options_.minAreaPx2) continue;
+      Candidate c;
+      c.label = label;
+      const cv::Rect tight(stats.at<int>(label, cv::CC_STAT_LEFT), stats.at<int>(label, cv::CC_STAT_TOP),
+                           stats.at<int>(label, cv::CC_STAT_WIDTH), stats.at<int>(label, cv::CC_STAT_HEIGHT));
+      c.box = grown(tight, kRoiMargin, w, h);
+      c.background.coefficients[0] = base_;
+      if (options_.removeBackground)
+        c.background =
+            fitBackground(p_.value, p_.usable, footprintOf(labels_, label, tight, kCandidateShare * options_.level), base_);
+      c.corrected = correctedRoi(p_, c.background, c.box);
+      cv::Mat region = labels_(c.box) == label;
+      const cv::Point at = strongestPixel(c.corrected, region);
+      const Outcome<PeakFit> peak = fitPeak(c.corrected, at.x, at.y, options_.peakWindowLevel);
+      c.top = peak && !saturatedNear(c.box, region) ? peak->value : c.corrected.at(at.x, at.y);
+      candidates_.push_back(std::move(c));
+    }
+  }
+
+  bool saturatedNear(const cv::Rect& box, const cv::Mat& region) const {
+    int count = 0;
+    for (int y = 0; y < box.height; ++y)
+      for (int x = 0; x < box.width; ++x)
+        count += region.at<unsigned char>(y, x) && p_.saturated[static_cast<std::size_t>(y + box.y) * p_.value.width + x + box.x];
+    return count >= kClippedPixels;
+  }
+
+  /// All highlights of one candidate at the common level.
+  void trace(const Candidate& candidate) {
+    const double level = options_.level * reference_;
+    cv::Rect box = candidate.box;
+    Image roi = candidate.corrected;
+    std::vector<IsoContour> contours = isoContours(roi, level);
+    // The box may cut the region when its own background is lower than the common one: widen it until it does not.
+    while (leavesBox(contours, box)) {
+      box = grown(box, std::max(box.width, box.height) / 2, p_.value.width, p_.value.height);
+      roi = correctedRoi(p_, candidate.background, box);
+      contours = isoContours(roi, level);
+    }
+    std::vector<const Polyline*> outer;
+    for (const IsoContour& contour : contours) {
+      if (signedArea(contour.line) < std::max(options_.minAreaPx2, 1e-9)) continue;
+      const Pixel& any = contour.line.points.front();
+      if (std::any_of(outer.begin(), outer.end(), [&](const Polyline* o) { return contains(*o, any); })) continue;
+      outer.push_back(&contour.line);
+      keep(candidate, box, roi, contour);
+    }
+  }
+
+  bool leavesBox(const std::vector<IsoContour>& contours, const cv::Rect& box) const {
+    if (box.width == p_.value.width && box.height == p_.value.height) return false;
+    for (const IsoContour& contour : contours) {
+      if (!contour.touchesBorder || signedArea(contour.line) < options_.minAreaPx2) continue;
+      for (const Pixel& q : contour.line.points) {
+        const bool left = q.x() < 0.01 && box.x > 0, top = q.y() < 0.01 && box.y > 0;
+        const bool right = q.x() > box.width - 1.01 && box.x + box.width < p_.value.width;
+        const bool bottom = q.y() > box.height - 1.01 && box.y + box.height < p_.value.height;
+        if (left || top || right || bottom) return true;
+      }
+    }
+    return false;
+  }
+
+  void keep(const Candidate& candidate, const cv::Rect& box, const Image& roi, const IsoContour& contour) {
+    const cv::Mat region = filled(contour.line, box.width, box.height);
+    const cv::Point at = strongestPixel(roi, region);
+    if (!p_.usable[static_cast<std::size_t>(at.y + box.y) * p_.value.width + at.x + box.x] &&
+        !p_.bad[static_cast<std::size_t>(at.y + box.y) * p_.value.width + at.x + box.x])
+      return;  // off the glossy object
+    if (touchesBad(p_, box, region)) {
+      ++failedByBadPixels_;
+      return;
+    }
+    Highlight h;
+    h.level = options_.level;
+    const Pixel origin(box.x, box.y);
+    h.contour = contour.line;
+    for (Pixel& q : h.contour.points) q += origin;
+    h.areaPx2 = signedArea(h.contour);
+    h.touchesBorder = onImageBorder(h.contour);
+    h.clipped = saturatedNear(box, region);
+    if (const Outcome<Ellipse> ellipse = fitEllipse(h.contour.points)) h.ellipse = *ellipse;
+    const Outcome<PeakFit> peak = fitPeak(roi, at.x, at.y, options_.peakWindowLevel);
+    if (h.clipped) {
+      h.peak = h.ellipse ? h.ellipse->centre : centroid(h.contour);
+    } else if (peak) {
+      h.peak = peak->at + origin;
+      h.peakValue = peak->value;
+    } else {
+      // A plateau or a ridge on the border: the pixel is the best that can be said.
+      h.peak = Pixel(at.x, at.y) + origin;
+      h.peakValue = roi.at(at.x, at.y);
+    }
+    const double spread = std::max(noise_, options_.removeBackground ? candidate.background.spread : 0.0);
+    if (!h.clipped && h.peakValue < options_.minContrast * spread) return;
+    strength_.push_back(roi.at(at.x, at.y));
+    found_.push_back(std::move(h));
+  }
+
+  bool onImageBorder(const Polyline& line) const {
+    return std::any_of(line.points.begin(), line.points.end(), [&](const Pixel& q) {
+      return q.x() < 0.01 || q.y() < 0.01 || q.x() > p_.value.width - 1.01 || q.y() > p_.value.height - 1.01;
+    });
+  }
+
+  /// Strongest first; a region found from two candidates (their boxes overlap) is kept once.
+  void removeRepeats() {
+    std::vector<std::size_t> order(found_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return strength_[a] > strength_[b]; });
+    std::vector<Highlight> kept;
+    for (const std::size_t i : order) {
+      const Highlight& h = found_[i];
+      const bool repeated = std::any_of(kept.begin(), kept.end(), [&](const Highlight& k) {
+        return contains(k.contour, centroid(h.contour)) || contains(h.contour, k.peak);
+      });
+      if (!repeated) kept.push_back(h);
+    }
+    found_ = std::move(kept);
+  }
+
+  const Prepared& p_;
+  const DetectOptions& options_;
+  Level level_;
+  double noise_ = 0, base_ = 0, reference_ = 0;
+  cv::Mat labels_;
+  std::vector<Candidate> candidates_;
+  std::vector<Highlight> found_;
+  std::vector<double> strength_;  // one per entry of found_
+  int failedByBadPixels_ = 0;
+};
+
+}  // namespace
+
+Outcome<std::vector<Highlight>> detectHighlights(const Image& linear, const Image* mask, const DetectOptions& options) {
+  require(linear.width > 0 && linear.height > 0 && (linear.channels == 1 || linear.channels == 3),
+          "detectHighlights: 1 or 3 channels, not empty");
+  require(!mask || (mask->width == linear.width && mask->height == linear.height), "detectHighlights: mask of another size");
+  require(options.level > 0 && options.level < 1, "detectHighlights: level between 0 and 1");
+  const Prepared prepared = prepare(linear, mask, options.clipValue);
+  if (prepared.usableCount == 0) {
+    if (prepared.badCount > 0)
+      return Failure{Reason::NotFinite, std::to_string(prepared.badCount) + " pixels are not finite or negative"};
+    return Failure{Reason::NoHighlight, "the mask is empty"};
+  }
+  return Detector(prepared, options).run();
+}
+
+}  // namespace glint
