@@ -36,6 +36,9 @@ struct InspectionRequest {
   std::string truthFolder;               ///< --truth DIR, "" = own detection
 };
 
+/// Key of a light's estimate and fits: "lamp", or "lamp@g03" when every surface has its own model.
+std::string lightKey(const std::string& light, const std::optional<std::string>& surface);
+
 /// One frame's evidence.
 struct FrameEvidence {
   int frame = -1;
@@ -86,6 +89,7 @@ struct Inspection {
   std::map<std::string, LightEstimate> lights;             ///< by light id (+ "@" + surface key when per surface)
   std::map<std::string, Failure> lightFailures;            ///< the same keys: why a light could not be estimated
   std::map<std::string, ModelResult> models;
+  std::map<std::string, std::string> stageKeys;            ///< what each stage's result depends on: tells which stages a later run may reuse
   bool isTraining(int frame) const;
   bool isHeldOut(int frame) const;                         ///< counts in summaries
 };

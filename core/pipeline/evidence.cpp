@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/pipeline/evidence.h"
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+
+namespace glint {
+namespace {
+
+constexpr int kNoisePoints = 72;  // formats.md, --noise-px
+
+void toIdealPixels(Highlight& h, const Camera& camera) {
+  if (!camera.hasDistortion()) return;
+  for (Pixel& p : h.contour.points) p = camera.undistorted(p);
+  h.peak = camera.undistorted(h.peak);
+  h.areaPx2 = std::abs(signedArea(h.contour));
+  h.ellipse.reset();
+}
+
+void fitMissingEllipse(Highlight& h) {
+  if (h.ellipse || h.contour.points.size() < 5) return;
+  if (const Outcome<Ellipse> e = fitEllipse(h.contour.points)) h.ellipse = *e;
+}
+
+}  // namespace
+
+FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, const Settings& settings) {
+  const Frame& frame = scene.frames[index];
+  FrameEvidence evidence;
+  evidence.frame = index;
+  if (!frame.highlights.empty()) {
+    evidence.highlights = frame.highlights;
+  } else {
+    if (frame.radiance.empty() && frame.image.empty()) {
+      evidence.failure = Failure{Reason::FrameUnreadable, "frame " + frame.id + " has neither image, radiance nor highlights"};
+      return evidence;
+    }
+    const Outcome<Image> linear = readLinear(frame, source);
+    if (!linear) {
+      evidence.failure = linear.failure();
+      return evidence;
+    }
+    const Outcome<std::optional<Image>> mask = readMask(frame);
+    if (!mask) {
+      evidence.failure = mask.failure();
+      return evidence;
+    }
+    DetectOptions options;
+    options.level = settings.number("detect.level");
+    options.minAreaPx2 = settings.number("detect.min_area");
+    options.minContrast = settings.number("detect.min_contrast");
+    options.peakWindowLevel = settings.number("detect.peak_window");
+    options.clipValue = settings.number("detect.clip");
+    const bool photograph = frame.radiance.empty() || (source == FrameSource::Image && !frame.image.empty());
+    if (options.clipValue == 0 && photograph) options.clipValue = 1.0;  // linearised codes end at 1
+    Outcome<std::vector<Highlight>> found = detectHighlights(*linear, mask->has_value() ? &**mask : nullptr, options);
+    if (!found) {
+      evidence.failure = found.failure();
+      return evidence;
+    }
+    evidence.highlights = std::move(*found);
+    for (Highlight& h : evidence.highlights) toIdealPixels(h, frame.camera);
+  }
+  for (Highlight& h : evidence.highlights) {
+    if (h.light.empty()) h.light = frame.lightsOn.empty() ? "light" : frame.lightsOn.front();
+    if (h.areaPx2 == 0) h.areaPx2 = std::abs(signedArea(h.contour));
+    fitMissingEllipse(h);
+  }
+  return evidence;
+}
+
+std::vector<Highlight> readTruth(const std::string& folder, const Scene& scene, int index, double level) {
+  using nlohmann::json;
+  const Frame& frame = scene.frames[index];
+  const std::filesystem::path file = std::filesystem::path(folder) / (frame.id + ".json");
+  if (!std::filesystem::exists(folder)) throw InputError(folder, "--truth", "there is no such folder");
+  std::vector<Highlight> truth;
+  if (!std::filesystem::exists(file)) return truth;
+  char key[16];
+  std::snprintf(key, sizeof key, "%.2f", level);
+  try {
+    std::ifstream stream(file);
+    const json j = json::parse(stream);
+    if (!j.at("levels").contains(key)) throw InputError(file.string(), "levels", std::string("no contours at level ") + key);
+    for (const json& c : j.at("levels").at(key)) {
+      Highlight h;
+      h.light = frame.lightsOn.empty() ? "light" : frame.lightsOn.front();
+      h.level = level;
+      for (const json& p : c.at("points")) h.contour.points.emplace_back(p.at(0).get<double>(), p.at(1).get<double>());
+      h.contour = withoutRepeats(h.contour);
+      h.areaPx2 = std::abs(signedArea(h.contour));
+      h.touchesBorder = !c.value("closed", true) || c.value("edge_fraction", 0.0) > 0;
+      h.peak = centroid(h.contour);
+      h.fromScene = true;
+      truth.push_back(std::move(h));
+    }
+    // The stored sub-pixel peak belongs to the highlight that contains it; the others keep their centroid.
+    if (j.contains("peak_subpixel")) {
+      const Pixel peak(j["peak_subpixel"].at(0).get<double>(), j["peak_subpixel"].at(1).get<double>());
+      for (Highlight& h : truth)
+        if (contains(h.contour, peak)) h.peak = peak;
+    }
+  } catch (const json::exception& e) {
+    throw InputError(file.string(), "", e.what());
+  }
+  for (Highlight& h : truth) {
+    toIdealPixels(h, frame.camera);
+    fitMissingEllipse(h);
+  }
+  return truth;
+}
+
+Highlight withNoise(const Highlight& highlight, double sigma, unsigned seed, int frame, int index) {
+  if (!(sigma > 0) || highlight.contour.points.size() < 3) return highlight;
+  std::seed_seq sequence{seed, static_cast<unsigned>(frame), static_cast<unsigned>(index)};
+  std::mt19937_64 engine(sequence);
+  std::normal_distribution<double> gauss(0, sigma);
+  Highlight noisy = highlight;
+  noisy.contour.points = resample(highlight.contour, kNoisePoints);
+  for (Pixel& p : noisy.contour.points) {
+    p.x() += gauss(engine);
+    p.y() += gauss(engine);
+  }
+  noisy.peak.x() += gauss(engine);
+  noisy.peak.y() += gauss(engine);
+  noisy.areaPx2 = std::abs(signedArea(noisy.contour));
+  noisy.ellipse.reset();
+  fitMissingEllipse(noisy);
+  return noisy;
+}
+
+}  // namespace glint

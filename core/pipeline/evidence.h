@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/pipeline/inspection.h"
+
+namespace glint {
+
+/// Highlights of one frame in ideal pixels: those that the scene gives, else detected. The light is set where the frame
+/// says which one is on (one light: its id; none stated: "light").
+FrameEvidence gatherEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings);
+
+/// Contours stored as in data/cycles/*/contours (FOLDER/ID.json) at `level`, for scoring. Empty when the frame has no file.
+/// InputError when a file does not parse or does not hold the level.
+std::vector<Highlight> readTruth(const std::string& folder, const Scene& scene, int frame, double level);
+
+/// The contour resampled to 72 points, with independent Gaussian noise per coordinate on them and on the peak (--noise-px).
+/// Depends on seed, frame and index only, not on which frames train.
+Highlight withNoise(const Highlight& highlight, double sigmaPx, unsigned seed, int frame, int index);
+
+}  // namespace glint

@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <set>
+
+#include "core/base/parallel.h"
+#include "core/pipeline/comparison.h"
+#include "core/pipeline/evidence.h"
+#include "core/pipeline/inspection.h"
+#include "core/pipeline/training.h"
+
+namespace glint {
+namespace {
+
+double microsecondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+}
+
+NormalPolicy normalPolicy(const Settings& settings) {
+  const std::string& name = settings.text("surface.normals");
+  return name == "facet" ? NormalPolicy::Facet : name == "curved" ? NormalPolicy::Curved : NormalPolicy::Interpolated;
+}
+
+std::string exactText(double v) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.17g", v);
+  return buffer;
+}
+
+/// Text that is equal when every input of a stage is: the values of all settings of the named stages, and `more`.
+std::string keyOfStages(const Settings& settings, const std::set<std::string>& stages, const std::string& more) {
+  std::string key = more;
+  for (const auto& [name, value] : settings.values()) {
+    if (!stages.count(paramSpec(name).stage)) continue;
+    key += "|" + name + "=";
+    if (const auto* text = std::get_if<std::string>(&value)) key += *text;
+    else if (const auto* number = std::get_if<double>(&value)) key += exactText(*number);
+    else if (const auto* whole = std::get_if<int>(&value)) key += std::to_string(*whole);
+    else key += std::get<bool>(value) ? "true" : "false";
+  }
+  return key;
+}
+
+std::string join(const std::vector<int>& numbers) {
+  std::string text;
+  for (const int n : numbers) text += std::to_string(n) + ",";
+  return text;
+}
+
+/// One (light, surface) that gets its own fit.
+struct Group {
+  std::string light;
+  std::optional<std::string> surface;
+  std::vector<int> views;  ///< indices into Inspection::views
+};
+
+class Run {
+ public:
+  Run(Inspection& result, const ProgressFn& progress, const Inspection* previous)
+      : r_(result), progress_(progress), previous_(previous && previous->scene == result.scene ? previous : nullptr) {}
+
+  void highlights();
+  void brightestPointsAndTangentPlanes();
+  void lights();
+  void canonicalContours();
+  void modelFits();
+  void predictionsAndComparisons();
+
+ private:
+  bool unchanged(const std::string& stage) const {
+    if (!previous_) return false;
+    const auto it = previous_->stageKeys.find(stage);
+    return it != previous_->stageKeys.end() && it->second == r_.stageKeys.at(stage);
+  }
+  std::shared_ptr<const Surface> surfaceOf(int frame) const {
+    const Outcome<std::shared_ptr<const Surface>> s = r_.surfaces->surfaceOf(frame, normalPolicy(r_.request.settings));
+    return s ? *s : nullptr;
+  }
+  std::vector<Group> groups() const;
+  bool anyModel(bool (HighlightModel::*needs)() const) const {
+    return std::any_of(r_.request.models.begin(), r_.request.models.end(),
+                       [&](const std::string& m) { return (modelByName(m).*needs)(); });
+  }
+  FitInput fitInput(const Group& group) const;
+
+  Inspection& r_;
+  const ProgressFn& progress_;
+  const Inspection* previous_;
+};
+
+void Run::highlights() {
+  const InspectionRequest& q = r_.request;
+  r_.stageKeys["detect"] =
+      keyOfStages(q.settings, {"detect"}, (q.source == FrameSource::Image ? "image|" : "radiance|") + q.truthFolder);
+  if (unchanged("detect")) {
+    r_.evidence = previous_->evidence;
+    return;
+  }
+  const Scene& scene = *r_.scene;
+  r_.evidence.resize(scene.frames.size());
+  parallelFor(
+      static_cast<int>(scene.frames.size()),
+      [&](int i) {
+        r_.evidence[i] = gatherEvidence(scene, i, q.source, q.settings);
+        if (!q.truthFolder.empty()) r_.evidence[i].truth = readTruth(q.truthFolder, scene, i, q.settings.number("detect.level"));
+      },
+      progress_, "detect");
+}
+
+void Run::brightestPointsAndTangentPlanes() {
+  const InspectionRequest& q = r_.request;
+  r_.stageKeys["views"] = keyOfStages(q.settings, {"surface"},
+                                      r_.stageKeys["detect"] + "|" + join(r_.train.frames) + (r_.train.perSurface ? "per-surface" : "") +
+                                          "|x" + join(q.excluded) + "|" + exactText(q.noisePx) + "|" + std::to_string(q.seed));
+  if (unchanged("views")) {
+    r_.views = previous_->views;
+    for (TrainingView& v : r_.views) v.canonical.reset();
+    return;
+  }
+  int done = 0;
+  for (const int frame : r_.train.frames) {
+    if (!report(progress_, {"surface", done++, static_cast<int>(r_.train.frames.size())})) throw Stopped{};
+    if (std::find(q.excluded.begin(), q.excluded.end(), frame) != q.excluded.end()) continue;
+    FrameEvidence evidence = r_.evidence[frame];
+    for (std::size_t h = 0; h < evidence.highlights.size(); ++h)
+      evidence.highlights[h] = withNoise(evidence.highlights[h], q.noisePx, q.seed, frame, static_cast<int>(h));
+    for (int h = 0; h < static_cast<int>(evidence.highlights.size()); ++h)
+      r_.views.push_back(trainingView(evidence, h, r_.scene->frames[frame].camera, surfaceOf(frame)));
+  }
+}
+
+std::vector<Group> Run::groups() const {
+  std::vector<Group> groups;
+  const auto groupOf = [&](const std::string& light, const std::optional<std::string>& surface) -> Group& {
+    for (Group& g : groups)
+      if (g.light == light && g.surface == surface) return g;
+    groups.push_back({light, surface, {}});
+    return groups.back();
+  };
+  const auto surfaceKey = [&](int frame) {
+    return r_.train.perSurface ? std::optional<std::string>(r_.surfaces->keyOf(frame)) : std::nullopt;
+  };
+  for (int i = 0; i < static_cast<int>(r_.views.size()); ++i)
+    groupOf(r_.views[i].highlight.light, surfaceKey(r_.views[i].frame)).views.push_back(i);
+  // A light that only held-out frames show still gets a (failing) fit, so that its frames are answered with a reason.
+  for (const FrameEvidence& e : r_.evidence)
+    for (const Highlight& h : e.scored()) groupOf(h.light, surfaceKey(e.frame));
+  return groups;
+}
+
+void Run::lights() {
+  r_.stageKeys["light"] = keyOfStages(r_.request.settings, {"light"}, r_.stageKeys["views"]);
+  if (!anyModel(&HighlightModel::needsLight)) return;
+  if (unchanged("light") && (!previous_->lights.empty() || !previous_->lightFailures.empty())) {
+    r_.lights = previous_->lights;
+    r_.lightFailures = previous_->lightFailures;
+    return;
+  }
+  const std::vector<Group> all = groups();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!report(progress_, {"light", static_cast<int>(i), static_cast<int>(all.size())})) throw Stopped{};
+    std::vector<TrainingView> views;
+    for (const int v : all[i].views) views.push_back(r_.views[v]);
+    const Outcome<LightEstimate> light = estimateLight(views, r_.request.settings);
+    const std::string key = lightKey(all[i].light, all[i].surface);
+    if (light) r_.lights.insert_or_assign(key, *light);
+    else r_.lightFailures.insert_or_assign(key, light.failure());
+  }
+}
+
+void Run::canonicalContours() {
+  if (!anyModel(&HighlightModel::needsCanonicalContours)) return;
+  for (const Group& g : groups()) {
+    const auto light = r_.lights.find(lightKey(g.light, g.surface));
+    if (light == r_.lights.end()) continue;
+    parallelFor(
+        static_cast<int>(g.views.size()),
+        [&](int i) { addCanonicalContour(r_.views[g.views[i]], light->second.light, r_.request.settings); }, progress_, "canonical");
+  }
+}
+
+FitInput Run::fitInput(const Group& group) const {
+  FitInput input;
+  for (const int v : group.views) input.views.push_back(r_.views[v]);
+  const std::string key = lightKey(group.light, group.surface);
+  if (const auto it = r_.lights.find(key); it != r_.lights.end()) input.light = it->second;
+  else if (const auto failed = r_.lightFailures.find(key); failed != r_.lightFailures.end()) input.lightFailure = failed->second;
+  return input;
+}
+
+void Run::modelFits() {
+  r_.stageKeys["fit"] = keyOfStages(r_.request.settings, {"fit"}, r_.stageKeys["light"]);
+  const std::vector<Group> all = groups();
+  int done = 0;
+  for (const std::string& name : r_.request.models) {
+    const HighlightModel& model = modelByName(name);
+    ModelResult& result = r_.models[name];
+    result.model = name;
+    if (unchanged("fit") && previous_->models.count(name)) {
+      result.fits = previous_->models.at(name).fits;
+      continue;
+    }
+    for (const Group& g : all) {
+      if (!report(progress_, {"fit " + name, done++, static_cast<int>(all.size() * r_.request.models.size())})) throw Stopped{};
+      ModelResult::Fit entry;
+      entry.light = g.light;
+      entry.surface = g.surface;
+      const FitInput input = fitInput(g);
+      const auto start = std::chrono::steady_clock::now();
+      Outcome<ModelFit> fit = model.fit(input, r_.request.settings);
+      if (fit) {
+        fit->model = name;
+        fit->light = g.light;
+        fit->surface = g.surface;
+        fit->timeUs = microsecondsSince(start);
+        entry.fit = std::move(*fit);
+      } else {
+        entry.failure = fit.failure();
+      }
+      result.fits.push_back(std::move(entry));
+    }
+  }
+}
+
+void Run::predictionsAndComparisons() {
+  r_.stageKeys["predict"] = keyOfStages(r_.request.settings, {"predict", "evaluate"}, r_.stageKeys["fit"]);
+  for (const std::string& name : r_.request.models) {
+    ModelResult& result = r_.models[name];
+    if (unchanged("predict") && previous_->models.count(name)) {
+      result.frames = previous_->models.at(name).frames;
+      continue;
+    }
+    const HighlightModel& model = modelByName(name);
+    struct Task {
+      int frame, fit;
+    };
+    std::vector<Task> tasks;
+    for (int frame = 0; frame < static_cast<int>(r_.scene->frames.size()); ++frame) {
+      const std::vector<std::string>& on = r_.scene->frames[frame].lightsOn;
+      for (int f = 0; f < static_cast<int>(result.fits.size()); ++f) {
+        const ModelResult::Fit& fit = result.fits[f];
+        if (fit.surface && *fit.surface != r_.surfaces->keyOf(frame)) continue;
+        if (!on.empty() && std::find(on.begin(), on.end(), fit.light) == on.end()) continue;  // switched off here
+        tasks.push_back({frame, f});
+      }
+    }
+    result.frames.resize(tasks.size());
+    parallelFor(
+        static_cast<int>(tasks.size()),
+        [&](int t) {
+          const auto [frame, f] = tasks[t];
+          const ModelResult::Fit& fit = result.fits[f];
+          const Camera& camera = r_.scene->frames[frame].camera;
+          Prediction prediction;
+          if (fit.fit) {
+            const std::shared_ptr<const Surface> surface = surfaceOf(frame);
+            const auto start = std::chrono::steady_clock::now();
+            prediction = model.predict(*fit.fit, camera, surface.get(), r_.request.settings);
+            prediction.timeUs = microsecondsSince(start);
+          } else {
+            prediction.failure = fit.failure;
+          }
+          result.frames[t] = compareFrame(r_.evidence[frame], fit.light, camera, std::move(prediction));
+          result.frames[t].fit = f;
+        },
+        progress_, "predict " + name);
+  }
+}
+
+}  // namespace
+
+std::string lightKey(const std::string& light, const std::optional<std::string>& surface) {
+  return surface ? light + "@" + *surface : light;
+}
+
+bool Inspection::isTraining(int frame) const {
+  return std::binary_search(train.frames.begin(), train.frames.end(), frame) &&
+         std::find(request.excluded.begin(), request.excluded.end(), frame) == request.excluded.end();
+}
+
+bool Inspection::isHeldOut(int frame) const {
+  if (std::find(request.excluded.begin(), request.excluded.end(), frame) != request.excluded.end()) return false;
+  return train.perSurface || !std::binary_search(train.frames.begin(), train.frames.end(), frame);
+}
+
+Inspection inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn& progress,
+                   const Inspection* previous) {
+  require(scene != nullptr, "inspect: no scene");
+  Inspection result;
+  result.scene = scene;
+  result.surfaces = previous && previous->scene == scene ? previous->surfaces : std::make_shared<SurfaceCache>(*scene);
+  result.request = request;
+  result.train = parseTrainSpec(request.train, *scene);
+  for (const std::string& m : request.models) modelByName(m);  // unknown names are refused before any work
+  Run run(result, progress, previous);
+  run.highlights();
+  run.brightestPointsAndTangentPlanes();
+  run.lights();
+  run.canonicalContours();
+  run.modelFits();
+  run.predictionsAndComparisons();
+  return result;
+}
+
+}  // namespace glint

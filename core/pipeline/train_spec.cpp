@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "core/pipeline/frame_spec.h"
+#include "core/pipeline/inspection.h"
+
+namespace glint {
+namespace {
+
+std::optional<int> wholeNumber(const std::string& text) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < 0) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+std::vector<int> parseFrames(const std::string& text, const Scene& scene, const std::string& flag) {
+  const int n = static_cast<int>(scene.frames.size());
+  const auto bad = [&](const std::string& why) { return InputError("", flag + " " + text, why); };
+  if (const std::size_t colon = text.find(':'); colon != std::string::npos) {
+    const std::string kind = text.substr(0, colon);
+    const std::optional<int> k = wholeNumber(text.substr(colon + 1));
+    if ((kind != "first" && kind != "spread") || !k) throw bad("expected first:K or spread:K");
+    if (*k < 1 || *k > n) throw bad("the input has " + std::to_string(n) + " frames");
+    std::vector<int> frames;
+    for (int i = 0; i < *k; ++i)
+      frames.push_back(kind == "first" ? i : static_cast<int>(static_cast<long long>(i) * n / *k));
+    return frames;
+  }
+  // Frame ids win over numbers: "0003" may be an id or the number 3. Numbers are positions in the input.
+  std::map<std::string, int> ids;
+  for (int i = 0; i < n; ++i) ids[scene.frames[i].id] = i;
+  const auto frameOf = [&](const std::string& word) {
+    if (const auto it = ids.find(word); it != ids.end()) return it->second;
+    const std::optional<int> number = wholeNumber(word);
+    if (!number) throw bad("'" + word + "' is neither a frame id nor a number");
+    if (*number >= n) throw bad("there is no frame " + word + "; the input has " + std::to_string(n));
+    return *number;
+  };
+  std::set<int> frames;
+  std::stringstream stream(text);
+  std::string word;
+  while (std::getline(stream, word, ',')) {
+    if (word.empty()) throw bad("empty entry");
+    if (ids.count(word)) {
+      frames.insert(ids[word]);
+      continue;
+    }
+    const std::size_t dash = word.find('-', 1);
+    if (dash == std::string::npos) {
+      frames.insert(frameOf(word));
+      continue;
+    }
+    const int from = frameOf(word.substr(0, dash)), to = frameOf(word.substr(dash + 1));
+    if (to < from) throw bad("the range " + word + " runs backwards");
+    for (int i = from; i <= to; ++i) frames.insert(i);
+  }
+  if (frames.empty()) throw bad("names no frame");
+  return {frames.begin(), frames.end()};
+}
+
+TrainSpec parseTrainSpec(const std::string& text, const Scene& scene) {
+  TrainSpec spec;
+  spec.text = text;
+  if (text == "per-surface") {
+    spec.perSurface = true;
+    for (int i = 0; i < static_cast<int>(scene.frames.size()); ++i) spec.frames.push_back(i);
+    return spec;
+  }
+  spec.frames = parseFrames(text, scene, "--train");
+  return spec;
+}
+
+}  // namespace glint

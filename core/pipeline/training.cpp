@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/pipeline/training.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/light/estimate.h"
+#include "core/model/walk.h"
+
+namespace glint {
+
+TrainingView trainingView(const FrameEvidence& evidence, int index, const Camera& camera, std::shared_ptr<const Surface> surface) {
+  TrainingView view;
+  view.frame = evidence.frame;
+  view.camera = camera;
+  view.highlight = evidence.highlights[index];
+  view.surface = std::move(surface);
+  if (!view.surface) {
+    view.failure = Failure{Reason::NoSurface, ""};
+    return view;
+  }
+  if (view.highlight.touchesBorder) {
+    view.failure = Failure{Reason::OutsideImage, "the image border cuts the highlight"};
+    return view;
+  }
+  const Outcome<BrightestPoint> brightest = observedBrightestPoint(*view.surface, camera, view.highlight.peak);
+  if (!brightest) {
+    view.failure = brightest.failure();
+    return view;
+  }
+  view.brightest = *brightest;
+  view.tangentPlane = Plane::through(brightest->point.position, brightest->point.normal);
+  view.virtualCamera = virtualCamera(camera, *view.tangentPlane);
+  return view;
+}
+
+namespace {
+
+/// Median alpha of the contour points on the surface: the robust limit angle for a given light. 0 when there is none.
+double medianContourAngle(const std::vector<TrainingView>& views, const Light& light, int pointsPerView) {
+  std::vector<double> alphas;
+  for (const TrainingView& v : views) {
+    if (v.failure || v.highlight.contour.points.size() < 3) continue;
+    const Eigen::Vector3d eye = v.camera.centreInWorld();
+    for (const Pixel& p : resample(v.highlight.contour, pointsPerView)) {
+      const Outcome<SurfacePoint> hit = v.surface->firstHit(v.camera.ray(p));
+      if (!hit) continue;
+      const SurfacePoint s = facing(*hit, eye);
+      const Eigen::Vector3d l = light.directionFrom(s.position);
+      if (s.normal.dot(l) > 0) alphas.push_back(incidentAngle(s.normal, l, (eye - s.position).normalized()));
+    }
+  }
+  if (alphas.empty()) return 0;
+  std::nth_element(alphas.begin(), alphas.begin() + alphas.size() / 2, alphas.end());
+  return alphas[alphas.size() / 2];
+}
+
+}  // namespace
+
+Outcome<LightEstimate> estimateLight(const std::vector<TrainingView>& views, const Settings& settings) {
+  std::vector<ReflectedRay> rays;
+  std::vector<BundleView> bundleViews;
+  for (const TrainingView& v : views) {
+    if (v.failure || !v.brightest) continue;
+    rays.push_back(reflectedRay(*v.brightest, v.camera));
+    bundleViews.push_back({v.camera, v.surface.get(), v.highlight.contour.points, v.brightest});
+  }
+  const int points = settings.integer("light.bundle_points");
+  const Outcome<Triangulation> t = triangulateLight(rays);
+  const bool bundle = settings.text("light.solver") == "bundle";
+  LightEstimate estimate;
+  estimate.solver = "triangulated";
+  if (t) {
+    estimate.light = t->light;
+    estimate.condition = t->condition;
+    if (!t->light.atInfinity()) estimate.covariance = t->covariance;
+  } else if (!bundle || t.failure().reason != Reason::LightBehindSurface || rays.empty()) {
+    return t.failure();
+  } else {
+    // The rays of a narrow baseline may meet behind the surface; contours still tell: start at infinity along the mean ray.
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const ReflectedRay& r : rays) mean += r.direction;
+    if (!(mean.norm() > 1e-6)) return t.failure();
+    estimate.light = Light::towards(mean);
+  }
+  if (bundle) {
+    BundleOptions options;
+    options.pointsPerView = points;
+    options.robustPx = settings.number("light.robust_px");
+    const Outcome<Bundle> b = bundleLight(bundleViews, estimate.light, options);
+    if (!b) return b.failure();
+    estimate.solver = "bundle";
+    estimate.light = b->light;
+    estimate.limitAngle = b->limitAngle;
+    estimate.rmsPx = b->rmsPx;
+    estimate.covariance.reset();
+    if (!b->light.atInfinity() && b->positionCovariance.allFinite()) estimate.covariance = b->positionCovariance;
+    return estimate;
+  }
+  estimate.limitAngle = medianContourAngle(views, estimate.light, points);
+  return estimate;
+}
+
+void addCanonicalContour(TrainingView& view, const Light& light, const Settings& settings) {
+  if (view.failure || !view.brightest) return;
+  WalkOptions options;
+  options.toleranceRad = settings.number("predict.walk_tolerance");
+  const TangentWalk walk(*view.surface, view.camera, *view.brightest, light, options);
+  view.canonical = canonicalContour(walk, view.camera, view.highlight.contour, settings.integer("predict.directions"));
+}
+
+}  // namespace glint
