@@ -43,8 +43,8 @@ DualConic outline(const DualQuadric& quadric, const Projection& projection);
 /// parallel to the image (its outline is then unbounded); BehindCamera if all of it is behind.
 Outcome<Ellipse> outlineEllipse(const Ellipsoid& ellipsoid, const Projection& projection);
 
-/// Counts of positive and negative eigenvalues relative to the largest magnitude (zero below 1e-12 of it),
-/// flipped so that (3,3) of the quadric is positive; "hyperboloid", "ellipsoid", "cone" ... for messages.
+/// Counts of positive and negative eigenvalues, flipped so that (3,3) of the quadric is positive. By Sylvester's law they are
+/// those of (3,3) and of -S, zero below 1e-12 of the largest of S: independent of the unit of length; "hyperboloid", "ellipsoid", "cone" ... for messages.
 struct Signature { int positive = 0, negative = 0, zero = 0; };
 Signature signatureOf(const DualQuadric& quadric);
 const char* describe(const DualQuadric& quadric);

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/geometry/polyline.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/tolerances.h"
+
+namespace glint {
+namespace {
+using tolerance::kExact;
+
+const Polyline kRectangle{{{0, 0}, {4, 0}, {4, 3}, {0, 3}}, true};  // clockwise on screen: y is down
+const Polyline kOpen{{{0, 0}, {4, 0}, {4, 3}}, false};
+
+TEST(Polyline, LengthAreaCentroidOfARectangle) {
+  EXPECT_DOUBLE_EQ(length(kRectangle), 14);
+  EXPECT_DOUBLE_EQ(length(kOpen), 7);
+  EXPECT_DOUBLE_EQ(signedArea(kRectangle), 12);
+  EXPECT_DOUBLE_EQ(signedArea(Polyline{{{0, 3}, {4, 3}, {4, 0}, {0, 0}}, true}), -12);
+  EXPECT_DOUBLE_EQ(signedArea(kOpen), 6);
+  EXPECT_NEAR((centroid(kRectangle) - Pixel(2, 1.5)).norm(), 0, kExact);
+}
+
+TEST(Polyline, AreaFarAwayKeepsItsDigits) {
+  Polyline moved = kRectangle;
+  for (Pixel& p : moved.points) p += Pixel(1e8, -1e8);
+  EXPECT_NEAR(signedArea(moved), 12, 1e-6);  // the moved corners themselves are rounded to 1e-8
+  EXPECT_NEAR((centroid(moved) - Pixel(1e8 + 2, -1e8 + 1.5)).norm(), 0, 1e-6);
+}
+
+TEST(Polyline, CentroidOfAnAreaIsNotTheMeanOfItsPoints) {
+  const Polyline crowded{{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}, {4, 3}, {0, 3}}, true};
+  EXPECT_NEAR((centroid(crowded) - Pixel(2, 1.5)).norm(), 0, kExact);
+  const Polyline flat{{{0, 0}, {2, 0}, {4, 0}}, true};
+  EXPECT_NEAR((centroid(flat) - Pixel(2, 0)).norm(), 0, kExact);
+  EXPECT_NEAR((centroid(Polyline{{{5, 6}}, true}) - Pixel(5, 6)).norm(), 0, kExact);
+}
+
+TEST(Polyline, ContainsByTheEvenOddRule) {
+  EXPECT_TRUE(contains(kRectangle, {1, 1}));
+  EXPECT_FALSE(contains(kRectangle, {5, 1}));
+  EXPECT_FALSE(contains(kRectangle, {-1, 1}));
+  EXPECT_FALSE(contains(Polyline{}, {0, 0}));
+  const Polyline twice{{{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {4, 0}, {4, 4}, {0, 4}}, true};
+  EXPECT_FALSE(contains(twice, {2, 2}));  // enclosed twice is outside
+}
+
+TEST(Polyline, DistanceUsesTheClosingSegmentOnlyWhenClosed) {
+  EXPECT_DOUBLE_EQ(distance(kRectangle, {-2, 1}), 2);
+  EXPECT_DOUBLE_EQ(distance(kRectangle, {7, 7}), 5);
+  EXPECT_DOUBLE_EQ(distance(kOpen, {0, 3}), 3);  // to (0, 0); the diagonal is not part of it
+  EXPECT_DOUBLE_EQ(distance(Polyline{{{0, 0}, {4, 0}, {4, 3}}, true}, {0, 3}), 2.4);
+  EXPECT_DOUBLE_EQ(distance(Polyline{{{1, 1}}, true}, {4, 5}), 5);
+  EXPECT_TRUE(std::isinf(distance(Polyline{}, {0, 0})));
+}
+
+TEST(Polyline, ResampleIsEquallySpacedInArcLength) {
+  const std::vector<Pixel> p = resample(kRectangle, 14);
+  ASSERT_EQ(p.size(), 14u);
+  EXPECT_NEAR((p[0] - Pixel(0, 0)).norm(), 0, kExact);
+  EXPECT_NEAR((p[5] - Pixel(4, 1)).norm(), 0, kExact);
+  EXPECT_NEAR((p[13] - Pixel(0, 1)).norm(), 0, kExact);
+  const std::vector<Pixel> open = resample(kOpen, 8);
+  EXPECT_NEAR((open[7] - Pixel(4, 3)).norm(), 0, kExact);
+  EXPECT_THROW(resample(Polyline{}, 3), std::invalid_argument);
+}
+
+TEST(Polyline, RepeatsAreRemovedAlsoAcrossTheEnd) {
+  const Polyline p = withoutRepeats(Polyline{{{0, 0}, {0, 0}, {1, 0}, {1, 1}, {0, 0}}, true});
+  EXPECT_EQ(p.points.size(), 3u);
+  EXPECT_EQ(withoutRepeats(Polyline{{{0, 0}, {1, 0}, {0, 0}}, false}).points.size(), 3u);
+}
+
+}  // namespace
+}  // namespace glint
