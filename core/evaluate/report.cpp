@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/evaluate/report.h"
+
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "core/evaluate/summary.h"
+
+namespace glint {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json number(double v) { return std::isfinite(v) ? ordered_json(v) : ordered_json(nullptr); }
+
+template <class Matrix>
+ordered_json rows(const Matrix& m) {
+  ordered_json out = ordered_json::array();
+  for (Eigen::Index r = 0; r < m.rows(); ++r) {
+    ordered_json row = ordered_json::array();
+    for (Eigen::Index c = 0; c < m.cols(); ++c) row.push_back(number(m(r, c)));
+    out.push_back(row);
+  }
+  return out;
+}
+
+template <class Vector>
+ordered_json list(const Vector& v) {
+  ordered_json out = ordered_json::array();
+  for (Eigen::Index i = 0; i < v.size(); ++i) out.push_back(number(v[i]));
+  return out;
+}
+
+ordered_json statistic(const Statistic& s) {
+  return {{"mean", number(s.mean)}, {"median", number(s.median)}, {"p95", number(s.p95)}, {"max", number(s.max)}};
+}
+
+ordered_json settingsJson(const Settings& settings) {
+  ordered_json out = ordered_json::object();
+  for (const ParamSpec& p : allParams()) {
+    if (std::holds_alternative<bool>(p.defaultValue)) out[p.key] = settings.flag(p.key);
+    else if (std::holds_alternative<int>(p.defaultValue)) out[p.key] = settings.integer(p.key);
+    else if (std::holds_alternative<double>(p.defaultValue)) out[p.key] = settings.number(p.key);
+    else out[p.key] = settings.text(p.key);
+  }
+  return out;
+}
+
+ordered_json fitJson(const ModelResult::Fit& entry) {
+  ordered_json j;
+  j["light"] = entry.light;
+  j["surface"] = entry.surface ? ordered_json(*entry.surface) : ordered_json(nullptr);
+  if (entry.failure) {
+    j["status"] = "failed";
+    j["reason"] = entry.failure->message();
+    return j;
+  }
+  const ModelFit& f = *entry.fit;
+  j["status"] = "ok";
+  j["reason"] = "";
+  if (f.ellipsoid) {
+    j["ellipsoid"] = {{"centre", list(f.ellipsoid->centre())},
+                      {"semi_axes", list(f.ellipsoid->semiAxes())},
+                      {"world_from_ellipsoid", rows(f.ellipsoid->worldFromBody().matrix())}};
+  } else {
+    j["ellipsoid"] = nullptr;
+  }
+  j["q_dual"] = f.quadric ? rows(f.quadric->matrix) : ordered_json::array();
+  if (f.lightEstimate) {
+    // Homogeneous with a last coordinate of 1 where the light is finite, as a reader expects.
+    const Eigen::Vector4d l = f.lightEstimate->homogeneous();
+    j["light_position"] = f.lightEstimate->atInfinity() ? list(l) : list(Eigen::Vector4d(l / l.w()));
+  } else {
+    j["light_position"] = nullptr;
+  }
+  j["limit_angle_deg"] = f.limitAngle ? number(*f.limitAngle * 180 / M_PI) : ordered_json(nullptr);
+  j["roughness"] = f.roughness ? number(*f.roughness) : ordered_json(nullptr);
+  j["gap_ratio"] = number(f.gapRatio);
+  j["condition"] = number(f.condition);
+  j["solver"] = f.solver;
+  j["residual_px"] = ordered_json::array();
+  for (const double r : f.residualPx) j["residual_px"].push_back(number(r));
+  j["training_frames"] = f.frames;
+  j["time_us"] = number(f.timeUs);
+  return j;
+}
+
+void frameRows(const Inspection& inspection, const FrameComparison& c, ordered_json& out) {
+  const auto base = [&](int highlight) {
+    ordered_json j;
+    j["index"] = c.frame;
+    j["id"] = inspection.scene->frames[c.frame].id;
+    j["light"] = c.light;
+    j["highlight"] = highlight;
+    return j;
+  };
+  if (c.rows.empty() && c.prediction.highlights.empty()) {
+    ordered_json j = base(0);
+    const FrameEvidence& e = inspection.evidence[c.frame];
+    j["status"] = e.failure ? "nothing observed" : "failed";
+    j["reason"] = e.failure ? e.failure->message() : c.prediction.failure ? c.prediction.failure->message() : "no highlight";
+    j["time_us"] = number(c.prediction.timeUs);
+    out.push_back(j);
+    return;
+  }
+  for (const FrameComparison::Row& row : c.rows) {
+    ordered_json j = base(row.observed >= 0 ? row.observed : row.predicted);
+    j["status"] = row.metrics ? "ok" : row.observed >= 0 ? "missed" : row.predicted >= 0 ? "spurious" : "failed";
+    j["reason"] = row.failure ? row.failure->message() : "";
+    if (row.metrics) {
+      const ContourMetrics& m = *row.metrics;
+      j["contour_error_pct"] = number(m.contourErrorPct);
+      j["contour_error_px"] = number(m.contourErrorPx);
+      j["ellipse_error_pct"] = number(m.ellipseErrorPct);
+      j["hausdorff_px"] = number(m.hausdorffPx);
+      j["iou"] = number(c.iou);
+      j["iou_highlight"] = number(m.iou);
+      j["centre_offset_px"] = number(m.centreOffsetPx);
+      j["axis_ratio_error"] = number(m.axisRatioError);
+      j["angle_error_deg"] = number(m.angleErrorDeg);
+      j["peak_offset_px"] = number(m.peakOffsetPx);
+    }
+    if (row.predicted >= 0) j["coverage"] = number(c.prediction.highlights[row.predicted].coverage);
+    j["time_us"] = number(c.prediction.timeUs);
+    out.push_back(j);
+  }
+}
+
+ordered_json modelJson(const Inspection& inspection, const ModelResult& result) {
+  const ModelSummary s = summarise(inspection, result);
+  ordered_json j;
+  j["status"] = s.answered ? "ok" : "failed";
+  j["reason"] = s.reason;
+  j["fits"] = ordered_json::array();
+  for (const ModelResult::Fit& f : result.fits) j["fits"].push_back(fitJson(f));
+  j["summary"] = {{"frames", s.frames},
+                  {"predicted", s.predicted},
+                  {"contour_error_pct", statistic(s.contourErrorPct)},
+                  {"contour_error_px", statistic(s.contourErrorPx)},
+                  {"ellipse_error_pct", statistic(s.ellipseErrorPct)},
+                  {"hausdorff_px", statistic(s.hausdorffPx)},
+                  {"iou", statistic(s.iou)},
+                  {"matched", s.matched},
+                  {"missed", s.missed},
+                  {"spurious", s.spurious},
+                  {"peak_offset_px", statistic(s.peakOffsetPx)},
+                  {"coverage", statistic(s.coverage)},
+                  {"time_us", {{"median", number(s.timeUs.median)}, {"p99", number(s.timeP99Us)}}}};
+  j["frames"] = ordered_json::array();
+  for (const FrameComparison& c : result.frames)
+    if (inspection.isHeldOut(c.frame)) frameRows(inspection, c, j["frames"]);
+  return j;
+}
+
+std::string cell(double v, const char* format = "%.4g") {
+  if (!std::isfinite(v)) return "-";
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, format, v);
+  return buffer;
+}
+
+/// A CSV field: quoted when it holds a separator or a quote.
+std::string csvText(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
+  return out + "\"";
+}
+
+}  // namespace
+
+std::string bestModel(const Inspection& inspection) {
+  std::string best;
+  int mostPredicted = 0;
+  double smallest = 0;
+  for (const std::string& name : inspection.request.models) {
+    const auto it = inspection.models.find(name);
+    if (it == inspection.models.end()) continue;
+    const ModelSummary s = summarise(inspection, it->second);
+    if (!s.answered || s.contourErrorPct.count == 0) continue;
+    if (best.empty() || s.predicted > mostPredicted || (s.predicted == mostPredicted && s.contourErrorPct.mean < smallest)) {
+      best = name;
+      mostPredicted = s.predicted;
+      smallest = s.contourErrorPct.mean;
+    }
+  }
+  return best;
+}
+
+std::string evaluationJson(const Inspection& inspection, const ReportContext& context) {
+  ordered_json j;
+  j["glint_evaluation"] = 1;
+  j["input"] = context.input;
+  j["train"] = inspection.train.frames;
+  j["train_spec"] = inspection.train.text;
+  j["level"] = inspection.request.settings.number("detect.level");
+  j["source"] = inspection.request.source == FrameSource::Image ? "image" : "radiance";
+  j["settings"] = settingsJson(inspection.request.settings);
+  j["chosen_model"] = context.chosenModel.empty() ? ordered_json(nullptr) : ordered_json(context.chosenModel);
+  j["why_chosen"] = context.whyChosen;
+  j["models"] = ordered_json::object();
+  for (const std::string& name : inspection.request.models)
+    if (const auto it = inspection.models.find(name); it != inspection.models.end())
+      j["models"][name] = modelJson(inspection, it->second);
+  return j.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string evaluationCsv(const Inspection& inspection) {
+  std::string out =
+      "model,index,id,light,highlight,status,reason,contour_error_pct,contour_error_px,ellipse_error_pct,hausdorff_px,iou,"
+      "centre_offset_px,axis_ratio_error,angle_error_deg,peak_offset_px,coverage,time_us\n";
+  for (const std::string& name : inspection.request.models) {
+    const auto it = inspection.models.find(name);
+    if (it == inspection.models.end()) continue;
+    ordered_json rows = ordered_json::array();
+    for (const FrameComparison& c : it->second.frames)
+      if (inspection.isHeldOut(c.frame)) frameRows(inspection, c, rows);
+    for (const ordered_json& r : rows) {
+      out += csvText(name) + "," + r["index"].dump() + "," + csvText(r["id"]) + "," + csvText(r["light"]) + "," + r["highlight"].dump() +
+             "," + csvText(r["status"]) + "," + csvText(r["reason"]);
+      for (const char* key : {"contour_error_pct", "contour_error_px", "ellipse_error_pct", "hausdorff_px", "iou", "centre_offset_px",
+                              "axis_ratio_error", "angle_error_deg", "peak_offset_px", "coverage", "time_us"})
+        out += "," + (r.contains(key) && !r[key].is_null() ? r[key].dump() : "");
+      out += "\n";
+    }
+  }
+  return out;
+}
+
+std::string evaluationTable(const Inspection& inspection) {
+  char line[256];
+  std::snprintf(line, sizeof line, "%-12s %11s %9s %9s %9s %9s %9s %8s %8s %13s %10s\n", "model", "predicted", "mean %", "median %",
+                "p95 %", "max %", "mean px", "IoU", "coverage", "match/mis/spu", "median us");
+  std::string out = line;
+  for (const std::string& name : inspection.request.models) {
+    const auto it = inspection.models.find(name);
+    if (it == inspection.models.end()) continue;
+    const ModelSummary s = summarise(inspection, it->second);
+    const std::string predicted = std::to_string(s.predicted) + "/" + std::to_string(s.frames);
+    const std::string counts = std::to_string(s.matched) + "/" + std::to_string(s.missed) + "/" + std::to_string(s.spurious);
+    std::snprintf(line, sizeof line, "%-12s %11s %9s %9s %9s %9s %9s %8s %8s %13s %10s", name.c_str(), predicted.c_str(),
+                  cell(s.contourErrorPct.mean).c_str(), cell(s.contourErrorPct.median).c_str(), cell(s.contourErrorPct.p95).c_str(),
+                  cell(s.contourErrorPct.max).c_str(), cell(s.contourErrorPx.mean).c_str(), cell(s.iou.mean, "%.4f").c_str(),
+                  cell(s.coverage.mean, "%.3f").c_str(), counts.c_str(), cell(s.timeUs.median, "%.0f").c_str());
+    out += line;
+    if (!s.answered) out += "  " + s.reason;
+    out += "\n";
+  }
+  return out;
+}
+
+}  // namespace glint

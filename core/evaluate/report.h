@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "core/pipeline/inspection.h"
+
+namespace glint {
+
+/// Facts about a run that the inspection does not hold.
+struct ReportContext {
+  std::string input;          ///< as the user named it
+  std::string chosenModel;    ///< "" = none
+  std::string whyChosen;      ///< one sentence
+};
+
+/// The answered model with the smallest mean held-out contour error among those that predicted most frames; "" when none answered.
+std::string bestModel(const Inspection& inspection);
+
+/// formats.md "evaluate --json". Numbers that are not finite become null.
+std::string evaluationJson(const Inspection& inspection, const ReportContext& context);
+/// One row per (model, frame, light, highlight), with a header row.
+std::string evaluationCsv(const Inspection& inspection);
+/// A plain-text table of the models: error statistics, predicted/frames, coverage, counts, time.
+std::string evaluationTable(const Inspection& inspection);
+/// One self-contained page: table, error over frames per model, the worst frames with overlays.
+std::string evaluationHtml(const Inspection& inspection, const ReportContext& context);
+
+}  // namespace glint
