@@ -30,7 +30,7 @@ struct SurfaceSource {
 struct Frame {
   std::string id;
   std::filesystem::path image, radiance, depth, normals, mask;
-  double depthScale = 1;                  ///< metres per stored unit (integer depth)
+  double depthScale = 0;                  ///< metres per stored unit; 0 = not given (then depth must be float)
   Camera camera;
   std::string surface;                    ///< id in Scene::surfaces; "" = this frame's own depth map
   std::vector<std::string> lightsOn;      ///< empty = not stated
@@ -54,7 +54,7 @@ struct Scene {
   std::map<std::string, SurfaceSource> surfaces;
   std::vector<TrueLight> lights;
   std::vector<std::string> warnings;      ///< unknown keys and other oddities, one line each
-  std::string unknownJson;                ///< unknown top-level keys, kept for writing back; "" = none
+  std::string unknownJson;                ///< unknown keys, kept for writing back, grouped by scene, camera, frames, surfaces, lights; "" = none
 };
 
 struct ReadOptions {
@@ -73,15 +73,20 @@ enum class FrameSource { Radiance, Image };
 Outcome<Image> readLinear(const Frame& frame, FrameSource source);
 /// The display image, 3 channels, sRGB 0..1 (tone-mapped radiance when there is no photograph).
 Outcome<Image> readPhotograph(const Frame& frame);
-/// Non-zero on the glossy object; nothing when the frame has no mask.
+/// 1 on the glossy object, 0 elsewhere; nothing when the frame has no mask. FrameUnreadable.
 Outcome<std::optional<Image>> readMask(const Frame& frame);
+/// Depth along the optical axis in metres, 0 = none (non-finite and negative values too); nothing when the frame has none.
+/// FrameUnreadable, also for an integer image without `depth_scale`.
+Outcome<std::optional<Image>> readDepth(const Frame& frame);
+/// World normals, 3 channels (x y z), not normalised: as stored, or v / 65532 * 2 - 1 of a 16-bit image; nothing when the frame has none.
+Outcome<std::optional<Image>> readNormals(const Frame& frame);
 
 /// Loads surfaces once per (source, policy) and shares them. Thread-safe.
 class SurfaceCache {
  public:
   explicit SurfaceCache(const Scene& scene);
   ~SurfaceCache();
-  /// The surface that a frame sees. NoSurface; InputError when a mesh or depth file cannot be read.
+  /// The surface that a frame sees. NoSurface; FrameUnreadable for its depth image; InputError when a mesh cannot be read.
   Outcome<std::shared_ptr<const Surface>> surfaceOf(int frame, NormalPolicy normals) const;
   /// A key that is equal for frames that see the same surface ("body"; "depth:0004" for a frame's own depth).
   std::string keyOf(int frame) const;

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/base/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+
+#include "core/base/outcome.h"
+
+namespace glint {
+namespace fs = std::filesystem;
+
+namespace {
+
+InputError systemError(const fs::path& file, const char* what, int error) {
+  return InputError(file.string(), "", std::string(what) + ": " + std::strerror(error));
+}
+
+/// Owns a file descriptor; errors of close() matter when writing, so the owner closes it by hand on success.
+struct Descriptor {
+  int fd = -1;
+  ~Descriptor() {
+    if (fd >= 0) ::close(fd);
+  }
+  int release() {
+    const int f = fd;
+    fd = -1;
+    return f;
+  }
+};
+
+/// Removes a temporary file unless the rename succeeded.
+struct Temporary {
+  fs::path path;
+  bool keep = false;
+  ~Temporary() {
+    std::error_code ignored;
+    if (!keep) fs::remove(path, ignored);
+  }
+};
+
+void writeAll(int fd, std::string_view content, const fs::path& file) {
+  while (!content.empty()) {
+    const ssize_t n = ::write(fd, content.data(), content.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) throw systemError(file, "cannot be written", errno);
+    content.remove_prefix(static_cast<std::size_t>(n));
+  }
+}
+
+/// Hidden, in the same folder (rename is atomic within one file system only), same extension (encoders look at it).
+fs::path temporaryFor(const fs::path& file) {
+  static std::atomic<unsigned> counter{0};
+  std::string name = ".";
+  name.append(file.stem().string()).append(".").append(std::to_string(::getpid())).append("-");
+  name.append(std::to_string(counter++)).append(".tmp").append(file.extension().string());
+  return file.parent_path() / name;
+}
+
+void checkTarget(const fs::path& file) {
+  if (file.empty() || !file.has_filename()) throw InputError(file.string(), "", "is not a file name");
+  std::error_code error;
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, error))
+    throw InputError(file.string(), "", "cannot be written: the folder " + folder.string() + " does not exist");
+  if (fs::is_directory(file, error)) throw InputError(file.string(), "", "cannot be written: it is a folder");
+}
+
+void flushAndRename(const fs::path& temporary, const fs::path& file) {
+  Descriptor d{::open(temporary.c_str(), O_RDONLY | O_CLOEXEC)};
+  if (d.fd < 0) throw systemError(file, "cannot be written", errno);
+  if (::fsync(d.fd) != 0) throw systemError(file, "cannot be written", errno);
+  // A file that already exists keeps its permissions.
+  struct stat old {};
+  if (::stat(file.c_str(), &old) == 0) (void)::fchmod(d.fd, old.st_mode & 07777);
+  if (::rename(temporary.c_str(), file.c_str()) != 0) throw systemError(file, "cannot be written", errno);
+}
+
+bool isDevice(const fs::path& file) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+/// Through a symbolic link the file it points to is replaced, not the link.
+fs::path realTarget(const fs::path& file) {
+  std::error_code error;
+  if (!fs::is_symlink(file, error)) return file;
+  const fs::path target = fs::weakly_canonical(file, error);
+  return error ? file : target;
+}
+
+}  // namespace
+
+void atomicWrite(const fs::path& requested, std::string_view content) {
+  const fs::path file = realTarget(requested);
+  if (isDevice(file)) {
+    Descriptor d{::open(file.c_str(), O_WRONLY | O_CLOEXEC)};
+    if (d.fd < 0) throw systemError(requested, "cannot be written", errno);
+    writeAll(d.fd, content, requested);
+    if (::close(d.release()) != 0) throw systemError(requested, "cannot be written", errno);
+    return;
+  }
+  checkTarget(file);
+  Temporary temporary{temporaryFor(file)};
+  Descriptor d{::open(temporary.path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)};
+  if (d.fd < 0) throw systemError(requested, "cannot be written", errno);
+  writeAll(d.fd, content, requested);
+  if (::close(d.release()) != 0) throw systemError(requested, "cannot be written", errno);
+  flushAndRename(temporary.path, file);
+  temporary.keep = true;
+}
+
+void atomicWrite(const fs::path& requested, const std::function<void(const fs::path&)>& write) {
+  const fs::path file = realTarget(requested);
+  checkTarget(file);
+  Temporary temporary{temporaryFor(file)};
+  write(temporary.path);
+  std::error_code error;
+  const auto size = fs::file_size(temporary.path, error);
+  if (error || size == 0)
+    throw InputError(requested.string(), "", "cannot be written (disk full, or the folder is not writable)");
+  flushAndRename(temporary.path, file);
+  temporary.keep = true;
+}
+
+std::string readFile(const fs::path& file) {
+  Descriptor d{::open(file.c_str(), O_RDONLY | O_CLOEXEC)};
+  if (d.fd < 0) throw systemError(file, "cannot be read", errno);
+  struct stat info {};
+  if (::fstat(d.fd, &info) != 0) throw systemError(file, "cannot be read", errno);
+  if (S_ISDIR(info.st_mode)) throw InputError(file.string(), "", "is a folder, not a file");
+  std::string content;
+  content.reserve(static_cast<std::size_t>(info.st_size));
+  char buffer[1 << 16];
+  while (true) {
+    const ssize_t n = ::read(d.fd, buffer, sizeof buffer);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) throw systemError(file, "cannot be read", errno);
+    if (n == 0) break;
+    content.append(buffer, static_cast<std::size_t>(n));
+  }
+  return content;
+}
+
+}  // namespace glint

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/base/json_text.h"
+
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/base/outcome.h"
+
+namespace glint {
+using Json = nlohmann::ordered_json;
+
+struct JsonNode::Document {
+  Json root;
+  std::string file;
+};
+
+namespace {
+
+constexpr int kDeepest = 100;  // no format of ours nests deeper than 8; recursion over hostile files stays harmless
+
+const Json& json(const void* value) { return *static_cast<const Json*>(value); }
+
+const char* typeName(const Json& j) {
+  if (j.is_object()) return "an object";
+  if (j.is_array()) return "a list";
+  if (j.is_string()) return "text";
+  if (j.is_boolean()) return "true or false";
+  if (j.is_null()) return "null (or NaN)";
+  return "a number";
+}
+
+/// NaN, Infinity and -Infinity outside strings become null.
+std::string withoutNonFinite(const std::string& text) {
+  if (text.find("NaN") == std::string::npos && text.find("Infinity") == std::string::npos) return text;
+  std::string out;
+  out.reserve(text.size());
+  bool inString = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (inString) {
+      out += c;
+      if (c == '\\' && i + 1 < text.size()) out += text[++i];
+      if (c == '"') inString = false;
+      continue;
+    }
+    bool replaced = false;
+    for (const char* word : {"NaN", "-NaN", "Infinity", "-Infinity"}) {
+      const std::size_t n = std::char_traits<char>::length(word);
+      if (text.compare(i, n, word) == 0) {
+        out += "null";
+        i += n - 1;
+        replaced = true;
+        break;
+      }
+    }
+    if (replaced) continue;
+    if (c == '"') inString = true;
+    out += c;
+  }
+  return out;
+}
+
+/// "line 3, column 5" and the rest of the JSON library's message, which starts with an identifier and a position.
+std::pair<std::string, std::string> splitParseMessage(const std::string& message) {
+  std::string place = "JSON", reason = message;
+  if (const std::size_t at = message.find("at line "); at != std::string::npos) {
+    const std::size_t end = message.find(": ", at);
+    place = message.substr(at + 3, end == std::string::npos ? std::string::npos : end - at - 3);
+    if (end != std::string::npos) reason = message.substr(end + 2);
+  } else if (const std::size_t bracket = message.find("] "); bracket != std::string::npos) {
+    reason = message.substr(bracket + 2);
+  }
+  for (char& c : reason)
+    if (std::iscntrl(static_cast<unsigned char>(c))) c = ' ';
+  return {place, "not valid JSON: " + reason};
+}
+
+std::string childPlace(const std::string& place, const std::string& key) { return place.empty() ? key : place + "." + key; }
+
+}  // namespace
+
+JsonNode::JsonNode(std::shared_ptr<const Document> document, const void* value, std::string place)
+    : document_(std::move(document)), value_(value), place_(std::move(place)) {}
+
+JsonNode JsonNode::parse(const std::string& text, const std::string& file) {
+  const auto document = std::make_shared<Document>();
+  document->file = file;
+  // The library keeps the first or the last of two equal keys in silence; here they are an error.
+  struct Level {
+    std::set<std::string> keys;
+    std::string current;
+    std::size_t index = 0;
+  };
+  std::vector<Level> levels;
+  const auto where = [&] {
+    std::string place;
+    for (const Level& l : levels)
+      if (!l.current.empty()) place = childPlace(place, l.current);
+    return place;
+  };
+  const auto check = [&](int depth, Json::parse_event_t event, Json& parsed) {
+    if (depth > kDeepest) throw InputError(file, "JSON", "nested deeper than " + std::to_string(kDeepest) + " levels");
+    if (event == Json::parse_event_t::object_start || event == Json::parse_event_t::array_start) levels.emplace_back();
+    if (event == Json::parse_event_t::object_end || event == Json::parse_event_t::array_end) levels.pop_back();
+    if (event == Json::parse_event_t::key) {
+      Level& level = levels.back();
+      level.current = parsed.get<std::string>();
+      if (!level.keys.insert(level.current).second) throw InputError(file, where(), "this key stands here twice");
+    }
+    return true;
+  };
+  try {
+    document->root = Json::parse(withoutNonFinite(text), check);
+  } catch (const Json::exception& e) {
+    const auto [place, reason] = splitParseMessage(e.what());
+    throw InputError(file, place, reason);
+  }
+  const void* root = &document->root;
+  return JsonNode(document, root, "");
+}
+
+bool JsonNode::isObject() const { return json(value_).is_object(); }
+bool JsonNode::isArray() const { return json(value_).is_array(); }
+bool JsonNode::isNull() const { return json(value_).is_null(); }
+bool JsonNode::isString() const { return json(value_).is_string(); }
+bool JsonNode::isNumber() const { return json(value_).is_number(); }
+bool JsonNode::isBoolean() const { return json(value_).is_boolean(); }
+const std::string& JsonNode::file() const { return document_->file; }
+
+void JsonNode::fail(const std::string& reason) const { throw InputError(document_->file, place_, reason); }
+
+namespace {
+std::string wrongType(const char* expected, const Json& j) { return std::string("must be ") + expected + ", is " + typeName(j); }
+}  // namespace
+
+bool JsonNode::has(const std::string& key) const {
+  if (!isObject()) fail(wrongType("an object", json(value_)));
+  return json(value_).contains(key);
+}
+
+std::optional<JsonNode> JsonNode::find(const std::string& key) const {
+  if (!has(key)) return std::nullopt;
+  return JsonNode(document_, &json(value_).at(key), childPlace(place_, key));
+}
+
+JsonNode JsonNode::at(const std::string& key) const {
+  std::optional<JsonNode> node = find(key);
+  if (!node) throw InputError(document_->file, childPlace(place_, key), "is missing");
+  return *node;
+}
+
+std::vector<std::string> JsonNode::keys() const {
+  if (!isObject()) fail(wrongType("an object", json(value_)));
+  std::vector<std::string> keys;
+  for (const auto& item : json(value_).items()) keys.push_back(item.key());
+  return keys;
+}
+
+std::size_t JsonNode::size() const {
+  if (!isArray()) fail(wrongType("a list", json(value_)));
+  return json(value_).size();
+}
+
+JsonNode JsonNode::at(std::size_t index) const {
+  require(index < size(), "JsonNode::at: no such element");
+  return JsonNode(document_, &json(value_).at(index), place_ + "[" + std::to_string(index) + "]");
+}
+
+double JsonNode::number() const {
+  if (!json(value_).is_number()) fail(wrongType("a finite number", json(value_)));
+  const double v = json(value_).get<double>();
+  if (!std::isfinite(v)) fail("must be a finite number");
+  return v;
+}
+
+int JsonNode::integer() const {
+  const double v = number();
+  if (v != std::floor(v) || v < std::numeric_limits<int>::min() || v > std::numeric_limits<int>::max())
+    fail("must be a whole number");
+  return static_cast<int>(v);
+}
+
+bool JsonNode::boolean() const {
+  if (!json(value_).is_boolean()) fail(wrongType("true or false", json(value_)));
+  return json(value_).get<bool>();
+}
+
+std::string JsonNode::text() const {
+  if (!json(value_).is_string()) fail(wrongType("text", json(value_)));
+  return json(value_).get<std::string>();
+}
+
+std::vector<double> JsonNode::numbers() const {
+  std::vector<double> values;
+  const std::size_t n = size();
+  for (std::size_t i = 0; i < n; ++i) values.push_back(at(i).number());
+  return values;
+}
+
+namespace {
+template <int N>
+Eigen::Matrix<double, N, 1> fixedVector(const JsonNode& node) {
+  if (node.size() != N) node.fail("must have " + std::to_string(N) + " numbers, has " + std::to_string(node.size()));
+  Eigen::Matrix<double, N, 1> v;
+  for (int i = 0; i < N; ++i) v[i] = node.at(static_cast<std::size_t>(i)).number();
+  return v;
+}
+}  // namespace
+
+Eigen::Vector2d JsonNode::vector2() const { return fixedVector<2>(*this); }
+Eigen::Vector3d JsonNode::vector3() const { return fixedVector<3>(*this); }
+Eigen::Matrix4d JsonNode::matrix4() const {
+  if (size() != 4) fail("must have 4 rows of 4 numbers, has " + std::to_string(size()));
+  Eigen::Matrix4d m;
+  for (int i = 0; i < 4; ++i) m.row(i) = fixedVector<4>(at(static_cast<std::size_t>(i))).transpose();
+  return m;
+}
+
+std::vector<std::string> JsonNode::unknownKeys(const std::set<std::string>& known) const {
+  std::vector<std::string> unknown;
+  for (const std::string& key : keys())
+    if (!known.count(key)) unknown.push_back(key);
+  return unknown;
+}
+
+std::string JsonNode::dump() const { return json(value_).dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+namespace {
+
+/// A scalar, or a list of at most 16 scalars without text: what fits on a line.
+bool isShort(const Json& j) {
+  if (j.is_object()) return j.empty();
+  if (!j.is_array()) return true;
+  if (j.size() > 16) return false;
+  for (const Json& e : j)
+    if (e.is_structured()) return false;
+  return true;
+}
+
+void print(const Json& j, int depth, std::string& out) {
+  const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
+  if (!j.is_structured() || j.empty()) {
+    out += j.dump(-1, ' ', false, Json::error_handler_t::replace);
+  } else if (j.is_object()) {
+    out += "{\n";
+    bool first = true;
+    for (const auto& item : j.items()) {
+      if (!first) out += ",\n";
+      first = false;
+      out += indent + "  " + Json(item.key()).dump(-1, ' ', false, Json::error_handler_t::replace) + ": ";
+      print(item.value(), depth + 1, out);
+    }
+    out += "\n" + indent + "}";
+  } else {
+    bool flat = true;
+    for (const Json& e : j) flat = flat && isShort(e);
+    bool first = true;
+    out += "[";
+    for (const Json& e : j) {
+      if (!first) out += flat ? ", " : ",";
+      first = false;
+      if (flat) {
+        out += e.dump(-1, ' ', false, Json::error_handler_t::replace);
+      } else {
+        out += "\n" + indent + "  ";
+        print(e, depth + 1, out);
+      }
+    }
+    if (!flat) out += "\n" + indent;
+    out += "]";
+  }
+}
+
+}  // namespace
+
+std::string prettyJson(const std::string& text) {
+  Json j;
+  try {
+    j = Json::parse(text);
+  } catch (const Json::exception&) {
+    require(false, "prettyJson: not JSON");
+  }
+  std::string out;
+  print(j, 0, out);
+  return out + "\n";
+}
+
+}  // namespace glint

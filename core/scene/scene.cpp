@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/scene/scene.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include "core/base/atomic_file.h"
+#include "core/base/json_text.h"
+#include "core/scene/scene_json.h"
+#include "core/scene/scene_reader.h"
+
+namespace glint {
+namespace fs = std::filesystem;
+
+std::string firstBytes(const fs::path& file, std::size_t n) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return "";
+  std::ifstream in(file, std::ios::binary);
+  std::string bytes(n, '\0');
+  in.read(bytes.data(), static_cast<std::streamsize>(n));
+  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, in.gcount())));
+  return bytes;
+}
+
+namespace {
+
+/// An opening brace (after blanks and a byte-order mark) and this key in quotes somewhere in the file.
+bool isJsonObjectWith(const fs::path& file, const std::string& key) {
+  std::error_code error;
+  const auto size = fs::file_size(file, error);
+  constexpr std::uintmax_t kLargest = std::uintmax_t(1) << 30;  // a scene of 1 GB of text is no scene
+  if (error || size > kLargest) return false;
+  const std::string start = firstBytes(file, 64);
+  const std::size_t at = start.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  if (at == std::string::npos || start[at] != '{') return false;
+  return firstBytes(file, static_cast<std::size_t>(size)).find("\"" + key + "\"") != std::string::npos;
+}
+
+std::vector<fs::path> sortedFiles(const fs::path& folder, const std::string& extension) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    if (it->path().extension() == extension) files.push_back(it->path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+class SceneFileReader final : public SceneReader {
+ public:
+  std::string describe() const override { return "scene file (scene.json, version 1)"; }
+  fs::path recognise(const fs::path& input) const override {
+    std::error_code error;
+    if (fs::is_directory(input, error)) {
+      if (fs::exists(input / "scene.json", error)) return input / "scene.json";
+      for (const fs::path& file : sortedFiles(input, ".json"))
+        if (isJsonObjectWith(file, "glint_scene")) return file;
+      return {};
+    }
+    // A file of this name is meant as a scene even when its first key is missing or its text is broken: the reader's
+    // message says more than "not recognised".
+    return input.filename() == "scene.json" || isJsonObjectWith(input, "glint_scene") ? input : fs::path();
+  }
+  Scene read(const fs::path& file, const ReadOptions& options) const override {
+    return readSceneJson(readFile(file), file, options);
+  }
+};
+
+class SessionSceneReader final : public SceneReader {
+ public:
+  std::string describe() const override { return "session (*.glint)"; }
+  fs::path recognise(const fs::path& input) const override {
+    std::error_code error;
+    if (fs::is_directory(input, error)) {
+      for (const fs::path& file : sortedFiles(input, ".glint"))
+        if (isJsonObjectWith(file, "glint_session")) return file;
+      return {};
+    }
+    return isJsonObjectWith(input, "glint_session") ? input : fs::path();
+  }
+  Scene read(const fs::path& file, const ReadOptions& options) const override {
+    const JsonNode root = JsonNode::parse(readFile(file), file.string());
+    const JsonNode path = root.at("input").at("path");
+    const fs::path scene = fs::absolute(file).parent_path() / path.text();
+    if (isJsonObjectWith(scene, "glint_session")) path.fail("a session's input must be a scene, not a session");
+    return readScene(scene.lexically_normal(), options);
+  }
+};
+
+std::string whatIsUnderstood() {
+  std::string all;
+  for (const auto& reader : sceneReaders()) all += (all.empty() ? "" : ", ") + reader->describe();
+  return all;
+}
+
+}  // namespace
+
+std::unique_ptr<const SceneReader> makeSceneFileReader() { return std::make_unique<SceneFileReader>(); }
+std::unique_ptr<const SceneReader> makeSessionSceneReader() { return std::make_unique<SessionSceneReader>(); }
+
+const std::vector<std::unique_ptr<const SceneReader>>& sceneReaders() {
+  static const std::vector<std::unique_ptr<const SceneReader>> readers = [] {
+    std::vector<std::unique_ptr<const SceneReader>> list;
+    list.push_back(makeSceneFileReader());
+    list.push_back(makeSessionSceneReader());
+    return list;
+  }();
+  return readers;
+}
+
+fs::path resolveInside(const fs::path& folder, const std::string& relative, bool allowOutside, const std::string& file,
+                       const std::string& place) {
+  if (relative.empty()) throw InputError(file, place, "the path is empty");
+  if (relative.find('\0') != std::string::npos) throw InputError(file, place, "the path contains a zero byte");
+  const fs::path path(relative);
+  const fs::path absolute = (path.is_absolute() ? path : folder / path).lexically_normal();
+  if (allowOutside) return absolute;
+  if (path.is_absolute())
+    throw InputError(file, place, "'" + relative + "' is absolute; paths are relative to the file (--allow-outside accepts it)");
+  // weakly_canonical follows the links of the part that exists, so neither `..` nor a link can leave unseen.
+  std::error_code error;
+  const fs::path root = fs::weakly_canonical(folder, error);
+  const fs::path real = error ? fs::path() : fs::weakly_canonical(folder / path, error);
+  if (error) throw InputError(file, place, "'" + relative + "' cannot be resolved: " + error.message());
+  const auto [rootEnd, rest] = std::mismatch(root.begin(), root.end(), real.begin(), real.end());
+  if (rootEnd != root.end())
+    throw InputError(file, place, "'" + relative + "' leaves the folder of the file (--allow-outside accepts it)");
+  return absolute;
+}
+
+Scene readScene(const fs::path& input, const ReadOptions& options) {
+  std::error_code error;
+  const fs::file_status status = fs::status(input, error);
+  if (!fs::exists(status)) throw InputError(input.string(), "", "no such file or folder");
+  for (const auto& reader : sceneReaders())
+    if (const fs::path file = reader->recognise(input); !file.empty()) return reader->read(file, options);
+  if (fs::is_directory(status)) {
+    const bool empty = fs::is_empty(input, error);
+    throw InputError(input.string(), "",
+                     std::string(empty ? "the folder is empty" : "nothing in this folder is recognised") +
+                         "; understood: " + whatIsUnderstood());
+  }
+  const bool empty = fs::is_regular_file(status) && fs::file_size(input, error) == 0;
+  throw InputError(
+      input.string(), "",
+      std::string(empty ? "the file is empty" : "the content is not recognised") + "; understood: " + whatIsUnderstood());
+}
+
+void writeScene(const Scene& scene, const fs::path& file) {
+  const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
+  atomicWrite(file, prettyJson(sceneToJson(scene, folder)));
+}
+
+}  // namespace glint

@@ -1,0 +1,488 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/scene/scene_json.h"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/scene/scene_reader.h"
+
+namespace glint {
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+double positive(const JsonNode& node) {
+  const double v = node.number();
+  if (!(v > 0)) node.fail("must be positive");
+  return v;
+}
+
+std::string identifier(const JsonNode& node) {
+  const std::string id = node.text();
+  if (id.empty()) node.fail("must not be empty");
+  for (const char c : id)
+    if (static_cast<unsigned char>(c) < 0x20) node.fail("must not contain control characters");
+  return id;
+}
+
+/// Collects what this version does not know: kept for writing back, warned of once per place.
+struct Unknown {
+  Scene& scene;
+  Json kept = Json::object();
+
+  Json of(const JsonNode& node, const std::set<std::string>& known) {
+    Json rest = Json::object();
+    for (const std::string& key : node.unknownKeys(known)) {
+      const JsonNode value = node.at(key);
+      scene.warnings.push_back(value.place() + ": unknown key, kept");
+      rest[key] = Json::parse(value.dump());
+    }
+    return rest;
+  }
+};
+
+void keep(Json& target, const std::string& key, Json value) {
+  if (!value.empty()) target[key] = std::move(value);
+}
+
+const std::set<std::string> kCameraKeys = {"width", "height", "fx", "fy", "cx", "cy", "distortion"};
+const std::set<std::string> kLightKeys = {"id", "position", "direction", "segment", "radius"};
+
+std::set<std::string> analyticKeys(const std::string& type) {
+  static const std::map<std::string, std::set<std::string>> keys = {{"plane", {}},
+                                                                    {"sphere", {"radius"}},
+                                                                    {"ellipsoid", {"semi_axes"}},
+                                                                    {"cylinder", {"radius"}},
+                                                                    {"sheet", {"curvature", "length", "width"}},
+                                                                    {"torus", {"major_radius", "minor_radius"}},
+                                                                    {"quadric", {"matrix"}}};
+  std::set<std::string> all = keys.at(type);
+  all.insert({"type", "world_from_surface"});
+  return all;
+}
+
+}  // namespace
+
+Camera readCameraJson(const JsonNode& node) {
+  Camera camera;
+  const auto size = [&](const char* key) {
+    const JsonNode n = node.at(key);
+    const int v = n.integer();
+    if (v < 1 || v > 65536) n.fail("must be 1 .. 65536 pixels");
+    return v;
+  };
+  camera.width = size("width");
+  camera.height = size("height");
+  const auto focal = [&](const char* key) {
+    const JsonNode n = node.at(key);
+    const double v = n.number();
+    if (!(v > 0)) n.fail("must be positive (K would be singular or mirrored)");
+    return v;
+  };
+  camera.pixelFromRay << focal("fx"), 0, node.at("cx").number(), 0, focal("fy"), node.at("cy").number(), 0, 0, 1;
+  if (const auto d = node.find("distortion")) {
+    const std::vector<double> values = d->numbers();
+    if (values.size() != 4 && values.size() != 5)
+      d->fail("must have 5 numbers (k1 k2 p1 p2 k3), has " + std::to_string(values.size()));
+    std::copy(values.begin(), values.end(), camera.distortion.begin());
+  }
+  return camera;
+}
+
+Eigen::Isometry3d readPoseJson(const JsonNode& node, std::string* warning) {
+  const Eigen::Matrix4d m = node.matrix4();
+  if (m.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) node.fail("must be rigid: the last row must be 0 0 0 1");
+  Eigen::Matrix3d r = m.topLeftCorner<3, 3>();
+  const double deviation = (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (!(deviation <= 1e-3)) node.fail("must be rigid: the 3x3 block is not a rotation");
+  if (r.determinant() < 0) node.fail("must be rigid: the 3x3 block is mirrored (determinant -1)");
+  if (deviation > 1e-6) {
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    r = svd.matrixU() * svd.matrixV().transpose();
+    if (warning) *warning = node.place() + ": not exactly a rotation, replaced by the nearest one";
+  }
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = r;
+  pose.translation() = m.topRightCorner<3, 1>();
+  return pose;
+}
+
+AnalyticSpec readAnalyticJson(const JsonNode& node) {
+  AnalyticSpec spec;
+  const JsonNode type = node.at("type");
+  spec.type = type.text();
+  if (spec.type == "sphere" || spec.type == "cylinder") {
+    spec.radius = positive(node.at("radius"));
+  } else if (spec.type == "ellipsoid") {
+    const JsonNode axes = node.at("semi_axes");
+    spec.semiAxes = axes.vector3();
+    if (!(spec.semiAxes.minCoeff() > 0)) axes.fail("must be positive");
+  } else if (spec.type == "sheet") {
+    spec.curvature = node.at("curvature").number();
+    if (const auto n = node.find("length")) spec.length = positive(*n);
+    if (const auto n = node.find("width")) spec.width = positive(*n);
+  } else if (spec.type == "torus") {
+    spec.majorRadius = positive(node.at("major_radius"));
+    const JsonNode minor = node.at("minor_radius");
+    spec.minorRadius = positive(minor);
+    if (spec.minorRadius >= spec.majorRadius) minor.fail("must be smaller than major_radius");
+  } else if (spec.type == "quadric") {
+    const JsonNode matrix = node.at("matrix");
+    spec.matrix = matrix.matrix4();
+    const double size = spec.matrix.cwiseAbs().maxCoeff();
+    if (!(size > 0)) matrix.fail("must not be zero");
+    if ((spec.matrix - spec.matrix.transpose()).cwiseAbs().maxCoeff() > 1e-9 * size) matrix.fail("must be symmetric");
+  } else if (spec.type != "plane") {
+    type.fail("'" + spec.type + "' is none of: plane, sphere, ellipsoid, cylinder, sheet, torus, quadric");
+  }
+  if (const auto pose = node.find("world_from_surface")) spec.worldFromSurface = readPoseJson(*pose);
+  return spec;
+}
+
+TrueLight readLightJson(const JsonNode& node) {
+  TrueLight light;
+  light.id = identifier(node.at("id"));
+  if (const auto n = node.find("position")) light.position = n->vector3();
+  if (const auto n = node.find("direction")) {
+    const Eigen::Vector3d d = n->vector3();
+    if (!(d.norm() > 0)) n->fail("must not be zero");
+    light.direction = d.normalized();
+  }
+  if (const auto n = node.find("segment")) {
+    if (n->size() != 2) n->fail("must have two ends");
+    light.segment = {n->at(std::size_t(0)).vector3(), n->at(std::size_t(1)).vector3()};
+    if ((*light.segment)[0] == (*light.segment)[1]) n->fail("the two ends must differ");
+  }
+  if (int(light.position.has_value()) + int(light.direction.has_value()) + int(light.segment.has_value()) != 1)
+    node.fail("needs exactly one of position, direction, segment");
+  if (const auto n = node.find("radius")) {
+    light.radius = n->number();
+    if (light.radius < 0) n->fail("must not be negative");
+  }
+  return light;
+}
+
+namespace {
+
+Highlight readHighlight(const JsonNode& node, const Camera& camera) {
+  Highlight h;
+  h.fromScene = true;
+  if (const auto n = node.find("light")) h.light = identifier(*n);
+  if (const auto n = node.find("level")) {
+    h.level = n->number();
+    if (!(h.level > 0 && h.level < 1)) n->fail("must lie between 0 and 1");
+  }
+  const JsonNode contour = node.at("contour");
+  const std::size_t n = contour.size();
+  if (n < 5) contour.fail("must have at least 5 points, has " + std::to_string(n));
+  constexpr double kBorderPx = 0.5;  // within half a pixel of the outermost pixel centres the image ends
+  for (std::size_t i = 0; i < n; ++i) {
+    const Pixel measured = contour.at(i).vector2();
+    h.touchesBorder = h.touchesBorder || measured.minCoeff() <= 0 - kBorderPx + 1e-9 ||
+                      measured.x() >= camera.width - 1 + kBorderPx - 1e-9 || measured.y() >= camera.height - 1 + kBorderPx - 1e-9;
+    h.contour.points.push_back(camera.undistorted(measured));
+  }
+  h.peak = camera.undistorted(node.at("peak").vector2());
+  if (!h.peak.allFinite()) node.at("peak").fail("lies where the lens distortion cannot be removed");
+  for (std::size_t i = 0; i < n; ++i)
+    if (!h.contour.points[i].allFinite()) contour.at(i).fail("lies where the lens distortion cannot be removed");
+  // One orientation for all contours, whoever wrote them; the first point stays first.
+  const double area = signedArea(h.contour);
+  if (area < 0) std::reverse(h.contour.points.begin() + 1, h.contour.points.end());
+  h.areaPx2 = std::abs(area);
+  if (!(h.areaPx2 > 0)) contour.fail("encloses no area");
+  return h;
+}
+
+struct FrameContext {
+  const std::optional<Camera>& sharedCamera;
+  const ReadOptions& options;
+  Scene& scene;
+  Unknown& unknown;
+};
+
+Frame readFrame(const JsonNode& node, const FrameContext& context, Json& rest) {
+  Frame frame;
+  const Scene& scene = context.scene;
+  frame.id = identifier(node.at("id"));
+  const auto path = [&](const char* key) -> fs::path {
+    const auto n = node.find(key);
+    if (!n || n->isNull()) return {};
+    return resolveInside(scene.folder, n->text(), context.options.allowOutsidePaths, n->file(), n->place());
+  };
+  frame.image = path("image");
+  frame.radiance = path("radiance");
+  frame.depth = path("depth");
+  frame.normals = path("normals");
+  frame.mask = path("mask");
+  if (const auto n = node.find("depth_scale")) frame.depthScale = positive(*n);
+  if (const auto n = node.find("camera")) {
+    frame.camera = readCameraJson(*n);
+    keep(rest, "camera", context.unknown.of(*n, kCameraKeys));
+  } else if (context.sharedCamera) {
+    frame.camera = *context.sharedCamera;
+  } else {
+    throw InputError(node.file(), node.place() + ".camera", "is missing, and the scene has no camera for all frames");
+  }
+  std::string warning;
+  frame.camera.camFromWorld = readPoseJson(node.at("camera_from_world"), &warning);
+  if (!warning.empty()) context.scene.warnings.push_back(warning);
+  if (const auto n = node.find("surface"); n && !n->isNull()) {
+    frame.surface = n->text();
+    if (!scene.surfaces.count(frame.surface)) n->fail("there is no surface '" + frame.surface + "'");
+  } else if (frame.depth.empty()) {
+    if (scene.surfaces.size() != 1)
+      throw InputError(node.file(), node.place() + ".surface",
+                       scene.surfaces.empty() ? "is missing: the scene has no surface and the frame no depth"
+                                              : "is missing: the scene has several surfaces");
+    frame.surface = scene.surfaces.begin()->first;
+  }
+  if (const auto n = node.find("lights_on"))
+    for (std::size_t i = 0; i < n->size(); ++i) frame.lightsOn.push_back(identifier(n->at(i)));
+  if (const auto n = node.find("highlights")) {
+    Json rests = Json::array();
+    bool any = false;
+    for (std::size_t i = 0; i < n->size(); ++i) {
+      frame.highlights.push_back(readHighlight(n->at(i), frame.camera));
+      rests.push_back(context.unknown.of(n->at(i), {"light", "level", "peak", "contour"}));
+      any = any || !rests.back().empty();
+    }
+    if (any) rest["highlights"] = rests;
+  }
+  return frame;
+}
+
+SurfaceSource readSurface(const JsonNode& node, const FrameContext& context, Json& rest) {
+  SurfaceSource source;
+  if (const auto n = node.find("mesh")) {
+    source.mesh = resolveInside(context.scene.folder, n->text(), context.options.allowOutsidePaths, n->file(), n->place());
+    std::error_code error;
+    if (!fs::is_regular_file(*source.mesh, error)) n->fail("there is no file '" + n->text() + "'");
+  }
+  if (const auto n = node.find("analytic")) {
+    source.analytic = readAnalyticJson(*n);
+    keep(rest, "analytic", context.unknown.of(*n, analyticKeys(source.analytic->type)));
+  }
+  if (source.mesh.has_value() == source.analytic.has_value()) node.fail("needs exactly one of mesh, analytic");
+  return source;
+}
+
+}  // namespace
+
+Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOptions& options) {
+  const JsonNode root = JsonNode::parse(text, file.string());
+  Scene scene;
+  scene.file = file;
+  scene.folder = fs::absolute(file).lexically_normal().parent_path();
+  Unknown unknown{scene};
+
+  const JsonNode version = root.at("glint_scene");
+  if (version.integer() != 1) version.fail("version " + std::to_string(version.integer()) + " is not understood, only 1");
+  scene.name = scene.folder.filename().string();
+  if (const auto n = root.find("name")) scene.name = n->text();
+  if (const auto n = root.find("units"); n && n->text() != "m")
+    n->fail("'" + n->text() + "' is not understood: lengths are metres (\"m\")");
+
+  std::optional<Camera> shared;
+  if (const auto n = root.find("camera")) {
+    shared = readCameraJson(*n);
+    keep(unknown.kept, "camera", unknown.of(*n, kCameraKeys));
+  }
+  const FrameContext context{shared, options, scene, unknown};
+
+  Json surfaceRests = Json::object();
+  if (const auto n = root.find("surfaces")) {
+    for (const std::string& id : n->keys()) {
+      const JsonNode node = n->at(id);
+      if (id.empty()) node.fail("a surface needs a name");
+      Json rest = unknown.of(node, {"mesh", "analytic"});
+      scene.surfaces[id] = readSurface(node, context, rest);
+      keep(surfaceRests, id, rest);
+    }
+  }
+  keep(unknown.kept, "surfaces", surfaceRests);
+
+  std::set<std::string> lightIds;
+  Json lightRests = Json::object();
+  if (const auto n = root.find("lights")) {
+    for (std::size_t i = 0; i < n->size(); ++i) {
+      const JsonNode node = n->at(i);
+      scene.lights.push_back(readLightJson(node));
+      const std::string& id = scene.lights.back().id;
+      if (!lightIds.insert(id).second) node.at("id").fail("the id '" + id + "' stands twice");
+      keep(lightRests, id, unknown.of(node, kLightKeys));
+    }
+  }
+  keep(unknown.kept, "lights", lightRests);
+
+  std::set<std::string> frameIds;
+  Json frameRests = Json::object();
+  const JsonNode frames = root.at("frames");
+  if (frames.size() == 0) frames.fail("is empty: a scene needs at least one frame");
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const JsonNode node = frames.at(i);
+    Json rest = unknown.of(node, {"id", "image", "radiance", "depth", "normals", "mask", "depth_scale", "camera",
+                                  "camera_from_world", "surface", "lights_on", "highlights"});
+    Frame frame = readFrame(node, context, rest);
+    if (!frameIds.insert(frame.id).second) node.at("id").fail("the id '" + frame.id + "' stands twice");
+    if (!lightIds.empty())
+      for (const std::string& light : frame.lightsOn)
+        if (!lightIds.count(light)) scene.warnings.push_back(node.place() + ".lights_on: '" + light + "' is not in lights");
+    keep(frameRests, frame.id, rest);
+    scene.frames.push_back(std::move(frame));
+  }
+  keep(unknown.kept, "frames", frameRests);
+
+  const Json top = unknown.of(root, {"glint_scene", "name", "units", "camera", "frames", "surfaces", "lights"});
+  keep(unknown.kept, "scene", top);
+  if (!unknown.kept.empty()) scene.unknownJson = unknown.kept.dump();
+  return scene;
+}
+
+namespace {
+
+Json toJson(const Eigen::VectorXd& v) {
+  Json j = Json::array();
+  for (Eigen::Index i = 0; i < v.size(); ++i) j.push_back(v[i]);
+  return j;
+}
+
+Json toJson(const Eigen::Matrix4d& m) {
+  Json j = Json::array();
+  for (int i = 0; i < 4; ++i) j.push_back(toJson(Eigen::VectorXd(m.row(i).transpose())));
+  return j;
+}
+
+Json toJson(const Camera& camera) {
+  const Eigen::Matrix3d& k = camera.pixelFromRay;
+  Json j = {{"width", camera.width}, {"height", camera.height}, {"fx", k(0, 0)},
+            {"fy", k(1, 1)},         {"cx", k(0, 2)},           {"cy", k(1, 2)}};
+  j["distortion"] = Json(camera.distortion);
+  return j;
+}
+
+bool sameIntrinsics(const Camera& a, const Camera& b) {
+  return a.width == b.width && a.height == b.height && a.pixelFromRay == b.pixelFromRay && a.distortion == b.distortion;
+}
+
+Json toJson(const AnalyticSpec& spec) {
+  Json j = {{"type", spec.type}};
+  if (spec.type == "sphere" || spec.type == "cylinder") j["radius"] = spec.radius;
+  if (spec.type == "ellipsoid") j["semi_axes"] = toJson(Eigen::VectorXd(spec.semiAxes));
+  if (spec.type == "sheet") {
+    j["curvature"] = spec.curvature;
+    if (spec.length) j["length"] = *spec.length;
+    if (spec.width) j["width"] = *spec.width;
+  }
+  if (spec.type == "torus") {
+    j["major_radius"] = spec.majorRadius;
+    j["minor_radius"] = spec.minorRadius;
+  }
+  if (spec.type == "quadric") j["matrix"] = toJson(spec.matrix);
+  j["world_from_surface"] = toJson(spec.worldFromSurface.matrix());
+  return j;
+}
+
+/// Puts kept unknown keys back; never overwrites a known one.
+void restore(Json& target, const Json& kept) {
+  for (const auto& item : kept.items()) {
+    if (!target.contains(item.key())) {
+      target[item.key()] = item.value();
+      continue;
+    }
+    Json& old = target[item.key()];
+    if (old.is_object() && item.value().is_object()) restore(old, item.value());
+    if (old.is_array() && item.value().is_array())
+      for (std::size_t i = 0; i < std::min(old.size(), item.value().size()); ++i)
+        if (old[i].is_object()) restore(old[i], item.value()[i]);
+  }
+}
+
+Json toJson(const Highlight& h, const Camera& camera) {
+  Json j = Json::object();
+  if (!h.light.empty()) j["light"] = h.light;
+  j["level"] = h.level;
+  j["peak"] = toJson(Eigen::VectorXd(camera.distorted(h.peak)));
+  Json contour = Json::array();
+  for (const Pixel& p : h.contour.points) contour.push_back(toJson(Eigen::VectorXd(camera.distorted(p))));
+  j["contour"] = std::move(contour);
+  return j;
+}
+
+Json toJson(const TrueLight& light) {
+  Json j = {{"id", light.id}};
+  if (light.position) j["position"] = toJson(Eigen::VectorXd(*light.position));
+  if (light.direction) j["direction"] = toJson(Eigen::VectorXd(*light.direction));
+  if (light.segment)
+    j["segment"] = Json::array({toJson(Eigen::VectorXd((*light.segment)[0])), toJson(Eigen::VectorXd((*light.segment)[1]))});
+  if (light.radius > 0) j["radius"] = light.radius;
+  return j;
+}
+
+}  // namespace
+
+std::string sceneToJson(const Scene& scene, const fs::path& folder) {
+  const Json kept = scene.unknownJson.empty() ? Json::object() : Json::parse(scene.unknownJson);
+  const auto keptOf = [&](const char* group, const std::string& id) -> Json {
+    return kept.contains(group) && kept[group].contains(id) ? kept[group][id] : Json::object();
+  };
+  const auto relative = [&](const fs::path& path, const std::string& place) {
+    const fs::path r = fs::absolute(path).lexically_normal().lexically_relative(folder);
+    if (r.empty()) throw InputError(path.string(), place, "has no path relative to " + folder.string());
+    return r.generic_string();
+  };
+  Json root = {{"glint_scene", 1}, {"name", scene.name}, {"units", "m"}};
+  const bool shared = std::all_of(scene.frames.begin(), scene.frames.end(),
+                                  [&](const Frame& f) { return sameIntrinsics(f.camera, scene.frames.front().camera); });
+  if (shared && !scene.frames.empty()) {
+    root["camera"] = toJson(scene.frames.front().camera);
+    if (kept.contains("camera")) restore(root["camera"], kept["camera"]);
+  }
+  root["frames"] = Json::array();
+  for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+    const Frame& frame = scene.frames[i];
+    const std::string place = "frames[" + std::to_string(i) + "].";
+    Json j = {{"id", frame.id}};
+    const auto path = [&](const char* key, const fs::path& p) {
+      if (!p.empty()) j[key] = relative(p, place + key);
+    };
+    path("image", frame.image);
+    path("radiance", frame.radiance);
+    path("depth", frame.depth);
+    if (frame.depthScale > 0) j["depth_scale"] = frame.depthScale;
+    path("normals", frame.normals);
+    path("mask", frame.mask);
+    if (!shared) j["camera"] = toJson(frame.camera);
+    j["camera_from_world"] = toJson(frame.camera.camFromWorld.matrix());
+    if (!frame.surface.empty()) j["surface"] = frame.surface;
+    if (!frame.lightsOn.empty()) j["lights_on"] = frame.lightsOn;
+    for (const Highlight& h : frame.highlights) j["highlights"].push_back(toJson(h, frame.camera));
+    restore(j, keptOf("frames", frame.id));
+    root["frames"].push_back(std::move(j));
+  }
+  root["surfaces"] = Json::object();
+  for (const auto& [id, source] : scene.surfaces) {
+    Json j = Json::object();
+    if (source.mesh) j["mesh"] = relative(*source.mesh, "surfaces." + id + ".mesh");
+    if (source.analytic) j["analytic"] = toJson(*source.analytic);
+    restore(j, keptOf("surfaces", id));
+    root["surfaces"][id] = std::move(j);
+  }
+  if (!scene.lights.empty()) {
+    root["lights"] = Json::array();
+    for (const TrueLight& light : scene.lights) {
+      Json j = toJson(light);
+      restore(j, keptOf("lights", light.id));
+      root["lights"].push_back(std::move(j));
+    }
+  }
+  if (kept.contains("scene")) restore(root, kept["scene"]);
+  return root.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace glint

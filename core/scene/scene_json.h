@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/base/json_text.h"
+#include "core/scene/scene.h"
+
+namespace glint {
+
+// The parts of scene.json (formats.md) that other documents share (synth SPEC.json, sessions). All throw InputError with
+// file, place and reason. Keys that a part does not know are left to the caller (JsonNode::unknownKeys).
+
+/// {"width", "height", "fx", "fy", "cx", "cy", "distortion"}: intrinsics only. Sizes 1 .. 65536; fx, fy > 0, so K is regular.
+Camera readCameraJson(const JsonNode& node);
+/// 4x4 rigid transform: finite, last row 0 0 0 1, rotation orthonormal to 1e-3 and right-handed. A rotation that is off by more
+/// than 1e-6 (printed with few digits) is replaced by the nearest one and `warning` says so.
+Eigen::Isometry3d readPoseJson(const JsonNode& node, std::string* warning = nullptr);
+/// {"type": ..., sizes, "world_from_surface"} with every size checked for the type.
+AnalyticSpec readAnalyticJson(const JsonNode& node);
+/// {"id", one of "position" | "direction" | "segment", "radius"}. A direction is normalised.
+TrueLight readLightJson(const JsonNode& node);
+
+/// A scene from the text of a scene file. `file` names it in messages; paths are relative to its folder.
+Scene readSceneJson(const std::string& text, const std::filesystem::path& file, const ReadOptions& options);
+/// The text that `writeScene` writes for a file in `folder`.
+/// InputError (place such as frames[0].image) when a path cannot be written relative to the folder.
+std::string sceneToJson(const Scene& scene, const std::filesystem::path& folder);
+
+}  // namespace glint

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <future>
+#include <map>
+#include <mutex>
+
+#include "core/scene/mesh_file.h"
+#include "core/scene/scene.h"
+#include "core/surface/analytic.h"
+#include "core/surface/depth_map.h"
+#include "core/surface/mesh.h"
+
+namespace glint {
+
+namespace {
+using SharedSurface = std::shared_ptr<const Surface>;
+}
+
+struct SurfaceCache::Impl {
+  std::vector<Frame> frames;
+  std::map<std::string, SurfaceSource> sources;
+  mutable std::mutex mutex;
+  mutable std::map<std::string, std::shared_future<TriangleMesh>> meshes;              // by surface id, shared by the policies
+  mutable std::map<std::string, std::shared_future<Outcome<SharedSurface>>> surfaces;  // by key and policy
+
+  const Frame& frame(int index) const {
+    require(index >= 0 && index < static_cast<int>(frames.size()), "SurfaceCache: no such frame");
+    return frames[static_cast<std::size_t>(index)];
+  }
+
+  /// The first caller loads, outside the lock; the others wait for its result (or its exception).
+  template <class T, class Load>
+  const T& once(std::map<std::string, std::shared_future<T>>& cache, const std::string& key, const Load& load) const {
+    std::promise<T> promise;
+    std::shared_future<T> future;
+    bool mine = false;
+    {
+      const std::lock_guard<std::mutex> lock(mutex);
+      const auto it = cache.find(key);
+      mine = it == cache.end();
+      future = mine ? cache.emplace(key, promise.get_future().share()).first->second : it->second;
+    }
+    if (mine) {
+      try {
+        promise.set_value(load());
+      } catch (...) {
+        promise.set_exception(std::current_exception());
+      }
+    }
+    return future.get();  // the map keeps the shared state alive
+  }
+
+  Outcome<SharedSurface> load(const Frame& frame, NormalPolicy normals) const {
+    if (frame.surface.empty()) {
+      const Outcome<std::optional<Image>> depth = readDepth(frame);
+      if (!depth) return depth.failure();
+      if (!*depth) return Failure{Reason::NoSurface, "frame " + frame.id + " has neither a surface nor depth"};
+      DepthMapOptions options;
+      options.normals = normals;
+      return makeDepthMap(**depth, frame.camera, options);
+    }
+    const auto it = sources.find(frame.surface);
+    if (it == sources.end()) return Failure{Reason::NoSurface, "there is no surface '" + frame.surface + "'"};
+    if (it->second.analytic) return makeAnalytic(*it->second.analytic);
+    if (!it->second.mesh) return Failure{Reason::NoSurface, "surface '" + frame.surface + "' is neither a mesh nor analytic"};
+    const TriangleMesh& mesh = once(meshes, frame.surface, [&] { return readMesh(*it->second.mesh); });
+    try {
+      return makeMesh(mesh, normals);
+    } catch (const std::invalid_argument& e) {
+      throw InputError(it->second.mesh->string(), "", e.what());
+    }
+  }
+};
+
+SurfaceCache::SurfaceCache(const Scene& scene) : impl_(std::make_unique<Impl>()) {
+  impl_->frames = scene.frames;
+  impl_->sources = scene.surfaces;
+}
+SurfaceCache::~SurfaceCache() = default;
+
+std::string SurfaceCache::keyOf(int index) const {
+  const Frame& frame = impl_->frame(index);
+  return frame.surface.empty() ? "depth:" + frame.id : frame.surface;
+}
+
+Outcome<std::shared_ptr<const Surface>> SurfaceCache::surfaceOf(int index, NormalPolicy normals) const {
+  const Frame& frame = impl_->frame(index);
+  const std::string key = keyOf(index) + "|" + std::to_string(static_cast<int>(normals));
+  return impl_->once(impl_->surfaces, key, [&] { return impl_->load(frame, normals); });
+}
+
+}  // namespace glint

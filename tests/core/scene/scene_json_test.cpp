@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include "core/scene/scene.h"
+#include "core/scene/scene_reader.h"
+#include "tests/core/scene/scene_fixture.h"
+#include "tests/tolerances.h"
+
+namespace glint {
+namespace {
+using namespace testing_support;
+using testing::ElementsAre;
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+TEST(ReadScene, MinimalFileWithItsDefaults) {
+  const TemporaryFolder folder;
+  const Scene scene = readScene(folder.write("scene.json", minimalScene()));
+  ASSERT_EQ(scene.frames.size(), 1u);
+  const Frame& f = scene.frames[0];
+  EXPECT_EQ(f.id, "a");
+  EXPECT_EQ(f.surface, "ball");  // the only one
+  EXPECT_EQ(f.camera.width, 64);
+  EXPECT_EQ(f.camera.pixelFromRay(0, 2), 31.5);
+  EXPECT_FALSE(f.camera.hasDistortion());
+  EXPECT_TRUE(f.image.empty());
+  // The camera stands at z = -2 and looks along +z: the world's origin lies 2 m in front of it.
+  EXPECT_EQ(f.camera.depth(Eigen::Vector3d::Zero()), 2.0);
+  EXPECT_EQ(scene.surfaces.at("ball").analytic->radius, 0.4);
+  EXPECT_TRUE(scene.warnings.empty());
+  EXPECT_TRUE(scene.unknownJson.empty());
+}
+
+TEST(ReadScene, FolderOpensItsSceneFile) {
+  const TemporaryFolder folder;
+  folder.write("scene.json", with(minimalScene(), "{", R"({"name": "right", )"));
+  folder.write("another.json", with(minimalScene(), "{", R"({"name": "wrong", )"));
+  EXPECT_EQ(readScene(folder.path()).name, "right");
+}
+
+TEST(ReadScene, IsRecognisedByContentNotByName) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(readScene(folder.write("anything.txt", minimalScene())).frames.size(), 1u);
+}
+
+TEST(ReadScene, EverySequenceOfTheDataIsRead) {
+  struct Row {
+    const char* file;
+    std::size_t frames, surfaces;
+  };
+  for (const Row& row :
+       {Row{"plane_to_cylinder/scene.json", 60, 10}, Row{"plane_to_cylinder/scene-analytic.json", 60, 10},
+        Row{"sphere/scene.json", 24, 1}, Row{"sphere/scene-analytic.json", 24, 1}, Row{"vase/scene.json", 40, 1}}) {
+    const fs::path file = fs::path(GLINT_SHARED_DIR) / "data/cycles" / row.file;
+    const Scene scene = readScene(file);
+    EXPECT_EQ(scene.frames.size(), row.frames) << row.file;
+    EXPECT_EQ(scene.surfaces.size(), row.surfaces) << row.file;
+    EXPECT_THAT(scene.warnings, ElementsAre()) << row.file;
+  }
+}
+
+TEST(ReadScene, DistortionIsRemovedFromGivenHighlights) {
+  // k1 = 0.1 at f = 80: the ideal ray (0.2, 0) is measured at 0.2 (1 + 0.1 * 0.04) = 0.2008.
+  const TemporaryFolder folder;
+  std::string text = with(minimalScene(), "\"cy\": 23.5", "\"cy\": 23.5, \"distortion\": [0.1,0,0,0,0]");
+  text = with(text, "\"id\": \"a\"", R"("id": "a", "highlights": [{"light": "lamp", "level": 0.5, "peak": [47.564, 23.5],
+    "contour": [[47.564, 23.5], [48, 24], [48, 25], [47, 25], [46, 24]]}])");
+  const Scene scene = readScene(folder.write("scene.json", text));
+  const Highlight& h = scene.frames.at(0).highlights.at(0);
+  EXPECT_NEAR(h.peak.x(), 31.5 + 80 * 0.2, tolerance::kPixel);
+  EXPECT_NEAR(h.peak.y(), 23.5, tolerance::kPixel);
+  EXPECT_NEAR(h.contour.points.at(0).x(), 31.5 + 80 * 0.2, tolerance::kPixel);
+  EXPECT_TRUE(h.fromScene);
+  EXPECT_FALSE(h.touchesBorder);
+  EXPECT_GT(signedArea(h.contour), 0);
+}
+
+struct BadCase {
+  const char* name;
+  const char* from;
+  const char* to;
+  const char* place;
+  const char* reason;
+};
+class BadScene : public testing::TestWithParam<BadCase> {};
+
+TEST_P(BadScene, IsOneLineWithFilePlaceAndReason) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.write("scene.json", with(minimalScene(), GetParam().from, GetParam().to));
+  const std::string message = inputErrorOf([&] { readScene(file); });
+  EXPECT_THAT(message, HasSubstr(file.string() + ": " + GetParam().place)) << GetParam().name;
+  EXPECT_THAT(message, HasSubstr(GetParam().reason)) << GetParam().name;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    ReadScene, BadScene,
+    testing::Values(
+        BadCase{"syntax", "\"frames\": [", "\"frames\": [,", "line 3, column ", "not valid JSON"},
+        BadCase{"cut off", "\"radius\": 0.4}}}}", "\"radius\"", "line 4, column ", "not valid JSON"},
+        BadCase{"other version", "\"glint_scene\": 1", "\"glint_scene\": 2", "glint_scene: ", "version 2"},
+        BadCase{"version of a wrong type", "\"glint_scene\": 1", "\"glint_scene\": \"1\"",
+                "glint_scene: ", "must be a finite number, is text"},
+        BadCase{"no frames key", "\"frames\"", "\"farmes\"", "frames: ", "missing"},
+        BadCase{"frames of a wrong type", "\"frames\": [{", "\"frames\": 3, \"old\": [{",
+                "frames: ", "must be a list, is a number"},
+        BadCase{"no frame", "\"frames\": [{", "\"frames\": [], \"old\": [{", "frames: ", "empty"},
+        BadCase{"no id", "\"id\": \"a\",", "", "frames[0].id: ", "missing"},
+        BadCase{"empty id", "\"id\": \"a\"", "\"id\": \"\"", "frames[0].id: ", "empty"},
+        BadCase{"ids twice", "\"frames\": [",
+                R"("frames": [{"id": "a", "camera_from_world": [[1,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,0,1]]},)",
+                "frames[1].id: ", "'a' stands twice"},
+        BadCase{"a surface twice", "\"surfaces\": {", "\"surfaces\": {\"ball\": {\"analytic\": {\"type\": \"plane\"}}, ",
+                "surfaces.ball: ", "twice"},
+        BadCase{"a light twice", "\"surfaces\"",
+                R"("lights": [{"id": "l", "position": [0,0,1]}, {"id": "l", "position": [0,0,2]}], "surfaces")",
+                "lights[1].id: ", "twice"},
+        BadCase{"pose with a NaN", "[0,1,0,0]", "[0,NaN,0,0]", "frames[0].camera_from_world[1][1]: ", "finite"},
+        BadCase{"pose with an infinity", "[0,0,1,2]", "[0,0,1,-Infinity]", "frames[0].camera_from_world[2][3]: ", "finite"},
+        BadCase{"pose with a short row", "[0,1,0,0]", "[0,1,0]", "frames[0].camera_from_world[1]: ", "4 numbers, has 3"},
+        BadCase{"pose mirrored", "[0,0,1,2]", "[0,0,-1,2]", "frames[0].camera_from_world: ", "mirrored"},
+        BadCase{"pose scaled", "[[1,0,0,0],[0,1,0,0],[0,0,1,2]", "[[2,0,0,0],[0,2,0,0],[0,0,2,2]",
+                "frames[0].camera_from_world: ", "not a rotation"},
+        BadCase{"pose with a projective row", "[0,0,0,1]]", "[0,0,0,2]]", "frames[0].camera_from_world: ", "last row"},
+        BadCase{"singular K", "\"fx\": 80", "\"fx\": 0", "camera.fx: ", "singular"},
+        BadCase{"mirrored K", "\"fy\": 80", "\"fy\": -80", "camera.fy: ", "positive"},
+        BadCase{"half a pixel", "\"width\": 64", "\"width\": 64.5", "camera.width: ", "whole number"},
+        BadCase{"no width", "\"width\": 64", "\"width\": 0", "camera.width: ", "1 .. 65536"},
+        BadCase{"no camera", "\"camera\":", "\"kamera\":", "frames[0].camera: ", "missing"},
+        BadCase{"unknown surface", "\"id\": \"a\"", "\"id\": \"a\", \"surface\": \"box\"",
+                "frames[0].surface: ", "no surface 'box'"},
+        BadCase{"no surface at all", "\"surfaces\"", "\"sufraces\"", "frames[0].surface: ", "no surface and the frame no depth"},
+        BadCase{"unknown analytic type", "\"sphere\"", "\"cube\"", "surfaces.ball.analytic.type: ", "'cube' is none of"},
+        BadCase{"negative radius", "0.4", "-0.4", "surfaces.ball.analytic.radius: ", "positive"},
+        BadCase{"number too large", "0.4", "1e999", "JSON: not valid JSON: ", "number overflow"},
+        BadCase{"missing mesh", "\"analytic\": {\"type\": \"sphere\", \"radius\": 0.4}", "\"mesh\": \"body.ply\"",
+                "surfaces.ball.mesh: ", "no file 'body.ply'"},
+        BadCase{"path out of the folder", "\"id\": \"a\"", "\"id\": \"a\", \"image\": \"../x.png\"",
+                "frames[0].image: ", "leaves the folder"},
+        BadCase{"hidden way out", "\"id\": \"a\"", "\"id\": \"a\", \"image\": \"sub/../../x.png\"",
+                "frames[0].image: ", "leaves the folder"},
+        BadCase{"absolute path", "\"id\": \"a\"", "\"id\": \"a\", \"image\": \"/etc/hostname\"", "frames[0].image: ", "absolute"},
+        BadCase{"image of a wrong type", "\"id\": \"a\"", "\"id\": \"a\", \"image\": 7",
+                "frames[0].image: ", "must be text, is a number"},
+        BadCase{"light without a place", "\"surfaces\"", R"("lights": [{"id": "l"}], "surfaces")",
+                "lights[0]: ", "exactly one of"},
+        BadCase{"other units", "\"camera\":", "\"units\": \"mm\", \"camera\":", "units: ", "'mm'"},
+        BadCase{"short contour", "\"id\": \"a\"",
+                "\"id\": \"a\", \"highlights\": [{\"peak\": [1,1], \"contour\": [[0,0],[1,0],[1,1]]}]",
+                "frames[0].highlights[0].contour: ", "at least 5"}),
+    [](const auto& info) {
+      std::string name = info.param.name;
+      for (char& c : name)
+        if (c == ' ') c = '_';
+      return name;
+    });
+
+TEST(ReadScene, LinkThatLeavesTheFolderIsRefusedUnlessAllowed) {
+  const TemporaryFolder outside, folder;
+  outside.write("x.png", "");
+  fs::create_directory_symlink(outside.path(), folder / "link");
+  const fs::path file =
+      folder.write("scene.json", with(minimalScene(), "\"id\": \"a\"", "\"id\": \"a\", \"image\": \"link/x.png\""));
+  EXPECT_THAT(inputErrorOf([&] { readScene(file); }), HasSubstr("frames[0].image: 'link/x.png' leaves the folder"));
+  ReadOptions options;
+  options.allowOutsidePaths = true;
+  EXPECT_EQ(readScene(file, options).frames[0].image, folder / "link/x.png");
+}
+
+TEST(ReadScene, FolderReachedThroughALinkIsStillItsOwnFolder) {
+  const TemporaryFolder real, other;
+  real.write("scene.json", with(minimalScene(), "\"id\": \"a\"", "\"id\": \"a\", \"image\": \"x.png\""));
+  fs::create_directory_symlink(real.path(), other / "link");
+  EXPECT_NO_THROW(readScene(other / "link"));
+}
+
+TEST(ReadScene, WhatIsNotUnderstoodIsSaidWithAListOfWhatIs) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(inputErrorOf([&] { readScene(folder.path()); }),
+              testing::AllOf(HasSubstr("the folder is empty"), HasSubstr("scene file")));
+  folder.write("readme.txt", "hello");
+  EXPECT_THAT(inputErrorOf([&] { readScene(folder.path()); }), HasSubstr("nothing in this folder is recognised"));
+  EXPECT_THAT(inputErrorOf([&] { readScene(folder / "readme.txt"); }), HasSubstr("not recognised"));
+  EXPECT_THAT(inputErrorOf([&] { readScene(folder / "nothing"); }), HasSubstr("no such file"));
+  EXPECT_THAT(inputErrorOf([&] { readScene(folder.write("empty.json", "")); }), HasSubstr("the file is empty"));
+}
+
+TEST(ReadScene, UnknownKeysAreWarnedOfAndKept) {
+  const TemporaryFolder folder;
+  std::string text = with(minimalScene(), "{\"glint_scene\"", "{\"flavour\": {\"a\": [1, null]}, \"glint_scene\"");
+  text = with(text, "\"id\": \"a\"", "\"id\": \"a\", \"exposure\": 0.25");
+  text = with(text, "\"radius\"", "\"colour\": \"red\", \"radius\"");
+  const Scene scene = readScene(folder.write("scene.json", text));
+  EXPECT_THAT(scene.warnings, ElementsAre("surfaces.ball.analytic.colour: unknown key, kept",
+                                          "frames[0].exposure: unknown key, kept", "flavour: unknown key, kept"));
+  writeScene(scene, folder / "again.json");
+  const Scene again = readScene(folder / "again.json");
+  EXPECT_EQ(again.unknownJson, scene.unknownJson);
+  EXPECT_THAT(contentOf(folder / "again.json"),
+              testing::AllOf(HasSubstr("\"exposure\": 0.25"), HasSubstr("\"colour\": \"red\""), HasSubstr("null")));
+}
+
+TEST(ReadScene, RoundedRotationIsRepairedAndWarnedOf) {
+  // cos 30 deg = 0.86603 to five digits.
+  const TemporaryFolder folder;
+  const Scene scene = readScene(
+      folder.write("scene.json", with(minimalScene(), "[[1,0,0,0],[0,1,0,0]", "[[0.86603,-0.5,0,0],[0.5,0.86603,0,0]")));
+  EXPECT_EQ(scene.warnings.size(), 1u);
+  const Eigen::Matrix3d r = scene.frames[0].camera.camFromWorld.linear();
+  EXPECT_LT((r.transpose() * r - Eigen::Matrix3d::Identity()).norm(), tolerance::kExact);
+  EXPECT_NEAR(r(1, 0), 0.5, 1e-5);  // five digits were given
+}
+
+TEST(WriteScene, RoundTripIsExact) {
+  const fs::path data = fs::path(GLINT_SHARED_DIR) / "data/cycles/sphere";
+  const Scene scene = readScene(data);
+  const TemporaryFolder folder;
+  for (const char* name : {"frames", "radiance", "depth", "mesh"}) fs::create_directory_symlink(data / name, folder / name);
+  Scene moved = scene;
+  const auto move = [&](fs::path& p) {
+    if (!p.empty()) p = folder.path() / p.lexically_relative(scene.folder);
+  };
+  for (Frame& f : moved.frames) {
+    move(f.image);
+    move(f.radiance);
+    move(f.depth);
+  }
+  for (auto& [id, s] : moved.surfaces)
+    if (s.mesh) move(*s.mesh);
+  writeScene(moved, folder / "scene.json");
+  ReadOptions options;
+  options.allowOutsidePaths = true;  // the folders are links
+  const Scene again = readScene(folder / "scene.json", options);
+  ASSERT_EQ(again.frames.size(), scene.frames.size());
+  for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+    EXPECT_EQ(again.frames[i].camera.camFromWorld.matrix(), scene.frames[i].camera.camFromWorld.matrix());
+    EXPECT_EQ(again.frames[i].camera.pixelFromRay, scene.frames[i].camera.pixelFromRay);
+    EXPECT_EQ(again.frames[i].image, moved.frames[i].image);
+    EXPECT_EQ(again.frames[i].lightsOn, scene.frames[i].lightsOn);
+  }
+  EXPECT_EQ(*again.lights.at(0).position, *scene.lights.at(0).position);
+  EXPECT_THAT(contentOf(folder / "scene.json"), testing::Not(HasSubstr(folder.path().string())));  // relative paths only
+}
+
+TEST(WriteScene, EveryKindOfSurfaceLightAndHighlightComesBack) {
+  const TemporaryFolder folder;
+  const std::string text = R"({"glint_scene": 1, "name": "all",
+    "frames": [{"id": "a", "camera": {"width": 64, "height": 48, "fx": 80, "fy": 81, "cx": 31.5, "cy": 23.5, "distortion": [0.1,-0.02,0.001,0.002,0.003]},
+      "depth": "d.png", "depth_scale": 0.0002, "mask": "m.png", "normals": "n.tiff", "lights_on": ["p"],
+      "camera_from_world": [[1,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,0,1]],
+      "highlights": [{"light": "p", "level": 0.2, "peak": [30.25, 20.5], "contour": [[28, 18], [32, 18.5], [33, 22], [30, 23], [27.5, 21]]}]},
+      {"id": "b", "camera": {"width": 32, "height": 48, "fx": 80, "fy": 80, "cx": 15.5, "cy": 23.5}, "surface": "q",
+      "camera_from_world": [[0,-1,0,0.5],[1,0,0,0],[0,0,1,2],[0,0,0,1]]}],
+    "surfaces": {"p": {"analytic": {"type": "plane"}}, "c": {"analytic": {"type": "cylinder", "radius": 0.1}},
+      "e": {"analytic": {"type": "ellipsoid", "semi_axes": [0.6, 0.35, 0.25], "world_from_surface": [[0,-1,0,0.5],[1,0,0,0],[0,0,1,2],[0,0,0,1]]}},
+      "s": {"analytic": {"type": "sheet", "curvature": 0.5, "length": 1, "width": 2}}, "t": {"analytic": {"type": "torus", "major_radius": 0.5, "minor_radius": 0.1}},
+      "q": {"analytic": {"type": "quadric", "matrix": [[1,0,0,0],[0,2,0,0],[0,0,3,0],[0,0,0,-1]]}}},
+    "lights": [{"id": "p", "position": [1, 0, 2], "radius": 0.02}, {"id": "sun", "direction": [0, 0, 2]}, {"id": "tube", "segment": [[0, 0, 2], [0.6, 0, 2]], "radius": 0.015}]})";
+  const Scene scene = readScene(folder.write("one.json", text));
+  EXPECT_THAT(scene.warnings, ElementsAre());
+  writeScene(scene, folder / "two.json");
+  const Scene again = readScene(folder / "two.json");
+  EXPECT_THAT(again.warnings, ElementsAre());
+  EXPECT_EQ(*again.lights[1].direction, Eigen::Vector3d(0, 0, 1));
+  EXPECT_EQ((*again.lights[2].segment)[1], Eigen::Vector3d(0.6, 0, 2));
+  EXPECT_EQ(again.surfaces.at("t").analytic->minorRadius, 0.1);
+  EXPECT_EQ(again.surfaces.at("s").analytic->width, 2.0);
+  EXPECT_EQ(again.surfaces.at("q").analytic->matrix(2, 2), 3);
+  EXPECT_EQ(again.surfaces.at("e").analytic->worldFromSurface.matrix(),
+            scene.surfaces.at("e").analytic->worldFromSurface.matrix());
+  EXPECT_EQ(again.frames[0].depthScale, 0.0002);
+  EXPECT_EQ(again.frames[0].surface, "");
+  EXPECT_EQ(again.frames[1].camera.width, 32);
+  ASSERT_EQ(again.frames[0].highlights.size(), 1u);
+  for (std::size_t i = 0; i < 5; ++i)
+    EXPECT_LT((again.frames[0].highlights[0].contour.points[i] - scene.frames[0].highlights[0].contour.points[i]).norm(),
+              tolerance::kPixel);
+  writeScene(again, folder / "three.json");
+  EXPECT_EQ(readScene(folder / "three.json").frames.size(), 2u);
+}
+
+}  // namespace
+}  // namespace glint
