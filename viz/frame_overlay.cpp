@@ -27,7 +27,8 @@ std::string formatted(const char* format, double value) {
 }
 
 /// The parts of a predicted contour: runs that were predicted, and the segments that only bridge failed directions.
-void addPrediction(const PredictedHighlight& highlight, const Camera& camera, const OverlayLine& style, std::vector<OverlayLine>& lines) {
+void addPrediction(const PredictedHighlight& highlight, const Camera& camera, const OverlayLine& style,
+                   std::vector<OverlayLine>& lines) {
   const std::vector<Pixel> points = toPhotograph(camera, highlight.contour.points);
   const int n = static_cast<int>(points.size());
   if (n < 2) return;
@@ -47,7 +48,9 @@ void addPrediction(const PredictedHighlight& highlight, const Camera& camera, co
   // Start right after a change of kind, so that no run is cut where the vertex list happens to begin.
   int start = 0;
   if (highlight.contour.closed) {
-    while (start < segments && isGap[static_cast<std::size_t>(start)] == isGap[static_cast<std::size_t>((start + segments - 1) % segments)]) ++start;
+    while (start < segments &&
+           isGap[static_cast<std::size_t>(start)] == isGap[static_cast<std::size_t>((start + segments - 1) % segments)])
+      ++start;
     start %= segments;
   }
   for (int done = 0; done < segments;) {
@@ -134,7 +137,8 @@ FrameScore frameScore(const ModelResult& result, int frame) {
 }
 
 FrameOverlay frameOverlay(const Inspection& inspection, int frame, const OverlayOptions& options) {
-  require(inspection.scene && frame >= 0 && frame < static_cast<int>(inspection.scene->frames.size()), "frameOverlay: no such frame");
+  require(inspection.scene && frame >= 0 && frame < static_cast<int>(inspection.scene->frames.size()),
+          "frameOverlay: no such frame");
   require(options.ellipseSegments >= 8, "frameOverlay: ellipseSegments < 8");
   const Camera& camera = inspection.scene->frames[static_cast<std::size_t>(frame)].camera;
   const auto shown = [&](OverlayRole role) { return !options.hidden.count(role); };
@@ -248,7 +252,8 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
       }
       overlay.captions.push_back({modelColour(model), model, model + "  " + reason, true});
     } else {
-      overlay.captions.push_back({modelColour(model), model, scoreText(model, score), score.matched == 0 || score.missed > 0 || score.spurious > 0});
+      overlay.captions.push_back(
+          {modelColour(model), model, scoreText(model, score), score.matched == 0 || score.missed > 0 || score.spurious > 0});
     }
   }
   return overlay;

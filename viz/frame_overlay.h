@@ -13,7 +13,15 @@
 namespace glint::viz {
 
 /// What a stroke of the overlay shows; the views toggle by it.
-enum class OverlayRole { ObservedContour, ObservedEllipse, ObservedPeak, PredictedContour, PredictedEllipse, PredictedPeak, CanonicalEllipse };
+enum class OverlayRole {
+  ObservedContour,
+  ObservedEllipse,
+  ObservedPeak,
+  PredictedContour,
+  PredictedEllipse,
+  PredictedPeak,
+  CanonicalEllipse
+};
 
 enum class Dash { Solid, Dashed, Dotted };
 
@@ -24,13 +32,13 @@ struct OverlayLine {
   std::vector<Pixel> points;
   bool closed = false;
   Colour colour{1, 1, 1};
-  double width = 2;             ///< screen px
-  bool halo = false;            ///< draw a dark stroke, 2 screen px wider, beneath
+  double width = 2;   ///< screen px
+  bool halo = false;  ///< draw a dark stroke, 2 screen px wider, beneath
   Dash dash = Dash::Solid;
-  std::string label;            ///< short text for a tool tip or a legend: "canonical 0.42 %"; may be empty
-  std::string model;            ///< "" for observed
+  std::string label;  ///< short text for a tool tip or a legend: "canonical 0.42 %"; may be empty
+  std::string model;  ///< "" for observed
   std::string light;
-  int highlight = -1;           ///< observed: index into the frame's evidence; predicted: into the prediction's highlights
+  int highlight = -1;  ///< observed: index into the frame's evidence; predicted: into the prediction's highlights
 };
 
 enum class MarkShape { Cross, Circle };
@@ -41,8 +49,8 @@ struct OverlayMark {
   Pixel at{0, 0};
   MarkShape shape = MarkShape::Cross;
   Colour colour{1, 1, 1};
-  double size = 5;              ///< half size, screen px
-  double width = 1.5;           ///< screen px
+  double size = 5;     ///< half size, screen px
+  double width = 1.5;  ///< screen px
   bool halo = true;
   std::string label, model, light;
   int highlight = -1;
@@ -51,9 +59,9 @@ struct OverlayMark {
 /// One line of text under or beside the photograph: a model's error, or the reason why it did not answer.
 struct OverlayCaption {
   Colour colour{1, 1, 1};
-  std::string model;            ///< "" for the observation
-  std::string text;             ///< "canonical  0.42 %  0.31 px  IoU 0.981"
-  bool problem = false;         ///< a failure, a missed or a spurious highlight
+  std::string model;     ///< "" for the observation
+  std::string text;      ///< "canonical  0.42 %  0.31 px  IoU 0.981"
+  bool problem = false;  ///< a failure, a missed or a spurious highlight
 };
 
 /// Everything that is drawn over one photograph, in drawing order (later on top). Plain data: no VTK, no Qt.
@@ -64,9 +72,9 @@ struct FrameOverlay {
 };
 
 struct OverlayOptions {
-  std::set<std::string> models;     ///< models to draw; empty = all
-  std::set<OverlayRole> hidden;     ///< roles left out
-  int ellipseSegments = 96;         ///< samples per ellipse, >= 8
+  std::set<std::string> models;  ///< models to draw; empty = all
+  std::set<OverlayRole> hidden;  ///< roles left out
+  int ellipseSegments = 96;      ///< samples per ellipse, >= 8
 };
 
 /// Overlay of one frame: observed contours (white with halo), their least-squares ellipses (thin, dashed) and peaks
@@ -75,7 +83,8 @@ struct OverlayOptions {
 /// @param frame  index into scene->frames; std::invalid_argument when it does not exist.
 FrameOverlay frameOverlay(const Inspection& inspection, int frame, const OverlayOptions& options = {});
 
-/// Names of the inspection's models, from simple to rich (method.md section 7), unknown ones last; only those in `only` unless it is empty.
+/// Names of the inspection's models, from simple to rich (method.md section 7), unknown ones last; only those in `only` unless it
+/// is empty.
 std::vector<std::string> modelsInOrder(const Inspection& inspection, const std::set<std::string>& only = {});
 
 /// One model's score in one frame over all lights and highlights.
@@ -83,7 +92,7 @@ struct FrameScore {
   std::optional<double> errorPct, errorPx;  ///< mean over matched highlights
   std::optional<double> iou;                ///< mean over lights that were predicted
   int matched = 0, missed = 0, spurious = 0;
-  std::string reason;                       ///< first failure's message when nothing matched; else ""
+  std::string reason;  ///< first failure's message when nothing matched; else ""
 };
 FrameScore frameScore(const ModelResult& result, int frame);
 

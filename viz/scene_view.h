@@ -19,8 +19,8 @@ namespace glint::viz {
 
 /// A layer of the 3D picture, toggled by name (formats.md: layer visibility in sessions uses `name`).
 struct Layer {
-  std::string name;     ///< "surface", "virtual-cameras"
-  std::string title;    ///< "Virtual cameras"
+  std::string name;   ///< "surface", "virtual-cameras"
+  std::string title;  ///< "Virtual cameras"
   bool onByDefault = true;
 };
 /// surface, cameras, photographs, virtual-cameras, peaks, tangent-planes, canonical-ellipses, directions, ellipsoids,
@@ -30,8 +30,8 @@ const std::vector<Layer>& sceneLayers();
 /// What is selected; shared by all views.
 struct Selection {
   int frame = 0;
-  std::string model;            ///< "" = all models
-  int highlight = -1;           ///< index in the frame's evidence, -1 = none
+  std::string model;   ///< "" = all models
+  int highlight = -1;  ///< index in the frame's evidence, -1 = none
 };
 
 /// What lies under the mouse, with its numbers.
@@ -39,8 +39,8 @@ struct Picked {
   std::string layer;
   int frame = -1;
   std::string model;
-  Eigen::Vector3d position{0, 0, 0};    ///< world, m
-  std::string text;                     ///< lines "name = value unit" for the panel and the clipboard
+  Eigen::Vector3d position{0, 0, 0};  ///< world, m
+  std::string text;                   ///< lines "name = value unit" for the panel and the clipboard
 };
 
 /// A 3D camera, as sessions store it. World units; `viewAngleDeg` is the vertical field of view.

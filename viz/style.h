@@ -19,10 +19,18 @@ inline Colour modelColour(const std::string& model) {
   if (model == "reflectance") return {0.800, 0.475, 0.655};
   return {0.6, 0.6, 0.6};
 }
-inline constexpr Colour kObserved{1.0, 1.0, 1.0};       ///< drawn with a dark halo
+inline constexpr Colour kObserved{1.0, 1.0, 1.0};  ///< drawn with a dark halo
 inline constexpr Colour kLightColour{0.941, 0.894, 0.259};
 inline constexpr Colour kVirtualCamera{0.337, 0.706, 0.914};
-inline constexpr Colour kTraining{0.000, 0.447, 0.698}; ///< blue: training frames
+inline constexpr Colour kTraining{0.000, 0.447, 0.698};  ///< blue: training frames
 inline constexpr Colour kHeldOut{0.55, 0.55, 0.55};
+inline constexpr Colour kFailed{0.85, 0.10, 0.10};   ///< directions and frames that failed
+inline constexpr Colour kTruth{0.80, 0.00, 0.60};    ///< true lights: never used by the method
+inline constexpr Colour kSurface{0.46, 0.49, 0.53};  ///< subdued, so that lines and models stand out
+inline constexpr Colour kDarkBackground{0.10, 0.11, 0.13}, kLightBackground{0.97, 0.97, 0.97};
+inline constexpr Colour kTextOnDark{0.92, 0.92, 0.92}, kTextOnLight{0.10, 0.10, 0.10};
+
+/// DejaVu Sans, which has the Greek letters that VTK's built-in font lacks; "" when the font is not installed.
+std::string fontFile();
 
 }  // namespace glint::viz

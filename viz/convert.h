@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vtkImageData.h>
+#include <vtkMatrix4x4.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+
+#include <Eigen/Core>
+#include <utility>
+#include <vector>
+
+#include "core/base/image.h"
+#include "core/surface/surface.h"
+
+namespace glint::viz {
+
+using Points = std::vector<Eigen::Vector3d>;
+using Segment = std::pair<Eigen::Vector3d, Eigen::Vector3d>;
+
+/// Triangles with point normals where the mesh has them; triangles with an index out of range are left out.
+vtkSmartPointer<vtkPolyData> toPolyData(const TriangleMesh& mesh);
+/// One polyline per chain with at least two points. World units.
+vtkSmartPointer<vtkPolyData> toPolyData(const std::vector<Points>& chains);
+vtkSmartPointer<vtkPolyData> toPolyData(const std::vector<Segment>& segments);
+/// Row-major copy of a 4x4 transformation.
+vtkSmartPointer<vtkMatrix4x4> toVtk(const Eigen::Matrix4d& matrix);
+/// 8-bit RGB texture of a 1- or 3-channel image with values 0..1 (clamped), at most `maxWidth` wide (area-averaged).
+/// Rows are flipped: VTK's first row is the bottom one.
+vtkSmartPointer<vtkImageData> toTexture(const Image& image, int maxWidth);
+/// 3-channel values 0..1, top row first, of a VTK RGB or RGBA 8-bit image (bottom row first).
+Image fromVtk(vtkImageData* rgb);
+
+inline Eigen::Vector3d toEigen(const double* xyz) { return {xyz[0], xyz[1], xyz[2]}; }
+
+}  // namespace glint::viz

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What all layers share: sizes, the choice of frames, casting pixels onto the surface, caches.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "viz/glyphs.h"
+#include "viz/layers.h"
+
+namespace glint::viz {
+namespace {
+
+constexpr int kTessellation = 128;       ///< cells a side of an analytic surface
+constexpr int kMostContourPoints = 720;  ///< per contour on screen
+
+bool isFinite(const Eigen::AlignedBox3d& box) { return !box.isEmpty() && box.min().allFinite() && box.max().allFinite(); }
+
+/// What the cameras see of a surface without bounds: hits of a coarse grid of rays.
+Eigen::AlignedBox3d seenRegion(const Inspection& inspection, const Surface& surface, const std::vector<int>& frames) {
+  constexpr int kGrid = 7;
+  constexpr std::size_t kMostCameras = 12;
+  Eigen::AlignedBox3d box;
+  const std::size_t step = std::max<std::size_t>(1, frames.size() / kMostCameras);
+  for (std::size_t i = 0; i < frames.size(); i += step) {
+    const Camera& camera = inspection.scene->frames[static_cast<std::size_t>(frames[i])].camera;
+    for (int y = 0; y < kGrid; ++y) {
+      for (int x = 0; x < kGrid; ++x) {
+        const Pixel pixel((camera.width - 1.0) * x / (kGrid - 1), (camera.height - 1.0) * y / (kGrid - 1));
+        const Outcome<SurfacePoint> hit = surface.firstHit(camera.ray(pixel));
+        if (hit && hit->position.allFinite()) box.extend(hit->position);
+      }
+    }
+  }
+  return box;
+}
+
+/// Median distance from a camera to its nearest neighbour; infinity for one camera.
+double typicalSpacing(const Inspection& inspection, const std::vector<int>& frames) {
+  std::vector<double> nearest;
+  const std::size_t step = std::max<std::size_t>(1, frames.size() / 200);  // quadratic: a sample is enough for a size
+  for (std::size_t i = 0; i < frames.size(); i += step) {
+    const Eigen::Vector3d a = inspection.scene->frames[static_cast<std::size_t>(frames[i])].camera.centreInWorld();
+    double best = std::numeric_limits<double>::infinity();
+    for (const int other : frames) {
+      const double d = (inspection.scene->frames[static_cast<std::size_t>(other)].camera.centreInWorld() - a).norm();
+      if (other != frames[i] && d > 0) best = std::min(best, d);
+    }
+    nearest.push_back(best);
+  }
+  if (nearest.empty()) return std::numeric_limits<double>::infinity();
+  std::nth_element(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 2), nearest.end());
+  return nearest[nearest.size() / 2];
+}
+
+}  // namespace
+
+bool LayerInput::onSurface(int frame) const { return !inspection->surfaces || inspection->surfaces->keyOf(frame) == surfaceKey; }
+
+std::vector<const TrainingView*> LayerInput::views() const {
+  std::vector<const TrainingView*> result;
+  for (const TrainingView& view : inspection->views) {
+    if (!view.failure && view.frame >= 0 && onSurface(view.frame)) result.push_back(&view);
+  }
+  return result;
+}
+
+std::vector<const ModelFit*> LayerInput::fits(const std::string& model) const {
+  std::vector<const ModelFit*> result;
+  const auto found = inspection->models.find(model);
+  if (found == inspection->models.end()) return result;
+  for (const ModelResult::Fit& fit : found->second.fits) {
+    if (fit.fit && (!fit.surface || *fit.surface == surfaceKey)) result.push_back(&*fit.fit);
+  }
+  return result;
+}
+
+std::vector<const FrameComparison*> LayerInput::comparisons(const std::string& model) const {
+  std::vector<const FrameComparison*> result;
+  const auto found = inspection->models.find(model);
+  if (found == inspection->models.end()) return result;
+  for (const FrameComparison& comparison : found->second.frames) {
+    if (comparison.frame == selection.frame) result.push_back(&comparison);
+  }
+  return result;
+}
+
+SceneScale sceneScale(const Inspection& inspection, const Surface* surface, const std::vector<int>& frames, double glyphScale) {
+  SceneScale scale;
+  if (surface) {
+    scale.surfaceBox = surface->bounds();
+    if (!isFinite(scale.surfaceBox)) scale.surfaceBox = seenRegion(inspection, *surface, frames);
+  }
+  for (const int frame : frames)
+    scale.sceneBox.extend(inspection.scene->frames[static_cast<std::size_t>(frame)].camera.centreInWorld());
+  if (!isFinite(scale.surfaceBox)) {  // nothing seen: the cameras alone must do
+    scale.surfaceBox = scale.sceneBox;
+    for (const int frame : frames)
+      scale.surfaceBox.extend(inspection.scene->frames[static_cast<std::size_t>(frame)].camera.ray({0, 0}).at(1));
+  }
+  if (!isFinite(scale.surfaceBox)) scale.surfaceBox = {Eigen::Vector3d::Constant(-0.5), Eigen::Vector3d::Constant(0.5)};
+  scale.sceneBox.extend(scale.surfaceBox);
+  const double tiny =
+      1e-12 * std::max(1e-12, scale.sceneBox.min().cwiseAbs().cwiseMax(scale.sceneBox.max().cwiseAbs()).maxCoeff());
+  scale.surfaceSize = std::max(scale.surfaceBox.diagonal().norm(), tiny);
+  scale.sceneSize = std::max(scale.sceneBox.diagonal().norm(), scale.surfaceSize);
+  const double spacing = typicalSpacing(inspection, frames);
+  scale.cameraDepth = glyphScale * std::clamp(0.8 * spacing, 0.03 * scale.sceneSize, 0.10 * scale.sceneSize);
+  scale.lift = 7e-4 * scale.surfaceSize;
+  scale.point = glyphScale * 0.006 * scale.surfaceSize;
+  scale.arrow = glyphScale * 0.09 * scale.surfaceSize;
+  return scale;
+}
+
+NormalPolicy normalPolicy(const Settings& settings) {
+  const std::string& name = settings.text("surface.normals");
+  if (name == "facet") return NormalPolicy::Facet;
+  if (name == "curved") return NormalPolicy::Curved;
+  return NormalPolicy::Interpolated;
+}
+
+std::vector<int> framesToDraw(const Inspection& inspection, const std::string& surfaceKey, int selected) {
+  const Scene& scene = *inspection.scene;
+  const int n = static_cast<int>(scene.frames.size());
+  const auto fitness = [&](int frame) {
+    if (frame == selected) return 2;
+    return inspection.surfaces && inspection.surfaces->keyOf(frame) == surfaceKey ? 1 : 0;
+  };
+  // Sequences of a moving object repeat their camera poses: equal centres and axes are one camera on screen.
+  std::map<std::vector<double>, int> byPose;
+  for (int i = 0; i < n; ++i) {
+    const Eigen::Matrix<double, 3, 4> pose = scene.frames[static_cast<std::size_t>(i)].camera.camFromWorld.matrix().topRows<3>();
+    const std::vector<double> key(pose.data(), pose.data() + pose.size());
+    const auto [at, isNew] = byPose.emplace(key, i);
+    if (!isNew && fitness(i) > fitness(at->second)) at->second = i;
+  }
+  std::vector<int> frames;
+  for (const auto& [pose, frame] : byPose) frames.push_back(frame);
+  std::sort(frames.begin(), frames.end());
+  return frames;
+}
+
+std::optional<Eigen::Vector3d> castPixel(const Camera& camera, const Surface& surface, const Pixel& pixel, double lift) {
+  if (!pixel.allFinite()) return {};
+  const Ray ray = camera.ray(pixel);
+  const Outcome<SurfacePoint> hit = surface.firstHit(ray);
+  if (!hit) return {};
+  return hit->position + lift * facing(*hit, ray.origin).normal;
+}
+
+std::vector<Points> castContour(const Camera& camera, const Surface& surface, const Polyline& contour, const SceneScale& scale,
+                                double lift) {
+  std::vector<Points> chains(1);
+  if (contour.points.size() < 2) return chains;
+  std::vector<Pixel> pixels = contour.points;
+  if (static_cast<int>(pixels.size()) > kMostContourPoints) pixels = resample(contour, kMostContourPoints);
+  if (contour.closed) pixels.push_back(pixels.front());
+  const double jump = 0.1 * scale.surfaceSize;
+  for (const Pixel& pixel : pixels) {
+    const std::optional<Eigen::Vector3d> p = castPixel(camera, surface, pixel, lift);
+    const bool breaks = !p || (!chains.back().empty() && (*p - chains.back().back()).norm() > jump);
+    if (breaks && !chains.back().empty()) chains.emplace_back();
+    if (p) chains.back().push_back(*p);
+  }
+  return chains;
+}
+
+std::vector<Points> ellipseOnPlane(const Camera& camera, const Plane& plane, const Ellipse& ellipse, double lift) {
+  std::vector<Points> chains(1);
+  std::vector<Pixel> pixels = ellipse.sample(96);
+  pixels.push_back(pixels.front());
+  const double side = plane.signedDistance(camera.centreInWorld()) < 0 ? -1 : 1;
+  for (const Pixel& pixel : pixels) {
+    const std::optional<Eigen::Vector3d> p = intersection(camera.ray(pixel), plane);
+    if (p) {
+      chains.back().push_back(*p + side * lift * plane.normal);
+    } else if (!chains.back().empty()) {
+      chains.emplace_back();
+    }
+  }
+  return chains;
+}
+
+double planeRadius(const Camera& camera, const Plane& plane, const Eigen::Vector3d& at, const std::vector<Pixel>& contour,
+                   const SceneScale& scale) {
+  double radius = 0;
+  for (const Pixel& pixel : contour) {
+    if (!pixel.allFinite()) continue;
+    const std::optional<Eigen::Vector3d> p = intersection(camera.ray(pixel), plane);
+    if (p) radius = std::max(radius, (*p - at).norm());
+  }
+  return std::clamp(1.5 * radius, 0.03 * scale.surfaceSize, 0.35 * scale.surfaceSize);
+}
+
+std::array<Eigen::Vector3d, 4> imagePlane(const Camera& camera, double depth) {
+  const double right = camera.width - 0.5, bottom = camera.height - 0.5;
+  const std::array<Pixel, 4> corners{Pixel(-0.5, -0.5), Pixel(right, -0.5), Pixel(right, bottom), Pixel(-0.5, bottom)};
+  const Eigen::Isometry3d worldFromCam = camera.camFromWorld.inverse();
+  const Eigen::Matrix3d rayFromPixel = camera.pixelFromRay.inverse();
+  std::array<Eigen::Vector3d, 4> world;
+  for (std::size_t i = 0; i < 4; ++i)
+    world[i] = worldFromCam * Eigen::Vector3d(depth * (rayFromPixel * corners[i].homogeneous()));
+  return world;
+}
+
+vtkSmartPointer<vtkImageData> LayerCache::photograph(const Frame& frame, int maxWidth) {
+  const std::string file = frame.image.empty() ? frame.radiance.string() : frame.image.string();
+  if (file.empty()) return {};
+  const auto key = std::make_pair(file, maxWidth);
+  const auto found = photographs_.find(key);
+  if (found != photographs_.end()) return found->second;
+  const Outcome<Image> image = readPhotograph(frame);
+  return photographs_[key] = image ? toTexture(*image, maxWidth) : vtkSmartPointer<vtkImageData>{};
+}
+
+vtkSmartPointer<vtkPolyData> LayerCache::tessellation(const std::shared_ptr<const Surface>& surface,
+                                                      const Eigen::AlignedBox3d& region) {
+  constexpr std::size_t kKept = 16;  // a sequence of a bending sheet steps through a few of them
+  for (const auto& [known, data] : tessellations_) {
+    if (known == surface) return data;
+  }
+  if (tessellations_.size() >= kKept) tessellations_.erase(tessellations_.begin());
+  tessellations_.emplace_back(surface, toPolyData(surface->tessellate(region, kTessellation)));
+  return tessellations_.back().second;
+}
+
+void LayerCache::clear() {
+  photographs_.clear();
+  tessellations_.clear();
+}
+
+std::string line(const std::string& name, double value, const std::string& unit) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.7g", value);
+  return name + " = " + text + (unit.empty() ? "" : " " + unit) + "\n";
+}
+
+std::string line(const std::string& name, const Eigen::Vector3d& v, const std::string& unit) {
+  char text[128];
+  std::snprintf(text, sizeof text, "%.7g, %.7g, %.7g", v.x(), v.y(), v.z());
+  return name + " = " + text + (unit.empty() ? "" : " " + unit) + "\n";
+}
+
+std::string line(const std::string& name, const std::string& value) { return name + " = " + value + "\n"; }
+
+}  // namespace glint::viz

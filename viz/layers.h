@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vtkImageData.h>
+#include <vtkProp3D.h>
+#include <vtkSmartPointer.h>
+
+#include <array>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/pipeline/inspection.h"
+#include "viz/convert.h"
+#include "viz/scene_view.h"
+#include "viz/style.h"
+
+namespace glint::viz {
+
+/// Sizes that everything drawn is derived from, so that millimetres and kilometres look alike.
+struct SceneScale {
+  Eigen::AlignedBox3d surfaceBox;  ///< the surface where it is bounded, else what the cameras see of it
+  Eigen::AlignedBox3d sceneBox;    ///< surface and camera centres
+  double surfaceSize = 1;          ///< diagonal of surfaceBox, > 0
+  double sceneSize = 1;            ///< diagonal of sceneBox, > 0
+  double cameraDepth = 0.1;        ///< from a camera's centre to its drawn image plane
+  double lift = 1e-3;              ///< one step off the surface, so that what lies on it is not hidden in it
+  double point = 1e-2;             ///< radius of a point
+  double arrow = 0.1;              ///< length of a normal
+};
+
+/// Results of slow look-ups, kept while the inspection (or its scene) stays the same.
+class LayerCache {
+ public:
+  /// The photograph of a frame as a texture, at most `maxWidth` wide; null when it cannot be read.
+  vtkSmartPointer<vtkImageData> photograph(const Frame& frame, int maxWidth);
+  /// The display triangles of a surface.
+  vtkSmartPointer<vtkPolyData> tessellation(const std::shared_ptr<const Surface>& surface, const Eigen::AlignedBox3d& region);
+  void clear();
+
+ private:
+  std::map<std::pair<std::string, int>, vtkSmartPointer<vtkImageData>> photographs_;
+  std::vector<std::pair<std::shared_ptr<const Surface>, vtkSmartPointer<vtkPolyData>>> tessellations_;
+};
+
+/// What a layer is built from.
+struct LayerInput {
+  const Inspection* inspection = nullptr;  ///< never null, and its scene is not
+  Selection selection;                     ///< frame is valid
+  std::vector<std::string> models;         ///< shown, from simple to rich
+  SceneScale scale;
+  double glyphScale = 1;
+  std::shared_ptr<const Surface> surface;  ///< of the selected frame; null when it has none
+  std::string surfaceKey;
+  std::string surfaceProblem;  ///< why there is none
+  std::vector<int> frames;     ///< frames whose cameras are drawn: one per pose, those on this surface first
+  bool dark = true;
+  LayerCache* cache = nullptr;
+
+  const Frame& frame(int index) const { return inspection->scene->frames[static_cast<std::size_t>(index)]; }
+  /// Whether a frame sees the surface that is shown.
+  bool onSurface(int frame) const;
+  /// Usable training views on the shown surface.
+  std::vector<const TrainingView*> views() const;
+  /// Usable fits of a model that apply to the shown surface.
+  std::vector<const ModelFit*> fits(const std::string& model) const;
+  /// Predictions for the selected frame.
+  std::vector<const FrameComparison*> comparisons(const std::string& model) const;
+  /// Ink that reads on the background.
+  Colour ink() const { return dark ? kTextOnDark : kTextOnLight; }
+};
+
+/// One actor of a layer, with what picking it tells. `info.position` is filled by the pick.
+struct Drawn {
+  vtkSmartPointer<vtkProp3D> prop;
+  Picked info;
+  double lineWidthPx = 0;  ///< > 0: a line, scaled with the window
+  bool pickable = true;
+};
+
+/// Text at a world point, drawn above everything.
+struct DrawnLabel {
+  Eigen::Vector3d anchor;
+  std::string text;
+  Colour colour;
+};
+
+/// What one layer puts into the picture.
+struct LayerContent {
+  std::vector<Drawn> drawn;
+  std::vector<DrawnLabel> labels;
+  std::vector<std::string> notes;       ///< what could not be drawn, and why: shown in the corner
+  std::vector<Eigen::Vector3d> extent;  ///< points beyond the scene box that "frame all" should hold
+
+  void add(vtkSmartPointer<vtkProp3D> prop, const Picked& info, double lineWidthPx = 0, bool pickable = true) {
+    drawn.push_back({std::move(prop), info, lineWidthPx, pickable});
+  }
+};
+
+/// Which changes make a layer stale.
+enum Dependency : unsigned {
+  kOnInspection = 1,
+  kOnSurface = 2,
+  kOnFrame = 4,
+  kOnModels = 8,
+  kOnGlyphs = 16,
+  kOnTheme = 32,
+  kOnHighlight = 64
+};
+
+struct LayerRecipe {
+  Layer layer;
+  unsigned dependencies;
+  LayerContent (*build)(const LayerInput&);
+};
+/// All layers in the order of sceneLayers().
+const std::vector<LayerRecipe>& layerRecipes();
+
+LayerContent surfaceLayer(const LayerInput& in);            ///< shaded triangles, no edges
+LayerContent camerasLayer(const LayerInput& in);            ///< frustums
+LayerContent photographsLayer(const LayerInput& in);        ///< textured image planes of the frustums, at most 24
+LayerContent virtualCamerasLayer(const LayerInput& in);     ///< mirrored frustums, joined with their cameras through T
+LayerContent peaksLayer(const LayerInput& in);              ///< P_B and N
+LayerContent tangentPlanesLayer(const LayerInput& in);      ///< discs
+LayerContent canonicalEllipsesLayer(const LayerInput& in);  ///< the image ellipse carried back to T
+LayerContent directionsLayer(const LayerInput& in);         ///< walks of section 6, failed ones red
+LayerContent ellipsoidsLayer(const LayerInput& in);         ///< Q* of each model
+LayerContent lightLayer(const LayerInput& in);              ///< estimates
+LayerContent trueLightLayer(const LayerInput& in);          ///< truth, ringed and labelled
+LayerContent raysLayer(const LayerInput& in);               ///< view rays and their reflections
+LayerContent observedContoursLayer(const LayerInput& in);   ///< cast onto the surface
+LayerContent predictedContoursLayer(const LayerInput& in);  ///< of the selected frame
+
+/// Sizes for one surface of an inspection. @param surface may be null.
+SceneScale sceneScale(const Inspection& inspection, const Surface* surface, const std::vector<int>& frames, double glyphScale);
+/// The normal policy the pipeline ran with, so that no second copy of a mesh is loaded for display.
+NormalPolicy normalPolicy(const Settings& settings);
+/// Frames to draw: one for each distinct pose; where several share a pose, one that sees `surfaceKey` is taken.
+std::vector<int> framesToDraw(const Inspection& inspection, const std::string& surfaceKey, int selected);
+
+/// Pixel of a frame carried onto the surface, lifted towards the camera by `lift`; nothing where the ray misses.
+std::optional<Eigen::Vector3d> castPixel(const Camera& camera, const Surface& surface, const Pixel& pixel, double lift);
+/// A contour on the surface: broken where it leaves the surface or jumps to another part of it.
+std::vector<Points> castContour(const Camera& camera, const Surface& surface, const Polyline& contour, const SceneScale& scale,
+                                double lift);
+/// An image ellipse carried back to a plane, lifted towards the camera.
+std::vector<Points> ellipseOnPlane(const Camera& camera, const Plane& plane, const Ellipse& ellipse, double lift);
+/// Radius of a disc that holds the canonical (else the observed) contour of a view on its tangent plane, with a margin.
+double planeRadius(const Camera& camera, const Plane& plane, const Eigen::Vector3d& at, const std::vector<Pixel>& contour,
+                   const SceneScale& scale);
+/// The four corners of the drawn image plane, from top left clockwise in the image, `depth` in front of the camera. World units.
+std::array<Eigen::Vector3d, 4> imagePlane(const Camera& camera, double depth);
+
+/// "name = 1.234567 unit" lines for Picked::text.
+std::string line(const std::string& name, double value, const std::string& unit = "");
+std::string line(const std::string& name, const Eigen::Vector3d& value, const std::string& unit = "");
+std::string line(const std::string& name, const std::string& value);
+
+}  // namespace glint::viz

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <set>
+
+#include "viz/frame_overlay.h"
+#include "viz/glyphs.h"
+#include "viz/layers.h"
+
+namespace glint::viz {
+namespace {
+
+constexpr std::size_t kMostObservedFrames = 24;  ///< the training frames of a long sequence would cover the surface
+
+std::vector<int> observedFrames(const LayerInput& in) {
+  std::vector<int> frames;
+  for (const TrainingView* view : in.views()) frames.push_back(view->frame);
+  std::sort(frames.begin(), frames.end());
+  frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+  const std::size_t n = frames.size(), count = std::min(n, kMostObservedFrames);
+  std::set<int> chosen;
+  for (std::size_t i = 0; i < count; ++i) chosen.insert(frames[i * n / count]);
+  chosen.insert(in.selection.frame);
+  return {chosen.begin(), chosen.end()};
+}
+
+}  // namespace
+
+LayerContent observedContoursLayer(const LayerInput& in) {
+  LayerContent content;
+  if (!in.surface) return content;
+  for (const int index : observedFrames(in)) {
+    if (static_cast<std::size_t>(index) >= in.inspection->evidence.size()) continue;
+    const Camera& camera = in.frame(index).camera;
+    const std::vector<Highlight>& highlights = in.inspection->evidence[static_cast<std::size_t>(index)].highlights;
+    const bool selected = index == in.selection.frame;
+    for (std::size_t i = 0; i < highlights.size(); ++i) {
+      const Highlight& h = highlights[i];
+      Picked info;
+      info.layer = "observed-contours";
+      info.frame = index;
+      info.text = line("observed highlight of frame", in.frame(index).id) + line("light", h.light) + line("level", h.level) +
+                  line("area", h.areaPx2, "px^2") + line("peak x", h.peak.x(), "px") + line("peak y", h.peak.y(), "px");
+      const bool strong = selected && (in.selection.highlight < 0 || in.selection.highlight == static_cast<int>(i));
+      const double width = strong ? 3.0 : 1.2;
+      if (selected) {  // the halo lies a little lower and so never over the line
+        content.add(
+            lineActor(castContour(camera, *in.surface, h.contour, in.scale, 2.6 * in.scale.lift), {0.05, 0.05, 0.05}, width + 3),
+            info, width + 3, false);
+      }
+      const Colour colour = selected ? kObserved : Colour{0.80, 0.82, 0.84};
+      content.add(
+          lineActor(castContour(camera, *in.surface, h.contour, in.scale, (selected ? 3.0 : 2.2) * in.scale.lift), colour, width),
+          info, width);
+    }
+  }
+  return content;
+}
+
+LayerContent predictedContoursLayer(const LayerInput& in) {
+  LayerContent content;
+  if (!in.surface) return content;
+  const Camera& camera = in.frame(in.selection.frame).camera;
+  double lift = 3.4;  // in steps; each model a little higher, so that equal contours do not flicker
+  for (const std::string& model : in.models) {
+    for (const FrameComparison* comparison : in.comparisons(model)) {
+      for (std::size_t i = 0; i < comparison->prediction.highlights.size(); ++i) {
+        const PredictedHighlight& h = comparison->prediction.highlights[i];
+        Picked info;
+        info.layer = "predicted-contours";
+        info.frame = in.selection.frame;
+        info.model = model;
+        info.text = line("prediction", model) + line("frame", in.frame(in.selection.frame).id) +
+                    line("light", comparison->light) + line("coverage", h.coverage) + line("IoU", comparison->iou);
+        for (const FrameComparison::Row& row : comparison->rows) {
+          if (row.predicted != static_cast<int>(i) || !row.metrics) continue;
+          info.text += line("contour error", row.metrics->contourErrorPct, "%") +
+                       line("contour error", row.metrics->contourErrorPx, "px") +
+                       line("Hausdorff", row.metrics->hausdorffPx, "px") + line("peak offset", row.metrics->peakOffsetPx, "px");
+        }
+        content.add(
+            lineActor(castContour(camera, *in.surface, h.contour, in.scale, lift * in.scale.lift), modelColour(model), 2.2), info,
+            2.2);
+      }
+    }
+    lift += 0.3;
+  }
+  return content;
+}
+
+}  // namespace glint::viz

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "viz/glyphs.h"
+#include "viz/layers.h"
+
+namespace glint::viz {
+namespace {
+
+void addWalks(LayerContent& content, const LayerInput& in, const Camera& camera, const Plane& plane, const Eigen::Vector3d& at,
+              const CanonicalContour& canonical, int frame, const std::string& model) {
+  const double side = plane.signedDistance(camera.centreInWorld()) < 0 ? -1 : 1;
+  const Eigen::Vector3d lift = side * 1.5 * in.scale.lift * plane.normal;
+  const Eigen::Matrix<double, 3, 2> basis = tangentBasis(plane.normal);
+  std::vector<Segment> onPlane, between, failed;
+  Points planeEnds, surfaceEnds;
+  std::vector<double> lengths;
+  std::map<std::string, int> reasons;
+  for (const DirectionResult& d : canonical.directions) {
+    if (!d.limitAngle || d.failure) continue;
+    onPlane.emplace_back(at + lift, d.onTangentPlane + lift);
+    between.emplace_back(d.onTangentPlane + lift, d.onSurface + lift);
+    planeEnds.push_back(d.onTangentPlane + lift);
+    surfaceEnds.push_back(d.onSurface + lift);
+    lengths.push_back((d.onTangentPlane - at).norm());
+  }
+  double reach = 0.05 * in.scale.surfaceSize;
+  if (!lengths.empty()) {
+    std::nth_element(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2), lengths.end());
+    reach = lengths[lengths.size() / 2];
+  }
+  for (const DirectionResult& d : canonical.directions) {
+    if (d.limitAngle && !d.failure) continue;
+    const Eigen::Vector3d along = std::cos(d.azimuth) * basis.col(0) + std::sin(d.azimuth) * basis.col(1);
+    failed.emplace_back(at + lift, at + lift + reach * along);
+    if (d.failure) ++reasons[nameOf(d.failure->reason)];
+  }
+  Picked info;
+  info.layer = "directions";
+  info.frame = frame;
+  info.model = model;
+  info.text = line(model.empty() ? "directions of frame" : model + " directions of frame", in.frame(frame).id) +
+              line("ended in a point", std::to_string(planeEnds.size()) + " of " + std::to_string(canonical.directions.size()));
+  for (const auto& [reason, count] : reasons) info.text += line(reason, std::to_string(count));
+  const Colour colour = modelColour("canonical");
+  const double dot = std::min(0.35 * in.scale.point, 0.08 * reach);
+  if (!onPlane.empty()) {
+    content.add(segmentActor(onPlane, colour, 1.2), info, 1.2);
+    content.add(segmentActor(between, in.ink(), 1.0), info, 1.0);
+    content.add(sphereActor(planeEnds, dot, colour), info);
+    content.add(sphereActor(surfaceEnds, dot, kObserved), info);
+  }
+  if (!failed.empty()) content.add(segmentActor(failed, kFailed, 2.0), info, 2.0);
+}
+
+}  // namespace
+
+LayerContent directionsLayer(const LayerInput& in) {
+  LayerContent content;
+  for (const TrainingView* view : in.views()) {
+    if (view->frame != in.selection.frame || !view->tangentPlane || !view->brightest || !view->canonical) continue;
+    addWalks(content, in, view->camera, *view->tangentPlane, view->brightest->point.position, *view->canonical, view->frame, "");
+  }
+  if (!content.drawn.empty()) return content;  // the predicted walks would lie on the observed ones
+  for (const std::string& model : in.models) {
+    for (const FrameComparison* comparison : in.comparisons(model)) {
+      for (const PredictedHighlight& h : comparison->prediction.highlights) {
+        if (!h.tangentPlane || !h.canonical) continue;
+        addWalks(content, in, in.frame(in.selection.frame).camera, *h.tangentPlane, h.brightest.point.position, *h.canonical,
+                 in.selection.frame, model);
+      }
+    }
+  }
+  return content;
+}
+
+}  // namespace glint::viz

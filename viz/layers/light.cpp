@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+#include <numbers>
+
+#include "viz/glyphs.h"
+#include "viz/layers.h"
+
+namespace glint::viz {
+namespace {
+
+constexpr double kFarLight = 4;  ///< in scene sizes: beyond, an arrow shows the direction
+
+std::string distanceText(double metres) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g m", metres);
+  return text;
+}
+
+/// A far light as an arrow from the scene's centre.
+void addDirection(LayerContent& content, const LayerInput& in, const Eigen::Vector3d& direction, const Colour& colour,
+                  const std::string& label, const Picked& info) {
+  const Eigen::Vector3d from = in.scale.surfaceBox.center() + 0.6 * in.scale.surfaceSize * direction;
+  const Eigen::Vector3d to = from + 0.5 * in.scale.surfaceSize * direction;
+  content.add(arrowActor({{from, to}}, 0.5 * in.scale.point, colour), info);
+  content.labels.push_back({to, label, colour});
+  content.extent.push_back(to);
+}
+
+void addEstimate(LayerContent& content, const LayerInput& in, const Light& light, double size, const Colour& colour,
+                 const std::string& label, Picked info) {
+  const Eigen::Vector3d centre = in.scale.sceneBox.center();
+  const double far = light.atInfinity() ? 0 : (light.position() - centre).norm();
+  if (light.atInfinity()) {
+    info.text += line("direction", light.directionFrom(centre));
+    addDirection(content, in, light.directionFrom(centre), colour, label + ", at infinity", info);
+    return;
+  }
+  info.text += line("position", light.position(), "m");
+  if (far > kFarLight * in.scale.sceneSize) {
+    addDirection(content, in, light.directionFrom(centre), colour, label + ", " + distanceText(far) + " away", info);
+    return;
+  }
+  const double r = size * 1.6 * in.scale.point;
+  const Eigen::Vector3d p = light.position();
+  std::vector<Segment> rays;
+  for (int i = 0; i < 26; ++i) {  // a star: the neighbours of a cube's centre
+    const int k = i < 13 ? i : i + 1;
+    const Eigen::Vector3d d(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+    rays.emplace_back(p + 1.4 * r * d.normalized(), p + 2.4 * r * d.normalized());
+  }
+  content.add(sphereActor({p}, r, colour), info);
+  content.add(segmentActor(rays, colour, 1.5), info, 1.5);
+  content.labels.push_back({p, label, colour});
+  content.extent.push_back(p);
+}
+
+}  // namespace
+
+LayerContent lightLayer(const LayerInput& in) {
+  LayerContent content;
+  for (const auto& [key, estimate] : in.inspection->lights) {
+    const std::size_t at = key.find('@');
+    if (at != std::string::npos && key.substr(at + 1) != in.surfaceKey) continue;
+    Picked info;
+    info.layer = "light";
+    info.text = line("estimated light", key.substr(0, at)) + line("solver", estimate.solver) +
+                line("limit angle", estimate.limitAngle * 180 / std::numbers::pi, "deg") +
+                line("residual", estimate.rmsPx, "px") + line("condition", estimate.condition);
+    if (estimate.covariance && estimate.covariance->allFinite()) {
+      info.text += line("standard deviation", Eigen::Vector3d(estimate.covariance->diagonal().cwiseMax(0).cwiseSqrt()), "m");
+    }
+    addEstimate(content, in, estimate.light, 1, kLightColour, "light " + key.substr(0, at) + " (estimate)", info);
+  }
+  // A model may refine the light by itself: drawn smaller, in the model's colour, where it differs from the common one.
+  for (const std::string& model : in.models) {
+    for (const ModelFit* fit : in.fits(model)) {
+      if (!fit->lightEstimate) continue;
+      bool common = false;
+      for (const auto& [key, estimate] : in.inspection->lights) {
+        common = common || (estimate.light.homogeneous() - fit->lightEstimate->homogeneous()).norm() < 1e-9;
+      }
+      if (common) continue;
+      Picked info;
+      info.layer = "light";
+      info.model = model;
+      info.text = line("light of model", model);
+      if (fit->limitAngle) info.text += line("limit angle", *fit->limitAngle * 180 / std::numbers::pi, "deg");
+      addEstimate(content, in, *fit->lightEstimate, 0.7, modelColour(model), model + " light", info);
+    }
+  }
+  return content;
+}
+
+LayerContent trueLightLayer(const LayerInput& in) {
+  LayerContent content;
+  for (const TrueLight& light : in.inspection->scene->lights) {
+    Picked info;
+    info.layer = "true-light";
+    info.text = line("true light (not used by the method)", light.id) + line("radius", light.radius, "m");
+    const std::string label = "truth: light " + light.id;
+    if (light.direction && light.direction->norm() > 0) {
+      info.text += line("direction", *light.direction);
+      addDirection(content, in, light.direction->normalized(), kTruth, label + ", at infinity", info);
+      continue;
+    }
+    Points at;
+    if (light.position) at = {*light.position};
+    if (light.segment) at = {(*light.segment)[0], (*light.segment)[1]};
+    if (at.empty()) continue;
+    const Eigen::Vector3d middle = at.size() == 2 ? Eigen::Vector3d(0.5 * (at[0] + at[1])) : at[0];
+    for (const Eigen::Vector3d& p : at) info.text += line(at.size() == 2 ? "end" : "position", p, "m");
+    const double far = (middle - in.scale.sceneBox.center()).norm();
+    if (far > kFarLight * in.scale.sceneSize) {
+      addDirection(content, in, (middle - in.scale.sceneBox.center()).normalized(), kTruth,
+                   label + ", " + distanceText(far) + " away", info);
+      continue;
+    }
+    if (at.size() == 2) content.add(segmentActor({{at[0], at[1]}}, kTruth, 4), info, 4);
+    const double r = std::max(light.radius, 4.2 * in.scale.point);
+    const Eigen::Matrix3d axes = r * Eigen::Matrix3d::Identity();
+    content.add(lineActor({circle(middle, axes.col(0), axes.col(1)), circle(middle, axes.col(1), axes.col(2)),
+                           circle(middle, axes.col(2), axes.col(0))},
+                          kTruth, 2.5),
+                info, 2.5);
+    content.add(sphereActor({middle}, std::max(light.radius, 0.5 * in.scale.point), kTruth), info);
+    content.labels.push_back({middle, label, kTruth});
+    content.extent.push_back(middle);
+  }
+  return content;
+}
+
+}  // namespace glint::viz

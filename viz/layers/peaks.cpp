@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <numbers>
+
+#include "viz/glyphs.h"
+#include "viz/layers.h"
+
+namespace glint::viz {
+namespace {
+
+Picked brightestInfo(const LayerInput& in, const BrightestPoint& b, int frame, const std::string& model) {
+  Picked info;
+  info.layer = "peaks";
+  info.frame = frame;
+  info.model = model;
+  info.text = line(model.empty() ? "observed brightest point, frame" : model + " brightest point, frame", in.frame(frame).id) +
+              line("P", b.point.position, "m") + line("N", b.point.normal) +
+              line("pixel", Eigen::Vector3d(b.pixel.x(), b.pixel.y(), 1), "px") +
+              line("alpha", b.alpha * 180 / std::numbers::pi, "deg");
+  return info;
+}
+
+}  // namespace
+
+LayerContent peaksLayer(const LayerInput& in) {
+  LayerContent content;
+  const auto add = [&](const BrightestPoint& b, const Camera& camera, double size, const Colour& colour, const Picked& info) {
+    const SurfacePoint p = facing(b.point, camera.centreInWorld());
+    content.add(sphereActor({p.position}, size * in.scale.point, colour), info);
+    content.add(arrowActor({{p.position, p.position + size * in.scale.arrow * p.normal}}, 0.22 * size * in.scale.point, colour),
+                info);
+  };
+  for (const TrainingView* view : in.views()) {
+    if (!view->brightest) continue;
+    const bool selected = view->frame == in.selection.frame;
+    add(*view->brightest, view->camera, selected ? 1.3 : 0.8, kObserved, brightestInfo(in, *view->brightest, view->frame, ""));
+  }
+  // Where training has no view of the selected frame, its peaks are cast here.
+  const bool inTraining = in.inspection->isTraining(in.selection.frame);
+  const auto selected = static_cast<std::size_t>(in.selection.frame);
+  if (!inTraining && in.surface && selected < in.inspection->evidence.size()) {
+    const Camera& camera = in.frame(in.selection.frame).camera;
+    for (const Highlight& h : in.inspection->evidence[selected].highlights) {
+      const Outcome<BrightestPoint> b = observedBrightestPoint(*in.surface, camera, h.peak);
+      if (b) add(*b, camera, 1.3, kObserved, brightestInfo(in, *b, in.selection.frame, ""));
+    }
+  }
+  for (const std::string& model : in.models) {
+    for (const FrameComparison* comparison : in.comparisons(model)) {
+      for (const PredictedHighlight& h : comparison->prediction.highlights) {
+        if (!h.brightest.point.position.allFinite() || h.brightest.point.normal.norm() < 0.5) continue;
+        add(h.brightest, in.frame(in.selection.frame).camera, 1.0, modelColour(model),
+            brightestInfo(in, h.brightest, in.selection.frame, model));
+      }
+    }
+  }
+  return content;
+}
+
+}  // namespace glint::viz

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <vtkActor.h>
+#include <vtkImageData.h>
+#include <vtkPlaneSource.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+#include <vtkTexture.h>
+
+#include <algorithm>
+
+#include "viz/layers.h"
+
+namespace glint::viz {
+namespace {
+
+constexpr std::size_t kMostPhotographs = 24;  ///< more are too small to see and slow to load
+constexpr int kThumbnail = 256, kSelected = 640;
+
+}  // namespace
+
+LayerContent photographsLayer(const LayerInput& in) {
+  LayerContent content;
+  std::vector<int> chosen;
+  const std::size_t n = in.frames.size(), count = std::min(n, kMostPhotographs);
+  for (std::size_t i = 0; i < count; ++i) chosen.push_back(in.frames[i * n / count]);
+  if (std::find(chosen.begin(), chosen.end(), in.selection.frame) == chosen.end()) chosen.push_back(in.selection.frame);
+  if (count < n)
+    content.notes.push_back("photographs: " + std::to_string(chosen.size()) + " of " + std::to_string(n) + " cameras");
+  int unreadable = 0;
+  for (const int index : chosen) {
+    const Frame& frame = in.frame(index);
+    vtkSmartPointer<vtkImageData> image = in.cache->photograph(frame, index == in.selection.frame ? kSelected : kThumbnail);
+    if (!image) {
+      ++unreadable;
+      continue;
+    }
+    const std::array<Eigen::Vector3d, 4> c = imagePlane(frame.camera, in.scale.cameraDepth);
+    // Texture row 0 is the photograph's bottom row: the plane starts at the bottom left corner.
+    vtkNew<vtkPlaneSource> plane;
+    plane->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+    plane->SetOrigin(c[3].x(), c[3].y(), c[3].z());
+    plane->SetPoint1(c[2].x(), c[2].y(), c[2].z());
+    plane->SetPoint2(c[0].x(), c[0].y(), c[0].z());
+    vtkNew<vtkTexture> texture;
+    texture->SetInputData(image);
+    texture->InterpolateOn();
+    texture->MipmapOn();
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->SetInputConnection(plane->GetOutputPort());
+    vtkNew<vtkActor> actor;
+    actor->SetMapper(mapper);
+    actor->SetTexture(texture);
+    actor->GetProperty()->LightingOff();
+    Picked info;
+    info.layer = "photographs";
+    info.frame = index;
+    info.text = line("frame", frame.id) + line("index", std::to_string(index)) +
+                line("photograph", (frame.image.empty() ? frame.radiance : frame.image).filename().string());
+    content.add(actor.Get(), info);
+  }
+  if (unreadable > 0) content.notes.push_back("photographs: " + std::to_string(unreadable) + " could not be read");
+  return content;
+}
+
+}  // namespace glint::viz

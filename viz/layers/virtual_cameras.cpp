@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viz/glyphs.h"
+#include "viz/layers.h"
+
+namespace glint::viz {
+
+LayerContent virtualCamerasLayer(const LayerInput& in) {
+  LayerContent content;
+  bool labelled = false;
+  for (const TrainingView* view : in.views()) {
+    if (!view->tangentPlane) continue;
+    const Plane& plane = *view->tangentPlane;
+    const std::array<Eigen::Vector3d, 4> real = imagePlane(view->camera, in.scale.cameraDepth);
+    std::array<Eigen::Vector3d, 4> c;
+    for (std::size_t i = 0; i < 4; ++i) c[i] = plane.reflected(real[i]);
+    const Eigen::Vector3d eye = view->camera.centreInWorld(), mirrored = plane.reflected(eye);
+    const Eigen::Vector3d up = 0.16 * (c[0] - c[3]), top = 0.5 * (c[0] + c[1]);
+    const bool selected = view->frame == in.selection.frame;
+    const double width = selected ? 3.0 : 1.5;
+    Picked info;
+    info.layer = "virtual-cameras";
+    info.frame = view->frame;
+    info.text = line("virtual camera of frame", in.frame(view->frame).id) + line("centre", mirrored, "m") +
+                line("tangent plane n", plane.normal) + line("tangent plane offset d", plane.offset, "m") +
+                line("distance to the plane", std::abs(plane.signedDistance(eye)), "m");
+    content.add(lineActor({{c[0], c[1], c[2], c[3], c[0]},
+                           {mirrored, c[0]},
+                           {mirrored, c[1]},
+                           {mirrored, c[2]},
+                           {mirrored, c[3]},
+                           {top + 0.18 * (c[0] - c[1]), top + up, top + 0.18 * (c[1] - c[0])}},
+                          kVirtualCamera, width),
+                info, width);
+    // The pair, joined square through the tangent plane.
+    content.add(segmentActor(dashed(eye, mirrored, 0.02 * in.scale.sceneSize), kVirtualCamera, 1.0), info, 1.0);
+    content.add(sphereActor({plane.projected(eye)}, 0.7 * in.scale.point, kVirtualCamera), info);
+    content.extent.push_back(mirrored);
+    if (selected || (!labelled && in.inspection->isTraining(in.selection.frame) == false)) {
+      content.labels.push_back({mirrored, "virtual camera " + in.frame(view->frame).id, kVirtualCamera});
+      labelled = true;
+    }
+  }
+  return content;
+}
+
+}  // namespace glint::viz
