@@ -147,8 +147,9 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
 
   if (static_cast<std::size_t>(frame) < inspection.evidence.size()) {
     const FrameEvidence& evidence = inspection.evidence[static_cast<std::size_t>(frame)];
-    for (std::size_t i = 0; i < evidence.highlights.size(); ++i) {
-      const Highlight& h = evidence.highlights[i];
+    const std::vector<Highlight>& observed = evidence.scored();  // what the rows of the comparison refer to
+    for (std::size_t i = 0; i < observed.size(); ++i) {
+      const Highlight& h = observed[i];
       OverlayLine line;
       line.light = h.light;
       line.highlight = static_cast<int>(i);

@@ -38,7 +38,7 @@ struct OverlayLine {
   std::string label;  ///< short text for a tool tip or a legend: "canonical 0.42 %"; may be empty
   std::string model;  ///< "" for observed
   std::string light;
-  int highlight = -1;  ///< observed: index into the frame's evidence; predicted: into the prediction's highlights
+  int highlight = -1;  ///< observed: index into FrameEvidence::scored(); predicted: into the prediction's highlights
 };
 
 enum class MarkShape { Cross, Circle };

@@ -1,0 +1,396 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viz/pictures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "viz/annotations.h"
+
+namespace glint::viz {
+namespace {
+
+constexpr Colour kHalo{0.05, 0.05, 0.05};
+
+struct Theme {
+  Colour background, panel, ink, faint;
+};
+Theme themeOf(bool dark) {
+  if (dark) return {kDarkBackground, {0.15, 0.16, 0.18}, kTextOnDark, {0.35, 0.36, 0.38}};
+  return {{1, 1, 1}, {0.95, 0.95, 0.95}, kTextOnLight, {0.80, 0.80, 0.80}};
+}
+
+std::string formatted(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+/// The largest box of an aspect ratio inside another, centred.
+Box inscribed(const Box& outer, double aspect) {
+  Box box = outer;
+  if (outer.width > aspect * outer.height) {
+    box.width = aspect * outer.height;
+  } else {
+    box.height = outer.width / aspect;
+  }
+  box.x += 0.5 * (outer.width - box.width);
+  box.y += 0.5 * (outer.height - box.height);
+  return box;
+}
+
+void outlineBox(Canvas& canvas, const Box& box, const Colour& colour, double width) {
+  canvas.stroke(
+      {{box.x, box.y}, {box.x + box.width, box.y}, {box.x + box.width, box.y + box.height}, {box.x, box.y + box.height}}, true,
+      colour, width);
+}
+
+std::string titleOf(const Inspection& inspection, int frame) {
+  const std::string use = inspection.isTraining(frame) ? "training" : inspection.isHeldOut(frame) ? "held out" : "excluded";
+  return inspection.scene->name + ", frame " + inspection.scene->frames[static_cast<std::size_t>(frame)].id + " (" + use + ")";
+}
+
+const Camera& cameraOf(const Inspection& inspection, int frame) {
+  require(inspection.scene && frame >= 0 && frame < static_cast<int>(inspection.scene->frames.size()), "picture: no such frame");
+  return inspection.scene->frames[static_cast<std::size_t>(frame)].camera;
+}
+
+void drawPhotograph(Canvas& canvas, const Outcome<Image>& photograph, const Crop& crop, const Box& box, double font,
+                    const Theme& theme) {
+  if (photograph) {
+    canvas.picture(*photograph, crop, box);
+  } else {
+    canvas.fill(box, theme.panel);
+    canvas.text({box.x + 0.5 * box.width, box.y + 0.5 * box.height},
+                canvas.fitted(photograph.failure().message(), font, box.width - font), font, kFailed, Align::Centre);
+  }
+}
+
+}  // namespace
+
+void drawOverlay(Canvas& canvas, const FrameOverlay& overlay, const Crop& crop, const Box& box, double inkScale) {
+  const auto place = [&](const Pixel& p) {
+    return Eigen::Vector2d(box.x + (p.x() - crop.x) * box.width / crop.width,
+                           box.y + (p.y() - crop.y) * box.height / crop.height);
+  };
+  for (const OverlayLine& line : overlay.lines) {
+    std::vector<Eigen::Vector2d> points;
+    points.reserve(line.points.size());
+    for (const Pixel& p : line.points) points.push_back(place(p));
+    if (line.halo) canvas.stroke(points, line.closed, kHalo, inkScale * (line.width + 2), Dash::Solid, box);
+    canvas.stroke(points, line.closed, line.colour, inkScale * line.width, line.dash, box);
+  }
+  for (const OverlayMark& mark : overlay.marks) {
+    const Eigen::Vector2d c = place(mark.at);
+    const double r = inkScale * mark.size;
+    const auto draw = [&](const Colour& colour, double width, double reach) {
+      if (mark.shape == MarkShape::Cross) {
+        canvas.stroke({c - Eigen::Vector2d(reach, 0), c + Eigen::Vector2d(reach, 0)}, false, colour, width, Dash::Solid, box);
+        canvas.stroke({c - Eigen::Vector2d(0, reach), c + Eigen::Vector2d(0, reach)}, false, colour, width, Dash::Solid, box);
+      } else {
+        std::vector<Eigen::Vector2d> ring;
+        for (int i = 0; i < 24; ++i)
+          ring.push_back(c + reach * Eigen::Vector2d(std::cos(i * 0.2617993878), std::sin(i * 0.2617993878)));
+        canvas.stroke(ring, true, colour, width, Dash::Solid, box);
+      }
+    };
+    if (mark.halo) draw(kHalo, inkScale * (mark.width + 1.5), mark.shape == MarkShape::Cross ? r + inkScale : r);
+    draw(mark.colour, inkScale * mark.width, r);
+  }
+}
+
+std::optional<Crop> highlightCrop(const Inspection& inspection, int frame, const std::set<std::string>& models, double aspect) {
+  const Camera& camera = cameraOf(inspection, frame);
+  OverlayOptions options;
+  options.models = models;
+  options.hidden = {OverlayRole::ObservedEllipse, OverlayRole::PredictedEllipse, OverlayRole::CanonicalEllipse};
+  const FrameOverlay overlay = frameOverlay(inspection, frame, options);
+  Eigen::AlignedBox2d observed, all;
+  for (const OverlayLine& line : overlay.lines) {
+    for (const Pixel& p : line.points) {
+      if (!p.allFinite()) continue;
+      all.extend(p);
+      if (line.role == OverlayRole::ObservedContour) observed.extend(p);
+    }
+  }
+  if (all.isEmpty()) return {};
+  if (!observed.isEmpty()) {  // a model that went astray must not shrink the others to dots
+    const Eigen::Vector2d room = observed.sizes().cwiseMax(8.0);
+    all = all.intersection(Eigen::AlignedBox2d(observed.min() - room, observed.max() + room));
+  }
+  const Eigen::Vector2d centre = all.center();
+  double w = std::max(1.35 * all.sizes().x() + 4, 24.0), h = std::max(1.35 * all.sizes().y() + 4, 24.0 / aspect);
+  w = std::min(std::max(w, aspect * h), static_cast<double>(std::max(camera.width, camera.height)));
+  h = w / aspect;
+  return Crop{centre.x() - 0.5 * w, centre.y() - 0.5 * h, w, h};
+}
+
+Image framePicture(const Inspection& inspection, int frame, const Outcome<Image>& photograph, int width, int height,
+                   const PictureOptions& options) {
+  const Camera& camera = cameraOf(inspection, frame);
+  const Theme theme = themeOf(options.dark);
+  Canvas canvas(width, height, theme.background);
+  const double font = std::clamp(height / 48.0, 10.0, 40.0), ink = std::max(1.0, height / 900.0);
+  OverlayOptions overlayOptions;
+  overlayOptions.models = options.models;
+  overlayOptions.hidden = options.hidden;
+  const FrameOverlay overlay = frameOverlay(inspection, frame, overlayOptions);
+
+  const double head = 2 * font, foot = (0.8 + 1.45 * static_cast<double>(overlay.captions.size())) * font;
+  const Box room{0.5 * font, head, width - font, std::max(16.0, height - head - foot)};
+  canvas.text({0.8 * font, 1.4 * font}, canvas.fitted(titleOf(inspection, frame), 1.1 * font, width - 1.6 * font), 1.1 * font,
+              theme.ink);
+
+  const Crop whole{-0.5, -0.5, static_cast<double>(camera.width), static_cast<double>(camera.height)};
+  const double aspect = whole.width / whole.height;
+  // A highlight that is a small part of the picture is shown enlarged as well, beside it or below.
+  std::optional<Crop> part = highlightCrop(inspection, frame, options.models, 1.0);
+  if (part && part->width > 0.4 * whole.width) part.reset();
+  Box main = inscribed(room, aspect), zoom;
+  if (part) {
+    const double gap = 0.5 * font;
+    const Box beside = inscribed({room.x, room.y, 0.58 * room.width - gap, room.height}, aspect);
+    const Box above = inscribed({room.x, room.y, room.width, 0.58 * room.height - gap}, aspect);
+    const bool sideBySide = beside.width * beside.height >= above.width * above.height;
+    main = sideBySide ? beside : above;
+    zoom = sideBySide ? Box{room.x + 0.58 * room.width, room.y, 0.42 * room.width, room.height}
+                      : Box{room.x, room.y + 0.58 * room.height, room.width, 0.42 * room.height};
+    if (sideBySide) {
+      main.x = room.x;
+      zoom.x = main.x + main.width + gap;
+      zoom.width = room.x + room.width - zoom.x;
+      zoom.y = main.y;
+      zoom.height = std::min(main.height, zoom.width);
+      part = highlightCrop(inspection, frame, options.models, zoom.width / zoom.height);
+    } else {
+      part = highlightCrop(inspection, frame, options.models, zoom.width / zoom.height);
+    }
+  }
+  drawPhotograph(canvas, photograph, whole, main, font, theme);
+  drawOverlay(canvas, overlay, whole, main, ink * (part ? 0.6 : 1.0));
+  if (part) {
+    drawPhotograph(canvas, photograph, *part, zoom, font, theme);
+    drawOverlay(canvas, overlay, *part, zoom, ink);
+    outlineBox(canvas, zoom, theme.faint, 1);
+    const double sx = main.width / whole.width;
+    outlineBox(canvas,
+               {main.x + (part->x - whole.x) * sx, main.y + (part->y - whole.y) * sx, part->width * sx, part->height * sx},
+               theme.ink, 1);
+    const std::string times = formatted("%.1f", zoom.width / part->width / sx) + " times larger";
+    canvas.text({zoom.x + zoom.width - 0.4 * font, zoom.y + zoom.height - 0.6 * font}, times, 0.9 * font, kTextOnDark,
+                Align::Right);
+  }
+  double y = height - foot + 1.3 * font;
+  for (const OverlayCaption& caption : overlay.captions) {
+    canvas.fill({0.8 * font, y - 0.75 * font, 1.6 * font, 0.6 * font}, caption.colour);
+    canvas.text({3 * font, y}, canvas.fitted(caption.text, font, width - 4 * font), font, caption.problem ? kFailed : theme.ink);
+    y += 1.45 * font;
+  }
+  return canvas.image();
+}
+
+Image ladderPicture(const Inspection& inspection, int frame, const Outcome<Image>& photograph, int width, int height,
+                    const PictureOptions& options) {
+  const Camera& camera = cameraOf(inspection, frame);
+  const Theme theme = themeOf(options.dark);
+  Canvas canvas(width, height, theme.background);
+  const double font = std::clamp(height / 42.0, 10.0, 40.0), ink = std::max(1.0, height / 900.0);
+  canvas.text({0.8 * font, 1.4 * font},
+              canvas.fitted(titleOf(inspection, frame) + ": from simple to rich", 1.1 * font, width - 1.6 * font), 1.1 * font,
+              theme.ink);
+  const std::vector<std::string> models = modelsInOrder(inspection, options.models);
+  if (models.empty()) {
+    canvas.text({0.8 * font, 4 * font}, "no model was computed", font, kFailed);
+    return canvas.image();
+  }
+  // The grid whose tiles are largest for a square picture in each.
+  const double foot = 3.4 * font, gap = 0.6 * font, head = 2 * font;
+  int columns = 1;
+  double best = 0;
+  for (int c = 1; c <= static_cast<int>(models.size()); ++c) {
+    const int rows = (static_cast<int>(models.size()) + c - 1) / c;
+    const double side = std::min((width - gap) / c - gap, (height - head - gap) / rows - gap - foot);
+    if (side > best) {
+      best = side;
+      columns = c;
+    }
+  }
+  const int rows = (static_cast<int>(models.size()) + columns - 1) / columns;
+  const double tileWidth = (width - gap) / columns - gap, tileHeight = (height - head - gap) / rows - gap;
+  const double aspect = std::clamp(tileWidth / std::max(16.0, tileHeight - foot), 0.5, 2.0);
+  Crop crop{-0.5, -0.5, static_cast<double>(camera.width), static_cast<double>(camera.height)};
+  const std::optional<Crop> part = highlightCrop(inspection, frame, options.models, aspect);
+  if (part) crop = *part;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
+    const Box tile{gap + column * (tileWidth + gap), head + gap + row * (tileHeight + gap), tileWidth, tileHeight};
+    const Box box = inscribed({tile.x, tile.y, tile.width, std::max(16.0, tile.height - foot)}, crop.width / crop.height);
+    OverlayOptions overlayOptions;
+    overlayOptions.models = {models[i]};
+    overlayOptions.hidden = options.hidden;
+    const FrameOverlay overlay = frameOverlay(inspection, frame, overlayOptions);
+    drawPhotograph(canvas, photograph, crop, box, font, theme);
+    drawOverlay(canvas, overlay, crop, box, ink);
+    canvas.fill({box.x, box.y + box.height, box.width, 0.25 * font}, modelColour(models[i]));
+    const FrameScore score = frameScore(inspection.models.at(models[i]), frame);
+    std::string below;
+    if (score.errorPct)
+      below = formatted("%.2f %%", *score.errorPct) + "   " + formatted("%.2f px", *score.errorPx) +
+              (score.iou ? "   IoU " + formatted("%.3f", *score.iou) : "");
+    for (const OverlayCaption& caption : overlay.captions) {
+      if (!score.errorPct && caption.model == models[i])
+        below = caption.text.substr(std::min(caption.text.size(), models[i].size() + 2));
+    }
+    const double middle = box.x + 0.5 * box.width;
+    canvas.text({middle, box.y + box.height + 1.4 * font}, models[i], 1.1 * font, theme.ink, Align::Centre);
+    canvas.text({middle, box.y + box.height + 2.8 * font}, canvas.fitted(below, font, tile.width), font,
+                score.errorPct ? theme.ink : kFailed, Align::Centre);
+  }
+  return canvas.image();
+}
+
+Image plotsPicture(const Inspection& inspection, int width, int height, const PictureOptions& options) {
+  require(inspection.scene != nullptr, "picture: no scene");
+  const Theme theme = themeOf(options.dark);
+  Canvas canvas(width, height, theme.background);
+  const double font = std::clamp(height / 38.0, 10.0, 40.0), ink = std::max(1.0, height / 700.0);
+  const int frames = static_cast<int>(inspection.scene->frames.size());
+  const std::vector<std::string> models = modelsInOrder(inspection, options.models);
+  struct Series {
+    std::string model;
+    std::vector<FrameScore> scores;
+    double sum = 0;
+    int answered = 0, asked = 0;
+  };
+  std::vector<Series> all;
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+  for (const std::string& model : models) {
+    Series series;
+    series.model = model;
+    for (int frame = 0; frame < frames; ++frame) {
+      series.scores.push_back(frameScore(inspection.models.at(model), frame));
+      const FrameScore& score = series.scores.back();
+      const bool counts = inspection.isHeldOut(frame);
+      series.asked += counts ? 1 : 0;
+      if (!score.errorPct) continue;
+      if (counts) {
+        series.sum += *score.errorPct;
+        ++series.answered;
+      }
+      high = std::max(high, *score.errorPct);
+      if (*score.errorPct > 0) low = std::min(low, *score.errorPct);
+    }
+    all.push_back(std::move(series));
+  }
+  canvas.text({0.8 * font, 1.5 * font}, inspection.scene->name + ": contour error over frames", 1.2 * font, theme.ink);
+  if (!(high > 0) || frames == 0) {
+    canvas.text({0.8 * font, 4 * font}, models.empty() ? "no model was computed" : "no frame has an error to draw", font,
+                kFailed);
+    return canvas.image();
+  }
+  const bool logarithmic = high / low > 30;
+  double bottom = 0, top = 1.08 * high;
+  if (logarithmic) {
+    bottom = std::log10(std::max(low, 1e-5 * high)) - 0.05;
+    top = std::log10(high) + 0.05;
+  }
+  const double rowsOfLegend = static_cast<double>(all.size());
+  const Box plot{5.2 * font, (3.4 + 1.4 * rowsOfLegend) * font, width - 7 * font, height - (7.6 + 1.4 * rowsOfLegend) * font};
+  const auto xOf = [&](double frame) { return plot.x + (frame + 0.5) / frames * plot.width; };
+  const auto yOf = [&](double pct) {
+    const double v = logarithmic ? std::log10(std::max(pct, 1e-300)) : pct;
+    return plot.y + plot.height * (1 - std::clamp((v - bottom) / (top - bottom), 0.0, 1.0));
+  };
+  canvas.fill(plot, theme.panel);
+  bool anyTraining = false;
+  if (!inspection.train.perSurface) {
+    for (int frame = 0; frame < frames; ++frame) {
+      if (!inspection.isTraining(frame)) continue;
+      canvas.fill({xOf(frame - 0.5), plot.y, plot.width / frames, plot.height}, kTraining, 0.22);
+      anyTraining = true;
+    }
+  }
+  // Error axis.
+  std::vector<double> ticks;
+  if (logarithmic) {
+    const bool sparse = top - bottom > 2.5;
+    for (int decade = static_cast<int>(std::floor(bottom)); decade <= static_cast<int>(std::ceil(top)); ++decade) {
+      for (const double factor : {1.0, 2.0, 5.0}) {
+        if (sparse && factor > 1) continue;
+        const double v = factor * std::pow(10.0, decade);
+        if (std::log10(v) >= bottom && std::log10(v) <= top) ticks.push_back(v);
+      }
+    }
+  } else {
+    const double step = roundLength(top / 4);
+    for (int i = 0; i * step <= top; ++i) ticks.push_back(i * step);
+  }
+  for (const double v : ticks) {
+    canvas.stroke({{plot.x, yOf(v)}, {plot.x + plot.width, yOf(v)}}, false, theme.faint, 1);
+    canvas.text({plot.x - 0.5 * font, yOf(v) + 0.35 * font}, formatted("%.4g", v), font, theme.ink, Align::Right);
+  }
+  canvas.text({1.3 * font, plot.y + 0.5 * plot.height}, logarithmic ? "contour error, % (log)" : "contour error, %", font,
+              theme.ink, Align::Centre, true);
+  // Frame axis.
+  const double perLabel = std::max(1.0, std::ceil(2.2 * font * frames / plot.width));
+  const int step = std::max(1, static_cast<int>(perLabel <= 1   ? 1
+                                                : perLabel <= 2 ? 2
+                                                : perLabel <= 5 ? 5
+                                                                : 10 * std::ceil(perLabel / 10)));
+  for (int frame = 0; frame < frames; frame += step) {
+    canvas.stroke({{xOf(frame), plot.y + plot.height}, {xOf(frame), plot.y + plot.height + 0.3 * font}}, false, theme.ink, 1);
+    canvas.text({xOf(frame), plot.y + plot.height + 1.4 * font}, std::to_string(frame), font, theme.ink, Align::Centre);
+  }
+  canvas.text({plot.x + 0.5 * plot.width, plot.y + plot.height + 2.9 * font}, anyTraining ? "frame (shaded: training)" : "frame",
+              font, theme.ink, Align::Centre);
+  // Lines, broken where a frame has no error.
+  double legendY = 3.2 * font;
+  for (const Series& series : all) {
+    const Colour colour = modelColour(series.model);
+    std::vector<Eigen::Vector2d> run;
+    for (int frame = 0; frame <= frames; ++frame) {
+      if (frame < frames && series.scores[static_cast<std::size_t>(frame)].errorPct) {
+        run.push_back({xOf(frame), yOf(*series.scores[static_cast<std::size_t>(frame)].errorPct)});
+        continue;
+      }
+      canvas.stroke(run, false, colour, 1.8 * ink);
+      run.clear();
+    }
+    for (int frame = 0; frame < frames; ++frame) {
+      const FrameScore& score = series.scores[static_cast<std::size_t>(frame)];
+      if (score.errorPct) canvas.disc({xOf(frame), yOf(*score.errorPct)}, (frames > 100 ? 1.5 : 2.8) * ink, colour);
+    }
+    canvas.stroke({{plot.x, legendY - 0.35 * font}, {plot.x + 1.8 * font, legendY - 0.35 * font}}, false, colour, 3 * ink);
+    std::string text = series.model;
+    if (series.answered > 0) {
+      text += ":  mean " + formatted("%.3g %%", series.sum / series.answered) + " over " + std::to_string(series.answered) +
+              " of " + std::to_string(series.asked) + (inspection.train.perSurface ? " frames" : " held-out frames");
+    } else {
+      text += ":  no held-out frame answered";
+      for (const FrameScore& score : series.scores) {
+        if (!score.reason.empty()) {
+          text += " (" + score.reason + ")";
+          break;
+        }
+      }
+    }
+    canvas.text({plot.x + 2.4 * font, legendY}, canvas.fitted(text, font, plot.width - 2.4 * font), font,
+                series.answered > 0 ? theme.ink : kFailed);
+    legendY += 1.4 * font;
+  }
+  // Frames that a model left out: a short stroke above the plot in its colour, one row for each model.
+  const double room = 0.9 * font, rowHeight = room / std::max<double>(1, static_cast<double>(all.size()));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (int frame = 0; frame < frames; ++frame) {
+      if (all[i].scores[static_cast<std::size_t>(frame)].errorPct || all[i].answered == 0) continue;
+      canvas.fill(
+          {xOf(frame - 0.35), plot.y - room + static_cast<double>(i) * rowHeight, 0.7 * plot.width / frames, 0.7 * rowHeight},
+          modelColour(all[i].model));
+    }
+  }
+  outlineBox(canvas, plot, theme.faint, 1);
+  return canvas.image();
+}
+
+}  // namespace glint::viz

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "viz/canvas.h"
+
+namespace glint::viz {
+
+struct PictureOptions {
+  std::set<std::string> models;  ///< empty = all
+  std::set<OverlayRole> hidden;  ///< roles left out of the overlays
+  bool dark = true;
+};
+
+/// One photograph with its overlay, the error of each model below, and, where the highlight is small, an enlarged part beside it.
+/// Needs no display. @param photograph  3 channels 0..1; empty = the reason is written in its place.
+/// std::invalid_argument for a frame that does not exist or a size out of Canvas's range.
+Image framePicture(const Inspection& inspection, int frame, const Outcome<Image>& photograph, int width, int height,
+                   const PictureOptions& options = {});
+
+/// One tile for each model, from simple to rich: the same enlarged part of the photograph with the observed contour and that
+/// model's prediction, its error below. As framePicture.
+Image ladderPicture(const Inspection& inspection, int frame, const Outcome<Image>& photograph, int width, int height,
+                    const PictureOptions& options = {});
+
+/// Contour error over frames, one line for each model; training frames are shaded, frames without an answer marked above.
+/// The error axis is logarithmic where the errors span more than a factor of 30.
+Image plotsPicture(const Inspection& inspection, int width, int height, const PictureOptions& options = {});
+
+/// Draws an overlay: image pixels of `crop` are stretched over `box`. Marks and widths keep their screen size times `inkScale`.
+void drawOverlay(Canvas& canvas, const FrameOverlay& overlay, const Crop& crop, const Box& box, double inkScale);
+
+/// The part of the photograph that holds the frame's contours with a margin, `aspect` = width / height; nothing without contours.
+std::optional<Crop> highlightCrop(const Inspection& inspection, int frame, const std::set<std::string>& models, double aspect);
+
+}  // namespace glint::viz
