@@ -1,0 +1,491 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/surface/brightest_point.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/geometry/plane.h"
+
+namespace glint {
+
+using Eigen::Matrix2d;
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+namespace {
+
+using Basis = Eigen::Matrix<double, 3, 2>;
+
+/// Below this angle the reflection law holds: two decades above round-off for well-placed cameras, far below any pixel.
+constexpr double kZeroAngle = 1e-8;
+/// More seeds than this mean a surface rougher than the grid; the best ones are polished.
+constexpr std::size_t kMaxSeeds = 64;
+
+/// Directions and distances at one surface point (its normal on the camera's side).
+struct Shading {
+  Vector3d v, l, h;           ///< unit
+  double inverseV, inverseL;  ///< 1/distance; 0 for a light at infinity
+  double sum;                 ///< |L + V|
+  double sine;                ///< |N x H|, the merit that the search lowers
+  double cosine;              ///< N.H
+  double alpha() const { return std::atan2(sine, cosine); }
+  /// Merit that keeps falling over the whole range 0..pi, where the sine alone would turn back at pi/2.
+  double merit() const { return cosine > 0 ? sine : 2 - sine; }
+};
+
+struct Sighting {
+  const Surface& surface;
+  const Camera& camera;
+  const Light& light;
+  Vector3d eye;
+
+  Shading shade(const SurfacePoint& p) const {
+    Shading s;
+    const Vector3d toEye = eye - p.position;
+    s.inverseV = 1 / toEye.norm();
+    s.v = toEye * s.inverseV;
+    const Eigen::Vector4d& lw = light.homogeneous();
+    const Vector3d toLight = lw.head<3>() - lw.w() * p.position;
+    const double length = toLight.norm();
+    s.l = toLight / length;
+    s.inverseL = lw.w() / length;
+    const Vector3d sum = s.l + s.v;
+    s.sum = sum.norm();
+    s.h = sum / s.sum;
+    s.sine = p.normal.cross(s.h).norm();
+    s.cosine = p.normal.dot(s.h);
+    return s;
+  }
+  /// Foot of p + T step along the normal at p, on the camera's side.
+  Outcome<SurfacePoint> moved(const SurfacePoint& p, const Vector3d& offset) const {
+    Outcome<SurfacePoint> next = surface.foot(p.position + offset, p.normal, p);
+    if (next) *next = facing(*next, eye);
+    return next;
+  }
+};
+
+/// Where a search stopped.
+struct Search {
+  SurfacePoint point;
+  double alpha = std::numeric_limits<double>::infinity();
+  bool touchedEdge = false;  ///< a step left the surface
+  std::optional<Matrix2d> jacobian;
+  Basis basis;
+};
+
+/// d(T^T H)/d(step) with T fixed: T^T dH T - (N.H) S, dH = (I - H H^T)(dL + dV)/|L + V|, dV = -(I - V V^T)/r, S the shape
+/// operator.
+Matrix2d jacobianAt(const Shading& s, const SurfacePoint& p, const Basis& t, const Curvature& c) {
+  const Matrix3d id = Matrix3d::Identity();
+  const Matrix3d dSum = -s.inverseV * (id - s.v * s.v.transpose()) - s.inverseL * (id - s.l * s.l.transpose());
+  const Matrix3d dH = (id - s.h * s.h.transpose()) * dSum / s.sum;
+  const Vector2d d1 = t.transpose() * c.direction1, d2 = t.transpose() * c.direction2;
+  const Matrix2d shape = c.k1 * d1 * d1.transpose() + c.k2 * d2 * d2.transpose();
+  return t.transpose() * dH * t - p.normal.dot(s.h) * shape;
+}
+
+/// Newton's method on the tangent plane of the current point, damped on |N x H|.
+Search newton(const Sighting& sighting, const SurfacePoint& start, int maxIterations) {
+  Search search;
+  search.point = facing(start, sighting.eye);
+  Shading s = sighting.shade(search.point);
+  search.alpha = s.alpha();
+  if (!std::isfinite(search.alpha)) return search;
+  double lastStep = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < maxIterations; ++i) {
+    const Outcome<Curvature> curvature = sighting.surface.curvatureAt(search.point);
+    if (!curvature) return search;
+    const Basis t = tangentBasis(search.point.normal);
+    const Matrix2d j = jacobianAt(s, search.point, t, *curvature);
+    search.jacobian = j;
+    search.basis = t;
+    const Vector2d g = t.transpose() * s.h;
+    const double determinant = j.determinant();
+    Vector2d step;
+    if (std::abs(determinant) > 1e-12 * j.squaredNorm()) {
+      step = -(Matrix2d() << j(1, 1), -j(0, 1), -j(1, 0), j(0, 0)).finished() * g / determinant;
+    } else {
+      step = -(j.transpose() * j + 1e-9 * j.squaredNorm() * Matrix2d::Identity()).inverse() * (j.transpose() * g);
+    }
+    // No step turns the normal by more than half a radian or crosses half of the way to the eye or the light.
+    const double turn = std::max(std::abs(curvature->k1), std::abs(curvature->k2));
+    const double longest = 0.5 / std::max({turn, s.inverseV, s.inverseL});
+    const double length = step.norm();
+    if (!std::isfinite(length)) break;
+    if (length > longest) step *= longest / length;
+
+    const bool close = s.merit() < 1e-6;
+    bool accepted = false;
+    double scale = 1;
+    for (int halving = 0; halving < (close ? 3 : 24); ++halving, scale *= 0.5) {
+      const Outcome<SurfacePoint> next = sighting.moved(search.point, t * (scale * step));
+      if (!next) {
+        search.touchedEdge = true;
+        continue;
+      }
+      const Shading shading = sighting.shade(*next);
+      if (!(shading.merit() < s.merit())) continue;
+      search.point = *next;
+      s = shading;
+      search.alpha = s.alpha();
+      accepted = true;
+      break;
+    }
+    if (!accepted) break;
+    const double taken = scale * std::min(length, longest);
+    // Converged: the step is round-off of the distance to the eye, or it no longer shrinks near the solution.
+    if (taken * s.inverseV < 1e-16 || s.merit() == 0 || (close && taken > 0.5 * lastStep && s.merit() < 1e-13)) break;
+    lastStep = taken;
+  }
+  return search;
+}
+
+/// Compass search on |N x H| for surfaces without curvature (facets) and where Newton's method stalls at a kink.
+Search compass(const Sighting& sighting, const SurfacePoint& start, double firstStep) {
+  Search search;
+  search.point = facing(start, sighting.eye);
+  Shading s = sighting.shade(search.point);
+  search.alpha = s.alpha();
+  if (!std::isfinite(search.alpha)) return search;
+  double step = firstStep;
+  const double smallest = 1e-12 / s.inverseV;
+  for (int evaluations = 0; step > smallest && evaluations < 1500;) {
+    const Basis t = tangentBasis(search.point.normal);
+    bool improved = false;
+    for (int k = 0; k < 8; ++k, ++evaluations) {
+      const double a = k * std::numbers::pi / 4;
+      const Outcome<SurfacePoint> next = sighting.moved(search.point, step * (t * Vector2d(std::cos(a), std::sin(a))));
+      if (!next) {
+        search.touchedEdge = true;
+        continue;
+      }
+      const Shading shading = sighting.shade(*next);
+      if (!(shading.merit() < s.merit())) continue;
+      search.point = *next;
+      s = shading;
+      improved = true;
+      break;
+    }
+    if (!improved) step *= 0.5;
+  }
+  search.alpha = s.alpha();
+  return search;
+}
+
+/// Facets: the mirror point of the facet's own plane, if it lies inside the facet.
+void tryPlaneOfFacet(const Sighting& sighting, Search& search) {
+  SurfacePoint p = search.point;
+  for (int i = 0; i < 20; ++i) {
+    const Shading s = sighting.shade(p);
+    const Basis t = tangentBasis(p.normal);
+    const Vector2d step = -jacobianAt(s, p, t, {0, 0, t.col(0), t.col(1)}).inverse() * (t.transpose() * s.h);
+    if (!step.allFinite()) return;
+    const Outcome<SurfacePoint> next = sighting.moved(p, t * step);
+    if (!next || next->element != search.point.element) return;
+    p = *next;
+    if (step.norm() * s.inverseV < 1e-15) break;
+  }
+  const double alpha = sighting.shade(p).alpha();
+  if (alpha < search.alpha) {
+    search.point = p;
+    search.alpha = alpha;
+  }
+}
+
+/// Largest angle between the normal here and those just beside: the dihedral angle at an edge, the largest one at a corner.
+double normalJump(const Sighting& sighting, const SurfacePoint& p, double reach) {
+  const Basis t = tangentBasis(p.normal);
+  double largest = 0;
+  for (int k = 0; k < 8; ++k) {
+    const double a = k * std::numbers::pi / 4;
+    if (const Outcome<SurfacePoint> beside = sighting.moved(p, reach * (t * Vector2d(std::cos(a), std::sin(a)))))
+      largest = std::max(largest, std::atan2(p.normal.cross(beside->normal).norm(), p.normal.dot(beside->normal)));
+  }
+  return largest;
+}
+
+struct Seed {
+  SurfacePoint point;
+  double alpha;
+  std::optional<Pixel> zero;  ///< where the linear interpolation vanishes
+};
+
+/// The part of the image and its margin that the surface can be seen in.
+struct Window {
+  Pixel min, max;
+  bool empty() const { return !((max - min).minCoeff() > 0); }
+};
+
+Window windowOf(const Surface& surface, const Camera& camera, double marginFraction) {
+  const Vector2d size(camera.width, camera.height);
+  Window window{-0.5 * Vector2d::Ones() - marginFraction * size, size - 0.5 * Vector2d::Ones() + marginFraction * size};
+  const Eigen::AlignedBox3d box = surface.bounds();
+  if (!box.sizes().allFinite()) return window;
+  Eigen::AlignedBox2d seen;
+  for (int c = 0; c < 8; ++c) {
+    const std::optional<Pixel> p = camera.project(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(c)));
+    if (!p) return window;  // the box reaches behind the camera: its outline is unbounded
+    seen.extend(*p);
+  }
+  window.min = window.min.cwiseMax(seen.min() - Vector2d::Ones());
+  window.max = window.max.cwiseMin(seen.max() + Vector2d::Ones());
+  return window;
+}
+
+/// Zeros of a linear interpolation of g over a triangle: barycentric weights, accepted a little outside as well.
+std::optional<Vector3d> linearZero(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
+  constexpr double kSlack = 0.35;  // the field is not linear over a cell; Newton decides
+  Matrix2d m;
+  m << b - a, c - a;
+  const double determinant = m.determinant();
+  if (!(std::abs(determinant) > 1e-300)) return std::nullopt;
+  const Vector2d uv = m.inverse() * -a;
+  const Vector3d w(1 - uv.sum(), uv.x(), uv.y());
+  if (!(w.minCoeff() > -kSlack)) return std::nullopt;
+  return w;
+}
+
+std::vector<Seed> gridSeeds(const Sighting& sighting, const Window& window, double step, int& hits) {
+  const int nx = 1 + static_cast<int>(std::ceil((window.max.x() - window.min.x()) / step));
+  const int ny = 1 + static_cast<int>(std::ceil((window.max.y() - window.min.y()) / step));
+  const Vector2d cell((window.max.x() - window.min.x()) / (nx - 1), (window.max.y() - window.min.y()) / (ny - 1));
+  const Matrix3d worldFromPixel = sighting.camera.camFromWorld.linear().transpose() * sighting.camera.pixelFromRay.inverse();
+  std::vector<Ray> rays(static_cast<std::size_t>(nx) * ny);
+  const auto pixelOf = [&](int i, int j) { return Pixel(window.min.x() + i * cell.x(), window.min.y() + j * cell.y()); };
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i) rays[j * nx + i] = {sighting.eye, (worldFromPixel * pixelOf(i, j).homogeneous()).normalized()};
+  const std::vector<std::optional<SurfacePoint>> found = sighting.surface.approximateHits(rays);
+
+  // Tangential part of H in the camera's x and y axes: continuous over the picture, zero only where H is along N.
+  struct Node {
+    Vector2d g;
+    double alpha = std::numeric_limits<double>::infinity();
+  };
+  std::vector<Node> nodes(rays.size());
+  const Vector3d axisX = sighting.camera.camFromWorld.linear().row(0), axisY = sighting.camera.camFromWorld.linear().row(1);
+  hits = 0;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    if (!found[n]) continue;
+    ++hits;
+    const SurfacePoint p = facing(*found[n], sighting.eye);
+    const Shading s = sighting.shade(p);
+    const double alpha = s.alpha();
+    if (!std::isfinite(alpha)) continue;
+    const Vector3d tangential = s.h - s.cosine * p.normal;
+    nodes[n].g = {tangential.dot(axisX), tangential.dot(axisY)};
+    nodes[n].alpha = alpha;
+  }
+
+  std::vector<char> taken(nodes.size(), 0);
+  std::vector<Seed> seeds;
+  const auto add = [&](int node, std::optional<Pixel> zero) {
+    if (taken[node] && !zero) return;
+    taken[node] = 1;
+    seeds.push_back({*found[node], nodes[node].alpha, zero});
+  };
+  for (int j = 0; j + 1 < ny; ++j)
+    for (int i = 0; i + 1 < nx; ++i) {
+      const int n = j * nx + i;
+      for (const auto& corner : {std::array<int, 3>{n, n + 1, n + nx + 1}, std::array<int, 3>{n, n + nx + 1, n + nx}}) {
+        if (!std::isfinite(nodes[corner[0]].alpha + nodes[corner[1]].alpha + nodes[corner[2]].alpha)) continue;
+        const std::optional<Vector3d> w = linearZero(nodes[corner[0]].g, nodes[corner[1]].g, nodes[corner[2]].g);
+        if (!w) continue;
+        Pixel zero(0, 0);
+        for (int k = 0; k < 3; ++k) zero += (*w)[k] * pixelOf(corner[k] % nx, corner[k] / nx);
+        Eigen::Index best = 0;
+        w->maxCoeff(&best);
+        add(corner[best], zero);
+      }
+    }
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i) {
+      const double here = nodes[j * nx + i].alpha;
+      if (!std::isfinite(here)) continue;
+      bool lowest = true;
+      for (int y = std::max(0, j - 1); y <= std::min(ny - 1, j + 1) && lowest; ++y)
+        for (int x = std::max(0, i - 1); x <= std::min(nx - 1, i + 1); ++x)
+          if (nodes[y * nx + x].alpha < here) lowest = false;
+      if (lowest) add(j * nx + i, std::nullopt);
+    }
+  std::stable_sort(seeds.begin(), seeds.end(), [](const Seed& a, const Seed& b) { return a.alpha < b.alpha; });
+  if (seeds.size() > kMaxSeeds) seeds.resize(kMaxSeeds);
+  return seeds;
+}
+
+/// Why candidates were turned down, for the detail of the failure.
+struct Rejected {
+  int notVisible = 0, notLit = 0, outside = 0, edge = 0;
+  std::string text() const {
+    if (notVisible)
+      return "not visible: the mirror point faces away from the camera or another part of the surface is in front of it";
+    if (notLit) return "not lit: the light is behind the surface or hidden by it at the mirror point";
+    if (outside) return "outside the image and its margin";
+    if (edge) return "off the surface: the mirror point lies beyond its edge";
+    return "no stationary point: the reflection law holds nowhere on the visible surface";
+  }
+};
+
+/// All searches of one call, and what they found.
+class Finder {
+ public:
+  Finder(const Sighting& sighting, const BrightestPointOptions& options, const Window& image, double cellPx)
+      : sighting_(sighting), options_(options), image_(image), cellPx_(cellPx) {}
+
+  void polish(const SurfacePoint& seed) {
+    const Outcome<Curvature> curvature = sighting_.surface.curvatureAt(seed);
+    if (!curvature && curvature.failure().reason == Reason::NotSupported) return polishFacets(seed);
+    Search search = newton(sighting_, seed, options_.maxIterations);
+    if (search.alpha > kZeroAngle && search.alpha < 0.1 && seed.element >= 0 && !search.touchedEdge) {
+      // A kink of a piecewise smooth normal field stopped Newton's method: go on without derivatives, then polish again.
+      search = compass(sighting_, search.point, footprint(search.point) * 0.5);
+      search = newton(sighting_, search.point, options_.maxIterations);
+    }
+    if (!(search.alpha <= kZeroAngle)) {
+      if (search.touchedEdge) ++rejected_.edge;
+      return;
+    }
+    if (!accept(search)) return;
+    if (search.jacobian) lookForTwin(search);
+  }
+
+  bool alreadyFoundNear(const Pixel& p, double px) const {
+    return std::any_of(found_.begin(), found_.end(), [&](const BrightestPoint& b) { return (b.pixel - p).norm() < px; });
+  }
+
+  Outcome<std::vector<BrightestPoint>> result(bool anyHit) && {
+    if (found_.empty())
+      return Failure{Reason::NoBrightestPoint, anyHit ? rejected_.text() : "off the surface: no ray of the camera meets it"};
+    const Pixel centre(0.5 * (sighting_.camera.width - 1), 0.5 * (sighting_.camera.height - 1));
+    std::sort(found_.begin(), found_.end(), [&](const BrightestPoint& a, const BrightestPoint& b) {
+      // Angles below kZeroAngle are round-off and must not decide the order.
+      const double x = a.alpha <= kZeroAngle ? 0 : a.alpha, y = b.alpha <= kZeroAngle ? 0 : b.alpha;
+      if (x != y) return x < y;
+      return (a.pixel - centre).squaredNorm() < (b.pixel - centre).squaredNorm();
+    });
+    return std::move(found_);
+  }
+
+ private:
+  /// Length on the tangent plane that one grid cell covers, without foreshortening.
+  double footprint(const SurfacePoint& p) const {
+    return cellPx_ * (sighting_.eye - p.position).norm() /
+           std::max(sighting_.camera.pixelFromRay(0, 0), sighting_.camera.pixelFromRay(1, 1));
+  }
+
+  void polishFacets(const SurfacePoint& seed) {
+    Search search = compass(sighting_, seed, 0.5 * footprint(seed));
+    tryPlaneOfFacet(sighting_, search);
+    if (search.alpha > kZeroAngle) {
+      const double jump = normalJump(sighting_, search.point, 1e-7 * (sighting_.eye - search.point.position).norm());
+      if (!(search.alpha <= jump)) {
+        if (search.touchedEdge) ++rejected_.edge;
+        return;
+      }
+    }
+    accept(search);
+  }
+
+  /// Near a fold two solutions lie close together, along the weak direction of the Jacobian: look on both sides.
+  void lookForTwin(const Search& search) {
+    const Matrix2d jtj = search.jacobian->transpose() * *search.jacobian;
+    const double mean = 0.5 * jtj.trace(), radius = std::hypot(0.5 * (jtj(0, 0) - jtj(1, 1)), jtj(0, 1));
+    const double weak = mean - radius, strong = mean + radius;
+    if (!(weak < 0.04 * strong)) return;
+    Vector2d direction(jtj(0, 1), weak - jtj(0, 0));
+    if (direction.norm() < 1e-12 * strong) direction = jtj(0, 0) < jtj(1, 1) ? Vector2d::UnitX() : Vector2d::UnitY();
+    direction.normalize();
+    for (const double reach : {-1.0, -0.25, 0.25, 1.0}) {
+      const Outcome<SurfacePoint> start =
+          sighting_.moved(search.point, search.basis * (reach * footprint(search.point) * direction));
+      if (!start) continue;
+      const Search twin = newton(sighting_, *start, options_.maxIterations);
+      if (twin.alpha <= kZeroAngle) accept(twin);
+    }
+  }
+
+  bool accept(const Search& search) {
+    const SurfacePoint& p = search.point;
+    const std::optional<Pixel> pixel = sighting_.camera.project(p.position);
+    const double distance = (sighting_.eye - p.position).norm();
+    for (const BrightestPoint& b : found_)
+      if ((b.point.position - p.position).norm() < 1e-7 * distance || (pixel && (b.pixel - *pixel).norm() < mergePx(search)))
+        return false;
+    if (!pixel || !(p.normal.dot(sighting_.eye - p.position) > 0) || sighting_.surface.occluded(p, sighting_.eye))
+      return ++rejected_.notVisible, false;
+    const Vector3d toLight = sighting_.light.directionFrom(p.position);
+    if (!(p.normal.dot(toLight) > 0) || sighting_.surface.occluded(p, lightPosition(p, toLight, distance)))
+      return ++rejected_.notLit, false;
+    if ((image_.min - *pixel).maxCoeff() > 0 || (*pixel - image_.max).maxCoeff() > 0) return ++rejected_.outside, false;
+    found_.push_back({p, *pixel, search.alpha});
+    return true;
+  }
+
+  /// Local minima on the same or neighbouring facets are one highlight.
+  double mergePx(const Search& search) const { return search.alpha > kZeroAngle ? 2.0 : 1e-4; }
+
+  /// The light, or a point far enough towards it when it is at infinity.
+  Vector3d lightPosition(const SurfacePoint& p, const Vector3d& toLight, double distance) const {
+    if (!sighting_.light.atInfinity()) {
+      const Vector3d position = sighting_.light.position();
+      if (position.allFinite()) return position;
+    }
+    const Eigen::Vector3d extent = sighting_.surface.bounds().sizes();
+    return p.position + (extent.allFinite() ? 2 * extent.norm() : 1e3 * distance) * toLight;
+  }
+
+  const Sighting& sighting_;
+  const BrightestPointOptions& options_;
+  Window image_;
+  double cellPx_;
+  std::vector<BrightestPoint> found_;
+  Rejected rejected_;
+};
+
+}  // namespace
+
+Outcome<BrightestPoint> observedBrightestPoint(const Surface& surface, const Camera& camera, const Pixel& peak) {
+  if (!peak.allFinite()) return Failure{Reason::NotFinite, "peak"};
+  const Outcome<SurfacePoint> hit = surface.firstHit(camera.ray(peak));
+  if (!hit) return Failure{Reason::PeakOffSurface, hit.failure().message()};
+  return BrightestPoint{facing(*hit, camera.centreInWorld()), peak, 0.0};
+}
+
+Outcome<std::vector<BrightestPoint>> predictedBrightestPoints(const Surface& surface, const Camera& camera, const Light& light,
+                                                              const BrightestPointOptions& options) {
+  require(options.seedStepPx > 0 && options.marginFraction >= 0 && options.maxIterations > 0,
+          "predictedBrightestPoints: seedStepPx and maxIterations must be positive, marginFraction not negative");
+  const Sighting sighting{surface, camera, light, camera.centreInWorld()};
+  if (!sighting.eye.allFinite()) return Failure{Reason::NotFinite, "camera pose"};
+  const Vector2d size(camera.width, camera.height), half = 0.5 * Vector2d::Ones();
+  const Window image{-half - options.marginFraction * size, size - half + options.marginFraction * size};
+  const Window window = windowOf(surface, camera, options.marginFraction);
+  if (window.empty()) return Failure{Reason::NoBrightestPoint, "off the surface: it is outside the image and its margin"};
+  // A surface that is small in the picture still gets a grid of about 8 cells across.
+  const double step = std::clamp((window.max - window.min).minCoeff() / 8, 1e-3, options.seedStepPx);
+
+  Finder finder(sighting, options, image, step);
+  bool anyHit = false;
+  for (const Vector3d& hint : options.hints) {
+    if (!hint.allFinite() || hint == sighting.eye) continue;
+    if (const Outcome<SurfacePoint> hit = surface.firstHit({sighting.eye, (hint - sighting.eye).normalized()})) {
+      anyHit = true;
+      finder.polish(*hit);
+    }
+  }
+  if (!options.hintsOnly) {
+    int hits = 0;
+    for (const Seed& seed : gridSeeds(sighting, window, step, hits)) {
+      // Another seed has led to where this one points: solutions closer than a third of a cell are the twin search's work.
+      if (seed.zero && finder.alreadyFoundNear(*seed.zero, 0.34 * step)) continue;
+      finder.polish(seed.point);
+    }
+    anyHit = anyHit || hits > 0;
+  }
+  return std::move(finder).result(anyHit);
+}
+
+}  // namespace glint

@@ -1,0 +1,410 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/surface/mesh.h"
+
+#include <embree3/rtcore.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/geometry/plane.h"
+#include "core/surface/mesh_topology.h"
+
+namespace glint {
+
+using Eigen::AlignedBox3d;
+using Eigen::Matrix2d;
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::Vector3i;
+
+namespace {
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+/// Barycentric slack: a line through an edge must lie inside one of its two triangles despite round-off.
+constexpr double kInside = 1e-12;
+
+/// Embree objects, released with the mesh.
+struct EmbreeScene {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  EmbreeScene() : device(rtcNewDevice(nullptr)) {
+    if (!device) throw std::runtime_error("Embree: no device");
+    scene = rtcNewScene(device);
+  }
+  ~EmbreeScene() {
+    if (scene) rtcReleaseScene(scene);
+    if (device) rtcReleaseDevice(device);
+  }
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+};
+
+/// A place on a triangle: weights of its second and third corner, and the line's parameter there.
+struct Place {
+  int triangle = -1;
+  double u = 0, v = 0, t = 0;
+};
+
+class MeshSurface : public Surface {
+ public:
+  MeshSurface(TriangleMesh mesh, NormalPolicy policy) : policy_(policy), mesh_(std::move(mesh)) {
+    check();
+    topology_ = topologyOf(mesh_);
+    require(std::find(topology_.alive.begin(), topology_.alive.end(), 1) != topology_.alive.end(),
+            "mesh: no triangle with an area");
+    if (policy_ != NormalPolicy::Facet) mesh_.normals = vertexNormals(mesh_, topology_);
+    build();
+  }
+
+  std::string describe() const override { return "mesh of " + std::to_string(mesh_.triangles.size()) + " triangles"; }
+
+  Outcome<SurfacePoint> firstHit(const Ray& ray) const override {
+    if (!ray.origin.allFinite() || !ray.direction.allFinite()) return Failure{Reason::NotFinite, "ray"};
+    if (const std::optional<Place> place = firstPlace(ray.origin, ray.direction, 0, kInf)) return pointAt(*place);
+    return Failure{Reason::NoHit, describe()};
+  }
+
+  std::vector<std::optional<SurfacePoint>> approximateHits(const std::vector<Ray>& rays) const override;
+
+  Outcome<SurfacePoint> foot(const Vector3d& point, const Vector3d& direction, const SurfacePoint& previous) const override {
+    if (!point.allFinite() || !direction.allFinite() || !previous.position.allFinite()) return Failure{Reason::NotFinite, "foot"};
+    const Vector3d d = direction.normalized();
+    const Vector3d o = point + (previous.position - point).dot(d) * d;  // the place of the line nearest to `previous`
+    if (previous.element >= 0 && previous.element < static_cast<int>(mesh_.triangles.size()) && topology_.alive[previous.element])
+      if (const std::optional<Place> place = walk(previous.element, o, d, 32)) return pointAt(*place);
+    std::optional<SurfacePoint> best;
+    for (const double sign : {1.0, -1.0})
+      if (const std::optional<Place> place = firstPlace(o, sign * d, -1e-9 * size_, kInf)) {
+        const SurfacePoint p = pointAt(*place);
+        if (!best || (p.position - previous.position).squaredNorm() < (best->position - previous.position).squaredNorm())
+          best = p;
+      }
+    if (!best) return Failure{Reason::SurfaceEnded, "the line misses the " + describe()};
+    return *best;
+  }
+
+  Outcome<Curvature> curvatureAt(const SurfacePoint& p) const override;
+
+  bool occluded(const SurfacePoint& from, const Vector3d& to) const override {
+    if (!from.position.allFinite() || !to.allFinite()) return false;
+    const Vector3d offset = to - from.position;
+    const double length = offset.norm();
+    if (!(length > 0)) return false;
+    return firstPlace(from.position, offset / length, 1e-6 * std::min(size_, length), length * (1 - 1e-9)).has_value();
+  }
+
+  AlignedBox3d bounds() const override { return bounds_; }
+
+  TriangleMesh tessellate(const AlignedBox3d& region, int) const override {
+    TriangleMesh out;
+    out.vertices = mesh_.vertices;
+    out.normals = mesh_.normals;
+    const bool all = region.isEmpty() || !region.sizes().allFinite();
+    for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
+      if (!topology_.alive[i]) continue;
+      Vector3i t = mesh_.triangles[i];
+      if (!all) {
+        AlignedBox3d box;
+        for (int k = 0; k < 3; ++k) box.extend(mesh_.vertices[t[k]]);
+        if (!region.intersects(box)) continue;
+      }
+      if (topology_.turned[i]) std::swap(t.y(), t.z());
+      out.triangles.push_back(t);
+    }
+    return out;
+  }
+
+ private:
+  void check() const {
+    require(mesh_.normals.empty() || mesh_.normals.size() == mesh_.vertices.size(), "mesh: as many normals as vertices, or none");
+    for (std::size_t i = 0; i < mesh_.vertices.size(); ++i)
+      if (!mesh_.vertices[i].allFinite()) require(false, "mesh: vertex " + std::to_string(i) + " is not finite");
+    const int count = static_cast<int>(mesh_.vertices.size());
+    for (std::size_t i = 0; i < mesh_.triangles.size(); ++i)
+      if (mesh_.triangles[i].minCoeff() < 0 || mesh_.triangles[i].maxCoeff() >= count)
+        require(false, "mesh: triangle " + std::to_string(i) + " has a corner out of range");
+  }
+
+  void build() {
+    for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
+      if (!topology_.alive[i]) continue;
+      const Vector3i& t = mesh_.triangles[i];
+      for (int k = 0; k < 3; ++k) {
+        bounds_.extend(mesh_.vertices[t[k]]);
+        // A quadratic patch lies in the hull of its control points.
+        if (policy_ == NormalPolicy::Curved) bounds_.extend(edgePoint(t[k], t[(k + 1) % 3]));
+      }
+    }
+    centre_ = bounds_.center();
+    size_ = bounds_.sizes().norm();
+    toEmbree_ = 2 / size_;
+    RTCGeometry geometry = rtcNewGeometry(embree_.device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                 3 * sizeof(float), mesh_.vertices.size()));
+    auto* corners = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                   3 * sizeof(unsigned), mesh_.triangles.size()));
+    if (!vertices || !corners) throw std::runtime_error("Embree: out of memory");
+    for (std::size_t i = 0; i < mesh_.vertices.size(); ++i)
+      for (int k = 0; k < 3; ++k) vertices[3 * i + k] = static_cast<float>((mesh_.vertices[i][k] - centre_[k]) * toEmbree_);
+    for (std::size_t i = 0; i < mesh_.triangles.size(); ++i)  // ignored ones collapse to a point, which no ray hits
+      for (int k = 0; k < 3; ++k) corners[3 * i + k] = static_cast<unsigned>(mesh_.triangles[i][topology_.alive[i] ? k : 0]);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(embree_.scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcSetSceneFlags(embree_.scene, RTC_SCENE_FLAG_ROBUST);  // without it rays leak through edges
+    rtcCommitScene(embree_.scene);
+  }
+
+  /// Middle control point of the edge curve: half-way, moved on to both tangent planes with weight 1/2.
+  Vector3d edgePoint(int a, int b) const {
+    const Vector3d &p = mesh_.vertices[a], &q = mesh_.vertices[b], &m = mesh_.normals[a], &n = mesh_.normals[b];
+    return 0.5 * (p + q) - 0.25 * (m.dot(q - p) * m + n.dot(p - q) * n);
+  }
+
+  /// The quadratic patch of a triangle.
+  struct Patch {
+    Vector3d p0, p1, p2, m01, m12, m20;
+    Vector3d at(double u, double v) const {
+      const double w = 1 - u - v;
+      return w * w * p0 + u * u * p1 + v * v * p2 + 2 * (w * u * m01 + u * v * m12 + v * w * m20);
+    }
+    Vector3d du(double u, double v) const {
+      const double w = 1 - u - v;
+      return 2 * (-w * p0 + u * p1 + (w - u) * m01 + v * m12 - v * m20);
+    }
+    Vector3d dv(double u, double v) const {
+      const double w = 1 - u - v;
+      return 2 * (-w * p0 + v * p2 - u * m01 + u * m12 + (w - v) * m20);
+    }
+  };
+  Patch patchOf(int triangle) const {
+    const Vector3i& t = mesh_.triangles[triangle];
+    return {mesh_.vertices[t.x()],   mesh_.vertices[t.y()],   mesh_.vertices[t.z()],
+            edgePoint(t.x(), t.y()), edgePoint(t.y(), t.z()), edgePoint(t.z(), t.x())};
+  }
+
+  /// Line against the plane of a triangle (Moeller and Trumbore), then against its patch by Newton's method. The place may lie
+  /// outside the triangle. False when the line is parallel or Newton's method does not settle.
+  bool solve(int triangle, const Vector3d& o, const Vector3d& d, Place& place) const {
+    const Vector3i& c = mesh_.triangles[triangle];
+    const Vector3d& a = mesh_.vertices[c.x()];
+    const Vector3d e1 = mesh_.vertices[c.y()] - a, e2 = mesh_.vertices[c.z()] - a, p = d.cross(e2);
+    const double determinant = e1.dot(p);
+    if (determinant == 0) return false;
+    const double inverse = 1 / determinant;
+    const Vector3d s = o - a, q = s.cross(e1);
+    place = {triangle, s.dot(p) * inverse, d.dot(q) * inverse, e2.dot(q) * inverse};
+    if (!std::isfinite(place.u + place.v + place.t)) return false;
+    if (policy_ != NormalPolicy::Curved) return true;
+    // Far outside, the patch is no approximation of the surface: the flat answer shows the way to the neighbour.
+    if (place.u < -0.5 || place.v < -0.5 || place.u + place.v > 1.5) return true;
+    const Patch patch = patchOf(triangle);
+    double last = kInf;
+    for (int i = 0; i < 20; ++i) {
+      Matrix3d j;
+      j << patch.du(place.u, place.v), patch.dv(place.u, place.v), -d;
+      const Vector3d step = j.inverse() * (patch.at(place.u, place.v) - o - place.t * d);
+      if (!step.allFinite()) return false;
+      place.u -= step.x();
+      place.v -= step.y();
+      place.t -= step.z();
+      const double size = std::abs(step.x()) + std::abs(step.y());
+      if (size < 1e-15 || (size < 1e-11 && size >= last)) return true;
+      if (place.u < -1 || place.v < -1 || place.u + place.v > 2) return i > 0 || size < 10;
+      last = size;
+    }
+    return last < 1e-9;
+  }
+
+  /// From triangle to neighbour until the line passes through one. Nothing at a border or after `most` triangles.
+  std::optional<Place> walk(int triangle, const Vector3d& o, const Vector3d& d, int most) const {
+    int before = -1;
+    for (int i = 0; i < most; ++i) {
+      Place place;
+      if (!solve(triangle, o, d, place)) return std::nullopt;
+      const double w = 1 - place.u - place.v;
+      const double lowest = std::min({place.u, place.v, w});
+      if (lowest >= -kInside) return place;
+      // Weight of corner k negative: out across the edge opposite to it.
+      const int edge = lowest == place.v ? 0 : lowest == w ? 1 : 2;
+      const int next = topology_.neighbours[triangle][edge];
+      if (next < 0) return std::nullopt;
+      if (next == before && lowest > -1e-7) {
+        // To and fro over one edge: patches meet there, and round-off (or a slanted crease) puts the line outside both.
+        place.u = std::clamp(place.u, 0.0, 1.0);
+        place.v = std::clamp(place.v, 0.0, 1.0 - place.u);
+        return place;
+      }
+      before = triangle;
+      triangle = next;
+    }
+    return std::nullopt;
+  }
+
+  /// First place with a parameter in (least, most) of o + t d, |d| = 1. Embree finds triangles, double decides.
+  std::optional<Place> firstPlace(const Vector3d& o, const Vector3d& d, double least, double most) const {
+    // Start where the ray enters the box: float coordinates are then of order 1 with an error of 1e-7.
+    const double margin = 1e-5 * size_;
+    double enter = std::max(0.0, least), leave = most;
+    for (int k = 0; k < 3; ++k) {
+      const double low = bounds_.min()[k] - margin - o[k], high = bounds_.max()[k] + margin - o[k];
+      if (d[k] == 0) {
+        if (low > 0 || high < 0) return std::nullopt;
+        continue;
+      }
+      const double a = low / d[k], b = high / d[k];
+      enter = std::max(enter, std::min(a, b));
+      leave = std::min(leave, std::max(a, b));
+    }
+    if (!(enter <= leave)) return std::nullopt;
+    const Vector3d start = o + enter * d;
+    RTCRayHit query;
+    for (int k = 0; k < 3; ++k) (&query.ray.org_x)[k] = static_cast<float>((start[k] - centre_[k]) * toEmbree_);
+    query.ray.dir_x = static_cast<float>(d.x());
+    query.ray.dir_y = static_cast<float>(d.y());
+    query.ray.dir_z = static_cast<float>(d.z());
+    const float far = std::isfinite(leave) ? static_cast<float>((leave - enter) * toEmbree_) * 1.00001f + 1e-5f : INFINITY;
+    float near = 0;
+    RTCIntersectContext context;
+    for (int attempt = 0; attempt < 64; ++attempt) {
+      rtcInitIntersectContext(&context);
+      query.ray.tnear = near;
+      query.ray.tfar = far;
+      query.ray.time = 0;
+      query.ray.mask = ~0u;
+      query.ray.id = query.ray.flags = 0;
+      query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+      rtcIntersect1(embree_.scene, &context, &query);
+      if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+      if (std::optional<Place> place = walk(static_cast<int>(query.hit.primID), start, d, 8)) {
+        place->t += enter;
+        if (place->t > least && place->t < most) return place;
+        if (place->t >= most && policy_ != NormalPolicy::Curved) return std::nullopt;
+      }
+      // Before `least`, or over a border in double: look behind this hit.
+      near = std::max(query.ray.tfar, near) * 1.000001f + 2e-7f;
+    }
+    return std::nullopt;
+  }
+
+  SurfacePoint pointAt(const Place& place) const {
+    SurfacePoint p;
+    const Vector3i& t = mesh_.triangles[place.triangle];
+    const double w = 1 - place.u - place.v;
+    p.element = place.triangle;
+    p.barycentric = {place.u, place.v};
+    const Vector3d &a = mesh_.vertices[t.x()], &b = mesh_.vertices[t.y()], &c = mesh_.vertices[t.z()];
+    p.position = policy_ == NormalPolicy::Curved ? patchOf(place.triangle).at(place.u, place.v)
+                                                 : Vector3d(a + place.u * (b - a) + place.v * (c - a));
+    if (policy_ != NormalPolicy::Facet) {
+      const Vector3d n = w * mesh_.normals[t.x()] + place.u * mesh_.normals[t.y()] + place.v * mesh_.normals[t.z()];
+      const double length = n.norm();
+      if (length > 1e-6) {
+        p.normal = n / length;
+        return p;
+      }
+    }
+    // Facets, and where opposite vertex normals cancel.
+    p.normal = (b - a).cross(c - a).normalized() * (topology_.turned[place.triangle] ? -1 : 1);
+    return p;
+  }
+
+  NormalPolicy policy_;
+  TriangleMesh mesh_;
+  MeshTopology topology_;
+  AlignedBox3d bounds_;
+  Vector3d centre_{0, 0, 0};
+  double size_ = 1, toEmbree_ = 1;
+  EmbreeScene embree_;
+};
+
+std::vector<std::optional<SurfacePoint>> MeshSurface::approximateHits(const std::vector<Ray>& rays) const {
+  constexpr int kPacket = 8;
+  std::vector<std::optional<SurfacePoint>> hits(rays.size());
+  alignas(32) RTCRayHit8 packet;
+  alignas(32) int valid[kPacket];
+  RTCIntersectContext context;
+  for (std::size_t first = 0; first < rays.size(); first += kPacket) {
+    for (int k = 0; k < kPacket; ++k) {
+      valid[k] = first + k < rays.size() ? -1 : 0;
+      if (!valid[k]) continue;
+      const Ray& ray = rays[first + k];
+      // From about the mesh: the sphere around its box.
+      const double enter = std::max(0.0, (centre_ - ray.origin).dot(ray.direction) - 0.5 * size_);
+      const Vector3d o = (ray.origin + enter * ray.direction - centre_) * toEmbree_;
+      if (!o.allFinite() || !ray.direction.allFinite()) {
+        valid[k] = 0;
+        continue;
+      }
+      packet.ray.org_x[k] = static_cast<float>(o.x());
+      packet.ray.org_y[k] = static_cast<float>(o.y());
+      packet.ray.org_z[k] = static_cast<float>(o.z());
+      packet.ray.dir_x[k] = static_cast<float>(ray.direction.x());
+      packet.ray.dir_y[k] = static_cast<float>(ray.direction.y());
+      packet.ray.dir_z[k] = static_cast<float>(ray.direction.z());
+      packet.ray.tnear[k] = 0;
+      packet.ray.tfar[k] = INFINITY;
+      packet.ray.time[k] = 0;
+      packet.ray.mask[k] = ~0u;
+      packet.ray.id[k] = packet.ray.flags[k] = 0;
+      packet.hit.geomID[k] = packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    }
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect8(valid, embree_.scene, &context, &packet);
+    for (int k = 0; k < kPacket; ++k)
+      if (valid[k] && packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID)
+        hits[first + k] = pointAt({static_cast<int>(packet.hit.primID[k]), packet.hit.u[k], packet.hit.v[k], 0});
+  }
+  return hits;
+}
+
+Outcome<Curvature> MeshSurface::curvatureAt(const SurfacePoint& p) const {
+  if (policy_ == NormalPolicy::Facet) return Failure{Reason::NotSupported, "facets have no curvature"};
+  if (p.element < 0 || p.element >= static_cast<int>(mesh_.triangles.size()) || !topology_.alive[p.element])
+    return Failure{Reason::NotSupported, "not a point of this mesh"};
+  const Vector3i& t = mesh_.triangles[p.element];
+  const Vector3d &n0 = mesh_.normals[t.x()], &n1 = mesh_.normals[t.y()], &n2 = mesh_.normals[t.z()];
+  const double u = p.barycentric.x(), v = p.barycentric.y();
+  const Vector3d sum = (1 - u - v) * n0 + u * n1 + v * n2;
+  const double length = sum.norm();
+  if (!(length > 1e-6)) return Failure{Reason::NotSupported, "vertex normals cancel here"};
+  const Vector3d n = sum / length;
+  Eigen::Matrix<double, 3, 2> dP, dN;
+  if (policy_ == NormalPolicy::Curved) {
+    const Patch patch = patchOf(p.element);
+    dP << patch.du(u, v), patch.dv(u, v);
+  } else {
+    dP << mesh_.vertices[t.y()] - mesh_.vertices[t.x()], mesh_.vertices[t.z()] - mesh_.vertices[t.x()];
+  }
+  dN << n1 - n0, n2 - n0;
+  dN /= length;  // its part along n drops out below
+  // Shape operator S: dN = S dP on the tangent plane; for an interpolated field only nearly symmetric.
+  const Eigen::Matrix<double, 3, 2> basis = tangentBasis(n);
+  const Matrix2d a = basis.transpose() * dP;
+  if (!(std::abs(a.determinant()) > 0)) return Failure{Reason::NotSupported, "the triangle is seen edge-on from its normal"};
+  Matrix2d s = (basis.transpose() * dN) * a.inverse();
+  s = 0.5 * (s + s.transpose()).eval();
+  if (p.normal.dot(n) < 0) s = -s;
+  if (!s.allFinite()) return Failure{Reason::NotFinite, "curvature"};
+  Eigen::SelfAdjointEigenSolver<Matrix2d> eigen;
+  eigen.computeDirect(s);
+  Curvature c;
+  c.k1 = eigen.eigenvalues()[1];
+  c.k2 = eigen.eigenvalues()[0];
+  c.direction1 = basis * eigen.eigenvectors().col(1);
+  c.direction2 = basis * eigen.eigenvectors().col(0);
+  return c;
+}
+
+}  // namespace
+
+std::shared_ptr<const Surface> makeMesh(TriangleMesh mesh, NormalPolicy normals) {
+  return std::make_shared<MeshSurface>(std::move(mesh), normals);
+}
+
+}  // namespace glint
