@@ -14,26 +14,26 @@ namespace glint {
 
 /// One highlight in one frame: evidence. All coordinates are ideal pixels (lens distortion removed).
 struct Highlight {
-  std::string light;            ///< id of its light; "" while unknown
-  double level = 0.5;           ///< fraction of (reference - background) at which the contour was taken
-  Polyline contour;             ///< outer contour, closed, sub-pixel
-  Pixel peak{0, 0};             ///< maximum of the log-quadratic fit; ellipse centre when clipped
-  double peakValue = 0;         ///< fitted radiance at the peak, background removed; 0 when unknown
+  std::string light;               ///< id of its light; "" while unknown
+  double level = 0.5;              ///< fraction of (reference - background) at which the contour was taken
+  Polyline contour;                ///< outer contour, closed, sub-pixel
+  Pixel peak{0, 0};                ///< maximum of the log-quadratic fit; ellipse centre when clipped
+  double peakValue = 0;            ///< fitted radiance at the peak, background removed; 0 when unknown
   std::optional<Ellipse> ellipse;  ///< least-squares ellipse of the contour
   double areaPx2 = 0;
-  bool clipped = false;         ///< saturated: the peak is the ellipse centre
-  bool touchesBorder = false;   ///< cut by the image border
-  bool fromScene = false;       ///< given in the scene file, not detected
+  bool clipped = false;        ///< saturated: the peak is the ellipse centre
+  bool touchesBorder = false;  ///< cut by the image border
+  bool fromScene = false;      ///< given in the scene file, not detected
 };
 
 struct DetectOptions {
-  double level = 0.5;           ///< contour level, fraction of the strongest peak above the background
-  double minContrast = 3.0;     ///< peak over the background's spread; below this it is noise or a diffuse bump
-  double minAreaPx2 = 12;       ///< smaller blobs do not constrain the 5 ellipse parameters
-  double minRelativePeak = 0.0; ///< blobs whose own peak is below this fraction of the strongest are dropped
-  double peakWindowLevel = 0.9; ///< pixels above this fraction of the peak enter the log-quadratic fit
-  double clipValue = 0;         ///< values at or above are saturated; 0 = none
-  bool removeBackground = true; ///< subtract the local diffuse background (median of the surrounding glossy pixels)
+  double level = 0.5;            ///< contour level, fraction of the strongest peak above the background
+  double minContrast = 3.0;      ///< peak over the background's spread; below this it is noise or a diffuse bump
+  double minAreaPx2 = 12;        ///< smaller blobs do not constrain the 5 ellipse parameters
+  double minRelativePeak = 0.0;  ///< blobs whose own peak is below this fraction of the strongest are dropped
+  double peakWindowLevel = 0.9;  ///< pixels above this fraction of the peak enter the log-quadratic fit
+  double clipValue = 0;          ///< values at or above are saturated; 0 = none
+  bool removeBackground = true;  ///< subtract the local diffuse background (median of the surrounding glossy pixels)
 };
 
 /// Highlights of a linear image (method.md section 1): level relative to the strongest fitted peak, sub-pixel contours by
@@ -41,7 +41,8 @@ struct DetectOptions {
 /// @param linear  1 or 3 channels (3 are averaged), linear radiance. Non-finite or negative values are not used: where one
 ///                touches a highlight, that highlight fails.
 /// @param mask    optional, non-zero on the glossy object; same size.
-/// @return at least one highlight, strongest first. NoHighlight; NotFinite (detail counts the bad pixels); Clipped never fails, it flags.
+/// @return at least one highlight, strongest first. NoHighlight; NotFinite (detail counts the bad pixels); Clipped never fails,
+/// it flags.
 Outcome<std::vector<Highlight>> detectHighlights(const Image& linear, const Image* mask, const DetectOptions& options);
 
 }  // namespace glint

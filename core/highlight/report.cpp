@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/highlight/report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "core/base/atomic_file.h"
+#include "core/base/json_text.h"
+
+namespace glint {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kShift = 6;  // fractional bits of OpenCV's drawing functions
+
+Json pair(const Eigen::Vector2d& v) { return Json::array({v.x(), v.y()}); }
+
+Json toJson(const Highlight& h) {
+  Json j = Json::object();
+  if (!h.light.empty()) j["light"] = h.light;
+  j["level"] = h.level;
+  j["peak"] = pair(h.peak);
+  j["peak_value"] = h.peakValue;
+  j["area_px2"] = h.areaPx2;
+  j["clipped"] = h.clipped;
+  j["touches_border"] = h.touchesBorder;
+  if (h.ellipse)
+    j["ellipse"] = {{"centre", pair(h.ellipse->centre)},
+                    {"semi_axes", pair(h.ellipse->semiAxes)},
+                    {"angle_deg", h.ellipse->angle * 180 / M_PI}};
+  else
+    j["ellipse"] = nullptr;
+  Json contour = Json::array();
+  for (const Pixel& p : h.contour.points) contour.push_back(pair(p));
+  j["contour"] = std::move(contour);
+  return j;
+}
+
+}  // namespace
+
+std::string detectionJson(const std::string& input, double level, const std::string& source,
+                          const std::vector<DetectedFrame>& frames) {
+  Json root = {{"glint_detection", 1}, {"input", input}, {"level", level}, {"source", source}};
+  Json list = Json::array();
+  for (const DetectedFrame& frame : frames) {
+    Json j = {
+        {"id", frame.id}, {"status", frame.failure ? "failed" : "ok"}, {"reason", frame.failure ? frame.failure->message() : ""}};
+    j["highlights"] = Json::array();
+    for (const Highlight& h : frame.highlights) j["highlights"].push_back(toJson(h));
+    list.push_back(std::move(j));
+  }
+  root["frames"] = std::move(list);
+  return prettyJson(root.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+Image drawDetection(const Image& photograph, const Camera& camera, const std::vector<Highlight>& highlights) {
+  require(photograph.channels == 3 && !photograph.empty(), "drawDetection: a colour photograph");
+  cv::Mat small(photograph.height, photograph.width, CV_32FC3, const_cast<float*>(photograph.data.data())), canvas;
+  small.convertTo(small, CV_8UC3, 255);
+  const int scale = std::max(2, (1200 + photograph.width / 2) / photograph.width);
+  cv::resize(small, canvas, cv::Size(), scale, scale, cv::INTER_NEAREST);
+  // Pixel (0, 0) is a pixel's centre: after enlargement it is the centre of a scale x scale block.
+  const auto at = [&](const Pixel& ideal) {
+    const Pixel p = camera.distorted(ideal);
+    const double u = (p.x() + 0.5) * scale - 0.5, v = (p.y() + 0.5) * scale - 0.5;
+    return cv::Point(static_cast<int>(std::lround(u * (1 << kShift))), static_cast<int>(std::lround(v * (1 << kShift))));
+  };
+  const auto draw = [&](const std::vector<Pixel>& points, const cv::Scalar& colour) {
+    std::vector<cv::Point> line;
+    for (const Pixel& p : points) line.push_back(at(p));
+    cv::polylines(canvas, line, true, colour, 1, cv::LINE_AA, kShift);
+  };
+  for (const Highlight& h : highlights) {
+    if (h.ellipse) draw(h.ellipse->sample(180), cv::Scalar(255, 140, 0));
+    draw(h.contour.points, cv::Scalar(0, 220, 60));
+    const cv::Scalar colour = h.clipped ? cv::Scalar(230, 30, 30) : cv::Scalar(30, 120, 255);
+    const cv::Point p = at(h.peak);
+    const int arm = 6 << kShift;
+    cv::line(canvas, p - cv::Point(arm, 0), p + cv::Point(arm, 0), colour, 1, cv::LINE_AA, kShift);
+    cv::line(canvas, p - cv::Point(0, arm), p + cv::Point(0, arm), colour, 1, cv::LINE_AA, kShift);
+  }
+  Image drawn(canvas.cols, canvas.rows, 3);
+  cv::Mat out(canvas.rows, canvas.cols, CV_32FC3, drawn.data.data());
+  canvas.convertTo(out, CV_32FC3, 1 / 255.0);
+  return drawn;
+}
+
+void writePng(const std::filesystem::path& file, const Image& image) {
+  require(image.channels == 3 && !image.empty(), "writePng: a colour image");
+  cv::Mat mat(image.height, image.width, CV_32FC3, const_cast<float*>(image.data.data())), bytes;
+  mat.convertTo(bytes, CV_8UC3, 255);
+  cv::cvtColor(bytes, bytes, cv::COLOR_RGB2BGR);
+  atomicWrite(file, [&](const std::filesystem::path& temporary) {
+    bool written = false;
+    try {
+      written = cv::imwrite(temporary.string(), bytes);
+    } catch (const cv::Exception&) {
+    }
+    if (!written) throw InputError(file.string(), "", "cannot be written");
+  });
+}
+
+}  // namespace glint

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/synth/exact_highlight.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/light/light.h"
+#include "core/surface/brightest_point.h"
+#include "core/surface/level_set.h"
+
+namespace glint {
+namespace {
+
+/// A point that stands for the light where one direction is needed (seeds, limit angles).
+Light centreOf(const TrueLight& light) {
+  if (light.direction) return Light::towards(*light.direction);
+  if (light.segment) return Light::at(0.5 * ((*light.segment)[0] + (*light.segment)[1]));
+  return Light::at(*light.position);
+}
+
+/// Maximum of a smooth field near a start: Newton's method on fourth-order differences, with halved steps while the field does
+/// not rise. Nothing when the field ends within the stencil or the Hessian is not negative definite there.
+std::optional<Pixel> polishedMaximum(const std::function<std::optional<double>(const Pixel&)>& field, Pixel at) {
+  constexpr double kStep = 0.05;  // px: truncation h^4 f''''' / 30 and round-off 1e-15 / h are both below 1e-8 px here
+  for (int round = 0; round < 60; ++round) {
+    double f[5][5];
+    for (int i = -2; i <= 2; ++i)
+      for (int j = -2; j <= 2; ++j) {
+        if (i != 0 && j != 0 && (std::abs(i) != 1 || std::abs(j) != 1)) continue;
+        const std::optional<double> v = field(at + kStep * Pixel(i, j));
+        if (!v) return std::nullopt;
+        f[i + 2][j + 2] = *v;
+      }
+    const auto slope = [](double a, double b, double c, double d) { return (a - 8 * b + 8 * c - d) / (12 * kStep); };
+    const Eigen::Vector2d gradient(slope(f[0][2], f[1][2], f[3][2], f[4][2]), slope(f[2][0], f[2][1], f[2][3], f[2][4]));
+    Eigen::Matrix2d hessian;
+    hessian(0, 0) = (f[1][2] - 2 * f[2][2] + f[3][2]) / (kStep * kStep);
+    hessian(1, 1) = (f[2][1] - 2 * f[2][2] + f[2][3]) / (kStep * kStep);
+    hessian(0, 1) = hessian(1, 0) = (f[3][3] - f[3][1] - f[1][3] + f[1][1]) / (4 * kStep * kStep);
+    Eigen::Vector2d step;
+    if (hessian(0, 0) < 0 && hessian.determinant() > 0) {
+      step = -hessian.inverse() * gradient;
+    } else {
+      step = gradient.norm() > 0 ? Eigen::Vector2d(gradient.normalized()) : Eigen::Vector2d(0, 0);  // uphill, one pixel
+    }
+    if (step.norm() > 20) step *= 20 / step.norm();
+    double share = 1;
+    for (; share > 1e-3; share *= 0.5) {
+      const std::optional<double> next = field(at + share * step);
+      if (next && *next >= f[2][2] - 1e-12 * std::abs(f[2][2])) break;
+    }
+    at += share * step;
+    if (share * step.norm() < 1e-9) return at;
+  }
+  return at;
+}
+
+struct Candidate {
+  Pixel pixel;
+  double value;
+};
+
+}  // namespace
+
+Outcome<std::vector<Highlight>> exactHighlights(const Surface& surface, const Camera& camera, const TrueLight& light,
+                                                const Material& material, const ExactOptions& options) {
+  const bool limit = options.kind == ContourKind::LimitAngle;
+  if (limit && (light.segment || light.radius > 0)) return Failure{Reason::NotSupported, "a limit angle needs a point light"};
+  const Light centre = centreOf(light);
+
+  // The larger, the brighter: log I, or -alpha.
+  const auto brightness = [&](const Pixel& pixel) -> std::optional<double> {
+    if (!limit) return logSpecular(surface, camera, pixel, light, material);
+    const Ray ray = camera.ray(pixel);
+    const Outcome<SurfacePoint> hit = surface.firstHit(ray);
+    if (!hit) return std::nullopt;
+    const SurfacePoint p = facing(*hit, ray.origin);
+    const Eigen::Vector3d toLight = centre.directionFrom(p.position);
+    if (!(p.normal.dot(toLight) > 0)) return std::nullopt;
+    const Eigen::Vector3d target = centre.atInfinity() ? Eigen::Vector3d(p.position + 1e3 * toLight) : centre.position();
+    if (surface.occluded(p, target)) return std::nullopt;
+    return -incidentAngle(p.normal, toLight, -ray.direction);
+  };
+
+  std::vector<Candidate> peaks;
+  BrightestPointOptions search;
+  search.marginFraction = std::max(search.marginFraction, options.marginPx / std::min(camera.width, camera.height));
+  if (const Outcome<std::vector<BrightestPoint>> points = predictedBrightestPoints(surface, camera, centre, search)) {
+    for (const BrightestPoint& point : *points) {
+      const Pixel at = limit ? point.pixel : polishedMaximum(brightness, point.pixel).value_or(point.pixel);
+      if (const std::optional<double> value = brightness(at)) peaks.push_back({at, *value});
+    }
+  }
+  // A light that is wide, or whose mirror point is hidden, may have its maximum elsewhere: the coarse grid of the image decides.
+  if (!limit || peaks.empty()) {
+    constexpr int kGridPx = 16;
+    std::optional<Candidate> best;
+    for (int y = 0; y < camera.height; y += kGridPx)
+      for (int x = 0; x < camera.width; x += kGridPx)
+        if (const std::optional<double> value = brightness(Pixel(x, y)); value && (!best || *value > best->value))
+          best = Candidate{Pixel(x, y), *value};
+    if (best &&
+        (peaks.empty() || best->value > std::max_element(peaks.begin(), peaks.end(), [](const Candidate& a, const Candidate& b) {
+                                          return a.value < b.value;
+                                        })->value)) {
+      if (!limit)
+        if (const std::optional<Pixel> at = polishedMaximum(brightness, best->pixel)) best = Candidate{*at, *brightness(*at)};
+      peaks.push_back(*best);
+    }
+  }
+  if (peaks.empty()) return Failure{Reason::NoHighlight, "no surface point is visible and lit"};
+  std::sort(peaks.begin(), peaks.end(), [](const Candidate& a, const Candidate& b) { return a.value > b.value; });
+
+  const double threshold = limit ? options.limitAngle : -(peaks.front().value + std::log(options.level));
+  LevelSetOptions trace;
+  trace.sagittaPx = options.sagittaPx;
+  trace.marginPx = options.marginPx;
+  for (const Candidate& peak : peaks)
+    if (-peak.value < threshold) trace.seeds.push_back(peak.pixel);
+  const PixelField field = [&](const Pixel& pixel) -> std::optional<double> {
+    const std::optional<double> value = brightness(pixel);
+    if (!value) return std::nullopt;
+    return -*value;
+  };
+  std::vector<Highlight> highlights;
+  for (const LevelSetComponent& component : traceLevelSets(field, {}, threshold, camera.width, camera.height, trace)) {
+    Highlight h;
+    h.light = light.id;
+    h.level = options.level;
+    h.contour = component.outline;
+    h.areaPx2 = std::abs(signedArea(h.contour));
+    if (h.contour.points.size() < 5 || !(h.areaPx2 > 0)) continue;
+    double value = -component.minimum;
+    h.peak = component.minimumAt;
+    const auto inside =
+        std::find_if(peaks.begin(), peaks.end(), [&](const Candidate& p) { return contains(h.contour, p.pixel); });
+    if (inside != peaks.end()) {
+      h.peak = inside->pixel;
+      value = inside->value;
+    } else if (!limit) {
+      if (const std::optional<Pixel> at = polishedMaximum(brightness, h.peak); at && contains(h.contour, *at)) {
+        h.peak = *at;
+        value = *brightness(*at);
+      }
+    }
+    h.peakValue = limit ? 0 : std::exp(value);
+    for (const Pixel& p : h.contour.points)
+      h.touchesBorder = h.touchesBorder || p.minCoeff() < 1e-6 - options.marginPx ||
+                        p.x() > camera.width - 1 + options.marginPx - 1e-6 || p.y() > camera.height - 1 + options.marginPx - 1e-6;
+    if (const Outcome<Ellipse> ellipse = fitEllipse(h.contour.points)) h.ellipse = *ellipse;
+    highlights.push_back(std::move(h));
+  }
+  if (highlights.empty()) return Failure{Reason::NoHighlight, "no region of the image lies above the level"};
+  std::stable_sort(highlights.begin(), highlights.end(),
+                   [](const Highlight& a, const Highlight& b) { return a.peakValue > b.peakValue; });
+  return highlights;
+}
+
+}  // namespace glint

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <random>
+#include <set>
+
+#include "core/base/atomic_file.h"
+#include "core/base/parallel.h"
+#include "core/synth/synth.h"
+
+namespace glint {
+namespace fs = std::filesystem;
+namespace {
+
+/// IEC 61966-2-1.
+float srgb(float linear) {
+  const float v = std::clamp(linear, 0.f, 1.f);
+  return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
+}
+
+cv::Mat matOf(const Image& image) {
+  cv::Mat mat(image.height, image.width, CV_32FC(image.channels), const_cast<float*>(image.data.data()));
+  cv::Mat copy = mat.clone();
+  if (image.channels == 3) cv::cvtColor(copy, copy, cv::COLOR_RGB2BGR);
+  return copy;
+}
+
+void writeImage(const fs::path& file, const cv::Mat& mat) {
+  atomicWrite(file, [&](const fs::path& temporary) {
+    bool written = false;
+    try {
+      // 1 = uncompressed: the default compression of float TIFF is lossy.
+      written = cv::imwrite(temporary.string(), mat,
+                            file.extension() == ".tiff" ? std::vector<int>{cv::IMWRITE_TIFF_COMPRESSION, 1} : std::vector<int>{});
+    } catch (const cv::Exception& e) {
+      throw InputError(file.string(), "", "cannot be written: " + std::string(e.what()));
+    }
+    if (!written) throw InputError(file.string(), "", "cannot be written");
+  });
+}
+
+/// Blur, then noise (its own stream per frame and per image), never below 0.
+void degrade(Image& image, const RenderOptions& options, double sigma, unsigned stream) {
+  cv::Mat mat(image.height, image.width, CV_32FC(image.channels), image.data.data());
+  if (options.blurPx > 0) cv::GaussianBlur(mat, mat, cv::Size(0, 0), options.blurPx, options.blurPx, cv::BORDER_REPLICATE);
+  if (sigma > 0) {
+    std::seed_seq seeds{options.seed, stream};
+    std::mt19937 random(seeds);
+    std::normal_distribution<double> normal(0, sigma);
+    for (float& v : image.data) v = std::max(0.f, v + static_cast<float>(normal(random)));
+  }
+}
+
+cv::Mat quantised(const Image& linear, int bits) {
+  const double top = bits == 8 ? 255 : 65535;
+  cv::Mat mat = matOf(linear), out;
+  for (int y = 0; y < mat.rows; ++y)
+    for (int x = 0; x < mat.cols; ++x)
+      for (int c = 0; c < 3; ++c) mat.at<cv::Vec3f>(y, x)[c] = srgb(mat.at<cv::Vec3f>(y, x)[c]);
+  mat.convertTo(out, bits == 8 ? CV_8UC3 : CV_16UC3, top);  // rounds to nearest
+  return out;
+}
+
+std::vector<TrueLight> lightsOf(const Scene& scene, const Frame& frame) {
+  std::vector<TrueLight> lights;
+  for (const TrueLight& light : scene.lights)
+    if (std::find(frame.lightsOn.begin(), frame.lightsOn.end(), light.id) != frame.lightsOn.end()) lights.push_back(light);
+  return lights;
+}
+
+/// Brightest value that a frame is expected to show: specular peak plus the diffuse part there.
+double brightest(const Surface& surface, const Frame& frame, const std::vector<TrueLight>& lights, const Material& material) {
+  double top = 0;
+  for (const Highlight& h : frame.highlights) {
+    const Ray ray = frame.camera.ray(h.peak);
+    const Outcome<SurfacePoint> hit = surface.firstHit(ray);
+    if (!hit) continue;
+    double sum = 0;
+    for (const TrueLight& light : lights) {
+      const Shading s = shade(surface, *hit, ray.origin, light, material);
+      sum += s.specular + material.diffuse.maxCoeff() * s.diffuse;
+    }
+    top = std::max(top, sum);
+  }
+  return top;
+}
+
+}  // namespace
+
+RenderedFrame renderFrame(const Surface& surface, const Camera& camera, const std::vector<TrueLight>& lights,
+                          const Material& material, int samples) {
+  require(samples >= 1, "renderFrame: at least one sample");
+  const int w = camera.width, h = camera.height;
+  RenderedFrame frame{Image(w, h, 1), Image(w, h, 3), Image(w, h, 1), Image(w, h, 3), Image(w, h, 1)};
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x) {
+      double specular = 0, diffuse = 0;
+      for (int j = 0; j < samples; ++j)
+        for (int i = 0; i < samples; ++i) {
+          const Pixel measured(x + (i + 0.5) / samples - 0.5, y + (j + 0.5) / samples - 0.5);
+          const Ray ray = camera.ray(camera.undistorted(measured));
+          const Outcome<SurfacePoint> hit = surface.firstHit(ray);
+          if (!hit) continue;
+          for (const TrueLight& light : lights) {
+            const Shading s = shade(surface, *hit, ray.origin, light, material);
+            specular += s.specular;
+            diffuse += s.diffuse;
+          }
+        }
+      const double share = 1.0 / (samples * samples);
+      frame.specular.at(x, y) = static_cast<float>(specular * share);
+      for (int c = 0; c < 3; ++c) frame.diffuse.at(x, y, c) = static_cast<float>(material.diffuse[c] * diffuse * share);
+      // Depth, normal and mask belong to the pixel's centre: a mean over an edge is no point of the surface.
+      const Ray ray = camera.ray(camera.undistorted(Pixel(x, y)));
+      const Outcome<SurfacePoint> hit = surface.firstHit(ray);
+      if (!hit) continue;
+      const SurfacePoint p = facing(*hit, ray.origin);
+      frame.mask.at(x, y) = 1;
+      frame.depth.at(x, y) = static_cast<float>(camera.depth(p.position));
+      for (int c = 0; c < 3; ++c) frame.normals.at(x, y, c) = static_cast<float>(p.normal[c]);
+    }
+  return frame;
+}
+
+Scene synthesise(const SynthSpec& spec, const fs::path& folder, const ProgressFn& progress) {
+  Scene scene = spec.scene;
+  scene.folder = fs::absolute(folder).lexically_normal();
+  std::error_code error;
+  fs::create_directories(scene.folder, error);
+  if (error) throw InputError(folder.string(), "", "cannot be created: " + error.message());
+  // Meshes go into the folder, so that it stands on its own.
+  for (auto& [id, source] : scene.surfaces) {
+    if (!source.mesh) continue;
+    const fs::path copy = scene.folder / "mesh" / source.mesh->filename();
+    fs::create_directories(copy.parent_path(), error);
+    if (!fs::equivalent(*source.mesh, copy, error))
+      fs::copy_file(*source.mesh, copy, fs::copy_options::overwrite_existing, error);
+    if (error && !fs::exists(copy)) throw InputError(copy.string(), "", "cannot be written: " + error.message());
+    source.mesh = copy;
+  }
+  const SurfaceCache surfaces(scene);
+  const int n = static_cast<int>(scene.frames.size());
+  std::vector<double> tops(static_cast<std::size_t>(n), 0);
+  std::mutex warningMutex;
+  parallelFor(
+      n,
+      [&](int i) {
+        Frame& frame = scene.frames[static_cast<std::size_t>(i)];
+        const Outcome<std::shared_ptr<const Surface>> surface = surfaces.surfaceOf(i, NormalPolicy::Curved);
+        if (!surface) throw InputError(scene.file.string(), "frames[" + std::to_string(i) + "]", surface.failure().message());
+        const std::vector<TrueLight> lights = lightsOf(scene, frame);
+        for (const TrueLight& light : lights) {
+          const Outcome<std::vector<Highlight>> found =
+              exactHighlights(**surface, frame.camera, light, spec.material, spec.exact);
+          if (found) {
+            frame.highlights.insert(frame.highlights.end(), found->begin(), found->end());
+          } else {
+            const std::lock_guard<std::mutex> lock(warningMutex);
+            scene.warnings.push_back("frame " + frame.id + ", light " + light.id + ": " + found.failure().message());
+          }
+        }
+        if (spec.render) tops[static_cast<std::size_t>(i)] = brightest(**surface, frame, lights, spec.material);
+      },
+      progress, "highlights");
+
+  if (spec.render) {
+    const RenderOptions& render = *spec.render;
+    const double top = n > 0 ? *std::max_element(tops.begin(), tops.end()) : 0;
+    const double exposure = render.exposure > 0 ? render.exposure : (top > 0 ? 0.9 / top : 1);
+    for (const char* name : {"frames", "radiance", "depth", "normals", "mask"}) {
+      if (render.bits == 32 && std::string(name) == "frames") continue;
+      fs::create_directories(scene.folder / name, error);
+      if (error) throw InputError((scene.folder / name).string(), "", "cannot be created: " + error.message());
+    }
+    parallelFor(
+        n,
+        [&](int i) {
+          Frame& frame = scene.frames[static_cast<std::size_t>(i)];
+          const Outcome<std::shared_ptr<const Surface>> surface = surfaces.surfaceOf(i, NormalPolicy::Curved);
+          RenderedFrame r = renderFrame(**surface, frame.camera, lightsOf(scene, frame), spec.material, render.samples);
+          const auto file = [&](const char* kind, const char* extension) { return scene.folder / kind / (frame.id + extension); };
+          if (render.bits != 32) {
+            Image photograph(frame.camera.width, frame.camera.height, 3);
+            for (std::size_t k = 0; k < photograph.data.size(); ++k)
+              photograph.data[k] = static_cast<float>(exposure) * (r.diffuse.data[k] + r.specular.data[k / 3]);
+            degrade(photograph, render, render.noise * exposure * top, static_cast<unsigned>(2 * i));
+            frame.image = file("frames", ".png");
+            writeImage(frame.image, quantised(photograph, render.bits));
+          }
+          degrade(r.specular, render, render.noise * top, static_cast<unsigned>(2 * i + 1));
+          frame.radiance = file("radiance", ".tiff");
+          frame.depth = file("depth", ".tiff");
+          frame.normals = file("normals", ".tiff");
+          frame.mask = file("mask", ".png");
+          writeImage(frame.radiance, matOf(r.specular));
+          writeImage(frame.depth, matOf(r.depth));
+          writeImage(frame.normals, matOf(r.normals));
+          cv::Mat mask;
+          matOf(r.mask).convertTo(mask, CV_8U, 255);
+          writeImage(frame.mask, mask);
+        },
+        progress, "render");
+  }
+  std::sort(scene.warnings.begin(), scene.warnings.end());
+  scene.file = scene.folder / "scene.json";
+  writeScene(scene, scene.file);
+  return scene;
+}
+
+}  // namespace glint

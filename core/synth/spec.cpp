@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/base/atomic_file.h"
+#include "core/base/json_text.h"
+#include "core/scene/scene_json.h"
+#include "core/scene/scene_reader.h"
+#include "core/synth/synth.h"
+
+namespace glint {
+namespace {
+
+double inRange(const JsonNode& node, double low, double high) {
+  const double v = node.number();
+  if (!(v >= low && v <= high)) node.fail("must lie in " + std::to_string(low) + " .. " + std::to_string(high));
+  return v;
+}
+
+int countOf(const JsonNode& node, int low, int high) {
+  const int v = node.integer();
+  if (v < low || v > high) node.fail("must lie in " + std::to_string(low) + " .. " + std::to_string(high));
+  return v;
+}
+
+std::string padded(std::size_t i) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%04zu", i);
+  return text;
+}
+
+/// Pose of a camera at `eye` that looks at `target`, image up along world +z.
+Eigen::Isometry3d lookAt(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const JsonNode& node) {
+  const Eigen::Vector3d forward = (target - eye).normalized();
+  const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ());
+  if (!(right.norm() > 1e-9)) node.fail("looks straight up or down: world +z cannot be up in the image");
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear().row(0) = right.normalized();
+  pose.linear().row(1) = forward.cross(right.normalized());
+  pose.linear().row(2) = forward;
+  pose.translation() = -pose.linear() * eye;
+  return pose;
+}
+
+std::vector<Eigen::Isometry3d> readPath(const JsonNode& node) {
+  std::vector<Eigen::Isometry3d> poses;
+  if (const auto list = node.find("cameras")) {
+    for (std::size_t i = 0; i < list->size(); ++i) poses.push_back(readPoseJson(list->at(i)));
+  } else {
+    const JsonNode orbit = node.at("orbit");
+    const Eigen::Vector3d centre = orbit.at("centre").vector3();
+    const double radius = inRange(orbit.at("radius"), 1e-9, 1e9), height = orbit.at("height").number();
+    const double from = orbit.at("from").number(), to = orbit.at("to").number();
+    const int count = countOf(orbit.at("count"), 1, 100000);
+    for (int i = 0; i < count; ++i) {
+      const double a = count == 1 ? from : from + (to - from) * i / (count - 1);
+      poses.push_back(lookAt(centre + Eigen::Vector3d(radius * std::cos(a), radius * std::sin(a), height), centre, orbit));
+    }
+  }
+  if (poses.empty()) node.fail("has no camera");
+  return poses;
+}
+
+std::vector<double> readSteps(const JsonNode& node) {
+  if (const auto values = node.find("values")) {
+    const std::vector<double> list = values->numbers();
+    if (list.empty()) values->fail("is empty");
+    return list;
+  }
+  const double from = node.at("from").number(), to = node.at("to").number();
+  const int count = countOf(node.at("count"), 2, 100000);
+  std::vector<double> list;
+  for (int i = 0; i < count; ++i) list.push_back(from + (to - from) * i / (count - 1));
+  return list;
+}
+
+void setParameter(AnalyticSpec& spec, const JsonNode& name, double value) {
+  const std::string parameter = name.text();
+  const bool sheet = spec.type == "sheet", round = spec.type == "sphere" || spec.type == "cylinder", torus = spec.type == "torus";
+  if (sheet && parameter == "curvature") {
+    spec.curvature = value;
+    return;
+  }
+  if (!(value > 0)) name.fail("'" + parameter + "' must be positive");
+  if (sheet && parameter == "length")
+    spec.length = value;
+  else if (sheet && parameter == "width")
+    spec.width = value;
+  else if (round && parameter == "radius")
+    spec.radius = value;
+  else if (torus && parameter == "major_radius")
+    spec.majorRadius = value;
+  else if (torus && parameter == "minor_radius")
+    spec.minorRadius = value;
+  else
+    name.fail("'" + parameter + "' is not a parameter of a " + spec.type);
+}
+
+Material readMaterial(const JsonNode& render) {
+  Material material;
+  if (const auto n = render.find("reflectance")) {
+    const std::optional<Lobe> lobe = lobeOf(n->text());
+    if (!lobe) n->fail("'" + n->text() + "' is none of: phong, blinn-phong, torrance-sparrow, ggx");
+    material.lobe = *lobe;
+  }
+  if (const auto n = render.find("roughness")) material.roughness = inRange(*n, 1e-4, 10);
+  if (const auto n = render.find("specular")) material.specular = inRange(*n, 1e-12, 1e12);
+  if (const auto n = render.find("diffuse")) {
+    material.diffuse = n->isArray() ? n->vector3() : Eigen::Vector3d::Constant(n->number());
+    if (!(material.diffuse.minCoeff() >= 0)) n->fail("must not be negative");
+  }
+  return material;
+}
+
+RenderOptions readRender(const JsonNode& render) {
+  RenderOptions options;
+  if (const auto n = render.find("exposure")) options.exposure = inRange(*n, 0, 1e12);
+  if (const auto n = render.find("noise")) options.noise = inRange(*n, 0, 1);
+  if (const auto n = render.find("blur_px")) options.blurPx = inRange(*n, 0, 100);
+  if (const auto n = render.find("samples")) options.samples = countOf(*n, 1, 64);
+  if (const auto n = render.find("seed")) options.seed = static_cast<unsigned>(countOf(*n, 0, 2147483647));
+  if (const auto n = render.find("bits")) {
+    options.bits = n->integer();
+    if (options.bits != 8 && options.bits != 16 && options.bits != 32) n->fail("must be 8, 16 or 32");
+  }
+  return options;
+}
+
+void addFrame(Scene& scene, const Camera& camera, const Eigen::Isometry3d& pose, const std::string& surface) {
+  Frame frame;
+  frame.id = padded(scene.frames.size());
+  frame.camera = camera;
+  frame.camera.camFromWorld = pose;
+  frame.surface = surface;
+  for (const TrueLight& light : scene.lights) frame.lightsOn.push_back(light.id);
+  scene.frames.push_back(std::move(frame));
+}
+
+}  // namespace
+
+SynthSpec readSynthSpec(const std::filesystem::path& file) {
+  const JsonNode root = JsonNode::parse(readFile(file), file.string());
+  SynthSpec spec;
+  Scene& scene = spec.scene;
+  scene.file = file;
+  scene.folder = std::filesystem::absolute(file).lexically_normal().parent_path();
+  scene.name = file.stem().string();
+  if (const auto n = root.find("name")) scene.name = n->text();
+  const Camera camera = readCameraJson(root.at("camera"));
+  const JsonNode lights = root.at("lights");
+  for (std::size_t i = 0; i < lights.size(); ++i) scene.lights.push_back(readLightJson(lights.at(i)));
+  if (scene.lights.empty()) lights.fail("is empty: a highlight needs a light");
+  const JsonNode surfaces = root.at("surfaces");
+  for (const std::string& id : surfaces.keys()) {
+    const JsonNode node = surfaces.at(id);
+    SurfaceSource source;
+    if (const auto n = node.find("mesh")) source.mesh = resolveInside(scene.folder, n->text(), false, n->file(), n->place());
+    if (const auto n = node.find("analytic")) source.analytic = readAnalyticJson(*n);
+    if (source.mesh.has_value() == source.analytic.has_value()) node.fail("needs exactly one of mesh, analytic");
+    scene.surfaces[id] = source;
+  }
+  if (scene.surfaces.empty()) surfaces.fail("is empty");
+
+  std::vector<std::string> order{scene.surfaces.begin()->first};
+  if (const auto steps = root.find("surface_steps")) {
+    const JsonNode name = steps->at("surface");
+    const auto base = scene.surfaces.find(name.text());
+    if (base == scene.surfaces.end()) name.fail("there is no surface '" + name.text() + "'");
+    if (!base->second.analytic) name.fail("'" + name.text() + "' is a mesh: only analytic surfaces have parameters");
+    const AnalyticSpec original = *base->second.analytic;
+    const std::string prefix = base->first;
+    scene.surfaces.erase(base);
+    order.clear();
+    for (const double value : readSteps(*steps)) {
+      AnalyticSpec step = original;
+      setParameter(step, steps->at("parameter"), value);
+      order.push_back(prefix + "_" + padded(order.size()));
+      scene.surfaces[order.back()].analytic = step;
+    }
+  } else if (scene.surfaces.size() > 1 && root.has("path")) {
+    surfaces.fail("a path needs exactly one surface");
+  }
+  if (const auto path = root.find("path")) {
+    const std::vector<Eigen::Isometry3d> poses = readPath(*path);
+    for (const std::string& surface : order)
+      for (const Eigen::Isometry3d& pose : poses) addFrame(scene, camera, pose, surface);
+  } else {
+    const JsonNode frames = root.at("frames");
+    for (const std::string& stepped : order)
+      for (std::size_t i = 0; i < frames.size(); ++i) {
+        const JsonNode node = frames.at(i);
+        std::string surface = stepped;
+        if (const auto n = node.find("surface"); n && !root.has("surface_steps")) {
+          surface = n->text();
+          if (!scene.surfaces.count(surface)) n->fail("there is no surface '" + surface + "'");
+        }
+        addFrame(scene, camera, readPoseJson(node.at("camera_from_world")), surface);
+        if (const auto n = node.find("id"); n && order.size() == 1) scene.frames.back().id = n->text();
+        if (const auto n = node.find("lights_on")) {
+          scene.frames.back().lightsOn.clear();
+          for (std::size_t k = 0; k < n->size(); ++k) scene.frames.back().lightsOn.push_back(n->at(k).text());
+        }
+      }
+    if (scene.frames.empty()) frames.fail("is empty");
+  }
+
+  if (const auto n = root.find("contour")) {
+    if (n->text() == "limit-angle")
+      spec.exact.kind = ContourKind::LimitAngle;
+    else if (n->text() != "radiance")
+      n->fail("'" + n->text() + "' is none of: radiance, limit-angle");
+  }
+  if (const auto n = root.find("level")) spec.exact.level = inRange(*n, 1e-6, 1 - 1e-6);
+  if (const auto n = root.find("margin_px")) spec.exact.marginPx = inRange(*n, 0, 10000);
+  if (spec.exact.kind == ContourKind::LimitAngle)
+    spec.exact.limitAngle = inRange(root.at("limit_angle_deg"), 1e-6, 60) * M_PI / 180;
+  if (const auto n = root.find("render")) {
+    spec.material = readMaterial(*n);
+    spec.render = readRender(*n);
+  } else if (spec.exact.kind == ContourKind::Radiance) {
+    root.fail("a radiance contour needs \"render\" with the reflectance");
+  }
+  return spec;
+}
+
+}  // namespace glint
