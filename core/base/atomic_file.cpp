@@ -8,6 +8,8 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <mutex>
+#include <set>
 
 #include "core/base/outcome.h"
 
@@ -33,14 +35,25 @@ struct Descriptor {
   }
 };
 
+std::mutex unfinishedMutex;
+std::set<fs::path> unfinished;
+
 /// Removes a temporary file unless the rename succeeded.
 struct Temporary {
   fs::path path;
   bool keep = false;
+  explicit Temporary(fs::path p) : path(std::move(p)) {
+    const std::lock_guard<std::mutex> lock(unfinishedMutex);
+    unfinished.insert(path);
+  }
   ~Temporary() {
+    const std::lock_guard<std::mutex> lock(unfinishedMutex);
+    unfinished.erase(path);
     std::error_code ignored;
     if (!keep) fs::remove(path, ignored);
   }
+  Temporary(const Temporary&) = delete;
+  Temporary& operator=(const Temporary&) = delete;
 };
 
 void writeAll(int fd, std::string_view content, const fs::path& file) {
@@ -126,6 +139,12 @@ void atomicWrite(const fs::path& requested, const std::function<void(const fs::p
     throw InputError(requested.string(), "", "cannot be written (disk full, or the folder is not writable)");
   flushAndRename(temporary.path, file);
   temporary.keep = true;
+}
+
+void removeUnfinishedWrites() {
+  const std::lock_guard<std::mutex> lock(unfinishedMutex);
+  std::error_code ignored;
+  for (const fs::path& path : unfinished) fs::remove(path, ignored);
 }
 
 std::string readFile(const fs::path& file) {

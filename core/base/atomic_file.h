@@ -19,6 +19,9 @@ void atomicWrite(const std::filesystem::path& file, std::string_view content);
 /// @throw InputError when the temporary file is missing or empty afterwards or cannot be renamed; whatever `write` throws.
 void atomicWrite(const std::filesystem::path& file, const std::function<void(const std::filesystem::path& temporary)>& write);
 
+/// Removes the temporary files of writes that are under way, for a program that ends at once (after Ctrl-C).
+void removeUnfinishedWrites();
+
 /// A file's bytes. InputError when it is missing, a folder, or cannot be read.
 std::string readFile(const std::filesystem::path& file);
 

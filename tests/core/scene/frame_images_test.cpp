@@ -42,14 +42,14 @@ cv::Mat picture(int depth, double largest) {
 // The standard's own worked values: code 128 is 0.2158605 in linear light, code 10 lies on the straight part (10 / 255 / 12.92).
 TEST(ReadLinear, EightBitGoesThroughTheInverseSrgbCurveAndKeepsRedFirst) {
   const TemporaryFolder folder;
-  cv::Mat m(3, 4, CV_8UC3, cv::Scalar(10, 128, 255));  // blue, green, red
+  cv::Mat m(3, 4, CV_8UC3, cv::Scalar(10, 128, 64));  // blue, green, red
   Frame f = frameOf(4, 3);
   f.image = folder / "x.png";
   ASSERT_TRUE(cv::imwrite(f.image.string(), m));
   const Outcome<Image> image = readLinear(f, FrameSource::Image);
   ASSERT_TRUE(image) << image.failure().message();
   EXPECT_EQ(image->channels, 3);
-  EXPECT_NEAR(image->at(1, 2, 0), 1.f, kFloat);
+  EXPECT_NEAR(image->at(1, 2, 0), 0.0512695f, kFloat);  // code 64
   EXPECT_NEAR(image->at(1, 2, 1), 0.2158605f, kFloat);
   EXPECT_NEAR(image->at(1, 2, 2), 10 / 255.f / 12.92f, kFloat);
 }

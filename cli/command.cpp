@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The only file that includes CLI11 (it is slow to compile).
+#include "cli/command.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+
+#include "cli/interrupt.h"
+#include "cli/terminal.h"
+
+namespace glint::cli {
+
+struct Options::Parser {
+  CLI::App& app;
+};
+
+namespace {
+
+CLI::Option* named(CLI::Option* option, const std::string& type) { return option->type_name(type)->capture_default_str(); }
+
+/// The help page of one command: synopsis, what it does, arguments, examples, exit codes.
+class Page final : public CLI::Formatter {
+ public:
+  std::string make_usage(const CLI::App* app, std::string name) const override {
+    std::string line = "Usage: " + name;
+    for (const CLI::Option* o : app->get_options()) {
+      if (o->get_positional())
+        line += " " + o->get_name(true, false);
+      else if (o->get_required())
+        line += " " + o->get_name(false, false) + " " + o->get_type_name();
+    }
+    if (app->get_parent() == nullptr) line += " COMMAND";
+    return line + " [OPTIONS]\n";
+  }
+  std::string make_option_opts(const CLI::Option* o) const override {
+    if (o->get_type_size() == 0) return "";
+    std::string text = o->get_positional() ? "" : " " + o->get_type_name();
+    if (!o->get_default_str().empty()) text += "=" + o->get_default_str();
+    return text;
+  }
+};
+
+constexpr const char* kExitCodes =
+    "Exit codes: 0 done; 1 a comparison failed; 2 the input or the request is wrong;\n"
+    "3 the data cannot answer; 130 stopped by Ctrl-C. A message is one line on standard error.";
+
+std::string oneLine(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  for (char& c : text)
+    if (c == '\n' || c == '\r') c = ' ';
+  return text;
+}
+
+int fail(const std::string& line, int code) {
+  clearProgressLine();
+  std::fprintf(stderr, "glint: %s\n", oneLine(line).c_str());
+  return code;
+}
+
+/// Every way in which a command may end, as an exit code and at most one line.
+int guarded(const std::function<int()>& run) {
+  try {
+    return run();
+  } catch (const InputError& e) {
+    return fail(e.what(), kWrongInput);
+  } catch (const CannotAnswer& e) {
+    return fail(e.failure.message(), kCannotAnswer);
+  } catch (const ReaderGone&) {
+    return kWrongInput;  // `glint ... | head`: nobody is left to read a message's context
+  } catch (const Stopped&) {
+    return fail("stopped", kStopped);
+  } catch (const std::invalid_argument& e) {
+    return fail(std::string("wrong request: ") + e.what(), kWrongInput);
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory", kCannotAnswer);
+  } catch (const std::exception& e) {
+    return fail(std::string("unexpected: ") + e.what(), kCannotAnswer);
+  } catch (...) {
+    return fail("unexpected failure", kCannotAnswer);
+  }
+}
+
+}  // namespace
+
+void Options::positional(std::string& target, const std::string& name, const std::string& help) {
+  parser_.app.add_option(name, target, help)->required()->type_name("");
+}
+void Options::option(std::string& target, const std::string& flags, const std::string& type, const std::string& help) {
+  named(parser_.app.add_option(flags, target, help), type);
+}
+void Options::required(std::string& target, const std::string& flags, const std::string& type, const std::string& help) {
+  parser_.app.add_option(flags, target, help)->required()->type_name(type);
+}
+void Options::option(double& target, const std::string& flags, const std::string& type, const std::string& help) {
+  named(parser_.app.add_option(flags, target, help), type);
+}
+void Options::option(int& target, const std::string& flags, const std::string& type, const std::string& help) {
+  named(parser_.app.add_option(flags, target, help), type);
+}
+void Options::option(unsigned& target, const std::string& flags, const std::string& type, const std::string& help) {
+  named(parser_.app.add_option(flags, target, help), type);
+}
+void Options::repeated(std::vector<std::string>& target, const std::string& flags, const std::string& type,
+                       const std::string& help) {
+  parser_.app.add_option(flags, target, help)->type_name(type)->expected(1)->take_all();
+}
+void Options::choice(std::string& target, const std::string& flags, const std::vector<std::string>& values,
+                     const std::string& help) {
+  std::string type;
+  for (const std::string& v : values) type += (type.empty() ? "" : "|") + v;
+  // A check of our own: CLI11's replaces the type's name in the help.
+  named(parser_.app.add_option(flags, target, help), type)->check([values, type](const std::string& given) {
+    for (const std::string& v : values)
+      if (v == given) return std::string();
+    return "'" + given + "' is none of " + type;
+  });
+}
+void Options::flag(bool& target, const std::string& flags, const std::string& help) { parser_.app.add_flag(flags, target, help); }
+
+int runCommandLine(int argc, char** argv, const std::vector<Command>& commands) {
+  // Before any thread starts: threads inherit the blocked signals.
+  const InterruptGuard interrupts;
+  CLI::App app("Predicts specular highlights from a few images of a known scene.", "glint");
+  app.formatter(std::make_shared<Page>());
+  app.set_version_flag("--version", std::string("glint ") + GLINT_VERSION);
+  app.set_help_flag("-h,--help", "This page");
+  app.require_subcommand(1);
+  app.footer("`glint COMMAND --help` describes a command.\n" + std::string(kExitCodes));
+  const Command* chosen = nullptr;
+  for (const Command& command : commands) {
+    CLI::App* sub = app.add_subcommand(command.name, command.summary);
+    sub->formatter(std::make_shared<Page>());
+    std::string footer;
+    if (!command.description.empty()) footer += command.description + "\n\n";
+    if (!command.examples.empty()) footer += "Examples:\n" + command.examples + "\n";
+    sub->footer(footer + kExitCodes);
+    Options::Parser parser{*sub};
+    Options options(parser);
+    command.declare(options);
+    sub->callback([&chosen, &command] { chosen = &command; });
+  }
+  return guarded([&]() -> int {
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+      if (e.get_exit_code() == 0) {  // --help, --version
+        std::ostringstream page;
+        app.exit(e, page, page);
+        Context().print(page.str());
+        return kDone;
+      }
+      const std::string first = argc > 1 ? argv[1] : "";
+      const bool known = std::any_of(commands.begin(), commands.end(), [&](const Command& c) { return c.name == first; });
+      if (!known && !first.empty() && first[0] != '-')
+        return fail("'" + first + "' is not a command (see glint --help)", kWrongInput);
+      std::string who;
+      for (const CLI::App* sub : app.get_subcommands()) who = sub->get_name() + " ";
+      return fail(oneLine(e.what()) + " (see glint " + who + "--help)", kWrongInput);
+    }
+    return chosen->run(Context());
+  });
+}
+
+}  // namespace glint::cli

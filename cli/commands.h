@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "cli/command.h"
+
+namespace glint::cli {
+
+// One function per subcommand, each in the file of its name; main.cpp lists them.
+Command convertCommand();
+Command infoCommand();
+Command settingsCommand();
+
+}  // namespace glint::cli

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <filesystem>
+
+#include "cli/commands.h"
+#include "core/scene/scene.h"
+
+namespace glint::cli {
+
+Command convertCommand() {
+  struct Arguments {
+    std::string input, output;
+    bool allowOutside = false;
+  };
+  const auto a = std::make_shared<Arguments>();
+  Command c;
+  c.name = "convert";
+  c.summary = "Write any input as a scene file";
+  c.description =
+      "Reads INPUT and writes it as scene.json, version 1, with paths relative to the new file; images and meshes stay\n"
+      "where they are. Keys that this version does not know are kept.";
+  c.examples = "  glint convert DIR -o DIR/scene.json\n";
+  c.declare = [a](Options& o) {
+    o.positional(a->input, "INPUT", "A scene file, a folder with one, or a session");
+    o.required(a->output, "-o,--output", "FILE", "The scene file to write (*.json)");
+    o.flag(a->allowOutside, "--allow-outside", "Accept paths that leave the folder of the scene file");
+  };
+  c.run = [a](const Context& context) -> int {
+    namespace fs = std::filesystem;
+    const fs::path output(a->output);
+    if (output.extension() != ".json") throw InputError(a->output, "--output", "only scene files (*.json) can be written");
+    if (output.filename() == "transforms.json")
+      throw InputError(a->output, "--output", "nerfstudio files cannot be written yet, only scene files");
+    const Scene scene = readScene(a->input, ReadOptions{a->allowOutside});
+    for (const std::string& w : scene.warnings) context.warn(w);
+    writeScene(scene, output);
+    try {
+      readScene(output);
+    } catch (const InputError& e) {
+      context.warn(std::string("reading it back needs --allow-outside: ") + e.what());
+    }
+    return kDone;
+  };
+  return c;
+}
+
+}  // namespace glint::cli

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/commands.h"
+#include "core/scene/convention_report.h"
+#include "core/scene/scene.h"
+
+namespace glint::cli {
+
+Command infoCommand() {
+  struct Arguments {
+    std::string input, json;
+    bool allowOutside = false;
+  };
+  const auto a = std::make_shared<Arguments>();
+  Command c;
+  c.name = "info";
+  c.summary = "What was recognised, and whether its conventions hold";
+  c.description =
+      "Reads the scene, every surface and every image, and tests the reading on the data itself: how many vertices of\n"
+      "the surface project inside each frame, whether the depth maps agree with the surface (median and 95 %), and\n"
+      "which images contain NaN or negative values. What looks wrong is listed as a finding with its likely cause.";
+  c.examples =
+      "  glint info scene.json                 the report as text\n"
+      "  glint info DIR --json -               the same as JSON on standard output\n";
+  c.declare = [a](Options& o) {
+    o.positional(a->input, "INPUT", "A scene file, a folder with one, or a session");
+    o.option(a->json, "--json", "FILE", "Write the report as JSON (- = standard output) instead of text");
+    o.flag(a->allowOutside, "--allow-outside", "Accept paths that leave the folder of the scene file");
+  };
+  c.run = [a](const Context& context) -> int {
+    const Scene scene = readScene(a->input, ReadOptions{a->allowOutside});
+    const ConventionReport report = conventionReport(scene, context.progress());
+    if (a->json.empty())
+      context.print(toText(report));
+    else
+      context.write(a->json, toJson(report));
+    if (!report.anyFrameSeesSurface())
+      throw CannotAnswer{{Reason::NoSurface, scene.file.string() + ": no camera sees a surface"}};
+    return kDone;
+  };
+  return c;
+}
+
+}  // namespace glint::cli

@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/commands.h"
+
+int main(int argc, char** argv) {
+  using namespace glint::cli;
+  // The order is that of `glint --help`.
+  return runCommandLine(argc, argv, {infoCommand(), convertCommand(), settingsCommand()});
+}

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/scene/convention_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "core/base/json_text.h"
+#include "core/scene/mesh_file.h"
+#include "core/scene/scene_reader.h"
+#include "core/surface/analytic.h"
+
+namespace glint {
+namespace {
+using Json = nlohmann::ordered_json;
+
+std::string formatted(const char* format, auto... values) {
+  char buffer[512];
+  std::snprintf(buffer, sizeof buffer, format, values...);
+  return buffer;
+}
+
+/// Part of an unbounded surface that the cameras may see: around the point nearest to their optical axes.
+Eigen::AlignedBox3d regionOfInterest(const Scene& scene, const Eigen::AlignedBox3d& bounds) {
+  if (bounds.min().allFinite() && bounds.max().allFinite() && !bounds.isEmpty()) return bounds;
+  Eigen::AlignedBox3d cameras;
+  for (const Frame& f : scene.frames) {
+    const Eigen::Vector3d c = f.camera.centreInWorld();
+    cameras.extend(c);
+    // Twice the distance to the world's origin along the axis: scenes are built around it.
+    cameras.extend(Eigen::Vector3d(c + 2 * c.norm() * f.camera.camFromWorld.linear().row(2).transpose()));
+  }
+  return cameras;
+}
+
+double quantile(std::vector<double>& values, double q) {
+  if (values.empty()) return 0;
+  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(q * double(values.size() - 1));
+  std::nth_element(values.begin(), nth, values.end());
+  return *nth;
+}
+
+/// Depth at a pixel by bilinear interpolation; nothing at holes and at steps of more than 2 %.
+std::optional<double> depthAt(const Image& depth, const Pixel& p) {
+  const int x = static_cast<int>(std::floor(p.x())), y = static_cast<int>(std::floor(p.y()));
+  if (x < 0 || y < 0 || x + 1 >= depth.width || y + 1 >= depth.height) return std::nullopt;
+  const double a = depth.at(x, y), b = depth.at(x + 1, y), c = depth.at(x, y + 1), d = depth.at(x + 1, y + 1);
+  const double lowest = std::min({a, b, c, d}), highest = std::max({a, b, c, d});
+  if (!(lowest > 0) || highest > 1.02 * lowest) return std::nullopt;
+  const double u = p.x() - x, v = p.y() - y;
+  return (1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * c + u * d);
+}
+
+void compareVertices(const TriangleMesh& mesh, const Frame& frame, const std::optional<Image>& depth,
+                     ConventionReport::FrameFacts& facts) {
+  constexpr int kCellPx = 8;
+  const Camera& camera = frame.camera;
+  const int columns = camera.width / kCellPx + 1, rows = camera.height / kCellPx + 1;
+  struct Nearest {
+    double depth = std::numeric_limits<double>::infinity();
+    Pixel pixel{0, 0};
+  };
+  // The nearest vertex of a cell is the visible one; the others may lie on the far side of the object.
+  std::vector<Nearest> cells(static_cast<std::size_t>(columns) * rows);
+  facts.vertices = static_cast<int>(mesh.vertices.size());
+  for (const Eigen::Vector3d& v : mesh.vertices) {
+    const std::optional<Pixel> ideal = camera.project(v);
+    if (!ideal) continue;
+    ++facts.verticesInFront;
+    const Pixel p = camera.distorted(*ideal);
+    if (!(p.x() >= -0.5 && p.y() >= -0.5 && p.x() < camera.width - 0.5 && p.y() < camera.height - 0.5)) continue;
+    ++facts.verticesInImage;
+    Nearest& cell =
+        cells[static_cast<std::size_t>((p.y() + 0.5) / kCellPx) * columns + static_cast<std::size_t>((p.x() + 0.5) / kCellPx)];
+    if (const double d = camera.depth(v); d < cell.depth) cell = {d, p};
+  }
+  facts.seesSurface = facts.verticesInImage > 0;
+  if (!depth) return;
+  std::vector<double> differences;
+  for (const Nearest& cell : cells)
+    if (std::isfinite(cell.depth))
+      if (const std::optional<double> d = depthAt(*depth, cell.pixel)) differences.push_back(std::abs(*d - cell.depth));
+  facts.depthSamples = static_cast<int>(differences.size());
+  facts.depthMedian = quantile(differences, 0.5);
+  facts.depthP95 = quantile(differences, 0.95);
+}
+
+void countPixels(const Frame& frame, ConventionReport::FrameFacts& facts) {
+  if (frame.radiance.empty() && frame.image.empty()) return;
+  facts.source = frame.radiance.empty() ? "image" : "radiance";
+  const Outcome<Image> image = readLinear(frame, FrameSource::Radiance);
+  if (!image) {
+    facts.problems.push_back(image.failure().detail);
+  } else {
+    facts.pixels = static_cast<long long>(image->width) * image->height;
+    for (const float v : image->data) {
+      if (!std::isfinite(v))
+        ++facts.notFinite;
+      else if (v < 0)
+        ++facts.negative;
+    }
+  }
+  if (!frame.radiance.empty() && !frame.image.empty())
+    if (const Outcome<Image> photograph = readPhotograph(frame); !photograph)
+      facts.problems.push_back(photograph.failure().detail);
+}
+
+/// Statements about the scene as a whole, each with the likely cause.
+void conclude(const Scene& scene, ConventionReport& report) {
+  int blind = 0, lookingAway = 0, withSurface = 0, bad = 0, depthOff = 0, notFinite = 0, negative = 0;
+  std::string badId, notFiniteId, negativeId;
+  double worstDepth = 0;
+  for (const auto& f : report.frames) {
+    if (f.vertices > 0) {
+      ++withSurface;
+      blind += !f.seesSurface;
+      lookingAway += f.verticesInFront < f.vertices / 2;
+    } else if (!f.seesSurface) {
+      ++withSurface;
+      ++blind;
+    }
+    const double limit = 0.01 * f.distance;
+    if (f.depthSamples > 20 && f.depthMedian > limit) {
+      ++depthOff;
+      worstDepth = std::max(worstDepth, f.depthMedian);
+    }
+    if (!f.problems.empty() && bad++ == 0) badId = f.problems.front();
+    if (f.notFinite && notFinite++ == 0) notFiniteId = f.id;
+    if (f.negative && negative++ == 0) negativeId = f.id;
+  }
+  const int n = static_cast<int>(report.frames.size());
+  if (blind) {
+    std::string line = formatted("%d of %d cameras do not see their surface", blind, n);
+    if (2 * lookingAway > withSurface)
+      line += ": they look away from it (camera axes must be x right, y down, z forward; OpenGL's point backwards)";
+    else
+      line += " (is camera_from_world the inverse of what the file holds?)";
+    report.findings.push_back(line);
+  }
+  if (depthOff)
+    report.findings.push_back(
+        formatted("depth and surface disagree in %d of %d frames by up to %.3g m (unit, scale, or distance along the ray instead "
+                  "of along the axis?)",
+                  depthOff, n, worstDepth));
+  if (bad) report.findings.push_back(formatted("%d of %d frames have a file that cannot be used; first: ", bad, n) + badId);
+  if (notFinite)
+    report.findings.push_back(formatted("%d of %d frames contain NaN or infinite values; first: frame ", notFinite, n) +
+                              notFiniteId);
+  if (negative)
+    report.findings.push_back(formatted("%d of %d frames contain negative values; first: frame ", negative, n) + negativeId);
+  if (scene.frames.size() == 1) report.findings.push_back("only one frame: nothing can be held out");
+}
+
+}  // namespace
+
+bool ConventionReport::anyFrameSeesSurface() const {
+  return std::any_of(frames.begin(), frames.end(), [](const FrameFacts& f) { return f.seesSurface; });
+}
+
+ConventionReport conventionReport(const Scene& scene, const ProgressFn& progress) {
+  ConventionReport report;
+  report.name = scene.name;
+  report.file = scene.file.string();
+  report.recognisedAs = "scene";
+  for (const auto& reader : sceneReaders())
+    if (!reader->recognise(scene.file).empty()) {
+      report.recognisedAs = reader->describe();
+      break;
+    }
+  report.warnings = scene.warnings;
+  report.lights = static_cast<int>(scene.lights.size());
+  std::map<std::string, TriangleMesh> meshes;
+  int done = 0;
+  for (const auto& [id, source] : scene.surfaces) {
+    if (!glint::report(progress, {"surface", done++, static_cast<int>(scene.surfaces.size())})) throw Stopped{};
+    ConventionReport::SurfaceFacts facts;
+    facts.id = id;
+    TriangleMesh& mesh = meshes[id];
+    if (source.mesh) {
+      facts.kind = "mesh";
+      mesh = readMesh(*source.mesh);
+    } else {
+      facts.kind = "analytic " + source.analytic->type;
+      const std::shared_ptr<const Surface> surface = makeAnalytic(*source.analytic);
+      mesh = surface->tessellate(regionOfInterest(scene, surface->bounds()), 64);
+    }
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& v : mesh.vertices) box.extend(v);
+    if (!box.isEmpty()) {
+      facts.lower = box.min();
+      facts.upper = box.max();
+    }
+    facts.vertices = static_cast<int>(mesh.vertices.size());
+    facts.triangles = static_cast<int>(mesh.triangles.size());
+    facts.hasNormals = source.analytic.has_value() || !mesh.normals.empty();
+    report.surfaces.push_back(facts);
+  }
+  for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+    if (!glint::report(progress, {"read", static_cast<int>(i), static_cast<int>(scene.frames.size())})) throw Stopped{};
+    const Frame& frame = scene.frames[i];
+    ConventionReport::FrameFacts facts;
+    facts.frame = static_cast<int>(i);
+    facts.id = frame.id;
+    facts.surface = frame.surface;
+    const Outcome<std::optional<Image>> depth = readDepth(frame);
+    if (!depth) facts.problems.push_back(depth.failure().detail);
+    const std::optional<Image> usable = depth ? *depth : std::nullopt;
+    if (!frame.surface.empty()) {
+      for (const auto& s : report.surfaces)
+        if (s.id == frame.surface) facts.distance = (frame.camera.centreInWorld() - (s.lower + s.upper) / 2).norm();
+      compareVertices(meshes.at(frame.surface), frame, usable, facts);
+    } else if (usable) {
+      facts.seesSurface = std::any_of(usable->data.begin(), usable->data.end(), [](float v) { return v > 0; });
+    }
+    countPixels(frame, facts);
+    if (const auto mask = readMask(frame); !mask) facts.problems.push_back(mask.failure().detail);
+    if (const auto normals = readNormals(frame); !normals) facts.problems.push_back(normals.failure().detail);
+    report.frames.push_back(std::move(facts));
+  }
+  conclude(scene, report);
+  return report;
+}
+
+std::string toText(const ConventionReport& r) {
+  std::string out = r.file + ": " + r.recognisedAs + "\n";
+  out += "  name      " + r.name + "\n";
+  out += formatted("  frames    %zu\n", r.frames.size());
+  out += formatted("  lights    %d (truth, for comparison only)\n", r.lights);
+  out += "  axes      cameras x right, y down, z forward; right-handed world, metres\n";
+  for (const auto& s : r.surfaces)
+    out += "  surface   " + s.id +
+           formatted(": %s, %d vertices, %d triangles, %s normals, box %.4g %.4g %.4g .. %.4g %.4g %.4g\n", s.kind.c_str(),
+                     s.vertices, s.triangles, s.hasNormals ? "with" : "without", s.lower.x(), s.lower.y(), s.lower.z(),
+                     s.upper.x(), s.upper.y(), s.upper.z());
+  out += "\n  frame       surface     inside image      depth - surface: median, 95 %     values: NaN, negative\n";
+  for (const auto& f : r.frames) {
+    std::string line = formatted("  %-11s %-11s ", f.id.c_str(), f.surface.empty() ? "(depth)" : f.surface.c_str());
+    line += f.vertices > 0 ? formatted("%7d of %-7d", f.verticesInImage, f.vertices)
+                           : std::string(f.seesSurface ? "  depth map       " : "  nothing         ");
+    line += f.depthSamples > 0 ? formatted(" %10.3g mm %10.3g mm          ", 1e3 * f.depthMedian, 1e3 * f.depthP95)
+                               : std::string("          -             -          ");
+    line += f.pixels > 0 ? formatted("%8lld %8lld (%s)", f.notFinite, f.negative, f.source.c_str())
+                         : std::string("       -        -");
+    out += line + "\n";
+  }
+  for (const std::string& w : r.warnings) out += "warning: " + w + "\n";
+  for (const std::string& f : r.findings) out += "finding: " + f + "\n";
+  if (r.findings.empty()) out += "All cameras see their surface; nothing looks wrong.\n";
+  return out;
+}
+
+std::string toJson(const ConventionReport& r) {
+  const auto vector = [](const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); };
+  Json j = {{"glint_info", 1}, {"input", r.file}, {"recognised_as", r.recognisedAs}, {"name", r.name}, {"lights", r.lights}};
+  j["surfaces"] = Json::array();
+  for (const auto& s : r.surfaces)
+    j["surfaces"].push_back({{"id", s.id},
+                             {"kind", s.kind},
+                             {"vertices", s.vertices},
+                             {"triangles", s.triangles},
+                             {"normals", s.hasNormals},
+                             {"box", Json::array({vector(s.lower), vector(s.upper)})}});
+  j["frames"] = Json::array();
+  for (const auto& f : r.frames) {
+    Json one = {{"index", f.frame},
+                {"id", f.id},
+                {"surface", f.surface.empty() ? Json() : Json(f.surface)},
+                {"sees_surface", f.seesSurface},
+                {"vertices", f.vertices},
+                {"vertices_in_front", f.verticesInFront},
+                {"vertices_in_image", f.verticesInImage},
+                {"distance_m", f.distance}};
+    one["depth_difference_m"] =
+        f.depthSamples > 0 ? Json{{"samples", f.depthSamples}, {"median", f.depthMedian}, {"p95", f.depthP95}} : Json();
+    one["source"] = f.source.empty() ? Json() : Json(f.source);
+    one["not_finite"] = f.notFinite;
+    one["negative"] = f.negative;
+    one["problems"] = f.problems;
+    j["frames"].push_back(std::move(one));
+  }
+  j["warnings"] = r.warnings;
+  j["findings"] = r.findings;
+  return prettyJson(j.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+}  // namespace glint

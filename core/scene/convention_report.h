@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/scene/scene.h"
+
+namespace glint {
+
+/// What a scene was understood to be, and tests of that understanding on its own data (formats.md, "Inputs"): wrong axes, a
+/// transposed pose, wrong units and swapped files show here before they show as bad results.
+struct ConventionReport {
+  struct SurfaceFacts {
+    std::string id, kind;             ///< kind: "mesh", "analytic sphere", ...
+    int vertices = 0, triangles = 0;  ///< of the mesh, or of the triangles that stand for the analytic surface
+    bool hasNormals = false;
+    Eigen::Vector3d lower{0, 0, 0}, upper{0, 0, 0};  ///< bounding box, m
+  };
+  struct FrameFacts {
+    int frame = -1;
+    std::string id, surface;
+    int vertices = 0;                                   ///< of its surface; 0 when it has only depth
+    int verticesInFront = 0;                            ///< with positive depth
+    int verticesInImage = 0;                            ///< that project inside the image
+    bool seesSurface = false;                           ///< at least one vertex, or one valid depth pixel
+    double distance = 0;                                ///< m, camera to the centre of the surface's box; 0 without a surface
+    int depthSamples = 0;                               ///< nearest vertices of 8-pixel cells compared with the depth map
+    double depthMedian = 0, depthP95 = 0;               ///< m, |vertex depth - depth map|
+    long long pixels = 0, notFinite = 0, negative = 0;  ///< values of the linear image
+    std::string source;                                 ///< "radiance" or "image", "" when the frame has neither
+    std::vector<std::string> problems;                  ///< files that cannot be read, one line each
+  };
+  std::string recognisedAs, name, file;
+  std::vector<std::string> warnings;
+  std::vector<SurfaceFacts> surfaces;
+  std::vector<FrameFacts> frames;
+  int lights = 0;
+  std::vector<std::string> findings;  ///< what looks wrong, one line each, with the likely cause; empty = nothing found
+
+  bool anyFrameSeesSurface() const;
+};
+
+/// Reads every surface and every image once. InputError when a mesh cannot be read; Stopped.
+ConventionReport conventionReport(const Scene& scene, const ProgressFn& progress = {});
+
+std::string toText(const ConventionReport& report);  ///< for a terminal, ends with a line break
+std::string toJson(const ConventionReport& report);  ///< {"glint_info": 1, ...}, laid out, no NaN
+
+}  // namespace glint
