@@ -34,7 +34,8 @@ struct Reconstruction {
   std::string brief() const;         ///< "4 views, gap 1.2e-4, worst 0.83 px (view 2)"
 };
 
-/// Linear: s_i vech(C_i*) = vech(P_i Q* P_i^T), 10 + n unknowns, images and world normalised, smallest singular vector
+/// Linear: s_i vech(C_i*) = vech(P_i Q* P_i^T), images and world normalised, smallest singular vector. The scales s_i are eliminated
+/// by projecting across the measured conics, which leaves ten unknowns and the same null space
 /// (method.md section 7; nullities in style.md rule 18). Returns Q* even when it is no ellipsoid (`ellipsoid` is then empty).
 /// TooFewViews (< 3); RankDeficient (judged by the second last singular value, then by the gap); NotFinite.
 /// @param origin  a point near the answer (the light), for normalisation; the views' mean axis point when empty.
@@ -42,7 +43,7 @@ Outcome<Reconstruction> reconstructLinear(const std::vector<ConicView>& views, c
                                           const ReconstructOptions& options = {});
 
 /// Anchored: the centre is fixed at `centre`; linear in S (6 unknowns + scales), S projected on the semidefinite cone.
-/// TooFewViews (< 2); RankDeficient; NotFinite.
+/// TooFewViews (< 2); RankDeficient; NotAnEllipsoid (the projected S has two empty axes); NotFinite.
 Outcome<Reconstruction> reconstructAnchored(const std::vector<ConicView>& views, const Eigen::Vector3d& centre,
                                             const ReconstructOptions& options = {});
 

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ceres/ceres.h>
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+
+#include "core/geometry/polyline.h"
+#include "core/light/estimate.h"
+
+namespace glint {
+namespace {
+constexpr double kStepPx = 0.5;  ///< of the finite differences that turn an angle into pixels
+constexpr int kMaxReweightings = 8;
+
+/// A surface point seen by a camera, in normalised world coordinates.
+struct Seen {
+  Eigen::Vector3d position, normal, toCamera;
+};
+/// One contour point. Nothing here depends on the light, so hits are computed once.
+struct Evidence {
+  Seen at;
+  std::optional<Seen> left, right, up, down;  ///< of the pixels kStepPx away; empty where the surface ended
+  int view = 0;
+  double pixelsPerRadian = 1;  ///< 1 / |d alpha / d pixel| for the light of the last reweighting
+};
+
+/// Direction to the light with N.L > 0, not normalised.
+Eigen::Vector3d towards(const Seen& s, const Eigen::Vector4d& light) {
+  const Eigen::Vector3d d = light.head<3>() - light.w() * s.position;
+  return s.normal.dot(d) < 0 ? Eigen::Vector3d(-d) : d;
+}
+double angle(const Seen& s, const Eigen::Vector4d& light) {
+  return incidentAngle(s.normal, towards(s, light).normalized(), s.toCamera);
+}
+
+/// (alpha - alpha_lim) in pixels, with d alpha / d L in closed form: d alpha = -t . dL / |L + V|, t the unit vector across H
+/// towards N. The light is (l, w), or l alone where it is held at infinity.
+class AngleCost : public ceres::CostFunction {
+ public:
+  AngleCost(const Evidence& evidence, bool atInfinity) : evidence_(evidence), size_(atInfinity ? 3 : 4) {
+    set_num_residuals(1);
+    mutable_parameter_block_sizes()->push_back(size_);
+    mutable_parameter_block_sizes()->push_back(1);
+  }
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    const Seen& s = evidence_.at;
+    Eigen::Vector4d light(parameters[0][0], parameters[0][1], parameters[0][2], size_ == 4 ? parameters[0][3] : 0.0);
+    const Eigen::Vector3d plain = light.head<3>() - light.w() * s.position;
+    const double sign = s.normal.dot(plain) < 0 ? -1 : 1, distance = plain.norm();
+    if (!(distance > 0)) return false;
+    const Eigen::Vector3d toLight = sign * plain / distance, half = toLight + s.toCamera;
+    const double length = half.norm();
+    if (!(length > 0)) return false;
+    const Eigen::Vector3d h = half / length;
+    const double sine = s.normal.cross(h).norm(), cosine = s.normal.dot(h), k = evidence_.pixelsPerRadian;
+    residuals[0] = k * (std::atan2(sine, cosine) - parameters[1][0]);
+    if (!jacobians) return true;
+    if (jacobians[0]) {
+      const Eigen::Vector3d t = sine > 0 ? Eigen::Vector3d((s.normal - cosine * h) / sine) : Eigen::Vector3d::Zero();
+      const Eigen::Vector3d byLight = -(k * sign / (length * distance)) * (t - toLight * toLight.dot(t));
+      for (int i = 0; i < 3; ++i) jacobians[0][i] = byLight(i);
+      if (size_ == 4) jacobians[0][3] = -byLight.dot(s.position);
+    }
+    if (jacobians[1]) jacobians[1][0] = -k;
+    return true;
+  }
+
+ private:
+  const Evidence& evidence_;
+  int size_;
+};
+
+struct Attempt {
+  Eigen::Vector4d light = Eigen::Vector4d::Zero();
+  double limit = 0, cost = std::numeric_limits<double>::infinity();
+  int iterations = 0;
+  bool converged = false, behind = false;
+};
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+  return values[values.size() / 2];
+}
+
+/// 1 / |d alpha / d pixel| of every point under a light.
+void reweight(std::vector<Evidence>& points, const Eigen::Vector4d& light) {
+  std::vector<double> slopes;
+  slopes.reserve(points.size());
+  for (Evidence& e : points) {
+    const double here = angle(e.at, light);
+    const auto slope = [&](const std::optional<Seen>& before, const std::optional<Seen>& after) {
+      const double high = after ? angle(*after, light) : here, low = before ? angle(*before, light) : here;
+      return (high - low) / ((before ? kStepPx : 0) + (after ? kStepPx : 0));
+    };
+    slopes.push_back(std::hypot(slope(e.left, e.right), slope(e.up, e.down)));
+  }
+  // Where the angle hardly changes over the image (a facet, a start far off) a pixel must not weigh without bound.
+  const double floor = std::max(0.05 * median(slopes), 1e-12);
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].pixelsPerRadian = 1 / std::max(slopes[i], floor);
+}
+
+double robustCost(const std::vector<Evidence>& points, const Attempt& a, double scale) {
+  double sum = 0;
+  for (const Evidence& e : points) {
+    const double r = std::abs(e.pixelsPerRadian * (angle(e.at, a.light) - a.limit));
+    sum += r <= scale ? r * r : scale * (2 * r - scale);
+  }
+  return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
+}
+
+Attempt solve(std::vector<Evidence>& points, Eigen::Vector4d start, bool atInfinity, const BundleOptions& options) {
+  Attempt a;
+  if (atInfinity) start.w() = 0;
+  a.light = start.normalized();
+  std::vector<double> angles;
+  for (const Evidence& e : points) angles.push_back(angle(e.at, a.light));
+  a.limit = median(angles);
+  if (!std::isfinite(a.limit)) return a;
+  for (int round = 0; round < kMaxReweightings && a.iterations < options.maxIterations; ++round) {
+    // The weights are held while the light moves. A residual whose own weight moves with the light gains by lights under which
+    // the angle changes faster over the image; held weights leave no such reward, and the fixed point is reached in a few rounds.
+    reweight(points, a.light);
+    ceres::Problem::Options ownership;
+    ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    ownership.disable_all_safety_checks = true;
+    ceres::HuberLoss loss(options.robustPx);
+    std::deque<AngleCost> costs;  // cost functions cannot be moved
+    for (const Evidence& e : points) costs.emplace_back(e, atInfinity);
+    const Eigen::Vector4d before = a.light;
+    const double limitBefore = a.limit;
+    ceres::Solver::Summary summary;
+    {
+      ceres::Problem problem(ownership);
+      for (AngleCost& c : costs) problem.AddResidualBlock(&c, &loss, a.light.data(), &a.limit);
+      if (atInfinity)
+        problem.SetManifold(a.light.data(), new ceres::SphereManifold<3>());
+      else
+        problem.SetManifold(a.light.data(), new ceres::SphereManifold<4>());
+      ceres::Solver::Options solver;
+      solver.linear_solver_type = ceres::DENSE_QR;
+      solver.logging_type = ceres::SILENT;
+      solver.num_threads = 1;
+      solver.max_num_iterations = std::max(1, options.maxIterations - a.iterations);
+      solver.function_tolerance = 1e-12;
+      solver.parameter_tolerance = 1e-12;
+      solver.gradient_tolerance = 1e-14;
+      ceres::Solve(solver, &problem, &summary);
+    }
+    a.iterations += std::max<int>(1, int(summary.iterations.size()) - 1);
+    if (!summary.IsSolutionUsable() || !a.light.allFinite() || !std::isfinite(a.limit)) return a;
+    a.converged = summary.termination_type == ceres::CONVERGENCE || summary.final_cost <= 1e-20 * points.size();
+    const double moved = std::max((a.light - before).norm(), std::abs(a.limit - limitBefore));
+    if (a.converged && moved < 1e-9) break;
+  }
+  reweight(points, a.light);
+  if (a.light.w() < 0) a.light = -a.light;
+  std::size_t behind = 0;
+  for (const Evidence& e : points) behind += e.at.normal.dot(a.light.head<3>() - a.light.w() * e.at.position) <= 0;
+  a.behind = 10 * behind > points.size();
+  if (a.light.w() == 0 && a.behind && 2 * behind > points.size()) {  // a direction has no side of its own
+    a.light.head<3>() *= -1;
+    a.behind = 10 * (points.size() - behind) > points.size();
+  }
+  a.cost = robustCost(points, a, options.robustPx);
+  return a;
+}
+
+/// From (x - origin) / scale to world.
+Light inWorld(const Eigen::Vector4d& light, const Eigen::Vector3d& origin, double scale) {
+  Eigen::Vector4d world;
+  world << scale * light.head<3>() + light.w() * origin, light.w();
+  return Light::homogeneous(world);
+}
+
+void setCovariance(const std::vector<Evidence>& points, const Attempt& a, double variance, double scale, Bundle& bundle) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const bool atInfinity = a.light.w() == 0;
+  Eigen::Matrix<double, 4, 3, Eigen::RowMajor> chart;  // ambient from tangent coordinates of L
+  ceres::SphereManifold<4>().PlusJacobian(a.light.data(), chart.data());
+  Eigen::Matrix<double, Eigen::Dynamic, 4> jacobian(std::max<std::size_t>(points.size(), 4), 4);
+  jacobian.setZero();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const AngleCost cost(points[i], false);
+    Eigen::RowVector4d byLight;
+    double residual, byLimit;
+    const double* parameters[] = {a.light.data(), &a.limit};
+    double* blocks[] = {byLight.data(), &byLimit};
+    if (!cost.Evaluate(parameters, &residual, blocks)) continue;
+    jacobian.row(i) << byLight * chart, byLimit;
+  }
+  const Eigen::Matrix4d r = Eigen::HouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 4>>(jacobian)
+                                .matrixQR()
+                                .topRows<4>()
+                                .triangularView<Eigen::Upper>();
+  const Eigen::JacobiSVD<Eigen::Matrix4d> svd(r, Eigen::ComputeFullV);
+  bundle.positionCovariance = infinity * Eigen::Matrix3d::Identity();
+  if (!(svd.singularValues()(3) > 1e-14 * svd.singularValues()(0))) {
+    bundle.covariance = Eigen::Matrix4d::Zero();
+    bundle.covariance.diagonal().setConstant(infinity);
+  } else {
+    const Eigen::Matrix4d root = svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();
+    bundle.covariance = variance * (root * root.transpose());
+    if (!atInfinity) {
+      const double w = a.light.w();
+      Eigen::Matrix<double, 3, 4> position;  // d(l / w)
+      position << Eigen::Matrix3d::Identity() / w, -a.light.head<3>() / (w * w);
+      const Eigen::Matrix<double, 3, 4> half = scale * position * chart * root.topRows<3>();
+      const Eigen::Matrix3d covariance = variance * (half * half.transpose());
+      if (covariance.allFinite()) bundle.positionCovariance = covariance;
+    }
+  }
+  if (!bundle.positionCovariance.allFinite()) {  // inf * 0 left NaN beside the diagonal
+    bundle.positionCovariance.setZero();
+    bundle.positionCovariance.diagonal().setConstant(infinity);
+  }
+}
+}  // namespace
+
+Outcome<Bundle> bundleLight(const std::vector<BundleView>& views, const Light& start, const BundleOptions& options) {
+  require(options.pointsPerView >= 3 && options.robustPx > 0 && options.maxIterations >= 1, "bundleLight: options");
+  std::vector<Evidence> points;
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  double scale = 0;
+  std::size_t offered = 0;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const BundleView& view = views[v];
+    require(view.surface != nullptr, "bundleLight: a view without surface");
+    for (const Pixel& p : view.contour)
+      if (!p.allFinite()) return Failure{Reason::NotFinite, "a contour point of view " + std::to_string(v)};
+    const std::vector<Pixel> pixels = view.contour.size() > std::size_t(options.pointsPerView)
+                                          ? resample(Polyline{view.contour, true}, options.pointsPerView)
+                                          : view.contour;
+    offered += pixels.size();
+    const Eigen::Vector3d eye = view.camera.centreInWorld();
+    const auto seen = [&](const Pixel& p) -> std::optional<Seen> {
+      const Outcome<SurfacePoint> hit = view.surface->firstHit(view.camera.ray(p));
+      if (!hit || !hit->position.allFinite() || !hit->normal.allFinite()) return std::nullopt;
+      const SurfacePoint s = facing(*hit, eye);
+      return Seen{s.position, s.normal, (eye - s.position).normalized()};
+    };
+    for (const Pixel& p : pixels) {
+      const std::optional<Seen> at = seen(p);
+      if (!at) continue;
+      Evidence e{*at,
+                 seen(p - Pixel(kStepPx, 0)),
+                 seen(p + Pixel(kStepPx, 0)),
+                 seen(p - Pixel(0, kStepPx)),
+                 seen(p + Pixel(0, kStepPx)),
+                 int(v)};
+      if ((!e.left && !e.right) || (!e.up && !e.down)) continue;
+      origin += at->position;
+      scale += (eye - at->position).norm();
+      points.push_back(std::move(e));
+    }
+  }
+  if (offered > 0 && points.empty()) return Failure{Reason::PeakOffSurface, "no contour point hits the surface"};
+  if (points.size() < 5) return Failure{Reason::TooFewPoints, "need 5 on the surface, have " + std::to_string(points.size())};
+  origin /= double(points.size());
+  scale /= double(points.size());
+  if (!(scale > 0) || !std::isfinite(scale)) return Failure{Reason::NotFinite, "camera distance"};
+  for (Evidence& e : points) {
+    e.at.position = (e.at.position - origin) / scale;
+    for (std::optional<Seen>* s : {&e.left, &e.right, &e.up, &e.down})
+      if (*s) (*s)->position = ((*s)->position - origin) / scale;
+  }
+
+  Eigen::Vector4d first;
+  first << (start.homogeneous().head<3>() - start.homogeneous().w() * origin) / scale, start.homogeneous().w();
+  if (!(first.norm() > 0) || !first.allFinite()) first << 0, 0, 1, 0;
+  const auto attempt = [&](const Eigen::Vector4d& from) {
+    Attempt a = solve(points, from, from.w() == 0, options);
+    if (from.w() == 0 && std::isfinite(a.cost) && !a.behind) {  // the light may be nearer than infinity
+      const Attempt free = solve(points, (a.light + Eigen::Vector4d(0, 0, 0, 1e-3)).normalized(), false, options);
+      if (!free.behind && free.converged && free.cost < a.cost) a = free;
+    } else if (a.behind || a.light.w() < 1e-6) {
+      // Beyond infinity (the rays towards it converge behind the scene), or nearly there: try infinity itself.
+      Eigen::Vector4d direction = a.light;
+      if (a.behind) direction = -direction;
+      const Attempt far = solve(points, direction, true, options);
+      if (!far.behind && (a.behind || far.cost <= a.cost * (1 + 1e-9) + 1e-18 * points.size())) a = far;
+    }
+    return a;
+  };
+  const auto better = [](const Attempt& a, const Attempt& b) {
+    return a.behind != b.behind ? b.behind : a.converged != b.converged ? a.converged : a.cost < b.cost;
+  };
+  const auto good = [&](const Attempt& a) {
+    return a.converged && !a.behind && a.cost <= 2 * options.robustPx * options.robustPx * points.size();
+  };
+  Attempt best = attempt(first);
+  int iterations = best.iterations;
+  if (!good(best)) {
+    // Other starts: the contours' middle reflected, at several distances and at infinity.
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const Evidence& e : points) mean += reflect(e.at.toCamera, e.at.normal);
+    if (mean.norm() > 1e-9 * points.size()) {
+      mean.normalize();
+      for (const double distance : {0.3, 1.0, 3.0, 10.0, 0.0}) {
+        Eigen::Vector4d from;
+        from << (distance > 0 ? Eigen::Vector3d(distance * mean) : mean), (distance > 0 ? 1.0 : 0.0);
+        const Attempt other = attempt(from);
+        iterations += other.iterations;
+        if (better(other, best)) best = other;
+      }
+    }
+  }
+  if (best.behind) return Failure{Reason::LightBehindSurface, "every light that explains the contours is behind the surface"};
+  if (!std::isfinite(best.cost) || !best.converged) return Failure{Reason::NotConverged, "light bundle"};
+
+  reweight(points, best.light);
+  Bundle bundle;
+  bundle.light = inWorld(best.light, origin, scale);
+  bundle.limitAngle = best.limit;
+  bundle.iterations = iterations;
+  std::vector<double> sums(views.size(), 0.0), counts(views.size(), 0.0);
+  double sum = 0;
+  for (const Evidence& e : points) {
+    const double r = e.pixelsPerRadian * (angle(e.at, best.light) - best.limit);
+    sums[e.view] += r * r;
+    counts[e.view] += 1;
+    sum += r * r;
+  }
+  bundle.rmsPx = std::sqrt(sum / points.size());
+  for (std::size_t v = 0; v < views.size(); ++v)
+    bundle.residualPx.push_back(counts[v] > 0 ? std::sqrt(sums[v] / counts[v]) : 0.0);
+  const double variance = sum / std::max<double>(1, double(points.size()) - 4);
+  setCovariance(points, best, variance, scale, bundle);
+  return bundle;
+}
+
+}  // namespace glint
