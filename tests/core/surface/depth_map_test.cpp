@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
 
 #include "tests/core/surface/surfaces.h"
 
@@ -79,6 +82,33 @@ TEST(DepthMap, LensDistortionIsRemoved) {
   const auto map = makeDepthMap(depthOf(*sphere, camera), camera);
   ASSERT_TRUE(map);
   expectClose(**map, *sphere, camera, 1e-3, 1.5);
+}
+
+TEST(DepthMap, PathTracedSphereAgreesWithTheAnalyticOne) {
+  const std::string folder = std::string(GLINT_SHARED_DIR) + "/data/cycles/sphere/";
+  std::ifstream in(folder + "scene-analytic.json");
+  if (!in) GTEST_SKIP() << "no rendered data beside the project";
+  const nlohmann::json scene = nlohmann::json::parse(in);
+  const auto sphere = makeAnalytic(test::sphere(scene["surfaces"]["g00"]["analytic"]["radius"].get<double>()));
+  for (const int frame : {0, 13}) {
+    const nlohmann::json& f = scene["frames"][frame];
+    Camera camera;
+    camera.width = scene["camera"]["width"];
+    camera.height = scene["camera"]["height"];
+    camera.pixelFromRay << scene["camera"]["fx"].get<double>(), 0, scene["camera"]["cx"].get<double>(), 0,
+        scene["camera"]["fy"].get<double>(), scene["camera"]["cy"].get<double>(), 0, 0, 1;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 4; ++j) camera.camFromWorld.matrix()(i, j) = f["camera_from_world"][i][j].get<double>();
+    const cv::Mat image = cv::imread(folder + "depth/" + f["id"].get<std::string>() + ".tiff", cv::IMREAD_UNCHANGED);
+    ASSERT_EQ(image.type(), CV_32FC1);
+    Image depth(image.cols, image.rows, 1);
+    for (int y = 0; y < image.rows; ++y)
+      for (int x = 0; x < image.cols; ++x) depth.at(x, y) = image.at<float>(y, x);
+    const auto map = makeDepthMap(depth, camera);
+    ASSERT_TRUE(map) << map.failure().message();
+    // The renderer's depth agrees with its geometry within 0.3 mm.
+    expectClose(**map, *sphere, camera, 5e-4, 0.5);
+  }
 }
 
 TEST(DepthMap, Degenerate) {
