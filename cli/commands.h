@@ -7,7 +7,9 @@ namespace glint::cli {
 
 // One function per subcommand, each in the file of its name; main.cpp lists them.
 Command convertCommand();
+Command detectCommand();
 Command infoCommand();
 Command settingsCommand();
+Command synthCommand();
 
 }  // namespace glint::cli

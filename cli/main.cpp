@@ -4,5 +4,5 @@
 int main(int argc, char** argv) {
   using namespace glint::cli;
   // The order is that of `glint --help`.
-  return runCommandLine(argc, argv, {infoCommand(), convertCommand(), settingsCommand()});
+  return runCommandLine(argc, argv, {infoCommand(), detectCommand(), synthCommand(), convertCommand(), settingsCommand()});
 }

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+#include <filesystem>
+
+#include "cli/commands.h"
+#include "core/base/parallel.h"
+#include "core/highlight/report.h"
+#include "core/pipeline/evidence.h"
+
+namespace glint::cli {
+namespace {
+
+std::string table(const std::vector<DetectedFrame>& frames) {
+  std::string text = "frame         light         peak x    peak y      area px2   axes px          flags\n";
+  char line[256];
+  for (const DetectedFrame& frame : frames) {
+    if (frame.failure) {
+      std::snprintf(line, sizeof line, "%-12.40s  -  %.180s\n", frame.id.c_str(), frame.failure->message().c_str());
+      text += line;
+    }
+    for (const Highlight& h : frame.highlights) {
+      char axes[48] = "-";
+      if (h.ellipse) std::snprintf(axes, sizeof axes, "%.2f x %.2f", h.ellipse->semiAxes.x(), h.ellipse->semiAxes.y());
+      std::snprintf(line, sizeof line, "%-12.40s  %-10.40s  %8.3f  %8.3f  %12.1f   %-15s  %s%s\n", frame.id.c_str(),
+                    h.light.c_str(), h.peak.x(), h.peak.y(), h.areaPx2, axes, h.clipped ? "clipped " : "",
+                    h.touchesBorder ? "border" : "");
+      text += line;
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+Command detectCommand() {
+  struct Arguments {
+    std::string input, source = "radiance", out, json;
+    double level = 0.5;
+    std::vector<std::string> set;
+    bool allowOutside = false;
+  };
+  const auto a = std::make_shared<Arguments>();
+  Command c;
+  c.name = "detect";
+  c.summary = "Highlights of every frame: contour, peak, ellipse";
+  c.description =
+      "Detects the highlights in every frame, whatever highlights the scene file gives: a log-quadratic peak, the diffuse\n"
+      "background around it removed, and the sub-pixel iso-contour at a level relative to the strongest peak of the frame.\n"
+      "Prints a table in ideal pixels; with --out it writes highlights.json and one overlay a frame.";
+  c.examples =
+      "  glint detect scene.json                          a table of all highlights\n"
+      "  glint detect scene.json --source image --out DIR from the photographs, with overlays\n";
+  c.declare = [a](Options& o) {
+    o.positional(a->input, "INPUT", "A scene file, a folder with one, or a session");
+    o.option(a->level, "--level", "L", "Contour level, fraction of the strongest peak above its background (0.02 to 0.98)");
+    o.choice(a->source, "--source", {"radiance", "image"}, "Which pixels, where a frame has both");
+    o.repeated(a->set, "--set", "KEY=VALUE", "A setting by its dotted name, such as detect.min_area=20");
+    o.option(a->out, "--out", "DIR", "Write highlights.json and overlays as PNG");
+    o.option(a->json, "--json", "FILE", "Write highlights.json there (- = standard output, instead of the table)");
+    o.flag(a->allowOutside, "--allow-outside", "Accept paths that leave the folder of the scene file");
+  };
+  c.run = [a](const Context& context) -> int {
+    Settings settings;
+    settings.set("detect.level", a->level);
+    for (const std::string& text : a->set) {
+      const std::size_t equals = text.find('=');
+      if (equals == std::string::npos) throw InputError("", "--set " + text, "must be KEY=VALUE");
+      settings.setFromText(text.substr(0, equals), text.substr(equals + 1));
+    }
+    Scene scene = readScene(a->input, ReadOptions{a->allowOutside});
+    for (const std::string& warning : scene.warnings) context.warn(warning);
+    for (Frame& frame : scene.frames) frame.highlights.clear();
+    const FrameSource source = a->source == "image" ? FrameSource::Image : FrameSource::Radiance;
+    std::vector<DetectedFrame> frames(scene.frames.size());
+    parallelFor(
+        static_cast<int>(frames.size()),
+        [&](int i) {
+          FrameEvidence evidence = gatherEvidence(scene, i, source, settings);
+          frames[static_cast<std::size_t>(i)] = {scene.frames[static_cast<std::size_t>(i)].id, std::move(evidence.highlights),
+                                                 std::move(evidence.failure)};
+        },
+        context.progress(), "detect");
+
+    const std::string json = detectionJson(a->input, settings.number("detect.level"), a->source, frames);
+    if (!a->out.empty()) {
+      std::error_code error;
+      std::filesystem::create_directories(a->out, error);
+      if (error) throw InputError(a->out, "--out", "cannot be created: " + error.message());
+      parallelFor(
+          static_cast<int>(frames.size()),
+          [&](int i) {
+            const Frame& frame = scene.frames[static_cast<std::size_t>(i)];
+            const Outcome<Image> photograph = readPhotograph(frame);
+            // Numbered by position: an id may hold characters that no file name may.
+            char name[32];
+            std::snprintf(name, sizeof name, "%04d.png", i);
+            if (photograph)
+              writePng(std::filesystem::path(a->out) / name,
+                       drawDetection(*photograph, frame.camera, frames[static_cast<std::size_t>(i)].highlights));
+          },
+          context.progress(), "overlays");
+      context.write((std::filesystem::path(a->out) / "highlights.json").string(), json);
+    }
+    if (!a->json.empty()) context.write(a->json, json);
+    if (a->json != "-") context.print(table(frames));
+    for (const DetectedFrame& frame : frames)
+      if (!frame.failure) return kDone;
+    throw CannotAnswer{frames.front().failure.value_or(Failure{Reason::NoHighlight, ""})};
+  };
+  return c;
+}
+
+}  // namespace glint::cli
