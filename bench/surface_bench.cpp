@@ -84,9 +84,18 @@ BENCHMARK(feetOfOnePrediction)->Arg(0)->Arg(1)->Arg(2)->Unit(benchmark::kMicrose
 void predictedBrightest(benchmark::State& state) {
   const Surface& mesh = bigMesh(static_cast<NormalPolicy>(state.range(0)));
   const Camera c = camera();
-  for (auto _ : state) benchmark::DoNotOptimize(predictedBrightestPoints(mesh, c, light()));
+  BrightestPointOptions options;
+  if (state.range(1) > 0) options.seedStepPx = static_cast<double>(state.range(1));
+  for (auto _ : state) benchmark::DoNotOptimize(predictedBrightestPoints(mesh, c, light(), options));
 }
-BENCHMARK(predictedBrightest)->Arg(0)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
+BENCHMARK(predictedBrightest)
+    ->Args({0, 0})
+    ->Args({1, 0})
+    ->Args({2, 0})
+    ->Args({1, 12})
+    ->Args({1, 16})
+    ->Args({1, 20})
+    ->Unit(benchmark::kMicrosecond);
 
 void predictedBrightestAnalytic(benchmark::State& state) {
   const auto surface = makeAnalytic(ellipsoid());
