@@ -30,9 +30,8 @@ double medianOf(std::vector<double> values) {
 
 double Background::at(double x, double y) const {
   const double u = (x - centre.x()) / scale, v = (y - centre.y()) / scale;
-  const double b = coefficients[0] + u * coefficients[1] + v * coefficients[2] + u * u * coefficients[3] +
-                   u * v * coefficients[4] + v * v * coefficients[5];
-  return std::clamp(b, lowest, highest);
+  return coefficients[0] + u * coefficients[1] + v * coefficients[2] + u * u * coefficients[3] + u * v * coefficients[4] +
+         v * v * coefficients[5];
 }
 
 Background fitBackground(const Image& image, const std::vector<char>& usable, const Footprint& footprint, double fallback) {
@@ -93,18 +92,6 @@ Background fitBackground(const Image& image, const std::vector<char>& usable, co
     for (std::size_t i = 0; i < samples.size(); ++i) residual[i] = samples[i].value - samples[i].row.dot(solution);
   }
   result.coefficients = solution.head<6>();
-  // Under the highlight the quadratic is an extrapolation: around a cluttered one it must not run away.
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (std::abs(residual[i]) > 3 * spread) continue;
-    low = std::min(low, samples[i].value);
-    high = std::max(high, samples[i].value);
-  }
-  if (low <= high) {
-    constexpr double kBeyond = 0.25;  // shading may rise a little above all that is seen around
-    result.lowest = low - kBeyond * (high - low);
-    result.highest = high + kBeyond * (high - low);
-  }
   result.spread = spread;
   result.pixels = static_cast<int>(samples.size());
   return result;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <limits>
 #include <vector>
 
 #include "core/base/image.h"
@@ -15,10 +14,8 @@ struct Background {
   Eigen::Matrix<double, 6, 1> coefficients = Eigen::Matrix<double, 6, 1>::Zero();  ///< of 1, u, v, u^2, uv, v^2
   Pixel centre{0, 0};                                                              ///< u = (x - centre.x) / scale, v likewise
   double scale = 1;
-  double lowest = -std::numeric_limits<double>::infinity(),
-         highest = std::numeric_limits<double>::infinity();  ///< b is held in there
-  double spread = 0;                                         ///< robust standard deviation of the pixels used about the fit
-  int pixels = 0;                                            ///< used by the fit; 0 = no fit, b is the constant given
+  double spread = 0;  ///< robust standard deviation of the pixels used about the fit
+  int pixels = 0;     ///< used by the fit; 0 = no fit, b is the constant given
 
   double at(double x, double y) const;
 };

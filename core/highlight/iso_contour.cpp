@@ -44,57 +44,30 @@ vtkNew<vtkImageData> paddedField(const Image& image, double level) {
   return field;
 }
 
-/// Segments (pairs of point ids) to closed chains of point ids, whatever the direction of each segment.
+/// Segments (pairs of point ids) to closed chains of point ids.
 std::vector<std::vector<vtkIdType>> chains(vtkPolyData& lines) {
   const std::size_t n = static_cast<std::size_t>(lines.GetNumberOfPoints());
-  std::vector<std::array<vtkIdType, 2>> neighbours(n, {-1, -1});
-  const auto link = [&](vtkIdType from, vtkIdType to) {
-    std::array<vtkIdType, 2>& slots = neighbours[static_cast<std::size_t>(from)];
-    if (slots[0] < 0)
-      slots[0] = to;
-    else
-      slots[1] = to;
-  };
+  std::vector<vtkIdType> next(n, -1);
   vtkCellArray* cells = lines.GetLines();
+  std::vector<std::vector<vtkIdType>> result;
   vtkIdType count = 0;
   const vtkIdType* ids = nullptr;
+  // Every segment is directed the same way round its region, so a point has one successor.
   for (cells->InitTraversal(); cells->GetNextCell(count, ids);)
-    if (count == 2) {
-      link(ids[0], ids[1]);
-      link(ids[1], ids[0]);
-    }
-  std::vector<std::vector<vtkIdType>> result;
+    if (count == 2) next[static_cast<std::size_t>(ids[0])] = ids[1];
   std::vector<char> seen(n, 0);
   for (std::size_t start = 0; start < n; ++start) {
-    if (seen[start] || neighbours[start][1] < 0) continue;
+    if (seen[start] || next[start] < 0) continue;
     std::vector<vtkIdType> chain;
     vtkIdType at = static_cast<vtkIdType>(start);
-    while (at >= 0) {
+    while (at >= 0 && !seen[static_cast<std::size_t>(at)]) {
       seen[static_cast<std::size_t>(at)] = 1;
       chain.push_back(at);
-      const std::array<vtkIdType, 2>& slots = neighbours[static_cast<std::size_t>(at)];
-      at = -1;
-      for (const vtkIdType next : slots)
-        if (next >= 0 && !seen[static_cast<std::size_t>(next)]) at = next;
+      at = next[static_cast<std::size_t>(at)];
     }
-    // The frame of low values leaves no open end, so the walk ended where it began.
-    result.push_back(std::move(chain));
+    if (at == static_cast<vtkIdType>(start)) result.push_back(std::move(chain));
   }
   return result;
-}
-
-/// True for the outer boundary of a region: the pixel above the level beside a vertex lies inside.
-bool isOuter(const Image& image, const Polyline& line, double level) {
-  for (const Pixel& p : line.points) {
-    const bool onRow = std::abs(p.y() - std::round(p.y())) < std::abs(p.x() - std::round(p.x()));
-    const int x0 = static_cast<int>(onRow ? std::floor(p.x()) : std::lround(p.x())),
-              y0 = static_cast<int>(onRow ? std::lround(p.y()) : std::floor(p.y()));
-    const int x1 = onRow ? x0 + 1 : x0, y1 = onRow ? y0 : y0 + 1;
-    if (x0 < 0 || y0 < 0 || x1 >= image.width || y1 >= image.height) continue;
-    const bool first = image.at(x0, y0) >= level, second = image.at(x1, y1) >= level;
-    if (first != second) return contains(line, first ? Pixel(x0, y0) : Pixel(x1, y1));
-  }
-  return true;  // it runs along the image border all the way
 }
 
 }  // namespace
@@ -125,8 +98,6 @@ std::vector<IsoContour> isoContours(const Image& image, double level) {
     }
     contour.line = withoutRepeats(contour.line);
     if (contour.line.points.size() < 3) continue;
-    if (isOuter(image, contour.line, level) != (signedArea(contour.line) > 0))
-      std::reverse(contour.line.points.begin(), contour.line.points.end());
     contours.push_back(std::move(contour));
   }
   std::stable_sort(contours.begin(), contours.end(), [](const IsoContour& a, const IsoContour& b) {

@@ -13,7 +13,6 @@ namespace {
 constexpr int kEnoughPixels = 12;      // twice the six coefficients
 constexpr double kLowestWindow = 0.3;  // below this the lobe's tail, not its top, would decide
 constexpr double kWindowStep = 0.1;
-constexpr double kMostOvershoot = 1.5;  // a peak 3 px wide between four pixels stands 1.25 above their binomial mean
 
 /// Binomial 3x3 mean, so that noise on single pixels does not fray the window.
 double smoothed(const Image& image, int x, int y) {
@@ -105,8 +104,6 @@ Outcome<PeakFit> fitPeak(const Image& image, int x, int y, double windowLevel) {
   if ((fit.at.array() < low.array() - 1).any() || (fit.at.array() > high.array() + 1).any())
     return Failure{Reason::NotConverged, "the fitted maximum lies outside its window"};
   fit.value = top * std::exp(c[0] + 0.5 * c.segment<2>(1).dot(offset));
-  // Noise lifts single pixels above the lobe, never the lobe far above its smoothed pixels.
-  if (!(fit.value <= kMostOvershoot * top)) return Failure{Reason::NotConverged, "the fitted maximum is far above every pixel"};
   fit.rms = std::sqrt(std::max(0.0, squares - c.dot(right)) / weights);
   fit.pixels = used;
   return fit;

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/pipeline/inspection.h"
+#include "viz/scene_view.h"
+
+namespace glint {
+struct Session;
+}
+
+namespace glint::gui {
+
+/// What a window starts from: a scene, and what a session file says about it (defaults for a plain scene).
+struct Opened {
+  std::string path;        ///< as opened
+  bool isSession = false;  ///< `path` is a session, so "save" writes there
+  std::shared_ptr<const Scene> scene;
+  InspectionRequest request;
+  viz::Selection selection;
+  std::map<std::string, bool> layers;       ///< visibility by layer name, where it differs from the default
+  std::string layout;                       ///< "" = keep the window's
+  std::optional<viz::ViewPoint> viewPoint;  ///< of the 3D view; none = show everything
+  std::shared_ptr<const Session> session;   ///< what the file said besides (notes, unknown keys); null for a plain scene
+};
+
+/// Everything that the desktop program asks of `core`. `coreEngine()` is the real one; tests replace single
+/// functions to make a run long, to count runs or to fail. All of them may be called from a worker thread.
+struct Engine {
+  /// InputError (file, place, reason) when the input cannot be used.
+  std::function<Opened(const std::string& path)> open;
+  /// As glint::inspect: throws Stopped and InputError.
+  std::function<Inspection(std::shared_ptr<const Scene>, const InspectionRequest&, const ProgressFn&, const Inspection* previous)>
+      inspect;
+  /// As glint::parseTrainSpec: InputError for a specification that does not parse.
+  std::function<TrainSpec(const std::string&, const Scene&)> parseTrain;
+  /// Writes a session file atomically; InputError when it cannot be written. @param results may be null.
+  std::function<void(const Opened&, const Inspection* results, const std::string& path)> save;
+};
+
+/// The engine that the program uses: glint::core.
+Engine coreEngine();
+
+}  // namespace glint::gui

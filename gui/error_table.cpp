@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/error_table.h"
+
+#include <QApplication>
+#include <QClipboard>
+#include <QComboBox>
+#include <QHBoxLayout>
+#include <QHeaderView>
+#include <QKeyEvent>
+#include <QLabel>
+#include <QScrollBar>
+#include <QSortFilterProxyModel>
+#include <QTableView>
+#include <QVBoxLayout>
+#include <algorithm>
+
+#include "core/evaluate/summary.h"
+#include "gui/error_model.h"
+#include "gui/text.h"
+#include "gui/theme.h"
+#include "viz/frame_overlay.h"
+
+namespace glint::gui {
+
+namespace {
+enum class Shown { All, HeldOut, Training, Problems };
+
+class RowFilter : public QSortFilterProxyModel {
+ public:
+  using QSortFilterProxyModel::QSortFilterProxyModel;
+  void show(Shown shown) {
+    shown_ = shown;
+    invalidateFilter();
+  }
+
+ protected:
+  bool filterAcceptsRow(int row, const QModelIndex& parent) const override {
+    const QModelIndex index = sourceModel()->index(row, 0, parent);
+    const auto role = FrameRole(sourceModel()->data(index, ErrorModel::kFrameRoleRole).toInt());
+    switch (shown_) {
+      case Shown::HeldOut:
+        return role == FrameRole::HeldOut;
+      case Shown::Training:
+        return role == FrameRole::Training;
+      case Shown::Problems:
+        return sourceModel()->data(index, ErrorModel::kProblemRole).toBool();
+      case Shown::All:
+        break;
+    }
+    return true;
+  }
+
+ private:
+  Shown shown_ = Shown::All;
+};
+}  // namespace
+
+ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), document_(document) {
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(0);
+  auto* head = new QHBoxLayout;
+  head->setContentsMargins(8, 4, 6, 4);
+  summary_ = new QLabel;
+  summary_->setObjectName(QStringLiteral("errorSummary"));
+  summary_->setTextFormat(Qt::RichText);
+  summary_->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  head->addWidget(summary_, 1);
+  filter_ = new QComboBox;
+  filter_->setObjectName(QStringLiteral("errorFilter"));
+  filter_->addItems({tr("All frames"), tr("Held out"), tr("Training"), tr("Problems")});
+  head->addWidget(filter_, 0, Qt::AlignTop);
+  column->addLayout(head);
+
+  model_ = new ErrorModel(document, this);
+  auto* proxy = new RowFilter(this);
+  proxy_ = proxy;
+  proxy_->setSourceModel(model_);
+  proxy_->setSortRole(ErrorModel::kSortRole);
+  view_ = new QTableView;
+  view_->setObjectName(QStringLiteral("errorTable"));
+  view_->setModel(proxy_);
+  view_->setSortingEnabled(true);
+  view_->sortByColumn(ErrorModel::Frame, Qt::AscendingOrder);
+  view_->setAlternatingRowColors(true);
+  view_->setSelectionBehavior(QAbstractItemView::SelectRows);
+  view_->setShowGrid(false);
+  view_->setWordWrap(false);
+  view_->verticalHeader()->hide();
+  view_->verticalHeader()->setDefaultSectionSize(fontMetrics().height() + 5);
+  view_->horizontalHeader()->setHighlightSections(false);
+  view_->horizontalHeader()->setStretchLastSection(true);
+  const int widths[] = {58, 72, 104, 64, 70, 70, 70, 76, 78, 66, 74, 76, 70, 76};
+  for (int i = 0; i < int(std::size(widths)); ++i) view_->setColumnWidth(i, widths[i]);
+  view_->installEventFilter(this);
+  column->addWidget(view_, 1);
+
+  connect(filter_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this, proxy](int i) {
+    proxy->show(Shown(i));
+    selectFromDocument();
+  });
+  connect(model_, &QAbstractItemModel::modelReset, this, [this] {
+    showSummary();
+    selectFromDocument();
+  });
+  connect(&document_, &Document::staleChanged, this, &ErrorTable::showSummary);
+  connect(&document_, &Document::selectionChanged, this, &ErrorTable::selectFromDocument);
+  connect(view_->selectionModel(), &QItemSelectionModel::currentRowChanged, this, &ErrorTable::selectFromTable);
+  showSummary();
+}
+
+void ErrorTable::showSummary() {
+  const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  if (!inspection) {
+    summary_->setText(tr("<span style='color:%1'>No results yet</span>").arg(palette().color(QPalette::PlaceholderText).name()));
+    return;
+  }
+  const QString faded = palette().color(QPalette::PlaceholderText).name();
+  QString html = QStringLiteral("<table cellspacing='0' cellpadding='0'><tr style='color:%1'>").arg(faded);
+  for (const QString& title : {tr("Held-out frames"), tr("mean %"), tr("median"), tr("p95"), tr("max"), tr("IoU"),
+                               tr("predicted"), tr("missed"), tr("spurious")})
+    html += QStringLiteral("<td style='padding-right:18px'>%1</td>").arg(title);
+  html += QStringLiteral("</tr>");
+  for (const std::string& name : viz::modelsInOrder(*inspection)) {
+    const ModelSummary s = summarise(*inspection, inspection->models.at(name));
+    html += QStringLiteral("<tr><td style='padding-right:18px'><span style='color:%1'>■</span>&nbsp;%2</td>")
+                .arg(toQColor(viz::modelColour(name)).name(), toQString(name));
+    if (!s.answered) {
+      html += QStringLiteral("<td colspan='8' style='color:%1'>%2</td></tr>")
+                  .arg(warningColour().name(), toQString(s.reason).toHtmlEscaped());
+      continue;
+    }
+    const Statistic& e = s.contourErrorPct;
+    for (const QString& cell :
+         {numberText(e.mean, 3), numberText(e.median, 3), numberText(e.p95, 3), numberText(e.max, 3), numberText(s.iou.mean, 4),
+          QStringLiteral("%1/%2").arg(s.predicted).arg(s.frames), QString::number(s.missed), QString::number(s.spurious)})
+      html += QStringLiteral("<td style='padding-right:18px'>%1</td>").arg(cell);
+    html += QStringLiteral("</tr>");
+  }
+  html += QStringLiteral("</table>");
+  if (document_.stale())
+    html = QStringLiteral("<div style='color:%1'>%2</div>").arg(warningColour().name(), tr("out of date, updating…")) + html;
+  summary_->setText(html);
+}
+
+void ErrorTable::selectFromDocument() {
+  if (selecting_) return;
+  const viz::Selection& s = document_.selection();
+  int best = -1, bestScore = 0;
+  for (int row = 0; row < proxy_->rowCount(); ++row) {
+    const int source = proxy_->mapToSource(proxy_->index(row, 0)).row();
+    if (model_->frameOf(source) != s.frame) continue;
+    const int score = 1 + 2 * (model_->modelOf(source) == document_.plottedModel()) +
+                      (s.highlight >= 0 && model_->highlightOf(source) == s.highlight);
+    if (score > bestScore) best = row, bestScore = score;
+  }
+  selecting_ = true;
+  if (best < 0)
+    view_->clearSelection();
+  else {
+    const int x = view_->horizontalScrollBar()->value();
+    view_->selectRow(best);
+    view_->horizontalScrollBar()->setValue(x);
+  }
+  selecting_ = false;
+}
+
+void ErrorTable::selectFromTable() {
+  const QModelIndex current = view_->currentIndex();
+  if (selecting_ || !current.isValid()) return;
+  const int row = proxy_->mapToSource(current).row();
+  selecting_ = true;
+  document_.select({model_->frameOf(row), model_->modelOf(row), model_->highlightOf(row)});
+  selecting_ = false;
+}
+
+void ErrorTable::copySelection() const {
+  QModelIndexList rows = view_->selectionModel()->selectedRows();
+  std::sort(rows.begin(), rows.end(), [](const QModelIndex& a, const QModelIndex& b) { return a.row() < b.row(); });
+  QStringList lines, cells;
+  for (int c = 0; c < proxy_->columnCount(); ++c) cells << proxy_->headerData(c, Qt::Horizontal).toString();
+  lines << cells.join('\t');
+  for (const QModelIndex& row : rows) {
+    cells.clear();
+    for (int c = 0; c < proxy_->columnCount(); ++c) cells << row.sibling(row.row(), c).data().toString();
+    lines << cells.join('\t');
+  }
+  QApplication::clipboard()->setText(lines.join('\n') + '\n');
+}
+
+bool ErrorTable::eventFilter(QObject* watched, QEvent* event) {
+  if (watched == view_ && event->type() == QEvent::KeyPress && static_cast<QKeyEvent*>(event)->matches(QKeySequence::Copy)) {
+    copySelection();
+    return true;
+  }
+  return QWidget::eventFilter(watched, event);
+}
+
+}  // namespace glint::gui

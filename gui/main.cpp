@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <QVTKOpenGLNativeWidget.h>
+
+#include <QApplication>
+#include <QSurfaceFormat>
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "core/base/outcome.h"
+#include "gui/command_line.h"
+#include "gui/main_window.h"
+#include "gui/screenshot.h"
+
+namespace {
+/// The offscreen and minimal platforms have no OpenGL: the program would run and show an empty 3D view.
+bool platformDraws(int argc, char** argv) {
+  std::string platform = qEnvironmentVariable("QT_QPA_PLATFORM").toStdString();
+  for (int i = 1; i + 1 < argc; ++i)
+    if (std::string(argv[i]) == "-platform") platform = argv[i + 1];
+  return platform.rfind("offscreen", 0) != 0 && platform.rfind("minimal", 0) != 0;
+}
+
+int run(int argc, char** argv) {
+  using namespace glint::gui;
+  QStringList arguments;
+  for (int i = 1; i < argc; ++i) arguments << QString::fromLocal8Bit(argv[i]);
+  const CommandLine command = parseCommandLine(arguments);
+  if (command.help) return std::fputs(helpText().toUtf8().constData(), stdout) < 0;
+  if (command.version) return std::puts("glint-inspector " GLINT_VERSION) < 0;
+  if (!platformDraws(argc, argv))
+    throw glint::InputError("", "QT_QPA_PLATFORM",
+                            "this Qt platform cannot draw 3D; use a display, or xvfb-run with QT_QPA_PLATFORM=xcb (see --help)");
+
+  QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
+#if QT_VERSION < QT_VERSION_CHECK(6, 0, 0)
+  QApplication::setAttribute(Qt::AA_EnableHighDpiScaling);
+  QApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
+#endif
+  int qtArgc = 1;  // Qt's own options come from the environment; the rest of the command line is ours
+  QApplication app(qtArgc, argv);
+  QApplication::setOrganizationName(QStringLiteral("Glint"));
+  QApplication::setApplicationName(QStringLiteral("glint-inspector"));
+  QApplication::setApplicationVersion(QStringLiteral(GLINT_VERSION));
+  applyTheme(app, command.theme);
+
+  MainWindow window(coreEngine());
+  window.setTheme(command.theme);
+  if (!command.size.isEmpty()) {
+    window.setMinimumSize(command.size.boundedTo(window.minimumSize()));
+    window.resize(command.size);
+  }
+  window.applyLayout(command.layout);
+  window.show();
+  window.applyLayout(command.layout);  // dock sizes are known only now
+  if (!command.input.isEmpty()) window.open(command.input, command.frame);
+  if (!command.screenshot.isEmpty()) new Screenshot(window, command.screenshot, command.waitIdle);
+  return QApplication::exec();
+}
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "glint-inspector: %s\n", e.what());
+    return 2;
+  }
+}

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/runner.h"
+
+#include <exception>
+#include <utility>
+
+#include "gui/text.h"
+
+namespace glint::gui {
+
+namespace {
+constexpr int kSignalEveryMs = 40;  // progress on screen needs no more
+}
+
+Runner::Runner(Engine engine, QObject* parent) : QObject(parent), engine_(std::move(engine)), worker_(new QObject) {
+  qRegisterMetaType<InspectionPtr>("glint::gui::InspectionPtr");
+  qRegisterMetaType<OpenedPtr>("glint::gui::OpenedPtr");
+  worker_->moveToThread(&thread_);
+  connect(&thread_, &QThread::finished, worker_, &QObject::deleteLater);
+  thread_.start();
+}
+
+Runner::~Runner() {
+  cancel();
+  thread_.quit();
+  thread_.wait();
+}
+
+void Runner::cancel() { cancelled_ = newest_.load(); }
+
+void Runner::open(const std::string& path) {
+  cancel();  // results of the scene on screen are of no use any more
+  const auto work = [this, path](int job) {
+    auto opened = std::make_shared<const Opened>(engine_.open(path));
+    if (job == newest_)
+      QMetaObject::invokeMethod(
+          this, [this, opened] { emit this->opened(opened); }, Qt::QueuedConnection);
+  };
+  post(work, [this] { emit openFailed(); });
+}
+
+void Runner::inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& request, InspectionPtr previous) {
+  auto computedFor = std::make_shared<Opened>();
+  computedFor->request = request;
+  post([this, scene = std::move(scene), computedFor, previous = std::move(previous)](int job) {
+    QElapsedTimer clock, lastSignal;
+    clock.start();
+    const ProgressFn progress = [&](const StageEvent& e) { return report(job, clock, lastSignal, e); };
+    if (job != newest_ || job <= cancelled_) throw Stopped{};  // overtaken while it waited
+    const auto result =
+        std::make_shared<const Inspection>(engine_.inspect(scene, computedFor->request, progress, previous.get()));
+    if (job > cancelled_)
+      QMetaObject::invokeMethod(
+          this, [this, result, computedFor] { emit finished(result, computedFor); }, Qt::QueuedConnection);
+  });
+}
+
+void Runner::post(std::function<void(int)> work, std::function<void()> onFailure) {
+  const int job = ++newest_;
+  if (++pending_ == 1) emit busyChanged(true);
+  QMetaObject::invokeMethod(
+      worker_,
+      [this, job, work = std::move(work), onFailure = std::move(onFailure)] {
+        End how = End::Done;
+        QString message;
+        try {
+          work(job);
+        } catch (const Stopped&) {
+          how = End::Stopped;
+        } catch (const std::exception& e) {
+          how = End::Failed;
+          message = toQString(e.what());
+        }
+        QMetaObject::invokeMethod(
+            this, [this, job, how, message, onFailure] { end(job, how, message, onFailure); }, Qt::QueuedConnection);
+      },
+      Qt::QueuedConnection);
+}
+
+bool Runner::report(int job, const QElapsedTimer& clock, QElapsedTimer& lastSignal, const StageEvent& event) {
+  if (job <= cancelled_) return false;
+  if (job != newest_ && clock.elapsed() > kGraceMs) return false;
+  if (!lastSignal.isValid() || lastSignal.elapsed() >= kSignalEveryMs) {
+    lastSignal.start();
+    const QString stage = toQString(event.stage);
+    QMetaObject::invokeMethod(
+        this, [this, stage, done = event.done, total = event.total] { emit progressed(stage, done, total); },
+        Qt::QueuedConnection);
+  }
+  return true;
+}
+
+void Runner::end(int job, End how, const QString& message, const std::function<void()>& onFailure) {
+  --pending_;
+  if (job == newest_ && how == End::Failed) emit failed(message);
+  if (how == End::Failed && onFailure) onFailure();
+  if (job == newest_ && how == End::Stopped) emit stopped();
+  if (pending_ == 0) emit busyChanged(false);
+}
+
+}  // namespace glint::gui
