@@ -3,6 +3,14 @@
 
 int main(int argc, char** argv) {
   using namespace glint::cli;
-  // The order is that of `glint --help`.
-  return runCommandLine(argc, argv, {infoCommand(), detectCommand(), synthCommand(), convertCommand(), settingsCommand()});
+  // The order is that of `glint --help`; one command a line, so that two additions merge.
+  return runCommandLine(argc, argv,
+                        {
+                            infoCommand(),
+                            detectCommand(),
+                            synthCommand(),
+                            convertCommand(),
+                            replayCommand(),
+                            settingsCommand(),
+                        });
 }

@@ -82,7 +82,9 @@ class SessionSceneReader final : public SceneReader {
     const JsonNode path = root.at("input").at("path");
     const fs::path scene = fs::absolute(file).parent_path() / path.text();
     if (isJsonObjectWith(scene, "glint_session")) path.fail("a session's input must be a scene, not a session");
-    return readScene(scene.lexically_normal(), options);
+    ReadOptions own = options;
+    if (const auto allow = root.at("input").find("allow_outside")) own.allowOutsidePaths = own.allowOutsidePaths || allow->boolean();
+    return readScene(scene.lexically_normal(), own);
   }
 };
 

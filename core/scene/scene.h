@@ -50,6 +50,7 @@ struct Scene {
   std::string name;
   std::filesystem::path file;             ///< as opened
   std::filesystem::path folder;           ///< absolute folder of the file; all relative paths start here
+  bool allowOutsidePaths = false;         ///< as it was read with (ReadOptions)
   std::vector<Frame> frames;
   std::map<std::string, SurfaceSource> surfaces;
   std::vector<TrueLight> lights;

@@ -279,6 +279,7 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
   Scene scene;
   scene.file = file;
   scene.folder = fs::absolute(file).lexically_normal().parent_path();
+  scene.allowOutsidePaths = options.allowOutsidePaths;
   Unknown unknown{scene};
 
   const JsonNode version = root.at("glint_scene");

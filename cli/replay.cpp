@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/commands.h"
+#include "core/pipeline/session.h"
+
+namespace glint::cli {
+
+Command replayCommand() {
+  struct Arguments {
+    std::string session;
+    bool exact = false;
+  };
+  const auto a = std::make_shared<Arguments>();
+  Command c;
+  c.name = "replay";
+  c.summary = "Recompute a session and compare with what it stored";
+  c.description =
+      "Checks that the inputs are what they were (SHA-256), computes everything again and compares the key results:\n"
+      "they agree when they differ by at most 1e-9 relatively. Exit code 1 when they do not (each difference is a\n"
+      "line on standard output), 2 when an input changed or is missing.";
+  c.examples =
+      "  glint replay sessions/sphere.glint            the same results, on any machine\n"
+      "  glint replay sessions/sphere.glint --exact    the same bits, on the machine that saved it\n";
+  c.declare = [a](Options& o) {
+    o.positional(a->session, "FILE.glint", "The session");
+    o.flag(a->exact, "--exact", "Compare the digest of all results too");
+  };
+  c.run = [a](const Context& context) -> int {
+    const Session session = readSession(a->session);
+    for (const std::string& w : session.warnings) context.warn(w);
+    const Replay result = replay(session, context.progress());
+    std::string out;
+    for (const std::string& line : result.differences) out += line + "\n";
+    out += std::to_string(result.compared - static_cast<int>(std::min<std::size_t>(result.differences.size(), result.compared))) +
+           " of " + std::to_string(result.compared) + " key results agree; digest " +
+           (result.digestAgrees ? "equal" : "different") + "\n";
+    context.print(out);
+    return result.differences.empty() && (!a->exact || result.digestAgrees) ? kDone : kComparisonFailed;
+  };
+  return c;
+}
+
+}  // namespace glint::cli

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+
+#include "core/base/sha256.h"
+#include "core/evaluate/summary.h"
+#include "core/pipeline/session.h"
+
+namespace glint {
+namespace {
+
+/// Feeds values to a hash by their exact bits. A NaN counts as one value whatever its payload, and -0 as 0.
+class Digest {
+ public:
+  void add(double v) {
+    if (std::isnan(v)) v = std::numeric_limits<double>::quiet_NaN();
+    if (v == 0) v = 0;
+    char bytes[sizeof v];
+    std::memcpy(bytes, &v, sizeof v);
+    hash_.add({bytes, sizeof bytes});
+  }
+  void add(const std::string& text) {
+    add(static_cast<double>(text.size()));
+    hash_.add(text);
+  }
+  template <class Derived>
+  void add(const Eigen::MatrixBase<Derived>& m) {
+    for (Eigen::Index i = 0; i < m.rows(); ++i)
+      for (Eigen::Index j = 0; j < m.cols(); ++j) add(static_cast<double>(m(i, j)));
+  }
+  void add(const Polyline& line) {
+    add(static_cast<double>(line.points.size()));
+    for (const Pixel& p : line.points) add(p);
+  }
+  void add(const std::optional<Failure>& failure) { add(failure ? std::string(nameOf(failure->reason)) : std::string()); }
+  std::string hex() { return hash_.hex(); }
+
+ private:
+  Sha256 hash_;
+};
+
+void addStatistic(KeyResults& results, const std::string& name, const Statistic& s) {
+  results.emplace_back(name + ".mean", s.mean);
+  results.emplace_back(name + ".median", s.median);
+  results.emplace_back(name + ".p95", s.p95);
+  results.emplace_back(name + ".max", s.max);
+}
+
+std::string shortest(double v) {
+  char buffer[40];
+  std::snprintf(buffer, sizeof buffer, "%.12g", v);
+  return buffer;
+}
+
+bool agree(double a, double b) {
+  if (std::isnan(a) || std::isnan(b)) return std::isnan(a) && std::isnan(b);
+  return std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b)) + 1e-12;
+}
+
+}  // namespace
+
+KeyResults keyResultsOf(const Inspection& inspection) {
+  KeyResults results;
+  for (const auto& [key, light] : inspection.lights) {
+    const std::string name = "light." + key;
+    const Eigen::Vector4d& l = light.light.homogeneous();
+    for (int i = 0; i < 4; ++i) results.emplace_back(name + "." + "xyzw"[i], l[i]);
+    results.emplace_back(name + ".limit_angle_rad", light.limitAngle);
+  }
+  for (const auto& [name, result] : inspection.models) {
+    for (const ModelResult::Fit& f : result.fits) {
+      if (!f.fit) continue;
+      const std::string fit = name + ".fit." + f.light + (f.surface ? "@" + *f.surface : "");
+      if (f.fit->ellipsoid) {
+        const Eigen::Vector3d axes = f.fit->ellipsoid->semiAxes();
+        for (int i = 0; i < 3; ++i) results.emplace_back(fit + ".semi_axis_" + std::to_string(i), axes[i]);
+      }
+      if (f.fit->limitAngle) results.emplace_back(fit + ".limit_angle_rad", *f.fit->limitAngle);
+    }
+    const ModelSummary s = summarise(inspection, result);
+    for (const auto& [what, count] : {std::pair<const char*, int>{"frames", s.frames},
+                                      {"predicted", s.predicted},
+                                      {"matched", s.matched},
+                                      {"missed", s.missed},
+                                      {"spurious", s.spurious}})
+      results.emplace_back(name + "." + what, count);
+    addStatistic(results, name + ".contour_error_pct", s.contourErrorPct);
+    addStatistic(results, name + ".contour_error_px", s.contourErrorPx);
+    addStatistic(results, name + ".iou", s.iou);
+    addStatistic(results, name + ".peak_offset_px", s.peakOffsetPx);
+    addStatistic(results, name + ".coverage", s.coverage);
+  }
+  return results;
+}
+
+std::string digestOf(const Inspection& inspection) {
+  Digest d;
+  for (const FrameEvidence& e : inspection.evidence) {
+    d.add(e.failure);
+    for (const Highlight& h : e.highlights) {
+      d.add(h.light);
+      d.add(h.peak);
+      d.add(h.contour);
+    }
+  }
+  for (const auto& [key, light] : inspection.lights) {
+    d.add(key);
+    d.add(light.light.homogeneous());
+    d.add(light.limitAngle);
+  }
+  for (const auto& [name, result] : inspection.models) {
+    d.add(name);
+    for (const ModelResult::Fit& f : result.fits) {
+      d.add(f.light);
+      d.add(f.surface.value_or(""));
+      d.add(f.failure);
+      if (!f.fit) continue;
+      if (f.fit->quadric) d.add(f.fit->quadric->matrix);
+      if (f.fit->limitAngle) d.add(*f.fit->limitAngle);
+      for (const double r : f.fit->residualPx) d.add(r);
+    }
+    for (const FrameComparison& c : result.frames) {
+      d.add(static_cast<double>(c.frame));
+      d.add(c.light);
+      d.add(c.prediction.failure);
+      for (const PredictedHighlight& h : c.prediction.highlights) {
+        d.add(h.contour);
+        d.add(h.coverage);
+      }
+      for (const FrameComparison::Row& row : c.rows) {
+        d.add(static_cast<double>(row.observed));
+        d.add(static_cast<double>(row.predicted));
+        d.add(row.failure);
+        if (!row.metrics) continue;
+        const ContourMetrics& m = *row.metrics;
+        for (const double v : {m.contourErrorPx, m.contourErrorPct, m.ellipseErrorPct, m.hausdorffPx, m.iou, m.centreOffsetPx,
+                               m.axisRatioError, m.angleErrorDeg, m.peakOffsetPx})
+          d.add(v);
+      }
+    }
+  }
+  return d.hex();
+}
+
+Session sessionOf(const Inspection& inspection, const ProgressFn& progress) {
+  require(inspection.scene != nullptr, "sessionOf: the inspection has no scene");
+  const Scene& scene = *inspection.scene;
+  Session session;
+  session.input = std::filesystem::absolute(scene.file).lexically_normal();
+  session.allowOutsidePaths = scene.allowOutsidePaths;
+  session.request = inspection.request;
+  session.files = hashInputs(scene, inspection.request, progress);
+  for (int i = 0; i < static_cast<int>(scene.frames.size()); ++i) {
+    const std::string& id = scene.frames[static_cast<std::size_t>(i)].id;
+    if (inspection.isTraining(i)) session.training.push_back(id);
+    if (inspection.isHeldOut(i)) session.heldOut.push_back(id);
+  }
+  session.keyResults = keyResultsOf(inspection);
+  session.digest = digestOf(inspection);
+  return session;
+}
+
+Replay replay(const Session& session, const ProgressFn& progress) {
+  if (session.keyResults.empty())
+    throw InputError(session.file.string(), "results", "the session was saved without results: there is nothing to compare");
+  const std::vector<std::string> changed = changedFiles(session, progress);
+  if (!changed.empty())
+    throw InputError(session.file.string(), "input",
+                     changed.front() + (changed.size() > 1 ? " (and " + std::to_string(changed.size() - 1) + " more)" : ""));
+  ReadOptions options;
+  options.allowOutsidePaths = session.allowOutsidePaths;
+  const Inspection inspection =
+      inspect(std::make_shared<const Scene>(readScene(session.input, options)), session.request, progress);
+  Replay result;
+  const KeyResults now = keyResultsOf(inspection);
+  const auto find = [](const KeyResults& all, const std::string& name) {
+    return std::find_if(all.begin(), all.end(), [&](const auto& r) { return r.first == name; });
+  };
+  for (const auto& [name, value] : session.keyResults) {
+    ++result.compared;
+    const auto it = find(now, name);
+    if (it == now.end())
+      result.differences.push_back(name + ": was " + shortest(value) + ", is no longer computed");
+    else if (!agree(value, it->second))
+      result.differences.push_back(name + ": was " + shortest(value) + ", is " + shortest(it->second));
+  }
+  for (const auto& [name, value] : now)
+    if (find(session.keyResults, name) == session.keyResults.end())
+      result.differences.push_back(name + ": is " + shortest(value) + ", was not computed");
+  result.digestAgrees = digestOf(inspection) == session.digest;
+  return result;
+}
+
+}  // namespace glint

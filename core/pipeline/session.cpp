@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/pipeline/session.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/base/atomic_file.h"
+#include "core/base/json_text.h"
+#include "core/base/sha256.h"
+
+namespace glint {
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr int kVersion = 1;
+
+fs::path folderOf(const fs::path& file) { return fs::absolute(file).lexically_normal().parent_path(); }
+
+Json toJson(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
+
+Json toJson(const SettingValue& value) {
+  return std::visit([](const auto& v) { return Json(v); }, value);
+}
+
+/// All settings, defaults too: a later program may have other defaults.
+Json settingsJson(const Settings& settings) {
+  Json j = Json::object();
+  for (const ParamSpec& spec : allParams()) {
+    const auto it = settings.values().find(spec.key);
+    j[spec.key] = toJson(it == settings.values().end() ? spec.defaultValue : it->second);
+  }
+  return j;
+}
+
+Settings readSettings(const JsonNode& node) {
+  Settings settings;
+  for (const std::string& key : node.keys()) {
+    const JsonNode value = node.at(key);
+    const auto& all = allParams();
+    const auto spec = std::find_if(all.begin(), all.end(), [&](const ParamSpec& s) { return s.key == key; });
+    if (spec == all.end()) value.fail("there is no such setting");
+    try {
+      if (std::holds_alternative<bool>(spec->defaultValue))
+        settings.set(key, value.boolean());
+      else if (std::holds_alternative<int>(spec->defaultValue))
+        settings.set(key, value.integer());
+      else if (std::holds_alternative<double>(spec->defaultValue))
+        settings.set(key, value.number());
+      else
+        settings.set(key, value.text());
+    } catch (const InputError& e) {
+      if (!e.file().empty()) throw;
+      // Settings name the flag; here the place in the file says more.
+      const std::string message = e.what();
+      value.fail(message.substr(std::min(message.size(), e.place().size() + 2)));
+    }
+  }
+  return settings;
+}
+
+std::vector<std::string> texts(const JsonNode& node) {
+  std::vector<std::string> all;
+  for (std::size_t i = 0; i < node.size(); ++i) all.push_back(node.at(i).text());
+  return all;
+}
+
+fs::path absolutePath(const JsonNode& node, const fs::path& folder) {
+  const std::string text = node.text();
+  if (text.empty()) node.fail("the path is empty");
+  if (text.find('\0') != std::string::npos) node.fail("the path contains a zero byte");
+  return (folder / fs::path(text)).lexically_normal();
+}
+
+InspectionRequest readRequest(const JsonNode& node, const fs::path& folder) {
+  InspectionRequest request;
+  request.models = texts(node.at("models"));
+  request.train = node.at("train").text();
+  if (const auto n = node.find("excluded")) {
+    for (std::size_t i = 0; i < n->size(); ++i) {
+      request.excluded.push_back(n->at(i).integer());
+      if (request.excluded.back() < 0) n->at(i).fail("must not be negative");
+    }
+  }
+  if (const auto n = node.find("source")) {
+    const std::string source = n->text();
+    if (source != "radiance" && source != "image") n->fail("'" + source + "' is none of: radiance, image");
+    request.source = source == "image" ? FrameSource::Image : FrameSource::Radiance;
+  }
+  if (const auto n = node.find("settings")) request.settings = readSettings(*n);
+  if (const auto n = node.find("noise_px")) {
+    request.noisePx = n->number();
+    if (request.noisePx < 0) n->fail("must not be negative");
+  }
+  if (const auto n = node.find("seed")) {
+    const double seed = n->number();
+    if (seed != std::floor(seed) || seed < 0 || seed > std::numeric_limits<unsigned>::max())
+      n->fail("must be a whole number from 0 to 4294967295");
+    request.seed = static_cast<unsigned>(seed);
+  }
+  if (const auto n = node.find("truth"); n && !n->isNull()) request.truthFolder = absolutePath(*n, folder).string();
+  return request;
+}
+
+SessionView readView(const JsonNode& node) {
+  SessionView view;
+  if (const auto n = node.find("layout")) view.layout = n->text();
+  if (const auto n = node.find("layers"))
+    for (const std::string& key : n->keys()) view.layers[key] = n->at(key).boolean();
+  if (const auto n = node.find("cameras")) {
+    for (const std::string& key : n->keys()) {
+      const JsonNode c = n->at(key);
+      SessionCamera camera{c.at("position").vector3(), c.at("focal_point").vector3(), c.at("up").vector3(),
+                           c.at("view_angle_deg").number()};
+      if (!(camera.viewAngleDeg > 0 && camera.viewAngleDeg < 180)) c.at("view_angle_deg").fail("must lie between 0 and 180");
+      view.cameras[key] = camera;
+    }
+  }
+  if (const auto n = node.find("selection")) {
+    if (const auto m = n->find("frame")) view.frame = m->text();
+    if (const auto m = n->find("model")) view.model = m->text();
+    if (const auto m = n->find("light")) view.light = m->text();
+    if (const auto m = n->find("highlight")) view.highlight = m->integer();
+  }
+  return view;
+}
+
+std::string readHash(const JsonNode& node) {
+  if (node.isNull()) return "";
+  const std::string hash = node.text();
+  if (hash.size() != 64 || hash.find_first_not_of("0123456789abcdef") != std::string::npos)
+    node.fail("must be 64 hexadecimal digits");
+  return hash;
+}
+
+}  // namespace
+
+Session readSession(const fs::path& file) {
+  const JsonNode root = JsonNode::parse(readFile(file), file.string());
+  Session session;
+  session.file = file;
+  const fs::path folder = folderOf(file);
+  const JsonNode version = root.at("glint_session");
+  if (version.integer() > kVersion)
+    version.fail("version " + std::to_string(version.integer()) + " is newer than this program understands (" +
+                 std::to_string(kVersion) + ")");
+  if (version.integer() < 1) version.fail("version " + std::to_string(version.integer()) + " never existed");
+  const JsonNode input = root.at("input");
+  session.input = absolutePath(input.at("path"), folder);
+  if (const auto n = input.find("allow_outside")) session.allowOutsidePaths = n->boolean();
+  if (const auto n = input.find("files"))
+    for (std::size_t i = 0; i < n->size(); ++i)
+      session.files.push_back({absolutePath(n->at(i).at("path"), folder), readHash(n->at(i).at("sha256"))});
+  session.request = readRequest(root.at("request"), folder);
+  if (const auto n = root.find("frames")) {
+    session.training = texts(n->at("training"));
+    session.heldOut = texts(n->at("held_out"));
+  }
+  if (const auto n = root.find("view")) session.view = readView(*n);
+  if (const auto n = root.find("notes")) session.notes = n->text();
+  if (const auto n = root.find("results"); n && !n->isNull()) {
+    const JsonNode key = n->at("key_results");
+    for (const std::string& name : key.keys()) {
+      const JsonNode value = key.at(name);
+      session.keyResults.emplace_back(name, value.isNull() ? std::numeric_limits<double>::quiet_NaN() : value.number());
+    }
+    session.digest = readHash(n->at("digest"));
+  }
+  Json unknown = Json::object();
+  for (const std::string& key : root.unknownKeys({"glint_session", "input", "request", "frames", "view", "notes", "results"})) {
+    session.warnings.push_back(key + ": unknown key, kept");
+    unknown[key] = Json::parse(root.at(key).dump());
+  }
+  if (!unknown.empty()) session.unknownJson = unknown.dump();
+  return session;
+}
+
+void writeSession(const Session& session, const fs::path& file) {
+  const fs::path folder = folderOf(file);
+  const auto relative = [&](const fs::path& path) {
+    const fs::path r = fs::absolute(path).lexically_normal().lexically_relative(folder);
+    if (r.empty()) throw InputError(path.string(), "", "has no path relative to " + folder.string());
+    return r.generic_string();
+  };
+  const auto hash = [](const std::string& hex) { return hex.empty() ? Json() : Json(hex); };
+  Json root = {{"glint_session", kVersion}};
+  root["input"] = {{"path", relative(session.input)}, {"allow_outside", session.allowOutsidePaths}, {"files", Json::array()}};
+  for (const SessionFile& f : session.files)
+    root["input"]["files"].push_back({{"path", relative(f.path)}, {"sha256", hash(f.sha256)}});
+
+  const InspectionRequest& q = session.request;
+  root["request"] = {{"models", q.models},
+                     {"train", q.train},
+                     {"excluded", q.excluded},
+                     {"source", q.source == FrameSource::Image ? "image" : "radiance"}};
+  root["request"]["settings"] = settingsJson(q.settings);
+  root["request"]["noise_px"] = q.noisePx;
+  root["request"]["seed"] = q.seed;
+  root["request"]["truth"] = q.truthFolder.empty() ? Json() : Json(relative(q.truthFolder));
+  root["frames"] = {{"training", session.training}, {"held_out", session.heldOut}};
+
+  const SessionView& v = session.view;
+  root["view"] = {{"layout", v.layout}, {"layers", v.layers}, {"cameras", Json::object()}};
+  for (const auto& [name, c] : v.cameras)
+    root["view"]["cameras"][name] = {{"position", toJson(c.position)},
+                                     {"focal_point", toJson(c.focalPoint)},
+                                     {"up", toJson(c.up)},
+                                     {"view_angle_deg", c.viewAngleDeg}};
+  root["view"]["selection"] = {{"frame", v.frame}, {"model", v.model}, {"light", v.light}, {"highlight", v.highlight}};
+  root["notes"] = session.notes;
+  if (!session.keyResults.empty()) {
+    Json key = Json::object();
+    for (const auto& [name, value] : session.keyResults) key[name] = std::isfinite(value) ? Json(value) : Json();
+    root["results"] = {{"key_results", std::move(key)}, {"digest", hash(session.digest)}};
+  }
+  if (!session.unknownJson.empty()) {
+    const Json unknown = Json::parse(session.unknownJson);
+    for (const auto& item : unknown.items())
+      if (!root.contains(item.key())) root[item.key()] = item.value();
+  }
+  atomicWrite(file, prettyJson(root.dump(-1, ' ', false, Json::error_handler_t::replace)));
+}
+
+OpenedSession openSession(const fs::path& file) {
+  OpenedSession opened{readSession(file), nullptr};
+  ReadOptions options;
+  options.allowOutsidePaths = opened.session.allowOutsidePaths;
+  opened.scene = std::make_shared<const Scene>(readScene(opened.session.input, options));
+  return opened;
+}
+
+std::vector<SessionFile> hashInputs(const Scene& scene, const InspectionRequest& request, const ProgressFn& progress) {
+  std::vector<fs::path> paths{fs::absolute(scene.file).lexically_normal()};
+  std::set<fs::path> seen(paths.begin(), paths.end());
+  const auto add = [&](const fs::path& p) {
+    if (!p.empty() && seen.insert(p).second) paths.push_back(p);
+  };
+  for (const auto& [id, source] : scene.surfaces)
+    if (source.mesh) add(*source.mesh);
+  for (const Frame& f : scene.frames)
+    for (const fs::path* p : {&f.image, &f.radiance, &f.depth, &f.normals, &f.mask}) add(*p);
+  if (!request.truthFolder.empty()) {
+    std::vector<fs::path> truth;
+    std::error_code error;
+    for (fs::directory_iterator it(request.truthFolder, error), end; !error && it != end; it.increment(error))
+      if (it->is_regular_file(error)) truth.push_back(fs::absolute(it->path()).lexically_normal());
+    std::sort(truth.begin(), truth.end());
+    for (const fs::path& p : truth) add(p);
+  }
+  std::vector<SessionFile> files;
+  for (const fs::path& p : paths) {
+    if (!report(progress, {"hash", static_cast<int>(files.size()), static_cast<int>(paths.size())})) throw Stopped{};
+    std::string hash;
+    try {
+      hash = sha256OfFile(p);
+    } catch (const InputError&) {
+      // A frame whose image is missing has its own reason in the results; the session notes that it was missing.
+    }
+    files.push_back({p, hash});
+  }
+  return files;
+}
+
+std::vector<std::string> changedFiles(const Session& session, const ProgressFn& progress) {
+  std::vector<std::string> lines;
+  int done = 0;
+  for (const SessionFile& f : session.files) {
+    if (!report(progress, {"hash", done++, static_cast<int>(session.files.size())})) throw Stopped{};
+    std::error_code error;
+    if (!fs::exists(f.path, error)) {
+      if (!f.sha256.empty()) lines.push_back(f.path.string() + ": missing");
+    } else if (sha256OfFile(f.path) != f.sha256) {
+      lines.push_back(f.path.string() + ": changed");
+    }
+  }
+  return lines;
+}
+
+}  // namespace glint

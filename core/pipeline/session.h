@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/pipeline/inspection.h"
+
+namespace glint {
+
+/// A camera of a 3D view, world units.
+struct SessionCamera {
+  Eigen::Vector3d position{0, 0, 1}, focalPoint{0, 0, 0}, up{0, 1, 0};
+  double viewAngleDeg = 30;  ///< vertical field of view
+};
+
+/// What the window showed; the results do not depend on it.
+struct SessionView {
+  std::string layout;                            ///< name of the arrangement of panels; "" = the program's own
+  std::map<std::string, SessionCamera> cameras;  ///< by view name
+  std::map<std::string, bool> layers;            ///< visibility by layer name, where it differs from the default
+  std::string frame, model, light;               ///< selection; "" = none
+  int highlight = -1;                            ///< index in the frame's evidence; -1 = none
+};
+
+/// A file that the results depend on.
+struct SessionFile {
+  std::filesystem::path path;  ///< absolute
+  std::string sha256;          ///< 64 hexadecimal digits; "" = the file was missing or unreadable when the session was saved
+};
+
+/// A number of the results under a stable name ("canonical.contour_error_pct.mean"). NaN = not defined.
+using KeyResults = std::vector<std::pair<std::string, double>>;
+
+/// Everything of a session file *.glint (formats.md "Session"; resources/session.schema.json).
+struct Session {
+  std::filesystem::path file;      ///< as opened; empty for a new session
+  std::filesystem::path input;     ///< absolute path of the scene
+  bool allowOutsidePaths = false;  ///< the scene may name files outside its folder
+  std::vector<SessionFile> files;  ///< the scene file first, then everything that it names
+  InspectionRequest request;
+  std::vector<std::string> training, heldOut;  ///< frame ids that `request.train` meant when it was saved
+  SessionView view;
+  std::string notes;
+  KeyResults keyResults;              ///< empty when the session was saved without results
+  std::string digest;                 ///< of all results, "" without results; equal on the same machine and build only
+  std::vector<std::string> warnings;  ///< unknown keys, one line each (not written)
+  std::string unknownJson;            ///< unknown top-level keys, kept for writing back; "" = none
+};
+
+/// InputError: file, place and reason; a version newer than this program's is refused.
+Session readSession(const std::filesystem::path& file);
+/// Atomically; paths relative to the session's folder. InputError when it cannot be written.
+void writeSession(const Session& session, const std::filesystem::path& file);
+
+struct OpenedSession {
+  Session session;
+  std::shared_ptr<const Scene> scene;
+};
+/// Reads a session and its scene. InputError. Does not check the files' contents: see `changedFiles`.
+OpenedSession openSession(const std::filesystem::path& file);
+
+/// The session of a finished inspection, with hashes of its inputs, held-out frames, key results and digest; the view and notes
+/// are left empty. Reads every input file once. Stopped.
+Session sessionOf(const Inspection& inspection, const ProgressFn& progress = {});
+/// Of the scene, what it names, and the truth folder of the request.
+std::vector<SessionFile> hashInputs(const Scene& scene, const InspectionRequest& request, const ProgressFn& progress = {});
+
+/// One line "path: changed" or "path: missing" for each input that is not what it was. Stopped.
+std::vector<std::string> changedFiles(const Session& session, const ProgressFn& progress = {});
+
+/// Summaries of every model, limit angles and light positions; no times.
+KeyResults keyResultsOf(const Inspection& inspection);
+/// SHA-256 over the exact bits of lights, fits, predictions and metrics; no times.
+std::string digestOf(const Inspection& inspection);
+
+/// What a replay found. The inputs were unchanged.
+struct Replay {
+  std::vector<std::string> differences;  ///< key results beyond the tolerance, one line each; empty = they agree
+  bool digestAgrees = false;
+  int compared = 0;  ///< key results
+};
+/// Recomputes a session and compares: key results agree when they differ by at most 1e-9 relatively (or 1e-12 absolutely,
+/// the round-off of numbers of order one).
+/// @throw InputError when the session has no results, or an input changed or is missing (the first is named); Stopped.
+Replay replay(const Session& session, const ProgressFn& progress = {});
+
+}  // namespace glint
