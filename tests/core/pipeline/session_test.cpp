@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -34,7 +36,6 @@ Session example(const TemporaryFolder& folder) {
   s.request.excluded = {4, 7};
   s.request.source = FrameSource::Image;
   s.request.settings.setFromText("predict.directions", "72");
-  s.request.settings.setFromText("fit.free_centre", "true");
   s.request.settings.setFromText("surface.normals", "curved");
   s.request.settings.setFromText("detect.level", "0.1");
   s.request.noisePx = 0.25;
@@ -141,6 +142,40 @@ TEST(Session, UnknownKeysAreWarnedOfAndKept) {
   EXPECT_THAT(contentOf(folder / "y.glint"), HasSubstr("\"future\""));
 }
 
+/// A path-traced sphere with its analytic surface and the cheapest model: the whole way from images to numbers and back.
+TEST(Session, ReplayAgreesAndSaysWhereItDoesNot) {
+  const auto scene =
+      std::make_shared<const Scene>(readScene(fs::path(GLINT_SHARED_DIR) / "data/cycles/sphere/scene-analytic.json"));
+  InspectionRequest request;
+  request.models = {"primal", "dual"};
+  const Inspection inspection = inspect(scene, request);
+  const TemporaryFolder folder;
+  writeSession(sessionOf(inspection), folder / "x.glint");
+  Session session = readSession(folder / "x.glint");
+  EXPECT_EQ(session.training.size(), 6u);
+  EXPECT_EQ(session.heldOut.size(), 18u);
+  const Replay same = replay(session);
+  EXPECT_THAT(same.differences, ElementsAre());
+  EXPECT_TRUE(same.digestAgrees);
+  EXPECT_GT(same.compared, 20);
+  EXPECT_EQ(same.compared, static_cast<int>(session.keyResults.size()));
+
+  const auto error = std::find_if(session.keyResults.begin(), session.keyResults.end(),
+                                  [](const auto& r) { return r.first == "dual.contour_error_pct.mean"; });
+  ASSERT_NE(error, session.keyResults.end());
+  error->second *= 1 + 1e-8;
+  session.keyResults.emplace_back("gone", 1.0);
+  const Replay changed = replay(session);
+  ASSERT_EQ(changed.differences.size(), 2u);
+  EXPECT_THAT(changed.differences[0], HasSubstr("dual.contour_error_pct.mean: was "));
+  EXPECT_THAT(changed.differences[1], HasSubstr("gone: was 1, is no longer computed"));
+
+  // Another setting: the digest tells, whatever the summaries say.
+  Session other = session;
+  other.request.settings.setFromText("detect.level", "0.49");
+  EXPECT_FALSE(replay(other).digestAgrees);
+}
+
 struct BadSession {
   const char *from, *to, *place, *reason;
 };
@@ -170,7 +205,13 @@ INSTANTIATE_TEST_SUITE_P(
         BadSession{"\"seed\": 4000000000", "\"seed\": -1", "request.seed: ", "whole number"},
         BadSession{"\"digest\": \"aaaa", "\"digest\": \"xaaa", "results.digest: ", "hexadecimal"},
         BadSession{"\"view_angle_deg\": 35", "\"view_angle_deg\": 0", "view.cameras.scene.view_angle_deg: ", "between 0 and 180"},
-        BadSession{"\"surface\": false", "\"surface\": 0", "view.layers.surface: ", "true or false"}));
+        BadSession{"\"surface\": false", "\"surface\": 0", "view.layers.surface: ", "true or false"}),
+    [](const auto& info) {
+      std::string name = std::to_string(info.index) + "_" + info.param.place;
+      for (char& c : name)
+        if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+      return name;
+    });
 
 }  // namespace
 }  // namespace glint
