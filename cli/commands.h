@@ -9,6 +9,7 @@ namespace glint::cli {
 Command convertCommand();
 Command detectCommand();
 Command infoCommand();
+Command renderCommand();
 Command replayCommand();
 Command settingsCommand();
 Command synthCommand();

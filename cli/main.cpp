@@ -10,6 +10,7 @@ int main(int argc, char** argv) {
                             detectCommand(),
                             synthCommand(),
                             convertCommand(),
+                            renderCommand(),
                             replayCommand(),
                             settingsCommand(),
                         });
