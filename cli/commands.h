@@ -9,7 +9,6 @@ namespace glint::cli {
 Command convertCommand();
 Command detectCommand();
 Command infoCommand();
-Command renderCommand();
 Command replayCommand();
 Command settingsCommand();
 Command synthCommand();

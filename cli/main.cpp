@@ -10,7 +10,6 @@ int main(int argc, char** argv) {
                             detectCommand(),
                             synthCommand(),
                             convertCommand(),
-                            renderCommand(),
                             replayCommand(),
                             settingsCommand(),
                         });

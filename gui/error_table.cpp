@@ -84,13 +84,14 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   view_->sortByColumn(ErrorModel::Frame, Qt::AscendingOrder);
   view_->setAlternatingRowColors(true);
   view_->setSelectionBehavior(QAbstractItemView::SelectRows);
+  view_->setIconSize({10, 10});
   view_->setShowGrid(false);
   view_->setWordWrap(false);
   view_->verticalHeader()->hide();
   view_->verticalHeader()->setDefaultSectionSize(fontMetrics().height() + 5);
   view_->horizontalHeader()->setHighlightSections(false);
   view_->horizontalHeader()->setStretchLastSection(true);
-  const int widths[] = {58, 72, 104, 64, 70, 70, 70, 76, 78, 66, 74, 76, 70, 76};
+  const int widths[] = {52, 66, 98, 50, 64, 64, 64, 70, 74, 60, 70, 70, 62, 66};
   for (int i = 0; i < int(std::size(widths)); ++i) view_->setColumnWidth(i, widths[i]);
   view_->installEventFilter(this);
   column->addWidget(view_, 1);
@@ -160,6 +161,7 @@ void ErrorTable::selectFromDocument() {
   else {
     const int x = view_->horizontalScrollBar()->value();
     view_->selectRow(best);
+    view_->scrollTo(proxy_->index(best, 0));
     view_->horizontalScrollBar()->setValue(x);
   }
   selecting_ = false;

@@ -50,7 +50,7 @@ NumberGroup observation(const FrameEvidence& evidence, int index) {
     lines.add(QObject::tr("area"), h.areaPx2, "px²");
     if (h.ellipse) {
       lines.addVector(QObject::tr("ellipse centre"), h.ellipse->centre, "px");
-      lines.addVector(QObject::tr("ellipse semi-axes"), h.ellipse->semiAxes, "px");
+      lines.addVector(QObject::tr("ellipse axes"), h.ellipse->semiAxes, "px");
       lines.add(QObject::tr("ellipse angle"), h.ellipse->angle * kDegPerRad, "°");
     }
     if (h.clipped) lines.note(QObject::tr("clipped: the peak is the ellipse centre"));
@@ -78,7 +78,7 @@ NumberGroup trainingView(const TrainingView& view) {
     const auto& d = view.canonical->directions;
     const auto answered = std::count_if(d.begin(), d.end(), [](const DirectionResult& r) { return r.limitAngle.has_value(); });
     lines.add(QObject::tr("directions"), QStringLiteral("%1 of %2").arg(answered).arg(d.size()));
-    if (view.canonical->ellipse) lines.addVector(QObject::tr("canonical semi-axes"), view.canonical->ellipse->semiAxes, "px");
+    if (view.canonical->ellipse) lines.addVector(QObject::tr("canonical axes"), view.canonical->ellipse->semiAxes, "px");
   }
   return {QObject::tr("Training view"), lines.text()};
 }
@@ -114,7 +114,7 @@ NumberGroup fitGroup(const std::string& model, const ModelResult::Fit& f, int fr
     const auto used = std::find(f.fit->frames.begin(), f.fit->frames.end(), frame);
     const auto index = std::size_t(used - f.fit->frames.begin());
     if (used != f.fit->frames.end() && index < f.fit->residualPx.size())
-      lines.add(QObject::tr("residual in this frame"), f.fit->residualPx[index], "px");
+      lines.add(QObject::tr("residual here"), f.fit->residualPx[index], "px");
   }
   return {QObject::tr("Fit: %1").arg(toQString(model)), lines.text()};
 }

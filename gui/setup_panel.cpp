@@ -29,6 +29,7 @@ SetupPanel::SetupPanel(Document& document, QWidget* parent) : QWidget(parent), d
   grid->addWidget(label(tr("Models")), 0, 0, 1, 2);
   models_ = new QListWidget;
   models_->setObjectName(QStringLiteral("models"));
+  models_->setIconSize({11, 11});
   models_->setSelectionMode(QAbstractItemView::NoSelection);
   for (const auto& model : allModels()) {
     auto* item = new QListWidgetItem(colourSwatch(toQColor(viz::modelColour(model->id()))), toQString(model->id()), models_);
@@ -39,7 +40,7 @@ SetupPanel::SetupPanel(Document& document, QWidget* parent) : QWidget(parent), d
     item->setCheckState(Qt::Checked);
   }
   models_->setVerticalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  models_->setFixedHeight(models_->sizeHintForRow(0) * models_->count() + 4);
+  models_->setFixedHeight(models_->sizeHintForRow(0) * models_->count() + 8);
   grid->addWidget(models_, 1, 0, 1, 2);
 
   grid->addWidget(label(tr("Training")), 2, 0, 1, 2);
@@ -99,7 +100,8 @@ void SetupPanel::refresh() {
   source_->setCurrentIndex(request.source == FrameSource::Radiance ? 0 : 1);
   int count[3] = {0, 0, 0};
   for (int i = 0; i < document_.frameCount(); ++i) ++count[int(document_.role(i))];
-  counts_->setText(document_.scene() ? tr("%1 training, %2 held out, %3 excluded").arg(count[0]).arg(count[1]).arg(count[2])
+  counts_->setText(document_.scene() ? tr("%1 training, %2 held out").arg(count[0]).arg(count[1]) +
+                                           (count[2] ? tr(", %1 excluded").arg(count[2]) : QString())
                                      : QString());
   setEnabled(document_.scene() != nullptr);
 }

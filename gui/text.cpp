@@ -15,6 +15,7 @@ QString joined(const std::vector<std::string>& words) {
 
 QString numberText(double value, int digits) {
   if (!std::isfinite(value)) return QStringLiteral("–");
+  if (std::abs(value) >= 1000 && std::abs(value) < 1e7) return QString::number(value, 'f', std::max(0, digits - 6));
   return QString::number(value, 'g', digits);
 }
 

@@ -230,6 +230,7 @@ Timeline::Timeline(Document& document, QWidget* parent) : QWidget(parent), docum
   auto* next = button("next", tr("Next frame (Right)"), "nextFrame");
   auto* model = new QComboBox;
   model->setObjectName(QStringLiteral("plottedModel"));
+  model->setIconSize({11, 11});
   model->setToolTip(tr("Model whose error is plotted"));
   model->setSizeAdjustPolicy(QComboBox::AdjustToContents);
   controls->addStretch(1);

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QObject>
+#include <QTemporaryDir>
+#include <QtTest>
+#include <memory>
+
+#include "gui/engine.h"
+
+namespace glint::gui {
+
+/// A scene of small photographs on disk, and an engine whose inspection is a quick stand-in: in every frame one observed circle
+/// and, per model, one predicted circle with an error that depends on frame and model.
+class Fixture {
+ public:
+  explicit Fixture(int frames = 12);
+  std::shared_ptr<const Scene> scene() const { return scene_; }
+  Opened opened() const;
+  Engine engine() const;
+  static Pixel centre(int frame) { return {60.0 + 4 * frame, 50.25}; }
+  static constexpr double kRadius = 20;
+
+ private:
+  QTemporaryDir folder_;
+  std::shared_ptr<Scene> scene_;
+};
+
+/// The stand-in's result.
+Inspection drawnCircles(std::shared_ptr<const Scene> scene, const InspectionRequest& request);
+
+/// Presses the left button, moves through the points with it held, and releases it at the last one.
+/// (QTest::mouseMove moves the pointer of the display, which holds no button.)
+void drag(QWidget* widget, const std::vector<QPoint>& points);
+
+/// Test classes are run by name, so that each is a test of CTest.
+using TestFactory = QObject* (*)();
+struct TestClass {
+  const char* name;
+  TestFactory make;
+};
+QObject* makeDocumentTest();
+QObject* makeRunnerTest();
+QObject* makeFrameCanvasTest();
+QObject* makePanelTest();
+QObject* makeLinkingTest();
+QObject* makeWindowTest();
+QObject* makeProgramTest();
+
+}  // namespace glint::gui

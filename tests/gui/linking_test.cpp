@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One selection in timeline, table and frame view.
+#include <QApplication>
+#include <QClipboard>
+#include <QLabel>
+#include <QSignalSpy>
+#include <QTableView>
+#include <QToolButton>
+
+#include "gui/error_model.h"
+#include "gui/error_table.h"
+#include "gui/frame_canvas.h"
+#include "gui/frame_panel.h"
+#include "gui/text.h"
+#include "gui/timeline.h"
+#include "tests/gui/fixture.h"
+
+namespace glint::gui {
+
+class LinkingTest : public QObject {
+  Q_OBJECT
+ private slots:
+  void init() {
+    document_ = std::make_unique<Document>(parseTrainSpec);
+    timeline_ = std::make_unique<Timeline>(*document_);
+    table_ = std::make_unique<ErrorTable>(*document_);
+    frame_ = std::make_unique<FramePanel>(*document_);
+    document_->open(fixture_.opened());
+    document_->setInspection(std::make_shared<const Inspection>(drawnCircles(fixture_.scene(), document_->request())),
+                             document_->request());
+    timeline_->resize(900, 90);
+    timeline_->show();
+    table_->resize(1000, 400);
+    table_->show();
+    frame_->resize(500, 500);
+    frame_->show();
+    QVERIFY(QTest::qWaitForWindowExposed(timeline_.get()));
+    QVERIFY(QTest::qWaitForWindowExposed(table_.get()));
+  }
+  void cleanup() {
+    frame_.reset();
+    table_.reset();
+    timeline_.reset();
+  }
+
+  void aClickInTheTimelineSelectsEverywhere() {
+    TimelineStrip* strip = timeline_->strip();
+    QTest::mouseClick(strip, Qt::LeftButton, {}, strip->cell(7).center().toPoint());
+    QCOMPARE(document_->selection().frame, 7);
+    QVERIFY(title().contains("0007"));
+    QVERIFY(title().contains("held out"));
+    QCOMPARE(table_->view()->currentIndex().siblingAtColumn(ErrorModel::Frame).data().toString(), QStringLiteral("0007"));
+    QSignalSpy loaded(frame_->loader(), &PhotoLoader::loaded);
+    QTRY_VERIFY(!frame_->loader()->busy());
+    // Frame 7's photograph has red 45 (fixture): what is on screen is this frame's.
+    const QImage shown = frame_->canvas()->grab().toImage();
+    QCOMPARE(qRed(shown.pixel(shown.width() / 2, shown.height() / 2 + shown.height() / 5)), 45);
+  }
+
+  void aRowOfTheTableSelectsEverywhere() {
+    QTableView* view = table_->view();
+    view->sortByColumn(ErrorModel::ErrorPct, Qt::DescendingOrder);
+    // Failures have no number and come first in descending order; the first number is the largest error.
+    int row = 0;
+    while (view->model()->index(row, ErrorModel::Status).data().toString() != QStringLiteral("ok")) ++row;
+    const QModelIndex worst = view->model()->index(row, ErrorModel::Frame);
+    for (int r = row + 1; r < view->model()->rowCount(); ++r)
+      QVERIFY(view->model()->index(r, ErrorModel::ErrorPct).data(ErrorModel::kSortRole).toDouble() <=
+              view->model()->index(row, ErrorModel::ErrorPct).data(ErrorModel::kSortRole).toDouble());
+    view->scrollTo(worst);
+    QTest::mouseClick(view->viewport(), Qt::LeftButton, {}, view->visualRect(worst).center());
+    QCOMPARE(toQString(fixture_.scene()->frames[std::size_t(document_->selection().frame)].id), worst.data().toString());
+    QCOMPARE(toQString(document_->selection().model), worst.siblingAtColumn(ErrorModel::Model).data().toString());
+    QVERIFY(title().contains(worst.data().toString()));
+    QCOMPARE(document_->undoStack()->count(), 1);
+  }
+
+  void keysStepAndChangeRoles() {
+    TimelineStrip* strip = timeline_->strip();
+    strip->setFocus();
+    QTest::keyClick(strip, Qt::Key_Right);
+    QTest::keyClick(strip, Qt::Key_Right);
+    QTest::keyClick(strip, Qt::Key_Left);
+    QCOMPARE(document_->selection().frame, 1);
+    QTest::keyClick(strip, Qt::Key_End);
+    QCOMPARE(document_->selection().frame, 11);
+    QTest::keyClick(strip, Qt::Key_Right);  // there is no next one
+    QCOMPARE(document_->selection().frame, 11);
+    QTest::keyClick(strip, Qt::Key_X);
+    QCOMPARE(document_->request().excluded, std::vector<int>{11});
+    QVERIFY(title().contains("excluded"));
+    document_->undoStack()->undo();
+    QVERIFY(document_->request().excluded.empty());
+    QVERIFY(title().contains("held out"));
+  }
+
+  void playingIsOneStep() {
+    timeline_->setPlaying(true);
+    QTRY_VERIFY(document_->selection().frame >= 3);
+    timeline_->setPlaying(false);
+    QCOMPARE(document_->undoStack()->count(), 1);
+    document_->undoStack()->undo();
+    QCOMPARE(document_->selection().frame, 0);
+  }
+
+  void everyRowHasANumberOrAReason() {
+    const QAbstractItemModel* model = table_->view()->model();
+    QCOMPARE(model->rowCount(), 12 * 4);
+    for (int r = 0; r < model->rowCount(); ++r) {
+      const bool number = model->index(r, ErrorModel::ErrorPct).data().toString() != QStringLiteral("–");
+      const QString reason = model->index(r, ErrorModel::ReasonText).data().toString();
+      QVERIFY2(number != !reason.isEmpty(), qPrintable(QStringLiteral("row %1: '%2'").arg(r).arg(reason)));
+    }
+  }
+
+  void rowsAreCopiedAsTabSeparatedText() {
+    QTableView* view = table_->view();
+    view->selectRow(0);
+    view->setFocus();
+    QTest::keyClick(view, Qt::Key_C, Qt::ControlModifier);
+    const QStringList lines = QApplication::clipboard()->text().split('\n');
+    QCOMPARE(lines.size(), 3);  // header, row, end
+    QVERIFY(lines[0].startsWith(QStringLiteral("Frame\tRole\tModel")));
+    QCOMPARE(lines[1].split('\t').size(), int(ErrorModel::ColumnCount));
+    QCOMPARE(lines[1].section('\t', 0, 0), QStringLiteral("0000"));
+  }
+
+  void aClickOnTheHighlightSelectsItAndTheLegendHidesIt() {
+    QTRY_VERIFY(!frame_->loader()->busy());
+    FrameCanvas* canvas = frame_->canvas();
+    canvas->fit();
+    QTest::mouseClick(canvas, Qt::LeftButton, {}, canvas->widgetFromPixel(Fixture::centre(0)).toPoint());
+    QCOMPARE(document_->selection().highlight, 0);
+    QTest::mouseClick(canvas, Qt::LeftButton, {}, canvas->widgetFromPixel({150, 110}).toPoint());
+    QCOMPARE(document_->selection().highlight, -1);
+    const QImage with = canvas->grab().toImage();
+    auto* toggle = frame_->findChild<QToolButton*>(QStringLiteral("frame/predicted"));
+    QVERIFY(toggle && toggle->isChecked());
+    QTest::mouseClick(toggle, Qt::LeftButton);
+    QVERIFY(!document_->layerVisible("frame/predicted"));
+    QVERIFY(canvas->grab().toImage() != with);
+    document_->undoStack()->undo();
+    QVERIFY(toggle->isChecked());
+    QVERIFY(canvas->grab().toImage() == with);
+  }
+
+  void staleResultsAreMarked() {
+    auto* summary = table_->findChild<QLabel*>(QStringLiteral("errorSummary"));
+    QVERIFY(summary && !summary->text().contains("out of date"));
+    document_->setSetting("detect.level", 0.3);
+    QVERIFY(summary->text().contains("out of date"));
+  }
+
+ private:
+  QString title() const { return frame_->findChild<QLabel*>(QStringLiteral("frameTitle"))->text(); }
+
+  Fixture fixture_;
+  std::unique_ptr<Document> document_;
+  std::unique_ptr<Timeline> timeline_;
+  std::unique_ptr<ErrorTable> table_;
+  std::unique_ptr<FramePanel> frame_;
+};
+
+QObject* makeLinkingTest() { return new LinkingTest; }
+
+}  // namespace glint::gui
+
+#include "linking_test.moc"

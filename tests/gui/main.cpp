@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// test_gui CLASS: runs one class of tests with real widgets. Needs a display: CTest starts a virtual one.
+#include <QVTKOpenGLNativeWidget.h>
+
+#include <QApplication>
+#include <QSettings>
+#include <QSurfaceFormat>
+#include <QTemporaryDir>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "gui/theme.h"
+#include "tests/gui/fixture.h"
+
+int main(int argc, char** argv) {
+  using namespace glint::gui;
+  static const TestClass classes[] = {
+      {"document", makeDocumentTest}, {"runner", makeRunnerTest}, {"frame_canvas", makeFrameCanvasTest}, {"panel", makePanelTest},
+      {"linking", makeLinkingTest},   {"window", makeWindowTest}, {"program", makeProgramTest}};
+  if (argc < 2) return std::fputs("usage: test_gui CLASS [QTest options]\n", stderr), 2;
+  QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
+  QApplication app(argc, argv);
+  QTemporaryDir settings;  // recent files of whoever runs the tests stay untouched
+  QSettings::setPath(QSettings::NativeFormat, QSettings::UserScope, settings.path());
+  QApplication::setOrganizationName(QStringLiteral("GlintTest"));
+  QApplication::setApplicationName(QStringLiteral("test_gui"));
+  applyTheme(app, Theme::Dark);
+  for (const TestClass& c : classes) {
+    if (std::strcmp(c.name, argv[1]) != 0) continue;
+    const std::unique_ptr<QObject> test(c.make());
+    return QTest::qExec(test.get(), argc - 1, argv + 1);
+  }
+  std::fprintf(stderr, "test_gui: no class '%s'\n", argv[1]);
+  return 2;
+}

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QLineEdit>
+#include <QSlider>
+#include <QStyle>
+#include <QStyleOptionSlider>
+#include <QToolButton>
+
+#include "gui/document.h"
+#include "gui/number_box.h"
+#include "gui/parameter_panel.h"
+#include "gui/text.h"
+#include "tests/gui/fixture.h"
+
+namespace glint::gui {
+
+class PanelTest : public QObject {
+  Q_OBJECT
+ private slots:
+  void init() {
+    document_ = std::make_unique<Document>(parseTrainSpec);
+    panel_ = std::make_unique<ParameterPanel>(*document_);
+    document_->open(fixture_.opened());
+    panel_->resize(380, 700);
+    panel_->show();
+    QVERIFY(QTest::qWaitForWindowExposed(panel_.get()));
+    panel_->activateWindow();
+  }
+
+  void everySettingHasItsRow() {
+    QVERIFY(!allParams().empty());
+    for (const ParamSpec& spec : allParams()) {
+      QVERIFY2(panel_->findChild<QWidget*>("value:" + toQString(spec.key)), spec.key.c_str());
+      QVERIFY2(panel_->findChild<QToolButton*>("reset:" + toQString(spec.key)), spec.key.c_str());
+    }
+  }
+
+  void typingIsOneStep() {
+    auto* box = panel_->findChild<QDoubleSpinBox*>("value:detect.level");
+    QVERIFY(box);
+    box->setFocus();
+    box->selectAll();
+    QTest::keyClicks(box, "0.37");
+    QCOMPARE(document_->undoStack()->count(), 0);  // nothing before the typing is finished
+    QTest::keyClick(box, Qt::Key_Return);
+    QCOMPARE(document_->request().settings.number("detect.level"), 0.37);
+    QCOMPARE(document_->undoStack()->count(), 1);
+    document_->undoStack()->undo();
+    QCOMPARE(document_->request().settings.number("detect.level"), 0.5);
+    QCOMPARE(box->value(), 0.5);
+  }
+
+  void aDragIsOneStep() {
+    auto* slider = panel_->findChild<QSlider*>("slider:detect.level");
+    QVERIFY(slider);
+    QStyleOptionSlider option;
+    option.initFrom(slider);
+    option.minimum = slider->minimum();
+    option.maximum = slider->maximum();
+    option.sliderPosition = option.sliderValue = slider->value();
+    const QPoint handle = slider->style()->subControlRect(QStyle::CC_Slider, &option, QStyle::SC_SliderHandle, slider).center();
+    std::vector<QPoint> path;
+    for (int dx = 0; dx <= 20; dx += 4) path.push_back(handle + QPoint(dx, 0));
+    drag(slider, path);
+    const double after = document_->request().settings.number("detect.level");
+    QVERIFY(after > 0.5);
+    QCOMPARE(document_->undoStack()->count(), 1);
+    drag(slider, {path.back(), path[2], path[1]});  // a second drag is a second step
+    QCOMPARE(document_->undoStack()->count(), 2);
+    QVERIFY(document_->request().settings.number("detect.level") < after);
+    document_->undoStack()->undo();
+    QCOMPARE(document_->request().settings.number("detect.level"), after);
+    document_->undoStack()->undo();
+    QCOMPARE(document_->request().settings.number("detect.level"), 0.5);
+  }
+
+  void choicesAndReset() {
+    auto* combo = panel_->findChild<QComboBox*>("value:light.solver");
+    auto* reset = panel_->findChild<QToolButton*>("reset:light.solver");
+    QVERIFY(combo && reset);
+    QVERIFY(!reset->isEnabled());
+    combo->setFocus();
+    QTest::keyClick(combo, Qt::Key_Up);
+    QCOMPARE(document_->request().settings.text("light.solver"), std::string("triangulated"));
+    QVERIFY(reset->isEnabled());
+    QTest::mouseClick(reset, Qt::LeftButton);
+    QCOMPARE(document_->request().settings.text("light.solver"), std::string("bundle"));
+    QCOMPARE(combo->currentText(), QStringLiteral("bundle"));
+    QCOMPARE(document_->undoStack()->count(), 2);
+  }
+
+  void smallNumbersAreTypedAndShownShort() {
+    auto* box = panel_->findChild<NumberBox*>("value:predict.walk_tolerance");
+    QVERIFY(box);
+    QCOMPARE(box->text(), QStringLiteral("1e-10 rad"));
+    box->setFocus();
+    box->selectAll();
+    QTest::keyClicks(box, "2e-8");
+    QTest::keyClick(box, Qt::Key_Return);
+    QCOMPARE(document_->request().settings.number("predict.walk_tolerance"), 2e-8);
+  }
+
+  void outOfRangeIsNotTaken() {
+    auto* box = panel_->findChild<QDoubleSpinBox*>("value:detect.level");
+    box->setFocus();
+    box->selectAll();
+    QTest::keyClicks(box, "7");
+    QTest::keyClick(box, Qt::Key_Return);
+    QVERIFY(document_->request().settings.number("detect.level") <= 0.98);
+  }
+
+  void sliderScalesReachBothEndsAndEveryDefault() {
+    for (const ParamSpec& spec : allParams()) {
+      if (!(spec.max > spec.min)) continue;
+      const SliderScale scale(spec);
+      QCOMPARE(scale.value(0), spec.min);
+      QCOMPARE(scale.value(SliderScale::kPositions), spec.max);
+      for (int p = 1; p <= SliderScale::kPositions; ++p) QVERIFY2(scale.value(p) >= scale.value(p - 1), spec.key.c_str());
+    }
+  }
+
+ private:
+  Fixture fixture_;
+  std::unique_ptr<Document> document_;
+  std::unique_ptr<ParameterPanel> panel_;
+};
+
+QObject* makePanelTest() { return new PanelTest; }
+
+}  // namespace glint::gui
+
+#include "panel_test.moc"

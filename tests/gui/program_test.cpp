@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The program itself, as a script runs it.
+#include <QFile>
+#include <QImage>
+#include <QProcess>
+#include <set>
+
+#include "gui/text.h"
+#include "tests/gui/fixture.h"
+
+namespace glint::gui {
+
+namespace {
+struct Run {
+  int code = -1;
+  QString out, err;
+};
+
+Run run(const QStringList& arguments, const QString& platform = QStringLiteral("xcb")) {
+  static const QTemporaryDir runtime;  // without one, Qt itself writes a line
+  QProcess process;
+  QProcessEnvironment environment = QProcessEnvironment::systemEnvironment();
+  environment.insert(QStringLiteral("QT_QPA_PLATFORM"), platform);
+  environment.insert(QStringLiteral("XDG_RUNTIME_DIR"), runtime.path());
+  environment.remove(QStringLiteral("QT_SCALE_FACTOR"));
+  process.setProcessEnvironment(environment);
+  process.start(QStringLiteral(GLINT_INSPECTOR), arguments);
+  process.waitForFinished(180000);
+  return {process.exitStatus() == QProcess::NormalExit ? process.exitCode() : -1,
+          QString::fromUtf8(process.readAllStandardOutput()), QString::fromUtf8(process.readAllStandardError())};
+}
+
+int colours(const QImage& image, const QRect& part) {
+  std::set<QRgb> found;
+  for (int y = part.top(); y <= part.bottom(); ++y)
+    for (int x = part.left(); x <= part.right(); ++x) found.insert(image.pixel(x, y));
+  return int(found.size());
+}
+}  // namespace
+
+class ProgramTest : public QObject {
+  Q_OBJECT
+ private slots:
+  void theEmptyWindow() {
+    const QString file = folder_.filePath(QStringLiteral("empty.png"));
+    const Run r = run({QStringLiteral("--screenshot"), file, QStringLiteral("--size"), QStringLiteral("1200x800"),
+                       QStringLiteral("--wait-idle")});
+    QVERIFY2(r.code == 0, qPrintable(r.err));
+    QCOMPARE(QImage(file).size(), QSize(1200, 800));
+  }
+
+  /// A sphere with given highlights, seen by three cameras, computed by the real pipeline; the 3D view must not be blank.
+  void aScene() {
+    const QString scene = folder_.filePath(QStringLiteral("scene.json"));
+    QFile out(scene);
+    QVERIFY(out.open(QIODevice::WriteOnly));
+    out.write(R"({"glint_scene": 1, "name": "ball",
+      "camera": {"width": 160, "height": 120, "fx": 200, "fy": 200, "cx": 79.5, "cy": 59.5},
+      "frames": [
+        {"id": "a", "camera_from_world": [[1,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,0,1]], "surface": "ball",
+         "highlights": [{"light": "lamp", "peak": [85,60], "contour": [[90,60],[88,64],[85,66],[82,64],[80,60],[82,56],[85,54],[88,56]]}]},
+        {"id": "b", "camera_from_world": [[1,0,0,0.1],[0,1,0,0],[0,0,1,2],[0,0,0,1]], "surface": "ball",
+         "highlights": [{"light": "lamp", "peak": [93,60], "contour": [[98,60],[96,64],[93,66],[90,64],[88,60],[90,56],[93,54],[96,56]]}]},
+        {"id": "c", "camera_from_world": [[1,0,0,0],[0,1,0,0.1],[0,0,1,2],[0,0,0,1]], "surface": "ball"}],
+      "surfaces": {"ball": {"analytic": {"type": "sphere", "radius": 0.4}}},
+      "lights": [{"id": "lamp", "position": [0.5, 0, -2]}]})");
+    out.close();
+    const QString file = folder_.filePath(QStringLiteral("scene.png"));
+    const Run r = run({scene, QStringLiteral("--layout"), QStringLiteral("present"), QStringLiteral("--theme"),
+                       QStringLiteral("light"), QStringLiteral("--frame"), QStringLiteral("b"), QStringLiteral("--screenshot"),
+                       file, QStringLiteral("--size"), QStringLiteral("1200x800"), QStringLiteral("--wait-idle")});
+    QVERIFY2(r.code == 0, qPrintable(r.err));
+    const QImage image(file);
+    QCOMPARE(image.size(), QSize(1200, 800));
+    QVERIFY2(colours(image, QRect(60, 150, 450, 400)) > 50, "the 3D view is blank");
+  }
+
+  void whatIsWrongIsOneLineAndExitTwo_data() {
+    QTest::addColumn<QStringList>("arguments");
+    QTest::addColumn<QString>("mentions");
+    const QString shot = folder_.filePath(QStringLiteral("never.png"));
+    QTest::newRow("no such input") << QStringList{QStringLiteral("/nowhere/scene.json"), QStringLiteral("--screenshot"), shot}
+                                   << QStringLiteral("/nowhere/scene.json");
+    QTest::newRow("unknown option") << QStringList{QStringLiteral("--colour")} << QStringLiteral("--colour");
+    QTest::newRow("unknown layout") << QStringList{QStringLiteral("--layout"), QStringLiteral("x")} << QStringLiteral("--layout");
+    QTest::newRow("unknown theme") << QStringList{QStringLiteral("--theme"), QStringLiteral("red")} << QStringLiteral("--theme");
+    QTest::newRow("size") << QStringList{QStringLiteral("--size"), QStringLiteral("12")} << QStringLiteral("--size");
+    QTest::newRow("missing value") << QStringList{QStringLiteral("--frame")} << QStringLiteral("--frame");
+    QTest::newRow("two inputs") << QStringList{QStringLiteral("a"), QStringLiteral("b")} << QStringLiteral("more than one");
+    QTest::newRow("unwritable") << QStringList{QStringLiteral("--screenshot"), QStringLiteral("/nowhere/x.png")}
+                                << QStringLiteral("/nowhere/x.png");
+  }
+  void whatIsWrongIsOneLineAndExitTwo() {
+    QFETCH(QStringList, arguments);
+    QFETCH(QString, mentions);
+    const Run r = run(arguments);
+    QCOMPARE(r.code, 2);
+    QVERIFY2(r.err.contains(mentions), qPrintable(r.err));
+    QCOMPARE(r.err.trimmed().count('\n'), 0);
+    QVERIFY(!QFile::exists(folder_.filePath(QStringLiteral("never.png"))));
+  }
+
+  void aPlatformWithoutOpenGlIsRefused() {
+    const Run r =
+        run({QStringLiteral("--screenshot"), folder_.filePath(QStringLiteral("never.png"))}, QStringLiteral("offscreen"));
+    QCOMPARE(r.code, 2);
+    QVERIFY2(r.err.contains("xvfb-run"), qPrintable(r.err));
+  }
+
+  void helpNeedsNoDisplay() {
+    const Run r = run({QStringLiteral("--help")}, QStringLiteral("offscreen"));
+    QCOMPARE(r.code, 0);
+    for (const char* flag : {"--layout", "--theme", "--frame", "--screenshot", "--size", "--wait-idle"})
+      QVERIFY(r.out.contains(flag));
+  }
+
+ private:
+  QTemporaryDir folder_;
+};
+
+QObject* makeProgramTest() { return new ProgramTest; }
+
+}  // namespace glint::gui
+
+#include "program_test.moc"

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/runner.h"
+
+#include <QSignalSpy>
+#include <atomic>
+
+#include "tests/gui/fixture.h"
+
+namespace glint::gui {
+
+class RunnerTest : public QObject {
+  Q_OBJECT
+ private slots:
+  void finishedCarriesTheResultAndItsRequest() {
+    Runner runner(fixture_.engine());
+    QSignalSpy finished(&runner, &Runner::finished);
+    InspectionRequest request;
+    request.train = "0-3";
+    runner.inspect(fixture_.scene(), request, nullptr);
+    QVERIFY(runner.busy());
+    QVERIFY(finished.wait());
+    QCOMPARE(finished[0][0].value<InspectionPtr>()->train.frames, (std::vector<int>{0, 1, 2, 3}));
+    QCOMPARE(finished[0][1].value<OpenedPtr>()->request.train, std::string("0-3"));
+    QTRY_VERIFY(!runner.busy());
+  }
+
+  /// A run that would take 60 s stops well within 200 ms, and the interface stays alive meanwhile.
+  void cancelStopsALongRun() {
+    Runner runner(longEngine());
+    QSignalSpy stopped(&runner, &Runner::stopped), finished(&runner, &Runner::finished), progressed(&runner, &Runner::progressed);
+    runner.inspect(fixture_.scene(), {}, nullptr);
+    QTRY_VERIFY(progressed.count() > 0);
+    QElapsedTimer clock;
+    clock.start();
+    runner.cancel();
+    QVERIFY(stopped.wait(5000));
+    QVERIFY(!runner.busy());
+    qInfo("stopped after %lld ms", static_cast<long long>(clock.elapsed()));
+    QCOMPARE(finished.count(), 0);
+  }
+
+  void theNewestRequestWins() {
+    std::atomic<int> completed{0};
+    Engine engine = longEngine();
+    engine.inspect = [slow = engine.inspect, &completed](std::shared_ptr<const Scene> scene, const InspectionRequest& request,
+                                                         const ProgressFn& progress, const Inspection* previous) {
+      if (request.seed < 5) return slow(scene, request, progress, previous);
+      ++completed;
+      return drawnCircles(scene, request);
+    };
+    Runner runner(engine);
+    QSignalSpy finished(&runner, &Runner::finished), stopped(&runner, &Runner::stopped), failed(&runner, &Runner::failed);
+    InspectionRequest request;
+    for (request.seed = 1; request.seed <= 5; ++request.seed) runner.inspect(fixture_.scene(), request, nullptr);
+    QVERIFY(finished.wait());
+    QTRY_VERIFY(!runner.busy());
+    QCOMPARE(finished.count(), 1);
+    QCOMPARE(finished[0][1].value<OpenedPtr>()->request.seed, 5u);
+    QCOMPARE(completed.load(), 1);
+    QCOMPARE(stopped.count() + failed.count(), 0);  // overtaken runs are no news
+  }
+
+  void wrongInputIsOneLine() {
+    Runner runner(fixture_.engine());
+    QSignalSpy failed(&runner, &Runner::failed), opened(&runner, &Runner::opened);
+    runner.open("nowhere/scene.json");
+    QVERIFY(failed.wait());
+    QVERIFY(failed[0][0].toString().contains("nowhere/scene.json"));
+    QVERIFY(!failed[0][0].toString().contains('\n'));
+    QCOMPARE(opened.count(), 0);
+  }
+
+  void destructionStopsWhatRuns() {
+    QElapsedTimer clock;
+    clock.start();
+    {
+      Runner runner(longEngine());
+      QSignalSpy progressed(&runner, &Runner::progressed);
+      runner.inspect(fixture_.scene(), {}, nullptr);
+      QTRY_VERIFY(progressed.count() > 0);
+    }
+    QVERIFY(clock.elapsed() < 30000);
+  }
+
+ private:
+  Engine longEngine() const {
+    Engine engine = fixture_.engine();
+    engine.inspect = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn& progress,
+                        const Inspection*) {
+      for (int i = 0; i < 6000; ++i) {
+        if (!report(progress, {"fit", i, 6000})) throw Stopped{};
+        QThread::msleep(10);
+      }
+      return drawnCircles(scene, request);
+    };
+    return engine;
+  }
+  Fixture fixture_;
+};
+
+QObject* makeRunnerTest() { return new RunnerTest; }
+
+}  // namespace glint::gui
+
+#include "runner_test.moc"

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <QVTKOpenGLNativeWidget.h>
+
+#include <QDockWidget>
+#include <QDoubleSpinBox>
+#include <QListWidget>
+#include <QPlainTextEdit>
+#include <QPushButton>
+#include <QTableView>
+#include <QToolButton>
+
+#include "gui/frame_panel.h"
+#include "gui/layouts.h"
+#include "gui/main_window.h"
+#include "gui/message_bar.h"
+#include "gui/text.h"
+#include "tests/gui/fixture.h"
+
+namespace glint::gui {
+
+class WindowTest : public QObject {
+  Q_OBJECT
+ private slots:
+  void anEmptyWindowSaysWhatToDo() {
+    MainWindow window(fixture_.engine());
+    show(window);
+    bool offered = false;
+    for (const QPushButton* button : window.findChildren<QPushButton*>())
+      offered |= button->isVisible() && button->text().contains("Open a scene");
+    QVERIFY(offered);
+    QVERIFY(window.idle());
+    QVERIFY(!window.picture().isNull());
+  }
+
+  void aSceneIsOpenedComputedAndShown() {
+    MainWindow window(fixture_.engine());
+    show(window);
+    openAndWait(window);
+    QVERIFY(!window.document().stale());
+    QCOMPARE(window.findChild<QTableView*>(QStringLiteral("errorTable"))->model()->rowCount(), 12 * 4);
+    QVERIFY(window.findChild<QWidget*>(QStringLiteral("sceneView"))->isVisible());
+    QVERIFY(window.windowTitle().startsWith("scene.json"));
+  }
+
+  void aParameterChangesTheResultOffTheInterfaceThread() {
+    Engine engine = fixture_.engine();
+    QThread* interfaceThread = QThread::currentThread();
+    std::atomic<bool> elsewhere{true};
+    engine.inspect = [inner = engine.inspect, interfaceThread, &elsewhere](std::shared_ptr<const Scene> scene,
+                                                                           const InspectionRequest& r, const ProgressFn& p,
+                                                                           const Inspection* before) {
+      if (QThread::currentThread() == interfaceThread) elsewhere = false;
+      return inner(scene, r, p, before);
+    };
+    MainWindow window(engine);
+    show(window);
+    openAndWait(window);
+    auto* box = window.findChild<QDoubleSpinBox*>(QStringLiteral("value:detect.level"));
+    box->setFocus();
+    box->selectAll();
+    QTest::keyClicks(box, "0.2");
+    QTest::keyClick(box, Qt::Key_Return);
+    QVERIFY(window.document().stale());
+    QTRY_VERIFY(window.idle() && !window.document().stale());
+    QCOMPARE(window.document().inspection()->evidence[0].highlights[0].level, 0.2);
+    window.document().undoStack()->undo();
+    QTRY_VERIFY(window.idle() && !window.document().stale());
+    QCOMPARE(window.document().inspection()->evidence[0].highlights[0].level, 0.5);
+    QVERIFY(elsewhere);
+  }
+
+  void stopLeavesTheOldResultsMarkedAsOutOfDate() {
+    Engine engine = fixture_.engine();
+    engine.inspect = [inner = engine.inspect](std::shared_ptr<const Scene> scene, const InspectionRequest& r, const ProgressFn& p,
+                                              const Inspection* before) {
+      for (int i = 0; r.settings.number("detect.level") < 0.3 && i < 6000; ++i) {
+        if (!report(p, {"detect", i, 6000})) throw Stopped{};
+        QThread::msleep(10);
+      }
+      return inner(scene, r, p, before);
+    };
+    MainWindow window(engine);
+    show(window);
+    openAndWait(window);
+    const auto before = window.document().inspection();
+    window.document().setSetting("detect.level", 0.2);
+    auto* stop = window.findChild<QToolButton*>(QStringLiteral("stop"));
+    QTRY_VERIFY(stop->isVisible());
+    QTest::qWait(50);
+    QTest::mouseClick(stop, Qt::LeftButton);
+    QTRY_VERIFY(window.idle());
+    QVERIFY(window.document().stale());
+    QVERIFY(window.document().inspection() == before);
+  }
+
+  void aWrongInputIsAMessageAndKeepsWhatIsOpen() {
+    MainWindow window(fixture_.engine());
+    show(window);
+    openAndWait(window);
+    window.open(QStringLiteral("nowhere.json"));
+    QTRY_VERIFY(window.idle());
+    auto* bar = window.findChild<MessageBar*>(QStringLiteral("messageBar"));
+    QVERIFY(bar->isVisible());
+    QVERIFY(bar->text().contains("nowhere.json"));
+    QVERIFY(window.document().scene() != nullptr);
+  }
+
+  void layersAreToggledAndUndone() {
+    MainWindow window(fixture_.engine());
+    show(window);
+    openAndWait(window);
+    auto* layers = window.findChild<QListWidget*>(QStringLiteral("layers"));
+    QVERIFY(layers->count() >= 14);
+    QListWidgetItem* first = layers->item(0);
+    const std::string name = first->data(Qt::UserRole).toString().toStdString();
+    const bool before = window.document().layerVisible(name);
+    first->setCheckState(before ? Qt::Unchecked : Qt::Checked);
+    QCOMPARE(window.document().layerVisible(name), !before);
+    window.document().undoStack()->undo();
+    QCOMPARE(first->checkState() == Qt::Checked, before);
+  }
+
+  void everyLayoutFitsTheSmallestWindow() {
+    MainWindow window(fixture_.engine());
+    window.resize(1100, 700);
+    show(window);
+    openAndWait(window);
+    for (const QString& name : layoutNames()) {
+      window.applyLayout(name);
+      QTest::qWait(50);
+      QVERIFY2(window.width() <= 1110 && window.height() <= 710,
+               qPrintable(QStringLiteral("%1: %2 x %3").arg(name).arg(window.width()).arg(window.height())));
+      QVERIFY(window.framePanel()->width() >= 200);
+    }
+  }
+
+ private:
+  static void show(MainWindow& window) {
+    window.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&window));
+  }
+  void openAndWait(MainWindow& window) {
+    window.open(toQString(fixture_.opened().path));
+    QTRY_VERIFY(window.document().scene() != nullptr);
+    QTRY_VERIFY(window.idle() && window.document().inspection() != nullptr);
+  }
+  Fixture fixture_;
+};
+
+QObject* makeWindowTest() { return new WindowTest; }
+
+}  // namespace glint::gui
+
+#include "window_test.moc"
