@@ -261,7 +261,7 @@ Annotations::Annotations(vtkRenderer* renderer) : impl_(std::make_unique<Impl>()
 Annotations::~Annotations() = default;
 
 void Annotations::setLegend(const std::vector<LegendEntry>& entries, const std::vector<std::string>& notes,
-                            const std::string& title) {
+                            const std::vector<std::string>& remarks, const std::string& title) {
   for (auto& [actor, colour] : impl_->legend) impl_->renderer->RemoveActor2D(actor);
   for (auto& swatch : impl_->swatches) impl_->renderer->RemoveActor2D(swatch->actor);
   impl_->legend.clear();
@@ -274,6 +274,7 @@ void Annotations::setLegend(const std::vector<LegendEntry>& entries, const std::
     impl_->renderer->AddActor2D(impl_->swatches.back()->actor);
   }
   for (const std::string& note : notes) impl_->legend.emplace_back(textActor(note, kFailed), kFailed);
+  for (const std::string& remark : remarks) impl_->legend.emplace_back(textActor(remark, kHeldOut), kHeldOut);
   for (auto& [actor, colour] : impl_->legend) impl_->renderer->AddActor2D(actor);
 }
 

@@ -23,7 +23,8 @@ class Annotations {
  public:
   explicit Annotations(vtkRenderer* renderer);
   ~Annotations();
-  void setLegend(const std::vector<LegendEntry>& entries, const std::vector<std::string>& notes, const std::string& title);
+  void setLegend(const std::vector<LegendEntry>& entries, const std::vector<std::string>& notes,
+                 const std::vector<std::string>& remarks, const std::string& title);
   void setLabels(const std::vector<DrawnLabel>& labels);
   void setDark(bool dark);
   /// @param reference  world point at whose depth the scale bar is measured.

@@ -93,6 +93,7 @@ struct LayerContent {
   std::vector<Drawn> drawn;
   std::vector<DrawnLabel> labels;
   std::vector<std::string> notes;       ///< what could not be drawn, and why: shown in the corner
+  std::vector<std::string> remarks;     ///< what was left out on purpose: the same, without alarm
   std::vector<Eigen::Vector3d> extent;  ///< points beyond the scene box that "frame all" should hold
 
   void add(vtkSmartPointer<vtkProp3D> prop, const Picked& info, double lineWidthPx = 0, bool pickable = true) {

@@ -218,7 +218,7 @@ Image ladderPicture(const Inspection& inspection, int frame, const Outcome<Image
   }
   const int rows = (static_cast<int>(models.size()) + columns - 1) / columns;
   const double tileWidth = (width - gap) / columns - gap, tileHeight = (height - head - gap) / rows - gap;
-  const double aspect = std::clamp(tileWidth / std::max(16.0, tileHeight - foot), 0.5, 2.0);
+  const double aspect = std::clamp(tileWidth / std::max(16.0, tileHeight - foot), 0.8, 1.5);
   Crop crop{-0.5, -0.5, static_cast<double>(camera.width), static_cast<double>(camera.height)};
   const std::optional<Crop> part = highlightCrop(inspection, frame, options.models, aspect);
   if (part) crop = *part;
@@ -342,7 +342,12 @@ Image plotsPicture(const Inspection& inspection, int width, int height, const Pi
     canvas.stroke({{xOf(frame), plot.y + plot.height}, {xOf(frame), plot.y + plot.height + 0.3 * font}}, false, theme.ink, 1);
     canvas.text({xOf(frame), plot.y + plot.height + 1.4 * font}, std::to_string(frame), font, theme.ink, Align::Centre);
   }
-  canvas.text({plot.x + 0.5 * plot.width, plot.y + plot.height + 2.9 * font}, anyTraining ? "frame (shaded: training)" : "frame",
+  bool anyMissing = false;
+  for (const Series& series : all) {
+    for (const FrameScore& score : series.scores) anyMissing = anyMissing || (series.answered > 0 && !score.errorPct);
+  }
+  canvas.text({plot.x + 0.5 * plot.width, plot.y + plot.height + 2.9 * font},
+              std::string("frame") + (anyTraining ? ", shaded: training" : "") + (anyMissing ? ", strokes above: no answer" : ""),
               font, theme.ink, Align::Centre);
   // Lines, broken where a frame has no error.
   double legendY = 3.2 * font;

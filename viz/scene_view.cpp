@@ -6,6 +6,7 @@
 #include <vtkCamera.h>
 #include <vtkCellPicker.h>
 #include <vtkLightKit.h>
+#include <vtkMapper.h>
 #include <vtkProperty.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
@@ -158,15 +159,30 @@ struct SceneView::Impl {
         annotationsStale = true;
       }
     }
+    makeSurfaceTranslucent();
     if (annotationsStale) updateAnnotations();
+  }
+  /// Virtual cameras lie behind the surface, inside a convex one: it lets them shine through, unless it is so large that
+  /// drawing it in several passes would be slow.
+  void makeSurfaceTranslucent() {
+    constexpr vtkIdType kMostTriangles = 200000;
+    const LayerState& mirrored = layers[layerIndex("virtual-cameras")];
+    const bool needed = mirrored.visible && !mirrored.content.drawn.empty();
+    for (Drawn& drawn : layers[layerIndex("surface")].content.drawn) {
+      auto* actor = vtkActor::SafeDownCast(drawn.prop);
+      if (!actor || !actor->GetMapper()) continue;
+      auto* data = vtkPolyData::SafeDownCast(actor->GetMapper()->GetInput());
+      const bool small = data && data->GetNumberOfPolys() <= kMostTriangles;
+      actor->GetProperty()->SetOpacity(needed && small ? 0.7 : 1.0);
+    }
   }
   void updateAnnotations() {
     annotationsStale = false;
     std::vector<LegendEntry> legend;
-    std::vector<std::string> notes;
+    std::vector<std::string> notes, remarks;
     std::vector<DrawnLabel> labels;
     if (!valid()) {
-      annotations->setLegend({}, {}, "");
+      annotations->setLegend({}, {}, {}, "");
       annotations->setLabels({});
       return;
     }
@@ -177,7 +193,7 @@ struct SceneView::Impl {
       legend.push_back({kHeldOut, "held-out camera"});
     }
     if (drawn("virtual-cameras") || drawn("tangent-planes")) legend.push_back({kVirtualCamera, "virtual camera, tangent plane"});
-    if (drawn("observed-contours")) legend.push_back({kObserved, "observed contour"});
+    if (drawn("observed-contours")) legend.push_back({kObserved, dark ? "observed contour" : "observed contour (white)"});
     if (drawn("light")) legend.push_back({kLightColour, "light, estimated"});
     if (drawn("true-light")) legend.push_back({kTruth, "light, truth"});
     if (shown("predicted-contours") || shown("ellipsoids")) {
@@ -192,13 +208,14 @@ struct SceneView::Impl {
     for (const LayerState& layer : layers) {
       if (!layer.visible) continue;
       notes.insert(notes.end(), layer.content.notes.begin(), layer.content.notes.end());
+      remarks.insert(remarks.end(), layer.content.remarks.begin(), layer.content.remarks.end());
       labels.insert(labels.end(), layer.content.labels.begin(), layer.content.labels.end());
     }
     const Frame& frame = input.frame(selection.frame);
     const std::string use = inspection->isTraining(selection.frame)  ? "training"
                             : inspection->isHeldOut(selection.frame) ? "held out"
                                                                      : "excluded";
-    annotations->setLegend(legend, notes, inspection->scene->name + ", frame " + frame.id + " (" + use + ")");
+    annotations->setLegend(legend, notes, remarks, inspection->scene->name + ", frame " + frame.id + " (" + use + ")");
     annotations->setLabels(labels);
   }
   void beforeFrame() {
@@ -255,13 +272,22 @@ struct SceneView::Impl {
     Eigen::Index axis = 0;
     up.normalize();
     if (up.cwiseAbs().maxCoeff(&axis) > 0.8) up = Eigen::Vector3d::Unit(axis) * (up[axis] > 0 ? 1 : -1);
-    // From the side of the cameras, a third of a turn away from their middle, so that frustums are not seen from behind.
-    Eigen::Vector3d towards = eyes - input.scale.surfaceBox.center();
+    // From above the highlights, a little aside of the cameras: then neither the surface nor the frustums hide what matters.
+    Eigen::Vector3d normals = Eigen::Vector3d::Zero();
+    for (const TrainingView& view : inspection->views) {
+      if (view.brightest && view.tangentPlane) normals += facing(view.brightest->point, view.camera.centreInWorld()).normal;
+    }
+    const Eigen::Vector3d towardsCameras = eyes - input.scale.surfaceBox.center();
+    Eigen::Vector3d towards = normals.norm() > 0.1 ? normals.normalized() : towardsCameras.normalized();
     const double height = up.dot(towards);
     Eigen::Vector3d flat = towards - height * up;
-    if (flat.norm() < 0.05 * input.scale.sceneSize) flat = tangentBasis(up).col(0);
-    const double elevation = std::clamp(std::atan2(height, flat.norm()), 0.25, 0.5);
-    flat = Eigen::AngleAxisd(0.9, up) * flat.normalized();
+    if (flat.norm() < 0.1) {  // highlights on top: the cameras' side then, else any
+      flat = towardsCameras - up.dot(towardsCameras) * up;
+      if (flat.norm() < 0.05 * input.scale.sceneSize) flat = tangentBasis(up).col(0);
+    }
+    const double elevation = std::clamp(std::atan2(height, flat.norm()), 0.25, 0.6);
+    const double side = up.dot(flat.cross(towardsCameras)) > 0 ? -1 : 1;  // away from the cameras
+    flat = Eigen::AngleAxisd(0.6 * side, up) * flat.normalized();
     const Eigen::Vector3d back = std::cos(elevation) * flat + std::sin(elevation) * up;
     // The closest eye that still holds all points: bounds in the view's own axes, then distance along them.
     const Eigen::Vector3d right = up.cross(back).normalized(), top = back.cross(right);
@@ -269,17 +295,18 @@ struct SceneView::Impl {
     const double aspect = size[0] > 0 && size[1] > 0 ? static_cast<double>(size[0]) / size[1] : 4.0 / 3.0;
     constexpr double kFieldOfView = 30 * std::numbers::pi / 180;
     const double tanY = 0.92 * std::tan(kFieldOfView / 2), tanX = tanY * aspect;
+    const double tanLeft = aspect > 1.2 ? 0.62 * tanX : tanX;  // the legend stands at the left
     // Each side of the view pyramid is a plane through the eye; the eye is fixed by the four that touch the points.
     double rightMost = -1e300, leftMost = -1e300, topMost = -1e300, bottomMost = -1e300;
     for (const Eigen::Vector3d& p : extent()) {
       const double x = right.dot(p), y = top.dot(p), z = back.dot(p);
       rightMost = std::max(rightMost, x / tanX + z);
-      leftMost = std::max(leftMost, -x / tanX + z);
+      leftMost = std::max(leftMost, -x / tanLeft + z);
       topMost = std::max(topMost, y / tanY + z);
       bottomMost = std::max(bottomMost, -y / tanY + z);
     }
-    const double ex = tanX * (rightMost - leftMost) / 2, ey = tanY * (topMost - bottomMost) / 2;
-    const double ez = std::max((rightMost + leftMost) / 2, (topMost + bottomMost) / 2);
+    const double ex = (rightMost - leftMost) / (1 / tanX + 1 / tanLeft), ey = tanY * (topMost - bottomMost) / 2;
+    const double ez = std::max(rightMost - ex / tanX, (topMost + bottomMost) / 2);
     const Eigen::Vector3d eye = ex * right + ey * top + ez * back;
     const double depth = std::max(back.dot(eye - input.scale.surfaceBox.center()), 0.1 * input.scale.surfaceSize);
     setViewPoint({eye, eye - depth * back, top, 30});

@@ -21,8 +21,8 @@ inline Colour modelColour(const std::string& model) {
 }
 inline constexpr Colour kObserved{1.0, 1.0, 1.0};  ///< drawn with a dark halo
 inline constexpr Colour kLightColour{0.941, 0.894, 0.259};
-inline constexpr Colour kVirtualCamera{0.337, 0.706, 0.914};
-inline constexpr Colour kTraining{0.000, 0.447, 0.698};  ///< blue: training frames
+inline constexpr Colour kVirtualCamera{0.70, 0.62, 0.95};  ///< not a model's colour
+inline constexpr Colour kTraining{0.000, 0.447, 0.698};    ///< blue: training frames
 inline constexpr Colour kHeldOut{0.55, 0.55, 0.55};
 inline constexpr Colour kFailed{0.85, 0.10, 0.10};   ///< directions and frames that failed
 inline constexpr Colour kTruth{0.80, 0.00, 0.60};    ///< true lights: never used by the method

@@ -42,11 +42,6 @@ LayerContent observedContoursLayer(const LayerInput& in) {
                   line("area", h.areaPx2, "px^2") + line("peak x", h.peak.x(), "px") + line("peak y", h.peak.y(), "px");
       const bool strong = selected && (in.selection.highlight < 0 || in.selection.highlight == static_cast<int>(i));
       const double width = strong ? 3.0 : 1.2;
-      if (selected) {  // the halo lies a little lower and so never over the line
-        content.add(
-            lineActor(castContour(camera, *in.surface, h.contour, in.scale, 2.6 * in.scale.lift), {0.05, 0.05, 0.05}, width + 3),
-            info, width + 3, false);
-      }
       const Colour colour = selected ? kObserved : Colour{0.80, 0.82, 0.84};
       content.add(
           lineActor(castContour(camera, *in.surface, h.contour, in.scale, (selected ? 3.0 : 2.2) * in.scale.lift), colour, width),

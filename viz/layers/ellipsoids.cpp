@@ -41,13 +41,13 @@ LayerContent ellipsoidsLayer(const LayerInput& in) {
       // A vanishing axis would make the unit sphere's normals undefined: keep it thinner than a line.
       const Eigen::Vector3d axes = e.semiAxes().cwiseMax(1e-5 * std::max(e.semiAxes().maxCoeff(), 1e-300));
       const Eigen::Affine3d worldFromUnit = Eigen::Affine3d(e.worldFromBody()) * Eigen::Scaling(axes);
-      content.add(ellipsoidActor(worldFromUnit, colour, 0.25), info);
+      content.add(ellipsoidActor(worldFromUnit, colour, 0.15), info);
       const Eigen::Matrix3d a = worldFromUnit.linear();
       const Eigen::Vector3d c = e.centre();
       content.add(
           lineActor({circle(c, a.col(0), a.col(1)), circle(c, a.col(1), a.col(2)), circle(c, a.col(2), a.col(0))}, colour, 1.5),
           info, 1.5);
-      if (e.semiAxes().maxCoeff() < in.scale.sceneSize) {
+      if (e.semiAxes().maxCoeff() < 0.3 * in.scale.sceneSize) {  // a needle far across the scene must not shrink the rest
         for (int axis = 0; axis < 3; ++axis) {
           content.extent.push_back(c + a.col(axis));
           content.extent.push_back(c - a.col(axis));

@@ -25,7 +25,7 @@ LayerContent photographsLayer(const LayerInput& in) {
   for (std::size_t i = 0; i < count; ++i) chosen.push_back(in.frames[i * n / count]);
   if (std::find(chosen.begin(), chosen.end(), in.selection.frame) == chosen.end()) chosen.push_back(in.selection.frame);
   if (count < n)
-    content.notes.push_back("photographs: " + std::to_string(chosen.size()) + " of " + std::to_string(n) + " cameras");
+    content.remarks.push_back("photographs of " + std::to_string(chosen.size()) + " of " + std::to_string(n) + " cameras");
   int unreadable = 0;
   for (const int index : chosen) {
     const Frame& frame = in.frame(index);
@@ -47,6 +47,7 @@ LayerContent photographsLayer(const LayerInput& in) {
     texture->MipmapOn();
     vtkNew<vtkPolyDataMapper> mapper;
     mapper->SetInputConnection(plane->GetOutputPort());
+    mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(2, 2);  // behind its own frame
     vtkNew<vtkActor> actor;
     actor->SetMapper(mapper);
     actor->SetTexture(texture);

@@ -37,7 +37,7 @@ LayerContent surfaceLayer(const LayerInput& in) {
   look->SetColor(kSurface[0], kSurface[1], kSurface[2]);
   look->SetAmbient(0.18);
   look->SetDiffuse(0.72);
-  look->SetSpecular(0.25);  // enough to look glossy, too little to be mistaken for a measured highlight
+  look->SetSpecular(0.12);  // enough to look glossy, too little to be mistaken for a measured highlight
   look->SetSpecularPower(30);
   look->SetInterpolationToPhong();
   look->BackfaceCullingOff();
