@@ -48,7 +48,7 @@ void compare(const json& file, const json& frame, const AnalyticSpec& spec, Wors
   const Light light = Light::at(vector3(file["light"]));
   BrightestPoint b;
   b.point = facing({vector3(frame["brightest_point"]), vector3(frame["normal"])}, camera.centreInWorld());
-  b.pixel = {frame["peak"][0], frame["peak"][1]};
+  b.pixel = Pixel(frame["peak"][0].get<double>(), frame["peak"][1].get<double>());
   const TangentWalk walk(*surface, camera, b, light, {1e-13, 60});
 
   const Projection virtualP = virtualCamera(camera, walk.tangentPlane());
@@ -58,7 +58,7 @@ void compare(const json& file, const json& frame, const AnalyticSpec& spec, Wors
   worst.projection = std::max(worst.projection, (virtualP.matrix - expected).norm() / expected.norm());
 
   for (std::size_t i = 0; i < frame["contour"].size(); ++i) {
-    const Pixel contour(frame["contour"][i][0], frame["contour"][i][1]);
+    const Pixel contour(frame["contour"][i][0].get<double>(), frame["contour"][i][1].get<double>());
     const Outcome<SurfacePoint> hit = surface->firstHit(camera.ray(contour));
     ASSERT_TRUE(hit) << i;
     const double limit = frame["limit_angles_deg"][i].get<double>() * std::numbers::pi / 180;
@@ -70,7 +70,7 @@ void compare(const json& file, const json& frame, const AnalyticSpec& spec, Wors
     const double guess = 0.3 * (hit->position - b.point.position).norm();
     const Outcome<double> onPlane = walk.reachOnPlane(direction, *alpha, guess);
     ASSERT_TRUE(onPlane) << i << " " << onPlane.failure().message();
-    const Pixel canonical(frame["canonical_contour"][i][0], frame["canonical_contour"][i][1]);
+    const Pixel canonical(frame["canonical_contour"][i][0].get<double>(), frame["canonical_contour"][i][1].get<double>());
     const std::optional<Pixel> pixel = camera.project(b.point.position + *onPlane * direction);
     ASSERT_TRUE(pixel);
     worst.canonicalPx = std::max(worst.canonicalPx, (*pixel - canonical).norm());
