@@ -1,23 +1,61 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
 #include "core/model/fit_ellipsoid.h"
 #include "core/model/models.h"
 #include "core/model/walk.h"
 
+
 namespace glint {
 namespace {
 
-/// Closed polyline through the directions that succeeded; runs of failed ones are gaps.
+constexpr int kSubdivisions = 8;  // chords of 36 directions cost 0.13 % of the diameter on a circle; 288 cost 0.002 %
+constexpr int kStencil = 6;       // points of the interpolating polynomial: its error is below the walk's other errors
+
+/// Polynomial through the pixels of the directions first .. first + count - 1 (cyclic), at direction number `at`.
+Pixel interpolate(const std::vector<Pixel>& pixelOf, int first, int count, double at) {
+  const int n = static_cast<int>(pixelOf.size());
+  Pixel sum(0, 0);
+  for (int a = 0; a < count; ++a) {
+    double weight = 1;
+    for (int b = 0; b < count; ++b)
+      if (b != a) weight *= (at - (first + b)) / double(a - b);
+    sum += weight * pixelOf[((first + a) % n + n) % n];
+  }
+  return sum;
+}
+
+/// Closed contour through the directions that succeeded; runs of failed ones are gaps. Between neighbouring directions the
+/// curve is interpolated in the azimuth: straight chords would flatten it.
 void outlineOf(const CanonicalContour& c, PredictedHighlight& h) {
   const int n = static_cast<int>(c.directions.size());
-  std::vector<int> succeeded;
-  for (int i = 0; i < n; ++i)
-    if (!c.directions[i].failure) succeeded.push_back(i);
-  h.contour = Polyline{c.pixels, true};
-  h.coverage = n ? double(succeeded.size()) / n : 0;
-  for (std::size_t k = 0; k < succeeded.size(); ++k) {
-    const std::size_t next = (k + 1) % succeeded.size();
-    if ((succeeded[next] - succeeded[k] + n) % n > 1) h.gaps.emplace_back(static_cast<int>(k), static_cast<int>(next));
+  std::vector<Pixel> pixelOf(n, Pixel(0, 0));
+  std::vector<char> ok(n, 0);
+  for (int i = 0, k = 0; i < n; ++i)
+    if (!c.directions[i].failure) ok[i] = 1, pixelOf[i] = c.pixels[k++];
+  const auto isOk = [&](int i) { return ok[(i % n + n) % n] != 0; };
+  h.coverage = n ? double(c.pixels.size()) / n : 0;
+  h.contour = Polyline{{}, true};
+  for (int i = 0; i < n; ++i) {
+    if (!ok[i]) continue;
+    h.contour.points.push_back(pixelOf[i]);
+    if (!isOk(i + 1)) {
+      h.gaps.emplace_back(static_cast<int>(h.contour.points.size()) - 1, static_cast<int>(h.contour.points.size()));
+      continue;
+    }
+    int first = i, last = i + 1;  // grow the stencil evenly within the run
+    while (last - first + 1 < std::min(kStencil, n)) {
+      const bool left = isOk(first - 1), right = isOk(last + 1);
+      if (!left && !right) break;
+      if (left && (!right || i - first <= last - i - 1)) --first;
+      else ++last;
+    }
+    for (int k = 1; k < kSubdivisions; ++k)
+      h.contour.points.push_back(interpolate(pixelOf, first, last - first + 1, i + double(k) / kSubdivisions));
   }
+  // The last gap closes on the first vertex.
+  const int count = static_cast<int>(h.contour.points.size());
+  for (auto& [from, to] : h.gaps) to %= std::max(1, count);
 }
 
 class Canonical final : public HighlightModel {

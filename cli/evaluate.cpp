@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+
+#include "cli/commands.h"
+#include "cli/inspection_arguments.h"
+#include "core/evaluate/report.h"
+#include "core/evaluate/summary.h"
+#include "core/pipeline/selection.h"
+
+namespace glint::cli {
+namespace {
+
+std::string candidateTable(const Selection& s) {
+  std::string out = "candidate     views   leave-one-out %   std. error %   seconds  remark\n";
+  char line[256];
+  for (const Candidate& c : s.candidates) {
+    const std::string views = std::to_string(c.answered) + "/" + std::to_string(c.views);
+    std::snprintf(line, sizeof line, "%-12s %6s %17.4g %14.4g %9.2f  ", c.model.c_str(), views.c_str(), c.meanPct, c.standardErrorPct,
+                  c.timeUs * 1e-6);
+    out += line + c.remark + "\n";
+  }
+  return out;
+}
+
+}  // namespace
+
+Command evaluateCommand() {
+  struct Arguments : InspectionArguments {
+    std::string json, csv, html, goodEnough;
+  };
+  const auto a = std::make_shared<Arguments>();
+  Command c;
+  c.name = "evaluate";
+  c.summary = "Fit models on training frames, predict the held-out ones, compare";
+  c.description =
+      "Finds the highlights of every frame, fits each model on the training frames, predicts every frame and compares with\n"
+      "what was observed there. The table counts held-out frames only (all frames with --train per-surface). Errors are\n"
+      "symmetric mean contour distances in pixels and in percent of the equivalent diameter of the observed highlight;\n"
+      "predicted/frames and coverage stand beside them, because a model must not win by leaving things out.\n"
+      "With --models auto the simplest model is chosen whose leave-one-view-out error on the training frames is within one\n"
+      "standard error of the best, or under --good-enough-pct.";
+  c.examples =
+      "  glint evaluate scene.json                                all models, trained on the first 6 frames\n"
+      "  glint evaluate scene.json --train spread:6 --html r.html a page with plots and the worst frames\n"
+      "  glint evaluate scene.json --models auto --good-enough-pct 0.5\n"
+      "  glint evaluate scene.json --train 0-5 --json - --set fit.solver=anchored\n";
+  c.declare = [a](Options& o) {
+    a->declare(o, "Models to compare: primal, dual, canonical, limit-angle; or auto (default: all)");
+    o.option(a->goodEnough, "--good-enough-pct", "E", "With auto: a contour error in percent that is good enough");
+    o.option(a->json, "--json", "FILE", "The whole evaluation as JSON (- = standard output)");
+    o.option(a->csv, "--csv", "FILE", "One row per model, frame and highlight (- = standard output)");
+    o.option(a->html, "--html", "FILE", "A self-contained page");
+  };
+  c.run = [a](const Context& context) -> int {
+    InspectionRequest request = a->request();
+    const std::shared_ptr<const Scene> scene = a->scene();
+    for (const std::string& w : scene->warnings) context.warn(w);
+    ReportContext report;
+    report.input = a->input;
+    Inspection result;
+    std::string text;
+    if (a->models == "auto") {
+      std::optional<double> goodEnough;
+      if (!a->goodEnough.empty()) {
+        std::size_t used = 0;
+        try {
+          goodEnough = std::stod(a->goodEnough, &used);
+        } catch (const std::exception&) {
+        }
+        if (!goodEnough || used != a->goodEnough.size() || !(*goodEnough > 0))
+          throw InputError("", "--good-enough-pct " + a->goodEnough, "expected a positive number of percent");
+      }
+      request.models.clear();  // evidence and views only: the choice decides what else is computed
+      result = inspect(scene, request, context.progress());
+      requireUsableViews(result);
+      const Selection s = selectModel(result, goodEnough, context.progress());
+      text = candidateTable(s) + s.why + "\n\n";
+      if (s.model.empty()) {
+        context.print(text);
+        throw CannotAnswer{{Reason::NotReached, s.why}};
+      }
+      request.models = {s.model};
+      report.chosenModel = s.model;
+      report.whyChosen = s.why;
+      result = inspect(scene, request, context.progress(), &result);
+    } else {
+      result = inspect(scene, request, context.progress());
+      report.chosenModel = bestModel(result);
+      if (!report.chosenModel.empty())
+        report.whyChosen = "Smallest mean held-out contour error among the models that predicted most frames; `--models auto` chooses from "
+                           "the training frames alone.";
+    }
+    // What was asked for on standard output must stay parseable there: the table then stays away.
+    const bool tableToo = a->json != "-" && a->csv != "-" && a->html != "-";
+    if (!a->json.empty()) context.write(a->json, evaluationJson(result, report));
+    if (!a->csv.empty()) context.write(a->csv, evaluationCsv(result));
+    if (!a->html.empty()) context.write(a->html, evaluationHtml(result, report));
+    if (tableToo) context.print(text + evaluationTable(result));
+    for (const auto& [name, model] : result.models)
+      if (summarise(result, model).answered) return kDone;
+    requireUsableViews(result);
+    std::string reasons;
+    for (const auto& [name, model] : result.models) reasons += (reasons.empty() ? "" : "; ") + name + ": " + summarise(result, model).reason;
+    throw CannotAnswer{{Reason::NotReached, "no model answered; " + reasons}};
+  };
+  return c;
+}
+
+}  // namespace glint::cli

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "core/pipeline/inspection.h"
+
+namespace glint::cli {
+
+/// Arguments shared by evaluate, reconstruct and others: everything that an InspectionRequest holds.
+struct InspectionArguments {
+  std::string input, models, train = "first:6", source = "radiance", truth;
+  std::string level;                       ///< "" = the setting's default
+  std::vector<std::string> set;
+  double noisePx = 0;
+  unsigned seed = 1;
+  bool allowOutside = false;
+
+  void declare(Options& options, const std::string& modelsHelp);
+  /// InputError for unknown models, settings or values out of range.
+  InspectionRequest request() const;
+  std::shared_ptr<const Scene> scene() const;
+};
+
+/// "a,b,c" in parts; InputError (place `flag`) for an empty part.
+std::vector<std::string> splitList(const std::string& text, const std::string& flag);
+
+/// Throws CannotAnswer when no training view could be used at all, with the first reason.
+void requireUsableViews(const Inspection& inspection);
+
+}  // namespace glint::cli
