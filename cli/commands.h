@@ -8,7 +8,11 @@ namespace glint::cli {
 // One function per subcommand, each in the file of its name; main.cpp lists them.
 Command convertCommand();
 Command detectCommand();
+Command evaluateCommand();
 Command infoCommand();
+Command renderCommand();
+Command predictCommand();
+Command reconstructCommand();
 Command replayCommand();
 Command settingsCommand();
 Command synthCommand();

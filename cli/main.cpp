@@ -8,6 +8,9 @@ int main(int argc, char** argv) {
                         {
                             infoCommand(),
                             detectCommand(),
+                            reconstructCommand(),
+                            predictCommand(),
+                            evaluateCommand(),
                             synthCommand(),
                             convertCommand(),
                             replayCommand(),

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+#include <filesystem>
+
+#include "cli/commands.h"
+#include "core/base/parallel.h"
+#include "core/evaluate/labels.h"
+#include "core/highlight/report.h"
+#include "core/pipeline/frame_spec.h"
+#include "core/pipeline/session.h"
+#include "viz/pictures.h"
+
+namespace glint::cli {
+namespace {
+
+constexpr int kPictureWidth = 1280, kPictureHeight = 960;
+
+std::string predictionTable(const Inspection& inspection, const std::vector<int>& frames) {
+  char line[256];
+  std::snprintf(line, sizeof line, "%-12s %6s %-16s %-10s %10s %9s  %s\n", "model", "frame", "id", "light", "highlights", "coverage", "reason");
+  std::string out = line;
+  for (const std::string& name : inspection.request.models)
+    for (const FrameComparison& c : inspection.models.at(name).frames) {
+      if (std::find(frames.begin(), frames.end(), c.frame) == frames.end()) continue;
+      double coverage = 0;
+      for (const PredictedHighlight& h : c.prediction.highlights) coverage += h.coverage / double(c.prediction.highlights.size());
+      const std::string reason = c.prediction.highlights.empty() && c.prediction.failure ? c.prediction.failure->message() : "";
+      std::snprintf(line, sizeof line, "%-12s %6d %-16s %-10s %10zu %9.3f  ", name.c_str(), c.frame,
+                    inspection.scene->frames[c.frame].id.c_str(), c.light.c_str(), c.prediction.highlights.size(), coverage);
+      out += line + reason + "\n";
+    }
+  return out;
+}
+
+}  // namespace
+
+Command predictCommand() {
+  struct Arguments {
+    std::string session, frames, out, json;
+  };
+  const auto a = std::make_shared<Arguments>();
+  Command c;
+  c.name = "predict";
+  c.summary = "Predict highlights with a saved session: contours, overlays, labels";
+  c.description =
+      "Opens a session, fits its models again and predicts the highlights of the frames asked for. With --out it writes\n"
+      "predictions.json (contours in ideal pixels, brightest points, coverage, failed directions with reasons), one overlay\n"
+      "PNG a frame, and labels_MODEL.json in COCO format for each model.";
+  c.examples =
+      "  glint predict run.glint                       a table of all frames\n"
+      "  glint predict run.glint --frames 6-20 --out predicted\n";
+  c.declare = [a](Options& o) {
+    o.positional(a->session, "FILE.glint", "A session written by `glint reconstruct` or the inspector");
+    o.option(a->frames, "--frames", "SPEC", "Frames to predict: numbers, ids, ranges, first:K or spread:K (default: all)");
+    o.option(a->out, "--out", "DIR", "Write contours, overlays and labels there");
+    o.option(a->json, "--json", "FILE", "Write predictions.json's content there instead (- = standard output)");
+  };
+  c.run = [a](const Context& context) -> int {
+    const OpenedSession opened = openSession(a->session);
+    for (const std::string& w : opened.session.warnings) context.warn(w);
+    const Scene& scene = *opened.scene;
+    std::vector<int> frames;
+    if (!a->frames.empty()) frames = parseFrames(a->frames, scene, "--frames");
+    else
+      for (int i = 0; i < static_cast<int>(scene.frames.size()); ++i) frames.push_back(i);
+    const Inspection result = inspect(opened.scene, opened.session.request, context.progress());
+    if (!a->out.empty()) {
+      const std::filesystem::path folder = a->out;
+      std::error_code error;
+      std::filesystem::create_directories(folder, error);
+      if (error) throw InputError(a->out, "--out", "cannot be created: " + error.message());
+      parallelFor(
+          static_cast<int>(frames.size()),
+          [&](int i) {
+            char name[32];
+            std::snprintf(name, sizeof name, "%04d.png", frames[i]);  // by position: an id may hold what no file name may
+            const Frame& frame = scene.frames[frames[i]];
+            writePng(folder / name, viz::framePicture(result, frames[i], readPhotograph(frame), kPictureWidth, kPictureHeight));
+          },
+          context.progress(), "overlays");
+      context.write((folder / "predictions.json").string(), predictionsJson(result, frames));
+      for (const std::string& model : result.request.models)
+        context.write((folder / ("labels_" + model + ".json")).string(), cocoJson(result, model, frames));
+    }
+    if (!a->json.empty()) context.write(a->json, predictionsJson(result, frames));
+    if (a->json != "-") context.print(predictionTable(result, frames));
+    std::string reason;
+    for (const auto& [name, model] : result.models)
+      for (const FrameComparison& f : model.frames) {
+        if (std::find(frames.begin(), frames.end(), f.frame) == frames.end()) continue;
+        if (!f.prediction.highlights.empty()) return kDone;
+        if (reason.empty() && f.prediction.failure) reason = name + ": " + f.prediction.failure->message();
+      }
+    throw CannotAnswer{{Reason::NotReached, "no highlight was predicted; " + reason}};
+  };
+  return c;
+}
+
+}  // namespace glint::cli

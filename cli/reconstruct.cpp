@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+
+#include "cli/commands.h"
+#include "cli/inspection_arguments.h"
+#include "core/pipeline/session.h"
+
+namespace glint::cli {
+namespace {
+
+std::string vectorText(const Eigen::Vector3d& v) {
+  char buffer[96];
+  std::snprintf(buffer, sizeof buffer, "%.6g %.6g %.6g", v.x(), v.y(), v.z());
+  return buffer;
+}
+
+std::string fitText(const ModelResult::Fit& entry, const std::string& model) {
+  std::string out = model + ", light " + entry.light + (entry.surface ? ", surface " + *entry.surface : "") + ": ";
+  if (entry.failure) return out + entry.failure->message() + "\n";
+  const ModelFit& f = *entry.fit;
+  char buffer[160];
+  out += std::to_string(f.frames.size()) + " views, " + f.solver + "\n";
+  if (f.ellipsoid) {
+    out += "  ellipsoid centre  " + vectorText(f.ellipsoid->centre()) + " m\n";
+    out += "  semi-axes         " + vectorText(f.ellipsoid->semiAxes()) + " m\n";
+  }
+  if (f.lightEstimate && !f.lightEstimate->atInfinity()) out += "  light             " + vectorText(f.lightEstimate->position()) + " m\n";
+  if (f.lightEstimate && f.lightEstimate->atInfinity())
+    out += "  light             at infinity, towards " + vectorText(f.lightEstimate->homogeneous().head<3>()) + "\n";
+  if (f.limitAngle) {
+    std::snprintf(buffer, sizeof buffer, "  limit angle       %.6g deg\n", *f.limitAngle * 180 / M_PI);
+    out += buffer;
+  }
+  if (!f.singularValues.empty()) {
+    std::snprintf(buffer, sizeof buffer, "  gap ratio         %.3g, condition %.3g\n", f.gapRatio, f.condition);
+    out += buffer;
+  }
+  if (!f.residualPx.empty()) {
+    out += "  residuals         ";
+    for (std::size_t i = 0; i < f.residualPx.size(); ++i) {
+      std::snprintf(buffer, sizeof buffer, "%s%.3g", i ? ", " : "", f.residualPx[i]);
+      out += buffer;
+    }
+    out += " px\n";
+  }
+  return out;
+}
+
+}  // namespace
+
+Command reconstructCommand() {
+  struct Arguments : InspectionArguments {
+    std::string out;
+  };
+  const auto a = std::make_shared<Arguments>();
+  Command c;
+  c.name = "reconstruct";
+  c.summary = "Fit a model on training frames and save the session";
+  c.description =
+      "Finds the highlights, fits the model on the training frames and writes a session (*.glint): the inputs with their\n"
+      "hashes, every parameter, the frames and the results. `glint predict`, `glint render`, `glint replay` and\n"
+      "glint-inspector open it.";
+  c.examples =
+      "  glint reconstruct scene.json --model canonical -o canonical.glint\n"
+      "  glint reconstruct scene.json --model limit-angle --train spread:6 -o run.glint\n";
+  c.declare = [a](Options& o) {
+    a->declare(o, "Model to fit: primal, dual, canonical or limit-angle (default: all)");
+    o.required(a->out, "-o,--out", "FILE.glint", "The session to write");
+  };
+  c.run = [a](const Context& context) -> int {
+    if (a->models == "auto") throw InputError("", "--model auto", "choose with `glint evaluate --models auto`, then reconstruct that model");
+    const InspectionRequest request = a->request();
+    const std::shared_ptr<const Scene> scene = a->scene();
+    for (const std::string& w : scene->warnings) context.warn(w);
+    const Inspection result = inspect(scene, request, context.progress());
+    requireUsableViews(result);
+    std::string text, reasons;
+    bool any = false;
+    for (const std::string& name : request.models)
+      for (const ModelResult::Fit& f : result.models.at(name).fits) {
+        text += fitText(f, name);
+        any = any || f.fit;
+        if (f.failure && reasons.empty()) reasons = name + ": " + f.failure->message();
+      }
+    if (!any) throw CannotAnswer{{Reason::NotConverged, "nothing could be reconstructed; " + reasons}};
+    Session session = sessionOf(result, context.progress());
+    session.allowOutsidePaths = a->allowOutside;
+    session.file = a->out;
+    writeSession(session, a->out);
+    context.print(text);
+    return kDone;
+  };
+  return c;
+}
+
+}  // namespace glint::cli
