@@ -73,7 +73,7 @@ TEST(ContourMetrics, GapsAreNotBridgedForDistances) {
   EXPECT_NEAR(whole.contourErrorPx, 0, 1e-12);
   // Observed to predicted: on the missing side the distance runs 0..5..0, mean 2.5, over a quarter of the length.
   EXPECT_NEAR(gap.contourErrorPx, 0.5 * 2.5 / 4, 1e-3);
-  EXPECT_NEAR(gap.hausdorffPx, 5, 0.05);
+  EXPECT_NEAR(gap.hausdorffPx, 5, 0.06);  // samples are 40/360 px apart, the nearest to the middle is half of that away
   EXPECT_NEAR(gap.iou, 1, 1e-9);  // areas are closed over the gap
 }
 

@@ -191,7 +191,7 @@ TEST(CanonicalContour, OnAPlaneNothingMoves) {
   BrightestPoint b;
   b.point = {{0, 0, 0}, {0, 0, 1}};
   b.pixel = {320, 240};
-  const TangentWalk walk(*plane, camera, b, Light::at({0.2, 0.1, 1.5}), {1e-14, 60});
+  const TangentWalk walk(*plane, camera, b, Light::at({0, 0, 1.5}), {1e-14, 60});
   const Ellipse drawn{{325, 236}, {60, 35}, 0.4};
   const CanonicalContour c = canonicalContour(walk, camera, {drawn.sample(720), true}, 36);
   ASSERT_EQ(c.pixels.size(), 36u);
