@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
                             evaluateCommand(),
                             synthCommand(),
                             convertCommand(),
+                            renderCommand(),
                             replayCommand(),
                             settingsCommand(),
                         });

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// VTK 9.1 drops every character beyond ASCII from narrow strings; its overloads for vtkUnicodeString, deprecated in that very
+// version, keep them.
+#define VTK_DEPRECATION_LEVEL 0
 #include "viz/canvas.h"
 
 #include <vtkFreeTypeTools.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
-#include <vtkStdString.h>
 #include <vtkTextProperty.h>
+#include <vtkUnicodeString.h>
 
 #include <algorithm>
 #include <cmath>
@@ -68,6 +71,42 @@ void setUp(vtkTextProperty* look, double sizePx) {
   }
 }
 
+/// Coverage of a level line of text, bottom row first.
+struct Glyphs {
+  int width = 0, height = 0;
+  std::vector<unsigned char> alpha;
+};
+Glyphs rendered(const std::string& text, double sizePx) {
+  Glyphs glyphs;
+  if (text.empty()) return glyphs;
+  vtkNew<vtkTextProperty> look;
+  setUp(look, sizePx);
+  vtkNew<vtkImageData> image;
+  int dims[2] = {0, 0};
+  if (!vtkFreeTypeTools::GetInstance()->RenderString(look, vtkUnicodeString::from_utf8(text), 72, image, dims)) return glyphs;
+  int extent[6];
+  image->GetExtent(extent);
+  glyphs.width = std::min(dims[0], extent[1] - extent[0] + 1);
+  glyphs.height = std::min(dims[1], extent[3] - extent[2] + 1);
+  for (int y = 0; y < glyphs.height; ++y) {
+    for (int x = 0; x < glyphs.width; ++x) {
+      glyphs.alpha.push_back(static_cast<const unsigned char*>(image->GetScalarPointer(extent[0] + x, extent[2] + y, 0))[3]);
+    }
+  }
+  return glyphs;
+}
+
+/// Rows of a rendered line below its baseline: those under the ink of a letter that stands on it.
+int descentOf(double sizePx) {
+  const Glyphs e = rendered("E", sizePx);
+  for (int y = 0; y < e.height; ++y) {
+    for (int x = 0; x < e.width; ++x) {
+      if (e.alpha[static_cast<std::size_t>(y) * static_cast<std::size_t>(e.width) + static_cast<std::size_t>(x)] > 127) return y;
+    }
+  }
+  return 0;
+}
+
 }  // namespace
 
 struct Canvas::Impl {
@@ -89,32 +128,22 @@ struct Canvas::Impl {
               y1 = static_cast<int>(std::lround((box.y + box.height) * kFine));
     return cv::Rect(x0, y0, std::max(0, x1 - x0), std::max(0, y1 - y0)) & cv::Rect(0, 0, fine.cols, fine.rows);
   }
+  /// Text is always rendered level and turned here: FreeType's box is then the line's, from descender to ascender.
   void print(cv::Mat& target, const Text& t) const {
-    if (t.text.empty()) return;
-    vtkNew<vtkTextProperty> look;
-    setUp(look, t.size);
-    if (t.vertical) look->SetOrientation(90);
-    vtkNew<vtkImageData> glyphs;
-    int dims[2] = {0, 0}, box[4] = {0, 0, 0, 0};
-    vtkFreeTypeTools* tools = vtkFreeTypeTools::GetInstance();
-    if (!tools->GetBoundingBox(look, vtkStdString(t.text), 72, box)) return;
-    if (!tools->RenderString(look, vtkStdString(t.text), 72, glyphs, dims)) return;
-    int size[3];
-    glyphs->GetDimensions(size);
-    const int length = t.vertical ? dims[1] : dims[0];
-    const double shift = t.align == Align::Left ? 0 : t.align == Align::Centre ? 0.5 * length : length;
-    // box[2] and box[0] place the image's lower left pixel relative to the baseline's start (y upwards).
-    const int left = static_cast<int>(std::lround(t.at.x() + (t.vertical ? 0 : -shift))) + (t.vertical ? box[0] : 0);
-    const int bottom = static_cast<int>(std::lround(t.at.y() + (t.vertical ? shift : 0))) - (t.vertical ? 0 : box[2]);
-    for (int y = 0; y < dims[1] && y < size[1]; ++y) {
-      const int row = bottom - 1 - y;
-      if (row < 0 || row >= target.rows) continue;
-      for (int x = 0; x < dims[0] && x < size[0]; ++x) {
-        const int column = left + x;
-        if (column < 0 || column >= target.cols) continue;
-        const auto* rgba = static_cast<const unsigned char*>(glyphs->GetScalarPointer(x, y, 0));
-        const double alpha = rgba[3] / 255.0;
-        if (alpha <= 0) continue;
+    const Glyphs glyphs = rendered(t.text, t.size);
+    const double shift = t.align == Align::Left ? 0 : t.align == Align::Centre ? 0.5 * glyphs.width : glyphs.width;
+    const int x0 = static_cast<int>(std::lround(t.at.x())), y0 = static_cast<int>(std::lround(t.at.y()));
+    const int start = static_cast<int>(std::lround(shift)), descent = descentOf(t.size);
+    for (int v = 0; v < glyphs.height; ++v) {
+      for (int u = 0; u < glyphs.width; ++u) {
+        const double alpha =
+            glyphs.alpha[static_cast<std::size_t>(v) * static_cast<std::size_t>(glyphs.width) + static_cast<std::size_t>(u)] /
+            255.0;
+        // u runs along the text, up = v - descent away from its baseline.
+        const int up = v - descent;
+        const int column = t.vertical ? x0 - 1 - up : x0 - start + u;
+        const int row = t.vertical ? y0 + start - u : y0 - 1 - up;
+        if (alpha <= 0 || row < 0 || row >= target.rows || column < 0 || column >= target.cols) continue;
         cv::Vec3b& pixel = target.at<cv::Vec3b>(row, column);
         for (int c = 0; c < 3; ++c) {
           pixel[c] = static_cast<unsigned char>(
@@ -210,7 +239,7 @@ double Canvas::textWidth(const std::string& text, double sizePx) const {
   vtkNew<vtkTextProperty> look;
   setUp(look, sizePx);
   int box[4] = {0, 0, 0, 0};
-  if (!vtkFreeTypeTools::GetInstance()->GetBoundingBox(look, vtkStdString(text), 72, box)) return 0;
+  if (!vtkFreeTypeTools::GetInstance()->GetBoundingBox(look, vtkUnicodeString::from_utf8(text), 72, box)) return 0;
   return box[1] - box[0] + 1;
 }
 

@@ -145,7 +145,9 @@ std::optional<Eigen::Vector3d> castPixel(const Camera& camera, const Surface& su
   const Ray ray = camera.ray(pixel);
   const Outcome<SurfacePoint> hit = surface.firstHit(ray);
   if (!hit) return {};
-  return hit->position + lift * facing(*hit, ray.origin).normal;
+  // Along the view ray, so that it still covers its own pixel; further at slanted incidence, to come as far off the surface.
+  const double slant = std::max(0.3, std::abs(hit->normal.dot(ray.direction)));
+  return hit->position - (lift / slant) * ray.direction;
 }
 
 std::vector<Points> castContour(const Camera& camera, const Surface& surface, const Polyline& contour, const SceneScale& scale,
@@ -169,11 +171,11 @@ std::vector<Points> ellipseOnPlane(const Camera& camera, const Plane& plane, con
   std::vector<Points> chains(1);
   std::vector<Pixel> pixels = ellipse.sample(96);
   pixels.push_back(pixels.front());
-  const double side = plane.signedDistance(camera.centreInWorld()) < 0 ? -1 : 1;
   for (const Pixel& pixel : pixels) {
-    const std::optional<Eigen::Vector3d> p = intersection(camera.ray(pixel), plane);
+    const Ray ray = camera.ray(pixel);
+    const std::optional<Eigen::Vector3d> p = intersection(ray, plane);
     if (p) {
-      chains.back().push_back(*p + side * lift * plane.normal);
+      chains.back().push_back(*p - lift / std::max(0.3, std::abs(plane.normal.dot(ray.direction))) * ray.direction);
     } else if (!chains.back().empty()) {
       chains.emplace_back();
     }

@@ -88,6 +88,10 @@ Outcome<std::unique_ptr<VirtualDisplay>> VirtualDisplay::start(int width, int he
     prctl(PR_SET_PDEATHSIG, SIGTERM);  // so that no server is left when this program is killed
     if (getppid() != parent) _exit(127);
 #endif
+    // A blocked SIGTERM would be inherited, and the server could not be ended.
+    sigset_t none;
+    sigemptyset(&none);
+    sigprocmask(SIG_SETMASK, &none, nullptr);
     close(channel[0]);
     // Ctrl-C is sent to the whole foreground group; the server must live until the window is gone.
     setpgid(0, 0);

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viz/frame_overlay.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/evaluate/palette.h"
+#include "tests/tolerances.h"
+#include "tests/viz/small_inspection.h"
+
+namespace glint::viz {
+namespace {
+
+using test::smallInspection;
+using test::TemporaryFolder;
+
+std::vector<OverlayLine> ofRole(const FrameOverlay& overlay, OverlayRole role) {
+  std::vector<OverlayLine> lines;
+  for (const OverlayLine& line : overlay.lines) {
+    if (line.role == role) lines.push_back(line);
+  }
+  return lines;
+}
+
+TEST(FrameOverlay, ContoursAndPeaksLieExactlyWhereTheInspectionHasThem) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  const FrameOverlay overlay = frameOverlay(*inspection, 2);
+  const Highlight& observed = inspection->evidence[2].highlights[0];
+  const auto contours = ofRole(overlay, OverlayRole::ObservedContour);
+  ASSERT_EQ(contours.size(), 1u);
+  ASSERT_EQ(contours[0].points.size(), observed.contour.points.size());
+  for (std::size_t i = 0; i < observed.contour.points.size(); ++i) EXPECT_EQ(contours[0].points[i], observed.contour.points[i]);
+  EXPECT_TRUE(contours[0].closed);
+  EXPECT_TRUE(contours[0].halo);
+  const auto predicted = ofRole(overlay, OverlayRole::PredictedContour);
+  ASSERT_EQ(predicted.size(), 1u);
+  EXPECT_EQ(predicted[0].model, "canonical");
+  EXPECT_EQ(predicted[0].colour, modelColour("canonical"));
+  ASSERT_FALSE(overlay.marks.empty());
+  EXPECT_EQ(overlay.marks[0].role, OverlayRole::ObservedPeak);
+  EXPECT_EQ(overlay.marks[0].at, observed.peak);
+}
+
+TEST(FrameOverlay, EllipsesAreSampledOnTheirCurve) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  const FrameOverlay overlay = frameOverlay(*inspection, 0);
+  const Ellipse ellipse = *inspection->evidence[0].highlights[0].ellipse;
+  const auto lines = ofRole(overlay, OverlayRole::ObservedEllipse);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_EQ(lines[0].dash, Dash::Dashed);
+  EXPECT_EQ(lines[0].points.size(), 96u);
+  for (const Pixel& p : lines[0].points) EXPECT_NEAR((p - ellipse.centre).norm(), ellipse.semiAxes.x(), tolerance::kPixel);
+}
+
+TEST(FrameOverlay, LensDistortionIsAppliedBecauseThePhotographHasIt) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  auto scene = std::make_shared<Scene>(*inspection->scene);
+  scene->frames[1].camera.distortion = {-0.2, 0.05, 1e-3, -5e-4, 0};
+  inspection->scene = scene;
+  const Camera& camera = scene->frames[1].camera;
+  const Pixel ideal = inspection->evidence[1].highlights[0].contour.points[5];
+  const auto contours = ofRole(frameOverlay(*inspection, 1), OverlayRole::ObservedContour);
+  ASSERT_EQ(contours.size(), 1u);
+  EXPECT_LT((camera.undistorted(contours[0].points[5]) - ideal).norm(), tolerance::kPixel);
+  EXPECT_GT((contours[0].points[5] - ideal).norm(), 0.01);  // or the test could not fail
+}
+
+TEST(FrameOverlay, GapsAreDottedAndNothingIsLost) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  PredictedHighlight& highlight = inspection->models["canonical"].frames[0].prediction.highlights[0];
+  highlight.gaps = {{70, 3}, {20, 21}};  // the first one runs over the end of the list
+  const auto lines = ofRole(frameOverlay(*inspection, 0), OverlayRole::PredictedContour);
+  ASSERT_EQ(lines.size(), 4u);
+  int solid = 0, dotted = 0, segments = 0;
+  for (const OverlayLine& line : lines) {
+    EXPECT_FALSE(line.closed);
+    (line.dash == Dash::Dotted ? dotted : solid) += 1;
+    segments += static_cast<int>(line.points.size()) - 1;
+    if (line.dash == Dash::Dotted && line.points.size() == 2) {
+      EXPECT_EQ(line.points[0], highlight.contour.points[20]);
+      EXPECT_EQ(line.points[1], highlight.contour.points[21]);
+    }
+  }
+  EXPECT_EQ(solid, 2);
+  EXPECT_EQ(dotted, 2);
+  EXPECT_EQ(segments, 72);
+}
+
+TEST(FrameOverlay, EveryModelHasACaptionWithItsErrorOrItsReason) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  const FrameOverlay overlay = frameOverlay(*inspection, 4);
+  ASSERT_EQ(overlay.captions.size(), 2u);
+  EXPECT_EQ(overlay.captions[0].model, "dual");  // from simple to rich
+  EXPECT_TRUE(overlay.captions[0].problem);
+  EXPECT_NE(overlay.captions[0].text.find("hyperboloid"), std::string::npos) << overlay.captions[0].text;
+  EXPECT_EQ(overlay.captions[1].model, "canonical");
+  EXPECT_FALSE(overlay.captions[1].problem);
+  EXPECT_NE(overlay.captions[1].text.find("3.57 %"), std::string::npos) << overlay.captions[1].text;
+}
+
+TEST(FrameOverlay, HiddenRolesAndModelsAreLeftOut) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  OverlayOptions options;
+  options.hidden = {OverlayRole::PredictedContour, OverlayRole::ObservedPeak};
+  const FrameOverlay overlay = frameOverlay(*inspection, 0, options);
+  EXPECT_TRUE(ofRole(overlay, OverlayRole::PredictedContour).empty());
+  EXPECT_FALSE(ofRole(overlay, OverlayRole::ObservedContour).empty());
+  for (const OverlayMark& mark : overlay.marks) EXPECT_NE(mark.role, OverlayRole::ObservedPeak);
+  OverlayOptions onlyDual;
+  onlyDual.models = {"dual"};
+  for (const OverlayLine& line : frameOverlay(*inspection, 0, onlyDual).lines) EXPECT_NE(line.model, "canonical");
+}
+
+TEST(FrameOverlay, AFrameWithoutEvidenceSaysWhy) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  inspection->evidence[3].highlights.clear();
+  inspection->evidence[3].failure = Failure{Reason::NoHighlight, "too dark"};
+  const FrameOverlay overlay = frameOverlay(*inspection, 3);
+  EXPECT_TRUE(ofRole(overlay, OverlayRole::ObservedContour).empty());
+  ASSERT_FALSE(overlay.captions.empty());
+  EXPECT_NE(overlay.captions[0].text.find("too dark"), std::string::npos);
+  EXPECT_THROW(frameOverlay(*inspection, 6), std::invalid_argument);
+}
+
+TEST(FrameScore, CountsMatchedMissedAndSpurious) {
+  ModelResult result;
+  FrameComparison comparison;
+  comparison.frame = 3;
+  comparison.prediction.highlights.resize(2);
+  comparison.iou = 0.8;
+  ContourMetrics a, b;
+  a.contourErrorPct = 1;
+  a.contourErrorPx = 0.5;
+  b.contourErrorPct = 3;
+  b.contourErrorPx = 1.5;
+  comparison.rows = {{0, 0, a, {}}, {1, 1, b, {}}, {2, -1, {}, {}}, {-1, 2, {}, {}}};
+  result.frames = {comparison};
+  const FrameScore score = frameScore(result, 3);
+  EXPECT_EQ(score.matched, 2);
+  EXPECT_EQ(score.missed, 1);
+  EXPECT_EQ(score.spurious, 1);
+  EXPECT_DOUBLE_EQ(*score.errorPct, 2);
+  EXPECT_DOUBLE_EQ(*score.errorPx, 1);
+  EXPECT_DOUBLE_EQ(*score.iou, 0.8);
+  EXPECT_FALSE(frameScore(result, 4).errorPct);
+}
+
+TEST(Style, ReportsAndViewsUseTheSameColours) {
+  for (const char* model : {"primal", "dual", "canonical", "limit-angle", "reflectance"}) {
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(255 * modelColour(model)[c], modelRgb(model)[c], 0.51) << model;
+  }
+}
+
+}  // namespace
+}  // namespace glint::viz

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viz/scene_view.h"
+
+#include <gtest/gtest.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "tests/tolerances.h"
+#include "tests/viz/small_inspection.h"
+#include "viz/layers.h"
+#include "viz/offscreen.h"
+#include "viz/style.h"
+
+namespace glint::viz {
+namespace {
+
+using test::smallInspection;
+using test::TemporaryFolder;
+
+constexpr int kWidth = 640, kHeight = 480;
+
+/// Pixels whose colour differs visibly; a few stray ones are what another driver may do to an edge.
+int countDifferent(const Image& a, const Image& b) {
+  int count = 0;
+  for (int y = 0; y < a.height; ++y) {
+    for (int x = 0; x < a.width; ++x) {
+      double most = 0;
+      for (int c = 0; c < 3; ++c) most = std::max<double>(most, std::abs(a.at(x, y, c) - b.at(x, y, c)));
+      count += most > 0.06;
+    }
+  }
+  return count;
+}
+
+bool isNear(const Image& image, int x, int y, const Colour& colour, double tolerance) {
+  for (int c = 0; c < 3; ++c) {
+    if (std::abs(image.at(x, y, c) - colour[static_cast<std::size_t>(c)]) > tolerance) return false;
+  }
+  return true;
+}
+
+int countNear(const Image& image, const Colour& colour, double tolerance = 0.06) {
+  int count = 0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) count += isNear(image, x, y, colour, tolerance);
+  }
+  return count;
+}
+
+class SceneViewPicture : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::system("command -v Xvfb > /dev/null 2>&1") != 0) GTEST_SKIP() << "Xvfb is not installed";
+    Outcome<std::unique_ptr<Offscreen>> target = Offscreen::create(kWidth, kHeight);
+    ASSERT_TRUE(target) << target.failure().message();
+    target_ = std::move(*target);
+  }
+  Image render(const SceneView& view) { return target_->render(view); }
+  TemporaryFolder folder_;
+  std::unique_ptr<Offscreen> target_;
+};
+
+TEST_F(SceneViewPicture, EveryLayerIsSeenAndGoesAwayWhenItIsSwitchedOff) {
+  SceneView view;
+  view.setInspection(smallInspection(folder_.path()));
+  for (const Layer& layer : sceneLayers()) view.setLayerVisible(layer.name, true);
+  const Image all = render(view);
+  const Image again = render(view);
+  ASSERT_EQ(countDifferent(all, again), 0);
+  for (const Layer& layer : sceneLayers()) {
+    SCOPED_TRACE(layer.name);
+    view.setLayerVisible(layer.name, false);
+    EXPECT_FALSE(view.layerVisible(layer.name));
+    const Image without = render(view);
+    EXPECT_GT(countDifferent(all, without), 12);  // the thinnest, a contour, changes 20; equal pictures differ in 0
+    view.setLayerVisible(layer.name, true);
+    EXPECT_EQ(countDifferent(all, render(view)), 0);
+  }
+}
+
+TEST_F(SceneViewPicture, NothingIsDrawnWithoutLayersButTheFrameOfThePicture) {
+  SceneView view;
+  view.setInspection(smallInspection(folder_.path()));
+  for (const Layer& layer : sceneLayers()) view.setLayerVisible(layer.name, false);
+  const Image image = render(view);
+  EXPECT_GT(countNear(image, kDarkBackground, 0.02), 0.95 * kWidth * kHeight);
+  view.setDarkBackground(false);
+  EXPECT_GT(countNear(render(view), kLightBackground, 0.02), 0.95 * kWidth * kHeight);
+}
+
+TEST_F(SceneViewPicture, AnEmptyViewIsAllowed) {
+  SceneView view;
+  EXPECT_GT(countNear(render(view), kDarkBackground, 0.02), 0.98 * kWidth * kHeight);
+  view.setInspection(nullptr);
+  EXPECT_FALSE(view.pick(10, 10));
+  EXPECT_THROW(view.setLayerVisible("no-such-layer", true), std::invalid_argument);
+}
+
+TEST_F(SceneViewPicture, ThePhotographIsTheRightWayUpAsItsCameraSeesIt) {
+  SceneView view;
+  view.setInspection(smallInspection(folder_.path()));
+  for (const Layer& layer : sceneLayers()) view.setLayerVisible(layer.name, layer.name == "photographs");
+  view.lookThrough(4);
+  const Image image = render(view);
+  // 4:3 as the camera: the drawn photograph fills the window. The legend stands in the top left corner, labels nowhere else.
+  EXPECT_TRUE(isNear(image, 200, 180, {1, 0, 0}, 0.05));
+  EXPECT_TRUE(isNear(image, 440, 180, {0, 1, 0}, 0.05));
+  EXPECT_TRUE(isNear(image, 200, 300, {0, 0, 1}, 0.05));
+  EXPECT_TRUE(isNear(image, 440, 300, {1, 1, 1}, 0.05));
+  // Its middle lies where the camera's axis goes: the colours meet in the middle of the window.
+  EXPECT_TRUE(isNear(image, kWidth / 2 - 3, kHeight / 2 - 3, {1, 0, 0}, 0.25));
+  EXPECT_TRUE(isNear(image, kWidth / 2 + 3, kHeight / 2 + 3, {1, 1, 1}, 0.25));
+}
+
+TEST_F(SceneViewPicture, LookingThroughACameraProjectsAsTheCameraDoes) {
+  const auto inspection = smallInspection(folder_.path());
+  SceneView view;
+  view.setInspection(inspection);
+  view.setSelection({5, "", -1});
+  for (const Layer& layer : sceneLayers()) view.setLayerVisible(layer.name, layer.name == "predicted-contours");
+  view.lookThrough(5);
+  const Image image = render(view);
+  // The contour is a circle of 15 px in a 320 x 240 image: twice that here, about the mirror point's pixel.
+  const Pixel centre = 2 * (inspection->evidence[5].highlights[0].peak + Pixel(0.5, 0.5));
+  double sum = 0, sumX = 0, sumY = 0, sumRadius = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      if ((Pixel(x, y) - centre).norm() > 45 || !isNear(image, x, y, modelColour("canonical"), 0.12)) continue;  // not the legend
+      sum += 1;
+      sumX += x + 0.5;
+      sumY += y + 0.5;
+      sumRadius += (Pixel(x + 0.5, y + 0.5) - centre).norm();
+    }
+  }
+  ASSERT_GT(sum, 50);
+  EXPECT_NEAR(sumX / sum, centre.x(), 1.5);
+  EXPECT_NEAR(sumY / sum, centre.y(), 1.5);
+  EXPECT_NEAR(sumRadius / sum, 30, 1.5);
+}
+
+TEST_F(SceneViewPicture, ModelsAreDrawnInTheirColourAndOnlyWhenAskedFor) {
+  SceneView view;
+  view.setInspection(smallInspection(folder_.path()));
+  for (const Layer& layer : sceneLayers()) view.setLayerVisible(layer.name, layer.name == "ellipsoids");
+  const Image with = render(view);
+  view.setModels({"dual"});
+  const Image without = render(view);
+  EXPECT_GT(countDifferent(with, without), 500);
+  EXPECT_LT(countNear(without, modelColour("canonical")), 10);
+}
+
+TEST_F(SceneViewPicture, TheSameSceneLooksTheSameAtEveryScale) {
+  SceneView view;
+  view.setInspection(smallInspection(folder_.path()));
+  view.setLayerVisible("photographs", false);
+  const Image metres = render(view);
+  for (const double scale : {1e-3, 1e3}) {
+    SCOPED_TRACE(scale);
+    SceneView other;
+    other.setInspection(smallInspection(folder_.path(), scale));
+    other.setLayerVisible("photographs", false);
+    const Image picture = render(other);
+    // The scale bar's text differs, and edges may; a glyph with a fixed size would change thousands of pixels.
+    EXPECT_LT(countDifferent(metres, picture), 0.01 * kWidth * kHeight);
+  }
+}
+
+TEST_F(SceneViewPicture, ASelectionRebuildsNeitherTheSurfaceNorTheEllipsoids) {
+  SceneView view;
+  const auto inspection = smallInspection(folder_.path());
+  view.setInspection(inspection);
+  render(view);
+  EXPECT_EQ(view.buildCount("surface"), 1);
+  EXPECT_EQ(view.buildCount("directions"), 0);  // hidden layers cost nothing
+  const Image before = render(view);
+  view.setSelection({5, "", -1});
+  EXPECT_GT(countDifferent(before, render(view)), 50);
+  EXPECT_EQ(view.buildCount("surface"), 1);
+  EXPECT_EQ(view.buildCount("ellipsoids"), 1);
+  EXPECT_EQ(view.buildCount("true-light"), 1);
+  EXPECT_EQ(view.buildCount("cameras"), 2);
+  EXPECT_EQ(view.buildCount("predicted-contours"), 2);
+  // A recomputation on the same scene keeps the surface as well.
+  view.setInspection(std::make_shared<Inspection>(*inspection));
+  render(view);
+  EXPECT_EQ(view.buildCount("surface"), 1);
+  EXPECT_EQ(view.buildCount("predicted-contours"), 3);
+  // Switching a layer off and on builds nothing.
+  view.setLayerVisible("surface", false);
+  render(view);
+  view.setLayerVisible("surface", true);
+  render(view);
+  EXPECT_EQ(view.buildCount("surface"), 1);
+}
+
+TEST_F(SceneViewPicture, PickingTellsTheNumbersOfWhatLiesThere) {
+  SceneView view;
+  view.setInspection(smallInspection(folder_.path()));
+  for (const Layer& layer : sceneLayers()) view.setLayerVisible(layer.name, layer.name == "surface");
+  view.lookThrough(0);
+  render(view);
+  // The window is attached while rendering only; picking needs it.
+  vtkNew<vtkRenderWindow> window;
+  prepareWindow(window);
+  window->SetShowWindow(false);
+  window->SetOffScreenRendering(1);
+  window->SetSize(kWidth, kHeight);
+  window->AddRenderer(view.renderer());
+  window->Render();
+  const std::optional<Picked> middle = view.pick(kWidth / 2, kHeight / 2);
+  ASSERT_TRUE(middle);
+  EXPECT_EQ(middle->layer, "surface");
+  EXPECT_NEAR(middle->position.norm(), 0.4, 1e-6);
+  // The camera looks at the sphere's centre: the middle of its image is the nearest point.
+  const Eigen::Vector3d eye = smallInspection(folder_.path())->scene->frames[0].camera.centreInWorld();
+  EXPECT_LT((middle->position - 0.4 * eye.normalized()).norm(), 0.005);
+  for (const char* name : {"P = ", "N = ", "alpha (lamp) = ", "pixel x = "})
+    EXPECT_NE(middle->text.find(name), std::string::npos) << middle->text;
+  EXPECT_FALSE(view.pick(kWidth - 5, 5));
+  view.setLayerVisible("peaks", true);
+  window->Render();
+  const Pixel peak = 2 * (smallInspection(folder_.path())->evidence[0].highlights[0].peak + Pixel(0.5, 0.5));
+  const std::optional<Picked> point = view.pick(static_cast<int>(peak.x()), kHeight - 1 - static_cast<int>(peak.y()));
+  ASSERT_TRUE(point);
+  EXPECT_EQ(point->layer, "peaks");
+  EXPECT_NE(point->text.find("alpha"), std::string::npos);
+  window->RemoveRenderer(view.renderer());
+}
+
+TEST_F(SceneViewPicture, AMovedCameraStaysWhereItWasPut) {
+  SceneView view;
+  view.setInspection(smallInspection(folder_.path()));
+  const ViewPoint wanted{{1, 2, 3}, {0, 0, 0.1}, {0, 0, 1}, 40};
+  view.setViewPoint(wanted);
+  render(view);
+  view.setSelection({2, "", -1});
+  render(view);
+  EXPECT_LT((view.viewPoint().position - wanted.position).norm(), 1e-9);
+  EXPECT_LT((view.viewPoint().focalPoint - wanted.focalPoint).norm(), 1e-9);
+  EXPECT_NEAR(view.viewPoint().viewAngleDeg, 40, 1e-12);
+}
+
+TEST(Layers, AHyperboloidIsNamedAndNotDrawn) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  LayerInput input;
+  input.inspection = inspection.get();
+  input.models = {"dual"};
+  input.surfaceKey = inspection->surfaces->keyOf(0);
+  input.scale = sceneScale(*inspection, nullptr, {0, 1, 2}, 1);
+  const LayerContent content = ellipsoidsLayer(input);
+  EXPECT_TRUE(content.drawn.empty());
+  ASSERT_EQ(content.notes.size(), 1u);
+  EXPECT_NE(content.notes[0].find("hyperboloid"), std::string::npos) << content.notes[0];
+}
+
+TEST(Layers, CamerasThatShareAPoseAreDrawnOnce) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  auto scene = std::make_shared<Scene>(*inspection->scene);
+  for (int i = 0; i < 6; ++i) scene->frames.push_back(scene->frames[static_cast<std::size_t>(i)]);
+  inspection->scene = scene;
+  inspection->surfaces = std::make_shared<SurfaceCache>(*scene);
+  const std::vector<int> frames = framesToDraw(*inspection, inspection->surfaces->keyOf(0), 8);
+  EXPECT_EQ(frames.size(), 6u);
+  EXPECT_NE(std::find(frames.begin(), frames.end(), 8), frames.end());  // the selected one stands for its pose
+}
+
+TEST(Layers, ContoursCastOntoTheSurfaceLieOnIt) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  const auto surface = inspection->surfaces->surfaceOf(0, NormalPolicy::Interpolated);
+  ASSERT_TRUE(surface);
+  const SceneScale scale = sceneScale(*inspection, surface->get(), {0, 1, 2, 3, 4, 5}, 1);
+  const Highlight& highlight = inspection->evidence[0].highlights[0];
+  const Camera& camera = inspection->scene->frames[0].camera;
+  const std::vector<Points> chains = castContour(camera, **surface, highlight.contour, scale, 0.01);
+  ASSERT_EQ(chains.size(), 1u);
+  ASSERT_EQ(chains[0].size(), highlight.contour.points.size() + 1);
+  for (std::size_t i = 0; i < highlight.contour.points.size(); ++i) {  // lifted, but still over its own pixel
+    const Eigen::Vector3d& p = chains[0][i];
+    EXPECT_NEAR(p.norm(), 0.41, 0.001);
+    EXPECT_LT((*camera.project(p) - highlight.contour.points[i]).norm(), tolerance::kPixel);
+  }
+  // A contour that runs over the edge of the sphere is broken, not drawn through the air.
+  Polyline wide;
+  const Pixel middle = *camera.project(Eigen::Vector3d::Zero());
+  for (int i = 0; i < 90; ++i) {
+    const double t = i * 0.0698131700797732;
+    wide.points.push_back(middle + Pixel(130 * std::cos(t), 60 * std::sin(t)));
+  }
+  for (const Points& chain : castContour(camera, **surface, wide, scale, 0)) {
+    for (const Eigen::Vector3d& p : chain) EXPECT_NEAR(p.norm(), 0.4, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace glint::viz
