@@ -91,7 +91,7 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   view_->verticalHeader()->setDefaultSectionSize(fontMetrics().height() + 5);
   view_->horizontalHeader()->setHighlightSections(false);
   view_->horizontalHeader()->setStretchLastSection(true);
-  const int widths[] = {52, 66, 98, 50, 64, 64, 64, 70, 74, 60, 70, 70, 62, 66};
+  const int widths[] = {54, 66, 98, 50, 64, 66, 68, 74, 80, 62, 78, 76, 68, 72};
   for (int i = 0; i < int(std::size(widths)); ++i) view_->setColumnWidth(i, widths[i]);
   view_->installEventFilter(this);
   column->addWidget(view_, 1);
@@ -116,10 +116,11 @@ void ErrorTable::showSummary() {
     summary_->setText(tr("<span style='color:%1'>No results yet</span>").arg(palette().color(QPalette::PlaceholderText).name()));
     return;
   }
-  const QString faded = palette().color(QPalette::PlaceholderText).name();
+  // In place of the heading: a line of its own would make the table jump under the mouse.
+  const QString faded = (document_.stale() ? warningColour() : palette().color(QPalette::PlaceholderText)).name();
   QString html = QStringLiteral("<table cellspacing='0' cellpadding='0'><tr style='color:%1'>").arg(faded);
-  for (const QString& title : {tr("Held-out frames"), tr("mean %"), tr("median"), tr("p95"), tr("max"), tr("IoU"),
-                               tr("predicted"), tr("missed"), tr("spurious")})
+  for (const QString& title : {document_.stale() ? tr("out of date…") : tr("Held-out frames"), tr("mean %"), tr("median"),
+                               tr("p95"), tr("max"), tr("IoU"), tr("predicted"), tr("missed"), tr("spurious")})
     html += QStringLiteral("<td style='padding-right:18px'>%1</td>").arg(title);
   html += QStringLiteral("</tr>");
   for (const std::string& name : viz::modelsInOrder(*inspection)) {
@@ -139,8 +140,6 @@ void ErrorTable::showSummary() {
     html += QStringLiteral("</tr>");
   }
   html += QStringLiteral("</table>");
-  if (document_.stale())
-    html = QStringLiteral("<div style='color:%1'>%2</div>").arg(warningColour().name(), tr("out of date, updating…")) + html;
   summary_->setText(html);
 }
 
@@ -160,7 +159,9 @@ void ErrorTable::selectFromDocument() {
     view_->clearSelection();
   else {
     const int x = view_->horizontalScrollBar()->value();
-    view_->selectRow(best);
+    // Not selectRow(): that one looks at the keyboard, and Ctrl is down during Ctrl+Z.
+    view_->selectionModel()->setCurrentIndex(proxy_->index(best, 0),
+                                             QItemSelectionModel::ClearAndSelect | QItemSelectionModel::Rows);
     view_->scrollTo(proxy_->index(best, 0));
     view_->horizontalScrollBar()->setValue(x);
   }

@@ -17,6 +17,7 @@ JobStatus::JobStatus(Document& document, Runner& runner, QWidget* parent)
   row->setSpacing(6);
   text_ = new QLabel;
   text_->setObjectName(QStringLiteral("jobText"));
+  text_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
   row->addWidget(text_);
   bar_ = new QProgressBar;
   bar_->setFixedSize(140, 12);

@@ -263,9 +263,9 @@ void MainWindow::applyLayout(const QString& name) {
     dock.value()->setVisible(layout.docks.contains(host));
   }
   for (const char* front : {"errors", "layers"}) docks_[QLatin1String(front)]->raise();
-  resizeDocks({docks_["setup"], docks_["parameters"]}, {230, 350}, Qt::Horizontal);
+  resizeDocks({docks_["setup"], docks_["parameters"]}, {230, 380}, Qt::Horizontal);
   resizeDocks({docks_["timeline"], docks_["errors"]}, {92, 300}, Qt::Vertical);
-  resizeDocks({docks_["setup"], docks_["layers"]}, {240, 280}, Qt::Vertical);
+  resizeDocks({docks_["setup"], docks_["layers"]}, {256, 264}, Qt::Vertical);
   resizeDocks({docks_["parameters"], docks_["numbers"]}, {560, 340}, Qt::Vertical);
   views_->setSizes({layout.sceneShare * 10, (100 - layout.sceneShare) * 10});
 }

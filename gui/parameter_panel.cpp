@@ -114,7 +114,7 @@ void ParameterPanel::addNumber(const ParamSpec& spec, QGridLayout* grid, int row
   auto* box = new NumberBox(spec);
   box->setObjectName(nameFor("value", spec));
   box->setToolTip(toolTipOf(spec));
-  box->setFixedWidth(96);
+  box->setFixedWidth(92);
   grid->addWidget(slider, row, 1);
   grid->addWidget(box, row, 2);
 

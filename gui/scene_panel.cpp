@@ -12,6 +12,7 @@
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QMouseEvent>
+#include <QTimer>
 #include <QToolButton>
 #include <QVBoxLayout>
 
@@ -65,20 +66,30 @@ ScenePanel::~ScenePanel() = default;
 
 void ScenePanel::renderNow() { widget_->renderWindow()->Render(); }
 
+void ScenePanel::scheduleRender() {
+  // QWidget::update() would only show VTK's last picture again; several changes in one turn of the event loop make one picture.
+  if (renderPending_) return;
+  renderPending_ = true;
+  QTimer::singleShot(0, this, [this] {
+    renderPending_ = false;
+    if (widget_->isVisible()) renderNow();
+  });
+}
+
 void ScenePanel::setDark(bool dark) {
   view_->setDarkBackground(dark);
-  widget_->update();
+  scheduleRender();
 }
 
 void ScenePanel::frameAll() {
   view_->frameAll();
-  widget_->update();
+  scheduleRender();
 }
 
 void ScenePanel::lookThroughSelected() {
   if (!document_.inspection()) return;
   view_->lookThrough(document_.selection().frame);
-  widget_->update();
+  scheduleRender();
 }
 
 void ScenePanel::showScene() {
@@ -97,17 +108,17 @@ void ScenePanel::showInspection() {
     else
       view_->frameAll();
   }
-  widget_->update();
+  scheduleRender();
 }
 
 void ScenePanel::showLayers() {
   for (const viz::Layer& layer : viz::sceneLayers()) view_->setLayerVisible(layer.name, document_.layerVisible(layer.name));
-  widget_->update();
+  scheduleRender();
 }
 
 void ScenePanel::showSelection() {
   view_->setSelection(document_.selection());
-  widget_->update();
+  scheduleRender();
 }
 
 bool ScenePanel::eventFilter(QObject* watched, QEvent* event) {

@@ -38,12 +38,14 @@ class ScenePanel : public QWidget {
   void showInspection();
   void showLayers();
   void showSelection();
+  void scheduleRender();
   void pickAt(const QPointF& position);
 
   Document& document_;
   std::unique_ptr<viz::SceneView> view_;
   QVTKOpenGLNativeWidget* widget_;
   QPointF pressed_;
+  bool renderPending_ = false;
   bool framed_ = false;  ///< the picture was framed since the scene was opened
   std::optional<viz::ViewPoint> firstViewPoint_;
 };

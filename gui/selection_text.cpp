@@ -49,9 +49,9 @@ NumberGroup observation(const FrameEvidence& evidence, int index) {
     lines.add(QObject::tr("level"), h.level);
     lines.add(QObject::tr("area"), h.areaPx2, "px²");
     if (h.ellipse) {
-      lines.addVector(QObject::tr("ellipse centre"), h.ellipse->centre, "px");
-      lines.addVector(QObject::tr("ellipse axes"), h.ellipse->semiAxes, "px");
-      lines.add(QObject::tr("ellipse angle"), h.ellipse->angle * kDegPerRad, "°");
+      lines.addVector(QObject::tr("centre"), h.ellipse->centre, "px");
+      lines.addVector(QObject::tr("semi-axes"), h.ellipse->semiAxes, "px");
+      lines.add(QObject::tr("angle"), h.ellipse->angle * kDegPerRad, "°");
     }
     if (h.clipped) lines.note(QObject::tr("clipped: the peak is the ellipse centre"));
     if (h.touchesBorder) lines.note(QObject::tr("cut by the image border"));
@@ -78,7 +78,7 @@ NumberGroup trainingView(const TrainingView& view) {
     const auto& d = view.canonical->directions;
     const auto answered = std::count_if(d.begin(), d.end(), [](const DirectionResult& r) { return r.limitAngle.has_value(); });
     lines.add(QObject::tr("directions"), QStringLiteral("%1 of %2").arg(answered).arg(d.size()));
-    if (view.canonical->ellipse) lines.addVector(QObject::tr("canonical axes"), view.canonical->ellipse->semiAxes, "px");
+    if (view.canonical->ellipse) lines.addVector(QObject::tr("semi-axes on T"), view.canonical->ellipse->semiAxes, "px");
   }
   return {QObject::tr("Training view"), lines.text()};
 }
@@ -133,8 +133,8 @@ NumberGroup comparison(const FrameComparison& c, int observed) {
       lines.add(QObject::tr("coverage"), p.coverage);
     }
     if (row.metrics) {
-      lines.add(QObject::tr("contour error"), row.metrics->contourErrorPct, "%");
-      lines.add(QObject::tr("contour error"), row.metrics->contourErrorPx, "px");
+      lines.add(QObject::tr("error"), row.metrics->contourErrorPct, "%");
+      lines.add(QObject::tr("error"), row.metrics->contourErrorPx, "px");
       lines.add(QObject::tr("Hausdorff"), row.metrics->hausdorffPx, "px");
       lines.add(QObject::tr("peak offset"), row.metrics->peakOffsetPx, "px");
     }

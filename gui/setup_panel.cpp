@@ -63,6 +63,8 @@ SetupPanel::SetupPanel(Document& document, QWidget* parent) : QWidget(parent), d
   counts_ = new QLabel;
   counts_->setProperty("role", "faded");
   counts_->setWordWrap(true);
+  counts_->setMinimumHeight(2 * fontMetrics().lineSpacing());
+  counts_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   grid->addWidget(counts_, 5, 0, 1, 2);
   grid->setRowStretch(6, 1);
 

@@ -149,7 +149,7 @@ std::vector<Points> castContour(const Camera& camera, const Surface& surface, co
                                 double lift);
 /// An image ellipse carried back to a plane, lifted towards the camera.
 std::vector<Points> ellipseOnPlane(const Camera& camera, const Plane& plane, const Ellipse& ellipse, double lift);
-/// Radius of a disc about `at` on the plane that holds a contour carried there, with a margin; within 3 and 35 % of the surface.
+/// Radius of a disc that holds the canonical (else the observed) contour of a view on its tangent plane, with a margin.
 double planeRadius(const Camera& camera, const Plane& plane, const Eigen::Vector3d& at, const std::vector<Pixel>& contour,
                    const SceneScale& scale);
 /// The four corners of the drawn image plane, from top left clockwise in the image, `depth` in front of the camera. World units.

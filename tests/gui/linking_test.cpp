@@ -113,6 +113,13 @@ class LinkingTest : public QObject {
     }
   }
 
+  void undoSelectsOneRow() {
+    document_->selectFrame(3);
+    document_->selectFrame(5);
+    document_->undoStack()->undo();
+    QCOMPARE(table_->view()->selectionModel()->selectedRows().size(), 1);
+  }
+
   void rowsAreCopiedAsTabSeparatedText() {
     QTableView* view = table_->view();
     view->selectRow(0);

@@ -5,6 +5,7 @@
 #include <QProcess>
 #include <set>
 
+#include "gui/document.h"
 #include "gui/text.h"
 #include "tests/gui/fixture.h"
 
@@ -30,6 +31,17 @@ Run run(const QStringList& arguments, const QString& platform = QStringLiteral("
           QString::fromUtf8(process.readAllStandardOutput()), QString::fromUtf8(process.readAllStandardError())};
 }
 
+const char* const kScene = R"({"glint_scene": 1, "name": "ball",
+      "camera": {"width": 160, "height": 120, "fx": 200, "fy": 200, "cx": 79.5, "cy": 59.5},
+      "frames": [
+        {"id": "a", "camera_from_world": [[1,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,0,1]], "surface": "ball",
+         "highlights": [{"light": "lamp", "peak": [85,60], "contour": [[90,60],[88,64],[85,66],[82,64],[80,60],[82,56],[85,54],[88,56]]}]},
+        {"id": "b", "camera_from_world": [[1,0,0,0.1],[0,1,0,0],[0,0,1,2],[0,0,0,1]], "surface": "ball",
+         "highlights": [{"light": "lamp", "peak": [93,60], "contour": [[98,60],[96,64],[93,66],[90,64],[88,60],[90,56],[93,54],[96,56]]}]},
+        {"id": "c", "camera_from_world": [[1,0,0,0],[0,1,0,0.1],[0,0,1,2],[0,0,0,1]], "surface": "ball"}],
+      "surfaces": {"ball": {"analytic": {"type": "sphere", "radius": 0.4}}},
+      "lights": [{"id": "lamp", "position": [0.5, 0, -2]}]})";
+
 int colours(const QImage& image, const QRect& part) {
   std::set<QRgb> found;
   for (int y = part.top(); y <= part.bottom(); ++y)
@@ -54,16 +66,7 @@ class ProgramTest : public QObject {
     const QString scene = folder_.filePath(QStringLiteral("scene.json"));
     QFile out(scene);
     QVERIFY(out.open(QIODevice::WriteOnly));
-    out.write(R"({"glint_scene": 1, "name": "ball",
-      "camera": {"width": 160, "height": 120, "fx": 200, "fy": 200, "cx": 79.5, "cy": 59.5},
-      "frames": [
-        {"id": "a", "camera_from_world": [[1,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,0,1]], "surface": "ball",
-         "highlights": [{"light": "lamp", "peak": [85,60], "contour": [[90,60],[88,64],[85,66],[82,64],[80,60],[82,56],[85,54],[88,56]]}]},
-        {"id": "b", "camera_from_world": [[1,0,0,0.1],[0,1,0,0],[0,0,1,2],[0,0,0,1]], "surface": "ball",
-         "highlights": [{"light": "lamp", "peak": [93,60], "contour": [[98,60],[96,64],[93,66],[90,64],[88,60],[90,56],[93,54],[96,56]]}]},
-        {"id": "c", "camera_from_world": [[1,0,0,0],[0,1,0,0.1],[0,0,1,2],[0,0,0,1]], "surface": "ball"}],
-      "surfaces": {"ball": {"analytic": {"type": "sphere", "radius": 0.4}}},
-      "lights": [{"id": "lamp", "position": [0.5, 0, -2]}]})");
+    out.write(kScene);
     out.close();
     const QString file = folder_.filePath(QStringLiteral("scene.png"));
     const Run r = run({scene, QStringLiteral("--layout"), QStringLiteral("present"), QStringLiteral("--theme"),
@@ -73,6 +76,37 @@ class ProgramTest : public QObject {
     const QImage image(file);
     QCOMPARE(image.size(), QSize(1200, 800));
     QVERIFY2(colours(image, QRect(60, 150, 450, 400)) > 50, "the 3D view is blank");
+  }
+
+  void aSessionComesBackAsItWasSaved() {
+    const QString scene = folder_.filePath(QStringLiteral("scene.json")), file = folder_.filePath(QStringLiteral("s.glint"));
+    QFile out(scene);
+    QVERIFY(out.open(QIODevice::WriteOnly));
+    out.write(kScene);
+    out.close();
+    const Engine engine = coreEngine();
+    Document document(engine.parseTrain);
+    document.open(engine.open(scene.toStdString()));
+    document.setSetting("fit.solver", std::string("anchored"));
+    document.setRole(2, FrameRole::Excluded);
+    document.setTrain("0-1");
+    document.setLayerVisible("rays", "Rays", !document.layerVisible("rays"));
+    document.setLayerVisible("frame/peak", "Peaks", false);
+    document.select({1, "canonical", 0});
+    Opened saved = document.toSave();
+    saved.layout = "compare";
+    saved.viewPoint = viz::ViewPoint{{1, 2, 3}, {0, 0, 1}, {0, 1, 0}, 25};
+    engine.save(saved, nullptr, file.toStdString());
+    const Opened back = engine.open(file.toStdString());
+    QVERIFY(back.isSession);
+    QVERIFY(sameRequest(back.request, document.request()));
+    QCOMPARE(back.layers, document.state().layers);
+    QCOMPARE(back.selection.frame, 1);
+    QCOMPARE(back.selection.model, std::string("canonical"));
+    QCOMPARE(back.selection.highlight, 0);
+    QCOMPARE(back.layout, std::string("compare"));
+    QVERIFY(back.viewPoint && back.viewPoint->position == Eigen::Vector3d(1, 2, 3) && back.viewPoint->viewAngleDeg == 25);
+    QCOMPARE(engine.open(folder_.path().toStdString()).isSession, false);  // a scene.json beside it comes first
   }
 
   void whatIsWrongIsOneLineAndExitTwo_data() {
