@@ -64,6 +64,7 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   summary_ = new QLabel;
   summary_->setObjectName(QStringLiteral("errorSummary"));
   summary_->setTextFormat(Qt::RichText);
+  summary_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);  // a narrow window cuts it rather than its neighbours
   summary_->setTextInteractionFlags(Qt::TextSelectableByMouse);
   head->addWidget(summary_, 1);
   filter_ = new QComboBox;
@@ -159,10 +160,11 @@ void ErrorTable::selectFromDocument() {
     view_->clearSelection();
   else {
     const int x = view_->horizontalScrollBar()->value();
+    const bool visible = view_->viewport()->rect().contains(view_->visualRect(proxy_->index(best, 0)));
     // Not selectRow(): that one looks at the keyboard, and Ctrl is down during Ctrl+Z.
     view_->selectionModel()->setCurrentIndex(proxy_->index(best, 0),
                                              QItemSelectionModel::ClearAndSelect | QItemSelectionModel::Rows);
-    view_->scrollTo(proxy_->index(best, 0));
+    view_->scrollTo(proxy_->index(best, 0), visible ? QAbstractItemView::EnsureVisible : QAbstractItemView::PositionAtCenter);
     view_->horizontalScrollBar()->setValue(x);
   }
   selecting_ = false;

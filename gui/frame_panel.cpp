@@ -63,9 +63,9 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
   legend->setContentsMargins(4, 0, 4, 3);
   legend->setSpacing(2);
   toggles_ = {{viz::OverlayRole::ObservedContour, "frame/observed", QT_TR_NOOP("Observed"), nullptr},
-              {viz::OverlayRole::ObservedEllipse, "frame/observed-ellipse", QT_TR_NOOP("Observed ellipse"), nullptr},
+              {viz::OverlayRole::ObservedEllipse, "frame/observed-ellipse", QT_TR_NOOP("Obs. ellipse"), nullptr},
               {viz::OverlayRole::PredictedContour, "frame/predicted", QT_TR_NOOP("Predicted"), nullptr},
-              {viz::OverlayRole::PredictedEllipse, "frame/predicted-ellipse", QT_TR_NOOP("Predicted ellipse"), nullptr},
+              {viz::OverlayRole::PredictedEllipse, "frame/predicted-ellipse", QT_TR_NOOP("Pred. ellipse"), nullptr},
               {viz::OverlayRole::ObservedPeak, "frame/peak", QT_TR_NOOP("Peaks"), nullptr}};
   for (Toggle& t : toggles_) {
     t.button = new QToolButton;

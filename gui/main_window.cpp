@@ -9,6 +9,7 @@
 #include <QMenuBar>
 #include <QMimeData>
 #include <QPlainTextEdit>
+#include <QScrollArea>
 #include <QSplitter>
 #include <QStackedWidget>
 #include <QStatusBar>
@@ -140,7 +141,12 @@ void MainWindow::buildDocks() {
   setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
   auto* setup = new SetupPanel(document_);
   connect(setup, &SetupPanel::problem, this, &MainWindow::showProblem);
-  addDock("setup", tr("Setup"), setup, Qt::LeftDockWidgetArea);
+  auto* setupScroll = new QScrollArea;  // small windows scroll it instead of squeezing it
+  setupScroll->setWidget(setup);
+  setupScroll->setWidgetResizable(true);
+  setupScroll->setMinimumWidth(190);
+  setupScroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  addDock("setup", tr("Setup"), setupScroll, Qt::LeftDockWidgetArea);
   QDockWidget* layers = addDock("layers", tr("Layers"), new LayerList(document_), Qt::LeftDockWidgetArea);
   auto* history = new QUndoView(document_.undoStack());
   history->setEmptyLabel(tr("As opened"));
@@ -264,7 +270,7 @@ void MainWindow::applyLayout(const QString& name) {
   }
   for (const char* front : {"errors", "layers"}) docks_[QLatin1String(front)]->raise();
   resizeDocks({docks_["setup"], docks_["parameters"]}, {230, 380}, Qt::Horizontal);
-  resizeDocks({docks_["timeline"], docks_["errors"]}, {92, 300}, Qt::Vertical);
+  resizeDocks({docks_["timeline"], docks_["errors"]}, {92, height() * 3 / 10}, Qt::Vertical);
   resizeDocks({docks_["setup"], docks_["layers"]}, {256, 264}, Qt::Vertical);
   resizeDocks({docks_["parameters"], docks_["numbers"]}, {560, 340}, Qt::Vertical);
   views_->setSizes({layout.sceneShare * 10, (100 - layout.sceneShare) * 10});
