@@ -79,9 +79,7 @@ class Canonical final : public HighlightModel {
       conics.push_back({*v.virtualCamera, *v.canonical->ellipse, v.canonical->pixels});
       fit.frames.push_back(v.frame);
     }
-    std::optional<CentreAnchor> anchor;
-    if (!input.light->light.atInfinity()) anchor = CentreAnchor{input.light->light.position(), input.light->covariance};
-    const Outcome<Reconstruction> r = fitEllipsoid(conics, anchor, settings);
+    const Outcome<Reconstruction> r = fitEllipsoid(conics, anchorAtLight(input), settings);
     if (!r) return r.failure();
     store(*r, fit);
     fit.lightEstimate = input.light->light;
@@ -128,6 +126,7 @@ class Canonical final : public HighlightModel {
       }
       p.highlights.push_back(std::move(h));
     }
+    dropEnclosed(p.highlights);
     if (!p.highlights.empty()) p.failure.reset();
     return p;
   }

@@ -24,9 +24,7 @@ class Dual final : public HighlightModel {
       conics.push_back({*v.virtualCamera, *v.highlight.ellipse, v.highlight.contour.points});
       fit.frames.push_back(v.frame);
     }
-    std::optional<CentreAnchor> anchor;
-    if (input.light && !input.light->light.atInfinity()) anchor = CentreAnchor{input.light->light.position(), input.light->covariance};
-    const Outcome<Reconstruction> r = fitEllipsoid(conics, anchor, settings);
+    const Outcome<Reconstruction> r = fitEllipsoid(conics, anchorAtLight(input), settings);
     if (!r) return r.failure();
     store(*r, fit);
     return fit;
@@ -59,6 +57,7 @@ class Dual final : public HighlightModel {
       h.tangentPlane = plane;
       p.highlights.push_back(std::move(h));
     }
+    dropEnclosed(p.highlights);
     if (!p.highlights.empty()) p.failure.reset();
     return p;
   }

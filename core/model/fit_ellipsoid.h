@@ -13,12 +13,19 @@ namespace glint {
 /// Where an ellipsoid's centre is expected, for `anchored` and as the prior of `refined`.
 struct CentreAnchor {
   Eigen::Vector3d position;
-  std::optional<Eigen::Matrix3d> covariance;  ///< m^2
+  std::optional<Eigen::Matrix3d> covariance;  ///< m^2, of the noise only
+  double distance = 0;                        ///< m, typical distance from the surface (or the cameras); scale of the anchor's bias
 };
 
+/// The anchor at an estimated light; empty for a light at infinity. The distance is the mean one from the views' brightest points.
+std::optional<CentreAnchor> anchorAtLight(const FitInput& input);
+
 /// The solver chosen by `fit.solver`, the same for the three ellipsoid models:
-/// linear (centre free, >= 3 views), anchored (centre at the anchor, >= 2 views), refined (>= 3 views; starts at the linear
-/// solution or, where that is no ellipsoid, at the anchored one; the anchor's covariance times fit.prior_scale^2 is the prior).
+/// linear (centre free, >= 3 views), anchored (centre at the anchor, >= 2 views), refined (>= 3 views; starts at the anchored
+/// solution or, without an anchor, at the linear one). The prior of `refined` on the centre is the anchor's covariance plus an
+/// isotropic bias of `fit.prior_bias` times the anchor's distance: the covariance knows the noise only, but the ellipsoid that
+/// explains a highlight is not centred exactly at the light, and the light of a simple lobe is itself off. With fit.prior_bias 0
+/// the bias is chosen among kPriorBiases by the distance of left-out views' points from the predicted outlines.
 /// TooFewViews; NotAnEllipsoid (the linear solution's kind in the detail); NoLight (anchored without an anchor); the solver's own.
 Outcome<Reconstruction> fitEllipsoid(const std::vector<ConicView>& views, const std::optional<CentreAnchor>& anchor,
                                      const Settings& settings);

@@ -8,6 +8,8 @@
 namespace glint {
 namespace {
 
+constexpr double kMarginFraction = 0.65;  // of the image's longer side; beyond, lenses of real cameras end
+
 /// alpha of the surface point seen at a pixel; empty off the surface, on its dark side, and where it turns away.
 std::optional<double> alphaAt(const SurfacePoint& hit, const Eigen::Vector3d& eye, const Light& light) {
   const SurfacePoint p = facing(hit, eye);
@@ -18,11 +20,11 @@ std::optional<double> alphaAt(const SurfacePoint& hit, const Eigen::Vector3d& ey
 }
 
 /// Share of the outline, by length, that lies on the level set or on the surface's own edge rather than at the image margin.
-double coverageOf(const LevelSetComponent& c, int width, int height) {
+double coverageOf(const LevelSetComponent& c, const Camera& camera, double margin) {
   const auto& p = c.outline.points;
   double total = 0, cut = 0;
   const auto atMargin = [&](const Pixel& q) {
-    return q.x() < 0.5 || q.y() < 0.5 || q.x() > width - 1.5 || q.y() > height - 1.5;
+    return q.x() < 0.5 - margin || q.y() < 0.5 - margin || q.x() > camera.width - 1.5 + margin || q.y() > camera.height - 1.5 + margin;
   };
   for (std::size_t i = 0; i < p.size(); ++i) {
     const std::size_t j = (i + 1) % p.size();
@@ -86,12 +88,16 @@ class LimitAngle final : public HighlightModel {
         if (hits[i]) values[i] = alphaAt(*hits[i], eye, light);
       return values;
     };
-    const std::vector<LevelSetComponent> components =
-        traceLevelSets(field, batch, *fit.limitAngle, camera.width, camera.height, options);
+    std::vector<LevelSetComponent> components = traceLevelSets(field, batch, *fit.limitAngle, camera.width, camera.height, options);
+    if (std::any_of(components.begin(), components.end(), [&](const LevelSetComponent& c) { return coverageOf(c, camera, 0) < 1; })) {
+      // The image cuts it: follow it beyond the border, so that the whole highlight is known.
+      options.marginPx = kMarginFraction * std::max(camera.width, camera.height);
+      components = traceLevelSets(field, batch, *fit.limitAngle, camera.width, camera.height, options);
+    }
     for (const LevelSetComponent& c : components) {
       PredictedHighlight h;
       h.contour = c.outline;
-      h.coverage = coverageOf(c, camera.width, camera.height);
+      h.coverage = coverageOf(c, camera, options.marginPx);
       if (const Outcome<Ellipse> e = fitEllipse(c.outline.points)) h.ellipse = *e;
       // Its peak: the brightest point inside with the smallest alpha, else the smallest value met.
       bool found = false;

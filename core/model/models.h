@@ -16,4 +16,8 @@ std::unique_ptr<HighlightModel> makeLimitAngle();
 /// Search options for brightest points from the settings.
 BrightestPointOptions brightestOptions(const Settings& settings);
 
+/// Leaves one highlight where several brightest points share one contour: those whose peak lies inside a larger predicted
+/// contour are dropped (method.md section 8: a component that encloses several brightest points is returned once).
+void dropEnclosed(std::vector<PredictedHighlight>& highlights);
+
 }  // namespace glint

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+
 #include "core/model/models.h"
 
 namespace glint {
@@ -28,6 +31,19 @@ BrightestPointOptions brightestOptions(const Settings& settings) {
   BrightestPointOptions o;
   o.seedStepPx = settings.number("predict.seed_step");
   return o;
+}
+
+void dropEnclosed(std::vector<PredictedHighlight>& highlights) {
+  if (highlights.size() < 2) return;
+  std::stable_sort(highlights.begin(), highlights.end(), [](const PredictedHighlight& a, const PredictedHighlight& b) {
+    return std::abs(signedArea(a.contour)) > std::abs(signedArea(b.contour));
+  });
+  std::vector<PredictedHighlight> kept;
+  for (PredictedHighlight& h : highlights) {
+    const bool enclosed = std::any_of(kept.begin(), kept.end(), [&](const PredictedHighlight& k) { return contains(k.contour, h.brightest.pixel); });
+    if (!enclosed) kept.push_back(std::move(h));
+  }
+  highlights = std::move(kept);
 }
 
 }  // namespace glint

@@ -56,7 +56,7 @@ FrameComparison compareFrame(const FrameEvidence& evidence, const std::string& l
     observed.push_back(h.contour);
   }
   const bool cut = std::any_of(observedIndex.begin(), observedIndex.end(),
-                               [&](int i) { return evidence.scored()[i].touchesBorder; });
+                               [&](int i) { return evidence.scored()[i].touchesBorder && !evidence.scored()[i].fromScene; });
   std::vector<char> clipped(c.prediction.highlights.size(), 0);
   for (std::size_t i = 0; i < c.prediction.highlights.size(); ++i) {
     const PredictedHighlight& h = c.prediction.highlights[i];

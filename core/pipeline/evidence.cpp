@@ -10,7 +10,8 @@
 namespace glint {
 namespace {
 
-constexpr int kNoisePoints = 72;  // formats.md, --noise-px
+constexpr int kNoisePoints = 72;       // formats.md, --noise-px
+constexpr double kSameLevel = 1e-6;    // levels are typed with a few digits
 
 void toIdealPixels(Highlight& h, const Camera& camera) {
   if (!camera.hasDistortion()) return;
@@ -31,10 +32,15 @@ FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, 
   const Frame& frame = scene.frames[index];
   FrameEvidence evidence;
   evidence.frame = index;
-  if (!frame.highlights.empty()) {
-    evidence.highlights = frame.highlights;
-  } else {
+  const double level = settings.number("detect.level");
+  for (const Highlight& h : frame.highlights)
+    if (std::abs(h.level - level) < kSameLevel) evidence.highlights.push_back(h);
+  if (evidence.highlights.empty()) {
     if (frame.radiance.empty() && frame.image.empty()) {
+      if (!frame.highlights.empty()) {
+        evidence.failure = Failure{Reason::NoHighlight, "frame " + frame.id + " gives highlights at other levels only"};
+        return evidence;
+      }
       evidence.failure = Failure{Reason::FrameUnreadable, "frame " + frame.id + " has neither image, radiance nor highlights"};
       return evidence;
     }
@@ -49,7 +55,7 @@ FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, 
       return evidence;
     }
     DetectOptions options;
-    options.level = settings.number("detect.level");
+    options.level = level;
     options.minAreaPx2 = settings.number("detect.min_area");
     options.minContrast = settings.number("detect.min_contrast");
     options.peakWindowLevel = settings.number("detect.peak_window");
@@ -65,7 +71,8 @@ FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, 
     for (Highlight& h : evidence.highlights) toIdealPixels(h, frame.camera);
   }
   for (Highlight& h : evidence.highlights) {
-    if (h.light.empty()) h.light = frame.lightsOn.empty() ? "light" : frame.lightsOn.front();
+    // With several lights on, the assignment over all frames decides.
+    if (h.light.empty() && frame.lightsOn.size() <= 1) h.light = frame.lightsOn.empty() ? "light" : frame.lightsOn.front();
     if (h.areaPx2 == 0) h.areaPx2 = std::abs(signedArea(h.contour));
     fitMissingEllipse(h);
   }
@@ -94,7 +101,6 @@ std::vector<Highlight> readTruth(const std::string& folder, const Scene& scene, 
       h.areaPx2 = std::abs(signedArea(h.contour));
       h.touchesBorder = !c.value("closed", true) || c.value("edge_fraction", 0.0) > 0;
       h.peak = centroid(h.contour);
-      h.fromScene = true;
       truth.push_back(std::move(h));
     }
     // The stored sub-pixel peak belongs to the highlight that contains it; the others keep their centroid.

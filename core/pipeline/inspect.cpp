@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/base/parallel.h"
+#include "core/highlight/track.h"
 #include "core/pipeline/comparison.h"
 #include "core/pipeline/evidence.h"
 #include "core/pipeline/inspection.h"
@@ -61,6 +62,7 @@ class Run {
       : r_(result), progress_(progress), previous_(previous && previous->scene == result.scene ? previous : nullptr) {}
 
   void highlights();
+  void assignSeveralLights();
   void brightestPointsAndTangentPlanes();
   void lights();
   void canonicalContours();
@@ -106,6 +108,21 @@ void Run::highlights() {
         if (!q.truthFolder.empty()) r_.evidence[i].truth = readTruth(q.truthFolder, scene, i, q.settings.number("detect.level"));
       },
       progress_, "detect");
+  assignSeveralLights();
+}
+
+void Run::assignSeveralLights() {
+  const std::vector<Frame>& frames = r_.scene->frames;
+  if (std::none_of(frames.begin(), frames.end(), [](const Frame& f) { return f.lightsOn.size() > 1; })) return;
+  std::vector<TrackedFrame> tracked(frames.size());
+  std::vector<std::shared_ptr<const Surface>> surfaces(frames.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    surfaces[i] = surfaceOf(static_cast<int>(i));
+    tracked[i] = {frames[i].camera, surfaces[i].get(), frames[i].lightsOn, r_.evidence[i].highlights};
+  }
+  if (!report(progress_, {"assign lights", 0, 0})) throw Stopped{};
+  assignLights(tracked);
+  for (std::size_t i = 0; i < frames.size(); ++i) r_.evidence[i].highlights = std::move(tracked[i].highlights);
 }
 
 void Run::brightestPointsAndTangentPlanes() {
@@ -142,10 +159,11 @@ std::vector<Group> Run::groups() const {
     return r_.train.perSurface ? std::optional<std::string>(r_.surfaces->keyOf(frame)) : std::nullopt;
   };
   for (int i = 0; i < static_cast<int>(r_.views.size()); ++i)
-    groupOf(r_.views[i].highlight.light, surfaceKey(r_.views[i].frame)).views.push_back(i);
+    if (!r_.views[i].highlight.light.empty()) groupOf(r_.views[i].highlight.light, surfaceKey(r_.views[i].frame)).views.push_back(i);
   // A light that only held-out frames show still gets a (failing) fit, so that its frames are answered with a reason.
   for (const FrameEvidence& e : r_.evidence)
-    for (const Highlight& h : e.scored()) groupOf(h.light, surfaceKey(e.frame));
+    for (const Highlight& h : e.scored())
+      if (!h.light.empty()) groupOf(h.light, surfaceKey(e.frame));
   return groups;
 }
 

@@ -19,7 +19,8 @@ TrainingView trainingView(const FrameEvidence& evidence, int index, const Camera
     view.failure = Failure{Reason::NoSurface, ""};
     return view;
   }
-  if (view.highlight.touchesBorder) {
+  // A contour that the scene gives is whole even where it leaves the image; a detected one is cut there.
+  if (view.highlight.touchesBorder && !view.highlight.fromScene) {
     view.failure = Failure{Reason::OutsideImage, "the image border cuts the highlight"};
     return view;
   }
