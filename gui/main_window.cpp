@@ -191,9 +191,9 @@ void MainWindow::buildMenus() {
   QMenu* frame = menuBar()->addMenu(tr("F&rame"));
   frame
       ->addAction(icon(QStringLiteral("previous")), tr("&Previous"), timeline_->strip(), [this] { timeline_->strip()->step(-1); })
-      ->setShortcut(QKeySequence(Qt::ALT | Qt::Key_Left));
+      ->setShortcut(QKeySequence(QStringLiteral("Alt+Left")));
   frame->addAction(icon(QStringLiteral("next")), tr("&Next"), timeline_->strip(), [this] { timeline_->strip()->step(1); })
-      ->setShortcut(QKeySequence(Qt::ALT | Qt::Key_Right));
+      ->setShortcut(QKeySequence(QStringLiteral("Alt+Right")));
   frame->addAction(icon(QStringLiteral("play")), tr("P&lay"), timeline_, [this] { timeline_->setPlaying(!timeline_->playing()); })
       ->setShortcut(Qt::Key_P);
   frame->addSeparator();

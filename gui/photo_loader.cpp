@@ -52,7 +52,7 @@ void PhotoLoader::want(int frame) {
           }
         }
         QMetaObject::invokeMethod(
-            this, [=] { deliver(ticket, frame, image, reason); }, Qt::QueuedConnection);
+            this, [this, ticket, frame, image, reason] { deliver(ticket, frame, image, reason); }, Qt::QueuedConnection);
       },
       Qt::QueuedConnection);
 }

@@ -31,12 +31,6 @@ int countNear(const Image& image, const Colour& colour, double tolerance = 0.08)
   return count;
 }
 
-int countDifferent(const Image& a, const Image& b) {
-  int count = 0;
-  for (std::size_t i = 0; i < a.data.size(); ++i) count += std::abs(a.data[i] - b.data[i]) > 0.02f;
-  return count;
-}
-
 TEST(Canvas, ImagePixelsAndOverlayPointsShareOneGrid) {
   // A single white pixel at (5, 3), stretched 20 times: its square is [100, 120) x [60, 80), and pixel (5, 3) is its middle.
   Image image(12, 8, 3);
