@@ -211,7 +211,7 @@ std::string evaluationHtml(const Inspection& inspection, const ReportContext& co
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Glint evaluation: " + escaped(inspection.scene->name) +
       "</title>\n<style>body{font:14px/1.45 sans-serif;margin:2em auto;max-width:980px;padding:0 1em;color:#222}"
       "table{border-collapse:collapse;margin:1em 0;width:100%}th,td{padding:.25em .6em;border-bottom:1px solid #ddd;text-align:right}"
-      "th:first-child,td:first-child,td.reason{text-align:left}svg{width:100%;height:auto;background:#fff}svg text{font:11px sans-serif;fill:#555}"
+      "th:first-child,td:first-child,td.reason{text-align:left}td:first-child{white-space:nowrap}svg{width:100%;height:auto;background:#fff}svg text{font:11px sans-serif;fill:#555}"
       ".grid{stroke:#e4e4e4}.train{fill:#0072b2}.frame{image-rendering:pixelated;background:#000;max-height:420px}"
       ".halo{fill:none;stroke:#000;stroke-opacity:.65;stroke-width:3.2;vector-effect:non-scaling-stroke}"
       ".observed{fill:none;stroke:#fff;stroke-width:1.6;vector-effect:non-scaling-stroke}"
