@@ -33,7 +33,7 @@ elseif(CASE STREQUAL "missing_input")
   run(replay copy/plane.glint)
   expect(2 "frames/0004.png")
 elseif(CASE STREQUAL "changed_result")
-  # The last but one decimal group: far above 1e-9, far below what an eye sees.
+  # The fourth decimal: far above 1e-9, far below what an eye sees.
   file(READ ${folder}/plane.glint text)
   set(key "canonical.contour_error_pct.mean")
   if(NOT text MATCHES "\"${key}\": (0\\.[0-9][0-9][0-9])([0-9])")
