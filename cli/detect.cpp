@@ -61,7 +61,11 @@ Command detectCommand() {
   };
   c.run = [a](const Context& context) -> int {
     Settings settings;
-    settings.set("detect.level", a->level);
+    try {
+      settings.set("detect.level", a->level);
+    } catch (const InputError&) {
+      throw InputError("", "--level", "the level is a number from 0.02 to 0.98");
+    }
     for (const std::string& text : a->set) {
       const std::size_t equals = text.find('=');
       if (equals == std::string::npos) throw InputError("", "--set " + text, "must be KEY=VALUE");
@@ -105,7 +109,8 @@ Command detectCommand() {
     if (a->json != "-") context.print(table(frames));
     for (const DetectedFrame& frame : frames)
       if (!frame.failure) return kDone;
-    throw CannotAnswer{frames.front().failure.value_or(Failure{Reason::NoHighlight, ""})};
+    const Failure& first = *frames.front().failure;
+    throw CannotAnswer{{first.reason, "no frame shows a highlight; first: frame " + frames.front().id + ": " + first.detail}};
   };
   return c;
 }

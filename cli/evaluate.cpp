@@ -96,8 +96,11 @@ Command evaluateCommand() {
     if (!a->csv.empty()) context.write(a->csv, evaluationCsv(result));
     if (!a->html.empty()) context.write(a->html, evaluationHtml(result, report));
     if (tableToo) context.print(text + evaluationTable(result));
-    for (const auto& [name, model] : result.models)
-      if (summarise(result, model).answered) return kDone;
+    for (const auto& [name, model] : result.models) {
+      if (!summarise(result, model).answered) continue;
+      warnOfUnusedTrainingFrames(result, context);
+      return kDone;
+    }
     requireUsableViews(result);
     std::string reasons;
     for (const auto& [name, model] : result.models) reasons += (reasons.empty() ? "" : "; ") + name + ": " + summarise(result, model).reason;

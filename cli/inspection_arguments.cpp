@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/inspection_arguments.h"
 
+#include <algorithm>
+#include <cmath>
 #include <sstream>
 
 namespace glint::cli {
@@ -33,7 +35,10 @@ void InspectionArguments::declare(Options& o, const std::string& modelsHelp) {
 InspectionRequest InspectionArguments::request() const {
   InspectionRequest r;
   if (!models.empty() && models != "auto") r.models = splitList(models, "--models");
-  for (const std::string& m : r.models) modelByName(m);
+  for (auto m = r.models.begin(); m != r.models.end(); ++m) {
+    modelByName(*m);
+    if (std::find(r.models.begin(), m, *m) != m) throw InputError("", "--models " + models, "'" + *m + "' stands twice");
+  }
   r.train = train;
   r.source = source == "image" ? FrameSource::Image : FrameSource::Radiance;
   for (const std::string& entry : set) {
@@ -48,7 +53,7 @@ InspectionRequest InspectionArguments::request() const {
       throw InputError("", "--level " + level, "the level is a number from 0.02 to 0.98");
     }
   }
-  if (!(noisePx >= 0)) throw InputError("", "--noise-px", "must not be negative");
+  if (!(noisePx >= 0 && std::isfinite(noisePx))) throw InputError("", "--noise-px", "must be finite and not negative");
   r.noisePx = noisePx;
   r.seed = seed;
   r.truthFolder = truth;
@@ -59,16 +64,38 @@ std::shared_ptr<const Scene> InspectionArguments::scene() const {
   return std::make_shared<const Scene>(readScene(input, ReadOptions{allowOutside}));
 }
 
-void requireUsableViews(const Inspection& inspection) {
-  std::string first;
-  for (const TrainingView& v : inspection.views) {
-    if (!v.failure) return;
-    if (first.empty()) first = "frame " + std::to_string(v.frame) + ": " + v.failure->message();
+namespace {
+
+/// "frame ID: reason" of every training frame without a usable highlight.
+std::vector<std::string> unusedTrainingFrames(const Inspection& inspection) {
+  std::vector<std::string> lines;
+  for (const int frame : inspection.train.frames) {
+    if (!inspection.isTraining(frame)) continue;
+    std::optional<Failure> reason = inspection.evidence[frame].failure.value_or(Failure{Reason::NoHighlight, ""});
+    for (const TrainingView& v : inspection.views) {
+      if (v.frame != frame) continue;
+      reason = v.failure;
+      if (!reason) break;
+    }
+    if (reason) lines.push_back("frame " + inspection.scene->frames[frame].id + ": " + reason->message());
   }
-  for (const int frame : inspection.train.frames)
-    if (first.empty() && inspection.evidence[frame].failure)
-      first = "frame " + std::to_string(frame) + ": " + inspection.evidence[frame].failure->message();
-  throw CannotAnswer{{Reason::TooFewViews, "no training frame could be used" + (first.empty() ? "" : "; " + first)}};
+  return lines;
+}
+
+}  // namespace
+
+void warnOfUnusedTrainingFrames(const Inspection& inspection, const Context& context) {
+  const std::vector<std::string> unused = unusedTrainingFrames(inspection);
+  if (unused.empty()) return;
+  context.warn(std::to_string(unused.size()) + " of " + std::to_string(inspection.train.frames.size()) +
+               " training frames could not be used; first: " + unused.front());
+}
+
+void requireUsableViews(const Inspection& inspection) {
+  for (const TrainingView& v : inspection.views)
+    if (!v.failure) return;
+  const std::vector<std::string> unused = unusedTrainingFrames(inspection);
+  throw CannotAnswer{{Reason::TooFewViews, "no training frame could be used" + (unused.empty() ? "" : "; " + unused.front())}};
 }
 
 }  // namespace glint::cli

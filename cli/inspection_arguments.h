@@ -28,6 +28,9 @@ struct InspectionArguments {
 /// "a,b,c" in parts; InputError (place `flag`) for an empty part.
 std::vector<std::string> splitList(const std::string& text, const std::string& flag);
 
+/// One warning when training frames could not be used, with the first reason; silent when all could.
+void warnOfUnusedTrainingFrames(const Inspection& inspection, const Context& context);
+
 /// Throws CannotAnswer when no training view could be used at all, with the first reason.
 void requireUsableViews(const Inspection& inspection);
 

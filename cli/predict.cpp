@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "cli/commands.h"
+#include "cli/inspection_arguments.h"
 #include "core/base/parallel.h"
 #include "core/evaluate/labels.h"
 #include "core/highlight/report.h"
@@ -88,9 +89,13 @@ Command predictCommand() {
     for (const auto& [name, model] : result.models)
       for (const FrameComparison& f : model.frames) {
         if (std::find(frames.begin(), frames.end(), f.frame) == frames.end()) continue;
-        if (!f.prediction.highlights.empty()) return kDone;
+        if (!f.prediction.highlights.empty()) {
+          warnOfUnusedTrainingFrames(result, context);
+          return kDone;
+        }
         if (reason.empty() && f.prediction.failure) reason = name + ": " + f.prediction.failure->message();
       }
+    requireUsableViews(result);
     throw CannotAnswer{{Reason::NotReached, "no highlight was predicted; " + reason}};
   };
   return c;

@@ -73,16 +73,20 @@ Command reconstructCommand() {
     const std::shared_ptr<const Scene> scene = a->scene();
     for (const std::string& w : scene->warnings) context.warn(w);
     const Inspection result = inspect(scene, request, context.progress());
-    requireUsableViews(result);
-    std::string text, reasons;
+    std::string text;
+    std::optional<Failure> first;
     bool any = false;
     for (const std::string& name : request.models)
       for (const ModelResult::Fit& f : result.models.at(name).fits) {
         text += fitText(f, name);
         any = any || f.fit;
-        if (f.failure && reasons.empty()) reasons = name + ": " + f.failure->message();
+        if (f.failure && !first) first = Failure{f.failure->reason, name + ", light " + f.light + ": " + f.failure->detail};
       }
-    if (!any) throw CannotAnswer{{Reason::NotConverged, "nothing could be reconstructed; " + reasons}};
+    if (!any) {
+      requireUsableViews(result);
+      throw CannotAnswer{first.value_or(Failure{Reason::NoHighlight, "no light"})};
+    }
+    warnOfUnusedTrainingFrames(result, context);
     Session session = sessionOf(result, context.progress());
     session.allowOutsidePaths = a->allowOutside;
     session.file = a->out;

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "cli/commands.h"
+#include "cli/inspection_arguments.h"
 #include "core/pipeline/frame_spec.h"
 #include "core/pipeline/session.h"
 #include "viz/offscreen.h"
@@ -99,6 +100,26 @@ Image scenePicture(const RenderArguments& a, const std::shared_ptr<const Inspect
   return (*target)->render(view);
 }
 
+/// A picture that could only repeat an error is refused with that error. The scene in 3D is always worth drawing: it shows
+/// why no camera sees the surface.
+void requireContent(const RenderArguments& a, const Inspection& inspection, int frame) {
+  const auto predicted = [&](const FrameComparison& c) { return !c.prediction.highlights.empty(); };
+  if (a.view == "plots") {
+    for (const auto& [name, model] : inspection.models)
+      if (std::any_of(model.frames.begin(), model.frames.end(), predicted)) return;
+    requireUsableViews(inspection);
+    throw CannotAnswer{{Reason::NotReached, "no model predicted anything"}};
+  }
+  if (a.view == "scene") return;
+  const Frame& f = inspection.scene->frames[static_cast<std::size_t>(frame)];
+  const Outcome<Image> photograph = readPhotograph(f);
+  if (photograph || !inspection.evidence[static_cast<std::size_t>(frame)].scored().empty()) return;
+  for (const auto& [name, model] : inspection.models)
+    for (const FrameComparison& c : model.frames)
+      if (c.frame == frame && predicted(c)) return;
+  throw CannotAnswer{photograph.failure()};
+}
+
 int run(const RenderArguments& a, const Context& context) {
   const auto [width, height] = parseSize(a.size);
   if (!(a.glyphs > 0 && a.glyphs <= 100)) throw InputError("", "--glyphs", "must be above 0 and at most 100");
@@ -153,6 +174,7 @@ int run(const RenderArguments& a, const Context& context) {
   options.models = models;
   options.dark = a.theme == "dark";
   Image picture;
+  requireContent(a, *inspection, *frame);
   if (a.view == "scene") {
     picture = scenePicture(a, inspection, saved, *frame, models, width, height);
   } else if (a.view == "plots") {
@@ -163,6 +185,7 @@ int run(const RenderArguments& a, const Context& context) {
                                 : viz::ladderPicture(*inspection, *frame, photograph, width, height, options);
   }
   viz::writePng(picture, a.out);
+  warnOfUnusedTrainingFrames(*inspection, context);
   return kDone;
 }
 

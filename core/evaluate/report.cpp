@@ -51,14 +51,10 @@ ordered_json fitJson(const ModelResult::Fit& entry) {
   ordered_json j;
   j["light"] = entry.light;
   j["surface"] = entry.surface ? ordered_json(*entry.surface) : ordered_json(nullptr);
-  if (entry.failure) {
-    j["status"] = "failed";
-    j["reason"] = entry.failure->message();
-    return j;
-  }
-  const ModelFit& f = *entry.fit;
-  j["status"] = "ok";
-  j["reason"] = "";
+  j["status"] = entry.failure ? "failed" : "ok";
+  j["reason"] = entry.failure ? entry.failure->message() : "";
+  // A failed fit has every key too, without values: a reader need not ask which are there.
+  const ModelFit f = entry.fit.value_or(ModelFit{});
   if (f.ellipsoid) {
     j["ellipsoid"] = {{"centre", list(f.ellipsoid->centre())},
                       {"semi_axes", list(f.ellipsoid->semiAxes())},
@@ -76,14 +72,33 @@ ordered_json fitJson(const ModelResult::Fit& entry) {
   }
   j["limit_angle_deg"] = f.limitAngle ? number(*f.limitAngle * 180 / M_PI) : ordered_json(nullptr);
   j["roughness"] = f.roughness ? number(*f.roughness) : ordered_json(nullptr);
-  j["gap_ratio"] = number(f.gapRatio);
-  j["condition"] = number(f.condition);
+  j["gap_ratio"] = f.singularValues.empty() ? ordered_json(nullptr) : number(f.gapRatio);
+  j["condition"] = f.singularValues.empty() ? ordered_json(nullptr) : number(f.condition);
   j["solver"] = f.solver;
   j["residual_px"] = ordered_json::array();
   for (const double r : f.residualPx) j["residual_px"].push_back(number(r));
   j["training_frames"] = f.frames;
-  j["time_us"] = number(f.timeUs);
+  j["time_us"] = entry.failure ? ordered_json(nullptr) : number(f.timeUs);
   return j;
+}
+
+/// Every metric of a row, null where it has none: each row of `frames` has the same keys.
+void metricsJson(const FrameComparison::Row* row, const FrameComparison& c, ordered_json& j) {
+  const bool measured = row && row->metrics;
+  const ContourMetrics m = measured ? *row->metrics : ContourMetrics{};
+  const auto add = [&](const char* key, double v) { j[key] = measured ? number(v) : ordered_json(nullptr); };
+  add("contour_error_pct", m.contourErrorPct);
+  add("contour_error_px", m.contourErrorPx);
+  add("ellipse_error_pct", m.ellipseErrorPct);
+  add("hausdorff_px", m.hausdorffPx);
+  add("iou", c.iou);
+  add("iou_highlight", m.iou);
+  add("centre_offset_px", m.centreOffsetPx);
+  add("axis_ratio_error", m.axisRatioError);
+  add("angle_error_deg", m.angleErrorDeg);
+  add("peak_offset_px", m.peakOffsetPx);
+  j["coverage"] = row && row->predicted >= 0 ? number(c.prediction.highlights[row->predicted].coverage) : ordered_json(nullptr);
+  j["time_us"] = number(c.prediction.timeUs);
 }
 
 void frameRows(const Inspection& inspection, const FrameComparison& c, ordered_json& out) {
@@ -95,34 +110,20 @@ void frameRows(const Inspection& inspection, const FrameComparison& c, ordered_j
     j["highlight"] = highlight;
     return j;
   };
+  const FrameEvidence& e = inspection.evidence[c.frame];
   if (c.rows.empty() && c.prediction.highlights.empty()) {
     ordered_json j = base(0);
-    const FrameEvidence& e = inspection.evidence[c.frame];
-    j["status"] = e.failure ? "nothing observed" : "failed";
-    j["reason"] = e.failure ? e.failure->message() : c.prediction.failure ? c.prediction.failure->message() : "no highlight";
-    j["time_us"] = number(c.prediction.timeUs);
+    j["status"] = e.scoringFailure() ? "nothing observed" : "failed";
+    j["reason"] = e.scoringFailure() ? e.scoringFailure()->message() : c.prediction.failure ? c.prediction.failure->message() : "no highlight";
+    metricsJson(nullptr, c, j);
     out.push_back(j);
     return;
   }
   for (const FrameComparison::Row& row : c.rows) {
     ordered_json j = base(row.observed >= 0 ? row.observed : row.predicted);
     j["status"] = row.metrics ? "ok" : row.observed >= 0 ? "missed" : row.predicted >= 0 ? "spurious" : "failed";
-    j["reason"] = row.failure ? row.failure->message() : "";
-    if (row.metrics) {
-      const ContourMetrics& m = *row.metrics;
-      j["contour_error_pct"] = number(m.contourErrorPct);
-      j["contour_error_px"] = number(m.contourErrorPx);
-      j["ellipse_error_pct"] = number(m.ellipseErrorPct);
-      j["hausdorff_px"] = number(m.hausdorffPx);
-      j["iou"] = number(c.iou);
-      j["iou_highlight"] = number(m.iou);
-      j["centre_offset_px"] = number(m.centreOffsetPx);
-      j["axis_ratio_error"] = number(m.axisRatioError);
-      j["angle_error_deg"] = number(m.angleErrorDeg);
-      j["peak_offset_px"] = number(m.peakOffsetPx);
-    }
-    if (row.predicted >= 0) j["coverage"] = number(c.prediction.highlights[row.predicted].coverage);
-    j["time_us"] = number(c.prediction.timeUs);
+    j["reason"] = row.failure ? row.failure->message() : row.observed < 0 && e.scoringFailure() ? e.scoringFailure()->message() : "";
+    metricsJson(&row, c, j);
     out.push_back(j);
   }
 }
@@ -151,6 +152,28 @@ ordered_json modelJson(const Inspection& inspection, const ModelResult& result) 
   for (const FrameComparison& c : result.frames)
     if (inspection.isHeldOut(c.frame)) frameRows(inspection, c, j["frames"]);
   return j;
+}
+
+/// One row per highlight of every training frame: whether it could be used, and why not.
+ordered_json trainingJson(const Inspection& inspection) {
+  ordered_json out = ordered_json::array();
+  const auto add = [&](int frame, const std::string& light, const std::optional<Failure>& failure) {
+    out.push_back({{"index", frame},
+                   {"id", inspection.scene->frames[frame].id},
+                   {"light", light},
+                   {"status", failure ? "failed" : "ok"},
+                   {"reason", failure ? failure->message() : ""}});
+  };
+  for (const int frame : inspection.train.frames) {
+    bool any = false;
+    for (const TrainingView& v : inspection.views) {
+      if (v.frame != frame) continue;
+      any = true;
+      add(frame, v.highlight.light, v.failure);
+    }
+    if (!any && inspection.isTraining(frame)) add(frame, "", inspection.evidence[frame].failure.value_or(Failure{Reason::NoHighlight, ""}));
+  }
+  return out;
 }
 
 std::string cell(double v, const char* format = "%.4g") {
@@ -194,6 +217,7 @@ std::string evaluationJson(const Inspection& inspection, const ReportContext& co
   j["input"] = context.input;
   j["train"] = inspection.train.frames;
   j["train_spec"] = inspection.train.text;
+  j["training"] = trainingJson(inspection);
   j["level"] = inspection.request.settings.number("detect.level");
   j["source"] = inspection.request.source == FrameSource::Image ? "image" : "radiance";
   j["settings"] = settingsJson(inspection.request.settings);

@@ -41,9 +41,10 @@ FrameComparison compareFrame(const FrameEvidence& evidence, const std::string& l
   c.frame = evidence.frame;
   c.light = light;
   c.prediction = std::move(prediction);
-  if (evidence.failure && evidence.failure->reason != Reason::NoHighlight && evidence.scored().empty()) {
+  const std::optional<Failure>& unscored = evidence.scoringFailure();
+  if (unscored && unscored->reason != Reason::NoHighlight && evidence.scored().empty()) {
     FrameComparison::Row row;
-    row.failure = evidence.failure;
+    row.failure = unscored;
     c.rows.push_back(row);
     return c;
   }

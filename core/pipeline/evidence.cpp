@@ -26,6 +26,10 @@ void fitMissingEllipse(Highlight& h) {
   if (const Outcome<Ellipse> e = fitEllipse(h.contour.points)) h.ellipse = *e;
 }
 
+std::filesystem::path truthFile(const std::string& folder, const Frame& frame) {
+  return std::filesystem::path(folder) / (frame.id + ".json");
+}
+
 }  // namespace
 
 FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, const Settings& settings) {
@@ -79,13 +83,20 @@ FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, 
   return evidence;
 }
 
-std::vector<Highlight> readTruth(const std::string& folder, const Scene& scene, int index, double level) {
+void requireTruthFolder(const std::string& folder, const Scene& scene) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error)) throw InputError(folder, "--truth", "there is no such folder");
+  for (const Frame& frame : scene.frames)
+    if (std::filesystem::exists(truthFile(folder, frame))) return;
+  throw InputError(folder, "--truth", "holds no contours of these frames, such as " + scene.frames.front().id + ".json");
+}
+
+Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene& scene, int index, double level) {
   using nlohmann::json;
   const Frame& frame = scene.frames[index];
-  const std::filesystem::path file = std::filesystem::path(folder) / (frame.id + ".json");
-  if (!std::filesystem::exists(folder)) throw InputError(folder, "--truth", "there is no such folder");
+  const std::filesystem::path file = truthFile(folder, frame);
+  if (!std::filesystem::exists(file)) return Failure{Reason::FrameUnreadable, file.string() + ": there is no such file"};
   std::vector<Highlight> truth;
-  if (!std::filesystem::exists(file)) return truth;
   char key[16];
   std::snprintf(key, sizeof key, "%.2f", level);
   try {

@@ -12,9 +12,12 @@ namespace glint {
 /// says which one is on (one light: its id; none stated: "light").
 FrameEvidence gatherEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings);
 
-/// Contours stored as in data/cycles/*/contours (FOLDER/ID.json) at `level`, for scoring. Empty when the frame has no file.
-/// InputError when a file does not parse or does not hold the level.
-std::vector<Highlight> readTruth(const std::string& folder, const Scene& scene, int frame, double level);
+/// Contours stored as in data/cycles/*/contours (FOLDER/ID.json) at `level`, for scoring. FrameUnreadable when the frame has no
+/// file. InputError when a file does not parse or does not hold the level.
+Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene& scene, int frame, double level);
+
+/// InputError when `folder` is none, or holds contours of no frame at all.
+void requireTruthFolder(const std::string& folder, const Scene& scene);
 
 /// The contour resampled to 72 points, with independent Gaussian noise per coordinate on them and on the peak (--noise-px).
 /// Depends on seed, frame and index only, not on which frames train.

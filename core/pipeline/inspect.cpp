@@ -100,12 +100,17 @@ void Run::highlights() {
     return;
   }
   const Scene& scene = *r_.scene;
+  if (!q.truthFolder.empty()) requireTruthFolder(q.truthFolder, scene);
   r_.evidence.resize(scene.frames.size());
   parallelFor(
       static_cast<int>(scene.frames.size()),
       [&](int i) {
         r_.evidence[i] = gatherEvidence(scene, i, q.source, q.settings);
-        if (!q.truthFolder.empty()) r_.evidence[i].truth = readTruth(q.truthFolder, scene, i, q.settings.number("detect.level"));
+        if (q.truthFolder.empty()) return;
+        r_.evidence[i].againstTruth = true;
+        Outcome<std::vector<Highlight>> truth = readTruth(q.truthFolder, scene, i, q.settings.number("detect.level"));
+        if (truth) r_.evidence[i].truth = std::move(*truth);
+        else r_.evidence[i].truthFailure = truth.failure();
       },
       progress_, "detect");
   assignSeveralLights();

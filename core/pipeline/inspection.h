@@ -43,10 +43,13 @@ std::string lightKey(const std::string& light, const std::optional<std::string>&
 struct FrameEvidence {
   int frame = -1;
   std::vector<Highlight> highlights;     ///< each with its light
-  std::vector<Highlight> truth;          ///< what predictions are compared with when --truth is given; else empty
-  std::optional<Failure> failure;        ///< NoHighlight, FrameUnreadable, ...
-  /// What predictions are compared with.
-  const std::vector<Highlight>& scored() const { return truth.empty() ? highlights : truth; }
+  std::optional<Failure> failure;        ///< why there are no highlights: NoHighlight, FrameUnreadable, ...
+  bool againstTruth = false;             ///< --truth is given: `truth` is scored, whatever was detected
+  std::vector<Highlight> truth;
+  std::optional<Failure> truthFailure;   ///< the frame has no truth, so it cannot be scored
+  /// What predictions are compared with, and why there is nothing.
+  const std::vector<Highlight>& scored() const { return againstTruth ? truth : highlights; }
+  const std::optional<Failure>& scoringFailure() const { return againstTruth ? truthFailure : failure; }
 };
 
 /// Prediction of one model for one light in one frame, compared with the evidence.
