@@ -97,7 +97,7 @@ class Canonical final : public HighlightModel {
     if (!surface) return fail({Reason::NoSurface, ""});
     if (!fit.ellipsoid) return fail({Reason::NotAnEllipsoid, fit.quadric ? describe(*fit.quadric) : ""});
     const Light light = fit.lightEstimate ? *fit.lightEstimate : Light::at(fit.ellipsoid->centre());
-    const auto brightest = predictedBrightestPoints(*surface, camera, light, brightestOptions(settings));
+    const auto brightest = brightestPointsFor(*surface, camera, light, settings);
     if (!brightest) return fail(brightest.failure());
     WalkOptions walkOptions;
     walkOptions.toleranceRad = settings.number("predict.walk_tolerance");

@@ -21,7 +21,7 @@ class Dual final : public HighlightModel {
     ModelFit fit;
     for (const TrainingView& v : input.views) {
       if (v.failure || !v.virtualCamera || !v.highlight.ellipse) continue;
-      conics.push_back({*v.virtualCamera, *v.highlight.ellipse, v.highlight.contour.points});
+      conics.push_back(conicViewOf(v, *v.virtualCamera));
       fit.frames.push_back(v.frame);
     }
     const Outcome<Reconstruction> r = fitEllipsoid(conics, anchorAtLight(input), settings);
@@ -41,7 +41,7 @@ class Dual final : public HighlightModel {
       return p;
     }
     // The model stores no light: its brightest point is that of a light at the ellipsoid's centre.
-    const auto brightest = predictedBrightestPoints(*surface, camera, Light::at(fit.ellipsoid->centre()), brightestOptions(settings));
+    const auto brightest = brightestPointsFor(*surface, camera, Light::at(fit.ellipsoid->centre()), settings);
     if (!brightest) {
       p.failure = brightest.failure();
       return p;

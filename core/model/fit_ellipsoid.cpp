@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/model/fit_ellipsoid.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -11,6 +12,9 @@
 
 namespace glint {
 namespace {
+
+constexpr int kContourPoints = 72;
+constexpr std::size_t kLeftOut = 6;  // views left out when the bias is chosen: more would not change a choice among three
 
 /// Tried by leave-one-view-out, as fractions of the anchor's distance: practically anchored; the light's own bias (2 % on the
 /// path-traced plane, 9 % on the sphere); and loose enough to leave the centre to the contours.
@@ -38,7 +42,9 @@ double bestPriorBias(const std::vector<ConicView>& views, const CentreAnchor& an
   double best = kPriorBiases[std::size(kPriorBiases) - 1], smallest = std::numeric_limits<double>::infinity();
   for (const double bias : kPriorBiases) {
     double sum = 0;
-    for (std::size_t left = 0; left < views.size() && std::isfinite(sum); ++left) {
+    const std::size_t count = std::min(kLeftOut, views.size());
+    for (std::size_t k = 0; k < count && std::isfinite(sum); ++k) {
+      const std::size_t left = k * views.size() / count;
       std::vector<ConicView> others;
       for (std::size_t i = 0; i < views.size(); ++i)
         if (i != left) others.push_back(views[i]);
@@ -120,6 +126,11 @@ std::optional<CentreAnchor> anchorFromCentres(const std::vector<TrainingView>& v
   CentreAnchor anchor{t->light.position(), t->covariance, 0};
   for (const ReflectedRay& r : rays) anchor.distance += (anchor.position - r.origin).norm() / double(rays.size());
   return anchor;
+}
+
+ConicView conicViewOf(const TrainingView& view, const Projection& projection) {
+  require(view.highlight.ellipse.has_value(), "conicViewOf: the view has no ellipse");
+  return {projection, *view.highlight.ellipse, resample(view.highlight.contour, kContourPoints)};
 }
 
 void store(const Reconstruction& r, ModelFit& fit) {

@@ -34,6 +34,10 @@ Outcome<Reconstruction> fitEllipsoid(const std::vector<ConicView>& views, const 
 /// Empty when the rays are parallel.
 std::optional<CentreAnchor> anchorFromCentres(const std::vector<TrainingView>& views);
 
+/// A view's contour as evidence for an ellipsoid: its ellipse, and 72 points equally spaced, which is more than an outline has freedom for.
+/// @param projection  real or virtual camera. The view must have an ellipse.
+ConicView conicViewOf(const TrainingView& view, const Projection& projection);
+
 /// Copies a reconstruction into the fields of a fit.
 void store(const Reconstruction& reconstruction, ModelFit& fit);
 

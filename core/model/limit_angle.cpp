@@ -8,8 +8,6 @@
 namespace glint {
 namespace {
 
-constexpr double kMarginFraction = 0.65;  // of the image's longer side; beyond, lenses of real cameras end
-
 /// alpha of the surface point seen at a pixel; empty off the surface, on its dark side, and where it turns away.
 std::optional<double> alphaAt(const SurfacePoint& hit, const Eigen::Vector3d& eye, const Light& light) {
   const SurfacePoint p = facing(hit, eye);
@@ -71,7 +69,7 @@ class LimitAngle final : public HighlightModel {
     // Seeds: a highlight smaller than the scan's cells has a brightest point inside.
     LevelSetOptions options;
     options.gridStepPx = settings.number("predict.level_set_step");
-    const auto brightest = predictedBrightestPoints(*surface, camera, light, brightestOptions(settings));
+    const auto brightest = brightestPointsFor(*surface, camera, light, settings);
     if (brightest)
       for (const BrightestPoint& b : *brightest) options.seeds.push_back(b.pixel);
     const PixelField field = [&](const Pixel& q) -> std::optional<double> {

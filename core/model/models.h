@@ -13,8 +13,13 @@ std::unique_ptr<HighlightModel> makeDual();
 std::unique_ptr<HighlightModel> makeCanonical();
 std::unique_ptr<HighlightModel> makeLimitAngle();
 
-/// Search options for brightest points from the settings.
-BrightestPointOptions brightestOptions(const Settings& settings);
+/// How far beyond the image highlights are followed, as a fraction of its longer side: a highlight that the border cuts has its
+/// brightest point or a part of its contour out there.
+inline constexpr double kMarginFraction = 0.65;
+
+/// predictedBrightestPoints with the settings' search; looks beyond the image by kMarginFraction where the image has none.
+Outcome<std::vector<BrightestPoint>> brightestPointsFor(const Surface& surface, const Camera& camera, const Light& light,
+                                                        const Settings& settings);
 
 /// Leaves one highlight where several brightest points share one contour: those whose peak lies inside a larger predicted
 /// contour are dropped (method.md section 8: a component that encloses several brightest points is returned once).

@@ -22,7 +22,7 @@ class Primal final : public HighlightModel {
     for (const TrainingView& v : input.views) {
       // The real camera needs neither P_B nor T: a view that failed there still counts here.
       if (!v.highlight.ellipse) continue;
-      conics.push_back({v.camera.projection(), *v.highlight.ellipse, v.highlight.contour.points});
+      conics.push_back(conicViewOf(v, v.camera.projection()));
       fit.frames.push_back(v.frame);
     }
     const Outcome<Reconstruction> r = fitEllipsoid(conics, anchorFromCentres(input.views), settings);

@@ -55,7 +55,8 @@ struct CentrePrior {
 
 /// Refined: minimises contour distances (px, points to the outline) over the centre and a Cholesky factor of S by Ceres, from
 /// `start`, with the prior on the centre when there is one. Never worse than the start.
-/// TooFewViews (< 3 without a prior, < 2 with one); NotAnEllipsoid when the start has none; NotConverged; NotFinite.
+/// TooFewViews (< 3 without a prior, < 2 with one); NotAnEllipsoid when the start has none; NotFinite. Running out of
+/// iterations is no failure: the result is still better than the start, and `solver` says so.
 Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, const Ellipsoid& start,
                                            const std::optional<CentrePrior>& prior = {}, int maxIterations = 100);
 

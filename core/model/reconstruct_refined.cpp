@@ -177,11 +177,11 @@ Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, 
     }
   }
   if (!converged && !summary.iterations.empty()) {
-    // Out of iterations, but creeping along a flat valley of the cost (an axis that shrinks to zero does so ever more slowly):
-    // as good as converged when the last fifth of the way gained less than a hundredth.
+    // An axis that shrinks to zero does so ever more slowly: out of iterations there is as good as converged when the last fifth
+    // of the way gained less than a hundredth.
     const std::size_t n = summary.iterations.size();
     const double before = summary.iterations[n - 1 - n / 5].cost;
-    if (!(before - finalCost <= 0.01 * before)) return Failure{Reason::NotConverged, std::to_string(iterations) + " iterations"};
+    converged = before - finalCost <= 0.01 * before;
   }
 
   const Eigen::Matrix3d l = factorOf(best.data());
@@ -190,7 +190,7 @@ Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, 
   Eigen::Isometry3d pose = local->worldFromBody();
   pose.translation() = origin + scale * pose.translation();
   Reconstruction result;
-  result.solver = "refined";
+  result.solver = converged ? "refined" : "refined, stopped at the iteration limit";
   result.iterations = iterations;
   result.ellipsoid = Ellipsoid(pose, scale * local->semiAxes());
   result.quadric = result.ellipsoid->dual();

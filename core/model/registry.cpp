@@ -27,10 +27,15 @@ const HighlightModel& modelByName(const std::string& id) {
   throw InputError("", "model '" + id + "'", "there is no such model; known: " + known);
 }
 
-BrightestPointOptions brightestOptions(const Settings& settings) {
-  BrightestPointOptions o;
-  o.seedStepPx = settings.number("predict.seed_step");
-  return o;
+Outcome<std::vector<BrightestPoint>> brightestPointsFor(const Surface& surface, const Camera& camera, const Light& light,
+                                                        const Settings& settings) {
+  BrightestPointOptions options;
+  options.seedStepPx = settings.number("predict.seed_step");
+  Outcome<std::vector<BrightestPoint>> found = predictedBrightestPoints(surface, camera, light, options);
+  if (found) return found;
+  options.marginFraction = kMarginFraction;  // rarely needed, and five times the rays
+  Outcome<std::vector<BrightestPoint>> beyond = predictedBrightestPoints(surface, camera, light, options);
+  return beyond ? beyond : found;
 }
 
 void dropEnclosed(std::vector<PredictedHighlight>& highlights) {
