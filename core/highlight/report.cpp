@@ -94,14 +94,15 @@ void writePng(const std::filesystem::path& file, const Image& image) {
   cv::Mat mat(image.height, image.width, CV_32FC3, const_cast<float*>(image.data.data())), bytes;
   mat.convertTo(bytes, CV_8UC3, 255);
   cv::cvtColor(bytes, bytes, cv::COLOR_RGB2BGR);
-  atomicWrite(file, [&](const std::filesystem::path& temporary) {
-    bool written = false;
-    try {
-      written = cv::imwrite(temporary.string(), bytes);
-    } catch (const cv::Exception&) {
-    }
-    if (!written) throw InputError(file.string(), "", "cannot be written");
-  });
+  // In memory first: libpng's own writing prints, and crashes in a worker thread, when the disk is full.
+  std::vector<unsigned char> encoded;
+  bool done = false;
+  try {
+    done = cv::imencode(".png", bytes, encoded);
+  } catch (const cv::Exception&) {
+  }
+  if (!done) throw InputError(file.string(), "", "cannot be written: the image cannot be encoded");
+  atomicWrite(file, std::string_view(reinterpret_cast<const char*>(encoded.data()), encoded.size()));
 }
 
 }  // namespace glint

@@ -29,17 +29,17 @@ cv::Mat matOf(const Image& image) {
 }
 
 void writeImage(const fs::path& file, const cv::Mat& mat) {
-  atomicWrite(file, [&](const fs::path& temporary) {
-    bool written = false;
-    try {
-      // 1 = uncompressed: the default compression of float TIFF is lossy.
-      written = cv::imwrite(temporary.string(), mat,
-                            file.extension() == ".tiff" ? std::vector<int>{cv::IMWRITE_TIFF_COMPRESSION, 1} : std::vector<int>{});
-    } catch (const cv::Exception& e) {
-      throw InputError(file.string(), "", "cannot be written: " + std::string(e.what()));
-    }
-    if (!written) throw InputError(file.string(), "", "cannot be written");
-  });
+  // In memory first: the libraries' own writing prints, and may crash, when the disk is full.
+  std::vector<unsigned char> bytes;
+  bool encoded = false;
+  try {
+    // 1 = uncompressed: the default compression of float TIFF is lossy.
+    encoded = cv::imencode(file.extension().string(), mat, bytes,
+                           file.extension() == ".tiff" ? std::vector<int>{cv::IMWRITE_TIFF_COMPRESSION, 1} : std::vector<int>{});
+  } catch (const cv::Exception&) {
+  }
+  if (!encoded) throw InputError(file.string(), "", "cannot be written: the image cannot be encoded");
+  atomicWrite(file, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
 /// Blur, then noise (its own stream per frame and per image), never below 0.

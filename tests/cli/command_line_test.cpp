@@ -184,7 +184,7 @@ TEST_F(SceneOnDisk, OutputThatCannotBeWrittenIsCodeTwoAndLeavesNothing) {
 }
 
 TEST_F(SceneOnDisk, InterruptStopsWithCode130AndLeavesNoFile) {
-  // A pipe that nobody writes: the program waits inside a system call and never asks for progress.
+  // A pipe that is opened and never written to: once the shell could open it, the program waits inside a system call.
   // SIGTERM, because a shell lets its background jobs ignore SIGINT; the program treats both alike.
   rewrite("\"analytic\": {\"type\": \"sphere\", \"radius\": 0.4}", "\"mesh\": \"body.ply\"");
   folder_.write("body.ply", "");
@@ -192,7 +192,7 @@ TEST_F(SceneOnDisk, InterruptStopsWithCode130AndLeavesNoFile) {
   const std::string pipe = (folder_ / "pipe.tiff").string();
   ASSERT_EQ(std::system(("mkfifo '" + pipe + "'").c_str()), 0);
   const ProgramRun run = runGlint("info " + quoted(folder_.path()) + " --json " + quoted(folder_ / "x.json") +
-                                  " & child=$!; sleep 0.5; kill -TERM $child; wait $child");
+                                  " & child=$!; exec 3>'" + pipe + "'; kill -TERM $child; wait $child");
   EXPECT_EQ(run.code, 130) << run.err;
   EXPECT_EQ(run.err, "glint: stopped\n");
   EXPECT_FALSE(fs::exists(folder_ / "x.json"));

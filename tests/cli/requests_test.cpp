@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Wrong requests on a good input: exit code 2 and one line that names the flag; and what few training frames can still do.
+#include <gmock/gmock.h>
+
+#include "tests/cli/small_scene.h"
+
+namespace glint {
+namespace {
+using namespace testing_support;
+using testing::HasSubstr;
+using testing::StartsWith;
+namespace fs = std::filesystem;
+
+class Requests : public SmallScene {
+ protected:
+  static void refused(const ProgramRun& run, const std::string& message, const std::string& what) {
+    EXPECT_EQ(run.code, 2) << what;
+    EXPECT_EQ(run.errorLines(), 1) << what << ": " << run.err;
+    EXPECT_THAT(run.err, HasSubstr(message)) << what;
+    EXPECT_EQ(run.out, "") << what;
+  }
+};
+
+TEST_F(Requests, WrongOnesNameTheFlag) {
+  struct Row {
+    const char *flags, *expected;
+  };
+  for (const Row& row : std::initializer_list<Row>{
+           {"--models bogus", "model 'bogus': there is no such model; known: primal, dual, canonical, limit-angle"},
+           {"--models primal,,dual", "--models primal,,dual: empty entry"},
+           {"--models dual,dual", "--models dual,dual: 'dual' stands twice"},
+           {"--set nokey=1", "--set nokey: no such setting"},
+           {"--set fit.solver=magic", "--set fit.solver: 'magic' is none of: linear, anchored, refined"},
+           {"--set fit.solver", "--set fit.solver: expected KEY=VALUE"},
+           {"--set predict.directions=1.5", "--set predict.directions: '1.5' is not a whole number"},
+           {"--set predict.directions=-1", "--set predict.directions: -1 is outside 6 .. 720"},
+           {"--set detect.level=nan", "--set detect.level: 'nan' is not a number"},
+           {"--train first:0", "--train first:0: the input has 8 frames"},
+           {"--train first:9", "--train first:9: the input has 8 frames"},
+           {"--train spread:x", "--train spread:x: expected first:K or spread:K"},
+           {"--train middle:3", "--train middle:3: expected first:K or spread:K"},
+           {"--train 5-2", "--train 5-2: the range 5-2 runs backwards"},
+           {"--train 0-8", "--train 0-8: there is no frame 8; the input has 8"},
+           {"--train 0,,1", "--train 0,,1: empty entry"},
+           {"--train=-1", "--train -1: '-1' is neither a frame id nor a number"},
+           {"--level 0", "--level 0: the level is a number from 0.02 to 0.98"},
+           {"--level nan", "--level nan: the level is a number from 0.02 to 0.98"},
+           {"--source video", "--source: 'video' is none of radiance|image"},
+           {"--noise-px -1", "--noise-px: must be finite and not negative"},
+           {"--noise-px inf", "--noise-px: must be finite and not negative"},
+           {"--models auto --good-enough-pct 0", "--good-enough-pct 0: expected a positive number of percent"},
+           {"--truth /nonexistent", "/nonexistent: --truth: there is no such folder"},
+           {"--nonsense", "--nonsense"}})
+    refused(on("evaluate", row.flags), row.expected, row.flags);
+  refused(on("evaluate", "--truth " + out("radiance")), "--truth: holds no contours of these frames, such as 0000.json", "--truth");
+  refused(on("detect", "--level 2"), "--level: the level is a number from 0.02 to 0.98", "detect");
+  refused(on("reconstruct", "--model auto -o " + out("x")), "--model auto: choose with `glint evaluate --models auto`", "auto");
+}
+
+TEST_F(Requests, WrongPicturesNameTheFlag) {
+  for (const char* size : {"x", "640", "640x", "640x480x3", "640.5x480", "1e9x1e9", "0x0", "-640x480", "99999x99999"})
+    refused(on("render", "--view frame --size=" + std::string(size) + " -o " + out("x.png")), "--size: ", size);
+  for (const char* flags : {"--view nope", "--frame 99", "--frame 0-3", "--layers=nope", "--models nope", "--glyphs nan"})
+    refused(on("render", std::string(flags) + " -o " + out("x.png")), "", flags);
+  EXPECT_FALSE(fs::exists(folder_ / "x.png"));
+}
+
+TEST_F(Requests, WrongSessionsAndFrames) {
+  saveSession("--model limit-angle");
+  for (const char* frames : {"99", "x", "0-", "3-1", "first:0"})
+    refused(onSession("predict", "--frames " + std::string(frames)), "--frames " + std::string(frames) + ": ", frames);
+  refused(runGlint("predict " + out("scene.json")), "scene.json: glint_session: is missing", "a scene is no session");
+  refused(runGlint("replay " + out("nothing.glint")), "nothing.glint: cannot be read: No such file", "no file");
+  refused(on("replay"), "is a folder, not a file", "a folder");
+  refused(runGlint("synth " + out("scene.json") + " -o " + out("s")), "scene.json: ", "no render");
+}
+
+TEST_F(Requests, TwoTrainingFramesAnchoredAndLimitAngleAnswer) {
+  for (const char* solver : {"refined", "linear", "anchored"}) {
+    const bool anchored = solver == std::string("anchored");
+    const ProgramRun run = on("evaluate", "--train 0,1 --json - --set fit.solver=" + std::string(solver));
+    EXPECT_EQ(run.code, 0) << run.err;
+    const Json models = Json::parse(run.out)["models"];
+    EXPECT_EQ(models["limit-angle"]["summary"]["predicted"], 6) << solver;
+    for (const char* name : {"primal", "dual", "canonical"}) {
+      EXPECT_EQ(models[name]["status"], anchored ? "ok" : "failed") << solver << " " << name;
+      if (anchored) EXPECT_EQ(models[name]["summary"]["predicted"], 6) << name;
+      else EXPECT_EQ(models[name]["reason"], "too few views: a free centre needs 3 views, have 2") << solver << " " << name;
+    }
+  }
+  const ProgramRun none = on("reconstruct", "--train 0,1 --model canonical -o " + out("x.glint"));
+  EXPECT_EQ(none.code, 3);
+  EXPECT_EQ(none.err, "glint: too few views: canonical, light lamp: a free centre needs 3 views, have 2\n");
+  EXPECT_FALSE(fs::exists(folder_ / "x.glint"));
+}
+
+TEST_F(Requests, FrameWithoutTruthIsUnscoredWithItsReason) {
+  for (int i = 0; i < kFrames - 1; ++i) {  // frame 7 gets none
+    const Json& highlight = exact_["frames"][i]["highlights"][0];
+    const Json truth = {{"levels", {{"0.50", Json::array({{{"points", highlight["contour"]}}})}}}, {"peak_subpixel", highlight["peak"]}};
+    folder_.write("truth/000" + std::to_string(i) + ".json", truth.dump());
+  }
+  const ProgramRun run = on("evaluate", "--models limit-angle --json - --truth " + out("truth"));
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json model = Json::parse(run.out)["models"]["limit-angle"];
+  EXPECT_EQ(model["summary"]["frames"], 2);
+  EXPECT_EQ(model["summary"]["predicted"], 1);
+  EXPECT_EQ(model["frames"][0]["status"], "ok");
+  EXPECT_EQ(model["frames"][1]["reason"], "frame unreadable: " + (folder_ / "truth/0007.json").string() + ": there is no such file");
+  folder_.write("truth/0006.json", "{\"levels\": 3}");
+  const ProgramRun broken = on("evaluate", "--models limit-angle --truth " + out("truth"));
+  refused(broken, "truth/0006.json: ", "broken truth");
+}
+
+TEST_F(Requests, JsonAloneOnStandardOutputAndNoProgressInAPipe) {
+  saveSession("--model limit-angle");
+  for (const ProgramRun& run : {on("info", "--json -"), on("detect", "--json -"), on("evaluate", "--models limit-angle --json -"),
+                                onSession("predict", "--json -")}) {
+    EXPECT_EQ(run.code, 0);
+    EXPECT_TRUE(Json::accept(run.out));
+    EXPECT_EQ(run.err, "");
+    EXPECT_EQ(run.out.find("NaN"), std::string::npos);
+  }
+  EXPECT_THAT(on("evaluate", "--models limit-angle --csv -").out, StartsWith("model,index,id,light,"));
+}
+
+}  // namespace
+}  // namespace glint
