@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "core/geometry/conic.h"
+#include "tests/shared_data.h"
 #include "tests/tolerances.h"
 
 namespace glint {
@@ -195,6 +196,7 @@ std::vector<std::vector<double>> readRows(const std::string& path) {
 }
 
 TEST(FitEllipse, PublishedPointSets) {
+  GLINT_NEEDS_SHARED_DATA();
   const std::string folder = std::string(GLINT_SHARED_DIR) + "/data/opencv_fitellipse/";
   const auto points = readRows(folder + "direct_cases.csv"), expected = readRows(folder + "expected.csv");
   ASSERT_EQ(expected.size(), 2u);

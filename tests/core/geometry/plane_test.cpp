@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/geometry/plane.h"
+#include "tests/shared_data.h"
 
 #include <gtest/gtest.h>
 
@@ -50,6 +51,7 @@ TEST(TangentBasis, IsRightHandedForEveryNormal) {
 }
 
 TEST(VirtualCamera, AgreesWithTheReferenceProjections) {
+  GLINT_NEEDS_SHARED_DATA();
   std::ifstream in(std::string(GLINT_SHARED_DIR) + "/reference/plane_to_cylinder.json");
   ASSERT_TRUE(in);
   const nlohmann::json file = nlohmann::json::parse(in);

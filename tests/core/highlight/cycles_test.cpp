@@ -11,6 +11,7 @@
 
 #include "core/highlight/highlight.h"
 #include "highlight_images.h"
+#include "tests/shared_data.h"
 
 /// Detection on path-traced frames against contours traced on the radiance by another program.
 namespace glint {
@@ -125,6 +126,7 @@ Figures measure(const std::string& sequence, double level, bool fromImage) {
 class Cycles : public testing::TestWithParam<const char*> {};
 
 TEST_P(Cycles, RadianceContoursAgreeWithTheOtherProgram) {
+  GLINT_NEEDS_SHARED_DATA();
   for (const double level : {0.5, 0.2}) {
     const Figures f = measure(GetParam(), level, false);
     EXPECT_EQ(f.answered, f.frames);
@@ -134,6 +136,7 @@ TEST_P(Cycles, RadianceContoursAgreeWithTheOtherProgram) {
 }
 
 TEST_P(Cycles, ImageContoursAgreeWithTheRadiance) {
+  GLINT_NEEDS_SHARED_DATA();
   const Figures f = measure(GetParam(), 0.5, true);
   EXPECT_EQ(f.answered, f.frames);
   EXPECT_LT(f.meanPct, 0.12);  // measured 0.026, 0.044, 0.089 % (a median background costs 0.08 to 0.27 %)

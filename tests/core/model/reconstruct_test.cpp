@@ -14,6 +14,7 @@
 
 #include "core/geometry/plane.h"
 #include "core/model/ellipse_distance.h"
+#include "tests/shared_data.h"
 #include "tests/tolerances.h"
 
 namespace glint {
@@ -272,6 +273,7 @@ TEST(EllipseFoot, AgreesWithDenseSampling) {
 // Another program's linear reconstruction (72 contour points per view, algebraic fit). The level sets are not exactly conics and
 // the weights of the two least-squares problems differ, so the quadrics agree only as far as the data are consistent.
 TEST(ReconstructLinear, PlaneOfTheReference) {
+  GLINT_NEEDS_SHARED_DATA();
   std::ifstream in(std::string(GLINT_SHARED_DIR) + "/reference/plane_to_cylinder.json");
   ASSERT_TRUE(in);
   const nlohmann::json file = nlohmann::json::parse(in);
@@ -334,6 +336,7 @@ double iou(const Ellipsoid& a, const Ellipsoid& b) {
 // The published code reaches IoU 0.682 0.700 0.683 0.703 0.753 0.789 and centre errors 1.2 2.5 2.6 2.3 14.7 13.5 mm on these
 // boxes.
 TEST(ReconstructLinear, RealBoxesGiveThePublishedCentres) {
+  GLINT_NEEDS_SHARED_DATA();
   const auto k = table("K.txt", ' '), poses = table("poses.txt", ' '), boxes = table("bounding_boxes.txt", ' '),
              rows = table("ellipsoids.csv", ',');
   ASSERT_EQ(boxes.size(), 8u);

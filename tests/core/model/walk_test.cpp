@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "core/surface/analytic.h"
+#include "tests/shared_data.h"
 #include "tests/tolerances.h"
 
 namespace glint {
@@ -92,6 +93,7 @@ void expectAgreement(const Worst& worst) {
 }
 
 TEST(TangentWalk, ReferencePlaneToCylinder) {
+  GLINT_NEEDS_SHARED_DATA();
   const json file = reference("plane_to_cylinder.json");
   Worst worst;
   for (const json& step : file["steps"]) {
@@ -105,6 +107,7 @@ TEST(TangentWalk, ReferencePlaneToCylinder) {
 }
 
 TEST(TangentWalk, ReferenceEllipsoid) {
+  GLINT_NEEDS_SHARED_DATA();
   const json file = reference("ellipsoid.json");
   AnalyticSpec spec;
   spec.type = "ellipsoid";

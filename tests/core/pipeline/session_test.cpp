@@ -10,6 +10,7 @@
 
 #include "core/base/sha256.h"
 #include "tests/core/scene/scene_fixture.h"
+#include "tests/shared_data.h"
 
 namespace glint {
 namespace {
@@ -126,6 +127,7 @@ TEST(Session, ChangedAndMissingInputsAreNamed) {
 }
 
 TEST(Session, HashesEveryFileOfTheScene) {
+  GLINT_NEEDS_SHARED_DATA();
   const Scene scene = readScene(fs::path(GLINT_SHARED_DIR) / "data/cycles/sphere");
   const auto files = hashInputs(scene, {});
   EXPECT_EQ(files.size(), 1u + 1u + 3u * 24u);  // scene, mesh, and image, radiance, depth of 24 frames
@@ -144,6 +146,7 @@ TEST(Session, UnknownKeysAreWarnedOfAndKept) {
 
 /// A path-traced sphere with its analytic surface and the cheapest model: the whole way from images to numbers and back.
 TEST(Session, ReplayAgreesAndSaysWhereItDoesNot) {
+  GLINT_NEEDS_SHARED_DATA();
   const auto scene =
       std::make_shared<const Scene>(readScene(fs::path(GLINT_SHARED_DIR) / "data/cycles/sphere/scene-analytic.json"));
   InspectionRequest request;

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "tests/core/scene/scene_fixture.h"
+#include "tests/shared_data.h"
 
 namespace glint {
 namespace {
@@ -93,6 +94,7 @@ TEST(ReadMesh, NormalsAreTakenAndNormalised) {
 }
 
 TEST(ReadMesh, DataMeshesHaveTheCountsOfTheirHeaders) {
+  GLINT_NEEDS_SHARED_DATA();
   const TriangleMesh mesh = readMesh(fs::path(GLINT_SHARED_DIR) / "data/cycles/sphere/mesh/geom_00.ply");
   EXPECT_EQ(mesh.vertices.size(), 98306u);
   EXPECT_EQ(mesh.triangles.size(), 196608u);

@@ -4,6 +4,7 @@
 #include "core/scene/scene.h"
 #include "core/scene/scene_reader.h"
 #include "tests/core/scene/scene_fixture.h"
+#include "tests/shared_data.h"
 #include "tests/tolerances.h"
 
 namespace glint {
@@ -44,6 +45,7 @@ TEST(ReadScene, IsRecognisedByContentNotByName) {
 }
 
 TEST(ReadScene, EverySequenceOfTheDataIsRead) {
+  GLINT_NEEDS_SHARED_DATA();
   struct Row {
     const char* file;
     std::size_t frames, surfaces;
@@ -211,6 +213,7 @@ TEST(ReadScene, RoundedRotationIsRepairedAndWarnedOf) {
 }
 
 TEST(WriteScene, RoundTripIsExact) {
+  GLINT_NEEDS_SHARED_DATA();
   const fs::path data = fs::path(GLINT_SHARED_DIR) / "data/cycles/sphere";
   const Scene scene = readScene(data);
   const TemporaryFolder folder;

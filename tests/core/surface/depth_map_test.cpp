@@ -9,6 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "tests/core/surface/surfaces.h"
+#include "tests/shared_data.h"
 
 namespace glint {
 namespace {
@@ -85,9 +86,9 @@ TEST(DepthMap, LensDistortionIsRemoved) {
 }
 
 TEST(DepthMap, PathTracedSphereAgreesWithTheAnalyticOne) {
+  GLINT_NEEDS_SHARED_DATA();
   const std::string folder = std::string(GLINT_SHARED_DIR) + "/data/cycles/sphere/";
   std::ifstream in(folder + "scene-analytic.json");
-  if (!in) GTEST_SKIP() << "no rendered data beside the project";
   const nlohmann::json scene = nlohmann::json::parse(in);
   const auto sphere = makeAnalytic(test::sphere(scene["surfaces"]["g00"]["analytic"]["radius"].get<double>()));
   for (const int frame : {0, 13}) {

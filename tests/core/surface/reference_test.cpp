@@ -7,6 +7,7 @@
 #include "core/surface/brightest_point.h"
 #include "core/surface/level_set.h"
 #include "tests/core/surface/surfaces.h"
+#include "tests/shared_data.h"
 #include "tests/tolerances.h"
 
 namespace glint {
@@ -68,15 +69,15 @@ void expectFrame(const Surface& surface, const Json& file, const Json& frame, co
 }
 
 TEST(Reference, EllipsoidPeaksAndContours) {
+  GLINT_NEEDS_SHARED_DATA();
   const Json file = reference("ellipsoid.json");
-  if (file.is_null()) GTEST_SKIP() << "no reference data beside the project";
   const auto surface = makeAnalytic(test::ellipsoid(0.6, 0.35, 0.25));
   for (const Json& frame : file["frames"]) expectFrame(*surface, file, frame, "frame " + frame["index"].dump());
 }
 
 TEST(Reference, PlaneToCylinderPeaksAndContours) {
+  GLINT_NEEDS_SHARED_DATA();
   const Json file = reference("plane_to_cylinder.json");
-  if (file.is_null()) GTEST_SKIP() << "no reference data beside the project";
   for (const Json& step : file["steps"]) {
     const auto surface = makeAnalytic(test::sheet(step["curvature"]));
     for (const Json& frame : step["frames"]) expectFrame(*surface, file, frame, "curvature " + step["curvature"].dump());

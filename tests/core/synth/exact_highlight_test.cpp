@@ -11,6 +11,7 @@
 #include "core/surface/analytic.h"
 #include "core/synth/synth.h"
 #include "tests/core/highlight/highlight_images.h"
+#include "tests/shared_data.h"
 #include "tests/tolerances.h"
 
 namespace glint {
@@ -58,6 +59,7 @@ void expectReference(const Surface& surface, const nlohmann::json& frame, const 
 }
 
 TEST(ExactHighlights, LimitAngleContoursOfThePlaneBentIntoACylinder) {
+  GLINT_NEEDS_SHARED_DATA();
   const nlohmann::json file = reference("plane_to_cylinder.json");
   for (const auto& step : file.at("steps")) {
     AnalyticSpec spec;
@@ -69,6 +71,7 @@ TEST(ExactHighlights, LimitAngleContoursOfThePlaneBentIntoACylinder) {
 }
 
 TEST(ExactHighlights, LimitAngleContoursOfTheEllipsoid) {
+  GLINT_NEEDS_SHARED_DATA();
   const nlohmann::json file = reference("ellipsoid.json");
   AnalyticSpec spec;
   spec.type = "ellipsoid";
