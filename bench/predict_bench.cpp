@@ -73,7 +73,9 @@ BENCHMARK(limitAnglePredictionAnalytic)->Unit(benchmark::kMicrosecond);
 /// Only the search of the brightest point, and only the walk: which part of a prediction costs what.
 void partBrightestPointMesh(benchmark::State& state) {
   const Light light = *fitOf("canonical").lightEstimate;
-  const BrightestPointOptions options = brightestOptions({});
+  const Settings settings;
+  BrightestPointOptions options;
+  options.seedStepPx = settings.number("predict.seed_step");  // as the models do
   std::size_t frame = 1;
   for (auto _ : state) {
     benchmark::DoNotOptimize(predictedBrightestPoints(surface(true), scene().cameras[frame], light, options));
@@ -85,7 +87,7 @@ BENCHMARK(partBrightestPointMesh)->Unit(benchmark::kMicrosecond);
 void partWalkMesh(benchmark::State& state) {
   const ModelFit& fit = fitOf("canonical");
   const Camera& camera = scene().cameras[8];
-  const auto found = predictedBrightestPoints(surface(true), camera, *fit.lightEstimate, brightestOptions({}));
+  const auto found = predictedBrightestPoints(surface(true), camera, *fit.lightEstimate, BrightestPointOptions{});
   const TangentWalk walk(surface(true), camera, found->at(0), *fit.lightEstimate);
   const Outcome<Ellipse> ellipse = outlineEllipse(*fit.ellipsoid, virtualCamera(camera, walk.tangentPlane()));
   for (auto _ : state) benchmark::DoNotOptimize(predictFromEllipse(walk, surface(true), camera, *ellipse, 36));
