@@ -5,13 +5,15 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
 namespace glint {
 
 void parallelFor(int n, const std::function<void(int)>& work, const ProgressFn& progress, const std::string& stage) {
-  std::atomic<int> next{0}, done{0};
+  std::atomic<int> next{0};
+  int done = 0;  // under the mutex
   std::atomic<bool> stop{false}, stopped{false};
   std::exception_ptr error;
   std::mutex mutex;
@@ -21,20 +23,24 @@ void parallelFor(int n, const std::function<void(int)>& work, const ProgressFn& 
       if (i >= n) return;
       try {
         work(i);
-      } catch (...) {
+        const std::scoped_lock lock(mutex);
+        if (!stop && !report(progress, {stage, ++done, n})) stopped = stop = true;
+      } catch (...) {  // of `progress` too: nothing may leave a thread
         const std::scoped_lock lock(mutex);
         if (!error) error = std::current_exception();
         stop = true;
         return;
       }
-      const std::scoped_lock lock(mutex);
-      if (!stop && !report(progress, {stage, ++done, n})) stopped = stop = true;
     }
   };
   if (!report(progress, {stage, 0, n})) throw Stopped{};
   const int count = std::min<int>(n, std::clamp<int>(static_cast<int>(std::thread::hardware_concurrency()), 1, 8));
   std::vector<std::thread> threads;
-  for (int t = 1; t < count; ++t) threads.emplace_back(run);
+  try {
+    for (int t = 1; t < count; ++t) threads.emplace_back(run);
+  } catch (const std::system_error&) {
+    // The system gives no more threads: those that run do the work.
+  }
   run();
   for (std::thread& t : threads) t.join();
   if (error) std::rethrow_exception(error);

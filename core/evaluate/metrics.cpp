@@ -48,7 +48,7 @@ struct OneWay {
 OneWay oneWay(const std::vector<Segment>& from, const std::vector<Segment>& to) {
   const double total = lengthOf(from);
   // Two samples a pixel resolve what marching squares can show; the bounds keep tiny and huge contours sensible.
-  const int n = std::clamp(static_cast<int>(2 * total), 360, 2000);
+  const int n = static_cast<int>(std::clamp(2 * total, 360.0, 2000.0));
   OneWay result;
   std::size_t segment = 0;
   double start = 0, l = (from[0].second - from[0].first).norm();
@@ -113,7 +113,7 @@ double regionIou(const std::vector<Polyline>& a, const std::vector<Polyline>& b,
       for (const Pixel& p : s.points) low = std::min(low, p.y()), high = std::max(high, p.y());
   if (!(high > low)) return 0;
   // Exact along each line; the lines sample the height by the midpoint rule.
-  const int rows = std::clamp(static_cast<int>(std::ceil((high - low) / cellPx)), 200, 4000);
+  const int rows = static_cast<int>(std::clamp(std::ceil((high - low) / cellPx), 200.0, 4000.0));
   double common = 0, all = 0;
   std::vector<std::pair<double, double>> ia, ib;
   for (int i = 0; i < rows; ++i) {

@@ -129,10 +129,14 @@ std::optional<CentreAnchor> anchorAtLight(const FitInput& input) {
   return anchor;
 }
 
+bool hasWholeEllipse(const TrainingView& view) {
+  return view.highlight.ellipse && !(view.failure && view.failure->reason == Reason::OutsideImage);
+}
+
 std::optional<CentreAnchor> anchorFromCentres(const std::vector<TrainingView>& views) {
   std::vector<ReflectedRay> rays;
   for (const TrainingView& v : views) {
-    if (v.failure || !v.highlight.ellipse) continue;
+    if (!hasWholeEllipse(v)) continue;
     const Ray ray = v.camera.ray(v.highlight.ellipse->centre);
     rays.push_back({ray.origin, ray.direction, ray.direction});
   }

@@ -30,6 +30,10 @@ std::optional<CentreAnchor> anchorAtLight(const FitInput& input);
 Outcome<Reconstruction> fitEllipsoid(const std::vector<ConicView>& views, const std::optional<CentreAnchor>& anchor,
                                      const Settings& settings);
 
+/// True when a view's ellipse is the outline of a whole highlight, which is all that `primal` needs: a view whose surface or
+/// brightest point is missing still counts, one that the image border cuts does not.
+bool hasWholeEllipse(const TrainingView& view);
+
 /// Closest point to the viewing rays through the centres of the ellipses: the anchor of `primal`, which has no light.
 /// Empty when the rays are parallel.
 std::optional<CentreAnchor> anchorFromCentres(const std::vector<TrainingView>& views);

@@ -103,8 +103,12 @@ class LimitAngle final : public HighlightModel {
         for (const BrightestPoint& b : *brightest)
           if (contains(c.outline, b.pixel) && (!found || b.alpha < h.brightest.alpha)) h.brightest = b, found = true;
       if (!found) {
-        const Outcome<BrightestPoint> at = observedBrightestPoint(*surface, camera, c.minimumAt);
-        if (at) h.brightest = *at;
+        // The smallest value may come from the reduced precision of the scan, just off the surface; the outline is exact.
+        Outcome<BrightestPoint> at = observedBrightestPoint(*surface, camera, c.minimumAt);
+        for (std::size_t i = 0; !at && i < c.outline.points.size(); ++i)
+          at = observedBrightestPoint(*surface, camera, c.outline.points[i]);
+        if (!at) continue;
+        h.brightest = *at;
         h.brightest.pixel = c.minimumAt;
         h.brightest.alpha = c.minimum;
       }

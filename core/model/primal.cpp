@@ -20,8 +20,7 @@ class Primal final : public HighlightModel {
     std::vector<ConicView> conics;
     ModelFit fit;
     for (const TrainingView& v : input.views) {
-      // The real camera needs neither P_B nor T: a view that failed there still counts here.
-      if (!v.highlight.ellipse) continue;
+      if (!hasWholeEllipse(v)) continue;
       conics.push_back(conicViewOf(v, v.camera.projection()));
       fit.frames.push_back(v.frame);
     }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -102,7 +103,8 @@ Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene
   try {
     std::ifstream stream(file);
     const json j = json::parse(stream);
-    if (!j.at("levels").contains(key)) throw InputError(file.string(), "levels", std::string("no contours at level ") + key);
+    if (!j.at("levels").contains(key) || std::abs(std::atof(key) - level) > kSameLevel)
+      throw InputError(file.string(), "levels", std::string("no contours at level ") + key + " (asked for " + std::to_string(level) + ")");
     for (const json& c : j.at("levels").at(key)) {
       Highlight h;
       h.light = frame.lightsOn.empty() ? "light" : frame.lightsOn.front();
@@ -110,6 +112,7 @@ Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene
       for (const json& p : c.at("points")) h.contour.points.emplace_back(p.at(0).get<double>(), p.at(1).get<double>());
       h.contour = withoutRepeats(h.contour);
       h.areaPx2 = std::abs(signedArea(h.contour));
+      if (!(h.areaPx2 > 0)) throw InputError(file.string(), std::string("levels.") + key, "a contour encloses no area");
       h.touchesBorder = !c.value("closed", true) || c.value("edge_fraction", 0.0) > 0;
       h.peak = centroid(h.contour);
       truth.push_back(std::move(h));

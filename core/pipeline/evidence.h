@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@ namespace glint {
 FrameEvidence gatherEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings);
 
 /// Contours stored as in data/cycles/*/contours (FOLDER/ID.json) at `level`, for scoring. FrameUnreadable when the frame has no
-/// file. InputError when a file does not parse or does not hold the level.
+/// file. InputError when a file does not parse, does not hold the level or has a contour without area.
 Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene& scene, int frame, double level);
 
 /// InputError when `folder` is none, or holds contours of no frame at all.

@@ -75,6 +75,11 @@ class Run {
     const auto it = previous_->stageKeys.find(stage);
     return it != previous_->stageKeys.end() && it->second == r_.stageKeys.at(stage);
   }
+  /// Some frame shows highlights whose light is not known from the frame alone.
+  bool severalLights() const {
+    const std::vector<Frame>& frames = r_.scene->frames;
+    return std::any_of(frames.begin(), frames.end(), [](const Frame& f) { return f.lightsOn.size() > 1; });
+  }
   std::shared_ptr<const Surface> surfaceOf(int frame) const {
     const Outcome<std::shared_ptr<const Surface>> s = r_.surfaces->surfaceOf(frame, normalPolicy(r_.request.settings));
     return s ? *s : nullptr;
@@ -93,8 +98,9 @@ class Run {
 
 void Run::highlights() {
   const InspectionRequest& q = r_.request;
-  r_.stageKeys["detect"] =
-      keyOfStages(q.settings, {"detect"}, (q.source == FrameSource::Image ? "image|" : "radiance|") + q.truthFolder);
+  // The assignment of several lights reflects rays on the surface: its normals matter then.
+  r_.stageKeys["detect"] = keyOfStages(q.settings, severalLights() ? std::set<std::string>{"detect", "surface"} : std::set<std::string>{"detect"},
+                                       (q.source == FrameSource::Image ? "image|" : "radiance|") + q.truthFolder);
   if (unchanged("detect")) {
     r_.evidence = previous_->evidence;
     return;
@@ -118,7 +124,10 @@ void Run::highlights() {
 
 void Run::assignSeveralLights() {
   const std::vector<Frame>& frames = r_.scene->frames;
-  if (std::none_of(frames.begin(), frames.end(), [](const Frame& f) { return f.lightsOn.size() > 1; })) return;
+  const bool open = std::any_of(r_.evidence.begin(), r_.evidence.end(), [](const FrameEvidence& e) {
+    return std::any_of(e.highlights.begin(), e.highlights.end(), [](const Highlight& h) { return h.light.empty(); });
+  });
+  if (!severalLights() || !open) return;
   std::vector<TrackedFrame> tracked(frames.size());
   std::vector<std::shared_ptr<const Surface>> surfaces(frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -127,7 +136,9 @@ void Run::assignSeveralLights() {
   }
   if (!report(progress_, {"assign lights", 0, 0})) throw Stopped{};
   assignLights(tracked);
-  for (std::size_t i = 0; i < frames.size(); ++i) r_.evidence[i].highlights = std::move(tracked[i].highlights);
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    for (std::size_t h = 0; h < tracked[i].highlights.size(); ++h)
+      if (std::string& light = r_.evidence[i].highlights[h].light; light.empty()) light = tracked[i].highlights[h].light;
 }
 
 void Run::brightestPointsAndTangentPlanes() {
@@ -314,6 +325,9 @@ Inspection inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& 
   result.scene = scene;
   result.surfaces = previous && previous->scene == scene ? previous->surfaces : std::make_shared<SurfaceCache>(*scene);
   result.request = request;
+  // A model named twice is one model.
+  std::vector<std::string>& models = result.request.models;
+  for (auto m = models.begin(); m != models.end();) m = std::find(models.begin(), m, *m) != m ? models.erase(m) : m + 1;
   result.train = parseTrainSpec(request.train, *scene);
   for (const std::string& m : request.models) modelByName(m);  // unknown names are refused before any work
   Run run(result, progress, previous);

@@ -23,10 +23,11 @@ std::optional<int> wholeNumber(const std::string& text) {
 std::vector<int> parseFrames(const std::string& text, const Scene& scene, const std::string& flag) {
   const int n = static_cast<int>(scene.frames.size());
   const auto bad = [&](const std::string& why) { return InputError("", flag + " " + text, why); };
-  if (const std::size_t colon = text.find(':'); colon != std::string::npos) {
+  if (text.rfind("first:", 0) == 0 || text.rfind("spread:", 0) == 0) {
+    const std::size_t colon = text.find(':');
     const std::string kind = text.substr(0, colon);
     const std::optional<int> k = wholeNumber(text.substr(colon + 1));
-    if ((kind != "first" && kind != "spread") || !k) throw bad("expected first:K or spread:K");
+    if (!k) throw bad("expected first:K or spread:K");
     if (*k < 1 || *k > n) throw bad("the input has " + std::to_string(n) + " frames");
     std::vector<int> frames;
     for (int i = 0; i < *k; ++i)
@@ -43,6 +44,7 @@ std::vector<int> parseFrames(const std::string& text, const Scene& scene, const 
     if (*number >= n) throw bad("there is no frame " + word + "; the input has " + std::to_string(n));
     return *number;
   };
+  if (!text.empty() && text.back() == ',') throw bad("empty entry");
   std::set<int> frames;
   std::stringstream stream(text);
   std::string word;
@@ -52,7 +54,11 @@ std::vector<int> parseFrames(const std::string& text, const Scene& scene, const 
       frames.insert(ids[word]);
       continue;
     }
-    const std::size_t dash = word.find('-', 1);
+    // Ids may hold dashes: the one that leaves a frame on either side separates.
+    std::size_t dash = word.find('-', 1);
+    const auto names = [&](const std::string& part) { return ids.count(part) || wholeNumber(part); };
+    for (std::size_t d = dash; d != std::string::npos; d = word.find('-', d + 1))
+      if (names(word.substr(0, d)) && names(word.substr(d + 1))) dash = d;
     if (dash == std::string::npos) {
       frames.insert(frameOf(word));
       continue;
