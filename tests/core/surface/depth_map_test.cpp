@@ -119,8 +119,8 @@ TEST(DepthMap, Degenerate) {
   Image one(160, 120, 1);
   one.at(80, 60) = 1;
   EXPECT_EQ(makeDepthMap(one, camera).failure().reason, Reason::NoSurface);
-  EXPECT_THROW(makeDepthMap(Image(10, 10, 1, 1.f), camera), std::invalid_argument);
-  EXPECT_THROW(makeDepthMap(Image(160, 120, 3, 1.f), camera), std::invalid_argument);
+  EXPECT_THROW((void)makeDepthMap(Image(10, 10, 1, 1.f), camera), std::invalid_argument);
+  EXPECT_THROW((void)makeDepthMap(Image(160, 120, 3, 1.f), camera), std::invalid_argument);
 }
 
 }  // namespace
