@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <sstream>
+
+#include "core/pipeline/session.h"
 
 namespace glint::cli {
 
@@ -22,9 +25,9 @@ std::vector<std::string> splitList(const std::string& text, const std::string& f
 void InspectionArguments::declare(Options& o, const std::string& modelsHelp) {
   o.positional(input, "INPUT", "A scene file, a folder with one, or a session");
   o.option(models, "--models,--model", "NAME[,NAME...]", modelsHelp);
-  o.option(train, "--train", "SPEC", "Training frames: numbers, ids or ranges (0-5,14), first:K, spread:K, or per-surface");
+  o.option(train, "--train", "SPEC", "Training frames: numbers, ids or ranges (0-5,14), first:K, spread:K, or per-surface (default: the session's, else first:6)");
   o.option(level, "--level", "Q", "Contour level, fraction of the peak above the background (default 0.5)");
-  o.choice(source, "--source", {"radiance", "image"}, "Where both exist: the float radiance or the captured image");
+  o.choice(source, "--source", {"", "radiance", "image"}, "Where both exist: the float radiance or the captured image (default: the session's, else radiance)");
   o.repeated(set, "--set", "KEY=VALUE", "Any setting by its dotted name (`glint settings` lists them); may be repeated");
   o.option(noisePx, "--noise-px", "S", "Gaussian noise per coordinate on training contours (72 points) and peaks, px");
   o.option(seed, "--seed", "N", "Seed of that noise");
@@ -34,13 +37,14 @@ void InspectionArguments::declare(Options& o, const std::string& modelsHelp) {
 
 InspectionRequest InspectionArguments::request() const {
   InspectionRequest r;
+  if (std::filesystem::path(input).extension() == ".glint") r = readSession(input).request;
   if (!models.empty() && models != "auto") r.models = splitList(models, "--models");
   for (auto m = r.models.begin(); m != r.models.end(); ++m) {
     modelByName(*m);
     if (std::find(r.models.begin(), m, *m) != m) throw InputError("", "--models " + models, "'" + *m + "' stands twice");
   }
-  r.train = train;
-  r.source = source == "image" ? FrameSource::Image : FrameSource::Radiance;
+  if (!train.empty()) r.train = train;
+  if (!source.empty()) r.source = source == "image" ? FrameSource::Image : FrameSource::Radiance;
   for (const std::string& entry : set) {
     const std::size_t equals = entry.find('=');
     if (equals == std::string::npos) throw InputError("", "--set " + entry, "expected KEY=VALUE");
@@ -54,9 +58,11 @@ InspectionRequest InspectionArguments::request() const {
     }
   }
   if (!(noisePx >= 0 && std::isfinite(noisePx))) throw InputError("", "--noise-px", "must be finite and not negative");
-  r.noisePx = noisePx;
-  r.seed = seed;
-  r.truthFolder = truth;
+  if (noisePx > 0) {
+    r.noisePx = noisePx;
+    r.seed = seed;
+  }
+  if (!truth.empty()) r.truthFolder = truth;
   return r;
 }
 

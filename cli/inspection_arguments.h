@@ -12,14 +12,15 @@ namespace glint::cli {
 
 /// Arguments shared by evaluate, reconstruct and others: everything that an InspectionRequest holds.
 struct InspectionArguments {
-  std::string input, models, train = "first:6", source = "radiance", truth;
-  std::string level;                       ///< "" = the setting's default
+  std::string input, models, truth;
+  std::string train, source, level;        ///< "" = the session's, else the default
   std::vector<std::string> set;
   double noisePx = 0;
   unsigned seed = 1;
   bool allowOutside = false;
 
   void declare(Options& options, const std::string& modelsHelp);
+  /// Starts from the session's request when INPUT is one; what is given on the command line wins.
   /// InputError for unknown models, settings or values out of range.
   InspectionRequest request() const;
   std::shared_ptr<const Scene> scene() const;

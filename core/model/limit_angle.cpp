@@ -8,6 +8,8 @@
 namespace glint {
 namespace {
 
+constexpr double kSameAlpha = 1e-7;  // rad; far above the round-off of a polished point, far below any limit angle
+
 /// alpha of the surface point seen at a pixel; empty off the surface, on its dark side, and where it turns away.
 std::optional<double> alphaAt(const SurfacePoint& hit, const Eigen::Vector3d& eye, const Light& light) {
   const SurfacePoint p = facing(hit, eye);
@@ -97,11 +99,19 @@ class LimitAngle final : public HighlightModel {
       h.contour = c.outline;
       h.coverage = coverageOf(c, camera, options.marginPx);
       if (const Outcome<Ellipse> e = fitEllipse(c.outline.points)) h.ellipse = *e;
-      // Its peak: the brightest point inside with the smallest alpha, else the smallest value met.
+      // Its peak: the brightest point inside. A merged highlight holds several whose alpha is zero up to round-off: the one
+      // nearest to the middle is taken, so that round-off decides nothing.
       bool found = false;
+      const Pixel middle = centroid(c.outline);
       if (brightest)
-        for (const BrightestPoint& b : *brightest)
-          if (contains(c.outline, b.pixel) && (!found || b.alpha < h.brightest.alpha)) h.brightest = b, found = true;
+        for (const BrightestPoint& b : *brightest) {
+          if (!contains(c.outline, b.pixel)) continue;
+          const bool darker = found && b.alpha > h.brightest.alpha + kSameAlpha;
+          const bool asBright = found && std::abs(b.alpha - h.brightest.alpha) <= kSameAlpha;
+          if (darker || (asBright && (b.pixel - middle).norm() >= (h.brightest.pixel - middle).norm())) continue;
+          h.brightest = b;
+          found = true;
+        }
       if (!found) {
         // The smallest value may come from the reduced precision of the scan, just off the surface; the outline is exact.
         Outcome<BrightestPoint> at = observedBrightestPoint(*surface, camera, c.minimumAt);
