@@ -40,8 +40,12 @@ class BadInput : public SmallScene {
     EXPECT_EQ(evaluated.err, "");
     const Json model = Json::parse(evaluated.out)["models"]["limit-angle"];
     for (const Json& row : model["frames"]) {
-      if (row["index"] == 7) EXPECT_THAT(row["reason"].get<std::string>(), HasSubstr(reason));
-      if (row["index"] == 6) EXPECT_EQ(row["status"], "ok");
+      if (row["index"] == 7) {
+        EXPECT_THAT(row["reason"].get<std::string>(), HasSubstr(reason));
+      }
+      if (row["index"] == 6) {
+        EXPECT_EQ(row["status"], "ok");
+      }
     }
     EXPECT_EQ(model["frames"].size(), 2u);
     const ProgramRun detected = on("detect", "--json -");

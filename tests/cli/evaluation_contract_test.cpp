@@ -44,7 +44,9 @@ class EvaluationContract : public SmallScene {
         expectKeys(fit, {{"light", "s"}, {"surface", "s?"}, {"ellipsoid", "o?"}, {"q_dual", "a"}, {"light_position", "a?"},
                          {"limit_angle_deg", "n?"}, {"roughness", "n?"}, {"gap_ratio", "n?"}, {"condition", "n?"},
                          {"time_us", ok ? "n" : "n?"}}, name + ".fits");
-        if (!fit["light_position"].is_null()) EXPECT_EQ(fit["light_position"].size(), 4u) << name;
+        if (!fit["light_position"].is_null()) {
+          EXPECT_EQ(fit["light_position"].size(), 4u) << name;
+        }
         if (!fit["ellipsoid"].is_null())
           expectKeys(fit["ellipsoid"], {{"centre", "a"}, {"semi_axes", "a"}, {"world_from_ellipsoid", "a"}}, name + ".ellipsoid");
       }
