@@ -82,7 +82,7 @@ Image scenePicture(const RenderArguments& a, const std::shared_ptr<const Inspect
   view.setDarkBackground(a.theme == "dark");
   view.setInspection(inspection);
   view.setModels(models);
-  view.setSelection({frame, "", saved.highlight});
+  view.setSelection({frame, saved.model, saved.highlight});
   view.setGlyphScale(a.glyphs);
   for (const auto& [name, visible] : saved.layers) {
     const auto& layers = viz::sceneLayers();

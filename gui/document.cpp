@@ -90,9 +90,9 @@ Opened Document::toSave() const {
   return o;
 }
 
-void Document::markSaved(const QString& sessionFile) {
+void Document::markSaved(const QString& sessionFile, const ViewState& saved) {
   sessionFile_ = sessionFile;
-  saved_ = state_;
+  saved_ = saved;
   emit savedStateChanged();
 }
 

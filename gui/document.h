@@ -58,7 +58,8 @@ class Document : public QObject {
   const QString& sessionFile() const { return sessionFile_; }
   const QString& inputFile() const { return inputFile_; }
   Opened toSave() const;
-  void markSaved(const QString& sessionFile);
+  /// @param saved  the state that was written, which may be older than the one on screen.
+  void markSaved(const QString& sessionFile, const ViewState& saved);
   /// What a session stores differs from what was opened or saved last (moving through the frames does not count).
   bool hasUnsavedChanges() const;
 

@@ -39,8 +39,9 @@ struct Engine {
       inspect;
   /// As glint::parseTrainSpec: InputError for a specification that does not parse.
   std::function<TrainSpec(const std::string&, const Scene&)> parseTrain;
-  /// Writes a session file atomically; InputError when it cannot be written. @param results may be null.
-  std::function<void(const Opened&, const Inspection* results, const std::string& path)> save;
+  /// Writes a session file atomically; InputError when it cannot be written, Stopped. It hashes every input file, so it takes
+  /// its time. @param results may be null.
+  std::function<void(const Opened&, const Inspection* results, const std::string& path, const ProgressFn&)> save;
 };
 
 /// The engine that the program uses: glint::core.

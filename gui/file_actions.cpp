@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/file_actions.h"
 
+#include <QEventLoop>
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QMenu>
@@ -22,6 +23,7 @@ const QString kRecentKey = QStringLiteral("recent");
 FileActions::FileActions(const Engine& engine, Document& document, Runner& runner, QWidget* window)
     : QObject(window), engine_(engine), document_(document), runner_(runner), window_(window) {
   connect(&runner_, &Runner::opened, this, &FileActions::finishOpen);
+  connect(&runner_, &Runner::saved, this, &FileActions::finishSave);
 }
 
 void FileActions::fillMenu(QMenu* menu) {
@@ -64,13 +66,14 @@ QString FileActions::dropped(const QMimeData* data) {
 }
 
 bool FileActions::mayDiscard() {
+  waitForSave();
   if (!document_.hasUnsavedChanges()) return true;
   QMessageBox question(QMessageBox::Question, tr("Unsaved changes"), tr("The session has changes that are not saved."),
                        QMessageBox::Discard | QMessageBox::Cancel, window_);
   if (engine_.save) question.addButton(QMessageBox::Save);
   question.setDefaultButton(engine_.save ? QMessageBox::Save : QMessageBox::Cancel);
   const int answer = question.exec();
-  if (answer == QMessageBox::Save) return save();
+  if (answer == QMessageBox::Save) return save() && waitForSave();
   return answer == QMessageBox::Discard;
 }
 
@@ -125,19 +128,39 @@ bool FileActions::saveAs() {
 }
 
 bool FileActions::saveTo(const QString& path) {
-  const std::shared_ptr<const Inspection> results = document_.stale() ? nullptr : document_.inspection();
-  try {
-    Opened opened = document_.toSave();
-    if (addView_) addView_(opened);
-    engine_.save(opened, results.get(), path.toStdString());
-  } catch (const std::exception& e) {
-    emit problem(toQString(e.what()));
-    return false;
-  }
-  document_.markSaved(path);
-  remember(path);
-  emit message(tr("Saved %1").arg(path));
+  if (savingScene_) return false;  // one after the other
+  const InspectionPtr results = document_.stale() ? nullptr : document_.inspection();
+  auto opened = std::make_shared<Opened>(document_.toSave());
+  if (addView_) addView_(*opened);
+  savingScene_ = document_.sharedScene();
+  saving_ = document_.state();
+  savingResults_ = results != nullptr;
+  runner_.save(opened, results, path.toStdString());
   return true;
+}
+
+void FileActions::finishSave(const QString& path, const QString& problem) {
+  saveWorked_ = problem.isEmpty();
+  if (saveWorked_) {
+    if (savingScene_ == document_.sharedScene()) document_.markSaved(path, saving_);  // else another scene was opened meanwhile
+    remember(path);
+    emit message(savingResults_ ? tr("Saved %1").arg(path)
+                                : tr("Saved %1 without results: they were not up to date").arg(path));
+  } else {
+    emit this->problem(problem);
+  }
+  savingScene_.reset();
+  emit saveEnded();
+}
+
+bool FileActions::waitForSave() {
+  if (!savingScene_) return saveWorked_;
+  QEventLoop loop;  // the window keeps painting and shows the progress
+  connect(this, &FileActions::saveEnded, &loop, &QEventLoop::quit);
+  window_->setEnabled(false);
+  loop.exec(QEventLoop::ExcludeUserInputEvents);
+  window_->setEnabled(true);
+  return saveWorked_;
 }
 
 }  // namespace glint::gui

@@ -24,7 +24,7 @@ class FileActions : public QObject {
   QStringList recent() const;
   /// The path of the first local file of a drop; "" when there is none.
   static QString dropped(const QMimeData* data);
-  /// True when nothing is lost, or the user says so.
+  /// True when nothing is lost, or the user says so. Waits for a save that is under way.
   bool mayDiscard();
   /// Selects this frame once the next input is open: its id, else its number.
   void setFrameToSelect(const QString& frame) { frameToSelect_ = frame; }
@@ -35,18 +35,22 @@ class FileActions : public QObject {
   void openDialog();
   void openFolderDialog();
   void open(const QString& path);
+  /// Save in the background; false when there was nothing to save or the user gave up. Message or problem tells how it ended.
   bool save();
   bool saveAs();
 
  signals:
   void problem(const QString& oneLine);
   void message(const QString& oneLine);
+  void saveEnded();
   void recentChanged();
   void viewOpened(const glint::gui::OpenedPtr& opened);  ///< after the document took it: layout and 3D camera
 
  private:
   void finishOpen(const OpenedPtr& opened);
   bool saveTo(const QString& path);
+  void finishSave(const QString& path, const QString& problem);
+  bool waitForSave();
   void remember(const QString& path);
 
   const Engine& engine_;
@@ -54,6 +58,9 @@ class FileActions : public QObject {
   Runner& runner_;
   QWidget* window_;
   QString frameToSelect_;
+  std::shared_ptr<const Scene> savingScene_;  ///< not null while a save is under way
+  ViewState saving_;                          ///< what it writes
+  bool savingResults_ = false, saveWorked_ = false;
   std::function<void(Opened&)> addView_;
 };
 

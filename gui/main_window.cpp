@@ -54,7 +54,10 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   buildStatusLine();
 
   connect(files_, &FileActions::problem, this, &MainWindow::showProblem);
-  connect(files_, &FileActions::message, this, &MainWindow::log);
+  connect(files_, &FileActions::message, this, [this](const QString& line) {
+    log(line);
+    statusBar()->showMessage(line, 6000);
+  });
   connect(files_, &FileActions::recentChanged, this, [this] { start_->setRecent(files_->recent()); });
   connect(files_, &FileActions::viewOpened, this, [this](const OpenedPtr& opened) {
     if (!opened->layout.empty()) applyLayout(toQString(opened->layout));
@@ -62,7 +65,7 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   });
   files_->setViewSource([this](Opened& opened) {
     opened.layout = layout_.toStdString();
-    opened.viewPoint = scene_->view().viewPoint();
+    opened.viewPoint = scene_->viewPoint();
   });
   connect(&runner_, &Runner::failed, this, [this](const QString& oneLine) {
     runFailed_ = true;

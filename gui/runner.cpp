@@ -26,10 +26,13 @@ Runner::~Runner() {
   thread_.wait();
 }
 
-void Runner::cancel() { cancelled_ = newest_.load(); }
+void Runner::cancel() {
+  cancelled_ = newest_.load();
+  cancelledSaves_ = newestSave_.load();
+}
 
 void Runner::open(const std::string& path) {
-  cancel();  // results of the scene on screen are of no use any more
+  cancelled_ = newest_.load();  // results of the scene on screen are of no use any more; a save is
   const auto work = [this, path](int job) {
     auto opened = std::make_shared<const Opened>(engine_.open(path));
     if (job == newest_)
@@ -53,6 +56,37 @@ void Runner::inspect(std::shared_ptr<const Scene> scene, const InspectionRequest
       QMetaObject::invokeMethod(
           this, [this, result, computedFor] { emit finished(result, computedFor); }, Qt::QueuedConnection);
   });
+}
+
+void Runner::save(OpenedPtr opened, InspectionPtr results, const std::string& path) {
+  const int job = ++newestSave_;
+  if (++pending_ == 1) emit busyChanged(true);
+  QMetaObject::invokeMethod(
+      worker_,
+      [this, job, opened = std::move(opened), results = std::move(results), path] {
+        QString problem;
+        try {
+          QElapsedTimer lastSignal;
+          const ProgressFn progress = [&](const StageEvent& e) {
+            if (job <= cancelledSaves_) return false;
+            showProgress(lastSignal, e);
+            return true;
+          };
+          engine_.save(*opened, results.get(), path, progress);
+        } catch (const Stopped&) {
+          problem = toQString(path) + tr(": saving was stopped, nothing was written");
+        } catch (const std::exception& e) {
+          problem = toQString(e.what());
+        }
+        QMetaObject::invokeMethod(
+            this,
+            [this, path, problem] {
+              emit saved(toQString(path), problem);
+              countEnd();
+            },
+            Qt::QueuedConnection);
+      },
+      Qt::QueuedConnection);
 }
 
 void Runner::post(std::function<void(int)> work, std::function<void()> onFailure) {
@@ -80,22 +114,27 @@ void Runner::post(std::function<void(int)> work, std::function<void()> onFailure
 bool Runner::report(int job, const QElapsedTimer& clock, QElapsedTimer& lastSignal, const StageEvent& event) {
   if (job <= cancelled_) return false;
   if (job != newest_ && clock.elapsed() > kGraceMs) return false;
-  if (!lastSignal.isValid() || lastSignal.elapsed() >= kSignalEveryMs) {
-    lastSignal.start();
-    const QString stage = toQString(event.stage);
-    QMetaObject::invokeMethod(
-        this, [this, stage, done = event.done, total = event.total] { emit progressed(stage, done, total); },
-        Qt::QueuedConnection);
-  }
+  showProgress(lastSignal, event);
   return true;
 }
 
+void Runner::showProgress(QElapsedTimer& lastSignal, const StageEvent& event) {
+  if (lastSignal.isValid() && lastSignal.elapsed() < kSignalEveryMs) return;
+  lastSignal.start();
+  const QString stage = toQString(event.stage);
+  QMetaObject::invokeMethod(
+      this, [this, stage, done = event.done, total = event.total] { emit progressed(stage, done, total); }, Qt::QueuedConnection);
+}
+
+void Runner::countEnd() {
+  if (--pending_ == 0) emit busyChanged(false);
+}
+
 void Runner::end(int job, End how, const QString& message, const std::function<void()>& onFailure) {
-  --pending_;
   if (job == newest_ && how == End::Failed) emit failed(message);
   if (how == End::Failed && onFailure) onFailure();
   if (job == newest_ && how == End::Stopped) emit stopped();
-  if (pending_ == 0) emit busyChanged(false);
+  countEnd();
 }
 
 }  // namespace glint::gui

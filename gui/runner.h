@@ -30,6 +30,9 @@ class Runner : public QObject {
   void open(const std::string& path);
   /// @param previous  earlier results on the same scene, so that unchanged stages are not repeated; may be null.
   void inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& request, InspectionPtr previous);
+  /// Writes a session without stopping what runs; nothing but cancel() stops it. Answers with saved().
+  /// @param results  finished results of exactly `opened.request`, or null.
+  void save(OpenedPtr opened, InspectionPtr results, const std::string& path);
   void cancel();
   bool busy() const { return pending_ > 0; }
 
@@ -41,11 +44,14 @@ class Runner : public QObject {
   void failed(const QString& oneLine);
   void openFailed();  ///< after failed(): what ran for the scene on screen was stopped for nothing
   void stopped();     ///< by cancel()
+  void saved(const QString& path, const QString& problem);  ///< `problem` is one line, "" = the file is written
 
  private:
   enum class End { Done, Stopped, Failed };
   void post(std::function<void(int job)> work, std::function<void()> onFailure = {});
+  void showProgress(QElapsedTimer& lastSignal, const StageEvent& event);
   bool report(int job, const QElapsedTimer& clock, QElapsedTimer& lastSignal, const StageEvent& event);
+  void countEnd();
   void end(int job, End how, const QString& message, const std::function<void()>& onFailure);
 
   Engine engine_;
@@ -53,6 +59,7 @@ class Runner : public QObject {
   QObject* worker_;                ///< lives on thread_; lambdas posted to it run there
   std::atomic<int> newest_{0};     ///< number of the newest request
   std::atomic<int> cancelled_{0};  ///< requests up to this one were cancelled by the user
+  std::atomic<int> newestSave_{0}, cancelledSaves_{0};
   int pending_ = 0;                ///< posted and not yet ended; interface thread only
 };
 

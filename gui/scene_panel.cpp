@@ -64,6 +64,10 @@ ScenePanel::ScenePanel(Document& document, QWidget* parent)
 
 ScenePanel::~ScenePanel() = default;
 
+std::optional<viz::ViewPoint> ScenePanel::viewPoint() const {
+  return framed_ ? std::optional(view_->viewPoint()) : firstViewPoint_;
+}
+
 void ScenePanel::renderNow() { widget_->renderWindow()->Render(); }
 
 void ScenePanel::scheduleRender() {

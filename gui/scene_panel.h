@@ -22,6 +22,8 @@ class ScenePanel : public QWidget {
   void setDark(bool dark);
   /// Where the next results are looked at from; none = show everything.
   void setViewPoint(const std::optional<viz::ViewPoint>& viewPoint) { firstViewPoint_ = viewPoint; }
+  /// The 3D camera to save: the one on screen, and before there are results the one that they will be looked at from.
+  std::optional<viz::ViewPoint> viewPoint() const;
 
  public slots:
   void frameAll();

@@ -59,14 +59,15 @@ Opened openInput(const std::string& path) {
   return opened;
 }
 
-void saveSession(const Opened& opened, const Inspection* results, const std::string& path) {
+void saveSession(const Opened& opened, const Inspection* results, const std::string& path, const ProgressFn& progress) {
   const Scene& scene = *opened.scene;
   Session session;
   if (results) {
-    session = sessionOf(*results);
+    session = sessionOf(*results, progress);
   } else {
-    session.input = fs::absolute(scene.file);
-    session.files = hashInputs(scene, opened.request);
+    session.input = fs::absolute(scene.file).lexically_normal();
+    session.allowOutsidePaths = scene.allowOutsidePaths;
+    session.files = hashInputs(scene, opened.request, progress);
     const TrainSpec train = parseTrainSpec(opened.request.train, scene);
     for (int i = 0; i < int(scene.frames.size()); ++i) {
       const std::string& id = scene.frames[std::size_t(i)].id;
@@ -82,6 +83,7 @@ void saveSession(const Opened& opened, const Inspection* results, const std::str
     session.unknownJson = opened.session->unknownJson;
     session.allowOutsidePaths = opened.session->allowOutsidePaths;
     session.view.cameras = opened.session->view.cameras;
+    session.view.light = opened.session->view.light;
   }
   session.view.layout = opened.layout;
   session.view.layers = opened.layers;
