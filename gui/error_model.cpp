@@ -97,6 +97,8 @@ void ErrorModel::addComparison(const Inspection& inspection, const std::string& 
       row.reason = toQString(r.failure->message());
     else if (c.prediction.failure)
       row.reason = toQString(c.prediction.failure->message());
+    else if (!r.metrics)
+      row.reason = r.observed < 0 ? tr("no observed highlight overlaps it") : tr("no prediction overlaps it");
     if (r.metrics) {
       row.values[ErrorPct] = r.metrics->contourErrorPct;
       row.values[ErrorPx] = r.metrics->contourErrorPx;

@@ -4,6 +4,7 @@
 #include <QApplication>
 #include <QClipboard>
 #include <QComboBox>
+#include <QGridLayout>
 #include <QHBoxLayout>
 #include <QHeaderView>
 #include <QKeyEvent>
@@ -13,6 +14,7 @@
 #include <QTableView>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <cmath>
 
 #include "core/evaluate/summary.h"
 #include "gui/error_model.h"
@@ -69,8 +71,17 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   head->addWidget(summary_, 1);
   filter_ = new QComboBox;
   filter_->setObjectName(QStringLiteral("errorFilter"));
-  filter_->addItems({tr("All frames"), tr("Held out"), tr("Training"), tr("Problems")});
-  head->addWidget(filter_, 0, Qt::AlignTop);
+  filter_->addItems({tr("all frames"), tr("held-out frames"), tr("training frames"), tr("problems only")});
+  auto* choice = new QGridLayout;
+  choice->setHorizontalSpacing(6);
+  choice->addWidget(new QLabel(tr("Rows of")), 0, 0);
+  choice->addWidget(filter_, 0, 1);
+  count_ = new QLabel;
+  count_->setObjectName(QStringLiteral("errorCount"));
+  count_->setProperty("role", "faded");
+  choice->addWidget(count_, 1, 0, 1, 2, Qt::AlignRight);
+  choice->setRowStretch(2, 1);
+  head->addLayout(choice);
   column->addLayout(head);
 
   model_ = new ErrorModel(document, this);
@@ -91,24 +102,42 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   view_->verticalHeader()->hide();
   view_->verticalHeader()->setDefaultSectionSize(fontMetrics().height() + 5);
   view_->horizontalHeader()->setHighlightSections(false);
-  view_->horizontalHeader()->setStretchLastSection(true);
+  view_->horizontalHeader()->setStretchLastSection(false);
   const int widths[] = {54, 66, 98, 50, 64, 66, 68, 74, 80, 62, 78, 76, 68, 72};
   for (int i = 0; i < int(std::size(widths)); ++i) view_->setColumnWidth(i, widths[i]);
+  // Why there is no number stands beside "failed", not out of sight behind a row of dashes.
+  view_->horizontalHeader()->moveSection(ErrorModel::ReasonText, ErrorModel::Status + 1);
   view_->installEventFilter(this);
   column->addWidget(view_, 1);
 
   connect(filter_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this, proxy](int i) {
     proxy->show(Shown(i));
+    showCount();
     selectFromDocument();
   });
   connect(model_, &QAbstractItemModel::modelReset, this, [this] {
     showSummary();
+    showCount();
+    fitReason();
     selectFromDocument();
   });
   connect(&document_, &Document::staleChanged, this, &ErrorTable::showSummary);
   connect(&document_, &Document::selectionChanged, this, &ErrorTable::selectFromDocument);
   connect(view_->selectionModel(), &QItemSelectionModel::currentRowChanged, this, &ErrorTable::selectFromTable);
   showSummary();
+}
+
+void ErrorTable::showCount() {
+  const int shown = proxy_->rowCount(), all = model_->rowCount();
+  count_->setText(all == 0 ? QString() : shown == all ? tr("%1 rows").arg(all) : tr("%1 of %2 rows").arg(shown).arg(all));
+}
+
+void ErrorTable::fitReason() {
+  int width = 60;
+  for (int row = 0; row < model_->rowCount(); ++row)
+    width = std::max(width,
+                     view_->fontMetrics().horizontalAdvance(model_->index(row, ErrorModel::ReasonText).data().toString()) + 16);
+  view_->setColumnWidth(ErrorModel::ReasonText, std::min(width, 300));
 }
 
 void ErrorTable::showSummary() {
@@ -120,9 +149,14 @@ void ErrorTable::showSummary() {
   // In place of the heading: a line of its own would make the table jump under the mouse.
   const QString faded = (document_.stale() ? warningColour() : palette().color(QPalette::PlaceholderText)).name();
   QString html = QStringLiteral("<table cellspacing='0' cellpadding='0'><tr style='color:%1'>").arg(faded);
-  for (const QString& title : {document_.stale() ? tr("out of date…") : tr("Held-out frames"), tr("mean %"), tr("median"),
-                               tr("p95"), tr("max"), tr("IoU"), tr("predicted"), tr("missed"), tr("spurious")})
-    html += QStringLiteral("<td style='padding-right:18px'>%1</td>").arg(title);
+  html += QStringLiteral("<td style='padding-right:18px'>%1</td>")
+              .arg(document_.stale() ? tr("out of date…") : tr("Held-out frames, error %"));
+  const auto cells = [](const QStringList& texts) {
+    QString row;
+    for (const QString& text : texts) row += QStringLiteral("<td align='right' style='padding-right:18px'>%1</td>").arg(text);
+    return row;
+  };
+  html += cells({tr("mean"), tr("median"), tr("p95"), tr("max"), tr("IoU"), tr("predicted"), tr("missed"), tr("spurious")});
   html += QStringLiteral("</tr>");
   for (const std::string& name : viz::modelsInOrder(*inspection)) {
     const ModelSummary s = summarise(*inspection, inspection->models.at(name));
@@ -134,11 +168,14 @@ void ErrorTable::showSummary() {
       continue;
     }
     const Statistic& e = s.contourErrorPct;
-    for (const QString& cell :
-         {numberText(e.mean, 3), numberText(e.median, 3), numberText(e.p95, 3), numberText(e.max, 3), numberText(s.iou.mean, 4),
-          QStringLiteral("%1/%2").arg(s.predicted).arg(s.frames), QString::number(s.missed), QString::number(s.spurious)})
-      html += QStringLiteral("<td style='padding-right:18px'>%1</td>").arg(cell);
-    html += QStringLiteral("</tr>");
+    // As many decimals as the table below, so that points stand under points.
+    const auto fixed = [](double v, int decimals) {
+      return std::isfinite(v) ? QString::number(v, 'f', decimals) : QStringLiteral("–");
+    };
+    html +=
+        cells({fixed(e.mean, 3), fixed(e.median, 3), fixed(e.p95, 3), fixed(e.max, 3), fixed(s.iou.mean, 4),
+               QStringLiteral("%1/%2").arg(s.predicted).arg(s.frames), QString::number(s.missed), QString::number(s.spurious)}) +
+        QStringLiteral("</tr>");
   }
   html += QStringLiteral("</table>");
   summary_->setText(html);

@@ -28,6 +28,8 @@ class ErrorTable : public QWidget {
 
  private:
   void showSummary();
+  void showCount();
+  void fitReason();
   void selectFromDocument();
   void selectFromTable();
 
@@ -37,6 +39,7 @@ class ErrorTable : public QWidget {
   QTableView* view_;
   QLabel* summary_;
   QComboBox* filter_;
+  QLabel* count_;
   bool selecting_ = false;  ///< the table itself caused the change that it hears of
 };
 

@@ -7,6 +7,7 @@
 #include <QPainterPath>
 #include <QWheelEvent>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -44,6 +45,7 @@ FrameCanvas::FrameCanvas(QWidget* parent) : QWidget(parent) {
 void FrameCanvas::setPhotograph(const QImage& photograph) {
   const bool sameSize = photograph.size() == photograph_.size();
   photograph_ = photograph;
+  develop();
   message_.clear();
   if (fitted_ || !sameSize) fit();
   update();
@@ -51,13 +53,41 @@ void FrameCanvas::setPhotograph(const QImage& photograph) {
 
 void FrameCanvas::setMessage(const QString& message) {
   message_ = message;
-  photograph_ = QImage();
+  photograph_ = shown_ = QImage();
   update();
 }
 
 void FrameCanvas::setOverlay(viz::FrameOverlay overlay) {
   overlay_ = std::move(overlay);
   update();
+}
+
+void FrameCanvas::setExposure(double stops) {
+  if (stops == exposure_) return;
+  exposure_ = stops;
+  develop();
+  update();
+}
+
+void FrameCanvas::develop() {
+  if (exposure_ == 0 || photograph_.isNull()) {
+    shown_ = photograph_;
+    return;
+  }
+  // Stops are factors of two of linear light, so the sRGB curve is undone and done again.
+  std::array<uchar, 256> table{};
+  const double gain = std::exp2(exposure_);
+  for (int i = 0; i < 256; ++i) {
+    const double v = i / 255.0;
+    const double light = std::min(1.0, gain * (v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4)));
+    const double back = light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
+    table[std::size_t(i)] = uchar(std::lround(255 * std::clamp(back, 0.0, 1.0)));
+  }
+  shown_ = photograph_.convertToFormat(QImage::Format_RGB888);
+  for (int y = 0; y < shown_.height(); ++y) {
+    uchar* row = shown_.scanLine(y);
+    for (int i = 0; i < 3 * shown_.width(); ++i) row[i] = table[row[i]];
+  }
 }
 
 void FrameCanvas::setStale(bool stale) {
@@ -133,7 +163,7 @@ void FrameCanvas::drawPhotograph(QPainter& painter) const {
   if (visible.isEmpty()) return;
   const QRectF target(widgetFromPixel({visible.x() - 0.5, visible.y() - 0.5}), QSizeF(visible.size()) * zoom_);
   painter.setRenderHint(QPainter::SmoothPixmapTransform, zoom_ * devicePixelRatioF() < 1.999);
-  painter.drawImage(target, photograph_, QRectF(visible));
+  painter.drawImage(target, shown_, QRectF(visible));
   if (zoom_ < kGridFromZoom) return;
   painter.setPen(QPen(QColor(128, 128, 128, 70), 0));
   for (int x = visible.left(); x <= visible.right() + 1; ++x) {

@@ -20,6 +20,8 @@ class FrameCanvas : public QWidget {
   void setMessage(const QString& message);       ///< instead of a photograph
   void setOverlay(viz::FrameOverlay overlay);
   void setStale(bool stale);
+  /// Brightens the photograph on screen by so many stops; numbers and overlays do not change.
+  void setExposure(double stops);
 
   /// Widget (logical) coordinates of a photograph pixel, and back.
   QPointF widgetFromPixel(const Pixel& pixel) const;
@@ -53,11 +55,14 @@ class FrameCanvas : public QWidget {
   void leaveEvent(QEvent*) override;
 
  private:
+  void develop();
   void drawPhotograph(QPainter& painter) const;
   void drawOverlay(QPainter& painter) const;
   void probe(const QPointF& position);
 
-  QImage photograph_;
+  QImage photograph_;  ///< as read
+  QImage shown_;       ///< with the exposure
+  double exposure_ = 0;
   QString message_;
   viz::FrameOverlay overlay_;
   double zoom_ = 1;

@@ -3,6 +3,7 @@
 
 #include <QHBoxLayout>
 #include <QLabel>
+#include <QSlider>
 #include <QToolButton>
 #include <QVBoxLayout>
 #include <QVariant>
@@ -58,6 +59,11 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
   title_ = new QLabel;
   title_->setObjectName(QStringLiteral("frameTitle"));
   row->addWidget(title_);
+  role_ = new QLabel;
+  role_->setObjectName(QStringLiteral("frameRole"));
+  role_->setSizePolicy(QSizePolicy::Maximum, QSizePolicy::Maximum);
+  row->addSpacing(6);
+  row->addWidget(role_);
   row->addStretch(1);
   auto* legend = new QHBoxLayout;
   legend->setContentsMargins(4, 0, 4, 3);
@@ -66,11 +72,19 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
               {viz::OverlayRole::ObservedEllipse, "frame/observed-ellipse", QT_TR_NOOP("Obs. ellipse"), nullptr},
               {viz::OverlayRole::PredictedContour, "frame/predicted", QT_TR_NOOP("Predicted"), nullptr},
               {viz::OverlayRole::PredictedEllipse, "frame/predicted-ellipse", QT_TR_NOOP("Pred. ellipse"), nullptr},
+              {viz::OverlayRole::CanonicalEllipse, "frame/canonical", QT_TR_NOOP("Canonical"), nullptr},
               {viz::OverlayRole::ObservedPeak, "frame/peak", QT_TR_NOOP("Peaks"), nullptr}};
+  const char* const tips[] = {QT_TR_NOOP("Contour found in the photograph, at the contour level: white"),
+                              QT_TR_NOOP("Ellipse fitted to the observed contour: grey, dashed"),
+                              QT_TR_NOOP("Contour that each model predicts, in its colour; dotted where directions failed"),
+                              QT_TR_NOOP("Ellipse fitted to each predicted contour, dashed"),
+                              QT_TR_NOOP("Ellipse of the canonical contour on the tangent plane: dotted, training frames only"),
+                              QT_TR_NOOP("Observed peak: cross; predicted brightest points: circles")};
   for (Toggle& t : toggles_) {
     t.button = new QToolButton;
     t.button->setObjectName(QLatin1String(t.name));
     t.button->setText(tr(t.title));
+    t.button->setToolTip(tr(tips[&t - toggles_.data()]));
     t.button->setCheckable(true);
     t.button->setAutoRaise(true);
     connect(t.button, &QToolButton::clicked, this,
@@ -86,12 +100,27 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
     row->addWidget(button);
     return button;
   };
+  auto* sun = new QLabel(tr("Exposure"));
+  sun->setProperty("role", "faded");
+  row->addWidget(sun);
+  exposure_ = new QSlider(Qt::Horizontal);
+  exposure_->setObjectName(QStringLiteral("exposure"));
+  exposure_->setRange(-8, 24);  // quarters of a stop
+  exposure_->setPageStep(4);
+  exposure_->setFixedWidth(72);
+  exposure_->setFocusPolicy(Qt::NoFocus);  // arrow keys step through the frames
+  exposure_->setToolTip(tr("Brightness of the photograph on screen, -2 to +6 stops; changes no result"));
+  connect(exposure_, &QSlider::valueChanged, this, [this, sun](int quarters) {
+    canvas_->setExposure(quarters / 4.0);
+    sun->setText(quarters == 0 ? tr("Exposure") : tr("%1%2 stops").arg(quarters > 0 ? "+" : "").arg(quarters / 4.0));
+  });
+  row->addWidget(exposure_);
   zoom_ = new QLabel;
   zoom_->setProperty("role", "faded");
   zoom_->setMinimumWidth(fontMetrics().horizontalAdvance(QStringLiteral("51200 %")));
   zoom_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
   row->addWidget(zoom_);
-  connect(tool("highlight", tr("Go to the highlight (H)")), &QToolButton::clicked, this, &FramePanel::goToHighlight);
+  connect(tool("highlight", tr("Zoom to the highlight (F or H)")), &QToolButton::clicked, this, &FramePanel::goToHighlight);
   connect(tool("pixels", tr("One screen pixel per photograph pixel (1)")), &QToolButton::clicked, canvas_,
           &FrameCanvas::onePixelPerPixel);
   connect(tool("fit", tr("Whole photograph (0, double click)")), &QToolButton::clicked, canvas_, &FrameCanvas::fit);
@@ -110,12 +139,17 @@ void FramePanel::showFrame() {
   const int frame = document_.selection().frame;
   if (!document_.scene()) {
     title_->clear();
+    role_->hide();
     canvas_->setMessage(QString());
   } else {
     static const char* const roles[] = {QT_TR_NOOP("training"), QT_TR_NOOP("held out"), QT_TR_NOOP("excluded")};
-    title_->setText(QStringLiteral("<b>%1</b> &nbsp;%2")
-                        .arg(toQString(document_.scene()->frames[std::size_t(frame)].id).toHtmlEscaped(),
-                             tr(roles[int(document_.role(frame))])));
+    const viz::Colour colours[] = {viz::kTraining, {0.38, 0.38, 0.38}, viz::kFailed};
+    const int role = int(document_.role(frame));
+    title_->setText(QStringLiteral("<b>%1</b>").arg(toQString(document_.scene()->frames[std::size_t(frame)].id).toHtmlEscaped()));
+    role_->setText(tr(roles[role]));
+    role_->setStyleSheet(
+        QStringLiteral("background: %1; color: white; border-radius: 3px; padding: 1px 6px").arg(toQColor(colours[role]).name()));
+    role_->show();
     loader_.want(frame);
   }
   showOverlay();
@@ -138,15 +172,40 @@ void FramePanel::showOverlay() {
 }
 
 void FramePanel::showCaptions(const viz::FrameOverlay& overlay) {
-  QStringList lines;
+  const QString faded = palette().color(QPalette::PlaceholderText).name(), warning = warningColour().name();
+  const auto cell = [](const QString& text, const char* align = "right") {
+    return QStringLiteral("<td align='%1' style='padding-right:16px'>%2</td>").arg(QLatin1String(align), text);
+  };
+  const auto number = [&](const std::optional<double>& value, int digits) {
+    return cell(value ? QString::number(*value, 'f', digits) : QStringLiteral("–"));
+  };
+  QString rows;
+  QStringList notes;
   for (const viz::OverlayCaption& c : overlay.captions) {
-    const QString square =
-        c.model.empty() ? QString() : QStringLiteral("<span style='color:%1'>■</span>&nbsp;").arg(toQColor(c.colour).name());
-    const QString text = toQString(c.text).toHtmlEscaped();
-    lines << square + (c.problem ? QStringLiteral("<span style='color:%1'>%2</span>").arg(warningColour().name(), text) : text);
+    if (c.model.empty()) {
+      notes << toQString(c.text).toHtmlEscaped();
+      continue;
+    }
+    QStringList said;
+    if (!c.score.reason.empty()) said << toQString(c.score.reason);
+    if (c.score.missed > 0 && c.score.reason.empty()) said << tr("%1 missed").arg(c.score.missed);
+    if (c.score.spurious > 0) said << tr("%1 spurious").arg(c.score.spurious);
+    const bool any = c.score.matched > 0;
+    rows += QStringLiteral("<tr>") +
+            cell(QStringLiteral("<span style='color:%1'>■</span>&nbsp;%2")
+                     .arg(toQColor(c.colour).name(), toQString(c.model).toHtmlEscaped()),
+                 "left") +
+            number(c.score.errorPct, 2) + number(c.score.errorPx, 2) + number(any ? c.score.iou : std::nullopt, 3) +
+            QStringLiteral("<td style='color:%1'>%2</td></tr>").arg(warning, said.join(QStringLiteral(", ")).toHtmlEscaped());
   }
-  captions_->setText(lines.join(QStringLiteral("<br>")));
-  captions_->setVisible(!lines.isEmpty());
+  QString html;
+  for (const QString& note : notes) html += QStringLiteral("<div style='color:%1'>%2</div>").arg(warning, note);
+  if (!rows.isEmpty())
+    html += QStringLiteral("<table cellspacing='0' cellpadding='0'><tr style='color:%1'>").arg(faded) +
+            cell(tr("this frame"), "left") + cell(tr("error %")) + cell(tr("px")) + cell(tr("IoU")) +
+            QStringLiteral("<td></td></tr>") + rows + QStringLiteral("</table>");
+  captions_->setText(html);
+  captions_->setVisible(!html.isEmpty());
 }
 
 void FramePanel::selectAt(double x, double y) {

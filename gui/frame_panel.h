@@ -9,6 +9,7 @@
 #include "viz/frame_overlay.h"
 
 class QLabel;
+class QSlider;
 class QToolButton;
 class QHBoxLayout;
 class QVBoxLayout;
@@ -18,7 +19,7 @@ namespace glint::gui {
 class FrameCanvas;
 
 /// The frame view: the selected frame's photograph with its overlay, a legend whose entries are toggles, and below it one line
-/// per model with its error or the reason for none.
+/// per model with its error or the reason for none, as a table.
 class FramePanel : public QWidget {
   Q_OBJECT
  public:
@@ -49,6 +50,8 @@ class FramePanel : public QWidget {
   PhotoLoader loader_;
   FrameCanvas* canvas_;
   QLabel* title_;
+  QLabel* role_;
+  QSlider* exposure_;
   QLabel* zoom_;
   QLabel* captions_;
   std::vector<Toggle> toggles_;

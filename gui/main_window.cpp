@@ -207,9 +207,9 @@ void MainWindow::buildMenus() {
   role(tr("&Hold it out"), FrameRole::HeldOut);
   role(tr("E&xclude it"), FrameRole::Excluded);
   frame->addSeparator();
-  QAction* highlight = frame->addAction(icon(QStringLiteral("highlight")), tr("&Go to the highlight"), frame_,
+  QAction* highlight = frame->addAction(icon(QStringLiteral("highlight")), tr("&Zoom to the highlight"), frame_,
                                         [this] { frame_->goToHighlight(); });
-  highlight->setShortcut(Qt::Key_H);
+  highlight->setShortcuts({QKeySequence(Qt::Key_F), QKeySequence(Qt::Key_H)});
   frame->addAction(icon(QStringLiteral("fit")), tr("&Whole photograph"), frame_->canvas(), &FrameCanvas::fit)
       ->setShortcut(Qt::Key_0);
   frame->addAction(icon(QStringLiteral("pixels")), tr("Screen pixel per pixel"), frame_->canvas(), &FrameCanvas::onePixelPerPixel)
@@ -274,7 +274,7 @@ void MainWindow::applyLayout(const QString& name) {
   for (const char* front : {"errors", "layers"}) docks_[QLatin1String(front)]->raise();
   resizeDocks({docks_["setup"], docks_["parameters"]}, {230, 380}, Qt::Horizontal);
   resizeDocks({docks_["timeline"], docks_["errors"]}, {92, height() * 3 / 10}, Qt::Vertical);
-  resizeDocks({docks_["setup"], docks_["layers"]}, {256, 264}, Qt::Vertical);
+  resizeDocks({docks_["setup"], docks_["layers"]}, {284, 264}, Qt::Vertical);
   resizeDocks({docks_["parameters"], docks_["numbers"]}, {560, 340}, Qt::Vertical);
   views_->setSizes({layout.sceneShare * 10, (100 - layout.sceneShare) * 10});
 }

@@ -8,6 +8,7 @@
 #include <vtkPoints.h>
 #include <vtkPolyDataMapper2D.h>
 #include <vtkProperty2D.h>
+#include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkTextActor.h>
 #include <vtkTextProperty.h>
@@ -129,6 +130,8 @@ struct Annotations::Impl {
   bool dark = true;
   std::vector<std::pair<vtkSmartPointer<vtkTextActor>, Colour>> legend;  // title first, then entries, then notes
   std::vector<std::unique_ptr<Strokes>> swatches;                        // one for each legend entry
+  std::vector<std::unique_ptr<Strokes>> outlines;                        // beneath them
+  std::vector<char> entryAlways;
   std::size_t entries = 0;
   std::vector<DrawnLabel> labels;
   std::vector<vtkSmartPointer<vtkTextActor>> labelActors;
@@ -143,13 +146,24 @@ struct Annotations::Impl {
     actor->GetTextProperty()->SetBackgroundColor(c[0], c[1], c[2]);
     actor->GetTextProperty()->SetBackgroundOpacity(opacity);
   }
-  void placeLegend(int height, int font) {
+  /// Pixels of a text size of 1: VTK's text sizes are points at 72 dots an inch.
+  double pixelsPerPoint() const {
+    vtkRenderWindow* window = renderer->GetRenderWindow();
+    return window && window->GetDPI() > 0 ? window->GetDPI() / 72.0 : 1;
+  }
+  /// @param points  size of the text for VTK. @param font  its height in pixels
+  void placeLegend(int height, int points, double font, bool narrow) {
     const double row = 1.5 * font, left = 0.9 * font;
     double y = height - 1.9 * font;
     for (std::size_t i = 0; i < legend.size(); ++i) {
       auto& [actor, colour] = legend[i];
       const bool entry = i >= 1 && i <= entries;
-      actor->GetTextProperty()->SetFontSize(i == 0 ? font + 1 : font);
+      const bool shown = !narrow || !entry || entryAlways[i - 1];
+      actor->SetVisibility(shown);
+      if (entry) swatches[i - 1]->actor->SetVisibility(shown);
+      if (entry) outlines[i - 1]->actor->SetVisibility(shown);
+      if (!shown) continue;
+      actor->GetTextProperty()->SetFontSize(i == 0 ? points + 1 : points);
       setColour(actor, entry || i == 0 ? ink() : asText(colour, dark));
       background(actor, 0.55);
       actor->SetPosition(left + (entry ? 2.4 * font : 0), y);
@@ -157,12 +171,19 @@ struct Annotations::Impl {
         Strokes& swatch = *swatches[i - 1];
         swatch.clear();
         swatch.add(left, y + 0.42 * font, left + 1.8 * font, y + 0.42 * font);
-        swatch.finish(colour, std::max(3.0, font / 4.0));
+        const double width = std::max(3.0, font / 4.0);
+        swatch.finish(colour, width);
+        // White on a light background is told by its edge, as the contour itself is.
+        Strokes& outline = *outlines[i - 1];
+        outline.clear();
+        const bool faint = std::abs(luminance(colour) - luminance(dark ? kDarkBackground : kLightBackground)) < 0.25;
+        if (faint) outline.add(left - 1, y + 0.42 * font, left + 1.8 * font + 1, y + 0.42 * font);
+        outline.finish(ink(), width + 2);
       }
       y -= row;
     }
   }
-  void placeLabels(int width, int height, int font) {
+  void placeLabels(int width, int height, int points, double font) {
     std::vector<std::array<double, 4>> taken;
     const Eigen::Vector3d eye = toEigen(renderer->GetActiveCamera()->GetPosition());
     const Eigen::Vector3d axis = toEigen(renderer->GetActiveCamera()->GetDirectionOfProjection());
@@ -177,7 +198,7 @@ struct Annotations::Impl {
                           display[1] < 1.05 * height;
       actor->SetVisibility(inside);
       if (!inside) continue;
-      actor->GetTextProperty()->SetFontSize(font);
+      actor->GetTextProperty()->SetFontSize(points);
       setColour(actor, asText(labels[i].colour, dark));
       background(actor, 0.6);
       double size[2];
@@ -198,7 +219,7 @@ struct Annotations::Impl {
       actor->SetPosition(x, y);
     }
   }
-  void placeBar(int width, int height, int font, const Eigen::Vector3d& reference) {
+  void placeBar(int width, int height, int points, double font, const Eigen::Vector3d& reference) {
     vtkCamera* camera = renderer->GetActiveCamera();
     const Eigen::Vector3d eye = toEigen(camera->GetPosition()), axis = toEigen(camera->GetDirectionOfProjection());
     const double depth = axis.dot(reference - eye);
@@ -217,13 +238,13 @@ struct Annotations::Impl {
     bar.add(x1, y - tick, x1, y + tick);
     bar.finish(ink(), std::max(2.0, font / 7.0));
     barText->SetInput((lengthText(length) + " at the surface").c_str());
-    barText->GetTextProperty()->SetFontSize(font);
+    barText->GetTextProperty()->SetFontSize(points);
     barText->GetTextProperty()->SetJustificationToRight();
     setColour(barText, ink());
     background(barText, 0.4);
     barText->SetPosition(x1, y + 0.6 * font);
   }
-  void placeAxes(int font) {
+  void placeAxes(int points, double font) {
     vtkCamera* camera = renderer->GetActiveCamera();
     const Eigen::Vector3d forward = toEigen(camera->GetDirectionOfProjection()).normalized();
     const Eigen::Vector3d right = forward.cross(toEigen(camera->GetViewUp())).normalized(), up = right.cross(forward);
@@ -236,7 +257,7 @@ struct Annotations::Impl {
       axes[i].add(x0, y0, x0 + dx, y0 + dy);
       axes[i].finish(colours[i], std::max(2.0, font / 6.0));
       vtkTextActor* text = axisTexts[i];
-      text->GetTextProperty()->SetFontSize(font);
+      text->GetTextProperty()->SetFontSize(points);
       setColour(text, asText(colours[i], dark));
       text->GetTextProperty()->SetJustificationToCentered();
       text->GetTextProperty()->SetVerticalJustificationToCentered();
@@ -264,12 +285,18 @@ void Annotations::setLegend(const std::vector<LegendEntry>& entries, const std::
                             const std::vector<std::string>& remarks, const std::string& title) {
   for (auto& [actor, colour] : impl_->legend) impl_->renderer->RemoveActor2D(actor);
   for (auto& swatch : impl_->swatches) impl_->renderer->RemoveActor2D(swatch->actor);
+  for (auto& outline : impl_->outlines) impl_->renderer->RemoveActor2D(outline->actor);
   impl_->legend.clear();
   impl_->swatches.clear();
+  impl_->outlines.clear();
+  impl_->entryAlways.clear();
   impl_->entries = entries.size();
   impl_->legend.emplace_back(textActor(title, impl_->ink()), impl_->ink());
   for (const LegendEntry& entry : entries) {
     impl_->legend.emplace_back(textActor(entry.text, impl_->ink()), entry.colour);
+    impl_->entryAlways.push_back(entry.always);
+    impl_->outlines.push_back(std::make_unique<Strokes>());
+    impl_->renderer->AddActor2D(impl_->outlines.back()->actor);
     impl_->swatches.push_back(std::make_unique<Strokes>());
     impl_->renderer->AddActor2D(impl_->swatches.back()->actor);
   }
@@ -293,11 +320,13 @@ void Annotations::setDark(bool dark) { impl_->dark = dark; }
 void Annotations::place(const Eigen::Vector3d& reference) {
   const int* size = impl_->renderer->GetSize();
   if (size[0] <= 0 || size[1] <= 0) return;
-  const int font = fontSizeFor(size[1]);
-  impl_->placeLegend(size[1], font);
-  impl_->placeLabels(size[0], size[1], font);
-  impl_->placeBar(size[0], size[1], font, reference);
-  impl_->placeAxes(font);
+  const double scale = impl_->pixelsPerPoint();
+  const int points = fontSizeFor(static_cast<int>(size[1] / scale));
+  const double font = scale * points;
+  impl_->placeLegend(size[1], points, font, size[0] < scale * kNarrowPicture);
+  impl_->placeLabels(size[0], size[1], points, font);
+  impl_->placeBar(size[0], size[1], points, font, reference);
+  impl_->placeAxes(points, font);
 }
 
 }  // namespace glint::viz

@@ -15,10 +15,13 @@ namespace glint::viz {
 struct LegendEntry {
   Colour colour;
   std::string text;
+  bool always = false;  ///< also in a narrow picture, which would be covered by the whole legend
 };
+constexpr int kNarrowPicture = 600;  ///< px at 100 % scaling
 
 /// Everything of the 3D picture that is drawn in screen space: legend, notes, labels of world points, scale bar, axes.
-/// Sizes follow the window's height. Call `place` before every frame: it projects the labels with the current camera.
+/// Sizes follow the window's height and the screen's scaling. Call `place` before every frame: it projects the labels with the
+/// current camera.
 class Annotations {
  public:
   explicit Annotations(vtkRenderer* renderer);

@@ -26,47 +26,17 @@ std::string formatted(const char* format, double value) {
   return text;
 }
 
-/// The parts of a predicted contour: runs that were predicted, and the segments that only bridge failed directions.
 void addPrediction(const PredictedHighlight& highlight, const Camera& camera, const OverlayLine& style,
                    std::vector<OverlayLine>& lines) {
-  const std::vector<Pixel> points = toPhotograph(camera, highlight.contour.points);
-  const int n = static_cast<int>(points.size());
-  if (n < 2) return;
-  const int segments = highlight.contour.closed ? n : n - 1;
-  std::vector<char> isGap(static_cast<std::size_t>(segments), 0);
-  for (const auto& [from, to] : highlight.gaps) {
-    for (int i = from; i != to && i >= 0 && i < n; i = (i + 1) % n) {
-      if (i < segments) isGap[static_cast<std::size_t>(i)] = 1;
-    }
-  }
-  if (std::find(isGap.begin(), isGap.end(), 1) == isGap.end()) {
+  for (const ContourRun& run : contourRuns(highlight)) {
     lines.push_back(style);
-    lines.back().points = points;
-    lines.back().closed = highlight.contour.closed;
-    return;
-  }
-  // Start right after a change of kind, so that no run is cut where the vertex list happens to begin.
-  int start = 0;
-  if (highlight.contour.closed) {
-    while (start < segments &&
-           isGap[static_cast<std::size_t>(start)] == isGap[static_cast<std::size_t>((start + segments - 1) % segments)])
-      ++start;
-    start %= segments;
-  }
-  for (int done = 0; done < segments;) {
-    const char kind = isGap[static_cast<std::size_t>((start + done) % segments)];
-    OverlayLine run = style;
-    run.closed = false;
-    if (kind) {
-      run.dash = Dash::Dotted;
-      run.width = std::max(1.0, style.width - 0.5);
+    OverlayLine& line = lines.back();
+    line.points = toPhotograph(camera, run.points);
+    line.closed = run.closed;
+    if (run.gap) {
+      line.dash = Dash::Dotted;
+      line.width = std::max(1.0, style.width - 0.5);
     }
-    run.points.push_back(points[static_cast<std::size_t>((start + done) % n)]);
-    while (done < segments && isGap[static_cast<std::size_t>((start + done) % segments)] == kind) {
-      ++done;
-      run.points.push_back(points[static_cast<std::size_t>((start + done) % n)]);
-    }
-    lines.push_back(std::move(run));
   }
 }
 
@@ -82,6 +52,41 @@ std::string scoreText(const std::string& model, const FrameScore& score) {
 }
 
 }  // namespace
+
+std::vector<ContourRun> contourRuns(const PredictedHighlight& highlight) {
+  const std::vector<Pixel>& points = highlight.contour.points;
+  const int n = static_cast<int>(points.size());
+  if (n < 2) return {};
+  const int segments = highlight.contour.closed ? n : n - 1;
+  std::vector<char> isGap(static_cast<std::size_t>(segments), 0);
+  for (const auto& [from, to] : highlight.gaps) {
+    for (int i = from; i != to && i >= 0 && i < n; i = (i + 1) % n) {
+      if (i < segments) isGap[static_cast<std::size_t>(i)] = 1;
+    }
+  }
+  if (std::find(isGap.begin(), isGap.end(), 1) == isGap.end()) return {{points, highlight.contour.closed, false}};
+  // Start right after a change of kind, so that no run is cut where the vertex list happens to begin.
+  int start = 0;
+  if (highlight.contour.closed) {
+    while (start < segments &&
+           isGap[static_cast<std::size_t>(start)] == isGap[static_cast<std::size_t>((start + segments - 1) % segments)])
+      ++start;
+    start %= segments;
+  }
+  std::vector<ContourRun> runs;
+  for (int done = 0; done < segments;) {
+    const char kind = isGap[static_cast<std::size_t>((start + done) % segments)];
+    ContourRun run;
+    run.gap = kind != 0;
+    run.points.push_back(points[static_cast<std::size_t>((start + done) % n)]);
+    while (done < segments && isGap[static_cast<std::size_t>((start + done) % segments)] == kind) {
+      ++done;
+      run.points.push_back(points[static_cast<std::size_t>((start + done) % n)]);
+    }
+    runs.push_back(std::move(run));
+  }
+  return runs;
+}
 
 std::vector<std::string> modelsInOrder(const Inspection& inspection, const std::set<std::string>& only) {
   static const std::array<const char*, 5> known{"primal", "dual", "canonical", "limit-angle", "reflectance"};
@@ -184,7 +189,7 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
         overlay.marks.push_back(mark);
       }
     }
-    if (evidence.failure) overlay.captions.push_back({kObserved, "", "observed: " + evidence.failure->message(), true});
+    if (evidence.failure) overlay.captions.push_back({kObserved, "", "observed: " + evidence.failure->message(), true, {}});
   }
   // The canonical contour of a training view lies on its tangent plane; its ellipse in the photograph is what the fit uses.
   if (shown(OverlayRole::CanonicalEllipse)) {
@@ -251,10 +256,12 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
       for (const ModelResult::Fit& fit : result.fits) {
         if (fit.failure) reason = fit.failure->message();
       }
-      overlay.captions.push_back({modelColour(model), model, model + "  " + reason, true});
+      FrameScore none;
+      none.reason = reason;
+      overlay.captions.push_back({modelColour(model), model, model + "  " + reason, true, none});
     } else {
-      overlay.captions.push_back(
-          {modelColour(model), model, scoreText(model, score), score.matched == 0 || score.missed > 0 || score.spurious > 0});
+      overlay.captions.push_back({modelColour(model), model, scoreText(model, score),
+                                  score.matched == 0 || score.missed > 0 || score.spurious > 0, score});
     }
   }
   return overlay;

@@ -56,12 +56,22 @@ struct OverlayMark {
   int highlight = -1;
 };
 
+/// One model's score in one frame over all lights and highlights.
+struct FrameScore {
+  std::optional<double> errorPct, errorPx;  ///< mean over matched highlights
+  std::optional<double> iou;                ///< mean over lights that were predicted
+  int matched = 0, missed = 0, spurious = 0;
+  std::string reason;  ///< first failure's message when nothing matched; else ""
+};
+FrameScore frameScore(const ModelResult& result, int frame);
+
 /// One line of text under or beside the photograph: a model's error, or the reason why it did not answer.
 struct OverlayCaption {
   Colour colour{1, 1, 1};
   std::string model;     ///< "" for the observation
   std::string text;      ///< "canonical  0.42 %  0.31 px  IoU 0.981"
   bool problem = false;  ///< a failure, a missed or a spurious highlight
+  FrameScore score;      ///< the same as numbers, for a table; `reason` also says why there is no answer
 };
 
 /// Everything that is drawn over one photograph, in drawing order (later on top). Plain data: no VTK, no Qt.
@@ -87,13 +97,12 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
 /// is empty.
 std::vector<std::string> modelsInOrder(const Inspection& inspection, const std::set<std::string>& only = {});
 
-/// One model's score in one frame over all lights and highlights.
-struct FrameScore {
-  std::optional<double> errorPct, errorPx;  ///< mean over matched highlights
-  std::optional<double> iou;                ///< mean over lights that were predicted
-  int matched = 0, missed = 0, spurious = 0;
-  std::string reason;  ///< first failure's message when nothing matched; else ""
+/// A run of a predicted contour, in ideal pixels: predicted, or only bridging failed directions.
+struct ContourRun {
+  std::vector<Pixel> points;
+  bool closed = false;
+  bool gap = false;
 };
-FrameScore frameScore(const ModelResult& result, int frame);
+std::vector<ContourRun> contourRuns(const PredictedHighlight& highlight);
 
 }  // namespace glint::viz

@@ -193,7 +193,7 @@ struct SceneView::Impl {
       legend.push_back({kHeldOut, "held-out camera"});
     }
     if (drawn("virtual-cameras") || drawn("tangent-planes")) legend.push_back({kVirtualCamera, "virtual camera, tangent plane"});
-    if (drawn("observed-contours")) legend.push_back({kObserved, dark ? "observed contour" : "observed contour (white)"});
+    if (drawn("observed-contours")) legend.push_back({kObserved, "observed contour"});
     if (drawn("light")) legend.push_back({kLightColour, "light, estimated"});
     if (drawn("true-light")) legend.push_back({kTruth, "light, truth"});
     if (shown("predicted-contours") || shown("ellipsoids")) {
@@ -201,7 +201,7 @@ struct SceneView::Impl {
         const FrameScore score = frameScore(inspection->models.at(model), selection.frame);
         char error[32] = "";
         if (score.errorPct) std::snprintf(error, sizeof error, "  %.2f %%", *score.errorPct);
-        legend.push_back({modelColour(model), model + error});
+        legend.push_back({modelColour(model), model + error, true});
         if (!score.errorPct && !score.reason.empty()) notes.push_back(model + ": " + score.reason);
       }
     }

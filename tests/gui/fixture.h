@@ -45,6 +45,7 @@ QObject* makeFrameCanvasTest();
 QObject* makePanelTest();
 QObject* makeLinkingTest();
 QObject* makeWindowTest();
+QObject* makeSessionTest();
 QObject* makeProgramTest();
 
 }  // namespace glint::gui

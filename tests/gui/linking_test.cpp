@@ -159,7 +159,10 @@ class LinkingTest : public QObject {
   }
 
  private:
-  QString title() const { return frame_->findChild<QLabel*>(QStringLiteral("frameTitle"))->text(); }
+  QString title() const {
+    return frame_->findChild<QLabel*>(QStringLiteral("frameTitle"))->text() + ' ' +
+           frame_->findChild<QLabel*>(QStringLiteral("frameRole"))->text();
+  }
 
   Fixture fixture_;
   std::unique_ptr<Document> document_;

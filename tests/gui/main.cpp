@@ -15,9 +15,10 @@
 
 int main(int argc, char** argv) {
   using namespace glint::gui;
-  static const TestClass classes[] = {
-      {"document", makeDocumentTest}, {"runner", makeRunnerTest}, {"frame_canvas", makeFrameCanvasTest}, {"panel", makePanelTest},
-      {"linking", makeLinkingTest},   {"window", makeWindowTest}, {"program", makeProgramTest}};
+  static const TestClass classes[] = {{"document", makeDocumentTest},        {"runner", makeRunnerTest},
+                                      {"frame_canvas", makeFrameCanvasTest}, {"panel", makePanelTest},
+                                      {"linking", makeLinkingTest},          {"window", makeWindowTest},
+                                      {"session", makeSessionTest},          {"program", makeProgramTest}};
   if (argc < 2) return std::fputs("usage: test_gui CLASS [QTest options]\n", stderr), 2;
   QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
   QApplication app(argc, argv);

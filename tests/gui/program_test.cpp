@@ -96,7 +96,7 @@ class ProgramTest : public QObject {
     Opened saved = document.toSave();
     saved.layout = "compare";
     saved.viewPoint = viz::ViewPoint{{1, 2, 3}, {0, 0, 1}, {0, 1, 0}, 25};
-    engine.save(saved, nullptr, file.toStdString());
+    engine.save(saved, nullptr, file.toStdString(), {});
     const Opened back = engine.open(file.toStdString());
     QVERIFY(back.isSession);
     QVERIFY(sameRequest(back.request, document.request()));

@@ -91,6 +91,24 @@ TEST_F(SceneViewPicture, NothingIsDrawnWithoutLayersButTheFrameOfThePicture) {
   EXPECT_GT(countNear(render(view), kLightBackground, 0.02), 0.95 * kWidth * kHeight);
 }
 
+/// A bridged gap is not drawn as if it had been predicted: half of the contour a gap leaves clearly less ink.
+TEST_F(SceneViewPicture, GapsOfAPredictionAreDotted) {
+  const auto inkOf = [&](const std::vector<std::pair<int, int>>& gaps) {
+    const auto inspection = smallInspection(folder_.path());
+    for (FrameComparison& c : inspection->models.at("canonical").frames)
+      for (PredictedHighlight& h : c.prediction.highlights) h.gaps = gaps;
+    SceneView view;
+    view.setInspection(inspection);
+    view.setSelection({5, "", -1});
+    for (const Layer& layer : sceneLayers()) view.setLayerVisible(layer.name, layer.name == "predicted-contours");
+    view.lookThrough(5);
+    return countNear(render(view), modelColour("canonical"), 0.2);
+  };
+  const int whole = inkOf({}), half = inkOf({{0, 36}});
+  EXPECT_GT(half, 0.4 * whole);
+  EXPECT_LT(half, 0.8 * whole);
+}
+
 TEST_F(SceneViewPicture, AnEmptyViewIsAllowed) {
   SceneView view;
   EXPECT_GT(countNear(render(view), kDarkBackground, 0.02), 0.98 * kWidth * kHeight);

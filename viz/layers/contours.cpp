@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <set>
 
+#include "core/geometry/polyline.h"
 #include "viz/frame_overlay.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
@@ -10,6 +11,17 @@ namespace glint::viz {
 namespace {
 
 constexpr std::size_t kMostObservedFrames = 24;  ///< the training frames of a long sequence would cover the surface
+
+constexpr int kGapPoints = 61;  ///< 20 dots with gaps of twice their length
+
+/// Every third segment of the chains.
+std::vector<Points> dots(const std::vector<Points>& chains) {
+  std::vector<Points> result;
+  for (const Points& chain : chains) {
+    for (std::size_t i = 1; i + 1 < chain.size(); i += 3) result.push_back({chain[i], chain[i + 1]});
+  }
+  return result;
+}
 
 std::vector<int> observedFrames(const LayerInput& in) {
   std::vector<int> frames;
@@ -72,9 +84,21 @@ LayerContent predictedContoursLayer(const LayerInput& in) {
                        line("contour error", row.metrics->contourErrorPx, "px") +
                        line("Hausdorff", row.metrics->hausdorffPx, "px") + line("peak offset", row.metrics->peakOffsetPx, "px");
         }
-        content.add(
-            lineActor(castContour(camera, *in.surface, h.contour, in.scale, lift * in.scale.lift), modelColour(model), 2.2), info,
-            2.2);
+        std::vector<Points> solid, dotted;
+        for (const ContourRun& run : contourRuns(h)) {
+          Polyline part;
+          part.points = run.points;
+          part.closed = run.closed;
+          if (run.gap && part.points.size() > 1) part.points = resample(part, kGapPoints);
+          for (Points& chain : castContour(camera, *in.surface, part, in.scale, lift * in.scale.lift))
+            (run.gap ? dotted : solid).push_back(std::move(chain));
+        }
+        const Colour colour = modelColour(model);
+        if (!solid.empty()) content.add(lineActor(solid, colour, 2.2), info, 2.2);
+        if (!dotted.empty()) {
+          info.text += line("this part", "not predicted, it bridges directions that failed");
+          content.add(lineActor(dots(dotted), colour, 1.5), info, 1.5);
+        }
       }
     }
     lift += 0.3;

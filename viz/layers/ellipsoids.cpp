@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
+#include "viz/annotations.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
 
@@ -47,12 +48,10 @@ LayerContent ellipsoidsLayer(const LayerInput& in) {
       content.add(
           lineActor({circle(c, a.col(0), a.col(1)), circle(c, a.col(1), a.col(2)), circle(c, a.col(2), a.col(0))}, colour, 1.5),
           info, 1.5);
-      if (e.semiAxes().maxCoeff() < 0.3 * in.scale.sceneSize) {  // a needle far across the scene must not shrink the rest
-        for (int axis = 0; axis < 3; ++axis) {
-          content.extent.push_back(c + a.col(axis));
-          content.extent.push_back(c - a.col(axis));
-        }
-      }
+      // A needle far across the scene must not shrink the rest: cameras, surface and lights frame the picture.
+      if (2 * e.semiAxes().maxCoeff() > in.scale.sceneSize)
+        content.remarks.push_back(model + ": ellipsoid " + lengthText(2 * e.semiAxes().maxCoeff()) +
+                                  " long, may leave the picture");
     }
   }
   return content;

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Shipped sessions and rendered sequences in the real window with the real pipeline.
+#include "core/pipeline/session.h"
+
+#include <QAction>
+#include <QElapsedTimer>
+#include <QFile>
+#include <QFileInfo>
+#include <QProcess>
+#include <QStatusBar>
+#include <QTimer>
+#include <algorithm>
+
+#include "gui/main_window.h"
+#include "gui/scene_panel.h"
+#include "gui/text.h"
+#include "tests/gui/fixture.h"
+
+namespace glint::gui {
+
+namespace {
+/// The longest time for which the event loop of this thread did not turn.
+class Heartbeat {
+ public:
+  Heartbeat() {
+    QObject::connect(&timer_, &QTimer::timeout, [this] { beat(); });
+    clock_.start();
+    timer_.start(2);
+  }
+  void beat() { worst_ = std::max(worst_, clock_.restart()); }
+  qint64 takeWorst() {
+    beat();
+    return std::exchange(worst_, 0);
+  }
+
+ private:
+  QTimer timer_;
+  QElapsedTimer clock_;
+  qint64 worst_ = 0;
+};
+}  // namespace
+
+class SessionTest : public QObject {
+  Q_OBJECT
+ private slots:
+  void aSavedSessionReplaysAndComesBack() {
+    const QString file = folder_.filePath(QStringLiteral("plane.glint"));
+    const Engine engine = coreEngine();
+    engine.save(engine.open(GLINT_SOURCE_DIR "/sessions/plane/plane.glint"), nullptr, file.toStdString(), {});
+    const viz::ViewPoint seen{{1.5, -2, 3}, {0, 0, 0.1}, {0, 0, 1}, 25};
+    viz::ViewPoint saved;
+    {
+      MainWindow window(engine);
+      openAndWait(window, file);
+      Document& document = window.document();
+      auto* scene = window.findChild<ScenePanel*>();
+      scene->view().setViewPoint(seen);
+      saved = scene->view().viewPoint();
+      document.setLayerVisible("rays", "Rays", !document.layerVisible("rays"));
+      document.setLayerVisible("frame/peak", "Peaks", false);
+      document.select({1, "canonical", 0});
+      QVERIFY(document.hasUnsavedChanges());
+      save(window);
+      QVERIFY(window.runner().busy());  // not on this thread
+      QTRY_VERIFY_WITH_TIMEOUT(window.idle(), 60000);
+      QVERIFY2(window.lastError().isEmpty(), qPrintable(window.lastError()));
+      QVERIFY(!document.hasUnsavedChanges());
+      QVERIFY2(window.statusBar()->currentMessage().contains(file), qPrintable(window.statusBar()->currentMessage()));
+    }
+    QProcess replay;
+    replay.start(QStringLiteral(GLINT_CLI), {QStringLiteral("replay"), file, QStringLiteral("--exact")});
+    QVERIFY(replay.waitForFinished(180000));
+    QVERIFY2(replay.exitCode() == 0, replay.readAllStandardError().constData());
+    MainWindow window(engine);
+    openAndWait(window, file);
+    const Document& document = window.document();
+    const viz::ViewPoint back = window.findChild<ScenePanel*>()->view().viewPoint();
+    QVERIFY((back.position - saved.position).norm() < 1e-12 && (back.focalPoint - saved.focalPoint).norm() < 1e-12);
+    QVERIFY((back.up - saved.up).norm() < 1e-12 && std::abs(back.viewAngleDeg - saved.viewAngleDeg) < 1e-12);
+    QCOMPARE(document.selection().frame, 1);
+    QCOMPARE(document.selection().model, std::string("canonical"));
+    QCOMPARE(document.layerVisible("frame/peak"), false);
+    QVERIFY(document.state().layers.count("rays"));
+  }
+
+  /// Saving before there are results must not replace the stored 3D camera by that of an empty view.
+  void savingWithoutResultsKeepsTheCamera() {
+    const QString file = folder_.filePath(QStringLiteral("kept.glint"));
+    const Engine real = coreEngine();
+    Opened opened = real.open(GLINT_SOURCE_DIR "/sessions/plane/plane.glint");
+    opened.viewPoint = viz::ViewPoint{{1, 2, 3}, {0, 0, 0}, {0, 1, 0}, 20};
+    real.save(opened, nullptr, file.toStdString(), {});
+    Engine engine = real;
+    engine.inspect = [](std::shared_ptr<const Scene>, const InspectionRequest&, const ProgressFn&,
+                        const Inspection*) -> Inspection { throw Stopped{}; };
+    MainWindow window(engine);
+    window.show();
+    window.open(file);
+    QTRY_VERIFY(window.document().scene() && window.idle());
+    save(window);
+    QTRY_VERIFY(window.idle());
+    const Opened back = real.open(file.toStdString());
+    QVERIFY(back.viewPoint && back.viewPoint->position == Eigen::Vector3d(1, 2, 3));
+    QVERIFY2(window.statusBar()->currentMessage().contains("without results"), qPrintable(window.statusBar()->currentMessage()));
+  }
+
+  void aFileThatCannotBeWrittenIsAMessageAndNothingIsLost() {
+    MainWindow window(coreEngine());
+    openAndWait(window, QStringLiteral(GLINT_SOURCE_DIR "/sessions/plane/plane.glint"));
+    QSignalSpy saved(&window.runner(), &Runner::saved);
+    auto opened = std::make_shared<const Opened>(window.document().toSave());
+    window.document().setLayerVisible("rays", "Rays", !window.document().layerVisible("rays"));
+    window.runner().save(opened, window.document().inspection(), "/nowhere/x.glint");
+    QVERIFY(saved.wait(60000));
+    QVERIFY2(saved[0][1].toString().contains("/nowhere/x.glint"), qPrintable(saved[0][1].toString()));
+    QVERIFY(window.document().hasUnsavedChanges());
+    QVERIFY(!QFileInfo::exists(QStringLiteral("/nowhere")));
+  }
+
+  /// Prints how soon a run on 60 rendered frames ends after Stop, and for how long the interface stood still meanwhile.
+  void stopAndInterfaceOnAWholeSequence() {
+    const QString scene = QStringLiteral(GLINT_SHARED_DIR "/data/cycles/plane_to_cylinder/scene.json");
+    if (!QFileInfo::exists(scene)) QSKIP("the rendered sequences are not here");
+    MainWindow window(coreEngine());
+    window.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&window));
+    QSignalSpy progressed(&window.runner(), &Runner::progressed), stopped(&window.runner(), &Runner::stopped);
+    Heartbeat heart;
+    window.open(scene);
+    QTRY_VERIFY_WITH_TIMEOUT(window.document().scene() && progressed.count() > 3, 60000);
+    qInfo("opening: the interface stood still for at most %lld ms", static_cast<long long>(heart.takeWorst()));
+    QElapsedTimer clock;
+    clock.start();
+    window.runner().cancel();
+    QVERIFY(stopped.wait(60000));
+    qInfo("stopped while detecting after %lld ms", static_cast<long long>(clock.elapsed()));
+    // From every part of a run: the level changes, so that nothing is reused.
+    int n = 0;
+    for (const int delayMs : {50, 200, 500, 1000, 1500}) {
+      window.document().setSetting("detect.level", 0.5 + 0.01 * ++n);
+      QTest::qWait(delayMs);
+      const QString stage = progressed.isEmpty() ? QStringLiteral("start") : progressed.last()[0].toString();
+      const bool ran = window.runner().busy();
+      clock.restart();
+      window.runner().cancel();
+      QTRY_VERIFY_WITH_TIMEOUT(!window.runner().busy(), 60000);
+      qInfo("%d ms into a run (%s, %s): stopped after %lld ms", delayMs, qPrintable(stage), ran ? "running" : "already done",
+            static_cast<long long>(clock.elapsed()));
+    }
+    heart.takeWorst();
+    window.document().setSetting("detect.level", 0.5);
+    QTRY_VERIFY_WITH_TIMEOUT(!window.document().stale(), 300000);
+    qInfo("computing: the interface stood still for at most %lld ms", static_cast<long long>(heart.takeWorst()));
+    QTRY_VERIFY_WITH_TIMEOUT(window.idle(), 60000);
+    QTest::qWait(300);
+    qInfo("showing the first results: at most %lld ms", static_cast<long long>(heart.takeWorst()));
+    window.document().selectFrame(30);
+    QTest::qWait(500);
+    qInfo("another frame: at most %lld ms", static_cast<long long>(heart.takeWorst()));
+  }
+
+ private:
+  /// The menu's action: without a window manager no window is active, and shortcuts need an active one.
+  static void save(MainWindow& window) {
+    for (QAction* action : window.findChildren<QAction*>())
+      if (action->shortcut() == QKeySequence(QKeySequence::Save)) action->trigger();
+  }
+  static void openAndWait(MainWindow& window, const QString& file) {
+    window.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&window));
+    window.open(file);
+    QTRY_VERIFY_WITH_TIMEOUT(window.document().scene() && window.idle() && !window.document().stale(), 120000);
+    QTest::qWait(50);
+  }
+  QTemporaryDir folder_;
+};
+
+QObject* makeSessionTest() { return new SessionTest; }
+
+}  // namespace glint::gui
+
+#include "session_test.moc"
