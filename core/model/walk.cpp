@@ -327,8 +327,10 @@ CanonicalContour predictFromEllipse(const TangentWalk& walk, const Surface& surf
     if (discriminant >= 0) {
       const double root = std::sqrt(discriminant), q = -(qb + std::copysign(root, qb));
       const double s1 = qa != 0 ? q / qa : -1, s2 = q != 0 ? qc / q : -1;
-      // Inside (qc < 0) one root is positive; outside the farther of two positive ones closes the ellipse.
-      s = std::max(s1, s2);
+      // Inside (qc < 0) the nearest positive root is the exit: there is a second one where the outline crosses the horizon of T.
+      // Outside, the farther of two positive ones closes the ellipse.
+      const double low = std::min(s1, s2), high = std::max(s1, s2);
+      s = qc < 0 && low > 0 ? low : high;
     }
     if (!(s > 0) || !std::isfinite(s)) {
       r.failure = Failure{Reason::NotReached, "the direction misses the ellipsoid's outline"};

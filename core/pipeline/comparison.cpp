@@ -83,7 +83,7 @@ FrameComparison compareFrame(const FrameEvidence& evidence, const std::string& l
     c.rows.push_back(std::move(row));
   }
   for (int p = 0; p < static_cast<int>(predicted.size()); ++p) {
-    if (used[p]) continue;
+    if (used[p] || clippedToImage(c.prediction.highlights[p].contour, camera).points.empty()) continue;  // nobody could see it
     FrameComparison::Row row;
     row.predicted = p;
     c.rows.push_back(row);
