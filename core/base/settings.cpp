@@ -36,7 +36,7 @@ const std::vector<ParamSpec>& allParams() {
        "Refined solver: how far the ellipsoid's centre may lie from the light beside the light's own noise, as a fraction of the light's distance (standard deviation); 0 = chosen by leaving one training view out.", "fit"},
       {"predict.directions", "Directions", "n", "", 36, 6, 720, 1, {},
        "Directions of the walk in the tangent plane (the paper: 36).", "fit"},
-      {"predict.seed_step", "Seed spacing", "", "px", 24.0, 2.0, 128.0, 1.0, {},
+      {"predict.seed_step", "Seed spacing", "", "px", 32.0, 2.0, 128.0, 1.0, {},
        "Spacing of the ray grid from which brightest points are searched.", "predict"},
       {"predict.level_set_step", "Level-set grid", "", "px", 4.0, 0.5, 32.0, 0.5, {},
        "Spacing of the scan that finds the components of a level set; vertices are then polished.", "predict"},
