@@ -1,22 +1,26 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Draws docs/pictures/*.png again: the inspector on each shipped session, dark and light, and what `glint render` makes of it.
-# Usage: docs/make_pictures.sh   (GLINT_BIN=FOLDER: where the programs are; default build/release/bin). Needs xvfb-run.
+# Draws docs/pictures/*.png again: the README's tour, from the shipped sessions.
+# Usage: docs/make_pictures.sh   (GLINT_BIN=FOLDER: where the programs are; default build/release/bin). Needs xvfb-run; with
+# ImageMagick's mogrify the files become a third of their size.
 set -euo pipefail
 root=$(dirname -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")")
 bin=${GLINT_BIN:-$root/build/release/bin}
 out=$root/docs/pictures
 mkdir -p "$out"
-for session in "$root"/sessions/*/*.glint; do
-  name=$(basename "$session" .glint)
-  for theme in dark light; do
-    QT_QPA_PLATFORM=xcb xvfb-run -a -s "-screen 0 1600x1000x24" "$bin/glint-inspector" "$session" --theme "$theme" \
-      --size 1500x940 --screenshot "$out/$name-inspector-$theme.png" --wait-idle
-  done
-  for view in scene frame ladder plots; do
-    "$bin/glint" render "$session" --view "$view" --size 960x600 -o "$out/$name-$view.png"
-  done
-done
-# A palette is enough for pictures of text and lines, and a quarter of the size.
-if command -v mogrify > /dev/null; then mogrify -strip -colors 96 -define png:compression-level=9 "$out"/*.png; fi
-du -sh "$out"
+
+inspector() {  # NAME SESSION FRAME THEME
+  QT_QPA_PLATFORM=xcb xvfb-run -a -s "-screen 0 1600x1000x24" "$bin/glint-inspector" "$root/sessions/$2/$2.glint" --frame "$3" \
+    --theme "$4" --size 1500x940 --screenshot "$out/$1.png" --wait-idle
+}
+picture() {  # NAME SESSION FRAME VIEW
+  "$bin/glint" render "$root/sessions/$2/$2.glint" --view "$4" --frame "$3" --size 1100x620 -o "$out/$1.png"
+}
+
+inspector inspector plane-to-cylinder 0045 dark
+inspector inspector-vase vase 0010 light
+picture scene plane-to-cylinder 0045 scene
+picture ladder plane-to-cylinder 0045 ladder
+picture frame ellipsoid 0012 frame
+picture plots plane-to-cylinder 0045 plots
+if command -v mogrify > /dev/null; then mogrify -strip -colors 128 -define png:compression-level=9 "$out"/*.png; fi
