@@ -40,6 +40,7 @@ std::vector<int> parseFrames(const std::string& text, const Scene& scene, const 
   const auto frameOf = [&](const std::string& word) {
     if (const auto it = ids.find(word); it != ids.end()) return it->second;
     const std::optional<int> number = wholeNumber(word);
+    if (!number && word.find(':') != std::string::npos) throw bad("expected first:K or spread:K");
     if (!number) throw bad("'" + word + "' is neither a frame id nor a number");
     if (*number >= n) throw bad("there is no frame " + word + "; the input has " + std::to_string(n));
     return *number;
