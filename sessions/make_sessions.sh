@@ -89,6 +89,9 @@ for name in "${names[@]}"; do
   case "$name" in
     plane) train=0-3 ;;              # the six views of one step: four train, two are held out
     plane-to-cylinder) train=0-5 ;;  # the paper's second experiment: from the plane to every bent sheet
+    # The first six, as in the paper. Spread views make the ellipsoid's third axis vanish, and where its slow descent ends
+    # differs between processors in the eighth digit, which a replay to 1e-9 would report.
+    vase) train=first:6 ;;
     *) train=spread:6 ;;
   esac
   folder=$root/sessions/$name
