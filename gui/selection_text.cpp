@@ -68,7 +68,6 @@ NumberGroup trainingView(const TrainingView& view) {
   if (view.brightest) {
     lines.addVector(QObject::tr("P"), view.brightest->point.position, "m");
     lines.addVector(QObject::tr("N"), view.brightest->point.normal);
-    lines.add(QObject::tr("alpha"), view.brightest->alpha * kDegPerRad, "°");
   }
   if (view.tangentPlane) {
     lines.addVector(QObject::tr("T normal"), view.tangentPlane->normal);
@@ -128,7 +127,8 @@ NumberGroup comparison(const FrameComparison& c, int observed) {
       const PredictedHighlight& p = c.prediction.highlights[std::size_t(row.predicted)];
       lines.addVector(QObject::tr("P"), p.brightest.point.position, "m");
       lines.addVector(QObject::tr("N"), p.brightest.point.normal);
-      lines.add(QObject::tr("alpha"), p.brightest.alpha * kDegPerRad, "°");
+      // A model without a tangent plane (primal) has no incident angle either.
+      if (p.tangentPlane) lines.add(QObject::tr("alpha"), p.brightest.alpha * kDegPerRad, "°");
       lines.addVector(QObject::tr("peak"), p.brightest.pixel, "px");
       lines.add(QObject::tr("coverage"), p.coverage);
     }
