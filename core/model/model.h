@@ -73,7 +73,9 @@ struct ModelFit {
   std::optional<Light> lightEstimate;
   std::optional<Eigen::Matrix3d> lightCovariance;  ///< m^2, of the position
   std::optional<double> limitAngle;         ///< rad
-  std::optional<double> roughness;
+  std::optional<double> roughness;          ///< m of the lobe
+  std::optional<std::string> lobe;          ///< name of the reflectance lobe, core/reflectance/lobe.h
+  std::optional<double> level;              ///< fraction q of the peak at which the contour lies, for models that predict radiance
   double gapRatio = 0;                      ///< last / second last singular value of the linear system
   double condition = 0;                     ///< first / second last singular value
   std::vector<double> singularValues;

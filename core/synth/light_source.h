@@ -7,7 +7,7 @@
 
 #include "core/scene/scene.h"
 #include "core/surface/surface.h"
-#include "core/synth/reflectance.h"
+#include "core/reflectance/lobe.h"
 
 namespace glint {
 

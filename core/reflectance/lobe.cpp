@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/synth/reflectance.h"
+#include "core/reflectance/lobe.h"
 
 #include <Eigen/Geometry>
 #include <array>

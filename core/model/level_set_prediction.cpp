@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/model/level_set_prediction.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/model/models.h"
+#include "core/surface/level_set.h"
+
+namespace glint {
+namespace {
+
+constexpr double kSameValue = 1e-7;  // rad, or log I: far above the round-off of a polished peak, far below any level
+
+/// Share of the outline, by length, that lies on the level set or on the surface's own edge rather than at the image margin.
+double coverageOf(const LevelSetComponent& c, const Camera& camera, double margin) {
+  const auto& p = c.outline.points;
+  double total = 0, cut = 0;
+  const auto atMargin = [&](const Pixel& q) {
+    return q.x() < 0.5 - margin || q.y() < 0.5 - margin || q.x() > camera.width - 1.5 + margin ||
+           q.y() > camera.height - 1.5 + margin;
+  };
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const std::size_t j = (i + 1) % p.size();
+    const double l = (p[j] - p[i]).norm();
+    total += l;
+    if (c.onBorder[i] && c.onBorder[j] && atMargin(p[i]) && atMargin(p[j])) cut += l;
+  }
+  return total > 0 ? 1 - cut / total : 0;
+}
+
+/// The highlight's peak: the known one inside the outline with the smallest value. A merged highlight holds several whose values
+/// are equal up to round-off: the one nearest to the middle is taken, so that round-off decides nothing.
+const FieldPeak* peakInside(const SurfaceField& field, const Polyline& outline) {
+  const Pixel middle = centroid(outline);
+  const FieldPeak* best = nullptr;
+  for (const FieldPeak& p : field.peaks) {
+    if (!contains(outline, p.point.pixel)) continue;
+    const bool darker = best && p.value > best->value + kSameValue;
+    const bool asBright = best && std::abs(p.value - best->value) <= kSameValue;
+    if (darker || (asBright && (p.point.pixel - middle).norm() >= (best->point.pixel - middle).norm())) continue;
+    best = &p;
+  }
+  return best;
+}
+
+}  // namespace
+
+Prediction predictLevelSet(const SurfaceField& field, const Camera& camera, const Surface& surface, const Settings& settings) {
+  const Eigen::Vector3d eye = camera.centreInWorld();
+  // Seeds: a highlight smaller than the scan's cells has a peak inside.
+  LevelSetOptions options;
+  options.gridStepPx = settings.number("predict.level_set_step");
+  for (const FieldPeak& p : field.peaks) options.seeds.push_back(p.point.pixel);
+  const PixelField exact = [&](const Pixel& q) -> std::optional<double> {
+    const Outcome<SurfacePoint> hit = surface.firstHit(camera.ray(q));
+    return hit ? field.value(facing(*hit, eye)) : std::nullopt;
+  };
+  const PixelFieldBatch batch = [&](const std::vector<Pixel>& pixels) {
+    std::vector<Ray> rays;
+    rays.reserve(pixels.size());
+    for (const Pixel& q : pixels) rays.push_back(camera.ray(q));
+    const std::vector<std::optional<SurfacePoint>> hits = surface.approximateHits(rays);
+    std::vector<std::optional<double>> values(pixels.size());
+    for (std::size_t i = 0; i < hits.size(); ++i)
+      if (hits[i]) values[i] = field.value(facing(*hits[i], eye));
+    return values;
+  };
+  std::vector<LevelSetComponent> components = traceLevelSets(exact, batch, field.level, camera.width, camera.height, options);
+  if (std::any_of(components.begin(), components.end(),
+                  [&](const LevelSetComponent& c) { return coverageOf(c, camera, 0) < 1; })) {
+    // The image cuts it: follow it beyond the border, so that the whole highlight is known.
+    options.marginPx = kMarginFraction * std::max(camera.width, camera.height);
+    components = traceLevelSets(exact, batch, field.level, camera.width, camera.height, options);
+  }
+  Prediction prediction;
+  for (const LevelSetComponent& c : components) {
+    PredictedHighlight h;
+    h.contour = c.outline;
+    h.coverage = coverageOf(c, camera, options.marginPx);
+    if (const Outcome<Ellipse> e = fitEllipse(c.outline.points)) h.ellipse = *e;
+    if (const FieldPeak* peak = peakInside(field, c.outline)) {
+      h.brightest = peak->point;
+    } else {
+      // The smallest value may come from the reduced precision of the scan, just off the surface; the outline is exact.
+      Outcome<BrightestPoint> at = observedBrightestPoint(surface, camera, c.minimumAt);
+      for (std::size_t i = 0; !at && i < c.outline.points.size(); ++i)
+        at = observedBrightestPoint(surface, camera, c.outline.points[i]);
+      if (!at) continue;
+      h.brightest = *at;
+      h.brightest.pixel = c.minimumAt;
+      h.brightest.alpha = c.minimum;
+    }
+    h.tangentPlane = Plane::through(h.brightest.point.position, h.brightest.point.normal);
+    prediction.highlights.push_back(std::move(h));
+  }
+  if (prediction.highlights.empty()) prediction.failure = Failure{Reason::NotReached, "no level set in the image"};
+  return prediction;
+}
+
+}  // namespace glint
