@@ -42,11 +42,12 @@ const Surface& surface(bool mesh) {
 }
 
 /// Frames that do not train, one after another.
-void predict(benchmark::State& state, const std::string& model, bool mesh) {
+void predict(benchmark::State& state, const std::string& model, bool mesh, const std::vector<std::string>& set = {}) {
   const HighlightModel& m = modelByName(model);
   const ModelFit& fit = fitOf(model);
   const Surface& s = surface(mesh);
-  const Settings settings;
+  Settings settings;
+  for (const std::string& v : set) settings.setFromText(v.substr(0, v.find('=')), v.substr(v.find('=') + 1));
   std::size_t frame = 1, found = 0, calls = 0;
   double coverage = 0;
   for (auto _ : state) {
@@ -64,6 +65,19 @@ void canonicalPredictionAnalytic(benchmark::State& state) { predict(state, "cano
 void dualPredictionMesh(benchmark::State& state) { predict(state, "dual", true); }
 void limitAnglePredictionMesh(benchmark::State& state) { predict(state, "limit-angle", true); }
 void limitAnglePredictionAnalytic(benchmark::State& state) { predict(state, "limit-angle", false); }
+const std::string kHints = "predict.search=hints", kQuadric = "predict.query=local-quadric", kStar = "predict.contour=star";
+void canonicalPredictionMeshHints(benchmark::State& state) { predict(state, "canonical", true, {kHints}); }
+void canonicalPredictionMeshQuadric(benchmark::State& state) { predict(state, "canonical", true, {kQuadric, kHints}); }
+void canonicalPredictionMeshQuadricGrid(benchmark::State& state) { predict(state, "canonical", true, {kQuadric}); }
+void limitAnglePredictionMeshStar(benchmark::State& state) { predict(state, "limit-angle", true, {kStar, kHints}); }
+void limitAnglePredictionMeshStarGrid(benchmark::State& state) { predict(state, "limit-angle", true, {kStar}); }
+void limitAnglePredictionMeshQuadric(benchmark::State& state) { predict(state, "limit-angle", true, {kQuadric, kHints}); }
+BENCHMARK(canonicalPredictionMeshHints)->Unit(benchmark::kMicrosecond);
+BENCHMARK(canonicalPredictionMeshQuadric)->Unit(benchmark::kMicrosecond);
+BENCHMARK(canonicalPredictionMeshQuadricGrid)->Unit(benchmark::kMicrosecond);
+BENCHMARK(limitAnglePredictionMeshStar)->Unit(benchmark::kMicrosecond);
+BENCHMARK(limitAnglePredictionMeshStarGrid)->Unit(benchmark::kMicrosecond);
+BENCHMARK(limitAnglePredictionMeshQuadric)->Unit(benchmark::kMicrosecond);
 BENCHMARK(canonicalPredictionMesh)->Unit(benchmark::kMicrosecond);
 BENCHMARK(canonicalPredictionAnalytic)->Unit(benchmark::kMicrosecond);
 BENCHMARK(dualPredictionMesh)->Unit(benchmark::kMicrosecond);

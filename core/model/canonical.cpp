@@ -3,60 +3,11 @@
 
 #include "core/model/fit_ellipsoid.h"
 #include "core/model/models.h"
-#include "core/model/walk.h"
-
+#include "core/model/star.h"
+#include "core/surface/local_quadric.h"
 
 namespace glint {
 namespace {
-
-constexpr int kSubdivisions = 8;  // chords of 36 directions cost 0.13 % of the diameter on a circle; 288 cost 0.002 %
-constexpr int kStencil = 6;       // points of the interpolating polynomial: its error is below the walk's other errors
-
-/// Polynomial through the pixels of the directions first .. first + count - 1 (cyclic), at direction number `at`.
-Pixel interpolate(const std::vector<Pixel>& pixelOf, int first, int count, double at) {
-  const int n = static_cast<int>(pixelOf.size());
-  Pixel sum(0, 0);
-  for (int a = 0; a < count; ++a) {
-    double weight = 1;
-    for (int b = 0; b < count; ++b)
-      if (b != a) weight *= (at - (first + b)) / double(a - b);
-    sum += weight * pixelOf[((first + a) % n + n) % n];
-  }
-  return sum;
-}
-
-/// Closed contour through the directions that succeeded; runs of failed ones are gaps. Between neighbouring directions the
-/// curve is interpolated in the azimuth: straight chords would flatten it.
-void outlineOf(const CanonicalContour& c, PredictedHighlight& h) {
-  const int n = static_cast<int>(c.directions.size());
-  std::vector<Pixel> pixelOf(n, Pixel(0, 0));
-  std::vector<char> ok(n, 0);
-  for (int i = 0, k = 0; i < n; ++i)
-    if (!c.directions[i].failure) ok[i] = 1, pixelOf[i] = c.pixels[k++];
-  const auto isOk = [&](int i) { return ok[(i % n + n) % n] != 0; };
-  h.coverage = n ? double(c.pixels.size()) / n : 0;
-  h.contour = Polyline{{}, true};
-  for (int i = 0; i < n; ++i) {
-    if (!ok[i]) continue;
-    h.contour.points.push_back(pixelOf[i]);
-    if (!isOk(i + 1)) {
-      h.gaps.emplace_back(static_cast<int>(h.contour.points.size()) - 1, static_cast<int>(h.contour.points.size()));
-      continue;
-    }
-    int first = i, last = i + 1;  // grow the stencil evenly within the run
-    while (last - first + 1 < std::min(kStencil, n)) {
-      const bool left = isOk(first - 1), right = isOk(last + 1);
-      if (!left && !right) break;
-      if (left && (!right || i - first <= last - i - 1)) --first;
-      else ++last;
-    }
-    for (int k = 1; k < kSubdivisions; ++k)
-      h.contour.points.push_back(interpolate(pixelOf, first, last - first + 1, i + double(k) / kSubdivisions));
-  }
-  // The last gap closes on the first vertex.
-  const int count = static_cast<int>(h.contour.points.size());
-  for (auto& [from, to] : h.gaps) to %= std::max(1, count);
-}
 
 class Canonical final : public HighlightModel {
  public:
@@ -85,6 +36,7 @@ class Canonical final : public HighlightModel {
     fit.lightEstimate = input.light->light;
     fit.lightCovariance = input.light->covariance;
     fit.limitAngle = input.light->limitAngle;
+    fit.hints = hintsOf(input);
     return fit;
   }
 
@@ -97,12 +49,20 @@ class Canonical final : public HighlightModel {
     if (!surface) return fail({Reason::NoSurface, ""});
     if (!fit.ellipsoid) return fail({Reason::NotAnEllipsoid, fit.quadric ? describe(*fit.quadric) : ""});
     const Light light = fit.lightEstimate ? *fit.lightEstimate : Light::at(fit.ellipsoid->centre());
-    const auto brightest = brightestPointsFor(*surface, camera, light, settings);
+    const auto brightest = brightestPointsFor(*surface, camera, light, settings, fit.hints);
     if (!brightest) return fail(brightest.failure());
     WalkOptions walkOptions;
     walkOptions.toleranceRad = settings.number("predict.walk_tolerance");
+    const bool localQuadric = settings.text("predict.query") == "local-quadric";
     for (const BrightestPoint& b : *brightest) {
-      const TangentWalk walk(*surface, camera, b, light, walkOptions);
+      std::optional<LocalQuadric> patch;
+      if (localQuadric) {
+        Outcome<LocalQuadric> q = LocalQuadric::of(*surface, b.point);
+        if (!q) return fail(q.failure());
+        patch = std::move(*q);
+      }
+      const Surface& walked = patch ? static_cast<const Surface&>(*patch) : *surface;
+      const TangentWalk walk(walked, camera, b, light, walkOptions);
       const Outcome<Ellipse> e = outlineEllipse(*fit.ellipsoid, virtualCamera(camera, walk.tangentPlane()));
       if (!e) {
         p.failure = e.failure();
@@ -111,8 +71,9 @@ class Canonical final : public HighlightModel {
       PredictedHighlight h;
       h.brightest = b;
       h.tangentPlane = walk.tangentPlane();
-      h.canonical = predictFromEllipse(walk, *surface, camera, *e, settings.integer("predict.directions"));
+      h.canonical = predictFromEllipse(walk, walked, camera, *e, settings.integer("predict.directions"));
       outlineOf(*h.canonical, h);
+      if (patch) h.curvatureVariation = curvatureVariation(*patch, *surface, *h.canonical);
       h.ellipse = h.canonical->ellipse;
       h.canonical->ellipse = *e;  // on T: what the viewer draws there
       if (h.contour.points.size() < 3) {

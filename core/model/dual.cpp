@@ -27,6 +27,7 @@ class Dual final : public HighlightModel {
     const Outcome<Reconstruction> r = fitEllipsoid(conics, anchorAtLight(input), settings);
     if (!r) return r.failure();
     store(*r, fit);
+    fit.hints = hintsOf(input);
     return fit;
   }
 
@@ -41,7 +42,7 @@ class Dual final : public HighlightModel {
       return p;
     }
     // The model stores no light: its brightest point is that of a light at the ellipsoid's centre.
-    const auto brightest = brightestPointsFor(*surface, camera, Light::at(fit.ellipsoid->centre()), settings);
+    const auto brightest = brightestPointsFor(*surface, camera, Light::at(fit.ellipsoid->centre()), settings, fit.hints);
     if (!brightest) {
       p.failure = brightest.failure();
       return p;

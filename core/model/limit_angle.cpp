@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
 
 #include "core/model/level_set_prediction.h"
 #include "core/model/models.h"
+#include "core/model/star.h"
 
 namespace glint {
 namespace {
@@ -13,6 +15,18 @@ std::optional<double> alphaAt(const SurfacePoint& p, const Eigen::Vector3d& eye,
   if (!(p.normal.dot(l) > 0)) return std::nullopt;
   const double alpha = incidentAngle(p.normal, l, v);
   return std::isfinite(alpha) ? std::optional<double>(alpha) : std::nullopt;
+}
+
+WalkOptions walkOptions(const Settings& settings) {
+  WalkOptions options;
+  options.toleranceRad = settings.number("predict.walk_tolerance");
+  return options;
+}
+
+std::optional<Failure> firstFailure(const CanonicalContour& c) {
+  for (const DirectionResult& d : c.directions)
+    if (d.failure) return d.failure;
+  return std::nullopt;
 }
 
 class LimitAngle final : public HighlightModel {
@@ -37,6 +51,7 @@ class LimitAngle final : public HighlightModel {
     fit.limitAngle = input.light->limitAngle;
     fit.solver = input.light->solver;
     fit.condition = input.light->condition;
+    fit.hints = hintsOf(input);
     return fit;
   }
 
@@ -48,7 +63,14 @@ class LimitAngle final : public HighlightModel {
     }
     const Light& light = *fit.lightEstimate;
     const Eigen::Vector3d eye = camera.centreInWorld();
-    const auto brightest = brightestPointsFor(*surface, camera, light, settings);
+    const auto brightest = brightestPointsFor(*surface, camera, light, settings, fit.hints);
+    if (settings.text("predict.query") == "local-quadric")
+      return onLocalQuadrics(*fit.limitAngle, camera, *surface, light, brightest, settings);
+    if (settings.text("predict.contour") == "star" && brightest && brightest->size() == 1)
+      if (std::optional<PredictedHighlight> h = star(*fit.limitAngle, camera, *surface, light, brightest->front(), settings)) {
+        p.highlights.push_back(std::move(*h));
+        return p;
+      }
     SurfaceField field;
     field.value = [&](const SurfacePoint& at) { return alphaAt(at, eye, light); };
     field.level = *fit.limitAngle;
@@ -57,6 +79,56 @@ class LimitAngle final : public HighlightModel {
     p = predictLevelSet(field, camera, *surface, settings);
     if (p.failure && !brightest) p.failure = brightest.failure();
     return p;
+  }
+
+ private:
+  /// One star on the patch of every brightest point; a patch knows nothing of other highlights nor of the surface's border.
+  static Prediction onLocalQuadrics(double limit, const Camera& camera, const Surface& surface, const Light& light,
+                                    const Outcome<std::vector<BrightestPoint>>& brightest, const Settings& settings) {
+    Prediction p;
+    if (!brightest) {
+      p.failure = brightest.failure();
+      return p;
+    }
+    for (const BrightestPoint& b : *brightest) {
+      const Outcome<LocalQuadric> patch = LocalQuadric::of(surface, b.point);
+      if (!patch) {
+        p.failure = patch.failure();
+        continue;
+      }
+      const TangentWalk walk(*patch, camera, b, light, walkOptions(settings));
+      PredictedHighlight h;
+      h.brightest = b;
+      h.tangentPlane = walk.tangentPlane();
+      const CanonicalContour c = starContour(walk, *patch, camera, limit, settings.integer("predict.directions"));
+      outlineOf(c, h);
+      if (h.contour.points.size() < 3) {
+        p.failure = firstFailure(c);
+        continue;
+      }
+      h.curvatureVariation = curvatureVariation(*patch, surface, c);
+      if (const Outcome<Ellipse> e = fitEllipse(c.pixels)) h.ellipse = *e;
+      p.highlights.push_back(std::move(h));
+    }
+    dropEnclosed(p.highlights);
+    if (!p.highlights.empty()) p.failure.reset();
+    return p;
+  }
+
+  /// The level set around the only brightest point by walks on the surface. Nothing when some direction fails: the region is then
+  /// cut, hidden in part or no star, and the level set answers.
+  static std::optional<PredictedHighlight> star(double limit, const Camera& camera, const Surface& surface, const Light& light,
+                                                const BrightestPoint& b, const Settings& settings) {
+    const TangentWalk walk(surface, camera, b, light, walkOptions(settings));
+    const CanonicalContour c = starContour(walk, surface, camera, limit, settings.integer("predict.directions"));
+    if (std::any_of(c.directions.begin(), c.directions.end(), [](const DirectionResult& d) { return d.failure.has_value(); }))
+      return std::nullopt;
+    PredictedHighlight h;
+    h.brightest = b;
+    h.tangentPlane = walk.tangentPlane();
+    outlineOf(c, h);
+    if (const Outcome<Ellipse> e = fitEllipse(c.pixels)) h.ellipse = *e;
+    return h;
   }
 };
 

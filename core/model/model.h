@@ -82,6 +82,7 @@ struct ModelFit {
   std::vector<double> residualPx;           ///< per training view, RMS contour distance
   std::string solver;                       ///< "linear", "anchored", "refined", "bundle", ...
   std::vector<int> frames;                  ///< frames used
+  std::vector<SurfacePoint> hints;          ///< brightest points of the views used, normals as observed; none where a frame showed several
   double timeUs = 0;
 };
 
@@ -94,6 +95,7 @@ struct PredictedHighlight {
   std::optional<Plane> tangentPlane;
   std::optional<CanonicalContour> canonical;///< directions with their ends on S and T
   double coverage = 1;                      ///< share of directions that gave a point
+  std::optional<double> curvatureVariation; ///< predict.query = local-quadric only, see `curvatureVariation` in core/model/star.h
 };
 
 /// Prediction of one light in one view: zero or more highlights, or the reason for none.

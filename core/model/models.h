@@ -18,8 +18,12 @@ std::unique_ptr<HighlightModel> makeLimitAngle();
 inline constexpr double kMarginFraction = 0.65;
 
 /// predictedBrightestPoints with the settings' search; looks beyond the image by kMarginFraction where the image has none.
+/// @param hints  ModelFit::hints; used when `predict.search` says so.
 Outcome<std::vector<BrightestPoint>> brightestPointsFor(const Surface& surface, const Camera& camera, const Light& light,
-                                                        const Settings& settings);
+                                                        const Settings& settings, const std::vector<SurfacePoint>& hints = {});
+
+/// ModelFit::hints of a fit's input.
+std::vector<SurfacePoint> hintsOf(const FitInput& input);
 
 /// Leaves one highlight where several brightest points share one contour: those whose peak lies inside a larger predicted
 /// contour are dropped (method.md section 8: a component that encloses several brightest points is returned once).

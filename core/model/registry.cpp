@@ -28,14 +28,44 @@ const HighlightModel& modelByName(const std::string& id) {
 }
 
 Outcome<std::vector<BrightestPoint>> brightestPointsFor(const Surface& surface, const Camera& camera, const Light& light,
-                                                        const Settings& settings) {
+                                                        const Settings& settings, const std::vector<SurfacePoint>& hints) {
   BrightestPointOptions options;
+  if (!hints.empty() && settings.text("predict.search") == "hints") {
+    // The hint that is already closest to the reflection law; its own normal is close enough to judge that.
+    const Eigen::Vector3d eye = camera.centreInWorld();
+    const SurfacePoint* best = nullptr;
+    double highest = -1;  // cosine of alpha: no inverse function is needed to compare
+    for (const SurfacePoint& p : hints) {
+      const Eigen::Vector3d h = light.directionFrom(p.position) + (eye - p.position).normalized();
+      const double cosine = p.normal.dot(h) / h.norm();
+      if (cosine > highest) highest = cosine, best = &p;
+    }
+    if (best) {
+      options.hints = {best->position};
+      options.hintsOnly = true;
+      Outcome<std::vector<BrightestPoint>> found = predictedBrightestPoints(surface, camera, light, options);
+      if (found) return found;
+      options.hints.clear();
+      options.hintsOnly = false;
+    }
+  }
   options.seedStepPx = settings.number("predict.seed_step");
   Outcome<std::vector<BrightestPoint>> found = predictedBrightestPoints(surface, camera, light, options);
   if (found) return found;
   options.marginFraction = kMarginFraction;  // rarely needed, and five times the rays
   Outcome<std::vector<BrightestPoint>> beyond = predictedBrightestPoints(surface, camera, light, options);
   return beyond ? beyond : found;
+}
+
+std::vector<SurfacePoint> hintsOf(const FitInput& input) {
+  std::vector<SurfacePoint> hints;
+  std::vector<int> frames;
+  for (const TrainingView& v : input.views) {
+    if (std::find(frames.begin(), frames.end(), v.frame) != frames.end()) return {};  // several highlights: one start does not find all
+    frames.push_back(v.frame);
+    if (!v.failure && v.brightest) hints.push_back(v.brightest->point);
+  }
+  return hints;
 }
 
 void dropEnclosed(std::vector<PredictedHighlight>& highlights) {

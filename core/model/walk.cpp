@@ -72,6 +72,27 @@ double TangentWalk::azimuthOf(const Eigen::Vector3d& point) const {
   return std::atan2(d.y(), d.x());
 }
 
+Eigen::Matrix2d TangentWalk::angularRate() const {
+  const SurfacePoint& p = brightest_.point;
+  const Eigen::Vector4d& lw = light_.homogeneous();
+  const Eigen::Vector3d toEye = eye_ - p.position, toLight = lw.head<3>() - lw.w() * p.position;
+  const double r = toEye.norm(), q = toLight.norm();
+  const Eigen::Vector3d v = toEye / r, l = toLight / q, sum = l + v;
+  const double length = sum.norm();
+  const Eigen::Vector3d h = sum / length;
+  const Eigen::Matrix2d vv = basis_.transpose() * v * (v.transpose() * basis_), ll = basis_.transpose() * l * (l.transpose() * basis_);
+  const Eigen::Vector2d hb = basis_.transpose() * h;
+  const Eigen::Matrix2d id = Eigen::Matrix2d::Identity();
+  // At P_B the tangential part of H vanishes (or nearly, for an observed peak), so that B^T (I - H H^T) is B^T up to h_b.
+  const Eigen::Matrix2d dSum = -(id - vv) / r - lw.w() / q * (id - ll);
+  Eigen::Matrix2d j = (id - hb * hb.transpose()) * dSum / length;
+  if (const Outcome<Curvature> c = surface_.curvatureAt(p)) {
+    const Eigen::Vector2d d1 = basis_.transpose() * c->direction1, d2 = basis_.transpose() * c->direction2;
+    j -= p.normal.dot(h) * (c->k1 * d1 * d1.transpose() + c->k2 * d2 * d2.transpose());
+  }
+  return j;
+}
+
 double TangentWalk::alphaOnPlane(const Eigen::Vector3d& p) const {
   const Eigen::Vector3d l = light_.directionFrom(p), v = (eye_ - p).normalized();
   const Eigen::Vector3d& n = plane_.normal;

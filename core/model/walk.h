@@ -54,6 +54,10 @@ class TangentWalk {
   /// Walk on S until the foot's pixel leaves the contour. @param contour closed, ideal pixels, around the peak.
   Outcome<Reach> reachContour(const Eigen::Vector3d& direction, const Polyline& contour, double scale) const;
 
+  /// First order of alpha around P_B: J (2x2, rad/m) with alpha(s) = |J (cos a, sin a)| s + O(s^2) along the azimuth a, on S:
+  /// J = B^T dH B - (N.H) S with the shape operator S (zero where the surface has no curvature, as on facets).
+  Eigen::Matrix2d angularRate() const;
+
   /// A length on T that corresponds to `pixels` at P_B, m.
   double metresPerPixel() const;
   /// Homography from plane coordinates (a, b, 1) - P_B + a u + b v - to pixels.
