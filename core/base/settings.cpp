@@ -34,6 +34,8 @@ const std::vector<ParamSpec>& allParams() {
        "Linear: smallest singular vector of s C* = P Q* P^T. Anchored: centre fixed at the light. Refined: contour distances with the light's covariance as prior.", "fit"},
       {"fit.prior_bias", "Centre bias", "", "", 0.0, 0.0, 10.0, 0.01, {},
        "Refined solver: how far the ellipsoid's centre may lie from the light beside the light's own noise, as a fraction of the light's distance (standard deviation); 0 = chosen by leaving one training view out.", "fit"},
+      {"fit.lobe", "Lobe", "", "", std::string("auto"), 0, 0, 0, {"auto", "torrance-sparrow", "ggx", "blinn-phong", "phong"},
+       "Specular lobe of the reflectance model; auto: the one whose fit leaves the smallest residual.", "fit"},
       {"predict.directions", "Directions", "n", "", 36, 6, 720, 1, {},
        "Directions of the walk in the tangent plane (the paper: 36).", "fit"},
       {"predict.query", "Surface queries", "", "", std::string("exact"), 0, 0, 0, {"exact", "local-quadric"},

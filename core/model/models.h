@@ -12,6 +12,7 @@ std::unique_ptr<HighlightModel> makePrimal();
 std::unique_ptr<HighlightModel> makeDual();
 std::unique_ptr<HighlightModel> makeCanonical();
 std::unique_ptr<HighlightModel> makeLimitAngle();
+std::unique_ptr<HighlightModel> makeReflectance();
 
 /// How far beyond the image highlights are followed, as a fraction of its longer side: a highlight that the border cuts has its
 /// brightest point or a part of its contour out there.

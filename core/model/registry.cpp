@@ -13,6 +13,7 @@ const std::vector<std::unique_ptr<HighlightModel>>& allModels() {
     m.push_back(makeDual());
     m.push_back(makeCanonical());
     m.push_back(makeLimitAngle());
+    m.push_back(makeReflectance());
     return m;
   }();
   return models;

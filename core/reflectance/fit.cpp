@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/reflectance/fit.h"
+
+#include <ceres/ceres.h>
+#include <ceres/jet.h>
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <map>
+
+#include "core/geometry/polyline.h"
+#include "core/reflectance/lobe_terms.h"
+#include "core/reflectance/radiance_field.h"
+
+namespace glint {
+namespace {
+
+constexpr double kStepPx = 0.5;  // of the finite differences that turn log I into pixels
+constexpr int kMaxReweightings = 8;
+constexpr double kScanStepPx = 24;  // of the search for a frame's maximum when the light has moved far
+constexpr double kSettled = 1e-9;   // change of the unit vector L and of log m between reweightings
+
+using Dual = ceres::Jet<double, 5>;  // derivatives by L (4) and log m
+using Parameters = Eigen::Matrix<double, 5, 1>;
+
+/// A surface point seen by a camera; positions in normalised world coordinates.
+struct Seen {
+  Eigen::Vector3d position, normal, toCamera;
+};
+
+/// One contour point. Nothing here depends on the light, so hits are computed once.
+struct Evidence {
+  Seen at, left, right, up, down;  ///< and of the pixels kStepPx away
+  int view = 0, frame = 0;         ///< frame: index into the frames of this fit
+  double level = 0;                ///< sqrt(-log q)
+  double pixelsPerUnit = 1;        ///< 1 / |d g / d pixel| under the light of the last reweighting
+};
+
+/// A frame's maximum under the light of the moment.
+struct FramePeak {
+  Camera camera;
+  const Surface* surface = nullptr;
+  std::vector<Pixel> starts;
+  std::optional<Seen> at;  ///< normalised; empty where nothing in the frame is lit
+};
+
+template <class T>
+std::optional<T> logRadianceAt(Lobe lobe, const Seen& s, const Eigen::Matrix<T, 4, 1>& light, const T& roughness) {
+  using std::log;
+  using std::sqrt;
+  const Eigen::Matrix<T, 3, 1> position = s.position.cast<T>();
+  const Eigen::Matrix<T, 3, 1> offset = light.template head<3>() - light(3) * position;
+  const T squared = offset.squaredNorm();
+  if (!(squared > T(0.0))) return std::nullopt;
+  const Eigen::Matrix<T, 3, 1> toLight = offset / sqrt(squared);
+  const Eigen::Matrix<T, 3, 1> normal = s.normal.cast<T>(), view = s.toCamera.cast<T>();
+  if (!(normal.dot(toLight) > T(0.0)) || !(normal.dot(view) > T(0.0))) return std::nullopt;
+  if (lobe == Lobe::Phong && !(T(2.0) * normal.dot(toLight) * normal.dot(view) - toLight.dot(view) > T(0.0))) return std::nullopt;
+  return lobe::terms<T>(lobe, roughness, s.normal, toLight, s.toCamera).total() - log(squared);
+}
+
+/// sqrt(u), continued by its tangent below a quarter of the level's: a start far off may put a contour point above the peak.
+template <class T>
+T rootOf(const T& u, double level) {
+  using std::sqrt;
+  const double knee = 0.25 * level * level;
+  return u > T(knee) ? T(sqrt(u)) : T(std::sqrt(knee)) + (u - T(knee)) / T(2 * std::sqrt(knee));
+}
+
+class Problem {
+ public:
+  Problem(Lobe lobe, std::vector<Evidence> points, std::vector<FramePeak> frames, const Eigen::Vector3d& origin, double scale,
+          const RadianceFitOptions& options)
+      : lobe_(lobe), points_(std::move(points)), frames_(std::move(frames)), origin_(origin), scale_(scale), options_(options) {}
+
+  struct Attempt {
+    Parameters at = Parameters::Zero();
+    double cost = std::numeric_limits<double>::infinity();
+    int iterations = 0;
+    bool converged = false;
+  };
+
+  Attempt solve(const Eigen::Vector4d& light, double roughness, bool atInfinity);
+  RadianceFit describe(const Attempt& a, std::size_t views);
+  std::size_t lit() const {
+    return std::count_if(frames_.begin(), frames_.end(), [](const FramePeak& f) { return f.at.has_value(); });
+  }
+  Light inWorld(const Eigen::Vector4d& light) const {
+    Eigen::Vector4d world;
+    world << scale_ * light.head<3>() + light.w() * origin_, light.w();
+    return Light::homogeneous(world);
+  }
+
+  /// Finds every frame's maximum; `scan`: anywhere in the image, else uphill from the last one.
+  void updatePeaks(const Parameters& at, bool scan) {
+    const Light light = inWorld(at.head<4>());
+    const double roughness = std::exp(at(4));
+    if (!std::isfinite(roughness) || !(roughness > 0)) return;
+    for (FramePeak& f : frames_) {
+      const RadianceField field(*f.surface, f.camera, lobe_, roughness, light);
+      std::vector<RadiancePeak> peaks = field.peaks(f.starts, scan ? kScanStepPx : 0);
+      if (peaks.empty() && !scan) peaks = field.peaks(f.starts, kScanStepPx);
+      if (peaks.empty()) {
+        f.at.reset();
+        continue;
+      }
+      const SurfacePoint& p = peaks.front().point;
+      f.at = Seen{(p.position - origin_) / scale_, p.normal, (f.camera.centreInWorld() - p.position).normalized()};
+      // Climb from the places of these maxima next time: cheaper, and a second one may become the strongest.
+      if (scan) {
+        f.starts.clear();
+        for (const RadiancePeak& k : peaks) f.starts.push_back(k.pixel);
+      } else {
+        f.starts.front() = peaks.front().pixel;
+      }
+    }
+  }
+
+  const std::vector<Evidence>& points() const { return points_; }
+  const FramePeak& frame(int i) const { return frames_[static_cast<std::size_t>(i)]; }
+  Lobe lobe() const { return lobe_; }
+
+ private:
+  double root(const Evidence& e, const Seen& s, const Parameters& at) const {
+    const std::optional<Seen>& peak = frame(e.frame).at;
+    const auto here = logRadianceAt<double>(lobe_, s, at.head<4>(), std::exp(at(4)));
+    const auto top = peak ? logRadianceAt<double>(lobe_, *peak, at.head<4>(), std::exp(at(4))) : std::nullopt;
+    return here && top ? rootOf(*top - *here, e.level) : std::numeric_limits<double>::quiet_NaN();
+  }
+  void reweight(const Parameters& at);
+  double robustCost(const Parameters& at) const;
+
+  Lobe lobe_;
+  std::vector<Evidence> points_;
+  std::vector<FramePeak> frames_;
+  Eigen::Vector3d origin_;
+  double scale_;
+  RadianceFitOptions options_;
+};
+
+/// (g - sqrt(-log q)) in pixels, with its derivatives by dual numbers.
+class RootCost : public ceres::SizedCostFunction<1, 4, 1> {
+ public:
+  RootCost(const Problem& problem, const Evidence& evidence) : problem_(problem), e_(evidence) {}
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    const std::optional<Seen>& peak = problem_.frame(e_.frame).at;
+    if (!peak) return false;
+    Eigen::Matrix<Dual, 4, 1> light;
+    for (int i = 0; i < 4; ++i) light(i) = Dual(parameters[0][i], i);
+    const Dual roughness = exp(Dual(parameters[1][0], 4));
+    const auto here = logRadianceAt<Dual>(problem_.lobe(), e_.at, light, roughness);
+    const auto top = logRadianceAt<Dual>(problem_.lobe(), *peak, light, roughness);
+    if (!here || !top) return false;
+    const Dual residual = (rootOf(*top - *here, e_.level) - Dual(e_.level)) * Dual(e_.pixelsPerUnit);
+    if (!std::isfinite(residual.a) || !residual.v.allFinite()) return false;
+    residuals[0] = residual.a;
+    if (jacobians && jacobians[0])
+      for (int i = 0; i < 4; ++i) jacobians[0][i] = residual.v(i);
+    if (jacobians && jacobians[1]) jacobians[1][0] = residual.v(4);
+    return true;
+  }
+
+ private:
+  const Problem& problem_;
+  const Evidence& e_;
+};
+
+/// The maxima follow the light before every evaluation.
+class PeaksFollow : public ceres::EvaluationCallback {
+ public:
+  PeaksFollow(Problem& problem, const Parameters& at) : problem_(problem), at_(at) {}
+  void PrepareForEvaluation(bool, bool newPoint) override {
+    if (newPoint) problem_.updatePeaks(at_, false);
+  }
+
+ private:
+  Problem& problem_;
+  const Parameters& at_;  ///< what Ceres writes before it calls
+};
+
+void Problem::reweight(const Parameters& at) {
+  std::vector<double> slopes;
+  slopes.reserve(points_.size());
+  for (const Evidence& e : points_) {
+    const double dx = root(e, e.right, at) - root(e, e.left, at), dy = root(e, e.down, at) - root(e, e.up, at);
+    const double slope = std::hypot(dx, dy) / (2 * kStepPx);
+    slopes.push_back(std::isfinite(slope) ? slope : 0);
+  }
+  std::vector<double> sorted = slopes;
+  std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
+  // Where the field hardly changes over the image (a start far off) a pixel must not weigh without bound.
+  const double floor = std::max(0.05 * sorted[sorted.size() / 2], 1e-12);
+  for (std::size_t i = 0; i < points_.size(); ++i) points_[i].pixelsPerUnit = 1 / std::max(slopes[i], floor);
+}
+
+double Problem::robustCost(const Parameters& at) const {
+  double sum = 0;
+  for (const Evidence& e : points_) {
+    const double r = std::abs(e.pixelsPerUnit * (root(e, e.at, at) - e.level)), k = options_.robustPx;
+    sum += r <= k ? r * r : k * (2 * r - k);
+  }
+  return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
+}
+
+Problem::Attempt Problem::solve(const Eigen::Vector4d& light, double roughness, bool atInfinity) {
+  Attempt a;
+  Eigen::Vector4d start = light;
+  if (atInfinity) start.w() = 0;
+  a.at << start.normalized(), std::log(roughness);
+  for (int round = 0; round < kMaxReweightings && a.iterations < options_.maxIterations; ++round) {
+    // The weights are held while the light moves: a residual whose own weight moves gains by lights under which the field is
+    // steep.
+    updatePeaks(a.at, true);
+    if (lit() == 0) return a;
+    reweight(a.at);
+    const Parameters before = a.at;
+    PeaksFollow follow(*this, a.at);
+    ceres::Problem::Options ownership;
+    ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    ownership.disable_all_safety_checks = true;
+    ownership.evaluation_callback = &follow;
+    ceres::HuberLoss loss(options_.robustPx);
+    std::deque<RootCost> costs;  // cost functions cannot be moved
+    ceres::Solver::Summary summary;
+    {
+      ceres::Problem problem(ownership);
+      for (const Evidence& e : points_)
+        problem.AddResidualBlock(&costs.emplace_back(*this, e), &loss, a.at.data(), a.at.data() + 4);
+      if (atInfinity)
+        problem.SetManifold(a.at.data(), new ceres::ProductManifold<ceres::SphereManifold<3>, ceres::SubsetManifold>(
+                                             ceres::SphereManifold<3>(), ceres::SubsetManifold(1, {0})));
+      else
+        problem.SetManifold(a.at.data(), new ceres::SphereManifold<4>());
+      ceres::Solver::Options solver;
+      solver.linear_solver_type = ceres::DENSE_QR;
+      solver.logging_type = ceres::SILENT;
+      solver.num_threads = 1;
+      solver.max_num_iterations = std::max(1, options_.maxIterations - a.iterations);
+      solver.function_tolerance = 1e-12;
+      solver.parameter_tolerance = 1e-11;
+      solver.gradient_tolerance = 1e-13;
+      ceres::Solve(solver, &problem, &summary);
+    }
+    a.iterations += std::max<int>(1, int(summary.iterations.size()) - 1);
+    if (!summary.IsSolutionUsable() || !a.at.allFinite()) return a;
+    a.converged = summary.termination_type == ceres::CONVERGENCE || summary.final_cost <= 1e-20 * points_.size();
+    if (a.converged && (a.at - before).norm() < kSettled) break;
+  }
+  updatePeaks(a.at, true);
+  reweight(a.at);
+  a.cost = robustCost(a.at);
+  return a;
+}
+
+RadianceFit Problem::describe(const Attempt& a, std::size_t views) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  updatePeaks(a.at, true);
+  reweight(a.at);
+  RadianceFit fit;
+  fit.lobe = lobe_;
+  fit.roughness = std::exp(a.at(4));
+  fit.light = inWorld(a.at.head<4>());
+  fit.cost = a.cost;
+  fit.points = static_cast<int>(points_.size());
+  fit.iterations = a.iterations;
+  fit.residualPx.assign(views, 0);
+  std::vector<int> counts(views, 0);
+  Eigen::Matrix<double, 4, 3, Eigen::RowMajor> chart;  // ambient from tangent coordinates of L
+  ceres::SphereManifold<4>().PlusJacobian(a.at.data(), chart.data());
+  Eigen::Matrix<double, Eigen::Dynamic, 4> jacobian(std::max<std::size_t>(points_.size(), 4), 4);
+  jacobian.setZero();
+  double sum = 0;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Evidence& e = points_[i];
+    double residual = 0, byRoughness = 0;
+    Eigen::RowVector4d byLight;
+    const double* parameters[] = {a.at.data(), a.at.data() + 4};
+    double* blocks[] = {byLight.data(), &byRoughness};
+    if (!RootCost(*this, e).Evaluate(parameters, &residual, blocks)) continue;
+    jacobian.row(i) << byLight * chart, byRoughness;
+    sum += residual * residual;
+    fit.residualPx[e.view] += residual * residual;
+    ++counts[e.view];
+  }
+  for (std::size_t v = 0; v < views; ++v) fit.residualPx[v] = counts[v] ? std::sqrt(fit.residualPx[v] / counts[v]) : 0;
+  fit.rmsPx = std::sqrt(sum / points_.size());
+  const double variance = sum / std::max<double>(1, double(points_.size()) - 4);
+  const Eigen::Matrix4d r = Eigen::HouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 4>>(jacobian)
+                                .matrixQR()
+                                .topRows<4>()
+                                .triangularView<Eigen::Upper>();
+  const Eigen::JacobiSVD<Eigen::Matrix4d> svd(r, Eigen::ComputeFullV);
+  fit.covariance = Eigen::Matrix4d::Zero();
+  fit.positionCovariance = Eigen::Matrix3d::Zero();
+  if (!(svd.singularValues()(3) > 1e-14 * svd.singularValues()(0))) {
+    fit.covariance.diagonal().setConstant(infinity);
+    fit.positionCovariance.diagonal().setConstant(infinity);
+    return fit;
+  }
+  const Eigen::Matrix4d half = svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();
+  fit.covariance = variance * (half * half.transpose());
+  const double w = a.at(3);
+  Eigen::Matrix<double, 3, 4> position;  // d(l / w)
+  position << Eigen::Matrix3d::Identity() / w, -a.at.head<3>() / (w * w);
+  const Eigen::Matrix<double, 3, 4> root = scale_ * position * chart * half.topRows<3>();
+  fit.positionCovariance = variance * (root * root.transpose());
+  if (w == 0 || !fit.positionCovariance.allFinite()) {
+    fit.positionCovariance.setZero();
+    fit.positionCovariance.diagonal().setConstant(infinity);
+  }
+  return fit;
+}
+
+}  // namespace
+
+Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& views, const Light& light, double roughness,
+                                 const RadianceFitOptions& options) {
+  require(options.pointsPerView >= 3 && options.robustPx > 0 && options.maxIterations >= 1, "fitRadiance: options");
+  require(roughness > 0 && std::isfinite(roughness), "fitRadiance: roughness must be positive");
+  std::vector<Evidence> points;
+  std::vector<FramePeak> frames;
+  std::map<int, int> frameIndex;
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  double scale = 0;
+  std::size_t offered = 0;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const RadianceView& view = views[v];
+    require(view.surface != nullptr, "fitRadiance: a view without surface");
+    require(view.level > 0 && view.level < 1, "fitRadiance: the level must lie between 0 and 1");
+    for (const Pixel& p : view.contour)
+      if (!p.allFinite()) return Failure{Reason::NotFinite, "a contour point of view " + std::to_string(v)};
+    const auto [known, isNew] = frameIndex.emplace(view.frame, static_cast<int>(frames.size()));
+    if (isNew) frames.push_back({view.camera, view.surface, {}, std::nullopt});
+    frames[known->second].starts.push_back(view.peak);
+    const std::vector<Pixel> pixels = view.contour.size() > std::size_t(options.pointsPerView)
+                                          ? resample(Polyline{view.contour, true}, options.pointsPerView)
+                                          : view.contour;
+    offered += pixels.size();
+    const Eigen::Vector3d eye = view.camera.centreInWorld();
+    const auto seen = [&](const Pixel& p) -> std::optional<Seen> {
+      const Outcome<SurfacePoint> hit = view.surface->firstHit(view.camera.ray(p));
+      if (!hit || !hit->position.allFinite() || !hit->normal.allFinite()) return std::nullopt;
+      const SurfacePoint s = facing(*hit, eye);
+      return Seen{s.position, s.normal, (eye - s.position).normalized()};
+    };
+    for (const Pixel& p : pixels) {
+      const std::optional<Seen> at = seen(p), left = seen(p - Pixel(kStepPx, 0)), right = seen(p + Pixel(kStepPx, 0)),
+                                up = seen(p - Pixel(0, kStepPx)), down = seen(p + Pixel(0, kStepPx));
+      // Where the surface ends the contour is its edge, not a level set.
+      if (!at || !left || !right || !up || !down) continue;
+      points.push_back({*at, *left, *right, *up, *down, int(v), known->second, std::sqrt(-std::log(view.level)), 1});
+      origin += at->position;
+      scale += (eye - at->position).norm();
+    }
+  }
+  if (offered > 0 && points.empty()) return Failure{Reason::PeakOffSurface, "no contour point hits the surface"};
+  if (points.size() < 5) return Failure{Reason::TooFewPoints, "need 5 on the surface, have " + std::to_string(points.size())};
+  origin /= double(points.size());
+  scale /= double(points.size());
+  if (!(scale > 0) || !std::isfinite(scale)) return Failure{Reason::NotFinite, "camera distance"};
+  for (Evidence& e : points)
+    for (Seen* s : {&e.at, &e.left, &e.right, &e.up, &e.down}) s->position = (s->position - origin) / scale;
+
+  Eigen::Vector4d first;
+  first << (light.homogeneous().head<3>() - light.homogeneous().w() * origin) / scale, light.homogeneous().w();
+  require(first.norm() > 0, "fitRadiance: no light");
+  first.normalize();
+  Problem problem(lobe, std::move(points), std::move(frames), origin, scale, options);
+  const auto good = [&](const Problem::Attempt& a) {
+    return a.converged && a.cost <= options.robustPx * options.robustPx * double(problem.points().size());
+  };
+  Problem::Attempt best = problem.solve(first, roughness, first.w() == 0);
+  int iterations = best.iterations;
+  if (!good(best)) {
+    // Along the first guess's direction, at other distances and at infinity; narrower and wider lobes.
+    const Eigen::Vector3d direction = first.head<3>().normalized();
+    for (const double distance : {0.5, 1.0, 2.0, 5.0, 0.0}) {
+      Eigen::Vector4d from;
+      from << (distance > 0 ? Eigen::Vector3d(distance * direction) : direction), (distance > 0 ? 1.0 : 0.0);
+      for (const double factor : {1.0, 0.5, 2.0}) {
+        const Problem::Attempt other = problem.solve(from.normalized(), std::min(factor * roughness, 1.0), distance == 0);
+        iterations += other.iterations;
+        if (other.converged != best.converged ? other.converged : other.cost < best.cost) best = other;
+        if (good(best)) break;
+      }
+      if (good(best)) break;
+    }
+  }
+  if (!std::isfinite(best.cost))
+    return problem.lit() == 0 ? Failure{Reason::NoBrightestPoint, "no frame has a lit maximum"}
+                              : Failure{Reason::NotConverged, ""};
+  if (!best.converged) return Failure{Reason::NotConverged, "after " + std::to_string(iterations) + " iterations"};
+  RadianceFit fit = problem.describe(best, views.size());
+  fit.iterations = iterations;
+  return fit;
+}
+
+}  // namespace glint

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "core/light/light.h"
+#include "core/reflectance/lobe.h"
+#include "core/surface/surface.h"
+
+namespace glint {
+
+/// One contour as evidence of the radiance: ideal pixels on the level set I = q max I of its frame.
+struct RadianceView {
+  int frame = 0;  ///< contours of one frame share its maximum
+  Camera camera;
+  const Surface* surface = nullptr;
+  std::vector<Pixel> contour;  ///< closed, about equally spaced
+  Pixel peak{0, 0};            ///< where the search for the frame's maximum starts
+  double level = 0.5;          ///< q in (0, 1)
+};
+
+struct RadianceFitOptions {
+  int pointsPerView = 72;  ///< contour points used, equally spaced in arc length
+  double robustPx = 1.0;   ///< scale of the Huber loss, px
+  int maxIterations = 100;
+};
+
+struct RadianceFit {
+  Lobe lobe = Lobe::TorranceSparrow;
+  double roughness = 0;  ///< m
+  Light light;
+  Eigen::Matrix4d covariance;          ///< of (tangent coordinates of L (3), log m), scaled by the residual variance
+  Eigen::Matrix3d positionCovariance;  ///< m^2; not finite for a light at infinity
+  double rmsPx = 0;
+  double cost = 0;                 ///< robust sum of squares, px^2: lobes are compared by it
+  std::vector<double> residualPx;  ///< per view, RMS
+  int points = 0, iterations = 0;
+};
+
+/// Light and roughness of one lobe from contours alone (method.md section 7, `reflectance`): minimises over L = (l, w) on the
+/// unit sphere and log m the robust sum of ((g(P_ij) - sqrt(-log q)) / |d g / d pixel|)^2, g = sqrt(log I(P_peak_i) - log
+/// I(P_ij)), residuals in pixels, by Ceres. P_peak_i is the maximum of I in frame i for the light of the moment; it moves with
+/// the light, but its value's derivative is the one at a fixed point, because the gradient of I over the surface vanishes there.
+/// The square root makes the residual nearly linear in the distance to the contour, however far it is.
+/// @param light,roughness  first guess. Other distances are tried when it converges badly.
+/// TooFewPoints; PeakOffSurface when no contour point hits the surface; NoBrightestPoint when no frame has a lit maximum;
+/// NotConverged; NotFinite.
+Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& views, const Light& light, double roughness,
+                                 const RadianceFitOptions& options = {});
+
+}  // namespace glint

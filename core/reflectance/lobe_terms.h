@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "core/reflectance/lobe.h"
+
+namespace glint::lobe {
+
+/// Terms of LogRadiance for any scalar: double, or a dual number that carries derivatives by the light and the roughness.
+template <class T>
+struct Terms {
+  T lobe{0.0}, masking{0.0}, cosines{0.0};
+  T total() const { return lobe + masking + cosines; }
+};
+
+/// tan^2 of the angle between two vectors of any length, without the cancellation of 1 / cos^2 - 1.
+template <class T, class U, class V>
+T tanSquared(const Eigen::MatrixBase<U>& a, const Eigen::MatrixBase<V>& b) {
+  const Eigen::Matrix<T, 3, 1> left = a.template cast<T>(), right = b.template cast<T>();
+  const T cosine = left.dot(right);
+  return left.cross(right).squaredNorm() / (cosine * cosine);
+}
+
+/// Smith's Lambda for Beckmann slopes of width m.
+template <class T>
+T beckmannLambda(const T& roughness, const T& tan2) {
+  using std::erfc;
+  using std::exp;
+  using std::sqrt;
+  const T inverse = roughness * roughness * tan2;  // 1 / a^2
+  // Beyond a = 6 both terms cancel to less than 1e-17 of the 1 they are added to.
+  if (!(inverse > T(1.0 / 36))) return T(0.0);
+  const T a = T(1.0) / sqrt(inverse);
+  return T(0.5) * (exp(-a * a) / (a * T(std::sqrt(M_PI))) - erfc(a));
+}
+
+/// Smith's Lambda for GGX: (sqrt(1 + s^2) - 1) / 2 without cancellation, s = m tan theta.
+template <class T>
+T ggxLambda(const T& roughness, const T& tan2) {
+  using std::sqrt;
+  const T s2 = roughness * roughness * tan2;
+  return T(0.5) * s2 / (sqrt(T(1.0) + s2) + T(1.0));
+}
+
+/// The terms for unit vectors on the lit and visible side (N.L > 0, N.V > 0; phong: R.V > 0), which the caller has checked.
+template <class T>
+Terms<T> terms(Lobe lobe, const T& m, const Eigen::Vector3d& n, const Eigen::Matrix<T, 3, 1>& toLight,
+               const Eigen::Vector3d& toCamera) {
+  using std::log;
+  using std::log1p;
+  Terms<T> out;
+  const Eigen::Matrix<T, 3, 1> normal = n.cast<T>(), view = toCamera.cast<T>();
+  const T m2 = m * m;
+  if (lobe == Lobe::Phong) {
+    // log cos through tan keeps the digits near the peak, where cos is 1 to round-off.
+    const Eigen::Matrix<T, 3, 1> mirrored = T(2.0) * normal.dot(toLight) * normal - toLight;
+    out.lobe = T(-0.25) / m2 * log1p(tanSquared<T>(mirrored, view));
+    return out;
+  }
+  const T tan2 = tanSquared<T>(normal, (toLight + view).eval());
+  const T logCosH = T(-0.5) * log1p(tan2);
+  if (lobe == Lobe::BlinnPhong) {
+    out.lobe = T(2.0) / m2 * logCosH;
+    return out;
+  }
+  const T tan2L = tanSquared<T>(normal, toLight), tan2V = tanSquared<T>(normal, view);
+  if (lobe == Lobe::TorranceSparrow) {
+    out.lobe = -tan2 / m2 - log(T(M_PI) * m2) - T(4.0) * logCosH;
+    out.masking = -log1p(beckmannLambda<T>(m, tan2L) + beckmannLambda<T>(m, tan2V));
+  } else {
+    out.lobe = T(-2.0) * log1p(tan2 / m2) - log(T(M_PI) * m2) - T(4.0) * logCosH;
+    out.masking = -log1p(ggxLambda<T>(m, tan2L) + ggxLambda<T>(m, tan2V));
+  }
+  out.cosines = -log(T(4.0) * normal.dot(view));
+  return out;
+}
+
+}  // namespace glint::lobe

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/reflectance/radiance_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace glint {
+namespace {
+
+constexpr double kStencilPx = 0.25;  // of the differences: their truncation moves a maximum by about 1e-4 px
+constexpr double kSettledPx = 1e-7;
+constexpr double kSamePeakPx = 0.05;
+constexpr int kMaxSteps = 40;
+
+bool inImage(const Pixel& p, const Camera& camera) {
+  return p.x() >= 0 && p.y() >= 0 && p.x() <= camera.width - 1 && p.y() <= camera.height - 1;
+}
+
+}  // namespace
+
+RadianceField::RadianceField(const Surface& surface, const Camera& camera, Lobe lobe, double roughness, const Light& light)
+    : surface_(surface), camera_(camera), eye_(camera.centreInWorld()), lobe_(lobe), roughness_(roughness), light_(light) {
+  require(roughness > 0 && std::isfinite(roughness), "RadianceField: roughness must be positive");
+  const Eigen::AlignedBox3d box = surface.bounds();
+  const double size = box.isEmpty() ? 0 : box.diagonal().norm();
+  farAway_ = std::isfinite(size) ? 2 * size : 0;
+}
+
+std::optional<double> RadianceField::at(const SurfacePoint& p) const {
+  const Eigen::Vector4d& lw = light_.homogeneous();
+  const Eigen::Vector3d offset = lw.head<3>() - lw.w() * p.position;
+  const double distance = offset.norm(), seen = (eye_ - p.position).norm();
+  if (!(distance > 0) || !(seen > 0)) return std::nullopt;
+  const Eigen::Vector3d toLight = offset / distance;
+  const auto log = logRadiance(lobe_, roughness_, p.normal, toLight, (eye_ - p.position) / seen);
+  if (!log) return std::nullopt;
+  // An unbounded surface has no size of its own: the camera's distance stands for it.
+  const double far = farAway_ > 0 ? farAway_ + seen : 1e3 * seen;
+  const bool finite = !light_.atInfinity() && light_.position().allFinite();
+  const Eigen::Vector3d target = finite ? light_.position() : Eigen::Vector3d(p.position + far * toLight);
+  if (surface_.occluded(p, target)) return std::nullopt;
+  const double total = log->total() - 2 * std::log(distance);
+  return std::isfinite(total) ? std::optional<double>(total) : std::nullopt;
+}
+
+std::optional<SurfacePoint> RadianceField::visible(const Pixel& p) const {
+  const Outcome<SurfacePoint> hit = surface_.firstHit(camera_.ray(p));
+  return hit ? std::optional<SurfacePoint>(facing(*hit, eye_)) : std::nullopt;
+}
+
+std::optional<double> RadianceField::at(const Pixel& p) const {
+  const std::optional<SurfacePoint> hit = visible(p);
+  return hit ? at(*hit) : std::nullopt;
+}
+
+std::optional<RadiancePeak> RadianceField::climb(Pixel p, bool insideImage) const {
+  const auto value = [&](const Pixel& q) -> std::optional<double> {
+    return insideImage && !inImage(q, camera_) ? std::nullopt : at(q);
+  };
+  std::optional<double> here = value(p);
+  if (!here) return std::nullopt;
+  double pattern = 4;  // px, of the search without derivatives
+  for (int step = 0; step < kMaxSteps && pattern > 1e-4; ++step) {
+    std::optional<double> f[3][3];
+    bool whole = true;
+    for (int i = -1; i <= 1; ++i)
+      for (int j = -1; j <= 1; ++j) {
+        f[i + 1][j + 1] = i == 0 && j == 0 ? here : value(p + kStencilPx * Pixel(i, j));
+        whole = whole && f[i + 1][j + 1];
+      }
+    bool moved = false;
+    if (whole) {
+      const Eigen::Vector2d gradient(*f[2][1] - *f[0][1], *f[1][2] - *f[1][0]);
+      Eigen::Matrix2d hessian;
+      hessian(0, 0) = *f[2][1] - 2 * *here + *f[0][1];
+      hessian(1, 1) = *f[1][2] - 2 * *here + *f[1][0];
+      hessian(0, 1) = hessian(1, 0) = (*f[2][2] - *f[2][0] - *f[0][2] + *f[0][0]) / 4;
+      const bool concave = hessian(0, 0) < 0 && hessian.determinant() > 0;
+      Eigen::Vector2d move =
+          concave ? Eigen::Vector2d(-0.5 * kStencilPx * hessian.ldlt().solve(gradient))
+                  : Eigen::Vector2d(gradient.norm() > 0 ? Eigen::Vector2d(4 * gradient.normalized()) : Pixel(0, 0));
+      if (move.norm() > 40) move *= 40 / move.norm();
+      if (concave && move.norm() < kSettledPx) break;
+      for (double share = 1; share > 1e-3; share *= 0.5) {
+        const std::optional<double> next = value(p + share * move);
+        if (!next || !(*next > *here)) continue;
+        p += share * move;
+        here = next;
+        moved = true;
+        break;
+      }
+      // Uphill by less than the values' own round-off: this is the top.
+      if (!moved && concave && move.norm() < 1e-3) break;
+    }
+    if (moved) continue;
+    // The field ends in the stencil, or has a kink (flat facets): the best of eight neighbours, closer and closer.
+    for (; !moved && pattern > 1e-4; pattern *= moved ? 1 : 0.5)
+      for (int k = 0; k < 8; ++k) {
+        const double a = k * M_PI / 4;
+        const Pixel q = p + pattern * Pixel(std::cos(a), std::sin(a));
+        const std::optional<double> next = value(q);
+        if (!next || !(*next > *here)) continue;
+        p = q;
+        here = next;
+        moved = true;
+        break;
+      }
+  }
+  const std::optional<SurfacePoint> point = visible(p);
+  if (!point) return std::nullopt;
+  return RadiancePeak{p, *point, *here};
+}
+
+std::vector<RadiancePeak> RadianceField::peaks(const std::vector<Pixel>& starts, double scanStepPx) const {
+  std::vector<RadiancePeak> found;
+  const auto add = [&](const Pixel& start, bool insideImage) {
+    const std::optional<RadiancePeak> peak = climb(start, insideImage);
+    if (!peak) return;
+    for (const RadiancePeak& p : found)
+      if ((p.pixel - peak->pixel).norm() < kSamePeakPx) return;
+    found.push_back(*peak);
+  };
+  for (const Pixel& s : starts)
+    if (inImage(s, camera_)) add(s, true);
+  if (scanStepPx > 0) {
+    std::vector<Pixel> pixels;
+    std::vector<Ray> rays;
+    const int columns = std::max(1, int(std::ceil((camera_.width - 1) / scanStepPx)));
+    const int rows = std::max(1, int(std::ceil((camera_.height - 1) / scanStepPx)));
+    for (int y = 0; y <= rows; ++y)
+      for (int x = 0; x <= columns; ++x) {
+        pixels.emplace_back(double(x) / columns * (camera_.width - 1), double(y) / rows * (camera_.height - 1));
+        rays.push_back(camera_.ray(pixels.back()));
+      }
+    const std::vector<std::optional<SurfacePoint>> hits = surface_.approximateHits(rays);
+    std::optional<std::size_t> best;
+    double brightest = -std::numeric_limits<double>::infinity();
+    for (const RadiancePeak& p : found) brightest = std::max(brightest, p.logRadiance);
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      if (!hits[i]) continue;
+      const std::optional<double> v = at(facing(*hits[i], eye_));
+      if (!v || *v <= brightest) continue;
+      brightest = *v;
+      best = i;
+    }
+    if (best) add(pixels[*best], true);
+  }
+  if (found.empty())
+    for (const Pixel& s : starts) add(s, false);
+  std::stable_sort(found.begin(), found.end(),
+                   [](const RadiancePeak& a, const RadiancePeak& b) { return a.logRadiance > b.logRadiance; });
+  return found;
+}
+
+}  // namespace glint

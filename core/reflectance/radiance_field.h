@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/light/light.h"
+#include "core/reflectance/lobe.h"
+#include "core/surface/surface.h"
+
+namespace glint {
+
+/// Where one frame is brightest.
+struct RadiancePeak {
+  Pixel pixel;         ///< ideal pixel of the maximum, to about 1e-4 px where the field is smooth
+  SurfacePoint point;  ///< normal faces the camera
+  double logRadiance = 0;
+};
+
+/// log I of one lobe under one point light over the visible surface, up to a constant of the light (method.md section 7):
+/// lobe, masking, cosines and falloff. Undefined off the surface, where the light is below the horizon, and in shadow.
+class RadianceField {
+ public:
+  /// @param roughness  m > 0. The surface must outlive the field.
+  RadianceField(const Surface& surface, const Camera& camera, Lobe lobe, double roughness, const Light& light);
+
+  /// @param visible  a visible point, normal towards the camera.
+  std::optional<double> at(const SurfacePoint& visible) const;
+  std::optional<double> at(const Pixel& idealPixel) const;
+
+  /// The maximum that is reached uphill from a pixel: Newton's method where the field is smooth, a shrinking pattern search where
+  /// it ends (silhouette, shadow, image border). Never leaves [0, width - 1] x [0, height - 1] when `insideImage`. Nothing where
+  /// the field is undefined at the start.
+  std::optional<RadiancePeak> climb(Pixel start, bool insideImage) const;
+
+  /// All maxima reached from `starts` and, when `scanStepPx` > 0, from the brightest pixel of a coarse scan of the image,
+  /// brightest first, each once. Maxima inside the image; where it holds none, those that `starts` reach beyond it.
+  std::vector<RadiancePeak> peaks(const std::vector<Pixel>& starts, double scanStepPx) const;
+
+ private:
+  std::optional<SurfacePoint> visible(const Pixel& p) const;
+
+  const Surface& surface_;
+  const Camera& camera_;
+  Eigen::Vector3d eye_;
+  Lobe lobe_;
+  double roughness_;
+  Light light_;
+  double farAway_;  ///< how far a shadow ray towards a light at infinity goes
+};
+
+}  // namespace glint
