@@ -105,6 +105,7 @@ NumberGroup fitGroup(const std::string& model, const ModelResult::Fit& f, int fr
     }
     if (f.fit->lightEstimate) addLight(lines, *f.fit->lightEstimate);
     if (f.fit->limitAngle) lines.add(QObject::tr("limit angle"), *f.fit->limitAngle * kDegPerRad, "°");
+    if (f.fit->lobe) lines.add(QObject::tr("lobe"), QString::fromStdString(*f.fit->lobe));
     if (f.fit->roughness) lines.add(QObject::tr("roughness m"), *f.fit->roughness);
     if (!f.fit->singularValues.empty()) {
       lines.add(QObject::tr("gap ratio"), f.fit->gapRatio);

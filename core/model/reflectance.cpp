@@ -48,13 +48,18 @@ class Reflectance final : public HighlightModel {
       lobes = {Lobe::TorranceSparrow, Lobe::Ggx, Lobe::BlinnPhong, Lobe::Phong};
     std::optional<RadianceFit> best;
     std::optional<Failure> failure;
-    for (const Lobe lobe : lobes) {
-      const Outcome<RadianceFit> f = fitRadiance(lobe, views, input.light->light, roughness, options);
-      if (!f) {
-        if (!failure) failure = f.failure();
-      } else if (!best || f->cost < best->cost) {
-        best = *f;
+    // Other starts are many fits: only where no lobe explains the contours from the first guess.
+    for (const bool otherStarts : {false, true}) {
+      options.otherStarts = otherStarts;
+      for (const Lobe lobe : lobes) {
+        const Outcome<RadianceFit> f = fitRadiance(lobe, views, input.light->light, roughness, options);
+        if (!f) {
+          if (!failure) failure = f.failure();
+        } else if (!best || f->cost < best->cost) {
+          best = *f;
+        }
       }
+      if (best && !best->poor) break;
     }
     if (!best) return *failure;
     fit.lightEstimate = best->light;

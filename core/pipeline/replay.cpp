@@ -79,6 +79,7 @@ KeyResults keyResultsOf(const Inspection& inspection) {
         for (int i = 0; i < 3; ++i) results.emplace_back(fit + ".semi_axis_" + std::to_string(i), axes[i]);
       }
       if (f.fit->limitAngle) results.emplace_back(fit + ".limit_angle_rad", *f.fit->limitAngle);
+      if (f.fit->roughness) results.emplace_back(fit + ".roughness", *f.fit->roughness);
     }
     const ModelSummary s = summarise(inspection, result);
     for (const auto& [what, count] : {std::pair<const char*, int>{"frames", s.frames},
@@ -120,6 +121,7 @@ std::string digestOf(const Inspection& inspection) {
       if (!f.fit) continue;
       if (f.fit->quadric) d.add(f.fit->quadric->matrix);
       if (f.fit->limitAngle) d.add(*f.fit->limitAngle);
+      if (f.fit->roughness) d.add(*f.fit->roughness);
       for (const double r : f.fit->residualPx) d.add(r);
     }
     for (const FrameComparison& c : result.frames) {

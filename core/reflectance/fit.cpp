@@ -22,6 +22,11 @@ namespace {
 constexpr double kStepPx = 0.5;  // of the finite differences that turn log I into pixels
 constexpr int kMaxReweightings = 8;
 constexpr double kScanStepPx = 24;  // of the search for a frame's maximum when the light has moved far
+constexpr int kMaxFootSteps = 4;
+constexpr double kFootPx = 1e-4;  // a foot this close serves: its error enters the residual in second order
+constexpr double kFarthestFootPx = 8;
+constexpr double kUnlitPx = 100;    // residual of a point that the light does not reach
+constexpr double kPoorShare = 0.1;  // of the radius: a wrong lobe or 1 px of noise leave less, a wrong start leaves more
 constexpr double kSettled = 1e-9;   // change of the unit vector L and of log m between reweightings
 
 using Dual = ceres::Jet<double, 5>;  // derivatives by L (4) and log m
@@ -32,12 +37,21 @@ struct Seen {
   Eigen::Vector3d position, normal, toCamera;
 };
 
-/// One contour point. Nothing here depends on the light, so hits are computed once.
+/// A pixel's surface point and those of the pixels kStepPx away.
+struct Stencil {
+  Seen at, left, right, up, down;
+};
+
+/// One contour point. The residual is offsetPx + pixelsPerUnit (g(foot) - level): the distance from the measured pixel to the
+/// contour, linearised at the foot, its nearest point on the contour of the last round. Linearised at the measured pixel instead,
+/// noise in the residual would correlate with noise in its derivatives, and contours would grow by sigma^2 / radius.
 struct Evidence {
-  Seen at, left, right, up, down;  ///< and of the pixels kStepPx away
-  int view = 0, frame = 0;         ///< frame: index into the frames of this fit
-  double level = 0;                ///< sqrt(-log q)
-  double pixelsPerUnit = 1;        ///< 1 / |d g / d pixel| under the light of the last reweighting
+  int view = 0, frame = 0;  ///< frame: index into the frames of this fit
+  double level = 0;         ///< sqrt(-log q)
+  Pixel observed{0, 0};
+  Stencil measured, foot;
+  double offsetPx = 0;       ///< from foot to measured, positive away from the peak
+  double pixelsPerUnit = 1;  ///< 1 / |d g / d pixel| at the foot
 };
 
 /// A frame's maximum under the light of the moment.
@@ -47,6 +61,21 @@ struct FramePeak {
   std::vector<Pixel> starts;
   std::optional<Seen> at;  ///< normalised; empty where nothing in the frame is lit
 };
+
+/// Positions minus `origin`, over `scale`. Nothing where the surface ends within the stencil.
+std::optional<Stencil> look(const RadianceView& view, const Pixel& p, const Eigen::Vector3d& origin, double scale) {
+  const Eigen::Vector3d eye = view.camera.centreInWorld();
+  const auto seen = [&](const Pixel& q) -> std::optional<Seen> {
+    const Outcome<SurfacePoint> hit = view.surface->firstHit(view.camera.ray(q));
+    if (!hit || !hit->position.allFinite() || !hit->normal.allFinite()) return std::nullopt;
+    const SurfacePoint s = facing(*hit, eye);
+    return Seen{(s.position - origin) / scale, s.normal, (eye - s.position).normalized()};
+  };
+  const std::optional<Seen> at = seen(p), left = seen(p - Pixel(kStepPx, 0)), right = seen(p + Pixel(kStepPx, 0)),
+                            up = seen(p - Pixel(0, kStepPx)), down = seen(p + Pixel(0, kStepPx));
+  if (!at || !left || !right || !up || !down) return std::nullopt;
+  return Stencil{*at, *left, *right, *up, *down};
+}
 
 template <class T>
 std::optional<T> logRadianceAt(Lobe lobe, const Seen& s, const Eigen::Matrix<T, 4, 1>& light, const T& roughness) {
@@ -73,9 +102,16 @@ T rootOf(const T& u, double level) {
 
 class Problem {
  public:
-  Problem(Lobe lobe, std::vector<Evidence> points, std::vector<FramePeak> frames, const Eigen::Vector3d& origin, double scale,
-          const RadianceFitOptions& options)
-      : lobe_(lobe), points_(std::move(points)), frames_(std::move(frames)), origin_(origin), scale_(scale), options_(options) {}
+  Problem(Lobe lobe, const std::vector<RadianceView>& views, std::vector<Evidence> points, std::vector<FramePeak> frames,
+          const Eigen::Vector3d& origin, double scale, double radiusPx, const RadianceFitOptions& options)
+      : lobe_(lobe),
+        views_(views),
+        points_(std::move(points)),
+        frames_(std::move(frames)),
+        origin_(origin),
+        scale_(scale),
+        radiusPx_(radiusPx),
+        options_(options) {}
 
   struct Attempt {
     Parameters at = Parameters::Zero();
@@ -125,20 +161,28 @@ class Problem {
   Lobe lobe() const { return lobe_; }
 
  private:
+  /// g at a point; NaN where it is undefined.
   double root(const Evidence& e, const Seen& s, const Parameters& at) const {
     const std::optional<Seen>& peak = frame(e.frame).at;
     const auto here = logRadianceAt<double>(lobe_, s, at.head<4>(), std::exp(at(4)));
     const auto top = peak ? logRadianceAt<double>(lobe_, *peak, at.head<4>(), std::exp(at(4))) : std::nullopt;
     return here && top ? rootOf(*top - *here, e.level) : std::numeric_limits<double>::quiet_NaN();
   }
-  void reweight(const Parameters& at);
+  Eigen::Vector2d gradient(const Evidence& e, const Stencil& s, const Parameters& at) const {
+    return {(root(e, s.right, at) - root(e, s.left, at)) / (2 * kStepPx),
+            (root(e, s.down, at) - root(e, s.up, at)) / (2 * kStepPx)};
+  }
+  void relinearise(const Parameters& at, bool moveFeet);
+  void toFoot(Evidence& e, const Parameters& at) const;
   double robustCost(const Parameters& at) const;
 
   Lobe lobe_;
+  const std::vector<RadianceView>& views_;
   std::vector<Evidence> points_;
   std::vector<FramePeak> frames_;
   Eigen::Vector3d origin_;
   double scale_;
+  double radiusPx_;  ///< of the contours' regions, mean
   RadianceFitOptions options_;
 };
 
@@ -147,24 +191,30 @@ class RootCost : public ceres::SizedCostFunction<1, 4, 1> {
  public:
   RootCost(const Problem& problem, const Evidence& evidence) : problem_(problem), e_(evidence) {}
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    const std::optional<Seen>& peak = problem_.frame(e_.frame).at;
-    if (!peak) return false;
-    Eigen::Matrix<Dual, 4, 1> light;
-    for (int i = 0; i < 4; ++i) light(i) = Dual(parameters[0][i], i);
-    const Dual roughness = exp(Dual(parameters[1][0], 4));
-    const auto here = logRadianceAt<Dual>(problem_.lobe(), e_.at, light, roughness);
-    const auto top = logRadianceAt<Dual>(problem_.lobe(), *peak, light, roughness);
-    if (!here || !top) return false;
-    const Dual residual = (rootOf(*top - *here, e_.level) - Dual(e_.level)) * Dual(e_.pixelsPerUnit);
-    if (!std::isfinite(residual.a) || !residual.v.allFinite()) return false;
-    residuals[0] = residual.a;
-    if (jacobians && jacobians[0])
-      for (int i = 0; i < 4; ++i) jacobians[0][i] = residual.v(i);
-    if (jacobians && jacobians[1]) jacobians[1][0] = residual.v(4);
+    const std::optional<Dual> residual = residualOf(parameters);
+    // A light that does not reach the point is far off: a large residual that pulls nowhere, so that the others decide.
+    residuals[0] = residual ? residual->a : kUnlitPx;
+    for (int i = 0; jacobians && jacobians[0] && i < 4; ++i) jacobians[0][i] = residual ? residual->v(i) : 0;
+    if (jacobians && jacobians[1]) jacobians[1][0] = residual ? residual->v(4) : 0;
     return true;
   }
 
  private:
+  std::optional<Dual> residualOf(double const* const* parameters) const {
+    const std::optional<Seen>& peak = problem_.frame(e_.frame).at;
+    if (!peak) return std::nullopt;
+    Eigen::Matrix<Dual, 4, 1> light;
+    for (int i = 0; i < 4; ++i) light(i) = Dual(parameters[0][i], i);
+    const Dual roughness = exp(Dual(parameters[1][0], 4));
+    if (!(roughness.a > 0) || !std::isfinite(roughness.a)) return std::nullopt;
+    const auto here = logRadianceAt<Dual>(problem_.lobe(), e_.foot.at, light, roughness);
+    const auto top = logRadianceAt<Dual>(problem_.lobe(), *peak, light, roughness);
+    if (!here || !top) return std::nullopt;
+    const Dual residual = (rootOf(*top - *here, e_.level) - Dual(e_.level)) * Dual(e_.pixelsPerUnit) + Dual(e_.offsetPx);
+    if (!std::isfinite(residual.a) || !residual.v.allFinite()) return std::nullopt;
+    return residual;
+  }
+
   const Problem& problem_;
   const Evidence& e_;
 };
@@ -182,12 +232,38 @@ class PeaksFollow : public ceres::EvaluationCallback {
   const Parameters& at_;  ///< what Ceres writes before it calls
 };
 
-void Problem::reweight(const Parameters& at) {
+/// Moves the foot to the point of the contour nearest to the measured pixel: Newton's method along the gradient.
+void Problem::toFoot(Evidence& e, const Parameters& at) const {
+  Pixel foot = e.observed;
+  Stencil s = e.measured;
+  for (int step = 0; step < kMaxFootSteps; ++step) {
+    const Eigen::Vector2d slope = gradient(e, s, at);
+    const double value = root(e, s.at, at) - e.level + slope.dot(e.observed - foot);
+    const Pixel next = e.observed - value / slope.squaredNorm() * slope;
+    // An outlier, or a start far off: the plain residual serves.
+    if (!next.allFinite() || (next - e.observed).norm() > kFarthestFootPx) return;
+    const std::optional<Stencil> there = look(views_[static_cast<std::size_t>(e.view)], next, origin_, scale_);
+    if (!there) return;
+    const double moved = (next - foot).norm();
+    foot = next;
+    s = *there;
+    if (moved < kFootPx) break;
+  }
+  const Eigen::Vector2d slope = gradient(e, s, at);
+  const double offset = slope.normalized().dot(e.observed - foot);
+  if (!std::isfinite(offset)) return;
+  e.foot = s;
+  e.offsetPx = offset;
+}
+
+void Problem::relinearise(const Parameters& at, bool moveFeet) {
   std::vector<double> slopes;
   slopes.reserve(points_.size());
-  for (const Evidence& e : points_) {
-    const double dx = root(e, e.right, at) - root(e, e.left, at), dy = root(e, e.down, at) - root(e, e.up, at);
-    const double slope = std::hypot(dx, dy) / (2 * kStepPx);
+  for (Evidence& e : points_) {
+    e.foot = e.measured;
+    e.offsetPx = 0;
+    if (moveFeet) toFoot(e, at);
+    const double slope = gradient(e, e.foot, at).norm();
     slopes.push_back(std::isfinite(slope) ? slope : 0);
   }
   std::vector<double> sorted = slopes;
@@ -200,7 +276,8 @@ void Problem::reweight(const Parameters& at) {
 double Problem::robustCost(const Parameters& at) const {
   double sum = 0;
   for (const Evidence& e : points_) {
-    const double r = std::abs(e.pixelsPerUnit * (root(e, e.at, at) - e.level)), k = options_.robustPx;
+    const double plain = std::abs(e.offsetPx + e.pixelsPerUnit * (root(e, e.foot.at, at) - e.level)), k = options_.robustPx;
+    const double r = std::isfinite(plain) ? plain : kUnlitPx;
     sum += r <= k ? r * r : k * (2 * r - k);
   }
   return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
@@ -216,7 +293,7 @@ Problem::Attempt Problem::solve(const Eigen::Vector4d& light, double roughness, 
     // steep.
     updatePeaks(a.at, true);
     if (lit() == 0) return a;
-    reweight(a.at);
+    relinearise(a.at, round > 0);
     const Parameters before = a.at;
     PeaksFollow follow(*this, a.at);
     ceres::Problem::Options ownership;
@@ -224,7 +301,8 @@ Problem::Attempt Problem::solve(const Eigen::Vector4d& light, double roughness, 
     ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     ownership.disable_all_safety_checks = true;
     ownership.evaluation_callback = &follow;
-    ceres::HuberLoss loss(options_.robustPx);
+    // The first round may start far off, where every point would be an outlier.
+    ceres::HuberLoss loss(round == 0 ? std::max(options_.robustPx, radiusPx_) : options_.robustPx);
     std::deque<RootCost> costs;  // cost functions cannot be moved
     ceres::Solver::Summary summary;
     {
@@ -252,7 +330,7 @@ Problem::Attempt Problem::solve(const Eigen::Vector4d& light, double roughness, 
     if (a.converged && (a.at - before).norm() < kSettled) break;
   }
   updatePeaks(a.at, true);
-  reweight(a.at);
+  relinearise(a.at, true);
   a.cost = robustCost(a.at);
   return a;
 }
@@ -260,7 +338,7 @@ Problem::Attempt Problem::solve(const Eigen::Vector4d& light, double roughness, 
 RadianceFit Problem::describe(const Attempt& a, std::size_t views) {
   const double infinity = std::numeric_limits<double>::infinity();
   updatePeaks(a.at, true);
-  reweight(a.at);
+  relinearise(a.at, true);
   RadianceFit fit;
   fit.lobe = lobe_;
   fit.roughness = std::exp(a.at(4));
@@ -327,6 +405,7 @@ Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& vie
   std::map<int, int> frameIndex;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   double scale = 0;
+  double radiusPx = 0;  // of the contours' regions, mean
   std::size_t offered = 0;
   for (std::size_t v = 0; v < views.size(); ++v) {
     const RadianceView& view = views[v];
@@ -341,21 +420,20 @@ Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& vie
                                           ? resample(Polyline{view.contour, true}, options.pointsPerView)
                                           : view.contour;
     offered += pixels.size();
-    const Eigen::Vector3d eye = view.camera.centreInWorld();
-    const auto seen = [&](const Pixel& p) -> std::optional<Seen> {
-      const Outcome<SurfacePoint> hit = view.surface->firstHit(view.camera.ray(p));
-      if (!hit || !hit->position.allFinite() || !hit->normal.allFinite()) return std::nullopt;
-      const SurfacePoint s = facing(*hit, eye);
-      return Seen{s.position, s.normal, (eye - s.position).normalized()};
-    };
+    radiusPx += std::sqrt(std::abs(signedArea(Polyline{view.contour, true})) / M_PI) / double(views.size());
     for (const Pixel& p : pixels) {
-      const std::optional<Seen> at = seen(p), left = seen(p - Pixel(kStepPx, 0)), right = seen(p + Pixel(kStepPx, 0)),
-                                up = seen(p - Pixel(0, kStepPx)), down = seen(p + Pixel(0, kStepPx));
       // Where the surface ends the contour is its edge, not a level set.
-      if (!at || !left || !right || !up || !down) continue;
-      points.push_back({*at, *left, *right, *up, *down, int(v), known->second, std::sqrt(-std::log(view.level)), 1});
-      origin += at->position;
-      scale += (eye - at->position).norm();
+      const std::optional<Stencil> at = look(view, p, Eigen::Vector3d::Zero(), 1);
+      if (!at) continue;
+      Evidence e;
+      e.view = static_cast<int>(v);
+      e.frame = known->second;
+      e.level = std::sqrt(-std::log(view.level));
+      e.observed = p;
+      e.measured = *at;
+      origin += at->at.position;
+      scale += (view.camera.centreInWorld() - at->at.position).norm();
+      points.push_back(std::move(e));
     }
   }
   if (offered > 0 && points.empty()) return Failure{Reason::PeakOffSurface, "no contour point hits the surface"};
@@ -364,19 +442,21 @@ Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& vie
   scale /= double(points.size());
   if (!(scale > 0) || !std::isfinite(scale)) return Failure{Reason::NotFinite, "camera distance"};
   for (Evidence& e : points)
-    for (Seen* s : {&e.at, &e.left, &e.right, &e.up, &e.down}) s->position = (s->position - origin) / scale;
+    for (Seen* s : {&e.measured.at, &e.measured.left, &e.measured.right, &e.measured.up, &e.measured.down})
+      s->position = (s->position - origin) / scale;
 
   Eigen::Vector4d first;
   first << (light.homogeneous().head<3>() - light.homogeneous().w() * origin) / scale, light.homogeneous().w();
   require(first.norm() > 0, "fitRadiance: no light");
   first.normalize();
-  Problem problem(lobe, std::move(points), std::move(frames), origin, scale, options);
+  Problem problem(lobe, views, std::move(points), std::move(frames), origin, scale, radiusPx, options);
   const auto good = [&](const Problem::Attempt& a) {
-    return a.converged && a.cost <= options.robustPx * options.robustPx * double(problem.points().size());
+    const double farPx = std::max(options.robustPx, kPoorShare * radiusPx);
+    return a.converged && a.cost <= farPx * farPx * double(problem.points().size());
   };
   Problem::Attempt best = problem.solve(first, roughness, first.w() == 0);
   int iterations = best.iterations;
-  if (!good(best)) {
+  if (!good(best) && options.otherStarts) {
     // Along the first guess's direction, at other distances and at infinity; narrower and wider lobes.
     const Eigen::Vector3d direction = first.head<3>().normalized();
     for (const double distance : {0.5, 1.0, 2.0, 5.0, 0.0}) {
@@ -397,6 +477,7 @@ Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& vie
   if (!best.converged) return Failure{Reason::NotConverged, "after " + std::to_string(iterations) + " iterations"};
   RadianceFit fit = problem.describe(best, views.size());
   fit.iterations = iterations;
+  fit.poor = !good(best);
   return fit;
 }
 

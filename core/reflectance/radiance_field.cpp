@@ -8,7 +8,7 @@
 namespace glint {
 namespace {
 
-constexpr double kStencilPx = 0.25;  // of the differences: their truncation moves a maximum by about 1e-4 px
+constexpr double kStencilPx = 0.05;  // of the differences: their truncation moves a maximum by about 1e-4 px, round-off by less
 constexpr double kSettledPx = 1e-7;
 constexpr double kSamePeakPx = 0.05;
 constexpr int kMaxSteps = 40;
