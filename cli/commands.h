@@ -15,6 +15,7 @@ Command predictCommand();
 Command reconstructCommand();
 Command replayCommand();
 Command settingsCommand();
+Command stabilityCommand();
 Command synthCommand();
 
 }  // namespace glint::cli

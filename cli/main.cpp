@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
                             convertCommand(),
                             renderCommand(),
                             replayCommand(),
+                            stabilityCommand(),
                             settingsCommand(),
                         });
 }

@@ -51,8 +51,8 @@ struct Camera {
   /// Depth along the optical axis, world units.
   double depth(const Eigen::Vector3d& pointInWorld) const;
   bool hasDistortion() const;
-  /// Ideal pixel of a measured (distorted) one; fixed-point iteration of the Brown-Conrady model,
-  /// to 1e-12 of the focal length. @see Brown, Close-range camera calibration, 1971.
+  /// Ideal pixel of a measured (distorted) one. Not finite where there is none (beyond the fold of a strong distortion): the
+  /// caller checks, or asks withoutDistortion (core/geometry/distortion.h), which names the reason.
   Pixel undistorted(const Pixel& measured) const;
   /// Measured pixel of an ideal one (closed form).
   Pixel distorted(const Pixel& ideal) const;

@@ -8,18 +8,29 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "core/geometry/distortion.h"
+
 namespace glint {
 namespace {
 
 constexpr int kNoisePoints = 72;       // formats.md, --noise-px
 constexpr double kSameLevel = 1e-6;    // levels are typed with a few digits
 
-void toIdealPixels(Highlight& h, const Camera& camera) {
-  if (!camera.hasDistortion()) return;
-  for (Pixel& p : h.contour.points) p = camera.undistorted(p);
-  h.peak = camera.undistorted(h.peak);
+/// The reason when a part of the highlight lies where the lens distortion has no inverse.
+std::optional<Failure> toIdealPixels(Highlight& h, const Camera& camera) {
+  if (!camera.hasDistortion()) return std::nullopt;
+  const auto undistort = [&](Pixel& p) -> std::optional<Failure> {
+    const Outcome<Pixel> ideal = withoutDistortion(camera, p);
+    if (!ideal) return ideal.failure();
+    p = *ideal;
+    return std::nullopt;
+  };
+  for (Pixel& p : h.contour.points)
+    if (const std::optional<Failure> failure = undistort(p)) return failure;
+  if (const std::optional<Failure> failure = undistort(h.peak)) return failure;
   h.areaPx2 = std::abs(signedArea(h.contour));
   h.ellipse.reset();
+  return std::nullopt;
 }
 
 void fitMissingEllipse(Highlight& h) {
@@ -72,8 +83,14 @@ FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, 
       evidence.failure = found.failure();
       return evidence;
     }
-    evidence.highlights = std::move(*found);
-    for (Highlight& h : evidence.highlights) toIdealPixels(h, frame.camera);
+    for (Highlight& h : *found) {
+      if (std::optional<Failure> failure = toIdealPixels(h, frame.camera))
+        evidence.failure = std::move(failure);  // stands only when no other highlight is left
+      else
+        evidence.highlights.push_back(std::move(h));
+    }
+    if (evidence.highlights.empty()) return evidence;
+    evidence.failure.reset();
   }
   for (Highlight& h : evidence.highlights) {
     // With several lights on, the assignment over all frames decides.
@@ -127,7 +144,7 @@ Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene
     throw InputError(file.string(), "", e.what());
   }
   for (Highlight& h : truth) {
-    toIdealPixels(h, frame.camera);
+    if (const std::optional<Failure> failure = toIdealPixels(h, frame.camera)) return *failure;
     fitMissingEllipse(h);
   }
   return truth;

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/stability/stability.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+
+#include "core/stability/cases.h"
+
+namespace glint {
+namespace {
+
+using stability::Case;
+using stability::Expect;
+using stability::Measured;
+
+constexpr double kLargest = std::numeric_limits<double>::max();  // JSON has no infinity
+double finite(double x) { return std::isfinite(x) ? x : kLargest; }
+
+StabilityResult judge(const Case& c, const Outcome<Measured>& outcome) {
+  StabilityResult r;
+  r.name = c.name;
+  r.stage = c.stage;
+  r.parameter = c.parameter;
+  r.tolerance = c.tolerance;
+  r.note = c.note;
+  if (!outcome) {
+    r.condition = kLargest;
+    r.relativeError = 1;
+    r.reason = outcome.failure().message();
+    const bool allowed = std::find(c.reasons.begin(), c.reasons.end(), outcome.failure().reason) != c.reasons.end();
+    r.verdict = c.expect != Expect::Answer && allowed ? Verdict::NamedFailure : Verdict::Wrong;
+    return r;
+  }
+  r.condition = finite(outcome->condition);
+  r.relativeError = finite(outcome->error);
+  if (c.expect == Expect::Failure) {
+    r.reason = "an answer where no unique one exists";
+  } else if (outcome->error <= c.tolerance) {  // false for NaN
+    r.verdict = Verdict::Accurate;
+  } else {
+    r.reason = std::isfinite(outcome->error) ? "beyond the tolerance" : "not a number";
+  }
+  return r;
+}
+
+}  // namespace
+
+std::vector<StabilityResult> runStability(const ProgressFn& progress) {
+  stability::Cases cases;
+  stability::addConicCases(cases);
+  stability::addCameraCases(cases);
+  stability::addAngleCases(cases);
+  stability::addSurfaceCases(cases);
+  stability::addMeshCases(cases);
+  stability::addBrightestCases(cases);
+  stability::addLightCases(cases);
+  stability::addWalkCases(cases);
+  stability::addReconstructionCases(cases);
+  stability::addPredictionCases(cases);
+  stability::addBadNumberCases(cases);
+  std::vector<StabilityResult> results;
+  for (const Case& c : cases) {
+    if (!report(progress, {"stability", int(results.size()), int(cases.size())})) throw Stopped{};
+    try {
+      results.push_back(judge(c, c.run()));
+    } catch (const std::exception& e) {  // no input of a case may end the program
+      StabilityResult r = judge(c, Failure{Reason::NotSupported, e.what()});
+      r.verdict = Verdict::Wrong;
+      r.reason = std::string("exception: ") + e.what();
+      results.push_back(r);
+    }
+  }
+  return results;
+}
+
+}  // namespace glint
