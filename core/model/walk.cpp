@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace glint {
@@ -192,6 +193,10 @@ Outcome<TangentWalk::Reach> TangentWalk::reachContour(const Eigen::Vector3d& d, 
   const Eigen::Vector3d& origin = brightest_.point.position;
   const auto& points = contour.points;
   const std::size_t n = points.size();
+  // The end of the walk is known to the round-off of pixel coordinates, whatever the size of the highlight.
+  double largest = 1;
+  for (const Pixel& p : points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+  const double roundOffPx = 4 * std::numeric_limits<double>::epsilon() * largest;
   SurfacePoint at = brightest_.point;
   std::optional<Pixel> from = camera_.project(origin);
   if (!from) return Failure{Reason::BehindCamera, ""};
@@ -249,7 +254,7 @@ Outcome<TangentWalk::Reach> TangentWalk::reachContour(const Eigen::Vector3d& d, 
         const double fa = f(a), fb = f(b);
         if (lost) return *lost;
         if (!(fa <= 0 && fb >= 0)) break;  // the line is not crossed within the step: keep the last solution
-        s = bracketedRoot(f, a, fa, b, fb, 1e-11);
+        s = bracketedRoot(f, a, fa, b, fb, roundOffPx);
         if (lost) return *lost;
         const double u = (pixel - p).dot(q - p) / (q - p).squaredNorm();
         if (u < 0) edge = (edge + n - 1) % n;

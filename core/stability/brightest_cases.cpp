@@ -80,7 +80,7 @@ Outcome<Measured> saddleCase(double k, const Eigen::Vector3d& eye, const Eigen::
       x += (xy * gy - yy * gx) / det;
       y += (xy * gx - xx * gy) / det;
     }
-    worst = std::max(worst, static_cast<double>(sqrt((x - x0) * (x - x0) + (y - y0) * (y - y0))) / 2);
+    worst = worstOf({worst, static_cast<double>(sqrt((x - x0) * (x - x0) + (y - y0) * (y - y0))) / 2});
   }
   return Measured{worst};
 }

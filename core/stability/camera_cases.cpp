@@ -36,7 +36,7 @@ Outcome<Measured> projectAndBack(double focal, const Eigen::Vector3d& eye, const
   const Real dx = Real(pixel->x()) - x, dy = Real(pixel->y()) - y;
   const double atPixel = static_cast<double>(sqrt(dx * dx + dy * dy) / (sqrt(x * x + y * y) + 1));
   const double atRay = apart(c.ray(*pixel).direction, real.ray(Real(pixel->x()), Real(pixel->y())));
-  return Measured{std::max(atPixel, atRay), condition};
+  return Measured{worstOf({atPixel, atRay}), condition};
 }
 
 /// Brown-Conrady in fifty digits, and its inverse by Newton's method with differences, followed outwards from the centre.

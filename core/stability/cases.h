@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <functional>
+#include <initializer_list>
 #include <limits>
 #include <string>
 #include <vector>
@@ -33,6 +35,16 @@ struct Case {
   std::function<Outcome<Measured>()> run;
 };
 using Cases = std::vector<Case>;
+
+/// The largest of several errors; NaN when one is, which std::max would swallow.
+inline double worstOf(std::initializer_list<double> errors) {
+  double worst = 0;
+  for (const double e : errors) {
+    if (std::isnan(e)) return e;
+    if (e > worst) worst = e;
+  }
+  return worst;
+}
 
 /// Round-off of a double.
 inline constexpr double kRound = std::numeric_limits<double>::epsilon();

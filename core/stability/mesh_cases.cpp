@@ -59,7 +59,7 @@ Outcome<Measured> rayCase(double scale, const Eigen::Vector3d& offset, const Dam
     const std::optional<Vec<Real>> reference = firstHit(clean, ray);
     if (!reference) continue;
     if (!hit) return hit.failure();
-    worst = std::max(worst, apart(hit->position, *reference) / scale);
+    worst = worstOf({worst, apart(hit->position, *reference) / scale});
   }
   return Measured{worst, condition};
 }
@@ -76,7 +76,7 @@ Outcome<Measured> normalCase(const Damage& damage) {
     const Ray ray{from, -from.normalized()};
     const Outcome<SurfacePoint> p = a->firstHit(ray), q = b->firstHit(ray);
     if (!p || !q) return (p ? q : p).failure();
-    worst = std::max(worst, (facing(*p, from).normal - facing(*q, from).normal).norm());
+    worst = worstOf({worst, (facing(*p, from).normal - facing(*q, from).normal).norm()});
   }
   return Measured{worst};
 }

@@ -56,7 +56,7 @@ Outcome<Measured> limitAngleCase(const PredictionScene& p, const Light& light) {
       const Real other = -(b + (b > 0 ? 1 : -1) * sqrt(Real(b * b - a * c))) / a;
       if (other > 0 && (other < t || t <= 0)) t = other;
     }
-    worst = std::max(worst, static_cast<double>(abs(s.real.alphaOnSurface(o + t * d) / Real(p.limit) - 1)));
+    worst = worstOf({worst, static_cast<double>(abs(s.real.alphaOnSurface(o + t * d) / Real(p.limit) - 1))});
   }
   return Measured{worst, p.condition};
 }
@@ -132,12 +132,12 @@ Outcome<Measured> canonicalCase(const PredictionScene& p, const Light& light, do
     Real onPlane = (-b + root) / a;
     if (!(onPlane > 0) || ((-b - root) / a > 0 && (-b - root) / a < onPlane)) onPlane = (-b - root) / a;
     const Real alpha = s.real.alphaOnPlane(onPlane, d);
-    const Real onSurface = s.real.reachOnSurface(d, alpha, static_cast<double>(onPlane) / 4);
+    const Real onSurface = s.real.reachOnSurface(d, alpha, std::min(static_cast<double>(onPlane) / 4, 0.01 / std::abs(p.curvature / p.scale)));
     const auto [x, y] = s.real.camera.pixel(s.real.foot(onSurface, d));
     const auto [px, py] = s.real.camera.pixel(s.real.origin);
     const Pixel& q = h.canonical->pixels[next++];
     const Real dx = Real(q.x()) - x, dy = Real(q.y()) - y, reach = sqrt((x - px) * (x - px) + (y - py) * (y - py));
-    worst = std::max(worst, static_cast<double>(sqrt(dx * dx + dy * dy) / reach));
+    worst = worstOf({worst, static_cast<double>(sqrt(dx * dx + dy * dy) / reach)});
   }
   return Measured{worst, p.condition};
 }
@@ -156,7 +156,7 @@ Outcome<Measured> dualCase(const PredictionScene& p, const Light& light, double 
   for (std::size_t i = 0; i < h.contour.points.size(); i += 15) {
     const Vec<Real> x{Real(h.contour.points[i].x()), Real(h.contour.points[i].y()), Real(1)};
     const Real gx = conic.form(x, {Real(1), Real(0), Real(0)}), gy = conic.form(x, {Real(0), Real(1), Real(0)});
-    worst = std::max(worst, static_cast<double>(abs(conic.form(x, x)) / (2 * sqrt(gx * gx + gy * gy))) / h.ellipse->semiAxes.x());
+    worst = worstOf({worst, static_cast<double>(abs(conic.form(x, x)) / (2 * sqrt(gx * gx + gy * gy))) / h.ellipse->semiAxes.x()});
   }
   return Measured{worst, p.condition};
 }
@@ -171,7 +171,7 @@ Outcome<Measured> coneCase(double radius, const Pixel& centre, std::size_t expec
   double worst = 0;
   for (const Pixel& q : found[0].outline.points) {
     const Real dx = Real(q.x()) - centre.x(), dy = Real(q.y()) - centre.y();
-    worst = std::max(worst, static_cast<double>(abs(sqrt(dx * dx + dy * dy) / radius - 1)));
+    worst = worstOf({worst, static_cast<double>(abs(sqrt(dx * dx + dy * dy) / radius - 1))});
   }
   return Measured{worst, centre.norm() / radius};
 }

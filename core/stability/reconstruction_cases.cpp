@@ -93,8 +93,8 @@ double errorOf(const Ellipsoid& found, const Ellipsoid& e) {
       for (int k = 0; k < 3; ++k) difference += at(a[k], i) * at(a[k], j) - at(b[k], i) * at(b[k], j);
       sum += difference * difference;
     }
-  return std::max(apart(found.centre(), exactly<Real>(e.centre())) / e.semiAxes().x(),
-                  static_cast<double>(sqrt(sum) / (size * size)));
+  return worstOf({apart(found.centre(), exactly<Real>(e.centre())) / e.semiAxes().x(),
+                  static_cast<double>(sqrt(sum) / (size * size))});
 }
 
 Outcome<Measured> judged(const Outcome<Reconstruction>& r, const Ellipsoid& e) {

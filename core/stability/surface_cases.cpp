@@ -75,7 +75,7 @@ Outcome<Measured> hitCase(const AnalyticSpec& spec, const RealQuadric& quadric, 
   Vec<Real> n = unit(quadric.gradient(*reference));
   if (dot(n, exactly<Real>(hit->normal)) < 0) n = Real(-1) * n;
   const double distance = static_cast<double>(length(*reference - exactly<Real>(from)));
-  return Measured{std::max(apart(hit->position, *reference) / distance, apart(hit->normal, n)), condition};
+  return Measured{worstOf({apart(hit->position, *reference) / distance, apart(hit->normal, n)}), condition};
 }
 
 /// Foot along a direction: of the two intersections of the line the one nearest to `previous`.
@@ -106,7 +106,7 @@ Outcome<Measured> curvatureCase(double k, double x, double y) {
   if (!c) return c.failure();
   // The stored normal is along +z, where bending away is convex: z_xx < 0 is positive.
   const Real k1 = -mean + root, k2 = -mean - root;
-  return Measured{std::max(static_cast<double>(abs(Real(c->k1) / k1 - 1)), static_cast<double>(abs(Real(c->k2) / k2 - 1)))};
+  return Measured{worstOf({static_cast<double>(abs(Real(c->k1) / k1 - 1)), static_cast<double>(abs(Real(c->k2) / k2 - 1))})};
 }
 
 }  // namespace

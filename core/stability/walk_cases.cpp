@@ -61,7 +61,7 @@ Outcome<Measured> reachCase(const WalkScene& w, const Light& light) {
     if (!onSurface) return onSurface.failure();
     const Real a = s.real.reachOnPlane(exactly<Real>(d), Real(w.limit), first);
     const Real b = s.real.reachOnSurface(exactly<Real>(d), Real(w.limit), first);
-    worst = std::max({worst, static_cast<double>(abs(Real(*onPlane) / a - 1)), static_cast<double>(abs(Real(onSurface->distance) / b - 1)),
+    worst = worstOf({worst, static_cast<double>(abs(Real(*onPlane) / a - 1)), static_cast<double>(abs(Real(onSurface->distance) / b - 1)),
                       apart(onSurface->point.position, s.real.foot(b, exactly<Real>(d))) / static_cast<double>(b)});
   }
   return Measured{worst, w.condition};
@@ -87,7 +87,7 @@ Outcome<Measured> canonicalCase(const WalkScene& w, const Light& light) {
     const Real onSurface = s.real.reachPolygon(d, contour.points, first);
     const Real alpha = s.real.alphaOnSurface(s.real.foot(onSurface, d));
     const Real onPlane = s.real.reachOnPlane(d, alpha, first);
-    worst = std::max({worst, static_cast<double>(abs(Real(*r.limitAngle) / alpha - 1)),
+    worst = worstOf({worst, static_cast<double>(abs(Real(*r.limitAngle) / alpha - 1)),
                       apart(r.onTangentPlane, s.real.origin + onPlane * d) / static_cast<double>(onPlane)});
   }
   return Measured{worst, w.condition};
