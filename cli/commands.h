@@ -17,5 +17,6 @@ Command replayCommand();
 Command settingsCommand();
 Command stabilityCommand();
 Command synthCommand();
+Command tradeoffCommand();
 
 }  // namespace glint::cli

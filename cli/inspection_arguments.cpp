@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/pipeline/session.h"
+#include "core/tradeoff/choice.h"
 
 namespace glint::cli {
 
@@ -22,12 +23,21 @@ std::vector<std::string> splitList(const std::string& text, const std::string& f
   return parts;
 }
 
+void applyPreset(const Session& session, const std::string& preset, InspectionRequest& request) {
+  if (!session.tradeoff)
+    throw InputError("", "--preset " + preset, "the session has no trade-off: measure it with `glint tradeoff " + session.file.string() + "`");
+  const TradeoffPoint& point = pointOfPreset(*session.tradeoff, preset);
+  request.models = {point.model};
+  request.settings = point.settings;
+}
+
 void InspectionArguments::declare(Options& o, const std::string& modelsHelp) {
   o.positional(input, "INPUT", "A scene file, a folder with one, or a session");
   o.option(models, "--models,--model", "NAME[,NAME...]", modelsHelp);
   o.option(train, "--train", "SPEC", "Training frames: numbers, ids or ranges (0-5,14), first:K, spread:K, or per-surface (default: the session's, else first:6)");
   o.option(level, "--level", "Q", "Contour level, fraction of the peak above the background (default 0.5)");
   o.choice(source, "--source", {"", "radiance", "image"}, "Where both exist: the float radiance or the captured image (default: the session's, else radiance)");
+  o.option(preset, "--preset", "NAME", "Model and settings of the session's trade-off: fast, balanced, exact or chosen");
   o.repeated(set, "--set", "KEY=VALUE", "Any setting by its dotted name (`glint settings` lists them); may be repeated");
   o.option(noisePx, "--noise-px", "S", "Gaussian noise per coordinate on training contours (72 points) and peaks, px");
   o.option(seed, "--seed", "N", "Seed of that noise");
@@ -37,7 +47,13 @@ void InspectionArguments::declare(Options& o, const std::string& modelsHelp) {
 
 InspectionRequest InspectionArguments::request() const {
   InspectionRequest r;
-  if (std::filesystem::path(input).extension() == ".glint") r = readSession(input).request;
+  const bool isSession = std::filesystem::path(input).extension() == ".glint";
+  if (!preset.empty() && !isSession) throw InputError("", "--preset " + preset, "INPUT is no session, so it holds no trade-off");
+  if (isSession) {
+    const Session session = readSession(input);
+    r = session.request;
+    if (!preset.empty()) applyPreset(session, preset, r);
+  }
   if (!models.empty() && models != "auto") r.models = splitList(models, "--models");
   for (auto m = r.models.begin(); m != r.models.end(); ++m) {
     modelByName(*m);

@@ -8,12 +8,17 @@
 #include "cli/command.h"
 #include "core/pipeline/inspection.h"
 
+namespace glint {
+struct Session;
+}
+
 namespace glint::cli {
 
 /// Arguments shared by evaluate, reconstruct and others: everything that an InspectionRequest holds.
 struct InspectionArguments {
   std::string input, models, truth;
   std::string train, source, level;        ///< "" = the session's, else the default
+  std::string preset;                      ///< of the session's trade-off; "" = none
   std::vector<std::string> set;
   double noisePx = 0;
   unsigned seed = 1;
@@ -25,6 +30,10 @@ struct InspectionArguments {
   InspectionRequest request() const;
   std::shared_ptr<const Scene> scene() const;
 };
+
+/// Model and settings of a point of the session's trade-off: "fast", "balanced", "exact" or "chosen".
+/// InputError when the session has none.
+void applyPreset(const Session& session, const std::string& preset, InspectionRequest& request);
 
 /// "a,b,c" in parts; InputError (place `flag`) for an empty part.
 std::vector<std::string> splitList(const std::string& text, const std::string& flag);

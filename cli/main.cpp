@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
                             reconstructCommand(),
                             predictCommand(),
                             evaluateCommand(),
+                            tradeoffCommand(),
                             synthCommand(),
                             convertCommand(),
                             renderCommand(),

@@ -37,7 +37,7 @@ std::string predictionTable(const Inspection& inspection, const std::vector<int>
 
 Command predictCommand() {
   struct Arguments {
-    std::string session, frames, out, json;
+    std::string session, frames, out, json, preset;
   };
   const auto a = std::make_shared<Arguments>();
   Command c;
@@ -53,6 +53,7 @@ Command predictCommand() {
   c.declare = [a](Options& o) {
     o.positional(a->session, "FILE.glint", "A session written by `glint reconstruct` or the inspector");
     o.option(a->frames, "--frames", "SPEC", "Frames to predict: numbers, ids, ranges, first:K or spread:K (default: all)");
+    o.option(a->preset, "--preset", "NAME", "Model and settings of the session's trade-off: fast, balanced, exact or chosen");
     o.option(a->out, "--out", "DIR", "Write contours, overlays and labels there");
     o.option(a->json, "--json", "FILE", "Write predictions.json's content there instead (- = standard output)");
   };
@@ -64,7 +65,9 @@ Command predictCommand() {
     if (!a->frames.empty()) frames = parseFrames(a->frames, scene, "--frames");
     else
       for (int i = 0; i < static_cast<int>(scene.frames.size()); ++i) frames.push_back(i);
-    const Inspection result = inspect(opened.scene, opened.session.request, context.progress());
+    InspectionRequest request = opened.session.request;
+    if (!a->preset.empty()) applyPreset(opened.session, a->preset, request);
+    const Inspection result = inspect(opened.scene, request, context.progress());
     if (!a->out.empty()) {
       const std::filesystem::path folder = a->out;
       std::error_code error;

@@ -6,38 +6,16 @@
 #include <opencv2/imgproc.hpp>
 #include <set>
 
-#include "core/evaluate/palette.h"
+#include "core/evaluate/html_text.h"
 #include "core/evaluate/report.h"
 #include "core/evaluate/summary.h"
 
 namespace glint {
 namespace {
 
-std::string format(const char* pattern, double v) {
-  if (!std::isfinite(v)) return "&ndash;";
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, pattern, v);
-  return buffer;
-}
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&') out += "&amp;";
-    else if (c == '<') out += "&lt;";
-    else if (c == '>') out += "&gt;";
-    else if (c == '"') out += "&quot;";
-    else out += c;
-  }
-  return out;
-}
-
-std::string colourOf(const std::string& model) {
-  const std::array<int, 3> c = modelRgb(model);
-  char buffer[8];
-  std::snprintf(buffer, sizeof buffer, "#%02x%02x%02x", c[0], c[1], c[2]);
-  return buffer;
-}
+using html::colourOf;
+using html::escaped;
+using html::format;
 
 std::string base64(const std::vector<unsigned char>& bytes) {
   static const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

@@ -17,7 +17,8 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr int kVersion = 1;
+// 1: the first. 2: `tradeoff` may stand in it; a file of version 1 reads as one without.
+constexpr int kVersion = 2;
 
 fs::path folderOf(const fs::path& file) { return fs::absolute(file).lexically_normal().parent_path(); }
 
@@ -162,6 +163,7 @@ Session readSession(const fs::path& file) {
   }
   if (const auto n = root.find("view")) session.view = readView(*n);
   if (const auto n = root.find("notes")) session.notes = n->text();
+  if (const auto n = root.find("tradeoff"); n && !n->isNull()) session.tradeoff = readTradeoff(*n);
   if (const auto n = root.find("results"); n && !n->isNull()) {
     const JsonNode key = n->at("key_results");
     for (const std::string& name : key.keys()) {
@@ -171,7 +173,7 @@ Session readSession(const fs::path& file) {
     session.digest = readHash(n->at("digest"));
   }
   Json unknown = Json::object();
-  for (const std::string& key : root.unknownKeys({"glint_session", "input", "request", "frames", "view", "notes", "results"})) {
+  for (const std::string& key : root.unknownKeys({"glint_session", "input", "request", "frames", "view", "notes", "tradeoff", "results"})) {
     session.warnings.push_back(key + ": unknown key, kept");
     unknown[key] = Json::parse(root.at(key).dump());
   }
@@ -212,6 +214,7 @@ void writeSession(const Session& session, const fs::path& file) {
                                      {"view_angle_deg", c.viewAngleDeg}};
   root["view"]["selection"] = {{"frame", v.frame}, {"model", v.model}, {"light", v.light}, {"highlight", v.highlight}};
   root["notes"] = session.notes;
+  if (session.tradeoff) root["tradeoff"] = Json::parse(tradeoffJson(*session.tradeoff));
   if (!session.keyResults.empty()) {
     Json key = Json::object();
     for (const auto& [name, value] : session.keyResults) key[name] = std::isfinite(value) ? Json(value) : Json();

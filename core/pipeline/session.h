@@ -5,11 +5,13 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/pipeline/inspection.h"
+#include "core/tradeoff/tradeoff.h"
 
 namespace glint {
 
@@ -47,6 +49,7 @@ struct Session {
   std::vector<std::string> training, heldOut;  ///< frame ids that `request.train` meant when it was saved
   SessionView view;
   std::string notes;
+  std::optional<Tradeoff> tradeoff;  ///< measured speed against accuracy; a replay does not look at it
   KeyResults keyResults;              ///< empty when the session was saved without results
   std::string digest;                 ///< of all results, "" without results; equal on the same machine and build only
   std::vector<std::string> warnings;  ///< unknown keys, one line each (not written)

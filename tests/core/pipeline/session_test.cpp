@@ -196,8 +196,8 @@ TEST_P(BadSessions, AreOneLineWithFilePlaceAndReason) {
 INSTANTIATE_TEST_SUITE_P(
     Session, BadSessions,
     testing::Values(
-        BadSession{"\"glint_session\": 1", "\"glint_session\": 2", "glint_session: ", "newer"},
-        BadSession{"\"glint_session\": 1", "\"glint_session\": 0", "glint_session: ", "never existed"},
+        BadSession{"\"glint_session\": 2", "\"glint_session\": 3", "glint_session: ", "newer"},
+        BadSession{"\"glint_session\": 2", "\"glint_session\": 0", "glint_session: ", "never existed"},
         BadSession{"\"train\"", "\"trian\"", "request.train: ", "missing"},
         BadSession{"\"source\": \"image\"", "\"source\": \"video\"", "request.source: ", "'video'"},
         BadSession{"\"predict.directions\": 72", "\"predict.directions\": 72.5",

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/tradeoff/tradeoff.h"
+
+#include <cmath>
+
+#include "cli/commands.h"
+#include "cli/inspection_arguments.h"
+#include "core/pipeline/session.h"
+#include "core/tradeoff/run.h"
+
+namespace glint::cli {
+namespace {
+
+std::optional<double> positive(const std::string& text, const std::string& flag, const std::string& what) {
+  if (text.empty()) return std::nullopt;
+  std::size_t used = 0;
+  double value = 0;
+  try {
+    value = std::stod(text, &used);
+  } catch (const std::exception&) {
+    used = 0;
+  }
+  if (used == 0 || used != text.size() || !(value > 0 && std::isfinite(value)))
+    throw InputError("", flag + " " + text, "expected a positive number of " + what);
+  return value;
+}
+
+/// Beside the first file that the command writes: what an interrupted run has measured so far.
+std::string workFileFor(const std::vector<std::string>& outputs) {
+  for (const std::string& file : outputs)
+    if (!file.empty() && file != "-") return file + ".work";
+  return "";
+}
+
+}  // namespace
+
+Command tradeoffCommand() {
+  struct Arguments : InspectionArguments {
+    std::string budget, maxError, json, html, out, work;
+    int repeats = 5, maxTrials = SearchOptions{}.maxTrials;
+    bool keepSession = false;
+  };
+  const auto a = std::make_shared<Arguments>();
+  Command c;
+  c.name = "tradeoff";
+  c.summary = "Measure speed against accuracy of models and settings on this input";
+  c.description =
+      "Tries models and settings on the input: first on few frames, giving up what another setting beats, then what is left on\n"
+      "all of them. Prints error, time per frame, fit time and memory of each, marks those that no other beats in both error and\n"
+      "time, and picks one: the most accurate within --budget-us, the fastest within --max-error-pct, else the balanced preset.\n"
+      "What is measured so far is kept in FILE.work beside the first output file; the same command resumes from it.\n"
+      "A session as INPUT stores the result (--keep-session: not), so that the inspector shows it and --preset finds it.";
+  c.examples =
+      "  glint tradeoff scene.json --html tradeoff.html\n"
+      "  glint tradeoff scene.json --budget-us 100 -o fast.glint   a session with the settings that were chosen\n"
+      "  glint tradeoff run.glint --max-error-pct 0.5 --json -\n"
+      "  glint evaluate run.glint --preset fast\n";
+  c.declare = [a](Options& o) {
+    a->declare(o, "Models to compare (default: all, or the session's)");
+    o.option(a->budget, "--budget-us", "T", "Choose the most accurate setting within this many microseconds a frame");
+    o.option(a->maxError, "--max-error-pct", "E", "Choose the fastest setting with at most this contour error in percent");
+    o.option(a->json, "--json", "FILE", "Everything as JSON (- = standard output)");
+    o.option(a->html, "--html", "FILE", "A self-contained page with the front");
+    o.option(a->out, "-o,--out", "FILE.glint", "Write a session with the chosen settings, their results and the front");
+    o.option(a->work, "--work", "FILE", "Keep unfinished work here (default: beside the first output file)");
+    o.option(a->repeats, "--repeats", "N", "Repeats of every timed prediction");
+    o.option(a->maxTrials, "--max-trials", "N", "Most settings tried on few frames");
+    o.flag(a->keepSession, "--keep-session", "Do not store the result in the session that INPUT names");
+  };
+  c.run = [a](const Context& context) -> int {
+    if (a->models == "auto") throw InputError("", "--models auto", "the trade-off compares models: name them, or leave the flag away");
+    if (!a->preset.empty()) throw InputError("", "--preset " + a->preset, "the trade-off finds the presets");
+    TradeoffOptions options;
+    options.bound.budgetUs = positive(a->budget, "--budget-us", "microseconds");
+    options.bound.maxErrorPct = positive(a->maxError, "--max-error-pct", "percent");
+    if (options.bound.budgetUs && options.bound.maxErrorPct) throw InputError("", "--budget-us, --max-error-pct", "give one of the two");
+    if (a->repeats < 1 || a->repeats > 1000) throw InputError("", "--repeats", "must be 1 to 1000");
+    if (a->maxTrials < 1) throw InputError("", "--max-trials", "must be at least 1");
+    const bool isSession = std::filesystem::path(a->input).extension() == ".glint";
+    options.repeats = a->repeats;
+    options.search.maxTrials = a->maxTrials;
+    options.input = a->input;
+    options.program = GLINT_VERSION;
+    options.workFile = a->work.empty() ? workFileFor({a->json, a->html, a->out}) : a->work;
+    InspectionRequest request = a->request();
+    if (!isSession && a->models.empty()) {
+      request.models.clear();
+      for (const auto& m : allModels()) request.models.push_back(m->id());
+    }
+    const std::shared_ptr<const Scene> scene = a->scene();
+    for (const std::string& w : scene->warnings) context.warn(w);
+    const Tradeoff t = measureTradeoff(scene, request, options, context.progress());
+
+    if (!a->json.empty()) context.write(a->json, tradeoffJson(t));
+    if (!a->html.empty()) context.write(a->html, tradeoffHtml(t));
+    if (t.points.empty()) {
+      requireUsableViews(inspect(scene, [&] { InspectionRequest q = request; q.models.clear(); return q; }(), context.progress()));
+      throw CannotAnswer{{Reason::NotReached, t.pruned.empty() ? t.reason : t.reason + " First: " + t.pruned.front().model + ": " + t.pruned.front().reason}};
+    }
+    if (!a->out.empty() && t.chosen) {
+      request.models = {t.points[*t.chosen].model};
+      request.settings = t.points[*t.chosen].settings;
+      Session session = sessionOf(inspect(scene, request, context.progress()), context.progress());
+      session.allowOutsidePaths = a->allowOutside;
+      session.tradeoff = t;
+      writeSession(session, a->out);
+    }
+    if (isSession && !a->keepSession) {
+      Session session = readSession(a->input);
+      session.tradeoff = t;
+      writeSession(session, a->input);
+    }
+    std::error_code ignored;
+    if (!options.workFile.empty()) std::filesystem::remove(options.workFile, ignored);
+    if (a->json != "-" && a->html != "-") context.print(tradeoffTable(t));
+    if (!t.chosen) throw CannotAnswer{{Reason::NotReached, t.reason}};
+    return kDone;
+  };
+  return c;
+}
+
+}  // namespace glint::cli

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "core/evaluate/palette.h"
+
+namespace glint::html {
+
+/// One number by a printf pattern; a dash when it is not finite.
+inline std::string format(const char* pattern, double v) {
+  if (!std::isfinite(v)) return "&ndash;";
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, pattern, v);
+  return buffer;
+}
+
+inline std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&') out += "&amp;";
+    else if (c == '<') out += "&lt;";
+    else if (c == '>') out += "&gt;";
+    else if (c == '"') out += "&quot;";
+    else out += c;
+  }
+  return out;
+}
+
+/// "#d55e00".
+inline std::string colourOf(const std::string& model) {
+  const std::array<int, 3> c = modelRgb(model);
+  char buffer[8];
+  std::snprintf(buffer, sizeof buffer, "#%02x%02x%02x", c[0], c[1], c[2]);
+  return buffer;
+}
+
+}  // namespace glint::html

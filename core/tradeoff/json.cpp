@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "core/base/json_text.h"
+#include "core/base/outcome.h"
+#include "core/tradeoff/knobs.h"
+#include "core/tradeoff/tradeoff.h"
+
+namespace glint {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double v) { return std::isfinite(v) ? Json(v) : Json(); }
+Json toJson(const SettingValue& value) {
+  return std::visit([](const auto& v) { return Json(v); }, value);
+}
+
+/// "settings": short names of the knobs for people and scripts; "set": every setting that differs from the default, by the
+/// dotted names that `--set` takes.
+void addSettings(Json& j, const Tradeoff& t, const std::string& model, const Settings& settings) {
+  j["settings"]["model"] = model;
+  for (const std::string& key : t.knobs) j["settings"][knobName(key)] = toJson(valueOf(settings, paramSpec(key)));
+  j["set"] = Json::object();
+  for (const auto& [key, value] : settings.values()) j["set"][key] = toJson(value);
+}
+
+double optionalNumber(const JsonNode& node) { return node.isNull() ? std::nan("") : node.number(); }
+
+Settings readSet(const JsonNode& node) {
+  Settings settings;
+  for (const std::string& key : node.keys()) {
+    const JsonNode value = node.at(key);
+    try {
+      const ParamSpec& spec = paramSpec(key);
+      if (std::holds_alternative<bool>(spec.defaultValue)) settings.set(key, value.boolean());
+      else if (std::holds_alternative<int>(spec.defaultValue)) settings.set(key, value.integer());
+      else if (std::holds_alternative<double>(spec.defaultValue)) settings.set(key, value.number());
+      else settings.set(key, value.text());
+    } catch (const InputError& e) {
+      if (!e.file().empty()) throw;
+      value.fail(e.what());
+    }
+  }
+  return settings;
+}
+
+}  // namespace
+
+std::string tradeoffJson(const Tradeoff& t) {
+  Json j = {{"glint_tradeoff", 1}, {"input", t.input}, {"train", t.train}, {"train_spec", t.trainSpec}, {"knobs", t.knobs}};
+  j["points"] = Json::array();
+  for (const TradeoffPoint& p : t.points) {
+    Json point;
+    addSettings(point, t, p.model, p.settings);
+    point["contour_error_pct"] = number(p.contourErrorPct);
+    point["iou"] = number(p.iou);
+    point["coverage"] = number(p.coverage);
+    point["predict_us"] = number(p.predictUs);
+    point["fit_us"] = number(p.fitUs);
+    point["peak_mb"] = number(p.peakMb);
+    point["pareto"] = p.pareto;
+    point["ranked_error_pct"] = number(p.rankedErrorPct);
+    point["frames"] = p.frames;
+    point["predicted"] = p.predicted;
+    point["matched"] = p.matched;
+    point["missed"] = p.missed;
+    point["spurious"] = p.spurious;
+    j["points"].push_back(point);
+  }
+  j["presets"] = Json::object();
+  for (const char* name : {"fast", "balanced", "exact"})
+    if (const auto it = t.presets.find(name); it != t.presets.end()) j["presets"][name] = it->second;
+  j["chosen"] = t.chosen ? Json(*t.chosen) : Json();
+  j["reason"] = t.reason;
+  j["measurement"] = t.measurement;
+  j["trials"] = t.trials;
+  j["pruned"] = Json::array();
+  for (const PrunedPoint& p : t.pruned) {
+    Json pruned;
+    addSettings(pruned, t, p.model, p.settings);
+    pruned["kind"] = p.kind;
+    pruned["reason"] = p.reason;
+    pruned["ranked_error_pct"] = number(p.rankedErrorPct);
+    pruned["predict_us"] = number(p.predictUs);
+    j["pruned"].push_back(pruned);
+  }
+  return prettyJson(j.dump(-1, ' ', false, Json::error_handler_t::replace)) + "\n";
+}
+
+Tradeoff readTradeoff(const JsonNode& node) {
+  Tradeoff t;
+  if (node.at("glint_tradeoff").integer() != 1) node.at("glint_tradeoff").fail("this program understands version 1");
+  t.input = node.at("input").text();
+  for (std::size_t i = 0; i < node.at("train").size(); ++i) t.train.push_back(node.at("train").at(i).integer());
+  t.trainSpec = node.at("train_spec").text();
+  for (std::size_t i = 0; i < node.at("knobs").size(); ++i) {
+    t.knobs.push_back(node.at("knobs").at(i).text());
+    try {
+      paramSpec(t.knobs.back());
+    } catch (const InputError&) {
+      node.at("knobs").at(i).fail("there is no such setting");
+    }
+  }
+  const JsonNode points = node.at("points");
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const JsonNode n = points.at(i);
+    TradeoffPoint p;
+    p.model = n.at("settings").at("model").text();
+    p.settings = readSet(n.at("set"));
+    p.contourErrorPct = optionalNumber(n.at("contour_error_pct"));
+    p.iou = optionalNumber(n.at("iou"));
+    p.coverage = optionalNumber(n.at("coverage"));
+    p.predictUs = optionalNumber(n.at("predict_us"));
+    p.fitUs = optionalNumber(n.at("fit_us"));
+    p.peakMb = optionalNumber(n.at("peak_mb"));
+    p.pareto = n.at("pareto").boolean();
+    p.rankedErrorPct = optionalNumber(n.at("ranked_error_pct"));
+    p.frames = n.at("frames").integer();
+    p.predicted = n.at("predicted").integer();
+    p.matched = n.at("matched").integer();
+    p.missed = n.at("missed").integer();
+    p.spurious = n.at("spurious").integer();
+    t.points.push_back(std::move(p));
+  }
+  const auto index = [&](const JsonNode& n) {
+    const int i = n.integer();
+    if (i < 0 || i >= static_cast<int>(t.points.size())) n.fail("is no index into points");
+    return i;
+  };
+  const JsonNode presets = node.at("presets");
+  for (const std::string& name : presets.keys()) t.presets[name] = index(presets.at(name));
+  if (!node.at("chosen").isNull()) t.chosen = index(node.at("chosen"));
+  t.reason = node.at("reason").text();
+  t.measurement = node.at("measurement").text();
+  t.trials = node.at("trials").integer();
+  const JsonNode pruned = node.at("pruned");
+  for (std::size_t i = 0; i < pruned.size(); ++i) {
+    const JsonNode n = pruned.at(i);
+    t.pruned.push_back({n.at("settings").at("model").text(), readSet(n.at("set")), n.at("kind").text(), n.at("reason").text(),
+                        optionalNumber(n.at("ranked_error_pct")), optionalNumber(n.at("predict_us"))});
+  }
+  return t;
+}
+
+std::string describe(const Tradeoff& t, const TradeoffPoint& p) {
+  std::string text = p.model;
+  for (const std::string& key : t.knobs)
+    if (const auto it = p.settings.values().find(key); it != p.settings.values().end()) text += ", " + knobName(key) + " " + textOf(it->second);
+  return text;
+}
+
+std::string tradeoffTable(const Tradeoff& t) {
+  std::string out = "front  us/frame    error %      IoU  coverage  predicted     fit ms  peak MB  setting\n";
+  for (int i = 0; i < static_cast<int>(t.points.size()); ++i) {
+    const TradeoffPoint& p = t.points[i];
+    std::string marks;
+    for (const auto& [name, index] : t.presets)
+      if (index == i) marks += "  <- " + name;
+    if (t.chosen == i) marks += "  <- chosen";
+    char line[200];
+    const std::string predicted = std::to_string(p.predicted) + "/" + std::to_string(p.frames);
+    std::snprintf(line, sizeof line, "%-5s %9.1f %10.4g %8.4f %9.3f %10s %10.2f %8.1f  ", p.pareto ? "*" : "", p.predictUs, p.contourErrorPct, p.iou,
+                  p.coverage, predicted.c_str(), p.fitUs * 1e-3, p.peakMb);
+    out += line + describe(t, p) + marks + "\n";
+  }
+  std::map<std::string, int> kinds;
+  for (const PrunedPoint& p : t.pruned) ++kinds[p.kind];
+  out += "\n" + std::to_string(t.points.size()) + " settings measured in full, " + std::to_string(t.trials) + " tried on few frames, " +
+         std::to_string(t.pruned.size()) + " pruned";
+  std::string list;
+  for (const auto& [kind, count] : kinds) list += (list.empty() ? ": " : ", ") + std::to_string(count) + " " + kind;
+  return out + list + ".\n" + t.measurement + "\n" + t.reason + "\n";
+}
+
+}  // namespace glint

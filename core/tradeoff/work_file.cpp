@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/tradeoff/work_file.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/base/atomic_file.h"
+
+namespace glint {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kVersion = 1;
+
+Json number(double v) { return std::isfinite(v) ? Json(v) : Json(); }
+double number(const Json& j) { return j.is_null() ? std::nan("") : j.get<double>(); }
+
+// Settings are not stored: the id of a trial holds them, and the caller puts them back.
+Json toJson(const TrialResult& r) { return {{"error_pct", number(r.errorPct)}, {"us", number(r.us)}, {"predictions", r.predictions}}; }
+Json toJson(const TradeoffPoint& p) {
+  return {{"frames", p.frames},
+          {"predicted", p.predicted},
+          {"matched", p.matched},
+          {"missed", p.missed},
+          {"spurious", p.spurious},
+          {"contour_error_pct", number(p.contourErrorPct)},
+          {"iou", number(p.iou)},
+          {"coverage", number(p.coverage)},
+          {"predict_us", number(p.predictUs)},
+          {"fit_us", number(p.fitUs)},
+          {"peak_mb", number(p.peakMb)}};
+}
+
+void fromJson(const Json& j, TrialResult& r) {
+  r.errorPct = number(j.at("error_pct"));
+  r.us = number(j.at("us"));
+  r.predictions = j.at("predictions").get<std::string>();
+}
+void fromJson(const Json& j, TradeoffPoint& p) {
+  p.frames = j.at("frames");
+  p.predicted = j.at("predicted");
+  p.matched = j.at("matched");
+  p.missed = j.at("missed");
+  p.spurious = j.at("spurious");
+  p.contourErrorPct = number(j.at("contour_error_pct"));
+  p.iou = number(j.at("iou"));
+  p.coverage = number(j.at("coverage"));
+  p.predictUs = number(j.at("predict_us"));
+  p.fitUs = number(j.at("fit_us"));
+  p.peakMb = number(j.at("peak_mb"));
+  p.rankedErrorPct = rankedErrorPct(p);
+}
+
+template <class T>
+Json outcomes(const std::map<std::string, Outcome<T>>& all) {
+  Json j = Json::object();
+  for (const auto& [id, outcome] : all) {
+    if (outcome) j[id] = toJson(*outcome);
+    else j[id] = {{"reason", static_cast<int>(outcome.failure().reason)}, {"detail", outcome.failure().detail}};
+  }
+  return j;
+}
+
+template <class T>
+void readOutcomes(const Json& j, std::map<std::string, Outcome<T>>& all) {
+  for (const auto& item : j.items()) {
+    if (item.value().contains("reason")) {
+      const int reason = item.value().at("reason");
+      if (reason < 0 || reason > static_cast<int>(Reason::Cancelled)) throw std::out_of_range("reason");
+      all.insert_or_assign(item.key(), Failure{static_cast<Reason>(reason), item.value().at("detail").template get<std::string>()});
+      continue;
+    }
+    T value{};
+    fromJson(item.value(), value);
+    all.insert_or_assign(item.key(), std::move(value));
+  }
+}
+
+}  // namespace
+
+WorkFile::WorkFile(std::filesystem::path file, std::string key) : file_(std::move(file)), key_(std::move(key)) {
+  std::error_code error;
+  if (file_.empty() || !std::filesystem::is_regular_file(file_, error)) return;
+  try {
+    const Json j = Json::parse(readFile(file_));
+    if (j.at("glint_tradeoff_work") != kVersion || j.at("key") != key_) return;
+    readOutcomes(j.at("coarse"), coarse_);
+    readOutcomes(j.at("full"), full_);
+  } catch (const std::exception&) {
+    // Whatever it is, it holds nothing of this run: it will be overwritten.
+    coarse_.clear();
+    full_.clear();
+  }
+}
+
+std::optional<Outcome<TrialResult>> WorkFile::coarse(const std::string& id) const {
+  const auto it = coarse_.find(id);
+  return it == coarse_.end() ? std::nullopt : std::optional(it->second);
+}
+
+std::optional<Outcome<TradeoffPoint>> WorkFile::full(const std::string& id) const {
+  const auto it = full_.find(id);
+  return it == full_.end() ? std::nullopt : std::optional(it->second);
+}
+
+void WorkFile::add(const std::string& id, const Outcome<TrialResult>& result) {
+  coarse_.insert_or_assign(id, result);
+  write();
+}
+
+void WorkFile::add(const std::string& id, const Outcome<TradeoffPoint>& result) {
+  full_.insert_or_assign(id, result);
+  write();
+}
+
+void WorkFile::write() const {
+  if (file_.empty()) return;
+  const Json j = {{"glint_tradeoff_work", kVersion}, {"key", key_}, {"coarse", outcomes(coarse_)}, {"full", outcomes(full_)}};
+  atomicWrite(file_, j.dump(1));
+}
+
+}  // namespace glint
