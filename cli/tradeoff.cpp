@@ -46,7 +46,8 @@ Command tradeoffCommand() {
   c.summary = "Measure speed against accuracy of models and settings on this input";
   c.description =
       "Tries models and settings on the input: first on few frames, giving up what another setting beats, then what is left on\n"
-      "all of them. Prints error, time per frame, fit time and memory of each, marks those that no other beats in both error and\n"
+      "all of them. Prints error, time per frame, fit time and memory of each, marks those that no other beats in both error "
+      "and\n"
       "time, and picks one: the most accurate within --budget-us, the fastest within --max-error-pct, else the balanced preset.\n"
       "What is measured so far is kept in FILE.work beside the first output file; the same command resumes from it.\n"
       "A session as INPUT stores the result (--keep-session: not), so that the inspector shows it and --preset finds it.";
@@ -68,12 +69,14 @@ Command tradeoffCommand() {
     o.flag(a->keepSession, "--keep-session", "Do not store the result in the session that INPUT names");
   };
   c.run = [a](const Context& context) -> int {
-    if (a->models == "auto") throw InputError("", "--models auto", "the trade-off compares models: name them, or leave the flag away");
+    if (a->models == "auto")
+      throw InputError("", "--models auto", "the trade-off compares models: name them, or leave the flag away");
     if (!a->preset.empty()) throw InputError("", "--preset " + a->preset, "the trade-off finds the presets");
     TradeoffOptions options;
     options.bound.budgetUs = positive(a->budget, "--budget-us", "microseconds");
     options.bound.maxErrorPct = positive(a->maxError, "--max-error-pct", "percent");
-    if (options.bound.budgetUs && options.bound.maxErrorPct) throw InputError("", "--budget-us, --max-error-pct", "give one of the two");
+    if (options.bound.budgetUs && options.bound.maxErrorPct)
+      throw InputError("", "--budget-us, --max-error-pct", "give one of the two");
     if (a->repeats < 1 || a->repeats > 1000) throw InputError("", "--repeats", "must be 1 to 1000");
     if (a->maxTrials < 1) throw InputError("", "--max-trials", "must be at least 1");
     const bool isSession = std::filesystem::path(a->input).extension() == ".glint";
@@ -94,8 +97,17 @@ Command tradeoffCommand() {
     if (!a->json.empty()) context.write(a->json, tradeoffJson(t));
     if (!a->html.empty()) context.write(a->html, tradeoffHtml(t));
     if (t.points.empty()) {
-      requireUsableViews(inspect(scene, [&] { InspectionRequest q = request; q.models.clear(); return q; }(), context.progress()));
-      throw CannotAnswer{{Reason::NotReached, t.pruned.empty() ? t.reason : t.reason + " First: " + t.pruned.front().model + ": " + t.pruned.front().reason}};
+      requireUsableViews(inspect(
+          scene,
+          [&] {
+            InspectionRequest q = request;
+            q.models.clear();
+            return q;
+          }(),
+          context.progress()));
+      throw CannotAnswer{
+          {Reason::NotReached,
+           t.pruned.empty() ? t.reason : t.reason + " First: " + t.pruned.front().model + ": " + t.pruned.front().reason}};
     }
     if (!a->out.empty() && t.chosen) {
       request.models = {t.points[*t.chosen].model};

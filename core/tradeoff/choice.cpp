@@ -17,7 +17,9 @@ std::string number(const char* pattern, double v) {
   return buffer;
 }
 
-std::string costText(const TradeoffPoint& p) { return number("%.3g %%", p.rankedErrorPct) + " at " + number("%.3g us", p.predictUs); }
+std::string costText(const TradeoffPoint& p) {
+  return number("%.3g %%", p.rankedErrorPct) + " at " + number("%.3g us", p.predictUs);
+}
 
 }  // namespace
 
@@ -51,8 +53,10 @@ void choosePoint(Tradeoff& t, const TradeoffBound& bound) {
     int best = -1, next = -1;
     for (int i = 0; i < static_cast<int>(costs.size()); ++i) {
       if (!front[i]) continue;
-      if (costs[i].us <= *bound.budgetUs) best = i;  // along the front the error falls with time
-      else if (next < 0) next = i;
+      if (costs[i].us <= *bound.budgetUs)
+        best = i;  // along the front the error falls with time
+      else if (next < 0)
+        next = i;
     }
     const std::string budget = number("%g us", *bound.budgetUs);
     if (best < 0) {
@@ -61,15 +65,18 @@ void choosePoint(Tradeoff& t, const TradeoffBound& bound) {
     }
     t.chosen = best;
     t.reason = "The most accurate setting within " + budget + " a frame is " + said(best) +
-               (next < 0 ? "; no slower one is more accurate." : "; the next more accurate one, " + said(next) + ", is over the budget.");
+               (next < 0 ? "; no slower one is more accurate."
+                         : "; the next more accurate one, " + said(next) + ", is over the budget.");
     return;
   }
   if (bound.maxErrorPct) {
     int best = -1, next = -1;
     for (int i = static_cast<int>(costs.size()) - 1; i >= 0; --i) {
       if (!front[i]) continue;
-      if (costs[i].errorPct <= *bound.maxErrorPct) best = i;
-      else if (next < 0) next = i;
+      if (costs[i].errorPct <= *bound.maxErrorPct)
+        best = i;
+      else if (next < 0)
+        next = i;
     }
     const std::string most = number("%g %%", *bound.maxErrorPct);
     if (best < 0) {

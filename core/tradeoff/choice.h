@@ -9,7 +9,7 @@ namespace glint {
 
 /// What the user asks of the choice; at most one is set, none means the balanced preset.
 struct TradeoffBound {
-  std::optional<double> budgetUs, maxErrorPct;
+  std::optional<double> budgetUs = {}, maxErrorPct = {};
 };
 
 /// Sorts the points by time, marks the front, finds the presets, picks a point and says why in one sentence.

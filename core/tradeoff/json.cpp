@@ -36,10 +36,14 @@ Settings readSet(const JsonNode& node) {
     const JsonNode value = node.at(key);
     try {
       const ParamSpec& spec = paramSpec(key);
-      if (std::holds_alternative<bool>(spec.defaultValue)) settings.set(key, value.boolean());
-      else if (std::holds_alternative<int>(spec.defaultValue)) settings.set(key, value.integer());
-      else if (std::holds_alternative<double>(spec.defaultValue)) settings.set(key, value.number());
-      else settings.set(key, value.text());
+      if (std::holds_alternative<bool>(spec.defaultValue))
+        settings.set(key, value.boolean());
+      else if (std::holds_alternative<int>(spec.defaultValue))
+        settings.set(key, value.integer());
+      else if (std::holds_alternative<double>(spec.defaultValue))
+        settings.set(key, value.number());
+      else
+        settings.set(key, value.text());
     } catch (const InputError& e) {
       if (!e.file().empty()) throw;
       value.fail(e.what());
@@ -149,7 +153,8 @@ Tradeoff readTradeoff(const JsonNode& node) {
 std::string describe(const Tradeoff& t, const TradeoffPoint& p) {
   std::string text = p.model;
   for (const std::string& key : t.knobs)
-    if (const auto it = p.settings.values().find(key); it != p.settings.values().end()) text += ", " + knobName(key) + " " + textOf(it->second);
+    if (const auto it = p.settings.values().find(key); it != p.settings.values().end())
+      text += ", " + knobName(key) + " " + textOf(it->second);
   return text;
 }
 
@@ -163,14 +168,14 @@ std::string tradeoffTable(const Tradeoff& t) {
     if (t.chosen == i) marks += "  <- chosen";
     char line[200];
     const std::string predicted = std::to_string(p.predicted) + "/" + std::to_string(p.frames);
-    std::snprintf(line, sizeof line, "%-5s %9.1f %10.4g %8.4f %9.3f %10s %10.2f %8.1f  ", p.pareto ? "*" : "", p.predictUs, p.contourErrorPct, p.iou,
-                  p.coverage, predicted.c_str(), p.fitUs * 1e-3, p.peakMb);
+    std::snprintf(line, sizeof line, "%-5s %9.1f %10.4g %8.4f %9.3f %10s %10.2f %8.1f  ", p.pareto ? "*" : "", p.predictUs,
+                  p.contourErrorPct, p.iou, p.coverage, predicted.c_str(), p.fitUs * 1e-3, p.peakMb);
     out += line + describe(t, p) + marks + "\n";
   }
   std::map<std::string, int> kinds;
   for (const PrunedPoint& p : t.pruned) ++kinds[p.kind];
-  out += "\n" + std::to_string(t.points.size()) + " settings measured in full, " + std::to_string(t.trials) + " tried on few frames, " +
-         std::to_string(t.pruned.size()) + " pruned";
+  out += "\n" + std::to_string(t.points.size()) + " settings measured in full, " + std::to_string(t.trials) +
+         " tried on few frames, " + std::to_string(t.pruned.size()) + " pruned";
   std::string list;
   for (const auto& [kind, count] : kinds) list += (list.empty() ? ": " : ", ") + std::to_string(count) + " " + kind;
   return out + list + ".\n" + t.measurement + "\n" + t.reason + "\n";

@@ -65,8 +65,10 @@ std::vector<Knob> knobsOf(const Settings& base, const std::vector<ParamSpec>& pa
         for (const double factor : {0.5, 2.0}) numbers.insert(current * factor);
       for (const double v : numbers) {
         if (v < spec.min || v > spec.max) continue;
-        if (whole) knob.values.emplace_back(static_cast<int>(v));
-        else knob.values.emplace_back(v);
+        if (whole)
+          knob.values.emplace_back(static_cast<int>(v));
+        else
+          knob.values.emplace_back(v);
       }
     }
     if (knob.values.size() > 1) knobs.push_back(std::move(knob));

@@ -61,7 +61,8 @@ std::string predictionsDigest(const Inspection& inspection, const std::string& m
 std::string keyOfFit(const Trial& trial) {
   std::string key = trial.model;
   for (const auto& [name, value] : trial.settings.values())
-    if (const std::string& stage = paramSpec(name).stage; stage != "predict" && stage != "evaluate") key += "|" + name + "=" + textOf(value);
+    if (const std::string& stage = paramSpec(name).stage; stage != "predict" && stage != "evaluate")
+      key += "|" + name + "=" + textOf(value);
   return key;
 }
 
@@ -74,8 +75,13 @@ struct TradeoffBench::Subset {
   Inspection evidence;
 };
 
-TradeoffBench::TradeoffBench(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int repeats, const ProgressFn& progress)
-    : request_(request), repeats_(repeats), progress_(progress), few_(std::make_shared<Subset>()), all_(std::make_shared<Subset>()) {
+TradeoffBench::TradeoffBench(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int repeats,
+                             const ProgressFn& progress)
+    : request_(request),
+      repeats_(repeats),
+      progress_(progress),
+      few_(std::make_shared<Subset>()),
+      all_(std::make_shared<Subset>()) {
   require(scene != nullptr && repeats >= 1, "TradeoffBench: a scene and at least one repeat");
   all_->scene = scene;
   all_->request = request;
@@ -85,7 +91,9 @@ TradeoffBench::TradeoffBench(std::shared_ptr<const Scene> scene, const Inspectio
   all_->evidence.stageKeys.erase("views");
 
   const TrainSpec train = all_->evidence.train;
-  const auto excluded = [&](int f) { return std::find(request.excluded.begin(), request.excluded.end(), f) != request.excluded.end(); };
+  const auto excluded = [&](int f) {
+    return std::find(request.excluded.begin(), request.excluded.end(), f) != request.excluded.end();
+  };
   std::vector<int> chosen, heldOut;
   if (train.perSurface) {
     // Whole surfaces, so that their fits are the same as with all frames.
@@ -103,8 +111,10 @@ TradeoffBench::TradeoffBench(std::shared_ptr<const Scene> scene, const Inspectio
   } else {
     for (int f = 0; f < static_cast<int>(scene->frames.size()); ++f) {
       if (excluded(f)) continue;
-      if (std::binary_search(train.frames.begin(), train.frames.end(), f)) chosen.push_back(f);
-      else if (!all_->evidence.evidence[f].scored().empty()) heldOut.push_back(f);
+      if (std::binary_search(train.frames.begin(), train.frames.end(), f))
+        chosen.push_back(f);
+      else if (!all_->evidence.evidence[f].scored().empty())
+        heldOut.push_back(f);
     }
     const std::vector<int> some = spread(heldOut, kFewHeldOut);
     chosen.insert(chosen.end(), some.begin(), some.end());
@@ -122,7 +132,8 @@ TradeoffBench::TradeoffBench(std::shared_ptr<const Scene> scene, const Inspectio
     e.frame = static_cast<int>(i);
     few_->evidence.evidence.push_back(std::move(e));
     // Ids, because an id such as "0003" would win over the number 3.
-    if (std::binary_search(train.frames.begin(), train.frames.end(), chosen[i])) trainIds += (trainIds.empty() ? "" : ",") + scene->frames[chosen[i]].id;
+    if (std::binary_search(train.frames.begin(), train.frames.end(), chosen[i]))
+      trainIds += (trainIds.empty() ? "" : ",") + scene->frames[chosen[i]].id;
   }
   few_->scene = part;
   if (!train.perSurface) few_->request.train = trainIds;
@@ -159,13 +170,15 @@ TradeoffPoint TradeoffBench::pointOf(const Inspection& inspection, const Trial& 
   return p;
 }
 
-std::vector<std::vector<double>> TradeoffBench::timesOf(const Inspection& inspection, const Trial& trial, int frames, int repeats) const {
+std::vector<std::vector<double>> TradeoffBench::timesOf(const Inspection& inspection, const Trial& trial, int frames,
+                                                        int repeats) const {
   const ModelResult& result = inspection.models.at(trial.model);
   const HighlightModel& model = modelByName(trial.model);
   std::vector<int> counted;
   for (int i = 0; i < static_cast<int>(result.frames.size()); ++i) {
     const FrameComparison& c = result.frames[i];
-    if (inspection.isHeldOut(c.frame) && result.fits[c.fit].fit && !inspection.evidence[c.frame].scored().empty()) counted.push_back(i);
+    if (inspection.isHeldOut(c.frame) && result.fits[c.fit].fit && !inspection.evidence[c.frame].scored().empty())
+      counted.push_back(i);
   }
   std::vector<std::vector<double>> times;
   for (const int i : spread(counted, frames)) {
@@ -191,14 +204,17 @@ double TradeoffBench::fitUs(const Inspection& inspection, const Trial& trial) co
     for (const ModelResult::Fit& f : inspection.models.at(trial.model).fits) {
       FitInput input;
       for (const TrainingView& v : inspection.views)
-        if (v.highlight.light == f.light && (!f.surface || inspection.surfaces->keyOf(v.frame) == *f.surface)) input.views.push_back(v);
+        if (v.highlight.light == f.light && (!f.surface || inspection.surfaces->keyOf(v.frame) == *f.surface))
+          input.views.push_back(v);
       for (TrainingView& v : input.views) v.canonical.reset();
       check();
       const auto start = std::chrono::steady_clock::now();
       if (model.needsLight()) {
         const Outcome<LightEstimate> light = estimateLight(input.views, trial.settings);
-        if (light) input.light = *light;
-        else input.lightFailure = light.failure();
+        if (light)
+          input.light = *light;
+        else
+          input.lightFailure = light.failure();
       }
       check();
       if (model.needsCanonicalContours() && input.light)
@@ -231,7 +247,8 @@ Outcome<TrialResult> TradeoffBench::coarse(const Trial& trial) {
   TrialResult result;
   result.errorPct = pointOf(r, trial).rankedErrorPct;
   std::vector<double> shortest;
-  for (const std::vector<double>& of : timesOf(r, trial, kFewTimed, kFewRepeats)) shortest.push_back(*std::min_element(of.begin(), of.end()));
+  for (const std::vector<double>& of : timesOf(r, trial, kFewTimed, kFewRepeats))
+    shortest.push_back(*std::min_element(of.begin(), of.end()));
   result.us = medianOf(std::move(shortest));
   result.predictions = predictionsDigest(r, trial.model);
   if (known == earlier_.end()) {

@@ -19,11 +19,13 @@ std::string idOf(const Trial& trial) {
 }
 
 /// Equal for runs whose measurements may be mixed: inputs, request, settings and program.
-std::string workKey(const Scene& scene, const InspectionRequest& request, const TradeoffOptions& options, const ProgressFn& progress) {
+std::string workKey(const Scene& scene, const InspectionRequest& request, const TradeoffOptions& options,
+                    const ProgressFn& progress) {
   Sha256 hash;
   for (const SessionFile& f : hashInputs(scene, request, progress)) hash.add(f.path.string() + "=" + f.sha256 + "\n");
-  hash.add(request.train + "|" + (request.source == FrameSource::Image ? "image" : "radiance") + "|" + std::to_string(request.noisePx) +
-           "|" + std::to_string(request.seed) + "|" + request.truthFolder + "|" + std::to_string(options.repeats) + "|" + options.program);
+  hash.add(request.train + "|" + (request.source == FrameSource::Image ? "image" : "radiance") + "|" +
+           std::to_string(request.noisePx) + "|" + std::to_string(request.seed) + "|" + request.truthFolder + "|" +
+           std::to_string(options.repeats) + "|" + options.program);
   for (const int f : request.excluded) hash.add("x" + std::to_string(f));
   for (const ParamSpec& p : allParams()) hash.add(p.key + "=" + textOf(valueOf(request.settings, p)) + "\n");
   return hash.hex();
@@ -46,7 +48,8 @@ Tradeoff measureTradeoff(std::shared_ptr<const Scene> scene, const InspectionReq
   t.input = options.input;
   t.trainSpec = request.train;
   t.train = parseTrainSpec(request.train, *scene).frames;
-  std::erase_if(t.train, [&](int f) { return std::find(request.excluded.begin(), request.excluded.end(), f) != request.excluded.end(); });
+  std::erase_if(t.train,
+                [&](int f) { return std::find(request.excluded.begin(), request.excluded.end(), f) != request.excluded.end(); });
   // One order, from simple to rich, whatever order the user named them in.
   std::vector<std::string> models;
   for (const std::string& m : request.models) modelByName(m);
@@ -92,11 +95,14 @@ Tradeoff measureTradeoff(std::shared_ptr<const Scene> scene, const InspectionReq
     t.points.push_back(std::move(**point));
   }
   choosePoint(t, options.bound);
-  t.measurement = "Time of a prediction: median over " + std::to_string(bench.timedFrames()) + " frames and " + std::to_string(options.repeats) +
-                  " repeats, one thread, this machine. Fit: light, canonical contours and fit of all lights and surfaces, median of up to " +
-                  std::to_string(options.repeats) + " repeats. Memory: peak resident size of the whole process while it fits and predicts all frames " +
-                  (bench.memoryResets() ? "with this setting (the kernel's high-water mark, reset before)."
-                                        : "since it started (the system does not allow to reset the mark).");
+  t.measurement =
+      "Time of a prediction: median over " + std::to_string(bench.timedFrames()) + " frames and " +
+      std::to_string(options.repeats) +
+      " repeats, one thread, this machine. Fit: light, canonical contours and fit of all lights and surfaces, median of up to " +
+      std::to_string(options.repeats) +
+      " repeats. Memory: peak resident size of the whole process while it fits and predicts all frames " +
+      (bench.memoryResets() ? "with this setting (the kernel's high-water mark, reset before)."
+                            : "since it started (the system does not allow to reset the mark).");
   return t;
 }
 

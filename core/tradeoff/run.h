@@ -12,12 +12,13 @@
 namespace glint {
 
 struct TradeoffOptions {
-  std::string input;               ///< as the user named it, for the report
+  std::string input;  ///< as the user named it, for the report
   TradeoffBound bound;
-  int repeats = 5;                 ///< of every timed prediction
+  int repeats = 5;  ///< of every timed prediction
   SearchOptions search;
-  std::filesystem::path workFile;  ///< interrupted work is resumed from here; the caller removes it once the result is safe; empty = none
-  std::string program;             ///< version: work of another one is not resumed
+  std::filesystem::path
+      workFile;         ///< interrupted work is resumed from here; the caller removes it once the result is safe; empty = none
+  std::string program;  ///< version: work of another one is not resumed
 };
 
 /// Measures what each sensible setting costs and gives on this input (method.md section 12): searchTrials on few frames, then a

@@ -46,11 +46,17 @@ std::string costText(const Cost& c) {
   return buffer;
 }
 
-double factor(double now, double before) { return before > 0 ? now / before : now > 0 ? std::numeric_limits<double>::infinity() : 1; }
+/// By its name: the stage of "predict.directions" is the fit, where it is used first.
+bool usedByPrediction(const Knob& k) { return k.key.rfind("predict.", 0) == 0 || k.key.rfind("surface.", 0) == 0; }
+
+double factor(double now, double before) {
+  return before > 0 ? now / before : now > 0 ? std::numeric_limits<double>::infinity() : 1;
+}
 
 class Search {
  public:
-  Search(const std::vector<Knob>& knobs, const std::function<Outcome<TrialResult>(const Trial&)>& tryOne, const SearchOptions& options)
+  Search(const std::vector<Knob>& knobs, const std::function<Outcome<TrialResult>(const Trial&)>& tryOne,
+         const SearchOptions& options)
       : knobs_(knobs), tryOne_(tryOne), options_(options) {}
 
   SearchResult run(const std::vector<std::string>& models, const Settings& base) {
@@ -84,16 +90,17 @@ class Search {
     return static_cast<int>(tried_.size()) - 1;
   }
 
-  void prune(const Trial& t, const std::string& kind, const std::string& reason, const Cost& cost = {std::nan(""), std::nan("")}) {
+  void prune(const Trial& t, const std::string& kind, const std::string& reason,
+             const Cost& cost = {std::nan(""), std::nan("")}) {
     result_.pruned.push_back({t.model, t.settings, kind, reason, cost.errorPct, cost.us});
   }
 
-  /// The model with the base settings; where they fail, with the first single change of what comes before prediction that answers.
+  /// The model with the base settings; where they fail, with the first single change of light or fit that answers.
   void findBase(const std::string& model, const Settings& settings) {
     std::optional<int> found = attempt({model, settings});
     for (const Knob& k : knobs_) {
       if (found) break;
-      if (paramSpec(k.key).stage == "predict") continue;
+      if (usedByPrediction(k)) continue;
       for (const SettingValue& v : k.values) {
         Trial t{model, settings};
         t.settings.set(k.key, v);
@@ -110,7 +117,8 @@ class Search {
     for (const auto& [other, index] : bases_) {
       if (other == model || !clearlyDominates(tried_[index].cost(), mine.cost(), kHopelessError, kHopelessTime)) continue;
       prune(mine.trial, "model dominated",
-            "none of its knobs was tried: " + costText(mine.cost()) + " against " + costText(tried_[index].cost()) + " with " + other,
+            "none of its knobs was tried: " + costText(mine.cost()) + " against " + costText(tried_[index].cost()) + " with " +
+                other,
             mine.cost());
       return true;
     }
@@ -131,8 +139,7 @@ class Search {
         const std::string what = knobName(k.key) + " " + textOf(v) + ": " + costText(a) + " against " + costText(b);
         const double time = factor(a.us, b.us), error = factor(a.errorPct, b.errorPct);
         // What comes before prediction cannot change its time without changing what is predicted.
-        const std::string& stage = paramSpec(k.key).stage;
-        const bool sameTime = stage == "light" || stage == "fit" || (time < kTimeSlack && time * kTimeSlack > 1);
+        const bool sameTime = !usedByPrediction(k) || (time < kTimeSlack && time * kTimeSlack > 1);
         if (now.result.predictions == base.result.predictions && sameTime) {
           prune(t, "no effect", what + ", the same contours", a);
         } else if (error > kWorthwhileError && time * kTimeSlack > 1) {
@@ -155,7 +162,8 @@ class Search {
 
   /// `a` stands for `b`: the same model, not worse by more than could be told.
   static bool sameAs(const Tried& a, const Tried& b) {
-    return a.trial.model == b.trial.model && a.result.errorPct <= b.result.errorPct * kSameError && a.result.us <= b.result.us * kSameTime;
+    return a.trial.model == b.trial.model && a.result.errorPct <= b.result.errorPct * kSameError &&
+           a.result.us <= b.result.us * kSameTime;
   }
 
   void combine() {
@@ -182,8 +190,8 @@ class Search {
           if (const int better = dominator(expected); better >= 0) {
             seen_.insert(idOf(t, knobs_));
             prune(t, "expected to be dominated",
-                  "its knobs one by one promise " + costText(expected) + ", worse than " + costText(tried_[better].cost()) + " with " +
-                      tried_[better].trial.model);
+                  "its knobs one by one promise " + costText(expected) + ", worse than " + costText(tried_[better].cost()) +
+                      " with " + tried_[better].trial.model);
             continue;
           }
           attempt(t);
@@ -209,17 +217,20 @@ class Search {
       const Tried& t = tried_[i];
       if (!t.base) {
         if (const int better = dominator(t.cost()); better >= 0) {
-          prune(t.trial, "dominated", costText(t.cost()) + ", worse than " + costText(tried_[better].cost()) + " with " + tried_[better].trial.model,
+          prune(t.trial, "dominated",
+                costText(t.cost()) + ", worse than " + costText(tried_[better].cost()) + " with " + tried_[better].trial.model,
                 t.cost());
           continue;
         }
         const auto same = std::find_if(kept.begin(), kept.end(), [&](int k) { return sameAs(tried_[k], t); });
         if (same != kept.end()) {
-          prune(t.trial, "indistinguishable", costText(t.cost()) + ", as " + costText(tried_[*same].cost()) + " of the same model", t.cost());
+          prune(t.trial, "indistinguishable",
+                costText(t.cost()) + ", as " + costText(tried_[*same].cost()) + " of the same model", t.cost());
           continue;
         }
         if (static_cast<int>(kept.size()) >= options_.maxFinalists) {
-          prune(t.trial, "limit", "the limit of " + std::to_string(options_.maxFinalists) + " full measurements was reached", t.cost());
+          prune(t.trial, "limit", "the limit of " + std::to_string(options_.maxFinalists) + " full measurements was reached",
+                t.cost());
           continue;
         }
       }

@@ -14,15 +14,15 @@ namespace glint {
 /// One setting of the program with what it was measured to give on the user's input (method.md section 12).
 struct TradeoffPoint {
   std::string model;
-  Settings settings;           ///< complete: what `--set` would have to say
-  int frames = 0;              ///< with an observed highlight, as `evaluate` counts them
+  Settings settings;  ///< complete: what `--set` would have to say
+  int frames = 0;     ///< with an observed highlight, as `evaluate` counts them
   int predicted = 0, matched = 0, missed = 0, spurious = 0;
   double contourErrorPct = 0;  ///< mean over matched highlights
   double iou = 0, coverage = 0;
-  double rankedErrorPct = 0;   ///< what points are compared by: see rankedErrorPct()
-  double predictUs = 0;        ///< median over frames and repeats, one thread
-  double fitUs = 0;            ///< light, canonical contours and fit of all lights and surfaces, one thread, median of repeats
-  double peakMb = 0;           ///< peak resident memory of the process with this setting alone, 2^20 bytes
+  double rankedErrorPct = 0;  ///< what points are compared by: see rankedErrorPct()
+  double predictUs = 0;       ///< median over frames and repeats, one thread
+  double fitUs = 0;           ///< light, canonical contours and fit of all lights and surfaces, one thread, median of repeats
+  double peakMb = 0;          ///< peak resident memory of the process with this setting alone, 2^20 bytes
   bool pareto = false;
 };
 
@@ -30,15 +30,15 @@ struct TradeoffPoint {
 struct PrunedPoint {
   std::string model;
   Settings settings;
-  std::string kind;             ///< "failed", "no effect", "not better", "dominated", "expected to be dominated", ...
-  std::string reason;           ///< one line for a person
-  double rankedErrorPct = 0;    ///< of the coarse pass; NaN when it was not run or failed
+  std::string kind;           ///< "failed", "no effect", "not better", "dominated", "expected to be dominated", ...
+  std::string reason;         ///< one line for a person
+  double rankedErrorPct = 0;  ///< of the coarse pass; NaN when it was not run or failed
   double predictUs = 0;
 };
 
 /// Speed against accuracy on one input. Plain data: what `tradeoff --json` writes and the session stores.
 struct Tradeoff {
-  std::string input;                   ///< as the user named it
+  std::string input;  ///< as the user named it
   std::vector<int> train;
   std::string trainSpec;
   std::vector<std::string> knobs;      ///< dotted names of the settings that were varied
@@ -47,8 +47,8 @@ struct Tradeoff {
   std::optional<int> chosen;           ///< index into points; none when nothing meets the bound
   std::string reason;                  ///< one sentence
   std::vector<PrunedPoint> pruned;
-  int trials = 0;                      ///< settings tried on few frames
-  std::string measurement;             ///< how time and memory were measured
+  int trials = 0;           ///< settings tried on few frames
+  std::string measurement;  ///< how time and memory were measured
 };
 
 /// The error that points are compared by. A complete point (every frame predicted, nothing missed or spurious, coverage at

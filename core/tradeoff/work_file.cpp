@@ -17,19 +17,14 @@ Json number(double v) { return std::isfinite(v) ? Json(v) : Json(); }
 double number(const Json& j) { return j.is_null() ? std::nan("") : j.get<double>(); }
 
 // Settings are not stored: the id of a trial holds them, and the caller puts them back.
-Json toJson(const TrialResult& r) { return {{"error_pct", number(r.errorPct)}, {"us", number(r.us)}, {"predictions", r.predictions}}; }
+Json toJson(const TrialResult& r) {
+  return {{"error_pct", number(r.errorPct)}, {"us", number(r.us)}, {"predictions", r.predictions}};
+}
 Json toJson(const TradeoffPoint& p) {
-  return {{"frames", p.frames},
-          {"predicted", p.predicted},
-          {"matched", p.matched},
-          {"missed", p.missed},
-          {"spurious", p.spurious},
-          {"contour_error_pct", number(p.contourErrorPct)},
-          {"iou", number(p.iou)},
-          {"coverage", number(p.coverage)},
-          {"predict_us", number(p.predictUs)},
-          {"fit_us", number(p.fitUs)},
-          {"peak_mb", number(p.peakMb)}};
+  return {{"frames", p.frames},        {"predicted", p.predicted},       {"matched", p.matched},
+          {"missed", p.missed},        {"spurious", p.spurious},         {"contour_error_pct", number(p.contourErrorPct)},
+          {"iou", number(p.iou)},      {"coverage", number(p.coverage)}, {"predict_us", number(p.predictUs)},
+          {"fit_us", number(p.fitUs)}, {"peak_mb", number(p.peakMb)}};
 }
 
 void fromJson(const Json& j, TrialResult& r) {
@@ -56,8 +51,10 @@ template <class T>
 Json outcomes(const std::map<std::string, Outcome<T>>& all) {
   Json j = Json::object();
   for (const auto& [id, outcome] : all) {
-    if (outcome) j[id] = toJson(*outcome);
-    else j[id] = {{"reason", static_cast<int>(outcome.failure().reason)}, {"detail", outcome.failure().detail}};
+    if (outcome)
+      j[id] = toJson(*outcome);
+    else
+      j[id] = {{"reason", static_cast<int>(outcome.failure().reason)}, {"detail", outcome.failure().detail}};
   }
   return j;
 }
@@ -68,7 +65,8 @@ void readOutcomes(const Json& j, std::map<std::string, Outcome<T>>& all) {
     if (item.value().contains("reason")) {
       const int reason = item.value().at("reason");
       if (reason < 0 || reason > static_cast<int>(Reason::Cancelled)) throw std::out_of_range("reason");
-      all.insert_or_assign(item.key(), Failure{static_cast<Reason>(reason), item.value().at("detail").template get<std::string>()});
+      all.insert_or_assign(item.key(),
+                           Failure{static_cast<Reason>(reason), item.value().at("detail").template get<std::string>()});
       continue;
     }
     T value{};
