@@ -205,6 +205,10 @@ Outcome<Reconstruction> reconstructLinear(const std::vector<ConicView>& views, c
     pose.translation() = world.origin + world.scale * pose.translation();
     result.ellipsoid = Ellipsoid(pose, world.scale * e->semiAxes());
   }
+  // Rays of a narrow baseline seem to meet near the cameras, and measured from there the singular values hide how many quadrics
+  // fit. The found centre is the better origin, and the judge of the rank.
+  if (!origin && result.ellipsoid && (result.ellipsoid->centre() - *at).norm() > 2 * result.ellipsoid->semiAxes().x())
+    return reconstructLinear(views, result.ellipsoid->centre(), options);
   result.residualPx = detail::residuals(views, result);
   return result;
 }

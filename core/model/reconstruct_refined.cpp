@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ceres/ceres.h>
-
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -11,10 +12,47 @@
 
 namespace glint {
 namespace {
-/// Centre (3) and lower factor L of S = L L^T by columns (00, 10, 20, 11, 21, 22), normalised world.
-using Parameters = Eigen::Matrix<double, 9, 1>;
 
-Eigen::Matrix3d factorOf(const double* p) { return Eigen::Matrix3d{{p[3], 0, 0}, {p[4], p[6], 0}, {p[5], p[7], p[8]}}; }
+/// Changes of the centre (3) and of the shape S (6, detail::vech, whose length is Frobenius': a rotation of the world changes no
+/// length, so the way of the iteration does not depend on the world's axes).
+using Step = Eigen::Matrix<double, 9, 1>;
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, 10>;  ///< Jacobian (9) and residual
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Below this share of the largest singular value several ellipsoids explain the contours: the same as ReconstructOptions'
+/// minRankRatio, six decades above the round-off of the Jacobian.
+constexpr double kRankRatio = 1e-9;
+/// The second axis is kept above this share of the longest, squared: a segment has no outline to step from.
+constexpr double kSegment = 1e-10;
+
+/// Centre and shape S = V diag(e) V^T with ascending e >= 0: distances are linear in S where an axis vanishes, while a factor of S
+/// has no slope there and would creep towards the flat ellipsoid.
+struct State {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d vectors = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d squares = Eigen::Vector3d::Zero();
+
+  Eigen::Matrix3d root() const { return vectors * squares.cwiseSqrt().asDiagonal(); }
+  bool flat() const { return squares(0) == 0; }
+  /// vech of v v^T for the shortest axis: the direction of thickness.
+  Eigen::Matrix<double, 6, 1> thickness() const { return detail::vech(vectors.col(0) * vectors.col(0).transpose()); }
+
+  /// Nearest legal state to this one plus a step.
+  State after(const Step& step) const {
+    const double r = 1 / std::sqrt(2.0);
+    Eigen::Matrix3d s = vectors * squares.asDiagonal() * vectors.transpose();
+    s += Eigen::Matrix3d{{step(3), r * step(6), r * step(7)}, {r * step(6), step(4), r * step(8)}, {r * step(7), r * step(8), step(5)}};
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(s);
+    State next;
+    next.centre = centre + step.head<3>();
+    next.vectors = eigen.eigenvectors();
+    next.squares = eigen.eigenvalues().cwiseMax(0.0);
+    // An axis of round-off is a zero axis.
+    if (next.squares(0) <= 4 * std::numeric_limits<double>::epsilon() * next.squares(2)) next.squares(0) = 0;
+    next.squares(1) = std::max(next.squares(1), kSegment * next.squares(2));
+    return next;
+  }
+};
 
 /// Outline of (c, L) in a projection whose pixels are near the origin; nothing when it is no ellipse.
 std::optional<Ellipse> outlineOf(const Eigen::Matrix<double, 3, 4>& p, const Eigen::Vector3d& c, const Eigen::Matrix3d& l) {
@@ -38,62 +76,110 @@ std::optional<Ellipse> outlineOf(const Eigen::Matrix<double, 3, 4>& p, const Eig
   return *e;
 }
 
-/// Signed distances of one view's contour points to the outline, px. By the envelope theorem only the outline's support in the
-/// direction of the foot's normal moves the distance: with l = (n, -n.foot) the tangent and pi = P^T l its plane,
-/// d(distance) = -d(pi^T Q pi) / (2 e3^T P Q pi).
-class OutlineCost : public ceres::CostFunction {
- public:
-  OutlineCost(const Eigen::Matrix<double, 3, 4>& projection, std::vector<Pixel> points)
-      : projection_(projection), points_(std::move(points)) {
-    set_num_residuals(int(points_.size()));
-    mutable_parameter_block_sizes()->push_back(9);
-  }
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    const Eigen::Vector3d c(parameters[0][0], parameters[0][1], parameters[0][2]);
-    const Eigen::Matrix3d l = factorOf(parameters[0]);
-    const std::optional<Ellipse> e = outlineOf(projection_, c, l);
-    if (!e) return false;
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      const EllipseFoot foot = footOnEllipse(*e, points_[i]);
-      residuals[i] = foot.distance;
-      if (!jacobians || !jacobians[0]) continue;
-      const Eigen::Vector3d tangent(foot.normal.x(), foot.normal.y(), -foot.normal.dot(foot.point));
-      const Eigen::Vector4d plane = projection_.transpose() * tangent;
-      const Eigen::Vector3d n = plane.head<3>(), ln = l.transpose() * n;
-      const double atCentre = n.dot(c) + plane.w();
-      // Q pi = ( (c.n + w) c - S n , c.n + w )
-      const double third = projection_.row(2).head<3>().dot(atCentre * c - l * ln) + projection_(2, 3) * atCentre;
-      const double k = -1 / third;
-      double* row = jacobians[0] + 9 * i;
-      for (int j = 0; j < 3; ++j) row[j] = k * atCentre * n(j);
-      int column = 3;
-      for (int j = 0; j < 3; ++j)
-        for (int m = j; m < 3; ++m) row[column++] = -k * n(m) * ln(j);
-    }
-    return true;
-  }
-
- private:
-  Eigen::Matrix<double, 3, 4> projection_;
-  std::vector<Pixel> points_;
+/// One view: the projection whose pixels are measured from its own ellipse's centre, and its contour points.
+struct Outline {
+  Eigen::Matrix<double, 3, 4> projection;
+  std::vector<Pixel> points;
 };
 
-/// U (c - mean) with U^T U the inverse of the covariance.
-class PriorCost : public ceres::SizedCostFunction<3, 9> {
+/// Signed distances of contour points to the outline, px, and their slopes. By the envelope theorem only the outline's support in
+/// the direction of the foot's normal moves the distance: with l = (n, -n.foot) the tangent and pi = P^T l its plane,
+/// d(distance) = -d(pi^T Q pi) / (2 e3^T P Q pi), which is linear in dS.
+/// @return false where a view has no elliptic outline.
+bool addRows(const Outline& view, const State& state, Rows& rows, Eigen::Index at) {
+  const Eigen::Matrix3d root = state.root();
+  const std::optional<Ellipse> e = outlineOf(view.projection, state.centre, root);
+  if (!e) return false;
+  for (const Pixel& p : view.points) {
+    const EllipseFoot foot = footOnEllipse(*e, p);
+    const Eigen::Vector3d tangent(foot.normal.x(), foot.normal.y(), -foot.normal.dot(foot.point));
+    const Eigen::Vector4d plane = view.projection.transpose() * tangent;
+    const Eigen::Vector3d n = plane.head<3>();
+    const double atCentre = n.dot(state.centre) + plane.w();
+    // Q pi = ( (c.n + w) c - S n , c.n + w )
+    const Eigen::Vector3d q = atCentre * state.centre - root * (root.transpose() * n);
+    const double third = view.projection.row(2).head<3>().dot(q) + view.projection(2, 3) * atCentre;
+    rows.row(at).head<3>() = -(atCentre / third) * n.transpose();
+    rows.row(at).segment<6>(3) = (0.5 / third) * detail::vech(n * n.transpose()).transpose();
+    rows(at, 9) = foot.distance;
+    ++at;
+  }
+  return true;
+}
+
+/// All residuals about one state; the prior's three rows are U (c - mean) with U^T U the inverse of its covariance.
+class Contours {
  public:
-  PriorCost(const Eigen::Matrix3d& whitening, const Eigen::Vector3d& mean) : whitening_(whitening), mean_(mean) {}
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    const Eigen::Vector3d r = whitening_ * (Eigen::Vector3d(parameters[0][0], parameters[0][1], parameters[0][2]) - mean_);
-    for (int i = 0; i < 3; ++i) residuals[i] = r(i);
-    if (jacobians && jacobians[0])
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 9; ++j) jacobians[0][9 * i + j] = j < 3 ? whitening_(i, j) : 0.0;
-    return true;
+  void add(Outline view) {
+    count_ += Eigen::Index(view.points.size());
+    views_.push_back(std::move(view));
+  }
+  void setPrior(const Eigen::Matrix3d& whitening, const Eigen::Vector3d& mean) { whitening_ = whitening, mean_ = mean; }
+
+  bool rows(const State& state, Rows& rows) const {
+    rows = Rows::Zero(std::max<Eigen::Index>(count_ + 3, 10), 10);
+    Eigen::Index at = 0;
+    for (const Outline& v : views_) {
+      if (!addRows(v, state, rows, at)) return false;
+      at += Eigen::Index(v.points.size());
+    }
+    if (whitening_) {
+      rows.block<3, 3>(at, 0) = *whitening_;
+      rows.block<3, 1>(at, 9) = *whitening_ * (state.centre - mean_);
+    }
+    return rows.allFinite();
   }
 
  private:
-  Eigen::Matrix3d whitening_;
-  Eigen::Vector3d mean_;
+  std::vector<Outline> views_;
+  std::optional<Eigen::Matrix3d> whitening_;
+  Eigen::Vector3d mean_ = Eigen::Vector3d::Zero();
+  Eigen::Index count_ = 0;
+};
+
+/// The linear least-squares problem at one state, as the singular values of its triangular factor.
+struct Linearised {
+  Eigen::JacobiSVD<Eigen::Matrix<double, 9, 9>> svd;
+  Eigen::Matrix<double, 9, 1> along;  ///< residual along the left singular vectors
+  double cost = 0;                    ///< sum of squares, px^2
+  int unknowns = 9;
+
+  Linearised(const Rows& rows, const State& state) : cost(rows.col(9).squaredNorm()) {
+    Eigen::Matrix<double, 10, 10> r = Eigen::HouseholderQR<Rows>(rows).matrixQR().topRows<10>().triangularView<Eigen::Upper>();
+    if (state.flat()) {
+      // On the border of the semidefinite cone the thickness may only grow. Where the cost would rise with it, it stays zero, and
+      // the step moves within the flat ellipsoids (turning the disc is among them).
+      Step direction = Step::Zero();
+      direction.tail<6>() = state.thickness();
+      const double slope = (r.leftCols<9>() * direction).dot(r.col(9));
+      if (slope >= 0) {
+        const Eigen::Matrix<double, 10, 1> column = r.leftCols<9>() * direction;
+        r.leftCols<9>() -= column * direction.transpose();
+        unknowns = 8;
+      }
+    }
+    const Eigen::Matrix<double, 9, 9> square = Eigen::HouseholderQR<Eigen::Matrix<double, 10, 9>>(r.leftCols<9>())
+                                                   .matrixQR()
+                                                   .topRows<9>()
+                                                   .triangularView<Eigen::Upper>();
+    const Eigen::Matrix<double, 10, 1> rotated =
+        Eigen::HouseholderQR<Eigen::Matrix<double, 10, 9>>(r.leftCols<9>()).householderQ().transpose() * r.col(9);
+    svd.compute(square, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    along = svd.matrixU().transpose() * rotated.head<9>();
+  }
+  double largest() const { return svd.singularValues()(0); }
+  double smallest() const { return svd.singularValues()(unknowns - 1); }
+  /// Damped step: singular values well above the root of the damping take their full part.
+  Step step(double damping) const {
+    Step y = Step::Zero();
+    for (int i = 0; i < unknowns; ++i) {
+      const double s = svd.singularValues()(i);
+      if (s > 0) y(i) = -s / (s * s + damping * largest() * largest()) * along(i);
+    }
+    return svd.matrixV() * y;
+  }
+  /// What the linear model says that the full step gains.
+  double gain() const { return along.head(unknowns).squaredNorm(); }
 };
 }  // namespace
 
@@ -107,92 +193,71 @@ Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, 
   // The world is measured from the start's centre in units of its size, each image from its own ellipse's centre.
   const Eigen::Vector3d origin = start.centre();
   const double scale = start.semiAxes().norm();
-  ceres::Problem problem;
-  Parameters p = Parameters::Zero();
+  Contours contours;
   for (const ConicView& v : views) {
-    Eigen::Matrix<double, 3, 4> projection = v.projection.matrix;
-    projection.topRows<2>() -= v.ellipse.centre * projection.row(2);
-    projection.col(3) += projection.leftCols<3>() * origin;
-    projection.leftCols<3>() *= scale;
-    std::vector<Pixel> points = detail::contourOf(v);
-    for (Pixel& q : points) q -= v.ellipse.centre;
-    problem.AddResidualBlock(new OutlineCost(projection, std::move(points)), nullptr, p.data());
+    Outline outline{v.projection.matrix, detail::contourOf(v)};
+    outline.projection.topRows<2>() -= v.ellipse.centre * outline.projection.row(2);
+    outline.projection.col(3) += outline.projection.leftCols<3>() * origin;
+    outline.projection.leftCols<3>() *= scale;
+    for (Pixel& q : outline.points) q -= v.ellipse.centre;
+    contours.add(std::move(outline));
   }
   if (prior) {
     if (!prior->mean.allFinite() || !prior->covariance.allFinite()) return Failure{Reason::NotFinite, "prior"};
     const Eigen::LLT<Eigen::Matrix3d> llt(prior->covariance / (scale * scale));
     require(llt.info() == Eigen::Success, "reconstructRefined: the prior's covariance is not positive definite");
-    const Eigen::Matrix3d whitening = llt.matrixL().solve(Eigen::Matrix3d::Identity());
-    problem.AddResidualBlock(new PriorCost(whitening, (prior->mean - origin) / scale), nullptr, p.data());
+    contours.setPrior(llt.matrixL().solve(Eigen::Matrix3d::Identity()), (prior->mean - origin) / scale);
   }
 
-  const auto parametersOf = [&](const Eigen::Vector3d& axes) {
-    // S = (D R^T)^T (D R^T); the triangular factor of D R^T is L^T, also for a flat ellipsoid.
-    const Eigen::Matrix3d root = axes.asDiagonal() * start.worldFromBody().linear().transpose();
-    const Eigen::Matrix3d upper = Eigen::HouseholderQR<Eigen::Matrix3d>(root).matrixQR().triangularView<Eigen::Upper>();
-    Parameters q = Parameters::Zero();
-    q << 0, 0, 0, upper(0, 0), upper(0, 1), upper(0, 2), upper(1, 1), upper(1, 2), upper(2, 2);
-    return q;
-  };
-  const Parameters exact = parametersOf(start.semiAxes() / scale);
-  const auto cost = [&](const Parameters& at) {
-    p = at;
-    double value = 0;
-    return problem.Evaluate(ceres::Problem::EvaluateOptions(), &value, nullptr, nullptr, nullptr) && std::isfinite(value)
-               ? value
-               : std::numeric_limits<double>::infinity();
-  };
-  const double startCost = cost(exact);
-  if (!std::isfinite(startCost)) return Failure{Reason::NotAnEllipsoid, "the start has no elliptic outline in one of the views"};
+  State state;  // axes ascending
+  for (int i = 0; i < 3; ++i) {
+    state.vectors.col(i) = start.worldFromBody().linear().col(2 - i);
+    state.squares(i) = std::pow(start.semiAxes()(2 - i) / scale, 2);
+  }
+  Rows rows;
+  if (!contours.rows(state, rows))
+    return Failure{Reason::NotAnEllipsoid, "the start has no elliptic outline in one of the views"};
 
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.logging_type = ceres::SILENT;
-  options.num_threads = 1;
-  options.max_num_iterations = maxIterations;
-  options.function_tolerance = 1e-12;
-  options.parameter_tolerance = 1e-12;
-  options.gradient_tolerance = 1e-14;
-  ceres::Solver::Summary summary;
-  const auto run = [&](const Parameters& from) {
-    p = from;
-    ceres::Solve(options, &problem, &summary);
-    return summary.IsSolutionUsable() && p.allFinite() ? summary.final_cost : std::numeric_limits<double>::infinity();
-  };
-  // A zero axis is a stationary point by symmetry: leave it with a small one, and come back if that did not help.
-  const Eigen::Vector3d axes = start.semiAxes() / scale, inflated = axes.cwiseMax(0.02 * axes.x());
-  double finalCost = std::numeric_limits<double>::infinity();
-  if (axes != inflated && std::isfinite(cost(parametersOf(inflated)))) finalCost = run(parametersOf(inflated));
-  int iterations = std::isfinite(finalCost) ? int(summary.iterations.size()) - 1 : 0;
-  Parameters best = p;
-  bool converged = std::isfinite(finalCost) && summary.termination_type == ceres::CONVERGENCE;
-  if (!(finalCost <= startCost)) {
-    finalCost = run(exact);
-    iterations += int(summary.iterations.size()) - 1;
-    best = p;
-    converged = summary.termination_type == ceres::CONVERGENCE;
-    if (!(finalCost <= startCost)) {
-      best = exact;
-      converged = converged || summary.termination_type == ceres::FAILURE;
+  // Levenberg and Marquardt's iteration with the damping relative to the largest singular value. A flat valley (an axis that the
+  // contours hardly see) has a small but certain slope: damping falls by decades, so that the full Gauss-Newton step is taken there.
+  Linearised linear(rows, state);
+  double damping = 1e-3;
+  int iterations = 0;
+  bool converged = false;
+  for (; iterations < maxIterations && !converged; ++iterations) {
+    constexpr double kEnough = 1e-14;  // the cost cannot be told apart below a hundred units of its round-off
+    if (!(linear.cost > 0) || linear.gain() <= kEnough * kEnough * linear.cost) break;
+    bool moved = false;
+    for (; damping < 1e8; damping *= 10) {
+      const Step step = linear.step(damping);
+      const State next = state.after(step);
+      double cost = kInfinity;
+      if (step.allFinite() && contours.rows(next, rows)) cost = rows.col(9).squaredNorm();
+      if (!(cost < linear.cost)) continue;
+      converged = linear.cost - cost <= kEnough * linear.cost && linear.gain() <= 1e-8 * linear.cost;
+      state = next;
+      linear = Linearised(rows, state);
+      damping = std::max(damping * 0.03, 1e-16);
+      moved = true;
+      break;
     }
+    if (!moved) break;  // no step of any length gains: round-off
   }
-  if (!converged && !summary.iterations.empty()) {
-    // An axis that shrinks to zero does so ever more slowly: out of iterations there is as good as converged when the last fifth
-    // of the way gained less than a hundredth.
-    const std::size_t n = summary.iterations.size();
-    const double before = summary.iterations[n - 1 - n / 5].cost;
-    converged = before - finalCost <= 0.01 * before;
-  }
+  converged = converged || iterations < maxIterations;
 
-  const Eigen::Matrix3d l = factorOf(best.data());
-  const Outcome<Ellipsoid> local = Ellipsoid::fromCentreAndShape(best.head<3>(), l * l.transpose());
-  if (!local) return Failure{Reason::NotAnEllipsoid, "the refined shape has two empty axes"};
-  Eigen::Isometry3d pose = local->worldFromBody();
-  pose.translation() = origin + scale * pose.translation();
+  if (!(linear.smallest() > kRankRatio * linear.largest()))
+    return Failure{Reason::RankDeficient, "several ellipsoids explain the contours equally well"};
+  if (state.squares(1) <= 2 * kSegment * state.squares(2))
+    return Failure{Reason::NotAnEllipsoid, "the refined shape has two empty axes"};
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = state.vectors;
+  if (pose.linear().determinant() < 0) pose.linear().col(0) *= -1;
+  pose.translation() = origin + scale * state.centre;
   Reconstruction result;
   result.solver = converged ? "refined" : "refined, stopped at the iteration limit";
   result.iterations = iterations;
-  result.ellipsoid = Ellipsoid(pose, scale * local->semiAxes());
+  result.condition = linear.largest() / linear.smallest();
+  result.ellipsoid = Ellipsoid(pose, scale * state.squares.cwiseSqrt());
   result.quadric = result.ellipsoid->dual();
   result.residualPx = detail::residuals(views, result);
   return result;
