@@ -91,11 +91,12 @@ class Reflectance final : public HighlightModel {
       return p;
     }
     SurfaceField field;
-    field.value = [&](const SurfacePoint& at) -> std::optional<double> {
-      const std::optional<double> log = radiance.at(at);
+    const double contour = peaks.front().logRadiance + std::log(*fit.level);
+    field.value = [&, contour](const SurfacePoint& at) -> std::optional<double> {
+      const std::optional<double> log = radiance.at(at, contour);  // a shadow matters inside the highlight only
       return log ? std::optional<double>(-*log) : std::nullopt;
     };
-    field.level = -(peaks.front().logRadiance + std::log(*fit.level));
+    field.level = -contour;
     const Eigen::Vector3d eye = camera.centreInWorld();
     for (const RadiancePeak& k : peaks) {
       const double alpha =

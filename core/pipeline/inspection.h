@@ -26,7 +26,7 @@ TrainSpec parseTrainSpec(const std::string& text, const Scene& scene);
 
 /// What to compute. Plain data: the session file stores it, the inspector edits it.
 struct InspectionRequest {
-  std::vector<std::string> models{"primal", "dual", "canonical", "limit-angle"};
+  std::vector<std::string> models{"primal", "dual", "canonical", "limit-angle", "reflectance"};
   std::string train = "first:6";
   std::vector<int> excluded;             ///< frames never used for training nor evaluated
   FrameSource source = FrameSource::Radiance;

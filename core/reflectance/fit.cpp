@@ -12,6 +12,7 @@
 #include <limits>
 #include <map>
 
+#include "core/geometry/conic.h"
 #include "core/geometry/polyline.h"
 #include "core/reflectance/lobe_terms.h"
 #include "core/reflectance/radiance_field.h"
@@ -25,9 +26,10 @@ constexpr double kScanStepPx = 24;  // of the search for a frame's maximum when 
 constexpr int kMaxFootSteps = 4;
 constexpr double kFootPx = 1e-4;  // a foot this close serves: its error enters the residual in second order
 constexpr double kFarthestFootPx = 8;
-constexpr double kUnlitPx = 100;    // residual of a point that the light does not reach
-constexpr double kPoorShare = 0.1;  // of the radius: a wrong lobe or 1 px of noise leave less, a wrong start leaves more
-constexpr double kSettled = 1e-9;   // change of the unit vector L and of log m between reweightings
+constexpr double kSigmaOfMedian = 1.4826;  // standard deviation over median absolute deviation of a normal distribution
+constexpr double kUnlitPx = 100;           // residual of a point that the light does not reach
+constexpr double kPoorShare = 0.1;         // of the radius: a wrong lobe or 1 px of noise leave less, a wrong start leaves more
+constexpr double kSettled = 1e-9;          // change of the unit vector L and of log m between reweightings
 
 using Dual = ceres::Jet<double, 5>;  // derivatives by L (4) and log m
 using Parameters = Eigen::Matrix<double, 5, 1>;
@@ -52,6 +54,8 @@ struct Evidence {
   Stencil measured, foot;
   double offsetPx = 0;       ///< from foot to measured, positive away from the peak
   double pixelsPerUnit = 1;  ///< 1 / |d g / d pixel| at the foot
+  double curvature = 0;      ///< of the contour there, 1/px
+  double biasPx = 0;         ///< expected distance of a measured pixel outside the contour, see unbias
 };
 
 /// A frame's maximum under the light of the moment.
@@ -75,6 +79,14 @@ std::optional<Stencil> look(const RadianceView& view, const Pixel& p, const Eige
                             up = seen(p - Pixel(0, kStepPx)), down = seen(p + Pixel(0, kStepPx));
   if (!at || !left || !right || !up || !down) return std::nullopt;
   return Stencil{*at, *left, *right, *up, *down};
+}
+
+/// Curvature of an ellipse in the direction of a pixel from its centre, 1/px.
+double curvatureAt(const Ellipse& e, const Pixel& p) {
+  const double a = e.semiAxes.x(), b = e.semiAxes.y();
+  const Eigen::Vector2d d = Eigen::Rotation2Dd(-e.angle) * (p - e.centre);
+  const double t = std::atan2(d.y() / b, d.x() / a);
+  return a * b / std::pow(std::hypot(a * std::sin(t), b * std::cos(t)), 3);
 }
 
 template <class T>
@@ -172,7 +184,11 @@ class Problem {
     return {(root(e, s.right, at) - root(e, s.left, at)) / (2 * kStepPx),
             (root(e, s.down, at) - root(e, s.up, at)) / (2 * kStepPx)};
   }
+  double residual(const Evidence& e, const Parameters& at) const {
+    return e.offsetPx - e.biasPx + e.pixelsPerUnit * (root(e, e.foot.at, at) - e.level);
+  }
   void relinearise(const Parameters& at, bool moveFeet);
+  void unbias(const Parameters& at);
   void toFoot(Evidence& e, const Parameters& at) const;
   double robustCost(const Parameters& at) const;
 
@@ -210,7 +226,8 @@ class RootCost : public ceres::SizedCostFunction<1, 4, 1> {
     const auto here = logRadianceAt<Dual>(problem_.lobe(), e_.foot.at, light, roughness);
     const auto top = logRadianceAt<Dual>(problem_.lobe(), *peak, light, roughness);
     if (!here || !top) return std::nullopt;
-    const Dual residual = (rootOf(*top - *here, e_.level) - Dual(e_.level)) * Dual(e_.pixelsPerUnit) + Dual(e_.offsetPx);
+    const Dual residual =
+        (rootOf(*top - *here, e_.level) - Dual(e_.level)) * Dual(e_.pixelsPerUnit) + Dual(e_.offsetPx - e_.biasPx);
     if (!std::isfinite(residual.a) || !residual.v.allFinite()) return std::nullopt;
     return residual;
   }
@@ -261,7 +278,7 @@ void Problem::relinearise(const Parameters& at, bool moveFeet) {
   slopes.reserve(points_.size());
   for (Evidence& e : points_) {
     e.foot = e.measured;
-    e.offsetPx = 0;
+    e.offsetPx = e.biasPx = 0;
     if (moveFeet) toFoot(e, at);
     const double slope = gradient(e, e.foot, at).norm();
     slopes.push_back(std::isfinite(slope) ? slope : 0);
@@ -271,12 +288,32 @@ void Problem::relinearise(const Parameters& at, bool moveFeet) {
   // Where the field hardly changes over the image (a start far off) a pixel must not weigh without bound.
   const double floor = std::max(0.05 * sorted[sorted.size() / 2], 1e-12);
   for (std::size_t i = 0; i < points_.size(); ++i) points_[i].pixelsPerUnit = 1 / std::max(slopes[i], floor);
+  if (moveFeet) unbias(at);
+}
+
+/// Independent noise of sigma px per coordinate puts pixels on average sigma^2 / 2 times the curvature outside a convex contour:
+/// along the contour it leads off the curve, always to the same side. Sigma is the robust spread of the residuals. Contours whose
+/// error is along their normal only have no such bias; their sigma is far below a pixel and the correction with it.
+/// @see Kanatani and Rangarajan, Hyper least squares fitting of circles and ellipses, CSDA 2011 (the second-order bias).
+void Problem::unbias(const Parameters& at) {
+  std::vector<double> sizes;
+  sizes.reserve(points_.size());
+  for (Evidence& e : points_) {
+    e.biasPx = 0;
+    const double r = std::abs(residual(e, at));
+    if (std::isfinite(r)) sizes.push_back(r);
+  }
+  if (sizes.empty()) return;
+  std::nth_element(sizes.begin(), sizes.begin() + sizes.size() / 2, sizes.end());
+  const double sigma = kSigmaOfMedian * sizes[sizes.size() / 2];
+  // Beyond a radius of curvature the expansion in sigma says nothing more.
+  for (Evidence& e : points_) e.biasPx = 0.5 * sigma * std::min(1.0, sigma * e.curvature);
 }
 
 double Problem::robustCost(const Parameters& at) const {
   double sum = 0;
   for (const Evidence& e : points_) {
-    const double plain = std::abs(e.offsetPx + e.pixelsPerUnit * (root(e, e.foot.at, at) - e.level)), k = options_.robustPx;
+    const double plain = std::abs(residual(e, at)), k = options_.robustPx;
     const double r = std::isfinite(plain) ? plain : kUnlitPx;
     sum += r <= k ? r * r : k * (2 * r - k);
   }
@@ -421,6 +458,7 @@ Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& vie
                                           : view.contour;
     offered += pixels.size();
     radiusPx += std::sqrt(std::abs(signedArea(Polyline{view.contour, true})) / M_PI) / double(views.size());
+    const Outcome<Ellipse> ellipse = fitEllipse(pixels);
     for (const Pixel& p : pixels) {
       // Where the surface ends the contour is its edge, not a level set.
       const std::optional<Stencil> at = look(view, p, Eigen::Vector3d::Zero(), 1);
@@ -431,6 +469,7 @@ Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& vie
       e.level = std::sqrt(-std::log(view.level));
       e.observed = p;
       e.measured = *at;
+      if (ellipse) e.curvature = curvatureAt(*ellipse, p);
       origin += at->at.position;
       scale += (view.camera.centreInWorld() - at->at.position).norm();
       points.push_back(std::move(e));

@@ -23,7 +23,7 @@ struct RadianceFitOptions {
   int pointsPerView = 72;  ///< contour points used, equally spaced in arc length
   double robustPx = 1.0;   ///< scale of the Huber loss, px
   int maxIterations = 100;
-  bool otherStarts = true;           ///< try other distances and widths when the first guess converges badly
+  bool otherStarts = true;  ///< try other distances and widths when the first guess converges badly
 };
 
 struct RadianceFit {
@@ -35,7 +35,7 @@ struct RadianceFit {
   double rmsPx = 0;
   double cost = 0;                 ///< robust sum of squares, px^2: lobes are compared by it
   std::vector<double> residualPx;  ///< per view, RMS
-  bool poor = false;                 ///< residuals are large against the contours: a wrong lobe, or a minimum that is not the best
+  bool poor = false;               ///< residuals are large against the contours: a wrong lobe, or a minimum that is not the best
   int points = 0, iterations = 0;
 };
 

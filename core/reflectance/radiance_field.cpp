@@ -27,7 +27,7 @@ RadianceField::RadianceField(const Surface& surface, const Camera& camera, Lobe 
   farAway_ = std::isfinite(size) ? 2 * size : 0;
 }
 
-std::optional<double> RadianceField::at(const SurfacePoint& p) const {
+std::optional<double> RadianceField::at(const SurfacePoint& p, double floor) const {
   const Eigen::Vector4d& lw = light_.homogeneous();
   const Eigen::Vector3d offset = lw.head<3>() - lw.w() * p.position;
   const double distance = offset.norm(), seen = (eye_ - p.position).norm();
@@ -35,13 +35,14 @@ std::optional<double> RadianceField::at(const SurfacePoint& p) const {
   const Eigen::Vector3d toLight = offset / distance;
   const auto log = logRadiance(lobe_, roughness_, p.normal, toLight, (eye_ - p.position) / seen);
   if (!log) return std::nullopt;
+  const double total = log->total() - 2 * std::log(distance);
+  if (!std::isfinite(total)) return std::nullopt;
+  if (total < floor) return total;
   // An unbounded surface has no size of its own: the camera's distance stands for it.
   const double far = farAway_ > 0 ? farAway_ + seen : 1e3 * seen;
   const bool finite = !light_.atInfinity() && light_.position().allFinite();
   const Eigen::Vector3d target = finite ? light_.position() : Eigen::Vector3d(p.position + far * toLight);
-  if (surface_.occluded(p, target)) return std::nullopt;
-  const double total = log->total() - 2 * std::log(distance);
-  return std::isfinite(total) ? std::optional<double>(total) : std::nullopt;
+  return surface_.occluded(p, target) ? std::nullopt : std::optional<double>(total);
 }
 
 std::optional<SurfacePoint> RadianceField::visible(const Pixel& p) const {
@@ -139,7 +140,7 @@ std::vector<RadiancePeak> RadianceField::peaks(const std::vector<Pixel>& starts,
     for (const RadiancePeak& p : found) brightest = std::max(brightest, p.logRadiance);
     for (std::size_t i = 0; i < hits.size(); ++i) {
       if (!hits[i]) continue;
-      const std::optional<double> v = at(facing(*hits[i], eye_));
+      const std::optional<double> v = at(facing(*hits[i], eye_), brightest);
       if (!v || *v <= brightest) continue;
       brightest = *v;
       best = i;

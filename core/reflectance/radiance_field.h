@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -25,7 +26,8 @@ class RadianceField {
   RadianceField(const Surface& surface, const Camera& camera, Lobe lobe, double roughness, const Light& light);
 
   /// @param visible  a visible point, normal towards the camera.
-  std::optional<double> at(const SurfacePoint& visible) const;
+  /// `floor`: below it the value alone tells; the shadow ray, which costs more than all the rest, is left out.
+  std::optional<double> at(const SurfacePoint& visible, double floor = -std::numeric_limits<double>::infinity()) const;
   std::optional<double> at(const Pixel& idealPixel) const;
 
   /// The maximum that is reached uphill from a pixel: Newton's method where the field is smooth, a shrinking pattern search where
