@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
+#include "core/light/estimate.h"
 #include "core/model/level_set_prediction.h"
 #include "core/model/models.h"
 #include "core/reflectance/fit.h"
@@ -10,7 +12,59 @@
 namespace glint {
 namespace {
 
+constexpr int kAnglePoints = 36;    // of a contour, for the first guess of the roughness
 constexpr double kScanStepPx = 16;  // of the search for a maximum away from every mirror point
+
+/// Where the search starts: the light of the limit angle; where that model does not converge (wide lobes, grazing views), the
+/// closest point to the reflected peak rays, or their mean direction.
+std::optional<Light> firstLight(const FitInput& input) {
+  if (input.light) return input.light->light;
+  std::vector<ReflectedRay> rays;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const TrainingView& v : input.views) {
+    if (v.failure || !v.brightest) continue;
+    rays.push_back(reflectedRay(*v.brightest, v.camera));
+    mean += rays.back().direction;
+  }
+  if (const Outcome<Triangulation> t = triangulateLight(rays)) return t->light;
+  return mean.norm() > 1e-6 * double(rays.size()) ? std::optional<Light>(Light::towards(mean)) : std::nullopt;
+}
+
+/// Median of alpha over the contour points that the light reaches.
+std::optional<double> medianAngle(const std::vector<RadianceView>& views, const Light& light) {
+  std::vector<double> angles;
+  for (const RadianceView& v : views) {
+    const Eigen::Vector3d eye = v.camera.centreInWorld();
+    for (const Pixel& p : resample(Polyline{v.contour, true}, kAnglePoints)) {
+      const Outcome<SurfacePoint> hit = v.surface->firstHit(v.camera.ray(p));
+      if (!hit) continue;
+      const SurfacePoint s = facing(*hit, eye);
+      const Eigen::Vector3d toLight = light.directionFrom(s.position);
+      if (s.normal.dot(toLight) > 0) angles.push_back(incidentAngle(s.normal, toLight, (eye - s.position).normalized()));
+    }
+  }
+  if (angles.empty()) return std::nullopt;
+  std::nth_element(angles.begin(), angles.begin() + angles.size() / 2, angles.end());
+  return angles[angles.size() / 2];
+}
+
+/// The lobe of the smallest residual; each starts from the best one so far. Where none explains the contours, the first is tried
+/// again from many starts, and the others follow it.
+Outcome<RadianceFit> bestOf(const std::vector<Lobe>& lobes, const std::vector<RadianceView>& views, const Light& light,
+                            double roughness, RadianceFitOptions options) {
+  Outcome<RadianceFit> best = Failure{Reason::NotConverged, ""};
+  for (const bool again : {false, true}) {
+    for (const Lobe lobe : lobes) {
+      options.otherStarts = again && lobe == lobes.front();
+      const bool follow = best && (again || !best->poor);
+      Outcome<RadianceFit> f =
+          fitRadiance(lobe, views, follow ? best->light : light, follow ? best->roughness : roughness, options);
+      if (!best || (f && f->cost < best->cost)) best = std::move(f);
+    }
+    if (best && !best->poor) break;
+  }
+  return best;
+}
 
 class Reflectance final : public HighlightModel {
  public:
@@ -24,8 +78,6 @@ class Reflectance final : public HighlightModel {
   bool needsCanonicalContours() const override { return false; }
 
   Outcome<ModelFit> fit(const FitInput& input, const Settings& settings) const override {
-    if (!input.light) return input.lightFailure ? *input.lightFailure : Failure{Reason::NoLight, ""};
-    if (!(input.light->limitAngle > 0)) return Failure{Reason::TooFewPoints, "no contour point on the surface"};
     ModelFit fit;
     std::vector<RadianceView> views;
     for (const TrainingView& v : input.views) {
@@ -39,29 +91,29 @@ class Reflectance final : public HighlightModel {
     RadianceFitOptions options;
     options.pointsPerView = settings.integer("light.bundle_points");
     options.robustPx = settings.number("light.robust_px");
-    // The width at which a Gaussian lobe falls to the level at the limit angle.
-    const double roughness = std::tan(input.light->limitAngle) / std::sqrt(-std::log(level));
-    std::vector<Lobe> lobes;
-    if (const std::string& name = settings.text("fit.lobe"); name != "auto")
-      lobes = {*lobeOf(name)};
-    else
-      lobes = {Lobe::TorranceSparrow, Lobe::Ggx, Lobe::BlinnPhong, Lobe::Phong};
-    std::optional<RadianceFit> best;
-    std::optional<Failure> failure;
-    // Other starts are many fits: only where no lobe explains the contours from the first guess.
-    for (const bool otherStarts : {false, true}) {
-      options.otherStarts = otherStarts;
-      for (const Lobe lobe : lobes) {
-        const Outcome<RadianceFit> f = fitRadiance(lobe, views, input.light->light, roughness, options);
-        if (!f) {
-          if (!failure) failure = f.failure();
-        } else if (!best || f->cost < best->cost) {
-          best = *f;
-        }
-      }
-      if (best && !best->poor) break;
+    const std::optional<Light> light = firstLight(input);
+    if (!light) return input.lightFailure ? *input.lightFailure : Failure{Reason::NoLight, ""};
+    const std::optional<double> alpha = medianAngle(views, *light);
+    if (!alpha) return Failure{Reason::PeakOffSurface, "no contour point hits the lit surface"};
+    // The width at which a Gaussian lobe falls to the level at that angle.
+    const double roughness = std::clamp(std::tan(*alpha) / std::sqrt(-std::log(level)), 1e-4, 1.0);
+    std::vector<Lobe> lobes{Lobe::TorranceSparrow, Lobe::Ggx, Lobe::BlinnPhong, Lobe::Phong};
+    const std::string& name = settings.text("fit.lobe");
+    if (name != "auto") lobes = {*lobeOf(name)};
+    Outcome<RadianceFit> best = bestOf(lobes, views, *light, roughness, options);
+    if (name != "auto" && (!best || best->poor)) {
+      // Another lobe may find the way from the first guess; from its light the lobe asked for starts close.
+      const Lobe other = lobes[0] == Lobe::TorranceSparrow ? Lobe::BlinnPhong : Lobe::TorranceSparrow;
+      if (const Outcome<RadianceFit> guide = bestOf({other}, views, *light, roughness, options); guide && !guide->poor)
+        if (Outcome<RadianceFit> again = bestOf(lobes, views, guide->light, guide->roughness, options); again && !again->poor)
+          best = std::move(again);
     }
-    if (!best) return *failure;
+    if (!best) return best.failure();
+    if (best->poor) {
+      char detail[80];
+      std::snprintf(detail, sizeof detail, "no light and roughness explain the contours: %.3g px remain", best->rmsPx);
+      return Failure{Reason::NotConverged, detail};
+    }
     fit.lightEstimate = best->light;
     if (!best->light.atInfinity() && best->positionCovariance.allFinite()) fit.lightCovariance = best->positionCovariance;
     fit.roughness = best->roughness;
@@ -69,7 +121,7 @@ class Reflectance final : public HighlightModel {
     fit.level = level;
     fit.residualPx = best->residualPx;
     fit.solver = "contours";
-    fit.condition = input.light->condition;
+    if (input.light) fit.condition = input.light->condition;
     return fit;
   }
 

@@ -1,0 +1,176 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Writes docs/reflectance.md: the lobes of the reflectance model on the same sequences, right and wrong.
+
+Every number comes from a run of `glint synth` and `glint evaluate` here. Exact sequences are contours of one lobe at level 0.5 on an
+analytic surface; path-traced ones are SHARED/data/cycles (a Beckmann lobe), read where they are there.
+"""
+import argparse
+import json
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+
+LOBES = ["torrance-sparrow", "ggx", "blinn-phong", "phong"]
+CAMERA = {"width": 640, "height": 480, "fx": 800, "fy": 800, "cx": 319.5, "cy": 239.5}
+
+# Geometry: incidence follows from the orbit and the lamp; the table prints what the frames really have.
+GEOMETRIES = {
+    "frontal (sphere)": {
+        "surfaces": {"body": {"analytic": {"type": "sphere", "radius": 0.4}}},
+        "lights": [{"id": "lamp", "position": [1.1, -1.2, 1.5]}],
+        "path": {"orbit": {"centre": [0, 0, 0], "radius": 1.7, "from": -1.5, "to": 0.3, "height": 1.0, "count": 12}},
+    },
+    "grazing (bent sheet)": {
+        "surfaces": {"body": {"analytic": {"type": "sheet", "curvature": 0.5}}},
+        "lights": [{"id": "lamp", "position": [-0.2, 1.9, 0.55]}],
+        "path": {"orbit": {"centre": [0, 0, 0], "radius": 1.9, "from": -1.85, "to": -1.25, "height": 0.5, "count": 12}},
+    },
+}
+WIDTHS = {"narrow, m = 0.05": 0.05, "wide, m = 0.2": 0.2}
+
+
+def fail(message):
+    print(message, file=sys.stderr)
+    sys.exit(1)
+
+
+def evaluate(glint, scene, models, train, settings=(), extra=()):
+    command = [glint, "evaluate", str(scene), "--models", models, "--train", train, "--json", "-", *extra]
+    for s in settings:
+        command += ["--set", s]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode not in (0, 3) or not done.stdout.strip().startswith("{"):
+        fail(f"{' '.join(command)}: {done.stderr.strip()}")
+    return json.loads(done.stdout)["models"]
+
+
+def percent(value):
+    if value is None:
+        return "–"
+    return f"{value:.4f}" if value < 0.1 else f"{value:.3f}" if value < 1 else f"{value:.2f}"
+
+
+def cell(model):
+    """Mean error; a mark where a frame has no answer or a highlight is unmatched."""
+    if model["status"] != "ok":
+        return model["reason"].split(":")[0]
+    s = model["summary"]
+    whole = s["predicted"] == s["frames"] and s["missed"] == 0 and s["spurious"] == 0
+    mean = s["contour_error_pct"]["mean"]
+    return "–" if mean is None else percent(mean) + ("" if whole else f" ({s['predicted']}/{s['frames']}, {s['missed']} missed)")
+
+
+def table(header, rows):
+    return "\n".join(["| " + " | ".join(header) + " |", "|" + " --- |" * len(header)] + ["| " + " | ".join(r) + " |" for r in rows]) + "\n"
+
+
+def exact_table(glint, folder):
+    rows, right = [], 0
+    for geometry, parts in GEOMETRIES.items():
+        for width, m in WIDTHS.items():
+            for truth in LOBES:
+                name = f"{geometry.split()[0]}-{m}-{truth}"
+                spec = {"glint_scene": 1, "name": name, "units": "m", "camera": CAMERA, "contour": "radiance", "level": 0.5,
+                        "render": {"reflectance": truth, "roughness": m, "bits": 32}, **parts}
+                file = folder / (name + ".json")
+                file.write_text(json.dumps(spec))
+                done = subprocess.run([glint, "synth", str(file), "-o", str(folder / name)], capture_output=True, text=True)
+                if done.returncode:
+                    fail(done.stderr.strip())
+                scene = folder / name / "scene.json"
+                auto = evaluate(glint, scene, "limit-angle,reflectance", "first:6")
+                chosen = auto["reflectance"]["fits"][0].get("lobe", "–") if auto["reflectance"]["fits"] else "–"
+                right += chosen == truth
+                cells = [cell(evaluate(glint, scene, "reflectance", "first:6", [f"fit.lobe={l}"])["reflectance"]) for l in LOBES]
+                cells[LOBES.index(truth)] = "**" + cells[LOBES.index(truth)] + "**"
+                rows.append([geometry, width, truth, cell(auto["limit-angle"]), *cells, chosen])
+    header = ["view", "lobe's width", "true lobe", "limit-angle"] + LOBES + ["chosen by residual"]
+    return table(header, rows), right, len(rows)
+
+
+def cycles_table(glint, cycles):
+    rows = []
+    for name, scene, trains in [("sphere", "scene-analytic.json", ["first:6", "spread:6"]), ("sphere, mesh", "scene.json", ["first:6", "spread:6"]),
+                                ("plane_to_cylinder", "scene-analytic.json", ["0-5"]), ("plane_to_cylinder, mesh", "scene.json", ["0-5"]),
+                                ("vase, mesh", "scene.json", ["first:6", "spread:6"])]:
+        path = cycles / name.split(",")[0] / scene
+        for train in trains:
+            auto = evaluate(glint, path, "limit-angle,reflectance", train)
+            fit = auto["reflectance"]["fits"][0]
+            cells = [cell(evaluate(glint, path, "reflectance", train, [f"fit.lobe={l}"])["reflectance"]) for l in LOBES]
+            rows.append([name, train, cell(auto["limit-angle"]), *cells, fit["lobe"], f"{fit['roughness']:.5f}",
+                         f"{auto['reflectance']['summary']['iou']['mean']:.4f}"])
+    return table(["sequence", "training", "limit-angle"] + LOBES + ["chosen", "m", "mean IoU"], rows)
+
+
+def noise_table(glint, cycles, seeds):
+    rows = []
+    for train in ["first:6", "spread:6"]:
+        for models in ["limit-angle", "reflectance"]:
+            errors, lobes = [], {}
+            for seed in range(1, seeds + 1):
+                m = evaluate(glint, cycles / "sphere" / "scene-analytic.json", models, train, extra=["--noise-px", "1", "--seed", str(seed)])[models]
+                s = m["summary"]
+                if s["predicted"] != s["frames"] or s["missed"] or s["spurious"]:
+                    fail(f"noise seed {seed}, {train}: not every frame is answered")
+                errors.append(s["contour_error_pct"]["mean"])
+                lobe = m["fits"][0].get("lobe")
+                if lobe:
+                    lobes[lobe] = lobes.get(lobe, 0) + 1
+            errors.sort()
+            rows.append([train, models, percent(statistics.median(errors)), percent(errors[0]), percent(errors[-1]),
+                         ", ".join(f"{k} {v}" for k, v in sorted(lobes.items(), key=lambda kv: -kv[1])) or "–"])
+    return table(["training", "model", f"median of {seeds} seeds", "smallest", "largest", "lobes chosen"], rows)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--glint", default="build/release/bin/glint")
+    parser.add_argument("--shared", default="../shared", type=pathlib.Path)
+    parser.add_argument("--seeds", default=20, type=int)
+    parser.add_argument("-o", default="docs/reflectance.md", type=pathlib.Path)
+    arguments = parser.parse_args()
+    cycles = arguments.shared / "data" / "cycles"
+    with tempfile.TemporaryDirectory() as folder:
+        exact, right, scenes = exact_table(arguments.glint, pathlib.Path(folder))
+    text = f"""# Lobes compared: Phong, Blinn-Phong, Torrance-Sparrow, GGX
+
+The paper leaves the comparison of reflectance models as future work. Here it is, for the prediction of contours: the model `reflectance`
+(docs/method.md section 7) fitted with every lobe to the same contours, whether the lobe is the true one or not. Numbers are the mean
+contour error on held-out frames in percent of the highlight's equivalent diameter; a note in brackets says where not every highlight was
+answered. Written by:
+
+    python3 docs/make_reflectance.py --glint build/release/bin/glint --shared ../shared
+
+## Exact contours, first 6 of 12 frames train
+Contours are traced on the radiance itself, so what the true lobe (bold) leaves is the contours' own sagitta; what a wrong lobe leaves is the loss.
+The lobe of the smallest residual was the true one in {right} of {scenes} scenes.
+
+{exact}
+"""
+    if cycles.exists():
+        text += f"""## Path-traced frames (a Beckmann lobe, light of 1 cm radius)
+`torrance-sparrow` is the right lobe; `ggx` on these frames is the wrong one. The last columns are of the automatic choice.
+
+{cycles_table(arguments.glint, cycles)}
+## One pixel of noise on training contours (sphere, analytic)
+`--noise-px 1`: 72 points of every training contour and its peak; held-out contours stay clean; the lobe is chosen by the residual each time.
+
+{noise_table(arguments.glint, cycles, arguments.seeds)}"""
+    text += """
+## What to take from it
+- Near the mirror direction every lobe falls as exp(-theta^2 / m^2): on frontal views of narrow highlights a wrong lobe costs little, and
+  `limit-angle`, which has no lobe at all, is nearly as good.
+- At grazing incidence the lobes part: masking, 1 / cos(theta_V) and the off-specular shift move peak and contour. A model without these terms
+  (Blinn-Phong) keeps the bias of `limit-angle`; Phong, whose highlight is round around the mirror direction of the light, has another shape.
+- One level of one contour tells Beckmann from GGX by the contour's change over views, not by its tails: with noise of a pixel the residuals
+  of the two are nearly equal, either may be chosen, and the price of the wrong one is then below the noise's own.
+"""
+    arguments.o.write_text(text)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The reflectance model end to end on exact contours: fit, choice of the lobe, prediction of views that did not train.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/evaluate/metrics.h"
+#include "core/model/models.h"
+#include "tests/core/reflectance/radiance_views.h"
+
+namespace glint {
+namespace {
+
+using namespace test;
+
+/// Training contours have chords within 2e-3 px of the curve, on highlights 20 px wide and more: a few thousandths of a percent.
+constexpr double kPredictedPct = 0.01;
+
+/// A low camera over a bent sheet with the lamp opposite: up to 80 degrees of incidence, where the limit angle has no answer.
+Synthetic grazingScene(int n) {
+  Synthetic s;
+  s.surface = sheet(0.5);
+  s.light = lampAt({-0.2, 1.9, 0.55});
+  for (int i = 0; i < n; ++i) {
+    const double a = -1.85 + 0.6 * i / (n - 1);
+    s.cameras.push_back(lookAt({1.9 * std::cos(a), 1.9 * std::sin(a), 0.5}, {0, 0, 0}));
+  }
+  return s;
+}
+
+Highlight observed(const RadianceScene& s, const Camera& camera) {
+  ExactOptions options;
+  options.level = s.level;
+  const auto found = exactHighlights(*s.surface, camera, s.geometry.light, s.material, options);
+  if (!found) throw std::runtime_error("exact highlight: " + found.failure().message());
+  Highlight h = found->front();
+  h.light = "lamp";
+  h.fromScene = true;
+  return h;
+}
+
+FitInput inputOf(const RadianceScene& s, int views) {
+  FitInput input;
+  for (int i = 0; i < views; ++i) {
+    FrameEvidence evidence;
+    evidence.frame = i;
+    evidence.highlights = {observed(s, s.geometry.cameras[i])};
+    input.views.push_back(trainingView(evidence, 0, s.geometry.cameras[i], s.surface));
+  }
+  if (const Outcome<LightEstimate> light = estimateLight(input.views, {}))
+    input.light = *light;
+  else
+    input.lightFailure = light.failure();
+  return input;
+}
+
+double errorPct(const RadianceScene& s, const ModelFit& fit, const Camera& camera) {
+  const Prediction p = modelByName("reflectance").predict(fit, camera, s.surface.get(), {});
+  if (p.highlights.size() != 1) return std::numeric_limits<double>::infinity();
+  const Highlight truth = observed(s, camera);
+  const PredictedHighlight& h = p.highlights.front();
+  EXPECT_EQ(h.coverage, 1);
+  return compareContours(truth.contour, h.contour, h.gaps, h.ellipse, truth.peak, h.brightest.pixel).contourErrorPct;
+}
+
+TEST(Reflectance, FindsTheLobeAndPredictsOtherViews) {
+  for (const Lobe lobe : {Lobe::TorranceSparrow, Lobe::Ggx}) {
+    const RadianceScene s = radianceScene(ellipsoidScene(8), lobe, 0.12);
+    const Outcome<ModelFit> fit = modelByName("reflectance").fit(inputOf(s, 6), {});
+    ASSERT_TRUE(fit) << fit.failure().message();
+    EXPECT_EQ(fit->lobe, nameOf(lobe));
+    EXPECT_NEAR(*fit->roughness, 0.12, 1e-4);
+    for (int i = 6; i < 8; ++i) EXPECT_LT(errorPct(s, *fit, s.geometry.cameras[i]), kPredictedPct) << nameOf(lobe) << " " << i;
+  }
+}
+
+// The light of the limit angle does not exist here: the peaks' rays must do as a start.
+TEST(Reflectance, AnswersAtGrazingIncidenceWhereTheLimitAngleDoesNot) {
+  const RadianceScene s = radianceScene(grazingScene(8), Lobe::TorranceSparrow, 0.2);
+  FitInput input = inputOf(s, 6);
+  input.light.reset();
+  input.lightFailure = Failure{Reason::NotConverged, "light bundle"};
+  const Outcome<ModelFit> fit = modelByName("reflectance").fit(input, {});
+  ASSERT_TRUE(fit) << fit.failure().message();
+  EXPECT_EQ(fit->lobe, "torrance-sparrow");
+  for (int i = 6; i < 8; ++i) EXPECT_LT(errorPct(s, *fit, s.geometry.cameras[i]), kPredictedPct) << i;
+}
+
+TEST(Reflectance, NoLightAndNoViewAreNamed) {
+  FitInput empty;
+  const Outcome<ModelFit> none = modelByName("reflectance").fit(empty, {});
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.failure().reason, Reason::TooFewViews);
+}
+
+// Contours that no light and roughness explain: the views' contours exchanged.
+TEST(Reflectance, ContoursThatNothingExplainsAreANamedFailure) {
+  const RadianceScene s = radianceScene(ellipsoidScene(6), Lobe::TorranceSparrow, 0.12);
+  FitInput input = inputOf(s, 6);
+  for (int i = 0; i < 3; ++i) {
+    const Pixel shift = input.views[5 - i].highlight.peak - input.views[i].highlight.peak;
+    for (Pixel& p : input.views[i].highlight.contour.points)
+      p = input.views[i].highlight.peak + 0.3 * shift + 3 * (p - input.views[i].highlight.peak);
+  }
+  const Outcome<ModelFit> fit = modelByName("reflectance").fit(input, {});
+  ASSERT_FALSE(fit);
+  EXPECT_TRUE(fit.failure().reason == Reason::NotConverged || fit.failure().reason == Reason::PeakOffSurface)
+      << fit.failure().message();
+}
+
+}  // namespace
+}  // namespace glint
