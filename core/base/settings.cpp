@@ -29,7 +29,7 @@ const std::vector<ParamSpec>& allParams() {
       {"light.bundle_points", "Bundle points", "", "", 72, 8, 720, 1, {},
        "Contour points per view in the bundle, equally spaced in arc length.", "light"},
       {"light.robust_px", "Robust scale", "", "px", 1.0, 0.01, 100.0, 0.1, {},
-       "Residuals beyond this scale count less (Cauchy loss).", "light"},
+       "Residuals beyond this scale count less (Huber loss).", "light"},
       {"fit.solver", "Ellipsoid solver", "", "", std::string("refined"), 0, 0, 0, {"linear", "anchored", "refined"},
        "Linear: smallest singular vector of s C* = P Q* P^T. Anchored: centre fixed at the light. Refined: contour distances with the light's covariance as prior.", "fit"},
       {"fit.prior_bias", "Centre bias", "", "", 0.0, 0.0, 10.0, 0.01, {},
@@ -50,6 +50,8 @@ const std::vector<ParamSpec>& allParams() {
        "Spacing of the scan that finds the components of a level set; vertices are then polished.", "predict"},
       {"predict.walk_tolerance", "Walk tolerance", "", "rad", 1e-10, 1e-15, 1e-3, 1e-10, {},
        "The walk along a direction ends when alpha is this close to the limit angle.", "fit"},
+      {"predict.band", "Uncertainty band", "", "", false, 0, 0, 0, {},
+       "Compute the standard deviation of every predicted contour point from the fit's covariance; it knows the noise only.", "predict"},
   };
   return params;
 }

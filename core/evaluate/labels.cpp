@@ -22,6 +22,10 @@ ordered_json highlightJson(const PredictedHighlight& h) {
   j["coverage"] = number(h.coverage);
   j["contour"] = ordered_json::array();
   for (const Pixel& p : h.contour.points) j["contour"].push_back(pixel(p));
+  if (!h.sigmaPx.empty()) {
+    j["sigma_px"] = ordered_json::array();
+    for (const double sigma : h.sigmaPx) j["sigma_px"].push_back(number(sigma));
+  }
   j["gaps"] = ordered_json::array();
   for (const auto& [from, to] : h.gaps) j["gaps"].push_back({from, to});
   if (h.ellipse)

@@ -37,8 +37,7 @@ double angle(const Seen& s, const Eigen::Vector4d& light) {
   return incidentAngle(s.normal, towards(s, light).normalized(), s.toCamera);
 }
 
-/// (alpha - alpha_lim) in pixels, with d alpha / d L in closed form: d alpha = -t . dL / |L + V|, t the unit vector across H
-/// towards N. The light is (l, w), or l alone where it is held at infinity.
+/// (alpha - alpha_lim) in pixels, with d alpha / d L in closed form. The light is (l, w), or l alone where it is held at infinity.
 class AngleCost : public ceres::CostFunction {
  public:
   AngleCost(const Evidence& evidence, bool atInfinity) : evidence_(evidence), size_(atInfinity ? 3 : 4) {
@@ -60,10 +59,8 @@ class AngleCost : public ceres::CostFunction {
     residuals[0] = k * (std::atan2(sine, cosine) - parameters[1][0]);
     if (!jacobians) return true;
     if (jacobians[0]) {
-      const Eigen::Vector3d t = sine > 0 ? Eigen::Vector3d((s.normal - cosine * h) / sine) : Eigen::Vector3d::Zero();
-      const Eigen::Vector3d byLight = -(k * sign / (length * distance)) * (t - toLight * toLight.dot(t));
-      for (int i = 0; i < 3; ++i) jacobians[0][i] = byLight(i);
-      if (size_ == 4) jacobians[0][3] = -byLight.dot(s.position);
+      const Eigen::Vector4d byLight = k * incidentAngleByLight(s.position, s.normal, s.toCamera, light);
+      for (int i = 0; i < size_; ++i) jacobians[0][i] = byLight(i);
     }
     if (jacobians[1]) jacobians[1][0] = -k;
     return true;
@@ -177,7 +174,43 @@ Light inWorld(const Eigen::Vector4d& light, const Eigen::Vector3d& origin, doubl
   return Light::homogeneous(world);
 }
 
-void setCovariance(const std::vector<Evidence>& points, const Attempt& a, double variance, double scale, Bundle& bundle) {
+/// Variance factor of the estimate: cov = factor (J^T J)^-1 for a Huber loss with held scale. It is Huber's
+/// K^2 (sum psi^2 / (n - p)) / (mean psi')^2, times the inflation 1 + 2 sum rho_k of residuals that are correlated along their
+/// contour (a detected contour, or a model that does not quite fit): then n points tell less than n.
+/// @see Huber, Robust Regression: Asymptotics, Conjectures and Monte Carlo, 1973, eq. 6.11.
+struct Spread {
+  double factor = 0, noisePx = 0, degreesOfFreedom = 0;
+};
+Spread spreadOf(const std::vector<Evidence>& points, const Attempt& a, int parameters, double scale) {
+  const double n = double(points.size()), free = std::max(1.0, n - parameters);
+  std::vector<double> psi, absolute;
+  double squares = 0, inliers = 0;
+  for (const Evidence& e : points) {
+    const double r = e.pixelsPerRadian * (angle(e.at, a.light) - a.limit);
+    psi.push_back(std::clamp(r, -scale, scale));
+    absolute.push_back(std::abs(r));
+    squares += psi.back() * psi.back();
+    inliers += std::abs(r) <= scale;
+  }
+  Spread spread;
+  spread.noisePx = 1.4826 * median(absolute) * std::sqrt(n / free);  // the median of |x| of a unit normal is 1 / 1.4826
+  const double slope = std::max(inliers, 1.0) / n, k = 1 + parameters / n * (1 - slope) / slope;
+  double inflation = 1;
+  const double noticed = 2 / std::sqrt(n);  // an autocorrelation of white residuals stays below this
+  for (int lag = 1; squares > 0 && lag <= int(n) / 2; ++lag) {
+    double sum = 0;
+    for (std::size_t i = 0; i + lag < points.size(); ++i)
+      if (points[i].view == points[i + lag].view) sum += psi[i] * psi[i + lag];
+    if (!(sum / squares > noticed)) break;
+    inflation += 2 * sum / squares;
+  }
+  spread.factor = inflation * k * k * squares / free / (slope * slope);
+  spread.degreesOfFreedom = std::max(1.0, free / inflation);
+  return spread;
+}
+
+void setCovariance(const std::vector<Evidence>& points, const Attempt& a, const Eigen::Vector3d& origin, double scale, double robustPx,
+                   Bundle& bundle) {
   const double infinity = std::numeric_limits<double>::infinity();
   const bool atInfinity = a.light.w() == 0;
   Eigen::Matrix<double, 4, 3, Eigen::RowMajor> chart;  // ambient from tangent coordinates of L
@@ -198,21 +231,35 @@ void setCovariance(const std::vector<Evidence>& points, const Attempt& a, double
                                 .topRows<4>()
                                 .triangularView<Eigen::Upper>();
   const Eigen::JacobiSVD<Eigen::Matrix4d> svd(r, Eigen::ComputeFullV);
+  const Spread spread = spreadOf(points, a, 4, robustPx);
   bundle.positionCovariance = infinity * Eigen::Matrix3d::Identity();
   if (!(svd.singularValues()(3) > 1e-14 * svd.singularValues()(0))) {
     bundle.covariance = Eigen::Matrix4d::Zero();
     bundle.covariance.diagonal().setConstant(infinity);
   } else {
-    const Eigen::Matrix4d root = svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();
-    bundle.covariance = variance * (root * root.transpose());
+    const Eigen::Matrix4d root = std::sqrt(spread.factor) * svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();
+    bundle.covariance = root * root.transpose();
     if (!atInfinity) {
       const double w = a.light.w();
       Eigen::Matrix<double, 3, 4> position;  // d(l / w)
       position << Eigen::Matrix3d::Identity() / w, -a.light.head<3>() / (w * w);
       const Eigen::Matrix<double, 3, 4> half = scale * position * chart * root.topRows<3>();
-      const Eigen::Matrix3d covariance = variance * (half * half.transpose());
+      const Eigen::Matrix3d covariance = half * half.transpose();
       if (covariance.allFinite()) bundle.positionCovariance = covariance;
     }
+    // In the world, with |L| = 1 again: d(y / |y|) = (I - u u^T) dy / |y|.
+    Eigen::Matrix4d toWorld = Eigen::Matrix4d::Identity();
+    toWorld.topLeftCorner<3, 3>() *= scale;
+    toWorld.topRightCorner<3, 1>() = origin;
+    const Eigen::Vector4d y = toWorld * a.light, u = y.normalized();
+    const Eigen::Matrix4d dy = toWorld * chart * root.topRows<3>();
+    ParameterUncertainty uncertainty;
+    uncertainty.root.resize(5, 4);
+    uncertainty.root.topRows<4>() = (dy - u * (u.transpose() * dy)) / y.norm();
+    uncertainty.root.row(4) = root.row(3);
+    uncertainty.noisePx = spread.noisePx;
+    uncertainty.degreesOfFreedom = spread.degreesOfFreedom;
+    if (uncertainty.root.allFinite()) bundle.uncertainty = std::move(uncertainty);
   }
   if (!bundle.positionCovariance.allFinite()) {  // inf * 0 left NaN beside the diagonal
     bundle.positionCovariance.setZero();
@@ -328,8 +375,7 @@ Outcome<Bundle> bundleLight(const std::vector<BundleView>& views, const Light& s
   bundle.rmsPx = std::sqrt(sum / points.size());
   for (std::size_t v = 0; v < views.size(); ++v)
     bundle.residualPx.push_back(counts[v] > 0 ? std::sqrt(sums[v] / counts[v]) : 0.0);
-  const double variance = sum / std::max<double>(1, double(points.size()) - 4);
-  setCovariance(points, best, variance, scale, bundle);
+  setCovariance(points, best, origin, scale, options.robustPx, bundle);
   return bundle;
 }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "core/base/uncertainty.h"
 #include "core/light/light.h"
 #include "core/surface/brightest_point.h"
 
@@ -50,6 +52,8 @@ struct Bundle {
   double rmsPx = 0;
   std::vector<double> residualPx;    ///< per view, RMS
   int iterations = 0;
+  /// Of (L homogeneous with |L| = 1 (4), limitAngle (1)), world. None when the contours leave a direction of L open.
+  std::optional<ParameterUncertainty> uncertainty;
 };
 
 /// Light and limit angle from whole contours (method.md section 4, `bundle`): minimises over (l, w) on the unit sphere, w >= 0,

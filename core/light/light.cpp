@@ -26,4 +26,20 @@ double incidentAngle(const Eigen::Vector3d& n, const Eigen::Vector3d& toLight, c
   return std::atan2(n.cross(h).norm(), n.dot(h));
 }
 
+Eigen::Vector4d incidentAngleByLight(const Eigen::Vector3d& point, const Eigen::Vector3d& n, const Eigen::Vector3d& toCamera,
+                                     const Eigen::Vector4d& light) {
+  const Eigen::Vector3d plain = light.head<3>() - light.w() * point;
+  const double sign = n.dot(plain) < 0 ? -1 : 1, distance = plain.norm();
+  const Eigen::Vector3d toLight = sign * plain / distance, half = toLight + toCamera;
+  const double length = half.norm();
+  const Eigen::Vector3d h = half / length;
+  const double sine = n.cross(h).norm(), cosine = n.dot(h);
+  Eigen::Vector4d gradient = Eigen::Vector4d::Zero();
+  if (!(distance > 0 && length > 0 && sine > 0)) return gradient;
+  const Eigen::Vector3d t = (n - cosine * h) / sine;
+  gradient.head<3>() = -(sign / (length * distance)) * (t - toLight * toLight.dot(t));
+  gradient.w() = -gradient.head<3>().dot(point);
+  return gradient;
+}
+
 }  // namespace glint

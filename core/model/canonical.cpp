@@ -4,6 +4,7 @@
 #include "core/model/fit_ellipsoid.h"
 #include "core/model/models.h"
 #include "core/model/star.h"
+#include "core/model/uncertainty.h"
 #include "core/surface/local_quadric.h"
 
 namespace glint {
@@ -37,6 +38,14 @@ class Canonical final : public HighlightModel {
     fit.lightCovariance = input.light->covariance;
     fit.limitAngle = input.light->limitAngle;
     fit.hints = hintsOf(input);
+    if (fit.uncertainty && input.light->uncertainty) {
+      // The light moves the prediction on its own as well. Taken as independent: the contours' noise enters both, through different residuals.
+      const Eigen::MatrixXd ellipsoid = fit.uncertainty->root, lamp = input.light->uncertainty->root.topRows(4);
+      Eigen::MatrixXd& root = fit.uncertainty->root;
+      root = Eigen::MatrixXd::Zero(13, ellipsoid.cols() + lamp.cols());
+      root.topLeftCorner(9, ellipsoid.cols()) = ellipsoid;
+      root.bottomRightCorner(4, lamp.cols()) = lamp;
+    }
     return fit;
   }
 
@@ -90,6 +99,11 @@ class Canonical final : public HighlightModel {
     dropEnclosed(p.highlights);
     if (!p.highlights.empty()) p.failure.reset();
     return p;
+  }
+
+  std::vector<double> bandSigmaPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera, const Surface* surface,
+                                  const Settings& settings) const override {
+    return ellipsoidBandSigmaPx(*this, fit, highlight, camera, surface, settings);
   }
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/model/fit_ellipsoid.h"
 #include "core/model/models.h"
+#include "core/model/uncertainty.h"
 
 namespace glint {
 namespace {
@@ -61,6 +62,11 @@ class Dual final : public HighlightModel {
     dropEnclosed(p.highlights);
     if (!p.highlights.empty()) p.failure.reset();
     return p;
+  }
+
+  std::vector<double> bandSigmaPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera, const Surface* surface,
+                                  const Settings& settings) const override {
+    return ellipsoidBandSigmaPx(*this, fit, highlight, camera, surface, settings);
   }
 };
 

@@ -161,6 +161,7 @@ void store(const Reconstruction& r, ModelFit& fit) {
   fit.condition = r.condition;
   fit.residualPx = r.residualPx;
   fit.solver = r.solver;
+  fit.uncertainty = r.uncertainty;
 }
 
 PredictedHighlight highlightFromEllipse(const Ellipse& ellipse, const BrightestPoint& brightest, int points) {

@@ -5,6 +5,7 @@
 #include "core/model/level_set_prediction.h"
 #include "core/model/models.h"
 #include "core/model/star.h"
+#include "core/model/uncertainty.h"
 
 namespace glint {
 namespace {
@@ -52,7 +53,28 @@ class LimitAngle final : public HighlightModel {
     fit.solver = input.light->solver;
     fit.condition = input.light->condition;
     fit.hints = hintsOf(input);
+    fit.uncertainty = input.light->uncertainty;
     return fit;
+  }
+
+  std::vector<double> bandSigmaPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera, const Surface* surface,
+                                  const Settings&) const override {
+    if (!surface || !fit.uncertainty || !fit.lightEstimate || !fit.limitAngle) return {};
+    const Light& light = *fit.lightEstimate;
+    const Eigen::Vector3d eye = camera.centreInWorld();
+    const PixelField field = [&](const Pixel& q) -> std::optional<double> {
+      const Outcome<SurfacePoint> hit = surface->firstHit(camera.ray(q));
+      return hit ? alphaAt(*hit, eye, light) : std::nullopt;
+    };
+    const ColumnSlopes slopes = [&](const Pixel& q) -> std::optional<Eigen::VectorXd> {
+      const Outcome<SurfacePoint> hit = surface->firstHit(camera.ray(q));
+      if (!hit) return std::nullopt;
+      const SurfacePoint p = facing(*hit, eye);
+      Eigen::VectorXd byParameters(5);
+      byParameters << incidentAngleByLight(p.position, p.normal, (eye - p.position).normalized(), light.homogeneous()), -1.0;
+      return fit.uncertainty->root.transpose() * byParameters;
+    };
+    return levelSetSigmaPx(highlight.contour.points, field, *fit.limitAngle, slopes);
   }
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {

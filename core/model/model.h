@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/settings.h"
+#include "core/base/uncertainty.h"
 #include "core/geometry/ellipsoid.h"
 #include "core/geometry/plane.h"
 #include "core/highlight/highlight.h"
@@ -54,6 +55,11 @@ struct LightEstimate {
   double condition = 0;                     ///< of the triangulation
   double rmsPx = 0;                         ///< of the bundle's residuals, 0 when triangulated
   std::string solver;                       ///< "triangulated" or "bundle"
+  /// Second moment of an extended light about `light`, m^2 (rad^2 for a light at infinity): widens the limit angle where the light
+  /// is long. None for a limit angle that is one constant.
+  std::optional<Eigen::Matrix3d> extent;
+  /// Of (L homogeneous with |L| = 1 (4), limit angle (1), then extent xx yy zz xy xz yz where there is one); bundle only.
+  std::optional<ParameterUncertainty> uncertainty;
 };
 
 /// What a fit may use. Views are of one light (and one surface, when models are per surface).
@@ -73,6 +79,7 @@ struct ModelFit {
   std::optional<Light> lightEstimate;
   std::optional<Eigen::Matrix3d> lightCovariance;  ///< m^2, of the position
   std::optional<double> limitAngle;         ///< rad
+  std::optional<Eigen::Matrix3d> extent;    ///< see LightEstimate
   std::optional<double> roughness;          ///< m of the lobe
   std::optional<std::string> lobe;          ///< name of the reflectance lobe, core/reflectance/lobe.h
   std::optional<double> level;              ///< fraction q of the peak at which the contour lies, for models that predict radiance
@@ -83,6 +90,9 @@ struct ModelFit {
   std::string solver;                       ///< "linear", "anchored", "refined", "bundle", ...
   std::vector<int> frames;                  ///< frames used
   std::vector<SurfacePoint> hints;          ///< brightest points of the views used, normals as observed; none where a frame showed several
+  /// limit-angle: as LightEstimate. primal, dual: of (centre (3), shape S xx yy zz xy xz yz (6)). canonical: those, then L
+  /// homogeneous (4). Other models say theirs.
+  std::optional<ParameterUncertainty> uncertainty;
   double timeUs = 0;
 };
 
@@ -96,6 +106,9 @@ struct PredictedHighlight {
   std::optional<CanonicalContour> canonical;///< directions with their ends on S and T
   double coverage = 1;                      ///< share of directions that gave a point
   std::optional<double> curvatureVariation; ///< predict.query = local-quadric only, see `curvatureVariation` in core/model/star.h
+  /// One per vertex of `contour`: standard deviation across the contour from the fit's uncertainty, px; 0 where the contour runs along
+  /// the surface's edge. Empty unless asked for (predict.band) and known.
+  std::vector<double> sigmaPx;
 };
 
 /// Prediction of one light in one view: zero or more highlights, or the reason for none.
@@ -120,6 +133,11 @@ class HighlightModel {
   /// @param surface  may be null for `primal`.
   virtual Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface,
                              const Settings& settings) const = 0;
+  /// PredictedHighlight::sigmaPx of a prediction of this fit. Empty where the fit has no uncertainty.
+  virtual std::vector<double> bandSigmaPx(const ModelFit&, const PredictedHighlight&, const Camera&, const Surface*,
+                                          const Settings&) const {
+    return {};
+  }
 };
 
 /// All models, from simple to rich. The only registration: one line each in registry.cpp.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/model/fit_ellipsoid.h"
 #include "core/model/models.h"
+#include "core/model/uncertainty.h"
 
 namespace glint {
 namespace {
@@ -47,6 +48,11 @@ class Primal final : public HighlightModel {
     brightest.point.normal = (camera.centreInWorld() - brightest.point.position).normalized();
     p.highlights.push_back(highlightFromEllipse(*e, brightest));
     return p;
+  }
+
+  std::vector<double> bandSigmaPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera, const Surface* surface,
+                                  const Settings& settings) const override {
+    return ellipsoidBandSigmaPx(*this, fit, highlight, camera, surface, settings);
   }
 };
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/uncertainty.h"
 #include "core/geometry/ellipsoid.h"
 #include "core/light/light.h"
 
@@ -31,6 +32,7 @@ struct Reconstruction {
   std::vector<double> residualPx;    ///< per view, RMS distance of the contour points to the outline
   std::string solver;                ///< "linear", "anchored", "refined"
   int iterations = 0;                ///< of the refinement
+  std::optional<ParameterUncertainty> uncertainty;  ///< of (centre (3), S xx yy zz xy xz yz (6)); `refined` only
   std::string brief() const;         ///< "4 views, gap 1.2e-4, worst 0.83 px (view 2)"
 };
 

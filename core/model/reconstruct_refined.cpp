@@ -181,6 +181,38 @@ struct Linearised {
   /// What the linear model says that the full step gains.
   double gain() const { return along.head(unknowns).squaredNorm(); }
 };
+
+/// Covariance at the solution. With H = J^T J + W^T W (contours and prior) the estimate moves by H^-1 (J^T noise + W^T e), e the
+/// prior's own unit errors; with [J; W] = Q R that is R^-1 Q^T diag(noise.., 1..), so no product of Jacobians is formed. The thickness
+/// of a flat ellipsoid that the contours hold at zero counts as fixed.
+std::optional<ParameterUncertainty> uncertaintyOf(const Rows& rows, const State& state, int unknowns, bool prior, double scale) {
+  const Eigen::Index data = rows.rows() - 3;  // the prior's rows come last, zero without one
+  const double free = double(data) + (prior ? 3 : 0) - unknowns;
+  if (data < 10 || !(free > 0)) return std::nullopt;
+  Eigen::MatrixXd jacobian = rows.leftCols<9>();
+  if (unknowns < 9) {
+    Step direction = Step::Zero();
+    direction.tail<6>() = state.thickness();
+    const Eigen::VectorXd column = jacobian * direction;
+    jacobian -= column * direction.transpose();
+  }
+  ParameterUncertainty u;
+  u.degreesOfFreedom = std::max(1.0, free);
+  u.noisePx = rows.col(9).head(data).norm() / std::sqrt(u.degreesOfFreedom);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(jacobian);
+  Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(rows.rows(), 9);
+  q.topRows(data) *= u.noisePx;
+  const Eigen::Matrix<double, 9, 9> spread = Eigen::HouseholderQR<Eigen::MatrixXd>(q).matrixQR().topRows<9>().triangularView<Eigen::Upper>();
+  const Eigen::Matrix<double, 9, 9> r = qr.matrixQR().topRows<9>().triangularView<Eigen::Upper>();
+  Eigen::JacobiSVD<Eigen::Matrix<double, 9, 9>> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  svd.setThreshold(kRankRatio);
+  u.root = svd.solve(Eigen::Matrix<double, 9, 9>(spread.transpose()));
+  u.root.topRows<3>() *= scale;
+  u.root.bottomRows<6>() *= scale * scale;
+  u.root.bottomRows<3>() /= std::sqrt(2.0);  // vech holds the off-diagonal entries times sqrt(2)
+  if (!u.root.allFinite()) return std::nullopt;
+  return u;
+}
 }  // namespace
 
 Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, const Ellipsoid& start,
@@ -260,6 +292,7 @@ Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, 
   result.ellipsoid = Ellipsoid(pose, scale * state.squares.cwiseSqrt());
   result.quadric = result.ellipsoid->dual();
   result.residualPx = detail::residuals(views, result);
+  if (contours.rows(state, rows)) result.uncertainty = uncertaintyOf(rows, state, linear.unknowns, prior.has_value(), scale);
   return result;
 }
 

@@ -292,6 +292,9 @@ void Run::predictionsAndComparisons() {
             const auto start = std::chrono::steady_clock::now();
             prediction = model.predict(*fit.fit, camera, surface.get(), r_.request.settings);
             prediction.timeUs = microsecondsSince(start);
+            if (r_.request.settings.flag("predict.band"))  // not part of the time: no model needs it
+              for (PredictedHighlight& h : prediction.highlights)
+                h.sigmaPx = model.bandSigmaPx(*fit.fit, h, camera, surface.get(), r_.request.settings);
           } else {
             prediction.failure = fit.failure;
           }

@@ -94,6 +94,7 @@ Outcome<LightEstimate> estimateLight(const std::vector<TrainingView>& views, con
     estimate.light = b->light;
     estimate.limitAngle = b->limitAngle;
     estimate.rmsPx = b->rmsPx;
+    estimate.uncertainty = b->uncertainty;
     estimate.covariance.reset();
     if (!b->light.atInfinity() && b->positionCovariance.allFinite()) estimate.covariance = b->positionCovariance;
     return estimate;

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+namespace glint {
+
+/// First-order uncertainty of estimated parameters: from the Jacobian at the solution (by QR, never by normal equations), scaled
+/// by the noise that the residuals show. It knows the noise only, not what a model gets wrong about the world.
+struct ParameterUncertainty {
+  Eigen::MatrixXd root;         ///< parameters x k; covariance = root root^T. Each column is a change of one standard deviation
+  double noisePx = 0;           ///< standard deviation of one contour point across the contour, estimated from the residuals
+  double degreesOfFreedom = 0;  ///< of that estimate
+};
+
+/// Half width, in standard deviations, of the interval that holds `coverage` of a Student distribution: 1.96 for 95 % and many
+/// degrees of freedom, more where few residuals tell the noise. std::invalid_argument unless 0 < coverage < 1 and dof > 0.
+double studentFactor(double coverage, double degreesOfFreedom);
+
+}  // namespace glint

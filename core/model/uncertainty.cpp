@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/model/uncertainty.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace glint {
+namespace {
+
+constexpr double kEdgePx = 0.5;       // a polished vertex lies on the level to 1e-9 px: farther off it is on the surface's edge
+constexpr double kColumnStep = 0.25;  // of a standard deviation: small for the derivative, far above the walk's tolerance
+
+/// Signed distance along `normal` from p to the nearest crossing of a polyline; 0 when the line through p misses it.
+double alongNormal(const Polyline& line, const Pixel& p, const Pixel& normal) {
+  double best = std::numeric_limits<double>::infinity();
+  const std::size_t n = line.points.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Pixel a = line.points[i] - p, b = line.points[(i + 1) % n] - p;
+    const double u = normal.x() * a.y() - normal.y() * a.x(), v = normal.x() * b.y() - normal.y() * b.x();
+    if ((u > 0) == (v > 0)) continue;
+    const double at = normal.dot(a + u / (u - v) * (b - a));
+    if (std::abs(at) < std::abs(best)) best = at;
+  }
+  return std::isfinite(best) ? best : 0;
+}
+
+/// Nearest positive semidefinite matrix.
+Eigen::Matrix3d semidefinite(const Eigen::Matrix3d& s) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(s);
+  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+}  // namespace
+
+std::vector<double> levelSetSigmaPx(const std::vector<Pixel>& points, const PixelField& field, double level, const ColumnSlopes& slopes,
+                                    double stepPx) {
+  require(stepPx > 0, "levelSetSigmaPx: stepPx");
+  std::vector<double> sigma(points.size(), 0.0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::optional<double> here = field(points[i]);
+    if (!here) continue;
+    const auto slope = [&](const Pixel& by) {
+      const std::optional<double> before = field(points[i] - by), after = field(points[i] + by);
+      if (!before && !after) return 0.0;
+      return (after.value_or(*here) - before.value_or(*here)) / ((before ? stepPx : 0) + (after ? stepPx : 0));
+    };
+    const double gradient = std::hypot(slope({stepPx, 0}), slope({0, stepPx}));
+    if (!(gradient > 0) || !(std::abs(*here - level) <= kEdgePx * gradient)) continue;
+    const std::optional<Eigen::VectorXd> change = slopes(points[i]);
+    if (change && change->allFinite()) sigma[i] = change->norm() / gradient;
+  }
+  return sigma;
+}
+
+std::vector<double> polylineSigmaPx(const Polyline& contour, const std::vector<std::pair<Polyline, Polyline>>& perturbed, double step) {
+  require(step > 0, "polylineSigmaPx: step");
+  const std::size_t n = contour.points.size();
+  std::vector<double> sigma(n, 0.0);
+  if (n < 3) return sigma;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Pixel tangent = contour.points[(i + 1) % n] - contour.points[(i + n - 1) % n];
+    const Pixel normal = Pixel(tangent.y(), -tangent.x()).normalized();
+    if (!normal.allFinite()) continue;
+    double sum = 0;
+    for (const auto& [plus, minus] : perturbed) {
+      double change;
+      if (plus.points.size() == n && minus.points.size() == n)
+        change = normal.dot(plus.points[i] - minus.points[i]);
+      else
+        change = alongNormal(plus, contour.points[i], normal) - alongNormal(minus, contour.points[i], normal);
+      sum += std::pow(change / (2 * step), 2);
+    }
+    if (std::isfinite(sum)) sigma[i] = std::sqrt(sum);
+  }
+  return sigma;
+}
+
+std::vector<double> ellipsoidBandSigmaPx(const HighlightModel& model, const ModelFit& fit, const PredictedHighlight& highlight,
+                                         const Camera& camera, const Surface* surface, const Settings& settings) {
+  if (!fit.uncertainty || !fit.ellipsoid || fit.uncertainty->root.rows() < 9) return {};
+  const Eigen::MatrixXd& root = fit.uncertainty->root;
+  const auto predicted = [&](const Eigen::VectorXd& change) -> std::optional<Polyline> {
+    const Eigen::Matrix<double, 6, 1> d = change.segment<6>(3);
+    const Eigen::Matrix3d shape =
+        fit.ellipsoid->shape() + Eigen::Matrix3d{{d(0), d(3), d(4)}, {d(3), d(1), d(5)}, {d(4), d(5), d(2)}};
+    const Outcome<Ellipsoid> moved = Ellipsoid::fromCentreAndShape(fit.ellipsoid->centre() + change.head<3>(), semidefinite(shape));
+    if (!moved) return std::nullopt;
+    ModelFit other = fit;
+    other.ellipsoid = *moved;
+    other.quadric = moved->dual();
+    if (fit.lightEstimate && change.size() >= 13)
+      other.lightEstimate = Light::homogeneous(fit.lightEstimate->homogeneous() + change.segment<4>(9));
+    const Prediction p = model.predict(other, camera, surface, settings);
+    const auto distance = [&](const PredictedHighlight& h) { return (h.brightest.pixel - highlight.brightest.pixel).norm(); };
+    const auto nearest = std::min_element(p.highlights.begin(), p.highlights.end(), [&](const PredictedHighlight& a, const PredictedHighlight& b) {
+      return distance(a) < distance(b);
+    });
+    if (nearest == p.highlights.end()) return std::nullopt;
+    return nearest->contour;
+  };
+  std::vector<std::pair<Polyline, Polyline>> perturbed;
+  for (Eigen::Index k = 0; k < root.cols(); ++k) {
+    std::optional<Polyline> plus = predicted(kColumnStep * root.col(k)), minus = predicted(-kColumnStep * root.col(k));
+    if (!plus || !minus) return {};  // the highlight would vanish or merge within the uncertainty: no band is honest
+    perturbed.emplace_back(std::move(*plus), std::move(*minus));
+  }
+  return polylineSigmaPx(highlight.contour, perturbed, kColumnStep);
+}
+
+}  // namespace glint
