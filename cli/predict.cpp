@@ -45,8 +45,8 @@ Command predictCommand() {
   c.summary = "Predict highlights with a saved session: contours, overlays, labels";
   c.description =
       "Opens a session, fits its models again and predicts the highlights of the frames asked for. With --out it writes\n"
-      "predictions.json (contours in ideal pixels, brightest points, coverage, failed directions with reasons), one overlay\n"
-      "PNG a frame, and labels_MODEL.json in COCO format for each model.";
+      "predictions.json (contours in ideal pixels with their standard deviations, brightest points, coverage, failed directions\n"
+      "with reasons), one overlay PNG a frame, and labels_MODEL.json in COCO format for each model.";
   c.examples =
       "  glint predict run.glint                       a table of all frames\n"
       "  glint predict run.glint --frames 6-20 --out predicted\n";
@@ -67,6 +67,7 @@ Command predictCommand() {
       for (int i = 0; i < static_cast<int>(scene.frames.size()); ++i) frames.push_back(i);
     InspectionRequest request = opened.session.request;
     if (!a->preset.empty()) applyPreset(opened.session, a->preset, request);
+    if (!a->out.empty() || !a->json.empty()) request.settings.set("predict.band", true);
     const Inspection result = inspect(opened.scene, request, context.progress());
     if (!a->out.empty()) {
       const std::filesystem::path folder = a->out;

@@ -26,6 +26,31 @@ std::string formatted(const char* format, double value) {
   return text;
 }
 
+/// Both borders of the 95 % band, where it is known and wide enough to be seen beside the contour.
+void addBand(const PredictedHighlight& highlight, const Camera& camera, const OverlayLine& style, std::vector<OverlayLine>& lines) {
+  constexpr double kFactor = 1.96;    // many degrees of freedom; the exact factor differs by less than a line's width
+  constexpr double kVisiblePx = 0.5;
+  const std::vector<Pixel>& p = highlight.contour.points;
+  const std::vector<double>& sigma = highlight.sigmaPx;
+  const std::size_t n = p.size();
+  if (n < 3 || sigma.size() != n || !(kFactor * *std::max_element(sigma.begin(), sigma.end()) >= kVisiblePx)) return;
+  for (const double side : {-kFactor, kFactor}) {
+    std::vector<Pixel> border;
+    for (std::size_t i = 0; i < n; ++i) {
+      const Pixel tangent = p[(i + 1) % n] - p[(i + n - 1) % n];
+      const double length = tangent.norm();
+      if (length > 0) border.push_back(p[i] + side * sigma[i] / length * Pixel(tangent.y(), -tangent.x()));
+    }
+    lines.push_back(style);
+    lines.back().points = toPhotograph(camera, border);
+    lines.back().closed = highlight.contour.closed;
+    lines.back().width = std::max(0.75, 0.4 * style.width);
+    lines.back().halo = false;
+    lines.back().dash = Dash::Dotted;
+    lines.back().label = style.label.empty() ? "" : style.label + ", 95 % band";
+  }
+}
+
 void addPrediction(const PredictedHighlight& highlight, const Camera& camera, const OverlayLine& style,
                    std::vector<OverlayLine>& lines) {
   for (const ContourRun& run : contourRuns(highlight)) {
@@ -38,6 +63,7 @@ void addPrediction(const PredictedHighlight& highlight, const Camera& camera, co
       line.width = std::max(1.0, style.width - 0.5);
     }
   }
+  addBand(highlight, camera, style, lines);
 }
 
 std::string scoreText(const std::string& model, const FrameScore& score) {

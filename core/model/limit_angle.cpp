@@ -62,19 +62,15 @@ class LimitAngle final : public HighlightModel {
     if (!surface || !fit.uncertainty || !fit.lightEstimate || !fit.limitAngle) return {};
     const Light& light = *fit.lightEstimate;
     const Eigen::Vector3d eye = camera.centreInWorld();
-    const PixelField field = [&](const Pixel& q) -> std::optional<double> {
-      const Outcome<SurfacePoint> hit = surface->firstHit(camera.ray(q));
-      return hit ? alphaAt(*hit, eye, light) : std::nullopt;
-    };
-    const ColumnSlopes slopes = [&](const Pixel& q) -> std::optional<Eigen::VectorXd> {
-      const Outcome<SurfacePoint> hit = surface->firstHit(camera.ray(q));
-      if (!hit) return std::nullopt;
-      const SurfacePoint p = facing(*hit, eye);
+    SurfaceField field;
+    field.value = [&](const SurfacePoint& at) { return alphaAt(at, eye, light); };
+    field.level = *fit.limitAngle;
+    const ColumnSlopes slopes = [&](const SurfacePoint& at) -> std::optional<Eigen::VectorXd> {
       Eigen::VectorXd byParameters(5);
-      byParameters << incidentAngleByLight(p.position, p.normal, (eye - p.position).normalized(), light.homogeneous()), -1.0;
+      byParameters << incidentAngleByLight(at.position, at.normal, (eye - at.position).normalized(), light.homogeneous()), -1.0;
       return fit.uncertainty->root.transpose() * byParameters;
     };
-    return levelSetSigmaPx(highlight.contour.points, field, *fit.limitAngle, slopes);
+    return levelSetSigmaPx(highlight.contour.points, field, camera, *surface, slopes);
   }
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {

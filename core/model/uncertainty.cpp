@@ -10,6 +10,7 @@ namespace glint {
 namespace {
 
 constexpr double kEdgePx = 0.5;       // a polished vertex lies on the level to 1e-9 px: farther off it is on the surface's edge
+constexpr double kStepPx = 0.5;      // of the image gradient
 constexpr double kColumnStep = 0.25;  // of a standard deviation: small for the derivative, far above the walk's tolerance
 
 /// Signed distance along `normal` from p to the nearest crossing of a polyline; 0 when the line through p misses it.
@@ -34,21 +35,30 @@ Eigen::Matrix3d semidefinite(const Eigen::Matrix3d& s) {
 
 }  // namespace
 
-std::vector<double> levelSetSigmaPx(const std::vector<Pixel>& points, const PixelField& field, double level, const ColumnSlopes& slopes,
-                                    double stepPx) {
-  require(stepPx > 0, "levelSetSigmaPx: stepPx");
+std::vector<double> levelSetSigmaPx(const std::vector<Pixel>& points, const SurfaceField& field, const Camera& camera,
+                                    const Surface& surface, const ColumnSlopes& slopes) {
+  const Eigen::Vector3d eye = camera.centreInWorld();
+  const auto seen = [&](const Pixel& p) -> std::optional<SurfacePoint> {
+    const Outcome<SurfacePoint> hit = surface.firstHit(camera.ray(p));
+    return hit ? std::optional<SurfacePoint>(facing(*hit, eye)) : std::nullopt;
+  };
+  const auto valueAt = [&](const Pixel& p) -> std::optional<double> {
+    const std::optional<SurfacePoint> at = seen(p);
+    return at ? field.value(*at) : std::nullopt;
+  };
   std::vector<double> sigma(points.size(), 0.0);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::optional<double> here = field(points[i]);
+    const std::optional<SurfacePoint> at = seen(points[i]);
+    const std::optional<double> here = at ? field.value(*at) : std::nullopt;
     if (!here) continue;
     const auto slope = [&](const Pixel& by) {
-      const std::optional<double> before = field(points[i] - by), after = field(points[i] + by);
+      const std::optional<double> before = valueAt(points[i] - by), after = valueAt(points[i] + by);
       if (!before && !after) return 0.0;
-      return (after.value_or(*here) - before.value_or(*here)) / ((before ? stepPx : 0) + (after ? stepPx : 0));
+      return (after.value_or(*here) - before.value_or(*here)) / ((before ? kStepPx : 0) + (after ? kStepPx : 0));
     };
-    const double gradient = std::hypot(slope({stepPx, 0}), slope({0, stepPx}));
-    if (!(gradient > 0) || !(std::abs(*here - level) <= kEdgePx * gradient)) continue;
-    const std::optional<Eigen::VectorXd> change = slopes(points[i]);
+    const double gradient = std::hypot(slope({kStepPx, 0}), slope({0, kStepPx}));
+    if (!(gradient > 0) || !(std::abs(*here - field.level) <= kEdgePx * gradient)) continue;
+    const std::optional<Eigen::VectorXd> change = slopes(*at);
     if (change && change->allFinite()) sigma[i] = change->norm() / gradient;
   }
   return sigma;
