@@ -188,7 +188,8 @@ TEST(RefinedUncertainty, AgreesWithTheSpreadOfNoisyFits) {
     EXPECT_NEAR(r->uncertainty->noisePx, 0.5, 0.1);
     EXPECT_EQ(r->uncertainty->degreesOfFreedom, 5 * 60 - 9);
     Parameters p;
-    p << r->ellipsoid->centre(), shapeFactor(*r->ellipsoid);
+    const Eigen::Matrix3d s = r->ellipsoid->shape();
+    p << r->ellipsoid->centre(), s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(0, 2), s(1, 2);
     found.push_back(p);
     expected += r->uncertainty->root.rowwise().squaredNorm() / kTrials;
   }
