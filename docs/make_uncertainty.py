@@ -73,14 +73,15 @@ The contours are exact level sets of the limit angle, so the model is right and 
 {table(exact, True)}
 ## Ellipsoids
 An ellipsoid is not exact on a curved surface, so here the truth is the same model's prediction from noise-free contours: the band is about noise alone and says nothing about
-the model's own error, which is usually larger ([accuracy.md](accuracy.md)). Light and ellipsoid are taken as independent although the same noise enters both, and the choice of the prior
-by leave-one-view-out may differ from trial to trial, which no first-order covariance sees.
+the model's own error, which is usually larger ([accuracy.md](accuracy.md)). Light and ellipsoid are taken as independent although the same noise enters both, and where the ellipsoid does not
+fit, its residuals are no noise: the shares below are measured, not promised.
 
 {table(fits, False)}
 ## What the band does not know
 - What the model gets wrong: an off-specular shift, an extended light, a surface or a pose that is off. Residuals that are correlated along a contour show some of that
   and widen the band; a bias that every training view shares stays invisible.
-- Second order: noise displaces a curved contour outwards on average by sigma^2 / (2 radius), and a light that is poorly determined moves the contour along a curve.
+- Second order: noise displaces a curved contour outwards on average by sigma^2 / (2 radius), which the bundle corrects for, but a light that is poorly
+  determined moves the contour along a curve.
 - Solvers without a Jacobian at the end (`linear`, `anchored`, `triangulated`) have no band.
 """
     if a.output == "-":

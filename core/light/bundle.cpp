@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/geometry/polyline.h"
+#include "core/light/directed_limit.h"
 #include "core/light/estimate.h"
 
 namespace glint {
@@ -26,7 +27,11 @@ struct Evidence {
   std::optional<Seen> left, right, up, down;  ///< of the pixels kStepPx away; empty where the surface ended
   int view = 0;
   double pixelsPerRadian = 1;  ///< 1 / |d alpha / d pixel| for the light of the last reweighting
+  double biasPx = 0;           ///< by how much noise displaces the residual on average, see unbias
 };
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+Eigen::Matrix3d symmetric(const Vector6& e) { return Eigen::Matrix3d{{e(0), e(3), e(4)}, {e(3), e(1), e(5)}, {e(4), e(5), e(2)}}; }
 
 /// Direction to the light with N.L > 0, not normalised.
 Eigen::Vector3d towards(const Seen& s, const Eigen::Vector4d& light) {
@@ -56,7 +61,7 @@ class AngleCost : public ceres::CostFunction {
     if (!(length > 0)) return false;
     const Eigen::Vector3d h = half / length;
     const double sine = s.normal.cross(h).norm(), cosine = s.normal.dot(h), k = evidence_.pixelsPerRadian;
-    residuals[0] = k * (std::atan2(sine, cosine) - parameters[1][0]);
+    residuals[0] = k * (std::atan2(sine, cosine) - parameters[1][0]) - evidence_.biasPx;
     if (!jacobians) return true;
     if (jacobians[0]) {
       const Eigen::Vector4d byLight = k * incidentAngleByLight(s.position, s.normal, s.toCamera, light);
@@ -76,7 +81,15 @@ struct Attempt {
   double limit = 0, cost = std::numeric_limits<double>::infinity();
   int iterations = 0;
   bool converged = false, behind = false;
+  bool directed = false;  ///< the limit angle has an extent
+  Vector6 extent = Vector6::Zero();
 };
+
+/// Signed distance of a point from the level set, px.
+double residual(const Evidence& e, const Attempt& a) {
+  const double limit = a.directed ? directedLimit(a.limit, symmetric(a.extent), e.at.position, e.at.normal, e.at.toCamera, a.light) : a.limit;
+  return e.pixelsPerRadian * (angle(e.at, a.light) - limit) - e.biasPx;
+}
 
 double median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
@@ -100,10 +113,26 @@ void reweight(std::vector<Evidence>& points, const Eigen::Vector4d& light) {
   for (std::size_t i = 0; i < points.size(); ++i) points[i].pixelsPerRadian = 1 / std::max(slopes[i], floor);
 }
 
+/// Noise moves a measured point along a contour that bends away from it: isotropic noise of variance s^2 displaces the residual by
+/// s^2 / 2 times the Laplacian of alpha on average, outwards. s is what the residuals show (their median, so that a few wild
+/// points do not count), and the correction is kept below s / 2: it fades where the contour is as small as the noise.
+void unbias(std::vector<Evidence>& points, const Attempt& a) {
+  std::vector<double> sizes;
+  for (const Evidence& e : points) sizes.push_back(std::abs(residual(e, a)));
+  const double sigma = 1.4826 * median(sizes);
+  for (Evidence& e : points) {
+    e.biasPx = 0;
+    if (!e.left || !e.right || !e.up || !e.down) continue;
+    const double laplacian = (angle(*e.left, a.light) + angle(*e.right, a.light) + angle(*e.up, a.light) + angle(*e.down, a.light) -
+                              4 * angle(e.at, a.light)) / (kStepPx * kStepPx);
+    e.biasPx = 0.5 * sigma * std::clamp(sigma * laplacian * e.pixelsPerRadian, -1.0, 1.0);
+  }
+}
+
 double robustCost(const std::vector<Evidence>& points, const Attempt& a, double scale) {
   double sum = 0;
   for (const Evidence& e : points) {
-    const double r = std::abs(e.pixelsPerRadian * (angle(e.at, a.light) - a.limit));
+    const double r = std::abs(residual(e, a));
     sum += r <= scale ? r * r : scale * (2 * r - scale);
   }
   return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
@@ -111,6 +140,7 @@ double robustCost(const std::vector<Evidence>& points, const Attempt& a, double 
 
 Attempt solve(std::vector<Evidence>& points, Eigen::Vector4d start, bool atInfinity, const BundleOptions& options) {
   Attempt a;
+  for (Evidence& e : points) e.biasPx = 0;
   if (atInfinity) start.w() = 0;
   a.light = start.normalized();
   std::vector<double> angles;
@@ -121,6 +151,7 @@ Attempt solve(std::vector<Evidence>& points, Eigen::Vector4d start, bool atInfin
     // The weights are held while the light moves. A residual whose own weight moves with the light gains by lights under which
     // the angle changes faster over the image; held weights leave no such reward, and the fixed point is reached in a few rounds.
     reweight(points, a.light);
+    if (round > 0) unbias(points, a);
     ceres::Problem::Options ownership;
     ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -167,6 +198,77 @@ Attempt solve(std::vector<Evidence>& points, Eigen::Vector4d start, bool atInfin
   return a;
 }
 
+/// Residual with an extent, over the light (4), the limit angle (1) and the extent (6).
+struct DirectedResidual {
+  const Evidence& evidence;
+  bool operator()(const double* light, const double* limit, const double* extent, double* out) const {
+    Attempt a;
+    a.directed = true;
+    a.light = Eigen::Map<const Eigen::Vector4d>(light);
+    a.limit = *limit;
+    a.extent = Eigen::Map<const Vector6>(extent);
+    if (!(a.limit > 0)) return false;
+    *out = residual(evidence, a);
+    return std::isfinite(*out);
+  }
+};
+using DirectedCost = ceres::NumericDiffCostFunction<DirectedResidual, ceres::CENTRAL, 1, 4, 1, 6>;
+
+/// One pixel's worth of reluctance against an extent that widens the limit angle by half: entries that the contours see win over it,
+/// those that no view shows stay zero.
+double extentPrior(const Attempt& a, const std::vector<Evidence>& points) {
+  double reach = 0;
+  for (const Evidence& e : points)
+    reach += a.light.w() > 0 ? (a.light.head<3>() / a.light.w() - e.at.position).norm() / double(points.size()) : 1.0 / double(points.size());
+  const double width = 2 * reach * a.limit;  // of the light that is seen under the limit angle: H turns half as much as L
+  return 1 / (width * width);
+}
+struct ExtentPrior {
+  double weight;
+  template <class T>
+  bool operator()(const T* extent, T* out) const {
+    for (int i = 0; i < 6; ++i) out[i] = T(weight * (i < 3 ? 1.0 : 1.4142135623730951)) * extent[i];
+    return true;
+  }
+};
+
+/// Goes on from a solution with one constant limit angle.
+Attempt directed(std::vector<Evidence>& points, const Attempt& start, const BundleOptions& options) {
+  Attempt a = start;
+  a.directed = true;
+  if (a.light.w() == 0) return start;  // a direction's extent would need its own chart; none of the inputs has such a light
+  const double prior = extentPrior(start, points);
+  for (int round = 0; round < kMaxReweightings; ++round) {
+    reweight(points, a.light);
+    unbias(points, a);
+    const Attempt before = a;
+    ceres::Problem problem;
+    for (const Evidence& e : points)
+      problem.AddResidualBlock(new DirectedCost(new DirectedResidual{e}), new ceres::HuberLoss(options.robustPx), a.light.data(), &a.limit,
+                               a.extent.data());
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<ExtentPrior, 6, 6>(new ExtentPrior{prior}), nullptr, a.extent.data());
+    problem.SetManifold(a.light.data(), new ceres::SphereManifold<4>());
+    ceres::Solver::Options solver;
+    solver.linear_solver_type = ceres::DENSE_QR;
+    solver.logging_type = ceres::SILENT;
+    solver.num_threads = 1;
+    solver.max_num_iterations = options.maxIterations;
+    solver.function_tolerance = 1e-10;
+    solver.parameter_tolerance = 1e-10;
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &problem, &summary);
+    a.iterations += std::max<int>(1, int(summary.iterations.size()) - 1);
+    if (!summary.IsSolutionUsable() || !a.light.allFinite() || !a.extent.allFinite() || !(a.limit > 0)) return start;
+    const double moved = std::max({(a.light - before.light).norm(), std::abs(a.limit - before.limit), (a.extent - before.extent).norm() * prior});
+    if (moved < 1e-7) break;
+  }
+  if (a.light.w() < 0) a.light = -a.light;
+  reweight(points, a.light);
+  unbias(points, a);
+  a.cost = robustCost(points, a, options.robustPx);
+  return a;
+}
+
 /// From (x - origin) / scale to world.
 Light inWorld(const Eigen::Vector4d& light, const Eigen::Vector3d& origin, double scale) {
   Eigen::Vector4d world;
@@ -186,7 +288,7 @@ Spread spreadOf(const std::vector<Evidence>& points, const Attempt& a, int param
   std::vector<double> psi, absolute;
   double squares = 0, inliers = 0;
   for (const Evidence& e : points) {
-    const double r = e.pixelsPerRadian * (angle(e.at, a.light) - a.limit);
+    const double r = residual(e, a);
     psi.push_back(std::clamp(r, -scale, scale));
     absolute.push_back(std::abs(r));
     squares += psi.back() * psi.back();
@@ -215,9 +317,22 @@ void setCovariance(const std::vector<Evidence>& points, const Attempt& a, const 
   const bool atInfinity = a.light.w() == 0;
   Eigen::Matrix<double, 4, 3, Eigen::RowMajor> chart;  // ambient from tangent coordinates of L
   ceres::SphereManifold<4>().PlusJacobian(a.light.data(), chart.data());
-  Eigen::Matrix<double, Eigen::Dynamic, 4> jacobian(std::max<std::size_t>(points.size(), 4), 4);
-  jacobian.setZero();
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  const Eigen::Index parameters = a.directed ? 10 : 4;
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(std::max<Eigen::Index>(points.size() + 6, parameters), parameters);
+  for (std::size_t i = 0; i < points.size() && a.directed; ++i) {
+    Eigen::RowVector4d byLight;
+    Eigen::Matrix<double, 1, 6> byExtent;
+    double value, byLimit;
+    const double* at[] = {a.light.data(), &a.limit, a.extent.data()};
+    double* blocks[] = {byLight.data(), &byLimit, byExtent.data()};
+    if (!DirectedCost(new DirectedResidual{points[i]}).Evaluate(at, &value, blocks)) continue;
+    jacobian.row(i) << byLight * chart, byLimit, byExtent;
+  }
+  const Spread spread = spreadOf(points, a, int(parameters), robustPx);
+  if (a.directed)  // its prior, in units of the noise
+    for (int i = 0; i < 6; ++i)
+      jacobian(points.size() + i, 4 + i) = std::sqrt(spread.factor) * extentPrior(a, points) * (i < 3 ? 1 : std::sqrt(2.0));
+  for (std::size_t i = 0; i < points.size() && !a.directed; ++i) {
     const AngleCost cost(points[i], false);
     Eigen::RowVector4d byLight;
     double residual, byLimit;
@@ -226,24 +341,20 @@ void setCovariance(const std::vector<Evidence>& points, const Attempt& a, const 
     if (!cost.Evaluate(parameters, &residual, blocks)) continue;
     jacobian.row(i) << byLight * chart, byLimit;
   }
-  const Eigen::Matrix4d r = Eigen::HouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 4>>(jacobian)
-                                .matrixQR()
-                                .topRows<4>()
-                                .triangularView<Eigen::Upper>();
-  const Eigen::JacobiSVD<Eigen::Matrix4d> svd(r, Eigen::ComputeFullV);
-  const Spread spread = spreadOf(points, a, 4, robustPx);
+  const Eigen::MatrixXd r = Eigen::HouseholderQR<Eigen::MatrixXd>(jacobian).matrixQR().topRows(parameters).triangularView<Eigen::Upper>();
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(r, Eigen::ComputeFullV);
   bundle.positionCovariance = infinity * Eigen::Matrix3d::Identity();
-  if (!(svd.singularValues()(3) > 1e-14 * svd.singularValues()(0))) {
+  if (!(svd.singularValues()(parameters - 1) > 1e-14 * svd.singularValues()(0))) {
     bundle.covariance = Eigen::Matrix4d::Zero();
     bundle.covariance.diagonal().setConstant(infinity);
   } else {
-    const Eigen::Matrix4d root = std::sqrt(spread.factor) * svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();
-    bundle.covariance = root * root.transpose();
+    const Eigen::MatrixXd root = std::sqrt(spread.factor) * svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();
+    bundle.covariance = root.topRows<4>() * root.topRows<4>().transpose();
     if (!atInfinity) {
       const double w = a.light.w();
       Eigen::Matrix<double, 3, 4> position;  // d(l / w)
       position << Eigen::Matrix3d::Identity() / w, -a.light.head<3>() / (w * w);
-      const Eigen::Matrix<double, 3, 4> half = scale * position * chart * root.topRows<3>();
+      const Eigen::MatrixXd half = scale * position * chart * root.topRows<3>();
       const Eigen::Matrix3d covariance = half * half.transpose();
       if (covariance.allFinite()) bundle.positionCovariance = covariance;
     }
@@ -252,11 +363,12 @@ void setCovariance(const std::vector<Evidence>& points, const Attempt& a, const 
     toWorld.topLeftCorner<3, 3>() *= scale;
     toWorld.topRightCorner<3, 1>() = origin;
     const Eigen::Vector4d y = toWorld * a.light, u = y.normalized();
-    const Eigen::Matrix4d dy = toWorld * chart * root.topRows<3>();
+    const Eigen::MatrixXd dy = toWorld * chart * root.topRows<3>();
     ParameterUncertainty uncertainty;
-    uncertainty.root.resize(5, 4);
+    uncertainty.root.resize(parameters + 1, parameters);
     uncertainty.root.topRows<4>() = (dy - u * (u.transpose() * dy)) / y.norm();
-    uncertainty.root.row(4) = root.row(3);
+    uncertainty.root.bottomRows(parameters - 3) = root.bottomRows(parameters - 3);
+    if (a.directed && !atInfinity) uncertainty.root.bottomRows<6>() *= scale * scale;
     uncertainty.noisePx = spread.noisePx;
     uncertainty.degreesOfFreedom = spread.degreesOfFreedom;
     if (uncertainty.root.allFinite()) bundle.uncertainty = std::move(uncertainty);
@@ -266,13 +378,12 @@ void setCovariance(const std::vector<Evidence>& points, const Attempt& a, const 
     bundle.positionCovariance.diagonal().setConstant(infinity);
   }
 }
-}  // namespace
 
-Outcome<Bundle> bundleLight(const std::vector<BundleView>& views, const Light& start, const BundleOptions& options) {
-  require(options.pointsPerView >= 3 && options.robustPx > 0 && options.maxIterations >= 1, "bundleLight: options");
-  std::vector<Evidence> points;
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  double scale = 0;
+/// Contour points on the surface, in coordinates (x - origin) / scale, scale the mean distance from the cameras.
+std::optional<Failure> gather(const std::vector<BundleView>& views, const BundleOptions& options, std::vector<Evidence>& points,
+                              Eigen::Vector3d& origin, double& scale) {
+  origin = Eigen::Vector3d::Zero();
+  scale = 0;
   std::size_t offered = 0;
   for (std::size_t v = 0; v < views.size(); ++v) {
     const BundleView& view = views[v];
@@ -315,6 +426,16 @@ Outcome<Bundle> bundleLight(const std::vector<BundleView>& views, const Light& s
     for (std::optional<Seen>* s : {&e.left, &e.right, &e.up, &e.down})
       if (*s) (*s)->position = ((*s)->position - origin) / scale;
   }
+  return std::nullopt;
+}
+}  // namespace
+
+Outcome<Bundle> bundleLight(const std::vector<BundleView>& views, const Light& start, const BundleOptions& options) {
+  require(options.pointsPerView >= 3 && options.robustPx > 0 && options.maxIterations >= 1, "bundleLight: options");
+  std::vector<Evidence> points;
+  Eigen::Vector3d origin;
+  double scale;
+  if (const std::optional<Failure> failure = gather(views, options, points, origin, scale)) return *failure;
 
   Eigen::Vector4d first;
   first << (start.homogeneous().head<3>() - start.homogeneous().w() * origin) / scale, start.homogeneous().w();
@@ -359,15 +480,19 @@ Outcome<Bundle> bundleLight(const std::vector<BundleView>& views, const Light& s
   if (best.behind) return Failure{Reason::LightBehindSurface, "every light that explains the contours is behind the surface"};
   if (!std::isfinite(best.cost) || !best.converged) return Failure{Reason::NotConverged, "light bundle"};
 
+  // The evidence still holds the weights of the last attempt, which need not be the best one.
   reweight(points, best.light);
+  unbias(points, best);
+  if (options.limitOrders > 0) best = directed(points, best, options);
   Bundle bundle;
   bundle.light = inWorld(best.light, origin, scale);
   bundle.limitAngle = best.limit;
+  if (best.directed) bundle.extent = symmetric(best.extent) * (best.light.w() == 0 ? 1.0 : scale * scale);
   bundle.iterations = iterations;
   std::vector<double> sums(views.size(), 0.0), counts(views.size(), 0.0);
   double sum = 0;
   for (const Evidence& e : points) {
-    const double r = e.pixelsPerRadian * (angle(e.at, best.light) - best.limit);
+    const double r = residual(e, best);
     sums[e.view] += r * r;
     counts[e.view] += 1;
     sum += r * r;
@@ -377,6 +502,27 @@ Outcome<Bundle> bundleLight(const std::vector<BundleView>& views, const Light& s
     bundle.residualPx.push_back(counts[v] > 0 ? std::sqrt(sums[v] / counts[v]) : 0.0);
   setCovariance(points, best, origin, scale, options.robustPx, bundle);
   return bundle;
+}
+
+double bundleErrorPx(const Bundle& bundle, const std::vector<BundleView>& views, const BundleOptions& options) {
+  std::vector<Evidence> points;
+  Eigen::Vector3d origin;
+  double scale;
+  if (gather(views, options, points, origin, scale)) return std::nan("");
+  Attempt a;
+  const Eigen::Vector4d& lw = bundle.light.homogeneous();
+  a.light << (lw.head<3>() - lw.w() * origin) / scale, lw.w();
+  a.light.normalize();
+  a.limit = bundle.limitAngle;
+  if (bundle.extent) {
+    a.directed = true;
+    const Eigen::Matrix3d e = *bundle.extent / (bundle.light.atInfinity() ? 1.0 : scale * scale);
+    a.extent << e(0, 0), e(1, 1), e(2, 2), e(0, 1), e(0, 2), e(1, 2);
+  }
+  reweight(points, a.light);
+  double sum = 0;
+  for (const Evidence& e : points) sum += std::pow(residual(e, a), 2);
+  return std::sqrt(sum / double(points.size()));
 }
 
 }  // namespace glint

@@ -42,17 +42,19 @@ struct BundleOptions {
   int pointsPerView = 72;            ///< contour points used, equally spaced in arc length
   double robustPx = 1.0;             ///< scale of the Huber/Cauchy loss, px
   int maxIterations = 100;
+  int limitOrders = 0;               ///< 0: one limit angle; 1: also the extent of the light (directed_limit.h), from the second even order on
 };
 
 struct Bundle {
   Light light;
   double limitAngle = 0;             ///< rad
+  std::optional<Eigen::Matrix3d> extent;  ///< m^2 (rad^2 at infinity), see directed_limit.h; with limitOrders 1
   Eigen::Matrix<double, 4, 4> covariance;  ///< of (tangent coordinates of L (3), alpha_lim) in the solver's chart; scaled by the residual variance
   Eigen::Matrix3d positionCovariance;///< m^2; not finite for a light at infinity
   double rmsPx = 0;
   std::vector<double> residualPx;    ///< per view, RMS
   int iterations = 0;
-  /// Of (L homogeneous with |L| = 1 (4), limitAngle (1)), world. None when the contours leave a direction of L open.
+  /// Of (L homogeneous with |L| = 1 (4), limitAngle (1), extent xx yy zz xy xz yz where there is one), world. None when the contours leave a direction of L open.
   std::optional<ParameterUncertainty> uncertainty;
 };
 
@@ -61,5 +63,8 @@ struct Bundle {
 /// @param start  first guess (the triangulated light); other starts are tried when it converges badly.
 /// TooFewPoints; PeakOffSurface when no contour point hits the surface; NotConverged; LightBehindSurface; NotFinite.
 Outcome<Bundle> bundleLight(const std::vector<BundleView>& views, const Light& start, const BundleOptions& options = {});
+
+/// RMS distance of other views' contour points from the level set of a bundle, px (to first order). NaN where none is on a lit surface.
+double bundleErrorPx(const Bundle& bundle, const std::vector<BundleView>& views, const BundleOptions& options = {});
 
 }  // namespace glint

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <string>
 
@@ -14,11 +13,10 @@ namespace glint {
 namespace {
 
 constexpr int kContourPoints = 72;
-constexpr std::size_t kLeftOut = 6;  // views left out when the bias is chosen: more would not change a choice among three
-
-/// Tried by leave-one-view-out, as fractions of the anchor's distance: practically anchored; the light's own bias (2 % on the
-/// path-traced plane, 9 % on the sphere); and loose enough to leave the centre to the contours.
-constexpr double kPriorBiases[] = {0.003, 0.03, 0.3};
+/// How far the centre may lie from the estimated light as a share of the light's distance: the light of a simple lobe is off by 1 % (path-traced
+/// plane) to 9 % (sphere).
+constexpr double kPriorBias = 0.01;
+constexpr double kLeastWorthPx = 0.01;  // below the accuracy of any detection; keeps the prior's weight finite on exact data
 
 CentrePrior priorWith(const CentreAnchor& anchor, double bias) {
   Eigen::Matrix3d covariance = anchor.covariance.value_or(Eigen::Matrix3d::Zero());
@@ -27,52 +25,50 @@ CentrePrior priorWith(const CentreAnchor& anchor, double bias) {
   return {anchor.position, covariance};
 }
 
-/// RMS distance of a view's points from the outline, over the size of its ellipse; infinity where there is no outline.
-double outlineError(const Ellipsoid& ellipsoid, const ConicView& view) {
-  const Outcome<Ellipse> e = outlineEllipse(ellipsoid, view.projection);
-  if (!e) return std::numeric_limits<double>::infinity();
-  double sum = 0;
-  const std::vector<Pixel> points = view.points.empty() ? view.ellipse.sample(36) : view.points;
-  for (const Pixel& p : points) sum += std::pow(footOnEllipse(*e, p).distance, 2);
-  return std::sqrt(sum / double(points.size()) / view.ellipse.area());
-}
-
-/// The trials only rank the biases: a third of the usual contour points tells that as well.
-constexpr std::size_t kPointsPerTrial = 24;
-
-ConicView thinned(const ConicView& view, std::size_t count) {
-  if (view.points.size() <= count) return view;
-  ConicView few{view.projection, view.ellipse, {}};
-  for (std::size_t k = 0; k < count; ++k) few.points.push_back(view.points[k * view.points.size() / count]);
-  return few;
-}
-
-/// The bias whose fits predict left-out views best; the loosest when none does.
-double bestPriorBias(const std::vector<ConicView>& views, const CentreAnchor& anchor) {
-  // Fewer points would give the prior more weight: its covariance grows by as much.
-  double all = 0, kept = 0;
-  for (const ConicView& v : views) all += double(v.points.size()), kept += double(thinned(v, kPointsPerTrial).points.size());
-  const double fewer = kept > 0 ? all / kept : 1;
-  double best = kPriorBiases[std::size(kPriorBiases) - 1], smallest = std::numeric_limits<double>::infinity();
-  for (const double bias : kPriorBiases) {
-    double sum = 0;
-    const std::size_t count = std::min(kLeftOut, views.size());
-    CentrePrior prior = priorWith(anchor, bias);
-    prior.covariance *= fewer;
-    for (std::size_t k = 0; k < count && sum < smallest; ++k) {  // above the best so far it cannot win
-      const std::size_t left = k * views.size() / count;
-      std::vector<ConicView> others;
-      for (std::size_t i = 0; i < views.size(); ++i)
-        if (i != left) others.push_back(thinned(views[i], kPointsPerTrial));
-      const Outcome<Reconstruction> anchored = reconstructAnchored(others, anchor.position);
-      const Outcome<Reconstruction> r = anchored && anchored->ellipsoid
-                                            ? reconstructRefined(others, *anchored->ellipsoid, prior)
-                                            : Outcome<Reconstruction>(Failure{Reason::NotAnEllipsoid, ""});
-      sum += r && r->ellipsoid ? outlineError(*r->ellipsoid, views[left]) : std::numeric_limits<double>::infinity();
+/// What one contour point is worth, px: the RMS distance of the points from the outlines, times the root of 1 + 2 sum rho_k for distances
+/// that are correlated along their contour. Where the ellipsoid fits to the noise that is the noise; where it does not fit (a curved surface,
+/// slanted views) the distances wave slowly along the contour, and many points say no more than a few.
+double worthPx(const Ellipsoid& ellipsoid, const std::vector<ConicView>& views) {
+  std::vector<std::vector<double>> distances;
+  double squares = 0, count = 0;
+  std::size_t longest = 0;
+  for (const ConicView& view : views) {
+    const Outcome<Ellipse> e = outlineEllipse(ellipsoid, view.projection);
+    if (!e) continue;
+    distances.emplace_back();
+    for (const Pixel& p : view.points.empty() ? view.ellipse.sample(36) : view.points) {
+      distances.back().push_back(footOnEllipse(*e, p).distance);
+      squares += distances.back().back() * distances.back().back();
     }
-    if (sum < smallest) smallest = sum, best = bias;
+    count += double(distances.back().size());
+    longest = std::max(longest, distances.back().size());
   }
-  return best;
+  if (!(squares > 0) || !(count > 9)) return kLeastWorthPx;
+  double inflation = 1;
+  const double noticed = 2 / std::sqrt(count);  // an autocorrelation of white noise stays below this
+  for (std::size_t lag = 1; lag <= longest / 2; ++lag) {
+    double sum = 0;
+    for (const std::vector<double>& d : distances)
+      for (std::size_t i = 0; i < d.size(); ++i) sum += d[i] * d[(i + lag) % d.size()];
+    if (!(sum / squares > noticed)) break;
+    inflation += 2 * sum / squares;
+  }
+  return std::max(kLeastWorthPx, std::sqrt(inflation * squares / (count - 9)));
+}
+
+/// The refined ellipsoid with contours and prior in the same unit: standard deviations. What a contour point is worth is not known before the
+/// fit, so it is estimated from the first one and used in the next (the solver counts a pixel as one standard deviation, so the prior is
+/// scaled instead).
+Outcome<Reconstruction> refinedWithPrior(const std::vector<ConicView>& views, const Ellipsoid& start, const CentreAnchor& anchor, double bias) {
+  const CentrePrior prior = priorWith(anchor, bias);
+  Outcome<Reconstruction> refined = reconstructRefined(views, start, prior);
+  for (int round = 0; round < 2 && refined && refined->ellipsoid; ++round) {
+    const double worth = worthPx(*refined->ellipsoid, views);
+    Outcome<Reconstruction> again = reconstructRefined(views, start, CentrePrior{prior.mean, prior.covariance / (worth * worth)});
+    if (!again) break;
+    refined = std::move(again);
+  }
+  return refined;
 }
 
 }  // namespace
@@ -107,7 +103,7 @@ Outcome<Reconstruction> fitEllipsoid(const std::vector<ConicView>& views, const 
   Outcome<Reconstruction> refined = Failure{Reason::NotConverged, ""};
   if (anchor && anchor->distance > 0) {
     const double bias = settings.number("fit.prior_bias");
-    refined = reconstructRefined(views, *start, priorWith(*anchor, bias > 0 ? bias : bestPriorBias(views, *anchor)));
+    refined = refinedWithPrior(views, *start, *anchor, bias > 0 ? bias : kPriorBias);
   } else {
     refined = reconstructRefined(views, *start);
   }

@@ -23,9 +23,9 @@ std::optional<CentreAnchor> anchorAtLight(const FitInput& input);
 /// The solver chosen by `fit.solver`, the same for the three ellipsoid models:
 /// linear (centre free, >= 3 views), anchored (centre at the anchor, >= 2 views), refined (>= 3 views; starts at the anchored
 /// solution or, without an anchor, at the linear one). The prior of `refined` on the centre is the anchor's covariance plus an
-/// isotropic bias of `fit.prior_bias` times the anchor's distance: the covariance knows the noise only, but the ellipsoid that
-/// explains a highlight is not centred exactly at the light, and the light of a simple lobe is itself off. With fit.prior_bias 0
-/// the bias is chosen among kPriorBiases by the distance of left-out views' points from the predicted outlines.
+/// isotropic bias of `fit.prior_bias` (0 = one hundredth) times the anchor's distance: the covariance knows the noise only, but the ellipsoid
+/// that explains a highlight is not centred exactly at the light, and the light of a simple lobe is itself off. A contour point is
+/// weighed against it by what the residuals say it is worth: where the ellipsoid does not fit, the prior counts more.
 /// TooFewViews; NotAnEllipsoid (the linear solution's kind in the detail); NoLight (anchored without an anchor); the solver's own.
 Outcome<Reconstruction> fitEllipsoid(const std::vector<ConicView>& views, const std::optional<CentreAnchor>& anchor,
                                      const Settings& settings);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/light/directed_limit.h"
 #include "core/model/level_set_prediction.h"
 #include "core/model/models.h"
 #include "core/model/star.h"
@@ -16,6 +17,14 @@ std::optional<double> alphaAt(const SurfacePoint& p, const Eigen::Vector3d& eye,
   if (!(p.normal.dot(l) > 0)) return std::nullopt;
   const double alpha = incidentAngle(p.normal, l, v);
   return std::isfinite(alpha) ? std::optional<double>(alpha) : std::nullopt;
+}
+
+/// alpha in units in which the limit angle is the same in all directions: a level set of it at `limit` is the contour.
+std::optional<double> directedAlpha(const SurfacePoint& p, const Eigen::Vector3d& eye, const Light& light, double limit,
+                                    const std::optional<Eigen::Matrix3d>& extent) {
+  const std::optional<double> alpha = alphaAt(p, eye, light);
+  if (!alpha || !extent) return alpha;
+  return *alpha * limit / directedLimit(limit, *extent, p.position, p.normal, (eye - p.position).normalized(), light.homogeneous());
 }
 
 WalkOptions walkOptions(const Settings& settings) {
@@ -53,6 +62,7 @@ class LimitAngle final : public HighlightModel {
     fit.solver = input.light->solver;
     fit.condition = input.light->condition;
     fit.hints = hintsOf(input);
+    fit.extent = input.light->extent;
     fit.uncertainty = input.light->uncertainty;
     return fit;
   }
@@ -63,12 +73,31 @@ class LimitAngle final : public HighlightModel {
     const Light& light = *fit.lightEstimate;
     const Eigen::Vector3d eye = camera.centreInWorld();
     SurfaceField field;
-    field.value = [&](const SurfacePoint& at) { return alphaAt(at, eye, light); };
+    field.value = [&](const SurfacePoint& at) { return directedAlpha(at, eye, light, *fit.limitAngle, fit.extent); };
     field.level = *fit.limitAngle;
+    const Eigen::MatrixXd& root = fit.uncertainty->root;
     const ColumnSlopes slopes = [&](const SurfacePoint& at) -> std::optional<Eigen::VectorXd> {
+      if (fit.extent) {
+        // (value - limit) with every parameter moved along one column; small against a standard deviation.
+        const auto moved = [&](const Eigen::VectorXd& by) -> double {
+          const Eigen::Matrix<double, 6, 1> e = by.segment<6>(5);
+          const Eigen::Matrix3d extent = *fit.extent + Eigen::Matrix3d{{e(0), e(3), e(4)}, {e(3), e(1), e(5)}, {e(4), e(5), e(2)}};
+          const Light other = Light::homogeneous(light.homogeneous() + by.head<4>());
+          const double limit = *fit.limitAngle + by(4);
+          const std::optional<double> alpha = alphaAt(at, eye, other);
+          if (!alpha) return std::nan("");
+          return *alpha - directedLimit(limit, extent, at.position, at.normal, (eye - at.position).normalized(), other.homogeneous());
+        };
+        const double here = directedLimit(*fit.limitAngle, *fit.extent, at.position, at.normal, (eye - at.position).normalized(), light.homogeneous());
+        constexpr double kStep = 0.01;
+        Eigen::VectorXd change(root.cols());
+        for (Eigen::Index k = 0; k < root.cols(); ++k)
+          change(k) = (moved(kStep * root.col(k)) - moved(-kStep * root.col(k))) / (2 * kStep) * *fit.limitAngle / here;
+        return change;
+      }
       Eigen::VectorXd byParameters(5);
       byParameters << incidentAngleByLight(at.position, at.normal, (eye - at.position).normalized(), light.homogeneous()), -1.0;
-      return fit.uncertainty->root.transpose() * byParameters;
+      return root.transpose() * byParameters;
     };
     return levelSetSigmaPx(highlight.contour.points, field, camera, *surface, slopes);
   }
@@ -82,15 +111,15 @@ class LimitAngle final : public HighlightModel {
     const Light& light = *fit.lightEstimate;
     const Eigen::Vector3d eye = camera.centreInWorld();
     const auto brightest = brightestPointsFor(*surface, camera, light, settings, fit.hints);
-    if (settings.text("predict.query") == "local-quadric")
+    if (!fit.extent && settings.text("predict.query") == "local-quadric")
       return onLocalQuadrics(*fit.limitAngle, camera, *surface, light, brightest, settings);
-    if (settings.text("predict.contour") == "star" && brightest && brightest->size() == 1)
+    if (!fit.extent && settings.text("predict.contour") == "star" && brightest && brightest->size() == 1)
       if (std::optional<PredictedHighlight> h = star(*fit.limitAngle, camera, *surface, light, brightest->front(), settings)) {
         p.highlights.push_back(std::move(*h));
         return p;
       }
     SurfaceField field;
-    field.value = [&](const SurfacePoint& at) { return alphaAt(at, eye, light); };
+    field.value = [&](const SurfacePoint& at) { return directedAlpha(at, eye, light, *fit.limitAngle, fit.extent); };
     field.level = *fit.limitAngle;
     if (brightest)
       for (const BrightestPoint& b : *brightest) field.peaks.push_back({b, b.alpha});

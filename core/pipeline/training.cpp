@@ -56,6 +56,35 @@ double medianContourAngle(const std::vector<TrainingView>& views, const Light& l
   return alphas[alphas.size() / 2];
 }
 
+/// Whether the limit angle gets an extent. With -1 the views decide: only where one constant leaves residuals that are both visible and
+/// systematic is the extent tried at all, and it is kept when it predicts left-out views better by more than the standard error of the gain.
+int limitOrders(const std::vector<BundleView>& views, const Bundle& constant, const BundleOptions& options, int asked) {
+  if (asked >= 0) return asked;
+  constexpr double kVisiblePx = 0.05;      // a renderer's own noise and the detection stay below
+  constexpr double kSystematic = 0.5;      // of the points count as independent: less means that residuals keep their sign along contours
+  if (views.size() < 4 || !(constant.rmsPx > kVisiblePx) || !constant.uncertainty) return 0;
+  if (constant.uncertainty->degreesOfFreedom > kSystematic * double(options.pointsPerView) * double(views.size())) return 0;
+  BundleOptions directed = options;
+  directed.limitOrders = 1;
+  constexpr std::size_t kLeftOut = 6;  // more views left out would not change a choice between two
+  std::vector<double> gains;
+  for (std::size_t k = 0; k < std::min(kLeftOut, views.size()); ++k) {
+    const std::size_t left = k * views.size() / std::min(kLeftOut, views.size());
+    std::vector<BundleView> others = views;
+    others.erase(others.begin() + left);
+    const Outcome<Bundle> plain = bundleLight(others, constant.light, options), wide = bundleLight(others, constant.light, directed);
+    if (!plain || !wide) return 0;
+    const double gain = std::log(bundleErrorPx(*plain, {views[left]}, options) / bundleErrorPx(*wide, {views[left]}, options));
+    if (!std::isfinite(gain)) return 0;
+    gains.push_back(gain);
+  }
+  double mean = 0, squares = 0;
+  for (const double g : gains) mean += g / double(gains.size());
+  for (const double g : gains) squares += (g - mean) * (g - mean);
+  const double error = std::sqrt(squares / double(gains.size() - 1) / double(gains.size()));
+  return mean > error ? 1 : 0;
+}
+
 }  // namespace
 
 Outcome<LightEstimate> estimateLight(const std::vector<TrainingView>& views, const Settings& settings) {
@@ -88,8 +117,14 @@ Outcome<LightEstimate> estimateLight(const std::vector<TrainingView>& views, con
     BundleOptions options;
     options.pointsPerView = points;
     options.robustPx = settings.number("light.robust_px");
-    const Outcome<Bundle> b = bundleLight(bundleViews, estimate.light, options);
+    Outcome<Bundle> b = bundleLight(bundleViews, estimate.light, options);
     if (!b) return b.failure();
+    if (limitOrders(bundleViews, *b, options, settings.integer("light.limit_orders")) > 0) {
+      options.limitOrders = 1;
+      const Outcome<Bundle> directed = bundleLight(bundleViews, b->light, options);
+      if (directed) b = directed;
+    }
+    estimate.extent = b->extent;
     estimate.solver = "bundle";
     estimate.light = b->light;
     estimate.limitAngle = b->limitAngle;

@@ -102,6 +102,32 @@ TEST_P(Coverage, OfTheLimitAngleBandIsTheStatedOne) {
 }
 INSTANTIATE_TEST_SUITE_P(Scenes, Coverage, testing::Values(0, 2, 3, 5));
 
+// Noise displaces the points of a curved contour outwards by sigma^2 / (2 R) on average: 0.04 px here, ten standard errors. The bundle removes it.
+TEST(Bundle, SmallNoisyContoursDoNotWidenTheLimitAngle) {
+  Synthetic s = sphereScene(6);
+  s.limitAngle = 0.03;
+  const FitInput exact = fitInput(s, {});
+  const double pixels = std::sqrt(exact.views[0].highlight.areaPx2 > 0 ? exact.views[0].highlight.areaPx2 / M_PI : 12);
+  double sum = 0;
+  constexpr int kTrials = 60;
+  for (int k = 0; k < kTrials; ++k) {
+    std::vector<TrainingView> views;
+    for (const TrainingView& v : exact.views) {
+      FrameEvidence evidence;
+      evidence.frame = v.frame;
+      evidence.highlights = {withNoise(v.highlight, 1.0, 100 + k, v.frame, 0)};
+      views.push_back(trainingView(evidence, 0, v.camera, v.surface));
+    }
+    const Outcome<LightEstimate> light = estimateLight(views, {});
+    ASSERT_TRUE(light);
+    sum += light->limitAngle;
+  }
+  const double biasPx = (sum / kTrials / s.limitAngle - 1) * pixels;
+  RecordProperty("bias_px", std::to_string(biasPx));
+  RecordProperty("radius_px", std::to_string(pixels));
+  EXPECT_NEAR(biasPx, 0, 0.02);
+}
+
 FitInput noisyInput(const Synthetic& s, double noise, const Settings& settings = {}) {
   FitInput input = fitInput(s, settings);
   for (TrainingView& v : input.views) {
