@@ -31,6 +31,10 @@ std::string fitText(const ModelResult::Fit& entry, const std::string& model) {
     std::snprintf(buffer, sizeof buffer, "  limit angle       %.6g deg\n", *f.limitAngle * 180 / M_PI);
     out += buffer;
   }
+  if (f.lightRadius) {
+    std::snprintf(buffer, sizeof buffer, "  light's radius    %.6g m\n", *f.lightRadius);
+    out += buffer;
+  }
   if (f.roughness && f.lobe) {
     std::snprintf(buffer, sizeof buffer, "  lobe              %s, m = %.6g\n", f.lobe->c_str(), *f.roughness);
     out += buffer;

@@ -38,6 +38,8 @@ const std::vector<ParamSpec>& allParams() {
        "Refined solver: how far the ellipsoid's centre may lie from the light beside the light's own noise, as a fraction of the light's distance (standard deviation); 0 = one hundredth. What a contour point weighs against it comes from the residuals.", "fit"},
       {"fit.lobe", "Lobe", "", "", std::string("auto"), 0, 0, 0, {"auto", "torrance-sparrow", "ggx", "blinn-phong", "phong"},
        "Specular lobe of the reflectance model; auto: the one whose fit leaves the smallest residual.", "fit"},
+      {"fit.light_size", "Light's size", "", "", std::string("auto"), 0, 0, 0, {"point", "auto"},
+       "Reflectance model; auto: the radius of the light is estimated where it lowers the squared residuals by a fifth.", "fit"},
       {"predict.directions", "Directions", "n", "", 36, 6, 720, 1, {},
        "Directions of the walk in the tangent plane (the paper: 36).", "fit"},
       {"predict.query", "Surface queries", "", "", std::string("exact"), 0, 0, 0, {"exact", "local-quadric"},

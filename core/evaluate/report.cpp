@@ -73,6 +73,7 @@ ordered_json fitJson(const ModelResult::Fit& entry) {
   j["limit_angle_deg"] = f.limitAngle ? number(*f.limitAngle * 180 / M_PI) : ordered_json(nullptr);
   j["roughness"] = f.roughness ? number(*f.roughness) : ordered_json(nullptr);
   if (f.lobe) j["lobe"] = *f.lobe;
+  if (f.lobe) j["light_radius"] = number(f.lightRadius.value_or(0));
   j["gap_ratio"] = f.singularValues.empty() ? ordered_json(nullptr) : number(f.gapRatio);
   j["condition"] = f.singularValues.empty() ? ordered_json(nullptr) : number(f.condition);
   j["solver"] = f.solver;

@@ -81,6 +81,7 @@ struct ModelFit {
   std::optional<double> limitAngle;         ///< rad
   std::optional<Eigen::Matrix3d> extent;    ///< see LightEstimate
   std::optional<double> roughness;          ///< m of the lobe
+  std::optional<double> lightRadius;        ///< m, of a spherical light; empty for a point
   std::optional<std::string> lobe;          ///< name of the reflectance lobe, core/reflectance/lobe.h
   std::optional<double> level;              ///< fraction q of the peak at which the contour lies, for models that predict radiance
   double gapRatio = 0;                      ///< last / second last singular value of the linear system

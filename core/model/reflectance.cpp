@@ -53,6 +53,8 @@ std::optional<double> medianAngle(const std::vector<RadianceView>& views, const 
 Outcome<RadianceFit> bestOf(const std::vector<Lobe>& lobes, const std::vector<RadianceView>& views, const Light& light,
                             double roughness, RadianceFitOptions options) {
   Outcome<RadianceFit> best = Failure{Reason::NotConverged, ""};
+  const bool lightSize = options.lightSize;
+  options.lightSize = options.otherStarts = false;
   for (const bool again : {false, true}) {
     for (const Lobe lobe : lobes) {
       options.otherStarts = again && lobe == lobes.front();
@@ -63,6 +65,18 @@ Outcome<RadianceFit> bestOf(const std::vector<Lobe>& lobes, const std::vector<Ra
     }
     if (best && !best->poor) break;
   }
+  if (!best || best->poor || !lightSize) return best;
+  // A size is tried on the best lobe; only where it shows are the others tried with one too.
+  options.lightSize = true;
+  const RadianceFit point = *best;
+  const auto withSize = [&](Lobe lobe) {
+    Outcome<RadianceFit> f = fitRadiance(lobe, views, point.light, point.roughness, options);
+    if (f && f->cost < best->cost) best = std::move(f);
+  };
+  withSize(point.lobe);
+  if (best->lightRadius > 0)
+    for (const Lobe lobe : lobes)
+      if (lobe != point.lobe) withSize(lobe);
   return best;
 }
 
@@ -91,6 +105,7 @@ class Reflectance final : public HighlightModel {
     RadianceFitOptions options;
     options.pointsPerView = settings.integer("light.bundle_points");
     options.robustPx = settings.number("light.robust_px");
+    options.lightSize = settings.text("fit.light_size") == "auto";
     const std::optional<Light> light = firstLight(input);
     if (!light) return input.lightFailure ? *input.lightFailure : Failure{Reason::NoLight, ""};
     const std::optional<double> alpha = medianAngle(views, *light);
@@ -117,6 +132,7 @@ class Reflectance final : public HighlightModel {
     fit.lightEstimate = best->light;
     if (!best->light.atInfinity() && best->positionCovariance.allFinite()) fit.lightCovariance = best->positionCovariance;
     fit.roughness = best->roughness;
+    if (best->lightRadius > 0) fit.lightRadius = best->lightRadius;
     fit.lobe = nameOf(best->lobe);
     fit.level = level;
     fit.residualPx = best->residualPx;
@@ -132,7 +148,7 @@ class Reflectance final : public HighlightModel {
       return p;
     }
     const Light& light = *fit.lightEstimate;
-    const RadianceField radiance(*surface, camera, *lobeOf(*fit.lobe), *fit.roughness, light);
+    const RadianceField radiance(*surface, camera, *lobeOf(*fit.lobe), *fit.roughness, light, fit.lightRadius.value_or(0));
     const auto mirrorPoints = brightestPointsFor(*surface, camera, light, settings);
     std::vector<Pixel> starts;
     if (mirrorPoints)

@@ -10,17 +10,14 @@
 #include <cmath>
 #include <deque>
 #include <limits>
-#include <map>
 
-#include "core/geometry/conic.h"
-#include "core/geometry/polyline.h"
-#include "core/reflectance/lobe_terms.h"
+#include "core/reflectance/contour_evidence.h"
+#include "core/reflectance/light_radiance.h"
 #include "core/reflectance/radiance_field.h"
 
 namespace glint {
 namespace {
 
-constexpr double kStepPx = 0.5;  // of the finite differences that turn log I into pixels
 constexpr int kMaxReweightings = 8;
 constexpr double kScanStepPx = 24;  // of the search for a frame's maximum when the light has moved far
 constexpr int kMaxFootSteps = 4;
@@ -29,79 +26,27 @@ constexpr double kFarthestFootPx = 8;
 constexpr double kSigmaOfMedian = 1.4826;  // standard deviation over median absolute deviation of a normal distribution
 constexpr double kUnlitPx = 100;           // residual of a point that the light does not reach
 constexpr double kPoorShare = 0.1;         // of the radius: a wrong lobe or 1 px of noise leave less, a wrong start leaves more
-constexpr double kSettled = 1e-9;          // change of the unit vector L and of log m between reweightings
+constexpr double kProbeRadius = 0.02;      // of the distance: a light that would show little
+constexpr double kFirstRadius = 0.05;      // of the distance: where the search for a size starts
+constexpr double kLeastRadiusSquared = 1e-10;  // normalised: keeps the square root's derivative finite
+constexpr double kLeastGain = 0.2;             // of the sum of squares, before a size is believed
+constexpr double kSettled = 1e-9;              // change of the unit vector L and of log m between reweightings
 
-using Dual = ceres::Jet<double, 5>;  // derivatives by L (4) and log m
-using Parameters = Eigen::Matrix<double, 5, 1>;
+/// L (4), log m, and the squared radius of the light in normalised coordinates.
+using Parameters = Eigen::Matrix<double, 6, 1>;
+using Dual = ceres::Jet<double, 6>;
 
-/// A surface point seen by a camera; positions in normalised world coordinates.
-struct Seen {
-  Eigen::Vector3d position, normal, toCamera;
-};
-
-/// A pixel's surface point and those of the pixels kStepPx away.
-struct Stencil {
-  Seen at, left, right, up, down;
-};
-
-/// One contour point. The residual is offsetPx + pixelsPerUnit (g(foot) - level): the distance from the measured pixel to the
-/// contour, linearised at the foot, its nearest point on the contour of the last round. Linearised at the measured pixel instead,
-/// noise in the residual would correlate with noise in its derivatives, and contours would grow by sigma^2 / radius.
-struct Evidence {
-  int view = 0, frame = 0;  ///< frame: index into the frames of this fit
-  double level = 0;         ///< sqrt(-log q)
-  Pixel observed{0, 0};
-  Stencil measured, foot;
-  double offsetPx = 0;       ///< from foot to measured, positive away from the peak
-  double pixelsPerUnit = 1;  ///< 1 / |d g / d pixel| at the foot
-  double curvature = 0;      ///< of the contour there, 1/px
-  double biasPx = 0;         ///< expected distance of a measured pixel outside the contour, see unbias
-};
-
-/// A frame's maximum under the light of the moment.
-struct FramePeak {
-  Camera camera;
-  const Surface* surface = nullptr;
-  std::vector<Pixel> starts;
-  std::optional<Seen> at;  ///< normalised; empty where nothing in the frame is lit
-};
-
-/// Positions minus `origin`, over `scale`. Nothing where the surface ends within the stencil.
-std::optional<Stencil> look(const RadianceView& view, const Pixel& p, const Eigen::Vector3d& origin, double scale) {
-  const Eigen::Vector3d eye = view.camera.centreInWorld();
-  const auto seen = [&](const Pixel& q) -> std::optional<Seen> {
-    const Outcome<SurfacePoint> hit = view.surface->firstHit(view.camera.ray(q));
-    if (!hit || !hit->position.allFinite() || !hit->normal.allFinite()) return std::nullopt;
-    const SurfacePoint s = facing(*hit, eye);
-    return Seen{(s.position - origin) / scale, s.normal, (eye - s.position).normalized()};
-  };
-  const std::optional<Seen> at = seen(p), left = seen(p - Pixel(kStepPx, 0)), right = seen(p + Pixel(kStepPx, 0)),
-                            up = seen(p - Pixel(0, kStepPx)), down = seen(p + Pixel(0, kStepPx));
-  if (!at || !left || !right || !up || !down) return std::nullopt;
-  return Stencil{*at, *left, *right, *up, *down};
-}
-
-/// Curvature of an ellipse in the direction of a pixel from its centre, 1/px.
-double curvatureAt(const Ellipse& e, const Pixel& p) {
-  const double a = e.semiAxes.x(), b = e.semiAxes.y();
-  const Eigen::Vector2d d = Eigen::Rotation2Dd(-e.angle) * (p - e.centre);
-  const double t = std::atan2(d.y() / b, d.x() / a);
-  return a * b / std::pow(std::hypot(a * std::sin(t), b * std::cos(t)), 3);
-}
+using lobe::ContourEvidence;
+using lobe::Evidence;
+using lobe::FramePeak;
+using lobe::kStencilStepPx;
+using lobe::Seen;
+using lobe::Stencil;
 
 template <class T>
-std::optional<T> logRadianceAt(Lobe lobe, const Seen& s, const Eigen::Matrix<T, 4, 1>& light, const T& roughness) {
-  using std::log;
-  using std::sqrt;
-  const Eigen::Matrix<T, 3, 1> position = s.position.cast<T>();
-  const Eigen::Matrix<T, 3, 1> offset = light.template head<3>() - light(3) * position;
-  const T squared = offset.squaredNorm();
-  if (!(squared > T(0.0))) return std::nullopt;
-  const Eigen::Matrix<T, 3, 1> toLight = offset / sqrt(squared);
-  const Eigen::Matrix<T, 3, 1> normal = s.normal.cast<T>(), view = s.toCamera.cast<T>();
-  if (!(normal.dot(toLight) > T(0.0)) || !(normal.dot(view) > T(0.0))) return std::nullopt;
-  if (lobe == Lobe::Phong && !(T(2.0) * normal.dot(toLight) * normal.dot(view) - toLight.dot(view) > T(0.0))) return std::nullopt;
-  return lobe::terms<T>(lobe, roughness, s.normal, toLight, s.toCamera).total() - log(squared);
+std::optional<T> logRadianceAt(Lobe lobe, const Seen& s, const Eigen::Matrix<T, 4, 1>& light, const T& roughness,
+                               const T& radiusSquared) {
+  return lobe::logOfSphereLight<T>(lobe, roughness, s.position, s.normal, s.toCamera, light, radiusSquared);
 }
 
 /// sqrt(u), continued by its tangent below a quarter of the level's: a start far off may put a contour point above the peak.
@@ -114,15 +59,14 @@ T rootOf(const T& u, double level) {
 
 class Problem {
  public:
-  Problem(Lobe lobe, const std::vector<RadianceView>& views, std::vector<Evidence> points, std::vector<FramePeak> frames,
-          const Eigen::Vector3d& origin, double scale, double radiusPx, const RadianceFitOptions& options)
+  Problem(Lobe lobe, const std::vector<RadianceView>& views, ContourEvidence evidence, const RadianceFitOptions& options)
       : lobe_(lobe),
         views_(views),
-        points_(std::move(points)),
-        frames_(std::move(frames)),
-        origin_(origin),
-        scale_(scale),
-        radiusPx_(radiusPx),
+        points_(std::move(evidence.points)),
+        frames_(std::move(evidence.frames)),
+        origin_(evidence.origin),
+        scale_(evidence.scale),
+        radiusPx_(evidence.radiusPx),
         options_(options) {}
 
   struct Attempt {
@@ -132,7 +76,17 @@ class Problem {
     bool converged = false;
   };
 
-  Attempt solve(const Eigen::Vector4d& light, double roughness, bool atInfinity);
+  Attempt solve(const Eigen::Vector4d& light, double roughness, bool atInfinity) {
+    Parameters start;
+    start << light, std::log(roughness), 0;
+    if (atInfinity) start(3) = 0;
+    start.head<4>().normalize();
+    return solve(start, false);
+  }
+  /// @param withSize  the light's radius is free too, from start(5) > 0; L must be finite.
+  Attempt solve(const Parameters& start, bool withSize);
+  /// By how much a light of some size would lower the sum of squares, to first order; 0 where it would raise it.
+  double gainBySize(const Attempt& a);
   RadianceFit describe(const Attempt& a, std::size_t views);
   std::size_t lit() const {
     return std::count_if(frames_.begin(), frames_.end(), [](const FramePeak& f) { return f.at.has_value(); });
@@ -149,7 +103,7 @@ class Problem {
     const double roughness = std::exp(at(4));
     if (!std::isfinite(roughness) || !(roughness > 0)) return;
     for (FramePeak& f : frames_) {
-      const RadianceField field(*f.surface, f.camera, lobe_, roughness, light);
+      const RadianceField field(*f.surface, f.camera, lobe_, roughness, light, scale_ * std::sqrt(at(5)));
       std::vector<RadiancePeak> peaks = field.peaks(f.starts, scan ? kScanStepPx : 0);
       if (peaks.empty() && !scan) peaks = field.peaks(f.starts, kScanStepPx);
       if (peaks.empty()) {
@@ -176,13 +130,13 @@ class Problem {
   /// g at a point; NaN where it is undefined.
   double root(const Evidence& e, const Seen& s, const Parameters& at) const {
     const std::optional<Seen>& peak = frame(e.frame).at;
-    const auto here = logRadianceAt<double>(lobe_, s, at.head<4>(), std::exp(at(4)));
-    const auto top = peak ? logRadianceAt<double>(lobe_, *peak, at.head<4>(), std::exp(at(4))) : std::nullopt;
+    const auto here = logRadianceAt<double>(lobe_, s, at.head<4>(), std::exp(at(4)), at(5));
+    const auto top = peak ? logRadianceAt<double>(lobe_, *peak, at.head<4>(), std::exp(at(4)), at(5)) : std::nullopt;
     return here && top ? rootOf(*top - *here, e.level) : std::numeric_limits<double>::quiet_NaN();
   }
   Eigen::Vector2d gradient(const Evidence& e, const Stencil& s, const Parameters& at) const {
-    return {(root(e, s.right, at) - root(e, s.left, at)) / (2 * kStepPx),
-            (root(e, s.down, at) - root(e, s.up, at)) / (2 * kStepPx)};
+    return {(root(e, s.right, at) - root(e, s.left, at)) / (2 * kStencilStepPx),
+            (root(e, s.down, at) - root(e, s.up, at)) / (2 * kStencilStepPx)};
   }
   double residual(const Evidence& e, const Parameters& at) const {
     return e.offsetPx - e.biasPx + e.pixelsPerUnit * (root(e, e.foot.at, at) - e.level);
@@ -203,7 +157,7 @@ class Problem {
 };
 
 /// (g - sqrt(-log q)) in pixels, with its derivatives by dual numbers.
-class RootCost : public ceres::SizedCostFunction<1, 4, 1> {
+class RootCost : public ceres::SizedCostFunction<1, 4, 1, 1> {
  public:
   RootCost(const Problem& problem, const Evidence& evidence) : problem_(problem), e_(evidence) {}
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
@@ -211,7 +165,8 @@ class RootCost : public ceres::SizedCostFunction<1, 4, 1> {
     // A light that does not reach the point is far off: a large residual that pulls nowhere, so that the others decide.
     residuals[0] = residual ? residual->a : kUnlitPx;
     for (int i = 0; jacobians && jacobians[0] && i < 4; ++i) jacobians[0][i] = residual ? residual->v(i) : 0;
-    if (jacobians && jacobians[1]) jacobians[1][0] = residual ? residual->v(4) : 0;
+    for (int i = 0; jacobians && i < 2; ++i)
+      if (jacobians[1 + i]) jacobians[1 + i][0] = residual ? residual->v(4 + i) : 0;
     return true;
   }
 
@@ -221,10 +176,10 @@ class RootCost : public ceres::SizedCostFunction<1, 4, 1> {
     if (!peak) return std::nullopt;
     Eigen::Matrix<Dual, 4, 1> light;
     for (int i = 0; i < 4; ++i) light(i) = Dual(parameters[0][i], i);
-    const Dual roughness = exp(Dual(parameters[1][0], 4));
+    const Dual roughness = exp(Dual(parameters[1][0], 4)), radiusSquared(parameters[2][0], 5);
     if (!(roughness.a > 0) || !std::isfinite(roughness.a)) return std::nullopt;
-    const auto here = logRadianceAt<Dual>(problem_.lobe(), e_.foot.at, light, roughness);
-    const auto top = logRadianceAt<Dual>(problem_.lobe(), *peak, light, roughness);
+    const auto here = logRadianceAt<Dual>(problem_.lobe(), e_.foot.at, light, roughness, radiusSquared);
+    const auto top = logRadianceAt<Dual>(problem_.lobe(), *peak, light, roughness, radiusSquared);
     if (!here || !top) return std::nullopt;
     const Dual residual =
         (rootOf(*top - *here, e_.level) - Dual(e_.level)) * Dual(e_.pixelsPerUnit) + Dual(e_.offsetPx - e_.biasPx);
@@ -259,7 +214,7 @@ void Problem::toFoot(Evidence& e, const Parameters& at) const {
     const Pixel next = e.observed - value / slope.squaredNorm() * slope;
     // An outlier, or a start far off: the plain residual serves.
     if (!next.allFinite() || (next - e.observed).norm() > kFarthestFootPx) return;
-    const std::optional<Stencil> there = look(views_[static_cast<std::size_t>(e.view)], next, origin_, scale_);
+    const std::optional<Stencil> there = lobe::look(views_[static_cast<std::size_t>(e.view)], next, origin_, scale_);
     if (!there) return;
     const double moved = (next - foot).norm();
     foot = next;
@@ -320,11 +275,10 @@ double Problem::robustCost(const Parameters& at) const {
   return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
 }
 
-Problem::Attempt Problem::solve(const Eigen::Vector4d& light, double roughness, bool atInfinity) {
+Problem::Attempt Problem::solve(const Parameters& start, bool withSize) {
   Attempt a;
-  Eigen::Vector4d start = light;
-  if (atInfinity) start.w() = 0;
-  a.at << start.normalized(), std::log(roughness);
+  a.at = start;
+  const bool atInfinity = start(3) == 0;
   for (int round = 0; round < kMaxReweightings && a.iterations < options_.maxIterations; ++round) {
     // The weights are held while the light moves: a residual whose own weight moves gains by lights under which the field is
     // steep.
@@ -345,12 +299,16 @@ Problem::Attempt Problem::solve(const Eigen::Vector4d& light, double roughness, 
     {
       ceres::Problem problem(ownership);
       for (const Evidence& e : points_)
-        problem.AddResidualBlock(&costs.emplace_back(*this, e), &loss, a.at.data(), a.at.data() + 4);
+        problem.AddResidualBlock(&costs.emplace_back(*this, e), &loss, a.at.data(), a.at.data() + 4, a.at.data() + 5);
       if (atInfinity)
         problem.SetManifold(a.at.data(), new ceres::ProductManifold<ceres::SphereManifold<3>, ceres::SubsetManifold>(
                                              ceres::SphereManifold<3>(), ceres::SubsetManifold(1, {0})));
       else
         problem.SetManifold(a.at.data(), new ceres::SphereManifold<4>());
+      if (withSize)
+        problem.SetParameterLowerBound(a.at.data() + 5, 0, kLeastRadiusSquared);
+      else
+        problem.SetParameterBlockConstant(a.at.data() + 5);
       ceres::Solver::Options solver;
       solver.linear_solver_type = ceres::DENSE_QR;
       solver.logging_type = ceres::SILENT;
@@ -372,6 +330,32 @@ Problem::Attempt Problem::solve(const Eigen::Vector4d& light, double roughness, 
   return a;
 }
 
+double Problem::gainBySize(const Attempt& a) {
+  if (!(a.at(3) > 0)) return 0;  // at infinity a size has no meaning, only an angle
+  Parameters grown = a.at;
+  const double distance = a.at.head<3>().norm() / a.at(3);
+  grown(5) = kProbeRadius * kProbeRadius * distance * distance;
+  Eigen::Matrix<double, 4, 3, Eigen::RowMajor> chart;
+  ceres::SphereManifold<4>().PlusJacobian(a.at.data(), chart.data());
+  Eigen::Matrix<double, Eigen::Dynamic, 5> jacobian(points_.size(), 5);
+  Eigen::VectorXd residuals(points_.size());
+  const Parameters* const both[] = {&a.at, &grown};
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    double value[2], byRoughness = 0;
+    Eigen::RowVector4d byLight;
+    for (int k = 0; k < 2; ++k) {
+      const double* parameters[] = {both[k]->data(), both[k]->data() + 4, both[k]->data() + 5};
+      double* blocks[] = {byLight.data(), &byRoughness, nullptr};
+      RootCost(*this, points_[i]).Evaluate(parameters, &value[k], k == 0 ? blocks : nullptr);
+    }
+    jacobian.row(i) << byLight * chart, byRoughness, value[1] - value[0];
+    residuals(i) = value[0];
+  }
+  const Eigen::VectorXd step = jacobian.colPivHouseholderQr().solve(-residuals);
+  if (!(step(4) > 0)) return 0;
+  return residuals.squaredNorm() - (residuals + jacobian * step).squaredNorm();
+}
+
 RadianceFit Problem::describe(const Attempt& a, std::size_t views) {
   const double infinity = std::numeric_limits<double>::infinity();
   updatePeaks(a.at, true);
@@ -380,6 +364,7 @@ RadianceFit Problem::describe(const Attempt& a, std::size_t views) {
   fit.lobe = lobe_;
   fit.roughness = std::exp(a.at(4));
   fit.light = inWorld(a.at.head<4>());
+  fit.lightRadius = scale_ * std::sqrt(std::max(0.0, a.at(5)));
   fit.cost = a.cost;
   fit.points = static_cast<int>(points_.size());
   fit.iterations = a.iterations;
@@ -394,8 +379,8 @@ RadianceFit Problem::describe(const Attempt& a, std::size_t views) {
     const Evidence& e = points_[i];
     double residual = 0, byRoughness = 0;
     Eigen::RowVector4d byLight;
-    const double* parameters[] = {a.at.data(), a.at.data() + 4};
-    double* blocks[] = {byLight.data(), &byRoughness};
+    const double* parameters[] = {a.at.data(), a.at.data() + 4, a.at.data() + 5};
+    double* blocks[] = {byLight.data(), &byRoughness, nullptr};
     if (!RootCost(*this, e).Evaluate(parameters, &residual, blocks)) continue;
     jacobian.row(i) << byLight * chart, byRoughness;
     sum += residual * residual;
@@ -437,58 +422,16 @@ Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& vie
                                  const RadianceFitOptions& options) {
   require(options.pointsPerView >= 3 && options.robustPx > 0 && options.maxIterations >= 1, "fitRadiance: options");
   require(roughness > 0 && std::isfinite(roughness), "fitRadiance: roughness must be positive");
-  std::vector<Evidence> points;
-  std::vector<FramePeak> frames;
-  std::map<int, int> frameIndex;
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  double scale = 0;
-  double radiusPx = 0;  // of the contours' regions, mean
-  std::size_t offered = 0;
-  for (std::size_t v = 0; v < views.size(); ++v) {
-    const RadianceView& view = views[v];
-    require(view.surface != nullptr, "fitRadiance: a view without surface");
-    require(view.level > 0 && view.level < 1, "fitRadiance: the level must lie between 0 and 1");
-    for (const Pixel& p : view.contour)
-      if (!p.allFinite()) return Failure{Reason::NotFinite, "a contour point of view " + std::to_string(v)};
-    const auto [known, isNew] = frameIndex.emplace(view.frame, static_cast<int>(frames.size()));
-    if (isNew) frames.push_back({view.camera, view.surface, {}, std::nullopt});
-    frames[known->second].starts.push_back(view.peak);
-    const std::vector<Pixel> pixels = view.contour.size() > std::size_t(options.pointsPerView)
-                                          ? resample(Polyline{view.contour, true}, options.pointsPerView)
-                                          : view.contour;
-    offered += pixels.size();
-    radiusPx += std::sqrt(std::abs(signedArea(Polyline{view.contour, true})) / M_PI) / double(views.size());
-    const Outcome<Ellipse> ellipse = fitEllipse(pixels);
-    for (const Pixel& p : pixels) {
-      // Where the surface ends the contour is its edge, not a level set.
-      const std::optional<Stencil> at = look(view, p, Eigen::Vector3d::Zero(), 1);
-      if (!at) continue;
-      Evidence e;
-      e.view = static_cast<int>(v);
-      e.frame = known->second;
-      e.level = std::sqrt(-std::log(view.level));
-      e.observed = p;
-      e.measured = *at;
-      if (ellipse) e.curvature = curvatureAt(*ellipse, p);
-      origin += at->at.position;
-      scale += (view.camera.centreInWorld() - at->at.position).norm();
-      points.push_back(std::move(e));
-    }
-  }
-  if (offered > 0 && points.empty()) return Failure{Reason::PeakOffSurface, "no contour point hits the surface"};
-  if (points.size() < 5) return Failure{Reason::TooFewPoints, "need 5 on the surface, have " + std::to_string(points.size())};
-  origin /= double(points.size());
-  scale /= double(points.size());
-  if (!(scale > 0) || !std::isfinite(scale)) return Failure{Reason::NotFinite, "camera distance"};
-  for (Evidence& e : points)
-    for (Seen* s : {&e.measured.at, &e.measured.left, &e.measured.right, &e.measured.up, &e.measured.down})
-      s->position = (s->position - origin) / scale;
+  Outcome<ContourEvidence> gathered = lobe::gatherEvidence(views, options.pointsPerView);
+  if (!gathered) return gathered.failure();
+  const Eigen::Vector3d origin = gathered->origin;
+  const double scale = gathered->scale, radiusPx = gathered->radiusPx;
 
   Eigen::Vector4d first;
   first << (light.homogeneous().head<3>() - light.homogeneous().w() * origin) / scale, light.homogeneous().w();
   require(first.norm() > 0, "fitRadiance: no light");
   first.normalize();
-  Problem problem(lobe, views, std::move(points), std::move(frames), origin, scale, radiusPx, options);
+  Problem problem(lobe, views, *std::move(gathered), options);
   const auto good = [&](const Problem::Attempt& a) {
     const double farPx = std::max(options.robustPx, kPoorShare * radiusPx);
     return a.converged && a.cost <= farPx * farPx * double(problem.points().size());
@@ -514,6 +457,14 @@ Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& vie
     return problem.lit() == 0 ? Failure{Reason::NoBrightestPoint, "no frame has a lit maximum"}
                               : Failure{Reason::NotConverged, ""};
   if (!best.converged) return Failure{Reason::NotConverged, "after " + std::to_string(iterations) + " iterations"};
+  // A size that the contours do not show would only take up noise: it must promise, and then keep, a clear gain.
+  if (options.lightSize && good(best) && problem.gainBySize(best) > kLeastGain * best.cost) {
+    Parameters start = best.at;
+    start(5) = std::pow(kFirstRadius * best.at.head<3>().norm() / best.at(3), 2);
+    const Problem::Attempt sized = problem.solve(start, true);
+    iterations += sized.iterations;
+    if (sized.converged && sized.cost < (1 - kLeastGain) * best.cost && sized.at(5) > 2 * kLeastRadiusSquared) best = sized;
+  }
   RadianceFit fit = problem.describe(best, views.size());
   fit.iterations = iterations;
   fit.poor = !good(best);

@@ -23,6 +23,7 @@ struct RadianceFitOptions {
   int pointsPerView = 72;  ///< contour points used, equally spaced in arc length
   double robustPx = 1.0;   ///< scale of the Huber loss, px
   int maxIterations = 100;
+  bool lightSize = true;    ///< estimate the light's radius where the contours show it
   bool otherStarts = true;  ///< try other distances and widths when the first guess converges badly
 };
 
@@ -30,6 +31,7 @@ struct RadianceFit {
   Lobe lobe = Lobe::TorranceSparrow;
   double roughness = 0;  ///< m
   Light light;
+  double lightRadius = 0;              ///< m; 0 where the contours do not show a size
   Eigen::Matrix4d covariance;          ///< of (tangent coordinates of L (3), log m), scaled by the residual variance
   Eigen::Matrix3d positionCovariance;  ///< m^2; not finite for a light at infinity
   double rmsPx = 0;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/reflectance/light_radiance.h"
+
 namespace glint {
 namespace {
 
@@ -19,8 +21,15 @@ bool inImage(const Pixel& p, const Camera& camera) {
 
 }  // namespace
 
-RadianceField::RadianceField(const Surface& surface, const Camera& camera, Lobe lobe, double roughness, const Light& light)
-    : surface_(surface), camera_(camera), eye_(camera.centreInWorld()), lobe_(lobe), roughness_(roughness), light_(light) {
+RadianceField::RadianceField(const Surface& surface, const Camera& camera, Lobe lobe, double roughness, const Light& light,
+                             double lightRadius)
+    : surface_(surface),
+      camera_(camera),
+      eye_(camera.centreInWorld()),
+      lobe_(lobe),
+      roughness_(roughness),
+      light_(light),
+      radiusSquared_(lightRadius * lightRadius) {
   require(roughness > 0 && std::isfinite(roughness), "RadianceField: roughness must be positive");
   const Eigen::AlignedBox3d box = surface.bounds();
   const double size = box.isEmpty() ? 0 : box.diagonal().norm();
@@ -28,20 +37,18 @@ RadianceField::RadianceField(const Surface& surface, const Camera& camera, Lobe 
 }
 
 std::optional<double> RadianceField::at(const SurfacePoint& p, double floor) const {
-  const Eigen::Vector4d& lw = light_.homogeneous();
-  const Eigen::Vector3d offset = lw.head<3>() - lw.w() * p.position;
-  const double distance = offset.norm(), seen = (eye_ - p.position).norm();
-  if (!(distance > 0) || !(seen > 0)) return std::nullopt;
-  const Eigen::Vector3d toLight = offset / distance;
-  const auto log = logRadiance(lobe_, roughness_, p.normal, toLight, (eye_ - p.position) / seen);
-  if (!log) return std::nullopt;
-  const double total = log->total() - 2 * std::log(distance);
-  if (!std::isfinite(total)) return std::nullopt;
+  const double seen = (eye_ - p.position).norm();
+  if (!(seen > 0)) return std::nullopt;
+  const std::optional<double> log = lobe::logOfSphereLight<double>(
+      lobe_, roughness_, p.position, p.normal, (eye_ - p.position) / seen, light_.homogeneous(), radiusSquared_);
+  if (!log || !std::isfinite(*log)) return std::nullopt;
+  const double total = *log;
   if (total < floor) return total;
   // An unbounded surface has no size of its own: the camera's distance stands for it.
   const double far = farAway_ > 0 ? farAway_ + seen : 1e3 * seen;
   const bool finite = !light_.atInfinity() && light_.position().allFinite();
-  const Eigen::Vector3d target = finite ? light_.position() : Eigen::Vector3d(p.position + far * toLight);
+  const Eigen::Vector3d target =
+      finite ? light_.position() : Eigen::Vector3d(p.position + far * light_.directionFrom(p.position));
   return surface_.occluded(p, target) ? std::nullopt : std::optional<double>(total);
 }
 

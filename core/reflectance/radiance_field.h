@@ -18,12 +18,14 @@ struct RadiancePeak {
   double logRadiance = 0;
 };
 
-/// log I of one lobe under one point light over the visible surface, up to a constant of the light (method.md section 7):
+/// log I of one lobe under one light over the visible surface, up to a constant of the light (method.md section 7):
 /// lobe, masking, cosines and falloff. Undefined off the surface, where the light is below the horizon, and in shadow.
 class RadianceField {
  public:
-  /// @param roughness  m > 0. The surface must outlive the field.
-  RadianceField(const Surface& surface, const Camera& camera, Lobe lobe, double roughness, const Light& light);
+  /// @param roughness    m > 0. The surface must outlive the field.
+  /// @param lightRadius  m, of a spherical light; 0 for a point. Shadows are those of its centre.
+  RadianceField(const Surface& surface, const Camera& camera, Lobe lobe, double roughness, const Light& light,
+                double lightRadius = 0);
 
   /// @param visible  a visible point, normal towards the camera.
   /// `floor`: below it the value alone tells; the shadow ray, which costs more than all the rest, is left out.
@@ -48,7 +50,8 @@ class RadianceField {
   Lobe lobe_;
   double roughness_;
   Light light_;
-  double farAway_;  ///< how far a shadow ray towards a light at infinity goes
+  double radiusSquared_;  ///< m^2
+  double farAway_;        ///< how far a shadow ray towards a light at infinity goes
 };
 
 }  // namespace glint

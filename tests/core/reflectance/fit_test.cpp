@@ -66,6 +66,7 @@ TEST(FitRadiance, Nominal) {
     EXPECT_LT(lightError(*fit, s), kRecovered) << nameOf(lobe);
     EXPECT_LT(fit->rmsPx, 5e-3) << nameOf(lobe);
     EXPECT_FALSE(fit->poor) << nameOf(lobe);
+    EXPECT_EQ(fit->lightRadius, 0) << nameOf(lobe);  // a point light shows no size
   }
 }
 
@@ -90,6 +91,34 @@ TEST(FitRadiance, NominalWithTheLightAtInfinity) {
     const Eigen::Vector3d found = fit->light.directionFrom(Eigen::Vector3d::Zero());
     EXPECT_LT(found.cross(*s.geometry.light.direction).norm(), kRecovered);
     EXPECT_NEAR(fit->roughness, kRoughness, kRecovered * kRoughness);
+  }
+}
+
+// A lamp of a tenth of its distance blurs a narrow lobe visibly. The frames integrate over the lamp by another quadrature (a
+// cone of 4 x 12 directions) than the fit (7 points of a disc).
+TEST(FitRadiance, NominalSizeOfTheLight) {
+  RadianceScene s = radianceScene(ellipsoidScene(6), Lobe::TorranceSparrow, 0.06);
+  s.geometry.light.radius = 0.25;
+  const auto views = radianceViews(s);
+  const auto sized = fitRadiance(Lobe::TorranceSparrow, views, nearby(s), 0.08);
+  ASSERT_TRUE(sized) << sized.failure().message();
+  EXPECT_NEAR(sized->lightRadius, 0.25, 0.02);
+  EXPECT_NEAR(sized->roughness, 0.06, 0.001);
+  RadianceFitOptions point;
+  point.lightSize = false;
+  const auto blind = fitRadiance(Lobe::TorranceSparrow, views, nearby(s), 0.08, point);
+  ASSERT_TRUE(blind);
+  EXPECT_EQ(blind->lightRadius, 0);
+  EXPECT_GT(blind->roughness, 0.062);  // takes the lamp's width for the lobe's
+  EXPECT_LT(sized->cost, 0.5 * blind->cost);
+}
+
+TEST(FitRadiance, NoiseIsNotTakenForASize) {
+  const RadianceScene s = radianceScene(ellipsoidScene(6), Lobe::TorranceSparrow, kRoughness);
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    const auto fit = fitRadiance(Lobe::TorranceSparrow, radianceViews(s, 1, seed), nearby(s), kRoughness);
+    ASSERT_TRUE(fit);
+    EXPECT_EQ(fit->lightRadius, 0) << seed;
   }
 }
 
@@ -176,8 +205,10 @@ TEST(FitRadiance, TheResidualChoosesTheLobe) {
     const RadianceScene s = radianceScene(ellipsoidScene(6), truth, 0.15);
     const auto views = radianceViews(s);
     double right = 0, wrong = std::numeric_limits<double>::infinity();
+    RadianceFitOptions point;
+    point.lightSize = false;  // a size would hide a part of a wrong lobe
     for (const Lobe lobe : kLobes) {
-      const auto fit = fitRadiance(lobe, views, nearby(s), 0.15);
+      const auto fit = fitRadiance(lobe, views, nearby(s), 0.15, point);
       const double cost = fit ? fit->cost : std::numeric_limits<double>::infinity();
       if (lobe == truth)
         right = cost;

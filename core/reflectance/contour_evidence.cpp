@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/reflectance/contour_evidence.h"
+
+#include <cmath>
+#include <map>
+
+#include "core/geometry/conic.h"
+#include "core/geometry/polyline.h"
+
+namespace glint::lobe {
+
+std::optional<Stencil> look(const RadianceView& view, const Pixel& p, const Eigen::Vector3d& origin, double scale) {
+  const Eigen::Vector3d eye = view.camera.centreInWorld();
+  const auto seen = [&](const Pixel& q) -> std::optional<Seen> {
+    const Outcome<SurfacePoint> hit = view.surface->firstHit(view.camera.ray(q));
+    if (!hit || !hit->position.allFinite() || !hit->normal.allFinite()) return std::nullopt;
+    const SurfacePoint s = facing(*hit, eye);
+    return Seen{(s.position - origin) / scale, s.normal, (eye - s.position).normalized()};
+  };
+  const std::optional<Seen> at = seen(p), left = seen(p - Pixel(kStencilStepPx, 0)), right = seen(p + Pixel(kStencilStepPx, 0)),
+                            up = seen(p - Pixel(0, kStencilStepPx)), down = seen(p + Pixel(0, kStencilStepPx));
+  if (!at || !left || !right || !up || !down) return std::nullopt;
+  return Stencil{*at, *left, *right, *up, *down};
+}
+
+namespace {
+
+/// Curvature of an ellipse in the direction of a pixel from its centre, 1/px.
+double curvatureAt(const Ellipse& e, const Pixel& p) {
+  const double a = e.semiAxes.x(), b = e.semiAxes.y();
+  const Eigen::Vector2d d = Eigen::Rotation2Dd(-e.angle) * (p - e.centre);
+  const double t = std::atan2(d.y() / b, d.x() / a);
+  return a * b / std::pow(std::hypot(a * std::sin(t), b * std::cos(t)), 3);
+}
+
+/// Between the outermost pixel centres and the outermost pixels' outer edges, where cut contours run.
+bool onImageBorder(const Pixel& p, const Camera& camera) {
+  constexpr double kWidthPx = 0.5 + 1e-6;
+  const auto near = [](double v, double last) { return std::abs(v) <= kWidthPx || std::abs(v - last) <= kWidthPx; };
+  return near(p.x(), camera.width - 1) || near(p.y(), camera.height - 1);
+}
+
+}  // namespace
+
+Outcome<ContourEvidence> gatherEvidence(const std::vector<RadianceView>& views, int pointsPerView) {
+  ContourEvidence all;
+  std::map<int, int> frameIndex;
+  Eigen::Vector3d& origin = all.origin;
+  double& scale = all.scale;
+  scale = 0;
+  std::size_t offered = 0;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const RadianceView& view = views[v];
+    require(view.surface != nullptr, "fitRadiance: a view without surface");
+    require(view.level > 0 && view.level < 1, "fitRadiance: the level must lie between 0 and 1");
+    for (const Pixel& p : view.contour)
+      if (!p.allFinite()) return Failure{Reason::NotFinite, "a contour point of view " + std::to_string(v)};
+    const auto [known, isNew] = frameIndex.emplace(view.frame, static_cast<int>(all.frames.size()));
+    if (isNew) all.frames.push_back({view.camera, view.surface, {}, std::nullopt});
+    all.frames[known->second].starts.push_back(view.peak);
+    const std::vector<Pixel> pixels =
+        view.contour.size() > std::size_t(pointsPerView) ? resample(Polyline{view.contour, true}, pointsPerView) : view.contour;
+    offered += pixels.size();
+    all.radiusPx += std::sqrt(std::abs(signedArea(Polyline{view.contour, true})) / M_PI) / double(views.size());
+    const Outcome<Ellipse> ellipse = fitEllipse(pixels);
+    for (const Pixel& p : pixels) {
+      // Where the image or the surface ends, the contour is an edge and not a level set.
+      if (onImageBorder(p, view.camera)) continue;
+      const std::optional<Stencil> at = look(view, p, Eigen::Vector3d::Zero(), 1);
+      if (!at) continue;
+      Evidence e;
+      e.view = static_cast<int>(v);
+      e.frame = known->second;
+      e.level = std::sqrt(-std::log(view.level));
+      e.observed = p;
+      e.measured = *at;
+      if (ellipse) e.curvature = curvatureAt(*ellipse, p);
+      origin += at->at.position;
+      scale += (view.camera.centreInWorld() - at->at.position).norm();
+      all.points.push_back(std::move(e));
+    }
+  }
+  if (offered > 0 && all.points.empty()) return Failure{Reason::PeakOffSurface, "no contour point hits the surface"};
+  if (all.points.size() < 5)
+    return Failure{Reason::TooFewPoints, "need 5 on the surface, have " + std::to_string(all.points.size())};
+  origin /= double(all.points.size());
+  scale /= double(all.points.size());
+  if (!(scale > 0) || !std::isfinite(scale)) return Failure{Reason::NotFinite, "camera distance"};
+  for (Evidence& e : all.points)
+    for (Seen* s : {&e.measured.at, &e.measured.left, &e.measured.right, &e.measured.up, &e.measured.down})
+      s->position = (s->position - origin) / scale;
+  return all;
+}
+
+}  // namespace glint::lobe
