@@ -267,13 +267,13 @@ Outcome<Ellipse> fitEllipse(const std::vector<Pixel>& points) {
   Eigen::Vector3d quadratic = (v * eigen.eigenvectors().col(2)).normalized();
   const auto discriminant = [](const Eigen::Vector3d& a) { return 4 * a(0) * a(2) - a(1) * a(1); };
   if (!(discriminant(quadratic) > 0)) {
-    // Exact points of a hyperbola: the wanted eigenvalue drowns beside a huge negative one. Solve the direct form instead.
-    const Eigen::Matrix3d m = r.bottomRightCorner<3, 3>();
-    const Eigen::EigenSolver<Eigen::Matrix3d> general(constraint.inverse() * (m.transpose() * m));
-    for (int i = 0; i < 3; ++i) {
-      const Eigen::Vector3d a = general.eigenvectors().col(i).real();
-      if (discriminant(a) > discriminant(quadratic)) quadratic = a.normalized();
-    }
+    // Exact points of a hyperbola: the wanted eigenvalue drowns beside a huge negative one, and its vector is round-off of the
+    // inverse singular values. With those floored at the root of round-off the wanted one stands out again; no ellipse is near
+    // these points, so that the eight digits left are more than the answer deserves.
+    const Eigen::Vector3d floored = s.cwiseMax(std::sqrt(kEps) * s(0));
+    const Eigen::Matrix3d w = svd.matrixV() * floored.cwiseInverse().asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> again(w.transpose() * constraint * w);
+    quadratic = (w * again.eigenvectors().col(2)).normalized();
   }
   const Eigen::Vector3d linear =
       -r.topLeftCorner<3, 3>().triangularView<Eigen::Upper>().solve(r.topRightCorner<3, 3>() * quadratic);

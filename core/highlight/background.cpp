@@ -2,7 +2,7 @@
 #include "core/highlight/background.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -38,7 +38,7 @@ Background fitBackground(const Image& image, const std::vector<char>& usable, co
   Background result;
   result.coefficients[0] = fallback;
   result.centre = footprint.centre;
-  const Eigen::Matrix2d inverse = footprint.shape.inverse();
+  const Eigen::LLT<Eigen::Matrix2d> shape(footprint.shape);
   const Pixel reach = kOuter * footprint.shape.diagonal().cwiseSqrt();
   result.scale = std::max(1.0, reach.maxCoeff());
   const int x0 = std::max(0, static_cast<int>(footprint.centre.x() - reach.x())),
@@ -54,7 +54,7 @@ Background fitBackground(const Image& image, const std::vector<char>& usable, co
     for (int x = x0; x <= x1; x += stride) {
       if (!usable[static_cast<std::size_t>(y) * image.width + x]) continue;
       const Pixel d = Pixel(x, y) - footprint.centre;
-      const double rho2 = d.dot(inverse * d);
+      const double rho2 = shape.matrixL().solve(d).squaredNorm();
       if (rho2 < kInner * kInner || rho2 > kOuter * kOuter) continue;
       const double u = d.x() / result.scale, v = d.y() / result.scale, tail = std::exp(logLevel * rho2);
       Sample s;
@@ -72,22 +72,31 @@ Background fitBackground(const Image& image, const std::vector<char>& usable, co
   for (std::size_t i = 0; i < samples.size(); ++i) residual[i] = samples[i].value - start;
   Eigen::Matrix<double, 9, 1> solution = Eigen::Matrix<double, 9, 1>::Zero();
   double spread = 0;
+  // Values in the tenth column; nine rows of damping and a zero one below the pixels'.
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 10>;
+  Rows rows(static_cast<Eigen::Index>(samples.size()) + 10, 10);
   for (int round = 0; round < kRounds; ++round) {
     for (std::size_t i = 0; i < samples.size(); ++i) absolute[i] = std::abs(residual[i]);
     spread = 1.4826 * medianOf(absolute);
     const double cut = 4.685 * std::max(spread, 1e-12 * (std::abs(start) + 1e-300));
-    Eigen::Matrix<double, 9, 9> normal = Eigen::Matrix<double, 9, 9>::Zero();
-    Eigen::Matrix<double, 9, 1> right = Eigen::Matrix<double, 9, 1>::Zero();
+    Eigen::Index used = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const double t = residual[i] / cut;
       if (std::abs(t) >= 1) continue;
-      const double w = (1 - t * t) * (1 - t * t);
-      normal += w * samples[i].row * samples[i].row.transpose();
-      right += w * samples[i].value * samples[i].row;
+      const double root = 1 - t * t;  // of the weight
+      rows.row(used).head<9>() = root * samples[i].row.transpose();
+      rows(used, 9) = root * samples[i].value;
+      ++used;
     }
-    // A trace of damping keeps directions that the pixels do not determine (no tail visible, a thin strip) at zero.
-    normal.diagonal().array() += 1e-9 * normal.trace();
-    solution = normal.ldlt().solve(right);
+    // A trace of damping, 3e-5 of the rows' size, keeps directions that the pixels do not determine (no tail visible, a thin
+    // strip) at zero.
+    const double damping = std::sqrt(1e-9) * rows.topLeftCorner(used, 9).norm();
+    rows.middleRows<10>(used).setZero();
+    rows.middleRows<9>(used).leftCols<9>().diagonal().setConstant(damping);
+    used += 10;
+    const Eigen::Matrix<double, 10, 10> r =
+        Eigen::HouseholderQR<Rows>(rows.topRows(used)).matrixQR().topRows<10>().triangularView<Eigen::Upper>();
+    solution = r.topLeftCorner<9, 9>().triangularView<Eigen::Upper>().solve(r.topRightCorner<9, 1>());
     if (!solution.allFinite()) return result;
     for (std::size_t i = 0; i < samples.size(); ++i) residual[i] = samples[i].value - samples[i].row.dot(solution);
   }

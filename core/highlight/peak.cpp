@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -63,7 +64,7 @@ Outcome<PeakFit> fitPeak(const Image& image, int x, int y, double windowLevel) {
   if (static_cast<int>(window.size()) < kEnoughPixels)
     return Failure{Reason::TooFewPoints, "only " + std::to_string(window.size()) + " pixels around the peak"};
 
-  // Centred and scaled coordinates keep the normal equations well conditioned.
+  // Centred and scaled coordinates: the columns of the fit are then of one size.
   Pixel centre(0, 0), low(window[0].cast<double>()), high(low);
   for (const Eigen::Vector2i& p : window) {
     centre += p.cast<double>();
@@ -74,9 +75,9 @@ Outcome<PeakFit> fitPeak(const Image& image, int x, int y, double windowLevel) {
   const double scale = std::max(1.0, 0.5 * (high - low).maxCoeff());
 
   using Row = Eigen::Matrix<double, 6, 1>;
-  Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
-  Row right = Row::Zero();
-  double weights = 0, squares = 0;
+  Eigen::Matrix<double, Eigen::Dynamic, 6> rows(static_cast<Eigen::Index>(window.size()), 6);
+  Eigen::VectorXd right(static_cast<Eigen::Index>(window.size()));
+  double weights = 0;
   int used = 0;
   for (const Eigen::Vector2i& p : window) {
     const double value = image.at(p.x(), p.y());
@@ -84,27 +85,28 @@ Outcome<PeakFit> fitPeak(const Image& image, int x, int y, double windowLevel) {
     const Pixel q = (p.cast<double>() - centre) / scale;
     Row row;
     row << 1, q.x(), q.y(), q.x() * q.x(), q.x() * q.y(), q.y() * q.y();
-    const double w = (value / top) * (value / top), target = std::log(value / top);
-    normal += w * row * row.transpose();
-    right += w * target * row;
-    weights += w;
-    squares += w * target * target;
+    const double root = value / top;  // of the weight
+    rows.row(used) = root * row.transpose();
+    right(used) = root * std::log(value / top);
+    weights += root * root;
     ++used;
   }
   if (used < kEnoughPixels) return Failure{Reason::TooFewPoints, "too few usable pixels around the peak"};
-  const Row c = normal.ldlt().solve(right);
+  const Eigen::ColPivHouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 6>> qr(rows.topRows(used));
+  if (qr.rank() < 6) return Failure{Reason::NotConverged, "singular fit"};
+  const Row c = qr.solve(right.head(used));
   if (!c.allFinite()) return Failure{Reason::NotConverged, "singular fit"};
   Eigen::Matrix2d hessian;
   hessian << 2 * c[3], c[4], c[4], 2 * c[5];
   const Eigen::Vector2d curvatures = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(hessian).eigenvalues();
   if (!(curvatures.maxCoeff() < 0)) return Failure{Reason::NotConverged, "log I has no maximum near the peak"};
-  const Pixel offset = -hessian.inverse() * c.segment<2>(1);
+  const Pixel offset = -hessian.ldlt().solve(c.segment<2>(1));
   PeakFit fit;
   fit.at = centre + scale * offset;
   if ((fit.at.array() < low.array() - 1).any() || (fit.at.array() > high.array() + 1).any())
     return Failure{Reason::NotConverged, "the fitted maximum lies outside its window"};
   fit.value = top * std::exp(c[0] + 0.5 * c.segment<2>(1).dot(offset));
-  fit.rms = std::sqrt(std::max(0.0, squares - c.dot(right)) / weights);
+  fit.rms = (rows.topRows(used) * c - right.head(used)).norm() / std::sqrt(weights);
   fit.pixels = used;
   return fit;
 }

@@ -276,6 +276,19 @@ Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, 
     if (!moved) break;  // no step of any length gains: round-off
   }
   converged = converged || iterations < maxIterations;
+  // The cost tells states apart to the root of its round-off only. The step does better: full steps are taken while they shrink,
+  // which leaves the same answer in every frame of reference.
+  double last = kInfinity;
+  for (int i = 0; converged && i < 40; ++i) {
+    const Step step = linear.step(0);
+    const double length = step.norm();
+    if (!(length < 0.9 * last) || !(length > 1e-15)) break;
+    const State next = state.after(step);
+    if (!contours.rows(next, rows) || !(rows.col(9).squaredNorm() <= linear.cost * (1 + 1e-11))) break;
+    state = next;
+    linear = Linearised(rows, state);
+    last = length;
+  }
 
   if (!(linear.smallest() > kRankRatio * linear.largest()))
     return Failure{Reason::RankDeficient, "several ellipsoids explain the contours equally well"};

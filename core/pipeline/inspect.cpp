@@ -84,6 +84,12 @@ class Run {
     const Outcome<std::shared_ptr<const Surface>> s = r_.surfaces->surfaceOf(frame, normalPolicy(r_.request.settings));
     return s ? *s : nullptr;
   }
+  /// A step that missed the surface gets the reason why there is none: the file that cannot be read.
+  void explainMissingSurface(int frame, std::optional<Failure>& failure) const {
+    if (!failure || failure->reason != Reason::NoSurface) return;
+    const Outcome<std::shared_ptr<const Surface>> s = r_.surfaces->surfaceOf(frame, normalPolicy(r_.request.settings));
+    if (!s) failure = s.failure();
+  }
   std::vector<Group> groups() const;
   bool anyModel(bool (HighlightModel::*needs)() const) const {
     return std::any_of(r_.request.models.begin(), r_.request.models.end(),
@@ -158,8 +164,10 @@ void Run::brightestPointsAndTangentPlanes() {
     FrameEvidence evidence = r_.evidence[frame];
     for (std::size_t h = 0; h < evidence.highlights.size(); ++h)
       evidence.highlights[h] = withNoise(evidence.highlights[h], q.noisePx, q.seed, frame, static_cast<int>(h));
-    for (int h = 0; h < static_cast<int>(evidence.highlights.size()); ++h)
+    for (int h = 0; h < static_cast<int>(evidence.highlights.size()); ++h) {
       r_.views.push_back(trainingView(evidence, h, r_.scene->frames[frame].camera, surfaceOf(frame)));
+      explainMissingSurface(frame, r_.views.back().failure);
+    }
   }
 }
 
@@ -295,6 +303,7 @@ void Run::predictionsAndComparisons() {
             if (r_.request.settings.flag("predict.band"))  // not part of the time: no model needs it
               for (PredictedHighlight& h : prediction.highlights)
                 h.sigmaPx = model.bandSigmaPx(*fit.fit, h, camera, surface.get(), r_.request.settings);
+            explainMissingSurface(frame, prediction.failure);
           } else {
             prediction.failure = fit.failure;
           }

@@ -2,6 +2,7 @@
 #include "core/surface/brightest_point.h"
 
 #include <Eigen/LU>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -109,7 +110,12 @@ Search newton(const Sighting& sighting, const SurfacePoint& start, int maxIterat
     if (std::abs(determinant) > 1e-12 * j.squaredNorm()) {
       step = -(Matrix2d() << j(1, 1), -j(0, 1), -j(1, 0), j(0, 0)).finished() * g / determinant;
     } else {
-      step = -(j.transpose() * j + 1e-9 * j.squaredNorm() * Matrix2d::Identity()).inverse() * (j.transpose() * g);
+      // Nearly singular (a fold): damped by a part in 1e9 of the larger singular value, on the singular values themselves.
+      const Eigen::JacobiSVD<Matrix2d> svd(j, Eigen::ComputeFullU | Eigen::ComputeFullV);
+      const Vector2d s2 = svd.singularValues();
+      const double damping = 1e-9 * s2.squaredNorm();
+      if (!(damping > 0)) break;
+      step = -(svd.matrixV() * (s2.array() / (s2.array().square() + damping)).matrix().asDiagonal() * svd.matrixU().transpose() * g);
     }
     // No step turns the normal by more than half a radian or crosses half of the way to the eye or the light.
     const double turn = std::max(std::abs(curvature->k1), std::abs(curvature->k2));
@@ -182,7 +188,7 @@ void tryPlaneOfFacet(const Sighting& sighting, Search& search) {
   for (int i = 0; i < 20; ++i) {
     const Shading s = sighting.shade(p);
     const Basis t = tangentBasis(p.normal);
-    const Vector2d step = -jacobianAt(s, p, t, {0, 0, t.col(0), t.col(1)}).inverse() * (t.transpose() * s.h);
+    const Vector2d step = -jacobianAt(s, p, t, {0, 0, t.col(0), t.col(1)}).partialPivLu().solve(t.transpose() * s.h);
     if (!step.allFinite()) return;
     const Outcome<SurfacePoint> next = sighting.moved(p, t * step);
     if (!next || next->element != search.point.element) return;
@@ -242,8 +248,8 @@ std::optional<Vector3d> linearZero(const Vector2d& a, const Vector2d& b, const V
   Matrix2d m;
   m << b - a, c - a;
   const double determinant = m.determinant();
-  if (!(std::abs(determinant) > 1e-300)) return std::nullopt;
-  const Vector2d uv = m.inverse() * -a;
+  if (!(std::abs(determinant) > 1e-14 * m.squaredNorm())) return std::nullopt;  // round-off of the two differences
+  const Vector2d uv = m.partialPivLu().solve(-a);
   const Vector3d w(1 - uv.sum(), uv.x(), uv.y());
   if (!(w.minCoeff() > -kSlack)) return std::nullopt;
   return w;
@@ -253,7 +259,8 @@ std::vector<Seed> gridSeeds(const Sighting& sighting, const Window& window, doub
   const int nx = 1 + static_cast<int>(std::ceil((window.max.x() - window.min.x()) / step));
   const int ny = 1 + static_cast<int>(std::ceil((window.max.y() - window.min.y()) / step));
   const Vector2d cell((window.max.x() - window.min.x()) / (nx - 1), (window.max.y() - window.min.y()) / (ny - 1));
-  const Matrix3d worldFromPixel = sighting.camera.camFromWorld.linear().transpose() * sighting.camera.pixelFromRay.inverse();
+  const Matrix3d worldFromPixel = sighting.camera.camFromWorld.linear().transpose() *
+                                  sighting.camera.pixelFromRay.triangularView<Eigen::Upper>().solve(Matrix3d::Identity());
   std::vector<Ray> rays(static_cast<std::size_t>(nx) * ny);
   const auto pixelOf = [&](int i, int j) { return Pixel(window.min.x() + i * cell.x(), window.min.y() + j * cell.y()); };
   for (int j = 0; j < ny; ++j)
@@ -391,13 +398,9 @@ class Finder {
 
   /// Near a fold two solutions lie close together, along the weak direction of the Jacobian: look on both sides.
   void lookForTwin(const Search& search) {
-    const Matrix2d jtj = search.jacobian->transpose() * *search.jacobian;
-    const double mean = 0.5 * jtj.trace(), radius = std::hypot(0.5 * (jtj(0, 0) - jtj(1, 1)), jtj(0, 1));
-    const double weak = mean - radius, strong = mean + radius;
-    if (!(weak < 0.04 * strong)) return;
-    Vector2d direction(jtj(0, 1), weak - jtj(0, 0));
-    if (direction.norm() < 1e-12 * strong) direction = jtj(0, 0) < jtj(1, 1) ? Vector2d::UnitX() : Vector2d::UnitY();
-    direction.normalize();
+    const Eigen::JacobiSVD<Matrix2d> svd(*search.jacobian, Eigen::ComputeFullV);
+    if (!(svd.singularValues()(1) < 0.2 * svd.singularValues()(0))) return;
+    const Vector2d direction = svd.matrixV().col(1);
     for (const double reach : {-1.0, -0.25, 0.25, 1.0}) {
       const Outcome<SurfacePoint> start =
           sighting_.moved(search.point, search.basis * (reach * footprint(search.point) * direction));

@@ -207,7 +207,7 @@ class MeshSurface : public Surface {
     for (int i = 0; i < 20; ++i) {
       Matrix3d j;
       j << patch.du(place.u, place.v), patch.dv(place.u, place.v), -d;
-      const Vector3d step = j.inverse() * (patch.at(place.u, place.v) - o - place.t * d);
+      const Vector3d step = j.partialPivLu().solve(patch.at(place.u, place.v) - o - place.t * d);
       if (!step.allFinite()) return false;
       place.u -= step.x();
       place.v -= step.y();
@@ -401,8 +401,9 @@ Outcome<Curvature> MeshSurface::curvatureAt(const SurfacePoint& p) const {
   // Shape operator S: dN = S dP on the tangent plane; for an interpolated field only nearly symmetric.
   const Eigen::Matrix<double, 3, 2> basis = tangentBasis(n);
   const Matrix2d a = basis.transpose() * dP;
-  if (!(std::abs(a.determinant()) > 0)) return Failure{Reason::NotSupported, "the triangle is seen edge-on from its normal"};
-  Matrix2d s = (basis.transpose() * dN) * a.inverse();
+  // Thinner than a part in 1e12 (as for triangles without an area) the slopes are round-off.
+  if (!(std::abs(a.determinant()) > 1e-12 * a.squaredNorm())) return Failure{Reason::NotSupported, "the triangle is seen edge-on from its normal"};
+  Matrix2d s = a.transpose().partialPivLu().solve((basis.transpose() * dN).transpose()).transpose();
   s = 0.5 * (s + s.transpose()).eval();
   if (p.normal.dot(n) < 0) s = -s;
   if (!s.allFinite()) return Failure{Reason::NotFinite, "curvature"};

@@ -41,7 +41,7 @@ std::optional<Pixel> polishedMaximum(const std::function<std::optional<double>(c
     hessian(0, 1) = hessian(1, 0) = (f[3][3] - f[3][1] - f[1][3] + f[1][1]) / (4 * kStep * kStep);
     Eigen::Vector2d step;
     if (hessian(0, 0) < 0 && hessian.determinant() > 0) {
-      step = -hessian.inverse() * gradient;
+      step = -hessian.ldlt().solve(gradient);
     } else {
       step = gradient.norm() > 0 ? Eigen::Vector2d(gradient.normalized()) : Eigen::Vector2d(0, 0);  // uphill, one pixel
     }
