@@ -257,5 +257,19 @@ TEST_F(BadInput, InterruptedWorkLeavesNoFile) {
   }
 }
 
+TEST(BadDepth, AnUnreadableDepthImageIsNamedWithItsFile) {
+  const TemporaryFolder folder;
+  folder.write("bad.tiff", std::string("II*\0garbage", 11));
+  folder.write("scene.json", R"({"glint_scene": 1, "camera": {"width": 64, "height": 48, "fx": 80, "fy": 80, "cx": 32, "cy": 24},
+    "frames": [{"id": "a", "depth": "bad.tiff", "camera_from_world": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]],
+    "highlights": [{"light": "l", "level": 0.5, "peak": [30, 20], "contour": [[30,10],[40,20],[30,30],[20,20],[22,14]]}]}]})");
+  for (const std::string command : {"evaluate", "reconstruct"}) {
+    const ProgramRun run = runGlint(command + " '" + (folder / "scene.json").string() + "' --train 0" +
+                                    (command == "reconstruct" ? " --model dual -o '" + (folder / "o.glint").string() + "'" : ""));
+    EXPECT_EQ(run.code, 3) << command;
+    EXPECT_THAT(run.err, HasSubstr("bad.tiff")) << command;
+  }
+}
+
 }  // namespace
 }  // namespace glint

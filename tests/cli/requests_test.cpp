@@ -124,5 +124,13 @@ TEST_F(Requests, JsonAloneOnStandardOutputAndNoProgressInAPipe) {
   EXPECT_THAT(on("evaluate", "--models limit-angle --csv -").out, StartsWith("model,index,id,light,"));
 }
 
+TEST(Stability, JsonGoesToStandardOutputAloneAndNothingIsWrong) {
+  const ProgramRun run = runGlint("stability --json -");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, testing::StartsWith("{"));
+  EXPECT_THAT(run.out, testing::HasSubstr("\"glint_stability\": 1"));
+  EXPECT_THAT(run.out, testing::Not(testing::HasSubstr("\"wrong\"")));
+}
+
 }  // namespace
 }  // namespace glint

@@ -12,7 +12,9 @@
 #include "core/light/estimate.h"
 #include "core/model/reconstruct.h"
 #include "core/model/walk.h"
+#include "core/pipeline/inspection.h"
 #include "core/stability/scene.h"
+#include "tests/core/pipeline/exact_scene.h"
 
 namespace glint {
 namespace {
@@ -279,6 +281,39 @@ TEST(Invariance, DuplicatedFrames) {
     worst.merge(between(here, there));
   }
   expectSame(worst, "duplicated frames");
+}
+
+TEST(Invariance, OrderOfLights) {
+  using testing_support::NamedLight;
+  const std::vector<NamedLight> lights{{"a", {0.1, 0.2, 1.4}}, {"b", {-0.25, 0.3, 1.7}}};
+  const auto both = [](int) { return std::vector<std::string>{"a", "b"}; };
+  const auto here = testing_support::exactScene(testing_support::sheet(0.4), lights, 6, both);
+  const auto there = std::make_shared<glint::Scene>(*here);
+  for (Frame& f : there->frames) {
+    std::reverse(f.lightsOn.begin(), f.lightsOn.end());
+    std::reverse(f.highlights.begin(), f.highlights.end());
+  }
+  InspectionRequest request;
+  request.models = {"primal", "dual", "canonical", "limit-angle"};
+  request.train = "0-4";
+  const Inspection first = inspect(here, request), second = inspect(there, request);
+  ASSERT_EQ(first.lights.size(), 2u);
+  for (const auto& [id, light] : first.lights) {
+    const Eigen::Vector3d a = light.light.position(), b = second.lights.at(id).light.position();
+    EXPECT_LT((a - b).norm() / a.norm(), kSame) << id;
+  }
+  int fits = 0;
+  for (const auto& [name, model] : first.models)
+    for (const ModelResult::Fit& f : model.fits) {
+      const auto& others = second.models.at(name).fits;
+      const auto twin = std::find_if(others.begin(), others.end(), [&](const ModelResult::Fit& o) { return o.light == f.light; });
+      ASSERT_TRUE(twin != others.end() && f.fit && twin->fit) << name;
+      if (f.fit->ellipsoid) {
+        EXPECT_LT((f.fit->ellipsoid->centre() - twin->fit->ellipsoid->centre()).norm() / f.fit->ellipsoid->semiAxes().x(), kSame) << name;
+      }
+      ++fits;
+    }
+  EXPECT_EQ(fits, 8);
 }
 
 }  // namespace

@@ -1,0 +1,18 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Writes the table of docs/stability.md again, from `glint stability --markdown`: docs/make_stability.py [PROGRAM]"""
+import pathlib
+import subprocess
+import sys
+
+root = pathlib.Path(__file__).resolve().parent.parent
+program = sys.argv[1] if len(sys.argv) > 1 else str(root / "build/release/bin/glint")
+run = subprocess.run([program, "stability", "--markdown"], stdout=subprocess.PIPE, text=True)
+if run.returncode not in (0, 1):
+    sys.exit(f"make_stability.py: {program} failed with {run.returncode}")
+page = root / "docs/stability.md"
+begin, end = "<!-- table -->\n", "<!-- end of table -->\n"
+head, rest = page.read_text().split(begin)
+tail = rest.split(end)[1]
+page.write_text(head + begin + run.stdout + end + tail)
+sys.exit(run.returncode)
