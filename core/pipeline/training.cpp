@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/light/estimate.h"
+#include "core/light/refine_poses.h"
 #include "core/model/walk.h"
 
 namespace glint {
@@ -123,6 +124,10 @@ Outcome<LightEstimate> estimateLight(const std::vector<TrainingView>& views, con
       options.limitOrders = 1;
       const Outcome<Bundle> directed = bundleLight(bundleViews, b->light, options);
       if (directed) b = directed;
+    }
+    if (settings.flag("light.refine_poses")) {
+      const Outcome<PoseRefinement> refined = refinePoses(bundleViews, b->light, settings.number("light.pose_sigma"), options);
+      if (refined) b = refined->bundle;
     }
     estimate.extent = b->extent;
     estimate.solver = "bundle";
