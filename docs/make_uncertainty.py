@@ -74,7 +74,7 @@ The contours are exact level sets of the limit angle, so the model is right and 
 ## Ellipsoids
 The bands of the ellipsoid models (`--models limit-angle,canonical` adds their table here) are not promised to cover. An ellipsoid is not exact on a curved surface, so here the truth is the same model's prediction from noise-free contours: the band is about noise alone and says nothing about
 the model's own error, which is usually larger ([accuracy.md](accuracy.md)). Light and ellipsoid are taken as independent although the same noise enters both, and where the ellipsoid does not
-fit, its residuals are no noise: the shares below are measured, not promised.
+fit, its residuals are no noise.
 
 {table(fits, False) if fits else ""}
 ## What the band does not know
