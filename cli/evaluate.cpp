@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cstdio>
+#include <cmath>
 
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
@@ -8,21 +8,6 @@
 #include "core/pipeline/selection.h"
 
 namespace glint::cli {
-namespace {
-
-std::string candidateTable(const Selection& s) {
-  std::string out = "candidate     views   leave-one-out %   std. error %   seconds  remark\n";
-  char line[256];
-  for (const Candidate& c : s.candidates) {
-    const std::string views = std::to_string(c.answered) + "/" + std::to_string(c.views);
-    std::snprintf(line, sizeof line, "%-12s %6s %17.4g %14.4g %9.2f  ", c.model.c_str(), views.c_str(), c.meanPct, c.standardErrorPct,
-                  c.timeUs * 1e-6);
-    out += line + c.remark + "\n";
-  }
-  return out;
-}
-
-}  // namespace
 
 Command evaluateCommand() {
   struct Arguments : InspectionArguments {
@@ -74,9 +59,12 @@ Command evaluateCommand() {
       result = inspect(scene, request, context.progress());
       requireUsableViews(result);
       const Selection s = selectModel(result, goodEnough, context.progress());
-      text = candidateTable(s) + s.why + "\n\n";
+      text = selectionTable(s) + "\n";
+      report.selection = s;
       if (s.model.empty()) {
-        context.print(text);
+        report.whyChosen = s.why;
+        if (!a->json.empty()) context.write(a->json, evaluationJson(result, report));
+        if (a->json != "-") context.print(text);
         throw CannotAnswer{{Reason::NotReached, s.why}};
       }
       request.models = {s.model};

@@ -202,6 +202,15 @@ std::string evaluationHtml(const Inspection& inspection, const ReportContext& co
           ", from the " + (inspection.request.source == FrameSource::Image ? "captured images" : "float radiance where there is one") + ".</p>\n";
   if (!context.chosenModel.empty())
     html += "<p><b>Chosen model: " + escaped(context.chosenModel) + "</b>. " + escaped(context.whyChosen) + "</p>\n";
+  if (context.selection) {
+    html += "<table><tr><th>candidate</th><th>left-out views answered</th><th>leave-one-out error %</th><th>standard error %</th>"
+            "<th>&micro;s a frame</th><th>remark</th></tr>\n";
+    for (const Candidate& c : context.selection->candidates)
+      html += "<tr><td><span class=\"swatch\" style=\"background:" + colourOf(c.model) + "\"></span>" + c.model + "</td><td>" +
+              std::to_string(c.answered) + " / " + std::to_string(c.views) + "</td><td>" + format("%.3g", c.meanPct) + "</td><td>" +
+              format("%.2g", c.standardErrorPct) + "</td><td>" + format("%.3g", c.predictUs) + "</td><td class=\"reason\">" + escaped(c.remark) + "</td></tr>\n";
+    html += "</table>\n";
+  }
   html +=
       "<p>Errors are over held-out highlights: symmetric mean distance between predicted and observed contour, as a percentage of the "
       "equivalent diameter of the observed region.</p>\n"

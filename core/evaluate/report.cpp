@@ -47,6 +47,20 @@ ordered_json settingsJson(const Settings& settings) {
   return out;
 }
 
+ordered_json selectionJson(const Selection& s) {
+  ordered_json j = {{"training_views", s.trainingViews}, {"left_out", s.leftOut}, {"candidates", ordered_json::array()}};
+  for (const Candidate& c : s.candidates)
+    j["candidates"].push_back({{"model", c.model},
+                               {"views", c.views},
+                               {"answered", c.answered},
+                               {"mean_pct", number(c.meanPct)},
+                               {"standard_error_pct", number(c.standardErrorPct)},
+                               {"predict_us", number(c.predictUs)},
+                               {"time_us", number(c.timeUs)},
+                               {"remark", c.remark}});
+  return j;
+}
+
 ordered_json fitJson(const ModelResult::Fit& entry) {
   ordered_json j;
   j["light"] = entry.light;
@@ -225,6 +239,7 @@ std::string evaluationJson(const Inspection& inspection, const ReportContext& co
   j["settings"] = settingsJson(inspection.request.settings);
   j["chosen_model"] = context.chosenModel.empty() ? ordered_json(nullptr) : ordered_json(context.chosenModel);
   j["why_chosen"] = context.whyChosen;
+  if (context.selection) j["selection"] = selectionJson(*context.selection);
   j["models"] = ordered_json::object();
   for (const std::string& name : inspection.request.models)
     if (const auto it = inspection.models.find(name); it != inspection.models.end())

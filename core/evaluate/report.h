@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/pipeline/inspection.h"
+#include "core/pipeline/selection.h"
 
 namespace glint {
 
@@ -12,6 +14,7 @@ struct ReportContext {
   std::string input;          ///< as the user named it
   std::string chosenModel;    ///< "" = none
   std::string whyChosen;      ///< one sentence
+  std::optional<Selection> selection;  ///< what the automatic choice tried
 };
 
 /// The answered model with the smallest mean held-out contour error among those that predicted most frames; "" when none answered.

@@ -15,21 +15,34 @@ struct Candidate {
   int views = 0;                  ///< training views left out one at a time
   int answered = 0;               ///< of those, predicted and overlapping the observed contour
   double meanPct = 0;             ///< leave-one-view-out contour error, % of the equivalent diameter; NaN when none was answered
-  double standardErrorPct = 0;    ///< of that mean
-  double timeUs = 0;              ///< all fits and predictions
-  std::string remark;             ///< "chosen", "simpler ones are as good", the first reason of a failure, ...
+  double standardErrorPct = 0;    ///< of that mean; NaN with fewer than two views
+  double timeUs = 0;              ///< all fits and predictions; light and canonical contours count for the first model that needed them
+  double predictUs = 0;           ///< median of one prediction
+  std::string remark;             ///< "chosen", "as good as the best, but richer", the first reason of a failure, ...
 };
 
 struct Selection {
-  std::string model;              ///< "" when no candidate answered every view
+  std::string model;              ///< "" when no candidate answered every view that can be answered
   std::string why;                ///< one sentence
-  std::vector<Candidate> candidates;
+  int trainingViews = 0;          ///< usable ones
+  int leftOut = 0;                ///< of them left out, one at a time: at most kMostLeftOut, evenly spread
+  std::vector<Candidate> candidates;  ///< from simple to rich, as far as the search went
 };
 
-/// The simplest model whose leave-one-view-out contour error is within one standard error of the best, or under
-/// `goodEnoughPct` when that is given. Uses training views only. Candidates are tried from simple to rich; with a tolerance
-/// the search stops at the first that meets it: nothing richer is computed.
+/// Beyond this the error of the mean says enough, and the work would grow with the square of the views.
+inline constexpr int kMostLeftOut = 24;
+/// Errors nearer than this are equal: a hundredth of a pixel on a highlight of 200 px, which no detected contour resolves.
+inline constexpr double kNegligiblePct = 0.005;
+
+/// The simplest model whose leave-one-view-out contour error is within one standard error of the best (or within
+/// kNegligiblePct), or under `goodEnoughPct` when that is given. Uses training views only. Candidates are tried from simple to
+/// rich; with a tolerance the search stops at the first that meets it: nothing richer is computed. A view that no model
+/// answers counts against none; without a tolerance a model must answer every view that another one does.
+/// The light and the canonical contours without a view are computed once for all models that need them.
 /// @param inspection  needs evidence and views; models need not have been fitted.
 Selection selectModel(const Inspection& inspection, const std::optional<double>& goodEnoughPct, const ProgressFn& progress = {});
+
+/// A table of the candidates and the sentence, for a person.
+std::string selectionTable(const Selection& selection);
 
 }  // namespace glint
