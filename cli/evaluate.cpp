@@ -75,8 +75,9 @@ Command evaluateCommand() {
       result = inspect(scene, request, context.progress());
       report.chosenModel = bestModel(result);
       if (!report.chosenModel.empty())
-        report.whyChosen = "Smallest mean held-out contour error among the models that predicted most frames; `--models auto` chooses from "
-                           "the training frames alone.";
+        report.whyChosen =
+            "Smallest mean held-out contour error among the models that predicted most frames; `--models auto` chooses from "
+            "the training frames alone.";
     }
     // What was asked for on standard output must stay parseable there: the table then stays away.
     const bool tableToo = a->json != "-" && a->csv != "-" && a->html != "-";
@@ -91,7 +92,8 @@ Command evaluateCommand() {
     }
     requireUsableViews(result);
     std::string reasons;
-    for (const auto& [name, model] : result.models) reasons += (reasons.empty() ? "" : "; ") + name + ": " + summarise(result, model).reason;
+    for (const auto& [name, model] : result.models)
+      reasons += (reasons.empty() ? "" : "; ") + name + ": " + summarise(result, model).reason;
     throw CannotAnswer{{Reason::NotReached, "no model answered; " + reasons}};
   };
   return c;

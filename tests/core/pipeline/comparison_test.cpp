@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/pipeline/selection.h"
-#include "tests/core/pipeline/exact_scene.h"
 
 namespace glint {
 namespace {
@@ -103,32 +101,6 @@ TEST(CompareFrame, AnUnreadableFrameKeepsItsReason) {
   ASSERT_EQ(c.rows.size(), 1u);
   ASSERT_TRUE(c.rows[0].failure);
   EXPECT_EQ(c.rows[0].failure->reason, Reason::FrameUnreadable);
-}
-
-/// method.md section 11: a noise-free plane needs nothing but the camera; a sphere does.
-Selection choiceOn(const AnalyticSpec& spec, std::optional<double> goodEnough = {}) {
-  const auto scene = testing_support::exactScene(spec, {{"lamp", {0.3, 0.2, 2.0}}}, 6, [](int) { return std::vector<std::string>{"lamp"}; });
-  InspectionRequest request;
-  request.models.clear();
-  return selectModel(inspect(scene, request), goodEnough);
-}
-
-TEST(SelectModel, APlaneWithAToleranceNeedsOnlyTheCamera) {
-  const Selection s = choiceOn(testing_support::sheet(0), 0.5);
-  EXPECT_EQ(s.model, "primal") << s.why;
-  EXPECT_EQ(s.candidates.size(), 1u) << "nothing richer is computed";
-}
-
-TEST(SelectModel, ASphereWithATightToleranceNeedsTheLevelSet) {
-  const Selection s = choiceOn(testing_support::sphere(0.5), 0.05);
-  EXPECT_EQ(s.model, "limit-angle") << s.why;
-  EXPECT_EQ(s.candidates.size(), 4u);
-  EXPECT_NE(s.why.find("tolerance"), std::string::npos);
-}
-
-TEST(SelectModel, WithoutATolerance) {
-  const Selection s = choiceOn(testing_support::sphere(0.5));
-  EXPECT_EQ(s.model, "limit-angle") << s.why;
 }
 
 }  // namespace

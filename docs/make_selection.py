@@ -1,0 +1,106 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Writes docs/selection.md: what `glint evaluate --models auto` chooses on scenes where the right answer is known.
+
+    docs/make_selection.py --glint build/release/bin/glint [--shared ../shared]
+
+Ends with 1 when a choice is not among those that follow from what the models assume.
+"""
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+LEVEL_SET = {"limit-angle", "reflectance"}
+# Scene, training, and which choices are right: without a tolerance, with 0.5 %, with 1 px noise on contours and peaks.
+SYNTHETIC = [
+    ("plane", "spread:8", {"primal"}, {"primal"}, {"primal"}),
+    ("sphere", "spread:8", LEVEL_SET, {"primal", "dual", "canonical"}, {"canonical"} | LEVEL_SET),
+    ("cylinder", "spread:8", LEVEL_SET, {"dual", "canonical"}, {"canonical"} | LEVEL_SET),
+    ("plane_to_cylinder", "spread:10", LEVEL_SET, {"canonical"}, {"canonical"} | LEVEL_SET),
+    ("plane_to_cylinder", "0-5", {"canonical"} | LEVEL_SET, {"canonical"}, {"canonical"} | LEVEL_SET),
+    ("ellipsoid", "spread:8", {"canonical"} | LEVEL_SET, {"canonical", "limit-angle"}, {"canonical"} | LEVEL_SET),
+    ("two_lights", "spread:8", LEVEL_SET, {"dual", "canonical"}, {"canonical"} | LEVEL_SET),
+    ("tube_light", "spread:8", {"canonical"} | LEVEL_SET, {"canonical"} | LEVEL_SET, {"dual", "canonical"} | LEVEL_SET),
+]
+CYCLES = [
+    ("plane_to_cylinder", "spread:12", {"reflectance"}, {"canonical"}, {"canonical"} | LEVEL_SET),
+    ("sphere", "spread:6", {"reflectance"}, LEVEL_SET, LEVEL_SET),
+    ("vase", "spread:6", {"reflectance"}, {"reflectance"}, LEVEL_SET),
+]
+RUNS = [("no tolerance", []), ("tolerance 0.5 %", ["--good-enough-pct", "0.5"]), ("1 px noise", ["--noise-px", "1", "--seed", "3"])]
+
+
+def choose(glint, scene, train, more):
+    run = subprocess.run([glint, "evaluate", scene, "--models", "auto", "--train", train, "--json", "-", *more], capture_output=True, text=True)
+    if run.returncode not in (0, 3):
+        sys.exit(f"{scene}: {run.stderr}")
+    return json.loads(run.stdout)
+
+
+def percent(value):
+    return "–" if value is None else f"{value:.2g} %" if value < 1 else f"{value:.3g} %"
+
+
+def write(out, tables):
+    models = ["primal", "dual", "canonical", "limit-angle", "reflectance"]
+    text = ("# The automatic choice, shown\n\nWritten by `docs/make_selection.py`; every number comes from `glint evaluate --models auto`. The first scenes are made by `glint synth`\n"
+            "from `resources/specs/auto`: exact contours under one limit angle (the tube light: rendered radiance). The rule is in [method.md](method.md), section 11.\n"
+            "Columns of models: leave-one-view-out error on the training views, \\* the choice, – not tried, (k) answered k views only. Last but one: error of the choice\n"
+            "on the held-out frames, which it has not seen. Last: time of the whole choice.\n")
+    for run, _ in RUNS:
+        text += f"\n## {run[0].upper() + run[1:]}\n| scene | training | " + " | ".join(models) + " | held out | seconds |\n|---|---|" + "---|" * (len(models) + 2) + "\n"
+        for name, train, chosen, errors, held_out, seconds in tables[run]:
+            cells = []
+            for m in models:
+                c = errors.get(m)
+                if c is None:
+                    cells.append("–")
+                    continue
+                partial = "" if c["answered"] == c["views"] else f" ({c['answered']})"
+                cells.append(percent(c["mean_pct"]) + partial + (" **\\***" if m == chosen else ""))
+            text += f"| {name} | `{train}` | " + " | ".join(cells) + f" | {percent(held_out)} | {seconds:.1f} |\n"
+    out.write_text(text)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--glint", default=ROOT / "build/release/bin/glint", type=pathlib.Path)
+    parser.add_argument("--shared", default=ROOT.parent / "shared", type=pathlib.Path)
+    parser.add_argument("--out", default=ROOT / "docs/selection.md", type=pathlib.Path)
+    args = parser.parse_args()
+    wrong = []
+    tables = {name: [] for name, _ in RUNS}
+    with tempfile.TemporaryDirectory() as folder:
+        scenes = []
+        for name, train, *right in SYNTHETIC:
+            made = pathlib.Path(folder) / name
+            if not made.exists():
+                subprocess.run([args.glint, "synth", ROOT / f"resources/specs/auto/{name}.json", "-o", made], check=True, stdout=subprocess.DEVNULL)
+            scenes.append((name, made, train, right))
+        for name, train, *right in CYCLES:
+            file = args.shared / "data/cycles" / name / "scene.json"
+            if file.exists():
+                scenes.append((f"{name} (path-traced)", file, train, right))
+        for name, scene, train, right in scenes:
+            for (run, more), allowed in zip(RUNS, right):
+                result = choose(args.glint, scene, train, more)
+                chosen = result["chosen_model"]
+                if chosen not in allowed:
+                    wrong.append(f"{name}, {train}, {run}: {chosen}, expected {' or '.join(sorted(allowed))}")
+                errors = {c["model"]: c for c in result["selection"]["candidates"]}
+                held_out = result["models"][chosen]["summary"]["contour_error_pct"]["mean"] if chosen else None
+                seconds = sum(c["time_us"] for c in errors.values()) * 1e-6
+                tables[run].append((name, train, chosen, errors, held_out, seconds))
+                print(f"{name}, {train}, {run}: {chosen}", file=sys.stderr)
+            write(args.out, tables)  # what is there so far is true whatever happens next
+    for line in wrong:
+        print("WRONG: " + line, file=sys.stderr)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
