@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <filesystem>
+
+#include "core/tradeoff/run.h"
 #include "gui/engine.h"
 #include "gui/session_file.h"
 
@@ -10,6 +13,25 @@ Engine coreEngine() {
   engine.save = saveSession;
   engine.inspect = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn& progress,
                       const Inspection* previous) { return inspect(std::move(scene), request, progress, previous); };
+  engine.choose = [](std::shared_ptr<const Scene> scene, InspectionRequest request, std::optional<double> goodEnoughPct,
+                     const ProgressFn& progress, const Inspection* previous) {
+    request.models.clear();  // evidence and views alone
+    return selectModel(inspect(std::move(scene), request, progress, previous), goodEnoughPct, progress);
+  };
+  engine.tradeoff = [](std::shared_ptr<const Scene> scene, InspectionRequest request, const std::string& file,
+                       const ProgressFn& progress) {
+    request.models.clear();
+    for (const auto& model : allModels()) request.models.push_back(model->id());
+    TradeoffOptions options;
+    options.input = file;
+    // Beside a session file, whose folder the user writes to anyway.
+    if (std::filesystem::path(file).extension() == ".glint") options.workFile = file + ".work";
+    options.program = "glint-inspector";
+    Tradeoff t = measureTradeoff(std::move(scene), request, options, progress);
+    std::error_code ignored;
+    if (!options.workFile.empty()) std::filesystem::remove(options.workFile, ignored);
+    return t;
+  };
   engine.parseTrain = parseTrainSpec;
   return engine;
 }

@@ -61,6 +61,23 @@ void Document::setInspection(std::shared_ptr<const Inspection> inspection, const
   emit inspectionChanged();
 }
 
+void Document::setTradeoff(std::shared_ptr<const Tradeoff> tradeoff) {
+  tradeoff_ = std::move(tradeoff);
+  emit tradeoffChanged();
+  emit savedStateChanged();
+}
+
+bool Document::isLoaded(const TradeoffPoint& point) const {
+  return state_.request.models == std::vector<std::string>{point.model} && state_.request.settings == point.settings;
+}
+
+void Document::load(const TradeoffPoint& point, const QString& text) {
+  ViewState after = state_;
+  after.request.models = {point.model};
+  after.request.settings = point.settings;
+  push(std::move(after), text);
+}
+
 void Document::open(const Opened& opened) {
   // Parsed before anything changes, so that a wrong specification leaves the document as it was.
   if (parseTrain_ && opened.scene) parseTrain_(opened.request.train, *opened.scene);
@@ -73,9 +90,11 @@ void Document::open(const Opened& opened) {
   session_ = opened.session;
   sessionFile_ = opened.isSession ? inputFile_ : QString();
   inspection_.reset();
+  tradeoff_ = savedTradeoff_ = opened.tradeoff;
   updateTraining();
   setStale(scene_ != nullptr);
   emit sceneOpened();
+  emit tradeoffChanged();
 }
 
 Opened Document::toSave() const {
@@ -87,17 +106,19 @@ Opened Document::toSave() const {
   o.selection = state_.selection;
   o.layers = state_.layers;
   o.session = session_;
+  o.tradeoff = tradeoff_;
   return o;
 }
 
-void Document::markSaved(const QString& sessionFile, const ViewState& saved) {
+void Document::markSaved(const QString& sessionFile, const ViewState& saved, std::shared_ptr<const Tradeoff> tradeoff) {
   sessionFile_ = sessionFile;
   saved_ = saved;
+  savedTradeoff_ = std::move(tradeoff);
   emit savedStateChanged();
 }
 
 bool Document::hasUnsavedChanges() const {
-  return scene_ && (!sameRequest(saved_.request, state_.request) || saved_.layers != state_.layers);
+  return scene_ && (!sameRequest(saved_.request, state_.request) || saved_.layers != state_.layers || tradeoff_ != savedTradeoff_);
 }
 
 void Document::setSetting(const std::string& key, const SettingValue& value, int gesture) {

@@ -52,14 +52,20 @@ class Document : public QObject {
   bool stale() const { return stale_; }
   void setInspection(std::shared_ptr<const Inspection> inspection, const InspectionRequest& computedFor);
 
+  /// Measured speed against accuracy of this scene; null = none. Stored in the session.
+  std::shared_ptr<const Tradeoff> tradeoff() const { return tradeoff_; }
+  void setTradeoff(std::shared_ptr<const Tradeoff> tradeoff);
+  /// The request is the model and the settings of this point, and no other model.
+  bool isLoaded(const TradeoffPoint& point) const;
+
   /// Replaces everything; the undo history starts anew. A training specification that does not fit the scene throws InputError.
   void open(const Opened& opened);
   /// Path of the session file, "" while there is none.
   const QString& sessionFile() const { return sessionFile_; }
   const QString& inputFile() const { return inputFile_; }
   Opened toSave() const;
-  /// @param saved  the state that was written, which may be older than the one on screen.
-  void markSaved(const QString& sessionFile, const ViewState& saved);
+  /// @param saved, tradeoff  what was written, which may be older than what is on screen.
+  void markSaved(const QString& sessionFile, const ViewState& saved, std::shared_ptr<const Tradeoff> tradeoff = nullptr);
   /// What a session stores differs from what was opened or saved last (moving through the frames does not count).
   bool hasUnsavedChanges() const;
 
@@ -71,6 +77,8 @@ class Document : public QObject {
   /// False, with one line in `error`, when the specification does not parse.
   bool setTrain(const std::string& specification, QString* error = nullptr);
   void setSource(FrameSource source);
+  /// Model and settings of a measured point, as one step of undo. @param text  what the step is called.
+  void load(const glint::TradeoffPoint& point, const QString& text);
   void setRole(int frame, FrameRole role);
   void select(const viz::Selection& selection, int gesture = 0);
   void selectFrame(int frame, int gesture = 0);
@@ -84,6 +92,7 @@ class Document : public QObject {
   void inspectionChanged();
   void staleChanged(bool stale);
   void savedStateChanged();
+  void tradeoffChanged();
 
  private:
   friend class StateCommand;
@@ -99,6 +108,7 @@ class Document : public QObject {
   QString sessionFile_, inputFile_;
   std::shared_ptr<const Session> session_;
   std::shared_ptr<const Inspection> inspection_;
+  std::shared_ptr<const Tradeoff> tradeoff_, savedTradeoff_;
   bool stale_ = false;
   int gesture_ = 0;
   QUndoStack undo_;

@@ -8,6 +8,8 @@
 #include <string>
 
 #include "core/pipeline/inspection.h"
+#include "core/pipeline/selection.h"
+#include "core/tradeoff/tradeoff.h"
 #include "viz/scene_view.h"
 
 namespace glint {
@@ -23,10 +25,11 @@ struct Opened {
   std::shared_ptr<const Scene> scene;
   InspectionRequest request;
   viz::Selection selection;
-  std::map<std::string, bool> layers;       ///< visibility by layer name, where it differs from the default
-  std::string layout;                       ///< "" = keep the window's
-  std::optional<viz::ViewPoint> viewPoint;  ///< of the 3D view; none = show everything
-  std::shared_ptr<const Session> session;   ///< what the file said besides (notes, unknown keys); null for a plain scene
+  std::map<std::string, bool> layers;        ///< visibility by layer name, where it differs from the default
+  std::string layout;                        ///< "" = keep the window's
+  std::optional<viz::ViewPoint> viewPoint;   ///< of the 3D view; none = show everything
+  std::shared_ptr<const Tradeoff> tradeoff;  ///< measured speed against accuracy; null = none
+  std::shared_ptr<const Session> session;    ///< what the file said besides (notes, unknown keys); null for a plain scene
 };
 
 /// Everything that the desktop program asks of `core`. `coreEngine()` is the real one; tests replace single
@@ -37,6 +40,13 @@ struct Engine {
   /// As glint::inspect: throws Stopped and InputError.
   std::function<Inspection(std::shared_ptr<const Scene>, const InspectionRequest&, const ProgressFn&, const Inspection* previous)>
       inspect;
+  /// The automatic choice of the model; throws Stopped and InputError. Needs no fitted model.
+  std::function<glint::Selection(std::shared_ptr<const Scene>, const InspectionRequest&, std::optional<double> goodEnoughPct,
+                                 const ProgressFn&, const Inspection* previous)>
+      choose;
+  /// As glint::measureTradeoff on the models that the program knows; `file` is what is open, so that stopped work can be resumed.
+  std::function<Tradeoff(std::shared_ptr<const Scene>, const InspectionRequest&, const std::string& file, const ProgressFn&)>
+      tradeoff;
   /// As glint::parseTrainSpec: InputError for a specification that does not parse.
   std::function<TrainSpec(const std::string&, const Scene&)> parseTrain;
   /// Writes a session file atomically; InputError when it cannot be written, Stopped. It hashes every input file, so it takes

@@ -134,6 +134,7 @@ bool FileActions::saveTo(const QString& path) {
   if (addView_) addView_(*opened);
   savingScene_ = document_.sharedScene();
   saving_ = document_.state();
+  savingTradeoff_ = document_.tradeoff();
   savingResults_ = results != nullptr;
   runner_.save(opened, results, path.toStdString());
   return true;
@@ -142,7 +143,7 @@ bool FileActions::saveTo(const QString& path) {
 void FileActions::finishSave(const QString& path, const QString& problem) {
   saveWorked_ = problem.isEmpty();
   if (saveWorked_) {
-    if (savingScene_ == document_.sharedScene()) document_.markSaved(path, saving_);  // else another scene was opened meanwhile
+    if (savingScene_ == document_.sharedScene()) document_.markSaved(path, saving_, savingTradeoff_);  // else another scene was opened meanwhile
     remember(path);
     emit message(savingResults_ ? tr("Saved %1").arg(path)
                                 : tr("Saved %1 without results: they were not up to date").arg(path));

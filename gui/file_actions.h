@@ -60,6 +60,7 @@ class FileActions : public QObject {
   QString frameToSelect_;
   std::shared_ptr<const Scene> savingScene_;  ///< not null while a save is under way
   ViewState saving_;                          ///< what it writes
+  std::shared_ptr<const Tradeoff> savingTradeoff_;
   bool savingResults_ = false, saveWorked_ = false;
   std::function<void(Opened&)> addView_;
 };

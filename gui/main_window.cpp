@@ -34,6 +34,7 @@
 #include "gui/start_page.h"
 #include "gui/text.h"
 #include "gui/timeline.h"
+#include "gui/tradeoff_panel.h"
 
 namespace glint::gui {
 
@@ -142,10 +143,22 @@ QDockWidget* MainWindow::addDock(const char* name, const QString& title, QWidget
 void MainWindow::buildDocks() {
   setCorner(Qt::BottomLeftCorner, Qt::BottomDockWidgetArea);
   setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
-  auto* setup = new SetupPanel(document_);
-  connect(setup, &SetupPanel::problem, this, &MainWindow::showProblem);
+  setup_ = new SetupPanel(document_);
+  connect(setup_, &SetupPanel::problem, this, &MainWindow::showProblem);
+  connect(setup_, &SetupPanel::autoRequested, this, [this](double goodEnoughPct) {
+    if (document_.scene() && engine_.choose)
+      runner_.choose(document_.sharedScene(), document_.request(), goodEnoughPct, document_.inspection());
+  });
+  connect(&runner_, &Runner::chosen, this, [this](const SelectionPtr& selection, const OpenedPtr& computedFor) {
+    if (computedFor->scene != document_.sharedScene() || !sameRequest(computedFor->request, document_.request())) return;  // too late
+    const QString table = toQString(selectionTable(*selection));
+    log(tr("Automatic choice of the model\n") + table);
+    setup_->showChoice(toQString(selection->why), table);
+    if (!selection->model.empty()) document_.setModels({selection->model});
+    if (document_.stale()) recompute();  // the choice took the place of a run that was under way
+  });
   auto* setupScroll = new QScrollArea;  // small windows scroll it instead of squeezing it
-  setupScroll->setWidget(setup);
+  setupScroll->setWidget(setup_);
   setupScroll->setWidgetResizable(true);
   setupScroll->setMinimumWidth(190);
   setupScroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
@@ -170,6 +183,20 @@ void MainWindow::buildDocks() {
   log_->setReadOnly(true);
   log_->setMaximumBlockCount(2000);
   tabifyDockWidget(errors, addDock("log", tr("Log"), log_, Qt::BottomDockWidgetArea));
+  tradeoff_ = new TradeoffPanel(document_);
+  tabifyDockWidget(errors, addDock("tradeoff", tr("Speed and accuracy"), tradeoff_, Qt::BottomDockWidgetArea));
+  connect(tradeoff_, &TradeoffPanel::measureRequested, this, [this] {
+    if (document_.scene() && engine_.tradeoff)
+      runner_.measure(document_.sharedScene(), document_.request(),
+                      (document_.sessionFile().isEmpty() ? document_.inputFile() : document_.sessionFile()).toStdString());
+  });
+  connect(&runner_, &Runner::busyChanged, tradeoff_, &TradeoffPanel::setBusy);
+  connect(&runner_, &Runner::measured, this, [this](const TradeoffPtr& tradeoff, const OpenedPtr& computedFor) {
+    if (computedFor->scene != document_.sharedScene()) return;
+    document_.setTradeoff(tradeoff);
+    log(tr("Speed and accuracy: %1").arg(toQString(tradeoff->reason)));
+    if (document_.stale()) recompute();  // the measurement took the place of a run that was under way
+  });
   errors->raise();
 }
 
@@ -266,7 +293,8 @@ void MainWindow::applyLayout(const QString& name) {
   layout_ = QLatin1String(layout.name);
   for (auto dock = docks_.begin(); dock != docks_.end(); ++dock) {
     // Log and history are tabs behind their neighbours: they follow them.
-    const QString host = dock.key() == QStringLiteral("log")       ? QStringLiteral("errors")
+    const QString host = dock.key() == QStringLiteral("log")        ? QStringLiteral("errors")
+                         : dock.key() == QStringLiteral("tradeoff") ? QStringLiteral("errors")
                          : dock.key() == QStringLiteral("history") ? QStringLiteral("layers")
                                                                    : dock.key();
     dock.value()->setVisible(layout.docks.contains(host));

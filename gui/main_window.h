@@ -23,7 +23,9 @@ class MessageBar;
 class NumbersPanel;
 class ScenePanel;
 class StartPage;
+class SetupPanel;
 class Timeline;
+class TradeoffPanel;
 
 /// The window: puts the panels together and wires them; everything else is in their own classes.
 class MainWindow : public QMainWindow {
@@ -77,6 +79,8 @@ class MainWindow : public QMainWindow {
   Timeline* timeline_ = nullptr;
   ErrorTable* errors_ = nullptr;
   NumbersPanel* numbers_ = nullptr;
+  SetupPanel* setup_ = nullptr;
+  TradeoffPanel* tradeoff_ = nullptr;
   QPlainTextEdit* log_ = nullptr;
   MessageBar* messageBar_ = nullptr;
   QLabel* probe_ = nullptr;

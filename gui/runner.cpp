@@ -15,6 +15,8 @@ constexpr int kSignalEveryMs = 40;  // progress on screen needs no more
 Runner::Runner(Engine engine, QObject* parent) : QObject(parent), engine_(std::move(engine)), worker_(new QObject) {
   qRegisterMetaType<InspectionPtr>("glint::gui::InspectionPtr");
   qRegisterMetaType<OpenedPtr>("glint::gui::OpenedPtr");
+  qRegisterMetaType<SelectionPtr>("glint::gui::SelectionPtr");
+  qRegisterMetaType<TradeoffPtr>("glint::gui::TradeoffPtr");
   worker_->moveToThread(&thread_);
   connect(&thread_, &QThread::finished, worker_, &QObject::deleteLater);
   thread_.start();
@@ -55,6 +57,42 @@ void Runner::inspect(std::shared_ptr<const Scene> scene, const InspectionRequest
     if (job > cancelled_)
       QMetaObject::invokeMethod(
           this, [this, result, computedFor] { emit finished(result, computedFor); }, Qt::QueuedConnection);
+  });
+}
+
+void Runner::choose(std::shared_ptr<const Scene> scene, const InspectionRequest& request, double goodEnoughPct,
+                    InspectionPtr previous) {
+  auto computedFor = std::make_shared<Opened>();
+  computedFor->request = request;
+  computedFor->scene = scene;
+  post([this, computedFor, goodEnoughPct, previous = std::move(previous)](int job) {
+    QElapsedTimer clock, lastSignal;
+    clock.start();
+    const ProgressFn progress = [&](const StageEvent& e) { return report(job, clock, lastSignal, e); };
+    if (job != newest_ || job <= cancelled_) throw Stopped{};
+    const std::optional<double> tolerance = goodEnoughPct > 0 ? std::optional(goodEnoughPct) : std::nullopt;
+    const auto selection = std::make_shared<const glint::Selection>(
+        engine_.choose(computedFor->scene, computedFor->request, tolerance, progress, previous.get()));
+    if (job > cancelled_)
+      QMetaObject::invokeMethod(
+          this, [this, selection, computedFor] { emit chosen(selection, computedFor); }, Qt::QueuedConnection);
+  });
+}
+
+void Runner::measure(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const std::string& file) {
+  auto computedFor = std::make_shared<Opened>();
+  computedFor->request = request;
+  computedFor->scene = scene;
+  post([this, computedFor, file](int job) {
+    QElapsedTimer clock, lastSignal;
+    clock.start();
+    const ProgressFn progress = [&](const StageEvent& e) { return report(job, clock, lastSignal, e); };
+    if (job != newest_ || job <= cancelled_) throw Stopped{};
+    const auto tradeoff =
+        std::make_shared<const Tradeoff>(engine_.tradeoff(computedFor->scene, computedFor->request, file, progress));
+    if (job > cancelled_)
+      QMetaObject::invokeMethod(
+          this, [this, tradeoff, computedFor] { emit measured(tradeoff, computedFor); }, Qt::QueuedConnection);
   });
 }
 

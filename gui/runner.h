@@ -14,6 +14,8 @@ namespace glint::gui {
 
 using InspectionPtr = std::shared_ptr<const Inspection>;
 using OpenedPtr = std::shared_ptr<const Opened>;
+using SelectionPtr = std::shared_ptr<const glint::Selection>;
+using TradeoffPtr = std::shared_ptr<const Tradeoff>;
 
 /// The only place that knows both Qt and the pipeline: opens inputs and computes inspections on a thread of its own.
 /// The newest request wins. A run that a newer request overtakes is stopped, except in its first `kGraceMs`: quick runs
@@ -33,6 +35,10 @@ class Runner : public QObject {
   /// Writes a session without stopping what runs; nothing but cancel() stops it. Answers with saved().
   /// @param results  finished results of exactly `opened.request`, or null.
   void save(OpenedPtr opened, InspectionPtr results, const std::string& path);
+  /// The automatic choice of the model; answers with chosen(). @param goodEnoughPct  0 = no tolerance.
+  void choose(std::shared_ptr<const Scene> scene, const InspectionRequest& request, double goodEnoughPct, InspectionPtr previous);
+  /// Speed against accuracy of all settings; answers with measured().
+  void measure(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const std::string& file);
   void cancel();
   bool busy() const { return pending_ > 0; }
 
@@ -41,6 +47,8 @@ class Runner : public QObject {
   void progressed(const QString& stage, int done, int total);
   void opened(const glint::gui::OpenedPtr& opened);
   void finished(const glint::gui::InspectionPtr& inspection, const glint::gui::OpenedPtr& computedFor);
+  void chosen(const glint::gui::SelectionPtr& selection, const glint::gui::OpenedPtr& computedFor);
+  void measured(const glint::gui::TradeoffPtr& tradeoff, const glint::gui::OpenedPtr& computedFor);
   void failed(const QString& oneLine);
   void openFailed();  ///< after failed(): what ran for the scene on screen was stopped for nothing
   void stopped();     ///< by cancel()
@@ -67,3 +75,5 @@ class Runner : public QObject {
 
 Q_DECLARE_METATYPE(glint::gui::InspectionPtr)
 Q_DECLARE_METATYPE(glint::gui::OpenedPtr)
+Q_DECLARE_METATYPE(glint::gui::SelectionPtr)
+Q_DECLARE_METATYPE(glint::gui::TradeoffPtr)

@@ -55,6 +55,7 @@ Opened openInput(const std::string& path) {
   if (const auto camera = view.cameras.find(kSceneView); camera != view.cameras.end())
     opened.viewPoint =
         viz::ViewPoint{camera->second.position, camera->second.focalPoint, camera->second.up, camera->second.viewAngleDeg};
+  if (read.session.tradeoff) opened.tradeoff = std::make_shared<const Tradeoff>(*read.session.tradeoff);
   opened.session = std::make_shared<const Session>(std::move(read.session));
   return opened;
 }
@@ -78,6 +79,7 @@ void saveSession(const Opened& opened, const Inspection* results, const std::str
     }
   }
   session.request = opened.request;
+  if (opened.tradeoff) session.tradeoff = *opened.tradeoff;
   if (opened.session) {
     session.notes = opened.session->notes;
     session.unknownJson = opened.session->unknownJson;

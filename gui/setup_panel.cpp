@@ -2,10 +2,13 @@
 #include "gui/setup_panel.h"
 
 #include <QComboBox>
+#include <QDoubleSpinBox>
 #include <QGridLayout>
+#include <QHBoxLayout>
 #include <QLabel>
 #include <QLineEdit>
 #include <QListWidget>
+#include <QPushButton>
 #include <QSignalBlocker>
 #include <QVariant>
 #include <algorithm>
@@ -43,7 +46,35 @@ SetupPanel::SetupPanel(Document& document, QWidget* parent) : QWidget(parent), d
   models_->setFixedHeight(models_->sizeHintForRow(0) * models_->count() + 8);
   grid->addWidget(models_, 1, 0, 1, 2);
 
-  grid->addWidget(label(tr("Training")), 2, 0, 1, 2);
+  auto* choose = new QPushButton(tr("Auto"));
+  choose->setObjectName(QStringLiteral("autoModel"));
+  choose->setToolTip(
+      tr("Takes the simplest model that predicts left-out training views as well as the best does,\nor the first one under the "
+         "error beside"));
+  auto* goodEnough = new QDoubleSpinBox;
+  goodEnough->setObjectName(QStringLiteral("goodEnough"));
+  goodEnough->setRange(0, 100);
+  goodEnough->setDecimals(2);
+  goodEnough->setSingleStep(0.1);
+  goodEnough->setSuffix(tr(" % will do"));
+  goodEnough->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);  // the panel is narrow
+  goodEnough->setSpecialValueText(tr("like the best"));
+  goodEnough->setToolTip(tr("A contour error that is good enough: nothing richer is then tried. 0 = like the best"));
+  auto* row = new QHBoxLayout;
+  row->setSpacing(4);
+  row->addWidget(choose);
+  row->addWidget(goodEnough, 1);
+  grid->addLayout(row, 2, 0, 1, 2);
+  choice_ = new QLabel;
+  choice_->setObjectName(QStringLiteral("choice"));
+  choice_->setProperty("role", "faded");
+  choice_->setWordWrap(true);
+  choice_->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  choice_->hide();
+  grid->addWidget(choice_, 3, 0, 1, 2);
+  connect(choose, &QPushButton::clicked, this, [this, goodEnough] { emit autoRequested(goodEnough->value()); });
+
+  grid->addWidget(label(tr("Training")), 4, 0, 1, 2);
   train_ = new QComboBox;
   train_->setObjectName(QStringLiteral("train"));
   train_->setEditable(true);
@@ -52,21 +83,21 @@ SetupPanel::SetupPanel(Document& document, QWidget* parent) : QWidget(parent), d
   train_->setToolTip(
       tr("Frame numbers or ranges (0-5, or 0,14,28), first:N, spread:N, or per-surface: for every surface a model of its own "
          "from all of its frames"));
-  grid->addWidget(new QLabel(tr("Frames")), 3, 0);
-  grid->addWidget(train_, 3, 1);
+  grid->addWidget(new QLabel(tr("Frames")), 5, 0);
+  grid->addWidget(train_, 5, 1);
   source_ = new QComboBox;
   source_->setObjectName(QStringLiteral("source"));
   source_->addItems({tr("radiance (float)"), tr("photographs")});
   source_->setToolTip(tr("Which pictures the highlights are detected in, where a frame has both"));
-  grid->addWidget(new QLabel(tr("Detect in")), 4, 0);
-  grid->addWidget(source_, 4, 1);
+  grid->addWidget(new QLabel(tr("Detect in")), 6, 0);
+  grid->addWidget(source_, 6, 1);
   counts_ = new QLabel;
   counts_->setProperty("role", "faded");
   counts_->setWordWrap(true);
   counts_->setMinimumHeight(2 * fontMetrics().lineSpacing());
   counts_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
-  grid->addWidget(counts_, 5, 0, 1, 2);
-  grid->setRowStretch(6, 1);
+  grid->addWidget(counts_, 7, 0, 1, 2);
+  grid->setRowStretch(8, 1);
 
   connect(models_, &QListWidget::itemChanged, this, [this] {
     std::vector<std::string> chosen;
@@ -80,7 +111,14 @@ SetupPanel::SetupPanel(Document& document, QWidget* parent) : QWidget(parent), d
           [this](int i) { document_.setSource(i == 0 ? FrameSource::Radiance : FrameSource::Image); });
   connect(&document_, &Document::requestChanged, this, &SetupPanel::refresh);
   connect(&document_, &Document::sceneOpened, this, &SetupPanel::refresh);
+  connect(&document_, &Document::sceneOpened, this, [this] { showChoice({}, {}); });
   refresh();
+}
+
+void SetupPanel::showChoice(const QString& sentence, const QString& details) {
+  choice_->setText(sentence);
+  choice_->setToolTip(details.isEmpty() ? QString() : QStringLiteral("<pre>%1</pre>").arg(details.toHtmlEscaped()));
+  choice_->setVisible(!sentence.isEmpty());
 }
 
 void SetupPanel::setTrain() {

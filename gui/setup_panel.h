@@ -6,7 +6,9 @@
 #include "gui/document.h"
 
 class QComboBox;
+class QDoubleSpinBox;
 class QLabel;
+class QPushButton;
 class QListWidget;
 
 namespace glint::gui {
@@ -16,9 +18,12 @@ class SetupPanel : public QWidget {
   Q_OBJECT
  public:
   explicit SetupPanel(Document& document, QWidget* parent = nullptr);
+  /// Why the automatic choice took its model; "" before the first. @param details  the table of candidates.
+  void showChoice(const QString& sentence, const QString& details);
 
  signals:
   void problem(const QString& oneLine);
+  void autoRequested(double goodEnoughPct);  ///< 0 = no tolerance
 
  private:
   void refresh();
@@ -29,6 +34,7 @@ class SetupPanel : public QWidget {
   QComboBox* train_;
   QComboBox* source_;
   QLabel* counts_;
+  QLabel* choice_;
 };
 
 }  // namespace glint::gui

@@ -47,5 +47,6 @@ QObject* makeLinkingTest();
 QObject* makeWindowTest();
 QObject* makeSessionTest();
 QObject* makeProgramTest();
+QObject* makeTradeoffTest();
 
 }  // namespace glint::gui

@@ -18,7 +18,8 @@ int main(int argc, char** argv) {
   static const TestClass classes[] = {{"document", makeDocumentTest},        {"runner", makeRunnerTest},
                                       {"frame_canvas", makeFrameCanvasTest}, {"panel", makePanelTest},
                                       {"linking", makeLinkingTest},          {"window", makeWindowTest},
-                                      {"session", makeSessionTest},          {"program", makeProgramTest}};
+                                      {"session", makeSessionTest},          {"program", makeProgramTest},
+                                      {"tradeoff", makeTradeoffTest}};
   if (argc < 2) return std::fputs("usage: test_gui CLASS [QTest options]\n", stderr), 2;
   QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
   QApplication app(argc, argv);
