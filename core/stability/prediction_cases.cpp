@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/geometry/polyline.h"
 #include "core/model/model.h"
 #include "core/stability/cases.h"
 #include "core/stability/real_walk.h"
@@ -161,6 +162,52 @@ Outcome<Measured> dualCase(const PredictionScene& p, const Light& light, double 
   return Measured{worst, p.condition};
 }
 
+/// A plate of 0.04 m inside a highlight of 0.3 m: what is seen is the plate, so that the outline is its four edges.
+struct Plate {
+  std::shared_ptr<const Surface> surface;
+  Camera camera = cameraTowards({0.35, -0.25, 1.4}, {0, 0, 0}, 800);
+  Light light = Light::at({-0.4, 0.3, 1.6});
+  Plate() {
+    AnalyticSpec s = specOf(0, false);
+    s.type = "sheet";
+    s.length = s.width = 0.04;
+    surface = makeAnalytic(s);
+  }
+};
+Outcome<Measured> plateCase() {
+  const Plate plate;
+  ModelFit fit;
+  fit.lightEstimate = plate.light;
+  fit.limitAngle = 0.1;
+  const Prediction prediction = modelByName("limit-angle").predict(fit, plate.camera, plate.surface.get(), Settings());
+  if (prediction.highlights.empty()) return prediction.failure.value_or(Failure{Reason::NoHighlight, ""});
+  const RealCamera<Real> real(plate.camera);
+  const Real half = Real(0.04) / 2;
+  std::pair<Real, Real> corner[4];
+  for (int i = 0; i < 4; ++i)
+    corner[i] = real.pixel(Vec<Real>{i == 1 || i == 2 ? half : Real(-half), i >= 2 ? half : Real(-half), Real(0)});
+  Real area = 0, longest = 0;
+  for (int i = 0; i < 4; ++i) {
+    const auto &a = corner[i], &b = corner[(i + 1) % 4];
+    area += (a.first * b.second - b.first * a.second) / 2;
+    longest = std::max(longest, Real(sqrt((b.first - a.first) * (b.first - a.first) + (b.second - a.second) * (b.second - a.second))));
+  }
+  double worst = 0;
+  for (const Pixel& q : prediction.highlights.front().contour.points) {
+    Real nearest = Real(1e9);
+    for (int i = 0; i < 4; ++i) {
+      const auto &a = corner[i], &b = corner[(i + 1) % 4];
+      const Real ex = b.first - a.first, ey = b.second - a.second, length = sqrt(ex * ex + ey * ey);
+      nearest = std::min(nearest, Real(abs((q.x() - a.first) * ey - (q.y() - a.second) * ex) / length));
+    }
+    worst = worstOf({worst, static_cast<double>(nearest / longest)});
+  }
+  // The vertices lie on the edges; that they go all the way round shows in the area, which cut corners change a little.
+  const double found = std::abs(signedArea(prediction.highlights.front().contour));
+  if (!(std::abs(found / static_cast<double>(abs(area)) - 1) < 1e-3)) return Measured{1};
+  return Measured{worst};
+}
+
 /// Level sets of a cone |q - centre| < radius, whose outline is a circle.
 Outcome<Measured> coneCase(double radius, const Pixel& centre, std::size_t expected) {
   const PixelField field = [&](const Pixel& q) -> std::optional<double> { return (q - centre).norm(); };
@@ -230,6 +277,28 @@ void addPredictionCases(Cases& cases) {
   cone("highlight of 2 px", 1, {320.3, 240.2}, 1e-9, "");
   cone("highlight of 0.02 px", 1e-2, {320.3, 240.2}, 2e-7, "vertices are exact to 1e-9 px: a tenth of a millionth of this radius");
   cone("highlight of 400 px", 200, {320.3, 240.2}, 1e-9, "");
+  {
+    Case plate;
+    plate.stage = "limit-angle";
+    plate.name = "highlight far larger than the surface";
+    plate.parameter = 7;
+    plate.run = plateCase;
+    cases.push_back(plate);
+    plate.stage = "canonical";
+    plate.note = "every walk leaves the surface before its limit angle";
+    plate.expect = Expect::Failure;
+    plate.reasons = {Reason::SurfaceEnded};
+    plate.run = []() -> Outcome<Measured> {
+      const Plate scene;
+      ModelFit fit;
+      fit.lightEstimate = scene.light;
+      fit.ellipsoid = ellipsoidAt(scene.light, 0.3);
+      const Prediction p = modelByName("canonical").predict(fit, scene.camera, scene.surface.get(), Settings());
+      if (p.highlights.empty()) return p.failure.value_or(Failure{Reason::NotSupported, "unnamed"});
+      return Measured{0};
+    };
+    cases.push_back(plate);
+  }
   Case c;
   c.stage = "limit-angle";
   c.name = "no point of the surface reaches the light's angle";
