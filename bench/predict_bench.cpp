@@ -2,10 +2,15 @@
 // Times of the main job: detection, light, fit, prediction. One thread. docs/performance.md is made from these.
 #include <benchmark/benchmark.h>
 
+#include <cmath>
+#include <map>
+
+#include "core/base/parallel.h"
 #include "core/light/estimate.h"
 #include "core/model/fit_ellipsoid.h"
 #include "core/model/models.h"
 #include "core/model/walk.h"
+#include "core/pipeline/comparison.h"
 #include "core/surface/mesh.h"
 #include "core/synth/synth.h"
 #include "tests/core/model/exact_views.h"
@@ -33,19 +38,25 @@ const ModelFit& fitOf(const std::string& model) {
   return fits.at(model);
 }
 
-/// The ellipsoid itself, or as a mesh of 708^2 2 triangles: one million.
-const Surface& surface(bool mesh) {
-  static const std::shared_ptr<const Surface> analytic = makeAnalytic(scene().surface);
-  static std::shared_ptr<const Surface> million;
-  if (mesh && !million) million = makeMesh(analytic->tessellate(Eigen::AlignedBox3d(), 708), NormalPolicy::Interpolated);
-  return mesh ? *million : *analytic;
+constexpr int kMillion = 1'000'000;
+
+/// The ellipsoid as a mesh of about that many triangles, interpolated normals; 0: the analytic surface.
+const Surface& surfaceOf(int triangles) {
+  static std::map<int, std::shared_ptr<const Surface>> surfaces;
+  std::shared_ptr<const Surface>& s = surfaces[triangles];
+  if (s) return *s;
+  const std::shared_ptr<const Surface> analytic = makeAnalytic(scene().surface);
+  const int cells = static_cast<int>(std::lround(std::sqrt(triangles / 2.0)));
+  s = triangles ? makeMesh(analytic->tessellate(Eigen::AlignedBox3d(), cells), NormalPolicy::Interpolated) : analytic;
+  return *s;
 }
+const Surface& surface(bool mesh) { return surfaceOf(mesh ? kMillion : 0); }
 
 /// Frames that do not train, one after another.
-void predict(benchmark::State& state, const std::string& model, bool mesh, const std::vector<std::string>& set = {}) {
+void predict(benchmark::State& state, const std::string& model, int triangles, const std::vector<std::string>& set = {}) {
   const HighlightModel& m = modelByName(model);
   const ModelFit& fit = fitOf(model);
-  const Surface& s = surface(mesh);
+  const Surface& s = surfaceOf(triangles);
   Settings settings;
   for (const std::string& v : set) settings.setFromText(v.substr(0, v.find('=')), v.substr(v.find('=') + 1));
   std::size_t frame = 1, found = 0, calls = 0;
@@ -60,18 +71,18 @@ void predict(benchmark::State& state, const std::string& model, bool mesh, const
   state.counters["highlights"] = static_cast<double>(found) / static_cast<double>(calls);
   state.counters["coverage"] = found ? coverage / static_cast<double>(found) : 0;
 }
-void canonicalPredictionMesh(benchmark::State& state) { predict(state, "canonical", true); }
-void canonicalPredictionAnalytic(benchmark::State& state) { predict(state, "canonical", false); }
-void dualPredictionMesh(benchmark::State& state) { predict(state, "dual", true); }
-void limitAnglePredictionMesh(benchmark::State& state) { predict(state, "limit-angle", true); }
-void limitAnglePredictionAnalytic(benchmark::State& state) { predict(state, "limit-angle", false); }
+void canonicalPredictionMesh(benchmark::State& state) { predict(state, "canonical", kMillion); }
+void canonicalPredictionAnalytic(benchmark::State& state) { predict(state, "canonical", 0); }
+void dualPredictionMesh(benchmark::State& state) { predict(state, "dual", kMillion); }
+void limitAnglePredictionMesh(benchmark::State& state) { predict(state, "limit-angle", kMillion); }
+void limitAnglePredictionAnalytic(benchmark::State& state) { predict(state, "limit-angle", 0); }
 const std::string kHints = "predict.search=hints", kQuadric = "predict.query=local-quadric", kStar = "predict.contour=star";
-void canonicalPredictionMeshHints(benchmark::State& state) { predict(state, "canonical", true, {kHints}); }
-void canonicalPredictionMeshQuadric(benchmark::State& state) { predict(state, "canonical", true, {kQuadric, kHints}); }
-void canonicalPredictionMeshQuadricGrid(benchmark::State& state) { predict(state, "canonical", true, {kQuadric}); }
-void limitAnglePredictionMeshStar(benchmark::State& state) { predict(state, "limit-angle", true, {kStar, kHints}); }
-void limitAnglePredictionMeshStarGrid(benchmark::State& state) { predict(state, "limit-angle", true, {kStar}); }
-void limitAnglePredictionMeshQuadric(benchmark::State& state) { predict(state, "limit-angle", true, {kQuadric, kHints}); }
+void canonicalPredictionMeshHints(benchmark::State& state) { predict(state, "canonical", kMillion, {kHints}); }
+void canonicalPredictionMeshQuadric(benchmark::State& state) { predict(state, "canonical", kMillion, {kQuadric, kHints}); }
+void canonicalPredictionMeshQuadricGrid(benchmark::State& state) { predict(state, "canonical", kMillion, {kQuadric}); }
+void limitAnglePredictionMeshStar(benchmark::State& state) { predict(state, "limit-angle", kMillion, {kStar, kHints}); }
+void limitAnglePredictionMeshStarGrid(benchmark::State& state) { predict(state, "limit-angle", kMillion, {kStar}); }
+void limitAnglePredictionMeshQuadric(benchmark::State& state) { predict(state, "limit-angle", kMillion, {kQuadric, kHints}); }
 BENCHMARK(canonicalPredictionMeshHints)->Unit(benchmark::kMicrosecond);
 BENCHMARK(canonicalPredictionMeshQuadric)->Unit(benchmark::kMicrosecond);
 BENCHMARK(canonicalPredictionMeshQuadricGrid)->Unit(benchmark::kMicrosecond);
@@ -175,6 +186,93 @@ void canonicalContourOfOneView(benchmark::State& state) {
   }
 }
 BENCHMARK(canonicalContourOfOneView)->Unit(benchmark::kMicrosecond);
+
+// Cost curves: by triangles, by directions, by views, by frames.
+void canonicalByTriangles(benchmark::State& state) { predict(state, "canonical", int(state.range(0))); }
+void canonicalQuadricByTriangles(benchmark::State& state) { predict(state, "canonical", int(state.range(0)), {kQuadric, kHints}); }
+void levelSetByTriangles(benchmark::State& state) { predict(state, "limit-angle", int(state.range(0))); }
+void starByTriangles(benchmark::State& state) { predict(state, "limit-angle", int(state.range(0)), {kStar, kHints}); }
+void dualByTriangles(benchmark::State& state) { predict(state, "dual", int(state.range(0))); }
+void buildByTriangles(benchmark::State& state) {
+  const int cells = static_cast<int>(std::lround(std::sqrt(state.range(0) / 2.0)));
+  const TriangleMesh mesh = makeAnalytic(scene().surface)->tessellate(Eigen::AlignedBox3d(), cells);
+  for (auto _ : state) benchmark::DoNotOptimize(makeMesh(mesh, NormalPolicy::Interpolated));
+}
+BENCHMARK(buildByTriangles)->RangeMultiplier(10)->Range(1000, kMillion)->Unit(benchmark::kMicrosecond);
+BENCHMARK(canonicalByTriangles)->RangeMultiplier(10)->Range(1000, kMillion)->Unit(benchmark::kMicrosecond);
+BENCHMARK(canonicalQuadricByTriangles)->RangeMultiplier(10)->Range(1000, kMillion)->Unit(benchmark::kMicrosecond);
+BENCHMARK(levelSetByTriangles)->RangeMultiplier(10)->Range(1000, kMillion)->Unit(benchmark::kMicrosecond);
+BENCHMARK(starByTriangles)->RangeMultiplier(10)->Range(1000, kMillion)->Unit(benchmark::kMicrosecond);
+BENCHMARK(dualByTriangles)->RangeMultiplier(10)->Range(1000, kMillion)->Unit(benchmark::kMicrosecond);
+
+void byDirections(benchmark::State& state, const std::string& model, std::vector<std::string> set) {
+  set.push_back("predict.directions=" + std::to_string(state.range(0)));
+  predict(state, model, kMillion, set);
+}
+void canonicalByDirections(benchmark::State& state) { byDirections(state, "canonical", {}); }
+void canonicalQuadricByDirections(benchmark::State& state) { byDirections(state, "canonical", {kQuadric, kHints}); }
+void starByDirections(benchmark::State& state) { byDirections(state, "limit-angle", {kStar, kHints}); }
+BENCHMARK(canonicalByDirections)->Arg(6)->Arg(36)->Arg(120)->Arg(360)->Unit(benchmark::kMicrosecond);
+BENCHMARK(canonicalQuadricByDirections)->Arg(6)->Arg(36)->Arg(120)->Arg(360)->Unit(benchmark::kMicrosecond);
+BENCHMARK(starByDirections)->Arg(6)->Arg(36)->Arg(120)->Arg(360)->Unit(benchmark::kMicrosecond);
+
+void bundleByViews(benchmark::State& state) {
+  std::vector<BundleView> views;
+  const std::vector<BundleView> six = bundleViews(true);
+  for (int i = 0; i < state.range(0); ++i) views.push_back(six[i % six.size()]);
+  const Light start = triangulated();
+  for (auto _ : state) benchmark::DoNotOptimize(bundleLight(views, start));
+}
+BENCHMARK(bundleByViews)->Arg(6)->Arg(60)->Arg(1000)->Unit(benchmark::kMicrosecond);
+
+/// Frames predicted on a mesh of one million triangles and compared with what was observed, on all cores: wall time.
+void framesPredictedAndCompared(benchmark::State& state, const std::string& model, const std::vector<std::string>& set) {
+  static const std::vector<FrameEvidence> evidence = [] {
+    std::vector<FrameEvidence> all;
+    for (const Camera& camera : scene().cameras) {
+      FrameEvidence e;
+      e.frame = static_cast<int>(all.size());
+      e.highlights = test::exactHighlightsOf(scene(), camera);
+      all.push_back(std::move(e));
+    }
+    return all;
+  }();
+  const HighlightModel& m = modelByName(model);
+  const ModelFit& fit = fitOf(model);
+  const Surface& s = surfaceOf(kMillion);
+  Settings settings;
+  for (const std::string& v : set) settings.setFromText(v.substr(0, v.find('=')), v.substr(v.find('=') + 1));
+  double error = 0;
+  for (auto _ : state) {
+    std::vector<FrameComparison> frames(state.range(0));
+    parallelFor(
+        static_cast<int>(frames.size()),
+        [&](int i) {
+          const std::size_t k = i % evidence.size();
+          const Camera& camera = scene().cameras[k];
+          frames[i] = compareFrame(evidence[k], "lamp", camera, m.predict(fit, camera, &s, settings));
+        },
+        {}, "");
+    error = 0;
+    for (const FrameComparison& f : frames)
+      if (!f.rows.empty() && f.rows[0].metrics) error += f.rows[0].metrics->contourErrorPct / double(frames.size());
+  }
+  state.counters["error_pct"] = error;
+}
+void framesCanonical(benchmark::State& state) { framesPredictedAndCompared(state, "canonical", {}); }
+void framesCanonicalQuadric(benchmark::State& state) { framesPredictedAndCompared(state, "canonical", {kQuadric, kHints}); }
+void framesStar(benchmark::State& state) { framesPredictedAndCompared(state, "limit-angle", {kStar, kHints}); }
+BENCHMARK(framesCanonical)->Arg(1)->Arg(10)->Arg(100)->Arg(1000)->Arg(1410)->UseRealTime()->Unit(benchmark::kMicrosecond);
+BENCHMARK(framesCanonicalQuadric)->Arg(1)->Arg(10)->Arg(100)->Arg(1000)->Arg(1410)->UseRealTime()->Unit(benchmark::kMicrosecond);
+BENCHMARK(framesStar)->Arg(1)->Arg(10)->Arg(100)->Arg(1000)->Arg(1410)->UseRealTime()->Unit(benchmark::kMicrosecond);
+
+void compareOneFrame(benchmark::State& state) {
+  const Prediction p = modelByName("canonical").predict(fitOf("canonical"), scene().cameras[8], &surface(false), {});
+  FrameEvidence e;
+  e.highlights = test::exactHighlightsOf(scene(), scene().cameras[8]);
+  for (auto _ : state) benchmark::DoNotOptimize(compareFrame(e, "lamp", scene().cameras[8], p));
+}
+BENCHMARK(compareOneFrame)->Unit(benchmark::kMicrosecond);
 
 void detectOneFrame(benchmark::State& state) {
   Material material;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/evaluate/metrics.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -30,15 +31,52 @@ double lengthOf(const std::vector<Segment>& segments) {
   return sum;
 }
 
-double distanceTo(const std::vector<Segment>& segments, const Pixel& q) {
-  double best = std::numeric_limits<double>::infinity();
-  for (const Segment& s : segments) {
-    const Pixel d = s.second - s.first;
-    const double t = std::clamp((q - s.first).dot(d) / d.squaredNorm(), 0.0, 1.0);
-    best = std::min(best, (s.first + t * d - q).squaredNorm());
+/// Distances from many points to one chain of segments: the same minimum as over all of them, but boxes around runs of segments
+/// tell which ones cannot be nearest, and the next point is usually nearest to where the last one was.
+class NearestSegment {
+ public:
+  explicit NearestSegment(const std::vector<Segment>& segments) : segments_(segments) {
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      if (i % kRun == 0) runs_.emplace_back();
+      if (i % (kRun * kRuns) == 0) groups_.emplace_back();
+      for (Box* box : {&runs_.back(), &groups_.back()}) box->extend(segments[i].first), box->extend(segments[i].second);
+    }
   }
-  return std::sqrt(best);
-}
+
+  double operator()(const Pixel& q) {
+    double best = std::numeric_limits<double>::infinity();
+    const std::size_t start = last_;
+    look(start, q, best);
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      if (isFarther(groups_[g], q, best)) continue;
+      for (std::size_t r = g * kRuns; r < std::min(runs_.size(), (g + 1) * kRuns); ++r)
+        if (r != start && !isFarther(runs_[r], q, best)) look(r, q, best);
+    }
+    return std::sqrt(best);
+  }
+
+ private:
+  using Box = Eigen::AlignedBox2d;
+  static constexpr std::size_t kRun = 4, kRuns = 16;
+
+  /// The margin keeps round-off from turning down the nearest one.
+  static bool isFarther(const Box& box, const Pixel& q, double best) { return box.squaredExteriorDistance(q) > best * (1 + 1e-9); }
+
+  void look(std::size_t run, const Pixel& q, double& best) {
+    const std::size_t end = std::min(segments_.size(), (run + 1) * kRun);
+    for (std::size_t i = run * kRun; i < end; ++i) {
+      const Segment& s = segments_[i];
+      const Pixel d = s.second - s.first;
+      const double t = std::clamp((q - s.first).dot(d) / d.squaredNorm(), 0.0, 1.0);
+      const double squared = (s.first + t * d - q).squaredNorm();
+      if (squared < best) best = squared, last_ = run;
+    }
+  }
+
+  const std::vector<Segment>& segments_;
+  std::vector<Box> runs_, groups_;
+  std::size_t last_ = 0;
+};
 
 struct OneWay {
   double mean = 0, max = 0;
@@ -50,6 +88,7 @@ OneWay oneWay(const std::vector<Segment>& from, const std::vector<Segment>& to) 
   // Two samples a pixel resolve what marching squares can show; the bounds keep tiny and huge contours sensible.
   const int n = static_cast<int>(std::clamp(2 * total, 360.0, 2000.0));
   OneWay result;
+  NearestSegment distanceTo(to);
   std::size_t segment = 0;
   double start = 0, l = (from[0].second - from[0].first).norm();
   for (int i = 0; i < n; ++i) {
@@ -60,25 +99,58 @@ OneWay oneWay(const std::vector<Segment>& from, const std::vector<Segment>& to) 
       l = (from[segment].second - from[segment].first).norm();
     }
     const Pixel q = from[segment].first + std::clamp((s - start) / l, 0.0, 1.0) * (from[segment].second - from[segment].first);
-    const double d = distanceTo(to, q);
+    const double d = distanceTo(q);
     result.mean += d / n;
     result.max = std::max(result.max, d);
   }
   return result;
 }
 
-/// Crossings of a horizontal line with closed polylines, as inside intervals of their union (even-odd within each).
-void intervals(const std::vector<Polyline>& shapes, double y, std::vector<std::pair<double, double>>& out) {
+/// Horizontal lines through a set of shapes, equally spaced.
+struct Rows {
+  double low, high;
+  int count;
+  double y(int i) const { return low + (high - low) * (i + 0.5) / count; }
+};
+
+/// Crossings of every row with one closed polyline. Each edge is asked only by the rows that it spans.
+struct Crossings {
+  std::vector<double> x;           ///< of all rows, row by row
+  std::vector<std::size_t> start;  ///< of each row in x, and the end
+};
+
+Crossings crossings(const Polyline& shape, const Rows& rows) {
+  Crossings c;
+  c.start.assign(rows.count + 1, 0);
+  const auto& p = shape.points;
+  const double perRow = rows.count / (rows.high - rows.low);
+  const auto forEach = [&](const auto& visit) {
+    for (std::size_t i = 0, j = p.size() - 1; i < p.size(); j = i++) {
+      const double top = std::min(p[i].y(), p[j].y()), bottom = std::max(p[i].y(), p[j].y());
+      if (!std::isfinite(top + bottom)) continue;
+      // One row more on both sides: the exact test decides.
+      const int first = std::max(0, static_cast<int>((top - rows.low) * perRow - 1.5));
+      const int last = std::min(rows.count - 1, static_cast<int>((bottom - rows.low) * perRow + 0.5));
+      for (int r = first; r <= last; ++r)
+        if (const double y = rows.y(r); (p[i].y() > y) != (p[j].y() > y)) visit(r, y, p[i], p[j]);
+    }
+  };
+  forEach([&](int r, double, const Pixel&, const Pixel&) { ++c.start[r + 1]; });
+  for (int r = 0; r < rows.count; ++r) c.start[r + 1] += c.start[r];
+  c.x.resize(c.start.back());
+  std::vector<std::size_t> next(c.start.begin(), c.start.end() - 1);
+  forEach([&](int r, double y, const Pixel& a, const Pixel& b) {
+    c.x[next[r]++] = a.x() + (y - a.y()) * (b.x() - a.x()) / (b.y() - a.y());
+  });
+  for (int r = 0; r < rows.count; ++r) std::sort(c.x.begin() + c.start[r], c.x.begin() + c.start[r + 1]);
+  return c;
+}
+
+/// Inside intervals of the union of shapes (even-odd within each) on one row.
+void intervals(const std::vector<Crossings>& shapes, int row, std::vector<std::pair<double, double>>& out) {
   out.clear();
-  std::vector<double> x;
-  for (const Polyline& shape : shapes) {
-    x.clear();
-    const auto& p = shape.points;
-    for (std::size_t i = 0, j = p.size() - 1; i < p.size(); j = i++)
-      if ((p[i].y() > y) != (p[j].y() > y)) x.push_back(p[i].x() + (y - p[i].y()) * (p[j].x() - p[i].x()) / (p[j].y() - p[i].y()));
-    std::sort(x.begin(), x.end());
-    for (std::size_t k = 0; k + 1 < x.size(); k += 2) out.emplace_back(x[k], x[k + 1]);
-  }
+  for (const Crossings& c : shapes)
+    for (std::size_t k = c.start[row]; k + 1 < c.start[row + 1]; k += 2) out.emplace_back(c.x[k], c.x[k + 1]);
   std::sort(out.begin(), out.end());
   std::size_t kept = 0;
   for (std::size_t k = 1; k < out.size(); ++k) {
@@ -113,13 +185,15 @@ double regionIou(const std::vector<Polyline>& a, const std::vector<Polyline>& b,
       for (const Pixel& p : s.points) low = std::min(low, p.y()), high = std::max(high, p.y());
   if (!(high > low)) return 0;
   // Exact along each line; the lines sample the height by the midpoint rule.
-  const int rows = static_cast<int>(std::clamp(std::ceil((high - low) / cellPx), 200.0, 4000.0));
+  const Rows rows{low, high, static_cast<int>(std::clamp(std::ceil((high - low) / cellPx), 200.0, 4000.0))};
+  std::vector<Crossings> xa, xb;
+  for (const Polyline& s : a) xa.push_back(crossings(s, rows));
+  for (const Polyline& s : b) xb.push_back(crossings(s, rows));
   double common = 0, all = 0;
   std::vector<std::pair<double, double>> ia, ib;
-  for (int i = 0; i < rows; ++i) {
-    const double y = low + (high - low) * (i + 0.5) / rows;
-    intervals(a, y, ia);
-    intervals(b, y, ib);
+  for (int i = 0; i < rows.count; ++i) {
+    intervals(xa, i, ia);
+    intervals(xb, i, ib);
     const double both = commonLength(ia, ib);
     common += both;
     all += lengthOf(ia) + lengthOf(ib) - both;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/evaluate/report.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "core/evaluate/summary.h"
+#include "core/model/star.h"
 
 namespace glint {
 namespace {
@@ -114,6 +116,9 @@ void metricsJson(const FrameComparison::Row* row, const FrameComparison& c, orde
   add("angle_error_deg", m.angleErrorDeg);
   add("peak_offset_px", m.peakOffsetPx);
   j["coverage"] = row && row->predicted >= 0 ? number(c.prediction.highlights[row->predicted].coverage) : ordered_json(nullptr);
+  // Only where walks were made on second-order patches: says whether they were good enough.
+  if (row && row->predicted >= 0 && c.prediction.highlights[row->predicted].curvatureVariation)
+    j["curvature_variation"] = number(*c.prediction.highlights[row->predicted].curvatureVariation);
   j["time_us"] = number(c.prediction.timeUs);
 }
 
@@ -287,6 +292,14 @@ std::string evaluationTable(const Inspection& inspection) {
     out += line;
     if (!s.answered) out += "  " + s.reason;
     out += "\n";
+    double variation = 0;
+    for (const FrameComparison& c : it->second.frames)
+      for (const PredictedHighlight& h : c.prediction.highlights) variation = std::max(variation, h.curvatureVariation.value_or(0));
+    if (variation > kLargestVariation) {
+      std::snprintf(line, sizeof line, "%-12s the local quadric is not good enough: curvature varies by up to %.3f over a highlight (at most %.2f)\n", "",
+                    variation, kLargestVariation);
+      out += line;
+    }
   }
   return out;
 }

@@ -60,9 +60,10 @@ class Canonical final : public HighlightModel {
     const Light light = fit.lightEstimate ? *fit.lightEstimate : Light::at(fit.ellipsoid->centre());
     const auto brightest = brightestPointsFor(*surface, camera, light, settings, fit.hints);
     if (!brightest) return fail(brightest.failure());
+    const bool localQuadric = settings.text("predict.query") == "local-quadric";
     WalkOptions walkOptions;
     walkOptions.toleranceRad = settings.number("predict.walk_tolerance");
-    const bool localQuadric = settings.text("predict.query") == "local-quadric";
+    if (localQuadric) walkOptions.toleranceRad = std::max(walkOptions.toleranceRad, kPatchToleranceRad);
     for (const BrightestPoint& b : *brightest) {
       std::optional<LocalQuadric> patch;
       if (localQuadric) {

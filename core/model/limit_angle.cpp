@@ -143,7 +143,9 @@ class LimitAngle final : public HighlightModel {
         p.failure = patch.failure();
         continue;
       }
-      const TangentWalk walk(*patch, camera, b, light, walkOptions(settings));
+      WalkOptions options = walkOptions(settings);
+      options.toleranceRad = std::max(options.toleranceRad, kPatchToleranceRad);
+      const TangentWalk walk(*patch, camera, b, light, options);
       PredictedHighlight h;
       h.brightest = b;
       h.tangentPlane = walk.tangentPlane();

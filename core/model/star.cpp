@@ -2,6 +2,7 @@
 #include "core/model/star.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -11,17 +12,25 @@ namespace {
 constexpr int kSubdivisions = 8;  // chords of 36 directions cost 0.13 % of the diameter on a circle; 288 cost 0.002 %
 constexpr int kStencil = 6;       // points of the interpolating polynomial: its error is below the walk's other errors
 
-/// Polynomial through the pixels of the directions first .. first + count - 1 (cyclic), at direction number `at`.
-Pixel interpolate(const std::vector<Pixel>& pixelOf, int first, int count, double at) {
-  const int n = static_cast<int>(pixelOf.size());
-  Pixel sum(0, 0);
+/// Weights of the polynomial through `count` equally spaced points, at `at` steps after the first one.
+std::array<double, kStencil> weights(int count, double at) {
+  std::array<double, kStencil> w{};
   for (int a = 0; a < count; ++a) {
-    double weight = 1;
+    w[a] = 1;
     for (int b = 0; b < count; ++b)
-      if (b != a) weight *= (at - (first + b)) / double(a - b);
-    sum += weight * pixelOf[((first + a) % n + n) % n];
+      if (b != a) w[a] *= (at - b) / double(a - b);
   }
-  return sum;
+  return w;
+}
+
+/// Those of a full stencil around a chord, for every subdivision: nearly all chords use these.
+const std::array<std::array<double, kStencil>, kSubdivisions>& centredWeights() {
+  static const auto table = [] {
+    std::array<std::array<double, kStencil>, kSubdivisions> t{};
+    for (int k = 0; k < kSubdivisions; ++k) t[k] = weights(kStencil, (kStencil - 1) / 2 + double(k) / kSubdivisions);
+    return t;
+  }();
+  return table;
 }
 
 }  // namespace
@@ -35,6 +44,7 @@ void outlineOf(const CanonicalContour& c, PredictedHighlight& h) {
   const auto isOk = [&](int i) { return ok[(i % n + n) % n] != 0; };
   h.coverage = n ? double(c.pixels.size()) / n : 0;
   h.contour = Polyline{{}, true};
+  h.contour.points.reserve(static_cast<std::size_t>(n) * kSubdivisions);
   for (int i = 0; i < n; ++i) {
     if (!ok[i]) continue;
     h.contour.points.push_back(pixelOf[i]);
@@ -49,8 +59,14 @@ void outlineOf(const CanonicalContour& c, PredictedHighlight& h) {
       if (left && (!right || i - first <= last - i - 1)) --first;
       else ++last;
     }
-    for (int k = 1; k < kSubdivisions; ++k)
-      h.contour.points.push_back(interpolate(pixelOf, first, last - first + 1, i + double(k) / kSubdivisions));
+    const int count = last - first + 1;
+    const bool centred = count == kStencil && i - first == (kStencil - 1) / 2;
+    for (int k = 1; k < kSubdivisions; ++k) {
+      const std::array<double, kStencil> w = centred ? centredWeights()[k] : weights(count, i - first + double(k) / kSubdivisions);
+      Pixel sum(0, 0);
+      for (int a = 0, j = (first + n) % n; a < count; ++a, j = j + 1 < n ? j + 1 : 0) sum += w[a] * pixelOf[j];
+      h.contour.points.push_back(sum);
+    }
   }
   // The last gap closes on the first vertex.
   const int count = static_cast<int>(h.contour.points.size());
@@ -61,7 +77,8 @@ CanonicalContour starContour(const TangentWalk& walk, const Surface& surface, co
   require(n >= 1, "starContour: needs directions");
   CanonicalContour result;
   result.directions.resize(n);
-  const Eigen::Vector3d eye = camera.centreInWorld(), origin = walk.brightest().point.position;
+  const Eigen::Vector3d origin = walk.brightest().point.position;
+  std::vector<SurfacePoint> ends(n);
   // To first order the level set is the ellipse |J x| = limit. Directions are taken at equal steps of its parameter: the curve is
   // then close to one harmonic of it, so that few directions and the interpolation between them suffice also where it is long.
   const Eigen::Matrix2d rate = walk.angularRate();
@@ -70,38 +87,36 @@ CanonicalContour starContour(const TangentWalk& walk, const Surface& surface, co
   // Beyond an axis ratio of 100 (a fold) the second order matters more than this ellipse.
   if (std::abs(determinant) > 1e-2 * size * size) ellipse = limit * rate.inverse();
   if (ellipse.determinant() < 0) ellipse.col(1) = -ellipse.col(1);  // azimuths turn the same way as everywhere
-  double ratio = 1;  // reach over its first order, carried from direction to direction
+  ReachGuess guess;  // reach over its first order
+  SurfacePoint neighbour;
   for (int i = 0; i < n; ++i) {
     DirectionResult& r = result.directions[i];
     const double t = 2 * std::numbers::pi * i / n;
     const Eigen::Vector2d first = ellipse * Eigen::Vector2d(std::cos(t), std::sin(t));
-    const double guess = first.norm();
+    const double reachToFirstOrder = first.norm();
     r.azimuth = std::atan2(first.y(), first.x());
     const Eigen::Vector3d v = walk.direction(r.azimuth);
-    if (!std::isfinite(guess) || !(guess > 0)) {
+    if (!std::isfinite(reachToFirstOrder) || !(reachToFirstOrder > 0)) {
       r.failure = Failure{Reason::NotReached, "alpha does not grow"};
       continue;
     }
-    const Outcome<TangentWalk::Reach> reach = walk.reachOnSurface(v, limit, 0.45 * ratio * guess);
+    const double ratio = guess.next(), expected = ratio * reachToFirstOrder;
+    const bool follow = guess.known() && ratio > 0.02 && ratio < 50;
+    const Outcome<TangentWalk::Reach> reach =
+        follow ? walk.reachNear(v, limit, expected, neighbour, 0.45 * expected)
+               : walk.reachOnSurface(v, limit, 0.45 * std::clamp(ratio, 0.02, 50.0) * reachToFirstOrder);
     if (!reach) {
       r.failure = reach.failure();
+      guess.interrupt();
       continue;
     }
-    if (surface.occluded(reach->point, eye)) {
-      r.failure = Failure{Reason::Occluded, "another part of the surface is in front"};
-      continue;
-    }
-    const std::optional<Pixel> pixel = camera.project(reach->point.position);
-    if (!pixel) {
-      r.failure = Failure{Reason::BehindCamera, ""};
-      continue;
-    }
-    ratio = std::clamp(reach->distance / guess, 0.02, 50.0);
-    r.onSurface = reach->point.position;
+    guess.add(reach->distance / reachToFirstOrder);
+    neighbour = reach->point;
     r.onTangentPlane = origin + reach->distance * v;
     r.limitAngle = limit;
-    result.pixels.push_back(*pixel);
+    ends[i] = reach->point;
   }
+  keepVisible(result, ends, surface, camera);
   return result;
 }
 

@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "core/surface/occlusion.h"
+
 namespace glint {
 namespace {
 
@@ -189,6 +191,48 @@ Outcome<TangentWalk::Reach> TangentWalk::reachOnSurface(const Eigen::Vector3d& d
   return stopped ? *stopped : Failure{Reason::NotReached, "alpha stays under the limit"};
 }
 
+double TangentWalk::sineAbove(const SurfacePoint& p, double sineLimit, double cosineLimit) const {
+  const Eigen::Vector3d toEye = eye_ - p.position, v = toEye / toEye.norm(), l = light_.directionFrom(p.position);
+  if (!(p.normal.dot(v) > 0) || !(p.normal.dot(l) > 0)) return std::nan("");
+  const Eigen::Vector3d h = l + v;
+  return (p.normal.cross(h).norm() * cosineLimit - p.normal.dot(h) * sineLimit) / h.norm();
+}
+
+Outcome<TangentWalk::Reach> TangentWalk::reachNear(const Eigen::Vector3d& d, double limit, double expected,
+                                                   const SurfacePoint& neighbour, double scale) const {
+  constexpr double kTrust = 0.25;   // of the limit and of the expected distance: beyond it another branch may be in between
+  constexpr int kMost = 12;         // three or four are usual; kinks of a coarse mesh take some more
+  const Eigen::Vector3d& origin = brightest_.point.position;
+  const double sine = std::sin(limit), cosine = std::cos(limit);
+  // Three pairs (f, s), the newest first; the oldest is P_B itself.
+  double f[3] = {0, 0, 0}, s[3] = {expected, 0, 0};
+  f[1] = sineAbove(brightest_.point, sine, cosine);
+  SurfacePoint at = neighbour;
+  if (f[1] < 0)
+    for (int i = 0; i < kMost; ++i) {
+      Outcome<SurfacePoint> p = foot(origin + s[0] * d, at);
+      if (!p) break;
+      f[0] = sineAbove(*p, sine, cosine);
+      if (!(std::abs(f[0]) < kTrust * limit)) break;
+      if (std::abs(f[0]) <= options_.toleranceRad) {
+        if (i > 0 && !((f[0] - f[1]) * (s[0] - s[1]) >= 0)) break;  // falling: not the first crossing
+        return Reach{s[0], std::move(*p)};
+      }
+      at = std::move(*p);
+      // Inverse interpolation at f = 0: the chord first, then the parabola through three pairs.
+      double next = s[0] - f[0] * (s[0] - s[1]) / (f[0] - f[1]);
+      if (i > 0) {
+        const double second = ((s[0] - s[1]) / (f[0] - f[1]) - (s[1] - s[2]) / (f[1] - f[2])) / (f[0] - f[2]);
+        next += f[0] * f[1] * second;
+      }
+      if (!(std::abs(next - expected) < kTrust * expected)) break;
+      s[2] = s[1]; f[2] = f[1];
+      s[1] = s[0]; f[1] = f[0];
+      s[0] = next;
+    }
+  return reachOnSurface(d, limit, scale);
+}
+
 Outcome<TangentWalk::Reach> TangentWalk::reachContour(const Eigen::Vector3d& d, const Polyline& contour, double scale) const {
   const Eigen::Vector3d& origin = brightest_.point.position;
   const auto& points = contour.points;
@@ -333,6 +377,26 @@ CanonicalContour canonicalContour(const TangentWalk& walk, const Camera& camera,
   return result;
 }
 
+void keepVisible(CanonicalContour& c, const std::vector<SurfacePoint>& ends, const Surface& surface, const Camera& camera) {
+  std::vector<SurfacePoint> reached;
+  for (std::size_t i = 0; i < ends.size(); ++i)
+    if (!c.directions[i].failure) reached.push_back(ends[i]);
+  const std::vector<char> hidden = occludedMany(surface, reached, camera.centreInWorld());
+  for (std::size_t i = 0, k = 0; i < ends.size(); ++i) {
+    DirectionResult& r = c.directions[i];
+    if (r.failure) continue;
+    const std::optional<Pixel> pixel = camera.project(ends[i].position);
+    if (hidden[k++]) r.failure = Failure{Reason::Occluded, "another part of the surface is in front"};
+    else if (!pixel) r.failure = Failure{Reason::BehindCamera, ""};
+    if (r.failure) {
+      r.limitAngle.reset();
+      continue;
+    }
+    r.onSurface = ends[i].position;
+    c.pixels.push_back(*pixel);
+  }
+}
+
 CanonicalContour predictFromEllipse(const TangentWalk& walk, const Surface& surface, const Camera& camera, const Ellipse& ellipse,
                                     int n) {
   require(n >= 1, "predictFromEllipse: needs directions");
@@ -342,7 +406,9 @@ CanonicalContour predictFromEllipse(const TangentWalk& walk, const Surface& surf
   const Eigen::Matrix3d h = walk.pixelFromPlane();
   const Eigen::Matrix3d c = h.transpose() * ellipse.conic().matrix * h;
   const Eigen::Vector3d origin = walk.brightest().point.position;
-  double ratio = 1;  // reach on S over reach on T, carried from direction to direction as the first guess
+  ReachGuess guess;  // reach on S over reach on T
+  SurfacePoint neighbour;
+  std::vector<SurfacePoint> ends(n);
   for (int i = 0; i < n; ++i) {
     DirectionResult& r = result.directions[i];
     r.azimuth = 2 * std::numbers::pi * i / n;
@@ -369,25 +435,21 @@ CanonicalContour predictFromEllipse(const TangentWalk& walk, const Surface& surf
       r.failure = Failure{Reason::LightBehindSurface, "at the outline on the tangent plane"};
       continue;
     }
-    const Outcome<TangentWalk::Reach> reach = walk.reachOnSurface(v, limit, 0.45 * ratio * s);
+    const double ratio = guess.next();
+    const bool follow = guess.known() && ratio > 0.02 && ratio < 50;
+    const Outcome<TangentWalk::Reach> reach = follow ? walk.reachNear(v, limit, ratio * s, neighbour, 0.45 * ratio * s)
+                                                     : walk.reachOnSurface(v, limit, 0.45 * std::clamp(ratio, 0.02, 50.0) * s);
     if (!reach) {
       r.failure = reach.failure();
+      guess.interrupt();
       continue;
     }
-    if (surface.occluded(reach->point, camera.centreInWorld())) {
-      r.failure = Failure{Reason::Occluded, "another part of the surface is in front"};
-      continue;
-    }
-    const std::optional<Pixel> pixel = camera.project(reach->point.position);
-    if (!pixel) {
-      r.failure = Failure{Reason::BehindCamera, ""};
-      continue;
-    }
-    ratio = std::clamp(reach->distance / s, 0.02, 50.0);
-    r.onSurface = reach->point.position;
+    guess.add(reach->distance / s);
+    neighbour = reach->point;
     r.limitAngle = limit;
-    result.pixels.push_back(*pixel);
+    ends[i] = reach->point;
   }
+  keepVisible(result, ends, surface, camera);
   fitPixels(result);
   return result;
 }

@@ -51,6 +51,11 @@ class TangentWalk {
     SurfacePoint point;  ///< foot, normal towards the camera
   };
   Outcome<Reach> reachOnSurface(const Eigen::Vector3d& direction, double limit, double scale) const;
+  /// The same where a neighbouring direction's end is known: a few secant steps from the expected distance. Marches as above when
+  /// alpha there is not within a quarter of the limit, or when the steps do not settle near the expected distance.
+  /// @param expected  distance, m; > 0.  @param neighbour  where the neighbouring walk ended: feet are searched from there.
+  Outcome<Reach> reachNear(const Eigen::Vector3d& direction, double limit, double expected, const SurfacePoint& neighbour,
+                           double scale) const;
   /// Walk on S until the foot's pixel leaves the contour. @param contour closed, ideal pixels, around the peak.
   Outcome<Reach> reachContour(const Eigen::Vector3d& direction, const Polyline& contour, double scale) const;
 
@@ -65,6 +70,8 @@ class TangentWalk {
 
  private:
   Outcome<SurfacePoint> foot(const Eigen::Vector3d& onPlane, const SurfacePoint& previous) const;
+  /// sin(alpha - limit) at a lit surface point that faces the camera, NaN elsewhere: the root's function without atan2.
+  double sineAbove(const SurfacePoint& p, double sineLimit, double cosineLimit) const;
 
   const Surface& surface_;
   const Camera& camera_;
@@ -76,10 +83,37 @@ class TangentWalk {
   Eigen::Matrix<double, 3, 2> basis_;  ///< u, v in T
 };
 
+/// Guesses the reach of a direction from those of the directions before it (equal steps of the azimuth or another parameter):
+/// the quadratic through the last three, or fewer.
+class ReachGuess {
+ public:
+  /// Reach over its first guess in the next direction.
+  double next() const {
+    return count_ >= 3 ? 3 * last_[0] - 3 * last_[1] + last_[2] : count_ == 2 ? 2 * last_[0] - last_[1] : last_[0];
+  }
+  bool known() const { return count_ > 0; }
+  void add(double ratio) {
+    last_[2] = last_[1];
+    last_[1] = last_[0];
+    last_[0] = ratio;
+    ++count_;
+  }
+  /// A direction failed: what lies behind it says nothing any more about curvature of the ratio.
+  void interrupt() { count_ = count_ > 0 ? 1 : 0; }
+
+ private:
+  double last_[3] = {1, 1, 1};
+  int count_ = 0;
+};
+
 /// Canonical contour of an observed highlight: for n directions walk on S to the contour, read the limit angle there, and
 /// walk on T to the same angle (method.md section 6). Never fails as a whole: each direction carries its result, and the
 /// ellipse is empty when fewer than five directions succeeded.
 CanonicalContour canonicalContour(const TangentWalk& walk, const Camera& camera, const Polyline& contour, int directions);
+
+/// Ends of walks (one per direction; those with a failure are skipped): fails the directions whose end is hidden or behind the
+/// camera, and stores position and pixel of the others.
+void keepVisible(CanonicalContour& contour, const std::vector<SurfacePoint>& ends, const Surface& surface, const Camera& camera);
 
 /// Inverse: from the ellipse on T (given in pixels; T is fixed by the mirror, so real and virtual camera see the same
 /// pixels) to the predicted points on S (method.md section 8).

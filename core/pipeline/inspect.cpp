@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <set>
@@ -48,6 +49,22 @@ std::string join(const std::vector<int>& numbers) {
   for (const int n : numbers) text += std::to_string(n) + ",";
   return text;
 }
+
+/// Counts what is alive, and the most there ever were.
+class Held {
+ public:
+  Held(std::atomic<int>& now, std::atomic<int>& most) : now_(now) {
+    const int count = ++now_;
+    for (int seen = most; seen < count && !most.compare_exchange_weak(seen, count);) {
+    }
+  }
+  ~Held() { --now_; }
+  Held(const Held&) = delete;
+  Held& operator=(const Held&) = delete;
+
+ private:
+  std::atomic<int>& now_;
+};
 
 /// One (light, surface) that gets its own fit.
 struct Group {
@@ -114,9 +131,13 @@ void Run::highlights() {
   const Scene& scene = *r_.scene;
   if (!q.truthFolder.empty()) requireTruthFolder(q.truthFolder, scene);
   r_.evidence.resize(scene.frames.size());
+  r_.work.framesDetected = static_cast<int>(scene.frames.size());
+  // Images live only inside one call: as many at once as there are threads, whatever the number of frames.
+  std::atomic<int> held{0}, most{0};
   parallelFor(
       static_cast<int>(scene.frames.size()),
       [&](int i) {
+        const Held inMemory(held, most);
         r_.evidence[i] = gatherEvidence(scene, i, q.source, q.settings);
         if (q.truthFolder.empty()) return;
         r_.evidence[i].againstTruth = true;
@@ -125,6 +146,7 @@ void Run::highlights() {
         else r_.evidence[i].truthFailure = truth.failure();
       },
       progress_, "detect");
+  r_.work.framesHeldAtOnce = most;
   assignSeveralLights();
 }
 
@@ -169,6 +191,7 @@ void Run::brightestPointsAndTangentPlanes() {
       explainMissingSurface(frame, r_.views.back().failure);
     }
   }
+  r_.work.trainingViews = static_cast<int>(r_.views.size());
 }
 
 std::vector<Group> Run::groups() const {
@@ -205,6 +228,7 @@ void Run::lights() {
     std::vector<TrainingView> views;
     for (const int v : all[i].views) views.push_back(r_.views[v]);
     const Outcome<LightEstimate> light = estimateLight(views, r_.request.settings);
+    ++r_.work.lights;
     const std::string key = lightKey(all[i].light, all[i].surface);
     if (light) r_.lights.insert_or_assign(key, *light);
     else r_.lightFailures.insert_or_assign(key, light.failure());
@@ -212,10 +236,17 @@ void Run::lights() {
 }
 
 void Run::canonicalContours() {
+  r_.stageKeys["canonical"] = keyOfStages(r_.request.settings, {"fit"}, r_.stageKeys["light"]);
   if (!anyModel(&HighlightModel::needsCanonicalContours)) return;
+  const auto had = [&](const TrainingView& v) { return v.canonical.has_value(); };
+  if (unchanged("views") && unchanged("canonical") && std::any_of(previous_->views.begin(), previous_->views.end(), had)) {
+    r_.views = previous_->views;  // equal keys: the same views
+    return;
+  }
   for (const Group& g : groups()) {
     const auto light = r_.lights.find(lightKey(g.light, g.surface));
     if (light == r_.lights.end()) continue;
+    r_.work.canonicalContours += static_cast<int>(g.views.size());
     parallelFor(
         static_cast<int>(g.views.size()),
         [&](int i) { addCanonicalContour(r_.views[g.views[i]], light->second.light, r_.request.settings); }, progress_, "canonical");
@@ -251,6 +282,7 @@ void Run::modelFits() {
       const FitInput input = fitInput(g);
       const auto start = std::chrono::steady_clock::now();
       Outcome<ModelFit> fit = model.fit(input, r_.request.settings);
+      ++r_.work.fits;
       if (fit) {
         fit->model = name;
         fit->light = g.light;
@@ -288,6 +320,9 @@ void Run::predictionsAndComparisons() {
       }
     }
     result.frames.resize(tasks.size());
+    // What needs no light needs nothing but the camera (method.md section 11): no surface is loaded for it.
+    const bool needsSurface = model.needsLight();
+    std::atomic<int> predictions{0}, surfacesAsked{0};
     parallelFor(
         static_cast<int>(tasks.size()),
         [&](int t) {
@@ -296,7 +331,9 @@ void Run::predictionsAndComparisons() {
           const Camera& camera = r_.scene->frames[frame].camera;
           Prediction prediction;
           if (fit.fit) {
-            const std::shared_ptr<const Surface> surface = surfaceOf(frame);
+            const std::shared_ptr<const Surface> surface = needsSurface ? surfaceOf(frame) : nullptr;
+            surfacesAsked += needsSurface;
+            ++predictions;
             const auto start = std::chrono::steady_clock::now();
             prediction = model.predict(*fit.fit, camera, surface.get(), r_.request.settings);
             prediction.timeUs = microsecondsSince(start);
@@ -311,6 +348,9 @@ void Run::predictionsAndComparisons() {
           result.frames[t].fit = f;
         },
         progress_, "predict " + name);
+    r_.work.predictions += predictions;
+    r_.work.surfacesAsked += surfacesAsked;
+    r_.work.comparisons += static_cast<int>(tasks.size());
   }
 }
 

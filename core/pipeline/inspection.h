@@ -81,6 +81,19 @@ struct ModelResult {
   std::vector<FrameComparison> frames;   ///< every frame, training ones too; `heldOut` tells which count
 };
 
+/// What one run of `inspect` computed itself; what it took over from an earlier run or did not need counts nothing.
+struct WorkCounts {
+  int framesDetected = 0;     ///< frames whose highlights were gathered
+  int framesHeldAtOnce = 0;   ///< most frames whose images were in memory at the same time
+  int trainingViews = 0;      ///< brightest points and tangent planes
+  int lights = 0;             ///< lights estimated
+  int canonicalContours = 0;
+  int fits = 0;
+  int predictions = 0;
+  int comparisons = 0;
+  int surfacesAsked = 0;      ///< predictions that asked for the surface of their frame
+};
+
 /// Everything that was computed; the viewer shows all of it.
 struct Inspection {
   std::shared_ptr<const Scene> scene;
@@ -93,6 +106,7 @@ struct Inspection {
   std::map<std::string, Failure> lightFailures;            ///< the same keys: why a light could not be estimated
   std::map<std::string, ModelResult> models;
   std::map<std::string, std::string> stageKeys;            ///< what each stage's result depends on: tells which stages a later run may reuse
+  WorkCounts work;
   bool isTraining(int frame) const;
   bool isHeldOut(int frame) const;                         ///< counts in summaries
 };

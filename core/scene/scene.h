@@ -82,7 +82,8 @@ Outcome<std::optional<Image>> readDepth(const Frame& frame);
 /// World normals, 3 channels (x y z), not normalised: as stored, or v / 65532 * 2 - 1 of a 16-bit image; nothing when the frame has none.
 Outcome<std::optional<Image>> readNormals(const Frame& frame);
 
-/// Loads surfaces once per (source, policy) and shares them. Thread-safe.
+/// Loads surfaces once per (source, policy) and shares them; of the frames' own depth maps only the last few stay (others are
+/// loaded again when asked for), so that memory does not grow with the number of frames. Thread-safe.
 class SurfaceCache {
  public:
   explicit SurfaceCache(const Scene& scene);
@@ -91,6 +92,15 @@ class SurfaceCache {
   Outcome<std::shared_ptr<const Surface>> surfaceOf(int frame, NormalPolicy normals) const;
   /// A key that is equal for frames that see the same surface ("body"; "depth:0004" for a frame's own depth).
   std::string keyOf(int frame) const;
+
+  /// Depth maps kept for the next question, beside those that somebody holds. One of 1920 x 1080 takes several hundred MB.
+  static constexpr int kDepthMapsKept = 2;
+  struct Statistics {
+    int loads = 0;             ///< surfaces built so far
+    int depthMaps = 0;         ///< of them, held now
+    int mostDepthMaps = 0;     ///< held at any time
+  };
+  Statistics statistics() const;
 
  private:
   struct Impl;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <future>
+#include <list>
 #include <map>
 #include <mutex>
 
@@ -21,6 +23,8 @@ struct SurfaceCache::Impl {
   mutable std::mutex mutex;
   mutable std::map<std::string, std::shared_future<TriangleMesh>> meshes;              // by surface id, shared by the policies
   mutable std::map<std::string, std::shared_future<Outcome<SharedSurface>>> surfaces;  // by key and policy
+  mutable std::list<std::string> recentDepthMaps;                                      // keys, the last used one first
+  mutable Statistics statistics;
 
   const Frame& frame(int index) const {
     require(index >= 0 && index < static_cast<int>(frames.size()), "SurfaceCache: no such frame");
@@ -29,7 +33,7 @@ struct SurfaceCache::Impl {
 
   /// The first caller loads, outside the lock; the others wait for its result (or its exception).
   template <class T, class Load>
-  const T& once(std::map<std::string, std::shared_future<T>>& cache, const std::string& key, const Load& load) const {
+  T once(std::map<std::string, std::shared_future<T>>& cache, const std::string& key, const Load& load) const {
     std::promise<T> promise;
     std::shared_future<T> future;
     bool mine = false;
@@ -46,7 +50,20 @@ struct SurfaceCache::Impl {
         promise.set_exception(std::current_exception());
       }
     }
-    return future.get();  // the map keeps the shared state alive
+    return future.get();
+  }
+
+  /// Marks a depth map as used and drops those used longest ago. Whoever holds a surface keeps it alive.
+  void touch(const std::string& key) const {
+    const std::lock_guard<std::mutex> lock(mutex);
+    recentDepthMaps.remove(key);
+    recentDepthMaps.push_front(key);
+    while (static_cast<int>(recentDepthMaps.size()) > kDepthMapsKept) {
+      surfaces.erase(recentDepthMaps.back());
+      recentDepthMaps.pop_back();
+    }
+    statistics.depthMaps = static_cast<int>(recentDepthMaps.size());
+    statistics.mostDepthMaps = std::max(statistics.mostDepthMaps, statistics.depthMaps);
   }
 
   Outcome<SharedSurface> load(const Frame& frame, NormalPolicy normals) const {
@@ -62,9 +79,9 @@ struct SurfaceCache::Impl {
     if (it == sources.end()) return Failure{Reason::NoSurface, "there is no surface '" + frame.surface + "'"};
     if (it->second.analytic) return makeAnalytic(*it->second.analytic);
     if (!it->second.mesh) return Failure{Reason::NoSurface, "surface '" + frame.surface + "' is neither a mesh nor analytic"};
-    const TriangleMesh& mesh = once(meshes, frame.surface, [&] { return readMesh(*it->second.mesh); });
+    TriangleMesh mesh = once(meshes, frame.surface, [&] { return readMesh(*it->second.mesh); });
     try {
-      return makeMesh(mesh, normals);
+      return makeMesh(std::move(mesh), normals);
     } catch (const std::invalid_argument& e) {
       throw InputError(it->second.mesh->string(), "", e.what());
     }
@@ -85,7 +102,19 @@ std::string SurfaceCache::keyOf(int index) const {
 Outcome<std::shared_ptr<const Surface>> SurfaceCache::surfaceOf(int index, NormalPolicy normals) const {
   const Frame& frame = impl_->frame(index);
   const std::string key = keyOf(index) + "|" + std::to_string(static_cast<int>(normals));
-  return impl_->once(impl_->surfaces, key, [&] { return impl_->load(frame, normals); });
+  if (frame.surface.empty()) impl_->touch(key);
+  return impl_->once(impl_->surfaces, key, [&] {
+    {
+      const std::lock_guard<std::mutex> lock(impl_->mutex);
+      ++impl_->statistics.loads;
+    }
+    return impl_->load(frame, normals);
+  });
+}
+
+SurfaceCache::Statistics SurfaceCache::statistics() const {
+  const std::lock_guard<std::mutex> lock(impl_->mutex);
+  return impl_->statistics;
 }
 
 }  // namespace glint

@@ -11,6 +11,7 @@
 
 #include "core/geometry/plane.h"
 #include "core/surface/mesh_topology.h"
+#include "core/surface/occlusion.h"
 
 namespace glint {
 
@@ -26,6 +27,11 @@ namespace {
 constexpr double kInf = std::numeric_limits<double>::infinity();
 /// Barycentric slack: a line through an edge must lie inside one of its two triangles despite round-off.
 constexpr double kInside = 1e-12;
+
+/// A foot this many triangles away is found sooner by a ray. Measured on a mesh of 1 million triangles: a step over an edge costs
+/// about 20 ns, a ray 400 ns and more.
+constexpr int kFootTriangles = 32;
+constexpr double kFarTriangles = 16;
 
 /// Embree objects, released with the mesh.
 struct EmbreeScene {
@@ -49,7 +55,7 @@ struct Place {
   double u = 0, v = 0, t = 0;
 };
 
-class MeshSurface : public Surface {
+class MeshSurface : public Surface, public ManyOcclusions {
  public:
   MeshSurface(TriangleMesh mesh, NormalPolicy policy) : policy_(policy), mesh_(std::move(mesh)) {
     check();
@@ -75,13 +81,17 @@ class MeshSurface : public Surface {
     const Vector3d d = direction.normalized();
     const Vector3d o = point + (previous.position - point).dot(d) * d;  // the place of the line nearest to `previous`
     if (previous.element >= 0 && previous.element < static_cast<int>(mesh_.triangles.size()) && topology_.alive[previous.element])
-      if (const std::optional<Place> place = walk(previous.element, o, d, 32)) return pointAt(*place);
+      if (const std::optional<Place> place = walk(previous.element, o, d, kFootTriangles, kFarTriangles)) return pointAt(*place);
     std::optional<SurfacePoint> best;
-    for (const double sign : {1.0, -1.0})
-      if (const std::optional<Place> place = firstPlace(o, sign * d, -1e-9 * size_, kInf)) {
+    // Distances to `previous` grow with the distance from o, so that the second ray need not look farther than the first one's
+    // hit. Convex surfaces lie behind their tangent plane: that side first.
+    double farthest = kInf;
+    for (const double sign : {-1.0, 1.0})
+      if (const std::optional<Place> place = firstPlace(o, sign * d, -1e-9 * size_, farthest)) {
         const SurfacePoint p = pointAt(*place);
-        if (!best || (p.position - previous.position).squaredNorm() < (best->position - previous.position).squaredNorm())
-          best = p;
+        if (best && !((p.position - previous.position).squaredNorm() < (best->position - previous.position).squaredNorm())) continue;
+        best = p;
+        farthest = std::abs(place->t) * (1 + 1e-6) + 1e-9 * size_;
       }
     if (!best) return Failure{Reason::SurfaceEnded, "the line misses the " + describe()};
     return *best;
@@ -96,6 +106,7 @@ class MeshSurface : public Surface {
     if (!(length > 0)) return false;
     return firstPlace(from.position, offset / length, 1e-6 * std::min(size_, length), length * (1 - 1e-9)).has_value();
   }
+  std::vector<char> occludedMany(const std::vector<SurfacePoint>& from, const Vector3d& to) const override;
 
   AlignedBox3d bounds() const override { return bounds_; }
 
@@ -221,7 +232,8 @@ class MeshSurface : public Surface {
   }
 
   /// From triangle to neighbour until the line passes through one. Nothing at a border or after `most` triangles.
-  std::optional<Place> walk(int triangle, const Vector3d& o, const Vector3d& d, int most) const {
+  /// Gives up at once when the first triangle's weights say that the place is more than `far` triangles away.
+  std::optional<Place> walk(int triangle, const Vector3d& o, const Vector3d& d, int most, double far = kInf) const {
     Place best;
     double bestLowest = -kInf;
     for (int i = 0, before = -1; i < most; ++i) {
@@ -229,6 +241,7 @@ class MeshSurface : public Surface {
       if (!solve(triangle, o, d, place)) break;
       const double w = 1 - place.u - place.v;
       const double lowest = std::min({place.u, place.v, w});
+      if (i == 0 && !(lowest > -far)) return std::nullopt;
       if (lowest >= -kInside) return place;
       if (lowest > bestLowest) {
         bestLowest = lowest;
@@ -340,6 +353,7 @@ class MeshSurface : public Surface {
 std::vector<std::optional<SurfacePoint>> MeshSurface::approximateHits(const std::vector<Ray>& rays) const {
   constexpr int kPacket = 8;
   std::vector<std::optional<SurfacePoint>> hits(rays.size());
+  std::vector<Place> places(rays.size());
   alignas(32) RTCRayHit8 packet;
   alignas(32) int valid[kPacket];
   RTCIntersectContext context;
@@ -368,14 +382,73 @@ std::vector<std::optional<SurfacePoint>> MeshSurface::approximateHits(const std:
       packet.ray.id[k] = packet.ray.flags[k] = 0;
       packet.hit.geomID[k] = packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
     }
+    // Without the flag for coherent rays: seeds lie 32 px apart, and with it they take 1.6 times as long (the dense scan of a level
+    // set shows no difference).
     rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     rtcIntersect8(valid, embree_.scene, &context, &packet);
     for (int k = 0; k < kPacket; ++k)
       if (valid[k] && packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID)
-        hits[first + k] = pointAt({static_cast<int>(packet.hit.primID[k]), packet.hit.u[k], packet.hit.v[k], 0});
+        places[first + k] = {static_cast<int>(packet.hit.primID[k]), packet.hit.u[k], packet.hit.v[k], 0};
   }
+  // Rays far apart meet triangles that no cache holds: ask for all of them before waiting for one.
+  for (const Place& p : places)
+    if (p.triangle >= 0) __builtin_prefetch(&mesh_.triangles[p.triangle]);
+  for (const Place& p : places)
+    if (p.triangle >= 0)
+      for (int k = 0; k < 3; ++k) {
+        const int vertex = mesh_.triangles[p.triangle][k];
+        __builtin_prefetch(&mesh_.vertices[vertex]);
+        if (!mesh_.normals.empty()) __builtin_prefetch(&mesh_.normals[vertex]);
+      }
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (places[i].triangle >= 0) hits[i] = pointAt(places[i]);
   return hits;
+}
+
+std::vector<char> MeshSurface::occludedMany(const std::vector<SurfacePoint>& from, const Vector3d& to) const {
+  constexpr int kPacket = 8;
+  std::vector<char> result(from.size(), 0);
+  alignas(32) RTCRay8 packet;
+  alignas(32) int valid[kPacket];
+  RTCIntersectContext context;
+  for (std::size_t first = 0; first < from.size(); first += kPacket) {
+    char asked[kPacket] = {}, met[kPacket] = {};
+    // As in `firstPlace`, a ray that meets nothing is asked once more, a little to the side: one may slip through a vertex.
+    for (const float aside : {0.f, 2e-6f}) {
+      for (int k = 0; k < kPacket; ++k) {
+        valid[k] = 0;
+        if (first + k >= from.size() || met[k]) continue;
+        const Vector3d& p = from[first + k].position;
+        const Vector3d offset = to - p;
+        const double length = offset.norm();
+        if (!p.allFinite() || !(length > 0) || !std::isfinite(length)) continue;
+        const Vector3d d = offset / length, o = (p - centre_) * toEmbree_;
+        const Eigen::Vector3f side = aside * tangentBasis(d).col(0).cast<float>();
+        valid[k] = -1;
+        asked[k] = 1;
+        packet.org_x[k] = static_cast<float>(o.x()) + side.x();
+        packet.org_y[k] = static_cast<float>(o.y()) + side.y();
+        packet.org_z[k] = static_cast<float>(o.z()) + side.z();
+        packet.dir_x[k] = static_cast<float>(d.x());
+        packet.dir_y[k] = static_cast<float>(d.y());
+        packet.dir_z[k] = static_cast<float>(d.z());
+        packet.tnear[k] = static_cast<float>(1e-6 * std::min(size_, length) * toEmbree_);
+        packet.tfar[k] = static_cast<float>(length * toEmbree_);
+        packet.time[k] = 0;
+        packet.mask[k] = ~0u;
+        packet.id[k] = packet.flags[k] = 0;
+      }
+      rtcInitIntersectContext(&context);
+      context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+      rtcOccluded8(valid, embree_.scene, &context, &packet);
+      for (int k = 0; k < kPacket; ++k)
+        if (valid[k] && packet.tfar[k] < 0) met[k] = 1;  // that is how Embree marks a hit
+    }
+    // Float says that something is met: double decides, as for a single point.
+    for (int k = 0; k < kPacket; ++k)
+      if (asked[k] && met[k]) result[first + k] = occluded(from[first + k], to);
+  }
+  return result;
 }
 
 Outcome<Curvature> MeshSurface::curvatureAt(const SurfacePoint& p) const {
