@@ -4,6 +4,7 @@
 #include <QPushButton>
 #include <QSignalSpy>
 
+#include "core/pipeline/session.h"
 #include "gui/main_window.h"
 #include "gui/session_file.h"
 #include "gui/setup_panel.h"
@@ -88,7 +89,7 @@ class TradeoffTest : public QObject {
     opened.tradeoff = std::make_shared<const Tradeoff>(threePoints());
     const std::string file = folder.filePath(QStringLiteral("a.glint")).toStdString();
     saveSession(opened, nullptr, file);
-    const Opened again = openInput(file);
+    const Session again = readSession(file);
     QVERIFY(again.tradeoff);
     QCOMPARE(int(again.tradeoff->points.size()), 3);
     QCOMPARE(again.tradeoff->reason, std::string("for a test"));
