@@ -8,6 +8,7 @@
 #include <deque>
 #include <limits>
 
+#include "core/base/residual_spread.h"
 #include "core/geometry/polyline.h"
 #include "core/light/directed_limit.h"
 #include "core/light/estimate.h"
@@ -276,39 +277,14 @@ Light inWorld(const Eigen::Vector4d& light, const Eigen::Vector3d& origin, doubl
   return Light::homogeneous(world);
 }
 
-/// Variance factor of the estimate: cov = factor (J^T J)^-1 for a Huber loss with held scale. It is Huber's
-/// K^2 (sum psi^2 / (n - p)) / (mean psi')^2, times the inflation 1 + 2 sum rho_k of residuals that are correlated along their
-/// contour (a detected contour, or a model that does not quite fit): then n points tell less than n.
-/// @see Huber, Robust Regression: Asymptotics, Conjectures and Monte Carlo, 1973, eq. 6.11.
-struct Spread {
-  double factor = 0, noisePx = 0, degreesOfFreedom = 0;
-};
-Spread spreadOf(const std::vector<Evidence>& points, const Attempt& a, int parameters, double scale) {
-  const double n = double(points.size()), free = std::max(1.0, n - parameters);
-  std::vector<double> psi, absolute;
-  double squares = 0, inliers = 0;
+ResidualSpread spreadOf(const std::vector<Evidence>& points, const Attempt& a, int parameters, double scale) {
+  std::vector<double> residuals;
+  std::vector<int> views;
   for (const Evidence& e : points) {
-    const double r = residual(e, a);
-    psi.push_back(std::clamp(r, -scale, scale));
-    absolute.push_back(std::abs(r));
-    squares += psi.back() * psi.back();
-    inliers += std::abs(r) <= scale;
+    residuals.push_back(residual(e, a));
+    views.push_back(e.view);
   }
-  Spread spread;
-  spread.noisePx = 1.4826 * median(absolute) * std::sqrt(n / free);  // the median of |x| of a unit normal is 1 / 1.4826
-  const double slope = std::max(inliers, 1.0) / n, k = 1 + parameters / n * (1 - slope) / slope;
-  double inflation = 1;
-  const double noticed = 2 / std::sqrt(n);  // an autocorrelation of white residuals stays below this
-  for (int lag = 1; squares > 0 && lag <= int(n) / 2; ++lag) {
-    double sum = 0;
-    for (std::size_t i = 0; i + lag < points.size(); ++i)
-      if (points[i].view == points[i + lag].view) sum += psi[i] * psi[i + lag];
-    if (!(sum / squares > noticed)) break;
-    inflation += 2 * sum / squares;
-  }
-  spread.factor = inflation * k * k * squares / free / (slope * slope);
-  spread.degreesOfFreedom = std::max(1.0, free / inflation);
-  return spread;
+  return residualSpread(residuals, views, parameters, scale);
 }
 
 void setCovariance(const std::vector<Evidence>& points, const Attempt& a, const Eigen::Vector3d& origin, double scale, double robustPx,
@@ -328,7 +304,7 @@ void setCovariance(const std::vector<Evidence>& points, const Attempt& a, const 
     if (!DirectedCost(new DirectedResidual{points[i]}).Evaluate(at, &value, blocks)) continue;
     jacobian.row(i) << byLight * chart, byLimit, byExtent;
   }
-  const Spread spread = spreadOf(points, a, int(parameters), robustPx);
+  const ResidualSpread spread = spreadOf(points, a, int(parameters), robustPx);
   if (a.directed)  // its prior, in units of the noise
     for (int i = 0; i < 6; ++i)
       jacobian(points.size() + i, 4 + i) = std::sqrt(spread.factor) * extentPrior(a, points) * (i < 3 ? 1 : std::sqrt(2.0));

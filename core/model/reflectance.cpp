@@ -6,7 +6,9 @@
 #include "core/light/estimate.h"
 #include "core/model/level_set_prediction.h"
 #include "core/model/models.h"
+#include "core/model/uncertainty.h"
 #include "core/reflectance/fit.h"
+#include "core/reflectance/light_radiance.h"
 #include "core/reflectance/radiance_field.h"
 
 namespace glint {
@@ -80,6 +82,14 @@ Outcome<RadianceFit> bestOf(const std::vector<Lobe>& lobes, const std::vector<Ra
   return best;
 }
 
+/// -log I; `contour` is log I on the contour: a shadow matters inside the highlight only.
+std::function<std::optional<double>(const SurfacePoint&)> valueOf(const RadianceField& radiance, double contour) {
+  return [&radiance, contour](const SurfacePoint& at) -> std::optional<double> {
+    const std::optional<double> log = radiance.at(at, contour);
+    return log ? std::optional<double>(-*log) : std::nullopt;
+  };
+}
+
 class Reflectance final : public HighlightModel {
  public:
   std::string id() const override { return "reflectance"; }
@@ -136,9 +146,45 @@ class Reflectance final : public HighlightModel {
     fit.lobe = nameOf(best->lobe);
     fit.level = level;
     fit.residualPx = best->residualPx;
+    fit.uncertainty = best->uncertainty;
     fit.solver = "contours";
     if (input.light) fit.condition = input.light->condition;
     return fit;
+  }
+
+  std::vector<double> bandSigmaPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera,
+                                  const Surface* surface, const Settings&) const override {
+    if (!surface || !fit.uncertainty || !fit.lightEstimate || !fit.roughness || !fit.lobe || !fit.level) return {};
+    const Light& light = *fit.lightEstimate;
+    const double radius = fit.lightRadius.value_or(0);
+    const RadianceField radiance(*surface, camera, *lobeOf(*fit.lobe), *fit.roughness, light, radius);
+    const std::vector<RadiancePeak> peaks = radiance.peaks({highlight.brightest.pixel}, kScanStepPx);
+    if (peaks.empty()) return {};
+    const double contour = peaks.front().logRadiance + std::log(*fit.level);
+    SurfaceField field;
+    field.value = valueOf(radiance, contour);
+    field.level = -contour;
+    const Eigen::Vector3d eye = camera.centreInWorld();
+    const Eigen::MatrixXd& root = fit.uncertainty->root;
+    // log I(peak) - log I(point) with the parameters moved. The peak stays: its value does not change with its place, to first
+    // order.
+    const auto moved = [&](const SurfacePoint& at, const Eigen::VectorXd& by) -> double {
+      const Eigen::Vector4d other = light.homogeneous() + by.head<4>();
+      const auto log = [&](const SurfacePoint& p) {
+        return lobe::logOfSphereLight<double>(*lobeOf(*fit.lobe), *fit.roughness * std::exp(by(4)), p.position, p.normal,
+                                              (eye - p.position).normalized(), other, radius * radius);
+      };
+      const auto here = log(at), top = log(peaks.front().point);
+      return here && top ? *top - *here : std::nan("");
+    };
+    const ColumnSlopes slopes = [&](const SurfacePoint& at) -> std::optional<Eigen::VectorXd> {
+      constexpr double kStep = 0.01;  // of a standard deviation
+      Eigen::VectorXd change(root.cols());
+      for (Eigen::Index k = 0; k < root.cols(); ++k)
+        change(k) = (moved(at, kStep * root.col(k)) - moved(at, -kStep * root.col(k))) / (2 * kStep);
+      return change;
+    };
+    return levelSetSigmaPx(highlight.contour.points, field, camera, *surface, slopes);
   }
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {
@@ -160,10 +206,7 @@ class Reflectance final : public HighlightModel {
     }
     SurfaceField field;
     const double contour = peaks.front().logRadiance + std::log(*fit.level);
-    field.value = [&, contour](const SurfacePoint& at) -> std::optional<double> {
-      const std::optional<double> log = radiance.at(at, contour);  // a shadow matters inside the highlight only
-      return log ? std::optional<double>(-*log) : std::nullopt;
-    };
+    field.value = valueOf(radiance, contour);
     field.level = -contour;
     const Eigen::Vector3d eye = camera.centreInWorld();
     for (const RadiancePeak& k : peaks) {

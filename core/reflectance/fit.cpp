@@ -11,6 +11,7 @@
 #include <deque>
 #include <limits>
 
+#include "core/base/residual_spread.h"
 #include "core/reflectance/contour_evidence.h"
 #include "core/reflectance/light_radiance.h"
 #include "core/reflectance/radiance_field.h"
@@ -88,6 +89,7 @@ class Problem {
   /// By how much a light of some size would lower the sum of squares, to first order; 0 where it would raise it.
   double gainBySize(const Attempt& a);
   RadianceFit describe(const Attempt& a, std::size_t views);
+  void setUncertainty(const Attempt& a, RadianceFit& fit) const;
   std::size_t lit() const {
     return std::count_if(frames_.begin(), frames_.end(), [](const FramePeak& f) { return f.at.has_value(); });
   }
@@ -356,8 +358,67 @@ double Problem::gainBySize(const Attempt& a) {
   return residuals.squaredNorm() - (residuals + jacobian * step).squaredNorm();
 }
 
+/// Residuals, and what the Jacobian at the solution makes of their spread.
+void Problem::setUncertainty(const Attempt& a, RadianceFit& fit) const {
+  const bool atInfinity = a.at(3) == 0;
+  const int parameters = 4;
+  Eigen::Matrix<double, 4, 3, Eigen::RowMajor> chart;  // ambient from tangent coordinates of L
+  ceres::SphereManifold<4>().PlusJacobian(a.at.data(), chart.data());
+  Eigen::Matrix<double, Eigen::Dynamic, 4> jacobian(std::max<std::size_t>(points_.size(), 4), 4);
+  jacobian.setZero();
+  std::vector<double> residuals;
+  std::vector<int> views, counts(fit.residualPx.size(), 0);
+  double sum = 0;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Evidence& e = points_[i];
+    double residual = 0, byRoughness = 0;
+    Eigen::RowVector4d byLight;
+    const double* at[] = {a.at.data(), a.at.data() + 4, a.at.data() + 5};
+    double* blocks[] = {byLight.data(), &byRoughness, nullptr};
+    RootCost(*this, e).Evaluate(at, &residual, blocks);
+    jacobian.row(i) << byLight * chart, byRoughness;
+    residuals.push_back(residual);
+    views.push_back(e.view);
+    sum += residual * residual;
+    fit.residualPx[e.view] += residual * residual;
+    ++counts[e.view];
+  }
+  for (std::size_t v = 0; v < counts.size(); ++v) fit.residualPx[v] = counts[v] ? std::sqrt(fit.residualPx[v] / counts[v]) : 0;
+  fit.rmsPx = std::sqrt(sum / points_.size());
+  fit.positionCovariance.setZero();
+  fit.positionCovariance.diagonal().setConstant(std::numeric_limits<double>::infinity());
+  const Eigen::Matrix4d r = Eigen::HouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 4>>(jacobian)
+                                .matrixQR()
+                                .topRows<4>()
+                                .triangularView<Eigen::Upper>();
+  const Eigen::JacobiSVD<Eigen::Matrix4d> svd(r, Eigen::ComputeFullV);
+  if (!(svd.singularValues()(3) > 1e-14 * svd.singularValues()(0))) return;  // a free direction, to round-off
+  const ResidualSpread spread = residualSpread(residuals, views, parameters, options_.robustPx);
+  const Eigen::Matrix4d root = std::sqrt(spread.factor) * svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();
+  if (!atInfinity) {
+    const double w = a.at(3);
+    Eigen::Matrix<double, 3, 4> position;  // d(l / w)
+    position << Eigen::Matrix3d::Identity() / w, -a.at.head<3>() / (w * w);
+    const Eigen::Matrix<double, 3, 4> half = scale_ * position * chart * root.topRows<3>();
+    const Eigen::Matrix3d covariance = half * half.transpose();
+    if (covariance.allFinite()) fit.positionCovariance = covariance;
+  }
+  // In the world, with |L| = 1 again: d(y / |y|) = (I - u u^T) dy / |y|.
+  Eigen::Matrix4d toWorld = Eigen::Matrix4d::Identity();
+  toWorld.topLeftCorner<3, 3>() *= scale_;
+  toWorld.topRightCorner<3, 1>() = origin_;
+  const Eigen::Vector4d y = toWorld * a.at.head<4>(), u = y.normalized();
+  const Eigen::Matrix4d dy = toWorld * chart * root.topRows<3>();
+  ParameterUncertainty uncertainty;
+  uncertainty.root.resize(5, 4);
+  uncertainty.root.topRows<4>() = (dy - u * (u.transpose() * dy)) / y.norm();
+  uncertainty.root.bottomRows<1>() = root.bottomRows<1>();
+  uncertainty.noisePx = spread.noisePx;
+  uncertainty.degreesOfFreedom = spread.degreesOfFreedom;
+  if (uncertainty.root.allFinite()) fit.uncertainty = std::move(uncertainty);
+}
+
 RadianceFit Problem::describe(const Attempt& a, std::size_t views) {
-  const double infinity = std::numeric_limits<double>::infinity();
   updatePeaks(a.at, true);
   relinearise(a.at, true);
   RadianceFit fit;
@@ -369,50 +430,7 @@ RadianceFit Problem::describe(const Attempt& a, std::size_t views) {
   fit.points = static_cast<int>(points_.size());
   fit.iterations = a.iterations;
   fit.residualPx.assign(views, 0);
-  std::vector<int> counts(views, 0);
-  Eigen::Matrix<double, 4, 3, Eigen::RowMajor> chart;  // ambient from tangent coordinates of L
-  ceres::SphereManifold<4>().PlusJacobian(a.at.data(), chart.data());
-  Eigen::Matrix<double, Eigen::Dynamic, 4> jacobian(std::max<std::size_t>(points_.size(), 4), 4);
-  jacobian.setZero();
-  double sum = 0;
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const Evidence& e = points_[i];
-    double residual = 0, byRoughness = 0;
-    Eigen::RowVector4d byLight;
-    const double* parameters[] = {a.at.data(), a.at.data() + 4, a.at.data() + 5};
-    double* blocks[] = {byLight.data(), &byRoughness, nullptr};
-    if (!RootCost(*this, e).Evaluate(parameters, &residual, blocks)) continue;
-    jacobian.row(i) << byLight * chart, byRoughness;
-    sum += residual * residual;
-    fit.residualPx[e.view] += residual * residual;
-    ++counts[e.view];
-  }
-  for (std::size_t v = 0; v < views; ++v) fit.residualPx[v] = counts[v] ? std::sqrt(fit.residualPx[v] / counts[v]) : 0;
-  fit.rmsPx = std::sqrt(sum / points_.size());
-  const double variance = sum / std::max<double>(1, double(points_.size()) - 4);
-  const Eigen::Matrix4d r = Eigen::HouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 4>>(jacobian)
-                                .matrixQR()
-                                .topRows<4>()
-                                .triangularView<Eigen::Upper>();
-  const Eigen::JacobiSVD<Eigen::Matrix4d> svd(r, Eigen::ComputeFullV);
-  fit.covariance = Eigen::Matrix4d::Zero();
-  fit.positionCovariance = Eigen::Matrix3d::Zero();
-  if (!(svd.singularValues()(3) > 1e-14 * svd.singularValues()(0))) {
-    fit.covariance.diagonal().setConstant(infinity);
-    fit.positionCovariance.diagonal().setConstant(infinity);
-    return fit;
-  }
-  const Eigen::Matrix4d half = svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();
-  fit.covariance = variance * (half * half.transpose());
-  const double w = a.at(3);
-  Eigen::Matrix<double, 3, 4> position;  // d(l / w)
-  position << Eigen::Matrix3d::Identity() / w, -a.at.head<3>() / (w * w);
-  const Eigen::Matrix<double, 3, 4> root = scale_ * position * chart * half.topRows<3>();
-  fit.positionCovariance = variance * (root * root.transpose());
-  if (w == 0 || !fit.positionCovariance.allFinite()) {
-    fit.positionCovariance.setZero();
-    fit.positionCovariance.diagonal().setConstant(infinity);
-  }
+  setUncertainty(a, fit);
   return fit;
 }
 

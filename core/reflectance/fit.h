@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "core/base/uncertainty.h"
 #include "core/light/light.h"
 #include "core/reflectance/lobe.h"
 #include "core/surface/surface.h"
@@ -31,8 +33,9 @@ struct RadianceFit {
   Lobe lobe = Lobe::TorranceSparrow;
   double roughness = 0;  ///< m
   Light light;
-  double lightRadius = 0;              ///< m; 0 where the contours do not show a size
-  Eigen::Matrix4d covariance;          ///< of (tangent coordinates of L (3), log m), scaled by the residual variance
+  double lightRadius = 0;  ///< m; 0 where the contours do not show a size
+  std::optional<ParameterUncertainty>
+      uncertainty;                     ///< of (L homogeneous with |L| = 1 (4), log m (1)); none where a direction is free
   Eigen::Matrix3d positionCovariance;  ///< m^2; not finite for a light at infinity
   double rmsPx = 0;
   double cost = 0;                 ///< robust sum of squares, px^2: lobes are compared by it

@@ -12,25 +12,34 @@
 namespace glint::test {
 
 struct CoverageTrials {
-  Synthetic scene;                 ///< its last camera is held out
+  Synthetic scene;  ///< its last camera is held out
   std::string model = "limit-angle";
-  double noisePx = 0.5;            ///< per coordinate, on 72 points of every training contour and on its peak (--noise-px)
-  double coverage = 0.95;          ///< of the band
+  double noisePx = 0.5;    ///< per coordinate, on 72 points of every training contour and on its peak (--noise-px)
+  double coverage = 0.95;  ///< of the band
   int trials = 100;
   unsigned firstSeed = 1;
   Settings settings;
 };
 
+/// Contours of a Torrance-Sparrow lobe, fitted with that lobe: the right model.
+inline CoverageTrials rightLobe(CoverageTrials t) {
+  t.model = "reflectance";
+  t.scene.material = Material{};
+  t.settings.set("fit.lobe", std::string("torrance-sparrow"));
+  t.settings.set("fit.light_size", std::string("point"));
+  return t;
+}
+
 struct CoverageResult {
-  int trials = 0, failed = 0;      ///< failed: no fit, no prediction or no band
-  long pairs = 0, inside = 0;      ///< (trial, direction)
-  double shareSpread = 0;          ///< standard deviation over trials of a trial's share inside: directions of one trial move together
+  int trials = 0, failed = 0;  ///< failed: no fit, no prediction or no band
+  long pairs = 0, inside = 0;  ///< (trial, direction)
+  double shareSpread = 0;  ///< standard deviation over trials of a trial's share inside: directions of one trial move together
   double meanSigmaPx = 0, rmsErrorPx = 0, meanNoisePx = 0;
   double share() const { return pairs ? double(inside) / double(pairs) : 0; }
 };
 
-/// Compares with the exact contour for level-set models; for an ellipsoid model, which is not exact on a curved surface, with its own
-/// prediction from noise-free contours: the band is about noise.
+/// Compares with the exact contour for level-set models; for an ellipsoid model, which is not exact on a curved surface, with its
+/// own prediction from noise-free contours: the band is about noise.
 inline CoverageResult runCoverageTrials(const CoverageTrials& t) {
   constexpr int kDirections = 36;
   const std::shared_ptr<const Surface> surface = makeAnalytic(t.scene.surface);

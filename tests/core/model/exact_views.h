@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -24,6 +25,7 @@ struct Synthetic {
   std::vector<Camera> cameras;
   TrueLight light;
   double limitAngle = 6 * M_PI / 180;
+  std::optional<Material> material;  ///< when set, contours are level sets of its radiance at half of the peak instead
 };
 
 inline Light lightOf(const TrueLight& light) {
@@ -88,7 +90,9 @@ inline std::vector<Highlight> exactHighlightsOf(const Synthetic& s, const Camera
   ExactOptions options;
   options.kind = ContourKind::LimitAngle;
   options.limitAngle = s.limitAngle;
-  const Outcome<std::vector<Highlight>> found = exactHighlights(*makeAnalytic(s.surface), camera, s.light, Material{}, options);
+  if (s.material) options.kind = ContourKind::Radiance;
+  const Outcome<std::vector<Highlight>> found =
+      exactHighlights(*makeAnalytic(s.surface), camera, s.light, s.material.value_or(Material{}), options);
   if (!found) throw std::runtime_error("exact highlight: " + found.failure().message());
   std::vector<Highlight> highlights = *found;
   for (Highlight& h : highlights) {

@@ -100,6 +100,19 @@ TEST_P(Coverage, OfTheLimitAngleBandIsTheStatedOne) {
     EXPECT_NEAR(r.meanNoisePx, t.noisePx, 0.1 * t.noisePx);
   }
 }
+TEST(CoverageOfRadiance, OfTheReflectanceBandIsTheStatedOne) {
+  for (const int scene : {0, 3}) {
+    CoverageTrials t;
+    t.scene = coverageScenes()[scene].second;
+    t.noisePx = 0.3;
+    t.trials = 60;
+    const CoverageResult r = runCoverageTrials(rightLobe(t));
+    EXPECT_EQ(r.failed, 0);
+    EXPECT_NEAR(r.share(), 0.95, slack(r)) << scene;
+    EXPECT_NEAR(r.meanNoisePx, t.noisePx, 0.1 * t.noisePx);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, Coverage, testing::Values(0, 2, 3, 5));
 
 // Noise displaces the points of a curved contour outwards by sigma^2 / (2 R) on average: 0.04 px here, ten standard errors. The bundle removes it.

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/base/residual_spread.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/outcome.h"
+
+namespace glint {
+
+ResidualSpread residualSpread(const std::vector<double>& residuals, const std::vector<int>& views, int parameters,
+                              double robustScale) {
+  require(!residuals.empty() && residuals.size() == views.size() && robustScale > 0, "residualSpread: sizes and scale");
+  const double n = double(residuals.size()), free = std::max(1.0, n - parameters);
+  std::vector<double> psi, absolute;
+  double squares = 0, inliers = 0;
+  for (const double r : residuals) {
+    psi.push_back(std::clamp(r, -robustScale, robustScale));
+    absolute.push_back(std::abs(r));
+    squares += psi.back() * psi.back();
+    inliers += std::abs(r) <= robustScale;
+  }
+  std::nth_element(absolute.begin(), absolute.begin() + absolute.size() / 2, absolute.end());
+  ResidualSpread spread;
+  // The median of |x| of a unit normal is 1 / 1.4826.
+  spread.noisePx = 1.4826 * absolute[absolute.size() / 2] * std::sqrt(n / free);
+  const double slope = std::max(inliers, 1.0) / n, k = 1 + parameters / n * (1 - slope) / slope;
+  double inflation = 1;
+  const double noticed = 2 / std::sqrt(n);  // an autocorrelation of white residuals stays below this
+  for (int lag = 1; squares > 0 && lag <= int(n) / 2; ++lag) {
+    double sum = 0;
+    for (std::size_t i = 0; i + lag < psi.size(); ++i)
+      if (views[i] == views[i + lag]) sum += psi[i] * psi[i + lag];
+    if (!(sum / squares > noticed)) break;
+    inflation += 2 * sum / squares;
+  }
+  spread.factor = inflation * k * k * squares / free / (slope * slope);
+  spread.degreesOfFreedom = std::max(1.0, free / inflation);
+  return spread;
+}
+
+}  // namespace glint

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+namespace glint {
+
+/// What the residuals of a robust fit say about the noise.
+struct ResidualSpread {
+  double factor = 0;            ///< covariance of the parameters = factor (J^T J)^-1, J of the plain residuals
+  double noisePx = 0;           ///< standard deviation of one residual, robust
+  double degreesOfFreedom = 0;  ///< of these estimates, fewer where neighbouring residuals go together
+};
+
+/// For a Huber loss of scale `robustScale` that was held: K^2 (sum psi^2 / (n - p)) / (mean psi')^2, times the inflation
+/// 1 + 2 sum rho_k of residuals that are correlated along their contour (a detected contour, or a model that does not quite fit):
+/// then n points tell less than n.
+/// @see Huber, Robust Regression: Asymptotics, Conjectures and Monte Carlo, 1973, eq. 6.11.
+/// @param residuals  in contour order within a view. @param views  of each residual; same size.
+ResidualSpread residualSpread(const std::vector<double>& residuals, const std::vector<int>& views, int parameters,
+                              double robustScale);
+
+}  // namespace glint
