@@ -19,7 +19,7 @@ const std::vector<std::string> kBoth{"left", "right"};
 SettingValue otherValue(const ParamSpec& p) {
   if (!p.choices.empty())
     return p.choices.front() == std::get<std::string>(p.defaultValue) ? p.choices.back() : p.choices.front();
-  if (const int* i = std::get_if<int>(&p.defaultValue)) return *i + 4;
+  if (const int* i = std::get_if<int>(&p.defaultValue)) return *i + 4 <= p.max ? *i + 4 : static_cast<int>(p.max);
   if (const bool* b = std::get_if<bool>(&p.defaultValue)) return !*b;
   const double d = std::get<double>(p.defaultValue);
   return d == 0 ? p.min + 0.1 * (std::min(p.max, 10.0) - p.min) : std::max(p.min, 0.5 * d);
