@@ -105,7 +105,7 @@ class LinkingTest : public QObject {
 
   void everyRowHasANumberOrAReason() {
     const QAbstractItemModel* model = table_->view()->model();
-    QCOMPARE(model->rowCount(), 12 * 4);
+    QCOMPARE(model->rowCount(), 12 * 5);
     for (int r = 0; r < model->rowCount(); ++r) {
       const bool number = model->index(r, ErrorModel::ErrorPct).data().toString() != QStringLiteral("–");
       const QString reason = model->index(r, ErrorModel::ReasonText).data().toString();

@@ -21,9 +21,13 @@ TEST(Stability, NoCaseIsWrong) {
   for (const StabilityResult& r : results()) {
     EXPECT_NE(r.verdict, Verdict::Wrong) << r.stage << ": " << r.name << ": " << r.reason << ", error " << r.relativeError;
     EXPECT_EQ(r.verdict == Verdict::Accurate, r.reason.empty()) << r.stage << ": " << r.name;
-    if (r.verdict == Verdict::Accurate) EXPECT_LE(r.relativeError, r.tolerance) << r.name;
+    if (r.verdict == Verdict::Accurate) {
+      EXPECT_LE(r.relativeError, r.tolerance) << r.name;
+    }
     // A wider tolerance and a failure both need their reason in the table.
-    if (r.tolerance > 1e-9 || r.verdict == Verdict::NamedFailure) EXPECT_FALSE(r.note.empty()) << r.stage << ": " << r.name;
+    if (r.tolerance > 1e-9 || r.verdict == Verdict::NamedFailure) {
+      EXPECT_FALSE(r.note.empty()) << r.stage << ": " << r.name;
+    }
     EXPECT_TRUE(std::isfinite(r.parameter) && std::isfinite(r.condition) && std::isfinite(r.relativeError)) << r.name;
   }
 }
