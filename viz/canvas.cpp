@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -62,6 +63,12 @@ std::vector<std::vector<Eigen::Vector2d>> dashes(const std::vector<Eigen::Vector
   return pieces;
 }
 
+/// VTK's FreeType tools are one instance with caches of its own and no lock; pictures are drawn by several threads.
+std::mutex& textMutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
 void setUp(vtkTextProperty* look, double sizePx) {
   look->SetFontSize(std::max(6, static_cast<int>(std::lround(sizePx))));
   look->SetColor(1, 1, 1);
@@ -79,6 +86,7 @@ struct Glyphs {
 Glyphs rendered(const std::string& text, double sizePx) {
   Glyphs glyphs;
   if (text.empty()) return glyphs;
+  const std::lock_guard lock(textMutex());
   vtkNew<vtkTextProperty> look;
   setUp(look, sizePx);
   vtkNew<vtkImageData> image;
@@ -236,6 +244,7 @@ void Canvas::text(const Eigen::Vector2d& at, const std::string& text, double siz
 
 double Canvas::textWidth(const std::string& text, double sizePx) const {
   if (text.empty()) return 0;
+  const std::lock_guard lock(textMutex());
   vtkNew<vtkTextProperty> look;
   setUp(look, sizePx);
   int box[4] = {0, 0, 0, 0};

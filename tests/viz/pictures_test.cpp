@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <fstream>
+#include <thread>
+#include <vector>
 
 #include "core/scene/scene.h"
 #include "tests/viz/small_inspection.h"
@@ -29,6 +31,18 @@ int countNear(const Image& image, const Colour& colour, double tolerance = 0.08)
     for (int x = 0; x < image.width; ++x) count += isNear(image, x, y, colour, tolerance);
   }
   return count;
+}
+
+// `glint predict --out` draws its overlays in parallel; VTK's text tools have no lock of their own and crashed now and then.
+TEST(Pictures, AreDrawnByManyThreadsAtOnce) {
+  const test::TemporaryFolder folder;
+  const auto inspection = test::smallInspection(folder.path());
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 8; ++t)
+    threads.emplace_back([&] {
+      for (int i = 0; i < 12; ++i) framePicture(*inspection, i % 3, Failure{Reason::FrameUnreadable, "none"}, 320, 240);
+    });
+  for (std::thread& t : threads) t.join();
 }
 
 TEST(Canvas, ImagePixelsAndOverlayPointsShareOneGrid) {
