@@ -23,7 +23,7 @@ ROWS = [
     ("bench_predict", "limitAnglePredictionAnalytic", "limit-angle prediction, analytic surface", None),
     ("bench_predict", "fitLinear", "ellipsoid from 6 views of 72 points, linear", 2),
     ("bench_predict", "fitAnchored", "the same, anchored", None),
-    ("bench_predict", "fitRefined", "the same, refined; the prior chosen by leave-one-view-out", None),
+    ("bench_predict", "fitRefined", "the same, refined, the prior weighed by the residuals", None),
     ("bench_predict", "bundleAnalytic", "light by the bundle, 6 views of 72 points, analytic surface", 10),
     ("bench_predict", "bundleMesh", "the same, mesh of 1 million triangles", 10),
     ("bench_predict", "refinedWithBundleAnalytic", "bundle, canonical contours and refined ellipsoid, analytic surface", 50),
