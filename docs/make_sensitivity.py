@@ -230,7 +230,7 @@ def study(maker, seeds):
     def normals(sigma, seed):
         scene = maker.scene(TRAIN)
         axes = scene["surfaces"]["body"]["analytic"]["semi_axes"]
-        scene["surfaces"]["body"] = {"mesh": "body.ply"}
+        scene["surfaces"] = {"body": {"mesh": "body.ply"}}  # the scene of the other runs keeps its own
         return maker.evaluate(scene, len(TRAIN), files={"body.ply": ellipsoid_mesh(axes, sigma, random.Random(f"normals {sigma} {seed}"))})
 
     def views(k):
