@@ -21,6 +21,7 @@ class Canonical final : public HighlightModel {
   std::string reference() const override { return "Morgand, Tamaazousti, Bartoli, canonical JOLIMAS (2022); method.md sections 6 to 8"; }
   bool needsLight() const override { return true; }
   bool needsCanonicalContours() const override { return true; }
+  bool walks() const override { return true; }
 
   Outcome<ModelFit> fit(const FitInput& input, const Settings& settings) const override {
     if (!input.light) return input.lightFailure ? *input.lightFailure : Failure{Reason::NoLight, ""};

@@ -49,6 +49,7 @@ class LimitAngle final : public HighlightModel {
   std::string reference() const override { return "method.md section 7"; }
   bool needsLight() const override { return true; }
   bool needsCanonicalContours() const override { return false; }
+  bool walks() const override { return true; }
 
   Outcome<ModelFit> fit(const FitInput& input, const Settings&) const override {
     if (!input.light) return input.lightFailure ? *input.lightFailure : Failure{Reason::NoLight, ""};

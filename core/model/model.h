@@ -129,6 +129,7 @@ class HighlightModel {
   virtual std::string reference() const = 0;      ///< paper or "method.md section 7"
   virtual bool needsLight() const = 0;            ///< the fit uses FitInput::light
   virtual bool needsCanonicalContours() const = 0;///< the fit uses TrainingView::canonical
+  virtual bool walks() const { return false; }    ///< predictions follow predict.query: they can walk on local quadrics
   /// Named failures: TooFewViews and what the solver or the light reports.
   virtual Outcome<ModelFit> fit(const FitInput& input, const Settings& settings) const = 0;
   /// @param surface  may be null for `primal`.
