@@ -26,6 +26,10 @@ Outcome<std::vector<BrightestPoint>> brightestPointsFor(const Surface& surface, 
 /// ModelFit::hints of a fit's input.
 std::vector<SurfacePoint> hintsOf(const FitInput& input);
 
+/// Median alpha, rad, over the contour points (equally spaced) that the light reaches: the robust limit angle for a given light. Views with
+/// a failure are skipped; 0 when no point is left.
+double medianContourAngle(const std::vector<TrainingView>& views, const Light& light, int pointsPerView);
+
 /// Leaves one highlight where several brightest points share one contour: those whose peak lies inside a larger predicted
 /// contour are dropped (method.md section 8: a component that encloses several brightest points is returned once).
 void dropEnclosed(std::vector<PredictedHighlight>& highlights);

@@ -32,24 +32,6 @@ std::optional<Light> firstLight(const FitInput& input) {
   return mean.norm() > 1e-6 * double(rays.size()) ? std::optional<Light>(Light::towards(mean)) : std::nullopt;
 }
 
-/// Median of alpha over the contour points that the light reaches.
-std::optional<double> medianAngle(const std::vector<RadianceView>& views, const Light& light) {
-  std::vector<double> angles;
-  for (const RadianceView& v : views) {
-    const Eigen::Vector3d eye = v.camera.centreInWorld();
-    for (const Pixel& p : resample(Polyline{v.contour, true}, kAnglePoints)) {
-      const Outcome<SurfacePoint> hit = v.surface->firstHit(v.camera.ray(p));
-      if (!hit) continue;
-      const SurfacePoint s = facing(*hit, eye);
-      const Eigen::Vector3d toLight = light.directionFrom(s.position);
-      if (s.normal.dot(toLight) > 0) angles.push_back(incidentAngle(s.normal, toLight, (eye - s.position).normalized()));
-    }
-  }
-  if (angles.empty()) return std::nullopt;
-  std::nth_element(angles.begin(), angles.begin() + angles.size() / 2, angles.end());
-  return angles[angles.size() / 2];
-}
-
 /// The lobe of the smallest residual; each starts from the best one so far. Where none explains the contours, the first is tried
 /// again from many starts, and the others follow it.
 Outcome<RadianceFit> bestOf(const std::vector<Lobe>& lobes, const std::vector<RadianceView>& views, const Light& light,
@@ -118,10 +100,10 @@ class Reflectance final : public HighlightModel {
     options.lightSize = settings.text("fit.light_size") == "auto";
     const std::optional<Light> light = firstLight(input);
     if (!light) return input.lightFailure ? *input.lightFailure : Failure{Reason::NoLight, ""};
-    const std::optional<double> alpha = medianAngle(views, *light);
-    if (!alpha) return Failure{Reason::PeakOffSurface, "no contour point hits the lit surface"};
+    const double alpha = medianContourAngle(input.views, *light, kAnglePoints);
+    if (!(alpha > 0)) return Failure{Reason::PeakOffSurface, "no contour point hits the lit surface"};
     // The width at which a Gaussian lobe falls to the level at that angle.
-    const double roughness = std::clamp(std::tan(*alpha) / std::sqrt(-std::log(level)), 1e-4, 1.0);
+    const double roughness = std::clamp(std::tan(alpha) / std::sqrt(-std::log(level)), 1e-4, 1.0);
     std::vector<Lobe> lobes{Lobe::TorranceSparrow, Lobe::Ggx, Lobe::BlinnPhong, Lobe::Phong};
     const std::string& name = settings.text("fit.lobe");
     if (name != "auto") lobes = {*lobeOf(name)};

@@ -6,6 +6,7 @@
 
 #include "core/light/estimate.h"
 #include "core/light/refine_poses.h"
+#include "core/model/models.h"
 #include "core/model/walk.h"
 
 namespace glint {
@@ -37,25 +38,6 @@ TrainingView trainingView(const FrameEvidence& evidence, int index, const Camera
 }
 
 namespace {
-
-/// Median alpha of the contour points on the surface: the robust limit angle for a given light. 0 when there is none.
-double medianContourAngle(const std::vector<TrainingView>& views, const Light& light, int pointsPerView) {
-  std::vector<double> alphas;
-  for (const TrainingView& v : views) {
-    if (v.failure || v.highlight.contour.points.size() < 3) continue;
-    const Eigen::Vector3d eye = v.camera.centreInWorld();
-    for (const Pixel& p : resample(v.highlight.contour, pointsPerView)) {
-      const Outcome<SurfacePoint> hit = v.surface->firstHit(v.camera.ray(p));
-      if (!hit) continue;
-      const SurfacePoint s = facing(*hit, eye);
-      const Eigen::Vector3d l = light.directionFrom(s.position);
-      if (s.normal.dot(l) > 0) alphas.push_back(incidentAngle(s.normal, l, (eye - s.position).normalized()));
-    }
-  }
-  if (alphas.empty()) return 0;
-  std::nth_element(alphas.begin(), alphas.begin() + alphas.size() / 2, alphas.end());
-  return alphas[alphas.size() / 2];
-}
 
 /// Whether the limit angle gets an extent. With -1 the views decide: only where one constant leaves residuals that are both visible and
 /// systematic is the extent tried at all, and it is kept when it predicts left-out views better by more than the standard error of the gain.

@@ -46,7 +46,8 @@ std::vector<ConicView> threeViews() {
   const Ellipsoid e(pose, {0.3, 0.2, 0.1});
   std::vector<ConicView> views;
   for (int i = 0; i < 4; ++i) {
-    const Projection p = cameraTowards({2 * std::cos(1.5 * i), 2 * std::sin(1.5 * i), 1.0 + 0.1 * i}, {0.1, 0.2, 0.3}, 800).projection();
+    const Projection p =
+        cameraTowards({2 * std::cos(1.5 * i), 2 * std::sin(1.5 * i), 1.0 + 0.1 * i}, {0.1, 0.2, 0.3}, 800).projection();
     views.push_back({p, *outlineEllipse(e, p), {}});
   }
   return views;
@@ -81,13 +82,16 @@ void addBadNumberCases(Cases& cases) {
       return failureOf(fitEllipse(p));
     });
   });
-  add("ellipse fit: coordinates up to 1e308", {Reason::NotFinite, Reason::RankDeficient}, [] {
-    std::vector<Pixel> p = circle();
-    for (Pixel& q : p) q = (q - Pixel(320, 240)) * 4e306;
-    p[0].x() = 1.7e308;
-    p[1].x() = -1.7e308;
-    return failureOf(fitEllipse(p));
-  }, "the extent of the points overflows");
+  add(
+      "ellipse fit: coordinates up to 1e308", {Reason::NotFinite, Reason::RankDeficient},
+      [] {
+        std::vector<Pixel> p = circle();
+        for (Pixel& q : p) q = (q - Pixel(320, 240)) * 4e306;
+        p[0].x() = 1.7e308;
+        p[1].x() = -1.7e308;
+        return failureOf(fitEllipse(p));
+      },
+      "the extent of the points overflows");
   add("dual quadric with NaN, inf, -inf", {Reason::NotFinite}, [] {
     return all([](double bad) {
       DualQuadric q = Ellipsoid(Eigen::Isometry3d::Identity(), {0.3, 0.2, 0.1}).dual();
@@ -103,9 +107,7 @@ void addBadNumberCases(Cases& cases) {
     });
   });
   add("ray with NaN, inf, -inf", {Reason::NotFinite}, [] {
-    return all([](double bad) {
-      return failureOf(makeAnalytic(specOf(0.5, true))->firstHit({{0.1, bad, 2}, {0, 0, -1}}));
-    });
+    return all([](double bad) { return failureOf(makeAnalytic(specOf(0.5, true))->firstHit({{0.1, bad, 2}, {0, 0, -1}})); });
   });
   add("ray on a mesh with NaN, inf, -inf", {Reason::NotFinite}, [] {
     return all([](double bad) {
@@ -116,7 +118,9 @@ void addBadNumberCases(Cases& cases) {
     });
   });
   add("observed peak NaN, inf, -inf", {Reason::NotFinite}, [] {
-    return all([](double bad) { return failureOf(observedBrightestPoint(*makeAnalytic(specOf(0.5, true)), plainCamera(), {bad, 1})); });
+    return all([](double bad) {
+      return failureOf(observedBrightestPoint(*makeAnalytic(specOf(0.5, true)), plainCamera(), {bad, 1}));
+    });
   });
   add("camera pose with NaN, inf, -inf", {Reason::NotFinite}, [] {
     return all([](double bad) {
@@ -165,14 +169,17 @@ void addBadNumberCases(Cases& cases) {
       return failureOf(makeDepthMap(depth, c));
     });
   });
-  add("all contour points the same", {Reason::TooFewPoints, Reason::RankDeficient}, [] {
-    return failureOf(fitEllipse(std::vector<Pixel>(36, Pixel(320.5, 240.25))));
-  }, "a point is no ellipse");
-  add("contour points on a line", {Reason::RankDeficient}, [] {
-    std::vector<Pixel> p;
-    for (int i = 0; i < 36; ++i) p.emplace_back(300 + i, 200 + 0.5 * i);
-    return failureOf(fitEllipse(p));
-  }, "a line is no ellipse");
+  add(
+      "all contour points the same", {Reason::TooFewPoints, Reason::RankDeficient},
+      [] { return failureOf(fitEllipse(std::vector<Pixel>(36, Pixel(320.5, 240.25)))); }, "a point is no ellipse");
+  add(
+      "contour points on a line", {Reason::RankDeficient},
+      [] {
+        std::vector<Pixel> p;
+        for (int i = 0; i < 36; ++i) p.emplace_back(300 + i, 200 + 0.5 * i);
+        return failureOf(fitEllipse(p));
+      },
+      "a line is no ellipse");
 
   const auto answer = [&](const char* name, double tolerance, std::function<Outcome<Measured>()> run, const char* note = "") {
     Case c;
@@ -205,14 +212,18 @@ void addBadNumberCases(Cases& cases) {
     return Measured{static_cast<double>(std::abs(hit->position.z() - z))};
   });
   answer("sheet of curvature 1e-310 per metre", 1e-9, []() -> Outcome<Measured> {
-    const Outcome<SurfacePoint> hit = makeAnalytic(specOf(kDenormal, false))->firstHit({{0.1, 0.2, 2}, Eigen::Vector3d(0.3, 0, -1).normalized()});
+    const Outcome<SurfacePoint> hit =
+        makeAnalytic(specOf(kDenormal, false))->firstHit({{0.1, 0.2, 2}, Eigen::Vector3d(0.3, 0, -1).normalized()});
     if (!hit) return hit.failure();
     return Measured{(hit->position - Eigen::Vector3d(0.7, 0.2, 0)).norm() / 2};
   });
-  answer("light at a denormal homogeneous vector", 1e-9, []() -> Outcome<Measured> {
-    const Light light = Light::homogeneous(Eigen::Vector4d(3e-310, 4e-310, 0, 1e-310));
-    return Measured{(light.position() - Eigen::Vector3d(3, 4, 0)).norm() / 5};
-  }, "denormals have 13 digits left here");
+  answer(
+      "light at a denormal homogeneous vector", 1e-9,
+      []() -> Outcome<Measured> {
+        const Light light = Light::homogeneous(Eigen::Vector4d(3e-310, 4e-310, 0, 1e-310));
+        return Measured{(light.position() - Eigen::Vector3d(3, 4, 0)).norm() / 5};
+      },
+      "denormals have 13 digits left here");
 }
 
 }  // namespace glint::stability

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <boost/multiprecision/cpp_bin_float.hpp>
-
 #include <algorithm>
+#include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include "core/stability/cases.h"
 #include "core/stability/scene.h"
@@ -44,9 +43,11 @@ Outcome<Measured> pointCase(double k, bool round, const Light& light, double u, 
   const Lamp<Real> lamp = lampOf<Real>(light);
   const RealView<Real> view = mirrorView(s, lamp, u, v, distance, focal);
   // The camera looks a little aside, so that neither the pixel's centre nor a seed is the answer.
-  const Camera camera = cameraTowards(view.camera.centreInWorld(), rounded(s.point(Real(u), Real(v))) +
-                                          Eigen::Vector3d(0.05, -0.03, 0.01) * distance * 100 / focal, focal);
-  const std::optional<Vec<Real>> reference = stationary(s, lamp, RealCamera<Real>(camera).eye(), Real(u), Real(v), Real(unitLength));
+  const Camera camera =
+      cameraTowards(view.camera.centreInWorld(),
+                    rounded(s.point(Real(u), Real(v))) + Eigen::Vector3d(0.05, -0.03, 0.01) * distance * 100 / focal, focal);
+  const std::optional<Vec<Real>> reference =
+      stationary(s, lamp, RealCamera<Real>(camera).eye(), Real(u), Real(v), Real(unitLength));
   if (!reference) return Failure{Reason::NotConverged, "reference"};
   const Outcome<std::vector<BrightestPoint>> found = predictedBrightestPoints(*makeAnalytic(specOf(k, round)), camera, light);
   if (!found) return found.failure();
@@ -89,25 +90,19 @@ Outcome<Measured> saddleCase(double k, const Eigen::Vector3d& eye, const Eigen::
 
 void addBrightestCases(Cases& cases) {
   const auto add = [&](const std::string& name, double parameter, double tolerance, const char* note, auto run) {
-    Case c;
-    c.stage = "brightest point";
-    c.name = name;
-    c.parameter = parameter;
-    c.tolerance = tolerance;
-    c.note = note;
-    c.run = run;
-    cases.push_back(c);
+    cases.push_back(answerCase("brightest point", name, parameter, tolerance, note, run));
   };
   const Eigen::Vector3d d = Eigen::Vector3d(0.3, -0.2, 1).normalized();
-  add("plane, light at 1e-2 m", 1e-2, 1e-9, "", [d] { return pointCase(0, false, Light::at(1e-2 * d), 0.003, 0.002, 1, 800, 1e-2, 1); });
-  add("sphere, light at 1e9 m", 1e9, 1e-9, "", [d] { return pointCase(2, true, Light::at(1e9 * d), 0.03, 0.02, 1, 800, 0.1, 1); });
-  add("sphere, light at infinity", 0, 1e-9, "", [d] { return pointCase(2, true, Light::towards(d), 0.03, 0.02, 1, 800, 0.1, 1); });
-  add("sheet of curvature 1e-9 per metre", 1e-9, 1e-9, "", [d] {
-    return pointCase(1e-9, false, Light::at(2 * d), 0.03, 0.02, 1, 800, 0.1, 1);
-  });
-  add("sphere of curvature 1e3 per metre", 1e3, 1e-9, "", [d] {
-    return pointCase(1e3, true, Light::at(2 * d), 1e-4, 2e-4, 0.1, 5000, 1e-4, 1);
-  });
+  add("plane, light at 1e-2 m", 1e-2, 1e-9, "",
+      [d] { return pointCase(0, false, Light::at(1e-2 * d), 0.003, 0.002, 1, 800, 1e-2, 1); });
+  add("sphere, light at 1e9 m", 1e9, 1e-9, "",
+      [d] { return pointCase(2, true, Light::at(1e9 * d), 0.03, 0.02, 1, 800, 0.1, 1); });
+  add("sphere, light at infinity", 0, 1e-9, "",
+      [d] { return pointCase(2, true, Light::towards(d), 0.03, 0.02, 1, 800, 0.1, 1); });
+  add("sheet of curvature 1e-9 per metre", 1e-9, 1e-9, "",
+      [d] { return pointCase(1e-9, false, Light::at(2 * d), 0.03, 0.02, 1, 800, 0.1, 1); });
+  add("sphere of curvature 1e3 per metre", 1e3, 1e-9, "",
+      [d] { return pointCase(1e3, true, Light::at(2 * d), 1e-4, 2e-4, 0.1, 5000, 1e-4, 1); });
   add("concave sphere", -0.8, 1e-9, "", [d] { return pointCase(-0.8, true, Light::at(0.5 * d), 0.05, 0.03, 0.4, 400, 0.1, 1); });
   for (const double degrees : {80.0, 85.0, 89.0, 89.9}) {
     const double a = degrees * std::numbers::pi / 180;

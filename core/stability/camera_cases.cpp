@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <boost/multiprecision/cpp_bin_float.hpp>
-
 #include <algorithm>
+#include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include "core/geometry/distortion.h"
 #include "core/geometry/plane.h"
@@ -97,18 +96,15 @@ Outcome<Measured> mirrorCase(const Eigen::Vector3d& onPlane, const Eigen::Vector
 
 void addCameraCases(Cases& cases) {
   const auto add = [&](const char* stage, const char* name, double parameter, double tolerance, const char* note, auto run) {
-    Case c;
-    c.stage = stage;
-    c.name = name;
-    c.parameter = parameter;
-    c.tolerance = tolerance;
-    c.note = note;
-    c.run = run;
-    cases.push_back(c);
+    cases.push_back(answerCase(stage, name, parameter, tolerance, note, run));
   };
   add("camera", "focal length 50 px", 50, 1e-9, "", [] { return projectAndBack(50, {1, 2, 0.5}, {0.4, -0.3, 0.2}, 1); });
-  add("camera", "focal length 50,000 px", 5e4, 1e-9, "", [] { return projectAndBack(5e4, {1, 2, 0.5}, {0.003, -0.002, 1.2}, 1); });
-  add("camera", "scene scale 1e-6", 1e-6, 1e-9, "", [] { return projectAndBack(800, {1e-6, 2e-6, 5e-7}, {1e-7, -2e-7, 1e-6}, 1); });
+  add("camera", "focal length 50,000 px", 5e4, 1e-9, "", [] {
+    return projectAndBack(5e4, {1, 2, 0.5}, {0.003, -0.002, 1.2}, 1);
+  });
+  add("camera", "scene scale 1e-6", 1e-6, 1e-9, "", [] {
+    return projectAndBack(800, {1e-6, 2e-6, 5e-7}, {1e-7, -2e-7, 1e-6}, 1);
+  });
   add("camera", "world origin 1e6 m away, object at 1 m", 1e6, 64 * kRound * 1e6 * 800 / 100,
       "R X + t cancels six digits of the coordinates; over f / 100 px", [] {
         return projectAndBack(800, {1e6, 2e5, 5e5}, {0.1, -0.2, 1}, 1e6);

@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/outcome.h"
@@ -35,6 +36,19 @@ struct Case {
   std::function<Outcome<Measured>()> run;
 };
 using Cases = std::vector<Case>;
+
+/// A case whose answer must lie within the tolerance.
+inline Case answerCase(std::string stage, std::string name, double parameter, double tolerance, std::string note,
+                       std::function<Outcome<Measured>()> run) {
+  Case c;
+  c.stage = std::move(stage);
+  c.name = std::move(name);
+  c.parameter = parameter;
+  c.tolerance = tolerance;
+  c.note = std::move(note);
+  c.run = std::move(run);
+  return c;
+}
 
 /// The largest of several errors; NaN when one is, which std::max would swallow.
 inline double worstOf(std::initializer_list<double> errors) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <boost/multiprecision/cpp_bin_float.hpp>
-
 #include <algorithm>
+#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <numbers>
 
 #include "core/geometry/ellipsoid.h"
@@ -204,16 +203,8 @@ Ellipsoid ellipsoidOf(const Eigen::Vector3d& axes, const Eigen::Vector3d& centre
 
 void addConicCases(Cases& cases) {
   const Ellipse plain{{320.25, 241.75}, {40, 25}, 0.6};
-  const auto add = [&](const char* stage, const std::string& name, double parameter, double tolerance, const char* note, auto run) {
-    Case c;
-    c.stage = stage;
-    c.name = name;
-    c.parameter = parameter;
-    c.tolerance = tolerance;
-    c.note = note;
-    c.run = run;
-    cases.push_back(c);
-  };
+  const auto add = [&](const char* stage, const std::string& name, double parameter, double tolerance, const char* note,
+                       auto run) { cases.push_back(answerCase(stage, name, parameter, tolerance, note, run)); };
   const char* const kMatrix = "the matrix's own rounding: its entries hold (distance / axis)^2 beside 1";
   add("conic", "ellipse of 1 px at 2,000 px from the origin", 2000, 64 * kRound * 1.6e7, kMatrix, [] {
     return conicRoundTrip({{1600, 1200}, {0.6, 0.5}, 0.3}, 1);
@@ -241,8 +232,10 @@ void addConicCases(Cases& cases) {
   add("ellipse fit", "axis ratio 1e-6", 1e-6, 1e-9, "", [] {
     return fitCase({{320, 240}, {100, 1e-4}, 0.4}, 36, 2 * std::numbers::pi, 0.02);
   });
-  add("ellipse fit", "arc of 20 degrees, exact points", 20, 256 * kRound * 1.4e6, "the far side swings by (360 / 20)^4 times the points' rounding",
-      [] { return fitCase({{320, 240}, {40, 25}, 0.4}, 36, std::numbers::pi / 9, 0); });
+  add("ellipse fit", "arc of 20 degrees, exact points", 20, 256 * kRound * 1.4e6,
+      "the far side swings by (360 / 20)^4 times the points' rounding", [] {
+        return fitCase({{320, 240}, {40, 25}, 0.4}, 36, std::numbers::pi / 9, 0);
+      });
   add("ellipse fit", "every point 50 times", 50, 1e-9, "", [] {
     return fitCase({{320, 240}, {40, 25}, 0.4}, 36, 2 * std::numbers::pi, 0.05, 50);
   });

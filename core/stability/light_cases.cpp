@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <boost/multiprecision/cpp_bin_float.hpp>
-
 #include <algorithm>
+#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cstdio>
 
 #include "core/light/estimate.h"
@@ -81,7 +80,8 @@ Outcome<Measured> bundleCase(const BundleScene& b, const Light& light, double co
       rays.push_back(rays[i % b.distinct]);
       continue;
     }
-    const double u = b.oneCentre ? 0 : b.base * b.scale * std::cos(2.4 * i), v = b.oneCentre ? 0 : b.base * b.scale * std::sin(2.4 * i);
+    const double u = b.oneCentre ? 0 : b.base * b.scale * std::cos(2.4 * i),
+                 v = b.oneCentre ? 0 : b.base * b.scale * std::sin(2.4 * i);
     RealView<T> view = mirrorView(s, lamp, u, v, b.distance * b.scale, b.focal);
     if (b.oneCentre)
       view = RealView<T>(cameraTowards(view.camera.centreInWorld(),
@@ -99,8 +99,7 @@ Outcome<Measured> bundleCase(const BundleScene& b, const Light& light, double co
   const Outcome<Triangulation> start = triangulateLight(rays);
   BundleOptions options;
   options.pointsPerView = b.points;
-  const Outcome<Bundle> found =
-      bundleLight(views, start ? start->light : Light::towards(rays[0].direction), options);
+  const Outcome<Bundle> found = bundleLight(views, start ? start->light : Light::towards(rays[0].direction), options);
   if (!found) return found.failure();
   const double limitError = std::abs(found->limitAngle / b.limit - 1);
   return Measured{worstOf({lightError(found->light, light, b.scale), limitError}), condition};
@@ -109,16 +108,8 @@ Outcome<Measured> bundleCase(const BundleScene& b, const Light& light, double co
 }  // namespace
 
 void addLightCases(Cases& cases) {
-  const auto add = [&](const char* stage, const std::string& name, double parameter, double tolerance, const char* note, auto run) {
-    Case c;
-    c.stage = stage;
-    c.name = name;
-    c.parameter = parameter;
-    c.tolerance = tolerance;
-    c.note = note;
-    c.run = run;
-    cases.push_back(c);
-  };
+  const auto add = [&](const char* stage, const std::string& name, double parameter, double tolerance, const char* note,
+                       auto run) { cases.push_back(answerCase(stage, name, parameter, tolerance, note, run)); };
   const Eigen::Vector3d d = Eigen::Vector3d(0.3, -0.2, 1).normalized();
   const char* const t = "triangulation";
   add(t, "light at 1e-2 m", 1e-2, 1e-9, "", [d] { return triangulationCase(raysTo(1e-2 * d, 0.01, 6, 1e-4)); });
@@ -133,8 +124,8 @@ void addLightCases(Cases& cases) {
     return triangulationCase(many);
   });
   // The parallax is 1e-9 rad and the directions are doubles: 2 units of round-off each over that parallax.
-  add(t, "light at 1e9 m, rays 0.5 m apart, kept finite", 1e9, 64 * kRound * 2e9, "the directions' round-off over a parallax of 5e-10 rad",
-      [d] { return triangulationCase(raysTo(1e9 * d, 0.5, 6, 0), 0); });
+  add(t, "light at 1e9 m, rays 0.5 m apart, kept finite", 1e9, 64 * kRound * 2e9,
+      "the directions' round-off over a parallax of 5e-10 rad", [d] { return triangulationCase(raysTo(1e9 * d, 0.5, 6, 0), 0); });
   add(t, "surface points 1e-6 m apart", 1e-6, 64 * kRound * 2e6, "the directions' round-off over a parallax of 5e-7 rad",
       [d] { return triangulationCase(raysTo(2 * d, 1e-6, 6, 0), 0); });
   {
@@ -187,30 +178,34 @@ void addLightCases(Cases& cases) {
   const char* const b = "bundle";
   const Light lamp = Light::at(2 * d);
   add(b, "light at 2 m (reference)", 2, 1e-9, "", [=] { return bundleCase<Real>({}, lamp, 1); });
-  add(b, "light at 1e-2 m", 1e-2, 1e-9, "", [=] {
-    return bundleCase<Real>({.base = 0.004, .distance = 0.3, .focal = 2000}, Light::at(1e-2 * d), 1);
-  });
-  add(b, "light at 1e9 m", 1e9, 1e-9, "as (l, w): direction and parallax per metre", [=] { return bundleCase<Real>({}, Light::at(1e9 * d), 1e9); });
+  add(b, "light at 1e-2 m", 1e-2, 1e-9, "",
+      [=] { return bundleCase<Real>({.base = 0.004, .distance = 0.3, .focal = 2000}, Light::at(1e-2 * d), 1); });
+  add(b, "light at 1e9 m", 1e9, 1e-9, "as (l, w): direction and parallax per metre",
+      [=] { return bundleCase<Real>({}, Light::at(1e9 * d), 1e9); });
   add(b, "light at infinity", 0, 1e-9, "", [=] { return bundleCase<Real>({}, Light::towards(d), 1); });
-  add(b, "curvature 1e-9 per metre", 1e-9, 1e-9, "", [=] { return bundleCase<Real>({.curvature = 1e-9, .round = false}, lamp, 1); });
-  add(b, "curvature 1e3 per metre", 1e3, 1e-9, "", [=] {
-    return bundleCase<Real>({.curvature = 1e3, .base = 3e-4, .distance = 0.1, .focal = 5000}, lamp, 1);
-  });
+  add(b, "curvature 1e-9 per metre", 1e-9, 1e-9, "",
+      [=] { return bundleCase<Real>({.curvature = 1e-9, .round = false}, lamp, 1); });
+  add(b, "curvature 1e3 per metre", 1e3, 1e-9, "",
+      [=] { return bundleCase<Real>({.curvature = 1e3, .base = 3e-4, .distance = 0.1, .focal = 5000}, lamp, 1); });
   add(b, "scene scale 1e-6", 1e-6, 1e-9, "", [=] { return bundleCase<Real>({.scale = 1e-6}, Light::at(2e-6 * d), 1); });
   add(b, "scene scale 1e6", 1e6, 1e-9, "", [=] { return bundleCase<Real>({.scale = 1e6}, Light::at(2e6 * d), 1); });
   add(b, "2 views", 2, 1e-9, "", [=] { return bundleCase<Real>({.views = 2}, lamp, 1); });
   add(b, "1,000 views", 1000, 1e-9, "", [=] { return bundleCase<long double>({.views = 1000, .points = 8}, lamp, 1); });
-  add(b, "6 views, each 20 times", 20, 1e-9, "", [=] { return bundleCase<Real>({.views = 120, .points = 12, .distinct = 6}, lamp, 1); });
-  add(b, "cameras 1e-6 m apart", 1e-6, 1e-9, "one contour tells the light already", [=] { return bundleCase<Real>({.base = 1e-6}, lamp, 1e6); });
-  add(b, "all cameras in one centre", 0, 1e-9, "one contour tells the light already", [=] { return bundleCase<Real>({.oneCentre = true}, lamp, 1); });
+  add(b, "6 views, each 20 times", 20, 1e-9, "",
+      [=] { return bundleCase<Real>({.views = 120, .points = 12, .distinct = 6}, lamp, 1); });
+  add(b, "cameras 1e-6 m apart", 1e-6, 1e-9, "one contour tells the light already",
+      [=] { return bundleCase<Real>({.base = 1e-6}, lamp, 1e6); });
+  add(b, "all cameras in one centre", 0, 1e-9, "one contour tells the light already",
+      [=] { return bundleCase<Real>({.oneCentre = true}, lamp, 1); });
   add(b, "focal length 50 px", 50, 1e-9, "", [=] { return bundleCase<Real>({.focal = 50}, lamp, 1); });
   add(b, "focal length 50,000 px", 5e4, 1e-9, "", [=] { return bundleCase<Real>({.focal = 5e4}, lamp, 1); });
   for (const double degrees : {80.0, 85.0}) {
     const double a = degrees * std::numbers::pi / 180;
     // No normal of a contour point is turned beyond the horizon: 0.9 degrees over the mirror points, 1.5 of the limit.
     const Light low = Light::at(2 * Eigen::Vector3d(std::sin(a), 0, std::cos(a)));
-    add(b, "grazing " + std::string(degrees == 80 ? "80" : "85") + " degrees", degrees, 1e-9, "",
-        [=] { return bundleCase<Real>({.curvature = 0.5, .base = 0.03, .limit = std::numbers::pi / 120}, low, 1 / std::cos(a)); });
+    add(b, "grazing " + std::string(degrees == 80 ? "80" : "85") + " degrees", degrees, 1e-9, "", [=] {
+      return bundleCase<Real>({.curvature = 0.5, .base = 0.03, .limit = std::numbers::pi / 120}, low, 1 / std::cos(a));
+    });
   }
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <boost/multiprecision/cpp_bin_float.hpp>
-
 #include <algorithm>
+#include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include "core/stability/cases.h"
 #include "core/stability/real.h"
@@ -85,14 +84,7 @@ Outcome<Measured> normalCase(const Damage& damage) {
 
 void addMeshCases(Cases& cases) {
   const auto add = [&](const char* name, double parameter, double tolerance, const char* note, auto run) {
-    Case c;
-    c.stage = "mesh";
-    c.name = name;
-    c.parameter = parameter;
-    c.tolerance = tolerance;
-    c.note = note;
-    c.run = run;
-    cases.push_back(c);
+    cases.push_back(answerCase("mesh", name, parameter, tolerance, note, run));
   };
   const Eigen::Vector3d here(0, 0, 0);
   add("scene scale 1e-6", 1e-6, 1e-9, "", [here] { return rayCase(1e-6, here, {}, 1); });
@@ -101,26 +93,35 @@ void addMeshCases(Cases& cases) {
     return rayCase(1, {1e6, -1e6, 5e5}, {}, 1e6);
   });
   add("degenerate triangles (points and needles)", 60, 1e-9, "", [here] {
-    return rayCase(1, here, [](TriangleMesh& m) {
-      for (int i = 0; i < 60; ++i) {
-        const Eigen::Vector3i t = m.triangles[17 * i % m.triangles.size()];
-        m.triangles.emplace_back(t.x(), t.x(), t.y());
-        m.vertices.push_back(0.5 * (m.vertices[t.x()] + m.vertices[t.y()]));  // on the edge: an area of round-off
-        m.triangles.emplace_back(t.x(), t.y(), int(m.vertices.size()) - 1);
-      }
-    }, 1);
+    return rayCase(
+        1, here,
+        [](TriangleMesh& m) {
+          for (int i = 0; i < 60; ++i) {
+            const Eigen::Vector3i t = m.triangles[17 * i % m.triangles.size()];
+            m.triangles.emplace_back(t.x(), t.x(), t.y());
+            m.vertices.push_back(0.5 * (m.vertices[t.x()] + m.vertices[t.y()]));  // on the edge: an area of round-off
+            m.triangles.emplace_back(t.x(), t.y(), int(m.vertices.size()) - 1);
+          }
+        },
+        1);
   });
   add("every triangle three times", 3, 1e-9, "", [here] {
-    return rayCase(1, here, [](TriangleMesh& m) {
-      const std::vector<Eigen::Vector3i> once = m.triangles;
-      for (int k = 0; k < 2; ++k)
-        for (const Eigen::Vector3i& t : once) m.triangles.emplace_back(t.y(), t.z(), t.x());
-    }, 1);
+    return rayCase(
+        1, here,
+        [](TriangleMesh& m) {
+          const std::vector<Eigen::Vector3i> once = m.triangles;
+          for (int k = 0; k < 2; ++k)
+            for (const Eigen::Vector3i& t : once) m.triangles.emplace_back(t.y(), t.z(), t.x());
+        },
+        1);
   });
   add("a third of the triangles flipped: hits", 3, 1e-9, "", [here] {
-    return rayCase(1, here, [](TriangleMesh& m) {
-      for (std::size_t i = 0; i < m.triangles.size(); i += 3) std::swap(m.triangles[i].y(), m.triangles[i].z());
-    }, 1);
+    return rayCase(
+        1, here,
+        [](TriangleMesh& m) {
+          for (std::size_t i = 0; i < m.triangles.size(); i += 3) std::swap(m.triangles[i].y(), m.triangles[i].z());
+        },
+        1);
   });
   add("a third of the triangles flipped: normals", 3, 1e-9, "", [] {
     return normalCase([](TriangleMesh& m) {
@@ -128,24 +129,30 @@ void addMeshCases(Cases& cases) {
     });
   });
   add("non-manifold fins on 20 edges", 20, 1e-9, "the fins point inwards, where no ray arrives first", [here] {
-    return rayCase(1, here, [](TriangleMesh& m) {
-      for (int i = 0; i < 20; ++i) {
-        const Eigen::Vector3i t = m.triangles[31 * i % m.triangles.size()];
-        m.vertices.push_back(0.5 * m.vertices[t.x()]);
-        m.triangles.emplace_back(t.x(), t.y(), int(m.vertices.size()) - 1);
-      }
-    }, 1);
+    return rayCase(
+        1, here,
+        [](TriangleMesh& m) {
+          for (int i = 0; i < 20; ++i) {
+            const Eigen::Vector3i t = m.triangles[31 * i % m.triangles.size()];
+            m.vertices.push_back(0.5 * m.vertices[t.x()]);
+            m.triangles.emplace_back(t.x(), t.y(), int(m.vertices.size()) - 1);
+          }
+        },
+        1);
   });
   add("every triangle with vertices of its own", 1, 1e-9, "", [here] {
-    return rayCase(1, here, [](TriangleMesh& m) {
-      TriangleMesh soup;
-      for (const Eigen::Vector3i& t : m.triangles) {
-        const int n = int(soup.vertices.size());
-        for (int k = 0; k < 3; ++k) soup.vertices.push_back(m.vertices[t[k]]);
-        soup.triangles.emplace_back(n, n + 1, n + 2);
-      }
-      m = soup;
-    }, 1);
+    return rayCase(
+        1, here,
+        [](TriangleMesh& m) {
+          TriangleMesh soup;
+          for (const Eigen::Vector3i& t : m.triangles) {
+            const int n = int(soup.vertices.size());
+            for (int k = 0; k < 3; ++k) soup.vertices.push_back(m.vertices[t[k]]);
+            soup.triangles.emplace_back(n, n + 1, n + 2);
+          }
+          m = soup;
+        },
+        1);
   });
 }
 

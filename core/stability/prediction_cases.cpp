@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <boost/multiprecision/cpp_bin_float.hpp>
-
 #include <algorithm>
+#include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include "core/geometry/polyline.h"
 #include "core/model/model.h"
@@ -33,8 +32,8 @@ Stage stageOf(const PredictionScene& p, const Light& light) {
   return {makeAnalytic(specOf(k, p.round)), view.camera, {Real(k), p.round, at, n, view.real, view.eye, lampOf<Real>(light)}};
 }
 
-/// Level set of alpha: every vertex of the answer lies on it (its alpha in fifty digits), and every direction from the mirror point
-/// meets the outline where it should, to the chords' sagitta.
+/// Level set of alpha: every vertex of the answer lies on it (its alpha in fifty digits), and every direction from the mirror
+/// point meets the outline where it should, to the chords' sagitta.
 Outcome<Measured> limitAngleCase(const PredictionScene& p, const Light& light) {
   const Stage s = stageOf(p, light);
   ModelFit fit;
@@ -133,7 +132,8 @@ Outcome<Measured> canonicalCase(const PredictionScene& p, const Light& light, do
     Real onPlane = (-b + root) / a;
     if (!(onPlane > 0) || ((-b - root) / a > 0 && (-b - root) / a < onPlane)) onPlane = (-b - root) / a;
     const Real alpha = s.real.alphaOnPlane(onPlane, d);
-    const Real onSurface = s.real.reachOnSurface(d, alpha, std::min(static_cast<double>(onPlane) / 4, 0.01 / std::abs(p.curvature / p.scale)));
+    const Real onSurface =
+        s.real.reachOnSurface(d, alpha, std::min(static_cast<double>(onPlane) / 4, 0.01 / std::abs(p.curvature / p.scale)));
     const auto [x, y] = s.real.camera.pixel(s.real.foot(onSurface, d));
     const auto [px, py] = s.real.camera.pixel(s.real.origin);
     const Pixel& q = h.canonical->pixels[next++];
@@ -157,7 +157,8 @@ Outcome<Measured> dualCase(const PredictionScene& p, const Light& light, double 
   for (std::size_t i = 0; i < h.contour.points.size(); i += 15) {
     const Vec<Real> x{Real(h.contour.points[i].x()), Real(h.contour.points[i].y()), Real(1)};
     const Real gx = conic.form(x, {Real(1), Real(0), Real(0)}), gy = conic.form(x, {Real(0), Real(1), Real(0)});
-    worst = worstOf({worst, static_cast<double>(abs(conic.form(x, x)) / (2 * sqrt(gx * gx + gy * gy))) / h.ellipse->semiAxes.x()});
+    worst =
+        worstOf({worst, static_cast<double>(abs(conic.form(x, x)) / (2 * sqrt(gx * gx + gy * gy))) / h.ellipse->semiAxes.x()});
   }
   return Measured{worst, p.condition};
 }
@@ -190,7 +191,8 @@ Outcome<Measured> plateCase() {
   for (int i = 0; i < 4; ++i) {
     const auto &a = corner[i], &b = corner[(i + 1) % 4];
     area += (a.first * b.second - b.first * a.second) / 2;
-    longest = std::max(longest, Real(sqrt((b.first - a.first) * (b.first - a.first) + (b.second - a.second) * (b.second - a.second))));
+    longest =
+        std::max(longest, Real(sqrt((b.first - a.first) * (b.first - a.first) + (b.second - a.second) * (b.second - a.second))));
   }
   double worst = 0;
   for (const Pixel& q : prediction.highlights.front().contour.points) {
@@ -275,7 +277,8 @@ void addPredictionCases(Cases& cases) {
     cases.push_back(c);
   };
   cone("highlight of 2 px", 1, {320.3, 240.2}, 1e-9, "");
-  cone("highlight of 0.02 px", 1e-2, {320.3, 240.2}, 2e-7, "vertices are exact to 1e-9 px: a tenth of a millionth of this radius");
+  cone("highlight of 0.02 px", 1e-2, {320.3, 240.2}, 2e-7,
+       "vertices are exact to 1e-9 px: a tenth of a millionth of this radius");
   cone("highlight of 400 px", 200, {320.3, 240.2}, 1e-9, "");
   {
     Case plate;
@@ -309,8 +312,9 @@ void addPredictionCases(Cases& cases) {
     ModelFit fit;
     fit.lightEstimate = Light::at({0.1, 0.2, -2});
     fit.limitAngle = 0.1;
-    const Prediction p = modelByName("limit-angle")
-                             .predict(fit, cameraTowards({0.2, 0.1, 1}, {0, 0, 0}, 800), makeAnalytic(specOf(0, false)).get(), Settings());
+    const Prediction p =
+        modelByName("limit-angle")
+            .predict(fit, cameraTowards({0.2, 0.1, 1}, {0, 0, 0}, 800), makeAnalytic(specOf(0, false)).get(), Settings());
     if (p.highlights.empty()) return p.failure.value_or(Failure{Reason::NotSupported, "unnamed"});
     return Measured{0};
   };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <boost/multiprecision/cpp_bin_float.hpp>
-
 #include <algorithm>
+#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cstdio>
 #include <numbers>
 
@@ -36,8 +35,7 @@ ConicView viewOf(const Ellipsoid& e, const Projection& projection) {
   const Vec<Real> h = times(exactly<Real>(e.centre()), Real(1));
   Real d[6] = {h.x * h.x, h.x * h.y, h.x * h.z, h.y * h.y, h.y * h.z, h.z * h.z};
   for (int i = 0; i < 3; ++i) {
-    const Vec<Real> g =
-        times(Real(e.semiAxes()(i)) * exactly<Real>(Eigen::Vector3d(e.worldFromBody().linear().col(i))), Real(0));
+    const Vec<Real> g = times(Real(e.semiAxes()(i)) * exactly<Real>(Eigen::Vector3d(e.worldFromBody().linear().col(i))), Real(0));
     d[0] -= g.x * g.x, d[1] -= g.x * g.y, d[2] -= g.x * g.z, d[3] -= g.y * g.y, d[4] -= g.y * g.z, d[5] -= g.z * g.z;
   }
   const Real x = d[2] / d[5], y = d[4] / d[5], a = x * x - d[0] / d[5], b = x * y - d[1] / d[5], c = y * y - d[3] / d[5];
@@ -69,7 +67,8 @@ std::vector<ConicView> viewsOf(const Ellipsoid& e, int n, const Ring& ring) {
       continue;
     }
     const double a = ring.spread * 2.4 * i;
-    Eigen::Vector3d eye = centre + ring.distance * Eigen::Vector3d(std::cos(a), std::sin(a), 0.45 + 0.25 * ring.spread * std::sin(3.1 * i));
+    Eigen::Vector3d eye =
+        centre + ring.distance * Eigen::Vector3d(std::cos(a), std::sin(a), 0.45 + 0.25 * ring.spread * std::sin(3.1 * i));
     if (ring.flat) eye.z() = centre.z();
     if (ring.oneCentre) eye = centre + ring.distance * Eigen::Vector3d(1, 0, 0.45);
     const Eigen::Vector3d target = centre + Eigen::Vector3d(0.05 * std::sin(1.0 * i), 0.04 * std::cos(2.0 * i), 0);
@@ -94,8 +93,8 @@ double errorOf(const Ellipsoid& found, const Ellipsoid& e) {
       for (int k = 0; k < 3; ++k) difference += at(a[k], i) * at(a[k], j) - at(b[k], i) * at(b[k], j);
       sum += difference * difference;
     }
-  return worstOf({apart(found.centre(), exactly<Real>(e.centre())) / e.semiAxes().x(),
-                  static_cast<double>(sqrt(sum) / (size * size))});
+  return worstOf(
+      {apart(found.centre(), exactly<Real>(e.centre())) / e.semiAxes().x(), static_cast<double>(sqrt(sum) / (size * size))});
 }
 
 Outcome<Measured> judged(const Outcome<Reconstruction>& r, const Ellipsoid& e) {
@@ -109,7 +108,9 @@ Ellipsoid poorStart(const Ellipsoid& e) {
   pose.translation() = e.centre() + e.semiAxes().x() * Eigen::Vector3d(0.15, 0.2, -0.1);
   return Ellipsoid(pose, e.semiAxes().x() * Eigen::Vector3d(0.8, 0.7, 0.7));
 }
-Outcome<Measured> linear(const Ellipsoid& e, int n, const Ring& ring = {}) { return judged(reconstructLinear(viewsOf(e, n, ring)), e); }
+Outcome<Measured> linear(const Ellipsoid& e, int n, const Ring& ring = {}) {
+  return judged(reconstructLinear(viewsOf(e, n, ring)), e);
+}
 Outcome<Measured> anchored(const Ellipsoid& e, int n, const Ring& ring = {}) {
   return judged(reconstructAnchored(viewsOf(e, n, ring), e.centre()), e);
 }
@@ -125,7 +126,8 @@ Outcome<Measured> refined(const Ellipsoid& e, int n, const Ring& ring = {}) {
 void addReconstructionCases(Cases& cases) {
   using Solver = Outcome<Measured> (*)(const Ellipsoid&, int, const Ring&);
   const std::pair<const char*, Solver> solvers[] = {{"linear", linear}, {"anchored", anchored}, {"refined", refined}};
-  const auto add = [&](const char* stage, const char* name, double parameter, const std::function<Outcome<Measured>()>& run) -> Case& {
+  const auto add = [&](const char* stage, const char* name, double parameter,
+                       const std::function<Outcome<Measured>()>& run) -> Case& {
     Case c;
     c.stage = stage;
     c.name = name;
@@ -143,9 +145,11 @@ void addReconstructionCases(Cases& cases) {
     add(stage, "5 views, each 40 times", 40, [solve = solve] { return solve(truth(kAxes, 1), 200, {.distinct = 5}); });
     add(stage, "one zero axis", 0, [solve = solve] { return solve(truth({0.3, 0.2, 0}, 1), 6, {}); });
     add(stage, "axis ratio 1e-3", 1e-3, [solve = solve] { return solve(truth({0.3, 0.2, 3e-4}, 1), 6, {}); });
-    Case& coplanar = add(stage, "cameras and centre in one plane", 0, [solve = solve] { return solve(truth(kAxes, 1), 6, {.flat = true}); });
+    Case& coplanar =
+        add(stage, "cameras and centre in one plane", 0, [solve = solve] { return solve(truth(kAxes, 1), 6, {.flat = true}); });
     (void)coplanar;
-    Case& one = add(stage, "all cameras in one centre", 0, [solve = solve] { return solve(truth(kAxes, 1), 6, {.oneCentre = true}); });
+    Case& one =
+        add(stage, "all cameras in one centre", 0, [solve = solve] { return solve(truth(kAxes, 1), 6, {.oneCentre = true}); });
     one.note = "one tangent cone holds a family of ellipsoids";
     one.expect = Expect::Failure;
     one.reasons = {Reason::RankDeficient};
@@ -175,7 +179,8 @@ void addReconstructionCases(Cases& cases) {
     c.reasons = {Reason::TooFewViews};
   }
   add("anchored", "2 views", 2, [] { return anchored(truth(kAxes, 1), 2); });
-  add("anchored", "ellipsoid of 1e8 m at 1e9 m, cameras around", 1e9, [] { return anchored(truth(kAxes, 1e9), 5, {.scale = 1e9}); });
+  add("anchored", "ellipsoid of 1e8 m at 1e9 m, cameras around", 1e9,
+      [] { return anchored(truth(kAxes, 1e9), 5, {.scale = 1e9}); });
   {
     Case& c = add("refined", "2 views without a prior", 2, [] { return refined(truth(kAxes, 1), 2); });
     c.note = "a family fits exactly";

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <boost/multiprecision/cpp_bin_float.hpp>
-
 #include <algorithm>
+#include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include "core/stability/cases.h"
 #include "core/stability/real.h"
@@ -113,18 +112,17 @@ Outcome<Measured> curvatureCase(double k, double x, double y) {
 
 void addSurfaceCases(Cases& cases) {
   const auto add = [&](const std::string& name, double parameter, double tolerance, const char* note, auto run) {
-    Case c;
-    c.stage = "surface";
-    c.name = name;
-    c.parameter = parameter;
-    c.tolerance = tolerance;
-    c.note = note;
-    c.run = run;
-    cases.push_back(c);
+    cases.push_back(answerCase("surface", name, parameter, tolerance, note, run));
   };
   for (const double k : {1e-9, 1e-3, 1e3})
-    add("ray on a sheet of curvature " + std::string(k == 1e-9 ? "1e-9" : k == 1e-3 ? "1e-3" : "1e3") + " per metre", k, 1e-9, "",
-        [k] { return hitCase(sheet(k), sheetOf(k), {0.3, -0.4, 1.2}, {k > 1 ? 0.4 / k : 0.1, 0.2, 0}, 1 + k); });
+    add("ray on a sheet of curvature " +
+            std::string(k == 1e-9   ? "1e-9"
+                        : k == 1e-3 ? "1e-3"
+                                    : "1e3") +
+            " per metre",
+        k, 1e-9, "", [k] {
+          return hitCase(sheet(k), sheetOf(k), {0.3, -0.4, 1.2}, {k > 1 ? 0.4 / k : 0.1, 0.2, 0}, 1 + k);
+        });
   add("ray that misses the centre of a sphere by 1 - 1e-10 radii", 1e-10, 1e-9, "", [] {
     return hitCase(sphere(1), sphereOf(1), {1 - 1e-10, 0, 3}, {1 - 1e-10, 0, 0}, 1 / std::sqrt(2e-10));
   });

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <boost/multiprecision/cpp_bin_float.hpp>
-
 #include <algorithm>
+#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cstdio>
 
 #include "core/model/walk.h"
@@ -38,11 +37,12 @@ Stage stageOf(const WalkScene& w, const Light& light) {
   const Vec<Real> p = bent.point(view.u0, view.v0), n = bent.normal(view.u0, view.v0);
   const auto [x, y] = view.real.pixel(p);
   const SurfacePoint point{rounded(p), rounded(n).normalized()};
-  return {makeAnalytic(specOf(k, w.round)),
-          view.camera,
-          light,
-          {point, Pixel(static_cast<double>(x), static_cast<double>(y)), 0},
-          {Real(k), w.round, exactly<Real>(point.position), exactly<Real>(point.normal), view.real, view.eye, lampOf<Real>(light)}};
+  return {
+      makeAnalytic(specOf(k, w.round)),
+      view.camera,
+      light,
+      {point, Pixel(static_cast<double>(x), static_cast<double>(y)), 0},
+      {Real(k), w.round, exactly<Real>(point.position), exactly<Real>(point.normal), view.real, view.eye, lampOf<Real>(light)}};
 }
 
 /// Reaches of the limit on T and on S in 8 directions, each over its own length.
@@ -61,8 +61,9 @@ Outcome<Measured> reachCase(const WalkScene& w, const Light& light) {
     if (!onSurface) return onSurface.failure();
     const Real a = s.real.reachOnPlane(exactly<Real>(d), Real(w.limit), first);
     const Real b = s.real.reachOnSurface(exactly<Real>(d), Real(w.limit), first);
-    worst = worstOf({worst, static_cast<double>(abs(Real(*onPlane) / a - 1)), static_cast<double>(abs(Real(onSurface->distance) / b - 1)),
-                      apart(onSurface->point.position, s.real.foot(b, exactly<Real>(d))) / static_cast<double>(b)});
+    worst = worstOf({worst, static_cast<double>(abs(Real(*onPlane) / a - 1)),
+                     static_cast<double>(abs(Real(onSurface->distance) / b - 1)),
+                     apart(onSurface->point.position, s.real.foot(b, exactly<Real>(d))) / static_cast<double>(b)});
   }
   return Measured{worst, w.condition};
 }
@@ -88,7 +89,7 @@ Outcome<Measured> canonicalCase(const WalkScene& w, const Light& light) {
     const Real alpha = s.real.alphaOnSurface(s.real.foot(onSurface, d));
     const Real onPlane = s.real.reachOnPlane(d, alpha, first);
     worst = worstOf({worst, static_cast<double>(abs(Real(*r.limitAngle) / alpha - 1)),
-                      apart(r.onTangentPlane, s.real.origin + onPlane * d) / static_cast<double>(onPlane)});
+                     apart(r.onTangentPlane, s.real.origin + onPlane * d) / static_cast<double>(onPlane)});
   }
   return Measured{worst, w.condition};
 }
@@ -122,8 +123,12 @@ void addWalkCases(Cases& cases) {
       {"focal length 50,000 px", 5e4, {.focal = 5e4, .contourPx = 1000}, Light::at(2 * d)},
       {"grazing 85 degrees", 85, {.curvature = 0.5, .limit = 0.02, .contourPx = 3, .condition = 11.5}, grazing(85)},
       {"grazing 89 degrees", 89, {.curvature = 0.5, .limit = 4e-3, .contourPx = 0.3, .condition = 57}, grazing(89)},
-      {"limit angle 1e-6 rad (highlight of 1e-3 px)", 1e-6, {.limit = 1e-6, .contourPx = 1e-3, .condition = 1e6}, Light::at(2 * d),
-       16 * kRound * 1e6, "the surface point's own round-off over the walk's length"},
+      {"limit angle 1e-6 rad (highlight of 1e-3 px)",
+       1e-6,
+       {.limit = 1e-6, .contourPx = 1e-3, .condition = 1e6},
+       Light::at(2 * d),
+       16 * kRound * 1e6,
+       "the surface point's own round-off over the walk's length"},
   };
   for (const Row& row : rows)
     for (const bool canonical : {false, true}) {

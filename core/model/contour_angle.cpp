@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "core/model/models.h"
+
+namespace glint {
+
+double medianContourAngle(const std::vector<TrainingView>& views, const Light& light, int pointsPerView) {
+  std::vector<double> alphas;
+  for (const TrainingView& v : views) {
+    if (v.failure || v.highlight.contour.points.size() < 3) continue;
+    const Eigen::Vector3d eye = v.camera.centreInWorld();
+    for (const Pixel& p : resample(v.highlight.contour, pointsPerView)) {
+      const Outcome<SurfacePoint> hit = v.surface->firstHit(v.camera.ray(p));
+      if (!hit) continue;
+      const SurfacePoint s = facing(*hit, eye);
+      const Eigen::Vector3d l = light.directionFrom(s.position);
+      if (s.normal.dot(l) > 0) alphas.push_back(incidentAngle(s.normal, l, (eye - s.position).normalized()));
+    }
+  }
+  if (alphas.empty()) return 0;
+  std::nth_element(alphas.begin(), alphas.begin() + alphas.size() / 2, alphas.end());
+  return alphas[alphas.size() / 2];
+}
+
+}  // namespace glint
