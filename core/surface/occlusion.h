@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/light/light.h"
 #include "core/surface/surface.h"
 
 namespace glint {
@@ -21,6 +22,23 @@ inline std::vector<char> occludedMany(const Surface& surface, const std::vector<
   std::vector<char> result(from.size());
   for (std::size_t i = 0; i < from.size(); ++i) result[i] = surface.occluded(from[i], to);
   return result;
+}
+
+/// A world point beyond everything that could hide a light at infinity from `point`: twice the surface's size away; for an unbounded
+/// surface, which has no size of its own, a thousand times `viewDistance`, the distance it is looked at from.
+inline Eigen::Vector3d beyondSurface(const Surface& surface, const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
+                                     double viewDistance) {
+  const Eigen::Vector3d extent = surface.bounds().sizes();
+  return point + (extent.allFinite() ? 2 * extent.norm() + viewDistance : 1e3 * viewDistance) * direction;
+}
+
+/// Where occlusion of a light is tested to: the light, or `beyondSurface` when it is at infinity or farther than doubles reach.
+inline Eigen::Vector3d occlusionTarget(const Surface& surface, const Eigen::Vector3d& point, const Light& light, double viewDistance) {
+  if (!light.atInfinity()) {
+    const Eigen::Vector3d position = light.position();
+    if (position.allFinite()) return position;
+  }
+  return beyondSurface(surface, point, light.directionFrom(point), viewDistance);
 }
 
 }  // namespace glint

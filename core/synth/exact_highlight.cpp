@@ -9,6 +9,7 @@
 #include "core/light/light.h"
 #include "core/surface/brightest_point.h"
 #include "core/surface/level_set.h"
+#include "core/surface/occlusion.h"
 
 namespace glint {
 namespace {
@@ -79,8 +80,7 @@ Outcome<std::vector<Highlight>> exactHighlights(const Surface& surface, const Ca
     const SurfacePoint p = facing(*hit, ray.origin);
     const Eigen::Vector3d toLight = centre.directionFrom(p.position);
     if (!(p.normal.dot(toLight) > 0)) return std::nullopt;
-    const Eigen::Vector3d target = centre.atInfinity() ? Eigen::Vector3d(p.position + 1e3 * toLight) : centre.position();
-    if (surface.occluded(p, target)) return std::nullopt;
+    if (surface.occluded(p, occlusionTarget(surface, p.position, centre, (ray.origin - p.position).norm()))) return std::nullopt;
     return -incidentAngle(p.normal, toLight, -ray.direction);
   };
 

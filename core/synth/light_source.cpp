@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/surface/occlusion.h"
+
 namespace glint {
 namespace {
 
@@ -33,7 +35,6 @@ struct GaussLegendre {
 
 constexpr int kRings = 4, kSpokes = 12;  // sphere
 constexpr int kAlong = 24, kAcross = 3;  // tube
-constexpr double kFarAway = 1e3;         // metres: where occlusion towards a light at infinity is tested to
 
 std::vector<LightSample> sampleSphere(const Eigen::Vector3d& centre, double radius, const Eigen::Vector3d& point) {
   static const GaussLegendre<kRings> rule;
@@ -75,8 +76,8 @@ std::vector<LightSample> sampleTube(const std::array<Eigen::Vector3d, 2>& ends, 
     for (std::size_t j = 0; j < (radius > 0 ? kAcross : 1); ++j) {
       const double shift = radius > 0 ? radius * across.node[j] : 0;
       LightSample s;
-      s.target = centre + shift * side.normalized();
-      const Eigen::Vector3d to = s.target - point;
+      const Eigen::Vector3d target = centre + shift * side.normalized(), to = target - point;
+      s.target = target;
       s.direction = to.normalized();
       // Intensity of a thin cylinder, (4 / pi) sin(psi) averaged over all directions to 1.
       s.weight = 4 / M_PI * sine * 0.5 * along.weight[i] * (radius > 0 ? 0.5 * across.weight[j] : 1.0) / to.squaredNorm();
@@ -93,12 +94,15 @@ struct Sampled {
 };
 
 /// The samples of a light that reach the point.
-std::vector<Sampled> reaching(const Surface& surface, const SurfacePoint& p, const Eigen::Vector3d& toCamera,
-                              const TrueLight& light, const Material& material) {
+std::vector<Sampled> reaching(const Surface& surface, const SurfacePoint& p, const Eigen::Vector3d& eye, const TrueLight& light,
+                              const Material& material) {
+  const double distance = (eye - p.position).norm();
+  const Eigen::Vector3d toCamera = (eye - p.position) / distance;
   std::vector<Sampled> result;
   for (const LightSample& sample : sampleLight(light, p.position)) {
     const double cosine = p.normal.dot(sample.direction);
-    if (!(cosine > 0) || surface.occluded(p, sample.target)) continue;
+    if (!(cosine > 0)) continue;
+    if (surface.occluded(p, sample.target.value_or(beyondSurface(surface, p.position, sample.direction, distance)))) continue;
     result.push_back(
         {std::log(sample.weight), cosine, logRadiance(material.lobe, material.roughness, p.normal, sample.direction, toCamera)});
   }
@@ -109,7 +113,7 @@ std::vector<Sampled> reaching(const Surface& surface, const SurfacePoint& p, con
 
 std::vector<LightSample> sampleLight(const TrueLight& light, const Eigen::Vector3d& point) {
   if (light.segment) return sampleTube(*light.segment, light.radius, point);
-  if (light.direction) return {{light.direction->normalized(), 1.0, point + kFarAway * light.direction->normalized()}};
+  if (light.direction) return {{light.direction->normalized(), 1.0, std::nullopt}};
   require(light.position.has_value(), "sampleLight: a light needs a position, a direction or a segment");
   if (light.radius > 0) return sampleSphere(*light.position, light.radius, point);
   const Eigen::Vector3d offset = *light.position - point;
@@ -120,9 +124,8 @@ std::vector<LightSample> sampleLight(const TrueLight& light, const Eigen::Vector
 Shading shade(const Surface& surface, const SurfacePoint& point, const Eigen::Vector3d& eye, const TrueLight& light,
               const Material& material) {
   const SurfacePoint p = facing(point, eye);
-  const Eigen::Vector3d toCamera = (eye - p.position).normalized();
   Shading shading;
-  for (const Sampled& s : reaching(surface, p, toCamera, light, material)) {
+  for (const Sampled& s : reaching(surface, p, eye, light, material)) {
     shading.diffuse += std::exp(s.logWeight) * s.cosine / M_PI;
     if (s.lobe) shading.specular += material.specular * std::exp(s.logWeight + s.lobe->total());
   }
@@ -135,10 +138,9 @@ std::optional<double> logSpecular(const Surface& surface, const Camera& camera, 
   const Outcome<SurfacePoint> hit = surface.firstHit(ray);
   if (!hit) return std::nullopt;
   const SurfacePoint p = facing(*hit, ray.origin);
-  const Eigen::Vector3d toCamera = -ray.direction;
   double top = -std::numeric_limits<double>::infinity();
   std::vector<double> logs;
-  for (const Sampled& s : reaching(surface, p, toCamera, light, material)) {
+  for (const Sampled& s : reaching(surface, p, ray.origin, light, material)) {
     if (!s.lobe) continue;
     logs.push_back(s.logWeight + s.lobe->total());
     top = std::max(top, logs.back());

@@ -30,7 +30,7 @@ struct Shading {
 struct LightSample {
   Eigen::Vector3d direction;  ///< unit, from the point to the light
   double weight = 0;          ///< irradiance on a plane facing it
-  Eigen::Vector3d target;     ///< a world point towards which occlusion is tested
+  std::optional<Eigen::Vector3d> target;  ///< a world point towards which occlusion is tested; empty for a light at infinity
 };
 
 /// Deterministic quadrature of a light seen from a point:

@@ -157,5 +157,23 @@ TEST(ExactHighlights, DegenerateIsRefusedByName) {
   EXPECT_EQ(exactHighlights(*scene.surface, scene.camera, scene.light, {}, {}).failure().reason, Reason::NoHighlight);
 }
 
+// The inner wall of a ring is in the shadow of the wall across, whatever the ring's size: nothing is tested at a distance in metres.
+TEST(LightSource, ScaleOfAShadowUnderALightAtInfinity) {
+  TrueLight light;
+  light.direction = Eigen::Vector3d(-1, 0, 0.05).normalized();
+  for (const double scale : {1e-6, 1.0, 1e6}) {
+    AnalyticSpec spec;
+    spec.type = "torus";
+    spec.majorRadius = scale;
+    spec.minorRadius = 0.2 * scale;
+    const std::shared_ptr<const Surface> ring = makeAnalytic(spec);
+    const Eigen::Vector3d eye(0.3 * scale, 0, 0.1 * scale);
+    const Shading across = shade(*ring, {{0.8 * scale, 0, 0}, {-1, 0, 0}}, eye, light, {});
+    EXPECT_EQ(across.specular, 0) << scale;
+    const Shading top = shade(*ring, {{scale, 0, 0.2 * scale}, {0, 0, 1}}, {0, 0, 2 * scale}, light, {});
+    EXPECT_GT(top.diffuse, 0) << scale;
+  }
+}
+
 }  // namespace
 }  // namespace glint
