@@ -189,7 +189,9 @@ BENCHMARK(canonicalContourOfOneView)->Unit(benchmark::kMicrosecond);
 
 // Cost curves: by triangles, by directions, by views, by frames.
 void canonicalByTriangles(benchmark::State& state) { predict(state, "canonical", int(state.range(0))); }
-void canonicalQuadricByTriangles(benchmark::State& state) { predict(state, "canonical", int(state.range(0)), {kQuadric, kHints}); }
+void canonicalQuadricByTriangles(benchmark::State& state) {
+  predict(state, "canonical", int(state.range(0)), {kQuadric, kHints});
+}
 void levelSetByTriangles(benchmark::State& state) { predict(state, "limit-angle", int(state.range(0))); }
 void starByTriangles(benchmark::State& state) { predict(state, "limit-angle", int(state.range(0)), {kStar, kHints}); }
 void dualByTriangles(benchmark::State& state) { predict(state, "dual", int(state.range(0))); }
@@ -198,6 +200,30 @@ void buildByTriangles(benchmark::State& state) {
   const TriangleMesh mesh = makeAnalytic(scene().surface)->tessellate(Eigen::AlignedBox3d(), cells);
   for (auto _ : state) benchmark::DoNotOptimize(makeMesh(mesh, NormalPolicy::Interpolated));
 }
+/// The first search on a mesh builds its tree of normals.
+void firstSearchByTriangles(benchmark::State& state) {
+  const int cells = static_cast<int>(std::lround(std::sqrt(state.range(0) / 2.0)));
+  const TriangleMesh mesh = makeAnalytic(scene().surface)->tessellate(Eigen::AlignedBox3d(), cells);
+  const Light light = *fitOf("canonical").lightEstimate;
+  std::shared_ptr<const Surface> fresh;
+  for (auto _ : state) {
+    state.PauseTiming();
+    fresh = makeMesh(mesh, NormalPolicy::Interpolated);
+    state.ResumeTiming();
+    benchmark::DoNotOptimize(predictedBrightestPoints(*fresh, scene().cameras[1], light, BrightestPointOptions{}));
+  }
+}
+BENCHMARK(firstSearchByTriangles)->RangeMultiplier(10)->Range(1000, kMillion)->Unit(benchmark::kMicrosecond);
+void searchByTriangles(benchmark::State& state) {
+  const Light light = *fitOf("canonical").lightEstimate;
+  std::size_t frame = 1;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(
+        predictedBrightestPoints(surfaceOf(int(state.range(0))), scene().cameras[frame], light, BrightestPointOptions{}));
+    frame = (frame + 7) % scene().cameras.size();
+  }
+}
+BENCHMARK(searchByTriangles)->RangeMultiplier(10)->Range(1000, kMillion)->Unit(benchmark::kMicrosecond);
 BENCHMARK(buildByTriangles)->RangeMultiplier(10)->Range(1000, kMillion)->Unit(benchmark::kMicrosecond);
 BENCHMARK(canonicalByTriangles)->RangeMultiplier(10)->Range(1000, kMillion)->Unit(benchmark::kMicrosecond);
 BENCHMARK(canonicalQuadricByTriangles)->RangeMultiplier(10)->Range(1000, kMillion)->Unit(benchmark::kMicrosecond);

@@ -4,11 +4,13 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "core/geometry/plane.h"
+#include "core/surface/mirror_places.h"
 
 namespace glint {
 
@@ -115,7 +117,8 @@ Search newton(const Sighting& sighting, const SurfacePoint& start, int maxIterat
       const Vector2d s2 = svd.singularValues();
       const double damping = 1e-9 * s2.squaredNorm();
       if (!(damping > 0)) break;
-      step = -(svd.matrixV() * (s2.array() / (s2.array().square() + damping)).matrix().asDiagonal() * svd.matrixU().transpose() * g);
+      step =
+          -(svd.matrixV() * (s2.array() / (s2.array().square() + damping)).matrix().asDiagonal() * svd.matrixU().transpose() * g);
     }
     // No step turns the normal by more than half a radian or crosses half of the way to the eye or the light.
     const double turn = std::max(std::abs(curvature->k1), std::abs(curvature->k2));
@@ -242,6 +245,21 @@ Window windowOf(const Surface& surface, const Camera& camera, double marginFract
   return window;
 }
 
+/// Unit normals, inward, of the planes through the eye that bound a window of the image.
+std::array<Vector3d, 4> sidesOf(const Camera& camera, const Window& window) {
+  const Pixel corners[4] = {window.min, {window.max.x(), window.min.y()}, window.max, {window.min.x(), window.max.y()}};
+  const Matrix3d pixelFromWorld = camera.pixelFromRay * camera.camFromWorld.linear();
+  std::array<Vector3d, 4> sides;
+  const Vector3d middle(0.5 * (window.min.x() + window.max.x()), 0.5 * (window.min.y() + window.max.y()), 1);
+  for (int k = 0; k < 4; ++k) {
+    // The line through two corners, as a plane of rays: n = (K R)^T line.
+    Vector3d line = corners[k].homogeneous().cross(corners[(k + 1) % 4].homogeneous());
+    if (line.dot(middle) < 0) line = -line;
+    sides[k] = (pixelFromWorld.transpose() * line).normalized();
+  }
+  return sides;
+}
+
 /// Zeros of a linear interpolation of g over a triangle: barycentric weights, accepted a little outside as well.
 std::optional<Vector3d> linearZero(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   constexpr double kSlack = 0.35;  // the field is not linear over a cell; Newton decides
@@ -355,9 +373,29 @@ class Finder {
       if (search.touchedEdge) ++rejected_.edge;
       return;
     }
+    solved_.push_back(search);
     if (!accept(search)) return;
     if (search.jacobian) lookForTwin(search);
   }
+
+  /// From the best place on; those that a solution before explains lead to it again.
+  void polishPlaces(std::vector<SurfacePoint> places) {
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      places[i] = facing(places[i], sighting_.eye);
+      const double merit = sighting_.shade(places[i]).merit();
+      if (std::isfinite(merit)) order.emplace_back(merit, i);
+    }
+    std::sort(order.begin(), order.end());
+    std::size_t polished = 0;
+    for (const auto& [merit, i] : order) {
+      if (explained(places[i])) continue;
+      if (++polished > kMaxSeeds) break;
+      polish(places[i]);
+    }
+  }
+
+  bool found() const { return !found_.empty(); }
 
   bool alreadyFoundNear(const Pixel& p, double px) const {
     return std::any_of(found_.begin(), found_.end(), [&](const BrightestPoint& b) { return (b.pixel - p).norm() < px; });
@@ -377,6 +415,19 @@ class Finder {
   }
 
  private:
+  /// The tangential part of H here is what the Jacobian at a solution says, to half of its length: a second solution close to
+  /// this point would need it to point elsewhere. Hidden solutions count as well.
+  bool explained(const SurfacePoint& p) const {
+    const Shading s = sighting_.shade(p);
+    const Vector3d tangential = s.h - s.cosine * p.normal;
+    return std::any_of(solved_.begin(), solved_.end(), [&](const Search& z) {
+      if (!z.jacobian || !(z.point.normal.dot(p.normal) > 0)) return false;
+      const Vector2d here = z.basis.transpose() * tangential,
+                     linear = *z.jacobian * (z.basis.transpose() * (p.position - z.point.position));
+      return (here - linear).squaredNorm() <= 0.25 * here.squaredNorm();
+    });
+  }
+
   /// Length on the tangent plane that one grid cell covers, without foreshortening.
   double footprint(const SurfacePoint& p) const {
     return cellPx_ * (sighting_.eye - p.position).norm() /
@@ -445,6 +496,7 @@ class Finder {
   Window image_;
   double cellPx_;
   std::vector<BrightestPoint> found_;
+  std::vector<Search> solved_;  ///< also those that were turned down
   Rejected rejected_;
 };
 
@@ -480,6 +532,14 @@ Outcome<std::vector<BrightestPoint>> predictedBrightestPoints(const Surface& sur
     }
   }
   if (!options.hintsOnly) {
+    // A surface that can rule out most of itself is asked first. Where that finds nothing the grid has the last word, and says
+    // why.
+    if (const auto* mirror = dynamic_cast<const MirrorPlaces*>(&surface))
+      if (std::optional<std::vector<SurfacePoint>> places =
+              mirror->mirrorPlaces({sighting.eye, light.homogeneous(), sidesOf(camera, image)})) {
+        finder.polishPlaces(std::move(*places));
+        if (finder.found()) return std::move(finder).result(true);
+      }
     int hits = 0;
     for (const Seed& seed : gridSeeds(sighting, window, step, hits)) {
       // Another seed has led to where this one points: solutions closer than a third of a cell are the twin search's work.

@@ -132,7 +132,7 @@ Outcome<std::shared_ptr<const Surface>> makeDepthMap(const Image& depth, const C
   }
   const Eigen::Isometry3d worldFromCam = camera.camFromWorld.inverse();
   for (const Eigen::Vector3d& p : points) mesh.vertices.push_back(worldFromCam * p);
-  return makeMesh(std::move(mesh), options.normals);
+  return makeMesh(std::move(mesh), options.normals, false);
 }
 
 }  // namespace glint

@@ -8,9 +8,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 
 #include "core/geometry/plane.h"
 #include "core/surface/mesh_topology.h"
+#include "core/surface/mirror_places.h"
 #include "core/surface/occlusion.h"
 
 namespace glint {
@@ -55,9 +57,10 @@ struct Place {
   double u = 0, v = 0, t = 0;
 };
 
-class MeshSurface : public Surface, public ManyOcclusions {
+class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces {
  public:
-  MeshSurface(TriangleMesh mesh, NormalPolicy policy) : policy_(policy), mesh_(std::move(mesh)) {
+  MeshSurface(TriangleMesh mesh, NormalPolicy policy, bool manySearches)
+      : policy_(policy), manySearches_(manySearches), mesh_(std::move(mesh)) {
     check();
     topology_ = topologyOf(mesh_);
     require(std::find(topology_.alive.begin(), topology_.alive.end(), 1) != topology_.alive.end(),
@@ -89,7 +92,8 @@ class MeshSurface : public Surface, public ManyOcclusions {
     for (const double sign : {-1.0, 1.0})
       if (const std::optional<Place> place = firstPlace(o, sign * d, -1e-9 * size_, farthest)) {
         const SurfacePoint p = pointAt(*place);
-        if (best && !((p.position - previous.position).squaredNorm() < (best->position - previous.position).squaredNorm())) continue;
+        if (best && !((p.position - previous.position).squaredNorm() < (best->position - previous.position).squaredNorm()))
+          continue;
         best = p;
         farthest = std::abs(place->t) * (1 + 1e-6) + 1e-9 * size_;
       }
@@ -107,6 +111,8 @@ class MeshSurface : public Surface, public ManyOcclusions {
     return firstPlace(from.position, offset / length, 1e-6 * std::min(size_, length), length * (1 - 1e-9)).has_value();
   }
   std::vector<char> occludedMany(const std::vector<SurfacePoint>& from, const Vector3d& to) const override;
+
+  std::optional<std::vector<SurfacePoint>> mirrorPlaces(const MirrorQuery& query) const override;
 
   AlignedBox3d bounds() const override { return bounds_; }
 
@@ -319,6 +325,9 @@ class MeshSurface : public Surface, public ManyOcclusions {
     return std::nullopt;
   }
 
+  /// Where the reflection law holds on a triangle to first order; false when that is well outside of it.
+  bool mirrorPlaceOn(const MirrorQuery& query, Place& place) const;
+
   SurfacePoint pointAt(const Place& place) const {
     SurfacePoint p;
     const Vector3i& t = mesh_.triangles[place.triangle];
@@ -342,13 +351,68 @@ class MeshSurface : public Surface, public ManyOcclusions {
   }
 
   NormalPolicy policy_;
+  bool manySearches_;
   TriangleMesh mesh_;
   MeshTopology topology_;
   AlignedBox3d bounds_;
   Vector3d centre_{0, 0, 0};
   double size_ = 1, toEmbree_ = 1;
   EmbreeScene embree_;
+  mutable std::once_flag treeOnce_;  ///< built by the first search
+  mutable std::unique_ptr<const NormalTree> tree_;
 };
+
+bool MeshSurface::mirrorPlaceOn(const MirrorQuery& query, Place& place) const {
+  constexpr double kSlack = 0.5;  // of the triangle's size: neither H nor a patch is quite linear over it
+  const Vector3i& t = mesh_.triangles[place.triangle];
+  const Eigen::Matrix<double, 3, 2> basis = tangentBasis(pointAt(place).normal);
+  Vector2d g[3];  // tangential part of H - N at the corners: both scaled to the same length along the middle normal
+  const Vector3d middle = basis.col(0).cross(basis.col(1));
+  for (int k = 0; k < 3; ++k) {
+    const Vector3d &p = mesh_.vertices[t[k]], &n = mesh_.normals[t[k]];
+    const Vector3d h = (query.light.head<3>() - query.light.w() * p).normalized() + (query.eye - p).normalized();
+    const double alongH = h.dot(middle), alongN = n.dot(middle);
+    if (alongH == 0 || !(alongN > 0.1)) return true;  // too coarse to tell
+    g[k] = basis.transpose() * (h / alongH - n / alongN);
+  }
+  Matrix2d m;
+  m << g[1] - g[0], g[2] - g[0];
+  const double determinant = m.determinant();
+  if (!(std::abs(determinant) > 1e-6 * m.squaredNorm())) return true;  // a fold
+  const double u = (-g[0].x() * m(1, 1) + g[0].y() * m(0, 1)) / determinant,
+               v = (-g[0].y() * m(0, 0) + g[0].x() * m(1, 0)) / determinant;
+  if (std::min({u, v, 1 - u - v}) < -kSlack) return false;
+  place.u = std::clamp(u, 0.0, 1.0);
+  place.v = std::clamp(v, 0.0, 1 - place.u);
+  return true;
+}
+
+std::optional<std::vector<SurfacePoint>> MeshSurface::mirrorPlaces(const MirrorQuery& query) const {
+  // A smooth highlight leaves about ten parts; with more than this, normals vary within parts as much as between them.
+  constexpr std::size_t kMostPlaces = 256;
+  if (policy_ == NormalPolicy::Facet || !manySearches_) return std::nullopt;
+  std::call_once(treeOnce_, [&] {
+    std::function<Vector3d(int, int)> middle;
+    if (policy_ == NormalPolicy::Curved) middle = [this](int a, int b) { return edgePoint(a, b); };
+    tree_ = std::make_unique<const NormalTree>(mesh_, topology_, bounds_, middle);
+  });
+  const std::optional<std::vector<int>> triangles = tree_->candidates(query, kMostPlaces);
+  if (!triangles) return std::nullopt;
+  std::vector<SurfacePoint> places;
+  places.reserve(triangles->size());
+  // Triangles far apart are in no cache: ask for all before waiting for one.
+  for (const int t : *triangles) __builtin_prefetch(&mesh_.triangles[t]);
+  for (const int t : *triangles)
+    for (const int v : mesh_.triangles[t]) {
+      __builtin_prefetch(&mesh_.vertices[v]);
+      __builtin_prefetch(&mesh_.normals[v]);
+    }
+  for (const int t : *triangles) {
+    Place place{t, 1.0 / 3, 1.0 / 3, 0};
+    if (!tree_->finest() || mirrorPlaceOn(query, place)) places.push_back(pointAt(place));
+  }
+  return places;
+}
 
 std::vector<std::optional<SurfacePoint>> MeshSurface::approximateHits(const std::vector<Ray>& rays) const {
   constexpr int kPacket = 8;
@@ -382,8 +446,8 @@ std::vector<std::optional<SurfacePoint>> MeshSurface::approximateHits(const std:
       packet.ray.id[k] = packet.ray.flags[k] = 0;
       packet.hit.geomID[k] = packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
     }
-    // Without the flag for coherent rays: seeds lie 32 px apart, and with it they take 1.6 times as long (the dense scan of a level
-    // set shows no difference).
+    // Without the flag for coherent rays: seeds lie 32 px apart, and with it they take 1.6 times as long (the dense scan of a
+    // level set shows no difference).
     rtcInitIntersectContext(&context);
     rtcIntersect8(valid, embree_.scene, &context, &packet);
     for (int k = 0; k < kPacket; ++k)
@@ -475,7 +539,8 @@ Outcome<Curvature> MeshSurface::curvatureAt(const SurfacePoint& p) const {
   const Eigen::Matrix<double, 3, 2> basis = tangentBasis(n);
   const Matrix2d a = basis.transpose() * dP;
   // Thinner than a part in 1e12 (as for triangles without an area) the slopes are round-off.
-  if (!(std::abs(a.determinant()) > 1e-12 * a.squaredNorm())) return Failure{Reason::NotSupported, "the triangle is seen edge-on from its normal"};
+  if (!(std::abs(a.determinant()) > 1e-12 * a.squaredNorm()))
+    return Failure{Reason::NotSupported, "the triangle is seen edge-on from its normal"};
   Matrix2d s = a.transpose().partialPivLu().solve((basis.transpose() * dN).transpose()).transpose();
   s = 0.5 * (s + s.transpose()).eval();
   if (p.normal.dot(n) < 0) s = -s;
@@ -492,8 +557,8 @@ Outcome<Curvature> MeshSurface::curvatureAt(const SurfacePoint& p) const {
 
 }  // namespace
 
-std::shared_ptr<const Surface> makeMesh(TriangleMesh mesh, NormalPolicy normals) {
-  return std::make_shared<MeshSurface>(std::move(mesh), normals);
+std::shared_ptr<const Surface> makeMesh(TriangleMesh mesh, NormalPolicy normals, bool manySearches) {
+  return std::make_shared<MeshSurface>(std::move(mesh), normals, manySearches);
 }
 
 }  // namespace glint

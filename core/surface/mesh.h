@@ -23,8 +23,11 @@ namespace glint {
 /// triangle are ignored by all queries but keep their index, so `element` always indexes `mesh.triangles`. Edges with more
 /// than two triangles connect none of them.
 /// curvatureAt: from the derivatives of the normal field inside the triangle; its sign refers to p.normal.
+/// @param manySearches  the first search for brightest points builds a tree of normals (70 ms for a million triangles), which
+/// makes each
+///   of them several times faster and surer; not worth it for a surface that one photograph uses.
 /// std::invalid_argument (with the index) for a vertex that is not finite or a corner out of range, when there is no
 /// triangle with an area, or when `normals` is neither empty nor one per vertex.
-std::shared_ptr<const Surface> makeMesh(TriangleMesh mesh, NormalPolicy normals);
+std::shared_ptr<const Surface> makeMesh(TriangleMesh mesh, NormalPolicy normals, bool manySearches = true);
 
 }  // namespace glint

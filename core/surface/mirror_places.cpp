@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/surface/mirror_places.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace glint {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr std::size_t kParts = 16384;  // of large meshes: a few MB of balls and cones, of which a search sees some ten kB
+constexpr int kBitsPerAxis = 10;
+
+/// Margins above the round-off of float (6e-8 per operation, a dozen operations on numbers of order 1).
+constexpr double kBallMargin = 1e-6;  // of half the box
+constexpr float kCosineMargin = 2e-6f;
+constexpr float kDirectionMargin = 4e-7f;
+
+/// Bits of a number with two zeros between each.
+std::uint32_t spread(std::uint32_t v) {
+  v = (v | v << 16) & 0x030000ffu;
+  v = (v | v << 8) & 0x0300f00fu;
+  v = (v | v << 4) & 0x030c30c3u;
+  return (v | v << 2) & 0x09249249u;
+}
+
+struct Keyed {
+  std::uint32_t key;
+  int triangle;
+};
+
+/// Least significant digit first, three digits of ten bits.
+void sortByKey(std::vector<Keyed>& items) {
+  std::vector<Keyed> other(items.size());
+  for (int digit = 0; digit < 3; ++digit) {
+    const int shift = digit * kBitsPerAxis;
+    std::array<std::uint32_t, (1u << kBitsPerAxis) + 1> first{};
+    for (const Keyed& k : items) ++first[(k.key >> shift & 1023u) + 1];
+    for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+    for (const Keyed& k : items) other[first[k.key >> shift & 1023u]++] = k;
+    items.swap(other);
+  }
+}
+
+/// A node while the tree is built.
+struct Node {
+  AlignedBox3d box;
+  Vector3d centre{0, 0, 0}, axis{0, 0, 1};
+  double radius = 0, angle = 0;  ///< half angle of the cone, rad; pi: all directions
+  int next = 0;
+};
+
+}  // namespace
+
+class NormalTree::Builder {
+ public:
+  Builder(NormalTree& tree, const TriangleMesh& mesh, const std::function<Vector3d(int, int)>& edgePoint,
+          std::vector<Keyed> order)
+      : tree_(tree),
+        mesh_(mesh),
+        edgePoint_(edgePoint),
+        order_(std::move(order)),
+        most_(std::max<std::size_t>(1, order_.size() / kParts)) {}
+
+  void build() {
+    tree_.finest_ = most_ == 1;
+    node(0, order_.size(), 0);
+  }
+
+ private:
+  /// Of the triangles [first, end), which share the key's first `depth` digits.
+  Node node(std::size_t first, std::size_t end, int depth) {
+    if (end - first <= most_ && depth > 0) return part(first, end);
+    // Children: the next digit of the key. Beyond the last digit (many triangles in one cell) runs of equal length.
+    std::array<std::size_t, 9> bound;
+    bound[0] = first;
+    if (depth < kBitsPerAxis) {
+      const int shift = 3 * (kBitsPerAxis - 1 - depth);
+      if (order_[first].key >> shift == order_[end - 1].key >> shift) return node(first, end, depth + 1);
+      for (std::uint32_t digit = 0; digit < 8; ++digit)
+        bound[digit + 1] = std::partition_point(order_.begin() + bound[digit], order_.begin() + end,
+                                                [&](const Keyed& k) { return (k.key >> shift & 7u) <= digit; }) -
+                           order_.begin();
+    } else {
+      for (std::size_t k = 1; k <= 8; ++k) bound[k] = first + (end - first) * k / 8;
+    }
+    const int at = static_cast<int>(tree_.blocks_.size());
+    tree_.blocks_.emplace_back();
+    Block block;
+    for (Eight Block::*field : {&Block::x, &Block::y, &Block::z, &Block::radius, &Block::axisX, &Block::axisY, &Block::axisZ,
+                                &Block::cosine, &Block::sine})
+      (block.*field).setOnes();  // unused places: finite, never looked at
+    std::array<Node, 8> children;
+    for (int k = 0; k < 8; ++k)
+      if (bound[k] < bound[k + 1]) {
+        children[block.count] = node(bound[k], bound[k + 1], depth + 1);
+        store(children[block.count], block);
+      }
+    tree_.blocks_[at] = block;
+    return around(children.data(), block.count, at);
+  }
+
+  Node part(std::size_t first, std::size_t end) const {
+    Node part;
+    part.next = -1 - order_[(first + end - 1) / 2].triangle;
+    const auto eachPoint = [&](auto&& visit) {
+      for (std::size_t j = first; j < end; ++j) {
+        const Eigen::Vector3i& t = mesh_.triangles[order_[j].triangle];
+        for (int k = 0; k < 3; ++k) {
+          visit(mesh_.vertices[t[k]]);
+          if (edgePoint_) visit(edgePoint_(t[k], t[(k + 1) % 3]));  // a quadratic patch lies in the hull of its control points
+        }
+      }
+    };
+    Vector3d sum(0, 0, 0);
+    bool whole = false;
+    eachPoint([&](const Vector3d& p) { part.box.extend(p); });
+    for (std::size_t j = first; j < end; ++j)
+      for (const int v : mesh_.triangles[order_[j].triangle]) {
+        sum += mesh_.normals[v];
+        whole = whole || mesh_.normals[v].isZero();
+      }
+    part.centre = part.box.center();
+    double squared = 0;
+    eachPoint([&](const Vector3d& p) { squared = std::max(squared, (p - part.centre).squaredNorm()); });
+    part.radius = std::sqrt(squared);
+    // Interpolated normals are unit vectors along convex sums of the vertices' normals: they stay in any cone below 90 degrees.
+    part.axis = sum.normalized();
+    double cosine = 1, sine = 0;  // of the widest; the sine's square
+    for (std::size_t j = first; j < end && !whole; ++j)
+      for (const int v : mesh_.triangles[order_[j].triangle]) {
+        const double c = part.axis.dot(mesh_.normals[v]);
+        if (!(c > 0)) whole = true;
+        cosine = std::min(cosine, c);
+        sine = std::max(sine, part.axis.cross(mesh_.normals[v]).squaredNorm());
+      }
+    part.angle = whole ? std::numbers::pi : std::atan2(std::sqrt(sine), cosine);
+    return part;
+  }
+
+  static Node around(const Node* children, int count, int next) {
+    Node parent;
+    parent.next = next;
+    Vector3d sum(0, 0, 0);
+    for (int k = 0; k < count; ++k) {
+      parent.box.extend(children[k].box);
+      sum += children[k].axis;
+    }
+    parent.centre = parent.box.center();
+    parent.axis = sum.norm() > 1e-3 ? Vector3d(sum.normalized()) : children[0].axis;
+    for (int k = 0; k < count; ++k) {
+      const Node& c = children[k];
+      parent.radius = std::max(parent.radius, (c.centre - parent.centre).norm() + c.radius);
+      parent.angle = std::max(parent.angle, c.angle + std::atan2(parent.axis.cross(c.axis).norm(), parent.axis.dot(c.axis)));
+    }
+    parent.radius = std::min(parent.radius, 0.5 * parent.box.sizes().norm());
+    return parent;
+  }
+
+  void store(const Node& n, Block& b) const {
+    const Vector3d c = (n.centre - tree_.centre_) * tree_.scale_;
+    const int k = b.count++;
+    b.x[k] = static_cast<float>(c.x());
+    b.y[k] = static_cast<float>(c.y());
+    b.z[k] = static_cast<float>(c.z());
+    b.radius[k] = static_cast<float>(n.radius * tree_.scale_ * (1 + kBallMargin) + kBallMargin);
+    b.axisX[k] = static_cast<float>(n.axis.x());
+    b.axisY[k] = static_cast<float>(n.axis.y());
+    b.axisZ[k] = static_cast<float>(n.axis.z());
+    const bool whole = !(n.angle < 0.5 * std::numbers::pi);
+    b.cosine[k] = whole ? -1.f : static_cast<float>(std::cos(n.angle));
+    b.sine[k] = whole ? 0.f : static_cast<float>(std::sin(n.angle));
+    b.next[k] = n.next;
+  }
+
+  NormalTree& tree_;
+  const TriangleMesh& mesh_;
+  const std::function<Vector3d(int, int)>& edgePoint_;
+  std::vector<Keyed> order_;
+  std::size_t most_;  ///< triangles in a part
+};
+
+NormalTree::NormalTree(const TriangleMesh& mesh, const MeshTopology& topology, const AlignedBox3d& bounds,
+                       const std::function<Vector3d(int, int)>& edgePoint)
+    : centre_(bounds.center()), scale_(2 / bounds.sizes().norm()) {
+  std::vector<Keyed> order;
+  order.reserve(mesh.triangles.size());
+  const double cells = ((1 << kBitsPerAxis) - 1) / std::max(bounds.sizes().maxCoeff(), 1e-300);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (!topology.alive[i]) continue;
+    const Eigen::Vector3i& t = mesh.triangles[i];
+    const Vector3d p = ((mesh.vertices[t.x()] + mesh.vertices[t.y()] + mesh.vertices[t.z()]) / 3 - bounds.min()) * cells;
+    order.push_back({spread(static_cast<std::uint32_t>(p.x())) | spread(static_cast<std::uint32_t>(p.y())) << 1 |
+                         spread(static_cast<std::uint32_t>(p.z())) << 2,
+                     static_cast<int>(i)});
+  }
+  sortByKey(order);
+  Builder(*this, mesh, edgePoint, std::move(order)).build();
+}
+
+std::optional<std::vector<int>> NormalTree::candidates(const MirrorQuery& query, std::size_t most) const {
+  const Eigen::Vector3f eye = ((query.eye - centre_) * scale_).cast<float>();
+  const Vector3d l = (query.light.head<3>() - query.light.w() * centre_) * scale_;
+  const double size = std::hypot(l.norm(), query.light.w());  // so that float cannot overflow
+  const Eigen::Vector3f light = (l / size).cast<float>();
+  const float w = static_cast<float>(query.light.w() / size);
+  std::array<Eigen::Vector4f, 4> sides;
+  for (int k = 0; k < 4; ++k)
+    sides[k] << query.sides[k].cast<float>(), static_cast<float>(query.sides[k].dot(centre_ - query.eye) * scale_);
+
+  std::vector<int> found;
+  std::vector<int> tasks{0};
+  // Chord of the angle under which a ball is seen from a point outside of it; more than 2 from inside.
+  const auto chord = [](const Eight& radiusOverDistance) -> Eight {
+    const Eight s = radiusOverDistance.min(1.f);
+    return s * (2.f / (1.f + (1.f - s * s).sqrt())).sqrt() + 1e3f * (radiusOverDistance - 0.999f).max(0.f);
+  };
+  while (!tasks.empty()) {
+    const Block& b = blocks_[tasks.back()];
+    tasks.pop_back();
+    const Eight vx = eye.x() - b.x, vy = eye.y() - b.y, vz = eye.z() - b.z;
+    const Eight lx = light.x() - w * b.x, ly = light.y() - w * b.y, lz = light.z() - w * b.z;
+    const Eight toEye = (vx * vx + vy * vy + vz * vz).sqrt().max(1e-30f),
+                toLight = (lx * lx + ly * ly + lz * lz).sqrt().max(1e-30f);
+    const Eight sx = vx / toEye + lx / toLight, sy = vy / toEye + ly / toLight, sz = vz / toEye + lz / toLight;
+    const Eight sum = (sx * sx + sy * sy + sz * sz).sqrt().max(1e-30f);
+    // L + V moves by at most the two chords within the ball, H therefore by an angle of at most asin(of them / |L + V|). N is
+    // parallel to some H only if the cone around N and the one around H overlap.
+    const Eight moved = chord(b.radius / toEye) + chord(w * b.radius / toLight) + kDirectionMargin;
+    const Eight sine = (moved / sum).min(1.f), cosine = (1.f - sine * sine).sqrt();
+    const Eight between = (b.axisX * sx + b.axisY * sy + b.axisZ * sz).abs() / sum;
+    const Eight missed = b.cosine * cosine - b.sine * sine - between;
+    Eight inside = sides[0].x() * b.x + sides[0].y() * b.y + sides[0].z() * b.z + sides[0].w();
+    for (int k = 1; k < 4; ++k) inside = inside.min(sides[k].x() * b.x + sides[k].y() * b.y + sides[k].z() * b.z + sides[k].w());
+    inside += b.radius;
+    for (int k = 0; k < b.count; ++k) {
+      if (missed[k] > kCosineMargin || inside[k] < 0) continue;
+      if (b.next[k] >= 0) {
+        tasks.push_back(b.next[k]);
+        continue;
+      }
+      if (found.size() == most) return std::nullopt;
+      found.push_back(-1 - b.next[k]);
+    }
+  }
+  return found;
+}
+
+}  // namespace glint

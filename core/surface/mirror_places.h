@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Internal to core/surface: where on a surface the reflection law can hold, without a ray.
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "core/surface/mesh_topology.h"
+#include "core/surface/surface.h"
+
+namespace glint {
+
+struct MirrorQuery {
+  Eigen::Vector3d eye;                   ///< world
+  Eigen::Vector4d light;                 ///< homogeneous, w >= 0
+  std::array<Eigen::Vector3d, 4> sides;  ///< unit, inward normals of the view's four planes, all through the eye
+};
+
+/// A surface that can rule out most of itself as a place of mirror reflection.
+class MirrorPlaces {
+ public:
+  virtual ~MirrorPlaces() = default;
+  /// One surface point from every part inside the view in which N may be parallel to H = unit(L + V), on either side: everywhere
+  /// else it is proven not to be. Nothing where the surface has no continuous normals, or is so rough that most parts remain.
+  virtual std::optional<std::vector<SurfacePoint>> mirrorPlaces(const MirrorQuery& query) const = 0;
+};
+
+/// An octree over a mesh: balls around parts of it and cones around their normals. Float, with margins above its round-off: a
+/// part is only ruled out when it is safe to.
+class NormalTree {
+ public:
+  /// @param edgePoint  middle control point of a curved edge between two vertices; empty for flat triangles.
+  NormalTree(const TriangleMesh& mesh, const MeshTopology& topology, const Eigen::AlignedBox3d& bounds,
+             const std::function<Eigen::Vector3d(int, int)>& edgePoint);
+
+  /// A triangle from every part in which N may be parallel to H. Nothing when they are more than `most`.
+  std::optional<std::vector<int>> candidates(const MirrorQuery& query, std::size_t most) const;
+  /// Every part is one triangle.
+  bool finest() const { return finest_; }
+
+ private:
+  class Builder;
+  using Eight = Eigen::Array<float, 8, 1>;
+  /// Up to eight siblings: balls (centre, radius) in the box scaled to [-1, 1], and cones (axis, cosine and sine of the half
+  /// angle).
+  struct Block {
+    Eight x, y, z, radius, axisX, axisY, axisZ, cosine, sine;
+    std::array<int, 8> next;  ///< block of its children; of a part: -1 - triangle
+    int count = 0;
+  };
+
+  Eigen::Vector3d centre_;
+  double scale_ = 1;
+  bool finest_ = false;
+  std::vector<Block> blocks_;  ///< the first one is the root's
+};
+
+}  // namespace glint

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The search of brightest points on meshes by ruling parts out: what it must not miss, and what it leaves to the grid.
+#include "core/surface/mirror_places.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/surface/brightest_point.h"
+#include "core/surface/mesh.h"
+#include "tests/core/surface/surfaces.h"
+
+namespace glint {
+namespace {
+
+using Eigen::Vector3d;
+
+/// The same surface for the grid of rays only.
+class OnlyRays final : public Surface {
+ public:
+  explicit OnlyRays(const Surface& surface) : surface_(surface) {}
+  std::string describe() const override { return surface_.describe(); }
+  Outcome<SurfacePoint> firstHit(const Ray& ray) const override { return surface_.firstHit(ray); }
+  std::vector<std::optional<SurfacePoint>> approximateHits(const std::vector<Ray>& rays) const override {
+    return surface_.approximateHits(rays);
+  }
+  Outcome<SurfacePoint> foot(const Vector3d& p, const Vector3d& d, const SurfacePoint& previous) const override {
+    return surface_.foot(p, d, previous);
+  }
+  Outcome<Curvature> curvatureAt(const SurfacePoint& p) const override { return surface_.curvatureAt(p); }
+  bool occluded(const SurfacePoint& from, const Vector3d& to) const override { return surface_.occluded(from, to); }
+  Eigen::AlignedBox3d bounds() const override { return surface_.bounds(); }
+  TriangleMesh tessellate(const Eigen::AlignedBox3d& region, int n) const override { return surface_.tessellate(region, n); }
+
+ private:
+  const Surface& surface_;
+};
+
+TriangleMesh torus(int n) { return makeAnalytic(test::torus(0.5, 0.2))->tessellate(Eigen::AlignedBox3d(), n); }
+/// An open sheet with bumps: many places where normals are parallel.
+TriangleMesh waves(int n) {
+  TriangleMesh mesh = makeAnalytic(test::sheet(0, 1.0, 1.0))->tessellate(Eigen::AlignedBox3d(), n);
+  mesh.normals.clear();
+  for (Vector3d& v : mesh.vertices) v.z() = 0.02 * std::sin(9 * v.x()) * std::cos(8 * v.y());
+  return mesh;
+}
+void turnSome(TriangleMesh& mesh) {
+  mesh.normals.clear();
+  for (std::size_t i = 0; i < mesh.triangles.size(); i += 5) std::swap(mesh.triangles[i].x(), mesh.triangles[i].y());
+}
+void repeatSome(TriangleMesh& mesh) {
+  const std::size_t n = mesh.triangles.size();
+  for (std::size_t i = 0; i < n; i += 3) mesh.triangles.push_back(mesh.triangles[i]);
+  mesh.triangles.emplace_back(7, 7, 7);
+}
+
+struct Counts {
+  int made = 0, missed = 0, missedByRays = 0;
+};
+
+/// Lights are placed where the reflection law holds at a random visible point: at a random distance, sometimes at infinity. How
+/// often that point is not among those found.
+Counts countMissed(const TriangleMesh& mesh, NormalPolicy policy, int trials, double reach) {
+  const auto surface = makeMesh(mesh, policy);
+  const OnlyRays onlyRays(*surface);
+  std::mt19937 rng(17);
+  std::uniform_real_distribution<double> u(-1, 1);
+  Counts counts;
+  for (int i = 0; i < trials; ++i) {
+    const Vector3d eye = reach * (Vector3d(u(rng), u(rng), 0.3 + std::abs(u(rng)))).normalized();
+    const Camera camera = test::lookAt(eye, 0.2 * Vector3d(u(rng), u(rng), u(rng)), 500);
+    const auto hit = surface->firstHit(camera.ray({320 + 250 * u(rng), 240 + 180 * u(rng)}));
+    if (!hit) continue;
+    const SurfacePoint p = facing(*hit, eye);
+    const Vector3d v = (eye - p.position).normalized(), toLight = reflect(v, p.normal);
+    if (!(p.normal.dot(v) > 0.1)) continue;
+    const double distance = reach * std::exp(3 * u(rng));
+    const Light light = i % 4 == 0 ? Light::towards(toLight) : Light::at(p.position + distance * toLight);
+    if (surface->occluded(p, p.position + (i % 4 == 0 ? 100 : distance) * toLight)) continue;
+    ++counts.made;
+    const auto near = [&](const Outcome<std::vector<BrightestPoint>>& found) {
+      if (!found) return false;
+      return std::any_of(found->begin(), found->end(),
+                         [&](const BrightestPoint& b) { return (b.point.position - p.position).norm() < 1e-6 * reach; });
+    };
+    if (!near(predictedBrightestPoints(*surface, camera, light))) ++counts.missed;
+    if (!near(predictedBrightestPoints(onlyRays, camera, light))) ++counts.missedByRays;
+  }
+  return counts;
+}
+
+// Truth by construction. What is left are lights near a caustic (the torus' upper circle), where solutions merge: the grid of
+// rays misses those too, and more.
+TEST(MirrorPlaces, ConstructedMirrorPointsAreFound) {
+  int missed = 0, missedByRays = 0;
+  for (const NormalPolicy policy : {NormalPolicy::Interpolated, NormalPolicy::Curved}) {
+    TriangleMesh damaged = torus(100);
+    turnSome(damaged);
+    repeatSome(damaged);
+    for (const TriangleMesh& mesh : {waves(12), waves(100), torus(100), damaged, torus(200)}) {
+      const Counts c = countMissed(mesh, policy, 200, 2.0);
+      EXPECT_GT(c.made, 40);
+      EXPECT_LE(c.missed, 0.03 * c.made) << mesh.triangles.size() << " triangles";
+      missed += c.missed;
+      missedByRays += c.missedByRays;
+    }
+  }
+  EXPECT_LT(2 * missed, missedByRays);
+}
+
+TEST(MirrorPlaces, AnswersAreThoseOfADenseGrid) {
+  const auto surface = makeMesh(torus(300), NormalPolicy::Interpolated);
+  const OnlyRays onlyRays(*surface);
+  BrightestPointOptions dense;
+  dense.seedStepPx = 3;
+  std::mt19937 rng(5);
+  std::uniform_real_distribution<double> u(-1, 1);
+  int several = 0;
+  for (int i = 0; i < 10; ++i) {
+    const Vector3d eye(1.5 * u(rng), 1.5 * u(rng), 1.2 + 0.5 * u(rng)), light(2 * u(rng), 2 * u(rng), 2 + u(rng));
+    const Camera camera = test::lookAt(eye, {0, 0, 0}, 500);
+    const auto found = predictedBrightestPoints(*surface, camera, Light::at(light));
+    const auto all = predictedBrightestPoints(onlyRays, camera, Light::at(light), dense);
+    ASSERT_EQ(static_cast<bool>(found), static_cast<bool>(all)) << i;
+    if (!found) continue;
+    ASSERT_EQ(found->size(), all->size()) << i;
+    several += found->size() > 1;
+    for (std::size_t k = 0; k < found->size(); ++k)
+      // Both end at the round-off of |N x H|; 1e-9 px is a hundred times that of the pixel.
+      EXPECT_NEAR(((*found)[k].pixel - (*all)[k].pixel).norm(), 0, 1e-9) << i;
+  }
+  EXPECT_GT(several, 2);
+}
+
+MirrorQuery query(const Vector3d& eye, const Light& light) {
+  // Planes that leave everything inside.
+  const Vector3d anywhere = -eye.normalized();
+  return {eye, light.homogeneous(), {anywhere, anywhere, anywhere, anywhere}};
+}
+
+TEST(MirrorPlaces, FewPartsOfASmoothSurfaceRemain) {
+  const auto surface = makeMesh(makeAnalytic(test::ellipsoid(0.6, 0.35, 0.25))->tessellate(Eigen::AlignedBox3d(), 300),
+                                NormalPolicy::Interpolated);
+  const auto& places = dynamic_cast<const MirrorPlaces&>(*surface);
+  for (const double distance : {1.0, 3.0, 1e4, 1e9})  // float must not rule out the truth, nor give up, with far eyes and lights
+    for (const double lightDistance : {2.0, 1e6, 1e12}) {
+      const Vector3d eye = distance * Vector3d(0.2, -1, 0.7), light = lightDistance * Vector3d(0.5, -0.4, 0.9);
+      const auto left = places.mirrorPlaces(query(eye, Light::at(light)));
+      ASSERT_TRUE(left);
+      EXPECT_GE(left->size(), 2u);  // the mirror points of both sides
+      EXPECT_LE(left->size(), 40u);
+      double best = 2;  // angle between N and H on the outer side; parts are 0.01 rad wide
+      for (const SurfacePoint& p : *left)
+        best = std::min(best, incidentAngle(p.normal, (light - p.position).normalized(), (eye - p.position).normalized()));
+      EXPECT_LT(best, 0.02) << distance << " " << lightDistance;
+    }
+}
+
+TEST(MirrorPlaces, LeavesRoughSurfacesAndFacetsToTheGrid) {
+  TriangleMesh rough = torus(100);
+  std::mt19937 rng(3);
+  std::normal_distribution<double> gauss(0, 0.5);
+  for (Vector3d& n : rough.normals) n = (n + Vector3d(gauss(rng), gauss(rng), gauss(rng))).normalized();
+  const MirrorQuery q = query({0, -1, 2}, Light::at({1, 0, 3}));
+  EXPECT_FALSE(dynamic_cast<const MirrorPlaces&>(*makeMesh(rough, NormalPolicy::Interpolated)).mirrorPlaces(q));
+  EXPECT_FALSE(dynamic_cast<const MirrorPlaces&>(*makeMesh(torus(20), NormalPolicy::Facet)).mirrorPlaces(q));
+  EXPECT_FALSE(dynamic_cast<const MirrorPlaces&>(*makeMesh(torus(20), NormalPolicy::Interpolated, false)).mirrorPlaces(q));
+  EXPECT_TRUE(dynamic_cast<const MirrorPlaces&>(*makeMesh(torus(20), NormalPolicy::Interpolated)).mirrorPlaces(q));
+}
+
+TEST(MirrorPlaces, OnlyThoseInsideTheView) {
+  // The mirror point lies at the right of the picture: a view that ends to its left has no place, one that contains it has.
+  const auto surface =
+      makeMesh(makeAnalytic(test::sphere(0.4))->tessellate(Eigen::AlignedBox3d(), 100), NormalPolicy::Interpolated);
+  const auto& places = dynamic_cast<const MirrorPlaces&>(*surface);
+  const Vector3d eye(0, -3, 0);
+  const Light light = Light::at({4, -1, 0});
+  MirrorQuery q = query(eye, light);
+  q.sides[0] = {-1, 0, 0};  // x < 0
+  const auto left = places.mirrorPlaces(q);
+  ASSERT_TRUE(left);
+  for (const SurfacePoint& p : *left) EXPECT_LT(p.position.x(), 0.03);
+  q.sides[0] = {1, 0, 0};
+  const auto right = places.mirrorPlaces(q);
+  ASSERT_TRUE(right);
+  int near = 0;
+  for (const SurfacePoint& p : *right) {
+    const double alpha = incidentAngle(p.normal, light.directionFrom(p.position), (eye - p.position).normalized());
+    near += alpha < 0.1;
+  }
+  EXPECT_GT(near, 0);
+}
+
+}  // namespace
+}  // namespace glint
