@@ -11,7 +11,7 @@ namespace {
 
 /// Continued fraction of the incomplete beta function I_x(a, b) by Lentz's method; converges fast for x < (a + 1) / (a + b + 2).
 double betaFraction(double a, double b, double x) {
-  constexpr double kTiny = 1e-300;
+  constexpr double kTiny = 1e-300;  // stands for 0 in a denominator, as Lentz's method asks
   double c = 1, d = 1 - (a + b) * x / (a + 1);
   d = 1 / (std::abs(d) < kTiny ? kTiny : d);
   double h = d;
@@ -23,7 +23,7 @@ double betaFraction(double a, double b, double x) {
       if (std::abs(c) < kTiny) c = kTiny;
       h *= c * d;
     }
-    if (std::abs(c * d - 1) < 1e-15) break;
+    if (std::abs(c * d - 1) < 1e-15) break;  // the next factors are 1 in double precision
   }
   return h;
 }
@@ -43,7 +43,7 @@ double studentFactor(double coverage, double degreesOfFreedom) {
   const auto share = [&](double t) { return degreesOfFreedom > 1e6 ? std::erfc(t / std::numbers::sqrt2) : outside(t, degreesOfFreedom); };
   double low = 0, high = 1;
   while (share(high) > 1 - coverage && high < 1e12) low = high, high *= 2;
-  for (int i = 0; i < 200 && high - low > 1e-13 * high; ++i) {
+  for (int i = 0; i < 200 && high - low > 1e-13 * high; ++i) {  // the share has about thirteen digits
     const double middle = 0.5 * (low + high);
     (share(middle) > 1 - coverage ? low : high) = middle;
   }

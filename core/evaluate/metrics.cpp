@@ -20,7 +20,9 @@ std::vector<Segment> segmentsOf(const Polyline& line, const std::vector<std::pai
   for (int i = 0; i < count; ++i) {
     const int j = (i + 1) % n;
     if (std::find(gaps.begin(), gaps.end(), std::pair<int, int>(i, j)) != gaps.end()) continue;
-    if ((line.points[j] - line.points[i]).norm() > 1e-12) out.emplace_back(line.points[i], line.points[j]);
+    const Pixel &a = line.points[i], &b = line.points[j];
+    constexpr double kRepeated = 1e-15;  // of the coordinates: their round-off
+    if ((b - a).norm() > kRepeated * (a.norm() + b.norm())) out.emplace_back(a, b);
   }
   return out;
 }

@@ -86,10 +86,10 @@ Outcome<Pixel> withoutDistortion(const Camera& camera, const Pixel& measured) {
   Eigen::Vector2d x = onBranch(target) ? target : Eigen::Vector2d(0, 0);
   Eigen::Vector2d error = target - distort(x, d);
   constexpr int kMaxIterations = 100;
-  for (int i = 0; i < kMaxIterations && error.norm() > 1e-16 * size; ++i) {
+  for (int i = 0; i < kMaxIterations && error.norm() > 1e-16 * size; ++i) {  // round-off of the target itself
     const Eigen::Vector2d step = distortionSlope(x, d).partialPivLu().solve(error);
     bool moved = false;
-    for (double share = 1; share > 1e-6; share *= 0.5) {
+    for (double share = 1; share > 1e-6; share *= 0.5) {  // shorter steps than a millionth are a fold, not a curve
       const Eigen::Vector2d next = x + share * step, rest = target - distort(next, d);
       if (!(rest.norm() < error.norm()) || !onBranch(next)) continue;
       x = next;

@@ -219,7 +219,7 @@ Outcome<Ellipse> fitEllipse(const std::vector<Pixel>& points) {
   std::vector<Pixel> distinct;  // at most five are looked for
   for (const Pixel& p : points) {
     if (std::none_of(distinct.begin(), distinct.end(),
-                     [&](const Pixel& q) { return (p - q).cwiseAbs().maxCoeff() <= 1e-12 * extent; }))
+                     [&](const Pixel& q) { return (p - q).cwiseAbs().maxCoeff() <= 1e-12 * extent; }))  // round-off
       distinct.push_back(p);
     if (distinct.size() == 5) break;
   }
@@ -240,6 +240,7 @@ Outcome<Ellipse> fitEllipse(const std::vector<Pixel>& points) {
   const Eigen::JacobiSVD<Eigen::Matrix2d> axes(r2, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Vector2d spread = axes.singularValues() / std::sqrt(double(n));
   const double rounding = 8 * kEps * std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff()) / extent;
+  // A width below 1e-10 of the length leaves fewer than six digits of the ellipse.
   if (!(spread.y() > std::max(1e-10 * spread.x(), rounding))) return Failure{Reason::RankDeficient, "the points lie on a line"};
   const Eigen::Matrix2d pixelFromUnit = axes.matrixV() * spread.asDiagonal();
 

@@ -78,6 +78,7 @@ Background fitBackground(const Image& image, const std::vector<char>& usable, co
   for (int round = 0; round < kRounds; ++round) {
     for (std::size_t i = 0; i < samples.size(); ++i) absolute[i] = std::abs(residual[i]);
     spread = 1.4826 * medianOf(absolute);
+    // Tukey's constant; the floor keeps it above round-off of the values where the image is exactly the model.
     const double cut = 4.685 * std::max(spread, 1e-12 * (std::abs(start) + 1e-300));
     Eigen::Index used = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {

@@ -29,6 +29,7 @@ vtkNew<vtkImageData> paddedField(const Image& image, double level) {
     lowest = std::min(lowest, v);
     highest = std::max(highest, v);
   }
+  // 1e7 times the range: the crossing then lies 1e-7 px from the border pixel's centre; + 1e-300 for an image of one value.
   const double outside = level - 1e7 * (std::max<double>(highest, level) - std::min<double>(lowest, level) + 1e-300);
   const int w = image.width + 2, h = image.height + 2;
   vtkNew<vtkImageData> field;

@@ -57,7 +57,7 @@ Outcome<PeakFit> fitPeak(const Image& image, int x, int y, double windowLevel) {
   const double top = smoothed(image, x, y);
   if (!(top > 0)) return Failure{Reason::NotConverged, "the maximum is not positive"};
   std::vector<Eigen::Vector2i> window;
-  for (double level = windowLevel; level >= kLowestWindow - 1e-9; level -= kWindowStep) {
+  for (double level = windowLevel; level >= kLowestWindow - 1e-9; level -= kWindowStep) {  // round-off of the sum of steps
     window = windowPixels(image, x, y, level * top);
     if (static_cast<int>(window.size()) >= kEnoughPixels) break;
   }

@@ -53,7 +53,7 @@ Outcome<Triangulation> triangulateLight(const std::vector<ReflectedRay>& rays, d
       size = std::max(size, (rays[i].origin - mean).norm());
     }
     result.residual = std::sqrt(sum / n);
-    // Rays that meet to round-off say nothing about their own noise: the covariance is then that of unit variance.
+    // Rays that meet to round-off (1e-13 of the scene) say nothing about their noise: the covariance is that of unit variance.
     const bool exact = result.residual <= 1e-13 * size;
     const double variance = exact ? 1.0 : sum / double(2 * n - 3);
     const Eigen::Matrix3d root = svd.matrixV() * s.cwiseInverse().asDiagonal();

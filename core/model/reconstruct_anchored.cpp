@@ -45,7 +45,7 @@ Outcome<Reconstruction> reconstructAnchored(const std::vector<ConicView>& views,
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(detail::symmetric(solution));
   if (!solution.allFinite()) return Failure{Reason::NotFinite, "shape"};
   const Eigen::Vector3d squares = eigen.eigenvalues().cwiseMax(0.0);  // nearest positive semidefinite matrix
-  if (!(squares(1) > 1e-12 * squares(2)))
+  if (!(squares(1) > 1e-12 * squares(2)))  // an axis below a millionth of the longest is the root of round-off
     return Failure{Reason::NotAnEllipsoid, "the shape that fits about this centre has two empty axes"};
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = eigen.eigenvectors();

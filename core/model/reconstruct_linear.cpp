@@ -71,7 +71,7 @@ Normalisation normalise(const std::vector<ConicView>& views, const Eigen::Vector
   for (NormalisedView& v : n.views) {
     v.projection.leftCols<3>() *= n.scale;
     const double depth = std::abs(v.projection(2, 3)), size = v.projection.norm();
-    v.projection /= depth > 1e-3 * size ? depth : size;
+    v.projection /= depth > 1e-3 * size ? depth : size;  // the focal plane near the origin: no depth to divide by
   }
   return n;
 }
@@ -88,7 +88,7 @@ std::optional<Eigen::Vector3d> axisPoint(const std::vector<ConicView>& views) {
   const Eigen::Matrix4d r =
       Eigen::HouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 4>>(rows).matrixQR().topRows<4>().triangularView<Eigen::Upper>();
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(r.topLeftCorner<3, 3>(), Eigen::ComputeFullU | Eigen::ComputeFullV);
-  if (!(svd.singularValues()(2) > 1e-10 * svd.singularValues()(0))) return std::nullopt;
+  if (!(svd.singularValues()(2) > 1e-10 * svd.singularValues()(0))) return std::nullopt;  // the axes are parallel, to round-off
   const Eigen::Vector3d x = svd.solve(-r.topRightCorner<3, 1>());
   if (!x.allFinite()) return std::nullopt;
   // Rays of one centre meet there; that point tells nothing about the object.
@@ -96,6 +96,7 @@ std::optional<Eigen::Vector3d> axisPoint(const std::vector<ConicView>& views) {
   for (const ConicView& v : views) {
     const Eigen::RowVector4d row = v.projection.matrix.row(2);
     const double depth = row.head<3>().dot(x) + row.w();
+    // A depth below a millionth of its own terms has too few digits to divide by.
     inFront = inFront || std::abs(depth) > 1e-6 * (row.head<3>().cwiseAbs().dot(x.cwiseAbs()) + std::abs(row.w()));
   }
   if (!inFront) return std::nullopt;

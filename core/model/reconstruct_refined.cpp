@@ -253,7 +253,7 @@ Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, 
   // Levenberg and Marquardt's iteration with the damping relative to the largest singular value. A flat valley (an axis that the
   // contours hardly see) has a small but certain slope: damping falls by decades, so that the full Gauss-Newton step is taken there.
   Linearised linear(rows, state);
-  double damping = 1e-3;
+  double damping = 1e-3;  // of the largest singular value: cautious first; it adapts by decades
   int iterations = 0;
   bool converged = false;
   for (; iterations < maxIterations && !converged; ++iterations) {
@@ -266,10 +266,11 @@ Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, 
       double cost = kInfinity;
       if (step.allFinite() && contours.rows(next, rows)) cost = rows.col(9).squaredNorm();
       if (!(cost < linear.cost)) continue;
+      // 1e-8 is the root of round-off: the cost is flat to second order at its minimum.
       converged = linear.cost - cost <= kEnough * linear.cost && linear.gain() <= 1e-8 * linear.cost;
       state = next;
       linear = Linearised(rows, state);
-      damping = std::max(damping * 0.03, 1e-16);
+      damping = std::max(damping * 0.03, 1e-16);  // below round-off of the singular values damping does nothing
       moved = true;
       break;
     }
@@ -282,9 +283,9 @@ Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, 
   for (int i = 0; converged && i < 40; ++i) {
     const Step step = linear.step(0);
     const double length = step.norm();
-    if (!(length < 0.9 * last) || !(length > 1e-15)) break;
+    if (!(length < 0.9 * last) || !(length > 1e-15)) break;  // unknowns are of size 1: steps are round-off from here on
     const State next = state.after(step);
-    if (!contours.rows(next, rows) || !(rows.col(9).squaredNorm() <= linear.cost * (1 + 1e-11))) break;
+    if (!contours.rows(next, rows) || !(rows.col(9).squaredNorm() <= linear.cost * (1 + 1e-11))) break;  // round-off of the sum
     state = next;
     linear = Linearised(rows, state);
     last = length;

@@ -42,7 +42,7 @@ double bracketedRoot(F&& f, double a, double fa, double b, double fb, double tol
       }
       b = x; fb = fx; side = 1;
     }
-    if (b - a <= 4e-16 * std::abs(b)) return x;
+    if (b - a <= 4e-16 * std::abs(b)) return x;  // two neighbouring doubles
   }
   return x;
 }
@@ -185,7 +185,7 @@ Outcome<TangentWalk::Reach> TangentWalk::reachOnSurface(const Eigen::Vector3d& d
       highest = std::max(highest, fb);
     }
     a = b; fa = fb; at = *next;
-    if (stopped && step < 1e-6 * scale) return *stopped;
+    if (stopped && step < 1e-6 * scale) return *stopped;  // the edge is found to a millionth of the walk
     if (!stopped) step *= kStepGrowth;
   }
   return stopped ? *stopped : Failure{Reason::NotReached, "alpha stays under the limit"};
@@ -266,7 +266,7 @@ Outcome<TangentWalk::Reach> TangentWalk::reachContour(const Eigen::Vector3d& d, 
       const double denominator = r.x() * s.y() - r.y() * s.x();
       if (denominator == 0) continue;
       const double t = (w.x() * s.y() - w.y() * s.x()) / denominator, u = (w.x() * r.y() - w.y() * r.x()) / denominator;
-      if (t > 0 && t <= 1 && u >= -1e-12 && u <= 1 + 1e-12 && t < best) best = t, edge = k;
+      if (t > 0 && t <= 1 && u >= -1e-12 && u <= 1 + 1e-12 && t < best) best = t, edge = k;  // a corner belongs to both edges
     }
     if (best <= 1) {
       // Solve on the line of that edge; when the solution lies on a neighbouring edge instead (the path bends), take that one.

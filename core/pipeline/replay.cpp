@@ -57,6 +57,7 @@ std::string shortest(double v) {
 
 bool agree(double a, double b) {
   if (std::isnan(a) || std::isnan(b)) return std::isnan(a) && std::isnan(b);
+  // formats.md: nine digits; the rest lets a zero be one that came out as round-off.
   return std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b)) + 1e-12;
 }
 

@@ -312,7 +312,8 @@ TriangleMesh toTriangles(const fs::path& file, vtkPolyData* input) {
       Eigen::Vector3d v;
       normals->GetTuple(i, v.data());
       const double length = v.norm();
-      if (!(length > 1e-6) || !std::isfinite(length)) {
+      constexpr double kUnset = 1e-6;  // normals have length 1, whatever the scene's unit
+      if (!(length > kUnset) || !std::isfinite(length)) {
         mesh.normals.clear();
         break;
       }

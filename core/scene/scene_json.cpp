@@ -99,6 +99,7 @@ Eigen::Isometry3d readPoseJson(const JsonNode& node, std::string* warning) {
   if (m.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) node.fail("must be rigid: the last row must be 0 0 0 1");
   Eigen::Matrix3d r = m.topLeftCorner<3, 3>();
   const double deviation = (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  // Typed with four digits it is still a rotation; worse, something else was meant. What is none to single precision is repaired.
   if (!(deviation <= 1e-3)) node.fail("must be rigid: the 3x3 block is not a rotation");
   if (r.determinant() < 0) node.fail("must be rigid: the 3x3 block is mirrored (determinant -1)");
   if (deviation > 1e-6) {
@@ -136,7 +137,8 @@ AnalyticSpec readAnalyticJson(const JsonNode& node) {
     spec.matrix = matrix.matrix4();
     const double size = spec.matrix.cwiseAbs().maxCoeff();
     if (!(size > 0)) matrix.fail("must not be zero");
-    if ((spec.matrix - spec.matrix.transpose()).cwiseAbs().maxCoeff() > 1e-9 * size) matrix.fail("must be symmetric");
+    constexpr double kTyped = 1e-9;  // relative: more digits than a printed matrix has wrong
+    if ((spec.matrix - spec.matrix.transpose()).cwiseAbs().maxCoeff() > kTyped * size) matrix.fail("must be symmetric");
   } else if (spec.type != "plane") {
     type.fail("'" + spec.type + "' is none of: plane, sphere, ellipsoid, cylinder, sheet, torus, quadric");
   }
@@ -180,11 +182,12 @@ Highlight readHighlight(const JsonNode& node, const Camera& camera) {
   const JsonNode contour = node.at("contour");
   const std::size_t n = contour.size();
   if (n < 5) contour.fail("must have at least 5 points, has " + std::to_string(n));
-  constexpr double kBorderPx = 0.5;  // within half a pixel of the outermost pixel centres the image ends
+  // Half a pixel beyond the outermost pixel centres the image ends, to the digits of a printed coordinate.
+  constexpr double kBorderPx = 0.5 - 1e-9;
   for (std::size_t i = 0; i < n; ++i) {
     const Pixel measured = contour.at(i).vector2();
-    h.touchesBorder = h.touchesBorder || measured.minCoeff() <= 0 - kBorderPx + 1e-9 ||
-                      measured.x() >= camera.width - 1 + kBorderPx - 1e-9 || measured.y() >= camera.height - 1 + kBorderPx - 1e-9;
+    h.touchesBorder = h.touchesBorder || measured.minCoeff() <= -kBorderPx || measured.x() >= camera.width - 1 + kBorderPx ||
+                      measured.y() >= camera.height - 1 + kBorderPx;
     h.contour.points.push_back(camera.undistorted(measured));
   }
   h.peak = camera.undistorted(node.at("peak").vector2());

@@ -29,6 +29,7 @@ class AnalyticSurface : public Surface {
       : shape_(makeShape(spec)), worldFromLocal_(spec.worldFromSurface), localFromWorld_(worldFromLocal_.inverse()) {
     const Matrix3d r = worldFromLocal_.linear();
     require(
+        // A rotation to single precision; formats.md lets nothing else in.
         worldFromLocal_.matrix().allFinite() && (r * r.transpose() - Matrix3d::Identity()).norm() < 1e-6 && r.determinant() > 0,
         "analytic surface: world_from_surface must be rigid and finite");
   }
@@ -88,10 +89,11 @@ class AnalyticSurface : public Surface {
     const Vector3d o = localFromWorld_ * from.position, offset = localFromWorld_ * to - o;
     const double length = offset.norm();
     if (!(length > 0)) return false;
+    // Surface::occluded names the millionth: the start lies on the surface, to round-off of a hit.
     const double ignored = 1e-6 * std::min(length, shape_->size());
     const LineRoots roots = lineRoots(o, offset / length);
     for (int i = 0; i < roots.count; ++i)
-      if (roots.t[i] > ignored && roots.t[i] < length * (1 - 1e-12)) return true;
+      if (roots.t[i] > ignored && roots.t[i] < length * (1 - 1e-12)) return true;  // the end itself does not hide itself
     return false;
   }
 

@@ -188,7 +188,7 @@ class Sheet : public QuadricShape {
  private:
   Vector3d at(double s, double y) const {
     const double angle = k_ * s;
-    if (std::abs(angle) < 1e-9) return {s, y, -0.5 * angle * s};
+    if (std::abs(angle) < 1e-9) return {s, y, -0.5 * angle * s};  // the series' next terms are below round-off
     const double h = std::sin(0.5 * angle);
     return {std::sin(angle) / k_, y, -2 * h * h / k_};
   }
@@ -201,6 +201,7 @@ class GeneralQuadric : public QuadricShape {
     const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(a_);
     const Vector3d values = eigen.eigenvalues();
     const double largest = values.cwiseAbs().maxCoeff();
+    // An eigenvalue below round-off of the largest is 0: that quadric has no centre.
     if (values.minCoeff() > 1e-14 * largest || values.maxCoeff() < -1e-14 * largest) {
       centre_ = -eigen.eigenvectors() * values.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose() * b_;
       const double k = -value(*centre_);
@@ -258,7 +259,7 @@ class Torus : public AnalyticShape {
     const double p = 2 * k - 4 * (d.x() * d.x() + d.y() * d.y());
     const double q = -8 * (c.x() * d.x() + c.y() * d.y());
     const double s = k * k - 4 * (c.x() * c.x() + c.y() * c.y());
-    const double reach = 1 + r + 1e-9;  // no point of the torus is farther from its centre
+    const double reach = 1 + r + 1e-9;  // no point is farther from the centre; major radius 1; the rest is round-off
     if (!(c.squaredNorm() <= reach * reach)) return found;
     const auto quartic = [&](double t) { return ((t * t + p) * t + q) * t + s; };
     const auto cubic = [&](double t) { return (4 * t * t + 2 * p) * t + q; };
@@ -310,7 +311,7 @@ class Torus : public AnalyticShape {
     if (fa == 0) return root = a, true;
     if (fb == 0) return root = b, true;
     if (!(fa * fb < 0)) return false;
-    for (int i = 0; i < 100 && b - a > 1e-15; ++i) {
+    for (int i = 0; i < 100 && b - a > 1e-15; ++i) {  // in units of the major radius: round-off
       double t = i % 3 == 2 ? 0.5 * (a + b) : (a * fb - b * fa) / (fb - fa);
       if (!(t > a && t < b)) t = 0.5 * (a + b);
       const double ft = f(t);

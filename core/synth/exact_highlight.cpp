@@ -48,12 +48,12 @@ std::optional<Pixel> polishedMaximum(const std::function<std::optional<double>(c
     }
     if (step.norm() > 20) step *= 20 / step.norm();
     double share = 1;
-    for (; share > 1e-3; share *= 0.5) {
+    for (; share > 1e-3; share *= 0.5) {  // ten halvings: a step that still falls then is no ascent
       const std::optional<double> next = field(at + share * step);
-      if (next && *next >= f[2][2] - 1e-12 * std::abs(f[2][2])) break;
+      if (next && *next >= f[2][2] - 1e-12 * std::abs(f[2][2])) break;  // round-off of the field
     }
     at += share * step;
-    if (share * step.norm() < 1e-9) return at;
+    if (share * step.norm() < 1e-9) return at;  // px: below the error of the differences
   }
   return at;
 }
@@ -147,6 +147,7 @@ Outcome<std::vector<Highlight>> exactHighlights(const Surface& surface, const Ca
     }
     h.peakValue = limit ? 0 : std::exp(value);
     for (const Pixel& p : h.contour.points)
+      // px: vertices on the border lie on it to the root finder's tolerance.
       h.touchesBorder = h.touchesBorder || p.minCoeff() < 1e-6 - options.marginPx ||
                         p.x() > camera.width - 1 + options.marginPx - 1e-6 || p.y() > camera.height - 1 + options.marginPx - 1e-6;
     if (const Outcome<Ellipse> ellipse = fitEllipse(h.contour.points)) h.ellipse = *ellipse;

@@ -34,7 +34,8 @@ std::string padded(std::size_t i) {
 Eigen::Isometry3d lookAt(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const JsonNode& node) {
   const Eigen::Vector3d forward = (target - eye).normalized();
   const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ());
-  if (!(right.norm() > 1e-9)) node.fail("looks straight up or down: world +z cannot be up in the image");
+  if (!(right.norm() > 1e-9))  // rad from the vertical
+    node.fail("looks straight up or down: world +z cannot be up in the image");
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear().row(0) = right.normalized();
   pose.linear().row(1) = forward.cross(right.normalized());
