@@ -18,7 +18,7 @@ TRAIN = [0, 13, 26, 39, 53, 66]                  # spread over the 80 poses
 HELD_OUT = [4, 11, 18, 30, 35, 44, 49, 60, 70, 76]
 FOCAL = 800.0
 DISTANCE = 2.1                                   # m, cameras to the object
-COLOURS = ["#6b7280", "#c2410c", "#1d4ed8", "#15803d", "#7e22ce", "#b45309"]
+COLOURS = {"primal": "#e69f00", "dual": "#56b4e9", "canonical": "#009e73", "limit-angle": "#d55e00", "reflectance": "#cc79a7"}  # core/evaluate/palette.h
 
 
 def fail(text):
@@ -290,7 +290,7 @@ def svg(title, unit, points, models, values):
         out.append(f'<text x="{px(x):.1f}" y="{h - bottom + 18}" text-anchor="middle">{label}</text>')
     out.append(f'<text x="{(left + w - right) / 2:.0f}" y="{h - 10}" text-anchor="middle">{unit}</text>')
     for i, m in enumerate(models):
-        colour = COLOURS[i % len(COLOURS)]
+        colour = COLOURS.get(m, "#999999")
         run = [(px(x), py(math.log10(max(v, 1e-4)))) if v is not None and math.isfinite(v) else None for x, v in zip(place, values[m])]
         for a, b in zip(run, run[1:]):
             if a and b:
