@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 namespace glint {
 namespace {
@@ -27,57 +28,108 @@ std::vector<Segment> segmentsOf(const Polyline& line, const std::vector<std::pai
   return out;
 }
 
+/// 720 of an ellipse: every comparison takes the same directions.
+std::vector<Segment> segmentsOf(const Ellipse& e) {
+  constexpr int kCount = 720;
+  static const auto directions = [] {
+    std::vector<Eigen::Vector2d> d(kCount);
+    for (int i = 0; i < kCount; ++i) {
+      const double t = 2 * std::numbers::pi * i / kCount;
+      d[i] = {std::cos(t), std::sin(t)};
+    }
+    return d;
+  }();
+  const Eigen::Rotation2Dd turn(e.angle);
+  const Eigen::Matrix2d rotation = turn.toRotationMatrix();
+  Polyline line;
+  line.points.reserve(kCount);
+  for (const Eigen::Vector2d& d : directions) line.points.push_back(e.centre + rotation * e.semiAxes.cwiseProduct(d));
+  return segmentsOf(line, {});
+}
+
 double lengthOf(const std::vector<Segment>& segments) {
   double sum = 0;
   for (const Segment& s : segments) sum += (s.second - s.first).norm();
   return sum;
 }
 
-/// Distances from many points to one chain of segments: the same minimum as over all of them, but boxes around runs of segments
-/// tell which ones cannot be nearest, and the next point is usually nearest to where the last one was.
+/// Distances from points along a path to one chain of segments: the same minimum as over all of them. Boxes around runs of
+/// segments tell which ones cannot be nearest, the next point is usually nearest to where the last one was, and a box that was
+/// far stays far until the path has gone that way.
 class NearestSegment {
  public:
-  explicit NearestSegment(const std::vector<Segment>& segments) : segments_(segments) {
+  explicit NearestSegment(const std::vector<Segment>& segments) {
+    runs_.reserve(segments.size() / kRun + 1);
     for (std::size_t i = 0; i < segments.size(); ++i) {
       if (i % kRun == 0) runs_.emplace_back();
       if (i % (kRun * kRuns) == 0) groups_.emplace_back();
-      for (Box* box : {&runs_.back(), &groups_.back()}) box->extend(segments[i].first), box->extend(segments[i].second);
+      const auto& [a, b] = segments[i];
+      for (Box* box : {&runs_.back().box, &groups_.back()}) box->extend(a), box->extend(b);
+      for (std::size_t k = i % kRun; k < kRun; ++k) runs_.back().set(k, a, b - a);  // a shorter last run repeats its last segment
     }
+    farUntil_.assign(groups_.size(), -1);
   }
 
   double operator()(const Pixel& q) {
+    if (at_) travelled_ += (q - *at_).norm();
+    at_ = q;
     double best = std::numeric_limits<double>::infinity();
     const std::size_t start = last_;
     look(start, q, best);
+    double reach = std::sqrt(best) + travelled_;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-      if (isFarther(groups_[g], q, best)) continue;
-      for (std::size_t r = g * kRuns; r < std::min(runs_.size(), (g + 1) * kRuns); ++r)
-        if (r != start && !isFarther(runs_[r], q, best)) look(r, q, best);
+      if (farUntil_[g] > reach || isFarther(groups_[g], q, best, farUntil_[g])) continue;
+      for (std::size_t r = g * kRuns; r < std::min(runs_.size(), (g + 1) * kRuns); ++r) {
+        if (r == start || runs_[r].farUntil > reach || isFarther(runs_[r].box, q, best, runs_[r].farUntil)) continue;
+        look(r, q, best);
+        reach = std::sqrt(best) + travelled_;
+      }
     }
     return std::sqrt(best);
   }
 
  private:
   using Box = Eigen::AlignedBox2d;
-  static constexpr std::size_t kRun = 4, kRuns = 16;
+  static constexpr std::size_t kRun = 8, kRuns = 8;
+  static constexpr double kMarginPx = 1e-6;  // of the path's length, far above its round-off
 
-  /// The margin keeps round-off from turning down the nearest one.
-  static bool isFarther(const Box& box, const Pixel& q, double best) { return box.squaredExteriorDistance(q) > best * (1 + 1e-9); }
-
-  void look(std::size_t run, const Pixel& q, double& best) {
-    const std::size_t end = std::min(segments_.size(), (run + 1) * kRun);
-    for (std::size_t i = run * kRun; i < end; ++i) {
-      const Segment& s = segments_[i];
-      const Pixel d = s.second - s.first;
-      const double t = std::clamp((q - s.first).dot(d) / d.squaredNorm(), 0.0, 1.0);
-      const double squared = (s.first + t * d - q).squaredNorm();
-      if (squared < best) best = squared, last_ = run;
+  using Eight = Eigen::Array<double, kRun, 1>;
+  struct Run {
+    Eight ax, ay, dx, dy, squared;
+    Box box;
+    double farUntil = -1;
+    void set(std::size_t k, const Pixel& a, const Pixel& d) {
+      ax[k] = a.x();
+      ay[k] = a.y();
+      dx[k] = d.x();
+      dy[k] = d.y();
+      squared[k] = d.squaredNorm();
     }
+  };
+
+  /// Remembers up to which length of path, and distance to look for beyond it, the box needs no look. The factor keeps round-off
+  /// from turning down the nearest segment.
+  bool isFarther(const Box& box, const Pixel& q, double best, double& farUntil) const {
+    const double squared = box.squaredExteriorDistance(q);
+    if (!(squared > best * (1 + 1e-9))) return false;
+    farUntil = std::sqrt(squared) + travelled_ - kMarginPx;
+    return true;
   }
 
-  const std::vector<Segment>& segments_;
-  std::vector<Box> runs_, groups_;
+  void look(std::size_t run, const Pixel& q, double& best) {
+    const Run& r = runs_[run];
+    const Eight t = (((q.x() - r.ax) * r.dx + (q.y() - r.ay) * r.dy) / r.squared).max(0.0).min(1.0);
+    const Eight x = r.ax + t * r.dx - q.x(), y = r.ay + t * r.dy - q.y();
+    const double squared = (x * x + y * y).minCoeff();
+    if (squared < best) best = squared, last_ = run;
+  }
+
+  std::vector<Run> runs_;
+  std::vector<Box> groups_;
+  std::vector<double> farUntil_;  ///< of the groups
   std::size_t last_ = 0;
+  std::optional<Pixel> at_;
+  double travelled_ = 0;
 };
 
 struct OneWay {
@@ -156,8 +208,10 @@ void intervals(const std::vector<Crossings>& shapes, int row, std::vector<std::p
   std::sort(out.begin(), out.end());
   std::size_t kept = 0;
   for (std::size_t k = 1; k < out.size(); ++k) {
-    if (out[k].first <= out[kept].second) out[kept].second = std::max(out[kept].second, out[k].second);
-    else out[++kept] = out[k];
+    if (out[k].first <= out[kept].second)
+      out[kept].second = std::max(out[kept].second, out[k].second);
+    else
+      out[++kept] = out[k];
   }
   if (!out.empty()) out.resize(kept + 1);
 }
@@ -172,8 +226,10 @@ double commonLength(const std::vector<std::pair<double, double>>& a, const std::
   double sum = 0;
   for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
     sum += std::max(0.0, std::min(a[i].second, b[j].second) - std::max(a[i].first, b[j].first));
-    if (a[i].second < b[j].second) ++i;
-    else ++j;
+    if (a[i].second < b[j].second)
+      ++i;
+    else
+      ++j;
   }
   return sum;
 }
@@ -203,7 +259,8 @@ double regionIou(const std::vector<Polyline>& a, const std::vector<Polyline>& b,
   return all > 0 ? common / all : 0;
 }
 
-std::vector<std::pair<int, int>> matchByOverlap(const std::vector<Polyline>& observed, const std::vector<Polyline>& predicted) {
+std::vector<std::pair<int, int>> matchByOverlap(const std::vector<Polyline>& observed, const std::vector<Polyline>& predicted,
+                                                std::vector<double>* ious) {
   struct Candidate {
     double iou;
     int o, p;
@@ -214,19 +271,25 @@ std::vector<std::pair<int, int>> matchByOverlap(const std::vector<Polyline>& obs
       if (const double iou = regionIou({observed[o]}, {predicted[p]}); iou > 0) candidates.push_back({iou, o, p});
   std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& x, const Candidate& y) { return x.iou > y.iou; });
   std::vector<char> usedO(observed.size(), 0), usedP(predicted.size(), 0);
-  std::vector<std::pair<int, int>> pairs;
+  std::vector<Candidate> kept;
   for (const Candidate& c : candidates) {
     if (usedO[c.o] || usedP[c.p]) continue;
     usedO[c.o] = usedP[c.p] = 1;
-    pairs.emplace_back(c.o, c.p);
+    kept.push_back(c);
   }
-  std::sort(pairs.begin(), pairs.end());
+  std::sort(kept.begin(), kept.end(), [](const Candidate& x, const Candidate& y) { return x.o < y.o; });
+  std::vector<std::pair<int, int>> pairs;
+  if (ious) ious->clear();
+  for (const Candidate& c : kept) {
+    pairs.emplace_back(c.o, c.p);
+    if (ious) ious->push_back(c.iou);
+  }
   return pairs;
 }
 
 ContourMetrics compareContours(const Polyline& observed, const Polyline& predicted, const std::vector<std::pair<int, int>>& gaps,
                                const std::optional<Ellipse>& predictedEllipse, const Pixel& observedPeak,
-                               const Pixel& predictedPeak) {
+                               const Pixel& predictedPeak, std::optional<double> iou) {
   ContourMetrics m;
   const double nan = std::nan("");
   m.contourErrorPx = m.contourErrorPct = m.ellipseErrorPct = m.hausdorffPx = m.centreOffsetPx = nan;
@@ -239,14 +302,14 @@ ContourMetrics compareContours(const Polyline& observed, const Polyline& predict
   m.contourErrorPx = 0.5 * (forth.mean + back.mean);
   m.contourErrorPct = diameter > 0 ? 100 * m.contourErrorPx / diameter : nan;
   m.hausdorffPx = std::max(forth.max, back.max);
-  m.iou = regionIou({observed}, {predicted});
+  m.iou = iou ? *iou : regionIou({observed}, {predicted});
   m.centreOffsetPx = (centroid(observed) - centroid(predicted)).norm();
   const Outcome<Ellipse> eo = fitEllipse(observed.points);
   std::optional<Ellipse> ep = predictedEllipse;
   if (!ep)
     if (const Outcome<Ellipse> fitted = fitEllipse(predicted.points)) ep = *fitted;
   if (eo && ep) {
-    const std::vector<Segment> so = segmentsOf({eo->sample(720), true}, {}), sp = segmentsOf({ep->sample(720), true}, {});
+    const std::vector<Segment> so = segmentsOf(*eo), sp = segmentsOf(*ep);
     if (!so.empty() && !sp.empty())
       m.ellipseErrorPct = 50 * (oneWay(so, sp).mean + oneWay(sp, so).mean) / std::sqrt(4 * eo->area() / std::numbers::pi);
     const double ro = eo->semiAxes.y() / eo->semiAxes.x(), rp = ep->semiAxes.y() / ep->semiAxes.x();

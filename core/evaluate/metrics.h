@@ -24,15 +24,18 @@ struct ContourMetrics {
 };
 
 /// @param gaps  segments of `predicted` (from vertex, to vertex) that are not part of it: not sampled, no distance to them.
+/// @param iou  regionIou of the two where it is known already.
 /// @return values are finite, or NaN where the input does not define them (documented per field).
 ContourMetrics compareContours(const Polyline& observed, const Polyline& predicted,
                                const std::vector<std::pair<int, int>>& gaps, const std::optional<Ellipse>& predictedEllipse,
-                               const Pixel& observedPeak, const Pixel& predictedPeak);
+                               const Pixel& observedPeak, const Pixel& predictedPeak, std::optional<double> iou = {});
 
 /// IoU of two filled regions, each the union of closed polylines; exact up to a raster of `cellPx`.
 double regionIou(const std::vector<Polyline>& a, const std::vector<Polyline>& b, double cellPx = 0.1);
 
 /// One-to-one pairs (observed, predicted) by greatest overlap; nearest-centroid pairs are not made.
-std::vector<std::pair<int, int>> matchByOverlap(const std::vector<Polyline>& observed, const std::vector<Polyline>& predicted);
+/// @param ious  if given: regionIou of every pair.
+std::vector<std::pair<int, int>> matchByOverlap(const std::vector<Polyline>& observed, const std::vector<Polyline>& predicted,
+                                                std::vector<double>* ious = nullptr);
 
 }  // namespace glint

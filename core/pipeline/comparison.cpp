@@ -36,7 +36,8 @@ bool leavesImage(const Polyline& line, const Camera& camera) {
 
 }  // namespace
 
-FrameComparison compareFrame(const FrameEvidence& evidence, const std::string& light, const Camera& camera, Prediction prediction) {
+FrameComparison compareFrame(const FrameEvidence& evidence, const std::string& light, const Camera& camera,
+                             Prediction prediction) {
   FrameComparison c;
   c.frame = evidence.frame;
   c.light = light;
@@ -64,21 +65,23 @@ FrameComparison compareFrame(const FrameEvidence& evidence, const std::string& l
     clipped[i] = cut && leavesImage(h.contour, camera);
     predicted.push_back(clipped[i] ? clippedToImage(h.contour, camera) : h.contour);
   }
-  const std::vector<std::pair<int, int>> pairs = matchByOverlap(observed, predicted);
+  std::vector<double> ious;
+  const std::vector<std::pair<int, int>> pairs = matchByOverlap(observed, predicted, &ious);
   std::vector<char> used(predicted.size(), 0);
   for (int o = 0; o < static_cast<int>(observed.size()); ++o) {
     FrameComparison::Row row;
     row.observed = observedIndex[o];
     const auto pair = std::find_if(pairs.begin(), pairs.end(), [&](const auto& p) { return p.first == o; });
     if (pair == pairs.end()) {
-      row.failure = c.prediction.failure ? *c.prediction.failure : Failure{Reason::NotReached, "no prediction overlaps this highlight"};
+      row.failure =
+          c.prediction.failure ? *c.prediction.failure : Failure{Reason::NotReached, "no prediction overlaps this highlight"};
     } else {
       row.predicted = pair->second;
       used[pair->second] = 1;
       const PredictedHighlight& h = c.prediction.highlights[row.predicted];
       row.metrics = compareContours(observed[o], predicted[row.predicted],
                                     clipped[row.predicted] ? std::vector<std::pair<int, int>>{} : h.gaps, h.ellipse,
-                                    evidence.scored()[row.observed].peak, h.brightest.pixel);
+                                    evidence.scored()[row.observed].peak, h.brightest.pixel, ious[pair - pairs.begin()]);
     }
     c.rows.push_back(std::move(row));
   }
@@ -88,7 +91,7 @@ FrameComparison compareFrame(const FrameEvidence& evidence, const std::string& l
     row.predicted = p;
     c.rows.push_back(row);
   }
-  c.iou = regionIou(observed, predicted);
+  c.iou = observed.size() == 1 && predicted.size() == 1 && ious.size() == 1 ? ious[0] : regionIou(observed, predicted);
   return c;
 }
 
