@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numeric>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 
 #include "core/highlight/background.h"
 #include "core/highlight/highlight.h"
@@ -15,6 +16,11 @@ namespace {
 constexpr double kCandidateShare = 0.8;  // candidates are searched somewhat below the level: their own background moves it
 constexpr int kClippedPixels = 3;        // fewer saturated pixels are single hot ones
 constexpr int kRoiMargin = 3;            // px around a candidate's box
+constexpr double kFirstRung = 0.9;       // of the strongest value: separate peaks are searched from here down,
+constexpr double kNextRung = 0.75;       // by steps small enough that a peak shows before it merges with a stronger one,
+constexpr double kLastRung = 0.02;       // to here; weaker ones drown in the tails of the strongest
+constexpr std::size_t kMostPeaks = 48;   // that are followed up: noise has many
+constexpr double kSamePeakPx = 1.5;      // of the same peak, found again
 constexpr double kBadReachPx = 1.5;      // an unusable pixel this near to a contour decides on its course
 
 /// One channel, with what may and may not be used of it.
@@ -190,12 +196,16 @@ class Detector {
     level_ = robustLevel(p_);
     noise_ = noiseOf(p_);
     base_ = options_.removeBackground ? level_.median : 0.0;
-    findCandidates();
-    if (candidates_.empty()) return Failure{Reason::NoHighlight, "nothing rises above the background"};
-    reference_ = 0;
-    for (const Candidate& c : candidates_) reference_ = std::max(reference_, c.top);
-    if (!(reference_ > 0)) return Failure{Reason::NoHighlight, "nothing rises above the local background"};
-    for (const Candidate& c : candidates_) trace(c);
+    if (options_.separatePeaks) {
+      if (const std::optional<Failure> failure = findSeparately()) return *failure;
+    } else {
+      findCandidates();
+      if (candidates_.empty()) return Failure{Reason::NoHighlight, "nothing rises above the background"};
+      reference_ = 0;
+      for (const Candidate& c : candidates_) reference_ = std::max(reference_, c.top);
+      if (!(reference_ > 0)) return Failure{Reason::NoHighlight, "nothing rises above the local background"};
+      for (const Candidate& c : candidates_) trace(c);
+    }
     removeRepeats();
     std::erase_if(found_, [&](const Highlight& h) { return h.peakValue < options_.minRelativePeak * reference_ && !h.clipped; });
     if (found_.empty()) {
@@ -208,8 +218,8 @@ class Detector {
   }
 
  private:
-  /// Regions above a little less than the level of the brightest 3x3 median (single hot pixels do not set the level).
-  void findCandidates() {
+  /// Values of the brightest 3x3 median (single hot pixels do not set the level); nothing when none is above the base.
+  std::optional<double> brightestMedian() const {
     const int w = p_.value.width, h = p_.value.height;
     const cv::Mat values(h, w, CV_32F, const_cast<float*>(p_.value.data.data()));
     cv::Mat median;
@@ -217,28 +227,114 @@ class Detector {
     const cv::Mat usable(h, w, CV_8U, const_cast<char*>(p_.usable.data()));
     double top = 0;
     cv::minMaxLoc(median, nullptr, &top, nullptr, nullptr, usable);
-    if (!(top - base_ > 0)) return;
-    const double threshold = base_ + kCandidateShare * options_.level * (top - base_);
+    return top - base_ > 0 ? std::optional<double>(top) : std::nullopt;
+  }
+
+  /// Connected regions at or above a value, as boxes by label; those too small to hold a highlight are empty.
+  std::vector<cv::Rect> regionsAbove(double threshold) {
+    const int w = p_.value.width, h = p_.value.height;
+    const cv::Mat values(h, w, CV_32F, const_cast<float*>(p_.value.data.data()));
     cv::Mat above = values >= threshold, stats, centroids;
     const int count = cv::connectedComponentsWithStats(above, labels_, stats, centroids, 4, CV_32S);
+    std::vector<cv::Rect> boxes(static_cast<std::size_t>(count));
     for (int label = 1; label < count; ++label) {
       if (stats.at<int>(label, cv::CC_STAT_AREA) < 0.5 * options_.minAreaPx2) continue;
-      Candidate c;
-      c.label = label;
-      const cv::Rect tight(stats.at<int>(label, cv::CC_STAT_LEFT), stats.at<int>(label, cv::CC_STAT_TOP),
-                           stats.at<int>(label, cv::CC_STAT_WIDTH), stats.at<int>(label, cv::CC_STAT_HEIGHT));
-      c.box = grown(tight, kRoiMargin, w, h);
-      c.background.coefficients[0] = base_;
-      if (options_.removeBackground)
-        c.background =
-            fitBackground(p_.value, p_.usable, footprintOf(labels_, label, tight, kCandidateShare * options_.level), base_);
-      c.corrected = correctedRoi(p_, c.background, c.box);
-      cv::Mat region = labels_(c.box) == label;
-      const cv::Point at = strongestPixel(c.corrected, region);
-      const Outcome<PeakFit> peak = fitPeak(c.corrected, at.x, at.y, options_.peakWindowLevel);
-      c.top = peak && !saturatedNear(c.box, region) ? peak->value : c.corrected.at(at.x, at.y);
-      candidates_.push_back(std::move(c));
+      boxes[static_cast<std::size_t>(label)] = cv::Rect(stats.at<int>(label, cv::CC_STAT_LEFT), stats.at<int>(label, cv::CC_STAT_TOP),
+                                                        stats.at<int>(label, cv::CC_STAT_WIDTH), stats.at<int>(label, cv::CC_STAT_HEIGHT));
     }
+    return boxes;
+  }
+
+  struct Top {
+    Pixel at;
+    double value;
+  };
+  /// A region of labels_ with its background removed, and its peak.
+  std::pair<Candidate, Top> candidateOf(int label, const cv::Rect& tight) const {
+    Candidate c;
+    c.label = label;
+    c.box = grown(tight, kRoiMargin, p_.value.width, p_.value.height);
+    c.background.coefficients[0] = base_;
+    if (options_.removeBackground)
+      c.background = fitBackground(p_.value, p_.usable, footprintOf(labels_, label, tight, kCandidateShare * options_.level), base_);
+    c.corrected = correctedRoi(p_, c.background, c.box);
+    cv::Mat region = labels_(c.box) == label;
+    const cv::Point at = strongestPixel(c.corrected, region);
+    const Outcome<PeakFit> peak = fitPeak(c.corrected, at.x, at.y, options_.peakWindowLevel);
+    c.top = peak && !saturatedNear(c.box, region) ? peak->value : c.corrected.at(at.x, at.y);
+    const Pixel where = (peak ? peak->at : Pixel(at.x, at.y)) + Pixel(c.box.x, c.box.y);
+    const double top = c.top;
+    return {std::move(c), Top{where, top}};
+  }
+
+  /// Regions above a little less than the level of the brightest value.
+  void findCandidates() {
+    const std::optional<double> top = brightestMedian();
+    if (!top) return;
+    const std::vector<cv::Rect> boxes = regionsAbove(base_ + kCandidateShare * options_.level * (*top - base_));
+    for (std::size_t label = 1; label < boxes.size(); ++label)
+      if (!boxes[label].empty()) candidates_.push_back(candidateOf(static_cast<int>(label), boxes[label]).first);
+  }
+
+  /// Every peak with a contour of its own, strongest first: what stands alone at some value is a region of its own at its own level.
+  std::optional<Failure> findSeparately() {
+    const std::optional<double> top = brightestMedian();
+    if (!top) return Failure{Reason::NoHighlight, "nothing rises above the background"};
+    struct Seed {
+      cv::Point at;
+      double value;
+    };
+    std::vector<Seed> seeds;
+    const cv::Mat values(p_.value.height, p_.value.width, CV_32F, const_cast<float*>(p_.value.data.data()));
+    for (double share = kFirstRung; share >= kLastRung; share *= kNextRung) {
+      const double threshold = base_ + share * (*top - base_);
+      if (threshold - base_ < options_.minContrast * noise_) break;
+      const std::vector<cv::Rect> boxes = regionsAbove(threshold);
+      std::vector<char> known(boxes.size(), 0);
+      for (const Seed& s : seeds) known[static_cast<std::size_t>(labels_.at<int>(s.at))] = 1;
+      for (std::size_t label = 1; label < boxes.size(); ++label) {
+        if (known[label] || boxes[label].empty()) continue;
+        const cv::Rect& box = boxes[label];
+        Image roi(box.width, box.height, 1);
+        for (int y = 0; y < box.height; ++y)
+          for (int x = 0; x < box.width; ++x) roi.at(x, y) = values.at<float>(y + box.y, x + box.x);
+        const cv::Mat region = labels_(box) == static_cast<int>(label);
+        const cv::Point at = strongestPixel(roi, region) + box.tl();
+        seeds.push_back({at, values.at<float>(at)});
+      }
+    }
+    std::stable_sort(seeds.begin(), seeds.end(), [](const Seed& a, const Seed& b) { return a.value > b.value; });
+    if (seeds.size() > kMostPeaks) seeds.resize(kMostPeaks);
+    for (const Seed& s : seeds) {
+      const std::vector<cv::Rect> boxes = regionsAbove(base_ + kCandidateShare * options_.level * (s.value - base_));
+      const int label = labels_.at<int>(s.at);
+      if (label == 0 || boxes[static_cast<std::size_t>(label)].empty()) continue;
+      Pixel peak(s.at.x, s.at.y);
+      // A region that reaches a stronger peak has that one's background and top, not its own.
+      const bool alone = std::none_of(seeds.begin(), seeds.end(), [&](const Seed& o) { return o.value > s.value && labels_.at<int>(o.at) == label; });
+      auto [candidate, found] = candidateOf(label, boxes[static_cast<std::size_t>(label)]);
+      if (!alone) found.value = s.value - candidate.background.at(s.at.x, s.at.y);
+      else peak = found.at;
+      if (!(found.value > 0)) continue;
+      reference_ = found.value;
+      for (const PeakReference& r : options_.references)
+        if ((r.peak - peak).norm() <= kSamePeakPx) reference_ = r.value;
+      const std::size_t before = found_.size();
+      trace(candidate);
+      // Of the contours at this level only the one around the peak is its own, and only where no stronger peak owns it.
+      for (std::size_t i = found_.size(); i-- > before;) {
+        const bool own = contains(found_[i].contour, peak);
+        const bool taken = own && std::any_of(seeds.begin(), seeds.end(), [&](const Seed& o) {
+          return o.value > s.value && contains(found_[i].contour, Pixel(o.at.x, o.at.y));
+        });
+        if (own && !taken) continue;
+        found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(i));
+        strength_.erase(strength_.begin() + static_cast<std::ptrdiff_t>(i));
+      }
+    }
+    reference_ = 0;
+    for (const Highlight& h : found_) reference_ = std::max(reference_, h.peakValue);
+    return std::nullopt;
   }
 
   bool saturatedNear(const cv::Rect& box, const cv::Mat& region) const {

@@ -26,6 +26,12 @@ struct Highlight {
   bool fromScene = false;      ///< given in the scene file, not detected
 };
 
+/// Radiance (background removed) whose fraction the contour of the highlight with this peak lies at.
+struct PeakReference {
+  Pixel peak;
+  double value;
+};
+
 struct DetectOptions {
   double level = 0.5;            ///< contour level, fraction of the strongest peak above the background
   double minContrast = 3.0;      ///< peak over the background's spread; below this it is noise or a diffuse bump
@@ -34,6 +40,10 @@ struct DetectOptions {
   double peakWindowLevel = 0.9;  ///< pixels above this fraction of the peak enter the log-quadratic fit
   double clipValue = 0;          ///< values at or above are saturated; 0 = none
   bool removeBackground = true;  ///< subtract the local diffuse background (median of the surrounding glossy pixels)
+  /// Several lights of unequal strength: weaker peaks are sought too, and every contour lies at `level` of its own peak, or of the reference that
+  /// names it (the strongest peak of its light, once that is known). A peak that does not stand out of a stronger one's contour at that level is none.
+  bool separatePeaks = false;
+  std::vector<PeakReference> references;
 };
 
 /// Highlights of a linear image (method.md section 1): level relative to the strongest fitted peak, sub-pixel contours by

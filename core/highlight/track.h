@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,27 +15,34 @@ namespace glint {
 /// One frame as the assignment sees it.
 struct TrackedFrame {
   Camera camera;
-  const Surface* surface = nullptr;   ///< may be null: its highlights then keep no light unless only one is on
   std::vector<std::string> lightsOn;  ///< empty = not stated
-  std::vector<Highlight> highlights;
+  std::vector<Highlight> highlights;  ///< a light that one of them already has is kept, and names its group
 };
 
 struct TrackOptions {
-  double inlierPx =
-      3;  ///< a highlight belongs to a light when its peak is this close to the mirror point that the light predicts
-  int maxPairs = 3000;  ///< pairs of highlights tried as seeds
-  unsigned seed = 1;    ///< of the choice of pairs when there are more
+  double inlierPx = 3;   ///< a light is confirmed by peaks this close to its mirror point; a fifth of the highlight's size is added (in squares)
+  int maxPairs = 3000;   ///< pairs of highlights tried as seeds
+  unsigned seed = 1;     ///< of the choice of pairs when there are more
 };
 
 /// Sets the light of every highlight, in place.
 ///
-/// A frame where one light is on gives all its highlights that light; frames that state none, in a scene that states none
-/// anywhere, "light". Otherwise highlights are grouped over frames: two reflected rays from different frames intersect
-/// in a candidate light (triangulation), the candidate that most frames confirm (the reflected rays that pass it, measured as the
-/// angle between the ray and the direction to it, in pixels) becomes a group and its highlights are taken out; at most one per
-/// surface highlight of a frame joins. A group is named by the frames' `lightsOn`: the id that is on in most of its frames and
-/// that no other group has. Highlights of no group keep "".
+/// A frame where one light is on gives all its highlights that light. Otherwise highlights are grouped over frames: two reflected rays
+/// from different frames meet in a candidate light, every highlight votes with its distance in pixels from the candidate's mirror point
+/// (one Newton step on the surface around its peak), and the candidate with most votes (a truncated sum of squares) becomes a group.
+/// When all lights are found, every highlight goes to the light whose mirror point it contains, the nearest where several do, and
+/// the lights are triangulated again, until nothing changes. A light may own several highlights of a frame (concave surfaces). A highlight that contains the
+/// mirror points of two lights, the other of which has none of its own in that frame, is of both and belongs to neither: it keeps "".
+///
+/// Groups are as many as the frames' `lightsOn` name. They get the names that agree best with the frames where each is on, and with
+/// highlights that are named already; lights that are on in the same frames cannot be told apart: which gets which name is then
+/// arbitrary. Where no frame states anything, all highlights are of one "light" unless they prove that there are more: another light counts
+/// (named "light-2" ...) when at least 3 frames and half of those with unexplained highlights confirm it, most of which show another light too.
+/// Highlights of no group keep "".
+/// @param surfaceOf  the surface that a frame sees, asked once per frame that has highlights and only where something has to be grouped;
+///                   null: the frame's highlights keep no light unless only one is on.
 /// @return number of groups found (0 when nothing had to be grouped).
-int assignLights(std::vector<TrackedFrame>& frames, const TrackOptions& options = {});
+int assignLights(std::vector<TrackedFrame>& frames, const std::function<std::shared_ptr<const Surface>(std::size_t)>& surfaceOf,
+                 const TrackOptions& options = {});
 
 }  // namespace glint

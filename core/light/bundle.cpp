@@ -17,6 +17,7 @@ namespace glint {
 namespace {
 constexpr double kStepPx = 0.5;  ///< of the finite differences that turn an angle into pixels
 constexpr int kMaxReweightings = 8;
+constexpr double kLeastNoiseShare = 0.1;  ///< of the residuals' variance: below, moving weights would change nothing that can be seen
 
 /// A surface point seen by a camera, in normalised world coordinates.
 struct Seen {
@@ -26,6 +27,7 @@ struct Seen {
 struct Evidence {
   Seen at;
   std::optional<Seen> left, right, up, down;  ///< of the pixels kStepPx away; empty where the surface ended
+  std::optional<Seen> leftUp, rightDown;      ///< along the diagonal
   int view = 0;
   double pixelsPerRadian = 1;  ///< 1 / |d alpha / d pixel| for the light of the last reweighting
   double biasPx = 0;           ///< by how much noise displaces the residual on average, see unbias
@@ -46,7 +48,9 @@ double angle(const Seen& s, const Eigen::Vector4d& light) {
 /// (alpha - alpha_lim) in pixels, with d alpha / d L in closed form. The light is (l, w), or l alone where it is held at infinity.
 class AngleCost : public ceres::CostFunction {
  public:
-  AngleCost(const Evidence& evidence, bool atInfinity) : evidence_(evidence), size_(atInfinity ? 3 : 4) {
+  /// @param noiseShare  s, see noiseShare(): the weight is k (|d alpha / d pixel| k)^-s of the light, k the held one
+  AngleCost(const Evidence& evidence, bool atInfinity, double noiseShare = 0)
+      : evidence_(evidence), size_(atInfinity ? 3 : 4), share_(evidence.left && evidence.right && evidence.up && evidence.down ? noiseShare : 0) {
     set_num_residuals(1);
     mutable_parameter_block_sizes()->push_back(size_);
     mutable_parameter_block_sizes()->push_back(1);
@@ -61,11 +65,23 @@ class AngleCost : public ceres::CostFunction {
     const double length = half.norm();
     if (!(length > 0)) return false;
     const Eigen::Vector3d h = half / length;
-    const double sine = s.normal.cross(h).norm(), cosine = s.normal.dot(h), k = evidence_.pixelsPerRadian;
-    residuals[0] = k * (std::atan2(sine, cosine) - parameters[1][0]) - evidence_.biasPx;
+    const double sine = s.normal.cross(h).norm(), cosine = s.normal.dot(h), off = std::atan2(sine, cosine) - parameters[1][0];
+    double k = evidence_.pixelsPerRadian;
+    Eigen::Vector2d slope(0, 0);
+    if (share_ > 0) {
+      slope << angle(*evidence_.right, light) - angle(*evidence_.left, light), angle(*evidence_.down, light) - angle(*evidence_.up, light);
+      slope /= 2 * kStepPx;
+      if (!(slope.norm() > 0)) return false;
+      k *= std::pow(slope.norm() * k, -share_);
+    }
+    residuals[0] = k * off - evidence_.biasPx;
     if (!jacobians) return true;
     if (jacobians[0]) {
-      const Eigen::Vector4d byLight = k * incidentAngleByLight(s.position, s.normal, s.toCamera, light);
+      const auto at = [&](const Seen& seen) { return incidentAngleByLight(seen.position, seen.normal, seen.toCamera, light); };
+      Eigen::Vector4d byLight = k * at(s);
+      if (share_ > 0)
+        byLight -= off * share_ * k / slope.squaredNorm() / (2 * kStepPx) *
+                   (slope.x() * (at(*evidence_.right) - at(*evidence_.left)) + slope.y() * (at(*evidence_.down) - at(*evidence_.up)));
       for (int i = 0; i < size_; ++i) jacobians[0][i] = byLight(i);
     }
     if (jacobians[1]) jacobians[1][0] = -k;
@@ -75,11 +91,13 @@ class AngleCost : public ceres::CostFunction {
  private:
   const Evidence& evidence_;
   int size_;
+  double share_;
 };
 
 struct Attempt {
   Eigen::Vector4d light = Eigen::Vector4d::Zero();
   double limit = 0, cost = std::numeric_limits<double>::infinity();
+  double noiseShare = 0;  ///< with which the weights moved
   int iterations = 0;
   bool converged = false, behind = false;
   bool directed = false;  ///< the limit angle has an extent
@@ -114,19 +132,47 @@ void reweight(std::vector<Evidence>& points, const Eigen::Vector4d& light) {
   for (std::size_t i = 0; i < points.size(); ++i) points[i].pixelsPerRadian = 1 / std::max(slopes[i], floor);
 }
 
+/// Which share of the residuals' variance is noise of the single points: half the squared difference of neighbours on a contour, since what a
+/// model gets wrong varies slowly along it. Noise adds s^2 |d alpha / d pixel|^2 k^2 to every expected square, so with held weights k lights
+/// win under which the angle changes slowly over the image; weights that move with the light make that term a constant. What is not noise
+/// must not move them (it would gain by lights under which the angle changes fast), hence the share.
+double noiseShare(const std::vector<Evidence>& points, const Attempt& a) {
+  std::vector<double> sizes, steps;
+  double last = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double r = residual(points[i], a);
+    sizes.push_back(std::abs(r));
+    if (i > 0 && points[i].view == points[i - 1].view) steps.push_back(std::abs(r - last));
+    last = r;
+  }
+  constexpr double kVisiblePx = 0.01;  // the effect goes with the square of the noise
+  const double all = median(sizes);
+  if (steps.size() < 5 || !(all > kVisiblePx)) return 0;
+  return std::min(1.0, 0.5 * std::pow(median(steps) / all, 2));
+}
+
 /// Noise moves a measured point along a contour that bends away from it: isotropic noise of variance s^2 displaces the residual by
 /// s^2 / 2 times the Laplacian of alpha on average, outwards. s is what the residuals show (their median, so that a few wild
 /// points do not count), and the correction is kept below s / 2: it fades where the contour is as small as the noise.
-void unbias(std::vector<Evidence>& points, const Attempt& a) {
+/// The slope, taken at the noisy point, errs together with the residual: where alpha bends along its gradient g (alpha_gg) this displaces the
+/// residual by -s^2 alpha_gg, and its product with its own derivative by as much again. `share` is that of noise in s^2, see noiseShare.
+void unbias(std::vector<Evidence>& points, const Attempt& a, double share) {
   std::vector<double> sizes;
   for (const Evidence& e : points) sizes.push_back(std::abs(residual(e, a)));
   const double sigma = 1.4826 * median(sizes);
   for (Evidence& e : points) {
     e.biasPx = 0;
     if (!e.left || !e.right || !e.up || !e.down) continue;
-    const double laplacian = (angle(*e.left, a.light) + angle(*e.right, a.light) + angle(*e.up, a.light) + angle(*e.down, a.light) -
-                              4 * angle(e.at, a.light)) / (kStepPx * kStepPx);
-    e.biasPx = 0.5 * sigma * std::clamp(sigma * laplacian * e.pixelsPerRadian, -1.0, 1.0);
+    const double here = angle(e.at, a.light), left = angle(*e.left, a.light), right = angle(*e.right, a.light), up = angle(*e.up, a.light),
+                 down = angle(*e.down, a.light), step2 = kStepPx * kStepPx;
+    const double xx = (left + right - 2 * here) / step2, yy = (up + down - 2 * here) / step2;
+    double bend = xx + yy;
+    if (share > 0 && e.leftUp && e.rightDown) {
+      const double xy = (angle(*e.leftUp, a.light) + angle(*e.rightDown, a.light) - 2 * here) / (2 * step2) - 0.5 * (xx + yy);
+      const Eigen::Vector2d g = Eigen::Vector2d(right - left, down - up).normalized();
+      if (g.allFinite()) bend -= 4 * share * (g.x() * g.x() * xx + g.y() * g.y() * yy + 2 * g.x() * g.y() * xy);
+    }
+    e.biasPx = 0.5 * sigma * std::clamp(sigma * bend * e.pixelsPerRadian, -1.0, 1.0);
   }
 }
 
@@ -139,27 +185,23 @@ double robustCost(const std::vector<Evidence>& points, const Attempt& a, double 
   return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
 }
 
-Attempt solve(std::vector<Evidence>& points, Eigen::Vector4d start, bool atInfinity, const BundleOptions& options) {
-  Attempt a;
-  for (Evidence& e : points) e.biasPx = 0;
-  if (atInfinity) start.w() = 0;
-  a.light = start.normalized();
-  std::vector<double> angles;
-  for (const Evidence& e : points) angles.push_back(angle(e.at, a.light));
-  a.limit = median(angles);
-  if (!std::isfinite(a.limit)) return a;
-  for (int round = 0; round < kMaxReweightings && a.iterations < options.maxIterations; ++round) {
-    // The weights are held while the light moves. A residual whose own weight moves with the light gains by lights under which
-    // the angle changes faster over the image; held weights leave no such reward, and the fixed point is reached in a few rounds.
+/// Solves with weights that are renewed until nothing moves. False when the solution is not usable.
+bool reweighted(std::vector<Evidence>& points, Attempt& a, bool atInfinity, double share, const BundleOptions& options) {
+  const int already = a.iterations;
+  a.noiseShare = share;
+  for (int round = 0; round < kMaxReweightings && a.iterations < already + options.maxIterations; ++round) {
+    // The weights are held while the light moves (but for the share that is noise). A residual whose own weight moves with the light gains by
+    // lights under which the angle changes faster over the image; held weights leave no such reward, and the fixed point is reached in
+    // a few rounds.
     reweight(points, a.light);
-    if (round > 0) unbias(points, a);
+    if (round > 0 || share > 0) unbias(points, a, share);
     ceres::Problem::Options ownership;
     ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     ownership.disable_all_safety_checks = true;
     ceres::HuberLoss loss(options.robustPx);
     std::deque<AngleCost> costs;  // cost functions cannot be moved
-    for (const Evidence& e : points) costs.emplace_back(e, atInfinity);
+    for (const Evidence& e : points) costs.emplace_back(e, atInfinity, share);
     const Eigen::Vector4d before = a.light;
     const double limitBefore = a.limit;
     ceres::Solver::Summary summary;
@@ -174,17 +216,34 @@ Attempt solve(std::vector<Evidence>& points, Eigen::Vector4d start, bool atInfin
       solver.linear_solver_type = ceres::DENSE_QR;
       solver.logging_type = ceres::SILENT;
       solver.num_threads = 1;
-      solver.max_num_iterations = std::max(1, options.maxIterations - a.iterations);
+      solver.max_num_iterations = std::max(1, already + options.maxIterations - a.iterations);
       solver.function_tolerance = 1e-12;
       solver.parameter_tolerance = 1e-12;
       solver.gradient_tolerance = 1e-14;
       ceres::Solve(solver, &problem, &summary);
     }
     a.iterations += std::max<int>(1, int(summary.iterations.size()) - 1);
-    if (!summary.IsSolutionUsable() || !a.light.allFinite() || !std::isfinite(a.limit)) return a;
+    if (!summary.IsSolutionUsable() || !a.light.allFinite() || !std::isfinite(a.limit)) return false;
     a.converged = summary.termination_type == ceres::CONVERGENCE || summary.final_cost <= 1e-20 * points.size();
     const double moved = std::max((a.light - before).norm(), std::abs(a.limit - limitBefore));
     if (a.converged && moved < 1e-9) break;
+  }
+  return true;
+}
+
+Attempt solve(std::vector<Evidence>& points, Eigen::Vector4d start, bool atInfinity, const BundleOptions& options) {
+  Attempt a;
+  for (Evidence& e : points) e.biasPx = 0;
+  if (atInfinity) start.w() = 0;
+  a.light = start.normalized();
+  std::vector<double> angles;
+  for (const Evidence& e : points) angles.push_back(angle(e.at, a.light));
+  a.limit = median(angles);
+  if (!std::isfinite(a.limit)) return a;
+  if (!reweighted(points, a, atInfinity, 0, options)) return a;
+  if (const double share = noiseShare(points, a); a.converged && share >= kLeastNoiseShare) {
+    Attempt moved = a;
+    if (reweighted(points, moved, atInfinity, share, options) && moved.converged) a = moved;
   }
   reweight(points, a.light);
   if (a.light.w() < 0) a.light = -a.light;
@@ -241,7 +300,7 @@ Attempt directed(std::vector<Evidence>& points, const Attempt& start, const Bund
   const double prior = extentPrior(start, points);
   for (int round = 0; round < kMaxReweightings; ++round) {
     reweight(points, a.light);
-    unbias(points, a);
+    unbias(points, a, 0);
     const Attempt before = a;
     ceres::Problem problem;
     for (const Evidence& e : points)
@@ -265,7 +324,7 @@ Attempt directed(std::vector<Evidence>& points, const Attempt& start, const Bund
   }
   if (a.light.w() < 0) a.light = -a.light;
   reweight(points, a.light);
-  unbias(points, a);
+  unbias(points, a, 0);
   a.cost = robustCost(points, a, options.robustPx);
   return a;
 }
@@ -385,6 +444,8 @@ std::optional<Failure> gather(const std::vector<BundleView>& views, const Bundle
                  seen(p + Pixel(kStepPx, 0)),
                  seen(p - Pixel(0, kStepPx)),
                  seen(p + Pixel(0, kStepPx)),
+                 seen(p - Pixel(kStepPx, kStepPx)),
+                 seen(p + Pixel(kStepPx, kStepPx)),
                  int(v)};
       if ((!e.left && !e.right) || (!e.up && !e.down)) continue;
       origin += at->position;
@@ -399,7 +460,7 @@ std::optional<Failure> gather(const std::vector<BundleView>& views, const Bundle
   if (!(scale > 0) || !std::isfinite(scale)) return Failure{Reason::NotFinite, "camera distance"};
   for (Evidence& e : points) {
     e.at.position = (e.at.position - origin) / scale;
-    for (std::optional<Seen>* s : {&e.left, &e.right, &e.up, &e.down})
+    for (std::optional<Seen>* s : {&e.left, &e.right, &e.up, &e.down, &e.leftUp, &e.rightDown})
       if (*s) (*s)->position = ((*s)->position - origin) / scale;
   }
   return std::nullopt;
@@ -458,7 +519,7 @@ Outcome<Bundle> bundleLight(const std::vector<BundleView>& views, const Light& s
 
   // The evidence still holds the weights of the last attempt, which need not be the best one.
   reweight(points, best.light);
-  unbias(points, best);
+  unbias(points, best, best.noiseShare);
   if (options.limitOrders > 0) best = directed(points, best, options);
   Bundle bundle;
   bundle.light = inWorld(best.light, origin, scale);

@@ -44,7 +44,7 @@ std::filesystem::path truthFile(const std::string& folder, const Frame& frame) {
 
 }  // namespace
 
-FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, const Settings& settings) {
+FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, const Settings& settings, const SeparateLights& lights) {
   const Frame& frame = scene.frames[index];
   FrameEvidence evidence;
   evidence.frame = index;
@@ -78,6 +78,9 @@ FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, 
     options.clipValue = settings.number("detect.clip");
     const bool photograph = frame.radiance.empty() || (source == FrameSource::Image && !frame.image.empty());
     if (options.clipValue == 0 && photograph) options.clipValue = 1.0;  // linearised codes end at 1
+    options.separatePeaks = lights.separate || frame.lightsOn.size() > 1;
+    options.references = lights.references;
+    for (PeakReference& r : options.references) r.peak = frame.camera.distorted(r.peak);
     Outcome<std::vector<Highlight>> found = detectHighlights(*linear, mask->has_value() ? &**mask : nullptr, options);
     if (!found) {
       evidence.failure = found.failure();

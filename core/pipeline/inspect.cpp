@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <functional>
 #include <set>
 
 #include "core/base/parallel.h"
@@ -73,6 +74,48 @@ struct Group {
   std::vector<int> views;  ///< indices into Inspection::views
 };
 
+/// Brings the highlights of every light of a frame to the level of its strongest one. What then contains a peak of another light is of both:
+/// its light is cleared.
+void levelOfEachLight(FrameEvidence& e, bool detected, const std::function<FrameEvidence(const SeparateLights&)>& detectAgain) {
+  std::map<std::string, std::vector<const Highlight*>> byLight;
+  for (const Highlight& h : e.highlights)
+    if (!h.light.empty()) byLight[h.light].push_back(&h);
+  const auto several = [](const auto& entry) { return entry.second.size() > 1; };
+  if (!detected || byLight.size() < 2 || std::none_of(byLight.begin(), byLight.end(), several)) return;
+  SeparateLights lights;
+  lights.separate = true;
+  for (const auto& [light, highlights] : byLight) {
+    double strongest = 0;
+    for (const Highlight* h : highlights) strongest = std::max(strongest, h->peakValue);
+    for (const Highlight* h : highlights)
+      if (strongest > 0) lights.references.push_back({h->peak, strongest});
+  }
+  FrameEvidence again = detectAgain(lights);
+  if (again.failure) return;
+  const std::vector<Highlight> before = e.highlights;
+  e.highlights.clear();
+  for (Highlight& h : again.highlights) {
+    std::set<std::string> inside;
+    for (const Highlight& b : before)
+      if (!b.light.empty() && contains(h.contour, b.peak)) inside.insert(b.light);
+    h.light = inside.size() == 1 ? *inside.begin() : "";
+    e.highlights.push_back(std::move(h));
+  }
+}
+
+/// A truth file names no light: its contours are of the light whose detected highlight they overlap.
+void nameTruth(FrameEvidence& e) {
+  std::set<std::string> lights;
+  for (const Highlight& h : e.highlights)
+    if (!h.light.empty()) lights.insert(h.light);
+  if (lights.size() < 2) return;
+  for (Highlight& t : e.truth) {
+    t.light.clear();
+    for (const Highlight& h : e.highlights)
+      if (!h.light.empty() && (contains(h.contour, t.peak) || contains(t.contour, h.peak))) t.light = h.light;
+  }
+}
+
 class Run {
  public:
   Run(Inspection& result, const ProgressFn& progress, const Inspection* previous)
@@ -95,7 +138,10 @@ class Run {
   /// Some frame shows highlights whose light is not known from the frame alone.
   bool severalLights() const {
     const std::vector<Frame>& frames = r_.scene->frames;
-    return std::any_of(frames.begin(), frames.end(), [](const Frame& f) { return f.lightsOn.size() > 1; });
+    return std::any_of(frames.begin(), frames.end(), [](const Frame& f) { return f.lightsOn.size() > 1 || statesNoLight(f); });
+  }
+  static bool statesNoLight(const Frame& f) {
+    return f.lightsOn.empty() && std::all_of(f.highlights.begin(), f.highlights.end(), [](const Highlight& h) { return h.light.empty(); });
   }
   std::shared_ptr<const Surface> surfaceOf(int frame) const {
     const Outcome<std::shared_ptr<const Surface>> s = r_.surfaces->surfaceOf(frame, normalPolicy(r_.request.settings));
@@ -108,6 +154,12 @@ class Run {
     if (!s) failure = s.failure();
   }
   std::vector<Group> groups() const;
+  /// Some frame, whether it trains or not, shows a highlight of this light.
+  bool seen(const std::string& light) const {
+    return std::any_of(r_.evidence.begin(), r_.evidence.end(), [&](const FrameEvidence& e) {
+      return std::any_of(e.highlights.begin(), e.highlights.end(), [&](const Highlight& h) { return h.light == light; });
+    });
+  }
   bool anyModel(bool (HighlightModel::*needs)() const) const {
     return std::any_of(r_.request.models.begin(), r_.request.models.end(),
                        [&](const std::string& m) { return (modelByName(m).*needs)(); });
@@ -151,22 +203,55 @@ void Run::highlights() {
 }
 
 void Run::assignSeveralLights() {
-  const std::vector<Frame>& frames = r_.scene->frames;
-  const bool open = std::any_of(r_.evidence.begin(), r_.evidence.end(), [](const FrameEvidence& e) {
+  const Scene& scene = *r_.scene;
+  const std::size_t n = scene.frames.size();
+  const auto open = [](const FrameEvidence& e) {
     return std::any_of(e.highlights.begin(), e.highlights.end(), [](const Highlight& h) { return h.light.empty(); });
-  });
-  if (!severalLights() || !open) return;
-  std::vector<TrackedFrame> tracked(frames.size());
-  std::vector<std::shared_ptr<const Surface>> surfaces(frames.size());
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    surfaces[i] = surfaceOf(static_cast<int>(i));
-    tracked[i] = {frames[i].camera, surfaces[i].get(), frames[i].lightsOn, r_.evidence[i].highlights};
+  };
+  // What a frame states nothing about is "light" to itself; together the frames may prove that there are more.
+  for (std::size_t i = 0; i < n; ++i)
+    if (statesNoLight(scene.frames[i]))
+      for (Highlight& h : r_.evidence[i].highlights) h.light.clear();
+  if (std::none_of(r_.evidence.begin(), r_.evidence.end(), open)) return;
+  const auto assign = [&] {
+    std::vector<TrackedFrame> tracked(n);
+    for (std::size_t i = 0; i < n; ++i) tracked[i] = {scene.frames[i].camera, scene.frames[i].lightsOn, r_.evidence[i].highlights};
+    if (!report(progress_, {"assign lights", 0, 0})) throw Stopped{};
+    const int groups = assignLights(tracked, [&](std::size_t i) { return surfaceOf(static_cast<int>(i)); });
+    for (std::size_t i = 0; i < n; ++i) r_.evidence[i].highlights = std::move(tracked[i].highlights);
+    return groups;
+  };
+  const auto detectAgain = [&](std::size_t i, const SeparateLights& lights) {
+    return gatherEvidence(scene, static_cast<int>(i), r_.request.source, r_.request.settings, lights);
+  };
+  const auto detected = [&](std::size_t i) {
+    const std::vector<Highlight>& h = r_.evidence[i].highlights;
+    return !h.empty() && !h.front().fromScene;
+  };
+  const bool unstated = std::all_of(scene.frames.begin(), scene.frames.end(), [](const Frame& f) { return f.lightsOn.empty(); });
+  if (assign() > 1 && unstated) {
+    // Only now it is known that there are several: their levels are not those of one.
+    bool again = false;
+    for (std::size_t i = 0; i < n; ++i) again = again || detected(i);
+    if (again) {
+      parallelFor(
+          static_cast<int>(n),
+          [&](int i) {
+            if (!detected(i)) return;
+            FrameEvidence e = detectAgain(i, {true, {}});
+            if (e.failure) return;
+            for (Highlight& h : e.highlights) h.light.clear();
+            r_.evidence[i].highlights = std::move(e.highlights);
+          },
+          progress_, "detect");
+      assign();
+    }
   }
-  if (!report(progress_, {"assign lights", 0, 0})) throw Stopped{};
-  assignLights(tracked);
-  for (std::size_t i = 0; i < frames.size(); ++i)
-    for (std::size_t h = 0; h < tracked[i].highlights.size(); ++h)
-      if (std::string& light = r_.evidence[i].highlights[h].light; light.empty()) light = tracked[i].highlights[h].light;
+  // A light with several highlights in a frame has one level there: that of its strongest.
+  parallelFor(
+      static_cast<int>(n), [&](int i) { levelOfEachLight(r_.evidence[i], detected(i), [&](const SeparateLights& l) { return detectAgain(i, l); }); },
+      progress_, "detect");
+  for (FrameEvidence& e : r_.evidence) nameTruth(e);
 }
 
 void Run::brightestPointsAndTangentPlanes() {
@@ -211,6 +296,11 @@ std::vector<Group> Run::groups() const {
   for (const FrameEvidence& e : r_.evidence)
     for (const Highlight& h : e.scored())
       if (!h.light.empty()) groupOf(h.light, surfaceKey(e.frame));
+  // So does a light that is on but has no highlight that could be told from those of other lights.
+  if (!r_.train.perSurface)
+    for (const Frame& f : r_.scene->frames)
+      if (f.lightsOn.size() > 1)
+        for (const std::string& light : f.lightsOn) groupOf(light, std::nullopt);
   return groups;
 }
 
@@ -227,9 +317,13 @@ void Run::lights() {
     if (!report(progress_, {"light", static_cast<int>(i), static_cast<int>(all.size())})) throw Stopped{};
     std::vector<TrainingView> views;
     for (const int v : all[i].views) views.push_back(r_.views[v]);
+    const std::string key = lightKey(all[i].light, all[i].surface);
+    if (!seen(all[i].light)) {
+      r_.lightFailures.insert_or_assign(key, Failure{Reason::NoHighlight, all[i].light + " has none that could be told from those of other lights"});
+      continue;
+    }
     const Outcome<LightEstimate> light = estimateLight(views, r_.request.settings);
     ++r_.work.lights;
-    const std::string key = lightKey(all[i].light, all[i].surface);
     if (light) r_.lights.insert_or_assign(key, *light);
     else r_.lightFailures.insert_or_assign(key, light.failure());
   }

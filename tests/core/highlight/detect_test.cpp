@@ -53,6 +53,36 @@ TEST(DetectHighlights, Nominal) {
   }
 }
 
+/// Lights of unequal strength: each contour lies at the level of its own peak, the weaker of two peaks of one light at that of the stronger.
+TEST(DetectHighlights, SeparatePeaksHaveTheirOwnLevels) {
+  Blob strong, weak, weaker;
+  strong.centre = {70, 80};
+  weak.centre = {190, 80};
+  weak.height = 0.3 * strong.height;
+  weaker.centre = {310, 80};
+  weaker.height = 0.7 * weak.height;
+  const Image image = drawn(380, 160, [&](const Pixel& p) { return strong.at(p) + weak.at(p) + weaker.at(p); });
+  const Outcome<std::vector<Highlight>> common = detectHighlights(image, nullptr, specular());
+  ASSERT_TRUE(common);
+  EXPECT_EQ(common->size(), 1u);  // the others stay below half of the strongest
+  DetectOptions options = specular();
+  options.separatePeaks = true;
+  const Outcome<std::vector<Highlight>> own = detectHighlights(image, nullptr, options);
+  ASSERT_TRUE(own) << own.failure().message();
+  ASSERT_EQ(own->size(), 3u);
+  const Blob* blobs[] = {&strong, &weak, &weaker};
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_LT(largestDistance((*own)[i].contour, blobs[i]->levelSet(0.5)), marchingSquaresPx(*blobs[i], 0.5)) << i;
+    EXPECT_LT(((*own)[i].peak - blobs[i]->centre).norm(), kPeakPx) << i;
+  }
+  options.references = {{weaker.centre, weak.height}};
+  const Outcome<std::vector<Highlight>> shared = detectHighlights(image, nullptr, options);
+  ASSERT_TRUE(shared);
+  ASSERT_EQ(shared->size(), 3u);
+  const double level = 0.5 / 0.7;
+  EXPECT_LT(largestDistance((*shared)[2].contour, weaker.levelSet(level)), marchingSquaresPx(weaker, level));
+}
+
 TEST(DetectHighlights, Scale) {
   const Blob blob;
   for (const double factor : {1e-20, 1e-6, 1.0, 1e6, 1e20}) {

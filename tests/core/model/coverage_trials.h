@@ -35,6 +35,7 @@ struct CoverageResult {
   long pairs = 0, inside = 0;  ///< (trial, direction)
   double shareSpread = 0;  ///< standard deviation over trials of a trial's share inside: directions of one trial move together
   double meanSigmaPx = 0, rmsErrorPx = 0, meanNoisePx = 0;
+  double biasPx = 0;  ///< RMS over directions of the mean error over trials, outwards positive
   double share() const { return pairs ? double(inside) / double(pairs) : 0; }
 };
 
@@ -78,6 +79,7 @@ inline CoverageResult runCoverageTrials(const CoverageTrials& t) {
   }
   CoverageResult result;
   result.trials = t.trials;
+  std::vector<double> errors(kDirections, 0.0);
   double sigmas = 0, squares = 0, noise = 0, shares = 0, sharesSquared = 0;
   for (int k = 0; k < t.trials; ++k) {
     const Outcome<ModelFit> fit = fitted(t.noisePx, t.firstSeed + k);
@@ -110,6 +112,7 @@ inline CoverageResult runCoverageTrials(const CoverageTrials& t) {
       }
       const double error = distance(truth, contour.points[nearest]);
       inside += error <= factor * sigma[nearest];
+      errors[d] += contains(truth, contour.points[nearest]) ? -error : error;
       sigmas += sigma[nearest];
       squares += error * error;
     }
@@ -124,6 +127,8 @@ inline CoverageResult runCoverageTrials(const CoverageTrials& t) {
     result.meanSigmaPx = sigmas / double(result.pairs);
     result.rmsErrorPx = std::sqrt(squares / double(result.pairs));
     result.meanNoisePx = noise / n;
+    for (const double e : errors) result.biasPx += e * e / (n * n * kDirections);
+    result.biasPx = std::sqrt(result.biasPx);
     result.shareSpread = std::sqrt(std::max(0.0, sharesSquared / n - std::pow(shares / n, 2)));
   }
   return result;
