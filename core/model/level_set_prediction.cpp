@@ -94,7 +94,14 @@ Prediction predictLevelSet(const SurfaceField& field, const Camera& camera, cons
     h.tangentPlane = Plane::through(h.brightest.point.position, h.brightest.point.normal);
     prediction.highlights.push_back(std::move(h));
   }
-  if (prediction.highlights.empty()) prediction.failure = Failure{Reason::NotReached, "no level set in the image"};
+  if (prediction.highlights.empty()) {
+    const bool outside = !field.peaks.empty() && std::all_of(field.peaks.begin(), field.peaks.end(), [&](const FieldPeak& p) {
+      const Pixel& q = p.point.pixel;
+      return q.x() < -0.5 || q.y() < -0.5 || q.x() > camera.width - 0.5 || q.y() > camera.height - 0.5;
+    });
+    prediction.failure = outside ? Failure{Reason::OutsideImage, "the whole highlight lies outside the image"}
+                                 : Failure{Reason::NotReached, "no level set in the image"};
+  }
   return prediction;
 }
 

@@ -16,6 +16,9 @@ namespace {
 
 constexpr int kAnglePoints = 36;    // of a contour, for the first guess of the roughness
 constexpr double kScanStepPx = 16;  // of the search for a maximum away from every mirror point
+// log of an 8-bit picture's range: a lobe that has fallen further shows nothing beside the highlights of other frames.
+constexpr double kFaintest = 5.54;
+constexpr std::size_t kPromisingStarts = 6;  // of those that a short fit to few points likes best
 
 /// Where the search starts: the light of the limit angle; where that model does not converge (wide lobes, grazing views), the
 /// closest point to the reflected peak rays, or their mean direction.
@@ -32,22 +35,38 @@ std::optional<Light> firstLight(const FitInput& input) {
   return mean.norm() > 1e-6 * double(rays.size()) ? std::optional<Light>(Light::towards(mean)) : std::nullopt;
 }
 
-/// The lobe of the smallest residual; each starts from the best one so far. Where none explains the contours, the first is tried
-/// again from many starts, and the others follow it.
+/// The lobe of the smallest residual; each starts from the best one so far. Where none explains the contours well, the most
+/// promising starts of all lobes are tried, and the lobes follow the best of them.
 Outcome<RadianceFit> bestOf(const std::vector<Lobe>& lobes, const std::vector<RadianceView>& views, const Light& light,
                             double roughness, RadianceFitOptions options) {
   Outcome<RadianceFit> best = Failure{Reason::NotConverged, ""};
   const bool lightSize = options.lightSize;
   options.lightSize = options.otherStarts = false;
-  for (const bool again : {false, true}) {
+  const auto tryFrom = [&](Lobe lobe, const Light& from, double width) {
+    Outcome<RadianceFit> f = fitRadiance(lobe, views, from, width, options);
+    if (!best || (f && (f->poor != best->poor ? best->poor : f->cost < best->cost))) best = std::move(f);
+  };
+  const auto tryAll = [&] {
     for (const Lobe lobe : lobes) {
-      options.otherStarts = again && lobe == lobes.front();
-      const bool follow = best && (again || !best->poor);
-      Outcome<RadianceFit> f =
-          fitRadiance(lobe, views, follow ? best->light : light, follow ? best->roughness : roughness, options);
-      if (!best || (f && f->cost < best->cost)) best = std::move(f);
+      const bool follow = best && !best->poor;
+      const Light from = follow ? best->light : light;
+      tryFrom(lobe, from, follow ? best->roughness : roughness);
     }
-    if (best && !best->poor) break;
+  };
+  tryAll();
+  if (!best || best->doubtful) {
+    std::vector<RadianceStart> starts;
+    for (const Lobe lobe : lobes)
+      for (const RadianceStart& s : screenStarts(lobe, views, light, roughness, options)) starts.push_back(s);
+    std::stable_sort(starts.begin(), starts.end(),
+                     [](const RadianceStart& a, const RadianceStart& b) { return a.cost < b.cost; });
+    bool better = false;
+    for (std::size_t i = 0; i < starts.size() && i < kPromisingStarts && !(best && !best->doubtful); ++i) {
+      const double before = best ? best->cost : std::numeric_limits<double>::infinity();
+      tryFrom(starts[i].lobe, starts[i].light, starts[i].roughness);
+      better = better || (best && best->cost < before);
+    }
+    if (better && lobes.size() > 1 && !best->poor) tryAll();
   }
   if (!best || best->poor || !lightSize) return best;
   // A size is tried on the best lobe; only where it shows are the others tried with one too.
@@ -184,6 +203,14 @@ class Reflectance final : public HighlightModel {
     const std::vector<RadiancePeak> peaks = radiance.peaks(starts, kScanStepPx);
     if (peaks.empty()) {
       p.failure = mirrorPoints ? Failure{Reason::NoBrightestPoint, "nothing in the image is lit"} : mirrorPoints.failure();
+      return p;
+    }
+    if (peaks.front().cut) {
+      p.failure = Failure{Reason::OutsideImage, "the radiance rises beyond the image"};
+      return p;
+    }
+    if (const double fall = radiance.fallOfLobe(peaks.front().point); !(fall < kFaintest)) {
+      p.failure = Failure{Reason::NoBrightestPoint, "no visible point is near the mirror direction of the light"};
       return p;
     }
     SurfaceField field;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/reflectance/contour_evidence.h"
 
+#include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -40,6 +42,31 @@ bool onImageBorder(const Pixel& p, const Camera& camera) {
   return near(p.x(), camera.width - 1) || near(p.y(), camera.height - 1);
 }
 
+/// Sides of the contour's box along which it runs straight: whoever made the contour cut it there, beyond the image for example.
+/// A level set touches its box in points. Order: left, right, top, bottom.
+std::array<bool, 4> cutSides(const std::vector<Pixel>& contour, const Eigen::AlignedBox2d& box) {
+  constexpr double kSamePx = 1e-6, kLeastPx = 2;
+  std::array<double, 4> straight{};
+  for (std::size_t i = 0; i < contour.size(); ++i) {
+    const Pixel &a = contour[i], &b = contour[(i + 1) % contour.size()];
+    for (int k = 0; k < 4; ++k) {
+      const int axis = k / 2;
+      const double side = k % 2 == 0 ? box.min()(axis) : box.max()(axis);
+      if (std::abs(a(axis) - side) < kSamePx && std::abs(b(axis) - side) < kSamePx) straight[k] += (b - a).norm();
+    }
+  }
+  std::array<bool, 4> cut{};
+  for (int k = 0; k < 4; ++k) cut[k] = straight[k] > kLeastPx;
+  return cut;
+}
+
+bool onCutSide(const Pixel& p, const Eigen::AlignedBox2d& box, const std::array<bool, 4>& cut) {
+  constexpr double kNearPx = 1e-3;
+  const Eigen::Vector2d low = p - box.min(), high = box.max() - p;
+  return (cut[0] && low.x() < kNearPx) || (cut[1] && high.x() < kNearPx) || (cut[2] && low.y() < kNearPx) ||
+         (cut[3] && high.y() < kNearPx);
+}
+
 }  // namespace
 
 Outcome<ContourEvidence> gatherEvidence(const std::vector<RadianceView>& views, int pointsPerView) {
@@ -63,9 +90,12 @@ Outcome<ContourEvidence> gatherEvidence(const std::vector<RadianceView>& views, 
     offered += pixels.size();
     all.radiusPx += std::sqrt(std::abs(signedArea(Polyline{view.contour, true})) / M_PI) / double(views.size());
     const Outcome<Ellipse> ellipse = fitEllipse(pixels);
+    Eigen::AlignedBox2d box;
+    for (const Pixel& p : view.contour) box.extend(p);
+    const std::array<bool, 4> cut = cutSides(view.contour, box);
     for (const Pixel& p : pixels) {
       // Where the image or the surface ends, the contour is an edge and not a level set.
-      if (onImageBorder(p, view.camera)) continue;
+      if (onImageBorder(p, view.camera) || onCutSide(p, box, cut)) continue;
       const std::optional<Stencil> at = look(view, p, Eigen::Vector3d::Zero(), 1);
       if (!at) continue;
       Evidence e;

@@ -24,14 +24,20 @@ constexpr double kScanStepPx = 24;  // of the search for a frame's maximum when 
 constexpr int kMaxFootSteps = 4;
 constexpr double kFootPx = 1e-4;  // a foot this close serves: its error enters the residual in second order
 constexpr double kFarthestFootPx = 8;
-constexpr double kSigmaOfMedian = 1.4826;  // standard deviation over median absolute deviation of a normal distribution
-constexpr double kUnlitPx = 100;           // residual of a point that the light does not reach
-constexpr double kPoorShare = 0.1;         // of the radius: a wrong lobe or 1 px of noise leave less, a wrong start leaves more
-constexpr double kProbeRadius = 0.02;      // of the distance: a light that would show little
-constexpr double kFirstRadius = 0.05;      // of the distance: where the search for a size starts
+constexpr double kSigmaOfMedian = 1.4826;      // standard deviation over median absolute deviation of a normal distribution
+constexpr double kUnlitPx = 100;               // residual of a point that the light does not reach
+constexpr double kPoorShare = 0.1;             // of the radius: a wrong lobe leaves less, a wrong start leaves more
+constexpr double kDoubtShare = 0.02;           // of the radius: a right lobe leaves less
+constexpr double kWidest = 3;                  // roughness of a lobe that falls to half at 70 degrees and more: no highlight
+constexpr double kNoiseShare = 1.2;            // of the noise's sigma: what a right lobe leaves of it, with some reserve
+constexpr double kProbeRadius = 0.02;          // of the distance: a light that would show little
+constexpr double kFirstRadius = 0.05;          // of the distance: where the search for a size starts
 constexpr double kLeastRadiusSquared = 1e-10;  // normalised: keeps the square root's derivative finite
 constexpr double kLeastGain = 0.2;             // of the sum of squares, before a size is believed
 constexpr double kSettled = 1e-9;              // change of the unit vector L and of log m between reweightings
+// Other starts are judged by a short fit to few points; the most promising are then fitted in full.
+constexpr int kScreenPoints = 16, kScreenIterations = 15;
+constexpr std::size_t kPromising = 3;
 
 /// L (4), log m, and the squared radius of the light in normalised coordinates.
 using Parameters = Eigen::Matrix<double, 6, 1>;
@@ -73,9 +79,15 @@ class Problem {
   struct Attempt {
     Parameters at = Parameters::Zero();
     double cost = std::numeric_limits<double>::infinity();
+    double noisePx = 0;  ///< of the residuals that neighbours on a contour do not share
     int iterations = 0;
     bool converged = false;
   };
+  /// Converged, with what remains below `share` of the radius, or the robust scale, once the noise is allowed for.
+  bool explains(const Attempt& a, double share) const {
+    const double farPx = std::max(options_.robustPx, share * radiusPx_), noise = kNoiseShare * a.noisePx;
+    return a.converged && a.at(4) < std::log(kWidest) && a.cost <= (farPx * farPx + robust(noise)) * double(points_.size());
+  }
 
   Attempt solve(const Eigen::Vector4d& light, double roughness, bool atInfinity) {
     Parameters start;
@@ -146,7 +158,9 @@ class Problem {
   void relinearise(const Parameters& at, bool moveFeet);
   void unbias(const Parameters& at);
   void toFoot(Evidence& e, const Parameters& at) const;
+  double robust(double r) const { return r <= options_.robustPx ? r * r : options_.robustPx * (2 * r - options_.robustPx); }
   double robustCost(const Parameters& at) const;
+  double noiseOf(const Parameters& at) const;
 
   Lobe lobe_;
   const std::vector<RadianceView>& views_;
@@ -270,11 +284,24 @@ void Problem::unbias(const Parameters& at) {
 double Problem::robustCost(const Parameters& at) const {
   double sum = 0;
   for (const Evidence& e : points_) {
-    const double plain = std::abs(residual(e, at)), k = options_.robustPx;
-    const double r = std::isfinite(plain) ? plain : kUnlitPx;
-    sum += r <= k ? r * r : k * (2 * r - k);
+    const double plain = std::abs(residual(e, at));
+    sum += robust(std::isfinite(plain) ? plain : kUnlitPx);
   }
   return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
+}
+
+/// Robust sigma of the residuals' second differences along the contours: what a wrong light or lobe leaves is smooth there, noise
+/// of the points is not.
+double Problem::noiseOf(const Parameters& at) const {
+  std::vector<double> differences;
+  for (std::size_t i = 1; i + 1 < points_.size(); ++i) {
+    if (points_[i - 1].view != points_[i + 1].view) continue;
+    const double d = residual(points_[i - 1], at) - 2 * residual(points_[i], at) + residual(points_[i + 1], at);
+    if (std::isfinite(d)) differences.push_back(std::abs(d) / std::sqrt(6.0));
+  }
+  if (differences.empty()) return 0;
+  std::nth_element(differences.begin(), differences.begin() + differences.size() / 2, differences.end());
+  return kSigmaOfMedian * differences[differences.size() / 2];
 }
 
 Problem::Attempt Problem::solve(const Parameters& start, bool withSize) {
@@ -329,6 +356,7 @@ Problem::Attempt Problem::solve(const Parameters& start, bool withSize) {
   updatePeaks(a.at, true);
   relinearise(a.at, true);
   a.cost = robustCost(a.at);
+  a.noisePx = noiseOf(a.at);
   return a;
 }
 
@@ -434,7 +462,38 @@ RadianceFit Problem::describe(const Attempt& a, std::size_t views) {
   return fit;
 }
 
+/// L in normalised coordinates, |L| = 1.
+Eigen::Vector4d normalisedLight(const Light& light, const ContourEvidence& evidence) {
+  Eigen::Vector4d l;
+  l << (light.homogeneous().head<3>() - light.homogeneous().w() * evidence.origin) / evidence.scale, light.homogeneous().w();
+  require(l.norm() > 0, "fitRadiance: no light");
+  return l.normalized();
+}
+
 }  // namespace
+
+std::vector<RadianceStart> screenStarts(Lobe lobe, const std::vector<RadianceView>& views, const Light& light, double roughness,
+                                        const RadianceFitOptions& options) {
+  require(roughness > 0 && std::isfinite(roughness), "screenStarts: roughness must be positive");
+  RadianceFitOptions quick = options;
+  quick.pointsPerView = std::min(options.pointsPerView, kScreenPoints);
+  quick.maxIterations = std::min(options.maxIterations, kScreenIterations);
+  Outcome<ContourEvidence> gathered = lobe::gatherEvidence(views, quick.pointsPerView);
+  if (!gathered) return {};
+  const Eigen::Vector3d direction = normalisedLight(light, *gathered).head<3>().normalized();
+  Problem problem(lobe, views, *std::move(gathered), quick);
+  std::vector<RadianceStart> starts;
+  for (const double distance : {0.5, 1.0, 2.0, 5.0, 0.0})
+    for (const double factor : {1.0, 0.5, 2.0}) {
+      Eigen::Vector4d from;
+      from << (distance > 0 ? Eigen::Vector3d(distance * direction) : direction), (distance > 0 ? 1.0 : 0.0);
+      const Problem::Attempt a = problem.solve(from.normalized(), std::min(factor * roughness, 1.0), distance == 0);
+      if (!std::isfinite(a.cost) || !a.at.allFinite() || !(a.at(4) < std::log(kWidest))) continue;
+      starts.push_back({lobe, problem.inWorld(a.at.head<4>()), std::exp(a.at(4)), a.cost / double(problem.points().size())});
+    }
+  std::stable_sort(starts.begin(), starts.end(), [](const RadianceStart& a, const RadianceStart& b) { return a.cost < b.cost; });
+  return starts;
+}
 
 Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& views, const Light& light, double roughness,
                                  const RadianceFitOptions& options) {
@@ -442,32 +501,20 @@ Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& vie
   require(roughness > 0 && std::isfinite(roughness), "fitRadiance: roughness must be positive");
   Outcome<ContourEvidence> gathered = lobe::gatherEvidence(views, options.pointsPerView);
   if (!gathered) return gathered.failure();
-  const Eigen::Vector3d origin = gathered->origin;
-  const double scale = gathered->scale, radiusPx = gathered->radiusPx;
-
-  Eigen::Vector4d first;
-  first << (light.homogeneous().head<3>() - light.homogeneous().w() * origin) / scale, light.homogeneous().w();
-  require(first.norm() > 0, "fitRadiance: no light");
-  first.normalize();
+  const ContourEvidence frame{{}, {}, gathered->origin, gathered->scale, gathered->radiusPx};
+  const Eigen::Vector4d first = normalisedLight(light, frame);
   Problem problem(lobe, views, *std::move(gathered), options);
-  const auto good = [&](const Problem::Attempt& a) {
-    const double farPx = std::max(options.robustPx, kPoorShare * radiusPx);
-    return a.converged && a.cost <= farPx * farPx * double(problem.points().size());
-  };
+  const auto good = [&](const Problem::Attempt& a) { return problem.explains(a, kPoorShare); };
   Problem::Attempt best = problem.solve(first, roughness, first.w() == 0);
   int iterations = best.iterations;
   if (!good(best) && options.otherStarts) {
-    // Along the first guess's direction, at other distances and at infinity; narrower and wider lobes.
-    const Eigen::Vector3d direction = first.head<3>().normalized();
-    for (const double distance : {0.5, 1.0, 2.0, 5.0, 0.0}) {
-      Eigen::Vector4d from;
-      from << (distance > 0 ? Eigen::Vector3d(distance * direction) : direction), (distance > 0 ? 1.0 : 0.0);
-      for (const double factor : {1.0, 0.5, 2.0}) {
-        const Problem::Attempt other = problem.solve(from.normalized(), std::min(factor * roughness, 1.0), distance == 0);
-        iterations += other.iterations;
-        if (other.converged != best.converged ? other.converged : other.cost < best.cost) best = other;
-        if (good(best)) break;
-      }
+    std::vector<RadianceStart> starts = screenStarts(lobe, views, light, roughness, options);
+    if (starts.size() > kPromising) starts.resize(kPromising);
+    for (const RadianceStart& from : starts) {
+      const Eigen::Vector4d at = normalisedLight(from.light, frame);
+      const Problem::Attempt other = problem.solve(at, from.roughness, at.w() == 0);
+      iterations += other.iterations;
+      if (other.converged != best.converged ? other.converged : other.cost < best.cost) best = other;
       if (good(best)) break;
     }
   }
@@ -486,6 +533,7 @@ Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& vie
   RadianceFit fit = problem.describe(best, views.size());
   fit.iterations = iterations;
   fit.poor = !good(best);
+  fit.doubtful = !problem.explains(best, kDoubtShare);
   return fit;
 }
 

@@ -29,6 +29,19 @@ struct RadianceFitOptions {
   bool otherStarts = true;  ///< try other distances and widths when the first guess converges badly
 };
 
+/// A place from which a fit is worth trying.
+struct RadianceStart {
+  Lobe lobe = Lobe::TorranceSparrow;
+  Light light;
+  double roughness = 0;
+  double cost = 0;  ///< mean robust square per point after a short fit, px^2: starts of all lobes are compared by it
+};
+
+/// Starts along the first guess's direction, at other distances and at infinity, narrower and wider, each after a short fit to
+/// few points; best first. Empty where fitRadiance would fail.
+std::vector<RadianceStart> screenStarts(Lobe lobe, const std::vector<RadianceView>& views, const Light& light, double roughness,
+                                        const RadianceFitOptions& options = {});
+
 struct RadianceFit {
   Lobe lobe = Lobe::TorranceSparrow;
   double roughness = 0;  ///< m
@@ -41,6 +54,7 @@ struct RadianceFit {
   double cost = 0;                 ///< robust sum of squares, px^2: lobes are compared by it
   std::vector<double> residualPx;  ///< per view, RMS
   bool poor = false;               ///< residuals are large against the contours: a wrong lobe, or a minimum that is not the best
+  bool doubtful = false;           ///< larger than a right lobe leaves: worth another search (also where poor)
   int points = 0, iterations = 0;
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/light/light.h"
 #include "core/reflectance/light_radiance.h"
 
 namespace glint {
@@ -13,10 +14,13 @@ namespace {
 constexpr double kStencilPx = 0.05;  // of the differences: their truncation moves a maximum by about 1e-4 px, round-off by less
 constexpr double kSettledPx = 1e-7;
 constexpr double kSamePeakPx = 0.05;
-constexpr int kMaxSteps = 40;
+constexpr int kMaxSteps = 80;
+constexpr double kFirstStridePx = 4, kLongestStridePx = 40;  // of steps uphill where the field is not concave
+constexpr double kAtBorderPx = 1e-3;  // a pattern search ends this close to the border of its domain, or closer
 
-bool inImage(const Pixel& p, const Camera& camera) {
-  return p.x() >= 0 && p.y() >= 0 && p.x() <= camera.width - 1 && p.y() <= camera.height - 1;
+/// How far inside the domain, px; negative outside.
+double depthInImage(const Pixel& p, const Camera& camera, double marginPx) {
+  return std::min({p.x(), p.y(), camera.width - 1 - p.x(), camera.height - 1 - p.y()}) + marginPx;
 }
 
 }  // namespace
@@ -62,13 +66,14 @@ std::optional<double> RadianceField::at(const Pixel& p) const {
   return hit ? at(*hit) : std::nullopt;
 }
 
-std::optional<RadiancePeak> RadianceField::climb(Pixel p, bool insideImage) const {
+std::optional<RadiancePeak> RadianceField::climb(Pixel p, double marginPx) const {
   const auto value = [&](const Pixel& q) -> std::optional<double> {
-    return insideImage && !inImage(q, camera_) ? std::nullopt : at(q);
+    return depthInImage(q, camera_, marginPx) < 0 ? std::nullopt : at(q);
   };
   std::optional<double> here = value(p);
   if (!here) return std::nullopt;
   double pattern = 4;  // px, of the search without derivatives
+  double stride = kFirstStridePx;
   for (int step = 0; step < kMaxSteps && pattern > 1e-4; ++step) {
     std::optional<double> f[3][3];
     bool whole = true;
@@ -87,8 +92,8 @@ std::optional<RadiancePeak> RadianceField::climb(Pixel p, bool insideImage) cons
       const bool concave = hessian(0, 0) < 0 && hessian.determinant() > 0;
       Eigen::Vector2d move =
           concave ? Eigen::Vector2d(-0.5 * kStencilPx * hessian.ldlt().solve(gradient))
-                  : Eigen::Vector2d(gradient.norm() > 0 ? Eigen::Vector2d(4 * gradient.normalized()) : Pixel(0, 0));
-      if (move.norm() > 40) move *= 40 / move.norm();
+                  : Eigen::Vector2d(gradient.norm() > 0 ? Eigen::Vector2d(stride * gradient.normalized()) : Pixel(0, 0));
+      if (move.norm() > kLongestStridePx) move *= kLongestStridePx / move.norm();
       if (concave && move.norm() < kSettledPx) break;
       for (double share = 1; share > 1e-3; share *= 0.5) {
         const std::optional<double> next = value(p + share * move);
@@ -96,6 +101,7 @@ std::optional<RadiancePeak> RadianceField::climb(Pixel p, bool insideImage) cons
         p += share * move;
         here = next;
         moved = true;
+        stride = std::min(share == 1 ? 2 * stride : kFirstStridePx, kLongestStridePx);
         break;
       }
       // Uphill by less than the values' own round-off: this is the top.
@@ -117,20 +123,47 @@ std::optional<RadiancePeak> RadianceField::climb(Pixel p, bool insideImage) cons
   }
   const std::optional<SurfacePoint> point = visible(p);
   if (!point) return std::nullopt;
-  return RadiancePeak{p, *point, *here};
+  RadiancePeak peak{p, *point, *here};
+  if (depthInImage(p, camera_, marginPx) < kAtBorderPx) {
+    // At the border of the domain: does the field rise outwards?
+    Pixel outwards(0, 0);
+    for (int i = 0; i < 2; ++i) {
+      const double last = (i == 0 ? camera_.width : camera_.height) - 1 + marginPx;
+      outwards(i) = p(i) + marginPx < kAtBorderPx ? -1 : last - p(i) < kAtBorderPx ? 1 : 0;
+    }
+    const std::optional<double> beyond = at(Pixel(p + kFirstStridePx * kStencilPx * outwards));
+    peak.cut = beyond && *beyond > *here;
+  }
+  return peak;
+}
+
+double RadianceField::fallOfLobe(const SurfacePoint& p) const {
+  const Eigen::Vector3d toCamera = (eye_ - p.position).normalized();
+  const Eigen::Vector3d mirrored = reflect(toCamera, p.normal);
+  const Eigen::Vector4d l = light_.homogeneous();
+  const Eigen::Vector3d offset = l.head<3>() - l.w() * p.position;
+  const double apart = std::atan2(offset.cross(mirrored).norm(), offset.dot(mirrored));
+  const double extent = std::atan2(std::sqrt(radiusSquared_) * std::abs(l.w()), offset.norm());
+  if (!(apart > extent)) return 0;
+  // The light's point nearest to the mirror direction.
+  const Eigen::Vector3d axis = offset.cross(mirrored).normalized();
+  const Eigen::Vector3d toLight = Eigen::AngleAxisd(extent, axis) * offset.normalized();
+  const std::optional<LogRadiance> here = logRadiance(lobe_, roughness_, p.normal, toLight, toCamera);
+  const std::optional<LogRadiance> top = logRadiance(lobe_, roughness_, p.normal, p.normal, p.normal);
+  return here && top ? top->lobe - here->lobe : std::numeric_limits<double>::infinity();
 }
 
 std::vector<RadiancePeak> RadianceField::peaks(const std::vector<Pixel>& starts, double scanStepPx) const {
   std::vector<RadiancePeak> found;
-  const auto add = [&](const Pixel& start, bool insideImage) {
-    const std::optional<RadiancePeak> peak = climb(start, insideImage);
+  const auto add = [&](const Pixel& start, double marginPx) {
+    const std::optional<RadiancePeak> peak = climb(start, marginPx);
     if (!peak) return;
     for (const RadiancePeak& p : found)
       if ((p.pixel - peak->pixel).norm() < kSamePeakPx) return;
     found.push_back(*peak);
   };
   for (const Pixel& s : starts)
-    if (inImage(s, camera_)) add(s, true);
+    if (depthInImage(s, camera_, 0) >= 0) add(s, 0);
   if (scanStepPx > 0) {
     std::vector<Pixel> pixels;
     std::vector<Ray> rays;
@@ -152,12 +185,22 @@ std::vector<RadiancePeak> RadianceField::peaks(const std::vector<Pixel>& starts,
       brightest = *v;
       best = i;
     }
-    if (best) add(pixels[*best], true);
+    if (best) add(pixels[*best], 0);
   }
-  if (found.empty())
-    for (const Pixel& s : starts) add(s, false);
-  std::stable_sort(found.begin(), found.end(),
-                   [](const RadiancePeak& a, const RadiancePeak& b) { return a.logRadiance > b.logRadiance; });
+  const auto brighter = [](const RadiancePeak& a, const RadiancePeak& b) { return a.logRadiance > b.logRadiance; };
+  std::stable_sort(found.begin(), found.end(), brighter);
+  if (found.empty() || found.front().cut) {
+    // The image's border is no maximum: it lies beyond.
+    const double margin = kPeakMargin * std::max(camera_.width, camera_.height);
+    std::vector<Pixel> from;
+    for (const RadiancePeak& p : found)
+      if (p.cut) from.push_back(p.pixel);
+    for (const Pixel& s : starts)
+      if (depthInImage(s, camera_, 0) < 0) from.push_back(s);
+    found.erase(std::remove_if(found.begin(), found.end(), [](const RadiancePeak& p) { return p.cut; }), found.end());
+    for (const Pixel& p : from) add(p, margin);
+    std::stable_sort(found.begin(), found.end(), brighter);
+  }
   return found;
 }
 

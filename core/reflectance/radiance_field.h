@@ -11,11 +11,15 @@
 
 namespace glint {
 
+/// How far beyond the image a maximum is looked for, as a share of its larger side.
+inline constexpr double kPeakMargin = 0.65;
+
 /// Where one frame is brightest.
 struct RadiancePeak {
   Pixel pixel;         ///< ideal pixel of the maximum, to about 1e-4 px where the field is smooth
   SurfacePoint point;  ///< normal faces the camera
   double logRadiance = 0;
+  bool cut = false;  ///< the radiance still rises where the domain of the search ends: the true maximum lies beyond
 };
 
 /// log I of one lobe under one light over the visible surface, up to a constant of the light (method.md section 7):
@@ -33,13 +37,18 @@ class RadianceField {
   std::optional<double> at(const Pixel& idealPixel) const;
 
   /// The maximum that is reached uphill from a pixel: Newton's method where the field is smooth, a shrinking pattern search where
-  /// it ends (silhouette, shadow, image border). Never leaves [0, width - 1] x [0, height - 1] when `insideImage`. Nothing where
-  /// the field is undefined at the start.
-  std::optional<RadiancePeak> climb(Pixel start, bool insideImage) const;
+  /// it ends (silhouette, shadow, border of the domain). Never leaves the image's outermost pixel centres by more than
+  /// `marginPx`. Nothing where the field is undefined at the start.
+  std::optional<RadiancePeak> climb(Pixel start, double marginPx) const;
 
   /// All maxima reached from `starts` and, when `scanStepPx` > 0, from the brightest pixel of a coarse scan of the image,
-  /// brightest first, each once. Maxima inside the image; where it holds none, those that `starts` reach beyond it.
+  /// brightest first, each once. Where the brightest is only the border of the image, or the image holds none, it is followed
+  /// beyond, up to kPeakMargin of the image's larger side.
   std::vector<RadiancePeak> peaks(const std::vector<Pixel>& starts, double scanStepPx) const;
+
+  /// How far the lobe itself has fallen at a point below its value in the mirror direction, in log I; the light's extent towards
+  /// that direction is allowed for. A frame whose maximum lies far down the lobe shows no highlight.
+  double fallOfLobe(const SurfacePoint& visible) const;
 
  private:
   std::optional<SurfacePoint> visible(const Pixel& p) const;

@@ -87,6 +87,69 @@ TEST(Reflectance, AnswersAtGrazingIncidenceWhereTheLimitAngleDoesNot) {
   for (int i = 6; i < 8; ++i) EXPECT_LT(errorPct(s, *fit, s.geometry.cameras[i]), kPredictedPct) << i;
 }
 
+// A narrow Phong highlight at grazing incidence: from the first guess of the light no lobe converges, and the first lobe tried is
+// the wrong one.
+TEST(Reflectance, FindsANarrowPhongLobeAtGrazingIncidence) {
+  const RadianceScene s = radianceScene(grazingScene(12), Lobe::Phong, 0.05);
+  const Outcome<ModelFit> fit = modelByName("reflectance").fit(inputOf(s, 6), {});
+  ASSERT_TRUE(fit) << fit.failure().message();
+  EXPECT_EQ(fit->lobe, "phong");
+  EXPECT_NEAR(*fit->roughness, 0.05, 1e-4);
+  EXPECT_LT(errorPct(s, *fit, s.geometry.cameras[11]), kPredictedPct);
+}
+
+ModelFit fitOf(const Light& light, Lobe lobe, double roughness) {
+  ModelFit fit;
+  fit.lightEstimate = light;
+  fit.lobe = nameOf(lobe);
+  fit.roughness = roughness;
+  fit.level = 0.5;
+  return fit;
+}
+
+// The largest radiance of the image is then at its border, or far down the lobe: no highlight is seen, and none is predicted.
+TEST(Reflectance, HighlightsThatNobodySeesAreNamed) {
+  struct Row {
+    AnalyticSpec surface;
+    Eigen::Vector3d light;
+    Reason reason;
+  };
+  const Camera camera = lookAt({0, -1.5, 1.5}, {0, 0, 0});
+  AnalyticSpec patch = sheet(0.0);
+  patch.length = patch.width = 0.3;
+  const Row rows[] = {{plane(), {3, 0, 1}, Reason::OutsideImage},   // mirror point 1.8 m to the right, the image ends at 0.9 m
+                      {plane(), {12, 0, 1}, Reason::OutsideImage},  // further than anybody looks
+                      {plane(), {0, 0.5, -2}, Reason::NoBrightestPoint},  // behind
+                      {patch, {3, 0, 1}, Reason::NoBrightestPoint}};      // the mirror point is off the surface
+  for (const Row& row : rows)
+    for (const Lobe lobe : {Lobe::TorranceSparrow, Lobe::Ggx, Lobe::BlinnPhong, Lobe::Phong}) {
+      const Prediction p = modelByName("reflectance")
+                               .predict(fitOf(Light::at(row.light), lobe, 0.06), camera, makeAnalytic(row.surface).get(), {});
+      ASSERT_TRUE(p.highlights.empty()) << nameOf(lobe) << " " << row.light.transpose();
+      ASSERT_TRUE(p.failure);
+      EXPECT_EQ(p.failure->reason, row.reason) << nameOf(lobe) << " " << row.light.transpose();
+    }
+}
+
+// The peak lies beyond the border, a part of the highlight inside: the level is that of the true peak.
+TEST(Reflectance, HighlightsWithTheirPeakBeyondTheBorderKeepTheirShape) {
+  RadianceScene s =
+      radianceScene(Synthetic{plane(), {lookAt({0, -1.5, 1.5}, {0, 0, 0})}, lampAt({1.5, 0.9, 1.2}), 0.1, {}}, Lobe::Ggx, 0.15);
+  ExactOptions options;
+  options.marginPx = 300;
+  const auto truth = exactHighlights(*s.surface, s.geometry.cameras[0], s.geometry.light, s.material, options);
+  ASSERT_TRUE(truth);
+  ASSERT_GT(truth->front().peak.x(), 640);
+  const Prediction p =
+      modelByName("reflectance")
+          .predict(fitOf(Light::at({1.5, 0.9, 1.2}), Lobe::Ggx, 0.15), s.geometry.cameras[0], s.surface.get(), {});
+  ASSERT_EQ(p.highlights.size(), 1u) << p.failure->message();
+  const PredictedHighlight& h = p.highlights.front();
+  EXPECT_LT(compareContours(truth->front().contour, h.contour, h.gaps, h.ellipse, truth->front().peak, h.brightest.pixel)
+                .contourErrorPct,
+            kPredictedPct);
+}
+
 TEST(Reflectance, NoLightAndNoViewAreNamed) {
   FitInput empty;
   const Outcome<ModelFit> none = modelByName("reflectance").fit(empty, {});

@@ -81,6 +81,26 @@ TEST(FitRadiance, NominalOnWideLobesAndOtherLevels) {
     }
 }
 
+// Whoever cut the contours, beyond the image or inside it: the cuts are straight and no evidence.
+TEST(FitRadiance, NominalOnContoursThatWereCut) {
+  const RadianceScene s = radianceScene(ellipsoidScene(6), Lobe::TorranceSparrow, 0.12);
+  std::vector<RadianceView> views = radianceViews(s);
+  for (RadianceView& v : views) {
+    const double cut = v.peak.x() - 3;
+    std::vector<Pixel> kept;
+    for (std::size_t i = 0; i < v.contour.size(); ++i) {
+      const Pixel &p = v.contour[i], &q = v.contour[(i + 1) % v.contour.size()];
+      if (p.x() >= cut) kept.push_back(p);
+      if ((p.x() < cut) != (q.x() < cut)) kept.push_back({cut, p.y() + (cut - p.x()) / (q.x() - p.x()) * (q.y() - p.y())});
+    }
+    v.contour = kept;
+  }
+  const auto fit = fitRadiance(Lobe::TorranceSparrow, views, nearby(s), 0.1);
+  ASSERT_TRUE(fit) << fit.failure().message();
+  EXPECT_NEAR(fit->roughness, 0.12, kRecovered * 0.12);
+  EXPECT_LT(lightError(*fit, s), 2 * kRecovered);
+}
+
 TEST(FitRadiance, NominalWithTheLightAtInfinity) {
   RadianceScene s = radianceScene(ellipsoidScene(6), Lobe::TorranceSparrow, kRoughness);
   s.geometry.light.position.reset();
