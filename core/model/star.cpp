@@ -41,7 +41,8 @@ void outlineOf(const CanonicalContour& c, PredictedHighlight& h) {
   std::vector<char> ok(n, 0);
   for (int i = 0, k = 0; i < n; ++i)
     if (!c.directions[i].failure) ok[i] = 1, pixelOf[i] = c.pixels[k++];
-  const auto isOk = [&](int i) { return ok[(i % n + n) % n] != 0; };
+  const bool all = static_cast<int>(c.pixels.size()) == n;
+  const auto isOk = [&](int i) { return all || ok[(i % n + n) % n] != 0; };
   h.coverage = n ? double(c.pixels.size()) / n : 0;
   h.contour = Polyline{{}, true};
   h.contour.points.reserve(static_cast<std::size_t>(n) * kSubdivisions);
@@ -56,16 +57,24 @@ void outlineOf(const CanonicalContour& c, PredictedHighlight& h) {
     while (last - first + 1 < std::min(kStencil, n)) {
       const bool left = isOk(first - 1), right = isOk(last + 1);
       if (!left && !right) break;
-      if (left && (!right || i - first <= last - i - 1)) --first;
-      else ++last;
+      if (left && (!right || i - first <= last - i - 1))
+        --first;
+      else
+        ++last;
     }
     const int count = last - first + 1;
     const bool centred = count == kStencil && i - first == (kStencil - 1) / 2;
+    double x[kStencil], y[kStencil];
+    for (int a = 0, j = (first + n) % n; a < count; ++a, j = j + 1 < n ? j + 1 : 0) x[a] = pixelOf[j].x(), y[a] = pixelOf[j].y();
     for (int k = 1; k < kSubdivisions; ++k) {
-      const std::array<double, kStencil> w = centred ? centredWeights()[k] : weights(count, i - first + double(k) / kSubdivisions);
-      Pixel sum(0, 0);
-      for (int a = 0, j = (first + n) % n; a < count; ++a, j = j + 1 < n ? j + 1 : 0) sum += w[a] * pixelOf[j];
-      h.contour.points.push_back(sum);
+      const std::array<double, kStencil> w =
+          centred ? centredWeights()[k] : weights(count, i - first + double(k) / kSubdivisions);
+      double sumX = 0, sumY = 0;
+      if (centred)  // of known length
+        for (int a = 0; a < kStencil; ++a) sumX += w[a] * x[a], sumY += w[a] * y[a];
+      else
+        for (int a = 0; a < count; ++a) sumX += w[a] * x[a], sumY += w[a] * y[a];
+      h.contour.points.emplace_back(sumX, sumY);
     }
   }
   // The last gap closes on the first vertex.
@@ -87,7 +96,7 @@ CanonicalContour starContour(const TangentWalk& walk, const Surface& surface, co
   // Beyond an axis ratio of 100 (a fold) the second order matters more than this ellipse.
   if (std::abs(determinant) > 1e-2 * size * size) ellipse = limit * rate.inverse();
   if (ellipse.determinant() < 0) ellipse.col(1) = -ellipse.col(1);  // azimuths turn the same way as everywhere
-  ReachGuess guess;  // reach over its first order
+  ReachGuess guess;                                                 // reach over its first order
   SurfacePoint neighbour;
   for (int i = 0; i < n; ++i) {
     DirectionResult& r = result.directions[i];
@@ -127,7 +136,8 @@ double curvatureVariation(const LocalQuadric& patch, const Surface& surface, con
     const DirectionResult& d = walked.directions[(3 * k * n / 8) % n];
     if (d.failure || !d.limitAngle || !(*d.limitAngle > 0)) continue;
     const SurfacePoint& at = patch.origin();
-    const Outcome<SurfacePoint> onPatch = patch.foot(d.onSurface, at.normal, at), exact = surface.foot(d.onSurface, at.normal, at);
+    const Outcome<SurfacePoint> onPatch = patch.foot(d.onSurface, at.normal, at),
+                                exact = surface.foot(d.onSurface, at.normal, at);
     if (!onPatch || !exact) return 1;
     Eigen::Vector3d n1 = exact->normal;
     if (n1.dot(onPatch->normal) < 0) n1 = -n1;

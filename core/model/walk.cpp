@@ -64,6 +64,16 @@ TangentWalk::TangentWalk(const Surface& surface, const Camera& camera, const Bri
   // Image y points down: keep azimuths turning from +x to +y on the screen.
   const Eigen::Vector3d down = camera.camFromWorld.linear().row(1).transpose();
   if (basis_.col(1).dot(down) < 0) basis_.col(1) = -basis_.col(1);
+  if (const auto* patch = dynamic_cast<const LocalQuadric*>(&surface); patch && patch->origin().position == brightest_.point.position) {
+    const Eigen::Matrix3d& frame = patch->worldFromPatch();
+    side_ = n == frame.col(2) ? 1 : -1;
+    if (n == side_ * frame.col(2)) {
+      patch_ = patch;
+      const Eigen::Vector4d& lw = light_.homogeneous();
+      eyeOnPatch_ = frame.transpose() * (eye_ - brightest_.point.position);
+      lightOnPatch_ = frame.transpose() * (lw.head<3>() - lw.w() * brightest_.point.position);
+    }
+  }
 }
 
 Eigen::Vector3d TangentWalk::direction(double azimuth) const {
@@ -198,10 +208,60 @@ double TangentWalk::sineAbove(const SurfacePoint& p, double sineLimit, double co
   return (p.normal.cross(h).norm() * cosineLimit - p.normal.dot(h) * sineLimit) / h.norm();
 }
 
+std::optional<TangentWalk::Reach> TangentWalk::reachOnPatch(const Eigen::Vector3d& d, double limit, double expected) const {
+  constexpr double kTrust = 0.25;  // as in reachNear
+  constexpr int kMost = 6;
+  const Eigen::Matrix3d& frame = patch_->worldFromPatch();
+  const Eigen::Vector3d& k = patch_->curvatures();
+  const double cx = frame.col(0).dot(d), cy = frame.col(1).dot(d), w = light_.homogeneous().w();
+  const double bend = k.x() * cx * cx + k.y() * cy * cy;
+  const double sine = std::sin(limit), cosine = std::cos(limit), scale = 1 / (2 * sine * cosine);
+  Eigen::Vector3d p, normal;
+  // sin(alpha - limit) sin(alpha + limit) / sin(2 limit): its slope at the limit is 1, and it is nearly linear in s^2. The foot of
+  // s (cx, cy) is z = -s^2 bend / (1 + r), the gradient there (k1 x, k2 y, r), r = sqrt(1 - c s^2 bend). H = L + V needs no unit vectors.
+  const auto above = [&](double squared) {
+    const double s = std::sqrt(squared), r = std::sqrt(1 - k.z() * squared * bend);
+    p = {s * cx, s * cy, -squared * bend / (1 + r)};
+    normal = side_ * Eigen::Vector3d(k.x() * p.x(), k.y() * p.y(), r);
+    const Eigen::Vector3d toEye = eyeOnPatch_ - p, toLight = lightOnPatch_ - w * p;
+    if (!(normal.dot(toEye) > 0 && normal.dot(toLight) > 0)) return std::nan("");
+    const Eigen::Vector3d h = toEye.norm() * toLight + toLight.norm() * toEye;
+    const double across = normal.cross(h).squaredNorm(), along = normal.dot(h), alongSquared = along * along;
+    return (across * cosine * cosine - alongSquared * sine * sine) / (across + alongSquared) * scale;
+  };
+  // Pairs (f, s^2), the newest first; the oldest is P_B itself.
+  double f[3] = {0, above(0), 0}, u[3] = {expected * expected, 0, 0};
+  if (!(f[1] < 0)) return std::nullopt;
+  const double expectedSquared = u[0];
+  for (int i = 0; i < kMost; ++i) {
+    f[0] = above(u[0]);
+    if (!(std::abs(f[0]) < kTrust * limit)) return std::nullopt;
+    if (std::abs(f[0]) <= options_.toleranceRad) {
+      if (i > 0 && !((f[0] - f[1]) * (u[0] - u[1]) >= 0)) return std::nullopt;  // falling: not the first crossing
+      SurfacePoint end;
+      end.position = brightest_.point.position + frame * p;
+      end.normal = frame * normal.normalized();
+      return Reach{std::sqrt(u[0]), end};
+    }
+    double next = u[0] - f[0] * (u[0] - u[1]) / (f[0] - f[1]);
+    if (i > 0) {
+      const double second = ((u[0] - u[1]) / (f[0] - f[1]) - (u[1] - u[2]) / (f[1] - f[2])) / (f[0] - f[2]);
+      next += f[0] * f[1] * second;
+    }
+    if (!(std::abs(next - expectedSquared) < 2 * kTrust * expectedSquared)) return std::nullopt;
+    u[2] = u[1]; f[2] = f[1];
+    u[1] = u[0]; f[1] = f[0];
+    u[0] = next;
+  }
+  return std::nullopt;
+}
+
 Outcome<TangentWalk::Reach> TangentWalk::reachNear(const Eigen::Vector3d& d, double limit, double expected,
                                                    const SurfacePoint& neighbour, double scale) const {
   constexpr double kTrust = 0.25;   // of the limit and of the expected distance: beyond it another branch may be in between
   constexpr int kMost = 12;         // three or four are usual; kinks of a coarse mesh take some more
+  if (patch_)
+    if (std::optional<Reach> reach = reachOnPatch(d, limit, expected)) return *reach;
   const Eigen::Vector3d& origin = brightest_.point.position;
   const double sine = std::sin(limit), cosine = std::cos(limit);
   // Three pairs (f, s), the newest first; the oldest is P_B itself.
@@ -428,7 +488,7 @@ CanonicalContour predictFromEllipse(const TangentWalk& walk, const Surface& surf
       r.failure = Failure{Reason::NotReached, "the direction misses the ellipsoid's outline"};
       continue;
     }
-    const Eigen::Vector3d v = walk.direction(r.azimuth);
+    const Eigen::Vector3d v = walk.direction(x.x(), x.y());
     r.onTangentPlane = origin + s * v;
     const double limit = walk.alphaOnPlane(r.onTangentPlane);
     if (!std::isfinite(limit)) {

@@ -10,13 +10,14 @@
 #include "core/light/light.h"
 #include "core/model/model.h"
 #include "core/surface/brightest_point.h"
+#include "core/surface/local_quadric.h"
 #include "core/surface/surface.h"
 
 namespace glint {
 
 struct WalkOptions {
-  double toleranceRad = 1e-10;   ///< the walk ends when alpha is this close to the limit angle
-  int maxSteps = 60;             ///< marching steps before NotReached; steps grow, so this spans 1e4 first steps
+  double toleranceRad = 1e-10;  ///< the walk ends when alpha is this close to the limit angle
+  int maxSteps = 60;            ///< marching steps before NotReached; steps grow, so this spans 1e4 first steps
 };
 
 /// The walks of method.md section 6 from one brightest point: along a direction v of the tangent plane T, either on T
@@ -33,6 +34,7 @@ class TangentWalk {
   /// Unit direction in T; azimuth 0 is the direction that projects closest to +x in the image, so that azimuths are
   /// comparable between views.
   Eigen::Vector3d direction(double azimuth) const;
+  Eigen::Vector3d direction(double cosine, double sine) const { return cosine * basis_.col(0) + sine * basis_.col(1); }
   /// Azimuth of the orthogonal projection of (point - P_B) on T.
   double azimuthOf(const Eigen::Vector3d& point) const;
 
@@ -72,6 +74,8 @@ class TangentWalk {
   Outcome<SurfacePoint> foot(const Eigen::Vector3d& onPlane, const SurfacePoint& previous) const;
   /// sin(alpha - limit) at a lit surface point that faces the camera, NaN elsewhere: the root's function without atan2.
   double sineAbove(const SurfacePoint& p, double sineLimit, double cosineLimit) const;
+  /// reachNear on a local quadric at P_B, by its closed forms; nothing where the general walk has to look.
+  std::optional<Reach> reachOnPatch(const Eigen::Vector3d& direction, double limit, double expected) const;
 
   const Surface& surface_;
   const Camera& camera_;
@@ -81,6 +85,10 @@ class TangentWalk {
   Eigen::Vector3d eye_;
   Plane plane_;
   Eigen::Matrix<double, 3, 2> basis_;  ///< u, v in T
+  /// The patch that is walked, when its origin is P_B, with eye and light (homogeneous) in its frame, N towards the camera.
+  const LocalQuadric* patch_ = nullptr;
+  double side_ = 1;  ///< of N against the patch's own normal
+  Eigen::Vector3d eyeOnPatch_, lightOnPatch_;
 };
 
 /// Guesses the reach of a direction from those of the directions before it (equal steps of the azimuth or another parameter):
