@@ -115,6 +115,57 @@ TEST(LocalQuadricSurface, IsExactOnPlaneSphereAndCylinder) {
   }
 }
 
+/// A patch that walks cannot know as one: they ask it as any surface.
+class AnySurface final : public Surface {
+ public:
+  explicit AnySurface(const LocalQuadric& patch) : patch_(patch) {}
+  std::string describe() const override { return "any"; }
+  Outcome<SurfacePoint> firstHit(const Ray& ray) const override { return patch_.firstHit(ray); }
+  Outcome<SurfacePoint> foot(const Vector3d& p, const Vector3d& d, const SurfacePoint& previous) const override {
+    return patch_.foot(p, d, previous);
+  }
+  Outcome<Curvature> curvatureAt(const SurfacePoint& p) const override { return patch_.curvatureAt(p); }
+  bool occluded(const SurfacePoint&, const Vector3d&) const override { return false; }
+  Eigen::AlignedBox3d bounds() const override { return patch_.bounds(); }
+  TriangleMesh tessellate(const Eigen::AlignedBox3d& region, int n) const override { return patch_.tessellate(region, n); }
+
+ private:
+  const LocalQuadric& patch_;
+};
+
+// The closed forms of a walk on a patch against the general walk on the same surface: to the walk's tolerance, directions that
+// end nowhere (a plane lit from far away, steep saddles) included.
+TEST(LocalQuadricWalk, ClosedFormsEndWhereTheGeneralWalkEnds) {
+  const Camera camera = lookAt({0.1, -0.3, 2}, {0, 0, 0});
+  int walked = 0;
+  for (const auto& [k1, k2] : {std::pair{2.0, 1.0}, {0.0, 0.0}, {3.0, 0.0}, {1.5, -1.0}, {-0.3, -2.0}, {40.0, 0.1}})
+    for (const Light& light : {Light::at({-0.2, 0.5, 2.2}), Light::towards({0.1, -0.1, 1}), Light::at({1.5, 1, 0.6})})
+      for (const double limit : {0.01, 0.1, 0.4}) {
+        SurfacePoint at;
+        at.position = {0.02, 0.01, 0.03};
+        at.normal = (light.directionFrom(at.position) + (camera.centreInWorld() - at.position).normalized()).normalized();
+        const Eigen::Matrix<double, 3, 2> t = tangentBasis(at.normal);
+        const Vector3d d1 = (t * Eigen::Vector2d(0.8, 0.6)).normalized();
+        const LocalQuadric patch(at, {k1, k2, d1, at.normal.cross(d1)});
+        const AnySurface any(patch);
+        const BrightestPoint b{at, *camera.project(at.position), 0};
+        WalkOptions options;
+        options.toleranceRad = 1e-13;
+        const TangentWalk own(patch, camera, b, light, options), general(any, camera, b, light, options);
+        const CanonicalContour a = starContour(own, patch, camera, limit, 24), g = starContour(general, any, camera, limit, 24);
+        for (int i = 0; i < 24; ++i) {
+          ASSERT_EQ(a.directions[i].failure.has_value(), g.directions[i].failure.has_value()) << k1 << " " << k2 << " " << limit;
+          if (a.directions[i].failure) continue;
+          ++walked;
+          const double reach = (g.directions[i].onTangentPlane - at.position).norm();
+          // Where alpha hardly rises along the direction the tolerance leaves some more of the reach open.
+          EXPECT_NEAR((a.directions[i].onSurface - g.directions[i].onSurface).norm() / reach, 0, 1e-9)
+              << k1 << " " << k2 << " " << limit;
+        }
+      }
+  EXPECT_GT(walked, 800);
+}
+
 // Elsewhere position is off by the third order and the normal by the second: halving the distance divides by 8 and 4.
 TEST(LocalQuadricSurface, AgreesToSecondOrder) {
   const auto surface = makeAnalytic(ellipsoid(0.6, 0.35, 0.25));
@@ -162,7 +213,8 @@ TEST(LocalQuadricPrediction, Nominal) {
   ASSERT_TRUE(fit);
   const auto surface = makeAnalytic(scene.surface);
   for (const Camera& camera : scene.cameras) {
-    const Prediction exact = canonical.predict(*fit, camera, surface.get(), {}), patch = canonical.predict(*fit, camera, surface.get(), kQuadric);
+    const Prediction exact = canonical.predict(*fit, camera, surface.get(), {}),
+                     patch = canonical.predict(*fit, camera, surface.get(), kQuadric);
     ASSERT_EQ(exact.highlights.size(), 1u);
     ASSERT_EQ(patch.highlights.size(), 1u);
     EXPECT_LT(largestDistance(exact.highlights[0].contour, patch.highlights[0].contour), kWalkPx);
@@ -206,9 +258,10 @@ TEST(LocalQuadricPrediction, VariationBoundsTheError) {
     // A torus shows one on its inner wall as well: the one at the origin counts.
     const auto atOrigin = [&](const Prediction& p) {
       const Pixel middle = *s.camera.project(Vector3d::Zero());
-      return *std::min_element(p.highlights.begin(), p.highlights.end(), [&](const PredictedHighlight& a, const PredictedHighlight& b) {
-        return (a.brightest.pixel - middle).norm() < (b.brightest.pixel - middle).norm();
-      });
+      return *std::min_element(p.highlights.begin(), p.highlights.end(),
+                               [&](const PredictedHighlight& a, const PredictedHighlight& b) {
+                                 return (a.brightest.pixel - middle).norm() < (b.brightest.pixel - middle).norm();
+                               });
     };
     ASSERT_FALSE(exact.highlights.empty() || patch.highlights.empty()) << spec.type;
     const PredictedHighlight whole = atOrigin(exact), walked = atOrigin(patch);
