@@ -23,7 +23,8 @@ Command evaluateCommand() {
       "symmetric mean contour distances in pixels and in percent of the equivalent diameter of the observed highlight;\n"
       "predicted/frames and coverage stand beside them, because a model must not win by leaving things out.\n"
       "With --models auto the simplest model is chosen whose leave-one-view-out error on the training frames is within one\n"
-      "standard error of the best, or under --good-enough-pct.";
+      "standard error of the best, or under --good-enough-pct. Where walks on local quadrics are good enough for it by the same\n"
+      "rule, predict.query becomes local-quadric, unless --set says what it is to be.";
   c.examples =
       "  glint evaluate scene.json                                all models, trained on the first 6 frames\n"
       "  glint evaluate scene.json --train spread:6 --html r.html a page with plots and the worst frames\n"
@@ -67,9 +68,12 @@ Command evaluateCommand() {
         if (a->json != "-") context.print(text);
         throw CannotAnswer{{Reason::NotReached, s.why}};
       }
-      request.models = {s.model};
+      const bool keepWalks = a->sets("predict.query");  // the user decided
+      if (keepWalks && s.patches && s.patches->goodEnough) text += "predict.query stays as it was set.\n\n";
+      request = chosenRequest(request, s);
+      if (keepWalks) request.settings.set("predict.query", result.request.settings.text("predict.query"));
       report.chosenModel = s.model;
-      report.whyChosen = s.why;
+      report.whyChosen = s.why + (s.patches ? " " + s.patches->why : "");
       result = inspect(scene, request, context.progress(), &result);
     } else {
       result = inspect(scene, request, context.progress());

@@ -82,6 +82,10 @@ InspectionRequest InspectionArguments::request() const {
   return r;
 }
 
+bool InspectionArguments::sets(const std::string& key) const {
+  return std::any_of(set.begin(), set.end(), [&](const std::string& entry) { return entry.rfind(key + "=", 0) == 0; });
+}
+
 std::shared_ptr<const Scene> InspectionArguments::scene() const {
   return std::make_shared<const Scene>(readScene(input, ReadOptions{allowOutside}));
 }

@@ -28,6 +28,8 @@ struct InspectionArguments {
   /// Starts from the session's request when INPUT is one; what is given on the command line wins.
   /// InputError for unknown models, settings or values out of range.
   InspectionRequest request() const;
+  /// `--set` names this setting.
+  bool sets(const std::string& key) const;
   std::shared_ptr<const Scene> scene() const;
 };
 

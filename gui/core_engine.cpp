@@ -15,7 +15,8 @@ Engine coreEngine() {
                       const Inspection* previous) { return inspect(std::move(scene), request, progress, previous); };
   engine.choose = [](std::shared_ptr<const Scene> scene, InspectionRequest request, std::optional<double> goodEnoughPct,
                      const ProgressFn& progress, const Inspection* previous) {
-    request.models.clear();  // evidence and views alone
+    request.models.clear();                   // evidence and views alone
+    request.settings.reset("predict.query");  // decided anew, whatever an earlier choice set
     return selectModel(inspect(std::move(scene), request, progress, previous), goodEnoughPct, progress);
   };
   engine.tradeoff = [](std::shared_ptr<const Scene> scene, InspectionRequest request, const std::string& file,

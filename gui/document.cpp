@@ -71,11 +71,17 @@ bool Document::isLoaded(const TradeoffPoint& point) const {
   return state_.request.models == std::vector<std::string>{point.model} && state_.request.settings == point.settings;
 }
 
-void Document::load(const TradeoffPoint& point, const QString& text) {
+void Document::setRequest(const InspectionRequest& request, const QString& text) {
   ViewState after = state_;
-  after.request.models = {point.model};
-  after.request.settings = point.settings;
+  after.request = request;
   push(std::move(after), text);
+}
+
+void Document::load(const TradeoffPoint& point, const QString& text) {
+  InspectionRequest after = state_.request;
+  after.models = {point.model};
+  after.settings = point.settings;
+  setRequest(after, text);
 }
 
 void Document::open(const Opened& opened) {

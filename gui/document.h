@@ -77,6 +77,8 @@ class Document : public QObject {
   /// False, with one line in `error`, when the specification does not parse.
   bool setTrain(const std::string& specification, QString* error = nullptr);
   void setSource(FrameSource source);
+  /// Models and settings changed in one step of undo. @param text  what the step is called.
+  void setRequest(const glint::InspectionRequest& request, const QString& text);
   /// Model and settings of a measured point, as one step of undo. @param text  what the step is called.
   void load(const glint::TradeoffPoint& point, const QString& text);
   void setRole(int frame, FrameRole role);

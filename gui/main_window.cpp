@@ -153,8 +153,9 @@ void MainWindow::buildDocks() {
     if (computedFor->scene != document_.sharedScene() || !sameRequest(computedFor->request, document_.request())) return;  // too late
     const QString table = toQString(selectionTable(*selection));
     log(tr("Automatic choice of the model\n") + table);
-    setup_->showChoice(toQString(selection->why), table);
-    if (!selection->model.empty()) document_.setModels({selection->model});
+    setup_->showChoice(toQString(selection->why + (selection->patches ? " " + selection->patches->why : "")), table);
+    if (!selection->model.empty())
+      document_.setRequest(chosenRequest(document_.request(), *selection), tr("Automatic choice: %1").arg(toQString(selection->model)));
     if (document_.stale()) recompute();  // the choice took the place of a run that was under way
   });
   auto* setupScroll = new QScrollArea;  // small windows scroll it instead of squeezing it

@@ -207,7 +207,7 @@ std::string evaluationHtml(const Inspection& inspection, const ReportContext& co
             "<th>&micro;s a frame</th><th>remark</th></tr>\n";
     for (const Candidate& c : context.selection->candidates)
       html += "<tr><td><span class=\"swatch\" style=\"background:" + colourOf(c.model) + "\"></span>" + c.model + "</td><td>" +
-              std::to_string(c.answered) + " / " + std::to_string(c.views) + "</td><td>" + format("%.3g", c.meanPct) + "</td><td>" +
+              std::to_string(c.answered) + " / " + std::to_string(c.tried) + "</td><td>" + format("%.3g", c.meanPct) + "</td><td>" +
               format("%.2g", c.standardErrorPct) + "</td><td>" + format("%.3g", c.predictUs) + "</td><td class=\"reason\">" + escaped(c.remark) + "</td></tr>\n";
     html += "</table>\n";
   }

@@ -54,12 +54,26 @@ ordered_json selectionJson(const Selection& s) {
   for (const Candidate& c : s.candidates)
     j["candidates"].push_back({{"model", c.model},
                                {"views", c.views},
+                               {"tried", c.tried},
                                {"answered", c.answered},
                                {"mean_pct", number(c.meanPct)},
                                {"standard_error_pct", number(c.standardErrorPct)},
                                {"predict_us", number(c.predictUs)},
                                {"time_us", number(c.timeUs)},
                                {"remark", c.remark}});
+  if (s.patches)
+    j["local_quadric"] = {{"good_enough", s.patches->goodEnough},
+                          {"curvature_variation", number(s.patches->variation)},
+                          {"limit", kLargestVariation},
+                          {"views", s.patches->views},
+                          {"other_frames", s.patches->others},
+                          {"mean_pct", number(s.patches->meanPct)},
+                          {"predict_us", number(s.patches->predictUs)},
+                          {"exact_predict_us", number(s.patches->exactUs)},
+                          {"time_us", number(s.patches->timeUs)},
+                          {"reason", s.patches->why}};
+  else
+    j["local_quadric"] = nullptr;
   return j;
 }
 

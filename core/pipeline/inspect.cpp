@@ -20,11 +20,6 @@ double microsecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
 }
 
-NormalPolicy normalPolicy(const Settings& settings) {
-  const std::string& name = settings.text("surface.normals");
-  return name == "facet" ? NormalPolicy::Facet : name == "curved" ? NormalPolicy::Curved : NormalPolicy::Interpolated;
-}
-
 std::string exactText(double v) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, "%.17g", v);
@@ -144,13 +139,13 @@ class Run {
     return f.lightsOn.empty() && std::all_of(f.highlights.begin(), f.highlights.end(), [](const Highlight& h) { return h.light.empty(); });
   }
   std::shared_ptr<const Surface> surfaceOf(int frame) const {
-    const Outcome<std::shared_ptr<const Surface>> s = r_.surfaces->surfaceOf(frame, normalPolicy(r_.request.settings));
+    const Outcome<std::shared_ptr<const Surface>> s = r_.surfaces->surfaceOf(frame, normalPolicyOf(r_.request.settings));
     return s ? *s : nullptr;
   }
   /// A step that missed the surface gets the reason why there is none: the file that cannot be read.
   void explainMissingSurface(int frame, std::optional<Failure>& failure) const {
     if (!failure || failure->reason != Reason::NoSurface) return;
-    const Outcome<std::shared_ptr<const Surface>> s = r_.surfaces->surfaceOf(frame, normalPolicy(r_.request.settings));
+    const Outcome<std::shared_ptr<const Surface>> s = r_.surfaces->surfaceOf(frame, normalPolicyOf(r_.request.settings));
     if (!s) failure = s.failure();
   }
   std::vector<Group> groups() const;

@@ -11,6 +11,11 @@
 
 namespace glint {
 
+NormalPolicy normalPolicyOf(const Settings& settings) {
+  const std::string& name = settings.text("surface.normals");
+  return name == "facet" ? NormalPolicy::Facet : name == "curved" ? NormalPolicy::Curved : NormalPolicy::Interpolated;
+}
+
 TrainingView trainingView(const FrameEvidence& evidence, int index, const Camera& camera, std::shared_ptr<const Surface> surface) {
   TrainingView view;
   view.frame = evidence.frame;

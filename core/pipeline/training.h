@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/pipeline/inspection.h"
+#include "core/surface/surface.h"
 
 namespace glint {
 
@@ -15,6 +16,9 @@ TrainingView trainingView(const FrameEvidence& evidence, int highlight, const Ca
 /// The light of some views of one light (method.md section 4): triangulated, then bundled when `light.solver` says so.
 /// TooFewViews; LightBehindSurface; what the bundle reports. A bundle that fails falls back to nothing: its reason is returned.
 Outcome<LightEstimate> estimateLight(const std::vector<TrainingView>& views, const Settings& settings);
+
+/// What `surface.normals` says.
+NormalPolicy normalPolicyOf(const Settings& settings);
 
 /// Fills `canonical` of a view (method.md section 6). Views with `failure` stay as they are.
 void addCanonicalContour(TrainingView& view, const Light& light, const Settings& settings);

@@ -27,11 +27,6 @@ double microsecondsSince(std::chrono::steady_clock::time_point start) {
 
 double medianOf(std::vector<double> values) { return statisticOf(std::move(values)).median; }
 
-NormalPolicy policyOf(const Settings& settings) {
-  const std::string& name = settings.text("surface.normals");
-  return name == "facet" ? NormalPolicy::Facet : name == "curved" ? NormalPolicy::Curved : NormalPolicy::Interpolated;
-}
-
 /// `count` of `all`, evenly spaced, the first among them.
 std::vector<int> spread(const std::vector<int>& all, int count) {
   const int n = static_cast<int>(all.size());
@@ -184,7 +179,7 @@ std::vector<std::vector<double>> TradeoffBench::timesOf(const Inspection& inspec
   for (const int i : spread(counted, frames)) {
     const FrameComparison& c = result.frames[i];
     std::vector<double>& of = times.emplace_back();
-    const Outcome<std::shared_ptr<const Surface>> surface = inspection.surfaces->surfaceOf(c.frame, policyOf(trial.settings));
+    const Outcome<std::shared_ptr<const Surface>> surface = inspection.surfaces->surfaceOf(c.frame, normalPolicyOf(trial.settings));
     const Camera& camera = inspection.scene->frames[c.frame].camera;
     for (int r = 0; r < repeats; ++r) {
       check();

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/pipeline/selection.h"
+
+namespace glint {
+
+/// One left-out training view and what the others give without it. Light and canonical contours are filled by the first model
+/// that needs them and serve all that follow.
+struct Fold {
+  const TrainingView* left = nullptr;
+  std::vector<TrainingView> others;
+  bool lightTried = false, canonicalTried = false;
+  std::optional<LightEstimate> light;
+  std::optional<Failure> lightFailure;
+};
+
+/// What a model said about one left-out view.
+struct Answer {
+  std::optional<double> errorPct;
+  std::optional<Failure> failure;
+  double predictUs = 0;
+  std::optional<ModelFit> fit;
+  int highlights = 0;           ///< predicted
+  double coverage = 0;          ///< of the one that was compared
+  double variation = 0;         ///< the largest of all; NaN when nothing was walked on a patch
+  bool boundToSurface = false;  ///< an ellipsoid of the highlight as it was seen, without the walk that takes the surface out
+};
+
+/// One per left-out view: at most kMostLeftOut, evenly spread. Their views stay valid as long as the inspection.
+std::vector<Fold> foldsOf(const Inspection& inspection);
+/// Fits the model to the other views, predicts the left-out one and compares. Fills what is missing in the fold.
+Answer leaveOut(Fold& fold, const HighlightModel& model, const Settings& settings);
+/// The last step of that alone, from a fit that is there.
+Answer predictLeft(const TrainingView& left, const HighlightModel& model, const ModelFit& fit, const Settings& settings);
+/// The largest curvatureVariation of the highlights; NaN when none was walked on a patch.
+double variationOf(const Prediction& prediction);
+
+/// Whether local quadrics serve the model that was chosen. None when it does not walk or walks on them already.
+/// @param exact    one answer per fold, of exact walks.
+/// @param mostPct  the error that the rule would still take.
+std::optional<PatchChoice> choosePatches(const Inspection& inspection, const HighlightModel& model,
+                                         const std::vector<Fold>& folds, const std::vector<Answer>& exact, double mostPct,
+                                         const ProgressFn& progress);
+
+using Clock = std::chrono::steady_clock;
+inline double microsecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
+/// "0.123 %".
+std::string percentText(double v);
+
+}  // namespace glint
