@@ -45,24 +45,32 @@ def percent(value):
     return "–" if value is None else f"{value:.2g} %" if value < 1 else f"{value:.3g} %"
 
 
+def patchText(patches):
+    if patches is None:
+        return "–"
+    variation = patches["curvature_variation"]
+    return ("yes" if patches["good_enough"] else "no") + ("" if variation is None else f" ({variation:.2g})")
+
+
 def write(out, tables):
     models = ["primal", "dual", "canonical", "limit-angle", "reflectance"]
     text = ("# The automatic choice, shown\n\nWritten by `docs/make_selection.py`; every number comes from `glint evaluate --models auto`. The first scenes are made by `glint synth`\n"
             "from `resources/specs/auto`: exact contours under one limit angle (the tube light: rendered radiance). The rule is in [method.md](method.md), section 11.\n"
-            "Columns of models: leave-one-view-out error on the training views, \\* the choice, – not tried, (k) answered k views only. Last but one: error of the choice\n"
-            "on the held-out frames, which it has not seen. Last: time of the whole choice.\n")
+            "Columns of models: leave-one-view-out error on the training views, \\* the choice, – not tried because nothing could be better, (k of n) answered k of n views;\n"
+            "fewer views than there are were tried where a model could no longer become the best. Then: whether walks on local quadrics are good enough for the choice, with\n"
+            "the largest variation of the curvature that was seen (– it does not walk), error of the choice on the held-out frames, which it has not seen, time of the whole choice.\n")
     for run, _ in RUNS:
-        text += f"\n## {run[0].upper() + run[1:]}\n| scene | training | " + " | ".join(models) + " | held out | seconds |\n|---|---|" + "---|" * (len(models) + 2) + "\n"
-        for name, train, chosen, errors, held_out, seconds in tables[run]:
+        text += f"\n## {run[0].upper() + run[1:]}\n| scene | training | " + " | ".join(models) + " | local quadric | held out | seconds |\n|---|---|" + "---|" * (len(models) + 3) + "\n"
+        for name, train, chosen, errors, patches, held_out, seconds in tables[run]:
             cells = []
             for m in models:
                 c = errors.get(m)
                 if c is None:
                     cells.append("–")
                     continue
-                partial = "" if c["answered"] == c["views"] else f" ({c['answered']})"
+                partial = "" if c["answered"] == c["views"] else f" ({c['answered']} of {c['tried']})"
                 cells.append(percent(c["mean_pct"]) + partial + (" **\\***" if m == chosen else ""))
-            text += f"| {name} | `{train}` | " + " | ".join(cells) + f" | {percent(held_out)} | {seconds:.1f} |\n"
+            text += f"| {name} | `{train}` | " + " | ".join(cells) + f" | {patchText(patches)} | {percent(held_out)} | {seconds:.1f} |\n"
     out.write_text(text)
 
 
@@ -94,7 +102,7 @@ def main():
                 errors = {c["model"]: c for c in result["selection"]["candidates"]}
                 held_out = result["models"][chosen]["summary"]["contour_error_pct"]["mean"] if chosen else None
                 seconds = sum(c["time_us"] for c in errors.values()) * 1e-6
-                tables[run].append((name, train, chosen, errors, held_out, seconds))
+                tables[run].append((name, train, chosen, errors, result["selection"]["local_quadric"], held_out, seconds))
                 print(f"{name}, {train}, {run}: {chosen}", file=sys.stderr)
             write(args.out, tables)  # what is there so far is true whatever happens next
     for line in wrong:
