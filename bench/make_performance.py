@@ -39,6 +39,8 @@ SIZES = [1000, 10000, 100000, 1000000]
 CURVES = [
     ("By the size of the mesh", "triangles", [
         ("bench_predict", "buildByTriangles", "building the surface"),
+        ("bench_predict", "firstSearchByTriangles", "first search: builds the tree of normals"),
+        ("bench_predict", "searchByTriangles", "every other search"),
         ("bench_predict", "dualByTriangles", "dual"),
         ("bench_predict", "canonicalByTriangles", "canonical"),
         ("bench_predict", "canonicalQuadricByTriangles", "canonical, quadric, hints"),
@@ -49,7 +51,13 @@ CURVES = [
         ("bench_predict", "canonicalQuadricByDirections", "canonical, quadric, hints"),
         ("bench_predict", "starByDirections", "limit-angle, star, hints")], [6, 36, 120, 360]),
     ("By the number of training views, 72 points each", "views", [
-        ("bench_predict", "bundleByViews", "light by the bundle")], [6, 60, 1000]),
+        ("bench_predict", "bundleByViews", "light and limit angle by the bundle, mesh of 1 million triangles"),
+        ("bench_predict", "fitLinearByViews", "ellipsoid, linear"),
+        ("bench_predict", "fitAnchoredByViews", "anchored"),
+        ("bench_predict", "fitRefinedByViews", "refined"),
+        ("bench_predict", "fitReflectanceByViews", "reflectance, all lobes")], [3, 6, 20, 60, 1000]),
+    ("Detection by the width of the picture, 4:3", "pixels", [
+        ("bench_predict", "detectByWidth", "detection")], [320, 640, 1280, 1920]),
     ("Frames predicted and compared, 1 million triangles, all cores, wall time", "frames", [
         ("bench_predict", "framesCanonical", "canonical"),
         ("bench_predict", "framesCanonicalQuadric", "canonical, quadric, hints"),

@@ -61,6 +61,7 @@ void predict(benchmark::State& state, const std::string& model, int triangles, c
   for (const std::string& v : set) settings.setFromText(v.substr(0, v.find('=')), v.substr(v.find('=') + 1));
   std::size_t frame = 1, found = 0, calls = 0;
   double coverage = 0;
+  m.predict(fit, scene().cameras[0], &s, settings);  // the first search on a mesh builds its tree
   for (auto _ : state) {
     const Prediction p = m.predict(fit, scene().cameras[frame], &s, settings);
     found += p.highlights.size();
@@ -216,10 +217,11 @@ void firstSearchByTriangles(benchmark::State& state) {
 BENCHMARK(firstSearchByTriangles)->RangeMultiplier(10)->Range(1000, kMillion)->Unit(benchmark::kMicrosecond);
 void searchByTriangles(benchmark::State& state) {
   const Light light = *fitOf("canonical").lightEstimate;
+  const Surface& mesh = surfaceOf(int(state.range(0)));
+  benchmark::DoNotOptimize(predictedBrightestPoints(mesh, scene().cameras[0], light, BrightestPointOptions{}));
   std::size_t frame = 1;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(
-        predictedBrightestPoints(surfaceOf(int(state.range(0))), scene().cameras[frame], light, BrightestPointOptions{}));
+    benchmark::DoNotOptimize(predictedBrightestPoints(mesh, scene().cameras[frame], light, BrightestPointOptions{}));
     frame = (frame + 7) % scene().cameras.size();
   }
 }
@@ -249,7 +251,46 @@ void bundleByViews(benchmark::State& state) {
   const Light start = triangulated();
   for (auto _ : state) benchmark::DoNotOptimize(bundleLight(views, start));
 }
-BENCHMARK(bundleByViews)->Arg(6)->Arg(60)->Arg(1000)->Unit(benchmark::kMicrosecond);
+BENCHMARK(bundleByViews)->Arg(3)->Arg(6)->Arg(20)->Arg(60)->Arg(1000)->Unit(benchmark::kMicrosecond);
+
+/// The six training views over and over: what one more view costs, not what it teaches.
+FitInput repeated(const FitInput& six, int views) {
+  FitInput input = six;
+  input.views.clear();
+  for (int i = 0; i < views; ++i) {
+    input.views.push_back(six.views[i % six.views.size()]);
+    input.views.back().frame = i;
+  }
+  return input;
+}
+void fitByViews(benchmark::State& state, const std::string& solver) {
+  Settings settings;
+  settings.setFromText("predict.directions", "72");
+  settings.setFromText("fit.solver", solver);
+  FitInput six = training();
+  for (TrainingView& v : six.views) addCanonicalContour(v, six.light->light, settings);
+  const FitInput input = repeated(six, static_cast<int>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(modelByName("canonical").fit(input, settings));
+}
+void fitLinearByViews(benchmark::State& state) { fitByViews(state, "linear"); }
+void fitAnchoredByViews(benchmark::State& state) { fitByViews(state, "anchored"); }
+void fitRefinedByViews(benchmark::State& state) { fitByViews(state, "refined"); }
+/// Contours of a glossy material, so that the reflectance model has something to explain.
+void fitReflectanceByViews(benchmark::State& state) {
+  static const FitInput six = [] {
+    test::Synthetic s = test::ellipsoidScene(6);
+    s.material = Material{};
+    return test::fitInput(s, {});
+  }();
+  const FitInput input = repeated(six, static_cast<int>(state.range(0)));
+  bool fitted = true;
+  for (auto _ : state) fitted = fitted && modelByName("reflectance").fit(input, {});
+  state.counters["fitted"] = fitted;
+}
+BENCHMARK(fitLinearByViews)->Arg(3)->Arg(6)->Arg(20)->Arg(60)->Arg(1000)->Unit(benchmark::kMicrosecond);
+BENCHMARK(fitAnchoredByViews)->Arg(3)->Arg(6)->Arg(20)->Arg(60)->Arg(1000)->Unit(benchmark::kMicrosecond);
+BENCHMARK(fitRefinedByViews)->Arg(3)->Arg(6)->Arg(20)->Arg(60)->Arg(1000)->Unit(benchmark::kMicrosecond);
+BENCHMARK(fitReflectanceByViews)->Arg(3)->Arg(6)->Arg(20)->Arg(60)->Unit(benchmark::kMicrosecond);
 
 /// Frames predicted on a mesh of one million triangles and compared with what was observed, on all cores: wall time.
 void framesPredictedAndCompared(benchmark::State& state, const std::string& model, const std::vector<std::string>& set) {
@@ -269,6 +310,7 @@ void framesPredictedAndCompared(benchmark::State& state, const std::string& mode
   Settings settings;
   for (const std::string& v : set) settings.setFromText(v.substr(0, v.find('=')), v.substr(v.find('=') + 1));
   double error = 0;
+  m.predict(fit, scene().cameras[0], &s, settings);
   for (auto _ : state) {
     std::vector<FrameComparison> frames(state.range(0));
     parallelFor(
@@ -308,6 +350,23 @@ void detectOneFrame(benchmark::State& state) {
   state.SetLabel(std::to_string(frame.specular.width) + " x " + std::to_string(frame.specular.height));
 }
 BENCHMARK(detectOneFrame)->Unit(benchmark::kMillisecond);
+
+/// The same picture at several widths, 4:3.
+void detectByWidth(benchmark::State& state) {
+  Camera camera = scene().cameras[8];
+  const double scale = double(state.range(0)) / camera.width;
+  camera.width = static_cast<int>(state.range(0));
+  camera.height = static_cast<int>(std::lround(camera.height * scale));
+  camera.pixelFromRay.topRows<2>() *= scale;
+  const RenderedFrame frame = renderFrame(surface(false), camera, {scene().light}, Material{});
+  std::size_t found = 0;
+  for (auto _ : state) {
+    const auto detected = detectHighlights(frame.specular, nullptr, DetectOptions{});
+    found = detected ? detected->size() : 0;
+  }
+  state.counters["highlights"] = static_cast<double>(found);
+}
+BENCHMARK(detectByWidth)->Arg(320)->Arg(640)->Arg(1280)->Arg(1920)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace glint
