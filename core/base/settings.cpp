@@ -53,7 +53,7 @@ const std::vector<ParamSpec>& allParams() {
       {"predict.search", "Brightest-point search", "", "", std::string("grid"), 0, 0, 0, {"grid", "hints"},
        "Grid: a grid of rays finds every brightest point. Hints: one search from the most promising brightest point of the training views; the grid where that fails or training frames showed several highlights.", "predict"},
       {"predict.seed_step", "Seed spacing", "", "px", 32.0, 2.0, 128.0, 1.0, {},
-       "Spacing of the ray grid from which brightest points are searched.", "predict"},
+       "Spacing of the ray grid from which brightest points are searched; smooth meshes find them without it.", "predict"},
       {"predict.level_set_step", "Level-set grid", "", "px", 4.0, 0.5, 32.0, 0.5, {},
        "Spacing of the scan that finds the components of a level set; vertices are then polished.", "predict"},
       {"predict.walk_tolerance", "Walk tolerance", "", "rad", 1e-10, 1e-15, 1e-3, 1e-10, {},
