@@ -56,7 +56,7 @@ def write(out, tables):
     models = ["primal", "dual", "canonical", "limit-angle", "reflectance"]
     text = ("# The automatic choice, shown\n\nWritten by `docs/make_selection.py`; every number comes from `glint evaluate --models auto`. The first scenes are made by `glint synth`\n"
             "from `resources/specs/auto`: exact contours under one limit angle (the tube light: rendered radiance). The rule is in [method.md](method.md), section 11.\n"
-            "Columns of models: leave-one-view-out error on the training views, \\* the choice, – not tried because nothing could be better, (k of n) answered k of n views;\n"
+            "Columns of models: leave-one-view-out error on the training views, \\* the choice, – not tried (a simpler one met the tolerance, or nothing could be better), (k of n) answered k of n views;\n"
             "fewer views than there are were tried where a model could no longer become the best. Then: whether walks on local quadrics are good enough for the choice, with\n"
             "the largest variation of the curvature that was seen (– it does not walk), error of the choice on the held-out frames, which it has not seen, time of the whole choice.\n")
     for run, _ in RUNS:

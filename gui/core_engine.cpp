@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <QCoreApplication>
 #include <filesystem>
 
 #include "core/tradeoff/run.h"
@@ -27,7 +28,7 @@ Engine coreEngine() {
     options.input = file;
     // Beside a session file, whose folder the user writes to anyway.
     if (std::filesystem::path(file).extension() == ".glint") options.workFile = file + ".work";
-    options.program = "glint-inspector";
+    options.program = "glint-inspector " + QCoreApplication::applicationVersion().toStdString();
     Tradeoff t = measureTradeoff(std::move(scene), request, options, progress);
     std::error_code ignored;
     if (!options.workFile.empty()) std::filesystem::remove(options.workFile, ignored);

@@ -23,6 +23,9 @@ const std::map<std::string, std::vector<double>>& ladders() {
   return all;
 }
 
+/// They add to what a prediction says, not to its contour, and their work is no part of its time.
+const std::set<std::string> kNoKnobs{"predict.band"};
+
 }  // namespace
 
 SettingValue valueOf(const Settings& settings, const ParamSpec& spec) {
@@ -48,7 +51,7 @@ std::vector<Knob> knobsOf(const Settings& base, const std::vector<ParamSpec>& pa
   static const std::set<std::string> stages{"surface", "light", "fit", "predict"};
   std::vector<Knob> knobs;
   for (const ParamSpec& spec : params) {
-    if (!stages.count(spec.stage)) continue;
+    if (!stages.count(spec.stage) || kNoKnobs.count(spec.key)) continue;
     Knob knob{spec.key, {}};
     const SettingValue now = valueOf(base, spec);
     if (std::holds_alternative<bool>(spec.defaultValue)) {

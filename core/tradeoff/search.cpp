@@ -140,12 +140,14 @@ class Search {
         const double time = factor(a.us, b.us), error = factor(a.errorPct, b.errorPct);
         // What comes before prediction cannot change its time without changing what is predicted.
         const bool sameTime = !usedByPrediction(k) || (time < kTimeSlack && time * kTimeSlack > 1);
+        // With such a knob a shorter time is noise, or a fit that answers less; it is worth combining for its error alone.
+        const bool slower = !usedByPrediction(k) || time * kTimeSlack > 1;
         if (now.result.predictions == base.result.predictions && sameTime) {
           prune(t, "no effect", what + ", the same contours", a);
-        } else if (error > kWorthwhileError && time * kTimeSlack > 1) {
+        } else if (error > kWorthwhileError && slower) {
           prune(t, "not better", what, a);
         } else {
-          promising_[model].push_back({k.key, v, error, time});
+          promising_[model].push_back({k.key, v, error, usedByPrediction(k) ? time : 1});
           continue;
         }
         given_.insert(*index);

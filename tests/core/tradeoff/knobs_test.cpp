@@ -30,6 +30,7 @@ TEST(Knobs, AreTheOnesOfTheMethod) {
                           "predict.walk_tolerance"})
     EXPECT_NE(find(knobs, key), nullptr) << key;
   for (const Knob& k : knobs) EXPECT_NE(paramSpec(k.key).stage, "detect") << k.key;
+  EXPECT_EQ(find(knobs, "predict.band"), nullptr) << "it changes no contour and is not timed";
   EXPECT_THAT(texts(*find(knobs, "fit.solver")), ElementsAre("linear", "anchored", "refined"));
   EXPECT_THAT(texts(*find(knobs, "predict.directions")), ElementsAre("12", "18", "24", "36", "72"));
 }

@@ -119,6 +119,21 @@ TEST(SearchTrials, NothingAnswers) {
   for (const PrunedPoint& p : r.pruned) EXPECT_EQ(p.kind, "failed");
 }
 
+// Time that a knob of the fit seems to save is noise of the clock: it is tried alone and never combined.
+TEST(SearchTrials, AFitIsCombinedForItsErrorAlone) {
+  std::set<std::string> combined;
+  const auto noisy = [&](const Trial& t) -> Outcome<TrialResult> {
+    const int n = t.settings.integer("predict.directions");
+    const bool anchored = t.settings.text("fit.solver") == "anchored";
+    if (anchored && n != 36) combined.insert(std::to_string(n));
+    return TrialResult{(n == 12 ? 20.0 : 10.0) * (anchored ? 0.995 : 1), (n == 12 ? 50.0 : 100.0) * (anchored ? 0.7 : 1),
+                       std::to_string(n) + (anchored ? "a" : "")};
+  };
+  searchTrials({"a"}, Settings(),
+               {{"fit.solver", {std::string("anchored"), std::string("refined")}}, {"predict.directions", {12, 36}}}, noisy);
+  EXPECT_TRUE(combined.empty());
+}
+
 TEST(SearchTrials, KeepsItsLimits) {
   Program program;
   const SearchResult r = search(program, {"a", "b"}, {.maxTrials = 5, .maxFinalists = 2});

@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Writes the tables of docs/tradeoff.md between its markers: `glint tradeoff` with all models on the shipped sessions, on
+path-traced frames with their meshes, and on a mesh of a million triangles.
+
+    docs/make_tradeoff.py [--glint build/release/bin/glint] [--shared ../shared] [--only NAME ...]
+
+Scenes of --shared that are not there are left out; with --only the other tables stay as they are.
+"""
+import argparse
+import array
+import json
+import math
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PAGE = ROOT / "docs/tradeoff.md"
+BEGIN, END = "<!-- {} begin -->", "<!-- {} end -->"
+
+
+def large_mesh(folder):
+    """The scene of sessions/ellipsoid with the ellipsoid as a mesh of a million triangles with vertex normals."""
+    scene = json.loads((ROOT / "sessions/ellipsoid/scene.json").read_text())
+    (name, surface), = scene["surfaces"].items()
+    analytic = surface["analytic"]
+    axes, pose = analytic["semi_axes"], analytic.get("world_from_surface", [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+    rows, columns = 500, 1000
+    vertices, faces = array.array("f"), bytearray()
+    for i in range(rows + 1):
+        for j in range(columns):
+            t, p = math.pi * i / rows, 2 * math.pi * j / columns
+            u = (math.sin(t) * math.cos(p), math.sin(t) * math.sin(p), math.cos(t))
+            local, normal = [a * x for a, x in zip(axes, u)], [x / a for a, x in zip(axes, u)]
+            length = math.sqrt(sum(x * x for x in normal))
+            vertices.extend(sum(pose[r][k] * local[k] for k in range(3)) + pose[r][3] for r in range(3))
+            vertices.extend(sum(pose[r][k] * normal[k] for k in range(3)) / length for r in range(3))
+    if sys.byteorder != "little":
+        vertices.byteswap()
+    count = 0
+    for i in range(rows):
+        for j in range(columns):
+            a, b = i * columns + j, i * columns + (j + 1) % columns
+            for triangle in ((a, a + columns, b), (b, a + columns, b + columns)):
+                faces += b"\x03" + b"".join(v.to_bytes(4, "little") for v in triangle)
+                count += 1
+    header = (f"ply\nformat binary_little_endian 1.0\nelement vertex {(rows + 1) * columns}\n" +
+              "".join(f"property float {k}\n" for k in ("x", "y", "z", "nx", "ny", "nz")) +
+              f"element face {count}\nproperty list uchar int vertex_indices\nend_header\n")
+    (folder / "body.ply").write_bytes(header.encode() + vertices.tobytes() + faces)
+    scene["surfaces"] = {name: {"mesh": "body.ply"}}
+    shutil.copytree(ROOT / "sessions/ellipsoid/frames", folder / "frames")
+    (folder / "scene.json").write_text(json.dumps(scene))
+    return folder / "scene.json"
+
+
+def setting(point):
+    return ", ".join([point["settings"]["model"], *(f"{key.split('.')[-1]} {value}" for key, value in point["set"].items())])
+
+
+def table(glint, title, scene, train):
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "t.json"
+        start = time.monotonic()
+        subprocess.run([glint, "tradeoff", scene, "--models", "primal,dual,canonical,limit-angle,reflectance", "--train", train, "--json", file],
+                       check=True, stdout=subprocess.DEVNULL)
+        seconds = time.monotonic() - start
+        t = json.loads(file.read_text())
+    marks = {}
+    for preset, index in t["presets"].items():
+        marks.setdefault(index, []).append(preset)
+    text = f"### {title}\n`--train {train}`, {seconds:.0f} s: {t['trials']} settings tried on few frames, {len(t['points'])} measured in full, {len(t['pruned'])} given up.\n\n"
+    text += "| front | µs a frame | error % | IoU | predicted | fit ms | peak MB | setting | preset |\n|---|---|---|---|---|---|---|---|---|\n"
+    number = lambda v, digits=3: "–" if v is None else f"{v:.{digits}g}" if abs(v) < 1000 else f"{v:.0f}"
+    for i, p in enumerate(t["points"]):
+        text += (f"| {'*' if p['pareto'] else ''} | {number(p['predict_us'])} | {number(p['contour_error_pct'])} | {number(p['iou'], 4)} | {p['predicted']}/{p['frames']} | "
+                 f"{number(None if p['fit_us'] is None else p['fit_us'] / 1000)} | {number(p['peak_mb'])} | {setting(p)} | {', '.join(marks.get(i, []))} |\n")
+    return text + f"\n{t['reason']}\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--glint", default=ROOT / "build/release/bin/glint", type=pathlib.Path)
+    parser.add_argument("--shared", default=ROOT.parent / "shared", type=pathlib.Path)
+    parser.add_argument("--only", nargs="*")
+    args = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        scenes = [("ellipsoid", "Ellipsoid, rendered images (`sessions/ellipsoid`)", lambda: ROOT / "sessions/ellipsoid/scene.json", "spread:6"),
+                  ("million", "The same on a mesh of a million triangles", lambda: large_mesh(pathlib.Path(folder)), "spread:6"),
+                  ("vase", "Vase, path-traced, its mesh (`sessions/vase`)", lambda: ROOT / "sessions/vase/scene.json", "spread:6"),
+                  ("sphere", "Sphere, path-traced (`data/cycles/sphere`)", lambda: args.shared / "data/cycles/sphere/scene.json", "spread:6")]
+        for name, title, scene, train in scenes:
+            if (args.only and name not in args.only) or not (file := scene()).exists():
+                continue
+            begin, end = BEGIN.format(name), END.format(name)
+            page = PAGE.read_text()
+            if begin not in page:
+                page = page.rstrip() + f"\n\n{begin}\n{end}\n"
+            made = f"{begin}\n{table(args.glint, title, file, train)}{end}"
+            page = re.sub(re.escape(begin) + ".*?" + re.escape(end), lambda _: made, page, flags=re.S)
+            PAGE.write_text(page)  # what is there so far is true whatever happens next
+            print(name, flush=True)
+
+
+if __name__ == "__main__":
+    main()
