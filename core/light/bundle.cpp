@@ -7,6 +7,7 @@
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <map>
 
 #include "core/base/residual_spread.h"
 #include "core/geometry/polyline.h"
@@ -29,6 +30,7 @@ struct Evidence {
   std::optional<Seen> left, right, up, down;  ///< of the pixels kStepPx away; empty where the surface ended
   std::optional<Seen> leftUp, rightDown;      ///< along the diagonal
   int view = 0;
+  Pixel pixel{0, 0};
   double pixelsPerRadian = 1;  ///< 1 / |d alpha / d pixel| for the light of the last reweighting
   double biasPx = 0;           ///< by how much noise displaces the residual on average, see unbias
 };
@@ -138,12 +140,19 @@ void reweight(std::vector<Evidence>& points, const Eigen::Vector4d& light) {
 /// must not move them (it would gain by lights under which the angle changes fast), hence the share.
 double noiseShare(const std::vector<Evidence>& points, const Attempt& a) {
   std::vector<double> sizes, steps;
-  double last = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double r = residual(points[i], a);
-    sizes.push_back(std::abs(r));
-    if (i > 0 && points[i].view == points[i - 1].view) steps.push_back(std::abs(r - last));
-    last = r;
+  std::map<int, std::vector<const Evidence*>> views;
+  for (const Evidence& e : points) {
+    sizes.push_back(std::abs(residual(e, a)));
+    views[e.view].push_back(&e);
+  }
+  for (auto& [view, members] : views) {
+    // Neighbours by their azimuth about the middle: whoever gives a contour may start anywhere, or list its points in any order.
+    Pixel middle(0, 0);
+    for (const Evidence* e : members) middle += e->pixel / double(members.size());
+    const auto azimuth = [&](const Evidence* e) { return std::atan2(e->pixel.y() - middle.y(), e->pixel.x() - middle.x()); };
+    std::sort(members.begin(), members.end(), [&](const Evidence* x, const Evidence* y) { return azimuth(x) < azimuth(y); });
+    for (std::size_t i = 0; i < members.size(); ++i)
+      steps.push_back(std::abs(residual(*members[i], a) - residual(*members[(i + 1) % members.size()], a)));
   }
   constexpr double kVisiblePx = 0.01;  // the effect goes with the square of the noise
   const double all = median(sizes);
@@ -446,7 +455,8 @@ std::optional<Failure> gather(const std::vector<BundleView>& views, const Bundle
                  seen(p + Pixel(0, kStepPx)),
                  seen(p - Pixel(kStepPx, kStepPx)),
                  seen(p + Pixel(kStepPx, kStepPx)),
-                 int(v)};
+                 int(v),
+                 p};
       if ((!e.left && !e.right) || (!e.up && !e.down)) continue;
       origin += at->position;
       scale += (eye - at->position).norm();

@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/highlight/track.h"
 #include "core/pipeline/comparison.h"
+#include "core/pipeline/corrected_depth.h"
 #include "core/pipeline/evidence.h"
 #include "core/pipeline/inspection.h"
 #include "core/pipeline/training.h"
@@ -148,6 +149,16 @@ class Run {
     const Outcome<std::shared_ptr<const Surface>> s = r_.surfaces->surfaceOf(frame, normalPolicyOf(r_.request.settings));
     if (!s) failure = s.failure();
   }
+  /// With the depth correction of a light, where the frame's surface is its own depth map.
+  std::shared_ptr<const Surface> surfaceOf(int frame, const std::string& key) {
+    const auto found = r_.depthCorrections.find(key);
+    const Frame& f = r_.scene->frames[frame];
+    if (found == r_.depthCorrections.end() || !f.surface.empty()) return surfaceOf(frame);
+    const Outcome<std::shared_ptr<const Surface>> s = corrected_.surfaceOf(f, normalPolicyOf(r_.request.settings), key, found->second);
+    return s ? *s : nullptr;
+  }
+  void refineDepthOf(const Group& group, LightEstimate& light);
+  void correctViews(const Group& group);
   std::vector<Group> groups() const;
   /// Some frame, whether it trains or not, shows a highlight of this light.
   bool seen(const std::string& light) const {
@@ -162,6 +173,7 @@ class Run {
   FitInput fitInput(const Group& group) const;
 
   Inspection& r_;
+  CorrectedDepthMaps corrected_;
   const ProgressFn& progress_;
   const Inspection* previous_;
 };
@@ -254,7 +266,7 @@ void Run::brightestPointsAndTangentPlanes() {
   r_.stageKeys["views"] = keyOfStages(q.settings, {"surface"},
                                       r_.stageKeys["detect"] + "|" + join(r_.train.frames) + (r_.train.perSurface ? "per-surface" : "") +
                                           "|x" + join(q.excluded) + "|" + exactText(q.noisePx) + "|" + std::to_string(q.seed));
-  if (unchanged("views")) {
+  if (unchanged("views") && previous_->depthCorrections.empty()) {  // corrected views belong to that run's light
     r_.views = previous_->views;
     for (TrainingView& v : r_.views) v.canonical.reset();
     return;
@@ -305,6 +317,8 @@ void Run::lights() {
   if (unchanged("light") && (!previous_->lights.empty() || !previous_->lightFailures.empty())) {
     r_.lights = previous_->lights;
     r_.lightFailures = previous_->lightFailures;
+    r_.depthCorrections = previous_->depthCorrections;
+    for (const Group& g : groups()) correctViews(g);
     return;
   }
   const std::vector<Group> all = groups();
@@ -317,10 +331,48 @@ void Run::lights() {
       r_.lightFailures.insert_or_assign(key, Failure{Reason::NoHighlight, all[i].light + " has none that could be told from those of other lights"});
       continue;
     }
-    const Outcome<LightEstimate> light = estimateLight(views, r_.request.settings);
+    Outcome<LightEstimate> light = estimateLight(views, r_.request.settings);
     ++r_.work.lights;
+    if (light && r_.request.settings.flag("light.refine_depth")) refineDepthOf(all[i], *light);
     if (light) r_.lights.insert_or_assign(key, *light);
     else r_.lightFailures.insert_or_assign(key, light.failure());
+  }
+}
+
+/// Corrects the depth maps of a light's views, and the light with them.
+void Run::refineDepthOf(const Group& group, LightEstimate& light) {
+  std::vector<TrainingView> views;
+  for (const int v : group.views) {
+    if (!r_.scene->frames[r_.views[v].frame].surface.empty()) return;  // a mesh or a shape has no depth that could be off
+    views.push_back(r_.views[v]);
+  }
+  const Outcome<DepthRefinement> refined = refineDepth(views, light.light, r_.request.settings);
+  if (!refined || !refined->correction.changesAnything()) return;
+  const std::string key = lightKey(group.light, group.surface);
+  r_.depthCorrections.insert_or_assign(key, refined->correction);
+  const std::vector<TrainingView> before = r_.views;
+  correctViews(group);
+  views.clear();
+  for (const int v : group.views) views.push_back(r_.views[v]);
+  const Outcome<LightEstimate> again = estimateLight(views, r_.request.settings);
+  if (!again || !(again->rmsPx < light.rmsPx)) {  // the corrected surfaces do not keep what the correction promised
+    r_.views = before;
+    r_.depthCorrections.erase(key);
+    return;
+  }
+  light = *again;
+  if (!light.extent && refined->uncertainty) light.uncertainty = refined->uncertainty;
+}
+
+void Run::correctViews(const Group& group) {
+  const std::string key = lightKey(group.light, group.surface);
+  if (!r_.depthCorrections.count(key)) return;
+  for (const int v : group.views) {
+    TrainingView& view = r_.views[v];
+    FrameEvidence evidence;
+    evidence.frame = view.frame;
+    evidence.highlights = {view.highlight};
+    view = trainingView(evidence, 0, view.camera, surfaceOf(view.frame, key));
   }
 }
 
@@ -420,7 +472,7 @@ void Run::predictionsAndComparisons() {
           const Camera& camera = r_.scene->frames[frame].camera;
           Prediction prediction;
           if (fit.fit) {
-            const std::shared_ptr<const Surface> surface = needsSurface ? surfaceOf(frame) : nullptr;
+            const std::shared_ptr<const Surface> surface = needsSurface ? surfaceOf(frame, lightKey(fit.light, fit.surface)) : nullptr;
             surfacesAsked += needsSurface;
             ++predictions;
             const auto start = std::chrono::steady_clock::now();

@@ -10,6 +10,7 @@
 #include "core/base/progress.h"
 #include "core/base/settings.h"
 #include "core/evaluate/metrics.h"
+#include "core/light/refine_depth.h"
 #include "core/model/model.h"
 #include "core/scene/scene.h"
 
@@ -104,6 +105,7 @@ struct Inspection {
   std::vector<TrainingView> views;                         ///< one per training highlight
   std::map<std::string, LightEstimate> lights;             ///< by light id (+ "@" + surface key when per surface)
   std::map<std::string, Failure> lightFailures;            ///< the same keys: why a light could not be estimated
+  std::map<std::string, DepthCorrection> depthCorrections; ///< the same keys, where light.refine_depth found one: of the views' and predictions' depth maps
   std::map<std::string, ModelResult> models;
   std::map<std::string, std::string> stageKeys;            ///< what each stage's result depends on: tells which stages a later run may reuse
   WorkCounts work;

@@ -130,6 +130,17 @@ Outcome<LightEstimate> estimateLight(const std::vector<TrainingView>& views, con
   return estimate;
 }
 
+Outcome<DepthRefinement> refineDepth(const std::vector<TrainingView>& views, const Light& start, const Settings& settings) {
+  if (settings.text("light.solver") != "bundle") return Failure{Reason::NotSupported, "light.refine_depth needs the bundle"};
+  std::vector<BundleView> bundleViews;
+  for (const TrainingView& v : views)
+    if (!v.failure && v.brightest) bundleViews.push_back({v.camera, v.surface.get(), v.highlight.contour.points, v.brightest});
+  BundleOptions options;
+  options.pointsPerView = settings.integer("light.bundle_points");
+  options.robustPx = settings.number("light.robust_px");
+  return refineDepth(bundleViews, start, settings.number("light.depth_sigma"), options);
+}
+
 void addCanonicalContour(TrainingView& view, const Light& light, const Settings& settings) {
   if (view.failure || !view.brightest) return;
   WalkOptions options;

@@ -20,6 +20,10 @@ Outcome<LightEstimate> estimateLight(const std::vector<TrainingView>& views, con
 /// What `surface.normals` says.
 NormalPolicy normalPolicyOf(const Settings& settings);
 
+/// Depth correction of some views of one light whose surfaces are their own frames' depth maps (light.refine_depth). The bundle's failures;
+/// NotSupported unless `light.solver` is bundle.
+Outcome<DepthRefinement> refineDepth(const std::vector<TrainingView>& views, const Light& start, const Settings& settings);
+
 /// Fills `canonical` of a view (method.md section 6). Views with `failure` stay as they are.
 void addCanonicalContour(TrainingView& view, const Light& light, const Settings& settings);
 

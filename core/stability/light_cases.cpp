@@ -4,6 +4,8 @@
 #include <cstdio>
 
 #include "core/light/estimate.h"
+#include "core/light/refine_depth.h"
+#include "core/light/refine_poses.h"
 #include "core/stability/cases.h"
 #include "core/stability/scene.h"
 
@@ -57,13 +59,42 @@ double lightError(const Light& a, const Light& b, double unit) {
   return static_cast<double>((p - q).norm());
 }
 
+enum class Refine { Nothing, Poses, Depth, Extent };
+
 struct BundleScene {
   double curvature = 0.8;
   bool round = true;
   double scale = 1, base = 0.15, distance = 1.5, focal = 800, limit = std::numbers::pi / 30;
   int views = 6, points = 36, distinct = 0;  ///< `distinct` > 0: views repeat
   bool oneCentre = false;
+  Refine refine = Refine::Nothing;
 };
+
+/// The light and the limit angle with what is refined beside them. From exact contours of a point light there is nothing to refine, so that the
+/// answer is the same; what moved all the same is an error.
+struct Refined {
+  Light light;
+  double limit = 0, moved = 0;
+};
+Outcome<Refined> refined(const std::vector<BundleView>& views, const Light& start, const BundleOptions& options, Refine what, double scale) {
+  if (what == Refine::Poses) {
+    const Outcome<PoseRefinement> r = refinePoses(views, start, 0.3, options);
+    if (!r) return r.failure();
+    return Refined{r->bundle.light, r->bundle.limitAngle, r->movedPx};
+  }
+  if (what == Refine::Depth) {
+    const Outcome<DepthRefinement> r = refineDepth(views, start, 0.005, options);
+    if (!r) return r.failure();
+    return Refined{r->light, r->limitAngle, r->correction.coefficients.norm()};
+  }
+  BundleOptions wide = options;
+  if (what == Refine::Extent) wide.limitOrders = 1;
+  const Outcome<Bundle> b = bundleLight(views, start, wide);
+  if (!b) return b.failure();
+  // Beside the square of the light's distance, 2 m of every scene.
+  const double extent = b->extent ? b->extent->norm() / (b->light.atInfinity() ? 1.0 : 4 * scale * scale) : 0;
+  return Refined{b->light, b->limitAngle, extent};
+}
 
 /// Exact contours of one limit angle, each rounded to double once; the truth is the light they were made with.
 template <class T>
@@ -99,10 +130,10 @@ Outcome<Measured> bundleCase(const BundleScene& b, const Light& light, double co
   const Outcome<Triangulation> start = triangulateLight(rays);
   BundleOptions options;
   options.pointsPerView = b.points;
-  const Outcome<Bundle> found = bundleLight(views, start ? start->light : Light::towards(rays[0].direction), options);
+  const Outcome<Refined> found = refined(views, start ? start->light : Light::towards(rays[0].direction), options, b.refine, b.scale);
   if (!found) return found.failure();
-  const double limitError = std::abs(found->limitAngle / b.limit - 1);
-  return Measured{worstOf({lightError(found->light, light, b.scale), limitError}), condition};
+  const double limitError = std::abs(found->limit / b.limit - 1);
+  return Measured{worstOf({lightError(found->light, light, b.scale), limitError, found->moved}), condition};
 }
 
 }  // namespace
@@ -199,6 +230,17 @@ void addLightCases(Cases& cases) {
       [=] { return bundleCase<Real>({.oneCentre = true}, lamp, 1); });
   add(b, "focal length 50 px", 50, 1e-9, "", [=] { return bundleCase<Real>({.focal = 50}, lamp, 1); });
   add(b, "focal length 50,000 px", 5e4, 1e-9, "", [=] { return bundleCase<Real>({.focal = 5e4}, lamp, 1); });
+  for (const auto& [stage, what] : {std::pair("bundle, poses refined", Refine::Poses), std::pair("bundle, depth refined", Refine::Depth),
+                                    std::pair("bundle, extent of the light", Refine::Extent)}) {
+    const char* const note = "exact contours of a point: there is nothing to refine";
+    add(stage, "light at 2 m", 2, 1e-9, note, [=] { return bundleCase<Real>({.refine = what}, lamp, 1); });
+    add(stage, "scene scale 1e-6", 1e-6, 1e-9, note, [=] { return bundleCase<Real>({.scale = 1e-6, .refine = what}, Light::at(2e-6 * d), 1); });
+    add(stage, "scene scale 1e6", 1e6, 1e-9, note, [=] { return bundleCase<Real>({.scale = 1e6, .refine = what}, Light::at(2e6 * d), 1); });
+    add(stage, "light at 1e9 m", 1e9, 1e-9, note, [=] { return bundleCase<Real>({.refine = what}, Light::at(1e9 * d), 1e9); });
+    add(stage, "light at infinity", 0, 1e-9, note, [=] { return bundleCase<Real>({.refine = what}, Light::towards(d), 1); });
+    add(stage, "6 views, each 20 times", 20, 1e-9, note,
+        [=] { return bundleCase<Real>({.views = 120, .points = 12, .distinct = 6, .refine = what}, lamp, 1); });
+  }
   for (const double degrees : {80.0, 85.0}) {
     const double a = degrees * std::numbers::pi / 180;
     // No normal of a contour point is turned beyond the horizon: 0.9 degrees over the mirror points, 1.5 of the limit.

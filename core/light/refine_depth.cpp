@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/light/refine_depth.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/residual_spread.h"
+#include "core/geometry/polyline.h"
+
+namespace glint {
+namespace {
+
+using Terms = DepthCorrection::Terms;
+constexpr double kStepPx = 0.5;         // of the image gradient, as in the bundle
+constexpr int kRounds = 20;
+constexpr double kSystematic = 0.5;     // share of the points that count as independent; white noise leaves nearly all of them
+constexpr double kLeastNoisePx = 0.02;  // the accuracy of detection: below, the depth would be bent to round-off
+constexpr double kColumnStep = 1e-3;    // of a prior's standard deviation, for derivatives; the angle is smooth in the depth
+
+struct Monomials {
+  Terms value, byX, byY;  ///< byX, byY per unit of x and y
+};
+Monomials monomials(double x, double y) {
+  Monomials m;
+  double px[DepthCorrection::kOrder + 1] = {1}, py[DepthCorrection::kOrder + 1] = {1};
+  for (int i = 1; i <= DepthCorrection::kOrder; ++i) px[i] = px[i - 1] * x, py[i] = py[i - 1] * y;
+  int k = 0;
+  for (int n = 0; n <= DepthCorrection::kOrder; ++n)
+    for (int j = 0; j <= n; ++j, ++k) {
+      const int i = n - j;
+      m.value(k) = px[i] * py[j];
+      m.byX(k) = i > 0 ? i * px[i - 1] * py[j] : 0;
+      m.byY(k) = j > 0 ? j * px[i] * py[j - 1] : 0;
+    }
+  return m;
+}
+Terms priors(double sigma) {
+  Terms s;
+  int k = 0;
+  for (int n = 0; n <= DepthCorrection::kOrder; ++n)
+    for (int j = 0; j <= n; ++j, ++k) s(k) = sigma / std::max(1, n);  // so that the slopes of all degrees have about one size
+  return s;
+}
+double halfDiagonal(const Camera& c) { return 0.5 * std::hypot(c.width, c.height); }
+Pixel normalised(const Camera& c, const Pixel& p) { return (p - 0.5 * Pixel(c.width - 1, c.height - 1)) / halfDiagonal(c); }
+
+/// A pixel with its depth and slope, in the camera's frame.
+struct Sample {
+  Eigen::Vector3d ray, rayByU, rayByV;  ///< of depth 1, and per pixel
+  double depth = 0, depthByU = 0, depthByV = 0;
+  Monomials terms;  ///< derivatives per pixel
+};
+struct Point {
+  Sample at, left, right, up, down;
+  int view = 0;
+};
+struct View {
+  Eigen::Isometry3d worldFromCamera;
+  Eigen::Vector3d eye;
+};
+
+std::optional<Sample> sampleAt(const BundleView& view, const Pixel& p) {
+  const Outcome<SurfacePoint> hit = view.surface->firstHit(view.camera.ray(p));
+  if (!hit) return std::nullopt;
+  const Eigen::Matrix3d rayFromPixel = view.camera.pixelFromRay.inverse();
+  Sample s;
+  s.ray = rayFromPixel * Eigen::Vector3d(p.x(), p.y(), 1);
+  s.rayByU = rayFromPixel.col(0);
+  s.rayByV = rayFromPixel.col(1);
+  s.depth = (view.camera.camFromWorld * hit->position).z();
+  const Eigen::Vector3d n = view.camera.camFromWorld.linear() * hit->normal;
+  const double across = n.dot(s.ray);
+  if (!(s.depth > 0) || !(std::abs(across) > 1e-6)) return std::nullopt;  // seen edge on: no slope to correct
+  s.depthByU = -s.depth * n.dot(s.rayByU) / across;
+  s.depthByV = -s.depth * n.dot(s.rayByV) / across;
+  const Pixel x = normalised(view.camera, p);
+  s.terms = monomials(x.x(), x.y());
+  s.terms.byX /= halfDiagonal(view.camera);
+  s.terms.byY /= halfDiagonal(view.camera);
+  return s;
+}
+
+struct Seen {
+  Eigen::Vector3d position, normal, toCamera;
+};
+struct Problem {
+  std::vector<Point> points;
+  std::vector<View> views;
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  double scale = 1;
+
+  Seen seen(const Sample& s, const View& v, const Terms& c) const {
+    const double factor = 1 + c.dot(s.terms.value), depth = s.depth * factor;
+    const double byU = s.depthByU * factor + s.depth * c.dot(s.terms.byX), byV = s.depthByV * factor + s.depth * c.dot(s.terms.byY);
+    const Eigen::Vector3d u = byU * s.ray + depth * s.rayByU, w = byV * s.ray + depth * s.rayByV;
+    Seen result;
+    const Eigen::Vector3d position = v.worldFromCamera * Eigen::Vector3d(depth * s.ray);
+    result.toCamera = (v.eye - position).normalized();
+    result.normal = (v.worldFromCamera.linear() * u.cross(w)).normalized();
+    if (result.normal.dot(result.toCamera) < 0) result.normal = -result.normal;
+    result.position = (position - origin) / scale;
+    return result;
+  }
+  static double alpha(const Seen& s, const Eigen::Vector4d& light) {
+    Eigen::Vector3d d = (light.head<3>() - light.w() * s.position).normalized();
+    if (s.normal.dot(d) < 0) d = -d;
+    return incidentAngle(s.normal, d, s.toCamera);
+  }
+  double alpha(const Sample& s, const View& v, const Eigen::Vector4d& light, const Terms& c) const { return alpha(seen(s, v, c), light); }
+};
+
+struct State {
+  Eigen::Vector4d light;
+  double limit = 0;
+  Terms c = Terms::Zero();
+};
+
+/// Signed contour distances in pixels; the slopes too where asked.
+std::vector<double> residuals(const Problem& problem, const State& s, std::vector<double>* slopes = nullptr) {
+  std::vector<double> result;
+  result.reserve(problem.points.size());
+  for (const Point& p : problem.points) {
+    const View& v = problem.views[p.view];
+    const auto a = [&](const Sample& sample) { return problem.alpha(sample, v, s.light, s.c); };
+    const double slope = std::hypot(a(p.right) - a(p.left), a(p.down) - a(p.up)) / (2 * kStepPx);
+    result.push_back(slope > 0 ? (a(p.at) - s.limit) / slope : 0.0);
+    if (slopes) slopes->push_back(slope);
+  }
+  return result;
+}
+
+double cost(const std::vector<double>& residuals, const Terms& c, const Terms& prior, double robustPx, double noisePx) {
+  double sum = 0;
+  for (const double r : residuals) sum += (std::abs(r) <= robustPx ? r * r : robustPx * (2 * std::abs(r) - robustPx)) / (noisePx * noisePx);
+  return sum + c.cwiseQuotient(prior).squaredNorm();
+}
+
+double rms(const std::vector<double>& residuals) {
+  double sum = 0;
+  for (const double r : residuals) sum += r * r;
+  return std::sqrt(sum / double(residuals.size()));
+}
+
+Eigen::Matrix<double, 4, 3> chartOf(const Eigen::Vector4d& light) {
+  const Eigen::Matrix4d q = Eigen::HouseholderQR<Eigen::Vector4d>(light).householderQ();
+  return q.rightCols<3>();
+}
+
+/// d residual / d (chart of L, limit, the first `terms` of c in units of the prior), px, with the weights held.
+Eigen::MatrixXd jacobian(const Problem& problem, const State& s, const std::vector<double>& slopes, const Terms& prior, int terms) {
+  const Eigen::Matrix<double, 4, 3> chart = chartOf(s.light);
+  Eigen::MatrixXd j = Eigen::MatrixXd::Zero(Eigen::Index(problem.points.size()), 4 + terms);
+  for (std::size_t i = 0; i < problem.points.size(); ++i) {
+    if (!(slopes[i] > 0)) continue;
+    const Point& p = problem.points[i];
+    const View& v = problem.views[p.view];
+    const Seen at = problem.seen(p.at, v, s.c);
+    j.row(i).head<3>() = incidentAngleByLight(at.position, at.normal, at.toCamera, s.light).transpose() * chart;
+    j(i, 3) = -1;
+    for (int k = 0; k < terms; ++k) {
+      const Terms by = kColumnStep * prior(k) * Terms::Unit(k);
+      j(i, 4 + k) = (problem.alpha(p.at, v, s.light, s.c + by) - problem.alpha(p.at, v, s.light, s.c - by)) / (2 * kColumnStep);
+    }
+    j.row(i) /= slopes[i];
+  }
+  return j;
+}
+
+/// Levenberg-Marquardt on light, limit angle and the first `terms` terms, weights and noise renewed in every round.
+State fitted(const Problem& problem, State state, const Terms& prior, int terms, double robustPx) {
+  const Eigen::Index columns = 4 + terms, n = Eigen::Index(problem.points.size());
+  std::vector<double> slopes, r = residuals(problem, state, &slopes);
+  double damping = 1e-3;
+  for (int round = 0; round < kRounds; ++round) {
+    const double noise = std::clamp(rms(r), kLeastNoisePx, 1.0);  // what remains counts as noise; it falls as the depth explains more
+    const Eigen::MatrixXd j = jacobian(problem, state, slopes, prior, terms);
+    Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + terms + columns, columns);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(system.rows());
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double size = std::abs(r[i]), weight = (size > robustPx ? std::sqrt(robustPx / size) : 1.0) / noise;
+      system.row(i) = weight * j.row(i);
+      right(i) = -weight * r[i];
+    }
+    for (int k = 0; k < terms; ++k) {
+      system(n + k, 4 + k) = 1;
+      right(n + k) = -state.c(k) / prior(k);
+    }
+    const Eigen::VectorXd norms = system.colwise().norm().transpose();
+    const double before = cost(r, state.c, prior, robustPx, noise);
+    bool better = false;
+    double gained = 0;
+    for (int trial = 0; trial < 6 && !better; ++trial) {
+      for (Eigen::Index k = 0; k < columns; ++k) system(n + terms + k, k) = std::sqrt(damping) * norms(k);
+      const Eigen::VectorXd step = system.colPivHouseholderQr().solve(right);
+      State next = state;
+      next.light = (state.light + chartOf(state.light) * step.head<3>()).normalized();
+      next.limit += step(3);
+      for (int k = 0; k < terms; ++k) next.c(k) += step(4 + k) * prior(k);
+      std::vector<double> nextSlopes;
+      std::vector<double> nextR = residuals(problem, next, &nextSlopes);
+      const double after = step.allFinite() && next.limit > 0 ? cost(nextR, next.c, prior, robustPx, noise) : before;
+      if (!(after < before)) {
+        damping *= 10;
+        continue;
+      }
+      better = true;
+      gained = (before - after) / before;
+      damping = std::max(1e-9, 0.1 * damping);
+      state = next;
+      slopes = std::move(nextSlopes);
+      r = std::move(nextR);
+    }
+    if (!better || gained < 1e-6) break;
+  }
+  return state;
+}
+
+/// RMS distance of each of some views' contours from the level set that the other views give, px.
+std::vector<double> leftOutErrors(const Problem& problem, const State& start, const Terms& prior, int terms, double robustPx) {
+  constexpr std::size_t kLeftOut = 6;  // more views left out would not change a choice between so few
+  const std::size_t views = problem.views.size(), count = std::min(kLeftOut, views);
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < count; ++i) {
+    const int left = int(i * views / count);
+    Problem others = problem, one = problem;
+    std::erase_if(others.points, [&](const Point& p) { return p.view == left; });
+    std::erase_if(one.points, [&](const Point& p) { return p.view != left; });
+    if (one.points.empty() || others.points.size() < 30) continue;
+    errors.push_back(rms(residuals(one, fitted(others, start, prior, terms, robustPx))));
+  }
+  return errors;
+}
+
+/// Whether `richer` predicts left-out views better than `plain` by more than the standard error of the gain.
+bool predictsBetter(const std::vector<double>& richer, const std::vector<double>& plain) {
+  if (richer.size() < 3 || richer.size() != plain.size()) return false;
+  double mean = 0, squares = 0;
+  const double n = double(richer.size());
+  for (std::size_t i = 0; i < richer.size(); ++i) mean += std::log(plain[i] / richer[i]) / n;
+  for (std::size_t i = 0; i < richer.size(); ++i) squares += std::pow(std::log(plain[i] / richer[i]) - mean, 2);
+  return std::isfinite(mean) && mean > std::sqrt(squares / (n - 1) / n);
+}
+
+}  // namespace
+
+double DepthCorrection::factorAt(const Camera& camera, const Pixel& ideal) const {
+  const Pixel x = normalised(camera, ideal);
+  return 1 + coefficients.dot(monomials(x.x(), x.y()).value);
+}
+
+Outcome<DepthRefinement> refineDepth(const std::vector<BundleView>& given, const Light& start, double sigma, const BundleOptions& options) {
+  require(sigma > 0, "refineDepth: sigma");
+  const Outcome<Bundle> bundle = bundleLight(given, start, options);
+  if (!bundle) return bundle.failure();
+  DepthRefinement result;
+  result.light = bundle->light;
+  result.limitAngle = bundle->limitAngle;
+  result.rmsPx = bundle->rmsPx;
+
+  Problem problem;
+  double distance = 0;
+  for (std::size_t v = 0; v < given.size(); ++v) {
+    const BundleView& g = given[v];
+    problem.views.push_back({g.camera.camFromWorld.inverse(), g.camera.centreInWorld()});
+    const std::vector<Pixel> pixels =
+        g.contour.size() > std::size_t(options.pointsPerView) ? resample(Polyline{g.contour, true}, options.pointsPerView) : g.contour;
+    for (const Pixel& p : pixels) {
+      const auto at = [&](double x, double y) { return sampleAt(g, p + Pixel(x, y)); };
+      const std::optional<Sample> here = at(0, 0), left = at(-kStepPx, 0), right = at(kStepPx, 0), up = at(0, -kStepPx), down = at(0, kStepPx);
+      if (!here || !left || !right || !up || !down) continue;
+      problem.points.push_back({*here, *left, *right, *up, *down, int(v)});
+      problem.origin += problem.views[v].worldFromCamera * Eigen::Vector3d(here->depth * here->ray);
+      distance += here->depth * here->ray.norm();
+    }
+  }
+  // A depth that is off leaves residuals that keep their sign along contours.
+  const bool systematic = bundle->rmsPx > kLeastNoisePx && bundle->uncertainty &&
+                          bundle->uncertainty->degreesOfFreedom < kSystematic * double(problem.points.size());
+  if (!systematic || problem.points.size() < 4 + DepthCorrection::kTerms) return result;
+  problem.origin /= double(problem.points.size());
+  problem.scale = distance / double(problem.points.size());
+
+  State state;
+  const Eigen::Vector4d& lw = bundle->light.homogeneous();
+  state.light << (lw.head<3>() - lw.w() * problem.origin) / problem.scale, lw.w();
+  state.light.normalize();
+  state.limit = bundle->limitAngle;
+  const Terms prior = priors(sigma);
+  // As many terms as predict views that were left out better: free terms that nothing asks for would trade noise between depth and light.
+  int terms = 0;
+  std::vector<double> best = leftOutErrors(problem, state, prior, 0, options.robustPx);
+  for (const int more : {6, DepthCorrection::kTerms}) {  // up to second, up to fourth degree
+    std::vector<double> errors = leftOutErrors(problem, state, prior, more, options.robustPx);
+    if (!predictsBetter(errors, best)) continue;
+    terms = more;
+    best = std::move(errors);
+  }
+  if (terms == 0) return result;
+  state = fitted(problem, state, prior, terms, options.robustPx);
+  const Eigen::Index columns = 4 + terms;
+  std::vector<double> slopes;
+  const std::vector<double> r = residuals(problem, state, &slopes);
+
+  if (state.light.w() < 0) state.light = -state.light;
+  Eigen::Matrix4d toWorld = Eigen::Matrix4d::Identity();
+  toWorld.topLeftCorner<3, 3>() *= problem.scale;
+  toWorld.topRightCorner<3, 1>() = problem.origin;
+  const Eigen::Vector4d world = toWorld * state.light, unit = world.normalized();
+  if (!world.allFinite() || !state.c.allFinite()) return Failure{Reason::NotFinite, "refined depth"};
+  result.light = Light::homogeneous(world);
+  result.limitAngle = state.limit;
+  result.rmsPx = rms(r);
+  result.correction.coefficients = state.c;
+
+  // Covariance of everything together, the prior as further rows in units of the noise.
+  std::vector<int> views;
+  for (const Point& p : problem.points) views.push_back(p.view);
+  const ResidualSpread spread = residualSpread(r, views, int(columns), options.robustPx);
+  const Eigen::MatrixXd j = jacobian(problem, state, slopes, prior, terms);
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(j.rows() + terms, columns);
+  rows.topRows(j.rows()) = j / std::sqrt(spread.factor);
+  rows.bottomRightCorner(terms, terms).setIdentity();
+  const Eigen::MatrixXd upper = Eigen::HouseholderQR<Eigen::MatrixXd>(rows).matrixQR().topRows(columns).triangularView<Eigen::Upper>();
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(upper, Eigen::ComputeFullV);
+  if (!(svd.singularValues()(columns - 1) > 1e-14 * svd.singularValues()(0))) return result;
+  const Eigen::MatrixXd root = svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();
+  for (int k = 0; k < terms; ++k) result.openShare(k) = root.row(4 + k).norm();
+  const Eigen::MatrixXd dy = toWorld * chartOf(state.light) * root.topRows<3>();
+  ParameterUncertainty uncertainty;
+  uncertainty.root.resize(5, columns);
+  uncertainty.root.topRows<4>() = (dy - unit * (unit.transpose() * dy)) / world.norm();
+  uncertainty.root.row(4) = root.row(3);
+  uncertainty.noisePx = spread.noisePx;
+  uncertainty.degreesOfFreedom = spread.degreesOfFreedom;
+  if (uncertainty.root.allFinite()) result.uncertainty = std::move(uncertainty);
+  return result;
+}
+
+}  // namespace glint
