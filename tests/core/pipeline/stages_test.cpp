@@ -37,6 +37,7 @@ TEST(LazyStages, AModelComputesOnlyWhatItNeeds) {
   EXPECT_EQ(counts(inspect(scene, request({"primal"})).work), "6 3 0 0 1 6 6 0 ");
   EXPECT_EQ(counts(inspect(scene, request({"limit-angle"})).work), "6 3 1 0 1 6 6 6 ");
   EXPECT_EQ(counts(inspect(scene, request({"dual"})).work), "6 3 1 0 1 6 6 6 ");
+  EXPECT_EQ(counts(inspect(scene, request({"reflectance"})).work), "6 3 1 0 1 6 6 6 ");
   EXPECT_EQ(counts(inspect(scene, request({"canonical"})).work), "6 3 1 3 1 6 6 6 ");
   EXPECT_EQ(counts(inspect(scene, request({"primal", "canonical"})).work), "6 3 1 3 2 12 12 6 ");
 }
