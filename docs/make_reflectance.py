@@ -31,6 +31,22 @@ GEOMETRIES = {
 }
 WIDTHS = {"narrow, m = 0.05": 0.05, "wide, m = 0.2": 0.2}
 
+# Shapes beside sphere and sheet; every highlight lies inside the image. `turned`: a cylinder along x, seen from above.
+TURNED = [[0, 1, 0, 0], [1, 0, 0, 0], [0, 0, -1, 0], [0, 0, 0, 1]]
+ELLIPSOID = {"type": "ellipsoid", "semi_axes": [0.6, 0.35, 0.25]}
+SHAPES = {
+    "plane": ({"type": "plane"}, [{"position": [0.2, 1.2, 1.1]}], [1.6, -2.0, -1.1, 1.2]),
+    "cylinder": ({"type": "cylinder", "radius": 0.3, "world_from_surface": TURNED}, [{"position": [0.3, -1.5, 1.4]}], [1.8, -2.1, -1.0, 1.2]),
+    "bent sheet": ({"type": "sheet", "curvature": 1.2}, [{"position": [0.3, 0.9, 1.3]}], [1.6, -2.2, -0.9, 1.2]),
+    "ellipsoid": (ELLIPSOID, [{"position": [1.2, -1.0, 2.2]}], [1.9, -2.4, 0.4, 0.7]),
+    "ellipsoid, near lamp": (ELLIPSOID, [{"position": [0.5, -0.6, 0.9]}], [1.9, -2.4, 0.0, 0.7]),
+    "ellipsoid, light at infinity": (ELLIPSOID, [{"direction": [0.5, -0.5, 0.8]}], [1.9, -2.4, 0.0, 0.7]),
+    "ellipsoid, two lamps": (ELLIPSOID, [{"position": [1.2, -1.0, 2.2]}, {"position": [-1.4, -1.0, 1.4]}], [1.9, -2.2, -0.6, 0.7]),
+    "ellipsoid, lamp twice as wide as the lobe": (ELLIPSOID, [{"position": [1.2, -1.0, 2.2], "radius": 0.25}], [1.9, -2.4, 0.4, 0.7]),
+    "torus": ({"type": "torus", "major_radius": 0.4, "minor_radius": 0.15}, [{"position": [1.1, -1.2, 1.6]}], [1.7, -1.7, 0.2, 1.1]),
+}
+SHAPE_LOBES = [("torrance-sparrow", 0.03), ("torrance-sparrow", 0.1), ("ggx", 0.3), ("blinn-phong", 0.1), ("phong", 0.05)]
+
 
 def fail(message):
     print(message, file=sys.stderr)
@@ -91,6 +107,31 @@ def exact_table(glint, folder):
     return table(header, rows), right, len(rows)
 
 
+def shapes_table(glint, folder):
+    rows = []
+    for shape, (surface, lights, (radius, start, end, height)) in SHAPES.items():
+        wide = "radius" in lights[0]
+        for lobe, m in SHAPE_LOBES:
+            if wide and m > 0.03:
+                continue
+            name = f"shape-{len(rows)}"
+            spec = {"glint_scene": 1, "name": name, "units": "m", "camera": CAMERA, "contour": "radiance", "level": 0.5, "margin_px": 100,
+                    "surfaces": {"body": {"analytic": surface}}, "lights": [{"id": f"lamp{i}", **l} for i, l in enumerate(lights)],
+                    "path": {"orbit": {"centre": [0, 0, 0], "radius": radius, "from": start, "to": end, "height": height, "count": 12}},
+                    "render": {"reflectance": lobe, "roughness": m, "bits": 32}}
+            file = folder / (name + ".json")
+            file.write_text(json.dumps(spec))
+            done = subprocess.run([glint, "synth", str(file), "-o", str(folder / name)], capture_output=True, text=True)
+            if done.returncode:
+                fail(done.stderr.strip())
+            auto = evaluate(glint, folder / name / "scene.json", "limit-angle,reflectance", "first:6")
+            r = auto["reflectance"]
+            fit = r["fits"][0] if r["fits"] else {}
+            rows.append([shape, f"{lobe}, {m}", cell(auto["limit-angle"]), cell(r), fit.get("lobe", "–"),
+                         f"{fit['roughness']:.4f}" if "roughness" in fit else "–"])
+    return table(["scene", "true lobe and m", "limit-angle", "reflectance", "chosen", "m found"], rows)
+
+
 def cycles_table(glint, cycles):
     rows = []
     for name, scene, trains in [("sphere", "scene-analytic.json", ["first:6", "spread:6"]), ("sphere, mesh", "scene.json", ["first:6", "spread:6"]),
@@ -132,11 +173,21 @@ def main():
     parser.add_argument("--shared", default="../shared", type=pathlib.Path)
     parser.add_argument("--seeds", default=20, type=int)
     parser.add_argument("-o", default="docs/reflectance.md", type=pathlib.Path)
+    parser.add_argument("--sections", default="exact,shapes,cycles,noise", help="the others are kept as the page has them")
     arguments = parser.parse_args()
+    wanted = arguments.sections.split(",")
     cycles = arguments.shared / "data" / "cycles"
-    with tempfile.TemporaryDirectory() as folder:
-        exact, right, scenes = exact_table(arguments.glint, pathlib.Path(folder))
-    text = f"""# Lobes compared: Phong, Blinn-Phong, Torrance-Sparrow, GGX
+    old = arguments.o.read_text() if arguments.o.exists() else ""
+
+    def kept(heading):
+        """A section of the page as it is."""
+        start = old.find("\n## " + heading)
+        if start < 0:
+            return ""
+        end = old.find("\n## ", start + 1)
+        return old[start + 1:end + 1 if end >= 0 else len(old)]
+
+    text = """# Lobes compared: Phong, Blinn-Phong, Torrance-Sparrow, GGX
 
 The paper leaves the comparison of reflectance models as future work. Here it is, for the prediction of contours: the model `reflectance`
 (docs/method.md section 7) fitted with every lobe to the same contours, whether the lobe is the true one or not. Numbers are the mean
@@ -145,21 +196,42 @@ answered. Written by:
 
     python3 docs/make_reflectance.py --glint build/release/bin/glint --shared ../shared
 
-## Exact contours, first 6 of 12 frames train
+"""
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        if "exact" in wanted:
+            exact, right, scenes = exact_table(arguments.glint, folder)
+            text += f"""## Exact contours, first 6 of 12 frames train
 Contours are traced on the radiance itself, so what the true lobe (bold) leaves is the contours' own sagitta; what a wrong lobe leaves is the loss.
 The lobe of the smallest residual was the true one in {right} of {scenes} scenes.
 
 {exact}
 """
-    if cycles.exists():
+        else:
+            text += kept("Exact contours")
+        if "shapes" in wanted:
+            text += f"""## Other shapes and lights, exact contours, first 6 of 12 frames train
+The lobe is chosen by the residual. Every frame is predicted and no highlight unmatched where no note says otherwise.
+
+{shapes_table(arguments.glint, folder)}
+"""
+        else:
+            text += kept("Other shapes")
+    if "cycles" in wanted and cycles.exists():
         text += f"""## Path-traced frames (a Beckmann lobe, light of 1 cm radius)
 `torrance-sparrow` is the right lobe; `ggx` on these frames is the wrong one. The last columns are of the automatic choice.
 
 {cycles_table(arguments.glint, cycles)}
-## One pixel of noise on training contours (sphere, analytic)
+"""
+    else:
+        text += kept("Path-traced")
+    if "noise" in wanted and cycles.exists():
+        text += f"""## One pixel of noise on training contours (sphere, analytic)
 `--noise-px 1`: 72 points of every training contour and its peak; held-out contours stay clean; the lobe is chosen by the residual each time.
 
 {noise_table(arguments.glint, cycles, arguments.seeds)}"""
+    else:
+        text += kept("One pixel").rstrip("\n") + "\n"
     text += """
 ## What to take from it
 - Near the mirror direction every lobe falls as exp(-theta^2 / m^2): on frontal views of narrow highlights a wrong lobe costs little, and

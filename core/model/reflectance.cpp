@@ -18,6 +18,8 @@ constexpr int kAnglePoints = 36;    // of a contour, for the first guess of the 
 constexpr double kScanStepPx = 16;  // of the search for a maximum away from every mirror point
 // log of an 8-bit picture's range: a lobe that has fallen further shows nothing beside the highlights of other frames.
 constexpr double kFaintest = 5.54;
+// Of the sum of squares over their mean: three standard deviations, before a cosine power is preferred to a microfacet lobe.
+constexpr double kClearGain = 9;
 constexpr std::size_t kPromisingStarts = 6;  // of those that a short fit to few points likes best
 
 /// Where the search starts: the light of the limit angle; where that model does not converge (wide lobes, grazing views), the
@@ -36,15 +38,20 @@ std::optional<Light> firstLight(const FitInput& input) {
 }
 
 /// The lobe of the smallest residual; each starts from the best one so far. Where none explains the contours well, the most
-/// promising starts of all lobes are tried, and the lobes follow the best of them.
+/// promising starts of all lobes are tried, and the lobes follow the best of them. Where the residuals do not tell, a microfacet
+/// lobe.
 Outcome<RadianceFit> bestOf(const std::vector<Lobe>& lobes, const std::vector<RadianceView>& views, const Light& light,
                             double roughness, RadianceFitOptions options) {
-  Outcome<RadianceFit> best = Failure{Reason::NotConverged, ""};
+  Outcome<RadianceFit> best = Failure{Reason::NotConverged, ""}, microfacet = best;
   const bool lightSize = options.lightSize;
   options.lightSize = options.otherStarts = false;
   const auto tryFrom = [&](Lobe lobe, const Light& from, double width) {
     Outcome<RadianceFit> f = fitRadiance(lobe, views, from, width, options);
-    if (!best || (f && (f->poor != best->poor ? best->poor : f->cost < best->cost))) best = std::move(f);
+    const auto improve = [&](Outcome<RadianceFit>& on) {
+      if (!on || (f && (f->poor != on->poor ? on->poor : f->cost < on->cost))) on = f;
+    };
+    improve(best);
+    if (lobe == Lobe::TorranceSparrow || lobe == Lobe::Ggx) improve(microfacet);
   };
   const auto tryAll = [&] {
     for (const Lobe lobe : lobes) {
@@ -68,6 +75,9 @@ Outcome<RadianceFit> bestOf(const std::vector<Lobe>& lobes, const std::vector<Ra
     }
     if (better && lobes.size() > 1 && !best->poor) tryAll();
   }
+  // Surfaces are rather microfacets than cosine powers: where noise leaves the choice open, a microfacet lobe is taken.
+  if (best && microfacet && !microfacet->poor && microfacet->cost - best->cost < kClearGain * best->cost / best->points)
+    best = microfacet;
   if (!best || best->poor || !lightSize) return best;
   // A size is tried on the best lobe; only where it shows are the others tried with one too.
   options.lightSize = true;
@@ -173,7 +183,7 @@ class Reflectance final : public HighlightModel {
       const Eigen::Vector4d other = light.homogeneous() + by.head<4>();
       const auto log = [&](const SurfacePoint& p) {
         return lobe::logOfSphereLight<double>(*lobeOf(*fit.lobe), *fit.roughness * std::exp(by(4)), p.position, p.normal,
-                                              (eye - p.position).normalized(), other, radius * radius);
+                                              (eye - p.position).normalized(), other, radius * radius, radiance.rule());
       };
       const auto here = log(at), top = log(peaks.front().point);
       return here && top ? *top - *here : std::nan("");

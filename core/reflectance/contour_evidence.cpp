@@ -2,6 +2,7 @@
 #include "core/reflectance/contour_evidence.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -11,7 +12,8 @@
 
 namespace glint::lobe {
 
-std::optional<Stencil> look(const RadianceView& view, const Pixel& p, const Eigen::Vector3d& origin, double scale) {
+std::optional<Stencil> look(const RadianceView& view, const Pixel& p, const Eigen::Vector3d& origin, double scale,
+                            double stepPx) {
   const Eigen::Vector3d eye = view.camera.centreInWorld();
   const auto seen = [&](const Pixel& q) -> std::optional<Seen> {
     const Outcome<SurfacePoint> hit = view.surface->firstHit(view.camera.ray(q));
@@ -19,10 +21,10 @@ std::optional<Stencil> look(const RadianceView& view, const Pixel& p, const Eige
     const SurfacePoint s = facing(*hit, eye);
     return Seen{(s.position - origin) / scale, s.normal, (eye - s.position).normalized()};
   };
-  const std::optional<Seen> at = seen(p), left = seen(p - Pixel(kStencilStepPx, 0)), right = seen(p + Pixel(kStencilStepPx, 0)),
-                            up = seen(p - Pixel(0, kStencilStepPx)), down = seen(p + Pixel(0, kStencilStepPx));
+  const std::optional<Seen> at = seen(p), left = seen(p - Pixel(stepPx, 0)), right = seen(p + Pixel(stepPx, 0)),
+                            up = seen(p - Pixel(0, stepPx)), down = seen(p + Pixel(0, stepPx));
   if (!at || !left || !right || !up || !down) return std::nullopt;
-  return Stencil{*at, *left, *right, *up, *down};
+  return Stencil{*at, *left, *right, *up, *down, stepPx};
 }
 
 namespace {
@@ -88,7 +90,9 @@ Outcome<ContourEvidence> gatherEvidence(const std::vector<RadianceView>& views, 
     const std::vector<Pixel> pixels =
         view.contour.size() > std::size_t(pointsPerView) ? resample(Polyline{view.contour, true}, pointsPerView) : view.contour;
     offered += pixels.size();
-    all.radiusPx += std::sqrt(std::abs(signedArea(Polyline{view.contour, true})) / M_PI) / double(views.size());
+    const double radiusPx = std::sqrt(std::abs(signedArea(Polyline{view.contour, true})) / M_PI);
+    const double stepPx = radiusPx > 0 ? std::min(kStencilStepPx, kStencilShare * radiusPx) : kStencilStepPx;
+    all.radiusPx += radiusPx / double(views.size());
     const Outcome<Ellipse> ellipse = fitEllipse(pixels);
     Eigen::AlignedBox2d box;
     for (const Pixel& p : view.contour) box.extend(p);
@@ -96,7 +100,7 @@ Outcome<ContourEvidence> gatherEvidence(const std::vector<RadianceView>& views, 
     for (const Pixel& p : pixels) {
       // Where the image or the surface ends, the contour is an edge and not a level set.
       if (onImageBorder(p, view.camera) || onCutSide(p, box, cut)) continue;
-      const std::optional<Stencil> at = look(view, p, Eigen::Vector3d::Zero(), 1);
+      const std::optional<Stencil> at = look(view, p, Eigen::Vector3d::Zero(), 1, stepPx);
       if (!at) continue;
       Evidence e;
       e.view = static_cast<int>(v);

@@ -14,11 +14,13 @@ struct Seen {
   Eigen::Vector3d position, normal, toCamera;
 };
 
-inline constexpr double kStencilStepPx = 0.5;  ///< of the finite differences that turn log I into pixels
+/// Largest step of the finite differences that turn log I into pixels, and the largest as a share of the highlight's radius.
+inline constexpr double kStencilStepPx = 0.5, kStencilShare = 0.1;
 
-/// A pixel's surface point and those of the pixels kStencilStepPx away.
+/// A pixel's surface point and those of the pixels stepPx away.
 struct Stencil {
   Seen at, left, right, up, down;
+  double stepPx = kStencilStepPx;
 };
 
 /// One contour point. The residual is offsetPx - biasPx + pixelsPerUnit (g(foot) - level): the distance from the measured pixel
@@ -53,7 +55,7 @@ struct ContourEvidence {
 };
 
 /// Surface points around a pixel. Nothing where the surface ends within the stencil.
-std::optional<Stencil> look(const RadianceView& view, const Pixel& p, const Eigen::Vector3d& origin, double scale);
+std::optional<Stencil> look(const RadianceView& view, const Pixel& p, const Eigen::Vector3d& origin, double scale, double stepPx);
 
 /// Contour points of all views on their surfaces. TooFewPoints (< 5); PeakOffSurface when none hits the surface; NotFinite.
 Outcome<ContourEvidence> gatherEvidence(const std::vector<RadianceView>& views, int pointsPerView);

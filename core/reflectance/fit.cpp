@@ -30,8 +30,10 @@ constexpr double kPoorShare = 0.1;             // of the radius: a wrong lobe le
 constexpr double kDoubtShare = 0.02;           // of the radius: a right lobe leaves less
 constexpr double kWidest = 3;                  // roughness of a lobe that falls to half at 70 degrees and more: no highlight
 constexpr double kNoiseShare = 1.2;            // of the noise's sigma: what a right lobe leaves of it, with some reserve
-constexpr double kProbeRadius = 0.02;          // of the distance: a light that would show little
-constexpr double kFirstRadius = 0.05;          // of the distance: where the search for a size starts
+constexpr double kSagittaPx = 0.02;            // of contours as polylines
+constexpr double kExactPx = 1e-7;              // residuals of round-off, of which no step can be told better than another
+constexpr double kNearlySettled = 1e-6;        // change by which a round may end that was cut off: far below what noise does
+constexpr double kProbeRadius = 0.4;           // of the lobe's width, as angles of the light: one that would show little
 constexpr double kLeastRadiusSquared = 1e-10;  // normalised: keeps the square root's derivative finite
 constexpr double kLeastGain = 0.2;             // of the sum of squares, before a size is believed
 constexpr double kSettled = 1e-9;              // change of the unit vector L and of log m between reweightings
@@ -46,14 +48,13 @@ using Dual = ceres::Jet<double, 6>;
 using lobe::ContourEvidence;
 using lobe::Evidence;
 using lobe::FramePeak;
-using lobe::kStencilStepPx;
 using lobe::Seen;
 using lobe::Stencil;
 
 template <class T>
 std::optional<T> logRadianceAt(Lobe lobe, const Seen& s, const Eigen::Matrix<T, 4, 1>& light, const T& roughness,
-                               const T& radiusSquared) {
-  return lobe::logOfSphereLight<T>(lobe, roughness, s.position, s.normal, s.toCamera, light, radiusSquared);
+                               const T& radiusSquared, const lobe::DiscRule& rule) {
+  return lobe::logOfSphereLight<T>(lobe, roughness, s.position, s.normal, s.toCamera, light, radiusSquared, rule);
 }
 
 /// sqrt(u), continued by its tangent below a quarter of the level's: a start far off may put a contour point above the peak.
@@ -100,6 +101,10 @@ class Problem {
   Attempt solve(const Parameters& start, bool withSize);
   /// By how much a light of some size would lower the sum of squares, to first order; 0 where it would raise it.
   double gainBySize(const Attempt& a);
+  /// Nothing that neighbours on a contour share remains.
+  bool leavesNoiseOnly(const Attempt& a) const {
+    return a.converged && a.cost <= robust(std::max(kNoiseShare * a.noisePx, kSagittaPx)) * double(points_.size());
+  }
   RadianceFit describe(const Attempt& a, std::size_t views);
   void setUncertainty(const Attempt& a, RadianceFit& fit) const;
   std::size_t lit() const {
@@ -139,18 +144,21 @@ class Problem {
   const std::vector<Evidence>& points() const { return points_; }
   const FramePeak& frame(int i) const { return frames_[static_cast<std::size_t>(i)]; }
   Lobe lobe() const { return lobe_; }
+  const lobe::DiscRule& rule() const { return *rule_; }
+  /// The quadrature for lights up to that of `at`.
+  void chooseRule(const Parameters& at);
 
  private:
   /// g at a point; NaN where it is undefined.
   double root(const Evidence& e, const Seen& s, const Parameters& at) const {
     const std::optional<Seen>& peak = frame(e.frame).at;
-    const auto here = logRadianceAt<double>(lobe_, s, at.head<4>(), std::exp(at(4)), at(5));
-    const auto top = peak ? logRadianceAt<double>(lobe_, *peak, at.head<4>(), std::exp(at(4)), at(5)) : std::nullopt;
+    const auto here = logRadianceAt<double>(lobe_, s, at.head<4>(), std::exp(at(4)), at(5), *rule_);
+    const auto top = peak ? logRadianceAt<double>(lobe_, *peak, at.head<4>(), std::exp(at(4)), at(5), *rule_) : std::nullopt;
     return here && top ? rootOf(*top - *here, e.level) : std::numeric_limits<double>::quiet_NaN();
   }
   Eigen::Vector2d gradient(const Evidence& e, const Stencil& s, const Parameters& at) const {
-    return {(root(e, s.right, at) - root(e, s.left, at)) / (2 * kStencilStepPx),
-            (root(e, s.down, at) - root(e, s.up, at)) / (2 * kStencilStepPx)};
+    return {(root(e, s.right, at) - root(e, s.left, at)) / (2 * s.stepPx),
+            (root(e, s.down, at) - root(e, s.up, at)) / (2 * s.stepPx)};
   }
   double residual(const Evidence& e, const Parameters& at) const {
     return e.offsetPx - e.biasPx + e.pixelsPerUnit * (root(e, e.foot.at, at) - e.level);
@@ -163,6 +171,7 @@ class Problem {
   double noiseOf(const Parameters& at) const;
 
   Lobe lobe_;
+  const lobe::DiscRule* rule_ = &lobe::discRuleFor(0);
   const std::vector<RadianceView>& views_;
   std::vector<Evidence> points_;
   std::vector<FramePeak> frames_;
@@ -194,8 +203,8 @@ class RootCost : public ceres::SizedCostFunction<1, 4, 1, 1> {
     for (int i = 0; i < 4; ++i) light(i) = Dual(parameters[0][i], i);
     const Dual roughness = exp(Dual(parameters[1][0], 4)), radiusSquared(parameters[2][0], 5);
     if (!(roughness.a > 0) || !std::isfinite(roughness.a)) return std::nullopt;
-    const auto here = logRadianceAt<Dual>(problem_.lobe(), e_.foot.at, light, roughness, radiusSquared);
-    const auto top = logRadianceAt<Dual>(problem_.lobe(), *peak, light, roughness, radiusSquared);
+    const auto here = logRadianceAt<Dual>(problem_.lobe(), e_.foot.at, light, roughness, radiusSquared, problem_.rule());
+    const auto top = logRadianceAt<Dual>(problem_.lobe(), *peak, light, roughness, radiusSquared, problem_.rule());
     if (!here || !top) return std::nullopt;
     const Dual residual =
         (rootOf(*top - *here, e_.level) - Dual(e_.level)) * Dual(e_.pixelsPerUnit) + Dual(e_.offsetPx - e_.biasPx);
@@ -230,7 +239,7 @@ void Problem::toFoot(Evidence& e, const Parameters& at) const {
     const Pixel next = e.observed - value / slope.squaredNorm() * slope;
     // An outlier, or a start far off: the plain residual serves.
     if (!next.allFinite() || (next - e.observed).norm() > kFarthestFootPx) return;
-    const std::optional<Stencil> there = lobe::look(views_[static_cast<std::size_t>(e.view)], next, origin_, scale_);
+    const std::optional<Stencil> there = lobe::look(views_[static_cast<std::size_t>(e.view)], next, origin_, scale_, s.stepPx);
     if (!there) return;
     const double moved = (next - foot).norm();
     foot = next;
@@ -304,6 +313,15 @@ double Problem::noiseOf(const Parameters& at) const {
   return kSigmaOfMedian * differences[differences.size() / 2];
 }
 
+void Problem::chooseRule(const Parameters& at) {
+  double largest = 0;
+  if (at(5) > 0)
+    for (const Evidence& e : points_)
+      largest = std::max(
+          largest, lobe::sizeRatio(std::exp(at(4)), e.foot.at.position, e.foot.at.toCamera, at.head<4>(), std::sqrt(at(5))));
+  rule_ = &lobe::discRuleFor(largest);
+}
+
 Problem::Attempt Problem::solve(const Parameters& start, bool withSize) {
   Attempt a;
   a.at = start;
@@ -311,6 +329,7 @@ Problem::Attempt Problem::solve(const Parameters& start, bool withSize) {
   for (int round = 0; round < kMaxReweightings && a.iterations < options_.maxIterations; ++round) {
     // The weights are held while the light moves: a residual whose own weight moves gains by lights under which the field is
     // steep.
+    chooseRule(a.at);
     updatePeaks(a.at, true);
     if (lit() == 0) return a;
     relinearise(a.at, round > 0);
@@ -343,16 +362,18 @@ Problem::Attempt Problem::solve(const Parameters& start, bool withSize) {
       solver.logging_type = ceres::SILENT;
       solver.num_threads = 1;
       solver.max_num_iterations = std::max(1, options_.maxIterations - a.iterations);
-      solver.function_tolerance = 1e-12;
+      solver.function_tolerance = 1e-10;  // of a sum of squares over hundreds of points: thousandths of a standard deviation
       solver.parameter_tolerance = 1e-11;
       solver.gradient_tolerance = 1e-13;
       ceres::Solve(solver, &problem, &summary);
     }
     a.iterations += std::max<int>(1, int(summary.iterations.size()) - 1);
     if (!summary.IsSolutionUsable() || !a.at.allFinite()) return a;
-    a.converged = summary.termination_type == ceres::CONVERGENCE || summary.final_cost <= 1e-20 * points_.size();
+    a.converged = summary.termination_type == ceres::CONVERGENCE || summary.final_cost <= kExactPx * kExactPx * points_.size() ||
+                  (a.at - before).norm() < kNearlySettled;
     if (a.converged && (a.at - before).norm() < kSettled) break;
   }
+  chooseRule(a.at);
   updatePeaks(a.at, true);
   relinearise(a.at, true);
   a.cost = robustCost(a.at);
@@ -364,7 +385,8 @@ double Problem::gainBySize(const Attempt& a) {
   if (!(a.at(3) > 0)) return 0;  // at infinity a size has no meaning, only an angle
   Parameters grown = a.at;
   const double distance = a.at.head<3>().norm() / a.at(3);
-  grown(5) = kProbeRadius * kProbeRadius * distance * distance;
+  grown(5) = std::pow(kProbeRadius * std::exp(a.at(4)) * distance, 2);
+  chooseRule(grown);
   Eigen::Matrix<double, 4, 3, Eigen::RowMajor> chart;
   ceres::SphereManifold<4>().PlusJacobian(a.at.data(), chart.data());
   Eigen::Matrix<double, Eigen::Dynamic, 5> jacobian(points_.size(), 5);
@@ -447,6 +469,7 @@ void Problem::setUncertainty(const Attempt& a, RadianceFit& fit) const {
 }
 
 RadianceFit Problem::describe(const Attempt& a, std::size_t views) {
+  chooseRule(a.at);
   updatePeaks(a.at, true);
   relinearise(a.at, true);
   RadianceFit fit;
@@ -524,11 +547,19 @@ Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& vie
   if (!best.converged) return Failure{Reason::NotConverged, "after " + std::to_string(iterations) + " iterations"};
   // A size that the contours do not show would only take up noise: it must promise, and then keep, a clear gain.
   if (options.lightSize && good(best) && problem.gainBySize(best) > kLeastGain * best.cost) {
-    Parameters start = best.at;
-    start(5) = std::pow(kFirstRadius * best.at.head<3>().norm() / best.at(3), 2);
-    const Problem::Attempt sized = problem.solve(start, true);
-    iterations += sized.iterations;
-    if (sized.converged && sized.cost < (1 - kLeastGain) * best.cost && sized.at(5) > 2 * kLeastRadiusSquared) best = sized;
+    // The width seen is that of light and lobe together: from a light that is narrower, and from one that is wider than the lobe.
+    const Problem::Attempt point = best;
+    for (const auto& [radius, width] : {std::pair{1.0, 0.9}, std::pair{1.6, 0.5}}) {
+      Parameters start = point.at;
+      start(4) += std::log(width);
+      start(5) = std::pow(radius * std::exp(point.at(4)) * point.at.head<3>().norm() / point.at(3), 2);
+      const Problem::Attempt sized = problem.solve(start, true);
+      iterations += sized.iterations;
+      if (sized.converged && sized.cost < (1 - kLeastGain) * point.cost && sized.cost < best.cost &&
+          sized.at(5) > 2 * kLeastRadiusSquared)
+        best = sized;
+      if (problem.leavesNoiseOnly(best)) break;
+    }
   }
   RadianceFit fit = problem.describe(best, views.size());
   fit.iterations = iterations;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/reflectance/disc_rule.h"
 #include "core/reflectance/lobe_terms.h"
 
 namespace glint::lobe {
@@ -28,17 +29,16 @@ std::optional<T> logOfPointLight(Lobe lobe, const T& roughness, const Eigen::Vec
   return terms<T>(lobe, roughness, n, toLight, toCamera).total() - log(squared);
 }
 
-/// The same for a spherical light of radius sqrt(radiusSquared), seen as a disc that faces the point: seven points of the disc
-/// that integrate polynomials up to degree five exactly. Points below the horizon give nothing.
-/// @see Stroud, Approximate calculation of multiple integrals, 1971, formula S2 5-1.
+/// The same for a spherical light of radius sqrt(radiusSquared), seen as a disc that faces the point. Points of the disc below
+/// the horizon give nothing.
 template <class T>
 std::optional<T> logOfSphereLight(Lobe lobe, const T& roughness, const Eigen::Vector3d& position, const Eigen::Vector3d& n,
-                                  const Eigen::Vector3d& toCamera, const Eigen::Matrix<T, 4, 1>& light, const T& radiusSquared) {
+                                  const Eigen::Vector3d& toCamera, const Eigen::Matrix<T, 4, 1>& light, const T& radiusSquared,
+                                  const DiscRule& rule) {
   using std::exp;
   using std::log;
   using std::sqrt;
-  const std::optional<T> centre = logOfPointLight<T>(lobe, roughness, position, n, toCamera, light);
-  if (!centre || !(radiusSquared > T(0.0))) return centre;
+  if (!(radiusSquared > T(0.0))) return logOfPointLight<T>(lobe, roughness, position, n, toCamera, light);
   const Eigen::Matrix<T, 3, 1> offset = light.template head<3>() - light(3) * position.cast<T>();
   // Around the axis, from another axis that is far from it: continuous in the light, so that its derivatives are those of the
   // disc.
@@ -53,16 +53,27 @@ std::optional<T> logOfSphereLight(Lobe lobe, const T& roughness, const Eigen::Ve
   const Eigen::Matrix<T, 3, 1> u = across / sqrt(across.squaredNorm());
   const Eigen::Matrix<T, 3, 1> upwards = offset.cross(u);
   const Eigen::Matrix<T, 3, 1> v = upwards / sqrt(upwards.squaredNorm());
-  const T ring = sqrt(radiusSquared * T(2.0 / 3.0)) * light(3);
-  T sum(0.25);  // relative to the centre
-  for (int k = 0; k < 6; ++k) {
-    const double angle = k * M_PI / 3;
+  const T radius = sqrt(radiusSquared) * light(3);
+  // Relative to the largest term so far: terms may differ by more than a double's range.
+  std::optional<T> top;
+  T sum(0.0);
+  for (const DiscRule::Node& node : rule.nodes) {
     Eigen::Matrix<T, 4, 1> at = light;
-    at.template head<3>() += ring * (T(std::cos(angle)) * u + T(std::sin(angle)) * v);
-    if (const std::optional<T> value = logOfPointLight<T>(lobe, roughness, position, n, toCamera, at))
-      sum += T(0.125) * exp(*value - *centre);
+    at.template head<3>() += radius * (T(node.x) * u + T(node.y) * v);
+    const std::optional<T> value = logOfPointLight<T>(lobe, roughness, position, n, toCamera, at);
+    if (!value) continue;
+    if (!top) {
+      top = value;
+      sum = T(node.weight);
+    } else if (*value > *top + T(20.0)) {
+      sum = sum * exp(*top - *value) + T(node.weight);
+      top = value;
+    } else {
+      sum += T(node.weight) * exp(*value - *top);
+    }
   }
-  return *centre + log(sum);
+  if (!top) return std::nullopt;
+  return *top + log(sum);
 }
 
 }  // namespace glint::lobe

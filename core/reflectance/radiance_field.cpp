@@ -38,13 +38,35 @@ RadianceField::RadianceField(const Surface& surface, const Camera& camera, Lobe 
   const Eigen::AlignedBox3d box = surface.bounds();
   const double size = box.isEmpty() ? 0 : box.diagonal().norm();
   farAway_ = std::isfinite(size) ? 2 * size : 0;
+  rule_ = &lobe::discRuleFor(lightRadius > 0 ? largestSizeRatio() : 0);
+}
+
+/// Of the visible points where the lobe may show, on a coarse grid; where none of them is near the mirror direction, of the
+/// nearest.
+double RadianceField::largestSizeRatio() const {
+  constexpr int kColumns = 12, kRows = 9;
+  constexpr double kFoot = 7, kReserve = 1.25;  // log I below the lobe's top; for what lies between the grid's points
+  double largest = 0, nearest = 0, leastFall = std::numeric_limits<double>::infinity();
+  for (int y = 0; y < kRows; ++y)
+    for (int x = 0; x < kColumns; ++x) {
+      const std::optional<SurfacePoint> p =
+          visible(Pixel((x + 0.5) / kColumns * (camera_.width - 1), (y + 0.5) / kRows * (camera_.height - 1)));
+      if (!p) continue;
+      const double fall = fallOfLobe(*p);
+      if (!std::isfinite(fall)) continue;
+      const double ratio = lobe::sizeRatio(roughness_, p->position, (eye_ - p->position).normalized(), light_.homogeneous(),
+                                           std::sqrt(radiusSquared_));
+      if (fall < kFoot) largest = std::max(largest, ratio);
+      if (fall < leastFall) leastFall = fall, nearest = ratio;
+    }
+  return kReserve * std::max(largest, nearest);
 }
 
 std::optional<double> RadianceField::at(const SurfacePoint& p, double floor) const {
   const double seen = (eye_ - p.position).norm();
   if (!(seen > 0)) return std::nullopt;
   const std::optional<double> log = lobe::logOfSphereLight<double>(
-      lobe_, roughness_, p.position, p.normal, (eye_ - p.position) / seen, light_.homogeneous(), radiusSquared_);
+      lobe_, roughness_, p.position, p.normal, (eye_ - p.position) / seen, light_.homogeneous(), radiusSquared_, *rule_);
   if (!log || !std::isfinite(*log)) return std::nullopt;
   const double total = *log;
   if (total < floor) return total;

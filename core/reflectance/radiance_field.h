@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/light/light.h"
+#include "core/reflectance/disc_rule.h"
 #include "core/reflectance/lobe.h"
 #include "core/surface/surface.h"
 
@@ -50,8 +51,12 @@ class RadianceField {
   /// that direction is allowed for. A frame whose maximum lies far down the lobe shows no highlight.
   double fallOfLobe(const SurfacePoint& visible) const;
 
+  /// The quadrature over the light: one for the whole field, so that it is smooth.
+  const lobe::DiscRule& rule() const { return *rule_; }
+
  private:
   std::optional<SurfacePoint> visible(const Pixel& p) const;
+  double largestSizeRatio() const;
 
   const Surface& surface_;
   const Camera& camera_;
@@ -60,7 +65,8 @@ class RadianceField {
   double roughness_;
   Light light_;
   double radiusSquared_;  ///< m^2
-  double farAway_;        ///< how far a shadow ray towards a light at infinity goes
+  const lobe::DiscRule* rule_;
+  double farAway_;  ///< how far a shadow ray towards a light at infinity goes
 };
 
 }  // namespace glint

@@ -6,6 +6,7 @@
 #include <exception>
 
 #include "core/stability/cases.h"
+#include "core/stability/reflectance_cases.h"
 
 namespace glint {
 namespace {
@@ -58,6 +59,7 @@ std::vector<StabilityResult> runStability(const ProgressFn& progress) {
   stability::addWalkCases(cases);
   stability::addReconstructionCases(cases);
   stability::addPredictionCases(cases);
+  stability::addReflectanceCases(cases);
   stability::addBadNumberCases(cases);
   std::vector<StabilityResult> results;
   for (const Case& c : cases) {

@@ -33,9 +33,9 @@ struct GaussLegendre {
   }
 };
 
-constexpr int kRings = 4, kSpokes = 12;  // sphere
 constexpr int kAlong = 24, kAcross = 3;  // tube
 
+template <int kRings, int kSpokes>
 std::vector<LightSample> sampleSphere(const Eigen::Vector3d& centre, double radius, const Eigen::Vector3d& point) {
   static const GaussLegendre<kRings> rule;
   const Eigen::Vector3d offset = centre - point;
@@ -59,6 +59,15 @@ std::vector<LightSample> sampleSphere(const Eigen::Vector3d& centre, double radi
     }
   }
   return samples;
+}
+
+/// Errors of log I below 1e-7 down to a thousandth of the peak, to three lobe widths.
+std::vector<LightSample> sampleSphere(const Eigen::Vector3d& centre, double radius, const Eigen::Vector3d& point, double lobeWidth) {
+  const double ratio = std::atan2(radius, (centre - point).norm()) / lobeWidth;
+  if (ratio <= 0.5) return sampleSphere<4, 12>(centre, radius, point);
+  if (ratio <= 1) return sampleSphere<8, 20>(centre, radius, point);
+  if (ratio <= 2) return sampleSphere<12, 40>(centre, radius, point);
+  return ratio <= 4 ? sampleSphere<24, 60>(centre, radius, point) : sampleSphere<36, 96>(centre, radius, point);
 }
 
 std::vector<LightSample> sampleTube(const std::array<Eigen::Vector3d, 2>& ends, double radius, const Eigen::Vector3d& point) {
@@ -99,7 +108,10 @@ std::vector<Sampled> reaching(const Surface& surface, const SurfacePoint& p, con
   const double distance = (eye - p.position).norm();
   const Eigen::Vector3d toCamera = (eye - p.position) / distance;
   std::vector<Sampled> result;
-  for (const LightSample& sample : sampleLight(light, p.position)) {
+  // H turns by half of what L turns, and across the plane of incidence by more at slanted incidence.
+  double lobeWidth = 2 * material.roughness;
+  if (light.position) lobeWidth *= std::max(0.05, 0.5 * ((*light.position - p.position).normalized() + toCamera).norm());
+  for (const LightSample& sample : sampleLight(light, p.position, lobeWidth)) {
     const double cosine = p.normal.dot(sample.direction);
     if (!(cosine > 0)) continue;
     if (surface.occluded(p, sample.target.value_or(beyondSurface(surface, p.position, sample.direction, distance)))) continue;
@@ -111,11 +123,11 @@ std::vector<Sampled> reaching(const Surface& surface, const SurfacePoint& p, con
 
 }  // namespace
 
-std::vector<LightSample> sampleLight(const TrueLight& light, const Eigen::Vector3d& point) {
+std::vector<LightSample> sampleLight(const TrueLight& light, const Eigen::Vector3d& point, double lobeWidth) {
   if (light.segment) return sampleTube(*light.segment, light.radius, point);
   if (light.direction) return {{light.direction->normalized(), 1.0, std::nullopt}};
   require(light.position.has_value(), "sampleLight: a light needs a position, a direction or a segment");
-  if (light.radius > 0) return sampleSphere(*light.position, light.radius, point);
+  if (light.radius > 0) return sampleSphere(*light.position, light.radius, point, lobeWidth);
   const Eigen::Vector3d offset = *light.position - point;
   if (!(offset.squaredNorm() > 0)) return {};
   return {{offset.normalized(), 1 / offset.squaredNorm(), *light.position}};

@@ -115,7 +115,7 @@ TEST(FitRadiance, NominalWithTheLightAtInfinity) {
 }
 
 // A lamp of a tenth of its distance blurs a narrow lobe visibly. The frames integrate over the lamp by another quadrature (a
-// cone of 4 x 12 directions) than the fit (7 points of a disc).
+// cone of directions) than the fit (points of a disc).
 TEST(FitRadiance, NominalSizeOfTheLight) {
   RadianceScene s = radianceScene(ellipsoidScene(6), Lobe::TorranceSparrow, 0.06);
   s.geometry.light.radius = 0.25;
@@ -133,12 +133,35 @@ TEST(FitRadiance, NominalSizeOfTheLight) {
   EXPECT_LT(sized->cost, 0.5 * blind->cost);
 }
 
+// A lamp about twice as wide as the lobe: what is seen is the lamp, a little blurred.
+TEST(FitRadiance, NominalSizeOfALightWiderThanTheLobe) {
+  RadianceScene s = radianceScene(ellipsoidScene(4), Lobe::Ggx, 0.03);
+  s.geometry.light.radius = 0.25;
+  const auto views = radianceViews(s);
+  const auto fit = fitRadiance(Lobe::Ggx, views, nearby(s), 0.08);
+  ASSERT_TRUE(fit) << fit.failure().message();
+  EXPECT_NEAR(fit->lightRadius, 0.25, 0.01);
+  EXPECT_NEAR(fit->roughness, 0.03, 0.002);
+  EXPECT_LT(fit->rmsPx, 0.02);
+}
+
 TEST(FitRadiance, NoiseIsNotTakenForASize) {
   const RadianceScene s = radianceScene(ellipsoidScene(6), Lobe::TorranceSparrow, kRoughness);
   for (unsigned seed = 1; seed <= 8; ++seed) {
     const auto fit = fitRadiance(Lobe::TorranceSparrow, radianceViews(s, 1, seed), nearby(s), kRoughness);
     ASSERT_TRUE(fit);
     EXPECT_EQ(fit->lightRadius, 0) << seed;
+  }
+}
+
+// Highlights some 20 px wide: what noise leaves is a large share of their radius, but neighbours do not share it.
+TEST(FitRadiance, ThreePixelsOfNoiseAreNoPoorFit) {
+  const RadianceScene s = radianceScene(ellipsoidScene(6), Lobe::TorranceSparrow, kRoughness);
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    const auto fit = fitRadiance(Lobe::TorranceSparrow, radianceViews(s, 3, seed), nearby(s), kRoughness);
+    ASSERT_TRUE(fit) << seed << " " << fit.failure().message();
+    EXPECT_FALSE(fit->poor) << seed;
+    EXPECT_NEAR(fit->roughness, kRoughness, 0.1 * kRoughness) << seed;
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/reflectance/light_radiance.h"
 #include "core/synth/light_source.h"
 #include "tests/tolerances.h"
 
@@ -109,6 +110,47 @@ TEST(Lobes, BelowTheHorizonIsDark) {
   EXPECT_THROW((void)logRadiance(Lobe::Ggx, 0, g.n, g.v, g.v), std::invalid_argument);
   EXPECT_EQ(lobeOf("torrance-sparrow"), Lobe::TorranceSparrow);
   EXPECT_FALSE(lobeOf("lambert"));
+}
+
+/// log of the mean over a disc of radius `radius` about `light`, facing `point`: Simpson's rule in the squared radius, equal
+/// steps around.
+double denseLog(Lobe lobe, double m, const Eigen::Vector3d& n, const Eigen::Vector3d& v, const Eigen::Vector3d& light,
+                double radius) {
+  constexpr int kSquares = 400, kAround = 480;
+  const Eigen::Vector3d side = light.unitOrthogonal(), up = light.normalized().cross(side);
+  double sum = 0;
+  for (int i = 0; i <= kSquares; ++i) {
+    const double r = radius * std::sqrt(double(i) / kSquares), weight = i == 0 || i == kSquares ? 1 : i % 2 ? 4 : 2;
+    for (int k = 0; k < kAround; ++k) {
+      const double t = 2 * M_PI * k / kAround;
+      const Eigen::Vector3d l = light + r * (std::cos(t) * side + std::sin(t) * up);
+      const std::optional<LogRadiance> value = logRadiance(lobe, m, n, l.normalized(), v);
+      if (value) sum += weight / (3.0 * kSquares * kAround) * std::exp(value->total()) / l.squaredNorm();
+    }
+  }
+  return std::log(sum);
+}
+
+// From lamps far narrower than the lobe to six times as wide, at the peak, at the lamp's edge and at the highlight's foot.
+TEST(SphereLight, AgreesWithADenseQuadrature) {
+  const double m = 0.03;
+  const Eigen::Vector3d n = Eigen::Vector3d::UnitZ();
+  for (const Lobe lobe : {Lobe::TorranceSparrow, Lobe::Ggx})
+    for (const double slant : {0.2, 1.1})
+      for (const double ratio : {0.1, 0.3, 0.8, 1.7, 3.0, 6.0}) {
+        const Eigen::Vector3d v(std::sin(slant), 0, std::cos(slant));
+        const double radius = 2 * std::tan(ratio * 2 * m * std::cos(slant)), edge = std::atan(radius / 2);
+        for (const double off : {0.0, edge, edge + 1.5 * m}) {
+          const Eigen::Vector3d light = 2 * Eigen::Vector3d(-std::sin(slant - off), 0, std::cos(slant - off));
+          Eigen::Vector4d l;
+          l << light, 1;
+          const lobe::DiscRule& rule = lobe::discRuleFor(lobe::sizeRatio(m, Eigen::Vector3d::Zero(), v, l, radius));
+          const auto value = lobe::logOfSphereLight<double>(lobe, m, Eigen::Vector3d::Zero(), n, v, l, radius * radius, rule);
+          ASSERT_TRUE(value);
+          EXPECT_NEAR(*value, denseLog(lobe, m, n, v, light, radius), 3e-5)
+              << nameOf(lobe) << " " << slant << " " << ratio << " " << off;
+        }
+      }
 }
 
 double irradiance(const TrueLight& light, const Eigen::Vector3d& point, const Eigen::Vector3d& n) {
