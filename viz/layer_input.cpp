@@ -112,13 +112,6 @@ SceneScale sceneScale(const Inspection& inspection, const Surface* surface, cons
   return scale;
 }
 
-NormalPolicy normalPolicy(const Settings& settings) {
-  const std::string& name = settings.text("surface.normals");
-  if (name == "facet") return NormalPolicy::Facet;
-  if (name == "curved") return NormalPolicy::Curved;
-  return NormalPolicy::Interpolated;
-}
-
 std::vector<int> framesToDraw(const Inspection& inspection, const std::string& surfaceKey, int selected) {
   const Scene& scene = *inspection.scene;
   const int n = static_cast<int>(scene.frames.size());

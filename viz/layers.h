@@ -137,8 +137,6 @@ LayerContent predictedContoursLayer(const LayerInput& in);  ///< of the selected
 
 /// Sizes for one surface of an inspection. @param surface may be null.
 SceneScale sceneScale(const Inspection& inspection, const Surface* surface, const std::vector<int>& frames, double glyphScale);
-/// The normal policy the pipeline ran with, so that no second copy of a mesh is loaded for display.
-NormalPolicy normalPolicy(const Settings& settings);
 /// Frames to draw: one for each distinct pose; where several share a pose, one that sees `surfaceKey` is taken.
 std::vector<int> framesToDraw(const Inspection& inspection, const std::string& surfaceKey, int selected);
 

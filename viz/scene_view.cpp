@@ -18,6 +18,7 @@
 #include <numbers>
 
 #include "core/light/light.h"
+#include "core/surface/mesh_policy.h"
 #include "viz/annotations.h"
 #include "viz/frame_overlay.h"
 #include "viz/layers.h"
@@ -112,7 +113,8 @@ struct SceneView::Impl {
       if (inspection->surfaces) {
         input.surfaceKey = inspection->surfaces->keyOf(selection.frame);
         const Outcome<std::shared_ptr<const Surface>> surface =
-            inspection->surfaces->surfaceOf(selection.frame, normalPolicy(inspection->request.settings));
+            // With the pipeline's policy, so that no second copy of a mesh is loaded for display.
+            inspection->surfaces->surfaceOf(selection.frame, meshPolicy(inspection->request.settings));
         if (surface) {
           input.surface = *surface;
         } else {

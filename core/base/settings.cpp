@@ -24,6 +24,8 @@ const std::vector<ParamSpec>& allParams() {
        "Linear values at or above this are saturated; 0 = the largest code of 8- and 16-bit images, none for float images.", "detect"},
       {"surface.normals", "Mesh normals", "N", "", std::string("interpolated"), 0, 0, 0, {"facet", "interpolated", "curved"},
        "Facet: flat triangles. Interpolated: flat positions, vertex normals. Curved: a smooth patch through the vertex normals (Phong tessellation).", "surface"},
+      {"surface.rays", "Ray precision", "", "", std::string("double"), 0, 0, 0, {"double", "single"},
+       "Double: single precision finds the triangle of a mesh that a ray meets, double decides where. Single: the ray tracer's own answer, good to about 1e-7 of the mesh's size.", "surface"},
       {"light.solver", "Light", "L", "", std::string("bundle"), 0, 0, 0, {"triangulated", "bundle"},
        "Triangulated: closest point to the reflected rays. Bundle: all contour points share one limit angle; least squares in pixels.", "light"},
       {"light.bundle_points", "Bundle points", "", "", 72, 8, 720, 1, {},

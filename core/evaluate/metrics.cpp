@@ -111,7 +111,7 @@ class NearestSegment {
   /// from turning down the nearest segment.
   bool isFarther(const Box& box, const Pixel& q, double best, double& farUntil) const {
     const double squared = box.squaredExteriorDistance(q);
-    if (!(squared > best * (1 + 1e-9))) return false;
+    if (!(squared > best * (1 + 1e-9))) return false;  // round-off must not turn down the nearest
     farUntil = std::sqrt(squared) + travelled_ - kMarginPx;
     return true;
   }

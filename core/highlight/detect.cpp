@@ -359,7 +359,7 @@ class Detector {
     }
     std::vector<const Polyline*> outer;
     for (const IsoContour& contour : contours) {
-      if (signedArea(contour.line) < std::max(options_.minAreaPx2, 1e-9)) continue;
+      if (signedArea(contour.line) < std::max(options_.minAreaPx2, 1e-9)) continue;  // holes are negative, lines without area none
       const Pixel& any = contour.line.points.front();
       if (std::any_of(outer.begin(), outer.end(), [&](const Polyline* o) { return contains(*o, any); })) continue;
       outer.push_back(&contour.line);

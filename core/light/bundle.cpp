@@ -235,7 +235,7 @@ bool reweighted(std::vector<Evidence>& points, Attempt& a, bool atInfinity, doub
     if (!summary.IsSolutionUsable() || !a.light.allFinite() || !std::isfinite(a.limit)) return false;
     a.converged = summary.termination_type == ceres::CONVERGENCE || summary.final_cost <= 1e-20 * points.size();
     const double moved = std::max((a.light - before).norm(), std::abs(a.limit - limitBefore));
-    if (a.converged && moved < 1e-9) break;
+    if (a.converged && moved < 1e-9) break;  // unit vector and rad: below what any contour tells
   }
   return true;
 }
@@ -329,7 +329,7 @@ Attempt directed(std::vector<Evidence>& points, const Attempt& start, const Bund
     a.iterations += std::max<int>(1, int(summary.iterations.size()) - 1);
     if (!summary.IsSolutionUsable() || !a.light.allFinite() || !a.extent.allFinite() || !(a.limit > 0)) return start;
     const double moved = std::max({(a.light - before.light).norm(), std::abs(a.limit - before.limit), (a.extent - before.extent).norm() * prior});
-    if (moved < 1e-7) break;
+    if (moved < 1e-7) break;  // the extent is a correction: it need not be found as well as the light
   }
   if (a.light.w() < 0) a.light = -a.light;
   reweight(points, a.light);
@@ -388,7 +388,7 @@ void setCovariance(const std::vector<Evidence>& points, const Attempt& a, const 
   const Eigen::MatrixXd r = Eigen::HouseholderQR<Eigen::MatrixXd>(jacobian).matrixQR().topRows(parameters).triangularView<Eigen::Upper>();
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(r, Eigen::ComputeFullV);
   bundle.positionCovariance = infinity * Eigen::Matrix3d::Identity();
-  if (!(svd.singularValues()(parameters - 1) > 1e-14 * svd.singularValues()(0))) {
+  if (!(svd.singularValues()(parameters - 1) > 1e-14 * svd.singularValues()(0))) {  // a free direction, to round-off
     bundle.covariance = Eigen::Matrix4d::Zero();
     bundle.covariance.diagonal().setConstant(infinity);
   } else {
@@ -492,11 +492,12 @@ Outcome<Bundle> bundleLight(const std::vector<BundleView>& views, const Light& s
     if (from.w() == 0 && std::isfinite(a.cost) && !a.behind) {  // the light may be nearer than infinity
       const Attempt free = solve(points, (a.light + Eigen::Vector4d(0, 0, 0, 1e-3)).normalized(), false, options);
       if (!free.behind && free.converged && free.cost < a.cost) a = free;
-    } else if (a.behind || a.light.w() < 1e-6) {
+    } else if (a.behind || a.light.w() < 1e-6) {  // a million scene sizes away: perhaps at infinity
       // Beyond infinity (the rays towards it converge behind the scene), or nearly there: try infinity itself.
       Eigen::Vector4d direction = a.light;
       if (a.behind) direction = -direction;
       const Attempt far = solve(points, direction, true, options);
+      // As good but for round-off is enough for the simpler light.
       if (!far.behind && (a.behind || far.cost <= a.cost * (1 + 1e-9) + 1e-18 * points.size())) a = far;
     }
     return a;
@@ -513,7 +514,7 @@ Outcome<Bundle> bundleLight(const std::vector<BundleView>& views, const Light& s
     // Other starts: the contours' middle reflected, at several distances and at infinity.
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const Evidence& e : points) mean += reflect(e.at.toCamera, e.at.normal);
-    if (mean.norm() > 1e-9 * points.size()) {
+    if (mean.norm() > 1e-9 * points.size()) {  // directions that cancel have no mean
       mean.normalize();
       for (const double distance : {0.3, 1.0, 3.0, 10.0, 0.0}) {
         Eigen::Vector4d from;

@@ -178,7 +178,7 @@ Outcome<PoseRefinement> refinePoses(const std::vector<BundleView>& given, const 
       bundle = other;
       better = true;
     }
-    if (!better || moved < 1e-4) break;
+    if (!better || moved < 1e-4) break;  // of a standard deviation of the prior
   }
   PoseRefinement result;
   result.bundle = *bundle;

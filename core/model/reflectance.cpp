@@ -34,6 +34,7 @@ std::optional<Light> firstLight(const FitInput& input) {
     mean += rays.back().direction;
   }
   if (const Outcome<Triangulation> t = triangulateLight(rays)) return t->light;
+  // Directions that cancel have no mean.
   return mean.norm() > 1e-6 * double(rays.size()) ? std::optional<Light>(Light::towards(mean)) : std::nullopt;
 }
 

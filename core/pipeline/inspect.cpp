@@ -13,6 +13,7 @@
 #include "core/pipeline/evidence.h"
 #include "core/pipeline/inspection.h"
 #include "core/pipeline/training.h"
+#include "core/surface/mesh_policy.h"
 
 namespace glint {
 namespace {
@@ -140,13 +141,13 @@ class Run {
     return f.lightsOn.empty() && std::all_of(f.highlights.begin(), f.highlights.end(), [](const Highlight& h) { return h.light.empty(); });
   }
   std::shared_ptr<const Surface> surfaceOf(int frame) const {
-    const Outcome<std::shared_ptr<const Surface>> s = r_.surfaces->surfaceOf(frame, normalPolicyOf(r_.request.settings));
+    const Outcome<std::shared_ptr<const Surface>> s = r_.surfaces->surfaceOf(frame, meshPolicy(r_.request.settings));
     return s ? *s : nullptr;
   }
   /// A step that missed the surface gets the reason why there is none: the file that cannot be read.
   void explainMissingSurface(int frame, std::optional<Failure>& failure) const {
     if (!failure || failure->reason != Reason::NoSurface) return;
-    const Outcome<std::shared_ptr<const Surface>> s = r_.surfaces->surfaceOf(frame, normalPolicyOf(r_.request.settings));
+    const Outcome<std::shared_ptr<const Surface>> s = r_.surfaces->surfaceOf(frame, meshPolicy(r_.request.settings));
     if (!s) failure = s.failure();
   }
   /// With the depth correction of a light, where the frame's surface is its own depth map.
@@ -154,7 +155,7 @@ class Run {
     const auto found = r_.depthCorrections.find(key);
     const Frame& f = r_.scene->frames[frame];
     if (found == r_.depthCorrections.end() || !f.surface.empty()) return surfaceOf(frame);
-    const Outcome<std::shared_ptr<const Surface>> s = corrected_.surfaceOf(f, normalPolicyOf(r_.request.settings), key, found->second);
+    const Outcome<std::shared_ptr<const Surface>> s = corrected_.surfaceOf(f, meshPolicy(r_.request.settings), key, found->second);
     return s ? *s : nullptr;
   }
   void refineDepthOf(const Group& group, LightEstimate& light);

@@ -10,6 +10,7 @@
 #include "core/model/star.h"
 #include "core/pipeline/leave_one_out.h"
 #include "core/pipeline/training.h"
+#include "core/surface/mesh_policy.h"
 
 namespace glint {
 namespace {
@@ -112,7 +113,7 @@ std::optional<PatchChoice> choosePatches(const Inspection& inspection, const Hig
   for (const Other& o : othersOf(inspection, folds, exact)) {
     checkStop(c.views, c.views);
     const Frame& frame = inspection.scene->frames[o.frame];
-    const Outcome<std::shared_ptr<const Surface>> surface = inspection.surfaces->surfaceOf(o.frame, normalPolicyOf(settings));
+    const Outcome<std::shared_ptr<const Surface>> surface = inspection.surfaces->surfaceOf(o.frame, meshPolicy(settings));
     if (!surface) continue;  // no prediction of any kind
     const Prediction walked = model.predict(*o.fit, frame.camera, surface->get(), onPatches);
     ++c.others;

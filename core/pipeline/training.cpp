@@ -11,11 +11,6 @@
 
 namespace glint {
 
-NormalPolicy normalPolicyOf(const Settings& settings) {
-  const std::string& name = settings.text("surface.normals");
-  return name == "facet" ? NormalPolicy::Facet : name == "curved" ? NormalPolicy::Curved : NormalPolicy::Interpolated;
-}
-
 TrainingView trainingView(const FrameEvidence& evidence, int index, const Camera& camera, std::shared_ptr<const Surface> surface) {
   TrainingView view;
   view.frame = evidence.frame;
@@ -98,7 +93,7 @@ Outcome<LightEstimate> estimateLight(const std::vector<TrainingView>& views, con
     // The rays of a narrow baseline may meet behind the surface; contours still tell: start at infinity along the mean ray.
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const ReflectedRay& r : rays) mean += r.direction;
-    if (!(mean.norm() > 1e-6)) return t.failure();
+    if (!(mean.norm() > 1e-6)) return t.failure();  // directions that cancel have no mean
     estimate.light = Light::towards(mean);
   }
   if (bundle) {

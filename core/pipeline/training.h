@@ -17,9 +17,6 @@ TrainingView trainingView(const FrameEvidence& evidence, int highlight, const Ca
 /// TooFewViews; LightBehindSurface; what the bundle reports. A bundle that fails falls back to nothing: its reason is returned.
 Outcome<LightEstimate> estimateLight(const std::vector<TrainingView>& views, const Settings& settings);
 
-/// What `surface.normals` says.
-NormalPolicy normalPolicyOf(const Settings& settings);
-
 /// Depth correction of some views of one light whose surfaces are their own frames' depth maps (light.refine_depth). The bundle's failures;
 /// NotSupported unless `light.solver` is bundle.
 Outcome<DepthRefinement> refineDepth(const std::vector<TrainingView>& views, const Light& start, const Settings& settings);

@@ -117,7 +117,7 @@ std::optional<RadiancePeak> RadianceField::climb(Pixel p, double marginPx) const
                   : Eigen::Vector2d(gradient.norm() > 0 ? Eigen::Vector2d(stride * gradient.normalized()) : Pixel(0, 0));
       if (move.norm() > kLongestStridePx) move *= kLongestStridePx / move.norm();
       if (concave && move.norm() < kSettledPx) break;
-      for (double share = 1; share > 1e-3; share *= 0.5) {
+      for (double share = 1; share > 1e-3; share *= 0.5) {  // ten halvings: then the model is wrong, not the step too long
         const std::optional<double> next = value(p + share * move);
         if (!next || !(*next > *here)) continue;
         p += share * move;

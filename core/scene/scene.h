@@ -89,7 +89,7 @@ class SurfaceCache {
   explicit SurfaceCache(const Scene& scene);
   ~SurfaceCache();
   /// The surface that a frame sees. NoSurface; FrameUnreadable for its depth image; InputError when a mesh cannot be read.
-  Outcome<std::shared_ptr<const Surface>> surfaceOf(int frame, NormalPolicy normals) const;
+  Outcome<std::shared_ptr<const Surface>> surfaceOf(int frame, MeshPolicy policy) const;
   /// A key that is equal for frames that see the same surface ("body"; "depth:0004" for a frame's own depth).
   std::string keyOf(int frame) const;
 

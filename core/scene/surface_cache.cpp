@@ -66,13 +66,13 @@ struct SurfaceCache::Impl {
     statistics.mostDepthMaps = std::max(statistics.mostDepthMaps, statistics.depthMaps);
   }
 
-  Outcome<SharedSurface> load(const Frame& frame, NormalPolicy normals) const {
+  Outcome<SharedSurface> load(const Frame& frame, MeshPolicy policy) const {
     if (frame.surface.empty()) {
       const Outcome<std::optional<Image>> depth = readDepth(frame);
       if (!depth) return depth.failure();
       if (!*depth) return Failure{Reason::NoSurface, "frame " + frame.id + " has neither a surface nor depth"};
       DepthMapOptions options;
-      options.normals = normals;
+      options.mesh = policy;
       return makeDepthMap(**depth, frame.camera, options);
     }
     const auto it = sources.find(frame.surface);
@@ -81,7 +81,7 @@ struct SurfaceCache::Impl {
     if (!it->second.mesh) return Failure{Reason::NoSurface, "surface '" + frame.surface + "' is neither a mesh nor analytic"};
     TriangleMesh mesh = once(meshes, frame.surface, [&] { return readMesh(*it->second.mesh); });
     try {
-      return makeMesh(std::move(mesh), normals);
+      return makeMesh(std::move(mesh), policy);
     } catch (const std::invalid_argument& e) {
       throw InputError(it->second.mesh->string(), "", e.what());
     }
@@ -99,16 +99,16 @@ std::string SurfaceCache::keyOf(int index) const {
   return frame.surface.empty() ? "depth:" + frame.id : frame.surface;
 }
 
-Outcome<std::shared_ptr<const Surface>> SurfaceCache::surfaceOf(int index, NormalPolicy normals) const {
+Outcome<std::shared_ptr<const Surface>> SurfaceCache::surfaceOf(int index, MeshPolicy policy) const {
   const Frame& frame = impl_->frame(index);
-  const std::string key = keyOf(index) + "|" + std::to_string(static_cast<int>(normals));
+  const std::string key = keyOf(index) + "|" + std::to_string(static_cast<int>(policy.normals)) + std::to_string(static_cast<int>(policy.rays));
   if (frame.surface.empty()) impl_->touch(key);
   return impl_->once(impl_->surfaces, key, [&] {
     {
       const std::lock_guard<std::mutex> lock(impl_->mutex);
       ++impl_->statistics.loads;
     }
-    return impl_->load(frame, normals);
+    return impl_->load(frame, policy);
   });
 }
 

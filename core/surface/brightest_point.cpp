@@ -109,13 +109,13 @@ Search newton(const Sighting& sighting, const SurfacePoint& start, int maxIterat
     const Vector2d g = t.transpose() * s.h;
     const double determinant = j.determinant();
     Vector2d step;
-    if (std::abs(determinant) > 1e-12 * j.squaredNorm()) {
+    if (std::abs(determinant) > 1e-12 * j.squaredNorm()) {  // else a direction is free to round-off: damped below
       step = -(Matrix2d() << j(1, 1), -j(0, 1), -j(1, 0), j(0, 0)).finished() * g / determinant;
     } else {
       // Nearly singular (a fold): damped by a part in 1e9 of the larger singular value, on the singular values themselves.
       const Eigen::JacobiSVD<Matrix2d> svd(j, Eigen::ComputeFullU | Eigen::ComputeFullV);
       const Vector2d s2 = svd.singularValues();
-      const double damping = 1e-9 * s2.squaredNorm();
+      const double damping = 1e-9 * s2.squaredNorm();  // squared: directions below 3e-5 of the largest stay where they are
       if (!(damping > 0)) break;
       step =
           -(svd.matrixV() * (s2.array() / (s2.array().square() + damping)).matrix().asDiagonal() * svd.matrixU().transpose() * g);
@@ -127,7 +127,7 @@ Search newton(const Sighting& sighting, const SurfacePoint& start, int maxIterat
     if (!std::isfinite(length)) break;
     if (length > longest) step *= longest / length;
 
-    const bool close = s.merit() < 1e-6;
+    const bool close = s.merit() < 1e-6;  // squared sine of a milliradian: Newton converges quadratically from here
     bool accepted = false;
     double scale = 1;
     for (int halving = 0; halving < (close ? 3 : 24); ++halving, scale *= 0.5) {
@@ -161,7 +161,7 @@ Search compass(const Sighting& sighting, const SurfacePoint& start, double first
   search.alpha = s.alpha();
   if (!std::isfinite(search.alpha)) return search;
   double step = firstStep;
-  const double smallest = 1e-12 / s.inverseV;
+  const double smallest = 1e-12 / s.inverseV;  // of the distance to the eye: far below a pixel, above round-off
   for (int evaluations = 0; step > smallest && evaluations < 1500;) {
     const Basis t = tangentBasis(search.point.normal);
     bool improved = false;
@@ -196,7 +196,7 @@ void tryPlaneOfFacet(const Sighting& sighting, Search& search) {
     const Outcome<SurfacePoint> next = sighting.moved(p, t * step);
     if (!next || next->element != search.point.element) return;
     p = *next;
-    if (step.norm() * s.inverseV < 1e-15) break;
+    if (step.norm() * s.inverseV < 1e-15) break;  // round-off of the distance to the eye
   }
   const double alpha = sighting.shade(p).alpha();
   if (alpha < search.alpha) {
@@ -438,6 +438,7 @@ class Finder {
     Search search = compass(sighting_, seed, 0.5 * footprint(seed));
     tryPlaneOfFacet(sighting_, search);
     if (search.alpha > kZeroAngle) {
+      // A ten-millionth of the distance is below a pixel and above round-off.
       const double jump = normalJump(sighting_, search.point, 1e-7 * (sighting_.eye - search.point.position).norm());
       if (!(search.alpha <= jump)) {
         if (search.touchedEdge) ++rejected_.edge;

@@ -12,6 +12,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/photo.hpp>
+#include <vector>
 
 #include "core/surface/mesh.h"
 
@@ -52,6 +53,17 @@ cv::Mat1f withoutSmallHoles(const Image& depth, const DepthMapOptions& options) 
   return filled;
 }
 
+/// Of the pixels that have one; 1 when none has.
+double medianDepth(const cv::Mat1f& depth) {
+  std::vector<float> values;
+  for (const float z : depth)
+    if (z > 0) values.push_back(z);
+  if (values.empty()) return 1;
+  const auto middle = values.begin() + values.size() / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 }  // namespace
 
 Outcome<std::shared_ptr<const Surface>> makeDepthMap(const Image& depth, const Camera& camera, const DepthMapOptions& options) {
@@ -71,6 +83,7 @@ Outcome<std::shared_ptr<const Surface>> makeDepthMap(const Image& depth, const C
   pcl::IndicesPtr indices(new pcl::Indices);
   cloud->is_dense = false;
   const float nan = std::numeric_limits<float>::quiet_NaN();
+  const double unit = medianDepth(z);  // PCL counts in it: its single precision and the radius then mean the same at every scale
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       pcl::PointXYZ& out = cloud->at(x, y);
@@ -83,7 +96,7 @@ Outcome<std::shared_ptr<const Surface>> makeDepthMap(const Image& depth, const C
       vertexOf[static_cast<std::size_t>(y) * width + x] = static_cast<int>(points.size());
       points.push_back(p);
       indices->push_back(y * width + x);
-      out.getVector3fMap() = p.cast<float>();
+      out.getVector3fMap() = (p / unit).cast<float>();
     }
 
   const auto joined = [&](int a, int b) {
@@ -108,7 +121,7 @@ Outcome<std::shared_ptr<const Surface>> makeDepthMap(const Image& depth, const C
     }
   if (mesh.triangles.empty()) return Failure{Reason::NoSurface, "no cell of the depth map is complete"};
 
-  if (options.normals != NormalPolicy::Facet) {
+  if (options.mesh.normals != NormalPolicy::Facet) {
     pcl::NormalEstimation<pcl::PointXYZ, pcl::Normal> estimation;
     pcl::search::Search<pcl::PointXYZ>::Ptr search;
     if (camera.hasDistortion())
@@ -132,7 +145,7 @@ Outcome<std::shared_ptr<const Surface>> makeDepthMap(const Image& depth, const C
   }
   const Eigen::Isometry3d worldFromCam = camera.camFromWorld.inverse();
   for (const Eigen::Vector3d& p : points) mesh.vertices.push_back(worldFromCam * p);
-  return makeMesh(std::move(mesh), options.normals, false);
+  return makeMesh(std::move(mesh), options.mesh, false);
 }
 
 }  // namespace glint

@@ -11,11 +11,12 @@
 namespace glint {
 
 struct DepthMapOptions {
-  double normalRadius = 0.03;  ///< m: neighbours that give a point its normal (the paper's 3 cm)
+  /// Neighbours that give a point its normal lie within this share of the median depth: the paper's 3 cm at 2 m.
+  double normalRadius = 0.015;
   int largestHolePx = 400;     ///< holes of at most this many pixels that touch no image border are filled (Telea)
   double inpaintRadiusPx = 3;  ///< neighbourhood of the filling
   double jump = 0.05;          ///< relative depth difference between neighbours that cuts the surface
-  NormalPolicy normals = NormalPolicy::Interpolated;
+  MeshPolicy mesh;
 };
 
 /// Surface of one depth map: fill small holes, unproject every pixel, normals from neighbours within a radius (plane fit,

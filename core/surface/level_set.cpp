@@ -110,7 +110,7 @@ struct Component {
   /// Diameter of a disc, width of a band (twice over): four times the area over the perimeter.
   double thickness() const {
     const Polyline line = outline();
-    return 4 * std::abs(signedArea(line)) / std::max(length(line), 1e-300);
+    return 4 * std::abs(signedArea(line)) / std::max(length(line), 1e-300);  // not 0 / 0
   }
 };
 
@@ -334,10 +334,11 @@ class Splitter {
     for (std::size_t i = 0; i < coarse.size(); ++i) {
       const Vertex& a = coarse[i];
       const Vertex& b = coarse[(i + 1) % coarse.size()];
+      // px: vertices this near are one that two neighbouring cells found.
       if (out_.empty() || (out_.back().p - a.p).norm() > 1e-7) out_.push_back(a);
       split(a, b, 0);
     }
-    while (out_.size() > 3 && (out_.back().p - out_.front().p).norm() <= 1e-7) out_.pop_back();
+    while (out_.size() > 3 && (out_.back().p - out_.front().p).norm() <= 1e-7) out_.pop_back();  // as above
     return std::move(out_);
   }
 
@@ -392,7 +393,7 @@ std::pair<double, double> reachFrom(const Region& region, const Pixel& p, double
   for (int k = 0; k < 16; ++k) {
     const double a = k * std::numbers::pi / 8;
     const Eigen::Vector2d d(std::cos(a), std::sin(a));
-    double reach = 1e-3;
+    double reach = 1e-3;  // px: the smallest highlight that is told from a point
     while (reach < farthest) {
       const std::optional<double> v = region.at(p + reach * d);
       if (!v || *v >= 0) break;
@@ -416,7 +417,7 @@ std::optional<Component> traceAround(const PixelField& field, const PixelFieldBa
     for (Component& c : Grid(region, used, true).trace(tolerance)) {
       if (!contains(c.outline(), p)) continue;
       const Box box = c.box();
-      const double close = 1e-6 * largest + 2 * tolerance;
+      const double close = 1e-6 * largest + 2 * tolerance;  // of the size found first: the same border
       const bool cut = (box.min().x() < clipped.min().x() + close && clipped.min().x() > domain.min().x()) ||
                        (box.min().y() < clipped.min().y() + close && clipped.min().y() > domain.min().y()) ||
                        (box.max().x() > clipped.max().x() - close && clipped.max().x() < domain.max().x()) ||
@@ -468,6 +469,7 @@ std::vector<LevelSetComponent> traceLevelSets(const PixelField& field, const Pix
       }
     if (known) continue;
     const auto [smallest, largest] = reachFrom(region, p, 8 * options.gridStepPx);
+    // At most 64 cells along the region and at least four across it; 1e-3 px as in reachFrom.
     const double step = std::clamp(smallest / 4, std::max(largest / 64, 1e-3), options.gridStepPx);
     const Eigen::Vector2d half = Eigen::Vector2d::Constant(1.2 * largest + 3 * step);
     std::optional<Component> c = traceAround(field, batch, level, domain, p, step, Box(p - half, p + half), options.tolerancePx);

@@ -59,8 +59,10 @@ struct Place {
 
 class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces {
  public:
-  MeshSurface(TriangleMesh mesh, NormalPolicy policy, bool manySearches)
-      : policy_(policy), manySearches_(manySearches), mesh_(std::move(mesh)) {
+  MeshSurface(TriangleMesh mesh, MeshPolicy policy, bool manySearches)
+      : policy_(policy.normals),
+        single_(policy.rays == RayPrecision::Single && policy.normals != NormalPolicy::Curved),
+        manySearches_(manySearches), mesh_(std::move(mesh)) {
     check();
     topology_ = topologyOf(mesh_);
     require(std::find(topology_.alive.begin(), topology_.alive.end(), 1) != topology_.alive.end(),
@@ -90,12 +92,12 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces {
     // hit. Convex surfaces lie behind their tangent plane: that side first.
     double farthest = kInf;
     for (const double sign : {-1.0, 1.0})
-      if (const std::optional<Place> place = firstPlace(o, sign * d, -1e-9 * size_, farthest)) {
+      if (const std::optional<Place> place = firstPlace(o, sign * d, -1e-9 * size_, farthest)) {  // o may lie on the mesh
         const SurfacePoint p = pointAt(*place);
         if (best && !((p.position - previous.position).squaredNorm() < (best->position - previous.position).squaredNorm()))
           continue;
         best = p;
-        farthest = std::abs(place->t) * (1 + 1e-6) + 1e-9 * size_;
+        farthest = std::abs(place->t) * (1 + 1e-6) + 1e-9 * size_;  // the single precision of the ray tracer
       }
     if (!best) return Failure{Reason::SurfaceEnded, "the line misses the " + describe()};
     return *best;
@@ -108,6 +110,7 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces {
     const Vector3d offset = to - from.position;
     const double length = offset.norm();
     if (!(length > 0)) return false;
+    // Surface::occluded names the millionth; the end itself hides nothing.
     return firstPlace(from.position, offset / length, 1e-6 * std::min(size_, length), length * (1 - 1e-9)).has_value();
   }
   std::vector<char> occludedMany(const std::vector<SurfacePoint>& from, const Vector3d& to) const override;
@@ -230,11 +233,11 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces {
       place.v -= step.y();
       place.t -= step.z();
       const double size = std::abs(step.x()) + std::abs(step.y());
-      if (size < 1e-15 || (size < 1e-11 && size >= last)) return true;
+      if (size < 1e-15 || (size < 1e-11 && size >= last)) return true;  // weights of size 1: round-off
       if (place.u < -1 || place.v < -1 || place.u + place.v > 2) return i > 0 || size < 10;
       last = size;
     }
-    return last < 1e-9;
+    return last < 1e-9;  // a place that close serves; farther off it is none
   }
 
   /// From triangle to neighbour until the line passes through one. Nothing at a border or after `most` triangles.
@@ -256,7 +259,7 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces {
       // Weight of corner k negative: out across the edge opposite to it.
       const int edge = lowest == place.v ? 0 : lowest == w ? 1 : 2;
       const int next = topology_.neighbours[triangle][edge];
-      if (next < 0 || (next == before && lowest > -1e-7)) break;
+      if (next < 0 || (next == before && lowest > -1e-7)) break;  // to and fro over an edge: single precision of a start
       before = triangle;
       triangle = next;
     }
@@ -270,7 +273,7 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces {
     return std::nullopt;
   }
 
-  /// First place with a parameter in (least, most) of o + t d, |d| = 1. Embree finds triangles, double decides.
+  /// First place with a parameter in (least, most) of o + t d, |d| = 1. Embree finds triangles, double decides unless `single_`.
   std::optional<Place> firstPlace(const Vector3d& o, const Vector3d& d, double least, double most) const {
     // Start where the ray enters the box: float coordinates are then of order 1 with an error of 1e-7.
     const double margin = 1e-5 * size_;
@@ -314,7 +317,10 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces {
         for (int k = 0; k < 3; ++k) (&query.ray.org_x)[k] += aside[k];
         continue;
       }
-      if (std::optional<Place> place = walk(static_cast<int>(query.hit.primID), start, d, 8)) {
+      if (single_) {
+        const Place place{static_cast<int>(query.hit.primID), query.hit.u, query.hit.v, enter + query.ray.tfar / toEmbree_};
+        if (place.t > least) return place.t < most ? std::optional<Place>(place) : std::nullopt;
+      } else if (std::optional<Place> place = walk(static_cast<int>(query.hit.primID), start, d, 8)) {
         place->t += enter;
         if (place->t > least && place->t < most) return place;
         if (place->t >= most && policy_ != NormalPolicy::Curved) return std::nullopt;
@@ -340,7 +346,7 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces {
     if (policy_ != NormalPolicy::Facet) {
       const Vector3d n = w * mesh_.normals[t.x()] + place.u * mesh_.normals[t.y()] + place.v * mesh_.normals[t.z()];
       const double length = n.norm();
-      if (length > 1e-6) {
+      if (length > 1e-6) {  // unit vectors that cancel to this have no mean
         p.normal = n / length;
         return p;
       }
@@ -351,6 +357,7 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces {
   }
 
   NormalPolicy policy_;
+  bool single_;  // Embree's own hits serve
   bool manySearches_;
   TriangleMesh mesh_;
   MeshTopology topology_;
@@ -496,7 +503,7 @@ std::vector<char> MeshSurface::occludedMany(const std::vector<SurfacePoint>& fro
         packet.dir_x[k] = static_cast<float>(d.x());
         packet.dir_y[k] = static_cast<float>(d.y());
         packet.dir_z[k] = static_cast<float>(d.z());
-        packet.tnear[k] = static_cast<float>(1e-6 * std::min(size_, length) * toEmbree_);
+        packet.tnear[k] = static_cast<float>(1e-6 * std::min(size_, length) * toEmbree_);  // as in occluded
         packet.tfar[k] = static_cast<float>(length * toEmbree_);
         packet.time[k] = 0;
         packet.mask[k] = ~0u;
@@ -524,7 +531,7 @@ Outcome<Curvature> MeshSurface::curvatureAt(const SurfacePoint& p) const {
   const double u = p.barycentric.x(), v = p.barycentric.y();
   const Vector3d sum = (1 - u - v) * n0 + u * n1 + v * n2;
   const double length = sum.norm();
-  if (!(length > 1e-6)) return Failure{Reason::NotSupported, "vertex normals cancel here"};
+  if (!(length > 1e-6)) return Failure{Reason::NotSupported, "vertex normals cancel here"};  // of unit vectors
   const Vector3d n = sum / length;
   Eigen::Matrix<double, 3, 2> dP, dN;
   if (policy_ == NormalPolicy::Curved) {
@@ -557,8 +564,8 @@ Outcome<Curvature> MeshSurface::curvatureAt(const SurfacePoint& p) const {
 
 }  // namespace
 
-std::shared_ptr<const Surface> makeMesh(TriangleMesh mesh, NormalPolicy normals, bool manySearches) {
-  return std::make_shared<MeshSurface>(std::move(mesh), normals, manySearches);
+std::shared_ptr<const Surface> makeMesh(TriangleMesh mesh, MeshPolicy policy, bool manySearches) {
+  return std::make_shared<MeshSurface>(std::move(mesh), policy, manySearches);
 }
 
 }  // namespace glint

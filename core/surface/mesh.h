@@ -8,7 +8,9 @@
 namespace glint {
 
 /// A triangle mesh behind the Surface interface. Ray queries go through Embree in float32 on a centred and scaled copy;
-/// every hit is then polished in double, moving to the neighbour triangle where the double hit lies outside.
+/// every hit is then polished in double, moving to the neighbour triangle where the double hit lies outside (RayPrecision::Double).
+/// With RayPrecision::Single Embree's hit is the answer: good to about 1e-7 of the mesh's size along the ray. Feet reached by
+/// walking over neighbouring triangles are in double either way. Curved patches need the polishing and ignore Single.
 ///
 /// Normal policies (method.md section 2):
 /// - Facet: flat positions, one normal per triangle (side of its winding after orientation). No curvature.
@@ -27,7 +29,7 @@ namespace glint {
 /// makes each
 ///   of them several times faster and surer; not worth it for a surface that one photograph uses.
 /// std::invalid_argument (with the index) for a vertex that is not finite or a corner out of range, when there is no
-/// triangle with an area, or when `normals` is neither empty nor one per vertex.
-std::shared_ptr<const Surface> makeMesh(TriangleMesh mesh, NormalPolicy normals, bool manySearches = true);
+/// triangle with an area, or when the mesh's normals are neither empty nor one per vertex.
+std::shared_ptr<const Surface> makeMesh(TriangleMesh mesh, MeshPolicy policy, bool manySearches = true);
 
 }  // namespace glint

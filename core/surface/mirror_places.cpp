@@ -153,6 +153,7 @@ class NormalTree::Builder {
       sum += children[k].axis;
     }
     parent.centre = parent.box.center();
+    // Axes that cancel leave any axis as good as another; the cone is then wide.
     parent.axis = sum.norm() > 1e-3 ? Vector3d(sum.normalized()) : children[0].axis;
     for (int k = 0; k < count; ++k) {
       const Node& c = children[k];
@@ -191,7 +192,7 @@ NormalTree::NormalTree(const TriangleMesh& mesh, const MeshTopology& topology, c
     : centre_(bounds.center()), scale_(2 / bounds.sizes().norm()) {
   std::vector<Keyed> order;
   order.reserve(mesh.triangles.size());
-  const double cells = ((1 << kBitsPerAxis) - 1) / std::max(bounds.sizes().maxCoeff(), 1e-300);
+  const double cells = ((1 << kBitsPerAxis) - 1) / std::max(bounds.sizes().maxCoeff(), 1e-300);  // not 0 / 0
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     if (!topology.alive[i]) continue;
     const Eigen::Vector3i& t = mesh.triangles[i];

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <compare>
 #include <memory>
 #include <optional>
 #include <string>
@@ -41,6 +42,18 @@ struct TriangleMesh {
 };
 
 enum class NormalPolicy { Facet, Interpolated, Curved };
+/// Double: single precision finds the triangle, double decides where on it. Single: the ray tracer's own answer.
+enum class RayPrecision { Double, Single };
+
+/// How a mesh answers, whatever it was made from. Analytic surfaces need neither.
+struct MeshPolicy {
+  NormalPolicy normals = NormalPolicy::Interpolated;
+  RayPrecision rays = RayPrecision::Double;
+
+  MeshPolicy() = default;
+  MeshPolicy(NormalPolicy n, RayPrecision r = RayPrecision::Double) : normals(n), rays(r) {}
+  auto operator<=>(const MeshPolicy&) const = default;
+};
 
 /// What the method needs of a surface, whatever its source (analytic, mesh, depth map). Immutable; all
 /// queries are const and may be called from several threads.

@@ -9,6 +9,7 @@
 #include "core/base/sha256.h"
 #include "core/evaluate/summary.h"
 #include "core/pipeline/training.h"
+#include "core/surface/mesh_policy.h"
 #include "core/tradeoff/memory.h"
 
 namespace glint {
@@ -179,7 +180,7 @@ std::vector<std::vector<double>> TradeoffBench::timesOf(const Inspection& inspec
   for (const int i : spread(counted, frames)) {
     const FrameComparison& c = result.frames[i];
     std::vector<double>& of = times.emplace_back();
-    const Outcome<std::shared_ptr<const Surface>> surface = inspection.surfaces->surfaceOf(c.frame, normalPolicyOf(trial.settings));
+    const Outcome<std::shared_ptr<const Surface>> surface = inspection.surfaces->surfaceOf(c.frame, meshPolicy(trial.settings));
     const Camera& camera = inspection.scene->frames[c.frame].camera;
     for (int r = 0; r < repeats; ++r) {
       check();
@@ -255,13 +256,13 @@ Outcome<TrialResult> TradeoffBench::coarse(const Trial& trial) {
 
 Outcome<TradeoffPoint> TradeoffBench::full(const Trial& trial) {
   earlier_.clear();
-  const std::string& normals = trial.settings.text("surface.normals");
-  if (normals_ != normals) {
+  const MeshPolicy policy = meshPolicy(trial.settings);
+  if (policy_ != policy) {
     // Only this policy's surfaces count in the memory.
     all_->evidence.surfaces.reset();
     few_->evidence.surfaces = std::make_shared<SurfaceCache>(*few_->scene);
     all_->evidence.surfaces = std::make_shared<SurfaceCache>(*all_->scene);
-    normals_ = normals;
+    policy_ = policy;
   }
   memoryResets_ = restartPeakMemory() && memoryResets_;
   const Inspection r = run(*all_, trial, nullptr);

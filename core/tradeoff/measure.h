@@ -42,7 +42,7 @@ class TradeoffBench {
   int repeats_;
   ProgressFn progress_;
   std::shared_ptr<Subset> few_, all_;
-  std::string normals_;                        ///< policy of the surfaces that `all_` holds
+  std::optional<MeshPolicy> policy_;           ///< policy of the surfaces that `all_` holds
   std::map<std::string, Inspection> earlier_;  ///< coarse results by what their fits depend on
   bool memoryResets_ = true;
 };

@@ -6,6 +6,7 @@
 
 #include "core/base/sha256.h"
 #include "core/pipeline/session.h"
+#include "core/surface/mesh_policy.h"
 #include "core/tradeoff/measure.h"
 #include "core/tradeoff/work_file.h"
 
@@ -74,7 +75,7 @@ Tradeoff measureTradeoff(std::shared_ptr<const Scene> scene, const InspectionReq
   t.pruned = std::move(found.pruned);
   // Grouped by surface, so that each is built once; the order of the points is decided later.
   std::stable_sort(found.finalists.begin(), found.finalists.end(), [](const Trial& a, const Trial& b) {
-    return a.settings.text("surface.normals") < b.settings.text("surface.normals");
+    return meshPolicy(a.settings) < meshPolicy(b.settings);
   });
   done = 0;
   for (const Trial& trial : found.finalists) {

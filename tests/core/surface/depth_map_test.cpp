@@ -57,6 +57,18 @@ TEST(DepthMap, SphereWithHolesAgreesWithTheAnalyticOne) {
   expectClose(**map, *sphere, camera, 2e-3, 1.5);
 }
 
+// The neighbourhood of a normal is a share of the depth, so that a scene in millimetres or kilometres is the same one.
+TEST(DepthMap, Scale) {
+  for (const double scale : {1e-6, 1e6}) {
+    const auto sphere = makeAnalytic(test::sphere(0.4 * scale));
+    const Camera camera = test::lookAt(scale * Vector3d(0.2, -1.6, 0.5), {0, 0, 0}, 200, 160, 120);
+    const auto map = makeDepthMap(depthOf(*sphere, camera), camera);
+    ASSERT_TRUE(map) << map.failure().message();
+    // As at scale 1, without a hole: plane fits over 1.5 % of the depth near the rim.
+    expectClose(**map, *sphere, camera, 5e-4 * scale, 1.5);
+  }
+}
+
 TEST(DepthMap, LargeHolesAndJumpsStayOpen) {
   const auto sphere = makeAnalytic(test::sphere(0.4));
   const Camera camera = test::lookAt({0, -1.6, 0}, {0, 0, 0}, 200, 160, 120);
@@ -67,7 +79,7 @@ TEST(DepthMap, LargeHolesAndJumpsStayOpen) {
     for (int x = 0; x < 160; ++x)
       if (depth.at(x, y) == 0 && (x < 20 || x > 140)) depth.at(x, y) = 5;  // a wall far behind
   DepthMapOptions options;
-  options.normals = NormalPolicy::Facet;
+  options.mesh.normals = NormalPolicy::Facet;
   const auto map = makeDepthMap(depth, camera, options);
   ASSERT_TRUE(map);
   EXPECT_FALSE((*map)->firstHit(camera.ray({80, 60})));

@@ -59,6 +59,29 @@ TEST(Mesh, HitsAgreeWithBruteForceInDouble) {
   EXPECT_GT(misses, 30);
 }
 
+// surface.rays=single: the ray tracer's hits, off by no more than the single precision of coordinates of size 1 allows at this slant.
+TEST(Mesh, SinglePrecisionIsNearAndIsNotDouble) {
+  constexpr double kSinglePrecision = 2e-5;
+  const TriangleMesh mesh = tessellated(test::torus(0.5, 0.2), 40);
+  const auto exact = makeMesh(mesh, NormalPolicy::Interpolated);
+  const auto single = makeMesh(mesh, MeshPolicy{NormalPolicy::Interpolated, RayPrecision::Single});
+  std::mt19937 rng(2);
+  std::uniform_real_distribution<double> u(-1, 1);
+  int hits = 0;
+  double worst = 0;
+  for (int i = 0; i < 400; ++i) {
+    const Vector3d o = 1.2 * Vector3d(u(rng), u(rng), u(rng)).normalized();
+    const Ray ray{o, (0.6 * Vector3d(u(rng), u(rng), 0.3 * u(rng)) - o).normalized()};
+    const Outcome<SurfacePoint> a = exact->firstHit(ray), b = single->firstHit(ray);
+    if (!a || !b || std::abs(a->normal.dot(ray.direction)) < 0.1) continue;
+    ++hits;
+    EXPECT_LT((a->position - b->position).norm(), kSinglePrecision) << i;
+    worst = std::max(worst, (a->position - b->position).norm());
+  }
+  EXPECT_GT(hits, 100);
+  EXPECT_GT(worst, 1e-9);  // or the setting would do nothing
+}
+
 TEST(Mesh, ApproximateHitsAreNearTheExactOnes) {
   const auto surface = makeMesh(tessellated(test::sphere(0.4), 60), NormalPolicy::Interpolated);
   std::vector<Ray> rays;

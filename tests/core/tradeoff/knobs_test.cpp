@@ -26,7 +26,7 @@ const Knob* find(const std::vector<Knob>& knobs, const std::string& key) {
 // method.md section 12 names them.
 TEST(Knobs, AreTheOnesOfTheMethod) {
   const std::vector<Knob> knobs = knobsOf(Settings());
-  for (const char* key : {"surface.normals", "light.solver", "fit.solver", "predict.directions", "predict.level_set_step",
+  for (const char* key : {"surface.normals", "surface.rays", "light.solver", "fit.solver", "predict.directions", "predict.level_set_step",
                           "predict.walk_tolerance"})
     EXPECT_NE(find(knobs, key), nullptr) << key;
   for (const Knob& k : knobs) EXPECT_NE(paramSpec(k.key).stage, "detect") << k.key;
