@@ -13,6 +13,7 @@
 #include "core/geometry/polyline.h"
 #include "core/light/directed_limit.h"
 #include "core/light/estimate.h"
+#include "core/light/solver_options.h"
 
 namespace glint {
 namespace {
@@ -221,19 +222,12 @@ bool reweighted(std::vector<Evidence>& points, Attempt& a, bool atInfinity, doub
         problem.SetManifold(a.light.data(), new ceres::SphereManifold<3>());
       else
         problem.SetManifold(a.light.data(), new ceres::SphereManifold<4>());
-      ceres::Solver::Options solver;
-      solver.linear_solver_type = ceres::DENSE_QR;
-      solver.logging_type = ceres::SILENT;
-      solver.num_threads = 1;
-      solver.max_num_iterations = std::max(1, already + options.maxIterations - a.iterations);
-      solver.function_tolerance = 1e-12;
-      solver.parameter_tolerance = 1e-12;
-      solver.gradient_tolerance = 1e-14;
-      ceres::Solve(solver, &problem, &summary);
+      // To round-off: invariances hold to 1e-9 only then.
+      ceres::Solve(denseSolver(already + options.maxIterations - a.iterations, 1e-12), &problem, &summary);
     }
     a.iterations += std::max<int>(1, int(summary.iterations.size()) - 1);
     if (!summary.IsSolutionUsable() || !a.light.allFinite() || !std::isfinite(a.limit)) return false;
-    a.converged = summary.termination_type == ceres::CONVERGENCE || summary.final_cost <= 1e-20 * points.size();
+    a.converged = converged(summary, points.size());
     const double moved = std::max((a.light - before).norm(), std::abs(a.limit - limitBefore));
     if (a.converged && moved < 1e-9) break;  // unit vector and rad: below what any contour tells
   }
@@ -317,15 +311,8 @@ Attempt directed(std::vector<Evidence>& points, const Attempt& start, const Bund
                                a.extent.data());
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<ExtentPrior, 6, 6>(new ExtentPrior{prior}), nullptr, a.extent.data());
     problem.SetManifold(a.light.data(), new ceres::SphereManifold<4>());
-    ceres::Solver::Options solver;
-    solver.linear_solver_type = ceres::DENSE_QR;
-    solver.logging_type = ceres::SILENT;
-    solver.num_threads = 1;
-    solver.max_num_iterations = options.maxIterations;
-    solver.function_tolerance = 1e-10;
-    solver.parameter_tolerance = 1e-10;
     ceres::Solver::Summary summary;
-    ceres::Solve(solver, &problem, &summary);
+    ceres::Solve(denseSolver(options.maxIterations, 1e-10), &problem, &summary);  // tighter than the 1e-7 that the rounds ask for
     a.iterations += std::max<int>(1, int(summary.iterations.size()) - 1);
     if (!summary.IsSolutionUsable() || !a.light.allFinite() || !a.extent.allFinite() || !(a.limit > 0)) return start;
     const double moved = std::max({(a.light - before.light).norm(), std::abs(a.limit - before.limit), (a.extent - before.extent).norm() * prior});

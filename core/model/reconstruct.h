@@ -55,7 +55,7 @@ struct CentrePrior {
   Eigen::Matrix3d covariance;        ///< m^2, positive definite
 };
 
-/// Refined: minimises contour distances (px, points to the outline) over the centre and a Cholesky factor of S by Ceres, from
+/// Refined: minimises contour distances (px, points to the outline) over the centre and the positive semidefinite S, from
 /// `start`, with the prior on the centre when there is one. Never worse than the start.
 /// TooFewViews (< 3 without a prior, < 2 with one); NotAnEllipsoid when the start has none; NotFinite. Running out of
 /// iterations is no failure: the result is still better than the start, and `solver` says so.

@@ -5,7 +5,7 @@
 
 namespace glint {
 
-Outcome<std::shared_ptr<const Surface>> correctedDepthMap(const Frame& frame, NormalPolicy normals, const DepthCorrection& correction) {
+Outcome<std::shared_ptr<const Surface>> correctedDepthMap(const Frame& frame, MeshPolicy policy, const DepthCorrection& correction) {
   if (!frame.surface.empty()) return Failure{Reason::NoSurface, "frame " + frame.id + " does not see its own depth"};
   Outcome<std::optional<Image>> depth = readDepth(frame);
   if (!depth) return depth.failure();
@@ -17,11 +17,11 @@ Outcome<std::shared_ptr<const Surface>> correctedDepthMap(const Frame& frame, No
       if (ideal.allFinite()) image.at(x, y) = static_cast<float>(image.at(x, y) * correction.factorAt(frame.camera, ideal));
     }
   DepthMapOptions options;
-  options.normals = normals;
+  options.mesh = policy;
   return makeDepthMap(image, frame.camera, options);
 }
 
-Outcome<std::shared_ptr<const Surface>> CorrectedDepthMaps::surfaceOf(const Frame& frame, NormalPolicy normals, const std::string& key,
+Outcome<std::shared_ptr<const Surface>> CorrectedDepthMaps::surfaceOf(const Frame& frame, MeshPolicy policy, const std::string& key,
                                                                       const DepthCorrection& correction) {
   const std::string name = key + "|" + frame.id;
   {
@@ -32,7 +32,7 @@ Outcome<std::shared_ptr<const Surface>> CorrectedDepthMaps::surfaceOf(const Fram
         return recent_.front().second;
       }
   }
-  const Outcome<std::shared_ptr<const Surface>> made = correctedDepthMap(frame, normals, correction);
+  const Outcome<std::shared_ptr<const Surface>> made = correctedDepthMap(frame, policy, correction);
   if (!made) return made;
   const std::lock_guard<std::mutex> lock(mutex_);
   recent_.emplace_front(name, *made);

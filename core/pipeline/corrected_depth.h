@@ -13,13 +13,13 @@
 namespace glint {
 
 /// A frame's own depth map with its stored depth corrected. NoSurface when the frame has another surface or no depth; FrameUnreadable.
-Outcome<std::shared_ptr<const Surface>> correctedDepthMap(const Frame& frame, NormalPolicy normals, const DepthCorrection& correction);
+Outcome<std::shared_ptr<const Surface>> correctedDepthMap(const Frame& frame, MeshPolicy policy, const DepthCorrection& correction);
 
 /// The last few corrected surfaces. Thread-safe.
 class CorrectedDepthMaps {
  public:
   /// @param key  of the correction: a light's key.
-  Outcome<std::shared_ptr<const Surface>> surfaceOf(const Frame& frame, NormalPolicy normals, const std::string& key,
+  Outcome<std::shared_ptr<const Surface>> surfaceOf(const Frame& frame, MeshPolicy policy, const std::string& key,
                                                     const DepthCorrection& correction);
 
  private:

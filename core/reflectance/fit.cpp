@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "core/base/residual_spread.h"
+#include "core/light/solver_options.h"
 #include "core/reflectance/contour_evidence.h"
 #include "core/reflectance/light_radiance.h"
 #include "core/reflectance/radiance_field.h"
@@ -357,14 +358,8 @@ Problem::Attempt Problem::solve(const Parameters& start, bool withSize) {
         problem.SetParameterLowerBound(a.at.data() + 5, 0, kLeastRadiusSquared);
       else
         problem.SetParameterBlockConstant(a.at.data() + 5);
-      ceres::Solver::Options solver;
-      solver.linear_solver_type = ceres::DENSE_QR;
-      solver.logging_type = ceres::SILENT;
-      solver.num_threads = 1;
-      solver.max_num_iterations = std::max(1, options_.maxIterations - a.iterations);
+      ceres::Solver::Options solver = denseSolver(options_.maxIterations - a.iterations, 1e-11);
       solver.function_tolerance = 1e-10;  // of a sum of squares over hundreds of points: thousandths of a standard deviation
-      solver.parameter_tolerance = 1e-11;
-      solver.gradient_tolerance = 1e-13;
       ceres::Solve(solver, &problem, &summary);
     }
     a.iterations += std::max<int>(1, int(summary.iterations.size()) - 1);

@@ -7,6 +7,7 @@
 
 #include "core/light/light.h"
 #include "core/reflectance/light_radiance.h"
+#include "core/surface/occlusion.h"
 
 namespace glint {
 namespace {
@@ -35,9 +36,6 @@ RadianceField::RadianceField(const Surface& surface, const Camera& camera, Lobe 
       light_(light),
       radiusSquared_(lightRadius * lightRadius) {
   require(roughness > 0 && std::isfinite(roughness), "RadianceField: roughness must be positive");
-  const Eigen::AlignedBox3d box = surface.bounds();
-  const double size = box.isEmpty() ? 0 : box.diagonal().norm();
-  farAway_ = std::isfinite(size) ? 2 * size : 0;
   rule_ = &lobe::discRuleFor(lightRadius > 0 ? largestSizeRatio() : 0);
 }
 
@@ -70,12 +68,7 @@ std::optional<double> RadianceField::at(const SurfacePoint& p, double floor) con
   if (!log || !std::isfinite(*log)) return std::nullopt;
   const double total = *log;
   if (total < floor) return total;
-  // An unbounded surface has no size of its own: the camera's distance stands for it.
-  const double far = farAway_ > 0 ? farAway_ + seen : 1e3 * seen;
-  const bool finite = !light_.atInfinity() && light_.position().allFinite();
-  const Eigen::Vector3d target =
-      finite ? light_.position() : Eigen::Vector3d(p.position + far * light_.directionFrom(p.position));
-  return surface_.occluded(p, target) ? std::nullopt : std::optional<double>(total);
+  return surface_.occluded(p, occlusionTarget(surface_, p.position, light_, seen)) ? std::nullopt : std::optional<double>(total);
 }
 
 std::optional<SurfacePoint> RadianceField::visible(const Pixel& p) const {

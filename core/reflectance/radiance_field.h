@@ -66,7 +66,6 @@ class RadianceField {
   Light light_;
   double radiusSquared_;  ///< m^2
   const lobe::DiscRule* rule_;
-  double farAway_;  ///< how far a shadow ray towards a light at infinity goes
 };
 
 }  // namespace glint

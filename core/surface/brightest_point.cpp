@@ -11,6 +11,7 @@
 
 #include "core/geometry/plane.h"
 #include "core/surface/mirror_places.h"
+#include "core/surface/occlusion.h"
 
 namespace glint {
 
@@ -472,7 +473,8 @@ class Finder {
     if (!pixel || !(p.normal.dot(sighting_.eye - p.position) > 0) || sighting_.surface.occluded(p, sighting_.eye))
       return ++rejected_.notVisible, false;
     const Vector3d toLight = sighting_.light.directionFrom(p.position);
-    if (!(p.normal.dot(toLight) > 0) || sighting_.surface.occluded(p, lightPosition(p, toLight, distance)))
+    if (!(p.normal.dot(toLight) > 0) ||
+        sighting_.surface.occluded(p, occlusionTarget(sighting_.surface, p.position, sighting_.light, distance)))
       return ++rejected_.notLit, false;
     if ((image_.min - *pixel).maxCoeff() > 0 || (*pixel - image_.max).maxCoeff() > 0) return ++rejected_.outside, false;
     found_.push_back({p, *pixel, search.alpha});
@@ -481,16 +483,6 @@ class Finder {
 
   /// Local minima on the same or neighbouring facets are one highlight.
   double mergePx(const Search& search) const { return search.alpha > kZeroAngle ? 2.0 : 1e-4; }
-
-  /// The light, or a point far enough towards it when it is at infinity.
-  Vector3d lightPosition(const SurfacePoint& p, const Vector3d& toLight, double distance) const {
-    if (!sighting_.light.atInfinity()) {
-      const Vector3d position = sighting_.light.position();
-      if (position.allFinite()) return position;
-    }
-    const Eigen::Vector3d extent = sighting_.surface.bounds().sizes();
-    return p.position + (extent.allFinite() ? 2 * extent.norm() : 1e3 * distance) * toLight;
-  }
 
   const Sighting& sighting_;
   const BrightestPointOptions& options_;
