@@ -174,7 +174,7 @@ Eigen::MatrixXd jacobian(const Problem& problem, const State& s, const std::vect
 State fitted(const Problem& problem, State state, const Terms& prior, int terms, double robustPx) {
   const Eigen::Index columns = 4 + terms, n = Eigen::Index(problem.points.size());
   std::vector<double> slopes, r = residuals(problem, state, &slopes);
-  double damping = 1e-3;
+  double damping = 1e-3;  // of the columns' squared norms: cautious first; it adapts by tens
   for (int round = 0; round < kRounds; ++round) {
     const double noise = std::clamp(rms(r), kLeastNoisePx, 1.0);  // what remains counts as noise; it falls as the depth explains more
     const Eigen::MatrixXd j = jacobian(problem, state, slopes, prior, terms);
@@ -209,12 +209,12 @@ State fitted(const Problem& problem, State state, const Terms& prior, int terms,
       }
       better = true;
       gained = (before - after) / before;
-      damping = std::max(1e-9, 0.1 * damping);
+      damping = std::max(1e-9, 0.1 * damping);  // without effect from here on
       state = next;
       slopes = std::move(nextSlopes);
       r = std::move(nextR);
     }
-    if (!better || gained < 1e-6) break;
+    if (!better || gained < 1e-6) break;  // of the cost: a thousandth of a standard deviation
   }
   return state;
 }
@@ -326,7 +326,7 @@ Outcome<DepthRefinement> refineDepth(const std::vector<BundleView>& given, const
   rows.bottomRightCorner(terms, terms).setIdentity();
   const Eigen::MatrixXd upper = Eigen::HouseholderQR<Eigen::MatrixXd>(rows).matrixQR().topRows(columns).triangularView<Eigen::Upper>();
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(upper, Eigen::ComputeFullV);
-  if (!(svd.singularValues()(columns - 1) > 1e-14 * svd.singularValues()(0))) return result;
+  if (!(svd.singularValues()(columns - 1) > 1e-14 * svd.singularValues()(0))) return result;  // a free direction, to round-off
   const Eigen::MatrixXd root = svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();
   for (int k = 0; k < terms; ++k) result.openShare(k) = root.row(4 + k).norm();
   const Eigen::MatrixXd dy = toWorld * chartOf(state.light) * root.topRows<3>();

@@ -47,7 +47,7 @@ bool onImageBorder(const Pixel& p, const Camera& camera) {
 /// Sides of the contour's box along which it runs straight: whoever made the contour cut it there, beyond the image for example.
 /// A level set touches its box in points. Order: left, right, top, bottom.
 std::array<bool, 4> cutSides(const std::vector<Pixel>& contour, const Eigen::AlignedBox2d& box) {
-  constexpr double kSamePx = 1e-6, kLeastPx = 2;
+  constexpr double kSamePx = 1e-6, kLeastPx = 2;  // digits of a written contour; a shorter side may be one chord of a level set
   std::array<double, 4> straight{};
   for (std::size_t i = 0; i < contour.size(); ++i) {
     const Pixel &a = contour[i], &b = contour[(i + 1) % contour.size()];
@@ -63,7 +63,7 @@ std::array<bool, 4> cutSides(const std::vector<Pixel>& contour, const Eigen::Ali
 }
 
 bool onCutSide(const Pixel& p, const Eigen::AlignedBox2d& box, const std::array<bool, 4>& cut) {
-  constexpr double kNearPx = 1e-3;
+  constexpr double kNearPx = 1e-3;  // resampled points lie on the side to round-off; the level set leaves it at once
   const Eigen::Vector2d low = p - box.min(), high = box.max() - p;
   return (cut[0] && low.x() < kNearPx) || (cut[1] && high.x() < kNearPx) || (cut[2] && low.y() < kNearPx) ||
          (cut[3] && high.y() < kNearPx);

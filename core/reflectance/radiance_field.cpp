@@ -89,7 +89,7 @@ std::optional<RadiancePeak> RadianceField::climb(Pixel p, double marginPx) const
   if (!here) return std::nullopt;
   double pattern = 4;  // px, of the search without derivatives
   double stride = kFirstStridePx;
-  for (int step = 0; step < kMaxSteps && pattern > 1e-4; ++step) {
+  for (int step = 0; step < kMaxSteps && pattern > 1e-4; ++step) {  // px: a maximum at a kink is no better known
     std::optional<double> f[3][3];
     bool whole = true;
     for (int i = -1; i <= 1; ++i)

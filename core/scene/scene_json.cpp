@@ -102,7 +102,7 @@ Eigen::Isometry3d readPoseJson(const JsonNode& node, std::string* warning) {
   // Typed with four digits it is still a rotation; worse, something else was meant. What is none to single precision is repaired.
   if (!(deviation <= 1e-3)) node.fail("must be rigid: the 3x3 block is not a rotation");
   if (r.determinant() < 0) node.fail("must be rigid: the 3x3 block is mirrored (determinant -1)");
-  if (deviation > 1e-6) {
+  if (deviation > 1e-6) {  // see above
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
     r = svd.matrixU() * svd.matrixV().transpose();
     if (warning) *warning = node.place() + ": not exactly a rotation, replaced by the nearest one";

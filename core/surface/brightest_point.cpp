@@ -468,6 +468,7 @@ class Finder {
     const std::optional<Pixel> pixel = sighting_.camera.project(p.position);
     const double distance = (sighting_.eye - p.position).norm();
     for (const BrightestPoint& b : found_)
+      // A ten-millionth of the distance is below a pixel: the same point, found twice.
       if ((b.point.position - p.position).norm() < 1e-7 * distance || (pixel && (b.pixel - *pixel).norm() < mergePx(search)))
         return false;
     if (!pixel || !(p.normal.dot(sighting_.eye - p.position) > 0) || sighting_.surface.occluded(p, sighting_.eye))

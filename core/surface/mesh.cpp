@@ -295,6 +295,7 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces {
     query.ray.dir_x = static_cast<float>(d.x());
     query.ray.dir_y = static_cast<float>(d.y());
     query.ray.dir_z = static_cast<float>(d.z());
+    // A little farther than asked: single precision may place the hit in front or behind, and double decides.
     const float far = std::isfinite(leave) ? static_cast<float>((leave - enter) * toEmbree_) * 1.00001f + 1e-5f : INFINITY;
     float near = 0;
     bool shifted = false;
@@ -313,6 +314,7 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces {
         // map, which all meet vertices): once more, a little to the side; the walk in double then decides about the true ray.
         if (shifted) return std::nullopt;
         shifted = true;
+        // Some ten units of single precision.
         const Eigen::Vector3f aside = 2e-6f * tangentBasis(d).col(0).cast<float>();
         for (int k = 0; k < 3; ++k) (&query.ray.org_x)[k] += aside[k];
         continue;

@@ -18,9 +18,9 @@ constexpr std::size_t kParts = 16384;  // of large meshes: a few MB of balls and
 constexpr int kBitsPerAxis = 10;
 
 /// Margins above the round-off of float (6e-8 per operation, a dozen operations on numbers of order 1).
-constexpr double kBallMargin = 1e-6;  // of half the box
-constexpr float kCosineMargin = 2e-6f;
-constexpr float kDirectionMargin = 4e-7f;
+constexpr double kBallMargin = 1e-6;       // of half the box
+constexpr float kCosineMargin = 2e-6f;     // after squares and roots of it
+constexpr float kDirectionMargin = 4e-7f;  // of a unit vector
 
 /// Bits of a number with two zeros between each.
 std::uint32_t spread(std::uint32_t v) {
@@ -227,10 +227,11 @@ std::optional<std::vector<int>> NormalTree::candidates(const MirrorQuery& query,
     tasks.pop_back();
     const Eight vx = eye.x() - b.x, vy = eye.y() - b.y, vz = eye.z() - b.z;
     const Eight lx = light.x() - w * b.x, ly = light.y() - w * b.y, lz = light.z() - w * b.z;
+    // The eye may lie inside a ball: 1e-30 keeps 0 / 0 away, and the chord is then the whole sphere.
     const Eight toEye = (vx * vx + vy * vy + vz * vz).sqrt().max(1e-30f),
-                toLight = (lx * lx + ly * ly + lz * lz).sqrt().max(1e-30f);
+                toLight = (lx * lx + ly * ly + lz * lz).sqrt().max(1e-30f);  // as above
     const Eight sx = vx / toEye + lx / toLight, sy = vy / toEye + ly / toLight, sz = vz / toEye + lz / toLight;
-    const Eight sum = (sx * sx + sy * sy + sz * sz).sqrt().max(1e-30f);
+    const Eight sum = (sx * sx + sy * sy + sz * sz).sqrt().max(1e-30f);  // as above
     // L + V moves by at most the two chords within the ball, H therefore by an angle of at most asin(of them / |L + V|). N is
     // parallel to some H only if the cone around N and the one around H overlap.
     const Eight moved = chord(b.radius / toEye) + chord(w * b.radius / toLight) + kDirectionMargin;

@@ -14,6 +14,7 @@ using html::colourOf;
 using html::escaped;
 using html::format;
 
+constexpr double kSmallestUs = 1e-3;        // of a time too short to measure
 constexpr double kSmallestErrorPct = 1e-6;  // what a logarithmic axis can show of an exact scene
 
 /// A logarithmic axis over values > 0, with a margin.
@@ -50,12 +51,12 @@ std::string svgOf(const Tradeoff& t) {
   std::vector<double> times, errors;
   for (const TradeoffPoint& p : t.points) {
     if (!std::isfinite(p.rankedErrorPct) || !std::isfinite(p.predictUs)) continue;
-    times.push_back(std::max(p.predictUs, 1e-3));
+    times.push_back(std::max(p.predictUs, kSmallestUs));
     errors.push_back(std::max(p.rankedErrorPct, kSmallestErrorPct));
   }
   if (times.empty()) return "<p>No setting answered, so there is nothing to plot.</p>\n";
   const LogAxis xAxis = axisOver(times, left, width - right), yAxis = axisOver(errors, height - bottom, top);
-  const auto x = [&](const TradeoffPoint& p) { return xAxis.at(std::max(p.predictUs, 1e-3)); };
+  const auto x = [&](const TradeoffPoint& p) { return xAxis.at(std::max(p.predictUs, kSmallestUs)); };
   const auto y = [&](const TradeoffPoint& p) { return yAxis.at(std::max(p.rankedErrorPct, kSmallestErrorPct)); };
   const auto px = [](double v) { return format("%.1f", v); };
   std::string svg = "<svg viewBox=\"0 0 920 460\" role=\"img\" aria-label=\"contour error against time per frame\">\n";

@@ -34,6 +34,8 @@ function(plant script file text_planted)
   endif()
 endfunction()
 
+plant(source_rules.cmake core/part/a.cpp "int a;\nbool b = x > 1e-6;\n")
+
 foreach(script layers.cmake source_rules.cmake)
   clean_tree()
   check(${script})

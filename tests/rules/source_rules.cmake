@@ -32,6 +32,22 @@ foreach(f IN LISTS sources)
   endif()
 endforeach()
 
+# A small number in core is a threshold, and a threshold has its reason beside it: a comment on its line or on the one above. Not meant:
+# units (`Us * 1e-3`), ranges of inputs, tables of settings, and the tolerances of the stability cases, which are printed with their notes.
+file(GLOB_RECURSE coreSources "${SRC}/core/*.h" "${SRC}/core/*.cpp")
+list(FILTER coreSources EXCLUDE REGEX "core/(stability/|base/settings[.]cpp|tradeoff/knobs[.]cpp)")
+foreach(f IN LISTS coreSources)
+  file(READ "${f}" text)
+  string(REGEX REPLACE "[][;]" " " text "${text}")  # CMake's list syntax
+  string(REGEX MATCHALL "\n[^\n]*\n[^\n]*[0-9]e-[0-9][^\n]*" pairs "${text}")
+  foreach(pair IN LISTS pairs)
+    if(NOT pair MATCHES "//|Us [*] 1e-|inRange[(]")
+      string(REGEX REPLACE "^\n[^\n]*\n *" "" line "${pair}")
+      complain("${f}" "a threshold without its reason: ${line}")
+    endif()
+  endforeach()
+endforeach()
+
 # Sources are listed, not globbed: a new file must make CMake run again, and a stray one must not enter the build.
 file(GLOB_RECURSE lists "${SRC}/core/CMakeLists.txt" "${SRC}/viz/CMakeLists.txt" "${SRC}/gui/CMakeLists.txt" "${SRC}/cli/CMakeLists.txt"
      "${SRC}/plugins/CMakeLists.txt" "${SRC}/tests/CMakeLists.txt" "${SRC}/bench/CMakeLists.txt")
