@@ -358,6 +358,7 @@ Problem::Attempt Problem::solve(const Parameters& start, bool withSize) {
         problem.SetParameterLowerBound(a.at.data() + 5, 0, kLeastRadiusSquared);
       else
         problem.SetParameterBlockConstant(a.at.data() + 5);
+      // The frame's maximum is searched again at every step: no unknown settles below the 1e-11 or so to which it is found.
       ceres::Solver::Options solver = denseSolver(options_.maxIterations - a.iterations, 1e-11);
       solver.function_tolerance = 1e-10;  // of a sum of squares over hundreds of points: thousandths of a standard deviation
       ceres::Solve(solver, &problem, &summary);
