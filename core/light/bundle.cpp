@@ -13,7 +13,7 @@
 #include "core/geometry/polyline.h"
 #include "core/light/directed_limit.h"
 #include "core/light/estimate.h"
-#include "core/light/solver_options.h"
+#include "core/light/dense_solver.h"
 
 namespace glint {
 namespace {
@@ -214,7 +214,7 @@ bool reweighted(std::vector<Evidence>& points, Attempt& a, bool atInfinity, doub
     for (const Evidence& e : points) costs.emplace_back(e, atInfinity, share);
     const Eigen::Vector4d before = a.light;
     const double limitBefore = a.limit;
-    ceres::Solver::Summary summary;
+    DenseSolution solution;
     {
       ceres::Problem problem(ownership);
       for (AngleCost& c : costs) problem.AddResidualBlock(&c, &loss, a.light.data(), &a.limit);
@@ -223,11 +223,12 @@ bool reweighted(std::vector<Evidence>& points, Attempt& a, bool atInfinity, doub
       else
         problem.SetManifold(a.light.data(), new ceres::SphereManifold<4>());
       // To round-off: invariances hold to 1e-9 only then.
-      ceres::Solve(denseSolver(already + options.maxIterations - a.iterations, 1e-12), &problem, &summary);
+      solution = solveDense(problem, already + options.maxIterations - a.iterations, 1e-12);
     }
-    a.iterations += std::max<int>(1, int(summary.iterations.size()) - 1);
-    if (!summary.IsSolutionUsable() || !a.light.allFinite() || !std::isfinite(a.limit)) return false;
-    a.converged = converged(summary, points.size());
+    a.iterations += solution.iterations;
+    if (!solution.usable || !a.light.allFinite() || !std::isfinite(a.limit)) return false;
+    constexpr double kExact = 1e-20;  // px^2 a point: round-off of a fit that is exact
+    a.converged = solution.converged || solution.cost <= kExact * double(points.size());
     const double moved = std::max((a.light - before).norm(), std::abs(a.limit - limitBefore));
     if (a.converged && moved < 1e-9) break;  // unit vector and rad: below what any contour tells
   }
@@ -311,10 +312,9 @@ Attempt directed(std::vector<Evidence>& points, const Attempt& start, const Bund
                                a.extent.data());
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<ExtentPrior, 6, 6>(new ExtentPrior{prior}), nullptr, a.extent.data());
     problem.SetManifold(a.light.data(), new ceres::SphereManifold<4>());
-    ceres::Solver::Summary summary;
-    ceres::Solve(denseSolver(options.maxIterations, 1e-10), &problem, &summary);  // tighter than the 1e-7 that the rounds ask for
-    a.iterations += std::max<int>(1, int(summary.iterations.size()) - 1);
-    if (!summary.IsSolutionUsable() || !a.light.allFinite() || !a.extent.allFinite() || !(a.limit > 0)) return start;
+    const DenseSolution solution = solveDense(problem, options.maxIterations, 1e-10);  // tighter than the 1e-7 that the rounds ask for
+    a.iterations += solution.iterations;
+    if (!solution.usable || !a.light.allFinite() || !a.extent.allFinite() || !(a.limit > 0)) return start;
     const double moved = std::max({(a.light - before.light).norm(), std::abs(a.limit - before.limit), (a.extent - before.extent).norm() * prior});
     if (moved < 1e-7) break;  // the extent is a correction: it need not be found as well as the light
   }

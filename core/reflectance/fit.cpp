@@ -12,7 +12,7 @@
 #include <limits>
 
 #include "core/base/residual_spread.h"
-#include "core/light/solver_options.h"
+#include "core/light/dense_solver.h"
 #include "core/reflectance/contour_evidence.h"
 #include "core/reflectance/light_radiance.h"
 #include "core/reflectance/radiance_field.h"
@@ -344,7 +344,7 @@ Problem::Attempt Problem::solve(const Parameters& start, bool withSize) {
     // The first round may start far off, where every point would be an outlier.
     ceres::HuberLoss loss(round == 0 ? std::max(options_.robustPx, radiusPx_) : options_.robustPx);
     std::deque<RootCost> costs;  // cost functions cannot be moved
-    ceres::Solver::Summary summary;
+    DenseSolution solution;
     {
       ceres::Problem problem(ownership);
       for (const Evidence& e : points_)
@@ -358,14 +358,13 @@ Problem::Attempt Problem::solve(const Parameters& start, bool withSize) {
         problem.SetParameterLowerBound(a.at.data() + 5, 0, kLeastRadiusSquared);
       else
         problem.SetParameterBlockConstant(a.at.data() + 5);
-      // The frame's maximum is searched again at every step: no unknown settles below the 1e-11 or so to which it is found.
-      ceres::Solver::Options solver = denseSolver(options_.maxIterations - a.iterations, 1e-11);
-      solver.function_tolerance = 1e-10;  // of a sum of squares over hundreds of points: thousandths of a standard deviation
-      ceres::Solve(solver, &problem, &summary);
+      // The frame's maximum is searched again at every step: no unknown settles below the 1e-11 or so to which it is found. The cost: of a sum
+      // of squares over hundreds of points, thousandths of a standard deviation.
+      solution = solveDense(problem, options_.maxIterations - a.iterations, 1e-11, 1e-10);
     }
-    a.iterations += std::max<int>(1, int(summary.iterations.size()) - 1);
-    if (!summary.IsSolutionUsable() || !a.at.allFinite()) return a;
-    a.converged = summary.termination_type == ceres::CONVERGENCE || summary.final_cost <= kExactPx * kExactPx * points_.size() ||
+    a.iterations += solution.iterations;
+    if (!solution.usable || !a.at.allFinite()) return a;
+    a.converged = solution.converged || solution.cost <= kExactPx * kExactPx * points_.size() ||
                   (a.at - before).norm() < kNearlySettled;
     if (a.converged && (a.at - before).norm() < kSettled) break;
   }
