@@ -36,6 +36,8 @@ constexpr double kExactPx = 1e-7;              // residuals of round-off, of whi
 constexpr double kNearlySettled = 1e-6;        // change by which a round may end that was cut off: far below what noise does
 constexpr double kProbeRadius = 0.4;           // of the lobe's width, as angles of the light: one that would show little
 constexpr double kLeastRadiusSquared = 1e-10;  // normalised: keeps the square root's derivative finite
+constexpr double kLargestSize = 2.5;          // in lobe widths: beyond it contours show the lamp and hardly the lobe, and sums over it take minutes
+constexpr int kSizeIterations = 25;           // a size that is there is found in a dozen; a wrong lobe creeps along a valley
 constexpr double kLeastGain = 0.2;             // of the sum of squares, before a size is believed
 constexpr double kSettled = 1e-9;              // change of the unit vector L and of log m between reweightings
 // Other starts are judged by a short fit to few points; the most promising are then fitted in full.
@@ -173,6 +175,7 @@ class Problem {
 
   Lobe lobe_;
   const lobe::DiscRule* rule_ = &lobe::discRuleFor(0);
+  double largestSize_ = 0;  ///< of the light at any point, in lobe widths
   const std::vector<RadianceView>& views_;
   std::vector<Evidence> points_;
   std::vector<FramePeak> frames_;
@@ -315,22 +318,24 @@ double Problem::noiseOf(const Parameters& at) const {
 }
 
 void Problem::chooseRule(const Parameters& at) {
-  double largest = 0;
+  largestSize_ = 0;
   if (at(5) > 0)
     for (const Evidence& e : points_)
-      largest = std::max(
-          largest, lobe::sizeRatio(std::exp(at(4)), e.foot.at.position, e.foot.at.toCamera, at.head<4>(), std::sqrt(at(5))));
-  rule_ = &lobe::discRuleFor(largest);
+      largestSize_ = std::max(
+          largestSize_, lobe::sizeRatio(std::exp(at(4)), e.foot.at.position, e.foot.at.toCamera, at.head<4>(), std::sqrt(at(5))));
+  rule_ = &lobe::discRuleFor(largestSize_);
 }
 
 Problem::Attempt Problem::solve(const Parameters& start, bool withSize) {
   Attempt a;
   a.at = start;
   const bool atInfinity = start(3) == 0;
-  for (int round = 0; round < kMaxReweightings && a.iterations < options_.maxIterations; ++round) {
+  const int most = withSize ? std::min(kSizeIterations, options_.maxIterations) : options_.maxIterations;
+  for (int round = 0; round < kMaxReweightings && a.iterations < most; ++round) {
     // The weights are held while the light moves: a residual whose own weight moves gains by lights under which the field is
     // steep.
     chooseRule(a.at);
+    if (withSize && largestSize_ > kLargestSize) return Attempt{};
     updatePeaks(a.at, true);
     if (lit() == 0) return a;
     relinearise(a.at, round > 0);
@@ -360,7 +365,7 @@ Problem::Attempt Problem::solve(const Parameters& start, bool withSize) {
         problem.SetParameterBlockConstant(a.at.data() + 5);
       // The frame's maximum is searched again at every step: no unknown settles below the 1e-11 or so to which it is found. The cost: of a sum
       // of squares over hundreds of points, thousandths of a standard deviation.
-      solution = solveDense(problem, options_.maxIterations - a.iterations, 1e-11, 1e-10);
+      solution = solveDense(problem, most - a.iterations, 1e-11, 1e-10);
     }
     a.iterations += solution.iterations;
     if (!solution.usable || !a.at.allFinite()) return a;
@@ -369,6 +374,7 @@ Problem::Attempt Problem::solve(const Parameters& start, bool withSize) {
     if (a.converged && (a.at - before).norm() < kSettled) break;
   }
   chooseRule(a.at);
+  if (withSize && largestSize_ > kLargestSize) return Attempt{};
   updatePeaks(a.at, true);
   relinearise(a.at, true);
   a.cost = robustCost(a.at);

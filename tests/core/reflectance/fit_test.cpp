@@ -145,6 +145,22 @@ TEST(FitRadiance, NominalSizeOfALightWiderThanTheLobe) {
   EXPECT_LT(fit->rmsPx, 0.02);
 }
 
+// A cosine power can hide behind a lamp of any size; sums over one that is many lobes wide took minutes. Bounded by the work, not by a
+// clock: a size attempt may take 25 iterations, and a size that survives is at most 2.5 lobe widths.
+TEST(FitRadiance, DegenerateLobeDoesNotHideBehindAHugeLamp) {
+  const RadianceScene s = radianceScene(sheetScene(0.4), Lobe::TorranceSparrow, 0.05);
+  for (const Lobe lobe : {Lobe::Phong, Lobe::BlinnPhong}) {
+    RadianceFitOptions point;
+    point.lightSize = false;
+    const auto without = fitRadiance(lobe, radianceViews(s), nearby(s), 0.05, point);
+    const auto with = fitRadiance(lobe, radianceViews(s), nearby(s), 0.05);
+    ASSERT_TRUE(without && with);
+    EXPECT_LE(with->iterations, without->iterations + 2 * 25 + 20);  // the last round of each of the two attempts may end late
+    const double distance = s.geometry.light.position->norm();
+    EXPECT_LT(with->lightRadius / distance / with->roughness, 2 * 2.5 * 1.1);  // half the angle turns the half vector
+  }
+}
+
 TEST(FitRadiance, NoiseIsNotTakenForASize) {
   const RadianceScene s = radianceScene(ellipsoidScene(6), Lobe::TorranceSparrow, kRoughness);
   for (unsigned seed = 1; seed <= 8; ++seed) {
