@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the table of docs/stability.md again, from `glint stability --markdown`: docs/make_stability.py [PROGRAM]"""
+"""Writes the table of docs/stability.md again, from `glint stability --markdown`."""
+import argparse
 import pathlib
 import subprocess
 import sys
 
 root = pathlib.Path(__file__).resolve().parent.parent
-program = sys.argv[1] if len(sys.argv) > 1 else str(root / "build/release/bin/glint")
+parser = argparse.ArgumentParser(description=__doc__)
+parser.add_argument("--glint", default=str(root / "build/release/bin/glint"))
+program = parser.parse_args().glint
 run = subprocess.run([program, "stability", "--markdown"], stdout=subprocess.PIPE, text=True)
 if run.returncode not in (0, 1):
     sys.exit(f"make_stability.py: {program} failed with {run.returncode}")

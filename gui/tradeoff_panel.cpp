@@ -106,6 +106,19 @@ void TradeoffPlot::load(int point) {
   document_.load(p, tr("Load %1").arg(toQString(describe(*t, p))));
 }
 
+QString TradeoffPlot::message() const {
+  const std::shared_ptr<const Tradeoff> t = document_.tradeoff();
+  if (!document_.scene()) return tr("No scene");
+  if (t) return axes().valid ? QString() : toQString(t->reason);
+  return measuring_ ? tr("Measuring: the status bar counts the settings. Esc stops; \"Measure\" goes on from there")
+                    : tr("Not measured yet: \"Measure\" tries models and settings on these frames");
+}
+
+void TradeoffPlot::setMeasuring(bool measuring) {
+  measuring_ = measuring;
+  update();
+}
+
 void TradeoffPlot::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.fillRect(rect(), palette().color(QPalette::Base));
@@ -114,10 +127,7 @@ void TradeoffPlot::paintEvent(QPaintEvent*) {
   const Axes a = axes();
   if (!t || !a.valid) {
     painter.setPen(faded);
-    painter.drawText(rect().adjusted(20, 0, -20, 0), Qt::AlignCenter | Qt::TextWordWrap,
-                     !document_.scene() ? tr("No scene")
-                     : t                ? toQString(t->reason)
-                                        : tr("Not measured yet: \"Measure\" tries models and settings on these frames"));
+    painter.drawText(rect().adjusted(20, 0, -20, 0), Qt::AlignCenter | Qt::TextWordWrap, message());
     return;
   }
   QFont small = font();
@@ -300,7 +310,10 @@ TradeoffPanel::TradeoffPanel(Document& document, QWidget* parent) : QWidget(pare
   sentence_->setTextInteractionFlags(Qt::TextSelectableByMouse);
   right->addWidget(sentence_);
   row->addLayout(right, 1);
-  connect(measure_, &QPushButton::clicked, this, &TradeoffPanel::measureRequested);
+  connect(measure_, &QPushButton::clicked, this, [this] {
+    plot_->setMeasuring(true);
+    emit measureRequested();
+  });
   connect(&document_, &Document::tradeoffChanged, this, &TradeoffPanel::refresh);
   connect(&document_, &Document::requestChanged, this, &TradeoffPanel::refresh);
   connect(&document_, &Document::sceneOpened, this, &TradeoffPanel::refresh);
@@ -309,6 +322,7 @@ TradeoffPanel::TradeoffPanel(Document& document, QWidget* parent) : QWidget(pare
 
 void TradeoffPanel::setBusy(bool busy) {
   busy_ = busy;
+  if (!busy) plot_->setMeasuring(false);
   refresh();
 }
 

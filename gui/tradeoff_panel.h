@@ -23,6 +23,9 @@ class TradeoffPlot : public QWidget {
   /// The point nearest to a place, at most a few pixels away; -1 = none.
   int pointAt(const QPointF& place) const;
   void load(int point);
+  /// What stands in place of a plot that there is not; empty when there is one.
+  QString message() const;
+  void setMeasuring(bool measuring);
 
  protected:
   void paintEvent(QPaintEvent* e) override;
@@ -38,6 +41,7 @@ class TradeoffPlot : public QWidget {
   void moveAlongFront(int by);
 
   Document& document_;
+  bool measuring_ = false;
   int current_ = -1;  ///< under the mouse or reached by keys
 };
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/light/refine_depth.h"
 
+#include <ceres/ceres.h>
+#include <ceres/normal_prior.h>
+
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/QR>
@@ -10,13 +13,17 @@
 
 #include "core/base/residual_spread.h"
 #include "core/geometry/polyline.h"
+#include "core/light/dense_solver.h"
+#include "core/light/left_out.h"
 
 namespace glint {
 namespace {
 
 using Terms = DepthCorrection::Terms;
 constexpr double kStepPx = 0.5;         // of the image gradient, as in the bundle
-constexpr int kRounds = 20;
+constexpr int kRounds = 20, kIterations = 50;
+constexpr double kTolerance = 1e-10;    // the differences by the terms keep about as many digits
+constexpr double kSettled = 1e-6;       // of the unit light, the limit angle and the priors, between rounds: far below any band
 constexpr double kSystematic = 0.5;     // share of the points that count as independent; white noise leaves nearly all of them
 constexpr double kLeastNoisePx = 0.02;  // the accuracy of detection: below, the depth would be bent to round-off
 constexpr double kColumnStep = 1e-3;    // of a prior's standard deviation, for derivatives; the angle is smooth in the depth
@@ -111,6 +118,12 @@ struct Problem {
     return incidentAngle(s.normal, d, s.toCamera);
   }
   double alpha(const Sample& s, const View& v, const Eigen::Vector4d& light, const Terms& c) const { return alpha(seen(s, v, c), light); }
+  /// d alpha / d c_k in units of the prior.
+  double alphaByTerm(const Sample& s, const View& v, const Eigen::Vector4d& light, const Terms& c, const Terms& prior,
+                     int k) const {
+    const Terms by = kColumnStep * prior(k) * Terms::Unit(k);
+    return (alpha(s, v, light, c + by) - alpha(s, v, light, c - by)) / (2 * kColumnStep);
+  }
 };
 
 struct State {
@@ -131,12 +144,6 @@ std::vector<double> residuals(const Problem& problem, const State& s, std::vecto
     if (slopes) slopes->push_back(slope);
   }
   return result;
-}
-
-double cost(const std::vector<double>& residuals, const Terms& c, const Terms& prior, double robustPx, double noisePx) {
-  double sum = 0;
-  for (const double r : residuals) sum += (std::abs(r) <= robustPx ? r * r : robustPx * (2 * std::abs(r) - robustPx)) / (noisePx * noisePx);
-  return sum + c.cwiseQuotient(prior).squaredNorm();
 }
 
 double rms(const std::vector<double>& residuals) {
@@ -161,60 +168,78 @@ Eigen::MatrixXd jacobian(const Problem& problem, const State& s, const std::vect
     const Seen at = problem.seen(p.at, v, s.c);
     j.row(i).head<3>() = incidentAngleByLight(at.position, at.normal, at.toCamera, s.light).transpose() * chart;
     j(i, 3) = -1;
-    for (int k = 0; k < terms; ++k) {
-      const Terms by = kColumnStep * prior(k) * Terms::Unit(k);
-      j(i, 4 + k) = (problem.alpha(p.at, v, s.light, s.c + by) - problem.alpha(p.at, v, s.light, s.c - by)) / (2 * kColumnStep);
-    }
+    for (int k = 0; k < terms; ++k) j(i, 4 + k) = problem.alphaByTerm(p.at, v, s.light, s.c, prior, k);
     j.row(i) /= slopes[i];
   }
   return j;
 }
 
-/// Levenberg-Marquardt on light, limit angle and the first `terms` terms, weights and noise renewed in every round.
+/// Contour distance of one point over the noise, its weight held.
+class PointCost final : public ceres::CostFunction {
+ public:
+  PointCost(const Problem& problem, const Point& point, double slope, double noise, const Terms& prior, int terms)
+      : problem_(problem), point_(point), unit_(slope * noise), prior_(prior), terms_(terms) {
+    set_num_residuals(1);
+    *mutable_parameter_block_sizes() = {4, 1};
+    if (terms > 0) mutable_parameter_block_sizes()->push_back(terms);
+  }
+  bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
+    const Eigen::Map<const Eigen::Vector4d> light(parameters[0]);
+    Terms c = Terms::Zero();  // the parameters are in units of the prior
+    for (int k = 0; k < terms_; ++k) c(k) = parameters[2][k] * prior_(k);
+    const View& v = problem_.views[point_.view];
+    const Seen at = problem_.seen(point_.at, v, c);
+    residuals[0] = (problem_.alpha(at, light) - parameters[1][0]) / unit_;
+    if (!std::isfinite(residuals[0])) return false;
+    if (!jacobians) return true;
+    if (jacobians[0]) {
+      const Eigen::Vector4d byLight = incidentAngleByLight(at.position, at.normal, at.toCamera, light) / unit_;
+      std::copy_n(byLight.data(), 4, jacobians[0]);
+    }
+    if (jacobians[1]) jacobians[1][0] = -1 / unit_;
+    if (terms_ > 0 && jacobians[2])
+      for (int k = 0; k < terms_; ++k) jacobians[2][k] = problem_.alphaByTerm(point_.at, v, light, c, prior_, k) / unit_;
+    return true;
+  }
+
+ private:
+  const Problem& problem_;
+  const Point& point_;
+  double unit_;
+  const Terms& prior_;
+  int terms_;
+};
+
+/// Light, limit angle and the first `terms` terms together; weights and noise are renewed until nothing moves.
 State fitted(const Problem& problem, State state, const Terms& prior, int terms, double robustPx) {
-  const Eigen::Index columns = 4 + terms, n = Eigen::Index(problem.points.size());
-  std::vector<double> slopes, r = residuals(problem, state, &slopes);
-  double damping = 1e-3;  // of the columns' squared norms: cautious first; it adapts by tens
   for (int round = 0; round < kRounds; ++round) {
-    const double noise = std::clamp(rms(r), kLeastNoisePx, 1.0);  // what remains counts as noise; it falls as the depth explains more
-    const Eigen::MatrixXd j = jacobian(problem, state, slopes, prior, terms);
-    Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + terms + columns, columns);
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(system.rows());
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const double size = std::abs(r[i]), weight = (size > robustPx ? std::sqrt(robustPx / size) : 1.0) / noise;
-      system.row(i) = weight * j.row(i);
-      right(i) = -weight * r[i];
+    std::vector<double> slopes;
+    // What remains counts as noise; it falls as the depth explains more.
+    const double noise = std::clamp(rms(residuals(problem, state, &slopes)), kLeastNoisePx, 1.0);
+    Eigen::VectorXd c = state.c.cwiseQuotient(prior).head(terms);
+    State next = state;
+    ceres::Problem ceresProblem;
+    for (std::size_t i = 0; i < problem.points.size(); ++i) {
+      if (!(slopes[i] > 0)) continue;
+      auto* cost = new PointCost(problem, problem.points[i], slopes[i], noise, prior, terms);
+      auto* loss = new ceres::HuberLoss(robustPx / noise);
+      if (terms > 0)
+        ceresProblem.AddResidualBlock(cost, loss, next.light.data(), &next.limit, c.data());
+      else
+        ceresProblem.AddResidualBlock(cost, loss, next.light.data(), &next.limit);
     }
-    for (int k = 0; k < terms; ++k) {
-      system(n + k, 4 + k) = 1;
-      right(n + k) = -state.c(k) / prior(k);
-    }
-    const Eigen::VectorXd norms = system.colwise().norm().transpose();
-    const double before = cost(r, state.c, prior, robustPx, noise);
-    bool better = false;
-    double gained = 0;
-    for (int trial = 0; trial < 6 && !better; ++trial) {
-      for (Eigen::Index k = 0; k < columns; ++k) system(n + terms + k, k) = std::sqrt(damping) * norms(k);
-      const Eigen::VectorXd step = system.colPivHouseholderQr().solve(right);
-      State next = state;
-      next.light = (state.light + chartOf(state.light) * step.head<3>()).normalized();
-      next.limit += step(3);
-      for (int k = 0; k < terms; ++k) next.c(k) += step(4 + k) * prior(k);
-      std::vector<double> nextSlopes;
-      std::vector<double> nextR = residuals(problem, next, &nextSlopes);
-      const double after = step.allFinite() && next.limit > 0 ? cost(nextR, next.c, prior, robustPx, noise) : before;
-      if (!(after < before)) {
-        damping *= 10;
-        continue;
-      }
-      better = true;
-      gained = (before - after) / before;
-      damping = std::max(1e-9, 0.1 * damping);  // without effect from here on
-      state = next;
-      slopes = std::move(nextSlopes);
-      r = std::move(nextR);
-    }
-    if (!better || gained < 1e-6) break;  // of the cost: a thousandth of a standard deviation
+    if (ceresProblem.NumResiduals() == 0) return state;
+    if (terms > 0)
+      ceresProblem.AddResidualBlock(new ceres::NormalPrior(Eigen::MatrixXd::Identity(terms, terms), Eigen::VectorXd::Zero(terms)),
+                                    nullptr, c.data());
+    ceresProblem.SetManifold(next.light.data(), new ceres::SphereManifold<4>());
+    const DenseSolution solution = solveDense(ceresProblem, kIterations, kTolerance);
+    next.c.head(terms) = c.cwiseProduct(prior.head(terms));
+    if (!solution.usable || !next.light.allFinite() || !next.c.allFinite() || !(next.limit > 0)) break;
+    const double moved = std::max({(next.light - state.light).norm(), std::abs(next.limit - state.limit) / state.limit,
+                                   (next.c - state.c).cwiseQuotient(prior).norm()});
+    state = next;
+    if (moved < kSettled) break;
   }
   return state;
 }
@@ -233,16 +258,6 @@ std::vector<double> leftOutErrors(const Problem& problem, const State& start, co
     errors.push_back(rms(residuals(one, fitted(others, start, prior, terms, robustPx))));
   }
   return errors;
-}
-
-/// Whether `richer` predicts left-out views better than `plain` by more than the standard error of the gain.
-bool predictsBetter(const std::vector<double>& richer, const std::vector<double>& plain) {
-  if (richer.size() < 3 || richer.size() != plain.size()) return false;
-  double mean = 0, squares = 0;
-  const double n = double(richer.size());
-  for (std::size_t i = 0; i < richer.size(); ++i) mean += std::log(plain[i] / richer[i]) / n;
-  for (std::size_t i = 0; i < richer.size(); ++i) squares += std::pow(std::log(plain[i] / richer[i]) - mean, 2);
-  return std::isfinite(mean) && mean > std::sqrt(squares / (n - 1) / n);
 }
 
 }  // namespace
@@ -295,7 +310,7 @@ Outcome<DepthRefinement> refineDepth(const std::vector<BundleView>& given, const
   std::vector<double> best = leftOutErrors(problem, state, prior, 0, options.robustPx);
   for (const int more : {6, DepthCorrection::kTerms}) {  // up to second, up to fourth degree
     std::vector<double> errors = leftOutErrors(problem, state, prior, more, options.robustPx);
-    if (!predictsBetter(errors, best)) continue;
+    if (!predictsLeftOutBetter(errors, best)) continue;
     terms = more;
     best = std::move(errors);
   }

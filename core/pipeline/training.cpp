@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/light/estimate.h"
+#include "core/light/left_out.h"
 #include "core/light/refine_poses.h"
 #include "core/model/models.h"
 #include "core/model/walk.h"
@@ -50,22 +51,17 @@ int limitOrders(const std::vector<BundleView>& views, const Bundle& constant, co
   BundleOptions directed = options;
   directed.limitOrders = 1;
   constexpr std::size_t kLeftOut = 6;  // more views left out would not change a choice between two
-  std::vector<double> gains;
+  std::vector<double> plainErrors, wideErrors;
   for (std::size_t k = 0; k < std::min(kLeftOut, views.size()); ++k) {
     const std::size_t left = k * views.size() / std::min(kLeftOut, views.size());
     std::vector<BundleView> others = views;
     others.erase(others.begin() + left);
     const Outcome<Bundle> plain = bundleLight(others, constant.light, options), wide = bundleLight(others, constant.light, directed);
     if (!plain || !wide) return 0;
-    const double gain = std::log(bundleErrorPx(*plain, {views[left]}, options) / bundleErrorPx(*wide, {views[left]}, options));
-    if (!std::isfinite(gain)) return 0;
-    gains.push_back(gain);
+    plainErrors.push_back(bundleErrorPx(*plain, {views[left]}, options));
+    wideErrors.push_back(bundleErrorPx(*wide, {views[left]}, options));
   }
-  double mean = 0, squares = 0;
-  for (const double g : gains) mean += g / double(gains.size());
-  for (const double g : gains) squares += (g - mean) * (g - mean);
-  const double error = std::sqrt(squares / double(gains.size() - 1) / double(gains.size()));
-  return mean > error ? 1 : 0;
+  return predictsLeftOutBetter(wideErrors, plainErrors) ? 1 : 0;
 }
 
 }  // namespace

@@ -5,36 +5,19 @@
 #include <array>
 #include <cmath>
 
+#include "core/base/quadrature.h"
+
 namespace glint::lobe {
 namespace {
-
-/// Nodes and weights of Gauss-Legendre quadrature on [0, 1], by Newton's method on the Legendre polynomial.
-std::vector<std::pair<double, double>> gaussLegendre(int n) {
-  std::vector<std::pair<double, double>> rule;
-  for (int i = 0; i < n; ++i) {
-    double x = std::cos(M_PI * (i + 0.75) / (n + 0.5)), slope = 1;
-    for (int round = 0; round < 20; ++round) {
-      double before = 1, value = x;
-      for (int k = 2; k <= n; ++k) {
-        const double next = ((2 * k - 1) * x * value - (k - 1) * before) / k;
-        before = value;
-        value = next;
-      }
-      slope = n * (x * value - before) / (x * x - 1);
-      x -= value / slope;
-    }
-    rule.emplace_back(0.5 * (1 + x), 1 / ((1 - x * x) * slope * slope));
-  }
-  return rule;
-}
 
 DiscRule productRule(int rings, int spokes) {
   DiscRule rule;
   int ring = 0;
-  for (const auto& [square, weight] : gaussLegendre(rings)) {
+  for (const QuadratureNode& node : gaussLegendre(rings)) {
+    const double r = std::sqrt(0.5 * (1 + node.x));  // equal steps of the squared radius are equal areas
     for (int k = 0; k < spokes; ++k) {
-      const double angle = 2 * M_PI * (k + 0.5 * (ring % 2)) / spokes, r = std::sqrt(square);
-      rule.nodes.push_back({r * std::cos(angle), r * std::sin(angle), weight / spokes});
+      const double angle = 2 * M_PI * (k + 0.5 * (ring % 2)) / spokes;
+      rule.nodes.push_back({r * std::cos(angle), r * std::sin(angle), 0.5 * node.weight / spokes});
     }
     ++ring;
   }

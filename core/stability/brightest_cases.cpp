@@ -92,7 +92,7 @@ void addBrightestCases(Cases& cases) {
   const auto add = [&](const std::string& name, double parameter, double tolerance, const char* note, auto run) {
     cases.push_back(answerCase("brightest point", name, parameter, tolerance, note, run));
   };
-  const Eigen::Vector3d d = Eigen::Vector3d(0.3, -0.2, 1).normalized();
+  const Eigen::Vector3d d = obliqueDirection();
   add("plane, light at 1e-2 m", 1e-2, 1e-9, "",
       [d] { return pointCase(0, false, Light::at(1e-2 * d), 0.003, 0.002, 1, 800, 1e-2, 1); });
   add("sphere, light at 1e9 m", 1e9, 1e-9, "",

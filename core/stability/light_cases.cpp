@@ -141,7 +141,7 @@ Outcome<Measured> bundleCase(const BundleScene& b, const Light& light, double co
 void addLightCases(Cases& cases) {
   const auto add = [&](const char* stage, const std::string& name, double parameter, double tolerance, const char* note,
                        auto run) { cases.push_back(answerCase(stage, name, parameter, tolerance, note, run)); };
-  const Eigen::Vector3d d = Eigen::Vector3d(0.3, -0.2, 1).normalized();
+  const Eigen::Vector3d d = obliqueDirection();
   const char* const t = "triangulation";
   add(t, "light at 1e-2 m", 1e-2, 1e-9, "", [d] { return triangulationCase(raysTo(1e-2 * d, 0.01, 6, 1e-4)); });
   add(t, "scene scale 1e-6", 1e-6, 1e-9, "", [d] { return triangulationCase(raysTo(2e-6 * d, 3e-7, 6, 1e-4)); });

@@ -228,11 +228,7 @@ Outcome<Measured> coneCase(double radius, const Pixel& centre, std::size_t expec
 }  // namespace
 
 void addPredictionCases(Cases& cases) {
-  const Eigen::Vector3d d = Eigen::Vector3d(0.3, -0.2, 1).normalized();
-  const auto grazing = [](double degrees) {
-    const double a = degrees * std::numbers::pi / 180;
-    return Light::at(2 * Eigen::Vector3d(std::sin(a), 0, std::cos(a)));
-  };
+  const Eigen::Vector3d d = obliqueDirection();
   struct Row {
     const char* name;
     double parameter;
@@ -250,7 +246,7 @@ void addPredictionCases(Cases& cases) {
       {"scene scale 1e6", 1e6, {.scale = 1e6}, Light::at(2e6 * d), 0.2},
       {"focal length 50 px", 50, {.focal = 50}, Light::at(2 * d), 0.2},
       {"focal length 50,000 px, highlight larger than the image", 5e4, {.focal = 5e4, .limit = 2e-3}, Light::at(2 * d), 0.01},
-      {"grazing 85 degrees", 85, {.curvature = 0.5, .limit = 0.02, .condition = 11.5}, grazing(85), 0.05},
+      {"grazing 85 degrees", 85, {.curvature = 0.5, .limit = 0.02, .condition = 11.5}, grazingLight(85), 0.05},
   };
   const auto add = [&](const char* stage, const Row& row, auto run) {
     Case c;

@@ -182,11 +182,7 @@ Outcome<Measured> fitCase(const RadianceScene& p, const Light& light, int copies
 }  // namespace
 
 void addReflectanceCases(Cases& cases) {
-  const Eigen::Vector3d d = Eigen::Vector3d(0.3, -0.2, 1).normalized();
-  const auto grazing = [](double degrees) {
-    const double a = degrees * std::numbers::pi / 180;
-    return Light::at(2 * Eigen::Vector3d(std::sin(a), 0, std::cos(a)));
-  };
+  const Eigen::Vector3d d = obliqueDirection();
   struct Row {
     const char* name;
     double parameter;
@@ -201,19 +197,12 @@ void addReflectanceCases(Cases& cases) {
       {"light at 1e9 m", 1e9, {}, Light::at(1e9 * d)},
       {"light at infinity", 0, {}, Light::towards(d)},
       {"curvature 1e-9 per metre", 1e-9, {.curvature = 1e-9, .round = false}, Light::at(2 * d)},
-      {"grazing 85 degrees", 85, {.roughness = 0.02, .curvature = 0.5, .spread = 0.2}, grazing(85)},
+      {"grazing 85 degrees", 85, {.roughness = 0.02, .curvature = 0.5, .spread = 0.2}, grazingLight(85)},
       {"roughness 1e-3", 1e-3, {.roughness = 1e-3}, Light::at(2 * d)},
       {"roughness 1", 1, {.roughness = 1, .curvature = 0, .focal = 100, .round = false}, Light::at(2 * d)},
   };
   const auto add = [&](const char* stage, const char* name, double parameter, double tolerance, const char* note, auto run) {
-    Case c;
-    c.stage = stage;
-    c.name = name;
-    c.parameter = parameter;
-    c.tolerance = tolerance;
-    c.note = note;
-    c.run = run;
-    cases.push_back(c);
+    cases.push_back(answerCase(stage, name, parameter, tolerance, note, run));
   };
   for (const Row& row : rows)
     add("reflectance", row.name, row.parameter, 1e-8,

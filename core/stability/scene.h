@@ -16,6 +16,14 @@
 /// tangent plane is z = 0.
 namespace glint::stability {
 
+/// Towards the light of most cases: off every axis.
+inline Eigen::Vector3d obliqueDirection() { return Eigen::Vector3d(0.3, -0.2, 1).normalized(); }
+/// A light 2 m away at so many degrees from the normal at the origin.
+inline Light grazingLight(double degrees) {
+  const double a = degrees * std::numbers::pi / 180;
+  return Light::at(2 * Eigen::Vector3d(std::sin(a), 0, std::cos(a)));
+}
+
 /// Sheet (bent about y) or sphere of curvature k, 0 = plane; k > 0 is convex seen from +z.
 template <class T>
 struct Bent {

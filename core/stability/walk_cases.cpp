@@ -97,11 +97,7 @@ Outcome<Measured> canonicalCase(const WalkScene& w, const Light& light) {
 }  // namespace
 
 void addWalkCases(Cases& cases) {
-  const Eigen::Vector3d d = Eigen::Vector3d(0.3, -0.2, 1).normalized();
-  const auto grazing = [](double degrees) {
-    const double a = degrees * std::numbers::pi / 180;
-    return Light::at(2 * Eigen::Vector3d(std::sin(a), 0, std::cos(a)));
-  };
+  const Eigen::Vector3d d = obliqueDirection();
   struct Row {
     const char* name;
     double parameter;
@@ -121,8 +117,8 @@ void addWalkCases(Cases& cases) {
       {"scene scale 1e6", 1e6, {.scale = 1e6}, Light::at(2e6 * d)},
       {"focal length 50 px", 50, {.focal = 50, .contourPx = 2}, Light::at(2 * d)},
       {"focal length 50,000 px", 5e4, {.focal = 5e4, .contourPx = 1000}, Light::at(2 * d)},
-      {"grazing 85 degrees", 85, {.curvature = 0.5, .limit = 0.02, .contourPx = 3, .condition = 11.5}, grazing(85)},
-      {"grazing 89 degrees", 89, {.curvature = 0.5, .limit = 4e-3, .contourPx = 0.3, .condition = 57}, grazing(89)},
+      {"grazing 85 degrees", 85, {.curvature = 0.5, .limit = 0.02, .contourPx = 3, .condition = 11.5}, grazingLight(85)},
+      {"grazing 89 degrees", 89, {.curvature = 0.5, .limit = 4e-3, .contourPx = 0.3, .condition = 57}, grazingLight(89)},
       {"limit angle 1e-6 rad (highlight of 1e-3 px)",
        1e-6,
        {.limit = 1e-6, .contourPx = 1e-3, .condition = 1e6},

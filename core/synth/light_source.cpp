@@ -2,42 +2,21 @@
 #include "core/synth/light_source.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "core/base/quadrature.h"
 #include "core/surface/occlusion.h"
 
 namespace glint {
 namespace {
 
-// Nodes and weights of Gauss-Legendre quadrature on [-1, 1], computed by Newton's method on the Legendre polynomial.
-template <int N>
-struct GaussLegendre {
-  std::array<double, N> node{}, weight{};
-  GaussLegendre() {
-    for (int i = 0; i < N; ++i) {
-      double x = std::cos(M_PI * (i + 0.75) / (N + 0.5)), slope = 1;
-      for (int round = 0; round < 20; ++round) {
-        double p0 = 1, p1 = x;
-        for (int k = 2; k <= N; ++k) {
-          const double p2 = ((2 * k - 1) * x * p1 - (k - 1) * p0) / k;
-          p0 = p1;
-          p1 = p2;
-        }
-        slope = N * (x * p1 - p0) / (x * x - 1);
-        x -= p1 / slope;
-      }
-      node[static_cast<std::size_t>(i)] = x;
-      weight[static_cast<std::size_t>(i)] = 2 / ((1 - x * x) * slope * slope);
-    }
-  }
-};
-
 constexpr int kAlong = 24, kAcross = 3;  // tube
 
-template <int kRings, int kSpokes>
-std::vector<LightSample> sampleSphere(const Eigen::Vector3d& centre, double radius, const Eigen::Vector3d& point) {
-  static const GaussLegendre<kRings> rule;
+/// A cone of directions: `rings` nodes of the cosine times equal steps around.
+std::vector<LightSample> sampleSphere(const Eigen::Vector3d& centre, double radius, const Eigen::Vector3d& point,
+                                      const std::vector<QuadratureNode>& rings, int spokes) {
   const Eigen::Vector3d offset = centre - point;
   const double distance = offset.norm();
   if (distance <= radius) return {};
@@ -47,13 +26,13 @@ std::vector<LightSample> sampleSphere(const Eigen::Vector3d& centre, double radi
   const double intensity =
       2 * cap / (radius * radius);  // cone's solid angle over the sphere's cross-section: radiance 1 / (pi r^2)
   std::vector<LightSample> samples;
-  for (std::size_t ring = 0; ring < kRings; ++ring) {
-    const double rise = cap * 0.5 * (1 + rule.node[ring]), cosine = 1 - rise, across = std::sqrt(rise * (2 - rise));
-    for (int spoke = 0; spoke < kSpokes; ++spoke) {
-      const double t = 2 * M_PI * (spoke + 0.5 * static_cast<double>(ring % 2)) / kSpokes;
+  for (std::size_t ring = 0; ring < rings.size(); ++ring) {
+    const double rise = cap * 0.5 * (1 + rings[ring].x), cosine = 1 - rise, across = std::sqrt(rise * (2 - rise));
+    for (int spoke = 0; spoke < spokes; ++spoke) {
+      const double t = 2 * M_PI * (spoke + 0.5 * static_cast<double>(ring % 2)) / spokes;
       LightSample s;
       s.direction = (cosine * axis + across * (std::cos(t) * side + std::sin(t) * up)).normalized();
-      s.weight = intensity * 0.5 * rule.weight[ring] / kSpokes;
+      s.weight = intensity * 0.5 * rings[ring].weight / spokes;
       s.target = point + (distance - radius) * s.direction;
       samples.push_back(s);
     }
@@ -64,32 +43,39 @@ std::vector<LightSample> sampleSphere(const Eigen::Vector3d& centre, double radi
 /// Errors of log I below 1e-7 down to a thousandth of the peak, to three lobe widths.
 std::vector<LightSample> sampleSphere(const Eigen::Vector3d& centre, double radius, const Eigen::Vector3d& point, double lobeWidth) {
   const double ratio = std::atan2(radius, (centre - point).norm()) / lobeWidth;
-  if (ratio <= 0.5) return sampleSphere<4, 12>(centre, radius, point);
-  if (ratio <= 1) return sampleSphere<8, 20>(centre, radius, point);
-  if (ratio <= 2) return sampleSphere<12, 40>(centre, radius, point);
-  return ratio <= 4 ? sampleSphere<24, 60>(centre, radius, point) : sampleSphere<36, 96>(centre, radius, point);
+  struct Rung {
+    double ratio;  // largest that the rule serves
+    std::vector<QuadratureNode> rings;
+    int spokes;
+  };
+  static const std::vector<Rung> ladder{{0.5, gaussLegendre(4), 12},
+                                        {1, gaussLegendre(8), 20},
+                                        {2, gaussLegendre(12), 40},
+                                        {4, gaussLegendre(24), 60},
+                                        {0, gaussLegendre(36), 96}};
+  const auto rung = std::find_if(ladder.begin(), ladder.end() - 1, [&](const Rung& r) { return ratio <= r.ratio; });
+  return sampleSphere(centre, radius, point, rung->rings, rung->spokes);
 }
 
 std::vector<LightSample> sampleTube(const std::array<Eigen::Vector3d, 2>& ends, double radius, const Eigen::Vector3d& point) {
-  static const GaussLegendre<kAlong> along;
-  static const GaussLegendre<kAcross> across;
+  static const std::vector<QuadratureNode> along = gaussLegendre(kAlong), across = gaussLegendre(kAcross);
   const Eigen::Vector3d axis = (ends[1] - ends[0]).normalized();
   std::vector<LightSample> samples;
   for (std::size_t i = 0; i < kAlong; ++i) {
-    const double t = 0.5 * (1 + along.node[i]);
+    const double t = 0.5 * (1 + along[i].x);
     const Eigen::Vector3d centre = ends[0] + t * (ends[1] - ends[0]);
     const Eigen::Vector3d offset = centre - point;
     const Eigen::Vector3d side = axis.cross(offset);
     const double distance = offset.norm(), sine = side.norm() / distance;
     if (!(distance > radius) || !(sine > 0)) continue;  // seen end on, a thin tube sends nothing
     for (std::size_t j = 0; j < (radius > 0 ? kAcross : 1); ++j) {
-      const double shift = radius > 0 ? radius * across.node[j] : 0;
+      const double shift = radius > 0 ? radius * across[j].x : 0;
       LightSample s;
       const Eigen::Vector3d target = centre + shift * side.normalized(), to = target - point;
       s.target = target;
       s.direction = to.normalized();
       // Intensity of a thin cylinder, (4 / pi) sin(psi) averaged over all directions to 1.
-      s.weight = 4 / M_PI * sine * 0.5 * along.weight[i] * (radius > 0 ? 0.5 * across.weight[j] : 1.0) / to.squaredNorm();
+      s.weight = 4 / M_PI * sine * 0.5 * along[i].weight * (radius > 0 ? 0.5 * across[j].weight : 1.0) / to.squaredNorm();
       samples.push_back(s);
     }
   }

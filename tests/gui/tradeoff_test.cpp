@@ -83,6 +83,21 @@ class TradeoffTest : public QObject {
     QVERIFY(panel.findChild<QLabel*>(QStringLiteral("tradeoffSentence"))->text().contains(QStringLiteral("for a test")));
   }
 
+  void anEmptyPlotSaysWhatIsGoingOn() {
+    Document document(parseTrainSpec);
+    TradeoffPanel panel(document);
+    QCOMPARE(panel.plot()->message(), QStringLiteral("No scene"));
+    document.open(fixture_.opened());
+    QVERIFY(panel.plot()->message().startsWith(QStringLiteral("Not measured yet")));
+    QTest::mouseClick(panel.findChild<QPushButton*>(QStringLiteral("measureTradeoff")), Qt::LeftButton);
+    panel.setBusy(true);
+    QVERIFY(panel.plot()->message().startsWith(QStringLiteral("Measuring")));
+    panel.setBusy(false);
+    QVERIFY(panel.plot()->message().startsWith(QStringLiteral("Not measured yet")));
+    document.setTradeoff(std::make_shared<const Tradeoff>(threePoints()));
+    QCOMPARE(panel.plot()->message(), QString());
+  }
+
   void theSessionKeepsIt() {
     const QTemporaryDir folder;
     Opened opened = fixture_.opened();

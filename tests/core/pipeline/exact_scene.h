@@ -70,6 +70,15 @@ inline std::vector<Highlight> exactContours(const AnalyticSpec& spec, const Came
   return highlights;
 }
 
+/// Touches the plane z = 0 from below.
+inline AnalyticSpec cylinder(double radius) {
+  AnalyticSpec spec;
+  spec.type = "cylinder";
+  spec.radius = radius;
+  spec.worldFromSurface.translation() = Eigen::Vector3d(0, 0, -radius);
+  return spec;
+}
+
 /// Cameras on an arc above a surface that touches the plane z = 0 at the origin, exact contours of alpha = kLimitAngle given
 /// with every frame. `on(frame)` lists the lights that are on; those alone have contours.
 template <class On>

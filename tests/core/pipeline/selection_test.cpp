@@ -30,14 +30,6 @@ const Candidate& candidate(const Selection& s, const std::string& model) {
   return *std::find_if(s.candidates.begin(), s.candidates.end(), [&](const Candidate& c) { return c.model == model; });
 }
 
-AnalyticSpec cylinder(double radius) {
-  AnalyticSpec spec;
-  spec.type = "cylinder";
-  spec.radius = radius;
-  spec.worldFromSurface.translation() = Eigen::Vector3d(0, 0, -radius);
-  return spec;
-}
-
 // method.md section 11: a noise-free plane gives `primal`.
 TEST(SelectModel, APlaneNeedsOnlyTheCamera) {
   const Selection s = choiceOn(sheet(0));
