@@ -8,9 +8,9 @@
 #include <string>
 
 #include "core/base/outcome.h"
-#include "gui/command_line.h"
-#include "gui/main_window.h"
-#include "gui/screenshot.h"
+#include "gui/window/command_line.h"
+#include "gui/window/main_window.h"
+#include "gui/window/screenshot.h"
 
 namespace {
 /// The offscreen and minimal platforms have no OpenGL: the program would run and show an empty 3D view.

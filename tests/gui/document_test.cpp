@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gui/document.h"
+#include "gui/document/document.h"
 
 #include "tests/gui/fixture.h"
 

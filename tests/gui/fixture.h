@@ -6,7 +6,7 @@
 #include <QtTest>
 #include <memory>
 
-#include "gui/engine.h"
+#include "gui/document/engine.h"
 
 namespace glint::gui {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Overlays lie where the numbers say, at every zoom and device pixel ratio (CTest runs this class at 1 and at 2).
-#include "gui/frame_canvas.h"
+#include "gui/frame/frame_canvas.h"
 
 #include <QMouseEvent>
 #include <QSignalSpy>

@@ -7,12 +7,12 @@
 #include <QTableView>
 #include <QToolButton>
 
-#include "gui/error_model.h"
-#include "gui/error_table.h"
-#include "gui/frame_canvas.h"
-#include "gui/frame_panel.h"
-#include "gui/text.h"
-#include "gui/timeline.h"
+#include "gui/base/text.h"
+#include "gui/frame/frame_canvas.h"
+#include "gui/frame/frame_panel.h"
+#include "gui/panels/error_model.h"
+#include "gui/panels/error_table.h"
+#include "gui/timeline/timeline.h"
 #include "tests/gui/fixture.h"
 
 namespace glint::gui {

@@ -10,16 +10,15 @@
 #include <cstring>
 #include <memory>
 
-#include "gui/theme.h"
+#include "gui/base/theme.h"
 #include "tests/gui/fixture.h"
 
 int main(int argc, char** argv) {
   using namespace glint::gui;
-  static const TestClass classes[] = {{"document", makeDocumentTest},        {"runner", makeRunnerTest},
-                                      {"frame_canvas", makeFrameCanvasTest}, {"panel", makePanelTest},
-                                      {"linking", makeLinkingTest},          {"window", makeWindowTest},
-                                      {"session", makeSessionTest},          {"program", makeProgramTest},
-                                      {"tradeoff", makeTradeoffTest}};
+  static const TestClass classes[] = {
+      {"document", makeDocumentTest}, {"runner", makeRunnerTest},   {"frame_canvas", makeFrameCanvasTest},
+      {"panel", makePanelTest},       {"linking", makeLinkingTest}, {"window", makeWindowTest},
+      {"session", makeSessionTest},   {"program", makeProgramTest}, {"tradeoff", makeTradeoffTest}};
   if (argc < 2) return std::fputs("usage: test_gui CLASS [QTest options]\n", stderr), 2;
   QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
   QApplication app(argc, argv);

@@ -7,10 +7,10 @@
 #include <QStyleOptionSlider>
 #include <QToolButton>
 
-#include "gui/document.h"
-#include "gui/number_box.h"
-#include "gui/parameter_panel.h"
-#include "gui/text.h"
+#include "gui/base/number_box.h"
+#include "gui/base/text.h"
+#include "gui/document/document.h"
+#include "gui/panels/parameter_panel.h"
 #include "tests/gui/fixture.h"
 
 namespace glint::gui {

@@ -5,8 +5,8 @@
 #include <QProcess>
 #include <set>
 
-#include "gui/document.h"
-#include "gui/text.h"
+#include "gui/base/text.h"
+#include "gui/document/document.h"
 #include "tests/gui/fixture.h"
 
 namespace glint::gui {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gui/runner.h"
+#include "gui/document/runner.h"
 
 #include <QSignalSpy>
 #include <atomic>

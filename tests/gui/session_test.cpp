@@ -11,9 +11,9 @@
 #include <QTimer>
 #include <algorithm>
 
-#include "gui/main_window.h"
-#include "gui/scene_panel.h"
-#include "gui/text.h"
+#include "gui/base/text.h"
+#include "gui/scene/scene_panel.h"
+#include "gui/window/main_window.h"
 #include "tests/gui/fixture.h"
 
 namespace glint::gui {

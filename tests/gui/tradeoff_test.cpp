@@ -5,10 +5,10 @@
 #include <QSignalSpy>
 
 #include "core/pipeline/session.h"
-#include "gui/main_window.h"
-#include "gui/session_file.h"
-#include "gui/setup_panel.h"
-#include "gui/tradeoff_panel.h"
+#include "gui/document/session_file.h"
+#include "gui/panels/setup_panel.h"
+#include "gui/panels/tradeoff_panel.h"
+#include "gui/window/main_window.h"
 #include "tests/gui/fixture.h"
 
 namespace glint::gui {

@@ -9,11 +9,11 @@
 #include <QTableView>
 #include <QToolButton>
 
-#include "gui/frame_panel.h"
-#include "gui/layouts.h"
-#include "gui/main_window.h"
-#include "gui/message_bar.h"
-#include "gui/text.h"
+#include "gui/base/text.h"
+#include "gui/frame/frame_panel.h"
+#include "gui/window/layouts.h"
+#include "gui/window/main_window.h"
+#include "gui/window/message_bar.h"
 #include "tests/gui/fixture.h"
 
 namespace glint::gui {
@@ -37,7 +37,8 @@ class WindowTest : public QObject {
     show(window);
     openAndWait(window);
     QVERIFY(!window.document().stale());
-    QCOMPARE(window.findChild<QTableView*>(QStringLiteral("errorTable"))->model()->rowCount(), 12 * int(window.document().request().models.size()));
+    QCOMPARE(window.findChild<QTableView*>(QStringLiteral("errorTable"))->model()->rowCount(),
+             12 * int(window.document().request().models.size()));
     QVERIFY(window.findChild<QWidget*>(QStringLiteral("sceneView"))->isVisible());
     QVERIFY(window.windowTitle().startsWith("scene.json"));
   }

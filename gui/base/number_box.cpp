@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/base/number_box.h"
+
+#include <QLocale>
+#include <QWheelEvent>
+#include <algorithm>
+#include <cmath>
+
+#include "gui/base/text.h"
+
+namespace glint::gui {
+
+namespace {
+constexpr double kManySteps = 2000;  // beyond this a linear slider cannot reach small values
+
+QString bare(QString text, const QString& suffix) {
+  if (!suffix.isEmpty() && text.endsWith(suffix)) text.chop(suffix.size());
+  return text.trimmed();
+}
+}  // namespace
+
+NumberBox::NumberBox(const ParamSpec& spec, QWidget* parent) : QDoubleSpinBox(parent) {
+  setLocale(QLocale::c());
+  setKeyboardTracking(false);
+  setFocusPolicy(Qt::StrongFocus);
+  setDecimals(15);
+  setRange(spec.min, spec.max);
+  setSingleStep(spec.step);
+  if ((spec.max - spec.min) / spec.step > kManySteps) setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
+  if (!spec.unit.empty()) setSuffix(QStringLiteral(" ") + toQString(spec.unit));
+}
+
+QString NumberBox::textFromValue(double value) const { return QString::number(value, 'g', 8); }
+
+double NumberBox::valueFromText(const QString& text) const { return bare(text, suffix()).toDouble(); }
+
+QValidator::State NumberBox::validate(QString& text, int&) const {
+  bool number = false;
+  const double value = bare(text, suffix()).toDouble(&number);
+  if (!number) return QValidator::Intermediate;  // "1e-" on the way to a number
+  return value >= minimum() && value <= maximum() ? QValidator::Acceptable : QValidator::Intermediate;
+}
+
+void NumberBox::wheelEvent(QWheelEvent* e) {
+  if (hasFocus())
+    QDoubleSpinBox::wheelEvent(e);
+  else
+    e->ignore();
+}
+
+SliderScale::SliderScale(const ParamSpec& spec)
+    : min_(spec.min), max_(spec.max), step_(spec.step), logarithmic_((spec.max - spec.min) / spec.step > kManySteps) {}
+
+int SliderScale::position(double value) const {
+  const double t =
+      logarithmic_ ? std::log1p((value - min_) / step_) / std::log1p((max_ - min_) / step_) : (value - min_) / (max_ - min_);
+  return std::clamp(int(std::lround(t * kPositions)), 0, kPositions);
+}
+
+double SliderScale::value(int position) const {
+  if (position <= 0) return min_;
+  if (position >= kPositions) return max_;
+  const double t = double(position) / kPositions;
+  const double steps = logarithmic_ ? std::expm1(t * std::log1p((max_ - min_) / step_)) : t * (max_ - min_) / step_;
+  return std::clamp(min_ + std::round(steps) * step_, min_, max_);
+}
+
+}  // namespace glint::gui

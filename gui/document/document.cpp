@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/document/document.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "gui/base/text.h"
+#include "gui/document/state_command.h"
+
+namespace glint::gui {
+
+bool sameRequest(const InspectionRequest& a, const InspectionRequest& b) {
+  return a.models == b.models && a.train == b.train && a.excluded == b.excluded && a.source == b.source &&
+         a.settings == b.settings && a.noisePx == b.noisePx && a.seed == b.seed && a.truthFolder == b.truthFolder;
+}
+
+namespace {
+bool sameSelection(const viz::Selection& a, const viz::Selection& b) {
+  return a.frame == b.frame && a.model == b.model && a.highlight == b.highlight;
+}
+}  // namespace
+
+std::string rangesText(const std::vector<int>& frames) {
+  std::string text;
+  for (std::size_t i = 0; i < frames.size();) {
+    std::size_t j = i;
+    while (j + 1 < frames.size() && frames[j + 1] == frames[j] + 1) ++j;
+    if (!text.empty()) text += ',';
+    text += std::to_string(frames[i]);
+    if (j > i) text += '-' + std::to_string(frames[j]);
+    i = j + 1;
+  }
+  return text;
+}
+
+Document::Document(ParseTrain parseTrain, QObject* parent) : QObject(parent), parseTrain_(std::move(parseTrain)) {}
+
+bool Document::layerVisible(const std::string& name) const {
+  if (const auto it = state_.layers.find(name); it != state_.layers.end()) return it->second;
+  for (const viz::Layer& layer : viz::sceneLayers())
+    if (layer.name == name) return layer.onByDefault;
+  return true;
+}
+
+FrameRole Document::role(int frame) const {
+  const std::vector<int>& excluded = state_.request.excluded;
+  if (std::find(excluded.begin(), excluded.end(), frame) != excluded.end()) return FrameRole::Excluded;
+  return training_.count(frame) ? FrameRole::Training : FrameRole::HeldOut;
+}
+
+std::string Document::plottedModel() const {
+  const std::vector<std::string>& models = state_.request.models;
+  if (std::find(models.begin(), models.end(), state_.selection.model) != models.end()) return state_.selection.model;
+  return models.empty() ? std::string() : models.back();
+}
+
+void Document::setInspection(std::shared_ptr<const Inspection> inspection, const InspectionRequest& computedFor) {
+  if (!inspection || inspection->scene != scene_) return;  // a late result of a scene that was closed
+  inspection_ = std::move(inspection);
+  setStale(!sameRequest(computedFor, state_.request));
+  emit inspectionChanged();
+}
+
+void Document::setTradeoff(std::shared_ptr<const Tradeoff> tradeoff) {
+  tradeoff_ = std::move(tradeoff);
+  emit tradeoffChanged();
+  emit savedStateChanged();
+}
+
+bool Document::isLoaded(const TradeoffPoint& point) const {
+  return state_.request.models == std::vector<std::string>{point.model} && state_.request.settings == point.settings;
+}
+
+void Document::setRequest(const InspectionRequest& request, const QString& text) {
+  ViewState after = state_;
+  after.request = request;
+  push(std::move(after), text);
+}
+
+void Document::load(const TradeoffPoint& point, const QString& text) {
+  InspectionRequest after = state_.request;
+  after.models = {point.model};
+  after.settings = point.settings;
+  setRequest(after, text);
+}
+
+void Document::open(const Opened& opened) {
+  // Parsed before anything changes, so that a wrong specification leaves the document as it was.
+  if (parseTrain_ && opened.scene) parseTrain_(opened.request.train, *opened.scene);
+  undo_.clear();
+  scene_ = opened.scene;
+  state_ = {opened.request, opened.selection, opened.layers};
+  state_.selection.frame = std::clamp(state_.selection.frame, 0, std::max(0, frameCount() - 1));
+  saved_ = state_;
+  inputFile_ = toQString(opened.path);
+  session_ = opened.session;
+  sessionFile_ = opened.isSession ? inputFile_ : QString();
+  inspection_.reset();
+  tradeoff_ = savedTradeoff_ = opened.tradeoff;
+  updateTraining();
+  setStale(scene_ != nullptr);
+  emit sceneOpened();
+  emit tradeoffChanged();
+}
+
+Opened Document::toSave() const {
+  Opened o;
+  o.path = sessionFile_.toStdString();
+  o.isSession = true;
+  o.scene = scene_;
+  o.request = state_.request;
+  o.selection = state_.selection;
+  o.layers = state_.layers;
+  o.session = session_;
+  o.tradeoff = tradeoff_;
+  return o;
+}
+
+void Document::markSaved(const QString& sessionFile, const ViewState& saved, std::shared_ptr<const Tradeoff> tradeoff) {
+  sessionFile_ = sessionFile;
+  saved_ = saved;
+  savedTradeoff_ = std::move(tradeoff);
+  emit savedStateChanged();
+}
+
+bool Document::hasUnsavedChanges() const {
+  return scene_ &&
+         (!sameRequest(saved_.request, state_.request) || saved_.layers != state_.layers || tradeoff_ != savedTradeoff_);
+}
+
+void Document::setSetting(const std::string& key, const SettingValue& value, int gesture) {
+  ViewState after = state_;
+  after.request.settings.set(key, value);
+  const ParamSpec& spec = paramSpec(key);
+  push(std::move(after), toQString(spec.title) + QStringLiteral(": ") + valueText(value, spec),
+       gesture > 0 ? QStringLiteral("%1#%2").arg(toQString(key)).arg(gesture) : QString());
+}
+
+void Document::resetSetting(const std::string& key) {
+  ViewState after = state_;
+  after.request.settings.reset(key);
+  push(std::move(after), tr("Reset %1").arg(toQString(paramSpec(key).title)));
+}
+
+void Document::setModels(const std::vector<std::string>& models) {
+  ViewState after = state_;
+  after.request.models = models;
+  push(std::move(after), tr("Models: %1").arg(models.empty() ? tr("none") : joined(models)));
+}
+
+bool Document::setTrain(const std::string& specification, QString* error) {
+  if (!scene_) return false;
+  try {
+    if (parseTrain_) parseTrain_(specification, *scene_);
+  } catch (const InputError& e) {
+    if (error) *error = toQString(e.what());
+    return false;
+  }
+  ViewState after = state_;
+  after.request.train = specification;
+  push(std::move(after), tr("Train on %1").arg(toQString(specification)));
+  return true;
+}
+
+void Document::setSource(FrameSource source) {
+  ViewState after = state_;
+  after.request.source = source;
+  push(std::move(after), source == FrameSource::Radiance ? tr("Use the radiance") : tr("Use the photographs"));
+}
+
+void Document::setRole(int frame, FrameRole role) {
+  if (frame < 0 || frame >= frameCount() || role == this->role(frame)) return;
+  ViewState after = state_;
+  std::vector<int>& excluded = after.request.excluded;
+  excluded.erase(std::remove(excluded.begin(), excluded.end(), frame), excluded.end());
+  const QString id = toQString(scene_->frames[std::size_t(frame)].id);
+  if (role == FrameRole::Excluded) {
+    excluded.push_back(frame);
+    std::sort(excluded.begin(), excluded.end());
+    push(std::move(after), tr("Exclude frame %1").arg(id));
+    return;
+  }
+  std::set<int> training = training_;
+  if (role == FrameRole::Training)
+    training.insert(frame);
+  else
+    training.erase(frame);
+  // The words of the specification ("spread:6") are kept where the set of frames stays the same.
+  if (training != training_) {
+    const std::string ranges = rangesText({training.begin(), training.end()});
+    if (ranges.empty()) return;  // nothing to learn from is not a specification
+    after.request.train = ranges;
+  }
+  push(std::move(after), role == FrameRole::Training ? tr("Train on frame %1").arg(id) : tr("Hold out frame %1").arg(id));
+}
+
+void Document::select(const viz::Selection& selection, int gesture) {
+  if (!scene_) return;
+  ViewState after = state_;
+  after.selection = selection;
+  after.selection.frame = std::clamp(selection.frame, 0, std::max(0, frameCount() - 1));
+  const QString frame = toQString(scene_->frames[std::size_t(after.selection.frame)].id);
+  push(std::move(after), tr("Select frame %1").arg(frame), gesture > 0 ? QStringLiteral("select#%1").arg(gesture) : QString());
+}
+
+void Document::selectFrame(int frame, int gesture) {
+  viz::Selection s = state_.selection;
+  if (s.frame == frame) return;
+  s.frame = frame;
+  s.highlight = -1;
+  select(s, gesture);
+}
+
+void Document::setLayerVisible(const std::string& name, const std::string& title, bool visible) {
+  if (layerVisible(name) == visible) return;
+  ViewState after = state_;
+  after.layers[name] = visible;
+  push(std::move(after), (visible ? tr("Show %1") : tr("Hide %1")).arg(toQString(title).toLower()));
+}
+
+void Document::push(ViewState after, const QString& text, const QString& mergeKey) {
+  if (sameRequest(after.request, state_.request) && sameSelection(after.selection, state_.selection) &&
+      after.layers == state_.layers)
+    return;
+  undo_.push(new StateCommand(*this, state_, std::move(after), text, mergeKey));
+}
+
+void Document::apply(const ViewState& state) {
+  const bool request = !sameRequest(state.request, state_.request);
+  const bool selection = !sameSelection(state.selection, state_.selection);
+  const bool layers = state.layers != state_.layers;
+  state_ = state;
+  if (request) {
+    updateTraining();
+    setStale(true);
+    emit requestChanged();
+  }
+  if (selection) emit selectionChanged();
+  if (layers) emit layersChanged();
+  if (request || layers) emit savedStateChanged();
+}
+
+void Document::updateTraining() {
+  training_.clear();
+  if (!scene_ || !parseTrain_) return;
+  try {
+    const TrainSpec spec = parseTrain_(state_.request.train, *scene_);
+    training_.insert(spec.frames.begin(), spec.frames.end());
+  } catch (const InputError&) {
+    // Cannot happen through the actions, which parse first; an empty set marks nothing as training.
+  }
+}
+
+void Document::setStale(bool stale) {
+  if (stale == stale_) return;
+  stale_ = stale;
+  emit staleChanged(stale);
+}
+
+}  // namespace glint::gui

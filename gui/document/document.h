@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QObject>
+#include <QString>
+#include <QUndoStack>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "gui/document/engine.h"
+
+namespace glint::gui {
+
+enum class FrameRole { Training, HeldOut, Excluded };
+
+/// Everything that undo restores: plain data, compared and copied as a whole.
+struct ViewState {
+  InspectionRequest request;
+  viz::Selection selection;
+  std::map<std::string, bool> layers;  ///< scene layers by their name, frame overlays as "frame/NAME"
+};
+
+/// What is on screen: the undoable state, the scene that it belongs to and the newest results.
+/// Widgets read it, listen to its signals and change it through the actions below; each action is one step of
+/// undo, and steps of one gesture (a slider drag, playing the timeline) merge. An action that changes nothing leaves no step.
+class Document : public QObject {
+  Q_OBJECT
+ public:
+  using ParseTrain = std::function<TrainSpec(const std::string&, const Scene&)>;
+  explicit Document(ParseTrain parseTrain, QObject* parent = nullptr);
+
+  const Scene* scene() const { return scene_.get(); }
+  std::shared_ptr<const Scene> sharedScene() const { return scene_; }
+  int frameCount() const { return scene_ ? int(scene_->frames.size()) : 0; }
+  const ViewState& state() const { return state_; }
+  const InspectionRequest& request() const { return state_.request; }
+  const viz::Selection& selection() const { return state_.selection; }
+  bool layerVisible(const std::string& name) const;
+  FrameRole role(int frame) const;
+  /// The model that plots show: the selected one, else the last (richest) of those computed.
+  std::string plottedModel() const;
+  QUndoStack* undoStack() { return &undo_; }
+  /// A number that no gesture had before.
+  int newGesture() { return ++gesture_; }
+
+  /// Newest results; null before the first. They may belong to an older request: see stale().
+  std::shared_ptr<const Inspection> inspection() const { return inspection_; }
+  bool stale() const { return stale_; }
+  void setInspection(std::shared_ptr<const Inspection> inspection, const InspectionRequest& computedFor);
+
+  /// Measured speed against accuracy of this scene; null = none. Stored in the session.
+  std::shared_ptr<const Tradeoff> tradeoff() const { return tradeoff_; }
+  void setTradeoff(std::shared_ptr<const Tradeoff> tradeoff);
+  /// The request is the model and the settings of this point, and no other model.
+  bool isLoaded(const TradeoffPoint& point) const;
+
+  /// Replaces everything; the undo history starts anew. A training specification that does not fit the scene throws InputError.
+  void open(const Opened& opened);
+  /// Path of the session file, "" while there is none.
+  const QString& sessionFile() const { return sessionFile_; }
+  const QString& inputFile() const { return inputFile_; }
+  Opened toSave() const;
+  /// @param saved, tradeoff  what was written, which may be older than what is on screen.
+  void markSaved(const QString& sessionFile, const ViewState& saved, std::shared_ptr<const Tradeoff> tradeoff = nullptr);
+  /// What a session stores differs from what was opened or saved last (moving through the frames does not count).
+  bool hasUnsavedChanges() const;
+
+ public slots:
+  /// @param gesture  equal positive numbers merge into one step of undo; 0 never merges.
+  void setSetting(const std::string& key, const SettingValue& value, int gesture = 0);
+  void resetSetting(const std::string& key);
+  void setModels(const std::vector<std::string>& models);
+  /// False, with one line in `error`, when the specification does not parse.
+  bool setTrain(const std::string& specification, QString* error = nullptr);
+  void setSource(FrameSource source);
+  /// Models and settings changed in one step of undo. @param text  what the step is called.
+  void setRequest(const glint::InspectionRequest& request, const QString& text);
+  /// Model and settings of a measured point, as one step of undo. @param text  what the step is called.
+  void load(const glint::TradeoffPoint& point, const QString& text);
+  void setRole(int frame, FrameRole role);
+  void select(const viz::Selection& selection, int gesture = 0);
+  void selectFrame(int frame, int gesture = 0);
+  void setLayerVisible(const std::string& name, const std::string& title, bool visible);
+
+ signals:
+  void sceneOpened();     ///< another scene
+  void requestChanged();  ///< results are stale until the next setInspection
+  void selectionChanged();
+  void layersChanged();
+  void inspectionChanged();
+  void staleChanged(bool stale);
+  void savedStateChanged();
+  void tradeoffChanged();
+
+ private:
+  friend class StateCommand;
+  void push(ViewState after, const QString& text, const QString& mergeKey = {});
+  void apply(const ViewState& state);
+  void updateTraining();
+  void setStale(bool stale);
+
+  ParseTrain parseTrain_;
+  std::shared_ptr<const Scene> scene_;
+  ViewState state_, saved_;
+  std::set<int> training_;
+  QString sessionFile_, inputFile_;
+  std::shared_ptr<const Session> session_;
+  std::shared_ptr<const Inspection> inspection_;
+  std::shared_ptr<const Tradeoff> tradeoff_, savedTradeoff_;
+  bool stale_ = false;
+  int gesture_ = 0;
+  QUndoStack undo_;
+};
+
+bool sameRequest(const InspectionRequest& a, const InspectionRequest& b);
+/// "0-5,9" from sorted frame numbers; "" for none.
+std::string rangesText(const std::vector<int>& frames);
+
+}  // namespace glint::gui

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QElapsedTimer>
+#include <QObject>
+#include <QString>
+#include <QThread>
+#include <atomic>
+#include <memory>
+
+#include "gui/document/engine.h"
+
+namespace glint::gui {
+
+using InspectionPtr = std::shared_ptr<const Inspection>;
+using OpenedPtr = std::shared_ptr<const Opened>;
+using SelectionPtr = std::shared_ptr<const glint::Selection>;
+using TradeoffPtr = std::shared_ptr<const Tradeoff>;
+
+/// The only place that knows both Qt and the pipeline: opens inputs and computes inspections on a thread of its own.
+/// The newest request wins. A run that a newer request overtakes is stopped, except in its first `kGraceMs`: quick runs
+/// finish, so that a slider shows results while it is dragged. cancel() stops at the pipeline's next progress report.
+/// Signals arrive on the thread of this object; only the newest request reports failures.
+class Runner : public QObject {
+  Q_OBJECT
+ public:
+  static constexpr int kGraceMs = 250;
+
+  explicit Runner(Engine engine, QObject* parent = nullptr);
+  ~Runner() override;  ///< stops what runs and waits for it
+
+  void open(const std::string& path);
+  /// @param previous  earlier results on the same scene, so that unchanged stages are not repeated; may be null.
+  void inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& request, InspectionPtr previous);
+  /// Writes a session without stopping what runs; nothing but cancel() stops it. Answers with saved().
+  /// @param results  finished results of exactly `opened.request`, or null.
+  void save(OpenedPtr opened, InspectionPtr results, const std::string& path);
+  /// The automatic choice of the model; answers with chosen(). @param goodEnoughPct  0 = no tolerance.
+  void choose(std::shared_ptr<const Scene> scene, const InspectionRequest& request, double goodEnoughPct, InspectionPtr previous);
+  /// Speed against accuracy of all settings; answers with measured().
+  void measure(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const std::string& file);
+  void cancel();
+  bool busy() const { return pending_ > 0; }
+
+ signals:
+  void busyChanged(bool busy);
+  void progressed(const QString& stage, int done, int total);
+  void opened(const glint::gui::OpenedPtr& opened);
+  void finished(const glint::gui::InspectionPtr& inspection, const glint::gui::OpenedPtr& computedFor);
+  void chosen(const glint::gui::SelectionPtr& selection, const glint::gui::OpenedPtr& computedFor);
+  void measured(const glint::gui::TradeoffPtr& tradeoff, const glint::gui::OpenedPtr& computedFor);
+  void failed(const QString& oneLine);
+  void openFailed();  ///< after failed(): what ran for the scene on screen was stopped for nothing
+  void stopped();     ///< by cancel()
+  void saved(const QString& path, const QString& problem);  ///< `problem` is one line, "" = the file is written
+
+ private:
+  enum class End { Done, Stopped, Failed };
+  void post(std::function<void(int job)> work, std::function<void()> onFailure = {});
+  void showProgress(QElapsedTimer& lastSignal, const StageEvent& event);
+  bool report(int job, const QElapsedTimer& clock, QElapsedTimer& lastSignal, const StageEvent& event);
+  void countEnd();
+  void end(int job, End how, const QString& message, const std::function<void()>& onFailure);
+
+  Engine engine_;
+  QThread thread_;
+  QObject* worker_;                ///< lives on thread_; lambdas posted to it run there
+  std::atomic<int> newest_{0};     ///< number of the newest request
+  std::atomic<int> cancelled_{0};  ///< requests up to this one were cancelled by the user
+  std::atomic<int> newestSave_{0}, cancelledSaves_{0};
+  int pending_ = 0;  ///< posted and not yet ended; interface thread only
+};
+
+}  // namespace glint::gui
+
+Q_DECLARE_METATYPE(glint::gui::InspectionPtr)
+Q_DECLARE_METATYPE(glint::gui::OpenedPtr)
+Q_DECLARE_METATYPE(glint::gui::SelectionPtr)
+Q_DECLARE_METATYPE(glint::gui::TradeoffPtr)

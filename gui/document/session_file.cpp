@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/document/session_file.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "core/pipeline/session.h"
+
+namespace glint::gui {
+
+namespace fs = std::filesystem;
+
+namespace {
+const char* const kSceneView = "scene";
+constexpr int kDefaultTraining = 6;  // InspectionRequest::train
+
+/// The session that a path means; empty when it means a scene.
+fs::path sessionAt(const fs::path& path) {
+  std::error_code ignored;  // what cannot be read is reported by the reader, with its reason
+  if (!fs::is_directory(path, ignored)) return path.extension() == ".glint" ? path : fs::path();
+  if (fs::exists(path / "scene.json", ignored)) return {};
+  std::vector<fs::path> found;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path, ignored))
+    if (entry.path().extension() == ".glint") found.push_back(entry.path());
+  return found.size() == 1 ? found.front() : fs::path();
+}
+
+int frameNumber(const Scene& scene, const std::string& id) {
+  const auto it = std::find_if(scene.frames.begin(), scene.frames.end(), [&](const Frame& f) { return f.id == id; });
+  return it == scene.frames.end() ? 0 : int(it - scene.frames.begin());
+}
+}  // namespace
+
+Opened openInput(const std::string& path) {
+  Opened opened;
+  opened.path = path;
+  const fs::path session = sessionAt(path);
+  if (session.empty()) {
+    opened.scene = std::make_shared<const Scene>(readScene(path));
+    // A short scene opens too: the default would ask for more frames than there are.
+    const int frames = int(opened.scene->frames.size());
+    if (frames < kDefaultTraining) opened.request.train = "first:" + std::to_string(frames);
+    return opened;
+  }
+  OpenedSession read = openSession(session);
+  const SessionView& view = read.session.view;
+  opened.path = session.string();
+  opened.isSession = true;
+  opened.scene = read.scene;
+  opened.request = read.session.request;
+  opened.selection = {frameNumber(*read.scene, view.frame), view.model, view.highlight};
+  opened.layers = view.layers;
+  opened.layout = view.layout;
+  if (const auto camera = view.cameras.find(kSceneView); camera != view.cameras.end())
+    opened.viewPoint =
+        viz::ViewPoint{camera->second.position, camera->second.focalPoint, camera->second.up, camera->second.viewAngleDeg};
+  if (read.session.tradeoff) opened.tradeoff = std::make_shared<const Tradeoff>(*read.session.tradeoff);
+  opened.session = std::make_shared<const Session>(std::move(read.session));
+  return opened;
+}
+
+void saveSession(const Opened& opened, const Inspection* results, const std::string& path, const ProgressFn& progress) {
+  const Scene& scene = *opened.scene;
+  Session session;
+  if (results) {
+    session = sessionOf(*results, progress);
+  } else {
+    session.input = fs::absolute(scene.file).lexically_normal();
+    session.allowOutsidePaths = scene.allowOutsidePaths;
+    session.files = hashInputs(scene, opened.request, progress);
+    const TrainSpec train = parseTrainSpec(opened.request.train, scene);
+    for (int i = 0; i < int(scene.frames.size()); ++i) {
+      const std::string& id = scene.frames[std::size_t(i)].id;
+      if (std::count(opened.request.excluded.begin(), opened.request.excluded.end(), i)) continue;
+      const bool training = std::count(train.frames.begin(), train.frames.end(), i) > 0;
+      if (training) session.training.push_back(id);
+      if (!training || train.perSurface) session.heldOut.push_back(id);
+    }
+  }
+  session.request = opened.request;
+  if (opened.tradeoff) session.tradeoff = *opened.tradeoff;
+  if (opened.session) {
+    session.notes = opened.session->notes;
+    session.unknownJson = opened.session->unknownJson;
+    session.allowOutsidePaths = opened.session->allowOutsidePaths;
+    session.view.cameras = opened.session->view.cameras;
+    session.view.light = opened.session->view.light;
+  }
+  session.view.layout = opened.layout;
+  session.view.layers = opened.layers;
+  session.view.frame = scene.frames.at(std::size_t(opened.selection.frame)).id;
+  session.view.model = opened.selection.model;
+  session.view.highlight = opened.selection.highlight;
+  if (opened.viewPoint)
+    session.view.cameras[kSceneView] = {opened.viewPoint->position, opened.viewPoint->focalPoint, opened.viewPoint->up,
+                                        opened.viewPoint->viewAngleDeg};
+  writeSession(session, path);
+}
+
+}  // namespace glint::gui

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/panels/error_table.h"
+
+#include <QApplication>
+#include <QClipboard>
+#include <QComboBox>
+#include <QGridLayout>
+#include <QHBoxLayout>
+#include <QHeaderView>
+#include <QKeyEvent>
+#include <QLabel>
+#include <QScrollBar>
+#include <QSortFilterProxyModel>
+#include <QTableView>
+#include <QVBoxLayout>
+#include <algorithm>
+#include <cmath>
+
+#include "core/evaluate/summary.h"
+#include "gui/base/text.h"
+#include "gui/base/theme.h"
+#include "gui/panels/error_model.h"
+#include "viz/frame_overlay.h"
+
+namespace glint::gui {
+
+namespace {
+enum class Shown { All, HeldOut, Training, Problems };
+
+class RowFilter : public QSortFilterProxyModel {
+ public:
+  using QSortFilterProxyModel::QSortFilterProxyModel;
+  void show(Shown shown) {
+    shown_ = shown;
+    invalidateFilter();
+  }
+
+ protected:
+  bool filterAcceptsRow(int row, const QModelIndex& parent) const override {
+    const QModelIndex index = sourceModel()->index(row, 0, parent);
+    const auto role = FrameRole(sourceModel()->data(index, ErrorModel::kFrameRoleRole).toInt());
+    switch (shown_) {
+      case Shown::HeldOut:
+        return role == FrameRole::HeldOut;
+      case Shown::Training:
+        return role == FrameRole::Training;
+      case Shown::Problems:
+        return sourceModel()->data(index, ErrorModel::kProblemRole).toBool();
+      case Shown::All:
+        break;
+    }
+    return true;
+  }
+
+ private:
+  Shown shown_ = Shown::All;
+};
+}  // namespace
+
+ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), document_(document) {
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(0);
+  auto* head = new QHBoxLayout;
+  head->setContentsMargins(8, 4, 6, 4);
+  summary_ = new QLabel;
+  summary_->setObjectName(QStringLiteral("errorSummary"));
+  summary_->setTextFormat(Qt::RichText);
+  summary_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);  // a narrow window cuts it rather than its neighbours
+  summary_->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  head->addWidget(summary_, 1);
+  filter_ = new QComboBox;
+  filter_->setObjectName(QStringLiteral("errorFilter"));
+  filter_->addItems({tr("all frames"), tr("held-out frames"), tr("training frames"), tr("problems only")});
+  auto* choice = new QGridLayout;
+  choice->setHorizontalSpacing(6);
+  choice->addWidget(new QLabel(tr("Rows of")), 0, 0);
+  choice->addWidget(filter_, 0, 1);
+  count_ = new QLabel;
+  count_->setObjectName(QStringLiteral("errorCount"));
+  count_->setProperty("role", "faded");
+  choice->addWidget(count_, 1, 0, 1, 2, Qt::AlignRight);
+  choice->setRowStretch(2, 1);
+  head->addLayout(choice);
+  column->addLayout(head);
+
+  model_ = new ErrorModel(document, this);
+  auto* proxy = new RowFilter(this);
+  proxy_ = proxy;
+  proxy_->setSourceModel(model_);
+  proxy_->setSortRole(ErrorModel::kSortRole);
+  view_ = new QTableView;
+  view_->setObjectName(QStringLiteral("errorTable"));
+  view_->setModel(proxy_);
+  view_->setSortingEnabled(true);
+  view_->sortByColumn(ErrorModel::Frame, Qt::AscendingOrder);
+  view_->setAlternatingRowColors(true);
+  view_->setSelectionBehavior(QAbstractItemView::SelectRows);
+  view_->setIconSize({10, 10});
+  view_->setShowGrid(false);
+  view_->setWordWrap(false);
+  view_->verticalHeader()->hide();
+  view_->verticalHeader()->setDefaultSectionSize(fontMetrics().height() + 5);
+  view_->horizontalHeader()->setHighlightSections(false);
+  view_->horizontalHeader()->setStretchLastSection(false);
+  const int widths[] = {54, 66, 98, 50, 64, 66, 68, 74, 80, 62, 78, 76, 68, 72};
+  for (int i = 0; i < int(std::size(widths)); ++i) view_->setColumnWidth(i, widths[i]);
+  // Why there is no number stands beside "failed", not out of sight behind a row of dashes.
+  view_->horizontalHeader()->moveSection(ErrorModel::ReasonText, ErrorModel::Status + 1);
+  view_->installEventFilter(this);
+  column->addWidget(view_, 1);
+
+  connect(filter_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this, proxy](int i) {
+    proxy->show(Shown(i));
+    showCount();
+    selectFromDocument();
+  });
+  connect(model_, &QAbstractItemModel::modelReset, this, [this] {
+    showSummary();
+    showCount();
+    fitReason();
+    selectFromDocument();
+  });
+  connect(&document_, &Document::staleChanged, this, &ErrorTable::showSummary);
+  connect(&document_, &Document::selectionChanged, this, &ErrorTable::selectFromDocument);
+  connect(view_->selectionModel(), &QItemSelectionModel::currentRowChanged, this, &ErrorTable::selectFromTable);
+  showSummary();
+}
+
+void ErrorTable::showCount() {
+  const int shown = proxy_->rowCount(), all = model_->rowCount();
+  count_->setText(all == 0 ? QString() : shown == all ? tr("%1 rows").arg(all) : tr("%1 of %2 rows").arg(shown).arg(all));
+}
+
+void ErrorTable::fitReason() {
+  int width = 60;
+  for (int row = 0; row < model_->rowCount(); ++row)
+    width = std::max(width,
+                     view_->fontMetrics().horizontalAdvance(model_->index(row, ErrorModel::ReasonText).data().toString()) + 16);
+  view_->setColumnWidth(ErrorModel::ReasonText, std::min(width, 300));
+}
+
+void ErrorTable::showSummary() {
+  const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  if (!inspection) {
+    summary_->setText(tr("<span style='color:%1'>No results yet</span>").arg(palette().color(QPalette::PlaceholderText).name()));
+    return;
+  }
+  // In place of the heading: a line of its own would make the table jump under the mouse.
+  const QString faded = (document_.stale() ? warningColour() : palette().color(QPalette::PlaceholderText)).name();
+  QString html = QStringLiteral("<table cellspacing='0' cellpadding='0'><tr style='color:%1'>").arg(faded);
+  html += QStringLiteral("<td style='padding-right:18px'>%1</td>")
+              .arg(document_.stale() ? tr("out of date…") : tr("Held-out frames, error %"));
+  const auto cells = [](const QStringList& texts) {
+    QString row;
+    for (const QString& text : texts) row += QStringLiteral("<td align='right' style='padding-right:18px'>%1</td>").arg(text);
+    return row;
+  };
+  html += cells({tr("mean"), tr("median"), tr("p95"), tr("max"), tr("IoU"), tr("predicted"), tr("missed"), tr("spurious")});
+  html += QStringLiteral("</tr>");
+  for (const std::string& name : viz::modelsInOrder(*inspection)) {
+    const ModelSummary s = summarise(*inspection, inspection->models.at(name));
+    html += QStringLiteral("<tr><td style='padding-right:18px'><span style='color:%1'>■</span>&nbsp;%2</td>")
+                .arg(toQColor(viz::modelColour(name)).name(), toQString(name));
+    if (!s.answered) {
+      html += QStringLiteral("<td colspan='8' style='color:%1'>%2</td></tr>")
+                  .arg(warningColour().name(), toQString(s.reason).toHtmlEscaped());
+      continue;
+    }
+    const Statistic& e = s.contourErrorPct;
+    // As many decimals as the table below, so that points stand under points.
+    const auto fixed = [](double v, int decimals) {
+      return std::isfinite(v) ? QString::number(v, 'f', decimals) : QStringLiteral("–");
+    };
+    html +=
+        cells({fixed(e.mean, 3), fixed(e.median, 3), fixed(e.p95, 3), fixed(e.max, 3), fixed(s.iou.mean, 4),
+               QStringLiteral("%1/%2").arg(s.predicted).arg(s.frames), QString::number(s.missed), QString::number(s.spurious)}) +
+        QStringLiteral("</tr>");
+  }
+  html += QStringLiteral("</table>");
+  summary_->setText(html);
+}
+
+void ErrorTable::selectFromDocument() {
+  if (selecting_) return;
+  const viz::Selection& s = document_.selection();
+  int best = -1, bestScore = 0;
+  for (int row = 0; row < proxy_->rowCount(); ++row) {
+    const int source = proxy_->mapToSource(proxy_->index(row, 0)).row();
+    if (model_->frameOf(source) != s.frame) continue;
+    const int score = 1 + 2 * (model_->modelOf(source) == document_.plottedModel()) +
+                      (s.highlight >= 0 && model_->highlightOf(source) == s.highlight);
+    if (score > bestScore) best = row, bestScore = score;
+  }
+  selecting_ = true;
+  if (best < 0)
+    view_->clearSelection();
+  else {
+    const int x = view_->horizontalScrollBar()->value();
+    const bool visible = view_->viewport()->rect().contains(view_->visualRect(proxy_->index(best, 0)));
+    // Not selectRow(): that one looks at the keyboard, and Ctrl is down during Ctrl+Z.
+    view_->selectionModel()->setCurrentIndex(proxy_->index(best, 0),
+                                             QItemSelectionModel::ClearAndSelect | QItemSelectionModel::Rows);
+    view_->scrollTo(proxy_->index(best, 0), visible ? QAbstractItemView::EnsureVisible : QAbstractItemView::PositionAtCenter);
+    view_->horizontalScrollBar()->setValue(x);
+  }
+  selecting_ = false;
+}
+
+void ErrorTable::selectFromTable() {
+  const QModelIndex current = view_->currentIndex();
+  if (selecting_ || !current.isValid()) return;
+  const int row = proxy_->mapToSource(current).row();
+  selecting_ = true;
+  document_.select({model_->frameOf(row), model_->modelOf(row), model_->highlightOf(row)});
+  selecting_ = false;
+}
+
+void ErrorTable::copySelection() const {
+  QModelIndexList rows = view_->selectionModel()->selectedRows();
+  std::sort(rows.begin(), rows.end(), [](const QModelIndex& a, const QModelIndex& b) { return a.row() < b.row(); });
+  QStringList lines, cells;
+  for (int c = 0; c < proxy_->columnCount(); ++c) cells << proxy_->headerData(c, Qt::Horizontal).toString();
+  lines << cells.join('\t');
+  for (const QModelIndex& row : rows) {
+    cells.clear();
+    for (int c = 0; c < proxy_->columnCount(); ++c) cells << row.sibling(row.row(), c).data().toString();
+    lines << cells.join('\t');
+  }
+  QApplication::clipboard()->setText(lines.join('\n') + '\n');
+}
+
+bool ErrorTable::eventFilter(QObject* watched, QEvent* event) {
+  if (watched == view_ && event->type() == QEvent::KeyPress && static_cast<QKeyEvent*>(event)->matches(QKeySequence::Copy)) {
+    copySelection();
+    return true;
+  }
+  return QWidget::eventFilter(watched, event);
+}
+
+}  // namespace glint::gui

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QWidget>
+
+#include "gui/document/document.h"
+
+class QComboBox;
+class QLabel;
+class QSortFilterProxyModel;
+class QTableView;
+
+namespace glint::gui {
+
+class ErrorModel;
+
+/// Sortable table of errors with a summary line per model above it. Selecting a row selects its frame, model and highlight
+/// everywhere; Ctrl+C copies the selected rows as tab-separated text with a header.
+class ErrorTable : public QWidget {
+  Q_OBJECT
+ public:
+  explicit ErrorTable(Document& document, QWidget* parent = nullptr);
+  QTableView* view() const { return view_; }
+  void copySelection() const;
+
+ protected:
+  bool eventFilter(QObject* watched, QEvent* event) override;
+
+ private:
+  void showSummary();
+  void showCount();
+  void fitReason();
+  void selectFromDocument();
+  void selectFromTable();
+
+  Document& document_;
+  ErrorModel* model_;
+  QSortFilterProxyModel* proxy_;
+  QTableView* view_;
+  QLabel* summary_;
+  QComboBox* filter_;
+  QLabel* count_;
+  bool selecting_ = false;  ///< the table itself caused the change that it hears of
+};
+
+}  // namespace glint::gui

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/panels/numbers_panel.h"
+
+#include <QAction>
+#include <QApplication>
+#include <QClipboard>
+#include <QHeaderView>
+#include <QKeyEvent>
+
+#include "gui/base/text.h"
+#include "gui/panels/selection_text.h"
+
+namespace glint::gui {
+
+NumbersPanel::NumbersPanel(Document& document, QWidget* parent) : QTreeWidget(parent), document_(document) {
+  setObjectName(QStringLiteral("numbers"));
+  setColumnCount(2);
+  setHeaderHidden(true);
+  setRootIsDecorated(false);
+  setIndentation(10);
+  setAlternatingRowColors(true);
+  setFrameShape(QFrame::NoFrame);
+  setSelectionMode(QAbstractItemView::ExtendedSelection);
+  header()->setSectionResizeMode(0, QHeaderView::ResizeToContents);
+  setContextMenuPolicy(Qt::ActionsContextMenu);
+  auto* copyAction = new QAction(tr("Copy"), this);
+  connect(copyAction, &QAction::triggered, this, &NumbersPanel::copy);
+  addAction(copyAction);
+  connect(&document_, &Document::sceneOpened, this, [this] {
+    pickedLines_.clear();
+    refresh();
+  });
+  connect(&document_, &Document::selectionChanged, this, [this] {
+    pickedLines_.clear();
+    refresh();
+  });
+  connect(&document_, &Document::inspectionChanged, this, &NumbersPanel::refresh);
+}
+
+void NumbersPanel::showPicked(const viz::Picked& picked) {
+  pickedTitle_ = tr("Picked: %1").arg(toQString(picked.layer));
+  pickedLines_ = toQString(picked.text);
+  refresh();
+}
+
+void NumbersPanel::refresh() {
+  clear();
+  if (!pickedLines_.isEmpty()) addGroup(pickedTitle_, pickedLines_);
+  if (const std::shared_ptr<const Inspection> inspection = document_.inspection())
+    for (const NumberGroup& group : describeSelection(*inspection, document_.selection(), document_.plottedModel()))
+      addGroup(group.title, group.lines);
+}
+
+void NumbersPanel::addGroup(const QString& title, const QString& lines) {
+  auto* group = new QTreeWidgetItem(this, {title});
+  QFont bold = font();
+  bold.setBold(true);
+  group->setFont(0, bold);
+  group->setFirstColumnSpanned(true);
+  for (const QString& line : lines.split('\n')) {
+    if (line.isEmpty()) continue;
+    const int equals = int(line.indexOf(QStringLiteral(" = ")));
+    auto* item =
+        new QTreeWidgetItem(group, equals < 0 ? QStringList{line} : QStringList{line.left(equals), line.mid(equals + 3)});
+    item->setToolTip(1, line);
+    if (equals < 0) item->setFirstColumnSpanned(true);
+  }
+  group->setExpanded(true);
+}
+
+QString NumbersPanel::text() const {
+  const bool all = selectedItems().isEmpty();
+  QStringList lines;
+  for (int g = 0; g < topLevelItemCount(); ++g) {
+    const QTreeWidgetItem* group = topLevelItem(g);
+    if (all || group->isSelected()) lines << group->text(0);
+    for (int i = 0; i < group->childCount(); ++i) {
+      const QTreeWidgetItem* item = group->child(i);
+      if (all || group->isSelected() || item->isSelected())
+        lines << (item->text(1).isEmpty() ? item->text(0) : item->text(0) + QStringLiteral(" = ") + item->text(1));
+    }
+  }
+  return lines.join('\n') + '\n';
+}
+
+void NumbersPanel::copy() const { QApplication::clipboard()->setText(text()); }
+
+void NumbersPanel::keyPressEvent(QKeyEvent* e) {
+  if (e->matches(QKeySequence::Copy))
+    copy();
+  else
+    QTreeWidget::keyPressEvent(e);
+}
+
+}  // namespace glint::gui

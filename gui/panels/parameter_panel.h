@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QScrollArea>
+#include <functional>
+#include <vector>
+
+#include "gui/document/document.h"
+
+class QGridLayout;
+class QToolButton;
+
+namespace glint::gui {
+
+/// One row per setting of `allParams()`, grouped by stage; nothing here knows a single setting.
+/// Object names for tests and scripts: "slider:KEY", "value:KEY", "reset:KEY".
+class ParameterPanel : public QScrollArea {
+  Q_OBJECT
+ public:
+  explicit ParameterPanel(Document& document, QWidget* parent = nullptr);
+
+ private:
+  struct Row {
+    std::string key;
+    std::function<void()> refresh;  ///< shows the document's value
+    QToolButton* reset;
+  };
+  void addNumber(const ParamSpec& spec, QGridLayout* grid, int row);
+  void addChoice(const ParamSpec& spec, QGridLayout* grid, int row);
+  void addFlag(const ParamSpec& spec, QGridLayout* grid, int row);
+  void addRow(const ParamSpec& spec, QGridLayout* grid, int row, std::function<void()> refresh);
+  void refresh();
+
+  Document& document_;
+  std::vector<Row> rows_;
+};
+
+}  // namespace glint::gui

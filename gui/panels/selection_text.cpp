@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/panels/selection_text.h"
+
+#include <Eigen/Core>
+#include <QObject>
+#include <QStringList>
+#include <algorithm>
+
+#include "gui/base/text.h"
+
+namespace glint::gui {
+
+namespace {
+constexpr double kDegPerRad = 57.29577951308232;
+
+class Lines {
+ public:
+  void add(const QString& name, const QString& value, const char* unit = "") {
+    lines_ << name + QStringLiteral(" = ") + value + (*unit ? QStringLiteral(" ") + QString::fromUtf8(unit) : QString());
+  }
+  void add(const QString& name, double value, const char* unit = "") { add(name, numberText(value, 6), unit); }
+  template <class Vector>
+  void addVector(const QString& name, const Vector& v, const char* unit = "") {
+    QStringList parts;
+    for (Eigen::Index i = 0; i < v.size(); ++i) parts << numberText(v[i], 6);
+    add(name, parts.join(QStringLiteral("  ")), unit);
+  }
+  void note(const QString& text) { lines_ << text; }
+  QString text() const { return lines_.join('\n'); }
+
+ private:
+  QStringList lines_;
+};
+
+void addLight(Lines& lines, const Light& light) {
+  if (light.atInfinity())
+    lines.addVector(QObject::tr("L direction"), light.homogeneous().head<3>().eval());
+  else
+    lines.addVector(QObject::tr("L"), light.position(), "m");
+}
+
+NumberGroup observation(const FrameEvidence& evidence, int index) {
+  Lines lines;
+  if (evidence.failure) lines.note(toQString(evidence.failure->message()));
+  if (index >= 0) {
+    const Highlight& h = evidence.highlights[std::size_t(index)];
+    if (!h.light.empty()) lines.add(QObject::tr("light"), toQString(h.light));
+    lines.addVector(QObject::tr("peak"), h.peak, "px");
+    lines.add(QObject::tr("level"), h.level);
+    lines.add(QObject::tr("area"), h.areaPx2, "px²");
+    if (h.ellipse) {
+      lines.addVector(QObject::tr("centre"), h.ellipse->centre, "px");
+      lines.addVector(QObject::tr("semi-axes"), h.ellipse->semiAxes, "px");
+      lines.add(QObject::tr("angle"), h.ellipse->angle * kDegPerRad, "°");
+    }
+    if (h.clipped) lines.note(QObject::tr("clipped: the peak is the ellipse centre"));
+    if (h.touchesBorder) lines.note(QObject::tr("cut by the image border"));
+    if (h.fromScene) lines.note(QObject::tr("given in the scene file"));
+  }
+  const int count = int(evidence.highlights.size());
+  return {index >= 0 ? QObject::tr("Highlight %1 of %2").arg(index + 1).arg(count) : QObject::tr("Highlights: %1").arg(count),
+          lines.text()};
+}
+
+NumberGroup trainingView(const TrainingView& view) {
+  Lines lines;
+  if (view.failure) lines.note(toQString(view.failure->message()));
+  if (view.brightest) {
+    lines.addVector(QObject::tr("P"), view.brightest->point.position, "m");
+    lines.addVector(QObject::tr("N"), view.brightest->point.normal);
+  }
+  if (view.tangentPlane) {
+    lines.addVector(QObject::tr("T normal"), view.tangentPlane->normal);
+    lines.add(QObject::tr("T offset"), view.tangentPlane->offset, "m");
+  }
+  if (view.canonical) {
+    const auto& d = view.canonical->directions;
+    const auto answered = std::count_if(d.begin(), d.end(), [](const DirectionResult& r) { return r.limitAngle.has_value(); });
+    lines.add(QObject::tr("directions"), QStringLiteral("%1 of %2").arg(answered).arg(d.size()));
+    if (view.canonical->ellipse) lines.addVector(QObject::tr("semi-axes on T"), view.canonical->ellipse->semiAxes, "px");
+  }
+  return {QObject::tr("Training view"), lines.text()};
+}
+
+NumberGroup lightGroup(const std::string& id, const LightEstimate& estimate) {
+  Lines lines;
+  addLight(lines, estimate.light);
+  lines.add(QObject::tr("solver"), toQString(estimate.solver));
+  lines.add(QObject::tr("limit angle"), estimate.limitAngle * kDegPerRad, "°");
+  lines.add(QObject::tr("condition"), estimate.condition);
+  if (estimate.rmsPx > 0) lines.add(QObject::tr("residual rms"), estimate.rmsPx, "px");
+  return {QObject::tr("Light %1").arg(toQString(id)), lines.text()};
+}
+
+NumberGroup fitGroup(const std::string& model, const ModelResult::Fit& f, int frame) {
+  Lines lines;
+  if (f.failure) lines.note(toQString(f.failure->message()));
+  if (f.fit) {
+    lines.add(QObject::tr("solver"), toQString(f.fit->solver));
+    if (f.fit->ellipsoid) {
+      lines.addVector(QObject::tr("ellipsoid centre"), f.fit->ellipsoid->centre(), "m");
+      lines.addVector(QObject::tr("semi-axes"), f.fit->ellipsoid->semiAxes(), "m");
+    } else if (f.fit->quadric) {
+      lines.note(QObject::tr("Q* is a %1").arg(QString::fromUtf8(describe(*f.fit->quadric))));
+    }
+    if (f.fit->lightEstimate) addLight(lines, *f.fit->lightEstimate);
+    if (f.fit->limitAngle) lines.add(QObject::tr("limit angle"), *f.fit->limitAngle * kDegPerRad, "°");
+    if (f.fit->lobe) lines.add(QObject::tr("lobe"), QString::fromStdString(*f.fit->lobe));
+    if (f.fit->roughness) lines.add(QObject::tr("roughness m"), *f.fit->roughness);
+    if (!f.fit->singularValues.empty()) {
+      lines.add(QObject::tr("gap ratio"), f.fit->gapRatio);
+      lines.add(QObject::tr("condition"), f.fit->condition);
+    }
+    const auto used = std::find(f.fit->frames.begin(), f.fit->frames.end(), frame);
+    const auto index = std::size_t(used - f.fit->frames.begin());
+    if (used != f.fit->frames.end() && index < f.fit->residualPx.size())
+      lines.add(QObject::tr("residual here"), f.fit->residualPx[index], "px");
+  }
+  return {QObject::tr("Fit: %1").arg(toQString(model)), lines.text()};
+}
+
+NumberGroup comparison(const FrameComparison& c, int observed) {
+  Lines lines;
+  if (c.prediction.failure) lines.note(toQString(c.prediction.failure->message()));
+  for (const FrameComparison::Row& row : c.rows) {
+    if (observed >= 0 && row.observed >= 0 && row.observed != observed) continue;
+    if (row.predicted >= 0 && row.predicted < int(c.prediction.highlights.size())) {
+      const PredictedHighlight& p = c.prediction.highlights[std::size_t(row.predicted)];
+      lines.addVector(QObject::tr("P"), p.brightest.point.position, "m");
+      lines.addVector(QObject::tr("N"), p.brightest.point.normal);
+      // A model without a tangent plane (primal) has no incident angle either.
+      if (p.tangentPlane) lines.add(QObject::tr("alpha"), p.brightest.alpha * kDegPerRad, "°");
+      lines.addVector(QObject::tr("peak"), p.brightest.pixel, "px");
+      lines.add(QObject::tr("coverage"), p.coverage);
+    }
+    if (row.metrics) {
+      lines.add(QObject::tr("error"), row.metrics->contourErrorPct, "%");
+      lines.add(QObject::tr("error"), row.metrics->contourErrorPx, "px");
+      lines.add(QObject::tr("Hausdorff"), row.metrics->hausdorffPx, "px");
+      lines.add(QObject::tr("peak offset"), row.metrics->peakOffsetPx, "px");
+    }
+    if (row.failure) lines.note(toQString(row.failure->message()));
+  }
+  if (!c.rows.empty()) lines.add(QObject::tr("IoU"), c.iou);
+  return {QObject::tr("Prediction"), lines.text()};
+}
+}  // namespace
+
+std::vector<NumberGroup> describeSelection(const Inspection& inspection, const viz::Selection& selection,
+                                           const std::string& model) {
+  std::vector<NumberGroup> groups;
+  const int frame = selection.frame;
+  if (frame < 0 || frame >= int(inspection.evidence.size())) return groups;
+  const FrameEvidence& evidence = inspection.evidence[std::size_t(frame)];
+  const int count = int(evidence.highlights.size());
+  const int observed = selection.highlight >= 0 && selection.highlight < count ? selection.highlight : count > 0 ? 0 : -1;
+  groups.push_back(observation(evidence, observed));
+  const std::string light = observed >= 0 ? evidence.highlights[std::size_t(observed)].light : std::string();
+  for (const TrainingView& view : inspection.views)
+    if (view.frame == frame && (observed < 0 || view.highlight.peak == evidence.highlights[std::size_t(observed)].peak))
+      groups.push_back(trainingView(view));
+  const auto result = inspection.models.find(model);
+  if (result != inspection.models.end()) {
+    for (const FrameComparison& c : result->second.frames) {
+      if (c.frame != frame || (!light.empty() && c.light != light)) continue;
+      groups.push_back(comparison(c, observed));
+      if (c.fit >= 0 && c.fit < int(result->second.fits.size()))
+        groups.push_back(fitGroup(model, result->second.fits[std::size_t(c.fit)], frame));
+    }
+  }
+  for (const auto& [id, estimate] : inspection.lights)
+    if (light.empty() || id == light || id.rfind(light + "@", 0) == 0) groups.push_back(lightGroup(id, estimate));
+  for (const auto& [id, failure] : inspection.lightFailures)
+    groups.push_back({QObject::tr("Light %1").arg(toQString(id)), toQString(failure.message())});
+  return groups;
+}
+
+}  // namespace glint::gui

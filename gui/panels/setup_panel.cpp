@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/panels/setup_panel.h"
+
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QGridLayout>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QLineEdit>
+#include <QListWidget>
+#include <QPushButton>
+#include <QSignalBlocker>
+#include <QVariant>
+#include <algorithm>
+
+#include "core/model/model.h"
+#include "gui/base/text.h"
+#include "gui/base/theme.h"
+
+namespace glint::gui {
+
+SetupPanel::SetupPanel(Document& document, QWidget* parent) : QWidget(parent), document_(document) {
+  auto* grid = new QGridLayout(this);
+  grid->setContentsMargins(10, 4, 8, 6);
+  grid->setVerticalSpacing(4);
+  grid->setColumnStretch(1, 1);
+  const auto label = [](const QString& text) {
+    auto* l = new QLabel(text);
+    l->setProperty("role", "group");
+    return l;
+  };
+  grid->addWidget(label(tr("Models")), 0, 0, 1, 2);
+  models_ = new QListWidget;
+  models_->setObjectName(QStringLiteral("models"));
+  models_->setIconSize({11, 11});
+  models_->setSelectionMode(QAbstractItemView::NoSelection);
+  for (const auto& model : allModels()) {
+    auto* item = new QListWidgetItem(colourSwatch(toQColor(viz::modelColour(model->id()))), toQString(model->id()), models_);
+    item->setToolTip(QStringLiteral("<b>%1</b><br>%2<br>%3")
+                         .arg(toQString(model->title()).toHtmlEscaped(), toQString(model->assumption()).toHtmlEscaped(),
+                              toQString(model->reference()).toHtmlEscaped()));
+    item->setFlags(Qt::ItemIsEnabled | Qt::ItemIsUserCheckable);
+    item->setCheckState(Qt::Checked);
+  }
+  models_->setVerticalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  models_->setFixedHeight(models_->sizeHintForRow(0) * models_->count() + 8);
+  grid->addWidget(models_, 1, 0, 1, 2);
+
+  auto* choose = new QPushButton(tr("Auto"));
+  choose->setObjectName(QStringLiteral("autoModel"));
+  choose->setToolTip(
+      tr("Takes the simplest model that predicts left-out training views as well as the best does,\nor the first one under the "
+         "error beside"));
+  auto* goodEnough = new QDoubleSpinBox;
+  goodEnough->setObjectName(QStringLiteral("goodEnough"));
+  goodEnough->setRange(0, 100);
+  goodEnough->setDecimals(2);
+  goodEnough->setSingleStep(0.1);
+  goodEnough->setSuffix(tr(" % will do"));
+  goodEnough->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);  // the panel is narrow
+  goodEnough->setSpecialValueText(tr("like the best"));
+  goodEnough->setToolTip(tr("A contour error that is good enough: nothing richer is then tried. 0 = like the best"));
+  auto* row = new QHBoxLayout;
+  row->setSpacing(4);
+  row->addWidget(choose);
+  row->addWidget(goodEnough, 1);
+  grid->addLayout(row, 2, 0, 1, 2);
+  choice_ = new QLabel;
+  choice_->setObjectName(QStringLiteral("choice"));
+  choice_->setProperty("role", "faded");
+  choice_->setWordWrap(true);
+  choice_->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  choice_->hide();
+  grid->addWidget(choice_, 3, 0, 1, 2);
+  connect(choose, &QPushButton::clicked, this, [this, goodEnough] { emit autoRequested(goodEnough->value()); });
+
+  grid->addWidget(label(tr("Training")), 4, 0, 1, 2);
+  train_ = new QComboBox;
+  train_->setObjectName(QStringLiteral("train"));
+  train_->setEditable(true);
+  train_->setInsertPolicy(QComboBox::NoInsert);
+  train_->addItems({QStringLiteral("first:6"), QStringLiteral("spread:6"), QStringLiteral("per-surface")});
+  train_->setToolTip(
+      tr("Frame numbers or ranges (0-5, or 0,14,28), first:N, spread:N, or per-surface: for every surface a model of its own "
+         "from all of its frames"));
+  grid->addWidget(new QLabel(tr("Frames")), 5, 0);
+  grid->addWidget(train_, 5, 1);
+  source_ = new QComboBox;
+  source_->setObjectName(QStringLiteral("source"));
+  source_->addItems({tr("radiance (float)"), tr("photographs")});
+  source_->setToolTip(tr("Which pictures the highlights are detected in, where a frame has both"));
+  grid->addWidget(new QLabel(tr("Detect in")), 6, 0);
+  grid->addWidget(source_, 6, 1);
+  counts_ = new QLabel;
+  counts_->setProperty("role", "faded");
+  counts_->setWordWrap(true);
+  counts_->setMinimumHeight(2 * fontMetrics().lineSpacing());
+  counts_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
+  grid->addWidget(counts_, 7, 0, 1, 2);
+  grid->setRowStretch(8, 1);
+
+  connect(models_, &QListWidget::itemChanged, this, [this] {
+    std::vector<std::string> chosen;
+    for (int i = 0; i < models_->count(); ++i)
+      if (models_->item(i)->checkState() == Qt::Checked) chosen.push_back(models_->item(i)->text().toStdString());
+    document_.setModels(chosen);
+  });
+  connect(train_, QOverload<int>::of(&QComboBox::activated), this, [this] { setTrain(); });
+  connect(train_->lineEdit(), &QLineEdit::editingFinished, this, &SetupPanel::setTrain);
+  connect(source_, QOverload<int>::of(&QComboBox::activated), this,
+          [this](int i) { document_.setSource(i == 0 ? FrameSource::Radiance : FrameSource::Image); });
+  connect(&document_, &Document::requestChanged, this, &SetupPanel::refresh);
+  connect(&document_, &Document::sceneOpened, this, &SetupPanel::refresh);
+  connect(&document_, &Document::sceneOpened, this, [this] { showChoice({}, {}); });
+  refresh();
+}
+
+void SetupPanel::showChoice(const QString& sentence, const QString& details) {
+  choice_->setText(sentence);
+  choice_->setToolTip(details.isEmpty() ? QString() : QStringLiteral("<pre>%1</pre>").arg(details.toHtmlEscaped()));
+  choice_->setVisible(!sentence.isEmpty());
+}
+
+void SetupPanel::setTrain() {
+  const std::string text = train_->currentText().trimmed().toStdString();
+  if (text == document_.request().train || !document_.scene()) return;
+  QString error;
+  if (!document_.setTrain(text, &error)) emit problem(error);
+  refresh();
+}
+
+void SetupPanel::refresh() {
+  const InspectionRequest& request = document_.request();
+  const QSignalBlocker quietModels(models_), quietTrain(train_), quietSource(source_);
+  for (int i = 0; i < models_->count(); ++i) {
+    const bool on = std::count(request.models.begin(), request.models.end(), models_->item(i)->text().toStdString()) > 0;
+    models_->item(i)->setCheckState(on ? Qt::Checked : Qt::Unchecked);
+  }
+  train_->setEditText(toQString(request.train));
+  source_->setCurrentIndex(request.source == FrameSource::Radiance ? 0 : 1);
+  int count[3] = {0, 0, 0};
+  for (int i = 0; i < document_.frameCount(); ++i) ++count[int(document_.role(i))];
+  counts_->setText(document_.scene() ? tr("%1 training, %2 held out").arg(count[0]).arg(count[1]) +
+                                           (count[2] ? tr(", %1 excluded").arg(count[2]) : QString())
+                                     : QString());
+  setEnabled(document_.scene() != nullptr);
+}
+
+}  // namespace glint::gui

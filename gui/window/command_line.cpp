@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/window/command_line.h"
+
+#include <QRegularExpression>
+
+#include "core/base/outcome.h"
+#include "gui/window/layouts.h"
+
+namespace glint::gui {
+
+namespace {
+QSize parseSize(const QString& text) {
+  const QRegularExpressionMatch m = QRegularExpression(QStringLiteral("^(\\d{1,5})[xX](\\d{1,5})$")).match(text);
+  const QSize size(m.captured(1).toInt(), m.captured(2).toInt());
+  if (!m.hasMatch() || size.width() < 320 || size.height() < 240 || size.width() > 16384 || size.height() > 16384)
+    throw InputError("", "--size", "'" + text.toStdString() + "' is not WIDTHxHEIGHT from 320x240 to 16384x16384");
+  return size;
+}
+}  // namespace
+
+CommandLine parseCommandLine(const QStringList& arguments) {
+  CommandLine c;
+  for (int i = 0; i < arguments.size(); ++i) {
+    QString name = arguments[i], inlineValue;
+    const int equals = name.startsWith(QStringLiteral("--")) ? int(name.indexOf('=')) : -1;
+    if (equals > 0) {
+      inlineValue = name.mid(equals + 1);
+      name.truncate(equals);
+    }
+    const auto value = [&]() -> QString {
+      if (equals > 0) return inlineValue;
+      if (i + 1 >= arguments.size()) throw InputError("", name.toStdString(), "needs a value");
+      return arguments[++i];
+    };
+    if (name == QStringLiteral("-h") || name == QStringLiteral("--help"))
+      c.help = true;
+    else if (name == QStringLiteral("--version"))
+      c.version = true;
+    else if (name == QStringLiteral("--layout")) {
+      c.layout = value();
+      if (!layoutNames().contains(c.layout))
+        throw InputError(
+            "", "--layout",
+            "'" + c.layout.toStdString() + "' is none of: " + layoutNames().join(QStringLiteral(", ")).toStdString());
+    } else if (name == QStringLiteral("--theme")) {
+      const QString theme = value();
+      if (theme != QStringLiteral("light") && theme != QStringLiteral("dark"))
+        throw InputError("", "--theme", "'" + theme.toStdString() + "' is none of: light, dark");
+      c.theme = theme == QStringLiteral("dark") ? Theme::Dark : Theme::Light;
+    } else if (name == QStringLiteral("--frame"))
+      c.frame = value();
+    else if (name == QStringLiteral("--screenshot"))
+      c.screenshot = value();
+    else if (name == QStringLiteral("--size"))
+      c.size = parseSize(value());
+    else if (name == QStringLiteral("--wait-idle"))
+      c.waitIdle = true;
+    else if (name.startsWith('-') && name.size() > 1)
+      throw InputError("", name.toStdString(), "unknown option (see --help)");
+    else if (c.input.isEmpty())
+      c.input = name;
+    else
+      throw InputError("", "command line",
+                       "more than one INPUT: '" + c.input.toStdString() + "' and '" + name.toStdString() + "'");
+  }
+  return c;
+}
+
+QString helpText() {
+  return QStringLiteral(
+             "Usage: glint-inspector [INPUT] [options]\n\n"
+             "Shows a specular highlight reconstruction step by step: the surface, cameras, light and models in 3D, and the\n"
+             "predicted over the captured highlight in every frame.\n\n"
+             "  INPUT                 a scene file (scene.json), a session (*.glint) or a folder that holds one; none = start "
+             "empty\n\n"
+             "  --layout NAME         arrangement of the panels: %1\n"
+             "  --theme light|dark    colours (default: dark)\n"
+             "  --frame ID            frame to select: its id, else its number in the input, from 0\n"
+             "  --screenshot FILE     write the window as PNG and quit\n"
+             "  --size WxH            size of the window, in pixels (default: 1600x1000)\n"
+             "  --wait-idle           before the screenshot, wait until everything is computed and drawn\n"
+             "  --version, -h, --help\n\n"
+             "Exit codes: 0 done, 2 the input or the request is wrong (one line on standard error says where).\n"
+             "A display is needed; without one run it under a virtual display:\n"
+             "  QT_QPA_PLATFORM=xcb xvfb-run -a -s \"-screen 0 1600x1000x24\" glint-inspector INPUT --screenshot out.png "
+             "--wait-idle\n")
+      .arg(layoutNames().join(QStringLiteral(", ")));
+}
+
+}  // namespace glint::gui

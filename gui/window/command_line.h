@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QSize>
+#include <QString>
+#include <QStringList>
+
+#include "gui/base/theme.h"
+
+namespace glint::gui {
+
+/// The command line of formats.md, checked.
+struct CommandLine {
+  QString input;  ///< "" = empty state
+  QString layout = QStringLiteral("debug");
+  Theme theme = Theme::Dark;
+  QString frame;       ///< frame id, or number where no id matches; "" = first
+  QString screenshot;  ///< PNG to write; "" = stay open
+  QSize size;          ///< empty = default
+  bool waitIdle = false;
+  bool help = false, version = false;
+};
+
+/// InputError (place "--flag") for anything that is not understood.
+CommandLine parseCommandLine(const QStringList& arguments);
+QString helpText();
+
+}  // namespace glint::gui

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/window/file_actions.h"
+
+#include <QEventLoop>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QMenu>
+#include <QMessageBox>
+#include <QMimeData>
+#include <QSettings>
+#include <QUrl>
+
+#include "gui/base/text.h"
+#include "gui/base/theme.h"
+
+namespace glint::gui {
+
+namespace {
+constexpr int kRecent = 8;
+const QString kRecentKey = QStringLiteral("recent");
+}  // namespace
+
+FileActions::FileActions(const Engine& engine, Document& document, Runner& runner, QWidget* window)
+    : QObject(window), engine_(engine), document_(document), runner_(runner), window_(window) {
+  connect(&runner_, &Runner::opened, this, &FileActions::finishOpen);
+  connect(&runner_, &Runner::saved, this, &FileActions::finishSave);
+}
+
+void FileActions::fillMenu(QMenu* menu) {
+  menu->addAction(icon(QStringLiteral("open")), tr("&Open…"), this, &FileActions::openDialog)->setShortcut(QKeySequence::Open);
+  menu->addAction(tr("Open &folder…"), this, &FileActions::openFolderDialog);
+  QMenu* recentMenu = menu->addMenu(tr("Open &recent"));
+  connect(recentMenu, &QMenu::aboutToShow, this, [this, recentMenu] {
+    recentMenu->clear();
+    for (const QString& path : recent()) recentMenu->addAction(path, this, [this, path] { open(path); });
+    if (recentMenu->isEmpty()) recentMenu->addAction(tr("none"))->setEnabled(false);
+  });
+  menu->addSeparator();
+  QAction* save = menu->addAction(icon(QStringLiteral("save")), tr("&Save session"), this, &FileActions::save);
+  save->setShortcut(QKeySequence::Save);
+  QAction* saveAs = menu->addAction(tr("Save session &as…"), this, &FileActions::saveAs);
+  saveAs->setShortcut(QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_S));
+  const auto enable = [=, this] {
+    save->setEnabled(document_.scene() && engine_.save);
+    saveAs->setEnabled(document_.scene() && engine_.save);
+  };
+  connect(&document_, &Document::sceneOpened, save, enable);
+  enable();
+}
+
+QStringList FileActions::recent() const { return QSettings().value(kRecentKey).toStringList(); }
+
+void FileActions::remember(const QString& path) {
+  QStringList all = recent();
+  const QString absolute = QFileInfo(path).absoluteFilePath();
+  all.removeAll(absolute);
+  all.prepend(absolute);
+  QSettings().setValue(kRecentKey, QStringList(all.mid(0, kRecent)));
+  emit recentChanged();
+}
+
+QString FileActions::dropped(const QMimeData* data) {
+  for (const QUrl& url : data->urls())
+    if (url.isLocalFile()) return url.toLocalFile();
+  return {};
+}
+
+bool FileActions::mayDiscard() {
+  waitForSave();
+  if (!document_.hasUnsavedChanges()) return true;
+  QMessageBox question(QMessageBox::Question, tr("Unsaved changes"), tr("The session has changes that are not saved."),
+                       QMessageBox::Discard | QMessageBox::Cancel, window_);
+  if (engine_.save) question.addButton(QMessageBox::Save);
+  question.setDefaultButton(engine_.save ? QMessageBox::Save : QMessageBox::Cancel);
+  const int answer = question.exec();
+  if (answer == QMessageBox::Save) return save() && waitForSave();
+  return answer == QMessageBox::Discard;
+}
+
+void FileActions::openDialog() {
+  const QString path = QFileDialog::getOpenFileName(window_, tr("Open a scene or session"), document_.inputFile(),
+                                                    tr("Scenes and sessions (*.json *.glint);;All files (*)"));
+  if (!path.isEmpty()) open(path);
+}
+
+void FileActions::openFolderDialog() {
+  const QString path = QFileDialog::getExistingDirectory(window_, tr("Open a folder with a scene"), document_.inputFile());
+  if (!path.isEmpty()) open(path);
+}
+
+void FileActions::open(const QString& path) {
+  if (!mayDiscard()) return;
+  runner_.open(path.toStdString());
+}
+
+void FileActions::finishOpen(const OpenedPtr& opened) {
+  try {
+    document_.open(*opened);
+  } catch (const std::exception& e) {
+    emit problem(toQString(e.what()));
+    return;
+  }
+  emit viewOpened(opened);
+  remember(toQString(opened->path));
+  for (const std::string& warning : opened->scene->warnings) emit message(toQString(warning));
+  if (frameToSelect_.isEmpty()) return;
+  const std::string wanted = frameToSelect_.toStdString();
+  frameToSelect_.clear();
+  const std::vector<Frame>& frames = opened->scene->frames;
+  for (int i = 0; i < int(frames.size()); ++i)
+    if (frames[std::size_t(i)].id == wanted) return document_.selectFrame(i);
+  bool isNumber = false;
+  const int number = toQString(wanted).toInt(&isNumber);
+  if (isNumber && number >= 0 && number < int(frames.size()))
+    document_.selectFrame(number);
+  else
+    emit problem(toQString(InputError(opened->path, "--frame", "there is no frame '" + wanted + "'").what()));
+}
+
+bool FileActions::save() { return document_.sessionFile().isEmpty() ? saveAs() : saveTo(document_.sessionFile()); }
+
+bool FileActions::saveAs() {
+  if (!document_.scene()) return false;
+  QString path = QFileDialog::getSaveFileName(window_, tr("Save session"), document_.sessionFile(), tr("Sessions (*.glint)"));
+  if (path.isEmpty()) return false;
+  if (QFileInfo(path).suffix().isEmpty()) path += QStringLiteral(".glint");
+  return saveTo(path);
+}
+
+bool FileActions::saveTo(const QString& path) {
+  if (savingScene_) return false;  // one after the other
+  const InspectionPtr results = document_.stale() ? nullptr : document_.inspection();
+  auto opened = std::make_shared<Opened>(document_.toSave());
+  if (addView_) addView_(*opened);
+  savingScene_ = document_.sharedScene();
+  saving_ = document_.state();
+  savingTradeoff_ = document_.tradeoff();
+  savingResults_ = results != nullptr;
+  runner_.save(opened, results, path.toStdString());
+  return true;
+}
+
+void FileActions::finishSave(const QString& path, const QString& problem) {
+  saveWorked_ = problem.isEmpty();
+  if (saveWorked_) {
+    if (savingScene_ == document_.sharedScene())
+      document_.markSaved(path, saving_, savingTradeoff_);  // else another scene was opened meanwhile
+    remember(path);
+    emit message(savingResults_ ? tr("Saved %1").arg(path) : tr("Saved %1 without results: they were not up to date").arg(path));
+  } else {
+    emit this->problem(problem);
+  }
+  savingScene_.reset();
+  emit saveEnded();
+}
+
+bool FileActions::waitForSave() {
+  if (!savingScene_) return saveWorked_;
+  QEventLoop loop;  // the window keeps painting and shows the progress
+  connect(this, &FileActions::saveEnded, &loop, &QEventLoop::quit);
+  window_->setEnabled(false);
+  loop.exec(QEventLoop::ExcludeUserInputEvents);
+  window_->setEnabled(true);
+  return saveWorked_;
+}
+
+}  // namespace glint::gui

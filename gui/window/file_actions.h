@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QObject>
+#include <QStringList>
+#include <functional>
+#include <utility>
+
+#include "gui/document/document.h"
+#include "gui/document/runner.h"
+
+class QMenu;
+class QMimeData;
+class QWidget;
+
+namespace glint::gui {
+
+/// Opening, saving, recent files, and the question about unsaved changes.
+class FileActions : public QObject {
+  Q_OBJECT
+ public:
+  FileActions(const Engine& engine, Document& document, Runner& runner, QWidget* window);
+  void fillMenu(QMenu* menu);
+  QStringList recent() const;
+  /// The path of the first local file of a drop; "" when there is none.
+  static QString dropped(const QMimeData* data);
+  /// True when nothing is lost, or the user says so. Waits for a save that is under way.
+  bool mayDiscard();
+  /// Selects this frame once the next input is open: its id, else its number.
+  void setFrameToSelect(const QString& frame) { frameToSelect_ = frame; }
+  /// Adds what only the window knows (layout, 3D camera) to what is saved.
+  void setViewSource(std::function<void(Opened&)> addView) { addView_ = std::move(addView); }
+
+ public slots:
+  void openDialog();
+  void openFolderDialog();
+  void open(const QString& path);
+  /// Save in the background; false when there was nothing to save or the user gave up. Message or problem tells how it ended.
+  bool save();
+  bool saveAs();
+
+ signals:
+  void problem(const QString& oneLine);
+  void message(const QString& oneLine);
+  void saveEnded();
+  void recentChanged();
+  void viewOpened(const glint::gui::OpenedPtr& opened);  ///< after the document took it: layout and 3D camera
+
+ private:
+  void finishOpen(const OpenedPtr& opened);
+  bool saveTo(const QString& path);
+  void finishSave(const QString& path, const QString& problem);
+  bool waitForSave();
+  void remember(const QString& path);
+
+  const Engine& engine_;
+  Document& document_;
+  Runner& runner_;
+  QWidget* window_;
+  QString frameToSelect_;
+  std::shared_ptr<const Scene> savingScene_;  ///< not null while a save is under way
+  ViewState saving_;                          ///< what it writes
+  std::shared_ptr<const Tradeoff> savingTradeoff_;
+  bool savingResults_ = false, saveWorked_ = false;
+  std::function<void(Opened&)> addView_;
+};
+
+}  // namespace glint::gui

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/window/job_status.h"
+
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QProgressBar>
+#include <QToolButton>
+
+#include "gui/base/theme.h"
+
+namespace glint::gui {
+
+JobStatus::JobStatus(Document& document, Runner& runner, QWidget* parent)
+    : QWidget(parent), document_(document), runner_(runner) {
+  auto* row = new QHBoxLayout(this);
+  row->setContentsMargins(0, 0, 6, 0);
+  row->setSpacing(6);
+  text_ = new QLabel;
+  text_->setObjectName(QStringLiteral("jobText"));
+  text_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
+  row->addWidget(text_);
+  bar_ = new QProgressBar;
+  bar_->setFixedSize(140, 12);
+  bar_->setTextVisible(false);
+  row->addWidget(bar_);
+  stop_ = new QToolButton;
+  stop_->setObjectName(QStringLiteral("stop"));
+  stop_->setIcon(icon(QStringLiteral("stop")));
+  stop_->setIconSize({12, 12});
+  stop_->setAutoRaise(true);
+  stop_->setToolTip(tr("Stop (Esc)"));
+  row->addWidget(stop_);
+  connect(stop_, &QToolButton::clicked, &runner_, &Runner::cancel);
+  connect(&runner_, &Runner::busyChanged, this, &JobStatus::refresh);
+  connect(&document_, &Document::staleChanged, this, &JobStatus::refresh);
+  connect(&document_, &Document::inspectionChanged, this, &JobStatus::refresh);
+  connect(&document_, &Document::sceneOpened, this, &JobStatus::refresh);
+  connect(&runner_, &Runner::progressed, this, [this](const QString& stage, int done, int total) {
+    const QString words = stage == QStringLiteral("hash") ? tr("checking the input files") : stage;
+    text_->setText(total > 0 ? tr("%1 %2/%3").arg(words).arg(done).arg(total) : words);
+    bar_->setRange(0, total);
+    bar_->setValue(done);
+  });
+  refresh();
+}
+
+void JobStatus::refresh() {
+  const bool busy = runner_.busy();
+  bar_->setVisible(busy);
+  stop_->setVisible(busy);
+  if (busy) {
+    bar_->setRange(0, 0);
+    text_->setText(tr("working…"));
+    text_->setStyleSheet(QString());
+  } else if (document_.scene() && document_.stale()) {
+    text_->setText(document_.inspection() ? tr("results are out of date") : tr("no results"));
+    text_->setStyleSheet(QStringLiteral("color: %1").arg(warningColour().name()));
+  } else {
+    text_->setText(document_.scene() ? tr("up to date") : QString());
+    text_->setStyleSheet(QString());
+  }
+}
+
+}  // namespace glint::gui

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QWidget>
+
+#include "gui/document/document.h"
+#include "gui/document/runner.h"
+
+class QLabel;
+class QProgressBar;
+class QToolButton;
+
+namespace glint::gui {
+
+/// Right end of the status line: what runs, how far it is, and a button that stops it.
+class JobStatus : public QWidget {
+  Q_OBJECT
+ public:
+  JobStatus(Document& document, Runner& runner, QWidget* parent = nullptr);
+
+ private:
+  void refresh();
+
+  Document& document_;
+  Runner& runner_;
+  QLabel* text_;
+  QProgressBar* bar_;
+  QToolButton* stop_;
+};
+
+}  // namespace glint::gui

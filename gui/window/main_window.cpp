@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/window/main_window.h"
+
+#include <QApplication>
+#include <QCloseEvent>
+#include <QDockWidget>
+#include <QFileInfo>
+#include <QLabel>
+#include <QMenuBar>
+#include <QMimeData>
+#include <QPlainTextEdit>
+#include <QScrollArea>
+#include <QSplitter>
+#include <QStackedWidget>
+#include <QStatusBar>
+#include <QTime>
+#include <QToolBar>
+#include <QUndoView>
+#include <QVBoxLayout>
+#include <utility>
+
+#include "gui/base/text.h"
+#include "gui/frame/frame_canvas.h"
+#include "gui/frame/frame_panel.h"
+#include "gui/panels/error_table.h"
+#include "gui/panels/numbers_panel.h"
+#include "gui/panels/parameter_panel.h"
+#include "gui/panels/setup_panel.h"
+#include "gui/panels/tradeoff_panel.h"
+#include "gui/scene/layer_list.h"
+#include "gui/scene/scene_panel.h"
+#include "gui/timeline/timeline.h"
+#include "gui/window/file_actions.h"
+#include "gui/window/job_status.h"
+#include "gui/window/layouts.h"
+#include "gui/window/message_bar.h"
+#include "gui/window/start_page.h"
+
+namespace glint::gui {
+
+MainWindow::MainWindow(Engine engine, QWidget* parent)
+    : QMainWindow(parent),
+      engine_(std::move(engine)),
+      document_(engine_.parseTrain),
+      runner_(engine_),
+      files_(new FileActions(engine_, document_, runner_, this)) {
+  setAcceptDrops(true);
+  setMinimumSize(1100, 700);
+  resize(1600, 1000);
+  setDockNestingEnabled(true);
+  setWindowIcon(icon(QStringLiteral("glint")));
+  buildCentre();
+  buildDocks();
+  buildMenus();
+  buildStatusLine();
+
+  connect(files_, &FileActions::problem, this, &MainWindow::showProblem);
+  connect(files_, &FileActions::message, this, [this](const QString& line) {
+    log(line);
+    statusBar()->showMessage(line, 6000);
+  });
+  connect(files_, &FileActions::recentChanged, this, [this] { start_->setRecent(files_->recent()); });
+  connect(files_, &FileActions::viewOpened, this, [this](const OpenedPtr& opened) {
+    if (!opened->layout.empty()) applyLayout(toQString(opened->layout));
+    scene_->setViewPoint(opened->viewPoint);
+  });
+  files_->setViewSource([this](Opened& opened) {
+    opened.layout = layout_.toStdString();
+    opened.viewPoint = scene_->viewPoint();
+  });
+  connect(&runner_, &Runner::failed, this, [this](const QString& oneLine) {
+    runFailed_ = true;
+    showProblem(oneLine);
+  });
+  // Opening stopped what ran for the scene that stays open.
+  connect(&runner_, &Runner::openFailed, this, [this] {
+    runFailed_ = false;  // the message stays
+    if (document_.stale()) recompute();
+  });
+  connect(&runner_, &Runner::stopped, this, [this] { log(tr("Stopped")); });
+  connect(&runner_, &Runner::finished, this, [this](const InspectionPtr& inspection, const OpenedPtr& computedFor) {
+    if (runFailed_) messageBar_->hide();  // its reason is gone
+    runFailed_ = false;
+    document_.setInspection(inspection, computedFor->request);
+  });
+  connect(&document_, &Document::requestChanged, this, &MainWindow::recompute);
+  connect(&document_, &Document::sceneOpened, this, [this] {
+    messageBar_->hide();
+    centre_->setCurrentWidget(views_);
+    log(tr("Opened %1").arg(document_.inputFile()));
+    recompute();
+  });
+  connect(&document_, &Document::sceneOpened, this, &MainWindow::showTitle);
+  connect(&document_, &Document::savedStateChanged, this, &MainWindow::showTitle);
+  start_->setRecent(files_->recent());
+  showTitle();
+  applyLayout(QStringLiteral("debug"));
+}
+
+MainWindow::~MainWindow() = default;
+
+void MainWindow::buildCentre() {
+  auto* middle = new QWidget;
+  auto* column = new QVBoxLayout(middle);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(0);
+  messageBar_ = new MessageBar;
+  column->addWidget(messageBar_);
+  centre_ = new QStackedWidget;
+  start_ = new StartPage;
+  connect(start_, &StartPage::openFile, files_, &FileActions::openDialog);
+  connect(start_, &StartPage::openFolder, files_, &FileActions::openFolderDialog);
+  connect(start_, &StartPage::openRecent, files_, &FileActions::open);
+  centre_->addWidget(start_);
+  views_ = new QSplitter(Qt::Horizontal);
+  scene_ = new ScenePanel(document_);
+  frame_ = new FramePanel(document_);
+  views_->addWidget(scene_);
+  views_->addWidget(frame_);
+  views_->setChildrenCollapsible(false);
+  centre_->addWidget(views_);
+  // Plain arrow keys step where they mean nothing else; sliders and tables keep theirs.
+  for (const auto& [key, by] : {std::pair(Qt::Key_Left, -1), std::pair(Qt::Key_Right, 1)}) {
+    auto* step = new QAction(views_);
+    step->setShortcut(key);
+    step->setShortcutContext(Qt::WidgetWithChildrenShortcut);
+    connect(step, &QAction::triggered, this, [this, by = by] { timeline_->strip()->step(by); });
+    views_->addAction(step);
+  }
+  column->addWidget(centre_, 1);
+  setCentralWidget(middle);
+}
+
+QDockWidget* MainWindow::addDock(const char* name, const QString& title, QWidget* content, Qt::DockWidgetArea area) {
+  auto* dock = new QDockWidget(title);
+  dock->setObjectName(QLatin1String(name));
+  dock->setWidget(content);
+  addDockWidget(area, dock);
+  docks_.insert(QLatin1String(name), dock);
+  return dock;
+}
+
+void MainWindow::buildDocks() {
+  setCorner(Qt::BottomLeftCorner, Qt::BottomDockWidgetArea);
+  setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
+  setup_ = new SetupPanel(document_);
+  connect(setup_, &SetupPanel::problem, this, &MainWindow::showProblem);
+  connect(setup_, &SetupPanel::autoRequested, this, [this](double goodEnoughPct) {
+    if (document_.scene() && engine_.choose)
+      runner_.choose(document_.sharedScene(), document_.request(), goodEnoughPct, document_.inspection());
+  });
+  connect(&runner_, &Runner::chosen, this, [this](const SelectionPtr& selection, const OpenedPtr& computedFor) {
+    if (computedFor->scene != document_.sharedScene() || !sameRequest(computedFor->request, document_.request()))
+      return;  // too late
+    const QString table = toQString(selectionTable(*selection));
+    log(tr("Automatic choice of the model\n") + table);
+    setup_->showChoice(toQString(selection->why + (selection->patches ? " " + selection->patches->why : "")), table);
+    if (!selection->model.empty())
+      document_.setRequest(chosenRequest(document_.request(), *selection),
+                           tr("Automatic choice: %1").arg(toQString(selection->model)));
+    if (document_.stale()) recompute();  // the choice took the place of a run that was under way
+  });
+  auto* setupScroll = new QScrollArea;  // small windows scroll it instead of squeezing it
+  setupScroll->setWidget(setup_);
+  setupScroll->setWidgetResizable(true);
+  setupScroll->setMinimumWidth(190);
+  setupScroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  addDock("setup", tr("Setup"), setupScroll, Qt::LeftDockWidgetArea);
+  QDockWidget* layers = addDock("layers", tr("Layers"), new LayerList(document_), Qt::LeftDockWidgetArea);
+  auto* history = new QUndoView(document_.undoStack());
+  history->setEmptyLabel(tr("As opened"));
+  tabifyDockWidget(layers, addDock("history", tr("History"), history, Qt::LeftDockWidgetArea));
+  layers->raise();
+
+  addDock("parameters", tr("Parameters"), new ParameterPanel(document_), Qt::RightDockWidgetArea);
+  numbers_ = new NumbersPanel(document_);
+  addDock("numbers", tr("Numbers"), numbers_, Qt::RightDockWidgetArea);
+  connect(scene_, &ScenePanel::picked, numbers_, &NumbersPanel::showPicked);
+
+  timeline_ = new Timeline(document_);
+  QDockWidget* timeline = addDock("timeline", tr("Timeline"), timeline_, Qt::BottomDockWidgetArea);
+  errors_ = new ErrorTable(document_);
+  QDockWidget* errors = addDock("errors", tr("Errors"), errors_, Qt::BottomDockWidgetArea);
+  splitDockWidget(timeline, errors, Qt::Vertical);
+  log_ = new QPlainTextEdit;
+  log_->setReadOnly(true);
+  log_->setMaximumBlockCount(2000);
+  tabifyDockWidget(errors, addDock("log", tr("Log"), log_, Qt::BottomDockWidgetArea));
+  tradeoff_ = new TradeoffPanel(document_);
+  tabifyDockWidget(errors, addDock("tradeoff", tr("Speed and accuracy"), tradeoff_, Qt::BottomDockWidgetArea));
+  connect(tradeoff_, &TradeoffPanel::measureRequested, this, [this] {
+    if (document_.scene() && engine_.tradeoff)
+      runner_.measure(document_.sharedScene(), document_.request(),
+                      (document_.sessionFile().isEmpty() ? document_.inputFile() : document_.sessionFile()).toStdString());
+  });
+  connect(&runner_, &Runner::busyChanged, tradeoff_, &TradeoffPanel::setBusy);
+  connect(&runner_, &Runner::measured, this, [this](const TradeoffPtr& tradeoff, const OpenedPtr& computedFor) {
+    if (computedFor->scene != document_.sharedScene()) return;
+    document_.setTradeoff(tradeoff);
+    log(tr("Speed and accuracy: %1").arg(toQString(tradeoff->reason)));
+    if (document_.stale()) recompute();  // the measurement took the place of a run that was under way
+  });
+  errors->raise();
+}
+
+void MainWindow::buildMenus() {
+  QMenu* file = menuBar()->addMenu(tr("&File"));
+  files_->fillMenu(file);
+  file->addSeparator();
+  file->addAction(tr("&Quit"), this, &QWidget::close)->setShortcut(QKeySequence::Quit);
+
+  QMenu* edit = menuBar()->addMenu(tr("&Edit"));
+  QAction* undo = document_.undoStack()->createUndoAction(this, tr("&Undo"));
+  undo->setIcon(icon(QStringLiteral("undo")));
+  undo->setShortcut(QKeySequence::Undo);
+  QAction* redo = document_.undoStack()->createRedoAction(this, tr("&Redo"));
+  redo->setIcon(icon(QStringLiteral("redo")));
+  redo->setShortcut(QKeySequence::Redo);
+  edit->addActions({undo, redo});
+  edit->addSeparator();
+  edit->addAction(icon(QStringLiteral("copy")), tr("Copy &numbers"), numbers_, &NumbersPanel::copy);
+  edit->addAction(tr("Copy &error rows"), errors_, &ErrorTable::copySelection);
+
+  QMenu* frame = menuBar()->addMenu(tr("F&rame"));
+  frame
+      ->addAction(icon(QStringLiteral("previous")), tr("&Previous"), timeline_->strip(), [this] { timeline_->strip()->step(-1); })
+      ->setShortcut(QKeySequence(QStringLiteral("Alt+Left")));
+  frame->addAction(icon(QStringLiteral("next")), tr("&Next"), timeline_->strip(), [this] { timeline_->strip()->step(1); })
+      ->setShortcut(QKeySequence(QStringLiteral("Alt+Right")));
+  frame->addAction(icon(QStringLiteral("play")), tr("P&lay"), timeline_, [this] { timeline_->setPlaying(!timeline_->playing()); })
+      ->setShortcut(Qt::Key_P);
+  frame->addSeparator();
+  const auto role = [&](const QString& text, FrameRole r) {
+    frame->addAction(text, this, [this, r] { document_.setRole(document_.selection().frame, r); });
+  };
+  role(tr("&Train on it"), FrameRole::Training);
+  role(tr("&Hold it out"), FrameRole::HeldOut);
+  role(tr("E&xclude it"), FrameRole::Excluded);
+  frame->addSeparator();
+  QAction* highlight = frame->addAction(icon(QStringLiteral("highlight")), tr("&Zoom to the highlight"), frame_,
+                                        [this] { frame_->goToHighlight(); });
+  highlight->setShortcuts({QKeySequence(Qt::Key_F), QKeySequence(Qt::Key_H)});
+  frame->addAction(icon(QStringLiteral("fit")), tr("&Whole photograph"), frame_->canvas(), &FrameCanvas::fit)
+      ->setShortcut(Qt::Key_0);
+  frame->addAction(icon(QStringLiteral("pixels")), tr("Screen pixel per pixel"), frame_->canvas(), &FrameCanvas::onePixelPerPixel)
+      ->setShortcut(Qt::Key_1);
+
+  QMenu* view = menuBar()->addMenu(tr("&View"));
+  QAction* all = view->addAction(icon(QStringLiteral("frame-all")), tr("Show &everything"), scene_, &ScenePanel::frameAll);
+  all->setShortcut(Qt::Key_A);
+  QAction* through = view->addAction(icon(QStringLiteral("camera")), tr("Look through the frame's &camera"), scene_,
+                                     &ScenePanel::lookThroughSelected);
+  through->setShortcut(Qt::Key_C);
+  view->addSeparator();
+  for (const Layout& layout : layouts())
+    view->addAction(tr("Layout: %1").arg(QLatin1String(layout.title)), this,
+                    [this, name = QString::fromLatin1(layout.name)] { applyLayout(name); });
+  QMenu* panels = view->addMenu(tr("&Panels"));
+  for (QDockWidget* dock : std::as_const(docks_)) panels->addAction(dock->toggleViewAction());
+  view->addSeparator();
+  QAction* theme = view->addAction(icon(QStringLiteral("theme")), tr("Light or dark &theme"), this,
+                                   [this] { setTheme(currentTheme() == Theme::Dark ? Theme::Light : Theme::Dark); });
+
+  QToolBar* bar = addToolBar(tr("Tools"));
+  bar->setObjectName(QStringLiteral("tools"));
+  bar->setMovable(false);
+  bar->setIconSize({18, 18});
+  bar->addActions({file->actions().at(0), file->actions().at(4)});
+  bar->addSeparator();
+  bar->addActions({undo, redo});
+  bar->addSeparator();
+  bar->addActions({all, through, highlight});
+  bar->addSeparator();
+  bar->addAction(theme);
+}
+
+void MainWindow::buildStatusLine() {
+  probe_ = new QLabel;
+  probe_->setObjectName(QStringLiteral("probe"));
+  statusBar()->addWidget(probe_);
+  connect(frame_, &FramePanel::probed, probe_, &QLabel::setText);
+  statusBar()->addPermanentWidget(new JobStatus(document_, runner_));
+  auto* stop = new QAction(tr("Stop"), this);
+  stop->setShortcut(Qt::Key_Escape);
+  connect(stop, &QAction::triggered, &runner_, &Runner::cancel);
+  addAction(stop);
+}
+
+void MainWindow::open(const QString& input, const QString& frame) {
+  files_->setFrameToSelect(frame);
+  files_->open(input);
+}
+
+void MainWindow::applyLayout(const QString& name) {
+  const Layout& layout = layoutByName(name);
+  layout_ = QLatin1String(layout.name);
+  for (auto dock = docks_.begin(); dock != docks_.end(); ++dock) {
+    // Log and history are tabs behind their neighbours: they follow them.
+    const QString host = dock.key() == QStringLiteral("log")        ? QStringLiteral("errors")
+                         : dock.key() == QStringLiteral("tradeoff") ? QStringLiteral("errors")
+                         : dock.key() == QStringLiteral("history")  ? QStringLiteral("layers")
+                                                                    : dock.key();
+    dock.value()->setVisible(layout.docks.contains(host));
+  }
+  for (const char* front : {"errors", "layers"}) docks_[QLatin1String(front)]->raise();
+  resizeDocks({docks_["setup"], docks_["parameters"]}, {230, 380}, Qt::Horizontal);
+  resizeDocks({docks_["timeline"], docks_["errors"]}, {92, height() * 3 / 10}, Qt::Vertical);
+  resizeDocks({docks_["setup"], docks_["layers"]}, {284, 264}, Qt::Vertical);
+  resizeDocks({docks_["parameters"], docks_["numbers"]}, {560, 340}, Qt::Vertical);
+  views_->setSizes({layout.sceneShare * 10, (100 - layout.sceneShare) * 10});
+}
+
+void MainWindow::setTheme(Theme theme) {
+  if (auto* app = qobject_cast<QApplication*>(QCoreApplication::instance())) applyTheme(*app, theme);
+  scene_->setDark(theme == Theme::Dark);
+  start_->setRecent(files_->recent());  // its colours are part of the text
+}
+
+bool MainWindow::idle() const { return !runner_.busy() && !frame_->loader()->busy(); }
+
+QPixmap MainWindow::picture() {
+  if (centre_->currentWidget() == views_) scene_->renderNow();
+  return grab();
+}
+
+void MainWindow::recompute() {
+  if (document_.scene() && engine_.inspect) runner_.inspect(document_.sharedScene(), document_.request(), document_.inspection());
+}
+
+void MainWindow::showProblem(const QString& oneLine) {
+  lastError_ = oneLine;
+  messageBar_->showError(oneLine);
+  log(oneLine);
+  emit problem(oneLine);
+}
+
+void MainWindow::log(const QString& line) {
+  log_->appendPlainText(QTime::currentTime().toString(QStringLiteral("HH:mm:ss  ")) + line);
+}
+
+void MainWindow::showTitle() {
+  if (!document_.scene()) return setWindowTitle(tr("Glint inspector"));
+  setWindowTitle(QStringLiteral("%1[*] – %2").arg(QFileInfo(document_.inputFile()).fileName(), tr("Glint inspector")));
+  setWindowModified(document_.hasUnsavedChanges());
+}
+
+void MainWindow::closeEvent(QCloseEvent* e) {
+  if (!files_->mayDiscard()) return e->ignore();
+  runner_.cancel();
+  e->accept();
+}
+
+void MainWindow::dragEnterEvent(QDragEnterEvent* e) {
+  if (!FileActions::dropped(e->mimeData()).isEmpty()) e->acceptProposedAction();
+}
+
+void MainWindow::dropEvent(QDropEvent* e) { files_->open(FileActions::dropped(e->mimeData())); }
+
+}  // namespace glint::gui

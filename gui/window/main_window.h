@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QMainWindow>
+#include <QMap>
+
+#include "gui/base/theme.h"
+#include "gui/document/document.h"
+#include "gui/document/runner.h"
+
+class QDockWidget;
+class QLabel;
+class QPlainTextEdit;
+class QSplitter;
+class QStackedWidget;
+
+namespace glint::gui {
+
+class ErrorTable;
+class FileActions;
+class FramePanel;
+class MessageBar;
+class NumbersPanel;
+class ScenePanel;
+class StartPage;
+class SetupPanel;
+class Timeline;
+class TradeoffPanel;
+
+/// The window: puts the panels together and wires them; everything else is in their own classes.
+class MainWindow : public QMainWindow {
+  Q_OBJECT
+ public:
+  explicit MainWindow(Engine engine, QWidget* parent = nullptr);
+  ~MainWindow() override;
+
+  void open(const QString& input, const QString& frame = {});
+  void applyLayout(const QString& name);
+  void setTheme(Theme theme);
+  /// Nothing runs and every panel shows the newest state.
+  bool idle() const;
+  /// Renders the 3D view and returns the window's picture.
+  QPixmap picture();
+
+  Document& document() { return document_; }
+  Runner& runner() { return runner_; }
+  FramePanel* framePanel() { return frame_; }
+  QString lastError() const { return lastError_; }
+
+ signals:
+  void problem(const QString& oneLine);
+
+ protected:
+  void closeEvent(QCloseEvent* e) override;
+  void dragEnterEvent(QDragEnterEvent* e) override;
+  void dropEvent(QDropEvent* e) override;
+
+ private:
+  void buildCentre();
+  void buildDocks();
+  void buildMenus();
+  void buildStatusLine();
+  QDockWidget* addDock(const char* name, const QString& title, QWidget* content, Qt::DockWidgetArea area);
+  void recompute();
+  void showProblem(const QString& oneLine);
+  void log(const QString& line);
+  void showTitle();
+
+  Engine engine_;
+  Document document_;
+  Runner runner_;
+  FileActions* files_;
+  QMap<QString, QDockWidget*> docks_;
+  QStackedWidget* centre_ = nullptr;
+  StartPage* start_ = nullptr;
+  QSplitter* views_ = nullptr;
+  ScenePanel* scene_ = nullptr;
+  FramePanel* frame_ = nullptr;
+  Timeline* timeline_ = nullptr;
+  ErrorTable* errors_ = nullptr;
+  NumbersPanel* numbers_ = nullptr;
+  SetupPanel* setup_ = nullptr;
+  TradeoffPanel* tradeoff_ = nullptr;
+  QPlainTextEdit* log_ = nullptr;
+  MessageBar* messageBar_ = nullptr;
+  QLabel* probe_ = nullptr;
+  QString layout_, lastError_;
+  bool runFailed_ = false;  ///< the message bar shows why the last run failed
+};
+
+}  // namespace glint::gui

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/window/start_page.h"
+
+#include <QDir>
+#include <QFileInfo>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QPushButton>
+#include <QVBoxLayout>
+#include <QVariant>
+
+#include "gui/base/theme.h"
+
+namespace glint::gui {
+
+StartPage::StartPage(QWidget* parent) : QWidget(parent) {
+  auto* outer = new QHBoxLayout(this);
+  outer->addStretch(1);
+  auto* column = new QVBoxLayout;
+  column->setSpacing(10);
+  outer->addLayout(column);
+  outer->addStretch(1);
+  column->addStretch(2);
+  auto* title = new QLabel(tr("Glint inspector"));
+  QFont large = title->font();
+  large.setPointSizeF(large.pointSizeF() * 1.8);
+  title->setFont(large);
+  column->addWidget(title);
+  auto* text = new QLabel(
+      tr("Open a scene to see its surface, cameras and highlights, the ellipsoids reconstructed from them,\n"
+         "and the predicted over the captured highlight in every frame.\n\n"
+         "A scene is a scene.json, a session (*.glint), or a folder that holds one.\nYou can also drop it on this window."));
+  text->setProperty("role", "faded");
+  column->addWidget(text);
+  auto* buttons = new QHBoxLayout;
+  auto* file = new QPushButton(icon(QStringLiteral("open")), tr("Open a scene or session…"));
+  auto* folder = new QPushButton(tr("Open a folder…"));
+  connect(file, &QPushButton::clicked, this, &StartPage::openFile);
+  connect(folder, &QPushButton::clicked, this, &StartPage::openFolder);
+  buttons->addWidget(file);
+  buttons->addWidget(folder);
+  buttons->addStretch(1);
+  column->addLayout(buttons);
+  column->addSpacing(12);
+  recent_ = new QVBoxLayout;
+  recent_->setSpacing(2);
+  column->addLayout(recent_);
+  column->addStretch(3);
+}
+
+void StartPage::setRecent(const QStringList& files) {
+  while (QLayoutItem* item = recent_->takeAt(0)) {
+    if (item->widget()) item->widget()->deleteLater();
+    delete item;
+  }
+  if (files.isEmpty()) return;
+  auto* heading = new QLabel(tr("Recent"));
+  heading->setProperty("role", "group");
+  recent_->addWidget(heading);
+  for (const QString& file : files) {
+    const QFileInfo info(file);
+    auto* link = new QLabel(QStringLiteral("<a href='%1'>%2</a> &nbsp;<span style='color:%3'>%4</span>")
+                                .arg(file.toHtmlEscaped(), (info.dir().dirName() + '/' + info.fileName()).toHtmlEscaped(),
+                                     palette().color(QPalette::PlaceholderText).name(),
+                                     QDir::toNativeSeparators(info.path()).toHtmlEscaped()));
+    connect(link, &QLabel::linkActivated, this, &StartPage::openRecent);
+    recent_->addWidget(link);
+  }
+}
+
+}  // namespace glint::gui
