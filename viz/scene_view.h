@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/pipeline/inspection.h"
+#include "viz/selection.h"
 
 class vtkRenderer;
 class vtkRenderWindow;
@@ -27,18 +28,14 @@ struct Layer {
 /// light, true-light, rays, observed-contours, predicted-contours.
 const std::vector<Layer>& sceneLayers();
 
-/// What is selected; shared by all views.
-struct Selection {
-  int frame = 0;
-  std::string model;   ///< "" = all models
-  int highlight = -1;  ///< index in the frame's evidence, -1 = none
-};
-
 /// What lies under the mouse, with its numbers.
 struct Picked {
   std::string layer;
   int frame = -1;
   std::string model;
+  int highlight = -1;                 ///< index in the frame's evidence, -1 = none
+  std::string light;                  ///< "" = none
+  std::optional<double> direction;    ///< see Selection::direction
   Eigen::Vector3d position{0, 0, 0};  ///< world, m
   std::string text;                   ///< lines "name = value unit" for the panel and the clipboard
 };

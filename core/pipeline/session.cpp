@@ -112,6 +112,8 @@ SessionView readView(const JsonNode& node) {
   if (const auto n = node.find("layout")) view.layout = n->text();
   if (const auto n = node.find("layers"))
     for (const std::string& key : n->keys()) view.layers[key] = n->at(key).boolean();
+  if (const auto n = node.find("options"))
+    for (const std::string& key : n->keys()) view.options[key] = n->at(key).text();
   if (const auto n = node.find("cameras")) {
     for (const std::string& key : n->keys()) {
       const JsonNode c = n->at(key);
@@ -173,7 +175,8 @@ Session readSession(const fs::path& file) {
     session.digest = readHash(n->at("digest"));
   }
   Json unknown = Json::object();
-  for (const std::string& key : root.unknownKeys({"glint_session", "input", "request", "frames", "view", "notes", "tradeoff", "results"})) {
+  for (const std::string& key :
+       root.unknownKeys({"glint_session", "input", "request", "frames", "view", "notes", "tradeoff", "results"})) {
     session.warnings.push_back(key + ": unknown key, kept");
     unknown[key] = Json::parse(root.at(key).dump());
   }
@@ -206,7 +209,7 @@ void writeSession(const Session& session, const fs::path& file) {
   root["frames"] = {{"training", session.training}, {"held_out", session.heldOut}};
 
   const SessionView& v = session.view;
-  root["view"] = {{"layout", v.layout}, {"layers", v.layers}, {"cameras", Json::object()}};
+  root["view"] = {{"layout", v.layout}, {"layers", v.layers}, {"options", v.options}, {"cameras", Json::object()}};
   for (const auto& [name, c] : v.cameras)
     root["view"]["cameras"][name] = {{"position", toJson(c.position)},
                                      {"focal_point", toJson(c.focalPoint)},

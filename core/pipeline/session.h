@@ -26,6 +26,7 @@ struct SessionView {
   std::string layout;                            ///< name of the arrangement of panels; "" = the program's own
   std::map<std::string, SessionCamera> cameras;  ///< by view name
   std::map<std::string, bool> layers;            ///< visibility by layer name, where it differs from the default
+  std::map<std::string, std::string> options;    ///< how views show things, as "VIEW/NAME"; absent = default
   std::string frame, model, light;               ///< selection; "" = none
   int highlight = -1;                            ///< index in the frame's evidence; -1 = none
 };
@@ -49,7 +50,7 @@ struct Session {
   std::vector<std::string> training, heldOut;  ///< frame ids that `request.train` meant when it was saved
   SessionView view;
   std::string notes;
-  std::optional<Tradeoff> tradeoff;  ///< measured speed against accuracy; a replay does not look at it
+  std::optional<Tradeoff> tradeoff;   ///< measured speed against accuracy; a replay does not look at it
   KeyResults keyResults;              ///< empty when the session was saved without results
   std::string digest;                 ///< of all results, "" without results; equal on the same machine and build only
   std::vector<std::string> warnings;  ///< unknown keys, one line each (not written)

@@ -14,12 +14,6 @@ bool sameRequest(const InspectionRequest& a, const InspectionRequest& b) {
          a.settings == b.settings && a.noisePx == b.noisePx && a.seed == b.seed && a.truthFolder == b.truthFolder;
 }
 
-namespace {
-bool sameSelection(const viz::Selection& a, const viz::Selection& b) {
-  return a.frame == b.frame && a.model == b.model && a.highlight == b.highlight;
-}
-}  // namespace
-
 std::string rangesText(const std::vector<int>& frames) {
   std::string text;
   for (std::size_t i = 0; i < frames.size();) {
@@ -89,7 +83,7 @@ void Document::open(const Opened& opened) {
   if (parseTrain_ && opened.scene) parseTrain_(opened.request.train, *opened.scene);
   undo_.clear();
   scene_ = opened.scene;
-  state_ = {opened.request, opened.selection, opened.layers};
+  state_ = {opened.request, opened.selection, opened.layers, opened.options};
   state_.selection.frame = std::clamp(state_.selection.frame, 0, std::max(0, frameCount() - 1));
   saved_ = state_;
   inputFile_ = toQString(opened.path);
@@ -111,6 +105,7 @@ Opened Document::toSave() const {
   o.request = state_.request;
   o.selection = state_.selection;
   o.layers = state_.layers;
+  o.options = state_.options;
   o.session = session_;
   o.tradeoff = tradeoff_;
   return o;
@@ -124,8 +119,8 @@ void Document::markSaved(const QString& sessionFile, const ViewState& saved, std
 }
 
 bool Document::hasUnsavedChanges() const {
-  return scene_ &&
-         (!sameRequest(saved_.request, state_.request) || saved_.layers != state_.layers || tradeoff_ != savedTradeoff_);
+  return scene_ && (!sameRequest(saved_.request, state_.request) || saved_.layers != state_.layers ||
+                    saved_.options != state_.options || tradeoff_ != savedTradeoff_);
 }
 
 void Document::setSetting(const std::string& key, const SettingValue& value, int gesture) {
@@ -208,6 +203,7 @@ void Document::selectFrame(int frame, int gesture) {
   if (s.frame == frame) return;
   s.frame = frame;
   s.highlight = -1;
+  s.direction.reset();
   select(s, gesture);
 }
 
@@ -218,17 +214,41 @@ void Document::setLayerVisible(const std::string& name, const std::string& title
   push(std::move(after), (visible ? tr("Show %1") : tr("Hide %1")).arg(toQString(title).toLower()));
 }
 
+const std::string& Document::option(const std::string& name, const std::string& otherwise) const {
+  const auto it = state_.options.find(name);
+  return it == state_.options.end() ? otherwise : it->second;
+}
+
+double Document::option(const std::string& name, double otherwise) const {
+  const auto it = state_.options.find(name);
+  if (it == state_.options.end()) return otherwise;
+  bool isNumber = false;
+  const double value = toQString(it->second).toDouble(&isNumber);
+  return isNumber ? value : otherwise;
+}
+
+void Document::setOption(const std::string& name, const std::string& value, const QString& text, int gesture) {
+  ViewState after = state_;
+  after.options[name] = value;
+  push(std::move(after), text, gesture > 0 ? QStringLiteral("%1#%2").arg(toQString(name)).arg(gesture) : QString());
+}
+
+void Document::setOption(const std::string& name, double value, const QString& text, int gesture) {
+  setOption(name, QString::number(value, 'g', 12).toStdString(), text, gesture);
+}
+
 void Document::push(ViewState after, const QString& text, const QString& mergeKey) {
-  if (sameRequest(after.request, state_.request) && sameSelection(after.selection, state_.selection) &&
-      after.layers == state_.layers)
+  if (sameRequest(after.request, state_.request) && after.selection == state_.selection && after.layers == state_.layers &&
+      after.options == state_.options)
     return;
   undo_.push(new StateCommand(*this, state_, std::move(after), text, mergeKey));
 }
 
 void Document::apply(const ViewState& state) {
   const bool request = !sameRequest(state.request, state_.request);
-  const bool selection = !sameSelection(state.selection, state_.selection);
+  const bool selection = state.selection != state_.selection;
   const bool layers = state.layers != state_.layers;
+  const bool options = state.options != state_.options;
   state_ = state;
   if (request) {
     updateTraining();
@@ -237,7 +257,8 @@ void Document::apply(const ViewState& state) {
   }
   if (selection) emit selectionChanged();
   if (layers) emit layersChanged();
-  if (request || layers) emit savedStateChanged();
+  if (options) emit optionsChanged();
+  if (request || layers || options) emit savedStateChanged();
 }
 
 void Document::updateTraining() {

@@ -22,6 +22,8 @@ struct ViewState {
   InspectionRequest request;
   viz::Selection selection;
   std::map<std::string, bool> layers;  ///< scene layers by their name, frame overlays as "frame/NAME"
+  std::map<std::string, std::string>
+      options;  ///< how views show things, as "VIEW/NAME": "frame/gamma", "scene/colour-by"; absent = default
 };
 
 /// What is on screen: the undoable state, the scene that it belongs to and the newest results.
@@ -40,6 +42,9 @@ class Document : public QObject {
   const InspectionRequest& request() const { return state_.request; }
   const viz::Selection& selection() const { return state_.selection; }
   bool layerVisible(const std::string& name) const;
+  /// How a view shows something: see ViewState::options.
+  const std::string& option(const std::string& name, const std::string& otherwise) const;
+  double option(const std::string& name, double otherwise) const;
   FrameRole role(int frame) const;
   /// The model that plots show: the selected one, else the last (richest) of those computed.
   std::string plottedModel() const;
@@ -85,12 +90,16 @@ class Document : public QObject {
   void select(const viz::Selection& selection, int gesture = 0);
   void selectFrame(int frame, int gesture = 0);
   void setLayerVisible(const std::string& name, const std::string& title, bool visible);
+  /// @param text  what the step of undo is called; @param gesture as setSetting.
+  void setOption(const std::string& name, const std::string& value, const QString& text, int gesture = 0);
+  void setOption(const std::string& name, double value, const QString& text, int gesture = 0);
 
  signals:
   void sceneOpened();     ///< another scene
   void requestChanged();  ///< results are stale until the next setInspection
   void selectionChanged();
   void layersChanged();
+  void optionsChanged();  ///< ViewState::options
   void inspectionChanged();
   void staleChanged(bool stale);
   void savedStateChanged();

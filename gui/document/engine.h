@@ -25,11 +25,12 @@ struct Opened {
   std::shared_ptr<const Scene> scene;
   InspectionRequest request;
   viz::Selection selection;
-  std::map<std::string, bool> layers;        ///< visibility by layer name, where it differs from the default
-  std::string layout;                        ///< "" = keep the window's
-  std::optional<viz::ViewPoint> viewPoint;   ///< of the 3D view; none = show everything
-  std::shared_ptr<const Tradeoff> tradeoff;  ///< measured speed against accuracy; null = none
-  std::shared_ptr<const Session> session;    ///< what the file said besides (notes, unknown keys); null for a plain scene
+  std::map<std::string, bool> layers;          ///< visibility by layer name, where it differs from the default
+  std::map<std::string, std::string> options;  ///< how views show things, see ViewState
+  std::string layout;                          ///< "" = keep the window's
+  std::optional<viz::ViewPoint> viewPoint;     ///< of the 3D view; none = show everything
+  std::shared_ptr<const Tradeoff> tradeoff;    ///< measured speed against accuracy; null = none
+  std::shared_ptr<const Session> session;      ///< what the file said besides (notes, unknown keys); null for a plain scene
 };
 
 /// Everything that the desktop program asks of `core`. `coreEngine()` is the real one; tests replace single

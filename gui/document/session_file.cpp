@@ -49,8 +49,9 @@ Opened openInput(const std::string& path) {
   opened.isSession = true;
   opened.scene = read.scene;
   opened.request = read.session.request;
-  opened.selection = {frameNumber(*read.scene, view.frame), view.model, view.highlight};
+  opened.selection = {frameNumber(*read.scene, view.frame), view.model, view.highlight, view.light, {}};
   opened.layers = view.layers;
+  opened.options = view.options;
   opened.layout = view.layout;
   if (const auto camera = view.cameras.find(kSceneView); camera != view.cameras.end())
     opened.viewPoint =
@@ -85,12 +86,13 @@ void saveSession(const Opened& opened, const Inspection* results, const std::str
     session.unknownJson = opened.session->unknownJson;
     session.allowOutsidePaths = opened.session->allowOutsidePaths;
     session.view.cameras = opened.session->view.cameras;
-    session.view.light = opened.session->view.light;
   }
   session.view.layout = opened.layout;
   session.view.layers = opened.layers;
+  session.view.options = opened.options;
   session.view.frame = scene.frames.at(std::size_t(opened.selection.frame)).id;
   session.view.model = opened.selection.model;
+  session.view.light = opened.selection.light;
   session.view.highlight = opened.selection.highlight;
   if (opened.viewPoint)
     session.view.cameras[kSceneView] = {opened.viewPoint->position, opened.viewPoint->focalPoint, opened.viewPoint->up,

@@ -237,4 +237,12 @@ void FramePanel::goToHighlight() {
   canvas_->lookAt(box.center(), 0.5 * std::min(canvas_->width() / size.x(), canvas_->height() / size.y()));
 }
 
+void FramePanel::addActions(Actions& actions, QMenu* menu) {
+  actions.add("frame.highlight", menu, tr("&Zoom to the highlight"), [this] { goToHighlight(); },
+              {{Qt::Key_F, Qt::Key_H}, "highlight"});
+  actions.add("frame.fit", menu, tr("&Whole photograph"), [this] { canvas_->fit(); }, {{Qt::Key_0}, "fit"});
+  actions.add("frame.pixels", menu, tr("Screen pixel per pixel"), [this] { canvas_->onePixelPerPixel(); },
+              {{Qt::Key_1}, "pixels"});
+}
+
 }  // namespace glint::gui

@@ -4,6 +4,7 @@
 #include <QWidget>
 #include <vector>
 
+#include "gui/base/actions.h"
 #include "gui/document/document.h"
 #include "gui/frame/photo_loader.h"
 #include "viz/frame_overlay.h"
@@ -26,6 +27,7 @@ class FramePanel : public QWidget {
   explicit FramePanel(Document& document, QWidget* parent = nullptr);
   FrameCanvas* canvas() const { return canvas_; }
   PhotoLoader* loader() { return &loader_; }
+  void addActions(Actions& actions, QMenu* menu);
   /// Zooms to the selected frame's highlights.
   void goToHighlight();
 

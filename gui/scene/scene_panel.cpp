@@ -158,4 +158,10 @@ void ScenePanel::pickAt(const QPointF& position) {
   emit picked(*hit);
 }
 
+void ScenePanel::addActions(Actions& actions, QMenu* menu) {
+  actions.add("view.frame-all", menu, tr("Show &everything"), [this] { frameAll(); }, {{Qt::Key_A}, "frame-all"});
+  actions.add("view.look-through", menu, tr("Look through the frame's &camera"), [this] { lookThroughSelected(); },
+              {{Qt::Key_C}, "camera"});
+}
+
 }  // namespace glint::gui

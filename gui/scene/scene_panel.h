@@ -4,6 +4,7 @@
 #include <QWidget>
 #include <memory>
 
+#include "gui/base/actions.h"
 #include "gui/document/document.h"
 
 class QVTKOpenGLNativeWidget;
@@ -17,6 +18,7 @@ class ScenePanel : public QWidget {
   explicit ScenePanel(Document& document, QWidget* parent = nullptr);
   ~ScenePanel() override;
   viz::SceneView& view() { return *view_; }
+  void addActions(Actions& actions, QMenu* menu);
   /// Draws now, so that a grab of the window shows the newest state.
   void renderNow();
   void setDark(bool dark);

@@ -280,4 +280,17 @@ void Timeline::setPlaying(bool playing) {
   emit playingChanged(playing);
 }
 
+void Timeline::addActions(Actions& actions, QMenu* menu) {
+  actions.add("frame.previous", menu, tr("&Previous"), [this] { strip_->step(-1); }, {{QKeySequence("Alt+Left")}, "previous"});
+  actions.add("frame.next", menu, tr("&Next"), [this] { strip_->step(1); }, {{QKeySequence("Alt+Right")}, "next"});
+  actions.add("frame.play", menu, tr("P&lay"), [this] { setPlaying(!playing()); }, {{Qt::Key_P}, "play"});
+  menu->addSeparator();
+  const auto role = [&](const char* id, const QString& text, FrameRole r) {
+    actions.add(QLatin1String(id), menu, text, [this, r] { document_.setRole(document_.selection().frame, r); });
+  };
+  role("frame.train", tr("&Train on it"), FrameRole::Training);
+  role("frame.hold-out", tr("&Hold it out"), FrameRole::HeldOut);
+  role("frame.exclude", tr("E&xclude it"), FrameRole::Excluded);
+}
+
 }  // namespace glint::gui

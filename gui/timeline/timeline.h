@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "gui/base/actions.h"
 #include "gui/document/document.h"
 
 namespace glint::gui {
@@ -54,6 +55,7 @@ class Timeline : public QWidget {
   explicit Timeline(Document& document, QWidget* parent = nullptr);
   TimelineStrip* strip() const { return strip_; }
   bool playing() const { return clock_.isActive(); }
+  void addActions(Actions& actions, QMenu* menu);
 
  public slots:
   void setPlaying(bool playing);

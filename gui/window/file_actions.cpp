@@ -26,9 +26,9 @@ FileActions::FileActions(const Engine& engine, Document& document, Runner& runne
   connect(&runner_, &Runner::saved, this, &FileActions::finishSave);
 }
 
-void FileActions::fillMenu(QMenu* menu) {
-  menu->addAction(icon(QStringLiteral("open")), tr("&Open…"), this, &FileActions::openDialog)->setShortcut(QKeySequence::Open);
-  menu->addAction(tr("Open &folder…"), this, &FileActions::openFolderDialog);
+void FileActions::addActions(Actions& actions, QMenu* menu) {
+  actions.add("file.open", menu, tr("&Open…"), [this] { openDialog(); }, {{QKeySequence::Open}, "open"});
+  actions.add("file.open-folder", menu, tr("Open &folder…"), [this] { openFolderDialog(); });
   QMenu* recentMenu = menu->addMenu(tr("Open &recent"));
   connect(recentMenu, &QMenu::aboutToShow, this, [this, recentMenu] {
     recentMenu->clear();
@@ -36,10 +36,9 @@ void FileActions::fillMenu(QMenu* menu) {
     if (recentMenu->isEmpty()) recentMenu->addAction(tr("none"))->setEnabled(false);
   });
   menu->addSeparator();
-  QAction* save = menu->addAction(icon(QStringLiteral("save")), tr("&Save session"), this, &FileActions::save);
-  save->setShortcut(QKeySequence::Save);
-  QAction* saveAs = menu->addAction(tr("Save session &as…"), this, &FileActions::saveAs);
-  saveAs->setShortcut(QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_S));
+  QAction* save = actions.add("file.save", menu, tr("&Save session"), [this] { this->save(); }, {{QKeySequence::Save}, "save"});
+  QAction* saveAs = actions.add("file.save-as", menu, tr("Save session &as…"), [this] { this->saveAs(); },
+                                {{QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_S)}});
   const auto enable = [=, this] {
     save->setEnabled(document_.scene() && engine_.save);
     saveAs->setEnabled(document_.scene() && engine_.save);

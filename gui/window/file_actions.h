@@ -6,6 +6,7 @@
 #include <functional>
 #include <utility>
 
+#include "gui/base/actions.h"
 #include "gui/document/document.h"
 #include "gui/document/runner.h"
 
@@ -20,7 +21,7 @@ class FileActions : public QObject {
   Q_OBJECT
  public:
   FileActions(const Engine& engine, Document& document, Runner& runner, QWidget* window);
-  void fillMenu(QMenu* menu);
+  void addActions(Actions& actions, QMenu* menu);
   QStringList recent() const;
   /// The path of the first local file of a drop; "" when there is none.
   static QString dropped(const QMimeData* data);

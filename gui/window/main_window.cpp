@@ -205,73 +205,51 @@ void MainWindow::buildDocks() {
 
 void MainWindow::buildMenus() {
   QMenu* file = menuBar()->addMenu(tr("&File"));
-  files_->fillMenu(file);
+  files_->addActions(actions_, file);
   file->addSeparator();
-  file->addAction(tr("&Quit"), this, &QWidget::close)->setShortcut(QKeySequence::Quit);
+  actions_.add("file.quit", file, tr("&Quit"), [this] { close(); }, {QKeySequence::keyBindings(QKeySequence::Quit)});
 
   QMenu* edit = menuBar()->addMenu(tr("&Edit"));
-  QAction* undo = document_.undoStack()->createUndoAction(this, tr("&Undo"));
-  undo->setIcon(icon(QStringLiteral("undo")));
-  undo->setShortcut(QKeySequence::Undo);
-  QAction* redo = document_.undoStack()->createRedoAction(this, tr("&Redo"));
-  redo->setIcon(icon(QStringLiteral("redo")));
-  redo->setShortcut(QKeySequence::Redo);
-  edit->addActions({undo, redo});
+  QUndoStack* stack = document_.undoStack();
+  actions_.adopt("edit.undo", edit, stack->createUndoAction(this, tr("&Undo")), {{QKeySequence::Undo}, "undo"});
+  actions_.adopt("edit.redo", edit, stack->createRedoAction(this, tr("&Redo")), {{QKeySequence::Redo}, "redo"});
   edit->addSeparator();
-  edit->addAction(icon(QStringLiteral("copy")), tr("Copy &numbers"), numbers_, &NumbersPanel::copy);
-  edit->addAction(tr("Copy &error rows"), errors_, &ErrorTable::copySelection);
+  actions_.add("edit.copy-numbers", edit, tr("Copy &numbers"), [this] { numbers_->copy(); }, {{}, "copy"});
+  actions_.add("edit.copy-error-rows", edit, tr("Copy &error rows"), [this] { errors_->copySelection(); });
+  actions_.add("edit.stop", edit, tr("&Stop what runs"), [this] { runner_.cancel(); }, {{Qt::Key_Escape}, "stop"});
 
   QMenu* frame = menuBar()->addMenu(tr("F&rame"));
-  frame
-      ->addAction(icon(QStringLiteral("previous")), tr("&Previous"), timeline_->strip(), [this] { timeline_->strip()->step(-1); })
-      ->setShortcut(QKeySequence(QStringLiteral("Alt+Left")));
-  frame->addAction(icon(QStringLiteral("next")), tr("&Next"), timeline_->strip(), [this] { timeline_->strip()->step(1); })
-      ->setShortcut(QKeySequence(QStringLiteral("Alt+Right")));
-  frame->addAction(icon(QStringLiteral("play")), tr("P&lay"), timeline_, [this] { timeline_->setPlaying(!timeline_->playing()); })
-      ->setShortcut(Qt::Key_P);
+  timeline_->addActions(actions_, frame);
   frame->addSeparator();
-  const auto role = [&](const QString& text, FrameRole r) {
-    frame->addAction(text, this, [this, r] { document_.setRole(document_.selection().frame, r); });
-  };
-  role(tr("&Train on it"), FrameRole::Training);
-  role(tr("&Hold it out"), FrameRole::HeldOut);
-  role(tr("E&xclude it"), FrameRole::Excluded);
-  frame->addSeparator();
-  QAction* highlight = frame->addAction(icon(QStringLiteral("highlight")), tr("&Zoom to the highlight"), frame_,
-                                        [this] { frame_->goToHighlight(); });
-  highlight->setShortcuts({QKeySequence(Qt::Key_F), QKeySequence(Qt::Key_H)});
-  frame->addAction(icon(QStringLiteral("fit")), tr("&Whole photograph"), frame_->canvas(), &FrameCanvas::fit)
-      ->setShortcut(Qt::Key_0);
-  frame->addAction(icon(QStringLiteral("pixels")), tr("Screen pixel per pixel"), frame_->canvas(), &FrameCanvas::onePixelPerPixel)
-      ->setShortcut(Qt::Key_1);
+  frame_->addActions(actions_, frame);
 
   QMenu* view = menuBar()->addMenu(tr("&View"));
-  QAction* all = view->addAction(icon(QStringLiteral("frame-all")), tr("Show &everything"), scene_, &ScenePanel::frameAll);
-  all->setShortcut(Qt::Key_A);
-  QAction* through = view->addAction(icon(QStringLiteral("camera")), tr("Look through the frame's &camera"), scene_,
-                                     &ScenePanel::lookThroughSelected);
-  through->setShortcut(Qt::Key_C);
+  scene_->addActions(actions_, view);
   view->addSeparator();
-  for (const Layout& layout : layouts())
-    view->addAction(tr("Layout: %1").arg(QLatin1String(layout.title)), this,
-                    [this, name = QString::fromLatin1(layout.name)] { applyLayout(name); });
+  QMenu* layoutMenu = view->addMenu(tr("&Layout"));
+  for (const Layout& layout : layouts()) {
+    const QString name = QString::fromLatin1(layout.name);
+    actions_.add("view.layout-" + name, layoutMenu, tr(layout.title), [this, name] { applyLayout(name); });
+  }
   QMenu* panels = view->addMenu(tr("&Panels"));
-  for (QDockWidget* dock : std::as_const(docks_)) panels->addAction(dock->toggleViewAction());
+  for (auto dock = docks_.begin(); dock != docks_.end(); ++dock)
+    actions_.adopt("view.panel-" + dock.key(), panels, dock.value()->toggleViewAction(), {});
   view->addSeparator();
-  QAction* theme = view->addAction(icon(QStringLiteral("theme")), tr("Light or dark &theme"), this,
-                                   [this] { setTheme(currentTheme() == Theme::Dark ? Theme::Light : Theme::Dark); });
+  actions_.add("view.theme", view, tr("Light or dark &theme"),
+               [this] { setTheme(currentTheme() == Theme::Dark ? Theme::Light : Theme::Dark); }, {{}, "theme"});
 
   QToolBar* bar = addToolBar(tr("Tools"));
   bar->setObjectName(QStringLiteral("tools"));
   bar->setMovable(false);
   bar->setIconSize({18, 18});
-  bar->addActions({file->actions().at(0), file->actions().at(4)});
-  bar->addSeparator();
-  bar->addActions({undo, redo});
-  bar->addSeparator();
-  bar->addActions({all, through, highlight});
-  bar->addSeparator();
-  bar->addAction(theme);
+  for (const char* id : {"file.open", "file.save", "", "edit.undo", "edit.redo", "", "view.frame-all", "view.look-through",
+                         "frame.highlight", "", "view.theme"}) {
+    if (QAction* action = actions_.find(QLatin1String(id)))
+      bar->addAction(action);
+    else
+      bar->addSeparator();
+  }
+  actions_.loadShortcuts();
 }
 
 void MainWindow::buildStatusLine() {
@@ -280,10 +258,6 @@ void MainWindow::buildStatusLine() {
   statusBar()->addWidget(probe_);
   connect(frame_, &FramePanel::probed, probe_, &QLabel::setText);
   statusBar()->addPermanentWidget(new JobStatus(document_, runner_));
-  auto* stop = new QAction(tr("Stop"), this);
-  stop->setShortcut(Qt::Key_Escape);
-  connect(stop, &QAction::triggered, &runner_, &Runner::cancel);
-  addAction(stop);
 }
 
 void MainWindow::open(const QString& input, const QString& frame) {

@@ -4,6 +4,7 @@
 #include <QMainWindow>
 #include <QMap>
 
+#include "gui/base/actions.h"
 #include "gui/base/theme.h"
 #include "gui/document/document.h"
 #include "gui/document/runner.h"
@@ -45,6 +46,7 @@ class MainWindow : public QMainWindow {
   Document& document() { return document_; }
   Runner& runner() { return runner_; }
   FramePanel* framePanel() { return frame_; }
+  Actions& actions() { return actions_; }
   QString lastError() const { return lastError_; }
 
  signals:
@@ -69,6 +71,7 @@ class MainWindow : public QMainWindow {
   Engine engine_;
   Document document_;
   Runner runner_;
+  Actions actions_;
   FileActions* files_;
   QMap<QString, QDockWidget*> docks_;
   QStackedWidget* centre_ = nullptr;

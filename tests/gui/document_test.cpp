@@ -96,6 +96,21 @@ class DocumentTest : public QObject {
     QCOMPARE(document_->selection().frame, 0);
   }
 
+  void aViewOptionIsOneStepAndAGestureIsOne() {
+    document_->setOption("frame/gamma", 1.8, "Gamma 1.8");
+    document_->setOption("scene/colour-by", "error", "Cameras by error");
+    QCOMPARE(document_->option("frame/gamma", 1.0), 1.8);
+    QCOMPARE(document_->option("scene/colour-by", std::string("role")), std::string("error"));
+    QCOMPARE(document_->option("frame/no-such", 0.5), 0.5);
+    QVERIFY(document_->hasUnsavedChanges());
+    const int steps = document_->undoStack()->count(), gesture = document_->newGesture();
+    for (const double gamma : {1.9, 2.0, 2.1}) document_->setOption("frame/gamma", gamma, "Gamma", gesture);
+    QCOMPARE(document_->undoStack()->count(), steps + 1);
+    while (document_->undoStack()->canUndo()) document_->undoStack()->undo();
+    QCOMPARE(document_->option("frame/gamma", 1.0), 1.0);
+    QVERIFY(!document_->hasUnsavedChanges());
+  }
+
   void randomActionsUndoToTheFirstState() {
     const ViewState first = document_->state();
     unsigned seed = 7;

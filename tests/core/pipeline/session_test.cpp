@@ -46,6 +46,7 @@ Session example(const TemporaryFolder& folder) {
   s.heldOut = {"b", "c"};
   s.view.layout = "wide";
   s.view.layers = {{"surface", false}, {"light", true}};
+  s.view.options = {{"frame/gamma", "1.8"}, {"scene/colour-by", "error"}};
   s.view.cameras["scene"] = {{1, 2, 3}, {0.1, 0.2, 0.3}, {0, 0, 1}, 35};
   s.view.frame = "b";
   s.view.model = "canonical";
@@ -78,6 +79,7 @@ TEST(Session, RoundTripKeepsEverything) {
   EXPECT_EQ(r.heldOut, s.heldOut);
   EXPECT_EQ(r.view.layout, "wide");
   EXPECT_EQ(r.view.layers, s.view.layers);
+  EXPECT_EQ(r.view.options, s.view.options);
   EXPECT_EQ(r.view.cameras.at("scene").focalPoint, Eigen::Vector3d(0.1, 0.2, 0.3));
   EXPECT_EQ(r.view.cameras.at("scene").viewAngleDeg, 35);
   EXPECT_EQ(r.view.frame, "b");
@@ -208,6 +210,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadSession{"\"seed\": 4000000000", "\"seed\": -1", "request.seed: ", "whole number"},
         BadSession{"\"digest\": \"aaaa", "\"digest\": \"xaaa", "results.digest: ", "hexadecimal"},
         BadSession{"\"view_angle_deg\": 35", "\"view_angle_deg\": 0", "view.cameras.scene.view_angle_deg: ", "between 0 and 180"},
+        BadSession{"\"frame/gamma\": \"1.8\"", "\"frame/gamma\": 1.8", "view.options.frame/gamma: ", "text"},
         BadSession{"\"surface\": false", "\"surface\": 0", "view.layers.surface: ", "true or false"}),
     [](const auto& info) {
       std::string name = std::to_string(info.index) + "_" + info.param.place;
