@@ -356,7 +356,8 @@ SceneView::~SceneView() = default;
 vtkRenderer* SceneView::renderer() const { return impl_->renderer; }
 
 void SceneView::setInspection(std::shared_ptr<const Inspection> inspection) {
-  const bool newScene = !impl_->inspection || !inspection || inspection->scene != impl_->inspection->scene;
+  const bool newScene =
+      !impl_->inspection || !inspection || inspection->given != impl_->inspection->given;  // not that of a what-if
   if (newScene) {
     impl_->cache.clear();
     impl_->input = {};

@@ -116,10 +116,11 @@ void nameTruth(FrameEvidence& e) {
 class Run {
  public:
   Run(Inspection& result, const ProgressFn& progress, const Inspection* previous)
-      : r_(result), progress_(progress), previous_(previous && previous->scene == result.scene ? previous : nullptr) {}
+      : r_(result), progress_(progress), previous_(previous && previous->given == result.given ? previous : nullptr) {}
 
   void highlights();
   void assignSeveralLights();
+  void changeHighlights();
   void brightestPointsAndTangentPlanes();
   void lights();
   void canonicalContours();
@@ -182,10 +183,13 @@ class Run {
 void Run::highlights() {
   const InspectionRequest& q = r_.request;
   // The assignment of several lights reflects rays on the surface: its normals matter then.
-  r_.stageKeys["detect"] = keyOfStages(q.settings, severalLights() ? std::set<std::string>{"detect", "surface"} : std::set<std::string>{"detect"},
-                                       (q.source == FrameSource::Image ? "image|" : "radiance|") + q.truthFolder);
+  r_.stageKeys["detect"] =
+      keyOfStages(q.settings, severalLights() ? std::set<std::string>{"detect", "surface"} : std::set<std::string>{"detect"},
+                  (q.source == FrameSource::Image ? "image|" : "radiance|") + q.truthFolder + "|" + synthesisKey(q.whatIf) +
+                      (severalLights() ? posesKey(q.whatIf) : ""));
   if (unchanged("detect")) {
     r_.evidence = previous_->evidence;
+    for (const auto& [frame, before] : previous_->evidenceBefore) r_.evidence[std::size_t(frame)] = before;
     return;
   }
   const Scene& scene = *r_.scene;
@@ -198,6 +202,11 @@ void Run::highlights() {
       static_cast<int>(scene.frames.size()),
       [&](int i) {
         const Held inMemory(held, most);
+        if (q.whatIf.synthesise && scene.frames[i].highlights.empty()) {
+          r_.evidence[i].frame = i;
+          r_.evidence[i].failure = Failure{Reason::NoHighlight, "no light makes one in frame " + scene.frames[i].id};
+          return;
+        }
         r_.evidence[i] = gatherEvidence(scene, i, q.source, q.settings);
         if (q.truthFolder.empty()) return;
         r_.evidence[i].againstTruth = true;
@@ -262,11 +271,25 @@ void Run::assignSeveralLights() {
   for (FrameEvidence& e : r_.evidence) nameTruth(e);
 }
 
+/// The user's changes to single highlights come after detection, so that moving one detects nothing again.
+void Run::changeHighlights() {
+  for (const auto& [at, change] : r_.request.whatIf.highlights) {
+    const auto [frame, index] = at;
+    if (frame < 0 || frame >= static_cast<int>(r_.evidence.size())) continue;
+    FrameEvidence& e = r_.evidence[frame];
+    if (index < 0 || index >= static_cast<int>(e.highlights.size())) continue;
+    r_.evidenceBefore.emplace(frame, e);
+    e.highlights[index] = changed(e.highlights[index], change);
+  }
+}
+
 void Run::brightestPointsAndTangentPlanes() {
   const InspectionRequest& q = r_.request;
-  r_.stageKeys["views"] = keyOfStages(q.settings, {"surface"},
-                                      r_.stageKeys["detect"] + "|" + join(r_.train.frames) + (r_.train.perSurface ? "per-surface" : "") +
-                                          "|x" + join(q.excluded) + "|" + exactText(q.noisePx) + "|" + std::to_string(q.seed));
+  r_.stageKeys["views"] =
+      keyOfStages(q.settings, {"surface"},
+                  r_.stageKeys["detect"] + "|" + join(r_.train.frames) + (r_.train.perSurface ? "per-surface" : "") + "|x" +
+                      join(q.excluded) + "|" + exactText(q.noisePx) + "|" + std::to_string(q.seed) + "|" + posesKey(q.whatIf) +
+                      "|" + highlightsKey(q.whatIf));
   if (unchanged("views") && previous_->depthCorrections.empty()) {  // corrected views belong to that run's light
     r_.views = previous_->views;
     for (TrainingView& v : r_.views) v.canonical.reset();
@@ -512,12 +535,31 @@ bool Inspection::isHeldOut(int frame) const {
   return train.perSurface || !std::binary_search(train.frames.begin(), train.frames.end(), frame);
 }
 
+namespace {
+/// The earlier run's what-if made the same scene.
+bool sameScene(const Inspection& previous, const InspectionRequest& request) {
+  const WhatIf &a = previous.request.whatIf, &b = request.whatIf;
+  const auto level = [](const InspectionRequest& q) { return q.settings.number("detect.level"); };
+  return a.synthesise == b.synthesise && posesKey(a) == posesKey(b) && synthesisKey(a) == synthesisKey(b) &&
+         (!b.synthesise || level(previous.request) == level(request));
+}
+}  // namespace
+
 Inspection inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn& progress,
                    const Inspection* previous) {
   require(scene != nullptr, "inspect: no scene");
   Inspection result;
-  result.scene = scene;
-  result.surfaces = previous && previous->scene == scene ? previous->surfaces : std::make_shared<SurfaceCache>(*scene);
+  result.given = scene;
+  result.scene = !request.whatIf.changesScene() ? scene
+                 : previous && previous->given == scene && sameScene(*previous, request)
+                     ? previous->scene
+                     : changedScene(*scene, request.whatIf, request.settings.number("detect.level"), progress);
+  if (!previous || previous->given != scene)
+    result.surfaces = std::make_shared<SurfaceCache>(*result.scene);
+  else if (previous->scene == result.scene)
+    result.surfaces = previous->surfaces;
+  else
+    result.surfaces = std::make_shared<SurfaceCache>(*result.scene, *previous->surfaces);
   result.request = request;
   // A model named twice is one model.
   std::vector<std::string>& models = result.request.models;
@@ -526,6 +568,7 @@ Inspection inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& 
   for (const std::string& m : request.models) modelByName(m);  // unknown names are refused before any work
   Run run(result, progress, previous);
   run.highlights();
+  run.changeHighlights();
   run.brightestPointsAndTangentPlanes();
   run.lights();
   run.canonicalContours();

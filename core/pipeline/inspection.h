@@ -12,6 +12,7 @@
 #include "core/evaluate/metrics.h"
 #include "core/light/refine_depth.h"
 #include "core/model/model.h"
+#include "core/pipeline/what_if.h"
 #include "core/scene/scene.h"
 
 namespace glint {
@@ -35,6 +36,8 @@ struct InspectionRequest {
   double noisePx = 0;                    ///< Gaussian noise on training contours (72 points) and peaks
   unsigned seed = 1;
   std::string truthFolder;               ///< --truth DIR, "" = own detection
+  WhatIf whatIf;                         ///< changes to scene and evidence that the user tries out
+  friend bool operator==(const InspectionRequest&, const InspectionRequest&) = default;
 };
 
 /// Key of a light's estimate and fits: "lamp", or "lamp@g03" when every surface has its own model.
@@ -97,11 +100,13 @@ struct WorkCounts {
 
 /// Everything that was computed; the viewer shows all of it.
 struct Inspection {
-  std::shared_ptr<const Scene> scene;
+  std::shared_ptr<const Scene> scene;  ///< with the request's what-if
+  std::shared_ptr<const Scene> given;  ///< as it was read; the same object where the what-if leaves the scene alone
   std::shared_ptr<const SurfaceCache> surfaces;
   InspectionRequest request;
   TrainSpec train;
   std::vector<FrameEvidence> evidence;                     ///< one per frame
+  std::map<int, FrameEvidence> evidenceBefore;             ///< of frames whose highlights the what-if moved: as they were
   std::vector<TrainingView> views;                         ///< one per training highlight
   std::map<std::string, LightEstimate> lights;             ///< by light id (+ "@" + surface key when per surface)
   std::map<std::string, Failure> lightFailures;            ///< the same keys: why a light could not be estimated

@@ -10,6 +10,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/json_text.h"
 #include "core/base/sha256.h"
+#include "core/pipeline/what_if_json.h"
 
 namespace glint {
 namespace fs = std::filesystem;
@@ -103,6 +104,7 @@ InspectionRequest readRequest(const JsonNode& node, const fs::path& folder) {
       n->fail("must be a whole number from 0 to 4294967295");
     request.seed = static_cast<unsigned>(seed);
   }
+  if (const auto n = node.find("what_if")) request.whatIf = readWhatIf(*n);
   if (const auto n = node.find("truth"); n && !n->isNull()) request.truthFolder = absolutePath(*n, folder).string();
   return request;
 }
@@ -164,6 +166,8 @@ Session readSession(const fs::path& file) {
     session.heldOut = texts(n->at("held_out"));
   }
   if (const auto n = root.find("view")) session.view = readView(*n);
+  if (const auto n = root.find("recovery"); n && !n->isNull())
+    session.recovery = Recovery{absolutePath(n->at("of"), folder), n->at("session").boolean()};
   if (const auto n = root.find("notes")) session.notes = n->text();
   if (const auto n = root.find("tradeoff"); n && !n->isNull()) session.tradeoff = readTradeoff(*n);
   if (const auto n = root.find("results"); n && !n->isNull()) {
@@ -176,7 +180,7 @@ Session readSession(const fs::path& file) {
   }
   Json unknown = Json::object();
   for (const std::string& key :
-       root.unknownKeys({"glint_session", "input", "request", "frames", "view", "notes", "tradeoff", "results"})) {
+       root.unknownKeys({"glint_session", "input", "request", "frames", "view", "notes", "tradeoff", "results", "recovery"})) {
     session.warnings.push_back(key + ": unknown key, kept");
     unknown[key] = Json::parse(root.at(key).dump());
   }
@@ -206,6 +210,7 @@ void writeSession(const Session& session, const fs::path& file) {
   root["request"]["noise_px"] = q.noisePx;
   root["request"]["seed"] = q.seed;
   root["request"]["truth"] = q.truthFolder.empty() ? Json() : Json(relative(q.truthFolder));
+  if (!q.whatIf.none()) root["request"]["what_if"] = Json::parse(whatIfJson(q.whatIf));
   root["frames"] = {{"training", session.training}, {"held_out", session.heldOut}};
 
   const SessionView& v = session.view;
@@ -216,6 +221,7 @@ void writeSession(const Session& session, const fs::path& file) {
                                      {"up", toJson(c.up)},
                                      {"view_angle_deg", c.viewAngleDeg}};
   root["view"]["selection"] = {{"frame", v.frame}, {"model", v.model}, {"light", v.light}, {"highlight", v.highlight}};
+  if (session.recovery) root["recovery"] = {{"of", relative(session.recovery->of)}, {"session", session.recovery->isSession}};
   root["notes"] = session.notes;
   if (session.tradeoff) root["tradeoff"] = Json::parse(tradeoffJson(*session.tradeoff));
   if (!session.keyResults.empty()) {
@@ -231,11 +237,24 @@ void writeSession(const Session& session, const fs::path& file) {
   atomicWrite(file, prettyJson(root.dump(-1, ' ', false, Json::error_handler_t::replace)));
 }
 
-OpenedSession openSession(const fs::path& file) {
-  OpenedSession opened{readSession(file), nullptr};
+MissingScene::MissingScene(const fs::path& session, fs::path scene)
+    : InputError(session.string(), "input.path", "the scene " + scene.string() + " is not there"), scene_(std::move(scene)) {}
+
+OpenedSession openSession(const fs::path& file, const fs::path& sceneInstead) {
+  OpenedSession opened{readSession(file), nullptr, ""};
+  Session& session = opened.session;
+  if (!sceneInstead.empty()) session.input = fs::absolute(sceneInstead).lexically_normal();
+  std::error_code ignored;
+  if (!fs::exists(session.input, ignored)) throw MissingScene(file, session.input);
   ReadOptions options;
-  options.allowOutsidePaths = opened.session.allowOutsidePaths;
-  opened.scene = std::make_shared<const Scene>(readScene(opened.session.input, options));
+  options.allowOutsidePaths = session.allowOutsidePaths;
+  opened.scene = std::make_shared<const Scene>(readScene(session.input, options));
+  if (!sceneInstead.empty() && !session.files.empty()) {
+    const std::string expected = session.files.front().sha256;
+    if (!expected.empty() && sha256OfFile(opened.scene->file) != expected)
+      opened.warning = opened.scene->file.string() + " is not the scene that the session was made with: its content differs";
+    session.files.clear();  // of the old place; saving hashes those of the new one
+  }
   return opened;
 }
 

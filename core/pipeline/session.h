@@ -40,10 +40,17 @@ struct SessionFile {
 /// A number of the results under a stable name ("canonical.contour_error_pct.mean"). NaN = not defined.
 using KeyResults = std::vector<std::pair<std::string, double>>;
 
+/// An autosave says what it would have been saved to.
+struct Recovery {
+  std::filesystem::path of;  ///< absolute: the session, or the scene that was opened without one
+  bool isSession = false;
+};
+
 /// Everything of a session file *.glint (formats.md "Session"; resources/session.schema.json).
 struct Session {
   std::filesystem::path file;      ///< as opened; empty for a new session
   std::filesystem::path input;     ///< absolute path of the scene
+  std::optional<Recovery> recovery;  ///< set in autosaves only
   bool allowOutsidePaths = false;  ///< the scene may name files outside its folder
   std::vector<SessionFile> files;  ///< the scene file first, then everything that it names
   InspectionRequest request;
@@ -62,12 +69,24 @@ Session readSession(const std::filesystem::path& file);
 /// Atomically; paths relative to the session's folder. InputError when it cannot be written.
 void writeSession(const Session& session, const std::filesystem::path& file);
 
+/// The scene of a session is not where the session says: the one failure that a person can mend by pointing at it.
+class MissingScene : public InputError {
+ public:
+  MissingScene(const std::filesystem::path& session, std::filesystem::path scene);
+  const std::filesystem::path& scene() const { return scene_; }  ///< absolute, where it was looked for
+
+ private:
+  std::filesystem::path scene_;
+};
+
 struct OpenedSession {
   Session session;
   std::shared_ptr<const Scene> scene;
+  std::string warning;  ///< the scene that was given instead is another one than the session was made with; "" = it is not
 };
-/// Reads a session and its scene. InputError. Does not check the files' contents: see `changedFiles`.
-OpenedSession openSession(const std::filesystem::path& file);
+/// Reads a session and its scene. InputError; MissingScene. Does not check the files' contents: see `changedFiles`.
+/// @param sceneInstead  where the scene is now; "" = where the session says. The session then names it.
+OpenedSession openSession(const std::filesystem::path& file, const std::filesystem::path& sceneInstead = {});
 
 /// The session of a finished inspection, with hashes of its inputs, held-out frames, key results and digest; the view and notes
 /// are left empty. Reads every input file once. Stopped.

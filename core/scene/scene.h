@@ -87,6 +87,9 @@ Outcome<std::optional<Image>> readNormals(const Frame& frame);
 class SurfaceCache {
  public:
   explicit SurfaceCache(const Scene& scene);
+  /// Takes over what `other` has loaded and this scene does not change: meshes of the same file. Analytic surfaces and depth
+  /// maps, which follow their cameras, are made anew.
+  SurfaceCache(const Scene& scene, const SurfaceCache& other);
   ~SurfaceCache();
   /// The surface that a frame sees. NoSurface; FrameUnreadable for its depth image; InputError when a mesh cannot be read.
   Outcome<std::shared_ptr<const Surface>> surfaceOf(int frame, MeshPolicy policy) const;

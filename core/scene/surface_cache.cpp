@@ -92,6 +92,18 @@ SurfaceCache::SurfaceCache(const Scene& scene) : impl_(std::make_unique<Impl>())
   impl_->frames = scene.frames;
   impl_->sources = scene.surfaces;
 }
+SurfaceCache::SurfaceCache(const Scene& scene, const SurfaceCache& other) : SurfaceCache(scene) {
+  const std::lock_guard<std::mutex> lock(other.impl_->mutex);
+  const auto sameMesh = [&](const std::string& id) {
+    const auto mine = impl_->sources.find(id), theirs = other.impl_->sources.find(id);
+    return mine != impl_->sources.end() && theirs != other.impl_->sources.end() && mine->second.mesh &&
+           mine->second.mesh == theirs->second.mesh;
+  };
+  for (const auto& [id, mesh] : other.impl_->meshes)
+    if (sameMesh(id)) impl_->meshes.emplace(id, mesh);
+  for (const auto& [key, surface] : other.impl_->surfaces)
+    if (sameMesh(key.substr(0, key.rfind('|')))) impl_->surfaces.emplace(key, surface);
+}
 SurfaceCache::~SurfaceCache() = default;
 
 std::string SurfaceCache::keyOf(int index) const {

@@ -12,6 +12,7 @@ Engine coreEngine() {
   Engine engine;
   engine.open = openInput;
   engine.save = saveSession;
+  engine.autosave = autosaveSession;
   engine.inspect = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn& progress,
                       const Inspection* previous) { return inspect(std::move(scene), request, progress, previous); };
   engine.choose = [](std::shared_ptr<const Scene> scene, InspectionRequest request, std::optional<double> goodEnoughPct,

@@ -9,11 +9,6 @@
 
 namespace glint::gui {
 
-bool sameRequest(const InspectionRequest& a, const InspectionRequest& b) {
-  return a.models == b.models && a.train == b.train && a.excluded == b.excluded && a.source == b.source &&
-         a.settings == b.settings && a.noisePx == b.noisePx && a.seed == b.seed && a.truthFolder == b.truthFolder;
-}
-
 std::string rangesText(const std::vector<int>& frames) {
   std::string text;
   for (std::size_t i = 0; i < frames.size();) {
@@ -49,9 +44,9 @@ std::string Document::plottedModel() const {
 }
 
 void Document::setInspection(std::shared_ptr<const Inspection> inspection, const InspectionRequest& computedFor) {
-  if (!inspection || inspection->scene != scene_) return;  // a late result of a scene that was closed
+  if (!inspection || inspection->given != scene_) return;  // a late result of a scene that was closed
   inspection_ = std::move(inspection);
-  setStale(!sameRequest(computedFor, state_.request));
+  setStale(computedFor != state_.request);
   emit inspectionChanged();
 }
 
@@ -91,6 +86,7 @@ void Document::open(const Opened& opened) {
   sessionFile_ = opened.isSession ? inputFile_ : QString();
   inspection_.reset();
   tradeoff_ = savedTradeoff_ = opened.tradeoff;
+  unsaved_ = opened.unsaved;
   updateTraining();
   setStale(scene_ != nullptr);
   emit sceneOpened();
@@ -115,11 +111,12 @@ void Document::markSaved(const QString& sessionFile, const ViewState& saved, std
   sessionFile_ = sessionFile;
   saved_ = saved;
   savedTradeoff_ = std::move(tradeoff);
+  unsaved_ = false;
   emit savedStateChanged();
 }
 
 bool Document::hasUnsavedChanges() const {
-  return scene_ && (!sameRequest(saved_.request, state_.request) || saved_.layers != state_.layers ||
+  return scene_ && (unsaved_ || saved_.request != state_.request || saved_.layers != state_.layers ||
                     saved_.options != state_.options || tradeoff_ != savedTradeoff_);
 }
 
@@ -161,6 +158,12 @@ void Document::setSource(FrameSource source) {
   ViewState after = state_;
   after.request.source = source;
   push(std::move(after), source == FrameSource::Radiance ? tr("Use the radiance") : tr("Use the photographs"));
+}
+
+void Document::setWhatIf(const WhatIf& whatIf, const QString& text, const QString& mergeKey) {
+  ViewState after = state_;
+  after.request.whatIf = whatIf;
+  push(std::move(after), text, mergeKey);
 }
 
 void Document::setRole(int frame, FrameRole role) {
@@ -238,14 +241,14 @@ void Document::setOption(const std::string& name, double value, const QString& t
 }
 
 void Document::push(ViewState after, const QString& text, const QString& mergeKey) {
-  if (sameRequest(after.request, state_.request) && after.selection == state_.selection && after.layers == state_.layers &&
+  if (after.request == state_.request && after.selection == state_.selection && after.layers == state_.layers &&
       after.options == state_.options)
     return;
   undo_.push(new StateCommand(*this, state_, std::move(after), text, mergeKey));
 }
 
 void Document::apply(const ViewState& state) {
-  const bool request = !sameRequest(state.request, state_.request);
+  const bool request = state.request != state_.request;
   const bool selection = state.selection != state_.selection;
   const bool layers = state.layers != state_.layers;
   const bool options = state.options != state_.options;

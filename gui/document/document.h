@@ -86,6 +86,8 @@ class Document : public QObject {
   void setRequest(const glint::InspectionRequest& request, const QString& text);
   /// Model and settings of a measured point, as one step of undo. @param text  what the step is called.
   void load(const glint::TradeoffPoint& point, const QString& text);
+  /// @param mergeKey  equal texts that are not empty merge into one step.
+  void setWhatIf(const glint::WhatIf& whatIf, const QString& text, const QString& mergeKey = {});
   void setRole(int frame, FrameRole role);
   void select(const viz::Selection& selection, int gesture = 0);
   void selectFrame(int frame, int gesture = 0);
@@ -121,11 +123,11 @@ class Document : public QObject {
   std::shared_ptr<const Inspection> inspection_;
   std::shared_ptr<const Tradeoff> tradeoff_, savedTradeoff_;
   bool stale_ = false;
+  bool unsaved_ = false;  ///< opened as it is stored nowhere: recovered, or with its scene in another place
   int gesture_ = 0;
   QUndoStack undo_;
 };
 
-bool sameRequest(const InspectionRequest& a, const InspectionRequest& b);
 /// "0-5,9" from sorted frame numbers; "" for none.
 std::string rangesText(const std::vector<int>& frames);
 

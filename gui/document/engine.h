@@ -22,6 +22,8 @@ namespace glint::gui {
 struct Opened {
   std::string path;        ///< as opened
   bool isSession = false;  ///< `path` is a session, so "save" writes there
+  bool unsaved = false;    ///< recovered or given another scene: what is on screen is not what `path` holds
+  std::string warning;     ///< one line to show once; "" = none
   std::shared_ptr<const Scene> scene;
   InspectionRequest request;
   viz::Selection selection;
@@ -36,8 +38,9 @@ struct Opened {
 /// Everything that the desktop program asks of `core`. `coreEngine()` is the real one; tests replace single
 /// functions to make a run long, to count runs or to fail. All of them may be called from a worker thread.
 struct Engine {
-  /// InputError (file, place, reason) when the input cannot be used.
-  std::function<Opened(const std::string& path)> open;
+  /// InputError (file, place, reason) when the input cannot be used; MissingScene for a session whose scene is not there.
+  /// @param sceneInstead  where that scene is now; "" = where the session says.
+  std::function<Opened(const std::string& path, const std::string& sceneInstead)> open;
   /// As glint::inspect: throws Stopped and InputError.
   std::function<Inspection(std::shared_ptr<const Scene>, const InspectionRequest&, const ProgressFn&, const Inspection* previous)>
       inspect;
@@ -53,6 +56,9 @@ struct Engine {
   /// Writes a session file atomically; InputError when it cannot be written, Stopped. It hashes every input file, so it takes
   /// its time. @param results may be null.
   std::function<void(const Opened&, const Inspection* results, const std::string& path, const ProgressFn&)> save;
+  /// Writes what is needed to go on after a crash, quickly: no hashes, no results. `open` reads it as `Opened::unsaved`.
+  /// InputError.
+  std::function<void(const Opened&, const std::string& path)> autosave;
 };
 
 /// The engine that the program uses: glint::core.

@@ -4,6 +4,7 @@
 #include <exception>
 #include <utility>
 
+#include "core/pipeline/session.h"
 #include "gui/base/text.h"
 
 namespace glint::gui {
@@ -33,10 +34,18 @@ void Runner::cancel() {
   cancelledSaves_ = newestSave_.load();
 }
 
-void Runner::open(const std::string& path) {
+void Runner::open(const std::string& path, const std::string& sceneInstead) {
   cancelled_ = newest_.load();  // results of the scene on screen are of no use any more; a save is
-  const auto work = [this, path](int job) {
-    auto opened = std::make_shared<const Opened>(engine_.open(path));
+  const auto work = [this, path, sceneInstead](int job) {
+    OpenedPtr opened;
+    try {
+      opened = std::make_shared<const Opened>(engine_.open(path, sceneInstead));
+    } catch (const MissingScene& e) {
+      QMetaObject::invokeMethod(
+          this, [this, session = toQString(path), scene = toQString(e.scene().string())] { emit sceneMissing(session, scene); },
+          Qt::QueuedConnection);
+      throw;
+    }
     if (job == newest_)
       QMetaObject::invokeMethod(
           this, [this, opened] { emit this->opened(opened); }, Qt::QueuedConnection);

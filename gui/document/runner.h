@@ -29,7 +29,8 @@ class Runner : public QObject {
   explicit Runner(Engine engine, QObject* parent = nullptr);
   ~Runner() override;  ///< stops what runs and waits for it
 
-  void open(const std::string& path);
+  /// @param sceneInstead  where the scene of a session is now; "" = where the session says.
+  void open(const std::string& path, const std::string& sceneInstead = {});
   /// @param previous  earlier results on the same scene, so that unchanged stages are not repeated; may be null.
   void inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& request, InspectionPtr previous);
   /// Writes a session without stopping what runs; nothing but cancel() stops it. Answers with saved().
@@ -50,6 +51,8 @@ class Runner : public QObject {
   void chosen(const glint::gui::SelectionPtr& selection, const glint::gui::OpenedPtr& computedFor);
   void measured(const glint::gui::TradeoffPtr& tradeoff, const glint::gui::OpenedPtr& computedFor);
   void failed(const QString& oneLine);
+  /// With failed() after it: opening can be tried again with the place of the scene.
+  void sceneMissing(const QString& session, const QString& scene);
   void openFailed();  ///< after failed(): what ran for the scene on screen was stopped for nothing
   void stopped();     ///< by cancel()
   void saved(const QString& path, const QString& problem);  ///< `problem` is one line, "" = the file is written

@@ -32,7 +32,7 @@ int frameNumber(const Scene& scene, const std::string& id) {
 }
 }  // namespace
 
-Opened openInput(const std::string& path) {
+Opened openInput(const std::string& path, const std::string& sceneInstead) {
   Opened opened;
   opened.path = path;
   const fs::path session = sessionAt(path);
@@ -43,10 +43,18 @@ Opened openInput(const std::string& path) {
     if (frames < kDefaultTraining) opened.request.train = "first:" + std::to_string(frames);
     return opened;
   }
-  OpenedSession read = openSession(session);
+  OpenedSession read = openSession(session, sceneInstead);
   const SessionView& view = read.session.view;
   opened.path = session.string();
   opened.isSession = true;
+  opened.unsaved = !sceneInstead.empty();
+  opened.warning = read.warning;
+  if (read.session.recovery) {
+    opened.path = read.session.recovery->of.string();
+    opened.isSession = read.session.recovery->isSession;
+    opened.unsaved = true;
+    read.session.recovery.reset();
+  }
   opened.scene = read.scene;
   opened.request = read.session.request;
   opened.selection = {frameNumber(*read.scene, view.frame), view.model, view.highlight, view.light, {}};
@@ -60,6 +68,31 @@ Opened openInput(const std::string& path) {
   opened.session = std::make_shared<const Session>(std::move(read.session));
   return opened;
 }
+
+namespace {
+/// What a session says besides its inputs and results.
+void addState(Session& session, const Opened& opened) {
+  const Scene& scene = *opened.scene;
+  session.request = opened.request;
+  if (opened.tradeoff) session.tradeoff = *opened.tradeoff;
+  if (opened.session) {
+    session.notes = opened.session->notes;
+    session.unknownJson = opened.session->unknownJson;
+    session.allowOutsidePaths = opened.session->allowOutsidePaths;
+    session.view.cameras = opened.session->view.cameras;
+  }
+  session.view.layout = opened.layout;
+  session.view.layers = opened.layers;
+  session.view.options = opened.options;
+  session.view.frame = scene.frames.at(std::size_t(opened.selection.frame)).id;
+  session.view.model = opened.selection.model;
+  session.view.light = opened.selection.light;
+  session.view.highlight = opened.selection.highlight;
+  if (opened.viewPoint)
+    session.view.cameras[kSceneView] = {opened.viewPoint->position, opened.viewPoint->focalPoint, opened.viewPoint->up,
+                                        opened.viewPoint->viewAngleDeg};
+}
+}  // namespace
 
 void saveSession(const Opened& opened, const Inspection* results, const std::string& path, const ProgressFn& progress) {
   const Scene& scene = *opened.scene;
@@ -79,24 +112,17 @@ void saveSession(const Opened& opened, const Inspection* results, const std::str
       if (!training || train.perSurface) session.heldOut.push_back(id);
     }
   }
-  session.request = opened.request;
-  if (opened.tradeoff) session.tradeoff = *opened.tradeoff;
-  if (opened.session) {
-    session.notes = opened.session->notes;
-    session.unknownJson = opened.session->unknownJson;
-    session.allowOutsidePaths = opened.session->allowOutsidePaths;
-    session.view.cameras = opened.session->view.cameras;
-  }
-  session.view.layout = opened.layout;
-  session.view.layers = opened.layers;
-  session.view.options = opened.options;
-  session.view.frame = scene.frames.at(std::size_t(opened.selection.frame)).id;
-  session.view.model = opened.selection.model;
-  session.view.light = opened.selection.light;
-  session.view.highlight = opened.selection.highlight;
-  if (opened.viewPoint)
-    session.view.cameras[kSceneView] = {opened.viewPoint->position, opened.viewPoint->focalPoint, opened.viewPoint->up,
-                                        opened.viewPoint->viewAngleDeg};
+  addState(session, opened);
+  writeSession(session, path);
+}
+
+void autosaveSession(const Opened& opened, const std::string& path) {
+  Session session;
+  session.input = fs::absolute(opened.scene->file).lexically_normal();
+  session.allowOutsidePaths = opened.scene->allowOutsidePaths;
+  const std::string& of = opened.isSession && !opened.path.empty() ? opened.path : opened.scene->file.string();
+  session.recovery = Recovery{fs::absolute(of).lexically_normal(), opened.isSession && !opened.path.empty()};
+  addState(session, opened);
   writeSession(session, path);
 }
 

@@ -7,9 +7,13 @@
 
 namespace glint::gui {
 
-/// Opens a session (by its ending .glint, or the only one in a folder without a scene) or any other input. InputError.
-Opened openInput(const std::string& path);
+/// Opens a session (by its ending .glint, or the only one in a folder without a scene), an autosave, or any other input.
+/// InputError; MissingScene, to be asked again with where the scene is.
+Opened openInput(const std::string& path, const std::string& sceneInstead = {});
 /// Writes a session; InputError, Stopped. @param results  finished results of exactly this request, or null.
 void saveSession(const Opened& opened, const Inspection* results, const std::string& path, const ProgressFn& progress = {});
+
+/// As Engine::autosave.
+void autosaveSession(const Opened& opened, const std::string& path);
 
 }  // namespace glint::gui

@@ -2,19 +2,17 @@
 #include "gui/panels/parameter_panel.h"
 
 #include <QCheckBox>
-#include <QComboBox>
 #include <QGridLayout>
 #include <QLabel>
 #include <QSignalBlocker>
-#include <QSlider>
 #include <QToolButton>
 #include <QVariant>
-#include <QWheelEvent>
 #include <cmath>
 #include <memory>
 #include <utility>
 
 #include "gui/base/number_box.h"
+#include "gui/base/quiet_controls.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 
@@ -47,28 +45,6 @@ QString stageTitle(const std::string& key) {
   if (!stage.isEmpty()) stage[0] = stage[0].toUpper();
   return stage;
 }
-
-/// A combo box that the wheel changes only while it has the focus.
-class QuietComboBox : public QComboBox {
- public:
-  using QComboBox::QComboBox;
-
- protected:
-  void wheelEvent(QWheelEvent* e) override {
-    if (hasFocus())
-      QComboBox::wheelEvent(e);
-    else
-      e->ignore();
-  }
-};
-
-class QuietSlider : public QSlider {
- public:
-  using QSlider::QSlider;
-
- protected:
-  void wheelEvent(QWheelEvent* e) override { e->ignore(); }
-};
 }  // namespace
 
 ParameterPanel::ParameterPanel(Document& document, QWidget* parent) : QScrollArea(parent), document_(document) {
@@ -175,6 +151,17 @@ void ParameterPanel::addRow(const ParamSpec& spec, QGridLayout* grid, int row, s
   grid->addWidget(reset, row, 3);
   connect(reset, &QToolButton::clicked, this, [this, key = spec.key] { document_.resetSetting(key); });
   rows_.push_back({spec.key, std::move(refresh), reset});
+}
+
+bool ParameterPanel::showParameter(const std::string& key) {
+  for (const char* kind : {"slider:", "value:"}) {
+    auto* control = findChild<QWidget*>(QLatin1String(kind) + toQString(key));
+    if (!control) continue;
+    ensureWidgetVisible(control, 0, height() / 3);
+    control->setFocus(Qt::ShortcutFocusReason);
+    return true;
+  }
+  return false;
 }
 
 void ParameterPanel::refresh() {

@@ -19,6 +19,9 @@ class ParameterPanel : public QScrollArea {
  public:
   explicit ParameterPanel(Document& document, QWidget* parent = nullptr);
 
+  /// Scrolls to a parameter's row and gives it the keyboard. False for an unknown key.
+  bool showParameter(const std::string& key);
+
  private:
   struct Row {
     std::string key;

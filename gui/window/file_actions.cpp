@@ -92,6 +92,18 @@ void FileActions::open(const QString& path) {
   runner_.open(path.toStdString());
 }
 
+void FileActions::openRelinked(const QString& session, const QString& scene) {
+  if (!mayDiscard()) return;
+  runner_.open(session.toStdString(), scene.toStdString());
+}
+
+void FileActions::askForScene(const QString& session, const QString& missing) {
+  const QString name = QFileInfo(missing).fileName();
+  const QString found = QFileDialog::getOpenFileName(window_, tr("Where is %1?").arg(name), QFileInfo(session).path(),
+                                                     tr("%1 (%1);;Scenes (*.json);;All files (*)").arg(name));
+  if (!found.isEmpty()) openRelinked(session, found);
+}
+
 void FileActions::finishOpen(const OpenedPtr& opened) {
   try {
     document_.open(*opened);
@@ -101,6 +113,7 @@ void FileActions::finishOpen(const OpenedPtr& opened) {
   }
   emit viewOpened(opened);
   remember(toQString(opened->path));
+  if (!opened->warning.empty()) emit problem(toQString(opened->warning));
   for (const std::string& warning : opened->scene->warnings) emit message(toQString(warning));
   if (frameToSelect_.isEmpty()) return;
   const std::string wanted = frameToSelect_.toStdString();

@@ -36,6 +36,10 @@ class FileActions : public QObject {
   void openDialog();
   void openFolderDialog();
   void open(const QString& path);
+  /// Opens a session whose scene lies elsewhere now.
+  void openRelinked(const QString& session, const QString& scene);
+  /// Asks where the scene of a session is, then opens it from there.
+  void askForScene(const QString& session, const QString& missing);
   /// Save in the background; false when there was nothing to save or the user gave up. Message or problem tells how it ended.
   bool save();
   bool saveAs();

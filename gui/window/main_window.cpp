@@ -3,17 +3,21 @@
 
 #include <QApplication>
 #include <QCloseEvent>
+#include <QDir>
 #include <QDockWidget>
 #include <QFileInfo>
 #include <QLabel>
+#include <QLocale>
 #include <QMenuBar>
 #include <QMimeData>
 #include <QPlainTextEdit>
 #include <QScrollArea>
 #include <QSplitter>
 #include <QStackedWidget>
+#include <QStandardPaths>
 #include <QStatusBar>
 #include <QTime>
+#include <QTimer>
 #include <QToolBar>
 #include <QUndoView>
 #include <QVBoxLayout>
@@ -30,10 +34,15 @@
 #include "gui/scene/layer_list.h"
 #include "gui/scene/scene_panel.h"
 #include "gui/timeline/timeline.h"
+#include "gui/whatif/what_if_panel.h"
+#include "gui/window/autosave.h"
 #include "gui/window/file_actions.h"
 #include "gui/window/job_status.h"
 #include "gui/window/layouts.h"
 #include "gui/window/message_bar.h"
+#include "gui/window/palette.h"
+#include "gui/window/palette_items.h"
+#include "gui/window/shortcut_dialog.h"
 #include "gui/window/start_page.h"
 
 namespace glint::gui {
@@ -64,10 +73,7 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
     if (!opened->layout.empty()) applyLayout(toQString(opened->layout));
     scene_->setViewPoint(opened->viewPoint);
   });
-  files_->setViewSource([this](Opened& opened) {
-    opened.layout = layout_.toStdString();
-    opened.viewPoint = scene_->viewPoint();
-  });
+  files_->setViewSource([this](Opened& opened) { addView(opened); });
   connect(&runner_, &Runner::failed, this, [this](const QString& oneLine) {
     runFailed_ = true;
     showProblem(oneLine);
@@ -86,12 +92,24 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   connect(&document_, &Document::requestChanged, this, &MainWindow::recompute);
   connect(&document_, &Document::sceneOpened, this, [this] {
     messageBar_->hide();
+    if (const auto found = std::exchange(recovering_, {}))
+      QTimer::singleShot(0, this, [this, found] {
+        autosave_->flush();  // what was recovered is in this program's own file before the other one goes
+        Autosave::discard(*found);
+      });
     centre_->setCurrentWidget(views_);
     log(tr("Opened %1").arg(document_.inputFile()));
     recompute();
   });
   connect(&document_, &Document::sceneOpened, this, &MainWindow::showTitle);
   connect(&document_, &Document::savedStateChanged, this, &MainWindow::showTitle);
+  connect(&runner_, &Runner::sceneMissing, this, [this](const QString& session, const QString& scene) {
+    missing_ = {session, scene};  // failed() comes next, and shows it
+  });
+  autosave_ = new Autosave(
+      engine_, document_, [this] { return snapshot(); }, recoveryFolder(), this);
+  connect(autosave_, &Autosave::problem, this, &MainWindow::log);
+  offerRecovery();
   start_->setRecent(files_->recent());
   showTitle();
   applyLayout(QStringLiteral("debug"));
@@ -150,8 +168,7 @@ void MainWindow::buildDocks() {
       runner_.choose(document_.sharedScene(), document_.request(), goodEnoughPct, document_.inspection());
   });
   connect(&runner_, &Runner::chosen, this, [this](const SelectionPtr& selection, const OpenedPtr& computedFor) {
-    if (computedFor->scene != document_.sharedScene() || !sameRequest(computedFor->request, document_.request()))
-      return;  // too late
+    if (computedFor->scene != document_.sharedScene() || computedFor->request != document_.request()) return;  // too late
     const QString table = toQString(selectionTable(*selection));
     log(tr("Automatic choice of the model\n") + table);
     setup_->showChoice(toQString(selection->why + (selection->patches ? " " + selection->patches->why : "")), table);
@@ -172,7 +189,11 @@ void MainWindow::buildDocks() {
   tabifyDockWidget(layers, addDock("history", tr("History"), history, Qt::LeftDockWidgetArea));
   layers->raise();
 
-  addDock("parameters", tr("Parameters"), new ParameterPanel(document_), Qt::RightDockWidgetArea);
+  parameters_ = new ParameterPanel(document_);
+  addDock("parameters", tr("Parameters"), parameters_, Qt::RightDockWidgetArea);
+  QDockWidget* whatIf = addDock("what-if", tr("What if"), new WhatIfPanel(document_), Qt::RightDockWidgetArea);
+  tabifyDockWidget(docks_["parameters"], whatIf);
+  docks_["parameters"]->raise();
   numbers_ = new NumbersPanel(document_);
   addDock("numbers", tr("Numbers"), numbers_, Qt::RightDockWidgetArea);
   connect(scene_, &ScenePanel::picked, numbers_, &NumbersPanel::showPicked);
@@ -217,6 +238,20 @@ void MainWindow::buildMenus() {
   actions_.add("edit.copy-numbers", edit, tr("Copy &numbers"), [this] { numbers_->copy(); }, {{}, "copy"});
   actions_.add("edit.copy-error-rows", edit, tr("Copy &error rows"), [this] { errors_->copySelection(); });
   actions_.add("edit.stop", edit, tr("&Stop what runs"), [this] { runner_.cancel(); }, {{Qt::Key_Escape}, "stop"});
+
+  edit->addSeparator();
+  palette_ = new Palette(
+      [this](const QString& typed) {
+        return paletteItems(typed, actions_, document_, [this](const std::string& key) {
+          docks_["parameters"]->show();
+          docks_["parameters"]->raise();
+          parameters_->showParameter(key);
+        });
+      },
+      this);
+  actions_.add("edit.palette", edit, tr("&Find an action, parameter or frame…"), [this] { palette_->popUp(); },
+               {{QKeySequence("Ctrl+Shift+P"), QKeySequence("Ctrl+K")}});
+  actions_.add("edit.shortcuts", edit, tr("&Keyboard shortcuts…"), [this] { ShortcutDialog(actions_, this).exec(); });
 
   QMenu* frame = menuBar()->addMenu(tr("F&rame"));
   timeline_->addActions(actions_, frame);
@@ -272,11 +307,12 @@ void MainWindow::applyLayout(const QString& name) {
     // Log and history are tabs behind their neighbours: they follow them.
     const QString host = dock.key() == QStringLiteral("log")        ? QStringLiteral("errors")
                          : dock.key() == QStringLiteral("tradeoff") ? QStringLiteral("errors")
+                         : dock.key() == QStringLiteral("what-if")  ? QStringLiteral("parameters")
                          : dock.key() == QStringLiteral("history")  ? QStringLiteral("layers")
                                                                     : dock.key();
     dock.value()->setVisible(layout.docks.contains(host));
   }
-  for (const char* front : {"errors", "layers"}) docks_[QLatin1String(front)]->raise();
+  for (const char* front : {"errors", "layers", "parameters"}) docks_[QLatin1String(front)]->raise();
   resizeDocks({docks_["setup"], docks_["parameters"]}, {230, 380}, Qt::Horizontal);
   resizeDocks({docks_["timeline"], docks_["errors"]}, {92, height() * 3 / 10}, Qt::Vertical);
   resizeDocks({docks_["setup"], docks_["layers"]}, {284, 264}, Qt::Vertical);
@@ -288,6 +324,38 @@ void MainWindow::setTheme(Theme theme) {
   if (auto* app = qobject_cast<QApplication*>(QCoreApplication::instance())) applyTheme(*app, theme);
   scene_->setDark(theme == Theme::Dark);
   start_->setRecent(files_->recent());  // its colours are part of the text
+}
+
+void MainWindow::addView(Opened& opened) const {
+  opened.layout = layout_.toStdString();
+  opened.viewPoint = scene_->viewPoint();
+}
+
+Opened MainWindow::snapshot() const {
+  Opened opened = document_.toSave();
+  opened.isSession = !opened.path.empty();
+  addView(opened);
+  return opened;
+}
+
+QString MainWindow::recoveryFolder() {
+  return QStandardPaths::writableLocation(QStandardPaths::AppDataLocation) + QStringLiteral("/recovery");
+}
+
+void MainWindow::offerRecovery() {
+  const std::optional<Autosave::Found> found = autosave_->leftBehind();
+  if (!found) return;
+  messageBar_->showOffer(tr("The program ended without saving what was changed on %1 (%2).")
+                             .arg(QDir::toNativeSeparators(found->of), QLocale().toString(found->when, QLocale::ShortFormat)),
+                         {{tr("Recover"),
+                           [this, found = *found] {
+                             recovering_ = found;
+                             files_->open(found.file);
+                           }},
+                          {tr("Discard"), [this, found = *found] {
+                             Autosave::discard(found);
+                             offerRecovery();
+                           }}});
 }
 
 bool MainWindow::idle() const { return !runner_.busy() && !frame_->loader()->busy(); }
@@ -303,7 +371,10 @@ void MainWindow::recompute() {
 
 void MainWindow::showProblem(const QString& oneLine) {
   lastError_ = oneLine;
-  messageBar_->showError(oneLine);
+  MessageBar::Answers answers;
+  if (const auto [session, scene] = std::exchange(missing_, {}); !session.isEmpty())
+    answers.append({tr("Locate…"), [this, session = session, scene = scene] { files_->askForScene(session, scene); }});
+  messageBar_->showError(oneLine, answers);
   log(oneLine);
   emit problem(oneLine);
 }

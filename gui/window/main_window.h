@@ -8,6 +8,7 @@
 #include "gui/base/theme.h"
 #include "gui/document/document.h"
 #include "gui/document/runner.h"
+#include "gui/window/autosave.h"
 
 class QDockWidget;
 class QLabel;
@@ -22,6 +23,8 @@ class FileActions;
 class FramePanel;
 class MessageBar;
 class NumbersPanel;
+class Palette;
+class ParameterPanel;
 class ScenePanel;
 class StartPage;
 class SetupPanel;
@@ -47,6 +50,8 @@ class MainWindow : public QMainWindow {
   Runner& runner() { return runner_; }
   FramePanel* framePanel() { return frame_; }
   Actions& actions() { return actions_; }
+  Palette* commandPalette() const { return palette_; }
+  FileActions* files() { return files_; }
   QString lastError() const { return lastError_; }
 
  signals:
@@ -67,6 +72,10 @@ class MainWindow : public QMainWindow {
   void showProblem(const QString& oneLine);
   void log(const QString& line);
   void showTitle();
+  void addView(Opened& opened) const;
+  Opened snapshot() const;
+  static QString recoveryFolder();
+  void offerRecovery();
 
   Engine engine_;
   Document document_;
@@ -82,12 +91,17 @@ class MainWindow : public QMainWindow {
   Timeline* timeline_ = nullptr;
   ErrorTable* errors_ = nullptr;
   NumbersPanel* numbers_ = nullptr;
+  ParameterPanel* parameters_ = nullptr;
+  Palette* palette_ = nullptr;
   SetupPanel* setup_ = nullptr;
   TradeoffPanel* tradeoff_ = nullptr;
   QPlainTextEdit* log_ = nullptr;
   MessageBar* messageBar_ = nullptr;
   QLabel* probe_ = nullptr;
   QString layout_, lastError_;
+  Autosave* autosave_ = nullptr;
+  std::optional<Autosave::Found> recovering_;  ///< being opened
+  std::pair<QString, QString> missing_;        ///< session and scene of the opening that failed last
   bool runFailed_ = false;  ///< the message bar shows why the last run failed
 };
 

@@ -3,37 +3,54 @@
 
 #include <QHBoxLayout>
 #include <QLabel>
+#include <QPushButton>
 #include <QToolButton>
 
 #include "gui/base/theme.h"
 
 namespace glint::gui {
 
-MessageBar::MessageBar(QWidget* parent) : QWidget(parent) {
+MessageBar::MessageBar(QWidget* parent) : QWidget(parent), row_(new QHBoxLayout(this)), label_(new QLabel) {
   setObjectName(QStringLiteral("messageBar"));
   setAutoFillBackground(true);
-  QPalette p = palette();
-  p.setColor(QPalette::Window, QColor(0x8c, 0x2b, 0x20));
-  p.setColor(QPalette::WindowText, Qt::white);
-  setPalette(p);
-  auto* row = new QHBoxLayout(this);
-  row->setContentsMargins(10, 3, 4, 3);
-  label_ = new QLabel;
-  label_->setPalette(p);
+  row_->setContentsMargins(10, 3, 4, 3);
   label_->setTextInteractionFlags(Qt::TextSelectableByMouse);
   label_->setWordWrap(true);
-  row->addWidget(label_, 1);
+  row_->addWidget(label_, 1);
   auto* close = new QToolButton;
   close->setText(QStringLiteral("×"));
   close->setAutoRaise(true);
   close->setToolTip(tr("Close"));
   connect(close, &QToolButton::clicked, this, &QWidget::hide);
-  row->addWidget(close, 0, Qt::AlignTop);
+  row_->addWidget(close, 0, Qt::AlignTop);
   hide();
 }
 
-void MessageBar::showError(const QString& oneLine) {
+void MessageBar::showError(const QString& oneLine, const Answers& answers) {
+  showLine(oneLine, QColor(0x8c, 0x2b, 0x20), answers);
+}
+void MessageBar::showOffer(const QString& oneLine, const Answers& answers) {
+  showLine(oneLine, QColor(0x24, 0x4f, 0x7a), answers);
+}
+
+void MessageBar::showLine(const QString& oneLine, const QColor& background, const Answers& answers) {
+  QPalette p = palette();
+  p.setColor(QPalette::Window, background);
+  p.setColor(QPalette::WindowText, Qt::white);
+  setPalette(p);
+  label_->setPalette(p);
   label_->setText(oneLine);
+  for (QWidget* button : std::as_const(buttons_)) button->deleteLater();
+  buttons_.clear();
+  for (const auto& [title, run] : answers) {
+    auto* button = new QPushButton(title);
+    connect(button, &QPushButton::clicked, this, [this, run = run] {
+      hide();
+      run();
+    });
+    row_->insertWidget(row_->count() - 1, button);
+    buttons_.append(button);
+  }
   show();
 }
 

@@ -1,22 +1,37 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <QList>
+#include <QString>
 #include <QWidget>
+#include <functional>
+#include <utility>
 
+class QHBoxLayout;
 class QLabel;
+class QToolButton;
 
 namespace glint::gui {
 
-/// One line across the window for what went wrong; it stays until it is closed or the next success, and blocks nothing.
+/// One line across the window for what went wrong or what can be done now; it stays until it is closed, answered or overtaken,
+/// and blocks nothing.
 class MessageBar : public QWidget {
   Q_OBJECT
  public:
+  using Answers = QList<std::pair<QString, std::function<void()>>>;  ///< title of a button, what it does
+
   explicit MessageBar(QWidget* parent = nullptr);
-  void showError(const QString& oneLine);
+  void showError(const QString& oneLine, const Answers& answers = {});
+  /// Not an error: something to be decided.
+  void showOffer(const QString& oneLine, const Answers& answers);
   QString text() const;
 
  private:
+  void showLine(const QString& oneLine, const QColor& background, const Answers& answers);
+
+  QHBoxLayout* row_;
   QLabel* label_;
+  QList<QWidget*> buttons_;
 };
 
 }  // namespace glint::gui

@@ -136,7 +136,7 @@ class DocumentTest : public QObject {
     }
     QVERIFY(document_->undoStack()->count() > 100);
     while (document_->undoStack()->canUndo()) document_->undoStack()->undo();
-    QVERIFY(sameRequest(document_->request(), first.request));
+    QVERIFY(document_->request() == first.request);
     QCOMPARE(document_->selection().frame, first.selection.frame);
     QCOMPARE(document_->state().layers, first.layers);
   }

@@ -52,7 +52,7 @@ Opened Fixture::opened() const {
 
 Inspection drawnCircles(std::shared_ptr<const Scene> scene, const InspectionRequest& request) {
   Inspection result;
-  result.scene = scene;
+  result.scene = result.given = scene;
   result.request = request;
   result.train = parseTrainSpec(request.train, *scene);
   const int n = int(scene->frames.size());
@@ -111,7 +111,7 @@ void drag(QWidget* widget, const std::vector<QPoint>& points) {
 
 Engine Fixture::engine() const {
   Engine engine;
-  engine.open = [opened = opened()](const std::string& path) {
+  engine.open = [opened = opened()](const std::string& path, const std::string&) {
     if (path != opened.path) throw InputError(path, "", "no such file");
     return opened;
   };

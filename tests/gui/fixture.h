@@ -42,11 +42,14 @@ struct TestClass {
 QObject* makeDocumentTest();
 QObject* makeRunnerTest();
 QObject* makeFrameCanvasTest();
+QObject* makePaletteTest();
 QObject* makePanelTest();
 QObject* makeLinkingTest();
 QObject* makeWindowTest();
 QObject* makeSessionTest();
 QObject* makeProgramTest();
+QObject* makeRecoveryTest();
+int runUntilKilled();  ///< see recovery_test.cpp
 QObject* makeTradeoffTest();
 
 }  // namespace glint::gui

@@ -16,17 +16,21 @@
 int main(int argc, char** argv) {
   using namespace glint::gui;
   static const TestClass classes[] = {
-      {"document", makeDocumentTest}, {"runner", makeRunnerTest},   {"frame_canvas", makeFrameCanvasTest},
-      {"panel", makePanelTest},       {"linking", makeLinkingTest}, {"window", makeWindowTest},
-      {"session", makeSessionTest},   {"program", makeProgramTest}, {"tradeoff", makeTradeoffTest}};
+      {"document", makeDocumentTest}, {"runner", makeRunnerTest},    {"frame_canvas", makeFrameCanvasTest},
+      {"panel", makePanelTest},       {"palette", makePaletteTest},  {"linking", makeLinkingTest},
+      {"window", makeWindowTest},     {"session", makeSessionTest},  {"program", makeProgramTest},
+      {"recovery", makeRecoveryTest}, {"tradeoff", makeTradeoffTest}};
   if (argc < 2) return std::fputs("usage: test_gui CLASS [QTest options]\n", stderr), 2;
   QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
+  const bool untilKilled = std::strcmp(argv[1], "--until-killed") == 0;
+  QTemporaryDir settings;  // recent files and autosaves of whoever runs the tests stay untouched
+  if (!untilKilled) qputenv("XDG_DATA_HOME", settings.path().toUtf8());  // the killed child shares it
   QApplication app(argc, argv);
-  QTemporaryDir settings;  // recent files of whoever runs the tests stay untouched
   QSettings::setPath(QSettings::NativeFormat, QSettings::UserScope, settings.path());
   QApplication::setOrganizationName(QStringLiteral("GlintTest"));
   QApplication::setApplicationName(QStringLiteral("test_gui"));
   applyTheme(app, Theme::Dark);
+  if (untilKilled) return runUntilKilled();
   for (const TestClass& c : classes) {
     if (std::strcmp(c.name, argv[1]) != 0) continue;
     const std::unique_ptr<QObject> test(c.make());

@@ -86,7 +86,7 @@ class ProgramTest : public QObject {
     out.close();
     const Engine engine = coreEngine();
     Document document(engine.parseTrain);
-    document.open(engine.open(scene.toStdString()));
+    document.open(engine.open(scene.toStdString(), {}));
     document.setSetting("fit.solver", std::string("anchored"));
     document.setRole(2, FrameRole::Excluded);
     document.setTrain("0-1");
@@ -97,16 +97,16 @@ class ProgramTest : public QObject {
     saved.layout = "compare";
     saved.viewPoint = viz::ViewPoint{{1, 2, 3}, {0, 0, 1}, {0, 1, 0}, 25};
     engine.save(saved, nullptr, file.toStdString(), {});
-    const Opened back = engine.open(file.toStdString());
+    const Opened back = engine.open(file.toStdString(), {});
     QVERIFY(back.isSession);
-    QVERIFY(sameRequest(back.request, document.request()));
+    QVERIFY(back.request == document.request());
     QCOMPARE(back.layers, document.state().layers);
     QCOMPARE(back.selection.frame, 1);
     QCOMPARE(back.selection.model, std::string("canonical"));
     QCOMPARE(back.selection.highlight, 0);
     QCOMPARE(back.layout, std::string("compare"));
     QVERIFY(back.viewPoint && back.viewPoint->position == Eigen::Vector3d(1, 2, 3) && back.viewPoint->viewAngleDeg == 25);
-    QCOMPARE(engine.open(folder_.path().toStdString()).isSession, false);  // a scene.json beside it comes first
+    QCOMPARE(engine.open(folder_.path().toStdString(), {}).isSession, false);  // a scene.json beside it comes first
   }
 
   void whatIsWrongIsOneLineAndExitTwo_data() {

@@ -46,7 +46,7 @@ class SessionTest : public QObject {
   void aSavedSessionReplaysAndComesBack() {
     const QString file = folder_.filePath(QStringLiteral("plane.glint"));
     const Engine engine = coreEngine();
-    engine.save(engine.open(GLINT_SOURCE_DIR "/sessions/plane/plane.glint"), nullptr, file.toStdString(), {});
+    engine.save(engine.open(GLINT_SOURCE_DIR "/sessions/plane/plane.glint", {}), nullptr, file.toStdString(), {});
     const viz::ViewPoint seen{{1.5, -2, 3}, {0, 0, 0.1}, {0, 0, 1}, 25};
     viz::ViewPoint saved;
     {
@@ -87,7 +87,7 @@ class SessionTest : public QObject {
   void savingWithoutResultsKeepsTheCamera() {
     const QString file = folder_.filePath(QStringLiteral("kept.glint"));
     const Engine real = coreEngine();
-    Opened opened = real.open(GLINT_SOURCE_DIR "/sessions/plane/plane.glint");
+    Opened opened = real.open(GLINT_SOURCE_DIR "/sessions/plane/plane.glint", {});
     opened.viewPoint = viz::ViewPoint{{1, 2, 3}, {0, 0, 0}, {0, 1, 0}, 20};
     real.save(opened, nullptr, file.toStdString(), {});
     Engine engine = real;
@@ -99,7 +99,7 @@ class SessionTest : public QObject {
     QTRY_VERIFY(window.document().scene() && window.idle());
     save(window);
     QTRY_VERIFY(window.idle());
-    const Opened back = real.open(file.toStdString());
+    const Opened back = real.open(file.toStdString(), {});
     QVERIFY(back.viewPoint && back.viewPoint->position == Eigen::Vector3d(1, 2, 3));
     QVERIFY2(window.statusBar()->currentMessage().contains("without results"), qPrintable(window.statusBar()->currentMessage()));
   }

@@ -98,7 +98,7 @@ std::shared_ptr<Inspection> smallInspection(const std::filesystem::path& folder,
   }
 
   auto inspection = std::make_shared<Inspection>();
-  inspection->scene = scene;
+  inspection->scene = inspection->given = scene;
   inspection->surfaces = std::make_shared<SurfaceCache>(*scene);
   inspection->request.models = {"dual", "canonical"};
   inspection->train.text = "0-3";

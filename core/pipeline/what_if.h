@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/outcome.h"
+#include "core/base/progress.h"
+#include "core/scene/scene.h"
+#include "core/synth/light_source.h"
+
+namespace glint {
+
+/// A camera moved by hand, in its own axes (x right, y down, z forward).
+struct PoseChange {
+  Eigen::Vector3d rotation{0, 0, 0};     ///< rad, about an axis through the camera's centre (rotation vector)
+  Eigen::Vector3d translation{0, 0, 0};  ///< m, of the centre
+  friend bool operator==(const PoseChange&, const PoseChange&) = default;
+};
+
+/// A highlight moved by hand, ideal pixels. The contour is scaled about its centroid, then moved; the peak moves alone.
+struct HighlightChange {
+  Pixel contourBy{0, 0};
+  double contourScale = 1;
+  Pixel peakBy{0, 0};
+  friend bool operator==(const HighlightChange&, const HighlightChange&) = default;
+};
+
+/// What the user tries out on a scene: changes that no file knows of. Plain data, kept by sessions; equal values give equal
+/// results. Everything on its default = the scene as it was captured.
+struct WhatIf {
+  std::map<int, PoseChange> poses;  ///< by frame
+  std::map<std::pair<int, int>, HighlightChange>
+      highlights;  ///< by frame and index in its evidence; of evidence that is not there: no effect
+
+  /// Observed contours are synthesised from the scene's true lights and analytic surfaces instead of being detected; then light,
+  /// surface and material below count, and a moved camera takes its contours with it.
+  bool synthesise = false;
+  std::map<std::string, Eigen::Vector3d>
+      lightsBy;  ///< by id of a true light: shift of its position, m (of its unit direction, for one at infinity)
+  std::map<std::string, double> surfaces;  ///< by surface id: the value of its shape parameter, see `shapeOf`
+  Lobe lobe = Lobe::TorranceSparrow;
+  double roughness = 0.1;  ///< m of the lobe, > 0
+
+  friend bool operator==(const WhatIf&, const WhatIf&) = default;
+  bool none() const { return *this == WhatIf{}; }
+  /// The scene itself changes, not its evidence alone.
+  bool changesScene() const { return synthesise || !poses.empty(); }
+};
+
+/// The one number that a what-if changes about an analytic surface.
+struct ShapeParameter {
+  std::string name;         ///< "curvature"
+  std::string unit;         ///< "1/m"; "" for a factor
+  double value = 0;         ///< as the scene has it
+  double min = 0, max = 0;  ///< sensible bounds around it
+};
+/// curvature of a sheet, radius of a sphere or cylinder, a factor of an ellipsoid's longest semi-axis, the minor radius of a
+/// torus; nothing for planes and quadrics.
+std::optional<ShapeParameter> shapeOf(const AnalyticSpec& spec);
+AnalyticSpec withShape(AnalyticSpec spec, double value);
+
+/// Whether the contours of a scene can be synthesised: it states its lights, and every frame sees an analytic surface.
+/// NotSupported, with the first reason against it.
+std::optional<Failure> whyNotSynthesised(const Scene& scene);
+
+/// Distance from which sensible shifts of lights and cameras are derived: the mean distance from the cameras to the point that
+/// they look at together (least squares over the optical axes), m; 1 where there is none.
+double workingDistance(const Scene& scene);
+
+/// The scene with the changes to poses, and, where contours are synthesised, to lights, surfaces and evidence: `highlights` of
+/// every frame are the contours at `level` of the exact radiance (core/synth). A frame without any keeps none, and is then named
+/// so by the pipeline.
+/// @throw InputError (place "what-if") for a frame, light or surface that does not exist, a value out of range, or a scene whose
+/// contours cannot be synthesised; Stopped.
+std::shared_ptr<const Scene> changedScene(const Scene& scene, const WhatIf& whatIf, double level,
+                                          const ProgressFn& progress = {});
+
+/// A highlight with a change; its ellipse and area follow.
+Highlight changed(Highlight highlight, const HighlightChange& change);
+
+/// Equal for equal changes, exact to the last bit: the part that changes the scene's evidence from the start, that of poses, and
+/// that of highlights.
+std::string synthesisKey(const WhatIf& whatIf);
+std::string posesKey(const WhatIf& whatIf);
+std::string highlightsKey(const WhatIf& whatIf);
+
+}  // namespace glint

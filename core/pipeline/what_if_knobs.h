@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/base/settings.h"
+#include "core/pipeline/what_if.h"
+
+namespace glint {
+
+/// One number of a what-if, as a panel shows it.
+struct WhatIfKnob {
+  std::string group;                         ///< "Light lamp", "Camera of frame 0003", "Highlight 0 of frame 0003"
+  ParamSpec spec;                            ///< key unique among the knobs; the default is the value that changes nothing
+  bool synthetic = false;                    ///< counts only where contours are synthesised
+  std::function<double(const WhatIf&)> get;  ///< in spec.unit
+  std::function<void(WhatIf&, double)> set;  ///< a what-if whose knobs are all on their defaults is `none()` again
+};
+
+/// Knobs for the lights (those with a position), the surface, the lobe, the camera and the highlights of one frame.
+/// @param highlights  how many the frame's evidence has.
+std::vector<WhatIfKnob> whatIfKnobs(const Scene& scene, int frame, int highlights);
+
+/// "contours synthesised, 1 light, 2 poses, 1 highlight"; "" for none.
+std::string summaryOf(const WhatIf& whatIf);
+
+}  // namespace glint

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/whatif/what_if_panel.h"
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QGridLayout>
+#include <QLabel>
+#include <QSignalBlocker>
+#include <QSlider>
+#include <QToolButton>
+#include <QVBoxLayout>
+#include <QVariant>
+#include <memory>
+#include <utility>
+
+#include "core/reflectance/lobe.h"
+#include "gui/base/number_box.h"
+#include "gui/base/quiet_controls.h"
+#include "gui/base/text.h"
+#include "gui/base/theme.h"
+
+namespace glint::gui {
+
+namespace {
+QString named(const char* kind, const WhatIfKnob& knob) { return QLatin1String(kind) + toQString(knob.spec.key); }
+}  // namespace
+
+WhatIfPanel::WhatIfPanel(Document& document, QWidget* parent)
+    : QScrollArea(parent),
+      document_(document),
+      synthesise_(new QCheckBox(tr("Synthesise the contours"))),
+      lobe_(new QuietComboBox),
+      summary_(new QLabel),
+      resetAll_(new QToolButton) {
+  auto* content = new QWidget;
+  auto* column = new QVBoxLayout(content);
+  column->setContentsMargins(10, 4, 6, 8);
+  column->setSpacing(4);
+  auto* head = new QHBoxLayout;
+  summary_->setObjectName(QStringLiteral("whatif.summary"));
+  summary_->setWordWrap(true);
+  head->addWidget(summary_, 1);
+  resetAll_->setObjectName(QStringLiteral("whatif.reset"));
+  resetAll_->setText(tr("Put everything back"));
+  head->addWidget(resetAll_, 0, Qt::AlignTop);
+  column->addLayout(head);
+  auto* synthetic = new QHBoxLayout;
+  synthesise_->setObjectName(QStringLiteral("whatif.synthesise"));
+  synthetic->addWidget(synthesise_, 1);
+  lobe_->setObjectName(QStringLiteral("whatif.lobe"));
+  lobe_->setToolTip(tr("The lobe that makes the contours"));
+  for (const Lobe lobe : {Lobe::TorranceSparrow, Lobe::Ggx, Lobe::BlinnPhong, Lobe::Phong})
+    lobe_->addItem(QLatin1String(nameOf(lobe)));
+  synthetic->addWidget(lobe_);
+  column->addLayout(synthetic);
+  column->addStretch(1);
+  setWidget(content);
+  setWidgetResizable(true);
+  setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+
+  connect(synthesise_, &QCheckBox::clicked, this, [this](bool on) {
+    WhatIf w = document_.request().whatIf;
+    w.synthesise = on;
+    document_.setWhatIf(w, on ? tr("What if: contours synthesised") : tr("What if: contours as captured"));
+  });
+  connect(lobe_, QOverload<int>::of(&QComboBox::activated), this, [this](int index) {
+    WhatIf w = document_.request().whatIf;
+    w.lobe = *lobeOf(lobe_->itemText(index).toStdString());
+    document_.setWhatIf(w, tr("What if: lobe %1").arg(lobe_->itemText(index)));
+  });
+  connect(resetAll_, &QToolButton::clicked, this, [this] { document_.setWhatIf(WhatIf(), tr("What if: everything back")); });
+  for (const auto signal : {&Document::sceneOpened, &Document::selectionChanged, &Document::inspectionChanged})
+    connect(&document_, signal, this, &WhatIfPanel::rebuild);
+  connect(&document_, &Document::requestChanged, this, &WhatIfPanel::refresh);
+  rebuild();
+}
+
+int WhatIfPanel::highlights() const {
+  const auto inspection = document_.inspection();
+  const std::size_t frame = std::size_t(document_.selection().frame);
+  return inspection && frame < inspection->evidence.size() ? int(inspection->evidence[frame].highlights.size()) : 0;
+}
+
+void WhatIfPanel::rebuild() {
+  const Scene* scene = document_.scene();
+  const int frame = document_.selection().frame, count = highlights();
+  if (scene == builtFor_ && frame == builtFrame_ && count == builtHighlights_ && knobs_) return refresh();
+  builtFor_ = scene;
+  builtFrame_ = frame;
+  builtHighlights_ = count;
+  rows_.clear();
+  if (knobs_) {
+    knobs_->hide();
+    knobs_->deleteLater();  // one of its sliders may be what called
+    knobs_ = nullptr;
+  }
+  if (scene && document_.frameCount() > 0) {
+    knobs_ = new QWidget;
+    auto* grid = new QGridLayout(knobs_);
+    grid->setContentsMargins(0, 0, 0, 0);
+    grid->setHorizontalSpacing(6);
+    grid->setVerticalSpacing(2);
+    grid->setColumnStretch(1, 1);
+    int row = 0;
+    std::string group;
+    for (const WhatIfKnob& knob : whatIfKnobs(*scene, frame, count)) {
+      if (knob.group != group) {
+        group = knob.group;
+        auto* heading = new QLabel(toQString(group));
+        heading->setProperty("role", "group");
+        grid->addWidget(heading, row++, 0, 1, 4);
+      }
+      addRow(knob, grid, row++);
+    }
+    auto* column = static_cast<QVBoxLayout*>(widget()->layout());
+    column->insertWidget(column->count() - 1, knobs_);
+  }
+  refresh();
+}
+
+void WhatIfPanel::addRow(const WhatIfKnob& knob, QGridLayout* grid, int row) {
+  const ParamSpec& spec = knob.spec;
+  const QString tip = toQString(spec.help);
+  auto* title = new QLabel(toQString(spec.title));
+  auto* slider = new QuietSlider(Qt::Horizontal);
+  slider->setObjectName(named("slider:", knob));
+  slider->setRange(0, SliderScale::kPositions);
+  slider->setMinimumWidth(60);
+  auto* box = new NumberBox(spec);
+  box->setObjectName(named("value:", knob));
+  box->setFixedWidth(92);
+  auto* reset = new QToolButton;
+  reset->setObjectName(named("reset:", knob));
+  reset->setIcon(icon(QStringLiteral("reset")));
+  reset->setIconSize({13, 13});
+  reset->setAutoRaise(true);
+  reset->setToolTip(tr("Back to %1").arg(valueText(spec.defaultValue, spec)));
+  for (QWidget* w : std::initializer_list<QWidget*>{title, slider, box}) w->setToolTip(tip);
+  grid->addWidget(title, row, 0);
+  grid->addWidget(slider, row, 1);
+  grid->addWidget(box, row, 2);
+  grid->addWidget(reset, row, 3);
+  const SliderScale scale(spec);
+  const auto gesture = std::make_shared<int>(0);
+  connect(slider, &QSlider::sliderPressed, this, [this, gesture] { *gesture = document_.newGesture(); });
+  connect(slider, &QSlider::valueChanged, this, [this, knob, scale, slider, gesture](int position) {
+    change(knob, scale.value(position), slider->isSliderDown() ? *gesture : 0);
+  });
+  connect(box, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this,
+          [this, knob](double value) { change(knob, value, 0); });
+  connect(reset, &QToolButton::clicked, this, [this, knob] { change(knob, std::get<double>(knob.spec.defaultValue), 0); });
+  rows_.push_back({knob,
+                   [slider, box, scale](double value) {
+                     const QSignalBlocker quietSlider(slider), quietBox(box);
+                     if (!slider->isSliderDown()) slider->setValue(scale.position(value));
+                     box->setValue(value);
+                   },
+                   {title, slider, box},
+                   reset});
+}
+
+void WhatIfPanel::change(const WhatIfKnob& knob, double value, int gesture) {
+  WhatIf w = document_.request().whatIf;
+  knob.set(w, value);
+  document_.setWhatIf(
+      w, tr("What if: %1, %2 %3").arg(toQString(knob.group), toQString(knob.spec.title).toLower(), valueText(value, knob.spec)),
+      gesture > 0 ? QStringLiteral("%1#%2").arg(toQString(knob.spec.key)).arg(gesture) : QString());
+}
+
+void WhatIfPanel::refresh() {
+  const WhatIf& w = document_.request().whatIf;
+  const Scene* scene = document_.scene();
+  const std::optional<Failure> whyNot = scene ? whyNotSynthesised(*scene) : std::nullopt;
+  synthesise_->setEnabled(scene && !whyNot);
+  synthesise_->setToolTip(whyNot
+                              ? tr("Not here: %1").arg(toQString(whyNot->detail))
+                              : tr("Observed contours come from the exact radiance of the lights below, instead of the images"));
+  synthesise_->setChecked(w.synthesise);
+  lobe_->setEnabled(w.synthesise);
+  lobe_->setCurrentIndex(lobe_->findText(QLatin1String(nameOf(w.lobe))));
+  const std::string summary = summaryOf(w);
+  summary_->setText(summary.empty() ? tr("Nothing is changed: this is what was captured") : toQString(summary));
+  resetAll_->setEnabled(!w.none());
+  for (const Row& row : rows_) {
+    const double value = row.knob.get(w);
+    row.show(value);
+    const bool usable = !row.knob.synthetic || w.synthesise;
+    for (QWidget* widget : row.widgets) widget->setEnabled(usable);
+    row.reset->setEnabled(usable && value != std::get<double>(row.knob.spec.defaultValue));
+  }
+}
+
+}  // namespace glint::gui

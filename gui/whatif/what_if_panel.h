@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QScrollArea>
+#include <functional>
+#include <vector>
+
+#include "core/pipeline/what_if_knobs.h"
+#include "gui/document/document.h"
+
+class QCheckBox;
+class QComboBox;
+class QGridLayout;
+class QLabel;
+class QToolButton;
+
+namespace glint::gui {
+
+/// What if the light, the surface, a camera or a contour were another: one row per knob of `whatIfKnobs`, every change one step
+/// of undo, the results follow. Object names for tests: "slider:KEY", "value:KEY", "reset:KEY", "whatif.synthesise",
+/// "whatif.lobe".
+class WhatIfPanel : public QScrollArea {
+  Q_OBJECT
+ public:
+  explicit WhatIfPanel(Document& document, QWidget* parent = nullptr);
+
+ private:
+  struct Row {
+    WhatIfKnob knob;
+    std::function<void(double)> show;
+    std::vector<QWidget*> widgets;
+    QToolButton* reset;
+  };
+  void rebuild();  ///< another frame has other knobs
+  void refresh();
+  void addRow(const WhatIfKnob& knob, QGridLayout* grid, int row);
+  void change(const WhatIfKnob& knob, double value, int gesture);
+  int highlights() const;
+
+  Document& document_;
+  QCheckBox* synthesise_;
+  QComboBox* lobe_;
+  QLabel* summary_;
+  QToolButton* resetAll_;
+  QWidget* knobs_ = nullptr;
+  std::vector<Row> rows_;
+  const Scene* builtFor_ = nullptr;
+  int builtFrame_ = -1, builtHighlights_ = -1;
+};
+
+}  // namespace glint::gui

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/window/autosave.h"
+
+#include <QDir>
+#include <QFile>
+#include <QFileInfo>
+#include <QUuid>
+#include <exception>
+#include <utility>
+
+#include "core/pipeline/session.h"
+#include "gui/base/text.h"
+
+namespace glint::gui {
+
+namespace {
+QString lockOf(const QString& file) { return file + QStringLiteral(".lock"); }
+}  // namespace
+
+Autosave::Autosave(const Engine& engine, Document& document, std::function<Opened()> snapshot, const QString& folder,
+                   QObject* parent)
+    : QObject(parent),
+      engine_(engine),
+      document_(document),
+      snapshot_(std::move(snapshot)),
+      folder_(folder),
+      worker_(new QObject) {
+  QDir().mkpath(folder_);
+  file_ = QDir(folder_).filePath(QUuid::createUuid().toString(QUuid::WithoutBraces) + QStringLiteral(".glint"));
+  lock_ = std::make_unique<QLockFile>(lockOf(file_));
+  lock_->setStaleLockTime(0);  // held for as long as the program runs
+  lock_->tryLock(0);
+  worker_->moveToThread(&thread_);
+  connect(&thread_, &QThread::finished, worker_, &QObject::deleteLater);
+  thread_.start();
+  connect(&document_, &Document::savedStateChanged, this, &Autosave::schedule);
+  connect(&document_, &Document::sceneOpened, this, &Autosave::schedule);
+  connect(&document_, &Document::tradeoffChanged, this, &Autosave::schedule);
+}
+
+Autosave::~Autosave() {
+  thread_.quit();
+  thread_.wait();
+  QFile::remove(file_);  // ended in order: what is not saved was given up
+}
+
+void Autosave::schedule() {
+  if (!engine_.autosave) return;
+  std::shared_ptr<const Opened> state;
+  if (document_.hasUnsavedChanges()) state = std::make_shared<const Opened>(snapshot_());
+  const std::lock_guard<std::mutex> guard(mutex_);
+  newest_ = std::move(state);
+  if (std::exchange(queued_, true)) return;
+  QMetaObject::invokeMethod(
+      worker_,
+      [this] {
+        std::shared_ptr<const Opened> wanted;
+        {
+          const std::lock_guard<std::mutex> inner(mutex_);
+          wanted = newest_;
+          queued_ = false;
+        }
+        if (!wanted) {
+          QFile::remove(file_);
+          return;
+        }
+        try {
+          engine_.autosave(*wanted, file_.toStdString());
+        } catch (const std::exception& e) {
+          QMetaObject::invokeMethod(
+              this,
+              [this, line = toQString(e.what())] {
+                if (!std::exchange(reported_, true)) emit problem(tr("Nothing can be recovered after a crash: %1").arg(line));
+              },
+              Qt::QueuedConnection);
+        }
+      },
+      Qt::QueuedConnection);
+}
+
+void Autosave::flush() {
+  QMetaObject::invokeMethod(
+      worker_, [] {}, Qt::BlockingQueuedConnection);
+}
+
+std::optional<Autosave::Found> Autosave::leftBehind() const {
+  // The newest first; what another running program holds is its own.
+  for (const QFileInfo& info : QDir(folder_).entryInfoList({QStringLiteral("*.glint")}, QDir::Files, QDir::Time)) {
+    if (info.absoluteFilePath() == QFileInfo(file_).absoluteFilePath()) continue;
+    QLockFile lock(lockOf(info.absoluteFilePath()));
+    lock.setStaleLockTime(0);
+    if (!lock.tryLock(0)) continue;
+    Found found{info.absoluteFilePath(), {}, info.lastModified()};
+    try {
+      if (const Session session = readSession(found.file.toStdString()); session.recovery)
+        found.of = toQString(session.recovery->of.string());
+    } catch (const std::exception&) {
+      continue;  // not ours, or cut: nothing to offer
+    }
+    return found;
+  }
+  return std::nullopt;
+}
+
+void Autosave::discard(const Found& found) {
+  QFile::remove(found.file);
+  QFile::remove(lockOf(found.file));
+}
+
+}  // namespace glint::gui

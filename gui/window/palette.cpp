@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/window/palette.h"
+
+#include <QApplication>
+#include <QHeaderView>
+#include <QKeyEvent>
+#include <QLineEdit>
+#include <QRegularExpression>
+#include <QTreeWidget>
+#include <QVBoxLayout>
+#include <algorithm>
+#include <utility>
+
+namespace glint::gui {
+
+namespace {
+constexpr int kWidth = 620, kRows = 14, kMost = 200;
+
+/// 3 at the start of a word, 2 inside one, 1 for letters in order with others between, 0 for none.
+int wordScore(const QString& word, const QString& text) {
+  for (int at = text.indexOf(word); at >= 0; at = text.indexOf(word, at + 1))
+    if (at == 0 || !text[at - 1].isLetterOrNumber()) return 3;
+  if (text.contains(word)) return 2;
+  int from = 0;
+  for (const QChar c : word) {
+    from = text.indexOf(c, from) + 1;
+    if (from == 0) return 0;
+  }
+  return word.size() > 2 ? 1 : 0;  // one or two letters are in everything
+}
+}  // namespace
+
+std::optional<int> matchScore(const QString& typed, const QString& text) {
+  static const QRegularExpression blanks(QStringLiteral("\\s+"));
+  const QString lower = text.toLower();
+  int sum = 0;
+  for (const QString& word : typed.toLower().split(blanks, Qt::SkipEmptyParts)) {
+    const int score = wordScore(word, lower);
+    if (score == 0) return std::nullopt;
+    sum += score;
+  }
+  return sum;
+}
+
+Palette::Palette(std::function<QList<PaletteItem>(const QString&)> items, QWidget* window)
+    : QFrame(window, Qt::Popup), source_(std::move(items)), line_(new QLineEdit), list_(new QTreeWidget) {
+  setObjectName(QStringLiteral("palette"));
+  setFrameShape(QFrame::StyledPanel);
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(6, 6, 6, 6);
+  column->setSpacing(4);
+  line_->setPlaceholderText(tr("Action, parameter (name = value sets it), frame number"));
+  line_->setClearButtonEnabled(true);
+  line_->installEventFilter(this);
+  column->addWidget(line_);
+  list_->setColumnCount(3);
+  list_->setHeaderHidden(true);
+  list_->setRootIsDecorated(false);
+  list_->setUniformRowHeights(true);
+  list_->setFocusPolicy(Qt::NoFocus);
+  list_->setTextElideMode(Qt::ElideMiddle);
+  list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  list_->header()->setStretchLastSection(false);
+  list_->header()->setSectionResizeMode(0, QHeaderView::ResizeToContents);
+  list_->header()->setSectionResizeMode(1, QHeaderView::Stretch);
+  list_->header()->setSectionResizeMode(2, QHeaderView::ResizeToContents);
+  column->addWidget(list_);
+  connect(line_, &QLineEdit::textChanged, this, &Palette::search);
+  connect(list_, &QTreeWidget::itemClicked, this, &Palette::runCurrent);
+}
+
+void Palette::popUp() {
+  const QWidget* window = parentWidget();
+  const int width = std::min(kWidth, window->width() - 20);
+  resize(width, line_->sizeHint().height() + kRows * (fontMetrics().height() + 7) + 24);
+  move(window->mapToGlobal(QPoint((window->width() - width) / 2, 60)));
+  line_->clear();
+  search();
+  show();
+  line_->setFocus(Qt::PopupFocusReason);
+}
+
+void Palette::search() {
+  const QString typed = line_->text().trimmed();
+  const QList<PaletteItem> all = source_(typed);
+  // Of a line "name = value" the name is what is looked for.
+  const QString wanted = typed.section(QLatin1Char('='), 0, 0).trimmed();
+  std::vector<std::pair<int, int>> found;  // minus the score, place in `all`
+  for (int i = 0; i < all.size(); ++i) {
+    // The title alone counts double, so that "level" finds the contour level before what lies in a folder of that name.
+    const std::optional<int> whole = matchScore(wanted, all[i].title + QLatin1Char(' ') + all[i].place);
+    if (whole) found.push_back({-(*whole + matchScore(wanted, all[i].title).value_or(0)), i});
+  }
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  if (found.size() > std::size_t(kMost)) found.resize(kMost);
+  shown_.clear();
+  list_->clear();
+  for (const auto& [score, i] : found) {
+    const PaletteItem& item = all[i];
+    shown_.append(item);
+    auto* row = new QTreeWidgetItem(list_, {item.title, item.place, item.detail});
+    row->setForeground(1, palette().color(QPalette::PlaceholderText));
+    row->setForeground(2, palette().color(QPalette::PlaceholderText));
+    row->setTextAlignment(2, Qt::AlignRight | Qt::AlignVCenter);
+    row->setDisabled(!item.enabled);
+  }
+  if (list_->topLevelItemCount() > 0) list_->setCurrentItem(list_->topLevelItem(0));
+}
+
+void Palette::runCurrent() {
+  const int row = list_->indexOfTopLevelItem(list_->currentItem());
+  if (row < 0 || row >= shown_.size() || !shown_[row].enabled) return;
+  const std::function<void()> run = shown_[row].run;
+  hide();  // first: what runs may open a dialog
+  run();
+}
+
+bool Palette::eventFilter(QObject* watched, QEvent* event) {
+  if (watched == line_ && event->type() == QEvent::KeyPress) {
+    const int key = static_cast<QKeyEvent*>(event)->key();
+    if (key == Qt::Key_Up || key == Qt::Key_Down || key == Qt::Key_PageUp || key == Qt::Key_PageDown) {
+      QApplication::sendEvent(list_, event);
+      return true;
+    }
+    if (key == Qt::Key_Return || key == Qt::Key_Enter) {
+      runCurrent();
+      return true;
+    }
+  }
+  return QFrame::eventFilter(watched, event);
+}
+
+}  // namespace glint::gui

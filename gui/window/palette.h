@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QFrame>
+#include <QList>
+#include <QString>
+#include <functional>
+#include <optional>
+
+class QLineEdit;
+class QTreeWidget;
+
+namespace glint::gui {
+
+/// One thing that the palette finds.
+struct PaletteItem {
+  QString title;   ///< "Contour level"
+  QString place;   ///< "Parameters › detect.level", where else it is
+  QString detail;  ///< a shortcut or a value
+  bool enabled = true;
+  std::function<void()> run;
+};
+
+/// How well an item answers what was typed: every word must occur in `text`; a word at the start of one of its words counts most,
+/// letters that only follow one another least. Nothing when a word does not occur.
+std::optional<int> matchScore(const QString& typed, const QString& text);
+
+/// The command palette: type a few letters, Return runs the item. It covers the top of its window until it is left.
+class Palette : public QFrame {
+  Q_OBJECT
+ public:
+  /// @param items  asked for whenever what is typed changes, best in the order that an empty line should show.
+  Palette(std::function<QList<PaletteItem>(const QString& typed)> items, QWidget* window);
+  void popUp();
+  QLineEdit* line() const { return line_; }
+  QTreeWidget* list() const { return list_; }
+
+ protected:
+  bool eventFilter(QObject* watched, QEvent* event) override;
+
+ private:
+  void search();
+  void runCurrent();
+
+  std::function<QList<PaletteItem>(const QString&)> source_;
+  QList<PaletteItem> shown_;
+  QLineEdit* line_;
+  QTreeWidget* list_;
+};
+
+}  // namespace glint::gui

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/window/palette_items.h"
+
+#include <QAction>
+#include <QRegularExpression>
+
+#include "gui/base/text.h"
+
+namespace glint::gui {
+
+namespace {
+SettingValue valueOf(const Settings& settings, const ParamSpec& spec) {
+  const auto it = settings.values().find(spec.key);
+  return it == settings.values().end() ? spec.defaultValue : it->second;
+}
+
+void addActions(QList<PaletteItem>& items, const Actions& actions) {
+  for (QAction* action : actions.all()) {
+    const QString path = Actions::path(action), title = Actions::title(action);
+    QString detail = QKeySequence::listToString(action->shortcuts(), QKeySequence::NativeText);
+    if (action->isCheckable())
+      detail +=
+          (detail.isEmpty() ? QString() : QStringLiteral("   ")) + (action->isChecked() ? QObject::tr("on") : QObject::tr("off"));
+    items.append({title, path.left(path.size() - title.size()).remove(QRegularExpression(QStringLiteral(" › $"))), detail,
+                  action->isEnabled(), [action] { action->trigger(); }});
+  }
+}
+
+void addParameters(QList<PaletteItem>& items, Document& document, const std::function<void(const std::string&)>& show) {
+  for (const ParamSpec& spec : allParams())
+    items.append({toQString(spec.title), QObject::tr("Parameters › %1").arg(toQString(spec.key)),
+                  valueText(valueOf(document.request().settings, spec), spec), true, [show, key = spec.key] { show(key); }});
+}
+
+/// "name = value": the value is checked by the settings themselves.
+void addAssignments(QList<PaletteItem>& items, const QString& value, Document& document) {
+  for (const ParamSpec& spec : allParams()) {
+    Settings tried;
+    QString problem;
+    try {
+      tried.setFromText(spec.key, value.toStdString());
+    } catch (const InputError& e) {
+      problem = toQString(e.what()).mid(int(e.place().size()) + 2);  // the place is what the row shows already
+    }
+    const QString place = QObject::tr("Parameters › %1").arg(toQString(spec.key));
+    if (!problem.isEmpty()) {
+      items.append({toQString(spec.title), place, problem, false, {}});
+      continue;
+    }
+    const SettingValue wanted = valueOf(tried, spec);
+    items.append({toQString(spec.title), place, QObject::tr("set to %1").arg(valueText(wanted, spec)), true,
+                  [&document, key = spec.key, wanted] { document.setSetting(key, wanted); }});
+  }
+}
+
+void addFrames(QList<PaletteItem>& items, Document& document) {
+  for (int i = 0; i < document.frameCount(); ++i)
+    items.append({QObject::tr("Frame %1").arg(toQString(document.scene()->frames[std::size_t(i)].id)),
+                  QObject::tr("Go to frame number %1").arg(i),
+                  {},
+                  true,
+                  [&document, i] { document.selectFrame(i); }});
+}
+}  // namespace
+
+QList<PaletteItem> paletteItems(const QString& typed, const Actions& actions, Document& document,
+                                const std::function<void(const std::string&)>& showParameter) {
+  QList<PaletteItem> items;
+  if (const int equals = typed.indexOf(QLatin1Char('=')); equals >= 0) {
+    if (const QString value = typed.mid(equals + 1).trimmed(); !value.isEmpty()) {
+      addAssignments(items, value, document);
+      return items;
+    }
+    addParameters(items, document, showParameter);
+    return items;
+  }
+  addActions(items, actions);
+  addParameters(items, document, showParameter);
+  // Not before a number is typed: a thousand frames would bury the rest.
+  if (document.scene() && typed.contains(QRegularExpression(QStringLiteral("\\d")))) addFrames(items, document);
+  return items;
+}
+
+}  // namespace glint::gui

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/window/shortcut_dialog.h"
+
+#include <QAction>
+#include <QDialogButtonBox>
+#include <QHeaderView>
+#include <QKeySequenceEdit>
+#include <QLabel>
+#include <QLineEdit>
+#include <QPushButton>
+#include <QTreeWidget>
+#include <QVBoxLayout>
+
+#include "gui/window/palette.h"
+
+namespace glint::gui {
+
+ShortcutDialog::ShortcutDialog(Actions& actions, QWidget* parent)
+    : QDialog(parent), actions_(actions), search_(new QLineEdit), list_(new QTreeWidget), note_(new QLabel) {
+  setWindowTitle(tr("Keyboard shortcuts"));
+  resize(620, 640);
+  auto* column = new QVBoxLayout(this);
+  search_->setPlaceholderText(tr("Find an action"));
+  search_->setClearButtonEnabled(true);
+  column->addWidget(search_);
+  list_->setObjectName(QStringLiteral("shortcuts"));
+  list_->setHeaderLabels({tr("Action"), tr("Key"), tr("By default")});
+  list_->setRootIsDecorated(false);
+  list_->header()->setStretchLastSection(false);
+  list_->header()->setSectionResizeMode(0, QHeaderView::Stretch);
+  list_->header()->setSectionResizeMode(1, QHeaderView::Fixed);
+  list_->header()->resizeSection(1, 170);
+  list_->header()->setSectionResizeMode(2, QHeaderView::ResizeToContents);
+  column->addWidget(list_, 1);
+  note_->setWordWrap(true);
+  column->addWidget(note_);
+  auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
+  auto* reset = buttons->addButton(tr("All to default"), QDialogButtonBox::ResetRole);
+  column->addWidget(buttons);
+  connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
+  connect(reset, &QPushButton::clicked, this, [this] {
+    for (QAction* action : actions_.all()) actions_.setShortcuts(action, Actions::defaultShortcuts(action));
+    note_->clear();
+    fill();
+  });
+  connect(search_, &QLineEdit::textChanged, this, &ShortcutDialog::filter);
+  fill();
+}
+
+void ShortcutDialog::fill() {
+  list_->clear();
+  for (QAction* action : actions_.all()) {
+    const QList<QKeySequence> usual = Actions::defaultShortcuts(action);
+    auto* row = new QTreeWidgetItem(
+        list_, {Actions::path(action), QString(), QKeySequence::listToString(usual, QKeySequence::NativeText)});
+    auto* edit = new QKeySequenceEdit(action->shortcut());
+    edit->setObjectName(QStringLiteral("key:") + Actions::id(action));
+    list_->setItemWidget(row, 1, edit);
+    connect(edit, &QKeySequenceEdit::editingFinished, this, [this, action, edit] {
+      if (edit->keySequence() != action->shortcut()) setShortcut(action, edit->keySequence());
+    });
+  }
+  filter();
+}
+
+void ShortcutDialog::filter() {
+  for (int i = 0; i < list_->topLevelItemCount(); ++i) {
+    QTreeWidgetItem* row = list_->topLevelItem(i);
+    row->setHidden(!matchScore(search_->text(), row->text(0)));
+  }
+}
+
+void ShortcutDialog::setShortcut(QAction* action, const QKeySequence& key) {
+  note_->clear();
+  for (QAction* other : actions_.all()) {
+    if (other == action || key.isEmpty() || !other->shortcuts().contains(key)) continue;
+    QList<QKeySequence> rest = other->shortcuts();
+    rest.removeAll(key);
+    actions_.setShortcuts(other, rest);
+    note_->setText(tr("%1 was the key of “%2”, which has %3 now.")
+                       .arg(key.toString(QKeySequence::NativeText), Actions::title(other),
+                            rest.isEmpty() ? tr("none") : QKeySequence::listToString(rest, QKeySequence::NativeText)));
+    if (auto* edit = list_->findChild<QKeySequenceEdit*>(QStringLiteral("key:") + Actions::id(other)))
+      edit->setKeySequence(other->shortcut());
+  }
+  actions_.setShortcuts(action, key.isEmpty() ? QList<QKeySequence>() : QList<QKeySequence>{key});
+}
+
+}  // namespace glint::gui

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/window/palette.h"
+
+#include <QKeySequenceEdit>
+#include <QLineEdit>
+#include <QMenu>
+#include <QMenuBar>
+#include <QSet>
+#include <QTreeWidget>
+
+#include "gui/base/text.h"
+#include "gui/window/main_window.h"
+#include "gui/window/shortcut_dialog.h"
+#include "tests/gui/fixture.h"
+
+namespace glint::gui {
+
+namespace {
+void collect(const QMenu* menu, QSet<QAction*>& found) {
+  for (QAction* action : menu->actions())
+    if (action->menu())
+      collect(action->menu(), found);
+    else
+      found.insert(action);
+}
+}  // namespace
+
+class PaletteTest : public QObject {
+  Q_OBJECT
+ private slots:
+  void init() {
+    window_ = std::make_unique<MainWindow>(fixture_.engine());
+    window_->show();
+    QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
+    window_->open(toQString(fixture_.opened().path));
+    QTRY_VERIFY(window_->document().scene() && window_->idle() && window_->document().inspection());
+  }
+  void cleanup() { window_.reset(); }
+
+  void wordsMatchAtStartsInsidesAndByLetters() {
+    QCOMPARE(matchScore("lev", "Contour level"), std::optional(3));
+    QCOMPARE(matchScore("evel", "Contour level"), std::optional(2));
+    QCOMPARE(matchScore("cnr", "Contour level"), std::optional(1));
+    QCOMPARE(matchScore("LEVEL con", "Contour level"), std::optional(6));
+    QCOMPARE(matchScore("", "anything"), std::optional(0));
+    QVERIFY(!matchScore("level zebra", "Contour level"));
+    QVERIFY(!matchScore("vl", "Contour level"));  // two letters in order are in everything
+  }
+
+  void everyActionIsInAMenuAndInThePalette() {
+    QSet<QAction*> inMenus;
+    for (QAction* top : window_->menuBar()->actions()) collect(top->menu(), inMenus);
+    popUp();
+    QLineEdit* line = window_->commandPalette()->line();
+    QVERIFY(window_->actions().all().size() > 20);
+    for (QAction* action : window_->actions().all()) {
+      QVERIFY2(inMenus.contains(action), qPrintable(Actions::id(action)));
+      line->setText(Actions::title(action));
+      bool found = false;
+      const QTreeWidget* list = window_->commandPalette()->list();
+      for (int i = 0; i < list->topLevelItemCount(); ++i) {
+        const QTreeWidgetItem* row = list->topLevelItem(i);
+        found |= row->text(0) == Actions::title(action) && Actions::path(action).startsWith(row->text(1));
+      }
+      QVERIFY2(found, qPrintable(Actions::id(action)));
+    }
+    // And nothing that menus show is missing from the registry, but the files opened lately.
+    for (QAction* action : inMenus)
+      if (!action->isSeparator() && action->isVisible())
+        QVERIFY2(window_->actions().all().contains(action), qPrintable(action->text()));
+  }
+
+  void everyParameterIsFoundByItsNameAndItsKey() {
+    popUp();
+    for (const ParamSpec& spec : allParams())
+      for (const std::string& typed : {spec.title, spec.key}) {
+        window_->commandPalette()->line()->setText(toQString(typed));
+        bool found = false;
+        const QTreeWidget* list = window_->commandPalette()->list();
+        for (int i = 0; i < list->topLevelItemCount(); ++i) found |= list->topLevelItem(i)->text(1).endsWith(toQString(spec.key));
+        QVERIFY2(found, typed.c_str());
+      }
+  }
+
+  void anActionRunsByTyping() {
+    QVERIFY(window_->document().selection().frame == 0);
+    popUp();
+    type("next", Qt::Key_Return);
+    QCOMPARE(window_->document().selection().frame, 1);
+    QVERIFY(!window_->commandPalette()->isVisible());
+  }
+
+  void aParameterGetsTheKeyboard() {
+    popUp();
+    type("detect.level", Qt::Key_Return);
+    QTRY_VERIFY(window_->focusWidget() && window_->focusWidget()->objectName() == "slider:detect.level");
+  }
+
+  void anAssignmentSetsAndIsOneStepOfUndo() {
+    const int steps = window_->document().undoStack()->count();
+    popUp();
+    type("detect.level = 0.3", Qt::Key_Return);
+    QCOMPARE(window_->document().request().settings.number("detect.level"), 0.3);
+    QCOMPARE(window_->document().undoStack()->count(), steps + 1);
+    popUp();
+    type("detect.level = 7", Qt::Key_Return);  // out of range: the row says so and does nothing
+    QCOMPARE(window_->document().request().settings.number("detect.level"), 0.3);
+    QVERIFY(window_->commandPalette()->list()->topLevelItem(0)->isDisabled());
+  }
+
+  void aFrameIsFoundByItsNumber() {
+    popUp();
+    type("frame 0007", Qt::Key_Return);
+    QCOMPARE(window_->document().selection().frame, 7);
+  }
+
+  void aShortcutIsChangedKeptAndTakenFromItsOwner() {
+    Actions& actions = window_->actions();
+    ShortcutDialog dialog(actions, window_.get());
+    dialog.show();
+    auto* edit = dialog.findChild<QKeySequenceEdit*>("key:frame.play");
+    QVERIFY(edit);
+    const QKeySequence key(QStringLiteral("Ctrl+S"));  // that of "save"
+    dialog.setShortcut(actions.find("frame.play"), key);
+    QCOMPARE(actions.find("frame.play")->shortcut(), key);
+    QVERIFY(!actions.find("file.save")->shortcuts().contains(key));
+    {
+      MainWindow another(fixture_.engine());
+      QCOMPARE(another.actions().find("frame.play")->shortcut(), key);
+    }
+    actions.setShortcuts(actions.find("frame.play"), Actions::defaultShortcuts(actions.find("frame.play")));
+    actions.setShortcuts(actions.find("file.save"), Actions::defaultShortcuts(actions.find("file.save")));
+    MainWindow another(fixture_.engine());
+    QCOMPARE(another.actions().find("frame.play")->shortcut(), QKeySequence(Qt::Key_P));
+  }
+
+  void noTwoActionsHaveTheSameKey() {
+    QMap<QString, QString> owner;
+    for (QAction* action : window_->actions().all())
+      for (const QKeySequence& key : Actions::defaultShortcuts(action)) {
+        QVERIFY2(!owner.contains(key.toString()), qPrintable(Actions::id(action) + " and " + owner.value(key.toString())));
+        owner.insert(key.toString(), Actions::id(action));
+      }
+  }
+
+ private:
+  void popUp() {
+    window_->actions().find("edit.palette")->trigger();
+    QTRY_VERIFY(window_->commandPalette()->isVisible());
+  }
+  void type(const char* text, Qt::Key key) {
+    QTest::keyClicks(window_->commandPalette()->line(), text);
+    QTest::keyClick(window_->commandPalette()->line(), key);
+  }
+  Fixture fixture_;
+  std::unique_ptr<MainWindow> window_;
+};
+
+QObject* makePaletteTest() { return new PaletteTest; }
+
+}  // namespace glint::gui
+
+#include "palette_test.moc"
