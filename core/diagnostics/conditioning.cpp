@@ -1,0 +1,355 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/diagnostics/conditioning.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "core/light/estimate.h"
+#include "core/model/fit_ellipsoid.h"
+
+namespace glint {
+namespace {
+
+constexpr double kDegPerRad = 180 / std::numbers::pi;
+constexpr std::size_t kMostDirections = 256;  // 33,000 pairs: a millisecond
+
+template <class... Numbers>
+std::string text(const char* format, Numbers... numbers) {
+  char buffer[320];
+  std::snprintf(buffer, sizeof buffer, format, numbers...);
+  return buffer;
+}
+
+double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+
+std::vector<Eigen::Vector3d> some(const std::vector<Eigen::Vector3d>& all) {
+  if (all.size() <= kMostDirections) return all;
+  std::vector<Eigen::Vector3d> kept;
+  for (std::size_t i = 0; i < kMostDirections; ++i) kept.push_back(all[i * all.size() / kMostDirections]);
+  return kept;
+}
+
+/// Small numbers are good.
+Verdict below(double value, double amber, double red) {
+  return !std::isfinite(value) ? Verdict::Unknown : value < amber ? Verdict::Green : value < red ? Verdict::Amber : Verdict::Red;
+}
+/// Large numbers are good.
+Verdict above(double value, double amber, double red) {
+  return !std::isfinite(value) ? Verdict::Unknown
+         : value >= amber      ? Verdict::Green
+         : value >= red        ? Verdict::Amber
+                               : Verdict::Red;
+}
+
+const char* chosen(Verdict v, const char* green, const char* amber, const char* red) {
+  return v == Verdict::Green ? green : v == Verdict::Amber ? amber : v == Verdict::Red ? red : "";
+}
+
+/// The training views of one fit.
+std::vector<TrainingView> viewsOf(const Inspection& inspection, const ModelResult::Fit& fit) {
+  std::vector<TrainingView> views;
+  for (const TrainingView& v : inspection.views) {
+    if (v.highlight.light != fit.light) continue;
+    if (fit.surface && inspection.surfaces && inspection.surfaces->keyOf(v.frame) != *fit.surface) continue;
+    views.push_back(v);
+  }
+  return views;
+}
+
+/// The outlines that the model takes for those of its ellipsoid.
+std::vector<ConicView> outlinesOf(const std::string& model, const std::vector<TrainingView>& views) {
+  std::vector<ConicView> conics;
+  for (const TrainingView& v : views) {
+    if (model == "primal") {
+      if (hasWholeEllipse(v)) conics.push_back(conicViewOf(v, v.camera.projection()));
+    } else if (v.failure || !v.virtualCamera) {
+      continue;
+    } else if (model == "dual") {
+      if (v.highlight.ellipse) conics.push_back(conicViewOf(v, *v.virtualCamera));
+    } else if (model == "canonical") {
+      if (v.canonical && v.canonical->ellipse) conics.push_back({*v.virtualCamera, *v.canonical->ellipse, v.canonical->pixels});
+    }
+  }
+  return conics;
+}
+
+/// Where each view looks for the thing that is reconstructed: along its reflected ray, or straight on for `primal`, which knows
+/// no mirror.
+std::vector<Eigen::Vector3d> raysOf(const std::string& model, const std::vector<TrainingView>& views) {
+  std::vector<Eigen::Vector3d> rays;
+  for (const TrainingView& v : views) {
+    if (model == "primal") {
+      if (hasWholeEllipse(v)) rays.push_back(v.camera.ray(v.highlight.ellipse->centre).direction.normalized());
+    } else if (!v.failure && v.brightest) {
+      rays.push_back(reflectedRay(*v.brightest, v.camera).direction);
+    }
+  }
+  return rays;
+}
+
+class Findings {
+ public:
+  Findings(const Inspection& inspection, const ModelResult& result, const ModelResult::Fit& fit)
+      : fit_(fit), views_(viewsOf(inspection, fit)), rays_(raysOf(result.model, views_)) {
+    c_.model = result.model;
+    c_.light = fit.light;
+    c_.surface = fit.surface;
+    const auto estimate = inspection.lights.find(lightKey(fit.light, fit.surface));
+    if (estimate != inspection.lights.end()) estimate_ = &estimate->second;
+    outlines_ = outlinesOf(result.model, views_);
+    fromOutlines_ = result.model == "primal" || result.model == "dual" || result.model == "canonical";
+  }
+
+  Conditioning all() {
+    if (fit_.failure)
+      add("fit", "fit", std::nan(""), "failed", Verdict::Red, "There is no fit: " + fit_.failure->message() + ".");
+    if (fromOutlines_) addLinearSystem();
+    addAngle();
+    addViews();
+    addLight();
+    addResidual();
+    return std::move(c_);
+  }
+
+ private:
+  void add(const char* id, const char* title, double value, std::string valueText, Verdict verdict, std::string reason) {
+    c_.findings.push_back({id, title, value, std::move(valueText), verdict, std::move(reason)});
+  }
+
+  void addLinearSystem() {
+    std::optional<Eigen::Vector3d> origin;
+    if (c_.model == "primal") {
+      if (const std::optional<CentreAnchor> anchor = anchorFromCentres(views_)) origin = anchor->position;
+    } else if (estimate_ && !estimate_->light.atInfinity()) {
+      origin = estimate_->light.position();
+    }
+    // Asked to refuse nothing: what would be refused is what is to be shown.
+    ReconstructOptions anything;
+    anything.minRankRatio = 0;
+    anything.maxGapRatio = std::numeric_limits<double>::infinity();
+    const Outcome<Reconstruction> linear = reconstructLinear(outlines_, origin, anything);
+    if (!linear) {
+      add("signature", "Q*", std::nan(""), "undetermined", fit_.fit ? Verdict::Amber : Verdict::Red,
+          "The contours alone determine no quadric (" + linear.failure().message() + ")" +
+              (fit_.fit ? "; the ellipsoid shown rests on where its centre is expected." : "."));
+      return;
+    }
+    c_.singularValues = linear->singularValues;
+    c_.quadricKind = describe(linear->quadric);
+    const std::size_t n = c_.singularValues.size();
+    const double rank = c_.singularValues[n - 2] / c_.singularValues[0], gap = linear->gapRatio;
+    const Verdict rankVerdict = above(rank, bounds::kRankAmber, bounds::kRankRed);
+    add("rank", "singular values", rank, text("%.2g", rank), rankVerdict,
+        text("The second last singular value is %.2g of the first: ", rank) +
+            chosen(rankVerdict, "above 1e-4, what contours are known to, so the views tell quadrics apart.",
+                   "below 1e-4, what contours are known to, so a second quadric hides in the noise.",
+                   "below 1e-9, round-off: the views repeat one geometry and several quadrics fit."));
+    const Verdict gapVerdict = below(gap, bounds::kGapAmber, bounds::kGapRed);
+    add("gap", "gap", gap, text("%.2g", gap), gapVerdict,
+        text("The last singular value is %.2g of the one before: ", gap) +
+            chosen(gapVerdict, "below 0.2, so the best quadric fits more than five times better than the second.",
+                   "above 0.2, so the second best quadric fits nearly as well.",
+                   "above 0.5, where the linear solver refuses: no quadric fits better than a second one."));
+    const Signature s = signatureOf(linear->quadric);
+    const std::string signs = text("(%d+ %d- %dx0)", s.positive, s.negative, s.zero);
+    const bool good = linear->ellipsoid.has_value();
+    std::string reason = "The contours alone, without any prior, give a Q* of signature " + signs + ": " + c_.quadricKind + ".";
+    if (!good)
+      reason += fit_.fit && fit_.fit->ellipsoid
+                    ? " The solver '" + fit_.fit->solver + "' forced an ellipsoid; it leans on where its centre is expected."
+                    : " That is no ellipsoid, so it has no outline to predict with.";
+    add("signature", "Q*", double(s.positive - s.negative), c_.quadricKind,
+        good                              ? Verdict::Green
+        : fit_.fit && fit_.fit->ellipsoid ? Verdict::Amber
+                                          : Verdict::Red,
+        reason);
+  }
+
+  void addAngle() {
+    const char* what = c_.model == "primal" ? "viewing rays" : "reflected rays";
+    if (rays_.size() < 2)
+      return add("angle", "triangulation angle", std::nan(""), "-", Verdict::Red,
+                 text("Fewer than two %s: nothing can be triangulated.", what));
+    const double angle = widestAngle(rays_);
+    const double deg = angle * kDegPerRad;
+    const Verdict v = above(deg, bounds::kAngleAmberDeg, bounds::kAngleRedDeg);
+    const double factor = 1 / std::max(std::sin(std::min(angle, std::numbers::pi / 2)), std::numeric_limits<double>::min());
+    std::string reason =
+        text("The widest angle between two %s is %.3g deg: an error across them becomes one %.3g times as large along them", what,
+             deg, factor);
+    reason += chosen(v, ".", " (amber below 5 deg).", " (red below 1.5 deg): only a direction is known well.");
+    add("angle", "triangulation angle", deg, text("%.3g\u00b0", deg), v, reason);
+  }
+
+  void addViews() {
+    const double effective = effectiveNumber(rays_, bounds::kAngleAmberDeg / kDegPerRad);
+    const Verdict v = above(effective, bounds::kViewsAmber, bounds::kViewsRed);
+    std::string reason = text(
+        "%d training views count as %.2g different ones, those nearer than 5 deg to each other only in part: ", int(rays_.size()),
+        effective);
+    reason += chosen(v, "three or more determine an ellipsoid with a free centre.",
+                     "fewer than three, so the centre is not free: it rests on the light.",
+                     "fewer than two, which determine neither the light's distance nor an ellipsoid.");
+    add("views", "effective views", effective, text("%.2g of %d", effective, int(rays_.size())), v, reason);
+  }
+
+  /// Mean distance from the views' brightest points (the cameras for `primal`).
+  double distanceFrom(const Eigen::Vector3d& at) const {
+    double sum = 0;
+    int n = 0;
+    for (const TrainingView& v : views_) {
+      if (c_.model != "primal" && (v.failure || !v.brightest)) continue;
+      sum += (at - (c_.model == "primal" ? v.camera.centreInWorld() : v.brightest->point.position)).norm();
+      ++n;
+    }
+    return n ? sum / n : std::nan("");
+  }
+
+  static double largestSigma(const Eigen::Matrix3d& covariance) {
+    if (!covariance.allFinite()) return std::nan("");
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance, Eigen::EigenvaluesOnly);
+    return std::sqrt(std::max(0.0, eigen.eigenvalues()(2)));
+  }
+
+  void addLight() {
+    const ModelFit* fit = fit_.fit ? &*fit_.fit : nullptr;
+    const bool hasLight = fit && fit->lightEstimate;
+    const char* title = hasLight ? "light uncertainty" : "centre uncertainty";
+    if (!fit) return;
+    if (hasLight && fit->lightEstimate->atInfinity()) {
+      const ParameterUncertainty* u = estimate_ && estimate_->uncertainty ? &*estimate_->uncertainty : nullptr;
+      const double sigma = u && u->root.rows() >= 4
+                               ? largestSigma(Eigen::Matrix3d(u->root.topRows(3) * u->root.topRows(3).transpose()))
+                               : std::nan("");
+      const Verdict v = below(sigma, bounds::kLightAmber, bounds::kLightRed);
+      return add(
+          "light", title, sigma, std::isfinite(sigma) ? text("%.2g\u00b0", sigma * kDegPerRad) : "-", v,
+          std::isfinite(sigma)
+              ? text("The light is at infinity; its direction is known to %.2g deg (one standard deviation).", sigma * kDegPerRad)
+              : "The light is at infinity; its solver tells no uncertainty of the direction.");
+    }
+    Eigen::Vector3d at(0, 0, 0);
+    double sigma = std::nan("");
+    if (hasLight) {
+      at = fit->lightEstimate->position();
+      if (fit->lightCovariance) sigma = largestSigma(*fit->lightCovariance);
+    } else if (fit->ellipsoid) {
+      at = fit->ellipsoid->centre();
+      if (fit->uncertainty && fit->uncertainty->root.rows() >= 3)
+        sigma = largestSigma(Eigen::Matrix3d(fit->uncertainty->root.topRows(3) * fit->uncertainty->root.topRows(3).transpose()));
+    } else {
+      return;
+    }
+    const double share = sigma / distanceFrom(at);
+    if (!std::isfinite(share))
+      return add("light", title, share, "-", Verdict::Unknown, "The solver of this fit tells no uncertainty.");
+    const Verdict v = below(share, bounds::kLightAmber, bounds::kLightRed);
+    std::string reason =
+        text("One standard deviation along the worst direction is %.2g m, %.2g %% of the distance to the surface: ", sigma,
+             100 * share);
+    reason += chosen(v, "below 1 %, less than what a simple lobe gets wrong about the light.",
+                     "above 1 %, what a simple lobe gets wrong about the light.",
+                     "above 10 %, worse than any lobe's own error: more or wider views are needed.");
+    add("light", title, share, text("%.2g %%", 100 * share), v, reason + " It knows the noise only.");
+  }
+
+  void addResidual() {
+    if (!fit_.fit) return;
+    double squares = 0, diameters = 0, rms = estimate_ && fit_.fit->residualPx.empty() ? estimate_->rmsPx : 0;
+    int n = 0;
+    for (const double r : fit_.fit->residualPx) squares += r * r;
+    if (!fit_.fit->residualPx.empty()) rms = std::sqrt(squares / double(fit_.fit->residualPx.size()));
+    for (const TrainingView& v : views_)
+      if (!v.failure && v.highlight.areaPx2 > 0) diameters += 2 * std::sqrt(v.highlight.areaPx2 / std::numbers::pi), ++n;
+    if (n == 0 || (fit_.fit->residualPx.empty() && !(rms > 0))) return;
+    const double share = rms / (diameters / n);
+    const Verdict v = below(share, bounds::kResidualAmber, bounds::kResidualRed);
+    std::string reason = text(
+        "The training contours lie %.2g px (RMS) from what the model says of them, %.2g %% of the highlights' mean diameter: ",
+        rms, 100 * share);
+    reason += chosen(v, "below 1 %, the model can say what was seen.", "above 1 %, the model is a summary of what was seen.",
+                     "above 5 %, the model does not describe these highlights.");
+    add("residual", "fit residual", share, std::isfinite(rms) ? text("%.2g px", rms) : "-", v, reason);
+  }
+
+  const ModelResult::Fit& fit_;
+  std::vector<TrainingView> views_;
+  std::vector<Eigen::Vector3d> rays_;
+  std::vector<ConicView> outlines_;
+  const LightEstimate* estimate_ = nullptr;
+  bool fromOutlines_ = false;
+  Conditioning c_;
+};
+
+}  // namespace
+
+const char* nameOf(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::Green:
+      return "good";
+    case Verdict::Amber:
+      return "doubtful";
+    case Verdict::Red:
+      return "bad";
+    case Verdict::Unknown:
+      return "unknown";
+  }
+  return "";
+}
+
+Verdict Conditioning::worst() const {
+  Verdict w = Verdict::Unknown;
+  for (const Finding& f : findings) {
+    if (f.verdict == Verdict::Unknown) continue;
+    if (w == Verdict::Unknown || f.verdict > w) w = f.verdict;
+  }
+  return w;
+}
+
+double widestAngle(const std::vector<Eigen::Vector3d>& directions) {
+  const std::vector<Eigen::Vector3d> d = some(directions);
+  double widest = 0;
+  for (std::size_t i = 0; i < d.size(); ++i)
+    for (std::size_t j = i + 1; j < d.size(); ++j) widest = std::max(widest, angleBetween(d[i], d[j]));
+  return widest;
+}
+
+double effectiveNumber(const std::vector<Eigen::Vector3d>& directions, double independent) {
+  require(independent > 0, "effectiveNumber: the independent angle must be positive");
+  const std::vector<Eigen::Vector3d> d = some(directions);
+  if (d.empty()) return 0;
+  double similar = double(d.size());  // each with itself
+  for (std::size_t i = 0; i < d.size(); ++i)
+    for (std::size_t j = i + 1; j < d.size(); ++j) similar += 2 * std::max(0.0, 1 - angleBetween(d[i], d[j]) / independent);
+  return double(d.size()) * double(d.size()) / similar;
+}
+
+std::optional<Eigen::Vector3d> semiAxesSigma(const ModelFit& fit) {
+  if (!fit.ellipsoid || !fit.uncertainty || fit.uncertainty->root.rows() < 9 || fit.uncertainty->root.cols() == 0)
+    return std::nullopt;
+  const Eigen::MatrixXd shape = fit.uncertainty->root.middleRows(3, 6);  // xx yy zz xy xz yz
+  Eigen::Vector3d sigma;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d v = fit.ellipsoid->worldFromBody().linear().col(i);
+    Eigen::Matrix<double, 1, 6> squares;
+    squares << v.x() * v.x(), v.y() * v.y(), v.z() * v.z(), 2 * v.x() * v.y(), 2 * v.x() * v.z(), 2 * v.y() * v.z();
+    sigma(i) = (squares * shape).norm() / (2 * fit.ellipsoid->semiAxes()(i));
+  }
+  return sigma;
+}
+
+std::vector<Conditioning> conditioningOf(const Inspection& inspection) {
+  std::vector<Conditioning> all;
+  const auto take = [&](const ModelResult& result) {
+    for (const ModelResult::Fit& fit : result.fits) all.push_back(Findings(inspection, result, fit).all());
+  };
+  for (const auto& model : allModels())
+    if (const auto it = inspection.models.find(model->id()); it != inspection.models.end()) take(it->second);
+  return all;
+}
+
+}  // namespace glint

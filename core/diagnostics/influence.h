@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/pipeline/inspection.h"
+
+namespace glint {
+
+/// What one training frame does for one model: the model is fitted again without the frame.
+struct ModelInfluence {
+  std::optional<double> leftOutPct;  ///< contour error on the frame itself, predicted from the others, mean over its highlights
+  std::optional<double>
+      heldOutPct;  ///< mean contour error on the probes without the frame; what is not predicted counts as kNoPredictionPct
+  std::optional<double> changePct;  ///< of that mean against all training frames: positive = the frame helps, negative = it harms
+  std::optional<double>
+      lightShift;  ///< m, between the light (or the ellipsoid's centre) with and without the frame; none at infinity
+  std::optional<double> axesChange;  ///< largest relative change of a semi-axis
+  std::optional<Failure> failure;    ///< why there is no fit without it
+};
+
+struct FrameInfluence {
+  int frame = -1;
+  std::map<std::string, ModelInfluence> models;
+};
+
+/// Leave-one-out over the training frames.
+struct Influence {
+  std::vector<FrameInfluence> frames;         ///< in order; at most kMostLeftOut, evenly spread
+  std::vector<int> probes;                    ///< held-out frames that were predicted each time
+  std::map<std::string, double> baselinePct;  ///< mean contour error on the probes with all training frames
+  int trainingFrames = 0;                     ///< of which frames.size() were left out
+};
+
+/// How much a frame matters to a model: changePct where there are held-out frames, else leftOutPct. None when the frame was not
+/// tried or nothing was predicted.
+std::optional<double> influenceOf(const Influence& influence, int frame, const std::string& model);
+
+/// Fits every model of the inspection again without each training frame (core/pipeline/leave_one_out.h), and predicts the frame
+/// and some held-out frames. Uses the evidence and views of the inspection; noise on contours is part of them. Several threads;
+/// throws Stopped.
+/// @param mostProbes  held-out frames with highlights, evenly spread, that are predicted again for every frame and model.
+Influence measureInfluence(const Inspection& inspection, const ProgressFn& progress = {}, int mostProbes = 12);
+
+}  // namespace glint

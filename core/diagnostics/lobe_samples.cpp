@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/diagnostics/lobe_samples.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/highlight/background.h"
+
+namespace glint {
+namespace {
+
+constexpr int kLeastPixels = 6;         // three per unknown
+constexpr double kBackgroundReach = 4;  // of the footprint, as fitBackground looks
+
+float meanOf(const Image& image, int x, int y) {
+  float sum = 0;
+  for (int c = 0; c < image.channels; ++c) sum += image.at(x, y, c);
+  return sum / float(image.channels);
+}
+
+Outcome<LobeFit> fitLobe(const std::vector<LobeSample>& samples) {
+  LobeFit fit;
+  double brightest = 0;
+  for (const LobeSample& s : samples)
+    if (s.fitted) brightest = fit.pixels++ ? std::max(brightest, s.logI) : s.logI;
+  if (fit.pixels < kLeastPixels)
+    return Failure{Reason::TooFewPoints, std::to_string(fit.pixels) + " pixels above the fit's level"};
+  // log I = a - b alpha^2 about the weighted means; weights relative to the brightest pixel, so that none overflows.
+  double w = 0, x = 0, y = 0;
+  for (const LobeSample& s : samples) {
+    if (!s.fitted) continue;
+    const double weight = std::exp(2 * (s.logI - brightest));
+    w += weight;
+    x += weight * s.alpha * s.alpha;
+    y += weight * s.logI;
+  }
+  x /= w;
+  y /= w;
+  double xx = 0, xy = 0;
+  for (const LobeSample& s : samples) {
+    if (!s.fitted) continue;
+    const double weight = std::exp(2 * (s.logI - brightest)), dx = s.alpha * s.alpha - x;
+    xx += weight * dx * dx;
+    xy += weight * dx * (s.logI - y);
+  }
+  if (!(xx > 0) || !(xy < 0)) return Failure{Reason::NotConverged, "the radiance does not fall with alpha"};
+  fit.m = std::sqrt(-xx / xy);
+  fit.logHeight = y - xy / xx * x;
+  double squares = 0;
+  for (const LobeSample& s : samples) {
+    if (!s.fitted) continue;
+    const double r = s.logI - fit.logHeight + s.alpha * s.alpha / (fit.m * fit.m);
+    squares += std::exp(2 * (s.logI - brightest)) * r * r;
+  }
+  fit.rms = std::sqrt(squares / w);
+  if (!std::isfinite(fit.m) || !std::isfinite(fit.logHeight)) return Failure{Reason::NotFinite, "the lobe's width"};
+  return fit;
+}
+
+}  // namespace
+
+double LobeFit::alphaAt(double fraction) const {
+  require(fraction > 0 && fraction <= 1, "LobeFit::alphaAt: the fraction must be in (0, 1]");
+  return m * std::sqrt(-std::log(fraction));
+}
+
+Outcome<LobeSamples> lobeSamples(const Image& linear, const Image* mask, const Highlight& highlight, const Camera& camera,
+                                 const Surface& surface, const Light& light, const LobeOptions& options) {
+  require(!linear.empty() && options.reach > 0 && options.fitLevel > 0 && options.mostSamples > 0,
+          "lobeSamples: empty image or options out of range");
+  require(!mask || (mask->width == linear.width && mask->height == linear.height), "lobeSamples: the mask has another size");
+  if (!highlight.ellipse) return Failure{Reason::NotAnEllipse, "the observed contour has no ellipse"};
+  const Ellipse& e = *highlight.ellipse;
+  const Eigen::Matrix2d turn = Eigen::Rotation2Dd(e.angle).toRotationMatrix();
+  Footprint footprint;  // in the stored image's pixels, where the background is fitted
+  footprint.centre = camera.hasDistortion() ? camera.distorted(e.centre) : e.centre;
+  footprint.shape = turn * e.semiAxes.cwiseAbs2().asDiagonal() * turn.transpose();
+  footprint.level = highlight.level;
+
+  // Only the highlight's surroundings are looked at: frames may be large.
+  const Pixel reach = kBackgroundReach * footprint.shape.diagonal().cwiseSqrt();
+  const int x0 = std::max(0, int(std::floor(footprint.centre.x() - reach.x()))),
+            y0 = std::max(0, int(std::floor(footprint.centre.y() - reach.y())));
+  const int x1 = std::min(linear.width - 1, int(std::ceil(footprint.centre.x() + reach.x())));
+  const int y1 = std::min(linear.height - 1, int(std::ceil(footprint.centre.y() + reach.y())));
+  if (x1 < x0 || y1 < y0) return Failure{Reason::OutsideImage, "the highlight"};
+  Image cut(x1 - x0 + 1, y1 - y0 + 1, 1);
+  std::vector<char> usable(std::size_t(cut.width) * std::size_t(cut.height), 0);
+  std::vector<float> darkest;
+  LobeSamples result;
+  for (int y = 0; y < cut.height; ++y)
+    for (int x = 0; x < cut.width; ++x) {
+      const float v = meanOf(linear, x0 + x, y0 + y);
+      cut.at(x, y) = v;
+      const bool glossy = !mask || mask->at(x0 + x, y0 + y) != 0;
+      usable[std::size_t(y) * std::size_t(cut.width) + std::size_t(x)] = glossy && std::isfinite(v) && v >= 0;
+      if (glossy && std::isfinite(v)) darkest.push_back(v);
+    }
+  if (darkest.empty()) return Failure{Reason::TooFewPoints, "no glossy pixel around the highlight"};
+  std::nth_element(darkest.begin(), darkest.begin() + std::ptrdiff_t(darkest.size() / 10), darkest.end());
+  Footprint local = footprint;
+  local.centre -= Pixel(x0, y0);
+  const Background background = fitBackground(cut, usable, local, darkest[darkest.size() / 10]);
+  result.background = background.at(local.centre.x(), local.centre.y());
+
+  const double area = std::numbers::pi * options.reach * options.reach * std::sqrt(footprint.shape.determinant());
+  const int step = std::max(1, int(std::lround(std::sqrt(area / options.mostSamples))));
+  const Eigen::Matrix2d inverse = footprint.shape.inverse();
+  const Pixel middle = centroid(highlight.contour);
+  const Eigen::Vector3d eye = camera.centreInWorld();
+  double brightest = 0;
+  for (int y = 0; y < cut.height; y += step)
+    for (int x = 0; x < cut.width; x += step) {
+      if (!usable[std::size_t(y) * std::size_t(cut.width) + std::size_t(x)]) continue;
+      const Pixel d = Pixel(x, y) - local.centre;
+      if (d.dot(inverse * d) > options.reach * options.reach) continue;
+      if (options.clipValue > 0 && cut.at(x, y) >= options.clipValue) {
+        ++result.clipped;
+        continue;
+      }
+      const double above = cut.at(x, y) - background.at(x, y);
+      if (!(above > 0)) continue;
+      const Pixel stored(x0 + x, y0 + y);
+      const Pixel ideal = camera.hasDistortion() ? camera.undistorted(stored) : stored;
+      if (!ideal.allFinite()) continue;
+      const Outcome<SurfacePoint> hit = surface.firstHit(camera.ray(ideal));
+      if (!hit) continue;
+      const SurfacePoint p = facing(*hit, eye);
+      const Eigen::Vector3d toLight = light.directionFrom(p.position);
+      if (!(p.normal.dot(toLight) > 0)) continue;
+      LobeSample s;
+      s.at = ideal;
+      s.alpha = incidentAngle(p.normal, toLight, (eye - p.position).normalized());
+      s.logI = std::log(above);
+      s.direction = std::atan2(ideal.y() - middle.y(), ideal.x() - middle.x());
+      if (!std::isfinite(s.alpha) || !std::isfinite(s.logI)) continue;
+      brightest = std::max(brightest, above);
+      result.samples.push_back(s);
+    }
+  if (result.samples.empty()) return Failure{Reason::TooFewPoints, "no pixel of the lit surface is above the background"};
+  constexpr double kContrast = 3;          // as DetectOptions::minContrast
+  constexpr double kFloatRoundOff = 1e-5;  // of the value: some steps of single precision, in which images are stored
+  if (!(brightest > std::max(kContrast * background.spread, kFloatRoundOff * std::abs(result.background))))
+    return Failure{Reason::NoHighlight, "nothing stands out of the background"};
+  const double least = std::log(options.fitLevel * brightest);
+  for (LobeSample& s : result.samples) s.fitted = s.logI >= least;
+  Outcome<LobeFit> fit = fitLobe(result.samples);
+  if (fit)
+    result.fit = *fit;
+  else
+    result.fitFailure = fit.failure();
+  return result;
+}
+
+}  // namespace glint
