@@ -145,9 +145,9 @@ class Findings {
     const Verdict rankVerdict = above(rank, bounds::kRankAmber, bounds::kRankRed);
     add("rank", "singular values", rank, text("%.2g", rank), rankVerdict,
         text("The second last singular value is %.2g of the first: ", rank) +
-            chosen(rankVerdict, "above 1e-4, what contours are known to, so the views tell quadrics apart.",
-                   "below 1e-4, what contours are known to, so a second quadric hides in the noise.",
-                   "below 1e-9, round-off: the views repeat one geometry and several quadrics fit."));
+            chosen(rankVerdict, "above a ten-thousandth, what contours are known to, so the views tell quadrics apart.",
+                   "below a ten-thousandth, what contours are known to, so a second quadric hides in the noise.",
+                   "below a billionth, round-off: the views repeat one geometry and several quadrics fit."));
     const Verdict gapVerdict = below(gap, bounds::kGapAmber, bounds::kGapRed);
     add("gap", "gap", gap, text("%.2g", gap), gapVerdict,
         text("The last singular value is %.2g of the one before: ", gap) +

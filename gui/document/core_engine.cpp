@@ -35,6 +35,9 @@ Engine coreEngine() {
     if (!options.workFile.empty()) std::filesystem::remove(options.workFile, ignored);
     return t;
   };
+  engine.influence = [](const Inspection& inspection, const ProgressFn& progress) {
+    return measureInfluence(inspection, progress);
+  };
   engine.parseTrain = parseTrainSpec;
   return engine;
 }

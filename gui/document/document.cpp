@@ -56,6 +56,14 @@ void Document::setTradeoff(std::shared_ptr<const Tradeoff> tradeoff) {
   emit savedStateChanged();
 }
 
+bool Document::influenceStale() const { return influence_ && !sameRequest(influenceFor_, state_.request); }
+
+void Document::setInfluence(std::shared_ptr<const Influence> influence, const InspectionRequest& computedFor) {
+  influence_ = std::move(influence);
+  influenceFor_ = computedFor;
+  emit influenceChanged();
+}
+
 bool Document::isLoaded(const TradeoffPoint& point) const {
   return state_.request.models == std::vector<std::string>{point.model} && state_.request.settings == point.settings;
 }
@@ -85,12 +93,14 @@ void Document::open(const Opened& opened) {
   session_ = opened.session;
   sessionFile_ = opened.isSession ? inputFile_ : QString();
   inspection_.reset();
+  influence_.reset();
   tradeoff_ = savedTradeoff_ = opened.tradeoff;
   unsaved_ = opened.unsaved;
   updateTraining();
   setStale(scene_ != nullptr);
   emit sceneOpened();
   emit tradeoffChanged();
+  emit influenceChanged();
 }
 
 Opened Document::toSave() const {

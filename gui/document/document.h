@@ -60,6 +60,11 @@ class Document : public QObject {
   /// Measured speed against accuracy of this scene; null = none. Stored in the session.
   std::shared_ptr<const Tradeoff> tradeoff() const { return tradeoff_; }
   void setTradeoff(std::shared_ptr<const Tradeoff> tradeoff);
+  /// What every training frame does for the models; null = not asked for. Not stored. See influenceStale().
+  std::shared_ptr<const Influence> influence() const { return influence_; }
+  /// It was measured with another request than that on screen.
+  bool influenceStale() const;
+  void setInfluence(std::shared_ptr<const Influence> influence, const InspectionRequest& computedFor);
   /// The request is the model and the settings of this point, and no other model.
   bool isLoaded(const TradeoffPoint& point) const;
 
@@ -106,6 +111,7 @@ class Document : public QObject {
   void staleChanged(bool stale);
   void savedStateChanged();
   void tradeoffChanged();
+  void influenceChanged();
 
  private:
   friend class StateCommand;
@@ -122,6 +128,8 @@ class Document : public QObject {
   std::shared_ptr<const Session> session_;
   std::shared_ptr<const Inspection> inspection_;
   std::shared_ptr<const Tradeoff> tradeoff_, savedTradeoff_;
+  std::shared_ptr<const Influence> influence_;
+  InspectionRequest influenceFor_;
   bool stale_ = false;
   bool unsaved_ = false;  ///< opened as it is stored nowhere: recovered, or with its scene in another place
   int gesture_ = 0;

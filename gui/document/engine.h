@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "core/diagnostics/influence.h"
 #include "core/pipeline/inspection.h"
 #include "core/pipeline/selection.h"
 #include "core/tradeoff/tradeoff.h"
@@ -51,6 +52,8 @@ struct Engine {
   /// As glint::measureTradeoff on the models that the program knows; `file` is what is open, so that stopped work can be resumed.
   std::function<Tradeoff(std::shared_ptr<const Scene>, const InspectionRequest&, const std::string& file, const ProgressFn&)>
       tradeoff;
+  /// As glint::measureInfluence: throws Stopped.
+  std::function<Influence(const Inspection&, const ProgressFn&)> influence;
   /// As glint::parseTrainSpec: InputError for a specification that does not parse.
   std::function<TrainSpec(const std::string&, const Scene&)> parseTrain;
   /// Writes a session file atomically; InputError when it cannot be written, Stopped. It hashes every input file, so it takes

@@ -18,6 +18,7 @@ Runner::Runner(Engine engine, QObject* parent) : QObject(parent), engine_(std::m
   qRegisterMetaType<OpenedPtr>("glint::gui::OpenedPtr");
   qRegisterMetaType<SelectionPtr>("glint::gui::SelectionPtr");
   qRegisterMetaType<TradeoffPtr>("glint::gui::TradeoffPtr");
+  qRegisterMetaType<InfluencePtr>("glint::gui::InfluencePtr");
   worker_->moveToThread(&thread_);
   connect(&thread_, &QThread::finished, worker_, &QObject::deleteLater);
   thread_.start();
@@ -102,6 +103,19 @@ void Runner::measure(std::shared_ptr<const Scene> scene, const InspectionRequest
     if (job > cancelled_)
       QMetaObject::invokeMethod(
           this, [this, tradeoff, computedFor] { emit measured(tradeoff, computedFor); }, Qt::QueuedConnection);
+  });
+}
+
+void Runner::influence(InspectionPtr inspection) {
+  post([this, inspection = std::move(inspection)](int job) {
+    QElapsedTimer clock, lastSignal;
+    clock.start();
+    const ProgressFn progress = [&](const StageEvent& e) { return report(job, clock, lastSignal, e); };
+    if (job != newest_ || job <= cancelled_) throw Stopped{};
+    const auto influence = std::make_shared<const Influence>(engine_.influence(*inspection, progress));
+    if (job > cancelled_)
+      QMetaObject::invokeMethod(
+          this, [this, influence, inspection] { emit influenceMeasured(influence, inspection); }, Qt::QueuedConnection);
   });
 }
 

@@ -16,6 +16,7 @@ using InspectionPtr = std::shared_ptr<const Inspection>;
 using OpenedPtr = std::shared_ptr<const Opened>;
 using SelectionPtr = std::shared_ptr<const glint::Selection>;
 using TradeoffPtr = std::shared_ptr<const Tradeoff>;
+using InfluencePtr = std::shared_ptr<const Influence>;
 
 /// The only place that knows both Qt and the pipeline: opens inputs and computes inspections on a thread of its own.
 /// The newest request wins. A run that a newer request overtakes is stopped, except in its first `kGraceMs`: quick runs
@@ -40,6 +41,8 @@ class Runner : public QObject {
   void choose(std::shared_ptr<const Scene> scene, const InspectionRequest& request, double goodEnoughPct, InspectionPtr previous);
   /// Speed against accuracy of all settings; answers with measured().
   void measure(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const std::string& file);
+  /// What every training frame does; answers with influenceMeasured().
+  void influence(InspectionPtr inspection);
   void cancel();
   bool busy() const { return pending_ > 0; }
 
@@ -50,6 +53,7 @@ class Runner : public QObject {
   void finished(const glint::gui::InspectionPtr& inspection, const glint::gui::OpenedPtr& computedFor);
   void chosen(const glint::gui::SelectionPtr& selection, const glint::gui::OpenedPtr& computedFor);
   void measured(const glint::gui::TradeoffPtr& tradeoff, const glint::gui::OpenedPtr& computedFor);
+  void influenceMeasured(const glint::gui::InfluencePtr& influence, const glint::gui::InspectionPtr& inspection);
   void failed(const QString& oneLine);
   /// With failed() after it: opening can be tried again with the place of the scene.
   void sceneMissing(const QString& session, const QString& scene);
@@ -80,3 +84,4 @@ Q_DECLARE_METATYPE(glint::gui::InspectionPtr)
 Q_DECLARE_METATYPE(glint::gui::OpenedPtr)
 Q_DECLARE_METATYPE(glint::gui::SelectionPtr)
 Q_DECLARE_METATYPE(glint::gui::TradeoffPtr)
+Q_DECLARE_METATYPE(glint::gui::InfluencePtr)

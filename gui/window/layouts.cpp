@@ -7,8 +7,11 @@ namespace glint::gui {
 
 const QList<Layout>& layouts() {
   static const QList<Layout> all = {
-      {"debug", QT_TRANSLATE_NOOP("Layout", "Debug"), {"setup", "layers", "parameters", "numbers", "timeline", "errors"}, 50},
-      {"compare", QT_TRANSLATE_NOOP("Layout", "Compare"), {"setup", "timeline", "errors"}, 35},
+      {"debug",
+       QT_TRANSLATE_NOOP("Layout", "Debug"),
+       {"setup", "layers", "parameters", "conditioning", "numbers", "timeline", "errors", "plots"},
+       50},
+      {"compare", QT_TRANSLATE_NOOP("Layout", "Compare"), {"setup", "timeline", "errors", "plots"}, 35},
       {"present", QT_TRANSLATE_NOOP("Layout", "Present"), {"timeline"}, 55}};
   return all;
 }

@@ -31,6 +31,8 @@
 #include "gui/panels/parameter_panel.h"
 #include "gui/panels/setup_panel.h"
 #include "gui/panels/tradeoff_panel.h"
+#include "gui/plots/conditioning_panel.h"
+#include "gui/plots/plots_panel.h"
 #include "gui/scene/layer_list.h"
 #include "gui/scene/scene_panel.h"
 #include "gui/timeline/timeline.h"
@@ -194,6 +196,7 @@ void MainWindow::buildDocks() {
   QDockWidget* whatIf = addDock("what-if", tr("What if"), new WhatIfPanel(document_), Qt::RightDockWidgetArea);
   tabifyDockWidget(docks_["parameters"], whatIf);
   docks_["parameters"]->raise();
+  addDock("conditioning", tr("Conditioning"), new ConditioningPanel(document_), Qt::RightDockWidgetArea);
   numbers_ = new NumbersPanel(document_);
   addDock("numbers", tr("Numbers"), numbers_, Qt::RightDockWidgetArea);
   connect(scene_, &ScenePanel::picked, numbers_, &NumbersPanel::showPicked);
@@ -203,6 +206,9 @@ void MainWindow::buildDocks() {
   errors_ = new ErrorTable(document_);
   QDockWidget* errors = addDock("errors", tr("Errors"), errors_, Qt::BottomDockWidgetArea);
   splitDockWidget(timeline, errors, Qt::Vertical);
+  plots_ = new PlotsPanel(document_);
+  QDockWidget* plots = addDock("plots", tr("Plots"), plots_, Qt::BottomDockWidgetArea);
+  splitDockWidget(errors, plots, Qt::Horizontal);  // before anything is a tab: Qt would make the plots one too
   log_ = new QPlainTextEdit;
   log_->setReadOnly(true);
   log_->setMaximumBlockCount(2000);
@@ -220,6 +226,19 @@ void MainWindow::buildDocks() {
     document_.setTradeoff(tradeoff);
     log(tr("Speed and accuracy: %1").arg(toQString(tradeoff->reason)));
     if (document_.stale()) recompute();  // the measurement took the place of a run that was under way
+  });
+  connect(plots_, &PlotsPanel::problem, this, &MainWindow::showProblem);
+  connect(plots_, &PlotsPanel::shown, plots, [plots] {
+    plots->show();
+    plots->raise();
+  });
+  connect(plots_, &PlotsPanel::influenceRequested, this, [this] {
+    if (document_.inspection() && engine_.influence) runner_.influence(document_.inspection());
+  });
+  connect(&runner_, &Runner::influenceMeasured, this, [this](const InfluencePtr& influence, const InspectionPtr& inspection) {
+    if (inspection->scene != document_.sharedScene()) return;
+    document_.setInfluence(influence, inspection->request);
+    if (document_.stale()) recompute();  // it took the place of a run that was under way
   });
   errors->raise();
 }
@@ -257,6 +276,9 @@ void MainWindow::buildMenus() {
   timeline_->addActions(actions_, frame);
   frame->addSeparator();
   frame_->addActions(actions_, frame);
+
+  QMenu* plots = menuBar()->addMenu(tr("&Plots"));
+  plots_->addActions(actions_, plots);
 
   QMenu* view = menuBar()->addMenu(tr("&View"));
   scene_->addActions(actions_, view);
@@ -316,7 +338,8 @@ void MainWindow::applyLayout(const QString& name) {
   resizeDocks({docks_["setup"], docks_["parameters"]}, {230, 380}, Qt::Horizontal);
   resizeDocks({docks_["timeline"], docks_["errors"]}, {92, height() * 3 / 10}, Qt::Vertical);
   resizeDocks({docks_["setup"], docks_["layers"]}, {284, 264}, Qt::Vertical);
-  resizeDocks({docks_["parameters"], docks_["numbers"]}, {560, 340}, Qt::Vertical);
+  resizeDocks({docks_["parameters"], docks_["conditioning"], docks_["numbers"]}, {400, 290, 210}, Qt::Vertical);
+  resizeDocks({docks_["errors"], docks_["plots"]}, {1, 1}, Qt::Horizontal);
   views_->setSizes({layout.sceneShare * 10, (100 - layout.sceneShare) * 10});
 }
 
@@ -358,10 +381,11 @@ void MainWindow::offerRecovery() {
                            }}});
 }
 
-bool MainWindow::idle() const { return !runner_.busy() && !frame_->loader()->busy(); }
+bool MainWindow::idle() const { return !runner_.busy() && !frame_->loader()->busy() && plots_->idle(); }
 
 QPixmap MainWindow::picture() {
   if (centre_->currentWidget() == views_) scene_->renderNow();
+  plots_->renderNow();
   return grab();
 }
 

@@ -25,6 +25,7 @@ class MessageBar;
 class NumbersPanel;
 class Palette;
 class ParameterPanel;
+class PlotsPanel;
 class ScenePanel;
 class StartPage;
 class SetupPanel;
@@ -93,6 +94,7 @@ class MainWindow : public QMainWindow {
   NumbersPanel* numbers_ = nullptr;
   ParameterPanel* parameters_ = nullptr;
   Palette* palette_ = nullptr;
+  PlotsPanel* plots_ = nullptr;
   SetupPanel* setup_ = nullptr;
   TradeoffPanel* tradeoff_ = nullptr;
   QPlainTextEdit* log_ = nullptr;

@@ -51,5 +51,6 @@ QObject* makeProgramTest();
 QObject* makeRecoveryTest();
 int runUntilKilled();  ///< see recovery_test.cpp
 QObject* makeTradeoffTest();
+QObject* makePlotsTest();
 
 }  // namespace glint::gui

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/plots/conditioning_panel.h"
+
+#include <QGridLayout>
+#include <QLabel>
+#include <QPainter>
+#include <QVBoxLayout>
+#include <QVariant>
+#include <algorithm>
+
+#include "gui/base/text.h"
+#include "gui/base/theme.h"
+
+namespace glint::gui {
+
+namespace {
+
+/// Dark enough for white text in both themes.
+QColor colourOf(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::Green:
+      return QColor(0x2c, 0x7a, 0x4b);
+    case Verdict::Amber:
+      return QColor(0x9a, 0x68, 0x00);
+    case Verdict::Red:
+      return QColor(0xb0, 0x2e, 0x24);
+    case Verdict::Unknown:
+      return QColor(0x6a, 0x70, 0x76);
+  }
+  return {};
+}
+
+QString signOf(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::Green:
+      return QStringLiteral("✓");
+    case Verdict::Amber:
+      return QStringLiteral("!");
+    case Verdict::Red:
+      return QStringLiteral("✕");
+    case Verdict::Unknown:
+      return {};
+  }
+  return {};
+}
+
+/// Rows in a fixed order, so that a slider does not make them jump.
+struct Row {
+  const char* id;
+  const char* title;
+  const char* tip;
+};
+constexpr Row kRows[] = {
+    {"fit", QT_TRANSLATE_NOOP("ConditioningPanel", "Fit"), QT_TRANSLATE_NOOP("ConditioningPanel", "Why there is no fit")},
+    {"signature", QT_TRANSLATE_NOOP("ConditioningPanel", "Q* alone"),
+     QT_TRANSLATE_NOOP("ConditioningPanel", "Kind of quadric that the contours alone give, by the signature of Q*")},
+    {"rank", QT_TRANSLATE_NOOP("ConditioningPanel", "Singular values"),
+     QT_TRANSLATE_NOOP("ConditioningPanel", "Second last over first singular value")},
+    {"gap", QT_TRANSLATE_NOOP("ConditioningPanel", "Gap"),
+     QT_TRANSLATE_NOOP("ConditioningPanel", "Last over second last singular value")},
+    {"angle", QT_TRANSLATE_NOOP("ConditioningPanel", "Triangulation"),
+     QT_TRANSLATE_NOOP("ConditioningPanel", "Widest angle between the rays of two views")},
+    {"views", QT_TRANSLATE_NOOP("ConditioningPanel", "Effective views"),
+     QT_TRANSLATE_NOOP("ConditioningPanel", "Training views, nearly equal ones counted once")},
+    {"light", QT_TRANSLATE_NOOP("ConditioningPanel", "Light ±"),
+     QT_TRANSLATE_NOOP("ConditioningPanel", "Standard deviation of the light (or the ellipsoid's centre) over its distance")},
+    {"residual", QT_TRANSLATE_NOOP("ConditioningPanel", "Residual"),
+     QT_TRANSLATE_NOOP("ConditioningPanel", "RMS distance of the training contours from the model")}};
+
+/// "hyperboloid of two sheets" does not fit a chip.
+QString shortText(const Finding& f) {
+  static const std::pair<const char*, const char*> shorter[] = {{"hyperboloid of one sheet", "hyperb. 1"},
+                                                                {"hyperboloid of two sheets", "hyperb. 2"},
+                                                                {"imaginary ellipsoid", "imaginary"},
+                                                                {"flat imaginary ellipsoid", "imaginary"},
+                                                                {"flat ellipsoid", "flat"},
+                                                                {"flat hyperboloid", "flat hyp."},
+                                                                {"undetermined", "open"},
+                                                                {"ellipsoid", "ellips."}};
+  for (const auto& [full, brief] : shorter)
+    if (f.text == full) return QLatin1String(brief);
+  return toQString(f.text);
+}
+
+}  // namespace
+
+Chip::Chip(Verdict verdict, const QString& text, QWidget* parent) : QAbstractButton(parent), verdict_(verdict) {
+  setText(text);
+  setCursor(Qt::PointingHandCursor);
+  QFont small = font();
+  small.setPointSizeF(0.85 * small.pointSizeF());
+  setFont(small);
+  setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+}
+
+QSize Chip::sizeHint() const {
+  return {fontMetrics().horizontalAdvance(signOf(verdict_) + QChar(0x2009) + text()) + 12, fontMetrics().height() + 6};
+}
+QSize Chip::minimumSizeHint() const { return {44, fontMetrics().height() + 6}; }
+
+void Chip::paintEvent(QPaintEvent*) {
+  QPainter painter(this);
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.setPen(hasFocus() ? QPen(palette().color(QPalette::Text), 1.5) : QPen(Qt::NoPen));
+  painter.setBrush(underMouse() ? colourOf(verdict_).lighter(115) : colourOf(verdict_));
+  painter.drawRoundedRect(QRectF(rect()).adjusted(0.75, 0.75, -0.75, -0.75), 4, 4);
+  painter.setPen(Qt::white);
+  painter.drawText(rect().adjusted(2, 0, -2, 0), Qt::AlignCenter,
+                   fontMetrics().elidedText(signOf(verdict_) + QChar(0x2009) + text(), Qt::ElideRight, width() - 4));
+}
+
+void Chip::enterEvent(QEvent* e) {
+  QAbstractButton::enterEvent(e);
+  update();
+  emit entered();
+}
+
+ConditioningPanel::ConditioningPanel(Document& document, QWidget* parent) : QWidget(parent), document_(document) {
+  setObjectName(QStringLiteral("conditioning"));
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(6, 4, 6, 4);
+  column->setSpacing(4);
+  empty_ = new QLabel(tr("There are no results yet"));
+  empty_->setProperty("role", "faded");
+  column->addWidget(empty_);
+  reason_ = new QLabel;
+  reason_->setObjectName(QStringLiteral("conditioningReason"));
+  reason_->setWordWrap(true);
+  reason_->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  reason_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
+  column->addWidget(reason_, 1);
+  const auto again = [this] {
+    dirty_ = true;
+    refresh();
+  };
+  connect(&document_, &Document::inspectionChanged, this, again);
+  connect(&document_, &Document::sceneOpened, this, again);
+  connect(&document_, &Document::selectionChanged, this, [this] {
+    const std::shared_ptr<const Inspection> inspection = document_.inspection();
+    const std::string key = inspection && inspection->train.perSurface && inspection->surfaces
+                                ? inspection->surfaces->keyOf(document_.selection().frame)
+                                : "";
+    if (key != surface_) {
+      dirty_ = true;
+      refresh();
+    } else {
+      explainWorst();
+    }
+  });
+}
+
+void ConditioningPanel::showEvent(QShowEvent* e) {
+  QWidget::showEvent(e);
+  refresh();
+}
+
+Chip* ConditioningPanel::chip(const std::string& model, const std::string& finding) const {
+  for (const Shown& s : chips_) {
+    const Conditioning& c = conditioning_[std::size_t(s.conditioning)];
+    if (c.model == model && c.findings[std::size_t(s.finding)].id == finding) return s.chip;
+  }
+  return nullptr;
+}
+
+QString ConditioningPanel::reason() const { return reason_->text(); }
+
+void ConditioningPanel::refresh() {
+  if (!dirty_ || !isVisible()) return;
+  dirty_ = false;
+  chips_.clear();
+  delete table_;
+  table_ = nullptr;
+  const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  conditioning_ = inspection ? conditioningOf(*inspection) : std::vector<Conditioning>{};
+  surface_ = inspection && inspection->train.perSurface && inspection->surfaces
+                 ? inspection->surfaces->keyOf(document_.selection().frame)
+                 : "";
+  if (!surface_.empty())
+    conditioning_.erase(std::remove_if(conditioning_.begin(), conditioning_.end(),
+                                       [this](const Conditioning& c) { return c.surface && *c.surface != surface_; }),
+                        conditioning_.end());
+  empty_->setVisible(conditioning_.empty());
+  if (conditioning_.empty()) return reason_->clear();
+
+  bool severalLights = false;
+  for (const Conditioning& c : conditioning_) severalLights = severalLights || c.light != conditioning_.front().light;
+  table_ = new QWidget;
+  auto* grid = new QGridLayout(table_);
+  grid->setContentsMargins(0, 0, 0, 0);
+  grid->setSpacing(3);
+  int row = 1;
+  for (const Row& r : kRows) {
+    bool any = false;
+    for (int k = 0; k < int(conditioning_.size()); ++k) {
+      const Conditioning& c = conditioning_[std::size_t(k)];
+      for (int f = 0; f < int(c.findings.size()); ++f) {
+        const Finding& finding = c.findings[std::size_t(f)];
+        if (finding.id != r.id) continue;
+        any = true;
+        auto* chip = new Chip(finding.verdict, shortText(finding));
+        chip->setObjectName(toQString("chip_" + c.model + "_" + finding.id));
+        chip->setToolTip(QStringLiteral("<b>%1, %2: %3</b> (%4)<br>%5")
+                             .arg(toQString(c.model), toQString(finding.title), toQString(finding.text).toHtmlEscaped(),
+                                  QLatin1String(nameOf(finding.verdict)), toQString(finding.reason).toHtmlEscaped()));
+        chip->setAccessibleName(toQString(c.model + " " + finding.title + " " + finding.text + ": " + nameOf(finding.verdict)));
+        connect(chip, &Chip::entered, this,
+                [this, k, f] { explain(conditioning_[std::size_t(k)], conditioning_[std::size_t(k)].findings[std::size_t(f)]); });
+        connect(chip, &Chip::clicked, this, [this, k] {
+          viz::Selection s = document_.selection();
+          s.model = conditioning_[std::size_t(k)].model;
+          s.light = conditioning_[std::size_t(k)].light;
+          document_.select(s);
+        });
+        grid->addWidget(chip, row, k + 1);
+        chips_.push_back({chip, k, f});
+      }
+    }
+    if (!any) continue;
+    auto* title = new QLabel(tr(r.title));
+    title->setToolTip(tr(r.tip));
+    title->setProperty("role", "faded");
+    grid->addWidget(title, row++, 0);
+  }
+  for (int k = 0; k < int(conditioning_.size()); ++k) {
+    const Conditioning& c = conditioning_[std::size_t(k)];
+    auto* head = new QLabel(toQString(c.model) + (severalLights ? QLatin1Char('\n') + toQString(c.light) : QString()));
+    head->setToolTip(toQString(c.model + ", light " + c.light + (c.surface ? ", surface " + *c.surface : std::string())));
+    head->setStyleSheet(
+        QStringLiteral("border-bottom: 2px solid %1; font-size: 8pt;").arg(toQColor(viz::modelColour(c.model)).name()));
+    head->setAlignment(Qt::AlignCenter);
+    head->setMinimumWidth(40);
+    grid->addWidget(head, 0, k + 1);
+    grid->setColumnStretch(k + 1, 1);
+  }
+  static_cast<QVBoxLayout*>(layout())->insertWidget(0, table_);
+  explainWorst();
+}
+
+void ConditioningPanel::explain(const Conditioning& c, const Finding& f) {
+  reason_->setText(
+      QStringLiteral("<b>%1, %2: %3</b><br>%4")
+          .arg(toQString(c.model), toQString(f.title), toQString(f.text).toHtmlEscaped(), toQString(f.reason).toHtmlEscaped()));
+}
+
+void ConditioningPanel::explainWorst() {
+  const std::string model = document_.plottedModel();
+  const Conditioning* chosen = nullptr;
+  for (const Conditioning& c : conditioning_)
+    if (c.model == model && (!chosen || c.light == document_.selection().light)) chosen = &c;
+  if (!chosen || chosen->findings.empty()) return;
+  const Finding* worst = &chosen->findings.front();
+  const auto rank = [](Verdict v) { return v == Verdict::Unknown ? -1 : int(v); };
+  for (const Finding& f : chosen->findings)
+    if (rank(f.verdict) > rank(worst->verdict)) worst = &f;
+  explain(*chosen, *worst);
+}
+
+}  // namespace glint::gui

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QAbstractButton>
+#include <QWidget>
+#include <vector>
+
+#include "core/diagnostics/conditioning.h"
+#include "gui/document/document.h"
+
+class QGridLayout;
+class QLabel;
+
+namespace glint::gui {
+
+/// A coloured chip: a value with its verdict as colour and as a sign, so that it can be told without the colour.
+class Chip : public QAbstractButton {
+  Q_OBJECT
+ public:
+  Chip(Verdict verdict, const QString& text, QWidget* parent = nullptr);
+  Verdict verdict() const { return verdict_; }
+  QSize sizeHint() const override;
+  QSize minimumSizeHint() const override;
+
+ signals:
+  void entered();
+
+ protected:
+  void paintEvent(QPaintEvent* e) override;
+  void enterEvent(QEvent* e) override;
+
+ private:
+  Verdict verdict_;
+};
+
+/// The conditioning strip: one column per model, one row per quantity, the reason in words below (of the chip under the mouse,
+/// else the worst of the model that is selected). Follows every inspection. A click selects the chip's model.
+class ConditioningPanel : public QWidget {
+  Q_OBJECT
+ public:
+  explicit ConditioningPanel(Document& document, QWidget* parent = nullptr);
+  /// The chip of a model and quantity ("gap"), null when there is none.
+  Chip* chip(const std::string& model, const std::string& finding) const;
+  QString reason() const;
+
+ protected:
+  void showEvent(QShowEvent* e) override;
+
+ private:
+  void refresh();
+  void explain(const Conditioning& c, const Finding& f);
+  void explainWorst();
+
+  struct Shown {
+    Chip* chip;
+    int conditioning;
+    int finding;
+  };
+  Document& document_;
+  QWidget* table_ = nullptr;
+  QLabel* reason_;
+  QLabel* empty_;
+  std::vector<Conditioning> conditioning_;
+  std::vector<Shown> chips_;
+  std::string surface_;  ///< key of the selected frame's surface, where every surface has its own models
+  bool dirty_ = true;
+};
+
+}  // namespace glint::gui

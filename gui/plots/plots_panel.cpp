@@ -1,0 +1,357 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/plots/plots_panel.h"
+
+#include <QAction>
+#include <QApplication>
+#include <QClipboard>
+#include <QComboBox>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QHBoxLayout>
+#include <QMenu>
+#include <QMimeData>
+#include <QSplitter>
+#include <QTemporaryDir>
+#include <QToolButton>
+#include <QVBoxLayout>
+#include <algorithm>
+#include <exception>
+
+#include "core/base/atomic_file.h"
+#include "gui/base/text.h"
+#include "gui/base/theme.h"
+#include "gui/base/to_qimage.h"
+#include "gui/plots/plot_canvas.h"
+#include "viz/canvas.h"
+#include "viz/plots/plot_export.h"
+
+namespace glint::gui {
+
+namespace {
+const char* const kOptions[2] = {"plots/first", "plots/second"};
+const char* const kDefaults[2] = {"error", "dial"};
+constexpr double kPictureScale = 2;  // of saved and copied pictures: sharp on paper and on dense screens
+
+bool isKind(const std::string& id) {
+  const auto& kinds = viz::plotKinds();
+  return std::any_of(kinds.begin(), kinds.end(), [&](const viz::PlotKind& k) { return id == k.id; });
+}
+}  // namespace
+
+PlotsPanel::PlotsPanel(Document& document, QWidget* parent) : QWidget(parent), document_(document) {
+  setObjectName(QStringLiteral("plots"));
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  splitter_ = new QSplitter(Qt::Horizontal);
+  splitter_->setChildrenCollapsible(false);
+  layout->addWidget(splitter_);
+  for (int i = 0; i < 2; ++i) buildPane(i);
+  splitter_->setSizes({500, 500});
+
+  connect(&loader_, &SamplesLoader::loaded, this, [this](const FrameSamplesPtr& samples) {
+    samples_ = samples;
+    markDirty({"lobe", "limit-angle"});
+  });
+  connect(&document_, &Document::sceneOpened, this, [this] {
+    samples_.reset();
+    wantsInfluence_ = false;
+    showOptions();
+    markDirty({});
+  });
+  connect(&document_, &Document::inspectionChanged, this, [this] {
+    wantSamples();
+    markDirty({"error", "dial", "axes", "singular", "influence"});
+    if (wantsInfluence_ && !document_.stale()) askForInfluence();
+  });
+  connect(&document_, &Document::selectionChanged, this, &PlotsPanel::followSelection);
+  connect(&document_, &Document::tradeoffChanged, this, [this] { markDirty({"tradeoff"}); });
+  connect(&document_, &Document::influenceChanged, this, [this] { markDirty({"influence"}); });
+  connect(&document_, &Document::requestChanged, this, [this] { markDirty({"influence"}); });
+  connect(&document_, &Document::optionsChanged, this, &PlotsPanel::showOptions);
+  showOptions();
+}
+
+PlotsPanel::~PlotsPanel() = default;
+
+void PlotsPanel::buildPane(int index) {
+  Pane& pane = panes_[std::size_t(index)];
+  pane.widget = new QWidget;
+  auto* column = new QVBoxLayout(pane.widget);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(0);
+  auto* row = new QHBoxLayout;
+  row->setContentsMargins(4, 2, 4, 2);
+  pane.selector = new QComboBox;
+  pane.selector->setObjectName(QStringLiteral("plot%1").arg(index));
+  for (const viz::PlotKind& k : viz::plotKinds()) {
+    pane.selector->addItem(tr(k.title), QString::fromLatin1(k.id));
+    pane.selector->setItemData(pane.selector->count() - 1, tr(k.help), Qt::ToolTipRole);
+  }
+  row->addWidget(pane.selector);
+  row->addStretch(1);
+  if (index == 0) {
+    auto* influence = new QToolButton;
+    influence->setObjectName(QStringLiteral("askInfluence"));
+    influence->setText(tr("Which view matters"));
+    influence->setToolTip(tr("Leaves every training frame out once and tells what the models lose"));
+    influence->setAutoRaise(true);
+    connect(influence, &QToolButton::clicked, this, &PlotsPanel::askForInfluence);
+    row->addWidget(influence);
+  }
+  auto* save = new QToolButton;
+  save->setIcon(icon(QStringLiteral("save")));
+  save->setToolTip(tr("Save or copy this plot"));
+  save->setAutoRaise(true);
+  save->setPopupMode(QToolButton::InstantPopup);
+  auto* menu = new QMenu(save);
+  for (const char* ending : {"svg", "png", "csv"})
+    menu->addAction(tr("Save as %1…").arg(QString::fromLatin1(ending).toUpper()), this, [this, index, ending] {
+      current_ = index;
+      saveAs(ending);
+    });
+  menu->addSeparator();
+  menu->addAction(tr("Copy the picture"), this, [this, index] {
+    current_ = index;
+    copyPicture();
+  });
+  menu->addAction(tr("Copy as SVG"), this, [this, index] {
+    current_ = index;
+    copySvg();
+  });
+  menu->addAction(tr("Copy the numbers"), this, [this, index] {
+    current_ = index;
+    copyNumbers();
+  });
+  save->setMenu(menu);
+  row->addWidget(save);
+  column->addLayout(row);
+  pane.canvas = new PlotCanvas;
+  column->addWidget(pane.canvas, 1);
+  splitter_->addWidget(pane.widget);
+
+  connect(pane.selector, QOverload<int>::of(&QComboBox::activated), this,
+          [this, index](int at) { setKind(index, panes_[std::size_t(index)].selector->itemData(at).toString().toStdString()); });
+  connect(pane.canvas, &PlotCanvas::clicked, this, &PlotsPanel::clicked);
+  connect(pane.canvas, &PlotCanvas::touched, this, [this, index] { current_ = index; });
+}
+
+std::string PlotsPanel::kind(int pane) const {
+  const std::string id = document_.option(kOptions[pane], std::string(kDefaults[pane]));
+  return isKind(id) ? id : kDefaults[pane];
+}
+
+void PlotsPanel::setKind(int pane, const std::string& id) {
+  if (id == kind(pane)) return;
+  for (const viz::PlotKind& k : viz::plotKinds())
+    if (id == k.id) document_.setOption(kOptions[pane], id, tr("Plot: %1").arg(tr(k.title)));
+}
+
+void PlotsPanel::showOptions() {
+  const bool two = document_.option("plots/two", std::string("on")) == "on";
+  panes_[1].widget->setVisible(two);
+  if (!two) current_ = 0;
+  if (two_) two_->setChecked(two);
+  for (int i = 0; i < 2; ++i) {
+    Pane& pane = panes_[std::size_t(i)];
+    const int at = pane.selector->findData(toQString(kind(i)));
+    pane.selector->setToolTip(pane.selector->itemData(at, Qt::ToolTipRole).toString());
+    if (at != pane.selector->currentIndex()) pane.selector->setCurrentIndex(at);
+    if (pane.canvas->plot().id != kind(i)) pane.dirty = true;
+  }
+  wantSamples();
+  refresh();
+}
+
+void PlotsPanel::markDirty(std::initializer_list<const char*> kinds) {
+  for (int i = 0; i < 2; ++i) {
+    const std::string id = kind(i);
+    if (kinds.size() == 0 || std::any_of(kinds.begin(), kinds.end(), [&](const char* k) { return id == k; }))
+      panes_[std::size_t(i)].dirty = true;
+  }
+  refresh();
+}
+
+void PlotsPanel::refresh() {
+  for (int i = 0; i < 2; ++i) {
+    Pane& pane = panes_[std::size_t(i)];
+    if (!pane.dirty || !pane.canvas->isVisible()) continue;
+    pane.dirty = false;
+    viz::PlotData plot = data(kind(i));
+    plot.id = kind(i);  // also where there is nothing to show
+    pane.canvas->show(plot);
+    pane.canvas->setSelection(document_.selection());
+  }
+}
+
+viz::PlotData PlotsPanel::data(const std::string& id) {
+  viz::PlotData empty;
+  const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  const viz::Selection& s = document_.selection();
+  if (id == "tradeoff") {
+    if (document_.tradeoff()) return viz::tradeoffPlot(*document_.tradeoff());
+    empty.empty = tr("Not measured yet: see the panel \"Speed and accuracy\"").toStdString();
+    return empty;
+  }
+  if (!inspection) {
+    empty.empty = (document_.scene() ? tr("There are no results yet") : tr("No scene")).toStdString();
+    return empty;
+  }
+  if (id == "error") return viz::errorPlot(*inspection);
+  if (id == "axes") return viz::semiAxesPlot(*inspection);
+  if (id == "singular") return viz::singularValuePlot(conditioningOf(*inspection));
+  if (id == "dial") return viz::residualDial(*inspection, s.frame, s.highlight);
+  if (id == "influence") {
+    if (document_.influence()) {
+      viz::PlotData plot = viz::influencePlot(*inspection, *document_.influence(), s.model);
+      if (document_.influenceStale()) plot.title += tr("   (of an earlier request)").toStdString();
+      return plot;
+    }
+    empty.empty = tr("Not asked yet: \"Which view matters\" leaves every training frame out once").toStdString();
+    return empty;
+  }
+  if (!samples_) {
+    empty.empty = tr("Reading the frame").toStdString();
+    return empty;
+  }
+  return id == "lobe" ? viz::lobePlot(*samples_, s.highlight) : viz::limitAnglePlot(*samples_, s.highlight);
+}
+
+void PlotsPanel::wantSamples() {
+  for (int i = 0; i < 2; ++i) {
+    if (kind(i) != "lobe" && kind(i) != "limit-angle") continue;
+    if (!panes_[std::size_t(i)].canvas->isVisible() || !document_.inspection()) continue;
+    return loader_.want(document_.inspection(), document_.selection().frame, document_.plottedModel());
+  }
+}
+
+void PlotsPanel::followSelection() {
+  const viz::Selection& s = document_.selection();
+  if (s.frame != shown_.frame || s.model != shown_.model) wantSamples();
+  if (s.frame != shown_.frame || s.highlight != shown_.highlight) {
+    markDirty({"dial"});
+    if (samples_ && samples_->frame == s.frame) markDirty({"lobe", "limit-angle"});
+  }
+  if (s.model != shown_.model) markDirty({"influence"});
+  shown_ = s;
+  for (Pane& pane : panes_)
+    if (pane.canvas->isVisible() && !pane.dirty) pane.canvas->setSelection(s);
+}
+
+void PlotsPanel::clicked(const viz::PlotTarget& target) {
+  if (target.setting >= 0) {
+    const std::shared_ptr<const Tradeoff> t = document_.tradeoff();
+    if (!t || target.setting >= int(t->points.size())) return;
+    const TradeoffPoint& point = t->points[std::size_t(target.setting)];
+    return document_.load(point, tr("Load %1").arg(toQString(describe(*t, point))));
+  }
+  document_.select(viz::selectionOf(target, document_.selection()));
+}
+
+void PlotsPanel::askForInfluence() {
+  if (!document_.scene()) return;
+  wantsInfluence_ = !document_.inspection() || document_.stale();
+  if (kind(0) != "influence" && !(panes_[1].canvas->isVisible() && kind(1) == "influence")) setKind(0, "influence");
+  emit shown();
+  if (!wantsInfluence_) emit influenceRequested();
+}
+
+void PlotsPanel::showEvent(QShowEvent* e) {
+  QWidget::showEvent(e);
+  wantSamples();
+  refresh();
+}
+
+void PlotsPanel::renderNow() {
+  refresh();
+  for (Pane& pane : panes_)
+    if (pane.canvas->isVisible()) pane.canvas->renderNow();
+}
+
+bool PlotsPanel::saveTo(const QString& file, QString* problem) {
+  const PlotCanvas* canvas = panes_[std::size_t(current_)].canvas;
+  const QString ending = QFileInfo(file).suffix().toLower();
+  const int w = std::max(320, canvas->width()), h = std::max(200, canvas->height());
+  viz::PlotStyle style{canvas->style().dark, 1};
+  try {
+    if (ending == QStringLiteral("csv")) {
+      viz::writePlotCsv(canvas->plot(), file.toStdString());
+    } else if (ending == QStringLiteral("svg")) {
+      viz::writePlotSvg(canvas->plot(), style, document_.selection(), w, h, file.toStdString());
+    } else if (ending == QStringLiteral("png")) {
+      style.scale = kPictureScale;
+      viz::writePng(viz::plotImage(canvas->plot(), style, document_.selection(), int(w * kPictureScale), int(h * kPictureScale)),
+                    file.toStdString());
+    } else {
+      throw InputError(file.toStdString(), "", "a plot is saved as .svg, .png or .csv");
+    }
+  } catch (const std::exception& e) {
+    if (problem) *problem = toQString(e.what());
+    return false;
+  }
+  return true;
+}
+
+void PlotsPanel::saveAs(const char* ending) {
+  const QString type = QString::fromLatin1(ending);
+  const QString proposed = toQString(kind(current_)) + QLatin1Char('.') + type;
+  QString file =
+      QFileDialog::getSaveFileName(this, tr("Save the plot"), proposed, QStringLiteral("%1 (*.%2)").arg(type.toUpper(), type));
+  if (file.isEmpty()) return;
+  if (QFileInfo(file).suffix().isEmpty()) file += QLatin1Char('.') + type;
+  QString line;
+  if (!saveTo(file, &line)) emit problem(line);
+}
+
+void PlotsPanel::copyPicture() {
+  const PlotCanvas* canvas = panes_[std::size_t(current_)].canvas;
+  const viz::PlotStyle style{canvas->style().dark, kPictureScale};
+  QApplication::clipboard()->setImage(
+      toQImage(viz::plotImage(canvas->plot(), style, document_.selection(), int(std::max(320, canvas->width()) * kPictureScale),
+                              int(std::max(200, canvas->height()) * kPictureScale))));
+}
+
+void PlotsPanel::copyNumbers() {
+  QApplication::clipboard()->setText(toQString(viz::plotCsv(panes_[std::size_t(current_)].canvas->plot())));
+}
+
+void PlotsPanel::copySvg() {
+  const QTemporaryDir folder;
+  const QString file = folder.filePath(QStringLiteral("plot.svg"));
+  QString line;
+  if (!saveTo(file, &line)) return emit problem(line);
+  const QByteArray svg = QByteArray::fromStdString(readFile(file.toStdString()));
+  auto* content = new QMimeData;
+  content->setData(QStringLiteral("image/svg+xml"), svg);
+  content->setText(QString::fromUtf8(svg));
+  QApplication::clipboard()->setMimeData(content);
+}
+
+void PlotsPanel::addActions(Actions& actions, QMenu* menu) {
+  for (const viz::PlotKind& k : viz::plotKinds())
+    actions.add(QStringLiteral("plots.show-") + QString::fromLatin1(k.id), menu, tr(k.title),
+                [this, id = std::string(k.id)] {
+                  setKind(current_, id);
+                  emit shown();
+                },
+                {{}, {}, tr(k.help)});
+  menu->addSeparator();
+  two_ = actions.addToggle(
+      QStringLiteral("plots.two"), menu, tr("&Two plots side by side"),
+      [this](bool on) { document_.setOption("plots/two", on ? "on" : "off", on ? tr("Two plots") : tr("One plot")); }, {});
+  two_->setChecked(document_.option("plots/two", std::string("on")) == "on");
+  actions.add(QStringLiteral("plots.show-all"), menu, tr("Show the &whole plot"),
+              [this] { panes_[std::size_t(current_)].canvas->showAll(); });
+  menu->addSeparator();
+  actions.add(QStringLiteral("plots.influence"), menu, tr("Which view &matters"), [this] { askForInfluence(); },
+              {{}, {}, tr("Leaves every training frame out once and tells what the models lose")});
+  menu->addSeparator();
+  for (const char* ending : {"svg", "png", "csv"})
+    actions.add(QStringLiteral("plots.save-") + QString::fromLatin1(ending), menu,
+                tr("Save the plot as %1…").arg(QString::fromLatin1(ending).toUpper()), [this, ending] { saveAs(ending); });
+  actions.add(QStringLiteral("plots.copy-png"), menu, tr("Copy the &plot as a picture"), [this] { copyPicture(); },
+              {{}, QStringLiteral("copy")});
+  actions.add(QStringLiteral("plots.copy-svg"), menu, tr("Copy the plot as &SVG"), [this] { copySvg(); });
+  actions.add(QStringLiteral("plots.copy-csv"), menu, tr("Copy the plot's &numbers"), [this] { copyNumbers(); });
+}
+
+}  // namespace glint::gui

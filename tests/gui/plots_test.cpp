@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Plots and the conditioning strip: real clicks, files that can be read, work off the interface thread.
+#include <QAction>
+#include <QApplication>
+#include <QClipboard>
+#include <QComboBox>
+#include <QFile>
+#include <QImage>
+#include <QMimeData>
+#include <QSignalSpy>
+#include <QSplitter>
+#include <QSvgRenderer>
+#include <QToolButton>
+#include <cmath>
+
+#include "gui/base/text.h"
+#include "gui/plots/conditioning_panel.h"
+#include "gui/plots/plot_canvas.h"
+#include "gui/plots/plots_panel.h"
+#include "gui/window/main_window.h"
+#include "tests/gui/fixture.h"
+
+namespace glint::gui {
+
+namespace {
+/// An influence without any fit: frame f matters by f.
+Influence influenceForTest(const Inspection& inspection) {
+  Influence influence;
+  for (int f = 0; f < 3; ++f) {
+    FrameInfluence one;
+    one.frame = f;
+    for (const auto& [model, result] : inspection.models) one.models[model].leftOutPct = 1.0 + f;
+    influence.frames.push_back(one);
+  }
+  influence.trainingFrames = 3;
+  return influence;
+}
+}  // namespace
+
+class PlotsTest : public QObject {
+  Q_OBJECT
+ private slots:
+  void init() {
+    document_ = std::make_unique<Document>(parseTrainSpec);
+    panel_ = std::make_unique<PlotsPanel>(*document_);
+    document_->open(fixture_.opened());
+    panel_->resize(1000, 340);
+    panel_->show();
+    QVERIFY(QTest::qWaitForWindowExposed(panel_.get()));
+    inspect();
+  }
+  void cleanup() { panel_.reset(); }
+
+  void aClickOnASampleSelectsFrameAndModel() {
+    PlotCanvas* canvas = panel_->canvas(0);
+    QCOMPARE(canvas->plot().id, std::string("error"));
+    panel_->renderNow();
+    int series = -1;
+    for (int s = 0; s < int(canvas->plot().series.size()); ++s)
+      if (canvas->plot().series[std::size_t(s)].name == "dual") series = s;
+    QVERIFY(series >= 0);
+    const auto at = canvas->positionOf({series, 7});
+    QVERIFY(at);
+    QTest::mouseClick(canvas->surface(), Qt::LeftButton, {}, at->toPoint());
+    QCOMPARE(document_->selection().frame, 7);
+    QCOMPARE(document_->selection().model, std::string("dual"));
+    QVERIFY(canvas->plot().shades.size() >= 1);  // first:6 trains
+    document_->undoStack()->undo();
+    QCOMPARE(document_->selection().frame, 0);
+    // Beside every sample nothing is selected.
+    QTest::mouseClick(canvas->surface(), Qt::LeftButton, {}, QPoint(4, 4));
+    QCOMPARE(document_->selection().frame, 0);
+  }
+
+  void aDirectionOfTheDialIsSelectedEverywhere() {
+    PlotCanvas* dial = panel_->canvas(1);
+    QCOMPARE(dial->plot().id, std::string("dial"));
+    panel_->renderNow();
+    const viz::PlotSample sample{0, 17};
+    const auto at = dial->positionOf(sample);
+    QVERIFY(at);
+    QTest::mouseClick(dial->surface(), Qt::LeftButton, {}, at->toPoint());
+    QVERIFY(document_->selection().direction.has_value());
+    // Another model's curve may run over this one; the direction is that of the place in any case.
+    QVERIFY(std::abs(*document_->selection().direction - *dial->plot().series[0].points[17].target.direction) < 0.2);
+    QCOMPARE(document_->selection().highlight, 0);
+    QVERIFY(!viz::selectedSamples(dial->plot(), document_->selection()).empty());
+    document_->selectFrame(3);
+    QVERIFY(!document_->selection().direction.has_value());
+    panel_->renderNow();
+    QVERIFY(toQString(dial->plot().title).contains(QStringLiteral("0003")));
+  }
+
+  void theListChoosesThePlotAndUndoTakesItBack() {
+    QComboBox* list = panel_->selector(0);
+    list->setFocus();
+    const int axes = list->findData(QStringLiteral("axes"));
+    list->setCurrentIndex(axes);
+    emit list->activated(axes);
+    QCOMPARE(panel_->canvas(0)->plot().id, std::string("axes"));
+    QVERIFY(!panel_->canvas(0)->plot().empty.empty());  // the stand-in fits nothing, and the plot says so
+    document_->undoStack()->undo();
+    QCOMPARE(panel_->canvas(0)->plot().id, std::string("error"));
+    QCOMPARE(list->currentData().toString(), QStringLiteral("error"));
+    document_->setOption("plots/two", "off", QStringLiteral("One plot"));
+    QVERIFY(!panel_->canvas(1)->isVisible());
+    document_->setOption("plots/two", "on", QStringLiteral("Two plots"));
+    QVERIFY(panel_->canvas(1)->isVisible());
+  }
+
+  void everyPlotIsMadeOffOrOnTheInterfaceThread() {
+    for (const viz::PlotKind& kind : viz::plotKinds()) {
+      document_->setOption("plots/first", kind.id, QStringLiteral("Plot"));
+      QTRY_VERIFY(panel_->idle());
+      panel_->renderNow();
+      QCOMPARE(panel_->canvas(0)->plot().id, std::string(kind.id));
+      QVERIFY2(!panel_->canvas(0)->plot().series.empty() || !panel_->canvas(0)->plot().empty.empty(), kind.id);
+    }
+  }
+
+  void savingWritesValidFiles() {
+    const QTemporaryDir folder;
+    panel_->renderNow();
+    const QString svg = folder.filePath(QStringLiteral("a.svg")), png = folder.filePath(QStringLiteral("a.png")),
+                  csv = folder.filePath(QStringLiteral("a.csv"));
+    QString problem;
+    QVERIFY2(panel_->saveTo(svg, &problem), qPrintable(problem));
+    QSvgRenderer renderer(svg);
+    QVERIFY(renderer.isValid());
+    QVERIFY2(panel_->saveTo(png, &problem), qPrintable(problem));
+    const QImage picture(png);
+    QCOMPARE(picture.width(), 2 * panel_->canvas(0)->width());
+    QVERIFY2(panel_->saveTo(csv, &problem), qPrintable(problem));
+    QFile file(csv);
+    QVERIFY(file.open(QIODevice::ReadOnly));
+    const QList<QByteArray> lines = file.readAll().trimmed().split('\n');
+    QCOMPARE(lines.size(), 1 + 12 * int(document_->inspection()->models.size()));  // 12 frames
+    QVERIFY(!panel_->saveTo(folder.filePath(QStringLiteral("a.bmp")), &problem));
+    QVERIFY(problem.contains(QStringLiteral(".svg")));
+    QVERIFY(!panel_->saveTo(QStringLiteral("/no/such/folder/a.svg"), &problem));
+    panel_->copyNumbers();
+    QVERIFY(QApplication::clipboard()->text().startsWith(QStringLiteral("series,")));
+    panel_->copySvg();
+    QVERIFY(QApplication::clipboard()->mimeData()->hasFormat(QStringLiteral("image/svg+xml")));
+    panel_->copyPicture();
+    QVERIFY(!QApplication::clipboard()->image().isNull());
+  }
+
+  void theWheelZoomsAndADoubleClickShowsEverything() {
+    PlotCanvas* canvas = panel_->canvas(0);
+    panel_->renderNow();
+    const QPointF first = *canvas->positionOf({0, 2}), second = *canvas->positionOf({0, 3});
+    const QPointF at = first;
+    QWheelEvent wheel(at, canvas->surface()->mapToGlobal(at.toPoint()), {}, {0, 480}, Qt::NoButton, Qt::NoModifier,
+                      Qt::NoScrollPhase, false);
+    QCoreApplication::sendEvent(canvas->surface(), &wheel);
+    panel_->renderNow();
+    QVERIFY(canvas->positionOf({0, 3})->x() - canvas->positionOf({0, 2})->x() > 1.5 * (second.x() - first.x()));
+    QTest::mouseDClick(canvas->surface(), Qt::LeftButton, {}, QPoint(200, 150));
+    panel_->renderNow();
+    QVERIFY(std::abs(canvas->positionOf({0, 3})->x() - second.x()) < 1.5);
+  }
+
+  void whichViewMattersRunsOnTheWorkerAndAClickSelects() {
+    Engine engine = fixture_.engine();
+    QThread* ranOn = nullptr;
+    engine.influence = [&](const Inspection& inspection, const ProgressFn& progress) {
+      ranOn = QThread::currentThread();
+      if (!progress({"influence", 0, 1})) throw Stopped{};
+      return influenceForTest(inspection);
+    };
+    MainWindow window(engine);
+    window.resize(1500, 950);
+    window.show();
+    window.document().open(fixture_.opened());
+    QTRY_VERIFY(window.idle() && !window.document().stale());
+    window.actions().find(QStringLiteral("plots.influence"))->trigger();
+    QTRY_VERIFY(window.document().influence());
+    QVERIFY(ranOn && ranOn != QThread::currentThread());
+    auto* plots = window.findChild<PlotsPanel*>();
+    plots->renderNow();
+    PlotCanvas* canvas = plots->canvas(0);
+    QCOMPARE(canvas->plot().id, std::string("influence"));
+    const auto at = canvas->positionOf({0, 2});
+    QVERIFY(at);
+    QTest::mouseClick(canvas->surface(), Qt::LeftButton, {}, (*at + QPointF(0, 2)).toPoint());
+    QCOMPARE(window.document().selection().frame, 2);
+    QVERIFY(!window.document().influenceStale());
+    window.document().setTrain("0-4");
+    QVERIFY(window.document().influenceStale());
+    QTRY_VERIFY(window.idle() && !window.document().stale());
+    // Asked for while results are out of date: measured as soon as they are not.
+    window.document().setTrain("0-5");
+    window.actions().find(QStringLiteral("plots.influence"))->trigger();
+    QTRY_VERIFY(!window.document().stale() && !window.document().influenceStale());
+    window.document().open(fixture_.opened());
+    QVERIFY(!window.document().influence());
+    QTRY_VERIFY(window.idle());
+  }
+
+  void conditioningSaysWhyInWords() {
+    ConditioningPanel strip(*document_);
+    strip.resize(380, 320);
+    strip.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&strip));
+    Chip* chip = strip.chip("canonical", "fit");
+    QVERIFY(chip);  // the stand-in's fit failed
+    QCOMPARE(int(chip->verdict()), int(Verdict::Red));
+    QVERIFY(chip->toolTip().contains(QStringLiteral("too few views")));
+    QTest::mouseClick(chip, Qt::LeftButton);
+    QCOMPARE(document_->selection().model, std::string("canonical"));
+    QVERIFY(strip.reason().contains(QStringLiteral("too few views")));
+    QVERIFY(!strip.chip("canonical", "gap"));
+    InspectionRequest request = document_->request();
+    request.models = {"dual"};
+    document_->setRequest(request, QStringLiteral("Models"));
+    inspect();
+    QVERIFY(!strip.chip("canonical", "fit"));
+    QVERIFY(strip.chip("dual", "fit"));
+  }
+
+ private:
+  void inspect() {
+    document_->setInspection(std::make_shared<const Inspection>(drawnCircles(fixture_.scene(), document_->request())),
+                             document_->request());
+  }
+  Fixture fixture_;
+  std::unique_ptr<Document> document_;
+  std::unique_ptr<PlotsPanel> panel_;
+};
+
+QObject* makePlotsTest() { return new PlotsTest; }
+
+}  // namespace glint::gui
+
+#include "plots_test.moc"

@@ -1,0 +1,388 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viz/plots/plots.h"
+
+#include <gmock/gmock.h>
+#include <vtkNew.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkWindowToImageFilter.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+
+#include "core/base/atomic_file.h"
+#include "tests/viz/small_inspection.h"
+#include "viz/canvas.h"
+#include "viz/convert.h"
+#include "viz/offscreen.h"
+#include "viz/plots/plot_export.h"
+#include "viz/plots/plot_view.h"
+
+namespace glint::viz {
+namespace {
+
+using test::smallInspection;
+using test::TemporaryFolder;
+using testing::HasSubstr;
+
+constexpr double kRadiusPx = 14;  // of the contours in smallInspection; predicted ones are 1 px larger
+
+PlotData line(std::vector<std::pair<double, double>> values) {
+  PlotData plot;
+  plot.id = "error";
+  plot.title = "A line";
+  PlotSeries series;
+  series.name = "canonical";
+  series.colour = modelColour("canonical");
+  series.shape = PlotShape::Points;
+  series.pointSize = 9;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    PlotPoint p;
+    p.x = values[i].first;
+    p.y = values[i].second;
+    p.target.frame = int(i);
+    p.target.model = "canonical";
+    series.points.push_back(p);
+  }
+  plot.series = {series};
+  return plot;
+}
+
+TEST(PlotData, AxesAreLogarithmicBeyondAFactorOfThirty) {
+  EXPECT_FALSE(needsLogAxis({1, 29}));
+  EXPECT_TRUE(needsLogAxis({1, 31}));
+  EXPECT_FALSE(needsLogAxis({0, 0, 5, -3, std::nan("")})) << "only positive values have a ratio";
+  EXPECT_FALSE(needsLogAxis({}));
+  PlotAxis log;
+  log.log = true;
+  log.floor = 1e-3;
+  EXPECT_NEAR(along(log, 100), 2, 1e-12);
+  EXPECT_NEAR(along(log, 0), -3, 1e-12);
+}
+
+TEST(PlotData, Ticks) {
+  const auto texts = [](const std::vector<std::pair<double, std::string>>& ticks) {
+    std::string all;
+    for (const auto& [at, text] : ticks) all += text + " ";
+    return all;
+  };
+  EXPECT_EQ(texts(ticksOf({}, 0, 1, 5)), "0 0.2 0.4 0.6 0.8 1 ");
+  EXPECT_EQ(texts(ticksOf({}, -1, 11, 4)), "0 5 10 ");
+  PlotAxis log;
+  log.log = true;
+  EXPECT_EQ(texts(ticksOf(log, -2, 2, 6)), "0.01 0.1 1 10 100 ");
+  EXPECT_EQ(texts(ticksOf(log, -12, 0, 4)), "1e-12 1e-08 0.0001 1 ");
+  PlotAxis named;
+  named.names = {{0, "a"}, {1, "b"}, {2, "c"}, {3, "d"}};
+  EXPECT_EQ(texts(ticksOf(named, -1, 4, 2)), "a c ");
+  EXPECT_TRUE(ticksOf({}, 1, 1, 5).empty());
+}
+
+TEST(PlotData, RangeTakesErrorBarsAndIgnoresGaps) {
+  PlotData plot = line({{0, 1}, {10, std::nan("")}, {4, 3}});
+  plot.series[0].points[2].band = {{2.0, 5.0}};
+  const PlotRange r = rangeOf(plot);
+  EXPECT_LT(r.x1, 5);
+  EXPECT_GT(r.y1, 5);
+  EXPECT_GT(rangeOf(PlotData{}).x1, rangeOf(PlotData{}).x0);
+}
+
+TEST(PlotData, SelectionAndSamplesAreLinkedBothWays) {
+  PlotData plot = line({{0, 1}, {1, 2}, {2, 3}});
+  Selection s;
+  s.frame = 1;
+  EXPECT_EQ(selectedSamples(plot, s), (std::vector<PlotSample>{{0, 1}}));
+  s.model = "dual";
+  EXPECT_TRUE(selectedSamples(plot, s).empty());
+  const Selection clicked = selectionOf(plot.series[0].points[2].target, s);
+  EXPECT_EQ(clicked.frame, 2);
+  EXPECT_EQ(clicked.model, "canonical");
+  s.direction = 1.0;
+  s.highlight = 0;
+  EXPECT_FALSE(selectionOf(plot.series[0].points[2].target, s).direction) << "another frame has other contours";
+  PlotTarget direction{1, "dual", "lamp", 0, -3.0, -1};
+  EXPECT_EQ(*selectionOf(direction, s).direction, -3.0);
+  // Directions close over pi, and the nearest one is marked where none is near.
+  for (PlotPoint& p : plot.series[0].points) p.target = {1, "", "", 0, 0.0, -1};
+  plot.series[0].points[0].target.direction = std::numbers::pi;
+  plot.series[0].points[1].target.direction = 2.0;
+  plot.series[0].points[2].target.direction = 0.0;
+  s.model.clear();
+  s.direction = -std::numbers::pi + 0.01;
+  EXPECT_EQ(selectedSamples(plot, s), (std::vector<PlotSample>{{0, 0}}));
+  s.direction = 2.1;
+  EXPECT_EQ(selectedSamples(plot, s), (std::vector<PlotSample>{{0, 1}}));
+  s.direction = -1.5;
+  EXPECT_TRUE(selectedSamples(plot, s).empty());
+  s.direction.reset();
+  EXPECT_TRUE(selectedSamples(plot, s).empty());
+}
+
+TEST(PlotData, CsvHasOneLinePerSample) {
+  PlotData plot = line({{0, 1.5}, {1, std::nan("")}});
+  plot.y.title = "error (%)";
+  plot.series[0].name = "a \"quoted\", name";
+  plot.series[0].points[0].target.direction = 0.25;
+  EXPECT_EQ(plotCsv(plot),
+            "series,\"\",\"error (%)\",lower,upper,frame,model,light,highlight,direction,label\n"
+            "\"a \"\"quoted\"\", name\",0,1.5,,,0,\"canonical\",\"\",,0.25,\"\"\n"
+            "\"a \"\"quoted\"\", name\",1,,,,1,\"canonical\",\"\",,,\"\"\n");
+}
+
+TEST(Plots, ErrorsOfEveryFrame) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  const PlotData plot = errorPlot(*inspection);
+  ASSERT_EQ(plot.series.size(), 1u) << "dual refused every frame";
+  EXPECT_EQ(plot.series[0].name, "canonical");
+  EXPECT_EQ(plot.series[0].colour, modelColour("canonical"));
+  ASSERT_EQ(plot.series[0].points.size(), 6u);
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_NEAR(plot.series[0].points[std::size_t(i)].y, 100 / (2 * kRadiusPx), 1e-12);
+    EXPECT_EQ(plot.series[0].points[std::size_t(i)].target.frame, i);
+  }
+  EXPECT_FALSE(plot.y.log);
+  ASSERT_EQ(plot.shades.size(), 1u);  // frames 0 to 3 train
+  EXPECT_EQ(plot.shades[0].from, -0.5);
+  EXPECT_EQ(plot.shades[0].to, 3.5);
+  inspection->models["canonical"].frames[2].rows[0].metrics->contourErrorPct = 1000;
+  EXPECT_TRUE(errorPlot(*inspection).y.log);
+  EXPECT_FALSE(errorPlot(Inspection{}).empty.empty());
+}
+
+TEST(Plots, DialOfAPredictionThatIsOnePixelTooLarge) {
+  const TemporaryFolder folder;
+  const PlotData plot = residualDial(*smallInspection(folder.path()), 2, -1);
+  ASSERT_EQ(plot.series.size(), 1u);
+  EXPECT_TRUE(plot.dial);
+  for (const PlotPoint& p : plot.series[0].points) {
+    EXPECT_NEAR(p.y, 1, 0.05);  // polygons instead of circles
+    EXPECT_EQ(*p.target.direction, p.x);
+    EXPECT_EQ(p.target.highlight, 0);
+  }
+  EXPECT_FALSE(residualDial(*smallInspection(folder.path()), 2, 5).empty.empty());
+}
+
+TEST(Plots, SemiAxesWithTheirModels) {
+  const TemporaryFolder folder;
+  const PlotData plot = semiAxesPlot(*smallInspection(folder.path()));
+  ASSERT_EQ(plot.series.size(), 1u) << "a hyperboloid has no semi-axes";
+  const std::vector<PlotPoint>& p = plot.series[0].points;
+  ASSERT_EQ(p.size(), 3u);
+  EXPECT_NEAR(p[0].y, 0.25, 1e-12);
+  EXPECT_NEAR(p[1].y, 0.2, 1e-12);
+  EXPECT_NEAR(p[2].y, 0.12, 1e-12);
+  EXPECT_EQ(p[0].target.model, "canonical");
+}
+
+TEST(Plots, LobeAndItsFit) {
+  FrameSamples samples;
+  samples.frame = 3;
+  samples.model = "reflectance";
+  FrameSamples::Lobe lobe;
+  lobe.observed = 0;
+  lobe.level = 0.5;
+  lobe.roughness = 0.1;
+  LobeSamples s;
+  s.fit = LobeFit{std::log(7.0), 0.1, 0.01, 2};
+  s.samples = {{{10, 20}, 0, std::log(7.0), 0.3, true}, {{12, 20}, 0.1, std::log(7.0) - 1, -0.3, false}};
+  lobe.samples = s;
+  samples.lobes = {lobe};
+  const PlotData plot = lobePlot(samples, -1);
+  ASSERT_EQ(plot.series.size(), 5u);  // faint, fitted, the lobe, the model's lobe, the level
+  EXPECT_NEAR(plot.series[1].points[0].y, 0, 1e-12);
+  EXPECT_NEAR(plot.series[0].points[0].y, -1, 1e-12);
+  EXPECT_NEAR(plot.series[0].points[0].x, 0.1 * 180 / std::numbers::pi, 1e-12);
+  EXPECT_EQ(*plot.series[0].points[0].target.direction, -0.3);
+  EXPECT_NEAR(plot.series[2].points.back().y, -1, 1e-12);  // (alpha / m)^2 = 1 at the widest sample
+  EXPECT_NEAR(plot.series[4].points[0].y, std::log(0.5), 1e-12);
+  EXPECT_FALSE(lobePlot(samples, 4).empty.empty());
+  samples.failure = "No surface.";
+  EXPECT_EQ(lobePlot(samples, -1).empty, "No surface.");
+}
+
+TEST(Plots, SamplesOfAFrameOnTheSphere) {
+  const TemporaryFolder folder;
+  const FrameSamples samples = frameSamples(*smallInspection(folder.path()), 5, "canonical");
+  EXPECT_EQ(samples.failure, "");
+  ASSERT_EQ(samples.angles.size(), 1u);
+  const PlotData plot = limitAnglePlot(samples, -1);
+  ASSERT_EQ(plot.series.size(), 2u);
+  for (std::size_t i = 0; i < plot.series[0].points.size(); ++i)
+    EXPECT_GT(plot.series[1].points[i].y, plot.series[0].points[i].y) << "a larger contour reaches larger angles";
+  ASSERT_EQ(samples.lobes.size(), 1u);
+  EXPECT_NE(samples.lobes[0].samples.has_value(), samples.lobes[0].failure.has_value());
+  EXPECT_FALSE(frameSamples(*smallInspection(folder.path()), 77, "canonical").failure.empty());
+}
+
+TEST(Plots, EveryKindHasAName) {
+  EXPECT_EQ(plotKinds().size(), 8u);
+  for (const PlotKind& k : plotKinds()) EXPECT_GT(std::string(k.help).size(), 20u) << k.id;
+}
+
+/// Needs a display of its own.
+class PlotDrawing : public testing::Test {
+ protected:
+  void SetUp() override {
+    Outcome<std::unique_ptr<VirtualDisplay>> display = VirtualDisplay::start(800, 600);
+    if (!display) GTEST_SKIP() << display.failure().message();
+    display_ = std::move(*display);
+    window_ = vtkSmartPointer<vtkRenderWindow>::New();
+    window_->SetOffScreenRendering(1);
+    window_->SetDPI(72);
+    window_->SetSize(600, 400);
+    window_->AddRenderer(view_.renderer());
+  }
+  void TearDown() override {
+    if (window_) {
+      window_->RemoveRenderer(view_.renderer());
+      window_->Finalize();
+    }
+    window_ = nullptr;
+  }
+  Image draw() {
+    window_->Render();
+    vtkNew<vtkWindowToImageFilter> grab;
+    grab->SetInput(window_);
+    grab->SetInputBufferTypeToRGB();
+    grab->ReadFrontBufferOff();
+    grab->ShouldRerenderOff();
+    grab->Update();
+    return fromVtk(grab->GetOutput());
+  }
+  std::unique_ptr<VirtualDisplay> display_;
+  vtkSmartPointer<vtkRenderWindow> window_;
+  PlotView view_;
+};
+
+bool isColour(const Image& image, const Eigen::Vector2d& at, const Colour& colour) {
+  const int x = int(at.x()), y = int(at.y());
+  for (int c = 0; c < 3; ++c)
+    if (std::abs(image.at(x, y, c) - colour[std::size_t(c)]) > 0.04) return false;
+  return true;
+}
+
+int countOf(const Image& image, const Colour& colour) {
+  int n = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) n += isColour(image, Eigen::Vector2d(x, y), colour);
+  return n;
+}
+
+TEST_F(PlotDrawing, SamplesAreDrawnWhereTheyArePicked) {
+  view_.show(line({{0, 1}, {1, 8}, {2, 3}, {3, 5}}));
+  const Image image = draw();
+  double before = -1;
+  for (int i = 0; i < 4; ++i) {
+    const auto at = view_.positionOf({0, i});
+    ASSERT_TRUE(at) << i;
+    EXPECT_TRUE(isColour(image, *at, modelColour("canonical"))) << i << " at " << at->transpose();
+    EXPECT_GT(at->x(), before);
+    before = at->x();
+    const auto picked = view_.at(*at + Eigen::Vector2d(3, -2), 8);
+    ASSERT_TRUE(picked);
+    EXPECT_EQ(picked->point, i);
+  }
+  EXPECT_LT(view_.positionOf({0, 1})->y(), view_.positionOf({0, 0})->y()) << "larger values are higher up";
+  EXPECT_FALSE(view_.at({3, 3}, 8));
+  EXPECT_FALSE(view_.positionOf({0, 9}));
+}
+
+TEST_F(PlotDrawing, TheSelectionIsMarked) {
+  view_.show(line({{0, 1}, {1, 8}, {2, 3}}));
+  const Image without = draw();
+  Selection s;
+  s.frame = 1;
+  view_.setSelection(s);
+  const Image with = draw();
+  const Eigen::Vector2d at = *view_.positionOf({0, 1}) + Eigen::Vector2d(6, 0);  // on the ring
+  EXPECT_TRUE(isColour(with, at, {1, 1, 1}) || isColour(with, at + Eigen::Vector2d(1, 0), {1, 1, 1}) ||
+              isColour(with, at - Eigen::Vector2d(1, 0), {1, 1, 1}));
+  EXPECT_FALSE(isColour(without, at, {1, 1, 1}) || isColour(without, at + Eigen::Vector2d(1, 0), {1, 1, 1}) ||
+               isColour(without, at - Eigen::Vector2d(1, 0), {1, 1, 1}));
+}
+
+TEST_F(PlotDrawing, ZoomKeepsTheValueUnderTheMouse) {
+  view_.show(line({{0, 1}, {1, 8}, {2, 3}, {3, 5}}));
+  draw();
+  const Eigen::Vector2d at = *view_.positionOf({0, 1}), next = *view_.positionOf({0, 2});
+  view_.zoom(2, at, false);
+  draw();
+  EXPECT_NEAR((*view_.positionOf({0, 1}) - at).norm(), 0, 1);
+  EXPECT_NEAR(view_.positionOf({0, 2})->x() - at.x(), 2 * (next.x() - at.x()), 2);
+  EXPECT_TRUE(view_.zoomed());
+  view_.pan({-1e6, 0});  // no further than the data
+  draw();
+  EXPECT_TRUE(view_.positionOf({0, 3}));
+  view_.showAll();
+  draw();
+  EXPECT_NEAR((*view_.positionOf({0, 2}) - next).norm(), 0, 1);
+}
+
+TEST_F(PlotDrawing, BarsArePickedByTheirColumn) {
+  PlotData plot = line({{0, 4}, {1, -2}, {2, 0}});
+  plot.series[0].shape = PlotShape::Bars;
+  view_.show(plot);
+  const Image image = draw();
+  const Eigen::Vector2d top = *view_.positionOf({0, 0});
+  EXPECT_TRUE(isColour(image, top + Eigen::Vector2d(20, 8), modelColour("canonical"))) << "below its upper end";
+  EXPECT_EQ(view_.at(top + Eigen::Vector2d(0, 120), 1)->point, 0);
+  EXPECT_EQ(view_.at({view_.positionOf({0, 2})->x(), top.y() + 5}, 1)->point, 2) << "also where the bar is empty";
+}
+
+TEST_F(PlotDrawing, DialTurnsAsThePhotograph) {
+  PlotData plot = line({{0, 1}, {std::numbers::pi / 2, 1}});
+  plot.dial = true;
+  plot.y.to = 1;
+  plot.y.from = -1;
+  view_.show(plot);
+  draw();
+  const Eigen::Vector2d right = *view_.positionOf({0, 0}), down = *view_.positionOf({0, 1});
+  EXPECT_GT(right.x(), down.x());
+  EXPECT_GT(down.y(), right.y()) << "pi/2 points down";
+}
+
+TEST_F(PlotDrawing, AnEmptyPlotSaysWhyAndPicksNothing) {
+  PlotData plot;
+  plot.id = "error";
+  plot.title = "Error";
+  plot.empty = "There are no results yet";
+  view_.show(plot);
+  const Image image = draw();
+  EXPECT_GT(countOf(image, {0.64, 0.66, 0.68}), 20) << "the sentence";
+  EXPECT_FALSE(view_.at({300, 200}, 1000));
+}
+
+TEST_F(PlotDrawing, ExportsAreWholeFiles) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  for (const PlotData& plot : {errorPlot(*inspection), residualDial(*inspection, 1, -1), semiAxesPlot(*inspection)}) {
+    const std::string svg = (folder.path() / "plot.svg").string();
+    writePlotSvg(plot, {false, 1}, {}, 640, 400, svg);
+    const std::string text = readFile(svg);
+    EXPECT_THAT(text, HasSubstr("<svg"));
+    EXPECT_THAT(text, HasSubstr("</svg>"));
+    EXPECT_THAT(text, HasSubstr("#009e73")) << plot.id << ": the model's colour";  // Okabe-Ito bluish green
+    for (const bool dark : {true, false}) {
+      const Image image = plotImage(plot, {dark, 2}, {}, 1280, 800);
+      ASSERT_EQ(image.width, 1280);
+      EXPECT_GT(countOf(image, modelColour("canonical")), 200) << plot.id;
+      EXPECT_GT(countOf(image, dark ? kDarkBackground : kLightBackground), 1280 * 300) << plot.id;
+    }
+    PlotData without = plot;
+    without.series.clear();
+    EXPECT_EQ(countOf(plotImage(without, {true, 1}, {}, 640, 400), modelColour("canonical")), 0);
+    const std::string csv = (folder.path() / "plot.csv").string();
+    writePlotCsv(plot, csv);
+    EXPECT_EQ(readFile(csv), plotCsv(plot));
+  }
+  EXPECT_THROW(writePlotSvg(errorPlot(*inspection), {}, {}, 640, 400, (folder.path() / "no/such/folder.svg").string()),
+               InputError);
+  EXPECT_THROW(plotImage(errorPlot(*inspection), {}, {}, 10, 10), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace glint::viz
