@@ -56,7 +56,7 @@ void Document::setTradeoff(std::shared_ptr<const Tradeoff> tradeoff) {
   emit savedStateChanged();
 }
 
-bool Document::influenceStale() const { return influence_ && !sameRequest(influenceFor_, state_.request); }
+bool Document::influenceStale() const { return influence_ && influenceFor_ != state_.request; }
 
 void Document::setInfluence(std::shared_ptr<const Influence> influence, const InspectionRequest& computedFor) {
   influence_ = std::move(influence);

@@ -236,7 +236,7 @@ void MainWindow::buildDocks() {
     if (document_.inspection() && engine_.influence) runner_.influence(document_.inspection());
   });
   connect(&runner_, &Runner::influenceMeasured, this, [this](const InfluencePtr& influence, const InspectionPtr& inspection) {
-    if (inspection->scene != document_.sharedScene()) return;
+    if (inspection->given != document_.sharedScene()) return;
     document_.setInfluence(influence, inspection->request);
     if (document_.stale()) recompute();  // it took the place of a run that was under way
   });

@@ -124,6 +124,8 @@ FrameSamples frameSamples(const Inspection& inspection, int frame, const std::st
       const Outcome<Light> light = lightOfModel(inspection, frame, model, h.light);
       if (!light) {
         lobe.failure = light.failure();
+      } else if (inspection.request.whatIf.synthesise) {
+        lobe.failure = Failure{Reason::NotSupported, "the contours are synthesised, and no image belongs to them"};
       } else if (!linear) {
         lobe.failure = linear.failure();
       } else if (!mask) {
