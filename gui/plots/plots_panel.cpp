@@ -202,7 +202,8 @@ viz::PlotData PlotsPanel::data(const std::string& id) {
   if (id == "dial") return viz::residualDial(*inspection, s.frame, s.highlight);
   if (id == "influence") {
     if (document_.influence()) {
-      viz::PlotData plot = viz::influencePlot(*inspection, *document_.influence(), s.model);
+      viz::PlotData plot = viz::influencePlot(*inspection, *document_.influence(),
+                                              document_.plottedModel());  // one model: a poor one's scale would hide the others
       if (document_.influenceStale()) plot.title += tr("   (of an earlier request)").toStdString();
       return plot;
     }

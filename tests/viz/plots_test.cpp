@@ -166,6 +166,20 @@ TEST(Plots, DialOfAPredictionThatIsOnePixelTooLarge) {
   EXPECT_FALSE(residualDial(*smallInspection(folder.path()), 2, 5).empty.empty());
 }
 
+TEST(Plots, TheDialShowsOneHighlightForAllModels) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  Highlight second = inspection->evidence[1].highlights[0];
+  for (Pixel& p : second.contour.points) p.x() += 40;
+  inspection->evidence[1].highlights.push_back(second);
+  FrameComparison& missed = inspection->models["dual"].frames[1];  // dual meets the second highlight only
+  missed.prediction = inspection->models["canonical"].frames[1].prediction;
+  missed.rows = {{0, -1, {}, Failure{Reason::NotReached, ""}}, {1, 0, ContourMetrics{}, {}}};
+  EXPECT_EQ(residualDial(*inspection, 1, -1).series.size(), 1u);
+  ASSERT_EQ(residualDial(*inspection, 1, 1).series.size(), 1u);
+  EXPECT_THAT(residualDial(*inspection, 1, 1).series[0].name, HasSubstr("dual"));
+}
+
 TEST(Plots, SemiAxesWithTheirModels) {
   const TemporaryFolder folder;
   const PlotData plot = semiAxesPlot(*smallInspection(folder.path()));

@@ -503,7 +503,7 @@ void PlotView::Impl::ring(vtkContext2D* painter, const PlotSample& sample, doubl
   const Eigen::Vector2d at = place(p.x, p.y);
   if (!inside(at)) return;
   setBrush(painter, colour, 0);
-  setPen(painter->GetPen(), kHalo, px(width + 2));
+  setPen(painter->GetPen(), style.dark ? kHalo : Colour{1, 1, 1}, px(width + 2));
   painter->DrawArc(float(at.x()), float(at.y()), float(px(r)), 0, 360);
   setPen(painter->GetPen(), colour, px(width));
   painter->DrawArc(float(at.x()), float(at.y()), float(px(r)), 0, 360);
@@ -524,7 +524,7 @@ void PlotView::Impl::paintMarks(vtkContext2D* painter) {
   }
   for (const PlotSample& m : marked)
     ring(painter, m, marked.size() > kMany ? 3 : 6, style.dark ? Colour{1, 1, 1} : kAccent, marked.size() > kMany ? 1 : 1.75);
-  if (hovered) ring(painter, *hovered, 5, kLightColour, 1.5);
+  if (hovered) ring(painter, *hovered, 5, style.dark ? kLightColour : kHalo, 1.5);
 }
 
 std::optional<Eigen::Vector2d> PlotView::positionOf(const PlotSample& sample) const {

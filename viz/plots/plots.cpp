@@ -12,7 +12,8 @@ namespace glint::viz {
 namespace {
 
 constexpr double kDegPerRad = 180 / std::numbers::pi;
-constexpr double kSmallestPct = 1e-6;  // what a logarithmic axis shows of an exact scene
+constexpr Colour kFittedLobe{0.25, 0.56, 0.86};  // no model's; readable on white points and on both backgrounds
+constexpr double kSmallestPct = 1e-6;            // what a logarithmic axis shows of an exact scene
 
 template <class... Numbers>
 std::string text(const char* format, Numbers... numbers) {
@@ -217,7 +218,7 @@ PlotData lobePlot(const FrameSamples& samples, int highlight) {
   bright.halo = true;
   faint.colour = kHeldOut;
   bright.shape = faint.shape = PlotShape::Points;
-  bright.pointSize = faint.pointSize = 3;
+  bright.pointSize = faint.pointSize = 4;
   double lowest = 0;
   for (const LobeSample& p : s.samples) {
     PlotPoint point;
@@ -237,8 +238,7 @@ PlotData lobePlot(const FrameSamples& samples, int highlight) {
     curve.name = name;
     curve.colour = colour;
     curve.dash = dash;
-    curve.width = 2.5;
-    curve.halo = true;
+    curve.width = 1.25;  // the pixels beneath stay visible
     for (int i = 0; i <= 100; ++i) {
       const double alpha = std::min(widest, m * std::sqrt(-lowest)) * i / 100;
       PlotPoint p;
@@ -249,7 +249,7 @@ PlotData lobePlot(const FrameSamples& samples, int highlight) {
     }
     plot.series.push_back(std::move(curve));
   };
-  if (s.fit) addCurve(text("fitted lobe, m = %.4g", s.fit->m), s.fit->m, kLightColour, Dash::Solid);
+  if (s.fit) addCurve(text("fitted lobe, m = %.4g", s.fit->m), s.fit->m, kFittedLobe, Dash::Solid);
   if (lobe->roughness)
     addCurve(samples.model + text(", m = %.4g", *lobe->roughness), *lobe->roughness, modelColour(samples.model), Dash::Dashed);
   if (lobe->level > 0 && lobe->level < 1) {
@@ -327,9 +327,10 @@ PlotData semiAxesPlot(const Inspection& inspection) {
     plot.series.push_back(std::move(series));
   }
   plot.y.log = needsLogAxis(values);
-  if (plot.y.log)
+  if (plot.y.log) {
     plot.y.floor = 0.3 * *std::min_element(values.begin(), values.end());
-  else
+    if (values.size() < 3 * fits.size()) plot.y.title = "semi-axis (m; lowest = 0, flat)";
+  } else
     plot.y.from = 0;
   plot.x.from = -0.5;
   plot.x.to = 2.5;
@@ -344,11 +345,19 @@ PlotData residualDial(const Inspection& inspection, int frame, int highlight) {
   plot.x.title = "direction (rad)";
   plot.y.title = "distance (px)";
   double largest = 0;
-  for (const std::string& model : modelsInOrder(inspection)) {
+  std::vector<std::vector<PolarResidual>> residuals;
+  const std::vector<std::string> models = modelsInOrder(inspection);
+  int first = std::numeric_limits<int>::max();  // the same highlight for all models
+  for (const std::string& model : models) {
+    residuals.push_back(polarResiduals(inspection, frame, model));
+    for (const PolarResidual& r : residuals.back()) first = std::min(first, r.observed);
+  }
+  const int shown = highlight >= 0 ? highlight : first;
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    const std::string& model = models[m];
     const PolarResidual* chosen = nullptr;
-    const std::vector<PolarResidual> all = polarResiduals(inspection, frame, model);
-    for (const PolarResidual& r : all)
-      if (r.observed == highlight || (highlight < 0 && !chosen)) chosen = &r;
+    for (const PolarResidual& r : residuals[m])
+      if (r.observed == shown) chosen = &r;
     if (!chosen || !std::isfinite(chosen->meanAbsPx)) continue;
     PlotSeries series;
     series.name = model + text("  %.2g px", chosen->meanAbsPx);
@@ -527,7 +536,7 @@ PlotData influencePlot(const Inspection& inspection, const Influence& influence,
   const bool probes = !influence.probes.empty();
   plot.title = probes ? "Held-out error without a frame" : "Error of a frame predicted from the others";
   plot.x.title = "frame left out";
-  plot.y.title = probes ? "change of the contour error (%)" : "contour error (%)";
+  plot.y.title = probes ? "error change (%)" : "contour error (%)";
   std::vector<std::string> models;
   for (const std::string& m : modelsInOrder(inspection))
     if (model.empty() || m == model) models.push_back(m);
