@@ -192,7 +192,7 @@ class Findings {
         "%d training views count as %.2g different ones, those nearer than 5 deg to each other only in part: ", int(rays_.size()),
         effective);
     reason += chosen(v, "three or more determine an ellipsoid with a free centre.",
-                     "fewer than three, so the centre is not free: it rests on the light.",
+                     "fewer than three, which an ellipsoid with a free centre needs.",
                      "fewer than two, which determine neither the light's distance nor an ellipsoid.");
     add("views", "effective views", effective, text("%.2g of %d", effective, int(rays_.size())), v, reason);
   }

@@ -6,15 +6,14 @@
 #include <vtkChartXY.h>
 #include <vtkContext2D.h>
 #include <vtkContextActor.h>
+#include <vtkContextDevice2D.h>
 #include <vtkContextItem.h>
 #include <vtkContextScene.h>
 #include <vtkDoubleArray.h>
-#include <vtkFloatArray.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkPen.h>
 #include <vtkPlotLine.h>
-#include <vtkPlotPoints.h>
 #include <vtkRenderer.h>
 #include <vtkStringArray.h>
 #include <vtkTable.h>
@@ -32,7 +31,6 @@ namespace {
 
 constexpr double kFont = 12, kSmallFont = 11;  // screen px
 constexpr double kLine = 18;                   // height of a line of the header, screen px
-constexpr double kMargin = 8;
 constexpr Colour kAccent{0.184, 0.486, 0.769};
 constexpr Colour kHalo{0.12, 0.13, 0.15};
 // A dial's circle of zero and how far the largest residual goes from it, in radii of the dial.
@@ -147,8 +145,7 @@ struct PlotView::Impl {
   }
 
   void rebuild();
-  void addLine(const PlotSeries& series, const std::vector<Eigen::Vector2d>& run, const Colour& colour, double width);
-  void addPoints(const PlotSeries& series, const Colour& colour, double size);
+  void paintSeries(vtkContext2D* painter);
   void styleAxes();
   void layout(vtkContext2D* painter);
   double header(vtkContext2D* painter, bool draw);
@@ -209,78 +206,83 @@ void PlotView::setHovered(const std::optional<PlotSample>& sample) { impl_->hove
 void PlotView::Impl::rebuild() {
   const Colour& background = style.dark ? kDarkBackground : kLightBackground;
   renderer->SetBackground(background[0], background[1], background[2]);
+  renderer->SetBackgroundAlpha(1);  // else an SVG has none
   chart->ClearPlots();
   chart->SetVisible(!isEmpty() && !plot.dial);
   painted = false;
   if (isEmpty() || plot.dial) return;
-  for (const PlotSeries& series : plot.series) {
-    if (series.shape == PlotShape::Bars) {  // drawn by paintBars; VTK lays out no chart without a plot
-      std::vector<Eigen::Vector2d> ends;
-      for (const PlotPoint& p : series.points)
-        if (std::isfinite(p.y)) ends.emplace_back(along(plot.x, p.x), along(plot.y, p.y));
-      if (ends.size() == 1) ends.push_back(ends.front());
-      addLine(series, ends, series.colour, 0);
-      continue;
-    }
-    const bool line = series.shape != PlotShape::Points, points = series.shape != PlotShape::Line;
-    if (line) {
-      std::vector<std::vector<Eigen::Vector2d>> runs(1);
-      for (const PlotPoint& p : series.points) {
-        if (std::isfinite(p.y))
-          runs.back().emplace_back(along(plot.x, p.x), along(plot.y, p.y));
-        else if (!runs.back().empty())
-          runs.emplace_back();
-      }
-      if (series.halo)
-        for (const auto& run : runs) addLine(series, run, kHalo, series.width + 2);
-      for (const auto& run : runs) addLine(series, run, series.colour, series.width);
-    }
-    if (points) {
-      if (series.halo) addPoints(series, kHalo, series.pointSize + 2);
-      addPoints(series, series.colour, series.pointSize);
-    }
-  }
-  styleAxes();
-}
-
-void PlotView::Impl::addLine(const PlotSeries& series, const std::vector<Eigen::Vector2d>& run, const Colour& colour,
-                             double width) {
-  if (run.size() < 2) return;
+  // VTK lays out no chart without a plot. The series are painted in pixels instead (paintSeries): exported to SVG, VTK's own
+  // lines are clipped in the data's coordinates and vanish in viewers that follow the standard.
   vtkNew<vtkTable> table;
   vtkNew<vtkDoubleArray> x, y;
   x->SetName("x");
   y->SetName("y");
-  for (const Eigen::Vector2d& p : run) {
-    x->InsertNextValue(p.x());
-    y->InsertNextValue(p.y());
+  for (const double end : {0.0, 1.0}) {
+    x->InsertNextValue(shown.x0 + end * (shown.x1 - shown.x0));
+    y->InsertNextValue(shown.y0 + end * (shown.y1 - shown.y0));
   }
   table->AddColumn(x);
   table->AddColumn(y);
   auto* line = vtkPlotLine::SafeDownCast(chart->AddPlot(vtkChart::LINE));
   line->SetInputData(table, 0, 1);
-  setPen(line->GetPen(), colour, px(width));
-  if (width > 0) line->GetPen()->SetLineType(lineType(series.dash));
-  line->SetMarkerStyle(vtkPlotPoints::NONE);
+  line->GetPen()->SetLineType(vtkPen::NO_PEN);
+  styleAxes();
 }
 
-void PlotView::Impl::addPoints(const PlotSeries& series, const Colour& colour, double size) {
-  vtkNew<vtkTable> table;
-  vtkNew<vtkDoubleArray> x, y;
-  x->SetName("x");
-  y->SetName("y");
-  for (const PlotPoint& p : series.points) {
-    if (!std::isfinite(p.y)) continue;
-    x->InsertNextValue(along(plot.x, p.x));
-    y->InsertNextValue(along(plot.y, p.y));
+void PlotView::Impl::paintSeries(vtkContext2D* painter) {
+  constexpr std::size_t kManyPoints = 500;  // ellipses one by one take too long; markers are squares where they are small
+  int clip[4] = {int(std::floor(left)), int(std::floor(bottom)), int(std::ceil(right - left)) + 1,
+                 int(std::ceil(top - bottom)) + 1};
+  painter->GetDevice()->SetClipping(clip);
+  painter->GetDevice()->EnableClipping(true);
+  std::vector<float> run;
+  for (const PlotSeries& series : plot.series) {
+    if (series.shape == PlotShape::Bars) continue;
+    const auto poly = [&](const Colour& colour, double width) {
+      setPen(painter->GetPen(), colour, px(width));
+      painter->GetPen()->SetLineType(lineType(series.dash));
+      if (run.size() >= 4) painter->DrawPoly(run.data(), int(run.size() / 2));
+    };
+    for (const bool halo : {true, false}) {
+      if (halo && !series.halo) continue;
+      const Colour& colour = halo ? kHalo : series.colour;
+      const double more = halo ? 2 : 0;
+      run.clear();
+      if (series.shape != PlotShape::Points) {
+        for (const PlotPoint& p : series.points) {
+          const Eigen::Vector2d at = place(p.x, p.y);
+          if (at.allFinite()) {
+            run.push_back(float(at.x()));
+            run.push_back(float(at.y()));
+            continue;
+          }
+          poly(colour, series.width + more);
+          run.clear();
+        }
+        poly(colour, series.width + more);
+      }
+      run.clear();
+      if (series.shape == PlotShape::Line) continue;
+      for (const PlotPoint& p : series.points) {
+        const Eigen::Vector2d at = place(p.x, p.y);
+        if (!inside(at)) continue;
+        run.push_back(float(at.x()));
+        run.push_back(float(at.y()));
+      }
+      const double size = px(series.pointSize + more);
+      if (run.size() / 2 > kManyPoints) {
+        setPen(painter->GetPen(), colour, size);
+        setBrush(painter, colour);
+        painter->DrawMarkers(VTK_MARKER_CIRCLE, false, run.data(), int(run.size() / 2));
+      } else {
+        setPen(painter->GetPen(), colour, 0);
+        setBrush(painter, colour);
+        for (std::size_t i = 0; i + 1 < run.size(); i += 2)
+          painter->DrawEllipse(run[i], run[i + 1], float(0.5 * size), float(0.5 * size));
+      }
+    }
   }
-  if (x->GetNumberOfValues() == 0) return;
-  table->AddColumn(x);
-  table->AddColumn(y);
-  auto* points = vtkPlotPoints::SafeDownCast(chart->AddPlot(vtkChart::POINTS));
-  points->SetInputData(table, 0, 1);
-  points->SetMarkerStyle(vtkPlotPoints::CIRCLE);
-  points->SetMarkerSize(float(px(size)));
-  setPen(points->GetPen(), colour, px(1));
+  painter->GetDevice()->EnableClipping(false);
 }
 
 void PlotView::Impl::styleAxes() {
@@ -301,7 +303,7 @@ void PlotView::Impl::styleAxes() {
 
 /// Title and legend at the top. Returns their height.
 double PlotView::Impl::header(vtkContext2D* painter, bool draw) {
-  const double width = actor->GetScene()->GetSceneWidth(), lineHeight = px(kLine), margin = px(kMargin);
+  const double width = actor->GetScene()->GetSceneWidth(), lineHeight = px(kLine), margin = px(8);
   double y = actor->GetScene()->GetSceneHeight() - 0.5 * lineHeight - px(2), x = margin;
   setPainterText(painter, px(kFont), text(), true);
   const auto widthOf = [&](const std::string& s) {
@@ -399,6 +401,7 @@ void PlotView::Impl::paintOver(vtkContext2D* painter) {
       if (b > a) painter->DrawRect(float(a), float(bottom), float(b - a), float(top - bottom));
     }
     paintBars(painter);
+    paintSeries(painter);
     paintErrorBars(painter);
   }
   paintMarks(painter);
@@ -461,7 +464,6 @@ void PlotView::Impl::paintDial(vtkContext2D* painter) {
       for (const double v : {value, -value}) circle(v, grid(), 1);
   circle(0, kHalo, 3.5);
   circle(0, kObserved, 1.75);
-
   for (const PlotSeries& series : plot.series) {
     const std::size_t n = series.points.size();
     setPen(painter->GetPen(), series.colour, px(series.width));
@@ -472,9 +474,7 @@ void PlotView::Impl::paintDial(vtkContext2D* painter) {
       painter->DrawLine(float(a.x()), float(a.y()), float(b.x()), float(b.y()));
     }
   }
-
   setPainterText(painter, px(kSmallFont), faded());
-  painter->GetTextProp()->SetJustificationToCentered();
   const struct {
     const char* text;
     double x, y;

@@ -17,7 +17,7 @@ struct PlotStyle {
   friend bool operator==(const PlotStyle&, const PlotStyle&) = default;
 };
 
-/// Draws one plot into a renderer: VTK's chart for axes, grid, lines and points; title, legend, bars, error bars, tinted ranges
+/// Draws one plot into a renderer: VTK's chart for layout, axes and grid; series, title, legend, bars, error bars, tinted ranges
 /// and the marks of the selection over it; a dial of its own. Its window's DPI must be 72: sizes are scaled by the style alone.
 class PlotView {
  public:
