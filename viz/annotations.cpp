@@ -29,6 +29,7 @@ struct Strokes {
   vtkNew<vtkCellArray> lines;
   vtkNew<vtkPolyData> data;
   vtkNew<vtkActor2D> actor;
+  Eigen::Vector2d origin{0, 0};  ///< of the viewport in the window
 
   Strokes() {
     data->SetPoints(points);
@@ -46,7 +47,8 @@ struct Strokes {
     lines->Reset();
   }
   void add(double x0, double y0, double x1, double y1) {
-    const vtkIdType a = points->InsertNextPoint(x0, y0, 0), b = points->InsertNextPoint(x1, y1, 0);
+    const vtkIdType a = points->InsertNextPoint(origin.x() + x0, origin.y() + y0, 0),
+                    b = points->InsertNextPoint(origin.x() + x1, origin.y() + y1, 0);
     lines->InsertNextCell({a, b});
   }
   void finish(const Colour& colour, double width) {
@@ -139,7 +141,26 @@ struct Annotations::Impl {
   vtkSmartPointer<vtkTextActor> barText = textActor("", kTextOnDark);
   std::array<Strokes, 3> axes;
   std::array<vtkSmartPointer<vtkTextActor>, 3> axisTexts;
+  std::vector<std::unique_ptr<Strokes>> barSteps;  // of the colour bar
+  std::optional<ColourBar> scale;
+  std::vector<vtkSmartPointer<vtkTextActor>> scaleTexts;  // title, then ticks
+  Strokes border, handle;
+  Border borderKind = Border::None;
+  vtkSmartPointer<vtkTextActor> name = textActor("", kTextOnDark), badge = textActor("", kTextOnDark);
+  bool legendVisible = true;
 
+  struct Rectangle {
+    double x, y, width, height;
+  };
+  std::vector<Rectangle> taken;  // by what stands still: labels keep off it
+  Eigen::Vector2d origin{0, 0};
+
+  void move(vtkTextActor* actor, double x, double y) const { actor->SetPosition(origin.x() + x, origin.y() + y); }
+  Eigen::Vector2d sizeOf(vtkTextActor* actor) const {
+    double size[2] = {0, 0};
+    actor->GetSize(renderer, size);
+    return {size[0], size[1]};
+  }
   Colour ink() const { return dark ? kTextOnDark : kTextOnLight; }
   void background(vtkTextActor* actor, double opacity) const {
     const Colour& c = dark ? kDarkBackground : kLightBackground;
@@ -158,7 +179,7 @@ struct Annotations::Impl {
     for (std::size_t i = 0; i < legend.size(); ++i) {
       auto& [actor, colour] = legend[i];
       const bool entry = i >= 1 && i <= entries;
-      const bool shown = !narrow || !entry || entryAlways[i - 1];
+      const bool shown = legendVisible && (!narrow || !entry || entryAlways[i - 1]);
       actor->SetVisibility(shown);
       if (entry) swatches[i - 1]->actor->SetVisibility(shown);
       if (entry) outlines[i - 1]->actor->SetVisibility(shown);
@@ -166,16 +187,19 @@ struct Annotations::Impl {
       actor->GetTextProperty()->SetFontSize(i == 0 ? points + 1 : points);
       setColour(actor, entry || i == 0 ? ink() : asText(colour, dark));
       background(actor, 0.55);
-      actor->SetPosition(left + (entry ? 2.4 * font : 0), y);
+      move(actor, left + (entry ? 2.4 * font : 0), y);
+      taken.push_back({0, y - 0.3 * font, left + (entry ? 2.4 * font : 0) + sizeOf(actor).x(), row});
       if (entry) {
         Strokes& swatch = *swatches[i - 1];
         swatch.clear();
+        swatch.origin = origin;
         swatch.add(left, y + 0.42 * font, left + 1.8 * font, y + 0.42 * font);
         const double width = std::max(3.0, font / 4.0);
         swatch.finish(colour, width);
         // White on a light background is told by its edge, as the contour itself is.
         Strokes& outline = *outlines[i - 1];
         outline.clear();
+        outline.origin = origin;
         const bool faint = std::abs(luminance(colour) - luminance(dark ? kDarkBackground : kLightBackground)) < 0.25;
         if (faint) outline.add(left - 1, y + 0.42 * font, left + 1.8 * font + 1, y + 0.42 * font);
         outline.finish(ink(), width + 2);
@@ -184,42 +208,71 @@ struct Annotations::Impl {
     }
   }
   void placeLabels(int width, int height, int points, double font) {
-    std::vector<std::array<double, 4>> taken;
-    const Eigen::Vector3d eye = toEigen(renderer->GetActiveCamera()->GetPosition());
-    const Eigen::Vector3d axis = toEigen(renderer->GetActiveCamera()->GetDirectionOfProjection());
+    vtkCamera* camera = renderer->GetActiveCamera();
+    const Eigen::Vector3d eye = toEigen(camera->GetPosition()), axis = toEigen(camera->GetDirectionOfProjection());
     for (std::size_t i = 0; i < labels.size(); ++i) {
       vtkTextActor* actor = labelActors[i];
-      const bool inFront = axis.dot(labels[i].anchor - eye) > 0;
+      const bool inFront = camera->GetParallelProjection() || axis.dot(labels[i].anchor - eye) > 0;
       renderer->SetWorldPoint(labels[i].anchor.x(), labels[i].anchor.y(), labels[i].anchor.z(), 1);
       renderer->WorldToDisplay();
       double display[3];
       renderer->GetDisplayPoint(display);
-      const bool inside = inFront && display[0] > -0.05 * width && display[0] < 1.05 * width && display[1] > -0.05 * height &&
-                          display[1] < 1.05 * height;
+      const Eigen::Vector2d at = Eigen::Vector2d(display[0], display[1]) - origin;
+      const bool inside =
+          inFront && at.x() > -0.05 * width && at.x() < 1.05 * width && at.y() > -0.05 * height && at.y() < 1.05 * height;
       actor->SetVisibility(inside);
       if (!inside) continue;
       actor->GetTextProperty()->SetFontSize(points);
       setColour(actor, asText(labels[i].colour, dark));
       background(actor, 0.6);
-      double size[2];
-      actor->GetSize(renderer, size);
-      const double x = std::clamp(display[0] + 0.8 * font, 2.0, std::max(2.0, width - size[0] - 4));
-      double y = std::clamp(display[1] + 0.3 * font, 2.0, std::max(2.0, height - size[1] - 4));
-      // Labels of close points are stacked upwards instead of printed over each other.
-      for (bool moved = true; moved;) {
-        moved = false;
-        for (const auto& t : taken) {
-          if (x < t[0] + t[2] && t[0] < x + size[0] && y < t[1] + t[3] && t[1] < y + size[1]) {
-            y = t[1] + t[3] + 2;
-            moved = true;
-          }
-        }
-      }
-      taken.push_back({x, y, size[0], size[1]});
-      actor->SetPosition(x, y);
+      const Eigen::Vector2d size = sizeOf(actor);
+      const Rectangle place = freePlace(at, size, width, height, font);
+      taken.push_back(place);
+      move(actor, place.x, place.y);
     }
   }
-  void placeBar(int width, int height, int points, double font, const Eigen::Vector3d& reference) {
+  /// Beside a point, where nothing else stands: to the right first, then to the left, then in rows above and below.
+  Rectangle freePlace(const Eigen::Vector2d& at, const Eigen::Vector2d& size, int width, int height, double font) const {
+    const auto placed = [&](double x, double y) {
+      return Rectangle{std::clamp(x, 2.0, std::max(2.0, width - size.x() - 4)),
+                       std::clamp(y, 2.0, std::max(2.0, height - size.y() - 4)), size.x(), size.y()};
+    };
+    const auto isFree = [&](const Rectangle& r) {
+      // Pushed in from the picture's edge, it must not cover its own point.
+      const double m = 0.75 * font;
+      const bool onPoint = r.x - m < at.x() && at.x() < r.x + r.width + m && r.y - m < at.y() && at.y() < r.y + r.height + m;
+      return !onPoint && std::none_of(taken.begin(), taken.end(), [&](const Rectangle& t) {
+        return r.x < t.x + t.width && t.x < r.x + r.width && r.y < t.y + t.height && t.y < r.y + r.height;
+      });
+    };
+    constexpr int kRows = 8;  // farther, a label would not be seen as its point's
+    for (int row = 0; row <= kRows; ++row) {
+      for (const double side : {1.0, -1.0}) {
+        for (const double x : {at.x() + 0.8 * font, at.x() - 0.8 * font - size.x()}) {
+          const Rectangle r = placed(x, at.y() + 0.3 * font + side * row * (size.y() + 3));
+          if (isFree(r)) return r;
+        }
+      }
+    }
+    return placed(at.x() + 0.8 * font, at.y() + 0.3 * font);
+  }
+  static Eigen::Vector3d rightOf(vtkCamera* camera) {
+    return toEigen(camera->GetDirectionOfProjection()).cross(toEigen(camera->GetViewUp())).normalized();
+  }
+  /// How far a unit step at a world point goes on the screen, px; right for every projection, mirrored or enlarged.
+  Eigen::Vector2d screenOf(const Eigen::Vector3d& at, const Eigen::Vector3d& direction, double step) const {
+    Eigen::Vector2d ends[2];
+    for (int i = 0; i < 2; ++i) {
+      const Eigen::Vector3d p = at + i * step * direction;
+      renderer->SetWorldPoint(p.x(), p.y(), p.z(), 1);
+      renderer->WorldToDisplay();
+      double display[3];
+      renderer->GetDisplayPoint(display);
+      ends[i] = {display[0], display[1]};
+    }
+    return (ends[1] - ends[0]) / step;
+  }
+  void placeBar(int width, int points, double font, const Eigen::Vector3d& reference) {
     vtkCamera* camera = renderer->GetActiveCamera();
     const Eigen::Vector3d eye = toEigen(camera->GetPosition()), axis = toEigen(camera->GetDirectionOfProjection());
     const double depth = axis.dot(reference - eye);
@@ -227,12 +280,13 @@ struct Annotations::Impl {
     bar.actor->SetVisibility(visible);
     barText->SetVisibility(visible);
     if (!visible) return;
-    const double metresPerPixel = camera->GetParallelProjection()
-                                      ? 2 * camera->GetParallelScale() / height
-                                      : 2 * depth * std::tan(camera->GetViewAngle() * std::numbers::pi / 360) / height;
+    const Eigen::Vector2d onScreen = screenOf(reference, rightOf(camera), 1e-3 * depth);
+    const double metresPerPixel = 1 / onScreen.norm();
+    if (!std::isfinite(metresPerPixel)) return;
     const double length = roundLength(0.16 * width * metresPerPixel), pixels = length / metresPerPixel;
     const double x1 = width - 1.2 * font, x0 = x1 - pixels, y = 1.1 * font, tick = 0.35 * font;
     bar.clear();
+    bar.origin = origin;
     bar.add(x0, y, x1, y);
     bar.add(x0, y - tick, x0, y + tick);
     bar.add(x1, y - tick, x1, y + tick);
@@ -242,18 +296,96 @@ struct Annotations::Impl {
     barText->GetTextProperty()->SetJustificationToRight();
     setColour(barText, ink());
     background(barText, 0.4);
-    barText->SetPosition(x1, y + 0.6 * font);
+    move(barText, x1, y + 0.6 * font);
+    const double reach = std::max(sizeOf(barText).x(), pixels);
+    taken.push_back({x1 - reach - 4, 0, reach + 8 + 1.2 * font, y + 2 * font});
   }
-  void placeAxes(int points, double font) {
+  /// Above the scale bar.
+  void placeColourBar(int width, int points, double font) {
+    for (auto& text : scaleTexts) text->SetVisibility(scale.has_value());
+    for (auto& step : barSteps) step->actor->SetVisibility(scale.has_value());
+    if (!scale) return;
+    const double length = std::min(15 * font, 0.5 * width), x0 = width - 1.8 * font - length, y = 5.4 * font;
+    const double step = length / static_cast<double>(barSteps.size());
+    for (std::size_t i = 0; i < barSteps.size(); ++i) {
+      Strokes& s = *barSteps[i];
+      s.clear();
+      s.origin = origin;
+      const double x = x0 + step * static_cast<double>(i);
+      s.add(x, y, x + step + 1, y);
+      s.finish(scale->colours[i], 0.6 * font);
+    }
+    for (std::size_t i = 0; i < scaleTexts.size(); ++i) {
+      vtkTextActor* text = scaleTexts[i];
+      text->GetTextProperty()->SetFontSize(points);
+      text->GetTextProperty()->SetJustificationToCentered();
+      setColour(text, ink());
+      background(text, 0.4);
+      if (i == 0)
+        move(text, x0 + 0.5 * length, y + 0.7 * font);
+      else
+        move(text, x0 + scale->ticks[i - 1].first * length, y - 1.7 * font);
+    }
+    taken.push_back({x0 - 2 * font, y - 2 * font, length + 4 * font, 4.2 * font});
+  }
+  void placeBorder(int width, int height, int points, double font) {
+    border.clear();
+    border.origin = origin;
+    handle.clear();
+    handle.origin = origin;
+    if (borderKind == Border::Around || borderKind == Border::Active) {
+      border.add(0, 1, width, 1);
+      border.add(0, height - 1, width, height - 1);
+      border.add(1, 0, 1, height);
+      border.add(width - 1, 0, width - 1, height);
+    } else if (borderKind == Border::Wipe) {
+      border.add(1, 0, 1, height);
+      handle.add(1, 0.5 * height - 1.5 * font, 1, 0.5 * height + 1.5 * font);
+    }
+    border.finish(borderKind == Border::Active ? kAccent : kHeldOut, borderKind == Border::Around ? 1 : 2);
+    handle.finish(ink(), std::max(6.0, 0.5 * font));
+    name->SetVisibility(name->GetInput() && *name->GetInput());
+    if (name->GetVisibility()) {
+      name->GetTextProperty()->SetFontSize(points);
+      name->GetTextProperty()->SetJustificationToRight();
+      setColour(name, ink());
+      background(name, 0.6);
+      move(name, width - 0.9 * font, height - 1.9 * font);
+      taken.push_back({width - 0.9 * font - sizeOf(name).x(), height - 2.2 * font, sizeOf(name).x() + font, 2.2 * font});
+    }
+    badge->SetVisibility(badge->GetInput() && *badge->GetInput());
+    if (!badge->GetVisibility()) return;
+    vtkTextProperty* text = badge->GetTextProperty();
+    text->SetFontSize(points + 1);
+    text->BoldOn();
+    text->SetJustificationToRight();
+    setColour(badge, {1, 1, 1});
+    text->SetBackgroundColor(0.75 * kAccent[0], 0.75 * kAccent[1], 0.75 * kAccent[2]);
+    text->SetBackgroundOpacity(0.9);
+    // In the upper right corner, below whatever stands there.
+    const Eigen::Vector2d size = sizeOf(badge);
+    const double x = width - 0.9 * font - size.x();
+    double y = height - 2.1 * font;
+    for (const Rectangle& t : taken) {
+      if (x < t.x + t.width && y < t.y + t.height && t.y < y + size.y()) y = t.y - size.y() - 3;
+    }
+    move(badge, width - 0.9 * font, y);
+    taken.push_back({x, y - 0.3 * font, size.x(), 2 * font});
+  }
+  void placeAxes(int points, double font, const Eigen::Vector3d& reference) {
     vtkCamera* camera = renderer->GetActiveCamera();
     const Eigen::Vector3d forward = toEigen(camera->GetDirectionOfProjection()).normalized();
-    const Eigen::Vector3d right = forward.cross(toEigen(camera->GetViewUp())).normalized(), up = right.cross(forward);
+    const Eigen::Vector3d up = rightOf(camera).cross(forward);
+    const double step = 1e-3 * (reference - toEigen(camera->GetPosition())).norm();
+    const bool mirrored = screenOf(reference, rightOf(camera), step).x() < 0;  // as through a virtual camera
+    const Eigen::Vector3d right = (mirrored ? -1 : 1) * rightOf(camera);
     const double size = 2.8 * font, x0 = 4.2 * font, y0 = 4.2 * font;
     static constexpr std::array<Colour, 3> colours{{{0.86, 0.30, 0.30}, {0.35, 0.68, 0.33}, {0.33, 0.52, 0.90}}};
     for (std::size_t i = 0; i < 3; ++i) {
       const Eigen::Vector3d axis = Eigen::Vector3d::Unit(static_cast<Eigen::Index>(i));
       const double dx = size * axis.dot(right), dy = size * axis.dot(up);
       axes[i].clear();
+      axes[i].origin = origin;
       axes[i].add(x0, y0, x0 + dx, y0 + dy);
       axes[i].finish(colours[i], std::max(2.0, font / 6.0));
       vtkTextActor* text = axisTexts[i];
@@ -261,9 +393,10 @@ struct Annotations::Impl {
       setColour(text, asText(colours[i], dark));
       text->GetTextProperty()->SetJustificationToCentered();
       text->GetTextProperty()->SetVerticalJustificationToCentered();
-      text->SetPosition(x0 + 1.3 * dx, y0 + 1.3 * dy);
+      move(text, x0 + 1.3 * dx, y0 + 1.3 * dy);
       text->SetVisibility(std::hypot(dx, dy) > 0.25 * size);
     }
+    taken.push_back({0, 0, x0 + 1.5 * size, y0 + 1.5 * size});
   }
 };
 
@@ -277,6 +410,10 @@ Annotations::Annotations(vtkRenderer* renderer) : impl_(std::make_unique<Impl>()
     renderer->AddActor2D(impl_->axes[i].actor);
     renderer->AddActor2D(impl_->axisTexts[i]);
   }
+  renderer->AddActor2D(impl_->border.actor);
+  renderer->AddActor2D(impl_->handle.actor);
+  renderer->AddActor2D(impl_->name);
+  renderer->AddActor2D(impl_->badge);
 }
 
 Annotations::~Annotations() = default;
@@ -315,6 +452,43 @@ void Annotations::setLabels(const std::vector<DrawnLabel>& labels) {
   }
 }
 
+void Annotations::setColourBar(const std::optional<ColourBar>& bar) {
+  for (auto& step : impl_->barSteps) impl_->renderer->RemoveActor2D(step->actor);
+  for (auto& text : impl_->scaleTexts) impl_->renderer->RemoveActor2D(text);
+  impl_->barSteps.clear();
+  impl_->scaleTexts.clear();
+  impl_->scale = bar;
+  if (!bar) return;
+  for (std::size_t i = 0; i < bar->colours.size(); ++i) {
+    impl_->barSteps.push_back(std::make_unique<Strokes>());
+    impl_->renderer->AddActor2D(impl_->barSteps.back()->actor);
+  }
+  impl_->scaleTexts.push_back(textActor(bar->title, impl_->ink()));
+  for (const auto& [at, text] : bar->ticks) impl_->scaleTexts.push_back(textActor(text, impl_->ink()));
+  for (auto& text : impl_->scaleTexts) impl_->renderer->AddActor2D(text);
+}
+
+void Annotations::setBadge(const std::string& text) { impl_->badge->SetInput(text.c_str()); }
+
+void Annotations::setBorder(Border border, const std::string& name) {
+  impl_->borderKind = border;
+  impl_->name->SetInput(name.c_str());
+}
+
+void Annotations::setLegendVisible(bool visible) { impl_->legendVisible = visible; }
+
+Eigen::Vector2d Annotations::legendSize() {
+  const int* size = impl_->renderer->GetSize();
+  if (!impl_->legendVisible || impl_->legend.empty() || size[0] <= 0 || size[1] <= 0) return {0, 0};
+  const double scale = impl_->pixelsPerPoint();
+  const int points = fontSizeFor(static_cast<int>(size[1] / scale));
+  impl_->taken.clear();
+  impl_->placeLegend(size[1], points, scale * points, size[0] < scale * kNarrowPicture);
+  Eigen::Vector2d reach(0, 0);
+  for (const Impl::Rectangle& r : impl_->taken) reach = reach.cwiseMax(Eigen::Vector2d(r.x + r.width, size[1] - r.y));
+  return reach;
+}
+
 void Annotations::setDark(bool dark) { impl_->dark = dark; }
 
 void Annotations::place(const Eigen::Vector3d& reference) {
@@ -323,10 +497,14 @@ void Annotations::place(const Eigen::Vector3d& reference) {
   const double scale = impl_->pixelsPerPoint();
   const int points = fontSizeFor(static_cast<int>(size[1] / scale));
   const double font = scale * points;
+  impl_->origin = Eigen::Vector2d(impl_->renderer->GetOrigin()[0], impl_->renderer->GetOrigin()[1]);
+  impl_->taken.clear();
   impl_->placeLegend(size[1], points, font, size[0] < scale * kNarrowPicture);
+  impl_->placeBar(size[0], points, font, reference);
+  impl_->placeColourBar(size[0], points, font);
+  impl_->placeBorder(size[0], size[1], points, font);
+  impl_->placeAxes(points, font, reference);
   impl_->placeLabels(size[0], size[1], points, font);
-  impl_->placeBar(size[0], size[1], points, font, reference);
-  impl_->placeAxes(points, font);
 }
 
 }  // namespace glint::viz

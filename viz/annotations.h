@@ -2,7 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "viz/layers.h"
@@ -19,6 +21,16 @@ struct LegendEntry {
 };
 constexpr int kNarrowPicture = 600;  ///< px at 100 % scaling
 
+/// A scale with its ticks, 0..1 from left to right.
+struct ColourBar {
+  std::string title;
+  std::vector<Colour> colours;  ///< equal steps
+  std::vector<std::pair<double, std::string>> ticks;
+};
+
+/// Lines about a view among others.
+enum class Border { None, Around, Active, Wipe };
+
 /// Everything of the 3D picture that is drawn in screen space: legend, notes, labels of world points, scale bar, axes.
 /// Sizes follow the window's height and the screen's scaling. Call `place` before every frame: it projects the labels with the
 /// current camera.
@@ -29,6 +41,14 @@ class Annotations {
   void setLegend(const std::vector<LegendEntry>& entries, const std::vector<std::string>& notes,
                  const std::vector<std::string>& remarks, const std::string& title);
   void setLabels(const std::vector<DrawnLabel>& labels);
+  void setColourBar(const std::optional<ColourBar>& bar);
+  /// A line at the top that cannot be overlooked ("through camera 0007"); "" = none.
+  void setBadge(const std::string& text);
+  /// @param name  of the view, in its upper right corner; "" = none. Border::Wipe draws the line at its left edge.
+  void setBorder(Border border, const std::string& name);
+  void setLegendVisible(bool visible);
+  /// Width and height of the legend from the upper left corner, window px; 0 where there is none.
+  Eigen::Vector2d legendSize();
   void setDark(bool dark);
   /// @param reference  world point at whose depth the scale bar is measured.
   void place(const Eigen::Vector3d& reference);

@@ -6,9 +6,12 @@
 #include <vtkFloatArray.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
+#include <vtkPolyDataNormals.h>
+#include <vtkQuadricClustering.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace glint::viz {
 namespace {
@@ -97,6 +100,45 @@ vtkSmartPointer<vtkImageData> toTexture(const Image& image, int maxWidth) {
     }
   }
   return texture;
+}
+
+vtkSmartPointer<vtkImageData> toTexture(const unsigned char* rgb, int width, int height, int stride) {
+  auto texture = vtkSmartPointer<vtkImageData>::New();
+  texture->SetDimensions(width, height, 1);
+  texture->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+  for (int y = 0; y < height; ++y)
+    std::memcpy(texture->GetScalarPointer(0, height - 1 - y, 0), rgb + static_cast<std::ptrdiff_t>(y) * stride,
+                3 * static_cast<std::size_t>(width));
+  return texture;
+}
+
+vtkSmartPointer<vtkPolyData> withNormals(const vtkSmartPointer<vtkPolyData>& triangles) {
+  if (triangles->GetPointData()->GetNormals() || triangles->GetNumberOfPolys() == 0) return triangles;
+  vtkNew<vtkPolyDataNormals> normals;
+  normals->SetInputData(triangles);
+  normals->SetFeatureAngle(40);
+  normals->Update();
+  return normals->GetOutput();
+}
+
+vtkSmartPointer<vtkPolyData> coarsened(const vtkSmartPointer<vtkPolyData>& triangles, int divisions) {
+  double size[3];
+  const double* bounds = triangles->GetBounds();
+  for (int i = 0; i < 3; ++i) size[i] = bounds[2 * i + 1] - bounds[2 * i];
+  const double longest = std::max({size[0], size[1], size[2]});
+  vtkNew<vtkQuadricClustering> clustering;
+  clustering->SetInputData(triangles);
+  clustering->AutoAdjustNumberOfDivisionsOff();
+  const auto count = [&](double s) { return std::max(2, static_cast<int>(std::lround(divisions * s / longest))); };
+  clustering->SetNumberOfDivisions(count(size[0]), count(size[1]), count(size[2]));
+  clustering->CopyCellDataOff();
+  clustering->Update();
+  vtkNew<vtkPolyDataNormals> normals;
+  normals->SetInputData(clustering->GetOutput());
+  normals->SplittingOff();
+  normals->ConsistencyOff();
+  normals->Update();
+  return normals->GetOutput();
 }
 
 Image fromVtk(vtkImageData* rgb) {

@@ -28,6 +28,12 @@ vtkSmartPointer<vtkMatrix4x4> toVtk(const Eigen::Matrix4d& matrix);
 /// 8-bit RGB texture of a 1- or 3-channel image with values 0..1 (clamped), at most `maxWidth` wide (area-averaged).
 /// Rows are flipped: VTK's first row is the bottom one.
 vtkSmartPointer<vtkImageData> toTexture(const Image& image, int maxWidth);
+/// The same of bytes, RGB, top row first. @param stride  bytes from row to row.
+vtkSmartPointer<vtkImageData> toTexture(const unsigned char* rgb, int width, int height, int stride);
+/// The triangles with point normals: their own where they have them, else computed, edges above 40 degrees kept sharp.
+vtkSmartPointer<vtkPolyData> withNormals(const vtkSmartPointer<vtkPolyData>& triangles);
+/// A coarse copy with normals: vertices gathered in a grid of cubes, `divisions` along the longest side. Any thread.
+vtkSmartPointer<vtkPolyData> coarsened(const vtkSmartPointer<vtkPolyData>& triangles, int divisions);
 /// 3-channel values 0..1, top row first, of a VTK RGB or RGBA 8-bit image (bottom row first).
 Image fromVtk(vtkImageData* rgb);
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What all layers share: sizes, the choice of frames, casting pixels onto the surface, caches.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <numbers>
 
 #include "viz/glyphs.h"
 #include "viz/layers.h"
@@ -12,6 +14,7 @@ namespace glint::viz {
 namespace {
 
 constexpr int kTessellation = 128;       ///< cells a side of an analytic surface
+constexpr int kCoarseDivisions = 120;    ///< cells along the longest side: some 50,000 triangles
 constexpr int kMostContourPoints = 720;  ///< per contour on screen
 
 bool isFinite(const Eigen::AlignedBox3d& box) { return !box.isEmpty() && box.min().allFinite() && box.max().allFinite(); }
@@ -60,7 +63,8 @@ bool LayerInput::onSurface(int frame) const { return !inspection->surfaces || in
 std::vector<const TrainingView*> LayerInput::views() const {
   std::vector<const TrainingView*> result;
   for (const TrainingView& view : inspection->views) {
-    if (!view.failure && view.frame >= 0 && onSurface(view.frame)) result.push_back(&view);
+    if (!view.failure && view.frame >= 0 && onSurface(view.frame) && (!solo || view.frame == selection.frame))
+      result.push_back(&view);
   }
   return result;
 }
@@ -81,6 +85,39 @@ std::vector<const FrameComparison*> LayerInput::comparisons(const std::string& m
   if (found == inspection->models.end()) return result;
   for (const FrameComparison& comparison : found->second.frames) {
     if (comparison.frame == selection.frame) result.push_back(&comparison);
+  }
+  return result;
+}
+
+int LayerInput::highlightOf(const TrainingView& view) const {
+  const auto frame = static_cast<std::size_t>(view.frame);
+  if (view.frame < 0 || frame >= inspection->evidence.size()) return -1;
+  const std::vector<Highlight>& highlights = inspection->evidence[frame].highlights;
+  int nearest = -1;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < highlights.size(); ++i) {  // the view may have noise added: the nearest of its light
+    const double d = (highlights[i].peak - view.highlight.peak).norm();
+    if (highlights[i].light != view.highlight.light || !(d < least)) continue;
+    nearest = static_cast<int>(i);
+    least = d;
+  }
+  return nearest;
+}
+
+std::vector<LayerInput::Mirror> LayerInput::mirrors(int frame) const {
+  std::vector<Mirror> result;
+  for (const TrainingView* view : views()) {
+    if (view->frame == frame && view->tangentPlane)
+      result.push_back({*view->tangentPlane, highlightOf(*view), view->highlight.light});
+  }
+  if (!result.empty() || !surface || static_cast<std::size_t>(frame) >= inspection->evidence.size()) return result;
+  // A held-out frame has no training view: its mirrors are the tangent planes at the observed peaks.
+  const std::vector<Highlight>& highlights = inspection->evidence[static_cast<std::size_t>(frame)].highlights;
+  for (std::size_t i = 0; i < highlights.size(); ++i) {
+    const Outcome<BrightestPoint> b = observedBrightestPoint(*surface, this->frame(frame).camera, highlights[i].peak);
+    if (!b) continue;
+    const SurfacePoint p = facing(b->point, this->frame(frame).camera.centreInWorld());
+    result.push_back({Plane::through(p.position, p.normal), static_cast<int>(i), highlights[i].light});
   }
   return result;
 }
@@ -198,28 +235,77 @@ std::array<Eigen::Vector3d, 4> imagePlane(const Camera& camera, double depth) {
   return world;
 }
 
-vtkSmartPointer<vtkImageData> LayerCache::photograph(const Frame& frame, int maxWidth) {
-  const std::string file = frame.image.empty() ? frame.radiance.string() : frame.image.string();
-  if (file.empty()) return {};
-  const auto key = std::make_pair(file, maxWidth);
-  const auto found = photographs_.find(key);
-  if (found != photographs_.end()) return found->second;
-  const Outcome<Image> image = readPhotograph(frame);
-  return photographs_[key] = image ? toTexture(*image, maxWidth) : vtkSmartPointer<vtkImageData>{};
+namespace {
+/// What directions are measured from, photograph px.
+Pixel middleOf(const Camera& camera, const Highlight& observed) {
+  Polyline contour = observed.contour;
+  for (Pixel& p : contour.points) p = camera.distorted(p);
+  return contour.points.empty() ? camera.distorted(observed.peak) : centroid(contour);
+}
+double angleFrom(const Pixel& middle, const Pixel& measured) {
+  const Pixel by = measured - middle;
+  return std::atan2(by.y(), by.x());
+}
+}  // namespace
+
+double directionOf(const Camera& camera, const Highlight& observed, const Pixel& ideal) {
+  return angleFrom(middleOf(camera, observed), camera.distorted(ideal));
 }
 
-vtkSmartPointer<vtkPolyData> LayerCache::tessellation(const std::shared_ptr<const Surface>& surface,
-                                                      const Eigen::AlignedBox3d& region) {
+std::optional<Pixel> vertexInDirection(const Camera& camera, const Highlight& observed, const Polyline& contour,
+                                       double direction) {
+  const Pixel middle = middleOf(camera, observed);
+  std::optional<Pixel> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Pixel& p : contour.points) {
+    if (!p.allFinite()) continue;
+    const double off = std::abs(std::remainder(angleFrom(middle, camera.distorted(p)) - direction, 2 * std::numbers::pi));
+    if (!(off < least)) continue;
+    least = off;
+    best = p;
+  }
+  return best;
+}
+
+LayerCache::Photograph LayerCache::photograph(const Scene& scene, int frame, int maxWidth) {
+  if (source_) return source_(frame, maxWidth);
+  constexpr std::size_t kKept = 64;
+  const std::pair<int, int> key(frame, maxWidth);
+  for (const auto& [known, texture] : photographs_) {
+    if (known == key) return {texture};
+  }
+  const Outcome<Image> image = readPhotograph(scene.frames[static_cast<std::size_t>(frame)]);
+  if (photographs_.size() >= kKept) photographs_.erase(photographs_.begin());
+  photographs_.emplace_back(key, image ? toTexture(*image, maxWidth) : vtkSmartPointer<vtkImageData>{});
+  return {photographs_.back().second};
+}
+
+vtkSmartPointer<vtkPolyData> LayerCache::Triangles::coarseIfReady() const {
+  if (!coarse.valid() || coarse.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
+  return coarse.get();
+}
+
+LayerCache::Triangles LayerCache::tessellation(const std::shared_ptr<const Surface>& surface, const Eigen::AlignedBox3d& region) {
   constexpr std::size_t kKept = 16;  // a sequence of a bending sheet steps through a few of them
   for (const auto& [known, data] : tessellations_) {
     if (known == surface) return data;
   }
   if (tessellations_.size() >= kKept) tessellations_.erase(tessellations_.begin());
-  tessellations_.emplace_back(surface, toPolyData(surface->tessellate(region, kTessellation)));
-  return tessellations_.back().second;
+  Triangles triangles;
+  triangles.fine = withNormals(toPolyData(surface->tessellate(region, kTessellation)));
+  if (triangles.fine->GetNumberOfPolys() > kLargeSurface) {
+    vtkSmartPointer<vtkPolyData> copy = vtkSmartPointer<vtkPolyData>::New();
+    copy->ShallowCopy(triangles.fine);
+    copy->GetBounds();  // computed here: the thread only reads
+    triangles.coarse = std::async(std::launch::async, [copy] { return coarsened(copy, kCoarseDivisions); }).share();
+  }
+  tessellations_.emplace_back(surface, triangles);
+  return triangles;
 }
 
-void LayerCache::clear() {
+void LayerCache::follow(const std::shared_ptr<const Scene>& scene) {
+  if (scene == scene_) return;
+  scene_ = scene;
   photographs_.clear();
   tessellations_.clear();
 }

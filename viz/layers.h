@@ -7,6 +7,7 @@
 
 #include <array>
 #include <functional>
+#include <future>
 #include <map>
 #include <memory>
 #include <optional>
@@ -19,6 +20,8 @@
 #include "viz/style.h"
 
 namespace glint::viz {
+
+constexpr long long kLargeSurface = 200000;  ///< triangles: beyond, drawing takes more than 50 ms without a graphics card
 
 /// Sizes that everything drawn is derived from, so that millimetres and kilometres look alike.
 struct SceneScale {
@@ -35,15 +38,32 @@ struct SceneScale {
 /// Results of slow look-ups, kept while the inspection (or its scene) stays the same.
 class LayerCache {
  public:
-  /// The photograph of a frame as a texture, at most `maxWidth` wide; null when it cannot be read.
-  vtkSmartPointer<vtkImageData> photograph(const Frame& frame, int maxWidth);
-  /// The display triangles of a surface.
-  vtkSmartPointer<vtkPolyData> tessellation(const std::shared_ptr<const Surface>& surface, const Eigen::AlignedBox3d& region);
-  void clear();
+  struct Photograph {
+    vtkSmartPointer<vtkImageData> texture;  ///< null: see `arriving`
+    bool arriving = false;                  ///< asked for, not there yet; else it cannot be read
+  };
+  /// Gives photographs that are read elsewhere, so that drawing does not wait for files. @param frame  index.
+  using PhotographSource = std::function<Photograph(int frame, int maxWidth)>;
+  void setPhotographSource(PhotographSource source) { source_ = std::move(source); }
+  /// The photograph of a frame as a texture, at most `maxWidth` wide. Without a source it is read here, and the last ones are
+  /// kept.
+  Photograph photograph(const Scene& scene, int frame, int maxWidth);
+
+  /// The display triangles of a surface, with normals, and the coarse ones, which are made on a thread of their own.
+  struct Triangles {
+    vtkSmartPointer<vtkPolyData> fine;
+    std::shared_future<vtkSmartPointer<vtkPolyData>> coarse;  ///< not valid() for a surface that is small enough
+    vtkSmartPointer<vtkPolyData> coarseIfReady() const;
+  };
+  Triangles tessellation(const std::shared_ptr<const Surface>& surface, const Eigen::AlignedBox3d& region);
+  /// Forgets everything when the scene is another one.
+  void follow(const std::shared_ptr<const Scene>& scene);
 
  private:
-  std::map<std::pair<std::string, int>, vtkSmartPointer<vtkImageData>> photographs_;
-  std::vector<std::pair<std::shared_ptr<const Surface>, vtkSmartPointer<vtkPolyData>>> tessellations_;
+  PhotographSource source_;
+  std::shared_ptr<const Scene> scene_;
+  std::vector<std::pair<std::pair<int, int>, vtkSmartPointer<vtkImageData>>> photographs_;  ///< oldest first
+  std::vector<std::pair<std::shared_ptr<const Surface>, Triangles>> tessellations_;
 };
 
 /// What a layer is built from.
@@ -58,17 +78,30 @@ struct LayerInput {
   std::string surfaceProblem;  ///< why there is none
   std::vector<int> frames;     ///< frames whose cameras are drawn: one per pose, those on this surface first
   bool dark = true;
+  bool solo = false;  ///< only what belongs to the selected frame
+  CameraColours colours;
+  Eye eye = Eye::Outside;            ///< other than Outside only where it is in effect
+  std::optional<Plane> eyeMirror{};  ///< of the virtual camera that is looked through
   LayerCache* cache = nullptr;
 
   const Frame& frame(int index) const { return inspection->scene->frames[static_cast<std::size_t>(index)]; }
   /// Whether a frame sees the surface that is shown.
   bool onSurface(int frame) const;
-  /// Usable training views on the shown surface.
+  /// Usable training views on the shown surface; of the selected frame only where solo.
   std::vector<const TrainingView*> views() const;
   /// Usable fits of a model that apply to the shown surface.
   std::vector<const ModelFit*> fits(const std::string& model) const;
   /// Predictions for the selected frame.
   std::vector<const FrameComparison*> comparisons(const std::string& model) const;
+  /// The mirrors of a frame's highlights: tangent planes of its training views, else at its observed peaks.
+  struct Mirror {
+    Plane plane;
+    int highlight = -1;  ///< index in the frame's evidence
+    std::string light;
+  };
+  std::vector<Mirror> mirrors(int frame) const;
+  /// Index of a training view's highlight in its frame's evidence; -1 when it is not there.
+  int highlightOf(const TrainingView& view) const;
   /// Ink that reads on the background.
   Colour ink() const { return dark ? kTextOnDark : kTextOnLight; }
 };
@@ -79,6 +112,7 @@ struct Drawn {
   Picked info;
   double lineWidthPx = 0;  ///< > 0: a line, scaled with the window
   bool pickable = true;
+  std::function<Picked(vtkIdType cell)> describe = {};  ///< instead of `info`, where one actor draws many things
 };
 
 /// Text at a world point, drawn above everything.
@@ -99,6 +133,10 @@ struct LayerContent {
   void add(vtkSmartPointer<vtkProp3D> prop, const Picked& info, double lineWidthPx = 0, bool pickable = true) {
     drawn.push_back({std::move(prop), info, lineWidthPx, pickable});
   }
+  /// Adds an actor of many things, told apart by their cells.
+  void addMany(vtkSmartPointer<vtkProp3D> prop, std::function<Picked(vtkIdType cell)> describe, double lineWidthPx) {
+    drawn.push_back({std::move(prop), {}, lineWidthPx, true, std::move(describe)});
+  }
 };
 
 /// Which changes make a layer stale.
@@ -109,7 +147,12 @@ enum Dependency : unsigned {
   kOnModels = 8,
   kOnGlyphs = 16,
   kOnTheme = 32,
-  kOnHighlight = 64
+  kOnHighlight = 64,
+  kOnPicked = 128,  ///< selected model, light, direction
+  kOnEye = 256,
+  kOnColours = 512,
+  kOnPhotographs = 1024,
+  kOnSolo = 2048
 };
 
 struct LayerRecipe {
@@ -135,6 +178,11 @@ LayerContent raysLayer(const LayerInput& in);               ///< view rays and t
 LayerContent observedContoursLayer(const LayerInput& in);   ///< cast onto the surface
 LayerContent predictedContoursLayer(const LayerInput& in);  ///< of the selected frame
 
+/// How the drawn surface looks at the moment. Virtual cameras lie behind it, inside a convex one: it lets them shine through,
+/// unless it is so large that drawing it in several passes would be slow. Through a virtual camera, what lies behind its mirror
+/// is cut away. While something moves, the coarse triangles stand for it.
+void styleSurface(const LayerContent& surface, const LayerInput& in, bool virtualCamerasShown, bool moving);
+
 /// Sizes for one surface of an inspection. @param surface may be null.
 SceneScale sceneScale(const Inspection& inspection, const Surface* surface, const std::vector<int>& frames, double glyphScale);
 /// Frames to draw: one for each distinct pose; where several share a pose, one that sees `surfaceKey` is taken.
@@ -150,6 +198,12 @@ std::vector<Points> ellipseOnPlane(const Camera& camera, const Plane& plane, con
 /// Radius of a disc that holds the canonical (else the observed) contour of a view on its tangent plane, with a margin.
 double planeRadius(const Camera& camera, const Plane& plane, const Eigen::Vector3d& at, const std::vector<Pixel>& contour,
                    const SceneScale& scale);
+/// Direction of an ideal pixel from an observed contour, as Selection::direction has it. @param ideal  finite.
+double directionOf(const Camera& camera, const Highlight& observed, const Pixel& ideal);
+/// The vertex of a contour that lies in that direction from the observed one; nothing on an empty contour.
+std::optional<Pixel> vertexInDirection(const Camera& camera, const Highlight& observed, const Polyline& contour,
+                                       double direction);
+
 /// The four corners of the drawn image plane, from top left clockwise in the image, `depth` in front of the camera. World units.
 std::array<Eigen::Vector3d, 4> imagePlane(const Camera& camera, double depth);
 

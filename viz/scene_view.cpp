@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viz/scene_view.h"
 
+#include <GL/gl.h>
 #include <vtkActor.h>
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
-#include <vtkCellPicker.h>
+#include <vtkImageData.h>
 #include <vtkLightKit.h>
-#include <vtkMapper.h>
+#include <vtkPolyData.h>
 #include <vtkProperty.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
@@ -16,12 +17,17 @@
 #include <cstdio>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "core/light/light.h"
 #include "core/surface/mesh_policy.h"
 #include "viz/annotations.h"
 #include "viz/frame_overlay.h"
 #include "viz/layers.h"
+#include "viz/photograph_overlay.h"
+#include "viz/scene_legend.h"
+#include "viz/scene_questions.h"
+#include "viz/view_camera.h"
 
 namespace glint::viz {
 namespace {
@@ -53,20 +59,34 @@ void prepareWindow(vtkRenderWindow* window) {
 struct SceneView::Impl {
   vtkNew<vtkRenderer> renderer;
   vtkNew<vtkLightKit> lights;
-  vtkNew<vtkCallbackCommand> onStart;
+  vtkNew<vtkCallbackCommand> onFrame;
+  std::unique_ptr<PhotographOverlay> photograph;  // below the annotations
   std::unique_ptr<Annotations> annotations;
   std::shared_ptr<const Inspection> inspection;
   Selection selection;
   std::set<std::string> models;
   std::vector<LayerState> layers{sceneLayers().size()};
-  LayerCache cache;
+  std::shared_ptr<LayerCache> cache;
   LayerInput input;
+  std::vector<int> allFrames;  // input.frames, solo or not
+  CameraColours colours;
+  bool solo = false;
+  // Through a camera
+  Eye eye = Eye::Outside;
+  std::string eyeProblem;  // why it is not in effect
+  ViewPoint outside;       // what the view goes back to
+  int photographFrame = -1;
+  double opacity = 0.5, zoom = 1;
+  PictureArea lastArea;  // of the last frame, for questions while the renderer is in no window
+  Eigen::Vector2d shift{0, 0};
+  bool partOfWindow = false, moving = false, border = false, active = false;
+  std::string name;
   double glyphScale = 1, lineScale = 1;
   bool dark = true;
   bool annotationsStale = true;
   bool frameAllPending = false;
 
-  Impl() {
+  explicit Impl(std::shared_ptr<LayerCache> shared) : cache(shared ? std::move(shared) : std::make_shared<LayerCache>()) {
     renderer->SetUseDepthPeeling(1);
     renderer->SetMaximumNumberOfPeels(8);
     renderer->SetOcclusionRatio(0);
@@ -74,14 +94,21 @@ struct SceneView::Impl {
     renderer->SetAutomaticLightCreation(0);
     lights->SetKeyLightIntensity(0.85);
     lights->AddLightsToRenderer(renderer);
+    photograph = std::make_unique<PhotographOverlay>(renderer);
     annotations = std::make_unique<Annotations>(renderer);
     for (std::size_t i = 0; i < layers.size(); ++i) layers[i].visible = sceneLayers()[i].onByDefault;
-    onStart->SetClientData(this);
-    onStart->SetCallback([](vtkObject*, unsigned long, void* self, void*) { static_cast<Impl*>(self)->beforeFrame(); });
-    renderer->AddObserver(vtkCommand::StartEvent, onStart);
+    onFrame->SetClientData(this);
+    onFrame->SetCallback([](vtkObject*, unsigned long event, void* self, void*) {
+      if (event == vtkCommand::StartEvent)
+        static_cast<Impl*>(self)->beforeFrame();
+      else
+        static_cast<Impl*>(self)->afterFrame();
+    });
+    renderer->AddObserver(vtkCommand::StartEvent, onFrame);
+    renderer->AddObserver(vtkCommand::EndEvent, onFrame);
     applyBackground();
   }
-  ~Impl() { renderer->RemoveObserver(onStart); }
+  ~Impl() { renderer->RemoveObserver(onFrame); }
 
   bool valid() const { return inspection && inspection->scene && !inspection->scene->frames.empty(); }
 
@@ -99,12 +126,14 @@ struct SceneView::Impl {
     if (!valid()) return;
     selection.frame = std::clamp(selection.frame, 0, static_cast<int>(inspection->scene->frames.size()) - 1);
     const std::shared_ptr<const Surface> before = input.surface;
-    const std::vector<int> framesBefore = input.frames;
+    const std::vector<int> framesBefore = allFrames;
     input.inspection = inspection.get();
     input.selection = selection;
     input.models = modelsInOrder(*inspection, models);
     input.dark = dark;
-    input.cache = &cache;
+    input.solo = solo;
+    input.colours = colours;
+    input.cache = cache.get();
     input.glyphScale = glyphScale;
     input.surface.reset();
     input.surfaceKey.clear();
@@ -124,10 +153,80 @@ struct SceneView::Impl {
     } catch (const InputError& error) {
       input.surfaceProblem = error.what();
     }
-    input.frames = framesToDraw(*inspection, input.surfaceKey, selection.frame);
-    input.scale = sceneScale(*inspection, input.surface.get(), input.frames, glyphScale);
-    if (input.surface != before || (!input.surface && input.frames != framesBefore)) mark(kOnSurface);
+    // Sizes come from all frames, so that solo changes none of them.
+    allFrames = framesToDraw(*inspection, input.surfaceKey, selection.frame);
+    input.scale = sceneScale(*inspection, input.surface.get(), allFrames, glyphScale);
+    input.frames = solo ? std::vector<int>{selection.frame} : allFrames;
+    if (input.surface != before || (!input.surface && allFrames != framesBefore)) mark(kOnSurface);
+    refreshEye();
   }
+  /// Whether the wanted eye can be had, and the mirror that it looks through.
+  void refreshEye() {
+    const Eye before = input.eye;
+    const std::optional<Plane> mirrorBefore = input.eyeMirror;
+    input.eye = eye;
+    input.eyeMirror.reset();
+    eyeProblem.clear();
+    if (eye == Eye::VirtualCamera) {
+      for (const LayerInput::Mirror& mirror : input.mirrors(selection.frame)) {
+        const bool wanted = selection.highlight == mirror.highlight;
+        if (!input.eyeMirror || wanted) input.eyeMirror = mirror.plane;
+        if (wanted) break;
+      }
+      if (!input.eyeMirror) {
+        input.eye = Eye::Outside;
+        eyeProblem = "camera " + input.frame(selection.frame).id + " has no virtual camera: no highlight on the surface";
+      }
+    }
+    if (before == Eye::Outside && input.eye != Eye::Outside) outside = viewPointOf(renderer->GetActiveCamera());
+    if (before != Eye::Outside && input.eye == Eye::Outside) glint::viz::setViewPoint(renderer->GetActiveCamera(), outside);
+    const bool sameMirror =
+        mirrorBefore.has_value() == input.eyeMirror.has_value() &&
+        (!mirrorBefore || (mirrorBefore->normal == input.eyeMirror->normal && mirrorBefore->offset == input.eyeMirror->offset));
+    if (before != input.eye || !sameMirror) mark(kOnEye);
+  }
+  std::string eyeText() const {
+    if (!valid() || eye == Eye::Outside) return {};
+    if (!eyeProblem.empty()) return eyeProblem;
+    const std::string& id = input.frame(selection.frame).id;
+    return eye == Eye::Camera ? "through camera " + id : "through virtual camera " + id + " (mirrored)";
+  }
+  /// The picture that this view draws, or draws its part of.
+  PictureArea area() const {
+    vtkRenderWindow* window = renderer->GetRenderWindow();
+    if (!window) return lastArea;
+    const int* own = renderer->GetSize();
+    const int width = std::max(own[0], 1), height = std::max(own[1], 1);
+    if (!partOfWindow) return {width, height, 0, width};
+    const int left = renderer->GetOrigin()[0];
+    return {std::max(window->GetSize()[0], left + width), height, left, left + width};
+  }
+  PhotographPlacement placement() const { return placePhotograph(input.frame(selection.frame).camera, area(), zoom, shift); }
+  /// Lower left corner of the picture in the window.
+  Eigen::Vector2d pictureOrigin() const {
+    return partOfWindow ? Eigen::Vector2d(0, renderer->GetOrigin()[1])
+                        : Eigen::Vector2d(renderer->GetOrigin()[0], renderer->GetOrigin()[1]);
+  }
+  /// Camera and photograph for the size of this frame.
+  void stand() {
+    lastArea = area();
+    vtkCamera* camera = renderer->GetActiveCamera();
+    if (!valid() || input.eye == Eye::Outside) {
+      standFree(camera, area());
+      photograph->hide();
+      return;
+    }
+    const Camera& real = input.frame(selection.frame).camera;
+    const double depth = std::max(std::abs(real.depth(input.scale.surfaceBox.center())), 1e-3 * input.scale.sceneSize);
+    PhotographPlacement place = placement();
+    standAt(camera, real, input.eyeMirror, place, area(), depth);
+    place.topLeft += pictureOrigin();
+    if (photographFrame == selection.frame)
+      photograph->place(real, place, opacity);
+    else
+      photograph->hide();
+  }
+
   void place(Drawn& drawn, bool visible) const {
     drawn.prop->SetVisibility(visible);
     if (drawn.lineWidthPx <= 0) return;
@@ -161,64 +260,34 @@ struct SceneView::Impl {
         annotationsStale = true;
       }
     }
-    makeSurfaceTranslucent();
+    styleSurface();
     if (annotationsStale) updateAnnotations();
   }
-  /// Virtual cameras lie behind the surface, inside a convex one: it lets them shine through, unless it is so large that
-  /// drawing it in several passes would be slow.
-  void makeSurfaceTranslucent() {
-    constexpr vtkIdType kMostTriangles = 200000;
+  void styleSurface() {
     const LayerState& mirrored = layers[layerIndex("virtual-cameras")];
-    const bool needed = mirrored.visible && !mirrored.content.drawn.empty();
-    for (Drawn& drawn : layers[layerIndex("surface")].content.drawn) {
-      auto* actor = vtkActor::SafeDownCast(drawn.prop);
-      if (!actor || !actor->GetMapper()) continue;
-      auto* data = vtkPolyData::SafeDownCast(actor->GetMapper()->GetInput());
-      const bool small = data && data->GetNumberOfPolys() <= kMostTriangles;
-      actor->GetProperty()->SetOpacity(needed && small ? 0.7 : 1.0);
-    }
+    glint::viz::styleSurface(layers[layerIndex("surface")].content, input, mirrored.visible && !mirrored.content.drawn.empty(),
+                             moving);
   }
   void updateAnnotations() {
     annotationsStale = false;
-    std::vector<LegendEntry> legend;
-    std::vector<std::string> notes, remarks;
-    std::vector<DrawnLabel> labels;
+    annotations->setBadge(eyeText());
+    annotations->setBorder(!border ? Border::None : partOfWindow ? Border::Wipe : active ? Border::Active : Border::Around, name);
     if (!valid()) {
       annotations->setLegend({}, {}, {}, "");
       annotations->setLabels({});
+      annotations->setColourBar({});
       return;
     }
-    const auto shown = [&](const char* name) { return layers[layerIndex(name)].visible; };
-    const auto drawn = [&](const char* name) { return shown(name) && !layers[layerIndex(name)].content.drawn.empty(); };
-    if (drawn("cameras")) {
-      legend.push_back({kTraining, "training camera"});
-      legend.push_back({kHeldOut, "held-out camera"});
-    }
-    if (drawn("virtual-cameras") || drawn("tangent-planes")) legend.push_back({kVirtualCamera, "virtual camera, tangent plane"});
-    if (drawn("observed-contours")) legend.push_back({kObserved, "observed contour"});
-    if (drawn("light")) legend.push_back({kLightColour, "light, estimated"});
-    if (drawn("true-light")) legend.push_back({kTruth, "light, truth"});
-    if (shown("predicted-contours") || shown("ellipsoids")) {
-      for (const std::string& model : input.models) {
-        const FrameScore score = frameScore(inspection->models.at(model), selection.frame);
-        char error[32] = "";
-        if (score.errorPct) std::snprintf(error, sizeof error, "  %.2f %%", *score.errorPct);
-        legend.push_back({modelColour(model), model + error, true});
-        if (!score.errorPct && !score.reason.empty()) notes.push_back(model + ": " + score.reason);
-      }
-    }
+    std::vector<ShownLayer> shown;
+    std::vector<DrawnLabel> labels;
     for (const LayerState& layer : layers) {
-      if (!layer.visible) continue;
-      notes.insert(notes.end(), layer.content.notes.begin(), layer.content.notes.end());
-      remarks.insert(remarks.end(), layer.content.remarks.begin(), layer.content.remarks.end());
-      labels.insert(labels.end(), layer.content.labels.begin(), layer.content.labels.end());
+      shown.push_back({layer.visible, &layer.content});
+      if (layer.visible) labels.insert(labels.end(), layer.content.labels.begin(), layer.content.labels.end());
     }
-    const Frame& frame = input.frame(selection.frame);
-    const std::string use = inspection->isTraining(selection.frame)  ? "training"
-                            : inspection->isHeldOut(selection.frame) ? "held out"
-                                                                     : "excluded";
-    annotations->setLegend(legend, notes, remarks, inspection->scene->name + ", frame " + frame.id + " (" + use + ")");
+    const SceneLegend legend = legendOf(input, shown);
+    annotations->setLegend(legend.entries, legend.notes, legend.remarks, legend.title);
     annotations->setLabels(labels);
+    annotations->setColourBar(legend.bar);
   }
   void beforeFrame() {
     const int* size = renderer->GetSize();
@@ -232,21 +301,24 @@ struct SceneView::Impl {
       }
     }
     if (frameAllPending && size[0] > 0) frameAll();
+    stand();
     renderer->ResetCameraClippingRange();
+    // A mirrored picture turns front faces into back faces, and VTK lights the two sides differently.
+    if (input.eyeMirror) glFrontFace(GL_CW);
     annotations->place(valid() ? input.scale.surfaceBox.center() : Eigen::Vector3d::Zero().eval());
   }
 
+  void afterFrame() {
+    if (input.eyeMirror) glFrontFace(GL_CCW);
+  }
+
   /// What "frame all" holds, as points.
-  std::vector<Eigen::Vector3d> extent() {
+  std::vector<Eigen::Vector3d> extent() const {
     std::vector<Eigen::Vector3d> points;
     const Eigen::AlignedBox3d& box = input.scale.surfaceBox;
     for (int i = 0; i < 8; ++i) points.push_back(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
     if (layers[layerIndex("cameras")].visible || layers[layerIndex("photographs")].visible) {
-      for (const int frame : input.frames) {
-        points.push_back(input.frame(frame).camera.centreInWorld());
-        for (const Eigen::Vector3d& corner : imagePlane(input.frame(frame).camera, input.scale.cameraDepth))
-          points.push_back(corner);
-      }
+      for (const int frame : input.frames) addFrustum(input, points, frame);
     }
     for (const LayerState& layer : layers) {
       if (!layer.visible) continue;
@@ -256,101 +328,67 @@ struct SceneView::Impl {
     }
     return points;
   }
+  /// The closest view in that direction that holds the points and keeps them off the legend.
+  void fit(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& back, const Eigen::Vector3d& up,
+           const Eigen::Vector3d& reference, double leastDepth) {
+    update();
+    const PictureArea whole = area();
+    Margins margins;
+    const Eigen::Vector2d legend = annotations->legendSize();
+    // Beside it or below it, whichever leaves more.
+    const double beside = std::min(0.92, 1 - 2 * legend.x() / whole.width),
+                 below = std::min(0.92, 1 - 2 * legend.y() / whole.height);
+    if (whole.width > 1 && whole.height > 1 && std::max(beside, below) > -0.6) {
+      if (beside >= below)
+        margins.left = beside;
+      else
+        margins.top = below;
+    }
+    const double aspect = whole.width > 1 && whole.height > 1 ? static_cast<double>(whole.width) / whole.height : 4.0 / 3.0;
+    place(fitted(points, back, up, aspect, margins, parallel(), reference, leastDepth));
+  }
+  bool parallel() const {
+    return input.eye != Eye::Outside ? outside.parallel : renderer->GetActiveCamera()->GetParallelProjection() != 0;
+  }
+  /// The view from outside; the eye at a camera keeps it for later.
+  void place(const ViewPoint& view) {
+    if (valid() && input.eye != Eye::Outside) {
+      outside = view;
+      return;
+    }
+    glint::viz::setViewPoint(renderer->GetActiveCamera(), view);
+    renderer->ResetCameraClippingRange();
+  }
   void frameAll() {
     frameAllPending = false;
     if (!valid()) return;
     update();
-    Eigen::Vector3d up = Eigen::Vector3d::Zero(), eyes = Eigen::Vector3d::Zero();
-    for (const int frame : input.frames) {
-      up -= input.frame(frame).camera.camFromWorld.linear().row(1).transpose();
-      eyes += input.frame(frame).camera.centreInWorld();
-    }
-    const double n = static_cast<double>(input.frames.size());
-    up /= n;
-    eyes /= n;
-    if (up.norm() < 0.2) up = eyes - input.scale.surfaceBox.center();
-    if (up.norm() < 1e-9 * input.scale.sceneSize) up = Eigen::Vector3d::UnitZ();
-    // Scenes are modelled with an axis upwards more often than not: snap to it.
-    Eigen::Index axis = 0;
-    up.normalize();
-    if (up.cwiseAbs().maxCoeff(&axis) > 0.8) up = Eigen::Vector3d::Unit(axis) * (up[axis] > 0 ? 1 : -1);
-    // From above the highlights, a little aside of the cameras: then neither the surface nor the frustums hide what matters.
-    Eigen::Vector3d normals = Eigen::Vector3d::Zero();
-    for (const TrainingView& view : inspection->views) {
-      if (view.brightest && view.tangentPlane) normals += facing(view.brightest->point, view.camera.centreInWorld()).normal;
-    }
-    const Eigen::Vector3d towardsCameras = eyes - input.scale.surfaceBox.center();
-    Eigen::Vector3d towards = normals.norm() > 0.1 ? normals.normalized() : towardsCameras.normalized();
-    const double height = up.dot(towards);
-    Eigen::Vector3d flat = towards - height * up;
-    if (flat.norm() < 0.1) {  // highlights on top: the cameras' side then, else any
-      flat = towardsCameras - up.dot(towardsCameras) * up;
-      if (flat.norm() < 0.05 * input.scale.sceneSize) flat = tangentBasis(up).col(0);
-    }
-    const double elevation = std::clamp(std::atan2(height, flat.norm()), 0.25, 0.6);
-    const double side = up.dot(flat.cross(towardsCameras)) > 0 ? -1 : 1;  // away from the cameras
-    flat = Eigen::AngleAxisd(0.6 * side, up) * flat.normalized();
-    const Eigen::Vector3d back = std::cos(elevation) * flat + std::sin(elevation) * up;
-    // The closest eye that still holds all points: bounds in the view's own axes, then distance along them.
-    const Eigen::Vector3d right = up.cross(back).normalized(), top = back.cross(right);
-    const int* size = renderer->GetSize();
-    const double aspect = size[0] > 0 && size[1] > 0 ? static_cast<double>(size[0]) / size[1] : 4.0 / 3.0;
-    constexpr double kFieldOfView = 30 * std::numbers::pi / 180;
-    const double tanY = 0.92 * std::tan(kFieldOfView / 2), tanX = tanY * aspect;
-    const double tanLeft = aspect > 1.2 ? 0.62 * tanX : tanX;  // the legend stands at the left
-    // Each side of the view pyramid is a plane through the eye; the eye is fixed by the four that touch the points.
-    double rightMost = -1e300, leftMost = -1e300, topMost = -1e300, bottomMost = -1e300;
-    for (const Eigen::Vector3d& p : extent()) {
-      const double x = right.dot(p), y = top.dot(p), z = back.dot(p);
-      rightMost = std::max(rightMost, x / tanX + z);
-      leftMost = std::max(leftMost, -x / tanLeft + z);
-      topMost = std::max(topMost, y / tanY + z);
-      bottomMost = std::max(bottomMost, -y / tanY + z);
-    }
-    const double ex = (rightMost - leftMost) / (1 / tanX + 1 / tanLeft), ey = tanY * (topMost - bottomMost) / 2;
-    const double ez = std::max(rightMost - ex / tanX, (topMost + bottomMost) / 2);
-    const Eigen::Vector3d eye = ex * right + ey * top + ez * back;
-    const double depth = std::max(back.dot(eye - input.scale.surfaceBox.center()), 0.1 * input.scale.surfaceSize);
-    setViewPoint({eye, eye - depth * back, top, 30});
+    const Eigen::Vector3d up = upwards(input, allFrames);
+    const Eigen::Vector3d back = overviewDirection(input, allFrames, up);
+    const Eigen::Vector3d right = up.cross(back).normalized();
+    fit(extent(), back, back.cross(right), input.scale.surfaceBox.center(), 0.1 * input.scale.surfaceSize);
   }
-  void setViewPoint(const ViewPoint& view) {
-    vtkCamera* camera = renderer->GetActiveCamera();
-    camera->SetParallelProjection(0);
-    camera->SetPosition(view.position.x(), view.position.y(), view.position.z());
-    camera->SetFocalPoint(view.focalPoint.x(), view.focalPoint.y(), view.focalPoint.z());
-    camera->SetViewUp(view.up.x(), view.up.y(), view.up.z());
-    camera->SetViewAngle(view.viewAngleDeg);
-    camera->OrthogonalizeViewUp();
-    renderer->ResetCameraClippingRange();
+  void frameSelection() {
+    frameAllPending = false;
+    if (!valid()) return;
+    const std::vector<Eigen::Vector3d> points = selectedExtent(input);
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& p : points) box.extend(p);
+    const ViewPoint now = input.eye != Eye::Outside ? outside : viewPointOf(renderer->GetActiveCamera());
+    const Eigen::Vector3d back = (now.position - now.focalPoint).normalized();
+    const Eigen::Vector3d up = (now.up - now.up.dot(back) * back).normalized();
+    fit(points, back, up, box.center(), std::max(0.5 * box.diagonal().norm(), 1e-3 * input.scale.sceneSize));
   }
-  /// Numbers of a surface point, for the selected frame's camera.
-  Picked surfaceInfo(const SurfacePoint& hit) const {
-    const Camera& camera = input.frame(selection.frame).camera;
-    const Eigen::Vector3d eye = camera.centreInWorld();
-    const SurfacePoint p = facing(hit, eye);
-    Picked info;
-    info.layer = "surface";
-    info.frame = selection.frame;
-    info.position = p.position;
-    info.text = line("frame", input.frame(selection.frame).id) + line("P", p.position, "m") + line("N", p.normal);
-    if (const std::optional<Pixel> pixel = camera.project(p.position))
-      info.text += line("pixel x", pixel->x(), "px") + line("pixel y", pixel->y(), "px");
-    const Eigen::Vector3d toCamera = (eye - p.position).normalized();
-    info.text += line("view angle", std::acos(std::clamp(p.normal.dot(toCamera), -1.0, 1.0)) * 180 / std::numbers::pi, "deg");
-    for (const auto& [key, estimate] : inspection->lights) {
-      const std::size_t at = key.find('@');
-      if (at != std::string::npos && key.substr(at + 1) != input.surfaceKey) continue;
-      const double alpha = incidentAngle(p.normal, estimate.light.directionFrom(p.position), toCamera);
-      if (std::isfinite(alpha)) info.text += line("alpha (" + key.substr(0, at) + ")", alpha * 180 / std::numbers::pi, "deg");
-    }
-    const Outcome<Curvature> curvature = input.surface->curvatureAt(hit);
-    if (curvature) info.text += line("k1", curvature->k1, "1/m") + line("k2", curvature->k2, "1/m");
-    if (hit.element >= 0) info.text += line("triangle", std::to_string(hit.element));
-    return info;
+  void lookAlong(AxisView view) {
+    frameAllPending = false;
+    if (!valid()) return;
+    update();
+    const AxisDirections axis = axisDirections(view, upwards(input, allFrames));
+    fit(extent(), axis.back, axis.up, input.scale.surfaceBox.center(), 0.1 * input.scale.surfaceSize);
   }
 };
 
-SceneView::SceneView() : impl_(std::make_unique<Impl>()) {}
+SceneView::SceneView(std::shared_ptr<LayerCache> cache) : impl_(std::make_unique<Impl>(std::move(cache))) {}
 SceneView::~SceneView() = default;
 
 vtkRenderer* SceneView::renderer() const { return impl_->renderer; }
@@ -359,8 +397,11 @@ void SceneView::setInspection(std::shared_ptr<const Inspection> inspection) {
   const bool newScene =
       !impl_->inspection || !inspection || inspection->given != impl_->inspection->given;  // not that of a what-if
   if (newScene) {
-    impl_->cache.clear();
+    impl_->cache->follow(inspection ? inspection->scene : nullptr);
+    if (impl_->input.eye != Eye::Outside) viz::setViewPoint(impl_->renderer->GetActiveCamera(), impl_->outside);
     impl_->input = {};
+    impl_->photographFrame = -1;
+    impl_->photograph->setPhotograph(nullptr);
   }
   impl_->inspection = std::move(inspection);
   impl_->refreshInput();
@@ -371,11 +412,13 @@ void SceneView::setInspection(std::shared_ptr<const Inspection> inspection) {
 void SceneView::setSelection(const Selection& selection) {
   Selection wanted = selection;
   if (impl_->valid()) wanted.frame = std::clamp(wanted.frame, 0, static_cast<int>(impl_->inspection->scene->frames.size()) - 1);
-  const bool frame = wanted.frame != impl_->selection.frame, highlight = wanted.highlight != impl_->selection.highlight;
+  const Selection& now = impl_->selection;
+  const bool frame = wanted.frame != now.frame, highlight = wanted.highlight != now.highlight;
+  const bool picked = wanted.model != now.model || wanted.light != now.light || wanted.direction != now.direction;
   impl_->selection = wanted;
-  if (!frame && !highlight) return;
+  if (!frame && !highlight && !picked) return;
   impl_->refreshInput();
-  impl_->mark((frame ? kOnFrame : 0u) | (highlight ? kOnHighlight : 0u));
+  impl_->mark((frame ? kOnFrame : 0u) | (highlight ? kOnHighlight : 0u) | (picked ? kOnPicked : 0u));
 }
 
 void SceneView::setLayerVisible(const std::string& name, bool visible) {
@@ -411,7 +454,32 @@ void SceneView::setGlyphScale(double scale) {
   impl_->mark(kOnGlyphs);
 }
 
+void SceneView::setSolo(bool solo) {
+  if (solo == impl_->solo) return;
+  impl_->solo = solo;
+  impl_->refreshInput();
+  impl_->mark(kOnSolo);
+}
+
+void SceneView::setCameraColours(const CameraColours& colours) {
+  if (colours == impl_->colours) return;
+  impl_->colours = colours;
+  impl_->refreshInput();
+  impl_->mark(kOnColours);
+}
+
 void SceneView::frameAll() { impl_->frameAll(); }
+void SceneView::frameSelection() { impl_->frameSelection(); }
+void SceneView::lookAlong(AxisView view) { impl_->lookAlong(view); }
+
+void SceneView::setParallel(bool parallel) {
+  if (parallel == impl_->parallel()) return;
+  ViewPoint view = viewPoint();
+  view.parallel = parallel;
+  impl_->place(view);
+}
+
+bool SceneView::parallel() const { return impl_->parallel(); }
 
 void SceneView::lookThrough(int frame) {
   require(impl_->valid() && frame >= 0 && frame < static_cast<int>(impl_->inspection->scene->frames.size()),
@@ -423,17 +491,80 @@ void SceneView::lookThrough(int frame) {
   const double depth =
       std::max(std::abs(forward.dot(impl_->input.scale.surfaceBox.center() - eye)), 1e-3 * impl_->input.scale.sceneSize);
   const double angle = 2 * std::atan(0.5 * camera.height / camera.pixelFromRay(1, 1)) * 180 / std::numbers::pi;
-  impl_->setViewPoint({eye, eye + depth * forward, -down, angle});
+  impl_->place({eye, eye + depth * forward, -down, angle});
 }
 
+void SceneView::setEye(Eye eye) {
+  if (eye == impl_->eye) return;
+  if (impl_->frameAllPending && impl_->valid()) impl_->frameAll();  // the view to come back to
+  impl_->eye = eye;
+  impl_->zoom = 1;
+  impl_->shift.setZero();
+  if (impl_->valid()) impl_->refreshEye();
+  impl_->annotationsStale = true;
+}
+
+Eye SceneView::eye() const { return impl_->eye; }
+bool SceneView::looksThrough() const { return impl_->valid() && impl_->input.eye != Eye::Outside; }
+std::string SceneView::eyeText() const { return impl_->eyeText(); }
+
+void SceneView::setPhotograph(int frame, vtkSmartPointer<vtkImageData> photograph) {
+  impl_->photographFrame = photograph ? frame : -1;
+  impl_->photograph->setPhotograph(std::move(photograph));
+}
+
+void SceneView::setPhotographOpacity(double opacity) { impl_->opacity = std::clamp(opacity, 0.0, 1.0); }
+
+void SceneView::zoomPhotograph(double factor, double x, double y) {
+  if (!looksThrough()) return;
+  constexpr double kLeast = 0.2, kMost = 200;
+  const double wanted = std::clamp(impl_->zoom * factor, kLeast, kMost);
+  const PictureArea area = impl_->area();
+  // What is under the pointer stays there.
+  const Eigen::Vector2d at = Eigen::Vector2d(x, y) - impl_->pictureOrigin() - 0.5 * Eigen::Vector2d(area.width, area.height);
+  impl_->shift = at + (wanted / impl_->zoom) * (impl_->shift - at);
+  impl_->zoom = wanted;
+}
+
+void SceneView::movePhotograph(double dx, double dy) {
+  if (looksThrough()) impl_->shift += Eigen::Vector2d(dx, dy);
+}
+
+std::optional<Eigen::Vector2d> SceneView::displayOf(double idealX, double idealY) const {
+  if (!looksThrough()) return {};
+  return impl_->placement().at({idealX, idealY}) + impl_->pictureOrigin();
+}
+
+void SceneView::setPartOfWindow(bool part) {
+  impl_->partOfWindow = part;
+  impl_->annotationsStale = true;
+}
+
+void SceneView::setFrame(bool border, bool active, const std::string& name) {
+  impl_->border = border;
+  impl_->active = active;
+  impl_->name = name;
+  impl_->annotationsStale = true;
+}
+
+void SceneView::setLegendVisible(bool visible) { impl_->annotations->setLegendVisible(visible); }
+
+void SceneView::setMoving(bool moving) { impl_->moving = moving; }
+
+bool SceneView::hasCoarseSurface() const {
+  return impl_->valid() && impl_->input.surface && impl_->layers[layerIndex("surface")].built &&
+         impl_->cache->tessellation(impl_->input.surface, impl_->input.scale.surfaceBox).coarseIfReady() != nullptr;
+}
+
+void SceneView::photographsArrived() { impl_->mark(kOnPhotographs); }
+
 ViewPoint SceneView::viewPoint() const {
-  vtkCamera* camera = impl_->renderer->GetActiveCamera();
-  return {toEigen(camera->GetPosition()), toEigen(camera->GetFocalPoint()), toEigen(camera->GetViewUp()), camera->GetViewAngle()};
+  return impl_->input.eye != Eye::Outside ? impl_->outside : viewPointOf(impl_->renderer->GetActiveCamera());
 }
 
 void SceneView::setViewPoint(const ViewPoint& viewPoint) {
   impl_->frameAllPending = false;
-  impl_->setViewPoint(viewPoint);
+  impl_->place(viewPoint);
 }
 
 void SceneView::update() { impl_->update(); }
@@ -442,48 +573,13 @@ int SceneView::buildCount(const std::string& layer) const { return impl_->layers
 
 std::optional<Picked> SceneView::pick(int xDisplay, int yDisplay) const {
   if (!impl_->valid() || !impl_->renderer->GetRenderWindow()) return {};
-  const auto worldAt = [&](double depth) {
-    impl_->renderer->SetDisplayPoint(xDisplay, yDisplay, depth);
-    impl_->renderer->DisplayToWorld();
-    double w[4];
-    impl_->renderer->GetWorldPoint(w);
-    return Eigen::Vector3d(toEigen(w) / w[3]);
-  };
-  const Eigen::Vector3d eye = toEigen(impl_->renderer->GetActiveCamera()->GetPosition()), beyond = worldAt(1);
-  const Ray ray{eye, (beyond - eye).normalized()};
-  if (!ray.direction.allFinite()) return {};
-
-  std::optional<Picked> result;
-  double nearest = std::numeric_limits<double>::infinity();
-  if (impl_->layers[layerIndex("surface")].visible && impl_->input.surface) {
-    const Outcome<SurfacePoint> hit = impl_->input.surface->firstHit(ray);
-    if (hit) {
-      result = impl_->surfaceInfo(*hit);
-      nearest = (hit->position - eye).norm();
-    }
-  }
-  vtkNew<vtkCellPicker> picker;
-  picker->SetTolerance(0.004);
-  picker->PickFromListOn();
+  impl_->update();
+  std::vector<const Drawn*> drawn;
   for (const LayerState& layer : impl_->layers) {
     if (!layer.visible) continue;
-    for (const Drawn& drawn : layer.content.drawn) {
-      if (drawn.pickable) picker->AddPickList(drawn.prop);
-    }
+    for (const Drawn& d : layer.content.drawn) drawn.push_back(&d);
   }
-  if (!picker->Pick(xDisplay, yDisplay, 0, impl_->renderer)) return result;
-  const Eigen::Vector3d at = toEigen(picker->GetPickPosition());
-  // What lies on the surface is picked before the surface itself.
-  if ((at - eye).norm() > nearest + 10 * impl_->input.scale.lift) return result;
-  for (const LayerState& layer : impl_->layers) {
-    for (const Drawn& drawn : layer.content.drawn) {
-      if (drawn.prop.Get() != picker->GetProp3D()) continue;
-      result = drawn.info;
-      result->position = at;
-      return result;
-    }
-  }
-  return result;
+  return pickIn(impl_->renderer, impl_->input, drawn, impl_->layers[layerIndex("surface")].visible, xDisplay, yDisplay);
 }
 
 }  // namespace glint::viz

@@ -13,10 +13,13 @@
 #include "core/pipeline/inspection.h"
 #include "viz/selection.h"
 
+class vtkImageData;
 class vtkRenderer;
 class vtkRenderWindow;
 
 namespace glint::viz {
+
+class LayerCache;
 
 /// A layer of the 3D picture, toggled by name (formats.md: layer visibility in sessions uses `name`).
 struct Layer {
@@ -44,6 +47,21 @@ struct Picked {
 struct ViewPoint {
   Eigen::Vector3d position{0, 0, 1}, focalPoint{0, 0, 0}, up{0, 1, 0};
   double viewAngleDeg = 30;
+  bool parallel = false;  ///< orthographic, as high at the focal point as the perspective view would be
+};
+
+/// Where the picture is seen from: freely, or through the selected frame's camera, or through its virtual camera P M.
+enum class Eye { Outside, Camera, VirtualCamera };
+
+/// Along the world's axes; which is upwards is guessed from the cameras.
+enum class AxisView { Front, Back, Left, Right, Top, Bottom };
+
+/// What the colour of a drawn camera says.
+struct CameraColours {
+  enum class By { Role, Model, Error };
+  By by = By::Role;
+  std::string model;  ///< whose error, "" = the richest shown
+  friend bool operator==(const CameraColours&, const CameraColours&) = default;
 };
 
 /// Makes a render window fit for SceneView: alpha bit planes and no multisampling (depth peeling needs both).
@@ -53,7 +71,8 @@ void prepareWindow(vtkRenderWindow* window);
 /// The 3D picture of an inspection: one actor group per layer, rebuilt only where its input changed. No Qt.
 class SceneView {
  public:
-  SceneView();
+  /// @param cache  shared by views of the same inspection; null = its own.
+  explicit SceneView(std::shared_ptr<LayerCache> cache = nullptr);
   ~SceneView();
   vtkRenderer* renderer() const;
   /// May be null (empty picture).
@@ -66,10 +85,50 @@ class SceneView {
   void setModels(const std::set<std::string>& models);
   /// Size of cameras, arrows, points and lines relative to the default for the scene's extent; > 0.
   void setGlyphScale(double scale);
+  /// Only the selected frame's camera, and what was derived from it.
+  void setSolo(bool solo);
+  void setCameraColours(const CameraColours& colours);
+
   /// A view from outside that holds the surface, the cameras and a light that is not far beyond them.
   void frameAll();
-  /// Looks from a frame's camera along its axis with its vertical field of view.
+  /// The same direction, but only what is selected: the highlight on the surface, else the model's ellipsoids, else the camera
+  /// with its brightest points.
+  void frameSelection();
+  void lookAlong(AxisView view);
+  void setParallel(bool parallel);
+  bool parallel() const;
+  /// Puts the eye at a frame's camera, along its axis with its vertical field of view; it may be moved from there.
   void lookThrough(int frame);
+  /// Follows the selected frame until it is set back to Outside, which brings the earlier view back. Pixels of the photograph and
+  /// geometry agree exactly, see displayOf(). Where there is no virtual camera the view stays outside, and eyeText() says why.
+  void setEye(Eye eye);
+  Eye eye() const;
+  bool looksThrough() const;    ///< setEye() is in effect
+  std::string eyeText() const;  ///< "through camera 0007", or why not; "" outside
+  /// The photograph over the picture while looking through a camera, its lens distortion removed.
+  /// @param photograph  RGB, bottom row first; null = none. Drawn only while `frame` is selected.
+  void setPhotograph(int frame, vtkSmartPointer<vtkImageData> photograph);
+  void setPhotographOpacity(double opacity);  ///< 0..1
+  /// While looking through a camera: enlarges about a window px (y up), moves. Looking through another eye resets them.
+  void zoomPhotograph(double factor, double x, double y);
+  void movePhotograph(double dx, double dy);
+  /// Window px (y up, corner of the lower left pixel = 0) of an ideal pixel of the selected frame while looking through it.
+  std::optional<Eigen::Vector2d> displayOf(double idealX, double idealY) const;
+
+  /// The renderer's viewport shows its part of the picture of the whole window (the wipe) instead of a picture of its own.
+  void setPartOfWindow(bool part);
+  /// Draws a border, in the accent colour where the view is the active one. @param name  stands in the upper right corner, may be
+  /// "".
+  void setFrame(bool border, bool active, const std::string& name);
+  /// Legend, notes and title; labels, axes and scale stay.
+  void setLegendVisible(bool visible);
+  /// While something moves, a surface of more than 200,000 triangles is drawn coarsely, once its coarse version is ready.
+  void setMoving(bool moving);
+  /// There is a coarse version, so that setMoving() changes the picture.
+  bool hasCoarseSurface() const;
+  /// Photographs that were not there yet may be there now: see LayerCache::setPhotographSource.
+  void photographsArrived();
+
   ViewPoint viewPoint() const;
   void setViewPoint(const ViewPoint& viewPoint);
   /// Brings the actors of all visible layers up to date. Rendering does this by itself; only code that reads actors needs it.

@@ -1,167 +1,413 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/scene/scene_panel.h"
 
-#include <QVTKOpenGLNativeWidget.h>
-#include <vtkGenericOpenGLRenderWindow.h>
-#include <vtkInteractorStyleTrackballCamera.h>
-#include <vtkNew.h>
-#include <vtkRenderWindow.h>
-#include <vtkRenderWindowInteractor.h>
-#include <vtkRenderer.h>
-
+#include <QAction>
 #include <QHBoxLayout>
 #include <QLabel>
-#include <QMouseEvent>
-#include <QTimer>
+#include <QMenu>
+#include <QSignalBlocker>
+#include <QSlider>
 #include <QToolButton>
 #include <QVBoxLayout>
+#include <algorithm>
+#include <cmath>
 
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/scene/scene_views.h"
 
 namespace glint::gui {
 
-ScenePanel::ScenePanel(Document& document, QWidget* parent)
-    : QWidget(parent), document_(document), view_(std::make_unique<viz::SceneView>()) {
-  auto* column = new QVBoxLayout(this);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(0);
-  auto* bar = new QHBoxLayout;
-  bar->setContentsMargins(8, 3, 4, 3);
-  bar->setSpacing(2);
-  auto* title = new QLabel(QStringLiteral("<b>%1</b>").arg(tr("Scene")));
-  bar->addWidget(title);
-  bar->addStretch(1);
-  const auto tool = [&](const char* iconName, const QString& tip, auto slot) {
-    auto* button = new QToolButton;
-    button->setIcon(icon(QLatin1String(iconName)));
-    button->setToolTip(tip);
-    button->setAutoRaise(true);
-    connect(button, &QToolButton::clicked, this, slot);
-    bar->addWidget(button);
-  };
-  tool("camera", tr("Look through the selected frame's camera (C)"), &ScenePanel::lookThroughSelected);
-  tool("frame-all", tr("Show everything (A)"), &ScenePanel::frameAll);
-  column->addLayout(bar);
+namespace {
+constexpr int kGlyphSteps = 20;  // of the slider, for a factor of ten
+int sliderOf(double scale) { return int(std::lround(kGlyphSteps * std::log10(scale))); }
+double scaleOf(int slider) { return std::pow(10.0, double(slider) / kGlyphSteps); }
+}  // namespace
 
-  widget_ = new QVTKOpenGLNativeWidget;
-  widget_->setObjectName(QStringLiteral("sceneView"));
-  widget_->setMinimumSize(200, 150);
-  vtkNew<vtkGenericOpenGLRenderWindow> window;
-  viz::prepareWindow(window);
-  widget_->setRenderWindow(window);
-  window->AddRenderer(view_->renderer());
-  vtkNew<vtkInteractorStyleTrackballCamera> style;
-  window->GetInteractor()->SetInteractorStyle(style);
-  widget_->installEventFilter(this);
-  column->addWidget(widget_, 1);
-
+ScenePanel::ScenePanel(Document& document, QWidget* parent) : QWidget(parent), document_(document), views_(new SceneViews) {
+  buildBars();
   connect(&document_, &Document::sceneOpened, this, &ScenePanel::showScene);
   connect(&document_, &Document::inspectionChanged, this, &ScenePanel::showInspection);
   connect(&document_, &Document::layersChanged, this, &ScenePanel::showLayers);
   connect(&document_, &Document::selectionChanged, this, &ScenePanel::showSelection);
+  connect(&document_, &Document::optionsChanged, this, &ScenePanel::showOptions);
+  connect(&document_, &Document::requestChanged, this, &ScenePanel::showOptions);
+  connect(views_, &SceneViews::picked, this, &ScenePanel::select);
+  connect(views_, &SceneViews::activeChanged, this, &ScenePanel::showEye);
+  connect(views_, &SceneViews::leaveEye, this, [this] { setEye(viz::Eye::Outside); });
+  connect(views_, &SceneViews::wipeMoved, this, [this](double share, bool released) {
+    if (gesture_ == 0) gesture_ = document_.newGesture();
+    document_.setOption("scene/wipe", std::clamp(share, 0.02, 0.98), tr("Move the wipe"), gesture_);
+    if (released) gesture_ = 0;
+  });
 }
 
 ScenePanel::~ScenePanel() = default;
 
-std::optional<viz::ViewPoint> ScenePanel::viewPoint() const {
-  return framed_ ? std::optional(view_->viewPoint()) : firstViewPoint_;
-}
+void ScenePanel::buildBars() {
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(0);
+  bar_ = new QHBoxLayout;
+  bar_->setContentsMargins(8, 3, 4, 3);
+  bar_->setSpacing(2);
+  bar_->addWidget(new QLabel(QStringLiteral("<b>%1</b>").arg(tr("Scene"))));
+  bar_->addStretch(1);
+  column->addLayout(bar_);
 
-void ScenePanel::renderNow() { widget_->renderWindow()->Render(); }
-
-void ScenePanel::scheduleRender() {
-  // QWidget::update() would only show VTK's last picture again; several changes in one turn of the event loop make one picture.
-  if (renderPending_) return;
-  renderPending_ = true;
-  QTimer::singleShot(0, this, [this] {
-    renderPending_ = false;
-    if (widget_->isVisible()) renderNow();
+  const auto slider = [this](const char* name, int least, int most, const QString& tip) {
+    auto* s = new QSlider(Qt::Horizontal);
+    s->setObjectName(QLatin1String(name));
+    s->setRange(least, most);
+    s->setToolTip(tip);
+    s->setFocusPolicy(Qt::NoFocus);
+    // One drag is one step of undo.
+    connect(s, &QSlider::sliderPressed, this, [this] { gesture_ = document_.newGesture(); });
+    connect(s, &QSlider::sliderReleased, this, [this] { gesture_ = 0; });
+    return s;
+  };
+  glyphs_ = slider("glyphScale", -kGlyphSteps, kGlyphSteps, tr("Size of cameras, points and arrows"));
+  glyphs_->setFixedWidth(80);
+  connect(glyphs_, &QSlider::valueChanged, this, [this](int value) {
+    document_.setOption("scene/glyph-scale", scaleOf(value), tr("Size of cameras and points"), gesture_);
   });
+  bar_->addWidget(glyphs_);
+
+  eyeBar_ = new QWidget;
+  eyeBar_->setObjectName(QStringLiteral("eyeBar"));
+  auto* row = new QHBoxLayout(eyeBar_);
+  row->setContentsMargins(8, 2, 4, 2);
+  row->setSpacing(6);
+  eyeText_ = new QLabel;
+  eyeText_->setObjectName(QStringLiteral("eyeText"));
+  eyeText_->setMinimumWidth(40);
+  row->addWidget(eyeText_, 1);
+  row->addWidget(new QLabel(tr("Photograph")));
+  opacity_ = slider("photographOpacity", 0, 100, tr("How much the photograph covers the scene"));
+  opacity_->setFixedWidth(110);
+  connect(opacity_, &QSlider::valueChanged, this, [this](int percent) {
+    document_.setOption("scene/photograph-opacity", percent / 100.0, tr("Photograph over the scene: %1 %").arg(percent),
+                        gesture_);
+  });
+  row->addWidget(opacity_);
+  auto* back = new QToolButton;
+  back->setObjectName(QStringLiteral("leaveEye"));
+  back->setIcon(icon(QStringLiteral("close")));
+  back->setToolTip(tr("Back outside (Esc)"));
+  back->setAutoRaise(true);
+  connect(back, &QToolButton::clicked, this, [this] { setEye(viz::Eye::Outside); });
+  row->addWidget(back);
+  eyeBar_->hide();
+  column->addWidget(eyeBar_);
+  column->addWidget(views_, 1);
 }
 
-void ScenePanel::setDark(bool dark) {
-  view_->setDarkBackground(dark);
-  scheduleRender();
+viz::SceneView& ScenePanel::view() { return views_->view(); }
+
+std::optional<viz::ViewPoint> ScenePanel::viewPoint() const {
+  return framed_ ? std::optional(views_->view().viewPoint()) : firstViewPoint_;
 }
 
-void ScenePanel::frameAll() {
-  view_->frameAll();
-  scheduleRender();
-}
+void ScenePanel::renderNow() { views_->renderNow(); }
+bool ScenePanel::busy() const { return views_->busy(); }
+void ScenePanel::setDark(bool dark) { views_->setDark(dark); }
 
-void ScenePanel::lookThroughSelected() {
-  if (!document_.inspection()) return;
-  view_->lookThrough(document_.selection().frame);
-  scheduleRender();
-}
+// --- from the document --------------------------------------------------------------------------------------------------
 
 void ScenePanel::showScene() {
   framed_ = false;
-  view_->setInspection(nullptr);
+  views_->setScene(document_.sharedScene());
   showLayers();
   showSelection();
+  showOptions();
 }
 
 void ScenePanel::showInspection() {
-  view_->setInspection(document_.inspection());
+  views_->setInspection(document_.inspection());
   if (!framed_ && document_.inspection()) {
     framed_ = true;
-    if (firstViewPoint_)
-      view_->setViewPoint(*firstViewPoint_);
-    else
-      view_->frameAll();
+    for (int i = 0; i < views_->viewCount(); ++i) {
+      if (firstViewPoint_)
+        views_->view(i).setViewPoint(*firstViewPoint_);
+      else
+        views_->view(i).frameAll();
+    }
   }
-  scheduleRender();
+  showOptions();
 }
 
 void ScenePanel::showLayers() {
-  for (const viz::Layer& layer : viz::sceneLayers()) view_->setLayerVisible(layer.name, document_.layerVisible(layer.name));
-  scheduleRender();
+  for (const viz::Layer& layer : viz::sceneLayers()) views_->setLayerVisible(layer.name, document_.layerVisible(layer.name));
+  views_->scheduleRender();
 }
 
 void ScenePanel::showSelection() {
-  view_->setSelection(document_.selection());
-  scheduleRender();
+  views_->setSelection(document_.selection());
+  showOptions();  // whose error colours the cameras follows the selected model
 }
 
-bool ScenePanel::eventFilter(QObject* watched, QEvent* event) {
-  if (watched == widget_ && (event->type() == QEvent::MouseButtonPress || event->type() == QEvent::MouseButtonRelease)) {
-    const auto* mouse = static_cast<QMouseEvent*>(event);
-    const QPointF at = mouse->pos();
-    if (event->type() == QEvent::MouseButtonPress)
-      pressed_ = at;
-    else if (mouse->button() == Qt::LeftButton && (at - pressed_).manhattanLength() < 4)
-      pickAt(at);
-  }
-  // VTK's own keys (wireframe, quit, ...) are not ours; the window's shortcuts come before this.
-  if (watched == widget_ && (event->type() == QEvent::KeyPress || event->type() == QEvent::KeyRelease)) {
-    event->ignore();
-    return true;
-  }
-  return QWidget::eventFilter(watched, event);
+void ScenePanel::showOptions() {
+  const SceneOptions options = sceneOptions(document_);
+  views_->apply(options);
+  const QSignalBlocker quietGlyphs(glyphs_), quietOpacity(opacity_);
+  glyphs_->setValue(sliderOf(options.glyphScale));
+  opacity_->setValue(int(std::lround(100 * options.opacity)));
+  showEye();
 }
 
-void ScenePanel::pickAt(const QPointF& position) {
-  // VTK's display coordinates are device pixels, y up.
-  const double ratio = widget_->devicePixelRatioF();
-  const int x = int(position.x() * ratio), y = int((widget_->height() - position.y()) * ratio) - 1;
-  const std::optional<viz::Picked> hit = view_->pick(x, y);
-  if (!hit) return;
+void ScenePanel::showEye() {
+  const QString text = views_->eyeText();
+  eyeBar_->setVisible(!text.isEmpty());
+  eyeText_->setText(text);
+  eyeText_->setToolTip(text);
+  if (checkActions_) checkActions_();
+}
+
+// --- to the document ----------------------------------------------------------------------------------------------------
+
+void ScenePanel::select(const viz::Picked& picked) {
   viz::Selection s = document_.selection();
-  if (hit->frame >= 0) {
-    if (hit->frame != s.frame) s.highlight = -1;
-    s.frame = hit->frame;
+  if (picked.frame >= 0 && picked.frame != s.frame) {
+    s.frame = picked.frame;
+    s.highlight = -1;
+    s.direction.reset();
   }
-  if (!hit->model.empty()) s.model = hit->model;
+  if (!picked.model.empty()) s.model = picked.model;
+  if (!picked.light.empty()) s.light = picked.light;
+  if (picked.highlight >= 0) s.highlight = picked.highlight;
+  if (picked.direction) s.direction = picked.direction;
   document_.select(s);
-  emit picked(*hit);
+  emit this->picked(picked);
 }
+
+int ScenePanel::eyeView() const { return sceneOptions(document_).linked ? 0 : views_->activeView(); }
+
+void ScenePanel::setEye(viz::Eye eye) {
+  const QString text = eye == viz::Eye::Camera          ? tr("Look through the camera")
+                       : eye == viz::Eye::VirtualCamera ? tr("Look through the virtual camera")
+                                                        : tr("Look from outside");
+  document_.setOption(viewOption("look-through", eyeView()), std::string(toText(eye)), text);
+}
+
+void ScenePanel::setArrangement(Arrangement arrangement) {
+  document_.setOption(
+      "scene/views", std::string(toText(arrangement)),
+      arrangement == Arrangement::Wipe ? tr("3D views: wipe") : tr("3D views: %1").arg(QLatin1String(toText(arrangement))));
+}
+
+void ScenePanel::setColourBy(const QString& by) {
+  document_.setOption("scene/colour-by", by.toStdString(), tr("Colour cameras by %1").arg(by));
+}
+
+void ScenePanel::setSwitch(const char* option, bool on, const QString& text) {
+  document_.setOption(option, std::string(on ? "1" : "0"), text);
+}
+
+void ScenePanel::scaleGlyphs(double factor) {
+  const double scale = std::clamp(sceneOptions(document_).glyphScale * factor, 0.1, 10.0);
+  document_.setOption("scene/glyph-scale", scale, tr("Size of cameras and points"));
+}
+
+void ScenePanel::nextModels() {
+  const int at = views_->activeView();
+  const SceneOptions options = sceneOptions(document_);
+  const std::vector<std::string>& models = document_.request().models;
+  const std::set<std::string>& now = options.views[std::size_t(at)].models;
+  std::string next = models.empty() ? "all" : models.front();
+  if (!now.empty()) {
+    const auto found = std::find(models.begin(), models.end(), *now.begin());
+    next = found == models.end() || found + 1 == models.end() ? "all" : *(found + 1);
+  }
+  document_.setOption(viewOption("models", at), next,
+                      next == "all" ? tr("3D view: all models") : tr("3D view: %1").arg(toQString(next)));
+}
+
+void ScenePanel::frameAll() {
+  views_->active().frameAll();
+  views_->scheduleRender();
+}
+
+void ScenePanel::frameSelection() {
+  views_->active().frameSelection();
+  views_->scheduleRender();
+}
+
+void ScenePanel::lookAlong(viz::AxisView axis) {
+  views_->active().lookAlong(axis);
+  views_->scheduleRender();
+}
+
+QStringList ScenePanel::savedViews() const {
+  QStringList names;
+  const std::string prefix = kSavedView;
+  for (const auto& [name, value] : document_.state().options)
+    if (name.rfind(prefix, 0) == 0 && viewPointFromText(value)) names << toQString(name.substr(prefix.size()));
+  return names;
+}
+
+void ScenePanel::saveView() {
+  const QStringList taken = savedViews();
+  int number = 1;
+  while (taken.contains(tr("View %1").arg(number))) ++number;
+  const QString name = tr("View %1").arg(number);
+  document_.setOption(kSavedView + name.toStdString(), toText(views_->active().viewPoint()), tr("Save %1").arg(name));
+}
+
+void ScenePanel::goToView(const QString& name) {
+  const auto view = viewPointFromText(document_.option(kSavedView + name.toStdString(), std::string()));
+  if (!view) return;
+  if (view->parallel != sceneOptions(document_).parallel)
+    setSwitch("scene/parallel", view->parallel, view->parallel ? tr("Parallel projection") : tr("Perspective"));
+  views_->active().setViewPoint(*view);
+  views_->scheduleRender();
+}
+
+void ScenePanel::removeView(const QString& name) {
+  // An option cannot be taken away; an empty one is none.
+  document_.setOption(kSavedView + name.toStdString(), std::string(), tr("Forget %1").arg(name));
+}
+
+// --- actions --------------------------------------------------------------------------------------------------------------
 
 void ScenePanel::addActions(Actions& actions, QMenu* menu) {
+  const auto toggle = [this, &actions](const char* id, QMenu* in, const QString& title, const Actions::Look& look, auto run) {
+    return actions.addToggle(
+        QLatin1String(id), in, title,
+        [this, run](bool on) {
+          run(on);
+          if (checkActions_) checkActions_();  // one of a group that was on stays on
+        },
+        look);
+  };
   actions.add("view.frame-all", menu, tr("Show &everything"), [this] { frameAll(); }, {{Qt::Key_A}, "frame-all"});
-  actions.add("view.look-through", menu, tr("Look through the frame's &camera"), [this] { lookThroughSelected(); },
-              {{Qt::Key_C}, "camera"});
+  actions.add("view.frame-selection", menu, tr("Show the &selection"), [this] { frameSelection(); },
+              {{int(Qt::SHIFT) | Qt::Key_A}, "frame-selection", tr("The selected highlight, ellipsoid or camera fills the 3D view")});
+  QAction* camera = toggle("view.look-through", menu, tr("Look through the frame's &camera"),
+                           {{Qt::Key_C}, "camera", tr("With the photograph over the scene; follows the selected frame")},
+                           [this](bool on) { setEye(on ? viz::Eye::Camera : viz::Eye::Outside); });
+  QAction* mirrored = toggle("view.look-through-virtual", menu, tr("Look through the &virtual camera"),
+                             {{Qt::Key_V}, "virtual-camera", tr("Mirrored in the tangent plane: it sees the side of the light")},
+                             [this](bool on) { setEye(on ? viz::Eye::VirtualCamera : viz::Eye::Outside); });
+
+  QMenu* axes = menu->addMenu(tr("Look &along"));
+  const struct {
+    const char *id, *title;
+    viz::AxisView axis;
+    int key;
+  } directions[] = {{"view.axis-front", QT_TR_NOOP("&Front"), viz::AxisView::Front, Qt::Key_1},
+                    {"view.axis-back", QT_TR_NOOP("&Back"), viz::AxisView::Back, Qt::Key_2},
+                    {"view.axis-left", QT_TR_NOOP("&Left"), viz::AxisView::Left, Qt::Key_3},
+                    {"view.axis-right", QT_TR_NOOP("&Right"), viz::AxisView::Right, Qt::Key_4},
+                    {"view.axis-top", QT_TR_NOOP("&Top"), viz::AxisView::Top, Qt::Key_5},
+                    {"view.axis-bottom", QT_TR_NOOP("B&ottom"), viz::AxisView::Bottom, Qt::Key_6}};
+  for (const auto& d : directions)
+    actions.add(QLatin1String(d.id), axes, tr(d.title), [this, axis = d.axis] { lookAlong(axis); }, {{int(Qt::CTRL) | d.key}});
+  axes->addSeparator();
+  QAction* parallel =
+      toggle("view.parallel", axes, tr("&Parallel projection"), {{Qt::Key_5}, {}, tr("Without perspective")},
+             [this](bool on) { setSwitch("scene/parallel", on, on ? tr("Parallel projection") : tr("Perspective")); });
+  axes->addSeparator();
+  actions.add("view.save-view", axes, tr("&Keep this view"), [this] { saveView(); },
+              {{int(Qt::CTRL) | Qt::Key_K}, {}, tr("Stored with the session")});
+  savedMenu_ = axes->addMenu(tr("Kept &views"));
+  connect(savedMenu_, &QMenu::aboutToShow, this, [this] {
+    savedMenu_->clear();
+    for (const QString& name : savedViews()) {
+      QMenu* one = savedMenu_->addMenu(name);
+      one->addAction(tr("Go there"), this, [this, name] { goToView(name); });
+      one->addAction(tr("Forget"), this, [this, name] { removeView(name); });
+    }
+    if (savedMenu_->isEmpty()) savedMenu_->addAction(tr("None yet"))->setEnabled(false);
+  });
+  actions.add("view.next-view", axes, tr("&Next kept view"),
+              [this] {
+                const QStringList names = savedViews();
+                if (names.isEmpty()) return;
+                const std::string now = toText(views_->active().viewPoint());
+                int next = 0;
+                for (int i = 0; i < names.size(); ++i)
+                  if (document_.option(kSavedView + names[i].toStdString(), std::string()) == now) next = (i + 1) % names.size();
+                goToView(names[next]);
+              },
+              {{Qt::Key_K}});
+
+  QMenu* arrange = menu->addMenu(tr("&3D views"));
+  const struct {
+    const char *id, *title;
+    Arrangement arrangement;
+  } arrangements[] = {{"view.views-1", QT_TR_NOOP("&One"), Arrangement::One},
+                      {"view.views-2", QT_TR_NOOP("&Two side by side"), Arrangement::SideBySide},
+                      {"view.views-4", QT_TR_NOOP("&Four"), Arrangement::Grid},
+                      {"view.views-wipe", QT_TR_NOOP("&Wipe between two"), Arrangement::Wipe}};
+  QList<std::pair<QAction*, Arrangement>> arrangementActions;
+  for (const auto& a : arrangements)
+    arrangementActions.append(
+        {toggle(a.id, arrange, tr(a.title), {}, [this, to = a.arrangement](bool) { setArrangement(to); }), a.arrangement});
+  arrange->addSeparator();
+  QAction* linked =
+      toggle("view.link-views", arrange, tr("&Linked cameras"), {{int(Qt::CTRL) | Qt::Key_L}, {}, tr("All 3D views move together")},
+             [this](bool on) { setSwitch("scene/linked", on, on ? tr("Link the 3D views") : tr("Unlink the 3D views")); });
+  actions.add("view.next-models", arrange, tr("Other &model in the active view"), [this] { nextModels(); },
+              {{Qt::Key_M}, {}, tr("All models, then each alone")});
+
+  QMenu* colours = menu->addMenu(tr("&Colour cameras by"));
+  QList<std::pair<QAction*, QString>> colourActions;
+  for (const auto& [by, title] :
+       {std::pair("role", tr("&Role")), std::pair("model", tr("Best &model")), std::pair("error", tr("&Error"))}) {
+    const QString name = QLatin1String(by);
+    colourActions.append(
+        {toggle((std::string("view.colour-") + by).c_str(), colours, title, {}, [this, name](bool) { setColourBy(name); }),
+         name});
+  }
+  QAction* solo = toggle("view.solo", menu, tr("Only the selected &frame"),
+                         {{int(Qt::SHIFT) | Qt::Key_S}, "solo", tr("Hides the other cameras and what belongs to them")},
+                         [this](bool on) { setSwitch("scene/solo", on, on ? tr("Only the selected frame") : tr("All frames")); });
+  actions.add("view.glyphs-larger", menu, tr("&Larger cameras and points"), [this] { scaleGlyphs(1.25); },
+              {{Qt::Key_BracketRight}});
+  actions.add("view.glyphs-smaller", menu, tr("S&maller cameras and points"), [this] { scaleGlyphs(0.8); },
+              {{Qt::Key_BracketLeft}});
+
+  checkActions_ = [=, this] {
+    const SceneOptions options = sceneOptions(document_);
+    const viz::Eye eye = options.views[std::size_t(options.linked ? 0 : views_->activeView())].eye;
+    camera->setChecked(eye == viz::Eye::Camera);
+    mirrored->setChecked(eye == viz::Eye::VirtualCamera);
+    parallel->setChecked(options.parallel);
+    solo->setChecked(options.solo);
+    linked->setChecked(options.linked);
+    linked->setEnabled(options.arrangement != Arrangement::Wipe);
+    for (const auto& [action, arrangement] : arrangementActions) action->setChecked(options.arrangement == arrangement);
+    const char* by = options.colours.by == viz::CameraColours::By::Error   ? "error"
+                     : options.colours.by == viz::CameraColours::By::Model ? "model"
+                                                                           : "role";
+    for (const auto& [action, name] : colourActions) action->setChecked(name == QLatin1String(by));
+  };
+  checkActions_();
+
+  // The toolbar shows the same actions and menus.
+  int at = bar_->count() - 1;  // before the slider
+  const auto button = [&](QAction* action, QMenu* popup, const char* iconName, const QString& tip) {
+    auto* b = new QToolButton;
+    b->setAutoRaise(true);
+    if (action) {
+      b->setDefaultAction(action);
+    } else {
+      b->setIcon(icon(QLatin1String(iconName)));
+      b->setProperty("glintIcon", QLatin1String(iconName));
+      b->setToolTip(tip);
+      b->setMenu(popup);
+      b->setPopupMode(QToolButton::InstantPopup);
+    }
+    bar_->insertWidget(at++, b);
+  };
+  button(camera, nullptr, "", {});
+  button(mirrored, nullptr, "", {});
+  button(nullptr, axes, "axes", tr("Axis views, projection, kept views"));
+  button(nullptr, arrange, "views", tr("One, two or four 3D views, wipe"));
+  button(nullptr, colours, "palette", tr("What the cameras' colours say"));
+  button(solo, nullptr, "", {});
+  button(actions.find("view.frame-selection"), nullptr, "", {});
+  button(actions.find("view.frame-all"), nullptr, "", {});
 }
 
 }  // namespace glint::gui

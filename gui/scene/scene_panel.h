@@ -1,55 +1,86 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <QStringList>
 #include <QWidget>
+#include <functional>
 #include <memory>
+#include <optional>
 
 #include "gui/base/actions.h"
 #include "gui/document/document.h"
+#include "gui/scene/scene_options.h"
 
-class QVTKOpenGLNativeWidget;
+class QHBoxLayout;
+class QLabel;
+class QMenu;
+class QSlider;
 
 namespace glint::gui {
 
-/// The 3D view: shows the document through viz::SceneView, turns clicks into picks.
+class SceneViews;
+
+/// The 3D views with their toolbar: shows the document through viz::SceneView, turns clicks into selections, and what the user
+/// sets into options of the document.
 class ScenePanel : public QWidget {
   Q_OBJECT
  public:
   explicit ScenePanel(Document& document, QWidget* parent = nullptr);
   ~ScenePanel() override;
-  viz::SceneView& view() { return *view_; }
+  /// The first view, whose camera sessions store.
+  viz::SceneView& view();
+  SceneViews& views() { return *views_; }
+  /// Also fills the toolbar, whose buttons are these actions.
   void addActions(Actions& actions, QMenu* menu);
   /// Draws now, so that a grab of the window shows the newest state.
   void renderNow();
   void setDark(bool dark);
+  bool busy() const;  ///< photographs are on their way
   /// Where the next results are looked at from; none = show everything.
   void setViewPoint(const std::optional<viz::ViewPoint>& viewPoint) { firstViewPoint_ = viewPoint; }
   /// The 3D camera to save: the one on screen, and before there are results the one that they will be looked at from.
   std::optional<viz::ViewPoint> viewPoint() const;
+  QStringList savedViews() const;
 
  public slots:
   void frameAll();
-  void lookThroughSelected();
+  void frameSelection();
+  void lookAlong(glint::viz::AxisView axis);
+  /// Of the active view, or of all where they are linked.
+  void setEye(glint::viz::Eye eye);
+  void setArrangement(glint::gui::Arrangement arrangement);
+  void setColourBy(const QString& by);
+  void saveView();
+  void goToView(const QString& name);
+  void removeView(const QString& name);
+  /// The next of "all models", then each model alone, in the active view.
+  void nextModels();
 
  signals:
   void picked(const glint::viz::Picked& picked);
 
- protected:
-  bool eventFilter(QObject* watched, QEvent* event) override;
-
  private:
+  void buildBars();
   void showScene();
   void showInspection();
   void showLayers();
   void showSelection();
-  void scheduleRender();
-  void pickAt(const QPointF& position);
+  void showOptions();
+  void showEye();
+  void select(const viz::Picked& picked);
+  void setSwitch(const char* option, bool on, const QString& text);
+  void scaleGlyphs(double factor);
+  int eyeView() const;  ///< whose option says what is looked through
 
   Document& document_;
-  std::unique_ptr<viz::SceneView> view_;
-  QVTKOpenGLNativeWidget* widget_;
-  QPointF pressed_;
-  bool renderPending_ = false;
+  SceneViews* views_;
+  QHBoxLayout* bar_ = nullptr;
+  QWidget* eyeBar_ = nullptr;
+  QLabel* eyeText_ = nullptr;
+  QSlider *glyphs_ = nullptr, *opacity_ = nullptr;
+  QMenu* savedMenu_ = nullptr;
+  std::function<void()> checkActions_;
+  int gesture_ = 0;
   bool framed_ = false;  ///< the picture was framed since the scene was opened
   std::optional<viz::ViewPoint> firstViewPoint_;
 };

@@ -381,7 +381,7 @@ void MainWindow::offerRecovery() {
                            }}});
 }
 
-bool MainWindow::idle() const { return !runner_.busy() && !frame_->loader()->busy() && plots_->idle(); }
+bool MainWindow::idle() const { return !runner_.busy() && !frame_->loader()->busy() && !scene_->busy() && plots_->idle(); }
 
 QPixmap MainWindow::picture() {
   if (centre_->currentWidget() == views_) scene_->renderNow();

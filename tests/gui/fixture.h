@@ -52,5 +52,6 @@ QObject* makeRecoveryTest();
 int runUntilKilled();  ///< see recovery_test.cpp
 QObject* makeTradeoffTest();
 QObject* makePlotsTest();
+QObject* makeSceneTest();
 
 }  // namespace glint::gui

@@ -9,6 +9,7 @@
 #include <cstdlib>
 
 #include "tests/tolerances.h"
+#include "tests/viz/image_checks.h"
 #include "tests/viz/small_inspection.h"
 #include "viz/layers.h"
 #include "viz/offscreen.h"
@@ -20,47 +21,13 @@ namespace {
 using test::smallInspection;
 using test::TemporaryFolder;
 
-constexpr int kWidth = 640, kHeight = 480;
+using test::countDifferent;
+using test::countNear;
+using test::isNear;
 
-/// Pixels whose colour differs visibly; a few stray ones are what another driver may do to an edge.
-int countDifferent(const Image& a, const Image& b) {
-  int count = 0;
-  for (int y = 0; y < a.height; ++y) {
-    for (int x = 0; x < a.width; ++x) {
-      double most = 0;
-      for (int c = 0; c < 3; ++c) most = std::max<double>(most, std::abs(a.at(x, y, c) - b.at(x, y, c)));
-      count += most > 0.06;
-    }
-  }
-  return count;
-}
-
-bool isNear(const Image& image, int x, int y, const Colour& colour, double tolerance) {
-  for (int c = 0; c < 3; ++c) {
-    if (std::abs(image.at(x, y, c) - colour[static_cast<std::size_t>(c)]) > tolerance) return false;
-  }
-  return true;
-}
-
-int countNear(const Image& image, const Colour& colour, double tolerance = 0.06) {
-  int count = 0;
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) count += isNear(image, x, y, colour, tolerance);
-  }
-  return count;
-}
-
-class SceneViewPicture : public testing::Test {
+class SceneViewPicture : public test::PictureTest {
  protected:
-  void SetUp() override {
-    if (std::system("command -v Xvfb > /dev/null 2>&1") != 0) GTEST_SKIP() << "Xvfb is not installed";
-    Outcome<std::unique_ptr<Offscreen>> target = Offscreen::create(kWidth, kHeight);
-    ASSERT_TRUE(target) << target.failure().message();
-    target_ = std::move(*target);
-  }
-  Image render(const SceneView& view) { return target_->render(view); }
   TemporaryFolder folder_;
-  std::unique_ptr<Offscreen> target_;
 };
 
 TEST_F(SceneViewPicture, EveryLayerIsSeenAndGoesAwayWhenItIsSwitchedOff) {
@@ -261,18 +228,44 @@ TEST_F(SceneViewPicture, AMovedCameraStaysWhereItWasPut) {
   EXPECT_NEAR(view.viewPoint().viewAngleDeg, 40, 1e-12);
 }
 
-TEST(Layers, AHyperboloidIsNamedAndNotDrawn) {
-  const TemporaryFolder folder;
-  const auto inspection = smallInspection(folder.path());
-  LayerInput input;
-  input.inspection = inspection.get();
-  input.models = {"dual"};
-  input.surfaceKey = inspection->surfaces->keyOf(0);
-  input.scale = sceneScale(*inspection, nullptr, {0, 1, 2}, 1);
-  const LayerContent content = ellipsoidsLayer(input);
-  EXPECT_TRUE(content.drawn.empty());
-  ASSERT_EQ(content.notes.size(), 1u);
-  EXPECT_NE(content.notes[0].find("hyperboloid"), std::string::npos) << content.notes[0];
+/// Quadrics that a fit may leave behind where the data do not make an ellipsoid: flagged with their name, never a crash.
+TEST_F(SceneViewPicture, ADegenerateQuadricIsDrawnDashedInRedWithItsName) {
+  const auto inspection = smallInspection(folder_.path());
+  const double nan = std::nan("");
+  const std::vector<std::pair<Eigen::Vector4d, std::string>> cases{{{-0.05, 0.02, 0.02, 1}, "hyperboloid of two sheets"},
+                                                                   {{-0.05, -0.02, 0.02, 1}, "hyperboloid of one sheet"},
+                                                                   {{0.05, 0.02, 0.02, 1}, "imaginary ellipsoid"},
+                                                                   {{0, 0, 0, 1}, "point"},
+                                                                   {{1, 1, 0, 0}, "quadric at infinity"},
+                                                                   {{nan, 1, 1, 1}, "not finite"},
+                                                                   {{0, 0, 0, 0}, "empty quadric"}};
+  for (const auto& [diagonal, name] : cases) {
+    SCOPED_TRACE(name);
+    ModelFit& fit = *inspection->models.at("dual").fits[0].fit;
+    fit.quadric = DualQuadric{diagonal.asDiagonal()};
+    LayerInput input;
+    input.inspection = inspection.get();
+    input.models = {"dual"};
+    input.surfaceKey = inspection->surfaces->keyOf(0);
+    input.scale = sceneScale(*inspection, nullptr, {0, 1, 2}, 1);
+    const LayerContent content = ellipsoidsLayer(input);
+    ASSERT_EQ(content.notes.size(), 1u);
+    EXPECT_NE(content.notes[0].find(name), std::string::npos) << content.notes[0];
+    SceneView view;
+    view.setInspection(std::make_shared<Inspection>(*inspection));
+    view.setLegendVisible(false);
+    view.setModels({"dual"});
+    for (const Layer& layer : sceneLayers()) view.setLayerVisible(layer.name, layer.name == "ellipsoids");
+    const int red = countNear(render(view), kFailed, 0.15);
+    if (content.drawn.empty()) {
+      EXPECT_EQ(red, 0);
+    } else {
+      ASSERT_EQ(content.labels.size(), 1u);
+      EXPECT_NE(content.labels[0].text.find(name), std::string::npos);
+      EXPECT_GT(red, 20);
+    }
+    EXPECT_EQ(content.drawn.empty(), !diagonal.allFinite() || diagonal(3) == 0);
+  }
 }
 
 TEST(Layers, CamerasThatShareAPoseAreDrawnOnce) {

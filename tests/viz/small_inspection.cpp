@@ -122,7 +122,8 @@ std::shared_ptr<Inspection> smallInspection(const std::filesystem::path& folder,
   ModelFit hyperboloid;
   hyperboloid.model = "dual";
   hyperboloid.light = "lamp";
-  hyperboloid.quadric = DualQuadric{Eigen::Vector4d(-0.01, 0.02, 0.02, 1).asDiagonal()};
+  const double area = scale * scale;
+  hyperboloid.quadric = DualQuadric{Eigen::Vector4d(-0.01 * area, 0.02 * area, 0.02 * area, 1).asDiagonal()};
   dual.fits.push_back({"lamp", {}, hyperboloid, {}});
 
   for (int i = 0; i < 6; ++i) {

@@ -17,8 +17,9 @@ LayerContent canonicalEllipsesLayer(const LayerInput& in) {
                 line("semi-axis a", ellipse.semiAxes.x(), "px") + line("semi-axis b", ellipse.semiAxes.y(), "px") +
                 line("angle", ellipse.angle * 57.29577951308232, "deg");
     const double width = strong ? 3.0 : 2.0;
-    content.add(lineActor(ellipseOnPlane(camera, plane, ellipse, 2 * in.scale.lift), modelColour("canonical"), width), info,
-                width);
+    // The virtual camera sees exactly the plane where the camera sees it, and no surface before it: nothing to lift it off from.
+    const double lift = in.eyeMirror ? 0 : 2 * in.scale.lift;
+    content.add(lineActor(ellipseOnPlane(camera, plane, ellipse, lift), modelColour("canonical"), width), info, width);
   };
   for (const TrainingView* view : in.views()) {
     if (!view->tangentPlane || !view->canonical || !view->canonical->ellipse) continue;

@@ -35,6 +35,36 @@ std::vector<int> observedFrames(const LayerInput& in) {
   return {chosen.begin(), chosen.end()};
 }
 
+/// The selected direction on a contour: a ball in its colour within a ring of ink.
+void addMark(LayerContent& content, const LayerInput& in, const Camera& camera, const Highlight& observed,
+             const Polyline& contour, const Colour& colour, const Picked& info) {
+  const std::optional<Pixel> vertex = vertexInDirection(camera, observed, contour, *in.selection.direction);
+  if (!vertex) return;
+  const std::optional<Eigen::Vector3d> at = castPixel(camera, *in.surface, *vertex, 4 * in.scale.lift);
+  if (!at) return;
+  const double r = in.scale.point;
+  const Eigen::Matrix3d axes = camera.camFromWorld.linear();
+  content.add(sphereActor({*at}, 0.8 * r, colour), info);
+  content.add(lineActor({circle(*at, 1.7 * r * axes.row(0).transpose(), 1.7 * r * axes.row(1).transpose(), 32)}, in.ink(), 2),
+              info, 2);
+}
+
+/// What directions of a frame's selected highlight are measured from: the selected one, else the first of the light, else the
+/// first.
+const Highlight* selectedHighlight(const LayerInput& in, const std::string& light) {
+  const auto frame = static_cast<std::size_t>(in.selection.frame);
+  if (frame >= in.inspection->evidence.size()) return nullptr;
+  const std::vector<Highlight>& highlights = in.inspection->evidence[frame].highlights;
+  if (in.selection.highlight >= 0 && in.selection.highlight < static_cast<int>(highlights.size())) {
+    const Highlight& h = highlights[static_cast<std::size_t>(in.selection.highlight)];
+    return light.empty() || h.light == light ? &h : nullptr;
+  }
+  for (const Highlight& h : highlights) {
+    if (light.empty() || h.light == light) return &h;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 LayerContent observedContoursLayer(const LayerInput& in) {
@@ -50,6 +80,8 @@ LayerContent observedContoursLayer(const LayerInput& in) {
       Picked info;
       info.layer = "observed-contours";
       info.frame = index;
+      info.highlight = static_cast<int>(i);
+      info.light = h.light;
       info.text = line("observed highlight of frame", in.frame(index).id) + line("light", h.light) + line("level", h.level) +
                   line("area", h.areaPx2, "px^2") + line("peak x", h.peak.x(), "px") + line("peak y", h.peak.y(), "px");
       const bool strong = selected && (in.selection.highlight < 0 || in.selection.highlight == static_cast<int>(i));
@@ -58,6 +90,8 @@ LayerContent observedContoursLayer(const LayerInput& in) {
       content.add(
           lineActor(castContour(camera, *in.surface, h.contour, in.scale, (selected ? 3.0 : 2.2) * in.scale.lift), colour, width),
           info, width);
+      if (selected && in.selection.direction && &h == selectedHighlight(in, ""))
+        addMark(content, in, camera, h, h.contour, kObserved, info);
     }
   }
   return content;
@@ -76,6 +110,10 @@ LayerContent predictedContoursLayer(const LayerInput& in) {
         info.layer = "predicted-contours";
         info.frame = in.selection.frame;
         info.model = model;
+        info.light = comparison->light;
+        for (const FrameComparison::Row& row : comparison->rows) {
+          if (row.predicted == static_cast<int>(i)) info.highlight = row.observed;
+        }
         info.text = line("prediction", model) + line("frame", in.frame(in.selection.frame).id) +
                     line("light", comparison->light) + line("coverage", h.coverage) + line("IoU", comparison->iou);
         for (const FrameComparison::Row& row : comparison->rows) {
@@ -94,7 +132,11 @@ LayerContent predictedContoursLayer(const LayerInput& in) {
             (run.gap ? dotted : solid).push_back(std::move(chain));
         }
         const Colour colour = modelColour(model);
-        if (!solid.empty()) content.add(lineActor(solid, colour, 2.2), info, 2.2);
+        const Highlight* observed = in.selection.direction ? selectedHighlight(in, comparison->light) : nullptr;
+        if (observed && (in.selection.highlight < 0 || in.selection.highlight == info.highlight))
+          addMark(content, in, camera, *observed, h.contour, colour, info);
+        const double width = in.selection.model == model ? 3.4 : 2.2;  // the selected model stands out
+        if (!solid.empty()) content.add(lineActor(solid, colour, width), info, width);
         if (!dotted.empty()) {
           info.text += line("this part", "not predicted, it bridges directions that failed");
           content.add(lineActor(dots(dotted), colour, 1.5), info, 1.5);

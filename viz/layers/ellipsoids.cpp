@@ -4,6 +4,7 @@
 #include "viz/annotations.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
+#include "viz/quadric_wire.h"
 
 namespace glint::viz {
 namespace {
@@ -16,6 +17,28 @@ std::string fitText(const ModelFit& fit) {
   return text;
 }
 
+/// A Q* that is no ellipsoid: a wire dashed in the colour of failures, named where it stands and in the notes.
+void addDegenerate(LayerContent& content, const LayerInput& in, const ModelFit& fit) {
+  const Eigen::Vector3d centre = in.scale.sceneBox.center();
+  const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.45 * in.scale.sceneSize);
+  const QuadricWire wire = wireOf(*fit.quadric, Eigen::AlignedBox3d(centre - half, centre + half));
+  Picked info;
+  info.layer = "ellipsoids";
+  info.model = fit.model;
+  info.light = fit.light;
+  info.text = fitText(fit) + line("Q*", wire.kind + ", no ellipsoid");
+  std::vector<Segment> dashes = wire.axes;
+  for (const Points& curve : wire.curves) {
+    for (std::size_t i = 0; i + 1 < curve.size(); i += 2) dashes.emplace_back(curve[i], curve[i + 1]);
+  }
+  const bool drawn = !dashes.empty();
+  content.notes.push_back(fit.model + ": Q* is no ellipsoid (" + wire.kind + (drawn ? ")" : "), outside the picture"));
+  if (!drawn) return;
+  const double width = in.selection.model == fit.model ? 2.5 : 1.4;
+  content.add(segmentActor(dashes, kFailed, width), info, width);
+  content.labels.push_back({wire.anchor, fit.model + ": " + wire.kind, kFailed});
+}
+
 }  // namespace
 
 LayerContent ellipsoidsLayer(const LayerInput& in) {
@@ -24,7 +47,7 @@ LayerContent ellipsoidsLayer(const LayerInput& in) {
     for (const ModelFit* fit : in.fits(model)) {
       if (!fit->quadric) continue;
       if (!fit->ellipsoid) {
-        content.notes.push_back(model + ": Q* is no ellipsoid (" + describe(*fit->quadric) + "), not drawn");
+        addDegenerate(content, in, *fit);
         continue;
       }
       const Ellipsoid& e = *fit->ellipsoid;
@@ -37,6 +60,7 @@ LayerContent ellipsoidsLayer(const LayerInput& in) {
       Picked info;
       info.layer = "ellipsoids";
       info.model = model;
+      info.light = fit->light;
       info.text = fitText(*fit) + line("centre", e.centre(), "m") + line("semi-axes", e.semiAxes(), "m");
       const Colour colour = modelColour(model);
       // A vanishing axis would make the unit sphere's normals undefined: keep it thinner than a line.
@@ -45,9 +69,12 @@ LayerContent ellipsoidsLayer(const LayerInput& in) {
       content.add(ellipsoidActor(worldFromUnit, colour, 0.15), info);
       const Eigen::Matrix3d a = worldFromUnit.linear();
       const Eigen::Vector3d c = e.centre();
-      content.add(
-          lineActor({circle(c, a.col(0), a.col(1)), circle(c, a.col(1), a.col(2)), circle(c, a.col(2), a.col(0))}, colour, 1.5),
-          info, 1.5);
+      const std::vector<Points> outlines{circle(c, a.col(0), a.col(1)), circle(c, a.col(1), a.col(2)),
+                                         circle(c, a.col(2), a.col(0))};
+      const bool selected = in.selection.model == model && (in.selection.light.empty() || in.selection.light == fit->light);
+      if (selected) content.add(lineActor(outlines, in.ink(), 5.0), info, 5.0);  // ink about the model's colour
+      const double width = selected ? 3.0 : 1.5;
+      content.add(lineActor(outlines, colour, width), info, width);
       // A needle far across the scene must not shrink the rest: cameras, surface and lights frame the picture.
       if (2 * e.semiAxes().maxCoeff() > in.scale.sceneSize)
         content.remarks.push_back(model + ": ellipsoid " + lengthText(2 * e.semiAxes().maxCoeff()) +

@@ -49,6 +49,13 @@ void addEstimate(LayerContent& content, const LayerInput& in, const Light& light
     rays.emplace_back(p + 1.4 * r * d.normalized(), p + 2.4 * r * d.normalized());
   }
   content.add(sphereActor({p}, r, colour), info);
+  if (!in.selection.light.empty() && in.selection.light == info.light && info.model.empty()) {
+    const Eigen::Matrix3d axes = 3.2 * r * Eigen::Matrix3d::Identity();
+    content.add(
+        lineActor({circle(p, axes.col(0), axes.col(1)), circle(p, axes.col(1), axes.col(2)), circle(p, axes.col(2), axes.col(0))},
+                  in.ink(), 2),
+        info, 2);
+  }
   content.add(segmentActor(rays, colour, 1.5), info, 1.5);
   content.labels.push_back({p, label, colour});
   content.extent.push_back(p);
@@ -63,6 +70,7 @@ LayerContent lightLayer(const LayerInput& in) {
     if (at != std::string::npos && key.substr(at + 1) != in.surfaceKey) continue;
     Picked info;
     info.layer = "light";
+    info.light = key.substr(0, at);
     info.text = line("estimated light", key.substr(0, at)) + line("solver", estimate.solver) +
                 line("limit angle", estimate.limitAngle * 180 / std::numbers::pi, "deg") +
                 line("residual", estimate.rmsPx, "px") + line("condition", estimate.condition);
@@ -83,6 +91,7 @@ LayerContent lightLayer(const LayerInput& in) {
       Picked info;
       info.layer = "light";
       info.model = model;
+      info.light = fit->light;
       info.text = line("light of model", model);
       if (fit->limitAngle) info.text += line("limit angle", *fit->limitAngle * 180 / std::numbers::pi, "deg");
       addEstimate(content, in, *fit->lightEstimate, 0.7, modelColour(model), model + " light", info);
@@ -96,6 +105,7 @@ LayerContent trueLightLayer(const LayerInput& in) {
   for (const TrueLight& light : in.inspection->scene->lights) {
     Picked info;
     info.layer = "true-light";
+    info.light = light.id;
     info.text = line("true light (not used by the method)", light.id) + line("radius", light.radius, "m");
     const std::string label = "truth: light " + light.id;
     if (light.direction && light.direction->norm() > 0) {

@@ -7,8 +7,11 @@
 namespace glint::viz {
 namespace {
 
-Picked brightestInfo(const LayerInput& in, const BrightestPoint& b, int frame, const std::string& model) {
+Picked brightestInfo(const LayerInput& in, const BrightestPoint& b, int frame, const std::string& model, int highlight,
+                     const std::string& light) {
   Picked info;
+  info.highlight = highlight;
+  info.light = light;
   info.layer = "peaks";
   info.frame = frame;
   info.model = model;
@@ -32,16 +35,19 @@ LayerContent peaksLayer(const LayerInput& in) {
   for (const TrainingView* view : in.views()) {
     if (!view->brightest) continue;
     const bool selected = view->frame == in.selection.frame;
-    add(*view->brightest, view->camera, selected ? 1.3 : 0.8, kObserved, brightestInfo(in, *view->brightest, view->frame, ""));
+    add(*view->brightest, view->camera, selected ? 1.3 : 0.8, kObserved,
+        brightestInfo(in, *view->brightest, view->frame, "", in.highlightOf(*view), view->highlight.light));
   }
   // Where training has no view of the selected frame, its peaks are cast here.
   const bool inTraining = in.inspection->isTraining(in.selection.frame);
   const auto selected = static_cast<std::size_t>(in.selection.frame);
   if (!inTraining && in.surface && selected < in.inspection->evidence.size()) {
     const Camera& camera = in.frame(in.selection.frame).camera;
+    int index = 0;
     for (const Highlight& h : in.inspection->evidence[selected].highlights) {
       const Outcome<BrightestPoint> b = observedBrightestPoint(*in.surface, camera, h.peak);
-      if (b) add(*b, camera, 1.3, kObserved, brightestInfo(in, *b, in.selection.frame, ""));
+      if (b) add(*b, camera, 1.3, kObserved, brightestInfo(in, *b, in.selection.frame, "", index, h.light));
+      ++index;
     }
   }
   for (const std::string& model : in.models) {
@@ -49,7 +55,7 @@ LayerContent peaksLayer(const LayerInput& in) {
       for (const PredictedHighlight& h : comparison->prediction.highlights) {
         if (!h.brightest.point.position.allFinite() || h.brightest.point.normal.norm() < 0.5) continue;
         add(h.brightest, in.frame(in.selection.frame).camera, 1.0, modelColour(model),
-            brightestInfo(in, h.brightest, in.selection.frame, model));
+            brightestInfo(in, h.brightest, in.selection.frame, model, -1, comparison->light));
       }
     }
   }

@@ -28,12 +28,17 @@ LayerContent photographsLayer(const LayerInput& in) {
     content.remarks.push_back("photographs of " + std::to_string(chosen.size()) + " of " + std::to_string(n) + " cameras");
   int unreadable = 0;
   for (const int index : chosen) {
+    if (in.eye != Eye::Outside && index == in.selection.frame) continue;  // it is drawn over the whole picture
     const Frame& frame = in.frame(index);
-    vtkSmartPointer<vtkImageData> image = in.cache->photograph(frame, index == in.selection.frame ? kSelected : kThumbnail);
-    if (!image) {
-      ++unreadable;
+    LayerCache::Photograph photograph =
+        in.cache->photograph(*in.inspection->scene, index, index == in.selection.frame ? kSelected : kThumbnail);
+    if (photograph.arriving && index == in.selection.frame)
+      photograph = in.cache->photograph(*in.inspection->scene, index, kThumbnail);  // perhaps the small one is there
+    if (!photograph.texture) {
+      unreadable += !photograph.arriving;
       continue;
     }
+    const vtkSmartPointer<vtkImageData> image = photograph.texture;
     const std::array<Eigen::Vector3d, 4> c = imagePlane(frame.camera, in.scale.cameraDepth);
     // Texture row 0 is the photograph's bottom row: the plane starts at the bottom left corner.
     vtkNew<vtkPlaneSource> plane;

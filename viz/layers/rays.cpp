@@ -26,6 +26,8 @@ LayerContent raysLayer(const LayerInput& in) {
     Picked info;
     info.layer = "rays";
     info.frame = view->frame;
+    info.highlight = in.highlightOf(*view);
+    info.light = view->highlight.light;
     info.text = line("reflected ray of frame", in.frame(view->frame).id) + line("P", p.position, "m") + line("r", r) +
                 line("N", p.normal);
     content.add(segmentActor(dashed(eye, p.position, 0.015 * in.scale.sceneSize), kHeldOut, 1.0), info, 1.0);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <vtkActor.h>
-#include <vtkPointData.h>
+#include <vtkPlane.h>
 #include <vtkPolyDataMapper.h>
-#include <vtkPolyDataNormals.h>
 #include <vtkProperty.h>
 
 #include "viz/layers.h"
@@ -15,21 +14,13 @@ LayerContent surfaceLayer(const LayerInput& in) {
     content.notes.push_back("surface: " + (in.surfaceProblem.empty() ? "none" : in.surfaceProblem));
     return content;
   }
-  vtkSmartPointer<vtkPolyData> triangles = in.cache->tessellation(in.surface, in.scale.surfaceBox);
+  const vtkSmartPointer<vtkPolyData> triangles = in.cache->tessellation(in.surface, in.scale.surfaceBox).fine;
   if (triangles->GetNumberOfPolys() == 0) {
     content.notes.push_back("surface: no triangles to draw");
     return content;
   }
   vtkNew<vtkPolyDataMapper> mapper;
-  if (triangles->GetPointData()->GetNormals()) {
-    mapper->SetInputData(triangles);
-  } else {
-    vtkNew<vtkPolyDataNormals> normals;
-    normals->SetInputData(triangles);
-    normals->SetFeatureAngle(40);
-    normals->Update();
-    mapper->SetInputData(normals->GetOutput());
-  }
+  mapper->SetInputData(triangles);
   mapper->ScalarVisibilityOff();
   vtkNew<vtkActor> actor;
   actor->SetMapper(mapper);
@@ -45,6 +36,28 @@ LayerContent surfaceLayer(const LayerInput& in) {
   info.layer = "surface";
   content.add(actor.Get(), info, 0, false);  // picked through Surface::firstHit, exactly
   return content;
+}
+
+void styleSurface(const LayerContent& surface, const LayerInput& in, bool virtualCamerasShown, bool moving) {
+  const bool translucent = virtualCamerasShown && in.eye == Eye::Outside;
+  for (const Drawn& drawn : surface.drawn) {
+    auto* actor = vtkActor::SafeDownCast(drawn.prop);
+    auto* mapper = actor ? vtkPolyDataMapper::SafeDownCast(actor->GetMapper()) : nullptr;
+    if (!mapper || !in.surface) continue;
+    const LayerCache::Triangles triangles = in.cache->tessellation(in.surface, in.scale.surfaceBox);
+    const vtkSmartPointer<vtkPolyData> coarse = moving ? triangles.coarseIfReady() : nullptr;
+    const vtkSmartPointer<vtkPolyData> shown = coarse ? coarse : triangles.fine;
+    if (mapper->GetInput() != shown) mapper->SetInputData(shown);
+    actor->GetProperty()->SetOpacity(translucent && shown->GetNumberOfPolys() <= kLargeSurface ? 0.7 : 1.0);
+    mapper->RemoveAllClippingPlanes();
+    if (!in.eyeMirror) continue;
+    const Plane& plane = *in.eyeMirror;  // its normal is on the camera's side, where the light is
+    const Eigen::Vector3d at = (in.scale.lift - plane.offset) * plane.normal;
+    vtkNew<vtkPlane> cut;
+    cut->SetOrigin(at.x(), at.y(), at.z());
+    cut->SetNormal(plane.normal.x(), plane.normal.y(), plane.normal.z());
+    mapper->AddClippingPlane(cut);
+  }
 }
 
 }  // namespace glint::viz

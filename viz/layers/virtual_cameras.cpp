@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <set>
+
 #include "viz/glyphs.h"
 #include "viz/layers.h"
 
@@ -6,7 +8,12 @@ namespace glint::viz {
 
 namespace {
 
-void addPair(LayerContent& content, const LayerInput& in, int frame, const Camera& camera, const Plane& plane, bool labelled) {
+void addPair(LayerContent& content, const LayerInput& in, int frame, const LayerInput::Mirror& mirror, bool labelled) {
+  const Camera& camera = in.frame(frame).camera;
+  const Plane& plane = mirror.plane;
+  // One cannot see the camera that one looks through.
+  if (frame == in.selection.frame && in.eyeMirror && in.eyeMirror->normal == plane.normal && in.eyeMirror->offset == plane.offset)
+    return;
   const std::array<Eigen::Vector3d, 4> real = imagePlane(camera, in.scale.cameraDepth);
   std::array<Eigen::Vector3d, 4> c;
   for (std::size_t i = 0; i < 4; ++i) c[i] = plane.reflected(real[i]);
@@ -16,6 +23,8 @@ void addPair(LayerContent& content, const LayerInput& in, int frame, const Camer
   Picked info;
   info.layer = "virtual-cameras";
   info.frame = frame;
+  info.highlight = mirror.highlight;
+  info.light = mirror.light;
   info.text = line("virtual camera of frame", in.frame(frame).id) + line("centre", mirrored, "m") +
               line("tangent plane n", plane.normal) + line("tangent plane offset d", plane.offset, "m") +
               line("distance to the plane", std::abs(plane.signedDistance(eye)), "m");
@@ -38,23 +47,16 @@ void addPair(LayerContent& content, const LayerInput& in, int frame, const Camer
 
 LayerContent virtualCamerasLayer(const LayerInput& in) {
   LayerContent content;
-  bool selected = false;
-  for (const TrainingView* view : in.views()) {
-    if (!view->tangentPlane) continue;
-    const bool first = view->frame == in.selection.frame && !selected;
-    addPair(content, in, view->frame, view->camera, *view->tangentPlane, first);
-    selected = selected || first;
-  }
-  if (selected || !in.surface) return content;
-  // A held-out frame has no training view: its mirror is the tangent plane at the observed peak.
-  const auto frame = static_cast<std::size_t>(in.selection.frame);
-  if (frame >= in.inspection->evidence.size()) return content;
-  const Camera& camera = in.frame(in.selection.frame).camera;
-  for (const Highlight& highlight : in.inspection->evidence[frame].highlights) {
-    const Outcome<BrightestPoint> b = observedBrightestPoint(*in.surface, camera, highlight.peak);
-    if (!b) continue;
-    addPair(content, in, in.selection.frame, camera, Plane::through(b->point.position, b->point.normal), !selected);
-    selected = true;
+  std::set<int> done;
+  std::vector<int> frames{in.selection.frame};  // which need not be a training frame
+  for (const TrainingView* view : in.views()) frames.push_back(view->frame);
+  for (const int frame : frames) {
+    if (!done.insert(frame).second) continue;
+    bool first = frame == in.selection.frame;
+    for (const LayerInput::Mirror& mirror : in.mirrors(frame)) {
+      addPair(content, in, frame, mirror, first);
+      first = false;
+    }
   }
   return content;
 }

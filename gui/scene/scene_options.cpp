@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/scene/scene_options.h"
+
+#include <QStringList>
+#include <algorithm>
+#include <cmath>
+
+#include "gui/base/text.h"
+
+namespace glint::gui {
+
+const char* const kSavedView = "scene/view/";
+
+namespace {
+const std::string kNone;
+
+Arrangement arrangementOf(const std::string& text) {
+  for (const Arrangement a : {Arrangement::SideBySide, Arrangement::Grid, Arrangement::Wipe})
+    if (text == toText(a)) return a;
+  return Arrangement::One;
+}
+
+viz::Eye eyeOf(const std::string& text) {
+  for (const viz::Eye e : {viz::Eye::Camera, viz::Eye::VirtualCamera})
+    if (text == toText(e)) return e;
+  return viz::Eye::Outside;
+}
+
+bool isOn(const Document& document, const char* name, bool otherwise) {
+  return document.option(std::string(name), otherwise ? 1.0 : 0.0) != 0;
+}
+}  // namespace
+
+int SceneOptions::viewCount() const {
+  switch (arrangement) {
+    case Arrangement::One:
+      return 1;
+    case Arrangement::SideBySide:
+    case Arrangement::Wipe:
+      return 2;
+    case Arrangement::Grid:
+      return 4;
+  }
+  return 1;
+}
+
+std::string viewOption(const char* name, int view) {
+  return std::string("scene/") + name + (view > 0 ? "-" + std::to_string(view + 1) : std::string());
+}
+
+const char* toText(Arrangement arrangement) {
+  switch (arrangement) {
+    case Arrangement::One:
+      return "1";
+    case Arrangement::SideBySide:
+      return "2";
+    case Arrangement::Grid:
+      return "4";
+    case Arrangement::Wipe:
+      return "wipe";
+  }
+  return "1";
+}
+
+const char* toText(viz::Eye eye) {
+  switch (eye) {
+    case viz::Eye::Outside:
+      return "outside";
+    case viz::Eye::Camera:
+      return "camera";
+    case viz::Eye::VirtualCamera:
+      return "virtual";
+  }
+  return "outside";
+}
+
+SceneOptions sceneOptions(const Document& document) {
+  SceneOptions o;
+  o.arrangement = arrangementOf(document.option("scene/views", kNone));
+  const bool wipe = o.arrangement == Arrangement::Wipe;
+  o.linked = wipe || isOn(document, "scene/linked", true);
+  o.wipe = std::clamp(document.option("scene/wipe", 0.5), 0.02, 0.98);
+  o.parallel = isOn(document, "scene/parallel", false);
+  o.solo = isOn(document, "scene/solo", false);
+  o.glyphScale = std::clamp(document.option("scene/glyph-scale", 1.0), 0.05, 20.0);
+  o.opacity = std::clamp(document.option("scene/photograph-opacity", 0.5), 0.0, 1.0);
+  const std::string& by = document.option("scene/colour-by", kNone);
+  o.colours.by = by == "model"   ? viz::CameraColours::By::Model
+                 : by == "error" ? viz::CameraColours::By::Error
+                                 : viz::CameraColours::By::Role;
+  o.colours.model = document.selection().model;
+  const std::vector<std::string>& all = document.request().models;
+  for (int i = 0; i < kMostSceneViews; ++i) {
+    SceneOptions::View& view = o.views[std::size_t(i)];
+    view.eye = eyeOf(document.option(viewOption("look-through", o.linked ? 0 : i), kNone));
+    const std::string& models = document.option(viewOption("models", i), kNone);
+    if (!models.empty() && models != "all")
+      view.models = {models};
+    else if (models.empty() && wipe && !all.empty())
+      view.models = {i == 0 ? all.front() : all.back()};  // something to compare
+    if (o.viewCount() == 1) continue;
+    const std::string letter(1, char('A' + i));
+    view.name = letter + (view.models.empty() ? "" : ": " + *view.models.begin());
+  }
+  return o;
+}
+
+std::string toText(const viz::ViewPoint& v) {
+  QStringList numbers;
+  for (const Eigen::Vector3d& p : {v.position, v.focalPoint, v.up})
+    for (int i = 0; i < 3; ++i) numbers << QString::number(p[i], 'g', 17);
+  numbers << QString::number(v.viewAngleDeg, 'g', 17)
+          << (v.parallel ? QStringLiteral("parallel") : QStringLiteral("perspective"));
+  return numbers.join(QLatin1Char(' ')).toStdString();
+}
+
+std::optional<viz::ViewPoint> viewPointFromText(const std::string& text) {
+  const QStringList parts = toQString(text).split(QLatin1Char(' '));
+  if (parts.size() != 11) return {};
+  std::array<double, 10> n;
+  for (int i = 0; i < 10; ++i) {
+    bool isNumber = false;
+    n[std::size_t(i)] = parts[i].toDouble(&isNumber);
+    if (!isNumber || !std::isfinite(n[std::size_t(i)])) return {};
+  }
+  viz::ViewPoint v{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {n[6], n[7], n[8]}, n[9], parts[10] == QStringLiteral("parallel")};
+  if (!(v.viewAngleDeg > 0 && v.viewAngleDeg < 180) || v.position == v.focalPoint || v.up.norm() == 0) return {};
+  return v;
+}
+
+}  // namespace glint::gui

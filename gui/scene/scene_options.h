@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "gui/document/document.h"
+
+namespace glint::gui {
+
+constexpr int kMostSceneViews = 4;
+
+/// How the 3D views lie in their widget.
+enum class Arrangement { One, SideBySide, Grid, Wipe };
+
+/// What the document's options say about the 3D views ("scene/..."), with their defaults.
+struct SceneOptions {
+  Arrangement arrangement = Arrangement::One;
+  bool linked = true;  ///< cameras move together, one eye for all; always in a wipe
+  double wipe = 0.5;   ///< where the line stands, share of the width
+  bool parallel = false, solo = false;
+  double glyphScale = 1, opacity = 0.5;
+  viz::CameraColours colours;
+  struct View {
+    viz::Eye eye = viz::Eye::Outside;
+    std::set<std::string> models;  ///< empty = all
+    std::string name;              ///< "A: dual"; "" where there is nothing to tell apart
+  };
+  std::array<View, kMostSceneViews> views;
+
+  int viewCount() const;
+};
+SceneOptions sceneOptions(const Document& document);
+
+/// "scene/NAME" for the first view, "scene/NAME-2" for the second.
+std::string viewOption(const char* name, int view);
+const char* toText(Arrangement arrangement);
+const char* toText(viz::Eye eye);
+
+/// Saved 3D cameras are options "scene/view/NAME", so that saving one is a step of undo like any other.
+extern const char* const kSavedView;
+std::string toText(const viz::ViewPoint& view);
+std::optional<viz::ViewPoint> viewPointFromText(const std::string& text);
+
+}  // namespace glint::gui

@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/scene/scene_views.h"
+
+#include <QVTKOpenGLNativeWidget.h>
+#include <vtkCallbackCommand.h>
+#include <vtkGenericOpenGLRenderWindow.h>
+#include <vtkInteractorStyleTrackballCamera.h>
+#include <vtkRenderWindowInteractor.h>
+#include <vtkRenderer.h>
+
+#include <QKeyEvent>
+#include <QMouseEvent>
+#include <QVBoxLayout>
+#include <QWheelEvent>
+#include <cmath>
+
+#include "gui/base/text.h"
+
+namespace glint::gui {
+
+namespace {
+constexpr int kStillMs = 200;        // after the last movement the surface is drawn in full
+constexpr int kPhotographPx = 4096;  // widest photograph while looking through a camera
+constexpr double kGrabPx = 6;        // about the wipe's line
+
+/// left, bottom, right, top of each view, shares of the window.
+std::array<double, 4> viewport(const SceneOptions& o, int view) {
+  switch (o.arrangement) {
+    case Arrangement::One:
+      return {0, 0, 1, 1};
+    case Arrangement::SideBySide:
+      return {0.5 * view, 0, 0.5 * (view + 1), 1};
+    case Arrangement::Grid:
+      return {0.5 * (view % 2), view < 2 ? 0.5 : 0, 0.5 * (view % 2 + 1), view < 2 ? 1 : 0.5};
+    case Arrangement::Wipe:
+      return view == 0 ? std::array<double, 4>{0, 0, o.wipe, 1} : std::array<double, 4>{o.wipe, 0, 1, 1};
+  }
+  return {0, 0, 1, 1};
+}
+}  // namespace
+
+SceneViews::SceneViews(QWidget* parent)
+    : QWidget(parent), cache_(std::make_shared<viz::LayerCache>()), photographs_(new PhotographStore(this)) {
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(0, 0, 0, 0);
+  widget_ = new QVTKOpenGLNativeWidget;
+  widget_->setObjectName(QStringLiteral("sceneView"));
+  widget_->setMinimumSize(200, 150);
+  widget_->setMouseTracking(true);
+  vtkNew<vtkGenericOpenGLRenderWindow> window;
+  viz::prepareWindow(window);
+  widget_->setRenderWindow(window);
+  vtkNew<vtkInteractorStyleTrackballCamera> style;
+  window->GetInteractor()->SetInteractorStyle(style);
+  widget_->installEventFilter(this);
+  column->addWidget(widget_);
+
+  cache_->setPhotographSource([this](int frame, int maxWidth) { return photographs_->get(frame, maxWidth); });
+  connect(photographs_, &PhotographStore::arrived, this, [this] {
+    for (auto& view : views_) view->photographsArrived();
+    fetchPhotograph();
+    scheduleRender();
+  });
+  for (auto& view : views_) view = std::make_unique<viz::SceneView>(cache_);
+
+  onRender_->SetClientData(this);
+  onRender_->SetCallback([](vtkObject*, unsigned long, void* self, void*) { static_cast<SceneViews*>(self)->syncCameras(); });
+  window->AddObserver(vtkCommand::StartEvent, onRender_);
+  onInteraction_->SetClientData(this);
+  onInteraction_->SetCallback([](vtkObject*, unsigned long event, void* data, void*) {
+    auto* self = static_cast<SceneViews*>(data);
+    if (event == vtkCommand::StartInteractionEvent) {
+      self->full_.stop();
+      self->setMoving(true);
+    } else {
+      self->full_.start();
+    }
+  });
+  style->AddObserver(vtkCommand::StartInteractionEvent, onInteraction_);
+  style->AddObserver(vtkCommand::EndInteractionEvent, onInteraction_);
+  full_.setSingleShot(true);
+  full_.setInterval(kStillMs);
+  connect(&full_, &QTimer::timeout, this, [this] {
+    if (widget_->isVisible()) renderNow();
+  });
+  arrange();
+}
+
+SceneViews::~SceneViews() {
+  widget_->renderWindow()->RemoveObserver(onRender_);
+  for (int i = 0; i < shown_; ++i) widget_->renderWindow()->RemoveRenderer(view(i).renderer());
+}
+
+void SceneViews::setScene(std::shared_ptr<const Scene> scene) {
+  photographs_->setScene(std::move(scene));
+  inspection_.reset();
+  for (auto& view : views_) view->setInspection(nullptr);
+}
+
+void SceneViews::setInspection(const std::shared_ptr<const Inspection>& inspection) {
+  inspection_ = inspection;
+  if (inspection) photographs_->setScene(inspection->scene);
+  for (int i = 0; i < shown_; ++i) view(i).setInspection(inspection);
+  fetchPhotograph();
+  scheduleRender();
+}
+
+void SceneViews::setSelection(const viz::Selection& selection) {
+  selection_ = selection;
+  for (int i = 0; i < shown_; ++i) view(i).setSelection(selection);
+  fetchPhotograph();
+  scheduleRender();
+}
+
+void SceneViews::setLayerVisible(const std::string& name, bool visible) {
+  for (auto& view : views_) view->setLayerVisible(name, visible);
+}
+
+void SceneViews::setDark(bool dark) {
+  for (auto& view : views_) view->setDarkBackground(dark);
+  scheduleRender();
+}
+
+void SceneViews::apply(const SceneOptions& options) {
+  options_ = options;
+  arrange();
+  for (int i = 0; i < kMostSceneViews; ++i) {
+    viz::SceneView& v = view(i);
+    const SceneOptions::View& o = options.views[std::size_t(i)];
+    v.setModels(o.models);
+    v.setGlyphScale(options.glyphScale);
+    v.setSolo(options.solo);
+    v.setCameraColours(options.colours);
+    v.setPhotographOpacity(options.opacity);
+    if (i >= shown_) continue;  // the others follow when they are shown
+    v.setParallel(options.parallel);
+    v.setEye(o.eye);
+  }
+  fetchPhotograph();
+  scheduleRender();
+}
+
+void SceneViews::arrange() {
+  vtkRenderWindow* window = widget_->renderWindow();
+  const int count = options_.viewCount();
+  for (int i = shown_; i < count; ++i) {
+    // A new view starts where the active one looks from.
+    view(i).setInspection(inspection_);
+    view(i).setSelection(selection_);
+    if (shown_ > 0) view(i).setViewPoint(active().viewPoint());
+    window->AddRenderer(view(i).renderer());
+  }
+  for (int i = count; i < shown_; ++i) window->RemoveRenderer(view(i).renderer());
+  shown_ = count;
+  if (active_ >= count) activate(0);
+  const bool wipe = options_.arrangement == Arrangement::Wipe;
+  for (int i = 0; i < count; ++i) {
+    const std::array<double, 4> v = viewport(options_, i);
+    view(i).renderer()->SetViewport(v[0], v[1], v[2], v[3]);
+    view(i).setPartOfWindow(wipe);
+    view(i).setLegendVisible(i == 0);
+    view(i).setFrame(count > 1 && !(wipe && i == 0), i == active_, options_.views[std::size_t(i)].name);
+  }
+}
+
+void SceneViews::fetchPhotograph() {
+  for (int i = 0; i < shown_; ++i) {
+    if (!view(i).looksThrough()) continue;
+    const viz::LayerCache::Photograph photograph = photographs_->get(selection_.frame, kPhotographPx);
+    view(i).setPhotograph(selection_.frame, photograph.texture);
+  }
+}
+
+void SceneViews::scheduleRender() {
+  // QWidget::update() would only show VTK's last picture again.
+  if (renderPending_) return;
+  renderPending_ = true;
+  QTimer::singleShot(0, this, [this] {
+    renderPending_ = false;
+    if (!widget_->isVisible()) return;
+    bool coarse = false;
+    for (int i = 0; i < shown_; ++i) coarse = coarse || view(i).hasCoarseSurface();
+    if (!coarse) return renderNow();
+    setMoving(true);
+    widget_->renderWindow()->Render();
+    full_.start();
+  });
+}
+
+void SceneViews::renderNow() {
+  setMoving(false);
+  widget_->renderWindow()->Render();
+}
+
+void SceneViews::setMoving(bool moving) {
+  for (auto& view : views_) view->setMoving(moving);
+}
+
+QString SceneViews::eyeText() const {
+  const std::size_t shown = options_.linked ? 0 : std::size_t(active_);
+  return toQString(views_[shown]->eyeText());
+}
+
+void SceneViews::syncCameras() {
+  if (!options_.linked) return;
+  const viz::ViewPoint seen = active().viewPoint();
+  for (int i = 0; i < shown_; ++i)
+    if (i != active_) view(i).setViewPoint(seen);
+}
+
+int SceneViews::viewAt(const QPointF& position) const {
+  const double x = position.x() / std::max(1, widget_->width()), y = 1 - position.y() / std::max(1, widget_->height());
+  for (int i = 0; i < shown_; ++i) {
+    const std::array<double, 4> v = viewport(options_, i);
+    if (x >= v[0] && x < v[2] && y >= v[1] && y < v[3]) return i;
+  }
+  return 0;
+}
+
+void SceneViews::activate(int view) {
+  if (view == active_) return;
+  active_ = view;
+  for (int i = 0; i < shown_; ++i)
+    this->view(i).setFrame(shown_ > 1 && !(options_.arrangement == Arrangement::Wipe && i == 0), i == active_,
+                           options_.views[std::size_t(i)].name);
+  emit activeChanged();
+  scheduleRender();
+}
+
+bool SceneViews::onWipe(const QPointF& position) const {
+  return options_.arrangement == Arrangement::Wipe && std::abs(position.x() - options_.wipe * widget_->width()) <= kGrabPx;
+}
+
+QPointF SceneViews::toDisplay(const QPointF& position) const {
+  return {position.x() * widget_->devicePixelRatioF(), (widget_->height() - position.y()) * widget_->devicePixelRatioF()};
+}
+
+bool SceneViews::mouse(QEvent* event) {
+  if (event->type() == QEvent::Wheel) {
+    const auto* wheel = static_cast<QWheelEvent*>(event);
+    const int at = viewAt(wheel->position());
+    activate(at);
+    if (!view(at).looksThrough()) return false;
+    const double factor = std::pow(1.2, wheel->angleDelta().y() / 120.0);
+    const QPointF display = toDisplay(wheel->position());
+    for (int i = 0; i < shown_; ++i)
+      if (i == at || options_.arrangement == Arrangement::Wipe) view(i).zoomPhotograph(factor, display.x(), display.y());
+    scheduleRender();
+    return true;
+  }
+  const auto* e = static_cast<QMouseEvent*>(event);
+  const QPointF at = e->localPos();
+  if (event->type() == QEvent::MouseButtonPress) {
+    pressed_ = last_ = at;
+    if (e->button() == Qt::LeftButton && onWipe(at)) {
+      drag_ = Drag::Wipe;
+      return true;
+    }
+    activate(viewAt(at));
+    drag_ = active().looksThrough() ? Drag::Photograph : Drag::Vtk;
+    return drag_ == Drag::Photograph;
+  }
+  if (event->type() == QEvent::MouseMove) {
+    if (e->buttons() == Qt::NoButton) {
+      widget_->setCursor(onWipe(at) ? Qt::SplitHCursor : Qt::ArrowCursor);
+      return false;
+    }
+    if (drag_ == Drag::Wipe) emit wipeMoved(at.x() / std::max(1, widget_->width()), false);
+    if (drag_ == Drag::Photograph) {
+      const QPointF by = toDisplay(at) - toDisplay(last_);
+      for (int i = 0; i < shown_; ++i)
+        if (i == active_ || options_.arrangement == Arrangement::Wipe) view(i).movePhotograph(by.x(), by.y());
+      scheduleRender();
+    }
+    last_ = at;
+    return drag_ == Drag::Wipe || drag_ == Drag::Photograph;
+  }
+  // Released
+  const Drag was = std::exchange(drag_, Drag::None);
+  if (was == Drag::Wipe) {
+    emit wipeMoved(at.x() / std::max(1, widget_->width()), true);
+    return true;
+  }
+  if (e->button() == Qt::LeftButton && (at - pressed_).manhattanLength() < 4) {
+    const QPointF display = toDisplay(at);
+    if (const auto hit = active().pick(int(display.x()), int(display.y()) - 1))
+      emit picked(*hit);
+    else
+      emit emptyClicked();
+  }
+  return was == Drag::Photograph;
+}
+
+bool SceneViews::eventFilter(QObject* watched, QEvent* event) {
+  if (watched != widget_) return QWidget::eventFilter(watched, event);
+  switch (event->type()) {
+    case QEvent::MouseButtonPress:
+    case QEvent::MouseButtonRelease:
+    case QEvent::MouseMove:
+    case QEvent::Wheel:
+      if (mouse(event)) return true;
+      break;
+    case QEvent::ShortcutOverride:
+      // Escape leaves the camera here; elsewhere it stops what runs.
+      if (static_cast<QKeyEvent*>(event)->key() == Qt::Key_Escape && !eyeText().isEmpty()) {
+        event->accept();
+        return true;
+      }
+      break;
+    case QEvent::KeyPress:
+      if (static_cast<QKeyEvent*>(event)->key() == Qt::Key_Escape && !eyeText().isEmpty()) {
+        emit leaveEye();
+        return true;
+      }
+      [[fallthrough]];
+    case QEvent::KeyRelease:  // VTK's own keys (wireframe, quit, ...) are not ours; the window's shortcuts come before this
+      event->ignore();
+      return true;
+    default:
+      break;
+  }
+  return QWidget::eventFilter(watched, event);
+}
+
+}  // namespace glint::gui

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vtkNew.h>
+#include <vtkSmartPointer.h>
+
+#include <QTimer>
+#include <QWidget>
+#include <array>
+#include <memory>
+
+#include "gui/scene/photograph_store.h"
+#include "gui/scene/scene_options.h"
+
+class QVTKOpenGLNativeWidget;
+class vtkCallbackCommand;
+
+namespace glint::gui {
+
+/// Up to four 3D views in one widget: arrangement, linked cameras, the wipe's line, what the mouse does. Knows no document.
+class SceneViews : public QWidget {
+  Q_OBJECT
+ public:
+  explicit SceneViews(QWidget* parent = nullptr);
+  ~SceneViews() override;
+
+  viz::SceneView& view(int index = 0) { return *views_[std::size_t(index)]; }
+  int viewCount() const { return options_.viewCount(); }
+  /// The one that was clicked last; actions on one view are about it.
+  int activeView() const { return active_; }
+  viz::SceneView& active() { return view(active_); }
+  QVTKOpenGLNativeWidget* widget() { return widget_; }
+  bool busy() const { return photographs_->busy(); }
+
+  void setScene(std::shared_ptr<const Scene> scene);
+  void setInspection(const std::shared_ptr<const Inspection>& inspection);
+  void setSelection(const viz::Selection& selection);
+  void setLayerVisible(const std::string& name, bool visible);
+  void setDark(bool dark);
+  void apply(const SceneOptions& options);
+  /// Draws soon; several changes in one turn of the event loop make one picture.
+  void scheduleRender();
+  /// Draws now, in full.
+  void renderNow();
+  /// Something that is looked through says so; else what it says is "".
+  QString eyeText() const;
+
+ signals:
+  void picked(const glint::viz::Picked& picked);
+  void emptyClicked();
+  void activeChanged();
+  void wipeMoved(double share, bool released);
+  void leaveEye();  ///< the escape key while looking through a camera
+
+ protected:
+  bool eventFilter(QObject* watched, QEvent* event) override;
+
+ private:
+  enum class Drag { None, Vtk, Wipe, Photograph };
+  void arrange();
+  void fetchPhotograph();
+  int viewAt(const QPointF& position) const;
+  void activate(int view);
+  bool onWipe(const QPointF& position) const;
+  QPointF toDisplay(const QPointF& position) const;  ///< device px, y up
+  void setMoving(bool moving);
+  void syncCameras();
+  bool mouse(QEvent* event);
+
+  std::shared_ptr<viz::LayerCache> cache_;
+  PhotographStore* photographs_;
+  std::array<std::unique_ptr<viz::SceneView>, kMostSceneViews> views_;
+  std::shared_ptr<const Inspection> inspection_;
+  viz::Selection selection_;
+  SceneOptions options_;
+  QVTKOpenGLNativeWidget* widget_;
+  vtkNew<vtkCallbackCommand> onRender_, onInteraction_;
+  QTimer full_;  ///< draws in full when nothing moved for a while
+  QPointF pressed_, last_;
+  Drag drag_ = Drag::None;
+  int active_ = 0, shown_ = 0;
+  bool renderPending_ = false;
+};
+
+}  // namespace glint::gui

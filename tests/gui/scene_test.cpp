@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The 3D views with real clicks and keys: what is set is an option of the document, one step of undo, and seen in the views.
+#include <QVTKOpenGLNativeWidget.h>
+#include <vtkRenderer.h>
+
+#include <QAction>
+#include <QImage>
+#include <QLabel>
+#include <QMenu>
+#include <QSlider>
+#include <QToolButton>
+#include <QWheelEvent>
+#include <cmath>
+
+#include "gui/base/text.h"
+#include "gui/scene/scene_panel.h"
+#include "gui/scene/scene_views.h"
+#include "tests/gui/fixture.h"
+
+namespace glint::gui {
+
+class SceneTest : public QObject {
+  Q_OBJECT
+ private slots:
+  void init() {
+    document_ = std::make_unique<Document>(parseTrainSpec);
+    panel_ = std::make_unique<ScenePanel>(*document_);
+    actions_ = std::make_unique<Actions>();
+    menu_ = std::make_unique<QMenu>();
+    panel_->addActions(*actions_, menu_.get());
+    document_->open(spread());
+    auto inspection = std::make_shared<Inspection>(drawnCircles(document_->sharedScene(), document_->request()));
+    inspection->surfaces = std::make_shared<SurfaceCache>(*document_->sharedScene());
+    document_->setInspection(inspection, document_->request());
+    panel_->resize(900, 600);
+    panel_->show();
+    QVERIFY(QTest::qWaitForWindowExposed(panel_.get()));
+    settle();
+  }
+  void cleanup() {
+    panel_.reset();
+    menu_.reset();
+    actions_.reset();
+  }
+
+  void lookingThroughACameraHasABadgeAndThreeWaysBack() {
+    const viz::ViewPoint outside = panel_->view().viewPoint();
+    auto* bar = panel_->findChild<QWidget*>(QStringLiteral("eyeBar"));
+    QVERIFY(bar->isHidden());
+    document_->selectFrame(7);
+    for (int way = 0; way < 3; ++way) {
+      trigger("view.look-through");
+      QVERIFY(panel_->view().looksThrough());
+      QVERIFY(bar->isVisible());
+      QCOMPARE(panel_->findChild<QLabel*>(QStringLiteral("eyeText"))->text(), QStringLiteral("through camera 0007"));
+      QVERIFY(actions_->find("view.look-through")->isChecked());
+      if (way == 0) {
+        views().widget()->setFocus();
+        QTest::keyClick(views().widget(), Qt::Key_Escape);
+      } else if (way == 1) {
+        QTest::mouseClick(panel_->findChild<QToolButton*>(QStringLiteral("leaveEye")), Qt::LeftButton);
+      } else {
+        trigger("view.look-through");
+      }
+      QVERIFY(!panel_->view().looksThrough());
+      QVERIFY(bar->isHidden());
+      QVERIFY((panel_->view().viewPoint().position - outside.position).norm() < 1e-9);
+    }
+    document_->undoStack()->undo();
+    QVERIFY(panel_->view().looksThrough());
+    document_->selectFrame(3);  // it follows the frames
+    QCOMPARE(panel_->findChild<QLabel*>(QStringLiteral("eyeText"))->text(), QStringLiteral("through camera 0003"));
+  }
+
+  /// The photograph of the fixture is one colour per frame: red 10 + 5 i.
+  void thePhotographIsDrawnOverTheSceneWithItsOpacity() {
+    for (const viz::Layer& layer : viz::sceneLayers()) document_->setLayerVisible(layer.name, layer.title, false);
+    document_->selectFrame(9);
+    trigger("view.look-through");
+    document_->setOption("scene/photograph-opacity", 1.0, "opacity");
+    QTRY_VERIFY(!views().busy());
+    settle();
+    const QPoint middle(views().widget()->width() / 2, views().widget()->height() / 2);
+    QCOMPARE(qRed(picture().pixel(middle)), 55);
+    auto* slider = panel_->findChild<QSlider*>(QStringLiteral("photographOpacity"));
+    QCOMPARE(slider->value(), 100);
+    const int steps = document_->undoStack()->count();
+    emit slider->sliderPressed();  // a drag
+    slider->setValue(70);
+    slider->setValue(30);
+    slider->setValue(0);
+    emit slider->sliderReleased();
+    QCOMPARE(document_->undoStack()->count(), steps + 1);
+    settle();
+    QVERIFY(qRed(picture().pixel(middle)) < 40);  // the background
+    document_->undoStack()->undo();
+    QCOMPARE(slider->value(), 100);
+  }
+
+  void theWheelEnlargesAtThePointerAndADragMoves() {
+    trigger("view.look-through");
+    settle();
+    const Eigen::Vector2d before = *panel_->view().displayOf(80, 60);
+    const double ratio = views().widget()->devicePixelRatioF();
+    const QPointF at(before.x() / ratio, views().widget()->height() - before.y() / ratio);
+    QWheelEvent wheel(at, views().widget()->mapToGlobal(at.toPoint()), {}, {0, 240}, Qt::NoButton, Qt::NoModifier,
+                      Qt::NoScrollPhase, false);
+    QCoreApplication::sendEvent(views().widget(), &wheel);
+    settle();
+    QVERIFY((*panel_->view().displayOf(80, 60) - before).norm() < 1e-6);
+    const double grown = (*panel_->view().displayOf(90, 60) - before).norm();
+    drag(views().widget(), {QPoint(300, 300), QPoint(320, 290), QPoint(340, 280)});
+    settle();
+    const Eigen::Vector2d moved = *panel_->view().displayOf(80, 60) - before;
+    QVERIFY(std::abs(moved.x() - 40 * ratio) < 1e-6 && std::abs(moved.y() - 20 * ratio) < 1e-6);
+    QVERIFY(grown > 1);
+    QVERIFY(panel_->view().looksThrough());
+  }
+
+  void axisViewsKeepTheirDirectionsAndParallelIsAnOption() {
+    trigger("view.axis-top");
+    settle();
+    const viz::ViewPoint top = panel_->view().viewPoint();
+    trigger("view.axis-bottom");
+    const viz::ViewPoint bottom = panel_->view().viewPoint();
+    const Eigen::Vector3d a = (top.position - top.focalPoint).normalized(),
+                          b = (bottom.position - bottom.focalPoint).normalized();
+    QVERIFY((a + b).norm() < 1e-9);
+    QVERIFY(std::abs(a.cwiseAbs().maxCoeff() - 1) < 1e-9);  // along an axis
+    trigger("view.parallel");
+    QVERIFY(panel_->view().parallel());
+    QCOMPARE(document_->option("scene/parallel", std::string()), std::string("1"));
+    document_->undoStack()->undo();
+    QVERIFY(!panel_->view().parallel());
+  }
+
+  void keptViewsComeBack() {
+    trigger("view.axis-left");
+    trigger("view.parallel");
+    const viz::ViewPoint kept = panel_->view().viewPoint();
+    trigger("view.save-view");
+    QCOMPARE(panel_->savedViews(), QStringList{"View 1"});
+    trigger("view.parallel");
+    trigger("view.axis-top");
+    trigger("view.save-view");
+    QCOMPARE(panel_->savedViews(), (QStringList{"View 1", "View 2"}));
+    panel_->goToView("View 1");
+    QVERIFY((panel_->view().viewPoint().position - kept.position).norm() < 1e-9);
+    QVERIFY(panel_->view().parallel());
+    trigger("view.next-view");
+    QVERIFY((panel_->view().viewPoint().position - kept.position).norm() > 0.1);
+    panel_->removeView("View 1");
+    QCOMPARE(panel_->savedViews(), QStringList{"View 2"});
+    document_->undoStack()->undo();
+    QCOMPARE(panel_->savedViews().size(), 2);
+    QVERIFY(!viewPointFromText("1 2 3"));
+    QVERIFY(!viewPointFromText("1 2 3 4 5 6 7 8 nan 30 parallel"));
+  }
+
+  void linkedViewsMoveTogetherAndUnlinkedOnesDoNot() {
+    trigger("view.views-4");
+    QCOMPARE(views().viewCount(), 4);
+    settle();
+    trigger("view.axis-right");
+    settle();
+    for (int i = 1; i < 4; ++i)
+      QVERIFY((views().view(i).viewPoint().position - views().view(0).viewPoint().position).norm() < 1e-9);
+    trigger("view.link-views");
+    QTest::mouseClick(views().widget(), Qt::LeftButton, {},
+                      {views().widget()->width() * 3 / 4, views().widget()->height() * 3 / 4});
+    QCOMPARE(views().activeView(), 3);
+    trigger("view.axis-top");
+    settle();
+    QVERIFY((views().view(3).viewPoint().position - views().view(0).viewPoint().position).norm() > 0.1);
+    trigger("view.look-through");  // of the active view only
+    QVERIFY(views().view(3).looksThrough());
+    QVERIFY(!views().view(0).looksThrough());
+    trigger("view.next-models");
+    QVERIFY(!sceneOptions(*document_).views[3].models.empty());
+    QVERIFY(sceneOptions(*document_).views[0].models.empty());
+    trigger("view.views-1");
+    QCOMPARE(views().viewCount(), 1);
+    QCOMPARE(views().activeView(), 0);
+  }
+
+  void theWipesLineIsDragged() {
+    trigger("view.views-wipe");
+    settle();
+    const SceneOptions options = sceneOptions(*document_);
+    QVERIFY(options.views[0].models != options.views[1].models);
+    const int width = views().widget()->width(), steps = document_->undoStack()->count();
+    drag(views().widget(), {QPoint(width / 2, 200), QPoint(width / 2 - 50, 210), QPoint(width / 4, 220)});
+    QVERIFY(std::abs(sceneOptions(*document_).wipe - 0.25) < 0.01);
+    QCOMPARE(document_->undoStack()->count(), steps + 1);
+    QVERIFY(std::abs(views().view(1).renderer()->GetViewport()[0] - 0.25) < 0.01);
+    document_->undoStack()->undo();
+    QCOMPARE(sceneOptions(*document_).wipe, 0.5);
+  }
+
+  void glyphSizeColoursAndSoloAreStepsOfUndo() {
+    auto* slider = panel_->findChild<QSlider*>(QStringLiteral("glyphScale"));
+    settle();
+    const QImage first = picture();
+    emit slider->sliderPressed();
+    for (int i = 1; i <= 12; ++i) slider->setValue(i);
+    emit slider->sliderReleased();
+    QCOMPARE(document_->undoStack()->count(), 1);
+    settle();
+    QVERIFY(picture() != first);
+    document_->undoStack()->undo();
+    settle();
+    QCOMPARE(slider->value(), 0);
+    QVERIFY(picture() == first);
+    trigger("view.colour-error");
+    settle();
+    QVERIFY(picture() != first);
+    QVERIFY(actions_->find("view.colour-error")->isChecked() && !actions_->find("view.colour-role")->isChecked());
+    trigger("view.colour-error");  // one of the three stays on
+    QVERIFY(actions_->find("view.colour-error")->isChecked());
+    document_->undoStack()->undo();
+    trigger("view.solo");
+    settle();
+    QVERIFY(picture() != first);
+    document_->undoStack()->undo();
+    settle();
+    QVERIFY(picture() == first);
+  }
+
+  void aClickOnACameraSelectsItsFrame() {
+    for (const viz::Layer& layer : viz::sceneLayers())
+      document_->setLayerVisible(layer.name, layer.title, layer.name == "cameras");
+    settle();
+    const Eigen::Vector3d eye = document_->scene()->frames[8].camera.centreInWorld();
+    vtkRenderer* renderer = panel_->view().renderer();
+    renderer->SetWorldPoint(eye.x(), eye.y(), eye.z(), 1);
+    renderer->WorldToDisplay();
+    const double ratio = views().widget()->devicePixelRatioF();
+    const QPoint at(int(renderer->GetDisplayPoint()[0] / ratio),
+                    views().widget()->height() - 1 - int(renderer->GetDisplayPoint()[1] / ratio));
+    QTest::mouseClick(views().widget(), Qt::LeftButton, {}, at);
+    QCOMPARE(document_->selection().frame, 8);
+  }
+
+  void aClickOnAContourSelectsItsDirection() {
+    for (const viz::Layer& layer : viz::sceneLayers())
+      document_->setLayerVisible(layer.name, layer.title, layer.name == "observed-contours");
+    document_->selectFrame(2);
+    trigger("view.look-through");
+    settle();
+    constexpr double kDirection = 0.7;
+    const Pixel pixel = Fixture::centre(2) + Fixture::kRadius * Pixel(std::cos(kDirection), std::sin(kDirection));
+    const Eigen::Vector2d display = *panel_->view().displayOf(pixel.x(), pixel.y());
+    const double ratio = views().widget()->devicePixelRatioF();
+    QTest::mouseClick(views().widget(), Qt::LeftButton, {},
+                      {int(display.x() / ratio), views().widget()->height() - 1 - int(display.y() / ratio)});
+    QCOMPARE(document_->selection().frame, 2);
+    QCOMPARE(document_->selection().highlight, 0);
+    QCOMPARE(document_->selection().light, std::string("lamp"));
+    QVERIFY(document_->selection().direction);
+    QVERIFY(std::abs(*document_->selection().direction - kDirection) < 0.06);
+  }
+
+  void everyActionCanBeUndoneToTheFirstState() {
+    const ViewState first = document_->state();
+    for (QAction* action : actions_->all()) {
+      action->trigger();
+      QCoreApplication::processEvents();
+    }
+    settle();
+    while (document_->undoStack()->canUndo()) document_->undoStack()->undo();
+    QVERIFY(document_->state().options == first.options);
+    QVERIFY(document_->state().selection == first.selection);
+    settle();
+  }
+
+ private:
+  /// The fixture's scene with its cameras side by side, so that they can be told apart.
+  Opened spread() {
+    Opened opened = fixture_.opened();
+    auto scene = std::make_shared<Scene>(*opened.scene);
+    for (std::size_t i = 0; i < scene->frames.size(); ++i)
+      scene->frames[i].camera.camFromWorld = Eigen::Translation3d(0.25 * (double(i) - 2), 0, 2);
+    opened.scene = scene;
+    return opened;
+  }
+  SceneViews& views() { return panel_->views(); }
+  void trigger(const char* id) {
+    QAction* action = actions_->find(QLatin1String(id));
+    QVERIFY2(action, id);
+    action->trigger();
+    QCoreApplication::processEvents();
+  }
+  /// Draws what is wanted, with every photograph.
+  void settle() {
+    QCoreApplication::processEvents();
+    QTRY_VERIFY(!views().busy());
+    QCoreApplication::processEvents();
+    panel_->renderNow();
+  }
+  QImage picture() {
+    panel_->renderNow();
+    return views().widget()->grab().toImage();
+  }
+
+  Fixture fixture_;
+  std::unique_ptr<Document> document_;
+  std::unique_ptr<Actions> actions_;
+  std::unique_ptr<QMenu> menu_;
+  std::unique_ptr<ScenePanel> panel_;
+};
+
+QObject* makeSceneTest() { return new SceneTest; }
+
+}  // namespace glint::gui
+
+#include "scene_test.moc"

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viz/camera_colours.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "viz/frame_overlay.h"
+
+namespace glint::viz {
+
+Colour errorColour(double errorPct) {
+  if (!std::isfinite(errorPct)) return kHeldOut;
+  static constexpr std::array<Colour, 5> stops{
+      {{0.27, 0.50, 0.90}, {0.25, 0.72, 0.72}, {0.85, 0.80, 0.30}, {0.95, 0.53, 0.15}, {0.80, 0.13, 0.22}}};
+  const double share = std::log(std::max(errorPct, kLeastErrorPct) / kLeastErrorPct) / std::log(kMostErrorPct / kLeastErrorPct);
+  const double at = std::clamp(share, 0.0, 1.0) * (stops.size() - 1);
+  const std::size_t i = std::min(static_cast<std::size_t>(at), stops.size() - 2);
+  Colour colour;
+  for (std::size_t c = 0; c < 3; ++c) colour[c] = stops[i][c] + (at - static_cast<double>(i)) * (stops[i + 1][c] - stops[i][c]);
+  return colour;
+}
+
+ColourBar errorBar(const std::string& model) {
+  ColourBar bar;
+  bar.title = model + ": contour error";
+  constexpr int kSteps = 48;
+  for (int i = 0; i < kSteps; ++i)
+    bar.colours.push_back(errorColour(kLeastErrorPct * std::pow(kMostErrorPct / kLeastErrorPct, (i + 0.5) / kSteps)));
+  bar.ticks = {{0, "0.01"}, {0.25, "0.1"}, {0.5, "1"}, {0.75, "10"}, {1, "100 %"}};
+  return bar;
+}
+
+std::string errorModel(const LayerInput& in) {
+  const std::string& wanted = in.colours.model;
+  if (std::find(in.models.begin(), in.models.end(), wanted) != in.models.end()) return wanted;
+  return in.models.empty() ? std::string() : in.models.back();
+}
+
+CameraColour cameraColour(const LayerInput& in, int frame) {
+  if (in.colours.by == CameraColours::By::Model) {
+    std::string best;
+    double least = 0;
+    for (const std::string& model : in.models) {
+      const FrameScore score = frameScore(in.inspection->models.at(model), frame);
+      if (!score.errorPct || (!best.empty() && *score.errorPct >= least)) continue;
+      best = model;
+      least = *score.errorPct;
+    }
+    return best.empty() ? CameraColour{kHeldOut, "no prediction"} : CameraColour{modelColour(best), "best: " + best};
+  }
+  if (in.colours.by == CameraColours::By::Error) {
+    const std::string model = errorModel(in);
+    if (model.empty()) return {kHeldOut, ""};
+    const FrameScore score = frameScore(in.inspection->models.at(model), frame);
+    return {errorColour(score.errorPct ? *score.errorPct : std::nan("")), ""};
+  }
+  if (in.inspection->isTraining(frame)) return {kTraining, "training camera"};
+  if (in.inspection->isHeldOut(frame)) return {kHeldOut, "held-out camera"};
+  return {kExcluded, "excluded camera"};
+}
+
+}  // namespace glint::viz

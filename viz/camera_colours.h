@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "viz/annotations.h"
+#include "viz/layers.h"
+
+namespace glint::viz {
+
+/// Errors have one absolute scale, so that a colour means the same in every scene: logarithmic from 0.01 to 100 %.
+constexpr double kLeastErrorPct = 0.01, kMostErrorPct = 100;
+/// Blue (small) over yellow to red (large), told apart by the colour-blind and on dark and light grounds. NaN is grey.
+Colour errorColour(double errorPct);
+
+ColourBar errorBar(const std::string& model);
+
+/// Colour of a camera, and what it stands for in the legend ("training", "dual"; empty on a scale).
+struct CameraColour {
+  Colour colour;
+  std::string meaning;
+};
+/// Role: training, held-out, excluded. Model: the one that predicted this frame best. Error: of `in.colours.model`, or where
+/// that is empty the richest one that is shown; grey where there is none.
+CameraColour cameraColour(const LayerInput& in, int frame);
+/// The model whose error colours the cameras; "" without models.
+std::string errorModel(const LayerInput& in);
+
+}  // namespace glint::viz

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viz/scene_legend.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <string_view>
+
+#include "viz/frame_overlay.h"
+
+namespace glint::viz {
+namespace {
+
+std::string useOf(const Inspection& inspection, int frame) {
+  return inspection.isTraining(frame) ? "training" : inspection.isHeldOut(frame) ? "held out" : "excluded";
+}
+
+void addCameras(SceneLegend& legend, const LayerInput& in) {
+  if (in.colours.by == CameraColours::By::Error) {
+    const std::string model = errorModel(in);
+    if (!model.empty()) legend.bar = errorBar(model);
+    return;
+  }
+  std::vector<CameraColour> kinds;
+  for (const int frame : in.frames) {
+    const CameraColour c = cameraColour(in, frame);
+    if (std::none_of(kinds.begin(), kinds.end(), [&](const CameraColour& k) { return k.meaning == c.meaning; }))
+      kinds.push_back(c);
+  }
+  if (in.colours.by == CameraColours::By::Role)
+    std::sort(kinds.begin(), kinds.end(), [](const CameraColour& a, const CameraColour& b) { return a.meaning > b.meaning; });
+  for (const CameraColour& kind : kinds) legend.entries.push_back({kind.colour, kind.meaning});
+}
+
+}  // namespace
+
+SceneLegend legendOf(const LayerInput& in, const std::vector<ShownLayer>& layers) {
+  SceneLegend legend;
+  const std::vector<Layer>& names = sceneLayers();
+  const auto shown = [&](std::string_view name) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (names[i].name == name) return layers[i].visible;
+    }
+    return false;
+  };
+  const auto drawn = [&](std::string_view name) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (names[i].name == name) return layers[i].visible && !layers[i].content->drawn.empty();
+    }
+    return false;
+  };
+  if (drawn("cameras")) addCameras(legend, in);
+  if (drawn("virtual-cameras") || drawn("tangent-planes"))
+    legend.entries.push_back({kVirtualCamera, "virtual camera, tangent plane"});
+  if (drawn("observed-contours")) legend.entries.push_back({kObserved, "observed contour"});
+  if (drawn("light")) legend.entries.push_back({kLightColour, "light, estimated"});
+  if (drawn("true-light")) legend.entries.push_back({kTruth, "light, truth"});
+  if (shown("predicted-contours") || shown("ellipsoids")) {
+    for (const std::string& model : in.models) {
+      const FrameScore score = frameScore(in.inspection->models.at(model), in.selection.frame);
+      char error[32] = "";
+      if (score.errorPct) std::snprintf(error, sizeof error, "  %.2f %%", *score.errorPct);
+      legend.entries.push_back({modelColour(model), model + error, true});
+      if (!score.errorPct && !score.reason.empty()) legend.notes.push_back(model + ": " + score.reason);
+    }
+  }
+  for (const ShownLayer& layer : layers) {
+    if (!layer.visible) continue;
+    legend.notes.insert(legend.notes.end(), layer.content->notes.begin(), layer.content->notes.end());
+    legend.remarks.insert(legend.remarks.end(), layer.content->remarks.begin(), layer.content->remarks.end());
+  }
+  legend.title = in.inspection->scene->name + ", frame " + in.frame(in.selection.frame).id + " (" +
+                 useOf(*in.inspection, in.selection.frame) + ")";
+  return legend;
+}
+
+}  // namespace glint::viz

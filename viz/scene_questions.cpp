@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viz/scene_questions.h"
+
+#include <vtkCamera.h>
+#include <vtkCellPicker.h>
+#include <vtkRenderer.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/light/light.h"
+#include "core/surface/brightest_point.h"
+
+namespace glint::viz {
+
+void addFrustum(const LayerInput& in, std::vector<Eigen::Vector3d>& points, int frame) {
+  points.push_back(in.frame(frame).camera.centreInWorld());
+  for (const Eigen::Vector3d& corner : imagePlane(in.frame(frame).camera, in.scale.cameraDepth)) points.push_back(corner);
+}
+
+std::vector<Eigen::Vector3d> selectedExtent(const LayerInput& in) {
+  std::vector<Eigen::Vector3d> points;
+  const int frame = in.selection.frame;
+  const Camera& camera = in.frame(frame).camera;
+  const auto at = static_cast<std::size_t>(frame);
+  static const std::vector<Highlight> kNone;
+  const std::vector<Highlight>& highlights = at < in.inspection->evidence.size() ? in.inspection->evidence[at].highlights : kNone;
+  const auto addContour = [&](const Highlight& h) {
+    if (!in.surface) return;
+    for (const Points& chain : castContour(camera, *in.surface, h.contour, in.scale, 0))
+      points.insert(points.end(), chain.begin(), chain.end());
+  };
+  if (in.selection.highlight >= 0 && in.selection.highlight < static_cast<int>(highlights.size()))
+    addContour(highlights[static_cast<std::size_t>(in.selection.highlight)]);
+  if (!points.empty()) return points;
+  if (!in.selection.model.empty()) {
+    for (const ModelFit* fit : in.fits(in.selection.model)) {
+      if (!fit->ellipsoid || fit->ellipsoid->semiAxes().maxCoeff() > 20 * in.scale.sceneSize) continue;
+      const Eigen::Matrix3d axes = fit->ellipsoid->worldFromBody().linear() * fit->ellipsoid->semiAxes().asDiagonal();
+      for (int i = 0; i < 6; ++i) points.push_back(fit->ellipsoid->centre() + (i % 2 ? -1 : 1) * axes.col(i / 2));
+    }
+  }
+  if (!points.empty()) return points;
+  addFrustum(in, points, frame);
+  for (const Highlight& h : highlights) addContour(h);
+  return points;
+}
+
+Eigen::Vector3d upwards(const LayerInput& in, const std::vector<int>& frames) {
+  Eigen::Vector3d up = Eigen::Vector3d::Zero(), eyes = Eigen::Vector3d::Zero();
+  for (const int frame : frames) {
+    up -= in.frame(frame).camera.camFromWorld.linear().row(1).transpose();
+    eyes += in.frame(frame).camera.centreInWorld();
+  }
+  const double n = static_cast<double>(frames.size());
+  up /= n;
+  if (up.norm() < 0.2) up = eyes / n - in.scale.surfaceBox.center();
+  if (up.norm() < 1e-9 * in.scale.sceneSize) up = Eigen::Vector3d::UnitZ();
+  // Scenes are modelled with an axis upwards more often than not: snap to it.
+  Eigen::Index axis = 0;
+  up.normalize();
+  if (up.cwiseAbs().maxCoeff(&axis) > 0.8) up = Eigen::Vector3d::Unit(axis) * (up[axis] > 0 ? 1 : -1);
+  return up;
+}
+
+Eigen::Vector3d overviewDirection(const LayerInput& in, const std::vector<int>& frames, const Eigen::Vector3d& up) {
+  Eigen::Vector3d eyes = Eigen::Vector3d::Zero();
+  for (const int frame : frames) eyes += in.frame(frame).camera.centreInWorld();
+  eyes /= static_cast<double>(frames.size());
+  // From above the highlights, a little aside of the cameras: then neither the surface nor the frustums hide what matters.
+  Eigen::Vector3d normals = Eigen::Vector3d::Zero();
+  for (const TrainingView& view : in.inspection->views) {
+    if (view.brightest && view.tangentPlane) normals += facing(view.brightest->point, view.camera.centreInWorld()).normal;
+  }
+  const Eigen::Vector3d towardsCameras = eyes - in.scale.surfaceBox.center();
+  Eigen::Vector3d towards = normals.norm() > 0.1 ? normals.normalized() : towardsCameras.normalized();
+  const double height = up.dot(towards);
+  Eigen::Vector3d flat = towards - height * up;
+  if (flat.norm() < 0.1) {  // highlights on top: the cameras' side then, else any
+    flat = towardsCameras - up.dot(towardsCameras) * up;
+    if (flat.norm() < 0.05 * in.scale.sceneSize) flat = tangentBasis(up).col(0);
+  }
+  const double elevation = std::clamp(std::atan2(height, flat.norm()), 0.25, 0.6);
+  const double side = up.dot(flat.cross(towardsCameras)) > 0 ? -1 : 1;  // away from the cameras
+  flat = Eigen::AngleAxisd(0.6 * side, up) * flat.normalized();
+  return std::cos(elevation) * flat + std::sin(elevation) * up;
+}
+
+void addDirection(const LayerInput& in, Picked& picked) {
+  if (picked.layer != "observed-contours" && picked.layer != "predicted-contours") return;
+  const auto frame = static_cast<std::size_t>(picked.frame);
+  if (picked.frame < 0 || frame >= in.inspection->evidence.size()) return;
+  const std::vector<Highlight>& highlights = in.inspection->evidence[frame].highlights;
+  if (picked.highlight < 0 || picked.highlight >= static_cast<int>(highlights.size())) return;
+  const Camera& camera = in.frame(picked.frame).camera;
+  const std::optional<Pixel> pixel = camera.project(picked.position);
+  if (!pixel) return;
+  picked.direction = directionOf(camera, highlights[static_cast<std::size_t>(picked.highlight)], *pixel);
+  picked.text += line("direction", *picked.direction * 180 / std::numbers::pi, "deg");
+}
+Picked surfaceInfo(const LayerInput& in, const SurfacePoint& hit) {
+  const Camera& camera = in.frame(in.selection.frame).camera;
+  const Eigen::Vector3d eye = camera.centreInWorld();
+  const SurfacePoint p = facing(hit, eye);
+  Picked info;
+  info.layer = "surface";
+  info.frame = in.selection.frame;
+  info.position = p.position;
+  info.text = line("frame", in.frame(in.selection.frame).id) + line("P", p.position, "m") + line("N", p.normal);
+  if (const std::optional<Pixel> pixel = camera.project(p.position))
+    info.text += line("pixel x", pixel->x(), "px") + line("pixel y", pixel->y(), "px");
+  const Eigen::Vector3d toCamera = (eye - p.position).normalized();
+  info.text += line("view angle", std::acos(std::clamp(p.normal.dot(toCamera), -1.0, 1.0)) * 180 / std::numbers::pi, "deg");
+  for (const auto& [key, estimate] : in.inspection->lights) {
+    const std::size_t at = key.find('@');
+    if (at != std::string::npos && key.substr(at + 1) != in.surfaceKey) continue;
+    const double alpha = incidentAngle(p.normal, estimate.light.directionFrom(p.position), toCamera);
+    if (std::isfinite(alpha)) info.text += line("alpha (" + key.substr(0, at) + ")", alpha * 180 / std::numbers::pi, "deg");
+  }
+  const Outcome<Curvature> curvature = in.surface->curvatureAt(hit);
+  if (curvature) info.text += line("k1", curvature->k1, "1/m") + line("k2", curvature->k2, "1/m");
+  if (hit.element >= 0) info.text += line("triangle", std::to_string(hit.element));
+  return info;
+}
+
+std::optional<Picked> pickIn(vtkRenderer* renderer, const LayerInput& in, const std::vector<const Drawn*>& drawn,
+                             bool surfaceShown, int xDisplay, int yDisplay) {
+  const auto worldAt = [&](double depth) {
+    renderer->SetDisplayPoint(xDisplay, yDisplay, depth);
+    renderer->DisplayToWorld();
+    double w[4];
+    renderer->GetWorldPoint(w);
+    return Eigen::Vector3d(toEigen(w) / w[3]);
+  };
+  vtkCamera* camera = renderer->GetActiveCamera();
+  const Eigen::Vector3d eye = camera->GetParallelProjection() ? worldAt(0) : toEigen(camera->GetPosition()), beyond = worldAt(1);
+  const Ray ray{eye, (beyond - eye).normalized()};
+  if (!ray.origin.allFinite() || !ray.direction.allFinite()) return {};
+
+  std::optional<Picked> result;
+  double nearest = std::numeric_limits<double>::infinity();
+  if (surfaceShown && in.surface && !in.eyeMirror) {
+    const Outcome<SurfacePoint> hit = in.surface->firstHit(ray);
+    if (hit) {
+      result = surfaceInfo(in, *hit);
+      nearest = (hit->position - eye).norm();
+    }
+  }
+  vtkNew<vtkCellPicker> picker;
+  picker->SetTolerance(0.004);
+  picker->PickFromListOn();
+  for (const Drawn* d : drawn) {
+    if (d->pickable) picker->AddPickList(d->prop);
+  }
+  if (!picker->Pick(xDisplay, yDisplay, 0, renderer)) return result;
+  const Eigen::Vector3d at = toEigen(picker->GetPickPosition());
+  // What lies on the surface is picked before the surface itself.
+  if ((at - eye).norm() > nearest + 10 * in.scale.lift) return result;
+  for (const Drawn* d : drawn) {
+    if (d->prop.Get() != picker->GetProp3D()) continue;
+    result = d->describe ? d->describe(picker->GetCellId()) : d->info;
+    result->position = at;
+    addDirection(in, *result);
+    break;
+  }
+  return result;
+}
+
+}  // namespace glint::viz

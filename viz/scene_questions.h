@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "viz/layers.h"
+
+namespace glint::viz {
+
+/// What the 3D view asks about the scene that it shows: where things are, and what lies under the mouse. World units.
+
+/// Centre and image corners of a drawn camera.
+void addFrustum(const LayerInput& in, std::vector<Eigen::Vector3d>& points, int frame);
+/// The selected highlight on the surface, else the selected model's ellipsoids, else the selected camera with its highlights;
+/// never empty.
+std::vector<Eigen::Vector3d> selectedExtent(const LayerInput& in);
+/// The world's upward direction as the cameras have it; a signed axis where it is near one. @param frames  not empty.
+Eigen::Vector3d upwards(const LayerInput& in, const std::vector<int>& frames);
+/// From the scene towards an eye that sees the highlights with neither the surface nor the frustums before them; unit.
+Eigen::Vector3d overviewDirection(const LayerInput& in, const std::vector<int>& frames, const Eigen::Vector3d& up);
+
+/// Numbers of a surface point, for the selected frame's camera.
+Picked surfaceInfo(const LayerInput& in, const SurfacePoint& hit);
+/// A picked point of a contour is a direction from the observed one: fills Picked::direction.
+void addDirection(const LayerInput& in, Picked& picked);
+
+/// What lies under a window pixel (y up): the surface exactly, everything else by its actors, and what lies on the surface before
+/// the surface itself. @param drawn  of the visible layers. @param surfaceShown  through a virtual camera it is not asked.
+std::optional<Picked> pickIn(vtkRenderer* renderer, const LayerInput& in, const std::vector<const Drawn*>& drawn,
+                             bool surfaceShown, int xDisplay, int yDisplay);
+
+}  // namespace glint::viz
