@@ -95,7 +95,7 @@ Image scenePicture(const RenderArguments& a, const std::shared_ptr<const Inspect
     view.lookThrough(frame);
   } else if (camera != saved.cameras.end()) {
     const SessionCamera& c = camera->second;
-    view.setViewPoint({c.position, c.focalPoint, c.up, c.viewAngleDeg});
+    view.setViewPoint({c.position, c.focalPoint, c.up, c.viewAngleDeg, c.parallel});
   }
   return (*target)->render(view);
 }

@@ -305,7 +305,7 @@ struct Annotations::Impl {
     for (auto& text : scaleTexts) text->SetVisibility(scale.has_value());
     for (auto& step : barSteps) step->actor->SetVisibility(scale.has_value());
     if (!scale) return;
-    const double length = std::min(15 * font, 0.5 * width), x0 = width - 1.8 * font - length, y = 5.4 * font;
+    const double length = std::min(15 * font, 0.5 * width), x0 = width - 3 * font - length, y = 5.4 * font;
     const double step = length / static_cast<double>(barSteps.size());
     for (std::size_t i = 0; i < barSteps.size(); ++i) {
       Strokes& s = *barSteps[i];

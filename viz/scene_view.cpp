@@ -397,7 +397,7 @@ void SceneView::setInspection(std::shared_ptr<const Inspection> inspection) {
   const bool newScene =
       !impl_->inspection || !inspection || inspection->given != impl_->inspection->given;  // not that of a what-if
   if (newScene) {
-    impl_->cache->follow(inspection ? inspection->scene : nullptr);
+    impl_->cache->follow(inspection ? inspection->given : nullptr);
     if (impl_->input.eye != Eye::Outside) viz::setViewPoint(impl_->renderer->GetActiveCamera(), impl_->outside);
     impl_->input = {};
     impl_->photographFrame = -1;

@@ -121,6 +121,7 @@ SessionView readView(const JsonNode& node) {
       const JsonNode c = n->at(key);
       SessionCamera camera{c.at("position").vector3(), c.at("focal_point").vector3(), c.at("up").vector3(),
                            c.at("view_angle_deg").number()};
+      if (const auto parallel = c.find("parallel")) camera.parallel = parallel->boolean();
       if (!(camera.viewAngleDeg > 0 && camera.viewAngleDeg < 180)) c.at("view_angle_deg").fail("must lie between 0 and 180");
       view.cameras[key] = camera;
     }
@@ -215,11 +216,14 @@ void writeSession(const Session& session, const fs::path& file) {
 
   const SessionView& v = session.view;
   root["view"] = {{"layout", v.layout}, {"layers", v.layers}, {"options", v.options}, {"cameras", Json::object()}};
-  for (const auto& [name, c] : v.cameras)
-    root["view"]["cameras"][name] = {{"position", toJson(c.position)},
-                                     {"focal_point", toJson(c.focalPoint)},
-                                     {"up", toJson(c.up)},
-                                     {"view_angle_deg", c.viewAngleDeg}};
+  for (const auto& [name, c] : v.cameras) {
+    Json& camera = root["view"]["cameras"][name];
+    camera = {{"position", toJson(c.position)},
+              {"focal_point", toJson(c.focalPoint)},
+              {"up", toJson(c.up)},
+              {"view_angle_deg", c.viewAngleDeg}};
+    if (c.parallel) camera["parallel"] = true;
+  }
   root["view"]["selection"] = {{"frame", v.frame}, {"model", v.model}, {"light", v.light}, {"highlight", v.highlight}};
   if (session.recovery) root["recovery"] = {{"of", relative(session.recovery->of)}, {"session", session.recovery->isSession}};
   root["notes"] = session.notes;

@@ -19,6 +19,7 @@ namespace glint {
 struct SessionCamera {
   Eigen::Vector3d position{0, 0, 1}, focalPoint{0, 0, 0}, up{0, 1, 0};
   double viewAngleDeg = 30;  ///< vertical field of view
+  bool parallel = false;     ///< orthographic, as high at the focal point as the perspective view would be
 };
 
 /// What the window showed; the results do not depend on it.

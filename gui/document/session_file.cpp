@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/pipeline/session.h"
+#include "gui/scene/scene_options.h"
 
 namespace glint::gui {
 
@@ -61,9 +62,14 @@ Opened openInput(const std::string& path, const std::string& sceneInstead) {
   opened.layers = view.layers;
   opened.options = view.options;
   opened.layout = view.layout;
-  if (const auto camera = view.cameras.find(kSceneView); camera != view.cameras.end())
-    opened.viewPoint =
-        viz::ViewPoint{camera->second.position, camera->second.focalPoint, camera->second.up, camera->second.viewAngleDeg};
+  // Kept views are options while they are on screen, so that keeping one can be undone, and cameras in the file.
+  for (const auto& [name, c] : view.cameras) {
+    const viz::ViewPoint seen{c.position, c.focalPoint, c.up, c.viewAngleDeg, c.parallel};
+    if (name == kSceneView)
+      opened.viewPoint = seen;
+    else
+      opened.options[kSavedView + name] = toText(seen);
+  }
   if (read.session.tradeoff) opened.tradeoff = std::make_shared<const Tradeoff>(*read.session.tradeoff);
   opened.session = std::make_shared<const Session>(std::move(read.session));
   return opened;
@@ -79,18 +85,23 @@ void addState(Session& session, const Opened& opened) {
     session.notes = opened.session->notes;
     session.unknownJson = opened.session->unknownJson;
     session.allowOutsidePaths = opened.session->allowOutsidePaths;
-    session.view.cameras = opened.session->view.cameras;
   }
   session.view.layout = opened.layout;
   session.view.layers = opened.layers;
-  session.view.options = opened.options;
+  const std::string kept = kSavedView;
+  for (const auto& [name, value] : opened.options) {
+    if (name.rfind(kept, 0) != 0)
+      session.view.options[name] = value;
+    else if (const std::optional<viz::ViewPoint> v = viewPointFromText(value))
+      session.view.cameras[name.substr(kept.size())] = {v->position, v->focalPoint, v->up, v->viewAngleDeg, v->parallel};
+  }
   session.view.frame = scene.frames.at(std::size_t(opened.selection.frame)).id;
   session.view.model = opened.selection.model;
   session.view.light = opened.selection.light;
   session.view.highlight = opened.selection.highlight;
   if (opened.viewPoint)
     session.view.cameras[kSceneView] = {opened.viewPoint->position, opened.viewPoint->focalPoint, opened.viewPoint->up,
-                                        opened.viewPoint->viewAngleDeg};
+                                        opened.viewPoint->viewAngleDeg, opened.viewPoint->parallel};
 }
 }  // namespace
 

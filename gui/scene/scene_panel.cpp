@@ -33,6 +33,11 @@ ScenePanel::ScenePanel(Document& document, QWidget* parent) : QWidget(parent), d
   connect(&document_, &Document::optionsChanged, this, &ScenePanel::showOptions);
   connect(&document_, &Document::requestChanged, this, &ScenePanel::showOptions);
   connect(views_, &SceneViews::picked, this, &ScenePanel::select);
+  connect(views_, &SceneViews::emptyClicked, this, [this] {
+    viz::Selection s = document_.selection();
+    s = {s.frame, "", -1, "", {}};  // a frame is always selected
+    document_.select(s);
+  });
   connect(views_, &SceneViews::activeChanged, this, &ScenePanel::showEye);
   connect(views_, &SceneViews::leaveEye, this, [this] { setEye(viz::Eye::Outside); });
   connect(views_, &SceneViews::wipeMoved, this, [this](double share, bool released) {

@@ -12,6 +12,7 @@
 #include <algorithm>
 
 #include "gui/base/text.h"
+#include "gui/scene/scene_options.h"
 #include "gui/scene/scene_panel.h"
 #include "gui/window/main_window.h"
 #include "tests/gui/fixture.h"
@@ -81,6 +82,25 @@ class SessionTest : public QObject {
     QCOMPARE(document.selection().model, std::string("canonical"));
     QCOMPARE(document.layerVisible("frame/peak"), false);
     QVERIFY(document.state().layers.count("rays"));
+  }
+
+  void keptViewsAreCamerasOfTheFile() {
+    const QString file = folder_.filePath(QStringLiteral("views.glint"));
+    const Engine engine = coreEngine();
+    Opened opened = engine.open(GLINT_SOURCE_DIR "/sessions/plane/plane.glint", {});
+    const viz::ViewPoint top{{0.1, 0.2, 3}, {0.1, 0.2, 0}, {0, 1, 0}, 30, true}, side{{2, 1, 0.3}, {0, 0, 0.1}, {0, 0, 1}, 24};
+    opened.options = {{std::string(kSavedView) + "Top", toText(top)},
+                      {std::string(kSavedView) + "Side", toText(side)},
+                      {std::string(kSavedView) + "Forgotten", ""},
+                      {"scene/solo", "1"}};
+    engine.save(opened, nullptr, file.toStdString(), {});
+    const Session stored = readSession(file.toStdString());
+    QVERIFY((stored.view.options == std::map<std::string, std::string>{{"scene/solo", "1"}}));
+    QCOMPARE(int(stored.view.cameras.count("Forgotten")), 0);
+    QVERIFY(stored.view.cameras.at("Top").parallel && !stored.view.cameras.at("Side").parallel);
+    QCOMPARE(stored.view.cameras.at("Side").viewAngleDeg, 24.0);
+    opened.options.erase(std::string(kSavedView) + "Forgotten");
+    QVERIFY(engine.open(file.toStdString(), {}).options == opened.options);
   }
 
   /// Saving before there are results must not replace the stored 3D camera by that of an empty view.
