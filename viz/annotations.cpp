@@ -342,7 +342,7 @@ struct Annotations::Impl {
       border.add(1, 0, 1, height);
       handle.add(1, 0.5 * height - 1.5 * font, 1, 0.5 * height + 1.5 * font);
     }
-    border.finish(borderKind == Border::Active ? kAccent : kHeldOut, borderKind == Border::Around ? 1 : 2);
+    border.finish(borderKind == Border::Active ? kActiveView : kHeldOut, borderKind == Border::Around ? 1 : 2);
     handle.finish(ink(), std::max(6.0, 0.5 * font));
     name->SetVisibility(name->GetInput() && *name->GetInput());
     if (name->GetVisibility()) {
@@ -360,7 +360,7 @@ struct Annotations::Impl {
     text->BoldOn();
     text->SetJustificationToRight();
     setColour(badge, {1, 1, 1});
-    text->SetBackgroundColor(0.75 * kAccent[0], 0.75 * kAccent[1], 0.75 * kAccent[2]);
+    text->SetBackgroundColor(0.75 * kActiveView[0], 0.75 * kActiveView[1], 0.75 * kActiveView[2]);
     text->SetBackgroundOpacity(0.9);
     // In the upper right corner, below whatever stands there.
     const Eigen::Vector2d size = sizeOf(badge);

@@ -25,10 +25,10 @@ inline constexpr Colour kVirtualCamera{0.70, 0.62, 0.95};  ///< not a model's co
 inline constexpr Colour kTraining{0.000, 0.447, 0.698};    ///< blue: training frames
 inline constexpr Colour kHeldOut{0.55, 0.55, 0.55};
 inline constexpr Colour kExcluded{0.55, 0.33, 0.30};       ///< frames that are left out
-inline constexpr Colour kFailed{0.85, 0.10, 0.10};   ///< directions and frames that failed
-inline constexpr Colour kTruth{0.80, 0.00, 0.60};    ///< true lights: never used by the method
-inline constexpr Colour kSurface{0.46, 0.49, 0.53};  ///< subdued, so that lines and models stand out
-inline constexpr Colour kAccent{0.184, 0.486, 0.769};  ///< the program's one accent colour
+inline constexpr Colour kFailed{0.85, 0.10, 0.10};         ///< directions and frames that failed
+inline constexpr Colour kTruth{0.80, 0.00, 0.60};          ///< true lights: never used by the method
+inline constexpr Colour kSurface{0.46, 0.49, 0.53};        ///< subdued, so that lines and models stand out
+inline constexpr Colour kActiveView{0.184, 0.486, 0.769};  ///< the accent colour: border of the active view, badges
 inline constexpr Colour kDarkBackground{0.10, 0.11, 0.13}, kLightBackground{0.97, 0.97, 0.97};
 inline constexpr Colour kTextOnDark{0.92, 0.92, 0.92}, kTextOnLight{0.10, 0.10, 0.10};
 
