@@ -6,19 +6,12 @@
 #include <cmath>
 #include <cstdio>
 
+#include "viz/frame_details.h"
+
 namespace glint::viz {
 namespace {
 
 constexpr Colour kObservedEllipse{0.82, 0.82, 0.82};
-
-/// Contours live in ideal pixels; the photograph on screen is the distorted one.
-std::vector<Pixel> toPhotograph(const Camera& camera, const std::vector<Pixel>& ideal) {
-  if (!camera.hasDistortion()) return ideal;
-  std::vector<Pixel> measured;
-  measured.reserve(ideal.size());
-  for (const Pixel& p : ideal) measured.push_back(camera.distorted(p));
-  return measured;
-}
 
 std::string formatted(const char* format, double value) {
   char text[64];
@@ -42,6 +35,7 @@ void addBand(const PredictedHighlight& highlight, const Camera& camera, const Ov
       if (length > 0) border.push_back(p[i] + side * sigma[i] / length * Pixel(tangent.y(), -tangent.x()));
     }
     lines.push_back(style);
+    lines.back().role = OverlayRole::UncertaintyBand;
     lines.back().points = toPhotograph(camera, border);
     lines.back().closed = highlight.contour.closed;
     lines.back().width = std::max(0.75, 0.4 * style.width);
@@ -63,7 +57,6 @@ void addPrediction(const PredictedHighlight& highlight, const Camera& camera, co
       line.width = std::max(1.0, style.width - 0.5);
     }
   }
-  addBand(highlight, camera, style, lines);
 }
 
 std::string scoreText(const std::string& model, const FrameScore& score) {
@@ -78,6 +71,29 @@ std::string scoreText(const std::string& model, const FrameScore& score) {
 }
 
 }  // namespace
+
+const std::vector<OverlayLayer>& overlayLayers() {
+  static const std::vector<OverlayLayer> layers{
+      {OverlayRole::ObservedContour, "frame/observed", "Observed",
+       "Contour found in the photograph, at the contour level: white", true},
+      {OverlayRole::ObservedEllipse, "frame/observed-ellipse", "Ellipse", "Ellipse fitted to the observed contour: grey, dashed",
+       true},
+      {OverlayRole::PredictedContour, "frame/predicted", "Predicted",
+       "Contour that each model predicts, in its colour: dashed in frames that do not train, dotted where directions failed", true},
+      {OverlayRole::PredictedEllipse, "frame/predicted-ellipse", "Pred. ellipse",
+       "Ellipse fitted to each predicted contour, dashed", true},
+      {OverlayRole::UncertaintyBand, "frame/band", "Band",
+       "95 % band of each predicted contour, where Predict > Band is on and the band is wider than half a pixel", true},
+      {OverlayRole::CanonicalEllipse, "frame/canonical", "Canonical",
+       "Ellipse of the canonical contour on the tangent plane, dotted: of the observation in training frames, predicted elsewhere",
+       true},
+      {OverlayRole::ObservedPeak, "frame/peak", "Peaks", "Observed peak: cross; predicted brightest points: circles", true},
+      {OverlayRole::ResidualArrows, "frame/residuals", "Residuals",
+       "Arrows from the observed to the predicted contour, every 10 degrees", false},
+      {OverlayRole::LimitDirections, "frame/directions", "Directions",
+       "Walks from the brightest point: to the limit angle on the surface, dotted on to the same angle on the tangent plane", false}};
+  return layers;
+}
 
 std::vector<ContourRun> contourRuns(const PredictedHighlight& highlight) {
   const std::vector<Pixel>& points = highlight.contour.points;
@@ -129,42 +145,69 @@ std::vector<std::string> modelsInOrder(const Inspection& inspection, const std::
   return names;
 }
 
-FrameScore frameScore(const ModelResult& result, int frame) {
-  FrameScore score;
-  double pct = 0, px = 0, iou = 0;
-  int predictedLights = 0;
-  std::string reason;
-  const auto note = [&](const std::optional<Failure>& failure) {
-    if (failure && reason.empty()) reason = failure->message();
-  };
-  for (const FrameComparison& comparison : result.frames) {
-    if (comparison.frame != frame) continue;
+namespace {
+
+/// Sums over the comparisons of one frame.
+class ScoreSum {
+ public:
+  void add(const FrameComparison& comparison) {
     note(comparison.prediction.failure);
     if (!comparison.prediction.highlights.empty()) {
-      ++predictedLights;
-      iou += comparison.iou;
+      ++predictedLights_;
+      iou_ += comparison.iou;
     }
     for (const FrameComparison::Row& row : comparison.rows) {
       if (row.observed < 0) {
-        ++score.spurious;
+        ++score_.spurious;
       } else if (row.predicted < 0) {
-        ++score.missed;
+        ++score_.missed;
       } else if (row.metrics) {
-        ++score.matched;
-        pct += row.metrics->contourErrorPct;
-        px += row.metrics->contourErrorPx;
+        ++score_.matched;
+        pct_ += row.metrics->contourErrorPct;
+        px_ += row.metrics->contourErrorPx;
       }
       note(row.failure);
     }
   }
-  if (score.matched > 0) {
-    score.errorPct = pct / score.matched;
-    score.errorPx = px / score.matched;
-  } else {
-    score.reason = reason;
+  FrameScore score() const {
+    FrameScore score = score_;
+    if (score.matched > 0) {
+      score.errorPct = pct_ / score.matched;
+      score.errorPx = px_ / score.matched;
+    } else {
+      score.reason = reason_;
+    }
+    if (predictedLights_ > 0) score.iou = iou_ / predictedLights_;
+    return score;
   }
-  if (predictedLights > 0) score.iou = iou / predictedLights;
-  return score;
+
+ private:
+  void note(const std::optional<Failure>& failure) {
+    if (failure && reason_.empty()) reason_ = failure->message();
+  }
+  FrameScore score_;
+  double pct_ = 0, px_ = 0, iou_ = 0;
+  int predictedLights_ = 0;
+  std::string reason_;
+};
+
+}  // namespace
+
+FrameScore frameScore(const ModelResult& result, int frame) {
+  ScoreSum sum;
+  for (const FrameComparison& comparison : result.frames)
+    if (comparison.frame == frame) sum.add(comparison);
+  return sum.score();
+}
+
+std::vector<FrameScore> frameScores(const ModelResult& result, int frames) {
+  std::vector<ScoreSum> sums(static_cast<std::size_t>(std::max(0, frames)));
+  for (const FrameComparison& comparison : result.frames)
+    if (comparison.frame >= 0 && comparison.frame < frames) sums[static_cast<std::size_t>(comparison.frame)].add(comparison);
+  std::vector<FrameScore> scores;
+  scores.reserve(sums.size());
+  for (const ScoreSum& sum : sums) scores.push_back(sum.score());
+  return scores;
 }
 
 FrameOverlay frameOverlay(const Inspection& inspection, int frame, const OverlayOptions& options) {
@@ -175,6 +218,12 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
   const auto shown = [&](OverlayRole role) { return !options.hidden.count(role); };
   const auto ellipsePoints = [&](const Ellipse& e) { return toPhotograph(camera, e.sample(options.ellipseSegments)); };
   FrameOverlay overlay;
+  const Selection* selected = options.selection && options.selection->frame == frame ? &*options.selection : nullptr;
+  const bool training = inspection.isTraining(frame);
+  const Colour roleColour = training ? kTraining : inspection.isHeldOut(frame) ? kHeldOut : kFailed;
+  const auto drawn = [&](const std::string& model) {
+    return !options.hiddenModels.count(model) && (options.models.empty() || options.models.count(model));
+  };
 
   if (static_cast<std::size_t>(frame) < inspection.evidence.size()) {
     const FrameEvidence& evidence = inspection.evidence[static_cast<std::size_t>(frame)];
@@ -190,7 +239,7 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
         line.points = toPhotograph(camera, h.contour.points);
         line.closed = h.contour.closed;
         line.colour = kObserved;
-        line.width = 2.5;
+        line.width = selected && selected->highlight == static_cast<int>(i) ? 3.5 : 2.5;
         line.halo = true;
         overlay.lines.push_back(line);
       }
@@ -221,7 +270,7 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
   if (shown(OverlayRole::CanonicalEllipse)) {
     for (const TrainingView& view : inspection.views) {
       if (view.frame != frame || !view.canonical || !view.canonical->ellipse) continue;
-      if (!options.models.empty() && !options.models.count("canonical")) continue;
+      if (!drawn("canonical")) continue;
       OverlayLine line;
       line.role = OverlayRole::CanonicalEllipse;
       line.points = ellipsePoints(*view.canonical->ellipse);
@@ -234,6 +283,7 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
       overlay.lines.push_back(line);
     }
   }
+  if (shown(OverlayRole::LimitDirections)) addLimitDirections(inspection, frame, drawn, selected, overlay.lines);
   for (const std::string& model : modelsInOrder(inspection, options.models)) {
     const ModelResult& result = inspection.models.at(model);
     const FrameScore score = frameScore(result, frame);
@@ -241,18 +291,38 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
     for (const FrameComparison& comparison : result.frames) {
       if (comparison.frame != frame) continue;
       answered = true;
+      if (!drawn(model)) continue;
       for (std::size_t i = 0; i < comparison.prediction.highlights.size(); ++i) {
         const PredictedHighlight& h = comparison.prediction.highlights[i];
         OverlayLine line;
         line.model = model;
         line.light = comparison.light;
         line.highlight = static_cast<int>(i);
-        line.colour = modelColour(model);
+        line.colour = options.colourByRole ? roleColour : modelColour(model);
+        line.halo = options.colourByRole;
         line.label = model + (score.errorPct ? " " + formatted("%.2f %%", *score.errorPct) : std::string{});
         if (shown(OverlayRole::PredictedContour)) {
           line.role = OverlayRole::PredictedContour;
-          line.width = 1.75;
+          line.width = selected && selected->model == model ? 2.75 : 1.75;
+          line.dash = training ? Dash::Solid : Dash::Dashed;
           addPrediction(h, camera, line, overlay.lines);
+        }
+        if (shown(OverlayRole::UncertaintyBand)) addBand(h, camera, line, overlay.lines);
+        line.halo = false;
+        line.dash = Dash::Solid;
+        if (shown(OverlayRole::CanonicalEllipse) && !training && model == "canonical" && h.canonical && h.canonical->ellipse) {
+          line.role = OverlayRole::CanonicalEllipse;
+          line.points = ellipsePoints(*h.canonical->ellipse);
+          line.closed = true;
+          line.width = 1;
+          line.dash = Dash::Dotted;
+          overlay.lines.push_back(line);
+        }
+        if (shown(OverlayRole::ResidualArrows)) {
+          line.role = OverlayRole::ResidualArrows;
+          line.width = 1.25;
+          line.dash = Dash::Solid;
+          addResidualArrows(inspection, comparison, static_cast<int>(i), camera, line, options.residualScale, overlay.lines);
         }
         if (shown(OverlayRole::PredictedEllipse) && h.ellipse) {
           line.role = OverlayRole::PredictedEllipse;
@@ -290,6 +360,8 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
                                   score.matched == 0 || score.missed > 0 || score.spurious > 0, score});
     }
   }
+  if (selected && selected->direction && shown(OverlayRole::SelectedPoint))
+    addSelectedPoint(inspection, *selected, shown, drawn, overlay.marks);
   return overlay;
 }
 

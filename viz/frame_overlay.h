@@ -8,6 +8,7 @@
 
 #include "core/geometry/camera.h"
 #include "core/pipeline/inspection.h"
+#include "viz/selection.h"
 #include "viz/style.h"
 
 namespace glint::viz {
@@ -20,8 +21,23 @@ enum class OverlayRole {
   PredictedContour,
   PredictedEllipse,
   PredictedPeak,
-  CanonicalEllipse
+  CanonicalEllipse,
+  UncertaintyBand,
+  LimitDirections,
+  ResidualArrows,
+  SelectedPoint,
+  EpipolarLine
 };
+
+/// What can be shown and hidden in the frame view, in the order of its legend.
+struct OverlayLayer {
+  OverlayRole role;
+  const char* name;   ///< "frame/observed"
+  const char* title;  ///< short
+  const char* tip;    ///< one sentence
+  bool onByDefault;
+};
+const std::vector<OverlayLayer>& overlayLayers();
 
 enum class Dash { Solid, Dashed, Dotted };
 
@@ -64,6 +80,8 @@ struct FrameScore {
   std::string reason;  ///< first failure's message when nothing matched; else ""
 };
 FrameScore frameScore(const ModelResult& result, int frame);
+/// The same for the frames 0 .. frames - 1, in one pass.
+std::vector<FrameScore> frameScores(const ModelResult& result, int frames);
 
 /// One line of text under or beside the photograph: a model's error, or the reason why it did not answer.
 struct OverlayCaption {
@@ -82,14 +100,19 @@ struct FrameOverlay {
 };
 
 struct OverlayOptions {
-  std::set<std::string> models;  ///< models to draw; empty = all
-  std::set<OverlayRole> hidden;  ///< roles left out
-  int ellipseSegments = 96;      ///< samples per ellipse, >= 8
+  std::set<std::string> models;           ///< models to draw; empty = all
+  std::set<std::string> hiddenModels;     ///< of these only the caption
+  std::set<OverlayRole> hidden;           ///< roles left out
+  int ellipseSegments = 96;               ///< samples per ellipse, >= 8
+  bool colourByRole = false;              ///< predictions in the colour of the frame's role instead of the model's
+  double residualScale = 1;               ///< residual arrows are drawn so many times their length
+  std::optional<Selection> selection{};   ///< drawn thicker, its contour point marked, when it is of this frame
 };
 
 /// Overlay of one frame: observed contours (white with halo), their least-squares ellipses (thin, dashed) and peaks
-/// (crosses); per model in its fixed colour the predicted contours (bridged gaps dotted), ellipses (dashed) and
-/// brightest points (circles). Empty lines and marks for a frame without evidence; the captions then say why.
+/// (crosses); per model in its fixed colour the predicted contours (dashed in frames that do not train, bridged gaps dotted), their
+/// 95 % bands, ellipses (dashed), brightest points (circles), arrows from observed to predicted contour every 10 degrees, and the
+/// walks of the limit angles (to the end on S, dotted on to the end on T). Empty lines and marks for a frame without evidence; the captions then say why.
 /// @param frame  index into scene->frames; std::invalid_argument when it does not exist.
 FrameOverlay frameOverlay(const Inspection& inspection, int frame, const OverlayOptions& options = {});
 

@@ -73,6 +73,21 @@ double distance(const Polyline& line, const Pixel& q) {
   return std::sqrt(best);
 }
 
+std::optional<double> reach(const Polyline& line, const Pixel& origin, double direction) {
+  const Pixel along(std::cos(direction), std::sin(direction));
+  std::optional<double> farthest;
+  const std::size_t n = line.points.size();
+  for (std::size_t i = 0; i < segmentCount(line); ++i) {
+    const Pixel a = line.points[i] - origin, b = line.points[(i + 1) % n] - origin;
+    const double sideA = cross(along, a), sideB = cross(along, b);
+    if (!((sideA <= 0) != (sideB <= 0))) continue;  // half open, so that a vertex on the line counts once
+    const double t = sideA / (sideA - sideB);
+    const double distance = along.dot(a + t * (b - a));
+    if (distance >= 0 && (!farthest || distance > *farthest)) farthest = distance;
+  }
+  return farthest;
+}
+
 std::vector<Pixel> resample(const Polyline& line, int n) {
   require(n >= 1 && !line.points.empty(), "resample: needs points");
   const double total = length(line);

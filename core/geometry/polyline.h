@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/geometry/camera.h"
@@ -18,6 +19,9 @@ double signedArea(const Polyline& line);                          ///< px^2, sho
 Pixel centroid(const Polyline& line);                             ///< area centroid; mean of the points when the area vanishes
 bool contains(const Polyline& line, const Pixel& p);              ///< even-odd rule; boundary points either way
 double distance(const Polyline& line, const Pixel& p);            ///< px to the nearest point of the chain; infinity when empty
+/// Farthest crossing of the half line from `origin` in `direction` (rad, 0 = right, pi/2 = down) with the chain, px from the origin; nothing
+/// when they do not meet. The farthest, because on a contour that folds back the outer side is the one that is seen.
+std::optional<double> reach(const Polyline& line, const Pixel& origin, double direction);
 /// n points equally spaced in arc length, first at the first point. Needs >= 1 point.
 std::vector<Pixel> resample(const Polyline& line, int n);
 /// Consecutive repeated points (closer than `tolerancePx`) removed.

@@ -73,5 +73,16 @@ TEST(Polyline, RepeatsAreRemovedAlsoAcrossTheEnd) {
   EXPECT_EQ(withoutRepeats(Polyline{{{0, 0}, {1, 0}, {0, 0}}, false}).points.size(), 3u);
 }
 
+TEST(Polyline, ReachIsTheFarthestCrossingOfAHalfLine) {
+  Polyline square{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, true};
+  EXPECT_NEAR(*reach(square, {0, 0}, 0), 1, 1e-12);
+  EXPECT_NEAR(*reach(square, {0, 0}, std::atan2(0.5, 1)), std::hypot(0.5, 1), 1e-12);
+  EXPECT_NEAR(*reach(square, {0, 0}, std::atan2(1, 1)), std::sqrt(2.0), 1e-12);  // through a vertex
+  EXPECT_NEAR(*reach(square, {-3, 0.25}, 0), 4, 1e-12);                          // in and out again
+  EXPECT_FALSE(reach(square, {3, 0}, 0));
+  square.closed = false;  // the left side is missing
+  EXPECT_FALSE(reach(square, {0, 0}, std::acos(-1.0)));
+}
+
 }  // namespace
 }  // namespace glint
