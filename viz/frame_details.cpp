@@ -19,7 +19,8 @@ void addWalks(const CanonicalContour& contour, const Pixel& start, const Camera&
               std::vector<OverlayLine>& lines) {
   for (const DirectionResult& direction : contour.directions) {
     if (!direction.limitAngle || direction.failure) continue;
-    const std::optional<Pixel> onSurface = camera.project(direction.onSurface), onPlane = camera.project(direction.onTangentPlane);
+    const std::optional<Pixel> onSurface = camera.project(direction.onSurface),
+                               onPlane = camera.project(direction.onTangentPlane);
     if (!onSurface || !onPlane) continue;
     OverlayLine line = style;
     line.role = OverlayRole::LimitDirections;
@@ -149,7 +150,8 @@ void addSelectedPoint(const Inspection& inspection, const Selection& selection, 
   };
   const Highlight& observed =
       inspection.evidence[static_cast<std::size_t>(selection.frame)].scored()[static_cast<std::size_t>(highlight)];
-  if (const std::optional<double> r = reach(observed.contour, *origin, *selection.direction); r && shown(OverlayRole::ObservedContour))
+  if (const std::optional<double> r = reach(observed.contour, *origin, *selection.direction);
+      r && shown(OverlayRole::ObservedContour))
     add(*origin + *r * towards(*selection.direction), kObserved, "", 6);
   if (!shown(OverlayRole::PredictedContour)) return;
   for (const std::string& model : modelsInOrder(inspection)) {

@@ -11,8 +11,8 @@ namespace glint::viz {
 /// Contours live in ideal pixels; the photograph on screen is the distorted one.
 std::vector<Pixel> toPhotograph(const Camera& camera, const std::vector<Pixel>& ideal);
 
-/// Ideal pixel from which Selection::direction is measured: centroid of the observed contour, its peak where there is none. Nothing
-/// when the frame has no such highlight.
+/// Ideal pixel from which Selection::direction is measured: centroid of the observed contour, its peak where there is none.
+/// Nothing when the frame has no such highlight.
 std::optional<Pixel> directionOrigin(const Inspection& inspection, int frame, int highlight);
 
 /// The observed highlight that a predicted one was matched with; -1 when it is spurious.
@@ -25,8 +25,8 @@ std::optional<Pixel> onPrediction(const PredictedHighlight& highlight, const Pix
 void addResidualArrows(const Inspection& inspection, const FrameComparison& comparison, int predicted, const Camera& camera,
                        const OverlayLine& style, double scale, std::vector<OverlayLine>& lines);
 
-/// Walks of the training view's canonical contour; in other frames those of the prediction of the selected model, or of the simplest
-/// drawn one that walks.
+/// Walks of the training view's canonical contour; in other frames those of the prediction of the selected model, or of the
+/// simplest drawn one that walks.
 void addLimitDirections(const Inspection& inspection, int frame, const std::function<bool(const std::string&)>& drawn,
                         const Selection* selected, std::vector<OverlayLine>& lines);
 

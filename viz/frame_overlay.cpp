@@ -20,8 +20,9 @@ std::string formatted(const char* format, double value) {
 }
 
 /// Both borders of the 95 % band, where it is known and wide enough to be seen beside the contour.
-void addBand(const PredictedHighlight& highlight, const Camera& camera, const OverlayLine& style, std::vector<OverlayLine>& lines) {
-  constexpr double kFactor = 1.96;    // many degrees of freedom; the exact factor differs by less than a line's width
+void addBand(const PredictedHighlight& highlight, const Camera& camera, const OverlayLine& style,
+             std::vector<OverlayLine>& lines) {
+  constexpr double kFactor = 1.96;  // many degrees of freedom; the exact factor differs by less than a line's width
   constexpr double kVisiblePx = 0.5;
   const std::vector<Pixel>& p = highlight.contour.points;
   const std::vector<double>& sigma = highlight.sigmaPx;
@@ -74,24 +75,27 @@ std::string scoreText(const std::string& model, const FrameScore& score) {
 
 const std::vector<OverlayLayer>& overlayLayers() {
   static const std::vector<OverlayLayer> layers{
-      {OverlayRole::ObservedContour, "frame/observed", "Observed",
-       "Contour found in the photograph, at the contour level: white", true},
+      {OverlayRole::ObservedContour, "frame/observed", "Observed", "Contour found in the photograph, at the contour level: white",
+       true},
       {OverlayRole::ObservedEllipse, "frame/observed-ellipse", "Ellipse", "Ellipse fitted to the observed contour: grey, dashed",
        true},
       {OverlayRole::PredictedContour, "frame/predicted", "Predicted",
-       "Contour that each model predicts, in its colour: dashed in frames that do not train, dotted where directions failed", true},
+       "Contour that each model predicts, in its colour: dashed in frames that do not train, dotted where directions failed",
+       true},
       {OverlayRole::PredictedEllipse, "frame/predicted-ellipse", "Pred. ellipse",
        "Ellipse fitted to each predicted contour, dashed", true},
       {OverlayRole::UncertaintyBand, "frame/band", "Band",
        "95 % band of each predicted contour, where Predict > Band is on and the band is wider than half a pixel", true},
       {OverlayRole::CanonicalEllipse, "frame/canonical", "Canonical",
-       "Ellipse of the canonical contour on the tangent plane, dotted: of the observation in training frames, predicted elsewhere",
+       "Ellipse of the canonical contour on the tangent plane, dotted: of the observation in training frames, predicted "
+       "elsewhere",
        true},
       {OverlayRole::ObservedPeak, "frame/peak", "Peaks", "Observed peak: cross; predicted brightest points: circles", true},
       {OverlayRole::ResidualArrows, "frame/residuals", "Residuals",
        "Arrows from the observed to the predicted contour, every 10 degrees", false},
       {OverlayRole::LimitDirections, "frame/directions", "Directions",
-       "Walks from the brightest point: to the limit angle on the surface, dotted on to the same angle on the tangent plane", false}};
+       "Walks from the brightest point: to the limit angle on the surface, dotted on to the same angle on the tangent plane",
+       false}};
   return layers;
 }
 

@@ -100,19 +100,20 @@ struct FrameOverlay {
 };
 
 struct OverlayOptions {
-  std::set<std::string> models;           ///< models to draw; empty = all
-  std::set<std::string> hiddenModels;     ///< of these only the caption
-  std::set<OverlayRole> hidden;           ///< roles left out
-  int ellipseSegments = 96;               ///< samples per ellipse, >= 8
-  bool colourByRole = false;              ///< predictions in the colour of the frame's role instead of the model's
-  double residualScale = 1;               ///< residual arrows are drawn so many times their length
-  std::optional<Selection> selection{};   ///< drawn thicker, its contour point marked, when it is of this frame
+  std::set<std::string> models;          ///< models to draw; empty = all
+  std::set<std::string> hiddenModels;    ///< of these only the caption
+  std::set<OverlayRole> hidden;          ///< roles left out
+  int ellipseSegments = 96;              ///< samples per ellipse, >= 8
+  bool colourByRole = false;             ///< predictions in the colour of the frame's role instead of the model's
+  double residualScale = 1;              ///< residual arrows are drawn so many times their length
+  std::optional<Selection> selection{};  ///< drawn thicker, its contour point marked, when it is of this frame
 };
 
 /// Overlay of one frame: observed contours (white with halo), their least-squares ellipses (thin, dashed) and peaks
-/// (crosses); per model in its fixed colour the predicted contours (dashed in frames that do not train, bridged gaps dotted), their
-/// 95 % bands, ellipses (dashed), brightest points (circles), arrows from observed to predicted contour every 10 degrees, and the
-/// walks of the limit angles (to the end on S, dotted on to the end on T). Empty lines and marks for a frame without evidence; the captions then say why.
+/// (crosses); per model in its fixed colour the predicted contours (dashed in frames that do not train, bridged gaps dotted),
+/// their 95 % bands, ellipses (dashed), brightest points (circles), arrows from observed to predicted contour every 10 degrees,
+/// and the walks of the limit angles (to the end on S, dotted on to the end on T). Empty lines and marks for a frame without
+/// evidence; the captions then say why.
 /// @param frame  index into scene->frames; std::invalid_argument when it does not exist.
 FrameOverlay frameOverlay(const Inspection& inspection, int frame, const OverlayOptions& options = {});
 

@@ -104,7 +104,8 @@ std::optional<Crop> highlightCrop(const Inspection& inspection, int frame, const
   const Camera& camera = cameraOf(inspection, frame);
   OverlayOptions options;
   options.models = models;
-  options.hidden = {OverlayRole::ObservedEllipse, OverlayRole::PredictedEllipse, OverlayRole::CanonicalEllipse};
+  options.hidden = {OverlayRole::ObservedEllipse, OverlayRole::PredictedEllipse, OverlayRole::CanonicalEllipse,
+                    OverlayRole::UncertaintyBand};
   const FrameOverlay overlay = frameOverlay(inspection, frame, options);
   Eigen::AlignedBox2d observed, all;
   for (const OverlayLine& line : overlay.lines) {
@@ -120,10 +121,37 @@ std::optional<Crop> highlightCrop(const Inspection& inspection, int frame, const
     all = all.intersection(Eigen::AlignedBox2d(observed.min() - room, observed.max() + room));
   }
   const Eigen::Vector2d centre = all.center();
-  double w = std::max(1.35 * all.sizes().x() + 4, 24.0), h = std::max(1.35 * all.sizes().y() + 4, 24.0 / aspect);
-  w = std::min(std::max(w, aspect * h), static_cast<double>(std::max(camera.width, camera.height)));
-  h = w / aspect;
-  return Crop{centre.x() - 0.5 * w, centre.y() - 0.5 * h, w, h};
+  const double w = std::max(1.35 * all.sizes().x() + 4, 24.0), h = std::max(1.35 * all.sizes().y() + 4, 24.0);
+  const Crop tight{centre.x() - 0.5 * w, centre.y() - 0.5 * h, w, h};
+  return aspect > 0 ? grownTo(tight, aspect, camera) : tight;
+}
+
+Crop grownTo(const Crop& crop, double aspect, const Camera& camera) {
+  Crop grown = crop;
+  grown.width = std::max(crop.width, aspect * crop.height);
+  grown.height = grown.width / aspect;
+  const auto place = [](double from, double size, double wanted, double room) {
+    const double start = from + 0.5 * (size - wanted);
+    if (wanted >= room) return 0.5 * (room - wanted) - 0.5;  // larger than the photograph: centred on it
+    return std::clamp(start, -0.5, room - wanted - 0.5);
+  };
+  grown.x = place(crop.x, crop.width, grown.width, camera.width);
+  grown.y = place(crop.y, crop.height, grown.height, camera.height);
+  return grown;
+}
+
+int ladderColumns(int tiles, double width, double height, double foot, double aspect) {
+  int columns = 1;
+  double best = 0;
+  for (int c = 1; c <= tiles; ++c) {
+    const int rows = (tiles + c - 1) / c;
+    const double scale = std::min(width / c / aspect, height / rows - foot);
+    if (scale > best) {
+      best = scale;
+      columns = c;
+    }
+  }
+  return columns;
 }
 
 Image framePicture(const Inspection& inspection, int frame, const Outcome<Image>& photograph, int width, int height,
@@ -204,28 +232,21 @@ Image ladderPicture(const Inspection& inspection, int frame, const Outcome<Image
     canvas.text({0.8 * font, 4 * font}, "no model was computed", font, kFailed);
     return canvas.image();
   }
-  // The grid whose tiles are largest for a square picture in each.
-  const double foot = 3.4 * font, gap = 0.6 * font, head = 2 * font;
-  int columns = 1;
-  double best = 0;
-  for (int c = 1; c <= static_cast<int>(models.size()); ++c) {
-    const int rows = (static_cast<int>(models.size()) + c - 1) / c;
-    const double side = std::min((width - gap) / c - gap, (height - head - gap) / rows - gap - foot);
-    if (side > best) {
-      best = side;
-      columns = c;
-    }
-  }
-  const int rows = (static_cast<int>(models.size()) + columns - 1) / columns;
-  const double tileWidth = (width - gap) / columns - gap, tileHeight = (height - head - gap) / rows - gap;
-  const double aspect = std::clamp(tileWidth / std::max(16.0, tileHeight - foot), 0.8, 1.5);
+  const double foot = 3.1 * font, gap = 0.5 * font, head = 2 * font;
   Crop crop{-0.5, -0.5, static_cast<double>(camera.width), static_cast<double>(camera.height)};
-  const std::optional<Crop> part = highlightCrop(inspection, frame, options.models, aspect);
+  const std::optional<Crop> part = highlightCrop(inspection, frame, options.models, 0);
   if (part) crop = *part;
+  const int count = static_cast<int>(models.size());
+  const int columns = ladderColumns(count, width - gap, height - head - gap, foot + gap, crop.width / crop.height);
+  const int rows = (count + columns - 1) / columns;
+  const double tileWidth = (width - gap) / columns - gap, tileHeight = (height - head - gap) / rows - gap;
+  // Every tile is filled: the part of the photograph grows to its shape.
+  const Box picture{0, 0, tileWidth, std::max(16.0, tileHeight - foot)};
+  crop = grownTo(crop, picture.width / picture.height, camera);
   for (std::size_t i = 0; i < models.size(); ++i) {
     const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
     const Box tile{gap + column * (tileWidth + gap), head + gap + row * (tileHeight + gap), tileWidth, tileHeight};
-    const Box box = inscribed({tile.x, tile.y, tile.width, std::max(16.0, tile.height - foot)}, crop.width / crop.height);
+    const Box box{tile.x, tile.y, picture.width, picture.height};
     OverlayOptions overlayOptions;
     overlayOptions.models = {models[i]};
     overlayOptions.hidden = options.hidden;

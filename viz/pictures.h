@@ -34,7 +34,15 @@ Image plotsPicture(const Inspection& inspection, int width, int height, const Pi
 /// Draws an overlay: image pixels of `crop` are stretched over `box`. Marks and widths keep their screen size times `inkScale`.
 void drawOverlay(Canvas& canvas, const FrameOverlay& overlay, const Crop& crop, const Box& box, double inkScale);
 
-/// The part of the photograph that holds the frame's contours with a margin, `aspect` = width / height; nothing without contours.
+/// The part of the photograph that holds the frame's contours with a margin, `aspect` = width / height (0 = as the contours are);
+/// nothing without contours.
 std::optional<Crop> highlightCrop(const Inspection& inspection, int frame, const std::set<std::string>& models, double aspect);
+
+/// A larger part around another of the given shape, moved into the photograph where it fits.
+Crop grownTo(const Crop& crop, double aspect, const Camera& camera);
+
+/// Number of columns of a grid of tiles on an area, in which a picture of `aspect` = width / height becomes largest.
+/// @param foot  height of the text below each.
+int ladderColumns(int tiles, double width, double height, double foot, double aspect);
 
 }  // namespace glint::viz

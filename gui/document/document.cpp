@@ -6,6 +6,7 @@
 
 #include "gui/base/text.h"
 #include "gui/document/state_command.h"
+#include "viz/frame_overlay.h"
 
 namespace glint::gui {
 
@@ -27,6 +28,8 @@ Document::Document(ParseTrain parseTrain, QObject* parent) : QObject(parent), pa
 bool Document::layerVisible(const std::string& name) const {
   if (const auto it = state_.layers.find(name); it != state_.layers.end()) return it->second;
   for (const viz::Layer& layer : viz::sceneLayers())
+    if (layer.name == name) return layer.onByDefault;
+  for (const viz::OverlayLayer& layer : viz::overlayLayers())
     if (layer.name == name) return layer.onByDefault;
   return true;
 }

@@ -2,16 +2,20 @@
 #include "gui/frame/frame_canvas.h"
 
 #include <QApplication>
+#include <QHelpEvent>
+#include <QLinearGradient>
 #include <QMouseEvent>
 #include <QPainter>
 #include <QPainterPath>
+#include <QToolTip>
 #include <QWheelEvent>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
 #include "gui/base/theme.h"
+#include "gui/frame/pixel_probe.h"
+#include "viz/frame_pick.h"
 
 namespace glint::gui {
 
@@ -42,18 +46,25 @@ FrameCanvas::FrameCanvas(QWidget* parent) : QWidget(parent) {
   setAttribute(Qt::WA_OpaquePaintEvent);
 }
 
-void FrameCanvas::setPhotograph(const QImage& photograph) {
-  const bool sameSize = photograph.size() == photograph_.size();
-  photograph_ = photograph;
-  develop();
+void FrameCanvas::setPicture(const FramePicture& picture) {
+  const bool sameSize = picture.shown.size() == photograph_.size();
+  picture_ = picture;
+  photograph_ = picture.shown;
   message_.clear();
   if (fitted_ || !sameSize) fit();
   update();
 }
 
+void FrameCanvas::setPhotograph(const QImage& photograph) {
+  FramePicture picture;
+  picture.shown = photograph;
+  setPicture(picture);
+}
+
 void FrameCanvas::setMessage(const QString& message) {
   message_ = message;
-  photograph_ = shown_ = QImage();
+  picture_ = {};
+  photograph_ = QImage();
   update();
 }
 
@@ -62,32 +73,14 @@ void FrameCanvas::setOverlay(viz::FrameOverlay overlay) {
   update();
 }
 
-void FrameCanvas::setExposure(double stops) {
-  if (stops == exposure_) return;
-  exposure_ = stops;
-  develop();
+void FrameCanvas::setScale(std::vector<viz::ScaleTick> ticks) {
+  scale_ = std::move(ticks);
   update();
 }
 
-void FrameCanvas::develop() {
-  if (exposure_ == 0 || photograph_.isNull()) {
-    shown_ = photograph_;
-    return;
-  }
-  // Stops are factors of two of linear light, so the sRGB curve is undone and done again.
-  std::array<uchar, 256> table{};
-  const double gain = std::exp2(exposure_);
-  for (int i = 0; i < 256; ++i) {
-    const double v = i / 255.0;
-    const double light = std::min(1.0, gain * (v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4)));
-    const double back = light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
-    table[std::size_t(i)] = uchar(std::lround(255 * std::clamp(back, 0.0, 1.0)));
-  }
-  shown_ = photograph_.convertToFormat(QImage::Format_RGB888);
-  for (int y = 0; y < shown_.height(); ++y) {
-    uchar* row = shown_.scanLine(y);
-    for (int i = 0; i < 3 * shown_.width(); ++i) row[i] = table[row[i]];
-  }
+void FrameCanvas::setCaption(const QString& caption) {
+  caption_ = caption;
+  update();
 }
 
 void FrameCanvas::setStale(bool stale) {
@@ -142,16 +135,59 @@ void FrameCanvas::paintEvent(QPaintEvent*) {
     drawPhotograph(painter);
   }
   drawOverlay(painter);
-  if (stale_) {
-    const QString text = tr("updating…");
-    const QRect chip = QRect(QPoint(8, 8), painter.fontMetrics().size(0, text) + QSize(14, 6));
-    painter.setRenderHint(QPainter::Antialiasing);
-    painter.setPen(Qt::NoPen);
-    painter.setBrush(QColor(0, 0, 0, 170));
-    painter.drawRoundedRect(chip, 4, 4);
-    painter.setPen(QColor(0xf0, 0xc0, 0x50));
-    painter.drawText(chip, Qt::AlignCenter, text);
+  if (!photograph_.isNull() && !scale_.empty()) drawScale(painter);
+  if (!caption_.isEmpty()) drawChip(painter, {8, 8}, caption_, Qt::white);
+  if (stale_) drawChip(painter, {8, caption_.isEmpty() ? 8 : 34}, tr("updating…"), QColor(0xf0, 0xc0, 0x50));
+}
+
+void FrameCanvas::drawChip(QPainter& painter, const QPoint& corner, const QString& text, const QColor& colour) const {
+  const QRect chip = QRect(corner, painter.fontMetrics().size(0, text) + QSize(14, 6));
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.setPen(Qt::NoPen);
+  painter.setBrush(QColor(0, 0, 0, 170));
+  painter.drawRoundedRect(chip, 4, 4);
+  painter.setPen(colour);
+  painter.drawText(chip, Qt::AlignCenter, text);
+}
+
+void FrameCanvas::drawScale(QPainter& painter) const {
+  const auto& colours = viz::uniformColours();
+  const int text = painter.fontMetrics().height();
+  const QRectF box(width() - 76, 10, 66, std::min(180, height() - 20));
+  if (box.height() < 4 * text) return;
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.setPen(Qt::NoPen);
+  painter.setBrush(QColor(0, 0, 0, 170));
+  painter.drawRoundedRect(box, 4, 4);
+  painter.setPen(Qt::white);
+  painter.drawText(QRectF(box.left(), box.top() + 2, box.width(), text), Qt::AlignCenter, tr("radiance"));
+  const QRectF bar(box.left() + 8, box.top() + text + 10, 12, box.height() - text - 20);
+  QLinearGradient gradient(bar.bottomLeft(), bar.topLeft());
+  for (int i = 0; i < 256; i += 15)
+    gradient.setColorAt(i / 255.0, QColor(colours[std::size_t(i)][0], colours[std::size_t(i)][1], colours[std::size_t(i)][2]));
+  painter.fillRect(bar, gradient);
+  for (const viz::ScaleTick& tick : scale_) {
+    const double y = bar.bottom() - tick.place * bar.height();
+    painter.drawLine(QPointF(bar.right(), y), QPointF(bar.right() + 3, y));
+    painter.drawText(QRectF(bar.right() + 5, y - text / 2.0, 40, text), Qt::AlignLeft | Qt::AlignVCenter,
+                     QString::fromStdString(tick.text));
   }
+}
+
+void FrameCanvas::drawValues(QPainter& painter, const QRect& visible) const {
+  if (!picture_.values || !picture_.developed) return;
+  QFont small = font();
+  small.setPixelSize(std::clamp(int(zoom_ / 4.6), 9, 18));
+  painter.setFont(small);
+  for (const viz::PixelText& text : viz::pixelTexts(*picture_.values, picture_.kind, *picture_.developed, visible.left(),
+                                                    visible.top(), visible.right(), visible.bottom())) {
+    QStringList lines;
+    for (const std::string& line : text.lines) lines << QString::fromStdString(line);
+    painter.setPen(text.dark ? QColor(0, 0, 0, 200) : QColor(255, 255, 255, 200));
+    painter.drawText(QRectF(widgetFromPixel({text.x - 0.5, text.y - 0.5}), QSizeF(zoom_, zoom_)), Qt::AlignCenter,
+                     lines.join(QLatin1Char('\n')));
+  }
+  painter.setFont(font());
 }
 
 void FrameCanvas::drawPhotograph(QPainter& painter) const {
@@ -163,7 +199,7 @@ void FrameCanvas::drawPhotograph(QPainter& painter) const {
   if (visible.isEmpty()) return;
   const QRectF target(widgetFromPixel({visible.x() - 0.5, visible.y() - 0.5}), QSizeF(visible.size()) * zoom_);
   painter.setRenderHint(QPainter::SmoothPixmapTransform, zoom_ * devicePixelRatioF() < 1.999);
-  painter.drawImage(target, shown_, QRectF(visible));
+  painter.drawImage(target, photograph_, QRectF(visible));
   if (zoom_ < kGridFromZoom) return;
   painter.setPen(QPen(QColor(128, 128, 128, 70), 0));
   for (int x = visible.left(); x <= visible.right() + 1; ++x) {
@@ -174,6 +210,7 @@ void FrameCanvas::drawPhotograph(QPainter& painter) const {
     const double h = widgetFromPixel({0, y - 0.5}).y();
     painter.drawLine(QPointF(target.left(), h), QPointF(target.right(), h));
   }
+  if (zoom_ >= kValuesFromZoom) drawValues(painter, visible);
 }
 
 void FrameCanvas::drawOverlay(QPainter& painter) const {
@@ -212,6 +249,7 @@ void FrameCanvas::resizeEvent(QResizeEvent*) {
 
 void FrameCanvas::wheelEvent(QWheelEvent* e) {
   setZoom(zoom_ * std::pow(2.0, e->angleDelta().y() / 240.0), e->position());
+  emit viewMoved();
   e->accept();
 }
 
@@ -229,6 +267,7 @@ void FrameCanvas::mouseMoveEvent(QMouseEvent* e) {
       fitted_ = false;
       setCursor(Qt::ClosedHandCursor);
       update();
+      emit viewMoved();
     }
   }
   last_ = at;
@@ -244,7 +283,22 @@ void FrameCanvas::mouseReleaseEvent(QMouseEvent* e) {
   dragging_ = false;
 }
 
-void FrameCanvas::mouseDoubleClickEvent(QMouseEvent*) { fit(); }
+void FrameCanvas::mouseDoubleClickEvent(QMouseEvent*) {
+  fit();
+  emit viewMoved();
+}
+
+bool FrameCanvas::event(QEvent* e) {
+  if (e->type() != QEvent::ToolTip) return QWidget::event(e);
+  const auto* help = static_cast<QHelpEvent*>(e);
+  const std::string label = viz::labelAt(overlay_, pixelFromWidget(help->pos()), kNearScreenPx / zoom_);
+  if (label.empty())
+    QToolTip::hideText();
+  else
+    QToolTip::showText(help->globalPos(), QString::fromStdString(label), this);
+  return true;
+}
+
 void FrameCanvas::leaveEvent(QEvent*) { emit probed(QString()); }
 
 void FrameCanvas::probe(const QPointF& position) {
@@ -254,9 +308,15 @@ void FrameCanvas::probe(const QPointF& position) {
     emit probed(QString());
     return;
   }
-  const QColor c = photograph_.pixelColor(index);
-  emit probed(
-      tr("x %1  y %2   sRGB %3 %4 %5").arg(p.x(), 0, 'f', 2).arg(p.y(), 0, 'f', 2).arg(c.red()).arg(c.green()).arg(c.blue()));
+  QString values;
+  if (picture_.values) {
+    values = QString::fromStdString(viz::valueText(*picture_.values, picture_.kind, index.x(), index.y()));
+  } else {
+    const QColor c = photograph_.pixelColor(index);
+    values = tr("sRGB %1 %2 %3").arg(c.red()).arg(c.green()).arg(c.blue());
+  }
+  emit probed(probeText(p, values, nullptr));
+  emit hovered(p.x(), p.y());
 }
 
 }  // namespace glint::gui

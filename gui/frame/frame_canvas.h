@@ -4,7 +4,9 @@
 #include <QImage>
 #include <QString>
 #include <QWidget>
+#include <vector>
 
+#include "gui/frame/photo_loader.h"
 #include "viz/frame_overlay.h"
 
 namespace glint::gui {
@@ -16,17 +18,27 @@ class FrameCanvas : public QWidget {
  public:
   explicit FrameCanvas(QWidget* parent = nullptr);
 
-  void setPhotograph(const QImage& photograph);  ///< keeps the view where the size stays the same
+  void setPicture(const FramePicture& picture);  ///< keeps the view where the size stays the same
+  void setPhotograph(const QImage& photograph);  ///< a picture without numbers
   void setMessage(const QString& message);       ///< instead of a photograph
   void setOverlay(viz::FrameOverlay overlay);
   void setStale(bool stale);
-  /// Brightens the photograph on screen by so many stops; numbers and overlays do not change.
-  void setExposure(double stops);
+  /// Scale bar of false colours in a corner; empty = none.
+  void setScale(std::vector<viz::ScaleTick> ticks);
+  /// A line of text in the top left corner; "" = none.
+  void setCaption(const QString& caption);
+  bool hasPicture() const { return !photograph_.isNull(); }
+  QSize photographSize() const { return photograph_.size(); }
 
   /// Widget (logical) coordinates of a photograph pixel, and back.
   QPointF widgetFromPixel(const Pixel& pixel) const;
   Pixel pixelFromWidget(const QPointF& position) const;
   double zoom() const { return zoom_; }  ///< logical widget pixels per photograph pixel
+  Pixel centre() const { return pixelFromWidget(QRectF(rect()).center()); }
+  /// The values of pixels are written into them from this zoom on.
+  static constexpr double kValuesFromZoom = 44;
+  /// A contour this near to the mouse is meant, logical pixels.
+  static constexpr double kNearScreenPx = 7;
   /// @param anchor  widget position that keeps its photograph pixel.
   void setZoom(double zoom, const QPointF& anchor);
   /// Puts a photograph pixel in the middle.
@@ -41,8 +53,10 @@ class FrameCanvas : public QWidget {
 
  signals:
   void probed(const QString& text);  ///< "" when the mouse leaves the photograph
+  void hovered(double x, double y);  ///< photograph pixel under the mouse, after probed()
   void clicked(double x, double y);  ///< photograph pixel
   void zoomChanged(double zoom);
+  void viewMoved();  ///< the user zoomed or panned
 
  protected:
   void paintEvent(QPaintEvent*) override;
@@ -53,17 +67,20 @@ class FrameCanvas : public QWidget {
   void mouseReleaseEvent(QMouseEvent*) override;
   void mouseDoubleClickEvent(QMouseEvent*) override;
   void leaveEvent(QEvent*) override;
+  bool event(QEvent* e) override;
 
  private:
-  void develop();
   void drawPhotograph(QPainter& painter) const;
   void drawOverlay(QPainter& painter) const;
+  void drawValues(QPainter& painter, const QRect& visible) const;
+  void drawScale(QPainter& painter) const;
+  void drawChip(QPainter& painter, const QPoint& corner, const QString& text, const QColor& colour) const;
   void probe(const QPointF& position);
 
-  QImage photograph_;  ///< as read
-  QImage shown_;       ///< with the exposure
-  double exposure_ = 0;
-  QString message_;
+  FramePicture picture_;
+  QImage photograph_;  ///< what is on screen
+  std::vector<viz::ScaleTick> scale_;
+  QString message_, caption_;
   viz::FrameOverlay overlay_;
   double zoom_ = 1;
   QPointF corner_{0, 0};  ///< widget position of the photograph's top-left corner, pixel (-0.5, -0.5)

@@ -1,20 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/frame/frame_panel.h"
 
+#include <QAction>
 #include <QHBoxLayout>
 #include <QLabel>
-#include <QSlider>
+#include <QMenu>
+#include <QSplitter>
 #include <QToolButton>
 #include <QVBoxLayout>
-#include <QVariant>
 #include <algorithm>
 
 #include "core/geometry/polyline.h"
+#include "gui/base/flow_layout.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/frame/develop_bar.h"
 #include "gui/frame/frame_canvas.h"
+#include "gui/frame/pair_bar.h"
+#include "viz/frame_pick.h"
 
 namespace glint::gui {
+
+namespace {
+const char* const kModelLayer = "frame/model/";
+}
 
 FramePanel::FramePanel(Document& document, QWidget* parent) : QWidget(parent), document_(document) {
   auto* column = new QVBoxLayout(this);
@@ -22,33 +31,72 @@ FramePanel::FramePanel(Document& document, QWidget* parent) : QWidget(parent), d
   column->setSpacing(0);
   canvas_ = new FrameCanvas;
   canvas_->setObjectName(QStringLiteral("frameCanvas"));
+  second_ = new FrameCanvas;
+  second_->setObjectName(QStringLiteral("secondCanvas"));
+  second_->hide();
   buildToolbar(column);
-  column->addWidget(canvas_, 1);
+  auto* both = new QSplitter(Qt::Horizontal);
+  both->addWidget(canvas_);
+  both->addWidget(second_);
+  both->setChildrenCollapsible(false);
+  column->addWidget(both, 1);
   captions_ = new QLabel;
   captions_->setObjectName(QStringLiteral("frameCaptions"));
   captions_->setTextFormat(Qt::RichText);
-  captions_->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  captions_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::LinksAccessibleByMouse);
   captions_->setMargin(5);
   captions_->setWordWrap(true);
+  connect(captions_, &QLabel::linkActivated, this, &FramePanel::followLink);
   column->addWidget(captions_);
 
-  connect(canvas_, &FrameCanvas::probed, this, &FramePanel::probed);
   connect(canvas_, &FrameCanvas::zoomChanged, this,
           [this](double z) { zoom_->setText(QStringLiteral("%1 %").arg(z * 100, 0, 'f', z < 0.1 ? 1 : 0)); });
   connect(canvas_, &FrameCanvas::clicked, this, &FramePanel::selectAt);
-  connect(&loader_, &PhotoLoader::loaded, this, [this](int frame, const QImage& photograph) {
-    if (frame == document_.selection().frame) canvas_->setPhotograph(photograph);
+  connect(second_, &FrameCanvas::clicked, this, &FramePanel::selectModelAt);
+  for (FrameCanvas* canvas : {canvas_, second_}) {
+    connect(canvas, &FrameCanvas::probed, this, [this](const QString& text) {
+      probe_.forget();
+      emit probed(text);
+    });
+    connect(canvas, &FrameCanvas::hovered, this, [this, canvas](double x, double y) {
+      probe_.want(document_.sharedScene(), document_.inspection(),
+                  canvas == canvas_ ? document_.selection().frame : pair_->secondFrame(), {x, y});
+    });
+  }
+  connect(&probe_, &PixelProbeWorker::probed, this, &FramePanel::probed);
+  connect(&loader_, &PhotoLoader::loaded, this, [this](int frame, const FramePicture& picture) {
+    if (frame == document_.selection().frame) canvas_->setPicture(picture);
   });
   connect(&loader_, &PhotoLoader::failed, this, [this](int frame, const QString& reason) {
     if (frame == document_.selection().frame) canvas_->setMessage(reason);
   });
+  connect(&secondLoader_, &PhotoLoader::loaded, this, [this](int frame, const FramePicture& picture) {
+    if (frame == pair_->secondFrame()) second_->setPicture(picture);
+  });
+  connect(&secondLoader_, &PhotoLoader::failed, this, [this](int frame, const QString& reason) {
+    if (frame == pair_->secondFrame()) second_->setMessage(reason);
+  });
+  connectDocument();
+  showScene();
+}
+
+void FramePanel::connectDocument() {
+  refresh_.setSingleShot(true);
+  refresh_.setInterval(0);
+  connect(&refresh_, &QTimer::timeout, this, &FramePanel::showFrame);
   connect(&document_, &Document::sceneOpened, this, &FramePanel::showScene);
-  connect(&document_, &Document::selectionChanged, this, &FramePanel::showFrame);
+  connect(&document_, &Document::selectionChanged, this, [this] {
+    showTitle();
+    refresh_.start();
+  });
   connect(&document_, &Document::layersChanged, this, &FramePanel::showOverlay);
+  connect(&document_, &Document::optionsChanged, this, [this] {
+    showLook();
+    refresh_.start();
+  });
   connect(&document_, &Document::requestChanged, this, &FramePanel::showFrame);
   connect(&document_, &Document::inspectionChanged, this, &FramePanel::showOverlay);
-  connect(&document_, &Document::staleChanged, canvas_, &FrameCanvas::setStale);
-  showScene();
+  for (FrameCanvas* canvas : {canvas_, second_}) connect(&document_, &Document::staleChanged, canvas, &FrameCanvas::setStale);
 }
 
 void FramePanel::buildToolbar(QVBoxLayout* column) {
@@ -65,33 +113,6 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
   row->addSpacing(6);
   row->addWidget(role_);
   row->addStretch(1);
-  auto* legend = new QHBoxLayout;
-  legend->setContentsMargins(4, 0, 4, 3);
-  legend->setSpacing(2);
-  toggles_ = {{viz::OverlayRole::ObservedContour, "frame/observed", QT_TR_NOOP("Observed"), nullptr},
-              {viz::OverlayRole::ObservedEllipse, "frame/observed-ellipse", QT_TR_NOOP("Obs. ellipse"), nullptr},
-              {viz::OverlayRole::PredictedContour, "frame/predicted", QT_TR_NOOP("Predicted"), nullptr},
-              {viz::OverlayRole::PredictedEllipse, "frame/predicted-ellipse", QT_TR_NOOP("Pred. ellipse"), nullptr},
-              {viz::OverlayRole::CanonicalEllipse, "frame/canonical", QT_TR_NOOP("Canonical"), nullptr},
-              {viz::OverlayRole::ObservedPeak, "frame/peak", QT_TR_NOOP("Peaks"), nullptr}};
-  const char* const tips[] = {QT_TR_NOOP("Contour found in the photograph, at the contour level: white"),
-                              QT_TR_NOOP("Ellipse fitted to the observed contour: grey, dashed"),
-                              QT_TR_NOOP("Contour that each model predicts, in its colour; dotted where directions failed"),
-                              QT_TR_NOOP("Ellipse fitted to each predicted contour, dashed"),
-                              QT_TR_NOOP("Ellipse of the canonical contour on the tangent plane: dotted, training frames only"),
-                              QT_TR_NOOP("Observed peak: cross; predicted brightest points: circles")};
-  for (Toggle& t : toggles_) {
-    t.button = new QToolButton;
-    t.button->setObjectName(QLatin1String(t.name));
-    t.button->setText(tr(t.title));
-    t.button->setToolTip(tr(tips[&t - toggles_.data()]));
-    t.button->setCheckable(true);
-    t.button->setAutoRaise(true);
-    connect(t.button, &QToolButton::clicked, this,
-            [this, name = t.name, title = t.title](bool on) { document_.setLayerVisible(name, title, on); });
-    legend->addWidget(t.button);
-  }
-  legend->addStretch(1);
   const auto tool = [&](const char* iconName, const QString& tip) {
     auto* button = new QToolButton;
     button->setIcon(icon(QLatin1String(iconName)));
@@ -100,21 +121,6 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
     row->addWidget(button);
     return button;
   };
-  auto* sun = new QLabel(tr("Exposure"));
-  sun->setProperty("role", "faded");
-  row->addWidget(sun);
-  exposure_ = new QSlider(Qt::Horizontal);
-  exposure_->setObjectName(QStringLiteral("exposure"));
-  exposure_->setRange(-8, 24);  // quarters of a stop
-  exposure_->setPageStep(4);
-  exposure_->setFixedWidth(72);
-  exposure_->setFocusPolicy(Qt::NoFocus);  // arrow keys step through the frames
-  exposure_->setToolTip(tr("Brightness of the photograph on screen, -2 to +6 stops; changes no result"));
-  connect(exposure_, &QSlider::valueChanged, this, [this, sun](int quarters) {
-    canvas_->setExposure(quarters / 4.0);
-    sun->setText(quarters == 0 ? tr("Exposure") : tr("%1%2 stops").arg(quarters > 0 ? "+" : "").arg(quarters / 4.0));
-  });
-  row->addWidget(exposure_);
   zoom_ = new QLabel;
   zoom_->setProperty("role", "faded");
   zoom_->setMinimumWidth(fontMetrics().horizontalAdvance(QStringLiteral("51200 %")));
@@ -123,61 +129,148 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
   connect(tool("highlight", tr("Zoom to the highlight (F or H)")), &QToolButton::clicked, this, &FramePanel::goToHighlight);
   connect(tool("pixels", tr("One screen pixel per photograph pixel (1)")), &QToolButton::clicked, canvas_,
           &FrameCanvas::onePixelPerPixel);
-  connect(tool("fit", tr("Whole photograph (0, double click)")), &QToolButton::clicked, canvas_, &FrameCanvas::fit);
+  connect(tool("fit", tr("Whole photograph (0, double click)")), &QToolButton::clicked, this, [this] {
+    canvas_->fit();
+    second_->fit();
+  });
+  sideBySide_ = tool("side-by-side", tr("Two frames side by side, with tangent epipolar lines (D)"));
+  sideBySide_->setObjectName(QStringLiteral("sideBySide"));
+  sideBySide_->setCheckable(true);
+  connect(sideBySide_, &QToolButton::clicked, this, [this](bool on) {
+    document_.setOption("frame/side-by-side", on ? "on" : "off", on ? tr("Two frames side by side") : tr("One frame"));
+  });
   column->addWidget(bar);
-  column->addLayout(legend);
+  develop_ = new DevelopBar(document_);
+  column->addWidget(develop_);
+  auto* legend = new QWidget;
+  auto* flow = new FlowLayout;
+  flow->setContentsMargins(4, 0, 4, 3);
+  legend->setLayout(flow);
+  for (const viz::OverlayLayer& layer : viz::overlayLayers()) {
+    auto* button = new QToolButton;
+    button->setObjectName(QLatin1String(layer.name));
+    button->setText(tr(layer.title));
+    button->setToolTip(tr(layer.tip));
+    button->setCheckable(true);
+    button->setAutoRaise(true);
+    connect(button, &QToolButton::clicked, this,
+            [this, &layer](bool on) { document_.setLayerVisible(layer.name, layer.title, on); });
+    flow->addWidget(button);
+    toggles_.push_back(button);
+  }
+  column->addWidget(legend);
+  pair_ = new PairBar(document_);
+  column->addWidget(pair_);
 }
+
+bool FramePanel::busy() const { return refresh_.isActive() || loader_.busy() || secondLoader_.busy(); }
 
 void FramePanel::showScene() {
   loader_.setScene(document_.sharedScene());
-  canvas_->setPhotograph(QImage());
-  canvas_->fit();
+  secondLoader_.setScene(document_.sharedScene());
+  for (FrameCanvas* canvas : {canvas_, second_}) {
+    canvas->setPhotograph(QImage());
+    canvas->fit();
+  }
+  showLook();
   showFrame();
 }
 
-void FramePanel::showFrame() {
-  const int frame = document_.selection().frame;
+void FramePanel::showLook() {
+  const FrameSource source = DevelopBar::source(document_);
+  const viz::Development development = DevelopBar::development(document_);
+  loader_.setLook(source, development);
+  secondLoader_.setLook(source, development);
+  for (FrameCanvas* canvas : {canvas_, second_})
+    canvas->setScale(development.falseColour ? viz::falseColourTicks(development) : std::vector<viz::ScaleTick>());
+}
+
+void FramePanel::showTitle() {
   if (!document_.scene()) {
     title_->clear();
     role_->hide();
     canvas_->setMessage(QString());
-  } else {
-    static const char* const roles[] = {QT_TR_NOOP("training"), QT_TR_NOOP("held out"), QT_TR_NOOP("excluded")};
-    const viz::Colour colours[] = {viz::kTraining, {0.38, 0.38, 0.38}, viz::kFailed};
-    const int role = int(document_.role(frame));
-    title_->setText(QStringLiteral("<b>%1</b>").arg(toQString(document_.scene()->frames[std::size_t(frame)].id).toHtmlEscaped()));
-    role_->setText(tr(roles[role]));
-    role_->setStyleSheet(
-        QStringLiteral("background: %1; color: white; border-radius: 3px; padding: 1px 6px").arg(toQColor(colours[role]).name()));
-    role_->show();
-    loader_.want(frame);
+    return;
+  }
+  const int frame = document_.selection().frame;
+  static const char* const roles[] = {QT_TR_NOOP("training"), QT_TR_NOOP("held out"), QT_TR_NOOP("excluded")};
+  const viz::Colour colours[] = {viz::kTraining, {0.38, 0.38, 0.38}, viz::kFailed};
+  const int role = int(document_.role(frame));
+  title_->setText(QStringLiteral("<b>%1</b>").arg(toQString(document_.scene()->frames[std::size_t(frame)].id).toHtmlEscaped()));
+  role_->setText(tr(roles[role]));
+  role_->setStyleSheet(
+      QStringLiteral("background: %1; color: white; border-radius: 3px; padding: 1px 6px").arg(toQColor(colours[role]).name()));
+  role_->show();
+}
+
+void FramePanel::showFrame() {
+  refresh_.stop();
+  showTitle();
+  const bool two = document_.scene() && pair_->on();
+  sideBySide_->setChecked(two);
+  if (two != second_->isVisibleTo(this)) {
+    second_->setVisible(two);
+    second_->fit();
+  }
+  if (document_.scene()) {
+    loader_.want(document_.selection().frame);
+    if (two) secondLoader_.want(pair_->secondFrame());
   }
   showOverlay();
 }
 
-void FramePanel::showOverlay() {
+viz::OverlayOptions FramePanel::overlayOptions() const {
   viz::OverlayOptions options;
-  for (const Toggle& t : toggles_) {
-    const bool on = document_.layerVisible(t.name);
-    t.button->setChecked(on);
-    if (!on) options.hidden.insert(t.role);
-  }
+  for (const viz::OverlayLayer& layer : viz::overlayLayers())
+    if (!document_.layerVisible(layer.name)) options.hidden.insert(layer.role);
   if (options.hidden.count(viz::OverlayRole::ObservedPeak)) options.hidden.insert(viz::OverlayRole::PredictedPeak);
+  for (const std::string& model : document_.request().models)
+    if (!document_.layerVisible(kModelLayer + model)) options.hiddenModels.insert(model);
+  options.colourByRole = document_.option("frame/colour-by", std::string("model")) == "role";
+  options.residualScale = std::clamp(document_.option("frame/residual-scale", 1.0), 1.0, 1000.0);
+  options.selection = document_.selection();
+  return options;
+}
+
+void FramePanel::showOverlay() {
+  const std::vector<viz::OverlayLayer>& layers = viz::overlayLayers();
+  for (std::size_t i = 0; i < layers.size(); ++i) toggles_[i]->setChecked(document_.layerVisible(layers[i].name));
+  for (const auto& [name, action] : layerActions_) action->setChecked(document_.layerVisible(name));
+  const viz::OverlayOptions options = overlayOptions();
+  if (colourByRole_) colourByRole_->setChecked(options.colourByRole);
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
   const int frame = document_.selection().frame;
-  viz::FrameOverlay overlay;
-  if (inspection && frame < int(inspection->evidence.size())) overlay = viz::frameOverlay(*inspection, frame, options);
-  showCaptions(overlay);
-  canvas_->setOverlay(std::move(overlay));
+  const bool two = document_.scene() && pair_->on();
+  shown_ = shownSecond_ = {};
+  if (inspection && frame < int(inspection->evidence.size())) shown_ = viz::frameOverlay(*inspection, frame, options);
+  showCaptions(shown_);
+  if (two) {
+    const int second = pair_->secondFrame();
+    if (inspection && second < int(inspection->evidence.size())) {
+      shownSecond_ = viz::frameOverlay(*inspection, second, options);
+      pair_->addLines(shown_, shownSecond_);
+    }
+    const auto& frames = document_.scene()->frames;
+    canvas_->setCaption(toQString(frames[std::size_t(frame)].id));
+    second_->setCaption(toQString(frames[std::size_t(second)].id));
+    second_->setOverlay(shownSecond_);
+  } else {
+    canvas_->setCaption(QString());
+  }
+  canvas_->setOverlay(shown_);
 }
 
 void FramePanel::showCaptions(const viz::FrameOverlay& overlay) {
   const QString faded = palette().color(QPalette::PlaceholderText).name(), warning = warningColour().name();
+  const QString plain = palette().color(QPalette::Text).name();
   const auto cell = [](const QString& text, const char* align = "right") {
     return QStringLiteral("<td align='%1' style='padding-right:16px'>%2</td>").arg(QLatin1String(align), text);
   };
   const auto number = [&](const std::optional<double>& value, int digits) {
     return cell(value ? QString::number(*value, 'f', digits) : QStringLiteral("–"));
+  };
+  const auto link = [](const QString& target, const QString& colour, const QString& text) {
+    return QStringLiteral("<a href='%1' style='color:%2; text-decoration:none'>%3</a>").arg(target, colour, text);
   };
   QString rows;
   QStringList notes;
@@ -190,13 +283,18 @@ void FramePanel::showCaptions(const viz::FrameOverlay& overlay) {
     if (!c.score.reason.empty()) said << toQString(c.score.reason);
     if (c.score.missed > 0 && c.score.reason.empty()) said << tr("%1 missed").arg(c.score.missed);
     if (c.score.spurious > 0) said << tr("%1 spurious").arg(c.score.spurious);
-    const bool any = c.score.matched > 0;
-    rows += QStringLiteral("<tr>") +
-            cell(QStringLiteral("<span style='color:%1'>■</span>&nbsp;%2")
-                     .arg(toQColor(c.colour).name(), toQString(c.model).toHtmlEscaped()),
-                 "left") +
-            number(c.score.errorPct, 2) + number(c.score.errorPx, 2) + number(any ? c.score.iou : std::nullopt, 3) +
-            QStringLiteral("<td style='color:%1'>%2</td></tr>").arg(warning, said.join(QStringLiteral(", ")).toHtmlEscaped());
+    const bool any = c.score.matched > 0, selected = document_.selection().model == c.model;
+    const QString model = toQString(c.model).toHtmlEscaped();
+    const bool shown = document_.layerVisible(kModelLayer + c.model);
+    rows +=
+        QStringLiteral("<tr>") +
+        cell(link(QStringLiteral("show:") + model, toQColor(c.colour).name(), shown ? QStringLiteral("■") : QStringLiteral("□")) +
+                 QStringLiteral("&nbsp;") +
+                 link(QStringLiteral("select:") + model, shown ? plain : faded,
+                      selected ? QStringLiteral("<b>%1</b>").arg(model) : model),
+             "left") +
+        number(c.score.errorPct, 2) + number(c.score.errorPx, 2) + number(any ? c.score.iou : std::nullopt, 3) +
+        QStringLiteral("<td style='color:%1'>%2</td></tr>").arg(warning, said.join(QStringLiteral(", ")).toHtmlEscaped());
   }
   QString html;
   for (const QString& note : notes) html += QStringLiteral("<div style='color:%1'>%2</div>").arg(warning, note);
@@ -208,33 +306,52 @@ void FramePanel::showCaptions(const viz::FrameOverlay& overlay) {
   captions_->setVisible(!html.isEmpty());
 }
 
+void FramePanel::followLink(const QString& target) {
+  const std::string model = target.section(QLatin1Char(':'), 1).toStdString();
+  if (target.startsWith(QStringLiteral("show:"))) {
+    const std::string layer = kModelLayer + model;
+    document_.setLayerVisible(layer, model, !document_.layerVisible(layer));
+  } else {
+    viz::Selection s = document_.selection();
+    s.model = s.model == model ? std::string() : model;
+    document_.select(s);
+  }
+}
+
 void FramePanel::selectAt(double x, double y) {
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  if (!inspection) return;
+  document_.select(
+      viz::pickInFrame(*inspection, document_.selection(), shown_, {x, y}, FrameCanvas::kNearScreenPx / canvas_->zoom()));
+}
+
+void FramePanel::selectModelAt(double x, double y) {
+  const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  if (!inspection) return;
+  viz::Selection there = document_.selection();
+  there.frame = pair_->secondFrame();
   viz::Selection s = document_.selection();
-  s.highlight = -1;
-  if (inspection && s.frame < int(inspection->evidence.size())) {
-    const std::vector<Highlight>& highlights = inspection->evidence[std::size_t(s.frame)].highlights;
-    const Pixel ideal = document_.scene()->frames[std::size_t(s.frame)].camera.undistorted({x, y});
-    for (int i = 0; i < int(highlights.size()) && s.highlight < 0; ++i)
-      if (contains(highlights[std::size_t(i)].contour, ideal)) s.highlight = i;
-  }
+  s.model = viz::pickInFrame(*inspection, there, shownSecond_, {x, y}, FrameCanvas::kNearScreenPx / second_->zoom()).model;
   document_.select(s);
 }
 
 void FramePanel::goToHighlight() {
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
-  const int frame = document_.selection().frame;
-  if (!inspection || frame >= int(inspection->evidence.size())) return;
-  const std::vector<Highlight>& highlights = inspection->evidence[std::size_t(frame)].highlights;
-  if (highlights.empty()) return;
-  const int index = std::clamp(document_.selection().highlight, 0, int(highlights.size()) - 1);
-  Eigen::AlignedBox2d box;
-  for (const Pixel& p : highlights[std::size_t(index)].contour.points)
-    box.extend(document_.scene()->frames[std::size_t(frame)].camera.distorted(p));
-  if (box.isEmpty()) return;
-  const Eigen::Vector2d size = box.sizes().cwiseMax(4.0);
-  // The highlight fills half of the canvas, so that its surroundings show.
-  canvas_->lookAt(box.center(), 0.5 * std::min(canvas_->width() / size.x(), canvas_->height() / size.y()));
+  if (!inspection) return;
+  const auto look = [&](FrameCanvas* canvas, int frame, int highlight) {
+    if (frame >= int(inspection->evidence.size())) return;
+    const std::vector<Highlight>& highlights = inspection->evidence[std::size_t(frame)].highlights;
+    if (highlights.empty()) return;
+    Eigen::AlignedBox2d box;
+    for (const Pixel& p : highlights[std::size_t(std::clamp(highlight, 0, int(highlights.size()) - 1))].contour.points)
+      box.extend(document_.scene()->frames[std::size_t(frame)].camera.distorted(p));
+    if (box.isEmpty()) return;
+    const Eigen::Vector2d size = box.sizes().cwiseMax(4.0);
+    // The highlight fills half of the canvas, so that its surroundings show.
+    canvas->lookAt(box.center(), 0.5 * std::min(canvas->width() / size.x(), canvas->height() / size.y()));
+  };
+  look(canvas_, document_.selection().frame, document_.selection().highlight);
+  if (pair_->on()) look(second_, pair_->secondFrame(), -1);
 }
 
 void FramePanel::addActions(Actions& actions, QMenu* menu) {
@@ -243,6 +360,40 @@ void FramePanel::addActions(Actions& actions, QMenu* menu) {
   actions.add("frame.fit", menu, tr("&Whole photograph"), [this] { canvas_->fit(); }, {{Qt::Key_0}, "fit"});
   actions.add("frame.pixels", menu, tr("Screen pixel per pixel"), [this] { canvas_->onePixelPerPixel(); },
               {{Qt::Key_1}, "pixels"});
+  const auto zoom = [this](double factor) { canvas_->setZoom(canvas_->zoom() * factor, QRectF(canvas_->rect()).center()); };
+  actions.add("frame.zoom-in", menu, tr("Zoom &in"), [zoom] { zoom(2); }, {{QKeySequence("Ctrl+Alt+Up")}});
+  actions.add("frame.zoom-out", menu, tr("Zoom &out"), [zoom] { zoom(0.5); }, {{QKeySequence("Ctrl+Alt+Down")}});
+  actions.add("frame.values", menu, tr("Zoom to pixel &values"),
+              [this] { canvas_->setZoom(1.2 * FrameCanvas::kValuesFromZoom, QRectF(canvas_->rect()).center()); });
+  develop_->addActions(actions, menu->addMenu(tr("&Picture")));
+  QMenu* overlays = menu->addMenu(tr("O&verlays"));
+  for (const viz::OverlayLayer& layer : viz::overlayLayers())
+    layerActions_[layer.name] = actions.addToggle(
+        QStringLiteral("frame.show-") + QString(QLatin1String(layer.name)).section('/', 1), overlays, tr(layer.title),
+        [this, &layer](bool on) { document_.setLayerVisible(layer.name, layer.title, on); }, {{}, {}, tr(layer.tip)});
+  for (const auto& model : allModels()) {
+    const std::string id = model->id(), layer = kModelLayer + id;
+    layerActions_[layer] =
+        actions.addToggle(QStringLiteral("frame.show-model-") + toQString(id), overlays, tr("Model %1").arg(toQString(id)),
+                          [this, id, layer](bool on) { document_.setLayerVisible(layer, id, on); }, {});
+  }
+  colourByRole_ = actions.addToggle("frame.colour-by-role", overlays, tr("Colour predictions by the frame's &role"),
+                                    [this](bool on) {
+                                      document_.setOption("frame/colour-by", on ? "role" : "model",
+                                                          on ? tr("Colour by role") : tr("Colour by model"));
+                                    },
+                                    {});
+  for (const int scale : {1, 10, 100})
+    actions.add(QStringLiteral("frame.residuals-x%1").arg(scale), overlays, tr("Residual arrows × %1").arg(scale), [this, scale] {
+      if (document_.layerVisible("frame/residuals"))
+        return document_.setOption("frame/residual-scale", double(scale), tr("Residual arrows × %1").arg(scale));
+      document_.undoStack()->beginMacro(tr("Residual arrows × %1").arg(scale));
+      document_.setOption("frame/residual-scale", double(scale), QString());
+      document_.setLayerVisible("frame/residuals", "Residuals", true);
+      document_.undoStack()->endMacro();
+    });
+  pair_->addActions(actions, menu->addMenu(tr("&Side by side")));
+  showOverlay();
 }
 
 }  // namespace glint::gui

@@ -1,32 +1,42 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <QList>
+#include <QTimer>
 #include <QWidget>
+#include <map>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "gui/base/actions.h"
 #include "gui/document/document.h"
 #include "gui/frame/photo_loader.h"
+#include "gui/frame/pixel_probe.h"
 #include "viz/frame_overlay.h"
 
 class QLabel;
-class QSlider;
 class QToolButton;
-class QHBoxLayout;
 class QVBoxLayout;
 
 namespace glint::gui {
 
+class DevelopBar;
 class FrameCanvas;
+class PairBar;
 
-/// The frame view: the selected frame's photograph with its overlay, a legend whose entries are toggles, and below it one line
-/// per model with its error or the reason for none, as a table.
+/// The frame view: the selected frame's photograph or radiance with its overlay, beside it another frame when wished, a legend
+/// whose entries are toggles, and below it one line per model with its error or the reason for none, as a table whose squares
+/// show and hide the model.
 class FramePanel : public QWidget {
   Q_OBJECT
  public:
   explicit FramePanel(Document& document, QWidget* parent = nullptr);
   FrameCanvas* canvas() const { return canvas_; }
+  FrameCanvas* secondCanvas() const { return second_; }
   PhotoLoader* loader() { return &loader_; }
+  /// Something is still being read, developed or waiting to be drawn.
+  bool busy() const;
   void addActions(Actions& actions, QMenu* menu);
   /// Zooms to the selected frame's highlights.
   void goToHighlight();
@@ -35,28 +45,33 @@ class FramePanel : public QWidget {
   void probed(const QString& text);
 
  private:
-  struct Toggle {
-    viz::OverlayRole role;
-    const char* name;  ///< layer name "frame/NAME"
-    const char* title;
-    QToolButton* button;
-  };
   void buildToolbar(QVBoxLayout* column);
+  void connectDocument();
   void showScene();
   void showFrame();
+  void showTitle();
+  void showLook();
   void showOverlay();
   void showCaptions(const viz::FrameOverlay& overlay);
   void selectAt(double x, double y);
+  void selectModelAt(double x, double y);
+  void followLink(const QString& link);
+  viz::OverlayOptions overlayOptions() const;
 
   Document& document_;
-  PhotoLoader loader_;
-  FrameCanvas* canvas_;
-  QLabel* title_;
-  QLabel* role_;
-  QSlider* exposure_;
-  QLabel* zoom_;
-  QLabel* captions_;
-  std::vector<Toggle> toggles_;
+  PhotoLoader loader_, secondLoader_;
+  PixelProbeWorker probe_;
+  FrameCanvas *canvas_, *second_;
+  DevelopBar* develop_;
+  PairBar* pair_;
+  QLabel *title_, *role_, *zoom_, *captions_;
+  QToolButton* sideBySide_;
+  std::vector<QToolButton*> toggles_;             ///< one per viz::overlayLayers()
+  std::map<std::string, QAction*> layerActions_;  ///< by layer name
+  QAction* colourByRole_ = nullptr;
+  viz::FrameOverlay shown_, shownSecond_;
+  QTimer refresh_;  ///< many selections at once are drawn once
+  int probedFrame_ = -1;
 };
 
 }  // namespace glint::gui

@@ -10,10 +10,19 @@
 #include <memory>
 
 #include "core/scene/scene.h"
+#include "viz/develop.h"
 
 namespace glint::gui {
 
-/// Reads photographs on a thread of its own and keeps the last ones. Only the newest wish is answered:
+/// A frame's image: the numbers, and how they look on screen.
+struct FramePicture {
+  std::shared_ptr<const Image> values;  ///< null for a picture without numbers
+  viz::Values kind = viz::Values::Srgb;
+  std::shared_ptr<const viz::Picture8> developed;
+  QImage shown;  ///< shares the pixels of `developed`
+};
+
+/// Reads and develops photographs or radiances on a thread of its own and keeps the last ones. Only the newest wish is answered:
 /// scrubbing over hundreds of frames reads those that one stops at.
 class PhotoLoader : public QObject {
   Q_OBJECT
@@ -21,23 +30,36 @@ class PhotoLoader : public QObject {
   explicit PhotoLoader(QObject* parent = nullptr);
   ~PhotoLoader() override;
   void setScene(std::shared_ptr<const Scene> scene);
-  /// Answers with loaded() or failed(), at once when the photograph is kept.
+  /// What is shown and how; the last wish is answered again when this changes it.
+  void setLook(FrameSource source, const viz::Development& development);
+  /// Answers with loaded() or failed(), at once when the frame was the last one.
   void want(int frame);
   bool busy() const { return pending_ > 0; }
+  int reads() const { return reads_; }  ///< files decoded so far
+  /// The last answer.
+  const FramePicture& picture() const { return last_; }
+  int pictureFrame() const { return lastFrame_; }
 
  signals:
-  void loaded(int frame, const QImage& photograph);
+  void loaded(int frame, const glint::gui::FramePicture& picture);
   void failed(int frame, const QString& reason);
   void idle();
 
  private:
-  void deliver(int ticket, int frame, const QImage& image, const QString& reason);
+  using Kept = std::shared_ptr<const Image>;
+  void deliver(int ticket, int frame, const Kept& values, const FramePicture& picture, const QString& reason);
+  int keyOf(int frame) const { return 2 * frame + (source_ == FrameSource::Radiance ? 1 : 0); }
 
   std::shared_ptr<const Scene> scene_;
-  QCache<int, QImage> kept_{256};  ///< cost in MiB
+  FrameSource source_ = FrameSource::Image;
+  viz::Development development_;
+  int wanted_ = -1;
+  QCache<int, Kept> kept_{384};  ///< decoded images by keyOf, cost in MiB
+  FramePicture last_;
+  int lastFrame_ = -1;
   QThread thread_;
   QObject* worker_;
-  std::atomic<int> newest_{0};
+  std::atomic<int> newest_{0}, reads_{0};
   int pending_ = 0;
 };
 

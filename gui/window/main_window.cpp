@@ -26,6 +26,7 @@
 #include "gui/base/text.h"
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/frame_panel.h"
+#include "gui/frame/ladder_panel.h"
 #include "gui/panels/error_table.h"
 #include "gui/panels/numbers_panel.h"
 #include "gui/panels/parameter_panel.h"
@@ -213,6 +214,8 @@ void MainWindow::buildDocks() {
   log_->setReadOnly(true);
   log_->setMaximumBlockCount(2000);
   tabifyDockWidget(errors, addDock("log", tr("Log"), log_, Qt::BottomDockWidgetArea));
+  ladder_ = new LadderPanel(document_, *frame_->loader());
+  tabifyDockWidget(errors, addDock("ladder", tr("Ladder"), ladder_, Qt::BottomDockWidgetArea));
   tradeoff_ = new TradeoffPanel(document_);
   tabifyDockWidget(errors, addDock("tradeoff", tr("Speed and accuracy"), tradeoff_, Qt::BottomDockWidgetArea));
   connect(tradeoff_, &TradeoffPanel::measureRequested, this, [this] {
@@ -276,6 +279,7 @@ void MainWindow::buildMenus() {
   timeline_->addActions(actions_, frame);
   frame->addSeparator();
   frame_->addActions(actions_, frame);
+  ladder_->addActions(actions_, frame);
 
   QMenu* plots = menuBar()->addMenu(tr("&Plots"));
   plots_->addActions(actions_, plots);
@@ -329,14 +333,16 @@ void MainWindow::applyLayout(const QString& name) {
     // Log and history are tabs behind their neighbours: they follow them.
     const QString host = dock.key() == QStringLiteral("log")        ? QStringLiteral("errors")
                          : dock.key() == QStringLiteral("tradeoff") ? QStringLiteral("errors")
+                         : dock.key() == QStringLiteral("ladder")   ? QStringLiteral("errors")
                          : dock.key() == QStringLiteral("what-if")  ? QStringLiteral("parameters")
                          : dock.key() == QStringLiteral("history")  ? QStringLiteral("layers")
                                                                     : dock.key();
     dock.value()->setVisible(layout.docks.contains(host));
   }
   for (const char* front : {"errors", "layers", "parameters"}) docks_[QLatin1String(front)]->raise();
+  if (layout_ == QStringLiteral("compare")) docks_["ladder"]->raise();
   resizeDocks({docks_["setup"], docks_["parameters"]}, {230, 380}, Qt::Horizontal);
-  resizeDocks({docks_["timeline"], docks_["errors"]}, {92, height() * 3 / 10}, Qt::Vertical);
+  resizeDocks({docks_["timeline"], docks_["errors"]}, {150, height() * 3 / 10}, Qt::Vertical);
   resizeDocks({docks_["setup"], docks_["layers"]}, {284, 264}, Qt::Vertical);
   resizeDocks({docks_["parameters"], docks_["conditioning"], docks_["numbers"]}, {400, 290, 210}, Qt::Vertical);
   resizeDocks({docks_["errors"], docks_["plots"]}, {1, 1}, Qt::Horizontal);
@@ -381,7 +387,7 @@ void MainWindow::offerRecovery() {
                            }}});
 }
 
-bool MainWindow::idle() const { return !runner_.busy() && !frame_->loader()->busy() && !scene_->busy() && plots_->idle(); }
+bool MainWindow::idle() const { return !runner_.busy() && !frame_->busy() && !timeline_->busy() && !scene_->busy() && plots_->idle(); }
 
 QPixmap MainWindow::picture() {
   if (centre_->currentWidget() == views_) scene_->renderNow();

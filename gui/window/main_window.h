@@ -21,6 +21,7 @@ namespace glint::gui {
 class ErrorTable;
 class FileActions;
 class FramePanel;
+class LadderPanel;
 class MessageBar;
 class NumbersPanel;
 class Palette;
@@ -96,6 +97,7 @@ class MainWindow : public QMainWindow {
   Palette* palette_ = nullptr;
   PlotsPanel* plots_ = nullptr;
   SetupPanel* setup_ = nullptr;
+  LadderPanel* ladder_ = nullptr;
   TradeoffPanel* tradeoff_ = nullptr;
   QPlainTextEdit* log_ = nullptr;
   MessageBar* messageBar_ = nullptr;

@@ -96,22 +96,6 @@ class FrameCanvasTest : public QObject {
     }
   }
 
-  /// A stop is twice the light: sRGB 0.25 linear 0.0509 -> two stops 0.2035 -> sRGB 0.489 (IEC 61966-2-1).
-  void exposureChangesThePictureOnly() {
-    QImage photograph(640, 480, QImage::Format_RGB888);
-    photograph.fill(QColor::fromRgbF(0.25, 0.25, 0.25));
-    canvas_->setPhotograph(photograph);
-    canvas_->setExposure(2);
-    QVERIFY(std::abs(qGreen(grabbed(*canvas_).pixel(200, 200)) - 0.489 * 255) <= 1.5);
-    QSignalSpy probed(canvas_.get(), &FrameCanvas::probed);
-    QMouseEvent move(QEvent::MouseMove, QPointF(21, 31), QPointF(21, 31), QPointF(21, 31), Qt::NoButton, Qt::NoButton,
-                     Qt::NoModifier);
-    QCoreApplication::sendEvent(canvas_.get(), &move);
-    QVERIFY2(probed.last()[0].toString().contains("sRGB 64 64 64"), qPrintable(probed.last()[0].toString()));
-    canvas_->setExposure(0);
-    QCOMPARE(qGreen(grabbed(*canvas_).pixel(200, 200)), 64);
-  }
-
   void wheelKeepsThePixelUnderTheMouse() {
     const QPointF at(200, 150);
     const Pixel before = canvas_->pixelFromWidget(at);

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/frame/ladder_panel.h"
+
+#include <QLabel>
+#include <QMouseEvent>
+#include <QVBoxLayout>
+#include <algorithm>
+
+#include "gui/base/text.h"
+#include "gui/base/theme.h"
+#include "gui/frame/frame_canvas.h"
+#include "gui/frame/photo_loader.h"
+#include "viz/frame_overlay.h"
+#include "viz/frame_pick.h"
+#include "viz/pictures.h"
+
+namespace glint::gui {
+
+namespace {
+constexpr int kGap = 4;
+}
+
+LadderPanel::LadderPanel(Document& document, PhotoLoader& loader, QWidget* parent)
+    : QWidget(parent), document_(document), loader_(loader) {
+  empty_ = new QLabel(tr("No model was computed yet"), this);
+  empty_->setAlignment(Qt::AlignCenter);
+  refresh_.setSingleShot(true);
+  refresh_.setInterval(0);
+  connect(&refresh_, &QTimer::timeout, this, &LadderPanel::refresh);
+  for (const auto signal : {&Document::sceneOpened, &Document::selectionChanged, &Document::layersChanged,
+                            &Document::optionsChanged, &Document::inspectionChanged})
+    connect(&document_, signal, this, &LadderPanel::scheduleRefresh);
+  connect(&document_, &Document::sceneOpened, this, [this] {
+    frame_ = -1;
+    moved_ = false;
+  });
+  connect(&document_, &Document::staleChanged, this, [this](bool stale) {
+    for (const Tile& tile : tiles_) tile.canvas->setStale(stale);
+  });
+  connect(&loader_, &PhotoLoader::loaded, this, [this](int frame, const FramePicture& picture) {
+    if (frame != document_.selection().frame || !isVisible()) return;
+    for (const Tile& tile : tiles_) tile.canvas->setPicture(picture);
+    arrange();
+  });
+  connect(&loader_, &PhotoLoader::failed, this, [this](int frame, const QString& reason) {
+    if (frame != document_.selection().frame) return;
+    for (const Tile& tile : tiles_) tile.canvas->setMessage(reason);
+  });
+}
+
+std::vector<FrameCanvas*> LadderPanel::canvases() const {
+  std::vector<FrameCanvas*> all;
+  for (const Tile& tile : tiles_) all.push_back(tile.canvas);
+  return all;
+}
+
+void LadderPanel::scheduleRefresh() {
+  if (isVisible()) refresh_.start();
+}
+
+void LadderPanel::showEvent(QShowEvent*) { refresh(); }
+void LadderPanel::resizeEvent(QResizeEvent*) { arrange(); }
+
+void LadderPanel::refresh() {
+  const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  const int frame = document_.selection().frame;
+  const bool any = inspection && frame < int(inspection->evidence.size());
+  const std::vector<std::string> models = any ? viz::modelsInOrder(*inspection) : std::vector<std::string>();
+  std::vector<std::string> shown;
+  for (const Tile& tile : tiles_) shown.push_back(tile.model);
+  if (models != shown) rebuild(models);
+  empty_->setVisible(models.empty());
+  for (Tile& tile : tiles_) showTile(tile);
+  if (frame != frame_ || whole_) {
+    frame_ = frame;
+    const std::optional<viz::Crop> crop = any ? viz::highlightCrop(*inspection, frame, {}, 0) : std::nullopt;
+    whole_ = !crop;
+    if (crop) crop_ = *crop;
+    if (!crop && document_.scene()) {
+      const Camera& camera = document_.scene()->frames[std::size_t(frame)].camera;
+      crop_ = {-0.5, -0.5, double(camera.width), double(camera.height)};
+    }
+  }
+  arrange();
+}
+
+void LadderPanel::rebuild(const std::vector<std::string>& models) {
+  for (const Tile& tile : tiles_) tile.box->deleteLater();
+  tiles_.clear();
+  for (const std::string& model : models) {
+    Tile tile{model, new QWidget(this), new FrameCanvas, new QLabel};
+    tile.canvas->setObjectName(QStringLiteral("ladder:") + toQString(model));
+    tile.canvas->setMinimumSize(24, 24);
+    tile.canvas->setStale(document_.stale());
+    tile.text->setTextFormat(Qt::RichText);
+    tile.text->setMargin(2);
+    auto* column = new QVBoxLayout(tile.box);
+    column->setContentsMargins(0, 0, 0, 0);
+    column->setSpacing(0);
+    column->addWidget(tile.canvas, 1);
+    column->addWidget(tile.text);
+    connect(tile.canvas, &FrameCanvas::clicked, this, [this, model](double x, double y) { selectIn(model, x, y); });
+    connect(tile.canvas, &FrameCanvas::viewMoved, this, [this, canvas = tile.canvas] {
+      moved_ = true;
+      for (const Tile& other : tiles_)
+        if (other.canvas != canvas) other.canvas->lookAt(canvas->centre(), canvas->zoom());
+    });
+    if (loader_.pictureFrame() == document_.selection().frame) tile.canvas->setPicture(loader_.picture());
+    tile.box->show();
+    tiles_.push_back(tile);
+  }
+}
+
+void LadderPanel::arrange() {
+  empty_->setGeometry(rect());
+  if (tiles_.empty() || crop_.width <= 0) return;
+  const int foot = tiles_.front().text->sizeHint().height();
+  const int count = int(tiles_.size());
+  const int columns = viz::ladderColumns(count, width(), height(), foot + kGap, crop_.width / crop_.height);
+  const int rows = (count + columns - 1) / columns;
+  for (int i = 0; i < count; ++i) {
+    const int column = i % columns, row = i / columns;
+    const int left = column * (width() + kGap) / columns, right = (column + 1) * (width() + kGap) / columns - kGap;
+    const int top = row * (height() + kGap) / rows, bottom = (row + 1) * (height() + kGap) / rows - kGap;
+    tiles_[std::size_t(i)].box->setGeometry(left, top, right - left, bottom - top);
+    tiles_[std::size_t(i)].box->layout()->activate();
+  }
+  const Pixel centre(crop_.x + crop_.width / 2, crop_.y + crop_.height / 2);
+  const FrameCanvas* first = tiles_.front().canvas;
+  // All tiles show the same zoom although their sizes may differ by a pixel.
+  const double zoom = moved_ ? first->zoom() : std::min(first->width() / crop_.width, first->height() / crop_.height);
+  for (const Tile& tile : tiles_) tile.canvas->lookAt(centre, zoom);
+}
+
+void LadderPanel::showTile(Tile& tile) {
+  const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  const int frame = document_.selection().frame;
+  viz::OverlayOptions options;
+  options.models = {tile.model};
+  options.selection = document_.selection();
+  for (const viz::OverlayLayer& layer : viz::overlayLayers())
+    if (!document_.layerVisible(layer.name)) options.hidden.insert(layer.role);
+  if (options.hidden.count(viz::OverlayRole::ObservedPeak)) options.hidden.insert(viz::OverlayRole::PredictedPeak);
+  options.residualScale = std::clamp(document_.option("frame/residual-scale", 1.0), 1.0, 1000.0);
+  const viz::FrameOverlay overlay = viz::frameOverlay(*inspection, frame, options);
+  const bool selected = document_.selection().model == tile.model;
+  QString below;
+  for (const viz::OverlayCaption& c : overlay.captions) {
+    if (c.model != tile.model) continue;
+    if (c.score.errorPct)
+      below = tr("%1 %   %2 px").arg(numberText(*c.score.errorPct, 3), numberText(*c.score.errorPx, 3));
+    else
+      below = QStringLiteral("<span style='color:%1'>%2</span>")
+                  .arg(warningColour().name(), toQString(c.score.reason).toHtmlEscaped());
+    tile.text->setToolTip(toQString(c.text));
+  }
+  tile.text->setText(QStringLiteral("<span style='color:%1'>■</span>&nbsp;<b>%2</b> &nbsp;%3")
+                         .arg(toQColor(viz::modelColour(tile.model)).name(), toQString(tile.model).toHtmlEscaped(), below));
+  // A reason may be longer than the tile: it is cut, the tool tip has it whole.
+  tile.text->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
+  tile.text->setStyleSheet(selected ? QStringLiteral("background: %1; color: white").arg(accentColour().darker(120).name())
+                                    : QString());
+  tile.canvas->setOverlay(overlay);
+  if (loader_.pictureFrame() == frame) tile.canvas->setPicture(loader_.picture());
+}
+
+void LadderPanel::selectIn(const std::string& model, double x, double y) {
+  const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  if (!inspection) return;
+  viz::OverlayOptions options;
+  options.models = {model};
+  viz::Selection s = document_.selection();
+  double zoom = 1;
+  for (const Tile& tile : tiles_)
+    if (tile.model == model) zoom = tile.canvas->zoom();
+  const viz::FrameOverlay overlay = viz::frameOverlay(*inspection, s.frame, options);
+  s = viz::pickInFrame(*inspection, s, overlay, {x, y}, FrameCanvas::kNearScreenPx / zoom);
+  s.model = model;
+  document_.select(s);
+}
+
+void LadderPanel::lookAtHighlight() {
+  moved_ = false;
+  arrange();
+}
+
+void LadderPanel::addActions(Actions& actions, QMenu* menu) {
+  actions.add("ladder.highlight", menu, tr("&Ladder: zoom to the highlight"), [this] { lookAtHighlight(); });
+}
+
+}  // namespace glint::gui

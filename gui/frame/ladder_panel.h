@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QTimer>
+#include <QWidget>
+#include <string>
+#include <vector>
+
+#include "gui/base/actions.h"
+#include "gui/document/document.h"
+#include "viz/canvas.h"
+
+class QLabel;
+
+namespace glint::gui {
+
+class FrameCanvas;
+class PhotoLoader;
+
+/// The selected frame once per model, from simple to rich: the same part of the picture with the observed contour and that
+/// model's prediction, its error below. Zooming and panning one moves all; a click selects the model (and the contour point).
+/// Follows the selection.
+class LadderPanel : public QWidget {
+  Q_OBJECT
+ public:
+  /// @param loader  of the frame view: its pictures are shown here too.
+  LadderPanel(Document& document, PhotoLoader& loader, QWidget* parent = nullptr);
+  std::vector<FrameCanvas*> canvases() const;
+  void addActions(Actions& actions, QMenu* menu);
+  QSize sizeHint() const override { return {700, 260}; }
+  QSize minimumSizeHint() const override { return {160, 120}; }
+
+ public slots:
+  void lookAtHighlight();
+
+ protected:
+  void resizeEvent(QResizeEvent*) override;
+  void showEvent(QShowEvent*) override;
+
+ private:
+  struct Tile {
+    std::string model;
+    QWidget* box;
+    FrameCanvas* canvas;
+    QLabel* text;
+  };
+  void scheduleRefresh();
+  void refresh();
+  void rebuild(const std::vector<std::string>& models);
+  void arrange();
+  void showTile(Tile& tile);
+  void selectIn(const std::string& model, double x, double y);
+
+  Document& document_;
+  PhotoLoader& loader_;
+  std::vector<Tile> tiles_;
+  QLabel* empty_;
+  QTimer refresh_;
+  int frame_ = -1;      ///< that the view was moved to
+  bool moved_ = false;  ///< the user chose the zoom: it stays, only the centre follows
+  bool whole_ = false;  ///< there were no contours to look at yet
+  viz::Crop crop_;      ///< of the frame's contours
+};
+
+}  // namespace glint::gui

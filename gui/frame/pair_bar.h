@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QWidget>
+
+#include "gui/base/actions.h"
+#include "gui/document/document.h"
+#include "viz/epipolar_overlay.h"
+
+class QComboBox;
+class QLabel;
+
+namespace glint::gui {
+
+/// Which frame stands beside the selected one, and the tangent epipolar lines of the pair. Options "frame/side-by-side",
+/// "frame/second" (number of a frame), "frame/epipolar" (off, real, virtual, both), "frame/epipolar-ellipse" (observed,
+/// canonical).
+class PairBar : public QWidget {
+  Q_OBJECT
+ public:
+  explicit PairBar(Document& document, QWidget* parent = nullptr);
+  void addActions(Actions& actions, QMenu* menu);
+
+  bool on() const;
+  int secondFrame() const;
+  /// Adds the lines to both overlays and says below what they miss by.
+  void addLines(viz::FrameOverlay& first, viz::FrameOverlay& second);
+
+ private:
+  void refresh();
+  void swap();
+
+  Document& document_;
+  QComboBox *second_, *lines_, *ellipse_;
+  QLabel* miss_;
+  QAction* toggle_ = nullptr;
+};
+
+}  // namespace glint::gui

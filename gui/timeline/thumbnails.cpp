@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/timeline/thumbnails.h"
+
+#include <exception>
+#include <utility>
+
+#include "gui/base/to_qimage.h"
+
+namespace glint::gui {
+
+Thumbnails::Thumbnails(QObject* parent) : QObject(parent), worker_(new QObject) {
+  worker_->moveToThread(&thread_);
+  connect(&thread_, &QThread::finished, worker_, &QObject::deleteLater);
+  thread_.start(QThread::LowPriority);
+}
+
+Thumbnails::~Thumbnails() {
+  ++newest_;
+  thread_.quit();
+  thread_.wait();
+}
+
+void Thumbnails::setScene(std::shared_ptr<const Scene> scene) {
+  ++newest_;
+  kept_.clear();
+  wished_.clear();
+  scene_ = std::move(scene);
+}
+
+QImage Thumbnails::find(int frame) const {
+  const QImage* kept = kept_.object(frame);
+  return kept ? *kept : QImage();
+}
+
+void Thumbnails::want(const QList<int>& frames, int heightPx) {
+  if (!scene_) return;
+  QList<int> missing;
+  for (const int frame : frames)
+    if (frame >= 0 && frame < int(scene_->frames.size()) && !kept_.contains(frame)) missing << frame;
+  if (missing.isEmpty()) return;
+  // The same wish while it is being fulfilled: what has arrived by now is no longer in `missing`.
+  bool same = pending_ > 0;
+  for (const int frame : missing) same = same && wished_.contains(frame);
+  if (same) return;
+  wished_ = missing;
+  ++pending_;
+  const int ticket = ++newest_;
+  QMetaObject::invokeMethod(
+      worker_,
+      [this, ticket, missing, heightPx, scene = scene_] {
+        for (const int frame : missing) {
+          if (ticket != newest_) break;
+          QImage small(1, heightPx, QImage::Format_RGB888);  // stands for a frame that cannot be read
+          small.fill(Qt::black);
+          try {
+            ++reads_;
+            if (const Outcome<Image> picture = readPhotograph(scene->frames[std::size_t(frame)]))
+              small = toQImage(*picture).scaledToHeight(heightPx, Qt::SmoothTransformation);
+          } catch (const std::exception&) {  // the frame view says what is wrong with it
+          }
+          QMetaObject::invokeMethod(
+              this,
+              [this, scene, frame, small] {
+                if (scene != scene_) return;
+                kept_.insert(frame, new QImage(small));
+                emit arrived();
+              },
+              Qt::QueuedConnection);
+        }
+        QMetaObject::invokeMethod(
+            this,
+            [this] {
+              --pending_;
+              emit arrived();
+            },
+            Qt::QueuedConnection);
+      },
+      Qt::QueuedConnection);
+}
+
+}  // namespace glint::gui

@@ -1,0 +1,419 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/timeline/timeline_strip.h"
+
+#include <QContextMenuEvent>
+#include <QHelpEvent>
+#include <QMenu>
+#include <QMouseEvent>
+#include <QPainter>
+#include <QPainterPath>
+#include <QToolTip>
+#include <QWheelEvent>
+#include <algorithm>
+#include <cmath>
+
+#include "gui/base/text.h"
+#include "gui/base/theme.h"
+#include "viz/style.h"
+
+namespace glint::gui {
+
+namespace {
+constexpr double kLeft = 56, kRight = 10, kTop = 4, kMarkRow = 17, kNumberRow = 14;
+constexpr double kThumbnailHeight = 34, kRoomForThumbnails = 112;  // below this height only errors and roles are shown
+constexpr double kMinFramesInView = 4;
+const QColor kLightOn(0xf0, 0xe4, 0x42);  // viz::kLightColour
+}  // namespace
+
+TimelineStrip::TimelineStrip(Document& document, QWidget* parent) : QWidget(parent), document_(document) {
+  setFocusPolicy(Qt::StrongFocus);
+  setMouseTracking(true);
+  setAttribute(Qt::WA_OpaquePaintEvent);
+  connect(&document_, &Document::sceneOpened, this, [this] {
+    thumbnails_.setScene(document_.sharedScene());
+    first_ = 0;
+    inView_ = std::max(1, document_.frameCount());
+    readData();
+    emit viewChanged();
+  });
+  connect(&document_, &Document::inspectionChanged, this, &TimelineStrip::readData);
+  connect(&document_, &Document::requestChanged, this, &TimelineStrip::readView);
+  connect(&document_, &Document::optionsChanged, this, &TimelineStrip::readView);
+  connect(&document_, &Document::staleChanged, this, &TimelineStrip::readView);
+  connect(&document_, &Document::selectionChanged, this, &TimelineStrip::showSelection);
+  connect(&thumbnails_, &Thumbnails::arrived, this, &TimelineStrip::repaintAll);
+}
+
+void TimelineStrip::readData() {
+  const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  data_ = document_.scene() ? viz::timelineData(*document_.scene(), inspection.get()) : viz::TimelineData();
+  readView();
+}
+
+void TimelineStrip::readView() {
+  bars_ = document_.option("timeline/chart", std::string("lines")) == "bars";
+  thumbnailsOn_ = document_.option("timeline/thumbnails", std::string("on")) == "on";
+  plotted_ = document_.plottedModel();
+  axis_ = viz::errorAxis(data_, bars_ ? plotted_ : std::string(), document_.request().excluded);
+  repaintAll();
+}
+
+void TimelineStrip::showSelection() {
+  const double frame = document_.selection().frame;
+  if (frame < first_ || frame + 1 > first_ + inView_) setView(frame < first_ ? frame : frame + 1 - inView_, inView_);
+  if (document_.plottedModel() != plotted_) readView();
+  update();
+}
+
+void TimelineStrip::repaintAll() {
+  background_ = QPixmap();
+  update();
+}
+
+void TimelineStrip::setView(double first, double inView) {
+  const double n = std::max(1, document_.frameCount());
+  inView = std::clamp(inView, std::min(kMinFramesInView, n), n);
+  first = std::clamp(first, 0.0, n - inView);
+  if (first == first_ && inView == inView_) return;
+  first_ = first;
+  inView_ = inView;
+  repaintAll();
+  emit viewChanged();
+}
+
+void TimelineStrip::zoomAt(double frame, double factor) {
+  const double share = (frame - first_) / inView_, n = std::max(1, document_.frameCount());
+  const double inView = std::clamp(inView_ / factor, std::min(kMinFramesInView, n), n);
+  setView(frame - share * inView, inView);
+}
+
+void TimelineStrip::zoom(double factor) { zoomAt(document_.selection().frame + 0.5, factor); }
+
+QRectF TimelineStrip::thumbnailRow() const {
+  const bool on = thumbnailsOn_ && height() >= kRoomForThumbnails;
+  return QRectF(kLeft, kTop, width() - kLeft - kRight, on ? kThumbnailHeight : 0);
+}
+
+double TimelineStrip::lightRowHeight() const {
+  return data_.lights.empty() ? 0 : std::clamp(24.0 / double(data_.lights.size()), 2.0, 7.0);
+}
+
+QRectF TimelineStrip::chart() const {
+  const double top = thumbnailRow().bottom() + 6;
+  const double bottom = height() - kMarkRow - kNumberRow - lightRowHeight() * double(data_.lights.size());
+  return QRectF(kLeft, top, width() - kLeft - kRight, std::max(8.0, bottom - top));
+}
+
+double TimelineStrip::frameX(double frame) const { return kLeft + (frame - first_) / inView_ * (width() - kLeft - kRight); }
+
+QRectF TimelineStrip::cell(int frame) const {
+  return QRectF(frameX(frame), kTop, (width() - kLeft - kRight) / inView_, chart().bottom() - kTop);
+}
+
+QRectF TimelineStrip::roleMark(int frame) const {
+  const QRectF c = cell(frame);
+  return QRectF(c.left(), height() - kNumberRow - kMarkRow, c.width(), kMarkRow);
+}
+
+int TimelineStrip::frameAt(const QPointF& position) const {
+  const int n = document_.frameCount();
+  if (n == 0 || position.x() < kLeft || position.x() >= width() - kRight) return -1;
+  return std::clamp(int(first_ + (position.x() - kLeft) / (width() - kLeft - kRight) * inView_), 0, n - 1);
+}
+
+void TimelineStrip::paintEvent(QPaintEvent*) {
+  if (background_.isNull()) paintBackground();
+  QPainter painter(this);
+  painter.drawPixmap(0, 0, background_);
+  const int n = document_.frameCount(), frame = document_.selection().frame;
+  if (n == 0) return;
+  QRectF current = cell(frame);
+  current.setBottom(height() - 1);
+  if (current.width() < 3) current = QRectF(current.center().x() - 1.5, current.top(), 3, current.height());
+  QColor accent = accentColour();
+  accent.setAlpha(70);
+  painter.fillRect(current, accent);
+  painter.setPen(QPen(accentColour(), 1));
+  painter.drawRect(current.adjusted(0, 0, -1, 0));
+  QFont small = font();
+  small.setPointSizeF(font().pointSizeF() * 0.85);
+  painter.setFont(small);
+  const QString number = QString::number(frame);
+  QRectF label(0, 0, painter.fontMetrics().horizontalAdvance(number) + 8, kNumberRow);
+  label.moveCenter({std::clamp(current.center().x(), kLeft, width() - kRight), height() - kNumberRow / 2 - 1});
+  painter.fillRect(label, accentColour());
+  painter.setPen(Qt::white);
+  painter.drawText(label, Qt::AlignCenter, number);
+}
+
+void TimelineStrip::paintBackground() {
+  ++backgroundsPainted_;
+  background_ = QPixmap(size() * devicePixelRatioF());
+  background_.setDevicePixelRatio(devicePixelRatioF());
+  background_.fill(palette().color(QPalette::Base));
+  QPainter painter(&background_);
+  QFont small = font();
+  small.setPointSizeF(font().pointSizeF() * 0.85);
+  painter.setFont(small);
+  if (document_.frameCount() == 0) {
+    painter.setPen(palette().color(QPalette::PlaceholderText));
+    painter.drawText(rect(), Qt::AlignCenter, tr("No frames"));
+    return;
+  }
+  paintThumbnails(painter);
+  paintErrors(painter);
+  paintRows(painter);
+}
+
+void TimelineStrip::paintThumbnails(QPainter& painter) {
+  const QRectF row = thumbnailRow();
+  if (row.height() <= 0) return;
+  const Camera& camera = document_.scene()->frames.front().camera;
+  const double wide = row.height() * camera.width / std::max(1, camera.height);
+  const double cellWidth = cell(0).width();
+  const int every = std::max(1, int(std::ceil((wide + 2) / cellWidth)));
+  QList<int> wanted;
+  painter.setRenderHint(QPainter::SmoothPixmapTransform);
+  painter.setClipRect(row);
+  // Multiples of `every`, so that scrolling shows the same frames again.
+  for (int i = int(first_) / every * every; i < document_.frameCount() && i < first_ + inView_; i += every) {
+    wanted << i;
+    const QImage picture = thumbnails_.find(i);
+    const double x = every == 1 ? frameX(i + 0.5) - wide / 2 : frameX(i) + 1;
+    const QRectF box(x, row.top(), wide, row.height());
+    if (picture.isNull())
+      painter.fillRect(box, palette().color(QPalette::AlternateBase));
+    else
+      painter.drawImage(box, picture);
+    if (document_.role(i) == FrameRole::Excluded) painter.fillRect(box, QColor(0, 0, 0, 150));
+  }
+  painter.setClipping(false);
+  thumbnails_.want(wanted, int(std::ceil(row.height() * devicePixelRatioF())));
+}
+
+void TimelineStrip::paintErrors(QPainter& painter) {
+  const QRectF c = chart();
+  painter.setPen(QPen(palette().color(QPalette::Mid), 1, Qt::DotLine));
+  painter.drawLine(c.topLeft(), c.topRight());
+  painter.setPen(palette().color(QPalette::Mid));
+  painter.drawLine(c.bottomLeft(), c.bottomRight());
+  if (data_.series.empty()) return;
+  painter.setPen(palette().color(QPalette::PlaceholderText));
+  painter.drawText(QRectF(0, c.top() - 7, kLeft - 5, 14), Qt::AlignRight | Qt::AlignVCenter,
+                   numberText(axis_.highPct) + QStringLiteral(" %"));
+  if (c.height() > 22)
+    painter.drawText(QRectF(0, c.bottom() - 8, kLeft - 5, 14), Qt::AlignRight | Qt::AlignVCenter,
+                     axis_.logarithmic ? numberText(axis_.lowPct) + QStringLiteral(" %") : QStringLiteral("0"));
+  if (axis_.logarithmic && c.height() > 36)
+    painter.drawText(QRectF(0, c.center().y() - 7, kLeft - 5, 14), Qt::AlignRight | Qt::AlignVCenter, tr("log"));
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.setClipRect(c.adjusted(0, -2, 0, 1));
+  const int columns = int(std::min(inView_, c.width()));
+  const bool perFrame = columns >= int(inView_);
+  for (const viz::TimelineData::Series& series : data_.series) {
+    if (bars_ && series.model != plotted_) continue;
+    QColor colour = toQColor(viz::modelColour(series.model));
+    if (document_.stale()) colour.setAlpha(90);
+    std::vector<std::optional<double>> shown = series.errorPct;
+    for (const int frame : document_.request().excluded)
+      if (frame >= 0 && frame < int(shown.size())) shown[std::size_t(frame)].reset();
+    const auto yOf = [&](double pct) { return c.bottom() - std::max(1.0, c.height() * axis_.place(pct)); };
+    // Per frame where there is room, else the largest error of each screen column.
+    const int from = perFrame ? 0 : int(first_), count = perFrame ? int(shown.size()) : columns;
+    if (!perFrame) shown = viz::columnMaxima(shown, first_, first_ + inView_, columns);
+    const auto xOf = [&](int i) { return perFrame ? frameX(i + 0.5) : frameX(from + (i + 0.5) * inView_ / columns); };
+    if (bars_) {
+      const double slot = c.width() / (perFrame ? inView_ : columns), wide = std::clamp(slot - 2, std::min(1.0, slot), 14.0);
+      for (int i = 0; i < count; ++i) {
+        const std::optional<double>& pct = shown[std::size_t(i)];
+        if (pct) painter.fillRect(QRectF(xOf(i) - wide / 2, yOf(*pct), wide, c.bottom() - yOf(*pct)), colour);
+        if (!pct && perFrame && !series.reason[std::size_t(i)].empty() && document_.role(i) != FrameRole::Excluded && slot > 8) {
+          painter.setPen(warningColour());
+          painter.drawText(QRectF(xOf(i) - 10, c.bottom() - 15, 20, 14), Qt::AlignCenter, QStringLiteral("?"));
+        }
+      }
+      continue;
+    }
+    QPainterPath path;
+    bool down = false;
+    for (int i = 0; i < count; ++i) {
+      const std::optional<double>& pct = shown[std::size_t(i)];
+      if (!pct) {
+        down = false;
+        continue;
+      }
+      const QPointF at(xOf(i), yOf(*pct));
+      if (down)
+        path.lineTo(at);
+      else
+        path.moveTo(at - QPointF(1, 0)), path.lineTo(at + QPointF(1, 0));  // a lone frame is seen too
+      down = true;
+    }
+    painter.strokePath(path, QPen(colour, series.model == document_.selection().model ? 2.4 : 1.2));
+  }
+  painter.setClipping(false);
+}
+
+void TimelineStrip::paintRows(QPainter& painter) {
+  painter.setRenderHint(QPainter::Antialiasing, false);
+  const double rowHeight = lightRowHeight();
+  double top = chart().bottom() + 1;
+  const int from = std::max(0, int(first_)), to = std::min(document_.frameCount(), int(std::ceil(first_ + inView_)));
+  const double wide = cell(0).width();
+  for (const viz::TimelineData::LightRow& row : data_.lights) {
+    for (int i = from; i < to; ++i) {
+      const QRectF box(frameX(i), top, std::max(1.0, wide - (wide > 4 ? 1 : 0)), rowHeight - 1);
+      if (row.on[std::size_t(i)] == 1) painter.fillRect(box, kLightOn);
+      if (row.on[std::size_t(i)] == 0) painter.fillRect(box, palette().color(QPalette::Midlight));
+    }
+    top += rowHeight;
+  }
+  if (!data_.lights.empty()) {
+    painter.setPen(palette().color(QPalette::PlaceholderText));
+    painter.drawText(QRectF(0, top - rowHeight * double(data_.lights.size()) / 2 - 7, kLeft - 5, 14),
+                     Qt::AlignRight | Qt::AlignVCenter, tr("lights"));
+  }
+  painter.setRenderHint(QPainter::Antialiasing);
+  const int labelEvery = std::max(1, int(std::ceil(34 / wide)));
+  const double r = std::clamp(wide / 2 - 1, 0.75, 4.5);
+  for (int i = from; i < to; ++i) {
+    const FrameRole role = document_.role(i);
+    const QPointF mark = roleMark(i).center();
+    if (role == FrameRole::Training) {
+      painter.fillRect(QRectF(mark - QPointF(r, 4.5), mark + QPointF(r, 4.5)), toQColor(viz::kTraining).lighter(130));
+    } else if (role == FrameRole::HeldOut) {
+      painter.setPen(QPen(toQColor(viz::kHeldOut), 1.3));
+      if (wide > 6)
+        painter.drawEllipse(mark, r - 0.5, r - 0.5);
+      else
+        painter.drawPoint(mark);
+    } else {
+      painter.setPen(QPen(errorColour(), 1.5));
+      painter.drawLine(mark - QPointF(r, 4), mark + QPointF(r, 4));
+      painter.drawLine(mark + QPointF(-r, 4), mark + QPointF(r, -4));
+    }
+    if (i % labelEvery == 0) {
+      painter.setPen(palette().color(QPalette::PlaceholderText));
+      painter.drawText(QRectF(frameX(i + 0.5) - 30, height() - kNumberRow - 1, 60, kNumberRow), Qt::AlignCenter,
+                       QString::number(i));
+    }
+  }
+}
+
+void TimelineStrip::resizeEvent(QResizeEvent*) { repaintAll(); }
+
+void TimelineStrip::changeEvent(QEvent* e) {
+  if (e->type() == QEvent::PaletteChange || e->type() == QEvent::FontChange || e->type() == QEvent::StyleChange) repaintAll();
+  QWidget::changeEvent(e);
+}
+
+void TimelineStrip::wheelEvent(QWheelEvent* e) {
+  const QPoint turn = e->angleDelta();
+  if (e->modifiers() & Qt::ShiftModifier || turn.x() != 0) {
+    const int by = turn.x() != 0 ? turn.x() : turn.y();
+    setView(first_ - by / 120.0 * inView_ / 10, inView_);
+  } else {
+    zoomAt(first_ + (e->position().x() - kLeft) / (width() - kLeft - kRight) * inView_, std::pow(2.0, turn.y() / 240.0));
+  }
+  e->accept();
+}
+
+void TimelineStrip::step(int by) {
+  const int n = document_.frameCount();
+  if (n > 0) document_.selectFrame(std::clamp(document_.selection().frame + by, 0, n - 1));
+}
+
+void TimelineStrip::mousePressEvent(QMouseEvent* e) {
+  scrubbing_ = false;
+  const int frame = frameAt(e->pos());
+  if (e->button() != Qt::LeftButton || frame < 0) return;
+  if (roleMark(frame).contains(e->pos())) {
+    const FrameRole next[] = {FrameRole::HeldOut, FrameRole::Excluded,
+                              FrameRole::Training};  // after training, held out, excluded
+    document_.setRole(frame, next[int(document_.role(frame))]);
+    return;
+  }
+  scrubbing_ = true;
+  gesture_ = document_.newGesture();
+  document_.selectFrame(frame, gesture_);
+}
+
+void TimelineStrip::mouseMoveEvent(QMouseEvent* e) {
+  const int frame = frameAt(e->pos());
+  if (!(e->buttons() & Qt::LeftButton)) {
+    setCursor(frame >= 0 && roleMark(frame).contains(e->pos()) ? Qt::PointingHandCursor : Qt::ArrowCursor);
+    return;
+  }
+  if (scrubbing_ && frame >= 0) document_.selectFrame(frame, gesture_);
+}
+
+void TimelineStrip::contextMenuEvent(QContextMenuEvent* e) {
+  const int frame = frameAt(e->pos());
+  if (frame < 0) return;
+  QMenu menu(this);
+  const FrameRole role = document_.role(frame);
+  const auto add = [&](FrameRole r, const QString& text) {
+    QAction* action = menu.addAction(text, this, [this, frame, r] { document_.setRole(frame, r); });
+    action->setCheckable(true);
+    action->setChecked(role == r);
+  };
+  add(FrameRole::Training, tr("Train on frame %1").arg(frame));
+  add(FrameRole::HeldOut, tr("Hold out frame %1").arg(frame));
+  add(FrameRole::Excluded, tr("Exclude frame %1").arg(frame));
+  menu.addSeparator();
+  menu.addAction(tr("Show beside the selected frame"), this, [this, frame] {
+    document_.undoStack()->beginMacro(tr("Show frame %1 beside").arg(frame));
+    document_.setOption("frame/second", double(frame), QString());
+    document_.setOption("frame/side-by-side", "on", QString());
+    document_.undoStack()->endMacro();
+  });
+  menu.exec(e->globalPos());
+}
+
+void TimelineStrip::keyPressEvent(QKeyEvent* e) {
+  const int n = document_.frameCount();
+  switch (e->key()) {
+    case Qt::Key_Left:
+      return step(-1);
+    case Qt::Key_Right:
+      return step(1);
+    case Qt::Key_Home:
+      return step(-n);
+    case Qt::Key_End:
+      return step(n);
+    case Qt::Key_T:
+      return document_.setRole(document_.selection().frame, FrameRole::Training);
+    case Qt::Key_O:
+      return document_.setRole(document_.selection().frame, FrameRole::HeldOut);
+    case Qt::Key_X:
+      return document_.setRole(document_.selection().frame, FrameRole::Excluded);
+    default:
+      QWidget::keyPressEvent(e);
+  }
+}
+
+QString TimelineStrip::toolTip(int frame) const {
+  static const char* const roles[] = {QT_TR_NOOP("training"), QT_TR_NOOP("held out"), QT_TR_NOOP("excluded")};
+  const Frame& f = document_.scene()->frames[std::size_t(frame)];
+  QString text = tr("Frame %1 (%2), %3").arg(frame).arg(toQString(f.id), tr(roles[int(document_.role(frame))]));
+  if (!data_.lights.empty() && !f.lightsOn.empty()) text += tr("\nlights on: %1").arg(joined(f.lightsOn));
+  for (const viz::TimelineData::Series& series : data_.series) {
+    const std::optional<double>& pct = series.errorPct[std::size_t(frame)];
+    text += QStringLiteral("\n%1: ").arg(toQString(series.model)) +
+            (pct ? numberText(*pct, 3) + QStringLiteral(" %") : toQString(series.reason[std::size_t(frame)]));
+  }
+  return text;
+}
+
+bool TimelineStrip::event(QEvent* e) {
+  if (e->type() != QEvent::ToolTip) return QWidget::event(e);
+  const auto* help = static_cast<QHelpEvent*>(e);
+  const int frame = frameAt(help->pos());
+  if (frame < 0)
+    QToolTip::hideText();
+  else
+    QToolTip::showText(help->globalPos(), toolTip(frame), this);
+  return true;
+}
+
+}  // namespace glint::gui

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QPixmap>
+#include <QWidget>
+
+#include "gui/document/document.h"
+#include "gui/timeline/thumbnails.h"
+#include "viz/timeline_data.h"
+
+class QPainter;
+
+namespace glint::gui {
+
+/// Strip of all frames, from top to bottom: thumbnails, errors (thin lines of all models, or bars of the selected one), lights on
+/// and off, roles by colour and shape (training: filled square, held out: ring, excluded: cross), numbers. Click and drag select;
+/// a click on a role's mark gives the frame the next role; the context menu has them all; the wheel zooms, with Shift it scrolls;
+/// Left and Right step.
+///
+/// What does not depend on the selected frame is painted once and kept, so that scrubbing over many frames draws a cursor only.
+class TimelineStrip : public QWidget {
+  Q_OBJECT
+ public:
+  explicit TimelineStrip(Document& document, QWidget* parent = nullptr);
+  QRectF cell(int frame) const;                ///< in widget coordinates, from the thumbnails to the errors
+  QRectF roleMark(int frame) const;            ///< where a click changes the role
+  int frameAt(const QPointF& position) const;  ///< -1 outside
+  /// Frames in view: from `firstFrame`, as many as `framesInView` (not whole numbers while zooming).
+  double firstFrame() const { return first_; }
+  double framesInView() const { return inView_; }
+  void setView(double first, double inView);
+  int backgroundsPainted() const { return backgroundsPainted_; }
+  const Thumbnails& thumbnails() const { return thumbnails_; }
+  QSize sizeHint() const override { return {600, 136}; }
+  QSize minimumSizeHint() const override { return {200, 70}; }
+
+ public slots:
+  void step(int by);
+  void zoom(double factor);  ///< around the selected frame; > 1 shows fewer
+  void showAll() { setView(0, document_.frameCount()); }
+
+ signals:
+  void viewChanged();
+
+ protected:
+  void paintEvent(QPaintEvent*) override;
+  void resizeEvent(QResizeEvent*) override;
+  void changeEvent(QEvent*) override;
+  void wheelEvent(QWheelEvent*) override;
+  void mousePressEvent(QMouseEvent*) override;
+  void mouseMoveEvent(QMouseEvent*) override;
+  void contextMenuEvent(QContextMenuEvent*) override;
+  void keyPressEvent(QKeyEvent*) override;
+  bool event(QEvent*) override;
+
+ private:
+  void readData();
+  void readView();  ///< what of the document changes the background
+  void showSelection();
+  void repaintAll();
+  void zoomAt(double frame, double factor);
+  void paintBackground();
+  void paintThumbnails(QPainter& painter);
+  void paintErrors(QPainter& painter);
+  void paintRows(QPainter& painter);
+  double frameX(double frame) const;
+  QRectF thumbnailRow() const;
+  QRectF chart() const;
+  double lightRowHeight() const;
+  QString toolTip(int frame) const;
+
+  Document& document_;
+  viz::TimelineData data_;
+  viz::ErrorAxis axis_;
+  Thumbnails thumbnails_;
+  double first_ = 0, inView_ = 1;
+  bool bars_ = false, thumbnailsOn_ = true;
+  std::string plotted_;
+  QPixmap background_;  ///< null = to be painted
+  int backgroundsPainted_ = 0;
+  int gesture_ = 0;
+  bool scrubbing_ = false;
+};
+
+}  // namespace glint::gui
