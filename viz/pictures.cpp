@@ -67,6 +67,14 @@ void drawPhotograph(Canvas& canvas, const Outcome<Image>& photograph, const Crop
   }
 }
 
+/// What the frame view hides by default stays out of pictures too.
+std::set<OverlayRole> hiddenRoles(const PictureOptions& options) {
+  std::set<OverlayRole> hidden = options.hidden;
+  for (const OverlayLayer& layer : overlayLayers())
+    if (!layer.onByDefault) hidden.insert(layer.role);
+  return hidden;
+}
+
 }  // namespace
 
 void drawOverlay(Canvas& canvas, const FrameOverlay& overlay, const Crop& crop, const Box& box, double inkScale) {
@@ -105,7 +113,7 @@ std::optional<Crop> highlightCrop(const Inspection& inspection, int frame, const
   OverlayOptions options;
   options.models = models;
   options.hidden = {OverlayRole::ObservedEllipse, OverlayRole::PredictedEllipse, OverlayRole::CanonicalEllipse,
-                    OverlayRole::UncertaintyBand};
+                    OverlayRole::UncertaintyBand, OverlayRole::ResidualArrows,   OverlayRole::LimitDirections};
   const FrameOverlay overlay = frameOverlay(inspection, frame, options);
   Eigen::AlignedBox2d observed, all;
   for (const OverlayLine& line : overlay.lines) {
@@ -162,7 +170,7 @@ Image framePicture(const Inspection& inspection, int frame, const Outcome<Image>
   const double font = std::clamp(height / 48.0, 10.0, 40.0), ink = std::max(1.0, height / 900.0);
   OverlayOptions overlayOptions;
   overlayOptions.models = options.models;
-  overlayOptions.hidden = options.hidden;
+  overlayOptions.hidden = hiddenRoles(options);
   const FrameOverlay overlay = frameOverlay(inspection, frame, overlayOptions);
 
   const double head = 2 * font, foot = (0.8 + 1.45 * static_cast<double>(overlay.captions.size())) * font;
@@ -249,7 +257,7 @@ Image ladderPicture(const Inspection& inspection, int frame, const Outcome<Image
     const Box box{tile.x, tile.y, picture.width, picture.height};
     OverlayOptions overlayOptions;
     overlayOptions.models = {models[i]};
-    overlayOptions.hidden = options.hidden;
+    overlayOptions.hidden = hiddenRoles(options);
     const FrameOverlay overlay = frameOverlay(inspection, frame, overlayOptions);
     drawPhotograph(canvas, photograph, crop, box, font, theme);
     drawOverlay(canvas, overlay, crop, box, ink);

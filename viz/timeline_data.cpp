@@ -10,6 +10,10 @@
 
 namespace glint::viz {
 
+namespace {
+constexpr double kWorstShownPct = 1000;  // ten times the highlight's size: a model that went astray must not flatten the others
+}
+
 TimelineData timelineData(const Scene& scene, const Inspection* inspection) {
   TimelineData data;
   const int n = static_cast<int>(scene.frames.size());
@@ -60,6 +64,8 @@ ErrorAxis errorAxis(const TimelineData& data, const std::string& model, const st
   }
   ErrorAxis axis;
   if (!(high > 0)) return axis;
+  high = std::min(high, kWorstShownPct);
+  low = std::min(low, high);
   const auto roundUp = [](double v) {
     const double decade = std::pow(10.0, std::floor(std::log10(v)));
     for (const double step : {1.0, 2.0, 5.0, 10.0})

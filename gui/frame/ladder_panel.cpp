@@ -73,6 +73,7 @@ void LadderPanel::refresh() {
   for (Tile& tile : tiles_) showTile(tile);
   if (frame != frame_ || whole_) {
     frame_ = frame;
+    recentre_ = true;
     const std::optional<viz::Crop> crop = any ? viz::highlightCrop(*inspection, frame, {}, 0) : std::nullopt;
     whole_ = !crop;
     if (crop) crop_ = *crop;
@@ -87,6 +88,8 @@ void LadderPanel::refresh() {
 void LadderPanel::rebuild(const std::vector<std::string>& models) {
   for (const Tile& tile : tiles_) tile.box->deleteLater();
   tiles_.clear();
+  moved_ = false;  // new canvases have no view yet
+  recentre_ = true;
   for (const std::string& model : models) {
     Tile tile{model, new QWidget(this), new FrameCanvas, new QLabel};
     tile.canvas->setObjectName(QStringLiteral("ladder:") + toQString(model));
@@ -125,10 +128,11 @@ void LadderPanel::arrange() {
     tiles_[std::size_t(i)].box->setGeometry(left, top, right - left, bottom - top);
     tiles_[std::size_t(i)].box->layout()->activate();
   }
-  const Pixel centre(crop_.x + crop_.width / 2, crop_.y + crop_.height / 2);
   const FrameCanvas* first = tiles_.front().canvas;
-  // All tiles show the same zoom although their sizes may differ by a pixel.
+  // A new frame's highlight comes into the middle; what the user moved to otherwise stays.
+  const Pixel centre = moved_ && !recentre_ ? first->centre() : Pixel(crop_.x + crop_.width / 2, crop_.y + crop_.height / 2);
   const double zoom = moved_ ? first->zoom() : std::min(first->width() / crop_.width, first->height() / crop_.height);
+  recentre_ = false;
   for (const Tile& tile : tiles_) tile.canvas->lookAt(centre, zoom);
 }
 

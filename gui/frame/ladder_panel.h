@@ -56,10 +56,11 @@ class LadderPanel : public QWidget {
   std::vector<Tile> tiles_;
   QLabel* empty_;
   QTimer refresh_;
-  int frame_ = -1;      ///< that the view was moved to
-  bool moved_ = false;  ///< the user chose the zoom: it stays, only the centre follows
-  bool whole_ = false;  ///< there were no contours to look at yet
-  viz::Crop crop_;      ///< of the frame's contours
+  int frame_ = -1;        ///< that the view was moved to
+  bool moved_ = false;    ///< the user chose the zoom: it stays, only the centre follows
+  bool recentre_ = true;  ///< the next arrangement puts the contours into the middle
+  bool whole_ = false;    ///< there were no contours to look at yet
+  viz::Crop crop_;        ///< of the frame's contours
 };
 
 }  // namespace glint::gui

@@ -23,6 +23,13 @@ constexpr double kLeft = 56, kRight = 10, kTop = 4, kMarkRow = 17, kNumberRow = 
 constexpr double kThumbnailHeight = 34, kRoomForThumbnails = 112;  // below this height only errors and roles are shown
 constexpr double kMinFramesInView = 4;
 const QColor kLightOn(0xf0, 0xe4, 0x42);  // viz::kLightColour
+QPointF positionOf(const QMouseEvent& e) {
+#if QT_VERSION >= QT_VERSION_CHECK(6, 0, 0)
+  return e.position();
+#else
+  return e.localPos();
+#endif
+}
 }  // namespace
 
 TimelineStrip::TimelineStrip(Document& document, QWidget* parent) : QWidget(parent), document_(document) {
@@ -325,9 +332,9 @@ void TimelineStrip::step(int by) {
 
 void TimelineStrip::mousePressEvent(QMouseEvent* e) {
   scrubbing_ = false;
-  const int frame = frameAt(e->pos());
+  const int frame = frameAt(positionOf(*e));
   if (e->button() != Qt::LeftButton || frame < 0) return;
-  if (roleMark(frame).contains(e->pos())) {
+  if (roleMark(frame).contains(positionOf(*e))) {
     const FrameRole next[] = {FrameRole::HeldOut, FrameRole::Excluded,
                               FrameRole::Training};  // after training, held out, excluded
     document_.setRole(frame, next[int(document_.role(frame))]);
@@ -339,9 +346,9 @@ void TimelineStrip::mousePressEvent(QMouseEvent* e) {
 }
 
 void TimelineStrip::mouseMoveEvent(QMouseEvent* e) {
-  const int frame = frameAt(e->pos());
+  const int frame = frameAt(positionOf(*e));
   if (!(e->buttons() & Qt::LeftButton)) {
-    setCursor(frame >= 0 && roleMark(frame).contains(e->pos()) ? Qt::PointingHandCursor : Qt::ArrowCursor);
+    setCursor(frame >= 0 && roleMark(frame).contains(positionOf(*e)) ? Qt::PointingHandCursor : Qt::ArrowCursor);
     return;
   }
   if (scrubbing_ && frame >= 0) document_.selectFrame(frame, gesture_);

@@ -3,6 +3,7 @@
 
 #include <QImage>
 #include <QMouseEvent>
+#include <algorithm>
 #include <cmath>
 
 namespace glint::gui {
@@ -25,7 +26,7 @@ Fixture::Fixture(int frames) : scene_(std::make_shared<Scene>()) {
   for (int i = 0; i < frames; ++i) {
     const QString file = folder_.filePath(QStringLiteral("%1.png").arg(i, 4, 10, QLatin1Char('0')));
     QImage photograph(160, 120, QImage::Format_RGB888);
-    photograph.fill(QColor(10 + 5 * i, 30, 40));
+    photograph.fill(QColor(std::min(255, 10 + 5 * i), 30, 40));
     photograph.save(file);
     Frame frame;
     frame.id = QStringLiteral("%1").arg(i, 4, 10, QLatin1Char('0')).toStdString();

@@ -42,6 +42,8 @@ struct TestClass {
 QObject* makeDocumentTest();
 QObject* makeRunnerTest();
 QObject* makeFrameCanvasTest();
+QObject* makeFrameViewTest();
+QObject* makeTimelineTest();
 QObject* makePaletteTest();
 QObject* makePanelTest();
 QObject* makeLinkingTest();

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The frame view and the ladder on a document: what is shown, picked, toggled, and that it is one step of undo each.
+#include <QComboBox>
+#include <QLabel>
+#include <QSignalSpy>
+#include <QSlider>
+#include <QToolButton>
+
+#include "gui/frame/frame_canvas.h"
+#include "gui/frame/frame_panel.h"
+#include "gui/frame/ladder_panel.h"
+#include "tests/gui/fixture.h"
+
+namespace glint::gui {
+
+class FrameViewTest : public QObject {
+  Q_OBJECT
+ private slots:
+  void init() {
+    document_ = std::make_unique<Document>(parseTrainSpec);
+    frame_ = std::make_unique<FramePanel>(*document_);
+    ladder_ = std::make_unique<LadderPanel>(*document_, *frame_->loader());
+    frame_->resize(700, 700);
+    ladder_->resize(900, 260);
+    frame_->show();
+    ladder_->show();
+    QVERIFY(QTest::qWaitForWindowExposed(frame_.get()));
+    QVERIFY(QTest::qWaitForWindowExposed(ladder_.get()));
+    document_->open(fixture_.opened());
+    document_->setInspection(std::make_shared<const Inspection>(drawnCircles(fixture_.scene(), document_->request())),
+                             document_->request());
+    settle();
+  }
+  void cleanup() {
+    ladder_.reset();
+    frame_.reset();
+  }
+
+  void theLookIsAnOptionAndOffTheInterfaceThread() {
+    FrameCanvas* canvas = frame_->canvas();
+    const QImage plain = canvas->grab().toImage();
+    auto* exposure = frame_->findChild<QSlider*>(QStringLiteral("frame/exposure"));
+    exposure->setValue(8);  // two stops
+    QCOMPARE(document_->option("frame/exposure", 0.0), 2.0);
+    settle();
+    QVERIFY(canvas->grab().toImage() != plain);
+    QTest::mouseClick(frame_->findChild<QToolButton*>(QStringLiteral("frame/false-colour")), Qt::LeftButton);
+    settle();
+    const QImage coloured = canvas->grab().toImage();
+    // The corner of the photograph (10, 30, 40): linear mean 0.0124, times four 0.0497, colour 13 of the map: dark violet.
+    const QPoint corner = (canvas->widgetFromPixel({3, 110}) * canvas->devicePixelRatioF()).toPoint();
+    const auto& expected = viz::uniformColours()[13];
+    QVERIFY(std::abs(qRed(coloured.pixel(corner)) - expected[0]) <= 2 &&
+            std::abs(qBlue(coloured.pixel(corner)) - expected[2]) <= 3);
+    QCOMPARE(document_->undoStack()->count(), 2);
+    document_->undoStack()->undo();
+    document_->undoStack()->undo();
+    settle();
+    QCOMPARE(exposure->value(), 0);
+    QVERIFY(canvas->grab().toImage() == plain);
+  }
+
+  void aClickOnAPredictedContourSelectsModelAndPoint() {
+    FrameCanvas* canvas = frame_->canvas();
+    // The first model's circle lies 8 px to the right of the observed one (fixture): its rightmost point belongs to nobody else.
+    const std::string model = document_->request().models.front();
+    const QPointF at = canvas->widgetFromPixel(Fixture::centre(0) + Pixel(Fixture::kRadius + 8, 0));
+    QTest::mouseClick(canvas, Qt::LeftButton, {}, at.toPoint());
+    QCOMPARE(document_->selection().model, model);
+    QCOMPARE(document_->selection().highlight, 0);
+    QVERIFY(document_->selection().direction);
+    QVERIFY(std::abs(*document_->selection().direction) < 0.05);
+    QCOMPARE(document_->undoStack()->count(), 1);
+  }
+
+  /// The ring of the selected point lies on the observed contour within 0.1 device pixels.
+  void theSelectedPointLiesOnItsPixel() {
+    for (const char* layer : {"frame/predicted", "frame/peak"}) document_->setLayerVisible(layer, layer, false);
+    viz::Selection s = document_->selection();
+    s.highlight = 0;
+    s.direction = 0.0;
+    document_->select(s);
+    settle();
+    FrameCanvas* canvas = frame_->canvas();
+    const Pixel expected = Fixture::centre(0) + Pixel(Fixture::kRadius, 0);  // a vertex of the circle
+    for (const double zoom : {3.0, 15.5, 40.0}) {
+      canvas->lookAt(expected + Pixel(0.31, 0.17), zoom);
+      canvas->setOverlay({});
+      const QImage without = canvas->grab().toImage();
+      viz::FrameOverlay overlay = viz::frameOverlay(*document_->inspection(), 0, options());
+      overlay.lines.clear();
+      canvas->setOverlay(overlay);
+      const QImage with = canvas->grab().toImage();
+      double sum = 0, x = 0, y = 0;
+      for (int row = 0; row < with.height(); ++row)
+        for (int column = 0; column < with.width(); ++column) {
+          const double change = std::max(0, qRed(with.pixel(column, row)) - qRed(without.pixel(column, row)));
+          sum += change;
+          x += change * (column + 0.5);
+          y += change * (row + 0.5);
+        }
+      QVERIFY(sum > 0);
+      const QPointF wanted = canvas->widgetFromPixel(expected) * canvas->devicePixelRatioF();
+      QVERIFY2(std::hypot(x / sum - wanted.x(), y / sum - wanted.y()) < 0.1,
+               qPrintable(QStringLiteral("zoom %1: %2 %3").arg(zoom).arg(x / sum - wanted.x()).arg(y / sum - wanted.y())));
+    }
+  }
+
+  void theTableShowsAndHidesModels() {
+    auto* captions = frame_->findChild<QLabel*>(QStringLiteral("frameCaptions"));
+    const std::string model = document_->request().models.front();
+    const QImage with = frame_->canvas()->grab().toImage();
+    emit captions->linkActivated(QStringLiteral("show:") + QString::fromStdString(model));
+    QVERIFY(!document_->layerVisible("frame/model/" + model));
+    QVERIFY(captions->text().contains(QString::fromStdString(model)));
+    QVERIFY(frame_->canvas()->grab().toImage() != with);
+    emit captions->linkActivated(QStringLiteral("select:") + QString::fromStdString(model));
+    QCOMPARE(document_->selection().model, model);
+  }
+
+  void twoFramesSideBySide() {
+    QVERIFY(!frame_->secondCanvas()->isVisible());
+    QTest::mouseClick(frame_->findChild<QToolButton*>(QStringLiteral("sideBySide")), Qt::LeftButton);
+    settle();
+    QVERIFY(frame_->secondCanvas()->isVisible());
+    QVERIFY(frame_->secondCanvas()->hasPicture());
+    // The stand-in fits no ellipses: the reason is said in the place of the number.
+    QVERIFY(frame_->findChild<QLabel*>(QStringLiteral("epipolarMiss"))->text().contains(QStringLiteral("no ellipse")));
+    document_->setOption("frame/second", 7.0, QString());
+    settle();
+    // Frame 7's photograph has red 45 (fixture).
+    const QPoint corner = frame_->secondCanvas()->widgetFromPixel({3, 110}).toPoint();
+    QCOMPARE(qRed(frame_->secondCanvas()->grab().toImage().pixel(corner * frame_->devicePixelRatioF())), 45);
+    document_->undoStack()->undo();
+    document_->undoStack()->undo();
+    settle();
+    QVERIFY(!frame_->secondCanvas()->isVisible());
+  }
+
+  void theLadderIsLinked() {
+    const std::vector<FrameCanvas*> tiles = ladder_->canvases();
+    QCOMPARE(tiles.size(), document_->request().models.size());
+    // No space is wasted: the tiles cover the panel, but for their lines of text and the gaps.
+    double covered = 0;
+    for (const FrameCanvas* tile : tiles) covered += double(tile->width()) * tile->height();
+    QVERIFY2(covered > 0.8 * ladder_->width() * ladder_->height(), qPrintable(QString::number(covered)));
+    for (const FrameCanvas* tile : tiles) QVERIFY(tile->hasPicture());
+    const QPointF middle = QRectF(tiles[1]->rect()).center();
+    QWheelEvent wheel(middle, middle, {}, QPoint(0, 240), Qt::NoButton, Qt::NoModifier, Qt::NoScrollPhase, false);
+    QCoreApplication::sendEvent(tiles[1], &wheel);
+    drag(tiles[1], {middle.toPoint(), middle.toPoint() + QPoint(30, 12)});
+    for (const FrameCanvas* tile : tiles) {
+      QCOMPARE(tile->zoom(), tiles[1]->zoom());
+      QVERIFY((tile->centre() - tiles[1]->centre()).norm() < 1e-9);
+    }
+    const double zoom = tiles[1]->zoom();
+    document_->selectFrame(5);
+    settle();
+    QCOMPARE(tiles[0]->zoom(), zoom);  // the zoom stays, the centre follows the highlight
+    QVERIFY((tiles[0]->centre() - Fixture::centre(5)).norm() < 12);
+    QTest::mouseClick(tiles[2], Qt::LeftButton, {}, {10, 10});
+    QCOMPARE(document_->selection().model, document_->request().models[2]);
+  }
+
+  void theProbeKnowsTheSurface() {
+    auto inspection = std::make_shared<Inspection>(drawnCircles(fixture_.scene(), document_->request()));
+    inspection->surfaces = std::make_shared<const SurfaceCache>(*fixture_.scene());
+    inspection->lights["lamp"].light = Light::at({0, 0, -2});
+    document_->setInspection(inspection, document_->request());
+    QSignalSpy probed(frame_.get(), &FramePanel::probed);
+    const QPointF at = frame_->canvas()->widgetFromPixel({79.5, 59.5});
+    QMouseEvent move(QEvent::MouseMove, at, at, at, Qt::NoButton, Qt::NoButton, Qt::NoModifier);
+    QCoreApplication::sendEvent(frame_->canvas(), &move);
+    // The ball of radius 0.4 at 2 m; the light is where the camera is.
+    QTRY_VERIFY(!probed.isEmpty() && probed.last()[0].toString().contains(QStringLiteral("depth 1.6 m")));
+    QVERIFY(probed.last()[0].toString().contains(QStringLiteral("sRGB")));
+    QVERIFY(probed.last()[0].toString().contains(QStringLiteral("0.000°")));
+  }
+
+ private:
+  void settle() {
+    QTRY_VERIFY(!frame_->busy());
+    QTest::qWait(30);
+  }
+  viz::OverlayOptions options() const {
+    viz::OverlayOptions o;
+    o.hidden = {viz::OverlayRole::PredictedContour, viz::OverlayRole::PredictedPeak, viz::OverlayRole::ObservedPeak};
+    o.selection = document_->selection();
+    return o;
+  }
+  Fixture fixture_;
+  std::unique_ptr<Document> document_;
+  std::unique_ptr<FramePanel> frame_;
+  std::unique_ptr<LadderPanel> ladder_;
+};
+
+QObject* makeFrameViewTest() { return new FrameViewTest; }
+
+}  // namespace glint::gui
+
+#include "frame_view_test.moc"

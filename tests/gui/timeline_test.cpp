@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/timeline/timeline.h"
+
+#include <QComboBox>
+#include <QScrollBar>
+#include <QToolButton>
+#include <QWheelEvent>
+
+#include "gui/frame/frame_canvas.h"
+#include "gui/frame/frame_panel.h"
+#include "tests/gui/fixture.h"
+
+namespace glint::gui {
+
+namespace {
+/// Counts the paint events of a widget.
+class Paints : public QObject {
+ public:
+  explicit Paints(QWidget* widget) { widget->installEventFilter(this); }
+  int count = 0;
+
+ protected:
+  bool eventFilter(QObject*, QEvent* e) override {
+    if (e->type() == QEvent::Paint) ++count;
+    return false;
+  }
+};
+
+void open(Document& document, const Fixture& fixture) {
+  document.open(fixture.opened());
+  document.setInspection(std::make_shared<const Inspection>(drawnCircles(fixture.scene(), document.request())),
+                         document.request());
+}
+
+void turnWheel(QWidget* widget, const QPointF& at, int angle, Qt::KeyboardModifiers keys = Qt::NoModifier) {
+  QWheelEvent wheel(at, widget->mapToGlobal(at.toPoint()), {}, QPoint(0, angle), Qt::NoButton, keys, Qt::NoScrollPhase, false);
+  QCoreApplication::sendEvent(widget, &wheel);
+}
+}  // namespace
+
+class TimelineTest : public QObject {
+  Q_OBJECT
+ private slots:
+  void aClickOnARoleMarkGivesTheNextRole() {
+    const Fixture fixture;
+    Document document(parseTrainSpec);
+    Timeline timeline(document);
+    timeline.resize(900, 140);
+    timeline.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&timeline));
+    open(document, fixture);
+    TimelineStrip* strip = timeline.strip();
+    QCOMPARE(document.role(3), FrameRole::Training);
+    for (const FrameRole next : {FrameRole::HeldOut, FrameRole::Excluded, FrameRole::Training}) {
+      const int steps = document.undoStack()->index();
+      QTest::mouseClick(strip, Qt::LeftButton, {}, strip->roleMark(3).center().toPoint());
+      QCOMPARE(document.role(3), next);
+      QCOMPARE(document.undoStack()->index(), steps + 1);
+    }
+    QCOMPARE(document.selection().frame, 0);  // a change of role is no selection
+  }
+
+  void theWheelZoomsAroundTheFrameUnderTheMouse() {
+    const Fixture fixture;
+    Document document(parseTrainSpec);
+    Timeline timeline(document);
+    timeline.resize(900, 140);
+    timeline.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&timeline));
+    open(document, fixture);
+    TimelineStrip* strip = timeline.strip();
+    auto* scroll = timeline.findChild<QScrollBar*>(QStringLiteral("timelineScroll"));
+    QVERIFY(!scroll->isVisible());
+    const QPointF at = strip->cell(8).center();
+    turnWheel(strip, at, 240);
+    QCOMPARE(strip->framesInView(), 6.0);
+    QCOMPARE(strip->frameAt(at), 8);
+    QVERIFY(scroll->isVisible());
+    scroll->setValue(0);
+    QCOMPARE(strip->firstFrame(), 0.0);
+    turnWheel(strip, at, -1200, Qt::ShiftModifier);
+    QCOMPARE(strip->firstFrame(), 6.0);
+    document.selectFrame(1);  // what is selected comes into view
+    QCOMPARE(strip->firstFrame(), 1.0);
+    turnWheel(strip, at, -4800);
+    QCOMPARE(strip->framesInView(), 12.0);
+    QVERIFY(!scroll->isVisible());
+  }
+
+  void barsSpeedAndThumbnailsAreOptionsThatUndoRestores() {
+    const Fixture fixture;
+    Document document(parseTrainSpec);
+    Timeline timeline(document);
+    timeline.resize(900, 140);
+    timeline.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&timeline));
+    open(document, fixture);
+    QTRY_VERIFY(!timeline.busy());
+    QTest::qWait(20);
+    QVERIFY(timeline.strip()->thumbnails().reads() >= 12);
+    const QImage lines = timeline.strip()->grab().toImage();
+    QTest::mouseClick(timeline.findChild<QToolButton*>(QStringLiteral("timelineBars")), Qt::LeftButton);
+    QCOMPARE(document.option("timeline/chart", std::string()), std::string("bars"));
+    QVERIFY(timeline.strip()->grab().toImage() != lines);
+    document.undoStack()->undo();
+    QVERIFY(timeline.strip()->grab().toImage() == lines);
+    document.setOption("timeline/thumbnails", "off", QString());
+    QVERIFY(timeline.strip()->grab().toImage() != lines);
+    auto* speed = timeline.findChild<QComboBox*>(QStringLiteral("playSpeed"));
+    document.setOption("timeline/speed", 30.0, QString());
+    QCOMPARE(speed->currentData().toInt(), 30);
+  }
+
+  /// 1,000 frames under the mouse: what is painted and read depends on how often the screen is refreshed, not on how many frames
+  /// passed by.
+  void scrubbingPaintsACursorAndReadsWhereItStops() {
+    const Fixture fixture(1000);
+    Document document(parseTrainSpec);
+    Timeline timeline(document);
+    FramePanel frame(document);
+    timeline.resize(1200, 140);
+    frame.resize(400, 400);
+    timeline.show();
+    frame.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&timeline));
+    QVERIFY(QTest::qWaitForWindowExposed(&frame));
+    open(document, fixture);
+    QTRY_VERIFY(!timeline.busy() && !frame.busy());
+    QVERIFY(timeline.strip()->thumbnails().reads() < 60);  // those that are seen
+    TimelineStrip* strip = timeline.strip();
+    strip->grab();
+    const int backgrounds = strip->backgroundsPainted(), thumbnails = strip->thumbnails().reads(),
+              reads = frame.loader()->reads();
+    Paints stripPaints(strip), framePaints(frame.canvas());
+    constexpr int kTurns = 50;
+    const auto send = [strip](QEvent::Type type, const QPointF& at, Qt::MouseButton button) {
+      QMouseEvent event(type, at, strip->mapToGlobal(at.toPoint()), button, Qt::LeftButton, Qt::NoModifier);
+      QCoreApplication::sendEvent(strip, &event);
+    };
+    send(QEvent::MouseButtonPress, strip->cell(0).center(), Qt::LeftButton);
+    for (int i = 1; i < 1000; ++i) {
+      send(QEvent::MouseMove, strip->cell(i).center(), Qt::NoButton);
+      QCOMPARE(document.selection().frame, i);
+      if (i % (1000 / kTurns) == 0) QCoreApplication::processEvents();
+    }
+    send(QEvent::MouseButtonRelease, strip->cell(999).center(), Qt::LeftButton);
+    QTRY_VERIFY(!frame.busy());
+    QCOMPARE(document.undoStack()->count(), 1);
+    QCOMPARE(strip->backgroundsPainted(), backgrounds);
+    QCOMPARE(strip->thumbnails().reads(), thumbnails);
+    QVERIFY2(frame.loader()->reads() - reads <= kTurns + 2, qPrintable(QString::number(frame.loader()->reads() - reads)));
+    QVERIFY2(stripPaints.count <= 2 * kTurns + 4, qPrintable(QString::number(stripPaints.count)));
+    QVERIFY2(framePaints.count <= 3 * kTurns + 4, qPrintable(QString::number(framePaints.count)));
+    QCOMPARE(frame.loader()->pictureFrame(), 999);
+  }
+};
+
+QObject* makeTimelineTest() { return new TimelineTest; }
+
+}  // namespace glint::gui
+
+#include "timeline_test.moc"
