@@ -51,7 +51,7 @@ class LinkingTest : public QObject {
     QVERIFY(title().contains("held out"));
     QCOMPARE(table_->view()->currentIndex().siblingAtColumn(ErrorModel::Frame).data().toString(), QStringLiteral("0007"));
     QSignalSpy loaded(frame_->loader(), &PhotoLoader::loaded);
-    QTRY_VERIFY(!frame_->loader()->busy());
+    QTRY_VERIFY(!frame_->busy());
     // Frame 7's photograph has red 45 (fixture): what is on screen is this frame's.
     const QImage shown = frame_->canvas()->grab().toImage();
     QCOMPARE(qRed(shown.pixel(shown.width() / 2, shown.height() / 2 + shown.height() / 5)), 45);
@@ -133,7 +133,7 @@ class LinkingTest : public QObject {
   }
 
   void aClickOnTheHighlightSelectsItAndTheLegendHidesIt() {
-    QTRY_VERIFY(!frame_->loader()->busy());
+    QTRY_VERIFY(!frame_->busy());
     FrameCanvas* canvas = frame_->canvas();
     canvas->fit();
     QTest::mouseClick(canvas, Qt::LeftButton, {}, canvas->widgetFromPixel(Fixture::centre(0)).toPoint());
