@@ -145,8 +145,10 @@ std::string readHash(const JsonNode& node) {
 
 }  // namespace
 
-Session readSession(const fs::path& file) {
-  const JsonNode root = JsonNode::parse(readFile(file), file.string());
+Session readSession(const fs::path& file) { return parseSession(readFile(file), file); }
+
+Session parseSession(const std::string& json, const fs::path& file) {
+  const JsonNode root = JsonNode::parse(json, file.string());
   Session session;
   session.file = file;
   const fs::path folder = folderOf(file);
@@ -245,11 +247,15 @@ MissingScene::MissingScene(const fs::path& session, fs::path scene)
     : InputError(session.string(), "input.path", "the scene " + scene.string() + " is not there"), scene_(std::move(scene)) {}
 
 OpenedSession openSession(const fs::path& file, const fs::path& sceneInstead) {
-  OpenedSession opened{readSession(file), nullptr, ""};
+  return openSession(readSession(file), sceneInstead);
+}
+
+OpenedSession openSession(Session given, const fs::path& sceneInstead) {
+  OpenedSession opened{std::move(given), nullptr, ""};
   Session& session = opened.session;
   if (!sceneInstead.empty()) session.input = fs::absolute(sceneInstead).lexically_normal();
   std::error_code ignored;
-  if (!fs::exists(session.input, ignored)) throw MissingScene(file, session.input);
+  if (!fs::exists(session.input, ignored)) throw MissingScene(session.file, session.input);
   ReadOptions options;
   options.allowOutsidePaths = session.allowOutsidePaths;
   opened.scene = std::make_shared<const Scene>(readScene(session.input, options));

@@ -67,6 +67,8 @@ struct Session {
 
 /// InputError: file, place and reason; a version newer than this program's is refused.
 Session readSession(const std::filesystem::path& file);
+/// The same from text that is kept elsewhere (in a picture): paths start at the folder of `file`.
+Session parseSession(const std::string& json, const std::filesystem::path& file);
 /// Atomically; paths relative to the session's folder. InputError when it cannot be written.
 void writeSession(const Session& session, const std::filesystem::path& file);
 
@@ -88,6 +90,7 @@ struct OpenedSession {
 /// Reads a session and its scene. InputError; MissingScene. Does not check the files' contents: see `changedFiles`.
 /// @param sceneInstead  where the scene is now; "" = where the session says. The session then names it.
 OpenedSession openSession(const std::filesystem::path& file, const std::filesystem::path& sceneInstead = {});
+OpenedSession openSession(Session session, const std::filesystem::path& sceneInstead = {});
 
 /// The session of a finished inspection, with hashes of its inputs, held-out frames, key results and digest; the view and notes
 /// are left empty. Reads every input file once. Stopped.

@@ -230,6 +230,14 @@ void Document::setLayerVisible(const std::string& name, const std::string& title
   push(std::move(after), (visible ? tr("Show %1") : tr("Hide %1")).arg(toQString(title).toLower()));
 }
 
+void Document::setView(const std::map<std::string, bool>& layers, const std::map<std::string, std::string>& options,
+                       const QString& text) {
+  ViewState after = state_;
+  after.layers = layers;
+  after.options = options;
+  push(std::move(after), text);
+}
+
 const std::string& Document::option(const std::string& name, const std::string& otherwise) const {
   const auto it = state_.options.find(name);
   return it == state_.options.end() ? otherwise : it->second;

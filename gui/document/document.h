@@ -100,6 +100,8 @@ class Document : public QObject {
   /// @param text  what the step of undo is called; @param gesture as setSetting.
   void setOption(const std::string& name, const std::string& value, const QString& text, int gesture = 0);
   void setOption(const std::string& name, double value, const QString& text, int gesture = 0);
+  /// Layers and options changed together in one step.
+  void setView(const std::map<std::string, bool>& layers, const std::map<std::string, std::string>& options, const QString& text);
 
  signals:
   void sceneOpened();     ///< another scene

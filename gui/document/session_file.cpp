@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "core/pipeline/session.h"
+#include "gui/base/text.h"
+#include "gui/document/figure.h"
 #include "gui/scene/scene_options.h"
 
 namespace glint::gui {
@@ -37,14 +39,15 @@ Opened openInput(const std::string& path, const std::string& sceneInstead) {
   Opened opened;
   opened.path = path;
   const fs::path session = sessionAt(path);
-  if (session.empty()) {
+  const std::string inside = fs::path(path).extension() == ".png" ? sessionInFigure(toQString(path)).toStdString() : "";
+  if (session.empty() && inside.empty()) {
     opened.scene = std::make_shared<const Scene>(readScene(path));
     // A short scene opens too: the default would ask for more frames than there are.
     const int frames = int(opened.scene->frames.size());
     if (frames < kDefaultTraining) opened.request.train = "first:" + std::to_string(frames);
     return opened;
   }
-  OpenedSession read = openSession(session, sceneInstead);
+  OpenedSession read = openSession(inside.empty() ? readSession(session) : parseSession(inside, path), sceneInstead);
   const SessionView& view = read.session.view;
   opened.path = session.string();
   opened.isSession = true;

@@ -39,6 +39,7 @@ WhatIfPanel::WhatIfPanel(Document& document, QWidget* parent)
   auto* head = new QHBoxLayout;
   summary_->setObjectName(QStringLiteral("whatif.summary"));
   summary_->setWordWrap(true);
+  summary_->setMinimumHeight(2 * summary_->fontMetrics().lineSpacing());  // its rows stay where they are under the mouse
   head->addWidget(summary_, 1);
   resetAll_->setObjectName(QStringLiteral("whatif.reset"));
   resetAll_->setText(tr("Put everything back"));

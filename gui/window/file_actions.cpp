@@ -78,7 +78,7 @@ bool FileActions::mayDiscard() {
 
 void FileActions::openDialog() {
   const QString path = QFileDialog::getOpenFileName(window_, tr("Open a scene or session"), document_.inputFile(),
-                                                    tr("Scenes and sessions (*.json *.glint);;All files (*)"));
+                                                    tr("Scenes, sessions and figures (*.json *.glint *.png);;All files (*)"));
   if (!path.isEmpty()) open(path);
 }
 

@@ -11,7 +11,8 @@ const QList<Layout>& layouts() {
        QT_TRANSLATE_NOOP("Layout", "Debug"),
        {"setup", "layers", "parameters", "conditioning", "numbers", "timeline", "errors", "plots"},
        50},
-      {"compare", QT_TRANSLATE_NOOP("Layout", "Compare"), {"setup", "timeline", "errors", "plots"}, 35},
+      {"compare", QT_TRANSLATE_NOOP("Layout", "Compare"), {"setup", "timeline", "errors", "plots"}, 35, {"ladder"}},
+      {"explain", QT_TRANSLATE_NOOP("Layout", "Explain"), {"explain", "timeline"}, 55, {"explain"}},
       {"present", QT_TRANSLATE_NOOP("Layout", "Present"), {"timeline"}, 55}};
   return all;
 }

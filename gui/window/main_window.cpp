@@ -24,6 +24,8 @@
 #include <utility>
 
 #include "gui/base/text.h"
+#include "gui/explain/explain_panel.h"
+#include "gui/export/export_actions.h"
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/frame_panel.h"
 #include "gui/frame/ladder_panel.h"
@@ -55,7 +57,8 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
       engine_(std::move(engine)),
       document_(engine_.parseTrain),
       runner_(engine_),
-      files_(new FileActions(engine_, document_, runner_, this)) {
+      files_(new FileActions(engine_, document_, runner_, this)),
+      exports_(new ExportActions(engine_, document_, this)) {
   setAcceptDrops(true);
   setMinimumSize(1100, 700);
   resize(1600, 1000);
@@ -76,6 +79,14 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
     if (!opened->layout.empty()) applyLayout(toQString(opened->layout));
     scene_->setViewPoint(opened->viewPoint);
   });
+  for (const auto signal : {&ExportActions::problem, &ExportActions::message})
+    connect(exports_, signal, this, [this, signal](const QString& line) {
+      if (signal == &ExportActions::problem) return showProblem(line);
+      log(line);
+      statusBar()->showMessage(line, 6000);
+    });
+  exports_->setSnapshot([this] { return snapshot(); });
+  exports_->setLog([this] { return log_->toPlainText(); });
   files_->setViewSource([this](Opened& opened) { addView(opened); });
   connect(&runner_, &Runner::failed, this, [this](const QString& oneLine) {
     runFailed_ = true;
@@ -152,12 +163,18 @@ void MainWindow::buildCentre() {
   setCentralWidget(middle);
 }
 
-QDockWidget* MainWindow::addDock(const char* name, const QString& title, QWidget* content, Qt::DockWidgetArea area) {
+QDockWidget* MainWindow::addDock(const char* name, const QString& title, QWidget* content, Qt::DockWidgetArea area,
+                                 const char* behind) {
   auto* dock = new QDockWidget(title);
   dock->setObjectName(QLatin1String(name));
   dock->setWidget(content);
   addDockWidget(area, dock);
   docks_.insert(QLatin1String(name), dock);
+  if (QDockWidget* host = docks_.value(QLatin1String(behind))) {
+    tabifyDockWidget(host, dock);
+    host->raise();
+    hosts_.insert(QLatin1String(name), QLatin1String(behind));
+  }
   return dock;
 }
 
@@ -186,21 +203,25 @@ void MainWindow::buildDocks() {
   setupScroll->setMinimumWidth(190);
   setupScroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   addDock("setup", tr("Setup"), setupScroll, Qt::LeftDockWidgetArea);
-  QDockWidget* layers = addDock("layers", tr("Layers"), new LayerList(document_), Qt::LeftDockWidgetArea);
+  addDock("layers", tr("Layers"), new LayerList(document_), Qt::LeftDockWidgetArea);
   auto* history = new QUndoView(document_.undoStack());
   history->setEmptyLabel(tr("As opened"));
-  tabifyDockWidget(layers, addDock("history", tr("History"), history, Qt::LeftDockWidgetArea));
-  layers->raise();
+  addDock("history", tr("History"), history, Qt::LeftDockWidgetArea, "layers");
 
   parameters_ = new ParameterPanel(document_);
   addDock("parameters", tr("Parameters"), parameters_, Qt::RightDockWidgetArea);
-  QDockWidget* whatIf = addDock("what-if", tr("What if"), new WhatIfPanel(document_), Qt::RightDockWidgetArea);
-  tabifyDockWidget(docks_["parameters"], whatIf);
-  docks_["parameters"]->raise();
+  addDock("what-if", tr("What if"), new WhatIfPanel(document_), Qt::RightDockWidgetArea, "parameters");
   addDock("conditioning", tr("Conditioning"), new ConditioningPanel(document_), Qt::RightDockWidgetArea);
   numbers_ = new NumbersPanel(document_);
   addDock("numbers", tr("Numbers"), numbers_, Qt::RightDockWidgetArea);
   connect(scene_, &ScenePanel::picked, numbers_, &NumbersPanel::showPicked);
+
+  explain_ = new ExplainPanel(document_);
+  addDock("explain", tr("Explain"), explain_, Qt::RightDockWidgetArea, "parameters");
+  connect(explain_, &ExplainPanel::started, this, [this] {
+    docks_["explain"]->show();
+    docks_["explain"]->raise();
+  });
 
   timeline_ = new Timeline(document_);
   QDockWidget* timeline = addDock("timeline", tr("Timeline"), timeline_, Qt::BottomDockWidgetArea);
@@ -213,11 +234,11 @@ void MainWindow::buildDocks() {
   log_ = new QPlainTextEdit;
   log_->setReadOnly(true);
   log_->setMaximumBlockCount(2000);
-  tabifyDockWidget(errors, addDock("log", tr("Log"), log_, Qt::BottomDockWidgetArea));
+  addDock("log", tr("Log"), log_, Qt::BottomDockWidgetArea, "errors");
   ladder_ = new LadderPanel(document_, *frame_->loader());
-  tabifyDockWidget(errors, addDock("ladder", tr("Ladder"), ladder_, Qt::BottomDockWidgetArea));
+  addDock("ladder", tr("Ladder"), ladder_, Qt::BottomDockWidgetArea, "errors");
   tradeoff_ = new TradeoffPanel(document_);
-  tabifyDockWidget(errors, addDock("tradeoff", tr("Speed and accuracy"), tradeoff_, Qt::BottomDockWidgetArea));
+  addDock("tradeoff", tr("Speed and accuracy"), tradeoff_, Qt::BottomDockWidgetArea, "errors");
   connect(tradeoff_, &TradeoffPanel::measureRequested, this, [this] {
     if (document_.scene() && engine_.tradeoff)
       runner_.measure(document_.sharedScene(), document_.request(),
@@ -249,6 +270,8 @@ void MainWindow::buildDocks() {
 void MainWindow::buildMenus() {
   QMenu* file = menuBar()->addMenu(tr("&File"));
   files_->addActions(actions_, file);
+  file->addSeparator();
+  exports_->addActions(actions_, file->addMenu(tr("&Export")));
   file->addSeparator();
   actions_.add("file.quit", file, tr("&Quit"), [this] { close(); }, {QKeySequence::keyBindings(QKeySequence::Quit)});
 
@@ -293,11 +316,27 @@ void MainWindow::buildMenus() {
     actions_.add("view.layout-" + name, layoutMenu, tr(layout.title), [this, name] { applyLayout(name); });
   }
   QMenu* panels = view->addMenu(tr("&Panels"));
-  for (auto dock = docks_.begin(); dock != docks_.end(); ++dock)
-    actions_.adopt("view.panel-" + dock.key(), panels, dock.value()->toggleViewAction(), {});
+  for (auto it = docks_.begin(); it != docks_.end(); ++it) {
+    QDockWidget* dock = it.value();
+    QAction* action = actions_.addToggle("view.panel-" + it.key(), panels, dock->windowTitle(),
+                                         [dock](bool) {
+                                           // What lies behind another tab is not seen: it comes to the front instead of going
+                                           // away.
+                                           if (dock->isVisible() && !dock->visibleRegion().isEmpty()) return dock->hide();
+                                           dock->show();
+                                           dock->raise();
+                                         },
+                                         {});
+    const auto follow = [action, dock] { action->setChecked(!dock->isHidden()); };
+    connect(dock->toggleViewAction(), &QAction::toggled, action, follow);
+    connect(action, &QAction::triggered, action, follow);
+    follow();
+  }
   view->addSeparator();
   actions_.add("view.theme", view, tr("Light or dark &theme"),
                [this] { setTheme(currentTheme() == Theme::Dark ? Theme::Light : Theme::Dark); }, {{}, "theme"});
+
+  explain_->addActions(actions_, menuBar()->addMenu(tr("E&xplain")));
 
   QToolBar* bar = addToolBar(tr("Tools"));
   bar->setObjectName(QStringLiteral("tools"));
@@ -330,17 +369,12 @@ void MainWindow::applyLayout(const QString& name) {
   const Layout& layout = layoutByName(name);
   layout_ = QLatin1String(layout.name);
   for (auto dock = docks_.begin(); dock != docks_.end(); ++dock) {
-    // Log and history are tabs behind their neighbours: they follow them.
-    const QString host = dock.key() == QStringLiteral("log")        ? QStringLiteral("errors")
-                         : dock.key() == QStringLiteral("tradeoff") ? QStringLiteral("errors")
-                         : dock.key() == QStringLiteral("ladder")   ? QStringLiteral("errors")
-                         : dock.key() == QStringLiteral("what-if")  ? QStringLiteral("parameters")
-                         : dock.key() == QStringLiteral("history")  ? QStringLiteral("layers")
-                                                                    : dock.key();
-    dock.value()->setVisible(layout.docks.contains(host));
+    // What is a tab behind another dock follows it, unless the layout names it itself.
+    const QString host = hosts_.value(dock.key(), dock.key());
+    dock.value()->setVisible(layout.docks.contains(dock.key()) || layout.docks.contains(host));
   }
   for (const char* front : {"errors", "layers", "parameters"}) docks_[QLatin1String(front)]->raise();
-  if (layout_ == QStringLiteral("compare")) docks_["ladder"]->raise();
+  for (const QString& front : layout.front) docks_[front]->raise();
   resizeDocks({docks_["setup"], docks_["parameters"]}, {230, 380}, Qt::Horizontal);
   resizeDocks({docks_["timeline"], docks_["errors"]}, {150, height() * 3 / 10}, Qt::Vertical);
   resizeDocks({docks_["setup"], docks_["layers"]}, {284, 264}, Qt::Vertical);
@@ -387,7 +421,10 @@ void MainWindow::offerRecovery() {
                            }}});
 }
 
-bool MainWindow::idle() const { return !runner_.busy() && !frame_->busy() && !timeline_->busy() && !scene_->busy() && plots_->idle(); }
+bool MainWindow::idle() const {
+  return !runner_.busy() && !frame_->busy() && !timeline_->busy() && !scene_->busy() && plots_->idle() && !explain_->busy() &&
+         !exports_->busy();
+}
 
 QPixmap MainWindow::picture() {
   if (centre_->currentWidget() == views_) scene_->renderNow();

@@ -19,6 +19,8 @@ class QStackedWidget;
 namespace glint::gui {
 
 class ErrorTable;
+class ExportActions;
+class ExplainPanel;
 class FileActions;
 class FramePanel;
 class LadderPanel;
@@ -54,6 +56,7 @@ class MainWindow : public QMainWindow {
   Actions& actions() { return actions_; }
   Palette* commandPalette() const { return palette_; }
   FileActions* files() { return files_; }
+  ExportActions* exports() { return exports_; }
   QString lastError() const { return lastError_; }
 
  signals:
@@ -69,7 +72,8 @@ class MainWindow : public QMainWindow {
   void buildDocks();
   void buildMenus();
   void buildStatusLine();
-  QDockWidget* addDock(const char* name, const QString& title, QWidget* content, Qt::DockWidgetArea area);
+  QDockWidget* addDock(const char* name, const QString& title, QWidget* content, Qt::DockWidgetArea area,
+                       const char* behind = "");
   void recompute();
   void showProblem(const QString& oneLine);
   void log(const QString& line);
@@ -84,7 +88,9 @@ class MainWindow : public QMainWindow {
   Runner runner_;
   Actions actions_;
   FileActions* files_;
+  ExportActions* exports_;
   QMap<QString, QDockWidget*> docks_;
+  QMap<QString, QString> hosts_;  ///< docks that are tabs behind another one, by name
   QStackedWidget* centre_ = nullptr;
   StartPage* start_ = nullptr;
   QSplitter* views_ = nullptr;
@@ -92,6 +98,7 @@ class MainWindow : public QMainWindow {
   FramePanel* frame_ = nullptr;
   Timeline* timeline_ = nullptr;
   ErrorTable* errors_ = nullptr;
+  ExplainPanel* explain_ = nullptr;
   NumbersPanel* numbers_ = nullptr;
   ParameterPanel* parameters_ = nullptr;
   Palette* palette_ = nullptr;

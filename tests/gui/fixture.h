@@ -50,6 +50,8 @@ QObject* makeLinkingTest();
 QObject* makeWindowTest();
 QObject* makeSessionTest();
 QObject* makeProgramTest();
+QObject* makeExportTest();
+QObject* makeExplainTest();
 QObject* makeRecoveryTest();
 int runUntilKilled();  ///< see recovery_test.cpp
 QObject* makeTradeoffTest();

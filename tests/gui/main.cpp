@@ -19,9 +19,10 @@ int main(int argc, char** argv) {
       {"document", makeDocumentTest},    {"runner", makeRunnerTest},     {"frame_canvas", makeFrameCanvasTest},
       {"frame_view", makeFrameViewTest}, {"timeline", makeTimelineTest}, {"panel", makePanelTest},
       {"palette", makePaletteTest},      {"linking", makeLinkingTest},   {"window", makeWindowTest},
-      {"session", makeSessionTest},      {"program", makeProgramTest},   {"recovery", makeRecoveryTest},
-      {"tradeoff", makeTradeoffTest},    {"plots", makePlotsTest},
-      {"scene", makeSceneTest}};
+      {"scene", makeSceneTest},          {"session", makeSessionTest},   {"program", makeProgramTest},
+      {"recovery", makeRecoveryTest},    {"explain", makeExplainTest},   {"export", makeExportTest},
+      {"plots", makePlotsTest},          {"tradeoff", makeTradeoffTest},
+  };
   if (argc < 2) return std::fputs("usage: test_gui CLASS [QTest options]\n", stderr), 2;
   QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
   const bool untilKilled = std::strcmp(argv[1], "--until-killed") == 0;

@@ -20,6 +20,10 @@ constexpr int kThumbnail = 256, kSelected = 640;
 
 LayerContent photographsLayer(const LayerInput& in) {
   LayerContent content;
+  if (in.inspection->request.whatIf.synthesise) {
+    content.remarks.push_back("no photographs: the contours are synthesised");
+    return content;
+  }
   std::vector<int> chosen;
   const std::size_t n = in.frames.size(), count = std::min(n, kMostPhotographs);
   for (std::size_t i = 0; i < count; ++i) chosen.push_back(in.frames[i * n / count]);

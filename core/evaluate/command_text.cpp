@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/evaluate/command_text.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace glint {
+
+namespace {
+/// As short as it can be without losing a bit.
+std::string shortest(double v) {
+  char buffer[32];
+  const auto end = std::to_chars(buffer, buffer + sizeof buffer, v).ptr;
+  return std::string(buffer, end);
+}
+
+std::string text(const SettingValue& value) {
+  if (const auto* s = std::get_if<std::string>(&value)) return *s;
+  if (const auto* b = std::get_if<bool>(&value)) return *b ? "true" : "false";
+  if (const auto* i = std::get_if<int>(&value)) return std::to_string(*i);
+  return shortest(std::get<double>(value));
+}
+}  // namespace
+
+std::string shellWord(const std::string& text) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || std::string("_-./=:,+@%").find(c) != std::string::npos;
+  };
+  if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+Outcome<std::string> commandOf(const std::string& input, const InspectionRequest& q, bool allowOutsidePaths) {
+  if (!q.excluded.empty()) return Failure{Reason::NotSupported, "excluded frames have no flag; save a session and use it as INPUT"};
+  if (!q.whatIf.none()) return Failure{Reason::NotSupported, "a what-if has no flag; save a session and use it as INPUT"};
+  const InspectionRequest usual;
+  std::string command = "glint evaluate " + shellWord(input);
+  if (q.models != usual.models) {
+    std::string models;
+    for (const std::string& m : q.models) models += (models.empty() ? "" : ",") + m;
+    command += " --models " + shellWord(models);
+  }
+  if (q.train != usual.train) command += " --train " + shellWord(q.train);
+  if (q.source != usual.source) command += q.source == FrameSource::Image ? " --source image" : " --source radiance";
+  for (const auto& [key, value] : q.settings.values()) command += " --set " + shellWord(key + "=" + text(value));
+  if (q.noisePx > 0) command += " --noise-px " + shortest(q.noisePx) + " --seed " + std::to_string(q.seed);
+  if (!q.truthFolder.empty()) command += " --truth " + shellWord(q.truthFolder);
+  if (allowOutsidePaths) command += " --allow-outside";
+  return command;
+}
+
+}  // namespace glint

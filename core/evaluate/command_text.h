@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "core/pipeline/inspection.h"
+
+namespace glint {
+
+/// The command line that computes a request: `glint evaluate INPUT …`, quoted for a POSIX shell; what is on its default is left out.
+/// NotSupported, with what has no flag (excluded frames, a what-if): a session can hold it.
+Outcome<std::string> commandOf(const std::string& input, const InspectionRequest& request, bool allowOutsidePaths = false);
+
+/// The text as one word of a POSIX shell.
+std::string shellWord(const std::string& text);
+
+}  // namespace glint

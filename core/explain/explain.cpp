@@ -1,0 +1,435 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/explain/explain.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+
+#include "core/light/estimate.h"
+#include "core/pipeline/training.h"
+#include "core/surface/mesh_policy.h"
+
+namespace glint {
+
+namespace {
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kFlatShare = 0.05;      // of the limit angle: a normal that turns less across the highlight is that of a plane
+constexpr double kSameCurvature = 0.2;   // relative spread over the views: below, one sphere-like patch describes all of them
+constexpr double kSameLimit = 0.05;      // relative spread over the directions: beyond, one limit angle is not the contour
+constexpr double kEllipticShare = 0.01;  // of the size: a contour this near to its ellipse looks like one
+constexpr double kNarrowDeg = 2;         // between reflected rays: below, the light's distance is a guess
+constexpr double kWeakGap = 0.5;         // of the last two singular values: above, two quadrics fit almost alike
+
+ExplainNumber one(const std::string& symbol, const std::string& name, double value, const std::string& unit = "") {
+  return {symbol, name, {value}, unit};
+}
+ExplainNumber point(const std::string& symbol, const std::string& name, const Eigen::Vector3d& p, const std::string& unit = "m") {
+  return {symbol, name, {p.x(), p.y(), p.z()}, unit};
+}
+ExplainNumber pixel(const std::string& symbol, const std::string& name, const Pixel& p) {
+  return {symbol, name, {p.x(), p.y()}, "px"};
+}
+
+const std::vector<std::string>& idsFromPoorToRich() {
+  static const std::vector<std::string> ids = [] {
+    std::vector<std::string> all;
+    for (const auto& m : allModels()) all.push_back(m->id());
+    return all;
+  }();
+  return ids;
+}
+
+/// What the steps read from.
+struct Case {
+  const Inspection& inspection;
+  Explanation& out;
+  const Highlight* highlight = nullptr;
+  std::shared_ptr<const Surface> surface{};
+  const ModelResult* result = nullptr;
+  const ModelResult::Fit* fit = nullptr;
+  const FrameComparison* comparison = nullptr;
+  const FrameComparison::Row* row = nullptr;
+  const Camera& camera() const { return inspection.scene->frames[std::size_t(out.frame)].camera; }
+  const PredictedHighlight* predicted() const {
+    return row && row->predicted >= 0 ? &comparison->prediction.highlights[std::size_t(row->predicted)] : nullptr;
+  }
+};
+
+std::string modelToExplain(const Inspection& inspection, const std::string& wanted) {
+  if (inspection.models.count(wanted)) return wanted;
+  std::string richest, withEllipsoid;
+  for (const std::string& id : idsFromPoorToRich()) {
+    const auto it = inspection.models.find(id);
+    if (it == inspection.models.end()) continue;
+    richest = id;
+    for (const ModelResult::Fit& f : it->second.fits)
+      if (f.fit && f.fit->ellipsoid) withEllipsoid = id;
+  }
+  return withEllipsoid.empty() ? richest : withEllipsoid;
+}
+
+/// Light, fit and comparison of this highlight, and its view with the canonical contour.
+void gather(Case& c) {
+  const Inspection& in = c.inspection;
+  Explanation& out = c.out;
+  const FrameEvidence& evidence = in.evidence[std::size_t(out.frame)];
+  if (out.highlight < 0 || out.highlight >= int(evidence.highlights.size())) out.highlight = evidence.highlights.empty() ? -1 : 0;
+  const auto result = in.models.find(out.model);
+  c.result = result == in.models.end() ? nullptr : &result->second;
+  if (out.highlight >= 0) {
+    c.highlight = &evidence.highlights[std::size_t(out.highlight)];
+    out.light = c.highlight->light;
+  } else if (c.result && !c.result->fits.empty()) {
+    out.light = c.result->fits.front().light;
+  }
+  const std::string surfaceKey = in.surfaces ? in.surfaces->keyOf(out.frame) : "";
+  if (c.result)
+    for (const ModelResult::Fit& f : c.result->fits)
+      if (f.light == out.light && (!f.surface || *f.surface == surfaceKey)) c.fit = &f;
+  if (c.result)
+    for (const FrameComparison& comparison : c.result->frames) {
+      if (comparison.frame != out.frame || comparison.light != out.light) continue;
+      c.comparison = &comparison;
+      for (const FrameComparison::Row& row : comparison.rows)
+        if (!c.row || row.observed == out.highlight) c.row = &row;
+    }
+  const auto light = in.lights.find(lightKey(out.light, in.train.perSurface ? std::optional(surfaceKey) : std::nullopt));
+  if (light != in.lights.end()) out.lightUsed = light->second.light;
+  if (!c.highlight) return;
+  for (const TrainingView& v : in.views)
+    if (v.frame == out.frame && v.highlight.light == out.light && (v.highlight.peak - c.highlight->peak).norm() < 1)
+      out.view = v;  // px; noise moves it less
+  if (!out.view && in.surfaces) {
+    const auto found = in.surfaces->surfaceOf(out.frame, meshPolicy(in.request.settings));
+    out.view = trainingView(evidence, out.highlight, c.camera(), found ? *found : nullptr);
+  }
+  c.surface = out.view ? out.view->surface : nullptr;
+  if (out.view && !out.view->failure && !out.view->canonical && out.lightUsed)
+    addCanonicalContour(*out.view, *out.lightUsed, in.request.settings);
+}
+
+bool reached(const Case& c, ExplainStep& step) {
+  if (!c.highlight) {
+    const std::optional<Failure>& why = c.inspection.evidence[std::size_t(c.out.frame)].failure;
+    step.failure = why ? *why : Failure{Reason::NoHighlight, "the frame shows none"};
+  } else if (!c.out.view) {
+    step.failure = Failure{Reason::NoSurface, ""};
+  } else if (c.out.view->failure) {
+    step.failure = c.out.view->failure;
+  }
+  return !step.failure;
+}
+
+/// Radius of the highlight on the tangent plane, m.
+double radiusOnPlane(const TrainingView& v) {
+  double sum = 0;
+  int n = 0;
+  for (const Pixel& p : v.highlight.contour.points) {
+    const Ray ray = v.camera.ray(p);
+    const double across = v.tangentPlane->normal.dot(ray.direction);
+    if (across == 0) continue;
+    const double t = -v.tangentPlane->signedDistance(ray.origin) / across;
+    if (!(t > 0)) continue;
+    sum += (ray.at(t) - v.brightest->point.position).norm();
+    ++n;
+  }
+  return n > 0 ? sum / n : 0;
+}
+
+void peakStep(const Case& c, ExplainStep& step) {
+  if (!c.highlight) return void(reached(c, step));
+  step.numbers.push_back(pixel("p", "peak in the photograph", c.highlight->peak));
+  if (c.highlight->clipped) step.broken.push_back({"clipped-peak", {}});
+  if (!reached(c, step)) return;
+  const TrainingView& v = *c.out.view;
+  if (!v.brightest) {
+    step.failure = Failure{Reason::NoSurface, "the frame has no surface for the ray to hit"};
+    return;
+  }
+  step.numbers.push_back(point("P_B", "brightest point", v.brightest->point.position));
+  step.numbers.push_back(
+      one("", "distance from the camera", (v.brightest->point.position - v.camera.centreInWorld()).norm(), "m"));
+}
+
+void tangentStep(const Case& c, ExplainStep& step) {
+  if (!reached(c, step) || !c.out.view->brightest || !c.out.view->tangentPlane) return;
+  const TrainingView& v = *c.out.view;
+  const Eigen::Vector3d toCamera = (v.camera.centreInWorld() - v.brightest->point.position).normalized();
+  step.numbers.push_back(point("N", "normal at P_B", v.tangentPlane->normal, ""));
+  step.numbers.push_back(
+      one("", "angle between N and the view ray",
+          std::atan2(toCamera.cross(v.tangentPlane->normal).norm(), toCamera.dot(v.tangentPlane->normal)) / kDegree, "deg"));
+  if (!c.surface) return;
+  if (const Outcome<Curvature> k = c.surface->curvatureAt(v.brightest->point)) {
+    step.numbers.push_back(one("kappa_1", "principal curvature", k->k1, "1/m"));
+    step.numbers.push_back(one("kappa_2", "principal curvature", k->k2, "1/m"));
+  }
+}
+
+void virtualCameraStep(const Case& c, ExplainStep& step) {
+  if (!reached(c, step) || !c.out.view->tangentPlane || !c.out.view->virtualCamera) return;
+  const TrainingView& v = *c.out.view;
+  step.numbers.push_back(point("C", "camera centre", v.camera.centreInWorld()));
+  step.numbers.push_back(point("C_v", "centre of the virtual camera", v.tangentPlane->reflected(v.camera.centreInWorld())));
+  step.numbers.push_back(
+      one("det M", "of the mirror's 3x3 block", v.tangentPlane->reflection().topLeftCorner<3, 3>().determinant()));
+  // How far the surface is from a plane within the highlight: the normal's turn against the limit angle.
+  if (!c.surface || !v.brightest) return;
+  const Outcome<Curvature> k = c.surface->curvatureAt(v.brightest->point);
+  const double limit = c.fit && c.fit->fit && c.fit->fit->limitAngle ? *c.fit->fit->limitAngle : 0;
+  const auto estimate = c.inspection.lights.find(c.out.light);
+  const double alpha = limit > 0 ? limit : estimate != c.inspection.lights.end() ? estimate->second.limitAngle : 0;
+  if (!k || !(alpha > 0)) return;
+  const double turn = std::max(std::abs(k->k1), std::abs(k->k2)) * radiusOnPlane(v);
+  step.numbers.push_back(one("", "turn of the normal from P_B to the contour", turn / kDegree, "deg"));
+  if (turn > kFlatShare * alpha && c.out.model == "primal")
+    step.broken.push_back(
+        {"primal-off-plane",
+         {one("", "turn of the normal", turn / kDegree, "deg"), one("", "limit angle", alpha / kDegree, "deg")}});
+  if (c.out.model == "dual") {
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (const TrainingView& other : c.inspection.views) {
+      if (other.failure || !other.brightest || !other.surface) continue;
+      const Outcome<Curvature> there = other.surface->curvatureAt(other.brightest->point);
+      if (!there) continue;
+      least = std::min({least, there->k1, there->k2});
+      most = std::max({most, there->k1, there->k2});
+    }
+    const double size = std::max(std::abs(least), std::abs(most));
+    if (most > least && size > 0 && most - least > kSameCurvature * size && turn > kFlatShare * alpha)
+      step.broken.push_back({"dual-curvature-varies",
+                             {one("", "smallest curvature seen", least, "1/m"), one("", "largest curvature seen", most, "1/m")}});
+  }
+}
+
+void lightStep(const Case& c, ExplainStep& step) {
+  if (!c.out.lightUsed) {
+    const auto why = c.inspection.lightFailures.find(c.out.light);
+    step.failure =
+        why != c.inspection.lightFailures.end() ? why->second : Failure{Reason::NoLight, "no model that was computed needs one"};
+    return;
+  }
+  std::vector<Eigen::Vector3d> rays;
+  for (const TrainingView& v : c.inspection.views)
+    if (!v.failure && v.brightest && v.highlight.light == c.out.light)
+      rays.push_back(reflectedRay(*v.brightest, v.camera).direction);
+  double widest = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    for (std::size_t j = i + 1; j < rays.size(); ++j)
+      widest = std::max(widest, std::atan2(rays[i].cross(rays[j]).norm(), rays[i].dot(rays[j])));
+  const Light& light = *c.out.lightUsed;
+  if (light.atInfinity())
+    step.numbers.push_back(point("L", "direction of a light at infinity", light.homogeneous().head<3>(), ""));
+  else
+    step.numbers.push_back(point("L", "light", light.position()));
+  step.numbers.push_back(one("", "reflected rays", double(rays.size())));
+  step.numbers.push_back(one("", "widest angle between them", widest / kDegree, "deg"));
+  if (const auto e = c.inspection.lights.find(c.out.light); e != c.inspection.lights.end() && e->second.covariance)
+    step.numbers.push_back(one("sigma", "of the light, largest axis",
+                               std::sqrt(e->second.covariance->selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff()), "m"));
+  if (widest < kNarrowDeg * kDegree) step.broken.push_back({"rays-parallel", {one("", "widest angle", widest / kDegree, "deg")}});
+  for (const TrueLight& truth : c.inspection.scene->lights)
+    if (truth.id == c.out.light && truth.position && !light.atInfinity())
+      step.numbers.push_back(one("", "distance from the true light", (light.position() - *truth.position).norm(), "m"));
+}
+
+void contourStep(const Case& c, ExplainStep& step) {
+  if (!c.highlight) return void(reached(c, step));
+  const Highlight& h = *c.highlight;
+  step.numbers.push_back(one("q", "level, share of the peak", h.level));
+  step.numbers.push_back(one("", "area", h.areaPx2, "px²"));
+  if (h.ellipse)
+    step.numbers.push_back({"a, b", "semi-axes of its ellipse", {h.ellipse->semiAxes.x(), h.ellipse->semiAxes.y()}, "px"});
+  if (h.touchesBorder) step.broken.push_back({"contour-cut", {}});
+  if (!h.ellipse) return;
+  // A contour on a bent mirror is no ellipse: how far it is from its own.
+  double sum = 0;
+  const Polyline own{h.ellipse->sample(360), true};
+  for (const Pixel& p : h.contour.points) sum += std::pow(distance(own, p), 2);
+  const double rms = std::sqrt(sum / double(h.contour.points.size())), share = rms / std::sqrt(h.ellipse->semiAxes.prod());
+  step.numbers.push_back(one("", "distance of the contour from its ellipse", rms, "px"));
+  if (share > kEllipticShare && (c.out.model == "primal" || c.out.model == "dual"))
+    step.broken.push_back({"contour-not-elliptic", {one("", "of the contour's size", 100 * share, "%")}});
+}
+
+void limitAngleStep(const Case& c, ExplainStep& step) {
+  if (!reached(c, step)) return;
+  if (!c.out.view->canonical) {
+    step.failure = Failure{Reason::NoLight, "the walk needs the light"};
+    return;
+  }
+  double least = std::numeric_limits<double>::infinity(), most = 0, sum = 0;
+  int n = 0;
+  std::map<std::string, int> failed;
+  for (const DirectionResult& d : c.out.view->canonical->directions) {
+    if (d.limitAngle && !d.failure) {
+      least = std::min(least, *d.limitAngle);
+      most = std::max(most, *d.limitAngle);
+      sum += *d.limitAngle;
+      ++n;
+    } else if (d.failure) {
+      ++failed[nameOf(d.failure->reason)];
+    }
+  }
+  step.numbers.push_back(one("n", "directions", double(c.out.view->canonical->directions.size())));
+  step.numbers.push_back(one("", "that reached the contour", n));
+  if (n > 0) {
+    step.numbers.push_back(one("alpha_i", "smallest limit angle", least / kDegree, "deg"));
+    step.numbers.push_back(one("alpha_i", "largest limit angle", most / kDegree, "deg"));
+    const double mean = sum / n;
+    if (most - least > kSameLimit * mean)
+      step.broken.push_back({"limit-angle-varies", {one("", "spread of the limit angles", 100 * (most - least) / mean, "%")}});
+  }
+  for (const auto& [reason, count] : failed) step.broken.push_back({"directions-failed", {one("", reason, count)}});
+}
+
+void canonicalStep(const Case& c, ExplainStep& step) {
+  if (!reached(c, step)) return;
+  const std::optional<CanonicalContour>& canonical = c.out.view->canonical;
+  if (!canonical || !canonical->ellipse) {
+    step.failure = canonical ? Failure{Reason::TooFewPoints, "no ellipse through the canonical points"}
+                             : Failure{Reason::NoLight, "the walk needs the light"};
+    return;
+  }
+  const Ellipse& e = *canonical->ellipse;
+  step.numbers.push_back({"a, b", "semi-axes of the canonical ellipse", {e.semiAxes.x(), e.semiAxes.y()}, "px"});
+  if (c.highlight->ellipse)
+    step.numbers.push_back(
+        {"",
+         "against the observed one's",
+         {e.semiAxes.x() / c.highlight->ellipse->semiAxes.x(), e.semiAxes.y() / c.highlight->ellipse->semiAxes.y()},
+         "times"});
+  double sum = 0;
+  const Polyline own{e.sample(360), true};
+  for (const Pixel& p : canonical->pixels) sum += std::pow(distance(own, p), 2);
+  const double rms = std::sqrt(sum / double(canonical->pixels.size()));
+  step.numbers.push_back(one("", "distance of the canonical points from it", rms, "px"));
+  if (rms > kEllipticShare * std::sqrt(e.semiAxes.prod()))
+    step.broken.push_back({"canonical-not-elliptic", {one("", "of its size", 100 * rms / std::sqrt(e.semiAxes.prod()), "%")}});
+}
+
+void ellipsoidStep(const Case& c, ExplainStep& step) {
+  if (!c.fit) {
+    step.failure = Failure{Reason::NoHighlight, "there is no model of this light"};
+    return;
+  }
+  if (!c.fit->fit) {
+    step.failure = c.fit->failure;
+    return;
+  }
+  const ModelFit& f = *c.fit->fit;
+  step.numbers.push_back(one("", "views that were used", double(f.frames.size())));
+  if (f.ellipsoid) {
+    step.numbers.push_back(point("c", "centre", f.ellipsoid->centre()));
+    step.numbers.push_back(point("a, b, c", "semi-axes", f.ellipsoid->semiAxes()));
+  }
+  if (f.limitAngle) step.numbers.push_back(one("alpha_lim", "limit angle", *f.limitAngle / kDegree, "deg"));
+  if (f.roughness) step.numbers.push_back(one("m", "roughness", *f.roughness));
+  if (f.quadric && f.gapRatio > 0) {
+    step.numbers.push_back(one("", "last over second last singular value", f.gapRatio));
+    if (f.gapRatio > kWeakGap) step.broken.push_back({"weak-gap", {one("", "ratio", f.gapRatio)}});
+  }
+  if (!f.residualPx.empty())
+    step.numbers.push_back(
+        one("", "largest distance of a training contour", *std::max_element(f.residualPx.begin(), f.residualPx.end()), "px"));
+  if (f.quadric && !f.ellipsoid) step.broken.push_back({"not-an-ellipsoid", {}});
+  if (!f.quadric) step.broken.push_back({"no-ellipsoid", {}});
+}
+
+void projectionStep(const Case& c, ExplainStep& step) {
+  if (!c.comparison) {
+    step.failure = Failure{Reason::LightOff, "the model predicts nothing for this frame"};
+    return;
+  }
+  const PredictedHighlight* p = c.predicted();
+  if (!p) {
+    step.failure = c.comparison->prediction.failure ? *c.comparison->prediction.failure
+                                                    : Failure{Reason::NoBrightestPoint, "this highlight is not predicted"};
+    return;
+  }
+  step.numbers.push_back(pixel("", "predicted brightest point", p->brightest.pixel));
+  if (c.highlight)
+    step.numbers.push_back(one("", "from the observed peak", (p->brightest.pixel - c.highlight->peak).norm(), "px"));
+  if (p->ellipse)
+    step.numbers.push_back(
+        {"a, b", "semi-axes of the predicted ellipse", {p->ellipse->semiAxes.x(), p->ellipse->semiAxes.y()}, "px"});
+}
+
+void inverseWalkStep(const Case& c, ExplainStep& step) {
+  const PredictedHighlight* p = c.predicted();
+  if (!p) return projectionStep(c, step);
+  step.numbers.clear();
+  step.numbers.push_back(one("", "points of the predicted contour", double(p->contour.points.size())));
+  step.numbers.push_back(one("", "share of directions that gave one", p->coverage));
+  if (!p->canonical) {
+    step.broken.push_back({"no-walk", {}});
+    return;
+  }
+  std::map<std::string, int> failed;
+  for (const DirectionResult& d : p->canonical->directions)
+    if (d.failure) ++failed[nameOf(d.failure->reason)];
+  for (const auto& [reason, count] : failed) step.broken.push_back({"directions-failed", {one("", reason, count)}});
+}
+
+void comparisonStep(const Case& c, ExplainStep& step) {
+  if (!c.comparison || !c.row) {
+    step.failure = Failure{Reason::NoHighlight, "nothing to compare"};
+    return;
+  }
+  if (c.row->failure || !c.row->metrics) {
+    step.failure = c.row->failure
+                       ? *c.row->failure
+                       : Failure{Reason::NoHighlight, c.row->observed < 0 ? "a highlight that nobody observed" : "missed"};
+    return;
+  }
+  const ContourMetrics& m = *c.row->metrics;
+  step.numbers.push_back(one("e", "mean distance of the contours", m.contourErrorPx, "px"));
+  step.numbers.push_back(one("e", "of the equivalent diameter", m.contourErrorPct, "%"));
+  step.numbers.push_back(one("IoU", "overlap", m.iou));
+  step.numbers.push_back(one("", "offset of the peaks", m.peakOffsetPx, "px"));
+  if (c.inspection.isTraining(c.out.frame)) step.broken.push_back({"training-frame", {}});
+}
+}  // namespace
+
+const std::vector<std::string>& explainSteps() {
+  static const std::vector<std::string> ids{"peak",       "tangent-plane", "virtual-camera",    "light",
+                                            "contour",    "limit-angles",  "canonical-ellipse", "ellipsoid",
+                                            "projection", "inverse-walk",  "comparison"};
+  return ids;
+}
+
+Explanation explain(const Inspection& inspection, int frame, int highlight, const std::string& model) {
+  require(inspection.scene && frame >= 0 && frame < int(inspection.scene->frames.size()), "explain: no such frame");
+  require(inspection.evidence.size() == inspection.scene->frames.size(), "explain: no evidence");
+  Explanation out;
+  out.frame = frame;
+  out.highlight = highlight;
+  out.model = modelToExplain(inspection, model);
+  Case c{inspection, out};
+  gather(c);
+  using Fill = void (*)(const Case&, ExplainStep&);
+  static const std::map<std::string, Fill> fill{{"peak", peakStep},
+                                                {"tangent-plane", tangentStep},
+                                                {"virtual-camera", virtualCameraStep},
+                                                {"light", lightStep},
+                                                {"contour", contourStep},
+                                                {"limit-angles", limitAngleStep},
+                                                {"canonical-ellipse", canonicalStep},
+                                                {"ellipsoid", ellipsoidStep},
+                                                {"projection", projectionStep},
+                                                {"inverse-walk", inverseWalkStep},
+                                                {"comparison", comparisonStep}};
+  for (const std::string& id : explainSteps()) {
+    ExplainStep step;
+    step.id = id;
+    fill.at(id)(c, step);
+    out.steps.push_back(std::move(step));
+  }
+  return out;
+}
+
+}  // namespace glint

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/explain/explain_panel.h"
+
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QListWidget>
+#include <QMenu>
+#include <QSignalBlocker>
+#include <QSplitter>
+#include <QTextBrowser>
+#include <QToolButton>
+#include <QVBoxLayout>
+#include <QVariant>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "gui/base/text.h"
+#include "gui/base/theme.h"
+#include "gui/explain/explain_texts.h"
+
+namespace glint::gui {
+
+namespace {
+const char* const kStep = "explain/step";  // option: id of the step that is shown; "" = none
+constexpr int kDigits = 5;
+
+QString escaped(const std::string& s) { return toQString(s).toHtmlEscaped(); }
+
+QString valuesText(const ExplainNumber& n) {
+  QStringList parts;
+  for (const double v : n.values) parts << numberText(v, kDigits);
+  return parts.join(QStringLiteral("&nbsp;&nbsp; ")) + (n.unit.empty() ? QString() : QStringLiteral("&nbsp;") + escaped(n.unit));
+}
+
+QString numbersTable(const std::vector<ExplainNumber>& numbers) {
+  if (numbers.empty()) return {};
+  QString html = QStringLiteral("<table cellspacing=0 cellpadding=2>");
+  for (const ExplainNumber& n : numbers)
+    html += QStringLiteral("<tr><td><i>%1</i>&nbsp;&nbsp;</td><td>%2&nbsp;&nbsp;</td><td><b>%3</b></td></tr>")
+                .arg(escaped(n.symbol), escaped(n.name), valuesText(n));
+  return html + QStringLiteral("</table>");
+}
+
+QString box(const QColor& colour, const QString& content) {
+  return QStringLiteral(
+             "<table width='100%' cellspacing=0 cellpadding=0 style='margin-top:8px'><tr><td width=4 bgcolor='%1'></td>"
+             "<td style='padding-left:8px'>%2</td></tr></table>")
+      .arg(colour.name(), content);
+}
+}  // namespace
+
+ExplainPanel::ExplainPanel(Document& document, QWidget* parent)
+    : QWidget(parent),
+      document_(document),
+      steps_(new QListWidget),
+      text_(new QTextBrowser),
+      place_(new QLabel),
+      back_(new QToolButton),
+      next_(new QToolButton),
+      leave_(new QToolButton) {
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(8, 6, 8, 6);
+  column->setSpacing(6);
+  auto* bar = new QHBoxLayout;
+  for (auto* button : {back_, next_}) {
+    button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+    button->setIconSize({14, 14});
+  }
+  back_->setObjectName(QStringLiteral("explain.back"));
+  back_->setIcon(icon(QStringLiteral("previous")));
+  back_->setText(tr("Back"));
+  next_->setObjectName(QStringLiteral("explain.next"));
+  next_->setIcon(icon(QStringLiteral("next")));
+  leave_->setObjectName(QStringLiteral("explain.leave"));
+  leave_->setText(tr("Leave"));
+  leave_->setToolTip(tr("Shows the layers that were shown before"));
+  place_->setAlignment(Qt::AlignCenter);
+  bar->addWidget(back_);
+  bar->addWidget(place_, 1);
+  bar->addWidget(next_);
+  bar->addWidget(leave_);
+  column->addLayout(bar);
+  auto* split = new QSplitter(Qt::Vertical);
+  steps_->setObjectName(QStringLiteral("explain.steps"));
+  for (const ExplainText& t : explainTexts().steps)
+    steps_->addItem(QStringLiteral("%1  %2").arg(steps_->count() + 1).arg(t.title));
+  text_->setObjectName(QStringLiteral("explain.text"));
+  text_->setOpenExternalLinks(false);
+  split->addWidget(steps_);
+  split->addWidget(text_);
+  split->setStretchFactor(0, 0);
+  split->setStretchFactor(1, 1);
+  split->setSizes({steps_->sizeHintForRow(0) * steps_->count() + 8, 400});
+  split->setChildrenCollapsible(false);
+  column->addWidget(split, 1);
+  setMinimumWidth(280);
+
+  connect(back_, &QToolButton::clicked, this, &ExplainPanel::back);
+  connect(next_, &QToolButton::clicked, this, &ExplainPanel::next);
+  connect(leave_, &QToolButton::clicked, this, &ExplainPanel::leave);
+  connect(steps_, &QListWidget::currentRowChanged, this, [this](int row) {
+    if (row >= 0 && row != step()) goTo(row);
+  });
+  connect(&document_, &Document::optionsChanged, this, &ExplainPanel::refresh);
+  for (const auto signal : {&Document::inspectionChanged, &Document::selectionChanged, &Document::sceneOpened})
+    connect(&document_, signal, this, &ExplainPanel::compute);
+  refresh();
+}
+
+int ExplainPanel::step() const {
+  const QString id = toQString(document_.option(kStep, std::string()));
+  const QList<ExplainText>& steps = explainTexts().steps;
+  for (int i = 0; i < steps.size(); ++i)
+    if (steps[i].id == id) return i;
+  return -1;
+}
+
+void ExplainPanel::start() {
+  if (step() < 0) goTo(0);
+  emit started();
+}
+
+void ExplainPanel::next() { goTo(step() + 1); }
+void ExplainPanel::back() { goTo(step() - 1); }
+
+void ExplainPanel::goTo(int wanted) {
+  const QList<ExplainText>& steps = explainTexts().steps;
+  if (!document_.scene() || wanted < 0 || wanted >= steps.size()) return;
+  const ExplainText& text = steps[wanted];
+  if (step() < 0) layersBefore_ = document_.state().layers;
+  std::map<std::string, bool> layers = document_.state().layers;
+  for (const viz::Layer& layer : viz::sceneLayers()) layers[layer.name] = text.layers.contains(toQString(layer.name));
+  // Overlays that no step names (what the user laid over the frame) stay as they are.
+  for (const ExplainText& any : steps)
+    for (const QString& name : any.frameLayers) layers[name.toStdString()] = text.frameLayers.contains(name);
+  std::map<std::string, std::string> options = document_.state().options;
+  options[kStep] = text.id.toStdString();
+  document_.setView(layers, options, tr("Explain %1: %2").arg(wanted + 1).arg(text.title));
+  emit shown(wanted);
+}
+
+void ExplainPanel::leave() {
+  if (step() < 0) return;
+  std::map<std::string, std::string> options = document_.state().options;
+  options.erase(kStep);
+  document_.setView(layersBefore_, options, tr("Leave the explanation"));
+}
+
+void ExplainPanel::compute() {
+  const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  if (!inspection || step() < 0) {
+    job_.drop();
+    explanation_.reset();
+    return refresh();
+  }
+  // Depth maps are read for it: not here.
+  job_.run([this, inspection, selection = document_.selection(), model = document_.selection().model] {
+    const int frame = std::clamp(selection.frame, 0, int(inspection->scene->frames.size()) - 1);
+    auto found = std::make_shared<const Explanation>(explain(*inspection, frame, selection.highlight, model));
+    return LatestJob::Deliver([this, found] {
+      explanation_ = found;
+      refresh();
+    });
+  });
+}
+
+void ExplainPanel::refresh() {
+  const int now = step(), count = explainTexts().steps.size();
+  const QSignalBlocker quiet(steps_);
+  steps_->setCurrentRow(now);
+  back_->setEnabled(now > 0);
+  next_->setEnabled(document_.scene() && now < count - 1);
+  next_->setText(now < 0 ? tr("Start") : tr("Next"));
+  leave_->setEnabled(now >= 0);
+  place_->setText(now < 0 ? QString() : tr("%1 of %2").arg(now + 1).arg(count));
+  if (now >= 0 && !explanation_ && document_.inspection() && !job_.busy()) return compute();
+  text_->setHtml(html());
+}
+
+QString ExplainPanel::html() const {
+  const int now = step();
+  if (now < 0)
+    return tr(
+        "<p>Eleven steps from the photograph to the predicted highlight, on the scene that is open: each with its picture, its "
+        "equation and its "
+        "numbers, and with what breaks here.</p>");
+  const ExplainText& text = explainTexts().steps[now];
+  QString html =
+      QStringLiteral("<h3>%1</h3><p>%2</p><p style='margin-left:8px'><tt>%3</tt><br><span style='color:%4'>%5</span></p>")
+          .arg(text.title.toHtmlEscaped(), text.text.toHtmlEscaped(), text.equation.toHtmlEscaped(),
+               palette().color(QPalette::PlaceholderText).name(), text.section.toHtmlEscaped());
+  if (!explanation_ || now >= int(explanation_->steps.size())) return html;
+  const ExplainStep& s = explanation_->steps[std::size_t(now)];
+  const Scene& scene = *document_.scene();
+  html += QStringLiteral("<p style='color:%1'>%2</p>")
+              .arg(palette().color(QPalette::PlaceholderText).name(),
+                   tr("Frame %1%2%3")
+                       .arg(escaped(scene.frames[std::size_t(explanation_->frame)].id),
+                            explanation_->light.empty() ? QString() : tr(", light %1").arg(escaped(explanation_->light)),
+                            explanation_->model.empty() ? QString() : tr(", model %1").arg(escaped(explanation_->model))));
+  html += numbersTable(s.numbers);
+  if (s.failure) html += box(errorColour(), tr("This scene does not get here: %1").arg(escaped(s.failure->message())));
+  for (const BrokenAssumption& b : s.broken)
+    html += box(warningColour(), explainTexts().broken.value(toQString(b.id)).toHtmlEscaped() + numbersTable(b.numbers));
+  return html;
+}
+
+void ExplainPanel::addActions(Actions& actions, QMenu* menu) {
+  actions.add("explain.start", menu, tr("&Explain what is on screen"), [this] { start(); }, {{Qt::Key_F1}});
+  actions.add("explain.next", menu, tr("&Next step"), [this] { next(); }, {{QKeySequence("Ctrl+Right")}});
+  actions.add("explain.back", menu, tr("Step &back"), [this] { back(); }, {{QKeySequence("Ctrl+Left")}});
+  actions.add("explain.leave", menu, tr("&Leave the explanation"), [this] { leave(); });
+  menu->addSeparator();
+  QMenu* all = menu->addMenu(tr("&Steps"));
+  for (int i = 0; i < explainTexts().steps.size(); ++i)
+    actions.add("explain.step-" + explainTexts().steps[i].id, all, explainTexts().steps[i].title, [this, i] {
+      goTo(i);
+      emit started();
+    });
+}
+
+}  // namespace glint::gui

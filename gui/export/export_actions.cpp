@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/export/export_actions.h"
+
+#include <QApplication>
+#include <QClipboard>
+#include <QDir>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QMenu>
+#include <QRegularExpression>
+#include <QSaveFile>
+#include <QSysInfo>
+#include <exception>
+#include <utility>
+
+#include "core/evaluate/command_text.h"
+#include "core/evaluate/labels.h"
+#include "core/evaluate/report.h"
+#include "gui/base/text.h"
+#include "gui/base/theme.h"
+#include "gui/base/to_qimage.h"
+#include "gui/document/figure.h"
+#include "viz/pictures.h"
+
+namespace glint::gui {
+
+namespace {
+constexpr int kFigureWidth = 1600, kFigureHeight = 1000;
+
+[[noreturn]] void cannotWrite(const QString& file, const QString& why) {
+  throw InputError(file.toStdString(), "", "cannot be written: " + why.toStdString());
+}
+
+void writeText(const QString& file, const std::string& text) {
+  QSaveFile out(file);
+  if (!out.open(QIODevice::WriteOnly) || out.write(text.data(), qint64(text.size())) != qint64(text.size()) || !out.commit())
+    cannotWrite(file, out.errorString());
+}
+
+std::vector<int> allFrames(const Inspection& inspection) {
+  std::vector<int> frames(inspection.scene->frames.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) frames[i] = int(i);
+  return frames;
+}
+}  // namespace
+
+ExportActions::ExportActions(const Engine& engine, Document& document, QWidget* window)
+    : QObject(window), engine_(engine), document_(document), window_(window) {}
+
+void ExportActions::ask(const QString& title, const QString& name, const QString& filter, const std::function<Write()>& prepare) {
+  if (!document_.inspection()) return;
+  const QString file = QFileDialog::getSaveFileName(window_, title, name, filter);
+  if (file.isEmpty()) return;
+  job_.run([this, file, write = prepare()] {
+    QString trouble;
+    try {
+      write(file);
+    } catch (const std::exception& e) {
+      trouble = toQString(e.what());
+    }
+    return LatestJob::Deliver([this, file, trouble] {
+      if (trouble.isEmpty())
+        emit message(tr("Wrote %1").arg(QDir::toNativeSeparators(file)));
+      else
+        emit problem(trouble);
+    });
+  });
+}
+
+void ExportActions::addActions(Actions& actions, QMenu* menu) {
+  const auto picture = [this](const QString& title, const QString& name, auto draw) {
+    ask(title, name, tr("Pictures (*.png)"), [this, draw]() -> Write {
+      return [this, draw, inspection = document_.inspection(), frame = document_.selection().frame, state = snapshot_(),
+              dark = currentTheme() == Theme::Dark](const QString& file) {
+        viz::PictureOptions options;
+        options.dark = dark;
+        writeFigure(toQImage(draw(*inspection, frame, options)), state, engine_, file);
+      };
+    });
+  };
+  actions.add("export.frame", menu, tr("&Frame as picture…"), [=, this] {
+    picture(
+        tr("Frame as picture"), QStringLiteral("frame.png"), [](const Inspection& i, int frame, const viz::PictureOptions& o) {
+          return viz::framePicture(i, frame, readPhotograph(i.given->frames[std::size_t(frame)]), kFigureWidth, kFigureHeight, o);
+        });
+  });
+  actions.add("export.ladder", menu, tr("Model &ladder as picture…"), [=, this] {
+    picture(tr("Model ladder as picture"), QStringLiteral("ladder.png"),
+            [](const Inspection& i, int frame, const viz::PictureOptions& o) {
+              return viz::ladderPicture(i, frame, readPhotograph(i.given->frames[std::size_t(frame)]), kFigureWidth,
+                                        kFigureHeight, o);
+            });
+  });
+  actions.add("export.plots", menu, tr("Errors as &picture…"), [=, this] {
+    picture(tr("Errors as picture"), QStringLiteral("errors.png"), [](const Inspection& i, int, const viz::PictureOptions& o) {
+      return viz::plotsPicture(i, kFigureWidth, kFigureHeight, o);
+    });
+  });
+  menu->addSeparator();
+  const auto report = [this] {
+    ReportContext context;
+    context.input = QFileInfo(document_.inputFile()).fileName().toStdString();
+    return context;
+  };
+  actions.add("export.html", menu, tr("&Report (HTML)…"), [=, this] {
+    ask(tr("Report"), QStringLiteral("report.html"), tr("Web pages (*.html)"), [=, this]() -> Write {
+      return [inspection = document_.inspection(), context = report()](const QString& file) {
+        writeText(file, evaluationHtml(*inspection, context));
+      };
+    });
+  });
+  actions.add("export.json", menu, tr("Evaluation (&JSON)…"), [=, this] {
+    ask(tr("Evaluation"), QStringLiteral("evaluation.json"), tr("JSON (*.json)"), [=, this]() -> Write {
+      return [inspection = document_.inspection(), context = report()](const QString& file) {
+        writeText(file, evaluationJson(*inspection, context));
+      };
+    });
+  });
+  actions.add("export.csv", menu, tr("Errors (&CSV)…"), [=, this] {
+    ask(tr("Errors"), QStringLiteral("errors.csv"), tr("Tables (*.csv)"), [this]() -> Write {
+      return [inspection = document_.inspection()](const QString& file) { writeText(file, evaluationCsv(*inspection)); };
+    });
+  });
+  actions.add("export.coco", menu, tr("Labels of the plotted model (C&OCO)…"), [=, this] {
+    ask(tr("Labels"), QStringLiteral("labels.json"), tr("COCO (*.json)"), [this]() -> Write {
+      return [inspection = document_.inspection(), model = document_.plottedModel()](const QString& file) {
+        writeText(file, cocoJson(*inspection, model, allFrames(*inspection)));
+      };
+    });
+  });
+  menu->addSeparator();
+  actions.add("export.command", menu, tr("Copy as co&mmand"), [this] { copyCommand(); },
+              {{QKeySequence("Ctrl+Shift+C")}, {}, tr("The command line that computes what is on screen")});
+  actions.add("export.diagnostic", menu, tr("Copy a &diagnostic report"), [this] {
+    QApplication::clipboard()->setText(diagnosticReport());
+    emit message(tr("The diagnostic report is on the clipboard; it names no folder of this machine"));
+  });
+}
+
+Outcome<std::string> ExportActions::command() const {
+  if (!document_.scene()) return Failure{Reason::NoSurface, "no scene is open"};
+  const Scene& scene = *document_.scene();
+  Outcome<std::string> text = commandOf(scene.file.string(), document_.request(), scene.allowOutsidePaths);
+  if (text || document_.sessionFile().isEmpty() || document_.hasUnsavedChanges()) return text;
+  return "glint evaluate " + shellWord(document_.sessionFile().toStdString());  // the session holds what has no flag
+}
+
+void ExportActions::copyCommand() {
+  const Outcome<std::string> text = command();
+  if (!text) return void(emit problem(tr("No command: %1").arg(toQString(text.failure().detail))));
+  QApplication::clipboard()->setText(toQString(*text));
+  emit message(toQString(*text));
+}
+
+QString ExportActions::diagnosticReport() const {
+  QStringList lines{
+      QStringLiteral("%1 %2").arg(QCoreApplication::applicationName(), QCoreApplication::applicationVersion()),
+      QStringLiteral("Qt %1, %2, %3").arg(qVersion(), QSysInfo::prettyProductName(), QSysInfo::currentCpuArchitecture())};
+  if (const Scene* scene = document_.scene()) {
+    lines << QStringLiteral("scene: %1 frames, %2 surfaces, %3 lights stated, %4 warnings")
+                 .arg(scene->frames.size())
+                 .arg(scene->surfaces.size())
+                 .arg(scene->lights.size())
+                 .arg(scene->warnings.size());
+    const InspectionRequest& q = document_.request();
+    lines << QStringLiteral("models: ") + joined(q.models)
+          << QStringLiteral("train: %1, excluded: %2").arg(toQString(q.train)).arg(q.excluded.size());
+    for (const auto& [key, value] : q.settings.values())
+      lines << QStringLiteral("set %1 = %2").arg(toQString(key), valueText(value, paramSpec(key)));
+    if (const auto inspection = document_.inspection()) lines << toQString(evaluationTable(*inspection));
+  }
+  if (log_) lines << QStringLiteral("log:") << log_();
+  // File names stay, folders go: they may hold a person's or a project's name.
+  static const QRegularExpression folders(QStringLiteral("(?:[A-Za-z]:)?[\\\\/](?:[^\\\\/\\n\"']+[\\\\/])*(?=[^\\\\/\\s\"']+)"));
+  return lines.join('\n').replace(folders, QStringLiteral("…/"));
+}
+
+}  // namespace glint::gui

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QObject>
+#include <functional>
+
+#include "gui/base/actions.h"
+#include "gui/base/latest_job.h"
+#include "gui/document/document.h"
+
+class QWidget;
+
+namespace glint::gui {
+
+/// What leaves the program: figures with the session inside, reports, labels, the command line of what is on screen, a diagnostic
+/// report. The `write…` functions do the work and throw InputError; the actions ask for a file and run them off the interface
+/// thread.
+class ExportActions : public QObject {
+  Q_OBJECT
+ public:
+  ExportActions(const Engine& engine, Document& document, QWidget* window);
+  void addActions(Actions& actions, QMenu* menu);
+  /// The state to put into figures.
+  void setSnapshot(std::function<Opened()> snapshot) { snapshot_ = std::move(snapshot); }
+  /// Lines of the log, for the diagnostic report.
+  void setLog(std::function<QString()> log) { log_ = std::move(log); }
+  bool busy() const { return job_.busy(); }
+
+  /// The command line of what is on screen; on failure the reason.
+  Outcome<std::string> command() const;
+  /// Versions, settings, shape of the scene and the log, without any folder of this machine.
+  QString diagnosticReport() const;
+
+ public slots:
+  void copyCommand();
+
+ signals:
+  void problem(const QString& oneLine);
+  void message(const QString& oneLine);
+
+ private:
+  using Write = std::function<void(const QString& file)>;
+  void ask(const QString& title, const QString& name, const QString& filter, const std::function<Write()>& prepare);
+
+  const Engine& engine_;
+  Document& document_;
+  QWidget* window_;
+  std::function<Opened()> snapshot_;
+  std::function<QString()> log_;
+  LatestJob job_;
+};
+
+}  // namespace glint::gui

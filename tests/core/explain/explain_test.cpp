@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/explain/explain.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "core/explain/walk_trace.h"
+#include "tests/core/pipeline/exact_scene.h"
+
+namespace glint {
+namespace {
+
+using namespace testing_support;
+
+constexpr double kWalk = 1e-8;      // rad, of the walks' ends
+constexpr double kPeak = 1e-6;      // m at 1.5 m: peaks of exact contours are found to 1e-7 px
+constexpr double kChordDeg = 1e-3;  // the contours are chords 5e-3 px off the curve, where 100 px are 3.4 deg
+constexpr double kCusp = 1e-6;      // rad: at the mirror point alpha is the distance from it, known to 1e-7 px
+constexpr double kDegree = 57.29577951308232;
+
+Inspection inspected(const AnalyticSpec& surface, const std::vector<std::string>& models) {
+  InspectionRequest q;
+  q.models = models;
+  q.train = "first:4";
+  return inspect(exactScene(surface, 6), q);
+}
+
+const ExplainStep& stepOf(const Explanation& e, const std::string& id) {
+  for (const ExplainStep& s : e.steps)
+    if (s.id == id) return s;
+  throw std::runtime_error("no step " + id);
+}
+
+std::vector<double> number(const ExplainStep& s, const std::string& name) {
+  for (const ExplainNumber& n : s.numbers)
+    if (n.name == name) return n.values;
+  ADD_FAILURE() << s.id << " has no number \"" << name << "\"";
+  return {0, 0, 0};
+}
+
+bool breaks(const ExplainStep& s, const std::string& id) {
+  return std::any_of(s.broken.begin(), s.broken.end(), [&](const BrokenAssumption& b) { return b.id == id; });
+}
+
+TEST(Explain, OnAPlaneEverythingHolds) {
+  const Inspection inspection = inspected(sheet(0), {"primal", "canonical"});
+  const Explanation e = explain(inspection, 1, 0, "primal");
+  ASSERT_EQ(e.steps.size(), explainSteps().size());
+  for (const ExplainStep& s : e.steps) EXPECT_FALSE(s.failure) << s.id << ": " << s.failure->message();
+  // The ray to the mirrored lamp meets the plane z = 0 at the brightest point.
+  const Eigen::Vector3d eye = inspection.scene->frames[1].camera.centreInWorld(), mirrored(0.1, 0.2, -1.4), d = mirrored - eye;
+  const Eigen::Vector3d expected = eye - eye.z() / d.z() * d;
+  const std::vector<double> at = number(stepOf(e, "peak"), "brightest point");
+  EXPECT_LT((Eigen::Vector3d(at[0], at[1], at[2]) - expected).norm(), kPeak);
+  EXPECT_NEAR(number(stepOf(e, "virtual-camera"), "of the mirror's 3x3 block")[0], -1, 1e-12);
+  const std::vector<double> virtualCentre = number(stepOf(e, "virtual-camera"), "centre of the virtual camera");
+  EXPECT_NEAR(virtualCentre[2], -eye.z(), 1e-9);
+  EXPECT_NEAR(number(stepOf(e, "limit-angles"), "smallest limit angle")[0], kLimitAngle * kDegree, kChordDeg);
+  EXPECT_NEAR(number(stepOf(e, "limit-angles"), "largest limit angle")[0], kLimitAngle * kDegree, kChordDeg);
+  EXPECT_NEAR(number(stepOf(e, "canonical-ellipse"), "against the observed one's")[0], 1, 1e-3)
+      << "a plane has nothing to take out";
+  EXPECT_FALSE(breaks(stepOf(e, "virtual-camera"), "primal-off-plane"));
+  EXPECT_TRUE(breaks(stepOf(e, "comparison"), "training-frame"));
+}
+
+TEST(Explain, OnASphereItSaysWhyPrimalFails) {
+  const Inspection inspection = inspected(sphere(0.5), {"primal", "canonical"});
+  const Explanation e = explain(inspection, 5, 0, "primal");
+  EXPECT_NEAR(number(stepOf(e, "tangent-plane"), "principal curvature")[0], 2, 1e-9);
+  EXPECT_TRUE(breaks(stepOf(e, "virtual-camera"), "primal-off-plane"));
+  EXPECT_FALSE(breaks(stepOf(explain(inspection, 5, 0, "canonical"), "virtual-camera"), "primal-off-plane"));
+  EXPECT_FALSE(breaks(stepOf(e, "comparison"), "training-frame"));
+  // A held-out frame has its own view and canonical contour; on a sphere they lie outside the observed one.
+  ASSERT_TRUE(e.view && e.view->canonical);
+  EXPECT_GT(number(stepOf(e, "canonical-ellipse"), "against the observed one's")[1], 1.2);
+}
+
+TEST(Explain, ChoosesTheRichestModelWithAnEllipsoid) {
+  const Inspection inspection = inspected(sphere(0.5), {"primal", "canonical", "limit-angle"});
+  EXPECT_EQ(explain(inspection, 0, 0, "").model, "canonical");
+  EXPECT_EQ(explain(inspection, 0, 0, "reflectance").model, "canonical") << "it was not computed";
+  const Explanation limit = explain(inspection, 0, 0, "limit-angle");
+  EXPECT_EQ(limit.model, "limit-angle");
+  EXPECT_TRUE(breaks(stepOf(limit, "ellipsoid"), "no-ellipsoid"));
+}
+
+TEST(Explain, AFrameWithoutHighlightSaysSoInEveryStepThatNeedsOne) {
+  auto scene = exactScene(sheet(0), 6);
+  for (Highlight& h : scene->frames[5].highlights) h.level = 0.25;  // none at the level that is asked for
+  InspectionRequest q;
+  q.models = {"canonical"};
+  q.train = "first:4";
+  const Inspection inspection = inspect(scene, q);
+  const Explanation e = explain(inspection, 5, 0, "canonical");
+  EXPECT_EQ(e.highlight, -1);
+  for (const char* id : {"peak", "tangent-plane", "virtual-camera", "contour", "limit-angles", "canonical-ellipse"}) {
+    ASSERT_TRUE(stepOf(e, id).failure) << id;
+    EXPECT_EQ(stepOf(e, id).failure->reason, Reason::NoHighlight) << id;
+  }
+  EXPECT_FALSE(stepOf(e, "light").failure);
+  EXPECT_FALSE(stepOf(e, "ellipsoid").failure);
+}
+
+TEST(WalkTrace, OnAPlaneBothWalksAreOne) {
+  const Inspection inspection = inspected(sheet(0), {"canonical"});
+  const Explanation e = explain(inspection, 2, 0, "canonical");
+  const TangentWalk walk(*e.view->surface, e.view->camera, *e.view->brightest, *e.lightUsed);
+  const Outcome<WalkTrace> t = traceWalk(walk, *e.view->surface, e.view->canonical->directions[7], 25);
+  ASSERT_TRUE(t);
+  ASSERT_EQ(t->samples.size(), 25u);
+  EXPECT_NEAR(t->reachOnPlane, t->reachOnSurface, kWalk);
+  for (const WalkSample& s : t->samples) {
+    EXPECT_LT((s.onSurface - s.onTangentPlane).norm(), 1e-12);
+    EXPECT_NEAR(s.alphaOnPlane, s.alphaOnSurface, 1e-12);
+  }
+  EXPECT_NEAR(t->samples.back().alphaOnSurface, t->limitAngle, 1e-6);
+  EXPECT_NEAR(t->samples.front().alphaOnSurface, e.view->brightest->alpha, kCusp);
+}
+
+TEST(WalkTrace, OnASphereTheSurfaceFallsByItsSagitta) {
+  const Inspection inspection = inspected(sphere(0.5), {"canonical"});
+  const Explanation e = explain(inspection, 2, 0, "canonical");
+  const TangentWalk walk(*e.view->surface, e.view->camera, *e.view->brightest, *e.lightUsed);
+  const Outcome<WalkTrace> t = traceWalk(walk, *e.view->surface, e.view->canonical->directions[0], 25);
+  ASSERT_TRUE(t);
+  EXPECT_GT(t->reachOnPlane, t->reachOnSurface) << "the normal of a convex surface turns, so its limit is nearer";
+  for (const WalkSample& s : t->samples)
+    EXPECT_NEAR((s.onSurface - s.onTangentPlane).norm(), 0.5 - std::sqrt(0.25 - s.distance * s.distance), 1e-9);
+}
+
+TEST(WalkTrace, AFailedDirectionKeepsItsReason) {
+  const Inspection inspection = inspected(sheet(0), {"canonical"});
+  const Explanation e = explain(inspection, 2, 0, "canonical");
+  const TangentWalk walk(*e.view->surface, e.view->camera, *e.view->brightest, *e.lightUsed);
+  DirectionResult d = e.view->canonical->directions[0];
+  d.failure = Failure{Reason::SurfaceEnded, "edge"};
+  EXPECT_EQ(traceWalk(walk, *e.view->surface, d, 25).failure().reason, Reason::SurfaceEnded);
+}
+
+TEST(ExplainTexts, EveryStepAndEveryBrokenAssumptionHasItsSentence) {
+  std::ifstream file(GLINT_SOURCE_DIR "/resources/explain/steps.json");
+  const nlohmann::json texts = nlohmann::json::parse(file);
+  std::vector<std::string> ids;
+  for (const auto& step : texts["steps"]) {
+    ids.push_back(step["id"]);
+    for (const char* key : {"title", "text", "equation", "section"}) EXPECT_FALSE(step.at(key).get<std::string>().empty()) << key;
+    EXPECT_FALSE(step.at("layers").empty());
+  }
+  EXPECT_EQ(ids, explainSteps());
+  // Every id that the code can give, read from the code.
+  std::ifstream source(GLINT_SOURCE_DIR "/core/explain/explain.cpp");
+  std::stringstream code;
+  code << source.rdbuf();
+  const std::string text = code.str();
+  std::set<std::string> used;
+  const std::regex given("broken\\.push_back\\(\\s*\\{\"([a-z-]+)\"");
+  for (std::sregex_iterator it(text.begin(), text.end(), given), end; it != end; ++it) used.insert((*it)[1]);
+  EXPECT_GT(used.size(), 8u);
+  std::set<std::string> known;
+  for (const auto& item : texts["broken"].items()) known.insert(item.key());
+  EXPECT_EQ(used, known);
+}
+
+}  // namespace
+}  // namespace glint

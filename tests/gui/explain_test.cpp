@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The guided mode on a session of the repository, with the real engine.
+#include "core/explain/explain.h"
+
+#include <QAction>
+#include <QListWidget>
+#include <QTextBrowser>
+#include <QToolButton>
+
+#include "gui/base/text.h"
+#include "gui/explain/explain_panel.h"
+#include "gui/explain/explain_texts.h"
+#include "gui/window/main_window.h"
+#include "tests/gui/fixture.h"
+
+namespace glint::gui {
+
+class ExplainTest : public QObject {
+  Q_OBJECT
+ private slots:
+  void initTestCase() {
+    window_ = std::make_unique<MainWindow>(coreEngine());
+    window_->show();
+    window_->open(QStringLiteral(GLINT_SOURCE_DIR "/sessions/plane-to-cylinder/plane-to-cylinder.glint"));
+    QTRY_VERIFY_WITH_TIMEOUT(window_->document().scene() && window_->idle() && window_->document().inspection(), 120000);
+    panel_ = window_->findChild<ExplainPanel*>();
+    QVERIFY(panel_);
+  }
+  void cleanupTestCase() { window_.reset(); }
+  void cleanup() {
+    while (window_->document().undoStack()->canUndo()) window_->document().undoStack()->undo();
+  }
+
+  void theTextsAreThoseOfTheSteps() {
+    QStringList ids;
+    for (const ExplainText& t : explainTexts().steps) ids << t.id;
+    QStringList expected;
+    for (const std::string& id : explainSteps()) expected << toQString(id);
+    QCOMPARE(ids, expected);
+    for (const ExplainText& t : explainTexts().steps) {
+      for (const QString& layer : t.layers) {
+        const auto& all = viz::sceneLayers();
+        QVERIFY2(std::any_of(all.begin(), all.end(), [&](const viz::Layer& l) { return toQString(l.name) == layer; }),
+                 qPrintable(layer));
+      }
+    }
+  }
+
+  void everyStepIsReachedForwardsAndBackAndIsOneStepOfUndo() {
+    const auto before = window_->document().state().layers;
+    window_->actions().find("explain.start")->trigger();
+    auto* next = panel_->findChild<QToolButton*>("explain.next");
+    auto* back = panel_->findChild<QToolButton*>("explain.back");
+    const int steps = int(explainSteps().size());
+    for (int i = 0; i < steps; ++i) {
+      QCOMPARE(panel_->step(), i);
+      QTRY_VERIFY(!panel_->busy() && panel_->explanation());
+      const QString shown = panel_->findChild<QTextBrowser*>("explain.text")->toPlainText();
+      QVERIFY2(shown.contains(explainTexts().steps[i].title), qPrintable(shown));
+      QCOMPARE(window_->document().undoStack()->count(), i + 1);
+      for (const viz::Layer& layer : viz::sceneLayers())
+        QCOMPARE(window_->document().layerVisible(layer.name), explainTexts().steps[i].layers.contains(toQString(layer.name)));
+      if (i + 1 < steps) QTest::mouseClick(next, Qt::LeftButton);
+    }
+    QVERIFY(!next->isEnabled());
+    QTest::mouseClick(back, Qt::LeftButton);
+    QCOMPARE(panel_->step(), steps - 2);
+    QTest::mouseClick(panel_->findChild<QToolButton*>("explain.leave"), Qt::LeftButton);
+    QCOMPARE(panel_->step(), -1);
+    QVERIFY(window_->document().state().layers == before);
+    window_->document().undoStack()->undo();
+    QCOMPARE(panel_->step(), steps - 2);
+  }
+
+  void itSaysWhyPrimalFailsWhereTheSheetIsBent() {
+    const int last = window_->document().frameCount() - 1;  // the most bent sheet of the sequence
+    viz::Selection s;
+    s.frame = last;
+    s.model = "primal";
+    window_->document().select(s);
+    panel_->goTo(2);
+    QTRY_VERIFY(!panel_->busy() && panel_->explanation() && panel_->explanation()->frame == last);
+    QVERIFY(panel_->findChild<QTextBrowser*>("explain.text")->toPlainText().contains("the model fails"));
+    s.frame = 0;  // the plane
+    window_->document().select(s);
+    QTRY_VERIFY(!panel_->busy() && panel_->explanation() && panel_->explanation()->frame == 0);
+    QVERIFY(!panel_->findChild<QTextBrowser*>("explain.text")->toPlainText().contains("the model fails"));
+  }
+
+  void aClickInTheListGoesThere() {
+    auto* list = panel_->findChild<QListWidget*>("explain.steps");
+    window_->actions().find("explain.step-peak")->trigger();
+    QTest::mouseClick(list->viewport(), Qt::LeftButton, {}, list->visualItemRect(list->item(7)).center());
+    QCOMPARE(panel_->step(), 7);
+  }
+
+ private:
+  std::unique_ptr<MainWindow> window_;
+  ExplainPanel* panel_ = nullptr;
+};
+
+QObject* makeExplainTest() { return new ExplainTest; }
+
+}  // namespace glint::gui
+
+#include "explain_test.moc"

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What leaves the program comes back: figures with their session, commands, the diagnostic report.
+#include <QAction>
+#include <QClipboard>
+#include <QDir>
+#include <QGuiApplication>
+#include <QImage>
+#include <QJsonArray>
+#include <QJsonDocument>
+#include <QJsonObject>
+#include <QProcess>
+
+#include "gui/base/text.h"
+#include "gui/document/figure.h"
+#include "gui/document/session_file.h"
+#include "gui/export/export_actions.h"
+#include "gui/window/main_window.h"
+#include "tests/gui/fixture.h"
+
+namespace glint::gui {
+
+namespace {
+const char* const kSession = GLINT_SOURCE_DIR "/sessions/plane/plane.glint";
+}
+
+class ExportTest : public QObject {
+  Q_OBJECT
+ private slots:
+  void init() {
+    window_ = std::make_unique<MainWindow>(coreEngine());
+    window_->show();
+    window_->open(QString::fromUtf8(kSession));
+    QTRY_VERIFY_WITH_TIMEOUT(window_->document().scene() && window_->idle() && window_->document().inspection(), 60000);
+  }
+  void cleanup() { window_.reset(); }
+
+  void aFigureOpensAsWhatItShows() {
+    Document& d = window_->document();
+    d.setSetting("detect.level", 0.4);
+    d.setRole(5, FrameRole::Excluded);
+    d.selectFrame(2);
+    const QString file = folder_.filePath("a figure.png");
+    QImage picture(64, 48, QImage::Format_RGB888);
+    picture.fill(QColor(10, 200, 30));
+    writeFigure(picture, d.toSave(), engine_, file);
+    QCOMPARE(QImage(file).pixelColor(5, 5), QColor(10, 200, 30));
+    QCOMPARE(QDir(folder_.path()).entryList(QDir::Files | QDir::Hidden), QStringList{"a figure.png"});  // nothing beside it
+
+    const Opened back = openInput(file.toStdString());
+    QCOMPARE(back.request.settings.number("detect.level"), 0.4);
+    QCOMPARE(back.request.excluded, std::vector<int>{5});
+    QCOMPARE(back.selection.frame, 2);
+    QVERIFY(back.unsaved && back.isSession);
+    QCOMPARE(QFileInfo(toQString(back.path)).canonicalFilePath(), QFileInfo(kSession).canonicalFilePath());
+  }
+
+  void aPictureWithoutASessionIsNoScene() {
+    const QString file = folder_.filePath("plain.png");
+    QImage(8, 8, QImage::Format_RGB888).save(file);
+    QVERIFY_EXCEPTION_THROWN(openInput(file.toStdString()), InputError);
+  }
+
+  void aFigureThatCannotBeWrittenLeavesNothing() {
+    QVERIFY_EXCEPTION_THROWN(writeFigure(QImage(8, 8, QImage::Format_RGB888), window_->document().toSave(), engine_,
+                                         folder_.filePath("no such/a.png")),
+                             InputError);
+  }
+
+  void theCommandComputesWhatIsOnScreen() {
+    Document& d = window_->document();
+    d.setModels({"canonical"});
+    d.setSetting("detect.level", 0.4);
+    QTRY_VERIFY_WITH_TIMEOUT(window_->idle() && !d.stale(), 60000);
+    window_->actions().find("export.command")->trigger();
+    const QString command = QGuiApplication::clipboard()->text();
+    QVERIFY2(command.startsWith("glint evaluate "), qPrintable(command));
+    QProcess shell;
+    shell.start("sh", {"-c", QString(command).replace(QStringLiteral("glint evaluate"), QStringLiteral(GLINT_CLI " evaluate")) +
+                                 " --json -"});
+    QVERIFY(shell.waitForFinished(60000));
+    QCOMPARE(shell.exitCode(), 0);
+    const QJsonObject all = QJsonDocument::fromJson(shell.readAllStandardOutput()).object();
+    QCOMPARE(all["models"].toObject().keys(), QStringList{"canonical"});
+    const double printed =
+        all["models"].toObject()["canonical"].toObject()["frames"].toArray()[0].toObject()["contour_error_px"].toDouble();
+    const auto& rows = d.inspection()->models.at("canonical").frames;
+    const int index = all["models"].toObject()["canonical"].toObject()["frames"].toArray()[0].toObject()["index"].toInt();
+    double shown = -1;
+    for (const FrameComparison& c : rows)
+      if (c.frame == index) shown = c.rows.at(0).metrics->contourErrorPx;
+    QVERIFY2(std::abs(printed - shown) < 1e-9, qPrintable(QStringLiteral("%1 %2").arg(printed).arg(shown)));
+  }
+
+  void theDiagnosticReportNamesNoFolder() {
+    window_->document().setSetting("detect.level", 0.4);
+    const QString report = window_->exports()->diagnosticReport();
+    QVERIFY(report.contains("detect.level = 0.4"));
+    QVERIFY(report.contains("plane.glint"));  // names of files stay
+    QVERIFY2(!report.contains(QStringLiteral(GLINT_SOURCE_DIR)), qPrintable(report));
+    QVERIFY2(!report.contains(QDir::homePath() + '/'), qPrintable(report));
+  }
+
+ private:
+  QTemporaryDir folder_;
+  Engine engine_ = coreEngine();
+  std::unique_ptr<MainWindow> window_;
+};
+
+QObject* makeExportTest() { return new ExportTest; }
+
+}  // namespace glint::gui
+
+#include "export_test.moc"
