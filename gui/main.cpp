@@ -54,6 +54,7 @@ int run(int argc, char** argv) {
   window.show();
   window.applyLayout(command.layout);  // dock sizes are known only now
   if (!command.input.isEmpty()) window.open(command.input, command.frame);
+  if (!command.run.isEmpty()) window.runActions(command.run);
   if (!command.screenshot.isEmpty()) new Screenshot(window, command.screenshot, command.waitIdle);
   return QApplication::exec();
 }

@@ -49,6 +49,8 @@ CommandLine parseCommandLine(const QStringList& arguments) {
       c.theme = theme == QStringLiteral("dark") ? Theme::Dark : Theme::Light;
     } else if (name == QStringLiteral("--frame"))
       c.frame = value();
+    else if (name == QStringLiteral("--run"))
+      c.run += value().split(',', Qt::SkipEmptyParts);
     else if (name == QStringLiteral("--screenshot"))
       c.screenshot = value();
     else if (name == QStringLiteral("--size"))
@@ -76,6 +78,9 @@ QString helpText() {
              "  --layout NAME         arrangement of the panels: %1\n"
              "  --theme light|dark    colours (default: dark)\n"
              "  --frame ID            frame to select: its id, else its number in the input, from 0\n"
+             "  --run ID[,ID...]      run actions by their ids once the scene is shown (explain.step-contour, view.panel-plots "
+             "...);\n"
+             "                        a wrong one lists them all\n"
              "  --screenshot FILE     write the window as PNG and quit\n"
              "  --size WxH            size of the window, in pixels (default: 1600x1000)\n"
              "  --wait-idle           before the screenshot, wait until everything is computed and drawn\n"

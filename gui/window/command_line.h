@@ -15,6 +15,7 @@ struct CommandLine {
   QString layout = QStringLiteral("debug");
   Theme theme = Theme::Dark;
   QString frame;       ///< frame id, or number where no id matches; "" = first
+  QStringList run;     ///< ids of actions to run once the scene is shown
   QString screenshot;  ///< PNG to write; "" = stay open
   QSize size;          ///< empty = default
   bool waitIdle = false;

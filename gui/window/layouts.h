@@ -10,8 +10,9 @@ namespace glint::gui {
 struct Layout {
   const char* name;
   const char* title;
-  QStringList docks;  ///< object names of the docks that are visible
-  int sceneShare;     ///< of 100, the rest is the frame view's
+  QStringList docks;       ///< object names of the docks that are visible
+  int sceneShare;          ///< of 100, the rest is the frame view's
+  QStringList front = {};  ///< docks that come before their tabs, beside errors, layers and parameters
 };
 
 const QList<Layout>& layouts();

@@ -383,6 +383,23 @@ void MainWindow::applyLayout(const QString& name) {
   views_->setSizes({layout.sceneShare * 10, (100 - layout.sceneShare) * 10});
 }
 
+void MainWindow::runActions(const QStringList& ids) {
+  constexpr int kLookMs = 30;
+  QStringList known;
+  for (const QAction* action : actions_.all()) known << Actions::id(action);
+  for (const QString& id : ids)
+    if (!known.contains(id))
+      throw InputError("", "--run", "'" + id.toStdString() + "' is none of: " + known.join(QStringLiteral(", ")).toStdString());
+  toRun_ += ids;
+  auto* clock = new QTimer(this);
+  connect(clock, &QTimer::timeout, this, [this, clock] {
+    if (!quiet() || (!document_.scene() && !document_.inputFile().isEmpty())) return;
+    actions_.find(toRun_.takeFirst())->trigger();
+    if (toRun_.isEmpty()) clock->deleteLater();
+  });
+  clock->start(kLookMs);
+}
+
 void MainWindow::setTheme(Theme theme) {
   if (auto* app = qobject_cast<QApplication*>(QCoreApplication::instance())) applyTheme(*app, theme);
   scene_->setDark(theme == Theme::Dark);
@@ -421,9 +438,12 @@ void MainWindow::offerRecovery() {
                            }}});
 }
 
-bool MainWindow::idle() const {
+bool MainWindow::idle() const { return toRun_.isEmpty() && quiet(); }
+
+bool MainWindow::quiet() const {
   return !runner_.busy() && !frame_->busy() && !timeline_->busy() && !scene_->busy() && plots_->idle() && !explain_->busy() &&
          !exports_->busy();
+  !exports_->busy();
 }
 
 QPixmap MainWindow::picture() {

@@ -44,6 +44,9 @@ class MainWindow : public QMainWindow {
 
   void open(const QString& input, const QString& frame = {});
   void applyLayout(const QString& name);
+  /// Runs actions by their ids, one after the other, each when everything is computed and shown; idle() is false meanwhile.
+  /// InputError for an unknown id.
+  void runActions(const QStringList& ids);
   void setTheme(Theme theme);
   /// Nothing runs and every panel shows the newest state.
   bool idle() const;
@@ -78,6 +81,7 @@ class MainWindow : public QMainWindow {
   void showProblem(const QString& oneLine);
   void log(const QString& line);
   void showTitle();
+  bool quiet() const;
   void addView(Opened& opened) const;
   Opened snapshot() const;
   static QString recoveryFolder();
@@ -110,6 +114,7 @@ class MainWindow : public QMainWindow {
   MessageBar* messageBar_ = nullptr;
   QLabel* probe_ = nullptr;
   QString layout_, lastError_;
+  QStringList toRun_;  ///< ids of actions
   Autosave* autosave_ = nullptr;
   std::optional<Autosave::Found> recovering_;  ///< being opened
   std::pair<QString, QString> missing_;        ///< session and scene of the opening that failed last
