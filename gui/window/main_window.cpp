@@ -443,7 +443,6 @@ bool MainWindow::idle() const { return toRun_.isEmpty() && quiet(); }
 bool MainWindow::quiet() const {
   return !runner_.busy() && !frame_->busy() && !timeline_->busy() && !scene_->busy() && plots_->idle() && !explain_->busy() &&
          !exports_->busy();
-  !exports_->busy();
 }
 
 QPixmap MainWindow::picture() {
