@@ -285,8 +285,9 @@ void ScenePanel::addActions(Actions& actions, QMenu* menu) {
         look);
   };
   actions.add("view.frame-all", menu, tr("Show &everything"), [this] { frameAll(); }, {{Qt::Key_A}, "frame-all"});
-  actions.add("view.frame-selection", menu, tr("Show the &selection"), [this] { frameSelection(); },
-              {{int(Qt::SHIFT) | Qt::Key_A}, "frame-selection", tr("The selected highlight, ellipsoid or camera fills the 3D view")});
+  actions.add(
+      "view.frame-selection", menu, tr("Show the &selection"), [this] { frameSelection(); },
+      {{int(Qt::SHIFT) | Qt::Key_A}, "frame-selection", tr("The selected highlight, ellipsoid or camera fills the 3D view")});
   QAction* camera = toggle("view.look-through", menu, tr("Look through the frame's &camera"),
                            {{Qt::Key_C}, "camera", tr("With the photograph over the scene; follows the selected frame")},
                            [this](bool on) { setEye(on ? viz::Eye::Camera : viz::Eye::Outside); });
@@ -313,7 +314,7 @@ void ScenePanel::addActions(Actions& actions, QMenu* menu) {
              [this](bool on) { setSwitch("scene/parallel", on, on ? tr("Parallel projection") : tr("Perspective")); });
   axes->addSeparator();
   actions.add("view.save-view", axes, tr("&Keep this view"), [this] { saveView(); },
-              {{int(Qt::CTRL) | Qt::Key_K}, {}, tr("Stored with the session")});
+              {{QKeySequence("Shift+K")}, {}, tr("Stored with the session")});
   savedMenu_ = axes->addMenu(tr("Kept &views"));
   connect(savedMenu_, &QMenu::aboutToShow, this, [this] {
     savedMenu_->clear();
@@ -349,9 +350,9 @@ void ScenePanel::addActions(Actions& actions, QMenu* menu) {
     arrangementActions.append(
         {toggle(a.id, arrange, tr(a.title), {}, [this, to = a.arrangement](bool) { setArrangement(to); }), a.arrangement});
   arrange->addSeparator();
-  QAction* linked =
-      toggle("view.link-views", arrange, tr("&Linked cameras"), {{int(Qt::CTRL) | Qt::Key_L}, {}, tr("All 3D views move together")},
-             [this](bool on) { setSwitch("scene/linked", on, on ? tr("Link the 3D views") : tr("Unlink the 3D views")); });
+  QAction* linked = toggle(
+      "view.link-views", arrange, tr("&Linked cameras"), {{int(Qt::CTRL) | Qt::Key_L}, {}, tr("All 3D views move together")},
+      [this](bool on) { setSwitch("scene/linked", on, on ? tr("Link the 3D views") : tr("Unlink the 3D views")); });
   actions.add("view.next-models", arrange, tr("Other &model in the active view"), [this] { nextModels(); },
               {{Qt::Key_M}, {}, tr("All models, then each alone")});
 
