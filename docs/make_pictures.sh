@@ -9,9 +9,9 @@ bin=${GLINT_BIN:-$root/build/release/bin}
 out=$root/docs/pictures
 mkdir -p "$out"
 
-inspector() {  # NAME SESSION FRAME THEME
+inspector() {  # NAME SESSION FRAME THEME [MORE OPTIONS]
   QT_QPA_PLATFORM=xcb xvfb-run -a -s "-screen 0 1600x1000x24" "$bin/glint-inspector" "$root/sessions/$2/$2.glint" --frame "$3" \
-    --theme "$4" --size 1500x940 --screenshot "$out/$1.png" --wait-idle
+    --theme "$4" --size 1500x940 --screenshot "$out/$1.png" --wait-idle "${@:5}"
 }
 picture() {  # NAME SESSION FRAME VIEW
   "$bin/glint" render "$root/sessions/$2/$2.glint" --view "$4" --frame "$3" --size 1100x620 -o "$out/$1.png"
@@ -19,6 +19,13 @@ picture() {  # NAME SESSION FRAME VIEW
 
 inspector inspector plane-to-cylinder 0045 dark
 inspector inspector-vase vase 0010 light
+inspector compare ellipsoid 0012 dark --layout compare
+inspector explain plane-to-cylinder 0045 dark --layout explain --run explain.step-limit-angles
+inspector explain-primal ellipsoid 0008 light --layout explain --run explain.step-virtual-camera
+inspector look-through ellipsoid 0004 dark --run view.look-through
+inspector look-through-virtual ellipsoid 0004 dark --run view.look-through-virtual
+inspector four-views plane-to-cylinder 0045 dark --layout present --run view.views-4
+inspector two-frames ellipsoid 0004 dark --layout compare --run frame.side-by-side
 picture scene plane-to-cylinder 0045 scene
 picture ladder plane-to-cylinder 0045 ladder
 picture frame ellipsoid 0012 frame

@@ -186,11 +186,13 @@ void virtualCameraStep(const Case& c, ExplainStep& step) {
   if (!k || !(alpha > 0)) return;
   const double turn = std::max(std::abs(k->k1), std::abs(k->k2)) * radiusOnPlane(v);
   step.numbers.push_back(one("", "turn of the normal from P_B to the contour", turn / kDegree, "deg"));
-  if (turn > kFlatShare * alpha && c.out.model == "primal")
+  // Said of these two models whichever one is explained: that they fail here is why the steps that follow exist.
+  const auto wasComputed = [&](const char* model) { return c.inspection.models.count(model) > 0; };
+  if (turn > kFlatShare * alpha && wasComputed("primal"))
     step.broken.push_back(
         {"primal-off-plane",
          {one("", "turn of the normal", turn / kDegree, "deg"), one("", "limit angle", alpha / kDegree, "deg")}});
-  if (c.out.model == "dual") {
+  if (wasComputed("dual")) {
     double least = std::numeric_limits<double>::infinity(), most = -least;
     for (const TrainingView& other : c.inspection.views) {
       if (other.failure || !other.brightest || !other.surface) continue;

@@ -4,7 +4,6 @@
 #include <QApplication>
 #include <QClipboard>
 #include <QComboBox>
-#include <QGridLayout>
 #include <QHBoxLayout>
 #include <QHeaderView>
 #include <QKeyEvent>
@@ -17,6 +16,7 @@
 #include <cmath>
 
 #include "core/evaluate/summary.h"
+#include "gui/base/flow_layout.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/panels/error_model.h"
@@ -61,27 +61,28 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(0);
-  auto* head = new QHBoxLayout;
+  auto* head = new FlowLayout(16);  // a narrow dock puts the choice of rows below the summary
   head->setContentsMargins(8, 4, 6, 4);
   summary_ = new QLabel;
   summary_->setObjectName(QStringLiteral("errorSummary"));
   summary_->setTextFormat(Qt::RichText);
-  summary_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);  // a narrow window cuts it rather than its neighbours
+  summary_->setMinimumWidth(1);  // a dock that is narrower still cuts it rather than growing
   summary_->setTextInteractionFlags(Qt::TextSelectableByMouse);
-  head->addWidget(summary_, 1);
+  head->addWidget(summary_);
   filter_ = new QComboBox;
   filter_->setObjectName(QStringLiteral("errorFilter"));
   filter_->addItems({tr("all frames"), tr("held-out frames"), tr("training frames"), tr("problems only")});
-  auto* choice = new QGridLayout;
-  choice->setHorizontalSpacing(6);
-  choice->addWidget(new QLabel(tr("Rows of")), 0, 0);
-  choice->addWidget(filter_, 0, 1);
+  auto* choices = new QWidget;
+  auto* choice = new QHBoxLayout(choices);
+  choice->setContentsMargins(0, 0, 0, 0);
+  choice->setSpacing(6);
+  choice->addWidget(new QLabel(tr("Rows of")));
+  choice->addWidget(filter_);
   count_ = new QLabel;
   count_->setObjectName(QStringLiteral("errorCount"));
   count_->setProperty("role", "faded");
-  choice->addWidget(count_, 1, 0, 1, 2, Qt::AlignRight);
-  choice->setRowStretch(2, 1);
-  head->addLayout(choice);
+  choice->addWidget(count_);
+  head->addWidget(choices);
   column->addLayout(head);
 
   model_ = new ErrorModel(document, this);
@@ -149,18 +150,18 @@ void ErrorTable::showSummary() {
   // In place of the heading: a line of its own would make the table jump under the mouse.
   const QString faded = (document_.stale() ? warningColour() : palette().color(QPalette::PlaceholderText)).name();
   QString html = QStringLiteral("<table cellspacing='0' cellpadding='0'><tr style='color:%1'>").arg(faded);
-  html += QStringLiteral("<td style='padding-right:18px'>%1</td>")
+  html += QStringLiteral("<td style='padding-right:12px'>%1</td>")
               .arg(document_.stale() ? tr("out of date…") : tr("Held-out frames, error %"));
   const auto cells = [](const QStringList& texts) {
     QString row;
-    for (const QString& text : texts) row += QStringLiteral("<td align='right' style='padding-right:18px'>%1</td>").arg(text);
+    for (const QString& text : texts) row += QStringLiteral("<td align='right' style='padding-right:12px'>%1</td>").arg(text);
     return row;
   };
   html += cells({tr("mean"), tr("median"), tr("p95"), tr("max"), tr("IoU"), tr("predicted"), tr("missed"), tr("spurious")});
   html += QStringLiteral("</tr>");
   for (const std::string& name : viz::modelsInOrder(*inspection)) {
     const ModelSummary s = summarise(*inspection, inspection->models.at(name));
-    html += QStringLiteral("<tr><td style='padding-right:18px'><span style='color:%1'>■</span>&nbsp;%2</td>")
+    html += QStringLiteral("<tr><td style='padding-right:12px'><span style='color:%1'>■</span>&nbsp;%2</td>")
                 .arg(toQColor(viz::modelColour(name)).name(), toQString(name));
     if (!s.answered) {
       html += QStringLiteral("<td colspan='8' style='color:%1'>%2</td></tr>")

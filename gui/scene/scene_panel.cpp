@@ -83,10 +83,7 @@ void ScenePanel::buildBars() {
   auto* row = new QHBoxLayout(eyeBar_);
   row->setContentsMargins(8, 2, 4, 2);
   row->setSpacing(6);
-  eyeText_ = new QLabel;
-  eyeText_->setObjectName(QStringLiteral("eyeText"));
-  eyeText_->setMinimumWidth(40);
-  row->addWidget(eyeText_, 1);
+  row->addStretch(1);  // which camera it is stands in the picture
   row->addWidget(new QLabel(tr("Photograph")));
   opacity_ = slider("photographOpacity", 0, 100, tr("How much the photograph covers the scene"));
   opacity_->setFixedWidth(110);
@@ -163,8 +160,7 @@ void ScenePanel::showOptions() {
 void ScenePanel::showEye() {
   const QString text = views_->eyeText();
   eyeBar_->setVisible(!text.isEmpty());
-  eyeText_->setText(text);
-  eyeText_->setToolTip(text);
+  eyeBar_->setToolTip(text);
   if (checkActions_) checkActions_();
 }
 

@@ -12,7 +12,6 @@
 #include "gui/scene/scene_options.h"
 
 class QHBoxLayout;
-class QLabel;
 class QMenu;
 class QSlider;
 
@@ -76,7 +75,6 @@ class ScenePanel : public QWidget {
   SceneViews* views_;
   QHBoxLayout* bar_ = nullptr;
   QWidget* eyeBar_ = nullptr;
-  QLabel* eyeText_ = nullptr;
   QSlider *glyphs_ = nullptr, *opacity_ = nullptr;
   QMenu* savedMenu_ = nullptr;
   std::function<void()> checkActions_;

@@ -3,18 +3,15 @@
 
 #include <QApplication>
 #include <QCloseEvent>
-#include <QDir>
 #include <QDockWidget>
 #include <QFileInfo>
 #include <QLabel>
-#include <QLocale>
 #include <QMenuBar>
 #include <QMimeData>
 #include <QPlainTextEdit>
 #include <QScrollArea>
 #include <QSplitter>
 #include <QStackedWidget>
-#include <QStandardPaths>
 #include <QStatusBar>
 #include <QTime>
 #include <QTimer>
@@ -40,13 +37,14 @@
 #include "gui/scene/scene_panel.h"
 #include "gui/timeline/timeline.h"
 #include "gui/whatif/what_if_panel.h"
-#include "gui/window/autosave.h"
 #include "gui/window/file_actions.h"
 #include "gui/window/job_status.h"
 #include "gui/window/layouts.h"
 #include "gui/window/message_bar.h"
 #include "gui/window/palette.h"
 #include "gui/window/palette_items.h"
+#include "gui/window/recovery.h"
+#include "gui/window/scripted_actions.h"
 #include "gui/window/shortcut_dialog.h"
 #include "gui/window/start_page.h"
 
@@ -68,6 +66,9 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   buildDocks();
   buildMenus();
   buildStatusLine();
+  // The scene may still be on its way.
+  script_ = new ScriptedActions(
+      actions_, [this] { return quiet() && (document_.scene() || document_.inputFile().isEmpty()); }, this);
 
   connect(files_, &FileActions::problem, this, &MainWindow::showProblem);
   connect(files_, &FileActions::message, this, [this](const QString& line) {
@@ -106,11 +107,6 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   connect(&document_, &Document::requestChanged, this, &MainWindow::recompute);
   connect(&document_, &Document::sceneOpened, this, [this] {
     messageBar_->hide();
-    if (const auto found = std::exchange(recovering_, {}))
-      QTimer::singleShot(0, this, [this, found] {
-        autosave_->flush();  // what was recovered is in this program's own file before the other one goes
-        Autosave::discard(*found);
-      });
     centre_->setCurrentWidget(views_);
     log(tr("Opened %1").arg(document_.inputFile()));
     recompute();
@@ -120,10 +116,10 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   connect(&runner_, &Runner::sceneMissing, this, [this](const QString& session, const QString& scene) {
     missing_ = {session, scene};  // failed() comes next, and shows it
   });
-  autosave_ = new Autosave(
-      engine_, document_, [this] { return snapshot(); }, recoveryFolder(), this);
-  connect(autosave_, &Autosave::problem, this, &MainWindow::log);
-  offerRecovery();
+  auto* recovery = new Recovery(
+      engine_, document_, [this] { return snapshot(); }, *files_, *messageBar_, this);
+  connect(recovery, &Recovery::problem, this, &MainWindow::log);
+  recovery->offer();
   start_->setRecent(files_->recent());
   showTitle();
   applyLayout(QStringLiteral("debug"));
@@ -163,21 +159,6 @@ void MainWindow::buildCentre() {
   setCentralWidget(middle);
 }
 
-QDockWidget* MainWindow::addDock(const char* name, const QString& title, QWidget* content, Qt::DockWidgetArea area,
-                                 const char* behind) {
-  auto* dock = new QDockWidget(title);
-  dock->setObjectName(QLatin1String(name));
-  dock->setWidget(content);
-  addDockWidget(area, dock);
-  docks_.insert(QLatin1String(name), dock);
-  if (QDockWidget* host = docks_.value(QLatin1String(behind))) {
-    tabifyDockWidget(host, dock);
-    host->raise();
-    hosts_.insert(QLatin1String(name), QLatin1String(behind));
-  }
-  return dock;
-}
-
 void MainWindow::buildDocks() {
   setCorner(Qt::BottomLeftCorner, Qt::BottomDockWidgetArea);
   setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
@@ -202,43 +183,40 @@ void MainWindow::buildDocks() {
   setupScroll->setWidgetResizable(true);
   setupScroll->setMinimumWidth(190);
   setupScroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  addDock("setup", tr("Setup"), setupScroll, Qt::LeftDockWidgetArea);
-  addDock("layers", tr("Layers"), new LayerList(document_), Qt::LeftDockWidgetArea);
+  docks_.add("setup", tr("Setup"), setupScroll, Qt::LeftDockWidgetArea);
+  docks_.add("layers", tr("Layers"), new LayerList(document_), Qt::LeftDockWidgetArea);
   auto* history = new QUndoView(document_.undoStack());
   history->setEmptyLabel(tr("As opened"));
-  addDock("history", tr("History"), history, Qt::LeftDockWidgetArea, "layers");
+  docks_.add("history", tr("History"), history, Qt::LeftDockWidgetArea, "layers");
 
   parameters_ = new ParameterPanel(document_);
-  addDock("parameters", tr("Parameters"), parameters_, Qt::RightDockWidgetArea);
-  addDock("what-if", tr("What if"), new WhatIfPanel(document_), Qt::RightDockWidgetArea, "parameters");
-  addDock("conditioning", tr("Conditioning"), new ConditioningPanel(document_), Qt::RightDockWidgetArea);
+  docks_.add("parameters", tr("Parameters"), parameters_, Qt::RightDockWidgetArea);
+  docks_.add("what-if", tr("What if"), new WhatIfPanel(document_), Qt::RightDockWidgetArea, "parameters");
+  docks_.add("conditioning", tr("Conditioning"), new ConditioningPanel(document_), Qt::RightDockWidgetArea);
   numbers_ = new NumbersPanel(document_);
-  addDock("numbers", tr("Numbers"), numbers_, Qt::RightDockWidgetArea);
+  docks_.add("numbers", tr("Numbers"), numbers_, Qt::RightDockWidgetArea);
   connect(scene_, &ScenePanel::picked, numbers_, &NumbersPanel::showPicked);
 
   explain_ = new ExplainPanel(document_);
-  addDock("explain", tr("Explain"), explain_, Qt::RightDockWidgetArea, "parameters");
-  connect(explain_, &ExplainPanel::started, this, [this] {
-    docks_["explain"]->show();
-    docks_["explain"]->raise();
-  });
+  docks_.add("explain", tr("Explain"), explain_, Qt::RightDockWidgetArea, "parameters");
+  connect(explain_, &ExplainPanel::started, this, [this] { docks_.bring(QStringLiteral("explain")); });
 
   timeline_ = new Timeline(document_);
-  QDockWidget* timeline = addDock("timeline", tr("Timeline"), timeline_, Qt::BottomDockWidgetArea);
+  QDockWidget* timeline = docks_.add("timeline", tr("Timeline"), timeline_, Qt::BottomDockWidgetArea);
   errors_ = new ErrorTable(document_);
-  QDockWidget* errors = addDock("errors", tr("Errors"), errors_, Qt::BottomDockWidgetArea);
+  QDockWidget* errors = docks_.add("errors", tr("Errors"), errors_, Qt::BottomDockWidgetArea);
   splitDockWidget(timeline, errors, Qt::Vertical);
   plots_ = new PlotsPanel(document_);
-  QDockWidget* plots = addDock("plots", tr("Plots"), plots_, Qt::BottomDockWidgetArea);
+  QDockWidget* plots = docks_.add("plots", tr("Plots"), plots_, Qt::BottomDockWidgetArea);
   splitDockWidget(errors, plots, Qt::Horizontal);  // before anything is a tab: Qt would make the plots one too
   log_ = new QPlainTextEdit;
   log_->setReadOnly(true);
   log_->setMaximumBlockCount(2000);
-  addDock("log", tr("Log"), log_, Qt::BottomDockWidgetArea, "errors");
+  docks_.add("log", tr("Log"), log_, Qt::BottomDockWidgetArea, "errors");
   ladder_ = new LadderPanel(document_, *frame_->loader());
-  addDock("ladder", tr("Ladder"), ladder_, Qt::BottomDockWidgetArea, "errors");
+  docks_.add("ladder", tr("Ladder"), ladder_, Qt::BottomDockWidgetArea, "errors");
   tradeoff_ = new TradeoffPanel(document_);
-  addDock("tradeoff", tr("Speed and accuracy"), tradeoff_, Qt::BottomDockWidgetArea, "errors");
+  docks_.add("tradeoff", tr("Speed and accuracy"), tradeoff_, Qt::BottomDockWidgetArea, "errors");
   connect(tradeoff_, &TradeoffPanel::measureRequested, this, [this] {
     if (document_.scene() && engine_.tradeoff)
       runner_.measure(document_.sharedScene(), document_.request(),
@@ -252,10 +230,7 @@ void MainWindow::buildDocks() {
     if (document_.stale()) recompute();  // the measurement took the place of a run that was under way
   });
   connect(plots_, &PlotsPanel::problem, this, &MainWindow::showProblem);
-  connect(plots_, &PlotsPanel::shown, plots, [plots] {
-    plots->show();
-    plots->raise();
-  });
+  connect(plots_, &PlotsPanel::shown, this, [this] { docks_.bring(QStringLiteral("plots")); });
   connect(plots_, &PlotsPanel::influenceRequested, this, [this] {
     if (document_.inspection() && engine_.influence) runner_.influence(document_.inspection());
   });
@@ -288,8 +263,7 @@ void MainWindow::buildMenus() {
   palette_ = new Palette(
       [this](const QString& typed) {
         return paletteItems(typed, actions_, document_, [this](const std::string& key) {
-          docks_["parameters"]->show();
-          docks_["parameters"]->raise();
+          docks_.bring(QStringLiteral("parameters"));
           parameters_->showParameter(key);
         });
       },
@@ -315,23 +289,7 @@ void MainWindow::buildMenus() {
     const QString name = QString::fromLatin1(layout.name);
     actions_.add("view.layout-" + name, layoutMenu, tr(layout.title), [this, name] { applyLayout(name); });
   }
-  QMenu* panels = view->addMenu(tr("&Panels"));
-  for (auto it = docks_.begin(); it != docks_.end(); ++it) {
-    QDockWidget* dock = it.value();
-    QAction* action = actions_.addToggle("view.panel-" + it.key(), panels, dock->windowTitle(),
-                                         [dock](bool) {
-                                           // What lies behind another tab is not seen: it comes to the front instead of going
-                                           // away.
-                                           if (dock->isVisible() && !dock->visibleRegion().isEmpty()) return dock->hide();
-                                           dock->show();
-                                           dock->raise();
-                                         },
-                                         {});
-    const auto follow = [action, dock] { action->setChecked(!dock->isHidden()); };
-    connect(dock->toggleViewAction(), &QAction::toggled, action, follow);
-    connect(action, &QAction::triggered, action, follow);
-    follow();
-  }
+  docks_.addActions(actions_, view->addMenu(tr("&Panels")));
   view->addSeparator();
   actions_.add("view.theme", view, tr("Light or dark &theme"),
                [this] { setTheme(currentTheme() == Theme::Dark ? Theme::Light : Theme::Dark); }, {{}, "theme"});
@@ -368,37 +326,11 @@ void MainWindow::open(const QString& input, const QString& frame) {
 void MainWindow::applyLayout(const QString& name) {
   const Layout& layout = layoutByName(name);
   layout_ = QLatin1String(layout.name);
-  for (auto dock = docks_.begin(); dock != docks_.end(); ++dock) {
-    // What is a tab behind another dock follows it, unless the layout names it itself.
-    const QString host = hosts_.value(dock.key(), dock.key());
-    dock.value()->setVisible(layout.docks.contains(dock.key()) || layout.docks.contains(host));
-  }
-  for (const char* front : {"errors", "layers", "parameters"}) docks_[QLatin1String(front)]->raise();
-  for (const QString& front : layout.front) docks_[front]->raise();
-  resizeDocks({docks_["setup"], docks_["parameters"]}, {230, 380}, Qt::Horizontal);
-  resizeDocks({docks_["timeline"], docks_["errors"]}, {150, height() * 3 / 10}, Qt::Vertical);
-  resizeDocks({docks_["setup"], docks_["layers"]}, {284, 264}, Qt::Vertical);
-  resizeDocks({docks_["parameters"], docks_["conditioning"], docks_["numbers"]}, {400, 290, 210}, Qt::Vertical);
-  resizeDocks({docks_["errors"], docks_["plots"]}, {1, 1}, Qt::Horizontal);
+  docks_.apply(layout);
   views_->setSizes({layout.sceneShare * 10, (100 - layout.sceneShare) * 10});
 }
 
-void MainWindow::runActions(const QStringList& ids) {
-  constexpr int kLookMs = 30;
-  QStringList known;
-  for (const QAction* action : actions_.all()) known << Actions::id(action);
-  for (const QString& id : ids)
-    if (!known.contains(id))
-      throw InputError("", "--run", "'" + id.toStdString() + "' is none of: " + known.join(QStringLiteral(", ")).toStdString());
-  toRun_ += ids;
-  auto* clock = new QTimer(this);
-  connect(clock, &QTimer::timeout, this, [this, clock] {
-    if (!quiet() || (!document_.scene() && !document_.inputFile().isEmpty())) return;
-    actions_.find(toRun_.takeFirst())->trigger();
-    if (toRun_.isEmpty()) clock->deleteLater();
-  });
-  clock->start(kLookMs);
-}
+void MainWindow::runActions(const QStringList& ids) { script_->run(ids); }
 
 void MainWindow::setTheme(Theme theme) {
   if (auto* app = qobject_cast<QApplication*>(QCoreApplication::instance())) applyTheme(*app, theme);
@@ -418,27 +350,7 @@ Opened MainWindow::snapshot() const {
   return opened;
 }
 
-QString MainWindow::recoveryFolder() {
-  return QStandardPaths::writableLocation(QStandardPaths::AppDataLocation) + QStringLiteral("/recovery");
-}
-
-void MainWindow::offerRecovery() {
-  const std::optional<Autosave::Found> found = autosave_->leftBehind();
-  if (!found) return;
-  messageBar_->showOffer(tr("The program ended without saving what was changed on %1 (%2).")
-                             .arg(QDir::toNativeSeparators(found->of), QLocale().toString(found->when, QLocale::ShortFormat)),
-                         {{tr("Recover"),
-                           [this, found = *found] {
-                             recovering_ = found;
-                             files_->open(found.file);
-                           }},
-                          {tr("Discard"), [this, found = *found] {
-                             Autosave::discard(found);
-                             offerRecovery();
-                           }}});
-}
-
-bool MainWindow::idle() const { return toRun_.isEmpty() && quiet(); }
+bool MainWindow::idle() const { return script_->done() && quiet(); }
 
 bool MainWindow::quiet() const {
   return !runner_.busy() && !frame_->busy() && !timeline_->busy() && !scene_->busy() && plots_->idle() && !explain_->busy() &&

@@ -2,15 +2,13 @@
 #pragma once
 
 #include <QMainWindow>
-#include <QMap>
 
 #include "gui/base/actions.h"
 #include "gui/base/theme.h"
 #include "gui/document/document.h"
 #include "gui/document/runner.h"
-#include "gui/window/autosave.h"
+#include "gui/window/docks.h"
 
-class QDockWidget;
 class QLabel;
 class QPlainTextEdit;
 class QSplitter;
@@ -30,6 +28,7 @@ class Palette;
 class ParameterPanel;
 class PlotsPanel;
 class ScenePanel;
+class ScriptedActions;
 class StartPage;
 class SetupPanel;
 class Timeline;
@@ -75,8 +74,6 @@ class MainWindow : public QMainWindow {
   void buildDocks();
   void buildMenus();
   void buildStatusLine();
-  QDockWidget* addDock(const char* name, const QString& title, QWidget* content, Qt::DockWidgetArea area,
-                       const char* behind = "");
   void recompute();
   void showProblem(const QString& oneLine);
   void log(const QString& line);
@@ -84,8 +81,6 @@ class MainWindow : public QMainWindow {
   bool quiet() const;
   void addView(Opened& opened) const;
   Opened snapshot() const;
-  static QString recoveryFolder();
-  void offerRecovery();
 
   Engine engine_;
   Document document_;
@@ -93,8 +88,7 @@ class MainWindow : public QMainWindow {
   Actions actions_;
   FileActions* files_;
   ExportActions* exports_;
-  QMap<QString, QDockWidget*> docks_;
-  QMap<QString, QString> hosts_;  ///< docks that are tabs behind another one, by name
+  Docks docks_{this};
   QStackedWidget* centre_ = nullptr;
   StartPage* start_ = nullptr;
   QSplitter* views_ = nullptr;
@@ -114,11 +108,9 @@ class MainWindow : public QMainWindow {
   MessageBar* messageBar_ = nullptr;
   QLabel* probe_ = nullptr;
   QString layout_, lastError_;
-  QStringList toRun_;  ///< ids of actions
-  Autosave* autosave_ = nullptr;
-  std::optional<Autosave::Found> recovering_;  ///< being opened
-  std::pair<QString, QString> missing_;        ///< session and scene of the opening that failed last
-  bool runFailed_ = false;  ///< the message bar shows why the last run failed
+  ScriptedActions* script_ = nullptr;
+  std::pair<QString, QString> missing_;  ///< session and scene of the opening that failed last
+  bool runFailed_ = false;               ///< the message bar shows why the last run failed
 };
 
 }  // namespace glint::gui

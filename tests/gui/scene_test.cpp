@@ -52,7 +52,7 @@ class SceneTest : public QObject {
       trigger("view.look-through");
       QVERIFY(panel_->view().looksThrough());
       QVERIFY(bar->isVisible());
-      QCOMPARE(panel_->findChild<QLabel*>(QStringLiteral("eyeText"))->text(), QStringLiteral("through camera 0007"));
+      QCOMPARE(panel_->findChild<QWidget*>(QStringLiteral("eyeBar"))->toolTip(), QStringLiteral("through camera 0007"));
       QVERIFY(actions_->find("view.look-through")->isChecked());
       if (way == 0) {
         views().widget()->setFocus();
@@ -69,7 +69,7 @@ class SceneTest : public QObject {
     document_->undoStack()->undo();
     QVERIFY(panel_->view().looksThrough());
     document_->selectFrame(3);  // it follows the frames
-    QCOMPARE(panel_->findChild<QLabel*>(QStringLiteral("eyeText"))->text(), QStringLiteral("through camera 0003"));
+    QCOMPARE(panel_->findChild<QWidget*>(QStringLiteral("eyeBar"))->toolTip(), QStringLiteral("through camera 0003"));
   }
 
   /// The photograph of the fixture is one colour per frame: red 10 + 5 i.

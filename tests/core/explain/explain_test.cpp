@@ -73,7 +73,11 @@ TEST(Explain, OnASphereItSaysWhyPrimalFails) {
   const Explanation e = explain(inspection, 5, 0, "primal");
   EXPECT_NEAR(number(stepOf(e, "tangent-plane"), "principal curvature")[0], 2, 1e-9);
   EXPECT_TRUE(breaks(stepOf(e, "virtual-camera"), "primal-off-plane"));
-  EXPECT_FALSE(breaks(stepOf(explain(inspection, 5, 0, "canonical"), "virtual-camera"), "primal-off-plane"));
+  EXPECT_TRUE(breaks(stepOf(explain(inspection, 5, 0, "canonical"), "virtual-camera"), "primal-off-plane"))
+      << "whichever model is explained";
+  EXPECT_FALSE(
+      breaks(stepOf(explain(inspected(sphere(0.5), {"canonical"}), 5, 0, "canonical"), "virtual-camera"), "primal-off-plane"))
+      << "nobody asked for primal";
   EXPECT_FALSE(breaks(stepOf(e, "comparison"), "training-frame"));
   // A held-out frame has its own view and canonical contour; on a sphere they lie outside the observed one.
   ASSERT_TRUE(e.view && e.view->canonical);
