@@ -8,6 +8,8 @@
 #include <vtkPoints.h>
 #include <vtkPolyDataNormals.h>
 #include <vtkQuadricClustering.h>
+#include <vtkRenderWindow.h>
+#include <vtkWindowToImageFilter.h>
 
 #include <algorithm>
 #include <cmath>
@@ -152,6 +154,16 @@ Image fromVtk(vtkImageData* rgb) {
     }
   }
   return image;
+}
+
+Image pictureOf(vtkRenderWindow* window) {
+  vtkNew<vtkWindowToImageFilter> grab;
+  grab->SetInput(window);
+  grab->SetInputBufferTypeToRGB();
+  grab->ReadFrontBufferOff();
+  grab->ShouldRerenderOff();
+  grab->Update();
+  return fromVtk(grab->GetOutput());
 }
 
 }  // namespace glint::viz

@@ -13,6 +13,8 @@
 #include "core/base/image.h"
 #include "core/surface/surface.h"
 
+class vtkRenderWindow;
+
 namespace glint::viz {
 
 using Points = std::vector<Eigen::Vector3d>;
@@ -36,6 +38,9 @@ vtkSmartPointer<vtkPolyData> withNormals(const vtkSmartPointer<vtkPolyData>& tri
 vtkSmartPointer<vtkPolyData> coarsened(const vtkSmartPointer<vtkPolyData>& triangles, int divisions);
 /// 3-channel values 0..1, top row first, of a VTK RGB or RGBA 8-bit image (bottom row first).
 Image fromVtk(vtkImageData* rgb);
+
+/// What a window shows, 3 channels 0..1; it was rendered.
+Image pictureOf(vtkRenderWindow* window);
 
 inline Eigen::Vector3d toEigen(const double* xyz) { return {xyz[0], xyz[1], xyz[2]}; }
 

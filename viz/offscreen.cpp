@@ -4,7 +4,6 @@
 #include <vtkImageData.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
-#include <vtkWindowToImageFilter.h>
 
 #include <cstdlib>
 
@@ -48,13 +47,7 @@ Image Offscreen::render(const SceneView& view) {
   vtkRenderWindow* window = impl_->window;
   window->AddRenderer(view.renderer());
   window->Render();
-  vtkNew<vtkWindowToImageFilter> grab;
-  grab->SetInput(window);
-  grab->SetInputBufferTypeToRGB();
-  grab->ReadFrontBufferOff();
-  grab->ShouldRerenderOff();
-  grab->Update();
-  Image image = fromVtk(grab->GetOutput());
+  Image image = pictureOf(window);
   window->RemoveRenderer(view.renderer());
   return image;
 }

@@ -8,13 +8,13 @@
 #include <cstdio>
 #include <numbers>
 
+#include "core/base/angle.h"
 #include "core/light/estimate.h"
 #include "core/model/fit_ellipsoid.h"
 
 namespace glint {
 namespace {
 
-constexpr double kDegPerRad = 180 / std::numbers::pi;
 constexpr std::size_t kMostDirections = 256;  // 33,000 pairs: a millisecond
 
 template <class... Numbers>
@@ -175,7 +175,7 @@ class Findings {
       return add("angle", "triangulation angle", std::nan(""), "-", Verdict::Red,
                  text("Fewer than two %s: nothing can be triangulated.", what));
     const double angle = widestAngle(rays_);
-    const double deg = angle * kDegPerRad;
+    const double deg = degrees(angle);
     const Verdict v = above(deg, bounds::kAngleAmberDeg, bounds::kAngleRedDeg);
     const double factor = 1 / std::max(std::sin(std::min(angle, std::numbers::pi / 2)), std::numeric_limits<double>::min());
     std::string reason =
@@ -186,7 +186,7 @@ class Findings {
   }
 
   void addViews() {
-    const double effective = effectiveNumber(rays_, bounds::kAngleAmberDeg / kDegPerRad);
+    const double effective = effectiveNumber(rays_, radians(bounds::kAngleAmberDeg));
     const Verdict v = above(effective, bounds::kViewsAmber, bounds::kViewsRed);
     std::string reason = text(
         "%d training views count as %.2g different ones, those nearer than 5 deg to each other only in part: ", int(rays_.size()),
@@ -227,9 +227,9 @@ class Findings {
                                : std::nan("");
       const Verdict v = below(sigma, bounds::kLightAmber, bounds::kLightRed);
       return add(
-          "light", title, sigma, std::isfinite(sigma) ? text("%.2g\u00b0", sigma * kDegPerRad) : "-", v,
+          "light", title, sigma, std::isfinite(sigma) ? text("%.2g\u00b0", degrees(sigma)) : "-", v,
           std::isfinite(sigma)
-              ? text("The light is at infinity; its direction is known to %.2g deg (one standard deviation).", sigma * kDegPerRad)
+              ? text("The light is at infinity; its direction is known to %.2g deg (one standard deviation).", degrees(sigma))
               : "The light is at infinity; its solver tells no uncertainty of the direction.");
     }
     Eigen::Vector3d at(0, 0, 0);

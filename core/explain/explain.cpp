@@ -7,8 +7,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 
+#include "core/base/angle.h"
+#include "core/diagnostics/conditioning.h"
 #include "core/light/estimate.h"
 #include "core/pipeline/training.h"
 #include "core/surface/mesh_policy.h"
@@ -16,7 +17,6 @@
 namespace glint {
 
 namespace {
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kFlatShare = 0.05;      // of the limit angle: a normal that turns less across the highlight is that of a plane
 constexpr double kSameCurvature = 0.2;   // relative spread over the views: below, one sphere-like patch describes all of them
 constexpr double kSameLimit = 0.05;      // relative spread over the directions: beyond, one limit angle is not the contour
@@ -162,7 +162,7 @@ void tangentStep(const Case& c, ExplainStep& step) {
   step.numbers.push_back(point("N", "normal at P_B", v.tangentPlane->normal, ""));
   step.numbers.push_back(
       one("", "angle between N and the view ray",
-          std::atan2(toCamera.cross(v.tangentPlane->normal).norm(), toCamera.dot(v.tangentPlane->normal)) / kDegree, "deg"));
+          degrees(std::atan2(toCamera.cross(v.tangentPlane->normal).norm(), toCamera.dot(v.tangentPlane->normal))), "deg"));
   if (!c.surface) return;
   if (const Outcome<Curvature> k = c.surface->curvatureAt(v.brightest->point)) {
     step.numbers.push_back(one("kappa_1", "principal curvature", k->k1, "1/m"));
@@ -185,13 +185,12 @@ void virtualCameraStep(const Case& c, ExplainStep& step) {
   const double alpha = limit > 0 ? limit : estimate != c.inspection.lights.end() ? estimate->second.limitAngle : 0;
   if (!k || !(alpha > 0)) return;
   const double turn = std::max(std::abs(k->k1), std::abs(k->k2)) * radiusOnPlane(v);
-  step.numbers.push_back(one("", "turn of the normal from P_B to the contour", turn / kDegree, "deg"));
+  step.numbers.push_back(one("", "turn of the normal from P_B to the contour", degrees(turn), "deg"));
   // Said of these two models whichever one is explained: that they fail here is why the steps that follow exist.
   const auto wasComputed = [&](const char* model) { return c.inspection.models.count(model) > 0; };
   if (turn > kFlatShare * alpha && wasComputed("primal"))
-    step.broken.push_back(
-        {"primal-off-plane",
-         {one("", "turn of the normal", turn / kDegree, "deg"), one("", "limit angle", alpha / kDegree, "deg")}});
+    step.broken.push_back({"primal-off-plane",
+                           {one("", "turn of the normal", degrees(turn), "deg"), one("", "limit angle", degrees(alpha), "deg")}});
   if (wasComputed("dual")) {
     double least = std::numeric_limits<double>::infinity(), most = -least;
     for (const TrainingView& other : c.inspection.views) {
@@ -219,21 +218,18 @@ void lightStep(const Case& c, ExplainStep& step) {
   for (const TrainingView& v : c.inspection.views)
     if (!v.failure && v.brightest && v.highlight.light == c.out.light)
       rays.push_back(reflectedRay(*v.brightest, v.camera).direction);
-  double widest = 0;
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    for (std::size_t j = i + 1; j < rays.size(); ++j)
-      widest = std::max(widest, std::atan2(rays[i].cross(rays[j]).norm(), rays[i].dot(rays[j])));
+  const double widest = widestAngle(rays);
   const Light& light = *c.out.lightUsed;
   if (light.atInfinity())
     step.numbers.push_back(point("L", "direction of a light at infinity", light.homogeneous().head<3>(), ""));
   else
     step.numbers.push_back(point("L", "light", light.position()));
   step.numbers.push_back(one("", "reflected rays", double(rays.size())));
-  step.numbers.push_back(one("", "widest angle between them", widest / kDegree, "deg"));
+  step.numbers.push_back(one("", "widest angle between them", degrees(widest), "deg"));
   if (const auto e = c.inspection.lights.find(c.out.light); e != c.inspection.lights.end() && e->second.covariance)
     step.numbers.push_back(one("sigma", "of the light, largest axis",
                                std::sqrt(e->second.covariance->selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff()), "m"));
-  if (widest < kNarrowDeg * kDegree) step.broken.push_back({"rays-parallel", {one("", "widest angle", widest / kDegree, "deg")}});
+  if (widest < radians(kNarrowDeg)) step.broken.push_back({"rays-parallel", {one("", "widest angle", degrees(widest), "deg")}});
   for (const TrueLight& truth : c.inspection.scene->lights)
     if (truth.id == c.out.light && truth.position && !light.atInfinity())
       step.numbers.push_back(one("", "distance from the true light", (light.position() - *truth.position).norm(), "m"));
@@ -280,8 +276,8 @@ void limitAngleStep(const Case& c, ExplainStep& step) {
   step.numbers.push_back(one("n", "directions", double(c.out.view->canonical->directions.size())));
   step.numbers.push_back(one("", "that reached the contour", n));
   if (n > 0) {
-    step.numbers.push_back(one("alpha_i", "smallest limit angle", least / kDegree, "deg"));
-    step.numbers.push_back(one("alpha_i", "largest limit angle", most / kDegree, "deg"));
+    step.numbers.push_back(one("alpha_i", "smallest limit angle", degrees(least), "deg"));
+    step.numbers.push_back(one("alpha_i", "largest limit angle", degrees(most), "deg"));
     const double mean = sum / n;
     if (most - least > kSameLimit * mean)
       step.broken.push_back({"limit-angle-varies", {one("", "spread of the limit angles", 100 * (most - least) / mean, "%")}});
@@ -329,7 +325,7 @@ void ellipsoidStep(const Case& c, ExplainStep& step) {
     step.numbers.push_back(point("c", "centre", f.ellipsoid->centre()));
     step.numbers.push_back(point("a, b, c", "semi-axes", f.ellipsoid->semiAxes()));
   }
-  if (f.limitAngle) step.numbers.push_back(one("alpha_lim", "limit angle", *f.limitAngle / kDegree, "deg"));
+  if (f.limitAngle) step.numbers.push_back(one("alpha_lim", "limit angle", degrees(*f.limitAngle), "deg"));
   if (f.roughness) step.numbers.push_back(one("m", "roughness", *f.roughness));
   if (f.quadric && f.gapRatio > 0) {
     step.numbers.push_back(one("", "last over second last singular value", f.gapRatio));

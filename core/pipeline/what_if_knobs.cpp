@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "core/base/angle.h"
 
 namespace glint {
 
 namespace {
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kLightReach = 1.0;   // of the working distance: a lamp may go anywhere about the scene
 constexpr double kCameraReach = 0.1;  // of the working distance: an error of calibration, not another view
 constexpr double kSteps = 200;        // of a slider from end to end
@@ -110,10 +110,10 @@ void addPose(std::vector<WhatIfKnob>& knobs, const Scene& scene, int frame, doub
     knobs.push_back({group,
                      number("pose.rotate." + std::string(kAxes[axis]), std::string("Turn about ") + kAxes[axis], "deg", 0, -5, 5,
                             0.02, "Turns the camera about its centre; x right, y down, z forward."),
-                     false, [frame, axis](const WhatIf& w) { return lookUp(w.poses, frame).rotation(axis) / kDegree; },
+                     false, [frame, axis](const WhatIf& w) { return degrees(lookUp(w.poses, frame).rotation(axis)); },
                      [frame, axis](WhatIf& w, double v) {
                        PoseChange change = lookUp(w.poses, frame);
-                       change.rotation(axis) = v * kDegree;
+                       change.rotation(axis) = radians(v);
                        store(w.poses, frame, change);
                      }});
   const double reach = kCameraReach * distance;

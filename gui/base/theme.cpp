@@ -110,7 +110,7 @@ void applyTheme(QApplication& app, Theme theme) {
 
 Theme currentTheme() { return theTheme; }
 QIcon icon(const QString& name) { return QIcon(new SvgIconEngine(name)); }
-QColor accentColour() { return QColor(0x2f, 0x7c, 0xc4); }
+QColor accentColour() { return toQColor(viz::kActiveView); }
 QColor warningColour() { return theTheme == Theme::Dark ? QColor(0xe0, 0xa8, 0x30) : QColor(0xa0, 0x6a, 0x00); }
 QColor errorColour() { return theTheme == Theme::Dark ? QColor(0xf0, 0x7a, 0x6a) : QColor(0xb3, 0x2a, 0x1a); }
 QColor toQColor(const viz::Colour& c) { return QColor::fromRgbF(c[0], c[1], c[2]); }

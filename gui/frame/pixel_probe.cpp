@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/base/angle.h"
 #include "gui/base/text.h"
 #include "viz/develop.h"
 
@@ -17,57 +18,34 @@ struct PixelProbeWorker::Images {
   std::optional<Image> photograph, radiance;
 };
 
-PixelProbeWorker::PixelProbeWorker(QObject* parent) : QObject(parent), images_(std::make_shared<Images>()), worker_(new QObject) {
-  worker_->moveToThread(&thread_);
-  connect(&thread_, &QThread::finished, worker_, &QObject::deleteLater);
-  thread_.start();
-}
-
-PixelProbeWorker::~PixelProbeWorker() {
-  ++newest_;
-  thread_.quit();
-  thread_.wait();
-}
+PixelProbeWorker::PixelProbeWorker(QObject* parent) : QObject(parent), images_(std::make_shared<Images>()) {}
 
 void PixelProbeWorker::want(std::shared_ptr<const Scene> scene, std::shared_ptr<const Inspection> inspection, int frame,
                             const Pixel& at) {
   if (!scene || frame < 0 || frame >= int(scene->frames.size())) return;
-  const int ticket = ++newest_;
-  ++pending_;
-  QMetaObject::invokeMethod(
-      worker_,
-      [this, ticket, frame, at, scene = std::move(scene), inspection = std::move(inspection), images = images_] {
-        QString text;
-        if (ticket == newest_) {
-          try {
-            const Frame& f = scene->frames[std::size_t(frame)];
-            if (images->scene != scene || images->frame != frame) {
-              *images = {scene, frame, {}, {}};
-              if (!f.image.empty())
-                if (Outcome<Image> image = readPhotograph(f)) images->photograph = std::move(*image);
-              if (!f.radiance.empty())
-                if (Outcome<Image> image = readLinear(f, FrameSource::Radiance)) images->radiance = std::move(*image);
-            }
-            const int x = int(std::lround(at.x())), y = int(std::lround(at.y()));
-            QStringList values;
-            if (images->photograph) values << toQString(viz::valueText(*images->photograph, viz::Values::Srgb, x, y));
-            if (images->radiance) values << toQString(viz::valueText(*images->radiance, viz::Values::Linear, x, y));
-            const std::optional<Outcome<PixelProbe>> probe =
-                inspection ? std::optional(probePixel(*inspection, frame, at)) : std::nullopt;
-            text = probeText(at, values.join(QStringLiteral("   ")), probe ? &*probe : nullptr);
-          } catch (const std::exception& e) {
-            text = toQString(e.what());
-          }
-        }
-        QMetaObject::invokeMethod(
-            this, [this, ticket, text] { deliver(ticket, text); }, Qt::QueuedConnection);
-      },
-      Qt::QueuedConnection);
-}
-
-void PixelProbeWorker::deliver(int ticket, const QString& text) {
-  --pending_;
-  if (ticket == newest_ && !text.isEmpty()) emit probed(text);
+  job_.run([this, frame, at, scene = std::move(scene), inspection = std::move(inspection), images = images_] {
+    QString text;
+    try {
+      const Frame& f = scene->frames[std::size_t(frame)];
+      if (images->scene != scene || images->frame != frame) {
+        *images = {scene, frame, {}, {}};
+        if (!f.image.empty())
+          if (Outcome<Image> image = readPhotograph(f)) images->photograph = std::move(*image);
+        if (!f.radiance.empty())
+          if (Outcome<Image> image = readLinear(f, FrameSource::Radiance)) images->radiance = std::move(*image);
+      }
+      const int x = int(std::lround(at.x())), y = int(std::lround(at.y()));
+      QStringList values;
+      if (images->photograph) values << toQString(viz::valueText(*images->photograph, viz::Values::Srgb, x, y));
+      if (images->radiance) values << toQString(viz::valueText(*images->radiance, viz::Values::Linear, x, y));
+      const std::optional<Outcome<PixelProbe>> probe =
+          inspection ? std::optional(probePixel(*inspection, frame, at)) : std::nullopt;
+      text = probeText(at, values.join(QStringLiteral("   ")), probe ? &*probe : nullptr);
+    } catch (const std::exception& e) {
+      text = toQString(e.what());
+    }
+    return LatestJob::Deliver([this, text] { emit probed(text); });
+  });
 }
 
 QString probeText(const Pixel& at, const QString& values, const Outcome<PixelProbe>* probe) {
@@ -84,7 +62,7 @@ QString probeText(const Pixel& at, const QString& values, const Outcome<PixelPro
   for (const PixelProbe::Incidence& incidence : p.lights) {
     text += QStringLiteral("   α");
     if (p.lights.size() > 1) text += QStringLiteral(" ") + toQString(incidence.light);
-    text += QStringLiteral(" ") + (incidence.alpha ? QString::number(*incidence.alpha * 180 / M_PI, 'f', 3) + QChar(0xb0)
+    text += QStringLiteral(" ") + (incidence.alpha ? QString::number(degrees(*incidence.alpha), 'f', 3) + QChar(0xb0)
                                                    : PixelProbeWorker::tr("light behind"));
   }
   return text;

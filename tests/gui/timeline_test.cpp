@@ -32,6 +32,19 @@ void open(Document& document, const Fixture& fixture) {
                          document.request());
 }
 
+/// A timeline on screen with an open scene.
+struct Shown {
+  Shown() {
+    timeline.resize(900, 140);
+    timeline.show();
+    if (!QTest::qWaitForWindowExposed(&timeline)) qFatal("the timeline is not shown");
+    open(document, fixture);
+  }
+  const Fixture fixture;
+  Document document{parseTrainSpec};
+  Timeline timeline{document};
+};
+
 void turnWheel(QWidget* widget, const QPointF& at, int angle, Qt::KeyboardModifiers keys = Qt::NoModifier) {
   QWheelEvent wheel(at, widget->mapToGlobal(at.toPoint()), {}, QPoint(0, angle), Qt::NoButton, keys, Qt::NoScrollPhase, false);
   QCoreApplication::sendEvent(widget, &wheel);
@@ -42,13 +55,9 @@ class TimelineTest : public QObject {
   Q_OBJECT
  private slots:
   void aClickOnARoleMarkGivesTheNextRole() {
-    const Fixture fixture;
-    Document document(parseTrainSpec);
-    Timeline timeline(document);
-    timeline.resize(900, 140);
-    timeline.show();
-    QVERIFY(QTest::qWaitForWindowExposed(&timeline));
-    open(document, fixture);
+    Shown shown;
+    Document& document = shown.document;
+    Timeline& timeline = shown.timeline;
     TimelineStrip* strip = timeline.strip();
     QCOMPARE(document.role(3), FrameRole::Training);
     for (const FrameRole next : {FrameRole::HeldOut, FrameRole::Excluded, FrameRole::Training}) {
@@ -61,13 +70,9 @@ class TimelineTest : public QObject {
   }
 
   void theWheelZoomsAroundTheFrameUnderTheMouse() {
-    const Fixture fixture;
-    Document document(parseTrainSpec);
-    Timeline timeline(document);
-    timeline.resize(900, 140);
-    timeline.show();
-    QVERIFY(QTest::qWaitForWindowExposed(&timeline));
-    open(document, fixture);
+    Shown shown;
+    Document& document = shown.document;
+    Timeline& timeline = shown.timeline;
     TimelineStrip* strip = timeline.strip();
     auto* scroll = timeline.findChild<QScrollBar*>(QStringLiteral("timelineScroll"));
     QVERIFY(!scroll->isVisible());
@@ -88,13 +93,9 @@ class TimelineTest : public QObject {
   }
 
   void barsSpeedAndThumbnailsAreOptionsThatUndoRestores() {
-    const Fixture fixture;
-    Document document(parseTrainSpec);
-    Timeline timeline(document);
-    timeline.resize(900, 140);
-    timeline.show();
-    QVERIFY(QTest::qWaitForWindowExposed(&timeline));
-    open(document, fixture);
+    Shown shown;
+    Document& document = shown.document;
+    Timeline& timeline = shown.timeline;
     QTRY_VERIFY(!timeline.busy());
     QTest::qWait(20);
     QVERIFY(timeline.strip()->thumbnails().reads() >= 12);

@@ -5,7 +5,6 @@
 #include <vtkImageData.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
-#include <vtkWindowToImageFilter.h>
 
 #include <cmath>
 #include <numbers>
@@ -303,13 +302,7 @@ TEST_F(LookThrough, TheWipeShowsOnePicture) {
     window->AddRenderer(left.renderer());
     window->AddRenderer(right.renderer());
     window->Render();
-    vtkNew<vtkWindowToImageFilter> grab;
-    grab->SetInput(window);
-    grab->SetInputBufferTypeToRGB();
-    grab->ReadFrontBufferOff();
-    grab->ShouldRerenderOff();
-    grab->Update();
-    const Image parts = fromVtk(grab->GetOutput());
+    const Image parts = pictureOf(window);
     int different = 0, seen = 0;
     for (int y = 60; y < 380; ++y) {  // below are axes and scale bar, of each view its own
       for (int x = 0; x < kWidth; ++x) {

@@ -5,7 +5,6 @@
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkSVGExporter.h>
-#include <vtkWindowToImageFilter.h>
 
 #include "core/base/atomic_file.h"
 #include "core/base/outcome.h"
@@ -46,13 +45,7 @@ class Drawn {
 
 Image plotImage(const PlotData& plot, const PlotStyle& style, const Selection& selection, int width, int height) {
   const Drawn drawn(plot, style, selection, width, height);
-  vtkNew<vtkWindowToImageFilter> grab;
-  grab->SetInput(drawn.window());
-  grab->SetInputBufferTypeToRGB();
-  grab->ReadFrontBufferOff();
-  grab->ShouldRerenderOff();
-  grab->Update();
-  return fromVtk(grab->GetOutput());
+  return pictureOf(drawn.window());
 }
 
 void writePlotSvg(const PlotData& plot, const PlotStyle& style, const Selection& selection, int width, int height,

@@ -31,7 +31,6 @@ namespace {
 
 constexpr double kFont = 12, kSmallFont = 11;  // screen px
 constexpr double kLine = 18;                   // height of a line of the header, screen px
-constexpr Colour kAccent{0.184, 0.486, 0.769};
 constexpr Colour kHalo{0.12, 0.13, 0.15};
 // A dial's circle of zero and how far the largest residual goes from it, in radii of the dial.
 constexpr double kZeroRadius = 0.58, kReachOfDial = 0.36;
@@ -519,11 +518,11 @@ void PlotView::Impl::paintMarks(vtkContext2D* painter) {
     last = p.x;
     const double x = place(p.x, p.y).x();
     if (x < left || x > right) continue;
-    setPen(painter->GetPen(), kAccent, px(1.5), 0.8);
+    setPen(painter->GetPen(), kActiveView, px(1.5), 0.8);
     painter->DrawLine(float(x), float(bottom), float(x), float(top));
   }
   for (const PlotSample& m : marked)
-    ring(painter, m, marked.size() > kMany ? 3 : 6, style.dark ? Colour{1, 1, 1} : kAccent, marked.size() > kMany ? 1 : 1.75);
+    ring(painter, m, marked.size() > kMany ? 3 : 6, style.dark ? Colour{1, 1, 1} : kActiveView, marked.size() > kMany ? 1 : 1.75);
   if (hovered) ring(painter, *hovered, 5, style.dark ? kLightColour : kHalo, 1.5);
 }
 

@@ -6,12 +6,12 @@
 #include <cstdio>
 #include <exception>
 #include <limits>
-#include <numbers>
+
+#include "core/base/angle.h"
 
 namespace glint::viz {
 namespace {
 
-constexpr double kDegPerRad = 180 / std::numbers::pi;
 constexpr Colour kFittedLobe{0.25, 0.56, 0.86};  // no model's; readable on white points and on both backgrounds
 constexpr double kSmallestPct = 1e-6;            // what a logarithmic axis shows of an exact scene
 
@@ -222,12 +222,12 @@ PlotData lobePlot(const FrameSamples& samples, int highlight) {
   double lowest = 0;
   for (const LobeSample& p : s.samples) {
     PlotPoint point;
-    point.x = p.alpha * kDegPerRad;
+    point.x = degrees(p.alpha);
     point.y = p.logI - height;
     lowest = std::min(lowest, point.y);
     point.target = {samples.frame, samples.model, lobe->light, lobe->observed, p.direction, -1};
     point.label = text("pixel %.1f, %.1f\nalpha %.3g\u00b0, I/K' %.3g\ndirection %.0f\u00b0", p.at.x(), p.at.y(),
-                       p.alpha * kDegPerRad, std::exp(point.y), p.direction * kDegPerRad);
+                       degrees(p.alpha), std::exp(point.y), degrees(p.direction));
     (p.fitted ? bright : faint).points.push_back(std::move(point));
   }
   lowest = std::max(lowest, -6.0);  // a four-hundredth of the height: fainter pixels show the background
@@ -242,7 +242,7 @@ PlotData lobePlot(const FrameSamples& samples, int highlight) {
     for (int i = 0; i <= 100; ++i) {
       const double alpha = std::min(widest, m * std::sqrt(-lowest)) * i / 100;
       PlotPoint p;
-      p.x = alpha * kDegPerRad;
+      p.x = degrees(alpha);
       p.y = -alpha * alpha / (m * m);
       p.label = name;
       curve.points.push_back(p);
@@ -258,12 +258,12 @@ PlotData lobePlot(const FrameSamples& samples, int highlight) {
     level.colour = kHeldOut;
     level.dash = Dash::Dotted;
     level.width = 1.5;
-    for (const double x : {0.0, widest * kDegPerRad}) {
+    for (const double x : {0.0, degrees(widest)}) {
       PlotPoint p;
       p.x = x;
       p.y = std::log(lobe->level);
       p.label = text("contour level %.3g of the peak", lobe->level) +
-                (s.fit ? text("\nreached at alpha %.4g\u00b0 by the fitted lobe", s.fit->alphaAt(lobe->level) * kDegPerRad)
+                (s.fit ? text("\nreached at alpha %.4g\u00b0 by the fitted lobe", degrees(s.fit->alphaAt(lobe->level)))
                        : std::string());
       level.points.push_back(p);
     }
@@ -370,7 +370,7 @@ PlotData residualDial(const Inspection& inspection, int frame, int highlight) {
       p.y = s.value.value_or(std::nan(""));
       if (s.value) largest = std::max(largest, std::abs(*s.value));
       p.target = {frame, model, chosen->light, chosen->observed, s.direction, -1};
-      p.label = model + text("\ndirection %.0f\u00b0\n%+.3g px", s.direction * kDegPerRad, s.value.value_or(0));
+      p.label = model + text("\ndirection %.0f\u00b0\n%+.3g px", degrees(s.direction), s.value.value_or(0));
       series.points.push_back(std::move(p));
     }
     plot.series.push_back(std::move(series));
@@ -404,8 +404,8 @@ PlotData limitAnglePlot(const FrameSamples& samples, int highlight) {
     bool any = false;
     for (const DirectionSample& s : values) {
       PlotPoint p;
-      p.x = s.direction * kDegPerRad;
-      p.y = s.value ? *s.value * kDegPerRad : std::nan("");
+      p.x = degrees(s.direction);
+      p.y = s.value ? degrees(*s.value) : std::nan("");
       any = any || s.value.has_value();
       p.target = {samples.frame, observed ? std::string() : samples.model, chosen->light, chosen->observed, s.direction, -1};
       p.label = std::string(name) + text("\ndirection %.0f\u00b0\nalpha %.4g\u00b0", p.x, p.y);
@@ -418,14 +418,14 @@ PlotData limitAnglePlot(const FrameSamples& samples, int highlight) {
   if (plot.series.empty()) return nothing(plot, "No contour point meets the lit surface");
   if (chosen->limitAngle) {
     PlotSeries line;
-    line.name = text("limit angle %.4g\u00b0", *chosen->limitAngle * kDegPerRad);
+    line.name = text("limit angle %.4g\u00b0", degrees(*chosen->limitAngle));
     line.colour = kHeldOut;
     line.dash = Dash::Dashed;
     line.width = 1.5;
     for (const double x : {-180.0, 180.0}) {
       PlotPoint p;
       p.x = x;
-      p.y = *chosen->limitAngle * kDegPerRad;
+      p.y = degrees(*chosen->limitAngle);
       p.label = line.name;
       line.points.push_back(p);
     }
