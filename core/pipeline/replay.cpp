@@ -132,6 +132,7 @@ std::string digestOf(const Inspection& inspection) {
       for (const PredictedHighlight& h : c.prediction.highlights) {
         d.add(h.contour);
         d.add(h.coverage);
+        for (const double s : h.sigmaPx) d.add(s);
       }
       for (const FrameComparison::Row& row : c.rows) {
         d.add(static_cast<double>(row.observed));

@@ -46,6 +46,7 @@ QObject* makeFrameViewTest();
 QObject* makeTimelineTest();
 QObject* makePaletteTest();
 QObject* makePanelTest();
+QObject* makeParametersTest();
 QObject* makeLinkingTest();
 QObject* makeWindowTest();
 QObject* makeSessionTest();

@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
       {"scene", makeSceneTest},          {"session", makeSessionTest},   {"program", makeProgramTest},
       {"recovery", makeRecoveryTest},    {"explain", makeExplainTest},   {"export", makeExportTest},
       {"plots", makePlotsTest},          {"tradeoff", makeTradeoffTest},
+      {"parameters", makeParametersTest},
   };
   if (argc < 2) return std::fputs("usage: test_gui CLASS [QTest options]\n", stderr), 2;
   QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// No parameter is dead: each is turned by its widget on a scene where it matters, and the results change. They are computed from
+// the earlier ones, as the program does, so that a stage which forgets that it depends on a setting is found too.
+#include <QAbstractSpinBox>
+#include <QCheckBox>
+#include <QComboBox>
+#include <QToolButton>
+#include <map>
+
+#include "core/pipeline/session.h"
+#include "core/synth/synth.h"
+#include "gui/base/text.h"
+#include "gui/panels/parameter_panel.h"
+#include "tests/gui/fixture.h"
+
+namespace glint::gui {
+
+namespace {
+/// What one setting is turned to, where, and what else is set there.
+struct Turn {
+  const char* key;
+  const char* value;
+  const char* scene;
+  std::map<std::string, std::string> base = {};
+  std::vector<std::string> models = {"limit-angle"};
+};
+
+const std::vector<Turn>& turns() {
+  const std::map<std::string, std::string> kPoses{{"light.refine_poses", "true"}}, kDepth{{"light.refine_depth", "true"}},
+      kStar{{"predict.contour", "star"}};
+  static const std::vector<Turn> all{
+      {"detect.level", "0.3", "noisy"},
+      {"detect.min_area", "5000", "noisy"},
+      {"detect.min_contrast", "50", "grainy"},
+      {"detect.peak_window", "0.6", "noisy"},
+      {"detect.clip", "0.2", "noisy"},
+      {"surface.normals", "facet", "vase"},
+      {"surface.rays", "single", "vase"},
+      {"light.solver", "triangulated", "noisy"},
+      {"light.bundle_points", "24", "noisy"},
+      {"light.robust_px", "0.02", "noisy"},
+      {"light.limit_orders", "1", "noisy"},
+      {"light.refine_poses", "true", "noisy"},
+      {"light.pose_sigma", "2", "noisy", kPoses},
+      {"light.refine_depth", "true", "depth"},
+      {"light.depth_sigma", "0.05", "depth", kDepth},
+      {"fit.solver", "linear", "noisy", {}, {"canonical"}},
+      {"fit.prior_bias", "3", "noisy", {}, {"canonical"}},
+      {"fit.lobe", "phong", "noisy", {}, {"reflectance"}},
+      {"fit.light_size", "point", "large lamp", {}, {"reflectance"}},
+      {"predict.directions", "12", "noisy", {}, {"canonical"}},
+      {"predict.query", "local-quadric", "noisy", kStar},
+      {"predict.contour", "star", "noisy"},
+      {"predict.search", "hints", "noisy"},
+      {"predict.seed_step", "3", "noisy"},
+      {"predict.level_set_step", "24", "noisy"},
+      {"predict.walk_tolerance", "0.001", "noisy", {}, {"canonical"}},
+      {"predict.band", "true", "noisy"},
+  };
+  return all;
+}
+
+/// Settings of which no result depends, with the reason why they are settings all the same.
+const std::map<std::string, const char*>& changeNothing() {
+  static const std::map<std::string, const char*> none;
+  return none;
+}
+
+/// Eight small photographs of an ellipsoid, %1 = radius of the lamp, %2 = noise.
+const char* const kSpec = R"({"glint_scene": 1, "name": "ellipsoid",
+  "camera": {"width": 200, "height": 150, "fx": 250, "fy": 250, "cx": 99.5, "cy": 74.5},
+  "surfaces": {"body": {"analytic": {"type": "ellipsoid", "semi_axes": [0.6, 0.45, 0.35]}}},
+  "lights": [{"id": "lamp", "position": [0.9, -0.8, 1.6], "radius": %1}],
+  "path": {"orbit": {"centre": [0, 0, 0], "radius": 1.6, "from": -1.6, "to": 0.4, "height": 0.9, "count": 8}},
+  "render": {"reflectance": "torrance-sparrow", "roughness": 0.12, "diffuse": [0.3, 0.4, 0.6], "noise": %2, "bits": 8, "seed": 3}})";
+
+std::string results(const Inspection& inspection) { return digestOf(inspection); }
+}  // namespace
+
+class ParametersTest : public QObject {
+  Q_OBJECT
+ private slots:
+  void everySettingIsTurnedOrExplained() {
+    for (const ParamSpec& spec : allParams()) {
+      const auto count = std::count_if(turns().begin(), turns().end(), [&](const Turn& t) { return spec.key == t.key; });
+      QVERIFY2(count + long(changeNothing().count(spec.key)) == 1, spec.key.c_str());
+    }
+    QCOMPARE(turns().size() + changeNothing().size(), allParams().size());
+  }
+
+  void turnedByItsWidgetItChangesTheResults_data() {
+    QTest::addColumn<int>("turn");
+    for (std::size_t i = 0; i < turns().size(); ++i) QTest::newRow(turns()[i].key) << int(i);
+  }
+  void turnedByItsWidgetItChangesTheResults() {
+    QFETCH(int, turn);
+    const Turn& t = turns()[std::size_t(turn)];
+    Document document(parseTrainSpec);
+    ParameterPanel panel(document);
+    Opened opened;
+    opened.scene = scene(t.scene);
+    QVERIFY(opened.scene);
+    opened.request.models = t.models;
+    opened.request.train = "first:5";
+    for (const auto& [key, value] : t.base) opened.request.settings.setFromText(key, value);
+    document.open(opened);
+    panel.resize(420, 900);
+    panel.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&panel));
+    panel.activateWindow();
+
+    const Inspection& before = inspected(t.scene, document.request());
+    turnTo(panel, t);
+    if (QTest::currentTestFailed()) return;
+    InspectionRequest wanted = opened.request;
+    wanted.settings.setFromText(t.key, t.value);
+    QVERIFY(document.request() == wanted);
+    const Inspection after = inspect(opened.scene, document.request(), {}, &before);
+    QVERIFY(results(after) != results(before));
+
+    QTest::mouseClick(panel.findChild<QToolButton*>("reset:" + toQString(t.key)), Qt::LeftButton);
+    QVERIFY(document.request() == opened.request);
+    QCOMPARE(results(inspect(opened.scene, document.request(), {}, &after)), results(before));
+  }
+
+ private:
+  static void turnTo(ParameterPanel& panel, const Turn& t) {
+    QVERIFY(panel.showParameter(t.key));
+    auto* control = panel.findChild<QWidget*>("value:" + toQString(t.key));
+    QVERIFY(control && control->isVisible());
+    control->setFocus();
+    if (auto* check = qobject_cast<QCheckBox*>(control)) {
+      QTest::mouseClick(check, Qt::LeftButton, {}, {8, check->height() / 2});
+    } else if (auto* combo = qobject_cast<QComboBox*>(control)) {
+      QTest::keyClick(combo, Qt::Key_Home);
+      for (int i = 0; i < combo->count() && combo->currentText() != QLatin1String(t.value); ++i)
+        QTest::keyClick(combo, Qt::Key_Down);
+    } else {
+      auto* box = qobject_cast<QAbstractSpinBox*>(control);
+      QVERIFY(box);
+      box->selectAll();
+      QTest::keyClicks(box, QLatin1String(t.value));
+      QTest::keyClick(box, Qt::Key_Return);
+    }
+  }
+
+  /// Results of a request, once for all rows that start from it.
+  const Inspection& inspected(const std::string& name, const InspectionRequest& request) {
+    std::string key = name;
+    for (const std::string& model : request.models) key += ' ' + model;
+    for (const auto& [setting, value] : request.settings.values()) key += ' ' + setting;
+    auto it = inspections_.find(key);
+    if (it == inspections_.end()) it = inspections_.emplace(key, inspect(scene(name), request)).first;
+    return it->second;
+  }
+
+  std::shared_ptr<const Scene> scene(const std::string& name) {
+    std::shared_ptr<const Scene>& kept = scenes_[name];
+    if (kept) return kept;
+    auto made = std::make_shared<Scene>();
+    if (name == "vase") {
+      *made = readScene(GLINT_SOURCE_DIR "/sessions/vase/scene.json");
+      made->frames.resize(7);
+    } else {
+      const QDir folder(folder_.filePath(toQString(name)));
+      folder.mkpath(QStringLiteral("."));
+      QFile file(folder.filePath(QStringLiteral("spec.json")));
+      if (!file.open(QIODevice::WriteOnly)) return nullptr;
+      file.write(
+          QString(QLatin1String(kSpec)).arg(name == "large lamp" ? 0.25 : 0.0).arg(name == "grainy" ? 0.06 : 0.01).toUtf8());
+      file.close();
+      *made = synthesise(readSynthSpec(file.fileName().toStdString()), folder.path().toStdString());
+      for (Frame& frame : made->frames) {
+        frame.highlights.clear();  // to be detected
+        if (name == "depth") makeDepthWrong(frame);
+      }
+    }
+    return kept = made;
+  }
+
+  /// The frame sees its own depth map, which is off by up to 2 % towards the image's border.
+  static void makeDepthWrong(Frame& frame) {
+    constexpr double kMetresPerUnit = 5e-5;
+    const Outcome<std::optional<Image>> depth = readDepth(frame);
+    QVERIFY(depth && *depth);
+    QImage wrong((*depth)->width, (*depth)->height, QImage::Format_Grayscale16);
+    for (int y = 0; y < wrong.height(); ++y) {
+      auto* row = reinterpret_cast<quint16*>(wrong.scanLine(y));
+      for (int x = 0; x < wrong.width(); ++x) {
+        const double u = 2.0 * x / wrong.width() - 1, v = 2.0 * y / wrong.width() - 0.75;
+        row[x] = quint16(std::lround(double((*depth)->at(x, y)) * (1 + 0.02 * (u * u - 0.5 * v * v)) / kMetresPerUnit));
+      }
+    }
+    frame.depth += ".png";
+    QVERIFY(wrong.save(toQString(frame.depth.string())));
+    frame.depthScale = kMetresPerUnit;
+    frame.surface.clear();
+  }
+
+  QTemporaryDir folder_;
+  std::map<std::string, std::shared_ptr<const Scene>> scenes_;
+  std::map<std::string, Inspection> inspections_;
+};
+
+QObject* makeParametersTest() { return new ParametersTest; }
+
+}  // namespace glint::gui
+
+#include "parameters_test.moc"
