@@ -5,7 +5,10 @@
 #include <QObject>
 #include <QStringList>
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
+#include "core/diagnostics/polar_residual.h"
 #include "gui/base/text.h"
 
 namespace glint::gui {
@@ -144,6 +147,27 @@ NumberGroup comparison(const FrameComparison& c, int observed) {
   if (!c.rows.empty()) lines.add(QObject::tr("IoU"), c.iou);
   return {QObject::tr("Prediction"), lines.text()};
 }
+/// What is selected of the frame, beside its model: highlight, light, point of the contours.
+NumberGroup selectedParts(const Inspection& inspection, const viz::Selection& selection, const std::string& model) {
+  Lines lines;
+  if (selection.highlight >= 0) lines.add(QObject::tr("highlight"), QString::number(selection.highlight + 1));
+  if (!selection.light.empty()) lines.add(QObject::tr("light"), toQString(selection.light));
+  if (selection.direction) {
+    lines.add(QObject::tr("direction"), *selection.direction * kDegPerRad, "° (0 right, 90 down)");
+    if (inspection.models.count(model))
+      for (const PolarResidual& residual : polarResiduals(inspection, selection.frame, model)) {
+        if (residual.samples.empty() || (selection.highlight >= 0 && residual.observed != selection.highlight)) continue;
+        const auto distance = [&](const DirectionSample& sample) {
+          return std::abs(std::remainder(sample.direction - *selection.direction, 2 * std::numbers::pi));
+        };
+        const auto nearest = std::min_element(residual.samples.begin(), residual.samples.end(),
+                                              [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+        lines.addVector(QObject::tr("observed contour"), nearest->at, "px");
+        if (nearest->value) lines.add(QObject::tr("%1 lies outside by").arg(toQString(model)), *nearest->value, "px");
+      }
+  }
+  return {QObject::tr("Selected"), lines.text()};
+}
 }  // namespace
 
 std::vector<NumberGroup> describeSelection(const Inspection& inspection, const viz::Selection& selection,
@@ -152,6 +176,8 @@ std::vector<NumberGroup> describeSelection(const Inspection& inspection, const v
   const int frame = selection.frame;
   if (frame < 0 || frame >= int(inspection.evidence.size())) return groups;
   const FrameEvidence& evidence = inspection.evidence[std::size_t(frame)];
+  if (selection.highlight >= 0 || !selection.light.empty() || selection.direction)
+    groups.push_back(selectedParts(inspection, selection, model));
   const int count = int(evidence.highlights.size());
   const int observed = selection.highlight >= 0 && selection.highlight < count ? selection.highlight : count > 0 ? 0 : -1;
   groups.push_back(observation(evidence, observed));

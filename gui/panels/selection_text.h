@@ -14,8 +14,8 @@ struct NumberGroup {
   QString lines;  ///< "name = value unit", one a line
 };
 
-/// Numbers of the selected frame and highlight: the observation, its brightest point and tangent plane, the light, and the
-/// model's fit and prediction. Only what the inspection holds; nothing is computed here.
+/// What is selected, and numbers of the selected frame and highlight: the observation, its brightest point and tangent plane, the
+/// light, and the model's fit and prediction. Numbers of the inspection and of core/diagnostics; none is computed here.
 std::vector<NumberGroup> describeSelection(const Inspection& inspection, const viz::Selection& selection,
                                            const std::string& model);
 

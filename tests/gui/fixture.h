@@ -47,6 +47,7 @@ QObject* makeTimelineTest();
 QObject* makePaletteTest();
 QObject* makePanelTest();
 QObject* makeParametersTest();
+QObject* makePickingTest();
 QObject* makeLinkingTest();
 QObject* makeWindowTest();
 QObject* makeSessionTest();

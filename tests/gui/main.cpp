@@ -21,8 +21,8 @@ int main(int argc, char** argv) {
       {"palette", makePaletteTest},      {"linking", makeLinkingTest},   {"window", makeWindowTest},
       {"scene", makeSceneTest},          {"session", makeSessionTest},   {"program", makeProgramTest},
       {"recovery", makeRecoveryTest},    {"explain", makeExplainTest},   {"export", makeExportTest},
-      {"plots", makePlotsTest},          {"tradeoff", makeTradeoffTest},
-      {"parameters", makeParametersTest},
+      {"plots", makePlotsTest},          {"tradeoff", makeTradeoffTest}, {"parameters", makeParametersTest},
+      {"picking", makePickingTest},
   };
   if (argc < 2) return std::fputs("usage: test_gui CLASS [QTest options]\n", stderr), 2;
   QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
