@@ -10,7 +10,7 @@ out=$root/docs/pictures
 mkdir -p "$out"
 
 inspector() {  # NAME SESSION FRAME THEME [MORE OPTIONS]
-  QT_QPA_PLATFORM=xcb xvfb-run -a -s "-screen 0 1600x1000x24" "$bin/glint-inspector" "$root/sessions/$2/$2.glint" --frame "$3" \
+  QT_QPA_PLATFORM=xcb xvfb-run -a -s "-screen 0 1600x1000x24" "$bin/glint-inspector" "$root/sessions/$2/${2##*/}.glint" --frame "$3" \
     --theme "$4" --size 1500x940 --screenshot "$out/$1.png" --wait-idle "${@:5}"
 }
 picture() {  # NAME SESSION FRAME VIEW
@@ -26,6 +26,13 @@ inspector look-through ellipsoid 0004 dark --run view.look-through
 inspector look-through-virtual ellipsoid 0004 dark --run view.look-through-virtual
 inspector four-views plane-to-cylinder 0045 dark --layout present --run view.views-4
 inspector two-frames ellipsoid 0004 dark --layout compare --run frame.side-by-side
+inspector lesson-mirror lessons/mirror 0001 dark --run explain.step-virtual-camera
+inspector lesson-plane lessons/plane 0004 light --run explain.step-ellipsoid
+inspector lesson-sphere lessons/sphere 0000 dark
+inspector lesson-bent-mirror lessons/bent-mirror 0010 light --run explain.step-limit-angles
+inspector lesson-plane-to-cylinder lessons/plane-to-cylinder 0018 dark --run explain.step-inverse-walk
+inspector lesson-waist lessons/waist 0006 dark --run explain.step-comparison
+inspector explain-cones ellipsoid 0008 light --layout explain --run explain.step-ellipsoid
 picture scene plane-to-cylinder 0045 scene
 picture ladder plane-to-cylinder 0045 ladder
 picture frame ellipsoid 0012 frame

@@ -127,6 +127,13 @@ vtkSmartPointer<vtkActor> discActor(const Eigen::Vector3d& centre, const Eigen::
   return actor;
 }
 
+vtkSmartPointer<vtkActor> sheetActor(const TriangleMesh& mesh, const Colour& colour, double opacity) {
+  vtkSmartPointer<vtkActor> actor = actorOf(toPolyData(mesh), colour);
+  actor->GetProperty()->SetOpacity(opacity);
+  actor->GetProperty()->LightingOff();
+  return actor;
+}
+
 vtkSmartPointer<vtkActor> ellipsoidActor(const Eigen::Affine3d& worldFromUnitSphere, const Colour& colour, double opacity) {
   vtkNew<vtkSphereSource> sphere;
   sphere->SetRadius(1);

@@ -25,6 +25,8 @@ vtkSmartPointer<vtkActor> arrowActor(const std::vector<Segment>& arrows, double 
 /// Translucent filled disc.
 vtkSmartPointer<vtkActor> discActor(const Eigen::Vector3d& centre, const Eigen::Vector3d& unitNormal, double radius,
                                     const Colour& colour, double opacity);
+/// Unlit translucent triangles, seen from both sides.
+vtkSmartPointer<vtkActor> sheetActor(const TriangleMesh& mesh, const Colour& colour, double opacity);
 /// The lit unit sphere carried by an affine transformation.
 vtkSmartPointer<vtkActor> ellipsoidActor(const Eigen::Affine3d& worldFromUnitSphere, const Colour& colour, double opacity);
 

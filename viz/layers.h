@@ -21,6 +21,8 @@
 
 namespace glint::viz {
 
+struct WalkStory;
+
 constexpr long long kLargeSurface = 200000;  ///< triangles: beyond, drawing takes more than 50 ms without a graphics card
 
 /// Sizes that everything drawn is derived from, so that millimetres and kilometres look alike.
@@ -83,6 +85,8 @@ struct LayerInput {
   Eye eye = Eye::Outside;            ///< other than Outside only where it is in effect
   std::optional<Plane> eyeMirror{};  ///< of the virtual camera that is looked through
   LayerCache* cache = nullptr;
+  std::shared_ptr<const WalkStory> walk{};  ///< that the walk layer shows; null = none
+  int walkStep = 0;                         ///< see WalkStory::at
 
   const Frame& frame(int index) const { return inspection->scene->frames[static_cast<std::size_t>(index)]; }
   /// Whether a frame sees the surface that is shown.
@@ -152,7 +156,8 @@ enum Dependency : unsigned {
   kOnEye = 256,
   kOnColours = 512,
   kOnPhotographs = 1024,
-  kOnSolo = 2048
+  kOnSolo = 2048,
+  kOnWalk = 4096
 };
 
 struct LayerRecipe {
@@ -171,6 +176,8 @@ LayerContent peaksLayer(const LayerInput& in);              ///< P_B and N
 LayerContent tangentPlanesLayer(const LayerInput& in);      ///< discs
 LayerContent canonicalEllipsesLayer(const LayerInput& in);  ///< the image ellipse carried back to T
 LayerContent directionsLayer(const LayerInput& in);         ///< walks of section 6, failed ones red
+LayerContent walkLayer(const LayerInput& in);               ///< one walk, as far as its step
+LayerContent conesLayer(const LayerInput& in);              ///< from the cameras through their ellipses to Q*
 LayerContent ellipsoidsLayer(const LayerInput& in);         ///< Q* of each model
 LayerContent lightLayer(const LayerInput& in);              ///< estimates
 LayerContent trueLightLayer(const LayerInput& in);          ///< truth, ringed and labelled

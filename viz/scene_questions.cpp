@@ -5,6 +5,7 @@
 #include <vtkCellPicker.h>
 #include <vtkRenderer.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -46,6 +47,83 @@ std::vector<Eigen::Vector3d> selectedExtent(const LayerInput& in) {
   addFrustum(in, points, frame);
   for (const Highlight& h : highlights) addContour(h);
   return points;
+}
+
+std::optional<HighlightPlace> highlightPlace(const LayerInput& in, int highlight) {
+  const auto at = static_cast<std::size_t>(in.selection.frame);
+  if (!in.surface || at >= in.inspection->evidence.size() || in.inspection->evidence[at].highlights.empty()) return {};
+  const std::vector<Highlight>& highlights = in.inspection->evidence[at].highlights;
+  const std::size_t wanted =
+      highlight >= 0 && highlight < static_cast<int>(highlights.size()) ? static_cast<std::size_t>(highlight) : 0;
+  const Highlight& h = highlights[wanted];
+  const Camera& camera = in.frame(in.selection.frame).camera;
+  const Outcome<BrightestPoint> brightest = observedBrightestPoint(*in.surface, camera, h.peak);
+  if (!brightest) return {};
+  const SurfacePoint p = facing(brightest->point, camera.centreInWorld());
+  HighlightPlace place;
+  place.normal = p.normal;
+  place.points.push_back(p.position);
+  for (const Points& chain : castContour(camera, *in.surface, h.contour, in.scale, 0))
+    place.points.insert(place.points.end(), chain.begin(), chain.end());
+  for (const TrainingView* view : in.views()) {
+    if (view->frame != in.selection.frame || !view->canonical || in.highlightOf(*view) != static_cast<int>(wanted)) continue;
+    for (const DirectionResult& d : view->canonical->directions)
+      if (d.limitAngle && !d.failure) place.points.push_back(d.onTangentPlane);
+  }
+  if (!in.inspection->isTraining(in.selection.frame)) {
+    for (const std::string& model : in.models)
+      for (const FrameComparison* comparison : in.comparisons(model))
+        for (const FrameComparison::Row& row : comparison->rows) {
+          if (row.observed != static_cast<int>(wanted) || row.predicted < 0) continue;
+          const auto& canonical = comparison->prediction.highlights[static_cast<std::size_t>(row.predicted)].canonical;
+          for (std::size_t i = 0; canonical && i < canonical->directions.size(); ++i)
+            if (canonical->directions[i].limitAngle && !canonical->directions[i].failure)
+              place.points.push_back(canonical->directions[i].onTangentPlane);
+        }
+  }
+  for (const Eigen::Vector3d& q : place.points) place.radius = std::max(place.radius, (q - p.position).norm());
+  if (!(place.radius > 0)) return {};
+  place.points.push_back(p.position + 0.8 * place.radius * p.normal);
+  // Half from the side, where the gap between S and T shows, and not in line with the camera's own view of it.
+  const Eigen::Vector3d right = camera.camFromWorld.linear().row(0).transpose();
+  Eigen::Vector3d side = right - right.dot(p.normal) * p.normal;
+  side = side.norm() > 0.05 ? Eigen::Vector3d(side.normalized()) : Eigen::Vector3d(tangentBasis(p.normal).col(0));
+  const Eigen::Vector3d toCamera = (camera.centreInWorld() - p.position).normalized();
+  Eigen::Vector3d across = side.cross(p.normal);
+  if (across.dot(toCamera) < 0) across = -across;
+  place.back = (0.42 * p.normal + 0.75 * across + 0.5 * side).normalized();
+  return place;
+}
+
+std::vector<Eigen::Vector3d> ellipsoidExtent(const LayerInput& in, const std::string& model) {
+  std::vector<Eigen::Vector3d> points;
+  for (const std::string& name : in.models) {
+    if (!model.empty() && name != model) continue;
+    for (const ModelFit* fit : in.fits(name)) {
+      if (!fit->ellipsoid || fit->ellipsoid->semiAxes().maxCoeff() > 5 * in.scale.sceneSize ||
+          (fit->ellipsoid->centre() - in.scale.sceneBox.center()).norm() > 5 * in.scale.sceneSize)
+        continue;
+      const Eigen::Matrix3d axes = fit->ellipsoid->worldFromBody().linear() * fit->ellipsoid->semiAxes().asDiagonal();
+      for (int i = 0; i < 6; ++i) points.push_back(fit->ellipsoid->centre() + (i % 2 ? -1.1 : 1.1) * axes.col(i / 2));
+    }
+  }
+  if (points.empty()) return points;
+  for (const TrainingView* view : in.views())
+    if (view->brightest) points.push_back(view->brightest->point.position);
+  return points;
+}
+
+Eigen::Vector3d sideDirection(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& up,
+                              const Eigen::Vector3d& towards) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : points) mean += p / static_cast<double>(points.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& p : points) spread += (p - mean) * (p - mean).transpose();
+  const Eigen::Vector3d longest = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(2);
+  const Eigen::Vector3d square = towards - towards.dot(longest) * longest;
+  if (square.norm() < 0.1) return towards;
+  const Eigen::Vector3d back = square.normalized();
+  return std::abs(back.dot(up)) > 0.95 ? towards : back;  // from straight above there is no up
 }
 
 Eigen::Vector3d upwards(const LayerInput& in, const std::vector<int>& frames) {

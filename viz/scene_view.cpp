@@ -379,6 +379,26 @@ struct SceneView::Impl {
     const Eigen::Vector3d up = (now.up - now.up.dot(back) * back).normalized();
     fit(points, back, up, box.center(), std::max(0.5 * box.diagonal().norm(), 1e-3 * input.scale.sceneSize));
   }
+  bool frameHighlight(int highlight) {
+    if (!valid()) return false;
+    const std::optional<HighlightPlace> at = highlightPlace(input, highlight);
+    if (!at) return false;
+    frameAllPending = false;
+    std::vector<Eigen::Vector3d> points = at->points;
+    if (layers[layerIndex("peaks")].visible) points.push_back(points.front() + 1.4 * input.scale.arrow * at->normal);
+    fit(points, at->back, (at->normal - at->normal.dot(at->back) * at->back).normalized(), at->points.front(), 2 * at->radius);
+    return true;
+  }
+  void frameEllipsoids(const std::string& model) {
+    if (!valid()) return;
+    const std::vector<Eigen::Vector3d> points = ellipsoidExtent(input, model);
+    if (points.empty()) return frameAll();
+    frameAllPending = false;
+    const Eigen::Vector3d up = upwards(input, allFrames);
+    const Eigen::Vector3d back = sideDirection(points, up, overviewDirection(input, allFrames, up));
+    const Eigen::Vector3d right = up.cross(back).normalized();
+    fit(points, back, back.cross(right), input.scale.surfaceBox.center(), 0.1 * input.scale.surfaceSize);
+  }
   void lookAlong(AxisView view) {
     frameAllPending = false;
     if (!valid()) return;
@@ -468,8 +488,17 @@ void SceneView::setCameraColours(const CameraColours& colours) {
   impl_->mark(kOnColours);
 }
 
+void SceneView::setWalk(std::shared_ptr<const WalkStory> walk, int step) {
+  if (walk == impl_->input.walk && step == impl_->input.walkStep) return;
+  impl_->input.walk = std::move(walk);
+  impl_->input.walkStep = step;
+  impl_->mark(kOnWalk);
+}
+
 void SceneView::frameAll() { impl_->frameAll(); }
 void SceneView::frameSelection() { impl_->frameSelection(); }
+bool SceneView::frameHighlight(int highlight) { return impl_->frameHighlight(highlight); }
+void SceneView::frameEllipsoids(const std::string& model) { impl_->frameEllipsoids(model); }
 void SceneView::lookAlong(AxisView view) { impl_->lookAlong(view); }
 
 void SceneView::setParallel(bool parallel) {

@@ -20,6 +20,7 @@ class vtkRenderWindow;
 namespace glint::viz {
 
 class LayerCache;
+struct WalkStory;
 
 /// A layer of the 3D picture, toggled by name (formats.md: layer visibility in sessions uses `name`).
 struct Layer {
@@ -27,8 +28,8 @@ struct Layer {
   std::string title;  ///< "Virtual cameras"
   bool onByDefault = true;
 };
-/// surface, cameras, photographs, virtual-cameras, peaks, tangent-planes, canonical-ellipses, directions, ellipsoids,
-/// light, true-light, rays, observed-contours, predicted-contours.
+/// surface, cameras, photographs, virtual-cameras, peaks, tangent-planes, canonical-ellipses, directions, walk, cones,
+/// ellipsoids, light, true-light, rays, observed-contours, predicted-contours.
 const std::vector<Layer>& sceneLayers();
 
 /// What lies under the mouse, with its numbers.
@@ -89,11 +90,19 @@ class SceneView {
   void setSolo(bool solo);
   void setCameraColours(const CameraColours& colours);
 
+  /// What the layer "walk" draws, as far as `step`; null = nothing.
+  void setWalk(std::shared_ptr<const WalkStory> walk, int step);
+
   /// A view from outside that holds the surface, the cameras and a light that is not far beyond them.
   void frameAll();
   /// The same direction, but only what is selected: the highlight on the surface, else the model's ellipsoids, else the camera
   /// with its brightest points.
   void frameSelection();
+  /// A slanted view of the selected frame's highlight that holds its contour, the ends of its walks and the normals.
+  /// @param highlight  index in the frame's evidence. False, and nothing moves, where that is not on the surface.
+  bool frameHighlight(int highlight);
+  /// A view of the surface's highlights and of all that leads to the ellipsoids of the model (of all models: ""): their cones.
+  void frameEllipsoids(const std::string& model);
   void lookAlong(AxisView view);
   void setParallel(bool parallel);
   bool parallel() const;

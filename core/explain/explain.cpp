@@ -170,6 +170,25 @@ void tangentStep(const Case& c, ExplainStep& step) {
   }
 }
 
+/// What the camera sees of the light's side within the highlight: in a flat mirror as much as it sees of the highlight itself, in
+/// this mirror the widest angle between the rays that the surface reflects.
+void fieldOfView(const Case& c, ExplainStep& step) {
+  if (!c.surface) return;
+  constexpr int kAround = 48;  // points of the contour: opposite ones are never farther than 4 deg from the widest pair
+  const TrainingView& v = *c.out.view;
+  const Eigen::Vector3d eye = v.camera.centreInWorld();
+  std::vector<Eigen::Vector3d> seen, reflected;
+  for (const Pixel& p : resample(v.highlight.contour, kAround)) {
+    const Ray ray = v.camera.ray(p);
+    const Outcome<SurfacePoint> hit = c.surface->firstHit(ray);
+    if (!hit) return;  // the contour leaves the surface: the widest angle would be one of what is left
+    seen.push_back(ray.direction);
+    reflected.push_back(reflect(-ray.direction, facing(*hit, eye).normal));
+  }
+  step.numbers.push_back(one("", "field of view across the highlight, flat mirror", degrees(widestAngle(seen)), "deg"));
+  step.numbers.push_back(one("", "field of view across the highlight, this mirror", degrees(widestAngle(reflected)), "deg"));
+}
+
 void virtualCameraStep(const Case& c, ExplainStep& step) {
   if (!reached(c, step) || !c.out.view->tangentPlane || !c.out.view->virtualCamera) return;
   const TrainingView& v = *c.out.view;
@@ -177,6 +196,7 @@ void virtualCameraStep(const Case& c, ExplainStep& step) {
   step.numbers.push_back(point("C_v", "centre of the virtual camera", v.tangentPlane->reflected(v.camera.centreInWorld())));
   step.numbers.push_back(
       one("det M", "of the mirror's 3x3 block", v.tangentPlane->reflection().topLeftCorner<3, 3>().determinant()));
+  fieldOfView(c, step);
   // How far the surface is from a plane within the highlight: the normal's turn against the limit angle.
   if (!c.surface || !v.brightest) return;
   const Outcome<Curvature> k = c.surface->curvatureAt(v.brightest->point);

@@ -1,37 +1,45 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/explain/walk_trace.h"
 
-#include <algorithm>
-
 namespace glint {
 
 Outcome<WalkTrace> traceWalk(const TangentWalk& walk, const Surface& surface, const DirectionResult& direction, int n) {
-  require(n >= 2, "traceWalk: at least two samples");
+  require(n >= 2, "traceWalk: at least two places");
   if (direction.failure) return *direction.failure;
   if (!direction.limitAngle) return Failure{Reason::NotReached, "the direction has no limit angle"};
-  const Eigen::Vector3d start = walk.brightest().point.position, along = walk.direction(direction.azimuth),
-                        normal = walk.tangentPlane().normal;
+  const SurfacePoint& first = walk.brightest().point;
+  const Eigen::Vector3d start = first.position, along = walk.direction(direction.azimuth), normal = walk.tangentPlane().normal;
   WalkTrace trace;
   trace.azimuth = direction.azimuth;
   trace.limitAngle = *direction.limitAngle;
   trace.reachOnSurface = (direction.onSurface - start).dot(along);
   trace.reachOnPlane = (direction.onTangentPlane - start).dot(along);
-  const double reach = std::max(trace.reachOnSurface, trace.reachOnPlane);
-  SurfacePoint previous = walk.brightest().point;
+  SurfacePoint previous = first;
   for (int i = 0; i < n; ++i) {
-    WalkSample s;
-    s.distance = reach * i / (n - 1);
-    s.onTangentPlane = start + s.distance * along;
-    const Outcome<SurfacePoint> foot =
-        i == 0 ? Outcome<SurfacePoint>(previous) : surface.foot(s.onTangentPlane, normal, previous);
-    if (!foot) break;
-    const Outcome<double> alpha = walk.alphaOnSurface(*foot);
-    if (!alpha) break;
-    previous = *foot;
-    s.onSurface = foot->position;
-    s.alphaOnSurface = *alpha;
-    s.alphaOnPlane = walk.alphaOnPlane(s.onTangentPlane);
-    trace.samples.push_back(s);
+    WalkPlace p;
+    p.distance = trace.reachOnSurface * i / (n - 1);
+    p.onTangentPlane = start + p.distance * along;
+    if (i > 0) {
+      const Outcome<SurfacePoint> foot = surface.foot(p.onTangentPlane, normal, previous);
+      if (!foot) return foot.failure();
+      const bool turned = foot->normal.dot(previous.normal) < 0;  // as the walk carries the side of the normal
+      previous = *foot;
+      if (turned) previous.normal = -previous.normal;
+    }
+    const Outcome<double> alpha = walk.alphaOnSurface(previous);
+    if (!alpha) return alpha.failure();
+    p.position = previous.position;
+    p.normal = previous.normal;
+    p.alpha = *alpha;
+    trace.onSurface.push_back(p);
+  }
+  for (int i = 0; i < n; ++i) {
+    WalkPlace p;
+    p.distance = trace.reachOnPlane * i / (n - 1);
+    p.onTangentPlane = p.position = start + p.distance * along;
+    p.normal = normal;
+    p.alpha = walk.alphaOnPlane(p.position);
+    trace.onPlane.push_back(p);
   }
   return trace;
 }

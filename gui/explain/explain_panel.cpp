@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/explain/explain_panel.h"
 
+#include <QAction>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QListWidget>
@@ -9,6 +10,7 @@
 #include <QSplitter>
 #include <QTextBrowser>
 #include <QToolButton>
+#include <QUrl>
 #include <QVBoxLayout>
 #include <QVariant>
 #include <algorithm>
@@ -18,12 +20,18 @@
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/explain/explain_texts.h"
+#include "gui/explain/lessons.h"
+#include "gui/explain/walk_player.h"
+#include "gui/explain/walk_view.h"
 
 namespace glint::gui {
 
 namespace {
-const char* const kStep = "explain/step";  // option: id of the step that is shown; "" = none
+const char* const kStep = "explain/step";      // option: id of the step that is shown; "" = none
+const char* const kLesson = "explain/lesson";  // option: id of the lesson that this session is; "" = none
 constexpr int kDigits = 5;
+
+const Lesson* lessonOf(const Document& document) { return lessonById(toQString(document.option(kLesson, std::string()))); }
 
 QString escaped(const std::string& s) { return toQString(s).toHtmlEscaped(); }
 
@@ -53,6 +61,8 @@ QString box(const QColor& colour, const QString& content) {
 ExplainPanel::ExplainPanel(Document& document, QWidget* parent)
     : QWidget(parent),
       document_(document),
+      walk_(new WalkPlayer(document, this)),
+      walkView_(new WalkView(document, *walk_)),
       steps_(new QListWidget),
       text_(new QTextBrowser),
       place_(new QLabel),
@@ -86,12 +96,15 @@ ExplainPanel::ExplainPanel(Document& document, QWidget* parent)
   for (const ExplainText& t : explainTexts().steps)
     steps_->addItem(QStringLiteral("%1  %2").arg(steps_->count() + 1).arg(t.title));
   text_->setObjectName(QStringLiteral("explain.text"));
-  text_->setOpenExternalLinks(false);
+  text_->setOpenLinks(false);
+  walkView_->hide();
   split->addWidget(steps_);
+  split->addWidget(walkView_);
   split->addWidget(text_);
   split->setStretchFactor(0, 0);
-  split->setStretchFactor(1, 1);
-  split->setSizes({steps_->sizeHintForRow(0) * steps_->count() + 8, 400});
+  split->setStretchFactor(1, 0);
+  split->setStretchFactor(2, 1);
+  split->setSizes({steps_->sizeHintForRow(0) * steps_->count() + 8, 290, 400});
   split->setChildrenCollapsible(false);
   column->addWidget(split, 1);
   setMinimumWidth(280);
@@ -99,6 +112,7 @@ ExplainPanel::ExplainPanel(Document& document, QWidget* parent)
   connect(back_, &QToolButton::clicked, this, &ExplainPanel::back);
   connect(next_, &QToolButton::clicked, this, &ExplainPanel::next);
   connect(leave_, &QToolButton::clicked, this, &ExplainPanel::leave);
+  connect(text_, &QTextBrowser::anchorClicked, this, &ExplainPanel::follow);
   connect(steps_, &QListWidget::currentRowChanged, this, [this](int row) {
     if (row >= 0 && row != step()) goTo(row);
   });
@@ -116,13 +130,32 @@ int ExplainPanel::step() const {
   return -1;
 }
 
+bool ExplainPanel::busy() const { return job_.busy() || walk_->busy(); }
+
 void ExplainPanel::start() {
-  if (step() < 0) goTo(0);
+  if (step() < 0) {
+    const Lesson* lesson = lessonOf(document_);
+    int first = 0;
+    for (int i = explainTexts().steps.size() - 1; lesson && i >= 0; --i)
+      if (lesson->steps.contains(explainTexts().steps[i].id)) first = i;
+    goTo(first);
+  }
   emit started();
 }
 
-void ExplainPanel::next() { goTo(step() + 1); }
+void ExplainPanel::next() { step() < 0 ? start() : goTo(step() + 1); }
 void ExplainPanel::back() { goTo(step() - 1); }
+
+void ExplainPanel::openLesson(const QString& id) {
+  const QString file = lessonFile(id);
+  if (file.isEmpty()) return emit problem(tr("The session of the lesson %1 is not beside the program").arg(id));
+  emit lessonRequested(file);
+}
+
+void ExplainPanel::follow(const QUrl& link) {
+  if (!actions_ || link.scheme() != QLatin1String("action")) return;
+  if (QAction* action = actions_->find(link.path())) action->trigger();
+}
 
 void ExplainPanel::goTo(int wanted) {
   const QList<ExplainText>& steps = explainTexts().steps;
@@ -136,15 +169,24 @@ void ExplainPanel::goTo(int wanted) {
     for (const QString& name : any.frameLayers) layers[name.toStdString()] = text.frameLayers.contains(name);
   std::map<std::string, std::string> options = document_.state().options;
   options[kStep] = text.id.toStdString();
+  lookPending_ = true;
   document_.setView(layers, options, tr("Explain %1: %2").arg(wanted + 1).arg(text.title));
-  emit shown(wanted);
+  lookAtStep();
+}
+
+void ExplainPanel::lookAtStep() {
+  if (!lookPending_ || step() < 0 || !explanation_) return;
+  lookPending_ = false;
+  emit look(explainTexts().steps[step()].look, explanation_->highlight, toQString(explanation_->model));
 }
 
 void ExplainPanel::leave() {
   if (step() < 0) return;
   std::map<std::string, std::string> options = document_.state().options;
   options.erase(kStep);
+  lookPending_ = false;
   document_.setView(layersBefore_, options, tr("Leave the explanation"));
+  emit look(QStringLiteral("scene"), -1, QString());
 }
 
 void ExplainPanel::compute() {
@@ -161,6 +203,7 @@ void ExplainPanel::compute() {
     return LatestJob::Deliver([this, found] {
       explanation_ = found;
       refresh();
+      lookAtStep();
     });
   });
 }
@@ -173,23 +216,50 @@ void ExplainPanel::refresh() {
   next_->setEnabled(document_.scene() && now < count - 1);
   next_->setText(now < 0 ? tr("Start") : tr("Next"));
   leave_->setEnabled(now >= 0);
+  const Lesson* lesson = lessonOf(document_);
   place_->setText(now < 0 ? QString() : tr("%1 of %2").arg(now + 1).arg(count));
+  for (int i = 0; i < count; ++i) {
+    QFont font = steps_->font();  // those that the lesson is about
+    font.setBold(lesson && lesson->steps.contains(explainTexts().steps[i].id));
+    steps_->item(i)->setFont(font);
+  }
+  walkView_->setVisible(now >= 0 && explainTexts().steps[now].layers.contains(QStringLiteral("walk")));
   if (now >= 0 && !explanation_ && document_.inspection() && !job_.busy()) return compute();
   text_->setHtml(html());
 }
 
-QString ExplainPanel::html() const {
-  const int now = step();
-  if (now < 0)
-    return tr(
+QString ExplainPanel::overview() const {
+  const Lesson* lesson = lessonOf(document_);
+  if (!lesson) {
+    QString html = tr(
         "<p>Eleven steps from the photograph to the predicted highlight, on the scene that is open: each with its picture, its "
         "equation and its "
-        "numbers, and with what breaks here.</p>");
+        "numbers, and with what breaks here.</p><h4>Lessons</h4>");
+    for (const Lesson& l : lessons())
+      html += QStringLiteral("<p><a href='action:lesson.%1'>%2</a></p>").arg(l.id, l.title.toHtmlEscaped());
+    return html;
+  }
+  QString html = QStringLiteral("<h3>%1</h3><p>%2</p><h4>%3</h4><ol>")
+                     .arg(tr("Lesson %1: %2").arg(lessons().indexOf(*lesson) + 1).arg(lesson->title.toHtmlEscaped()), lesson->see,
+                          tr("Go through"));
+  for (const ExplainText& t : explainTexts().steps)
+    if (lesson->steps.contains(t.id))
+      html += QStringLiteral("<li><a href='action:explain.step-%1'>%2</a></li>").arg(t.id, t.title.toHtmlEscaped());
+  html += QStringLiteral("</ol><h4>%1</h4><ul>").arg(tr("Try"));
+  for (const QString& question : lesson->questions) html += QStringLiteral("<li>%1</li>").arg(question);
+  return html + QStringLiteral("</ul>");
+}
+
+QString ExplainPanel::html() const {
+  const int now = step();
+  if (now < 0) return overview();
   const ExplainText& text = explainTexts().steps[now];
   QString html =
       QStringLiteral("<h3>%1</h3><p>%2</p><p style='margin-left:8px'><tt>%3</tt><br><span style='color:%4'>%5</span></p>")
           .arg(text.title.toHtmlEscaped(), text.text.toHtmlEscaped(), text.equation.toHtmlEscaped(),
                palette().color(QPalette::PlaceholderText).name(), text.section.toHtmlEscaped());
+  if (const Lesson* lesson = lessonOf(document_); lesson && lesson->remarks.contains(text.id))
+    html += box(accentColour(), tr("<b>In this lesson.</b> %1").arg(lesson->remarks.value(text.id)));
   if (!explanation_ || now >= int(explanation_->steps.size())) return html;
   const ExplainStep& s = explanation_->steps[std::size_t(now)];
   const Scene& scene = *document_.scene();
@@ -207,11 +277,23 @@ QString ExplainPanel::html() const {
 }
 
 void ExplainPanel::addActions(Actions& actions, QMenu* menu) {
+  actions_ = &actions;
   actions.add("explain.start", menu, tr("&Explain what is on screen"), [this] { start(); }, {{Qt::Key_F1}});
   actions.add("explain.next", menu, tr("&Next step"), [this] { next(); }, {{QKeySequence("Ctrl+Right")}});
   actions.add("explain.back", menu, tr("Step &back"), [this] { back(); }, {{QKeySequence("Ctrl+Left")}});
   actions.add("explain.leave", menu, tr("&Leave the explanation"), [this] { leave(); });
   menu->addSeparator();
+  actions.add("explain.play-walk", menu, tr("&Play or pause the walk"), [this] { walk_->toggle(); },
+              {{Qt::Key_W}, "play", tr("The limit-angle walk of the selected direction, on S and on T")});
+  actions.add("explain.walk-on", menu, tr("Walk one step &on"), [this] { walk_->setStep(walk_->step() + 1); },
+              {{Qt::Key_Period}});
+  actions.add("explain.walk-back", menu, tr("Walk one step bac&k"), [this] { walk_->setStep(walk_->step() - 1); },
+              {{Qt::Key_Comma}});
+  menu->addSeparator();
+  QMenu* taught = menu->addMenu(tr("L&essons"));
+  for (const Lesson& lesson : lessons())
+    actions.add("lesson." + lesson.id, taught, tr("Lesson %1: %2").arg(taught->actions().size() + 1).arg(lesson.title),
+                [this, id = lesson.id] { openLesson(id); });
   QMenu* all = menu->addMenu(tr("&Steps"));
   for (int i = 0; i < explainTexts().steps.size(); ++i)
     actions.add("explain.step-" + explainTexts().steps[i].id, all, explainTexts().steps[i].title, [this, i] {

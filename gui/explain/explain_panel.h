@@ -15,12 +15,16 @@ class QLabel;
 class QListWidget;
 class QTextBrowser;
 class QToolButton;
+class QUrl;
 
 namespace glint::gui {
 
+class WalkPlayer;
+class WalkView;
+
 /// The guided way from the photograph to the prediction, on whatever is open: one step at a time, with its equation, its numbers
 /// of the selected highlight, and what breaks here. A step shows its layers alone; leaving gives back those that were shown
-/// before.
+/// before. In a lesson (option "explain/lesson") it begins with what there is to see, and steps have the lesson's remarks.
 class ExplainPanel : public QWidget {
   Q_OBJECT
  public:
@@ -28,7 +32,8 @@ class ExplainPanel : public QWidget {
   void addActions(Actions& actions, QMenu* menu);
   int step() const;  ///< -1 = not explaining
   const Explanation* explanation() const { return explanation_.get(); }
-  bool busy() const { return job_.busy(); }
+  bool busy() const;
+  WalkPlayer& walk() { return *walk_; }
 
  public slots:
   void start();
@@ -39,18 +44,28 @@ class ExplainPanel : public QWidget {
 
  signals:
   void started();
-  /// A step is on screen; `tangent` = it happens on the tangent plane of the selected highlight.
-  void shown(int step);
+  /// A step asks for its part of the scene: "scene", "tangent" (the highlight that is explained, with S and T), "ellipsoid".
+  void look(const QString& at, int highlight, const QString& model);
+  void lessonRequested(const QString& session);
+  void problem(const QString& oneLine);
 
  private:
   void compute();
   void refresh();
+  void lookAtStep();
+  void openLesson(const QString& id);
+  void follow(const QUrl& link);
   QString html() const;
+  QString overview() const;
 
   Document& document_;
   LatestJob job_;
   std::shared_ptr<const Explanation> explanation_;
   std::map<std::string, bool> layersBefore_;  ///< what was shown before the first step
+  bool lookPending_ = false;                  ///< the step on screen was gone to, and what it is about is not computed yet
+  Actions* actions_ = nullptr;
+  WalkPlayer* walk_;
+  WalkView* walkView_;
   QListWidget* steps_;
   QTextBrowser* text_;
   QLabel* place_;

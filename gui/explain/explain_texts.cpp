@@ -26,7 +26,8 @@ ExplainTexts read() {
   for (const QJsonValue& v : root["steps"].toArray()) {
     const QJsonObject s = v.toObject();
     texts.steps.append({s["id"].toString(), s["title"].toString(), s["text"].toString(), s["equation"].toString(),
-                        s["section"].toString(), names(s["layers"]), names(s["frame_layers"], QStringLiteral("frame/"))});
+                        s["section"].toString(), names(s["layers"]), names(s["frame_layers"], QStringLiteral("frame/")),
+                        s["look"].toString()});
   }
   const QJsonObject broken = root["broken"].toObject();
   for (auto it = broken.begin(); it != broken.end(); ++it) texts.broken.insert(it.key(), it.value().toString());

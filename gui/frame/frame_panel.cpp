@@ -18,6 +18,7 @@
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/pair_bar.h"
 #include "viz/frame_pick.h"
+#include "viz/walk_story.h"
 
 namespace glint::gui {
 
@@ -232,6 +233,12 @@ viz::OverlayOptions FramePanel::overlayOptions() const {
   return options;
 }
 
+void FramePanel::showWalk(std::shared_ptr<const viz::WalkStory> walk, int step) {
+  walk_ = std::move(walk);
+  walkStep_ = step;
+  refresh_.start();
+}
+
 void FramePanel::showOverlay() {
   const std::vector<viz::OverlayLayer>& layers = viz::overlayLayers();
   for (std::size_t i = 0; i < layers.size(); ++i) toggles_[i]->setChecked(document_.layerVisible(layers[i].name));
@@ -243,6 +250,7 @@ void FramePanel::showOverlay() {
   const bool two = document_.scene() && pair_->on();
   shown_ = shownSecond_ = {};
   if (inspection && frame < int(inspection->evidence.size())) shown_ = viz::frameOverlay(*inspection, frame, options);
+  if (walk_ && walk_->frame == frame) viz::addWalk(*walk_, walkStep_, shown_);
   showCaptions(shown_);
   if (two) {
     const int second = pair_->secondFrame();

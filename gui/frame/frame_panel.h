@@ -19,6 +19,10 @@ class QLabel;
 class QToolButton;
 class QVBoxLayout;
 
+namespace glint::viz {
+struct WalkStory;
+}
+
 namespace glint::gui {
 
 class DevelopBar;
@@ -38,6 +42,8 @@ class FramePanel : public QWidget {
   /// Something is still being read, developed or waiting to be drawn.
   bool busy() const;
   void addActions(Actions& actions, QMenu* menu);
+  /// The image points of a walk, as far as `step`; null = none.
+  void showWalk(std::shared_ptr<const viz::WalkStory> walk, int step);
   /// Zooms to the selected frame's highlights.
   void goToHighlight();
 
@@ -72,6 +78,8 @@ class FramePanel : public QWidget {
   viz::FrameOverlay shown_, shownSecond_;
   QTimer refresh_;  ///< many selections at once are drawn once
   int probedFrame_ = -1;
+  std::shared_ptr<const viz::WalkStory> walk_;
+  int walkStep_ = 0;
 };
 
 }  // namespace glint::gui

@@ -223,6 +223,20 @@ void ScenePanel::nextModels() {
                       next == "all" ? tr("3D view: all models") : tr("3D view: %1").arg(toQString(next)));
 }
 
+void ScenePanel::showWalk(const std::shared_ptr<const viz::WalkStory>& walk, int step) {
+  for (int i = 0; i < kMostSceneViews; ++i) views_->view(i).setWalk(walk, step);
+  if (document_.layerVisible("walk")) views_->scheduleRender();
+}
+
+void ScenePanel::look(const QString& at, int highlight, const QString& model) {
+  viz::SceneView& view = views_->active();
+  if (at == QLatin1String("ellipsoid"))
+    view.frameEllipsoids(model.toStdString());
+  else if (at != QLatin1String("tangent") || !view.frameHighlight(highlight))
+    view.frameAll();
+  views_->scheduleRender();
+}
+
 void ScenePanel::frameAll() {
   views_->active().frameAll();
   views_->scheduleRender();

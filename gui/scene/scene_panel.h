@@ -42,6 +42,10 @@ class ScenePanel : public QWidget {
   QStringList savedViews() const;
 
  public slots:
+  /// What the layer "walk" draws, as far as `step`.
+  void showWalk(const std::shared_ptr<const glint::viz::WalkStory>& walk, int step);
+  /// Moves the view to a part of the scene: "scene", "tangent" (a highlight with S and T), "ellipsoid" (of a model); it may be moved on.
+  void look(const QString& at, int highlight, const QString& model);
   void frameAll();
   void frameSelection();
   void lookAlong(glint::viz::AxisView axis);

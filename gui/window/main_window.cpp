@@ -22,6 +22,8 @@
 
 #include "gui/base/text.h"
 #include "gui/explain/explain_panel.h"
+#include "gui/explain/lessons.h"
+#include "gui/explain/walk_player.h"
 #include "gui/export/export_actions.h"
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/frame_panel.h"
@@ -139,6 +141,8 @@ void MainWindow::buildCentre() {
   connect(start_, &StartPage::openFile, files_, &FileActions::openDialog);
   connect(start_, &StartPage::openFolder, files_, &FileActions::openFolderDialog);
   connect(start_, &StartPage::openRecent, files_, &FileActions::open);
+  for (const Lesson& lesson : lessons())
+    if (const QString file = lessonFile(lesson.id); !file.isEmpty()) start_->addLesson(lesson.title, file);
   centre_->addWidget(start_);
   views_ = new QSplitter(Qt::Horizontal);
   scene_ = new ScenePanel(document_);
@@ -200,6 +204,14 @@ void MainWindow::buildDocks() {
   explain_ = new ExplainPanel(document_);
   docks_.add("explain", tr("Explain"), explain_, Qt::RightDockWidgetArea, "parameters");
   connect(explain_, &ExplainPanel::started, this, [this] { docks_.bring(QStringLiteral("explain")); });
+  connect(explain_, &ExplainPanel::look, scene_, &ScenePanel::look);
+  connect(explain_, &ExplainPanel::lessonRequested, files_, &FileActions::open);
+  connect(explain_, &ExplainPanel::problem, this, &MainWindow::showProblem);
+  connect(&explain_->walk(), &WalkPlayer::changed, this, [this] {
+    const WalkPlayer& walk = explain_->walk();
+    scene_->showWalk(walk.story(), walk.step());
+    frame_->showWalk(walk.story(), walk.step());
+  });
 
   timeline_ = new Timeline(document_);
   QDockWidget* timeline = docks_.add("timeline", tr("Timeline"), timeline_, Qt::BottomDockWidgetArea);

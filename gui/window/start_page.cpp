@@ -42,10 +42,26 @@ StartPage::StartPage(QWidget* parent) : QWidget(parent) {
   buttons->addStretch(1);
   column->addLayout(buttons);
   column->addSpacing(12);
+  lessons_ = new QVBoxLayout;
+  lessons_->setSpacing(2);
+  column->addLayout(lessons_);
+  column->addSpacing(6);
   recent_ = new QVBoxLayout;
   recent_->setSpacing(2);
   column->addLayout(recent_);
   column->addStretch(3);
+}
+
+void StartPage::addLesson(const QString& title, const QString& file) {
+  if (lessons_->isEmpty()) {
+    auto* heading = new QLabel(tr("Lessons"));
+    heading->setProperty("role", "group");
+    lessons_->addWidget(heading);
+  }
+  auto* link = new QLabel(
+      QStringLiteral("%1 &nbsp;<a href='%2'>%3</a>").arg(lessons_->count()).arg(file.toHtmlEscaped(), title.toHtmlEscaped()));
+  connect(link, &QLabel::linkActivated, this, &StartPage::openRecent);
+  lessons_->addWidget(link);
 }
 
 void StartPage::setRecent(const QStringList& files) {

@@ -14,6 +14,8 @@ class StartPage : public QWidget {
  public:
   explicit StartPage(QWidget* parent = nullptr);
   void setRecent(const QStringList& files);
+  /// One more session to learn from.
+  void addLesson(const QString& title, const QString& file);
 
  signals:
   void openFile();
@@ -21,7 +23,7 @@ class StartPage : public QWidget {
   void openRecent(const QString& path);
 
  private:
-  QVBoxLayout* recent_;
+  QVBoxLayout *lessons_, *recent_;
 };
 
 }  // namespace glint::gui

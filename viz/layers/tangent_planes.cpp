@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
 #include "viz/glyphs.h"
 #include "viz/layers.h"
 
@@ -41,6 +43,8 @@ LayerContent tangentPlanesLayer(const LayerInput& in) {
   if (observed) return content;
   // A held-out frame: the planes that the models predicted. They agree but for their light, so one colour each.
   for (const std::string& model : in.models) {
+    const bool another = !in.selection.model.empty() && in.selection.model != model;
+    if (another && std::find(in.models.begin(), in.models.end(), in.selection.model) != in.models.end()) continue;
     for (const FrameComparison* comparison : in.comparisons(model)) {
       for (const PredictedHighlight& h : comparison->prediction.highlights) {
         if (!h.tangentPlane) continue;

@@ -116,25 +116,33 @@ TEST(WalkTrace, OnAPlaneBothWalksAreOne) {
   const TangentWalk walk(*e.view->surface, e.view->camera, *e.view->brightest, *e.lightUsed);
   const Outcome<WalkTrace> t = traceWalk(walk, *e.view->surface, e.view->canonical->directions[7], 25);
   ASSERT_TRUE(t);
-  ASSERT_EQ(t->samples.size(), 25u);
+  ASSERT_EQ(t->onSurface.size(), 25u);
+  ASSERT_EQ(t->onPlane.size(), 25u);
   EXPECT_NEAR(t->reachOnPlane, t->reachOnSurface, kWalk);
-  for (const WalkSample& s : t->samples) {
-    EXPECT_LT((s.onSurface - s.onTangentPlane).norm(), 1e-12);
-    EXPECT_NEAR(s.alphaOnPlane, s.alphaOnSurface, 1e-12);
+  for (std::size_t i = 0; i < t->onSurface.size(); ++i) {
+    const WalkPlace &s = t->onSurface[i], &p = t->onPlane[i];
+    EXPECT_LT((s.position - s.onTangentPlane).norm(), 1e-12);
+    EXPECT_LT((s.normal - p.normal).norm(), 1e-12);
+    EXPECT_NEAR(s.alpha, p.alpha, kWalk);
   }
-  EXPECT_NEAR(t->samples.back().alphaOnSurface, t->limitAngle, 1e-6);
-  EXPECT_NEAR(t->samples.front().alphaOnSurface, e.view->brightest->alpha, kCusp);
+  EXPECT_NEAR(t->onSurface.back().alpha, t->limitAngle, 1e-6);
+  EXPECT_NEAR(t->onPlane.back().alpha, t->limitAngle, 1e-6);
+  EXPECT_NEAR(t->onSurface.front().alpha, e.view->brightest->alpha, kCusp);
 }
 
-TEST(WalkTrace, OnASphereTheSurfaceFallsByItsSagitta) {
+TEST(WalkTrace, OnASphereTheSurfaceFallsByItsSagittaAndTheNormalTurns) {
   const Inspection inspection = inspected(sphere(0.5), {"canonical"});
   const Explanation e = explain(inspection, 2, 0, "canonical");
   const TangentWalk walk(*e.view->surface, e.view->camera, *e.view->brightest, *e.lightUsed);
   const Outcome<WalkTrace> t = traceWalk(walk, *e.view->surface, e.view->canonical->directions[0], 25);
   ASSERT_TRUE(t);
   EXPECT_GT(t->reachOnPlane, t->reachOnSurface) << "the normal of a convex surface turns, so its limit is nearer";
-  for (const WalkSample& s : t->samples)
-    EXPECT_NEAR((s.onSurface - s.onTangentPlane).norm(), 0.5 - std::sqrt(0.25 - s.distance * s.distance), 1e-9);
+  for (const WalkPlace& p : t->onSurface) {
+    EXPECT_NEAR((p.position - p.onTangentPlane).norm(), 0.5 - std::sqrt(0.25 - p.distance * p.distance), 1e-9);
+    // A sphere's normal leans by the distance over the radius.
+    EXPECT_NEAR(p.normal.dot(walk.direction(t->azimuth)), p.distance / 0.5, 1e-9);
+  }
+  EXPECT_NEAR(t->onPlane.back().alpha, t->limitAngle, 1e-6);
 }
 
 TEST(WalkTrace, AFailedDirectionKeepsItsReason) {
