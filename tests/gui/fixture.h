@@ -48,6 +48,7 @@ QObject* makePaletteTest();
 QObject* makePanelTest();
 QObject* makeParametersTest();
 QObject* makePickingTest();
+QObject* makeRandomTest();
 QObject* makeLinkingTest();
 QObject* makeWindowTest();
 QObject* makeSessionTest();

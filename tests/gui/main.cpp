@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
       {"scene", makeSceneTest},          {"session", makeSessionTest},   {"program", makeProgramTest},
       {"recovery", makeRecoveryTest},    {"explain", makeExplainTest},   {"export", makeExportTest},
       {"plots", makePlotsTest},          {"tradeoff", makeTradeoffTest}, {"parameters", makeParametersTest},
-      {"picking", makePickingTest},
+      {"picking", makePickingTest},      {"random", makeRandomTest},
   };
   if (argc < 2) return std::fputs("usage: test_gui CLASS [QTest options]\n", stderr), 2;
   QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());

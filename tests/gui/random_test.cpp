@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whatever is done, in any order, undoing all of it gives back the first session and the first results, bit for bit, and redoing
+// all of it the last ones.
+#include <QAction>
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDockWidget>
+#include <QListWidget>
+#include <QSlider>
+#include <QToolButton>
+#include <algorithm>
+#include <map>
+#include <random>
+
+#include "core/pipeline/session.h"
+#include "gui/base/text.h"
+#include "gui/panels/parameter_panel.h"
+#include "gui/timeline/timeline.h"
+#include "gui/whatif/what_if_panel.h"
+#include "gui/window/main_window.h"
+#include "tests/gui/fixture.h"
+#include "viz/frame_overlay.h"
+
+namespace glint::gui {
+
+namespace {
+constexpr int kSteps = 50;
+
+/// Actions that are left out, by the beginning of their ids, and why.
+const std::map<QString, const char*>& leftOut() {
+  static const std::map<QString, const char*> ids{{"file.", "ask for a file, or close what is open"},
+                                                  {"export.", "ask for a file, or change the clipboard only"},
+                                                  {"edit.palette", "takes the keyboard"},
+                                                  {"edit.shortcuts", "opens a dialog that waits for the user"},
+                                                  {"plots.save", "asks for a file"},
+                                                  {"frame.play", "goes on by the clock"},
+                                                  {"edit.stop", "leaves results out of date"},
+                                                  {"plots.influence", "fits once per training frame"}};
+  return ids;
+}
+bool isLeftOut(const QString& id) {
+  for (const auto& [start, reason] : leftOut())
+    if (id.startsWith(start)) return true;
+  return false;
+}
+}  // namespace
+
+class RandomTest : public QObject {
+  Q_OBJECT
+ private slots:
+  void undoneToTheFirstStateAndRedoneToTheLast_data() {
+    QTest::addColumn<unsigned>("seed");
+    for (const unsigned seed : {1u, 3u}) QTest::newRow(qPrintable(QStringLiteral("seed %1").arg(seed))) << seed;
+  }
+  void undoneToTheFirstStateAndRedoneToTheLast() {
+    QFETCH(unsigned, seed);
+    MainWindow window(coreEngine());
+    window.resize(1500, 950);
+    window.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&window));
+    window.open(QStringLiteral(GLINT_SOURCE_DIR "/sessions/plane/plane.glint"));
+    QTRY_VERIFY_WITH_TIMEOUT(window.document().scene() && window.idle() && !window.document().stale(), 120000);
+    const QList<QAction*> actions = window.actions().all();
+    for (const auto& [start, reason] : leftOut())
+      QVERIFY2(std::any_of(actions.begin(), actions.end(),
+                           [&start = start](const QAction* a) { return Actions::id(a).startsWith(start); }),
+               qPrintable(start));
+    Document& document = window.document();
+    const QByteArray firstSession = session(document);
+    const std::string firstResults = results(window);
+
+    std::mt19937 random(seed);
+    std::map<QString, int> done;  // steps of undo by the kind of what was done
+    for (int i = 0; i < kSteps; ++i) {
+      const int before = document.undoStack()->index();
+      const QString kind = act(window, random);
+      QCoreApplication::processEvents();
+      if (QTest::currentTestFailed()) return;
+      if (document.undoStack()->index() != before) ++done[kind];
+    }
+    for (const char* kind : {"action", "parameter", "timeline", "layer", "what-if"})
+      QVERIFY2(done[QLatin1String(kind)] > 0, kind);  // the seeds are chosen so that each kind changed something
+    const QByteArray lastSession = session(document);
+    QVERIFY(lastSession != firstSession);
+    const std::string lastResults = results(window);
+    QVERIFY(lastResults != firstResults);
+
+    const int steps = document.undoStack()->count();
+    QAction* undo = window.actions().find("edit.undo");
+    QAction* redo = window.actions().find("edit.redo");
+    QVERIFY(undo && redo);
+    while (document.undoStack()->canRedo()) redo->trigger();
+    const QByteArray furthest = session(document);
+    while (undo->isEnabled()) undo->trigger();
+    QCOMPARE(document.undoStack()->index(), 0);
+    QCOMPARE(session(document), firstSession);
+    QCOMPARE(results(window), firstResults);
+    while (redo->isEnabled()) redo->trigger();
+    QCOMPARE(document.undoStack()->index(), steps);
+    QCOMPARE(session(document), furthest);
+    if (furthest == lastSession) QCOMPARE(results(window), lastResults);
+  }
+
+ private:
+  static int below(std::mt19937& random, int n) { return int(random() % unsigned(n)); }
+
+  static QString act(MainWindow& window, std::mt19937& random) {
+    switch (below(random, 6)) {
+      case 0:
+      case 1: {
+        QList<QAction*> usable;
+        for (QAction* action : window.actions().all())
+          if (action->isEnabled() && !isLeftOut(Actions::id(action))) usable << action;
+        usable[below(random, usable.size())]->trigger();
+        return QStringLiteral("action");
+      }
+      case 2: {
+        const ParamSpec& spec = allParams()[std::size_t(below(random, int(allParams().size())))];
+        turn(window.findChild<ParameterPanel*>(), spec, random);
+        return QStringLiteral("parameter");
+      }
+      case 3: {
+        TimelineStrip* strip = window.findChild<TimelineStrip*>();
+        const int frame = below(random, window.document().frameCount());
+        const bool role = below(random, 2) == 0;
+        const QRectF at = role ? strip->roleMark(frame) : strip->cell(frame);
+        if (strip->isVisible()) QTest::mouseClick(strip, Qt::LeftButton, {}, at.center().toPoint());
+        return QStringLiteral("timeline");
+      }
+      case 4: {
+        if (below(random, 2) == 0) {
+          auto* list = window.findChild<QListWidget*>(QStringLiteral("layers"));
+          QListWidgetItem* item = list->item(below(random, list->count()));
+          item->setCheckState(item->checkState() == Qt::Checked ? Qt::Unchecked : Qt::Checked);
+        } else {
+          const viz::OverlayLayer& layer = viz::overlayLayers()[std::size_t(below(random, int(viz::overlayLayers().size())))];
+          if (auto* toggle = window.findChild<QToolButton*>(QLatin1String(layer.name))) toggle->click();
+        }
+        return QStringLiteral("layer");
+      }
+      default: {
+        auto* panel = window.findChild<WhatIfPanel*>();
+        const QList<QSlider*> sliders = panel->findChildren<QSlider*>();
+        if (sliders.isEmpty()) return QStringLiteral("what-if");
+        QSlider* slider = sliders[below(random, sliders.size())];
+        if (slider->isEnabled())
+          slider->setValue(slider->value() + (slider->maximum() - slider->minimum()) / 50 * (1 - 2 * below(random, 2)));
+        return QStringLiteral("what-if");
+      }
+    }
+  }
+
+  static void turn(ParameterPanel* panel, const ParamSpec& spec, std::mt19937& random) {
+    auto* value = panel->findChild<QWidget*>("value:" + toQString(spec.key));
+    if (auto* check = qobject_cast<QCheckBox*>(value)) return check->click();
+    if (auto* combo = qobject_cast<QComboBox*>(value)) {
+      combo->setCurrentIndex(below(random, combo->count()));
+      emit combo->activated(combo->currentIndex());
+      return;
+    }
+    auto* slider = panel->findChild<QSlider*>("slider:" + toQString(spec.key));
+    QVERIFY(slider);
+    // Near where it is: the ends of some ranges cost minutes.
+    slider->setValue(slider->value() + 20 + below(random, 100));
+  }
+
+  /// What a session would store, but for results.
+  QByteArray session(const Document& document) {
+    const QString file = folder_.filePath(QStringLiteral("state.glint"));
+    coreEngine().autosave(document.toSave(), file.toStdString());
+    QFile text(file);
+    return text.open(QIODevice::ReadOnly) ? text.readAll() : QByteArray();
+  }
+  static std::string results(MainWindow& window) {
+    [&] { QTRY_VERIFY_WITH_TIMEOUT(window.idle() && !window.document().stale(), 120000); }();
+    return window.document().inspection() ? digestOf(*window.document().inspection()) : std::string();
+  }
+  QTemporaryDir folder_;
+};
+
+QObject* makeRandomTest() { return new RandomTest; }
+
+}  // namespace glint::gui
+
+#include "random_test.moc"
