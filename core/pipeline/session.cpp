@@ -21,6 +21,12 @@ namespace {
 // 1: the first. 2: `tradeoff` may stand in it; a file of version 1 reads as one without.
 constexpr int kVersion = 2;
 
+/// A setting that a program of version 1 did not have is what that program did, where that is not today's default.
+void migrateFrom1(const JsonNode& request, Settings& settings) {
+  const std::optional<JsonNode> stored = request.find("settings");
+  if (stored && !stored->find("light.limit_orders")) settings.set("light.limit_orders", 0);  // one limit angle for each light
+}
+
 fs::path folderOf(const fs::path& file) { return fs::absolute(file).lexically_normal().parent_path(); }
 
 Json toJson(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
@@ -164,6 +170,7 @@ Session parseSession(const std::string& json, const fs::path& file) {
     for (std::size_t i = 0; i < n->size(); ++i)
       session.files.push_back({absolutePath(n->at(i).at("path"), folder), readHash(n->at(i).at("sha256"))});
   session.request = readRequest(root.at("request"), folder);
+  if (version.integer() == 1) migrateFrom1(root.at("request"), session.request.settings);
   if (const auto n = root.find("frames")) {
     session.training = texts(n->at("training"));
     session.heldOut = texts(n->at("held_out"));

@@ -15,6 +15,7 @@
 #include "gui/scene/scene_options.h"
 #include "gui/scene/scene_panel.h"
 #include "gui/window/main_window.h"
+#include "gui/window/message_bar.h"
 #include "tests/gui/fixture.h"
 
 namespace glint::gui {
@@ -122,6 +123,30 @@ class SessionTest : public QObject {
     const Opened back = real.open(file.toStdString(), {});
     QVERIFY(back.viewPoint && back.viewPoint->position == Eigen::Vector3d(1, 2, 3));
     QVERIFY2(window.statusBar()->currentMessage().contains("without results"), qPrintable(window.statusBar()->currentMessage()));
+  }
+
+  void newerAndDamagedSessionsAreAMessageAndWhatIsOpenStays() {
+    MainWindow window(coreEngine());
+    openAndWait(window, QStringLiteral(GLINT_SOURCE_DIR "/sessions/plane/plane.glint"));
+    QFile shipped(QStringLiteral(GLINT_SOURCE_DIR "/sessions/plane/plane.glint"));
+    QVERIFY(shipped.open(QIODevice::ReadOnly));
+    const QByteArray text = shipped.readAll();
+    const std::pair<QByteArray, QString> cases[] = {
+        {QByteArray(text).replace("\"glint_session\": 2", "\"glint_session\": 9"), QStringLiteral("newer than this program")},
+        {text.left(text.size() / 2), QStringLiteral("bad.glint")}};
+    auto* bar = window.findChild<MessageBar*>(QStringLiteral("messageBar"));
+    for (const auto& [content, expected] : cases) {
+      QFile file(folder_.filePath(QStringLiteral("bad.glint")));
+      QVERIFY(file.open(QIODevice::WriteOnly));
+      file.write(content);
+      file.close();
+      const std::shared_ptr<const Scene> before = window.document().sharedScene();
+      window.open(file.fileName());
+      QTRY_VERIFY(window.idle());
+      QVERIFY2(bar->isVisible() && bar->text().contains(expected), qPrintable(bar->text()));
+      QVERIFY(window.document().sharedScene() == before);
+      QVERIFY(!window.document().stale());
+    }
   }
 
   void aFileThatCannotBeWrittenIsAMessageAndNothingIsLost() {
