@@ -6,10 +6,12 @@
 namespace glint::cli {
 
 // One function per subcommand, each in the file of its name; main.cpp lists them.
+Command compareCommand();
 Command convertCommand();
 Command detectCommand();
 Command evaluateCommand();
 Command infoCommand();
+Command movieCommand();
 Command renderCommand();
 Command predictCommand();
 Command reconstructCommand();

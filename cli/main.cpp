@@ -15,7 +15,9 @@ int main(int argc, char** argv) {
                             synthCommand(),
                             convertCommand(),
                             renderCommand(),
+                            movieCommand(),
                             replayCommand(),
+                            compareCommand(),
                             stabilityCommand(),
                             settingsCommand(),
                         });

@@ -6,6 +6,7 @@
 #include "cli/inspection_arguments.h"
 #include "core/base/parallel.h"
 #include "core/evaluate/labels.h"
+#include "core/evaluate/masks.h"
 #include "core/highlight/report.h"
 #include "core/pipeline/frame_spec.h"
 #include "core/pipeline/session.h"
@@ -37,7 +38,7 @@ std::string predictionTable(const Inspection& inspection, const std::vector<int>
 
 Command predictCommand() {
   struct Arguments {
-    std::string session, frames, out, json, preset;
+    std::string session, frames, out, json, preset, masks;
   };
   const auto a = std::make_shared<Arguments>();
   Command c;
@@ -55,6 +56,7 @@ Command predictCommand() {
     o.option(a->frames, "--frames", "SPEC", "Frames to predict: numbers, ids, ranges, first:K or spread:K (default: all)");
     o.option(a->preset, "--preset", "NAME", "Model and settings of the session's trade-off: fast, balanced, exact or chosen");
     o.option(a->out, "--out", "DIR", "Write contours, overlays and labels there");
+    o.option(a->masks, "--masks", "DIR", "Write masks and COCO labels of all frames to this new folder");
     o.option(a->json, "--json", "FILE", "Write predictions.json's content there instead (- = standard output)");
   };
   c.run = [a](const Context& context) -> int {
@@ -87,6 +89,7 @@ Command predictCommand() {
       for (const std::string& model : result.request.models)
         context.write((folder / ("labels_" + model + ".json")).string(), cocoJson(result, model, frames));
     }
+    if (!a->masks.empty()) writeLabels(result, a->masks, context.progress());
     if (!a->json.empty()) context.write(a->json, predictionsJson(result, frames));
     if (a->json != "-") context.print(predictionTable(result, frames));
     std::string reason;

@@ -37,9 +37,11 @@ class Offscreen {
  public:
   /// NotSupported as VirtualDisplay; std::invalid_argument unless 16 <= width, height <= 16384.
   static Outcome<std::unique_ptr<Offscreen>> create(int width, int height);
+  /// The same on the display of this program, which has one. Interface thread only.
+  static std::unique_ptr<Offscreen> onOwnDisplay(int width, int height);
   ~Offscreen();
-  /// 3 channels, sRGB 0..1.
-  Image render(const SceneView& view);
+  /// 3 channels, sRGB 0..1; with a transparent background 4, the last one opacity.
+  Image render(const SceneView& view, bool transparent = false);
 
  private:
   Offscreen();

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/commands.h"
+#include "core/evaluate/compare_runs.h"
+
+namespace glint::cli {
+
+Command compareCommand() {
+  struct Arguments {
+    std::string a, b, json;
+    bool all = false;
+  };
+  const auto a = std::make_shared<Arguments>();
+  Command c;
+  c.name = "compare";
+  c.summary = "Say what differs between two sessions: inputs, parameters, results, the error of every frame";
+  c.description =
+      "Computes both sessions again and compares them: input files by their hashes, training and excluded frames, models,\n"
+      "settings with their units, what-if, key results, and the contour error of every frame that either of them has (frames\n"
+      "are the same when their ids are). Differences are a finding: the exit code is 0.";
+  c.examples =
+      "  glint compare before.glint after.glint              what differs\n"
+      "  glint compare before.glint after.glint --all --json both.json\n";
+  c.declare = [a](Options& o) {
+    o.positional(a->a, "A.glint", "A session");
+    o.positional(a->b, "B.glint", "The session to compare with");
+    o.flag(a->all, "--all", "Also what is equal");
+    o.option(a->json, "--json", "FILE", "Write the comparison there (- = standard output, instead of the text)");
+  };
+  c.run = [a](const Context& context) -> int {
+    const auto computed = [&](const std::string& file) {
+      const OpenedSession opened = openSession(file);
+      for (const std::string& w : opened.session.warnings) context.warn(w);
+      return inspect(opened.scene, opened.session.request, context.progress());
+    };
+    const Inspection first = computed(a->a), second = computed(a->b);
+    const RunComparison comparison =
+        compareRuns(sessionOf(first, context.progress()), first, sessionOf(second, context.progress()), second);
+    if (!a->json.empty()) context.write(a->json, comparisonJson(comparison, a->a, a->b));
+    if (a->json != "-") context.print("A = " + a->a + "\nB = " + a->b + "\n" + comparisonText(comparison, a->all));
+    return kDone;
+  };
+  return c;
+}
+
+}  // namespace glint::cli

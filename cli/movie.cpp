@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viz/movie.h"
+
+#include <cmath>
+
+#include "cli/commands.h"
+#include "cli/inspection_arguments.h"
+#include "cli/picture_input.h"
+#include "core/pipeline/frame_spec.h"
+#include "viz/convert.h"
+#include "viz/offscreen.h"
+#include "viz/pictures.h"
+
+namespace glint::cli {
+namespace {
+
+constexpr int kPhotographPx = 4096;  // widest photograph while looking through a camera
+
+struct MovieArguments : PictureInput {
+  std::string of = "timeline", frames, size = "1280x720", out;
+  double framesPerSecond = 0, seconds = 8;
+};
+
+int run(const MovieArguments& a, const Context& context) {
+  const auto [width, height] = parseSize(a.size);
+  const bool turning = a.of == "turntable";
+  viz::MovieFormat format{width, height, a.framesPerSecond > 0 ? a.framesPerSecond : turning ? 25.0 : 5.0};
+  if (!(format.framesPerSecond >= 0.1 && format.framesPerSecond <= 240))
+    throw InputError("", "--fps", "must be within 0.1 and 240");
+  if (!(a.seconds > 0 && a.seconds <= 3600)) throw InputError("", "--seconds", "must be above 0 and at most 3600");
+  if (width > 8192 || height > 8192) throw InputError("", "--size", "a movie is at most 8192 px wide and high");
+  viz::checkMovie(a.out, format);
+  const PictureInput::Opened opened = a.open(context);
+  const Scene& scene = *opened.scene;
+  std::vector<int> frames;
+  if (!a.frames.empty()) frames = parseFrames(a.frames, scene, "--frames");
+  for (int i = 0; a.frames.empty() && i < static_cast<int>(scene.frames.size()); ++i) frames.push_back(i);
+  std::unique_ptr<viz::Offscreen> target;
+  if (a.of != "timeline") {  // a missing display is said before the long work
+    Outcome<std::unique_ptr<viz::Offscreen>> display = viz::Offscreen::create(width, height);
+    if (!display) throw CannotAnswer{display.failure()};
+    target = std::move(*display);
+  }
+  const auto inspection = std::make_shared<const Inspection>(inspect(opened.scene, opened.request, context.progress()));
+  if (a.of == "timeline") {
+    viz::PictureOptions options;
+    options.models = opened.models;
+    options.dark = a.dark();
+    viz::writeMovie(
+        a.out, format, static_cast<int>(frames.size()),
+        [&](int i) {
+          const int f = frames[static_cast<std::size_t>(i)];
+          return viz::framePicture(*inspection, f, readPhotograph(scene.frames[static_cast<std::size_t>(f)]), format.width,
+                                   format.height, options);
+        },
+        context.progress());
+    return kDone;
+  }
+  viz::SceneView view;
+  a.apply(view, opened, inspection);
+  if (turning) {
+    view.setSelection({firstHeldOut(*inspection), opened.saved.model, opened.saved.highlight});
+    target->render(view);  // what everything is framed in is known with the first picture
+    const std::vector<viz::ViewPoint> views =
+        viz::turntable(view, std::max(2, static_cast<int>(std::lround(a.seconds * format.framesPerSecond))));
+    viz::writeMovie(
+        a.out, format, static_cast<int>(views.size()),
+        [&](int i) {
+          view.setViewPoint(views[static_cast<std::size_t>(i)]);
+          return target->render(view);
+        },
+        context.progress());
+    return kDone;
+  }
+  view.setEye(viz::Eye::Camera);
+  viz::writeMovie(
+      a.out, format, static_cast<int>(frames.size()),
+      [&](int i) {
+        const int f = frames[static_cast<std::size_t>(i)];
+        view.setSelection({f, opened.saved.model, -1});
+        const Outcome<Image> photograph = readPhotograph(scene.frames[static_cast<std::size_t>(f)]);
+        view.setPhotograph(f, photograph ? viz::toTexture(*photograph, kPhotographPx) : nullptr);
+        return target->render(view);
+      },
+      context.progress());
+  return kDone;
+}
+
+}  // namespace
+
+Command movieCommand() {
+  const auto a = std::make_shared<MovieArguments>();
+  Command c;
+  c.name = "movie";
+  c.summary = "Write a movie of the timeline or of a turntable";
+  c.description =
+      "Computes the inspection of a scene or session and draws it as a movie without opening a window.\n"
+      "  timeline      every frame with the observed contour and each model's prediction, errors below; needs no display\n"
+      "  look-through  the scene in 3D through the camera of every frame, its photograph over it\n"
+      "  turntable     the scene in 3D, turned once about its upward axis\n"
+      "The ending says what is written: .mp4, .webm, .avi, .mkv, or .png for a numbered series of pictures.\n"
+      "look-through and turntable start a private virtual display as `glint render` does.";
+  c.examples =
+      "  glint movie run.glint -o timeline.mp4                              all frames, 5 a second\n"
+      "  glint movie run.glint --of turntable --seconds 10 -o turn.webm     once around\n"
+      "  glint movie scene.json --frames 6-20 --size 1920x1080 -o part.png  pictures part_0000.png ...\n";
+  c.declare = [a](Options& o) {
+    a->declare(o);
+    o.required(a->out, "-o,--out", "MP4", "The movie");
+    o.choice(a->of, "--of", {"timeline", "look-through", "turntable"}, "What moves");
+    o.option(a->frames, "--frames", "SPEC", "timeline, look-through: numbers, ids, ranges, first:K or spread:K (default: all)");
+    o.option(a->size, "--size", "WxH", "Size of the picture, px; even");
+    o.option(a->framesPerSecond, "--fps", "F", "Pictures per second; 0 = 5 for frames, 25 for a turntable");
+    o.option(a->seconds, "--seconds", "T", "turntable: time of one turn");
+  };
+  c.run = [a](const Context& context) { return run(*a, context); };
+  return c;
+}
+
+}  // namespace glint::cli

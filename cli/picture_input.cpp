@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/picture_input.h"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "cli/inspection_arguments.h"
+
+namespace glint::cli {
+namespace {
+
+/// A session is told by what is in it, not by its name.
+bool isSession(const std::string& input) {
+  std::ifstream file(input);
+  std::string head(4096, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, file.gcount())));
+  return head.find("\"glint_session\"") != std::string::npos;
+}
+
+/// "+rays,-surface", "none,+surface": applied in order.
+void applyLayers(const std::string& text, viz::SceneView& view) {
+  if (text.empty()) return;
+  for (const std::string& part : splitList(text, "--layers")) {
+    if (part == "all" || part == "none") {
+      for (const viz::Layer& layer : viz::sceneLayers()) view.setLayerVisible(layer.name, part == "all");
+      continue;
+    }
+    const bool signedName = part[0] == '+' || part[0] == '-';
+    const std::string name = signedName ? part.substr(1) : part;
+    const auto& layers = viz::sceneLayers();
+    if (std::none_of(layers.begin(), layers.end(), [&](const viz::Layer& layer) { return layer.name == name; })) {
+      std::string known;
+      for (const viz::Layer& layer : layers) known += (known.empty() ? "" : ", ") + layer.name;
+      throw InputError("", "--layers", "no layer \"" + name + "\"; there are: " + known);
+    }
+    view.setLayerVisible(name, part[0] != '-');
+  }
+}
+
+}  // namespace
+
+std::pair<int, int> parseSize(const std::string& text) {
+  std::istringstream in(text);
+  int width = 0, height = 0;
+  char x = 0, rest = 0;
+  if (!(in >> width >> x >> height) || (x != 'x' && x != 'X') || in >> rest)
+    throw InputError("", "--size", "\"" + text + "\" is not WxH");
+  if (width < 64 || height < 64 || width > 16384 || height > 16384)
+    throw InputError("", "--size", "width and height must be within 64 and 16384 px");
+  return {width, height};
+}
+
+void PictureInput::declare(Options& o) {
+  o.positional(input, "FILE.glint|INPUT", "A session, a scene file or a folder with one");
+  o.option(layers, "--layers", "LIST",
+           "Layers of the scene to add or take away, in order: +rays,-surface; also all, none. Write --layers=-surface");
+  o.option(models, "--models", "A,B", "Models to compute and draw (default: all, or the session's)");
+  o.option(train, "--train", "SPEC", "Training frames: 0-5, first:6, spread:6, per-surface (default: first:6, or the session's)");
+  o.choice(source, "--source", {"", "radiance", "image"}, "Where highlights are found (default: radiance, or the session's)");
+  o.repeated(set, "--set", "KEY=VALUE", "Any setting by its dotted name (glint settings)");
+  o.choice(theme, "--theme", {"dark", "light"}, "Background");
+  o.option(glyphs, "--glyphs", "FACTOR", "Size of drawn cameras, points and arrows, relative to the default");
+  o.flag(allowOutside, "--allow-outside", "Accept paths that leave the folder of the scene file");
+}
+
+PictureInput::Opened PictureInput::open(const Context& context) const {
+  if (!(glyphs > 0 && glyphs <= 100)) throw InputError("", "--glyphs", "must be above 0 and at most 100");
+  Opened opened;
+  if (isSession(input)) {
+    OpenedSession session = openSession(input);
+    for (const std::string& w : session.session.warnings) context.warn(w);
+    opened.scene = session.scene;
+    opened.request = session.session.request;
+    opened.saved = session.session.view;
+  } else {
+    opened.scene = std::make_shared<const Scene>(readScene(input, ReadOptions{allowOutside}));
+    for (const std::string& w : opened.scene->warnings) context.warn(w);
+  }
+  if (opened.scene->frames.empty()) throw CannotAnswer{{Reason::TooFewViews, input + ": no frames"}};
+  if (!train.empty()) opened.request.train = train;
+  if (!source.empty()) opened.request.source = source == "image" ? FrameSource::Image : FrameSource::Radiance;
+  for (const std::string& entry : set) {
+    const std::size_t equals = entry.find('=');
+    if (equals == std::string::npos) throw InputError("", "--set " + entry, "expected KEY=VALUE");
+    opened.request.settings.setFromText(entry.substr(0, equals), entry.substr(equals + 1));
+  }
+  if (!models.empty()) {
+    const std::vector<std::string> names = splitList(models, "--models");
+    for (const std::string& name : names) modelByName(name);
+    opened.request.models = names;
+    opened.models.insert(names.begin(), names.end());
+  }
+  viz::SceneView dry;
+  applyLayers(layers, dry);
+  return opened;
+}
+
+void PictureInput::apply(viz::SceneView& view, const Opened& opened, const std::shared_ptr<const Inspection>& inspection) const {
+  view.setDarkBackground(dark());
+  view.setInspection(inspection);
+  view.setModels(opened.models);
+  view.setGlyphScale(glyphs);
+  for (const auto& [name, visible] : opened.saved.layers) {
+    const auto& all = viz::sceneLayers();
+    if (std::any_of(all.begin(), all.end(), [&, key = name](const viz::Layer& layer) { return layer.name == key; }))
+      view.setLayerVisible(name, visible);
+  }
+  applyLayers(layers, view);
+  const auto camera = opened.saved.cameras.find("scene");
+  if (camera == opened.saved.cameras.end()) return;
+  const SessionCamera& c = camera->second;
+  view.setViewPoint({c.position, c.focalPoint, c.up, c.viewAngleDeg, c.parallel});
+}
+
+int firstHeldOut(const Inspection& inspection) {
+  for (int i = 0; i < static_cast<int>(inspection.scene->frames.size()); ++i)
+    if (inspection.isHeldOut(i)) return i;
+  return 0;
+}
+
+}  // namespace glint::cli

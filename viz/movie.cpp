@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viz/movie.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <numbers>
+#include <opencv2/core.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "core/base/atomic_file.h"
+#include "core/base/outcome.h"
+#include "viz/canvas.h"
+
+namespace glint::viz {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Codes of codecs to try in turn.
+struct Container {
+  const char* ending;
+  std::vector<const char*> codecs;
+};
+const Container kContainers[] = {{".mp4", {"avc1", "mp4v"}}, {".webm", {"VP80"}}, {".avi", {"MJPG"}}, {".mkv", {"FFV1"}}};
+
+std::string endingOf(const std::string& file) {
+  std::string ending = fs::path(file).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return ending;
+}
+
+const Container* containerOf(const std::string& file) {
+  const std::string ending = endingOf(file);
+  for (const Container& c : kContainers)
+    if (ending == c.ending) return &c;
+  return nullptr;
+}
+
+Image checked(Image picture, const MovieFormat& format) {
+  require(picture.width == format.width && picture.height == format.height && picture.channels == 3,
+          "writeMovie: a picture has another size than the movie");
+  return picture;
+}
+
+cv::Mat toBgr(const Image& picture) {
+  cv::Mat pixels(picture.height, picture.width, CV_8UC3);
+  for (int y = 0; y < picture.height; ++y) {
+    unsigned char* row = pixels.ptr<unsigned char>(y);
+    for (int x = 0; x < picture.width; ++x)
+      for (int c = 0; c < 3; ++c)
+        row[3 * x + c] = static_cast<unsigned char>(std::lround(255 * std::clamp(picture.at(x, y, 2 - c), 0.f, 1.f)));
+  }
+  return pixels;
+}
+
+void writeSeries(const std::string& file, const MovieFormat& format, int frames, const std::function<Image(int)>& picture,
+                 const ProgressFn& progress) {
+  std::vector<fs::path> written;
+  try {
+    for (int i = 0; i < frames; ++i) {
+      if (!report(progress, {"frame", i, frames})) throw Stopped{};
+      char number[32];
+      std::snprintf(number, sizeof number, "_%04d.png", i);
+      const fs::path one = fs::path(file).parent_path() / (fs::path(file).stem().string() + number);
+      const Image frame = checked(picture(i), format);
+      writePng(frame, one.string());
+      written.push_back(one);
+    }
+  } catch (...) {
+    std::error_code ignored;
+    for (const fs::path& one : written) fs::remove(one, ignored);
+    throw;
+  }
+}
+
+void encode(const std::string& file, const fs::path& temporary, const MovieFormat& format, int frames,
+            const std::function<Image(int)>& picture, const ProgressFn& progress) {
+  cv::VideoWriter writer;
+  for (const char* c : containerOf(file)->codecs)
+    if (writer.open(temporary.string(), cv::VideoWriter::fourcc(c[0], c[1], c[2], c[3]), format.framesPerSecond,
+                    cv::Size(format.width, format.height)))
+      break;
+  if (!writer.isOpened()) throw InputError(file, "", "cannot be written, or this computer has no encoder for " + endingOf(file));
+  for (int i = 0; i < frames; ++i) {
+    if (!report(progress, {"frame", i, frames})) throw Stopped{};
+    writer.write(toBgr(checked(picture(i), format)));
+  }
+  writer.release();
+  // The writer tells of no failure: a full disk shows only here.
+  cv::VideoCapture back(temporary.string());
+  int found = 0;
+  while (back.grab()) {
+    if (!report(progress, {"reading back", found, frames})) throw Stopped{};
+    ++found;
+  }
+  if (found != frames)
+    throw InputError(file, "",
+                     std::to_string(found) + " of " + std::to_string(frames) + " frames could be read back; is the disk full?");
+}
+
+}  // namespace
+
+void checkMovie(const std::string& file, const MovieFormat& f) {
+  require(f.width >= 16 && f.height >= 16 && f.width <= 8192 && f.height <= 8192,
+          "writeMovie: size must be within 16 and 8192 pixels");
+  require(f.framesPerSecond >= 0.1 && f.framesPerSecond <= 240, "writeMovie: frames per second must be within 0.1 and 240");
+  if (endingOf(file) == ".png") return;
+  if (!containerOf(file)) throw InputError(file, "", "a movie ends in .mp4, .webm, .avi, .mkv, or .png for a series of pictures");
+  if (f.width % 2 || f.height % 2) throw InputError(file, "", "width and height of a video must be even");
+}
+
+void writeMovie(const std::string& file, const MovieFormat& format, int frames, const std::function<Image(int)>& picture,
+                const ProgressFn& progress) {
+  require(frames > 0, "writeMovie: no frames");
+  checkMovie(file, format);
+  if (endingOf(file) == ".png") return writeSeries(file, format, frames, picture, progress);
+  atomicWrite(fs::path(file), [&](const fs::path& temporary) { encode(file, temporary, format, frames, picture, progress); });
+}
+
+std::vector<ViewPoint> turntable(const ViewPoint& start, const Eigen::Vector3d& axis, int frames) {
+  require(frames > 0 && axis.norm() > 0, "turntable: needs an axis and frames");
+  std::vector<ViewPoint> views;
+  for (int i = 0; i < frames; ++i) {
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(2 * std::numbers::pi * i / frames, axis.normalized()).toRotationMatrix();
+    ViewPoint v = start;
+    v.position = start.focalPoint + turn * (start.position - start.focalPoint);
+    v.up = turn * start.up;
+    views.push_back(v);
+  }
+  return views;
+}
+
+std::vector<ViewPoint> turntable(SceneView& view, int frames) {
+  const ViewPoint start = view.viewPoint();
+  view.lookAlong(AxisView::Front);
+  const Eigen::Vector3d up = view.viewPoint().up;
+  view.setViewPoint(start);
+  return turntable(start, up, frames);
+}
+
+}  // namespace glint::viz
