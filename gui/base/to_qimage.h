@@ -7,7 +7,7 @@
 
 namespace glint::gui {
 
-/// 8-bit copy of a display image (sRGB 0..1, 1 or 3 channels); values outside are clamped, NaN is 0.
+/// 8-bit copy of a display image (sRGB 0..1, 1 or 3 channels, or 4 with opacity); values outside are clamped, NaN is 0.
 QImage toQImage(const Image& image);
 
 }  // namespace glint::gui

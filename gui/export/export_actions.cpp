@@ -15,11 +15,15 @@
 
 #include "core/evaluate/command_text.h"
 #include "core/evaluate/labels.h"
+#include "core/evaluate/masks.h"
 #include "core/evaluate/report.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/to_qimage.h"
 #include "gui/document/figure.h"
+#include "gui/export/figure_actions.h"
+#include "gui/export/movie_actions.h"
+#include "gui/export/repro_actions.h"
 #include "viz/pictures.h"
 
 namespace glint::gui {
@@ -45,7 +49,28 @@ std::vector<int> allFrames(const Inspection& inspection) {
 }  // namespace
 
 ExportActions::ExportActions(const Engine& engine, Document& document, QWidget* window)
-    : QObject(window), engine_(engine), document_(document), window_(window) {}
+    : QObject(window), engine_(engine), document_(document), window_(window), long_(window) {
+  repro_ = new ReproActions(document_, long_, window_);
+  connect(repro_, &ReproActions::problem, this, &ExportActions::problem);
+  connect(repro_, &ReproActions::message, this, &ExportActions::message);
+  connect(&long_, &LongJob::problem, this, &ExportActions::problem);
+  connect(&long_, &LongJob::message, this, &ExportActions::message);
+}
+
+void ExportActions::setViews(ScenePanel& scene, FramePanel& frame) {
+  const auto wrote = [this](const QString& file) { emit message(tr("Wrote %1").arg(QDir::toNativeSeparators(file))); };
+  figures_ = new FigureActions(engine_, document_, scene, frame, long_, window_);
+  connect(figures_, &FigureActions::problem, this, &ExportActions::problem);
+  connect(figures_, &FigureActions::written, this, wrote);
+  movies_ = new MovieActions(document_, scene, frame, long_, window_);
+  connect(movies_, &MovieActions::problem, this, &ExportActions::problem);
+  connect(movies_, &MovieActions::written, this, wrote);
+}
+
+void ExportActions::setSnapshot(std::function<Opened()> snapshot) {
+  snapshot_ = std::move(snapshot);
+  if (figures_) figures_->setSnapshot(snapshot_);
+}
 
 void ExportActions::ask(const QString& title, const QString& name, const QString& filter, const std::function<Write()>& prepare) {
   if (!document_.inspection()) return;
@@ -68,6 +93,8 @@ void ExportActions::ask(const QString& title, const QString& name, const QString
 }
 
 void ExportActions::addActions(Actions& actions, QMenu* menu) {
+  if (figures_) figures_->addActions(actions, menu);
+  menu->addSeparator();
   const auto picture = [this](const QString& title, const QString& name, auto draw) {
     ask(title, name, tr("Pictures (*.png)"), [this, draw]() -> Write {
       return [this, draw, inspection = document_.inspection(), frame = document_.selection().frame, state = snapshot_(),
@@ -78,24 +105,26 @@ void ExportActions::addActions(Actions& actions, QMenu* menu) {
       };
     });
   };
-  actions.add("export.frame", menu, tr("&Frame as picture…"), [=, this] {
+  actions.add("export.frame", menu, tr("&Frame with its errors…"), [=, this] {
     picture(
         tr("Frame as picture"), QStringLiteral("frame.png"), [](const Inspection& i, int frame, const viz::PictureOptions& o) {
           return viz::framePicture(i, frame, readPhotograph(i.given->frames[std::size_t(frame)]), kFigureWidth, kFigureHeight, o);
         });
   });
-  actions.add("export.ladder", menu, tr("Model &ladder as picture…"), [=, this] {
+  actions.add("export.ladder", menu, tr("Model &ladder…"), [=, this] {
     picture(tr("Model ladder as picture"), QStringLiteral("ladder.png"),
             [](const Inspection& i, int frame, const viz::PictureOptions& o) {
               return viz::ladderPicture(i, frame, readPhotograph(i.given->frames[std::size_t(frame)]), kFigureWidth,
                                         kFigureHeight, o);
             });
   });
-  actions.add("export.plots", menu, tr("Errors as &picture…"), [=, this] {
+  actions.add("export.plots", menu, tr("Errors over frames as &picture…"), [=, this] {
     picture(tr("Errors as picture"), QStringLiteral("errors.png"), [](const Inspection& i, int, const viz::PictureOptions& o) {
       return viz::plotsPicture(i, kFigureWidth, kFigureHeight, o);
     });
   });
+  menu->addSeparator();
+  if (movies_) movies_->addActions(actions, menu);
   menu->addSeparator();
   const auto report = [this] {
     ReportContext context;
@@ -128,12 +157,28 @@ void ExportActions::addActions(Actions& actions, QMenu* menu) {
       };
     });
   });
+  actions.add("export.masks", menu, tr("Labels with m&asks…"),
+              [this] {
+                if (!document_.inspection()) return;
+                const QString folder =
+                    QFileDialog::getSaveFileName(window_, tr("New folder for labels"), suggestedFile(document_, "labels", {}));
+                if (!folder.isEmpty()) writeLabels(folder);
+              },
+              {{}, {}, tr("A folder with a mask for each frame, light and model, and COCO labels")});
+  repro_->addActions(actions, menu);
   menu->addSeparator();
   actions.add("export.command", menu, tr("Copy as co&mmand"), [this] { copyCommand(); },
               {{QKeySequence("Ctrl+Shift+C")}, {}, tr("The command line that computes what is on screen")});
   actions.add("export.diagnostic", menu, tr("Copy a &diagnostic report"), [this] {
     QApplication::clipboard()->setText(diagnosticReport());
     emit message(tr("The diagnostic report is on the clipboard; it names no folder of this machine"));
+  });
+}
+
+void ExportActions::writeLabels(const QString& folder) {
+  long_.start(tr("Writing labels"), [this, folder, inspection = document_.inspection()](const ProgressFn& progress) {
+    glint::writeLabels(*inspection, folder.toStdString(), progress);
+    return [this, folder] { emit message(tr("Wrote %1").arg(QDir::toNativeSeparators(folder))); };
   });
 }
 

@@ -7,10 +7,17 @@
 #include "gui/base/actions.h"
 #include "gui/base/latest_job.h"
 #include "gui/document/document.h"
+#include "gui/export/long_job.h"
 
 class QWidget;
 
 namespace glint::gui {
+
+class FigureActions;
+class FramePanel;
+class MovieActions;
+class ReproActions;
+class ScenePanel;
 
 /// What leaves the program: figures with the session inside, reports, labels, the command line of what is on screen, a diagnostic
 /// report. The `write…` functions do the work and throw InputError; the actions ask for a file and run them off the interface
@@ -19,12 +26,20 @@ class ExportActions : public QObject {
   Q_OBJECT
  public:
   ExportActions(const Engine& engine, Document& document, QWidget* window);
+  /// Whose pictures leave the program. Before addActions.
+  void setViews(ScenePanel& scene, FramePanel& frame);
   void addActions(Actions& actions, QMenu* menu);
   /// The state to put into figures.
-  void setSnapshot(std::function<Opened()> snapshot) { snapshot_ = std::move(snapshot); }
+  void setSnapshot(std::function<Opened()> snapshot);
   /// Lines of the log, for the diagnostic report.
   void setLog(std::function<QString()> log) { log_ = std::move(log); }
-  bool busy() const { return job_.busy(); }
+  bool busy() const { return job_.busy() || long_.busy(); }
+  FigureActions* figures() { return figures_; }
+  MovieActions* movies() { return movies_; }
+  ReproActions* repro() { return repro_; }
+  /// Masks and COCO labels of all models as a folder, off the interface thread.
+  void writeLabels(const QString& folder);
+  LongJob* longJob() { return &long_; }
 
   /// The command line of what is on screen; on failure the reason.
   Outcome<std::string> command() const;
@@ -48,6 +63,10 @@ class ExportActions : public QObject {
   std::function<Opened()> snapshot_;
   std::function<QString()> log_;
   LatestJob job_;
+  LongJob long_;
+  FigureActions* figures_ = nullptr;
+  MovieActions* movies_ = nullptr;
+  ReproActions* repro_;
 };
 
 }  // namespace glint::gui

@@ -22,6 +22,7 @@ namespace glint::gui {
 namespace {
 constexpr double kMinZoom = 0.02, kMaxZoom = 512;
 constexpr double kGridFromZoom = 16;  // below this the pixel grid would hide the photograph
+constexpr int kFigurePhotographPx = 2400;  // an enlarged part is not made larger than this
 const QColor kHalo(0, 0, 0, 170);
 
 QPointF positionOf(const QMouseEvent& e) {
@@ -128,6 +129,11 @@ void FrameCanvas::onePixelPerPixel() { setZoom(1 / devicePixelRatioF(), QRectF(r
 void FrameCanvas::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.fillRect(rect(), palette().color(QPalette::Dark));
+  draw(painter);
+  if (stale_) drawChip(painter, {8, caption_.isEmpty() ? 8 : 34}, tr("updating…"), QColor(0xf0, 0xc0, 0x50));
+}
+
+void FrameCanvas::draw(QPainter& painter) const {
   if (photograph_.isNull()) {
     painter.setPen(palette().color(QPalette::PlaceholderText));
     painter.drawText(rect().adjusted(16, 16, -16, -16), Qt::AlignCenter | Qt::TextWordWrap, message_);
@@ -137,7 +143,31 @@ void FrameCanvas::paintEvent(QPaintEvent*) {
   drawOverlay(painter);
   if (!photograph_.isNull() && !scale_.empty()) drawScale(painter);
   if (!caption_.isEmpty()) drawChip(painter, {8, 8}, caption_, Qt::white);
-  if (stale_) drawChip(painter, {8, caption_.isEmpty() ? 8 : 34}, tr("updating…"), QColor(0xf0, 0xc0, 0x50));
+}
+
+void FrameCanvas::drawFigure(QPainter& painter, const QRectF& target, const QColor& background) const {
+  const double scale = std::min(target.width() / std::max(1, width()), target.height() / std::max(1, height()));
+  FrameCanvas copy;
+  copy.figure_ = true;
+  copy.resize(int(std::ceil(target.width() / scale)), int(std::ceil(target.height() / scale)));
+  copy.picture_ = picture_;
+  copy.photograph_ = photograph_;
+  copy.scale_ = scale_;
+  copy.message_ = message_;
+  copy.caption_ = caption_;
+  copy.overlay_ = overlay_;
+  if (fitted_)
+    copy.fit();
+  else
+    copy.lookAt(centre(), zoom_);
+  painter.save();
+  painter.setClipRect(target);
+  if (background.isValid()) painter.fillRect(target, background);
+  painter.translate(target.topLeft());
+  painter.scale(scale, scale);
+  painter.setFont(font());
+  copy.draw(painter);
+  painter.restore();
 }
 
 void FrameCanvas::drawChip(QPainter& painter, const QPoint& corner, const QString& text, const QColor& colour) const {
@@ -199,7 +229,14 @@ void FrameCanvas::drawPhotograph(QPainter& painter) const {
   if (visible.isEmpty()) return;
   const QRectF target(widgetFromPixel({visible.x() - 0.5, visible.y() - 0.5}), QSizeF(visible.size()) * zoom_);
   painter.setRenderHint(QPainter::SmoothPixmapTransform, zoom_ * devicePixelRatioF() < 1.999);
-  painter.drawImage(target, photograph_, QRectF(visible));
+  if (figure_) {
+    // Large pixels stay squares also where the reader of the file would smooth them.
+    const int enlarge = zoom_ < 2 ? 1 : std::clamp(kFigurePhotographPx / std::max(visible.width(), visible.height()), 1, 16);
+    const QImage part = photograph_.copy(visible);
+    painter.drawImage(target, enlarge == 1 ? part : part.scaled(part.size() * enlarge));
+  } else {
+    painter.drawImage(target, photograph_, QRectF(visible));
+  }
   if (zoom_ < kGridFromZoom) return;
   painter.setPen(QPen(QColor(128, 128, 128, 70), 0));
   for (int x = visible.left(); x <= visible.right() + 1; ++x) {

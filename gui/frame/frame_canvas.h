@@ -41,6 +41,10 @@ class FrameCanvas : public QWidget {
   static constexpr double kNearScreenPx = 7;
   /// @param anchor  widget position that keeps its photograph pixel.
   void setZoom(double zoom, const QPointF& anchor);
+  /// What the canvas shows, drawn again over `target` (painter units): the same photograph pixel in the middle, and at least the
+  /// part on screen; strokes and texts keep their size relative to it. Vector formats get strokes as strokes.
+  /// @param background  fills what lies beside the photograph; invalid = nothing does.
+  void drawFigure(QPainter& painter, const QRectF& target, const QColor& background) const;
   /// Puts a photograph pixel in the middle.
   void lookAt(const Pixel& pixel, double zoom);
 
@@ -70,6 +74,7 @@ class FrameCanvas : public QWidget {
   bool event(QEvent* e) override;
 
  private:
+  void draw(QPainter& painter) const;
   void drawPhotograph(QPainter& painter) const;
   void drawOverlay(QPainter& painter) const;
   void drawValues(QPainter& painter, const QRect& visible) const;
@@ -86,6 +91,7 @@ class FrameCanvas : public QWidget {
   QPointF corner_{0, 0};  ///< widget position of the photograph's top-left corner, pixel (-0.5, -0.5)
   bool fitted_ = true;    ///< follows the widget's size until the user zooms or pans
   bool stale_ = false;
+  bool figure_ = false;  ///< drawn for a file: the photograph is cut beforehand, which vector formats cannot do
   bool dragging_ = false;
   QPointF pressed_, last_;
 };

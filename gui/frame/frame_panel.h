@@ -44,6 +44,8 @@ class FramePanel : public QWidget {
   void addActions(Actions& actions, QMenu* menu);
   /// The image points of a walk, as far as `step`; null = none.
   void showWalk(std::shared_ptr<const viz::WalkStory> walk, int step);
+  /// What of the overlays is shown, and how.
+  viz::OverlayOptions overlayOptions() const;
   /// Zooms to the selected frame's highlights.
   void goToHighlight();
 
@@ -62,7 +64,6 @@ class FramePanel : public QWidget {
   void selectAt(double x, double y);
   void selectModelAt(double x, double y);
   void followLink(const QString& link);
-  viz::OverlayOptions overlayOptions() const;
 
   Document& document_;
   PhotoLoader loader_, secondLoader_;

@@ -117,6 +117,7 @@ void SceneViews::setLayerVisible(const std::string& name, bool visible) {
 }
 
 void SceneViews::setDark(bool dark) {
+  dark_ = dark;
   for (auto& view : views_) view->setDarkBackground(dark);
   scheduleRender();
 }
@@ -138,6 +139,25 @@ void SceneViews::apply(const SceneOptions& options) {
   }
   fetchPhotograph();
   scheduleRender();
+}
+
+std::unique_ptr<viz::SceneView> SceneViews::copyOfActive() {
+  auto copy = std::make_unique<viz::SceneView>(cache_);
+  const SceneOptions::View& o = options_.views[std::size_t(active_)];
+  copy->setDarkBackground(dark_);
+  copy->setInspection(inspection_);
+  copy->setSelection(selection_);
+  for (const viz::Layer& layer : viz::sceneLayers()) copy->setLayerVisible(layer.name, active().layerVisible(layer.name));
+  copy->setModels(o.models);
+  copy->setGlyphScale(options_.glyphScale);
+  copy->setSolo(options_.solo);
+  copy->setCameraColours(options_.colours);
+  copy->setPhotographOpacity(options_.opacity);
+  copy->setParallel(options_.parallel);
+  copy->setViewPoint(active().viewPoint());
+  copy->setEye(o.eye);
+  if (copy->looksThrough()) copy->setPhotograph(selection_.frame, photographs_->get(selection_.frame, kPhotographPx).texture);
+  return copy;
 }
 
 void SceneViews::arrange() {

@@ -30,6 +30,8 @@ class SceneViews : public QWidget {
   int activeView() const { return active_; }
   viz::SceneView& active() { return view(active_); }
   QVTKOpenGLNativeWidget* widget() { return widget_; }
+  /// A view of its own that shows what the active one shows, for pictures that leave the program.
+  std::unique_ptr<viz::SceneView> copyOfActive();
   bool busy() const { return photographs_->busy(); }
 
   void setScene(std::shared_ptr<const Scene> scene);
@@ -79,7 +81,7 @@ class SceneViews : public QWidget {
   QPointF pressed_, last_;
   Drag drag_ = Drag::None;
   int active_ = 0, shown_ = 0;
-  bool renderPending_ = false;
+  bool renderPending_ = false, dark_ = true;
 };
 
 }  // namespace glint::gui

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/window/file_actions.h"
 
+#include <QDir>
 #include <QEventLoop>
 #include <QFileDialog>
 #include <QFileInfo>
@@ -9,15 +10,37 @@
 #include <QMimeData>
 #include <QSettings>
 #include <QUrl>
+#include <filesystem>
+#include <system_error>
+#include <utility>
 
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/document/figure.h"
 
 namespace glint::gui {
 
 namespace {
 constexpr int kRecent = 8;
 const QString kRecentKey = QStringLiteral("recent");
+constexpr int kFoldersAbove = 3;  // a photograph lies that deep in its scene's folder at most
+
+/// The frame whose picture (photograph, radiance, depth, normals or mask) a file is; -1 = none.
+int frameOfPicture(const Scene& scene, const QString& file) {
+  std::error_code ignored;
+  const std::filesystem::path wanted = std::filesystem::weakly_canonical(file.toStdString(), ignored);
+  for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+    const Frame& f = scene.frames[i];
+    for (const std::filesystem::path* path : {&f.image, &f.radiance, &f.depth, &f.normals, &f.mask})
+      if (path->filename() == wanted.filename() && std::filesystem::weakly_canonical(*path, ignored) == wanted) return int(i);
+  }
+  return -1;
+}
+
+bool isPicture(const QString& path) {
+  static const QStringList endings{"png", "jpg", "jpeg", "tif", "tiff", "exr", "bmp"};
+  return QFileInfo(path).isFile() && endings.contains(QFileInfo(path).suffix().toLower());
+}
 }  // namespace
 
 FileActions::FileActions(const Engine& engine, Document& document, Runner& runner, QWidget* window)
@@ -62,6 +85,23 @@ QString FileActions::dropped(const QMimeData* data) {
   for (const QUrl& url : data->urls())
     if (url.isLocalFile()) return url.toLocalFile();
   return {};
+}
+
+void FileActions::drop(const QString& path) {
+  if (path.isEmpty()) return;
+  if (!isPicture(path) || !sessionInFigure(path).isEmpty()) return open(path);
+  if (document_.scene())
+    if (const int frame = frameOfPicture(*document_.scene(), path); frame >= 0) return document_.selectFrame(frame);
+  QDir folder = QFileInfo(path).absoluteDir();
+  for (int up = 0; up < kFoldersAbove; ++up) {
+    const QString scene = folder.filePath(QStringLiteral("scene.json"));
+    if (QFileInfo::exists(scene) && document_.inputFile() != scene) {
+      photographToSelect_ = path;
+      return open(scene);
+    }
+    if (!folder.cdUp()) break;
+  }
+  emit problem(tr("%1 is no photograph of a frame, and holds no session").arg(QFileInfo(path).fileName()));
 }
 
 bool FileActions::mayDiscard() {
@@ -115,6 +155,11 @@ void FileActions::finishOpen(const OpenedPtr& opened) {
   remember(toQString(opened->path));
   if (!opened->warning.empty()) emit problem(toQString(opened->warning));
   for (const std::string& warning : opened->scene->warnings) emit message(toQString(warning));
+  if (const QString picture = std::exchange(photographToSelect_, {}); !picture.isEmpty()) {
+    const int frame = frameOfPicture(*opened->scene, picture);
+    if (frame >= 0) return document_.selectFrame(frame);
+    emit problem(tr("%1 is no photograph of a frame of %2").arg(QFileInfo(picture).fileName(), toQString(opened->path)));
+  }
   if (frameToSelect_.isEmpty()) return;
   const std::string wanted = frameToSelect_.toStdString();
   frameToSelect_.clear();

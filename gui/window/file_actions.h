@@ -35,6 +35,9 @@ class FileActions : public QObject {
  public slots:
   void openDialog();
   void openFolderDialog();
+  /// What was dropped on the window: a folder, scene, session or figure is opened; a photograph selects its frame, in the open
+  /// scene or in the one that lies above it.
+  void drop(const QString& path);
   void open(const QString& path);
   /// Opens a session whose scene lies elsewhere now.
   void openRelinked(const QString& session, const QString& scene);
@@ -62,7 +65,7 @@ class FileActions : public QObject {
   Document& document_;
   Runner& runner_;
   QWidget* window_;
-  QString frameToSelect_;
+  QString frameToSelect_, photographToSelect_;
   std::shared_ptr<const Scene> savingScene_;  ///< not null while a save is under way
   ViewState saving_;                          ///< what it writes
   std::shared_ptr<const Tradeoff> savingTradeoff_;

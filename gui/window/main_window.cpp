@@ -28,6 +28,7 @@
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/frame_panel.h"
 #include "gui/frame/ladder_panel.h"
+#include "gui/panels/comparison_panel.h"
 #include "gui/panels/error_table.h"
 #include "gui/panels/numbers_panel.h"
 #include "gui/panels/parameter_panel.h"
@@ -241,6 +242,10 @@ void MainWindow::buildDocks() {
     log(tr("Speed and accuracy: %1").arg(toQString(tradeoff->reason)));
     if (document_.stale()) recompute();  // the measurement took the place of a run that was under way
   });
+  comparison_ = new ComparisonPanel(engine_, document_, *exports_->longJob());
+  docks_.add("comparison", tr("Comparison"), comparison_, Qt::BottomDockWidgetArea, "errors");
+  connect(comparison_, &ComparisonPanel::problem, this, &MainWindow::showProblem);
+  connect(comparison_, &ComparisonPanel::shown, this, [this] { docks_.bring(QStringLiteral("comparison")); });
   connect(plots_, &PlotsPanel::problem, this, &MainWindow::showProblem);
   connect(plots_, &PlotsPanel::shown, this, [this] { docks_.bring(QStringLiteral("plots")); });
   connect(plots_, &PlotsPanel::influenceRequested, this, [this] {
@@ -258,6 +263,8 @@ void MainWindow::buildMenus() {
   QMenu* file = menuBar()->addMenu(tr("&File"));
   files_->addActions(actions_, file);
   file->addSeparator();
+  comparison_->addActions(actions_, file);
+  exports_->setViews(*scene_, *frame_);
   exports_->addActions(actions_, file->addMenu(tr("&Export")));
   file->addSeparator();
   actions_.add("file.quit", file, tr("&Quit"), [this] { close(); }, {QKeySequence::keyBindings(QKeySequence::Quit)});
@@ -269,7 +276,12 @@ void MainWindow::buildMenus() {
   edit->addSeparator();
   actions_.add("edit.copy-numbers", edit, tr("Copy &numbers"), [this] { numbers_->copy(); }, {{}, "copy"});
   actions_.add("edit.copy-error-rows", edit, tr("Copy &error rows"), [this] { errors_->copySelection(); });
-  actions_.add("edit.stop", edit, tr("&Stop what runs"), [this] { runner_.cancel(); }, {{Qt::Key_Escape}, "stop"});
+  actions_.add("edit.stop", edit, tr("&Stop what runs"),
+               [this] {
+                 runner_.cancel();
+                 exports_->longJob()->cancel();
+               },
+               {{Qt::Key_Escape}, "stop"});
 
   edit->addSeparator();
   palette_ = new Palette(
@@ -409,6 +421,6 @@ void MainWindow::dragEnterEvent(QDragEnterEvent* e) {
   if (!FileActions::dropped(e->mimeData()).isEmpty()) e->acceptProposedAction();
 }
 
-void MainWindow::dropEvent(QDropEvent* e) { files_->open(FileActions::dropped(e->mimeData())); }
+void MainWindow::dropEvent(QDropEvent* e) { files_->drop(FileActions::dropped(e->mimeData())); }
 
 }  // namespace glint::gui

@@ -16,6 +16,7 @@ class QStackedWidget;
 
 namespace glint::gui {
 
+class ComparisonPanel;
 class ErrorTable;
 class ExportActions;
 class ExplainPanel;
@@ -59,6 +60,7 @@ class MainWindow : public QMainWindow {
   Palette* commandPalette() const { return palette_; }
   FileActions* files() { return files_; }
   ExportActions* exports() { return exports_; }
+  ComparisonPanel* comparison() { return comparison_; }
   QString lastError() const { return lastError_; }
 
  signals:
@@ -95,6 +97,7 @@ class MainWindow : public QMainWindow {
   ScenePanel* scene_ = nullptr;
   FramePanel* frame_ = nullptr;
   Timeline* timeline_ = nullptr;
+  ComparisonPanel* comparison_ = nullptr;
   ErrorTable* errors_ = nullptr;
   ExplainPanel* explain_ = nullptr;
   NumbersPanel* numbers_ = nullptr;

@@ -53,7 +53,9 @@ QObject* makeLinkingTest();
 QObject* makeWindowTest();
 QObject* makeSessionTest();
 QObject* makeProgramTest();
+QObject* makeComparisonTest();
 QObject* makeExportTest();
+QObject* makeFigureTest();
 QObject* makeExplainTest();
 QObject* makeRecoveryTest();
 int runUntilKilled();  ///< see recovery_test.cpp

@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
       {"recovery", makeRecoveryTest},    {"explain", makeExplainTest},   {"export", makeExportTest},
       {"plots", makePlotsTest},          {"tradeoff", makeTradeoffTest}, {"parameters", makeParametersTest},
       {"picking", makePickingTest},      {"random", makeRandomTest},
+      {"figure", makeFigureTest},        {"comparison", makeComparisonTest},
   };
   if (argc < 2) return std::fputs("usage: test_gui CLASS [QTest options]\n", stderr), 2;
   QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/export/figure_actions.h"
+
+#include <QVTKOpenGLNativeWidget.h>
+
+#include <QBuffer>
+#include <QDir>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QPageSize>
+#include <QPainter>
+#include <QPdfWriter>
+#include <QRegularExpression>
+#include <QSaveFile>
+#include <QSvgGenerator>
+#include <utility>
+
+#include "gui/base/theme.h"
+#include "gui/base/to_qimage.h"
+#include "gui/document/figure.h"
+#include "gui/export/long_job.h"
+#include "gui/frame/frame_canvas.h"
+#include "gui/frame/frame_panel.h"
+#include "gui/scene/scene_panel.h"
+#include "gui/scene/scene_views.h"
+#include "viz/offscreen.h"
+
+namespace glint::gui {
+
+namespace {
+constexpr int kDotsPerInch = 96;  // of SVG and PDF: a figure px is 1/96 inch, as in web pages
+constexpr int kBetweenPx = 2;     // two frames side by side
+
+/// Device px of a widget; of a hidden one, which has no size, something usual.
+QSize shownSize(const QWidget& widget) {
+  return widget.isVisible() ? widget.size() * widget.devicePixelRatioF() : QSize(1280, 800);
+}
+
+QColor backgroundOf(const FigureLook& look) {
+  if (look.transparent) return {};
+  return look.dark ? QColor(0x1b, 0x1d, 0x20) : QColor(Qt::white);
+}
+
+void writeBytes(const QString& file, const QByteArray& bytes) {
+  QSaveFile out(file);
+  if (!out.open(QIODevice::WriteOnly) || out.write(bytes) != bytes.size() || !out.commit())
+    throw InputError(file.toStdString(), "", "cannot be written: " + out.errorString().toStdString());
+}
+}  // namespace
+
+QString suggestedFile(const Document& document, const QString& what, const QString& ending) {
+  const QFileInfo input(document.sessionFile().isEmpty() ? document.inputFile() : document.sessionFile());
+  const QString base = input.fileName() == QLatin1String("scene.json") ? input.dir().dirName() : input.completeBaseName();
+  return input.dir().filePath(QStringLiteral("%1-%2%3").arg(base, what, ending));
+}
+
+QString askForFile(QWidget* window, const QString& title, const QString& suggestion, const QString& filters) {
+  QString filter;
+  QString file = QFileDialog::getSaveFileName(window, title, suggestion, filters, &filter);
+  if (file.isEmpty() || !QFileInfo(file).suffix().isEmpty()) return file;
+  const QRegularExpressionMatch ending = QRegularExpression(QStringLiteral("\\*(\\.\\w+)")).match(filter);
+  return file + ending.captured(1);
+}
+
+FigureActions::FigureActions(const Engine& engine, Document& document, ScenePanel& scene, FramePanel& frame, LongJob& job,
+                             QWidget* window)
+    : QObject(window), engine_(engine), document_(document), scene_(scene), frame_(frame), job_(job), window_(window) {}
+
+void FigureActions::addActions(Actions& actions, QMenu* menu) {
+  actions.add("export.scene", menu, tr("&3D view…"),
+              [this] {
+                if (!document_.inspection()) return;
+                FigureDialog dialog(tr("3D view as a picture"), QStringLiteral("scene"), shownSize(*scene_.views().widget()),
+                                    currentTheme() == Theme::Dark, window_);
+                if (dialog.exec() != QDialog::Accepted) return;
+                const QString file = askForFile(window_, dialog.windowTitle(), suggestedFile(document_, "3d", ".png"),
+                                                tr("Pictures with the session inside (*.png)"));
+                if (!file.isEmpty()) writeScene(dialog.look(), file);
+              },
+              {{}, {}, tr("As it is on screen, at any size, also with a transparent background")});
+  actions.add(
+      "export.frame-view", menu, tr("Frame &view…"),
+      [this] {
+        if (!document_.scene()) return;
+        QSize shown = shownSize(*frame_.canvas());
+        if (frame_.secondCanvas()->isVisible()) shown.rwidth() *= 2;
+        FigureDialog dialog(tr("Frame view as a picture"), QStringLiteral("frame"), shown, currentTheme() == Theme::Dark,
+                            window_);
+        if (dialog.exec() != QDialog::Accepted) return;
+        const QString file = askForFile(
+            window_, dialog.windowTitle(), suggestedFile(document_, "frame", ".png"),
+            tr("Pictures with the session inside (*.png);;Overlays as strokes, SVG (*.svg);;Overlays as strokes, PDF (*.pdf)"));
+        if (!file.isEmpty()) writeFrame(dialog.look(), file);
+      },
+      {{}, {}, tr("As it is on screen, at any size; as SVG or PDF the contours stay strokes over the photograph")});
+}
+
+void FigureActions::write(const QString& file, std::function<void()> work) {
+  job_.start(tr("Writing %1").arg(QFileInfo(file).fileName()), [this, file, work = std::move(work)](const ProgressFn&) {
+    work();
+    return [this, file] { emit written(file); };
+  });
+}
+
+void FigureActions::writeScene(const FigureLook& look, const QString& file) {
+  if (!file.endsWith(QStringLiteral(".png"), Qt::CaseInsensitive))
+    return void(emit problem(tr("%1: the 3D view is saved as .png").arg(file)));
+  const std::unique_ptr<viz::SceneView> view = scene_.views().copyOfActive();
+  view->setDarkBackground(look.dark);
+  const Image picture = viz::Offscreen::onOwnDisplay(look.size.width(), look.size.height())->render(*view, look.transparent);
+  write(file, [this, picture, state = snapshot_(), file] { writeFigure(toQImage(picture), state, engine_, file); });
+}
+
+void FigureActions::paintFrames(QPainter& painter, const FigureLook& look) const {
+  const QColor background = backgroundOf(look);
+  const QRectF all({0, 0}, QSizeF(look.size));
+  if (!frame_.secondCanvas()->isVisible()) return frame_.canvas()->drawFigure(painter, all, background);
+  const QSizeF half((all.width() - kBetweenPx) / 2, all.height());
+  frame_.canvas()->drawFigure(painter, {all.topLeft(), half}, background);
+  frame_.secondCanvas()->drawFigure(painter, {QPointF(half.width() + kBetweenPx, 0), half}, background);
+}
+
+void FigureActions::writeFrame(const FigureLook& look, const QString& file) {
+  const QString ending = QFileInfo(file).suffix().toLower();
+  if (ending == QLatin1String("png")) {
+    QImage picture(look.size, QImage::Format_ARGB32);
+    picture.fill(Qt::transparent);
+    {
+      QPainter painter(&picture);
+      paintFrames(painter, look);
+    }
+    if (!look.transparent) picture = picture.convertToFormat(QImage::Format_RGB32);
+    return write(file, [this, picture, state = snapshot_(), file] { writeFigure(picture, state, engine_, file); });
+  }
+  QBuffer bytes;
+  bytes.open(QIODevice::WriteOnly);
+  const QString title = QFileInfo(document_.inputFile()).fileName();
+  if (ending == QLatin1String("svg")) {
+    QSvgGenerator svg;
+    svg.setOutputDevice(&bytes);
+    svg.setSize(look.size);
+    svg.setViewBox(QRect({0, 0}, look.size));
+    svg.setResolution(kDotsPerInch);
+    svg.setTitle(title);
+    QPainter painter(&svg);
+    paintFrames(painter, look);
+  } else if (ending == QLatin1String("pdf")) {
+    QPdfWriter pdf(&bytes);
+    pdf.setPageSize(QPageSize(QSizeF(look.size) * 72.0 / kDotsPerInch, QPageSize::Point, QString(), QPageSize::ExactMatch));
+    pdf.setPageMargins({});
+    pdf.setResolution(kDotsPerInch);
+    pdf.setTitle(title);
+    QPainter painter(&pdf);
+    paintFrames(painter, look);
+  } else {
+    return void(emit problem(tr("%1: the frame view is saved as .png, .svg or .pdf").arg(file)));
+  }
+  write(file, [content = bytes.data(), file] { writeBytes(file, content); });
+}
+
+}  // namespace glint::gui

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QObject>
+#include <functional>
+
+#include "gui/base/actions.h"
+#include "gui/document/document.h"
+#include "gui/export/figure_dialog.h"
+
+class QWidget;
+
+namespace glint::gui {
+
+class FramePanel;
+class LongJob;
+class ScenePanel;
+
+/// The 3D view and the frame view as they are on screen, at any size: PNG with the session inside, the frame view also as SVG or
+/// PDF with its overlays as strokes.
+class FigureActions : public QObject {
+  Q_OBJECT
+ public:
+  FigureActions(const Engine& engine, Document& document, ScenePanel& scene, FramePanel& frame, LongJob& job, QWidget* window);
+  void addActions(Actions& actions, QMenu* menu);
+  void setSnapshot(std::function<Opened()> snapshot) { snapshot_ = std::move(snapshot); }
+
+  /// Draw at once and write off the interface thread; written() or problem() tells how it ended.
+  void writeScene(const FigureLook& look, const QString& file);
+  /// @param file  .png, .svg or .pdf. Two frames side by side stay that.
+  void writeFrame(const FigureLook& look, const QString& file);
+
+ signals:
+  void problem(const QString& oneLine);
+  void written(const QString& file);
+
+ private:
+  void paintFrames(QPainter& painter, const FigureLook& look) const;
+  void write(const QString& file, std::function<void()> work);
+
+  const Engine& engine_;
+  Document& document_;
+  ScenePanel& scene_;
+  FramePanel& frame_;
+  LongJob& job_;
+  QWidget* window_;
+  std::function<Opened()> snapshot_;
+};
+
+/// A name for a picture: where the session lies, after it and what is shown: "vase-frame.png".
+QString suggestedFile(const Document& document, const QString& what, const QString& ending);
+/// Asks for a file to write; the chosen filter's ending is added where the name has none. "" = given up.
+QString askForFile(QWidget* window, const QString& title, const QString& suggestion, const QString& filters);
+
+}  // namespace glint::gui

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/export/figure_dialog.h"
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDialogButtonBox>
+#include <QFormLayout>
+#include <QPushButton>
+#include <QSettings>
+#include <QSignalBlocker>
+#include <QSpinBox>
+#include <algorithm>
+#include <cmath>
+
+namespace glint::gui {
+
+namespace {
+constexpr int kLeastPx = 64, kMostPx = 16384;
+
+struct Preset {
+  const char* title;
+  int width, height;  // px; width 0 = as on screen, `height` times; -1 = whatever is typed
+};
+const Preset kPresets[] = {{QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "As on screen"), 0, 1},
+                           {QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "Twice as on screen"), 0, 2},
+                           {QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "Slide, 1920 × 1080"), 1920, 1080},
+                           {QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "Screen, 3840 × 2160"), 3840, 2160},
+                           {QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "Column of a paper, 85 mm at 600 dpi"), 2008, 1506},
+                           {QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "Other"), -1, 0}};
+constexpr int kOther = 5;
+}  // namespace
+
+FigureDialog::FigureDialog(const QString& title, const QString& kind, const QSize& onScreen, bool dark, QWidget* parent)
+    : QDialog(parent), kind_(QStringLiteral("export/%1/").arg(kind)), onScreen_(onScreen) {
+  setWindowTitle(title);
+  setObjectName(QStringLiteral("figureDialog"));
+  auto* form = new QFormLayout(this);
+  preset_ = new QComboBox;
+  for (const Preset& p : kPresets) preset_->addItem(tr(p.title));
+  form->addRow(tr("&Size"), preset_);
+  const auto pixels = [&](const char* name) {
+    auto* box = new QSpinBox;
+    box->setObjectName(QLatin1String(name));
+    box->setRange(kLeastPx, kMostPx);
+    box->setSuffix(tr(" px"));
+    box->setKeyboardTracking(false);
+    return box;
+  };
+  width_ = pixels("figureWidth");
+  height_ = pixels("figureHeight");
+  keepShape_ = new QCheckBox(tr("Keep the &proportions"));
+  keepShape_->setChecked(true);
+  form->addRow(tr("&Width"), width_);
+  form->addRow(tr("&Height"), height_);
+  form->addRow(QString(), keepShape_);
+  colours_ = new QComboBox;
+  colours_->addItems({tr("Dark"), tr("Light")});
+  form->addRow(tr("&Colours"), colours_);
+  transparent_ = new QCheckBox(tr("&Transparent background"));
+  transparent_->setObjectName(QStringLiteral("figureTransparent"));
+  form->addRow(QString(), transparent_);
+  auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel);
+  buttons->button(QDialogButtonBox::Ok)->setText(tr("Choose a file…"));
+  form->addRow(buttons);
+  connect(buttons, &QDialogButtonBox::accepted, this, &FigureDialog::accept);
+  connect(buttons, &QDialogButtonBox::rejected, this, &FigureDialog::reject);
+
+  const QSettings settings;
+  colours_->setCurrentIndex(settings.value(kind_ + QStringLiteral("dark"), dark).toBool() ? 0 : 1);
+  transparent_->setChecked(settings.value(kind_ + QStringLiteral("transparent"), false).toBool());
+  const int preset = std::clamp(settings.value(kind_ + QStringLiteral("preset"), 0).toInt(), 0, kOther);
+  if (preset == kOther) setSize(settings.value(kind_ + QStringLiteral("size"), onScreen).toSize());
+  preset_->setCurrentIndex(preset);
+  choose(preset);
+  connect(preset_, QOverload<int>::of(&QComboBox::activated), this, &FigureDialog::choose);
+  connect(width_, QOverload<int>::of(&QSpinBox::valueChanged), this, &FigureDialog::followWidth);
+  connect(height_, QOverload<int>::of(&QSpinBox::valueChanged), this, &FigureDialog::followHeight);
+}
+
+void FigureDialog::choose(int preset) {
+  const Preset& p = kPresets[preset];
+  if (p.width == 0) setSize(onScreen_ * p.height);
+  if (p.width > 0) setSize({p.width, p.height});
+}
+
+void FigureDialog::setSize(const QSize& size) {
+  const QSignalBlocker quiet(width_), quietToo(height_);
+  width_->setValue(size.width());
+  height_->setValue(size.height());
+  aspect_ = double(width_->value()) / height_->value();
+}
+
+void FigureDialog::followWidth() {
+  preset_->setCurrentIndex(kOther);
+  const QSignalBlocker quiet(height_);
+  if (keepShape_->isChecked())
+    height_->setValue(int(std::lround(width_->value() / aspect_)));
+  else
+    aspect_ = double(width_->value()) / height_->value();
+}
+
+void FigureDialog::followHeight() {
+  preset_->setCurrentIndex(kOther);
+  const QSignalBlocker quiet(width_);
+  if (keepShape_->isChecked())
+    width_->setValue(int(std::lround(height_->value() * aspect_)));
+  else
+    aspect_ = double(width_->value()) / height_->value();
+}
+
+FigureLook FigureDialog::look() const {
+  return {{width_->value(), height_->value()}, transparent_->isChecked(), colours_->currentIndex() == 0};
+}
+
+void FigureDialog::accept() {
+  QSettings settings;
+  settings.setValue(kind_ + QStringLiteral("dark"), look().dark);
+  settings.setValue(kind_ + QStringLiteral("transparent"), look().transparent);
+  settings.setValue(kind_ + QStringLiteral("preset"), preset_->currentIndex());
+  settings.setValue(kind_ + QStringLiteral("size"), look().size);
+  QDialog::accept();
+}
+
+}  // namespace glint::gui

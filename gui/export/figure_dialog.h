@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QDialog>
+#include <QSize>
+
+class QCheckBox;
+class QComboBox;
+class QSpinBox;
+
+namespace glint::gui {
+
+/// How a picture leaves the program.
+struct FigureLook {
+  QSize size{1600, 1000};  ///< px
+  bool transparent = false;
+  bool dark = true;
+};
+
+/// Asks for the size and the background of a picture. Remembers the last answer of each kind.
+class FigureDialog : public QDialog {
+  Q_OBJECT
+ public:
+  /// @param kind      "scene": under this name the answer is remembered.
+  /// @param onScreen  device px of what is shown.
+  FigureDialog(const QString& title, const QString& kind, const QSize& onScreen, bool dark, QWidget* parent);
+  FigureLook look() const;
+  void accept() override;
+
+ private:
+  void choose(int preset);
+  void setSize(const QSize& size);
+  void followWidth();
+  void followHeight();
+
+  QString kind_;
+  QSize onScreen_;
+  double aspect_ = 1.6;
+  QComboBox *preset_, *colours_;
+  QSpinBox *width_, *height_;
+  QCheckBox *keepShape_, *transparent_;
+};
+
+}  // namespace glint::gui

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/export/repro_actions.h"
+
+#include <QComboBox>
+#include <QDialogButtonBox>
+#include <QDir>
+#include <QFileDialog>
+#include <QFormLayout>
+#include <QLabel>
+#include <QPushButton>
+#include <QSpinBox>
+
+#include "gui/base/text.h"
+#include "gui/export/figure_actions.h"
+#include "gui/export/long_job.h"
+
+namespace glint::gui {
+
+ReproDialog::ReproDialog(const Fault& fault, const QString& frame, int training, QWidget* parent) : QDialog(parent) {
+  setWindowTitle(tr("Minimal session of a fault"));
+  setObjectName(QStringLiteral("reproDialog"));
+  auto* form = new QFormLayout(this);
+  auto* what =
+      new QLabel(tr("Searches the smallest set of training frames with which <b>%1</b> still shows in frame <b>%2</b>: %3.<br>"
+                    "Now there are %4.")
+                     .arg(toQString(fault.model), frame.toHtmlEscaped(), toQString(fault.text()))
+                     .arg(training));
+  what->setWordWrap(true);
+  what->setMinimumWidth(420);
+  form->addRow(what);
+  kept_ = new QComboBox;
+  kept_->addItems({tr("stays as it is"), tr("stays, or becomes larger")});
+  percent_ = new QSpinBox;
+  percent_->setObjectName(QStringLiteral("reproTolerance"));
+  percent_->setRange(1, 90);
+  percent_->setValue(20);
+  percent_->setSuffix(tr(" %"));
+  if (fault.errorPct) {  // a named failure has no size
+    form->addRow(tr("The &error"), kept_);
+    form->addRow(tr("&Tolerance, of the error"), percent_);
+  } else {
+    kept_->setParent(this);
+    percent_->setParent(this);
+    kept_->hide();
+    percent_->hide();
+  }
+  auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel);
+  buttons->button(QDialogButtonBox::Ok)->setText(tr("Choose a folder…"));
+  form->addRow(buttons);
+  connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
+  connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
+}
+
+FaultTolerance ReproDialog::tolerance() const {
+  return {kept_->currentIndex() == 0 ? FaultKept::Within : FaultKept::AtLeast, percent_->value() / 100.0};
+}
+
+ReproActions::ReproActions(Document& document, LongJob& job, QWidget* window)
+    : QObject(window), document_(document), job_(job), window_(window) {}
+
+Outcome<Fault> ReproActions::fault() const {
+  if (!document_.inspection() || document_.stale()) return Failure{Reason::NotSupported, "the results are not up to date"};
+  const viz::Selection& s = document_.selection();
+  return faultOf(*document_.inspection(), s.frame, document_.plottedModel(), s.light);
+}
+
+void ReproActions::addActions(Actions& actions, QMenu* menu) {
+  actions.add("export.repro", menu, tr("Minimal &session of this fault…"),
+              [this] {
+                if (!document_.inspection()) return;
+                const Outcome<Fault> of = fault();
+                if (!of) return void(emit problem(toQString(of.failure().message())));
+                const std::shared_ptr<const Inspection> inspection = document_.inspection();
+                int training = 0;
+                for (int i = 0; i < document_.frameCount(); ++i) training += inspection->isTraining(i);
+                const QString frame = toQString(inspection->scene->frames[std::size_t(of->frame)].id);
+                ReproDialog dialog(*of, frame, training, window_);
+                if (dialog.exec() != QDialog::Accepted) return;
+                const QString folder = QFileDialog::getSaveFileName(window_, tr("New folder for the minimal session"),
+                                                                    suggestedFile(document_, "minimal", {}));
+                if (!folder.isEmpty()) write(*of, dialog.tolerance(), folder);
+              },
+              {{}, {}, tr("The smallest set of training frames that still shows the error of the selected frame and model")});
+}
+
+void ReproActions::write(const Fault& fault, const FaultTolerance& tolerance, const QString& folder) {
+  job_.start(
+      tr("Searching a minimal session"),
+      [this, fault, tolerance, folder, inspection = document_.inspection()](const ProgressFn& progress) -> LongJob::Deliver {
+        const Outcome<MinimalRepro> repro = minimalRepro(*inspection, fault, tolerance, progress);
+        if (!repro) return [this, why = toQString(repro.failure().message())] { emit problem(why); };
+        const WrittenRepro written = writeRepro(*inspection, *repro, tolerance, folder.toStdString(), progress);
+        const QString line = tr("%1 of %2 training frames, %3 (was %4): wrote %5")
+                                 .arg(repro->kept.size())
+                                 .arg(repro->of)
+                                 .arg(toQString(written.fault.text()), toQString(fault.text()),
+                                      QDir::toNativeSeparators(toQString(written.session.string())));
+        return [this, line, shows = written.shows] {
+          if (shows)
+            emit message(line);
+          else
+            emit problem(tr("The written session shows another fault than the one on screen. %1").arg(line));
+        };
+      });
+}
+
+}  // namespace glint::gui

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QDialog>
+#include <QObject>
+
+#include "core/pipeline/minimal_repro.h"
+#include "gui/base/actions.h"
+#include "gui/document/document.h"
+
+class QComboBox;
+class QSpinBox;
+class QWidget;
+
+namespace glint::gui {
+
+class LongJob;
+
+/// Says which fault is meant and asks how near the smaller one has to come.
+class ReproDialog : public QDialog {
+  Q_OBJECT
+ public:
+  ReproDialog(const Fault& fault, const QString& frame, int training, QWidget* parent);
+  FaultTolerance tolerance() const;
+
+ private:
+  QComboBox* kept_;
+  QSpinBox* percent_;
+};
+
+/// The smallest set of training frames that still shows the selected fault, as a session folder.
+class ReproActions : public QObject {
+  Q_OBJECT
+ public:
+  ReproActions(Document& document, LongJob& job, QWidget* window);
+  void addActions(Actions& actions, QMenu* menu);
+  /// Of the selected frame, the selected (else the plotted) model and the selected light (else the worst); message() or problem()
+  /// tells how it ended.
+  Outcome<Fault> fault() const;
+  void write(const Fault& fault, const FaultTolerance& tolerance, const QString& folder);
+
+ signals:
+  void problem(const QString& oneLine);
+  void message(const QString& oneLine);
+
+ private:
+  Document& document_;
+  LongJob& job_;
+  QWidget* window_;
+};
+
+}  // namespace glint::gui

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pictures, movies and labels that leave the program, and what comes back by dropping it on the window.
+#include <QAction>
+#include <QComboBox>
+#include <QDir>
+#include <QDragEnterEvent>
+#include <QDropEvent>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QImage>
+#include <QLineEdit>
+#include <QMimeData>
+#include <QPainter>
+#include <QProgressDialog>
+#include <QSpinBox>
+#include <QSvgRenderer>
+#include <QTimer>
+#include <QUrl>
+#include <cmath>
+#include <opencv2/core.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "gui/document/session_file.h"
+#include "gui/export/export_actions.h"
+#include "gui/export/figure_actions.h"
+#include "gui/export/movie_actions.h"
+#include "gui/frame/frame_canvas.h"
+#include "gui/frame/frame_panel.h"
+#include "gui/window/main_window.h"
+#include "tests/gui/fixture.h"
+
+namespace glint::gui {
+
+namespace {
+const QString kSessions = QStringLiteral(GLINT_SOURCE_DIR "/sessions/");
+
+/// Mean difference of two pictures of one size, 0 .. 255.
+double difference(const QImage& a, const QImage& b) {
+  double sum = 0;
+  for (int y = 0; y < a.height(); ++y)
+    for (int x = 0; x < a.width(); ++x) {
+      const QColor p = a.pixelColor(x, y), q = b.pixelColor(x, y);
+      sum += std::abs(p.red() - q.red()) + std::abs(p.green() - q.green()) + std::abs(p.blue() - q.blue());
+    }
+  return sum / 3 / a.width() / a.height();
+}
+
+/// Drops a file on a window as a file manager does.
+void dropOn(QWidget* window, const QString& path) {
+  QMimeData data;
+  data.setUrls({QUrl::fromLocalFile(path)});
+  QDragEnterEvent enter(QPoint(50, 50), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+  QCoreApplication::sendEvent(window, &enter);
+  QVERIFY(enter.isAccepted());
+  QDropEvent drop(QPointF(50, 50), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+  QCoreApplication::sendEvent(window, &drop);
+}
+
+struct Movie {
+  int frames = 0;
+  QSize size;
+  double least = 1e9;  ///< difference between one frame and the next
+};
+Movie readMovie(const QString& file) {
+  Movie movie;
+  cv::VideoCapture reader(file.toStdString());
+  cv::Mat frame, before;
+  while (reader.read(frame)) {
+    movie.size = {frame.cols, frame.rows};
+    if (movie.frames++ > 0) movie.least = std::min(movie.least, cv::norm(frame, before, cv::NORM_L1) / double(frame.total()));
+    before = frame.clone();
+  }
+  return movie;
+}
+}  // namespace
+
+class FigureTest : public QObject {
+  Q_OBJECT
+ private slots:
+  void init() {
+    QApplication::setAttribute(Qt::AA_DontUseNativeDialogs);
+    window_ = std::make_unique<MainWindow>(coreEngine());
+    window_->show();
+    open(kSessions + "plane/plane.glint");
+  }
+  void cleanup() {
+    window_.reset();
+    QVERIFY2(problem_.isEmpty(), qPrintable(problem_));
+  }
+
+  void the3dViewAtAnySize() {
+    const QString solid = folder_.filePath("solid.png"), open = folder_.filePath("open.png");
+    window_->exports()->figures()->writeScene({{500, 300}, false, false}, solid);
+    wait();
+    window_->exports()->figures()->writeScene({{500, 300}, true, false}, open);
+    wait();
+    const QImage a(solid), b(open);
+    QCOMPARE(a.size(), QSize(500, 300));
+    QCOMPARE(b.size(), QSize(500, 300));
+    QVERIFY(!a.hasAlphaChannel() || a.pixelColor(2, 150).alpha() == 255);
+    QVERIFY(a.pixelColor(2, 150).lightness() > 200);  // light colours were asked for
+    QVERIFY(b.hasAlphaChannel());
+    int clear = 0, full = 0;
+    for (int y = 0; y < 300; ++y)
+      for (int x = 0; x < 500; ++x) {
+        clear += b.pixelColor(x, y).alpha() == 0;
+        full += b.pixelColor(x, y).alpha() == 255;
+      }
+    QVERIFY2(clear > 15000 && clear < 140000 && full > 1000,
+             qPrintable(QStringLiteral("%1 clear, %2 full").arg(clear).arg(full)));
+    // On the light background the transparent one is the solid one again.
+    QImage both(a.size(), QImage::Format_RGB32);
+    both.fill(a.pixelColor(2, 150));
+    QPainter(&both).drawImage(0, 0, b);
+    QVERIFY2(difference(both, a) < 3, qPrintable(QString::number(difference(both, a))));
+    const Opened back = openInput(solid.toStdString());
+    QCOMPARE(back.scene->frames.size(), window_->document().scene()->frames.size());
+  }
+
+  void theFrameViewAsPictureAndAsStrokes() {
+    window_->document().selectFrame(4);
+    QTRY_VERIFY_WITH_TIMEOUT(window_->idle(), 20000);
+    window_->framePanel()->goToHighlight();
+    const FigureLook look{{900, 700}, false, true};
+    for (const char* name : {"f.png", "f.svg", "f.pdf"}) {
+      window_->exports()->figures()->writeFrame(look, folder_.filePath(name));
+      wait();
+    }
+    const QImage png(folder_.filePath("f.png"));
+    QCOMPARE(png.size(), QSize(900, 700));
+    QSvgRenderer svg(folder_.filePath("f.svg"));
+    QVERIFY(svg.isValid());
+    QCOMPARE(svg.viewBox(), QRect(0, 0, 900, 700));
+    QImage drawn(900, 700, QImage::Format_RGB32);
+    drawn.fill(Qt::black);
+    {
+      QPainter painter(&drawn);
+      svg.render(&painter);
+    }
+    QVERIFY2(difference(drawn, png) < 4, qPrintable(QString::number(difference(drawn, png))));
+    // The contours are strokes: their vertices are in the file, at the canvas's places.
+    QFile text(folder_.filePath("f.svg"));
+    QVERIFY(text.open(QIODevice::ReadOnly));
+    const QByteArray content = text.readAll();
+    QVERIFY(content.contains("<path") && content.contains("<image") && content.contains("#56b4e9"));  // dual's colour
+    QFile pdf(folder_.filePath("f.pdf"));
+    QVERIFY(pdf.open(QIODevice::ReadOnly));
+    QVERIFY(pdf.readAll().contains("/MediaBox [0 0 675.000000 525.000000]"));  // 900 x 700 px of 1/96 inch, in points
+  }
+
+  void aFigureOfTheFrameIsWhatTheCanvasShows() {
+    window_->document().selectFrame(5);
+    QTRY_VERIFY_WITH_TIMEOUT(window_->idle(), 20000);
+    FrameCanvas* canvas = window_->framePanel()->canvas();
+    window_->framePanel()->goToHighlight();
+    const QString file = folder_.filePath("same.png");
+    const QPixmap shown = canvas->grab();
+    window_->exports()->figures()->writeFrame({shown.size(), false, true}, file);
+    wait();
+    QVERIFY(difference(QImage(file), shown.toImage().convertToFormat(QImage::Format_RGB32)) < 1.5);
+  }
+
+  void endingsThatAreNoneAreRefused() {
+    window_->exports()->figures()->writeFrame({{200, 200}, false, true}, folder_.filePath("f.gif"));
+    QVERIFY(problem_.contains("f.gif"));
+    problem_.clear();
+    window_->exports()->figures()->writeScene({{200, 200}, false, true}, folder_.filePath("s.svg"));
+    QVERIFY(problem_.contains("s.svg"));
+    problem_.clear();
+    window_->exports()->figures()->writeFrame({{200, 200}, false, true}, folder_.filePath("none/f.png"));
+    QTRY_VERIFY_WITH_TIMEOUT(window_->idle(), 20000);
+    QVERIFY(problem_.contains("cannot be written"));
+    problem_.clear();
+  }
+
+  void theDialogAsksForSizeAndFile() {
+    const QString file = folder_.filePath("asked.png");
+    QTimer::singleShot(0, this, [] {
+      auto* dialog = qobject_cast<QDialog*>(QApplication::activeModalWidget());
+      auto* width = dialog->findChild<QSpinBox*>("figureWidth");
+      auto* height = dialog->findChild<QSpinBox*>("figureHeight");
+      const double aspect = double(width->value()) / height->value();
+      width->setValue(640);
+      QVERIFY(std::abs(640 / aspect - height->value()) <= 0.51);  // proportions are kept
+      dialog->accept();
+    });
+    QTimer poll;  // the file dialog comes when the first one is closed
+    connect(&poll, &QTimer::timeout, this, [&] {
+      if (auto* files = qobject_cast<QFileDialog*>(QApplication::activeModalWidget())) {
+        poll.stop();
+        files->selectFile(file);
+        files->findChild<QLineEdit*>()->setText(file);
+        static_cast<QDialog*>(files)->accept();
+      }
+    });
+    poll.start(20);
+    window_->actions().find("export.scene")->trigger();
+    wait();
+    QCOMPARE(QImage(file).width(), 640);
+  }
+
+  void aMovieOfTheTimeline() {
+    const int frames = window_->document().frameCount();
+    for (const MovieOf of : {MovieOf::FrameView, MovieOf::LookThrough}) {
+      const QString file = folder_.filePath(of == MovieOf::FrameView ? "timeline.mp4" : "through.webm");
+      window_->exports()->movies()->write({of, {320, 240, 5}, frames, true}, file);
+      wait();
+      const Movie movie = readMovie(file);
+      QCOMPARE(movie.frames, frames);
+      QCOMPARE(movie.size, QSize(320, 240));
+      QVERIFY2(movie.least > 0.2, qPrintable(QString::number(movie.least)));
+    }
+  }
+
+  void aMovieOfATurntable() {
+    const QString file = folder_.filePath("turn.avi");
+    window_->exports()->movies()->write({MovieOf::Turntable, {320, 240, 25}, 12, true}, file);
+    wait();
+    const Movie movie = readMovie(file);
+    QCOMPARE(movie.frames, 12);
+    QCOMPARE(movie.size, QSize(320, 240));
+    QVERIFY2(movie.least > 1, qPrintable(QString::number(movie.least)));
+  }
+
+  void aMovieThatIsStoppedLeavesNothing() {
+    QTemporaryDir empty;
+    window_->exports()->movies()->write({MovieOf::Turntable, {320, 240, 25}, 5000, true}, empty.filePath("long.mp4"));
+    QTest::qWait(300);
+    QVERIFY(window_->exports()->busy());
+    window_->actions().find("edit.stop")->trigger();
+    QTRY_VERIFY_WITH_TIMEOUT(window_->idle(), 5000);
+    QCOMPARE(QDir(empty.path()).entryList(QDir::Files | QDir::Hidden), QStringList());
+    window_->exports()->movies()->write({MovieOf::Turntable, {320, 240, 25}, 5000, true}, empty.filePath("long.mp4"));
+    QTest::qWait(100);
+    window_.reset();  // closing the program stops it too
+    QCOMPARE(QDir(empty.path()).entryList(QDir::Files | QDir::Hidden), QStringList());
+  }
+
+  void labelsWithMasks() {
+    const QString labels = folder_.filePath("labels");
+    window_->exports()->writeLabels(labels);
+    wait();
+    QVERIFY(QFileInfo::exists(labels + "/masks.json"));
+    const QImage mask(labels + "/masks/canonical/A/0003.png");
+    QVERIFY(!mask.isNull());
+    QCOMPARE(mask.depth(), 8);
+    window_->exports()->writeLabels(labels);  // never into a folder that holds something
+    QTRY_VERIFY_WITH_TIMEOUT(window_->idle(), 20000);
+    QVERIFY(problem_.contains("not empty"));
+    problem_.clear();
+  }
+
+  // --- dropped ---------------------------------------------------------------------------------------------------------------
+
+  void aDroppedSessionAndFolder() {
+    dropOn(window_.get(), kSessions + "vase");  // holds scene.json
+    QTRY_VERIFY_WITH_TIMEOUT(window_->document().inputFile().contains("vase"), 20000);
+    QVERIFY(window_->document().sessionFile().isEmpty());
+    dropOn(window_.get(), kSessions + "ellipsoid/ellipsoid.glint");
+    QTRY_VERIFY_WITH_TIMEOUT(window_->document().sessionFile().contains("ellipsoid"), 20000);
+  }
+
+  void aDroppedFigure() {
+    const QString file = folder_.filePath("dropped.png");
+    window_->document().selectFrame(5);
+    window_->exports()->figures()->writeFrame({{200, 150}, false, true}, file);
+    wait();
+    open(kSessions + "ellipsoid/ellipsoid.glint");
+    dropOn(window_.get(), file);
+    QTRY_VERIFY_WITH_TIMEOUT(window_->document().sessionFile().contains("plane.glint"), 20000);
+    QCOMPARE(window_->document().selection().frame, 5);
+  }
+
+  void aDroppedPhotographSelectsItsFrame() {
+    const auto photograph = [](const Scene& scene, int frame) {
+      return QString::fromStdString(scene.frames[std::size_t(frame)].image.string());
+    };
+    dropOn(window_.get(), photograph(*window_->document().scene(), 4));
+    QCOMPARE(window_->document().selection().frame, 4);
+    // Of another scene: that is opened.
+    const Scene vase = readScene((kSessions + "vase/scene.json").toStdString());
+    dropOn(window_.get(), photograph(vase, 3));
+    QTRY_VERIFY_WITH_TIMEOUT(window_->document().inputFile().contains("vase"), 20000);
+    QCOMPARE(window_->document().selection().frame, 3);
+    // Of none
+    const QString stray = folder_.filePath("stray.jpg");
+    QVERIFY(QImage(8, 8, QImage::Format_RGB32).save(stray));
+    dropOn(window_.get(), stray);
+    QVERIFY(problem_.contains("stray.jpg"));
+    problem_.clear();
+    QCOMPARE(window_->document().selection().frame, 3);
+  }
+
+ private:
+  void open(const QString& input) {
+    connect(window_.get(), &MainWindow::problem, this, [this](const QString& line) { problem_ = line; });
+    window_->open(input);
+    QTRY_VERIFY_WITH_TIMEOUT(window_->document().inputFile().contains(QFileInfo(input).dir().dirName()) && window_->idle() &&
+                                 window_->document().inspection() && !window_->document().stale(),
+                             60000);
+  }
+  void wait() {
+    QTRY_VERIFY_WITH_TIMEOUT(window_->idle(), 60000);
+    QVERIFY2(problem_.isEmpty(), qPrintable(problem_));
+  }
+
+  QTemporaryDir folder_;
+  QString problem_;
+  std::unique_ptr<MainWindow> window_;
+};
+
+QObject* makeFigureTest() { return new FigureTest; }
+
+}  // namespace glint::gui
+
+#include "figure_test.moc"
