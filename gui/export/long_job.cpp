@@ -87,10 +87,11 @@ void LongJob::onInterface(const std::function<void()>& work) {
   auto call = std::make_shared<Call>();
   QMetaObject::invokeMethod(
       this,
-      [call, &work] {
+      [this, call, &work] {
         const std::lock_guard<std::mutex> lock(call->mutex);
         if (call->abandoned) return;  // `work` is gone
         try {
+          if (stop_) throw Stopped{};
           work();
         } catch (...) {
           call->trouble = std::current_exception();

@@ -18,16 +18,21 @@ namespace glint::gui {
 
 namespace {
 constexpr int kPhotographPx = 4096;  // widest photograph while looking through a camera
+}  // namespace
 
 /// A 3D view and the window that it is drawn in; both live and die on the interface thread.
-struct Stage {
+struct MovieActions::Stage {
   std::unique_ptr<viz::SceneView> view;
   std::unique_ptr<viz::Offscreen> target;
 };
-}  // namespace
 
 MovieActions::MovieActions(Document& document, ScenePanel& scene, FramePanel& frame, LongJob& job, QWidget* window)
-    : QObject(window), document_(document), scene_(scene), frame_(frame), job_(job), window_(window) {}
+    : QObject(window), document_(document), scene_(scene), frame_(frame), job_(job), window_(window) {
+  // It shares photographs and triangles with the views, which forget them with the scene.
+  connect(&document_, &Document::sceneOpened, this, [this] {
+    if (!stage_.expired()) job_.cancel();
+  });
+}
 
 void MovieActions::addActions(Actions& actions, QMenu* menu) {
   actions.add("export.movie", menu, tr("&Movie of the timeline…"), [this] { ask(MovieOf::FrameView); },
@@ -77,6 +82,7 @@ void MovieActions::write(const MovieLook& look, const QString& file) {
     QMetaObject::invokeMethod(
         this, [s] { delete s; }, Qt::QueuedConnection);
   });
+  stage_ = stage;
   stage->view = scene_.views().copyOfActive();
   stage->view->setDarkBackground(look.dark);
   stage->target = viz::Offscreen::onOwnDisplay(width, height);

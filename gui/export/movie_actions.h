@@ -2,6 +2,8 @@
 #pragma once
 
 #include <QObject>
+#include <functional>
+#include <memory>
 
 #include "gui/base/actions.h"
 #include "gui/document/document.h"
@@ -33,6 +35,8 @@ class MovieActions : public QObject {
   void ask(MovieOf of);
   void start(const MovieLook& look, const QString& file, std::function<Image(int)> picture);
 
+  struct Stage;
+  std::weak_ptr<Stage> stage_;  ///< of the 3D movie that is being made
   Document& document_;
   ScenePanel& scene_;
   FramePanel& frame_;

@@ -139,7 +139,7 @@ void ComparisonPanel::show(std::shared_ptr<const RunComparison> comparison, cons
   fill();
   for (QTableView* view : {valueTable_, errorTable_, modelTable_}) {
     view->resizeColumnsToContents();
-    for (int c = 0; c < view->model()->columnCount(); ++c) view->setColumnWidth(c, std::clamp(view->columnWidth(c), 46, 240));
+    for (int c = 0; c < view->model()->columnCount(); ++c) view->setColumnWidth(c, std::clamp(view->columnWidth(c), 46, 150));
   }
   emit shown();
 }

@@ -236,6 +236,15 @@ class FigureTest : public QObject {
     QCOMPARE(QDir(empty.path()).entryList(QDir::Files | QDir::Hidden), QStringList());
   }
 
+  void aMovieEndsWithItsScene() {
+    QTemporaryDir empty;
+    window_->exports()->movies()->write({MovieOf::Turntable, {320, 240, 25}, 5000, true}, empty.filePath("long.mp4"));
+    QTest::qWait(200);
+    open(kSessions + "ellipsoid/ellipsoid.glint");
+    QVERIFY(!window_->exports()->busy());
+    QCOMPARE(QDir(empty.path()).entryList(QDir::Files | QDir::Hidden), QStringList());
+  }
+
   void labelsWithMasks() {
     const QString labels = folder_.filePath("labels");
     window_->exports()->writeLabels(labels);
