@@ -49,7 +49,7 @@ std::vector<Eigen::Vector3d> selectedExtent(const LayerInput& in) {
   return points;
 }
 
-std::optional<HighlightPlace> highlightPlace(const LayerInput& in, int highlight) {
+std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, HighlightLook look, bool withNormal) {
   const auto at = static_cast<std::size_t>(in.selection.frame);
   if (!in.surface || at >= in.inspection->evidence.size() || in.inspection->evidence[at].highlights.empty()) return {};
   const std::vector<Highlight>& highlights = in.inspection->evidence[at].highlights;
@@ -60,8 +60,8 @@ std::optional<HighlightPlace> highlightPlace(const LayerInput& in, int highlight
   const Outcome<BrightestPoint> brightest = observedBrightestPoint(*in.surface, camera, h.peak);
   if (!brightest) return {};
   const SurfacePoint p = facing(brightest->point, camera.centreInWorld());
-  HighlightPlace place;
-  place.normal = p.normal;
+  Framing place;
+  double radius = 0;
   place.points.push_back(p.position);
   for (const Points& chain : castContour(camera, *in.surface, h.contour, in.scale, 0))
     place.points.insert(place.points.end(), chain.begin(), chain.end());
@@ -81,26 +81,51 @@ std::optional<HighlightPlace> highlightPlace(const LayerInput& in, int highlight
               place.points.push_back(canonical->directions[i].onTangentPlane);
         }
   }
-  for (const Eigen::Vector3d& q : place.points) place.radius = std::max(place.radius, (q - p.position).norm());
-  if (!(place.radius > 0)) return {};
-  place.points.push_back(p.position + 0.8 * place.radius * p.normal);
-  // Half from the side, where the gap between S and T shows, and not in line with the camera's own view of it.
+  for (const Eigen::Vector3d& q : place.points) radius = std::max(radius, (q - p.position).norm());
+  if (!(radius > 0)) return {};
+  place.points.push_back(p.position + 0.8 * radius * p.normal);
+  if (withNormal) place.points.push_back(p.position + 1.4 * in.scale.arrow * p.normal);
+  const Eigen::Vector3d eye = camera.centreInWorld(), toCamera = (eye - p.position).normalized();
   const Eigen::Vector3d right = camera.camFromWorld.linear().row(0).transpose();
-  Eigen::Vector3d side = right - right.dot(p.normal) * p.normal;
-  side = side.norm() > 0.05 ? Eigen::Vector3d(side.normalized()) : Eigen::Vector3d(tangentBasis(p.normal).col(0));
-  const Eigen::Vector3d toCamera = (camera.centreInWorld() - p.position).normalized();
-  Eigen::Vector3d across = side.cross(p.normal);
-  if (across.dot(toCamera) < 0) across = -across;
-  place.back = (0.42 * p.normal + 0.75 * across + 0.5 * side).normalized();
+  Eigen::Vector3d up = p.normal;
+  if (look == HighlightLook::Camera) {
+    up = -camera.camFromWorld.linear().row(1).transpose();
+    place.back = (toCamera + 0.25 * right + 0.15 * up).normalized();
+  } else if (look == HighlightLook::Mirror) {
+    const Eigen::Vector3d mirrored = eye - 2 * p.normal.dot(eye - p.position) * p.normal;
+    const Eigen::Vector3d side = toCamera - toCamera.dot(p.normal) * p.normal;
+    // Seen along N, any side shows the pair.
+    const Eigen::Vector3d square =
+        side.norm() > 0.05 ? Eigen::Vector3d(p.normal.cross(side).normalized()) : tangentBasis(p.normal).col(0);
+    place.points = {p.position, eye, mirrored};
+    addFrustum(in, place.points, in.selection.frame);
+    const auto light = in.inspection->lights.find(h.light);
+    if (light != in.inspection->lights.end() && !light->second.light.atInfinity() &&
+        (light->second.light.position() - p.position).norm() < 3 * in.scale.sceneSize)
+      place.points.push_back(light->second.light.position());
+    place.back = (square + 0.22 * p.normal).normalized();
+  } else {
+    // Half from the side, and not in line with the camera's own view.
+    Eigen::Vector3d side = right - right.dot(p.normal) * p.normal;
+    side = side.norm() > 0.05 ? Eigen::Vector3d(side.normalized()) : Eigen::Vector3d(tangentBasis(p.normal).col(0));
+    Eigen::Vector3d across = side.cross(p.normal);
+    if (across.dot(toCamera) < 0) across = -across;
+    place.back = (0.42 * p.normal + 0.75 * across + 0.5 * side).normalized();
+  }
+  place.up = (up - up.dot(place.back) * place.back).normalized();
+  place.reference = p.position;
+  place.leastDepth = 2 * radius;
   return place;
 }
+
+namespace {
 
 std::vector<Eigen::Vector3d> ellipsoidExtent(const LayerInput& in, const std::string& model) {
   std::vector<Eigen::Vector3d> points;
   for (const std::string& name : in.models) {
-    if (!model.empty() && name != model) continue;
     for (const ModelFit* fit : in.fits(name)) {
-      if (!fit->ellipsoid || fit->ellipsoid->semiAxes().maxCoeff() > 5 * in.scale.sceneSize ||
+      const double most = (name == model ? 5 : 0.5) * in.scale.sceneSize;  // a needle of another model must not shrink the rest
+      if (!fit->ellipsoid || fit->ellipsoid->semiAxes().maxCoeff() > most ||
           (fit->ellipsoid->centre() - in.scale.sceneBox.center()).norm() > 5 * in.scale.sceneSize)
         continue;
       const Eigen::Matrix3d axes = fit->ellipsoid->worldFromBody().linear() * fit->ellipsoid->semiAxes().asDiagonal();
@@ -113,6 +138,7 @@ std::vector<Eigen::Vector3d> ellipsoidExtent(const LayerInput& in, const std::st
   return points;
 }
 
+/// A direction as near to `towards` as is square to the longest extent of the points, so that it is not seen end on; unit.
 Eigen::Vector3d sideDirection(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& up,
                               const Eigen::Vector3d& towards) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -122,9 +148,11 @@ Eigen::Vector3d sideDirection(const std::vector<Eigen::Vector3d>& points, const 
   const Eigen::Vector3d longest = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(2);
   const Eigen::Vector3d square = towards - towards.dot(longest) * longest;
   if (square.norm() < 0.1) return towards;
-  const Eigen::Vector3d back = square.normalized();
-  return std::abs(back.dot(up)) > 0.95 ? towards : back;  // from straight above there is no up
+  const Eigen::Vector3d back = (square.normalized() + 0.2 * up).normalized();  // a little from above
+  return std::abs(back.dot(up)) > 0.95 ? towards : back;                       // from straight above there is no up
 }
+
+}  // namespace
 
 Eigen::Vector3d upwards(const LayerInput& in, const std::vector<int>& frames) {
   Eigen::Vector3d up = Eigen::Vector3d::Zero(), eyes = Eigen::Vector3d::Zero();
@@ -164,6 +192,26 @@ Eigen::Vector3d overviewDirection(const LayerInput& in, const std::vector<int>& 
   const double side = up.dot(flat.cross(towardsCameras)) > 0 ? -1 : 1;  // away from the cameras
   flat = Eigen::AngleAxisd(0.6 * side, up) * flat.normalized();
   return std::cos(elevation) * flat + std::sin(elevation) * up;
+}
+
+std::optional<Framing> ellipsoidFraming(const LayerInput& in, const std::vector<int>& frames, const std::string& model) {
+  Framing framing;
+  framing.points = ellipsoidExtent(in, model);
+  if (framing.points.empty()) return {};
+  // The highlights' own normal is upwards where they agree on one, as on a table: cameras that look down at it do not know.
+  Eigen::Vector3d up = upwards(in, frames), normals = Eigen::Vector3d::Zero();
+  int views = 0;
+  for (const TrainingView* view : in.views()) {
+    if (!view->tangentPlane || !view->brightest) continue;
+    normals += facing(view->brightest->point, view->camera.centreInWorld()).normal;
+    ++views;
+  }
+  if (views > 0 && normals.norm() > 0.8 * views) up = normals.normalized();
+  framing.back = sideDirection(framing.points, up, overviewDirection(in, frames, up));
+  framing.up = framing.back.cross(up.cross(framing.back).normalized());
+  framing.reference = in.scale.surfaceBox.center();
+  framing.leastDepth = 0.1 * in.scale.surfaceSize;
+  return framing;
 }
 
 void addDirection(const LayerInput& in, Picked& picked) {

@@ -15,21 +15,21 @@ void addFrustum(const LayerInput& in, std::vector<Eigen::Vector3d>& points, int 
 /// The selected highlight on the surface, else the selected model's ellipsoids, else the selected camera with its highlights;
 /// never empty.
 std::vector<Eigen::Vector3d> selectedExtent(const LayerInput& in);
-/// Where a highlight of the selected frame lies on the surface.
-struct HighlightPlace {
-  std::vector<Eigen::Vector3d> points;  ///< brightest point first, then its contour, the ends of its walks, the tip of a normal
-  Eigen::Vector3d normal{0, 0, 1};      ///< at the brightest point, towards the camera; unit
-  Eigen::Vector3d back{0, 0, 1};        ///< from there to an eye that sees T and what lies under it; unit
-  double radius = 0;
+/// What a view is to hold, and from where.
+struct Framing {
+  std::vector<Eigen::Vector3d> points;
+  Eigen::Vector3d back{0, 0, 1}, up{0, 1, 0};  ///< unit, square to each other; back: towards the eye
+  Eigen::Vector3d reference{0, 0, 0};          ///< the focal point's depth
+  double leastDepth = 0;
 };
+/// A highlight of the selected frame.
 /// @param highlight  index in the frame's evidence; out of range = the first. Nothing where it is not on the surface.
-std::optional<HighlightPlace> highlightPlace(const LayerInput& in, int highlight);
-/// What the cones of a model hold: the brightest points of the views on this surface and the ellipsoids; empty where there is
-/// none.
-std::vector<Eigen::Vector3d> ellipsoidExtent(const LayerInput& in, const std::string& model);
-/// A direction as near to `towards` as is square to the longest extent of the points, so that it is not seen end on; unit.
-Eigen::Vector3d sideDirection(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& up,
-                              const Eigen::Vector3d& towards);
+/// @param withNormal  the drawn normal, too.
+std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, HighlightLook look, bool withNormal);
+/// What the cones of a model hold: the brightest points of the views on this surface and the ellipsoids, across their longest
+/// extent.
+/// @param model  "" = all. @param frames  not empty.
+std::optional<Framing> ellipsoidFraming(const LayerInput& in, const std::vector<int>& frames, const std::string& model);
 /// The world's upward direction as the cameras have it; a signed axis where it is near one. @param frames  not empty.
 Eigen::Vector3d upwards(const LayerInput& in, const std::vector<int>& frames);
 /// From the scene towards an eye that sees the highlights with neither the surface nor the frustums before them; unit.

@@ -363,13 +363,11 @@ struct SceneView::Impl {
     frameAllPending = false;
     if (!valid()) return;
     update();
-    const Eigen::Vector3d up = upwards(input, allFrames);
-    const Eigen::Vector3d back = overviewDirection(input, allFrames, up);
-    const Eigen::Vector3d right = up.cross(back).normalized();
-    fit(extent(), back, back.cross(right), input.scale.surfaceBox.center(), 0.1 * input.scale.surfaceSize);
+    const Eigen::Vector3d up = upwards(input, allFrames), back = overviewDirection(input, allFrames, up);
+    const Eigen::Vector3d upInPicture = back.cross(up.cross(back).normalized());
+    frame(Framing{extent(), back, upInPicture, input.scale.surfaceBox.center(), 0.1 * input.scale.surfaceSize});
   }
   void frameSelection() {
-    frameAllPending = false;
     if (!valid()) return;
     const std::vector<Eigen::Vector3d> points = selectedExtent(input);
     Eigen::AlignedBox3d box;
@@ -377,34 +375,19 @@ struct SceneView::Impl {
     const ViewPoint now = input.eye != Eye::Outside ? outside : viewPointOf(renderer->GetActiveCamera());
     const Eigen::Vector3d back = (now.position - now.focalPoint).normalized();
     const Eigen::Vector3d up = (now.up - now.up.dot(back) * back).normalized();
-    fit(points, back, up, box.center(), std::max(0.5 * box.diagonal().norm(), 1e-3 * input.scale.sceneSize));
+    frame(Framing{points, back, up, box.center(), std::max(0.5 * box.diagonal().norm(), 1e-3 * input.scale.sceneSize)});
   }
-  bool frameHighlight(int highlight) {
-    if (!valid()) return false;
-    const std::optional<HighlightPlace> at = highlightPlace(input, highlight);
-    if (!at) return false;
+  bool frame(const std::optional<Framing>& f) {
+    if (!f) return false;
     frameAllPending = false;
-    std::vector<Eigen::Vector3d> points = at->points;
-    if (layers[layerIndex("peaks")].visible) points.push_back(points.front() + 1.4 * input.scale.arrow * at->normal);
-    fit(points, at->back, (at->normal - at->normal.dot(at->back) * at->back).normalized(), at->points.front(), 2 * at->radius);
+    fit(f->points, f->back, f->up, f->reference, f->leastDepth);
     return true;
   }
-  void frameEllipsoids(const std::string& model) {
-    if (!valid()) return;
-    const std::vector<Eigen::Vector3d> points = ellipsoidExtent(input, model);
-    if (points.empty()) return frameAll();
-    frameAllPending = false;
-    const Eigen::Vector3d up = upwards(input, allFrames);
-    const Eigen::Vector3d back = sideDirection(points, up, overviewDirection(input, allFrames, up));
-    const Eigen::Vector3d right = up.cross(back).normalized();
-    fit(points, back, back.cross(right), input.scale.surfaceBox.center(), 0.1 * input.scale.surfaceSize);
-  }
   void lookAlong(AxisView view) {
-    frameAllPending = false;
     if (!valid()) return;
     update();
     const AxisDirections axis = axisDirections(view, upwards(input, allFrames));
-    fit(extent(), axis.back, axis.up, input.scale.surfaceBox.center(), 0.1 * input.scale.surfaceSize);
+    frame(Framing{extent(), axis.back, axis.up, input.scale.surfaceBox.center(), 0.1 * input.scale.surfaceSize});
   }
 };
 
@@ -489,7 +472,6 @@ void SceneView::setCameraColours(const CameraColours& colours) {
 }
 
 void SceneView::setWalk(std::shared_ptr<const WalkStory> walk, int step) {
-  if (walk == impl_->input.walk && step == impl_->input.walkStep) return;
   impl_->input.walk = std::move(walk);
   impl_->input.walkStep = step;
   impl_->mark(kOnWalk);
@@ -497,8 +479,12 @@ void SceneView::setWalk(std::shared_ptr<const WalkStory> walk, int step) {
 
 void SceneView::frameAll() { impl_->frameAll(); }
 void SceneView::frameSelection() { impl_->frameSelection(); }
-bool SceneView::frameHighlight(int highlight) { return impl_->frameHighlight(highlight); }
-void SceneView::frameEllipsoids(const std::string& model) { impl_->frameEllipsoids(model); }
+bool SceneView::frameHighlight(int highlight, HighlightLook look) {
+  return impl_->valid() && impl_->frame(highlightFraming(impl_->input, highlight, look, layerVisible("peaks")));
+}
+void SceneView::frameEllipsoids(const std::string& model) {
+  if (!impl_->valid() || !impl_->frame(ellipsoidFraming(impl_->input, impl_->allFrames, model))) impl_->frameAll();
+}
 void SceneView::lookAlong(AxisView view) { impl_->lookAlong(view); }
 
 void SceneView::setParallel(bool parallel) {

@@ -57,6 +57,10 @@ enum class Eye { Outside, Camera, VirtualCamera };
 /// Along the world's axes; which is upwards is guessed from the cameras.
 enum class AxisView { Front, Back, Left, Right, Top, Bottom };
 
+/// How a highlight is looked at: T from the side, so that the gap between S and T shows, with the ends of its walks; as its camera sees
+/// it, from a little aside; with its camera, the virtual camera and the light, square to the plane of reflection.
+enum class HighlightLook { Section, Camera, Mirror };
+
 /// What the colour of a drawn camera says.
 struct CameraColours {
   enum class By { Role, Model, Error };
@@ -98,9 +102,9 @@ class SceneView {
   /// The same direction, but only what is selected: the highlight on the surface, else the model's ellipsoids, else the camera
   /// with its brightest points.
   void frameSelection();
-  /// A slanted view of the selected frame's highlight that holds its contour, the ends of its walks and the normals.
-  /// @param highlight  index in the frame's evidence. False, and nothing moves, where that is not on the surface.
-  bool frameHighlight(int highlight);
+  /// A view of the selected frame's highlight. @param highlight  index in the frame's evidence; out of range = the first.
+  /// False, and nothing moves, where that is not on the surface.
+  bool frameHighlight(int highlight, HighlightLook look);
   /// A view of the surface's highlights and of all that leads to the ellipsoids of the model (of all models: ""): their cones.
   void frameEllipsoids(const std::string& model);
   void lookAlong(AxisView view);

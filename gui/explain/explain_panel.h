@@ -44,7 +44,7 @@ class ExplainPanel : public QWidget {
 
  signals:
   void started();
-  /// A step asks for its part of the scene: "scene", "tangent" (the highlight that is explained, with S and T), "ellipsoid".
+  /// A step asks for its part of the scene: see ScenePanel::look.
   void look(const QString& at, int highlight, const QString& model);
   void lessonRequested(const QString& session);
   void problem(const QString& oneLine);

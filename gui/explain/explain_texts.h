@@ -13,7 +13,7 @@ struct ExplainText {
   QString id, title, text, equation, section;
   QStringList layers;       ///< of the scene, that show it
   QStringList frameLayers;  ///< "frame/NAME"
-  QString look;             ///< what of the scene is to be seen: "scene", "tangent", "ellipsoid"
+  QString look;             ///< what of the scene is to be seen, see ScenePanel::look
 };
 
 struct ExplainTexts {

@@ -4,6 +4,7 @@
 #include <QAction>
 #include <QHBoxLayout>
 #include <QLabel>
+#include <QMap>
 #include <QMenu>
 #include <QSignalBlocker>
 #include <QSlider>
@@ -230,9 +231,12 @@ void ScenePanel::showWalk(const std::shared_ptr<const viz::WalkStory>& walk, int
 
 void ScenePanel::look(const QString& at, int highlight, const QString& model) {
   viz::SceneView& view = views_->active();
+  static const QMap<QString, viz::HighlightLook> looks{{QStringLiteral("tangent"), viz::HighlightLook::Section},
+                                                       {QStringLiteral("highlight"), viz::HighlightLook::Camera},
+                                                       {QStringLiteral("mirror"), viz::HighlightLook::Mirror}};
   if (at == QLatin1String("ellipsoid"))
     view.frameEllipsoids(model.toStdString());
-  else if (at != QLatin1String("tangent") || !view.frameHighlight(highlight))
+  else if (!looks.contains(at) || !view.frameHighlight(highlight, looks[at]))
     view.frameAll();
   views_->scheduleRender();
 }

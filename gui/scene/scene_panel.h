@@ -44,7 +44,9 @@ class ScenePanel : public QWidget {
  public slots:
   /// What the layer "walk" draws, as far as `step`.
   void showWalk(const std::shared_ptr<const glint::viz::WalkStory>& walk, int step);
-  /// Moves the view to a part of the scene: "scene", "tangent" (a highlight with S and T), "ellipsoid" (of a model); it may be moved on.
+  /// Moves the view to a part of the scene: "scene", "ellipsoid" (of a model), or a highlight: "tangent" (S and T from the
+  /// side), "highlight" (as its camera sees it), "mirror" (with camera, virtual camera and light). The user may move on from
+  /// there.
   void look(const QString& at, int highlight, const QString& model);
   void frameAll();
   void frameSelection();

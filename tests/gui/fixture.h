@@ -57,6 +57,7 @@ QObject* makeComparisonTest();
 QObject* makeExportTest();
 QObject* makeFigureTest();
 QObject* makeExplainTest();
+QObject* makeLessonsTest();
 QObject* makeRecoveryTest();
 int runUntilKilled();  ///< see recovery_test.cpp
 QObject* makeTradeoffTest();

@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
       {"frame_view", makeFrameViewTest}, {"timeline", makeTimelineTest}, {"panel", makePanelTest},
       {"palette", makePaletteTest},      {"linking", makeLinkingTest},   {"window", makeWindowTest},
       {"scene", makeSceneTest},          {"session", makeSessionTest},   {"program", makeProgramTest},
-      {"recovery", makeRecoveryTest},    {"explain", makeExplainTest},   {"export", makeExportTest},
+      {"recovery", makeRecoveryTest},    {"explain", makeExplainTest},    {"lessons", makeLessonsTest},   {"export", makeExportTest},
       {"plots", makePlotsTest},          {"tradeoff", makeTradeoffTest}, {"parameters", makeParametersTest},
       {"picking", makePickingTest},      {"random", makeRandomTest},
       {"figure", makeFigureTest},        {"comparison", makeComparisonTest},

@@ -15,7 +15,6 @@
 #include "viz/layers.h"
 #include "viz/offscreen.h"
 #include "viz/style.h"
-#include "viz/walk_story.h"
 
 namespace glint::viz {
 namespace {
@@ -32,26 +31,6 @@ class SceneViewPicture : public test::PictureTest {
   TemporaryFolder folder_;
 };
 
-/// Three places on the z axis' foot and beside it, of frame 0.
-WalkStory shortWalk(const Camera& camera) {
-  WalkStory story;
-  story.frame = 0;
-  story.camera = camera;
-  story.lamp = Light::at({0, 0, 3});
-  for (int i = 0; i < 3; ++i) {
-    WalkPlace p;
-    p.distance = 0.1 * i;
-    p.onTangentPlane = p.position = Eigen::Vector3d(0.1 * i, 0, 0.5);
-    p.normal = {0, 0, 1};
-    p.alpha = 0.02 * i;
-    story.trace.onSurface.push_back(p);
-    story.trace.onPlane.push_back(p);
-  }
-  story.trace.limitAngle = 0.04;
-  story.trace.reachOnSurface = story.trace.reachOnPlane = 0.2;
-  return story;
-}
-
 TEST_F(SceneViewPicture, EveryLayerIsSeenAndGoesAwayWhenItIsSwitchedOff) {
   SceneView view;
   view.setInspection(smallInspection(folder_.path()));
@@ -64,7 +43,7 @@ TEST_F(SceneViewPicture, EveryLayerIsSeenAndGoesAwayWhenItIsSwitchedOff) {
   for (const Layer& layer : sceneLayers()) {
     SCOPED_TRACE(layer.name);
     if (over.count(layer.name)) {
-      const auto story = std::make_shared<WalkStory>(shortWalk(smallInspection(folder_.path())->scene->frames[0].camera));
+      const auto story = std::make_shared<const WalkStory>(test::shortWalk(*smallInspection(folder_.path())));
       view.setWalk(story, story->steps() - 1);
       view.setLayerVisible(layer.name, true);
       EXPECT_GT(countDifferent(all, render(view)), 12);

@@ -59,6 +59,25 @@ TemporaryFolder::~TemporaryFolder() {
   std::filesystem::remove_all(path_, ignored);
 }
 
+viz::WalkStory shortWalk(const Inspection& inspection) {
+  viz::WalkStory story;
+  story.frame = 0;
+  story.camera = inspection.scene->frames[0].camera;
+  story.lamp = Light::at({0, 0, 3});
+  for (int i = 0; i < 3; ++i) {
+    WalkPlace p;
+    p.distance = 0.1 * i;
+    p.onTangentPlane = p.position = Eigen::Vector3d(0.1 * i, 0, 0.5);
+    p.normal = {0, 0, 1};
+    p.alpha = 0.02 * i;
+    story.trace.onSurface.push_back(p);
+    story.trace.onPlane.push_back(p);
+  }
+  story.trace.limitAngle = 0.04;
+  story.trace.reachOnSurface = story.trace.reachOnPlane = 0.2;
+  return story;
+}
+
 std::shared_ptr<Inspection> smallInspection(const std::filesystem::path& folder, double scale) {
   Image photograph(kWidth, kHeight, 3);
   for (int y = 0; y < kHeight; ++y) {

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/pipeline/inspection.h"
+#include "viz/walk_story.h"
 
 namespace glint::test {
 
@@ -25,5 +26,8 @@ class TemporaryFolder {
  private:
   std::filesystem::path path_;
 };
+
+/// A walk of three places on S and on T, in frame 0, above the ball.
+viz::WalkStory shortWalk(const Inspection& inspection);
 
 }  // namespace glint::test

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "core/base/outcome.h"
 #include "tests/viz/image_checks.h"
@@ -79,7 +80,8 @@ Image moved(const Image& image, double by) {
 
 // ---- the 3D view ----
 
-constexpr const char* kLooks[] = {"overview", "parallel", "camera", "virtual"};
+constexpr const char* kLooks[] = {"overview", "parallel", "camera", "virtual", "explained"};
+const std::set<std::string> kExplained{"walk", "cones"};  // they lie over everything else: in a picture of their own
 
 class StoredScenes : public StoredPictures {
  protected:
@@ -87,13 +89,20 @@ class StoredScenes : public StoredPictures {
     StoredPictures::SetUp();
     if (!IsSkipped()) resize(kSceneWidth, kSceneHeight);
   }
-  /// One way of looking at the scene with every layer, but for one.
+  /// One way of looking at the scene with every layer (explained: the surface and those that explain), but for one.
   Image picture(const std::string& look, const std::string& withoutLayer = "") {
     SceneView view;
     view.setInspection(inspection_);
     view.setLegendVisible(false);
-    for (const Layer& layer : sceneLayers()) view.setLayerVisible(layer.name, layer.name != withoutLayer);
-    if (look == "parallel") {
+    for (const Layer& layer : sceneLayers()) {
+      const bool explains = kExplained.count(layer.name) > 0;
+      const bool shown = look == "explained" ? explains || layer.name == "surface" || layer.name == "ellipsoids" : !explains;
+      view.setLayerVisible(layer.name, shown && layer.name != withoutLayer);
+    }
+    if (look == "explained") {
+      const auto walk = std::make_shared<const WalkStory>(test::shortWalk(*inspection_));
+      view.setWalk(walk, walk->steps() - 1);
+    } else if (look == "parallel") {
       view.setParallel(true);
       view.lookAlong(AxisView::Top);
     } else if (look != "overview") {

@@ -27,7 +27,7 @@ TriangleMesh sector(const Eigen::Vector3d& centre, const Eigen::Vector3d& a, con
 
 /// Places that were passed, their normals, and the end where the limit angle is reached.
 void addTrail(LayerContent& content, const std::vector<WalkPlace>& places, int visited, const Colour& colour, double size,
-              const Eigen::Vector3d& lift, const Picked& info) {
+              double width, const Eigen::Vector3d& lift, const Picked& info) {
   if (visited == 0) return;
   Points trail;
   std::vector<Segment> normals;
@@ -35,7 +35,7 @@ void addTrail(LayerContent& content, const std::vector<WalkPlace>& places, int v
     trail.push_back(places[i].position + lift);
     if (i % kNormalsEvery == 0) normals.emplace_back(trail.back(), trail.back() + 0.45 * size * places[i].normal);
   }
-  if (trail.size() > 1) content.add(lineActor({trail}, colour, 3.0), info, 3.0);
+  if (trail.size() > 1) content.add(lineActor({trail}, colour, width), info, width);
   content.add(segmentActor(normals, colour, 1.2), info, 1.2);
   if (static_cast<std::size_t>(visited) == places.size()) content.add(sphereActor({trail.back()}, 0.035 * size, colour), info);
 }
@@ -65,8 +65,9 @@ LayerContent walkLayer(const LayerInput& in) {
   content.drawn.push_back({discActor(origin, story.normal, disc, kVirtualCamera, 0.16), info, 0, false});
   const Eigen::Vector3d across = story.normal.cross(story.along);
   content.add(lineActor({circle(origin, disc * story.along, disc * across)}, kVirtualCamera, 1.0), info, 1.0);
-  addTrail(content, story.trace.onSurface, now.visitedOnSurface, surface, size, lift, info);
-  addTrail(content, story.trace.onPlane, now.visitedOnPlane, plane, size, lift, info);
+  // Seen from above, S hardly lies under T: the wider trail shows beside the other.
+  addTrail(content, story.trace.onSurface, now.visitedOnSurface, surface, size, 5.0, lift, info);
+  addTrail(content, story.trace.onPlane, now.visitedOnPlane, plane, size, 2.5, lift, info);
   // The foot under the point of T: the gap that the walk on S crosses.
   if (now.onSurface) content.add(segmentActor({{place.onTangentPlane + lift, place.position + lift}}, plane, 1.2), info, 1.2);
   const Eigen::Vector3d at = place.position + lift, half = story.half(place);
