@@ -34,6 +34,8 @@ const std::map<QString, const char*>& leftOut() {
                                                   {"edit.shortcuts", "opens a dialog that waits for the user"},
                                                   {"plots.save", "asks for a file"},
                                                   {"frame.play", "goes on by the clock"},
+                                                  {"explain.play-walk", "goes on by the clock"},
+                                                  {"lesson.", "opens another session"},
                                                   {"edit.stop", "leaves results out of date"},
                                                   {"plots.influence", "fits once per training frame"}};
   return ids;
