@@ -3,6 +3,8 @@
 #include <QAction>
 #include <QClipboard>
 #include <QDir>
+#include <QFile>
+#include <QFileInfo>
 #include <QGuiApplication>
 #include <QImage>
 #include <QJsonArray>
@@ -54,6 +56,20 @@ class ExportTest : public QObject {
     QCOMPARE(QFileInfo(toQString(back.path)).canonicalFilePath(), QFileInfo(kSession).canonicalFilePath());
   }
 
+  /// The name of the text in the picture is a contract with figures that were written long ago.
+  void aFigureOfAnotherProgramOpens() {
+    QFile session(QString::fromUtf8(kSession));
+    QVERIFY(session.open(QIODevice::ReadOnly));
+    QImage picture(8, 8, QImage::Format_RGB888);
+    picture.fill(Qt::black);
+    picture.setText("glint-session", QString::fromUtf8(session.readAll()));
+    const QString file = folder_.filePath("old figure.png");
+    QVERIFY(picture.save(file));
+    const Opened opened = openInput(file.toStdString(), (QFileInfo(kSession).path() + "/scene.json").toStdString());
+    QCOMPARE(opened.request.train, std::string("0-3"));
+    QCOMPARE(int(opened.scene->frames.size()), 6);
+  }
+
   void aPictureWithoutASessionIsNoScene() {
     const QString file = folder_.filePath("plain.png");
     QImage(8, 8, QImage::Format_RGB888).save(file);
@@ -89,6 +105,21 @@ class ExportTest : public QObject {
     for (const FrameComparison& c : rows)
       if (c.frame == index) shown = c.rows.at(0).metrics->contourErrorPx;
     QVERIFY2(std::abs(printed - shown) < 1e-9, qPrintable(QStringLiteral("%1 %2").arg(printed).arg(shown)));
+  }
+
+  void whatHasNoFlagIsNoCommandUntilItIsSaved() {
+    Document& d = window_->document();
+    d.setRole(5, FrameRole::Excluded);
+    const Outcome<std::string> command = window_->exports()->command();
+    QVERIFY(!command);
+    QVERIFY(toQString(command.failure().detail).contains("excluded"));
+    QGuiApplication::clipboard()->setText("untouched");
+    window_->actions().find("export.command")->trigger();
+    QCOMPARE(QGuiApplication::clipboard()->text(), QStringLiteral("untouched"));
+    // As if it had been saved: the session computes it.
+    d.markSaved("/some where/a b.glint", d.state());
+    QVERIFY(window_->exports()->command());
+    QCOMPARE(toQString(*window_->exports()->command()), QStringLiteral("glint evaluate '/some where/a b.glint'"));
   }
 
   void theDiagnosticReportNamesNoFolder() {

@@ -5,6 +5,7 @@
 #include <QLineEdit>
 #include <QMenu>
 #include <QMenuBar>
+#include <QRegularExpression>
 #include <QSet>
 #include <QTreeWidget>
 
@@ -80,6 +81,21 @@ class PaletteTest : public QObject {
         for (int i = 0; i < list->topLevelItemCount(); ++i) found |= list->topLevelItem(i)->text(1).endsWith(toQString(spec.key));
         QVERIFY2(found, typed.c_str());
       }
+  }
+
+  void whatIsNamedSoComesBeforeWhatLiesThere() {
+    popUp();
+    window_->commandPalette()->line()->setText("light");
+    const QTreeWidget* list = window_->commandPalette()->list();
+    int named = 0, lying = 0;
+    for (int i = 0; i < list->topLevelItemCount(); ++i) {
+      const bool inTitle = list->topLevelItem(i)->text(0).contains(QRegularExpression(QStringLiteral("\\b[Ll]ight")));
+      const bool inPlace = list->topLevelItem(i)->text(1).contains(QStringLiteral("light."));
+      if (inTitle) QVERIFY2(lying == 0, qPrintable(list->topLevelItem(i)->text(0)));
+      named += inTitle;
+      lying += inPlace && !inTitle;
+    }
+    QVERIFY(named > 2 && lying > 2);  // "Light (estimate)"; "Bundle points", of light.bundle_points
   }
 
   void anActionRunsByTyping() {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Kill and recover; a scene that was moved. With the real engine on a session of the repository.
+#include <QDateTime>
 #include <QDir>
 #include <QFile>
+#include <QFileInfo>
 #include <QProcess>
 #include <QPushButton>
 #include <QTemporaryDir>
@@ -106,6 +108,40 @@ class RecoveryTest : public QObject {
     QVERIFY(!QFile::exists(file));
     MainWindow window(coreEngine());
     QVERIFY(!answer(window, "Recover"));
+  }
+
+  void whatARunningProgramHoldsIsNotOffered() {
+    MainWindow running(coreEngine());
+    running.show();
+    openAndWait(running, kSession);
+    running.document().setSetting("detect.level", 0.4);
+    running.findChild<Autosave*>()->flush();
+    QVERIFY(QFile::exists(running.findChild<Autosave*>()->file()));
+    MainWindow another(coreEngine());
+    QVERIFY(!answer(another, "Recover"));
+    QVERIFY(!another.findChild<Autosave*>()->leftBehind());
+  }
+
+  void theNewestIsOfferedFirst() {
+    const QString folder = folder_.filePath("left");
+    QDir().mkpath(folder);
+    const Opened opened = openInput(kSession);
+    for (const char* name : {"a", "newest", "z"}) {
+      const QString file = folder + '/' + name + ".glint";
+      engine_.autosave(opened, file.toStdString());
+      QFile touched(file);
+      QVERIFY(touched.open(QIODevice::ReadWrite));
+      QVERIFY(touched.setFileTime(QDateTime::currentDateTime().addSecs(qstrcmp(name, "newest") == 0 ? -60 : -3600),
+                                  QFileDevice::FileModificationTime));
+    }
+    const Autosave autosave(
+        engine_, document_, [] { return Opened(); }, folder);
+    const std::optional<Autosave::Found> found = autosave.leftBehind();
+    QVERIFY(found);
+    QCOMPARE(QFileInfo(found->file).fileName(), QStringLiteral("newest.glint"));
+    QCOMPARE(QFileInfo(found->of).canonicalFilePath(), QFileInfo(kSession).canonicalFilePath());
+    Autosave::discard(*found);
+    QVERIFY(autosave.leftBehind() && autosave.leftBehind()->file != found->file);
   }
 
   void aFileThatIsCutIsNotOffered() {

@@ -348,15 +348,35 @@ TEST_F(PlotDrawing, BarsArePickedByTheirColumn) {
 }
 
 TEST_F(PlotDrawing, DialTurnsAsThePhotograph) {
-  PlotData plot = line({{0, 1}, {std::numbers::pi / 2, 1}});
-  plot.dial = true;
-  plot.y.to = 1;
-  plot.y.from = -1;
-  view_.show(plot);
-  draw();
-  const Eigen::Vector2d right = *view_.positionOf({0, 0}), down = *view_.positionOf({0, 1});
-  EXPECT_GT(right.x(), down.x());
-  EXPECT_GT(down.y(), right.y()) << "pi/2 points down";
+  // One short arc per quarter: where it is drawn, and where it is picked, is its direction in the photograph.
+  const struct {
+    double direction;
+    Eigen::Vector2d side;  // window px, y down
+  } quarters[] = {{0, {1, 0}}, {std::numbers::pi / 2, {0, 1}}, {std::numbers::pi, {-1, 0}}, {-std::numbers::pi / 2, {0, -1}}};
+  for (const auto& quarter : quarters) {
+    SCOPED_TRACE(quarter.direction);
+    PlotData plot = line({{quarter.direction - 0.1, 0.5}, {quarter.direction, 0.5}, {quarter.direction + 0.1, 0.5}});
+    plot.dial = true;
+    plot.series[0].inLegend = false;  // the only thing of its colour is the arc
+    plot.y.to = 1;
+    plot.y.from = -1;
+    view_.show(plot);
+    const Image image = draw();
+    Eigen::Vector2d sum(0, 0);
+    int n = 0;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x)
+        if (isColour(image, Eigen::Vector2d(x, y), modelColour("canonical"))) sum += Eigen::Vector2d(x, y), ++n;
+    ASSERT_GT(n, 5);
+    const Eigen::Vector2d drawn = sum / n, picked = *view_.positionOf({0, 1});
+    EXPECT_LT((drawn - picked).norm(), 4) << "picked where it is drawn";
+    // The circle's middle is not the window's: the title is above it. Everything else is half as far off at most.
+    const Eigen::Vector2d out = drawn - Eigen::Vector2d(image.width / 2.0, image.height / 2.0);
+    EXPECT_GT(out.normalized().dot(quarter.side), 0.97);
+    const auto at = view_.at(picked, 3);
+    ASSERT_TRUE(at);
+    EXPECT_EQ(at->point, 1);
+  }
 }
 
 TEST_F(PlotDrawing, AnEmptyPlotSaysWhyAndPicksNothing) {

@@ -20,7 +20,8 @@ std::string throughShell(const std::string& word) {
 }
 
 TEST(CommandText, AShellGivesBackEveryWord) {
-  for (const std::string text : {"plain.json", "two words", "it's", "$HOME `x` \"q\" \\", "a;b|c&d", "*", "~", "--", "ümlaut"})
+  for (const std::string text : {"plain.json", "two words", "it's", "$HOME `x` \"q\" \\", "$HOME", "a$$", "a;b|c&d", "*", "~",
+                                 "#a", "!", "(b)", "a\tb", "a\nb", "--", "ümlaut"})
     EXPECT_EQ(throughShell(shellWord(text)), text);
   EXPECT_EQ(shellWord(""), "''");
 }

@@ -84,6 +84,17 @@ TEST(Explain, OnASphereItSaysWhyPrimalFails) {
   EXPECT_GT(number(stepOf(e, "canonical-ellipse"), "against the observed one's")[1], 1.2);
 }
 
+TEST(Explain, DualFailsWhereTheCurvatureVariesAndTheHighlightIsNotFlat) {
+  const auto varies = [](const AnalyticSpec& surface) {
+    return breaks(stepOf(explain(inspected(surface, {"dual", "canonical"}), 5, 0, "canonical"), "virtual-camera"),
+                  "dual-curvature-varies");
+  };
+  EXPECT_TRUE(varies(cylinder(0.5)));
+  EXPECT_FALSE(varies(sphere(0.5))) << "the same curvature everywhere";
+  // Radius 100 m: across a highlight of 0.1 m the normal turns by 1e-3 rad, a sixtieth of the limit angle.
+  EXPECT_FALSE(varies(cylinder(100)));
+}
+
 TEST(Explain, ChoosesTheRichestModelWithAnEllipsoid) {
   const Inspection inspection = inspected(sphere(0.5), {"primal", "canonical", "limit-angle"});
   EXPECT_EQ(explain(inspection, 0, 0, "").model, "canonical");

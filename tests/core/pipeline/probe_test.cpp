@@ -51,6 +51,29 @@ TEST(ProbePixel, ASphereInClosedForm) {
   EXPECT_NEAR(std::sin(*aside->lights[1].alpha), 3 * std::sin(a), 1e-9);
 }
 
+TEST(ProbePixel, TakesThePixelAsTheLensMeasuredIt) {
+  Inspection inspection = ballInFront();
+  const Outcome<PixelProbe> ideal = probePixel(inspection, 0, {70, 40});
+  auto scene = std::make_shared<Scene>(*inspection.scene);
+  scene->frames[0].camera.distortion[0] = 0.5;  // k1: the ideal 0.2 is measured at 0.2 (1 + 0.5 * 0.2^2) = 0.204
+  inspection.scene = scene;
+  const Outcome<PixelProbe> measured = probePixel(inspection, 0, {70.4, 40});
+  ASSERT_TRUE(ideal && measured);
+  EXPECT_LT((measured->point.position - ideal->point.position).norm(), 1e-9);
+}
+
+TEST(ProbePixel, TheNormalIsThatOfTheCamerasSide) {
+  Inspection inspection = ballInFront();
+  auto scene = std::make_shared<Scene>(*inspection.scene);
+  scene->frames[0].camera.camFromWorld = Eigen::Isometry3d::Identity();  // inside the ball, at its centre
+  inspection.scene = scene;
+  inspection.lights["lamp"].light = Light::at({0, 0, 0.5});
+  const Outcome<PixelProbe> probe = probePixel(inspection, 0, {50, 40});
+  ASSERT_TRUE(probe);
+  EXPECT_LT((probe->point.normal - Eigen::Vector3d(0, 0, -1)).norm(), 1e-9);
+  EXPECT_NEAR(*probe->lights[1].alpha, 0, 1e-9);
+}
+
 TEST(ProbePixel, Degenerate) {
   Inspection inspection = ballInFront();
   EXPECT_EQ(probePixel(inspection, 0, {0, 0}).failure().reason, Reason::NoHit);
