@@ -2,11 +2,11 @@
 #include "viz/offscreen.h"
 
 #include <vtkImageData.h>
-#include <vtkNew.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
-#include <vtkWindowToImageFilter.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 
 #include "viz/convert.h"
@@ -40,22 +40,25 @@ vtkSmartPointer<vtkRenderWindow> hiddenWindow(int width, int height) {
   return window;
 }
 
-/// 4 channels, top row first.
-Image pictureWithOpacityOf(vtkRenderWindow* window) {
-  vtkNew<vtkWindowToImageFilter> grab;
-  grab->SetInput(window);
-  grab->SetInputBufferTypeToRGBA();
-  grab->ReadFrontBufferOff();
-  grab->ShouldRerenderOff();
-  grab->Update();
-  vtkImageData* pixels = grab->GetOutput();
-  const int* size = pixels->GetDimensions();
-  Image out(size[0], size[1], 4);
-  const auto* bytes = static_cast<const unsigned char*>(pixels->GetScalarPointer());
-  const std::size_t row = 4 * static_cast<std::size_t>(size[0]);
-  for (int y = 0; y < size[1]; ++y)
-    for (std::size_t i = 0; i < row; ++i)
-      out.data[static_cast<std::size_t>(y) * row + i] = float(bytes[static_cast<std::size_t>(size[1] - 1 - y) * row + i]) / 255.f;
+/// The picture over one background.
+Image pictureOver(vtkRenderer* renderer, vtkRenderWindow* window, double grey) {
+  renderer->SetBackground(grey, grey, grey);
+  window->Render();
+  return pictureOf(window);
+}
+
+/// Opacity and colour from the same picture over black and over white: c a and c a + (1 - a). What the graphics card leaves in
+/// its own opacity channel is wrong where translucent things overlap.
+Image withOpacity(const Image& black, const Image& white) {
+  Image out(black.width, black.height, 4);
+  for (int y = 0; y < black.height; ++y)
+    for (int x = 0; x < black.width; ++x) {
+      float through = 0;
+      for (int c = 0; c < 3; ++c) through += (white.at(x, y, c) - black.at(x, y, c)) / 3;
+      const float opacity = std::clamp(1 - through, 0.f, 1.f);
+      for (int c = 0; c < 3; ++c) out.at(x, y, c) = opacity > 0 ? std::min(1.f, black.at(x, y, c) / opacity) : 0.f;
+      out.at(x, y, 3) = opacity;
+    }
   return out;
 }
 }  // namespace
@@ -83,12 +86,19 @@ Outcome<std::unique_ptr<Offscreen>> Offscreen::create(int width, int height) {
 
 Image Offscreen::render(const SceneView& view, bool transparent) {
   vtkRenderWindow* window = impl_->window;
-  const double before = view.renderer()->GetBackgroundAlpha();
-  view.renderer()->SetBackgroundAlpha(transparent ? 0 : 1);
-  window->AddRenderer(view.renderer());
-  window->Render();
-  Image image = transparent ? pictureWithOpacityOf(window) : pictureOf(window);
-  view.renderer()->SetBackgroundAlpha(before);
+  vtkRenderer* renderer = view.renderer();
+  window->AddRenderer(renderer);
+  Image image;
+  if (transparent) {
+    std::array<double, 3> before{};
+    renderer->GetBackground(before.data());
+    const Image black = pictureOver(renderer, window, 0);
+    image = withOpacity(black, pictureOver(renderer, window, 1));
+    renderer->SetBackground(before.data());
+  } else {
+    window->Render();
+    image = pictureOf(window);
+  }
   window->RemoveRenderer(view.renderer());
   return image;
 }

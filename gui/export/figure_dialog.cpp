@@ -66,7 +66,7 @@ FigureDialog::FigureDialog(const QString& title, const QString& kind, const QSiz
   connect(buttons, &QDialogButtonBox::rejected, this, &FigureDialog::reject);
 
   const QSettings settings;
-  colours_->setCurrentIndex(settings.value(kind_ + QStringLiteral("dark"), dark).toBool() ? 0 : 1);
+  colours_->setCurrentIndex(dark ? 0 : 1);
   transparent_->setChecked(settings.value(kind_ + QStringLiteral("transparent"), false).toBool());
   const int preset = std::clamp(settings.value(kind_ + QStringLiteral("preset"), 0).toInt(), 0, kOther);
   if (preset == kOther) setSize(settings.value(kind_ + QStringLiteral("size"), onScreen).toSize());
@@ -114,7 +114,6 @@ FigureLook FigureDialog::look() const {
 
 void FigureDialog::accept() {
   QSettings settings;
-  settings.setValue(kind_ + QStringLiteral("dark"), look().dark);
   settings.setValue(kind_ + QStringLiteral("transparent"), look().transparent);
   settings.setValue(kind_ + QStringLiteral("preset"), preset_->currentIndex());
   settings.setValue(kind_ + QStringLiteral("size"), look().size);

@@ -17,7 +17,7 @@ struct FigureLook {
   bool dark = true;
 };
 
-/// Asks for the size and the background of a picture. Remembers the last answer of each kind.
+/// Asks for the size and the background of a picture. Remembers the last answer of each kind; colours start as the window's.
 class FigureDialog : public QDialog {
   Q_OBJECT
  public:

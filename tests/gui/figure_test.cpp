@@ -112,7 +112,7 @@ class FigureTest : public QObject {
     QImage both(a.size(), QImage::Format_RGB32);
     both.fill(a.pixelColor(2, 150));
     QPainter(&both).drawImage(0, 0, b);
-    QVERIFY2(difference(both, a) < 3, qPrintable(QString::number(difference(both, a))));
+    QVERIFY2(difference(both, a) < 0.7, qPrintable(QString::number(difference(both, a))));
     const Opened back = openInput(solid.toStdString());
     QCOMPARE(back.scene->frames.size(), window_->document().scene()->frames.size());
   }

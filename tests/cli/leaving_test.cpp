@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What leaves the command line besides reports: movies, comparisons of two sessions, masks.
+#include <gmock/gmock.h>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "tests/cli/small_scene.h"
+
+namespace glint {
+namespace {
+using namespace testing_support;
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+class Leaving : public SmallScene {};
+
+TEST_F(Leaving, AMovieOfTheTimelineAsPictures) {
+  saveSession("--model limit-angle");
+  const ProgramRun run = onSession("movie", "--frames 2-4 --size 320x240 -o " + out("m.png"));
+  ASSERT_EQ(run.code, 0) << run.err;
+  cv::Mat before;
+  for (const char* name : {"m_0000.png", "m_0001.png", "m_0002.png"}) {
+    const cv::Mat picture = cv::imread((folder_ / name).string());
+    ASSERT_EQ(picture.cols, 320) << name;
+    ASSERT_EQ(picture.rows, 240) << name;
+    if (!before.empty()) EXPECT_GT(cv::norm(picture, before, cv::NORM_L1) / double(picture.total()), 0.1) << name;
+    before = picture;
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "m_0003.png"));
+}
+
+TEST_F(Leaving, WrongMoviesNameWhatIsWrong) {
+  for (const auto& [flags, expected] :
+       std::initializer_list<std::pair<const char*, const char*>>{{"-o m.gif", "a movie ends in .mp4"},
+                                                                  {"--size 321x240 -o m.mp4", "must be even"},
+                                                                  {"--fps 1000 -o m.mp4", "--fps: "},
+                                                                  {"--of turntable --seconds 0 -o m.mp4", "--seconds: "},
+                                                                  {"--frames 99 -o m.mp4", "--frames 99: "},
+                                                                  {"--of dance -o m.mp4", "--of: "}}) {
+    const ProgramRun run = on("movie", flags);
+    EXPECT_EQ(run.code, 2) << flags;
+    EXPECT_THAT(run.err, HasSubstr(expected)) << flags;
+  }
+}
+
+TEST_F(Leaving, ComparesTwoSessions) {
+  saveSession("--model limit-angle,canonical");
+  fs::copy_file(folder_ / "run.glint", folder_ / "before.glint");
+  saveSession("--model limit-angle,canonical --train first:4 --set detect.level=0.4");
+  const ProgramRun text = runGlint("compare " + out("before.glint") + " " + out("run.glint"));
+  EXPECT_EQ(text.code, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("detect.level"));
+  EXPECT_THAT(text.out, testing::Not(HasSubstr("predict.directions")));
+  const ProgramRun json = runGlint("compare --json - " + out("before.glint") + " " + out("run.glint"));
+  const Json j = Json::parse(json.out);
+  EXPECT_EQ(j["frames"]["common"], 8);
+  EXPECT_EQ(j["models"]["limit-angle"]["common"], 2);  // held out in both: the last two of eight
+  const ProgramRun same = runGlint("compare " + out("run.glint") + " " + out("run.glint"));
+  EXPECT_THAT(same.out, HasSubstr("0 differences"));
+  EXPECT_EQ(runGlint("compare " + out("run.glint") + " " + out("none.glint")).code, 2);
+}
+
+TEST_F(Leaving, MasksInANewFolder) {
+  saveSession("--model limit-angle");
+  ASSERT_EQ(onSession("predict", "--masks " + out("labels")).code, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "labels/masks.json"));
+  EXPECT_TRUE(fs::exists(folder_ / "labels/labels_limit-angle.json"));
+  const ProgramRun again = onSession("predict", "--masks " + out("labels"));
+  EXPECT_EQ(again.code, 2);
+  EXPECT_THAT(again.err, HasSubstr("not empty"));
+}
+
+}  // namespace
+}  // namespace glint
