@@ -8,9 +8,7 @@ path-traced frames with their meshes, and on a mesh of a million triangles.
 Scenes of --shared that are not there are left out; with --only the other tables stay as they are.
 """
 import argparse
-import array
 import json
-import math
 import pathlib
 import re
 import shutil
@@ -20,6 +18,9 @@ import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "bench"))
+from large_scene import write_ellipsoid  # noqa: E402
+
 PAGE = ROOT / "docs/tradeoff.md"
 BEGIN, END = "<!-- {} begin -->", "<!-- {} end -->"
 
@@ -29,30 +30,7 @@ def large_mesh(folder):
     scene = json.loads((ROOT / "sessions/ellipsoid/scene.json").read_text())
     (name, surface), = scene["surfaces"].items()
     analytic = surface["analytic"]
-    axes, pose = analytic["semi_axes"], analytic.get("world_from_surface", [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
-    rows, columns = 500, 1000
-    vertices, faces = array.array("f"), bytearray()
-    for i in range(rows + 1):
-        for j in range(columns):
-            t, p = math.pi * i / rows, 2 * math.pi * j / columns
-            u = (math.sin(t) * math.cos(p), math.sin(t) * math.sin(p), math.cos(t))
-            local, normal = [a * x for a, x in zip(axes, u)], [x / a for a, x in zip(axes, u)]
-            length = math.sqrt(sum(x * x for x in normal))
-            vertices.extend(sum(pose[r][k] * local[k] for k in range(3)) + pose[r][3] for r in range(3))
-            vertices.extend(sum(pose[r][k] * normal[k] for k in range(3)) / length for r in range(3))
-    if sys.byteorder != "little":
-        vertices.byteswap()
-    count = 0
-    for i in range(rows):
-        for j in range(columns):
-            a, b = i * columns + j, i * columns + (j + 1) % columns
-            for triangle in ((a, a + columns, b), (b, a + columns, b + columns)):
-                faces += b"\x03" + b"".join(v.to_bytes(4, "little") for v in triangle)
-                count += 1
-    header = (f"ply\nformat binary_little_endian 1.0\nelement vertex {(rows + 1) * columns}\n" +
-              "".join(f"property float {k}\n" for k in ("x", "y", "z", "nx", "ny", "nz")) +
-              f"element face {count}\nproperty list uchar int vertex_indices\nend_header\n")
-    (folder / "body.ply").write_bytes(header.encode() + vertices.tobytes() + faces)
+    write_ellipsoid(folder / "body.ply", analytic["semi_axes"], analytic.get("world_from_surface"))
     scene["surfaces"] = {name: {"mesh": "body.ply"}}
     shutil.copytree(ROOT / "sessions/ellipsoid/frames", folder / "frames")
     (folder / "scene.json").write_text(json.dumps(scene))

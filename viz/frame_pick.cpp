@@ -58,6 +58,30 @@ Selection pickInFrame(const Inspection& inspection, const Selection& now, const 
   return picked;
 }
 
+std::optional<Grip> gripAt(const Inspection& inspection, int frame, const Pixel& at, double nearPx) {
+  if (frame < 0 || static_cast<std::size_t>(frame) >= inspection.evidence.size()) return std::nullopt;
+  const FrameEvidence& evidence = inspection.evidence[static_cast<std::size_t>(frame)];
+  if (evidence.againstTruth) return std::nullopt;
+  const Camera& camera = inspection.scene->frames[static_cast<std::size_t>(frame)].camera;
+  std::optional<Grip> best;
+  double bestPx = nearPx;
+  const auto offer = [&](double px, int highlight, bool peak) {
+    if (!(px <= bestPx)) return;
+    bestPx = px;
+    best = Grip{highlight, peak};
+  };
+  for (std::size_t i = 0; i < evidence.highlights.size(); ++i)
+    offer((camera.distorted(evidence.highlights[i].peak) - at).norm(), static_cast<int>(i), true);
+  if (best) return best;  // small next to its contour, so it comes first
+  for (std::size_t i = 0; i < evidence.highlights.size(); ++i) {
+    Polyline contour = evidence.highlights[i].contour;
+    if (contour.points.empty()) continue;
+    for (Pixel& p : contour.points) p = camera.distorted(p);
+    offer(distance(contour, at), static_cast<int>(i), false);
+  }
+  return best;
+}
+
 std::string labelAt(const FrameOverlay& shown, const Pixel& at, double nearPx) {
   for (auto mark = shown.marks.rbegin(); mark != shown.marks.rend(); ++mark)
     if ((mark->at - at).norm() <= nearPx && !mark->label.empty()) return mark->label;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 #include "viz/frame_overlay.h"
 
 namespace glint::viz {
@@ -14,6 +16,14 @@ namespace glint::viz {
 /// @param clicked  photograph pixel.  @param nearPx  what counts as near, photograph pixels.
 Selection pickInFrame(const Inspection& inspection, const Selection& now, const FrameOverlay& shown, const Pixel& clicked,
                       double nearPx);
+
+/// What a hand can take in a frame's picture: an observed peak, else an observed contour, of the evidence that fits are made of.
+struct Grip {
+  int highlight = -1;  ///< index into FrameEvidence::highlights
+  bool peak = false;
+};
+/// Nothing where neither is near, nor where what is shown is truth instead of that evidence.
+std::optional<Grip> gripAt(const Inspection& inspection, int frame, const Pixel& at, double nearPx);
 
 /// Label of the line or mark under a photograph pixel; "" when there is none.
 std::string labelAt(const FrameOverlay& shown, const Pixel& at, double nearPx);

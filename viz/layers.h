@@ -157,7 +157,8 @@ enum Dependency : unsigned {
   kOnColours = 512,
   kOnPhotographs = 1024,
   kOnSolo = 2048,
-  kOnWalk = 4096
+  kOnWalk = 4096,
+  kOnScene = 8192  ///< cameras and files: another scene, or a what-if that moves cameras
 };
 
 struct LayerRecipe {

@@ -406,9 +406,10 @@ void SceneView::setInspection(std::shared_ptr<const Inspection> inspection) {
     impl_->photographFrame = -1;
     impl_->photograph->setPhotograph(nullptr);
   }
+  const bool moved = newScene || inspection->scene != impl_->inspection->scene;
   impl_->inspection = std::move(inspection);
   impl_->refreshInput();
-  impl_->mark(newScene ? kEverything : kOnInspection);
+  impl_->mark(newScene ? kEverything : kOnInspection | (moved ? kOnScene : 0u));
   if (newScene) impl_->frameAllPending = true;  // the window's shape is known at the first frame
 }
 

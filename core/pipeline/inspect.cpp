@@ -115,8 +115,12 @@ void nameTruth(FrameEvidence& e) {
 
 class Run {
  public:
-  Run(Inspection& result, const ProgressFn& progress, const Inspection* previous)
-      : r_(result), progress_(progress), previous_(previous && previous->given == result.given ? previous : nullptr) {}
+  /// @param onlyFrame  as inspectOneFrame; -1 = every frame
+  Run(Inspection& result, const ProgressFn& progress, const Inspection* previous, int onlyFrame)
+      : r_(result),
+        progress_(progress),
+        previous_(previous && previous->given == result.given ? previous : nullptr),
+        onlyFrame_(onlyFrame) {}
 
   void highlights();
   void assignSeveralLights();
@@ -136,7 +140,11 @@ class Run {
   /// Some frame shows highlights whose light is not known from the frame alone.
   bool severalLights() const {
     const std::vector<Frame>& frames = r_.scene->frames;
-    return std::any_of(frames.begin(), frames.end(), [](const Frame& f) { return f.lightsOn.size() > 1 || statesNoLight(f); });
+    const auto unnamed = [](const Highlight& h) { return h.light.empty(); };
+    return std::any_of(frames.begin(), frames.end(), [&](const Frame& f) {
+      return f.lightsOn.size() > 1 || statesNoLight(f) ||
+             (f.lightsOn.empty() && std::any_of(f.highlights.begin(), f.highlights.end(), unnamed));
+    });
   }
   static bool statesNoLight(const Frame& f) {
     return f.lightsOn.empty() && std::all_of(f.highlights.begin(), f.highlights.end(), [](const Highlight& h) { return h.light.empty(); });
@@ -174,10 +182,14 @@ class Run {
   }
   FitInput fitInput(const Group& group) const;
 
+  void gather(const std::vector<int>& frames);
+  std::vector<int> framesToGather() const;
+
   Inspection& r_;
   CorrectedDepthMaps corrected_;
   const ProgressFn& progress_;
   const Inspection* previous_;
+  int onlyFrame_;
 };
 
 void Run::highlights() {
@@ -190,17 +202,37 @@ void Run::highlights() {
   if (unchanged("detect")) {
     r_.evidence = previous_->evidence;
     for (const auto& [frame, before] : previous_->evidenceBefore) r_.evidence[std::size_t(frame)] = before;
-    return;
+  } else {
+    if (!q.truthFolder.empty()) requireTruthFolder(q.truthFolder, *r_.scene);
+    r_.evidence.resize(r_.scene->frames.size());
   }
+  const std::vector<int> missing = framesToGather();
+  if (missing.empty()) return;
+  gather(missing);
+  if (severalLights()) assignSeveralLights();
+}
+
+/// Frames whose evidence is not there yet and is asked for.
+std::vector<int> Run::framesToGather() const {
+  std::vector<int> frames;
+  for (int i = 0; i < static_cast<int>(r_.evidence.size()); ++i) {
+    const bool wanted = onlyFrame_ < 0 || severalLights() || i == onlyFrame_ || r_.train.perSurface ||
+                        std::binary_search(r_.train.frames.begin(), r_.train.frames.end(), i);
+    if (wanted && r_.evidence[i].frame < 0) frames.push_back(i);
+  }
+  return frames;
+}
+
+void Run::gather(const std::vector<int>& frames) {
   const Scene& scene = *r_.scene;
-  if (!q.truthFolder.empty()) requireTruthFolder(q.truthFolder, scene);
-  r_.evidence.resize(scene.frames.size());
-  r_.work.framesDetected = static_cast<int>(scene.frames.size());
+  const InspectionRequest& q = r_.request;
+  r_.work.framesDetected = static_cast<int>(frames.size());
   // Images live only inside one call: as many at once as there are threads, whatever the number of frames.
   std::atomic<int> held{0}, most{0};
   parallelFor(
-      static_cast<int>(scene.frames.size()),
-      [&](int i) {
+      static_cast<int>(frames.size()),
+      [&](int n) {
+        const int i = frames[n];
         const Held inMemory(held, most);
         if (q.whatIf.synthesise && scene.frames[i].highlights.empty()) {
           r_.evidence[i].frame = i;
@@ -211,12 +243,13 @@ void Run::highlights() {
         if (q.truthFolder.empty()) return;
         r_.evidence[i].againstTruth = true;
         Outcome<std::vector<Highlight>> truth = readTruth(q.truthFolder, scene, i, q.settings.number("detect.level"));
-        if (truth) r_.evidence[i].truth = std::move(*truth);
-        else r_.evidence[i].truthFailure = truth.failure();
+        if (truth)
+          r_.evidence[i].truth = std::move(*truth);
+        else
+          r_.evidence[i].truthFailure = truth.failure();
       },
       progress_, "detect");
   r_.work.framesHeldAtOnce = most;
-  assignSeveralLights();
 }
 
 void Run::assignSeveralLights() {
@@ -336,16 +369,19 @@ std::vector<Group> Run::groups() const {
 }
 
 void Run::lights() {
-  r_.stageKeys["light"] = keyOfStages(r_.request.settings, {"light"}, r_.stageKeys["views"]);
+  const std::vector<Group> all = groups();
+  // Of which lights and surfaces: a look at one frame may not have seen them all.
+  std::string names;
+  for (const Group& g : all) names += "|" + lightKey(g.light, g.surface);
+  r_.stageKeys["light"] = keyOfStages(r_.request.settings, {"light"}, r_.stageKeys["views"] + names);
   if (!anyModel(&HighlightModel::needsLight)) return;
   if (unchanged("light") && (!previous_->lights.empty() || !previous_->lightFailures.empty())) {
     r_.lights = previous_->lights;
     r_.lightFailures = previous_->lightFailures;
     r_.depthCorrections = previous_->depthCorrections;
-    for (const Group& g : groups()) correctViews(g);
+    for (const Group& g : all) correctViews(g);
     return;
   }
-  const std::vector<Group> all = groups();
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!report(progress_, {"light", static_cast<int>(i), static_cast<int>(all.size())})) throw Stopped{};
     std::vector<TrainingView> views;
@@ -466,7 +502,7 @@ void Run::predictionsAndComparisons() {
   r_.stageKeys["predict"] = keyOfStages(r_.request.settings, {"predict", "evaluate"}, r_.stageKeys["fit"]);
   for (const std::string& name : r_.request.models) {
     ModelResult& result = r_.models[name];
-    if (unchanged("predict") && previous_->models.count(name)) {
+    if (unchanged("predict") && previous_->models.count(name) && !previous_->models.at(name).oneFrame) {
       result.frames = previous_->models.at(name).frames;
       continue;
     }
@@ -475,7 +511,9 @@ void Run::predictionsAndComparisons() {
       int frame, fit;
     };
     std::vector<Task> tasks;
+    result.oneFrame = onlyFrame_ >= 0;
     for (int frame = 0; frame < static_cast<int>(r_.scene->frames.size()); ++frame) {
+      if (result.oneFrame && frame != onlyFrame_) continue;
       const std::vector<std::string>& on = r_.scene->frames[frame].lightsOn;
       for (int f = 0; f < static_cast<int>(result.fits.size()); ++f) {
         const ModelResult::Fit& fit = result.fits[f];
@@ -543,10 +581,9 @@ bool sameScene(const Inspection& previous, const InspectionRequest& request) {
   return a.synthesise == b.synthesise && posesKey(a) == posesKey(b) && synthesisKey(a) == synthesisKey(b) &&
          (!b.synthesise || level(previous.request) == level(request));
 }
-}  // namespace
 
-Inspection inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn& progress,
-                   const Inspection* previous) {
+Inspection run(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int onlyFrame, const ProgressFn& progress,
+               const Inspection* previous) {
   require(scene != nullptr, "inspect: no scene");
   Inspection result;
   result.given = scene;
@@ -566,7 +603,7 @@ Inspection inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& 
   for (auto m = models.begin(); m != models.end();) m = std::find(models.begin(), m, *m) != m ? models.erase(m) : m + 1;
   result.train = parseTrainSpec(request.train, *scene);
   for (const std::string& m : request.models) modelByName(m);  // unknown names are refused before any work
-  Run run(result, progress, previous);
+  Run run(result, progress, previous, onlyFrame);
   run.highlights();
   run.changeHighlights();
   run.brightestPointsAndTangentPlanes();
@@ -575,6 +612,18 @@ Inspection inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& 
   run.modelFits();
   run.predictionsAndComparisons();
   return result;
+}
+}  // namespace
+
+Inspection inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn& progress,
+                   const Inspection* previous) {
+  return run(std::move(scene), request, -1, progress, previous);
+}
+
+Inspection inspectOneFrame(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
+                           const ProgressFn& progress, const Inspection* previous) {
+  require(scene && frame >= 0 && frame < static_cast<int>(scene->frames.size()), "inspectOneFrame: no such frame");
+  return run(std::move(scene), request, frame, progress, previous);
 }
 
 }  // namespace glint

@@ -83,6 +83,7 @@ struct ModelResult {
   };
   std::vector<Fit> fits;
   std::vector<FrameComparison> frames;   ///< every frame, training ones too; `heldOut` tells which count
+  bool oneFrame = false;                 ///< `frames` has one frame's alone, see inspectOneFrame()
 };
 
 /// What one run of `inspect` computed itself; what it took over from an earlier run or did not need counts nothing.
@@ -105,7 +106,7 @@ struct Inspection {
   std::shared_ptr<const SurfaceCache> surfaces;
   InspectionRequest request;
   TrainSpec train;
-  std::vector<FrameEvidence> evidence;                     ///< one per frame
+  std::vector<FrameEvidence> evidence;                     ///< one per frame; `frame` is -1 where inspectOneFrame() did not look
   std::map<int, FrameEvidence> evidenceBefore;             ///< of frames whose highlights the what-if moved: as they were
   std::vector<TrainingView> views;                         ///< one per training highlight
   std::map<std::string, LightEstimate> lights;             ///< by light id (+ "@" + surface key when per surface)
@@ -123,5 +124,11 @@ struct Inspection {
 /// @param previous  result of an earlier run on the same scene: stages whose inputs did not change are taken from it.
 Inspection inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn& progress = {},
                    const Inspection* previous = nullptr);
+
+/// What `inspect` would say about one frame, sooner: evidence of the training frames and of this one, all fits, but predictions
+/// for this frame alone (`previous` may fill in more). Given to `inspect` as `previous` it leaves only the rest to be done. Same
+/// failures; every frame is looked at where a light can only be told from all of them.
+Inspection inspectOneFrame(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
+                           const ProgressFn& progress = {}, const Inspection* previous = nullptr);
 
 }  // namespace glint

@@ -15,6 +15,10 @@ Engine coreEngine() {
   engine.autosave = autosaveSession;
   engine.inspect = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn& progress,
                       const Inspection* previous) { return inspect(std::move(scene), request, progress, previous); };
+  engine.inspectOneFrame = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
+                              const ProgressFn& progress, const Inspection* previous) {
+    return inspectOneFrame(std::move(scene), request, frame, progress, previous);
+  };
   engine.choose = [](std::shared_ptr<const Scene> scene, InspectionRequest request, std::optional<double> goodEnoughPct,
                      const ProgressFn& progress, const Inspection* previous) {
     request.models.clear();                   // evidence and views alone

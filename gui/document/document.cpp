@@ -49,8 +49,15 @@ std::string Document::plottedModel() const {
 void Document::setInspection(std::shared_ptr<const Inspection> inspection, const InspectionRequest& computedFor) {
   if (!inspection || inspection->given != scene_) return;  // a late result of a scene that was closed
   inspection_ = std::move(inspection);
+  ahead_.reset();
   setStale(computedFor != state_.request);
   emit inspectionChanged();
+}
+
+void Document::setFrameInspection(std::shared_ptr<const Inspection> inspection, int frame) {
+  if (!inspection || inspection->given != scene_ || frame != state_.selection.frame) return;
+  ahead_ = std::move(inspection);
+  emit frameInspectionChanged();
 }
 
 void Document::setTradeoff(std::shared_ptr<const Tradeoff> tradeoff) {
@@ -96,6 +103,7 @@ void Document::open(const Opened& opened) {
   session_ = opened.session;
   sessionFile_ = opened.isSession ? inputFile_ : QString();
   inspection_.reset();
+  ahead_.reset();
   influence_.reset();
   tradeoff_ = savedTradeoff_ = opened.tradeoff;
   unsaved_ = opened.unsaved;
@@ -273,6 +281,7 @@ void Document::apply(const ViewState& state) {
   const bool selection = state.selection != state_.selection;
   const bool layers = state.layers != state_.layers;
   const bool options = state.options != state_.options;
+  if (state.selection.frame != state_.selection.frame) ahead_.reset();
   state_ = state;
   if (request) {
     updateTraining();

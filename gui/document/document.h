@@ -55,6 +55,12 @@ class Document : public QObject {
   /// Newest results; null before the first. They may belong to an older request: see stale().
   std::shared_ptr<const Inspection> inspection() const { return inspection_; }
   bool stale() const { return stale_; }
+  /// Newest results for the selected frame: inspection(), or those that came before it was complete.
+  std::shared_ptr<const Inspection> frameInspection() const { return ahead_ ? ahead_ : inspection_; }
+  /// frameInspection() is not what the request asks for.
+  bool frameStale() const { return stale_ && !(ahead_ && ahead_->request == state_.request); }
+  /// Results for one frame while the others' are being computed. Ignored when another frame is selected by now.
+  void setFrameInspection(std::shared_ptr<const Inspection> inspection, int frame);
   void setInspection(std::shared_ptr<const Inspection> inspection, const InspectionRequest& computedFor);
 
   /// Measured speed against accuracy of this scene; null = none. Stored in the session.
@@ -110,6 +116,7 @@ class Document : public QObject {
   void layersChanged();
   void optionsChanged();  ///< ViewState::options
   void inspectionChanged();
+  void frameInspectionChanged();  ///< results for the selected frame came first; inspectionChanged() follows later
   void staleChanged(bool stale);
   void savedStateChanged();
   void tradeoffChanged();
@@ -128,7 +135,7 @@ class Document : public QObject {
   std::set<int> training_;
   QString sessionFile_, inputFile_;
   std::shared_ptr<const Session> session_;
-  std::shared_ptr<const Inspection> inspection_;
+  std::shared_ptr<const Inspection> inspection_, ahead_;
   std::shared_ptr<const Tradeoff> tradeoff_, savedTradeoff_;
   std::shared_ptr<const Influence> influence_;
   InspectionRequest influenceFor_;

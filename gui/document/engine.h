@@ -45,6 +45,10 @@ struct Engine {
   /// As glint::inspect: throws Stopped and InputError.
   std::function<Inspection(std::shared_ptr<const Scene>, const InspectionRequest&, const ProgressFn&, const Inspection* previous)>
       inspect;
+  /// As glint::inspectOneFrame; may be empty: then nothing is shown before everything is computed.
+  std::function<Inspection(std::shared_ptr<const Scene>, const InspectionRequest&, int frame, const ProgressFn&,
+                           const Inspection* previous)>
+      inspectOneFrame;
   /// The automatic choice of the model; throws Stopped and InputError. Needs no fitted model.
   std::function<glint::Selection(std::shared_ptr<const Scene>, const InspectionRequest&, std::optional<double> goodEnoughPct,
                                  const ProgressFn&, const Inspection* previous)>

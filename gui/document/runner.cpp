@@ -54,16 +54,33 @@ void Runner::open(const std::string& path, const std::string& sceneInstead) {
   post(work, [this] { emit openFailed(); });
 }
 
-void Runner::inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& request, InspectionPtr previous) {
+void Runner::inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& request, InspectionPtr previous, int frame) {
   auto computedFor = std::make_shared<Opened>();
   computedFor->request = request;
-  post([this, scene = std::move(scene), computedFor, previous = std::move(previous)](int job) {
+  post([this, scene = std::move(scene), computedFor, previous = std::move(previous), frame](int job) mutable {
     QElapsedTimer clock, lastSignal;
     clock.start();
-    const ProgressFn progress = [&](const StageEvent& e) { return report(job, clock, lastSignal, e); };
+    int graceMs = kGraceMs;
+    const ProgressFn progress = [&](const StageEvent& e) { return report(job, clock, lastSignal, e, graceMs); };
     if (job != newest_ || job <= cancelled_) throw Stopped{};  // overtaken while it waited
+    if (engine_.inspectOneFrame && frame >= 0) {
+      const auto ahead = std::make_shared<const Inspection>(
+          engine_.inspectOneFrame(scene, computedFor->request, frame, progress, previous.get()));
+      if (job > cancelled_)
+        QMetaObject::invokeMethod(
+            this, [this, ahead, frame] { emit frameFinished(ahead, frame); }, Qt::QueuedConnection);
+      previous = ahead;
+      clock.start();
+      while (sinceRest_.isValid() && sinceRest_.elapsed() < kRestEveryMs && clock.elapsed() < kPauseMs) {
+        if (job != newest_ || job <= cancelled_) throw Stopped{};
+        QThread::msleep(2);
+      }
+      clock.start();
+      graceMs = kRestGraceMs;
+    }
     const auto result =
         std::make_shared<const Inspection>(engine_.inspect(scene, computedFor->request, progress, previous.get()));
+    sinceRest_.start();
     if (job > cancelled_)
       QMetaObject::invokeMethod(
           this, [this, result, computedFor] { emit finished(result, computedFor); }, Qt::QueuedConnection);
@@ -172,9 +189,9 @@ void Runner::post(std::function<void(int)> work, std::function<void()> onFailure
       Qt::QueuedConnection);
 }
 
-bool Runner::report(int job, const QElapsedTimer& clock, QElapsedTimer& lastSignal, const StageEvent& event) {
+bool Runner::report(int job, const QElapsedTimer& clock, QElapsedTimer& lastSignal, const StageEvent& event, int graceMs) {
   if (job <= cancelled_) return false;
-  if (job != newest_ && clock.elapsed() > kGraceMs) return false;
+  if (job != newest_ && clock.elapsed() > graceMs) return false;
   showProgress(lastSignal, event);
   return true;
 }

@@ -20,20 +20,26 @@ using InfluencePtr = std::shared_ptr<const Influence>;
 
 /// The only place that knows both Qt and the pipeline: opens inputs and computes inspections on a thread of its own.
 /// The newest request wins. A run that a newer request overtakes is stopped, except in its first `kGraceMs`: quick runs
-/// finish, so that a slider shows results while it is dragged. cancel() stops at the pipeline's next progress report.
+/// finish, so that a slider shows results while it is dragged. Once the frame that the user looks at is shown, that grace is
+/// `kRestGraceMs`, for the rest to be finished. cancel() stops at the pipeline's next progress report.
 /// Signals arrive on the thread of this object; only the newest request reports failures.
 class Runner : public QObject {
   Q_OBJECT
  public:
-  static constexpr int kGraceMs = 250;
+  static constexpr int kGraceMs = 250, kRestGraceMs = 40;
+  /// While requests follow one another within `kPauseMs`, each computes its frame; the rest is done in a pause or every
+  /// `kRestEveryMs`.
+  static constexpr int kPauseMs = 80, kRestEveryMs = 500;
 
   explicit Runner(Engine engine, QObject* parent = nullptr);
   ~Runner() override;  ///< stops what runs and waits for it
 
   /// @param sceneInstead  where the scene of a session is now; "" = where the session says.
   void open(const std::string& path, const std::string& sceneInstead = {});
+  /// Answers with finished(), and before it, where the engine can, with frameFinished().
   /// @param previous  earlier results on the same scene, so that unchanged stages are not repeated; may be null.
-  void inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& request, InspectionPtr previous);
+  /// @param frame  what the user looks at: computed first; -1 = none.
+  void inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& request, InspectionPtr previous, int frame = -1);
   /// Writes a session without stopping what runs; nothing but cancel() stops it. Answers with saved().
   /// @param results  finished results of exactly `opened.request`, or null.
   void save(OpenedPtr opened, InspectionPtr results, const std::string& path);
@@ -51,6 +57,8 @@ class Runner : public QObject {
   void progressed(const QString& stage, int done, int total);
   void opened(const glint::gui::OpenedPtr& opened);
   void finished(const glint::gui::InspectionPtr& inspection, const glint::gui::OpenedPtr& computedFor);
+  /// Results for one frame, the others' are still being computed.
+  void frameFinished(const glint::gui::InspectionPtr& inspection, int frame);
   void chosen(const glint::gui::SelectionPtr& selection, const glint::gui::OpenedPtr& computedFor);
   void measured(const glint::gui::TradeoffPtr& tradeoff, const glint::gui::OpenedPtr& computedFor);
   void influenceMeasured(const glint::gui::InfluencePtr& influence, const glint::gui::InspectionPtr& inspection);
@@ -65,7 +73,7 @@ class Runner : public QObject {
   enum class End { Done, Stopped, Failed };
   void post(std::function<void(int job)> work, std::function<void()> onFailure = {});
   void showProgress(QElapsedTimer& lastSignal, const StageEvent& event);
-  bool report(int job, const QElapsedTimer& clock, QElapsedTimer& lastSignal, const StageEvent& event);
+  bool report(int job, const QElapsedTimer& clock, QElapsedTimer& lastSignal, const StageEvent& event, int graceMs = kGraceMs);
   void countEnd();
   void end(int job, End how, const QString& message, const std::function<void()>& onFailure);
 
@@ -74,6 +82,7 @@ class Runner : public QObject {
   QObject* worker_;                ///< lives on thread_; lambdas posted to it run there
   std::atomic<int> newest_{0};     ///< number of the newest request
   std::atomic<int> cancelled_{0};  ///< requests up to this one were cancelled by the user
+  QElapsedTimer sinceRest_;        ///< since all frames were finished last; worker thread only
   std::atomic<int> newestSave_{0}, cancelledSaves_{0};
   int pending_ = 0;  ///< posted and not yet ended; interface thread only
 };

@@ -21,6 +21,7 @@ namespace glint::gui {
 
 namespace {
 constexpr double kMinZoom = 0.02, kMaxZoom = 512;
+constexpr int kStaleAfterMs = 150;    // results that come sooner need no mark that flickers
 constexpr double kGridFromZoom = 16;  // below this the pixel grid would hide the photograph
 constexpr int kFigurePhotographPx = 2400;  // an enlarged part is not made larger than this
 const QColor kHalo(0, 0, 0, 170);
@@ -45,6 +46,12 @@ FrameCanvas::FrameCanvas(QWidget* parent) : QWidget(parent) {
   setMouseTracking(true);
   setFocusPolicy(Qt::StrongFocus);
   setAttribute(Qt::WA_OpaquePaintEvent);
+  willBeStale_.setSingleShot(true);
+  willBeStale_.setInterval(kStaleAfterMs);
+  connect(&willBeStale_, &QTimer::timeout, this, [this] {
+    stale_ = true;
+    update();
+  });
 }
 
 void FrameCanvas::setPicture(const FramePicture& picture) {
@@ -85,7 +92,10 @@ void FrameCanvas::setCaption(const QString& caption) {
 }
 
 void FrameCanvas::setStale(bool stale) {
-  stale_ = stale;
+  if (stale == (stale_ || willBeStale_.isActive())) return;
+  if (stale) return willBeStale_.start();
+  willBeStale_.stop();
+  if (!std::exchange(stale_, false)) return;
   update();
 }
 
@@ -293,6 +303,8 @@ void FrameCanvas::wheelEvent(QWheelEvent* e) {
 void FrameCanvas::mousePressEvent(QMouseEvent* e) {
   pressed_ = last_ = positionOf(*e);
   dragging_ = false;
+  held_ = tool_ && e->button() == Qt::LeftButton && !photograph_.isNull() &&
+          tool_->take(pixelFromWidget(pressed_), kNearScreenPx / zoom_, e->modifiers());
 }
 
 void FrameCanvas::mouseMoveEvent(QMouseEvent* e) {
@@ -300,12 +312,21 @@ void FrameCanvas::mouseMoveEvent(QMouseEvent* e) {
   if (e->buttons() & (Qt::LeftButton | Qt::MiddleButton)) {
     if ((at - pressed_).manhattanLength() >= QApplication::startDragDistance()) dragging_ = true;
     if (dragging_) {
-      corner_ += at - last_;
-      fitted_ = false;
       setCursor(Qt::ClosedHandCursor);
-      update();
-      emit viewMoved();
+      if (held_) {
+        tool_->carry(pixelFromWidget(at));
+      } else {
+        corner_ += at - last_;
+        fitted_ = false;
+        update();
+        emit viewMoved();
+      }
     }
+  } else if (tool_) {
+    if (tool_->wouldTake(pixelFromWidget(at), kNearScreenPx / zoom_, e->modifiers()))
+      setCursor(Qt::OpenHandCursor);
+    else
+      unsetCursor();
   }
   last_ = at;
   probe(at);
@@ -313,6 +334,7 @@ void FrameCanvas::mouseMoveEvent(QMouseEvent* e) {
 
 void FrameCanvas::mouseReleaseEvent(QMouseEvent* e) {
   unsetCursor();
+  if (std::exchange(held_, false)) tool_->release();
   if (!dragging_ && e->button() == Qt::LeftButton && !photograph_.isNull()) {
     const Pixel p = pixelFromWidget(positionOf(*e));
     emit clicked(p.x(), p.y());

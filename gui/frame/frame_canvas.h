@@ -3,6 +3,7 @@
 
 #include <QImage>
 #include <QString>
+#include <QTimer>
 #include <QWidget>
 #include <vector>
 
@@ -10,6 +11,18 @@
 #include "viz/frame_overlay.h"
 
 namespace glint::gui {
+
+/// Takes over drags that start on something that can be moved.
+class DragTool {
+ public:
+  virtual ~DragTool() = default;
+  /// Something is within reach. @param at  photograph pixel  @param nearPx  what counts as near, photograph pixels
+  virtual bool wouldTake(const Pixel& at, double nearPx, Qt::KeyboardModifiers modifiers) const = 0;
+  /// The button went down: true = the drag is the tool's.
+  virtual bool take(const Pixel& at, double nearPx, Qt::KeyboardModifiers modifiers) = 0;
+  virtual void carry(const Pixel& to) = 0;
+  virtual void release() = 0;
+};
 
 /// A photograph with strokes over it, zoomed and panned without limits of accuracy: photograph coordinates stay double until
 /// they are drawn. Pixel (0, 0) is the centre of the top-left pixel, so that pixel's square spans -0.5 .. 0.5.
@@ -25,6 +38,8 @@ class FrameCanvas : public QWidget {
   void setStale(bool stale);
   /// Scale bar of false colours in a corner; empty = none.
   void setScale(std::vector<viz::ScaleTick> ticks);
+  /// May be null; must outlive the canvas.
+  void setDragTool(DragTool* tool) { tool_ = tool; }
   /// A line of text in the top left corner; "" = none.
   void setCaption(const QString& caption);
   bool hasPicture() const { return !photograph_.isNull(); }
@@ -92,7 +107,10 @@ class FrameCanvas : public QWidget {
   bool fitted_ = true;    ///< follows the widget's size until the user zooms or pans
   bool stale_ = false;
   bool figure_ = false;  ///< drawn for a file: the photograph is cut beforehand, which vector formats cannot do
+  QTimer willBeStale_;
   bool dragging_ = false;
+  DragTool* tool_ = nullptr;
+  bool held_ = false;  ///< by the tool
   QPointF pressed_, last_;
 };
 

@@ -16,6 +16,7 @@
 #include "gui/base/theme.h"
 #include "gui/frame/develop_bar.h"
 #include "gui/frame/frame_canvas.h"
+#include "gui/frame/hand_tool.h"
 #include "gui/frame/pair_bar.h"
 #include "viz/frame_pick.h"
 #include "viz/walk_story.h"
@@ -96,8 +97,15 @@ void FramePanel::connectDocument() {
     refresh_.start();
   });
   connect(&document_, &Document::requestChanged, this, &FramePanel::showFrame);
-  connect(&document_, &Document::inspectionChanged, this, &FramePanel::showOverlay);
-  for (FrameCanvas* canvas : {canvas_, second_}) connect(&document_, &Document::staleChanged, canvas, &FrameCanvas::setStale);
+  for (const auto signal : {&Document::inspectionChanged, &Document::frameInspectionChanged})
+    connect(&document_, signal, this, [this] {
+      canvas_->setStale(document_.frameStale());
+      showOverlay();
+      for (FrameCanvas* canvas : {canvas_, second_})
+        if (canvas->isVisible()) canvas->repaint();  // what the user tunes for is seen before the other panels follow
+    });
+  connect(&document_, &Document::staleChanged, canvas_, [this] { canvas_->setStale(document_.frameStale()); });
+  connect(&document_, &Document::staleChanged, second_, &FrameCanvas::setStale);
 }
 
 void FramePanel::buildToolbar(QVBoxLayout* column) {
@@ -134,6 +142,13 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
     canvas_->fit();
     second_->fit();
   });
+  hand_ = new HandTool(document_, this);
+  canvas_->setDragTool(hand_);
+  handButton_ = tool("hand", tr("Move highlights, peaks and the camera by hand: a what-if (E)"));
+  handButton_->setObjectName(QStringLiteral("hand"));
+  handButton_->setCheckable(true);
+  connect(handButton_, &QToolButton::clicked, hand_, &HandTool::setOn);
+  connect(hand_, &HandTool::onChanged, handButton_, &QToolButton::setChecked);
   sideBySide_ = tool("side-by-side", tr("Two frames side by side, with tangent epipolar lines (D)"));
   sideBySide_->setObjectName(QStringLiteral("sideBySide"));
   sideBySide_->setCheckable(true);
@@ -245,7 +260,7 @@ void FramePanel::showOverlay() {
   for (const auto& [name, action] : layerActions_) action->setChecked(document_.layerVisible(name));
   const viz::OverlayOptions options = overlayOptions();
   if (colourByRole_) colourByRole_->setChecked(options.colourByRole);
-  const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  const std::shared_ptr<const Inspection> inspection = document_.frameInspection();
   const int frame = document_.selection().frame;
   const bool two = document_.scene() && pair_->on();
   shown_ = shownSecond_ = {};
@@ -254,8 +269,8 @@ void FramePanel::showOverlay() {
   showCaptions(shown_);
   if (two) {
     const int second = pair_->secondFrame();
-    if (inspection && second < int(inspection->evidence.size())) {
-      shownSecond_ = viz::frameOverlay(*inspection, second, options);
+    if (const auto all = document_.inspection(); all && second < int(all->evidence.size())) {
+      shownSecond_ = viz::frameOverlay(*all, second, options);
       pair_->addLines(shown_, shownSecond_);
     }
     const auto& frames = document_.scene()->frames;
@@ -310,7 +325,11 @@ void FramePanel::showCaptions(const viz::FrameOverlay& overlay) {
     html += QStringLiteral("<table cellspacing='0' cellpadding='0'><tr style='color:%1'>").arg(faded) +
             cell(tr("this frame"), "left") + cell(tr("error %")) + cell(tr("px")) + cell(tr("IoU")) +
             QStringLiteral("<td></td></tr>") + rows + QStringLiteral("</table>");
+  if (overlay.captions.size() != captionCount_) captions_->setMinimumHeight(0);
+  captionCount_ = overlay.captions.size();
   captions_->setText(html);
+  // It may grow but not shrink: the pictures above it would jump with every result.
+  captions_->setMinimumHeight(std::max(captions_->minimumHeight(), captions_->heightForWidth(captions_->width())));
   captions_->setVisible(!html.isEmpty());
 }
 
@@ -327,7 +346,7 @@ void FramePanel::followLink(const QString& target) {
 }
 
 void FramePanel::selectAt(double x, double y) {
-  const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  const std::shared_ptr<const Inspection> inspection = document_.frameInspection();
   if (!inspection) return;
   document_.select(
       viz::pickInFrame(*inspection, document_.selection(), shown_, {x, y}, FrameCanvas::kNearScreenPx / canvas_->zoom()));
@@ -373,6 +392,11 @@ void FramePanel::addActions(Actions& actions, QMenu* menu) {
   actions.add("frame.zoom-out", menu, tr("Zoom &out"), [zoom] { zoom(0.5); }, {{QKeySequence("Ctrl+Alt+Down")}});
   actions.add("frame.values", menu, tr("Zoom to pixel &values"),
               [this] { canvas_->setZoom(1.2 * FrameCanvas::kValuesFromZoom, QRectF(canvas_->rect()).center()); });
+  QAction* hand = actions.addToggle(
+      "frame.hand", menu, tr("Move by ha&nd"), [this](bool on) { hand_->setOn(on); },
+      {{Qt::Key_E}, "hand", tr("Drag an observed contour (Shift: its size), its peak, or with Ctrl the camera; a what-if")});
+  hand->setChecked(hand_->isOn());
+  connect(hand_, &HandTool::onChanged, hand, &QAction::setChecked);
   develop_->addActions(actions, menu->addMenu(tr("&Picture")));
   QMenu* overlays = menu->addMenu(tr("O&verlays"));
   for (const viz::OverlayLayer& layer : viz::overlayLayers())

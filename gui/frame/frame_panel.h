@@ -27,6 +27,7 @@ namespace glint::gui {
 
 class DevelopBar;
 class FrameCanvas;
+class HandTool;
 class PairBar;
 
 /// The frame view: the selected frame's photograph or radiance with its overlay, beside it another frame when wished, a legend
@@ -69,14 +70,16 @@ class FramePanel : public QWidget {
   PhotoLoader loader_, secondLoader_;
   PixelProbeWorker probe_;
   FrameCanvas *canvas_, *second_;
+  HandTool* hand_;
   DevelopBar* develop_;
   PairBar* pair_;
   QLabel *title_, *role_, *zoom_, *captions_;
-  QToolButton* sideBySide_;
+  QToolButton *handButton_, *sideBySide_;
   std::vector<QToolButton*> toggles_;             ///< one per viz::overlayLayers()
   std::map<std::string, QAction*> layerActions_;  ///< by layer name
   QAction* colourByRole_ = nullptr;
   viz::FrameOverlay shown_, shownSecond_;
+  std::size_t captionCount_ = 0;
   QTimer refresh_;  ///< many selections at once are drawn once
   int probedFrame_ = -1;
   std::shared_ptr<const viz::WalkStory> walk_;

@@ -19,7 +19,7 @@
 namespace glint::gui {
 
 namespace {
-constexpr int kStillMs = 200;        // after the last movement the surface is drawn in full
+constexpr int kStillMs = 300;        // after the last movement the surface is drawn in full
 constexpr int kPhotographPx = 4096;  // widest photograph while looking through a camera
 constexpr double kGrabPx = 6;        // about the wipe's line
 
@@ -193,17 +193,25 @@ void SceneViews::fetchPhotograph() {
 
 void SceneViews::scheduleRender() {
   // QWidget::update() would only show VTK's last picture again.
+  if (full_.isActive()) full_.start();  // not still yet
   if (renderPending_) return;
   renderPending_ = true;
-  QTimer::singleShot(0, this, [this] {
+  // While results arrive one after the other, drawing them takes a third of the interface thread's time at most.
+  const qint64 due = 2 * lastRenderMs_, passed = sinceRender_.isValid() ? sinceRender_.elapsed() : due;
+  QTimer::singleShot(int(std::clamp<qint64>(due - passed, 0, kStillMs)), this, [this] {
     renderPending_ = false;
     if (!widget_->isVisible()) return;
     bool coarse = false;
     for (int i = 0; i < shown_; ++i) coarse = coarse || view(i).hasCoarseSurface();
-    if (!coarse) return renderNow();
-    setMoving(true);
+    if (coarse) {
+      setMoving(true);
+      full_.start();
+    } else {
+      setMoving(false);
+    }
+    sinceRender_.start();
     widget_->renderWindow()->Render();
-    full_.start();
+    lastRenderMs_ = sinceRender_.restart();
   });
 }
 

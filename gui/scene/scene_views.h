@@ -4,6 +4,7 @@
 #include <vtkNew.h>
 #include <vtkSmartPointer.h>
 
+#include <QElapsedTimer>
 #include <QTimer>
 #include <QWidget>
 #include <array>
@@ -82,6 +83,8 @@ class SceneViews : public QWidget {
   Drag drag_ = Drag::None;
   int active_ = 0, shown_ = 0;
   bool renderPending_ = false, dark_ = true;
+  QElapsedTimer sinceRender_;
+  qint64 lastRenderMs_ = 0;
 };
 
 }  // namespace glint::gui

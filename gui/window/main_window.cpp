@@ -107,6 +107,7 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
     runFailed_ = false;
     document_.setInspection(inspection, computedFor->request);
   });
+  connect(&runner_, &Runner::frameFinished, &document_, &Document::setFrameInspection);
   connect(&document_, &Document::requestChanged, this, &MainWindow::recompute);
   connect(&document_, &Document::sceneOpened, this, [this] {
     messageBar_->hide();
@@ -146,8 +147,8 @@ void MainWindow::buildCentre() {
     if (const QString file = lessonFile(lesson.id); !file.isEmpty()) start_->addLesson(lesson.title, file);
   centre_->addWidget(start_);
   views_ = new QSplitter(Qt::Horizontal);
+  frame_ = new FramePanel(document_);  // first: it shows new results before the others take their time
   scene_ = new ScenePanel(document_);
-  frame_ = new FramePanel(document_);
   views_->addWidget(scene_);
   views_->addWidget(frame_);
   views_->setChildrenCollapsible(false);
@@ -388,7 +389,8 @@ QPixmap MainWindow::picture() {
 }
 
 void MainWindow::recompute() {
-  if (document_.scene() && engine_.inspect) runner_.inspect(document_.sharedScene(), document_.request(), document_.inspection());
+  if (document_.scene() && engine_.inspect)
+    runner_.inspect(document_.sharedScene(), document_.request(), document_.inspection(), document_.selection().frame);
 }
 
 void MainWindow::showProblem(const QString& oneLine) {
