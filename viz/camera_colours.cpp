@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "viz/frame_overlay.h"
 
@@ -31,6 +32,33 @@ ColourBar errorBar(const std::string& model) {
   return bar;
 }
 
+Colour influenceColour(double points, double most) {
+  constexpr Colour kNeither{0.88, 0.88, 0.84}, kHelps{0.00, 0.45, 0.70},
+      kHarms{0.84, 0.37, 0.00};  // Okabe-Ito's blue and vermilion
+  const double share = most > 0 ? std::clamp(points / most, -1.0, 1.0) : 0;
+  const Colour& end = share >= 0 ? kHelps : kHarms;
+  Colour colour;
+  for (std::size_t c = 0; c < 3; ++c) colour[c] = kNeither[c] + std::abs(share) * (end[c] - kNeither[c]);
+  return colour;
+}
+
+ColourBar influenceBar(const std::string& model, double most) {
+  ColourBar bar;
+  bar.title = model + ": what the view does";
+  constexpr int kSteps = 48;
+  for (int i = 0; i < kSteps; ++i) bar.colours.push_back(influenceColour(2 * (i + 0.5) / kSteps - 1, 1));
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g", most);
+  bar.ticks = {{0, std::string("harms ") + text}, {0.5, "0"}, {1, std::string("helps ") + text}};
+  return bar;
+}
+
+double mostInfluence(const CameraColours& colours) {
+  double most = 0;
+  for (const auto& [frame, points] : colours.influence) most = std::max(most, std::abs(points));
+  return most;
+}
+
 std::string errorModel(const LayerInput& in) {
   const std::string& wanted = in.colours.model;
   if (std::find(in.models.begin(), in.models.end(), wanted) != in.models.end()) return wanted;
@@ -54,6 +82,11 @@ CameraColour cameraColour(const LayerInput& in, int frame) {
     if (model.empty()) return {kHeldOut, ""};
     const FrameScore score = frameScore(in.inspection->models.at(model), frame);
     return {errorColour(score.errorPct ? *score.errorPct : std::nan("")), ""};
+  }
+  if (in.colours.by == CameraColours::By::Influence) {
+    const auto found = in.colours.influence.find(frame);
+    if (found == in.colours.influence.end()) return {kHeldOut, ""};
+    return {influenceColour(found->second, mostInfluence(in.colours)), ""};
   }
   if (in.inspection->isTraining(frame)) return {kTraining, "training camera"};
   if (in.inspection->isHeldOut(frame)) return {kHeldOut, "held-out camera"};

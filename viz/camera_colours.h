@@ -15,13 +15,20 @@ Colour errorColour(double errorPct);
 
 ColourBar errorBar(const std::string& model);
 
+/// Blue: the frame helps; vermilion: it harms; pale: neither. `most` is the largest size among the frames, > 0.
+Colour influenceColour(double points, double most);
+ColourBar influenceBar(const std::string& model, double most);
+/// The largest size of an influence among the frames; 0 without any.
+double mostInfluence(const CameraColours& colours);
+
 /// Colour of a camera, and what it stands for in the legend ("training", "dual"; empty on a scale).
 struct CameraColour {
   Colour colour;
   std::string meaning;
 };
 /// Role: training, held-out, excluded. Model: the one that predicted this frame best. Error: of `in.colours.model`, or where
-/// that is empty the richest one that is shown; grey where there is none.
+/// that is empty the richest one that is shown; grey where there is none. Influence: `in.colours.influence`; grey where the frame
+/// was not left out.
 CameraColour cameraColour(const LayerInput& in, int frame);
 /// The model whose error colours the cameras; "" without models.
 std::string errorModel(const LayerInput& in);

@@ -20,6 +20,13 @@ void addCameras(SceneLegend& legend, const LayerInput& in) {
     if (!model.empty()) legend.bar = errorBar(model);
     return;
   }
+  if (in.colours.by == CameraColours::By::Influence) {
+    if (const double most = mostInfluence(in.colours); most > 0)
+      legend.bar = influenceBar(in.colours.model, most);
+    else
+      legend.remarks.push_back("cameras: what the views do is not measured yet");
+    return;
+  }
   std::vector<CameraColour> kinds;
   for (const int frame : in.frames) {
     const CameraColour c = cameraColour(in, frame);

@@ -4,6 +4,7 @@
 #include <vtkSmartPointer.h>
 
 #include <Eigen/Core>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -63,9 +64,10 @@ enum class HighlightLook { Section, Camera, Mirror };
 
 /// What the colour of a drawn camera says.
 struct CameraColours {
-  enum class By { Role, Model, Error };
+  enum class By { Role, Model, Error, Influence };
   By by = By::Role;
-  std::string model;  ///< whose error, "" = the richest shown
+  std::string model;                ///< whose error or influence, "" = the richest shown
+  std::map<int, double> influence;  ///< by training frame: see influenceOf(), percentage points; absent = not left out
   friend bool operator==(const CameraColours&, const CameraColours&) = default;
 };
 

@@ -4,7 +4,9 @@
 #include <vtkCamera.h>
 #include <vtkMatrixToHomogeneousTransform.h>
 #include <vtkNew.h>
+#include <vtkRenderer.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -139,6 +141,15 @@ ViewPoint fitted(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector
   const Eigen::Vector3d eye = x * right + y * up + z * back;
   const double depth = std::max(back.dot(eye - reference), leastDepth);
   return {eye, eye - depth * back, up, 30, parallel};
+}
+
+Eigen::Vector3d worldAt(vtkRenderer* renderer, double xDisplay, double yDisplay, const Eigen::Vector3d& anchor) {
+  renderer->SetWorldPoint(anchor.x(), anchor.y(), anchor.z(), 1);
+  renderer->WorldToDisplay();
+  renderer->SetDisplayPoint(xDisplay, yDisplay, renderer->GetDisplayPoint()[2]);
+  renderer->DisplayToWorld();
+  const Eigen::Map<const Eigen::Vector4d> h(renderer->GetWorldPoint());
+  return h.hnormalized();
 }
 
 AxisDirections axisDirections(AxisView view, const Eigen::Vector3d& up) {

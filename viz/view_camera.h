@@ -10,6 +10,7 @@
 #include "viz/scene_view.h"
 
 class vtkCamera;
+class vtkRenderer;
 
 namespace glint::viz {
 
@@ -45,6 +46,9 @@ void standFree(vtkCamera* vtk, const PictureArea& area);
 /// Poses a VTK camera. In a parallel view the visible height is that of a perspective one at the focal point.
 void setViewPoint(vtkCamera* vtk, const ViewPoint& view);
 ViewPoint viewPointOf(vtkCamera* vtk);
+
+/// World point under a window px (device px, y up), as far from the eye as `anchor`: where a dragged thing goes.
+Eigen::Vector3d worldAt(vtkRenderer* renderer, double xDisplay, double yDisplay, const Eigen::Vector3d& anchor);
 
 /// Share of each half of the picture that a fitted view may use, 0..1.
 struct Margins {

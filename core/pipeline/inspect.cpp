@@ -7,11 +7,11 @@
 #include <set>
 
 #include "core/base/parallel.h"
-#include "core/highlight/track.h"
 #include "core/pipeline/comparison.h"
 #include "core/pipeline/corrected_depth.h"
 #include "core/pipeline/evidence.h"
 #include "core/pipeline/inspection.h"
+#include "core/pipeline/several_lights.h"
 #include "core/pipeline/training.h"
 #include "core/surface/mesh_policy.h"
 
@@ -71,48 +71,6 @@ struct Group {
   std::vector<int> views;  ///< indices into Inspection::views
 };
 
-/// Brings the highlights of every light of a frame to the level of its strongest one. What then contains a peak of another light is of both:
-/// its light is cleared.
-void levelOfEachLight(FrameEvidence& e, bool detected, const std::function<FrameEvidence(const SeparateLights&)>& detectAgain) {
-  std::map<std::string, std::vector<const Highlight*>> byLight;
-  for (const Highlight& h : e.highlights)
-    if (!h.light.empty()) byLight[h.light].push_back(&h);
-  const auto several = [](const auto& entry) { return entry.second.size() > 1; };
-  if (!detected || byLight.size() < 2 || std::none_of(byLight.begin(), byLight.end(), several)) return;
-  SeparateLights lights;
-  lights.separate = true;
-  for (const auto& [light, highlights] : byLight) {
-    double strongest = 0;
-    for (const Highlight* h : highlights) strongest = std::max(strongest, h->peakValue);
-    for (const Highlight* h : highlights)
-      if (strongest > 0) lights.references.push_back({h->peak, strongest});
-  }
-  FrameEvidence again = detectAgain(lights);
-  if (again.failure) return;
-  const std::vector<Highlight> before = e.highlights;
-  e.highlights.clear();
-  for (Highlight& h : again.highlights) {
-    std::set<std::string> inside;
-    for (const Highlight& b : before)
-      if (!b.light.empty() && contains(h.contour, b.peak)) inside.insert(b.light);
-    h.light = inside.size() == 1 ? *inside.begin() : "";
-    e.highlights.push_back(std::move(h));
-  }
-}
-
-/// A truth file names no light: its contours are of the light whose detected highlight they overlap.
-void nameTruth(FrameEvidence& e) {
-  std::set<std::string> lights;
-  for (const Highlight& h : e.highlights)
-    if (!h.light.empty()) lights.insert(h.light);
-  if (lights.size() < 2) return;
-  for (Highlight& t : e.truth) {
-    t.light.clear();
-    for (const Highlight& h : e.highlights)
-      if (!h.light.empty() && (contains(h.contour, t.peak) || contains(t.contour, h.peak))) t.light = h.light;
-  }
-}
-
 class Run {
  public:
   /// @param onlyFrame  as inspectOneFrame; -1 = every frame
@@ -136,18 +94,6 @@ class Run {
     if (!previous_) return false;
     const auto it = previous_->stageKeys.find(stage);
     return it != previous_->stageKeys.end() && it->second == r_.stageKeys.at(stage);
-  }
-  /// Some frame shows highlights whose light is not known from the frame alone.
-  bool severalLights() const {
-    const std::vector<Frame>& frames = r_.scene->frames;
-    const auto unnamed = [](const Highlight& h) { return h.light.empty(); };
-    return std::any_of(frames.begin(), frames.end(), [&](const Frame& f) {
-      return f.lightsOn.size() > 1 || statesNoLight(f) ||
-             (f.lightsOn.empty() && std::any_of(f.highlights.begin(), f.highlights.end(), unnamed));
-    });
-  }
-  static bool statesNoLight(const Frame& f) {
-    return f.lightsOn.empty() && std::all_of(f.highlights.begin(), f.highlights.end(), [](const Highlight& h) { return h.light.empty(); });
   }
   std::shared_ptr<const Surface> surfaceOf(int frame) const {
     const Outcome<std::shared_ptr<const Surface>> s = r_.surfaces->surfaceOf(frame, meshPolicy(r_.request.settings));
@@ -195,10 +141,11 @@ class Run {
 void Run::highlights() {
   const InspectionRequest& q = r_.request;
   // The assignment of several lights reflects rays on the surface: its normals matter then.
+  const bool together = lightsNeedAllFrames(*r_.scene);
   r_.stageKeys["detect"] =
-      keyOfStages(q.settings, severalLights() ? std::set<std::string>{"detect", "surface"} : std::set<std::string>{"detect"},
+      keyOfStages(q.settings, together ? std::set<std::string>{"detect", "surface"} : std::set<std::string>{"detect"},
                   (q.source == FrameSource::Image ? "image|" : "radiance|") + q.truthFolder + "|" + synthesisKey(q.whatIf) +
-                      (severalLights() ? posesKey(q.whatIf) : ""));
+                      (together ? posesKey(q.whatIf) : ""));
   if (unchanged("detect")) {
     r_.evidence = previous_->evidence;
     for (const auto& [frame, before] : previous_->evidenceBefore) r_.evidence[std::size_t(frame)] = before;
@@ -209,15 +156,15 @@ void Run::highlights() {
   const std::vector<int> missing = framesToGather();
   if (missing.empty()) return;
   gather(missing);
-  if (severalLights()) assignSeveralLights();
+  if (together) assignSeveralLights();
 }
 
 /// Frames whose evidence is not there yet and is asked for.
 std::vector<int> Run::framesToGather() const {
   std::vector<int> frames;
+  const bool all = onlyFrame_ < 0 || r_.train.perSurface || lightsNeedAllFrames(*r_.scene);
   for (int i = 0; i < static_cast<int>(r_.evidence.size()); ++i) {
-    const bool wanted = onlyFrame_ < 0 || severalLights() || i == onlyFrame_ || r_.train.perSurface ||
-                        std::binary_search(r_.train.frames.begin(), r_.train.frames.end(), i);
+    const bool wanted = all || i == onlyFrame_ || std::binary_search(r_.train.frames.begin(), r_.train.frames.end(), i);
     if (wanted && r_.evidence[i].frame < 0) frames.push_back(i);
   }
   return frames;
@@ -253,55 +200,12 @@ void Run::gather(const std::vector<int>& frames) {
 }
 
 void Run::assignSeveralLights() {
-  const Scene& scene = *r_.scene;
-  const std::size_t n = scene.frames.size();
-  const auto open = [](const FrameEvidence& e) {
-    return std::any_of(e.highlights.begin(), e.highlights.end(), [](const Highlight& h) { return h.light.empty(); });
-  };
-  // What a frame states nothing about is "light" to itself; together the frames may prove that there are more.
-  for (std::size_t i = 0; i < n; ++i)
-    if (statesNoLight(scene.frames[i]))
-      for (Highlight& h : r_.evidence[i].highlights) h.light.clear();
-  if (std::none_of(r_.evidence.begin(), r_.evidence.end(), open)) return;
-  const auto assign = [&] {
-    std::vector<TrackedFrame> tracked(n);
-    for (std::size_t i = 0; i < n; ++i) tracked[i] = {scene.frames[i].camera, scene.frames[i].lightsOn, r_.evidence[i].highlights};
-    if (!report(progress_, {"assign lights", 0, 0})) throw Stopped{};
-    const int groups = assignLights(tracked, [&](std::size_t i) { return surfaceOf(static_cast<int>(i)); });
-    for (std::size_t i = 0; i < n; ++i) r_.evidence[i].highlights = std::move(tracked[i].highlights);
-    return groups;
-  };
-  const auto detectAgain = [&](std::size_t i, const SeparateLights& lights) {
-    return gatherEvidence(scene, static_cast<int>(i), r_.request.source, r_.request.settings, lights);
-  };
-  const auto detected = [&](std::size_t i) {
-    const std::vector<Highlight>& h = r_.evidence[i].highlights;
-    return !h.empty() && !h.front().fromScene;
-  };
-  const bool unstated = std::all_of(scene.frames.begin(), scene.frames.end(), [](const Frame& f) { return f.lightsOn.empty(); });
-  if (assign() > 1 && unstated) {
-    // Only now it is known that there are several: their levels are not those of one.
-    bool again = false;
-    for (std::size_t i = 0; i < n; ++i) again = again || detected(i);
-    if (again) {
-      parallelFor(
-          static_cast<int>(n),
-          [&](int i) {
-            if (!detected(i)) return;
-            FrameEvidence e = detectAgain(i, {true, {}});
-            if (e.failure) return;
-            for (Highlight& h : e.highlights) h.light.clear();
-            r_.evidence[i].highlights = std::move(e.highlights);
-          },
-          progress_, "detect");
-      assign();
-    }
-  }
-  // A light with several highlights in a frame has one level there: that of its strongest.
-  parallelFor(
-      static_cast<int>(n), [&](int i) { levelOfEachLight(r_.evidence[i], detected(i), [&](const SeparateLights& l) { return detectAgain(i, l); }); },
-      progress_, "detect");
-  for (FrameEvidence& e : r_.evidence) nameTruth(e);
+  glint::assignSeveralLights(
+      *r_.scene, r_.evidence, [&](int frame) { return surfaceOf(frame); },
+      [&](int frame, const SeparateLights& lights) {
+        return gatherEvidence(*r_.scene, frame, r_.request.source, r_.request.settings, lights);
+      },
+      progress_);
 }
 
 /// The user's changes to single highlights come after detection, so that moving one detects nothing again.

@@ -85,10 +85,18 @@ SceneOptions sceneOptions(const Document& document) {
   o.glyphScale = std::clamp(document.option("scene/glyph-scale", 1.0), 0.05, 20.0);
   o.opacity = std::clamp(document.option("scene/photograph-opacity", 0.5), 0.0, 1.0);
   const std::string& by = document.option("scene/colour-by", kNone);
-  o.colours.by = by == "model"   ? viz::CameraColours::By::Model
-                 : by == "error" ? viz::CameraColours::By::Error
-                                 : viz::CameraColours::By::Role;
+  o.colours.by = by == "model"       ? viz::CameraColours::By::Model
+                 : by == "error"     ? viz::CameraColours::By::Error
+                 : by == "influence" ? viz::CameraColours::By::Influence
+                                     : viz::CameraColours::By::Role;
   o.colours.model = document.selection().model;
+  if (const auto influence = document.influence(); influence && o.colours.by == viz::CameraColours::By::Influence) {
+    o.colours.model = document.plottedModel();
+    for (const FrameInfluence& f : influence->frames)
+      if (const std::optional<double> points = influenceOf(*influence, f.frame, o.colours.model))
+        o.colours.influence[f.frame] = *points;
+  }
+  o.lampsMove = document.request().whatIf.synthesise;
   const std::vector<std::string>& all = document.request().models;
   for (int i = 0; i < kMostSceneViews; ++i) {
     SceneOptions::View& view = o.views[std::size_t(i)];

@@ -22,6 +22,7 @@ struct SceneOptions {
   double wipe = 0.5;   ///< where the line stands, share of the width
   bool parallel = false, solo = false;
   double glyphScale = 1, opacity = 0.5;
+  bool lampsMove = false;  ///< true lights can be dragged
   viz::CameraColours colours;
   struct View {
     viz::Eye eye = viz::Eye::Outside;

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/pipeline/what_if_drag.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/scene/scene_views.h"
@@ -41,6 +42,15 @@ ScenePanel::ScenePanel(Document& document, QWidget* parent) : QWidget(parent), d
   });
   connect(views_, &SceneViews::activeChanged, this, &ScenePanel::showEye);
   connect(views_, &SceneViews::leaveEye, this, [this] { setEye(viz::Eye::Outside); });
+  connect(&document_, &Document::influenceChanged, this, &ScenePanel::showOptions);
+  connect(views_, &SceneViews::lampMoved, this, [this](const QString& light, double x, double y, double z) {
+    moveLamp(light, {x, y, z});
+  });
+  connect(views_, &SceneViews::lampReleased, this, [this] {
+    lampStart_.reset();
+    gesture_ = 0;
+  });
+  connect(views_, &SceneViews::menuWanted, this, &ScenePanel::showMenu);
   connect(views_, &SceneViews::wipeMoved, this, [this](double share, bool released) {
     if (gesture_ == 0) gesture_ = document_.newGesture();
     document_.setOption("scene/wipe", std::clamp(share, 0.02, 0.98), tr("Move the wipe"), gesture_);
@@ -182,6 +192,40 @@ void ScenePanel::select(const viz::Picked& picked) {
   emit this->picked(picked);
 }
 
+void ScenePanel::moveLamp(const QString& light, const Eigen::Vector3d& by) {
+  if (!document_.scene()) return;
+  if (!lampStart_) {
+    lampStart_ = document_.request().whatIf;
+    gesture_ = document_.newGesture();
+  }
+  for (const TrueLight& lamp : document_.scene()->lights)
+    if (lamp.id == light.toStdString())
+      document_.setWhatIf(draggedLight(*lampStart_, lamp, by), tr("What if: light %1 moved").arg(light),
+                          QStringLiteral("lamp#%1").arg(gesture_));
+}
+
+void ScenePanel::showMenu(const viz::Picked& picked, const QPoint& global) {
+  if (!document_.scene() || picked.frame < 0 || picked.frame >= document_.frameCount()) return;
+  const QString id = toQString(document_.scene()->frames[std::size_t(picked.frame)].id);
+  auto* menu = new QMenu(this);
+  menu->setObjectName(QStringLiteral("cameraMenu"));
+  menu->setAttribute(Qt::WA_DeleteOnClose);
+  menu->addSection(tr("Frame %1").arg(id));
+  for (const auto& [role, title] :
+       {std::pair(FrameRole::Training, tr("&Train on it")), std::pair(FrameRole::HeldOut, tr("&Hold it out")),
+        std::pair(FrameRole::Excluded, tr("E&xclude it"))}) {
+    QAction* action = menu->addAction(title, this, [this, frame = picked.frame, role = role] { document_.setRole(frame, role); });
+    action->setCheckable(true);
+    action->setChecked(document_.role(picked.frame) == role);
+  }
+  menu->addSeparator();
+  menu->addAction(tr("&Look through its camera"), this, [this, frame = picked.frame] {
+    document_.selectFrame(frame);
+    setEye(viz::Eye::Camera);
+  });
+  menu->popup(global);
+}
+
 int ScenePanel::eyeView() const { return sceneOptions(document_).linked ? 0 : views_->activeView(); }
 
 void ScenePanel::setEye(viz::Eye eye) {
@@ -199,6 +243,7 @@ void ScenePanel::setArrangement(Arrangement arrangement) {
 
 void ScenePanel::setColourBy(const QString& by) {
   document_.setOption("scene/colour-by", by.toStdString(), tr("Colour cameras by %1").arg(by));
+  if (by == QLatin1String("influence") && (!document_.influence() || document_.influenceStale())) emit influenceRequested();
 }
 
 void ScenePanel::setSwitch(const char* option, bool on, const QString& text) {
@@ -372,8 +417,8 @@ void ScenePanel::addActions(Actions& actions, QMenu* menu) {
 
   QMenu* colours = menu->addMenu(tr("&Colour cameras by"));
   QList<std::pair<QAction*, QString>> colourActions;
-  for (const auto& [by, title] :
-       {std::pair("role", tr("&Role")), std::pair("model", tr("Best &model")), std::pair("error", tr("&Error"))}) {
+  for (const auto& [by, title] : {std::pair("role", tr("&Role")), std::pair("model", tr("Best &model")),
+                                  std::pair("error", tr("&Error")), std::pair("influence", tr("What the &view does"))}) {
     const QString name = QLatin1String(by);
     colourActions.append(
         {toggle((std::string("view.colour-") + by).c_str(), colours, title, {}, [this, name](bool) { setColourBy(name); }),
@@ -397,9 +442,10 @@ void ScenePanel::addActions(Actions& actions, QMenu* menu) {
     linked->setChecked(options.linked);
     linked->setEnabled(options.arrangement != Arrangement::Wipe);
     for (const auto& [action, arrangement] : arrangementActions) action->setChecked(options.arrangement == arrangement);
-    const char* by = options.colours.by == viz::CameraColours::By::Error   ? "error"
-                     : options.colours.by == viz::CameraColours::By::Model ? "model"
-                                                                           : "role";
+    const char* by = options.colours.by == viz::CameraColours::By::Error       ? "error"
+                     : options.colours.by == viz::CameraColours::By::Model     ? "model"
+                     : options.colours.by == viz::CameraColours::By::Influence ? "influence"
+                                                                               : "role";
     for (const auto& [action, name] : colourActions) action->setChecked(name == QLatin1String(by));
   };
   checkActions_();

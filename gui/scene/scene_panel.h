@@ -63,8 +63,11 @@ class ScenePanel : public QWidget {
 
  signals:
   void picked(const glint::viz::Picked& picked);
+  void influenceRequested();  ///< the cameras are to be coloured by what was not measured yet
 
  private:
+  void moveLamp(const QString& light, const Eigen::Vector3d& by);
+  void showMenu(const viz::Picked& picked, const QPoint& global);
   void buildBars();
   void showScene();
   void showInspection();
@@ -85,6 +88,7 @@ class ScenePanel : public QWidget {
   QMenu* savedMenu_ = nullptr;
   std::function<void()> checkActions_;
   int gesture_ = 0;
+  std::optional<WhatIf> lampStart_;  ///< while a lamp is dragged
   bool framed_ = false;  ///< the picture was framed since the scene was opened
   std::optional<viz::ViewPoint> firstViewPoint_;
 };

@@ -15,6 +15,7 @@
 #include <cmath>
 
 #include "gui/base/text.h"
+#include "viz/view_camera.h"
 
 namespace glint::gui {
 
@@ -286,7 +287,14 @@ bool SceneViews::mouse(QEvent* event) {
     }
     activate(viewAt(at));
     drag_ = active().looksThrough() ? Drag::Photograph : Drag::Vtk;
-    return drag_ == Drag::Photograph;
+    if (options_.lampsMove && e->button() == Qt::LeftButton && drag_ == Drag::Vtk) {
+      const QPointF display = toDisplay(at);
+      if (const auto hit = active().pick(int(display.x()), int(display.y()) - 1); hit && hit->layer == "true-light") {
+        drag_ = Drag::Lamp;
+        lamp_ = *hit;
+      }
+    }
+    return drag_ == Drag::Photograph || drag_ == Drag::Lamp;
   }
   if (event->type() == QEvent::MouseMove) {
     if (e->buttons() == Qt::NoButton) {
@@ -300,14 +308,26 @@ bool SceneViews::mouse(QEvent* event) {
         if (i == active_ || options_.arrangement == Arrangement::Wipe) view(i).movePhotograph(by.x(), by.y());
       scheduleRender();
     }
+    if (drag_ == Drag::Lamp) {
+      const QPointF from = toDisplay(pressed_), to = toDisplay(at);
+      vtkRenderer* renderer = active().renderer();
+      const Eigen::Vector3d by =
+          viz::worldAt(renderer, to.x(), to.y(), lamp_.position) - viz::worldAt(renderer, from.x(), from.y(), lamp_.position);
+      emit lampMoved(toQString(lamp_.light), by.x(), by.y(), by.z());
+    }
     last_ = at;
-    return drag_ == Drag::Wipe || drag_ == Drag::Photograph;
+    return drag_ != Drag::Vtk;
   }
   // Released
   const Drag was = std::exchange(drag_, Drag::None);
   if (was == Drag::Wipe) {
     emit wipeMoved(at.x() / std::max(1, widget_->width()), true);
     return true;
+  }
+  if (was == Drag::Lamp) emit lampReleased();
+  if (e->button() == Qt::RightButton && (at - pressed_).manhattanLength() < 4) {
+    const QPointF display = toDisplay(at);
+    if (const auto hit = active().pick(int(display.x()), int(display.y()) - 1)) emit menuWanted(*hit, e->globalPos());
   }
   if (e->button() == Qt::LeftButton && (at - pressed_).manhattanLength() < 4) {
     const QPointF display = toDisplay(at);
@@ -316,7 +336,7 @@ bool SceneViews::mouse(QEvent* event) {
     else
       emit emptyClicked();
   }
-  return was == Drag::Photograph;
+  return was == Drag::Photograph || was == Drag::Lamp;
 }
 
 bool SceneViews::eventFilter(QObject* watched, QEvent* event) {

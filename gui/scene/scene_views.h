@@ -53,13 +53,17 @@ class SceneViews : public QWidget {
   void emptyClicked();
   void activeChanged();
   void wipeMoved(double share, bool released);
+  /// A true light is being dragged, m since the button went down.
+  void lampMoved(const QString& light, double dx, double dy, double dz);
+  void lampReleased();
+  void menuWanted(const glint::viz::Picked& picked, const QPoint& global);  ///< a right click
   void leaveEye();  ///< the escape key while looking through a camera
 
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override;
 
  private:
-  enum class Drag { None, Vtk, Wipe, Photograph };
+  enum class Drag { None, Vtk, Wipe, Photograph, Lamp };
   void arrange();
   void fetchPhotograph();
   int viewAt(const QPointF& position) const;
@@ -81,6 +85,7 @@ class SceneViews : public QWidget {
   QTimer full_;  ///< draws in full when nothing moved for a while
   QPointF pressed_, last_;
   Drag drag_ = Drag::None;
+  viz::Picked lamp_;  ///< what is dragged
   int active_ = 0, shown_ = 0;
   bool renderPending_ = false, dark_ = true;
   QElapsedTimer sinceRender_;

@@ -44,6 +44,7 @@
 #include "gui/window/job_status.h"
 #include "gui/window/layouts.h"
 #include "gui/window/message_bar.h"
+#include "gui/window/own_layouts.h"
 #include "gui/window/palette.h"
 #include "gui/window/palette_items.h"
 #include "gui/window/recovery.h"
@@ -249,9 +250,11 @@ void MainWindow::buildDocks() {
   connect(comparison_, &ComparisonPanel::shown, this, [this] { docks_.bring(QStringLiteral("comparison")); });
   connect(plots_, &PlotsPanel::problem, this, &MainWindow::showProblem);
   connect(plots_, &PlotsPanel::shown, this, [this] { docks_.bring(QStringLiteral("plots")); });
-  connect(plots_, &PlotsPanel::influenceRequested, this, [this] {
+  const auto measureInfluence = [this] {
     if (document_.inspection() && engine_.influence) runner_.influence(document_.inspection());
-  });
+  };
+  connect(plots_, &PlotsPanel::influenceRequested, this, measureInfluence);
+  connect(scene_, &ScenePanel::influenceRequested, this, measureInfluence);
   connect(&runner_, &Runner::influenceMeasured, this, [this](const InfluencePtr& influence, const InspectionPtr& inspection) {
     if (inspection->given != document_.sharedScene()) return;
     document_.setInfluence(influence, inspection->request);
@@ -314,6 +317,8 @@ void MainWindow::buildMenus() {
     const QString name = QString::fromLatin1(layout.name);
     actions_.add("view.layout-" + name, layoutMenu, tr(layout.title), [this, name] { applyLayout(name); });
   }
+  layoutMenu->addSeparator();
+  (new OwnLayouts(this, views_))->addActions(actions_, layoutMenu);
   docks_.addActions(actions_, view->addMenu(tr("&Panels")));
   view->addSeparator();
   actions_.add("view.theme", view, tr("Light or dark &theme"),

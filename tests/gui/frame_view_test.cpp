@@ -60,6 +60,53 @@ class FrameViewTest : public QObject {
     QVERIFY(canvas->grab().toImage() == plain);
   }
 
+  void contourAndPeakAreMovedByHandEachInOneStep() {
+    FrameCanvas* canvas = frame_->canvas();
+    const QPoint edge = canvas->widgetFromPixel(Fixture::centre(0) - Pixel(Fixture::kRadius, 0)).toPoint();
+    const QPoint peak = canvas->widgetFromPixel(Fixture::centre(0)).toPoint(), by(36, 24);
+    const Pixel moved = canvas->pixelFromWidget(QPointF(by)) - canvas->pixelFromWidget({0, 0});
+    drag(canvas, {edge, edge + by / 2, edge + by});  // off: the picture moves
+    QVERIFY(document_->request().whatIf.none());
+    canvas->fit();
+    QTest::mouseClick(frame_->findChild<QToolButton*>(QStringLiteral("hand")), Qt::LeftButton);
+    drag(canvas, {edge, edge + by / 2, edge + by});
+    QCOMPARE(document_->undoStack()->count(), 1);
+    WhatIf w = document_->request().whatIf;
+    QCOMPARE(w.highlights.size(), std::size_t(1));
+    QVERIFY((w.highlights.at({0, 0}).contourBy - moved).norm() < 1e-9);
+    QVERIFY(w.highlights.at({0, 0}).peakBy.isZero());
+    drag(canvas, {peak, peak - by / 2, peak - by});
+    QCOMPARE(document_->undoStack()->count(), 2);
+    w = document_->request().whatIf;
+    QVERIFY((w.highlights.at({0, 0}).peakBy + moved).norm() < 1e-9);
+    QVERIFY((w.highlights.at({0, 0}).contourBy - moved).norm() < 1e-9);
+    // Beside everything the picture moves again.
+    const Pixel before = canvas->centre();
+    drag(canvas, {QPoint(5, 5), QPoint(25, 25), QPoint(45, 25)});
+    QVERIFY((canvas->centre() - before).norm() > 1);
+    QCOMPARE(document_->undoStack()->count(), 2);
+    document_->undoStack()->undo();
+    document_->undoStack()->undo();
+    QVERIFY(document_->request().whatIf.none());
+  }
+
+  void resultsForTheFrameAreShownBeforeThoseForAll() {
+    auto one = std::make_shared<Inspection>(drawnCircles(fixture_.scene(), document_->request()));
+    document_->setSetting("detect.level", 0.4);
+    QVERIFY(document_->frameStale());
+    one->request = document_->request();
+    for (auto& point : one->evidence[0].highlights[0].contour.points) point.x() += 15;
+    const QImage before = frame_->canvas()->grab().toImage();
+    document_->setFrameInspection(one, 1);  // not the one on screen
+    QCOMPARE(document_->frameInspection(), document_->inspection());
+    document_->setFrameInspection(one, 0);
+    QVERIFY(document_->stale() && !document_->frameStale());
+    QVERIFY(frame_->canvas()->grab().toImage() != before);
+    document_->selectFrame(2);
+    QCOMPARE(document_->frameInspection(), document_->inspection());
+    QVERIFY(document_->frameStale());
+  }
+
   void aClickOnAPredictedContourSelectsModelAndPoint() {
     FrameCanvas* canvas = frame_->canvas();
     // The first model's circle lies 8 px to the right of the observed one (fixture): its rightmost point belongs to nobody else.

@@ -60,6 +60,54 @@ class RunnerTest : public QObject {
     QCOMPARE(stopped.count() + failed.count(), 0);  // overtaken runs are no news
   }
 
+  void theFrameThatIsLookedAtComesFirst() {
+    Engine engine = fixture_.engine();
+    std::atomic<int> frameAsked{-1};
+    std::atomic<bool> tookOver{false};
+    engine.inspectOneFrame = [&](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
+                                 const ProgressFn&, const Inspection*) {
+      frameAsked = frame;
+      Inspection one = drawnCircles(scene, request);
+      one.work.fits = 77;
+      return one;
+    };
+    engine.inspect = [&](std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn&,
+                         const Inspection* previous) {
+      tookOver = previous && previous->work.fits == 77;
+      return drawnCircles(scene, request);
+    };
+    Runner runner(engine);
+    QStringList order;
+    connect(&runner, &Runner::frameFinished, this, [&](const InspectionPtr&, int frame) { order << QString::number(frame); });
+    connect(&runner, &Runner::finished, this, [&] { order << "all"; });
+    runner.inspect(fixture_.scene(), {}, nullptr, 3);
+    QTRY_COMPARE(order, QStringList({"3", "all"}));
+    QCOMPARE(frameAsked.load(), 3);
+    QVERIFY(tookOver.load());
+    order.clear();
+    runner.inspect(fixture_.scene(), {}, nullptr);  // nobody looks at any
+    QTRY_COMPARE(order, QStringList({"all"}));
+  }
+
+  void everyPositionOfADragGetsItsFrameAndTheLastOneEverything() {
+    Engine engine = fixture_.engine();
+    engine.inspectOneFrame = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int, const ProgressFn&,
+                                const Inspection*) { return drawnCircles(scene, request); };
+    Runner runner(engine);
+    std::vector<unsigned> frames, all;
+    connect(&runner, &Runner::frameFinished, this,
+            [&](const InspectionPtr& inspection, int) { frames.push_back(inspection->request.seed); });
+    connect(&runner, &Runner::finished, this,
+            [&](const InspectionPtr&, const OpenedPtr& computedFor) { all.push_back(computedFor->request.seed); });
+    InspectionRequest request;
+    for (request.seed = 1; request.seed <= 8; ++request.seed) {
+      runner.inspect(fixture_.scene(), request, nullptr, 0);
+      QTRY_COMPARE(frames.size(), std::size_t(request.seed));
+    }
+    QTRY_VERIFY(!all.empty() && all.back() == 8u);
+    QCOMPARE(frames, (std::vector<unsigned>{1, 2, 3, 4, 5, 6, 7, 8}));
+  }
+
   void wrongInputIsOneLine() {
     Runner runner(fixture_.engine());
     QSignalSpy failed(&runner, &Runner::failed), opened(&runner, &Runner::opened);

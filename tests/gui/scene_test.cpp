@@ -7,6 +7,7 @@
 #include <QImage>
 #include <QLabel>
 #include <QMenu>
+#include <QSignalSpy>
 #include <QSlider>
 #include <QToolButton>
 #include <QWheelEvent>
@@ -230,15 +231,87 @@ class SceneTest : public QObject {
     for (const viz::Layer& layer : viz::sceneLayers())
       document_->setLayerVisible(layer.name, layer.title, layer.name == "cameras");
     settle();
-    const Eigen::Vector3d eye = document_->scene()->frames[8].camera.centreInWorld();
-    vtkRenderer* renderer = panel_->view().renderer();
-    renderer->SetWorldPoint(eye.x(), eye.y(), eye.z(), 1);
-    renderer->WorldToDisplay();
-    const double ratio = views().widget()->devicePixelRatioF();
-    const QPoint at(int(renderer->GetDisplayPoint()[0] / ratio),
-                    views().widget()->height() - 1 - int(renderer->GetDisplayPoint()[1] / ratio));
-    QTest::mouseClick(views().widget(), Qt::LeftButton, {}, at);
+    QTest::mouseClick(views().widget(), Qt::LeftButton, {}, onScreen(document_->scene()->frames[8].camera.centreInWorld()));
     QCOMPARE(document_->selection().frame, 8);
+  }
+
+  void aRightClickOnACameraExcludesIt() {
+    for (const viz::Layer& layer : viz::sceneLayers())
+      document_->setLayerVisible(layer.name, layer.title, layer.name == "cameras");
+    settle();
+    QTest::mouseClick(views().widget(), Qt::RightButton, {}, onScreen(document_->scene()->frames[8].camera.centreInWorld()));
+    auto* menu = panel_->findChild<QMenu*>(QStringLiteral("cameraMenu"));
+    QVERIFY(menu && menu->isVisible());
+    QCOMPARE(document_->selection().frame, 0);  // it asks, it does not select
+    const QList<QAction*> actions = menu->actions();
+    const auto exclude = std::find_if(actions.begin(), actions.end(), [](QAction* a) { return a->text() == "E&xclude it"; });
+    QVERIFY(exclude != actions.end());
+    (*exclude)->trigger();
+    menu->close();
+    QCOMPARE(document_->role(8), FrameRole::Excluded);
+    document_->undoStack()->undo();
+    QCOMPARE(document_->role(8), FrameRole::HeldOut);
+  }
+
+  void camerasAreColouredByWhatLeavingThemOutDoes() {
+    for (const viz::Layer& layer : viz::sceneLayers())
+      document_->setLayerVisible(layer.name, layer.title, layer.name == "cameras");
+    QSignalSpy asked(panel_.get(), &ScenePanel::influenceRequested);
+    trigger("view.colour-influence");
+    QCOMPARE(asked.count(), 1);
+    settle();
+    const QImage unknown = picture();
+    auto influence = std::make_shared<Influence>();
+    for (int frame = 0; frame < 6; ++frame) {
+      FrameInfluence f;
+      f.frame = frame;
+      f.models[document_->plottedModel()].changePct = frame == 2 ? -3.0 : 1.0;
+      influence->frames.push_back(f);
+    }
+    influence->probes = {7};
+    document_->setInfluence(influence, document_->request());
+    settle();
+    QVERIFY(picture() != unknown);
+    const SceneOptions options = sceneOptions(*document_);
+    QCOMPARE(options.colours.influence.size(), std::size_t(6));
+    QCOMPARE(options.colours.influence.at(2), -3.0);
+    trigger("view.colour-influence");  // measured: nothing to ask for
+    QCOMPARE(asked.count(), 1);
+  }
+
+  void theLampIsDraggedWhereContoursAreSynthesised() {
+    auto scene = std::make_shared<Scene>(*document_->scene());
+    TrueLight lamp;
+    lamp.id = "lamp";
+    lamp.position = Eigen::Vector3d(0.3, -0.6, -0.8);
+    scene->lights = {lamp};
+    Opened opened = fixture_.opened();
+    opened.scene = scene;
+    document_->open(opened);
+    const auto show = [&] {
+      auto inspection = std::make_shared<Inspection>(drawnCircles(document_->sharedScene(), document_->request()));
+      inspection->surfaces = std::make_shared<SurfaceCache>(*document_->sharedScene());
+      document_->setInspection(inspection, document_->request());
+      settle();
+    };
+    for (const viz::Layer& layer : viz::sceneLayers())
+      document_->setLayerVisible(layer.name, layer.title, layer.name == "true-light");
+    show();
+    const QPoint at = onScreen(*lamp.position), to = at + QPoint(-60, 35);
+    drag(views().widget(), {at, at + QPoint(-20, 10), to});  // not synthesised: the view turns
+    QVERIFY(document_->request().whatIf.none());
+    WhatIf w;
+    w.synthesise = true;
+    document_->setWhatIf(w, "synthesise");
+    panel_->frameAll();
+    show();
+    const QPoint from = onScreen(*lamp.position), there = from + QPoint(-60, 35);
+    const int steps = document_->undoStack()->count();
+    drag(views().widget(), {from, from + QPoint(-20, 10), there});
+    QCOMPARE(document_->undoStack()->count(), steps + 1);
+    QVERIFY(document_->request().whatIf.lightsBy.count("lamp"));
+    const Eigen::Vector3d moved = *lamp.position + document_->request().whatIf.lightsBy.at("lamp");
+    QVERIFY((onScreen(moved) - there).manhattanLength() <= 3);  // where the mouse let it go, within the pixels of both clicks
   }
 
   void aClickOnAContourSelectsItsDirection() {
@@ -284,6 +357,15 @@ class SceneTest : public QObject {
     return opened;
   }
   SceneViews& views() { return panel_->views(); }
+  /// Where a world point is drawn, widget coordinates.
+  QPoint onScreen(const Eigen::Vector3d& point) {
+    vtkRenderer* renderer = panel_->view().renderer();
+    renderer->SetWorldPoint(point.x(), point.y(), point.z(), 1);
+    renderer->WorldToDisplay();
+    const double ratio = views().widget()->devicePixelRatioF();
+    return {int(renderer->GetDisplayPoint()[0] / ratio),
+            views().widget()->height() - 1 - int(renderer->GetDisplayPoint()[1] / ratio)};
+  }
   void trigger(const char* id) {
     QAction* action = actions_->find(QLatin1String(id));
     QVERIFY2(action, id);

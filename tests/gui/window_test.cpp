@@ -6,6 +6,7 @@
 #include <QListWidget>
 #include <QPlainTextEdit>
 #include <QPushButton>
+#include <QSettings>
 #include <QTableView>
 #include <QToolButton>
 
@@ -68,6 +69,30 @@ class WindowTest : public QObject {
     QTRY_VERIFY(window.idle() && !window.document().stale());
     QCOMPARE(window.document().inspection()->evidence[0].highlights[0].level, 0.5);
     QVERIFY(elsewhere);
+  }
+
+  void anOwnLayoutComesBackInThisWindowAndTheNext() {
+    QSettings().remove(QStringLiteral("layouts"));
+    MainWindow window(fixture_.engine());
+    show(window);
+    openAndWait(window);
+    QVERIFY(!window.actions().find("view.layout-own-2")->isEnabled());
+    auto* plots = window.findChild<QDockWidget*>(QStringLiteral("plots"));
+    auto* setup = window.findChild<QDockWidget*>(QStringLiteral("setup"));
+    window.addDockWidget(Qt::RightDockWidgetArea, setup);
+    plots->hide();
+    window.actions().find("view.layout-keep-2")->trigger();
+    window.applyLayout(QStringLiteral("compare"));
+    QVERIFY(plots->isVisible());
+    QVERIFY(window.actions().find("view.layout-own-2")->isEnabled());
+    window.actions().find("view.layout-own-2")->trigger();
+    QVERIFY(!plots->isVisible() && setup->isVisible());
+    QCOMPARE(window.dockWidgetArea(setup), Qt::RightDockWidgetArea);
+    MainWindow next(fixture_.engine());
+    show(next);
+    next.actions().find("view.layout-own-2")->trigger();
+    QVERIFY(next.findChild<QDockWidget*>(QStringLiteral("plots"))->isHidden());
+    QSettings().remove(QStringLiteral("layouts"));
   }
 
   void stopLeavesTheOldResultsMarkedAsOutOfDate() {

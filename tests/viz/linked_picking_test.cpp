@@ -225,6 +225,23 @@ TEST(ErrorColour, IsOneAbsoluteScale) {
   EXPECT_NEAR(middle[2], 0.30, 1e-9);
 }
 
+TEST(InfluenceColour, TellsHelpFromHarmAboutThePaleMiddle) {
+  const Colour helps = influenceColour(2, 2), harms = influenceColour(-2, 2), neither = influenceColour(0, 2);
+  EXPECT_GT(helps[2], helps[0] + 0.5);  // blue
+  EXPECT_GT(harms[0], harms[2] + 0.5);  // vermilion
+  EXPECT_EQ(influenceColour(9, 2), helps);
+  EXPECT_EQ(influenceColour(-9, 2), harms);
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_NEAR(influenceColour(1, 2)[c], 0.5 * (helps[c] + neither[c]), 1e-12);
+    EXPECT_NEAR(influenceColour(-1, 2)[c], 0.5 * (harms[c] + neither[c]), 1e-12);
+  }
+  EXPECT_EQ(influenceColour(1, 0), neither);
+  CameraColours colours;
+  EXPECT_EQ(mostInfluence(colours), 0);
+  colours.influence = {{0, 1.5}, {3, -2.5}};
+  EXPECT_EQ(mostInfluence(colours), 2.5);
+}
+
 TEST(Coarsened, KeepsTheShapeWithFewerTriangles) {
   TriangleMesh mesh;  // a bumpy sheet
   constexpr int kSide = 400;
