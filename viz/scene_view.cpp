@@ -564,7 +564,6 @@ void SceneView::setFrame(bool border, bool active, const std::string& name) {
 }
 
 void SceneView::setLegendVisible(bool visible) { impl_->annotations->setLegendVisible(visible); }
-
 void SceneView::setMoving(bool moving) { impl_->moving = moving; }
 
 bool SceneView::hasCoarseSurface() const {
