@@ -193,13 +193,13 @@ TEST_F(LinkedPicking, CamerasAreColouredByRoleModelOrError) {
   const Image byRole = render(view_);
   EXPECT_GT(countNear(byRole, kTraining), 50);
   EXPECT_GT(countNear(byRole, kHeldOut), 20);
-  view_.setCameraColours({CameraColours::By::Error, "canonical"});
+  view_.setCameraColours({CameraColours::By::Error, "canonical", {}});
   const Image byError = render(view_);
   EXPECT_LT(countNear(byError, kTraining), 5);
   EXPECT_GT(countNear(byError, errorColour(0.01)), 50);
   EXPECT_GT(countNear(byError, errorColour(100)), 20);
   EXPECT_GT(countNear(byError, errorColour(1), 0.1), 8);  // only the colour bar has the middle of the scale
-  view_.setCameraColours({CameraColours::By::Model, ""});
+  view_.setCameraColours({CameraColours::By::Model, "", {}});
   EXPECT_GT(countNear(render(view_), modelColour("canonical")), 50);
 }
 
