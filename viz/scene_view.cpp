@@ -393,7 +393,6 @@ struct SceneView::Impl {
 
 SceneView::SceneView(std::shared_ptr<LayerCache> cache) : impl_(std::make_unique<Impl>(std::move(cache))) {}
 SceneView::~SceneView() = default;
-
 vtkRenderer* SceneView::renderer() const { return impl_->renderer; }
 
 void SceneView::setInspection(std::shared_ptr<const Inspection> inspection) {
@@ -564,7 +563,10 @@ void SceneView::setFrame(bool border, bool active, const std::string& name) {
 }
 
 void SceneView::setLegendVisible(bool visible) { impl_->annotations->setLegendVisible(visible); }
-void SceneView::setMoving(bool moving) { impl_->moving = moving; }
+void SceneView::setMoving(bool moving) {
+  impl_->moving = moving;
+  impl_->renderer->SetUseDepthPeeling(!moving);  // many passes; without them what shines through is only not sorted
+}
 
 bool SceneView::hasCoarseSurface() const {
   return impl_->valid() && impl_->input.surface && impl_->layers[layerIndex("surface")].built &&
@@ -572,7 +574,6 @@ bool SceneView::hasCoarseSurface() const {
 }
 
 void SceneView::photographsArrived() { impl_->mark(kOnPhotographs); }
-
 ViewPoint SceneView::viewPoint() const {
   return impl_->input.eye != Eye::Outside ? impl_->outside : viewPointOf(impl_->renderer->GetActiveCamera());
 }
@@ -583,7 +584,6 @@ void SceneView::setViewPoint(const ViewPoint& viewPoint) {
 }
 
 void SceneView::update() { impl_->update(); }
-
 int SceneView::buildCount(const std::string& layer) const { return impl_->layers[layerIndex(layer)].builds; }
 
 std::optional<Picked> SceneView::pick(int xDisplay, int yDisplay) const {

@@ -29,7 +29,7 @@ class Runner : public QObject {
   static constexpr int kGraceMs = 250, kRestGraceMs = 40;
   /// While requests follow one another within `kPauseMs`, each computes its frame; the rest is done in a pause or every
   /// `kRestEveryMs`.
-  static constexpr int kPauseMs = 80, kRestEveryMs = 500;
+  static constexpr int kPauseMs = 150, kRestEveryMs = 500;
 
   explicit Runner(Engine engine, QObject* parent = nullptr);
   ~Runner() override;  ///< stops what runs and waits for it

@@ -5,10 +5,15 @@
 #include <QLabel>
 #include <QProgressBar>
 #include <QToolButton>
+#include <initializer_list>
 
 #include "gui/base/theme.h"
 
 namespace glint::gui {
+
+namespace {
+constexpr int kShownAfterMs = 200;  // what ends sooner would only flicker, and take the time of laying out and painting
+}
 
 JobStatus::JobStatus(Document& document, Runner& runner, QWidget* parent)
     : QWidget(parent), document_(document), runner_(runner) {
@@ -31,11 +36,28 @@ JobStatus::JobStatus(Document& document, Runner& runner, QWidget* parent)
   stop_->setToolTip(tr("Stop (Esc)"));
   row->addWidget(stop_);
   connect(stop_, &QToolButton::clicked, &runner_, &Runner::cancel);
-  connect(&runner_, &Runner::busyChanged, this, &JobStatus::refresh);
-  connect(&document_, &Document::staleChanged, this, &JobStatus::refresh);
-  connect(&document_, &Document::inspectionChanged, this, &JobStatus::refresh);
+  for (QWidget* widget : std::initializer_list<QWidget*>{bar_, stop_}) {
+    QSizePolicy keepsItsPlace = widget->sizePolicy();
+    keepsItsPlace.setRetainSizeWhenHidden(true);
+    widget->setSizePolicy(keepsItsPlace);
+  }
+  soon_.setSingleShot(true);
+  soon_.setInterval(kShownAfterMs);
+  connect(&soon_, &QTimer::timeout, this, &JobStatus::refresh);
+  const auto changed = [this] {
+    if ((runner_.busy() || document_.stale()) && document_.inspection()) {
+      if (!soon_.isActive() && !bar_->isVisible()) soon_.start();
+    } else {
+      soon_.stop();
+      refresh();
+    }
+  };
+  connect(&runner_, &Runner::busyChanged, this, changed);
+  connect(&document_, &Document::staleChanged, this, changed);
+  connect(&document_, &Document::inspectionChanged, this, changed);
   connect(&document_, &Document::sceneOpened, this, &JobStatus::refresh);
   connect(&runner_, &Runner::progressed, this, [this](const QString& stage, int done, int total) {
+    if (!bar_->isVisible()) return;
     const QString words = stage == QStringLiteral("hash") ? tr("checking the input files") : stage;
     text_->setText(total > 0 ? tr("%1 %2/%3").arg(words).arg(done).arg(total) : words);
     bar_->setRange(0, total);
@@ -49,7 +71,8 @@ void JobStatus::refresh() {
   bar_->setVisible(busy);
   stop_->setVisible(busy);
   if (busy) {
-    bar_->setRange(0, 0);
+    bar_->setRange(0, 1);  // not the moving stripes of an unknown length: they would paint the window all the time
+    bar_->setValue(0);
     text_->setText(tr("working…"));
     text_->setStyleSheet(QString());
   } else if (document_.scene() && document_.stale()) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <QTimer>
 #include <QWidget>
 
 #include "gui/document/document.h"
@@ -26,6 +27,7 @@ class JobStatus : public QWidget {
   QLabel* text_;
   QProgressBar* bar_;
   QToolButton* stop_;
+  QTimer soon_;
 };
 
 }  // namespace glint::gui
