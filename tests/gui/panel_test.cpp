@@ -2,6 +2,7 @@
 #include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QLineEdit>
+#include <QSignalSpy>
 #include <QSlider>
 #include <QStyle>
 #include <QStyleOptionSlider>
@@ -62,17 +63,30 @@ class PanelTest : public QObject {
     const QPoint handle = slider->style()->subControlRect(QStyle::CC_Slider, &option, QStyle::SC_SliderHandle, slider).center();
     std::vector<QPoint> path;
     for (int dx = 0; dx <= 20; dx += 4) path.push_back(handle + QPoint(dx, 0));
+    QSignalSpy values(document_.get(), &Document::requestChanged);
     drag(slider, path);
+    QVERIFY(values.count() > 2);  // several values in one step
     const double after = document_->request().settings.number("detect.level");
     QVERIFY(after > 0.5);
     QCOMPARE(document_->undoStack()->count(), 1);
+    const InspectionRequest end = document_->request();
+    document_->undoStack()->undo();
+    QCOMPARE(document_->request().settings.number("detect.level"), 0.5);
+    document_->undoStack()->redo();  // the end of the drag, not its first value
+    QCOMPARE(document_->request().settings.number("detect.level"), after);
+    QVERIFY(document_->request() == end);
     drag(slider, {path.back(), path[2], path[1]});  // a second drag is a second step
     QCOMPARE(document_->undoStack()->count(), 2);
-    QVERIFY(document_->request().settings.number("detect.level") < after);
+    const double second = document_->request().settings.number("detect.level");
+    QVERIFY(second < after);
     document_->undoStack()->undo();
     QCOMPARE(document_->request().settings.number("detect.level"), after);
     document_->undoStack()->undo();
     QCOMPARE(document_->request().settings.number("detect.level"), 0.5);
+    document_->undoStack()->redo();
+    QCOMPARE(document_->request().settings.number("detect.level"), after);
+    document_->undoStack()->redo();
+    QCOMPARE(document_->request().settings.number("detect.level"), second);
   }
 
   void choicesAndReset() {
