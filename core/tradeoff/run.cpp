@@ -32,11 +32,25 @@ std::string workKey(const Scene& scene, const InspectionRequest& request, const 
   return hash.hex();
 }
 
+/// Errors are measured on held-out frames. Said at once: without any, every trial would fail, one after the other.
+void requireHeldOutFrames(const Scene& scene, const InspectionRequest& request) {
+  const TrainSpec train = parseTrainSpec(request.train, scene);
+  const int frames = static_cast<int>(scene.frames.size());
+  const auto in = [](const std::vector<int>& list, int f) { return std::find(list.begin(), list.end(), f) != list.end(); };
+  for (int f = 0; f < frames; ++f)
+    if (!in(request.excluded, f) && (train.perSurface || !in(train.frames, f))) return;
+  std::string what =
+      "no frame is left to measure the error on: each of the " + std::to_string(frames) + " is a training frame or left out";
+  if (frames > 1) what += "; train with fewer, for example --train first:" + std::to_string(std::min(frames - 1, 4));
+  throw InputError("", "--train " + request.train, what);
+}
+
 }  // namespace
 
 Tradeoff measureTradeoff(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const TradeoffOptions& options,
                          const ProgressFn& progress) {
   require(scene != nullptr, "measureTradeoff: no scene");
+  requireHeldOutFrames(*scene, request);
   StageEvent now{"tradeoff: highlights", 0, 0};
   // The stages of the pipeline report from several threads, one at a time, and only ask here whether to go on.
   const ProgressFn outer = [&](const StageEvent& e) {
@@ -74,9 +88,8 @@ Tradeoff measureTradeoff(std::shared_ptr<const Scene> scene, const InspectionReq
   t.trials = found.trials;
   t.pruned = std::move(found.pruned);
   // Grouped by surface, so that each is built once; the order of the points is decided later.
-  std::stable_sort(found.finalists.begin(), found.finalists.end(), [](const Trial& a, const Trial& b) {
-    return meshPolicy(a.settings) < meshPolicy(b.settings);
-  });
+  std::stable_sort(found.finalists.begin(), found.finalists.end(),
+                   [](const Trial& a, const Trial& b) { return meshPolicy(a.settings) < meshPolicy(b.settings); });
   done = 0;
   for (const Trial& trial : found.finalists) {
     now = {"tradeoff: measure, " + trial.model, ++done, static_cast<int>(found.finalists.size())};

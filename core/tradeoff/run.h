@@ -24,7 +24,7 @@ struct TradeoffOptions {
 /// Measures what each sensible setting costs and gives on this input (method.md section 12): searchTrials on few frames, then a
 /// full measurement of what is left, then the front, the presets and the choice.
 /// @param request  its models are compared; its settings are the base from which knobs are turned.
-/// @throw Stopped (the work so far stays in the work file); InputError.
+/// @throw Stopped (the work so far stays in the work file); InputError, also at once where the request leaves no frame held out.
 Tradeoff measureTradeoff(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const TradeoffOptions& options,
                          const ProgressFn& progress = {});
 

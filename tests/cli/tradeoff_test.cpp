@@ -94,6 +94,28 @@ TEST_F(TradeoffCommand, NothingThatAnswersIsCodeThreeWithTheReason) {
   EXPECT_EQ(Json::parse(contentOf(folder_ / "t.json"))["points"].size(), 0u);
 }
 
+TEST_F(TradeoffCommand, WithoutAHeldOutFrameItIsRefusedBeforeTheFirstTrial) {
+  const std::string file = out("t.json");
+  for (const char* train : {"first:8", "0-7"}) {
+    const ProgramRun run = tradeoff("--train " + std::string(train) + " --json " + file);
+    EXPECT_EQ(run.code, 2) << run.err;
+    EXPECT_EQ(run.errorLines(), 1) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("each of the 8 is a training frame or left out"));
+    EXPECT_THAT(run.err, HasSubstr("for example --train first:4"));
+    EXPECT_THAT(run.err, testing::Not(HasSubstr("try settings"))) << "nothing was tried";
+    EXPECT_FALSE(fs::exists(folder_ / "t.json"));
+    EXPECT_FALSE(fs::exists(folder_ / "t.json.work"));
+  }
+  // The default takes six: a scene of six is told the same, and the suggestion works.
+  scene_["frames"].erase(scene_["frames"].begin() + 6, scene_["frames"].end());
+  writeScene();
+  const ProgramRun six = tradeoff("--json " + file);
+  EXPECT_EQ(six.code, 2);
+  EXPECT_THAT(six.err, HasSubstr("--train first:6: no frame is left to measure the error on"));
+  const ProgramRun four = tradeoff("--train first:4 --json " + file);
+  EXPECT_EQ(four.code, 0) << four.err;
+}
+
 TEST_F(TradeoffCommand, ASessionKeepsItAndPresetsFindIt) {
   saveSession("--model limit-angle");
   const std::string before = contentOf(folder_ / "run.glint");
