@@ -25,7 +25,7 @@ Image scenePicture(const RenderArguments& a, const PictureInput::Opened& opened,
   viz::SceneView view;
   a.apply(view, opened, inspection);
   view.setSelection({frame, opened.saved.model, opened.saved.highlight});
-  if (a.through) view.lookThrough(frame);
+  if (a.through) view.setEye(viz::Eye::Camera);  // of the selected frame
   return (*target)->render(view);
 }
 

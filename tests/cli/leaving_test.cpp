@@ -14,6 +14,38 @@ namespace fs = std::filesystem;
 
 class Leaving : public SmallScene {};
 
+TEST_F(Leaving, ThroughACameraTheSceneIsDrawnWhereTheCameraSays) {
+  // A small ball at the origin; the principal point far from the middle of the 160 x 120 px, pixels that are not square.
+  scene_["surfaces"] = Json::parse(R"({"body": {"analytic": {"type": "ellipsoid", "semi_axes": [0.08, 0.08, 0.08]}}})");
+  const double fx = 200, fy = 180, cx = 112, cy = 33;
+  const Json camera = {{"width", 160}, {"height", 120}, {"fx", fx}, {"fy", fy}, {"cx", cx}, {"cy", cy}};
+  scene_["camera"] = camera;
+  for (Json& frame : scene_["frames"])
+    if (frame.contains("camera")) frame["camera"] = camera;
+  writeScene();
+  const ProgramRun run =
+      on("render", "--through --frame 3 --models limit-angle --layers=none,+surface --size 640x480 -o " + out("a.png"));
+  ASSERT_EQ(run.code, 0) << run.err;
+  const cv::Mat picture = cv::imread((folder_ / "a.png").string());
+  ASSERT_EQ(picture.cols, 640);
+  const Json& pose = scene_["frames"][3]["camera_from_world"];
+  const auto at = [&](int row) { return pose[std::size_t(row)][3].get<double>(); };  // of the origin
+  const double x = 4 * (fx * at(0) / at(2) + cx + 0.5) - 0.5, y = 4 * (fy * at(1) / at(2) + cy + 0.5) - 0.5;
+  const cv::Vec3b background = picture.at<cv::Vec3b>(470, 630);
+  const auto steps = [&](int dx, int dy) {  // from the expected centre to the ball's edge
+    int n = 0;
+    cv::Point p(int(std::lround(x)), int(std::lround(y)));
+    while (cv::Rect(0, 0, 640, 480).contains(p) && cv::norm(picture.at<cv::Vec3b>(p), background) > 24)
+      p += cv::Point(dx, dy), ++n;
+    return n;
+  };
+  const double wide = 4 * fx * 0.08 / at(2), high = 4 * fy * 0.08 / at(2);
+  EXPECT_NEAR(steps(-1, 0), wide, 2.5);
+  EXPECT_NEAR(steps(1, 0), wide, 2.5);
+  EXPECT_NEAR(steps(0, -1), high, 2.5);
+  EXPECT_NEAR(steps(0, 1), high, 2.5);
+}
+
 TEST_F(Leaving, AMovieOfTheTimelineAsPictures) {
   saveSession("--model limit-angle");
   const ProgramRun run = onSession("movie", "--frames 2-4 --size 320x240 -o " + out("m.png"));
@@ -23,7 +55,9 @@ TEST_F(Leaving, AMovieOfTheTimelineAsPictures) {
     const cv::Mat picture = cv::imread((folder_ / name).string());
     ASSERT_EQ(picture.cols, 320) << name;
     ASSERT_EQ(picture.rows, 240) << name;
-    if (!before.empty()) EXPECT_GT(cv::norm(picture, before, cv::NORM_L1) / double(picture.total()), 0.1) << name;
+    if (!before.empty()) {
+      EXPECT_GT(cv::norm(picture, before, cv::NORM_L1) / double(picture.total()), 0.1) << name;
+    }
     before = picture;
   }
   EXPECT_FALSE(fs::exists(folder_ / "m_0003.png"));
