@@ -52,7 +52,7 @@ ExportActions::ExportActions(const Engine& engine, Document& document, QWidget* 
     : QObject(window), engine_(engine), document_(document), window_(window), long_(window) {
   repro_ = new ReproActions(document_, long_, window_);
   connect(repro_, &ReproActions::problem, this, &ExportActions::problem);
-  connect(repro_, &ReproActions::message, this, &ExportActions::message);
+  connect(repro_, &ReproActions::written, this, &ExportActions::sessionWritten);
   connect(&long_, &LongJob::problem, this, &ExportActions::problem);
   connect(&long_, &LongJob::message, this, &ExportActions::message);
 }

@@ -52,6 +52,8 @@ class ExportActions : public QObject {
  signals:
   void problem(const QString& oneLine);
   void message(const QString& oneLine);
+  /// A session that the user may want to look at next.
+  void sessionWritten(const QString& oneLine, const QString& session);
 
  private:
   using Write = std::function<void(const QString& file)>;

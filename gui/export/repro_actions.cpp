@@ -95,9 +95,9 @@ void ReproActions::write(const Fault& fault, const FaultTolerance& tolerance, co
                                  .arg(repro->of)
                                  .arg(toQString(written.fault.text()), toQString(fault.text()),
                                       QDir::toNativeSeparators(toQString(written.session.string())));
-        return [this, line, shows = written.shows] {
+        return [this, line, shows = written.shows, session = toQString(written.session.string())] {
           if (shows)
-            emit message(line);
+            emit this->written(line, session);
           else
             emit problem(tr("The written session shows another fault than the one on screen. %1").arg(line));
         };

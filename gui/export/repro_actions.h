@@ -34,14 +34,14 @@ class ReproActions : public QObject {
  public:
   ReproActions(Document& document, LongJob& job, QWidget* window);
   void addActions(Actions& actions, QMenu* menu);
-  /// Of the selected frame, the selected (else the plotted) model and the selected light (else the worst); message() or problem()
+  /// Of the selected frame, the selected (else the plotted) model and the selected light (else the worst); written() or problem()
   /// tells how it ended.
   Outcome<Fault> fault() const;
   void write(const Fault& fault, const FaultTolerance& tolerance, const QString& folder);
 
  signals:
   void problem(const QString& oneLine);
-  void message(const QString& oneLine);
+  void written(const QString& oneLine, const QString& session);
 
  private:
   Document& document_;

@@ -90,6 +90,10 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
       log(line);
       statusBar()->showMessage(line, 6000);
     });
+  connect(exports_, &ExportActions::sessionWritten, this, [this](const QString& line, const QString& session) {
+    log(line);
+    messageBar_->showOffer(line, {{tr("Open"), [this, session] { files_->open(session); }}});
+  });
   exports_->setSnapshot([this] { return snapshot(); });
   exports_->setLog([this] { return log_->toPlainText(); });
   files_->setViewSource([this](Opened& opened) { addView(opened); });

@@ -5,6 +5,7 @@
 #include <QFileInfo>
 #include <QHeaderView>
 #include <QLabel>
+#include <QPushButton>
 #include <QTabWidget>
 #include <QTableView>
 
@@ -15,6 +16,7 @@
 #include "gui/export/repro_actions.h"
 #include "gui/panels/comparison_panel.h"
 #include "gui/window/main_window.h"
+#include "gui/window/message_bar.h"
 #include "tests/gui/fixture.h"
 
 namespace glint::gui {
@@ -99,14 +101,20 @@ class ComparisonTest : public QObject {
     d.select(s);
     const Outcome<Fault> fault = window_->exports()->repro()->fault();
     QVERIFY(fault && fault->errorPct);
-    QString said;
-    connect(window_->exports(), &ExportActions::message, this, [&](const QString& line) { said = line; });
     const QString folder = folder_.filePath("minimal");
     window_->exports()->repro()->write(*fault, {FaultKept::AtLeast, 0.2}, folder);
     QTRY_VERIFY_WITH_TIMEOUT(window_->idle(), 60000);
     QVERIFY2(problem_.isEmpty(), qPrintable(problem_));
-    QVERIFY2(said.contains("training frames"), qPrintable(said));
-    window_->open(folder + "/repro.glint");
+    // The result stays on screen until it is answered or closed, and is no error.
+    auto* bar = window_->findChild<MessageBar*>();
+    QVERIFY(bar && bar->isVisibleTo(window_.get()));
+    QVERIFY2(bar->text().contains("training frames") && bar->text().contains("repro.glint"), qPrintable(bar->text()));
+    QVERIFY(window_->lastError().isEmpty());
+    const QList<QPushButton*> answers = bar->findChildren<QPushButton*>();
+    QCOMPARE(answers.size(), 1);
+    QCOMPARE(answers[0]->text(), QStringLiteral("Open"));
+    QTest::mouseClick(answers[0], Qt::LeftButton);
+    QVERIFY(!bar->isVisibleTo(window_.get()));
     QTRY_VERIFY_WITH_TIMEOUT(d.sessionFile().contains("repro.glint") && window_->idle() && !d.stale(), 60000);
     const Outcome<Fault> now = window_->exports()->repro()->fault();  // the session selects frame and model
     QVERIFY(now && now->errorPct);
