@@ -130,7 +130,7 @@ std::vector<PixelText> pixelTexts(const Image& image, Values values, const Pictu
 
 std::string valueText(const Image& image, Values values, int x, int y) {
   if (x < 0 || y < 0 || x >= image.width || y >= image.height) return {};
-  std::string text = values == Values::Srgb ? "sRGB" : "radiance";
+  std::string text = values == Values::Srgb ? "sRGB" : values == Values::Linear ? "radiance" : "linear";
   for (int c = 0; c < image.channels; ++c) {
     const double v = image.at(x, y, c);
     text += " " + (values == Values::Srgb ? formatted("%.0f", 255 * v) : formatted("%.4g", v));

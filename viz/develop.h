@@ -11,7 +11,11 @@
 namespace glint::viz {
 
 /// What the numbers of an image are.
-enum class Values { Srgb, Linear };  ///< codes 0..1 of the sRGB curve (a photograph); radiance
+enum class Values {
+  Srgb,
+  Linear,
+  Linearised
+};  ///< codes 0..1 of the sRGB curve (a photograph); radiance; a photograph made linear
 
 /// How an image is turned into a picture. Changes no result.
 struct Development {
@@ -52,7 +56,7 @@ struct PixelText {
 };
 /// Texts of the pixels in [x0, x1] x [y0, y1], cut to the image. @param shown  what is on screen, for the contrast.
 std::vector<PixelText> pixelTexts(const Image& image, Values values, const Picture8& shown, int x0, int y0, int x1, int y1);
-/// One pixel's value as a line of text: "sRGB 64 64 64", "radiance 0.12 0.11 0.1".
+/// One pixel's value as a line of text: "sRGB 64 64 64", "radiance 0.12 0.11 0.1", "linear 0.05 0.05 0.05".
 std::string valueText(const Image& image, Values values, int x, int y);
 
 }  // namespace glint::viz

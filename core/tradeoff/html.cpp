@@ -88,7 +88,7 @@ std::string svgOf(const Tradeoff& t) {
       svg += "<circle cx=\"" + px(x(p)) + "\" cy=\"" + px(y(p)) + "\" r=\"" + (onFront ? "5.5" : "4") + "\" stroke=\"" + colour +
              "\" stroke-width=\"1.6\" fill=\"" + (onFront ? colour : "none") + "\"><title>" + std::to_string(i) + ": " +
              escaped(describe(t, p)) + "\n" + format("%.4g", p.contourErrorPct) + " %, IoU " + format("%.4f", p.iou) +
-             ", coverage " + format("%.3f", p.coverage) + ", " + format("%.4g", p.predictUs) + " us a frame</title></circle>\n";
+             ", coverage " + format("%.3f", p.coverage) + ", " + format("%.4g", p.predictUs) + " µs a frame</title></circle>\n";
     }
   std::map<int, std::string> labels;
   for (const char* name : {"fast", "balanced", "exact"})

@@ -2,6 +2,7 @@
 #include "gui/base/text.h"
 
 #include <QLocale>
+#include <QRegularExpression>
 #include <QStringList>
 #include <cmath>
 
@@ -25,6 +26,11 @@ QString valueText(const SettingValue& value, const ParamSpec& spec) {
   if (const int* i = std::get_if<int>(&value)) return QString::number(*i) + unit;
   if (const double* d = std::get_if<double>(&value)) return numberText(*d, 6) + unit;
   return toQString(std::get<std::string>(value));
+}
+
+QString withMicro(QString sentence) {
+  static const QRegularExpression number(QStringLiteral("(?<=[0-9]) us\\b"));
+  return sentence.replace(number, QStringLiteral(" µs"));
 }
 
 int decimalsFor(double step) {

@@ -18,6 +18,8 @@ QString joined(const std::vector<std::string>& words);
 QString numberText(double value, int digits = 4);
 /// A value as its panel shows it, with the unit.
 QString valueText(const SettingValue& value, const ParamSpec& spec);
+/// A sentence of the program with "12 us" as "12 µs": what terminals and files get is plain ASCII.
+QString withMicro(QString sentence);
 /// Decimals that a spin box needs to show steps of `step`.
 int decimalsFor(double step);
 

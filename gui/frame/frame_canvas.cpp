@@ -21,8 +21,8 @@ namespace glint::gui {
 
 namespace {
 constexpr double kMinZoom = 0.02, kMaxZoom = 512;
-constexpr int kStaleAfterMs = 150;    // results that come sooner need no mark that flickers
-constexpr double kGridFromZoom = 16;  // below this the pixel grid would hide the photograph
+constexpr int kStaleAfterMs = 150;         // results that come sooner need no mark that flickers
+constexpr double kGridFromZoom = 16;       // below this the pixel grid would hide the photograph
 constexpr int kFigurePhotographPx = 2400;  // an enlarged part is not made larger than this
 const QColor kHalo(0, 0, 0, 170);
 
@@ -200,7 +200,8 @@ void FrameCanvas::drawScale(QPainter& painter) const {
   painter.setBrush(QColor(0, 0, 0, 170));
   painter.drawRoundedRect(box, 4, 4);
   painter.setPen(Qt::white);
-  painter.drawText(QRectF(box.left(), box.top() + 2, box.width(), text), Qt::AlignCenter, tr("radiance"));
+  painter.drawText(QRectF(box.left(), box.top() + 2, box.width(), text), Qt::AlignCenter,
+                   picture_.kind == viz::Values::Linearised ? tr("linear") : tr("radiance"));
   const QRectF bar(box.left() + 8, box.top() + text + 10, 12, box.height() - text - 20);
   QLinearGradient gradient(bar.bottomLeft(), bar.topLeft());
   for (int i = 0; i < 256; i += 15)

@@ -61,13 +61,15 @@ void PhotoLoader::want(int frame) {
       [this, ticket, frame, scene = scene_, source = source_, development = development_, values = found ? *found : Kept()] {
         FramePicture picture;
         picture.values = values;
-        picture.kind = source == FrameSource::Radiance ? viz::Values::Linear : viz::Values::Srgb;
+        const Frame& f = scene->frames[std::size_t(frame)];
+        picture.kind = source != FrameSource::Radiance ? viz::Values::Srgb
+                       : f.radiance.empty()            ? viz::Values::Linearised
+                                                       : viz::Values::Linear;
         QString reason;
         if (ticket == newest_) {
           try {
             if (!picture.values) {
               ++reads_;
-              const Frame& f = scene->frames[std::size_t(frame)];
               const Outcome<Image> image = source == FrameSource::Radiance ? readLinear(f, source) : readPhotograph(f);
               if (image)
                 picture.values = std::make_shared<const Image>(*image);

@@ -8,6 +8,7 @@
 #include <QHeaderView>
 #include <QKeyEvent>
 #include <QLabel>
+#include <QResizeEvent>
 #include <QScrollBar>
 #include <QSortFilterProxyModel>
 #include <QTableView>
@@ -66,7 +67,7 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   summary_ = new QLabel;
   summary_->setObjectName(QStringLiteral("errorSummary"));
   summary_->setTextFormat(Qt::RichText);
-  summary_->setMinimumWidth(1);  // a dock that is narrower still cuts it rather than growing
+  summary_->setMinimumWidth(1);  // a dock narrower than its first column cuts it rather than growing
   summary_->setTextInteractionFlags(Qt::TextSelectableByMouse);
   head->addWidget(summary_);
   filter_ = new QComboBox;
@@ -142,44 +143,81 @@ void ErrorTable::fitReason() {
 }
 
 void ErrorTable::showSummary() {
+  summaryRows_.clear();
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
-  if (!inspection) {
+  if (!inspection) return fitSummary();
+  // In place of the heading: a line of its own would make the table jump under the mouse.
+  summaryRows_.push_back(
+      {{},
+       document_.stale() ? tr("out of date…") : tr("Held-out frames, error %"),
+       {tr("mean"), tr("median"), tr("p95"), tr("max"), tr("IoU"), tr("predicted"), tr("missed"), tr("spurious")},
+       {}});
+  for (const std::string& name : viz::modelsInOrder(*inspection)) {
+    const ModelSummary s = summarise(*inspection, inspection->models.at(name));
+    SummaryRow row{toQColor(viz::modelColour(name)).name(), toQString(name), {}, {}};
+    if (s.answered) {
+      const Statistic& e = s.contourErrorPct;
+      // As many decimals as the table below, so that points stand under points.
+      const auto fixed = [](double v, int decimals) {
+        return std::isfinite(v) ? QString::number(v, 'f', decimals) : QStringLiteral("–");
+      };
+      row.values = QStringList{fixed(e.mean, 3),          fixed(e.median, 3),
+                               fixed(e.p95, 3),           fixed(e.max, 3),
+                               fixed(s.iou.mean, 4),      QStringLiteral("%1/%2").arg(s.predicted).arg(s.frames),
+                               QString::number(s.missed), QString::number(s.spurious)};
+    } else {
+      row.problem = toQString(s.reason);
+    }
+    summaryRows_.push_back(row);
+  }
+  fitSummary();
+}
+
+QString ErrorTable::summaryHtml(int columns, int problemWidth) const {
+  const QString faded = (document_.stale() ? warningColour() : palette().color(QPalette::PlaceholderText)).name();
+  QString html = QStringLiteral("<table cellspacing='0' cellpadding='0'>");
+  for (const SummaryRow& row : summaryRows_) {
+    const bool heading = row.colour.isEmpty();
+    html += heading ? QStringLiteral("<tr style='color:%1'>").arg(faded) : QStringLiteral("<tr>");
+    html += QStringLiteral("<td style='padding-right:12px'>%1%2</td>")
+                .arg(heading ? QString() : QStringLiteral("<span style='color:%1'>■</span>&nbsp;").arg(row.colour), row.name);
+    for (int c = 0; c < std::min(columns, int(row.values.size())); ++c)
+      html += QStringLiteral("<td align='right' style='padding-right:12px'>%1</td>").arg(row.values[c]);
+    if (!row.problem.isEmpty())
+      html += QStringLiteral("<td colspan='%1' style='color:%2'>%3</td>")
+                  .arg(std::max(1, columns))
+                  .arg(warningColour().name(),
+                       summary_->fontMetrics().elidedText(row.problem, Qt::ElideRight, problemWidth).toHtmlEscaped());
+    if (heading && columns < row.values.size()) html += QStringLiteral("<td>…</td>");
+    html += QStringLiteral("</tr>");
+  }
+  return html + QStringLiteral("</table>");
+}
+
+void ErrorTable::fitSummary() {
+  summary_->setToolTip({});
+  if (summaryRows_.empty()) {
     summary_->setText(tr("<span style='color:%1'>No results yet</span>").arg(palette().color(QPalette::PlaceholderText).name()));
     return;
   }
-  // In place of the heading: a line of its own would make the table jump under the mouse.
-  const QString faded = (document_.stale() ? warningColour() : palette().color(QPalette::PlaceholderText)).name();
-  QString html = QStringLiteral("<table cellspacing='0' cellpadding='0'><tr style='color:%1'>").arg(faded);
-  html += QStringLiteral("<td style='padding-right:12px'>%1</td>")
-              .arg(document_.stale() ? tr("out of date…") : tr("Held-out frames, error %"));
-  const auto cells = [](const QStringList& texts) {
-    QString row;
-    for (const QString& text : texts) row += QStringLiteral("<td align='right' style='padding-right:12px'>%1</td>").arg(text);
-    return row;
-  };
-  html += cells({tr("mean"), tr("median"), tr("p95"), tr("max"), tr("IoU"), tr("predicted"), tr("missed"), tr("spurious")});
-  html += QStringLiteral("</tr>");
-  for (const std::string& name : viz::modelsInOrder(*inspection)) {
-    const ModelSummary s = summarise(*inspection, inspection->models.at(name));
-    html += QStringLiteral("<tr><td style='padding-right:12px'><span style='color:%1'>■</span>&nbsp;%2</td>")
-                .arg(toQColor(viz::modelColour(name)).name(), toQString(name));
-    if (!s.answered) {
-      html += QStringLiteral("<td colspan='8' style='color:%1'>%2</td></tr>")
-                  .arg(warningColour().name(), toQString(s.reason).toHtmlEscaped());
-      continue;
-    }
-    const Statistic& e = s.contourErrorPct;
-    // As many decimals as the table below, so that points stand under points.
-    const auto fixed = [](double v, int decimals) {
-      return std::isfinite(v) ? QString::number(v, 'f', decimals) : QStringLiteral("–");
-    };
-    html +=
-        cells({fixed(e.mean, 3), fixed(e.median, 3), fixed(e.p95, 3), fixed(e.max, 3), fixed(s.iou.mean, 4),
-               QStringLiteral("%1/%2").arg(s.predicted).arg(s.frames), QString::number(s.missed), QString::number(s.spurious)}) +
-        QStringLiteral("</tr>");
+  const int all = summaryRows_.front().values.size();
+  const QMargins margins = layout()->itemAt(0)->layout()->contentsMargins();
+  const int room = width() - margins.left() - margins.right();
+  int first = 0, problems = 0;
+  for (const SummaryRow& row : summaryRows_) {
+    first = std::max(first, summary_->fontMetrics().horizontalAdvance(QStringLiteral("■ ") + row.name) + 20);
+    problems = std::max(problems, summary_->fontMetrics().horizontalAdvance(row.problem));
   }
-  html += QStringLiteral("</table>");
-  summary_->setText(html);
+  const int forProblems = std::max(40, room - first);
+  int columns = all;
+  summary_->setText(summaryHtml(columns, forProblems));
+  while (columns > 1 && summary_->sizeHint().width() > room) summary_->setText(summaryHtml(--columns, forProblems));
+  if (columns < all || problems > forProblems) summary_->setToolTip(summaryHtml(all, problems + 1));
+}
+
+void ErrorTable::resizeEvent(QResizeEvent* event) {
+  QWidget::resizeEvent(event);
+  if (event->size().width() != event->oldSize().width()) fitSummary();
 }
 
 void ErrorTable::selectFromDocument() {

@@ -25,9 +25,13 @@ class ErrorTable : public QWidget {
 
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override;
+  void resizeEvent(QResizeEvent* event) override;
 
  private:
   void showSummary();
+  /// The summary with as many of its columns as the dock has room for; the others are in its tooltip.
+  void fitSummary();
+  QString summaryHtml(int columns, int problemWidth) const;
   void showCount();
   void fitReason();
   void selectFromDocument();
@@ -38,6 +42,12 @@ class ErrorTable : public QWidget {
   QSortFilterProxyModel* proxy_;
   QTableView* view_;
   QLabel* summary_;
+  struct SummaryRow {
+    QString colour, name;  ///< no colour = the heading
+    QStringList values;
+    QString problem;  ///< in place of values
+  };
+  std::vector<SummaryRow> summaryRows_;
   QComboBox* filter_;
   QLabel* count_;
   bool selecting_ = false;  ///< the table itself caused the change that it hears of

@@ -109,7 +109,7 @@ void TradeoffPlot::load(int point) {
 QString TradeoffPlot::message() const {
   const std::shared_ptr<const Tradeoff> t = document_.tradeoff();
   if (!document_.scene()) return tr("No scene");
-  if (t) return axes().valid ? QString() : toQString(t->reason);
+  if (t) return axes().valid ? QString() : withMicro(toQString(t->reason));
   return measuring_ ? tr("Measuring: the status bar counts the settings. Esc stops; \"Measure\" goes on from there")
                     : tr("Not measured yet: \"Measure\" tries models and settings on these frames");
 }
@@ -262,7 +262,7 @@ bool TradeoffPlot::event(QEvent* e) {
   const TradeoffPoint& p = t->points[std::size_t(i)];
   QToolTip::showText(
       help->globalPos(),
-      tr("%1\nerror %2 %, IoU %3, coverage %4, %5 of %6 frames predicted\n%7 us a frame, fit %8 ms, peak memory %9 MB\nClick to "
+      tr("%1\nerror %2 %, IoU %3, coverage %4, %5 of %6 frames predicted\n%7 µs a frame, fit %8 ms, peak memory %9 MB\nClick to "
          "load")
           .arg(toQString(describe(*t, p)), numberText(p.contourErrorPct, 3), numberText(p.iou, 4), numberText(p.coverage, 3))
           .arg(p.predicted)
@@ -334,7 +334,7 @@ void TradeoffPanel::refresh() {
     auto* b = presets_->findChild<QPushButton*>(QStringLiteral("preset_%1").arg(QLatin1String(name)));
     b->setToolTip(t && t->presets.count(name) ? toQString(describe(*t, t->points[std::size_t(t->presets.at(name))])) : QString());
   }
-  QString words = t ? toQString(t->reason) : QString();
+  QString words = t ? withMicro(toQString(t->reason)) : QString();
   if (t && document_.scene() && t->trainSpec != document_.request().train)
     words += tr(" (Measured with training frames %1.)").arg(toQString(t->trainSpec));
   sentence_->setText(words);

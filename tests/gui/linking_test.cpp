@@ -151,6 +151,20 @@ class LinkingTest : public QObject {
     QVERIFY(canvas->grab().toImage() == with);
   }
 
+  void aNarrowSummaryLeavesColumnsOutInsteadOfCuttingThem() {
+    auto* summary = table_->findChild<QLabel*>(QStringLiteral("errorSummary"));
+    table_->resize(900, 300);
+    QVERIFY(summary->text().contains("spurious") && summary->toolTip().isEmpty());
+    for (const int width : {460, 380, 300}) {
+      table_->resize(width, 300);
+      QVERIFY2(!summary->text().contains("spurious") && summary->text().contains("mean"), qPrintable(summary->text()));
+      QVERIFY(summary->toolTip().contains("spurious"));
+      QVERIFY2(summary->sizeHint().width() <= width, qPrintable(QString::number(summary->sizeHint().width())));
+    }
+    table_->resize(900, 300);
+    QVERIFY(summary->text().contains("spurious"));
+  }
+
   void staleResultsAreMarked() {
     auto* summary = table_->findChild<QLabel*>(QStringLiteral("errorSummary"));
     QVERIFY(summary && !summary->text().contains("out of date"));

@@ -32,7 +32,7 @@ Tradeoff threePoints() {
   }
   t.presets = {{"fast", 0}, {"balanced", 0}, {"exact", 2}};
   t.chosen = 0;
-  t.reason = "for a test";
+  t.reason = "for a test, within 12.5 us a frame";
   return t;
 }
 }  // namespace
@@ -80,7 +80,9 @@ class TradeoffTest : public QObject {
     QTest::keyClick(panel.plot(), Qt::Key_Left);  // along the front: not to the beaten point
     QTest::keyClick(panel.plot(), Qt::Key_Return);
     QCOMPARE(document.request().settings.integer("predict.directions"), 12);
-    QVERIFY(panel.findChild<QLabel*>(QStringLiteral("tradeoffSentence"))->text().contains(QStringLiteral("for a test")));
+    QVERIFY(panel.findChild<QLabel*>(QStringLiteral("tradeoffSentence"))
+                ->text()
+                .contains(QStringLiteral("for a test, within 12.5 µs a frame")));
   }
 
   void anEmptyPlotSaysWhatIsGoingOn() {
@@ -107,7 +109,7 @@ class TradeoffTest : public QObject {
     const Session again = readSession(file);
     QVERIFY(again.tradeoff);
     QCOMPARE(int(again.tradeoff->points.size()), 3);
-    QCOMPARE(again.tradeoff->reason, std::string("for a test"));
+    QCOMPARE(again.tradeoff->reason, std::string("for a test, within 12.5 us a frame"));
   }
 
   void measureAndAutoRunOffTheInterfaceThread() {

@@ -76,6 +76,9 @@ TEST(Develop, ValuesAreWrittenAsTheyAre) {
   EXPECT_EQ(texts[5].x, 2);
   EXPECT_EQ(valueText(image, Values::Srgb, 2, 1), "sRGB 64 0 0");
   EXPECT_EQ(valueText(image, Values::Srgb, 3, 1), "");
+  image.at(2, 1, 0) = 0.25f;
+  EXPECT_EQ(valueText(image, Values::Linear, 2, 1), "radiance 0.25 0 0");
+  EXPECT_EQ(valueText(image, Values::Linearised, 2, 1), "linear 0.25 0 0");  // its scale is the camera's own
 }
 
 }  // namespace

@@ -503,7 +503,7 @@ PlotData tradeoffPlot(const Tradeoff& tradeoff) {
     p.y = t.rankedErrorPct;
     p.target.setting = i;
     p.label = describe(tradeoff, t) +
-              text("\nerror %.3g %%, %.4g us a frame, fit %.3g ms", t.contourErrorPct, t.predictUs, t.fitUs / 1000);
+              text("\nerror %.3g %%, %.4g µs a frame, fit %.3g ms", t.contourErrorPct, t.predictUs, t.fitUs / 1000);
     for (const auto& [name, index] : tradeoff.presets)
       if (index == i) p.label += "\npreset '" + name + "'";
     if (t.pareto) {
