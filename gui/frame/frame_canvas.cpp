@@ -86,6 +86,13 @@ void FrameCanvas::setScale(std::vector<viz::ScaleTick> ticks) {
   update();
 }
 
+void FrameCanvas::setHeld(std::vector<Pixel> line, std::optional<Pixel> mark) {
+  if (line.empty() && !mark && !showsHeld()) return;
+  heldLine_ = std::move(line);
+  heldMark_ = mark;
+  update();
+}
+
 void FrameCanvas::setCaption(const QString& caption) {
   caption_ = caption;
   update();
@@ -140,6 +147,7 @@ void FrameCanvas::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.fillRect(rect(), palette().color(QPalette::Dark));
   draw(painter);
+  if (showsHeld()) drawHeld(painter);
   if (stale_) drawChip(painter, {8, caption_.isEmpty() ? 8 : 34}, tr("updating…"), QColor(0xf0, 0xc0, 0x50));
 }
 
@@ -178,6 +186,18 @@ void FrameCanvas::drawFigure(QPainter& painter, const QRectF& target, const QCol
   painter.setFont(font());
   copy.draw(painter);
   painter.restore();
+}
+
+void FrameCanvas::drawHeld(QPainter& painter) const {
+  painter.setRenderHint(QPainter::Antialiasing);
+  QPolygonF line;
+  for (const Pixel& p : heldLine_) line << widgetFromPixel(p);
+  for (const auto& [colour, width] : {std::pair(kHalo, 4.0), std::pair(accentColour(), 2.0)}) {
+    painter.setPen(QPen(colour, width));
+    painter.setBrush(Qt::NoBrush);
+    painter.drawPolygon(line);
+    if (heldMark_) painter.drawEllipse(widgetFromPixel(*heldMark_), kNearScreenPx, kNearScreenPx);
+  }
 }
 
 void FrameCanvas::drawChip(QPainter& painter, const QPoint& corner, const QString& text, const QColor& colour) const {

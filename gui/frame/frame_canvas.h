@@ -5,6 +5,7 @@
 #include <QString>
 #include <QTimer>
 #include <QWidget>
+#include <optional>
 #include <vector>
 
 #include "gui/frame/photo_loader.h"
@@ -40,6 +41,9 @@ class FrameCanvas : public QWidget {
   void setScale(std::vector<viz::ScaleTick> ticks);
   /// May be null; must outlive the canvas.
   void setDragTool(DragTool* tool) { tool_ = tool; }
+  /// What is held by hand, where the hand has it: a closed line of photograph pixels and a mark; empty = nothing.
+  void setHeld(std::vector<Pixel> line, std::optional<Pixel> mark);
+  bool showsHeld() const { return !heldLine_.empty() || heldMark_; }
   /// A line of text in the top left corner; "" = none.
   void setCaption(const QString& caption);
   bool hasPicture() const { return !photograph_.isNull(); }
@@ -92,6 +96,7 @@ class FrameCanvas : public QWidget {
   void draw(QPainter& painter) const;
   void drawPhotograph(QPainter& painter) const;
   void drawOverlay(QPainter& painter) const;
+  void drawHeld(QPainter& painter) const;
   void drawValues(QPainter& painter, const QRect& visible) const;
   void drawScale(QPainter& painter) const;
   void drawChip(QPainter& painter, const QPoint& corner, const QString& text, const QColor& colour) const;
@@ -111,6 +116,8 @@ class FrameCanvas : public QWidget {
   bool dragging_ = false;
   DragTool* tool_ = nullptr;
   bool held_ = false;  ///< by the tool
+  std::vector<Pixel> heldLine_;
+  std::optional<Pixel> heldMark_;
   QPointF pressed_, last_;
 };
 

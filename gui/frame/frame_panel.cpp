@@ -88,6 +88,7 @@ void FramePanel::connectDocument() {
   connect(&refresh_, &QTimer::timeout, this, &FramePanel::showFrame);
   connect(&document_, &Document::sceneOpened, this, &FramePanel::showScene);
   connect(&document_, &Document::selectionChanged, this, [this] {
+    canvas_->setHeld({}, {});
     showTitle();
     refresh_.start();
   });
@@ -100,6 +101,7 @@ void FramePanel::connectDocument() {
   for (const auto signal : {&Document::inspectionChanged, &Document::frameInspectionChanged})
     connect(&document_, signal, this, [this] {
       canvas_->setStale(document_.frameStale());
+      if (!document_.frameStale()) canvas_->setHeld({}, {});  // the contour is there now
       showOverlay();
       for (FrameCanvas* canvas : {canvas_, second_})
         if (canvas->isVisible()) canvas->repaint();  // what the user tunes for is seen before the other panels follow
@@ -149,6 +151,7 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
   handButton_->setCheckable(true);
   connect(handButton_, &QToolButton::clicked, hand_, &HandTool::setOn);
   connect(hand_, &HandTool::onChanged, handButton_, &QToolButton::setChecked);
+  connect(hand_, &HandTool::carried, canvas_, &FrameCanvas::setHeld);
   sideBySide_ = tool("side-by-side", tr("Two frames side by side, with tangent epipolar lines (D)"));
   sideBySide_->setObjectName(QStringLiteral("sideBySide"));
   sideBySide_->setCheckable(true);
@@ -186,6 +189,7 @@ void FramePanel::showScene() {
   secondLoader_.setScene(document_.sharedScene());
   for (FrameCanvas* canvas : {canvas_, second_}) {
     canvas->setPhotograph(QImage());
+    canvas->setHeld({}, {});
     canvas->fit();
   }
   showLook();

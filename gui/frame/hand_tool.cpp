@@ -54,6 +54,15 @@ void HandTool::carry(const Pixel& to) {
   const QString frame = toQString(document_.scene()->frames[std::size_t(drag_->frame)].id);
   document_.setWhatIf(w, tr("What if: %1 in frame %2").arg(tr(names[int(drag_->held)]), frame),
                       QStringLiteral("hand#%1").arg(drag_->gesture));
+  if (drag_->held == Held::Camera) return;  // what it shows stays where it is
+  const WhatIf alone = dragged({}, drag_->held, drag_->frame, drag_->camera, drag_->highlight, drag_->now, drag_->from,
+                               drag_->camera.undistorted(to));
+  const auto by = alone.highlights.find({drag_->frame, drag_->highlight});
+  const Highlight h = by == alone.highlights.end() ? drag_->now : changed(drag_->now, by->second);
+  if (drag_->held == Held::Peak) return emit carried({}, drag_->camera.distorted(h.peak));
+  std::vector<Pixel> line;
+  for (const Pixel& p : h.contour.points) line.push_back(drag_->camera.distorted(p));
+  emit carried(line, std::nullopt);
 }
 
 }  // namespace glint::gui

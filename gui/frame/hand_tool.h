@@ -23,9 +23,12 @@ class HandTool : public QObject, public DragTool {
   bool take(const Pixel& at, double nearPx, Qt::KeyboardModifiers modifiers) override;
   void carry(const Pixel& to) override;
   void release() override { drag_.reset(); }
+  bool holds() const { return drag_.has_value(); }
 
  signals:
   void onChanged(bool on);
+  /// Where what is held is now, photograph pixels; results follow later.
+  void carried(const std::vector<glint::Pixel>& line, const std::optional<glint::Pixel>& mark);
 
  private:
   struct Drag {

@@ -75,6 +75,7 @@ class FrameViewTest : public QObject {
     QCOMPARE(w.highlights.size(), std::size_t(1));
     QVERIFY((w.highlights.at({0, 0}).contourBy - moved).norm() < 1e-9);
     QVERIFY(w.highlights.at({0, 0}).peakBy.isZero());
+    QVERIFY(canvas->showsHeld());  // nothing has computed the results yet
     drag(canvas, {peak, peak - by / 2, peak - by});
     QCOMPARE(document_->undoStack()->count(), 2);
     w = document_->request().whatIf;
