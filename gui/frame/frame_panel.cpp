@@ -282,7 +282,8 @@ void FramePanel::showOverlay() {
     second_->setCaption(toQString(frames[std::size_t(second)].id));
     second_->setOverlay(shownSecond_);
   } else {
-    canvas_->setCaption(QString());
+    // Else one would wonder why the photographed highlight stays.
+    canvas_->setCaption(document_.request().whatIf.synthesise ? tr("contours synthesised · photograph as captured") : QString());
   }
   canvas_->setOverlay(shown_);
 }

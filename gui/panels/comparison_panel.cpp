@@ -68,6 +68,8 @@ ComparisonPanel::ComparisonPanel(const Engine& engine, Document& document, LongJ
   auto* row = new QHBoxLayout;
   title_ = new QLabel;
   title_->setObjectName(QStringLiteral("comparisonTitle"));
+  title_->setWordWrap(true);  // else a long line makes the dock wider than its place
+  title_->setMinimumWidth(60);
   row->addWidget(title_, 1);
   onlyDifferences_ = new QCheckBox(tr("Only differences"));
   onlyDifferences_->setObjectName(QStringLiteral("onlyDifferences"));

@@ -90,7 +90,8 @@ SceneOptions sceneOptions(const Document& document) {
                  : by == "influence" ? viz::CameraColours::By::Influence
                                      : viz::CameraColours::By::Role;
   o.colours.model = document.selection().model;
-  if (const auto influence = document.influence(); influence && o.colours.by == viz::CameraColours::By::Influence) {
+  if (const auto influence = document.influence();
+      influence && !document.influenceStale() && o.colours.by == viz::CameraColours::By::Influence) {
     o.colours.model = document.plottedModel();
     for (const FrameInfluence& f : influence->frames)
       if (const std::optional<double> points = influenceOf(*influence, f.frame, o.colours.model))

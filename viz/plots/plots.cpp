@@ -536,7 +536,7 @@ PlotData influencePlot(const Inspection& inspection, const Influence& influence,
   const bool probes = !influence.probes.empty();
   plot.title = probes ? "Held-out error without a frame" : "Error of a frame predicted from the others";
   plot.x.title = "frame left out";
-  plot.y.title = probes ? "error change (%)" : "contour error (%)";
+  plot.y.title = probes ? "change of the error, at most 100 % (%)" : "contour error, at most 100 % (%)";
   std::vector<std::string> models;
   for (const std::string& m : modelsInOrder(inspection))
     if (model.empty() || m == model) models.push_back(m);
