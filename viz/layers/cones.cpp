@@ -18,6 +18,7 @@ struct Cone {
   const TrainingView* view;
   Ellipse ellipse;
   Eigen::Vector3d apex;
+  bool mirrored;  ///< the apex is a virtual camera's
 };
 
 /// The cone that a model takes from a view: primal from the camera itself, the others from its mirror image.
@@ -27,12 +28,14 @@ std::optional<Cone> coneOf(const TrainingView& view, const std::string& model) {
                                                                               : std::nullopt;
   if (!ellipse || !view.tangentPlane) return {};
   const Eigen::Vector3d eye = view.camera.centreInWorld();
-  return Cone{&view, *ellipse, model == "primal" ? eye : view.tangentPlane->reflected(eye)};
+  const bool mirrored = model != "primal";
+  return Cone{&view, *ellipse, mirrored ? view.tangentPlane->reflected(eye) : eye, mirrored};
 }
 
 void addCone(LayerContent& content, const LayerInput& in, const Cone& cone, const Ellipsoid& target, const Colour& colour,
              bool strong, const Picked& info) {
-  // From the tangent plane, where camera and virtual camera see the same ellipse, to a little beyond the ellipsoid.
+  // From the tangent plane, where camera and virtual camera see the same ellipse, to a little beyond the ellipsoid; a camera's
+  // own cone from halfway, because its ellipsoid lies about the tangent planes.
   std::vector<Pixel> pixels = cone.ellipse.sample(kAround);
   const Eigen::Vector3d axis = (target.centre() - cone.apex).normalized();
   const Eigen::Matrix3d body = target.worldFromBody().linear() * target.semiAxes().asDiagonal();
@@ -44,8 +47,9 @@ void addCone(LayerContent& content, const LayerInput& in, const Cone& cone, cons
     if (!onPlane) return;  // T is seen edge-on
     const Eigen::Vector3d along = *onPlane - cone.apex;
     const double forward = along.dot(axis);
-    if (!(forward > 0) || !(end > forward)) return;  // the ellipsoid is not in front of this camera
-    near.push_back(*onPlane);
+    const double begin = cone.mirrored ? forward : 0.5 * end;
+    if (!(forward > 0) || !(end > begin)) return;  // the ellipsoid is not in front of this camera
+    near.push_back(cone.apex + (begin / forward) * along);
     far.push_back(cone.apex + (end / forward) * along);
   }
   for (std::size_t i = 0; i < near.size(); ++i) {
