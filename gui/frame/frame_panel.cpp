@@ -334,7 +334,8 @@ void FramePanel::showCaptions(const viz::FrameOverlay& overlay) {
   captionCount_ = overlay.captions.size();
   captions_->setText(html);
   // It may grow but not shrink: the pictures above it would jump with every result.
-  captions_->setMinimumHeight(std::max(captions_->minimumHeight(), captions_->heightForWidth(captions_->width())));
+  if (captions_->isVisible())  // else its width is not yet what it will be
+    captions_->setMinimumHeight(std::max(captions_->minimumHeight(), captions_->heightForWidth(captions_->width())));
   captions_->setVisible(!html.isEmpty());
 }
 

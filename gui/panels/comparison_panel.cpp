@@ -68,8 +68,7 @@ ComparisonPanel::ComparisonPanel(const Engine& engine, Document& document, LongJ
   auto* row = new QHBoxLayout;
   title_ = new QLabel;
   title_->setObjectName(QStringLiteral("comparisonTitle"));
-  title_->setWordWrap(true);  // else a long line makes the dock wider than its place
-  title_->setMinimumWidth(60);
+  title_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);  // a long line would make the dock wider than its place
   row->addWidget(title_, 1);
   onlyDifferences_ = new QCheckBox(tr("Only differences"));
   onlyDifferences_->setObjectName(QStringLiteral("onlyDifferences"));
@@ -201,6 +200,7 @@ void ComparisonPanel::showState() {
   QString line = tr("%1   %2 differences").arg(nameB_).arg(comparison_->differences());
   if (of_ != document_.inspection()) line += tr("   (what is on screen has changed since: compare again)");
   title_->setText(line);
+  title_->setToolTip(line);
 }
 
 void ComparisonPanel::selectRow(const QModelIndex& row) {

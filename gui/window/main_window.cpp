@@ -150,7 +150,11 @@ void MainWindow::buildCentre() {
   connect(start_, &StartPage::openRecent, files_, &FileActions::open);
   for (const Lesson& lesson : lessons())
     if (const QString file = lessonFile(lesson.id); !file.isEmpty()) start_->addLesson(lesson.title, file);
-  centre_->addWidget(start_);
+  auto* startScroll = new QScrollArea;  // hidden pages of a stack count for its least height, and this one is long
+  startScroll->setWidget(start_);
+  startScroll->setWidgetResizable(true);
+  startScroll->setFrameShape(QFrame::NoFrame);
+  centre_->addWidget(startScroll);
   views_ = new QSplitter(Qt::Horizontal);
   frame_ = new FramePanel(document_);  // first: it shows new results before the others take their time
   scene_ = new ScenePanel(document_);

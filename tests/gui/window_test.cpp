@@ -8,6 +8,7 @@
 #include <QPlainTextEdit>
 #include <QPushButton>
 #include <QSettings>
+#include <QStackedWidget>
 #include <QTableView>
 #include <QToolButton>
 
@@ -32,6 +33,14 @@ class WindowTest : public QObject {
     QVERIFY(offered);
     QVERIFY(window.idle());
     QVERIFY(!window.picture().isNull());
+  }
+
+  /// A hidden page counts for the least height of the views, and takes it from the docks below them.
+  void theStartPageDoesNotKeepTheViewsHigh() {
+    MainWindow window(fixture_.engine());
+    auto* pages = window.centralWidget()->findChild<QStackedWidget*>();
+    QVERIFY(pages);
+    QVERIFY(pages->widget(0)->minimumSizeHint().height() < 200);
   }
 
   void aSceneIsOpenedComputedAndShown() {
