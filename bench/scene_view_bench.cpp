@@ -3,13 +3,13 @@
 // through the frames.
 #include <benchmark/benchmark.h>
 #include <stdlib.h>
+#include <vtkNew.h>
+#include <vtkPLYWriter.h>
+#include <vtkSphereSource.h>
 
-#include <array>
 #include <chrono>
 #include <cmath>
-#include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <numbers>
 #include <stdexcept>
 #include <thread>
@@ -21,35 +21,18 @@ namespace {
 
 using namespace glint;
 
-constexpr int kSide = 708;  // 2 * 707^2 triangles
+constexpr int kSide = 708;  // 2 * 708 * 706 triangles
 
-template <class T>
-void put(std::ofstream& out, T value) {
-  out.write(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-/// A bumpy half globe as a binary PLY file.
+/// A globe as a binary PLY file.
 void writeMesh(const std::filesystem::path& file) {
-  std::ofstream out(file, std::ios::binary);
-  out << "ply\nformat binary_little_endian 1.0\nelement vertex " << kSide * kSide
-      << "\nproperty float x\nproperty float y\nproperty float z\nelement face " << 2 * (kSide - 1) * (kSide - 1)
-      << "\nproperty list uchar int vertex_indices\nend_header\n";
-  for (int j = 0; j < kSide; ++j) {
-    for (int i = 0; i < kSide; ++i) {
-      const double x = 2.0 * i / (kSide - 1) - 1, y = 2.0 * j / (kSide - 1) - 1;
-      for (const double v : {x, y, 0.6 * std::cos(x) * std::cos(y) + 0.01 * std::sin(40 * x) * std::sin(40 * y)})
-        put(out, static_cast<float>(v));
-    }
-  }
-  for (std::int32_t j = 0; j + 1 < kSide; ++j) {
-    for (std::int32_t i = 0; i + 1 < kSide; ++i) {
-      const std::int32_t a = j * kSide + i;
-      for (const auto& t : {std::array{a, a + 1, a + kSide}, std::array{a + 1, a + kSide + 1, a + kSide}}) {
-        put(out, std::uint8_t{3});
-        for (const std::int32_t v : t) put(out, v);
-      }
-    }
-  }
+  vtkNew<vtkSphereSource> globe;
+  globe->SetRadius(1);
+  globe->SetThetaResolution(kSide);
+  globe->SetPhiResolution(kSide);
+  vtkNew<vtkPLYWriter> writer;
+  writer->SetInputConnection(globe->GetOutputPort());
+  writer->SetFileName(file.c_str());
+  if (!writer->Write()) throw std::runtime_error("cannot write " + file.string());
 }
 
 struct Setup {

@@ -16,7 +16,6 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "core/light/light.h"
@@ -495,19 +494,6 @@ void SceneView::setParallel(bool parallel) {
 }
 
 bool SceneView::parallel() const { return impl_->parallel(); }
-
-void SceneView::lookThrough(int frame) {
-  require(impl_->valid() && frame >= 0 && frame < static_cast<int>(impl_->inspection->scene->frames.size()),
-          "SceneView: no such frame");
-  impl_->frameAllPending = false;
-  const Camera& camera = impl_->inspection->scene->frames[static_cast<std::size_t>(frame)].camera;
-  const Eigen::Matrix3d axes = camera.camFromWorld.linear();
-  const Eigen::Vector3d eye = camera.centreInWorld(), forward = axes.row(2).transpose(), down = axes.row(1).transpose();
-  const double depth =
-      std::max(std::abs(forward.dot(impl_->input.scale.surfaceBox.center() - eye)), 1e-3 * impl_->input.scale.sceneSize);
-  const double angle = 2 * std::atan(0.5 * camera.height / camera.pixelFromRay(1, 1)) * 180 / std::numbers::pi;
-  impl_->place({eye, eye + depth * forward, -down, angle});
-}
 
 void SceneView::setEye(Eye eye) {
   if (eye == impl_->eye) return;

@@ -112,8 +112,6 @@ class SceneView {
   void lookAlong(AxisView view);
   void setParallel(bool parallel);
   bool parallel() const;
-  /// Puts the eye at a frame's camera, along its axis with its vertical field of view; it may be moved from there.
-  void lookThrough(int frame);
   /// Follows the selected frame until it is set back to Outside, which brings the earlier view back. Pixels of the photograph and
   /// geometry agree exactly, see displayOf(). Where there is no virtual camera the view stays outside, and eyeText() says why.
   void setEye(Eye eye);

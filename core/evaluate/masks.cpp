@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/evaluate/masks.h"
 
-#include <algorithm>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -13,6 +13,7 @@
 #include "core/base/atomic_folder.h"
 #include "core/base/parallel.h"
 #include "core/evaluate/labels.h"
+#include "core/geometry/polyline.h"
 
 namespace glint {
 namespace {
@@ -20,29 +21,14 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-/// Fills by crossings: along a row of pixel centres, what lies between the first and the second crossing is inside, and so on.
-void fill(const std::vector<Pixel>& polygon, Image& mask) {
-  double top = polygon[0].y(), bottom = top;
-  for (const Pixel& p : polygon) {
-    top = std::min(top, p.y());
-    bottom = std::max(bottom, p.y());
-  }
-  const int first = std::max(0, static_cast<int>(std::ceil(std::max(top, 0.0))));
-  const int last = static_cast<int>(std::floor(std::min(bottom, mask.height - 1.0)));
-  std::vector<double> crossings;
-  for (int y = first; y <= last; ++y) {
-    crossings.clear();
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const Pixel &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-      if ((a.y() <= y) == (b.y() <= y)) continue;
-      crossings.push_back(a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x()));
-    }
-    std::sort(crossings.begin(), crossings.end());
-    for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
-      const double from = std::max(std::ceil(crossings[i]), 0.0), to = std::min(std::floor(crossings[i + 1]), mask.width - 1.0);
-      for (int x = static_cast<int>(from); x <= to; ++x) mask.at(x, y) = 255;
-    }
-  }
+/// Pixels whose centres are inside.
+void fill(const Polyline& contour, Image& mask) {
+  Eigen::AlignedBox2d box;
+  for (const Pixel& p : contour.points) box.extend(p);
+  box = box.intersection(Eigen::AlignedBox2d(Pixel(0, 0), Pixel(mask.width - 1.0, mask.height - 1.0)));
+  for (int y = static_cast<int>(std::ceil(box.min().y())); y <= box.max().y(); ++y)
+    for (int x = static_cast<int>(std::ceil(box.min().x())); x <= box.max().x(); ++x)
+      if (contains(contour, {x, y})) mask.at(x, y) = 255;
 }
 
 std::string folderName(const std::string& id) {
@@ -118,12 +104,12 @@ void writeMask(const Image& mask, const fs::path& file) {
 Image maskOf(const std::vector<Polyline>& contours, const Camera& camera) {
   Image mask(camera.width, camera.height, 1);
   for (const Polyline& contour : contours) {
-    std::vector<Pixel> drawn;
+    Polyline drawn{{}, true};
     for (const Pixel& p : contour.points) {
       const Pixel d = camera.distorted(p);
-      if (d.allFinite()) drawn.push_back(d);
+      if (d.allFinite()) drawn.points.push_back(d);
     }
-    if (drawn.size() >= 3) fill(drawn, mask);
+    if (drawn.points.size() >= 3) fill(drawn, mask);
   }
   return mask;
 }

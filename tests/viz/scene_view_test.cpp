@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 #include <set>
 
 #include "tests/tolerances.h"
@@ -25,6 +26,15 @@ using test::TemporaryFolder;
 using test::countDifferent;
 using test::countNear;
 using test::isNear;
+
+/// Puts the eye at a frame's camera, with its vertical field of view and the middle of the ball straight ahead.
+void standAt(SceneView& view, int frame) {
+  const Camera camera = smallInspection(TemporaryFolder().path())->scene->frames[static_cast<std::size_t>(frame)].camera;
+  const Eigen::Matrix3d axes = camera.camFromWorld.linear();
+  const Eigen::Vector3d eye = camera.centreInWorld(), forward = axes.row(2).transpose(), down = axes.row(1).transpose();
+  const double angle = 2 * std::atan(0.5 * camera.height / camera.pixelFromRay(1, 1)) * 180 / std::numbers::pi;
+  view.setViewPoint({eye, eye + eye.norm() * forward, -down, angle});
+}
 
 class SceneViewPicture : public test::PictureTest {
  protected:
@@ -80,7 +90,7 @@ TEST_F(SceneViewPicture, GapsOfAPredictionAreDotted) {
     view.setInspection(inspection);
     view.setSelection({5, "", -1});
     for (const Layer& layer : sceneLayers()) view.setLayerVisible(layer.name, layer.name == "predicted-contours");
-    view.lookThrough(5);
+    standAt(view, 5);
     return countNear(render(view), modelColour("canonical"), 0.2);
   };
   const int whole = inkOf({}), half = inkOf({{0, 36}});
@@ -100,7 +110,7 @@ TEST_F(SceneViewPicture, ThePhotographIsTheRightWayUpAsItsCameraSeesIt) {
   SceneView view;
   view.setInspection(smallInspection(folder_.path()));
   for (const Layer& layer : sceneLayers()) view.setLayerVisible(layer.name, layer.name == "photographs");
-  view.lookThrough(4);
+  standAt(view, 4);
   const Image image = render(view);
   // 4:3 as the camera: the drawn photograph fills the window. The legend stands in the top left corner, labels nowhere else.
   EXPECT_TRUE(isNear(image, 200, 180, {1, 0, 0}, 0.05));
@@ -118,7 +128,7 @@ TEST_F(SceneViewPicture, LookingThroughACameraProjectsAsTheCameraDoes) {
   view.setInspection(inspection);
   view.setSelection({5, "", -1});
   for (const Layer& layer : sceneLayers()) view.setLayerVisible(layer.name, layer.name == "predicted-contours");
-  view.lookThrough(5);
+  standAt(view, 5);
   const Image image = render(view);
   // The contour is a circle of 15 px in a 320 x 240 image: twice that here, about the mirror point's pixel.
   const Pixel centre = 2 * (inspection->evidence[5].highlights[0].peak + Pixel(0.5, 0.5));
@@ -197,7 +207,7 @@ TEST_F(SceneViewPicture, PickingTellsTheNumbersOfWhatLiesThere) {
   SceneView view;
   view.setInspection(smallInspection(folder_.path()));
   for (const Layer& layer : sceneLayers()) view.setLayerVisible(layer.name, layer.name == "surface");
-  view.lookThrough(0);
+  standAt(view, 0);
   render(view);
   // The window is attached while rendering only; picking needs it.
   vtkNew<vtkRenderWindow> window;
