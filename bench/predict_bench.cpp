@@ -138,6 +138,14 @@ void bundle(benchmark::State& state, bool mesh) {
 }
 void bundleAnalytic(benchmark::State& state) { bundle(state, false); }
 void bundleMesh(benchmark::State& state) { bundle(state, true); }
+void bundleDirected(benchmark::State& state) {
+  const std::vector<BundleView> views = bundleViews(true);
+  const Light start = triangulated();
+  BundleOptions options;
+  options.limitOrders = 1;
+  for (auto _ : state) benchmark::DoNotOptimize(bundleLight(views, start, options));
+}
+BENCHMARK(bundleDirected)->Unit(benchmark::kMillisecond);
 BENCHMARK(bundleAnalytic)->Unit(benchmark::kMillisecond);
 BENCHMARK(bundleMesh)->Unit(benchmark::kMillisecond);
 

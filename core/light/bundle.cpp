@@ -36,9 +36,6 @@ struct Evidence {
   double biasPx = 0;           ///< by how much noise displaces the residual on average, see unbias
 };
 
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-Eigen::Matrix3d symmetric(const Vector6& e) { return Eigen::Matrix3d{{e(0), e(3), e(4)}, {e(3), e(1), e(5)}, {e(4), e(5), e(2)}}; }
-
 /// Direction to the light with N.L > 0, not normalised.
 Eigen::Vector3d towards(const Seen& s, const Eigen::Vector4d& light) {
   const Eigen::Vector3d d = light.head<3>() - light.w() * s.position;
@@ -262,21 +259,38 @@ Attempt solve(std::vector<Evidence>& points, Eigen::Vector4d start, bool atInfin
   return a;
 }
 
-/// Residual with an extent, over the light (4), the limit angle (1) and the extent (6).
-struct DirectedResidual {
-  const Evidence& evidence;
-  bool operator()(const double* light, const double* limit, const double* extent, double* out) const {
-    Attempt a;
-    a.directed = true;
-    a.light = Eigen::Map<const Eigen::Vector4d>(light);
-    a.limit = *limit;
-    a.extent = Eigen::Map<const Vector6>(extent);
-    if (!(a.limit > 0)) return false;
-    *out = residual(evidence, a);
-    return std::isfinite(*out);
+/// Residual with an extent, over the light (4), the limit angle (1) and the extent (6), with its derivatives in closed form.
+class DirectedCost : public ceres::SizedCostFunction<1, 4, 1, 6> {
+ public:
+  explicit DirectedCost(const Evidence& evidence) : evidence_(evidence) {}
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    const Seen& s = evidence_.at;
+    const Eigen::Vector4d light = Eigen::Map<const Eigen::Vector4d>(parameters[0]);
+    const double constant = *parameters[1], k = evidence_.pixelsPerRadian;
+    if (!(constant > 0)) return false;
+    const Eigen::Matrix3d extent = symmetric(Eigen::Map<const Vector6>(parameters[2]));
+    if (!jacobians) {
+      *residuals =
+          k * (angle(s, light) - directedLimit(constant, extent, s.position, s.normal, s.toCamera, light)) - evidence_.biasPx;
+      return std::isfinite(*residuals);
+    }
+    const DirectedLimit limit = directedLimitWithDerivatives(constant, extent, s.position, s.normal, s.toCamera, light);
+    *residuals = k * (angle(s, light) - limit.angle) - evidence_.biasPx;
+    if (jacobians[0]) {
+      Eigen::Map<Eigen::Vector4d> byLight(jacobians[0]);
+      byLight = k * (incidentAngleByLight(s.position, s.normal, s.toCamera, light) - limit.byLight);
+    }
+    if (jacobians[1]) *jacobians[1] = -k * limit.byLimit;
+    if (jacobians[2]) {
+      Eigen::Map<Vector6> byExtent(jacobians[2]);
+      byExtent = -k * limit.byExtent;
+    }
+    return std::isfinite(*residuals);
   }
+
+ private:
+  const Evidence& evidence_;
 };
-using DirectedCost = ceres::NumericDiffCostFunction<DirectedResidual, ceres::CENTRAL, 1, 4, 1, 6>;
 
 /// One pixel's worth of reluctance against an extent that widens the limit angle by half: entries that the contours see win over it,
 /// those that no view shows stay zero.
@@ -308,7 +322,7 @@ Attempt directed(std::vector<Evidence>& points, const Attempt& start, const Bund
     const Attempt before = a;
     ceres::Problem problem;
     for (const Evidence& e : points)
-      problem.AddResidualBlock(new DirectedCost(new DirectedResidual{e}), new ceres::HuberLoss(options.robustPx), a.light.data(), &a.limit,
+      problem.AddResidualBlock(new DirectedCost(e), new ceres::HuberLoss(options.robustPx), a.light.data(), &a.limit,
                                a.extent.data());
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<ExtentPrior, 6, 6>(new ExtentPrior{prior}), nullptr, a.extent.data());
     problem.SetManifold(a.light.data(), new ceres::SphereManifold<4>());
@@ -356,7 +370,7 @@ void setCovariance(const std::vector<Evidence>& points, const Attempt& a, const 
     double value, byLimit;
     const double* at[] = {a.light.data(), &a.limit, a.extent.data()};
     double* blocks[] = {byLight.data(), &byLimit, byExtent.data()};
-    if (!DirectedCost(new DirectedResidual{points[i]}).Evaluate(at, &value, blocks)) continue;
+    if (!DirectedCost(points[i]).Evaluate(at, &value, blocks)) continue;
     jacobian.row(i) << byLight * chart, byLimit, byExtent;
   }
   const ResidualSpread spread = spreadOf(points, a, int(parameters), robustPx);

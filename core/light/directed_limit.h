@@ -20,4 +20,22 @@ namespace glint {
 double directedLimit(double limitAngle, const Eigen::Matrix3d& extent, const Eigen::Vector3d& point, const Eigen::Vector3d& n,
                      const Eigen::Vector3d& toCamera, const Eigen::Vector4d& light);
 
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+/// The six entries xx yy zz xy xz yz of an extent.
+inline Eigen::Matrix3d symmetric(const Vector6& e) {
+  return Eigen::Matrix3d{{e(0), e(3), e(4)}, {e(3), e(1), e(5)}, {e(4), e(5), e(2)}};
+}
+
+/// directedLimit() with its derivatives, rad per unit of what they are taken by.
+struct DirectedLimit {
+  double angle = 0;    ///< rad
+  double byLimit = 1;  ///< by the limit angle
+  Eigen::Vector4d byLight = Eigen::Vector4d::Zero();
+  Vector6 byExtent = Vector6::Zero();  ///< by xx yy zz xy xz yz
+};
+DirectedLimit directedLimitWithDerivatives(double limitAngle, const Eigen::Matrix3d& extent, const Eigen::Vector3d& point,
+                                           const Eigen::Vector3d& n, const Eigen::Vector3d& toCamera,
+                                           const Eigen::Vector4d& light);
+
 }  // namespace glint
