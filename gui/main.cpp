@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <QVTKOpenGLNativeWidget.h>
-
 #include <QApplication>
-#include <QSurfaceFormat>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -32,7 +29,6 @@ int run(int argc, char** argv) {
     throw glint::InputError("", "QT_QPA_PLATFORM",
                             "this Qt platform cannot draw 3D; use a display, or xvfb-run with QT_QPA_PLATFORM=xcb (see --help)");
 
-  QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
 #if QT_VERSION < QT_VERSION_CHECK(6, 0, 0)
   QApplication::setAttribute(Qt::AA_EnableHighDpiScaling);
   QApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How long the user waits: from the start of the program to the first picture, and from a slider's movement to the overlay that
 // follows from it. Drives the real window; measure_interface.py makes the scene and the display.
-#include <QVTKOpenGLNativeWidget.h>
 
 #include <QAbstractSlider>
 #include <QApplication>
 #include <QElapsedTimer>
-#include <QSurfaceFormat>
 #include <QThread>
 #include <algorithm>
 #include <cstdio>
@@ -105,7 +103,6 @@ int run(int argc, char** argv) {
   }
   QElapsedTimer clock;
   clock.start();
-  QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
   int qtArgc = 1;
   App app(qtArgc, argv);
   QApplication::setOrganizationName(QStringLiteral("Glint"));

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/export/figure_actions.h"
 
-#include <QVTKOpenGLNativeWidget.h>
-
 #include <QBuffer>
 #include <QDir>
 #include <QFileDialog>
@@ -17,6 +15,7 @@
 
 #include "gui/base/theme.h"
 #include "gui/base/to_qimage.h"
+#include "gui/base/vtk_canvas.h"
 #include "gui/document/figure.h"
 #include "gui/export/long_job.h"
 #include "gui/frame/frame_canvas.h"

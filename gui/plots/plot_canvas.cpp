@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/plots/plot_canvas.h"
 
-#include <QVTKOpenGLNativeWidget.h>
 #include <vtkGenericOpenGLRenderWindow.h>
 #include <vtkNew.h>
 #include <vtkRenderer.h>
@@ -15,6 +14,7 @@
 
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/base/vtk_canvas.h"
 
 namespace glint::gui {
 
@@ -24,19 +24,13 @@ constexpr double kDragPx = 4;       // a press that moves further is a drag
 constexpr double kWheelStep = 1.2;  // zoom of one notch
 }  // namespace
 
-PlotCanvas::PlotCanvas(QWidget* parent)
-    : QWidget(parent), widget_(new QVTKOpenGLNativeWidget), view_(std::make_unique<viz::PlotView>()) {
+PlotCanvas::PlotCanvas(QWidget* parent) : QWidget(parent), widget_(new VtkCanvas), view_(std::make_unique<viz::PlotView>()) {
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(widget_);
-  vtkNew<vtkGenericOpenGLRenderWindow> window;
-  window->SetMultiSamples(8);
-  widget_->setRenderWindow(window);
-  // The plot scales its text itself.
-  widget_->setEnableHiDPI(false);
-  widget_->setUnscaledDPI(72);
-  window->AddRenderer(view_->renderer());
-  widget_->setMouseTracking(true);
+  widget_->renderWindow()->SetMultiSamples(8);
+  widget_->setTextScaled(false);  // the plot scales its text itself
+  widget_->renderWindow()->AddRenderer(view_->renderer());
   widget_->installEventFilter(this);
 }
 

@@ -8,9 +8,9 @@
 
 #include "viz/plots/plot_view.h"
 
-class QVTKOpenGLNativeWidget;
-
 namespace glint::gui {
+
+class VtkCanvas;
 
 /// Shows one plot. Hover tells a sample's value, a click selects it, the wheel zooms along x (with Ctrl along both), dragging
 /// moves what is zoomed, a double click shows everything again.
@@ -46,7 +46,7 @@ class PlotCanvas : public QWidget {
   std::optional<viz::PlotSample> sampleAt(const QPointF& at) const;
   void hover(const QPointF& at, const QPoint& global);
 
-  QVTKOpenGLNativeWidget* widget_;
+  VtkCanvas* widget_;
   std::unique_ptr<viz::PlotView> view_;
   std::optional<viz::PlotSample> hovered_;
   QPointF pressed_, last_;

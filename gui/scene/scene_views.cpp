@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/scene/scene_views.h"
 
-#include <QVTKOpenGLNativeWidget.h>
 #include <vtkCallbackCommand.h>
 #include <vtkGenericOpenGLRenderWindow.h>
 #include <vtkInteractorStyleTrackballCamera.h>
@@ -15,6 +14,7 @@
 #include <cmath>
 
 #include "gui/base/text.h"
+#include "gui/base/vtk_canvas.h"
 #include "viz/view_camera.h"
 
 namespace glint::gui {
@@ -44,13 +44,11 @@ SceneViews::SceneViews(QWidget* parent)
     : QWidget(parent), cache_(std::make_shared<viz::LayerCache>()), photographs_(new PhotographStore(this)) {
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(0, 0, 0, 0);
-  widget_ = new QVTKOpenGLNativeWidget;
+  widget_ = new VtkCanvas;
   widget_->setObjectName(QStringLiteral("sceneView"));
   widget_->setMinimumSize(200, 150);
-  widget_->setMouseTracking(true);
-  vtkNew<vtkGenericOpenGLRenderWindow> window;
+  vtkGenericOpenGLRenderWindow* window = widget_->renderWindow();
   viz::prepareWindow(window);
-  widget_->setRenderWindow(window);
   vtkNew<vtkInteractorStyleTrackballCamera> style;
   window->GetInteractor()->SetInteractorStyle(style);
   widget_->installEventFilter(this);

@@ -13,10 +13,11 @@
 #include "gui/scene/photograph_store.h"
 #include "gui/scene/scene_options.h"
 
-class QVTKOpenGLNativeWidget;
 class vtkCallbackCommand;
 
 namespace glint::gui {
+
+class VtkCanvas;
 
 /// Up to four 3D views in one widget: arrangement, linked cameras, the wipe's line, what the mouse does. Knows no document.
 class SceneViews : public QWidget {
@@ -30,7 +31,7 @@ class SceneViews : public QWidget {
   /// The one that was clicked last; actions on one view are about it.
   int activeView() const { return active_; }
   viz::SceneView& active() { return view(active_); }
-  QVTKOpenGLNativeWidget* widget() { return widget_; }
+  VtkCanvas* widget() { return widget_; }
   /// A view of its own that shows what the active one shows, for pictures that leave the program.
   std::unique_ptr<viz::SceneView> copyOfActive();
   bool busy() const { return photographs_->busy(); }
@@ -80,7 +81,7 @@ class SceneViews : public QWidget {
   std::shared_ptr<const Inspection> inspection_;
   viz::Selection selection_;
   SceneOptions options_;
-  QVTKOpenGLNativeWidget* widget_;
+  VtkCanvas* widget_;
   vtkNew<vtkCallbackCommand> onRender_, onInteraction_;
   QTimer full_;  ///< draws in full when nothing moved for a while
   QPointF pressed_, last_;

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // test_gui CLASS: runs one class of tests with real widgets. Needs a display: CTest starts a virtual one.
-#include <QVTKOpenGLNativeWidget.h>
-
 #include <QApplication>
 #include <QSettings>
-#include <QSurfaceFormat>
 #include <QTemporaryDir>
 #include <cstdio>
 #include <cstring>
@@ -26,7 +23,6 @@ int main(int argc, char** argv) {
       {"figure", makeFigureTest},        {"comparison", makeComparisonTest},
   };
   if (argc < 2) return std::fputs("usage: test_gui CLASS [QTest options]\n", stderr), 2;
-  QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
   const bool untilKilled = std::strcmp(argv[1], "--until-killed") == 0;
   QTemporaryDir settings;  // recent files and autosaves of whoever runs the tests stay untouched
   if (!untilKilled) qputenv("XDG_DATA_HOME", settings.path().toUtf8());  // the killed child shares it

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Whatever is picked anywhere, with the mouse, is selected in the document and shown by every other view.
-#include <QVTKOpenGLNativeWidget.h>
 #include <vtkRenderer.h>
 
 #include <QTableView>
@@ -10,6 +9,7 @@
 #include <set>
 
 #include "gui/base/text.h"
+#include "gui/base/vtk_canvas.h"
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/frame_panel.h"
 #include "gui/frame/ladder_panel.h"

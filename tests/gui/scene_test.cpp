@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The 3D views with real clicks and keys: what is set is an option of the document, one step of undo, and seen in the views.
-#include <QVTKOpenGLNativeWidget.h>
 #include <vtkRenderer.h>
 
 #include <QAction>
@@ -14,6 +13,7 @@
 #include <cmath>
 
 #include "gui/base/text.h"
+#include "gui/base/vtk_canvas.h"
 #include "gui/scene/scene_panel.h"
 #include "gui/scene/scene_views.h"
 #include "tests/gui/fixture.h"

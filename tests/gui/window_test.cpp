@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <QVTKOpenGLNativeWidget.h>
+#include <vtkGenericOpenGLRenderWindow.h>
+#include <vtkRenderer.h>
 
 #include <QAction>
 #include <QDockWidget>
@@ -13,6 +14,7 @@
 #include <QToolButton>
 
 #include "gui/base/text.h"
+#include "gui/base/vtk_canvas.h"
 #include "gui/frame/frame_panel.h"
 #include "gui/window/layouts.h"
 #include "gui/window/main_window.h"
@@ -41,6 +43,41 @@ class WindowTest : public QObject {
     auto* pages = window.centralWidget()->findChild<QStackedWidget*>();
     QVERIFY(pages);
     QVERIFY(pages->widget(0)->minimumSizeHint().height() < 200);
+  }
+
+  /// One of them anywhere makes every update of every widget a composition of the whole window by OpenGL.
+  void noWidgetIsAnOpenGlWidget() {
+    MainWindow window(fixture_.engine());
+    show(window);
+    openAndWait(window);
+    QVERIFY(!window.findChildren<VtkCanvas*>().isEmpty());
+    for (const QWidget* widget : window.findChildren<QWidget*>())
+      QVERIFY2(!widget->inherits("QOpenGLWidget"), widget->metaObject()->className());
+  }
+
+  void aCanvasShowsWhatVtkDraws() {
+    VtkCanvas canvas;
+    vtkNew<vtkRenderer> above, below;
+    above->SetViewport(0, 0.5, 1, 1);
+    above->SetBackground(1, 0, 0);
+    below->SetViewport(0, 0, 1, 0.5);
+    below->SetBackground(0, 0, 1);
+    for (vtkRenderer* renderer : {above.Get(), below.Get()}) canvas.renderWindow()->AddRenderer(renderer);
+    canvas.resize(120, 80);
+    canvas.show();
+    const auto expectHalves = [&] {
+      const QImage picture = canvas.grab().toImage();
+      QCOMPARE(picture.pixelColor(picture.width() / 2, 2), QColor(255, 0, 0));
+      QCOMPARE(picture.pixelColor(picture.width() / 2, picture.height() - 3), QColor(0, 0, 255));
+    };
+    expectHalves();
+    canvas.resize(61, 201);
+    expectHalves();
+    below->SetBackground(0, 1, 0);
+    canvas.update();
+    expectHalves();  // the last picture again, until VTK draws
+    canvas.renderWindow()->Render();
+    QCOMPARE(canvas.grab().toImage().pixelColor(30, 198), QColor(0, 255, 0));
   }
 
   void aSceneIsOpenedComputedAndShown() {

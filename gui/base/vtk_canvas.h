@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vtkNew.h>
+
+#include <QImage>
+#include <QOffscreenSurface>
+#include <QOpenGLContext>
+#include <QWidget>
+#include <memory>
+
+class QOpenGLFramebufferObject;
+class QVTKRenderWindowAdapter;
+class vtkCallbackCommand;
+class vtkGenericOpenGLRenderWindow;
+
+namespace glint::gui {
+
+/// A VTK render window in a plain widget: it draws into a buffer of its own, and the widget shows the picture of it.
+///
+/// VTK's QVTKOpenGLNativeWidget is a QOpenGLWidget, and one of those anywhere in a window makes Qt compose the whole window by
+/// OpenGL at every update of any widget: without a graphics card 10 to 25 ms each time, for a number that changed in a label.
+/// Reading one view's picture back costs less, and only when that view was drawn.
+///
+/// As there, renderWindow()->Render() draws and QWidget::update() shows the last picture again. Where there is no OpenGL it says
+/// so.
+class VtkCanvas : public QWidget {
+  Q_OBJECT
+ public:
+  explicit VtkCanvas(QWidget* parent = nullptr);
+  ~VtkCanvas() override;
+  vtkGenericOpenGLRenderWindow* renderWindow() const { return window_; }
+  /// False: texts are not scaled with the device's pixel ratio. Before the first picture.
+  void setTextScaled(bool scaled) { textScaled_ = scaled; }
+
+ protected:
+  bool event(QEvent* event) override;
+  void paintEvent(QPaintEvent* event) override;
+
+ private:
+  bool prepare();  ///< false where OpenGL is missing
+  void fetch();
+
+  vtkNew<vtkGenericOpenGLRenderWindow> window_;
+  vtkNew<vtkCallbackCommand> onFrame_;
+  QOffscreenSurface surface_;
+  QOpenGLContext context_;
+  std::unique_ptr<QVTKRenderWindowAdapter> adapter_;
+  std::unique_ptr<QOpenGLFramebufferObject> buffer_;  ///< resolved samples, of the picture's size
+  QImage picture_;
+  QSize drawnFor_;  ///< size of the widget
+  double drawnRatio_ = 0;
+  bool drawn_ = false, painting_ = false, textScaled_ = true, failed_ = false;
+};
+
+}  // namespace glint::gui
