@@ -6,7 +6,9 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <set>
 
 #include "tests/core/pipeline/exact_scene.h"
 
@@ -107,6 +109,31 @@ TEST(WriteLabels, OneMaskPerFrameLightAndSource) {
   }
   EXPECT_TRUE(fs::exists(folder / "labels_canonical.json"));
   EXPECT_EQ(fs::file_size(folder / "labels_limit-angle.json") > 1000, true);
+}
+
+/// Names of lights may hold what no folder may: two that differ only there do not share their masks.
+TEST(WriteLabels, LightsThatAFolderCannotTellApartGetFoldersOfTheirOwn) {
+  InspectionRequest request;
+  request.models = {"canonical"};
+  request.train = "first:6";
+  const std::vector<testing_support::NamedLight> lamps{{"lamp 1", {0.1, 0.2, 1.4}}, {"lamp/1", {-0.25, 0.1, 1.4}}};
+  const Inspection inspection = inspect(
+      testing_support::exactScene(testing_support::sphere(1.0), lamps, 6, [&](int i) { return std::vector{lamps[i % 2].id}; }),
+      request);
+  const fs::path folder = emptyFolder("twins");
+  writeLabels(inspection, folder);
+  std::ifstream in(folder / "masks.json");
+  const nlohmann::json index = nlohmann::json::parse(in);
+  ASSERT_EQ(index["masks"].size(), 6u * 2u * 2u);
+  std::set<std::string> named;
+  for (const auto& row : index["masks"]) {
+    const std::string file = row["file"];
+    EXPECT_TRUE(named.insert(file).second) << file << " is two masks";
+    const cv::Mat mask = cv::imread((folder / file).string(), cv::IMREAD_UNCHANGED);
+    EXPECT_EQ(cv::countNonZero(mask), row["pixels"].get<int>()) << file;
+    const bool on = row["light"].get<std::string>() == lamps[row["frame"].get<std::size_t>() % 2].id;
+    EXPECT_EQ(row["pixels"].get<int>() > 0, on) << row;
+  }
 }
 
 TEST(WriteLabels, StoppedOrRefusedLeavesNothing) {

@@ -104,6 +104,93 @@ TEST(Explain, ChoosesTheRichestModelWithAnEllipsoid) {
   EXPECT_TRUE(breaks(stepOf(limit, "ellipsoid"), "no-ellipsoid"));
 }
 
+/// Cameras in a row, `apart` metres from the first to the last, over the table z = 0.
+std::shared_ptr<Scene> camerasInARow(double apart) {
+  auto scene = exactScene(sheet(0), 6);
+  for (int i = 0; i < 6; ++i) {
+    Frame& f = scene->frames[std::size_t(i)];
+    f.camera = lookingAt({0.5 + apart * i / 5, -0.3, 1.6}, {0, 0, 0});
+    f.highlights = exactContours(sheet(0), f.camera, {"lamp", {0.1, 0.2, 1.4}});
+  }
+  return scene;
+}
+
+TEST(Explain, ReflectedRaysThatAreNearlyParallelAreSaid) {
+  InspectionRequest q;
+  q.models = {"canonical"};
+  q.train = "first:6";
+  for (const double apart : {0.05, 0.2}) {
+    const Inspection inspection = inspect(camerasInARow(apart), q);
+    const ExplainStep light = stepOf(explain(inspection, 0, 0, "canonical"), "light");
+    // All rays go to the lamp: the widest angle is that between the mirrored cameras, seen from it.
+    const Eigen::Vector3d lamp(0.1, 0.2, 1.4);
+    const Eigen::Vector3d a = Eigen::Vector3d(0.5, -0.3, -1.6) - lamp, b = Eigen::Vector3d(0.5 + apart, -0.3, -1.6) - lamp;
+    const double angle = std::atan2(a.cross(b).norm(), a.dot(b)) * kDegree;
+    EXPECT_NEAR(number(light, "widest angle between them")[0], angle, 1e-4);
+    EXPECT_EQ(number(light, "reflected rays")[0], 6);
+    EXPECT_EQ(breaks(light, "rays-parallel"), angle < 2) << angle << " deg";
+  }
+}
+
+/// On a plane alpha grows in proportion to the distance from the peak: a contour stretched by s in one direction has limit angles
+/// from alpha to s alpha.
+TEST(Explain, ALimitAngleThatVariesIsSaid) {
+  for (const double stretch : {1.02, 1.12}) {
+    auto scene = exactScene(sheet(0), 6);
+    Highlight& h = scene->frames[5].highlights[0];
+    for (Pixel& p : h.contour.points) p.x() = h.peak.x() + stretch * (p.x() - h.peak.x());
+    InspectionRequest q;
+    q.models = {"canonical"};
+    q.train = "first:4";
+    const Inspection inspection = inspect(scene, q);
+    const ExplainStep step = stepOf(explain(inspection, 5, 0, "canonical"), "limit-angles");
+    EXPECT_NEAR(number(step, "largest limit angle")[0] / number(step, "smallest limit angle")[0], stretch, 0.005);
+    EXPECT_EQ(breaks(step, "limit-angle-varies"), stretch > 1.1);
+    if (!breaks(step, "limit-angle-varies")) continue;
+    EXPECT_NEAR(step.broken[0].numbers[0].values[0], 100 * (stretch - 1) / ((1 + stretch) / 2), 0.7) << "% of the mean";
+  }
+}
+
+/// r (1 + e cos 3t) leaves its ellipse, the circle, by e r / sqrt 2 on average.
+TEST(Explain, AContourThatIsNoEllipseIsSaid) {
+  for (const double ripple : {0.004, 0.03}) {
+    auto scene = exactScene(sheet(0), 6);
+    Highlight& h = scene->frames[5].highlights[0];
+    h.ellipse.reset();
+    h.contour.points.clear();
+    for (int i = 0; i < 360; ++i) {
+      const double a = i / kDegree, r = 90 * (1 + ripple * std::cos(3 * a));
+      h.contour.points.push_back(h.peak + r * Pixel(std::cos(a), std::sin(a)));
+    }
+    InspectionRequest q;
+    q.models = {"primal", "canonical"};
+    q.train = "first:4";
+    const Inspection inspection = inspect(scene, q);
+    const double rms = 90 * ripple / std::sqrt(2.0);
+    const bool said = ripple > 0.02;  // 2.1 % of the size; the other 0.3 %
+    const ExplainStep primal = stepOf(explain(inspection, 5, 0, "primal"), "contour");
+    EXPECT_NEAR(number(primal, "distance of the contour from its ellipse")[0], rms, 0.03 * rms);
+    EXPECT_EQ(breaks(primal, "contour-not-elliptic"), said);
+    EXPECT_FALSE(breaks(stepOf(explain(inspection, 5, 0, "canonical"), "contour"), "contour-not-elliptic"))
+        << "it does not fit the contour itself";
+    EXPECT_EQ(breaks(stepOf(explain(inspection, 5, 0, "canonical"), "canonical-ellipse"), "canonical-not-elliptic"), said);
+  }
+}
+
+/// The last two singular values of a fit: exact contours of a plane leave one quadric, so their ratio is set here.
+TEST(Explain, TwoQuadricsThatFitAlmostAlikeAreSaid) {
+  Inspection inspection = inspected(sheet(0), {"canonical"});
+  std::optional<ModelFit>& fit = inspection.models.at("canonical").fits.at(0).fit;
+  ASSERT_TRUE(fit && fit->quadric);
+  EXPECT_LT(fit->gapRatio, 0.01);
+  for (const double ratio : {fit->gapRatio, 0.4, 0.6, 0.97}) {
+    fit->gapRatio = ratio;
+    const ExplainStep step = stepOf(explain(inspection, 5, 0, "canonical"), "ellipsoid");
+    EXPECT_EQ(number(step, "last over second last singular value")[0], ratio);
+    EXPECT_EQ(breaks(step, "weak-gap"), ratio > 0.5) << ratio;
+  }
+}
+
 TEST(Explain, AFrameWithoutHighlightSaysSoInEveryStepThatNeedsOne) {
   auto scene = exactScene(sheet(0), 6);
   for (Highlight& h : scene->frames[5].highlights) h.level = 0.25;  // none at the level that is asked for
@@ -154,6 +241,12 @@ TEST(WalkTrace, OnASphereTheSurfaceFallsByItsSagittaAndTheNormalTurns) {
     EXPECT_NEAR(p.normal.dot(walk.direction(t->azimuth)), p.distance / 0.5, 1e-9);
   }
   EXPECT_NEAR(t->onPlane.back().alpha, t->limitAngle, 1e-6);
+  for (std::size_t i = 0; i < t->onPlane.size(); ++i) {  // the other walk stays on the plane, and its normal is the plane's
+    const WalkPlace& p = t->onPlane[i];
+    EXPECT_NEAR(walk.tangentPlane().signedDistance(p.position), 0, 1e-12);
+    EXPECT_LT((p.normal - walk.tangentPlane().normal).norm(), 1e-12);
+    EXPECT_NEAR(p.distance, t->reachOnPlane * double(i) / 24, 1e-12);
+  }
 }
 
 TEST(WalkTrace, AFailedDirectionKeepsItsReason) {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "core/geometry/ellipsoid.h"
 #include "core/geometry/plane.h"
@@ -55,6 +57,13 @@ TEST(EpipolarTangents, RowsOfARectifiedPair) {
     EXPECT_NEAR(view->missPx[0] + view->missPx[1], 0, 1e-9);
     for (const Eigen::Vector3d& line : view->tangents) EXPECT_NEAR(line.x(), 0, 1e-12);
   }
+  // Rows 180 and 220 touch the left circle, 183 and 223 the right one: each passes outside the other circle or cuts it.
+  for (std::size_t i = 0; i < 2; ++i) {
+    const bool upper = t->first.contacts[i].y() < 200;
+    EXPECT_EQ(t->second.contacts[i].y() < 203, upper) << "upper belongs to upper";
+    EXPECT_NEAR(t->second.missPx[i], upper ? 3 : -3, 1e-9);
+    EXPECT_NEAR(t->first.missPx[i], upper ? -3 : 3, 1e-9);
+  }
   EXPECT_NEAR(t->rmsPx(), 3, 1e-9);
   EXPECT_NEAR(std::abs(t->second.contacts[0].y() - 203), 20, 1e-9);
   EXPECT_NEAR(t->second.contacts[0].x(), 150, 1e-9);
@@ -81,6 +90,38 @@ TEST(EpipolarTangents, TheOutlinesOfASphereMatch) {
                     t->first.contacts[i].dot(e1->conic().matrix.topRows<2>() * t->first.contacts[i].homogeneous()),
                 0, 1e-9);
   }
+}
+
+/// Whichever way the cameras stand to each other, and where one of them is mirrored: tangents of the two images that belong to
+/// each other lie in one plane, which touches the ball.
+TEST(EpipolarTangents, PartnersLieInOnePlaneForEveryPairOfCameras) {
+  const Eigen::Vector3d centre(0.1, -0.05, 0.2);
+  const Ellipsoid e = ball(centre, 0.15);
+  std::vector<Projection> views;
+  for (const double degrees : {0, 40, 100, 170, 250}) {
+    const double a = degrees / 57.29577951308232;
+    const Camera c = cameraAt({2 * std::sin(a), 0.3 - 0.002 * degrees, -2 * std::cos(a)}, {0, 0, 0});
+    views.push_back(c.projection());
+    views.push_back(virtualCamera(c, Plane::through({0.2, -0.9, 0.3}, Eigen::Vector3d(0.1, 1, 0.2).normalized())));
+  }
+  for (std::size_t a = 0; a < views.size(); ++a)
+    for (std::size_t b = 0; b < views.size(); ++b) {
+      SCOPED_TRACE(std::to_string(a) + " " + std::to_string(b));
+      const Outcome<EpipolarTangents> t =
+          epipolarTangents(views[a], *outlineEllipse(e, views[a]), views[b], *outlineEllipse(e, views[b]));
+      if (a == b) {
+        EXPECT_FALSE(t);
+        continue;
+      }
+      ASSERT_TRUE(t);
+      EXPECT_LT(t->rmsPx(), 1e-7);
+      for (std::size_t i = 0; i < 2; ++i) {
+        const Eigen::Vector4d plane1 = views[a].matrix.transpose() * t->first.tangents[i],
+                              plane2 = views[b].matrix.transpose() * t->second.tangents[i];
+        EXPECT_NEAR(std::abs(plane1.dot(centre.homogeneous())) / plane1.head<3>().norm(), 0.15, 1e-9);
+        EXPECT_NEAR(std::abs(plane1.head<3>().normalized().dot(plane2.head<3>().normalized())), 1, 1e-9);
+      }
+    }
 }
 
 /// Reflected in one plane, a pair has the same epipolar lines: on a plane `primal` and `dual` agree. Reflected in two planes, as

@@ -80,6 +80,10 @@ TEST(Polyline, ReachIsTheFarthestCrossingOfAHalfLine) {
   EXPECT_NEAR(*reach(square, {0, 0}, std::atan2(1, 1)), std::sqrt(2.0), 1e-12);  // through a vertex
   EXPECT_NEAR(*reach(square, {-3, 0.25}, 0), 4, 1e-12);                          // in and out again
   EXPECT_FALSE(reach(square, {3, 0}, 0));
+  const Polyline diamond{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}, true};
+  for (const double origin : {0.0, -0.5, -2.0})
+    EXPECT_EQ(reach(diamond, {origin, 0}, 0), 1 - origin) << "a vertex lies exactly on the half line";
+  EXPECT_FALSE(reach(diamond, {1.5, 0}, 0));
   square.closed = false;  // the left side is missing
   EXPECT_FALSE(reach(square, {0, 0}, std::acos(-1.0)));
 }

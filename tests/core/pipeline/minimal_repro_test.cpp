@@ -118,6 +118,34 @@ TEST(MinimalRepro, OfWhatIsNotThere) {
   EXPECT_FALSE(fs::exists(folder));
 }
 
+/// Noise is part of the contours that are kept, not something that a second reader adds once more.
+TEST(MinimalRepro, NoiseOfTheRunIsInTheContoursOnce) {
+  InspectionRequest request;
+  request.models = {"canonical"};
+  request.train = "first:6";
+  request.noisePx = 0.8;
+  request.seed = 3;
+  const Inspection run = inspect(testing_support::exactScene(testing_support::sphere(1.0), 8), request);
+  const Outcome<Fault> fault = faultOf(run, 7, "canonical", "");
+  ASSERT_TRUE(fault && fault->errorPct);
+  const Outcome<MinimalRepro> repro = minimalRepro(run, *fault, {FaultKept::Within, 0.3});
+  ASSERT_TRUE(repro) << repro.failure().message();
+  const fs::path folder = emptyFolder("noisy");
+  const WrittenRepro written = writeRepro(run, *repro, {FaultKept::Within, 0.3}, folder);
+  ASSERT_TRUE(written.fault.errorPct);
+  EXPECT_NEAR(*written.fault.errorPct, *repro->after.errorPct, 1e-6 * *repro->after.errorPct);
+  const OpenedSession back = openSession(written.session);
+  EXPECT_EQ(back.session.request.noisePx, 0);
+  for (std::size_t i = 0; i < repro->kept.size(); ++i)
+    for (const TrainingView& v : run.views) {
+      if (v.frame != repro->kept[i]) continue;
+      ASSERT_EQ(back.scene->frames[i].highlights.size(), 1u);
+      const std::vector<Pixel>& kept = back.scene->frames[i].highlights[0].contour.points;
+      ASSERT_EQ(kept.size(), v.highlight.contour.points.size());
+      for (std::size_t p = 0; p < kept.size(); ++p) EXPECT_LT((kept[p] - v.highlight.contour.points[p]).norm(), 1e-9);
+    }
+}
+
 TEST(MinimalRepro, OfAShippedSessionReplays) {
   OpenedSession opened = openSession(fs::path(GLINT_SOURCE_DIR) / "sessions/vase/vase.glint");
   opened.session.request.models = {"limit-angle"};

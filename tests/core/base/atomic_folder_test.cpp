@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A folder is there whole or not at all.
+#include "core/base/atomic_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <stdexcept>
+
+#include "core/base/outcome.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+class AtomicFolder : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::remove_all(parent_);
+    fs::create_directories(parent_);
+  }
+  void TearDown() override { fs::remove_all(parent_); }
+  static void twoFiles(const fs::path& to) {
+    std::ofstream(to / "a.txt") << "a";
+    fs::create_directories(to / "in");
+    std::ofstream(to / "in" / "b.txt") << "b";
+  }
+  static int entries(const fs::path& folder) {
+    return static_cast<int>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+  }
+  fs::path parent_ = fs::path(testing::TempDir()) / "atomic_folder_test";
+};
+
+TEST_F(AtomicFolder, HoldsWhatWasWrittenHoweverItIsNamed) {
+  fs::create_directories(parent_ / "empty");
+  for (const char* name : {"new", "slash/", "empty", "./dot/../plain"}) {
+    SCOPED_TRACE(name);
+    ASSERT_NO_THROW(atomicFolder(parent_ / name, twoFiles));
+    EXPECT_TRUE(fs::exists(parent_ / name / "a.txt") || fs::exists(parent_ / "plain" / "a.txt"));
+    EXPECT_TRUE(fs::exists(parent_ / name / "in" / "b.txt") || fs::exists(parent_ / "plain" / "in" / "b.txt"));
+  }
+  EXPECT_EQ(entries(parent_), 4) << "no temporary folder stays";
+  EXPECT_EQ(entries(parent_ / "slash"), 2);
+}
+
+TEST_F(AtomicFolder, AWriterThatFailsLeavesWhatWasThere) {
+  const auto fails = [](const fs::path& to) {
+    twoFiles(to);
+    throw std::runtime_error("disk full");
+  };
+  EXPECT_THROW(atomicFolder(parent_ / "new", fails), std::runtime_error);
+  EXPECT_EQ(entries(parent_), 0);
+  fs::create_directories(parent_ / "empty");
+  EXPECT_THROW(atomicFolder(parent_ / "empty", fails), std::runtime_error);
+  EXPECT_EQ(entries(parent_), 1);
+  EXPECT_TRUE(fs::is_empty(parent_ / "empty"));
+}
+
+TEST_F(AtomicFolder, NeverOverwrites) {
+  std::ofstream(parent_ / "file") << "mine";
+  fs::create_directories(parent_ / "full");
+  std::ofstream(parent_ / "full" / "mine.txt") << "mine";
+  for (const char* name : {"file", "full"}) {
+    bool written = false;
+    EXPECT_THROW(atomicFolder(parent_ / name, [&](const fs::path&) { written = true; }), InputError) << name;
+    EXPECT_FALSE(written) << name << ": refused before the work";
+  }
+  EXPECT_EQ(entries(parent_), 2);
+  EXPECT_EQ(entries(parent_ / "full"), 1);
+}
+
+}  // namespace
+}  // namespace glint
