@@ -108,5 +108,16 @@ TEST(Turntable, KeepsDistanceAndHeightAndClosesTheCircle) {
   EXPECT_THROW(turntable(start, {0, 0, 0}, 8), std::invalid_argument);
 }
 
+/// A view from aslant keeps its horizon: its up turns with it.
+TEST(Turntable, UpTurnsWithTheView) {
+  const ViewPoint start{{3, 0, 3}, {0, 0, 0}, Eigen::Vector3d(-1, 0, 1).normalized(), 40, false};
+  const std::vector<ViewPoint> views = turntable(start, {0, 0, 1}, 4);
+  const Eigen::Vector3d outwards[] = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_TRUE(views[i].position.isApprox(3 * (outwards[i] + Eigen::Vector3d::UnitZ()))) << i;
+    EXPECT_TRUE(views[i].up.isApprox((Eigen::Vector3d::UnitZ() - outwards[i]).normalized())) << i;
+  }
+}
+
 }  // namespace
 }  // namespace glint::viz

@@ -2,6 +2,9 @@
 #include "viz/scene_view.h"
 
 #include <gtest/gtest.h>
+#include <vtkActor.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataMapper.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 
@@ -35,6 +38,8 @@ void standAt(SceneView& view, int frame) {
   const double angle = 2 * std::atan(0.5 * camera.height / camera.pixelFromRay(1, 1)) * 180 / std::numbers::pi;
   view.setViewPoint({eye, eye + eye.norm() * forward, -down, angle});
 }
+
+constexpr double kDrawn = 1e-6, kDrawnPx = 1e-3;  // m, px: what is drawn is in single precision
 
 class SceneViewPicture : public test::PictureTest {
  protected:
@@ -300,6 +305,65 @@ TEST(Layers, CamerasThatShareAPoseAreDrawnOnce) {
   const std::vector<int> frames = framesToDraw(*inspection, inspection->surfaces->keyOf(0), 8);
   EXPECT_EQ(frames.size(), 6u);
   EXPECT_NE(std::find(frames.begin(), frames.end(), 8), frames.end());  // the selected one stands for its pose
+}
+
+/// Cones of the small scene whose model has a ball as its ellipsoid; the first one drawn, which is frame 0's.
+TriangleMesh firstCone(const Inspection& inspection, const std::string& model) {
+  LayerInput input;
+  input.inspection = &inspection;
+  input.models = {model};
+  input.surfaceKey = inspection.surfaces->keyOf(0);
+  input.scale = sceneScale(inspection, nullptr, {0, 1, 2}, 1);
+  const LayerContent content = conesLayer(input);
+  TriangleMesh mesh;
+  if (content.drawn.empty()) return mesh;
+  vtkPolyData* data =
+      vtkPolyDataMapper::SafeDownCast(vtkActor::SafeDownCast(content.drawn.front().prop)->GetMapper())->GetInput();
+  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i) mesh.vertices.emplace_back(data->GetPoint(i));
+  return mesh;
+}
+
+/// The mirror makes the difference: a virtual camera's cone begins where it sees the highlight, on the tangent plane; a camera's
+/// own begins halfway, and so before the ellipsoid, which lies about that plane.
+TEST(Layers, AConeReachesFromItsPlaceThroughTheContourToBeyondTheEllipsoid) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  const TrainingView& view = inspection->views[0];
+  const Eigen::Vector3d eye = view.camera.centreInWorld();
+  for (const bool mirrored : {false, true}) {
+    SCOPED_TRACE(mirrored);
+    const std::string model = mirrored ? "dual" : "primal";
+    const Eigen::Vector3d apex = mirrored ? view.tangentPlane->reflected(eye) : eye;
+    // A ball on the axis of the contour's cone: at the brightest point, or as far beyond it as the mirrored camera is before it.
+    const Eigen::Vector3d centre = mirrored ? 2 * view.brightest->point.position - apex : view.brightest->point.position;
+    constexpr double kBall = 0.05;
+    Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
+    place.translation() = centre;
+    ModelFit fit;
+    fit.model = model;
+    fit.light = "lamp";
+    fit.ellipsoid = Ellipsoid(place, Eigen::Vector3d::Constant(kBall));
+    inspection->models[model].fits = {{"lamp", {}, fit, {}}};
+    const std::vector<Eigen::Vector3d> points = firstCone(*inspection, model).vertices;
+    ASSERT_EQ(points.size() % 2, 0u);
+    ASSERT_GT(points.size(), 100u);
+    const Eigen::Vector3d axis = (centre - apex).normalized();
+    const double end = (centre - apex).norm() + 1.15 * kBall;
+    for (std::size_t i = 0; i < points.size(); i += 2) {
+      const Eigen::Vector3d &near = points[i], &far = points[i + 1];
+      EXPECT_NEAR((far - apex).dot(axis), end, kDrawn);
+      if (mirrored)
+        EXPECT_NEAR(view.tangentPlane->signedDistance(near), 0, kDrawn);
+      else
+        EXPECT_NEAR((near - apex).dot(axis), 0.5 * end, kDrawn);
+      // Both ends are seen on the contour: a camera behind the mirror sees there what the camera itself sees.
+      for (const Eigen::Vector3d& p : {near, far}) {
+        const std::optional<Pixel> pixel = view.camera.project(mirrored ? view.tangentPlane->reflected(p) : p);
+        ASSERT_TRUE(pixel);
+        EXPECT_NEAR((*pixel - view.highlight.peak).norm(), view.highlight.ellipse->semiAxes.x(), kDrawnPx);
+      }
+    }
+  }
 }
 
 TEST(Layers, ContoursCastOntoTheSurfaceLieOnIt) {

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The walk that is drawn, on surfaces where every place of it is known in closed form.
+#include "viz/walk_story.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "core/explain/explain.h"
+#include "core/geometry/polyline.h"
+#include "tests/core/pipeline/exact_scene.h"
+#include "viz/walk_picture.h"
+
+namespace glint::viz {
+namespace {
+
+using namespace testing_support;
+
+constexpr double kPlace = 1e-6;  // m at 1.5 m: peaks of exact contours are found to 1e-7 px
+constexpr double kRadius = 0.5;
+const Eigen::Vector3d kLamp(0.1, 0.2, 1.4);  // of the exact scene
+
+struct Told {
+  Inspection inspection;
+  WalkStory story;
+};
+
+Told told(const AnalyticSpec& surface, bool inverse = false, std::optional<double> direction = {}) {
+  InspectionRequest q;
+  q.models = {"canonical"};
+  q.train = "first:4";
+  Told t{inspect(exactScene(surface, 6), q), {}};
+  const Outcome<WalkStory> story = walkStory(t.inspection, explain(t.inspection, 5, 0, "canonical"), inverse, direction);
+  if (story)
+    t.story = *story;
+  else
+    ADD_FAILURE() << story.failure().message();
+  return t;
+}
+
+double degreesOf(double rad) { return rad * 180 / std::numbers::pi; }
+
+/// alpha of a place from the three directions at it.
+double alphaAt(const Eigen::Vector3d& p, const Eigen::Vector3d& normal, const Eigen::Vector3d& eye) {
+  const Eigen::Vector3d half = ((eye - p).normalized() + (kLamp - p).normalized()).normalized();
+  return std::atan2(half.cross(normal).norm(), half.dot(normal));
+}
+
+TEST(WalkStory, ItsDirectionsAreThoseOfThePlace) {
+  const Told t = told(sheet(0));
+  const WalkStory& s = t.story;
+  const Eigen::Vector3d eye = t.inspection.scene->frames[5].camera.centreInWorld();
+  EXPECT_LT((s.normal - Eigen::Vector3d::UnitZ()).norm(), kPlace) << "the table is z = 0, the camera above it";
+  EXPECT_NEAR(s.along.z(), 0, kPlace);
+  EXPECT_NEAR(s.along.norm(), 1, 1e-12);
+  ASSERT_GT(s.steps(), 20);
+  for (const WalkPlace& p : s.trace.onPlane) {
+    EXPECT_LT((p.position - s.trace.onPlane.front().position - p.distance * s.along).norm(), kPlace);
+    EXPECT_LT((s.toEye(p) - (eye - p.position).normalized()).norm(), 1e-9);
+    EXPECT_LT((s.toLight(p) - (kLamp - p.position).normalized()).norm(), 1e-5);  // the light is estimated from exact contours
+    EXPECT_NEAR(p.alpha, alphaAt(p.position, Eigen::Vector3d::UnitZ(), eye), 1e-5);
+  }
+}
+
+TEST(WalkStory, OnABallTheWalkOnSFallsBelowTheOneOnT) {
+  const Told t = told(sphere(kRadius));
+  const WalkStory& s = t.story;
+  const Eigen::Vector3d centre(0, 0, -kRadius), eye = t.inspection.scene->frames[5].camera.centreInWorld();
+  for (const WalkPlace& p : s.trace.onSurface) {
+    EXPECT_NEAR((p.position - centre).norm(), kRadius, 1e-9);
+    EXPECT_LT((p.normal - (p.position - centre) / kRadius).norm(), 1e-9);
+    EXPECT_NEAR(p.alpha, alphaAt(p.position, p.normal, eye), 1e-4);
+  }
+  for (const WalkPlace& p : s.trace.onPlane) {
+    EXPECT_NEAR((p.position - s.trace.onPlane.front().position).dot(s.normal), 0, 1e-9);
+    EXPECT_LT((p.normal - s.normal).norm(), 1e-12);
+  }
+  EXPECT_LT((s.trace.onPlane.front().position - s.trace.onSurface.front().position).norm(), 1e-9) << "both begin at P_B";
+}
+
+TEST(WalkStory, ForwardsItGoesOnSAndThenOnTInverseTheOtherWayRound) {
+  WalkStory s = told(sphere(kRadius)).story;
+  const int places = static_cast<int>(s.trace.onSurface.size());
+  ASSERT_EQ(s.steps(), 2 * places);
+  for (const bool inverse : {false, true}) {
+    SCOPED_TRACE(inverse);
+    s.inverse = inverse;
+    for (int step = -1; step <= s.steps(); ++step) {
+      const int at = std::clamp(step, 0, s.steps() - 1);
+      const bool first = at < places;
+      const WalkStory::Moment m = s.at(step);
+      EXPECT_EQ(m.onSurface, first != inverse) << step;
+      EXPECT_EQ(m.place, at % places) << step;
+      EXPECT_EQ(inverse ? m.visitedOnPlane : m.visitedOnSurface, first ? at + 1 : places) << step;
+      EXPECT_EQ(inverse ? m.visitedOnSurface : m.visitedOnPlane, first ? 0 : at + 1 - places) << step;
+      EXPECT_EQ(s.reached(m), at % places == places - 1) << step;
+      char expected[64];
+      const WalkPlace& p = (m.onSurface ? s.trace.onSurface : s.trace.onPlane)[static_cast<std::size_t>(at % places)];
+      std::snprintf(expected, sizeof expected, "on %s: α %.2f° of %.2f°", first != inverse ? "S" : "T", degreesOf(p.alpha),
+                    degreesOf(kLimitAngle));
+      EXPECT_EQ(walkText(s, step), expected);
+    }
+  }
+}
+
+TEST(WalkStory, EndsOnTheContourInTheSelectedDirection) {
+  for (const double direction : {0.0, 1.2, -2.5}) {
+    SCOPED_TRACE(direction);
+    const Told t = told(sphere(kRadius), false, direction);
+    const Highlight& h = t.inspection.evidence[5].highlights[0];
+    const std::optional<Pixel> end = t.inspection.scene->frames[5].camera.project(t.story.trace.onSurface.back().position);
+    ASSERT_TRUE(end && t.story.direction);
+    EXPECT_LT(distance(h.contour, *end), 0.05) << "px: chords are 5e-3 px off their curve, and a limit of 3.4 deg is 100 px";
+    const Pixel out = *end - centroid(h.contour);
+    EXPECT_LT(std::abs(std::remainder(std::atan2(out.y(), out.x()) - direction, 2 * std::numbers::pi)), 0.1);
+    EXPECT_NEAR(std::remainder(std::atan2(out.y(), out.x()) - *t.story.direction, 2 * std::numbers::pi), 0, 1e-6);
+  }
+  const Told back = told(sphere(kRadius), true);
+  EXPECT_TRUE(back.story.inverse);
+  EXPECT_EQ(back.story.model, "canonical");
+}
+
+/// What the section says of a place: N where the normal points, H where the half vector does.
+TEST(WalkPicture, NAndHPointWhereTheNormalAndTheHalfVectorDo) {
+  const WalkStory s = told(sphere(kRadius)).story;
+  const int places = static_cast<int>(s.trace.onSurface.size());
+  constexpr double kWidth = 400, kHeight = 300, kText = 12;
+  for (const bool onSurface : {true, false}) {
+    SCOPED_TRACE(onSurface);
+    const int step = (onSurface ? 0 : places) + places - 3;
+    const WalkPicture picture = walkPicture(s, step, kWidth, kHeight, kText, true);
+    const WalkPlace& p = s.place(s.at(step));
+    const WalkPicture::Dot* here = nullptr;
+    for (const WalkPicture::Dot& d : picture.dots)
+      if (d.radius == 4.5) here = &d;
+    ASSERT_TRUE(here);
+    EXPECT_EQ(here->at.x() < kWidth / 2, onSurface) << "S stands left, T right";
+    double stretch = 1;
+    const WalkPicture::Text *n = nullptr, *h = nullptr;
+    bool ends = false;
+    for (const WalkPicture::Text& t : picture.texts) {
+      std::sscanf(t.text.c_str(), "heights × %lf", &stretch);
+      if ((t.at.x() < kWidth / 2) == onSurface && t.text == "N") n = &t;
+      if ((t.at.x() < kWidth / 2) == onSurface && t.text == "H") h = &t;
+      char wanted[64];
+      std::snprintf(wanted, sizeof wanted, "ends at %.1f mm on %s",
+                    1000 * (onSurface ? s.trace.reachOnSurface : s.trace.reachOnPlane), onSurface ? "S" : "T");
+      ends |= t.text == wanted;
+    }
+    EXPECT_TRUE(ends);
+    ASSERT_TRUE(n && h);
+    // Heights are stretched, so vectors lean by as much more: slope along the section times the stretch.
+    const auto slope = [&](const Eigen::Vector3d& v) { return stretch * v.dot(s.along) / v.dot(s.normal); };
+    const auto drawn = [&](const WalkPicture::Text& t) { return (t.at.x() - here->at.x()) / (here->at.y() - t.at.y()); };
+    EXPECT_NEAR(drawn(*n), slope(p.normal), 0.02);  // the stretch is written with one digit
+    EXPECT_NEAR(drawn(*h), slope(s.half(p)), 0.02);
+    EXPECT_GT(std::abs(drawn(*n) - drawn(*h)), 0.2);
+  }
+}
+
+}  // namespace
+}  // namespace glint::viz
