@@ -46,6 +46,7 @@ class FrameCanvas : public QWidget {
   bool showsHeld() const { return !heldLine_.empty() || heldMark_; }
   /// A line of text in the top left corner; "" = none.
   void setCaption(const QString& caption);
+  const QString& caption() const { return caption_; }
   bool hasPicture() const { return !photograph_.isNull(); }
   QSize photographSize() const { return photograph_.size(); }
 

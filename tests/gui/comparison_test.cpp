@@ -84,6 +84,17 @@ class ComparisonTest : public QObject {
     QVERIFY(window_->findChild<QLabel*>("comparisonTitle")->text().contains("changed since"));
   }
 
+  /// Names of sessions can be long: the title is cut, and does not push the other docks away.
+  void aLongTitleDoesNotWidenTheDock() {
+    ComparisonPanel* panel = window_->comparison();
+    auto* title = panel->findChild<QLabel*>("comparisonTitle");
+    const int before = panel->minimumSizeHint().width();
+    title->setText(QString(400, QLatin1Char('m')));
+    QTRY_VERIFY(title->sizeHint().width() > 2000);
+    QCoreApplication::sendPostedEvents(nullptr, QEvent::LayoutRequest);
+    QCOMPARE(panel->minimumSizeHint().width(), before);
+  }
+
   void whatCannotBeReadIsSaid() {
     window_->comparison()->compareWith(folder_.filePath("none.glint"));
     QTRY_VERIFY_WITH_TIMEOUT(window_->idle() && !problem_.isEmpty(), 20000);

@@ -87,6 +87,22 @@ class ExplainTest : public QObject {
     QVERIFY(!panel_->findChild<QTextBrowser*>("explain.text")->toPlainText().contains("the model fails"));
   }
 
+  void aStepThatIsNotReachedSaysWhy() {
+    Document& d = window_->document();
+    const auto settled = [&] { return window_->idle() && !d.stale() && !panel_->busy() && panel_->explanation(); };
+    window_->actions().find("explain.step-light")->trigger();
+    QTRY_VERIFY_WITH_TIMEOUT(settled(), 60000);
+    auto* text = panel_->findChild<QTextBrowser*>("explain.text");
+    QVERIFY(!text->toPlainText().contains("does not get here"));
+    d.setModels({"primal"});  // it needs no light, so none is estimated
+    QTRY_VERIFY_WITH_TIMEOUT(settled(), 60000);
+    QTRY_VERIFY2(text->toPlainText().contains("does not get here"), qPrintable(text->toPlainText()));
+    QVERIFY2(text->toPlainText().contains("no model that was computed needs one"), qPrintable(text->toPlainText()));
+    d.undoStack()->undo();
+    QTRY_VERIFY_WITH_TIMEOUT(settled(), 60000);
+    QTRY_VERIFY(!text->toPlainText().contains("does not get here"));
+  }
+
   void aClickInTheListGoesThere() {
     auto* list = panel_->findChild<QListWidget*>("explain.steps");
     window_->actions().find("explain.step-peak")->trigger();

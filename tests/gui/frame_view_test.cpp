@@ -8,6 +8,7 @@
 
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/frame_panel.h"
+#include "gui/frame/hand_tool.h"
 #include "gui/frame/ladder_panel.h"
 #include "tests/gui/fixture.h"
 
@@ -60,6 +61,27 @@ class FrameViewTest : public QObject {
     QVERIFY(canvas->grab().toImage() == plain);
   }
 
+  /// Else one would wonder why the highlight of the photograph stays where it was.
+  void itSaysThatTheContoursAreSynthesised() {
+    FrameCanvas* canvas = frame_->canvas();
+    QVERIFY(canvas->caption().isEmpty());
+    const QImage before = canvas->grab().toImage();
+    WhatIf w;
+    w.synthesise = true;
+    document_->setWhatIf(w, "synthesise");
+    settle();
+    QVERIFY2(canvas->caption().contains("synthesised"), qPrintable(canvas->caption()));
+    QVERIFY(canvas->grab().toImage() != before);
+    document_->undoStack()->undo();
+    settle();
+    QVERIFY(canvas->caption().isEmpty());
+    w.synthesise = false;
+    w.highlights[{0, 0}].peakBy = {2, 1};
+    document_->setWhatIf(w, "a peak");
+    settle();
+    QVERIFY(canvas->caption().isEmpty());  // that one is of the photograph
+  }
+
   void contourAndPeakAreMovedByHandEachInOneStep() {
     FrameCanvas* canvas = frame_->canvas();
     const QPoint edge = canvas->widgetFromPixel(Fixture::centre(0) - Pixel(Fixture::kRadius, 0)).toPoint();
@@ -91,6 +113,43 @@ class FrameViewTest : public QObject {
     QVERIFY(document_->request().whatIf.none());
   }
 
+  /// Until the results follow: the contour or the peak where the hand has it, and nothing of the other.
+  void whatTheHandHoldsIsDrawnWhereItIs() {
+    auto* hand = frame_->findChild<HandTool*>();
+    QVERIFY(hand);
+    hand->setOn(true);
+    std::vector<Pixel> line;
+    std::optional<Pixel> mark;
+    connect(hand, &HandTool::carried, this, [&](const std::vector<Pixel>& l, const std::optional<Pixel>& m) {
+      line = l;
+      mark = m;
+    });
+    const Pixel centre = Fixture::centre(0), edge = centre + Pixel(Fixture::kRadius, 0), by(7, -4);
+    QVERIFY(hand->take(edge, 3, {}));
+    hand->carry(edge + by);
+    hand->release();
+    QVERIFY(!mark && line.size() > 20);
+    for (const Pixel& p : line) QVERIFY(std::abs((p - centre - by).norm() - Fixture::kRadius) < 1e-9);
+    document_->undoStack()->undo();
+    QVERIFY(hand->take(centre, 3, {}));
+    hand->carry(centre + by);
+    hand->release();
+    QVERIFY(line.empty() && mark && (*mark - centre - by).norm() < 1e-9);
+    document_->undoStack()->undo();
+    QVERIFY(hand->take(edge, 3, Qt::ShiftModifier));
+    hand->carry(centre + 1.5 * (edge - centre));
+    hand->release();
+    QVERIFY(!mark && line.size() > 20);
+    for (const Pixel& p : line) QVERIFY(std::abs((p - centre).norm() - 1.5 * Fixture::kRadius) < 1e-6);
+    QVERIFY(std::abs(document_->request().whatIf.highlights.at({0, 0}).contourScale - 1.5) < 1e-9);
+    document_->undoStack()->undo();
+    QVERIFY(hand->take(edge, 3, {}));
+    document_->selectFrame(4);  // what was held is gone
+    hand->carry(edge + by);
+    QVERIFY(!hand->holds() && document_->request().whatIf.none());
+    QVERIFY(!frame_->canvas()->showsHeld());
+  }
+
   void resultsForTheFrameAreShownBeforeThoseForAll() {
     auto one = std::make_shared<Inspection>(drawnCircles(fixture_.scene(), document_->request()));
     document_->setSetting("detect.level", 0.4);
@@ -99,6 +158,9 @@ class FrameViewTest : public QObject {
     for (auto& point : one->evidence[0].highlights[0].contour.points) point.x() += 15;
     const QImage before = frame_->canvas()->grab().toImage();
     document_->setFrameInspection(one, 1);  // not the one on screen
+    QCOMPARE(document_->frameInspection(), document_->inspection());
+    const Fixture other;  // a scene that was closed meanwhile
+    document_->setFrameInspection(std::make_shared<const Inspection>(drawnCircles(other.scene(), document_->request())), 0);
     QCOMPARE(document_->frameInspection(), document_->inspection());
     document_->setFrameInspection(one, 0);
     QVERIFY(document_->stale() && !document_->frameStale());

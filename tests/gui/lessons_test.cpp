@@ -7,6 +7,7 @@
 #include <QListWidget>
 #include <QSlider>
 #include <QTextBrowser>
+#include <QTextDocument>
 #include <QToolButton>
 
 #include "gui/base/text.h"
@@ -39,6 +40,8 @@ class LessonsTest : public QObject {
       const QString shown = text();
       QVERIFY2(shown.contains(lesson.title), qPrintable(shown));
       QVERIFY2(shown.contains("Try"), qPrintable(shown));
+      QVERIFY2(shown.contains(plain(lesson.see)), qPrintable(shown));
+      for (const QString& question : lesson.questions) QVERIFY2(shown.contains(plain(question)), qPrintable(question));
       QCOMPARE(window_->document().undoStack()->count(), 0);
       QVERIFY(panel_->isVisible());
       // Every link is an action.
@@ -50,6 +53,7 @@ class LessonsTest : public QObject {
       QVERIFY2(lesson.steps.contains(step.id), qPrintable(step.id));
       QTRY_VERIFY(!panel_->busy() && panel_->explanation());
       QVERIFY2(text().contains("In this lesson"), qPrintable(text()));
+      QVERIFY2(text().contains(plain(lesson.remarks.value(step.id))), qPrintable(text()));
       auto* list = panel_->findChild<QListWidget*>("explain.steps");
       for (int i = 0; i < list->count(); ++i)
         QCOMPARE(list->item(i)->font().bold(), lesson.steps.contains(explainTexts().steps[i].id));
@@ -87,6 +91,10 @@ class LessonsTest : public QObject {
     const int paused = walk.step();
     QCOMPARE(window_->document().option("explain/walk-step", -1.0), double(paused));
     window_->actions().find("explain.walk-on")->trigger();
+    QCOMPARE(walk.step(), paused + 1);
+    window_->actions().find("explain.walk-back")->trigger();
+    QCOMPARE(walk.step(), paused);
+    window_->document().undoStack()->undo();
     QCOMPARE(walk.step(), paused + 1);
     window_->document().undoStack()->undo();
     QCOMPARE(walk.step(), paused);
@@ -148,6 +156,11 @@ class LessonsTest : public QObject {
     window_->actions().find("lesson." + id)->trigger();
     QTRY_VERIFY_WITH_TIMEOUT(window_->document().option("explain/lesson", std::string()) == id.toStdString(), 60000);
     QTRY_VERIFY_WITH_TIMEOUT(window_->idle() && window_->document().inspection() && !window_->document().stale(), 60000);
+  }
+  static QString plain(const QString& html) {
+    QTextDocument document;
+    document.setHtml(html);
+    return document.toPlainText();
   }
   QString text() const { return panel_->findChild<QTextBrowser*>("explain.text")->toPlainText(); }
 

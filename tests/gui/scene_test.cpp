@@ -251,6 +251,12 @@ class SceneTest : public QObject {
     QCOMPARE(document_->role(8), FrameRole::Excluded);
     document_->undoStack()->undo();
     QCOMPARE(document_->role(8), FrameRole::HeldOut);
+    // Looking through a camera selects its frame: the eye follows the selected one.
+    const auto through = std::find_if(actions.begin(), actions.end(), [](QAction* a) { return a->text().startsWith("&Look"); });
+    QVERIFY(through != actions.end());
+    (*through)->trigger();
+    QCOMPARE(document_->selection().frame, 8);
+    QVERIFY(panel_->view().looksThrough());
   }
 
   void camerasAreColouredByWhatLeavingThemOutDoes() {
@@ -277,6 +283,16 @@ class SceneTest : public QObject {
     QCOMPARE(options.colours.influence.at(2), -3.0);
     trigger("view.colour-influence");  // measured: nothing to ask for
     QCOMPARE(asked.count(), 1);
+    const QImage measured = picture();
+    document_->setSetting("detect.level", 0.4);
+    settle();
+    QVERIFY(sceneOptions(*document_).colours.influence.empty());  // of another request: it says nothing here
+    QVERIFY(picture() != measured);
+    trigger("view.colour-influence");
+    QCOMPARE(asked.count(), 2);
+    document_->undoStack()->undo();
+    settle();
+    QCOMPARE(sceneOptions(*document_).colours.influence.size(), std::size_t(6));
   }
 
   void theLampIsDraggedWhereContoursAreSynthesised() {

@@ -9,9 +9,12 @@
 #include <QPlainTextEdit>
 #include <QPushButton>
 #include <QSettings>
+#include <QSplitter>
 #include <QStackedWidget>
 #include <QTableView>
 #include <QToolButton>
+#include <algorithm>
+#include <cmath>
 
 #include "gui/base/text.h"
 #include "gui/base/vtk_canvas.h"
@@ -128,13 +131,20 @@ class WindowTest : public QObject {
     auto* setup = window.findChild<QDockWidget*>(QStringLiteral("setup"));
     window.addDockWidget(Qt::RightDockWidgetArea, setup);
     plots->hide();
+    QSplitter* views = viewsOf(window);
+    views->setSizes({200, 600});
+    QTest::qWait(20);
+    const double share = shareOfFirst(views);
     window.actions().find("view.layout-keep-2")->trigger();
     window.applyLayout(QStringLiteral("compare"));
+    views->setSizes({600, 200});
+    QVERIFY(shareOfFirst(views) > share + 0.2);
     QVERIFY(plots->isVisible());
     QVERIFY(window.actions().find("view.layout-own-2")->isEnabled());
     window.actions().find("view.layout-own-2")->trigger();
     QVERIFY(!plots->isVisible() && setup->isVisible());
     QCOMPARE(window.dockWidgetArea(setup), Qt::RightDockWidgetArea);
+    QTRY_VERIFY2(std::abs(shareOfFirst(views) - share) < 0.05, qPrintable(QString::number(shareOfFirst(views))));
     MainWindow next(fixture_.engine());
     show(next);
     next.actions().find("view.layout-own-2")->trigger();
@@ -208,6 +218,12 @@ class WindowTest : public QObject {
   }
 
  private:
+  /// Scene and frame beside each other.
+  static QSplitter* viewsOf(MainWindow& window) { return qobject_cast<QSplitter*>(window.framePanel()->parentWidget()); }
+  static double shareOfFirst(const QSplitter* views) {
+    const QList<int> sizes = views->sizes();
+    return double(sizes[0]) / std::max(1, sizes[0] + sizes[1]);
+  }
   static void show(MainWindow& window) {
     window.show();
     QVERIFY(QTest::qWaitForWindowExposed(&window));
