@@ -21,6 +21,7 @@ LatestJob::~LatestJob() {
 void LatestJob::run(std::function<Deliver()> work) {
   const int job = ++newest_;
   ++pending_;
+  awaited_ = true;
   QMetaObject::invokeMethod(
       worker_,
       [this, job, work = std::move(work)] {
@@ -34,7 +35,9 @@ void LatestJob::run(std::function<Deliver()> work) {
             this,
             [this, job, deliver = std::move(deliver)] {
               --pending_;
-              if (deliver && job == newest_) deliver();
+              if (job != newest_) return;
+              awaited_ = false;
+              if (deliver) deliver();
             },
             Qt::QueuedConnection);
       },

@@ -20,14 +20,20 @@ class LatestJob : public QObject {
   /// @param work  runs on the worker and says what to do with its result; it must not touch widgets.
   void run(std::function<Deliver()> work);
   /// Nothing of what was asked for is of use any more.
-  void drop() { ++newest_; }
+  void drop() {
+    ++newest_;
+    awaited_ = false;
+  }
   bool busy() const { return pending_ > 0; }
+  /// An answer will be delivered: the newest job runs and was not dropped. (A dropped one may still be busy.)
+  bool awaited() const { return awaited_; }
 
  private:
   QThread thread_;
   QObject* worker_;
   std::atomic<int> newest_{0};
-  int pending_ = 0;  ///< interface thread only
+  int pending_ = 0;       ///< interface thread only
+  bool awaited_ = false;  ///< interface thread only
 };
 
 }  // namespace glint::gui

@@ -224,7 +224,7 @@ void ExplainPanel::refresh() {
     steps_->item(i)->setFont(font);
   }
   walkView_->setVisible(now >= 0 && explainTexts().steps[now].layers.contains(QStringLiteral("walk")));
-  if (now >= 0 && !explanation_ && document_.inspection() && !job_.busy()) return compute();
+  if (now >= 0 && !explanation_ && document_.inspection() && !job_.awaited()) return compute();
   text_->setHtml(html());
 }
 

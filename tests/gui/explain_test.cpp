@@ -87,6 +87,21 @@ class ExplainTest : public QObject {
     QVERIFY(!panel_->findChild<QTextBrowser*>("explain.text")->toPlainText().contains("the model fails"));
   }
 
+  /// What was asked for before is of no use then, and may still run.
+  void leavingAndComingBackAtOnceComputesAgain() {
+    Document& d = window_->document();
+    d.selectFrame(d.frameCount() - 1);
+    panel_->goTo(2);
+    d.undoStack()->undo();
+    d.undoStack()->undo();
+    QCOMPARE(panel_->step(), -1);
+    QVERIFY(panel_->busy() && !panel_->explanation());
+    panel_->goTo(2);
+    QTRY_VERIFY(panel_->explanation());
+    QCOMPARE(panel_->explanation()->frame, d.selection().frame);
+    QTRY_VERIFY(!panel_->busy());
+  }
+
   void aStepThatIsNotReachedSaysWhy() {
     Document& d = window_->document();
     const auto settled = [&] { return window_->idle() && !d.stale() && !panel_->busy() && panel_->explanation(); };
