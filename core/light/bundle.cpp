@@ -9,39 +9,25 @@
 #include <limits>
 #include <map>
 
+#include "core/base/parallel.h"
 #include "core/base/residual_spread.h"
-#include "core/geometry/polyline.h"
+#include "core/light/contour_evidence.h"
+#include "core/light/dense_solver.h"
 #include "core/light/directed_limit.h"
 #include "core/light/estimate.h"
-#include "core/light/dense_solver.h"
 
 namespace glint {
 namespace {
-constexpr double kStepPx = 0.5;  ///< of the finite differences that turn an angle into pixels
+constexpr double kStepPx = ContourEvidence::kStepPx;
 constexpr int kMaxReweightings = 8;
 constexpr double kLeastNoiseShare = 0.1;  ///< of the residuals' variance: below, moving weights would change nothing that can be seen
 
-/// A surface point seen by a camera, in normalised world coordinates.
-struct Seen {
-  Eigen::Vector3d position, normal, toCamera;
-};
-/// One contour point. Nothing here depends on the light, so hits are computed once.
-struct Evidence {
-  Seen at;
-  std::optional<Seen> left, right, up, down;  ///< of the pixels kStepPx away; empty where the surface ended
-  std::optional<Seen> leftUp, rightDown;      ///< along the diagonal
-  int view = 0;
-  Pixel pixel{0, 0};
-  double pixelsPerRadian = 1;  ///< 1 / |d alpha / d pixel| for the light of the last reweighting
-  double biasPx = 0;           ///< by how much noise displaces the residual on average, see unbias
-};
-
 /// Direction to the light with N.L > 0, not normalised.
-Eigen::Vector3d towards(const Seen& s, const Eigen::Vector4d& light) {
+Eigen::Vector3d towards(const SeenPoint& s, const Eigen::Vector4d& light) {
   const Eigen::Vector3d d = light.head<3>() - light.w() * s.position;
   return s.normal.dot(d) < 0 ? Eigen::Vector3d(-d) : d;
 }
-double angle(const Seen& s, const Eigen::Vector4d& light) {
+double angle(const SeenPoint& s, const Eigen::Vector4d& light) {
   return incidentAngle(s.normal, towards(s, light).normalized(), s.toCamera);
 }
 
@@ -49,14 +35,16 @@ double angle(const Seen& s, const Eigen::Vector4d& light) {
 class AngleCost : public ceres::CostFunction {
  public:
   /// @param noiseShare  s, see noiseShare(): the weight is k (|d alpha / d pixel| k)^-s of the light, k the held one
-  AngleCost(const Evidence& evidence, bool atInfinity, double noiseShare = 0)
-      : evidence_(evidence), size_(atInfinity ? 3 : 4), share_(evidence.left && evidence.right && evidence.up && evidence.down ? noiseShare : 0) {
+  AngleCost(const ContourEvidence& evidence, bool atInfinity, double noiseShare = 0)
+      : evidence_(evidence),
+        size_(atInfinity ? 3 : 4),
+        share_(evidence.left && evidence.right && evidence.up && evidence.down ? noiseShare : 0) {
     set_num_residuals(1);
     mutable_parameter_block_sizes()->push_back(size_);
     mutable_parameter_block_sizes()->push_back(1);
   }
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    const Seen& s = evidence_.at;
+    const SeenPoint& s = evidence_.at;
     Eigen::Vector4d light(parameters[0][0], parameters[0][1], parameters[0][2], size_ == 4 ? parameters[0][3] : 0.0);
     const Eigen::Vector3d plain = light.head<3>() - light.w() * s.position;
     const double sign = s.normal.dot(plain) < 0 ? -1 : 1, distance = plain.norm();
@@ -77,7 +65,9 @@ class AngleCost : public ceres::CostFunction {
     residuals[0] = k * off - evidence_.biasPx;
     if (!jacobians) return true;
     if (jacobians[0]) {
-      const auto at = [&](const Seen& seen) { return incidentAngleByLight(seen.position, seen.normal, seen.toCamera, light); };
+      const auto at = [&](const SeenPoint& seen) {
+        return incidentAngleByLight(seen.position, seen.normal, seen.toCamera, light);
+      };
       Eigen::Vector4d byLight = k * at(s);
       if (share_ > 0)
         byLight -= off * share_ * k / slope.squaredNorm() / (2 * kStepPx) *
@@ -89,7 +79,7 @@ class AngleCost : public ceres::CostFunction {
   }
 
  private:
-  const Evidence& evidence_;
+  const ContourEvidence& evidence_;
   int size_;
   double share_;
 };
@@ -105,7 +95,7 @@ struct Attempt {
 };
 
 /// Signed distance of a point from the level set, px.
-double residual(const Evidence& e, const Attempt& a) {
+double residual(const ContourEvidence& e, const Attempt& a) {
   const double limit = a.directed ? directedLimit(a.limit, symmetric(a.extent), e.at.position, e.at.normal, e.at.toCamera, a.light) : a.limit;
   return e.pixelsPerRadian * (angle(e.at, a.light) - limit) - e.biasPx;
 }
@@ -116,12 +106,12 @@ double median(std::vector<double> values) {
 }
 
 /// 1 / |d alpha / d pixel| of every point under a light.
-void reweight(std::vector<Evidence>& points, const Eigen::Vector4d& light) {
+void reweight(std::vector<ContourEvidence>& points, const Eigen::Vector4d& light) {
   std::vector<double> slopes;
   slopes.reserve(points.size());
-  for (Evidence& e : points) {
+  for (ContourEvidence& e : points) {
     const double here = angle(e.at, light);
-    const auto slope = [&](const std::optional<Seen>& before, const std::optional<Seen>& after) {
+    const auto slope = [&](const std::optional<SeenPoint>& before, const std::optional<SeenPoint>& after) {
       const double high = after ? angle(*after, light) : here, low = before ? angle(*before, light) : here;
       return (high - low) / ((before ? kStepPx : 0) + (after ? kStepPx : 0));
     };
@@ -136,19 +126,22 @@ void reweight(std::vector<Evidence>& points, const Eigen::Vector4d& light) {
 /// model gets wrong varies slowly along it. Noise adds s^2 |d alpha / d pixel|^2 k^2 to every expected square, so with held weights k lights
 /// win under which the angle changes slowly over the image; weights that move with the light make that term a constant. What is not noise
 /// must not move them (it would gain by lights under which the angle changes fast), hence the share.
-double noiseShare(const std::vector<Evidence>& points, const Attempt& a) {
+double noiseShare(const std::vector<ContourEvidence>& points, const Attempt& a) {
   std::vector<double> sizes, steps;
-  std::map<int, std::vector<const Evidence*>> views;
-  for (const Evidence& e : points) {
+  std::map<int, std::vector<const ContourEvidence*>> views;
+  for (const ContourEvidence& e : points) {
     sizes.push_back(std::abs(residual(e, a)));
     views[e.view].push_back(&e);
   }
   for (auto& [view, members] : views) {
     // Neighbours by their azimuth about the middle: whoever gives a contour may start anywhere, or list its points in any order.
     Pixel middle(0, 0);
-    for (const Evidence* e : members) middle += e->pixel / double(members.size());
-    const auto azimuth = [&](const Evidence* e) { return std::atan2(e->pixel.y() - middle.y(), e->pixel.x() - middle.x()); };
-    std::sort(members.begin(), members.end(), [&](const Evidence* x, const Evidence* y) { return azimuth(x) < azimuth(y); });
+    for (const ContourEvidence* e : members) middle += e->pixel / double(members.size());
+    const auto azimuth = [&](const ContourEvidence* e) {
+      return std::atan2(e->pixel.y() - middle.y(), e->pixel.x() - middle.x());
+    };
+    std::sort(members.begin(), members.end(),
+              [&](const ContourEvidence* x, const ContourEvidence* y) { return azimuth(x) < azimuth(y); });
     for (std::size_t i = 0; i < members.size(); ++i)
       steps.push_back(std::abs(residual(*members[i], a) - residual(*members[(i + 1) % members.size()], a)));
   }
@@ -163,11 +156,11 @@ double noiseShare(const std::vector<Evidence>& points, const Attempt& a) {
 /// points do not count), and the correction is kept below s / 2: it fades where the contour is as small as the noise.
 /// The slope, taken at the noisy point, errs together with the residual: where alpha bends along its gradient g (alpha_gg) this displaces the
 /// residual by -s^2 alpha_gg, and its product with its own derivative by as much again. `share` is that of noise in s^2, see noiseShare.
-void unbias(std::vector<Evidence>& points, const Attempt& a, double share) {
+void unbias(std::vector<ContourEvidence>& points, const Attempt& a, double share) {
   std::vector<double> sizes;
-  for (const Evidence& e : points) sizes.push_back(std::abs(residual(e, a)));
+  for (const ContourEvidence& e : points) sizes.push_back(std::abs(residual(e, a)));
   const double sigma = 1.4826 * median(sizes);
-  for (Evidence& e : points) {
+  for (ContourEvidence& e : points) {
     e.biasPx = 0;
     if (!e.left || !e.right || !e.up || !e.down) continue;
     const double here = angle(e.at, a.light), left = angle(*e.left, a.light), right = angle(*e.right, a.light), up = angle(*e.up, a.light),
@@ -183,9 +176,9 @@ void unbias(std::vector<Evidence>& points, const Attempt& a, double share) {
   }
 }
 
-double robustCost(const std::vector<Evidence>& points, const Attempt& a, double scale) {
+double robustCost(const std::vector<ContourEvidence>& points, const Attempt& a, double scale) {
   double sum = 0;
-  for (const Evidence& e : points) {
+  for (const ContourEvidence& e : points) {
     const double r = std::abs(residual(e, a));
     sum += r <= scale ? r * r : scale * (2 * r - scale);
   }
@@ -193,7 +186,7 @@ double robustCost(const std::vector<Evidence>& points, const Attempt& a, double 
 }
 
 /// Solves with weights that are renewed until nothing moves. False when the solution is not usable.
-bool reweighted(std::vector<Evidence>& points, Attempt& a, bool atInfinity, double share, const BundleOptions& options) {
+bool reweighted(std::vector<ContourEvidence>& points, Attempt& a, bool atInfinity, double share, const BundleOptions& options) {
   const int already = a.iterations;
   a.noiseShare = share;
   for (int round = 0; round < kMaxReweightings && a.iterations < already + options.maxIterations; ++round) {
@@ -208,7 +201,7 @@ bool reweighted(std::vector<Evidence>& points, Attempt& a, bool atInfinity, doub
     ownership.disable_all_safety_checks = true;
     ceres::HuberLoss loss(options.robustPx);
     std::deque<AngleCost> costs;  // cost functions cannot be moved
-    for (const Evidence& e : points) costs.emplace_back(e, atInfinity, share);
+    for (const ContourEvidence& e : points) costs.emplace_back(e, atInfinity, share);
     const Eigen::Vector4d before = a.light;
     const double limitBefore = a.limit;
     DenseSolution solution;
@@ -232,13 +225,13 @@ bool reweighted(std::vector<Evidence>& points, Attempt& a, bool atInfinity, doub
   return true;
 }
 
-Attempt solve(std::vector<Evidence>& points, Eigen::Vector4d start, bool atInfinity, const BundleOptions& options) {
+Attempt solve(std::vector<ContourEvidence>& points, Eigen::Vector4d start, bool atInfinity, const BundleOptions& options) {
   Attempt a;
-  for (Evidence& e : points) e.biasPx = 0;
+  for (ContourEvidence& e : points) e.biasPx = 0;
   if (atInfinity) start.w() = 0;
   a.light = start.normalized();
   std::vector<double> angles;
-  for (const Evidence& e : points) angles.push_back(angle(e.at, a.light));
+  for (const ContourEvidence& e : points) angles.push_back(angle(e.at, a.light));
   a.limit = median(angles);
   if (!std::isfinite(a.limit)) return a;
   if (!reweighted(points, a, atInfinity, 0, options)) return a;
@@ -249,7 +242,7 @@ Attempt solve(std::vector<Evidence>& points, Eigen::Vector4d start, bool atInfin
   reweight(points, a.light);
   if (a.light.w() < 0) a.light = -a.light;
   std::size_t behind = 0;
-  for (const Evidence& e : points) behind += e.at.normal.dot(a.light.head<3>() - a.light.w() * e.at.position) <= 0;
+  for (const ContourEvidence& e : points) behind += e.at.normal.dot(a.light.head<3>() - a.light.w() * e.at.position) <= 0;
   a.behind = 10 * behind > points.size();
   if (a.light.w() == 0 && a.behind && 2 * behind > points.size()) {  // a direction has no side of its own
     a.light.head<3>() *= -1;
@@ -262,9 +255,9 @@ Attempt solve(std::vector<Evidence>& points, Eigen::Vector4d start, bool atInfin
 /// Residual with an extent, over the light (4), the limit angle (1) and the extent (6), with its derivatives in closed form.
 class DirectedCost : public ceres::SizedCostFunction<1, 4, 1, 6> {
  public:
-  explicit DirectedCost(const Evidence& evidence) : evidence_(evidence) {}
+  explicit DirectedCost(const ContourEvidence& evidence) : evidence_(evidence) {}
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    const Seen& s = evidence_.at;
+    const SeenPoint& s = evidence_.at;
     const Eigen::Vector4d light = Eigen::Map<const Eigen::Vector4d>(parameters[0]);
     const double constant = *parameters[1], k = evidence_.pixelsPerRadian;
     if (!(constant > 0)) return false;
@@ -289,14 +282,14 @@ class DirectedCost : public ceres::SizedCostFunction<1, 4, 1, 6> {
   }
 
  private:
-  const Evidence& evidence_;
+  const ContourEvidence& evidence_;
 };
 
 /// One pixel's worth of reluctance against an extent that widens the limit angle by half: entries that the contours see win over it,
 /// those that no view shows stay zero.
-double extentPrior(const Attempt& a, const std::vector<Evidence>& points) {
+double extentPrior(const Attempt& a, const std::vector<ContourEvidence>& points) {
   double reach = 0;
-  for (const Evidence& e : points)
+  for (const ContourEvidence& e : points)
     reach += a.light.w() > 0 ? (a.light.head<3>() / a.light.w() - e.at.position).norm() / double(points.size()) : 1.0 / double(points.size());
   const double width = 2 * reach * a.limit;  // of the light that is seen under the limit angle: H turns half as much as L
   return 1 / (width * width);
@@ -311,7 +304,7 @@ struct ExtentPrior {
 };
 
 /// Goes on from a solution with one constant limit angle.
-Attempt directed(std::vector<Evidence>& points, const Attempt& start, const BundleOptions& options) {
+Attempt directed(std::vector<ContourEvidence>& points, const Attempt& start, const BundleOptions& options) {
   Attempt a = start;
   a.directed = true;
   if (a.light.w() == 0) return start;  // a direction's extent would need its own chart; none of the inputs has such a light
@@ -321,7 +314,7 @@ Attempt directed(std::vector<Evidence>& points, const Attempt& start, const Bund
     unbias(points, a, 0);
     const Attempt before = a;
     ceres::Problem problem;
-    for (const Evidence& e : points)
+    for (const ContourEvidence& e : points)
       problem.AddResidualBlock(new DirectedCost(e), new ceres::HuberLoss(options.robustPx), a.light.data(), &a.limit,
                                a.extent.data());
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<ExtentPrior, 6, 6>(new ExtentPrior{prior}), nullptr, a.extent.data());
@@ -346,18 +339,18 @@ Light inWorld(const Eigen::Vector4d& light, const Eigen::Vector3d& origin, doubl
   return Light::homogeneous(world);
 }
 
-ResidualSpread spreadOf(const std::vector<Evidence>& points, const Attempt& a, int parameters, double scale) {
+ResidualSpread spreadOf(const std::vector<ContourEvidence>& points, const Attempt& a, int parameters, double scale) {
   std::vector<double> residuals;
   std::vector<int> views;
-  for (const Evidence& e : points) {
+  for (const ContourEvidence& e : points) {
     residuals.push_back(residual(e, a));
     views.push_back(e.view);
   }
   return residualSpread(residuals, views, parameters, scale);
 }
 
-void setCovariance(const std::vector<Evidence>& points, const Attempt& a, const Eigen::Vector3d& origin, double scale, double robustPx,
-                   Bundle& bundle) {
+void setCovariance(const std::vector<ContourEvidence>& points, const Attempt& a, const Eigen::Vector3d& origin, double scale,
+                   double robustPx, Bundle& bundle) {
   const double infinity = std::numeric_limits<double>::infinity();
   const bool atInfinity = a.light.w() == 0;
   Eigen::Matrix<double, 4, 3, Eigen::RowMajor> chart;  // ambient from tangent coordinates of L
@@ -424,69 +417,16 @@ void setCovariance(const std::vector<Evidence>& points, const Attempt& a, const 
   }
 }
 
-/// Contour points on the surface, in coordinates (x - origin) / scale, scale the mean distance from the cameras.
-std::optional<Failure> gather(const std::vector<BundleView>& views, const BundleOptions& options, std::vector<Evidence>& points,
-                              Eigen::Vector3d& origin, double& scale) {
-  origin = Eigen::Vector3d::Zero();
-  scale = 0;
-  std::size_t offered = 0;
-  for (std::size_t v = 0; v < views.size(); ++v) {
-    const BundleView& view = views[v];
-    require(view.surface != nullptr, "bundleLight: a view without surface");
-    for (const Pixel& p : view.contour)
-      if (!p.allFinite()) return Failure{Reason::NotFinite, "a contour point of view " + std::to_string(v)};
-    const std::vector<Pixel> pixels = view.contour.size() > std::size_t(options.pointsPerView)
-                                          ? resample(Polyline{view.contour, true}, options.pointsPerView)
-                                          : view.contour;
-    offered += pixels.size();
-    const Eigen::Vector3d eye = view.camera.centreInWorld();
-    const auto seen = [&](const Pixel& p) -> std::optional<Seen> {
-      const Outcome<SurfacePoint> hit = view.surface->firstHit(view.camera.ray(p));
-      if (!hit || !hit->position.allFinite() || !hit->normal.allFinite()) return std::nullopt;
-      const SurfacePoint s = facing(*hit, eye);
-      return Seen{s.position, s.normal, (eye - s.position).normalized()};
-    };
-    for (const Pixel& p : pixels) {
-      const std::optional<Seen> at = seen(p);
-      if (!at) continue;
-      Evidence e{*at,
-                 seen(p - Pixel(kStepPx, 0)),
-                 seen(p + Pixel(kStepPx, 0)),
-                 seen(p - Pixel(0, kStepPx)),
-                 seen(p + Pixel(0, kStepPx)),
-                 seen(p - Pixel(kStepPx, kStepPx)),
-                 seen(p + Pixel(kStepPx, kStepPx)),
-                 int(v),
-                 p};
-      if ((!e.left && !e.right) || (!e.up && !e.down)) continue;
-      origin += at->position;
-      scale += (eye - at->position).norm();
-      points.push_back(std::move(e));
-    }
-  }
-  if (offered > 0 && points.empty()) return Failure{Reason::PeakOffSurface, "no contour point hits the surface"};
-  if (points.size() < 5) return Failure{Reason::TooFewPoints, "need 5 on the surface, have " + std::to_string(points.size())};
-  origin /= double(points.size());
-  scale /= double(points.size());
-  if (!(scale > 0) || !std::isfinite(scale)) return Failure{Reason::NotFinite, "camera distance"};
-  for (Evidence& e : points) {
-    e.at.position = (e.at.position - origin) / scale;
-    for (std::optional<Seen>* s : {&e.left, &e.right, &e.up, &e.down, &e.leftUp, &e.rightDown})
-      if (*s) (*s)->position = ((*s)->position - origin) / scale;
-  }
-  return std::nullopt;
-}
-}  // namespace
-
-Outcome<Bundle> bundleLight(const std::vector<BundleView>& views, const Light& start, const BundleOptions& options) {
-  require(options.pointsPerView >= 3 && options.robustPx > 0 && options.maxIterations >= 1, "bundleLight: options");
-  std::vector<Evidence> points;
-  Eigen::Vector3d origin;
-  double scale;
-  if (const std::optional<Failure> failure = gather(views, options, points, origin, scale)) return *failure;
-
+/// The light with one limit angle that explains the points best, from several starts where the first one converges badly. The
+/// points hold its weights afterwards.
+struct Best {
+  Attempt attempt;
+  int iterations = 0;  ///< of all starts
+};
+Outcome<Best> bestAttempt(NormalisedContours& contours, const Light& start, const BundleOptions& options) {
+  std::vector<ContourEvidence>& points = contours.points;
   Eigen::Vector4d first;
-  first << (start.homogeneous().head<3>() - start.homogeneous().w() * origin) / scale, start.homogeneous().w();
+  first << (start.homogeneous().head<3>() - start.homogeneous().w() * contours.origin) / contours.scale, start.homogeneous().w();
   if (!(first.norm() > 0) || !first.allFinite()) first << 0, 0, 1, 0;
   const auto attempt = [&](const Eigen::Vector4d& from) {
     Attempt a = solve(points, from, from.w() == 0, options);
@@ -514,7 +454,7 @@ Outcome<Bundle> bundleLight(const std::vector<BundleView>& views, const Light& s
   if (!good(best)) {
     // Other starts: the contours' middle reflected, at several distances and at infinity.
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    for (const Evidence& e : points) mean += reflect(e.at.toCamera, e.at.normal);
+    for (const ContourEvidence& e : points) mean += reflect(e.at.toCamera, e.at.normal);
     if (mean.norm() > 1e-9 * points.size()) {  // directions that cancel have no mean
       mean.normalize();
       for (const double distance : {0.3, 1.0, 3.0, 10.0, 0.0}) {
@@ -532,15 +472,41 @@ Outcome<Bundle> bundleLight(const std::vector<BundleView>& views, const Light& s
   // The evidence still holds the weights of the last attempt, which need not be the best one.
   reweight(points, best.light);
   unbias(points, best, best.noiseShare);
-  if (options.limitOrders > 0) best = directed(points, best, options);
+  return Best{best, iterations};
+}
+
+/// RMS of the distances of points from the level set of an attempt that was found in other coordinates, px.
+double rmsElsewhere(const Attempt& found, const NormalisedContours& foundIn, NormalisedContours seen) {
+  Attempt a = found;
+  const double step = foundIn.scale / seen.scale;
+  a.light.head<3>() = step * found.light.head<3>() + found.light.w() * (foundIn.origin - seen.origin) / seen.scale;
+  a.light.normalize();
+  a.extent *= step * step;  // only a light that is near has one
+  reweight(seen.points, a.light);
+  double sum = 0;
+  for (const ContourEvidence& e : seen.points) sum += std::pow(residual(e, a), 2);
+  return std::sqrt(sum / double(seen.points.size()));
+}
+}  // namespace
+
+Outcome<Bundle> bundleLight(const std::vector<BundleView>& views, const Light& start, const BundleOptions& options) {
+  require(options.pointsPerView >= 3 && options.robustPx > 0 && options.maxIterations >= 1, "bundleLight: options");
+  const Outcome<std::vector<ContourEvidence>> evidence = contoursOnSurfaces(views, options.pointsPerView);
+  if (!evidence) return evidence.failure();
+  Outcome<NormalisedContours> contours = normalised(*evidence);
+  if (!contours) return contours.failure();
+  const Outcome<Best> found = bestAttempt(*contours, start, options);
+  if (!found) return found.failure();
+  const std::vector<ContourEvidence>& points = contours->points;
+  const Attempt best = options.limitOrders > 0 ? directed(contours->points, found->attempt, options) : found->attempt;
   Bundle bundle;
-  bundle.light = inWorld(best.light, origin, scale);
+  bundle.light = inWorld(best.light, contours->origin, contours->scale);
   bundle.limitAngle = best.limit;
-  if (best.directed) bundle.extent = symmetric(best.extent) * (best.light.w() == 0 ? 1.0 : scale * scale);
-  bundle.iterations = iterations;
+  if (best.directed) bundle.extent = symmetric(best.extent) * (best.light.w() == 0 ? 1.0 : contours->scale * contours->scale);
+  bundle.iterations = found->iterations;
   std::vector<double> sums(views.size(), 0.0), counts(views.size(), 0.0);
   double sum = 0;
-  for (const Evidence& e : points) {
+  for (const ContourEvidence& e : points) {
     const double r = residual(e, best);
     sums[e.view] += r * r;
     counts[e.view] += 1;
@@ -549,29 +515,37 @@ Outcome<Bundle> bundleLight(const std::vector<BundleView>& views, const Light& s
   bundle.rmsPx = std::sqrt(sum / points.size());
   for (std::size_t v = 0; v < views.size(); ++v)
     bundle.residualPx.push_back(counts[v] > 0 ? std::sqrt(sums[v] / counts[v]) : 0.0);
-  setCovariance(points, best, origin, scale, options.robustPx, bundle);
+  setCovariance(points, best, contours->origin, contours->scale, options.robustPx, bundle);
   return bundle;
 }
 
-double bundleErrorPx(const Bundle& bundle, const std::vector<BundleView>& views, const BundleOptions& options) {
-  std::vector<Evidence> points;
-  Eigen::Vector3d origin;
-  double scale;
-  if (gather(views, options, points, origin, scale)) return std::nan("");
-  Attempt a;
-  const Eigen::Vector4d& lw = bundle.light.homogeneous();
-  a.light << (lw.head<3>() - lw.w() * origin) / scale, lw.w();
-  a.light.normalize();
-  a.limit = bundle.limitAngle;
-  if (bundle.extent) {
-    a.directed = true;
-    const Eigen::Matrix3d e = *bundle.extent / (bundle.light.atInfinity() ? 1.0 : scale * scale);
-    a.extent << e(0, 0), e(1, 1), e(2, 2), e(0, 1), e(0, 2), e(1, 2);
-  }
-  reweight(points, a.light);
-  double sum = 0;
-  for (const Evidence& e : points) sum += std::pow(residual(e, a), 2);
-  return std::sqrt(sum / double(points.size()));
+Outcome<LeftOutErrors> leftOutErrors(const std::vector<BundleView>& views, const Light& start, const BundleOptions& options,
+                                     int atMost) {
+  require(atMost >= 1, "leftOutErrors: atMost");
+  const Outcome<std::vector<ContourEvidence>> evidence = contoursOnSurfaces(views, options.pointsPerView);
+  if (!evidence) return evidence.failure();
+  const int folds = std::min(atMost, int(views.size()));
+  LeftOutErrors errors{std::vector<double>(std::size_t(folds)), std::vector<double>(std::size_t(folds))};
+  std::vector<std::optional<Failure>> failures(static_cast<std::size_t>(folds));
+  const auto fold = [&](int k) {
+    const int left = int(std::size_t(k) * views.size() / std::size_t(folds));
+    std::vector<ContourEvidence> others, own;
+    for (const ContourEvidence& e : *evidence) (e.view == left ? own : others).push_back(e);
+    Outcome<NormalisedContours> contours = normalised(std::move(others));
+    const Outcome<NormalisedContours> seen = normalised(std::move(own));
+    const Outcome<Best> best = contours ? bestAttempt(*contours, start, options) : Outcome<Best>(contours.failure());
+    if (!best) {
+      failures[std::size_t(k)] = best.failure();
+      return;
+    }
+    errors.constant[std::size_t(k)] = seen ? rmsElsewhere(best->attempt, *contours, *seen) : std::nan("");
+    const Attempt wide = directed(contours->points, best->attempt, options);
+    errors.directed[std::size_t(k)] = seen ? rmsElsewhere(wide, *contours, *seen) : std::nan("");
+  };
+  parallelFor(folds, fold, {}, "light");
+  for (const std::optional<Failure>& failure : failures)
+    if (failure) return *failure;
+  return errors;
 }
 
 }  // namespace glint

@@ -64,7 +64,15 @@ struct Bundle {
 /// TooFewPoints; PeakOffSurface when no contour point hits the surface; NotConverged; LightBehindSurface; NotFinite.
 Outcome<Bundle> bundleLight(const std::vector<BundleView>& views, const Light& start, const BundleOptions& options = {});
 
-/// RMS distance of other views' contour points from the level set of a bundle, px (to first order). NaN where none is on a lit surface.
-double bundleErrorPx(const Bundle& bundle, const std::vector<BundleView>& views, const BundleOptions& options = {});
+/// RMS distances of left-out views' contour points from the level sets of the bundles of the other views, px (to first order),
+/// one entry per view that was left out. NaN where fewer than five of its points are on a surface.
+struct LeftOutErrors {
+  std::vector<double> constant;  ///< with one limit angle
+  std::vector<double> directed;  ///< with the extent of the light, see BundleOptions::limitOrders
+};
+/// Leaves one view out at a time, evenly spread ones where there are more than `atMost`. Rays are cast once for all of them.
+/// The first failure of bundleLight() for any of them.
+Outcome<LeftOutErrors> leftOutErrors(const std::vector<BundleView>& views, const Light& start, const BundleOptions& options,
+                                     int atMost);
 
 }  // namespace glint

@@ -48,20 +48,9 @@ int limitOrders(const std::vector<BundleView>& views, const Bundle& constant, co
   constexpr double kSystematic = 0.5;      // of the points count as independent: less means that residuals keep their sign along contours
   if (views.size() < 4 || !(constant.rmsPx > kVisiblePx) || !constant.uncertainty) return 0;
   if (constant.uncertainty->degreesOfFreedom > kSystematic * double(options.pointsPerView) * double(views.size())) return 0;
-  BundleOptions directed = options;
-  directed.limitOrders = 1;
-  constexpr std::size_t kLeftOut = 6;  // more views left out would not change a choice between two
-  std::vector<double> plainErrors, wideErrors;
-  for (std::size_t k = 0; k < std::min(kLeftOut, views.size()); ++k) {
-    const std::size_t left = k * views.size() / std::min(kLeftOut, views.size());
-    std::vector<BundleView> others = views;
-    others.erase(others.begin() + left);
-    const Outcome<Bundle> plain = bundleLight(others, constant.light, options), wide = bundleLight(others, constant.light, directed);
-    if (!plain || !wide) return 0;
-    plainErrors.push_back(bundleErrorPx(*plain, {views[left]}, options));
-    wideErrors.push_back(bundleErrorPx(*wide, {views[left]}, options));
-  }
-  return predictsLeftOutBetter(wideErrors, plainErrors) ? 1 : 0;
+  constexpr int kLeftOut = 6;  // more views left out would not change a choice between two
+  const Outcome<LeftOutErrors> errors = leftOutErrors(views, constant.light, options, kLeftOut);
+  return errors && predictsLeftOutBetter(errors->directed, errors->constant) ? 1 : 0;
 }
 
 }  // namespace

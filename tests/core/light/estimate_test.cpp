@@ -274,5 +274,45 @@ TEST(BundleLight, Degenerate) {
   EXPECT_THROW((void)bundleLight(views, start), std::invalid_argument);
 }
 
+// Every other view is exact, so the light is; a contour moved sideways by d lies d cos(angle) from its level set, RMS d / sqrt(2)
+// to first order.
+TEST(LeftOutErrors, OfAMovedContourIsWhatItWasMovedBy) {
+  constexpr double kBent = 0.05;  // of d: a real contour is no circle, and d is a tenth of its size
+  for (const double scale : {1e-3, 1.0, 1e3}) {
+    Scene s = makeScene(Light::at(scale * kLight), 5, 2.0, scale);
+    for (BundleView& v : s.views) v.surface = &s.sphere;
+    const Outcome<LeftOutErrors> exact = leftOutErrors(s.views, Light::at(scale * kLight), {}, 6);
+    ASSERT_TRUE(exact) << exact.failure().message();
+    ASSERT_EQ(exact->constant.size(), 5u);
+    for (int i = 0; i < 5; ++i) {
+      EXPECT_LT(exact->constant[i], 1e-5) << scale;  // px, the bisection's own end
+      EXPECT_LT(exact->directed[i], 1e-4) << scale;  // the extent's rounds end sooner
+    }
+    const double d = 0.5;
+    for (Pixel& p : s.views[3].contour) p.x() += d;
+    const Outcome<LeftOutErrors> moved = leftOutErrors(s.views, Light::at(scale * kLight), {}, 6);
+    ASSERT_TRUE(moved);
+    EXPECT_NEAR(moved->constant[3], d / std::sqrt(2), kBent * d) << scale;
+    EXPECT_NEAR(moved->directed[3], d / std::sqrt(2), kBent * d) << scale;
+  }
+}
+
+TEST(LeftOutErrors, LeavesOutEvenlySpreadViewsAndFails) {
+  Scene s = makeScene(Light::at(kLight), 8, 2.0);
+  for (BundleView& v : s.views) v.surface = &s.sphere;
+  for (Pixel& p : s.views[4].contour) p.x() += 0.5;
+  const Outcome<LeftOutErrors> two = leftOutErrors(s.views, Light::at(kLight), {}, 2);  // views 0 and 4
+  ASSERT_TRUE(two);
+  ASSERT_EQ(two->constant.size(), 2u);
+  EXPECT_GT(two->constant[1], 5 * two->constant[0]);
+  s.views[0].contour.resize(4);  // nothing to measure by, but the others tell the light
+  const Outcome<LeftOutErrors> few = leftOutErrors(s.views, Light::at(kLight), {}, 2);
+  ASSERT_TRUE(few);
+  EXPECT_TRUE(std::isnan(few->constant[0]));
+  EXPECT_EQ(leftOutErrors({s.views[0]}, Light::at(kLight), {}, 2).failure().reason, Reason::TooFewPoints);
+  s.views[1].contour[0].x() = NAN;
+  EXPECT_EQ(leftOutErrors(s.views, Light::at(kLight), {}, 2).failure().reason, Reason::NotFinite);
+}
+
 }  // namespace
 }  // namespace glint

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "core/base/outcome.h"
+#include "core/light/estimate.h"
+
+namespace glint {
+
+/// A surface point as a camera sees it.
+struct SeenPoint {
+  Eigen::Vector3d position, normal, toCamera;  ///< unit vectors away from the surface
+};
+
+/// One contour point of a bundle. Nothing of where it lies depends on the light, so rays are cast once; weight and bias belong to one solution.
+struct ContourEvidence {
+  static constexpr double kStepPx = 0.5;  ///< of the finite differences that turn an angle into pixels
+  SeenPoint at;
+  std::optional<SeenPoint> left, right, up, down;  ///< of the pixels kStepPx away; empty where the surface ended
+  std::optional<SeenPoint> leftUp, rightDown;      ///< along the diagonal
+  int view = 0;
+  Pixel pixel{0, 0};
+  double cameraDistance = 0;   ///< m
+  double pixelsPerRadian = 1;  ///< 1 / |d alpha / d pixel| for the light of the last reweighting
+  double biasPx = 0;           ///< by how much noise displaces the residual on average
+};
+
+/// The contours on their surfaces, world, m. Points that miss the surface, or whose neighbours do on both sides, are left out.
+/// NotFinite for a contour point; PeakOffSurface when there were points and none is on its surface.
+Outcome<std::vector<ContourEvidence>> contoursOnSurfaces(const std::vector<BundleView>& views, int pointsPerView);
+
+/// In coordinates (x - origin) / scale, origin the points' middle and scale their mean distance from the cameras, m.
+struct NormalisedContours {
+  std::vector<ContourEvidence> points;
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  double scale = 1;
+};
+/// TooFewPoints below five; NotFinite.
+Outcome<NormalisedContours> normalised(std::vector<ContourEvidence> points);
+
+}  // namespace glint
