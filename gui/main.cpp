@@ -42,13 +42,11 @@ int run(int argc, char** argv) {
 
   MainWindow window(coreEngine());
   window.setTheme(command.theme);
-  if (!command.size.isEmpty()) {
-    window.setMinimumSize(command.size.boundedTo(window.minimumSize()));
-    window.resize(command.size);
-  }
+  if (!command.size.isEmpty()) window.resize(command.size);
   window.applyLayout(command.layout);
   window.show();
   window.applyLayout(command.layout);  // dock sizes are known only now
+  if (!command.size.isEmpty()) window.resize(command.size);  // a large window's docks may have kept it larger
   if (!command.input.isEmpty()) window.open(command.input, command.frame);
   if (!command.run.isEmpty()) window.runActions(command.run);
   if (!command.screenshot.isEmpty()) new Screenshot(window, command.screenshot, command.waitIdle);

@@ -7,6 +7,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -251,8 +252,9 @@ Picked surfaceInfo(const LayerInput& in, const SurfacePoint& hit) {
   return info;
 }
 
-std::optional<Picked> pickIn(vtkRenderer* renderer, const LayerInput& in, const std::vector<const Drawn*>& drawn,
-                             bool surfaceShown, int xDisplay, int yDisplay) {
+namespace {
+/// From the eye through a window pixel; not finite where the view has no depth.
+Ray rayThrough(vtkRenderer* renderer, int xDisplay, int yDisplay) {
   const auto worldAt = [&](double depth) {
     renderer->SetDisplayPoint(xDisplay, yDisplay, depth);
     renderer->DisplayToWorld();
@@ -262,7 +264,43 @@ std::optional<Picked> pickIn(vtkRenderer* renderer, const LayerInput& in, const 
   };
   vtkCamera* camera = renderer->GetActiveCamera();
   const Eigen::Vector3d eye = camera->GetParallelProjection() ? worldAt(0) : toEigen(camera->GetPosition()), beyond = worldAt(1);
-  const Ray ray{eye, (beyond - eye).normalized()};
+  return {eye, (beyond - eye).normalized()};
+}
+
+/// How far along the ray a triangle lies, from either side. Moller & Trumbore, Fast, Minimum Storage Ray/Triangle Intersection.
+std::optional<double> distanceTo(const Ray& ray, const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+  const Eigen::Vector3d ab = b - a, ac = c - a, p = ray.direction.cross(ac), from = ray.origin - a, q = from.cross(ab);
+  const double det = ab.dot(p), u = from.dot(p) / det, v = ray.direction.dot(q) / det, t = ac.dot(q) / det;
+  if (!(u >= 0 && v >= 0 && u + v <= 1 && t > 0)) return {};  // also NaN, where the ray is parallel
+  return t;
+}
+}  // namespace
+
+std::optional<Picked> cameraUnder(vtkRenderer* renderer, const LayerInput& in, int xDisplay, int yDisplay) {
+  const Ray ray = rayThrough(renderer, xDisplay, yDisplay);
+  if (!ray.origin.allFinite() || !ray.direction.allFinite()) return {};
+  double nearest = std::numeric_limits<double>::infinity();
+  int found = -1;
+  for (const int frame : in.frames) {
+    const Eigen::Vector3d eye = in.frame(frame).camera.centreInWorld();
+    const std::array<Eigen::Vector3d, 4> c = imagePlane(in.frame(frame).camera, in.scale.cameraDepth);
+    for (std::size_t i = 0; i < 4; ++i)
+      for (const Eigen::Vector3d& apex : {eye, c[(i + 2) % 4]})  // a side, and half of the image plane
+        if (const std::optional<double> t = distanceTo(ray, c[i], c[(i + 1) % 4], apex); t && *t < nearest) {
+          nearest = *t;
+          found = frame;
+        }
+  }
+  if (found < 0) return {};
+  Picked picked = cameraPicked(*in.inspection, in.models, found);
+  picked.position = ray.origin + nearest * ray.direction;
+  return picked;
+}
+
+std::optional<Picked> pickIn(vtkRenderer* renderer, const LayerInput& in, const std::vector<const Drawn*>& drawn,
+                             bool surfaceShown, int xDisplay, int yDisplay) {
+  const Ray ray = rayThrough(renderer, xDisplay, yDisplay);
+  const Eigen::Vector3d eye = ray.origin;
   if (!ray.origin.allFinite() || !ray.direction.allFinite()) return {};
 
   std::optional<Picked> result;

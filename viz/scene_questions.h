@@ -40,6 +40,11 @@ Picked surfaceInfo(const LayerInput& in, const SurfacePoint& hit);
 /// A picked point of a contour is a direction from the observed one: fills Picked::direction.
 void addDirection(const LayerInput& in, Picked& picked);
 
+/// Of a drawn camera: which frame, and its numbers.
+Picked cameraPicked(const Inspection& inspection, const std::vector<std::string>& models, int frame);
+/// The nearest drawn camera whose frustum, taken as solid, lies under a window pixel (y up).
+std::optional<Picked> cameraUnder(vtkRenderer* renderer, const LayerInput& in, int xDisplay, int yDisplay);
+
 /// What lies under a window pixel (y up): the surface exactly, everything else by its actors, and what lies on the surface before
 /// the surface itself. @param drawn  of the visible layers. @param surfaceShown  through a virtual camera it is not asked.
 std::optional<Picked> pickIn(vtkRenderer* renderer, const LayerInput& in, const std::vector<const Drawn*>& drawn,

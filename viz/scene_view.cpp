@@ -580,7 +580,17 @@ std::optional<Picked> SceneView::pick(int xDisplay, int yDisplay) const {
     if (!layer.visible) continue;
     for (const Drawn& d : layer.content.drawn) drawn.push_back(&d);
   }
-  return pickIn(impl_->renderer, impl_->input, drawn, impl_->layers[layerIndex("surface")].visible, xDisplay, yDisplay);
+  std::optional<Picked> picked =
+      pickIn(impl_->renderer, impl_->input, drawn, impl_->layers[layerIndex("surface")].visible, xDisplay, yDisplay);
+  return picked ? picked : pickCamera(xDisplay, yDisplay);
+}
+
+std::optional<Picked> SceneView::pickCamera(int xDisplay, int yDisplay) const {
+  if (!impl_->valid() || !impl_->renderer->GetRenderWindow()) return {};
+  impl_->update();
+  // One that is looked through has its frustum around the eye.
+  if (!impl_->layers[layerIndex("cameras")].visible || impl_->input.eye != Eye::Outside) return {};
+  return cameraUnder(impl_->renderer, impl_->input, xDisplay, yDisplay);
 }
 
 }  // namespace glint::viz

@@ -58,8 +58,8 @@ enum class Eye { Outside, Camera, VirtualCamera };
 /// Along the world's axes; which is upwards is guessed from the cameras.
 enum class AxisView { Front, Back, Left, Right, Top, Bottom };
 
-/// How a highlight is looked at: T from the side, so that the gap between S and T shows, with the ends of its walks; as its camera sees
-/// it, from a little aside; with its camera, the virtual camera and the light, square to the plane of reflection.
+/// How a highlight is looked at: T from the side, so that the gap between S and T shows, with the ends of its walks; as its
+/// camera sees it, from a little aside; with its camera, the virtual camera and the light, square to the plane of reflection.
 enum class HighlightLook { Section, Camera, Mirror };
 
 /// What the colour of a drawn camera says.
@@ -149,6 +149,8 @@ class SceneView {
   /// How often a layer was built since construction; for tests of "rebuilt only where its input changed".
   int buildCount(const std::string& layer) const;
   std::optional<Picked> pick(int xDisplay, int yDisplay) const;
+  /// The nearest camera that is drawn there, also between its lines; nothing where none is or cameras are hidden.
+  std::optional<Picked> pickCamera(int xDisplay, int yDisplay) const;
 
  private:
   struct Impl;

@@ -7,8 +7,9 @@
 #include <QPainter>
 #include <QPalette>
 #include <QPixmap>
-#include <QStyleFactory>
 #include <QSvgRenderer>
+
+#include "gui/base/clear_style.h"
 
 // The icons are compiled into a static library: without this call the linker leaves them out. Must stand outside of namespaces.
 static void initIcons() { Q_INIT_RESOURCE(icons); }
@@ -53,7 +54,8 @@ QPalette palette(Theme theme) {
   const QColor window = dark ? QColor(0x2a, 0x2c, 0x2f) : QColor(0xf2, 0xf3, 0xf4);
   const QColor base = dark ? QColor(0x1f, 0x21, 0x23) : QColor(0xff, 0xff, 0xff);
   const QColor text = dark ? QColor(0xdc, 0xde, 0xe0) : QColor(0x22, 0x25, 0x28);
-  const QColor faded = dark ? QColor(0x7c, 0x81, 0x86) : QColor(0x9a, 0x9f, 0xa5);
+  const QColor faded = dark ? QColor(0x93, 0x99, 0x9f) : QColor(0x67, 0x6d, 0x73);  // 4.5 : 1, it is read
+  const QColor disabled = dark ? QColor(0x74, 0x79, 0x7e) : QColor(0x9a, 0x9f, 0xa5);
   QPalette p;
   p.setColor(QPalette::Window, window);
   p.setColor(QPalette::WindowText, text);
@@ -75,7 +77,7 @@ QPalette palette(Theme theme) {
   p.setColor(QPalette::Dark, dark ? QColor(0x18, 0x1a, 0x1c) : QColor(0xa8, 0xac, 0xb0));
   p.setColor(QPalette::Shadow, dark ? QColor(0x10, 0x11, 0x12) : QColor(0x80, 0x84, 0x88));
   for (const auto role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText})
-    p.setColor(QPalette::Disabled, role, faded);
+    p.setColor(QPalette::Disabled, role, disabled);
   return p;
 }
 
@@ -88,7 +90,10 @@ QString styleSheet(Theme theme) {
              "QMainWindow::separator { background: %1; width: 3px; height: 3px; }"
              "QDockWidget { font-weight: 600; }"
              "QDockWidget::title { background: %2; padding: 4px 8px; border-bottom: 1px solid %1; }"
-             "QToolBar { border: 0; border-bottom: 1px solid %1; spacing: 2px; padding: 2px 4px; }"
+             // Tabs of docks that do not all fit are scrolled to, not shortened until none can be read.
+             "QMainWindow > QTabBar { qproperty-elideMode: ElideNone; }"
+             "QToolBar { border: 0; spacing: 2px; padding: 1px 4px; }"
+             "QToolBar#tools { border-bottom: 1px solid %1; padding: 2px 4px; }"
              "QStatusBar { border-top: 1px solid %1; } QStatusBar::item { border: 0; }"
              "QTableView { gridline-color: %1; border: 0; }"
              "QHeaderView::section { background: %2; border: 0; border-right: 1px solid %1; border-bottom: 1px solid %1; "
@@ -103,7 +108,7 @@ QString styleSheet(Theme theme) {
 void applyTheme(QApplication& app, Theme theme) {
   initIcons();
   theTheme = theme;
-  app.setStyle(QStyleFactory::create(QStringLiteral("Fusion")));
+  app.setStyle(new ClearStyle);
   app.setPalette(palette(theme));
   app.setStyleSheet(styleSheet(theme));
 }
@@ -111,6 +116,7 @@ void applyTheme(QApplication& app, Theme theme) {
 Theme currentTheme() { return theTheme; }
 QIcon icon(const QString& name) { return QIcon(new SvgIconEngine(name)); }
 QColor accentColour() { return toQColor(viz::kActiveView); }
+QColor focusColour() { return theTheme == Theme::Dark ? QColor(0x8c, 0xc4, 0xff) : QColor(0x0b, 0x57, 0xa4); }
 QColor warningColour() { return theTheme == Theme::Dark ? QColor(0xe0, 0xa8, 0x30) : QColor(0xa0, 0x6a, 0x00); }
 QColor errorColour() { return theTheme == Theme::Dark ? QColor(0xf0, 0x7a, 0x6a) : QColor(0xb3, 0x2a, 0x1a); }
 QColor toQColor(const viz::Colour& c) { return QColor::fromRgbF(c[0], c[1], c[2]); }

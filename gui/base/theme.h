@@ -20,6 +20,7 @@ Theme currentTheme();
 QIcon icon(const QString& name);
 
 QColor accentColour();
+QColor focusColour();    ///< the ring around what the keyboard acts on
 QColor warningColour();  ///< amber: stale, out of date
 QColor errorColour();
 QColor toQColor(const viz::Colour& c);

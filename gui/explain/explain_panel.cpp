@@ -2,6 +2,7 @@
 #include "gui/explain/explain_panel.h"
 
 #include <QAction>
+#include <QEvent>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QListWidget>
@@ -17,6 +18,7 @@
 #include <cmath>
 #include <utility>
 
+#include "gui/base/eliding_delegate.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/explain/explain_texts.h"
@@ -95,6 +97,7 @@ ExplainPanel::ExplainPanel(Document& document, QWidget* parent)
   steps_->setObjectName(QStringLiteral("explain.steps"));
   for (const ExplainText& t : explainTexts().steps)
     steps_->addItem(QStringLiteral("%1  %2").arg(steps_->count() + 1).arg(t.title));
+  steps_->setItemDelegate(new ElidingDelegate(steps_));
   text_->setObjectName(QStringLiteral("explain.text"));
   text_->setOpenLinks(false);
   walkView_->hide();
@@ -107,7 +110,7 @@ ExplainPanel::ExplainPanel(Document& document, QWidget* parent)
   split->setSizes({steps_->sizeHintForRow(0) * steps_->count() + 8, 290, 400});
   split->setChildrenCollapsible(false);
   column->addWidget(split, 1);
-  setMinimumWidth(280);
+  setMinimumWidth(220);
 
   connect(back_, &QToolButton::clicked, this, &ExplainPanel::back);
   connect(next_, &QToolButton::clicked, this, &ExplainPanel::next);
@@ -120,6 +123,11 @@ ExplainPanel::ExplainPanel(Document& document, QWidget* parent)
   for (const auto signal : {&Document::inspectionChanged, &Document::selectionChanged, &Document::sceneOpened})
     connect(&document_, signal, this, &ExplainPanel::compute);
   refresh();
+}
+
+void ExplainPanel::changeEvent(QEvent* e) {
+  QWidget::changeEvent(e);
+  if (e->type() == QEvent::PaletteChange) text_->setHtml(html());  // the text has colours of the theme
 }
 
 int ExplainPanel::step() const {

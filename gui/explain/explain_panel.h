@@ -49,6 +49,9 @@ class ExplainPanel : public QWidget {
   void lessonRequested(const QString& session);
   void problem(const QString& oneLine);
 
+ protected:
+  void changeEvent(QEvent* e) override;
+
  private:
   void compute();
   void refresh();

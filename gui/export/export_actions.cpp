@@ -4,7 +4,6 @@
 #include <QApplication>
 #include <QClipboard>
 #include <QDir>
-#include <QFileDialog>
 #include <QFileInfo>
 #include <QMenu>
 #include <QRegularExpression>
@@ -22,6 +21,7 @@
 #include "gui/base/to_qimage.h"
 #include "gui/document/figure.h"
 #include "gui/export/figure_actions.h"
+#include "gui/export/folder_dialog.h"
 #include "gui/export/movie_actions.h"
 #include "gui/export/repro_actions.h"
 #include "viz/pictures.h"
@@ -74,7 +74,10 @@ void ExportActions::setSnapshot(std::function<Opened()> snapshot) {
 
 void ExportActions::ask(const QString& title, const QString& name, const QString& filter, const std::function<Write()>& prepare) {
   if (!document_.inspection()) return;
-  const QString file = QFileDialog::getSaveFileName(window_, title, name, filter);
+  const QFileInfo proposed(name);
+  const QString file =
+      askForFile(window_, document_, title,
+                 suggestedFile(document_, proposed.completeBaseName(), QLatin1Char('.') + proposed.suffix()), filter);
   if (file.isEmpty()) return;
   job_.run([this, file, write = prepare()] {
     QString trouble;
@@ -160,9 +163,12 @@ void ExportActions::addActions(Actions& actions, QMenu* menu) {
   actions.add("export.masks", menu, tr("Labels with m&asks…"),
               [this] {
                 if (!document_.inspection()) return;
-                const QString folder =
-                    QFileDialog::getSaveFileName(window_, tr("New folder for labels"), suggestedFile(document_, "labels", {}));
-                if (!folder.isEmpty()) writeLabels(folder);
+                FolderDialog dialog(tr("Labels with masks"),
+                                    tr("Writes a folder with a mask for every frame, light and model, and COCO labels."),
+                                    suggestedFile(document_, "labels", {}), tr("Write"), window_);
+                if (dialog.exec() != QDialog::Accepted) return;
+                rememberExport(document_, dialog.folder());
+                writeLabels(dialog.folder());
               },
               {{}, {}, tr("A folder with a mask for each frame, light and model, and COCO labels")});
   repro_->addActions(actions, menu);

@@ -47,15 +47,27 @@ void writeBytes(const QString& file, const QByteArray& bytes) {
 }
 }  // namespace
 
+namespace {
+/// The folder of the last export, for the input that it was of: the next one starts there.
+std::pair<QString, QString> theLastExport;
+}  // namespace
+
+void rememberExport(const Document& document, const QString& file) {
+  theLastExport = {document.inputFile(), QFileInfo(file).absolutePath()};
+}
+
 QString suggestedFile(const Document& document, const QString& what, const QString& ending) {
   const QFileInfo input(document.sessionFile().isEmpty() ? document.inputFile() : document.sessionFile());
   const QString base = input.fileName() == QLatin1String("scene.json") ? input.dir().dirName() : input.completeBaseName();
-  return input.dir().filePath(QStringLiteral("%1-%2%3").arg(base, what, ending));
+  const bool before = theLastExport.first == document.inputFile() && QFileInfo(theLastExport.second).isDir();
+  return QDir(before ? theLastExport.second : input.absolutePath()).filePath(QStringLiteral("%1-%2%3").arg(base, what, ending));
 }
 
-QString askForFile(QWidget* window, const QString& title, const QString& suggestion, const QString& filters) {
+QString askForFile(QWidget* window, const Document& document, const QString& title, const QString& suggestion,
+                   const QString& filters) {
   QString filter;
   QString file = QFileDialog::getSaveFileName(window, title, suggestion, filters, &filter);
+  if (!file.isEmpty()) rememberExport(document, file);
   if (file.isEmpty() || !QFileInfo(file).suffix().isEmpty()) return file;
   const QRegularExpressionMatch ending = QRegularExpression(QStringLiteral("\\*(\\.\\w+)")).match(filter);
   return file + ending.captured(1);
@@ -72,7 +84,7 @@ void FigureActions::addActions(Actions& actions, QMenu* menu) {
                 FigureDialog dialog(tr("3D view as a picture"), QStringLiteral("scene"), shownSize(*scene_.views().widget()),
                                     currentTheme() == Theme::Dark, window_);
                 if (dialog.exec() != QDialog::Accepted) return;
-                const QString file = askForFile(window_, dialog.windowTitle(), suggestedFile(document_, "3d", ".png"),
+                const QString file = askForFile(window_, document_, dialog.windowTitle(), suggestedFile(document_, "3d", ".png"),
                                                 tr("Pictures with the session inside (*.png)"));
                 if (!file.isEmpty()) writeScene(dialog.look(), file);
               },
@@ -87,7 +99,7 @@ void FigureActions::addActions(Actions& actions, QMenu* menu) {
                             window_);
         if (dialog.exec() != QDialog::Accepted) return;
         const QString file = askForFile(
-            window_, dialog.windowTitle(), suggestedFile(document_, "frame", ".png"),
+            window_, document_, dialog.windowTitle(), suggestedFile(document_, "frame", ".png"),
             tr("Pictures with the session inside (*.png);;Overlays as strokes, SVG (*.svg);;Overlays as strokes, PDF (*.pdf)"));
         if (!file.isEmpty()) writeFrame(dialog.look(), file);
       },

@@ -47,9 +47,13 @@ class FigureActions : public QObject {
   std::function<Opened()> snapshot_;
 };
 
-/// A name for a picture: where the session lies, after it and what is shown: "vase-frame.png".
+/// A name for what is exported, after the session and what is shown: "vase-frame.png", where the last export of this input went,
+/// else beside the session.
 QString suggestedFile(const Document& document, const QString& what, const QString& ending);
+/// Something was exported as `file`.
+void rememberExport(const Document& document, const QString& file);
 /// Asks for a file to write; the chosen filter's ending is added where the name has none. "" = given up.
-QString askForFile(QWidget* window, const QString& title, const QString& suggestion, const QString& filters);
+QString askForFile(QWidget* window, const Document& document, const QString& title, const QString& suggestion,
+                   const QString& filters);
 
 }  // namespace glint::gui

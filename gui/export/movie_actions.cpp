@@ -46,9 +46,9 @@ void MovieActions::ask(MovieOf of) {
   MovieDialog dialog(of, document_.frameCount(), currentTheme() == Theme::Dark, window_);
   if (dialog.exec() != QDialog::Accepted) return;
   const MovieLook look = dialog.look();
-  const QString file =
-      askForFile(window_, tr("Movie"), suggestedFile(document_, look.of == MovieOf::Turntable ? "turntable" : "timeline", ".mp4"),
-                 tr("H.264 (*.mp4);;VP8 (*.webm);;Motion JPEG (*.avi);;Lossless (*.mkv);;Series of pictures (*.png)"));
+  const QString file = askForFile(
+      window_, document_, tr("Movie"), suggestedFile(document_, look.of == MovieOf::Turntable ? "turntable" : "timeline", ".mp4"),
+      tr("H.264 (*.mp4);;VP8 (*.webm);;Motion JPEG (*.avi);;Lossless (*.mkv);;Series of pictures (*.png)"));
   if (!file.isEmpty()) write(look, file);
 }
 

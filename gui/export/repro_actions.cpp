@@ -4,7 +4,6 @@
 #include <QComboBox>
 #include <QDialogButtonBox>
 #include <QDir>
-#include <QFileDialog>
 #include <QFormLayout>
 #include <QLabel>
 #include <QPushButton>
@@ -12,11 +11,13 @@
 
 #include "gui/base/text.h"
 #include "gui/export/figure_actions.h"
+#include "gui/export/folder_dialog.h"
 #include "gui/export/long_job.h"
 
 namespace glint::gui {
 
-ReproDialog::ReproDialog(const Fault& fault, const QString& frame, int training, QWidget* parent) : QDialog(parent) {
+ReproDialog::ReproDialog(const Fault& fault, const QString& frame, int training, const QString& folder, QWidget* parent)
+    : QDialog(parent), folder_(new FolderRow(folder)) {
   setWindowTitle(tr("Minimal session of a fault"));
   setObjectName(QStringLiteral("reproDialog"));
   auto* form = new QFormLayout(this);
@@ -45,11 +46,18 @@ ReproDialog::ReproDialog(const Fault& fault, const QString& frame, int training,
     percent_->hide();
   }
   auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel);
-  buttons->button(QDialogButtonBox::Ok)->setText(tr("Choose a folder…"));
+  QPushButton* go = buttons->button(QDialogButtonBox::Ok);
+  go->setText(tr("Search and write"));
+  form->addRow(tr("New &folder for it"), folder_);
   form->addRow(buttons);
+  const auto check = [this, go] { go->setEnabled(folder_->problem().isEmpty()); };
+  connect(folder_, &FolderRow::changed, this, check);
+  check();
   connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
   connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
 }
+
+QString ReproDialog::folder() const { return folder_->folder(); }
 
 FaultTolerance ReproDialog::tolerance() const {
   return {kept_->currentIndex() == 0 ? FaultKept::Within : FaultKept::AtLeast, percent_->value() / 100.0};
@@ -74,11 +82,10 @@ void ReproActions::addActions(Actions& actions, QMenu* menu) {
                 int training = 0;
                 for (int i = 0; i < document_.frameCount(); ++i) training += inspection->isTraining(i);
                 const QString frame = toQString(inspection->scene->frames[std::size_t(of->frame)].id);
-                ReproDialog dialog(*of, frame, training, window_);
+                ReproDialog dialog(*of, frame, training, suggestedFile(document_, "minimal", {}), window_);
                 if (dialog.exec() != QDialog::Accepted) return;
-                const QString folder = QFileDialog::getSaveFileName(window_, tr("New folder for the minimal session"),
-                                                                    suggestedFile(document_, "minimal", {}));
-                if (!folder.isEmpty()) write(*of, dialog.tolerance(), folder);
+                rememberExport(document_, dialog.folder());
+                write(*of, dialog.tolerance(), dialog.folder());
               },
               {{}, {}, tr("The smallest set of training frames that still shows the error of the selected frame and model")});
 }

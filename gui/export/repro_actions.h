@@ -14,18 +14,21 @@ class QWidget;
 
 namespace glint::gui {
 
+class FolderRow;
 class LongJob;
 
-/// Says which fault is meant and asks how near the smaller one has to come.
+/// Says which fault is meant and asks how near the smaller one has to come, and for the folder to write.
 class ReproDialog : public QDialog {
   Q_OBJECT
  public:
-  ReproDialog(const Fault& fault, const QString& frame, int training, QWidget* parent);
+  ReproDialog(const Fault& fault, const QString& frame, int training, const QString& folder, QWidget* parent);
   FaultTolerance tolerance() const;
+  QString folder() const;
 
  private:
   QComboBox* kept_;
   QSpinBox* percent_;
+  FolderRow* folder_;
 };
 
 /// The smallest set of training frames that still shows the selected fault, as a session folder.

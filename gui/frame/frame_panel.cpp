@@ -2,16 +2,19 @@
 #include "gui/frame/frame_panel.h"
 
 #include <QAction>
+#include <QEvent>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QMenu>
 #include <QSplitter>
+#include <QToolBar>
 #include <QToolButton>
 #include <QVBoxLayout>
 #include <algorithm>
 
 #include "core/geometry/polyline.h"
 #include "gui/base/flow_layout.h"
+#include "gui/base/panel_scroll.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/frame/develop_bar.h"
@@ -41,6 +44,7 @@ FramePanel::FramePanel(Document& document, QWidget* parent) : QWidget(parent), d
   both->addWidget(canvas_);
   both->addWidget(second_);
   both->setChildrenCollapsible(false);
+  both->setMinimumHeight(90);
   column->addWidget(both, 1);
   captions_ = new QLabel;
   captions_->setObjectName(QStringLiteral("frameCaptions"));
@@ -49,7 +53,8 @@ FramePanel::FramePanel(Document& document, QWidget* parent) : QWidget(parent), d
   captions_->setMargin(5);
   captions_->setWordWrap(true);
   connect(captions_, &QLabel::linkActivated, this, &FramePanel::followLink);
-  column->addWidget(captions_);
+  captionsScroll_ = new PanelScroll(captions_, {150, 40}, PanelScroll::Height::Hugs);
+  column->addWidget(captionsScroll_);
 
   connect(canvas_, &FrameCanvas::zoomChanged, this,
           [this](double z) { zoom_->setText(QStringLiteral("%1 %").arg(z * 100, 0, 'f', z < 0.1 ? 1 : 0)); });
@@ -111,9 +116,12 @@ void FramePanel::connectDocument() {
 }
 
 void FramePanel::buildToolbar(QVBoxLayout* column) {
-  auto* bar = new QWidget;
-  auto* row = new QHBoxLayout(bar);
-  row->setContentsMargins(8, 3, 4, 3);
+  auto* bar = new QToolBar;  // what a narrow view has no room for is behind its arrow
+  bar->setObjectName(QStringLiteral("frameBar"));
+  bar->setIconSize({16, 16});
+  auto* heading = new QWidget;
+  auto* row = new QHBoxLayout(heading);
+  row->setContentsMargins(4, 0, 0, 0);
   row->setSpacing(2);
   title_ = new QLabel;
   title_->setObjectName(QStringLiteral("frameTitle"));
@@ -124,43 +132,44 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
   row->addSpacing(6);
   row->addWidget(role_);
   row->addStretch(1);
-  const auto tool = [&](const char* iconName, const QString& tip) {
-    auto* button = new QToolButton;
-    button->setIcon(icon(QLatin1String(iconName)));
-    button->setToolTip(tip);
-    button->setAutoRaise(true);
-    row->addWidget(button);
-    return button;
-  };
   zoom_ = new QLabel;
   zoom_->setProperty("role", "faded");
   zoom_->setMinimumWidth(fontMetrics().horizontalAdvance(QStringLiteral("51200 %")));
   zoom_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
   row->addWidget(zoom_);
-  connect(tool("highlight", tr("Zoom to the highlight (F or H)")), &QToolButton::clicked, this, &FramePanel::goToHighlight);
-  connect(tool("pixels", tr("One screen pixel per photograph pixel (1)")), &QToolButton::clicked, canvas_,
+  heading->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
+  bar->addWidget(heading);
+  const auto tool = [&](const char* iconName, const QString& tip) {
+    QAction* action = bar->addAction(icon(QLatin1String(iconName)), tip);
+    bar->widgetForAction(action)->setObjectName(QLatin1String(iconName));
+    return action;
+  };
+  connect(tool("highlight", tr("Zoom to the highlight (F or H)")), &QAction::triggered, this, &FramePanel::goToHighlight);
+  connect(tool("pixels", tr("One screen pixel per photograph pixel (1)")), &QAction::triggered, canvas_,
           &FrameCanvas::onePixelPerPixel);
-  connect(tool("fit", tr("Whole photograph (0, double click)")), &QToolButton::clicked, this, [this] {
+  connect(tool("fit", tr("Whole photograph (0, double click)")), &QAction::triggered, this, [this] {
     canvas_->fit();
     second_->fit();
   });
   hand_ = new HandTool(document_, this);
   canvas_->setDragTool(hand_);
-  handButton_ = tool("hand", tr("Move highlights, peaks and the camera by hand: a what-if (E)"));
-  handButton_->setObjectName(QStringLiteral("hand"));
-  handButton_->setCheckable(true);
-  connect(handButton_, &QToolButton::clicked, hand_, &HandTool::setOn);
-  connect(hand_, &HandTool::onChanged, handButton_, &QToolButton::setChecked);
+  QAction* byHand = tool("hand", tr("Move highlights, peaks and the camera by hand: a what-if (E)"));
+  byHand->setCheckable(true);
+  connect(byHand, &QAction::triggered, hand_, &HandTool::setOn);
+  connect(hand_, &HandTool::onChanged, byHand, &QAction::setChecked);
   connect(hand_, &HandTool::carried, canvas_, &FrameCanvas::setHeld);
   sideBySide_ = tool("side-by-side", tr("Two frames side by side, with tangent epipolar lines (D)"));
-  sideBySide_->setObjectName(QStringLiteral("sideBySide"));
   sideBySide_->setCheckable(true);
-  connect(sideBySide_, &QToolButton::clicked, this, [this](bool on) {
+  connect(sideBySide_, &QAction::triggered, this, [this](bool on) {
     document_.setOption("frame/side-by-side", on ? "on" : "off", on ? tr("Two frames side by side") : tr("One frame"));
   });
   column->addWidget(bar);
+  auto* content = new QWidget;
+  auto* rows = new QVBoxLayout(content);
+  rows->setContentsMargins(0, 0, 0, 0);
+  rows->setSpacing(0);
   develop_ = new DevelopBar(document_);
-  column->addWidget(develop_);
+  rows->addWidget(develop_);
   auto* legend = new QWidget;
   auto* flow = new FlowLayout;
   flow->setContentsMargins(4, 0, 4, 3);
@@ -177,9 +186,23 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
     flow->addWidget(button);
     toggles_.push_back(button);
   }
-  column->addWidget(legend);
+  rows->addWidget(legend);
   pair_ = new PairBar(document_);
-  column->addWidget(pair_);
+  rows->addWidget(pair_);
+  switches_ = new PanelScroll(content, {150, 30}, PanelScroll::Height::Hugs);
+  column->addWidget(switches_);
+}
+
+void FramePanel::resizeEvent(QResizeEvent* e) {
+  QWidget::resizeEvent(e);
+  // In a low window the photograph keeps the largest share.
+  switches_->setMost(std::max(30, height() * 28 / 100));
+  captionsScroll_->setMost(std::max(40, height() * 28 / 100));
+}
+
+void FramePanel::changeEvent(QEvent* e) {
+  QWidget::changeEvent(e);
+  if (e->type() == QEvent::PaletteChange) refresh_.start();  // the captions have colours of the theme
 }
 
 bool FramePanel::busy() const { return refresh_.isActive() || loader_.busy() || secondLoader_.busy(); }
@@ -292,7 +315,8 @@ void FramePanel::showCaptions(const viz::FrameOverlay& overlay) {
   const QString faded = palette().color(QPalette::PlaceholderText).name(), warning = warningColour().name();
   const QString plain = palette().color(QPalette::Text).name();
   const auto cell = [](const QString& text, const char* align = "right") {
-    return QStringLiteral("<td align='%1' style='padding-right:16px'>%2</td>").arg(QLatin1String(align), text);
+    return QStringLiteral("<td align='%1' style='padding-right:16px; white-space:nowrap'>%2</td>")
+        .arg(QLatin1String(align), text);
   };
   const auto number = [&](const std::optional<double>& value, int digits) {
     return cell(value ? QString::number(*value, 'f', digits) : QStringLiteral("–"));

@@ -29,6 +29,7 @@ class DevelopBar;
 class FrameCanvas;
 class HandTool;
 class PairBar;
+class PanelScroll;
 
 /// The frame view: the selected frame's photograph or radiance with its overlay, beside it another frame when wished, a legend
 /// whose entries are toggles, and below it one line per model with its error or the reason for none, as a table whose squares
@@ -53,6 +54,10 @@ class FramePanel : public QWidget {
  signals:
   void probed(const QString& text);
 
+ protected:
+  void changeEvent(QEvent* e) override;
+  void resizeEvent(QResizeEvent* e) override;
+
  private:
   void buildToolbar(QVBoxLayout* column);
   void connectDocument();
@@ -74,7 +79,8 @@ class FramePanel : public QWidget {
   DevelopBar* develop_;
   PairBar* pair_;
   QLabel *title_, *role_, *zoom_, *captions_;
-  QToolButton *handButton_, *sideBySide_;
+  QAction* sideBySide_;
+  PanelScroll *switches_, *captionsScroll_;
   std::vector<QToolButton*> toggles_;             ///< one per viz::overlayLayers()
   std::map<std::string, QAction*> layerActions_;  ///< by layer name
   QAction* colourByRole_ = nullptr;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/frame/ladder_panel.h"
 
+#include <QEvent>
 #include <QLabel>
 #include <QMouseEvent>
 #include <QVBoxLayout>
@@ -30,6 +31,9 @@ LadderPanel::LadderPanel(Document& document, PhotoLoader& loader, QWidget* paren
   for (const auto signal : {&Document::sceneOpened, &Document::selectionChanged, &Document::layersChanged,
                             &Document::optionsChanged, &Document::inspectionChanged})
     connect(&document_, signal, this, &LadderPanel::scheduleRefresh);
+  connect(&document_, &Document::frameInspectionChanged, this, [this] {
+    if (!document_.inspection()) scheduleRefresh();
+  });
   connect(&document_, &Document::sceneOpened, this, [this] {
     frame_ = -1;
     moved_ = false;
@@ -54,6 +58,16 @@ std::vector<FrameCanvas*> LadderPanel::canvases() const {
   return all;
 }
 
+/// Of a scene just opened, the selected frame's results come before all others, and the frame view shows them too.
+std::shared_ptr<const Inspection> LadderPanel::inspection() const {
+  return document_.inspection() ? document_.inspection() : document_.frameInspection();
+}
+
+void LadderPanel::changeEvent(QEvent* e) {
+  QWidget::changeEvent(e);
+  if (e->type() == QEvent::PaletteChange) scheduleRefresh();  // captions have colours of the theme
+}
+
 void LadderPanel::scheduleRefresh() {
   if (isVisible()) refresh_.start();
 }
@@ -62,7 +76,7 @@ void LadderPanel::showEvent(QShowEvent*) { refresh(); }
 void LadderPanel::resizeEvent(QResizeEvent*) { arrange(); }
 
 void LadderPanel::refresh() {
-  const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  const std::shared_ptr<const Inspection> inspection = this->inspection();
   const int frame = document_.selection().frame;
   const bool any = inspection && frame < int(inspection->evidence.size());
   const std::vector<std::string> models = any ? viz::modelsInOrder(*inspection) : std::vector<std::string>();
@@ -127,6 +141,7 @@ void LadderPanel::arrange() {
     const int top = row * (height() + kGap) / rows, bottom = (row + 1) * (height() + kGap) / rows - kGap;
     tiles_[std::size_t(i)].box->setGeometry(left, top, right - left, bottom - top);
     tiles_[std::size_t(i)].box->layout()->activate();
+    showCaption(tiles_[std::size_t(i)]);
   }
   const FrameCanvas* first = tiles_.front().canvas;
   // A new frame's highlight comes into the middle; what the user moved to otherwise stays.
@@ -137,7 +152,7 @@ void LadderPanel::arrange() {
 }
 
 void LadderPanel::showTile(Tile& tile) {
-  const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  const std::shared_ptr<const Inspection> inspection = this->inspection();
   const int frame = document_.selection().frame;
   viz::OverlayOptions options;
   options.models = {tile.model};
@@ -148,28 +163,41 @@ void LadderPanel::showTile(Tile& tile) {
   options.residualScale = std::clamp(document_.option("frame/residual-scale", 1.0), 1.0, 1000.0);
   const viz::FrameOverlay overlay = viz::frameOverlay(*inspection, frame, options);
   const bool selected = document_.selection().model == tile.model;
-  QString below;
+  tile.below.clear();
+  tile.failed = false;
   for (const viz::OverlayCaption& c : overlay.captions) {
     if (c.model != tile.model) continue;
-    if (c.score.errorPct)
-      below = tr("%1 %   %2 px").arg(numberText(*c.score.errorPct, 3), numberText(*c.score.errorPx, 3));
-    else
-      below = QStringLiteral("<span style='color:%1'>%2</span>")
-                  .arg(warningColour().name(), toQString(c.score.reason).toHtmlEscaped());
+    tile.failed = !c.score.errorPct;
+    tile.below = tile.failed ? toQString(c.score.reason)
+                             : tr("%1 %   %2 px").arg(numberText(*c.score.errorPct, 3), numberText(*c.score.errorPx, 3));
     tile.text->setToolTip(toQString(c.text));
   }
-  tile.text->setText(QStringLiteral("<span style='color:%1'>■</span>&nbsp;<b>%2</b> &nbsp;%3")
-                         .arg(toQColor(viz::modelColour(tile.model)).name(), toQString(tile.model).toHtmlEscaped(), below));
   // A reason may be longer than the tile: it is cut, the tool tip has it whole.
   tile.text->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
   tile.text->setStyleSheet(selected ? QStringLiteral("background: %1; color: white").arg(accentColour().darker(120).name())
                                     : QString());
+  showCaption(tile);
   tile.canvas->setOverlay(overlay);
   if (loader_.pictureFrame() == frame) tile.canvas->setPicture(loader_.picture());
 }
 
+void LadderPanel::showCaption(const Tile& tile) {
+  QFont bold = tile.text->font();
+  bold.setBold(true);
+  const QFontMetrics heading(bold), plain(tile.text->font());
+  const QString space(QChar::Nbsp), square(QChar(0x25A0));
+  const int room = tile.box->width() - 2 * tile.text->margin() - 4, mark = plain.horizontalAdvance(square + space);
+  const QString model = heading.elidedText(toQString(tile.model), Qt::ElideRight, std::max(0, room - mark));
+  const int left = room - mark - heading.horizontalAdvance(model) - plain.horizontalAdvance(space + space);
+  const QString below = left > 0 ? plain.elidedText(tile.below, Qt::ElideRight, left).toHtmlEscaped() : QString();
+  tile.text->setText(
+      QStringLiteral("<span style='color:%1'>%2</span>%3<b>%4</b>%3%3%5")
+          .arg(toQColor(viz::modelColour(tile.model)).name(), square, space, model.toHtmlEscaped(),
+               tile.failed ? QStringLiteral("<span style='color:%1'>%2</span>").arg(warningColour().name(), below) : below));
+}
+
 void LadderPanel::selectIn(const std::string& model, double x, double y) {
-  const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  const std::shared_ptr<const Inspection> inspection = this->inspection();
   if (!inspection) return;
   viz::OverlayOptions options;
   options.models = {model};

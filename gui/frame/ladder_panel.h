@@ -28,12 +28,13 @@ class LadderPanel : public QWidget {
   std::vector<FrameCanvas*> canvases() const;
   void addActions(Actions& actions, QMenu* menu);
   QSize sizeHint() const override { return {700, 260}; }
-  QSize minimumSizeHint() const override { return {160, 120}; }
+  QSize minimumSizeHint() const override { return {150, 80}; }
 
  public slots:
   void lookAtHighlight();
 
  protected:
+  void changeEvent(QEvent* e) override;
   void resizeEvent(QResizeEvent*) override;
   void showEvent(QShowEvent*) override;
 
@@ -43,12 +44,16 @@ class LadderPanel : public QWidget {
     QWidget* box;
     FrameCanvas* canvas;
     QLabel* text;
+    QString below = {};  ///< error or reason
+    bool failed = false;
   };
   void scheduleRefresh();
   void refresh();
   void rebuild(const std::vector<std::string>& models);
   void arrange();
   void showTile(Tile& tile);
+  void showCaption(const Tile& tile);
+  std::shared_ptr<const Inspection> inspection() const;
   void selectIn(const std::string& model, double x, double y);
 
   Document& document_;

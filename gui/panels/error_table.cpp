@@ -215,6 +215,11 @@ void ErrorTable::fitSummary() {
   if (columns < all || problems > forProblems) summary_->setToolTip(summaryHtml(all, problems + 1));
 }
 
+void ErrorTable::changeEvent(QEvent* event) {
+  QWidget::changeEvent(event);
+  if (event->type() == QEvent::PaletteChange && summary_) fitSummary();  // the summary has colours of the theme
+}
+
 void ErrorTable::resizeEvent(QResizeEvent* event) {
   QWidget::resizeEvent(event);
   if (event->size().width() != event->oldSize().width()) fitSummary();

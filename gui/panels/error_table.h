@@ -25,6 +25,7 @@ class ErrorTable : public QWidget {
 
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override;
+  void changeEvent(QEvent* event) override;
   void resizeEvent(QResizeEvent* event) override;
 
  private:
@@ -41,7 +42,7 @@ class ErrorTable : public QWidget {
   ErrorModel* model_;
   QSortFilterProxyModel* proxy_;
   QTableView* view_;
-  QLabel* summary_;
+  QLabel* summary_ = nullptr;
   struct SummaryRow {
     QString colour, name;  ///< no colour = the heading
     QStringList values;

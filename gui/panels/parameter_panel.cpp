@@ -11,6 +11,7 @@
 #include <memory>
 #include <utility>
 
+#include "gui/base/elided_label.h"
 #include "gui/base/number_box.h"
 #include "gui/base/quiet_controls.h"
 #include "gui/base/text.h"
@@ -55,6 +56,11 @@ ParameterPanel::ParameterPanel(Document& document, QWidget* parent) : QScrollAre
   grid->setVerticalSpacing(2);
   grid->setColumnStretch(1, 1);
   int row = 0;
+  hint_ = new QLabel(tr("Parameters belong to a scene: open one to change them"));
+  hint_->setObjectName(QStringLiteral("parametersHint"));
+  hint_->setWordWrap(true);
+  hint_->setProperty("role", "faded");
+  grid->addWidget(hint_, row++, 0, 1, 4);
   QString group;
   for (const ParamSpec& spec : allParams()) {
     if (const QString next = stageTitle(spec.key); next != group) {
@@ -85,12 +91,13 @@ void ParameterPanel::addNumber(const ParamSpec& spec, QGridLayout* grid, int row
   slider->setObjectName(nameFor("slider", spec));
   slider->setRange(0, SliderScale::kPositions);
   slider->setPageStep(SliderScale::kPositions / 20);
-  slider->setMinimumWidth(60);
+  slider->setMinimumWidth(24);
   slider->setToolTip(toolTipOf(spec));
   auto* box = new NumberBox(spec);
   box->setObjectName(nameFor("value", spec));
   box->setToolTip(toolTipOf(spec));
-  box->setFixedWidth(92);
+  box->setMinimumWidth(70);
+  box->setMaximumWidth(92);
   grid->addWidget(slider, row, 1);
   grid->addWidget(box, row, 2);
 
@@ -139,7 +146,7 @@ void ParameterPanel::addFlag(const ParamSpec& spec, QGridLayout* grid, int row) 
 }
 
 void ParameterPanel::addRow(const ParamSpec& spec, QGridLayout* grid, int row, std::function<void()> refresh) {
-  auto* title = new QLabel(toQString(spec.title));
+  auto* title = new ElidedLabel(toQString(spec.title), 12);
   title->setToolTip(toolTipOf(spec));
   grid->addWidget(title, row, 0);
   auto* reset = new QToolButton;
@@ -165,6 +172,8 @@ bool ParameterPanel::showParameter(const std::string& key) {
 }
 
 void ParameterPanel::refresh() {
+  hint_->setVisible(!document_.scene());
+  widget()->setEnabled(document_.scene() != nullptr);
   const auto& changed = document_.request().settings.values();
   for (const Row& row : rows_) {
     row.refresh();

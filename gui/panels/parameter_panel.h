@@ -8,6 +8,7 @@
 #include "gui/document/document.h"
 
 class QGridLayout;
+class QLabel;
 class QToolButton;
 
 namespace glint::gui {
@@ -35,6 +36,7 @@ class ParameterPanel : public QScrollArea {
   void refresh();
 
   Document& document_;
+  QLabel* hint_ = nullptr;
   std::vector<Row> rows_;
 };
 

@@ -8,6 +8,7 @@
 #include <QVariant>
 #include <algorithm>
 
+#include "gui/base/elided_label.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 
@@ -216,7 +217,7 @@ void ConditioningPanel::refresh() {
       }
     }
     if (!any) continue;
-    auto* title = new QLabel(tr(r.title));
+    auto* title = new ElidedLabel(tr(r.title));
     title->setToolTip(tr(r.tip));
     title->setProperty("role", "faded");
     grid->addWidget(title, row++, 0);

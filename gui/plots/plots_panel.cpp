@@ -5,7 +5,6 @@
 #include <QApplication>
 #include <QClipboard>
 #include <QComboBox>
-#include <QFileDialog>
 #include <QFileInfo>
 #include <QHBoxLayout>
 #include <QMenu>
@@ -21,6 +20,7 @@
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/to_qimage.h"
+#include "gui/export/figure_actions.h"
 #include "gui/plots/plot_canvas.h"
 #include "viz/canvas.h"
 #include "viz/plots/plot_export.h"
@@ -63,6 +63,9 @@ PlotsPanel::PlotsPanel(Document& document, QWidget* parent) : QWidget(parent), d
     markDirty({"error", "dial", "axes", "singular", "influence"});
     if (wantsInfluence_ && !document_.stale()) askForInfluence();
   });
+  connect(&document_, &Document::frameInspectionChanged, this, [this] {
+    if (!document_.inspection()) markDirty({});
+  });
   connect(&document_, &Document::selectionChanged, this, &PlotsPanel::followSelection);
   connect(&document_, &Document::tradeoffChanged, this, [this] { markDirty({"tradeoff"}); });
   connect(&document_, &Document::influenceChanged, this, [this] { markDirty({"influence"}); });
@@ -87,8 +90,11 @@ void PlotsPanel::buildPane(int index) {
     pane.selector->addItem(tr(k.title), QString::fromLatin1(k.id));
     pane.selector->setItemData(pane.selector->count() - 1, tr(k.help), Qt::ToolTipRole);
   }
-  row->addWidget(pane.selector);
-  row->addStretch(1);
+  pane.selector->setMaximumWidth(pane.selector->sizeHint().width());
+  pane.selector->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);  // narrow plots cut it, its tip explains
+  pane.selector->setMinimumContentsLength(7);
+  row->addWidget(pane.selector, 1);
+  row->addStretch(0);
   if (index == 0) {
     auto* influence = new QToolButton;
     influence->setObjectName(QStringLiteral("askInfluence"));
@@ -193,7 +199,12 @@ viz::PlotData PlotsPanel::data(const std::string& id) {
     return empty;
   }
   if (!inspection) {
-    empty.empty = (document_.scene() ? tr("There are no results yet") : tr("No scene")).toStdString();
+    // Of a scene just opened, the selected frame's results come before all others, and the frame view shows them too.
+    if (id == "dial" && document_.frameInspection()) return viz::residualDial(*document_.frameInspection(), s.frame, s.highlight);
+    empty.empty = (!document_.scene()            ? tr("No scene")
+                   : document_.frameInspection() ? tr("The other frames follow")
+                                                 : tr("There are no results yet"))
+                      .toStdString();
     return empty;
   }
   if (id == "error") return viz::errorPlot(*inspection);
@@ -294,11 +305,10 @@ bool PlotsPanel::saveTo(const QString& file, QString* problem) {
 
 void PlotsPanel::saveAs(const char* ending) {
   const QString type = QString::fromLatin1(ending);
-  const QString proposed = toQString(kind(current_)) + QLatin1Char('.') + type;
-  QString file =
-      QFileDialog::getSaveFileName(this, tr("Save the plot"), proposed, QStringLiteral("%1 (*.%2)").arg(type.toUpper(), type));
+  const QString file = askForFile(this, document_, tr("Save the plot"),
+                                  suggestedFile(document_, toQString(kind(current_)), QLatin1Char('.') + type),
+                                  QStringLiteral("%1 (*.%2)").arg(type.toUpper(), type));
   if (file.isEmpty()) return;
-  if (QFileInfo(file).suffix().isEmpty()) file += QLatin1Char('.') + type;
   QString line;
   if (!saveTo(file, &line)) emit problem(line);
 }

@@ -4,6 +4,7 @@
 #include <QSignalBlocker>
 #include <utility>
 
+#include "gui/base/eliding_delegate.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "viz/style.h"
@@ -23,6 +24,7 @@ LayerList::LayerList(Document& document, QWidget* parent) : QListWidget(parent),
   setObjectName(QStringLiteral("layers"));
   setSelectionMode(QAbstractItemView::NoSelection);
   setIconSize({10, 10});
+  setItemDelegate(new ElidingDelegate(this));
   for (const viz::Layer& layer : viz::sceneLayers()) {
     auto* item = new QListWidgetItem(toQString(layer.title), this);
     item->setData(Qt::UserRole, toQString(layer.name));

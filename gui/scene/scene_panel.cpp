@@ -8,6 +8,7 @@
 #include <QMenu>
 #include <QSignalBlocker>
 #include <QSlider>
+#include <QToolBar>
 #include <QToolButton>
 #include <QVBoxLayout>
 #include <algorithm>
@@ -64,12 +65,14 @@ void ScenePanel::buildBars() {
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(0);
-  bar_ = new QHBoxLayout;
-  bar_->setContentsMargins(8, 3, 4, 3);
-  bar_->setSpacing(2);
-  bar_->addWidget(new QLabel(QStringLiteral("<b>%1</b>").arg(tr("Scene"))));
-  bar_->addStretch(1);
-  column->addLayout(bar_);
+  bar_ = new QToolBar;  // what a narrow view has no room for is behind its arrow
+  bar_->setObjectName(QStringLiteral("sceneBar"));
+  bar_->setIconSize({16, 16});
+  auto* heading = new QLabel(QStringLiteral("<b>%1</b>").arg(tr("Scene")));
+  heading->setContentsMargins(4, 0, 0, 0);
+  heading->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
+  bar_->addWidget(heading);
+  column->addWidget(bar_);
 
   const auto slider = [this](const char* name, int least, int most, const QString& tip) {
     auto* s = new QSlider(Qt::Horizontal);
@@ -87,7 +90,7 @@ void ScenePanel::buildBars() {
   connect(glyphs_, &QSlider::valueChanged, this, [this](int value) {
     document_.setOption("scene/glyph-scale", scaleOf(value), tr("Size of cameras and points"), gesture_);
   });
-  bar_->addWidget(glyphs_);
+  slider_ = bar_->addWidget(glyphs_);
 
   eyeBar_ = new QWidget;
   eyeBar_->setObjectName(QStringLiteral("eyeBar"));
@@ -128,6 +131,7 @@ void ScenePanel::setDark(bool dark) { views_->setDark(dark); }
 // --- from the document --------------------------------------------------------------------------------------------------
 
 void ScenePanel::showScene() {
+  mayAskForInfluence_ = true;
   framed_ = false;
   views_->setScene(document_.sharedScene());
   showLayers();
@@ -147,6 +151,11 @@ void ScenePanel::showInspection() {
     }
   }
   showOptions();
+  // Reopened with its cameras coloured by what was measured then, as from a picture: measured again, once.
+  if (mayAskForInfluence_ && document_.inspection() && !document_.stale()) {
+    mayAskForInfluence_ = false;
+    if (document_.option("scene/colour-by", std::string()) == "influence" && !document_.influence()) emit influenceRequested();
+  }
 }
 
 void ScenePanel::showLayers() {
@@ -451,20 +460,15 @@ void ScenePanel::addActions(Actions& actions, QMenu* menu) {
   checkActions_();
 
   // The toolbar shows the same actions and menus.
-  int at = bar_->count() - 1;  // before the slider
   const auto button = [&](QAction* action, QMenu* popup, const char* iconName, const QString& tip) {
-    auto* b = new QToolButton;
-    b->setAutoRaise(true);
-    if (action) {
-      b->setDefaultAction(action);
-    } else {
-      b->setIcon(icon(QLatin1String(iconName)));
-      b->setProperty("glintIcon", QLatin1String(iconName));
-      b->setToolTip(tip);
-      b->setMenu(popup);
-      b->setPopupMode(QToolButton::InstantPopup);
+    if (popup) {
+      action = popup->menuAction();
+      action->setIcon(icon(QLatin1String(iconName)));
+      action->setProperty("glintIcon", QLatin1String(iconName));
+      action->setToolTip(tip);
     }
-    bar_->insertWidget(at++, b);
+    bar_->insertAction(slider_, action);
+    if (popup) qobject_cast<QToolButton*>(bar_->widgetForAction(action))->setPopupMode(QToolButton::InstantPopup);
   };
   button(camera, nullptr, "", {});
   button(mirrored, nullptr, "", {});

@@ -11,7 +11,7 @@
 #include "gui/document/document.h"
 #include "gui/scene/scene_options.h"
 
-class QHBoxLayout;
+class QToolBar;
 class QMenu;
 class QSlider;
 
@@ -82,14 +82,16 @@ class ScenePanel : public QWidget {
 
   Document& document_;
   SceneViews* views_;
-  QHBoxLayout* bar_ = nullptr;
+  QToolBar* bar_ = nullptr;
+  bool mayAskForInfluence_ = true;  ///< once for each scene by itself
+  QAction* slider_ = nullptr;       ///< the last one of the bar
   QWidget* eyeBar_ = nullptr;
   QSlider *glyphs_ = nullptr, *opacity_ = nullptr;
   QMenu* savedMenu_ = nullptr;
   std::function<void()> checkActions_;
   int gesture_ = 0;
   std::optional<WhatIf> lampStart_;  ///< while a lamp is dragged
-  bool framed_ = false;  ///< the picture was framed since the scene was opened
+  bool framed_ = false;              ///< the picture was framed since the scene was opened
   std::optional<viz::ViewPoint> firstViewPoint_;
 };
 

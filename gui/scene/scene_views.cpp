@@ -46,7 +46,7 @@ SceneViews::SceneViews(QWidget* parent)
   column->setContentsMargins(0, 0, 0, 0);
   widget_ = new VtkCanvas;
   widget_->setObjectName(QStringLiteral("sceneView"));
-  widget_->setMinimumSize(200, 150);
+  widget_->setMinimumSize(140, 110);
   vtkGenericOpenGLRenderWindow* window = widget_->renderWindow();
   viz::prepareWindow(window);
   vtkNew<vtkInteractorStyleTrackballCamera> style;
@@ -325,7 +325,11 @@ bool SceneViews::mouse(QEvent* event) {
   if (was == Drag::Lamp) emit lampReleased();
   if (e->button() == Qt::RightButton && (at - pressed_).manhattanLength() < 4) {
     const QPointF display = toDisplay(at);
-    if (const auto hit = active().pick(int(display.x()), int(display.y()) - 1)) emit menuWanted(*hit, e->globalPos());
+    const int x = int(display.x()), y = int(display.y()) - 1;
+    // The menu is a camera's: what lies behind one, or before it, does not count.
+    std::optional<viz::Picked> hit = active().pickCamera(x, y);
+    if (!hit) hit = active().pick(x, y);
+    if (hit) emit menuWanted(*hit, e->globalPos());
   }
   if (e->button() == Qt::LeftButton && (at - pressed_).manhattanLength() < 4) {
     const QPointF display = toDisplay(at);

@@ -1,26 +1,62 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/window/docks.h"
 
+#include <QAbstractScrollArea>
 #include <QAction>
 #include <QDockWidget>
 #include <QMenu>
+#include <QStringList>
+#include <algorithm>
+#include <utility>
 
 #include "core/base/outcome.h"
+#include "gui/base/panel_scroll.h"
 
 namespace glint::gui {
 
+namespace {
+constexpr int kNarrow = 1100, kLow = 680;  // below these, px, columns of docks would leave the views too little
+constexpr QSize kLeastContent(150, 80);
+}  // namespace
+
 QDockWidget* Docks::add(const char* name, const QString& title, QWidget* content, Qt::DockWidgetArea area, const char* behind) {
-  auto* dock = new QDockWidget(title);
+  auto* dock = new QDockWidget(title, window_);
   dock->setObjectName(QLatin1String(name));
-  dock->setWidget(content);
-  window_->addDockWidget(area, dock);
+  const bool scrolls = qobject_cast<QAbstractScrollArea*>(content) != nullptr;
+  dock->setWidget(scrolls ? content : new PanelScroll(content, kLeastContent));
   docks_.insert(QLatin1String(name), dock);
-  if (QDockWidget* host = docks_.value(QLatin1String(behind))) {
-    window_->tabifyDockWidget(host, dock);
-    host->raise();
-    hosts_.insert(QLatin1String(name), QLatin1String(behind));
-  }
+  places_.append({QLatin1String(name), area, QLatin1String(behind)});
   return dock;
+}
+
+Docks::Room Docks::room() const { return {window_->width() < kNarrow, window_->height() < kLow}; }
+
+QString Docks::host(const Place& place, const Room& room) const {
+  static const QStringList left{"setup", "layers", "history"}, right{"conditioning", "numbers"}, bottom{"timeline", "plots"};
+  if (room.narrow && left.contains(place.name)) return QStringLiteral("parameters");
+  if (room.low && left.contains(place.name) && place.name != left.front()) return left.front();
+  if (room.low && right.contains(place.name)) return QStringLiteral("parameters");
+  if (room.low && bottom.contains(place.name)) return QStringLiteral("errors");
+  if (room.narrow && place.name == bottom.back()) return QStringLiteral("errors");
+  return place.behind;
+}
+
+void Docks::arrange(const Room& room) {
+  room_ = room;
+  // First all that have a place of their own: Qt would make what is split off from a tab one too.
+  for (const Place& place : std::as_const(places_))
+    if (host(place, room).isEmpty()) {
+      window_->addDockWidget(place.area, at(place.name));
+      if (place.name == QLatin1String("errors") && !room.low)
+        window_->splitDockWidget(at(QStringLiteral("timeline")), at(place.name), Qt::Vertical);
+      if (place.name == QLatin1String("plots"))
+        window_->splitDockWidget(at(QStringLiteral("errors")), at(place.name), Qt::Horizontal);
+    }
+  for (const Place& place : std::as_const(places_))
+    if (const QString behind = host(place, room); !behind.isEmpty()) {
+      window_->addDockWidget(place.area, at(place.name));
+      window_->tabifyDockWidget(at(behind), at(place.name));
+    }
 }
 
 QDockWidget* Docks::at(const QString& name) const {
@@ -35,18 +71,24 @@ void Docks::bring(const QString& name) {
 }
 
 void Docks::apply(const Layout& layout) {
-  for (auto dock = docks_.begin(); dock != docks_.end(); ++dock) {
+  if (const Room now = room(); !(room_ && *room_ == now)) arrange(now);
+  for (const Place& place : std::as_const(places_)) {
     // What is a tab behind another dock follows it, unless the layout names it itself.
-    const QString host = hosts_.value(dock.key(), dock.key());
-    dock.value()->setVisible(layout.docks.contains(dock.key()) || layout.docks.contains(host));
+    const QString& follows = place.behind.isEmpty() ? place.name : place.behind;
+    at(place.name)->setVisible(layout.docks.contains(place.name) || layout.docks.contains(follows));
   }
   for (const char* front : {"errors", "layers", "parameters"}) at(QLatin1String(front))->raise();
   for (const QString& front : layout.front) at(front)->raise();
-  window_->resizeDocks({at("setup"), at("parameters")}, {230, 380}, Qt::Horizontal);
-  window_->resizeDocks({at("timeline"), at("errors")}, {150, window_->height() * 3 / 10}, Qt::Vertical);
-  window_->resizeDocks({at("setup"), at("layers")}, {284, 264}, Qt::Vertical);
+  const int width = window_->width(), height = window_->height(), right = std::min(380, width * 32 / 100);
+  if (room_->narrow)
+    window_->resizeDocks({at("parameters")}, {right}, Qt::Horizontal);
+  else
+    window_->resizeDocks({at("setup"), at("parameters")}, {std::min(230, width * 18 / 100), right}, Qt::Horizontal);
+  if (room_->low) return window_->resizeDocks({at("errors")}, {height * 3 / 10}, Qt::Vertical);
+  window_->resizeDocks({at("timeline"), at("errors")}, {150, height * 3 / 10}, Qt::Vertical);
+  if (!room_->narrow) window_->resizeDocks({at("setup"), at("layers")}, {300, 240}, Qt::Vertical);
   window_->resizeDocks({at("parameters"), at("conditioning"), at("numbers")}, {400, 290, 210}, Qt::Vertical);
-  window_->resizeDocks({at("errors"), at("plots")}, {1, 1}, Qt::Horizontal);
+  if (!room_->narrow) window_->resizeDocks({at("errors"), at("plots")}, {1, 1}, Qt::Horizontal);
 }
 
 void Docks::addActions(Actions& actions, QMenu* menu) {

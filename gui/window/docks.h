@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <QList>
 #include <QMainWindow>
 #include <QMap>
 #include <QString>
+#include <optional>
 
 #include "gui/base/actions.h"
 #include "gui/window/layouts.h"
@@ -16,19 +18,37 @@ namespace glint::gui {
 class Docks {
  public:
   explicit Docks(QMainWindow* window) : window_(window) {}
-  /// @param behind  name of the dock that it is a tab behind; "" = it has a place of its own.
+  /// Content that needs much room gets scroll bars. It has no place in the window before the first apply().
+  /// @param behind  name of the dock that it is a tab behind; "" = it has a place of its own, where the window is large.
   QDockWidget* add(const char* name, const QString& title, QWidget* content, Qt::DockWidgetArea area, const char* behind = "");
   /// Shows a dock and puts it before its tabs. std::invalid_argument for an unknown name.
   void bring(const QString& name);
+  /// Shows what the layout names. In a window that is narrow or low, docks become tabs of one another, so that the views keep
+  /// room; what was moved by hand stays there while the window does not change between these.
   void apply(const Layout& layout);
+  /// The docks are arranged for a window of this size.
+  bool fits() const { return room_ && *room_ == room(); }
   /// One toggle for each dock; one that lies behind another comes to the front instead of going away.
   void addActions(Actions& actions, QMenu* menu);
 
  private:
+  struct Place {
+    QString name;
+    Qt::DockWidgetArea area;
+    QString behind;
+  };
+  struct Room {
+    bool narrow = false, low = false;
+    bool operator==(const Room& other) const { return narrow == other.narrow && low == other.low; }
+  };
   QDockWidget* at(const QString& name) const;
+  Room room() const;
+  QString host(const Place& place, const Room& room) const;
+  void arrange(const Room& room);
   QMainWindow* window_;
   QMap<QString, QDockWidget*> docks_;
-  QMap<QString, QString> hosts_;  ///< of those that are tabs behind another one
+  QList<Place> places_;       ///< in the order of adding
+  std::optional<Room> room_;  ///< that the docks are arranged for
 };
 
 }  // namespace glint::gui

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/window/job_status.h"
 
+#include <QEvent>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QProgressBar>
@@ -64,6 +65,11 @@ JobStatus::JobStatus(Document& document, Runner& runner, QWidget* parent)
     bar_->setValue(done);
   });
   refresh();
+}
+
+void JobStatus::changeEvent(QEvent* e) {
+  QWidget::changeEvent(e);
+  if (e->type() == QEvent::PaletteChange && text_ && !runner_.busy()) refresh();  // its colour is the theme's
 }
 
 void JobStatus::refresh() {

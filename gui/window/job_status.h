@@ -19,12 +19,15 @@ class JobStatus : public QWidget {
  public:
   JobStatus(Document& document, Runner& runner, QWidget* parent = nullptr);
 
+ protected:
+  void changeEvent(QEvent* e) override;
+
  private:
   void refresh();
 
   Document& document_;
   Runner& runner_;
-  QLabel* text_;
+  QLabel* text_ = nullptr;
   QProgressBar* bar_;
   QToolButton* stop_;
   QTimer soon_;

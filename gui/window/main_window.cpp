@@ -3,12 +3,12 @@
 
 #include <QApplication>
 #include <QCloseEvent>
-#include <QDockWidget>
 #include <QFileInfo>
 #include <QLabel>
 #include <QMenuBar>
 #include <QMimeData>
 #include <QPlainTextEdit>
+#include <QScreen>
 #include <QScrollArea>
 #include <QSplitter>
 #include <QStackedWidget>
@@ -20,6 +20,7 @@
 #include <QVBoxLayout>
 #include <utility>
 
+#include "gui/base/eliding_delegate.h"
 #include "gui/base/text.h"
 #include "gui/explain/explain_panel.h"
 #include "gui/explain/lessons.h"
@@ -62,8 +63,7 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
       files_(new FileActions(engine_, document_, runner_, this)),
       exports_(new ExportActions(engine_, document_, this)) {
   setAcceptDrops(true);
-  setMinimumSize(1100, 700);
-  resize(1600, 1000);
+  resize(QSize(1600, 1000).boundedTo(screen()->availableSize()));
   setDockNestingEnabled(true);
   setWindowIcon(icon(QStringLiteral("glint")));
   buildCentre();
@@ -193,15 +193,12 @@ void MainWindow::buildDocks() {
                            tr("Automatic choice: %1").arg(toQString(selection->model)));
     if (document_.stale()) recompute();  // the choice took the place of a run that was under way
   });
-  auto* setupScroll = new QScrollArea;  // small windows scroll it instead of squeezing it
-  setupScroll->setWidget(setup_);
-  setupScroll->setWidgetResizable(true);
-  setupScroll->setMinimumWidth(190);
-  setupScroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  docks_.add("setup", tr("Setup"), setupScroll, Qt::LeftDockWidgetArea);
+  docks_.add("setup", tr("Setup"), setup_, Qt::LeftDockWidgetArea);
   docks_.add("layers", tr("Layers"), new LayerList(document_), Qt::LeftDockWidgetArea);
   auto* history = new QUndoView(document_.undoStack());
+  history->setObjectName(QStringLiteral("historyList"));
   history->setEmptyLabel(tr("As opened"));
+  history->setItemDelegate(new ElidingDelegate(history));
   docks_.add("history", tr("History"), history, Qt::LeftDockWidgetArea, "layers");
 
   parameters_ = new ParameterPanel(document_);
@@ -225,13 +222,11 @@ void MainWindow::buildDocks() {
   });
 
   timeline_ = new Timeline(document_);
-  QDockWidget* timeline = docks_.add("timeline", tr("Timeline"), timeline_, Qt::BottomDockWidgetArea);
+  docks_.add("timeline", tr("Timeline"), timeline_, Qt::BottomDockWidgetArea);
   errors_ = new ErrorTable(document_);
-  QDockWidget* errors = docks_.add("errors", tr("Errors"), errors_, Qt::BottomDockWidgetArea);
-  splitDockWidget(timeline, errors, Qt::Vertical);
+  docks_.add("errors", tr("Errors"), errors_, Qt::BottomDockWidgetArea);
   plots_ = new PlotsPanel(document_);
-  QDockWidget* plots = docks_.add("plots", tr("Plots"), plots_, Qt::BottomDockWidgetArea);
-  splitDockWidget(errors, plots, Qt::Horizontal);  // before anything is a tab: Qt would make the plots one too
+  docks_.add("plots", tr("Plots"), plots_, Qt::BottomDockWidgetArea);
   log_ = new QPlainTextEdit;
   log_->setReadOnly(true);
   log_->setMaximumBlockCount(2000);
@@ -268,7 +263,6 @@ void MainWindow::buildDocks() {
     document_.setInfluence(influence, inspection->request);
     if (document_.stale()) recompute();  // it took the place of a run that was under way
   });
-  errors->raise();
 }
 
 void MainWindow::buildMenus() {
@@ -304,8 +298,8 @@ void MainWindow::buildMenus() {
         });
       },
       this);
-  actions_.add("edit.palette", edit, tr("&Find an action, parameter or frame…"), [this] { palette_->popUp(); },
-               {{QKeySequence("Ctrl+Shift+P"), QKeySequence("Ctrl+K")}});
+  palette_->setOpener(actions_.add("edit.palette", edit, tr("&Find an action, parameter or frame…"),
+                                   [this] { palette_->popUp(); }, {{QKeySequence("Ctrl+Shift+P"), QKeySequence("Ctrl+K")}}));
   actions_.add("edit.shortcuts", edit, tr("&Keyboard shortcuts…"), [this] { ShortcutDialog(actions_, this).exec(); });
 
   QMenu* frame = menuBar()->addMenu(tr("F&rame"));
@@ -326,7 +320,9 @@ void MainWindow::buildMenus() {
     actions_.add("view.layout-" + name, layoutMenu, tr(layout.title), [this, name] { applyLayout(name); });
   }
   layoutMenu->addSeparator();
-  (new OwnLayouts(this, views_))->addActions(actions_, layoutMenu);
+  auto* own = new OwnLayouts(this, views_);
+  own->addActions(actions_, layoutMenu);
+  connect(own, &OwnLayouts::applied, this, [this] { ownLayout_ = true; });
   docks_.addActions(actions_, view->addMenu(tr("&Panels")));
   view->addSeparator();
   actions_.add("view.theme", view, tr("Light or dark &theme"),
@@ -364,8 +360,17 @@ void MainWindow::open(const QString& input, const QString& frame) {
 void MainWindow::applyLayout(const QString& name) {
   const Layout& layout = layoutByName(name);
   layout_ = QLatin1String(layout.name);
+  ownLayout_ = false;
   docks_.apply(layout);
   views_->setSizes({layout.sceneShare * 10, (100 - layout.sceneShare) * 10});
+}
+
+void MainWindow::resizeEvent(QResizeEvent* e) {
+  QMainWindow::resizeEvent(e);
+  if (ownLayout_ || layout_.isEmpty() || !isVisible() || docks_.fits()) return;  // an own layout stays as it was kept
+  QTimer::singleShot(0, this, [this] {                                           // not while Qt lays out the docks
+    if (!ownLayout_ && !docks_.fits()) applyLayout(layout_);
+  });
 }
 
 void MainWindow::runActions(const QStringList& ids) { script_->run(ids); }

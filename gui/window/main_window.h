@@ -68,6 +68,7 @@ class MainWindow : public QMainWindow {
 
  protected:
   void closeEvent(QCloseEvent* e) override;
+  void resizeEvent(QResizeEvent* e) override;
   void dragEnterEvent(QDragEnterEvent* e) override;
   void dropEvent(QDropEvent* e) override;
 
@@ -111,6 +112,7 @@ class MainWindow : public QMainWindow {
   MessageBar* messageBar_ = nullptr;
   QLabel* probe_ = nullptr;
   QString layout_, lastError_;
+  bool ownLayout_ = false;  ///< the docks are where an own layout has them
   ScriptedActions* script_ = nullptr;
   std::pair<QString, QString> missing_;  ///< session and scene of the opening that failed last
   bool runFailed_ = false;               ///< the message bar shows why the last run failed

@@ -41,6 +41,7 @@ void OwnLayouts::apply(int place) {
   const QSettings settings;
   window_->restoreState(settings.value(key(place, "docks")).toByteArray(), kVersion);
   views_->restoreState(settings.value(key(place, "views")).toByteArray());
+  emit applied();
 }
 
 void OwnLayouts::refresh() {

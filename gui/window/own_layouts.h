@@ -23,6 +23,9 @@ class OwnLayouts : public QObject {
   void keep(int place);       ///< what is on screen takes the place
   void apply(int place);      ///< nothing happens where nothing was kept
 
+ signals:
+  void applied();
+
  private:
   void refresh();
   QMainWindow* window_;

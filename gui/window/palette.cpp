@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/window/palette.h"
 
+#include <QAction>
 #include <QApplication>
 #include <QHeaderView>
 #include <QKeyEvent>
@@ -28,18 +29,46 @@ int wordScore(const QString& word, const QString& text) {
   }
   return word.size() > 2 ? 1 : 0;  // one or two letters are in everything
 }
+
+/// Words that people type for ours.
+QString ours(const QString& word) {
+  static const std::pair<const char*, const char*> kSpellings[] = {{"color", "colour"},     {"gray", "grey"},
+                                                                   {"center", "centre"},    {"image", "picture"},
+                                                                   {"photo", "photograph"}, {"axis", "axes"}};
+  for (const auto& [theirs, us] : kSpellings)
+    if (word.startsWith(QLatin1String(theirs))) return QLatin1String(us) + word.mid(int(qstrlen(theirs)));
+  return word;
+}
+
+QStringList wordsOf(const QString& typed) {
+  static const QRegularExpression blanks(QStringLiteral("\\s+"));
+  return typed.toLower().split(blanks, Qt::SkipEmptyParts);
+}
 }  // namespace
 
 std::optional<int> matchScore(const QString& typed, const QString& text) {
-  static const QRegularExpression blanks(QStringLiteral("\\s+"));
   const QString lower = text.toLower();
   int sum = 0;
-  for (const QString& word : typed.toLower().split(blanks, Qt::SkipEmptyParts)) {
+  for (const QString& word : wordsOf(typed)) {
     const int score = wordScore(word, lower);
     if (score == 0) return std::nullopt;
     sum += score;
   }
   return sum;
+}
+
+std::optional<int> matchScore(const QString& typed, const PaletteItem& item) {
+  const QString shown = (item.title + QLatin1Char(' ') + item.place).toLower(), others = item.words.toLower();
+  int sum = 0;
+  for (const QString& word : wordsOf(typed)) {
+    // Twice the usual score, so that another word has a place between letters in order and the inside of a word.
+    int best = 2 * std::max(wordScore(word, shown), wordScore(ours(word), shown) > 1 ? 2 : 0);
+    if (best < 3 && (wordScore(word, others) == 3 || wordScore(ours(word), others) == 3)) best = 3;
+    if (best == 0) return std::nullopt;
+    sum += best;
+  }
+  // The title alone counts double, so that "level" finds the contour level before what lies in a folder of that name.
+  return sum + 2 * matchScore(typed, item.title).value_or(0);
 }
 
 Palette::Palette(std::function<QList<PaletteItem>(const QString&)> items, QWidget* window)
@@ -87,9 +116,7 @@ void Palette::search() {
   const QString wanted = typed.section(QLatin1Char('='), 0, 0).trimmed();
   std::vector<std::pair<int, int>> found;  // minus the score, place in `all`
   for (int i = 0; i < all.size(); ++i) {
-    // The title alone counts double, so that "level" finds the contour level before what lies in a folder of that name.
-    const std::optional<int> whole = matchScore(wanted, all[i].title + QLatin1Char(' ') + all[i].place);
-    if (whole) found.push_back({-(*whole + matchScore(wanted, all[i].title).value_or(0)), i});
+    if (const std::optional<int> score = matchScore(wanted, all[i])) found.push_back({-*score, i});
   }
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   if (found.size() > std::size_t(kMost)) found.resize(kMost);
@@ -104,7 +131,10 @@ void Palette::search() {
     row->setTextAlignment(2, Qt::AlignRight | Qt::AlignVCenter);
     row->setDisabled(!item.enabled);
   }
-  if (list_->topLevelItemCount() > 0) list_->setCurrentItem(list_->topLevelItem(0));
+  if (!shown_.isEmpty()) return list_->setCurrentItem(list_->topLevelItem(0));
+  auto* none = new QTreeWidgetItem(list_, {tr("No action or parameter matches")});
+  none->setFirstColumnSpanned(true);
+  none->setDisabled(true);
 }
 
 void Palette::runCurrent() {
@@ -117,7 +147,12 @@ void Palette::runCurrent() {
 
 bool Palette::eventFilter(QObject* watched, QEvent* event) {
   if (watched == line_ && event->type() == QEvent::KeyPress) {
-    const int key = static_cast<QKeyEvent*>(event)->key();
+    const auto* pressed = static_cast<QKeyEvent*>(event);
+    const int key = pressed->key();
+    if (opener_ && opener_->shortcuts().contains(QKeySequence(int(pressed->modifiers()) | key))) {
+      line_->selectAll();
+      return true;
+    }
     if (key == Qt::Key_Up || key == Qt::Key_Down || key == Qt::Key_PageUp || key == Qt::Key_PageDown) {
       QApplication::sendEvent(list_, event);
       return true;

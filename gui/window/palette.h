@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 
+class QAction;
 class QLineEdit;
 class QTreeWidget;
 
@@ -19,11 +20,15 @@ struct PaletteItem {
   QString detail;  ///< a shortcut or a value
   bool enabled = true;
   std::function<void()> run;
+  QString words = {};  ///< what else one may call it, not shown: its tool tip, the values that it takes, synonyms
 };
 
 /// How well an item answers what was typed: every word must occur in `text`; a word at the start of one of its words counts most,
 /// letters that only follow one another least. Nothing when a word does not occur.
 std::optional<int> matchScore(const QString& typed, const QString& text);
+/// The same for an item: its title counts most, then its place, then the beginnings of its other words; American spelling is
+/// understood.
+std::optional<int> matchScore(const QString& typed, const PaletteItem& item);
 
 /// The command palette: type a few letters, Return runs the item. It covers the top of its window until it is left.
 class Palette : public QFrame {
@@ -32,6 +37,8 @@ class Palette : public QFrame {
   /// @param items  asked for whenever what is typed changes, best in the order that an empty line should show.
   Palette(std::function<QList<PaletteItem>(const QString& typed)> items, QWidget* window);
   void popUp();
+  /// The action that opens it: its keys, pressed again, select what was typed.
+  void setOpener(const QAction* opener) { opener_ = opener; }
   QLineEdit* line() const { return line_; }
   QTreeWidget* list() const { return list_; }
 
@@ -44,6 +51,7 @@ class Palette : public QFrame {
 
   std::function<QList<PaletteItem>(const QString&)> source_;
   QList<PaletteItem> shown_;
+  const QAction* opener_ = nullptr;
   QLineEdit* line_;
   QTreeWidget* list_;
 };

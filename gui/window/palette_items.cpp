@@ -2,6 +2,7 @@
 #include "gui/window/palette_items.h"
 
 #include <QAction>
+#include <QMap>
 #include <QRegularExpression>
 
 #include "gui/base/text.h"
@@ -14,6 +15,44 @@ SettingValue valueOf(const Settings& settings, const ParamSpec& spec) {
   return it == settings.values().end() ? spec.defaultValue : it->second;
 }
 
+/// What an action is called elsewhere, where neither its title nor its tool tip says it.
+QString synonymsOf(const QString& id) {
+  static const QMap<QString, QString> all{
+      {QStringLiteral("edit.copy-numbers"), QStringLiteral("clipboard values")},
+      {QStringLiteral("edit.shortcuts"), QStringLiteral("keys hotkeys bindings")},
+      {QStringLiteral("edit.stop"), QStringLiteral("cancel abort")},
+      {QStringLiteral("explain.start"), QStringLiteral("help tutorial guide")},
+      {QStringLiteral("export.coco"), QStringLiteral("annotations dataset polygons")},
+      {QStringLiteral("export.csv"), QStringLiteral("spreadsheet table")},
+      {QStringLiteral("export.html"), QStringLiteral("document")},
+      {QStringLiteral("export.masks"), QStringLiteral("annotations dataset segmentation")},
+      {QStringLiteral("export.repro"), QStringLiteral("bug reproduce reduce smallest")},
+      {QStringLiteral("file.open"), QStringLiteral("load")},
+      {QStringLiteral("frame.brighter"), QStringLiteral("exposure stops")},
+      {QStringLiteral("frame.darker"), QStringLiteral("exposure stops")},
+      {QStringLiteral("frame.clipped"), QStringLiteral("saturated overexposed")},
+      {QStringLiteral("frame.exclude"), QStringLiteral("remove ignore delete")},
+      {QStringLiteral("frame.false-colour"), QStringLiteral("heat map pseudo colour log radiance")},
+      {QStringLiteral("frame.radiance"), QStringLiteral("hdr float linear")},
+      {QStringLiteral("plots.show-dial"), QStringLiteral("polar residuals")},
+      {QStringLiteral("plots.show-lobe"), QStringLiteral("log radiance specular profile")},
+      {QStringLiteral("view.colour-influence"), QStringLiteral("leave one out influence")},
+      {QStringLiteral("view.frame-all"), QStringLiteral("zoom fit reset view")},
+      {QStringLiteral("view.look-through"), QStringLiteral("first person")},
+      {QStringLiteral("view.theme"), QStringLiteral("mode appearance")}};
+  return all.value(id);
+}
+
+QString wordsOf(const QAction* action) {
+  QString id = Actions::id(action);
+  return action->toolTip() + QLatin1Char(' ') + id.replace('.', ' ').replace('-', ' ') + QLatin1Char(' ') +
+         synonymsOf(Actions::id(action));
+}
+
+QString wordsOf(const ParamSpec& spec) {
+  return toQString(spec.help) + QLatin1Char(' ') + toQString(spec.symbol) + QLatin1Char(' ') + joined(spec.choices);
+}
+
 void addActions(QList<PaletteItem>& items, const Actions& actions) {
   for (QAction* action : actions.all()) {
     const QString path = Actions::path(action), title = Actions::title(action);
@@ -22,14 +61,15 @@ void addActions(QList<PaletteItem>& items, const Actions& actions) {
       detail +=
           (detail.isEmpty() ? QString() : QStringLiteral("   ")) + (action->isChecked() ? QObject::tr("on") : QObject::tr("off"));
     items.append({title, path.left(path.size() - title.size()).remove(QRegularExpression(QStringLiteral(" › $"))), detail,
-                  action->isEnabled(), [action] { action->trigger(); }});
+                  action->isEnabled(), [action] { action->trigger(); }, wordsOf(action)});
   }
 }
 
 void addParameters(QList<PaletteItem>& items, Document& document, const std::function<void(const std::string&)>& show) {
   for (const ParamSpec& spec : allParams())
     items.append({toQString(spec.title), QObject::tr("Parameters › %1").arg(toQString(spec.key)),
-                  valueText(valueOf(document.request().settings, spec), spec), true, [show, key = spec.key] { show(key); }});
+                  valueText(valueOf(document.request().settings, spec), spec), true, [show, key = spec.key] { show(key); },
+                  wordsOf(spec)});
 }
 
 /// "name = value": the value is checked by the settings themselves.

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What leaves the program comes back: figures with their session, commands, the diagnostic report.
 #include <QAction>
+#include <QApplication>
 #include <QClipboard>
+#include <QDialog>
+#include <QDialogButtonBox>
 #include <QDir>
 #include <QFile>
 #include <QFileInfo>
@@ -10,7 +13,10 @@
 #include <QJsonArray>
 #include <QJsonDocument>
 #include <QJsonObject>
+#include <QLineEdit>
 #include <QProcess>
+#include <QPushButton>
+#include <QTimer>
 
 #include "gui/base/text.h"
 #include "gui/document/figure.h"
@@ -120,6 +126,43 @@ class ExportTest : public QObject {
     d.markSaved("/some where/a b.glint", d.state());
     QVERIFY(window_->exports()->command());
     QCOMPARE(toQString(*window_->exports()->command()), QStringLiteral("glint evaluate '/some where/a b.glint'"));
+  }
+
+  /// A folder is asked for as a folder: beside the session at first, then where the last one went.
+  void aFolderOfLabelsIsProposedBesideTheSessionAndNeverWrittenOver() {
+    QTemporaryDir place;
+    const auto answer = [this](const QString& folder, QString* proposed, bool* possible) {
+      QTimer::singleShot(0, this, [=] {
+        auto* dialog = qobject_cast<QDialog*>(QApplication::activeModalWidget());
+        if (!dialog || dialog->objectName() != "folderDialog") return;
+        auto* line = dialog->findChild<QLineEdit*>("newFolder");
+        auto* go = dialog->findChild<QDialogButtonBox*>()->button(QDialogButtonBox::Ok);
+        *proposed = line->text();
+        if (!folder.isEmpty()) line->setText(folder);
+        *possible = go->isEnabled();
+        if (*possible)
+          go->click();
+        else
+          dialog->reject();
+      });
+      window_->actions().find("export.masks")->trigger();
+    };
+    QString proposed;
+    bool possible = false;
+    answer(place.path(), &proposed, &possible);
+    QVERIFY(possible);  // an empty folder may be filled
+    QCOMPARE(QFileInfo(proposed).absolutePath(), QFileInfo(window_->document().inputFile()).absolutePath());
+    QTRY_VERIFY(QFileInfo::exists(place.filePath("masks.json")) && window_->idle());
+    answer(place.path(), &proposed, &possible);
+    QVERIFY(!possible);  // now there is something in it
+    answer(place.filePath("no/such"), &proposed, &possible);
+    QVERIFY(!possible);
+    answer(place.filePath("second"), &proposed, &possible);
+    QVERIFY(possible);
+    QTRY_VERIFY(QFileInfo::exists(place.filePath("second/masks.json")) && window_->idle());
+    answer({}, &proposed, &possible);
+    QCOMPARE(QFileInfo(proposed).absolutePath(), place.path());
+    QTRY_VERIFY(window_->idle());
   }
 
   void theDiagnosticReportNamesNoFolder() {

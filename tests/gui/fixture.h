@@ -43,6 +43,7 @@ QObject* makeDocumentTest();
 QObject* makeRunnerTest();
 QObject* makeFrameCanvasTest();
 QObject* makeFrameViewTest();
+QObject* makeThemeTest();
 QObject* makeTimelineTest();
 QObject* makePaletteTest();
 QObject* makePanelTest();

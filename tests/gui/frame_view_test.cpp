@@ -230,7 +230,7 @@ class FrameViewTest : public QObject {
 
   void twoFramesSideBySide() {
     QVERIFY(!frame_->secondCanvas()->isVisible());
-    QTest::mouseClick(frame_->findChild<QToolButton*>(QStringLiteral("sideBySide")), Qt::LeftButton);
+    QTest::mouseClick(frame_->findChild<QToolButton*>(QStringLiteral("side-by-side")), Qt::LeftButton);
     settle();
     QVERIFY(frame_->secondCanvas()->isVisible());
     QVERIFY(frame_->secondCanvas()->hasPicture());

@@ -8,6 +8,7 @@
 #include <QRegularExpression>
 #include <QSet>
 #include <QTreeWidget>
+#include <algorithm>
 
 #include "gui/base/text.h"
 #include "gui/window/main_window.h"
@@ -96,6 +97,49 @@ class PaletteTest : public QObject {
       lying += inPlace && !inTitle;
     }
     QVERIFY(named > 2 && lying > 2);  // "Light (estimate)"; "Bundle points", of light.bundle_points
+  }
+
+  /// The tool tip of the plot says "Logarithm of the radiance", the switch of the frame view "Linear radiance".
+  void anItemIsFoundByOtherWordsForIt() {
+    popUp();
+    const auto finds = [this](const char* typed, const QString& title) {
+      window_->commandPalette()->line()->setText(typed);
+      const QTreeWidget* list = window_->commandPalette()->list();
+      for (int i = 0; i < std::min(10, list->topLevelItemCount()); ++i)
+        if (list->topLevelItem(i)->text(0) == title) return true;
+      return false;
+    };
+    QVERIFY(finds("log radiance", "Lobe"));
+    QVERIFY(finds("log radiance", "False colour"));
+    QVERIFY(finds("false color", "False colour"));
+    QVERIFY(finds("saturated", "Mark clipped pixels"));
+    const ParamSpec& choice =
+        *std::find_if(allParams().begin(), allParams().end(), [](const ParamSpec& p) { return !p.choices.empty(); });
+    QVERIFY(finds(choice.choices.back().c_str(), toQString(choice.title)));
+    // What is called so comes before what is only explained so.
+    window_->commandPalette()->line()->setText("theme");
+    QCOMPARE(window_->commandPalette()->list()->topLevelItem(0)->text(0), QStringLiteral("Light or dark theme"));
+  }
+
+  void whereNothingMatchesItSaysSo() {
+    popUp();
+    type("zzzzqq", Qt::Key_Return);
+    const QTreeWidget* list = window_->commandPalette()->list();
+    QCOMPARE(list->topLevelItemCount(), 1);
+    QCOMPARE(list->topLevelItem(0)->text(0), QStringLiteral("No action or parameter matches"));
+    QVERIFY(list->topLevelItem(0)->isDisabled());
+    QVERIFY(window_->commandPalette()->isVisible());
+  }
+
+  void itsKeysPressedAgainSelectWhatWasTyped() {
+    popUp();
+    QLineEdit* line = window_->commandPalette()->line();
+    QTest::keyClicks(line, "contour");
+    QTest::keyClick(line, Qt::Key_K, Qt::ControlModifier);
+    QVERIFY(window_->commandPalette()->isVisible());
+    QCOMPARE(line->selectedText(), QStringLiteral("contour"));
+    QTest::keyClicks(line, "next");
+    QCOMPARE(line->text(), QStringLiteral("next"));
   }
 
   void anActionRunsByTyping() {

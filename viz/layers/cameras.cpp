@@ -11,6 +11,7 @@
 #include "viz/frame_overlay.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
+#include "viz/scene_questions.h"
 
 namespace glint::viz {
 namespace {
@@ -38,6 +39,16 @@ Picked cameraInfo(int index) {
   info.frame = index;
   return info;
 }
+
+}  // namespace
+
+Picked cameraPicked(const Inspection& inspection, const std::vector<std::string>& models, int frame) {
+  Picked info = cameraInfo(frame);
+  info.text = cameraText(inspection, models, frame);
+  return info;
+}
+
+namespace {
 
 /// The frustum, and the tick over its upper edge that shows which side of the image is up.
 std::vector<Points> frustum(const Camera& camera, double depth) {
@@ -76,9 +87,7 @@ class Bundle {
         actor.Get(),
         [frames = frames_, inspection = in.inspection, models = in.models](vtkIdType cell) {
           if (cell < 0 || cell >= static_cast<vtkIdType>(frames.size())) return cameraInfo(-1);
-          Picked info = cameraInfo(frames[static_cast<std::size_t>(cell)]);
-          info.text = cameraText(*inspection, models, info.frame);
-          return info;
+          return cameraPicked(*inspection, models, frames[static_cast<std::size_t>(cell)]);
         },
         width);
   }
@@ -112,8 +121,7 @@ LayerContent camerasLayer(const LayerInput& in) {
       (in.inspection->isTraining(index) ? training : others).add(chains, colour, index);
       continue;
     }
-    Picked info = cameraInfo(index);
-    info.text = cameraText(*in.inspection, in.models, index);
+    const Picked info = cameraPicked(*in.inspection, in.models, index);
     // Its own colour inside the ink, so that the selection hides neither role nor error.
     content.add(lineActor({chains[0], chains[5]}, in.ink(), 4.0), info, 4.0);
     content.add(lineActor({chains[1], chains[2], chains[3], chains[4]},

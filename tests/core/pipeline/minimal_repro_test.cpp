@@ -23,6 +23,19 @@ fs::path emptyFolder(const std::string& name) {
 Fault errorOf(double pct) { return {0, "canonical", "lamp", pct, {}}; }
 Fault failureOf(Reason reason) { return {0, "canonical", "lamp", {}, reason}; }
 
+TEST(FaultText, LargeErrorsAreWholePercentsInGroups) {
+  const auto text = [](double pct) {
+    Fault fault;
+    fault.errorPct = pct;
+    return fault.text();
+  };
+  EXPECT_EQ(text(0.123456), "contour error 0.123 %");
+  EXPECT_EQ(text(12.345), "contour error 12.3 %");
+  EXPECT_EQ(text(99.96), "contour error 100 %");
+  EXPECT_EQ(text(1127.3), "contour error 1,127 %");
+  EXPECT_EQ(text(51321316), "contour error 51,321,316 %");
+}
+
 TEST(SameFault, ErrorsByTheirToleranceFailuresByTheirName) {
   const FaultTolerance within{FaultKept::Within, 0.2}, least{FaultKept::AtLeast, 0.2};
   EXPECT_TRUE(sameFault(errorOf(10), errorOf(8.1), within));

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/base/theme.h"
+
+#include <QApplication>
+#include <QCheckBox>
+#include <QComboBox>
+#include <QImage>
+#include <QLineEdit>
+#include <QListWidget>
+#include <QPainter>
+#include <QPushButton>
+#include <QRadioButton>
+#include <QScrollBar>
+#include <QSpinBox>
+#include <QVBoxLayout>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "gui/base/elided_label.h"
+#include "gui/base/panel_scroll.h"
+#include "tests/gui/fixture.h"
+
+namespace glint::gui {
+
+namespace {
+/// Relative luminance and contrast of Web Content Accessibility Guidelines 2.1; 1.4.11 asks for 3 : 1.
+double luminance(const QColor& c) {
+  const auto linear = [](double v) { return v <= 0.03928 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); };
+  return 0.2126 * linear(c.redF()) + 0.7152 * linear(c.greenF()) + 0.0722 * linear(c.blueF());
+}
+double contrast(const QColor& a, const QColor& b) {
+  const double la = luminance(a), lb = luminance(b);
+  return (std::max(la, lb) + 0.05) / (std::min(la, lb) + 0.05);
+}
+constexpr double kEnough = 3;
+
+/// Of the pixels in `area`, how many stand out from the background.
+int clearPixels(const QImage& image, const QRect& area, const QColor& background) {
+  int n = 0;
+  for (int y = area.top(); y <= area.bottom(); ++y)
+    for (int x = area.left(); x <= area.right(); ++x)
+      if (image.rect().contains(x, y) && contrast(image.pixelColor(x, y), background) >= kEnough) ++n;
+  return n;
+}
+
+/// A widget without the ratio of the screen, so that its pixels are those of its coordinates.
+QImage drawn(QWidget& widget) {
+  QImage image(widget.size(), QImage::Format_RGB32);
+  image.fill(widget.palette().color(QPalette::Window));
+  widget.render(&image);
+  return image;
+}
+}  // namespace
+
+class ThemeTest : public QObject {
+  Q_OBJECT
+ private slots:
+  void cleanup() { applyTheme(*qApp, Theme::Dark); }
+
+  void anUntickedBoxStandsOut_data() { themes(); }
+  void anUntickedBoxStandsOut() {
+    QFETCH(int, theme);
+    applyTheme(*qApp, Theme(theme));
+    QCheckBox check;
+    QRadioButton radio;
+    for (QAbstractButton* button : {static_cast<QAbstractButton*>(&check), static_cast<QAbstractButton*>(&radio)}) {
+      button->resize(button->sizeHint());
+      const QImage image = drawn(*button);
+      // A line all the way round a square of 13 px is 48 px; a circle's is shorter, and partly between pixels.
+      QVERIFY(clearPixels(image, image.rect(), button->palette().color(QPalette::Window)) >= 20);
+    }
+    QListWidget list;
+    list.setFrameShape(QFrame::NoFrame);
+    auto* item = new QListWidgetItem(&list);
+    item->setCheckState(Qt::Unchecked);
+    list.resize(80, 40);
+    const QImage image = drawn(list);
+    QVERIFY(clearPixels(image, list.visualItemRect(item), list.palette().color(QPalette::Base)) >= 40);
+    item->setCheckState(Qt::Checked);
+    const QImage ticked = drawn(list);
+    QVERIFY(ticked != image);
+  }
+
+  /// 1.4.3 of the same guidelines asks for 4.5 : 1 where text is read.
+  void fadedTextIsReadable_data() { themes(); }
+  void fadedTextIsReadable() {
+    QFETCH(int, theme);
+    applyTheme(*qApp, Theme(theme));
+    const QPalette palette = qApp->palette();
+    for (const auto ground : {QPalette::Window, QPalette::Base})
+      QVERIFY(contrast(palette.color(QPalette::PlaceholderText), palette.color(ground)) >= 4.5);
+  }
+
+  void theFocusOfTheKeyboardStandsOut_data() { themes(); }
+  void theFocusOfTheKeyboardStandsOut() {
+    QFETCH(int, theme);
+    applyTheme(*qApp, Theme(theme));
+    QWidget window;
+    QPushButton button(QStringLiteral("Auto"), &window);
+    QLineEdit line(&window);
+    QComboBox combo(&window);
+    QSpinBox spin(&window);
+    int y = 4;
+    const QList<QWidget*> all{&button, &line, &combo, &spin};
+    for (QWidget* w : all) {
+      w->setGeometry(4, y, 100, 28);
+      y += 32;
+    }
+    window.resize(120, y + 4);
+    window.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&window));
+    QApplication::setActiveWindow(&window);  // there is no window manager
+    const QColor background = window.palette().color(QPalette::Window);
+    window.setFocus();
+    window.setAttribute(Qt::WA_KeyboardFocusChange);  // as the Tab key does
+    const QImage before = drawn(window);
+    for (QWidget* w : all) {
+      w->setFocus(Qt::TabFocusReason);
+      QTRY_VERIFY(w->hasFocus());
+      const QImage after = drawn(window);
+      int changed = 0;
+      for (int py = w->y(); py < w->geometry().bottom(); ++py)
+        for (int px = w->x(); px < w->geometry().right(); ++px)
+          changed += after.pixel(px, py) != before.pixel(px, py) && contrast(after.pixelColor(px, py), background) >= kEnough;
+      QVERIFY2(changed >= 150, qPrintable(QStringLiteral("%1: %2").arg(w->metaObject()->className()).arg(changed)));
+    }
+  }
+
+  void aLabelThatIsCutSaysSo() {
+    const QString text = QStringLiteral("Smallest highlight, in pixels of the photograph");
+    ElidedLabel label(text);
+    label.resize(label.sizeHint());
+    QVERIFY(!label.isCut());
+    const int least = label.minimumSizeHint().width();
+    QVERIFY(least < label.sizeHint().width() / 3);
+    label.resize(least, label.height());
+    QVERIFY(label.isCut());
+    QCOMPARE(label.text(), text);
+  }
+
+  /// What a panel needs and does not get is behind a scroll bar, not cut.
+  void aPanelScrollsWhatItHasNoRoomFor() {
+    auto* content = new QWidget;
+    content->setMinimumSize(300, 200);
+    PanelScroll scroll(content, {100, 60});
+    QCOMPARE(scroll.minimumSizeHint(), QSize(100, 60));
+    scroll.resize(400, 250);
+    scroll.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&scroll));
+    QCOMPARE(content->size(), scroll.viewport()->size());
+    QVERIFY(!scroll.verticalScrollBar()->isVisible() && !scroll.horizontalScrollBar()->isVisible());
+    scroll.resize(400, 100);
+    QTRY_VERIFY(scroll.verticalScrollBar()->isVisible());
+    QCOMPARE(content->height(), 200);
+    QVERIFY(!scroll.horizontalScrollBar()->isVisible());
+    scroll.resize(120, 100);
+    QTRY_VERIFY(scroll.horizontalScrollBar()->isVisible());
+    QCOMPARE(content->size(), QSize(300, 200));
+  }
+
+  void whatHugsTakesNoMoreThanItsContent() {
+    auto* text = new QLabel(QStringLiteral("one two three four five six seven eight nine ten eleven twelve thirteen fourteen"));
+    text->setWordWrap(true);
+    auto* rest = new QWidget;
+    rest->setMinimumHeight(40);
+    QWidget window;
+    auto* column = new QVBoxLayout(&window);
+    column->setContentsMargins(0, 0, 0, 0);
+    column->setSpacing(0);
+    auto* scroll = new PanelScroll(text, {50, 20}, PanelScroll::Height::Hugs);
+    column->addWidget(scroll);
+    column->addWidget(rest, 1);
+    window.resize(120, 300);
+    window.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&window));
+    QTRY_COMPARE(scroll->height(), text->heightForWidth(120));
+    window.resize(240, 300);
+    QTRY_COMPARE(scroll->height(), text->heightForWidth(240));
+    window.resize(120, 70);
+    QTRY_VERIFY(scroll->verticalScrollBar()->isVisible());
+    QVERIFY(rest->height() >= 40);
+    window.resize(240, 300);
+    text->hide();
+    QTRY_COMPARE(scroll->height(), 0);
+  }
+
+ private:
+  static void themes() {
+    QTest::addColumn<int>("theme");
+    QTest::newRow("dark") << int(Theme::Dark);
+    QTest::newRow("light") << int(Theme::Light);
+  }
+};
+
+QObject* makeThemeTest() { return new ThemeTest; }
+
+}  // namespace glint::gui
+
+#include "theme_test.moc"
