@@ -26,6 +26,8 @@
 namespace glint::gui {
 
 namespace {
+constexpr int kColumnGapPx = 12;  // of the summary
+
 enum class Shown { All, HeldOut, Training, Problems };
 
 class RowFilter : public QSortFilterProxyModel {
@@ -179,10 +181,11 @@ QString ErrorTable::summaryHtml(int columns, int problemWidth) const {
   for (const SummaryRow& row : summaryRows_) {
     const bool heading = row.colour.isEmpty();
     html += heading ? QStringLiteral("<tr style='color:%1'>").arg(faded) : QStringLiteral("<tr>");
-    html += QStringLiteral("<td style='padding-right:12px'>%1%2</td>")
+    html += QStringLiteral("<td style='padding-right:%1px'>%2%3</td>")
+                .arg(kColumnGapPx)
                 .arg(heading ? QString() : QStringLiteral("<span style='color:%1'>■</span>&nbsp;").arg(row.colour), row.name);
     for (int c = 0; c < std::min(columns, int(row.values.size())); ++c)
-      html += QStringLiteral("<td align='right' style='padding-right:12px'>%1</td>").arg(row.values[c]);
+      html += QStringLiteral("<td align='right' style='padding-right:%1px'>%2</td>").arg(kColumnGapPx).arg(row.values[c]);
     if (!row.problem.isEmpty())
       html += QStringLiteral("<td colspan='%1' style='color:%2'>%3</td>")
                   .arg(std::max(1, columns))
@@ -209,7 +212,15 @@ void ErrorTable::fitSummary() {
     problems = std::max(problems, summary_->fontMetrics().horizontalAdvance(row.problem));
   }
   const int forProblems = std::max(40, room - first);
-  int columns = all;
+  // Widths are estimated first: laying out a table of rich text takes milliseconds, and this follows a slider.
+  int columns = 0;
+  for (int used = first; columns < all; ++columns) {
+    int wide = 0;
+    for (const SummaryRow& row : summaryRows_)
+      if (columns < row.values.size()) wide = std::max(wide, summary_->fontMetrics().horizontalAdvance(row.values[columns]));
+    used += wide + kColumnGapPx;
+    if (columns > 0 && used > room) break;
+  }
   summary_->setText(summaryHtml(columns, forProblems));
   while (columns > 1 && summary_->sizeHint().width() > room) summary_->setText(summaryHtml(--columns, forProblems));
   if (columns < all || problems > forProblems) summary_->setToolTip(summaryHtml(all, problems + 1));
