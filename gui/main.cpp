@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/base/outcome.h"
+#include "gui/scene/camera_glide.h"
 #include "gui/window/command_line.h"
 #include "gui/window/main_window.h"
 #include "gui/window/screenshot.h"
@@ -48,6 +49,7 @@ int run(int argc, char** argv) {
   window.applyLayout(command.layout);  // dock sizes are known only now
   if (!command.size.isEmpty()) window.resize(command.size);  // a large window's docks may have kept it larger
   if (!command.input.isEmpty()) window.open(command.input, command.frame);
+  setAnimationsWanted(command.run.isEmpty() && command.screenshot.isEmpty());  // a script waits for no movement
   if (!command.run.isEmpty()) window.runActions(command.run);
   if (!command.screenshot.isEmpty()) new Screenshot(window, command.screenshot, command.waitIdle);
   return QApplication::exec();

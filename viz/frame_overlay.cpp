@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/scene/photographs.h"
 #include "viz/frame_details.h"
 
 namespace glint::viz {
@@ -229,6 +230,7 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
     return !options.hiddenModels.count(model) && (options.models.empty() || options.models.count(model));
   };
 
+  std::optional<Failure> unreadable;
   if (static_cast<std::size_t>(frame) < inspection.evidence.size()) {
     const FrameEvidence& evidence = inspection.evidence[static_cast<std::size_t>(frame)];
     const std::vector<Highlight>& observed = evidence.scored();  // what the rows of the comparison refer to
@@ -268,7 +270,10 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
         overlay.marks.push_back(mark);
       }
     }
-    if (evidence.failure) overlay.captions.push_back({kObserved, "", "observed: " + evidence.failure->message(), true, {}});
+    if (evidence.failure && evidence.failure->reason == Reason::FrameUnreadable) unreadable = evidence.failure;
+    if (evidence.failure)
+      overlay.captions.push_back(
+          {kObserved, "", "observed: " + withoutFolder(evidence.failure->message(), *inspection.scene), true, {}});
   }
   // The canonical contour of a training view lies on its tangent plane; its ellipse in the photograph is what the fit uses.
   if (shown(OverlayRole::CanonicalEllipse)) {
@@ -290,7 +295,7 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
   if (shown(OverlayRole::LimitDirections)) addLimitDirections(inspection, frame, drawn, selected, overlay.lines);
   for (const std::string& model : modelsInOrder(inspection, options.models)) {
     const ModelResult& result = inspection.models.at(model);
-    const FrameScore score = frameScore(result, frame);
+    FrameScore score = frameScore(result, frame);
     bool answered = false;
     for (const FrameComparison& comparison : result.frames) {
       if (comparison.frame != frame) continue;
@@ -360,6 +365,10 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
       none.reason = reason;
       overlay.captions.push_back({modelColour(model), model, model + "  " + reason, true, none});
     } else {
+      if (unreadable && score.reason == unreadable->message()) {
+        score.reason = "not compared";  // why is said once, for the frame
+        score.spurious = 0;
+      }
       overlay.captions.push_back({modelColour(model), model, scoreText(model, score),
                                   score.matched == 0 || score.missed > 0 || score.spurious > 0, score});
     }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <string_view>
 
+#include "core/scene/photographs.h"
 #include "viz/frame_overlay.h"
 
 namespace glint::viz {
@@ -61,13 +62,23 @@ SceneLegend legendOf(const LayerInput& in, const std::vector<ShownLayer>& layers
   if (drawn("observed-contours")) legend.entries.push_back({kObserved, "observed contour"});
   if (drawn("light")) legend.entries.push_back({kLightColour, "light, estimated"});
   if (drawn("true-light")) legend.entries.push_back({kTruth, "light, truth"});
+  std::string noEvidence;
+  if (const auto at = static_cast<std::size_t>(in.selection.frame); at < in.inspection->evidence.size()) {
+    const std::optional<Failure>& failure = in.inspection->evidence[at].scoringFailure();
+    if (failure && failure->reason == Reason::FrameUnreadable) {
+      noEvidence = failure->message();
+      legend.notes.push_back(withoutFolder(noEvidence, *in.inspection->scene));
+    }
+  }
   if (shown("predicted-contours") || shown("ellipsoids")) {
     for (const std::string& model : in.models) {
       const FrameScore score = frameScore(in.inspection->models.at(model), in.selection.frame);
       char error[32] = "";
       if (score.errorPct) std::snprintf(error, sizeof error, "  %.2f %%", *score.errorPct);
       legend.entries.push_back({modelColour(model), model + error, true});
-      if (!score.errorPct && !score.reason.empty()) legend.notes.push_back(model + ": " + score.reason);
+      // What is wrong with the frame itself is said once, not for every model.
+      if (!score.errorPct && !score.reason.empty() && score.reason != noEvidence)
+        legend.notes.push_back(model + ": " + score.reason);
     }
   }
   for (const ShownLayer& layer : layers) {

@@ -50,7 +50,27 @@ std::vector<Eigen::Vector3d> selectedExtent(const LayerInput& in) {
   return points;
 }
 
-std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, HighlightLook look, bool withNormal) {
+namespace {
+
+/// The ends of the ellipsoids' axes, with a margin; those of other models than `model` ("" = none is meant) where they are small.
+std::vector<Eigen::Vector3d> ellipsoidEnds(const LayerInput& in, const std::string& model) {
+  std::vector<Eigen::Vector3d> points;
+  for (const std::string& name : in.models) {
+    for (const ModelFit* fit : in.fits(name)) {
+      const double most = (name == model ? 5 : 0.5) * in.scale.sceneSize;  // a needle of another model must not shrink the rest
+      if (!fit->ellipsoid || fit->ellipsoid->semiAxes().maxCoeff() > most ||
+          (fit->ellipsoid->centre() - in.scale.sceneBox.center()).norm() > 5 * in.scale.sceneSize)
+        continue;
+      const Eigen::Matrix3d axes = fit->ellipsoid->worldFromBody().linear() * fit->ellipsoid->semiAxes().asDiagonal();
+      for (int i = 0; i < 6; ++i) points.push_back(fit->ellipsoid->centre() + (i % 2 ? -1.1 : 1.1) * axes.col(i / 2));
+    }
+  }
+  return points;
+}
+
+}  // namespace
+
+std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, HighlightLook look, const DrawnParts& drawn) {
   const auto at = static_cast<std::size_t>(in.selection.frame);
   if (!in.surface || at >= in.inspection->evidence.size() || in.inspection->evidence[at].highlights.empty()) return {};
   const std::vector<Highlight>& highlights = in.inspection->evidence[at].highlights;
@@ -85,7 +105,7 @@ std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, Hig
   for (const Eigen::Vector3d& q : place.points) radius = std::max(radius, (q - p.position).norm());
   if (!(radius > 0)) return {};
   place.points.push_back(p.position + 0.8 * radius * p.normal);
-  if (withNormal) place.points.push_back(p.position + 1.4 * in.scale.arrow * p.normal);
+  if (drawn.normal) place.points.push_back(p.position + 1.4 * in.scale.arrow * p.normal);
   const Eigen::Vector3d eye = camera.centreInWorld(), toCamera = (eye - p.position).normalized();
   const Eigen::Vector3d right = camera.camFromWorld.linear().row(0).transpose();
   Eigen::Vector3d up = p.normal;
@@ -104,6 +124,8 @@ std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, Hig
     if (light != in.inspection->lights.end() && !light->second.light.atInfinity() &&
         (light->second.light.position() - p.position).norm() < 3 * in.scale.sceneSize)
       place.points.push_back(light->second.light.position());
+    if (drawn.ellipsoids)
+      for (const Eigen::Vector3d& q : ellipsoidEnds(in, in.selection.model)) place.points.push_back(q);
     place.back = (square + 0.22 * p.normal).normalized();
   } else {
     // Half from the side, and not in line with the camera's own view.
@@ -122,17 +144,7 @@ std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, Hig
 namespace {
 
 std::vector<Eigen::Vector3d> ellipsoidExtent(const LayerInput& in, const std::string& model) {
-  std::vector<Eigen::Vector3d> points;
-  for (const std::string& name : in.models) {
-    for (const ModelFit* fit : in.fits(name)) {
-      const double most = (name == model ? 5 : 0.5) * in.scale.sceneSize;  // a needle of another model must not shrink the rest
-      if (!fit->ellipsoid || fit->ellipsoid->semiAxes().maxCoeff() > most ||
-          (fit->ellipsoid->centre() - in.scale.sceneBox.center()).norm() > 5 * in.scale.sceneSize)
-        continue;
-      const Eigen::Matrix3d axes = fit->ellipsoid->worldFromBody().linear() * fit->ellipsoid->semiAxes().asDiagonal();
-      for (int i = 0; i < 6; ++i) points.push_back(fit->ellipsoid->centre() + (i % 2 ? -1.1 : 1.1) * axes.col(i / 2));
-    }
-  }
+  std::vector<Eigen::Vector3d> points = ellipsoidEnds(in, model);
   if (points.empty()) return points;
   for (const TrainingView* view : in.views())
     if (view->brightest) points.push_back(view->brightest->point.position);
@@ -163,6 +175,20 @@ Eigen::Vector3d upwards(const LayerInput& in, const std::vector<int>& frames) {
   }
   const double n = static_cast<double>(frames.size());
   up /= n;
+  // Cameras that look steeply down have an upwards of their own that is nearly level. People hold them level, though: then
+  // upwards is square to all their horizontal image axes, where those tell a direction.
+  Eigen::Matrix3d level = Eigen::Matrix3d::Zero();
+  for (const int frame : frames) {
+    const Eigen::Vector3d right = in.frame(frame).camera.camFromWorld.linear().row(0).transpose();
+    level += right * right.transpose() / n;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(level);
+  constexpr double kLevel = 0.02, kTells = 0.05;  // mean squares of sines: tilted by up to 8 degrees; spread by 13 or more
+  if (axes.eigenvalues()[0] < kLevel && axes.eigenvalues()[1] > kTells) {
+    const Eigen::Vector3d square = axes.eigenvectors().col(0);
+    const double side = square.dot(up);
+    if (std::abs(side) > 0.05) up = side > 0 ? square : Eigen::Vector3d(-square);
+  }
   if (up.norm() < 0.2) up = eyes / n - in.scale.surfaceBox.center();
   if (up.norm() < 1e-9 * in.scale.sceneSize) up = Eigen::Vector3d::UnitZ();
   // Scenes are modelled with an axis upwards more often than not: snap to it.
@@ -199,6 +225,17 @@ std::optional<Framing> ellipsoidFraming(const LayerInput& in, const std::vector<
   Framing framing;
   framing.points = ellipsoidExtent(in, model);
   if (framing.points.empty()) return {};
+  // The cones of primal come from the cameras themselves, and are drawn from halfway.
+  if (model == "primal")
+    for (const ModelFit* fit : in.fits(model))
+      for (const TrainingView* view : in.views())
+        if (fit->ellipsoid) framing.points.push_back(0.5 * (view->camera.centreInWorld() + fit->ellipsoid->centre()));
+  // The surface, too, where it is no larger than all that: half of it would puzzle.
+  Eigen::AlignedBox3d held;
+  for (const Eigen::Vector3d& p : framing.points) held.extend(p);
+  if (in.scale.surfaceSize <= held.diagonal().norm())
+    for (int i = 0; i < 8; ++i)
+      framing.points.push_back(in.scale.surfaceBox.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
   // The highlights' own normal is upwards where they agree on one, as on a table: cameras that look down at it do not know.
   Eigen::Vector3d up = upwards(in, frames), normals = Eigen::Vector3d::Zero();
   int views = 0;

@@ -24,8 +24,11 @@ struct Framing {
 };
 /// A highlight of the selected frame.
 /// @param highlight  index in the frame's evidence; out of range = the first. Nothing where it is not on the surface.
-/// @param withNormal  the drawn normal, too.
-std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, HighlightLook look, bool withNormal);
+/// @param drawn  what else of it is drawn, and is to be held.
+struct DrawnParts {
+  bool normal = false, ellipsoids = false;
+};
+std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, HighlightLook look, const DrawnParts& drawn);
 /// What the cones of a model hold: the brightest points of the views on this surface and the ellipsoids, across their longest
 /// extent.
 /// @param model  "" = all. @param frames  not empty.

@@ -14,8 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <limits>
+#include <numbers>
 #include <utility>
 
 #include "core/light/light.h"
@@ -479,7 +478,8 @@ void SceneView::setWalk(std::shared_ptr<const WalkStory> walk, int step) {
 void SceneView::frameAll() { impl_->frameAll(); }
 void SceneView::frameSelection() { impl_->frameSelection(); }
 bool SceneView::frameHighlight(int highlight, HighlightLook look) {
-  return impl_->valid() && impl_->frame(highlightFraming(impl_->input, highlight, look, layerVisible("peaks")));
+  const DrawnParts drawn{layerVisible("peaks"), layerVisible("ellipsoids")};
+  return impl_->valid() && impl_->frame(highlightFraming(impl_->input, highlight, look, drawn));
 }
 void SceneView::frameEllipsoids(const std::string& model) {
   if (!impl_->valid() || !impl_->frame(ellipsoidFraming(impl_->input, impl_->allFrames, model))) impl_->frameAll();

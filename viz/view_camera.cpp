@@ -109,6 +109,32 @@ ViewPoint viewPointOf(vtkCamera* camera) {
   return view;
 }
 
+namespace {
+/// Columns right, up, back of a view's picture.
+Eigen::Matrix3d axesOf(const ViewPoint& view) {
+  const Eigen::Vector3d back = (view.position - view.focalPoint).normalized();
+  const Eigen::Vector3d right = view.up.cross(back).normalized();
+  Eigen::Matrix3d axes;
+  axes << right, back.cross(right), back;
+  return axes;
+}
+}  // namespace
+
+ViewPoint between(const ViewPoint& from, const ViewPoint& to, double t) {
+  if (!(t > 0)) return from;
+  if (!(t < 1)) return to;
+  const Eigen::Matrix3d a = axesOf(from), b = axesOf(to);
+  const double near = (from.position - from.focalPoint).norm(), far = (to.position - to.focalPoint).norm();
+  if (!a.allFinite() || !b.allFinite() || !(near > 0 && far > 0)) return to;
+  const Eigen::Matrix3d axes = Eigen::Quaterniond(a).slerp(t, Eigen::Quaterniond(b)).toRotationMatrix();
+  ViewPoint view = to;
+  view.focalPoint = (1 - t) * from.focalPoint + t * to.focalPoint;
+  view.position = view.focalPoint + near * std::pow(far / near, t) * axes.col(2);
+  view.up = axes.col(1);
+  view.viewAngleDeg = (1 - t) * from.viewAngleDeg + t * to.viewAngleDeg;
+  return view;
+}
+
 ViewPoint fitted(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& back, const Eigen::Vector3d& up,
                  double aspect, const Margins& margins, bool parallel, const Eigen::Vector3d& reference, double leastDepth) {
   constexpr double kFieldOfView = 30 * std::numbers::pi / 180;

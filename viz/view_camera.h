@@ -47,6 +47,10 @@ void standFree(vtkCamera* vtk, const PictureArea& area);
 void setViewPoint(vtkCamera* vtk, const ViewPoint& view);
 ViewPoint viewPointOf(vtkCamera* vtk);
 
+/// A view on the way from one to another: the focal point moves straight, the distance to it by equal ratios, and the eye turns
+/// about it the short way, upwards kept upwards. @param t  0 = from, 1 = to (exactly).
+ViewPoint between(const ViewPoint& from, const ViewPoint& to, double t);
+
 /// World point under a window px (device px, y up), as far from the eye as `anchor`: where a dragged thing goes.
 Eigen::Vector3d worldAt(vtkRenderer* renderer, double xDisplay, double yDisplay, const Eigen::Vector3d& anchor);
 

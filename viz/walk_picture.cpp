@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kDrawnLimit = 0.44;  // rad: the limit angle in the sections, 25 degrees
 constexpr double kMostStretch = 20;
+constexpr double kGlyphWidth = 0.6;  // of a letter, in heights of the text, on average
 
 std::string text(const char* format, double value) {
   char line[64];
@@ -73,7 +74,13 @@ struct Painter {
     out.texts.push_back({{box.x, box.y + textPx}, title, colour, Align::Left, true});
     const std::string alpha =
         visited > 0 ? text("α %.2f°", degrees(places[static_cast<std::size_t>(visited - 1)].alpha)) : std::string("not yet");
-    out.texts.push_back({{box.x + box.width, box.y + textPx}, alpha, visited > 0 ? ink : faint, Align::Right});
+    // In a narrow half it stands below the title.
+    const double needed = kGlyphWidth * textPx * static_cast<double>(std::string(title).size() + alpha.size() + 2);
+    const bool beside = needed < box.width;
+    out.texts.push_back({{beside ? box.x + box.width : box.x, box.y + (beside ? 1.0 : 2.2) * textPx},
+                         alpha,
+                         visited > 0 ? ink : faint,
+                         beside ? Align::Right : Align::Left});
   }
 
   void chart(const Box& box, const WalkStory::Moment& now) {

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 namespace glint {
 namespace {
@@ -41,6 +43,15 @@ ordered_json highlightJson(const PredictedHighlight& h) {
   return j;
 }
 
+/// The file that shows a frame's highlights, relative to the scene; "" where there is none: the scene names no picture, the file is
+/// not there, or the highlights are synthesised and the photograph shows others.
+std::string photographOf(const Inspection& inspection, const Frame& frame) {
+  const std::filesystem::path file = frame.image.empty() ? frame.radiance : frame.image;
+  std::error_code ignored;  // what cannot be asked about is not there
+  if (file.empty() || inspection.request.whatIf.synthesise || !std::filesystem::exists(file, ignored)) return {};
+  return file.lexically_relative(inspection.scene->folder).generic_string();
+}
+
 }  // namespace
 
 std::string predictionsJson(const Inspection& inspection, const std::vector<int>& frames) {
@@ -75,14 +86,21 @@ std::string cocoJson(const Inspection& inspection, const std::string& model, con
   j["annotations"] = ordered_json::array();
   j["categories"] = ordered_json::array();
   std::vector<std::string> lights;
+  int without = 0;
   for (const int f : frames) {
     const Frame& frame = inspection.scene->frames[f];
-    const std::filesystem::path file = frame.image.empty() ? frame.radiance : frame.image;
+    const std::string file = photographOf(inspection, frame);
+    without += file.empty();
     j["images"].push_back({{"id", f},
-                           {"file_name", file.empty() ? frame.id : file.lexically_relative(inspection.scene->folder).generic_string()},
+                           {"file_name", file.empty() ? frame.id : file},
                            {"width", frame.camera.width},
                            {"height", frame.camera.height}});
+    if (file.empty()) j["images"].back()["note"] = "no photograph: file_name is the frame's id";
   }
+  if (without > 0)
+    j["info"]["note"] =
+        std::to_string(without) + " of " + std::to_string(frames.size()) + " images have no photograph that shows these highlights" +
+        (inspection.request.whatIf.synthesise ? " (their contours are synthesised)" : "") + ": their file_name is the frame's id";
   int id = 1;
   for (const FrameComparison& c : inspection.models.at(model).frames) {
     if (std::find(frames.begin(), frames.end(), c.frame) == frames.end()) continue;

@@ -14,6 +14,8 @@ std::string predictionsJson(const Inspection& inspection, const std::vector<int>
 
 /// COCO labels (images, annotations with segmentation polygons, bounding boxes and areas, one category per light) of one
 /// model's predictions. COCO puts (0, 0) at the corner of the top-left pixel, so half a pixel is added; lens distortion is put back.
+/// Where no photograph shows these highlights (none is named, its file is missing, the contours are synthesised), `file_name` is
+/// the frame's id, and a `note` of the image and of `info` says so.
 std::string cocoJson(const Inspection& inspection, const std::string& model, const std::vector<int>& frames);
 
 }  // namespace glint

@@ -174,10 +174,7 @@ Replay replay(const Session& session, const ProgressFn& progress) {
   if (!changed.empty())
     throw InputError(session.file.string(), "input",
                      changed.front() + (changed.size() > 1 ? " (and " + std::to_string(changed.size() - 1) + " more)" : ""));
-  ReadOptions options;
-  options.allowOutsidePaths = session.allowOutsidePaths;
-  const Inspection inspection =
-      inspect(std::make_shared<const Scene>(readScene(session.input, options)), session.request, progress);
+  const Inspection inspection = inspect(openSession(session).scene, session.request, progress);
   Replay result;
   const KeyResults now = keyResultsOf(inspection);
   const auto find = [](const KeyResults& all, const std::string& name) {

@@ -11,6 +11,7 @@
 #include "core/base/json_text.h"
 #include "core/base/sha256.h"
 #include "core/pipeline/what_if_json.h"
+#include "core/scene/photographs.h"
 
 namespace glint {
 namespace fs = std::filesystem;
@@ -166,6 +167,7 @@ Session parseSession(const std::string& json, const fs::path& file) {
   const JsonNode input = root.at("input");
   session.input = absolutePath(input.at("path"), folder);
   if (const auto n = input.find("allow_outside")) session.allowOutsidePaths = n->boolean();
+  if (const auto n = input.find("photographs"); n && !n->isNull()) session.photographs = absolutePath(*n, folder);
   if (const auto n = input.find("files"))
     for (std::size_t i = 0; i < n->size(); ++i)
       session.files.push_back({absolutePath(n->at(i).at("path"), folder), readHash(n->at(i).at("sha256"))});
@@ -208,6 +210,7 @@ void writeSession(const Session& session, const fs::path& file) {
   const auto hash = [](const std::string& hex) { return hex.empty() ? Json() : Json(hex); };
   Json root = {{"glint_session", kVersion}};
   root["input"] = {{"path", relative(session.input)}, {"allow_outside", session.allowOutsidePaths}, {"files", Json::array()}};
+  if (!session.photographs.empty()) root["input"]["photographs"] = relative(session.photographs);
   for (const SessionFile& f : session.files)
     root["input"]["files"].push_back({{"path", relative(f.path)}, {"sha256", hash(f.sha256)}});
 
@@ -265,7 +268,9 @@ OpenedSession openSession(Session given, const fs::path& sceneInstead) {
   if (!fs::exists(session.input, ignored)) throw MissingScene(session.file, session.input);
   ReadOptions options;
   options.allowOutsidePaths = session.allowOutsidePaths;
-  opened.scene = std::make_shared<const Scene>(readScene(session.input, options));
+  Scene scene = readScene(session.input, options);
+  if (!session.photographs.empty()) scene = withPhotographsIn(std::move(scene), session.photographs);
+  opened.scene = std::make_shared<const Scene>(std::move(scene));
   if (!sceneInstead.empty() && !session.files.empty()) {
     const std::string expected = session.files.front().sha256;
     if (!expected.empty() && sha256OfFile(opened.scene->file) != expected)

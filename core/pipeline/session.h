@@ -52,6 +52,7 @@ struct Session {
   std::filesystem::path file;      ///< as opened; empty for a new session
   std::filesystem::path input;     ///< absolute path of the scene
   std::optional<Recovery> recovery;  ///< set in autosaves only
+  std::filesystem::path photographs;  ///< absolute folder in which photographs are looked for first; "" = where the scene says
   bool allowOutsidePaths = false;  ///< the scene may name files outside its folder
   std::vector<SessionFile> files;  ///< the scene file first, then everything that it names
   InspectionRequest request;

@@ -9,6 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/base/atomic_file.h"
+#include "core/scene/photographs.h"
 #include "core/scene/scene.h"
 
 namespace glint {
@@ -18,6 +19,11 @@ namespace {
 
 Failure unreadable(const fs::path& file, const std::string& reason) {
   return Failure{Reason::FrameUnreadable, file.string() + ": " + reason};
+}
+
+std::string wrongSize(int width, int height, const Camera& camera) {
+  return "the image has " + std::to_string(width) + " x " + std::to_string(height) + " pixels, the camera " +
+         std::to_string(camera.width) + " x " + std::to_string(camera.height);
 }
 
 std::uint32_t bigEndian(const std::string& bytes, std::size_t at) {
@@ -125,8 +131,7 @@ Outcome<Decoded> decode(const fs::path& file, const Camera& camera) {
   cv::Mat& m = decoded.pixels;
   if (m.empty()) return unreadable(file, "the image cannot be decoded (not an image, truncated or damaged)");
   if (m.cols != camera.width || m.rows != camera.height)
-    return unreadable(file, "the image has " + std::to_string(m.cols) + " x " + std::to_string(m.rows) + " pixels, the camera " +
-                                std::to_string(camera.width) + " x " + std::to_string(camera.height));
+    return unreadable(file, wrongSize(m.cols, m.rows, camera));
   if (m.channels() != 1 && m.channels() != 3 && m.channels() != 4)
     return unreadable(file, "the image has " + std::to_string(m.channels()) + " channels, expected 1, 3 or 4");
   if (m.channels() >= 3) {
@@ -236,6 +241,25 @@ Outcome<Image> readPhotograph(const Frame& frame) {
   if (!isCode(m)) return unreadable(frame.image, "the pixel type is not understood (8-bit, 16-bit or float)");
   if (m.depth() == CV_16U && decoded->saysLinear) return threeChannels(throughTable(m, srgbFromLinear));
   return threeChannels(throughTable(m, [](double v) { return v; }));
+}
+
+std::string photographProblem(const Frame& frame) {
+  const fs::path& file = frame.image.empty() ? frame.radiance : frame.image;
+  if (file.empty()) return {};
+  try {
+    const std::string bytes = readFile(file);
+    const FileCheck check = checkContainer(bytes);
+    if (!check.problem.empty()) return file.string() + ": " + check.problem;
+    constexpr std::size_t kPngHeader = 24;  // signature 8, length and type of IHDR 8, width 4, height 4
+    if (bytes.compare(0, 4, "\x89PNG") == 0 && bytes.size() >= kPngHeader) {
+      const auto width = static_cast<int>(bigEndian(bytes, 16)), height = static_cast<int>(bigEndian(bytes, 20));
+      if (width != frame.camera.width || height != frame.camera.height)
+        return file.string() + ": " + wrongSize(width, height, frame.camera);
+    }
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return {};
 }
 
 Outcome<std::optional<Image>> readMask(const Frame& frame) {

@@ -6,6 +6,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/json_text.h"
+#include "core/scene/photographs.h"
 #include "core/scene/scene_json.h"
 #include "core/scene/scene_reader.h"
 
@@ -84,7 +85,10 @@ class SessionSceneReader final : public SceneReader {
     if (isJsonObjectWith(scene, "glint_session")) path.fail("a session's input must be a scene, not a session");
     ReadOptions own = options;
     if (const auto allow = root.at("input").find("allow_outside")) own.allowOutsidePaths = own.allowOutsidePaths || allow->boolean();
-    return readScene(scene.lexically_normal(), own);
+    Scene read = readScene(scene.lexically_normal(), own);
+    if (const auto folder = root.at("input").find("photographs"); folder && !folder->isNull())
+      read = withPhotographsIn(std::move(read), (fs::absolute(file).parent_path() / folder->text()).lexically_normal());
+    return read;
   }
 };
 

@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/base/number_box.h"
 
+#include <QHelpEvent>
 #include <QLocale>
+#include <QSignalBlocker>
+#include <QStyle>
+#include <QStyleOptionSpinBox>
+#include <QTextDocument>
+#include <QToolTip>
 #include <QWheelEvent>
 #include <algorithm>
 #include <cmath>
@@ -12,6 +18,17 @@ namespace glint::gui {
 
 namespace {
 constexpr double kManySteps = 2000;  // beyond this a linear slider cannot reach small values
+
+constexpr int kMostCharacters = 8, kDigits = 5, kFewestDigits = 3, kAllDigits = 12;
+
+QString fullText(double value) { return QString::number(value, 'g', kAllDigits); }
+
+QString shortText(double value) {
+  int digits = kDigits;
+  QString text = QString::number(value, 'g', digits);
+  while (text.size() > kMostCharacters && digits > kFewestDigits) text = QString::number(value, 'g', --digits);
+  return text;
+}
 
 QString bare(QString text, const QString& suffix) {
   if (!suffix.isEmpty() && text.endsWith(suffix)) text.chop(suffix.size());
@@ -30,9 +47,46 @@ NumberBox::NumberBox(const ParamSpec& spec, QWidget* parent) : QDoubleSpinBox(pa
   if (!spec.unit.empty()) setSuffix(QStringLiteral(" ") + toQString(spec.unit));
 }
 
-QString NumberBox::textFromValue(double value) const { return QString::number(value, 'g', 8); }
+QString NumberBox::textFromValue(double value) const { return full_ ? fullText(value) : shortText(value); }
 
-double NumberBox::valueFromText(const QString& text) const { return bare(text, suffix()).toDouble(); }
+double NumberBox::valueFromText(const QString& text) const {
+  const QString given = bare(text, suffix());
+  return given == textFromValue(value()) ? value() : given.toDouble();
+}
+
+QSize NumberBox::sizeHint() const {
+  QSize size = QDoubleSpinBox::sizeHint();
+  QStyleOptionSpinBox option;
+  initStyleOption(&option);
+  const int text = fontMetrics().horizontalAdvance(QString(kMostCharacters, QLatin1Char('8')) + suffix()) + 6;
+  size.setWidth(style()->sizeFromContents(QStyle::CT_SpinBox, &option, {text, size.height()}, this).width());
+  return size;
+}
+
+void NumberBox::setFull(bool full) {
+  if (full == full_) return;
+  full_ = full;
+  const QSignalBlocker quiet(this);
+  setSuffix(suffix());  // writes the text anew
+}
+
+bool NumberBox::event(QEvent* e) {
+  if (e->type() != QEvent::ToolTip || shortText(value()) == fullText(value())) return QDoubleSpinBox::event(e);
+  const QString exact = fullText(value()) + suffix();
+  const QString more = Qt::mightBeRichText(toolTip()) ? QStringLiteral("<br>") : QStringLiteral("\n");
+  QToolTip::showText(static_cast<QHelpEvent*>(e)->globalPos(), toolTip().isEmpty() ? exact : toolTip() + more + exact, this);
+  return true;
+}
+
+void NumberBox::focusInEvent(QFocusEvent* e) {
+  setFull(true);
+  QDoubleSpinBox::focusInEvent(e);
+}
+
+void NumberBox::focusOutEvent(QFocusEvent* e) {
+  QDoubleSpinBox::focusOutEvent(e);  // takes what was typed
+  setFull(false);
+}
 
 QValidator::State NumberBox::validate(QString& text, int&) const {
   bool number = false;

@@ -8,8 +8,9 @@
 namespace glint::gui {
 
 /// A spin box for one numeric setting: writes numbers as short as they are ("1e-10", not 0.0000000001), accepts both, and changes
-/// its value only when typing is finished. The wheel changes it only while it has the focus, so that scrolling the panel changes
-/// nothing.
+/// its value only when typing is finished. It shows about five digits, so that the unit stays in sight, and all of them while it
+/// is edited and in its tool tip; what is shown shortened stays exact unless it is changed. The wheel changes it only while it
+/// has the focus, so that scrolling the panel changes nothing.
 class NumberBox : public QDoubleSpinBox {
   Q_OBJECT
  public:
@@ -17,9 +18,18 @@ class NumberBox : public QDoubleSpinBox {
   QString textFromValue(double value) const override;
   double valueFromText(const QString& text) const override;
   QValidator::State validate(QString& text, int& position) const override;
+  QSize sizeHint() const override;  ///< room for the longest number that it shows, and the unit
+  QSize minimumSizeHint() const override { return sizeHint(); }
 
  protected:
+  bool event(QEvent* e) override;
+  void focusInEvent(QFocusEvent* e) override;
+  void focusOutEvent(QFocusEvent* e) override;
   void wheelEvent(QWheelEvent* e) override;
+
+ private:
+  void setFull(bool full);
+  bool full_ = false;  ///< shows all digits
 };
 
 /// Slider positions 0..1000 of a setting: linear, or logarithmic in steps where the range spans many of them.

@@ -88,6 +88,7 @@ void addState(Session& session, const Opened& opened) {
     session.notes = opened.session->notes;
     session.unknownJson = opened.session->unknownJson;
     session.allowOutsidePaths = opened.session->allowOutsidePaths;
+    session.photographs = opened.session->photographs;
   }
   session.view.layout = opened.layout;
   session.view.layers = opened.layers;

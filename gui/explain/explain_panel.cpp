@@ -119,6 +119,7 @@ ExplainPanel::ExplainPanel(Document& document, QWidget* parent)
   connect(steps_, &QListWidget::currentRowChanged, this, [this](int row) {
     if (row >= 0 && row != step()) goTo(row);
   });
+  connect(&document_, &Document::sceneOpened, this, [this] { lookedAt_.clear(); });
   connect(&document_, &Document::optionsChanged, this, &ExplainPanel::refresh);
   for (const auto signal : {&Document::inspectionChanged, &Document::selectionChanged, &Document::sceneOpened})
     connect(&document_, signal, this, &ExplainPanel::compute);
@@ -182,10 +183,25 @@ void ExplainPanel::goTo(int wanted) {
   lookAtStep();
 }
 
+/// What the step on screen is about, as far as a view has to go elsewhere when it changes.
+QString ExplainPanel::subject() const {
+  const QString& at = explainTexts().steps[step()].look;
+  QString subject = explainTexts().steps[step()].id;
+  if (at == QLatin1String("ellipsoid"))
+    subject += QStringLiteral("/%1/%2").arg(toQString(explanation_->model), toQString(explanation_->light));
+  else if (at != QLatin1String("scene"))
+    subject += QStringLiteral("/%1/%2").arg(explanation_->frame).arg(explanation_->highlight);
+  return subject;
+}
+
 void ExplainPanel::lookAtStep() {
-  if (!lookPending_ || step() < 0 || !explanation_) return;
+  if (step() < 0 || !explanation_) return;
+  // A session is looked at from where it was left; afterwards the view follows what is selected.
+  const QString now = subject();
+  const bool left = lookedAt_.isEmpty() && !lookPending_;
+  if (now == std::exchange(lookedAt_, now) && !lookPending_) return;
   lookPending_ = false;
-  emit look(explainTexts().steps[step()].look, explanation_->highlight, toQString(explanation_->model));
+  if (!left) emit look(explainTexts().steps[step()].look, explanation_->highlight, toQString(explanation_->model));
 }
 
 void ExplainPanel::leave() {
@@ -193,6 +209,7 @@ void ExplainPanel::leave() {
   std::map<std::string, std::string> options = document_.state().options;
   options.erase(kStep);
   lookPending_ = false;
+  lookedAt_.clear();
   document_.setView(layersBefore_, options, tr("Leave the explanation"));
   emit look(QStringLiteral("scene"), -1, QString());
 }
@@ -209,7 +226,7 @@ void ExplainPanel::compute() {
     const int frame = std::clamp(selection.frame, 0, int(inspection->scene->frames.size()) - 1);
     auto found = std::make_shared<const Explanation>(explain(*inspection, frame, selection.highlight, model));
     return LatestJob::Deliver([this, found] {
-      explanation_ = found;
+        explanation_ = found;
       refresh();
       lookAtStep();
     });

@@ -56,6 +56,7 @@ class ExplainPanel : public QWidget {
   void compute();
   void refresh();
   void lookAtStep();
+  QString subject() const;
   void openLesson(const QString& id);
   void follow(const QUrl& link);
   QString html() const;
@@ -66,6 +67,7 @@ class ExplainPanel : public QWidget {
   std::shared_ptr<const Explanation> explanation_;
   std::map<std::string, bool> layersBefore_;  ///< what was shown before the first step
   bool lookPending_ = false;                  ///< the step on screen was gone to, and what it is about is not computed yet
+  QString lookedAt_;                          ///< what the views were sent to last; "" = wherever a session left them
   Actions* actions_ = nullptr;
   WalkPlayer* walk_;
   WalkView* walkView_;

@@ -153,7 +153,7 @@ void FrameCanvas::paintEvent(QPaintEvent*) {
 
 void FrameCanvas::draw(QPainter& painter) const {
   if (photograph_.isNull()) {
-    painter.setPen(palette().color(QPalette::PlaceholderText));
+    painter.setPen(palette().color(QPalette::WindowText));
     painter.drawText(rect().adjusted(16, 16, -16, -16), Qt::AlignCenter | Qt::TextWordWrap, message_);
   } else {
     drawPhotograph(painter);

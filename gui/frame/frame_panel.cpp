@@ -11,8 +11,10 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <utility>
 
 #include "core/geometry/polyline.h"
+#include "core/scene/photographs.h"
 #include "gui/base/flow_layout.h"
 #include "gui/base/panel_scroll.h"
 #include "gui/base/text.h"
@@ -61,6 +63,7 @@ FramePanel::FramePanel(Document& document, QWidget* parent) : QWidget(parent), d
   connect(canvas_, &FrameCanvas::clicked, this, &FramePanel::selectAt);
   connect(second_, &FrameCanvas::clicked, this, &FramePanel::selectModelAt);
   for (FrameCanvas* canvas : {canvas_, second_}) {
+    connect(canvas, &FrameCanvas::viewMoved, this, [this] { zoomedByLook_ = false; });
     connect(canvas, &FrameCanvas::probed, this, [this](const QString& text) {
       probe_.forget();
       emit probed(text);
@@ -75,13 +78,15 @@ FramePanel::FramePanel(Document& document, QWidget* parent) : QWidget(parent), d
     if (frame == document_.selection().frame) canvas_->setPicture(picture);
   });
   connect(&loader_, &PhotoLoader::failed, this, [this](int frame, const QString& reason) {
-    if (frame == document_.selection().frame) canvas_->setMessage(reason);
+    emit photographFailed(frame, reason);
+    if (frame == document_.selection().frame) canvas_->setMessage(problemText(frame, reason));
   });
   connect(&secondLoader_, &PhotoLoader::loaded, this, [this](int frame, const FramePicture& picture) {
     if (frame == pair_->secondFrame()) second_->setPicture(picture);
   });
   connect(&secondLoader_, &PhotoLoader::failed, this, [this](int frame, const QString& reason) {
-    if (frame == pair_->secondFrame()) second_->setMessage(reason);
+    emit photographFailed(frame, reason);
+    if (frame == pair_->secondFrame()) second_->setMessage(problemText(frame, reason));
   });
   connectDocument();
   showScene();
@@ -203,6 +208,13 @@ void FramePanel::resizeEvent(QResizeEvent* e) {
 void FramePanel::changeEvent(QEvent* e) {
   QWidget::changeEvent(e);
   if (e->type() == QEvent::PaletteChange) refresh_.start();  // the captions have colours of the theme
+}
+
+QString FramePanel::problemText(int frame, const QString& reason) const {
+  const Scene& scene = *document_.scene();
+  const QString named = QLatin1String(nameOf(Reason::FrameUnreadable)) + QStringLiteral(": ");
+  return tr("Frame %1 has no picture\n%2")
+      .arg(toQString(scene.frames[std::size_t(frame)].id), toQString(withoutFolder(reason.toStdString(), scene)).remove(named));
 }
 
 bool FramePanel::busy() const { return refresh_.isActive() || loader_.busy() || secondLoader_.busy(); }
@@ -392,7 +404,19 @@ void FramePanel::selectModelAt(double x, double y) {
   document_.select(s);
 }
 
-void FramePanel::goToHighlight() {
+void FramePanel::look(const QString& at, int highlight) {
+  if (at == QLatin1String("tangent") || at == QLatin1String("highlight")) {
+    zoomTo(highlight);
+    zoomedByLook_ = true;
+  } else if (std::exchange(zoomedByLook_, false)) {
+    canvas_->fit();
+    second_->fit();
+  }
+}
+
+void FramePanel::goToHighlight() { zoomTo(document_.selection().highlight); }
+
+void FramePanel::zoomTo(int highlight) {
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
   if (!inspection) return;
   const auto look = [&](FrameCanvas* canvas, int frame, int highlight) {
@@ -407,7 +431,7 @@ void FramePanel::goToHighlight() {
     // The highlight fills half of the canvas, so that its surroundings show.
     canvas->lookAt(box.center(), 0.5 * std::min(canvas->width() / size.x(), canvas->height() / size.y()));
   };
-  look(canvas_, document_.selection().frame, document_.selection().highlight);
+  look(canvas_, document_.selection().frame, highlight);
   if (pair_->on()) look(second_, pair_->secondFrame(), -1);
 }
 

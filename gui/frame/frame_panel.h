@@ -48,10 +48,14 @@ class FramePanel : public QWidget {
   void showWalk(std::shared_ptr<const viz::WalkStory> walk, int step);
   /// What of the overlays is shown, and how.
   viz::OverlayOptions overlayOptions() const;
+  /// A step of the explanation is about a highlight ("tangent", "highlight": zooms to it) or about the scene (the whole
+  /// photograph again, unless the user has moved on since).
+  void look(const QString& at, int highlight);
   /// Zooms to the selected frame's highlights.
   void goToHighlight();
 
  signals:
+  void photographFailed(int frame, const QString& reason);  ///< there is nothing to show for it
   void probed(const QString& text);
 
  protected:
@@ -70,6 +74,8 @@ class FramePanel : public QWidget {
   void selectAt(double x, double y);
   void selectModelAt(double x, double y);
   void followLink(const QString& link);
+  void zoomTo(int highlight);
+  QString problemText(int frame, const QString& reason) const;
 
   Document& document_;
   PhotoLoader loader_, secondLoader_;
@@ -86,7 +92,8 @@ class FramePanel : public QWidget {
   QAction* colourByRole_ = nullptr;
   viz::FrameOverlay shown_, shownSecond_;
   std::size_t captionCount_ = 0;
-  QTimer refresh_;  ///< many selections at once are drawn once
+  bool zoomedByLook_ = false;  ///< and the user has not moved it since
+  QTimer refresh_;             ///< many selections at once are drawn once
   int probedFrame_ = -1;
   std::shared_ptr<const viz::WalkStory> walk_;
   int walkStep_ = 0;

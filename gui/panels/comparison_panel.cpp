@@ -2,6 +2,7 @@
 #include "gui/panels/comparison_panel.h"
 
 #include <QCheckBox>
+#include <QDir>
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QHBoxLayout>
@@ -14,6 +15,7 @@
 #include <QVBoxLayout>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "gui/base/rows_model.h"
 #include "gui/base/text.h"
@@ -59,6 +61,19 @@ QTableView* table(RowsModel* model, const char* name) {
   return view;
 }
 }  // namespace
+
+std::pair<QString, QString> shortestNames(const QString& fileA, const QString& fileB) {
+  const QStringList a = QDir::cleanPath(QFileInfo(fileA).absoluteFilePath()).split(QLatin1Char('/')),
+                    b = QDir::cleanPath(QFileInfo(fileB).absoluteFilePath()).split(QLatin1Char('/'));
+  int parts = 1;
+  while (a != b && parts < std::max(a.size(), b.size()) &&
+         a.mid(std::max(0, int(a.size()) - parts)) == b.mid(std::max(0, int(b.size()) - parts)))
+    ++parts;
+  const auto end = [parts](const QStringList& all) {
+    return all.mid(std::max(0, int(all.size()) - parts)).join(QLatin1Char('/'));
+  };
+  return {end(a), end(b)};
+}
 
 ComparisonPanel::ComparisonPanel(const Engine& engine, Document& document, LongJob& job, QWidget* parent)
     : QWidget(parent), engine_(engine), document_(document), job_(job) {
@@ -120,23 +135,28 @@ void ComparisonPanel::choose() {
 void ComparisonPanel::compareWith(const QString& file) {
   if (!document_.inspection()) return;
   if (document_.stale()) return void(emit problem(tr("What is on screen is still being computed; compare when it is done")));
-  const QString nameA = QFileInfo(document_.sessionFile().isEmpty() ? document_.inputFile() : document_.sessionFile()).fileName();
+  const QString fileA = document_.sessionFile().isEmpty() ? document_.inputFile() : document_.sessionFile();
   job_.start(tr("Comparing with %1").arg(QFileInfo(file).fileName()),
-             [this, file, nameA, a = document_.inspection()](const ProgressFn& progress) {
+             [this, file, fileA, a = document_.inspection()](const ProgressFn& progress) {
                const Opened opened = engine_.open(file.toStdString(), {});
                const Inspection b = engine_.inspect(opened.scene, opened.request, progress, nullptr);
                const auto result =
                    std::make_shared<const RunComparison>(compareRuns(sessionOf(*a, progress), *a, sessionOf(b, progress), b));
-               return [this, result, a, nameA, file] {
+               return [this, result, a, fileA, file] {
                  of_ = a;
-                 show(result, nameA, QFileInfo(file).fileName());
+                 show(result, fileA, file);
                };
              });
 }
 
-void ComparisonPanel::show(std::shared_ptr<const RunComparison> comparison, const QString& nameA, const QString& nameB) {
+void ComparisonPanel::show(std::shared_ptr<const RunComparison> comparison, const QString& fileA, const QString& fileB) {
   comparison_ = std::move(comparison);
-  nameB_ = tr("A: %1 (on screen)   B: %2").arg(nameA, nameB);
+  const auto [nameA, nameB] = shortestNames(fileA, fileB);
+  const bool same = QFileInfo(fileA).absoluteFilePath() == QFileInfo(fileB).absoluteFilePath();
+  names_ = (same ? tr("A: %1 (on screen)   B: %2 (the file)") : tr("A: %1 (on screen)   B: %2")).arg(nameA, nameB);
+  paths_ = tr("A: %1\nB: %2")
+               .arg(QDir::toNativeSeparators(QFileInfo(fileA).absoluteFilePath()),
+                    QDir::toNativeSeparators(QFileInfo(fileB).absoluteFilePath()));
   fill();
   for (QTableView* view : {valueTable_, errorTable_, modelTable_}) {
     view->resizeColumnsToContents();
@@ -197,10 +217,10 @@ void ComparisonPanel::fill() {
 
 void ComparisonPanel::showState() {
   if (!comparison_) return title_->setText(tr("Nothing is compared yet."));
-  QString line = tr("%1   %2 differences").arg(nameB_).arg(comparison_->differences());
+  QString line = tr("%1   %2 differences").arg(names_).arg(comparison_->differences());
   if (of_ != document_.inspection()) line += tr("   (what is on screen has changed since: compare again)");
   title_->setText(line);
-  title_->setToolTip(line);
+  title_->setToolTip(paths_ + QLatin1Char('\n') + line);
 }
 
 void ComparisonPanel::selectRow(const QModelIndex& row) {

@@ -17,6 +17,10 @@ namespace glint::gui {
 class LongJob;
 class RowsModel;
 
+/// Names for two files that tell them apart: the shortest ends of their paths that differ, whole parts ("a/x.glint",
+/// "b/x.glint"), the same number of parts for both. Equal paths give their file name twice.
+std::pair<QString, QString> shortestNames(const QString& fileA, const QString& fileB);
+
 /// What is on screen (A) beside another session (B): what changed in inputs, parameters and results, and the error of every frame
 /// with both. Only differences unless asked for all; a click on a frame selects it.
 class ComparisonPanel : public QWidget {
@@ -37,7 +41,7 @@ class ComparisonPanel : public QWidget {
   void problem(const QString& oneLine);
 
  private:
-  void show(std::shared_ptr<const RunComparison> comparison, const QString& nameA, const QString& nameB);
+  void show(std::shared_ptr<const RunComparison> comparison, const QString& fileA, const QString& fileB);
   void fill();
   void showState();
   void selectRow(const QModelIndex& row);
@@ -47,7 +51,7 @@ class ComparisonPanel : public QWidget {
   LongJob& job_;
   std::shared_ptr<const RunComparison> comparison_;
   std::shared_ptr<const Inspection> of_;  ///< A
-  QString nameB_;
+  QString names_, paths_;                 ///< of A and B: short, and in full
   QLabel* title_;
   QCheckBox* onlyDifferences_;
   RowsModel *values_, *errors_, *models_;

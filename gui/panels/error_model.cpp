@@ -26,9 +26,11 @@ const ColumnInfo kColumns[] = {
      QT_TRANSLATE_NOOP("ErrorModel",
                        "ok; missed: observed, not predicted; spurious: predicted, not observed; failed: no prediction")},
     {QT_TRANSLATE_NOOP("ErrorModel", "Error %"),
-     QT_TRANSLATE_NOOP("ErrorModel", "Symmetric mean distance of the contours, % of the observed region's equivalent diameter")},
+     QT_TRANSLATE_NOOP("ErrorModel", "Mean contour distance (symmetric) in % of the observed region's equivalent diameter")},
     {QT_TRANSLATE_NOOP("ErrorModel", "Error px"),
-     QT_TRANSLATE_NOOP("ErrorModel", "Symmetric mean distance of the contours, pixels")},
+     QT_TRANSLATE_NOOP("ErrorModel",
+                       "Mean contour distance, px: symmetric, over the length of both contours, without sign. "
+                       "(The residual dial shows the signed distance by direction.)")},
     {QT_TRANSLATE_NOOP("ErrorModel", "Ellipse %"),
      QT_TRANSLATE_NOOP("ErrorModel", "The same between the fitted and the predicted ellipse")},
     {QT_TRANSLATE_NOOP("ErrorModel", "Hausd. px"), QT_TRANSLATE_NOOP("ErrorModel", "Hausdorff distance, pixels")},

@@ -17,6 +17,7 @@
 #include "core/pipeline/what_if_drag.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/scene/camera_glide.h"
 #include "gui/scene/scene_views.h"
 
 namespace glint::gui {
@@ -27,7 +28,8 @@ int sliderOf(double scale) { return int(std::lround(kGlyphSteps * std::log10(sca
 double scaleOf(int slider) { return std::pow(10.0, double(slider) / kGlyphSteps); }
 }  // namespace
 
-ScenePanel::ScenePanel(Document& document, QWidget* parent) : QWidget(parent), document_(document), views_(new SceneViews) {
+ScenePanel::ScenePanel(Document& document, QWidget* parent)
+    : QWidget(parent), document_(document), views_(new SceneViews), glide_(new CameraGlide(this)) {
   buildBars();
   connect(&document_, &Document::sceneOpened, this, &ScenePanel::showScene);
   connect(&document_, &Document::inspectionChanged, this, &ScenePanel::showInspection);
@@ -35,6 +37,7 @@ ScenePanel::ScenePanel(Document& document, QWidget* parent) : QWidget(parent), d
   connect(&document_, &Document::selectionChanged, this, &ScenePanel::showSelection);
   connect(&document_, &Document::optionsChanged, this, &ScenePanel::showOptions);
   connect(&document_, &Document::requestChanged, this, &ScenePanel::showOptions);
+  connect(views_, &SceneViews::taken, glide_, &CameraGlide::stop);
   connect(views_, &SceneViews::picked, this, &ScenePanel::select);
   connect(views_, &SceneViews::emptyClicked, this, [this] {
     viz::Selection s = document_.selection();
@@ -125,7 +128,7 @@ std::optional<viz::ViewPoint> ScenePanel::viewPoint() const {
 }
 
 void ScenePanel::renderNow() { views_->renderNow(); }
-bool ScenePanel::busy() const { return views_->busy(); }
+bool ScenePanel::busy() const { return views_->busy() || glide_->running(); }
 void ScenePanel::setDark(bool dark) { views_->setDark(dark); }
 
 // --- from the document --------------------------------------------------------------------------------------------------
@@ -133,6 +136,7 @@ void ScenePanel::setDark(bool dark) { views_->setDark(dark); }
 void ScenePanel::showScene() {
   mayAskForInfluence_ = true;
   framed_ = false;
+  glide_->stop();
   views_->setScene(document_.sharedScene());
   showLayers();
   showSelection();
@@ -278,13 +282,19 @@ void ScenePanel::nextModels() {
                       next == "all" ? tr("3D view: all models") : tr("3D view: %1").arg(toQString(next)));
 }
 
-void ScenePanel::showWalk(const std::shared_ptr<const viz::WalkStory>& walk, int step) {
+void ScenePanel::showWalk(const std::shared_ptr<const viz::WalkStory>& walk, int step, bool playing) {
   for (int i = 0; i < kMostSceneViews; ++i) views_->view(i).setWalk(walk, step);
-  if (document_.layerVisible("walk")) views_->scheduleRender();
+  if (!document_.layerVisible("walk")) return;
+  if (playing)
+    views_->renderMoving();
+  else
+    views_->scheduleRender();
 }
 
 void ScenePanel::look(const QString& at, int highlight, const QString& model) {
+  glide_->stop();
   viz::SceneView& view = views_->active();
+  const viz::ViewPoint before = view.viewPoint();
   static const QMap<QString, viz::HighlightLook> looks{{QStringLiteral("tangent"), viz::HighlightLook::Section},
                                                        {QStringLiteral("highlight"), viz::HighlightLook::Camera},
                                                        {QStringLiteral("mirror"), viz::HighlightLook::Mirror}};
@@ -292,20 +302,29 @@ void ScenePanel::look(const QString& at, int highlight, const QString& model) {
     view.frameEllipsoids(model.toStdString());
   else if (!looks.contains(at) || !view.frameHighlight(highlight, looks[at]))
     view.frameAll();
-  views_->scheduleRender();
+  glide_->start(before, view.viewPoint(), [this, at = views_->activeView()](const viz::ViewPoint& place) {
+    views_->view(at).setViewPoint(place);
+    if (glide_->running())
+      views_->renderMoving();
+    else
+      views_->scheduleRender();
+  });
 }
 
 void ScenePanel::frameAll() {
+  glide_->stop();
   views_->active().frameAll();
   views_->scheduleRender();
 }
 
 void ScenePanel::frameSelection() {
+  glide_->stop();
   views_->active().frameSelection();
   views_->scheduleRender();
 }
 
 void ScenePanel::lookAlong(viz::AxisView axis) {
+  glide_->stop();
   views_->active().lookAlong(axis);
   views_->scheduleRender();
 }
@@ -329,6 +348,7 @@ void ScenePanel::saveView() {
 void ScenePanel::goToView(const QString& name) {
   const auto view = viewPointFromText(document_.option(kSavedView + name.toStdString(), std::string()));
   if (!view) return;
+  glide_->stop();
   if (view->parallel != sceneOptions(document_).parallel)
     setSwitch("scene/parallel", view->parallel, view->parallel ? tr("Parallel projection") : tr("Perspective"));
   views_->active().setViewPoint(*view);

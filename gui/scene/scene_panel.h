@@ -17,6 +17,7 @@ class QSlider;
 
 namespace glint::gui {
 
+class CameraGlide;
 class SceneViews;
 
 /// The 3D views with their toolbar: shows the document through viz::SceneView, turns clicks into selections, and what the user
@@ -43,7 +44,8 @@ class ScenePanel : public QWidget {
 
  public slots:
   /// What the layer "walk" draws, as far as `step`.
-  void showWalk(const std::shared_ptr<const glint::viz::WalkStory>& walk, int step);
+  /// @param playing  drawn at once, so that it is in step with what else shows the walk.
+  void showWalk(const std::shared_ptr<const glint::viz::WalkStory>& walk, int step, bool playing = false);
   /// Moves the view to a part of the scene: "scene", "ellipsoid" (of a model), or a highlight: "tangent" (S and T from the
   /// side), "highlight" (as its camera sees it), "mirror" (with camera, virtual camera and light). The user may move on from
   /// there.
@@ -82,6 +84,7 @@ class ScenePanel : public QWidget {
 
   Document& document_;
   SceneViews* views_;
+  CameraGlide* glide_;
   QToolBar* bar_ = nullptr;
   bool mayAskForInfluence_ = true;  ///< once for each scene by itself
   QAction* slider_ = nullptr;       ///< the last one of the bar

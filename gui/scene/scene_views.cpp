@@ -219,6 +219,13 @@ void SceneViews::renderNow() {
   widget_->renderWindow()->Render();
 }
 
+void SceneViews::renderMoving() {
+  if (!widget_->isVisible()) return;
+  setMoving(true);
+  full_.start();
+  widget_->renderWindow()->Render();
+}
+
 void SceneViews::setMoving(bool moving) {
   for (auto& view : views_) view->setMoving(moving);
 }
@@ -345,9 +352,12 @@ bool SceneViews::eventFilter(QObject* watched, QEvent* event) {
   if (watched != widget_) return QWidget::eventFilter(watched, event);
   switch (event->type()) {
     case QEvent::MouseButtonPress:
+    case QEvent::Wheel:
+      emit taken();
+      if (mouse(event)) return true;
+      break;
     case QEvent::MouseButtonRelease:
     case QEvent::MouseMove:
-    case QEvent::Wheel:
       if (mouse(event)) return true;
       break;
     case QEvent::ShortcutOverride:

@@ -46,10 +46,13 @@ class SceneViews : public QWidget {
   void scheduleRender();
   /// Draws now, in full.
   void renderNow();
+  /// Draws now as while something moves, and in full when nothing moved for a while.
+  void renderMoving();
   /// Something that is looked through says so; else what it says is "".
   QString eyeText() const;
 
  signals:
+  void taken();  ///< the user is about to move a view
   void picked(const glint::viz::Picked& picked);
   void emptyClicked();
   void activeChanged();
@@ -58,7 +61,7 @@ class SceneViews : public QWidget {
   void lampMoved(const QString& light, double dx, double dy, double dz);
   void lampReleased();
   void menuWanted(const glint::viz::Picked& picked, const QPoint& global);  ///< a right click
-  void leaveEye();  ///< the escape key while looking through a camera
+  void leaveEye();                                                          ///< the escape key while looking through a camera
 
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override;

@@ -65,6 +65,12 @@ void TimelineStrip::readView() {
   repaintAll();
 }
 
+void TimelineStrip::setUnreadable(const QMap<int, QString>& reasons) {
+  if (reasons == unreadable_) return;
+  unreadable_ = reasons;
+  repaintAll();
+}
+
 void TimelineStrip::showSelection() {
   const double frame = document_.selection().frame;
   if (frame < first_ || frame + 1 > first_ + inView_) setView(frame < first_ ? frame : frame + 1 - inView_, inView_);
@@ -170,6 +176,7 @@ void TimelineStrip::paintBackground() {
   paintThumbnails(painter);
   paintErrors(painter);
   paintRows(painter);
+  paintUnreadable(painter);
 }
 
 void TimelineStrip::paintThumbnails(QPainter& painter) {
@@ -188,13 +195,24 @@ void TimelineStrip::paintThumbnails(QPainter& painter) {
     const QImage picture = thumbnails_.find(i);
     const double x = every == 1 ? frameX(i + 0.5) - wide / 2 : frameX(i) + 1;
     const QRectF box(x, row.top(), wide, row.height());
-    if (picture.isNull())
+    if (picture.isNull() || unreadable_.contains(i))
       painter.fillRect(box, palette().color(QPalette::AlternateBase));
     else
       painter.drawImage(box, picture);
     if (document_.role(i) == FrameRole::Excluded) painter.fillRect(box, QColor(0, 0, 0, 150));
   }
   painter.setClipping(false);
+  painter.setRenderHint(QPainter::Antialiasing);
+  for (auto it = unreadable_.begin(); it != unreadable_.end(); ++it) {
+    if (it.key() + 1 <= first_ || it.key() >= first_ + inView_) continue;
+    if (every == 1) {
+      const QRectF box(frameX(it.key() + 0.5) - wide / 2, row.top(), wide, row.height());
+      painter.setPen(QPen(warningColour(), 1));
+      painter.drawRect(box.adjusted(0.5, 0.5, -0.5, -0.5));
+      painter.drawLine(box.topLeft(), box.bottomRight());
+      painter.drawLine(box.topRight(), box.bottomLeft());
+    }
+  }
   thumbnails_.want(wanted, int(std::ceil(row.height() * devicePixelRatioF())));
 }
 
@@ -307,6 +325,18 @@ void TimelineStrip::paintRows(QPainter& painter) {
   }
 }
 
+void TimelineStrip::paintUnreadable(QPainter& painter) {
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.setPen(Qt::NoPen);
+  painter.setBrush(warningColour());
+  const double y = chart().top() - 6, r = 4;  // between thumbnails and errors, which also a narrow strip has
+  for (auto it = unreadable_.begin(); it != unreadable_.end(); ++it) {
+    const double x = frameX(it.key() + 0.5);
+    if (x < kLeft || x > width() - kRight) continue;
+    painter.drawPolygon(QPolygonF({{x - r, y + 2 * r - 2}, {x + r, y + 2 * r - 2}, {x, y - 2}}));
+  }
+}
+
 void TimelineStrip::resizeEvent(QResizeEvent*) { repaintAll(); }
 
 void TimelineStrip::changeEvent(QEvent* e) {
@@ -403,6 +433,7 @@ QString TimelineStrip::toolTip(int frame) const {
   static const char* const roles[] = {QT_TR_NOOP("training"), QT_TR_NOOP("held out"), QT_TR_NOOP("excluded")};
   const Frame& f = document_.scene()->frames[std::size_t(frame)];
   QString text = tr("Frame %1 (%2), %3").arg(frame).arg(toQString(f.id), tr(roles[int(document_.role(frame))]));
+  if (unreadable_.contains(frame)) text += tr("\nno photograph: %1").arg(unreadable_.value(frame));
   if (!data_.lights.empty() && !f.lightsOn.empty()) text += tr("\nlights on: %1").arg(joined(f.lightsOn));
   for (const viz::TimelineData::Series& series : data_.series) {
     const std::optional<double>& pct = series.errorPct[std::size_t(frame)];

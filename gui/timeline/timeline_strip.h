@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <QMap>
 #include <QPixmap>
 #include <QWidget>
 
@@ -29,6 +30,9 @@ class TimelineStrip : public QWidget {
   double firstFrame() const { return first_; }
   double framesInView() const { return inView_; }
   void setView(double first, double inView);
+  /// Frames that are marked as without a readable photograph, with the reason.
+  void setUnreadable(const QMap<int, QString>& reasons);
+  QList<int> unreadable() const { return unreadable_.keys(); }
   int backgroundsPainted() const { return backgroundsPainted_; }
   const Thumbnails& thumbnails() const { return thumbnails_; }
   QSize sizeHint() const override { return {600, 136}; }
@@ -63,6 +67,7 @@ class TimelineStrip : public QWidget {
   void paintThumbnails(QPainter& painter);
   void paintErrors(QPainter& painter);
   void paintRows(QPainter& painter);
+  void paintUnreadable(QPainter& painter);
   double frameX(double frame) const;
   QRectF thumbnailRow() const;
   QRectF chart() const;
@@ -76,6 +81,7 @@ class TimelineStrip : public QWidget {
   double first_ = 0, inView_ = 1;
   bool bars_ = false, thumbnailsOn_ = true;
   std::string plotted_;
+  QMap<int, QString> unreadable_;
   QPixmap background_;  ///< null = to be painted
   int backgroundsPainted_ = 0;
   int gesture_ = 0;

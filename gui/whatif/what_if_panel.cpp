@@ -129,7 +129,7 @@ void WhatIfPanel::addRow(const WhatIfKnob& knob, QGridLayout* grid, int row) {
   slider->setMinimumWidth(60);
   auto* box = new NumberBox(spec);
   box->setObjectName(named("value:", knob));
-  box->setFixedWidth(92);
+  box->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Fixed);  // all as wide as the longest unit needs
   auto* reset = new QToolButton;
   reset->setObjectName(named("reset:", knob));
   reset->setIcon(icon(QStringLiteral("reset")));

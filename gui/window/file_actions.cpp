@@ -137,6 +137,12 @@ void FileActions::openRelinked(const QString& session, const QString& scene) {
   runner_.open(session.toStdString(), scene.toStdString());
 }
 
+void FileActions::reopen(const OpenedPtr& opened) {
+  auto state = std::make_shared<Opened>(*opened);
+  if (addView_) addView_(*state);
+  finishOpen(state);
+}
+
 void FileActions::askForScene(const QString& session, const QString& missing) {
   const QString name = QFileInfo(missing).fileName();
   const QString found = QFileDialog::getOpenFileName(window_, tr("Where is %1?").arg(name), QFileInfo(session).path(),

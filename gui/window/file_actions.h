@@ -41,6 +41,8 @@ class FileActions : public QObject {
   void open(const QString& path);
   /// Opens a session whose scene lies elsewhere now.
   void openRelinked(const QString& session, const QString& scene);
+  /// Takes over what is on screen with another scene; layout and 3D camera stay.
+  void reopen(const glint::gui::OpenedPtr& opened);
   /// Asks where the scene of a session is, then opens it from there.
   void askForScene(const QString& session, const QString& missing);
   /// Save in the background; false when there was nothing to save or the user gave up. Message or problem tells how it ended.

@@ -52,6 +52,7 @@
 #include "gui/window/scripted_actions.h"
 #include "gui/window/shortcut_dialog.h"
 #include "gui/window/start_page.h"
+#include "gui/window/unreadable_photographs.h"
 
 namespace glint::gui {
 
@@ -67,6 +68,8 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   setDockNestingEnabled(true);
   setWindowIcon(icon(QStringLiteral("glint")));
   buildCentre();
+  unreadable_ = new UnreadablePhotographs(
+      document_, *messageBar_, [this](const OpenedPtr& opened) { files_->reopen(opened); }, this);
   buildDocks();
   buildMenus();
   buildStatusLine();
@@ -125,6 +128,10 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   connect(&runner_, &Runner::sceneMissing, this, [this](const QString& session, const QString& scene) {
     missing_ = {session, scene};  // failed() comes next, and shows it
   });
+  connect(unreadable_, &UnreadablePhotographs::problem, this, &MainWindow::showProblem);
+  connect(unreadable_, &UnreadablePhotographs::message, this, &MainWindow::log);
+  connect(unreadable_, &UnreadablePhotographs::changed, this, [this] { timeline_->strip()->setUnreadable(unreadable_->all()); });
+  connect(frame_, &FramePanel::photographFailed, unreadable_, &UnreadablePhotographs::note);
   auto* recovery = new Recovery(
       engine_, document_, [this] { return snapshot(); }, *files_, *messageBar_, this);
   connect(recovery, &Recovery::problem, this, &MainWindow::log);
@@ -213,11 +220,12 @@ void MainWindow::buildDocks() {
   docks_.add("explain", tr("Explain"), explain_, Qt::RightDockWidgetArea, "parameters");
   connect(explain_, &ExplainPanel::started, this, [this] { docks_.bring(QStringLiteral("explain")); });
   connect(explain_, &ExplainPanel::look, scene_, &ScenePanel::look);
+  connect(explain_, &ExplainPanel::look, frame_, &FramePanel::look);
   connect(explain_, &ExplainPanel::lessonRequested, files_, &FileActions::open);
   connect(explain_, &ExplainPanel::problem, this, &MainWindow::showProblem);
   connect(&explain_->walk(), &WalkPlayer::changed, this, [this] {
     const WalkPlayer& walk = explain_->walk();
-    scene_->showWalk(walk.story(), walk.step());
+    scene_->showWalk(walk.story(), walk.step(), walk.playing());
     frame_->showWalk(walk.story(), walk.step());
   });
 
@@ -270,6 +278,7 @@ void MainWindow::buildMenus() {
   files_->addActions(actions_, file);
   file->addSeparator();
   comparison_->addActions(actions_, file);
+  unreadable_->addActions(actions_, file);
   exports_->setViews(*scene_, *frame_);
   exports_->addActions(actions_, file->addMenu(tr("&Export")));
   file->addSeparator();
@@ -397,7 +406,7 @@ bool MainWindow::idle() const { return script_->done() && quiet(); }
 
 bool MainWindow::quiet() const {
   return !runner_.busy() && !frame_->busy() && !timeline_->busy() && !scene_->busy() && plots_->idle() && !explain_->busy() &&
-         !exports_->busy();
+         !exports_->busy() && !unreadable_->busy();
 }
 
 QPixmap MainWindow::picture() {

@@ -34,6 +34,7 @@ class StartPage;
 class SetupPanel;
 class Timeline;
 class TradeoffPanel;
+class UnreadablePhotographs;
 
 /// The window: puts the panels together and wires them; everything else is in their own classes.
 class MainWindow : public QMainWindow {
@@ -114,6 +115,7 @@ class MainWindow : public QMainWindow {
   QString layout_, lastError_;
   bool ownLayout_ = false;  ///< the docks are where an own layout has them
   ScriptedActions* script_ = nullptr;
+  UnreadablePhotographs* unreadable_ = nullptr;
   std::pair<QString, QString> missing_;  ///< session and scene of the opening that failed last
   bool runFailed_ = false;               ///< the message bar shows why the last run failed
 };

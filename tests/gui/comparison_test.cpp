@@ -2,6 +2,7 @@
 // Two sessions side by side, and the minimal session of a fault.
 #include <QAction>
 #include <QCheckBox>
+#include <QDir>
 #include <QFileInfo>
 #include <QHeaderView>
 #include <QLabel>
@@ -93,6 +94,24 @@ class ComparisonTest : public QObject {
     QTRY_VERIFY(title->sizeHint().width() > 2000);
     QCoreApplication::sendPostedEvents(nullptr, QEvent::LayoutRequest);
     QCOMPARE(panel->minimumSizeHint().width(), before);
+  }
+
+  void namesTellFilesApart() {
+    using Names = std::pair<QString, QString>;
+    QCOMPARE(shortestNames("/a/x.glint", "/a/y.glint"), Names("x.glint", "y.glint"));
+    QCOMPARE(shortestNames("/p/a/x.glint", "/p/b/x.glint"), Names("a/x.glint", "b/x.glint"));
+    QCOMPARE(shortestNames("/p/a/c/x.glint", "/p/b/c/x.glint"), Names("a/c/x.glint", "b/c/x.glint"));
+    QCOMPARE(shortestNames("/a/x.glint", "/a/x.glint"), Names("x.glint", "x.glint"));
+    // In the window, with the same name in another folder.
+    QDir(folder_.path()).mkpath("other");
+    const QString other = folder_.filePath("other/plane.glint");
+    saveSession(window_->document().toSave(), window_->document().inspection().get(), other.toStdString());
+    window_->comparison()->compareWith(other);
+    QTRY_VERIFY_WITH_TIMEOUT(window_->idle(), 60000);
+    auto* title = window_->findChild<QLabel*>("comparisonTitle");
+    QVERIFY2(title->text().contains("A: plane/plane.glint") && title->text().contains("B: other/plane.glint"),
+             qPrintable(title->text()));
+    QVERIFY2(title->toolTip().contains("B: " + QDir::toNativeSeparators(other)), qPrintable(title->toolTip()));
   }
 
   void whatCannotBeReadIsSaid() {

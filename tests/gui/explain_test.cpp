@@ -2,14 +2,22 @@
 // The guided mode on a session of the repository, with the real engine.
 #include "core/explain/explain.h"
 
+#include <QVTKOpenGLNativeWidget.h>
+
 #include <QAction>
 #include <QListWidget>
 #include <QTextBrowser>
 #include <QToolButton>
+#include <cmath>
 
 #include "gui/base/text.h"
 #include "gui/explain/explain_panel.h"
 #include "gui/explain/explain_texts.h"
+#include "gui/frame/frame_canvas.h"
+#include "gui/frame/frame_panel.h"
+#include "gui/scene/camera_glide.h"
+#include "gui/scene/scene_panel.h"
+#include "gui/scene/scene_views.h"
 #include "gui/window/main_window.h"
 #include "tests/gui/fixture.h"
 
@@ -118,6 +126,82 @@ class ExplainTest : public QObject {
     QTRY_VERIFY(!text->toPlainText().contains("does not get here"));
   }
 
+  /// The views show what a step speaks of, also when something else is selected meanwhile.
+  void theViewsFollowWhatAStepIsAbout() {
+    auto* scene = window_->findChild<ScenePanel*>();
+    FrameCanvas* canvas = window_->framePanel()->canvas();
+    const auto settle = [&] { QTRY_VERIFY_WITH_TIMEOUT(!panel_->busy() && panel_->explanation() && window_->idle(), 60000); };
+    const auto eye = [&] { return scene->view().viewPoint().position; };
+    viz::Selection s;
+    s.frame = 0;
+    s.model = "canonical";
+    window_->document().select(s);
+    goTo("peak");
+    settle();
+    canvas->fit();
+    const double whole = canvas->zoom();
+    goTo("tangent-plane");
+    settle();
+    QVERIFY(canvas->zoom() > 1.5 * whole);  // on the highlight
+    const Eigen::Vector3d first = eye();
+    s.frame = window_->document().frameCount() - 1;
+    window_->document().select(s);
+    settle();
+    QVERIFY((eye() - first).norm() > 1e-3);
+    goTo("light");
+    settle();
+    QVERIFY(std::abs(canvas->zoom() - whole) < 0.01 * whole);
+    const Eigen::Vector3d overview = eye();
+    s.frame = 0;
+    window_->document().select(s);  // is in the same picture
+    settle();
+    QCOMPARE((eye() - overview).norm(), 0.0);
+    goTo("ellipsoid");
+    settle();
+    const Eigen::Vector3d canonical = eye();
+    s.model = "primal";
+    window_->document().select(s);
+    settle();
+    QVERIFY((eye() - canonical).norm() > 1e-3);
+    window_->document().setSetting("predict.directions", 12);  // nothing else to look at
+    const Eigen::Vector3d primal = eye();
+    QTRY_VERIFY_WITH_TIMEOUT(!window_->document().stale(), 60000);
+    settle();
+    QCOMPARE((eye() - primal).norm(), 0.0);
+  }
+
+  void theViewGlidesForAPersonWhoCanTakeIt() {
+    auto* scene = window_->findChild<ScenePanel*>();
+    auto* glide = scene->findChild<CameraGlide*>();
+    const auto settle = [&] { QTRY_VERIFY_WITH_TIMEOUT(!panel_->busy() && panel_->explanation() && window_->idle(), 60000); };
+    const auto eye = [&] { return scene->view().viewPoint().position; };
+    goTo("tangent-plane");
+    settle();
+    const Eigen::Vector3d near = eye();
+    goTo("light");
+    settle();
+    QVERIFY(!glide->running());  // nobody asked for animations
+    const Eigen::Vector3d far = eye();
+    QVERIFY((near - far).norm() > 0.1);
+    setAnimationsWanted(true);
+    goTo("tangent-plane");
+    QTRY_VERIFY(glide->running());
+    QVERIFY((eye() - near).norm() > 1e-6);
+    QTRY_VERIFY(!glide->running());
+    QCOMPARE((eye() - near).norm(), 0.0);
+    goTo("light");
+    QTRY_VERIFY(glide->running());
+    QTest::qWait(CameraGlide::kMs / 4);
+    QWidget* widget = scene->views().widget();
+    QTest::mouseClick(widget, Qt::MiddleButton, {}, widget->rect().center());
+    QVERIFY(!glide->running());
+    const Eigen::Vector3d taken = eye();
+    QTest::qWait(CameraGlide::kMs);
+    setAnimationsWanted(false);
+    QCOMPARE((eye() - taken).norm(), 0.0);
+    QVERIFY((taken - far).norm() > 1e-6);
+  }
+
   void aClickInTheListGoesThere() {
     auto* list = panel_->findChild<QListWidget*>("explain.steps");
     window_->actions().find("explain.step-peak")->trigger();
@@ -126,6 +210,7 @@ class ExplainTest : public QObject {
   }
 
  private:
+  void goTo(const char* step) { window_->actions().find(QStringLiteral("explain.step-") + QLatin1String(step))->trigger(); }
   std::unique_ptr<MainWindow> window_;
   ExplainPanel* panel_ = nullptr;
 };

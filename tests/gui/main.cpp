@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
       {"lessons", makeLessonsTest},      {"export", makeExportTest},         {"plots", makePlotsTest},
       {"tradeoff", makeTradeoffTest},    {"parameters", makeParametersTest}, {"picking", makePickingTest},
       {"random", makeRandomTest},        {"figure", makeFigureTest},         {"comparison", makeComparisonTest},
+      {"unreadable", makeUnreadableTest},
   };
   if (argc < 2) return std::fputs("usage: test_gui CLASS [QTest options]\n", stderr), 2;
   const bool untilKilled = std::strcmp(argv[1], "--until-killed") == 0;

@@ -2,13 +2,17 @@
 // No parameter is dead: each is turned by its widget on a scene where it matters, and the results change. They are computed from
 // the earlier ones, as the program does, so that a stage which forgets that it depends on a setting is found too.
 #include <QAbstractSpinBox>
+#include <QApplication>
 #include <QCheckBox>
 #include <QComboBox>
+#include <QLineEdit>
+#include <QSignalSpy>
 #include <QToolButton>
 #include <map>
 
 #include "core/pipeline/session.h"
 #include "core/synth/synth.h"
+#include "gui/base/number_box.h"
 #include "gui/base/text.h"
 #include "gui/panels/parameter_panel.h"
 #include "tests/gui/fixture.h"
@@ -80,6 +84,45 @@ std::string results(const Inspection& inspection) { return digestOf(inspection);
 class ParametersTest : public QObject {
   Q_OBJECT
  private slots:
+  /// What is shown shortened stays exact; while it is edited all digits are there; nothing is cut.
+  void numbersAreShortAndExact() {
+    ParamSpec spec = paramSpec("detect.level");
+    spec.min = -10;
+    spec.max = 10;
+    spec.step = 1e-6;
+    spec.unit = "m^-1";
+    QWidget window;
+    NumberBox box(spec, &window);
+    auto* other = new QLineEdit(&window);
+    window.show();
+    const auto shown = [&] { return box.text(); };
+    const std::pair<double, const char*> cases[] = {{-0.3979442, "-0.39794 m^-1"}, {0.5, "0.5 m^-1"}, {1.23456e-7, "1.23e-07 m^-1"},
+                                                    {-0.00123456, "-0.00123 m^-1"}, {9.87654321, "9.8765 m^-1"}};
+    for (const auto& [value, text] : cases) {
+      box.setValue(value);
+      QCOMPARE(shown(), QString::fromLatin1(text));
+      QVERIFY(box.fontMetrics().horizontalAdvance(shown()) < box.sizeHint().width() - 16);  // the arrows
+    }
+    box.setValue(-0.3979442);
+    QFocusEvent in(QEvent::FocusIn), out(QEvent::FocusOut);
+    QSignalSpy changed(&box, QOverload<double>::of(&QDoubleSpinBox::valueChanged));
+    QApplication::sendEvent(&box, &in);
+    QCOMPARE(shown(), QStringLiteral("-0.3979442 m^-1"));
+    QApplication::sendEvent(&box, &out);
+    QCOMPARE(shown(), QStringLiteral("-0.39794 m^-1"));
+    QTest::keyClick(&box, Qt::Key_Return);  // nothing was typed
+    QCOMPARE(box.value(), -0.3979442);
+    QCOMPARE(changed.count(), 0);
+    QApplication::sendEvent(&box, &in);
+    box.selectAll();
+    QTest::keyClicks(&box, "0.123456789");
+    QTest::keyClick(&box, Qt::Key_Return);
+    QCOMPARE(box.value(), 0.123456789);
+    QApplication::sendEvent(&box, &out);
+    QCOMPARE(box.value(), 0.123456789);
+    delete other;
+  }
+
   void everySettingIsTurnedOrExplained() {
     for (const ParamSpec& spec : allParams()) {
       const auto count = std::count_if(turns().begin(), turns().end(), [&](const Turn& t) { return spec.key == t.key; });

@@ -19,6 +19,7 @@
 #include "viz/layers.h"
 #include "viz/offscreen.h"
 #include "viz/style.h"
+#include "viz/view_camera.h"
 
 namespace glint::viz {
 namespace {
@@ -83,6 +84,49 @@ TEST_F(SceneViewPicture, NothingIsDrawnWithoutLayersButTheFrameOfThePicture) {
   EXPECT_GT(countNear(image, kDarkBackground, 0.02), 0.95 * kWidth * kHeight);
   view.setDarkBackground(false);
   EXPECT_GT(countNear(render(view), kLightBackground, 0.02), 0.95 * kWidth * kHeight);
+}
+
+/// Cameras that look down steeply, all from one side, have an upwards of their own that points away from them: the picture must
+/// not lie on its side for that.
+TEST_F(SceneViewPicture, TheHorizonStaysLevelWhereCamerasLookDownSteeply) {
+  const std::shared_ptr<Inspection> inspection = smallInspection(folder_.path());
+  auto scene = std::make_shared<Scene>(*inspection->scene);
+  const double n = static_cast<double>(scene->frames.size()), elevation = 75 * std::numbers::pi / 180;
+  for (std::size_t i = 0; i < scene->frames.size(); ++i) {
+    const double azimuth = (static_cast<double>(i) / (n - 1) - 0.5) * std::numbers::pi / 2;
+    const Eigen::Vector3d back(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                               std::sin(elevation));
+    const Eigen::Vector3d right = Eigen::Vector3d::UnitZ().cross(back).normalized();
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.linear() << right.transpose(), -back.cross(right).transpose(), -back.transpose();
+    pose.translation() = -(pose.linear() * (1.7 * back));
+    scene->frames[i].camera.camFromWorld = pose;
+  }
+  inspection->scene = inspection->given = scene;
+  inspection->surfaces = std::make_shared<SurfaceCache>(*scene);
+  SceneView view;
+  view.setInspection(inspection);
+  (void)render(view);
+  view.frameAll();
+  const ViewPoint seen = view.viewPoint();
+  EXPECT_NEAR(seen.up.cross(seen.position - seen.focalPoint).normalized().z(), 0, 1e-6);
+  EXPECT_GT(seen.up.z(), 0.5);
+}
+
+TEST(BetweenViews, StartsAndEndsExactlyAndTurnsAboutWhatIsLookedAt) {
+  const ViewPoint from{{4, 0, 0}, {0, 0, 0}, {0, 0, 1}, 30}, to{{0, 1, 0}, {0, 0, 0}, {0, 0, 1}, 20, true};
+  EXPECT_EQ(between(from, to, 0).position, from.position);
+  EXPECT_EQ(between(from, to, 1).position, to.position);
+  EXPECT_TRUE(between(from, to, 1).parallel);
+  const ViewPoint half = between(from, to, 0.5);
+  // A quarter turn about z, halved; distances 4 and 1 by equal ratios.
+  EXPECT_NEAR((half.position - Eigen::Vector3d(std::sqrt(2), std::sqrt(2), 0)).norm(), 0, 1e-12);
+  EXPECT_NEAR((half.up - Eigen::Vector3d::UnitZ()).norm(), 0, 1e-12);
+  EXPECT_NEAR(half.viewAngleDeg, 25, 1e-12);
+  // The other side, where the turn has no shortest way, still gives a view.
+  const ViewPoint opposite = between(from, {{-4, 0, 0}, {0, 0, 0}, {0, 0, 1}, 30}, 0.5);
+  EXPECT_TRUE(opposite.position.allFinite());
+  EXPECT_NEAR(opposite.position.norm(), 4, 1e-9);
 }
 
 /// A bridged gap is not drawn as if it had been predicted: half of the contour a gap leaves clearly less ink.

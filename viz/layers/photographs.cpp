@@ -14,6 +14,7 @@ namespace glint::viz {
 namespace {
 
 constexpr std::size_t kMostPhotographs = 24;  ///< more are too small to see and slow to load
+constexpr std::size_t kMostNamed = 5;         ///< in the note about those that cannot be read
 constexpr int kThumbnail = 256, kSelected = 640;
 
 }  // namespace
@@ -30,7 +31,7 @@ LayerContent photographsLayer(const LayerInput& in) {
   if (std::find(chosen.begin(), chosen.end(), in.selection.frame) == chosen.end()) chosen.push_back(in.selection.frame);
   if (count < n)
     content.remarks.push_back("photographs of " + std::to_string(chosen.size()) + " of " + std::to_string(n) + " cameras");
-  int unreadable = 0;
+  std::vector<std::string> unreadable;
   for (const int index : chosen) {
     if (in.eye != Eye::Outside && index == in.selection.frame) continue;  // it is drawn over the whole picture
     const Frame& frame = in.frame(index);
@@ -39,7 +40,7 @@ LayerContent photographsLayer(const LayerInput& in) {
     if (photograph.arriving && index == in.selection.frame)
       photograph = in.cache->photograph(*in.inspection->scene, index, kThumbnail);  // perhaps the small one is there
     if (!photograph.texture) {
-      unreadable += !photograph.arriving;
+      if (!photograph.arriving) unreadable.push_back(frame.id);
       continue;
     }
     const vtkSmartPointer<vtkImageData> image = photograph.texture;
@@ -68,7 +69,12 @@ LayerContent photographsLayer(const LayerInput& in) {
                 line("photograph", (frame.image.empty() ? frame.radiance : frame.image).filename().string());
     content.add(actor.Get(), info);
   }
-  if (unreadable > 0) content.notes.push_back("photographs: " + std::to_string(unreadable) + " could not be read");
+  if (!unreadable.empty()) {
+    std::string names;
+    for (std::size_t i = 0; i < std::min(unreadable.size(), kMostNamed); ++i) names += (i > 0 ? ", " : " ") + unreadable[i];
+    if (unreadable.size() > kMostNamed) names += " and " + std::to_string(unreadable.size() - kMostNamed) + " more";
+    content.notes.push_back("photographs that could not be read:" + names);
+  }
   return content;
 }
 

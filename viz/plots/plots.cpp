@@ -73,8 +73,9 @@ const std::vector<PlotKind>& plotKinds() {
       {"error", "Error per frame",
        "Contour error of every frame and model; training frames are tinted. A click selects the frame and the model."},
       {"dial", "Residual dial",
-       "Signed distance from the observed to the predicted contour by direction in the photograph; outside the circle = "
-       "predicted too large."},
+       "Signed distance from the observed to the predicted contour, px, by direction in the photograph; outside the circle = "
+       "predicted too large. Beside the models: the mean of its size |d|. The error table's px is another measure, the mean "
+       "contour distance: symmetric, over the length of both contours."},
       {"limit-angle", "Limit angle by direction",
        "alpha = angle(N, H) along the contours: one value all around where the highlight is a level set of the angle."},
       {"lobe", "Lobe",
@@ -341,9 +342,9 @@ PlotData residualDial(const Inspection& inspection, int frame, int highlight) {
   PlotData plot;
   plot.id = "dial";
   plot.dial = true;
-  plot.title = "Residual, frame " + frameName(inspection, frame);
+  plot.title = "Signed distance, px, frame " + frameName(inspection, frame);
   plot.x.title = "direction (rad)";
-  plot.y.title = "distance (px)";
+  plot.y.title = "signed distance, observed to predicted contour (px)";
   double largest = 0;
   std::vector<std::vector<PolarResidual>> residuals;
   const std::vector<std::string> models = modelsInOrder(inspection);
@@ -360,7 +361,7 @@ PlotData residualDial(const Inspection& inspection, int frame, int highlight) {
       if (r.observed == shown) chosen = &r;
     if (!chosen || !std::isfinite(chosen->meanAbsPx)) continue;
     PlotSeries series;
-    series.name = model + text("  %.2g px", chosen->meanAbsPx);
+    series.name = model + text("  |d| %.2g px", chosen->meanAbsPx);
     series.colour = modelColour(model);
     series.shape = PlotShape::LineAndPoints;
     series.pointSize = 3;

@@ -10,6 +10,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <set>
 
+#include "core/evaluate/labels.h"
 #include "tests/core/pipeline/exact_scene.h"
 
 namespace glint {
@@ -134,6 +135,34 @@ TEST(WriteLabels, LightsThatAFolderCannotTellApartGetFoldersOfTheirOwn) {
     const bool on = row["light"].get<std::string>() == lamps[row["frame"].get<std::size_t>() % 2].id;
     EXPECT_EQ(row["pixels"].get<int>() > 0, on) << row;
   }
+}
+
+// A reader of the labels must not look for files that are not there.
+TEST(CocoJson, WithoutAPhotographTheFileNameIsTheFramesIdAndANoteSaysSo) {
+  const Inspection inspection = small();
+  const std::vector<int> frames{0, 1, 2};
+  const auto labels = [&](const Inspection& in) { return nlohmann::json::parse(cocoJson(in, "canonical", frames)); };
+  const fs::path folder = emptyFolder("coco");
+  fs::create_directories(folder / "frames");
+  Scene scene = *inspection.scene;
+  scene.folder = folder;
+  scene.frames[0].image.clear();  // synthesised with the scene: none is named
+  scene.frames[0].radiance.clear();
+  scene.frames[1].image = folder / "frames/gone.png";
+  scene.frames[2].image = folder / "frames/there.png";
+  std::ofstream(folder / "frames/there.png") << "a picture";
+  Inspection mixed = inspection;
+  mixed.scene = std::make_shared<const Scene>(scene);
+  const nlohmann::json some = labels(mixed);
+  EXPECT_EQ(some["images"][0]["file_name"], scene.frames[0].id);
+  EXPECT_EQ(some["images"][1]["file_name"], scene.frames[1].id);
+  EXPECT_EQ(some["images"][2]["file_name"], "frames/there.png");
+  EXPECT_TRUE(some["images"][0].contains("note") && some["images"][1].contains("note"));
+  EXPECT_FALSE(some["images"][2].contains("note"));
+  EXPECT_EQ(some["info"]["note"].get<std::string>().substr(0, 11), "2 of 3 imag");
+  // The photograph is there, and shows other highlights than those that are labelled.
+  mixed.request.whatIf.synthesise = true;
+  EXPECT_EQ(labels(mixed)["images"][2]["file_name"], scene.frames[2].id);
 }
 
 TEST(WriteLabels, StoppedOrRefusedLeavesNothing) {

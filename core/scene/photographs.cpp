@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/scene/photographs.h"
+
+#include <system_error>
+#include <vector>
+
+namespace glint {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The file under `folder` that shares the longest end of its path with `file`; empty = none.
+fs::path sameUnder(const fs::path& folder, const fs::path& file) {
+  if (file.empty()) return {};
+  const std::vector<fs::path> parts(file.begin(), file.end());
+  for (std::size_t from = 0; from < parts.size(); ++from) {
+    fs::path candidate = folder;
+    for (std::size_t i = from; i < parts.size(); ++i) candidate /= parts[i].relative_path();
+    std::error_code ignored;  // what cannot be asked about is not there
+    if (fs::is_regular_file(candidate, ignored)) return candidate;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::map<int, std::string> photographProblems(const Scene& scene, const std::map<int, std::string>& known,
+                                              const ProgressFn& progress) {
+  std::map<int, std::string> problems;
+  const int n = static_cast<int>(scene.frames.size());
+  for (int i = 0; i < n; ++i) {
+    if (!report(progress, {"photographs", i, n})) throw Stopped{};
+    if (known.count(i)) continue;
+    if (std::string problem = photographProblem(scene.frames[static_cast<std::size_t>(i)]); !problem.empty())
+      problems[i] = std::move(problem);
+  }
+  return problems;
+}
+
+std::string withoutFolder(std::string sentence, const Scene& scene) {
+  const std::string folder = (scene.folder / "").string();
+  if (scene.folder.empty()) return sentence;
+  for (std::size_t at = sentence.find(folder); at != std::string::npos; at = sentence.find(folder, at))
+    sentence.erase(at, folder.size());
+  return sentence;
+}
+
+Scene withPhotographsIn(Scene scene, const fs::path& folder, int* found) {
+  int count = 0;
+  for (Frame& frame : scene.frames) {
+    const fs::path image = sameUnder(folder, frame.image), radiance = sameUnder(folder, frame.radiance);
+    if (!image.empty()) {
+      frame.image = image;
+      ++count;
+    }
+    if (!radiance.empty() && radiance != image) {
+      frame.radiance = radiance;
+      ++count;
+    }
+  }
+  if (found) *found = count;
+  return scene;
+}
+
+}  // namespace glint

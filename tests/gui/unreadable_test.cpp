@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Photographs that are missing or damaged: named in one place, marked in the timeline, found again in another folder.
+#include <QAction>
+#include <QDialog>
+#include <QDir>
+#include <QFile>
+#include <QPushButton>
+#include <QTreeWidget>
+
+#include "core/pipeline/session.h"
+#include "gui/timeline/timeline.h"
+#include "gui/window/file_actions.h"
+#include "gui/window/main_window.h"
+#include "gui/window/message_bar.h"
+#include "gui/window/unreadable_photographs.h"
+#include "tests/gui/fixture.h"
+
+namespace glint::gui {
+
+class UnreadableTest : public QObject {
+  Q_OBJECT
+ private slots:
+  void areNamedMarkedListedAndFoundElsewhere() {
+    const QString scene = folder_.filePath("scene"), elsewhere = folder_.filePath("elsewhere");
+    QDir().mkpath(scene + "/frames");
+    QDir().mkpath(elsewhere);
+    const QDir shipped(QStringLiteral(GLINT_SOURCE_DIR "/sessions/plane"));
+    for (const QString& name : {QStringLiteral("scene.json"), QStringLiteral("plane.glint")})
+      QVERIFY(QFile::copy(shipped.filePath(name), scene + "/" + name));
+    for (const QString& name : QDir(shipped.filePath("frames")).entryList(QDir::Files))
+      QVERIFY(QFile::copy(shipped.filePath("frames/" + name), scene + "/frames/" + name));
+    QVERIFY(QFile::rename(scene + "/frames/0002.png", elsewhere + "/0002.png"));
+    QFile cut(scene + "/frames/0004.png");
+    cut.setPermissions(QFile::ReadOwner | QFile::WriteOwner);
+    QVERIFY(QFile::copy(cut.fileName(), elsewhere + "/0004.png"));
+    QVERIFY(cut.resize(2000));
+
+    MainWindow window(coreEngine());
+    window.show();
+    QAction* list = window.actions().find(QStringLiteral("file.unreadable-photographs"));
+    QVERIFY(list && !list->isEnabled());
+    window.open(scene + "/plane.glint");
+    Document& d = window.document();
+    QTRY_VERIFY_WITH_TIMEOUT(d.inspection() && window.idle(), 60000);
+    auto* unreadable = window.findChild<UnreadablePhotographs*>();
+    QCOMPARE(unreadable->all().keys(), (QList<int>{2, 4}));
+    QVERIFY2(unreadable->all()[2].startsWith("frames/0002.png: ") && unreadable->all()[2].contains("No such file"),
+             qPrintable(unreadable->all()[2]));
+    QCOMPARE(unreadable->all()[4], QStringLiteral("frames/0004.png: the PNG is truncated"));
+    auto* bar = window.findChild<MessageBar*>();
+    QVERIFY(bar->isVisible());
+    for (const char* part : {"2 photographs", "frames/0002.png", "frames/0004.png: the PNG is truncated"})
+      QVERIFY2(bar->text().contains(part), qPrintable(bar->text()));
+    QCOMPARE(window.findChild<Timeline*>()->strip()->unreadable(), (QList<int>{2, 4}));
+
+    QVERIFY(list->isEnabled());
+    list->trigger();
+    auto* dialog = window.findChild<QDialog*>(QStringLiteral("unreadablePhotographs"));
+    QVERIFY(dialog && dialog->isVisible());
+    auto* rows = dialog->findChild<QTreeWidget*>();
+    QCOMPARE(rows->topLevelItemCount(), 2);
+    QTest::mouseClick(rows->viewport(), Qt::LeftButton, {}, rows->visualItemRect(rows->topLevelItem(1)).center());
+    QCOMPARE(d.selection().frame, 4);
+
+    const std::shared_ptr<const Scene> before = d.sharedScene();
+    unreadable->locateIn(folder_.path());  // holds no such file at its top
+    QTRY_VERIFY_WITH_TIMEOUT(!window.lastError().isEmpty(), 10000);
+    QVERIFY(d.sharedScene() == before);
+    d.setLayerVisible("rays", "Rays", true);  // stays, although it was not saved
+    unreadable->locateIn(elsewhere);
+    QTRY_VERIFY_WITH_TIMEOUT(d.sharedScene() != before && d.inspection() && window.idle(), 60000);
+    QVERIFY(unreadable->all().isEmpty());
+    QVERIFY(!list->isEnabled());
+    QVERIFY(!bar->isVisible());
+    QCOMPARE(d.selection().frame, 4);
+    QVERIFY(d.layerVisible("rays") && d.hasUnsavedChanges());
+    for (const int frame : {2, 4}) QVERIFY(!d.inspection()->evidence[std::size_t(frame)].failure);
+
+    // The session remembers the place, relative to itself.
+    QVERIFY(window.files()->save());
+    QTRY_VERIFY_WITH_TIMEOUT(window.idle() && !d.hasUnsavedChanges(), 60000);
+    const OpenedSession again = openSession((scene + "/plane.glint").toStdString());
+    QCOMPARE(QString::fromStdString(again.scene->frames[2].image.string()), elsewhere + "/0002.png");
+    QVERIFY(QDir().rename(folder_.filePath("scene"), folder_.filePath("moved")));
+    const Replay replayed = replay(readSession(folder_.filePath("moved/plane.glint").toStdString()));
+    QVERIFY2(replayed.differences.empty(), replayed.differences.empty() ? "" : replayed.differences.front().c_str());
+  }
+
+  void aSceneWithAllItsPhotographsSaysNothing() {
+    MainWindow window(coreEngine());
+    window.show();
+    window.open(QStringLiteral(GLINT_SOURCE_DIR "/sessions/plane/plane.glint"));
+    QTRY_VERIFY_WITH_TIMEOUT(window.document().inspection() && window.idle(), 60000);
+    QVERIFY(window.findChild<UnreadablePhotographs*>()->all().isEmpty());
+    QVERIFY(!window.findChild<MessageBar*>()->isVisible());
+  }
+
+ private:
+  QTemporaryDir folder_;
+};
+
+QObject* makeUnreadableTest() { return new UnreadableTest; }
+
+}  // namespace glint::gui
+
+#include "unreadable_test.moc"
