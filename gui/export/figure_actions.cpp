@@ -116,10 +116,34 @@ void FigureActions::write(const QString& file, std::function<void()> work) {
 void FigureActions::writeScene(const FigureLook& look, const QString& file) {
   if (!file.endsWith(QStringLiteral(".png"), Qt::CaseInsensitive))
     return void(emit problem(tr("%1: the 3D view is saved as .png").arg(file)));
-  const std::unique_ptr<viz::SceneView> view = scene_.views().copyOfActive();
-  view->setDarkBackground(look.dark);
-  const Image picture = viz::Offscreen::onOwnDisplay(look.size.width(), look.size.height())->render(*view, look.transparent);
-  write(file, [this, picture, state = snapshot_(), file] { writeFigure(toQImage(picture), state, engine_, file); });
+  const QImage picture = sceneFigure(look);
+  write(file, [this, picture, state = snapshot_(), file] { writeFigure(picture, state, engine_, file); });
+}
+
+QImage FigureActions::sceneFigure(const FigureLook& look) const {
+  SceneViews& views = scene_.views();
+  const auto render = [&](int at, const QSize& size) {
+    const std::unique_ptr<viz::SceneView> view = views.viewCount() > 1 ? views.copyOf(at) : views.copyOfActive();
+    view->setDarkBackground(look.dark);
+    view->setLegendVisible(at == 0);
+    if (views.viewCount() > 1) view->setFrame(!views.wiping(), false, sceneOptions(document_).views[std::size_t(at)].name);
+    return toQImage(viz::Offscreen::onOwnDisplay(size.width(), size.height())->render(*view, look.transparent));
+  };
+  if (views.viewCount() == 1) return render(0, look.size);
+  QImage all(look.size, look.transparent ? QImage::Format_ARGB32 : QImage::Format_RGB32);
+  all.fill(Qt::transparent);
+  QPainter painter(&all);
+  for (int i = 0; i < views.viewCount(); ++i) {
+    const std::array<double, 4> v = views.placeOf(i);
+    const QRect part(QPoint(qRound(v[0] * all.width()), qRound((1 - v[3]) * all.height())),
+                     QPoint(qRound(v[2] * all.width()) - 1, qRound((1 - v[1]) * all.height()) - 1));
+    // Both sides of a wipe are the same picture, of which each shows its columns.
+    const QImage picture = render(i, views.wiping() ? all.size() : part.size());
+    painter.drawImage(part.topLeft(), picture, views.wiping() ? part : QRect({0, 0}, part.size()));
+    if (views.wiping() && i == 1) painter.fillRect(part.left(), 0, 1, all.height(), QColor(128, 128, 128));
+  }
+  painter.end();
+  return all;
 }
 
 void FigureActions::paintFrames(QPainter& painter, const FigureLook& look) const {

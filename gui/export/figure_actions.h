@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <QImage>
 #include <QObject>
 #include <functional>
 
@@ -35,6 +36,8 @@ class FigureActions : public QObject {
   void written(const QString& file);
 
  private:
+  /// All 3D views as they lie beside each other, or the one.
+  QImage sceneFigure(const FigureLook& look) const;
   void paintFrames(QPainter& painter, const FigureLook& look) const;
   void write(const QString& file, std::function<void()> work);
 

@@ -16,6 +16,7 @@
 #include "gui/base/theme.h"
 #include "gui/frame/pixel_probe.h"
 #include "viz/frame_pick.h"
+#include "viz/overlay_clip.h"
 
 namespace glint::gui {
 
@@ -173,11 +174,13 @@ void FrameCanvas::drawFigure(QPainter& painter, const QRectF& target, const QCol
   copy.scale_ = scale_;
   copy.message_ = message_;
   copy.caption_ = caption_;
-  copy.overlay_ = overlay_;
   if (fitted_)
     copy.fit();
   else
     copy.lookAt(centre(), zoom_);
+  // Vector formats know no clipping: what lies beside the picture would lie over its neighbour.
+  copy.overlay_ =
+      viz::cutTo(overlay_, {copy.pixelFromWidget({0, 0}), copy.pixelFromWidget(QPointF(copy.width(), copy.height()))});
   painter.save();
   painter.setClipRect(target);
   if (background.isValid()) painter.fillRect(target, background);

@@ -114,6 +114,59 @@ SceneOptions sceneOptions(const Document& document) {
   return o;
 }
 
+namespace {
+constexpr char kBetween = ' ';  // no layer's name holds one
+
+std::set<std::string> ownLayers(const Document& document, int view) {
+  const QStringList names = toQString(document.option(viewOption("layers", view), kNone)).split(QLatin1Char(kBetween));
+  std::set<std::string> layers;
+  for (const QString& name : names)
+    if (!name.isEmpty()) layers.insert(name.toStdString());
+  return layers;
+}
+
+void setLayers(Document& document, int view, const std::set<std::string>& layers, const QString& text) {
+  std::string names(1, kBetween);  // own ones also where nothing is shown
+  for (const std::string& name : layers) names += name + kBetween;
+  document.setOption(viewOption("layers", view), names, text);
+}
+
+QString nameOf(int view) { return QString(QLatin1Char(char('A' + view))); }
+}  // namespace
+
+bool hasOwnLayers(const Document& document, int view) {
+  if (document.option(viewOption("layers", view), kNone).empty()) return false;
+  return sceneOptions(document).viewCount() > 1;
+}
+
+bool layerVisibleIn(const Document& document, int view, const std::string& layer) {
+  return hasOwnLayers(document, view) ? ownLayers(document, view).count(layer) > 0 : document.layerVisible(layer);
+}
+
+void setLayerVisibleIn(Document& document, int view, const std::string& layer, const std::string& title, bool visible) {
+  if (!hasOwnLayers(document, view)) return document.setLayerVisible(layer, title, visible);
+  std::set<std::string> layers = ownLayers(document, view);
+  if (visible == (layers.count(layer) > 0)) return;
+  if (visible)
+    layers.insert(layer);
+  else
+    layers.erase(layer);
+  setLayers(document, view, layers,
+            (visible ? QObject::tr("Show %1 in view %2") : QObject::tr("Hide %1 in view %2"))
+                .arg(toQString(title).toLower(), nameOf(view)));
+}
+
+void setOwnLayers(Document& document, int view, bool own) {
+  if (own == hasOwnLayers(document, view)) return;
+  if (!own)
+    return document.setOption(viewOption("layers", view), std::string(),
+                              QObject::tr("View %1 with the layers of all").arg(nameOf(view)));
+  std::set<std::string> shown;
+  for (const viz::Layer& layer : viz::sceneLayers())
+    if (document.layerVisible(layer.name)) shown.insert(layer.name);
+  setLayers(document, view, shown, QObject::tr("View %1 with layers of its own").arg(nameOf(view)));
+}
+
 std::string toText(const viz::ViewPoint& v) {
   QStringList numbers;
   for (const Eigen::Vector3d& p : {v.position, v.focalPoint, v.up})

@@ -40,6 +40,15 @@ std::string viewOption(const char* name, int view);
 const char* toText(Arrangement arrangement);
 const char* toText(viz::Eye eye);
 
+/// Layers of one 3D view alone are an option "scene/layers", "scene/layers-2": the names of those that it shows. It counts while
+/// there are several views.
+bool hasOwnLayers(const Document& document, int view);
+bool layerVisibleIn(const Document& document, int view, const std::string& layer);
+/// One step of undo. @param view  one with layers of its own, else all views change.
+void setLayerVisibleIn(Document& document, int view, const std::string& layer, const std::string& title, bool visible);
+/// Gives a view the layers that it shows now as its own, or takes them away.
+void setOwnLayers(Document& document, int view, bool own);
+
 /// Saved 3D cameras are options "scene/view/NAME", so that saving one is a step of undo like any other.
 extern const char* const kSavedView;
 std::string toText(const viz::ViewPoint& view);

@@ -44,7 +44,10 @@ ScenePanel::ScenePanel(Document& document, QWidget* parent)
     s = {s.frame, "", -1, "", {}};  // a frame is always selected
     document_.select(s);
   });
-  connect(views_, &SceneViews::activeChanged, this, &ScenePanel::showEye);
+  connect(views_, &SceneViews::activeChanged, this, [this] {
+    showEye();
+    emit activeViewChanged(views_->activeView());
+  });
   connect(views_, &SceneViews::leaveEye, this, [this] { setEye(viz::Eye::Outside); });
   connect(&document_, &Document::influenceChanged, this, &ScenePanel::showOptions);
   connect(views_, &SceneViews::lampMoved, this, [this](const QString& light, double x, double y, double z) {
@@ -163,7 +166,9 @@ void ScenePanel::showInspection() {
 }
 
 void ScenePanel::showLayers() {
-  for (const viz::Layer& layer : viz::sceneLayers()) views_->setLayerVisible(layer.name, document_.layerVisible(layer.name));
+  for (int i = 0; i < kMostSceneViews; ++i)
+    for (const viz::Layer& layer : viz::sceneLayers())
+      views_->setLayerVisible(i, layer.name, layerVisibleIn(document_, i, layer.name));
   views_->scheduleRender();
 }
 
@@ -175,6 +180,7 @@ void ScenePanel::showSelection() {
 void ScenePanel::showOptions() {
   const SceneOptions options = sceneOptions(document_);
   views_->apply(options);
+  showLayers();  // a view may have its own
   const QSignalBlocker quietGlyphs(glyphs_), quietOpacity(opacity_);
   glyphs_->setValue(sliderOf(options.glyphScale));
   opacity_->setValue(int(std::lround(100 * options.opacity)));

@@ -64,6 +64,7 @@ class ScenePanel : public QWidget {
   void nextModels();
 
  signals:
+  void activeViewChanged(int view);
   void picked(const glint::viz::Picked& picked);
   void influenceRequested();  ///< the cameras are to be coloured by what was not measured yet
 

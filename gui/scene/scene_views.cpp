@@ -111,9 +111,11 @@ void SceneViews::setSelection(const viz::Selection& selection) {
   scheduleRender();
 }
 
-void SceneViews::setLayerVisible(const std::string& name, bool visible) {
-  for (auto& view : views_) view->setLayerVisible(name, visible);
+void SceneViews::setLayerVisible(int view, const std::string& name, bool visible) {
+  this->view(view).setLayerVisible(name, visible);
 }
+
+std::array<double, 4> SceneViews::placeOf(int view) const { return viewport(options_, view); }
 
 void SceneViews::setDark(bool dark) {
   dark_ = dark;
@@ -140,20 +142,20 @@ void SceneViews::apply(const SceneOptions& options) {
   scheduleRender();
 }
 
-std::unique_ptr<viz::SceneView> SceneViews::copyOfActive() {
+std::unique_ptr<viz::SceneView> SceneViews::copyOf(int at) {
   auto copy = std::make_unique<viz::SceneView>(cache_);
-  const SceneOptions::View& o = options_.views[std::size_t(active_)];
+  const SceneOptions::View& o = options_.views[std::size_t(at)];
   copy->setDarkBackground(dark_);
   copy->setInspection(inspection_);
   copy->setSelection(selection_);
-  for (const viz::Layer& layer : viz::sceneLayers()) copy->setLayerVisible(layer.name, active().layerVisible(layer.name));
+  for (const viz::Layer& layer : viz::sceneLayers()) copy->setLayerVisible(layer.name, view(at).layerVisible(layer.name));
   copy->setModels(o.models);
   copy->setGlyphScale(options_.glyphScale);
   copy->setSolo(options_.solo);
   copy->setCameraColours(options_.colours);
   copy->setPhotographOpacity(options_.opacity);
   copy->setParallel(options_.parallel);
-  copy->setViewPoint(active().viewPoint());
+  copy->setViewPoint(view(at).viewPoint());
   copy->setEye(o.eye);
   if (copy->looksThrough()) copy->setPhotograph(selection_.frame, photographs_->get(selection_.frame, kPhotographPx).texture);
   return copy;

@@ -33,13 +33,17 @@ class SceneViews : public QWidget {
   viz::SceneView& active() { return view(active_); }
   VtkCanvas* widget() { return widget_; }
   /// A view of its own that shows what the active one shows, for pictures that leave the program.
-  std::unique_ptr<viz::SceneView> copyOfActive();
+  std::unique_ptr<viz::SceneView> copyOf(int view);
+  std::unique_ptr<viz::SceneView> copyOfActive() { return copyOf(active_); }
+  /// Where a view lies in the picture: left, bottom, right, top, shares of it.
+  std::array<double, 4> placeOf(int view) const;
+  bool wiping() const { return options_.arrangement == Arrangement::Wipe; }
   bool busy() const { return photographs_->busy(); }
 
   void setScene(std::shared_ptr<const Scene> scene);
   void setInspection(const std::shared_ptr<const Inspection>& inspection);
   void setSelection(const viz::Selection& selection);
-  void setLayerVisible(const std::string& name, bool visible);
+  void setLayerVisible(int view, const std::string& name, bool visible);
   void setDark(bool dark);
   void apply(const SceneOptions& options);
   /// Draws soon; several changes in one turn of the event loop make one picture.

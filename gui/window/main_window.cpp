@@ -201,7 +201,9 @@ void MainWindow::buildDocks() {
     if (document_.stale()) recompute();  // the choice took the place of a run that was under way
   });
   docks_.add("setup", tr("Setup"), setup_, Qt::LeftDockWidgetArea);
-  docks_.add("layers", tr("Layers"), new LayerList(document_), Qt::LeftDockWidgetArea);
+  auto* layers = new LayerPanel(document_);
+  docks_.add("layers", tr("Layers"), layers, Qt::LeftDockWidgetArea);
+  connect(scene_, &ScenePanel::activeViewChanged, layers, &LayerPanel::setActiveView);
   auto* history = new QUndoView(document_.undoStack());
   history->setObjectName(QStringLiteral("historyList"));
   history->setEmptyLabel(tr("As opened"));

@@ -117,6 +117,58 @@ class FigureTest : public QObject {
     QCOMPARE(back.scene->frames.size(), window_->document().scene()->frames.size());
   }
 
+  /// All views as they lie beside each other; B shows nothing here, so that its half is empty.
+  void theArrangementOf3dViews() {
+    Document& d = window_->document();
+    const QString file = folder_.filePath("views.png");
+    d.setOption("scene/views", "2", "two");
+    d.setOption("scene/layers-2", " ", "nothing in B");
+    window_->exports()->figures()->writeScene({{800, 300}, false, true}, file);
+    wait();
+    const QImage two(file);
+    QCOMPARE(two.size(), QSize(800, 300));
+    const auto ink = [](const QImage& picture, int from, int to) {
+      int count = 0;
+      for (int y = 60; y < picture.height() - 60; ++y)  // without names and scale
+        for (int x = from; x < to; ++x) count += picture.pixelColor(x, y).lightness() > 90;
+      return count;
+    };
+    QVERIFY2(ink(two, 150, 390) > 1000, qPrintable(QString::number(ink(two, 150, 390))));
+    QVERIFY2(ink(two, 410, 790) < 100, qPrintable(QString::number(ink(two, 410, 790))));
+    // A wipe is one picture: left of its line that of A.
+    d.setOption("scene/layers-2", "", "B as all");
+    d.setOption("scene/views", "wipe", "wipe");
+    d.setOption("scene/models", "all", "all");
+    d.setOption("scene/models-2", "all", "all");
+    window_->exports()->figures()->writeScene({{800, 300}, false, true}, file);
+    wait();
+    QVERIFY(ink(QImage(file), 300, 500) > 1000);
+  }
+
+  void strokesOfTwoFramesStayInTheirHalves() {
+    window_->document().setOption("frame/side-by-side", "on", "two frames");
+    window_->document().setOption("frame/epipolar", "both", "lines");
+    QTRY_VERIFY_WITH_TIMEOUT(window_->idle(), 20000);
+    window_->framePanel()->goToHighlight();
+    const FigureLook look{{1000, 400}, false, true};
+    for (const char* name : {"pair.png", "pair.svg"}) {
+      window_->exports()->figures()->writeFrame(look, folder_.filePath(name));
+      wait();
+    }
+    QImage drawn(1000, 400, QImage::Format_RGB32);
+    drawn.fill(Qt::black);
+    {
+      QPainter painter(&drawn);
+      QSvgRenderer(folder_.filePath("pair.svg")).render(&painter);
+    }
+    const QImage png(folder_.filePath("pair.png"));  // its painter clips
+    int over = 0;
+    for (int y = 0; y < 400; ++y)
+      for (int x = 0; x < 1000; ++x)
+        over += std::abs(drawn.pixelColor(x, y).lightness() - png.pixelColor(x, y).lightness()) > 60;
+    QVERIFY2(over < 4000, qPrintable(QString::number(over)));
+  }
+
   void theFrameViewAsPictureAndAsStrokes() {
     window_->document().selectFrame(4);
     QTRY_VERIFY_WITH_TIMEOUT(window_->idle(), 20000);

@@ -3,6 +3,7 @@
 #include <vtkRenderer.h>
 
 #include <QAction>
+#include <QCheckBox>
 #include <QImage>
 #include <QLabel>
 #include <QMenu>
@@ -14,6 +15,7 @@
 
 #include "gui/base/text.h"
 #include "gui/base/vtk_canvas.h"
+#include "gui/scene/layer_list.h"
 #include "gui/scene/scene_panel.h"
 #include "gui/scene/scene_views.h"
 #include "tests/gui/fixture.h"
@@ -42,6 +44,43 @@ class SceneTest : public QObject {
     panel_.reset();
     menu_.reset();
     actions_.reset();
+  }
+
+  void aViewMayHaveLayersOfItsOwn() {
+    LayerPanel layers(*document_);
+    connect(panel_.get(), &ScenePanel::activeViewChanged, &layers, &LayerPanel::setActiveView);
+    layers.show();
+    auto* own = layers.findChild<QCheckBox*>(QStringLiteral("ownLayers"));
+    auto* list = layers.findChild<LayerList*>();
+    const auto tick = [&](const char* name, bool on) {
+      for (int i = 0; i < list->count(); ++i)
+        if (list->item(i)->data(Qt::UserRole).toString() == QLatin1String(name))
+          list->item(i)->setCheckState(on ? Qt::Checked : Qt::Unchecked);
+    };
+    const auto shown = [&](int view, const char* name) { return views().view(view).layerVisible(name); };
+    QVERIFY(own->isHidden());  // one view has the layers of all
+    panel_->setArrangement(Arrangement::SideBySide);
+    QVERIFY(!own->isHidden());
+    QTest::mouseClick(views().widget(), Qt::LeftButton, {}, {700, 300});
+    QCOMPARE(views().activeView(), 1);
+    QVERIFY(own->text().contains("View B") && !own->isChecked());
+    const int before = document_->undoStack()->count();
+    own->click();
+    tick("surface", false);
+    tick("rays", true);
+    QCOMPARE(document_->undoStack()->count(), before + 3);
+    QVERIFY(!shown(1, "surface") && shown(1, "rays"));
+    QVERIFY(shown(0, "surface") && !shown(0, "rays") && document_->layerVisible("surface"));
+    QTest::mouseClick(views().widget(), Qt::LeftButton, {}, {100, 300});
+    QVERIFY(own->text().contains("View A") && !own->isChecked());
+    tick("cameras", false);  // of all, but not of B
+    QVERIFY(!shown(0, "cameras") && shown(1, "cameras"));
+    panel_->setArrangement(Arrangement::One);
+    QVERIFY(shown(0, "surface"));
+    panel_->setArrangement(Arrangement::SideBySide);
+    QVERIFY(!shown(1, "surface"));
+    while (document_->undoStack()->count() > before && document_->undoStack()->index() > before) document_->undoStack()->undo();
+    QVERIFY(shown(1, "surface") && !shown(1, "rays") && shown(0, "cameras"));
   }
 
   void lookingThroughACameraHasABadgeAndThreeWaysBack() {
