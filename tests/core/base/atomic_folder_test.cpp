@@ -3,6 +3,7 @@
 #include "core/base/atomic_folder.h"
 
 #include <gtest/gtest.h>
+#include <stdlib.h>
 
 #include <fstream>
 #include <stdexcept>
@@ -17,8 +18,8 @@ namespace fs = std::filesystem;
 class AtomicFolder : public testing::Test {
  protected:
   void SetUp() override {
-    fs::remove_all(parent_);
-    fs::create_directories(parent_);
+    std::string pattern = (fs::path(testing::TempDir()) / "glint-atomic-XXXXXX").string();  // tests run beside each other
+    parent_ = mkdtemp(pattern.data());
   }
   void TearDown() override { fs::remove_all(parent_); }
   static void twoFiles(const fs::path& to) {
@@ -29,7 +30,7 @@ class AtomicFolder : public testing::Test {
   static int entries(const fs::path& folder) {
     return static_cast<int>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
   }
-  fs::path parent_ = fs::path(testing::TempDir()) / "atomic_folder_test";
+  fs::path parent_;
 };
 
 TEST_F(AtomicFolder, HoldsWhatWasWrittenHoweverItIsNamed) {
