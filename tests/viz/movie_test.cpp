@@ -3,6 +3,7 @@
 #include "viz/movie.h"
 
 #include <gtest/gtest.h>
+#include <stdlib.h>
 
 #include <filesystem>
 #include <fstream>
@@ -18,8 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path emptyFolder(const std::string& name) {
-  const fs::path folder = fs::path(testing::TempDir()) / name;
-  fs::remove_all(folder);
+  std::string pattern = (fs::path(testing::TempDir()) / "glint-XXXXXX").string();  // tests run beside each other
+  const fs::path folder = fs::path(mkdtemp(pattern.data())) / name;
   fs::create_directories(folder);
   return folder;
 }

@@ -3,6 +3,7 @@
 #include "core/evaluate/masks.h"
 
 #include <gtest/gtest.h>
+#include <stdlib.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -29,8 +30,8 @@ Camera camera(int width, int height) {
 long long count(const Image& mask) { return std::count(mask.data.begin(), mask.data.end(), 255.f); }
 
 fs::path emptyFolder(const std::string& name) {
-  const fs::path folder = fs::path(testing::TempDir()) / name;
-  fs::remove_all(folder);
+  std::string pattern = (fs::path(testing::TempDir()) / "glint-XXXXXX").string();  // tests run beside each other
+  const fs::path folder = fs::path(mkdtemp(pattern.data())) / name;
   return folder;
 }
 

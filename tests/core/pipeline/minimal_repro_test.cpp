@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <stdlib.h>
 
 #include "core/pipeline/session.h"
 #include "tests/core/pipeline/exact_scene.h"
@@ -15,8 +16,8 @@ namespace fs = std::filesystem;
 using testing::Contains;
 
 fs::path emptyFolder(const std::string& name) {
-  const fs::path folder = fs::path(testing::TempDir()) / name;
-  fs::remove_all(folder);
+  std::string pattern = (fs::path(testing::TempDir()) / "glint-XXXXXX").string();  // tests run beside each other
+  const fs::path folder = fs::path(mkdtemp(pattern.data())) / name;
   return folder;
 }
 
