@@ -49,6 +49,9 @@ bool VtkCanvas::prepare() {
   surface_.create();
   failed_ = !context_.create() || !context_.makeCurrent(&surface_);
   if (failed_) return false;
+  // VTK takes the context's state as it finds it, and what it draws flat over the scene lies at one depth: with OpenGL's own
+  // "less", the first of it would hide all that comes after (a photograph its captions).
+  context_.functions()->glDepthFunc(GL_LEQUAL);
   adapter_ = std::make_unique<QVTKRenderWindowAdapter>(&context_, window_, this);
   adapter_->setEnableHiDPI(textScaled_);
   adapter_->setUnscaledDPI(72);
