@@ -80,7 +80,7 @@ Command evaluateCommand() {
       report.chosenModel = bestModel(result);
       if (!report.chosenModel.empty())
         report.whyChosen =
-            "Smallest mean held-out contour error among the models that predicted most frames; `--models auto` chooses from "
+            "Smallest mean held-out contour error among the models that predicted most frames; --models auto chooses from "
             "the training frames alone.";
     }
     // What was asked for on standard output must stay parseable there: the table then stays away.

@@ -263,14 +263,18 @@ class Findings {
     int n = 0;
     for (const double r : fit_.fit->residualPx) squares += r * r;
     if (!fit_.fit->residualPx.empty()) rms = std::sqrt(squares / double(fit_.fit->residualPx.size()));
-    for (const TrainingView& v : views_)
-      if (!v.failure && v.highlight.areaPx2 > 0) diameters += 2 * std::sqrt(v.highlight.areaPx2 / std::numbers::pi), ++n;
+    // Of what was fitted: the canonical contour of a bent surface is several times as large as the highlight.
+    if (fromOutlines_)
+      for (const ConicView& v : outlines_) diameters += 2 * std::sqrt(v.ellipse.semiAxes.prod()), ++n;
+    else
+      for (const TrainingView& v : views_)
+        if (!v.failure && v.highlight.areaPx2 > 0) diameters += 2 * std::sqrt(v.highlight.areaPx2 / std::numbers::pi), ++n;
     if (n == 0 || (fit_.fit->residualPx.empty() && !(rms > 0))) return;
     const double share = rms / (diameters / n);
     const Verdict v = below(share, bounds::kResidualAmber, bounds::kResidualRed);
-    std::string reason = text(
-        "The training contours lie %.2g px (RMS) from what the model says of them, %.2g %% of the highlights' mean diameter: ",
-        rms, 100 * share);
+    std::string reason =
+        text("The training contours lie %.2g px (RMS) from what the model says of them, %.2g %% of %s mean diameter: ", rms,
+             100 * share, c_.model == "canonical" ? "the canonical contours'" : "the highlights'");
     reason += chosen(v, "below 1 %, the model can say what was seen.", "above 1 %, the model is a summary of what was seen.",
                      "above 5 %, the model does not describe these highlights.");
     add("residual", "fit residual", share, std::isfinite(rms) ? text("%.2g px", rms) : "-", v, reason);

@@ -72,8 +72,8 @@ inline constexpr double kViewsAmber = 3, kViewsRed = 2;
 /// Standard deviation of the light over its distance. A simple lobe alone puts the light off by 1 % (path-traced plane) to 9 %
 /// (sphere), so below 1 % the noise does not matter beside the model, and above 10 % it is worse than any model.
 inline constexpr double kLightAmber = 0.01, kLightRed = 0.10;
-/// RMS of the fit over the highlights' diameter. Above 1 % the paper's own canonical model would be no better than its dual one
-/// on a plane (method.md section 9); above 5 % the outlines are not those of one ellipsoid.
+/// RMS of the fit over the diameter of the contours that were fitted. Above 1 % the paper's own canonical model would be no
+/// better than its dual one on a plane (method.md section 9); above 5 % the outlines are not those of one ellipsoid.
 inline constexpr double kResidualAmber = 0.01, kResidualRed = 0.05;
 }  // namespace bounds
 

@@ -216,15 +216,19 @@ void FrameCanvas::drawChip(QPainter& painter, const QPoint& corner, const QStrin
 void FrameCanvas::drawScale(QPainter& painter) const {
   const auto& colours = viz::uniformColours();
   const int text = painter.fontMetrics().height();
-  const QRectF box(width() - 76, 10, 66, std::min(180, height() - 20));
+  const QString title = picture_.kind == viz::Values::Linearised ? tr("linear") : tr("radiance");
+  const auto widthOf = [&](const QString& words) { return painter.fontMetrics().horizontalAdvance(words); };
+  int numbers = 0;
+  for (const viz::ScaleTick& tick : scale_) numbers = std::max(numbers, widthOf(QString::fromStdString(tick.text)));
+  const int wide = std::max(8 + 12 + 5 + numbers, 6 + widthOf(title)) + 6;
+  const QRectF box(width() - 10 - wide, 10, wide, std::min(180, height() - 20));
   if (box.height() < 4 * text) return;
   painter.setRenderHint(QPainter::Antialiasing);
   painter.setPen(Qt::NoPen);
   painter.setBrush(QColor(0, 0, 0, 170));
   painter.drawRoundedRect(box, 4, 4);
   painter.setPen(Qt::white);
-  painter.drawText(QRectF(box.left(), box.top() + 2, box.width(), text), Qt::AlignCenter,
-                   picture_.kind == viz::Values::Linearised ? tr("linear") : tr("radiance"));
+  painter.drawText(QRectF(box.left(), box.top() + 2, box.width(), text), Qt::AlignCenter, title);
   const QRectF bar(box.left() + 8, box.top() + text + 10, 12, box.height() - text - 20);
   QLinearGradient gradient(bar.bottomLeft(), bar.topLeft());
   for (int i = 0; i < 256; i += 15)
@@ -233,7 +237,7 @@ void FrameCanvas::drawScale(QPainter& painter) const {
   for (const viz::ScaleTick& tick : scale_) {
     const double y = bar.bottom() - tick.place * bar.height();
     painter.drawLine(QPointF(bar.right(), y), QPointF(bar.right() + 3, y));
-    painter.drawText(QRectF(bar.right() + 5, y - text / 2.0, 40, text), Qt::AlignLeft | Qt::AlignVCenter,
+    painter.drawText(QRectF(bar.right() + 5, y - text / 2.0, numbers + 1, text), Qt::AlignLeft | Qt::AlignVCenter,
                      QString::fromStdString(tick.text));
   }
 }

@@ -99,6 +99,15 @@ QSize Chip::sizeHint() const {
 }
 QSize Chip::minimumSizeHint() const { return {44, fontMetrics().height() + 6}; }
 
+QString Chip::shown() const {
+  const QString sign = signOf(verdict_) + QChar(0x2009), value = text().section(QLatin1Char(' '), 0, 0);
+  const bool number = !value.isEmpty() && value.at(0).isDigit();
+  const QStringList words{sign + text(), sign + (number ? value : text()), number ? value : text()};
+  for (const QString& w : words)
+    if (fontMetrics().horizontalAdvance(w) <= width() - 4) return w;
+  return fontMetrics().elidedText(words.back(), Qt::ElideRight, width() - 4);
+}
+
 void Chip::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);
@@ -106,8 +115,7 @@ void Chip::paintEvent(QPaintEvent*) {
   painter.setBrush(underMouse() ? colourOf(verdict_).lighter(115) : colourOf(verdict_));
   painter.drawRoundedRect(QRectF(rect()).adjusted(0.75, 0.75, -0.75, -0.75), 4, 4);
   painter.setPen(Qt::white);
-  painter.drawText(rect().adjusted(2, 0, -2, 0), Qt::AlignCenter,
-                   fontMetrics().elidedText(signOf(verdict_) + QChar(0x2009) + text(), Qt::ElideRight, width() - 4));
+  painter.drawText(rect(), Qt::AlignCenter, shown());
 }
 
 void Chip::enterEvent(QEvent* e) {
@@ -224,11 +232,13 @@ void ConditioningPanel::refresh() {
   }
   for (int k = 0; k < int(conditioning_.size()); ++k) {
     const Conditioning& c = conditioning_[std::size_t(k)];
-    auto* head = new QLabel(toQString(c.model) + (severalLights ? QLatin1Char('\n') + toQString(c.light) : QString()));
+    QString name = toQString(c.model);
+    if (conditioning_.size() > 4) name = name == QLatin1String("reflectance") ? tr("reflec-\ntance") : name.replace("-", "-\n");
+    auto* head = new QLabel(name + (severalLights ? QLatin1Char('\n') + toQString(c.light) : QString()));
     head->setToolTip(toQString(c.model + ", light " + c.light + (c.surface ? ", surface " + *c.surface : std::string())));
     head->setStyleSheet(
         QStringLiteral("border-bottom: 2px solid %1; font-size: 8pt;").arg(toQColor(viz::modelColour(c.model)).name()));
-    head->setAlignment(Qt::AlignCenter);
+    head->setAlignment(Qt::AlignHCenter | Qt::AlignBottom);
     head->setMinimumWidth(40);
     grid->addWidget(head, 0, k + 1);
     grid->setColumnStretch(k + 1, 1);

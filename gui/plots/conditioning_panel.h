@@ -21,6 +21,8 @@ class Chip : public QAbstractButton {
   Verdict verdict() const { return verdict_; }
   QSize sizeHint() const override;
   QSize minimumSizeHint() const override;
+  /// What is written: with its sign and unit where there is room, else without the unit, else the value alone.
+  QString shown() const;
 
  signals:
   void entered();

@@ -2,8 +2,10 @@
 // Overlays lie where the numbers say, at every zoom and device pixel ratio (CTest runs this class at 1 and at 2).
 #include "gui/frame/frame_canvas.h"
 
+#include <QFontMetricsF>
 #include <QMouseEvent>
 #include <QSignalSpy>
+#include <cmath>
 
 #include "tests/gui/fixture.h"
 
@@ -117,6 +119,28 @@ class FrameCanvasTest : public QObject {
     drag(canvas_.get(), {{120, 80}, {135, 85}, {150, 90}});
     QCOMPARE(clicked.count(), 1);
     QCOMPARE(canvas_->widgetFromPixel({0, 0}), zero + QPointF(30, 10));
+  }
+
+  void theScaleOfFalseColourIsAsWideAsItsNumbers() {
+    const auto left = [&](const char* number) {  // of the box, on a white photograph
+      canvas_->setScale({{0, "0"}, {1, number}});
+      const QImage shown = canvas_->grab().toImage();
+      const int row = int(100 * ratio_);
+      for (int x = shown.width() / 2; x < shown.width(); ++x)
+        if (qGray(shown.pixel(x, row)) < 150) return double(x) / ratio_;
+      return -1.0;
+    };
+    QImage white(640, 480, QImage::Format_RGB888);
+    white.fill(Qt::white);
+    canvas_->setPhotograph(white);
+    canvas_->fit();
+    const QFontMetricsF metrics(canvas_->font());
+    const double more = metrics.horizontalAdvance(QStringLiteral("0.0000000625")) - metrics.horizontalAdvance("0.000000");
+    QVERIFY(std::abs(left("0.000000") - left("0.0000000625") - more) < 3);
+    // Right of its numbers the box is empty: nothing is cut.
+    const QImage shown = canvas_->grab().toImage();
+    for (int y = int(12 * ratio_); y < int(185 * ratio_); ++y)
+      QVERIFY2(qGray(shown.pixel(int((640 - 13) * ratio_), y)) < 150, qPrintable(QString::number(y)));
   }
 
   void theProbeSaysPositionAndValue() {

@@ -198,6 +198,23 @@ class PlotsTest : public QObject {
     QTRY_VERIFY(window.idle());
   }
 
+  void aNarrowChipKeepsItsNumber() {
+    Chip chip(Verdict::Green, QStringLiteral("0.0034 px"));
+    const QFontMetrics metrics = chip.fontMetrics();
+    const auto shownAt = [&](const QString& words) {  // as wide as these words
+      chip.resize(metrics.horizontalAdvance(words) + 5, 20);
+      return chip.shown();
+    };
+    QVERIFY(shownAt(QStringLiteral("MMMM 0.0034 px")).endsWith(QStringLiteral("0.0034 px")));
+    const QString all = chip.shown(), sign = all.left(all.size() - 9);
+    QCOMPARE(shownAt(sign + "0.0034"), sign + "0.0034");
+    QCOMPARE(shownAt(QStringLiteral("0.0034")), QStringLiteral("0.0034"));
+    QVERIFY(shownAt(QStringLiteral("0.0")).endsWith(QChar(0x2026)));
+    Chip words(Verdict::Amber, QStringLiteral("hyperb. 1"));
+    words.resize(metrics.horizontalAdvance(QStringLiteral("hyperb. 1")) + 5, 20);
+    QCOMPARE(words.shown(), QStringLiteral("hyperb. 1"));  // no unit
+  }
+
   void conditioningSaysWhyInWords() {
     ConditioningPanel strip(*document_);
     strip.resize(380, 320);

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <numbers>
+#include <numeric>
 
 #include "tests/core/pipeline/exact_scene.h"
 #include "tests/tolerances.h"
@@ -128,6 +129,41 @@ TEST(Conditioning, NoiseWidensTheLight) {  // first order: four times the noise,
   const double much = finding(of(conditioned(planeScene(1), "0-7", 1.0), "limit-angle"), "light").value;
   EXPECT_GT(much / little, 2.5);
   EXPECT_LT(much / little, 6);
+}
+
+// On a ball the canonical contour is several times as large as the highlight that it came from.
+TEST(Conditioning, ResidualIsAShareOfTheContoursThatWereFitted) {
+  InspectionRequest request;
+  request.models = {"dual", "canonical"};
+  request.train = "0-7";
+  const Inspection inspection = inspect(exactScene(sphere(0.5), 8), request);
+  const auto diameterOf = [](const std::vector<Pixel>& polygon) {  // of the circle with the same area
+    double twice = 0;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Pixel &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+      twice += a.x() * b.y() - a.y() * b.x();
+    }
+    return 2 * std::sqrt(std::abs(twice) / 2 / std::numbers::pi);
+  };
+  double seen = 0, canonical = 0;
+  int views = 0;
+  for (const TrainingView& v : inspection.views) {
+    ASSERT_TRUE(v.canonical);
+    seen += diameterOf(v.highlight.contour.points);
+    canonical += diameterOf(v.canonical->pixels);
+    ++views;
+  }
+  ASSERT_EQ(views, 8);
+  ASSERT_GT(canonical, 2 * seen);
+  const std::vector<Conditioning> all = conditioningOf(inspection);
+  for (const auto& [name, m] : inspection.models) {
+    const std::vector<double>& r = m.fits.at(0).fit->residualPx;
+    const double rms = std::sqrt(std::inner_product(r.begin(), r.end(), r.begin(), 0.0) / double(r.size()));
+    const double diameter = (name == "canonical" ? canonical : seen) / views;
+    const Finding& residual = finding(of(all, name), "residual");
+    // The contours are ellipses to a few percent.
+    EXPECT_NEAR(residual.value, rms / diameter, 0.05 * rms / diameter) << name << ": " << residual.reason;
+  }
 }
 
 TEST(Conditioning, DegenerateTwoViews) {
