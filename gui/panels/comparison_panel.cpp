@@ -41,6 +41,7 @@ RowsModel::Cell number(const std::optional<double>& v, int digits = 4) {
 QTableView* table(RowsModel* model, const char* name) {
   auto* view = new QTableView;
   view->setObjectName(QLatin1String(name));
+  view->setTabKeyNavigation(false);  // arrows go about in it, Tab leaves it
   auto* sorted = new QSortFilterProxyModel(view);
   sorted->setSourceModel(model);
   sorted->setSortRole(RowsModel::kSortRole);

@@ -95,6 +95,7 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   proxy_->setSortRole(ErrorModel::kSortRole);
   view_ = new QTableView;
   view_->setObjectName(QStringLiteral("errorTable"));
+  view_->setTabKeyNavigation(false);  // arrows go about in it, Tab leaves it
   view_->setModel(proxy_);
   view_->setSortingEnabled(true);
   view_->sortByColumn(ErrorModel::Frame, Qt::AscendingOrder);

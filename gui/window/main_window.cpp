@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/window/main_window.h"
 
+#include <QAbstractButton>
 #include <QApplication>
 #include <QCloseEvent>
 #include <QFileInfo>
+#include <QHBoxLayout>
 #include <QLabel>
 #include <QMenuBar>
 #include <QMimeData>
@@ -16,6 +18,7 @@
 #include <QTime>
 #include <QTimer>
 #include <QToolBar>
+#include <QToolButton>
 #include <QUndoView>
 #include <QVBoxLayout>
 #include <utility>
@@ -283,6 +286,12 @@ void MainWindow::buildMenus() {
   unreadable_->addActions(actions_, file);
   exports_->setViews(*scene_, *frame_);
   exports_->addActions(actions_, file->addMenu(tr("&Export")));
+  auto* report = new QToolButton;  // in the corner of the log, which it holds
+  report->setObjectName(QStringLiteral("copyDiagnostic"));
+  report->setDefaultAction(actions_.find("export.diagnostic"));
+  auto* corner = new QHBoxLayout(log_->viewport());
+  corner->setContentsMargins(4, 4, 4, 4);
+  corner->addWidget(report, 0, Qt::AlignTop | Qt::AlignRight);
   file->addSeparator();
   actions_.add("file.quit", file, tr("&Quit"), [this] { close(); }, {QKeySequence::keyBindings(QKeySequence::Quit)});
 
@@ -299,6 +308,13 @@ void MainWindow::buildMenus() {
                  exports_->longJob()->cancel();
                },
                {{Qt::Key_Escape}, "stop"});
+  // What has a button in a panel is found by who looks for it in menus or the palette, too.
+  const auto press = [this](const char* button) {
+    return [this, button] { findChild<QAbstractButton*>(QLatin1String(button))->click(); };
+  };
+  edit->addSeparator();
+  actions_.add("edit.auto-model", edit, tr("Choose the &model automatically"), press("autoModel"));
+  actions_.add("edit.what-if-back", edit, tr("Put everything of the &what-if back"), press("whatif.reset"));
 
   edit->addSeparator();
   palette_ = new Palette(
@@ -321,6 +337,11 @@ void MainWindow::buildMenus() {
 
   QMenu* plots = menuBar()->addMenu(tr("&Plots"));
   plots_->addActions(actions_, plots);
+  plots->addSeparator();
+  actions_.add("plots.measure", plots, tr("Measure speed and &accuracy"), [this, press] {
+    docks_.bring(QStringLiteral("tradeoff"));
+    press("measureTradeoff")();
+  });
 
   QMenu* view = menuBar()->addMenu(tr("&View"));
   scene_->addActions(actions_, view);

@@ -8,7 +8,10 @@
 #include <vtkTextActor.h>
 #include <vtkTextProperty.h>
 
+#include <QAbstractButton>
 #include <QAction>
+#include <QApplication>
+#include <QClipboard>
 #include <QDockWidget>
 #include <QDoubleSpinBox>
 #include <QHelpEvent>
@@ -20,7 +23,9 @@
 #include <QScreen>
 #include <QScrollArea>
 #include <QScrollBar>
+#include <QSet>
 #include <QSettings>
+#include <QSignalSpy>
 #include <QSplitter>
 #include <QStackedWidget>
 #include <QTableView>
@@ -127,6 +132,65 @@ class WindowTest : public QObject {
       for (int x = 0; x < picture.width(); ++x) red += picture.pixelColor(x, y) == QColor(255, 0, 0);
     QCOMPARE(picture.pixelColor(picture.width() - 2, 2), QColor(0, 0, 255));
     QVERIFY2(red > 50, qPrintable(QString::number(red)));
+  }
+
+  void tabLeavesEveryWidgetAndReachesTheViews() {
+    MainWindow window(fixture_.engine());
+    show(window);
+    openAndWait(window);
+    window.applyLayout(QStringLiteral("debug"));
+    QApplication::setActiveWindow(&window);
+    QTRY_COMPARE(QApplication::activeWindow(), static_cast<QWidget*>(&window));
+    auto* table = window.findChild<QTableView*>(QStringLiteral("errorTable"));
+    table->setFocus();
+    table->setCurrentIndex(table->model()->index(0, 0));
+    QSet<QWidget*> reached;
+    constexpr int kMost = 1000;  // more than the window has
+    constexpr int kLinks = 12;   // a text goes to its links first
+    int presses = 0, same = 0;
+    do {
+      QWidget* before = QApplication::focusWidget();
+      QVERIFY(before);
+      QTest::keyClick(before, Qt::Key_Tab);
+      QWidget* now = QApplication::focusWidget();
+      same = now == before ? same + 1 : 0;
+      QVERIFY2(now && same < kLinks, qPrintable(before->objectName() + " of " + before->metaObject()->className()));
+      reached << now;
+    } while (QApplication::focusWidget() != table && ++presses < kMost);
+    QVERIFY(presses < kMost);
+    for (const char* name : {"timelineStrip", "frameCanvas", "sceneView"}) {
+      auto* view = window.findChild<QWidget*>(QLatin1String(name));
+      QVERIFY2(view, name);
+      QVERIFY2(std::any_of(reached.begin(), reached.end(), [&](QWidget* w) { return w == view || view->isAncestorOf(w); }), name);
+    }
+  }
+
+  void buttonsOfPanelsAreActionsToo() {
+    MainWindow window(fixture_.engine());
+    show(window);
+    openAndWait(window);
+    for (const auto& [id, name] : {std::pair{"edit.auto-model", "autoModel"}, std::pair{"edit.what-if-back", "whatif.reset"},
+                                   std::pair{"plots.measure", "measureTradeoff"}}) {
+      auto* button = window.findChild<QAbstractButton*>(QLatin1String(name));
+      QVERIFY2(button && window.actions().find(QLatin1String(id)), id);
+      QSignalSpy clicked(button, &QAbstractButton::clicked);
+      button->setEnabled(true);
+      window.actions().find(QLatin1String(id))->trigger();
+      QCOMPARE(clicked.count(), 1);
+      QTRY_VERIFY_WITH_TIMEOUT(window.idle(), 20000);
+    }
+  }
+
+  void theLogHasItsReportAtHand() {
+    MainWindow window(fixture_.engine());
+    show(window);
+    openAndWait(window);
+    QApplication::clipboard()->clear();
+    auto* button = window.findChild<QToolButton*>(QStringLiteral("copyDiagnostic"));
+    QVERIFY(button);
+    QVERIFY(qobject_cast<QPlainTextEdit*>(button->parentWidget()->parentWidget()));
+    button->click();
+    QVERIFY2(QApplication::clipboard()->text().contains(QStringLiteral("Opened")), "the log is in it");
   }
 
   void aSceneIsOpenedComputedAndShown() {
