@@ -250,7 +250,7 @@ class SceneTest : public QObject {
     document_->undoStack()->undo();
     settle();
     QCOMPARE(slider->value(), 0);
-    QVERIFY(differingPixels(picture(), first) < 5);
+    QCOMPARE(differingPixels(picture(), first), 0);
     trigger("view.colour-error");
     settle();
     QVERIFY(differingPixels(picture(), first) > 50);
@@ -258,12 +258,14 @@ class SceneTest : public QObject {
     trigger("view.colour-error");  // one of the three stays on
     QVERIFY(actions_->find("view.colour-error")->isChecked());
     document_->undoStack()->undo();
+    settle();
+    QCOMPARE(differingPixels(picture(), first), 0);
     trigger("view.solo");
     settle();
     QVERIFY(differingPixels(picture(), first) > 50);
     document_->undoStack()->undo();
     settle();
-    QVERIFY(differingPixels(picture(), first) < 5);
+    QCOMPARE(differingPixels(picture(), first), 0);
   }
 
   void aClickOnACameraSelectsItsFrame() {
@@ -298,30 +300,90 @@ class SceneTest : public QObject {
     QVERIFY(panel_->view().looksThrough());
   }
 
-  /// Cameras are drawn as lines: what lies between them is theirs, too, whether or not the surface is behind.
+  /// Cameras are drawn as lines: what lies between them is theirs, too, whether the surface is behind it or before it.
   void aRightClickInsideACameraIsOneOnIt() {
-    for (const viz::Layer& layer : viz::sceneLayers())
-      document_->setLayerVisible(layer.name, layer.title, layer.name == "cameras" || layer.name == "surface");
-    for (const char* from : {"view.axis-front", "view.axis-top"}) {
-      trigger(from);
-      trigger("view.frame-all");
-      settle();
-      const Camera& camera = document_->scene()->frames[8].camera;
-      const viz::Selection before = document_->selection();
-      // A quarter of the way from the centre to where it looks: every camera's frustum is deeper than that.
-      const auto corners = viz::imagePlane(camera, 0.02 * camera.centreInWorld().norm());
-      const Eigen::Vector3d inside = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+    showOnly({"cameras", "surface"});
+    largeCameras();
+    const Eigen::Vector3d inside = insideOf(2) + Eigen::Vector3d(0.04, 0, 0);  // the ball lies straight before it
+    int throughTheSurface = 0;
+    for (const Eigen::Vector3d& from : {Eigen::Vector3d(0, 0, -4), Eigen::Vector3d(0, 0, 2), Eigen::Vector3d(0, -4, -1.7)}) {
+      lookFrom(from, inside);
       QTest::mouseClick(views().widget(), Qt::RightButton, {}, onScreen(inside));
       auto* menu = panel_->findChild<QMenu*>(QStringLiteral("cameraMenu"));
-      QVERIFY2(menu && menu->isVisible(), from);
-      QVERIFY2(menu->actions().first()->text().endsWith("0008"), qPrintable(menu->actions().first()->text()));
+      QVERIFY(menu && menu->isVisible());
+      QVERIFY2(menu->actions().first()->text().endsWith("0002"), qPrintable(menu->actions().first()->text()));
       menu->close();
-      QCOMPARE(document_->selection().frame, before.frame);
+      QCOMPARE(document_->selection().frame, 0);
       QCoreApplication::sendPostedEvents(nullptr, QEvent::DeferredDelete);
+      const auto hit = panel_->view().pick(display(inside).x(), display(inside).y());
+      throughTheSurface += hit && hit->layer == "surface";
     }
-    document_->setLayerVisible("cameras", "cameras", false);
+    QCOMPARE(throughTheSurface, 2);  // where a left click is one on it
+  }
+
+  void aCameraIsPickedInAllOfItsFrustumAndTheNearestCounts() {
+    showOnly({"cameras"});
+    largeCameras();
+    const auto at = [this](const Eigen::Vector3d& p) {
+      const auto hit = panel_->view().pickCamera(display(p).x(), display(p).y());
+      return hit ? hit->frame : -1;
+    };
+    const Eigen::Vector3d eye = document_->scene()->frames[11].camera.centreInWorld(), depth(0, 0, kDepth);
+    const auto corners = viz::imagePlane(document_->scene()->frames[11].camera, kDepth);
+    // From behind it, its image plane is its outline.
+    lookFrom(eye - Eigen::Vector3d(0, 0, 4), eye);
+    const auto backside = panel_->view().pickCamera(display(insideOf(11)).x(), display(insideOf(11)).y());
+    QVERIFY(backside && (backside->position - eye).norm() < 0.1 * kDepth);
+    for (const Eigen::Vector3d& corner : corners) {
+      for (const double share : {0.0, 0.5, 0.9}) QCOMPARE(at(eye + depth + share * (corner - eye - depth)), 11);
+      QVERIFY(at(eye + depth + 1.1 * (corner - eye - depth)) != 11);
+    }
+    lookFrom(eye + Eigen::Vector3d(0.03, 0, 4), eye);
+    const auto front = panel_->view().pickCamera(display(eye + depth).x(), display(eye + depth).y());
+    QVERIFY(front && (front->position - eye - depth).norm() < 0.1 * kDepth);
+    // Sideways they stand one behind the other, and sides are all that is seen of them.
+    for (const auto& [from, nearest] : {std::pair(-4.0, 11), std::pair(4.0, 0)}) {
+      const Eigen::Vector3d there = document_->scene()->frames[std::size_t(nearest)].camera.centreInWorld();
+      lookFrom(there + Eigen::Vector3d(from, 0, 0.5 * kDepth), insideOf(nearest));
+      const double half = 0.4 * corners[2].y();  // at 0.8 of the depth, where the frustum is 0.8 times as high
+      for (const double share : {-0.9, -0.5, 0.0, 0.5, 0.9})
+        QCOMPARE(at(there + 0.8 * depth + Eigen::Vector3d(0, 2 * share * half, 0)), nearest);
+      const auto hit = panel_->view().pickCamera(display(insideOf(nearest)).x(), display(insideOf(nearest)).y());
+      QVERIFY((hit->position - insideOf(nearest)).norm() < 0.5 * kDepth);
+      QCOMPARE(at(there + 0.8 * depth + Eigen::Vector3d(0, 1.15 * 2 * half, 0)), -1);
+    }
+    // A left click between the lines selects the frame, too, where nothing else is.
+    const Eigen::Vector3d between = insideOf(8) + Eigen::Vector3d(0.04, 0, 0);
+    lookFrom(insideOf(8) - Eigen::Vector3d(0, 0, 2), insideOf(8));
+    QTest::mouseClick(views().widget(), Qt::LeftButton, {}, onScreen(between));
+    QCOMPARE(document_->selection().frame, 8);
+    QCOMPARE(at(insideOf(8)), 8);
+    showOnly({});
     settle();
-    QVERIFY(!panel_->view().pickCamera(10, 10));
+    QCOMPARE(at(insideOf(8)), -1);
+  }
+
+  void camerasBehindTheEyeOrAroundItAreNotPicked() {
+    showOnly({"cameras", "surface"});
+    largeCameras();
+    const auto picked = [this] {
+      const double ratio = views().widget()->devicePixelRatioF();
+      int n = 0;
+      for (int y = 5; y < views().widget()->height(); y += 20)
+        for (int x = 5; x < views().widget()->width(); x += 20)
+          n += panel_->view().pickCamera(int(x * ratio), int(y * ratio)).has_value();
+      return n;
+    };
+    const Eigen::Vector3d before(0, 0, -1);
+    lookFrom(before, before - Eigen::Vector3d::UnitZ());
+    QVERIFY(picked() > 10);
+    lookFrom(before, before + Eigen::Vector3d::UnitZ());
+    QCOMPARE(picked(), 0);
+    document_->selectFrame(8);
+    trigger("view.look-through");
+    settle();
+    QVERIFY(panel_->view().looksThrough());
+    QCOMPARE(picked(), 0);
   }
 
   /// Opened again, as from a picture, with cameras coloured by what was measured then.
@@ -340,6 +402,18 @@ class SceneTest : public QObject {
     QCOMPARE(asked.count(), 1);
     result();  // once; after that the user asks
     QCOMPARE(asked.count(), 1);
+    document_->open(opened);
+    document_->setSetting("detect.level", 0.4);
+    auto early = std::make_shared<Inspection>(drawnCircles(document_->sharedScene(), InspectionRequest()));
+    early->surfaces = std::make_shared<SurfaceCache>(*document_->sharedScene());
+    document_->setInspection(early, InspectionRequest());
+    QCOMPARE(asked.count(), 1);  // of an earlier request: what it measures would be out of date, too
+    result();
+    QCOMPARE(asked.count(), 2);
+    opened.options["scene/colour-by"] = "error";
+    document_->open(opened);
+    result();
+    QCOMPARE(asked.count(), 2);  // not what this view shows
   }
 
   void camerasAreColouredByWhatLeavingThemOutDoes() {
@@ -465,6 +539,28 @@ class SceneTest : public QObject {
     return {int(renderer->GetDisplayPoint()[0] / ratio),
             views().widget()->height() - 1 - int(renderer->GetDisplayPoint()[1] / ratio)};
   }
+  /// The same as a window pixel, y up.
+  Eigen::Vector2i display(const Eigen::Vector3d& point) {
+    vtkRenderer* renderer = panel_->view().renderer();
+    renderer->SetWorldPoint(point.x(), point.y(), point.z(), 1);
+    renderer->WorldToDisplay();
+    return {int(renderer->GetDisplayPoint()[0]), int(renderer->GetDisplayPoint()[1])};
+  }
+  void showOnly(const std::set<std::string>& layers) {
+    for (const viz::Layer& layer : viz::sceneLayers())
+      document_->setLayerVisible(layer.name, layer.title, layers.count(layer.name) > 0);
+  }
+  /// So that their insides are wider than what a click on a line may miss, and none overlaps the next.
+  void largeCameras() { document_->setOption("scene/glyph-scale", 1.5, "large cameras"); }
+  static constexpr double kDepth = 0.3;  ///< m, of a drawn camera then: 0.8 of the 0.25 m between two, times 1.5
+  Eigen::Vector3d insideOf(int frame) {
+    return document_->scene()->frames[std::size_t(frame)].camera.centreInWorld() + Eigen::Vector3d(0, 0, 0.5 * kDepth);
+  }
+  void lookFrom(const Eigen::Vector3d& eye, const Eigen::Vector3d& at) {
+    const bool steep = std::abs((at - eye).normalized().y()) > 0.9;
+    panel_->view().setViewPoint({eye, at, steep ? Eigen::Vector3d::UnitZ().eval() : Eigen::Vector3d::UnitY().eval(), 30});
+    settle();
+  }
   void trigger(const char* id) {
     QAction* action = actions_->find(QLatin1String(id));
     QVERIFY2(action, id);
@@ -478,7 +574,6 @@ class SceneTest : public QObject {
     QCoreApplication::processEvents();
     panel_->renderNow();
   }
-  /// A pixel on the edge of two lines may fall to either.
   static int differingPixels(const QImage& a, const QImage& b) {
     if (a.size() != b.size()) return a.width() * a.height();
     int n = 0;
