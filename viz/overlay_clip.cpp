@@ -46,11 +46,7 @@ FrameOverlay cutTo(const FrameOverlay& overlay, const Eigen::AlignedBox2d& box) 
     for (std::size_t i = 0; i + (line.closed ? 0 : 1) < n; ++i) {
       const Pixel &a = line.points[i], &b = line.points[(i + 1) % n];
       const auto part = inside(a, b, box);
-      if (!part) {
-        finish();
-        continue;
-      }
-      if (part->first > 0) finish();
+      if (!part) continue;  // the piece before it ended at the border
       if (piece.points.empty()) piece.points.push_back(a + part->first * (b - a));
       piece.points.push_back(a + part->second * (b - a));
       if (part->second < 1) finish();

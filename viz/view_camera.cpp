@@ -125,7 +125,8 @@ ViewPoint between(const ViewPoint& from, const ViewPoint& to, double t) {
   if (!(t < 1)) return to;
   const Eigen::Matrix3d a = axesOf(from), b = axesOf(to);
   const double near = (from.position - from.focalPoint).norm(), far = (to.position - to.focalPoint).norm();
-  if (!a.allFinite() || !b.allFinite() || !(near > 0 && far > 0)) return to;
+  // The determinant of axes is 1; 0 where a view looks along its own upwards.
+  if (!(a.determinant() > 0.5 && b.determinant() > 0.5 && near > 0 && far > 0)) return to;
   const Eigen::Matrix3d axes = Eigen::Quaterniond(a).slerp(t, Eigen::Quaterniond(b)).toRotationMatrix();
   ViewPoint view = to;
   view.focalPoint = (1 - t) * from.focalPoint + t * to.focalPoint;

@@ -34,6 +34,34 @@ TEST(CutTo, ALineIsCutAtTheBorderAlsoWhereNoVertexIsInside) {
   EXPECT_NEAR((cut.lines[0].points.back() - Pixel(10, 6.5)).norm(), 0, 1e-12);
 }
 
+TEST(CutTo, APathThatLeavesAndComesBackIsTwoPieces) {
+  // Beside the box and back over a vertex outside, and along a whole stretch outside.
+  for (const std::vector<Pixel>& path :
+       {std::vector<Pixel>{{5, 2}, {15, 5}, {5, 8}}, {{5, 2}, {15, 2}, {20, 5}, {15, 8}, {5, 8}}}) {
+    const FrameOverlay cut = cutTo(lineOf(path, false), kBox);
+    ASSERT_EQ(cut.lines.size(), 2u);
+    EXPECT_EQ(cut.lines[0].points.front(), Pixel(5, 2));
+    EXPECT_NEAR(cut.lines[0].points.back().x(), 10, 1e-12);
+    EXPECT_NEAR(cut.lines[1].points.front().x(), 10, 1e-12);
+    EXPECT_EQ(cut.lines[1].points.back(), Pixel(5, 8));
+  }
+}
+
+TEST(CutTo, OfAClosedLineTheLastStretchCountsToo) {
+  const FrameOverlay cut = cutTo(lineOf({{-5, 5}, {-5, -9}, {15, -9}, {15, 5}}, true), kBox);  // only its closing one is inside
+  ASSERT_EQ(cut.lines.size(), 1u);
+  EXPECT_EQ(cut.lines[0].points, (std::vector<Pixel>{{10, 5}, {0, 5}}));
+  EXPECT_TRUE(cutTo(lineOf({{-5, 5}, {-5, -9}, {15, -9}, {15, 5}}, false), kBox).lines.empty());
+}
+
+TEST(CutTo, LevelAndUprightLinesBesideTheBoxGo) {
+  for (const double beside : {-1.0, 11.0}) {
+    EXPECT_TRUE(cutTo(lineOf({{2, beside}, {8, beside}}, false), kBox).lines.empty());
+    EXPECT_TRUE(cutTo(lineOf({{beside, 2}, {beside, 8}}, false), kBox).lines.empty());
+  }
+  EXPECT_EQ(cutTo(lineOf({{-3, 5}, {13, 5}}, false), kBox).lines.at(0).points, (std::vector<Pixel>{{0, 5}, {10, 5}}));
+}
+
 TEST(CutTo, ACircleOverACornerKeepsItsArcInside) {
   std::vector<Pixel> circle;
   for (int i = 0; i < 3600; ++i) circle.push_back(4 * Pixel(std::cos(i * M_PI / 1800), std::sin(i * M_PI / 1800)));

@@ -158,6 +158,10 @@ TEST(Plots, DialOfAPredictionThatIsOnePixelTooLarge) {
   const PlotData plot = residualDial(*smallInspection(folder.path()), 2, -1);
   ASSERT_EQ(plot.series.size(), 1u);
   EXPECT_TRUE(plot.dial);
+  // Not the mean contour distance of the error table, which is another number of the same prediction: said so in both places.
+  EXPECT_THAT(plot.title, HasSubstr("Signed distance, px"));
+  EXPECT_THAT(plot.y.title, HasSubstr("signed distance, observed to predicted contour (px)"));
+  EXPECT_THAT(plot.series[0].name, HasSubstr("|d| 1 px"));
   for (const PlotPoint& p : plot.series[0].points) {
     EXPECT_NEAR(p.y, 1, 0.05);  // polygons instead of circles
     EXPECT_EQ(*p.target.direction, p.x);

@@ -18,6 +18,7 @@
 #include "tests/viz/small_inspection.h"
 #include "viz/layers.h"
 #include "viz/offscreen.h"
+#include "viz/scene_questions.h"
 #include "viz/style.h"
 #include "viz/view_camera.h"
 
@@ -102,15 +103,28 @@ TEST_F(SceneViewPicture, TheHorizonStaysLevelWhereCamerasLookDownSteeply) {
     pose.translation() = -(pose.linear() * (1.7 * back));
     scene->frames[i].camera.camFromWorld = pose;
   }
-  inspection->scene = inspection->given = scene;
-  inspection->surfaces = std::make_shared<SurfaceCache>(*scene);
-  SceneView view;
-  view.setInspection(inspection);
-  (void)render(view);
-  view.frameAll();
-  const ViewPoint seen = view.viewPoint();
-  EXPECT_NEAR(seen.up.cross(seen.position - seen.focalPoint).normalized().z(), 0, 1e-6);
-  EXPECT_GT(seen.up.z(), 0.5);
+  // Also where z is downwards: all of it turned over, or all cameras about their own axes. (What finds the upright axis gives it
+  // with an arbitrary sign; among these are cases of either.)
+  const auto half = [](const Eigen::Vector3d& axis) { return Eigen::Isometry3d(Eigen::AngleAxisd(std::numbers::pi, axis)); };
+  const Eigen::Isometry3d same = Eigen::Isometry3d::Identity(), rolled = half(Eigen::Vector3d::UnitZ()),
+                          overX = half(Eigen::Vector3d::UnitX()), overY = half(Eigen::Vector3d::UnitY());
+  const std::tuple<Eigen::Isometry3d, Eigen::Isometry3d, double> cases[] = {
+      {same, same, 1}, {rolled, same, -1}, {same, overX, -1}, {same, overY, -1}, {rolled, overX, 1}, {rolled, overY, 1}};
+  for (const auto& [camera, world, upwards] : cases) {
+    SCOPED_TRACE(upwards);
+    auto turned = std::make_shared<Scene>(*scene);
+    for (Frame& frame : turned->frames) frame.camera.camFromWorld = camera * frame.camera.camFromWorld * world;
+    const auto shown = std::make_shared<Inspection>(*inspection);
+    shown->scene = shown->given = turned;
+    shown->surfaces = std::make_shared<SurfaceCache>(*shown->scene);
+    SceneView view;
+    view.setInspection(shown);
+    (void)render(view);
+    view.frameAll();
+    const ViewPoint seen = view.viewPoint();
+    EXPECT_NEAR(seen.up.cross(seen.position - seen.focalPoint).normalized().z(), 0, 1e-6);
+    EXPECT_GT(upwards * seen.up.z(), 0.5);
+  }
 }
 
 TEST(BetweenViews, StartsAndEndsExactlyAndTurnsAboutWhatIsLookedAt) {
@@ -123,6 +137,17 @@ TEST(BetweenViews, StartsAndEndsExactlyAndTurnsAboutWhatIsLookedAt) {
   EXPECT_NEAR((half.position - Eigen::Vector3d(std::sqrt(2), std::sqrt(2), 0)).norm(), 0, 1e-12);
   EXPECT_NEAR((half.up - Eigen::Vector3d::UnitZ()).norm(), 0, 1e-12);
   EXPECT_NEAR(half.viewAngleDeg, 25, 1e-12);
+  // What is looked at moves straight, upwards turns with the eye.
+  const ViewPoint elsewhere = between(from, {{2, 6, 0}, {2, 2, 0}, {1, 0, 0}, 30}, 0.5);
+  EXPECT_NEAR((elsewhere.focalPoint - Eigen::Vector3d(1, 1, 0)).norm(), 0, 1e-12);
+  // From right, up, back = y, z, x to z, x, y: a turn of 120 degrees about (1, 1, 1), halved.
+  const Eigen::AngleAxisd half60(std::numbers::pi / 3, Eigen::Vector3d(1, 1, 1).normalized());
+  EXPECT_NEAR((elsewhere.up - half60 * Eigen::Vector3d::UnitZ()).norm(), 0, 1e-12);
+  EXPECT_NEAR((elsewhere.position - elsewhere.focalPoint - 4 * (half60 * Eigen::Vector3d::UnitX())).norm(), 0, 1e-12);
+  // A view that looks along its own upwards has no way; it is gone to at once.
+  const ViewPoint none{{0, 0, 3}, {0, 0, 0}, {0, 0, 1}, 30};
+  EXPECT_EQ(between(from, none, 0.5).position, none.position);
+  EXPECT_EQ(between(none, from, 0.5).position, from.position);
   // The other side, where the turn has no shortest way, still gives a view.
   const ViewPoint opposite = between(from, {{-4, 0, 0}, {0, 0, 0}, {0, 0, 1}, 30}, 0.5);
   EXPECT_TRUE(opposite.position.allFinite());
@@ -336,6 +361,59 @@ TEST_F(SceneViewPicture, ADegenerateQuadricIsDrawnDashedInRedWithItsName) {
       EXPECT_GT(red, 20);
     }
     EXPECT_EQ(content.drawn.empty(), !diagonal.allFinite() || diagonal(3) == 0);
+  }
+}
+
+/// What a view is to hold: the drawn cones of primal begin halfway to their cameras, and half of a small surface would puzzle.
+TEST(Framings, OfEllipsoidsHoldTheConesOfPrimalAndASmallSurface) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  inspection->models["primal"] = inspection->models.at("canonical");
+  inspection->models["primal"].model = "primal";
+  LayerInput input;
+  input.inspection = inspection.get();
+  input.models = {"canonical", "primal"};
+  input.surfaceKey = inspection->surfaces->keyOf(0);
+  input.surface = *inspection->surfaces->surfaceOf(0, {});
+  input.scale = sceneScale(*inspection, input.surface.get(), {0, 1, 2, 3}, 1);
+  const auto holds = [](const Framing& framing, const Eigen::Vector3d& p) {
+    return std::any_of(framing.points.begin(), framing.points.end(),
+                       [&](const Eigen::Vector3d& q) { return (p - q).norm() < 1e-9; });
+  };
+  const auto corner = [&](int i) { return input.scale.surfaceBox.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)); };
+  const Eigen::Vector3d lamp = *inspection->scene->lights[0].position;  // centre of the fitted ellipsoid
+  for (const char* model : {"canonical", "primal"}) {
+    SCOPED_TRACE(model);
+    const std::optional<Framing> framing = ellipsoidFraming(input, {0, 1, 2, 3}, model);
+    ASSERT_TRUE(framing);
+    for (const TrainingView& view : inspection->views)
+      EXPECT_EQ(holds(*framing, 0.5 * (view.camera.centreInWorld() + lamp)), std::string(model) == "primal");
+    for (int i = 0; i < 8; ++i) EXPECT_TRUE(holds(*framing, corner(i)));
+  }
+  // A surface that is larger than all that would make it small.
+  input.scale.surfaceBox.extend(Eigen::Vector3d(50, 0, 0));
+  input.scale.surfaceSize = input.scale.surfaceBox.diagonal().norm();
+  for (int i = 0; i < 8; ++i) EXPECT_FALSE(holds(*ellipsoidFraming(input, {0, 1, 2, 3}, "canonical"), corner(i)));
+}
+
+TEST(Framings, TheMirrorHoldsTheEllipsoidWhereItIsDrawn) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  LayerInput input;
+  input.inspection = inspection.get();
+  input.models = {"canonical"};
+  input.selection.frame = 1;
+  input.selection.model = "canonical";
+  input.surfaceKey = inspection->surfaces->keyOf(1);
+  input.surface = *inspection->surfaces->surfaceOf(1, {});
+  input.scale = sceneScale(*inspection, input.surface.get(), {0, 1, 2, 3}, 1);
+  const Eigen::Vector3d end = *inspection->scene->lights[0].position + 1.1 * Eigen::Vector3d(0.25, 0, 0);  // of its longest axis
+  for (const bool drawn : {false, true}) {
+    const std::optional<Framing> framing = highlightFraming(input, 0, HighlightLook::Mirror, {false, drawn});
+    ASSERT_TRUE(framing);
+    EXPECT_EQ(std::any_of(framing->points.begin(), framing->points.end(),
+                          [&](const Eigen::Vector3d& q) { return (end - q).norm() < 1e-9; }),
+              drawn);
   }
 }
 

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <optional>
+#include <string>
 
 #include "core/explain/explain.h"
 #include "core/geometry/polyline.h"
@@ -158,6 +160,41 @@ TEST(WalkPicture, NAndHPointWhereTheNormalAndTheHalfVectorDo) {
     EXPECT_NEAR(drawn(*n), slope(p.normal), 0.02);  // the stretch is written with one digit
     EXPECT_NEAR(drawn(*h), slope(s.half(p)), 0.02);
     EXPECT_GT(std::abs(drawn(*n) - drawn(*h)), 0.2);
+  }
+}
+
+/// The angle over each section is that of the place that the step has reached there; before a section is reached it has none.
+TEST(WalkPicture, EachSectionSaysTheAngleOfItsStep) {
+  const Told t = told(sphere(kRadius));
+  const WalkStory& s = t.story;
+  const Eigen::Vector3d eye = t.inspection.scene->frames[5].camera.centreInWorld(), centre(0, 0, -kRadius);
+  const int places = static_cast<int>(s.trace.onSurface.size());
+  constexpr double kText = 12;
+  const auto angleOn = [&](bool onSurface, int place) {
+    const Eigen::Vector3d p = (onSurface ? s.trace.onSurface : s.trace.onPlane)[static_cast<std::size_t>(place)].position;
+    char text[32];
+    std::snprintf(text, sizeof text, "α %.2f°", degreesOf(alphaAt(p, onSurface ? (p - centre) / kRadius : s.normal, eye)));
+    return std::string(text);
+  };
+  for (const double width : {400.0, 170.0}) {  // in the narrow one angles stand below the titles
+    for (const int step : {0, 9, places - 1, places + 4, 2 * places - 1}) {
+      SCOPED_TRACE(testing::Message() << "width " << width << ", step " << step);
+      const WalkPicture picture = walkPicture(s, step, width, 300, kText, true);
+      const auto find = [&](const std::string& text, bool left) {
+        for (const WalkPicture::Text& one : picture.texts)
+          if (one.text == text && (one.at.x() < width / 2) == left) return std::optional(one);
+        return std::optional<WalkPicture::Text>();
+      };
+      const auto onS = find(angleOn(true, std::min(step, places - 1)), true);
+      const auto onT = find(step < places ? "not yet" : angleOn(false, step - places), false);
+      ASSERT_TRUE(onS && onT);
+      const auto title = find("Surface S", true);
+      ASSERT_TRUE(title);
+      EXPECT_EQ(onS->at.y() > title->at.y(), width < 200);
+      if (width < 200) {
+        EXPECT_GE(onS->at.y() - title->at.y(), kText);
+      }
+    }
   }
 }
 
