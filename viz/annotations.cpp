@@ -302,10 +302,13 @@ struct Annotations::Impl {
   }
   /// Above the scale bar.
   void placeColourBar(int width, int points, double font) {
-    for (auto& text : scaleTexts) text->SetVisibility(scale.has_value());
-    for (auto& step : barSteps) step->actor->SetVisibility(scale.has_value());
-    if (!scale) return;
-    const double length = std::min(15 * font, 0.5 * width), x0 = width - 3 * font - length, y = 5.4 * font;
+    const bool shown = scale.has_value() && (legendVisible || borderKind == Border::None);  // several views have the same
+    for (auto& text : scaleTexts) text->SetVisibility(shown);
+    for (auto& step : barSteps) step->actor->SetVisibility(shown);
+    if (!shown) return;
+    // Beside the axes, also in a narrow picture.
+    const double length = std::min({15 * font, 0.5 * width, std::max(4 * font, width - 14 * font)});
+    const double x0 = width - 3 * font - length, y = 5.4 * font;
     const double step = length / static_cast<double>(barSteps.size());
     for (std::size_t i = 0; i < barSteps.size(); ++i) {
       Strokes& s = *barSteps[i];
@@ -321,12 +324,36 @@ struct Annotations::Impl {
       text->GetTextProperty()->SetJustificationToCentered();
       setColour(text, ink());
       background(text, 0.4);
-      if (i == 0)
-        move(text, x0 + 0.5 * length, y + 0.7 * font);
-      else
-        move(text, x0 + scale->ticks[i - 1].first * length, y - 1.7 * font);
     }
-    taken.push_back({x0 - 2 * font, y - 2 * font, length + 4 * font, 4.2 * font});
+    // Texts are centred, but stay within the picture; of ticks that would touch, the ends stay.
+    double left = x0 - 2 * font;
+    const auto centred = [&](vtkTextActor* text, double x, double bottom) {
+      const double half = 0.5 * sizeOf(text).x(), at = std::min(x, width - 0.5 * font - half);
+      move(text, at, bottom);
+      left = std::min(left, at - half);
+      return std::pair(at - half, at + half);
+    };
+    centred(scaleTexts[0], x0 + 0.5 * length, y + 0.7 * font);
+    std::vector<std::pair<double, double>> placed;
+    const std::size_t ticks = scale->ticks.size();
+    for (std::size_t k = 0; k < ticks; ++k) {
+      const std::size_t i = k < 2 ? k * (ticks - 1) : k - 1;  // first, last, then those between
+      vtkTextActor* text = scaleTexts[i + 1];
+      const auto [from, to] = centred(text, x0 + scale->ticks[i].first * length, y - 1.7 * font);
+      const bool touches = std::any_of(placed.begin(), placed.end(), [&, from = from, to = to](const auto& p) {
+        return from < p.second + 0.4 * font && p.first < to + 0.4 * font;
+      });
+      text->SetVisibility(!touches);
+      if (!touches) placed.emplace_back(from, to);
+    }
+    taken.push_back({left, y - 2 * font, width - left, 4.2 * font});
+  }
+  /// Height at which a text of the upper right corner stands free, below what stands there already.
+  double below(double x, double y, const Eigen::Vector2d& size) const {
+    for (const Rectangle& t : taken) {
+      if (x < t.x + t.width && y < t.y + t.height && t.y < y + size.y()) y = t.y - size.y() - 3;
+    }
+    return y;
   }
   void placeBorder(int width, int height, int points, double font) {
     border.clear();
@@ -350,8 +377,10 @@ struct Annotations::Impl {
       name->GetTextProperty()->SetJustificationToRight();
       setColour(name, ink());
       background(name, 0.6);
-      move(name, width - 0.9 * font, height - 1.9 * font);
-      taken.push_back({width - 0.9 * font - sizeOf(name).x(), height - 2.2 * font, sizeOf(name).x() + font, 2.2 * font});
+      const Eigen::Vector2d size = sizeOf(name);
+      const double y = below(width - 0.9 * font - size.x(), height - 1.9 * font, size);
+      move(name, width - 0.9 * font, y);
+      taken.push_back({width - 0.9 * font - size.x(), y - 0.3 * font, size.x() + font, 2.2 * font});
     }
     badge->SetVisibility(badge->GetInput() && *badge->GetInput());
     if (!badge->GetVisibility()) return;
@@ -365,10 +394,7 @@ struct Annotations::Impl {
     // In the upper right corner, below whatever stands there.
     const Eigen::Vector2d size = sizeOf(badge);
     const double x = width - 0.9 * font - size.x();
-    double y = height - 2.1 * font;
-    for (const Rectangle& t : taken) {
-      if (x < t.x + t.width && y < t.y + t.height && t.y < y + size.y()) y = t.y - size.y() - 3;
-    }
+    const double y = below(x, height - 2.1 * font, size);
     move(badge, width - 0.9 * font, y);
     taken.push_back({x, y - 0.3 * font, size.x(), 2 * font});
   }

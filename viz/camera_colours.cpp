@@ -44,12 +44,12 @@ Colour influenceColour(double points, double most) {
 
 ColourBar influenceBar(const std::string& model, double most) {
   ColourBar bar;
-  bar.title = model + ": what the view does";
+  bar.title = model + ": what the view does, %";
   constexpr int kSteps = 48;
   for (int i = 0; i < kSteps; ++i) bar.colours.push_back(influenceColour(2 * (i + 0.5) / kSteps - 1, 1));
   char text[32];
   std::snprintf(text, sizeof text, "%.2g", most);
-  bar.ticks = {{0, std::string("harms ") + text}, {0.5, "0"}, {1, std::string("helps ") + text + " %"}};
+  bar.ticks = {{0, std::string("harms ") + text}, {0.5, "0"}, {1, std::string("helps ") + text}};
   return bar;
 }
 

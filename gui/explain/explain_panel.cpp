@@ -116,8 +116,10 @@ ExplainPanel::ExplainPanel(Document& document, QWidget* parent)
   connect(next_, &QToolButton::clicked, this, &ExplainPanel::next);
   connect(leave_, &QToolButton::clicked, this, &ExplainPanel::leave);
   connect(text_, &QTextBrowser::anchorClicked, this, &ExplainPanel::follow);
-  connect(steps_, &QListWidget::currentRowChanged, this, [this](int row) {
-    if (row >= 0 && row != step()) goTo(row);
+  // Not currentRowChanged: a list that gets the focus makes its first row the current one, without selecting it.
+  connect(steps_, &QListWidget::itemSelectionChanged, this, [this] {
+    const QList<QListWidgetItem*> chosen = steps_->selectedItems();
+    if (!chosen.isEmpty() && steps_->row(chosen.front()) != step()) goTo(steps_->row(chosen.front()));
   });
   connect(&document_, &Document::sceneOpened, this, [this] { lookedAt_.clear(); });
   connect(&document_, &Document::optionsChanged, this, &ExplainPanel::refresh);
@@ -226,7 +228,7 @@ void ExplainPanel::compute() {
     const int frame = std::clamp(selection.frame, 0, int(inspection->scene->frames.size()) - 1);
     auto found = std::make_shared<const Explanation>(explain(*inspection, frame, selection.highlight, model));
     return LatestJob::Deliver([this, found] {
-        explanation_ = found;
+      explanation_ = found;
       refresh();
       lookAtStep();
     });

@@ -19,7 +19,8 @@ namespace glint::gui {
 
 namespace {
 constexpr int kGap = 4;
-}
+constexpr QChar kSquare(0x25A0);
+}  // namespace
 
 LadderPanel::LadderPanel(Document& document, PhotoLoader& loader, QWidget* parent)
     : QWidget(parent), document_(document), loader_(loader) {
@@ -131,15 +132,21 @@ void LadderPanel::rebuild(const std::vector<std::string>& models) {
 void LadderPanel::arrange() {
   empty_->setGeometry(rect());
   if (tiles_.empty() || crop_.width <= 0) return;
-  const int foot = tiles_.front().text->sizeHint().height();
   const int count = int(tiles_.size());
-  const int columns = viz::ladderColumns(count, width(), height(), foot + kGap, crop_.width / crop_.height);
+  int columns = 1;
+  // A narrow tile has its error below the model's name.
+  for (lines_ = 1;; ++lines_) {
+    columns = viz::ladderColumns(count, width(), height(), captionHeight(lines_) + kGap, crop_.width / crop_.height);
+    const int wide = (width() + kGap) / columns - kGap;
+    if (lines_ == 2 || std::all_of(tiles_.begin(), tiles_.end(), [&](const Tile& t) { return fitsOneLine(t, wide); })) break;
+  }
   const int rows = (count + columns - 1) / columns;
   for (int i = 0; i < count; ++i) {
     const int column = i % columns, row = i / columns;
     const int left = column * (width() + kGap) / columns, right = (column + 1) * (width() + kGap) / columns - kGap;
     const int top = row * (height() + kGap) / rows, bottom = (row + 1) * (height() + kGap) / rows - kGap;
     tiles_[std::size_t(i)].box->setGeometry(left, top, right - left, bottom - top);
+    tiles_[std::size_t(i)].text->setFixedHeight(captionHeight(lines_));
     tiles_[std::size_t(i)].box->layout()->activate();
     showCaption(tiles_[std::size_t(i)]);
   }
@@ -164,12 +171,14 @@ void LadderPanel::showTile(Tile& tile) {
   const viz::FrameOverlay overlay = viz::frameOverlay(*inspection, frame, options);
   const bool selected = document_.selection().model == tile.model;
   tile.below.clear();
+  tile.brief.clear();
   tile.failed = false;
   for (const viz::OverlayCaption& c : overlay.captions) {
     if (c.model != tile.model) continue;
     tile.failed = !c.score.errorPct;
     tile.below = tile.failed ? toQString(c.score.reason)
                              : tr("%1 %   %2 px").arg(numberText(*c.score.errorPct, 3), numberText(*c.score.errorPx, 3));
+    tile.brief = tile.failed ? tile.below : tr("%1 %").arg(numberText(*c.score.errorPct, 3));
     tile.text->setToolTip(toQString(c.text));
   }
   // A reason may be longer than the tile: it is cut, the tool tip has it whole.
@@ -181,18 +190,35 @@ void LadderPanel::showTile(Tile& tile) {
   if (loader_.pictureFrame() == frame) tile.canvas->setPicture(loader_.picture());
 }
 
+int LadderPanel::captionHeight(int lines) const {
+  const QLabel* text = tiles_.front().text;
+  return lines * (text->fontMetrics().height() + 1) + 2 * text->margin() + 2;
+}
+
+bool LadderPanel::fitsOneLine(const Tile& tile, int width) const {
+  if (tile.failed || tile.below.isEmpty()) return true;  // a reason is cut anyway
+  QFont bold = tile.text->font();
+  bold.setBold(true);
+  const QFontMetrics plain(tile.text->font());
+  const int marks = plain.horizontalAdvance(kSquare + QString(3, QChar::Nbsp)), edges = 2 * tile.text->margin() + 4;
+  return marks + edges + QFontMetrics(bold).horizontalAdvance(toQString(tile.model)) + plain.horizontalAdvance(tile.below) <=
+         width;
+}
+
 void LadderPanel::showCaption(const Tile& tile) {
   QFont bold = tile.text->font();
   bold.setBold(true);
   const QFontMetrics heading(bold), plain(tile.text->font());
-  const QString space(QChar::Nbsp), square(QChar(0x25A0));
-  const int room = tile.box->width() - 2 * tile.text->margin() - 4, mark = plain.horizontalAdvance(square + space);
+  const QString space(QChar::Nbsp);
+  const int room = tile.box->width() - 2 * tile.text->margin() - 4, mark = plain.horizontalAdvance(kSquare + space);
   const QString model = heading.elidedText(toQString(tile.model), Qt::ElideRight, std::max(0, room - mark));
-  const int left = room - mark - heading.horizontalAdvance(model) - plain.horizontalAdvance(space + space);
-  const QString below = left > 0 ? plain.elidedText(tile.below, Qt::ElideRight, left).toHtmlEscaped() : QString();
+  const int left = lines_ == 2 ? room : room - mark - heading.horizontalAdvance(model) - plain.horizontalAdvance(space + space);
+  const QString fitting = plain.horizontalAdvance(tile.below) <= left ? tile.below : tile.brief;
+  const QString below = left > 0 ? plain.elidedText(fitting, Qt::ElideRight, left).toHtmlEscaped() : QString();
   tile.text->setText(
-      QStringLiteral("<span style='color:%1'>%2</span>%3<b>%4</b>%3%3%5")
-          .arg(toQColor(viz::modelColour(tile.model)).name(), square, space, model.toHtmlEscaped(),
+      QStringLiteral("<span style='color:%1'>%2</span>%3<b>%4</b>%5%6")
+          .arg(toQColor(viz::modelColour(tile.model)).name(), QString(kSquare), space, model.toHtmlEscaped(),
+               lines_ == 2 ? QStringLiteral("<br>") : space + space,
                tile.failed ? QStringLiteral("<span style='color:%1'>%2</span>").arg(warningColour().name(), below) : below));
 }
 

@@ -45,6 +45,7 @@ class LadderPanel : public QWidget {
     FrameCanvas* canvas;
     QLabel* text;
     QString below = {};  ///< error or reason
+    QString brief = {};  ///< where there is no room for that
     bool failed = false;
   };
   void scheduleRefresh();
@@ -53,6 +54,9 @@ class LadderPanel : public QWidget {
   void arrange();
   void showTile(Tile& tile);
   void showCaption(const Tile& tile);
+  /// Error and model side by side.
+  bool fitsOneLine(const Tile& tile, int width) const;
+  int captionHeight(int lines) const;
   std::shared_ptr<const Inspection> inspection() const;
   void selectIn(const std::string& model, double x, double y);
 
@@ -61,6 +65,7 @@ class LadderPanel : public QWidget {
   std::vector<Tile> tiles_;
   QLabel* empty_;
   QTimer refresh_;
+  int lines_ = 1;         ///< of every caption
   int frame_ = -1;        ///< that the view was moved to
   bool moved_ = false;    ///< the user chose the zoom: it stays, only the centre follows
   bool recentre_ = true;  ///< the next arrangement puts the contours into the middle

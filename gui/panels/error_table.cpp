@@ -26,7 +26,8 @@
 namespace glint::gui {
 
 namespace {
-constexpr int kColumnGapPx = 12;  // of the summary
+constexpr int kColumnGapPx = 12;           // of the summary
+constexpr int kMissed = 6, kSpurious = 7;  // columns of its values
 
 enum class Shown { All, HeldOut, Training, Problems };
 
@@ -155,10 +156,13 @@ void ErrorTable::showSummary() {
        document_.stale() ? tr("out of date…") : tr("Held-out frames, error %"),
        {tr("mean"), tr("median"), tr("p95"), tr("max"), tr("IoU"), tr("predicted"), tr("missed"), tr("spurious")},
        {}});
+  int missed = 0, spurious = 0;
   for (const std::string& name : viz::modelsInOrder(*inspection)) {
     const ModelSummary s = summarise(*inspection, inspection->models.at(name));
     SummaryRow row{toQColor(viz::modelColour(name)).name(), toQString(name), {}, {}};
     if (s.answered) {
+      missed += s.missed;
+      spurious += s.spurious;
       const Statistic& e = s.contourErrorPct;
       // As many decimals as the table below, so that points stand under points.
       const auto fixed = [](double v, int decimals) {
@@ -173,10 +177,16 @@ void ErrorTable::showSummary() {
     }
     summaryRows_.push_back(row);
   }
+  // What the errors leave out comes before their tails: without it, a mean over few matched highlights looks too good.
+  columnOrder_ = {0, 1};
+  if (missed > 0) columnOrder_.push_back(kMissed);
+  if (spurious > 0) columnOrder_.push_back(kSpurious);
+  for (int c = 2; c < int(summaryRows_.front().values.size()); ++c)
+    if (std::find(columnOrder_.begin(), columnOrder_.end(), c) == columnOrder_.end()) columnOrder_.push_back(c);
   fitSummary();
 }
 
-QString ErrorTable::summaryHtml(int columns, int problemWidth) const {
+QString ErrorTable::summaryHtml(const std::vector<int>& columns, int problemWidth) const {
   const QString faded = (document_.stale() ? warningColour() : palette().color(QPalette::PlaceholderText)).name();
   QString html = QStringLiteral("<table cellspacing='0' cellpadding='0'>");
   for (const SummaryRow& row : summaryRows_) {
@@ -185,14 +195,15 @@ QString ErrorTable::summaryHtml(int columns, int problemWidth) const {
     html += QStringLiteral("<td style='padding-right:%1px'>%2%3</td>")
                 .arg(kColumnGapPx)
                 .arg(heading ? QString() : QStringLiteral("<span style='color:%1'>■</span>&nbsp;").arg(row.colour), row.name);
-    for (int c = 0; c < std::min(columns, int(row.values.size())); ++c)
-      html += QStringLiteral("<td align='right' style='padding-right:%1px'>%2</td>").arg(kColumnGapPx).arg(row.values[c]);
+    for (const int c : columns)
+      if (c < row.values.size())
+        html += QStringLiteral("<td align='right' style='padding-right:%1px'>%2</td>").arg(kColumnGapPx).arg(row.values[c]);
     if (!row.problem.isEmpty())
       html += QStringLiteral("<td colspan='%1' style='color:%2'>%3</td>")
-                  .arg(std::max(1, columns))
+                  .arg(std::max<std::size_t>(1, columns.size()))
                   .arg(warningColour().name(),
                        summary_->fontMetrics().elidedText(row.problem, Qt::ElideRight, problemWidth).toHtmlEscaped());
-    if (heading && columns < row.values.size()) html += QStringLiteral("<td>…</td>");
+    if (heading && int(columns.size()) < row.values.size()) html += QStringLiteral("<td>…</td>");
     html += QStringLiteral("</tr>");
   }
   return html + QStringLiteral("</table>");
@@ -216,15 +227,21 @@ void ErrorTable::fitSummary() {
   // Widths are estimated first: laying out a table of rich text takes milliseconds, and this follows a slider.
   int columns = 0;
   for (int used = first; columns < all; ++columns) {
+    const int column = columnOrder_[std::size_t(columns)];
     int wide = 0;
     for (const SummaryRow& row : summaryRows_)
-      if (columns < row.values.size()) wide = std::max(wide, summary_->fontMetrics().horizontalAdvance(row.values[columns]));
+      if (column < row.values.size()) wide = std::max(wide, summary_->fontMetrics().horizontalAdvance(row.values[column]));
     used += wide + kColumnGapPx;
     if (columns > 0 && used > room) break;
   }
-  summary_->setText(summaryHtml(columns, forProblems));
-  while (columns > 1 && summary_->sizeHint().width() > room) summary_->setText(summaryHtml(--columns, forProblems));
-  if (columns < all || problems > forProblems) summary_->setToolTip(summaryHtml(all, problems + 1));
+  const auto html = [&](int count, int problemWidth) {
+    std::vector<int> shown(columnOrder_.begin(), columnOrder_.begin() + count);
+    std::sort(shown.begin(), shown.end());
+    return summaryHtml(shown, problemWidth);
+  };
+  summary_->setText(html(columns, forProblems));
+  while (columns > 1 && summary_->sizeHint().width() > room) summary_->setText(html(--columns, forProblems));
+  if (columns < all || problems > forProblems) summary_->setToolTip(html(all, problems + 1));
 }
 
 void ErrorTable::changeEvent(QEvent* event) {

@@ -32,7 +32,7 @@ class ErrorTable : public QWidget {
   void showSummary();
   /// The summary with as many of its columns as the dock has room for; the others are in its tooltip.
   void fitSummary();
-  QString summaryHtml(int columns, int problemWidth) const;
+  QString summaryHtml(const std::vector<int>& columns, int problemWidth) const;
   void showCount();
   void fitReason();
   void selectFromDocument();
@@ -49,6 +49,7 @@ class ErrorTable : public QWidget {
     QString problem;  ///< in place of values
   };
   std::vector<SummaryRow> summaryRows_;
+  std::vector<int> columnOrder_;  ///< of the values: the last ones are left out first
   QComboBox* filter_;
   QLabel* count_;
   bool selecting_ = false;  ///< the table itself caused the change that it hears of

@@ -94,18 +94,44 @@ Chip::Chip(Verdict verdict, const QString& text, QWidget* parent) : QAbstractBut
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
 }
 
-QSize Chip::sizeHint() const {
-  return {fontMetrics().horizontalAdvance(signOf(verdict_) + QChar(0x2009) + text()) + 12, fontMetrics().height() + 6};
-}
+QSize Chip::sizeHint() const { return {fontMetrics().horizontalAdvance(whole()) + 12, fontMetrics().height() + 6}; }
 QSize Chip::minimumSizeHint() const { return {44, fontMetrics().height() + 6}; }
+
+QString Chip::whole() const { return signOf(verdict_) + QChar(0x2009) + text(); }
+
+void Chip::show(Verdict verdict, const QString& text) {
+  verdict_ = verdict;
+  if (text == this->text()) return update();
+  setText(text);
+  updateGeometry();
+}
+
+QString Chip::unit() const {
+  const QString last = text().section(QLatin1Char(' '), 1);
+  return last == QLatin1String("%") || last == QLatin1String("px") ? last : QString();
+}
+
+void Chip::setUnitShown(bool shown) {
+  if (shown == unitShown_) return;
+  unitShown_ = shown;
+  update();
+}
+
+bool Chip::fitsWhole() const { return fontMetrics().horizontalAdvance(whole()) <= width() - 4; }
 
 QString Chip::shown() const {
   const QString sign = signOf(verdict_) + QChar(0x2009), value = text().section(QLatin1Char(' '), 0, 0);
   const bool number = !value.isEmpty() && value.at(0).isDigit();
-  const QStringList words{sign + text(), sign + (number ? value : text()), number ? value : text()};
+  QStringList words{sign + text(), sign + (number ? value : text()), number ? value : text()};
+  if (!unit().isEmpty()) words = unitShown_ ? QStringList{sign + text(), text()} : QStringList{sign + value, value};
   for (const QString& w : words)
     if (fontMetrics().horizontalAdvance(w) <= width() - 4) return w;
   return fontMetrics().elidedText(words.back(), Qt::ElideRight, width() - 4);
+}
+
+void Chip::resizeEvent(QResizeEvent* e) {
+  QAbstractButton::resizeEvent(e);
+  emit resized();
 }
 
 void Chip::paintEvent(QPaintEvent*) {
@@ -176,9 +202,6 @@ QString ConditioningPanel::reason() const { return reason_->text(); }
 void ConditioningPanel::refresh() {
   if (!dirty_ || !isVisible()) return;
   dirty_ = false;
-  chips_.clear();
-  delete table_;
-  table_ = nullptr;
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
   conditioning_ = inspection ? conditioningOf(*inspection) : std::vector<Conditioning>{};
   surface_ = inspection && inspection->train.perSurface && inspection->surfaces
@@ -188,9 +211,37 @@ void ConditioningPanel::refresh() {
     conditioning_.erase(std::remove_if(conditioning_.begin(), conditioning_.end(),
                                        [this](const Conditioning& c) { return c.surface && *c.surface != surface_; }),
                         conditioning_.end());
+  // New numbers go into the same chips: a table built anew would be blank for a moment in every step of a drag.
+  std::string key;
+  for (const Conditioning& c : conditioning_) {
+    key += c.model + '/' + c.light + '/' + c.surface.value_or("") + ':';
+    for (const Finding& f : c.findings) key += f.id + ' ';
+  }
+  if (key != tableKey_) {
+    tableKey_ = key;
+    build();
+  }
+  for (const Shown& s : chips_) {
+    const Conditioning& c = conditioning_[std::size_t(s.conditioning)];
+    const Finding& finding = c.findings[std::size_t(s.finding)];
+    s.chip->show(finding.verdict, shortText(finding));
+    s.chip->setToolTip(QStringLiteral("<b>%1, %2: %3</b> (%4)<br>%5")
+                           .arg(toQString(c.model), toQString(finding.title), toQString(finding.text).toHtmlEscaped(),
+                                QLatin1String(nameOf(finding.verdict)), toQString(finding.reason).toHtmlEscaped()));
+    s.chip->setAccessibleName(toQString(c.model + " " + finding.title + " " + finding.text + ": " + nameOf(finding.verdict)));
+  }
+  for (const auto& [row, title] : titles_) fitUnits(row);
   empty_->setVisible(conditioning_.empty());
   if (conditioning_.empty()) return reason_->clear();
+  explainWorst();
+}
 
+void ConditioningPanel::build() {
+  chips_.clear();
+  titles_.clear();
+  delete table_;
+  table_ = nullptr;
+  if (conditioning_.empty()) return;
   bool severalLights = false;
   for (const Conditioning& c : conditioning_) severalLights = severalLights || c.light != conditioning_.front().light;
   table_ = new QWidget;
@@ -198,22 +249,19 @@ void ConditioningPanel::refresh() {
   grid->setContentsMargins(0, 0, 0, 0);
   grid->setSpacing(3);
   int row = 1;
-  for (const Row& r : kRows) {
+  for (int r = 0; r < int(std::size(kRows)); ++r) {
     bool any = false;
     for (int k = 0; k < int(conditioning_.size()); ++k) {
       const Conditioning& c = conditioning_[std::size_t(k)];
       for (int f = 0; f < int(c.findings.size()); ++f) {
         const Finding& finding = c.findings[std::size_t(f)];
-        if (finding.id != r.id) continue;
+        if (finding.id != kRows[r].id) continue;
         any = true;
         auto* chip = new Chip(finding.verdict, shortText(finding));
         chip->setObjectName(toQString("chip_" + c.model + "_" + finding.id));
-        chip->setToolTip(QStringLiteral("<b>%1, %2: %3</b> (%4)<br>%5")
-                             .arg(toQString(c.model), toQString(finding.title), toQString(finding.text).toHtmlEscaped(),
-                                  QLatin1String(nameOf(finding.verdict)), toQString(finding.reason).toHtmlEscaped()));
-        chip->setAccessibleName(toQString(c.model + " " + finding.title + " " + finding.text + ": " + nameOf(finding.verdict)));
         connect(chip, &Chip::entered, this,
                 [this, k, f] { explain(conditioning_[std::size_t(k)], conditioning_[std::size_t(k)].findings[std::size_t(f)]); });
+        connect(chip, &Chip::resized, this, [this, r] { fitUnits(r); });
         connect(chip, &Chip::clicked, this, [this, k] {
           viz::Selection s = document_.selection();
           s.model = conditioning_[std::size_t(k)].model;
@@ -221,14 +269,15 @@ void ConditioningPanel::refresh() {
           document_.select(s);
         });
         grid->addWidget(chip, row, k + 1);
-        chips_.push_back({chip, k, f});
+        chips_.push_back({chip, k, f, r});
       }
     }
     if (!any) continue;
-    auto* title = new ElidedLabel(tr(r.title));
-    title->setToolTip(tr(r.tip));
+    auto* title = new ElidedLabel(tr(kRows[r].title));
+    title->setToolTip(tr(kRows[r].tip));
     title->setProperty("role", "faded");
     grid->addWidget(title, row++, 0);
+    titles_[r] = title;
   }
   for (int k = 0; k < int(conditioning_.size()); ++k) {
     const Conditioning& c = conditioning_[std::size_t(k)];
@@ -244,7 +293,24 @@ void ConditioningPanel::refresh() {
     grid->setColumnStretch(k + 1, 1);
   }
   static_cast<QVBoxLayout*>(layout())->insertWidget(0, table_);
-  explainWorst();
+}
+
+void ConditioningPanel::fitUnits(int row) {
+  const auto title = titles_.find(row);
+  if (title == titles_.end()) return;  // not built yet
+  QString unit;
+  bool same = true, room = true;
+  for (const Shown& s : chips_) {
+    if (s.row != row || s.chip->unit().isEmpty()) continue;
+    same = same && (unit.isEmpty() || unit == s.chip->unit());
+    unit = s.chip->unit();
+    room = room && s.chip->fitsWhole();
+  }
+  const bool inChips = unit.isEmpty() || room || !same;
+  for (const Shown& s : chips_)
+    if (s.row == row) s.chip->setUnitShown(inChips);
+  const QString name = tr(kRows[row].title);
+  title->second->setText(inChips ? name : QStringLiteral("%1 (%2)").arg(name, unit));
 }
 
 void ConditioningPanel::explain(const Conditioning& c, const Finding& f) {

@@ -3,6 +3,8 @@
 
 #include <QAbstractButton>
 #include <QWidget>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "core/diagnostics/conditioning.h"
@@ -19,20 +21,31 @@ class Chip : public QAbstractButton {
  public:
   Chip(Verdict verdict, const QString& text, QWidget* parent = nullptr);
   Verdict verdict() const { return verdict_; }
+  void show(Verdict verdict, const QString& text);
+  /// "%" or "px" after a space; "" = none.
+  QString unit() const;
+  /// Where the row's name has it, no chip of the row does.
+  void setUnitShown(bool shown);
+  /// There is room for sign, number and unit.
+  bool fitsWhole() const;
   QSize sizeHint() const override;
   QSize minimumSizeHint() const override;
-  /// What is written: with its sign and unit where there is room, else without the unit, else the value alone.
+  /// What is written: with its sign where there is room, else the value alone; with its unit unless the row's name has that.
   QString shown() const;
 
  signals:
   void entered();
+  void resized();
 
  protected:
   void paintEvent(QPaintEvent* e) override;
   void enterEvent(QEvent* e) override;
+  void resizeEvent(QResizeEvent* e) override;
 
  private:
+  QString whole() const;
   Verdict verdict_;
+  bool unitShown_ = true;
 };
 
 /// The conditioning strip: one column per model, one row per quantity, the reason in words below (of the chip under the mouse,
@@ -50,6 +63,9 @@ class ConditioningPanel : public QWidget {
 
  private:
   void refresh();
+  void build();
+  /// A row that has no room for its unit in every chip has it in its name.
+  void fitUnits(int row);
   void explain(const Conditioning& c, const Finding& f);
   void explainWorst();
 
@@ -57,9 +73,12 @@ class ConditioningPanel : public QWidget {
     Chip* chip;
     int conditioning;
     int finding;
+    int row;  ///< of kRows
   };
   Document& document_;
   QWidget* table_ = nullptr;
+  std::string tableKey_;  ///< models and quantities that the table was built for
+  std::map<int, QLabel*> titles_;
   QLabel* reason_;
   QLabel* empty_;
   std::vector<Conditioning> conditioning_;

@@ -11,8 +11,11 @@
 #include <QToolBar>
 #include <QToolButton>
 #include <QVBoxLayout>
+#include <QWidgetAction>
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 
 #include "core/pipeline/what_if_drag.h"
 #include "gui/base/text.h"
@@ -26,6 +29,32 @@ namespace {
 constexpr int kGlyphSteps = 20;  // of the slider, for a factor of ten
 int sliderOf(double scale) { return int(std::lround(kGlyphSteps * std::log10(scale))); }
 double scaleOf(int slider) { return std::pow(10.0, double(slider) / kGlyphSteps); }
+
+/// The bar has its slider; the menu of what does not fit into the bar gets one of its own, with its name.
+class SizeAction : public QWidgetAction {
+ public:
+  SizeAction(std::function<QSlider*()> make, QObject* parent) : QWidgetAction(parent), make_(std::move(make)) {}
+
+ protected:
+  QWidget* createWidget(QWidget* parent) override {
+    QSlider* slider = make_();
+    if (!qobject_cast<QMenu*>(parent)) {
+      slider->setFixedWidth(80);
+      slider->setParent(parent);
+      return slider;
+    }
+    auto* named = new QWidget(parent);
+    auto* row = new QHBoxLayout(named);
+    row->setContentsMargins(10, 4, 10, 4);
+    row->addWidget(new QLabel(slider->toolTip()));
+    slider->setFixedWidth(120);
+    row->addWidget(slider);
+    return named;
+  }
+
+ private:
+  std::function<QSlider*()> make_;
+};
 }  // namespace
 
 ScenePanel::ScenePanel(Document& document, QWidget* parent)
@@ -91,12 +120,17 @@ void ScenePanel::buildBars() {
     connect(s, &QSlider::sliderReleased, this, [this] { gesture_ = 0; });
     return s;
   };
-  glyphs_ = slider("glyphScale", -kGlyphSteps, kGlyphSteps, tr("Size of cameras, points and arrows"));
-  glyphs_->setFixedWidth(80);
-  connect(glyphs_, &QSlider::valueChanged, this, [this](int value) {
-    document_.setOption("scene/glyph-scale", scaleOf(value), tr("Size of cameras and points"), gesture_);
-  });
-  slider_ = bar_->addWidget(glyphs_);
+  const auto makeSize = [this, slider] {
+    QSlider* size = slider("glyphScale", -kGlyphSteps, kGlyphSteps, tr("Size of cameras, points and arrows"));
+    size->setValue(sliderOf(sceneOptions(document_).glyphScale));
+    sizes_.append(size);
+    connect(size, &QSlider::valueChanged, this, [this](int value) {
+      document_.setOption("scene/glyph-scale", scaleOf(value), tr("Size of cameras and points"), gesture_);
+    });
+    return size;
+  };
+  slider_ = new SizeAction(makeSize, this);
+  bar_->addAction(slider_);
 
   eyeBar_ = new QWidget;
   eyeBar_->setObjectName(QStringLiteral("eyeBar"));
@@ -180,9 +214,13 @@ void ScenePanel::showSelection() {
 void ScenePanel::showOptions() {
   const SceneOptions options = sceneOptions(document_);
   views_->apply(options);
-  showLayers();  // a view may have its own
-  const QSignalBlocker quietGlyphs(glyphs_), quietOpacity(opacity_);
-  glyphs_->setValue(sliderOf(options.glyphScale));
+  showLayers();               // a view may have its own
+  sizes_.removeAll(nullptr);  // that of a menu which is gone
+  for (const QPointer<QSlider>& size : sizes_) {
+    const QSignalBlocker quiet(size.data());
+    size->setValue(sliderOf(options.glyphScale));
+  }
+  const QSignalBlocker quietOpacity(opacity_);
   opacity_->setValue(int(std::lround(100 * options.opacity)));
   showEye();
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <QList>
+#include <QPointer>
 #include <QStringList>
 #include <QWidget>
 #include <functional>
@@ -90,7 +92,8 @@ class ScenePanel : public QWidget {
   bool mayAskForInfluence_ = true;  ///< once for each scene by itself
   QAction* slider_ = nullptr;       ///< the last one of the bar
   QWidget* eyeBar_ = nullptr;
-  QSlider *glyphs_ = nullptr, *opacity_ = nullptr;
+  QList<QPointer<QSlider>> sizes_;  ///< of cameras and points: in the bar, and in the menu of what it has no room for
+  QSlider* opacity_ = nullptr;
   QMenu* savedMenu_ = nullptr;
   std::function<void()> checkActions_;
   int gesture_ = 0;

@@ -91,11 +91,17 @@ void Docks::apply(const Layout& layout) {
   if (!room_->narrow) window_->resizeDocks({at("errors"), at("plots")}, {1, 1}, Qt::Horizontal);
 }
 
+bool Docks::isBehind(const QWidget* widget) {
+  for (; widget; widget = widget->parentWidget())
+    if (const auto* dock = qobject_cast<const QDockWidget*>(widget)) return dock->visibleRegion().isEmpty();
+  return false;
+}
+
 void Docks::addActions(Actions& actions, QMenu* menu) {
   for (auto it = docks_.begin(); it != docks_.end(); ++it) {
     QDockWidget* dock = it.value();
     const auto run = [dock](bool) {
-      if (dock->isVisible() && !dock->visibleRegion().isEmpty()) return dock->hide();
+      if (dock->isVisible() && !isBehind(dock)) return dock->hide();
       dock->show();
       dock->raise();
     };

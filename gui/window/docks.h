@@ -28,6 +28,8 @@ class Docks {
   void apply(const Layout& layout);
   /// The docks are arranged for a window of this size.
   bool fits() const { return room_ && *room_ == room(); }
+  /// A widget of a dock that lies behind another tab: Qt counts it as visible.
+  static bool isBehind(const QWidget* widget);
   /// One toggle for each dock; one that lies behind another comes to the front instead of going away.
   void addActions(Actions& actions, QMenu* menu);
 

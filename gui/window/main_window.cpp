@@ -243,7 +243,12 @@ void MainWindow::buildDocks() {
   log_ = new QPlainTextEdit;
   log_->setReadOnly(true);
   log_->setMaximumBlockCount(2000);
-  docks_.add("log", tr("Log"), log_, Qt::BottomDockWidgetArea, "errors");
+  auto* logPanel = new QWidget;
+  auto* logColumn = new QVBoxLayout(logPanel);
+  logColumn->setContentsMargins(0, 0, 0, 0);
+  logColumn->setSpacing(2);
+  logColumn->addWidget(log_, 1);
+  docks_.add("log", tr("Log"), logPanel, Qt::BottomDockWidgetArea, "errors");
   ladder_ = new LadderPanel(document_, *frame_->loader());
   docks_.add("ladder", tr("Ladder"), ladder_, Qt::BottomDockWidgetArea, "errors");
   tradeoff_ = new TradeoffPanel(document_);
@@ -286,12 +291,10 @@ void MainWindow::buildMenus() {
   unreadable_->addActions(actions_, file);
   exports_->setViews(*scene_, *frame_);
   exports_->addActions(actions_, file->addMenu(tr("&Export")));
-  auto* report = new QToolButton;  // in the corner of the log, which it holds
+  auto* report = new QToolButton;  // above the log, which it holds
   report->setObjectName(QStringLiteral("copyDiagnostic"));
   report->setDefaultAction(actions_.find("export.diagnostic"));
-  auto* corner = new QHBoxLayout(log_->viewport());
-  corner->setContentsMargins(4, 4, 4, 4);
-  corner->addWidget(report, 0, Qt::AlignTop | Qt::AlignRight);
+  static_cast<QVBoxLayout*>(log_->parentWidget()->layout())->insertWidget(0, report, 0, Qt::AlignRight);
   file->addSeparator();
   actions_.add("file.quit", file, tr("&Quit"), [this] { close(); }, {QKeySequence::keyBindings(QKeySequence::Quit)});
 
@@ -461,6 +464,19 @@ void MainWindow::showTitle() {
   if (!document_.scene()) return setWindowTitle(tr("Glint inspector"));
   setWindowTitle(QStringLiteral("%1[*] – %2").arg(QFileInfo(document_.inputFile()).fileName(), tr("Glint inspector")));
   setWindowModified(document_.hasUnsavedChanges());
+}
+
+bool MainWindow::focusNextPrevChild(bool next) {
+  QWidget* from = focusWidget() ? focusWidget() : this;
+  const auto after = [next](const QWidget* w) { return next ? w->nextInFocusChain() : w->previousInFocusChain(); };
+  for (QWidget* w = after(from); w && w != from; w = after(w)) {
+    if (w == this || !(w->focusPolicy() & Qt::TabFocus) || w->focusProxy() || !w->isVisibleTo(this) || !w->isEnabled() ||
+        w->window() != this || Docks::isBehind(w))
+      continue;
+    w->setFocus(next ? Qt::TabFocusReason : Qt::BacktabFocusReason);
+    return true;
+  }
+  return false;
 }
 
 void MainWindow::closeEvent(QCloseEvent* e) {

@@ -7,6 +7,7 @@
 #include <QKeyEvent>
 #include <QLineEdit>
 #include <QRegularExpression>
+#include <QScrollBar>
 #include <QTreeWidget>
 #include <QVBoxLayout>
 #include <algorithm>
@@ -15,7 +16,8 @@
 namespace glint::gui {
 
 namespace {
-constexpr int kWidth = 620, kRows = 14, kMost = 200;
+constexpr int kWidth = 700, kRows = 14, kMost = 200;
+constexpr int kCellEdges = 12;  // px, left and right of a cell's text
 
 /// 3 at the start of a word, 2 inside one, 1 for letters in order with others between, 0 for none.
 int wordScore(const QString& word, const QString& text) {
@@ -90,9 +92,8 @@ Palette::Palette(std::function<QList<PaletteItem>(const QString&)> items, QWidge
   list_->setTextElideMode(Qt::ElideMiddle);
   list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   list_->header()->setStretchLastSection(false);
-  list_->header()->setSectionResizeMode(0, QHeaderView::ResizeToContents);
-  list_->header()->setSectionResizeMode(1, QHeaderView::Stretch);
-  list_->header()->setSectionResizeMode(2, QHeaderView::ResizeToContents);
+  list_->header()->setMinimumSectionSize(0);
+  list_->header()->setSectionResizeMode(QHeaderView::Fixed);
   column->addWidget(list_);
   connect(line_, &QLineEdit::textChanged, this, &Palette::search);
   connect(list_, &QTreeWidget::itemClicked, this, &Palette::runCurrent);
@@ -104,6 +105,7 @@ void Palette::popUp() {
   resize(width, line_->sizeHint().height() + kRows * (fontMetrics().height() + 7) + 24);
   move(window->mapToGlobal(QPoint((window->width() - width) / 2, 60)));
   line_->clear();
+  layout()->activate();  // the columns share the list's width
   search();
   show();
   line_->setFocus(Qt::PopupFocusReason);
@@ -131,10 +133,29 @@ void Palette::search() {
     row->setTextAlignment(2, Qt::AlignRight | Qt::AlignVCenter);
     row->setDisabled(!item.enabled);
   }
-  if (!shown_.isEmpty()) return list_->setCurrentItem(list_->topLevelItem(0));
+  if (!shown_.isEmpty()) {
+    fitColumns();
+    return list_->setCurrentItem(list_->topLevelItem(0));
+  }
   auto* none = new QTreeWidgetItem(list_, {tr("No action or parameter matches")});
   none->setFirstColumnSpanned(true);
   none->setDisabled(true);
+}
+
+void Palette::fitColumns() {
+  const QFontMetrics metrics(list_->font());
+  int title = 0, detail = 0;
+  for (const PaletteItem& item : std::as_const(shown_)) {
+    title = std::max(title, metrics.horizontalAdvance(item.title) + kCellEdges);
+    detail = std::max(detail, metrics.horizontalAdvance(item.detail) + kCellEdges);
+  }
+  // A key is short and useless when cut; of long titles and values (a value's problem) both give way.
+  const int room = list_->width() - 2 * list_->frameWidth() - list_->verticalScrollBar()->sizeHint().width();
+  detail = std::min(detail, room * 2 / 5);
+  title = std::min(title, (room - detail) * 7 / 10);
+  list_->setColumnWidth(0, title);
+  list_->setColumnWidth(1, room - title - detail);
+  list_->setColumnWidth(2, detail);
 }
 
 void Palette::runCurrent() {

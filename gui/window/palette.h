@@ -47,6 +47,8 @@ class Palette : public QFrame {
 
  private:
   void search();
+  /// Title, place and key share the width.
+  void fitColumns();
   void runCurrent();
 
   std::function<QList<PaletteItem>(const QString&)> source_;

@@ -7,6 +7,7 @@
 #include <QKeySequenceEdit>
 #include <QLabel>
 #include <QLineEdit>
+#include <QMessageBox>
 #include <QPushButton>
 #include <QTreeWidget>
 #include <QVBoxLayout>
@@ -36,14 +37,27 @@ ShortcutDialog::ShortcutDialog(Actions& actions, QWidget* parent)
   column->addWidget(note_);
   auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
   auto* reset = buttons->addButton(tr("All to default"), QDialogButtonBox::ResetRole);
+  reset->setObjectName(QStringLiteral("allShortcuts"));
+  for (QAbstractButton* button : buttons->buttons())  // Enter in the search line presses none of them
+    static_cast<QPushButton*>(button)->setAutoDefault(false);
   column->addWidget(buttons);
   connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
-  connect(reset, &QPushButton::clicked, this, [this] {
-    for (QAction* action : actions_.all()) actions_.setShortcuts(action, Actions::defaultShortcuts(action));
-    note_->clear();
-    fill();
-  });
+  connect(reset, &QPushButton::clicked, this, &ShortcutDialog::resetAll);
   connect(search_, &QLineEdit::textChanged, this, &ShortcutDialog::filter);
+  fill();
+}
+
+void ShortcutDialog::resetAll() {
+  int own = 0;
+  for (const QAction* action : actions_.all()) own += action->shortcuts() != Actions::defaultShortcuts(action);
+  if (own == 0) return note_->setText(tr("All keys are the default ones."));
+  const auto answer = QMessageBox::question(
+      this, tr("Keyboard shortcuts"),
+      own == 1 ? tr("Give up your own key of one action?") : tr("Give up your own keys of %1 actions?").arg(own),
+      QMessageBox::Yes | QMessageBox::No, QMessageBox::No);
+  if (answer != QMessageBox::Yes) return;
+  for (QAction* action : actions_.all()) actions_.setShortcuts(action, Actions::defaultShortcuts(action));
+  note_->clear();
   fill();
 }
 

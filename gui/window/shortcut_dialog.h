@@ -21,6 +21,8 @@ class ShortcutDialog : public QDialog {
 
  private:
   void fill();
+  /// After a question.
+  void resetAll();
   void filter();
 
   Actions& actions_;

@@ -4,6 +4,7 @@
 #include <QLabel>
 #include <QSignalSpy>
 #include <QSlider>
+#include <QTextDocument>
 #include <QToolButton>
 
 #include "gui/frame/frame_canvas.h"
@@ -270,6 +271,33 @@ class FrameViewTest : public QObject {
     QVERIFY((tiles[0]->centre() - Fixture::centre(5)).norm() < 12);
     QTest::mouseClick(tiles[2], Qt::LeftButton, {}, {10, 10});
     QCOMPARE(document_->selection().model, document_->request().models[2]);
+  }
+
+  void aNarrowLadderHasItsErrorsInASecondLine() {
+    const auto captions = [this] {
+      std::vector<QLabel*> all;
+      for (const FrameCanvas* tile : ladder_->canvases()) all.push_back(tile->parentWidget()->findChild<QLabel*>());
+      return all;
+    };
+    const auto check = [&](const QString& unit) {
+      for (const QLabel* caption : captions()) {
+        QVERIFY2(!caption->text().contains(QChar(0x2026)) && caption->text().contains(unit), qPrintable(caption->text()));
+        QTextDocument text;
+        text.setDefaultFont(caption->font());
+        text.setHtml(caption->text());
+        QVERIFY(text.idealWidth() - 2 * text.documentMargin() <= caption->width());
+        QVERIFY(text.size().height() - 2 * text.documentMargin() <= caption->height());
+      }
+    };
+    const int count = int(captions().size());
+    ladder_->resize(260 * count, 260);
+    check(QStringLiteral("px"));
+    const int one = captions().front()->height();
+    ladder_->resize(130 * count, 200);
+    check(QStringLiteral("px"));
+    QVERIFY(captions().front()->height() > one);
+    ladder_->resize(84 * count, 160);
+    for (const QLabel* caption : captions()) QVERIFY2(caption->text().contains('%'), qPrintable(caption->text()));
   }
 
   void theProbeKnowsTheSurface() {

@@ -5,8 +5,11 @@
 #include <QLineEdit>
 #include <QMenu>
 #include <QMenuBar>
+#include <QMessageBox>
+#include <QPushButton>
 #include <QRegularExpression>
 #include <QSet>
+#include <QTimer>
 #include <QTreeWidget>
 #include <algorithm>
 
@@ -192,6 +195,50 @@ class PaletteTest : public QObject {
     actions.setShortcuts(actions.find("file.save"), Actions::defaultShortcuts(actions.find("file.save")));
     MainWindow another(fixture_.engine());
     QCOMPARE(another.actions().find("frame.play")->shortcut(), QKeySequence(Qt::Key_P));
+  }
+
+  void enterInTheSearchOfShortcutsResetsNothingAndAResetAsks() {
+    Actions& actions = window_->actions();
+    ShortcutDialog dialog(actions, window_.get());
+    const QKeySequence key(QStringLiteral("Ctrl+Shift+F9"));
+    dialog.setShortcut(actions.find("frame.play"), key);
+    dialog.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&dialog));
+    auto* line = dialog.findChild<QLineEdit*>({}, Qt::FindDirectChildrenOnly);
+    line->setFocus();
+    QTest::keyClicks(line, QStringLiteral("play"));
+    QTest::keyClick(line, Qt::Key_Return);
+    QCOMPARE(actions.find("frame.play")->shortcut(), key);
+    QVERIFY(dialog.isVisible());
+    auto* reset = dialog.findChild<QPushButton*>(QStringLiteral("allShortcuts"));
+    QVERIFY(reset);
+    for (const auto& [answer, kept] : {std::pair(QMessageBox::No, true), std::pair(QMessageBox::Yes, false)}) {
+      bool asked = false;
+      QTimer::singleShot(0, &dialog, [&asked, answer = answer] {
+        auto* box = qobject_cast<QMessageBox*>(QApplication::activeModalWidget());
+        asked = box && box->button(answer);
+        if (asked) box->button(answer)->click();
+      });
+      reset->click();
+      QVERIFY(asked);
+      QCOMPARE(actions.find("frame.play")->shortcut() == key, kept);
+    }
+  }
+
+  void theColumnsOfThePaletteShareItsWidth() {
+    popUp();
+    const QTreeWidget* list = window_->commandPalette()->list();
+    for (const char* typed : {"", "ctrl", "export", "show", "detect.level = 7"}) {
+      window_->commandPalette()->line()->setText(typed);
+      QCoreApplication::processEvents();
+      QVERIFY2(list->columnWidth(0) + list->columnWidth(1) + list->columnWidth(2) <= list->viewport()->width(), typed);
+      QVERIFY2(list->columnWidth(1) >= 80, typed);
+      for (int i = 0; i < list->topLevelItemCount(); ++i) {
+        const QString detail = list->topLevelItem(i)->text(2);
+        if (detail.size() < 20)
+          QVERIFY2(list->columnWidth(2) >= list->fontMetrics().horizontalAdvance(detail), qPrintable(detail));
+      }
+    }
   }
 
   void noTwoActionsHaveTheSameKey() {

@@ -6,7 +6,10 @@
 #include <QComboBox>
 #include <QFile>
 #include <QImage>
+#include <QLabel>
 #include <QMimeData>
+#include <QPointer>
+#include <QSet>
 #include <QSignalSpy>
 #include <QSplitter>
 #include <QSvgRenderer>
@@ -207,12 +210,65 @@ class PlotsTest : public QObject {
     };
     QVERIFY(shownAt(QStringLiteral("MMMM 0.0034 px")).endsWith(QStringLiteral("0.0034 px")));
     const QString all = chip.shown(), sign = all.left(all.size() - 9);
-    QCOMPARE(shownAt(sign + "0.0034"), sign + "0.0034");
-    QCOMPARE(shownAt(QStringLiteral("0.0034")), QStringLiteral("0.0034"));
+    QCOMPARE(shownAt(QStringLiteral("0.0034 px")), QStringLiteral("0.0034 px"));
     QVERIFY(shownAt(QStringLiteral("0.0")).endsWith(QChar(0x2026)));
+    QVERIFY(sign.size() > 0);
     Chip words(Verdict::Amber, QStringLiteral("hyperb. 1"));
     words.resize(metrics.horizontalAdvance(QStringLiteral("hyperb. 1")) + 5, 20);
     QCOMPARE(words.shown(), QStringLiteral("hyperb. 1"));  // no unit
+  }
+
+  /// Chips of one row: all with the unit, or all without it and the row's name with it.
+  void aUnitIsSaidOnceForANarrowRow() {
+    Inspection inspection = drawnCircles(fixture_.scene(), document_->request());
+    TrainingView view;
+    view.camera = fixture_.scene()->frames[0].camera;
+    view.highlight.light = "lamp";
+    view.brightest.emplace();
+    view.brightest->point.position = {0, 0, -0.4};
+    view.brightest->point.normal = {0, 0, -1};
+    inspection.views = {view};
+    double sigma = 2.7e-5;  // at a distance of 1 m: 0.0027 %
+    for (auto& [name, model] : inspection.models) {
+      ModelFit fit;
+      fit.model = name;
+      fit.light = "lamp";
+      fit.lightEstimate = Light::at({0, 0, -1.4});
+      fit.lightCovariance = sigma * sigma * Eigen::Matrix3d::Identity();
+      model.fits.front().fit = fit;
+      model.fits.front().failure.reset();
+      if (name != "primal") sigma *= 2;
+    }
+    document_->setInspection(std::make_shared<const Inspection>(inspection), document_->request());
+    ConditioningPanel strip(*document_);
+    strip.resize(700, 320);
+    strip.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&strip));
+    QSet<bool> ways;
+    for (int width = 700; width >= 240; width -= 20) {
+      strip.resize(width, 320);
+      QCoreApplication::processEvents();
+      int with = 0, all = 0;
+      for (const auto& [name, model] : inspection.models)
+        if (const Chip* chip = strip.chip(name, "light"); chip && chip->text().contains('%')) {
+          ++all;
+          with += chip->shown().contains('%');
+        }
+      QVERIFY(all >= 2);
+      QString title;
+      for (const QLabel* label : strip.findChildren<QLabel*>())
+        if (label->text().startsWith(QStringLiteral("Light"))) title = label->text();
+      QVERIFY2(with == all || with == 0, qPrintable(QString::number(width)));
+      QCOMPARE(title.contains(QStringLiteral("(%)")), with == 0);
+      ways << (with == 0);
+    }
+    QCOMPARE(ways.size(), 2);
+    // New numbers go into the chips that are there.
+    const QPointer<Chip> chip = strip.chip("dual", "light");
+    const QString text = chip->text();
+    *inspection.models.at("dual").fits.front().fit->lightCovariance *= 9;
+    document_->setInspection(std::make_shared<const Inspection>(inspection), document_->request());
+    QVERIFY(chip && chip == strip.chip("dual", "light") && chip->text() != text);
   }
 
   void conditioningSaysWhyInWords() {

@@ -9,6 +9,7 @@
 #include <QMenu>
 #include <QSignalSpy>
 #include <QSlider>
+#include <QToolBar>
 #include <QToolButton>
 #include <QWheelEvent>
 #include <cmath>
@@ -110,6 +111,24 @@ class SceneTest : public QObject {
     QVERIFY(panel_->view().looksThrough());
     document_->selectFrame(3);  // it follows the frames
     QCOMPARE(panel_->findChild<QWidget*>(QStringLiteral("eyeBar"))->toolTip(), QStringLiteral("through camera 0003"));
+  }
+
+  void whatTheBarHasNoRoomForIsBehindItsArrow() {
+    panel_->resize(panel_->minimumSizeHint().width(), 400);
+    settle();
+    auto* bar = panel_->findChild<QToolBar*>(QStringLiteral("sceneBar"));
+    auto* arrow = bar->findChild<QToolButton*>(QStringLiteral("qt_toolbar_ext_button"));
+    QVERIFY(arrow && arrow->isVisible() && arrow->menu());
+    auto* slider = arrow->menu()->findChild<QSlider*>(QStringLiteral("glyphScale"));
+    QVERIFY(slider);
+    slider->setValue(20);
+    QCOMPARE(document_->option("scene/glyph-scale", 1.0), 10.0);
+    QCOMPARE(bar->findChild<QSlider*>(QStringLiteral("glyphScale"), Qt::FindDirectChildrenOnly)->value(), 20);
+    document_->undoStack()->undo();
+    QCOMPARE(slider->value(), 0);
+    panel_->resize(900, 400);
+    settle();
+    QVERIFY(!arrow->isVisible());
   }
 
   /// The photograph of the fixture is one colour per frame: red 10 + 5 i.

@@ -36,6 +36,7 @@
 
 #include "gui/base/text.h"
 #include "gui/base/vtk_canvas.h"
+#include "gui/explain/explain_panel.h"
 #include "gui/frame/frame_panel.h"
 #include "gui/frame/ladder_panel.h"
 #include "gui/plots/plot_canvas.h"
@@ -165,6 +166,35 @@ class WindowTest : public QObject {
     }
   }
 
+  void tabGoesPastWhatLiesBehindAnotherTabAndChoosesNothing() {
+    MainWindow window(fixture_.engine());
+    show(window);
+    openAndWait(window);
+    window.applyLayout(QStringLiteral("debug"));
+    QApplication::setActiveWindow(&window);
+    QTRY_COMPARE(QApplication::activeWindow(), static_cast<QWidget*>(&window));
+    const int steps = window.document().undoStack()->count();
+    const auto* explain = window.findChild<ExplainPanel*>();
+    auto* start = window.findChild<QWidget*>(QStringLiteral("timelineStrip"));
+    QVERIFY(explain && start);
+    for (const bool next : {true, false}) {
+      start->setFocus();
+      for (int i = 0; i < 60; ++i) {
+        QTest::keyClick(QApplication::focusWidget(), next ? Qt::Key_Tab : Qt::Key_Backtab);
+        QVERIFY(QApplication::focusWidget());
+        QVERIFY2(!explain->isAncestorOf(QApplication::focusWidget()), qPrintable(QApplication::focusWidget()->objectName()));
+      }
+    }
+    QCOMPARE(window.document().undoStack()->count(), steps);
+    // In front, its list has the focus without a step being chosen; a key chooses.
+    window.findChild<QDockWidget*>(QStringLiteral("explain"))->raise();
+    auto* list = window.findChild<QListWidget*>(QStringLiteral("explain.steps"));
+    list->setFocus(Qt::TabFocusReason);
+    QCOMPARE(window.document().undoStack()->count(), steps);
+    QTest::keyClick(list, Qt::Key_Down);
+    QCOMPARE(window.document().undoStack()->count(), steps + 1);
+  }
+
   void buttonsOfPanelsAreActionsToo() {
     MainWindow window(fixture_.engine());
     show(window);
@@ -188,7 +218,12 @@ class WindowTest : public QObject {
     QApplication::clipboard()->clear();
     auto* button = window.findChild<QToolButton*>(QStringLiteral("copyDiagnostic"));
     QVERIFY(button);
-    QVERIFY(qobject_cast<QPlainTextEdit*>(button->parentWidget()->parentWidget()));
+    window.findChild<QDockWidget*>(QStringLiteral("log"))->raise();
+    QCoreApplication::processEvents();
+    const auto* text = window.findChild<QPlainTextEdit*>();
+    const auto placeOf = [&](const QWidget* w) { return QRect(w->mapTo(&window, QPoint()), w->size()); };
+    QVERIFY(text && button->isVisible() && window.findChild<QDockWidget*>(QStringLiteral("log"))->isAncestorOf(button));
+    QVERIFY2(!placeOf(button).intersects(placeOf(text)), "it covers the text");
     button->click();
     QVERIFY2(QApplication::clipboard()->text().contains(QStringLiteral("Opened")), "the log is in it");
   }

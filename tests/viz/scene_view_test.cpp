@@ -127,6 +127,52 @@ TEST_F(SceneViewPicture, TheHorizonStaysLevelWhereCamerasLookDownSteeply) {
   }
 }
 
+TEST_F(SceneViewPicture, EverythingHoldsAnEllipsoidBeyondTheCameras) {
+  const std::shared_ptr<Inspection> inspection = smallInspection(folder_.path());
+  const Ellipsoid wide(Eigen::Isometry3d(Eigen::Translation3d(2.6, -2.1, 1.6)), {0.7, 0.9, 0.5});
+  inspection->models.at("canonical").fits[0].fit->ellipsoid = wide;
+  inspection->models.at("canonical").fits[0].fit->quadric = wide.dual();
+  SceneView view;
+  view.setInspection(inspection);
+  const std::set<std::string> seen{"surface", "cameras", "ellipsoids"};
+  for (const Layer& layer : sceneLayers()) view.setLayerVisible(layer.name, seen.count(layer.name) > 0);
+  (void)render(view);
+  for (const AxisView axis : {AxisView::Front, AxisView::Right, AxisView::Top}) {
+    view.lookAlong(axis);
+    const ViewPoint seen = view.viewPoint();
+    const Eigen::Vector3d back = (seen.position - seen.focalPoint).normalized(), right = seen.up.cross(back);
+    for (int i = 0; i < 200; ++i) {  // points all over it
+      const double t = 2.4 * i, z = -1 + (i + 0.5) / 100, r = std::sqrt(1 - z * z);
+      const Eigen::Vector3d p =
+          wide.centre() + wide.semiAxes().cwiseProduct(Eigen::Vector3d(r * std::cos(t), r * std::sin(t), z));
+      const double depth = -back.dot(p - seen.position), half = std::tan(seen.viewAngleDeg * std::numbers::pi / 360) * depth;
+      ASSERT_GT(depth, 0);
+      EXPECT_LT(std::abs(seen.up.dot(p - seen.position)), half) << i;
+      EXPECT_LT(std::abs(right.dot(p - seen.position)), half * kWidth / kHeight) << i;
+    }
+  }
+}
+
+TEST_F(SceneViewPicture, TheColourBarStaysInsideThePicture) {
+  const std::shared_ptr<Inspection> inspection = smallInspection(folder_.path());
+  for (const int width : {kWidth, 240}) {
+    resize(width, kHeight);
+    SceneView view;
+    view.setInspection(inspection);
+    for (const Layer& layer : sceneLayers()) view.setLayerVisible(layer.name, layer.name == "cameras");
+    CameraColours colours;
+    colours.by = CameraColours::By::Influence;
+    colours.model = "canonical";
+    colours.influence = {{0, 1.2e-5}, {1, -1.1e-5}};
+    view.setCameraColours(colours);
+    const Image image = render(view);
+    int marked = 0;
+    for (int y = kHeight - 90; y < kHeight - 20; ++y)
+      for (int x = width - 3; x < width; ++x) marked += !isNear(image, x, y, kDarkBackground, 0.06);
+    EXPECT_EQ(marked, 0) << width;
+  }
+}
+
 TEST(BetweenViews, StartsAndEndsExactlyAndTurnsAboutWhatIsLookedAt) {
   const ViewPoint from{{4, 0, 0}, {0, 0, 0}, {0, 0, 1}, 30}, to{{0, 1, 0}, {0, 0, 0}, {0, 0, 1}, 20, true};
   EXPECT_EQ(between(from, to, 0).position, from.position);

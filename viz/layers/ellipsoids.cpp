@@ -39,6 +39,16 @@ void addDegenerate(LayerContent& content, const LayerInput& in, const ModelFit& 
   content.labels.push_back({wire.anchor, fit.model + ": " + wire.kind, kFailed});
 }
 
+/// The corners of a polyhedron about it, so that "frame all" cuts none of its outline.
+void addExtent(LayerContent& content, const Eigen::Affine3d& worldFromUnit) {
+  constexpr double kAbout = 1.13;  // the hull of the 26 directions holds a ball of radius 0.887
+  for (int i = 0; i < 27; ++i) {
+    if (i == 13) continue;  // the centre of the cube of directions
+    const Eigen::Vector3d d(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+    content.extent.push_back(worldFromUnit * Eigen::Vector3d(kAbout * d.normalized()));
+  }
+}
+
 }  // namespace
 
 LayerContent ellipsoidsLayer(const LayerInput& in) {
@@ -79,6 +89,8 @@ LayerContent ellipsoidsLayer(const LayerInput& in) {
       if (2 * e.semiAxes().maxCoeff() > in.scale.sceneSize)
         content.remarks.push_back(model + ": ellipsoid " + lengthText(2 * e.semiAxes().maxCoeff()) +
                                   " long, may leave the picture");
+      else
+        addExtent(content, worldFromUnit);
     }
   }
   return content;
