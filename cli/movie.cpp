@@ -7,6 +7,7 @@
 #include "cli/inspection_arguments.h"
 #include "cli/picture_input.h"
 #include "core/pipeline/frame_spec.h"
+#include "core/pipeline/photograph.h"
 #include "viz/convert.h"
 #include "viz/offscreen.h"
 #include "viz/pictures.h"
@@ -50,8 +51,7 @@ int run(const MovieArguments& a, const Context& context) {
         a.out, format, static_cast<int>(frames.size()),
         [&](int i) {
           const int f = frames[static_cast<std::size_t>(i)];
-          return viz::framePicture(*inspection, f, readPhotograph(scene.frames[static_cast<std::size_t>(f)]), format.width,
-                                   format.height, options);
+          return viz::framePicture(*inspection, f, photographOf(*inspection, f), format.width, format.height, options);
         },
         context.progress());
     return kDone;
@@ -78,7 +78,7 @@ int run(const MovieArguments& a, const Context& context) {
       [&](int i) {
         const int f = frames[static_cast<std::size_t>(i)];
         view.setSelection({f, opened.saved.model, -1});
-        const Outcome<Image> photograph = readPhotograph(scene.frames[static_cast<std::size_t>(f)]);
+        const Outcome<Image> photograph = photographOf(*inspection, f);
         view.setPhotograph(f, photograph ? viz::toTexture(*photograph, kPhotographPx) : nullptr);
         return target->render(view);
       },

@@ -9,6 +9,7 @@
 #include "core/evaluate/masks.h"
 #include "core/highlight/report.h"
 #include "core/pipeline/frame_spec.h"
+#include "core/pipeline/photograph.h"
 #include "core/pipeline/session.h"
 #include "viz/pictures.h"
 
@@ -81,8 +82,8 @@ Command predictCommand() {
           [&](int i) {
             char name[32];
             std::snprintf(name, sizeof name, "%04d.png", frames[i]);  // by position: an id may hold what no file name may
-            const Frame& frame = scene.frames[frames[i]];
-            writePng(folder / name, viz::framePicture(result, frames[i], readPhotograph(frame), kPictureWidth, kPictureHeight));
+            writePng(folder / name,
+                     viz::framePicture(result, frames[i], photographOf(result, frames[i]), kPictureWidth, kPictureHeight));
           },
           context.progress(), "overlays");
       context.write((folder / "predictions.json").string(), predictionsJson(result, frames));

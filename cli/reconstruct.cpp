@@ -24,6 +24,7 @@ std::string fitText(const ModelResult::Fit& entry, const std::string& model) {
     out += "  ellipsoid centre  " + vectorText(f.ellipsoid->centre()) + " m\n";
     out += "  semi-axes         " + vectorText(f.ellipsoid->semiAxes()) + " m\n";
   }
+  if (f.quadric && !f.ellipsoid) out += "  Q* is no ellipsoid: " + std::string(describe(*f.quadric)) + "\n";
   if (f.lightEstimate && !f.lightEstimate->atInfinity()) out += "  light             " + vectorText(f.lightEstimate->position()) + " m\n";
   if (f.lightEstimate && f.lightEstimate->atInfinity())
     out += "  light             at infinity, towards " + vectorText(f.lightEstimate->homogeneous().head<3>()) + "\n";

@@ -5,6 +5,7 @@
 #include "cli/inspection_arguments.h"
 #include "cli/picture_input.h"
 #include "core/pipeline/frame_spec.h"
+#include "core/pipeline/photograph.h"
 #include "viz/offscreen.h"
 #include "viz/pictures.h"
 #include "viz/scene_view.h"
@@ -40,8 +41,7 @@ void requireContent(const RenderArguments& a, const Inspection& inspection, int 
     throw CannotAnswer{{Reason::NotReached, "no model predicted anything"}};
   }
   if (a.view == "scene") return;
-  const Frame& f = inspection.scene->frames[static_cast<std::size_t>(frame)];
-  const Outcome<Image> photograph = readPhotograph(f);
+  const Outcome<Image> photograph = photographOf(inspection, frame);
   if (photograph || !inspection.evidence[static_cast<std::size_t>(frame)].scored().empty()) return;
   for (const auto& [name, model] : inspection.models)
     for (const FrameComparison& c : model.frames)
@@ -72,7 +72,7 @@ int run(const RenderArguments& a, const Context& context) {
   } else if (a.view == "plots") {
     picture = viz::plotsPicture(*inspection, width, height, options);
   } else {
-    const Outcome<Image> photograph = readPhotograph(scene.frames[static_cast<std::size_t>(*frame)]);
+    const Outcome<Image> photograph = photographOf(*inspection, *frame);
     picture = a.view == "frame" ? viz::framePicture(*inspection, *frame, photograph, width, height, options)
                                 : viz::ladderPicture(*inspection, *frame, photograph, width, height, options);
   }

@@ -7,13 +7,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/base/outcome.h"
+#include "core/base/srgb.h"
 
 namespace glint::viz {
 namespace {
-
-/// IEC 61966-2-1.
-double linearFromSrgb(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
-double srgbFromLinear(double v) { return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055; }
 
 constexpr int kTable = 1 << 16;  // every code of a 16-bit photograph has its own entry
 constexpr float kLargestCode = 1.0f - 0.5f / 65535;

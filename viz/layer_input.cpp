@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/pipeline/photograph.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
 
@@ -267,14 +268,18 @@ std::optional<Pixel> vertexInDirection(const Camera& camera, const Highlight& ob
   return best;
 }
 
-LayerCache::Photograph LayerCache::photograph(const Scene& scene, int frame, int maxWidth) {
+LayerCache::Photograph LayerCache::photograph(const Inspection& inspection, int frame, int maxWidth) {
   if (source_) return source_(frame, maxWidth);
   constexpr std::size_t kKept = 64;
   const std::pair<int, int> key(frame, maxWidth);
+  if (std::string pictures = pictureKey(inspection); pictures != photographsKey_) {
+    photographs_.clear();
+    photographsKey_ = std::move(pictures);
+  }
   for (const auto& [known, texture] : photographs_) {
     if (known == key) return {texture};
   }
-  const Outcome<Image> image = readPhotograph(scene.frames[static_cast<std::size_t>(frame)]);
+  const Outcome<Image> image = photographOf(inspection, frame);
   if (photographs_.size() >= kKept) photographs_.erase(photographs_.begin());
   photographs_.emplace_back(key, image ? toTexture(*image, maxWidth) : vtkSmartPointer<vtkImageData>{});
   return {photographs_.back().second};

@@ -49,7 +49,7 @@ class LayerCache {
   void setPhotographSource(PhotographSource source) { source_ = std::move(source); }
   /// The photograph of a frame as a texture, at most `maxWidth` wide. Without a source it is read here, and the last ones are
   /// kept.
-  Photograph photograph(const Scene& scene, int frame, int maxWidth);
+  Photograph photograph(const Inspection& inspection, int frame, int maxWidth);
 
   /// The display triangles of a surface, with normals, and the coarse ones, which are made on a thread of their own.
   struct Triangles {
@@ -65,6 +65,7 @@ class LayerCache {
   PhotographSource source_;
   std::shared_ptr<const Scene> scene_;
   std::vector<std::pair<std::pair<int, int>, vtkSmartPointer<vtkImageData>>> photographs_;  ///< oldest first
+  std::string photographsKey_;                                                              ///< pictureKey() of those
   std::vector<std::pair<std::shared_ptr<const Surface>, Triangles>> tessellations_;
 };
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "core/pipeline/what_if_knobs.h"
 #include "viz/annotations.h"
 
 namespace glint::viz {
@@ -48,7 +49,9 @@ void outlineBox(Canvas& canvas, const Box& box, const Colour& colour, double wid
 
 std::string titleOf(const Inspection& inspection, int frame) {
   const std::string use = inspection.isTraining(frame) ? "training" : inspection.isHeldOut(frame) ? "held out" : "excluded";
-  return inspection.scene->name + ", frame " + inspection.scene->frames[static_cast<std::size_t>(frame)].id + " (" + use + ")";
+  const std::string note = frameNote(inspection.request.whatIf, frame);
+  return inspection.scene->name + ", frame " + inspection.scene->frames[static_cast<std::size_t>(frame)].id + " (" + use + ")" +
+         (note.empty() ? "" : ": " + note);
 }
 
 const Camera& cameraOf(const Inspection& inspection, int frame) {

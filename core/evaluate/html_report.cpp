@@ -9,6 +9,8 @@
 #include "core/evaluate/html_text.h"
 #include "core/evaluate/report.h"
 #include "core/evaluate/summary.h"
+#include "core/pipeline/photograph.h"
+#include "core/pipeline/what_if_knobs.h"
 
 namespace glint {
 namespace {
@@ -141,7 +143,7 @@ std::string overlay(const Inspection& inspection, int frame) {
   const int cx0 = std::clamp(static_cast<int>(x0 - pad), 0, camera.width - 1), cy0 = std::clamp(static_cast<int>(y0 - pad), 0, camera.height - 1);
   const int cx1 = std::clamp(static_cast<int>(x1 + pad), cx0 + 1, camera.width), cy1 = std::clamp(static_cast<int>(y1 + pad), cy0 + 1, camera.height);
   std::string picture;
-  if (const Outcome<Image> photo = readPhotograph(inspection.scene->frames[frame])) {
+  if (const Outcome<Image> photo = photographOf(inspection, int(frame))) {
     cv::Mat crop(cy1 - cy0, cx1 - cx0, CV_8UC3);
     for (int y = cy0; y < cy1; ++y)
       for (int x = cx0; x < cx1; ++x)
@@ -196,10 +198,16 @@ std::string evaluationHtml(const Inspection& inspection, const ReportContext& co
       ".predicted{fill:none;stroke-width:1.6;vector-effect:non-scaling-stroke}"
       ".frames{display:grid;grid-template-columns:repeat(auto-fill,minmax(290px,1fr));gap:1em}figure{margin:0}"
       "figcaption{font-size:12px;color:#444}.swatch{display:inline-block;width:.8em;height:.8em;margin-right:.4em}</style></head><body>\n";
-  html += "<h1>" + escaped(inspection.scene->name) + "</h1>\n<p>Input <code>" + escaped(context.input) + "</code>, training <code>" +
-          escaped(inspection.train.text) + "</code> (" + std::to_string(inspection.train.frames.size()) + " of " +
-          std::to_string(inspection.scene->frames.size()) + " frames), level " + format("%g", inspection.request.settings.number("detect.level")) +
-          ", from the " + (inspection.request.source == FrameSource::Image ? "captured images" : "float radiance where there is one") + ".</p>\n";
+  html += "<h1>" + escaped(inspection.scene->name) + "</h1>\n<p>Input <code>" + escaped(context.input) +
+          "</code>, training <code>" + escaped(inspection.train.text) + "</code> (" +
+          std::to_string(inspection.train.frames.size()) + " of " + std::to_string(inspection.scene->frames.size()) +
+          " frames), level " + format("%g", inspection.request.settings.number("detect.level")) +
+          (inspection.request.whatIf.synthesise              ? ""
+           : inspection.request.source == FrameSource::Image ? ", from the captured images"
+                                                             : ", from the float radiance where there is one") +
+          ".</p>\n";
+  if (const std::string changed = summaryOf(inspection.request.whatIf); !changed.empty())
+    html += "<p><b>What if: " + escaped(changed) + ".</b> This is not what was captured.</p>\n";
   if (!context.chosenModel.empty())
     html += "<p><b>Chosen model: " + escaped(context.chosenModel) + "</b>. " + escaped(context.whyChosen) + "</p>\n";
   if (context.selection) {

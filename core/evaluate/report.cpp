@@ -8,6 +8,7 @@
 
 #include "core/evaluate/summary.h"
 #include "core/model/star.h"
+#include "core/pipeline/what_if_json.h"
 
 namespace glint {
 namespace {
@@ -256,6 +257,7 @@ std::string evaluationJson(const Inspection& inspection, const ReportContext& co
   j["level"] = inspection.request.settings.number("detect.level");
   j["source"] = inspection.request.source == FrameSource::Image ? "image" : "radiance";
   j["settings"] = settingsJson(inspection.request.settings);
+  if (!inspection.request.whatIf.none()) j["what_if"] = ordered_json::parse(whatIfJson(inspection.request.whatIf));
   j["chosen_model"] = context.chosenModel.empty() ? ordered_json(nullptr) : ordered_json(context.chosenModel);
   j["why_chosen"] = context.whyChosen;
   if (context.selection) j["selection"] = selectionJson(*context.selection);

@@ -83,11 +83,7 @@ Outcome<Reconstruction> fitEllipsoid(const std::vector<ConicView>& views, const 
   if (views.size() < 3) return Failure{Reason::TooFewViews, "a free centre needs 3 views, have " + std::to_string(views.size())};
   const std::optional<Eigen::Vector3d> origin = anchor ? std::optional<Eigen::Vector3d>(anchor->position) : std::nullopt;
   const Outcome<Reconstruction> linear = reconstructLinear(views, origin);
-  if (solver == "linear") {
-    if (linear && !linear->ellipsoid)
-      return Failure{Reason::NotAnEllipsoid, std::string("the linear solution is a ") + describe(linear->quadric)};
-    return linear;
-  }
+  if (solver == "linear") return linear;
   std::optional<Ellipsoid> start;
   if (anchor) {
     const Outcome<Reconstruction> anchored = reconstructAnchored(views, anchor->position);
@@ -96,10 +92,7 @@ Outcome<Reconstruction> fitEllipsoid(const std::vector<ConicView>& views, const 
   }
   // With an anchor its solution is the better start: the linear one can lie far from the light.
   if (!start && linear) start = linear->ellipsoid;
-  if (!start) {
-    if (!linear) return linear.failure();
-    return Failure{Reason::NotAnEllipsoid, std::string("the linear solution is a ") + describe(linear->quadric) + " and there is no anchor"};
-  }
+  if (!start) return linear;  // nothing to refine
   Outcome<Reconstruction> refined = Failure{Reason::NotConverged, ""};
   if (anchor && anchor->distance > 0) {
     const double bias = settings.number("fit.prior_bias");

@@ -26,7 +26,9 @@ std::optional<CentreAnchor> anchorAtLight(const FitInput& input);
 /// isotropic bias of `fit.prior_bias` (0 = one hundredth) times the anchor's distance: the covariance knows the noise only, but the ellipsoid
 /// that explains a highlight is not centred exactly at the light, and the light of a simple lobe is itself off. A contour point is
 /// weighed against it by what the residuals say it is worth: where the ellipsoid does not fit, the prior counts more.
-/// TooFewViews; NotAnEllipsoid (the linear solution's kind in the detail); NoLight (anchored without an anchor); the solver's own.
+/// A linear solution that is no ellipsoid is returned with its quadric alone, so that it can be shown and named; without an anchor
+/// `refined` has no other start, and returns it too.
+/// TooFewViews; NoLight (anchored without an anchor); the solver's own.
 Outcome<Reconstruction> fitEllipsoid(const std::vector<ConicView>& views, const std::optional<CentreAnchor>& anchor,
                                      const Settings& settings);
 

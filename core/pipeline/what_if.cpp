@@ -46,11 +46,14 @@ TrueLight moved(TrueLight light, const Eigen::Vector3d& by) {
     for (Eigen::Vector3d& end : *light.segment) end += by;
   return light;
 }
-
-bool isOn(const Frame& frame, const TrueLight& light) {
-  return frame.lightsOn.empty() || std::count(frame.lightsOn.begin(), frame.lightsOn.end(), light.id) > 0;
-}
 }  // namespace
+
+std::vector<TrueLight> lightsOn(const Scene& scene, const Frame& frame) {
+  std::vector<TrueLight> on;
+  for (const TrueLight& light : scene.lights)
+    if (frame.lightsOn.empty() || std::count(frame.lightsOn.begin(), frame.lightsOn.end(), light.id) > 0) on.push_back(light);
+  return on;
+}
 
 std::optional<ShapeParameter> shapeOf(const AnalyticSpec& s) {
   const auto factor = [](const char* name, double value) { return ShapeParameter{name, "m", value, 0.2 * value, 5 * value}; };
@@ -158,8 +161,7 @@ std::shared_ptr<const Scene> changedScene(const Scene& given, const WhatIf& what
         options.level = level;
         options.sagittaPx = kSagittaPx;
         options.marginPx = kEdgeShare * std::max(f.camera.width, f.camera.height);
-        for (const TrueLight& light : scene->lights) {
-          if (!isOn(f, light)) continue;
+        for (const TrueLight& light : lightsOn(*scene, f)) {
           const Outcome<std::vector<Highlight>> found =
               exactHighlights(*surfaces.at(f.surface), f.camera, light, material, options);
           if (!found) continue;  // not lit, or not visible from here

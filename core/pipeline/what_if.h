@@ -69,6 +69,9 @@ AnalyticSpec withShape(AnalyticSpec spec, double value);
 /// NotSupported, with the first reason against it.
 std::optional<Failure> whyNotSynthesised(const Scene& scene);
 
+/// The true lights that shine on a frame: those that it names, all where it names none.
+std::vector<TrueLight> lightsOn(const Scene& scene, const Frame& frame);
+
 /// Distance from which sensible shifts of lights and cameras are derived: the mean distance from the cameras to the point that
 /// they look at together (least squares over the optical axes), m; 1 where there is none.
 double workingDistance(const Scene& scene);

@@ -191,4 +191,14 @@ std::string summaryOf(const WhatIf& w) {
   return text;
 }
 
+std::string frameNote(const WhatIf& w, int frame) {
+  std::string text;
+  const auto add = [&](const char* part) { text += (text.empty() ? "" : ", ") + std::string(part); };
+  if (w.synthesise) add("contours and photograph synthesised");
+  if (w.poses.count(frame)) add("camera moved by hand");
+  if (std::any_of(w.highlights.begin(), w.highlights.end(), [&](const auto& h) { return h.first.first == frame; }))
+    add("highlight moved by hand");
+  return text;
+}
+
 }  // namespace glint

@@ -26,4 +26,8 @@ std::vector<WhatIfKnob> whatIfKnobs(const Scene& scene, int frame, int highlight
 /// "contours synthesised, 1 light, 2 poses, 1 highlight"; "" for none.
 std::string summaryOf(const WhatIf& whatIf);
 
+/// What of a frame is not as it was captured, for the titles of its pictures: "contours and photograph synthesised, camera moved
+/// by hand"; "" for a frame that nothing changes.
+std::string frameNote(const WhatIf& whatIf, int frame);
+
 }  // namespace glint

@@ -9,6 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/base/atomic_file.h"
+#include "core/base/srgb.h"
 #include "core/scene/photographs.h"
 #include "core/scene/scene.h"
 
@@ -166,10 +167,6 @@ Image floatImage(const cv::Mat& m) {
   for (int y = 0; y < f.rows; ++y) std::memcpy(image.data.data() + y * rowSize, f.ptr<float>(y), rowSize * sizeof(float));
   return image;
 }
-
-/// IEC 61966-2-1.
-double linearFromSrgb(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
-double srgbFromLinear(double v) { return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055; }
 
 /// One value per code: 8- and 16-bit images have at most 65536.
 Image throughTable(const cv::Mat& m, const std::function<double(double)>& curve) {

@@ -48,11 +48,8 @@ std::vector<LightSample> sampleSphere(const Eigen::Vector3d& centre, double radi
     std::vector<QuadratureNode> rings;
     int spokes;
   };
-  static const std::vector<Rung> ladder{{0.5, gaussLegendre(4), 12},
-                                        {1, gaussLegendre(8), 20},
-                                        {2, gaussLegendre(12), 40},
-                                        {4, gaussLegendre(24), 60},
-                                        {0, gaussLegendre(36), 96}};
+  static const std::vector<Rung> ladder{{0.05, gaussLegendre(2), 6}, {0.5, gaussLegendre(4), 12}, {1, gaussLegendre(8), 20},
+                                        {2, gaussLegendre(12), 40},  {4, gaussLegendre(24), 60},  {0, gaussLegendre(36), 96}};
   const auto rung = std::find_if(ladder.begin(), ladder.end() - 1, [&](const Rung& r) { return ratio <= r.ratio; });
   return sampleSphere(centre, radius, point, rung->rings, rung->spokes);
 }

@@ -9,17 +9,12 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/parallel.h"
+#include "core/base/srgb.h"
 #include "core/synth/synth.h"
 
 namespace glint {
 namespace fs = std::filesystem;
 namespace {
-
-/// IEC 61966-2-1.
-float srgb(float linear) {
-  const float v = std::clamp(linear, 0.f, 1.f);
-  return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
-}
 
 cv::Mat matOf(const Image& image) {
   cv::Mat mat(image.height, image.width, CV_32FC(image.channels), const_cast<float*>(image.data.data()));
@@ -59,7 +54,8 @@ cv::Mat quantised(const Image& linear, int bits) {
   cv::Mat mat = matOf(linear), out;
   for (int y = 0; y < mat.rows; ++y)
     for (int x = 0; x < mat.cols; ++x)
-      for (int c = 0; c < 3; ++c) mat.at<cv::Vec3f>(y, x)[c] = srgb(mat.at<cv::Vec3f>(y, x)[c]);
+      for (int c = 0; c < 3; ++c)
+        mat.at<cv::Vec3f>(y, x)[c] = static_cast<float>(srgbFromLinear(std::clamp(double(mat.at<cv::Vec3f>(y, x)[c]), 0.0, 1.0)));
   mat.convertTo(out, bits == 8 ? CV_8UC3 : CV_16UC3, top);  // rounds to nearest
   return out;
 }
@@ -123,6 +119,38 @@ RenderedFrame renderFrame(const Surface& surface, const Camera& camera, const st
       for (int c = 0; c < 3; ++c) frame.normals.at(x, y, c) = static_cast<float>(p.normal[c]);
     }
   return frame;
+}
+
+RenderedRadiance renderRadiance(const Surface& surface, const Camera& camera, const std::vector<TrueLight>& lights,
+                                const Material& material, int every, const ProgressFn& progress) {
+  require(every >= 1, "renderRadiance: every n-th pixel, n >= 1");
+  const int w = camera.width, h = camera.height;
+  RenderedRadiance result{Image(w, h, 1), Image(w, h, 1)};
+  parallelFor((h + every - 1) / every,
+              [&](int row) {
+                const int top = row * every, bottom = std::min(h, top + every);
+                for (int left = 0; left < w; left += every) {
+                  const int right = std::min(w, left + every);
+                  const Pixel ideal = camera.undistorted(Pixel((left + right - 1) / 2, (top + bottom - 1) / 2));
+                  if (!ideal.allFinite()) continue;  // beyond the lens model
+                  const Ray ray = camera.ray(ideal);
+                  const Outcome<SurfacePoint> hit = surface.firstHit(ray);
+                  if (!hit) continue;
+                  double specular = 0, diffuse = 0;
+                  for (const TrueLight& light : lights) {
+                    const Shading s = shade(surface, *hit, ray.origin, light, material);
+                    specular += s.specular;
+                    diffuse += s.diffuse;
+                  }
+                  for (int y = top; y < bottom; ++y)
+                    for (int x = left; x < right; ++x) {
+                      result.specular.at(x, y) = static_cast<float>(specular);
+                      result.diffuse.at(x, y) = static_cast<float>(diffuse);
+                    }
+                }
+              },
+              progress, "render");
+  return result;
 }
 
 Scene synthesise(const SynthSpec& spec, const fs::path& folder, const ProgressFn& progress) {

@@ -53,6 +53,15 @@ struct RenderedFrame {
 RenderedFrame renderFrame(const Surface& surface, const Camera& camera, const std::vector<TrueLight>& lights,
                           const Material& material, int samples = 1);
 
+/// The two parts of the radiance of a frame, one channel each, the diffuse one for albedo 1, through the centres of measured
+/// pixels; 0 where there is no surface. Rows run beside each other.
+/// @param every  only each n-th pixel of both directions, repeated around (the middle one of its square). Stopped.
+struct RenderedRadiance {
+  Image specular, diffuse;
+};
+RenderedRadiance renderRadiance(const Surface& surface, const Camera& camera, const std::vector<TrueLight>& lights,
+                                const Material& material, int every = 1, const ProgressFn& progress = {});
+
 /// Makes everything that the specification asks for in `folder`: scene.json last, so that a folder with it is complete.
 /// @return the scene as written. InputError when something cannot be written; Stopped.
 Scene synthesise(const SynthSpec& spec, const std::filesystem::path& folder, const ProgressFn& progress = {});

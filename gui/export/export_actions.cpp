@@ -16,6 +16,7 @@
 #include "core/evaluate/labels.h"
 #include "core/evaluate/masks.h"
 #include "core/evaluate/report.h"
+#include "core/pipeline/photograph.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/to_qimage.h"
@@ -109,16 +110,15 @@ void ExportActions::addActions(Actions& actions, QMenu* menu) {
     });
   };
   actions.add("export.frame", menu, tr("&Frame with its errors…"), [=, this] {
-    picture(
-        tr("Frame as picture"), QStringLiteral("frame.png"), [](const Inspection& i, int frame, const viz::PictureOptions& o) {
-          return viz::framePicture(i, frame, readPhotograph(i.given->frames[std::size_t(frame)]), kFigureWidth, kFigureHeight, o);
-        });
+    picture(tr("Frame as picture"), QStringLiteral("frame.png"),
+            [](const Inspection& i, int frame, const viz::PictureOptions& o) {
+              return viz::framePicture(i, frame, photographOf(i, frame), kFigureWidth, kFigureHeight, o);
+            });
   });
   actions.add("export.ladder", menu, tr("Model &ladder…"), [=, this] {
     picture(tr("Model ladder as picture"), QStringLiteral("ladder.png"),
             [](const Inspection& i, int frame, const viz::PictureOptions& o) {
-              return viz::ladderPicture(i, frame, readPhotograph(i.given->frames[std::size_t(frame)]), kFigureWidth,
-                                        kFigureHeight, o);
+              return viz::ladderPicture(i, frame, photographOf(i, frame), kFigureWidth, kFigureHeight, o);
             });
   });
   actions.add("export.plots", menu, tr("Errors over frames as &picture…"), [=, this] {

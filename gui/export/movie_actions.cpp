@@ -4,6 +4,7 @@
 #include <QFileInfo>
 #include <utility>
 
+#include "core/pipeline/photograph.h"
 #include "gui/base/theme.h"
 #include "gui/export/figure_actions.h"
 #include "gui/export/long_job.h"
@@ -73,8 +74,7 @@ void MovieActions::write(const MovieLook& look, const QString& file) {
     for (const std::string& model : inspection->request.models)
       if (!shown.hiddenModels.count(model)) options.models.insert(model);
     return start(look, file, [inspection, options, width, height](int frame) {
-      return viz::framePicture(*inspection, frame, readPhotograph(inspection->given->frames[std::size_t(frame)]), width, height,
-                               options);
+      return viz::framePicture(*inspection, frame, photographOf(*inspection, frame), width, height, options);
     });
   }
   auto stage = std::shared_ptr<Stage>(new Stage, [this](Stage* s) {
@@ -99,7 +99,7 @@ void MovieActions::write(const MovieLook& look, const QString& file) {
   }
   stage->view->setEye(viz::Eye::Camera);
   start(look, file, [this, stage, inspection, selection = document_.selection()](int frame) {
-    const Outcome<Image> photograph = readPhotograph(inspection->given->frames[std::size_t(frame)]);
+    const Outcome<Image> photograph = photographOf(*inspection, frame);
     const vtkSmartPointer<vtkImageData> texture = photograph ? viz::toTexture(*photograph, kPhotographPx) : nullptr;
     Image picture;
     job_.onInterface([&] {

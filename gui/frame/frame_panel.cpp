@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "core/geometry/polyline.h"
+#include "core/pipeline/what_if_knobs.h"
 #include "core/scene/photographs.h"
 #include "gui/base/flow_layout.h"
 #include "gui/base/panel_scroll.h"
@@ -112,6 +113,7 @@ void FramePanel::connectDocument() {
     connect(&document_, signal, this, [this] {
       canvas_->setStale(document_.frameStale());
       if (!document_.frameStale()) canvas_->setHeld({}, {});  // the contour is there now
+      for (PhotoLoader* loader : {&loader_, &secondLoader_}) loader->setInspection(document_.frameInspection());
       showOverlay();
       for (FrameCanvas* canvas : {canvas_, second_})
         if (canvas->isVisible()) canvas->repaint();  // what the user tunes for is seen before the other panels follow
@@ -306,6 +308,8 @@ void FramePanel::showOverlay() {
   if (inspection && frame < int(inspection->evidence.size())) shown_ = viz::frameOverlay(*inspection, frame, options);
   if (walk_ && walk_->frame == frame) viz::addWalk(*walk_, walkStep_, shown_);
   showCaptions(shown_);
+  // What was changed by hand or synthesised would else be taken for what was captured.
+  const auto note = [&](int f) { return inspection ? toQString(frameNote(inspection->request.whatIf, f)) : QString(); };
   if (two) {
     const int second = pair_->secondFrame();
     if (const auto all = document_.inspection(); all && second < int(all->evidence.size())) {
@@ -313,12 +317,14 @@ void FramePanel::showOverlay() {
       pair_->addLines(shown_, shownSecond_);
     }
     const auto& frames = document_.scene()->frames;
-    canvas_->setCaption(toQString(frames[std::size_t(frame)].id));
-    second_->setCaption(toQString(frames[std::size_t(second)].id));
+    const auto caption = [&](int f) {
+      return QStringList{toQString(frames[std::size_t(f)].id), note(f)}.join(note(f).isEmpty() ? "" : " · ");
+    };
+    canvas_->setCaption(caption(frame));
+    second_->setCaption(caption(second));
     second_->setOverlay(shownSecond_);
   } else {
-    // Else one would wonder why the photographed highlight stays.
-    canvas_->setCaption(document_.request().whatIf.synthesise ? tr("contours synthesised · photograph as captured") : QString());
+    canvas_->setCaption(note(frame));
   }
   canvas_->setOverlay(shown_);
 }

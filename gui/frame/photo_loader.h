@@ -9,7 +9,7 @@
 #include <atomic>
 #include <memory>
 
-#include "core/scene/scene.h"
+#include "core/pipeline/photograph.h"
 #include "viz/develop.h"
 
 namespace glint::gui {
@@ -18,18 +18,23 @@ namespace glint::gui {
 struct FramePicture {
   std::shared_ptr<const Image> values;  ///< null for a picture without numbers
   viz::Values kind = viz::Values::Srgb;
+  bool synthesised = false;  ///< rendered for a what-if, not captured
+  bool complete = true;      ///< else a first look at some of its pixels, the whole follows
   std::shared_ptr<const viz::Picture8> developed;
   QImage shown;  ///< shares the pixels of `developed`
 };
 
-/// Reads and develops photographs or radiances on a thread of its own and keeps the last ones. Only the newest wish is answered:
-/// scrubbing over hundreds of frames reads those that one stops at.
+/// Reads, or renders for a what-if, photographs or radiances and develops them on a thread of its own; keeps the last ones. Only
+/// the newest wish is answered: scrubbing over hundreds of frames reads those that one stops at.
 class PhotoLoader : public QObject {
   Q_OBJECT
  public:
   explicit PhotoLoader(QObject* parent = nullptr);
   ~PhotoLoader() override;
   void setScene(std::shared_ptr<const Scene> scene);
+  /// Where a what-if synthesises the contours, the pictures are those that belong to these results; null = as captured. Where
+  /// this changes them, the last wish is answered again: by a quick look first, then by the whole.
+  void setInspection(std::shared_ptr<const Inspection> inspection);
   /// What is shown and how; the last wish is answered again when this changes it.
   void setLook(FrameSource source, const viz::Development& development);
   /// Answers with loaded() or failed(), at once when the frame was the last one.
@@ -47,10 +52,22 @@ class PhotoLoader : public QObject {
 
  private:
   using Kept = std::shared_ptr<const Image>;
-  void deliver(int ticket, int frame, const Kept& values, const FramePicture& picture, const QString& reason);
+  struct Wish {
+    int ticket, frame;
+    std::shared_ptr<const Scene> scene;
+    std::shared_ptr<const Inspection> synthesis;
+    FrameSource source;
+    viz::Development development;
+    Kept values;  ///< null: to be read
+  };
+  void answer(const Wish& wish);
+  void deliver(int ticket, int frame, const FramePicture& picture, const QString& reason);
+  void forget();
   int keyOf(int frame) const { return 2 * frame + (source_ == FrameSource::Radiance ? 1 : 0); }
 
   std::shared_ptr<const Scene> scene_;
+  std::shared_ptr<const Inspection> synthesis_;  ///< null: the scene's files
+  std::string pictureKey_;
   FrameSource source_ = FrameSource::Image;
   viz::Development development_;
   int wanted_ = -1;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/angle.h"
+#include "core/pipeline/photograph.h"
 #include "gui/base/text.h"
 #include "viz/develop.h"
 
@@ -15,6 +16,7 @@ namespace glint::gui {
 struct PixelProbeWorker::Images {
   std::shared_ptr<const Scene> scene;
   int frame = -1;
+  std::string key;  // of synthesised pictures
   std::optional<Image> photograph, radiance;
 };
 
@@ -27,11 +29,17 @@ void PixelProbeWorker::want(std::shared_ptr<const Scene> scene, std::shared_ptr<
     QString text;
     try {
       const Frame& f = scene->frames[std::size_t(frame)];
-      if (images->scene != scene || images->frame != frame) {
-        *images = {scene, frame, {}, {}};
-        if (!f.image.empty())
+      const bool synthesised = inspection && picturesAreSynthesised(*inspection);
+      const std::string key = synthesised ? pictureKey(*inspection) : "";
+      if (images->scene != scene || images->frame != frame || images->key != key) {
+        *images = {scene, frame, key, {}, {}};
+        if (synthesised) {
+          if (Outcome<Image> image = linearImageOf(*inspection, frame, FrameSource::Radiance))
+            images->radiance = std::move(*image);
+        } else if (!f.image.empty()) {
           if (Outcome<Image> image = readPhotograph(f)) images->photograph = std::move(*image);
-        if (!f.radiance.empty())
+        }
+        if (!synthesised && !f.radiance.empty())
           if (Outcome<Image> image = readLinear(f, FrameSource::Radiance)) images->radiance = std::move(*image);
       }
       const int x = int(std::lround(at.x())), y = int(std::lround(at.y()));

@@ -7,6 +7,7 @@
 #include <QHeaderView>
 #include <QKeyEvent>
 
+#include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/panels/selection_text.h"
 
@@ -22,6 +23,7 @@ NumbersPanel::NumbersPanel(Document& document, QWidget* parent) : QTreeWidget(pa
   setFrameShape(QFrame::NoFrame);
   setSelectionMode(QAbstractItemView::ExtendedSelection);
   header()->setSectionResizeMode(0, QHeaderView::ResizeToContents);
+  connect(&document_, &Document::staleChanged, new StaleBadge(this), &StaleBadge::setStale);
   setContextMenuPolicy(Qt::ActionsContextMenu);
   auto* copyAction = new QAction(tr("Copy"), this);
   connect(copyAction, &QAction::triggered, this, &NumbersPanel::copy);

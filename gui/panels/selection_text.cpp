@@ -42,7 +42,7 @@ void addLight(Lines& lines, const Light& light) {
     lines.addVector(QObject::tr("L"), light.position(), "m");
 }
 
-NumberGroup observation(const FrameEvidence& evidence, int index) {
+NumberGroup observation(const FrameEvidence& evidence, int index, bool synthesised) {
   Lines lines;
   if (evidence.failure) lines.note(toQString(evidence.failure->message()));
   if (index >= 0) {
@@ -58,7 +58,7 @@ NumberGroup observation(const FrameEvidence& evidence, int index) {
     }
     if (h.clipped) lines.note(QObject::tr("clipped: the peak is the ellipse centre"));
     if (h.touchesBorder) lines.note(QObject::tr("cut by the image border"));
-    if (h.fromScene) lines.note(QObject::tr("given in the scene file"));
+    if (h.fromScene) lines.note(synthesised ? QObject::tr("synthesised (what-if)") : QObject::tr("given in the scene file"));
   }
   const int count = int(evidence.highlights.size());
   return {index >= 0 ? QObject::tr("Highlight %1 of %2").arg(index + 1).arg(count) : QObject::tr("Highlights: %1").arg(count),
@@ -180,7 +180,7 @@ std::vector<NumberGroup> describeSelection(const Inspection& inspection, const v
     groups.push_back(selectedParts(inspection, selection, model));
   const int count = int(evidence.highlights.size());
   const int observed = selection.highlight >= 0 && selection.highlight < count ? selection.highlight : count > 0 ? 0 : -1;
-  groups.push_back(observation(evidence, observed));
+  groups.push_back(observation(evidence, observed, inspection.request.whatIf.synthesise));
   const std::string light = observed >= 0 ? evidence.highlights[std::size_t(observed)].light : std::string();
   for (const TrainingView& view : inspection.views)
     if (view.frame == frame && (observed < 0 || view.highlight.peak == evidence.highlights[std::size_t(observed)].peak))

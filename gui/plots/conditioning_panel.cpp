@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include "gui/base/elided_label.h"
+#include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 
@@ -164,6 +165,7 @@ ConditioningPanel::ConditioningPanel(Document& document, QWidget* parent) : QWid
   reason_->setTextInteractionFlags(Qt::TextSelectableByMouse);
   reason_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   column->addWidget(reason_, 1);
+  connect(&document_, &Document::staleChanged, new StaleBadge(this, Qt::BottomRightCorner), &StaleBadge::setStale);
   const auto again = [this] {
     dirty_ = true;
     refresh();

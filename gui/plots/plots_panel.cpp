@@ -17,6 +17,7 @@
 #include <exception>
 
 #include "core/base/atomic_file.h"
+#include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/to_qimage.h"
@@ -48,6 +49,7 @@ PlotsPanel::PlotsPanel(Document& document, QWidget* parent) : QWidget(parent), d
   for (int i = 0; i < 2; ++i) buildPane(i);
   splitter_->setSizes({500, 500});
 
+  connect(&document_, &Document::staleChanged, new StaleBadge(this, Qt::BottomRightCorner), &StaleBadge::setStale);
   connect(&loader_, &SamplesLoader::loaded, this, [this](const FrameSamplesPtr& samples) {
     samples_ = samples;
     markDirty({"lobe", "limit-angle"});

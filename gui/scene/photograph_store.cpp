@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <exception>
 
+#include "core/pipeline/photograph.h"
 #include "viz/convert.h"
 
 namespace glint::gui {
@@ -30,23 +31,37 @@ PhotographStore::~PhotographStore() {
 }
 
 void PhotographStore::setScene(std::shared_ptr<const Scene> scene) {
-  if (scene == scene_) return;
-  scene_ = std::move(scene);
+  if (scene == source_.scene && !source_.synthesis) return;
   kept_.clear();
   keptBytes_ = 0;
+  setSource({std::move(scene), nullptr, {}});
+}
+
+void PhotographStore::setInspection(const std::shared_ptr<const Inspection>& inspection) {
+  if (inspection->given != source_.scene) setScene(inspection->given);
+  std::string pictures = pictureKey(*inspection);
+  if (pictures == source_.pictures) return;
+  const bool synthesised = picturesAreSynthesised(*inspection);
+  setSource({source_.scene, synthesised ? inspection : nullptr, std::move(pictures)});
+}
+
+void PhotographStore::setSource(Source source) {
+  source_ = std::move(source);
   wanted_.clear();
   const QMutexLocker lock(&mutex_);
   queue_.clear();
-  sceneToRead_ = scene_;
+  sourceToRead_ = source_;
 }
 
 viz::LayerCache::Photograph PhotographStore::get(int frame, int maxWidth) {
-  if (!scene_ || frame < 0 || frame >= int(scene_->frames.size())) return {};
+  if (!source_.scene || frame < 0 || frame >= int(source_.scene->frames.size())) return {};
   const Key key(frame, maxWidth);
+  vtkSmartPointer<vtkImageData> before;
   const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) { return k.key == key; });
   if (found != kept_.end()) {
     kept_.splice(kept_.begin(), kept_, found);
-    return {kept_.front().texture, false};
+    if (kept_.front().pictures == source_.pictures) return {kept_.front().texture, false};
+    before = kept_.front().texture;
   }
   if (wanted_.insert(key).second) {
     {
@@ -61,38 +76,44 @@ viz::LayerCache::Photograph PhotographStore::get(int frame, int maxWidth) {
     QMetaObject::invokeMethod(
         worker_, [this] { readNext(); }, Qt::QueuedConnection);
   }
-  return {nullptr, true};
+  return {before, true};
 }
 
 void PhotographStore::readNext() {  // on the thread
   Key key(-1, 0);
-  std::shared_ptr<const Scene> scene;
+  Source from;
   {
     const QMutexLocker lock(&mutex_);
-    scene = sceneToRead_;
+    from = sourceToRead_;
     if (!queue_.empty()) {
       key = queue_.back();
       queue_.pop_back();
     }
   }
   vtkSmartPointer<vtkImageData> texture;
-  if (key.first >= 0 && scene) {
+  if (key.first >= 0 && from.scene) {
     try {
-      const Outcome<Image> image = readPhotograph(scene->frames[std::size_t(key.first)]);
+      const Frame& f = from.scene->frames[std::size_t(key.first)];
+      const int every = std::max(1, f.camera.width / std::max(1, key.second));  // no more pixels than the texture has
+      const Outcome<Image> image = from.synthesis ? photographOf(*from.synthesis, key.first, every) : readPhotograph(f);
       if (image) texture = viz::toTexture(*image, key.second);
     } catch (const std::exception&) {
       texture = nullptr;  // said by the layer as one that could not be read
     }
   }
   QMetaObject::invokeMethod(
-      this, [this, scene, key, texture] { deliver(scene, key, texture); }, Qt::QueuedConnection);
+      this, [this, from, key, texture] { deliver(from, key, texture); }, Qt::QueuedConnection);
 }
 
-void PhotographStore::deliver(const std::shared_ptr<const Scene>& scene, const Key& key,
-                              const vtkSmartPointer<vtkImageData>& texture) {
+void PhotographStore::deliver(const Source& from, const Key& key, const vtkSmartPointer<vtkImageData>& texture) {
   --pending_;
-  if (key.first < 0 || scene != scene_ || !wanted_.erase(key)) return;
-  Kept kept{key, texture, 0};
+  if (key.first < 0 || from.scene != source_.scene || from.pictures != source_.pictures || !wanted_.erase(key)) return;
+  const auto before = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) { return k.key == key; });
+  if (before != kept_.end()) {
+    keptBytes_ -= before->bytes;
+    kept_.erase(before);
+  }
+  Kept kept{key, texture, 0, from.pictures};
   if (texture) kept.bytes = std::size_t(texture->GetActualMemorySize()) * 1024;
   keptBytes_ += kept.bytes;
   kept_.push_front(std::move(kept));

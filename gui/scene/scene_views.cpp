@@ -98,7 +98,7 @@ void SceneViews::setScene(std::shared_ptr<const Scene> scene) {
 
 void SceneViews::setInspection(const std::shared_ptr<const Inspection>& inspection) {
   inspection_ = inspection;
-  if (inspection) photographs_->setScene(inspection->given);  // a what-if moves cameras, not their files
+  if (inspection) photographs_->setInspection(inspection);
   for (int i = 0; i < shown_; ++i) view(i).setInspection(inspection);
   fetchPhotograph();
   scheduleRender();

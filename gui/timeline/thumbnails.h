@@ -8,18 +8,22 @@
 #include <QThread>
 #include <atomic>
 #include <memory>
+#include <string>
 
-#include "core/scene/scene.h"
+#include "core/pipeline/inspection.h"
 
 namespace glint::gui {
 
-/// Small pictures of frames, read on a thread of its own when they are wished for, and kept.
+/// Small pictures of frames, read (or rendered for a what-if) on a thread of their own when they are wished for, and kept.
 class Thumbnails : public QObject {
   Q_OBJECT
  public:
   explicit Thumbnails(QObject* parent = nullptr);
   ~Thumbnails() override;
   void setScene(std::shared_ptr<const Scene> scene);
+  /// Results whose pictures are wished for from now on; null or not synthesised: the scene's. Those before stay until they are
+  /// replaced.
+  void setInspection(std::shared_ptr<const Inspection> inspection);
   /// Null while it is not there; frames without a readable picture stay so.
   QImage find(int frame) const;
   /// Reads the missing ones of these, in this order; earlier wishes that were not reached are dropped.
@@ -32,7 +36,13 @@ class Thumbnails : public QObject {
 
  private:
   std::shared_ptr<const Scene> scene_;
-  QCache<int, QImage> kept_{4096};  ///< number of pictures, some 10 KB each
+  struct Kept {
+    QImage picture;
+    std::string pictures;  ///< pictureKey() that it belongs to
+  };
+  std::shared_ptr<const Inspection> synthesis_;  ///< null: the scene's files
+  std::string pictures_;
+  QCache<int, Kept> kept_{4096};  ///< number of pictures, some 10 KB each
   QList<int> wished_;
   QThread thread_;
   QObject* worker_;

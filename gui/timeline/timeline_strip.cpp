@@ -53,6 +53,7 @@ TimelineStrip::TimelineStrip(Document& document, QWidget* parent) : QWidget(pare
 
 void TimelineStrip::readData() {
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  if (inspection) thumbnails_.setInspection(inspection);
   data_ = document_.scene() ? viz::timelineData(*document_.scene(), inspection.get()) : viz::TimelineData();
   readView();
 }

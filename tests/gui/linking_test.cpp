@@ -7,11 +7,16 @@
 #include <QTableView>
 #include <QToolButton>
 
+#include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/frame_panel.h"
 #include "gui/panels/error_model.h"
 #include "gui/panels/error_table.h"
+#include "gui/panels/numbers_panel.h"
+#include "gui/plots/conditioning_panel.h"
+#include "gui/plots/plots_panel.h"
+#include "gui/scene/scene_panel.h"
 #include "gui/timeline/timeline.h"
 #include "tests/gui/fixture.h"
 
@@ -183,6 +188,22 @@ class LinkingTest : public QObject {
     QVERIFY(summary && !summary->text().contains("out of date"));
     document_->setSetting("detect.level", 0.3);
     QVERIFY(summary->text().contains("out of date"));
+  }
+
+  void everyPanelOfNumbersSaysThatItIsStale() {
+    ScenePanel scene(*document_);
+    PlotsPanel plots(*document_);
+    ConditioningPanel conditioning(*document_);
+    NumbersPanel numbers(*document_);
+    const std::vector<StaleBadge*> badges{scene.findChild<StaleBadge*>(), plots.findChild<StaleBadge*>(),
+                                          conditioning.findChild<StaleBadge*>(), numbers.findChild<StaleBadge*>()};
+    for (const StaleBadge* badge : badges) QVERIFY(badge && badge->isHidden());
+    document_->setSetting("detect.level", 0.35);
+    for (const StaleBadge* badge : badges) QVERIFY(badge->isHidden());  // results may come before it would flicker
+    for (const StaleBadge* badge : badges) QTRY_VERIFY(!badge->isHidden());
+    document_->setInspection(std::make_shared<Inspection>(drawnCircles(document_->sharedScene(), document_->request())),
+                             document_->request());
+    for (const StaleBadge* badge : badges) QVERIFY(badge->isHidden());
   }
 
  private:

@@ -13,15 +13,15 @@
 int main(int argc, char** argv) {
   using namespace glint::gui;
   static const TestClass classes[] = {
-      {"document", makeDocumentTest},    {"runner", makeRunnerTest},         {"frame_canvas", makeFrameCanvasTest},
-      {"frame_view", makeFrameViewTest}, {"theme", makeThemeTest},           {"timeline", makeTimelineTest},
-      {"panel", makePanelTest},          {"palette", makePaletteTest},       {"linking", makeLinkingTest},
-      {"window", makeWindowTest},        {"scene", makeSceneTest},           {"session", makeSessionTest},
-      {"program", makeProgramTest},      {"recovery", makeRecoveryTest},     {"explain", makeExplainTest},
-      {"lessons", makeLessonsTest},      {"export", makeExportTest},         {"plots", makePlotsTest},
-      {"tradeoff", makeTradeoffTest},    {"parameters", makeParametersTest}, {"picking", makePickingTest},
-      {"random", makeRandomTest},        {"figure", makeFigureTest},         {"comparison", makeComparisonTest},
-      {"unreadable", makeUnreadableTest},
+      {"document", makeDocumentTest},     {"runner", makeRunnerTest},         {"frame_canvas", makeFrameCanvasTest},
+      {"frame_view", makeFrameViewTest},  {"theme", makeThemeTest},           {"timeline", makeTimelineTest},
+      {"panel", makePanelTest},           {"palette", makePaletteTest},       {"linking", makeLinkingTest},
+      {"window", makeWindowTest},         {"scene", makeSceneTest},           {"session", makeSessionTest},
+      {"program", makeProgramTest},       {"recovery", makeRecoveryTest},     {"explain", makeExplainTest},
+      {"lessons", makeLessonsTest},       {"export", makeExportTest},         {"plots", makePlotsTest},
+      {"tradeoff", makeTradeoffTest},     {"parameters", makeParametersTest}, {"picking", makePickingTest},
+      {"random", makeRandomTest},         {"figure", makeFigureTest},         {"comparison", makeComparisonTest},
+      {"unreadable", makeUnreadableTest}, {"what_if", makeWhatIfTest},
   };
   if (argc < 2) return std::fputs("usage: test_gui CLASS [QTest options]\n", stderr), 2;
   const bool untilKilled = std::strcmp(argv[1], "--until-killed") == 0;

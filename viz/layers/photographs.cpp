@@ -8,6 +8,7 @@
 
 #include <algorithm>
 
+#include "core/pipeline/photograph.h"
 #include "viz/layers.h"
 
 namespace glint::viz {
@@ -21,10 +22,7 @@ constexpr int kThumbnail = 256, kSelected = 640;
 
 LayerContent photographsLayer(const LayerInput& in) {
   LayerContent content;
-  if (in.inspection->request.whatIf.synthesise) {
-    content.remarks.push_back("no photographs: the contours are synthesised");
-    return content;
-  }
+  const bool synthesised = picturesAreSynthesised(*in.inspection);
   std::vector<int> chosen;
   const std::size_t n = in.frames.size(), count = std::min(n, kMostPhotographs);
   for (std::size_t i = 0; i < count; ++i) chosen.push_back(in.frames[i * n / count]);
@@ -36,9 +34,9 @@ LayerContent photographsLayer(const LayerInput& in) {
     if (in.eye != Eye::Outside && index == in.selection.frame) continue;  // it is drawn over the whole picture
     const Frame& frame = in.frame(index);
     LayerCache::Photograph photograph =
-        in.cache->photograph(*in.inspection->scene, index, index == in.selection.frame ? kSelected : kThumbnail);
+        in.cache->photograph(*in.inspection, index, index == in.selection.frame ? kSelected : kThumbnail);
     if (photograph.arriving && index == in.selection.frame)
-      photograph = in.cache->photograph(*in.inspection->scene, index, kThumbnail);  // perhaps the small one is there
+      photograph = in.cache->photograph(*in.inspection, index, kThumbnail);  // perhaps the small one is there
     if (!photograph.texture) {
       if (!photograph.arriving) unreadable.push_back(frame.id);
       continue;
@@ -66,7 +64,8 @@ LayerContent photographsLayer(const LayerInput& in) {
     info.layer = "photographs";
     info.frame = index;
     info.text = line("frame", frame.id) + line("index", std::to_string(index)) +
-                line("photograph", (frame.image.empty() ? frame.radiance : frame.image).filename().string());
+                line("photograph",
+                     synthesised ? "synthesised" : (frame.image.empty() ? frame.radiance : frame.image).filename().string());
     content.add(actor.Get(), info);
   }
   if (!unreadable.empty()) {

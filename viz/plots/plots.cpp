@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/base/angle.h"
+#include "core/pipeline/photograph.h"
 
 namespace glint::viz {
 namespace {
@@ -111,9 +112,12 @@ FrameSamples frameSamples(const Inspection& inspection, int frame, const std::st
       return result;
     }
     result.angles = limitAngles(inspection, frame, model, **surface);
-    const Outcome<Image> linear = readLinear(source, inspection.request.source);
+    const bool synthesised = picturesAreSynthesised(inspection);  // then the lobe alone is had without the matt part
+    const Outcome<Image> linear =
+        linearImageOf(inspection, frame, synthesised ? FrameSource::Radiance : inspection.request.source);
     const Outcome<std::optional<Image>> mask = readMask(source);
-    const bool photograph = source.radiance.empty() || (inspection.request.source == FrameSource::Image && !source.image.empty());
+    const bool photograph =
+        !synthesised && (source.radiance.empty() || (inspection.request.source == FrameSource::Image && !source.image.empty()));
     LobeOptions options;
     options.clipValue = inspection.request.settings.number("detect.clip");
     if (options.clipValue == 0 && photograph) options.clipValue = 1;  // linearised codes end at 1, as detection knows
@@ -126,8 +130,6 @@ FrameSamples frameSamples(const Inspection& inspection, int frame, const std::st
       const Outcome<Light> light = lightOfModel(inspection, frame, model, h.light);
       if (!light) {
         lobe.failure = light.failure();
-      } else if (inspection.request.whatIf.synthesise) {
-        lobe.failure = Failure{Reason::NotSupported, "the contours are synthesised, and no image belongs to them"};
       } else if (!linear) {
         lobe.failure = linear.failure();
       } else if (!mask) {

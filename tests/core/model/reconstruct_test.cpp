@@ -14,6 +14,7 @@
 
 #include "core/geometry/plane.h"
 #include "core/model/ellipse_distance.h"
+#include "core/model/fit_ellipsoid.h"
 #include "tests/shared_data.h"
 #include "tests/tolerances.h"
 
@@ -268,6 +269,36 @@ TEST(EllipseFoot, AgreesWithDenseSampling) {
     EXPECT_EQ(foot.distance > 0, p.homogeneous().dot(e.conic().matrix * p.homogeneous()) > 0);
     EXPECT_NEAR((foot.point + foot.distance * foot.normal - p).norm(), 0, 1e-9);
   }
+}
+
+// Around its axis a hyperboloid of one sheet has elliptic outlines, so the views are perfect evidence for a quadric that is no
+// ellipsoid: it is returned for those who draw it, and no model predicts with it.
+TEST(FitEllipsoid, DegenerateALinearQuadricThatIsNoEllipsoidIsReturnedAndNamed) {
+  DualQuadric truth;
+  truth.matrix = Eigen::Vector4d(-0.04, -0.0225, 0.01, 1).asDiagonal();
+  std::vector<ConicView> views;
+  for (int i = 0; i < 6; ++i) {
+    const double a = 2 * std::numbers::pi * i / 6;
+    const Projection p = lookAt({0.1 * std::cos(a), 0.1 * std::sin(a), 2 + 0.2 * i}, {0, 0, 0}).projection();
+    const Outcome<Ellipse> ellipse = toEllipse(outline(truth, p));
+    ASSERT_TRUE(ellipse) << ellipse.failure().message();
+    views.push_back({p, *ellipse, ellipse->sample(72)});
+  }
+  for (const char* solver : {"linear", "refined"}) {  // without an anchor, `refined` has nothing to start from
+    Settings settings;
+    settings.set("fit.solver", std::string(solver));
+    const Outcome<Reconstruction> r = fitEllipsoid(views, std::nullopt, settings);
+    ASSERT_TRUE(r) << r.failure().message();
+    EXPECT_FALSE(r->ellipsoid);
+    EXPECT_STREQ(describe(r->quadric), "hyperboloid of one sheet");
+    EXPECT_LT((r->quadric.matrix / r->quadric.matrix(3, 3) - truth.matrix).norm(), tolerance::kSolve);
+  }
+  ModelFit fit;
+  fit.quadric = truth;
+  const Prediction p = modelByName("primal").predict(fit, lookAt({0.1, 0, 2}, {0, 0, 0}), nullptr, Settings());
+  ASSERT_TRUE(p.failure);
+  EXPECT_EQ(p.failure->reason, Reason::NotAnEllipsoid);
+  EXPECT_EQ(p.failure->detail, "hyperboloid of one sheet");
 }
 
 // Another program's linear reconstruction (72 contour points per view, algebraic fit). The level sets are not exactly conics and

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/base/stale_badge.h"
+
+#include <QEvent>
+#include <algorithm>
+
+namespace glint::gui {
+
+StaleBadge::StaleBadge(QWidget* panel, Qt::Corner corner) : QLabel(tr("updating…"), panel), corner_(corner) {
+  setObjectName(QStringLiteral("staleBadge"));
+  setAttribute(Qt::WA_TransparentForMouseEvents);
+  // The same chip as in the frame view, in both themes.
+  setStyleSheet(QStringLiteral("background: rgba(0, 0, 0, 200); color: #f0c050; border-radius: 4px; padding: 2px 6px;"));
+  later_.setSingleShot(true);
+  later_.setInterval(kAfterMs);
+  connect(&later_, &QTimer::timeout, this, [this] {
+    place();
+    raise();
+    show();
+  });
+  panel->installEventFilter(this);
+  hide();
+}
+
+void StaleBadge::setStale(bool stale) {
+  if (!stale) {
+    later_.stop();
+    hide();
+  } else if (isHidden() && !later_.isActive()) {
+    later_.start();
+  }
+}
+
+bool StaleBadge::eventFilter(QObject* watched, QEvent* event) {
+  if (event->type() == QEvent::Resize) place();
+  return QLabel::eventFilter(watched, event);
+}
+
+void StaleBadge::place() {
+  constexpr int kMargin = 8;
+  adjustSize();
+  const QWidget* panel = parentWidget();
+  move(panel->width() - width() - kMargin,
+       corner_ == Qt::TopRightCorner ? kMargin : std::max(0, panel->height() - height() - kMargin));
+}
+
+}  // namespace glint::gui

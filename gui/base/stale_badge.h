@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QLabel>
+#include <QTimer>
+
+namespace glint::gui {
+
+/// "updating…" over a corner of a panel whose numbers are of an older request. Appears after a moment, so that results that come
+/// sooner leave no flicker, and takes no clicks.
+class StaleBadge : public QLabel {
+  Q_OBJECT
+ public:
+  static constexpr int kAfterMs = 150;
+  /// @param corner  of the panel: Qt::TopRightCorner or Qt::BottomRightCorner.
+  explicit StaleBadge(QWidget* panel, Qt::Corner corner = Qt::TopRightCorner);
+
+ public slots:
+  void setStale(bool stale);
+
+ protected:
+  bool eventFilter(QObject* watched, QEvent* event) override;
+
+ private:
+  void place();
+
+  Qt::Corner corner_;
+  QTimer later_;
+};
+
+}  // namespace glint::gui
