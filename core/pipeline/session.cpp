@@ -2,6 +2,7 @@
 #include "core/pipeline/session.h"
 
 #include <algorithm>
+#include <iterator>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -281,22 +282,15 @@ OpenedSession openSession(Session given, const fs::path& sceneInstead) {
 }
 
 std::vector<SessionFile> hashInputs(const Scene& scene, const InspectionRequest& request, const ProgressFn& progress) {
-  std::vector<fs::path> paths{fs::absolute(scene.file).lexically_normal()};
-  std::set<fs::path> seen(paths.begin(), paths.end());
-  const auto add = [&](const fs::path& p) {
-    if (!p.empty() && seen.insert(p).second) paths.push_back(p);
-  };
-  for (const auto& [id, source] : scene.surfaces)
-    if (source.mesh) add(*source.mesh);
-  for (const Frame& f : scene.frames)
-    for (const fs::path* p : {&f.image, &f.radiance, &f.depth, &f.normals, &f.mask}) add(*p);
+  std::vector<fs::path> paths = filesOf(scene);
+  const std::set<fs::path> seen(paths.begin(), paths.end());
   if (!request.truthFolder.empty()) {
     std::vector<fs::path> truth;
     std::error_code error;
     for (fs::directory_iterator it(request.truthFolder, error), end; !error && it != end; it.increment(error))
       if (it->is_regular_file(error)) truth.push_back(fs::absolute(it->path()).lexically_normal());
     std::sort(truth.begin(), truth.end());
-    for (const fs::path& p : truth) add(p);
+    std::copy_if(truth.begin(), truth.end(), std::back_inserter(paths), [&](const fs::path& p) { return !seen.count(p); });
   }
   std::vector<SessionFile> files;
   for (const fs::path& p : paths) {

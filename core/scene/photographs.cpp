@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/scene/photographs.h"
 
+#include <set>
 #include <system_error>
 #include <vector>
 
@@ -23,6 +24,19 @@ fs::path sameUnder(const fs::path& folder, const fs::path& file) {
 }
 
 }  // namespace
+
+std::vector<fs::path> filesOf(const Scene& scene) {
+  std::vector<fs::path> paths{fs::absolute(scene.file).lexically_normal()};
+  std::set<fs::path> seen(paths.begin(), paths.end());
+  const auto add = [&](const fs::path& p) {
+    if (!p.empty() && seen.insert(p).second) paths.push_back(p);
+  };
+  for (const auto& [id, source] : scene.surfaces)
+    if (source.mesh) add(*source.mesh);
+  for (const Frame& f : scene.frames)
+    for (const fs::path* p : {&f.image, &f.radiance, &f.depth, &f.normals, &f.mask}) add(*p);
+  return paths;
+}
 
 std::map<int, std::string> photographProblems(const Scene& scene, const std::map<int, std::string>& known,
                                               const ProgressFn& progress) {

@@ -4,11 +4,15 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "core/base/progress.h"
 #include "core/scene/scene.h"
 
 namespace glint {
+
+/// Every file that a scene names, each once: itself, its meshes, and the frames' pictures, depth maps, normals and masks.
+std::vector<std::filesystem::path> filesOf(const Scene& scene);
 
 /// Why a frame's photograph (its radiance where it has none) cannot be read, as far as its file tells without being decoded:
 /// missing, empty, cut off, another size than the camera's (PNG). "FILE: reason"; "" = nothing is wrong, or the frame names no

@@ -44,6 +44,7 @@
 #include "gui/scene/scene_panel.h"
 #include "gui/timeline/timeline.h"
 #include "gui/whatif/what_if_panel.h"
+#include "gui/window/changed_inputs.h"
 #include "gui/window/file_actions.h"
 #include "gui/window/job_status.h"
 #include "gui/window/layouts.h"
@@ -73,6 +74,8 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   buildCentre();
   unreadable_ = new UnreadablePhotographs(
       document_, *messageBar_, [this](const OpenedPtr& opened) { files_->reopen(opened); }, this);
+  auto* changedInputs = new ChangedInputs(document_, *messageBar_, this);
+  connect(changedInputs, &ChangedInputs::message, this, &MainWindow::log);
   buildDocks();
   buildMenus();
   buildStatusLine();

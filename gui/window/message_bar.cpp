@@ -33,7 +33,13 @@ void MessageBar::showOffer(const QString& oneLine, const Answers& answers) {
   showLine(oneLine, QColor(0x24, 0x4f, 0x7a), answers);
 }
 
+void MessageBar::showNotice(const QString& oneLine) {
+  showLine(oneLine, QColor(0x6b, 0x50, 0x12), {});
+  notice_ = true;
+}
+
 void MessageBar::showLine(const QString& oneLine, const QColor& background, const Answers& answers) {
+  notice_ = false;
   QPalette p = palette();
   p.setColor(QPalette::Window, background);
   p.setColor(QPalette::WindowText, Qt::white);

@@ -24,6 +24,10 @@ class MessageBar : public QWidget {
   void showError(const QString& oneLine, const Answers& answers = {});
   /// Not an error: something to be decided.
   void showOffer(const QString& oneLine, const Answers& answers);
+  /// Worth knowing, asks for nothing: whatever else is to be said may take its place.
+  void showNotice(const QString& oneLine);
+  /// An error or an offer waits for an answer.
+  bool waits() const { return !isHidden() && !notice_; }
   QString text() const;
 
  private:
@@ -32,6 +36,7 @@ class MessageBar : public QWidget {
   QHBoxLayout* row_;
   QLabel* label_;
   QList<QWidget*> buttons_;
+  bool notice_ = false;
 };
 
 }  // namespace glint::gui

@@ -97,7 +97,7 @@ void UnreadablePhotographs::add(const std::map<int, std::string>& found) {
 }
 
 void UnreadablePhotographs::tell() {
-  if (bar_.isVisible() && bar_.text() != said_) return;  // something else went wrong, and waits for an answer
+  if (bar_.waits() && bar_.text() != said_) return;  // something else went wrong
   QStringList named;
   for (auto it = all_.begin(); it != all_.end() && named.size() < kNamed; ++it) named << it.value();
   said_ = tr("%n photograph(s) cannot be read: ", "", all_.size())

@@ -3,12 +3,15 @@
 #include <QAction>
 #include <QDialog>
 #include <QDir>
+#include <QDirIterator>
 #include <QFile>
+#include <QPlainTextEdit>
 #include <QPushButton>
 #include <QTreeWidget>
 
 #include "core/pipeline/session.h"
 #include "gui/timeline/timeline.h"
+#include "gui/window/changed_inputs.h"
 #include "gui/window/file_actions.h"
 #include "gui/window/main_window.h"
 #include "gui/window/message_bar.h"
@@ -86,16 +89,55 @@ class UnreadableTest : public QObject {
     QVERIFY2(replayed.differences.empty(), replayed.differences.empty() ? "" : replayed.differences.front().c_str());
   }
 
+  void inputsThatChangedSinceTheSessionWasSavedAreSaid() {
+    const QString scene = folder_.filePath("changed");
+    copyFolder(QStringLiteral(GLINT_SOURCE_DIR "/sessions/plane"), scene);
+    const auto append = [](const QString& name) {  // ends what both kinds of file hold: they are read as before
+      QFile file(name);
+      file.setPermissions(QFile::ReadOwner | QFile::WriteOwner);
+      return file.open(QIODevice::Append) && file.write("\n") == 1;
+    };
+    QVERIFY(append(scene + "/scene.json") && append(scene + "/frames/0002.png"));
+    QVERIFY(QFile::remove(scene + "/frames/0003.png"));  // said as one that cannot be read
+    MainWindow window(coreEngine());
+    window.show();
+    window.open(scene + "/plane.glint");
+    auto* changed = window.findChild<ChangedInputs*>();
+    QTRY_VERIFY_WITH_TIMEOUT(window.document().inspection() && window.idle() && !changed->busy(), 60000);
+    QCOMPARE(changed->all(), (QStringList{"scene.json: changed", "frames/0002.png: changed"}));
+    QString log;
+    for (const QPlainTextEdit* edit : window.findChildren<QPlainTextEdit*>()) log += edit->toPlainText();
+    for (const QString& line : changed->all()) QVERIFY2(log.contains("Since the session was saved: " + line), qPrintable(log));
+    auto* bar = window.findChild<MessageBar*>();
+    QVERIFY2(bar->isVisible() && bar->text().contains("frames/0003.png"), "what cannot be read is more urgent");
+    QVERIFY(QFile::copy(QStringLiteral(GLINT_SOURCE_DIR "/sessions/plane/frames/0003.png"), scene + "/frames/0003.png"));
+    bar->hide();
+    window.open(scene + "/plane.glint");
+    QTRY_VERIFY_WITH_TIMEOUT(bar->isVisible(), 60000);
+    QVERIFY2(bar->text().contains("scene.json: changed") && bar->text().contains("frames/0002.png"), qPrintable(bar->text()));
+    QTRY_VERIFY_WITH_TIMEOUT(window.idle() && !changed->busy(), 60000);
+  }
+
   void aSceneWithAllItsPhotographsSaysNothing() {
     MainWindow window(coreEngine());
     window.show();
     window.open(QStringLiteral(GLINT_SOURCE_DIR "/sessions/plane/plane.glint"));
     QTRY_VERIFY_WITH_TIMEOUT(window.document().inspection() && window.idle(), 60000);
     QVERIFY(window.findChild<UnreadablePhotographs*>()->all().isEmpty());
+    QTRY_VERIFY_WITH_TIMEOUT(!window.findChild<ChangedInputs*>()->busy(), 60000);
+    QVERIFY(window.findChild<ChangedInputs*>()->all().isEmpty());
     QVERIFY(!window.findChild<MessageBar*>()->isVisible());
   }
 
  private:
+  static void copyFolder(const QString& from, const QString& to) {
+    QDirIterator files(from, QDir::Files, QDirIterator::Subdirectories);
+    while (files.hasNext()) {
+      const QString name = files.next(), there = to + '/' + QDir(from).relativeFilePath(name);
+      QVERIFY(QDir().mkpath(QFileInfo(there).path()) && QFile::copy(name, there));
+    }
+  }
+
   QTemporaryDir folder_;
 };
 

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/window/changed_inputs.h"
+
+#include <exception>
+#include <set>
+#include <string>
+
+#include "core/pipeline/session.h"
+#include "core/scene/photographs.h"
+#include "gui/base/text.h"
+#include "gui/window/message_bar.h"
+
+namespace glint::gui {
+
+namespace {
+constexpr int kNamed = 2;  // on the message bar; the log has all
+}
+
+ChangedInputs::ChangedInputs(Document& document, MessageBar& bar, QObject* parent)
+    : QObject(parent), document_(document), bar_(bar) {
+  connect(&document_, &Document::sceneOpened, this, &ChangedInputs::forget);
+  connect(&document_, &Document::inspectionChanged, this, &ChangedInputs::check);
+}
+
+ChangedInputs::~ChangedInputs() { ++newest_; }
+
+void ChangedInputs::forget() {
+  ++newest_;
+  job_.drop();
+  all_.clear();
+  checked_ = false;
+}
+
+void ChangedInputs::check() {
+  // Not before the first results: both read the same disk.
+  if (checked_ || !document_.inspection()) return;
+  checked_ = true;
+  const std::shared_ptr<const Session> session = document_.toSave().session;
+  if (!session || session->files.empty()) return;
+  job_.run([this, session, scene = document_.sharedScene(), ticket = newest_.load()] {
+    QStringList lines;
+    // Files that are missing or were found elsewhere are said by what needs them.
+    std::set<std::string> changed;
+    for (const std::filesystem::path& p : filesOf(*scene)) changed.insert(p.string() + ": changed");
+    try {
+      for (const std::string& line : changedFiles(*session, [&](const StageEvent&) { return ticket == newest_; }))
+        if (changed.count(line)) lines << toQString(withoutFolder(line, *scene));
+    } catch (const Stopped&) {
+      return LatestJob::Deliver();
+    } catch (const std::exception& e) {
+      lines << toQString(e.what());
+    }
+    return LatestJob::Deliver([this, lines] { tell(lines); });
+  });
+}
+
+void ChangedInputs::tell(const QStringList& lines) {
+  all_ = lines;
+  if (all_.isEmpty()) return;
+  for (const QString& line : all_) emit message(tr("Since the session was saved: %1").arg(line));
+  if (bar_.waits()) return;
+  QString named = QStringList(all_.mid(0, kNamed)).join(QStringLiteral("; "));
+  if (all_.size() > kNamed) named += tr("; and %1 more, see the log").arg(all_.size() - kNamed);
+  bar_.showNotice(tr("Inputs are not what they were when the session was saved, so results may differ: %1").arg(named));
+}
+
+}  // namespace glint::gui
