@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What all layers share: sizes, the choice of frames, casting pixels onto the surface, caches.
+#include <vtkPropCollection.h>
+#include <vtkRenderer.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -266,6 +269,14 @@ std::optional<Pixel> vertexInDirection(const Camera& camera, const Highlight& ob
     best = p;
   }
   return best;
+}
+
+void LayerContent::drawLast(vtkRenderer& renderer) const {
+  vtkPropCollection* props = renderer.GetViewProps();
+  for (const Drawn& d : drawn) {
+    props->RemoveItem(d.prop);
+    props->AddItem(d.prop);
+  }
 }
 
 LayerCache::Photograph LayerCache::photograph(const Inspection& inspection, int frame, int maxWidth) {

@@ -19,6 +19,8 @@
 #include "viz/scene_view.h"
 #include "viz/style.h"
 
+class vtkRenderer;
+
 namespace glint::viz {
 
 struct WalkStory;
@@ -142,6 +144,8 @@ struct LayerContent {
   void addMany(vtkSmartPointer<vtkProp3D> prop, std::function<Picked(vtkIdType cell)> describe, double lineWidthPx) {
     drawn.push_back({std::move(prop), {}, lineWidthPx, true, std::move(describe)});
   }
+  /// To the end of what VTK draws in order: of two things at one depth, the one that is drawn last shows.
+  void drawLast(vtkRenderer& renderer) const;
 };
 
 /// Which changes make a layer stale.

@@ -8,7 +8,6 @@
 #include <vtkImageData.h>
 #include <vtkLightKit.h>
 #include <vtkPolyData.h>
-#include <vtkPropCollection.h>
 #include <vtkProperty.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
@@ -237,14 +236,6 @@ struct SceneView::Impl {
     layer.content = {};
     layer.built = false;
   }
-  /// To the end of what VTK draws in order: of two that lie at one depth, the one that is drawn last shows.
-  void moveToTheEnd(const LayerState& layer) {
-    vtkPropCollection* props = renderer->GetViewProps();
-    for (const Drawn& drawn : layer.content.drawn) {
-      props->RemoveItem(drawn.prop);
-      props->AddItem(drawn.prop);
-    }
-  }
   void update() {
     bool reorder = false;  // a layer was built anew: those after it are drawn after it, whichever came first
     for (std::size_t i = 0; i < layers.size(); ++i) {
@@ -268,7 +259,7 @@ struct SceneView::Impl {
         annotationsStale = true;
         reorder = true;
       } else if (reorder) {
-        moveToTheEnd(layer);
+        layer.content.drawLast(*renderer);
       }
     }
     styleSurface();

@@ -131,6 +131,21 @@ class ParametersTest : public QObject {
     QCOMPARE(turns().size() + changeNothing().size(), allParams().size());
   }
 
+  void everyToolTipHasSymbolAndEquation() {
+    Document document(parseTrainSpec);
+    ParameterPanel panel(document);
+    for (const ParamSpec& spec : allParams()) {
+      QStringList tips;
+      for (const QWidget* w : panel.findChildren<QWidget*>())
+        if (w->toolTip().contains("<tt>" + toQString(spec.key) + "</tt>")) tips << w->toolTip();
+      QVERIFY2(!tips.isEmpty(), spec.key.c_str());
+      for (const QString& tip : tips) {
+        QVERIFY2(tip.contains("<i>" + toQString(spec.symbol).toHtmlEscaped() + "</i>"), qPrintable(tip));
+        QVERIFY2(tip.contains(toQString(spec.help).toHtmlEscaped()), qPrintable(tip));
+      }
+    }
+  }
+
   void turnedByItsWidgetItChangesTheResults_data() {
     QTest::addColumn<int>("turn");
     for (std::size_t i = 0; i < turns().size(); ++i) QTest::newRow(turns()[i].key) << int(i);

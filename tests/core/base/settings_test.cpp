@@ -19,7 +19,8 @@ TEST(Settings, EveryDescriptionIsUsable) {
   for (const ParamSpec& p : allParams()) {
     EXPECT_TRUE(keys.insert(p.key).second) << p.key << " twice";
     EXPECT_FALSE(p.title.empty()) << p.key;
-    EXPECT_FALSE(p.help.empty()) << p.key;
+    EXPECT_FALSE(p.symbol.empty()) << p.key;
+    EXPECT_NE((p.symbol + p.help).find_first_of("=<"), std::string::npos) << p.key << " has no equation";
     EXPECT_TRUE(stages.count(p.stage)) << p.key;
     Settings s;
     EXPECT_NO_THROW(s.set(p.key, p.defaultValue)) << p.key << ": the default must lie in its own range";
