@@ -139,7 +139,7 @@ EpipolarPicture epipolarPicture(const Inspection& inspection, const PairRequest&
     const Camera& camera = inspection.scene->frames[static_cast<std::size_t>(request.frames[i])].camera;
     OverlayLine line;
     line.role = OverlayRole::EpipolarLine;
-    line.colour = real ? modelColour("primal") : kVirtualCamera;
+    line.colour = real ? kRealEpipolar : kVirtualCamera;
     line.light = light;
     line.width = 1.25;
     line.halo = true;

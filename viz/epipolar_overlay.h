@@ -21,8 +21,10 @@ struct PairRequest {
   PairEllipse ellipse = PairEllipse::Observed;
 };
 
+inline constexpr Colour kRealEpipolar{0.66, 0.86, 0.16};  ///< those of real cameras; virtual ones have kVirtualCamera
+
 /// Tangent epipolar lines of one pair of ellipses, over both photographs: own tangents solid, those carried over from the other
-/// image dashed. Real cameras in the colour of `primal`, which believes in them; virtual cameras in that of virtual cameras.
+/// image dashed. Neither colour is a model's.
 struct EpipolarPicture {
   std::array<FrameOverlay, 2> frames;
   std::optional<EpipolarTangents> tangents;

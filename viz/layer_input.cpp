@@ -328,8 +328,11 @@ void LayerCache::follow(const std::shared_ptr<const Scene>& scene) {
 
 std::string line(const std::string& name, double value, const std::string& unit) {
   char text[64];
+  constexpr double kLeastAngle = 1e-6;  // degrees: below is round-off
+  if (unit == "deg" && std::abs(value) < kLeastAngle) value = 0;
   std::snprintf(text, sizeof text, "%.7g", value);
-  return name + " = " + text + (unit.empty() ? "" : " " + unit) + "\n";
+  const std::string written = unit == "deg" ? "°" : unit == "px^2" ? "px²" : unit;
+  return name + " = " + text + (unit.empty() ? "" : " " + written) + "\n";
 }
 
 std::string line(const std::string& name, const Eigen::Vector3d& v, const std::string& unit) {

@@ -25,7 +25,7 @@ void addCameras(SceneLegend& legend, const LayerInput& in) {
     if (const double most = mostInfluence(in.colours); most > 0)
       legend.bar = influenceBar(in.colours.model, most);
     else
-      legend.remarks.push_back("cameras: what the views do is not measured for this request (Plots, Which view matters)");
+      legend.remarks.push_back("cameras: what the views do is not measured for this request (Plots, Measure which view matters)");
     return;
   }
   std::vector<CameraColour> kinds;

@@ -188,9 +188,9 @@ class Findings {
   void addViews() {
     const double effective = effectiveNumber(rays_, radians(bounds::kAngleAmberDeg));
     const Verdict v = above(effective, bounds::kViewsAmber, bounds::kViewsRed);
-    std::string reason = text(
-        "%d training views count as %.2g different ones, those nearer than 5 deg to each other only in part: ", int(rays_.size()),
-        effective);
+    std::string reason =
+        text("%d training highlights count as %.2g different views, those nearer than 5 deg to each other only in part: ",
+             int(rays_.size()), effective);
     reason += chosen(v, "three or more determine an ellipsoid with a free centre.",
                      "fewer than three, which an ellipsoid with a free centre needs.",
                      "fewer than two, which determine neither the light's distance nor an ellipsoid.");

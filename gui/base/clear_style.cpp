@@ -107,6 +107,10 @@ int ClearStyle::pixelMetric(PixelMetric metric, const QStyleOption* option, cons
   return metric == PM_TabBarTabHSpace ? kTabSpace : QProxyStyle::pixelMetric(metric, option, widget);
 }
 
+int ClearStyle::styleHint(StyleHint hint, const QStyleOption* option, const QWidget* widget, QStyleHintReturn* result) const {
+  return hint == SH_DialogButtonBox_ButtonsHaveIcons ? 0 : QProxyStyle::styleHint(hint, option, widget, result);
+}
+
 QIcon ClearStyle::standardIcon(StandardPixmap which, const QStyleOption* option, const QWidget* widget) const {
   return which == SP_ToolBarHorizontalExtensionButton ? icon(QStringLiteral("more"))
                                                       : QProxyStyle::standardIcon(which, option, widget);

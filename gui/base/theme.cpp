@@ -78,6 +78,7 @@ QPalette palette(Theme theme) {
   p.setColor(QPalette::Shadow, dark ? QColor(0x10, 0x11, 0x12) : QColor(0x80, 0x84, 0x88));
   for (const auto role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText})
     p.setColor(QPalette::Disabled, role, disabled);
+  p.setColor(QPalette::Disabled, QPalette::Highlight, p.color(QPalette::Mid));  // a disabled slider's groove, too
   return p;
 }
 
@@ -127,7 +128,12 @@ QIcon colourSwatch(const QColor& colour) {
     QPixmap picture(12 * ratio, 12 * ratio);
     picture.setDevicePixelRatio(ratio);
     picture.fill(colour);
-    swatch.addPixmap(picture);
+    if (colour.lightnessF() > 0.9) {  // white would not be seen on white
+      QPainter painter(&picture);
+      painter.setPen(QColor(0x80, 0x84, 0x88));
+      painter.drawRect(QRectF(0.5, 0.5, 11, 11));
+    }
+    for (const QIcon::Mode mode : {QIcon::Normal, QIcon::Selected}) swatch.addPixmap(picture, mode);  // never tinted
   }
   return swatch;
 }

@@ -11,11 +11,14 @@
 #include <QOpenGLFunctions>
 #include <QPainter>
 
+#include "gui/base/focus_frame.h"
+
 namespace glint::gui {
 
 VtkCanvas::VtkCanvas(QWidget* parent) : QWidget(parent) {
   setAttribute(Qt::WA_OpaquePaintEvent);
   setFocusPolicy(Qt::StrongFocus);
+  new FocusFrame(this);
   setMouseTracking(true);
   grabGesture(Qt::PinchGesture);
   window_->SetReadyForRendering(false);  // until there is a context

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <utility>
 
+#include "gui/base/focus_frame.h"
 #include "gui/base/theme.h"
 #include "gui/frame/pixel_probe.h"
 #include "viz/frame_pick.h"
@@ -46,6 +47,7 @@ QPen penOf(const viz::OverlayLine& line, const QColor& colour, double width) {
 FrameCanvas::FrameCanvas(QWidget* parent) : QWidget(parent) {
   setMouseTracking(true);
   setFocusPolicy(Qt::StrongFocus);
+  new FocusFrame(this);
   setAttribute(Qt::WA_OpaquePaintEvent);
   willBeStale_.setSingleShot(true);
   willBeStale_.setInterval(kStaleAfterMs);

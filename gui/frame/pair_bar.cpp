@@ -122,7 +122,7 @@ void PairBar::addLines(viz::FrameOverlay& first, viz::FrameOverlay& second) {
                                                                                        : viz::PairEllipse::Observed;
   QStringList said;
   for (const auto& [name, title, cameras, colour] :
-       {std::tuple("real", tr("real cameras"), viz::PairCameras::Real, viz::modelColour("primal")),
+       {std::tuple("real", tr("real cameras"), viz::PairCameras::Real, viz::kRealEpipolar),
         std::tuple("virtual", tr("virtual cameras"), viz::PairCameras::Virtual, viz::kVirtualCamera)}) {
     if (lines != name && lines != "both") continue;
     request.cameras = cameras;

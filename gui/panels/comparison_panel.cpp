@@ -17,9 +17,11 @@
 #include <limits>
 #include <utility>
 
+#include "gui/base/elided_label.h"
 #include "gui/base/rows_model.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/base/unit_text.h"
 #include "gui/export/long_job.h"
 
 namespace glint::gui {
@@ -82,7 +84,7 @@ ComparisonPanel::ComparisonPanel(const Engine& engine, Document& document, LongJ
   column->setContentsMargins(6, 4, 6, 4);
   column->setSpacing(4);
   auto* row = new QHBoxLayout;
-  title_ = new QLabel;
+  title_ = new ElidedLabel;
   title_->setObjectName(QStringLiteral("comparisonTitle"));
   title_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);  // a long line would make the dock wider than its place
   row->addWidget(title_, 1);
@@ -173,7 +175,7 @@ void ComparisonPanel::fill() {
     const QColor faded = palette().color(QPalette::PlaceholderText);
     for (const ComparedValue& v : comparison_->values) {
       if (!all && !v.differs) continue;
-      const QString unit = v.unit.empty() ? QString() : QStringLiteral(" ") + toQString(v.unit);
+      const QString unit = v.unit.empty() ? QString() : QStringLiteral(" ") + unitText(v.unit);
       const auto side = [&](const std::string& s) { return text(s.empty() ? QString() : toQString(s) + unit); };
       RowsModel::Row row{{text(toQString(v.group)), text(toQString(v.name)), side(v.a), side(v.b), number(v.ratio)}, -1};
       row.cells[0].colour = faded;
@@ -218,7 +220,7 @@ void ComparisonPanel::fill() {
 
 void ComparisonPanel::showState() {
   if (!comparison_) return title_->setText(tr("Nothing is compared yet."));
-  QString line = tr("%1   %2 differences").arg(names_).arg(comparison_->differences());
+  QString line = tr("%1 differences   %2").arg(comparison_->differences()).arg(names_);
   if (of_ != document_.inspection()) line += tr("   (what is on screen has changed since: compare again)");
   title_->setText(line);
   title_->setToolTip(paths_ + QLatin1Char('\n') + line);

@@ -12,6 +12,7 @@
 #include <QScrollBar>
 #include <QSortFilterProxyModel>
 #include <QTableView>
+#include <QTimer>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <cmath>
@@ -110,10 +111,15 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   view_->horizontalHeader()->setHighlightSections(false);
   view_->horizontalHeader()->setStretchLastSection(false);
   const int widths[] = {54, 66, 98, 50, 64, 66, 68, 74, 80, 62, 78, 76, 68, 72};
-  for (int i = 0; i < int(std::size(widths)); ++i) view_->setColumnWidth(i, widths[i]);
+  constexpr int kArrow = 34;  // px, of a heading's edges and the arrow of sorting
+  for (int i = 0; i < int(std::size(widths)); ++i)
+    view_->setColumnWidth(
+        i, std::max(widths[i],
+                    fontMetrics().horizontalAdvance(model_->headerData(i, Qt::Horizontal, Qt::DisplayRole).toString()) + kArrow));
   // Why there is no number stands beside "failed", not out of sight behind a row of dashes.
   view_->horizontalHeader()->moveSection(ErrorModel::ReasonText, ErrorModel::Status + 1);
   view_->installEventFilter(this);
+  view_->viewport()->installEventFilter(this);
   column->addWidget(view_, 1);
 
   connect(filter_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this, proxy](int i) {
@@ -303,7 +309,18 @@ void ErrorTable::copySelection() const {
   QApplication::clipboard()->setText(lines.join('\n') + '\n');
 }
 
+void ErrorTable::uncutCurrent() {
+  const QModelIndex current = view_->currentIndex();
+  const QRect row = view_->visualRect(current), seen = view_->viewport()->rect();
+  if (!current.isValid() || row.top() > seen.bottom() || row.bottom() <= seen.bottom()) return;
+  const int x = view_->horizontalScrollBar()->value();
+  view_->scrollTo(current, QAbstractItemView::EnsureVisible);
+  view_->horizontalScrollBar()->setValue(x);
+}
+
 bool ErrorTable::eventFilter(QObject* watched, QEvent* event) {
+  if (watched == view_->viewport() && event->type() == QEvent::Resize)  // as by a scroll bar below it
+    QTimer::singleShot(0, this, &ErrorTable::uncutCurrent);
   if (watched == view_ && event->type() == QEvent::KeyPress && static_cast<QKeyEvent*>(event)->matches(QKeySequence::Copy)) {
     copySelection();
     return true;

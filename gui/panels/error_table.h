@@ -36,6 +36,8 @@ class ErrorTable : public QWidget {
   void showCount();
   void fitReason();
   void selectFromDocument();
+  /// The current row is not left half behind the lower edge.
+  void uncutCurrent();
   void selectFromTable();
 
   Document& document_;

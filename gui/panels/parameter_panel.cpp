@@ -16,6 +16,7 @@
 #include "gui/base/quiet_controls.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/base/unit_text.h"
 
 namespace glint::gui {
 
@@ -32,7 +33,7 @@ QString toolTipOf(const ParamSpec& spec) {
           .arg(toQString(spec.title).toHtmlEscaped(), symbol, toQString(spec.help).toHtmlEscaped(), toQString(spec.key));
   if (spec.max > spec.min)
     text += QStringLiteral(" &nbsp;%1 … %2 %3")
-                .arg(numberText(spec.min, 6), numberText(spec.max, 6), toQString(spec.unit).toHtmlEscaped());
+                .arg(numberText(spec.min, 6), numberText(spec.max, 6), unitText(spec.unit).toHtmlEscaped());
   return text + QStringLiteral("<br>default %1").arg(valueText(spec.defaultValue, spec).toHtmlEscaped());
 }
 

@@ -13,6 +13,7 @@
 #include <cmath>
 
 #include "core/model/model.h"
+#include "gui/base/focus_frame.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 
@@ -47,6 +48,7 @@ struct TradeoffPlot::Axes {
 TradeoffPlot::TradeoffPlot(Document& document, QWidget* parent) : QWidget(parent), document_(document) {
   setObjectName(QStringLiteral("tradeoffPlot"));
   setFocusPolicy(Qt::StrongFocus);
+  new FocusFrame(this);
   setMouseTracking(true);
   connect(&document_, &Document::tradeoffChanged, this, [this] {
     current_ = -1;

@@ -63,7 +63,7 @@ constexpr Row kRows[] = {
     {"angle", QT_TRANSLATE_NOOP("ConditioningPanel", "Triangulation"),
      QT_TRANSLATE_NOOP("ConditioningPanel", "Widest angle between the rays of two views")},
     {"views", QT_TRANSLATE_NOOP("ConditioningPanel", "Effective views"),
-     QT_TRANSLATE_NOOP("ConditioningPanel", "Training views, nearly equal ones counted once")},
+     QT_TRANSLATE_NOOP("ConditioningPanel", "Training highlights, those seen from nearly the same side counted once")},
     {"light", QT_TRANSLATE_NOOP("ConditioningPanel", "Light ±"),
      QT_TRANSLATE_NOOP("ConditioningPanel", "Standard deviation of the light (or the ellipsoid's centre) over its distance")},
     {"residual", QT_TRANSLATE_NOOP("ConditioningPanel", "Residual"),

@@ -100,7 +100,7 @@ void PlotsPanel::buildPane(int index) {
   if (index == 0) {
     auto* influence = new QToolButton;
     influence->setObjectName(QStringLiteral("askInfluence"));
-    influence->setText(tr("Which view matters"));
+    influence->setText(tr("Measure views"));
     influence->setToolTip(tr("Leaves every training frame out once and tells what the models lose"));
     influence->setAutoRaise(true);
     connect(influence, &QToolButton::clicked, this, &PlotsPanel::askForInfluence);
@@ -220,7 +220,7 @@ viz::PlotData PlotsPanel::data(const std::string& id) {
       if (document_.influenceStale()) plot.title += tr("   (of an earlier request)").toStdString();
       return plot;
     }
-    empty.empty = tr("Not asked yet: \"Which view matters\" leaves every training frame out once").toStdString();
+    empty.empty = tr("Not asked yet: \"Measure views\" leaves every training frame out once").toStdString();
     return empty;
   }
   if (!samples_) {
@@ -355,7 +355,7 @@ void PlotsPanel::addActions(Actions& actions, QMenu* menu) {
   actions.add(QStringLiteral("plots.show-all"), menu, tr("Show the &whole plot"),
               [this] { panes_[std::size_t(current_)].canvas->showAll(); });
   menu->addSeparator();
-  actions.add(QStringLiteral("plots.influence"), menu, tr("Which view &matters"), [this] { askForInfluence(); },
+  actions.add(QStringLiteral("plots.influence"), menu, tr("&Measure which view matters"), [this] { askForInfluence(); },
               {{}, {}, tr("Leaves every training frame out once and tells what the models lose")});
   menu->addSeparator();
   for (const char* ending : {"svg", "png", "csv"})

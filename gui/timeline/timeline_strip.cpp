@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gui/base/focus_frame.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "viz/style.h"
@@ -22,6 +23,7 @@ namespace {
 constexpr double kLeft = 56, kRight = 10, kTop = 4, kMarkRow = 17, kNumberRow = 14;
 constexpr double kThumbnailHeight = 34, kRoomForThumbnails = 112;  // below this height only errors and roles are shown
 constexpr double kMinFramesInView = 4;
+constexpr double kNamedRow = 10;          // height of a light's row with its name
 const QColor kLightOn(0xf0, 0xe4, 0x42);  // viz::kLightColour
 QPointF positionOf(const QMouseEvent& e) {
 #if QT_VERSION >= QT_VERSION_CHECK(6, 0, 0)
@@ -34,6 +36,7 @@ QPointF positionOf(const QMouseEvent& e) {
 
 TimelineStrip::TimelineStrip(Document& document, QWidget* parent) : QWidget(parent), document_(document) {
   setFocusPolicy(Qt::StrongFocus);
+  new FocusFrame(this);
   setMouseTracking(true);
   setAttribute(Qt::WA_OpaquePaintEvent);
   connect(&document_, &Document::sceneOpened, this, [this] {
@@ -109,7 +112,13 @@ QRectF TimelineStrip::thumbnailRow() const {
 }
 
 double TimelineStrip::lightRowHeight() const {
-  return data_.lights.empty() ? 0 : std::clamp(24.0 / double(data_.lights.size()), 2.0, 7.0);
+  return data_.lights.empty() ? 0 : namesLights() ? kNamedRow : std::clamp(24.0 / double(data_.lights.size()), 2.0, 7.0);
+}
+
+bool TimelineStrip::namesLights() const {
+  constexpr double kLeastChart = 34;
+  const double rest = height() - kMarkRow - kNumberRow - thumbnailRow().bottom() - 6;
+  return rest - kNamedRow * double(data_.lights.size()) >= kLeastChart;
 }
 
 QRectF TimelineStrip::chart() const {
@@ -152,7 +161,7 @@ void TimelineStrip::paintEvent(QPaintEvent*) {
   QFont small = font();
   small.setPointSizeF(font().pointSizeF() * 0.85);
   painter.setFont(small);
-  const QString number = QString::number(frame);
+  const QString number = idText(frame);
   QRectF label(0, 0, painter.fontMetrics().horizontalAdvance(number) + 8, kNumberRow);
   label.moveCenter({std::clamp(current.center().x(), kLeft, width() - kRight), height() - kNumberRow / 2 - 1});
   painter.fillRect(label, accentColour());
@@ -228,7 +237,7 @@ void TimelineStrip::paintErrors(QPainter& painter) {
   painter.drawText(QRectF(0, c.top() - 7, kLeft - 5, 14), Qt::AlignRight | Qt::AlignVCenter,
                    numberText(axis_.highPct) + QStringLiteral(" %"));
   if (c.height() > 22)
-    painter.drawText(QRectF(0, c.bottom() - 8, kLeft - 5, 14), Qt::AlignRight | Qt::AlignVCenter,
+    painter.drawText(QRectF(0, c.bottom() - 13, kLeft - 5, 14), Qt::AlignRight | Qt::AlignVCenter,
                      axis_.logarithmic ? numberText(axis_.lowPct) + QStringLiteral(" %") : QStringLiteral("0"));
   if (axis_.logarithmic && c.height() > 36)
     painter.drawText(QRectF(0, c.center().y() - 7, kLeft - 5, 14), Qt::AlignRight | Qt::AlignVCenter, tr("log"));
@@ -294,13 +303,27 @@ void TimelineStrip::paintRows(QPainter& painter) {
     }
     top += rowHeight;
   }
-  if (!data_.lights.empty()) {
-    painter.setPen(palette().color(QPalette::PlaceholderText));
+  painter.setPen(palette().color(QPalette::PlaceholderText));
+  if (!data_.lights.empty() && namesLights()) {
+    const QFont usual = painter.font();
+    QFont tiny = usual;
+    tiny.setPixelSize(int(kNamedRow) - 1);
+    painter.setFont(tiny);
+    for (std::size_t i = 0; i < data_.lights.size(); ++i) {
+      const QRectF place(0, top - rowHeight * double(data_.lights.size() - i) - 1, kLeft - 5, rowHeight);
+      painter.drawText(place, Qt::AlignRight | Qt::AlignVCenter,
+                       painter.fontMetrics().elidedText(toQString(data_.lights[i].light), Qt::ElideMiddle, int(kLeft) - 7));
+    }
+    painter.setFont(usual);
+  } else if (!data_.lights.empty()) {
     painter.drawText(QRectF(0, top - rowHeight * double(data_.lights.size()) / 2 - 7, kLeft - 5, 14),
                      Qt::AlignRight | Qt::AlignVCenter, tr("lights"));
   }
   painter.setRenderHint(QPainter::Antialiasing);
-  const int labelEvery = std::max(1, int(std::ceil(34 / wide)));
+  int widest = 0;
+  for (int i = from; i < to; i += std::max(1, (to - from) / 16))
+    widest = std::max(widest, painter.fontMetrics().horizontalAdvance(idText(i)));
+  const int labelEvery = std::max(1, int(std::ceil((widest + 10) / wide)));
   const double r = std::clamp(wide / 2 - 1, 0.75, 4.5);
   for (int i = from; i < to; ++i) {
     const FrameRole role = document_.role(i);
@@ -320,8 +343,7 @@ void TimelineStrip::paintRows(QPainter& painter) {
     }
     if (i % labelEvery == 0) {
       painter.setPen(palette().color(QPalette::PlaceholderText));
-      painter.drawText(QRectF(frameX(i + 0.5) - 30, height() - kNumberRow - 1, 60, kNumberRow), Qt::AlignCenter,
-                       QString::number(i));
+      painter.drawText(QRectF(frameX(i + 0.5) - 40, height() - kNumberRow - 1, 80, kNumberRow), Qt::AlignCenter, idText(i));
     }
   }
 }
@@ -395,12 +417,13 @@ void TimelineStrip::contextMenuEvent(QContextMenuEvent* e) {
     action->setCheckable(true);
     action->setChecked(role == r);
   };
-  add(FrameRole::Training, tr("Train on frame %1").arg(frame));
-  add(FrameRole::HeldOut, tr("Hold out frame %1").arg(frame));
-  add(FrameRole::Excluded, tr("Exclude frame %1").arg(frame));
+  const QString id = toQString(document_.scene()->frames[std::size_t(frame)].id);
+  add(FrameRole::Training, tr("Train on frame %1").arg(id));
+  add(FrameRole::HeldOut, tr("Hold out frame %1").arg(id));
+  add(FrameRole::Excluded, tr("Exclude frame %1").arg(id));
   menu.addSeparator();
-  menu.addAction(tr("Show beside the selected frame"), this, [this, frame] {
-    document_.undoStack()->beginMacro(tr("Show frame %1 beside").arg(frame));
+  menu.addAction(tr("Show beside the selected frame"), this, [this, frame, id] {
+    document_.undoStack()->beginMacro(tr("Show frame %1 beside").arg(id));
     document_.setOption("frame/second", double(frame), QString());
     document_.setOption("frame/side-by-side", "on", QString());
     document_.undoStack()->endMacro();
@@ -430,10 +453,16 @@ void TimelineStrip::keyPressEvent(QKeyEvent* e) {
   }
 }
 
+QString TimelineStrip::idText(int frame) const {
+  constexpr int kMost = 10;  // characters
+  const QString id = toQString(document_.scene()->frames[std::size_t(frame)].id);
+  return id.size() <= kMost ? id : QChar(0x2026) + id.right(kMost - 1);
+}
+
 QString TimelineStrip::toolTip(int frame) const {
   static const char* const roles[] = {QT_TR_NOOP("training"), QT_TR_NOOP("held out"), QT_TR_NOOP("excluded")};
   const Frame& f = document_.scene()->frames[std::size_t(frame)];
-  QString text = tr("Frame %1 (%2), %3").arg(frame).arg(toQString(f.id), tr(roles[int(document_.role(frame))]));
+  QString text = tr("Frame %1, %2").arg(toQString(f.id), tr(roles[int(document_.role(frame))]));
   if (unreadable_.contains(frame)) text += tr("\nno photograph: %1").arg(unreadable_.value(frame));
   if (!data_.lights.empty() && !f.lightsOn.empty()) text += tr("\nlights on: %1").arg(joined(f.lightsOn));
   for (const viz::TimelineData::Series& series : data_.series) {

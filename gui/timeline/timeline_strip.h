@@ -73,6 +73,9 @@ class TimelineStrip : public QWidget {
   QRectF chart() const;
   double lightRowHeight() const;
   QString toolTip(int frame) const;
+  /// As everywhere else in the window; the end of a long one.
+  QString idText(int frame) const;
+  bool namesLights() const;  ///< their rows are high enough for their names
 
   Document& document_;
   viz::TimelineData data_;

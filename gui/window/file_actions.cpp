@@ -123,7 +123,10 @@ void FileActions::openDialog() {
 }
 
 void FileActions::openFolderDialog() {
-  const QString path = QFileDialog::getExistingDirectory(window_, tr("Open a folder with a scene"), document_.inputFile());
+  // Of a file, the dialog would take the name for a folder's, which does not exist.
+  const QString now = document_.inputFile();
+  const QString path = QFileDialog::getExistingDirectory(window_, tr("Open a folder with a scene"),
+                                                         now.isEmpty() ? QString() : QFileInfo(now).absolutePath());
   if (!path.isEmpty()) open(path);
 }
 

@@ -58,6 +58,14 @@ class ThemeTest : public QObject {
  private slots:
   void cleanup() { applyTheme(*qApp, Theme::Dark); }
 
+  void aSwatchKeepsItsColourInASelectedRow() {
+    const QIcon swatch = colourSwatch(QColor(0xe6, 0x9f, 0x00));
+    for (const QIcon::Mode mode : {QIcon::Normal, QIcon::Selected})
+      QCOMPARE(swatch.pixmap(12, 12, mode).toImage().pixelColor(6, 6), QColor(0xe6, 0x9f, 0x00));
+    // White is told from white by its edge.
+    QVERIFY(colourSwatch(Qt::white).pixmap(12, 12).toImage().pixelColor(0, 5) != QColor(Qt::white));
+  }
+
   void anUntickedBoxStandsOut_data() { themes(); }
   void anUntickedBoxStandsOut() {
     QFETCH(int, theme);

@@ -6,8 +6,10 @@
 #include <QToolButton>
 #include <QWheelEvent>
 
+#include "gui/base/focus_frame.h"
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/frame_panel.h"
+#include "gui/timeline/timeline_strip.h"
 #include "tests/gui/fixture.h"
 
 namespace glint::gui {
@@ -54,6 +56,30 @@ void turnWheel(QWidget* widget, const QPointF& at, int angle, Qt::KeyboardModifi
 class TimelineTest : public QObject {
   Q_OBJECT
  private slots:
+  void theKeyboardsFocusIsSeenAndAClicksIsNot() {
+    Shown shown;
+    TimelineStrip* strip = shown.timeline.strip();
+    auto* frame = strip->findChild<FocusFrame*>();
+    QVERIFY(frame && !frame->isVisible());
+    const auto focus = [strip](QEvent::Type type, Qt::FocusReason reason) {
+      QFocusEvent event(type, reason);
+      QCoreApplication::sendEvent(strip, &event);
+    };
+    focus(QEvent::FocusIn, Qt::TabFocusReason);
+    QVERIFY(frame->isVisible());
+    QCOMPARE(frame->size(), strip->size());
+    focus(QEvent::FocusOut, Qt::ActiveWindowFocusReason);
+    QVERIFY(!frame->isVisible());
+    focus(QEvent::FocusIn, Qt::ActiveWindowFocusReason);
+    QVERIFY(frame->isVisible());
+    QTest::mouseClick(strip, Qt::LeftButton, {}, strip->cell(3).center().toPoint());
+    QCOMPARE(shown.document.selection().frame, 3);  // it takes no clicks
+    QVERIFY(!frame->isVisible());
+    focus(QEvent::FocusOut, Qt::OtherFocusReason);
+    focus(QEvent::FocusIn, Qt::MouseFocusReason);
+    QVERIFY(!frame->isVisible());
+  }
+
   void aClickOnARoleMarkGivesTheNextRole() {
     Shown shown;
     Document& document = shown.document;
