@@ -22,6 +22,8 @@
 #include "gui/document/figure.h"
 #include "gui/document/session_file.h"
 #include "gui/export/export_actions.h"
+#include "gui/export/figure_actions.h"
+#include "gui/export/folder_dialog.h"
 #include "gui/window/main_window.h"
 #include "tests/gui/fixture.h"
 
@@ -163,6 +165,52 @@ class ExportTest : public QObject {
     answer({}, &proposed, &possible);
     QCOMPARE(QFileInfo(proposed).absolutePath(), place.path());
     QTRY_VERIFY(window_->idle());
+  }
+
+  void aNewFolderIsOneWithNothingInIt() {
+    QTemporaryDir place;
+    const QDir dir(place.path());
+    const auto write = [&](const char* name) {
+      QFile file(dir.filePath(name));
+      QVERIFY(file.open(QIODevice::WriteOnly) && file.write("x") == 1);
+    };
+    QVERIFY(dir.mkdir("empty") && dir.mkdir("full") && dir.mkdir("hidden") && dir.mkdir("full-2"));
+    write("full/a");
+    write("hidden/.a");
+    write("full-2/a");
+    write("file");
+    QCOMPARE(FolderRow(dir.filePath("new")).folder(), dir.filePath("new"));
+    QCOMPARE(FolderRow(dir.filePath("empty")).folder(), dir.filePath("empty"));
+    QCOMPARE(FolderRow(dir.filePath("full")).folder(), dir.filePath("full-3"));
+    QCOMPARE(FolderRow(dir.filePath("hidden")).folder(), dir.filePath("hidden-2"));
+    FolderRow row(dir.filePath("new"));
+    auto* line = row.findChild<QLineEdit*>("newFolder");
+    const auto possible = [&](const QString& typed) {
+      line->setText(typed);
+      return row.problem().isEmpty();
+    };
+    QVERIFY(possible(dir.filePath("new")) && possible(dir.filePath("empty")) && possible("  " + dir.filePath("new") + " "));
+    for (const QString& typed :
+         {QString(), QStringLiteral("  "), QStringLiteral("labels"), QStringLiteral("./labels"), dir.filePath("full"),
+          dir.filePath("hidden"), dir.filePath("file"), dir.filePath("file/in"), dir.filePath("no/such")})
+      QVERIFY2(!possible(typed), qPrintable(typed));
+    line->setText(" ");
+    QCOMPARE(row.problem(), QStringLiteral("A folder needs a name"));
+  }
+
+  void whereTheLastExportWentCountsForItsInputOnly() {
+    QTemporaryDir first, second, exports;
+    Document document(parseTrainSpec);
+    Opened opened = Fixture().opened();
+    const auto open = [&](const QTemporaryDir& folder) {
+      opened.path = folder.filePath("scene.json").toStdString();
+      document.open(opened);
+      return QFileInfo(suggestedFile(document, "labels", {})).absolutePath();
+    };
+    QCOMPARE(open(first), first.path());
+    rememberExport(document, exports.filePath("a"));
+    QCOMPARE(QFileInfo(suggestedFile(document, "labels", {})).absolutePath(), exports.path());
+    QCOMPARE(open(second), second.path());
   }
 
   void theDiagnosticReportNamesNoFolder() {

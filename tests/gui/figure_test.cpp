@@ -26,6 +26,7 @@
 #include "gui/export/movie_actions.h"
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/frame_panel.h"
+#include "gui/scene/scene_panel.h"
 #include "gui/window/main_window.h"
 #include "tests/gui/fixture.h"
 
@@ -143,6 +144,45 @@ class FigureTest : public QObject {
     window_->exports()->figures()->writeScene({{800, 300}, false, true}, file);
     wait();
     QVERIFY(ink(QImage(file), 300, 500) > 1000);
+    const QImage wiped(file);
+    const auto differ = [](const QImage& a, const QImage& b) {  // without names, legend and scale
+      int count = 0;
+      for (int y = 60; y < a.height() - 60; ++y)
+        for (int x = a.width() / 4; x < a.width() - 60; ++x)
+          count += std::abs(a.pixelColor(x, y).lightness() - b.pixelColor(x, y).lightness()) > 20;
+      return count;
+    };
+    d.setOption("scene/views", "1", "one");
+    window_->exports()->figures()->writeScene({{800, 300}, false, true}, file);
+    wait();
+    const QImage one(file);
+    QVERIFY2(differ(wiped, one) < 200, qPrintable(QString::number(differ(wiped, one))));  // the line is 180 px long
+    // From elsewhere it is another picture, with fewer models too.
+    window_->findChild<ScenePanel*>()->lookAlong(viz::AxisView::Right);
+    window_->exports()->figures()->writeScene({{800, 300}, false, true}, file);
+    wait();
+    QVERIFY(differ(QImage(file), one) > 1000);
+    const QImage side(file);
+    d.setOption("scene/models", "dual", "one model");
+    window_->exports()->figures()->writeScene({{800, 300}, false, true}, file);
+    wait();
+    QVERIFY2(differ(QImage(file), side) > 20, qPrintable(QString::number(differ(QImage(file), side))));
+    // Four: A and B above, C and D below, which show nothing here.
+    d.setOption("scene/layers-2", "", "B as all");
+    d.setOption("scene/layers-3", " ", "nothing in C");
+    d.setOption("scene/layers-4", " ", "nothing in D");
+    d.setOption("scene/views", "4", "four");
+    window_->exports()->figures()->writeScene({{800, 600}, false, true}, file);
+    wait();
+    const QImage four(file);
+    const auto inkIn = [&four](const QRect& area) {
+      int count = 0;
+      for (int y = area.top(); y <= area.bottom(); ++y)
+        for (int x = area.left(); x <= area.right(); ++x) count += four.pixelColor(x, y).lightness() > 90;
+      return count;
+    };
+    QVERIFY2(inkIn({450, 60, 300, 190}) > 300, qPrintable(QString::number(inkIn({450, 60, 300, 190}))));
+    QVERIFY2(inkIn({450, 360, 300, 180}) < 50, qPrintable(QString::number(inkIn({450, 360, 300, 180}))));
   }
 
   void strokesOfTwoFramesStayInTheirHalves() {
@@ -162,11 +202,12 @@ class FigureTest : public QObject {
       QSvgRenderer(folder_.filePath("pair.svg")).render(&painter);
     }
     const QImage png(folder_.filePath("pair.png"));  // its painter clips
+    // The strokes of the right frame, which is drawn last, would show in the left half. Smoothing and letters of the two
+    // renderers differ by 683 px there; without the cut it is 2,489 px.
     int over = 0;
     for (int y = 0; y < 400; ++y)
-      for (int x = 0; x < 1000; ++x)
-        over += std::abs(drawn.pixelColor(x, y).lightness() - png.pixelColor(x, y).lightness()) > 60;
-    QVERIFY2(over < 4000, qPrintable(QString::number(over)));
+      for (int x = 0; x < 500; ++x) over += std::abs(drawn.pixelColor(x, y).lightness() - png.pixelColor(x, y).lightness()) > 60;
+    QVERIFY2(over < 1400, qPrintable(QString::number(over)));
   }
 
   void theFrameViewAsPictureAndAsStrokes() {

@@ -116,12 +116,21 @@ class PaletteTest : public QObject {
     QVERIFY(finds("log radiance", "False colour"));
     QVERIFY(finds("false color", "False colour"));
     QVERIFY(finds("saturated", "Mark clipped pixels"));
-    const ParamSpec& choice =
-        *std::find_if(allParams().begin(), allParams().end(), [](const ParamSpec& p) { return !p.choices.empty(); });
-    QVERIFY(finds(choice.choices.back().c_str(), toQString(choice.title)));
+    QVERIFY(finds("fills", "Show the selection"));  // of its tool tip alone
+    QVERIFY(finds("blinn-phong", "Lobe"));          // of its values alone
+    QVERIFY(finds("axis front", "Front"));          // of its id
     // What is called so comes before what is only explained so.
     window_->commandPalette()->line()->setText("theme");
     QCOMPARE(window_->commandPalette()->list()->topLevelItem(0)->text(0), QStringLiteral("Light or dark theme"));
+  }
+
+  void otherSpellingsAreUnderstood() {
+    const auto matches = [](const char* typed, const char* title) {
+      return matchScore(QLatin1String(typed), PaletteItem{QLatin1String(title), {}, {}, true, {}, {}}).has_value();
+    };
+    QVERIFY(matches("gray", "Grey") && matches("center", "Centre") && matches("image", "Picture") && matches("axis", "Axes"));
+    QVERIFY(matches("colors", "Colours") && matches("centers", "Centres"));
+    QVERIFY(!matches("gray", "Centre"));
   }
 
   void whereNothingMatchesItSaysSo() {

@@ -82,6 +82,27 @@ class SceneTest : public QObject {
     QVERIFY(!shown(1, "surface"));
     while (document_->undoStack()->count() > before && document_->undoStack()->index() > before) document_->undoStack()->undo();
     QVERIFY(shown(1, "surface") && !shown(1, "rays") && shown(0, "cameras"));
+    // The checklist says what the active view shows, also after undo; own layers may be none at all, and be given back.
+    const auto ticked = [&](const char* name) {
+      for (int i = 0; i < list->count(); ++i)
+        if (list->item(i)->data(Qt::UserRole).toString() == QLatin1String(name))
+          return list->item(i)->checkState() == Qt::Checked;
+      return false;
+    };
+    QVERIFY(ticked("surface") && ticked("cameras"));
+    own->click();
+    tick("surface", false);
+    QVERIFY(!ticked("surface") && own->isChecked());
+    document_->undoStack()->undo();
+    QVERIFY(ticked("surface"));
+    for (const viz::Layer& layer : viz::sceneLayers()) tick(layer.name.c_str(), false);
+    QVERIFY(own->isChecked() && !shown(0, "surface") && !shown(0, "light") && shown(1, "surface"));
+    panel_->setArrangement(Arrangement::One);
+    QVERIFY(shown(0, "surface"));  // one view has the layers of all
+    panel_->setArrangement(Arrangement::SideBySide);
+    QVERIFY(!shown(0, "surface"));
+    own->click();
+    QVERIFY(!own->isChecked() && shown(0, "surface") && ticked("surface"));
   }
 
   void lookingThroughACameraHasABadgeAndThreeWaysBack() {
