@@ -2,11 +2,11 @@
 // The guided mode on a session of the repository, with the real engine.
 #include "core/explain/explain.h"
 
-
 #include <QAction>
 #include <QListWidget>
 #include <QTextBrowser>
 #include <QToolButton>
+#include <QWheelEvent>
 #include <cmath>
 
 #include "gui/base/text.h"
@@ -170,6 +170,27 @@ class ExplainTest : public QObject {
     QCOMPARE((eye() - primal).norm(), 0.0);
   }
 
+  /// Who has turned the wheel on the photograph has chosen what is seen of it.
+  void whatTheUserZoomedToStays() {
+    FrameCanvas* canvas = window_->framePanel()->canvas();
+    const auto settle = [&] { QTRY_VERIFY_WITH_TIMEOUT(!panel_->busy() && panel_->explanation() && window_->idle(), 60000); };
+    goTo("peak");
+    settle();
+    canvas->fit();
+    const double whole = canvas->zoom();
+    goTo("tangent-plane");
+    settle();
+    QVERIFY(canvas->zoom() > 1.5 * whole);
+    const QPointF at = canvas->rect().center();
+    QWheelEvent wheel(at, canvas->mapToGlobal(at.toPoint()), {}, {0, 240}, Qt::NoButton, Qt::NoModifier, Qt::NoScrollPhase,
+                      false);
+    QCoreApplication::sendEvent(canvas, &wheel);
+    const double chosen = canvas->zoom();
+    goTo("light");
+    settle();
+    QCOMPARE(canvas->zoom(), chosen);
+  }
+
   void theViewGlidesForAPersonWhoCanTakeIt() {
     auto* scene = window_->findChild<ScenePanel*>();
     auto* glide = scene->findChild<CameraGlide*>();
@@ -178,9 +199,10 @@ class ExplainTest : public QObject {
     goTo("tangent-plane");
     settle();
     const Eigen::Vector3d near = eye();
+    bool ran = false;  // nobody asked for animations
     goTo("light");
-    settle();
-    QVERIFY(!glide->running());  // nobody asked for animations
+    QTRY_VERIFY_WITH_TIMEOUT((ran |= glide->running(), !panel_->busy() && panel_->explanation() && window_->idle()), 60000);
+    QVERIFY(!ran);
     const Eigen::Vector3d far = eye();
     QVERIFY((near - far).norm() > 0.1);
     setAnimationsWanted(true);

@@ -5,11 +5,14 @@
 #include <QDir>
 #include <QDirIterator>
 #include <QFile>
+#include <QHelpEvent>
 #include <QPlainTextEdit>
 #include <QPushButton>
+#include <QToolTip>
 #include <QTreeWidget>
 
 #include "core/pipeline/session.h"
+#include "gui/base/theme.h"
 #include "gui/timeline/timeline.h"
 #include "gui/window/changed_inputs.h"
 #include "gui/window/file_actions.h"
@@ -54,7 +57,29 @@ class UnreadableTest : public QObject {
     QVERIFY(bar->isVisible());
     for (const char* part : {"2 photographs", "frames/0002.png", "frames/0004.png: the PNG is truncated"})
       QVERIFY2(bar->text().contains(part), qPrintable(bar->text()));
-    QCOMPARE(window.findChild<Timeline*>()->strip()->unreadable(), (QList<int>{2, 4}));
+    TimelineStrip* strip = window.findChild<Timeline*>()->strip();
+    QCOMPARE(strip->unreadable(), (QList<int>{2, 4}));
+    // Drawn: a mark under their thumbnails, and a cross in place of them; said by the tool tip.
+    const auto warnedAt = [&](int frame) {
+      const QImage shown = strip->grab().toImage();
+      const double ratio = shown.devicePixelRatio(), wide = (strip->width() - 56 - 10) / strip->framesInView();
+      const int from = int(56 + (frame - strip->firstFrame()) * wide), to = int(from + wide);
+      std::pair<int, int> n{0, 0};  // in the upper third, where thumbnails are; below it
+      for (int y = 0; y < shown.height(); ++y)
+        for (int x = int(from * ratio); x < to * ratio; ++x)
+          if (shown.pixelColor(x, y).rgb() == warningColour().rgb()) ++(y < 40 * ratio ? n.first : n.second);
+      return n;
+    };
+    for (const int frame : {2, 4}) {
+      const auto [cross, mark] = warnedAt(frame);
+      QVERIFY2(cross > 20 && mark > 15, qPrintable(QStringLiteral("%1 %2").arg(cross).arg(mark)));
+    }
+    QCOMPARE(warnedAt(3), std::pair(0, 0));
+    const int middleOf4 = int(56 + 4.5 * (strip->width() - 56 - 10) / strip->framesInView());
+    QHelpEvent help(QEvent::ToolTip, {middleOf4, 20}, strip->mapToGlobal(QPoint(middleOf4, 20)));
+    QCoreApplication::sendEvent(strip, &help);
+    QTRY_VERIFY2(QToolTip::text().contains("no photograph: frames/0004.png: the PNG is truncated"), qPrintable(QToolTip::text()));
+    QToolTip::hideText();
 
     QVERIFY(list->isEnabled());
     list->trigger();
@@ -84,6 +109,10 @@ class UnreadableTest : public QObject {
     QTRY_VERIFY_WITH_TIMEOUT(window.idle() && !d.hasUnsavedChanges(), 60000);
     const OpenedSession again = openSession((scene + "/plane.glint").toStdString());
     QCOMPARE(QString::fromStdString(again.scene->frames[2].image.string()), elsewhere + "/0002.png");
+    QFile saved(scene + "/plane.glint");
+    QVERIFY(saved.open(QIODevice::ReadOnly));
+    QVERIFY(saved.readAll().contains("\"photographs\": \"../elsewhere\""));
+    saved.close();
     QVERIFY(QDir().rename(folder_.filePath("scene"), folder_.filePath("moved")));
     const Replay replayed = replay(readSession(folder_.filePath("moved/plane.glint").toStdString()));
     QVERIFY2(replayed.differences.empty(), replayed.differences.empty() ? "" : replayed.differences.front().c_str());
@@ -116,6 +145,41 @@ class UnreadableTest : public QObject {
     QTRY_VERIFY_WITH_TIMEOUT(bar->isVisible(), 60000);
     QVERIFY2(bar->text().contains("scene.json: changed") && bar->text().contains("frames/0002.png"), qPrintable(bar->text()));
     QTRY_VERIFY_WITH_TIMEOUT(window.idle() && !changed->busy(), 60000);
+  }
+
+  /// Contours that came with the scene are not looked for in photographs: the pipeline does not notice that one is missing.
+  void whatThePipelineDoesNotReadIsFoundToo() {
+    const Fixture fixture;
+    Opened opened = fixture.opened();
+    auto scene = std::make_shared<Scene>(*opened.scene);
+    Highlight given;
+    given.light = "lamp";
+    given.contour.points = {{50, 50}, {60, 50}, {60, 60}};
+    for (const int frame : {3, 5}) scene->frames[std::size_t(frame)].highlights = {given};
+    scene->frames[3].image = scene->folder / "gone.png";
+    scene->frames[5].image.clear();  // none is named, which is no fault
+    scene->frames[7].image = scene->folder / "gone7.png";
+    opened.scene = scene;
+    Engine engine = fixture.engine();
+    engine.open = [opened](const std::string& path, const std::string&) {
+      if (path != opened.path) throw InputError(path, "", "no such file");
+      return opened;
+    };
+    MainWindow window(engine);
+    window.show();
+    window.open(QString::fromStdString(opened.path));
+    QTRY_VERIFY_WITH_TIMEOUT(window.document().inspection() && window.idle(), 20000);
+    auto* unreadable = window.findChild<UnreadablePhotographs*>();
+    QCOMPARE(unreadable->all().keys(), QList<int>{3});
+    // The stand-in for the pipeline claims to have read all others; the frame view knows better, and leaves other messages alone.
+    window.open(QStringLiteral("nowhere.json"));
+    auto* bar = window.findChild<MessageBar*>();
+    QTRY_VERIFY(window.idle() && bar->text().contains("nowhere.json"));
+    window.document().selectFrame(5);
+    QTRY_VERIFY(window.idle());
+    window.document().selectFrame(7);
+    QTRY_COMPARE(unreadable->all().keys(), (QList<int>{3, 7}));
+    QVERIFY2(bar->text().contains("nowhere.json"), qPrintable(bar->text()));
   }
 
   void aSceneWithAllItsPhotographsSaysNothing() {

@@ -11,6 +11,7 @@
 #include <QAbstractButton>
 #include <QAction>
 #include <QApplication>
+#include <QCheckBox>
 #include <QClipboard>
 #include <QDockWidget>
 #include <QDoubleSpinBox>
@@ -29,12 +30,15 @@
 #include <QSplitter>
 #include <QStackedWidget>
 #include <QTableView>
+#include <QTextBrowser>
 #include <QToolButton>
 #include <QToolTip>
 #include <algorithm>
 #include <cmath>
 
+#include "gui/base/panel_scroll.h"
 #include "gui/base/text.h"
+#include "gui/base/theme.h"
 #include "gui/base/vtk_canvas.h"
 #include "gui/explain/explain_panel.h"
 #include "gui/frame/frame_panel.h"
@@ -91,8 +95,12 @@ class WindowTest : public QObject {
     canvas.show();
     const auto expectHalves = [&] {
       const QImage picture = canvas.grab().toImage();
-      QCOMPARE(picture.pixelColor(picture.width() / 2, 2), QColor(255, 0, 0));
-      QCOMPARE(picture.pixelColor(picture.width() / 2, picture.height() - 3), QColor(0, 0, 255));
+      QCOMPARE(picture.size(), canvas.size() * canvas.devicePixelRatioF());
+      int others = 0;  // but for the rows about the border between the halves
+      for (int y = 0; y < picture.height(); ++y)
+        for (int x = 0; x < picture.width() && std::abs(y - picture.height() / 2) > 1; ++x)
+          others += picture.pixelColor(x, y) != (y < picture.height() / 2 ? QColor(255, 0, 0) : QColor(0, 0, 255));
+      QCOMPARE(others, 0);
     };
     expectHalves();
     canvas.resize(61, 201);
@@ -159,6 +167,8 @@ class WindowTest : public QObject {
       reached << now;
     } while (QApplication::focusWidget() != table && ++presses < kMost);
     QVERIFY(presses < kMost);
+    for (const QTableView* any : window.findChildren<QTableView*>())  // those of docks that are not shown now, too
+      QVERIFY2(!any->tabKeyNavigation(), qPrintable(any->objectName()));
     for (const char* name : {"timelineStrip", "frameCanvas", "sceneView"}) {
       auto* view = window.findChild<QWidget*>(QLatin1String(name));
       QVERIFY2(view, name);
@@ -209,6 +219,7 @@ class WindowTest : public QObject {
       QCOMPARE(clicked.count(), 1);
       QTRY_VERIFY_WITH_TIMEOUT(window.idle(), 20000);
     }
+    QTRY_VERIFY(seen(window).contains(window.findChild<QDockWidget*>(QStringLiteral("tradeoff"))));  // where the result will be
   }
 
   void theLogHasItsReportAtHand() {
@@ -336,20 +347,36 @@ class WindowTest : public QObject {
     MainWindow window(fixture_.engine());
     show(window);
     openAndWait(window);
+    window.applyLayout(QStringLiteral("compare"));
+    window.document().selectFrame(window.document().frameCount() - 1);  // whose predictions fail
+    window.actions().find("explain.start")->trigger();
+    auto* text = window.findChild<QTextBrowser*>(QStringLiteral("explain.text"));
+    const auto* ladder = window.findChild<LadderPanel*>();
+    QTRY_VERIFY(window.idle() && !ladder->canvases().empty());
     for (const Theme theme : {Theme::Light, Theme::Dark}) {
       window.setTheme(theme);
       const QString faded = window.palette().color(QPalette::PlaceholderText).name();
       for (const char* name : {"frameCaptions", "errorSummary"})
         QTRY_VERIFY2(window.findChild<QLabel*>(QLatin1String(name))->text().contains(faded), name);
+      QTRY_VERIFY(text->toHtml().contains(faded));
+      const auto warned = [&] {
+        for (const QLabel* label : ladder->findChildren<QLabel*>())
+          if (label->text().contains(warningColour().name())) return true;
+        return false;
+      };
+      QTRY_VERIFY(warned());
     }
   }
 
   /// The selected frame comes first, and whatever shows only that frame shows it then.
   void theLadderAndTheDialDoNotWaitForTheOtherFrames() {
     Engine engine = fixture_.engine();
-    std::atomic<bool> hold{true};
-    engine.inspectOneFrame = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int, const ProgressFn&,
-                                const Inspection*) { return drawnCircles(std::move(scene), request); };
+    std::atomic<bool> hold{true}, holdFrame{true};
+    engine.inspectOneFrame = [&holdFrame](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int,
+                                          const ProgressFn&, const Inspection*) {
+      while (holdFrame) QThread::msleep(5);
+      return drawnCircles(std::move(scene), request);
+    };
     engine.inspect = [inner = engine.inspect, &hold](std::shared_ptr<const Scene> scene, const InspectionRequest& r,
                                                      const ProgressFn& p, const Inspection* before) {
       while (hold) QThread::msleep(5);
@@ -359,9 +386,13 @@ class WindowTest : public QObject {
     show(window);
     window.applyLayout(QStringLiteral("compare"));
     window.open(toQString(fixture_.opened().path));
-    QTRY_VERIFY(window.document().frameInspection() != nullptr);
+    QTRY_VERIFY(window.document().scene() != nullptr);
     const auto* ladder = window.findChild<LadderPanel*>();
     const auto shown = [&] { return ladder->canvases().size() == window.document().request().models.size(); };
+    QTest::qWait(200);  // nothing is left over that would draw them anyway
+    const bool tooEarly = shown() || window.document().frameInspection();
+    holdFrame = false;
+    QTRY_VERIFY(window.document().frameInspection() != nullptr);
     QTest::qWait(200);
     const bool early = shown() && !window.document().inspection();
     const auto dial = [&window] {
@@ -371,7 +402,7 @@ class WindowTest : public QObject {
     };
     const std::string earlyDial = dial();
     hold = false;
-    QVERIFY(early);
+    QVERIFY(early && !tooEarly);
     QTRY_VERIFY(window.idle() && window.document().inspection());
     QVERIFY(shown());
     QCOMPARE(earlyDial, dial());
@@ -395,6 +426,38 @@ class WindowTest : public QObject {
     QCoreApplication::sendEvent(list->viewport(), &help);
     QTRY_COMPARE(QToolTip::text(), last.data().toString());
     QToolTip::hideText();
+    QTRY_VERIFY(!QToolTip::isVisible());
+    const QModelIndex whole = list->model()->index(0, 0);  // "As opened"
+    list->scrollTo(whole);
+    const QPoint over = list->visualRect(whole).center();
+    QHelpEvent none(QEvent::ToolTip, over, list->viewport()->mapToGlobal(over));
+    QCoreApplication::sendEvent(list->viewport(), &none);
+    QVERIFY(!QToolTip::isVisible());
+  }
+
+  void theLayersDockFollowsTheViewThatIsWorkedIn() {
+    MainWindow window(fixture_.engine());
+    show(window);
+    openAndWait(window);
+    window.actions().find("view.views-2")->trigger();
+    auto* own = window.findChild<QCheckBox*>(QStringLiteral("ownLayers"));
+    auto* view = window.findChild<QWidget*>(QStringLiteral("sceneView"));
+    for (const auto& [x, name] : {std::pair(3, "View B"), std::pair(1, "View A")}) {
+      QTest::mouseClick(view, Qt::LeftButton, {}, {x * view->width() / 4, view->height() / 2});
+      QVERIFY2(own->text().contains(name), qPrintable(own->text()));
+    }
+  }
+
+  /// Two numbers in px of one prediction: each says which it is (the other one is the dial's, see the tests of plots).
+  void theErrorTableSaysWhatItsPixelsMeasure() {
+    MainWindow window(fixture_.engine());
+    const QAbstractItemModel* model = window.findChild<QTableView*>(QStringLiteral("errorTable"))->model();
+    QString tip;
+    for (int c = 0; c < model->columnCount(); ++c)
+      if (model->headerData(c, Qt::Horizontal).toString() == "Error px")
+        tip = model->headerData(c, Qt::Horizontal, Qt::ToolTipRole).toString();
+    QVERIFY2(tip.contains("Mean contour distance") && tip.contains("without sign") && tip.contains("signed distance"),
+             qPrintable(tip));
   }
 
   void aWrongInputIsAMessageAndKeepsWhatIsOpen() {
@@ -484,9 +547,61 @@ class WindowTest : public QObject {
     window.applyLayout(QStringLiteral("debug"));
     QVERIFY(window.tabifiedDockWidgets(parameters).contains(numbers) && window.tabifiedDockWidgets(parameters).contains(setup));
     QVERIFY(setup->toggleViewAction()->isChecked());
+    const auto behindErrors = [&window](const char* name) {
+      auto* errors = window.findChild<QDockWidget*>(QStringLiteral("errors"));
+      return window.tabifiedDockWidgets(errors).contains(window.findChild<QDockWidget*>(QLatin1String(name)));
+    };
+    QVERIFY(behindErrors("timeline") && behindErrors("plots"));
+    window.resize(900, 1000);  // narrow, but high: the timeline has a row of its own
+    window.applyLayout(QStringLiteral("debug"));
+    QVERIFY(!behindErrors("timeline") && behindErrors("plots"));
+    QVERIFY(window.tabifiedDockWidgets(parameters).contains(setup) && !window.tabifiedDockWidgets(parameters).contains(numbers));
     window.resize(1600, 1000);
     window.applyLayout(QStringLiteral("debug"));
     QVERIFY(spread());
+  }
+
+  /// Without steps between. Qt first holds the window at what its docks still need, which ends when they have become tabs.
+  void aWindowThatShrinksAtOnceMakesTabsOfItsDocks() {
+    if (screen()->availableSize().width() < 1600) QSKIP("the screen is smaller");
+    MainWindow window(fixture_.engine());
+    show(window);
+    openAndWait(window);
+    auto* parameters = window.findChild<QDockWidget*>(QStringLiteral("parameters"));
+    auto* setup = window.findChild<QDockWidget*>(QStringLiteral("setup"));
+    for (const QString& name : layoutNames()) {
+      window.resize(1600, 1000);
+      QTest::qWait(20);
+      window.applyLayout(name);
+      QTest::qWait(20);
+      QVERIFY2(!window.tabifiedDockWidgets(parameters).contains(setup), qPrintable(name));
+      window.resize(800, 500);
+      if (name == "debug") QTRY_VERIFY(window.tabifiedDockWidgets(parameters).contains(setup));  // others show one of them
+      QCOMPARE(window.width(), 800);
+      QTRY_VERIFY2(window.minimumHeight() <= 500,
+                   qPrintable(QStringLiteral("%1: at least %2").arg(name).arg(window.minimumHeight())));
+      window.resize(800, 500);
+      QCOMPARE(window.size(), QSize(800, 500));
+    }
+  }
+
+  void captionsAndSwitchesLeaveThePhotographTheLargestShare() {
+    if (screen()->availableSize().width() < 1000 || screen()->availableSize().height() < 800) QSKIP("the screen is smaller");
+    MainWindow window(fixture_.engine());
+    window.resize(1000, 800);
+    show(window);
+    openAndWait(window);
+    Document& d = window.document();
+    d.setModels({"reflectance", "limit-angle", "canonical", "dual", "primal"});
+    d.setOption("frame/side-by-side", "on", "more switches");
+    QTRY_VERIFY(window.idle() && !d.stale());
+    const FramePanel* panel = window.framePanel();
+    const QList<PanelScroll*> parts = panel->findChildren<PanelScroll*>();
+    QCOMPARE(parts.size(), 2);
+    for (const PanelScroll* part : parts) {
+      QTRY_VERIFY2(part->verticalScrollBar()->isVisible(), qPrintable(QString::number(part->height())));  // it needs more
+      QVERIFY2(part->height() <= 0.29 * panel->height(), qPrintable(QString::number(part->height())));
+    }
   }
 
  private:
