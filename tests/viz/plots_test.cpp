@@ -132,6 +132,16 @@ TEST(PlotData, CsvHasOneLinePerSample) {
             "\"a \"\"quoted\"\", name\",1,,,,1,\"canonical\",\"\",,,\"\"\n");
 }
 
+TEST(Plots, FramesThatAreNoCountAreSaidToBePlaces) {
+  const TemporaryFolder folder;
+  Inspection inspection = *smallInspection(folder.path());
+  EXPECT_EQ(errorPlot(inspection).x.title, "frame");
+  auto scene = std::make_shared<Scene>(*inspection.scene);
+  scene->frames[1].id = "0002";  // every second frame of a sequence
+  inspection.scene = scene;
+  EXPECT_THAT(errorPlot(inspection).x.title, HasSubstr("place in the sequence"));
+}
+
 TEST(Plots, ErrorsOfEveryFrame) {
   const TemporaryFolder folder;
   const auto inspection = smallInspection(folder.path());
@@ -161,7 +171,7 @@ TEST(Plots, DialOfAPredictionThatIsOnePixelTooLarge) {
   // Not the mean contour distance of the error table, which is another number of the same prediction: said so in both places.
   EXPECT_THAT(plot.title, HasSubstr("Signed distance, px"));
   EXPECT_THAT(plot.y.title, HasSubstr("signed distance, observed to predicted contour (px)"));
-  EXPECT_THAT(plot.series[0].name, HasSubstr("|d| 1 px"));
+  EXPECT_THAT(plot.series[0].name, HasSubstr("mean |d| 1 px"));
   for (const PlotPoint& p : plot.series[0].points) {
     EXPECT_NEAR(p.y, 1, 0.05);  // polygons instead of circles
     EXPECT_EQ(*p.target.direction, p.x);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <limits>
 
@@ -162,6 +163,9 @@ PlotData errorPlot(const Inspection& inspection) {
   plot.y.floor = kSmallestPct;
   const std::size_t n = inspection.evidence.size();
   if (n == 0) return nothing(plot, "There are no results yet");
+  // The axis counts frames; where their names are no such count, it says so.
+  for (std::size_t i = 0; i < n && inspection.scene; ++i)
+    if (std::atoi(inspection.scene->frames[i].id.c_str()) != int(i)) plot.x.title = "frame, by its place in the sequence";
   std::vector<double> values;
   for (const std::string& model : modelsInOrder(inspection)) {
     PlotSeries series;
@@ -363,7 +367,7 @@ PlotData residualDial(const Inspection& inspection, int frame, int highlight) {
       if (r.observed == shown) chosen = &r;
     if (!chosen || !std::isfinite(chosen->meanAbsPx)) continue;
     PlotSeries series;
-    series.name = model + text("  |d| %.2g px", chosen->meanAbsPx);
+    series.name = model + text("  mean |d| %.2g px", chosen->meanAbsPx);
     series.colour = modelColour(model);
     series.shape = PlotShape::LineAndPoints;
     series.pointSize = 3;
