@@ -135,6 +135,18 @@ std::vector<ContourRun> contourRuns(const PredictedHighlight& highlight) {
   return runs;
 }
 
+Eigen::AlignedBox2d extentAround(const FrameOverlay& overlay, OverlayRole role, const Pixel& pixel) {
+  Eigen::AlignedBox2d all;
+  for (const OverlayLine& line : overlay.lines) {
+    if (line.role != role || !line.closed) continue;
+    Eigen::AlignedBox2d box;
+    for (const Pixel& p : line.points)
+      if (p.allFinite()) box.extend(p);
+    if (!box.isEmpty() && box.contains(pixel)) all.extend(box);
+  }
+  return all;
+}
+
 std::vector<std::string> modelsInOrder(const Inspection& inspection, const std::set<std::string>& only) {
   static const std::array<const char*, 5> known{"primal", "dual", "canonical", "limit-angle", "reflectance"};
   std::vector<std::string> names;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Geometry>
 #include <optional>
 #include <set>
 #include <string>
@@ -116,6 +117,9 @@ struct OverlayOptions {
 /// evidence; the captions then say why.
 /// @param frame  index into scene->frames; std::invalid_argument when it does not exist.
 FrameOverlay frameOverlay(const Inspection& inspection, int frame, const OverlayOptions& options = {});
+
+/// What the closed lines of a role that go round a pixel take up, photograph px; empty where none does.
+Eigen::AlignedBox2d extentAround(const FrameOverlay& overlay, OverlayRole role, const Pixel& pixel);
 
 /// Names of the inspection's models, from simple to rich (method.md section 7), unknown ones last; only those in `only` unless it
 /// is empty.

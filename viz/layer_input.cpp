@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "core/pipeline/photograph.h"
+#include "core/pipeline/training.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
 
@@ -69,6 +70,31 @@ std::vector<const TrainingView*> LayerInput::views() const {
   for (const TrainingView& view : inspection->views) {
     if (!view.failure && view.frame >= 0 && onSurface(view.frame) && (!solo || view.frame == selection.frame))
       result.push_back(&view);
+  }
+  return result;
+}
+
+std::vector<TrainingView> LayerInput::ownViews() const {
+  std::vector<TrainingView> result;
+  const auto at = static_cast<std::size_t>(selection.frame);
+  if (!surface || at >= inspection->evidence.size() || inspection->isTraining(selection.frame)) return result;
+  const FrameEvidence& evidence = inspection->evidence[at];
+  for (std::size_t i = 0; i < evidence.highlights.size(); ++i) {
+    TrainingView view = trainingView(evidence, static_cast<int>(i), frame(selection.frame).camera, surface);
+    if (view.failure) continue;
+    view.frame = selection.frame;  // evidence of one frame alone may not tell it
+    result.push_back(std::move(view));
+  }
+  return result;
+}
+
+std::vector<const TrainingView*> LayerInput::viewsOf(const ModelFit& fit) const {
+  std::vector<const TrainingView*> result;
+  for (const TrainingView& view : inspection->views) {
+    if (view.failure || view.frame < 0 || view.highlight.light != fit.light) continue;
+    if (!fit.frames.empty() && std::find(fit.frames.begin(), fit.frames.end(), view.frame) == fit.frames.end()) continue;
+    if (fit.surface && inspection->surfaces && inspection->surfaces->keyOf(view.frame) != *fit.surface) continue;
+    if (!solo || view.frame == selection.frame) result.push_back(&view);
   }
   return result;
 }

@@ -96,6 +96,11 @@ struct LayerInput {
   bool onSurface(int frame) const;
   /// Usable training views on the shown surface; of the selected frame only where solo.
   std::vector<const TrainingView*> views() const;
+  /// Where the selected frame does not train: brightest point, tangent plane and virtual camera of each highlight observed in it.
+  /// Without canonical contours. Empty where it trains or has no surface.
+  std::vector<TrainingView> ownViews() const;
+  /// Usable views that a fit was made from, whatever surface they see; of the selected frame only where solo.
+  std::vector<const TrainingView*> viewsOf(const ModelFit& fit) const;
   /// Usable fits of a model that apply to the shown surface.
   std::vector<const ModelFit*> fits(const std::string& model) const;
   /// Predictions for the selected frame.

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <set>
 
 #include "core/light/light.h"
 #include "core/surface/brightest_point.h"
@@ -70,6 +71,31 @@ std::vector<Eigen::Vector3d> ellipsoidEnds(const LayerInput& in, const std::stri
 
 }  // namespace
 
+namespace {
+
+/// The virtual cameras that are drawn, where they are not far away: a mirror seen at a grazing angle takes them there.
+void addVirtualCameras(const LayerInput& in, std::vector<Eigen::Vector3d>& points, bool all) {
+  std::set<int> frames{in.selection.frame};
+  if (all)
+    for (const TrainingView* view : in.views()) frames.insert(view->frame);
+  const Eigen::Vector3d middle = in.scale.sceneBox.center();
+  for (const int frame : frames)
+    for (const LayerInput::Mirror& mirror : in.mirrors(frame)) {
+      std::vector<Eigen::Vector3d> camera;
+      addFrustum(in, camera, frame);
+      for (const Eigen::Vector3d& p : camera)
+        if (const Eigen::Vector3d q = mirror.plane.reflected(p); (q - middle).norm() < 3 * in.scale.sceneSize)
+          points.push_back(q);
+    }
+}
+
+}  // namespace
+
+DrawnParts drawnParts(const SceneView& view) {
+  return {view.layerVisible("peaks"), view.layerVisible("ellipsoids"), view.layerVisible("virtual-cameras"),
+          view.layerVisible("tangent-planes")};
+}
+
 std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, HighlightLook look, const DrawnParts& drawn) {
   const auto at = static_cast<std::size_t>(in.selection.frame);
   if (!in.surface || at >= in.inspection->evidence.size() || in.inspection->evidence[at].highlights.empty()) return {};
@@ -102,10 +128,17 @@ std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, Hig
               place.points.push_back(canonical->directions[i].onTangentPlane);
         }
   }
+  if (drawn.tangentPlanes && look == HighlightLook::Section) {
+    const Eigen::Matrix<double, 3, 2> basis = tangentBasis(p.normal);
+    const double disc = planeRadius(camera, Plane::through(p.position, p.normal), p.position, h.contour.points, in.scale);
+    for (const int k : {0, 1})
+      for (const double side : {-disc, disc}) place.points.push_back(p.position + side * basis.col(k));
+  }
   for (const Eigen::Vector3d& q : place.points) radius = std::max(radius, (q - p.position).norm());
   if (!(radius > 0)) return {};
   place.points.push_back(p.position + 0.8 * radius * p.normal);
-  if (drawn.normal) place.points.push_back(p.position + 1.4 * in.scale.arrow * p.normal);
+  // With the letter on its tip.
+  if (drawn.normal) place.points.push_back(p.position + 1.7 * in.scale.arrow * p.normal);
   const Eigen::Vector3d eye = camera.centreInWorld(), toCamera = (eye - p.position).normalized();
   const Eigen::Vector3d right = camera.camFromWorld.linear().row(0).transpose();
   Eigen::Vector3d up = p.normal;
@@ -120,6 +153,7 @@ std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, Hig
         side.norm() > 0.05 ? Eigen::Vector3d(p.normal.cross(side).normalized()) : tangentBasis(p.normal).col(0);
     place.points = {p.position, eye, mirrored};
     addFrustum(in, place.points, in.selection.frame);
+    addVirtualCameras(in, place.points, drawn.virtualCameras);
     const auto light = in.inspection->lights.find(h.light);
     if (light != in.inspection->lights.end() && !light->second.light.atInfinity() &&
         (light->second.light.position() - p.position).norm() < 3 * in.scale.sceneSize)
@@ -146,8 +180,12 @@ namespace {
 std::vector<Eigen::Vector3d> ellipsoidExtent(const LayerInput& in, const std::string& model) {
   std::vector<Eigen::Vector3d> points = ellipsoidEnds(in, model);
   if (points.empty()) return points;
-  for (const TrainingView* view : in.views())
-    if (view->brightest) points.push_back(view->brightest->point.position);
+  for (const std::string& name : in.models) {
+    if (!model.empty() && name != model) continue;
+    for (const ModelFit* fit : in.fits(name))
+      for (const TrainingView* view : in.viewsOf(*fit))
+        if (view->brightest) points.push_back(view->brightest->point.position);
+  }
   return points;
 }
 
@@ -221,15 +259,17 @@ Eigen::Vector3d overviewDirection(const LayerInput& in, const std::vector<int>& 
   return std::cos(elevation) * flat + std::sin(elevation) * up;
 }
 
-std::optional<Framing> ellipsoidFraming(const LayerInput& in, const std::vector<int>& frames, const std::string& model) {
+std::optional<Framing> ellipsoidFraming(const LayerInput& in, const std::vector<int>& frames, const std::string& model,
+                                        const DrawnParts& drawn) {
   Framing framing;
   framing.points = ellipsoidExtent(in, model);
   if (framing.points.empty()) return {};
   // The cones of primal come from the cameras themselves, and are drawn from halfway.
   if (model == "primal")
     for (const ModelFit* fit : in.fits(model))
-      for (const TrainingView* view : in.views())
+      for (const TrainingView* view : in.viewsOf(*fit))
         if (fit->ellipsoid) framing.points.push_back(0.5 * (view->camera.centreInWorld() + fit->ellipsoid->centre()));
+  if (drawn.virtualCameras) addVirtualCameras(in, framing.points, true);
   // The surface, too, where it is no larger than all that: half of it would puzzle.
   Eigen::AlignedBox3d held;
   for (const Eigen::Vector3d& p : framing.points) held.extend(p);

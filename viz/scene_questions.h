@@ -22,17 +22,19 @@ struct Framing {
   Eigen::Vector3d reference{0, 0, 0};          ///< the focal point's depth
   double leastDepth = 0;
 };
+/// What else is drawn, and is to be held.
+struct DrawnParts {
+  bool normal = false, ellipsoids = false, virtualCameras = false, tangentPlanes = false;
+};
+DrawnParts drawnParts(const SceneView& view);
 /// A highlight of the selected frame.
 /// @param highlight  index in the frame's evidence; out of range = the first. Nothing where it is not on the surface.
-/// @param drawn  what else of it is drawn, and is to be held.
-struct DrawnParts {
-  bool normal = false, ellipsoids = false;
-};
 std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, HighlightLook look, const DrawnParts& drawn);
-/// What the cones of a model hold: the brightest points of the views on this surface and the ellipsoids, across their longest
-/// extent.
+/// What the cones of a model hold: the brightest points of the views that it was made from and the ellipsoids, across their
+/// longest extent.
 /// @param model  "" = all. @param frames  not empty.
-std::optional<Framing> ellipsoidFraming(const LayerInput& in, const std::vector<int>& frames, const std::string& model);
+std::optional<Framing> ellipsoidFraming(const LayerInput& in, const std::vector<int>& frames, const std::string& model,
+                                        const DrawnParts& drawn);
 /// The world's upward direction as the cameras have it; a signed axis where it is near one. @param frames  not empty.
 Eigen::Vector3d upwards(const LayerInput& in, const std::vector<int>& frames);
 /// From the scene towards an eye that sees the highlights with neither the surface nor the frustums before them; unit.

@@ -482,11 +482,11 @@ void SceneView::setWalk(std::shared_ptr<const WalkStory> walk, int step) {
 void SceneView::frameAll() { impl_->frameAll(); }
 void SceneView::frameSelection() { impl_->frameSelection(); }
 bool SceneView::frameHighlight(int highlight, HighlightLook look) {
-  const DrawnParts drawn{layerVisible("peaks"), layerVisible("ellipsoids")};
-  return impl_->valid() && impl_->frame(highlightFraming(impl_->input, highlight, look, drawn));
+  return impl_->valid() && impl_->frame(highlightFraming(impl_->input, highlight, look, drawnParts(*this)));
 }
 void SceneView::frameEllipsoids(const std::string& model) {
-  if (!impl_->valid() || !impl_->frame(ellipsoidFraming(impl_->input, impl_->allFrames, model))) impl_->frameAll();
+  if (!impl_->valid() || !impl_->frame(ellipsoidFraming(impl_->input, impl_->allFrames, model, drawnParts(*this))))
+    impl_->frameAll();
 }
 void SceneView::lookAlong(AxisView view) { impl_->lookAlong(view); }
 

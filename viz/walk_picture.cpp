@@ -40,11 +40,16 @@ struct Painter {
   double textPx;
   WalkPicture out;
 
-  void section(const Section& s, const std::vector<WalkPlace>& places, int visited, bool current, bool onSurface) {
+  void section(const Section& s, const char* title, const std::vector<WalkPlace>& places, int visited, bool current,
+               bool onSurface) {
     const Colour& own = onSurface ? ink : plane;
-    const double length = 0.42 * s.box.height;
     const Eigen::Vector3d start = story.trace.onPlane.front().position;
     const auto where = [&](const WalkPlace& p) { return s.at(p.distance, (p.position - start).dot(story.normal)); };
+    double highest = s.ground;
+    for (const WalkPlace& p : places) highest = std::min(highest, where(p).y());
+    // The letters on the arrows stay below the words above them.
+    const double below = s.box.y + (beside(s.box, title) ? 1.3 : 2.5) * textPx;
+    const double length = std::clamp((highest - below - textPx) / 1.12, 0.15 * s.box.height, 0.42 * s.box.height);
     out.lines.push_back(
         {{s.at(0, 0), {s.box.x + s.box.width, s.ground}}, onSurface ? faint : plane, 1, onSurface ? Dash::Dotted : Dash::Solid});
     std::vector<Eigen::Vector2d> profile, trail;
@@ -70,17 +75,20 @@ struct Painter {
     out.dots.push_back({at, own, current ? 4.5 : 3.0});
   }
 
+  /// Whether the angle has room beside the title; in a narrow half it stands below it.
+  bool beside(const Box& box, const char* title) const {
+    return kGlyphWidth * textPx * static_cast<double>(std::string(title).size() + std::string("α 88.88°").size() + 2) < box.width;
+  }
+
   void head(const Box& box, const char* title, const std::vector<WalkPlace>& places, int visited, const Colour& colour) {
     out.texts.push_back({{box.x, box.y + textPx}, title, colour, Align::Left, true});
     const std::string alpha =
         visited > 0 ? text("α %.2f°", degrees(places[static_cast<std::size_t>(visited - 1)].alpha)) : std::string("not yet");
-    // In a narrow half it stands below the title.
-    const double needed = kGlyphWidth * textPx * static_cast<double>(std::string(title).size() + alpha.size() + 2);
-    const bool beside = needed < box.width;
-    out.texts.push_back({{beside ? box.x + box.width : box.x, box.y + (beside ? 1.0 : 2.2) * textPx},
+    const bool right = beside(box, title);
+    out.texts.push_back({{right ? box.x + box.width : box.x, box.y + (right ? 1.0 : 2.2) * textPx},
                          alpha,
                          visited > 0 ? ink : faint,
-                         beside ? Align::Right : Align::Left});
+                         right ? Align::Right : Align::Left});
   }
 
   void chart(const Box& box, const WalkStory::Moment& now) {
@@ -138,10 +146,10 @@ WalkPicture walkPicture(const WalkStory& story, int step, double width, double h
   if (lowest * s.pxPerMetre * s.stretch > room) s.stretch = std::max(1.0, room / (lowest * s.pxPerMetre));
   s.ground = margin + 0.74 * sectionHeight;
   s.box = {margin, margin, half, sectionHeight};
-  painter.section(s, story.trace.onSurface, now.visitedOnSurface, now.onSurface, true);
+  painter.section(s, "Surface S", story.trace.onSurface, now.visitedOnSurface, now.onSurface, true);
   painter.head(s.box, "Surface S", story.trace.onSurface, now.visitedOnSurface, ink);
   s.box.x += half + gap;
-  painter.section(s, story.trace.onPlane, now.visitedOnPlane, !now.onSurface, false);
+  painter.section(s, "Plane T", story.trace.onPlane, now.visitedOnPlane, !now.onSurface, false);
   painter.head(s.box, "Plane T", story.trace.onPlane, now.visitedOnPlane, painter.plane);
   if (s.stretch > 1.05)
     painter.out.texts.push_back(

@@ -2,6 +2,7 @@
 #include "core/explain/explain.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,7 @@
 
 #include "core/base/angle.h"
 #include "core/diagnostics/conditioning.h"
+#include "core/geometry/epipolar.h"
 #include "core/light/estimate.h"
 #include "core/pipeline/training.h"
 #include "core/surface/mesh_policy.h"
@@ -23,12 +25,19 @@ constexpr double kSameLimit = 0.05;      // relative spread over the directions:
 constexpr double kEllipticShare = 0.01;  // of the size: a contour this near to its ellipse looks like one
 constexpr double kNarrowDeg = 2;         // between reflected rays: below, the light's distance is a guess
 constexpr double kWeakGap = 0.5;         // of the last two singular values: above, two quadrics fit almost alike
+constexpr double kNeedle = 10;           // longest over middle semi-axis: a lamp's blurred image is about as wide as it is long
+constexpr double kOwnSizePct = 100;      // of the highlight's diameter: beyond, the prediction lies beside it
+constexpr double kRoundOff = 1e-9;       // of a vector's length: coordinates are known to 1e-7 at best, so this is a zero
+constexpr int kMostPairedViews = 12;     // 66 pairs of views tell what their epipolar lines do
 
 ExplainNumber one(const std::string& symbol, const std::string& name, double value, const std::string& unit = "") {
   return {symbol, name, {value}, unit};
 }
 ExplainNumber point(const std::string& symbol, const std::string& name, const Eigen::Vector3d& p, const std::string& unit = "m") {
-  return {symbol, name, {p.x(), p.y(), p.z()}, unit};
+  ExplainNumber n{symbol, name, {p.x(), p.y(), p.z()}, unit};
+  for (double& v : n.values)
+    if (std::abs(v) < kRoundOff * p.norm()) v = 0;
+  return n;
 }
 ExplainNumber pixel(const std::string& symbol, const std::string& name, const Pixel& p) {
   return {symbol, name, {p.x(), p.y()}, "px"};
@@ -54,23 +63,16 @@ struct Case {
   const FrameComparison* comparison = nullptr;
   const FrameComparison::Row* row = nullptr;
   const Camera& camera() const { return inspection.scene->frames[std::size_t(out.frame)].camera; }
+  /// That of this highlight; where it was missed, the one that lies beside it.
   const PredictedHighlight* predicted() const {
-    return row && row->predicted >= 0 ? &comparison->prediction.highlights[std::size_t(row->predicted)] : nullptr;
+    if (!row) return nullptr;
+    int index = row->predicted;
+    if (index < 0)
+      for (const FrameComparison::Row& other : comparison->rows)
+        if (other.observed < 0 && other.predicted >= 0) index = other.predicted;
+    return index >= 0 ? &comparison->prediction.highlights[std::size_t(index)] : nullptr;
   }
 };
-
-std::string modelToExplain(const Inspection& inspection, const std::string& wanted) {
-  if (inspection.models.count(wanted)) return wanted;
-  std::string richest, withEllipsoid;
-  for (const std::string& id : idsFromPoorToRich()) {
-    const auto it = inspection.models.find(id);
-    if (it == inspection.models.end()) continue;
-    richest = id;
-    for (const ModelResult::Fit& f : it->second.fits)
-      if (f.fit && f.fit->ellipsoid) withEllipsoid = id;
-  }
-  return withEllipsoid.empty() ? richest : withEllipsoid;
-}
 
 /// Light, fit and comparison of this highlight, and its view with the canonical contour.
 void gather(Case& c) {
@@ -330,6 +332,76 @@ void canonicalStep(const Case& c, ExplainStep& step) {
     step.broken.push_back({"canonical-not-elliptic", {one("", "of its size", 100 * rms / std::sqrt(e.semiAxes.prod()), "%")}});
 }
 
+/// How far tangent epipolar lines miss the ellipses of the views that were used, RMS over their pairs, px.
+std::optional<double> epipolarMiss(const Case& c, bool mirrored) {
+  std::vector<const TrainingView*> views;
+  for (const TrainingView& v : c.inspection.views) {
+    const std::vector<int>& used = c.fit->fit->frames;
+    if (v.failure || !v.highlight.ellipse || !v.virtualCamera || v.highlight.light != c.out.light) continue;
+    if (std::find(used.begin(), used.end(), v.frame) != used.end()) views.push_back(&v);
+  }
+  const std::size_t every = (views.size() + kMostPairedViews - 1) / kMostPairedViews;
+  double sum = 0;
+  int n = 0;
+  for (std::size_t i = 0; i < views.size(); i += every)
+    for (std::size_t j = i + every; j < views.size(); j += every) {
+      const auto camera = [&](const TrainingView& v) { return mirrored ? *v.virtualCamera : v.camera.projection(); };
+      const Outcome<EpipolarTangents> t =
+          epipolarTangents(camera(*views[i]), *views[i]->highlight.ellipse, camera(*views[j]), *views[j]->highlight.ellipse);
+      if (!t || !std::isfinite(t->rmsPx())) continue;
+      sum += std::pow(t->rmsPx(), 2);
+      ++n;
+    }
+  return n > 0 ? std::optional(std::sqrt(sum / n)) : std::nullopt;
+}
+
+/// Why a model fails that has failed: what it assumes, and what the views say of that.
+void addReason(const Case& c, ExplainStep& step) {
+  if (!c.fit || !c.fit->fit) return;
+  if (c.out.model == "dual") step.broken.push_back({"dual-keeps-bend", {}});
+  if (c.out.model != "primal") return;
+  std::vector<ExplainNumber> numbers;
+  if (const std::optional<double> real = epipolarMiss(c, false))
+    numbers.push_back(one("", "epipolar lines of the cameras miss the ellipses by", *real, "px"));
+  if (const std::optional<double> mirrored = epipolarMiss(c, true))
+    numbers.push_back(one("", "those of the virtual cameras by", *mirrored, "px"));
+  step.broken.push_back({"primal-not-mirrored", numbers});
+}
+
+/// What is wrong with the prediction for this highlight, so far that no number of it means anything.
+void addMisses(const Case& c, ExplainStep& step, bool withReason) {
+  const PredictedHighlight* p = c.predicted();
+  if (!p || !c.row) return;
+  const std::size_t before = step.broken.size();
+  // Borders of what the camera sees, as ideal pixels.
+  const Camera& camera = c.camera();
+  Eigen::AlignedBox2d seen;
+  for (const double x : {0.0, 0.5, 1.0})
+    for (const double y : {0.0, 0.5, 1.0})
+      if (const Pixel q = camera.undistorted(Pixel(x * (camera.width - 1), y * (camera.height - 1))); q.allFinite())
+        seen.extend(q);
+  const double outside = seen.isEmpty() || !p->brightest.pixel.allFinite() ? 0 : seen.exteriorDistance(p->brightest.pixel);
+  if (outside > 0) step.broken.push_back({"prediction-outside", {one("", "outside by", outside, "px")}});
+  if (c.row->metrics && c.row->metrics->contourErrorPct > kOwnSizePct)
+    step.broken.push_back(
+        {"prediction-misses", {one("e", "of the highlight's equivalent diameter", c.row->metrics->contourErrorPct, "%")}});
+  else if (c.row->predicted < 0 && c.row->observed >= 0)
+    step.broken.push_back({"prediction-misses", {}});
+  if (withReason && step.broken.size() > before) addReason(c, step);
+}
+
+/// The largest error in a training frame, by the measure of the last step.
+std::optional<ContourMetrics> worstInTraining(const Case& c) {
+  std::optional<ContourMetrics> worst;
+  for (const FrameComparison& comparison : c.result->frames) {
+    const bool ofThisFit = comparison.fit >= 0 && &c.result->fits[std::size_t(comparison.fit)] == c.fit;
+    if (!ofThisFit || !c.inspection.isTraining(comparison.frame)) continue;
+    for (const FrameComparison::Row& row : comparison.rows)
+      if (row.metrics && (!worst || row.metrics->contourErrorPx > worst->contourErrorPx)) worst = row.metrics;
+  }
+  return worst;
+}
+
 void ellipsoidStep(const Case& c, ExplainStep& step) {
   if (!c.fit) {
     step.failure = Failure{Reason::NoHighlight, "there is no model of this light"};
@@ -351,9 +423,23 @@ void ellipsoidStep(const Case& c, ExplainStep& step) {
     step.numbers.push_back(one("", "last over second last singular value", f.gapRatio));
     if (f.gapRatio > kWeakGap) step.broken.push_back({"weak-gap", {one("", "ratio", f.gapRatio)}});
   }
+  const std::optional<ContourMetrics> worst = worstInTraining(c);
+  if (worst) step.numbers.push_back(one("e", "largest error in a training frame", worst->contourErrorPx, "px"));
   if (!f.residualPx.empty())
-    step.numbers.push_back(
-        one("", "largest distance of a training contour", *std::max_element(f.residualPx.begin(), f.residualPx.end()), "px"));
+    step.numbers.push_back(one("",
+                               f.quadric ? "largest distance from a training contour to its outline, one way"
+                                         : "largest distance of a training contour from its level set",
+                               *std::max_element(f.residualPx.begin(), f.residualPx.end()), "px"));
+  const std::size_t before = step.broken.size();
+  if (f.ellipsoid) {
+    Eigen::Vector3d axes = f.ellipsoid->semiAxes();
+    std::sort(axes.data(), axes.data() + 3);
+    if (axes[2] > kNeedle * axes[1])
+      step.broken.push_back({"needle", {one("", "longest semi-axis", axes[2], "m"), one("", "the next one", axes[1], "m")}});
+  }
+  if (worst && worst->contourErrorPct > kOwnSizePct)
+    step.broken.push_back({"training-missed", {one("e", "of the highlight's equivalent diameter", worst->contourErrorPct, "%")}});
+  if (step.broken.size() > before) addReason(c, step);
   if (f.quadric && !f.ellipsoid) step.broken.push_back({"not-an-ellipsoid", {}});
   if (!f.quadric) step.broken.push_back({"no-ellipsoid", {}});
 }
@@ -375,16 +461,21 @@ void projectionStep(const Case& c, ExplainStep& step) {
   if (p->ellipse)
     step.numbers.push_back(
         {"a, b", "semi-axes of the predicted ellipse", {p->ellipse->semiAxes.x(), p->ellipse->semiAxes.y()}, "px"});
+  addMisses(c, step, true);
 }
 
 void inverseWalkStep(const Case& c, ExplainStep& step) {
   const PredictedHighlight* p = c.predicted();
   if (!p) return projectionStep(c, step);
-  step.numbers.clear();
   step.numbers.push_back(one("", "points of the predicted contour", double(p->contour.points.size())));
-  step.numbers.push_back(one("", "share of directions that gave one", p->coverage));
+  if (p->canonical) step.numbers.push_back(one("", "share of directions that gave one", p->coverage));
+  addMisses(c, step, false);
   if (!p->canonical) {
-    step.broken.push_back({"no-walk", {}});
+    const bool stopsAtTheOutline = c.out.model == "primal" || c.out.model == "dual";
+    if (stopsAtTheOutline)
+      step.broken.push_back({"outline-only", {}});
+    else
+      step.broken.push_back({"no-walk", {}});
     return;
   }
   std::map<std::string, int> failed;
@@ -402,8 +493,10 @@ void comparisonStep(const Case& c, ExplainStep& step) {
     step.failure = c.row->failure
                        ? *c.row->failure
                        : Failure{Reason::NoHighlight, c.row->observed < 0 ? "a highlight that nobody observed" : "missed"};
+    addMisses(c, step, true);
     return;
   }
+  addMisses(c, step, true);
   const ContourMetrics& m = *c.row->metrics;
   step.numbers.push_back(one("e", "mean distance of the contours", m.contourErrorPx, "px"));
   step.numbers.push_back(one("e", "of the equivalent diameter", m.contourErrorPct, "%"));
@@ -418,6 +511,19 @@ const std::vector<std::string>& explainSteps() {
                                             "contour",    "limit-angles",  "canonical-ellipse", "ellipsoid",
                                             "projection", "inverse-walk",  "comparison"};
   return ids;
+}
+
+std::string modelToExplain(const Inspection& inspection, const std::string& wanted) {
+  if (inspection.models.count(wanted)) return wanted;
+  std::string richest, withEllipsoid;
+  for (const std::string& id : idsFromPoorToRich()) {
+    const auto it = inspection.models.find(id);
+    if (it == inspection.models.end()) continue;
+    richest = id;
+    for (const ModelResult::Fit& f : it->second.fits)
+      if (f.fit && f.fit->ellipsoid) withEllipsoid = id;
+  }
+  return withEllipsoid.empty() ? richest : withEllipsoid;
 }
 
 Explanation explain(const Inspection& inspection, int frame, int highlight, const std::string& model) {

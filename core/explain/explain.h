@@ -47,8 +47,11 @@ struct Explanation {
 /// comparison.
 const std::vector<std::string>& explainSteps();
 
+/// The wanted model; where it is "" or was not computed, the richest with an ellipsoid, else the richest; "" where there is none.
+std::string modelToExplain(const Inspection& inspection, const std::string& wanted);
+
 /// Pure; takes milliseconds. @param highlight  index in the frame's evidence; out of range = the first.
-/// @param model  "" or one that was not computed = the richest with an ellipsoid, else the richest.
+/// @param model  see modelToExplain().
 Explanation explain(const Inspection& inspection, int frame, int highlight, const std::string& model);
 
 }  // namespace glint

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/explain/explain.h"
 #include "gui/base/text.h"
 #include "gui/document/state_command.h"
 #include "viz/frame_overlay.h"
@@ -43,6 +44,9 @@ FrameRole Document::role(int frame) const {
 std::string Document::plottedModel() const {
   const std::vector<std::string>& models = state_.request.models;
   if (std::find(models.begin(), models.end(), state_.selection.model) != models.end()) return state_.selection.model;
+  // Where nothing is selected, the explanation and the plots are about the same one.
+  if (inspection_ && !option("explain/step", std::string()).empty())
+    if (const std::string explained = modelToExplain(*inspection_, ""); !explained.empty()) return explained;
   return models.empty() ? std::string() : models.back();
 }
 

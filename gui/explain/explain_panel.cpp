@@ -15,6 +15,7 @@
 #include <QVBoxLayout>
 #include <QVariant>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -30,10 +31,15 @@ namespace glint::gui {
 
 namespace {
 const char* const kStep = "explain/step";      // option: id of the step that is shown; "" = none
+const char* const kSolo = "scene/solo";        // option: the 3D views show what belongs to the selected frame alone
 const char* const kLesson = "explain/lesson";  // option: id of the lesson that this session is; "" = none
 constexpr int kDigits = 5;
+constexpr int kWalkHeight = 290;  // px, where there is room
+constexpr int kTextLines = 14;    // of the text and the buttons, that the list of the steps leaves room for
 
 const Lesson* lessonOf(const Document& document) { return lessonById(toQString(document.option(kLesson, std::string()))); }
+
+bool showsWalk(const ExplainText& text) { return text.layers.contains(QStringLiteral("walk")); }
 
 QString escaped(const std::string& s) { return toQString(s).toHtmlEscaped(); }
 
@@ -50,6 +56,14 @@ QString numbersTable(const std::vector<ExplainNumber>& numbers) {
     html += QStringLiteral("<tr><td><i>%1</i>&nbsp;&nbsp;</td><td>%2&nbsp;&nbsp;</td><td><b>%3</b></td></tr>")
                 .arg(escaped(n.symbol), escaped(n.name), valuesText(n));
   return html + QStringLiteral("</table>");
+}
+
+/// @param solo  "" = as nobody has set it.
+void setSolo(std::map<std::string, std::string>& options, const std::string& solo) {
+  if (solo.empty())
+    options.erase(kSolo);
+  else
+    options[kSolo] = solo;
 }
 
 QString box(const QColor& colour, const QString& content) {
@@ -93,7 +107,7 @@ ExplainPanel::ExplainPanel(Document& document, QWidget* parent)
   bar->addWidget(next_);
   bar->addWidget(leave_);
   column->addLayout(bar);
-  auto* split = new QSplitter(Qt::Vertical);
+  split_ = new QSplitter(Qt::Vertical);
   steps_->setObjectName(QStringLiteral("explain.steps"));
   for (const ExplainText& t : explainTexts().steps)
     steps_->addItem(QStringLiteral("%1  %2").arg(steps_->count() + 1).arg(t.title));
@@ -101,15 +115,14 @@ ExplainPanel::ExplainPanel(Document& document, QWidget* parent)
   text_->setObjectName(QStringLiteral("explain.text"));
   text_->setOpenLinks(false);
   walkView_->hide();
-  split->addWidget(steps_);
-  split->addWidget(walkView_);
-  split->addWidget(text_);
-  split->setStretchFactor(0, 0);
-  split->setStretchFactor(1, 0);
-  split->setStretchFactor(2, 1);
-  split->setSizes({steps_->sizeHintForRow(0) * steps_->count() + 8, 290, 400});
-  split->setChildrenCollapsible(false);
-  column->addWidget(split, 1);
+  split_->addWidget(steps_);
+  split_->addWidget(walkView_);
+  split_->addWidget(text_);
+  split_->setStretchFactor(0, 0);
+  split_->setStretchFactor(1, 0);
+  split_->setStretchFactor(2, 1);
+  split_->setChildrenCollapsible(false);
+  column->addWidget(split_, 1);
   setMinimumWidth(220);
 
   connect(back_, &QToolButton::clicked, this, &ExplainPanel::back);
@@ -121,7 +134,15 @@ ExplainPanel::ExplainPanel(Document& document, QWidget* parent)
     const QList<QListWidgetItem*> chosen = steps_->selectedItems();
     if (!chosen.isEmpty() && steps_->row(chosen.front()) != step()) goTo(steps_->row(chosen.front()));
   });
-  connect(&document_, &Document::sceneOpened, this, [this] { lookedAt_.clear(); });
+  connect(&document_, &Document::sceneOpened, this, [this] {
+    lookedAt_.clear();
+    soloBefore_.clear();
+  });
+  connect(walk_, &WalkPlayer::changed, this, [this] {
+    if (walk_->playing()) return;  // it has not changed whether there is one
+    showWalk();
+    showText();
+  });
   connect(&document_, &Document::optionsChanged, this, &ExplainPanel::refresh);
   for (const auto signal : {&Document::inspectionChanged, &Document::selectionChanged, &Document::sceneOpened})
     connect(&document_, signal, this, &ExplainPanel::compute);
@@ -130,7 +151,7 @@ ExplainPanel::ExplainPanel(Document& document, QWidget* parent)
 
 void ExplainPanel::changeEvent(QEvent* e) {
   QWidget::changeEvent(e);
-  if (e->type() == QEvent::PaletteChange) text_->setHtml(html());  // the text has colours of the theme
+  if (e->type() == QEvent::PaletteChange) showText();  // the text has colours of the theme
 }
 
 int ExplainPanel::step() const {
@@ -172,7 +193,10 @@ void ExplainPanel::goTo(int wanted) {
   const QList<ExplainText>& steps = explainTexts().steps;
   if (!document_.scene() || wanted < 0 || wanted >= steps.size()) return;
   const ExplainText& text = steps[wanted];
-  if (step() < 0) layersBefore_ = document_.state().layers;
+  if (step() < 0) {
+    layersBefore_ = document_.state().layers;
+    soloBefore_ = document_.option(kSolo, std::string());
+  }
   std::map<std::string, bool> layers = document_.state().layers;
   for (const viz::Layer& layer : viz::sceneLayers()) layers[layer.name] = text.layers.contains(toQString(layer.name));
   // Overlays that no step names (what the user laid over the frame) stay as they are.
@@ -180,6 +204,7 @@ void ExplainPanel::goTo(int wanted) {
     for (const QString& name : any.frameLayers) layers[name.toStdString()] = text.frameLayers.contains(name);
   std::map<std::string, std::string> options = document_.state().options;
   options[kStep] = text.id.toStdString();
+  setSolo(options, text.solo ? "1" : soloBefore_);
   lookPending_ = true;
   document_.setView(layers, options, tr("Explain %1: %2").arg(wanted + 1).arg(text.title));
   lookAtStep();
@@ -210,6 +235,7 @@ void ExplainPanel::leave() {
   if (step() < 0) return;
   std::map<std::string, std::string> options = document_.state().options;
   options.erase(kStep);
+  setSolo(options, soloBefore_);
   lookPending_ = false;
   lookedAt_.clear();
   document_.setView(layersBefore_, options, tr("Leave the explanation"));
@@ -239,6 +265,7 @@ void ExplainPanel::refresh() {
   const int now = step(), count = explainTexts().steps.size();
   const QSignalBlocker quiet(steps_);
   steps_->setCurrentRow(now);
+  if (now >= 0) steps_->scrollToItem(steps_->item(now));
   back_->setEnabled(now > 0);
   next_->setEnabled(document_.scene() && now < count - 1);
   next_->setText(now < 0 ? tr("Start") : tr("Next"));
@@ -250,9 +277,38 @@ void ExplainPanel::refresh() {
     font.setBold(lesson && lesson->steps.contains(explainTexts().steps[i].id));
     steps_->item(i)->setFont(font);
   }
-  walkView_->setVisible(now >= 0 && explainTexts().steps[now].layers.contains(QStringLiteral("walk")));
+  showWalk();
   if (now >= 0 && !explanation_ && document_.inspection() && !job_.awaited()) return compute();
-  text_->setHtml(html());
+  showText();
+}
+
+void ExplainPanel::showText() {
+  if (const QString now = html(); now != std::exchange(shown_, now)) text_->setHtml(now);  // else it would scroll back
+}
+
+/// Where there is none the text says why, and has the room.
+void ExplainPanel::showWalk() {
+  walkView_->setVisible(step() >= 0 && showsWalk(explainTexts().steps[step()]) && walk_->problem().isEmpty());
+  fitSteps();
+}
+
+/// In a low panel the list of the steps and the walk give way to what the step says.
+void ExplainPanel::fitSteps() {
+  const int row = std::max(1, steps_->sizeHintForRow(0)), frame = 2 * steps_->frameWidth();
+  const int walk = walkView_->isVisibleTo(this) ? walkView_->minimumSizeHint().height() : 0;
+  const int room = height() - kTextLines * fontMetrics().lineSpacing();
+  const int rows = std::clamp((room - walk) / row, 3, std::max(3, steps_->count()));
+  const int list = rows * row + frame;
+  const std::array<int, 3> now{height(), list, walk};
+  if (now == std::exchange(fitted_, now)) return;  // else it would undo what the user has drawn larger
+  const int wanted = walk > 0 ? std::max(walk, std::min(kWalkHeight, room - list)) : kWalkHeight;
+  split_->setSizes({list, wanted, std::max(1, height() - list - (walk > 0 ? wanted : 0))});
+  if (step() >= 0) steps_->scrollToItem(steps_->item(step()), QAbstractItemView::PositionAtCenter);
+}
+
+void ExplainPanel::resizeEvent(QResizeEvent* e) {
+  QWidget::resizeEvent(e);
+  fitSteps();
 }
 
 QString ExplainPanel::overview() const {
@@ -281,9 +337,10 @@ QString ExplainPanel::html() const {
   const int now = step();
   if (now < 0) return overview();
   const ExplainText& text = explainTexts().steps[now];
+  const ExplainText::Words words = text.words(explanation_ ? toQString(explanation_->model) : QString());
   QString html =
       QStringLiteral("<h3>%1</h3><p>%2</p><p style='margin-left:8px'><tt>%3</tt><br><span style='color:%4'>%5</span></p>")
-          .arg(text.title.toHtmlEscaped(), text.text.toHtmlEscaped(), text.equation.toHtmlEscaped(),
+          .arg(text.title.toHtmlEscaped(), words.text.toHtmlEscaped(), words.equation.toHtmlEscaped(),
                palette().color(QPalette::PlaceholderText).name(), text.section.toHtmlEscaped());
   if (const Lesson* lesson = lessonOf(document_); lesson && lesson->remarks.contains(text.id))
     html += box(accentColour(), tr("<b>In this lesson.</b> %1").arg(lesson->remarks.value(text.id)));
@@ -296,11 +353,13 @@ QString ExplainPanel::html() const {
                        .arg(escaped(scene.frames[std::size_t(explanation_->frame)].id),
                             explanation_->light.empty() ? QString() : tr(", light %1").arg(escaped(explanation_->light)),
                             explanation_->model.empty() ? QString() : tr(", model %1").arg(escaped(explanation_->model))));
-  html += numbersTable(s.numbers);
+  // What is wrong comes first: a low window shows no more than that.
   if (s.failure) html += box(errorColour(), tr("This scene does not get here: %1").arg(escaped(s.failure->message())));
   for (const BrokenAssumption& b : s.broken)
     html += box(warningColour(), explainTexts().broken.value(toQString(b.id)).toHtmlEscaped() + numbersTable(b.numbers));
-  return html;
+  if (!s.failure && s.broken.empty() && !walk_->problem().isEmpty() && showsWalk(text))
+    html += box(warningColour(), tr("There is no walk to show: %1").arg(walk_->problem().toHtmlEscaped()));
+  return html + (s.broken.empty() && !s.failure ? QString() : QStringLiteral("<br>")) + numbersTable(s.numbers);
 }
 
 void ExplainPanel::addActions(Actions& actions, QMenu* menu) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <QWidget>
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
@@ -13,6 +14,7 @@
 
 class QLabel;
 class QListWidget;
+class QSplitter;
 class QTextBrowser;
 class QToolButton;
 class QUrl;
@@ -51,11 +53,15 @@ class ExplainPanel : public QWidget {
 
  protected:
   void changeEvent(QEvent* e) override;
+  void resizeEvent(QResizeEvent* e) override;
 
  private:
   void compute();
   void refresh();
   void lookAtStep();
+  void showText();
+  void showWalk();
+  void fitSteps();
   QString subject() const;
   void openLesson(const QString& id);
   void follow(const QUrl& link);
@@ -66,13 +72,17 @@ class ExplainPanel : public QWidget {
   LatestJob job_;
   std::shared_ptr<const Explanation> explanation_;
   std::map<std::string, bool> layersBefore_;  ///< what was shown before the first step
+  std::string soloBefore_;                    ///< and whether of the selected frame alone
   bool lookPending_ = false;                  ///< the step on screen was gone to, and what it is about is not computed yet
   QString lookedAt_;                          ///< what the views were sent to last; "" = wherever a session left them
   Actions* actions_ = nullptr;
   WalkPlayer* walk_;
   WalkView* walkView_;
+  QSplitter* split_;
   QListWidget* steps_;
+  std::array<int, 3> fitted_{};  ///< panel, list, walk: heights that the parts were last given for
   QTextBrowser* text_;
+  QString shown_;  ///< by it
   QLabel* place_;
   QToolButton *back_, *next_, *leave_;
 };

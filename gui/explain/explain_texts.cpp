@@ -25,15 +25,26 @@ ExplainTexts read() {
   const QJsonObject root = QJsonDocument::fromJson(file.readAll()).object();
   for (const QJsonValue& v : root["steps"].toArray()) {
     const QJsonObject s = v.toObject();
+    QMap<QString, ExplainText::Words> ofModels;
+    const QJsonObject models = s["models"].toObject();
+    for (auto it = models.begin(); it != models.end(); ++it) {
+      const QJsonObject o = it.value().toObject();
+      ofModels.insert(it.key(), {o["text"].toString(), o["equation"].toString()});
+    }
     texts.steps.append({s["id"].toString(), s["title"].toString(), s["text"].toString(), s["equation"].toString(),
                         s["section"].toString(), names(s["layers"]), names(s["frame_layers"], QStringLiteral("frame/")),
-                        s["look"].toString()});
+                        s["look"].toString(), s["solo"].toBool(), ofModels});
   }
   const QJsonObject broken = root["broken"].toObject();
   for (auto it = broken.begin(); it != broken.end(); ++it) texts.broken.insert(it.key(), it.value().toString());
   return texts;
 }
 }  // namespace
+
+ExplainText::Words ExplainText::words(const QString& model) const {
+  const Words own = ofModels.value(model);
+  return {own.text.isEmpty() ? text : own.text, own.equation.isEmpty() ? equation : own.equation};
+}
 
 const ExplainTexts& explainTexts() {
   static const ExplainTexts texts = read();

@@ -10,10 +10,17 @@ namespace glint::gui {
 
 /// What resources/explain/steps.json says of one step.
 struct ExplainText {
+  struct Words {
+    QString text, equation;
+  };
   QString id, title, text, equation, section;
-  QStringList layers;       ///< of the scene, that show it
-  QStringList frameLayers;  ///< "frame/NAME"
-  QString look;             ///< what of the scene is to be seen, see ScenePanel::look
+  QStringList layers;             ///< of the scene, that show it
+  QStringList frameLayers;        ///< "frame/NAME"
+  QString look;                   ///< what of the scene is to be seen, see ScenePanel::look
+  bool solo = false;              ///< of the selected frame alone: what belongs to the others would lie over it
+  QMap<QString, Words> ofModels;  ///< where a model does something else: by its id, "" = as for the others
+  /// @param model  "" = none.
+  Words words(const QString& model) const;
 };
 
 struct ExplainTexts {

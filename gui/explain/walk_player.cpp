@@ -11,6 +11,12 @@ namespace glint::gui {
 namespace {
 const char* const kWalkStep = "explain/walk-step";  // absent = the whole walk
 constexpr int kStepMs = 70;
+
+/// "not supported" is the program's word for what a model does not do.
+QString why(const Failure& failure) {
+  const bool bare = failure.reason == Reason::NotSupported && !failure.detail.empty();
+  return toQString(bare ? failure.detail : failure.message());
+}
 }  // namespace
 
 WalkPlayer::WalkPlayer(Document& document, QObject* parent) : QObject(parent), document_(document) {
@@ -49,7 +55,7 @@ void WalkPlayer::ask() {
     const Explanation explanation = explain(*question.inspection, frame, s.highlight, s.model);
     const Outcome<viz::WalkStory> found = viz::walkStory(*question.inspection, explanation, question.inverse, s.direction);
     auto story = found ? std::make_shared<const viz::WalkStory>(*found) : nullptr;
-    const QString problem = found ? QString() : toQString(found.failure().message());
+    const QString problem = found ? QString() : why(found.failure());
     return LatestJob::Deliver([this, story, problem] {
       story_ = story;
       problem_ = problem;

@@ -412,7 +412,7 @@ void FramePanel::selectModelAt(double x, double y) {
 
 void FramePanel::look(const QString& at, int highlight) {
   if (at == QLatin1String("tangent") || at == QLatin1String("highlight")) {
-    zoomTo(highlight);
+    zoomTo(highlight, at == QLatin1String("tangent"));
     zoomedByLook_ = true;
   } else if (std::exchange(zoomedByLook_, false)) {
     canvas_->fit();
@@ -422,7 +422,7 @@ void FramePanel::look(const QString& at, int highlight) {
 
 void FramePanel::goToHighlight() { zoomTo(document_.selection().highlight); }
 
-void FramePanel::zoomTo(int highlight) {
+void FramePanel::zoomTo(int highlight, bool withCanonical) {
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
   if (!inspection) return;
   const auto look = [&](FrameCanvas* canvas, int frame, int highlight) {
@@ -433,9 +433,21 @@ void FramePanel::zoomTo(int highlight) {
     for (const Pixel& p : highlights[std::size_t(std::clamp(highlight, 0, int(highlights.size()) - 1))].contour.points)
       box.extend(document_.scene()->frames[std::size_t(frame)].camera.distorted(p));
     if (box.isEmpty()) return;
-    const Eigen::Vector2d size = box.sizes().cwiseMax(4.0);
     // The highlight fills half of the canvas, so that its surroundings show.
-    canvas->lookAt(box.center(), 0.5 * std::min(canvas->width() / size.x(), canvas->height() / size.y()));
+    double share = 0.5;
+    if (withCanonical) {  // on a bulging mirror several times as large
+      const Camera& camera = document_.scene()->frames[std::size_t(frame)].camera;
+      const Eigen::AlignedBox2d photograph(Pixel(0, 0), Pixel(camera.width, camera.height));
+      const viz::FrameOverlay overlay = viz::frameOverlay(*inspection, frame, overlayOptions());
+      const Eigen::AlignedBox2d around =
+          viz::extentAround(overlay, viz::OverlayRole::CanonicalEllipse, box.center()).intersection(photograph);
+      if (!around.isEmpty() && !box.contains(around)) {
+        share = 0.85;
+        box.extend(around);
+      }
+    }
+    const Eigen::Vector2d size = box.sizes().cwiseMax(4.0);
+    canvas->lookAt(box.center(), share * std::min(canvas->width() / size.x(), canvas->height() / size.y()));
   };
   look(canvas_, document_.selection().frame, highlight);
   if (pair_->on()) look(second_, pair_->secondFrame(), -1);

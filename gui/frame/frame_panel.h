@@ -74,7 +74,8 @@ class FramePanel : public QWidget {
   void selectAt(double x, double y);
   void selectModelAt(double x, double y);
   void followLink(const QString& link);
-  void zoomTo(int highlight);
+  /// @param withCanonical  also the canonical ellipses about it that are shown.
+  void zoomTo(int highlight, bool withCanonical = false);
   QString problemText(int frame, const QString& reason) const;
 
   Document& document_;

@@ -3,6 +3,7 @@
 #include "core/explain/explain.h"
 
 #include <QAction>
+#include <QComboBox>
 #include <QListWidget>
 #include <QTextBrowser>
 #include <QToolButton>
@@ -13,6 +14,7 @@
 #include "gui/base/vtk_canvas.h"
 #include "gui/explain/explain_panel.h"
 #include "gui/explain/explain_texts.h"
+#include "gui/explain/walk_view.h"
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/frame_panel.h"
 #include "gui/scene/camera_glide.h"
@@ -66,6 +68,9 @@ class ExplainTest : public QObject {
       const QString shown = panel_->findChild<QTextBrowser*>("explain.text")->toPlainText();
       QVERIFY2(shown.contains(explainTexts().steps[i].title), qPrintable(shown));
       QCOMPARE(window_->document().undoStack()->count(), i + 1);
+      // Planes, normals and canonical ellipses of all frames at once would be a heap.
+      QCOMPARE(window_->document().option("scene/solo", 0.0) == 1,
+               explainTexts().steps[i].id == "tangent-plane" || explainTexts().steps[i].id == "canonical-ellipse");
       for (const viz::Layer& layer : viz::sceneLayers())
         QCOMPARE(window_->document().layerVisible(layer.name), explainTexts().steps[i].layers.contains(toQString(layer.name)));
       if (i + 1 < steps) QTest::mouseClick(next, Qt::LeftButton);
@@ -76,6 +81,7 @@ class ExplainTest : public QObject {
     QTest::mouseClick(panel_->findChild<QToolButton*>("explain.leave"), Qt::LeftButton);
     QCOMPARE(panel_->step(), -1);
     QVERIFY(window_->document().state().layers == before);
+    QCOMPARE(window_->document().option("scene/solo", std::string()), std::string());
     window_->document().undoStack()->undo();
     QCOMPARE(panel_->step(), steps - 2);
   }
@@ -130,7 +136,6 @@ class ExplainTest : public QObject {
   void theViewsFollowWhatAStepIsAbout() {
     auto* scene = window_->findChild<ScenePanel*>();
     FrameCanvas* canvas = window_->framePanel()->canvas();
-    const auto settle = [&] { QTRY_VERIFY_WITH_TIMEOUT(!panel_->busy() && panel_->explanation() && window_->idle(), 60000); };
     const auto eye = [&] { return scene->view().viewPoint().position; };
     viz::Selection s;
     s.frame = 0;
@@ -194,7 +199,6 @@ class ExplainTest : public QObject {
   void theViewGlidesForAPersonWhoCanTakeIt() {
     auto* scene = window_->findChild<ScenePanel*>();
     auto* glide = scene->findChild<CameraGlide*>();
-    const auto settle = [&] { QTRY_VERIFY_WITH_TIMEOUT(!panel_->busy() && panel_->explanation() && window_->idle(), 60000); };
     const auto eye = [&] { return scene->view().viewPoint().position; };
     goTo("tangent-plane");
     settle();
@@ -224,6 +228,83 @@ class ExplainTest : public QObject {
     QVERIFY((taken - far).norm() > 1e-6);
   }
 
+  void whatIsWrongStandsBeforeTheNumbers() {
+    select(window_->document().frameCount() - 1, "primal");
+    goTo("virtual-camera");
+    settle();
+    const QString shown = shownText();
+    QVERIFY(shown.contains("the model fails") && shown.contains("centre of the virtual camera"));
+    QVERIFY2(shown.indexOf("the model fails") < shown.indexOf("centre of the virtual camera"), qPrintable(shown));
+  }
+
+  void theWordsAreThoseOfTheSelectedModel() {
+    const int frame = 1;  // where every model predicts
+    const auto said = [&](const char* model, const char* step) {
+      select(frame, model);
+      goTo(step);
+      settle();
+      return shownText();
+    };
+    QVERIFY(said("canonical", "ellipsoid").contains("P_v,i Q*"));
+    QVERIFY(said("primal", "ellipsoid").contains("P_i Q* P_iᵀ") && !shownText().contains("P_v"));
+    QVERIFY(said("primal", "projection").contains("C* ~ P Q* Pᵀ") && !shownText().contains("the camera mirrored"));
+    QVERIFY(said("dual", "projection").contains("P_v Q* P_vᵀ"));
+    for (const char* model : {"primal", "dual"}) {
+      const QString shown = said(model, "inverse-walk");
+      QVERIFY2(shown.contains("outline") && !shown.contains("level set") && !shown.contains("Play it"), qPrintable(shown));
+      QVERIFY(!panel_->findChild<WalkView*>()->isVisibleTo(panel_));
+    }
+    QVERIFY(said("limit-angle", "inverse-walk").contains("level set"));
+    QVERIFY(!panel_->findChild<WalkView*>()->isVisibleTo(panel_));
+    QVERIFY(said("canonical", "inverse-walk").contains("Play it"));
+    QTRY_VERIFY(panel_->findChild<WalkView*>()->isVisibleTo(panel_));
+  }
+
+  /// The canonical ellipse is several times as large as the highlight where the sheet is bent.
+  void theFrameViewHoldsTheCanonicalEllipse() {
+    const int last = window_->document().frameCount() - 1;
+    select(last, "canonical");
+    goTo("canonical-ellipse");
+    settle();
+    FrameCanvas* canvas = window_->framePanel()->canvas();
+    const viz::FrameOverlay overlay =
+        viz::frameOverlay(*window_->document().inspection(), last, window_->framePanel()->overlayOptions());
+    int points = 0;
+    for (const viz::OverlayLine& line : overlay.lines) {
+      if (line.role != viz::OverlayRole::CanonicalEllipse) continue;
+      for (const Pixel& p : line.points) {
+        ++points;
+        const Eigen::Vector2d off = canvas->zoom() * (p - canvas->centre());
+        QVERIFY(std::abs(off.x()) < canvas->width() / 2.0 && std::abs(off.y()) < canvas->height() / 2.0);
+      }
+    }
+    QVERIFY(points > 20);
+  }
+
+  void whereNothingIsSelectedAllPanelsAreAboutOneModel() {
+    select(0, "");
+    goTo("peak");
+    settle();
+    QCOMPARE(window_->findChild<QComboBox*>("plottedModel")->currentText(), toQString(panel_->explanation()->model));
+  }
+
+  void inALowWindowTheTextHasRoom() {
+    const QSize before = window_->size();
+    window_->applyLayout(QStringLiteral("explain"));
+    window_->resize(1000, 680);
+    select(0, "canonical");
+    goTo("light");
+    settle();
+    auto* browser = panel_->findChild<QTextBrowser*>("explain.text");
+    const int lines = browser->viewport()->height() / QFontMetrics(browser->font()).lineSpacing();
+    goTo("limit-angles");  // with the walk above it
+    settle();
+    QTest::qWait(50);
+    const int beside = browser->viewport()->height() / QFontMetrics(browser->font()).lineSpacing();
+    window_->resize(before);
+    QVERIFY2(lines >= 8 && beside >= 5, qPrintable(QStringLiteral("%1, %2").arg(lines).arg(beside)));
+  }
+
   void aClickInTheListGoesThere() {
     auto* list = panel_->findChild<QListWidget*>("explain.steps");
     window_->actions().find("explain.step-peak")->trigger();
@@ -232,6 +313,17 @@ class ExplainTest : public QObject {
   }
 
  private:
+  void select(int frame, const char* model) {
+    viz::Selection s;
+    s.frame = frame;
+    s.model = model;
+    window_->document().select(s);
+  }
+  void settle() {
+    QTRY_VERIFY_WITH_TIMEOUT(!panel_->busy() && panel_->explanation() && window_->idle() && !window_->document().stale(), 60000);
+    QCOMPARE(panel_->explanation()->frame, window_->document().selection().frame);
+  }
+  QString shownText() const { return panel_->findChild<QTextBrowser*>("explain.text")->toPlainText(); }
   void goTo(const char* step) { window_->actions().find(QStringLiteral("explain.step-") + QLatin1String(step))->trigger(); }
   std::unique_ptr<MainWindow> window_;
   ExplainPanel* panel_ = nullptr;

@@ -159,5 +159,25 @@ TEST(Style, ReportsAndViewsUseTheSameColours) {
   }
 }
 
+TEST(FrameOverlayExtent, IsThatOfTheClosedLinesAboutThePixel) {
+  FrameOverlay overlay;
+  const auto add = [&](OverlayRole role, bool closed, std::vector<Pixel> points) {
+    OverlayLine line;
+    line.role = role;
+    line.closed = closed;
+    line.points = std::move(points);
+    overlay.lines.push_back(line);
+  };
+  add(OverlayRole::CanonicalEllipse, true, {{0, 0}, {10, 2}, {4, 8}});
+  add(OverlayRole::CanonicalEllipse, true, {{1, -3}, {7, 3}, {2, 6}});
+  add(OverlayRole::CanonicalEllipse, true, {{50, 50}, {60, 52}, {54, 58}});  // of another highlight
+  add(OverlayRole::CanonicalEllipse, false, {{-90, -90}, {90, 90}});
+  add(OverlayRole::ObservedContour, true, {{-50, -50}, {70, 0}, {0, 70}});
+  const Eigen::AlignedBox2d box = extentAround(overlay, OverlayRole::CanonicalEllipse, {4, 2});
+  EXPECT_EQ(box.min(), Pixel(0, -3));
+  EXPECT_EQ(box.max(), Pixel(10, 8));
+  EXPECT_TRUE(extentAround(overlay, OverlayRole::CanonicalEllipse, {30, 30}).isEmpty());
+}
+
 }  // namespace
 }  // namespace glint::viz

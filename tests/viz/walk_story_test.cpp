@@ -198,5 +198,19 @@ TEST(WalkPicture, EachSectionSaysTheAngleOfItsStep) {
   }
 }
 
+TEST(WalkPicture, TheLettersOnTheArrowsStayBelowTheWordsAboveThem) {
+  const WalkStory s = told(sphere(kRadius)).story;
+  constexpr double kText = 14;
+  for (const double width : {250.0, 420.0})
+    for (int step = 0; step < s.steps(); ++step) {
+      double words = 0, letters = 1e9;  // the lowest baseline, the highest top
+      for (const WalkPicture::Text& t : walkPicture(s, step, width, 190, kText, true).texts) {
+        if (t.text == "Surface S" || t.text == "Plane T" || t.text.rfind("α ", 0) == 0) words = std::max(words, t.at.y());
+        if (t.text == "N" || t.text == "H") letters = std::min(letters, t.at.y() - 0.75 * kText);
+      }
+      EXPECT_GT(letters, words) << "step " << step << ", width " << width;
+    }
+}
+
 }  // namespace
 }  // namespace glint::viz

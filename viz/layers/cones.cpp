@@ -93,10 +93,14 @@ LayerContent conesLayer(const LayerInput& in) {
       continue;
     }
     std::vector<Cone> cones;
-    for (const TrainingView* view : in.views()) {
-      if (view->highlight.light != fit->light) continue;
-      if (const std::optional<Cone> cone = coneOf(*view, model)) cones.push_back(*cone);
+    bool elsewhere = false;
+    for (const TrainingView* view : in.viewsOf(*fit)) {
+      const std::optional<Cone> cone = coneOf(*view, model);
+      if (!cone) continue;
+      elsewhere = elsewhere || !in.onSurface(view->frame);
+      cones.push_back(*cone);
     }
+    if (elsewhere) content.remarks.push_back("cones: of the views that trained; they saw another surface");
     const std::size_t every = std::max<std::size_t>(1, (cones.size() + kMostCones - 1) / kMostCones);
     if (every > 1) content.remarks.push_back("cones: one of " + std::to_string(every) + " is drawn");
     for (std::size_t i = 0; i < cones.size(); ++i) {

@@ -31,6 +31,8 @@ LayerContent peaksLayer(const LayerInput& in) {
     content.add(sphereActor({p.position}, size * in.scale.point, colour), info);
     content.add(arrowActor({{p.position, p.position + size * in.scale.arrow * p.normal}}, 0.22 * size * in.scale.point, colour),
                 info);
+    if (in.solo && info.model.empty())
+      content.labels.push_back({p.position + 1.2 * size * in.scale.arrow * p.normal, "N", in.ink()});
   };
   for (const TrainingView* view : in.views()) {
     if (!view->brightest) continue;
@@ -53,7 +55,8 @@ LayerContent peaksLayer(const LayerInput& in) {
   for (const std::string& model : in.models) {
     for (const FrameComparison* comparison : in.comparisons(model)) {
       for (const PredictedHighlight& h : comparison->prediction.highlights) {
-        if (!h.brightest.point.position.allFinite() || h.brightest.point.normal.norm() < 0.5) continue;
+        // Without a tangent plane it is no point of the surface: primal has the middle of its ellipsoid there.
+        if (!h.tangentPlane || !h.brightest.point.position.allFinite() || h.brightest.point.normal.norm() < 0.5) continue;
         add(h.brightest, in.frame(in.selection.frame).camera, 1.0, modelColour(model),
             brightestInfo(in, h.brightest, in.selection.frame, model, -1, comparison->light));
       }

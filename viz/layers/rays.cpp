@@ -1,38 +1,66 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <vtkActor.h>
+#include <vtkProperty.h>
+
 #include <algorithm>
 
 #include "viz/glyphs.h"
 #include "viz/layers.h"
 
 namespace glint::viz {
+namespace {
+
+constexpr double kElsewhere = 0.35;  // opacity of rays that left a surface which is not shown
+
+void addRay(LayerContent& content, const LayerInput& in, const TrainingView& view, bool elsewhere) {
+  const Eigen::Vector3d eye = view.camera.centreInWorld();
+  const SurfacePoint p = facing(view.brightest->point, eye);
+  const Eigen::Vector3d v = (eye - p.position).normalized(), r = reflect(v, p.normal);
+  // As far as the light where there is one in reach, so that one sees how well the rays meet there.
+  double reach = 0.6 * in.scale.sceneSize;
+  for (const auto& [key, estimate] : in.inspection->lights) {
+    const Light& light = estimate.light;
+    if (light.atInfinity() || key.rfind(view.highlight.light, 0) != 0) continue;
+    const double along = r.dot(light.position() - p.position);
+    if (along > 0) reach = std::min(1.1 * along, 4 * in.scale.sceneSize);
+  }
+  const bool selected = view.frame == in.selection.frame;
+  const double width = selected ? 2.5 : 1.2;
+  Picked info;
+  info.layer = "rays";
+  info.frame = view.frame;
+  info.highlight = in.highlightOf(view);
+  info.light = view.highlight.light;
+  info.text =
+      line("reflected ray of frame", in.frame(view.frame).id) + line("P", p.position, "m") + line("r", r) + line("N", p.normal);
+  const auto add = [&](const vtkSmartPointer<vtkActor>& actor, double widthPx) {
+    if (elsewhere) actor->GetProperty()->SetOpacity(kElsewhere);
+    content.add(actor, info, widthPx);
+  };
+  add(segmentActor(dashed(eye, p.position, 0.015 * in.scale.sceneSize), kHeldOut, 1.0), 1.0);
+  add(segmentActor({{p.position, p.position + reach * r}}, kLightColour, width), width);
+  if (!in.solo || !selected) return;
+  content.labels.push_back({p.position + 1.3 * in.scale.arrow * v, "V", in.ink()});
+  content.labels.push_back({p.position + 1.3 * in.scale.arrow * r, "L", in.ink()});
+}
+
+}  // namespace
 
 LayerContent raysLayer(const LayerInput& in) {
   LayerContent content;
-  for (const TrainingView* view : in.views()) {
-    if (!view->brightest) continue;
-    const Eigen::Vector3d eye = view->camera.centreInWorld();
-    const SurfacePoint p = facing(view->brightest->point, eye);
-    const Eigen::Vector3d r = reflect((eye - p.position).normalized(), p.normal);
-    // As far as the light where there is one in reach, so that one sees how well the rays meet there.
-    double reach = 0.6 * in.scale.sceneSize;
-    for (const auto& [key, estimate] : in.inspection->lights) {
-      const Light& light = estimate.light;
-      if (light.atInfinity() || key.rfind(view->highlight.light, 0) != 0) continue;
-      const double along = r.dot(light.position() - p.position);
-      if (along > 0) reach = std::min(1.1 * along, 4 * in.scale.sceneSize);
-    }
-    const bool selected = view->frame == in.selection.frame;
-    const double width = selected ? 2.5 : 1.2;
-    Picked info;
-    info.layer = "rays";
-    info.frame = view->frame;
-    info.highlight = in.highlightOf(*view);
-    info.light = view->highlight.light;
-    info.text = line("reflected ray of frame", in.frame(view->frame).id) + line("P", p.position, "m") + line("r", r) +
-                line("N", p.normal);
-    content.add(segmentActor(dashed(eye, p.position, 0.015 * in.scale.sceneSize), kHeldOut, 1.0), info, 1.0);
-    content.add(segmentActor({{p.position, p.position + reach * r}}, kLightColour, width), info, width);
+  int elsewhere = 0;
+  for (const TrainingView& view : in.inspection->views) {
+    if (view.failure || view.frame < 0 || !view.brightest || (in.solo && view.frame != in.selection.frame)) continue;
+    const bool here = in.onSurface(view.frame);
+    // The light was found by the rays of all surfaces, unless each of them has a light of its own.
+    if (!here && in.inspection->train.perSurface) continue;
+    if (!here) ++elsewhere;
+    addRay(content, in, view, !here);
   }
+  for (const TrainingView& view : in.ownViews()) addRay(content, in, view, false);
+  if (elsewhere > 0)
+    content.remarks.push_back("rays: " + std::to_string(elsewhere) + (elsewhere == 1 ? " leaves" : " leave") +
+                              " another surface, faded");
   return content;
 }
 

@@ -8,13 +8,13 @@ namespace glint::viz {
 namespace {
 
 void addPlane(LayerContent& content, const LayerInput& in, const Camera& camera, const Plane& plane, const Eigen::Vector3d& at,
-              const std::vector<Pixel>& contour, bool strong, const Colour& colour, const Picked& info) {
+              const std::vector<Pixel>& contour, bool strong, bool filled, const Colour& colour, const Picked& info) {
   const double side = plane.signedDistance(camera.centreInWorld()) < 0 ? -1 : 1;
   const double radius = planeRadius(camera, plane, at, contour, in.scale);
   const Eigen::Vector3d centre = at + side * in.scale.lift * plane.normal;
   const Eigen::Matrix<double, 3, 2> basis = tangentBasis(plane.normal);
   const double width = strong ? 2.0 : 1.0;
-  content.add(discActor(centre, plane.normal, radius, colour, strong ? 0.32 : 0.18), info);
+  if (filled) content.add(discActor(centre, plane.normal, radius, colour, strong ? 0.32 : 0.18), info);
   content.add(lineActor({circle(centre, radius * basis.col(0), radius * basis.col(1))}, colour, width), info, width);
 }
 
@@ -31,25 +31,31 @@ LayerContent tangentPlanesLayer(const LayerInput& in) {
                 line("offset d", plane.offset, "m");
     return info;
   };
-  bool observed = false;
+  const auto addObserved = [&](const TrainingView& view) {
+    if (!view.tangentPlane || !view.brightest) return;
+    const Eigen::Vector3d& at = view.brightest->point.position;
+    addPlane(content, in, view.camera, *view.tangentPlane, at, view.highlight.contour.points, view.frame == in.selection.frame,
+             true, kVirtualCamera, describe(*view.tangentPlane, at, view.frame, ""));
+  };
+  bool trains = false;
   for (const TrainingView* view : in.views()) {
-    if (!view->tangentPlane || !view->brightest) continue;
-    const Eigen::Vector3d& at = view->brightest->point.position;
-    const bool selected = view->frame == in.selection.frame;
-    observed = observed || selected;
-    addPlane(content, in, view->camera, *view->tangentPlane, at, view->highlight.contour.points, selected, kVirtualCamera,
-             describe(*view->tangentPlane, at, view->frame, ""));
+    trains = trains || view->frame == in.selection.frame;
+    addObserved(*view);
   }
-  if (observed) return content;
-  // A held-out frame: the planes that the models predicted. They agree but for their light, so one colour each.
+  if (trains) return content;
+  // A held-out frame: the planes at its peaks, and those that the models predicted. Two sheets in almost one place would flicker
+  // through each other, so of these then only the selected model's, as a ring.
+  const std::vector<TrainingView> own = in.ownViews();
+  for (const TrainingView& view : own) addObserved(view);
   for (const std::string& model : in.models) {
-    const bool another = !in.selection.model.empty() && in.selection.model != model;
-    if (another && std::find(in.models.begin(), in.models.end(), in.selection.model) != in.models.end()) continue;
+    const bool shown = std::find(in.models.begin(), in.models.end(), in.selection.model) != in.models.end();
+    if (in.selection.model != model && (shown || !own.empty())) continue;
     for (const FrameComparison* comparison : in.comparisons(model)) {
       for (const PredictedHighlight& h : comparison->prediction.highlights) {
         if (!h.tangentPlane) continue;
         addPlane(content, in, in.frame(in.selection.frame).camera, *h.tangentPlane, h.brightest.point.position, h.contour.points,
-                 true, modelColour(model), describe(*h.tangentPlane, h.brightest.point.position, in.selection.frame, model));
+                 true, own.empty(), modelColour(model),
+                 describe(*h.tangentPlane, h.brightest.point.position, in.selection.frame, model));
       }
     }
   }

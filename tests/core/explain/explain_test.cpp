@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -189,6 +192,104 @@ TEST(Explain, TwoQuadricsThatFitAlmostAlikeAreSaid) {
     EXPECT_EQ(number(step, "last over second last singular value")[0], ratio);
     EXPECT_EQ(breaks(step, "weak-gap"), ratio > 0.5) << ratio;
   }
+}
+
+const BrokenAssumption& broken(const ExplainStep& s, const std::string& id) {
+  for (const BrokenAssumption& b : s.broken)
+    if (b.id == id) return b;
+  throw std::runtime_error(s.id + " does not say " + id);
+}
+
+/// A fit as it comes out where the views belong to no ellipsoid: a needle whose outline lies outside the image.
+Inspection needle(const AnalyticSpec& surface, const std::string& model) {
+  Inspection inspection = inspected(surface, {model});
+  ModelResult& result = inspection.models.at(model);
+  result.fits.at(0).fit->ellipsoid = Ellipsoid(result.fits[0].fit->ellipsoid->worldFromBody(), {0.02, 2.2, 0.015});
+  for (FrameComparison& comparison : result.frames) {
+    PredictedHighlight& p = comparison.prediction.highlights.at(0);
+    p.brightest.pixel = Pixel(-500, 100);
+    ContourMetrics metrics;
+    metrics.contourErrorPx = 600 + comparison.frame;
+    metrics.contourErrorPct = 2900;
+    comparison.rows = {{0, 0, metrics, {}}};
+  }
+  return inspection;
+}
+
+TEST(Explain, AFitThatHasFailedIsSaidInEveryStepThatUsesIt) {
+  const std::vector<std::string> said{
+      "needle", "training-missed", "prediction-outside", "prediction-misses", "primal-not-mirrored", "dual-keeps-bend"};
+  for (const char* model : {"primal", "dual"}) {
+    SCOPED_TRACE(model);
+    const Inspection good = inspected(sheet(0), {model}), bad = needle(sphere(0.5), model);
+    for (const ExplainStep& step : explain(good, 1, 0, model).steps)
+      for (const std::string& id : said) EXPECT_FALSE(breaks(step, id)) << step.id << " " << id;
+    const std::string why = model == std::string("primal") ? "primal-not-mirrored" : "dual-keeps-bend";
+    const Explanation e = explain(bad, 1, 0, model);
+    const ExplainStep &fit = stepOf(e, "ellipsoid"), &seen = stepOf(e, "projection"), &back = stepOf(e, "inverse-walk"),
+                      &compared = stepOf(e, "comparison");
+    EXPECT_EQ(broken(fit, "needle").numbers.at(0).values.at(0), 2.2);
+    EXPECT_EQ(broken(fit, "needle").numbers.at(1).values.at(0), 0.02);
+    EXPECT_EQ(broken(fit, "training-missed").numbers.at(0).values.at(0), 2900);
+    EXPECT_NEAR(broken(seen, "prediction-outside").numbers.at(0).values.at(0), 500, 1e-9);
+    for (const ExplainStep* step : {&seen, &back, &compared})
+      EXPECT_EQ(broken(*step, "prediction-misses").numbers.at(0).values.at(0), 2900) << step->id;
+    for (const ExplainStep* step : {&fit, &seen, &compared}) EXPECT_TRUE(breaks(*step, why)) << step->id;
+    // Frames 0 to 3 train, and frame 3 is the worst of them: by the measure of the last step.
+    EXPECT_EQ(number(fit, "largest error in a training frame")[0], 603);
+    EXPECT_EQ(number(stepOf(explain(bad, 3, 0, model), "comparison"), "mean distance of the contours")[0], 603);
+  }
+}
+
+/// An epipolar plane that touches an ellipsoid touches its outlines: on a table the ellipses are those of one ellipsoid for
+/// either kind of camera, on a ball for neither.
+TEST(Explain, TheEpipolarLinesSayHowFarTheViewsAreFromOneEllipsoid) {
+  const auto misses = [](const AnalyticSpec& surface) {
+    const Inspection bad = needle(surface, "primal");
+    const BrokenAssumption why = broken(stepOf(explain(bad, 1, 0, "primal"), "ellipsoid"), "primal-not-mirrored");
+    return std::array<double, 2>{why.numbers.at(0).values.at(0), why.numbers.at(1).values.at(0)};
+  };
+  const std::array<double, 2> table = misses(sheet(0)), ball = misses(sphere(0.5));
+  for (const std::size_t kind : {0u, 1u}) {
+    EXPECT_LT(table[kind], 0.02) << "px, of contours 100 px wide";
+    EXPECT_GT(ball[kind], 0.2);
+  }
+}
+
+TEST(Explain, AMissedHighlightIsToldFromThePredictionThatLiesBesideIt) {
+  Inspection inspection = inspected(sheet(0), {"canonical"});
+  FrameComparison& comparison = inspection.models.at("canonical").frames.at(5);
+  ASSERT_EQ(comparison.frame, 5);
+  comparison.rows = {{0, -1, {}, Failure{Reason::NotReached, "no prediction overlaps this highlight"}}, {-1, 0, {}, {}}};
+  const Explanation e = explain(inspection, 5, 0, "canonical");
+  EXPECT_FALSE(stepOf(e, "projection").failure);
+  EXPECT_TRUE(breaks(stepOf(e, "projection"), "prediction-misses"));
+  EXPECT_TRUE(breaks(stepOf(e, "inverse-walk"), "prediction-misses"));
+  EXPECT_TRUE(stepOf(e, "comparison").failure);
+  comparison.rows.pop_back();  // nothing is predicted at all: that is said instead
+  comparison.prediction.highlights.clear();
+  EXPECT_TRUE(stepOf(explain(inspection, 5, 0, "canonical"), "projection").failure);
+}
+
+TEST(Explain, SaysOfEachModelWhatItDoesInsteadOfAWalk) {
+  const Inspection inspection = inspected(sheet(0), {"primal", "dual", "canonical", "limit-angle"});
+  const auto said = [&](const char* model) {
+    const Explanation e = explain(inspection, 5, 0, model);
+    return std::array<bool, 2>{breaks(stepOf(e, "inverse-walk"), "outline-only"), breaks(stepOf(e, "inverse-walk"), "no-walk")};
+  };
+  EXPECT_EQ(said("primal"), (std::array<bool, 2>{true, false}));
+  EXPECT_EQ(said("dual"), (std::array<bool, 2>{true, false}));
+  EXPECT_EQ(said("limit-angle"), (std::array<bool, 2>{false, true}));
+  EXPECT_EQ(said("canonical"), (std::array<bool, 2>{false, false}));
+}
+
+/// Coordinates are good to about 1e-7: what is a thousandth of that and less is no number.
+TEST(Explain, ACoordinateThatIsRoundOffIsZero) {
+  Inspection inspection = inspected(sheet(0), {"canonical"});
+  for (TrainingView& v : inspection.views) v.tangentPlane->normal = {-1.2306e-10, 2e-7, 1};
+  const std::vector<double> n = number(stepOf(explain(inspection, 1, 0, "canonical"), "tangent-plane"), "normal at P_B");
+  EXPECT_EQ(n, (std::vector<double>{0, 2e-7, 1}));
+  EXPECT_FALSE(std::signbit(n[0]));
 }
 
 TEST(Explain, AFrameWithoutHighlightSaysSoInEveryStepThatNeedsOne) {
