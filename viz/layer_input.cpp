@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/base/unit_text.h"
 #include "core/pipeline/photograph.h"
 #include "core/pipeline/training.h"
 #include "viz/glyphs.h"
@@ -357,8 +358,7 @@ std::string line(const std::string& name, double value, const std::string& unit)
   constexpr double kLeastAngle = 1e-6;  // degrees: below is round-off
   if (unit == "deg" && std::abs(value) < kLeastAngle) value = 0;
   std::snprintf(text, sizeof text, "%.7g", value);
-  const std::string written = unit == "deg" ? "°" : unit == "px^2" ? "px²" : unit;
-  return name + " = " + text + (unit.empty() ? "" : " " + written) + "\n";
+  return name + " = " + text + (unit.empty() ? "" : " " + writtenUnit(unit)) + "\n";
 }
 
 std::string line(const std::string& name, const Eigen::Vector3d& v, const std::string& unit) {

@@ -27,7 +27,7 @@ const std::vector<ParamSpec>& allParams() {
       {"detect.min_area",
        "Smallest highlight",
        "A_min",
-       "px²",
+       "px^2",
        12.0,
        1.0,
        5000.0,

@@ -22,6 +22,7 @@
 #include "gui/base/eliding_delegate.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/base/unit_text.h"
 #include "gui/explain/explain_texts.h"
 #include "gui/explain/lessons.h"
 #include "gui/explain/walk_player.h"
@@ -46,7 +47,8 @@ QString escaped(const std::string& s) { return toQString(s).toHtmlEscaped(); }
 QString valuesText(const ExplainNumber& n) {
   QStringList parts;
   for (const double v : n.values) parts << numberText(v, kDigits);
-  return parts.join(QStringLiteral("&nbsp;&nbsp; ")) + (n.unit.empty() ? QString() : QStringLiteral("&nbsp;") + escaped(n.unit));
+  return parts.join(QStringLiteral("&nbsp;&nbsp; ")) +
+         (n.unit.empty() ? QString() : QStringLiteral("&nbsp;") + unitText(n.unit).toHtmlEscaped());
 }
 
 QString numbersTable(const std::vector<ExplainNumber>& numbers) {

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "gui/base/focus_frame.h"
+#include "gui/base/stale_badge.h"
 #include "gui/base/theme.h"
 #include "gui/frame/pixel_probe.h"
 #include "viz/frame_pick.h"
@@ -23,7 +24,6 @@ namespace glint::gui {
 
 namespace {
 constexpr double kMinZoom = 0.02, kMaxZoom = 512;
-constexpr int kStaleAfterMs = 150;         // results that come sooner need no mark that flickers
 constexpr double kGridFromZoom = 16;       // below this the pixel grid would hide the photograph
 constexpr int kFigurePhotographPx = 2400;  // an enlarged part is not made larger than this
 const QColor kHalo(0, 0, 0, 170);
@@ -49,12 +49,7 @@ FrameCanvas::FrameCanvas(QWidget* parent) : QWidget(parent) {
   setFocusPolicy(Qt::StrongFocus);
   new FocusFrame(this);
   setAttribute(Qt::WA_OpaquePaintEvent);
-  willBeStale_.setSingleShot(true);
-  willBeStale_.setInterval(kStaleAfterMs);
-  connect(&willBeStale_, &QTimer::timeout, this, [this] {
-    stale_ = true;
-    update();
-  });
+  stale_ = new StaleBadge(this, Qt::BottomRightCorner);
 }
 
 void FrameCanvas::setPicture(const FramePicture& picture) {
@@ -101,13 +96,7 @@ void FrameCanvas::setCaption(const QString& caption) {
   update();
 }
 
-void FrameCanvas::setStale(bool stale) {
-  if (stale == (stale_ || willBeStale_.isActive())) return;
-  if (stale) return willBeStale_.start();
-  willBeStale_.stop();
-  if (!std::exchange(stale_, false)) return;
-  update();
-}
+void FrameCanvas::setStale(bool stale) { stale_->setStale(stale); }
 
 QPointF FrameCanvas::widgetFromPixel(const Pixel& p) const {
   return {corner_.x() + (p.x() + 0.5) * zoom_, corner_.y() + (p.y() + 0.5) * zoom_};
@@ -151,7 +140,6 @@ void FrameCanvas::paintEvent(QPaintEvent*) {
   painter.fillRect(rect(), palette().color(QPalette::Dark));
   draw(painter);
   if (showsHeld()) drawHeld(painter);
-  if (stale_) drawChip(painter, {8, caption_.isEmpty() ? 8 : 34}, tr("updating…"), QColor(0xf0, 0xc0, 0x50));
 }
 
 void FrameCanvas::draw(QPainter& painter) const {
@@ -163,7 +151,7 @@ void FrameCanvas::draw(QPainter& painter) const {
   }
   drawOverlay(painter);
   if (!photograph_.isNull() && !scale_.empty()) drawScale(painter);
-  if (!caption_.isEmpty()) drawChip(painter, {8, 8}, caption_, Qt::white);
+  if (!caption_.isEmpty()) drawCaption(painter);
 }
 
 void FrameCanvas::drawFigure(QPainter& painter, const QRectF& target, const QColor& background) const {
@@ -205,14 +193,14 @@ void FrameCanvas::drawHeld(QPainter& painter) const {
   }
 }
 
-void FrameCanvas::drawChip(QPainter& painter, const QPoint& corner, const QString& text, const QColor& colour) const {
-  const QRect chip = QRect(corner, painter.fontMetrics().size(0, text) + QSize(14, 6));
+void FrameCanvas::drawCaption(QPainter& painter) const {
+  const QRect chip = QRect({8, 8}, painter.fontMetrics().size(0, caption_) + QSize(14, 6));
   painter.setRenderHint(QPainter::Antialiasing);
   painter.setPen(Qt::NoPen);
   painter.setBrush(QColor(0, 0, 0, 170));
   painter.drawRoundedRect(chip, 4, 4);
-  painter.setPen(colour);
-  painter.drawText(chip, Qt::AlignCenter, text);
+  painter.setPen(Qt::white);
+  painter.drawText(chip, Qt::AlignCenter, caption_);
 }
 
 void FrameCanvas::drawScale(QPainter& painter) const {

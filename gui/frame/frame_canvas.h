@@ -3,7 +3,6 @@
 
 #include <QImage>
 #include <QString>
-#include <QTimer>
 #include <QWidget>
 #include <optional>
 #include <vector>
@@ -12,6 +11,8 @@
 #include "viz/frame_overlay.h"
 
 namespace glint::gui {
+
+class StaleBadge;
 
 /// Takes over drags that start on something that can be moved.
 class DragTool {
@@ -100,7 +101,7 @@ class FrameCanvas : public QWidget {
   void drawHeld(QPainter& painter) const;
   void drawValues(QPainter& painter, const QRect& visible) const;
   void drawScale(QPainter& painter) const;
-  void drawChip(QPainter& painter, const QPoint& corner, const QString& text, const QColor& colour) const;
+  void drawCaption(QPainter& painter) const;
   void probe(const QPointF& position);
 
   FramePicture picture_;
@@ -111,9 +112,8 @@ class FrameCanvas : public QWidget {
   double zoom_ = 1;
   QPointF corner_{0, 0};  ///< widget position of the photograph's top-left corner, pixel (-0.5, -0.5)
   bool fitted_ = true;    ///< follows the widget's size until the user zooms or pans
-  bool stale_ = false;
+  StaleBadge* stale_;
   bool figure_ = false;  ///< drawn for a file: the photograph is cut beforehand, which vector formats cannot do
-  QTimer willBeStale_;
   bool dragging_ = false;
   DragTool* tool_ = nullptr;
   bool held_ = false;  ///< by the tool

@@ -178,7 +178,6 @@ class ExplainTest : public QObject {
   /// Who has turned the wheel on the photograph has chosen what is seen of it.
   void whatTheUserZoomedToStays() {
     FrameCanvas* canvas = window_->framePanel()->canvas();
-    const auto settle = [&] { QTRY_VERIFY_WITH_TIMEOUT(!panel_->busy() && panel_->explanation() && window_->idle(), 60000); };
     goTo("peak");
     settle();
     canvas->fit();

@@ -64,6 +64,8 @@ int runUntilKilled();  ///< see recovery_test.cpp
 QObject* makeTradeoffTest();
 QObject* makeUnreadableTest();
 QObject* makeWhatIfTest();
+QObject* makeWindowSizeTest();
+QObject* makeCameraPickingTest();
 QObject* makePlotsTest();
 QObject* makeSceneTest();
 

@@ -196,7 +196,8 @@ class LinkingTest : public QObject {
     ConditioningPanel conditioning(*document_);
     NumbersPanel numbers(*document_);
     const std::vector<StaleBadge*> badges{scene.findChild<StaleBadge*>(), plots.findChild<StaleBadge*>(),
-                                          conditioning.findChild<StaleBadge*>(), numbers.findChild<StaleBadge*>()};
+                                          conditioning.findChild<StaleBadge*>(), numbers.findChild<StaleBadge*>(),
+                                          frame_->canvas()->findChild<StaleBadge*>()};
     for (const StaleBadge* badge : badges) QVERIFY(badge && badge->isHidden());
     document_->setSetting("detect.level", 0.35);
     for (const StaleBadge* badge : badges) QVERIFY(badge->isHidden());  // results may come before it would flicker

@@ -10,7 +10,6 @@
 #include "gui/timeline/thumbnails.h"
 #include "gui/window/main_window.h"
 #include "tests/gui/fixture.h"
-#include "viz/convert.h"
 
 namespace glint::gui {
 

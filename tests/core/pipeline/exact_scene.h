@@ -105,4 +105,14 @@ inline std::shared_ptr<Scene> exactScene(const AnalyticSpec& spec, int frames) {
   return exactScene(spec, {{"lamp", {0.1, 0.2, 1.4}}}, frames, [](int) { return std::vector<std::string>{"lamp"}; });
 }
 
+/// exactScene with a lamp that the scene states; the contours are of the lights of exactScene.
+inline std::shared_ptr<Scene> litScene(const AnalyticSpec& surface, int frames) {
+  const auto scene = exactScene(surface, frames);
+  TrueLight light;
+  light.id = "lamp";
+  light.position = Eigen::Vector3d(0.1, 0.2, 1.4);
+  scene->lights = {light};
+  return scene;
+}
+
 }  // namespace glint::testing_support

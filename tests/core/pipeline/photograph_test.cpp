@@ -26,14 +26,7 @@ InspectionRequest synthetic(double roughness = 0.05) {
   return q;
 }
 
-std::shared_ptr<Scene> lit(const AnalyticSpec& surface) {
-  const auto scene = exactScene(surface, 4);
-  TrueLight light;
-  light.id = "lamp";
-  light.position = Eigen::Vector3d(0.1, 0.2, 1.4);
-  scene->lights = {light};
-  return scene;
-}
+std::shared_ptr<Scene> lit(const AnalyticSpec& surface) { return litScene(surface, 4); }
 
 Pixel brightest(const Image& image) {
   Pixel best(0, 0);

@@ -21,14 +21,7 @@ constexpr double kExactly = 1e-12;   // a few operations on numbers of order one
 constexpr double kSameModel = 1e-3;  // of the light's distance: reflectance inverts the radiance that made the contours
 
 /// A surface with a lamp that the scene states, and contours of a limit angle in every frame.
-std::shared_ptr<Scene> lamp(const AnalyticSpec& surface = sphere(0.5)) {
-  const auto scene = exactScene(surface, 8);
-  TrueLight light;
-  light.id = "lamp";
-  light.position = Eigen::Vector3d(0.1, 0.2, 1.4);
-  scene->lights = {light};
-  return scene;
-}
+std::shared_ptr<Scene> lamp(const AnalyticSpec& surface = sphere(0.5)) { return litScene(surface, 8); }
 
 InspectionRequest request(const std::vector<std::string>& models = {"limit-angle"}) {
   InspectionRequest q;

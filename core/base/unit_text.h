@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+namespace glint {
+
+/// A unit as windows and pictures write it; settings, terminals and files keep plain ASCII.
+inline std::string writtenUnit(const std::string& unit) { return unit == "px^2" ? "px²" : unit == "deg" ? "°" : unit; }
+
+}  // namespace glint

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The window in all sizes, at 100 and at 200 %.
+#include <QAction>
+#include <QDockWidget>
+#include <QScreen>
+#include <QScrollArea>
+#include <QScrollBar>
+
+#include "gui/base/panel_scroll.h"
+#include "gui/frame/frame_panel.h"
+#include "gui/window/layouts.h"
+#include "tests/gui/window_fixture.h"
+
+namespace glint::gui {
+
+class WindowSizeTest : public QObject, WindowFixture {
+  Q_OBJECT
+ private slots:
+  /// 800 x 500 is a screen of 1600 x 1000 pixels at 200 %.
+  void everyLayoutFits_data() {
+    QTest::addColumn<QSize>("size");
+    for (const QSize& size : {QSize(800, 500), QSize(900, 700), QSize(1100, 700), QSize(1280, 800), QSize(900, 1000)})
+      QTest::newRow(qPrintable(QStringLiteral("%1x%2").arg(size.width()).arg(size.height()))) << size;
+  }
+  void everyLayoutFits() {
+    QFETCH(QSize, size);
+    if (screen()->availableSize().width() < size.width() || screen()->availableSize().height() < size.height())
+      QSKIP("the screen is smaller");
+    MainWindow window(fixture_.engine());
+    window.resize(size);
+    show(window);
+    openAndWait(window);
+    for (const QString& name : layoutNames()) {
+      window.applyLayout(name);
+      QTest::qWait(50);
+      window.resize(size);  // the docks of the larger window that it was made as may have kept it larger
+      QTest::qWait(20);
+      const QSize least = window.minimumSizeHint();
+      QVERIFY2(least.width() <= size.width() && least.height() <= size.height(),
+               qPrintable(
+                   QStringLiteral("%1 needs %2 x %3\n%4").arg(name).arg(least.width()).arg(least.height()).arg(demands(window))));
+      QCOMPARE(window.size(), size);
+      QVERIFY2(window.framePanel()->width() >= 200, qPrintable(name));
+      QVERIFY2(window.findChild<QWidget*>(QStringLiteral("frameCanvas"))->height() >= 90, qPrintable(name));
+      const QList<QDockWidget*> docks = seen(window);
+      for (const QDockWidget* a : docks) {
+        QVERIFY2(window.rect().contains(a->geometry()), qPrintable(name + ": " + a->objectName()));
+        QVERIFY2(!a->geometry().intersects(window.centralWidget()->geometry()), qPrintable(name + ": " + a->objectName()));
+        for (const QDockWidget* b : docks)
+          QVERIFY2(a == b || !a->geometry().intersects(b->geometry()),
+                   qPrintable(name + ": " + a->objectName() + " lies over " + b->objectName()));
+        // What needs more room than it has scrolls.
+        const auto* scroll = qobject_cast<QScrollArea*>(a->widget());
+        const QWidget* content = scroll ? scroll->widget() : a->widget();
+        const QSize needs = content->minimumSizeHint();
+        QVERIFY2(content->width() >= needs.width() && content->height() >= needs.height(),
+                 qPrintable(name + ": the content of " + a->objectName() + " is cut"));
+      }
+    }
+  }
+
+  void aSmallWindowKeepsDocksAsTabsAndALargeOneSpreadsThemAgain() {
+    if (screen()->availableSize().width() < 1600) QSKIP("the screen is smaller");
+    MainWindow window(fixture_.engine());
+    window.resize(1600, 1000);
+    show(window);
+    auto* parameters = window.findChild<QDockWidget*>(QStringLiteral("parameters"));
+    auto* setup = window.findChild<QDockWidget*>(QStringLiteral("setup"));
+    auto* numbers = window.findChild<QDockWidget*>(QStringLiteral("numbers"));
+    const auto spread = [&] {
+      return window.dockWidgetArea(setup) == Qt::LeftDockWidgetArea && !window.tabifiedDockWidgets(parameters).contains(numbers);
+    };
+    window.applyLayout(QStringLiteral("debug"));
+    QVERIFY(spread());
+    window.resize(800, 500);
+    window.applyLayout(QStringLiteral("debug"));
+    QVERIFY(window.tabifiedDockWidgets(parameters).contains(numbers) && window.tabifiedDockWidgets(parameters).contains(setup));
+    QVERIFY(setup->toggleViewAction()->isChecked());
+    const auto behindErrors = [&window](const char* name) {
+      auto* errors = window.findChild<QDockWidget*>(QStringLiteral("errors"));
+      return window.tabifiedDockWidgets(errors).contains(window.findChild<QDockWidget*>(QLatin1String(name)));
+    };
+    QVERIFY(behindErrors("timeline") && behindErrors("plots"));
+    window.resize(900, 1000);  // narrow, but high: the timeline has a row of its own
+    window.applyLayout(QStringLiteral("debug"));
+    QVERIFY(!behindErrors("timeline") && behindErrors("plots"));
+    QVERIFY(window.tabifiedDockWidgets(parameters).contains(setup) && !window.tabifiedDockWidgets(parameters).contains(numbers));
+    window.resize(1600, 1000);
+    window.applyLayout(QStringLiteral("debug"));
+    QVERIFY(spread());
+  }
+
+  /// Without steps between. Qt first holds the window at what its docks still need, which ends when they have become tabs.
+  void aWindowThatShrinksAtOnceMakesTabsOfItsDocks() {
+    if (screen()->availableSize().width() < 1600) QSKIP("the screen is smaller");
+    MainWindow window(fixture_.engine());
+    show(window);
+    openAndWait(window);
+    auto* parameters = window.findChild<QDockWidget*>(QStringLiteral("parameters"));
+    auto* setup = window.findChild<QDockWidget*>(QStringLiteral("setup"));
+    for (const QString& name : layoutNames()) {
+      window.resize(1600, 1000);
+      QTest::qWait(20);
+      window.applyLayout(name);
+      QTest::qWait(20);
+      QVERIFY2(!window.tabifiedDockWidgets(parameters).contains(setup), qPrintable(name));
+      window.resize(800, 500);
+      if (name == "debug") QTRY_VERIFY(window.tabifiedDockWidgets(parameters).contains(setup));  // others show one of them
+      QCOMPARE(window.width(), 800);
+      QTRY_VERIFY2(window.minimumHeight() <= 500,
+                   qPrintable(QStringLiteral("%1: at least %2").arg(name).arg(window.minimumHeight())));
+      window.resize(800, 500);
+      QCOMPARE(window.size(), QSize(800, 500));
+    }
+  }
+
+  void captionsAndSwitchesLeaveThePhotographTheLargestShare() {
+    if (screen()->availableSize().width() < 1000 || screen()->availableSize().height() < 800) QSKIP("the screen is smaller");
+    MainWindow window(fixture_.engine());
+    window.resize(1000, 800);
+    show(window);
+    openAndWait(window);
+    Document& d = window.document();
+    d.setModels({"reflectance", "limit-angle", "canonical", "dual", "primal"});
+    d.setOption("frame/side-by-side", "on", "more switches");
+    QTRY_VERIFY(window.idle() && !d.stale());
+    const FramePanel* panel = window.framePanel();
+    const QList<PanelScroll*> parts = panel->findChildren<PanelScroll*>();
+    QCOMPARE(parts.size(), 2);
+    for (const PanelScroll* part : parts) {
+      QTRY_VERIFY2(part->verticalScrollBar()->isVisible(), qPrintable(QString::number(part->height())));  // it needs more
+      QVERIFY2(part->height() <= 0.29 * panel->height(), qPrintable(QString::number(part->height())));
+    }
+  }
+
+ private:
+  static QScreen* screen() { return QGuiApplication::primaryScreen(); }
+  static QString demands(const MainWindow& window) {
+    QString text;
+    const auto add = [&text](const QString& name, const QSize& s) {
+      text += QStringLiteral("  %1: %2 x %3\n").arg(name).arg(s.width()).arg(s.height());
+    };
+    add(QStringLiteral("centre"), window.centralWidget()->minimumSizeHint());
+    for (const QDockWidget* dock : seen(window)) add(dock->objectName(), dock->minimumSizeHint());
+    return text;
+  }
+};
+
+QObject* makeWindowSizeTest() { return new WindowSizeTest; }
+
+}  // namespace glint::gui
+
+#include "window_size_test.moc"

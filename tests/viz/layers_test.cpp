@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What single layers draw, and what a view of them is to hold: read from their geometry, no picture is drawn.
+#include "viz/layers.h"
+
+#include <gtest/gtest.h>
+#include <vtkActor.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "tests/tolerances.h"
+#include "tests/viz/small_inspection.h"
+#include "viz/scene_questions.h"
+#include "viz/style.h"
+#include "viz/view_camera.h"
+
+namespace glint::viz {
+namespace {
+
+using test::smallInspection;
+using test::TemporaryFolder;
+
+constexpr double kDrawn = 1e-6, kDrawnPx = 1e-3;  // m, px: what is drawn is in single precision
+
+/// What a view is to hold: the drawn cones of primal begin halfway to their cameras, and half of a small surface would puzzle.
+TEST(Framings, OfEllipsoidsHoldTheConesOfPrimalAndASmallSurface) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  inspection->models["primal"] = inspection->models.at("canonical");
+  inspection->models["primal"].model = "primal";
+  LayerInput input;
+  input.inspection = inspection.get();
+  input.models = {"canonical", "primal"};
+  input.surfaceKey = inspection->surfaces->keyOf(0);
+  input.surface = *inspection->surfaces->surfaceOf(0, {});
+  input.scale = sceneScale(*inspection, input.surface.get(), {0, 1, 2, 3}, 1);
+  const auto holds = [](const Framing& framing, const Eigen::Vector3d& p) {
+    return std::any_of(framing.points.begin(), framing.points.end(),
+                       [&](const Eigen::Vector3d& q) { return (p - q).norm() < 1e-9; });
+  };
+  const auto corner = [&](int i) { return input.scale.surfaceBox.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)); };
+  const Eigen::Vector3d lamp = *inspection->scene->lights[0].position;  // centre of the fitted ellipsoid
+  for (const char* model : {"canonical", "primal"}) {
+    SCOPED_TRACE(model);
+    const std::optional<Framing> framing = ellipsoidFraming(input, {0, 1, 2, 3}, model, {});
+    ASSERT_TRUE(framing);
+    for (const TrainingView& view : inspection->views)
+      EXPECT_EQ(holds(*framing, 0.5 * (view.camera.centreInWorld() + lamp)), std::string(model) == "primal");
+    for (int i = 0; i < 8; ++i) EXPECT_TRUE(holds(*framing, corner(i)));
+  }
+  // A surface that is larger than all that would make it small.
+  input.scale.surfaceBox.extend(Eigen::Vector3d(50, 0, 0));
+  input.scale.surfaceSize = input.scale.surfaceBox.diagonal().norm();
+  for (int i = 0; i < 8; ++i) EXPECT_FALSE(holds(*ellipsoidFraming(input, {0, 1, 2, 3}, "canonical", {}), corner(i)));
+}
+
+TEST(Framings, TheMirrorHoldsTheEllipsoidWhereItIsDrawn) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  LayerInput input;
+  input.inspection = inspection.get();
+  input.models = {"canonical"};
+  input.selection.frame = 1;
+  input.selection.model = "canonical";
+  input.surfaceKey = inspection->surfaces->keyOf(1);
+  input.surface = *inspection->surfaces->surfaceOf(1, {});
+  input.scale = sceneScale(*inspection, input.surface.get(), {0, 1, 2, 3}, 1);
+  const Eigen::Vector3d end = *inspection->scene->lights[0].position + 1.1 * Eigen::Vector3d(0.25, 0, 0);  // of its longest axis
+  for (const bool drawn : {false, true}) {
+    const std::optional<Framing> framing = highlightFraming(input, 0, HighlightLook::Mirror, {false, drawn});
+    ASSERT_TRUE(framing);
+    EXPECT_EQ(std::any_of(framing->points.begin(), framing->points.end(),
+                          [&](const Eigen::Vector3d& q) { return (end - q).norm() < 1e-9; }),
+              drawn);
+  }
+}
+
+TEST(Layers, CamerasThatShareAPoseAreDrawnOnce) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  auto scene = std::make_shared<Scene>(*inspection->scene);
+  for (int i = 0; i < 6; ++i) scene->frames.push_back(scene->frames[static_cast<std::size_t>(i)]);
+  inspection->scene = scene;
+  inspection->surfaces = std::make_shared<SurfaceCache>(*scene);
+  const std::vector<int> frames = framesToDraw(*inspection, inspection->surfaces->keyOf(0), 8);
+  EXPECT_EQ(frames.size(), 6u);
+  EXPECT_NE(std::find(frames.begin(), frames.end(), 8), frames.end());  // the selected one stands for its pose
+}
+
+/// Cones of the small scene whose model has a ball as its ellipsoid; the first one drawn, which is frame 0's.
+TriangleMesh firstCone(const Inspection& inspection, const std::string& model) {
+  LayerInput input;
+  input.inspection = &inspection;
+  input.models = {model};
+  input.surfaceKey = inspection.surfaces->keyOf(0);
+  input.scale = sceneScale(inspection, nullptr, {0, 1, 2}, 1);
+  const LayerContent content = conesLayer(input);
+  TriangleMesh mesh;
+  if (content.drawn.empty()) return mesh;
+  vtkPolyData* data =
+      vtkPolyDataMapper::SafeDownCast(vtkActor::SafeDownCast(content.drawn.front().prop)->GetMapper())->GetInput();
+  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i) mesh.vertices.emplace_back(data->GetPoint(i));
+  return mesh;
+}
+
+/// The mirror makes the difference: a virtual camera's cone begins where it sees the highlight, on the tangent plane; a camera's
+/// own begins halfway, and so before the ellipsoid, which lies about that plane.
+TEST(Layers, AConeReachesFromItsPlaceThroughTheContourToBeyondTheEllipsoid) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  const TrainingView& view = inspection->views[0];
+  const Eigen::Vector3d eye = view.camera.centreInWorld();
+  for (const bool mirrored : {false, true}) {
+    SCOPED_TRACE(mirrored);
+    const std::string model = mirrored ? "dual" : "primal";
+    const Eigen::Vector3d apex = mirrored ? view.tangentPlane->reflected(eye) : eye;
+    // A ball on the axis of the contour's cone: at the brightest point, or as far beyond it as the mirrored camera is before it.
+    const Eigen::Vector3d centre = mirrored ? 2 * view.brightest->point.position - apex : view.brightest->point.position;
+    constexpr double kBall = 0.05;
+    Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
+    place.translation() = centre;
+    ModelFit fit;
+    fit.model = model;
+    fit.light = "lamp";
+    fit.ellipsoid = Ellipsoid(place, Eigen::Vector3d::Constant(kBall));
+    inspection->models[model].fits = {{"lamp", {}, fit, {}}};
+    const std::vector<Eigen::Vector3d> points = firstCone(*inspection, model).vertices;
+    ASSERT_EQ(points.size() % 2, 0u);
+    ASSERT_GT(points.size(), 100u);
+    const Eigen::Vector3d axis = (centre - apex).normalized();
+    const double end = (centre - apex).norm() + 1.15 * kBall;
+    for (std::size_t i = 0; i < points.size(); i += 2) {
+      const Eigen::Vector3d &near = points[i], &far = points[i + 1];
+      EXPECT_NEAR((far - apex).dot(axis), end, kDrawn);
+      if (mirrored)
+        EXPECT_NEAR(view.tangentPlane->signedDistance(near), 0, kDrawn);
+      else
+        EXPECT_NEAR((near - apex).dot(axis), 0.5 * end, kDrawn);
+      // Both ends are seen on the contour: a camera behind the mirror sees there what the camera itself sees.
+      for (const Eigen::Vector3d& p : {near, far}) {
+        const std::optional<Pixel> pixel = view.camera.project(mirrored ? view.tangentPlane->reflected(p) : p);
+        ASSERT_TRUE(pixel);
+        EXPECT_NEAR((*pixel - view.highlight.peak).norm(), view.highlight.ellipse->semiAxes.x(), kDrawnPx);
+      }
+    }
+  }
+}
+
+TEST(Layers, ContoursCastOntoTheSurfaceLieOnIt) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  const auto surface = inspection->surfaces->surfaceOf(0, NormalPolicy::Interpolated);
+  ASSERT_TRUE(surface);
+  const SceneScale scale = sceneScale(*inspection, surface->get(), {0, 1, 2, 3, 4, 5}, 1);
+  const Highlight& highlight = inspection->evidence[0].highlights[0];
+  const Camera& camera = inspection->scene->frames[0].camera;
+  const std::vector<Points> chains = castContour(camera, **surface, highlight.contour, scale, 0.01);
+  ASSERT_EQ(chains.size(), 1u);
+  ASSERT_EQ(chains[0].size(), highlight.contour.points.size() + 1);
+  for (std::size_t i = 0; i < highlight.contour.points.size(); ++i) {  // lifted, but still over its own pixel
+    const Eigen::Vector3d& p = chains[0][i];
+    EXPECT_NEAR(p.norm(), 0.41, 0.001);
+    EXPECT_LT((*camera.project(p) - highlight.contour.points[i]).norm(), tolerance::kPixel);
+  }
+  // A contour that runs over the edge of the sphere is broken, not drawn through the air.
+  Polyline wide;
+  const Pixel middle = *camera.project(Eigen::Vector3d::Zero());
+  for (int i = 0; i < 90; ++i) {
+    const double t = i * 0.0698131700797732;
+    wide.points.push_back(middle + Pixel(130 * std::cos(t), 60 * std::sin(t)));
+  }
+  for (const Points& chain : castContour(camera, **surface, wide, scale, 0)) {
+    for (const Eigen::Vector3d& p : chain) EXPECT_NEAR(p.norm(), 0.4, 1e-9);
+  }
+}
+
+/// The small scene with frame 5 selected, which does not train.
+LayerInput heldOutInput(const Inspection& inspection) {
+  LayerInput input;
+  input.inspection = &inspection;
+  input.selection.frame = 5;
+  input.models = {"dual", "canonical"};
+  input.surface = *inspection.surfaces->surfaceOf(5, NormalPolicy::Interpolated);
+  input.surfaceKey = inspection.surfaces->keyOf(5);
+  input.scale = sceneScale(inspection, input.surface.get(), {0, 1, 2, 3, 4, 5}, 1);
+  return input;
+}
+
+Eigen::AlignedBox3d boundsOf(const Drawn& drawn) {
+  double b[6];
+  std::copy_n(drawn.prop->GetBounds(), 6, b);
+  return {Eigen::Vector3d(b[0], b[2], b[4]), Eigen::Vector3d(b[1], b[3], b[5])};
+}
+
+TEST(Layers, AFrameThatDoesNotTrainHasItsRayAndItsPlaneFromWhatWasObserved) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  LayerInput input = heldOutInput(*inspection);
+  // The mirror point of frame 5 is what the scene's closed form says, as in its prediction.
+  const PredictedHighlight& exact = inspection->models["canonical"].frames[5].prediction.highlights[0];
+  const Eigen::Vector3d p = exact.brightest.point.position, eye = inspection->scene->frames[5].camera.centreInWorld();
+  Eigen::AlignedBox3d ray;
+  for (const Drawn& d : raysLayer(input).drawn)
+    if (d.info.frame == 5) {
+      EXPECT_EQ(d.info.highlight, 0);
+      ray.extend(boundsOf(d));
+    }
+  ASSERT_FALSE(ray.isEmpty()) << "no ray";
+  const auto holds = [](const Eigen::AlignedBox3d& box, const Eigen::Vector3d& q) { return box.exteriorDistance(q) < kDrawn; };
+  EXPECT_TRUE(holds(ray, eye));
+  EXPECT_TRUE(holds(ray, p));
+  EXPECT_TRUE(holds(ray, *inspection->scene->lights[0].position)) << "it goes on to the light";
+  // The plane is drawn once, in the colour of the mirror; of the models' own a ring at most.
+  int sheets = 0, rings = 0;
+  for (const char* model : {"", "canonical"}) {
+    input.selection.model = model;
+    for (const Drawn& d : tangentPlanesLayer(input).drawn) {
+      if (d.info.frame != 5) continue;
+      const Eigen::AlignedBox3d box = boundsOf(d);
+      EXPECT_LT((box.center() - p).norm(), 2 * input.scale.lift);
+      if (d.lineWidthPx == 0) {
+        ++sheets;
+        EXPECT_EQ(d.info.model, "");
+      }
+      rings += d.lineWidthPx > 0 && d.info.model == "canonical";
+    }
+  }
+  EXPECT_EQ(sheets, 2) << "one for each selection";
+  EXPECT_EQ(rings, 1) << "where the model is selected";
+}
+
+TEST(Layers, OnAnotherSurfaceTheRaysAndConesAreThoseOfTheViewsThatTrained) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  LayerInput input = heldOutInput(*inspection);
+  input.surfaceKey = "another";  // as if frames 0 to 3 had trained on a ball that is not shown
+  input.models = {"canonical"};
+  const LayerContent cones = conesLayer(input);
+  std::set<int> frames;
+  for (const Drawn& d : cones.drawn) frames.insert(d.info.frame);
+  EXPECT_EQ(frames, (std::set<int>{0, 1, 2, 3}));
+  ASSERT_EQ(cones.remarks.size(), 1u);
+  EXPECT_NE(cones.remarks[0].find("another surface"), std::string::npos);
+  frames.clear();
+  const LayerContent rays = raysLayer(input);
+  for (const Drawn& d : rays.drawn) {
+    frames.insert(d.info.frame);
+    const double opacity = vtkActor::SafeDownCast(d.prop)->GetProperty()->GetOpacity();
+    EXPECT_EQ(opacity < 1, d.info.frame != 5) << d.info.frame;
+  }
+  EXPECT_EQ(frames, (std::set<int>{0, 1, 2, 3, 5}));
+  EXPECT_EQ(rays.remarks.size(), 1u);
+  inspection->train.perSurface = true;  // then each surface has a light of its own
+  for (const Drawn& d : raysLayer(input).drawn) EXPECT_EQ(d.info.frame, 5);
+}
+
+/// What primal calls its brightest point is the middle of its ellipsoid, which lies behind the surface.
+TEST(Layers, APredictionWithoutATangentPlaneHasNoBrightestPointOnTheSurface) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  const LayerInput input = heldOutInput(*inspection);
+  const auto ofModel = [&] {
+    int n = 0;
+    for (const Drawn& d : peaksLayer(input).drawn) n += d.info.model == "canonical";
+    return n;
+  };
+  EXPECT_EQ(ofModel(), 2) << "a ball and its normal";
+  inspection->models["canonical"].frames[5].prediction.highlights[0].tangentPlane.reset();
+  EXPECT_EQ(ofModel(), 0);
+}
+
+TEST(Layers, TheSelectedFrameAloneNamesItsDirections) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  for (const int frame : {0, 5}) {  // trains, and not
+    LayerInput input = heldOutInput(*inspection);
+    input.selection.frame = frame;
+    EXPECT_TRUE(raysLayer(input).labels.empty() && peaksLayer(input).labels.empty());
+    input.solo = true;
+    std::map<std::string, Eigen::Vector3d> at;
+    for (const LayerContent& content : {raysLayer(input), peaksLayer(input)})
+      for (const DrawnLabel& label : content.labels) at[label.text] = label.anchor;
+    ASSERT_EQ(at.size(), 3u) << frame;
+    const SurfacePoint p = inspection->models["canonical"].frames[std::size_t(frame)].prediction.highlights[0].brightest.point;
+    const Eigen::Vector3d eye = inspection->scene->frames[std::size_t(frame)].camera.centreInWorld();
+    EXPECT_LT((at["V"] - p.position).cross(eye - p.position).norm(), kDrawn);
+    EXPECT_LT((at["N"] - p.position).cross(p.normal).norm(), kDrawn);
+    EXPECT_LT((at["L"] - p.position).cross(*inspection->scene->lights[0].position - p.position).norm(), kDrawn);
+  }
+}
+
+TEST(Framing, HoldsTheWholeTangentPlaneThatIsDrawn) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  const LayerInput input = heldOutInput(*inspection);
+  Eigen::AlignedBox3d disc;
+  for (const Drawn& d : tangentPlanesLayer(input).drawn)
+    if (d.info.frame == 5) disc.extend(boundsOf(d));
+  const BrightestPoint& b = inspection->models["canonical"].frames[5].prediction.highlights[0].brightest;
+  const double radius =
+      0.5 * disc.diagonal().norm() / std::sqrt(2.0);  // its box has sides 2 r sin to each axis, and those squares sum up to 2
+  for (const bool drawn : {false, true}) {
+    const std::optional<Framing> framing = highlightFraming(input, 0, HighlightLook::Section, {false, false, false, drawn});
+    ASSERT_TRUE(framing);
+    double reach = 0;
+    for (const Eigen::Vector3d& q : framing->points) {
+      const Eigen::Vector3d by = q - b.point.position;
+      if (std::abs(by.dot(b.point.normal)) < input.scale.lift) reach = std::max(reach, by.norm());
+    }
+    EXPECT_EQ(reach > 0.99 * radius, drawn) << reach << " of " << radius;
+  }
+}
+
+TEST(Framing, HoldsTheVirtualCamerasThatAreDrawn) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  const LayerInput input = heldOutInput(*inspection);
+  const auto held = [&](const std::optional<Framing>& framing, int frame) {
+    const BrightestPoint& b = inspection->models["canonical"].frames[std::size_t(frame)].prediction.highlights[0].brightest;
+    const Plane plane = Plane::through(b.point.position, b.point.normal);
+    std::vector<Eigen::Vector3d> camera;
+    addFrustum(input, camera, frame);
+    for (const Eigen::Vector3d& corner : camera) {
+      double least = 1;
+      for (const Eigen::Vector3d& q : framing->points) least = std::min(least, (q - plane.reflected(corner)).norm());
+      if (least > kDrawn) return false;
+    }
+    return true;
+  };
+  const std::vector<int> all{0, 1, 2, 3, 4, 5};
+  for (const bool drawn : {true, false}) {
+    const DrawnParts parts{false, true, drawn};
+    const std::optional<Framing> mirror = highlightFraming(input, 0, HighlightLook::Mirror, parts);
+    const std::optional<Framing> ellipsoid = ellipsoidFraming(input, all, "canonical", parts);
+    ASSERT_TRUE(mirror && ellipsoid);
+    EXPECT_TRUE(held(mirror, 5)) << "the pair is what this look is about";
+    EXPECT_EQ(held(mirror, 2), drawn);
+    EXPECT_EQ(held(ellipsoid, 2), drawn);
+    EXPECT_EQ(held(ellipsoid, 5), drawn);
+  }
+}
+
+}  // namespace
+}  // namespace glint::viz
