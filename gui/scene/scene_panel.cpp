@@ -61,7 +61,7 @@ class SizeAction : public QWidgetAction {
 ScenePanel::ScenePanel(Document& document, QWidget* parent)
     : QWidget(parent), document_(document), views_(new SceneViews), glide_(new CameraGlide(this)) {
   buildBars();
-  connect(&document_, &Document::staleChanged, new StaleBadge(views_, Qt::BottomRightCorner), &StaleBadge::setStale);
+  connect(&document_, &Document::staleChanged, new StaleBadge(views_), &StaleBadge::setStale);
   connect(&document_, &Document::sceneOpened, this, &ScenePanel::showScene);
   connect(&document_, &Document::inspectionChanged, this, &ScenePanel::showInspection);
   connect(&document_, &Document::layersChanged, this, &ScenePanel::showLayers);
