@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "cli/commands.h"
+#include "cli/scene_arguments.h"
 #include "core/scene/scene.h"
 
 namespace glint::cli {
@@ -9,7 +10,7 @@ namespace glint::cli {
 Command convertCommand() {
   struct Arguments {
     std::string input, output;
-    bool allowOutside = false;
+    SceneArguments places;
   };
   const auto a = std::make_shared<Arguments>();
   Command c;
@@ -22,7 +23,7 @@ Command convertCommand() {
   c.declare = [a](Options& o) {
     o.positional(a->input, "INPUT", "A scene file, a folder with one, or a session");
     o.required(a->output, "-o,--output", "FILE", "The scene file to write (*.json)");
-    o.flag(a->allowOutside, "--allow-outside", "Accept paths that leave the folder of the scene file");
+    a->places.declare(o);
   };
   c.run = [a](const Context& context) -> int {
     namespace fs = std::filesystem;
@@ -30,7 +31,7 @@ Command convertCommand() {
     if (output.extension() != ".json") throw InputError(a->output, "--output", "only scene files (*.json) can be written");
     if (output.filename() == "transforms.json")
       throw InputError(a->output, "--output", "nerfstudio files cannot be written yet, only scene files");
-    const Scene scene = readScene(a->input, ReadOptions{a->allowOutside});
+    const Scene scene = a->places.read(a->input);
     for (const std::string& w : scene.warnings) context.warn(w);
     writeScene(scene, output);
     try {

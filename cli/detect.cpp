@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "cli/commands.h"
+#include "cli/scene_arguments.h"
 #include "core/base/parallel.h"
 #include "core/highlight/report.h"
 #include "core/pipeline/evidence.h"
@@ -37,7 +38,7 @@ Command detectCommand() {
     std::string input, source = "radiance", out, json;
     double level = 0.5;
     std::vector<std::string> set;
-    bool allowOutside = false;
+    SceneArguments places;
   };
   const auto a = std::make_shared<Arguments>();
   Command c;
@@ -57,7 +58,7 @@ Command detectCommand() {
     o.repeated(a->set, "--set", "KEY=VALUE", "A setting by its dotted name, such as detect.min_area=20");
     o.option(a->out, "--out", "DIR", "Write highlights.json and overlays as PNG");
     o.option(a->json, "--json", "FILE", "Write highlights.json there (- = standard output, instead of the table)");
-    o.flag(a->allowOutside, "--allow-outside", "Accept paths that leave the folder of the scene file");
+    a->places.declare(o);
   };
   c.run = [a](const Context& context) -> int {
     Settings settings;
@@ -71,7 +72,7 @@ Command detectCommand() {
       if (equals == std::string::npos) throw InputError("", "--set " + text, "must be KEY=VALUE");
       settings.setFromText(text.substr(0, equals), text.substr(equals + 1));
     }
-    Scene scene = readScene(a->input, ReadOptions{a->allowOutside});
+    Scene scene = a->places.read(a->input);
     for (const std::string& warning : scene.warnings) context.warn(warning);
     for (Frame& frame : scene.frames) frame.highlights.clear();
     const FrameSource source = a->source == "image" ? FrameSource::Image : FrameSource::Radiance;

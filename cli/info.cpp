@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/commands.h"
+#include "cli/scene_arguments.h"
 #include "core/scene/convention_report.h"
 #include "core/scene/scene.h"
 
@@ -8,7 +9,7 @@ namespace glint::cli {
 Command infoCommand() {
   struct Arguments {
     std::string input, json;
-    bool allowOutside = false;
+    SceneArguments places;
   };
   const auto a = std::make_shared<Arguments>();
   Command c;
@@ -24,10 +25,10 @@ Command infoCommand() {
   c.declare = [a](Options& o) {
     o.positional(a->input, "INPUT", "A scene file, a folder with one, or a session");
     o.option(a->json, "--json", "FILE", "Write the report as JSON (- = standard output) instead of text");
-    o.flag(a->allowOutside, "--allow-outside", "Accept paths that leave the folder of the scene file");
+    a->places.declare(o);
   };
   c.run = [a](const Context& context) -> int {
-    const Scene scene = readScene(a->input, ReadOptions{a->allowOutside});
+    const Scene scene = a->places.read(a->input);
     const ConventionReport report = conventionReport(scene, context.progress());
     if (a->json.empty())
       context.print(toText(report));

@@ -42,7 +42,7 @@ void InspectionArguments::declare(Options& o, const std::string& modelsHelp) {
   o.option(noisePx, "--noise-px", "S", "Gaussian noise per coordinate on training contours (72 points) and peaks, px");
   o.option(seed, "--seed", "N", "Seed of that noise");
   o.option(truth, "--truth", "DIR", "Score against contours stored as FRAME.json instead of the own detection");
-  o.flag(allowOutside, "--allow-outside", "Accept paths that leave the folder of the scene file");
+  places.declare(o);
 }
 
 InspectionRequest InspectionArguments::request() const {
@@ -86,9 +86,7 @@ bool InspectionArguments::sets(const std::string& key) const {
   return std::any_of(set.begin(), set.end(), [&](const std::string& entry) { return entry.rfind(key + "=", 0) == 0; });
 }
 
-std::shared_ptr<const Scene> InspectionArguments::scene() const {
-  return std::make_shared<const Scene>(readScene(input, ReadOptions{allowOutside}));
-}
+std::shared_ptr<const Scene> InspectionArguments::scene() const { return std::make_shared<const Scene>(places.read(input)); }
 
 namespace {
 

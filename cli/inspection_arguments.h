@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/scene_arguments.h"
 #include "core/pipeline/inspection.h"
 
 namespace glint {
@@ -22,7 +23,7 @@ struct InspectionArguments {
   std::vector<std::string> set;
   double noisePx = 0;
   unsigned seed = 1;
-  bool allowOutside = false;
+  SceneArguments places;
 
   void declare(Options& options, const std::string& modelsHelp);
   /// Starts from the session's request when INPUT is one; what is given on the command line wins.

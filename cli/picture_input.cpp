@@ -62,20 +62,21 @@ void PictureInput::declare(Options& o) {
   o.repeated(set, "--set", "KEY=VALUE", "Any setting by its dotted name (glint settings)");
   o.choice(theme, "--theme", {"dark", "light"}, "Background");
   o.option(glyphs, "--glyphs", "FACTOR", "Size of drawn cameras, points and arrows, relative to the default");
-  o.flag(allowOutside, "--allow-outside", "Accept paths that leave the folder of the scene file");
+  places.declare(o);
 }
 
 PictureInput::Opened PictureInput::open(const Context& context) const {
   if (!(glyphs > 0 && glyphs <= 100)) throw InputError("", "--glyphs", "must be above 0 and at most 100");
   Opened opened;
   if (isSession(input)) {
-    OpenedSession session = openSession(input);
+    OpenedSession session = places.openSession(input);
     for (const std::string& w : session.session.warnings) context.warn(w);
+    if (!session.warning.empty()) context.warn(session.warning);
     opened.scene = session.scene;
     opened.request = session.session.request;
     opened.saved = session.session.view;
   } else {
-    opened.scene = std::make_shared<const Scene>(readScene(input, ReadOptions{allowOutside}));
+    opened.scene = std::make_shared<const Scene>(places.read(input));
     for (const std::string& w : opened.scene->warnings) context.warn(w);
   }
   if (opened.scene->frames.empty()) throw CannotAnswer{{Reason::TooFewViews, input + ": no frames"}};

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/scene_arguments.h"
 #include "core/pipeline/session.h"
 #include "viz/scene_view.h"
 
@@ -18,7 +19,7 @@ struct PictureInput {
   std::string input, layers, models, train, theme = "dark", source;
   std::vector<std::string> set;
   double glyphs = 1;
-  bool allowOutside = false;
+  SceneArguments places;
 
   void declare(Options& options);
   bool dark() const { return theme == "dark"; }

@@ -40,6 +40,7 @@ std::string predictionTable(const Inspection& inspection, const std::vector<int>
 Command predictCommand() {
   struct Arguments {
     std::string session, frames, out, json, preset, masks;
+    SceneArguments places;
   };
   const auto a = std::make_shared<Arguments>();
   Command c;
@@ -59,13 +60,16 @@ Command predictCommand() {
     o.option(a->out, "--out", "DIR", "Write contours, overlays and labels there");
     o.option(a->masks, "--masks", "DIR", "Write masks and COCO labels of all frames to this new folder");
     o.option(a->json, "--json", "FILE", "Write predictions.json's content there instead (- = standard output)");
+    a->places.declarePlaces(o);
   };
   c.run = [a](const Context& context) -> int {
-    const OpenedSession opened = openSession(a->session);
+    const OpenedSession opened = a->places.openSession(a->session);
     for (const std::string& w : opened.session.warnings) context.warn(w);
+    if (!opened.warning.empty()) context.warn(opened.warning);
     const Scene& scene = *opened.scene;
     std::vector<int> frames;
-    if (!a->frames.empty()) frames = parseFrames(a->frames, scene, "--frames");
+    if (!a->frames.empty())
+      frames = parseFrames(a->frames, scene, "--frames");
     else
       for (int i = 0; i < static_cast<int>(scene.frames.size()); ++i) frames.push_back(i);
     InspectionRequest request = opened.session.request;

@@ -97,7 +97,6 @@ Command reconstructCommand() {
     }
     warnOfUnusedTrainingFrames(result, context);
     Session session = sessionOf(result, context.progress());
-    session.allowOutsidePaths = a->allowOutside;
     session.file = a->out;
     writeSession(session, a->out);
     context.print(text);

@@ -113,7 +113,6 @@ Command tradeoffCommand() {
       request.models = {t.points[*t.chosen].model};
       request.settings = t.points[*t.chosen].settings;
       Session session = sessionOf(inspect(scene, request, context.progress()), context.progress());
-      session.allowOutsidePaths = a->allowOutside;
       session.tradeoff = t;
       writeSession(session, a->out);
     }

@@ -32,11 +32,11 @@ std::string shellWord(const std::string& text) {
   return quoted + "'";
 }
 
-Outcome<std::string> commandOf(const std::string& input, const InspectionRequest& q, bool allowOutsidePaths) {
+Outcome<std::string> commandOf(const Scene& scene, const InspectionRequest& q) {
   if (!q.excluded.empty()) return Failure{Reason::NotSupported, "excluded frames have no flag; save a session and use it as INPUT"};
   if (!q.whatIf.none()) return Failure{Reason::NotSupported, "a what-if has no flag; save a session and use it as INPUT"};
   const InspectionRequest usual;
-  std::string command = "glint evaluate " + shellWord(input);
+  std::string command = "glint evaluate " + shellWord(scene.file.string());
   if (q.models != usual.models) {
     std::string models;
     for (const std::string& m : q.models) models += (models.empty() ? "" : ",") + m;
@@ -47,7 +47,9 @@ Outcome<std::string> commandOf(const std::string& input, const InspectionRequest
   for (const auto& [key, value] : q.settings.values()) command += " --set " + shellWord(key + "=" + text(value));
   if (q.noisePx > 0) command += " --noise-px " + shortest(q.noisePx) + " --seed " + std::to_string(q.seed);
   if (!q.truthFolder.empty()) command += " --truth " + shellWord(q.truthFolder);
-  if (allowOutsidePaths) command += " --allow-outside";
+  if (scene.allowOutsidePaths) command += " --allow-outside";
+  if (!scene.photographs.empty()) command += " --photographs " + shellWord(scene.photographs.string());
+  for (const auto& [named, file] : scene.meshes) command += " --mesh " + shellWord(named + "=" + file.string());
   return command;
 }
 

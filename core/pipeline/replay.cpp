@@ -155,6 +155,8 @@ Session sessionOf(const Inspection& inspection, const ProgressFn& progress) {
   Session session;
   session.input = std::filesystem::absolute(scene.file).lexically_normal();
   session.allowOutsidePaths = scene.allowOutsidePaths;
+  session.photographs = scene.photographs;
+  session.meshes = scene.meshes;
   session.request = inspection.request;
   session.files = hashInputs(scene, inspection.request, progress);
   for (int i = 0; i < static_cast<int>(scene.frames.size()); ++i) {

@@ -169,6 +169,8 @@ Session parseSession(const std::string& json, const fs::path& file) {
   session.input = absolutePath(input.at("path"), folder);
   if (const auto n = input.find("allow_outside")) session.allowOutsidePaths = n->boolean();
   if (const auto n = input.find("photographs"); n && !n->isNull()) session.photographs = absolutePath(*n, folder);
+  if (const auto n = input.find("meshes"); n && !n->isNull())
+    for (const std::string& named : n->keys()) session.meshes[named] = absolutePath(n->at(named), folder);
   if (const auto n = input.find("files"))
     for (std::size_t i = 0; i < n->size(); ++i)
       session.files.push_back({absolutePath(n->at(i).at("path"), folder), readHash(n->at(i).at("sha256"))});
@@ -212,6 +214,7 @@ void writeSession(const Session& session, const fs::path& file) {
   Json root = {{"glint_session", kVersion}};
   root["input"] = {{"path", relative(session.input)}, {"allow_outside", session.allowOutsidePaths}, {"files", Json::array()}};
   if (!session.photographs.empty()) root["input"]["photographs"] = relative(session.photographs);
+  for (const auto& [named, mesh] : session.meshes) root["input"]["meshes"][named] = relative(mesh);
   for (const SessionFile& f : session.files)
     root["input"]["files"].push_back({{"path", relative(f.path)}, {"sha256", hash(f.sha256)}});
 
@@ -257,27 +260,57 @@ void writeSession(const Session& session, const fs::path& file) {
 MissingScene::MissingScene(const fs::path& session, fs::path scene)
     : InputError(session.string(), "input.path", "the scene " + scene.string() + " is not there"), scene_(std::move(scene)) {}
 
-OpenedSession openSession(const fs::path& file, const fs::path& sceneInstead) {
-  return openSession(readSession(file), sceneInstead);
+OpenedSession openSession(const fs::path& file, const Relinked& instead) { return openSession(readSession(file), instead); }
+
+namespace {
+
+/// Compares what was relinked with what the session was made with, and forgets the hashes of where it was; saving hashes it where
+/// it is. One line; "" = the same files, or not known.
+std::string takeOver(Session& session, const Scene& scene, const fs::path& sceneWas, bool sceneMoved) {
+  std::vector<std::string> others;
+  std::set<fs::path> moved;
+  const auto compare = [&](const char* what, const fs::path& was, const fs::path& now) {
+    const auto known =
+        std::find_if(session.files.begin(), session.files.end(), [&](const SessionFile& f) { return f.path == was; });
+    if (known != session.files.end() && !known->sha256.empty() && sha256OfFile(now) != known->sha256)
+      others.push_back(now.string() + " is not the " + what + " that the session was made with: its content differs");
+    moved.insert(was);
+  };
+  if (sceneMoved && !session.files.empty()) compare("scene", session.files.front().path, scene.file);
+  const fs::path folderWas = sceneMoved ? sceneWas.parent_path() : scene.folder;
+  for (const auto& [named, now] : scene.meshes) {
+    const auto before = session.meshes.find(named);
+    const fs::path was = before != session.meshes.end() ? before->second : (folderWas / named).lexically_normal();
+    if (was != now) compare("mesh", was, now);
+  }
+  std::erase_if(session.files, [&](const SessionFile& f) { return sceneMoved || moved.count(f.path) > 0; });
+  std::string line;
+  for (const std::string& other : others) line += (line.empty() ? "" : "; ") + other;
+  return line;
 }
 
-OpenedSession openSession(Session given, const fs::path& sceneInstead) {
+}  // namespace
+
+OpenedSession openSession(Session given, const Relinked& instead) {
   OpenedSession opened{std::move(given), nullptr, ""};
   Session& session = opened.session;
-  if (!sceneInstead.empty()) session.input = fs::absolute(sceneInstead).lexically_normal();
+  const fs::path sceneWas = session.input;
+  if (!instead.scene.empty()) session.input = fs::absolute(instead.scene).lexically_normal();
   std::error_code ignored;
   if (!fs::exists(session.input, ignored)) throw MissingScene(session.file, session.input);
   ReadOptions options;
   options.allowOutsidePaths = session.allowOutsidePaths;
+  options.meshes = instead.meshes;
+  options.meshes.insert(session.meshes.begin(), session.meshes.end());  // what is given now stays
+  options.meshFolders = instead.meshFolders;
   Scene scene = readScene(session.input, options);
-  if (!session.photographs.empty()) scene = withPhotographsIn(std::move(scene), session.photographs);
-  opened.scene = std::make_shared<const Scene>(std::move(scene));
-  if (!sceneInstead.empty() && !session.files.empty()) {
-    const std::string expected = session.files.front().sha256;
-    if (!expected.empty() && sha256OfFile(opened.scene->file) != expected)
-      opened.warning = opened.scene->file.string() + " is not the scene that the session was made with: its content differs";
-    session.files.clear();  // of the old place; saving hashes those of the new one
+  if (!session.photographs.empty()) {
+    scene = withPhotographsIn(std::move(scene), session.photographs);
+    scene.photographs = session.photographs;  // also while the folder is not to be had
   }
+  if (instead.any()) opened.warning = takeOver(session, scene, sceneWas, !instead.scene.empty());
+  session.meshes = scene.meshes;
+  opened.scene = std::make_shared<const Scene>(std::move(scene));
   return opened;
 }
 

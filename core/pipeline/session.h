@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/pipeline/inspection.h"
+#include "core/scene/relinked.h"
 #include "core/tradeoff/tradeoff.h"
 
 namespace glint {
@@ -53,6 +54,7 @@ struct Session {
   std::filesystem::path input;     ///< absolute path of the scene
   std::optional<Recovery> recovery;  ///< set in autosaves only
   std::filesystem::path photographs;  ///< absolute folder in which photographs are looked for first; "" = where the scene says
+  std::map<std::string, std::filesystem::path> meshes;  ///< absolute, those that lie elsewhere: by the path that the scene writes
   bool allowOutsidePaths = false;  ///< the scene may name files outside its folder
   std::vector<SessionFile> files;  ///< the scene file first, then everything that it names
   InspectionRequest request;
@@ -86,12 +88,12 @@ class MissingScene : public InputError {
 struct OpenedSession {
   Session session;
   std::shared_ptr<const Scene> scene;
-  std::string warning;  ///< the scene that was given instead is another one than the session was made with; "" = it is not
+  std::string warning;  ///< what was given instead is another file than the session was made with; "" = it is not
 };
-/// Reads a session and its scene. InputError; MissingScene. Does not check the files' contents: see `changedFiles`.
-/// @param sceneInstead  where the scene is now; "" = where the session says. The session then names it.
-OpenedSession openSession(const std::filesystem::path& file, const std::filesystem::path& sceneInstead = {});
-OpenedSession openSession(Session session, const std::filesystem::path& sceneInstead = {});
+/// Reads a session and its scene. InputError; MissingScene, MissingMesh. Does not check the files' contents: see `changedFiles`.
+/// @param instead  where inputs are now that are not where the session says. The session then names them.
+OpenedSession openSession(const std::filesystem::path& file, const Relinked& instead = {});
+OpenedSession openSession(Session session, const Relinked& instead = {});
 
 /// The session of a finished inspection, with hashes of its inputs, held-out frames, key results and digest; the view and notes
 /// are left empty. Reads every input file once. Stopped.

@@ -2,28 +2,12 @@
 #include "core/scene/photographs.h"
 
 #include <set>
-#include <system_error>
 #include <vector>
+
+#include "core/scene/relinked.h"
 
 namespace glint {
 namespace fs = std::filesystem;
-
-namespace {
-
-/// The file under `folder` that shares the longest end of its path with `file`; empty = none.
-fs::path sameUnder(const fs::path& folder, const fs::path& file) {
-  if (file.empty()) return {};
-  const std::vector<fs::path> parts(file.begin(), file.end());
-  for (std::size_t from = 0; from < parts.size(); ++from) {
-    fs::path candidate = folder;
-    for (std::size_t i = from; i < parts.size(); ++i) candidate /= parts[i].relative_path();
-    std::error_code ignored;  // what cannot be asked about is not there
-    if (fs::is_regular_file(candidate, ignored)) return candidate;
-  }
-  return {};
-}
-
-}  // namespace
 
 std::vector<fs::path> filesOf(const Scene& scene) {
   std::vector<fs::path> paths{fs::absolute(scene.file).lexically_normal()};
@@ -72,6 +56,7 @@ Scene withPhotographsIn(Scene scene, const fs::path& folder, int* found) {
       ++count;
     }
   }
+  if (count > 0) scene.photographs = fs::absolute(folder).lexically_normal();
   if (found) *found = count;
   return scene;
 }

@@ -29,7 +29,7 @@ std::string withoutFolder(std::string sentence, const Scene& scene);
 /// The scene with its photographs and radiances in another place: every file that `folder` holds under the same name, with the
 /// longest part of its path that is found there ("a/frames/0003.png": FOLDER/a/frames/0003.png, then FOLDER/frames/0003.png, then
 /// FOLDER/0003.png). What is not there stays where it was; depth maps, normals and masks do. A file that is found for both of a
-/// frame's pictures is its photograph.
+/// frame's pictures is its photograph. Where anything is found, Scene::photographs names the folder.
 /// @param found  how many files were found there; may be null.
 Scene withPhotographsIn(Scene scene, const std::filesystem::path& folder, int* found = nullptr);
 

@@ -85,9 +85,16 @@ class SessionSceneReader final : public SceneReader {
     if (isJsonObjectWith(scene, "glint_session")) path.fail("a session's input must be a scene, not a session");
     ReadOptions own = options;
     if (const auto allow = root.at("input").find("allow_outside")) own.allowOutsidePaths = own.allowOutsidePaths || allow->boolean();
+    const fs::path folder = fs::absolute(file).parent_path();
+    if (const auto meshes = root.at("input").find("meshes"); meshes && !meshes->isNull())
+      for (const std::string& named : meshes->keys())  // what the caller says comes first
+        own.meshes.emplace(named, (folder / meshes->at(named).text()).lexically_normal());
     Scene read = readScene(scene.lexically_normal(), own);
-    if (const auto folder = root.at("input").find("photographs"); folder && !folder->isNull())
-      read = withPhotographsIn(std::move(read), (fs::absolute(file).parent_path() / folder->text()).lexically_normal());
+    if (const auto n = root.at("input").find("photographs"); n && !n->isNull()) {
+      const fs::path photographs = (folder / n->text()).lexically_normal();
+      read = withPhotographsIn(std::move(read), photographs);
+      read.photographs = photographs;  // also while the folder is not to be had
+    }
     return read;
   }
 };

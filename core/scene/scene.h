@@ -51,6 +51,8 @@ struct Scene {
   std::filesystem::path file;             ///< as opened
   std::filesystem::path folder;           ///< absolute folder of the file; all relative paths start here
   bool allowOutsidePaths = false;         ///< as it was read with (ReadOptions)
+  std::filesystem::path photographs;      ///< absolute folder in which photographs were looked for first; "" = none was given
+  std::map<std::string, std::filesystem::path> meshes;  ///< those that lie elsewhere: by the path that the file writes, absolute
   std::vector<Frame> frames;
   std::map<std::string, SurfaceSource> surfaces;
   std::vector<TrueLight> lights;
@@ -60,9 +62,13 @@ struct Scene {
 
 struct ReadOptions {
   bool allowOutsidePaths = false;         ///< accept paths that leave the scene's folder
+  /// Where meshes are instead, by the path that the scene file writes; a mesh may lie anywhere.
+  std::map<std::string, std::filesystem::path> meshes = {};
+  /// In which meshes are looked for, by the longest end of their path, that are not in their place.
+  std::vector<std::filesystem::path> meshFolders = {};
 };
 
-/// Reads any input that Glint knows, recognised by content. InputError with file, place and reason.
+/// Reads any input that Glint knows, recognised by content. InputError with file, place and reason; MissingMesh.
 Scene readScene(const std::filesystem::path& input, const ReadOptions& options = {});
 /// Writes scene.json version 1 with relative paths, atomically. InputError when it cannot be written.
 void writeScene(const Scene& scene, const std::filesystem::path& file);

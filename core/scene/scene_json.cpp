@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/scene/relinked.h"
 #include "core/scene/scene_reader.h"
 
 namespace glint {
@@ -260,12 +261,30 @@ Frame readFrame(const JsonNode& node, const FrameContext& context, Json& rest) {
   return frame;
 }
 
+/// The mesh file that `node` names: where it was relinked to, else in its place, else in one of the folders.
+fs::path findMesh(const JsonNode& node, const FrameContext& context) {
+  const std::string named = node.text();
+  const auto isThere = [](const fs::path& file) {
+    std::error_code ignored;  // what cannot be asked about is not there
+    return fs::is_regular_file(file, ignored);
+  };
+  const auto moved = context.options.meshes.find(named);
+  const fs::path place =
+      moved != context.options.meshes.end()
+          ? fs::absolute(moved->second).lexically_normal()
+          : resolveInside(context.scene.folder, named, context.options.allowOutsidePaths, node.file(), node.place());
+  fs::path found = isThere(place) ? place : fs::path();
+  for (const fs::path& folder : context.options.meshFolders)
+    if (found.empty()) found = sameUnder(fs::absolute(folder), place);
+  if (found.empty()) throw MissingMesh(node.file(), node.place(), named, place);
+  if (moved != context.options.meshes.end() || found != place) context.scene.meshes[named] = found;
+  return found;
+}
+
 SurfaceSource readSurface(const JsonNode& node, const FrameContext& context, Json& rest) {
   SurfaceSource source;
   if (const auto n = node.find("mesh")) {
-    source.mesh = resolveInside(context.scene.folder, n->text(), context.options.allowOutsidePaths, n->file(), n->place());
-    std::error_code error;
-    if (!fs::is_regular_file(*source.mesh, error)) n->fail("there is no file '" + n->text() + "'");
+    source.mesh = findMesh(*n, context);
   }
   if (const auto n = node.find("analytic")) {
     source.analytic = readAnalyticJson(*n);
@@ -341,6 +360,10 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
     scene.frames.push_back(std::move(frame));
   }
   keep(unknown.kept, "frames", frameRests);
+
+  for (const auto& [named, place] : options.meshes)
+    if (!scene.meshes.count(named))
+      scene.warnings.push_back("no surface has the mesh '" + named + "', for which a place was given");
 
   const Json top = unknown.of(root, {"glint_scene", "name", "units", "camera", "frames", "surfaces", "lights"});
   keep(unknown.kept, "scene", top);

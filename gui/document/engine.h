@@ -10,6 +10,7 @@
 #include "core/diagnostics/influence.h"
 #include "core/pipeline/inspection.h"
 #include "core/pipeline/selection.h"
+#include "core/scene/relinked.h"
 #include "core/tradeoff/tradeoff.h"
 #include "viz/scene_view.h"
 
@@ -23,7 +24,7 @@ namespace glint::gui {
 struct Opened {
   std::string path;        ///< as opened
   bool isSession = false;  ///< `path` is a session, so "save" writes there
-  bool unsaved = false;    ///< recovered or given another scene: what is on screen is not what `path` holds
+  bool unsaved = false;    ///< recovered or relinked: what is on screen is not what `path` holds
   std::string warning;     ///< one line to show once; "" = none
   std::shared_ptr<const Scene> scene;
   InspectionRequest request;
@@ -39,9 +40,10 @@ struct Opened {
 /// Everything that the desktop program asks of `core`. `coreEngine()` is the real one; tests replace single
 /// functions to make a run long, to count runs or to fail. All of them may be called from a worker thread.
 struct Engine {
-  /// InputError (file, place, reason) when the input cannot be used; MissingScene for a session whose scene is not there.
-  /// @param sceneInstead  where that scene is now; "" = where the session says.
-  std::function<Opened(const std::string& path, const std::string& sceneInstead)> open;
+  /// InputError (file, place, reason) when the input cannot be used; MissingScene for a session whose scene is not there,
+  /// MissingMesh for a scene whose mesh is not.
+  /// @param instead  where these are now.
+  std::function<Opened(const std::string& path, const Relinked& instead)> open;
   /// As glint::inspect: throws Stopped and InputError.
   std::function<Inspection(std::shared_ptr<const Scene>, const InspectionRequest&, const ProgressFn&, const Inspection* previous)>
       inspect;

@@ -19,6 +19,7 @@ Runner::Runner(Engine engine, QObject* parent) : QObject(parent), engine_(std::m
   qRegisterMetaType<SelectionPtr>("glint::gui::SelectionPtr");
   qRegisterMetaType<TradeoffPtr>("glint::gui::TradeoffPtr");
   qRegisterMetaType<InfluencePtr>("glint::gui::InfluencePtr");
+  qRegisterMetaType<MissingPtr>("glint::gui::MissingPtr");
   worker_->moveToThread(&thread_);
   connect(&thread_, &QThread::finished, worker_, &QObject::deleteLater);
   thread_.start();
@@ -35,16 +36,23 @@ void Runner::cancel() {
   cancelledSaves_ = newestSave_.load();
 }
 
-void Runner::open(const std::string& path, const std::string& sceneInstead) {
+void Runner::open(const std::string& path, const Relinked& instead) {
   cancelled_ = newest_.load();  // results of the scene on screen are of no use any more; a save is
-  const auto work = [this, path, sceneInstead](int job) {
+  const auto work = [this, path, instead](int job) {
+    const auto say = [&](const std::filesystem::path& file, const std::string& named) {
+      const MissingPtr missing =
+          std::make_shared<const Missing>(Missing{toQString(path), toQString(file.string()), named, instead});
+      QMetaObject::invokeMethod(
+          this, [this, missing] { emit inputMissing(missing); }, Qt::QueuedConnection);
+    };
     OpenedPtr opened;
     try {
-      opened = std::make_shared<const Opened>(engine_.open(path, sceneInstead));
+      opened = std::make_shared<const Opened>(engine_.open(path, instead));
     } catch (const MissingScene& e) {
-      QMetaObject::invokeMethod(
-          this, [this, session = toQString(path), scene = toQString(e.scene().string())] { emit sceneMissing(session, scene); },
-          Qt::QueuedConnection);
+      say(e.scene(), "");
+      throw;
+    } catch (const MissingMesh& e) {
+      say(e.mesh(), e.named());
       throw;
     }
     if (job == newest_)

@@ -18,6 +18,15 @@ using SelectionPtr = std::shared_ptr<const glint::Selection>;
 using TradeoffPtr = std::shared_ptr<const Tradeoff>;
 using InfluencePtr = std::shared_ptr<const Influence>;
 
+/// A file without which an input cannot be opened, and what was tried.
+struct Missing {
+  QString path;       ///< that was to be opened
+  QString file;       ///< absolute, where it was looked for
+  std::string named;  ///< of a mesh, as the scene file writes it; "" = it is the scene of a session
+  Relinked instead;   ///< that it was opened with
+};
+using MissingPtr = std::shared_ptr<const Missing>;
+
 /// The only place that knows both Qt and the pipeline: opens inputs and computes inspections on a thread of its own.
 /// The newest request wins. A run that a newer request overtakes is stopped, except in its first `kGraceMs`: quick runs
 /// finish, so that a slider shows results while it is dragged. Once the frame that the user looks at is shown, that grace is
@@ -34,8 +43,8 @@ class Runner : public QObject {
   explicit Runner(Engine engine, QObject* parent = nullptr);
   ~Runner() override;  ///< stops what runs and waits for it
 
-  /// @param sceneInstead  where the scene of a session is now; "" = where the session says.
-  void open(const std::string& path, const std::string& sceneInstead = {});
+  /// @param instead  where inputs are now that are not where the session or scene says.
+  void open(const std::string& path, const Relinked& instead = {});
   /// Answers with finished(), and before it, where the engine can, with frameFinished().
   /// @param previous  earlier results on the same scene, so that unchanged stages are not repeated; may be null.
   /// @param frame  what the user looks at: computed first; -1 = none.
@@ -63,8 +72,8 @@ class Runner : public QObject {
   void measured(const glint::gui::TradeoffPtr& tradeoff, const glint::gui::OpenedPtr& computedFor);
   void influenceMeasured(const glint::gui::InfluencePtr& influence, const glint::gui::InspectionPtr& inspection);
   void failed(const QString& oneLine);
-  /// With failed() after it: opening can be tried again with the place of the scene.
-  void sceneMissing(const QString& session, const QString& scene);
+  /// With failed() after it: opening can be tried again with the place of what is missing.
+  void inputMissing(const glint::gui::MissingPtr& missing);
   void openFailed();  ///< after failed(): what ran for the scene on screen was stopped for nothing
   void stopped();     ///< by cancel()
   void saved(const QString& path, const QString& problem);  ///< `problem` is one line, "" = the file is written
@@ -94,3 +103,4 @@ Q_DECLARE_METATYPE(glint::gui::OpenedPtr)
 Q_DECLARE_METATYPE(glint::gui::SelectionPtr)
 Q_DECLARE_METATYPE(glint::gui::TradeoffPtr)
 Q_DECLARE_METATYPE(glint::gui::InfluencePtr)
+Q_DECLARE_METATYPE(glint::gui::MissingPtr)

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/pipeline/session.h"
+#include "core/scene/mesh_file.h"
 #include "gui/base/text.h"
 #include "gui/document/figure.h"
 #include "gui/scene/scene_options.h"
@@ -35,23 +36,27 @@ int frameNumber(const Scene& scene, const std::string& id) {
 }
 }  // namespace
 
-Opened openInput(const std::string& path, const std::string& sceneInstead) {
+Opened openInput(const std::string& path, const Relinked& instead) {
+  for (const auto& [named, mesh] : instead.meshes) readMesh(mesh);  // what is no mesh must not take the place of what is open
   Opened opened;
+  opened.unsaved = instead.any();
   opened.path = path;
   const fs::path session = sessionAt(path);
   const std::string inside = fs::path(path).extension() == ".png" ? sessionInFigure(toQString(path)).toStdString() : "";
   if (session.empty() && inside.empty()) {
-    opened.scene = std::make_shared<const Scene>(readScene(path));
+    ReadOptions options;
+    options.meshes = instead.meshes;
+    options.meshFolders = instead.meshFolders;
+    opened.scene = std::make_shared<const Scene>(readScene(path, options));
     // A short scene opens too: the default would ask for more frames than there are.
     const int frames = int(opened.scene->frames.size());
     if (frames < kDefaultTraining) opened.request.train = "first:" + std::to_string(frames);
     return opened;
   }
-  OpenedSession read = openSession(inside.empty() ? readSession(session) : parseSession(inside, path), sceneInstead);
+  OpenedSession read = openSession(inside.empty() ? readSession(session) : parseSession(inside, path), instead);
   const SessionView& view = read.session.view;
   opened.path = session.string();
   opened.isSession = true;
-  opened.unsaved = !sceneInstead.empty();
   opened.warning = read.warning;
   if (read.session.recovery) {
     opened.path = read.session.recovery->of.string();
@@ -83,12 +88,13 @@ namespace {
 void addState(Session& session, const Opened& opened) {
   const Scene& scene = *opened.scene;
   session.request = opened.request;
+  session.photographs = scene.photographs;
+  session.meshes = scene.meshes;
   if (opened.tradeoff) session.tradeoff = *opened.tradeoff;
   if (opened.session) {
     session.notes = opened.session->notes;
     session.unknownJson = opened.session->unknownJson;
     session.allowOutsidePaths = opened.session->allowOutsidePaths;
-    session.photographs = opened.session->photographs;
   }
   session.view.layout = opened.layout;
   session.view.layers = opened.layers;

@@ -8,8 +8,8 @@
 namespace glint::gui {
 
 /// Opens a session (by its ending .glint, or the only one in a folder without a scene), an autosave, or any other input.
-/// InputError; MissingScene, to be asked again with where the scene is.
-Opened openInput(const std::string& path, const std::string& sceneInstead = {});
+/// InputError; MissingScene and MissingMesh, to be asked again with where these are. A mesh that is given must be readable.
+Opened openInput(const std::string& path, const Relinked& instead = {});
 /// Writes a session; InputError, Stopped. @param results  finished results of exactly this request, or null.
 void saveSession(const Opened& opened, const Inspection* results, const std::string& path, const ProgressFn& progress = {});
 

@@ -190,8 +190,7 @@ void ExportActions::writeLabels(const QString& folder) {
 
 Outcome<std::string> ExportActions::command() const {
   if (!document_.scene()) return Failure{Reason::NoSurface, "no scene is open"};
-  const Scene& scene = *document_.scene();
-  Outcome<std::string> text = commandOf(scene.file.string(), document_.request(), scene.allowOutsidePaths);
+  Outcome<std::string> text = commandOf(*document_.scene(), document_.request());
   if (text || document_.sessionFile().isEmpty() || document_.hasUnsavedChanges()) return text;
   return "glint evaluate " + shellWord(document_.sessionFile().toStdString());  // the session holds what has no flag
 }

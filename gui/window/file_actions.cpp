@@ -135,9 +135,9 @@ void FileActions::open(const QString& path) {
   runner_.open(path.toStdString());
 }
 
-void FileActions::openRelinked(const QString& session, const QString& scene) {
+void FileActions::openRelinked(const QString& path, const Relinked& instead) {
   if (!mayDiscard()) return;
-  runner_.open(session.toStdString(), scene.toStdString());
+  runner_.open(path.toStdString(), instead);
 }
 
 void FileActions::reopen(const OpenedPtr& opened) {
@@ -146,11 +146,25 @@ void FileActions::reopen(const OpenedPtr& opened) {
   finishOpen(state);
 }
 
-void FileActions::askForScene(const QString& session, const QString& missing) {
-  const QString name = QFileInfo(missing).fileName();
-  const QString found = QFileDialog::getOpenFileName(window_, tr("Where is %1?").arg(name), QFileInfo(session).path(),
-                                                     tr("%1 (%1);;Scenes (*.json);;All files (*)").arg(name));
-  if (!found.isEmpty()) openRelinked(session, found);
+void FileActions::locate(const MissingPtr& missing) {
+  const QString name = QFileInfo(missing->file).fileName();
+  const bool mesh = !missing->named.empty();
+  const QFileInfo opened(missing->path);
+  QFileDialog dialog(
+      window_, tr("Where is %1?").arg(name), opened.isDir() ? missing->path : opened.path(),
+      (mesh ? tr("%1 (%1);;Meshes (*.ply *.obj *.stl);;All files (*)") : tr("%1 (%1);;Scenes (*.json);;All files (*)"))
+          .arg(name));
+  dialog.setFileMode(QFileDialog::ExistingFile);
+  if (dialog.exec() != QDialog::Accepted || dialog.selectedFiles().isEmpty()) return;
+  const std::filesystem::path found = dialog.selectedFiles().first().toStdString();
+  Relinked instead = missing->instead;
+  if (mesh) {
+    instead.meshes[missing->named] = found;
+    instead.meshFolders.push_back(folderOfMove(missing->file.toStdString(), found));
+  } else {
+    instead.scene = found;
+  }
+  openRelinked(missing->path, instead);
 }
 
 void FileActions::finishOpen(const OpenedPtr& opened) {

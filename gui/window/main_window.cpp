@@ -131,8 +131,8 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   });
   connect(&document_, &Document::sceneOpened, this, &MainWindow::showTitle);
   connect(&document_, &Document::savedStateChanged, this, &MainWindow::showTitle);
-  connect(&runner_, &Runner::sceneMissing, this, [this](const QString& session, const QString& scene) {
-    missing_ = {session, scene};  // failed() comes next, and shows it
+  connect(&runner_, &Runner::inputMissing, this, [this](const MissingPtr& missing) {
+    missing_ = missing;  // failed() comes next, and shows it
   });
   connect(unreadable_, &UnreadablePhotographs::problem, this, &MainWindow::showProblem);
   connect(unreadable_, &UnreadablePhotographs::message, this, &MainWindow::log);
@@ -452,8 +452,8 @@ void MainWindow::recompute() {
 void MainWindow::showProblem(const QString& oneLine) {
   lastError_ = oneLine;
   MessageBar::Answers answers;
-  if (const auto [session, scene] = std::exchange(missing_, {}); !session.isEmpty())
-    answers.append({tr("Locate…"), [this, session = session, scene = scene] { files_->askForScene(session, scene); }});
+  if (const MissingPtr missing = std::exchange(missing_, {}))
+    answers.append({tr("Locate…"), [this, missing] { files_->locate(missing); }});
   messageBar_->showError(oneLine, answers);
   log(oneLine);
   emit problem(oneLine);

@@ -118,8 +118,8 @@ class MainWindow : public QMainWindow {
   bool ownLayout_ = false;  ///< the docks are where an own layout has them
   ScriptedActions* script_ = nullptr;
   UnreadablePhotographs* unreadable_ = nullptr;
-  std::pair<QString, QString> missing_;  ///< session and scene of the opening that failed last
-  bool runFailed_ = false;               ///< the message bar shows why the last run failed
+  MissingPtr missing_;      ///< why the opening that failed last did; null = for another reason, or it was said
+  bool runFailed_ = false;  ///< the message bar shows why the last run failed
 };
 
 }  // namespace glint::gui

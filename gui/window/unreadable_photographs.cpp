@@ -5,7 +5,6 @@
 #include <QDialog>
 #include <QDialogButtonBox>
 #include <QFileDialog>
-#include <QFileInfo>
 #include <QLabel>
 #include <QMenu>
 #include <QPushButton>
@@ -13,7 +12,6 @@
 #include <QVBoxLayout>
 #include <utility>
 
-#include "core/pipeline/session.h"
 #include "core/scene/photographs.h"
 #include "gui/base/text.h"
 #include "gui/window/message_bar.h"
@@ -164,9 +162,6 @@ void UnreadablePhotographs::locateIn(const QString& folder) {
       if (!state->isSession) state->path = document_.inputFile().toStdString();
       state->unsaved = true;
       state->scene = moved;
-      Session session = state->session ? *state->session : Session();
-      session.photographs = QFileInfo(folder).absoluteFilePath().toStdString();
-      state->session = std::make_shared<const Session>(std::move(session));
       const int bad = all_.size();
       reopen_(state);
       emit message(tr("%1 of %2 photographs that could not be read are in %3").arg(mended).arg(bad).arg(folder));

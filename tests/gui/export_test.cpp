@@ -73,7 +73,7 @@ class ExportTest : public QObject {
     picture.setText("glint-session", QString::fromUtf8(session.readAll()));
     const QString file = folder_.filePath("old figure.png");
     QVERIFY(picture.save(file));
-    const Opened opened = openInput(file.toStdString(), (QFileInfo(kSession).path() + "/scene.json").toStdString());
+    const Opened opened = openInput(file.toStdString(), {(QFileInfo(kSession).path() + "/scene.json").toStdString()});
     QCOMPARE(opened.request.train, std::string("0-3"));
     QCOMPARE(int(opened.scene->frames.size()), 6);
   }

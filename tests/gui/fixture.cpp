@@ -112,7 +112,7 @@ void drag(QWidget* widget, const std::vector<QPoint>& points) {
 
 Engine Fixture::engine() const {
   Engine engine;
-  engine.open = [opened = opened()](const std::string& path, const std::string&) {
+  engine.open = [opened = opened()](const std::string& path, const Relinked&) {
     if (path != opened.path) throw InputError(path, "", "no such file");
     return opened;
   };

@@ -63,6 +63,7 @@ QObject* makeRecoveryTest();
 int runUntilKilled();  ///< see recovery_test.cpp
 QObject* makeTradeoffTest();
 QObject* makeUnreadableTest();
+QObject* makeRelinkedTest();
 QObject* makeWhatIfTest();
 QObject* makeWindowSizeTest();
 QObject* makeCameraPickingTest();

@@ -38,6 +38,7 @@ int main(int argc, char** argv) {
       {"figure", makeFigureTest},
       {"comparison", makeComparisonTest},
       {"unreadable", makeUnreadableTest},
+      {"relinked", makeRelinkedTest},
       {"what_if", makeWhatIfTest},
       {"window_size", makeWindowSizeTest},
       {"camera_picking", makeCameraPickingTest},

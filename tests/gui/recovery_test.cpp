@@ -168,7 +168,7 @@ class RecoveryTest : public QObject {
     window.open(old + "/plane.glint");
     QTRY_VERIFY_WITH_TIMEOUT(answer(window, "Locate…"), 20000);
     QVERIFY(window.lastError().contains("scene.json") && !window.lastError().contains('\n'));
-    window.files()->openRelinked(old + "/plane.glint", moved + "/scene.json");  // what the dialog's answer does
+    window.files()->openRelinked(old + "/plane.glint", {(moved + "/scene.json").toStdString()});  // what the dialog's answer does
     QTRY_VERIFY_WITH_TIMEOUT(window.document().scene() && window.idle() && window.document().inspection(), 60000);
     QVERIFY(window.document().hasUnsavedChanges());
     QVERIFY(window.files()->save());
@@ -188,7 +188,7 @@ class RecoveryTest : public QObject {
     QVERIFY(scene.open(QIODevice::Append));
     scene.write("\n");  // the same scene, but not the same file
     scene.close();
-    const Opened opened = openInput(kSession, (other + "/scene.json").toStdString());
+    const Opened opened = openInput(kSession, {(other + "/scene.json").toStdString()});
     QVERIFY(toQString(opened.warning).contains("content differs"));
     QVERIFY(opened.unsaved);
   }

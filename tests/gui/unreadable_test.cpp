@@ -161,7 +161,7 @@ class UnreadableTest : public QObject {
     scene->frames[7].image = scene->folder / "gone7.png";
     opened.scene = scene;
     Engine engine = fixture.engine();
-    engine.open = [opened](const std::string& path, const std::string&) {
+    engine.open = [opened](const std::string& path, const Relinked&) {
       if (path != opened.path) throw InputError(path, "", "no such file");
       return opened;
     };

@@ -26,7 +26,13 @@ TEST(CommandText, AShellGivesBackEveryWord) {
   EXPECT_EQ(shellWord(""), "''");
 }
 
-TEST(CommandText, DefaultsAreLeftOut) { EXPECT_EQ(*commandOf("scene.json", {}), "glint evaluate scene.json"); }
+Scene sceneIn(const std::string& file) {
+  Scene scene;
+  scene.file = file;
+  return scene;
+}
+
+TEST(CommandText, DefaultsAreLeftOut) { EXPECT_EQ(*commandOf(sceneIn("scene.json"), {}), "glint evaluate scene.json"); }
 
 TEST(CommandText, EverythingThatHasAFlagIsThere) {
   InspectionRequest q;
@@ -39,19 +45,25 @@ TEST(CommandText, EverythingThatHasAFlagIsThere) {
   q.noisePx = 0.3;
   q.seed = 7;
   q.truthFolder = "the truth";
-  EXPECT_EQ(*commandOf("a b.json", q, true),
-            "glint evaluate 'a b.json' --models canonical,limit-angle --train spread:6 --source image --set detect.level=0.1 "
-            "--set fit.solver=anchored "
-            "--set light.refine_poses=true --noise-px 0.3 --seed 7 --truth 'the truth' --allow-outside");
+  Scene scene = sceneIn("a b.json");
+  scene.allowOutsidePaths = true;
+  scene.photographs = "/else where";
+  scene.meshes = {{"it's.ply", "/m/it's.ply"}, {"m/b.ply", "/m/b2.ply"}};
+  EXPECT_EQ(
+      *commandOf(scene, q),
+      "glint evaluate 'a b.json' --models canonical,limit-angle --train spread:6 --source image --set detect.level=0.1 "
+      "--set fit.solver=anchored "
+      "--set light.refine_poses=true --noise-px 0.3 --seed 7 --truth 'the truth' --allow-outside --photographs '/else where' "
+      "--mesh 'it'\\''s.ply=/m/it'\\''s.ply' --mesh m/b.ply=/m/b2.ply");
 }
 
 TEST(CommandText, WhatHasNoFlagIsNamed) {
   InspectionRequest q;
   q.excluded = {3};
-  EXPECT_EQ(commandOf("x", q).failure().reason, Reason::NotSupported);
+  EXPECT_EQ(commandOf(sceneIn("x"), q).failure().reason, Reason::NotSupported);
   q.excluded.clear();
   q.whatIf.poses[1].rotation = {0.1, 0, 0};
-  EXPECT_EQ(commandOf("x", q).failure().reason, Reason::NotSupported);
+  EXPECT_EQ(commandOf(sceneIn("x"), q).failure().reason, Reason::NotSupported);
 }
 
 }  // namespace

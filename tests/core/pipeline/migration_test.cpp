@@ -65,7 +65,7 @@ TEST(Migration, OfVersion1) {
   EXPECT_EQ(s.view.highlight, 0);
   EXPECT_EQ(s.notes, "of version 1");
 
-  const OpenedSession opened = openSession(fixture(1), kScene);
+  const OpenedSession opened = openSession(fixture(1), {kScene});
   EXPECT_EQ(opened.warning, "");  // the hash of the scene is that of the shipped one
   // Solvers were improved since: 7e-4. With today's default the limit angle would differ by 1.1e-2.
   EXPECT_LT(largestChange(opened), 1e-3);
@@ -78,7 +78,7 @@ TEST(Migration, OfVersion2) {
   ASSERT_TRUE(s.tradeoff);
   EXPECT_EQ(s.tradeoff->points.size(), 2u);
   EXPECT_EQ(s.tradeoff->chosen, 1);
-  EXPECT_LT(largestChange(openSession(fixture(2), kScene)), 1e-9);
+  EXPECT_LT(largestChange(openSession(fixture(2), {kScene})), 1e-9);
 }
 
 TEST(Migration, OfASessionWithEverythingThatVersion2Grew) {

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/scene_arguments.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "core/scene/photographs.h"
+
+namespace glint::cli {
+namespace fs = std::filesystem;
+
+namespace {
+void requireFolder(const std::string& folder, const std::string& flag) {
+  std::error_code ignored;  // what cannot be asked about is not there
+  if (!fs::is_directory(folder, ignored)) throw InputError("", flag + " " + folder, "there is no such folder");
+}
+
+/// As the scene file writes them.
+std::set<std::string> meshNames(const Scene& scene) {
+  std::set<std::string> names;
+  for (const auto& [id, source] : scene.surfaces) {
+    if (!source.mesh) continue;
+    const auto moved = std::find_if(scene.meshes.begin(), scene.meshes.end(),
+                                    [&, &mesh = *source.mesh](const auto& m) { return m.second == mesh; });
+    names.insert(moved != scene.meshes.end() ? moved->first : source.mesh->lexically_relative(scene.folder).generic_string());
+  }
+  return names;
+}
+}  // namespace
+
+void SceneArguments::declarePlaces(Options& o) {
+  o.option(photographs, "--photographs", "DIR", "Folder in which photographs are looked for first, by the ends of their paths");
+  o.repeated(mesh, "--mesh", "NAME=FILE", "The mesh that the scene file calls NAME is FILE; may be repeated");
+  o.repeated(meshFolders, "--meshes", "DIR",
+             "Folder in which meshes are looked for that are not in their place; may be repeated");
+}
+
+void SceneArguments::declare(Options& o) {
+  o.flag(allowOutside, "--allow-outside", "Accept paths that leave the folder of the scene file");
+  declarePlaces(o);
+}
+
+Relinked SceneArguments::relinked() const {
+  Relinked r;
+  for (const std::string& entry : mesh) {
+    const std::size_t equals = entry.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == entry.size())
+      throw InputError("", "--mesh " + entry, "expected NAME=FILE");
+    r.meshes[entry.substr(0, equals)] = entry.substr(equals + 1);
+  }
+  for (const std::string& folder : meshFolders) {
+    requireFolder(folder, "--meshes");
+    r.meshFolders.push_back(folder);
+  }
+  return r;
+}
+
+void SceneArguments::check(Scene& scene) const {
+  for (const auto& [named, file] : relinked().meshes)
+    if (!scene.meshes.count(named)) {
+      std::string known;
+      for (const std::string& name : meshNames(scene)) known += (known.empty() ? "" : ", ") + name;
+      throw InputError("", "--mesh " + named + "=" + file.string(),
+                       "the scene names no mesh '" + named + "'" + (known.empty() ? "" : "; there are: " + known));
+    }
+  if (photographs.empty()) return;
+  requireFolder(photographs, "--photographs");
+  int found = 0;
+  scene = withPhotographsIn(std::move(scene), photographs, &found);
+  if (found == 0) throw InputError("", "--photographs " + photographs, "holds no photograph of this scene");
+}
+
+Scene SceneArguments::read(const std::string& input) const {
+  const Relinked r = relinked();
+  ReadOptions options;
+  options.allowOutsidePaths = allowOutside;
+  options.meshes = r.meshes;
+  options.meshFolders = r.meshFolders;
+  Scene scene = readScene(input, options);
+  check(scene);
+  return scene;
+}
+
+OpenedSession SceneArguments::openSession(const std::string& file) const {
+  OpenedSession opened = glint::openSession(file, relinked());
+  Scene scene = *opened.scene;
+  check(scene);
+  opened.scene = std::make_shared<const Scene>(std::move(scene));
+  return opened;
+}
+
+}  // namespace glint::cli

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "core/pipeline/session.h"
+
+namespace glint::cli {
+
+/// Where the files of a scene are that are not where it says; the same flags for every command that reads one.
+struct SceneArguments {
+  bool allowOutside = false;
+  std::string photographs;        ///< folder; "" = where the input says
+  std::vector<std::string> mesh;  ///< NAME=FILE
+  std::vector<std::string> meshFolders;
+
+  /// --photographs, --mesh and --meshes; with `declare` also --allow-outside.
+  void declarePlaces(Options& options);
+  void declare(Options& options);
+  /// A scene, or that of a session. InputError, also for a flag that the scene has no use for.
+  Scene read(const std::string& input) const;
+  OpenedSession openSession(const std::string& file) const;
+
+ private:
+  Relinked relinked() const;
+  void check(Scene& scene) const;
+};
+
+}  // namespace glint::cli

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Meshes that are not where the scene says: named, and found where the caller says.
+#include "core/scene/relinked.h"
+
+#include <gmock/gmock.h>
+
+#include <functional>
+
+#include "core/pipeline/session.h"
+#include "core/scene/scene.h"
+#include "tests/core/scene/scene_fixture.h"
+
+namespace glint {
+namespace {
+using namespace testing_support;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Pair;
+namespace fs = std::filesystem;
+
+/// Four surfaces; two of them share a mesh. Reading a scene does not look into its meshes.
+std::string scene(const std::string& shared = "m/a.ply", const std::string& other = "m/b.ply") {
+  return with(with(minimalScene(), R"({"ball": {"analytic": {"type": "sphere", "radius": 0.4}}})",
+                   R"({"a": {"mesh": ")" + shared + R"("}, "a2": {"mesh": ")" + shared + R"("}, "b": {"mesh": ")" + other +
+                       R"("}, "ball": {"analytic": {"type": "sphere", "radius": 0.4}}})"),
+              R"({"id": "a", )", R"({"id": "a", "surface": "a", )");
+}
+
+MissingMesh missingIn(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const MissingMesh& e) {
+    return e;
+  }
+  ADD_FAILURE() << "nothing is missing";
+  return {"", "", "", ""};
+}
+
+TEST(FolderOfMove, IsWhatIsNotSharedAtTheEnd) {
+  EXPECT_EQ(folderOfMove("/a/m/x.ply", "/b/m/x.ply"), "/b");
+  EXPECT_EQ(folderOfMove("/a/m/x.ply", "/b/x.ply"), "/b");
+  EXPECT_EQ(folderOfMove("/a/m/x.ply", "/b/m/y.ply"), "/b/m") << "another name: its own folder";
+  EXPECT_EQ(folderOfMove("/m/x.ply", "/a/m/x.ply"), "/a");
+  EXPECT_EQ(folderOfMove("/a/m/x.ply", "/m/x.ply"), "/");
+  EXPECT_EQ(folderOfMove("/a/./m/x.ply", "/b/c/../m/x.ply"), "/b");
+}
+
+TEST(SameUnder, IsFoundAgainFromTheFolderOfItsMove) {
+  const TemporaryFolder folder;
+  for (const char* now : {"b/m/x.ply", "x.ply", "deep/er/m/x.ply"}) {
+    const fs::path file = folder.write(now, "x");
+    EXPECT_EQ(sameUnder(folderOfMove("/a/m/x.ply", file), "/a/m/x.ply"), file) << now;
+  }
+}
+
+TEST(MissingMesh, NamesFilePlaceAndPath) {
+  const TemporaryFolder folder;
+  folder.write("m/a.ply", "x");
+  const fs::path file = folder.write("scene.json", scene());
+  const MissingMesh e = missingIn([&] { readScene(file); });
+  EXPECT_EQ(e.named(), "m/b.ply");
+  EXPECT_EQ(e.mesh(), folder / "m/b.ply");
+  EXPECT_EQ(e.file(), file);
+  EXPECT_EQ(e.place(), "surfaces.b.mesh");
+  EXPECT_EQ(e.what(), file.string() + ": surfaces.b.mesh: there is no file '" + (folder / "m/b.ply").string() + "'");
+  // A folder of that name is no mesh.
+  fs::create_directories(folder / "m/b.ply");
+  EXPECT_EQ(missingIn([&] { readScene(file); }).named(), "m/b.ply");
+}
+
+TEST(RelinkedMeshes, AFileTakesThePlaceOfEverySurfaceThatNamesIt) {
+  const TemporaryFolder folder, other;
+  folder.write("m/b.ply", "x");
+  const fs::path file = folder.write("scene.json", scene()), now = other.write("renamed.ply", "x");
+  ReadOptions options;
+  options.meshes["m/a.ply"] = now;
+  const Scene read = readScene(file, options);
+  EXPECT_EQ(*read.surfaces.at("a").mesh, now);
+  EXPECT_EQ(*read.surfaces.at("a2").mesh, now);
+  EXPECT_EQ(*read.surfaces.at("b").mesh, folder / "m/b.ply");
+  EXPECT_THAT(read.meshes, ElementsAre(Pair("m/a.ply", now)));
+  EXPECT_THAT(read.warnings, IsEmpty());
+  // Written again, the scene names the file where it is; what reads it needs to be told nothing.
+  writeScene(read, folder / "again.json");
+  ReadOptions outside;
+  outside.allowOutsidePaths = true;
+  const Scene again = readScene(folder / "again.json", outside);
+  EXPECT_EQ(*again.surfaces.at("a2").mesh, now);
+  EXPECT_THAT(again.meshes, IsEmpty());
+}
+
+TEST(RelinkedMeshes, AFolderServesThoseThatAreNotInTheirPlace) {
+  const TemporaryFolder folder, first, second;
+  const fs::path file = folder.write("scene.json", scene());
+  folder.write("m/a.ply", "x");
+  first.write("a.ply", "old");  // must not take the place of the one that is there
+  second.write("b.ply", "x");
+  const fs::path longest = second.write("m/b.ply", "x");
+  ReadOptions options;
+  options.meshFolders = {first.path()};
+  EXPECT_EQ(missingIn([&] { readScene(file, options); }).mesh(), folder / "m/b.ply");
+  options.meshFolders.push_back(second.path());
+  const Scene read = readScene(file, options);
+  EXPECT_EQ(*read.surfaces.at("a").mesh, folder / "m/a.ply");
+  EXPECT_EQ(*read.surfaces.at("b").mesh, longest);
+  EXPECT_THAT(read.meshes, ElementsAre(Pair("m/b.ply", longest)));
+}
+
+TEST(RelinkedMeshes, WhereAFileWasGivenNoOtherIsTaken) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.write("scene.json", scene());
+  folder.write("m/a.ply", "x");
+  folder.write("m/b.ply", "x");
+  ReadOptions options;
+  options.meshes["m/a.ply"] = folder / "gone.ply";
+  const MissingMesh e = missingIn([&] { readScene(file, options); });
+  EXPECT_EQ(e.named(), "m/a.ply");
+  EXPECT_EQ(e.mesh(), folder / "gone.ply");
+  options.meshes = {{"m/c.ply", folder / "m/a.ply"}};
+  EXPECT_THAT(readScene(file, options).warnings, ElementsAre(HasSubstr("'m/c.ply'")));
+}
+
+TEST(RelinkedMeshes, AreKeptByASessionRelativeToItself) {
+  const TemporaryFolder folder, moved;
+  folder.write("data/m/b.ply", "x");
+  folder.write("else/a2.ply", "x");
+  Session session;
+  session.input = folder.write("data/scene.json", scene());
+  session.meshes["m/a.ply"] = folder / "else/a2.ply";
+  fs::create_directories(folder / "sessions");
+  writeSession(session, folder / "sessions/x.glint");
+  const std::string text = contentOf(folder / "sessions/x.glint");
+  EXPECT_THAT(text, HasSubstr("\"m/a.ply\": \"../else/a2.ply\""));
+  fs::copy(folder.path(), moved.path(), fs::copy_options::recursive);
+  fs::remove_all(folder / "else");
+  const fs::path now = moved / "else/a2.ply";
+  const OpenedSession opened = openSession(moved / "sessions/x.glint");
+  EXPECT_EQ(*opened.scene->surfaces.at("a").mesh, now);
+  EXPECT_THAT(opened.session.meshes, ElementsAre(Pair("m/a.ply", now)));
+  EXPECT_EQ(opened.warning, "");
+  EXPECT_EQ(*readScene(moved / "sessions/x.glint").surfaces.at("a2").mesh, now) << "a session is an input like a scene";
+  // Gone again, it is asked for again, and what is given now counts.
+  EXPECT_EQ(missingIn([&] { openSession(folder / "sessions/x.glint"); }).mesh(), folder / "else/a2.ply");
+  Relinked instead;
+  instead.meshes["m/a.ply"] = now;
+  EXPECT_EQ(*openSession(folder / "sessions/x.glint", instead).scene->surfaces.at("a").mesh, now);
+}
+
+TEST(RelinkedMeshes, AnotherFileThanTheSessionWasMadeWithIsTold) {
+  const TemporaryFolder folder, other;
+  folder.write("m/a.ply", "the mesh");
+  folder.write("m/b.ply", "b");
+  Session session;
+  session.input = folder.write("scene.json", scene());
+  session.files = hashInputs(readScene(session.input), {});
+  ASSERT_EQ(session.files.size(), 3u);
+  writeSession(session, folder / "x.glint");
+  Relinked same, different;
+  same.meshes["m/a.ply"] = other.write("same.ply", "the mesh");
+  different.meshes["m/a.ply"] = other.write("different.ply", "another");
+  for (const bool sceneToo : {false, true}) {
+    fs::remove(folder / "m/a.ply");
+    if (sceneToo) {  // its meshes are then looked for beside it, and known by where they were
+      fs::rename(folder / "scene.json", other / "scene.json");
+      other.write("m/b.ply", "b");
+      same.scene = different.scene = other / "scene.json";
+    }
+    const OpenedSession found = openSession(folder / "x.glint", same);
+    EXPECT_EQ(found.warning, "") << sceneToo;
+    EXPECT_THAT(changedFiles(found.session), IsEmpty()) << "where it was is not missed any more";
+    EXPECT_EQ(found.session.files.size(), sceneToo ? 0u : 2u);
+    EXPECT_EQ(openSession(folder / "x.glint", different).warning,
+              (other / "different.ply").string() + " is not the mesh that the session was made with: its content differs")
+        << sceneToo;
+  }
+}
+
+TEST(RelinkedPhotographs, AreKeptWhileTheirFolderIsNotToBeHad) {
+  const TemporaryFolder folder;
+  Session session;
+  session.input = folder.write("scene.json", minimalScene());
+  session.photographs = folder / "disk";
+  writeSession(session, folder / "x.glint");
+  EXPECT_EQ(openSession(folder / "x.glint").scene->photographs, folder / "disk");
+  EXPECT_EQ(readScene(folder / "x.glint").photographs, folder / "disk");
+}
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A mesh that is not where the scene says: asked for, found elsewhere, remembered; and the command that names such places.
+#include <QAction>
+#include <QApplication>
+#include <QClipboard>
+#include <QDialogButtonBox>
+#include <QDir>
+#include <QDirIterator>
+#include <QFile>
+#include <QFileDialog>
+#include <QJsonArray>
+#include <QJsonDocument>
+#include <QJsonObject>
+#include <QLineEdit>
+#include <QProcess>
+#include <QPushButton>
+#include <QTimer>
+
+#include "core/pipeline/session.h"
+#include "gui/base/text.h"
+#include "gui/document/session_file.h"
+#include "gui/window/changed_inputs.h"
+#include "gui/window/file_actions.h"
+#include "gui/window/main_window.h"
+#include "gui/window/message_bar.h"
+#include "gui/window/unreadable_photographs.h"
+#include "tests/gui/fixture.h"
+
+namespace glint::gui {
+
+namespace {
+const QString kMesh = QStringLiteral("mesh/geom_00.ply");
+
+void copyFolder(const QString& from, const QString& to) {
+  QDirIterator files(from, QDir::Files, QDirIterator::Subdirectories);
+  while (files.hasNext()) {
+    const QString name = files.next(), there = to + '/' + QDir(from).relativeFilePath(name);
+    QVERIFY(QDir().mkpath(QFileInfo(there).path()) && QFile::copy(name, there));
+    QFile(there).setPermissions(QFile::ReadOwner | QFile::WriteOwner);
+  }
+}
+
+void move(const QString& from, const QString& to) {
+  QVERIFY2(QDir().mkpath(QFileInfo(to).path()) && QDir().rename(from, to), qPrintable(from + " " + to));
+}
+
+QPushButton* locateButton(MainWindow& window) {
+  auto* bar = window.findChild<MessageBar*>(QStringLiteral("messageBar"));
+  for (QPushButton* button : bar->findChildren<QPushButton*>())
+    if (bar->isVisible() && button->isVisible() && button->text() == QString::fromUtf8("Locate…")) return button;
+  return nullptr;
+}
+
+/// Presses the real button and answers the file dialog that it opens; "" = Cancel. The dialog's title.
+QString locate(MainWindow& window, const QString& file) {
+  QString title;
+  QPushButton* button = nullptr;
+  if (!QTest::qWaitFor([&] { return (button = locateButton(window)) != nullptr && window.idle(); }, 20000)) {
+    QTest::qFail(qPrintable("nothing to locate: " + window.lastError()), __FILE__, __LINE__);
+    return title;
+  }
+  QTimer answer;
+  int ticks = 0;
+  QObject::connect(&answer, &QTimer::timeout, [&] {
+    auto* dialog = qobject_cast<QFileDialog*>(QApplication::activeModalWidget());
+    if (!dialog) return;
+    title = dialog->windowTitle();
+    if (++ticks > 200) return dialog->reject();  // else the test would never end
+    if (ticks == 1) return dialog->selectNameFilter(dialog->nameFilters().last());  // which takes it a moment
+    auto* name = dialog->findChild<QLineEdit*>(QStringLiteral("fileNameEdit"));
+    name->clear();
+    name->setText(file);
+    auto* buttons = dialog->findChild<QDialogButtonBox*>();
+    QTest::mouseClick(buttons->button(file.isEmpty() ? QDialogButtonBox::Cancel : QDialogButtonBox::Open), Qt::LeftButton);
+  });
+  answer.start(20);
+  QTest::mouseClick(button, Qt::LeftButton);
+  if (ticks > 200) QTest::qFail("the dialog does not take the file", __FILE__, __LINE__);
+  return title;
+}
+
+void computed(MainWindow& window) {
+  const Document& d = window.document();
+  QTRY_VERIFY_WITH_TIMEOUT(window.idle() && d.inspection() && !d.stale(), 120000);
+  QTRY_VERIFY_WITH_TIMEOUT(!window.findChild<ChangedInputs*>()->busy(), 60000);
+}
+
+/// What "Copy as command" copies is run by a shell and gives the errors that are on screen.
+QString checkedCommand(MainWindow& window) {
+  window.actions().find(QStringLiteral("export.command"))->trigger();
+  const QString command = QGuiApplication::clipboard()->text();
+  QProcess shell;
+  shell.setWorkingDirectory(QStringLiteral("/"));
+  shell.start("sh", {"-c", QString(command).replace(QStringLiteral("glint evaluate"), QStringLiteral(GLINT_CLI " evaluate")) +
+                               " --json -"});
+  const bool ended = shell.waitForFinished(120000) && shell.exitCode() == 0;
+  if (!ended) QTest::qFail(shell.readAllStandardError().constData(), __FILE__, __LINE__);
+  const QJsonObject models = QJsonDocument::fromJson(shell.readAllStandardOutput()).object()["models"].toObject();
+  int compared = 0;
+  for (const auto& [name, model] : window.document().inspection()->models) {
+    const QJsonArray rows = models[toQString(name)].toObject()["frames"].toArray();
+    for (const FrameComparison& c : model.frames)
+      for (const FrameComparison::Row& shown : c.rows)
+        for (const QJsonValue& row : rows) {
+          if (!shown.metrics || row["index"].toInt() != c.frame || row["highlight"].toInt() != shown.observed ||
+              row["light"].toString() != toQString(c.light))
+            continue;
+          ++compared;
+          const double printed = row["contour_error_px"].toDouble(-1), is = shown.metrics->contourErrorPx;
+          if (std::abs(is - printed) > 1e-9 * is)
+            QTest::qFail(qPrintable(QStringLiteral("%1 %2: %3 %4").arg(toQString(name)).arg(c.frame).arg(is).arg(printed)),
+                         __FILE__, __LINE__);
+        }
+  }
+  if (compared < 3) QTest::qFail("nothing was compared", __FILE__, __LINE__);
+  return command;
+}
+}  // namespace
+
+class RelinkedTest : public QObject {
+  Q_OBJECT
+ private slots:
+  void initTestCase() { QApplication::setAttribute(Qt::AA_DontUseNativeDialogs); }
+  void init() { folder_ = std::make_unique<QTemporaryDir>(); }
+
+  void theMissingMeshOfASessionIsLocatedAndRemembered() {
+    const QString old = path("work/old"), found = path("work/elsewhere/another name.ply");
+    copyFolder(vase(), old);
+    move(old + '/' + kMesh, found);
+    MainWindow window(coreEngine());
+    window.show();
+    window.open(old + "/vase.glint");
+    QTRY_VERIFY_WITH_TIMEOUT(locateButton(window) != nullptr, 20000);
+    QVERIFY2(window.lastError().contains(old + '/' + kMesh) && !window.lastError().contains('\n'),
+             qPrintable(window.lastError()));
+    QVERIFY(!window.document().scene());
+    QCOMPARE(locate(window, {}), QStringLiteral("Where is geom_00.ply?"));  // given up: nothing happens
+    QVERIFY(!window.document().scene());
+
+    window.open(old + "/vase.glint");
+    locate(window, found);
+    computed(window);
+    QVERIFY2(!window.findChild<MessageBar*>()->isVisible(), qPrintable(window.findChild<MessageBar*>()->text()));
+    QCOMPARE(meshOf(window), found);
+    QVERIFY(window.document().hasUnsavedChanges());
+    const QString command = checkedCommand(window);
+    QVERIFY2(command.contains("--mesh 'mesh/geom_00.ply=" + found + "'"), qPrintable(command));
+    // What would be recovered after a crash knows it, too.
+    coreEngine().autosave(window.document().toSave(), path("left.glint").toStdString());
+    const Opened recovered = openInput(path("left.glint").toStdString());
+    QCOMPARE(toQString(recovered.scene->surfaces.at("g00").mesh->string()), found);
+
+    QVERIFY(window.files()->save());
+    QTRY_VERIFY_WITH_TIMEOUT(window.idle() && !window.document().hasUnsavedChanges(), 60000);
+    move(path("work"), path("moved"));
+    const QString session = path("moved/old/vase.glint");
+    const Replay replayed = replay(readSession(session.toStdString()));
+    QVERIFY2(replayed.differences.empty() && replayed.compared > 0, "");
+    QProcess program;
+    program.start(QStringLiteral(GLINT_CLI), {"replay", session});
+    QVERIFY(program.waitForFinished(120000));
+    QVERIFY2(program.exitCode() == 0, program.readAllStandardError().constData());
+    window.open(session);
+    QTRY_COMPARE_WITH_TIMEOUT(window.document().inputFile(), session, 20000);
+    computed(window);
+    QCOMPARE(meshOf(window), path("moved/elsewhere/another name.ply"));
+    QVERIFY(!window.document().hasUnsavedChanges());
+  }
+
+  void aSceneAsksForEveryMeshThatIsNotBesideAnother() {
+    const QString scene = path("scene");
+    copyFolder(vase(), scene);
+    QFile file(scene + "/scene.json");
+    QVERIFY(file.open(QIODevice::ReadWrite));
+    QByteArray text = file.readAll();
+    QVERIFY(text.contains("\"g00\": {\"mesh\": \"mesh/geom_00.ply\"}"));
+    text.replace(
+        "\"g00\": {\"mesh\": \"mesh/geom_00.ply\"}",
+        "\"g00\": {\"mesh\": \"mesh/geom_00.ply\"}, \"g01\": {\"mesh\": \"mesh/b.ply\"}, \"g02\": {\"mesh\": \"mesh/c.ply\"}");
+    file.resize(0);
+    file.write(text);
+    file.close();
+    for (const char* name : {"first/mesh/b.ply", "second/c.ply"}) {
+      QDir().mkpath(QFileInfo(path(name)).path());
+      QVERIFY(QFile::copy(scene + '/' + kMesh, path(name)));
+    }
+    move(scene + '/' + kMesh, path("first") + '/' + kMesh);
+    MainWindow window(coreEngine());
+    window.show();
+    window.open(scene);  // the folder
+    QCOMPARE(locate(window, path("first") + '/' + kMesh), QStringLiteral("Where is geom_00.ply?"));
+    QCOMPARE(locate(window, path("second/c.ply")), QStringLiteral("Where is c.ply?"));  // b.ply lies beside the first
+    computed(window);
+    const auto& surfaces = window.document().scene()->surfaces;
+    QCOMPARE(toQString(surfaces.at("g00").mesh->string()), path("first/mesh/geom_00.ply"));
+    QCOMPARE(toQString(surfaces.at("g01").mesh->string()), path("first/mesh/b.ply"));
+    QCOMPARE(toQString(surfaces.at("g02").mesh->string()), path("second/c.ply"));
+    QVERIFY(window.document().hasUnsavedChanges() && window.document().sessionFile().isEmpty());
+    checkedCommand(window);
+  }
+
+  void theSceneAndThenItsMeshAreLocated() {
+    const QString old = path("old"), moved = path("moved");
+    copyFolder(vase(), old);
+    QDir().mkpath(moved);
+    for (const char* part : {"scene.json", "frames"}) move(old + '/' + part, moved + '/' + part);
+    move(old + '/' + kMesh, path("meshes/geom_00.ply"));
+    MainWindow window(coreEngine());
+    window.show();
+    window.open(old + "/vase.glint");
+    QCOMPARE(locate(window, moved + "/scene.json"), QStringLiteral("Where is scene.json?"));
+    QCOMPARE(locate(window, path("meshes/geom_00.ply")), QStringLiteral("Where is geom_00.ply?"));
+    computed(window);
+    QCOMPARE(meshOf(window), path("meshes/geom_00.ply"));
+    QVERIFY2(!window.findChild<MessageBar*>()->isVisible(), qPrintable(window.findChild<MessageBar*>()->text()));
+    QCOMPARE(toQString(window.document().scene()->file.string()), moved + "/scene.json");
+  }
+
+  void anotherMeshIsToldAndNoMeshIsRefused() {
+    const QString old = path("old");
+    copyFolder(vase(), old);
+    move(old + '/' + kMesh, path("geom_00.ply"));
+    QFile mesh(path("geom_00.ply"));
+    QVERIFY(mesh.open(QIODevice::Append) && mesh.write("\n") == 1);  // the same mesh, but not the same file
+    mesh.close();
+    MainWindow window(coreEngine());
+    window.show();
+    window.open(QStringLiteral(GLINT_SOURCE_DIR "/sessions/plane/plane.glint"));
+    QTRY_VERIFY_WITH_TIMEOUT(window.document().scene() != nullptr, 20000);
+    computed(window);
+    const std::shared_ptr<const Scene> before = window.document().sharedScene();
+    window.open(old + "/vase.glint");
+    locate(window, old + "/scene.json");
+    QTRY_VERIFY_WITH_TIMEOUT(window.lastError().startsWith(old + "/scene.json: "), 20000);
+    QVERIFY(window.document().sharedScene() == before && !window.document().hasUnsavedChanges());
+    QTRY_VERIFY(window.idle());
+    window.open(old + "/vase.glint");
+    locate(window, path("geom_00.ply"));
+    QTRY_VERIFY_WITH_TIMEOUT(window.document().sharedScene() != before, 20000);
+    computed(window);
+    auto* bar = window.findChild<MessageBar*>();
+    QCOMPARE(bar->text(), path("geom_00.ply") + " is not the mesh that the session was made with: its content differs");
+    QVERIFY(bar->isVisible());
+  }
+
+  void theCommandNamesWherePhotographsAre() {
+    const QString scene = path("scene"), elsewhere = path("else where");
+    copyFolder(QStringLiteral(GLINT_SOURCE_DIR "/sessions/plane"), scene);
+    MainWindow window(coreEngine());
+    window.show();
+    window.open(scene + "/plane.glint");
+    QTRY_VERIFY_WITH_TIMEOUT(window.document().scene() != nullptr, 20000);
+    computed(window);
+    const QString usual = checkedCommand(window);
+    QVERIFY2(!usual.contains("--photographs") && !usual.contains("--mesh"), qPrintable(usual));
+    move(scene + "/frames", elsewhere);
+    QTRY_VERIFY(window.idle());
+    window.open(scene + "/plane.glint");
+    auto* unreadable = window.findChild<UnreadablePhotographs*>();
+    QTRY_VERIFY_WITH_TIMEOUT(window.idle() && !unreadable->all().isEmpty(), 60000);
+    unreadable->locateIn(elsewhere);
+    QTRY_VERIFY_WITH_TIMEOUT(window.idle() && unreadable->all().isEmpty(), 60000);
+    computed(window);
+    QCOMPARE(checkedCommand(window), usual + " --photographs '" + elsewhere + "'");
+  }
+
+ private:
+  static QString vase() { return QStringLiteral(GLINT_SOURCE_DIR "/sessions/vase"); }
+  QString path(const QString& name) const { return folder_->filePath(name); }
+  static QString meshOf(MainWindow& window) { return toQString(window.document().scene()->surfaces.at("g00").mesh->string()); }
+  std::unique_ptr<QTemporaryDir> folder_;
+};
+
+QObject* makeRelinkedTest() { return new RelinkedTest; }
+
+}  // namespace glint::gui
+
+#include "relinked_test.moc"
