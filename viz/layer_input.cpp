@@ -323,6 +323,22 @@ LayerCache::Photograph LayerCache::photograph(const Inspection& inspection, int 
   return {photographs_.back().second};
 }
 
+vtkSmartPointer<vtkTexture> LayerCache::textureOf(const vtkSmartPointer<vtkImageData>& picture) {
+  constexpr std::size_t kTexturesKept = 64;
+  const auto found = std::find_if(textures_.begin(), textures_.end(), [&](const auto& known) { return known.first == picture; });
+  if (found != textures_.end()) {
+    std::rotate(found, found + 1, textures_.end());
+    return textures_.back().second;
+  }
+  vtkNew<vtkTexture> texture;
+  texture->SetInputData(picture);
+  texture->InterpolateOn();
+  texture->MipmapOn();
+  if (textures_.size() >= kTexturesKept) textures_.erase(textures_.begin());
+  textures_.emplace_back(picture, texture);
+  return textures_.back().second;
+}
+
 vtkSmartPointer<vtkPolyData> LayerCache::Triangles::coarseIfReady() const {
   if (!coarse.valid() || coarse.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
   return coarse.get();

@@ -4,6 +4,7 @@
 #include <vtkImageData.h>
 #include <vtkProp3D.h>
 #include <vtkSmartPointer.h>
+#include <vtkTexture.h>
 
 #include <array>
 #include <functional>
@@ -52,6 +53,9 @@ class LayerCache {
   /// The photograph of a frame as a texture, at most `maxWidth` wide. Without a source it is read here, and the last ones are
   /// kept.
   Photograph photograph(const Inspection& inspection, int frame, int maxWidth);
+  /// What draws a picture on planes. The same for the same picture, also after a layer was built again, so that it is brought to
+  /// the graphics card (without one: made ready at every size) once; the last ones used are kept.
+  vtkSmartPointer<vtkTexture> textureOf(const vtkSmartPointer<vtkImageData>& picture);
 
   /// The display triangles of a surface, with normals, and the coarse ones, which are made on a thread of their own.
   struct Triangles {
@@ -68,6 +72,7 @@ class LayerCache {
   std::shared_ptr<const Scene> scene_;
   std::vector<std::pair<std::pair<int, int>, vtkSmartPointer<vtkImageData>>> photographs_;  ///< oldest first
   std::string photographsKey_;                                                              ///< pictureKey() of those
+  std::vector<std::pair<vtkSmartPointer<vtkImageData>, vtkSmartPointer<vtkTexture>>> textures_;  ///< longest unused first
   std::vector<std::pair<std::shared_ptr<const Surface>, Triangles>> tessellations_;
 };
 

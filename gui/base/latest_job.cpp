@@ -4,12 +4,14 @@
 #include <exception>
 #include <utility>
 
+#include "gui/base/background.h"
+
 namespace glint::gui {
 
 LatestJob::LatestJob(QObject* parent) : QObject(parent), worker_(new QObject) {
   worker_->moveToThread(&thread_);
   connect(&thread_, &QThread::finished, worker_, &QObject::deleteLater);
-  thread_.start();
+  startInBackground(thread_);
 }
 
 LatestJob::~LatestJob() {

@@ -5,12 +5,16 @@
 #include <QVTKRenderWindowAdapter.h>
 #include <vtkCallbackCommand.h>
 #include <vtkGenericOpenGLRenderWindow.h>
+#include <vtkOpenGLFramebufferObject.h>
+#include <vtkOpenGLState.h>
 
+#include <QBackingStore>
 #include <QEvent>
-#include <QOpenGLFramebufferObject>
 #include <QOpenGLFunctions>
+#include <QPaintEngine>
 #include <QPainter>
 
+#include "gui/base/draw_turns.h"
 #include "gui/base/focus_frame.h"
 
 namespace glint::gui {
@@ -29,6 +33,8 @@ VtkCanvas::VtkCanvas(QWidget* parent) : QWidget(parent) {
   onFrame_->SetCallback([](vtkObject*, unsigned long, void* data, void*) {
     auto* self = static_cast<VtkCanvas*>(data);
     self->drawn_ = true;
+    self->drawnFor_ = self->fitted_;
+    self->drawnRatio_ = self->fittedRatio_;
     if (!self->painting_) self->update();
   });
   window_->AddObserver(vtkCommand::WindowFrameEvent, onFrame_);
@@ -37,14 +43,13 @@ VtkCanvas::VtkCanvas(QWidget* parent) : QWidget(parent) {
 VtkCanvas::~VtkCanvas() {
   window_->RemoveObserver(onFrame_);
   if (adapter_ && context_.makeCurrent(&surface_)) {
-    buffer_.reset();
     adapter_.reset();  // releases VTK's resources in the context that holds them
     context_.doneCurrent();
   }
 }
 
 bool VtkCanvas::prepare() {
-  if (adapter_) return true;
+  if (adapter_) return fitWindow(), true;
   if (failed_) return false;
   const QSurfaceFormat format = QVTKRenderWindowAdapter::defaultFormat();
   context_.setFormat(format);
@@ -58,24 +63,31 @@ bool VtkCanvas::prepare() {
   adapter_ = std::make_unique<QVTKRenderWindowAdapter>(&context_, window_, this);
   adapter_->setEnableHiDPI(textScaled_);
   adapter_->setUnscaledDPI(72);
+  fitWindow();
   return true;
 }
 
-/// What the window holds, with its first row on top.
+void VtkCanvas::fitWindow() {
+  if (!adapter_ || (fitted_ == size() && fittedRatio_ == devicePixelRatioF())) return;
+  fitted_ = size();
+  fittedRatio_ = devicePixelRatioF();
+  adapter_->resize(width(), height());
+}
+
+/// What the window shows, with its first row on top.
 void VtkCanvas::fetch() {
   drawn_ = false;
   const QSize size(window_->GetSize()[0], window_->GetSize()[1]);
-  if (size.isEmpty() || !context_.makeCurrent(&surface_)) return;
-  QOpenGLFunctions* gl = context_.functions();
-  GLint before = 0;  // VTK believes that what it has bound stays bound
-  gl->glGetIntegerv(GL_FRAMEBUFFER_BINDING, &before);
-  if (!buffer_ || buffer_->size() != size) buffer_ = std::make_unique<QOpenGLFramebufferObject>(size);
-  adapter_->blit(buffer_->handle(), GL_COLOR_ATTACHMENT0, QRect(QPoint(0, 0), size));
-  buffer_->bind();
+  vtkOpenGLFramebufferObject* resolved = window_->GetDisplayFramebuffer();
+  if (size.isEmpty() || !resolved || !context_.makeCurrent(&surface_)) return;
+  window_->GetState()->PushReadFramebufferBinding();
+  resolved->Bind(GL_READ_FRAMEBUFFER);
+  resolved->ActivateReadBuffer(0);
   if (picture_.size() != size) picture_ = QImage(size, QImage::Format_RGB32);
+  QOpenGLFunctions* gl = context_.functions();
   gl->glPixelStorei(GL_PACK_ALIGNMENT, 4);
   gl->glReadPixels(0, 0, size.width(), size.height(), GL_BGRA, GL_UNSIGNED_INT_8_8_8_8_REV, picture_.bits());
-  gl->glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
+  window_->GetState()->PopReadFramebufferBinding();
   picture_ = std::move(picture_).mirrored();
 }
 
@@ -83,6 +95,10 @@ bool VtkCanvas::event(QEvent* event) {
   if (adapter_) adapter_->handleEvent(event);
   return QWidget::event(event);
 }
+
+void VtkCanvas::resizeEvent(QResizeEvent*) { fitWindow(); }
+
+bool VtkCanvas::upToDate() const { return drawnFor_ == size() && drawnRatio_ == devicePixelRatioF(); }
 
 void VtkCanvas::paintEvent(QPaintEvent*) {
   QPainter painter(this);
@@ -92,16 +108,24 @@ void VtkCanvas::paintEvent(QPaintEvent*) {
                      tr("This view needs OpenGL 3.2, which this display does not offer."));
     return;
   }
-  painting_ = true;
-  if (drawnFor_ != size() || drawnRatio_ != devicePixelRatioF()) {
-    drawnFor_ = size();
-    drawnRatio_ = devicePixelRatioF();
-    adapter_->resize(width(), height());
-    window_->Render();
+  if (!upToDate()) {
+    // What is grabbed is wanted now; the screen has time, and other views want to draw as well.
+    const bool onScreen = backingStore() && painter.paintEngine()->paintDevice() == backingStore()->paintDevice();
+    if (!onScreen) {
+      painting_ = true;
+      window_->Render();
+      painting_ = false;
+    } else {
+      drawInTurn(this, [this] {
+        if (isVisible() && !upToDate()) window_->Render();
+      });
+    }
   }
   if (drawn_) fetch();
-  painting_ = false;
-  painter.drawImage(rect(), picture_);
+  if (picture_.isNull())
+    painter.fillRect(rect(), palette().window());
+  else
+    painter.drawImage(rect(), picture_);
 }
 
 }  // namespace glint::gui

@@ -9,7 +9,6 @@
 #include <QWidget>
 #include <memory>
 
-class QOpenGLFramebufferObject;
 class QVTKRenderWindowAdapter;
 class vtkCallbackCommand;
 class vtkGenericOpenGLRenderWindow;
@@ -22,23 +21,28 @@ namespace glint::gui {
 /// OpenGL at every update of any widget: without a graphics card 10 to 25 ms each time, for a number that changed in a label.
 /// Reading one view's picture back costs less, and only when that view was drawn.
 ///
-/// As there, renderWindow()->Render() draws and QWidget::update() shows the last picture again. Where there is no OpenGL it says
-/// so.
+/// As there, renderWindow()->Render() draws and QWidget::update() shows the last picture again. In a new size it shows the last
+/// picture until its turn to draw has come (drawInTurn). Where there is no OpenGL it says so.
 class VtkCanvas : public QWidget {
   Q_OBJECT
  public:
   explicit VtkCanvas(QWidget* parent = nullptr);
   ~VtkCanvas() override;
   vtkGenericOpenGLRenderWindow* renderWindow() const { return window_; }
+  /// It has an OpenGL context; not before it was first shown, and nowhere without OpenGL.
+  bool ready() const { return adapter_ != nullptr; }
   /// False: texts are not scaled with the device's pixel ratio. Before the first picture.
   void setTextScaled(bool scaled) { textScaled_ = scaled; }
 
  protected:
   bool event(QEvent* event) override;
   void paintEvent(QPaintEvent* event) override;
+  void resizeEvent(QResizeEvent* event) override;
 
  private:
   bool prepare();  ///< false where OpenGL is missing
+  void fitWindow();
+  bool upToDate() const;  ///< the last picture has the widget's size
   void fetch();
 
   vtkNew<vtkGenericOpenGLRenderWindow> window_;
@@ -46,10 +50,9 @@ class VtkCanvas : public QWidget {
   QOffscreenSurface surface_;
   QOpenGLContext context_;
   std::unique_ptr<QVTKRenderWindowAdapter> adapter_;
-  std::unique_ptr<QOpenGLFramebufferObject> buffer_;  ///< resolved samples, of the picture's size
   QImage picture_;
-  QSize drawnFor_;  ///< size of the widget
-  double drawnRatio_ = 0;
+  QSize fitted_, drawnFor_;  ///< size of the widget that the window has, and that the last picture was drawn for
+  double fittedRatio_ = 0, drawnRatio_ = 0;
   bool drawn_ = false, painting_ = false, textScaled_ = true, failed_ = false;
 };
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/pipeline/session.h"
+#include "gui/base/background.h"
 #include "gui/base/text.h"
 
 namespace glint::gui {
@@ -22,7 +23,7 @@ Runner::Runner(Engine engine, QObject* parent) : QObject(parent), engine_(std::m
   qRegisterMetaType<MissingPtr>("glint::gui::MissingPtr");
   worker_->moveToThread(&thread_);
   connect(&thread_, &QThread::finished, worker_, &QObject::deleteLater);
-  thread_.start();
+  startInBackground(thread_);
 }
 
 Runner::~Runner() {

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <utility>
 
+#include "gui/base/background.h"
 #include "gui/base/text.h"
 
 namespace glint::gui {
@@ -31,7 +32,7 @@ struct Call {
 LongJob::LongJob(QWidget* window) : QObject(window), window_(window), worker_(new QObject) {
   worker_->moveToThread(&thread_);
   connect(&thread_, &QThread::finished, worker_, &QObject::deleteLater);
-  thread_.start();
+  startInBackground(thread_);
 }
 
 LongJob::~LongJob() {

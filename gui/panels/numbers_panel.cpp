@@ -47,26 +47,31 @@ void NumbersPanel::showPicked(const viz::Picked& picked) {
 
 void NumbersPanel::refresh() {
   clear();
+  header()->setSectionResizeMode(0, QHeaderView::Interactive);  // else every line measures all others again
   if (!pickedLines_.isEmpty()) addGroup(pickedTitle_, pickedLines_);
   if (const std::shared_ptr<const Inspection> inspection = document_.inspection())
     for (const NumberGroup& group : describeSelection(*inspection, document_.selection(), document_.plottedModel()))
       addGroup(group.title, group.lines);
+  header()->setSectionResizeMode(0, QHeaderView::ResizeToContents);
 }
 
 void NumbersPanel::addGroup(const QString& title, const QString& lines) {
-  auto* group = new QTreeWidgetItem(this, {title});
+  auto* group = new QTreeWidgetItem({title});
   QFont bold = font();
   bold.setBold(true);
   group->setFont(0, bold);
-  group->setFirstColumnSpanned(true);
+  QList<QTreeWidgetItem*> items;
   for (const QString& line : lines.split('\n')) {
     if (line.isEmpty()) continue;
     const int equals = int(line.indexOf(QStringLiteral(" = ")));
-    auto* item =
-        new QTreeWidgetItem(group, equals < 0 ? QStringList{line} : QStringList{line.left(equals), line.mid(equals + 3)});
-    item->setToolTip(1, line);
-    if (equals < 0) item->setFirstColumnSpanned(true);
+    items << new QTreeWidgetItem(equals < 0 ? QStringList{line} : QStringList{line.left(equals), line.mid(equals + 3)});
+    items.last()->setToolTip(1, line);
   }
+  group->addChildren(items);
+  addTopLevelItem(group);
+  group->setFirstColumnSpanned(true);
+  for (QTreeWidgetItem* item : items)
+    if (item->text(1).isEmpty()) item->setFirstColumnSpanned(true);
   group->setExpanded(true);
 }
 

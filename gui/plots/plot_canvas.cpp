@@ -6,12 +6,12 @@
 #include <vtkRenderer.h>
 
 #include <QMouseEvent>
-#include <QTimer>
 #include <QToolTip>
 #include <QVBoxLayout>
 #include <QWheelEvent>
 #include <cmath>
 
+#include "gui/base/draw_turns.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/vtk_canvas.h"
@@ -49,10 +49,7 @@ void PlotCanvas::renderNow() {
 }
 
 void PlotCanvas::scheduleRender() {
-  if (renderPending_) return;
-  renderPending_ = true;
-  QTimer::singleShot(0, this, [this] {
-    renderPending_ = false;
+  drawInTurn(this, [this] {
     if (widget_->isVisible()) renderNow();
   });
 }

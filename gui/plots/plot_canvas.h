@@ -50,7 +50,7 @@ class PlotCanvas : public QWidget {
   std::unique_ptr<viz::PlotView> view_;
   std::optional<viz::PlotSample> hovered_;
   QPointF pressed_, last_;
-  bool renderPending_ = false, dragging_ = false, held_ = false;
+  bool dragging_ = false, held_ = false;
 };
 
 }  // namespace glint::gui

@@ -17,6 +17,7 @@
 #include <exception>
 
 #include "core/base/atomic_file.h"
+#include "gui/base/draw_turns.h"
 #include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
@@ -62,7 +63,8 @@ PlotsPanel::PlotsPanel(Document& document, QWidget* parent) : QWidget(parent), d
   });
   connect(&document_, &Document::inspectionChanged, this, [this] {
     wantSamples();
-    markDirty({"error", "dial", "axes", "singular", "influence"});
+    setDirty({"error", "dial", "axes", "singular", "influence"});
+    drawInTurn(this, [this] { refresh(); });  // much else is shown at the same time
     if (wantsInfluence_ && !document_.stale()) askForInfluence();
   });
   connect(&document_, &Document::frameInspectionChanged, this, [this] {
@@ -170,12 +172,16 @@ void PlotsPanel::showOptions() {
   refresh();
 }
 
-void PlotsPanel::markDirty(std::initializer_list<const char*> kinds) {
+void PlotsPanel::setDirty(std::initializer_list<const char*> kinds) {
   for (int i = 0; i < 2; ++i) {
     const std::string id = kind(i);
     if (kinds.size() == 0 || std::any_of(kinds.begin(), kinds.end(), [&](const char* k) { return id == k; }))
       panes_[std::size_t(i)].dirty = true;
   }
+}
+
+void PlotsPanel::markDirty(std::initializer_list<const char*> kinds) {
+  setDirty(kinds);
   refresh();
 }
 

@@ -60,6 +60,7 @@ class PlotsPanel : public QWidget {
   std::string kind(int pane) const;
   void setKind(int pane, const std::string& id);
   void showOptions();
+  void setDirty(std::initializer_list<const char*> kinds);   ///< none = all
   void markDirty(std::initializer_list<const char*> kinds);  ///< those plots are drawn again; none named = all
   void refresh();
   viz::PlotData data(const std::string& id);

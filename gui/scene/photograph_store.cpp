@@ -6,6 +6,7 @@
 #include <exception>
 
 #include "core/pipeline/photograph.h"
+#include "gui/base/background.h"
 #include "viz/convert.h"
 
 namespace glint::gui {
@@ -18,7 +19,7 @@ constexpr std::size_t kMostWishes = 40;  // older ones are of frames that were s
 PhotographStore::PhotographStore(QObject* parent) : QObject(parent), worker_(new QObject) {
   worker_->moveToThread(&thread_);
   connect(&thread_, &QThread::finished, worker_, &QObject::deleteLater);
-  thread_.start();
+  startInBackground(thread_);
 }
 
 PhotographStore::~PhotographStore() {

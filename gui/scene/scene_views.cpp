@@ -11,8 +11,10 @@
 #include <QMouseEvent>
 #include <QVBoxLayout>
 #include <QWheelEvent>
+#include <algorithm>
 #include <cmath>
 
+#include "gui/base/draw_turns.h"
 #include "gui/base/text.h"
 #include "gui/base/vtk_canvas.h"
 #include "viz/view_camera.h"
@@ -20,7 +22,8 @@
 namespace glint::gui {
 
 namespace {
-constexpr int kStillMs = 300;        // after the last movement the surface is drawn in full
+constexpr int kStillMs = 300;        // after the last movement everything is drawn in full
+constexpr int kQuickMs = 40;         // where that took longer, what changes is first drawn the quick way
 constexpr int kPhotographPx = 4096;  // widest photograph while looking through a camera
 constexpr double kGrabPx = 6;        // about the wipe's line
 
@@ -54,7 +57,7 @@ SceneViews::SceneViews(QWidget* parent)
   widget_->installEventFilter(this);
   column->addWidget(widget_);
 
-  cache_->setPhotographSource([this](int frame, int maxWidth) { return photographs_->get(frame, maxWidth); });
+  cache_->setPhotographSource([this](int frame, int maxWidth) { return photograph(frame, maxWidth); });
   connect(photographs_, &PhotographStore::arrived, this, [this] {
     for (auto& view : views_) view->photographsArrived();
     fetchPhotograph();
@@ -80,7 +83,7 @@ SceneViews::SceneViews(QWidget* parent)
   full_.setSingleShot(true);
   full_.setInterval(kStillMs);
   connect(&full_, &QTimer::timeout, this, [this] {
-    if (widget_->isVisible()) renderNow();
+    if (widget_->isVisible()) renderFull();
   });
   arrange();
 }
@@ -92,6 +95,8 @@ SceneViews::~SceneViews() {
 
 void SceneViews::setScene(std::shared_ptr<const Scene> scene) {
   photographs_->setScene(std::move(scene));
+  loaded_.clear();
+  toLoad_.clear();
   inspection_.reset();
   for (auto& view : views_) view->setInspection(nullptr);
 }
@@ -192,6 +197,29 @@ void SceneViews::fetchPhotograph() {
   }
 }
 
+/// Only what the graphics card has already: bringing a photograph there (without one: making it ready at every size) takes some
+/// 20 ms, and two dozen may arrive at once. Each gets a turn of its own.
+viz::LayerCache::Photograph SceneViews::photograph(int frame, int maxWidth) {
+  const viz::LayerCache::Photograph found = photographs_->get(frame, maxWidth);
+  if (!found.texture || allPhotographs_ || !widget_->ready() || loaded_.count(found.texture)) return found;
+  if (std::find(toLoad_.begin(), toLoad_.end(), found.texture) == toLoad_.end()) toLoad_.push_back(found.texture);
+  drawInTurn(photographs_, [this] { loadPhotograph(); });
+  return {nullptr, true};
+}
+
+void SceneViews::loadPhotograph() {
+  if (toLoad_.empty()) return;
+  widget_->renderWindow()->MakeCurrent();
+  const vtkSmartPointer<vtkTexture> texture = cache_->textureOf(toLoad_.front());
+  texture->Render(view(0).renderer());
+  texture->PostRender(view(0).renderer());
+  loaded_.insert(toLoad_.front());
+  toLoad_.pop_front();
+  if (!toLoad_.empty()) return drawInTurn(photographs_, [this] { loadPhotograph(); });
+  for (auto& view : views_) view->photographsArrived();
+  scheduleRender();
+}
+
 void SceneViews::scheduleRender() {
   // QWidget::update() would only show VTK's last picture again.
   if (full_.isActive()) full_.start();  // not still yet
@@ -199,26 +227,37 @@ void SceneViews::scheduleRender() {
   renderPending_ = true;
   // While results arrive one after the other, drawing them takes a third of the interface thread's time at most.
   const qint64 due = 2 * lastRenderMs_, passed = sinceRender_.isValid() ? sinceRender_.elapsed() : due;
-  QTimer::singleShot(int(std::clamp<qint64>(due - passed, 0, kStillMs)), this, [this] {
-    renderPending_ = false;
-    if (!widget_->isVisible()) return;
-    bool coarse = false;
-    for (int i = 0; i < shown_; ++i) coarse = coarse || view(i).hasCoarseSurface();
-    if (coarse) {
-      setMoving(true);
-      full_.start();
-    } else {
-      setMoving(false);
-    }
-    sinceRender_.start();
-    widget_->renderWindow()->Render();
-    lastRenderMs_ = sinceRender_.restart();
-  });
+  QTimer::singleShot(int(std::clamp<qint64>(due - passed, 0, kStillMs)), this,
+                     [this] { drawInTurn(this, [this] { renderInTurn(); }); });
+}
+
+void SceneViews::renderInTurn() {
+  renderPending_ = false;
+  if (!widget_->isVisible()) return;
+  bool quick = fullMs_ > kQuickMs;
+  for (int i = 0; i < shown_; ++i) quick = quick || view(i).hasCoarseSurface();
+  if (!quick) return renderFull();
+  setMoving(true);
+  full_.start();
+  sinceRender_.start();
+  widget_->renderWindow()->Render();
+  lastRenderMs_ = sinceRender_.restart();
+}
+
+void SceneViews::renderFull() {
+  setMoving(false);
+  sinceRender_.start();
+  widget_->renderWindow()->Render();
+  fullMs_ = lastRenderMs_ = sinceRender_.restart();
 }
 
 void SceneViews::renderNow() {
   setMoving(false);
+  allPhotographs_ = true;
+  if (!toLoad_.empty())
+    for (auto& view : views_) view->photographsArrived();
   widget_->renderWindow()->Render();
+  allPhotographs_ = false;
 }
 
 void SceneViews::renderMoving() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkSmartPointer.h>
 
@@ -8,7 +9,10 @@
 #include <QTimer>
 #include <QWidget>
 #include <array>
+#include <deque>
+#include <limits>
 #include <memory>
+#include <set>
 
 #include "gui/scene/photograph_store.h"
 #include "gui/scene/scene_options.h"
@@ -38,7 +42,7 @@ class SceneViews : public QWidget {
   /// Where a view lies in the picture: left, bottom, right, top, shares of it.
   std::array<double, 4> placeOf(int view) const;
   bool wiping() const { return options_.arrangement == Arrangement::Wipe; }
-  bool busy() const { return photographs_->busy(); }
+  bool busy() const { return photographs_->busy() || renderPending_; }
 
   void setScene(std::shared_ptr<const Scene> scene);
   void setInspection(const std::shared_ptr<const Inspection>& inspection);
@@ -78,6 +82,10 @@ class SceneViews : public QWidget {
   void activate(int view);
   bool onWipe(const QPointF& position) const;
   QPointF toDisplay(const QPointF& position) const;  ///< device px, y up
+  void renderInTurn();
+  void renderFull();
+  void loadPhotograph();
+  viz::LayerCache::Photograph photograph(int frame, int maxWidth);
   void setMoving(bool moving);
   void syncCameras();
   bool mouse(QEvent* event);
@@ -96,8 +104,11 @@ class SceneViews : public QWidget {
   viz::Picked lamp_;  ///< what is dragged
   int active_ = 0, shown_ = 0;
   bool renderPending_ = false, dark_ = true;
+  std::deque<vtkSmartPointer<vtkImageData>> toLoad_;  ///< photographs that wait for the graphics card
+  std::set<vtkImageData*> loaded_;                    ///< that have been brought there; only to compare with
+  bool allPhotographs_ = false;                       ///< the next picture has to be complete
   QElapsedTimer sinceRender_;
-  qint64 lastRenderMs_ = 0;
+  qint64 lastRenderMs_ = 0, fullMs_ = std::numeric_limits<int>::max();  ///< of the last picture, of the last one in full
 };
 
 }  // namespace glint::gui

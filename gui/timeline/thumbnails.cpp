@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/pipeline/photograph.h"
+#include "gui/base/background.h"
 #include "gui/base/to_qimage.h"
 
 namespace glint::gui {
@@ -13,7 +14,7 @@ namespace glint::gui {
 Thumbnails::Thumbnails(QObject* parent) : QObject(parent), worker_(new QObject) {
   worker_->moveToThread(&thread_);
   connect(&thread_, &QThread::finished, worker_, &QObject::deleteLater);
-  thread_.start(QThread::LowPriority);
+  startInBackground(thread_);
 }
 
 Thumbnails::~Thumbnails() {

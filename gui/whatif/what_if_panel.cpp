@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "core/reflectance/lobe.h"
+#include "gui/base/draw_turns.h"
 #include "gui/base/number_box.h"
 #include "gui/base/quiet_controls.h"
 #include "gui/base/text.h"
@@ -70,8 +71,9 @@ WhatIfPanel::WhatIfPanel(Document& document, QWidget* parent)
     document_.setWhatIf(w, tr("What if: lobe %1").arg(lobe_->itemText(index)));
   });
   connect(resetAll_, &QToolButton::clicked, this, [this] { document_.setWhatIf(WhatIf(), tr("What if: everything back")); });
-  for (const auto signal : {&Document::sceneOpened, &Document::selectionChanged, &Document::inspectionChanged})
-    connect(&document_, signal, this, &WhatIfPanel::rebuild);
+  connect(&document_, &Document::selectionChanged, this, &WhatIfPanel::rebuild);
+  for (const auto signal : {&Document::sceneOpened, &Document::inspectionChanged})  // when much else has to be shown
+    connect(&document_, signal, this, [this] { drawInTurn(this, [this] { rebuild(); }); });
   connect(&document_, &Document::requestChanged, this, &WhatIfPanel::refresh);
   rebuild();
 }

@@ -23,6 +23,7 @@
 #include <QVBoxLayout>
 #include <utility>
 
+#include "gui/base/draw_turns.h"
 #include "gui/base/eliding_delegate.h"
 #include "gui/base/text.h"
 #include "gui/explain/explain_panel.h"
@@ -435,7 +436,7 @@ bool MainWindow::idle() const { return script_->done() && quiet(); }
 
 bool MainWindow::quiet() const {
   return !runner_.busy() && !frame_->busy() && !timeline_->busy() && !scene_->busy() && plots_->idle() && !explain_->busy() &&
-         !exports_->busy() && !unreadable_->busy();
+         !exports_->busy() && !unreadable_->busy() && !drawingsWait();
 }
 
 QPixmap MainWindow::picture() {

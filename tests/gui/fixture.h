@@ -62,6 +62,7 @@ QObject* makeLessonsTest();
 QObject* makeRecoveryTest();
 int runUntilKilled();  ///< see recovery_test.cpp
 QObject* makeTradeoffTest();
+QObject* makeTurnsTest();
 QObject* makeUnreadableTest();
 QObject* makeRelinkedTest();
 QObject* makeWhatIfTest();

@@ -40,6 +40,7 @@ int main(int argc, char** argv) {
       {"unreadable", makeUnreadableTest},
       {"relinked", makeRelinkedTest},
       {"what_if", makeWhatIfTest},
+      {"turns", makeTurnsTest},
       {"window_size", makeWindowSizeTest},
       {"camera_picking", makeCameraPickingTest},
   };

@@ -61,7 +61,7 @@ class WindowTest : public QObject, WindowFixture {
     for (const QPushButton* button : window.findChildren<QPushButton*>())
       offered |= button->isVisible() && button->text().contains("Open a scene");
     QVERIFY(offered);
-    QVERIFY(window.idle());
+    QTRY_VERIFY(window.idle());
     QVERIFY(!window.picture().isNull());
   }
 

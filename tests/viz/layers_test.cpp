@@ -349,5 +349,23 @@ TEST(Framing, HoldsTheVirtualCamerasThatAreDrawn) {
   }
 }
 
+/// A layer that is built again (another frame was selected) draws the same textures: making one ready takes far longer than the
+/// layer. A few old ones are let go.
+TEST(Photographs, AreBroughtToTheGraphicsCardOnce) {
+  LayerCache cache;
+  std::vector<vtkSmartPointer<vtkImageData>> pictures;
+  for (int i = 0; i < 80; ++i) pictures.push_back(vtkSmartPointer<vtkImageData>::New());
+  const vtkSmartPointer<vtkTexture> first = cache.textureOf(pictures[0]);
+  EXPECT_EQ(first->GetInput(), pictures[0]);
+  EXPECT_TRUE(first->GetMipmap() && first->GetInterpolate());
+  const vtkSmartPointer<vtkTexture> second = cache.textureOf(pictures[1]);
+  EXPECT_NE(first, second);
+  for (int i = 2; i < 80; ++i) {
+    cache.textureOf(pictures[std::size_t(i)]);
+    EXPECT_EQ(cache.textureOf(pictures[0]), first) << i;  // in use all the time
+  }
+  EXPECT_NE(cache.textureOf(pictures[1]), second);  // not used for long
+}
+
 }  // namespace
 }  // namespace glint::viz

@@ -4,7 +4,6 @@
 #include <vtkPlaneSource.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
-#include <vtkTexture.h>
 
 #include <algorithm>
 
@@ -49,16 +48,12 @@ LayerContent photographsLayer(const LayerInput& in) {
     plane->SetOrigin(c[3].x(), c[3].y(), c[3].z());
     plane->SetPoint1(c[2].x(), c[2].y(), c[2].z());
     plane->SetPoint2(c[0].x(), c[0].y(), c[0].z());
-    vtkNew<vtkTexture> texture;
-    texture->SetInputData(image);
-    texture->InterpolateOn();
-    texture->MipmapOn();
     vtkNew<vtkPolyDataMapper> mapper;
     mapper->SetInputConnection(plane->GetOutputPort());
     mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(2, 2);  // behind its own frame
     vtkNew<vtkActor> actor;
     actor->SetMapper(mapper);
-    actor->SetTexture(texture);
+    actor->SetTexture(in.cache->textureOf(image));
     actor->GetProperty()->LightingOff();
     Picked info;
     info.layer = "photographs";
