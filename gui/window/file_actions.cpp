@@ -135,9 +135,10 @@ void FileActions::open(const QString& path) {
   runner_.open(path.toStdString());
 }
 
-void FileActions::openRelinked(const QString& path, const Relinked& instead) {
-  if (!mayDiscard()) return;
+bool FileActions::openRelinked(const QString& path, const Relinked& instead) {
+  if (!mayDiscard()) return false;
   runner_.open(path.toStdString(), instead);
+  return true;
 }
 
 void FileActions::reopen(const OpenedPtr& opened) {
@@ -146,16 +147,16 @@ void FileActions::reopen(const OpenedPtr& opened) {
   finishOpen(state);
 }
 
-void FileActions::locate(const MissingPtr& missing) {
+bool FileActions::locate(const MissingPtr& missing) {
   const QString name = QFileInfo(missing->file).fileName();
   const bool mesh = !missing->named.empty();
   const QFileInfo opened(missing->path);
-  QFileDialog dialog(
-      window_, tr("Where is %1?").arg(name), opened.isDir() ? missing->path : opened.path(),
-      (mesh ? tr("%1 (%1);;Meshes (*.ply *.obj *.stl);;All files (*)") : tr("%1 (%1);;Scenes (*.json);;All files (*)"))
-          .arg(name));
+  QFileDialog dialog(window_, tr("Where is %1?").arg(name), opened.isDir() ? missing->path : opened.path(),
+                     (mesh ? tr("Same name (%1);;Meshes (*.ply *.obj *.stl);;All files (*)")
+                           : tr("Same name (%1);;Scenes (*.json);;All files (*)"))
+                         .arg(name));
   dialog.setFileMode(QFileDialog::ExistingFile);
-  if (dialog.exec() != QDialog::Accepted || dialog.selectedFiles().isEmpty()) return;
+  if (dialog.exec() != QDialog::Accepted || dialog.selectedFiles().isEmpty()) return false;
   const std::filesystem::path found = dialog.selectedFiles().first().toStdString();
   Relinked instead = missing->instead;
   if (mesh) {
@@ -164,7 +165,7 @@ void FileActions::locate(const MissingPtr& missing) {
   } else {
     instead.scene = found;
   }
-  openRelinked(missing->path, instead);
+  return openRelinked(missing->path, instead);
 }
 
 void FileActions::finishOpen(const OpenedPtr& opened) {

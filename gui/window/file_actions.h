@@ -39,13 +39,13 @@ class FileActions : public QObject {
   /// scene or in the one that lies above it.
   void drop(const QString& path);
   void open(const QString& path);
-  /// Opens a session or scene of which a file lies elsewhere now.
-  void openRelinked(const QString& path, const glint::Relinked& instead);
+  /// Opens a session or scene of which a file lies elsewhere now. False when the user gave up.
+  bool openRelinked(const QString& path, const glint::Relinked& instead);
   /// Takes over what is on screen with another scene; layout and 3D camera stay.
   void reopen(const glint::gui::OpenedPtr& opened);
-  /// Asks where a missing scene or mesh is, then opens what needs it with it. Other meshes that are missing are looked for beside
-  /// it.
-  void locate(const glint::gui::MissingPtr& missing);
+  /// Asks where a missing scene or mesh is, then opens what needs it with it. Other meshes that are missing are looked for
+  /// beside it. False when the user gave up.
+  bool locate(const glint::gui::MissingPtr& missing);
   /// Save in the background; false when there was nothing to save or the user gave up. Message or problem tells how it ended.
   bool save();
   bool saveAs();

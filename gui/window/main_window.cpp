@@ -109,6 +109,7 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   files_->setViewSource([this](Opened& opened) { addView(opened); });
   connect(&runner_, &Runner::failed, this, [this](const QString& oneLine) {
     runFailed_ = true;
+    if (const MissingPtr located = std::exchange(located_, {}); !missing_) missing_ = located;  // it was not the right file
     showProblem(oneLine);
   });
   // Opening stopped what ran for the scene that stays open.
@@ -125,6 +126,7 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   connect(&runner_, &Runner::frameFinished, &document_, &Document::setFrameInspection);
   connect(&document_, &Document::requestChanged, this, &MainWindow::recompute);
   connect(&document_, &Document::sceneOpened, this, [this] {
+    located_.reset();
     messageBar_->hide();
     centre_->setCurrentWidget(views_);
     log(tr("Opened %1").arg(document_.inputFile()));
@@ -452,12 +454,21 @@ void MainWindow::recompute() {
 
 void MainWindow::showProblem(const QString& oneLine) {
   lastError_ = oneLine;
-  MessageBar::Answers answers;
   if (const MissingPtr missing = std::exchange(missing_, {}))
-    answers.append({tr("Locate…"), [this, missing] { files_->locate(missing); }});
-  messageBar_->showError(oneLine, answers);
+    offerToLocate(oneLine, missing);
+  else
+    messageBar_->showError(oneLine);
   log(oneLine);
   emit problem(oneLine);
+}
+
+void MainWindow::offerToLocate(const QString& oneLine, const MissingPtr& missing) {
+  messageBar_->showError(oneLine, {{tr("Locate…"), [this, oneLine, missing] {
+                                      if (files_->locate(missing))
+                                        located_ = missing;
+                                      else
+                                        offerToLocate(oneLine, missing);
+                                    }}});
 }
 
 void MainWindow::log(const QString& line) {

@@ -82,6 +82,7 @@ class MainWindow : public QMainWindow {
   void buildStatusLine();
   void recompute();
   void showProblem(const QString& oneLine);
+  void offerToLocate(const QString& oneLine, const MissingPtr& missing);
   void log(const QString& line);
   void showTitle();
   bool quiet() const;
@@ -118,6 +119,7 @@ class MainWindow : public QMainWindow {
   bool ownLayout_ = false;  ///< the docks are where an own layout has them
   ScriptedActions* script_ = nullptr;
   UnreadablePhotographs* unreadable_ = nullptr;
+  MissingPtr located_;      ///< was pointed at, and is being opened
   MissingPtr missing_;      ///< why the opening that failed last did; null = for another reason, or it was said
   bool runFailed_ = false;  ///< the message bar shows why the last run failed
 };
