@@ -178,6 +178,8 @@ void FileActions::finishOpen(const OpenedPtr& opened) {
   emit viewOpened(opened);
   remember(toQString(opened->path));
   if (!opened->warning.empty()) emit problem(toQString(opened->warning));
+  for (const auto& [named, mesh] : opened->scene->meshes)
+    emit message(tr("The mesh %1 is %2").arg(toQString(named), toQString(mesh.string())));
   for (const std::string& warning : opened->scene->warnings) emit message(toQString(warning));
   if (const QString picture = std::exchange(photographToSelect_, {}); !picture.isEmpty()) {
     const int frame = frameOfPicture(*opened->scene, picture);
