@@ -5,6 +5,7 @@
 #include <QAbstractSlider>
 #include <QApplication>
 #include <QElapsedTimer>
+#include <QTimer>
 #include <QThread>
 #include <algorithm>
 #include <cstdio>
@@ -23,6 +24,7 @@ namespace {
 using namespace glint;
 using namespace glint::gui;
 
+constexpr int kTickMs = 2;
 constexpr int kEveryMs = 100;  // a hand that drags: ten positions a second, whether the window keeps up or not
 constexpr int kGiveUpMs = 60'000;
 
@@ -55,8 +57,10 @@ template <class Condition>
 bool waitFor(Condition done, int ms = kGiveUpMs) {
   QElapsedTimer clock;
   clock.start();
-  while (!done() && clock.elapsed() < ms)
-    QCoreApplication::processEvents(QEventLoop::WaitForMoreEvents | QEventLoop::AllEvents, 20);
+  QTimer tick;  // Qt's processEvents with a time limit does not wait, and whoever turns round and round takes time from the program
+  tick.setTimerType(Qt::PreciseTimer);
+  tick.start(kTickMs);
+  while (!done() && clock.elapsed() < ms) QCoreApplication::processEvents(QEventLoop::WaitForMoreEvents);
   return done();
 }
 

@@ -49,7 +49,7 @@ VtkCanvas::~VtkCanvas() {
 }
 
 bool VtkCanvas::prepare() {
-  if (adapter_) return fitWindow(), true;
+  if (adapter_) return true;
   if (failed_) return false;
   const QSurfaceFormat format = QVTKRenderWindowAdapter::defaultFormat();
   context_.setFormat(format);
@@ -100,32 +100,36 @@ void VtkCanvas::resizeEvent(QResizeEvent*) { fitWindow(); }
 
 bool VtkCanvas::upToDate() const { return drawnFor_ == size() && drawnRatio_ == devicePixelRatioF(); }
 
+void VtkCanvas::drawNext() {
+  if (!isVisible()) return;
+  if (!ready()) {
+    prepare();  // takes as long as a picture: the first one comes in another turn
+    update();
+  } else if (!upToDate()) {
+    window_->Render();
+  }
+}
+
 void VtkCanvas::paintEvent(QPaintEvent*) {
   QPainter painter(this);
-  if (!prepare()) {
-    painter.fillRect(rect(), palette().window());
-    painter.drawText(rect(), Qt::AlignCenter | Qt::TextWordWrap,
-                     tr("This view needs OpenGL 3.2, which this display does not offer."));
-    return;
-  }
-  if (!upToDate()) {
-    // What is grabbed is wanted now; the screen has time, and other views want to draw as well.
-    const bool onScreen = backingStore() && painter.paintEngine()->paintDevice() == backingStore()->paintDevice();
-    if (!onScreen) {
-      painting_ = true;
-      window_->Render();
-      painting_ = false;
-    } else {
-      drawInTurn(this, [this] {
-        if (isVisible() && !upToDate()) window_->Render();
-      });
-    }
+  fitWindow();
+  // What is grabbed is wanted now; the screen has time, and other views want to draw as well.
+  const bool onScreen = backingStore() && painter.paintEngine()->paintDevice() == backingStore()->paintDevice();
+  if (onScreen && !failed_ && !upToDate()) {
+    drawInTurn(this, [this] { drawNext(); });
+  } else if (prepare() && !upToDate()) {
+    painting_ = true;
+    window_->Render();
+    painting_ = false;
   }
   if (drawn_) fetch();
-  if (picture_.isNull())
+  if (picture_.isNull() || failed_)
     painter.fillRect(rect(), palette().window());
   else
     painter.drawImage(rect(), picture_);
+  if (failed_)
+    painter.drawText(rect(), Qt::AlignCenter | Qt::TextWordWrap,
+                     tr("This view needs OpenGL 3.2, which this display does not offer."));
 }
 
 }  // namespace glint::gui

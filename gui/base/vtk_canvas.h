@@ -42,6 +42,7 @@ class VtkCanvas : public QWidget {
  private:
   bool prepare();  ///< false where OpenGL is missing
   void fitWindow();
+  void drawNext();
   bool upToDate() const;  ///< the last picture has the widget's size
   void fetch();
 
