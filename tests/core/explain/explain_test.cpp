@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "core/explain/walk_trace.h"
+#include "core/geometry/epipolar.h"
 #include "tests/core/pipeline/exact_scene.h"
 
 namespace glint {
@@ -254,6 +255,33 @@ TEST(Explain, TheEpipolarLinesSayHowFarTheViewsAreFromOneEllipsoid) {
     EXPECT_LT(table[kind], 0.02) << "px, of contours 100 px wide";
     EXPECT_GT(ball[kind], 0.2);
   }
+  // Which is which: pair by pair, the virtual cameras from the reflection in each tangent plane.
+  const Inspection seen = inspected(sphere(0.5), {"primal"});
+  const auto camera = [](const TrainingView& v, bool mirrored) {
+    Eigen::Matrix4d reflection = Eigen::Matrix4d::Identity();
+    const Plane& plane = *v.tangentPlane;
+    reflection.topLeftCorner<3, 3>() -= 2 * plane.normal * plane.normal.transpose();
+    reflection.topRightCorner<3, 1>() = -2 * plane.offset * plane.normal;
+    Projection p = v.camera.projection();
+    if (mirrored) p.matrix *= reflection;
+    return p;
+  };
+  for (const bool mirrored : {false, true}) {
+    double sum = 0;
+    int n = 0;
+    for (std::size_t i = 0; i < seen.views.size(); ++i)
+      for (std::size_t j = i + 1; j < seen.views.size(); ++j) {
+        const TrainingView &a = seen.views[i], &b = seen.views[j];
+        const Outcome<EpipolarTangents> t =
+            epipolarTangents(camera(a, mirrored), *a.highlight.ellipse, camera(b, mirrored), *b.highlight.ellipse);
+        if (!t) continue;
+        sum += std::pow(t->rmsPx(), 2);
+        ++n;
+      }
+    ASSERT_GT(n, 0);
+    EXPECT_NEAR(ball[mirrored ? 1 : 0], std::sqrt(sum / n), 1e-9) << mirrored;
+  }
+  EXPECT_GT(std::abs(ball[0] - ball[1]), 0.01);
 }
 
 TEST(Explain, AMissedHighlightIsToldFromThePredictionThatLiesBesideIt) {
@@ -266,6 +294,9 @@ TEST(Explain, AMissedHighlightIsToldFromThePredictionThatLiesBesideIt) {
   EXPECT_TRUE(breaks(stepOf(e, "projection"), "prediction-misses"));
   EXPECT_TRUE(breaks(stepOf(e, "inverse-walk"), "prediction-misses"));
   EXPECT_TRUE(stepOf(e, "comparison").failure);
+  // What is predicted for another highlight does not lie beside this one.
+  comparison.rows.back() = {1, 0, {}, {}};
+  EXPECT_TRUE(stepOf(explain(inspection, 5, 0, "canonical"), "projection").failure);
   comparison.rows.pop_back();  // nothing is predicted at all: that is said instead
   comparison.prediction.highlights.clear();
   EXPECT_TRUE(stepOf(explain(inspection, 5, 0, "canonical"), "projection").failure);
