@@ -259,25 +259,39 @@ class ExplainTest : public QObject {
     QTRY_VERIFY(panel_->findChild<WalkView*>()->isVisibleTo(panel_));
   }
 
-  /// The canonical ellipse is several times as large as the highlight where the sheet is bent.
+  /// On a bulging mirror it is several times as large as the highlight, and would not be in sight where that fills half the view.
   void theFrameViewHoldsTheCanonicalEllipse() {
-    const int last = window_->document().frameCount() - 1;
-    select(last, "canonical");
-    goTo("canonical-ellipse");
-    settle();
-    FrameCanvas* canvas = window_->framePanel()->canvas();
-    const viz::FrameOverlay overlay =
-        viz::frameOverlay(*window_->document().inspection(), last, window_->framePanel()->overlayOptions());
-    int points = 0;
-    for (const viz::OverlayLine& line : overlay.lines) {
-      if (line.role != viz::OverlayRole::CanonicalEllipse) continue;
-      for (const Pixel& p : line.points) {
-        ++points;
-        const Eigen::Vector2d off = canvas->zoom() * (p - canvas->centre());
-        QVERIFY(std::abs(off.x()) < canvas->width() / 2.0 && std::abs(off.y()) < canvas->height() / 2.0);
+    MainWindow window(coreEngine());
+    window.show();
+    window.open(QStringLiteral(GLINT_SOURCE_DIR "/sessions/lessons/sphere/sphere.glint"));
+    Document& document = window.document();
+    QTRY_VERIFY_WITH_TIMEOUT(document.scene() && window.idle() && document.inspection() && !document.stale(), 120000);
+    double most = 0;
+    for (int frame = 0; frame < document.frameCount(); ++frame) {
+      const viz::FrameOverlay overlay = viz::frameOverlay(*document.inspection(), frame, window.framePanel()->overlayOptions());
+      const std::vector<Highlight>& highlights = document.inspection()->evidence[std::size_t(frame)].highlights;
+      if (highlights.empty()) continue;
+      Eigen::AlignedBox2d ellipse, contour;
+      for (const Pixel& p : highlights[0].contour.points) contour.extend(p);
+      for (const viz::OverlayLine& line : overlay.lines)
+        if (line.role == viz::OverlayRole::CanonicalEllipse)
+          for (const Pixel& p : line.points) ellipse.extend(p);
+      if (ellipse.isEmpty()) continue;
+      most = std::max(most, (ellipse.sizes().array() / contour.sizes().array()).maxCoeff());
+      document.selectFrame(frame);
+      window.actions().find("explain.step-contour")->trigger();
+      window.actions().find("explain.step-canonical-ellipse")->trigger();
+      auto* panel = window.findChild<ExplainPanel*>();
+      QTRY_VERIFY_WITH_TIMEOUT(!panel->busy() && panel->explanation() && panel->explanation()->frame == frame && window.idle(),
+                               60000);
+      const FrameCanvas* canvas = window.framePanel()->canvas();
+      for (const Pixel& corner : {ellipse.min(), ellipse.max()}) {
+        const Eigen::Vector2d off = canvas->zoom() * (corner - canvas->centre());
+        QVERIFY2(std::abs(off.x()) < canvas->width() / 2.0 && std::abs(off.y()) < canvas->height() / 2.0,
+                 qPrintable(QStringLiteral("frame %1").arg(frame)));
       }
     }
-    QVERIFY(points > 20);
+    QVERIFY2(most > 2, qPrintable(QString::number(most)));
   }
 
   void whereNothingIsSelectedAllPanelsAreAboutOneModel() {

@@ -68,6 +68,7 @@ class TimelineTest : public QObject {
     focus(QEvent::FocusIn, Qt::TabFocusReason);
     QVERIFY(frame->isVisible());
     QCOMPARE(frame->size(), strip->size());
+    QVERIFY(strip->childAt(strip->rect().center()) != frame);  // the mouse does not meet it
     focus(QEvent::FocusOut, Qt::ActiveWindowFocusReason);
     QVERIFY(!frame->isVisible());
     focus(QEvent::FocusIn, Qt::ActiveWindowFocusReason);
