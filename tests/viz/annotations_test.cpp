@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The legend of the 3D picture: read from its pixels, with no scene behind it.
+#include "viz/annotations.h"
+
+#include <gtest/gtest.h>
+#include <vtkNew.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+
+#include "tests/viz/image_checks.h"
+#include "viz/convert.h"
+#include "viz/offscreen.h"
+#include "viz/scene_view.h"
+
+namespace glint::viz {
+namespace {
+
+using test::isNear;
+
+constexpr Colour kOrange{0.9, 0.6, 0}, kMagenta{0.9, 0.1, 0.9}, kWhite{1, 1, 1};
+constexpr int kHeight = 480;
+constexpr double kSame = 0.12;  // a channel: strokes are drawn without smoothing, texts with it
+
+class LegendPicture : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::system("command -v Xvfb > /dev/null 2>&1") != 0) GTEST_SKIP() << "Xvfb is not installed";
+    Outcome<std::unique_ptr<VirtualDisplay>> display = VirtualDisplay::start(800, kHeight);
+    ASSERT_TRUE(display) << display.failure().message();
+    display_ = std::move(*display);
+  }
+  Image picture(int width, bool dark, const std::function<void(Annotations&)>& fill) {
+    vtkNew<vtkRenderer> renderer;
+    const Colour& back = dark ? kDarkBackground : kLightBackground;
+    renderer->SetBackground(back[0], back[1], back[2]);
+    vtkNew<vtkRenderWindow> window;
+    prepareWindow(window);
+    window->SetShowWindow(false);
+    window->SetOffScreenRendering(1);
+    window->SetSize(width, kHeight);
+    window->AddRenderer(renderer);
+    Annotations annotations(renderer);
+    annotations.setDark(dark);
+    fill(annotations);
+    window->Render();
+    annotations.place({0, 0, 0});
+    window->Render();
+    legend_ = annotations.legendSize();
+    Image image = pictureOf(window);
+    window->RemoveRenderer(renderer);
+    window->Finalize();
+    return image;
+  }
+  /// Pixels like `colour` whose column, in heights of the text, is within [from, to).
+  static int count(const Image& image, const Colour& colour, double from, double to) {
+    const double font = fontSizeFor(kHeight);
+    int n = 0;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = std::max(0, int(from * font)); x < std::min<double>(image.width, to * font); ++x)
+        n += isNear(image, x, y, colour, kSame);
+    return n;
+  }
+  std::unique_ptr<VirtualDisplay> display_;
+  Eigen::Vector2d legend_;
+};
+
+constexpr double kSwatch = 3.0, kWide = 40;  // where swatches end and texts begin, where texts have ended: in heights of the text
+
+TEST_F(LegendPicture, AnEntryHasAStrokeOfItsColourAndATextInThatOfTexts) {
+  for (const bool dark : {true, false}) {
+    SCOPED_TRACE(dark);
+    const Image image = picture(800, dark, [](Annotations& a) { a.setLegend({{kOrange, "primal"}}, {}, {}, "title"); });
+    EXPECT_GT(count(image, kOrange, 0, kSwatch), 30);
+    EXPECT_EQ(count(image, kOrange, kSwatch, kWide), 0);
+    EXPECT_GT(count(image, dark ? kTextOnDark : kTextOnLight, kSwatch, kWide), 30);
+    const Image hidden = picture(800, dark, [](Annotations& a) {
+      a.setLegend({{kOrange, "primal"}}, {}, {}, "title");
+      a.place({0, 0, 0});  // it was there before
+      a.setLegendVisible(false);
+    });
+    EXPECT_EQ(count(hidden, kOrange, 0, kWide), 0);
+    EXPECT_EQ(legend_, Eigen::Vector2d(0, 0));
+  }
+}
+
+/// White is told from a light background by its edge.
+TEST_F(LegendPicture, AColourLikeTheBackgroundHasAnEdge) {
+  const auto edge = [&](bool dark, const Colour& colour) {
+    const Image image = picture(800, dark, [&](Annotations& a) { a.setLegend({{colour, " "}}, {}, {}, " "); });
+    return count(image, dark ? kTextOnDark : kTextOnLight, 0, kSwatch);
+  };
+  EXPECT_GT(edge(false, kWhite), 20);
+  EXPECT_EQ(edge(false, {0, 0.2, 0.6}), 0);
+  EXPECT_GT(edge(true, {0.1, 0.1, 0.2}), 20);
+}
+
+TEST_F(LegendPicture, ANarrowPictureKeepsOnlyWhatItHasToShow) {
+  const auto fill = [](Annotations& a) { a.setLegend({{kOrange, "primal"}, {kMagenta, "true light", true}}, {}, {}, "title"); };
+  for (const int width : {kNarrowPicture + 100, kNarrowPicture - 100}) {
+    const Image image = picture(width, true, fill);
+    EXPECT_EQ(count(image, kOrange, 0, kWide) > 0, width > kNarrowPicture) << width;
+    EXPECT_GT(count(image, kMagenta, 0, kSwatch), 30) << width;
+  }
+}
+
+TEST_F(LegendPicture, NotesAreInTheColourOfWhatFailedAndRemarksAreFaint) {
+  const auto redAndGrey = [&](const std::vector<std::string>& notes, const std::vector<std::string>& remarks) {
+    const Image image = picture(800, true, [&](Annotations& a) { a.setLegend({}, notes, remarks, " "); });
+    int red = 0, grey = 0;
+    for (int y = 0; y < image.height / 2; ++y)
+      for (int x = 0; x < image.width / 2; ++x) {
+        const double r = image.at(x, y, 0), g = image.at(x, y, 1), b = image.at(x, y, 2);
+        red += r > 0.5 && r > 1.4 * std::max(g, b);
+        grey += r > 0.45 && std::abs(r - g) < 0.1 && std::abs(r - b) < 0.1;
+      }
+    return std::array<bool, 2>{red > 30, grey > 30};
+  };
+  EXPECT_EQ(redAndGrey({}, {}), (std::array<bool, 2>{false, false}));
+  EXPECT_EQ(redAndGrey({"the fit of dual failed"}, {}), (std::array<bool, 2>{true, false}));
+  EXPECT_EQ(redAndGrey({}, {"photographs of 25 of 100 cameras"}), (std::array<bool, 2>{false, true}));
+}
+
+/// The label of a point that lies under the legend stands beside it.
+TEST_F(LegendPicture, LabelsLeaveItFree) {
+  const Image image = picture(800, true, [](Annotations& a) {
+    a.setLegend({{kOrange, "primal, with a long text"}, {kOrange, "dual, with a long text"}}, {}, {}, "a title");
+    a.setLabels({{{-0.42, 0.25, 0}, "label", kMagenta}});  // seen from VTK's first camera, at distance 1
+  });
+  ASSERT_GT(legend_.x(), 50);
+  int under = 0, all = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      if (!isNear(image, x, y, kMagenta, 0.25)) continue;
+      ++all;
+      under += x < legend_.x() - 2 && y < legend_.y() - 2;
+    }
+  EXPECT_GT(all, 10);
+  EXPECT_EQ(under, 0);
+}
+
+}  // namespace
+}  // namespace glint::viz
