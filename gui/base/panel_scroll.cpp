@@ -72,8 +72,12 @@ void PanelScroll::resizeEvent(QResizeEvent* event) {
 }
 
 void PanelScroll::fit() {
-  const QSize room = size();
-  const bool least = height_ == Height::Fills;
+  QSize room = size();
+  const bool hugs = height_ == Height::Hugs;
+  const int all = hugs ? std::min(heightFor(room.width(), false), most_) : room.height();
+  // It gets lower first: done within a resize event, the event that would fit the content to it again does not come.
+  if (hugs && all < room.height()) room.setHeight(all);
+  const bool least = !hugs;
   const int bar = style()->pixelMetric(QStyle::PM_ScrollBarExtent, nullptr, this);
   const int leastWidth = leastOf(widget()).width();
   int width = std::max(room.width(), leastWidth);
@@ -84,9 +88,7 @@ void PanelScroll::fit() {
     height = heightFor(width, least);
   }
   widget()->resize(width, std::max(height, room.height() - (width > room.width() ? bar : 0)));
-  if (height_ != Height::Hugs) return;
-  const int all = std::min(heightFor(room.width(), false), most_);
-  if (maximumHeight() == all) return;
+  if (!hugs || maximumHeight() == all) return;
   setMaximumHeight(all);
   updateGeometry();
 }

@@ -2,9 +2,11 @@
 // The window in all sizes, at 100 and at 200 %.
 #include <QAction>
 #include <QDockWidget>
+#include <QRegularExpression>
 #include <QScreen>
 #include <QScrollArea>
 #include <QScrollBar>
+#include <QToolButton>
 
 #include "gui/base/panel_scroll.h"
 #include "gui/frame/frame_panel.h"
@@ -111,6 +113,34 @@ class WindowSizeTest : public QObject, WindowFixture {
                    qPrintable(QStringLiteral("%1: at least %2").arg(name).arg(window.minimumHeight())));
       window.resize(800, 500);
       QCOMPARE(window.size(), QSize(800, 500));
+    }
+  }
+
+  /// Layouts change the width of the panel; its bar has to follow.
+  void overlayButtonsAreWholeAfterEveryLayout() {
+    if (screen()->availableSize().width() < 1600) QSKIP("the screen is smaller");
+    MainWindow window(fixture_.engine());
+    window.resize(1600, 1000);
+    show(window);
+    openAndWait(window);
+    window.document().setModels({"reflectance", "limit-angle", "canonical", "dual", "primal"});
+    QTRY_VERIFY(window.idle() && !window.document().stale());
+    for (const QString& name : {QStringLiteral("compare"), QStringLiteral("debug"), QStringLiteral("compare")}) {
+      window.applyLayout(name);
+      QTRY_VERIFY(window.idle());
+      QTest::qWait(50);
+      const auto* scroll = window.framePanel()->findChild<PanelScroll*>();
+      const QList<QToolButton*> buttons = scroll->findChildren<QToolButton*>(QRegularExpression(QStringLiteral("^frame/")));
+      QVERIFY(buttons.size() > 5);
+      for (const QToolButton* button : buttons) {
+        const QRect place(button->mapTo(scroll, QPoint(0, 0)), button->size());
+        QVERIFY2(scroll->rect().intersected(scroll->viewport()->geometry()).contains(place),
+                 qPrintable(QStringLiteral("%1: %2 is cut, from %3 to %4 of %5 px")
+                                .arg(name, button->text())
+                                .arg(place.top())
+                                .arg(place.bottom())
+                                .arg(scroll->height())));
+      }
     }
   }
 
