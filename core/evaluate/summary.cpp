@@ -80,7 +80,12 @@ ModelSummary summarise(const Inspection& inspection, const ModelResult& result) 
         s.reason = c.prediction.failure->message();
         return s;
       }
-    s.reason = s.frames == 0 ? "no held-out frame has a highlight" : "no frame was predicted";
+    bool anyHeldOut = false;
+    for (int i = 0; i < static_cast<int>(inspection.scene->frames.size()); ++i)
+      anyHeldOut = anyHeldOut || inspection.isHeldOut(i);
+    s.reason = !anyHeldOut     ? "no frame is held out"
+               : s.frames == 0 ? "no held-out frame has a highlight"
+                               : "no frame was predicted";
   }
   return s;
 }

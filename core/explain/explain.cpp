@@ -455,7 +455,10 @@ void projectionStep(const Case& c, ExplainStep& step) {
                                                     : Failure{Reason::NoBrightestPoint, "this highlight is not predicted"};
     return;
   }
-  step.numbers.push_back(pixel("", "predicted brightest point", p->brightest.pixel));
+  // An ellipsoid's outline alone has no brightest point: what stands for it is its centre.
+  const bool outline = c.out.model == "primal";
+  step.numbers.push_back(
+      pixel("", outline ? "centre of the predicted outline" : "predicted brightest point", p->brightest.pixel));
   if (c.highlight)
     step.numbers.push_back(one("", "from the observed peak", (p->brightest.pixel - c.highlight->peak).norm(), "px"));
   if (p->ellipse)
@@ -501,7 +504,8 @@ void comparisonStep(const Case& c, ExplainStep& step) {
   step.numbers.push_back(one("e", "mean distance of the contours", m.contourErrorPx, "px"));
   step.numbers.push_back(one("e", "of the equivalent diameter", m.contourErrorPct, "%"));
   step.numbers.push_back(one("IoU", "overlap", m.iou));
-  step.numbers.push_back(one("", "offset of the peaks", m.peakOffsetPx, "px"));
+  step.numbers.push_back(
+      one("", c.out.model == "primal" ? "its centre from the peak" : "offset of the peaks", m.peakOffsetPx, "px"));
   if (c.inspection.isTraining(c.out.frame)) step.broken.push_back({"training-frame", {}});
 }
 }  // namespace

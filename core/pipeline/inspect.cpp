@@ -130,6 +130,8 @@ class Run {
 
   void gather(const std::vector<int>& frames);
   std::vector<int> framesToGather() const;
+  /// Which light a highlight is of is found out from all frames together; what is synthesised knows it.
+  bool lightsAreOpen() const { return !r_.request.whatIf.synthesise && lightsNeedAllFrames(*r_.scene); }
 
   Inspection& r_;
   CorrectedDepthMaps corrected_;
@@ -141,7 +143,7 @@ class Run {
 void Run::highlights() {
   const InspectionRequest& q = r_.request;
   // The assignment of several lights reflects rays on the surface: its normals matter then.
-  const bool together = lightsNeedAllFrames(*r_.scene);
+  const bool together = lightsAreOpen();
   r_.stageKeys["detect"] =
       keyOfStages(q.settings, together ? std::set<std::string>{"detect", "surface"} : std::set<std::string>{"detect"},
                   (q.source == FrameSource::Image ? "image|" : "radiance|") + q.truthFolder + "|" + synthesisKey(q.whatIf) +
@@ -162,7 +164,7 @@ void Run::highlights() {
 /// Frames whose evidence is not there yet and is asked for.
 std::vector<int> Run::framesToGather() const {
   std::vector<int> frames;
-  const bool all = onlyFrame_ < 0 || r_.train.perSurface || lightsNeedAllFrames(*r_.scene);
+  const bool all = onlyFrame_ < 0 || r_.train.perSurface || lightsAreOpen();
   for (int i = 0; i < static_cast<int>(r_.evidence.size()); ++i) {
     const bool wanted = all || i == onlyFrame_ || std::binary_search(r_.train.frames.begin(), r_.train.frames.end(), i);
     if (wanted && r_.evidence[i].frame < 0) frames.push_back(i);
@@ -486,15 +488,33 @@ bool sameScene(const Inspection& previous, const InspectionRequest& request) {
          (!b.synthesise || level(previous.request) == level(request));
 }
 
+/// The scene with what a what-if changes; contours of the frames that this run and earlier ones looked at.
+std::shared_ptr<const Scene> whatIfScene(const std::shared_ptr<const Scene>& given, const InspectionRequest& request,
+                                         const TrainSpec& train, int onlyFrame, const ProgressFn& progress,
+                                         const Inspection* previous) {
+  const WhatIf& w = request.whatIf;
+  if (!w.changesScene()) return given;
+  const double level = request.settings.number("detect.level");
+  const bool known = previous && previous->given == given && sameScene(*previous, request);
+  if (!w.synthesise) return known ? previous->scene : changedScene(*given, w, level, progress);
+  std::vector<int> missing;
+  for (int i = 0; i < static_cast<int>(given->frames.size()); ++i) {
+    const bool wanted =
+        onlyFrame < 0 || train.perSurface || i == onlyFrame || std::binary_search(train.frames.begin(), train.frames.end(), i);
+    const bool there = known && i < static_cast<int>(previous->evidence.size()) && previous->evidence[i].frame >= 0;
+    if (wanted && !there) missing.push_back(i);
+  }
+  if (!known) return changedScene(*given, w, level, progress, &missing);
+  return missing.empty() ? previous->scene : withContours(*previous->scene, w, level, missing, progress);
+}
+
 Inspection run(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int onlyFrame, const ProgressFn& progress,
                const Inspection* previous) {
   require(scene != nullptr, "inspect: no scene");
   Inspection result;
   result.given = scene;
-  result.scene = !request.whatIf.changesScene() ? scene
-                 : previous && previous->given == scene && sameScene(*previous, request)
-                     ? previous->scene
-                     : changedScene(*scene, request.whatIf, request.settings.number("detect.level"), progress);
+  result.train = parseTrainSpec(request.train, *scene);
+  result.scene = whatIfScene(scene, request, result.train, onlyFrame, progress, previous);
   if (!previous || previous->given != scene)
     result.surfaces = std::make_shared<SurfaceCache>(*result.scene);
   else if (previous->scene == result.scene)
@@ -505,7 +525,6 @@ Inspection run(std::shared_ptr<const Scene> scene, const InspectionRequest& requ
   // A model named twice is one model.
   std::vector<std::string>& models = result.request.models;
   for (auto m = models.begin(); m != models.end();) m = std::find(models.begin(), m, *m) != m ? models.erase(m) : m + 1;
-  result.train = parseTrainSpec(request.train, *scene);
   for (const std::string& m : request.models) modelByName(m);  // unknown names are refused before any work
   Run run(result, progress, previous, onlyFrame);
   run.highlights();

@@ -54,7 +54,12 @@ Outcome<Exposure> exposureOf(const Inspection& in, const Material& material) {
 
 bool picturesAreSynthesised(const Inspection& inspection) { return inspection.request.whatIf.synthesise; }
 
-std::string pictureKey(const Inspection& inspection) { return synthesisKey(inspection.request.whatIf); }
+std::string pictureKey(const Inspection& inspection) {
+  // The exposure is that of all frames: as long as only some are known, pictures are those of a first look.
+  const bool some =
+      std::any_of(inspection.evidence.begin(), inspection.evidence.end(), [](const FrameEvidence& e) { return e.frame < 0; });
+  return synthesisKey(inspection.request.whatIf) + (picturesAreSynthesised(inspection) && some ? "|first look" : "");
+}
 
 Outcome<Image> linearImageOf(const Inspection& in, int frame, FrameSource source, int every, const ProgressFn& progress) {
   require(frame >= 0 && frame < int(in.given->frames.size()), "linearImageOf: there is no such frame");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
 #include "core/base/parallel.h"
 #include "core/surface/analytic.h"
@@ -113,7 +114,42 @@ double workingDistance(const Scene& scene) {
   return sum > 0 && std::isfinite(sum) ? sum / n : 1;
 }
 
-std::shared_ptr<const Scene> changedScene(const Scene& given, const WhatIf& whatIf, double level, const ProgressFn& progress) {
+namespace {
+using AnalyticSurfaces = std::map<std::string, std::shared_ptr<const Surface>>;
+
+/// The contours of these frames, in their `highlights`.
+void synthesise(Scene& scene, const AnalyticSurfaces& surfaces, const WhatIf& whatIf, double level,
+                const std::vector<int>& frames, const ProgressFn& progress) {
+  Material material;
+  material.lobe = whatIf.lobe;
+  material.roughness = whatIf.roughness;
+  parallelFor(
+      int(frames.size()),
+      [&](int n) {
+        Frame& f = scene.frames[std::size_t(frames[std::size_t(n)])];
+        f.highlights.clear();
+        ExactOptions options;
+        options.level = level;
+        options.sagittaPx = kSagittaPx;
+        options.marginPx = kEdgeShare * std::max(f.camera.width, f.camera.height);
+        for (const TrueLight& light : lightsOn(scene, f)) {
+          const Outcome<std::vector<Highlight>> found =
+              exactHighlights(*surfaces.at(f.surface), f.camera, light, material, options);
+          if (!found) continue;  // not lit, or not visible from here
+          for (Highlight h : *found) {
+            h.light = light.id;
+            h.level = level;
+            h.fromScene = true;
+            f.highlights.push_back(std::move(h));
+          }
+        }
+      },
+      progress, "synthesise");
+}
+}  // namespace
+
+std::shared_ptr<const Scene> changedScene(const Scene& given, const WhatIf& whatIf, double level, const ProgressFn& progress,
+                                          const std::vector<int>* frames) {
   auto scene = std::make_shared<Scene>(given);
   for (const auto& [frame, change] : whatIf.poses) {
     if (frame < 0 || frame >= int(scene->frames.size())) refuse(given, "there is no frame " + std::to_string(frame));
@@ -131,7 +167,7 @@ std::shared_ptr<const Scene> changedScene(const Scene& given, const WhatIf& what
     if (light == scene->lights.end()) refuse(given, "there is no light '" + id + "'");
     *light = moved(*light, by);
   }
-  std::map<std::string, std::shared_ptr<const Surface>> surfaces;
+  AnalyticSurfaces surfaces;
   for (auto& [id, source] : scene->surfaces) {
     if (!source.analytic) continue;
     if (const auto wanted = whatIf.surfaces.find(id); wanted != whatIf.surfaces.end())
@@ -146,34 +182,25 @@ std::shared_ptr<const Scene> changedScene(const Scene& given, const WhatIf& what
     if (!surfaces.count(id) || !shapeOf(*scene->surfaces[id].analytic))
       refuse(given, "surface '" + id + "' has no shape to change");
 
-  Material material;
-  material.lobe = whatIf.lobe;
-  material.roughness = whatIf.roughness;
-  parallelFor(
-      int(scene->frames.size()),
-      [&](int i) {
-        Frame& f = scene->frames[std::size_t(i)];
-        f.image.clear();  // it shows what was captured
-        f.radiance.clear();
-        f.mask.clear();
-        f.highlights.clear();
-        ExactOptions options;
-        options.level = level;
-        options.sagittaPx = kSagittaPx;
-        options.marginPx = kEdgeShare * std::max(f.camera.width, f.camera.height);
-        for (const TrueLight& light : lightsOn(*scene, f)) {
-          const Outcome<std::vector<Highlight>> found =
-              exactHighlights(*surfaces.at(f.surface), f.camera, light, material, options);
-          if (!found) continue;  // not lit, or not visible from here
-          for (Highlight h : *found) {
-            h.light = light.id;
-            h.level = level;
-            h.fromScene = true;
-            f.highlights.push_back(std::move(h));
-          }
-        }
-      },
-      progress, "synthesise");
+  for (Frame& f : scene->frames) {
+    f.image.clear();  // it shows what was captured
+    f.radiance.clear();
+    f.mask.clear();
+    f.highlights.clear();
+  }
+  std::vector<int> all(scene->frames.size());
+  std::iota(all.begin(), all.end(), 0);
+  synthesise(*scene, surfaces, whatIf, level, frames ? *frames : all, progress);
+  return scene;
+}
+
+std::shared_ptr<const Scene> withContours(const Scene& changed, const WhatIf& whatIf, double level,
+                                          const std::vector<int>& frames, const ProgressFn& progress) {
+  auto scene = std::make_shared<Scene>(changed);
+  AnalyticSurfaces surfaces;
+  for (const auto& [id, source] : scene->surfaces)
+    if (source.analytic) surfaces[id] = makeAnalytic(*source.analytic);
+  synthesise(*scene, surfaces, whatIf, level, frames, progress);
   return scene;
 }
 

@@ -81,8 +81,12 @@ double workingDistance(const Scene& scene);
 /// so by the pipeline.
 /// @throw InputError (place "what-if") for a frame, light or surface that does not exist, a value out of range, or a scene whose
 /// contours cannot be synthesised; Stopped.
-std::shared_ptr<const Scene> changedScene(const Scene& scene, const WhatIf& whatIf, double level,
-                                          const ProgressFn& progress = {});
+/// @param frames  indices of those whose contours are synthesised (the others have none yet); null = all
+std::shared_ptr<const Scene> changedScene(const Scene& scene, const WhatIf& whatIf, double level, const ProgressFn& progress = {},
+                                          const std::vector<int>* frames = nullptr);
+/// A scene that changedScene() made for some frames, with the contours of further ones. Same what-if and level. Stopped.
+std::shared_ptr<const Scene> withContours(const Scene& changed, const WhatIf& whatIf, double level,
+                                          const std::vector<int>& frames, const ProgressFn& progress = {});
 
 /// A highlight with a change; its ellipse and area follow.
 Highlight changed(Highlight highlight, const HighlightChange& change);

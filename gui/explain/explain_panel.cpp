@@ -349,10 +349,17 @@ QString ExplainPanel::html() const {
   if (!explanation_ || now >= int(explanation_->steps.size())) return html;
   const ExplainStep& s = explanation_->steps[std::size_t(now)];
   const Scene& scene = *document_.scene();
+  const auto inspection = document_.inspection();
+  const std::size_t frame = std::size_t(explanation_->frame);
+  const std::size_t highlights =
+      inspection && frame < inspection->evidence.size() ? inspection->evidence[frame].highlights.size() : 0;
+  const QString ofSeveral = highlights > 1 && explanation_->highlight >= 0
+                                ? tr(", highlight %1 of %2").arg(explanation_->highlight + 1).arg(highlights)
+                                : QString();
   html += QStringLiteral("<p style='color:%1'>%2</p>")
               .arg(palette().color(QPalette::PlaceholderText).name(),
-                   tr("Frame %1%2%3")
-                       .arg(escaped(scene.frames[std::size_t(explanation_->frame)].id),
+                   tr("Frame %1%2%3%4")
+                       .arg(escaped(scene.frames[std::size_t(explanation_->frame)].id), ofSeveral,
                             explanation_->light.empty() ? QString() : tr(", light %1").arg(escaped(explanation_->light)),
                             explanation_->model.empty() ? QString() : tr(", model %1").arg(escaped(explanation_->model))));
   // What is wrong comes first: a low window shows no more than that.

@@ -219,9 +219,16 @@ QString ExportActions::diagnosticReport() const {
       lines << QStringLiteral("set %1 = %2").arg(toQString(key), valueText(value, paramSpec(key)));
     if (const auto inspection = document_.inspection()) lines << toQString(evaluationTable(*inspection));
   }
-  if (log_) lines << QStringLiteral("log:") << log_();
-  // File names stay, folders go: they may hold a person's or a project's name.
-  static const QRegularExpression folders(QStringLiteral("(?:[A-Za-z]:)?[\\\\/](?:[^\\\\/\\n\"']+[\\\\/])*(?=[^\\\\/\\s\"']+)"));
+  if (log_) {
+    QString log = log_();  // it names the input as it was given: perhaps relative
+    for (const QString& file : {document_.inputFile(), QFileInfo(document_.inputFile()).absoluteFilePath()})
+      if (const QString folder = QFileInfo(file).path(); folder.size() > 1) log.replace(folder + '/', QStringLiteral("…/"));
+    lines << QStringLiteral("log:") << log;
+  }
+  // File names stay, folders go: they may hold a person's or a project's name. A path starts where a word does ("25/0/0" is
+  // none).
+  static const QRegularExpression folders(
+      QStringLiteral("(?<![^\\s\"'(=])(?:[A-Za-z]:)?[\\\\/](?:[^\\\\/\\n\"']+[\\\\/])*(?=[^\\\\/\\s\"']+)"));
   return lines.join('\n').replace(folders, QStringLiteral("…/"));
 }
 

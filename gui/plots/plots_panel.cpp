@@ -370,7 +370,7 @@ void PlotsPanel::addActions(Actions& actions, QMenu* menu) {
   actions.add(QStringLiteral("plots.copy-png"), menu, tr("Copy the &plot as a picture"), [this] { copyPicture(); },
               {{}, QStringLiteral("copy")});
   actions.add(QStringLiteral("plots.copy-svg"), menu, tr("Copy the plot as &SVG"), [this] { copySvg(); });
-  actions.add(QStringLiteral("plots.copy-csv"), menu, tr("Copy the plot's &numbers"), [this] { copyNumbers(); });
+  actions.add(QStringLiteral("plots.copy-csv"), menu, tr("Copy the plot's &numbers (CSV)"), [this] { copyNumbers(); });
 }
 
 }  // namespace glint::gui

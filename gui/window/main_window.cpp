@@ -395,7 +395,7 @@ void MainWindow::buildStatusLine() {
 
 void MainWindow::open(const QString& input, const QString& frame) {
   files_->setFrameToSelect(frame);
-  files_->open(input);
+  files_->drop(input);  // as if it were dropped: a photograph selects its frame
 }
 
 void MainWindow::applyLayout(const QString& name) {

@@ -3,12 +3,14 @@
 
 #include <QAction>
 #include <QDialogButtonBox>
+#include <QGuiApplication>
 #include <QHeaderView>
 #include <QKeySequenceEdit>
 #include <QLabel>
 #include <QLineEdit>
 #include <QMessageBox>
 #include <QPushButton>
+#include <QScreen>
 #include <QTreeWidget>
 #include <QVBoxLayout>
 
@@ -19,7 +21,8 @@ namespace glint::gui {
 ShortcutDialog::ShortcutDialog(Actions& actions, QWidget* parent)
     : QDialog(parent), actions_(actions), search_(new QLineEdit), list_(new QTreeWidget), note_(new QLabel) {
   setWindowTitle(tr("Keyboard shortcuts"));
-  resize(620, 640);
+  const QScreen* screen = parent ? parent->screen() : QGuiApplication::primaryScreen();
+  resize(QSize(620, 640).boundedTo(screen->availableSize() - QSize(20, 60)));  // less the window's own frame
   auto* column = new QVBoxLayout(this);
   search_->setPlaceholderText(tr("Find an action"));
   search_->setClearButtonEnabled(true);

@@ -18,6 +18,7 @@
 #include <QPushButton>
 #include <QTimer>
 
+#include "core/evaluate/report.h"
 #include "gui/base/text.h"
 #include "gui/document/figure.h"
 #include "gui/document/session_file.h"
@@ -220,6 +221,29 @@ class ExportTest : public QObject {
     QVERIFY(report.contains("plane.glint"));  // names of files stay
     QVERIFY2(!report.contains(QStringLiteral(GLINT_SOURCE_DIR)), qPrintable(report));
     QVERIFY2(!report.contains(QDir::homePath() + '/'), qPrintable(report));
+    // Numbers with a stroke between them are no folders.
+    QTRY_VERIFY_WITH_TIMEOUT(window_->idle() && !window_->document().stale(), 60000);
+    const QString again = window_->exports()->diagnosticReport();
+    const QStringList table = toQString(evaluationTable(*window_->document().inspection())).split('\n', Qt::SkipEmptyParts);
+    QVERIFY(table.size() > 3 && table.join(' ').contains('/'));
+    for (const QString& line : table) QVERIFY2(again.contains(line), qPrintable(line));
+  }
+
+  /// Named by a relative path, as from a shell: no part of it is left.
+  void theDiagnosticReportNamesNoPartOfARelativePath() {
+    const QDir shared(folder_.filePath("private name/deeper"));
+    QVERIFY(QDir().mkpath(shared.path()));
+    for (const char* file : {"scene.json", "plane.glint"})
+      QVERIFY(QFile::copy(QStringLiteral(GLINT_SOURCE_DIR "/sessions/plane/") + QLatin1String(file), shared.filePath(file)));
+    const QString before = QDir::currentPath();
+    QVERIFY(QDir::setCurrent(folder_.path()));
+    MainWindow window(engine_);
+    window.open(QStringLiteral("private name/deeper/plane.glint"));
+    QTRY_VERIFY_WITH_TIMEOUT(window.document().scene() && window.idle(), 60000);
+    const QString report = window.exports()->diagnosticReport();
+    QDir::setCurrent(before);
+    QVERIFY(report.contains("plane.glint"));
+    QVERIFY2(!report.contains("private") && !report.contains("deeper"), qPrintable(report));
   }
 
  private:

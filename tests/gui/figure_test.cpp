@@ -384,6 +384,9 @@ class FigureTest : public QObject {
     dropOn(window_.get(), photograph(vase, 3));
     QTRY_VERIFY_WITH_TIMEOUT(window_->document().inputFile().contains("vase"), 20000);
     QCOMPARE(window_->document().selection().frame, 3);
+    window_->open(photograph(vase, 5));  // from the command line: as if it were dropped
+    QCOMPARE(window_->document().selection().frame, 5);
+    window_->document().selectFrame(3);
     // Of none
     const QString stray = folder_.filePath("stray.jpg");
     QVERIFY(QImage(8, 8, QImage::Format_RGB32).save(stray));

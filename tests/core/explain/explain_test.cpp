@@ -308,6 +308,10 @@ TEST(Explain, SaysOfEachModelWhatItDoesInsteadOfAWalk) {
     const Explanation e = explain(inspection, 5, 0, model);
     return std::array<bool, 2>{breaks(stepOf(e, "inverse-walk"), "outline-only"), breaks(stepOf(e, "inverse-walk"), "no-walk")};
   };
+  // The outline of an ellipsoid has a centre and no brightest point.
+  number(stepOf(explain(inspection, 5, 0, "primal"), "projection"), "centre of the predicted outline");
+  number(stepOf(explain(inspection, 5, 0, "primal"), "comparison"), "its centre from the peak");
+  number(stepOf(explain(inspection, 5, 0, "dual"), "projection"), "predicted brightest point");
   EXPECT_EQ(said("primal"), (std::array<bool, 2>{true, false}));
   EXPECT_EQ(said("dual"), (std::array<bool, 2>{true, false}));
   EXPECT_EQ(said("limit-angle"), (std::array<bool, 2>{false, true}));

@@ -2,6 +2,7 @@
 // One frame first, the rest after it: never another result than everything at once.
 #include <gtest/gtest.h>
 
+#include "core/pipeline/photograph.h"
 #include "core/pipeline/session.h"
 #include "tests/core/pipeline/exact_scene.h"
 
@@ -53,6 +54,41 @@ TEST(InspectOneFrame, LooksAtTheTrainingFramesAndThatOneAndTheRestIsAddedLater) 
   EXPECT_EQ(rest.work.framesDetected, 7);
   EXPECT_EQ(rest.work.fits + rest.work.lights + rest.work.trainingViews, 0);
   for (const auto& [name, model] : rest.models) EXPECT_FALSE(model.oneFrame) << name;
+}
+
+/// A what-if of a long sequence is seen in the frame on screen before the contours of all others are made.
+TEST(InspectOneFrame, SynthesisesOnlyTheContoursThatItNeeds) {
+  const auto scene = litScene(sheet(0.3), 12);
+  InspectionRequest q = request();
+  q.whatIf.synthesise = true;
+  const auto made = [](const Inspection& in) {
+    std::vector<int> frames;
+    for (std::size_t i = 0; i < in.scene->frames.size(); ++i)
+      if (!in.scene->frames[i].highlights.empty()) frames.push_back(int(i));
+    return frames;
+  };
+  const Inspection all = inspect(scene, q);
+  ASSERT_EQ(made(all).size(), 12u);
+  const Inspection one = inspectOneFrame(scene, q, 9);
+  EXPECT_EQ(made(one), (std::vector<int>{0, 1, 2, 3, 9}));
+  expectSameFrame(one, all, 9);
+  const Inspection other = inspectOneFrame(scene, q, 7, {}, &one);
+  EXPECT_EQ(made(other), (std::vector<int>{0, 1, 2, 3, 7, 9}));
+  expectSameFrame(other, all, 7);
+  const Inspection again = inspectOneFrame(scene, q, 7, {}, &other);
+  EXPECT_EQ(again.scene, other.scene);  // nothing new to make
+  const Inspection rest = inspect(scene, q, {}, &other);
+  EXPECT_EQ(made(rest).size(), 12u);
+  EXPECT_EQ(digestOf(rest), digestOf(all));
+  // Exposed for the frames that are known: another picture once all are.
+  EXPECT_NE(pictureKey(one), pictureKey(all));
+  EXPECT_EQ(pictureKey(rest), pictureKey(all));
+  // Another lamp, beside a complete run: nothing of that run's contours is left.
+  InspectionRequest moved = q;
+  moved.whatIf.lightsBy[scene->lights.at(0).id] = {0.02, 0, 0};
+  const Inspection follows = inspectOneFrame(scene, moved, 9, {}, &all);
+  EXPECT_EQ(made(follows), (std::vector<int>{0, 1, 2, 3, 9}));
+  expectSameFrame(follows, inspect(scene, moved), 9);
 }
 
 TEST(InspectOneFrame, KeepsWhatAnEarlierRunKnowsOfTheOthers) {
