@@ -333,6 +333,21 @@ TEST_F(PlotDrawing, TheSelectionIsMarked) {
                isColour(without, at - Eigen::Vector2d(1, 0), {1, 1, 1}));
 }
 
+TEST_F(PlotDrawing, TheLegendGivesWayInALowPicture) {
+  PlotData plot = line({{0, 1}, {1, 8}});
+  for (int i = 0; i < 6; ++i) {
+    plot.series.push_back(plot.series.front());
+    plot.series.back().name = "a long name in the legend " + std::to_string(i);
+  }
+  plot.y.title = "a title that is longer than the axis is high (%)";
+  window_->SetSize(260, 150);
+  view_.show(plot);
+  draw();
+  const auto low = view_.positionOf({0, 0}), high = view_.positionOf({0, 1});
+  ASSERT_TRUE(low && high);
+  EXPECT_GT(low->y() - high->y(), 35);
+}
+
 TEST_F(PlotDrawing, ZoomKeepsTheValueUnderTheMouse) {
   view_.show(line({{0, 1}, {1, 8}, {2, 3}, {3, 5}}));
   draw();

@@ -29,8 +29,9 @@
 namespace glint::viz {
 namespace {
 
-constexpr double kFont = 12, kSmallFont = 11;  // screen px
-constexpr double kLine = 18;                   // height of a line of the header, screen px
+constexpr double kFont = 12, kSmallFont = 11;        // screen px
+constexpr double kLine = 18;                         // height of a line of the header, screen px
+constexpr double kLeastPlot = 100, kLeastDial = 90;  // height that the legend leaves to a plot with its axes, screen px
 constexpr Colour kHalo{0.12, 0.13, 0.15};
 // A dial's circle of zero and how far the largest residual goes from it, in radii of the dial.
 constexpr double kZeroRadius = 0.58, kReachOfDial = 0.36;
@@ -84,6 +85,16 @@ void setPen(vtkPen* pen, const Colour& colour, double width, double opacity = 1)
 void setBrush(vtkContext2D* painter, const Colour& colour, double opacity = 1) {
   painter->GetBrush()->SetColorF(colour[0], colour[1], colour[2]);
   painter->GetBrush()->SetOpacityF(opacity);
+}
+
+/// The title of an axis, where that is too long without its unit, or else the unit alone, or nothing.
+std::string fitting(const std::string& title, const std::function<bool(const std::string&)>& fits) {
+  if (fits(title)) return title;
+  const std::size_t unit = title.find(" (");
+  if (unit == std::string::npos) return {};
+  for (const std::string& part : {title.substr(0, unit), title.substr(unit + 1)})
+    if (fits(part)) return part;
+  return {};
 }
 
 /// "a long sentence" in lines of at most `letters`.
@@ -300,7 +311,7 @@ void PlotView::Impl::styleAxes() {
   chart->SetHiddenAxisBorder(int(px(10)));
 }
 
-/// Title and legend at the top. Returns their height.
+/// Title and legend at the top. Returns their height. In a low picture the legend ends early, with dots.
 double PlotView::Impl::header(vtkContext2D* painter, bool draw) {
   const double width = actor->GetScene()->GetSceneWidth(), lineHeight = px(kLine), margin = px(8);
   double y = actor->GetScene()->GetSceneHeight() - 0.5 * lineHeight - px(2), x = margin;
@@ -313,10 +324,17 @@ double PlotView::Impl::header(vtkContext2D* painter, bool draw) {
   if (draw) painter->DrawString(float(x), float(y), plot.title);
   x += widthOf(plot.title) + px(18);
   setPainterText(painter, px(kSmallFont), text());
+  const double lowest = px(plot.dial ? kLeastDial : kLeastPlot) + 0.5 * lineHeight;
   for (const PlotSeries& series : plot.series) {
     if (!series.inLegend || isEmpty()) continue;
     const double swatch = px(18), needed = swatch + px(5) + widthOf(series.name) + px(14);
-    if (x + needed > width - margin && x > margin) x = margin, y -= lineHeight;
+    if (x + needed > width - margin && x > margin) {
+      if (y - lineHeight < lowest) {
+        if (draw) painter->DrawString(float(std::min(x, width - margin - widthOf("\u2026"))), float(y), "\u2026");
+        break;
+      }
+      x = margin, y -= lineHeight;
+    }
     if (draw) {
       const bool line = series.shape == PlotShape::Line || series.shape == PlotShape::LineAndPoints;
       for (const bool halo : {true, false}) {
@@ -370,6 +388,14 @@ void PlotView::Impl::layout(vtkContext2D* painter) {
       labels->InsertNextValue(label);
     }
     axis->SetCustomTickPositions(positions, labels);
+    // VTK centres the title on the axis, which leaves room for what is written beside it on one side only.
+    const double room = k == 0 ? width - px(60) : height - head - px(35);
+    setPainterText(painter, px(kFont), faded());
+    axis->SetTitle(fitting(k == 0 ? plot.x.title : plot.y.title, [&](const std::string& s) {
+      float box[4];
+      painter->ComputeStringBounds(s, box);
+      return double(box[2]) <= room;
+    }));
   }
 }
 

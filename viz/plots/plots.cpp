@@ -86,7 +86,8 @@ const std::vector<PlotKind>& plotKinds() {
       {"singular", "Singular values",
        "Of the linear system for Q*: a small last one beside a large second last one is a well-determined ellipsoid."},
       {"influence", "Which view matters",
-       "Every training frame left out once: how much worse the held-out frames are predicted without it."},
+       "Every training frame left out once: how much worse the held-out frames are predicted without it. "
+       "An error counts at most 100 %."},
       {"tradeoff", "Speed and accuracy", "Error over time per frame of every measured setting. A click loads the setting."}};
   return all;
 }
@@ -256,7 +257,7 @@ PlotData lobePlot(const FrameSamples& samples, int highlight) {
     }
     plot.series.push_back(std::move(curve));
   };
-  if (s.fit) addCurve(text("fitted lobe, m = %.4g", s.fit->m), s.fit->m, kFittedLobe, Dash::Solid);
+  if (s.fit) addCurve(text("fitted lobe, m = %.4g, rms %.2g", s.fit->m, s.fit->rms), s.fit->m, kFittedLobe, Dash::Solid);
   if (lobe->roughness)
     addCurve(samples.model + text(", m = %.4g", *lobe->roughness), *lobe->roughness, modelColour(samples.model), Dash::Dashed);
   if (lobe->level > 0 && lobe->level < 1) {
@@ -277,7 +278,6 @@ PlotData lobePlot(const FrameSamples& samples, int highlight) {
     plot.series.push_back(std::move(level));
   }
   plot.x.from = 0;
-  if (s.fit) plot.title += text("   m = %.4g, rms %.2g", s.fit->m, s.fit->rms);
   if (!s.fit && s.fitFailure) plot.title += "   no lobe fits: " + s.fitFailure->message();
   if (s.clipped > 0) plot.title += text("   %d clipped pixels left out", s.clipped);
   return plot;
@@ -543,7 +543,7 @@ PlotData influencePlot(const Inspection& inspection, const Influence& influence,
   const bool probes = !influence.probes.empty();
   plot.title = probes ? "Held-out error without a frame" : "Error of a frame predicted from the others";
   plot.x.title = "frame left out";
-  plot.y.title = probes ? "change of the error, at most 100 % (%)" : "contour error, at most 100 % (%)";
+  plot.y.title = probes ? "change of the error (%)" : "contour error (%)";
   std::vector<std::string> models;
   for (const std::string& m : modelsInOrder(inspection))
     if (model.empty() || m == model) models.push_back(m);
