@@ -198,6 +198,7 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
   rows->addWidget(pair_);
   switches_ = new PanelScroll(content, {150, 30}, PanelScroll::Height::Hugs);
   column->addWidget(switches_);
+  column->addWidget(pair_->sentence());
 }
 
 void FramePanel::resizeEvent(QResizeEvent* e) {

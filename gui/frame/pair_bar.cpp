@@ -67,7 +67,10 @@ PairBar::PairBar(Document& document, QWidget* parent) : QWidget(parent), documen
   miss_ = new QLabel;
   miss_->setObjectName(QStringLiteral("epipolarMiss"));
   miss_->setTextInteractionFlags(Qt::TextSelectableByMouse);
-  row->addWidget(miss_);
+  miss_->setWordWrap(true);
+  miss_->setContentsMargins(8, 0, 4, 2);
+  miss_->setParent(this);
+  miss_->hide();
   connect(&document_, &Document::optionsChanged, this, &PairBar::refresh);
   connect(&document_, &Document::selectionChanged, this, &PairBar::refresh);
   connect(&document_, &Document::sceneOpened, this, [this] {
@@ -103,6 +106,7 @@ void PairBar::swap() {
 
 void PairBar::refresh() {
   setVisible(on() && document_.scene());
+  miss_->setVisible(on() && document_.scene() && !miss_->text().isEmpty());
   if (toggle_) toggle_->setChecked(on());
   const QSignalBlocker a(second_), b(lines_), c(ellipse_);
   second_->setCurrentIndex(secondFrame());
@@ -112,6 +116,7 @@ void PairBar::refresh() {
 
 void PairBar::addLines(viz::FrameOverlay& first, viz::FrameOverlay& second) {
   miss_->clear();
+  miss_->hide();
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
   const std::string lines = document_.option(kLines, std::string("both"));
   if (!inspection || lines == "off") return;
@@ -120,7 +125,7 @@ void PairBar::addLines(viz::FrameOverlay& first, viz::FrameOverlay& second) {
   request.highlight = document_.selection().highlight;
   request.ellipse = document_.option(kEllipse, std::string("observed")) == "canonical" ? viz::PairEllipse::Canonical
                                                                                        : viz::PairEllipse::Observed;
-  QStringList said;
+  QStringList said, reasons;
   for (const auto& [name, title, cameras, colour] :
        {std::tuple("real", tr("real cameras"), viz::PairCameras::Real, viz::kRealEpipolar),
         std::tuple("virtual", tr("virtual cameras"), viz::PairCameras::Virtual, viz::kVirtualCamera)}) {
@@ -131,14 +136,18 @@ void PairBar::addLines(viz::FrameOverlay& first, viz::FrameOverlay& second) {
     first.marks.insert(first.marks.end(), picture.frames[0].marks.begin(), picture.frames[0].marks.end());
     second.lines.insert(second.lines.end(), picture.frames[1].lines.begin(), picture.frames[1].lines.end());
     second.marks.insert(second.marks.end(), picture.frames[1].marks.begin(), picture.frames[1].marks.end());
+    // Of a failure its name; the tool tip says the rest.
     const QString what = picture.tangents ? tr("miss by %1 px").arg(picture.tangents->rmsPx(), 0, 'f', 2)
-                                          : toQString(picture.failure->message()).toHtmlEscaped();
+                                          : QString(QLatin1String(nameOf(picture.failure->reason)));
+    if (!picture.tangents) reasons << title + QStringLiteral(": ") + toQString(picture.failure->message());
     said << QStringLiteral("<span style='color:%1'>■</span> %2 %3").arg(toQColor(colour).name(), title, what);
   }
   miss_->setText(said.join(QStringLiteral("&nbsp;&nbsp; ")));
-  miss_->setToolTip(
-      tr("By how much the tangents carried over from the other image (dashed) miss the ellipse, rms. "
-         "An ellipsoid that has both ellipses as outlines would make it 0."));
+  reasons << tr(
+      "By how much the tangents carried over from the other image (dashed) miss the ellipse, rms. "
+      "An ellipsoid that has both ellipses as outlines would make it 0.");
+  miss_->setToolTip(reasons.join(QStringLiteral("\n")));
+  miss_->setVisible(on());
 }
 
 void PairBar::addActions(Actions& actions, QMenu* menu) {

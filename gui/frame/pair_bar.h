@@ -23,8 +23,10 @@ class PairBar : public QWidget {
 
   bool on() const;
   int secondFrame() const;
-  /// Adds the lines to both overlays and says below what they miss by.
+  /// Adds the lines to both overlays and says what they miss by.
   void addLines(viz::FrameOverlay& first, viz::FrameOverlay& second);
+  /// What the lines miss by; whoever owns the bar places it where it does not scroll. Hidden without lines.
+  QLabel* sentence() const { return miss_; }
 
  private:
   void refresh();

@@ -242,8 +242,10 @@ class FrameViewTest : public QObject {
     settle();
     QVERIFY(frame_->secondCanvas()->isVisible());
     QVERIFY(frame_->secondCanvas()->hasPicture());
-    // The stand-in fits no ellipses: the reason is said in the place of the number.
-    QVERIFY(frame_->findChild<QLabel*>(QStringLiteral("epipolarMiss"))->text().contains(QStringLiteral("no ellipse")));
+    // The stand-in fits no ellipses: the reason's name is said in the place of the number, and all of it by the tool tip.
+    const auto* miss = frame_->findChild<QLabel*>(QStringLiteral("epipolarMiss"));
+    QVERIFY(miss->text().contains(QStringLiteral("too few points")));
+    QVERIFY(miss->toolTip().contains(QStringLiteral("no ellipse")));
     document_->setOption("frame/second", 7.0, QString());
     settle();
     // Frame 7's photograph has red 45 (fixture).

@@ -2,6 +2,7 @@
 // The window in all sizes, at 100 and at 200 %.
 #include <QAction>
 #include <QDockWidget>
+#include <QLabel>
 #include <QRegularExpression>
 #include <QScreen>
 #include <QScrollArea>
@@ -161,6 +162,11 @@ class WindowSizeTest : public QObject, WindowFixture {
       QTRY_VERIFY2(part->verticalScrollBar()->isVisible(), qPrintable(QString::number(part->height())));  // it needs more
       QVERIFY2(part->height() <= 0.29 * panel->height(), qPrintable(QString::number(part->height())));
     }
+    // The switches scroll; what the epipolar lines miss by is said below them.
+    const auto* miss = panel->findChild<QLabel*>(QStringLiteral("epipolarMiss"));
+    QVERIFY(!miss->text().isEmpty());
+    QCOMPARE(miss->visibleRegion().boundingRect(), miss->rect());
+    QVERIFY(miss->height() >= miss->heightForWidth(miss->width()));
   }
 
  private:
