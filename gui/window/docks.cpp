@@ -15,7 +15,7 @@
 namespace glint::gui {
 
 namespace {
-constexpr int kNarrow = 1100, kLow = 680;  // below these, px, columns of docks would leave the views too little
+constexpr int kNarrow = 1100, kLow = 740;  // below these, px, columns of docks would leave the views too little
 constexpr QSize kLeastContent(150, 80);
 }  // namespace
 
