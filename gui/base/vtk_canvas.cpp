@@ -100,6 +100,10 @@ void VtkCanvas::resizeEvent(QResizeEvent*) { fitWindow(); }
 
 bool VtkCanvas::upToDate() const { return drawnFor_ == size() && drawnRatio_ == devicePixelRatioF(); }
 
+void VtkCanvas::renderNow() {
+  if (prepare()) window_->Render();
+}
+
 void VtkCanvas::drawNext() {
   if (!isVisible()) return;
   if (!ready()) {

@@ -31,6 +31,8 @@ class VtkCanvas : public QWidget {
   vtkGenericOpenGLRenderWindow* renderWindow() const { return window_; }
   /// It has an OpenGL context; not before it was first shown, and nowhere without OpenGL.
   bool ready() const { return adapter_ != nullptr; }
+  /// Draws at once, also before the first turn; for who needs the picture or its coordinates now.
+  void renderNow();
   /// False: texts are not scaled with the device's pixel ratio. Before the first picture.
   void setTextScaled(bool scaled) { textScaled_ = scaled; }
 

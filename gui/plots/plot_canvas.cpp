@@ -45,7 +45,7 @@ viz::PlotStyle PlotCanvas::style() const { return {currentTheme() == Theme::Dark
 
 void PlotCanvas::renderNow() {
   view_->setStyle(style());
-  widget_->renderWindow()->Render();
+  widget_->renderNow();
 }
 
 void PlotCanvas::scheduleRender() {

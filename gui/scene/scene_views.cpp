@@ -256,7 +256,7 @@ void SceneViews::renderNow() {
   allPhotographs_ = true;
   if (!toLoad_.empty())
     for (auto& view : views_) view->photographsArrived();
-  widget_->renderWindow()->Render();
+  widget_->renderNow();
   allPhotographs_ = false;
 }
 
