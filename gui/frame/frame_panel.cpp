@@ -343,7 +343,7 @@ void FramePanel::showCaptions(const viz::FrameOverlay& overlay) {
   const auto link = [](const QString& target, const QString& colour, const QString& text) {
     return QStringLiteral("<a href='%1' style='color:%2; text-decoration:none'>%3</a>").arg(target, colour, text);
   };
-  QString rows;
+  QString rows, reasons;
   QStringList notes;
   for (const viz::OverlayCaption& c : overlay.captions) {
     if (c.model.empty()) {
@@ -351,7 +351,13 @@ void FramePanel::showCaptions(const viz::FrameOverlay& overlay) {
       continue;
     }
     QStringList said;
-    if (!c.score.reason.empty()) said << toQString(c.score.reason);
+    if (const QString reason = toQString(c.score.reason); !reason.isEmpty()) {
+      // A sentence would wrap in its narrow column and push the next models out of sight: it stands below them.
+      said << reason.section(QStringLiteral(": "), 0, 0);
+      if (reason.contains(QStringLiteral(": ")))
+        reasons += QStringLiteral("<div style='color:%1'>%2</div>")
+                       .arg(warning, (toQString(c.model) + QStringLiteral(": ") + reason).toHtmlEscaped());
+    }
     if (c.score.missed > 0 && c.score.reason.empty()) said << tr("%1 missed").arg(c.score.missed);
     if (c.score.spurious > 0) said << tr("%1 spurious").arg(c.score.spurious);
     const bool any = c.score.matched > 0, selected = document_.selection().model == c.model;
@@ -365,14 +371,15 @@ void FramePanel::showCaptions(const viz::FrameOverlay& overlay) {
                       selected ? QStringLiteral("<b>%1</b>").arg(model) : model),
              "left") +
         number(c.score.errorPct, 2) + number(c.score.errorPx, 2) + number(any ? c.score.iou : std::nullopt, 3) +
-        QStringLiteral("<td style='color:%1'>%2</td></tr>").arg(warning, said.join(QStringLiteral(", ")).toHtmlEscaped());
+        QStringLiteral("<td style='color:%1; white-space:nowrap'>%2</td></tr>")
+            .arg(warning, said.join(QStringLiteral(", ")).toHtmlEscaped());
   }
   QString html;
   for (const QString& note : notes) html += QStringLiteral("<div style='color:%1'>%2</div>").arg(warning, note);
   if (!rows.isEmpty())
     html += QStringLiteral("<table cellspacing='0' cellpadding='0'><tr style='color:%1'>").arg(faded) +
             cell(tr("this frame"), "left") + cell(tr("error %")) + cell(tr("px")) + cell(tr("IoU")) +
-            QStringLiteral("<td></td></tr>") + rows + QStringLiteral("</table>");
+            QStringLiteral("<td></td></tr>") + rows + QStringLiteral("</table>") + reasons;
   if (overlay.captions.size() != captionCount_) captions_->setMinimumHeight(0);
   captionCount_ = overlay.captions.size();
   captions_->setText(html);

@@ -21,7 +21,10 @@ MessageBar::MessageBar(QWidget* parent) : QWidget(parent), row_(new QHBoxLayout(
   close->setText(QStringLiteral("×"));
   close->setAutoRaise(true);
   close->setToolTip(tr("Close"));
-  connect(close, &QToolButton::clicked, this, &QWidget::hide);
+  connect(close, &QToolButton::clicked, this, [this] {
+    closeLine();
+    if (offer_) showOffer(offer_->first, Answers(offer_->second));
+  });
   row_->addWidget(close, 0, Qt::AlignTop);
   hide();
 }
@@ -31,6 +34,13 @@ void MessageBar::showError(const QString& oneLine, const Answers& answers) {
 }
 void MessageBar::showOffer(const QString& oneLine, const Answers& answers) {
   showLine(oneLine, QColor(0x24, 0x4f, 0x7a), answers);
+  offer_ = {oneLine, answers};
+  offerShown_ = true;
+}
+
+void MessageBar::closeLine() {
+  hide();
+  if (std::exchange(offerShown_, false)) offer_.reset();
 }
 
 void MessageBar::showNotice(const QString& oneLine) {
@@ -39,7 +49,7 @@ void MessageBar::showNotice(const QString& oneLine) {
 }
 
 void MessageBar::showLine(const QString& oneLine, const QColor& background, const Answers& answers) {
-  notice_ = false;
+  notice_ = offerShown_ = false;
   QPalette p = palette();
   p.setColor(QPalette::Window, background);
   p.setColor(QPalette::WindowText, Qt::white);
@@ -51,8 +61,9 @@ void MessageBar::showLine(const QString& oneLine, const QColor& background, cons
   for (const auto& [title, run] : answers) {
     auto* button = new QPushButton(title);
     connect(button, &QPushButton::clicked, this, [this, run = run] {
-      hide();
+      closeLine();
       run();
+      if (isHidden() && offer_) showOffer(offer_->first, Answers(offer_->second));
     });
     row_->insertWidget(row_->count() - 1, button);
     buttons_.append(button);

@@ -5,6 +5,7 @@
 #include <QString>
 #include <QWidget>
 #include <functional>
+#include <optional>
 #include <utility>
 
 class QHBoxLayout;
@@ -22,7 +23,7 @@ class MessageBar : public QWidget {
 
   explicit MessageBar(QWidget* parent = nullptr);
   void showError(const QString& oneLine, const Answers& answers = {});
-  /// Not an error: something to be decided.
+  /// Not an error: something to be decided. What takes its place gives it back when it is closed or answered.
   void showOffer(const QString& oneLine, const Answers& answers);
   /// Worth knowing, asks for nothing: whatever else is to be said may take its place.
   void showNotice(const QString& oneLine);
@@ -32,11 +33,14 @@ class MessageBar : public QWidget {
 
  private:
   void showLine(const QString& oneLine, const QColor& background, const Answers& answers);
+  void closeLine();  ///< by the user, or with an answer
 
   QHBoxLayout* row_;
   QLabel* label_;
   QList<QWidget*> buttons_;
   bool notice_ = false;
+  std::optional<std::pair<QString, Answers>> offer_;  ///< that nobody has answered or closed
+  bool offerShown_ = false;
 };
 
 }  // namespace glint::gui

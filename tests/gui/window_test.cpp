@@ -337,6 +337,64 @@ class WindowTest : public QObject, WindowFixture {
     QVERIFY(box->isEnabled() && !hint->isVisibleTo(&window));
   }
 
+  /// An error that comes while something is offered (to recover what was lost) does not take the offer away.
+  void anOfferComesBackAfterAnError() {
+    MessageBar bar;
+    bar.show();
+    int taken = 0;
+    const auto close = [&] {
+      for (QToolButton* button : bar.findChildren<QToolButton*>())
+        if (button->toolTip() == QStringLiteral("Close")) button->click();
+    };
+    const auto press = [&](const char* title) {
+      QCoreApplication::sendPostedEvents(nullptr, QEvent::DeferredDelete);  // the buttons of before
+      for (QPushButton* button : bar.findChildren<QPushButton*>())
+        if (button->text() == QLatin1String(title)) return button->click();
+      QFAIL(title);
+    };
+    const auto offer = [&] { bar.showOffer(QStringLiteral("offer"), {{QStringLiteral("Take"), [&] { ++taken; }}}); };
+    offer();
+    bar.showError(QStringLiteral("first"));
+    bar.showError(QStringLiteral("second"), {{QStringLiteral("Locate"), [] {}}});
+    press("Locate");
+    QVERIFY(!bar.isHidden());
+    QCOMPARE(bar.text(), QStringLiteral("offer"));
+    bar.showError(QStringLiteral("third"));
+    close();
+    QCOMPARE(bar.text(), QStringLiteral("offer"));
+    press("Take");
+    QVERIFY(bar.isHidden() && taken == 1);
+    bar.showError(QStringLiteral("fourth"));
+    close();
+    QVERIFY(bar.isHidden());  // taken once, offered once
+    offer();
+    close();
+    bar.showError(QStringLiteral("fifth"), {{QStringLiteral("Again"), [&] { bar.showError(QStringLiteral("sixth")); }}});
+    press("Again");
+    QCOMPARE(bar.text(), QStringLiteral("sixth"));
+    close();
+    QVERIFY(bar.isHidden());
+  }
+
+  /// A reason in the narrow column of the table wrapped there, and pushed the models below it out of sight.
+  void reasonsStandBelowTheModels() {
+    MainWindow window(fixture_.engine());
+    show(window);
+    openAndWait(window);
+    const int frame = window.document().frameCount() - 1;  // whose predictions fail
+    window.document().selectFrame(frame);
+    const auto* label = window.findChild<QLabel*>(QStringLiteral("frameCaptions"));
+    int reasons = 0;
+    for (const viz::OverlayCaption& c : viz::frameOverlay(*window.document().inspection(), frame, {}).captions) {
+      const QString sentence = toQString(c.score.reason).section(QStringLiteral(": "), 1);
+      if (c.model.empty() || sentence.isEmpty()) continue;
+      ++reasons;
+      QTRY_VERIFY(label->text().contains(sentence.toHtmlEscaped()));
+      QVERIFY(label->text().indexOf(sentence.toHtmlEscaped()) > label->text().lastIndexOf(QStringLiteral("</table>")));
+    }
+    QVERIFY(reasons > 0);
+  }
+
   /// Texts that hold colours of the theme follow it; else they would be light on light until the next result.
   void aChangeOfThemeReachesTextsWithColours() {
     MainWindow window(fixture_.engine());
