@@ -118,7 +118,9 @@ void VtkCanvas::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   fitWindow();
   // What is grabbed is wanted now; the screen has time, and other views want to draw as well.
-  const bool onScreen = backingStore() && painter.paintEngine()->paintDevice() == backingStore()->paintDevice();
+  // A store that was never painted into has no device: Qt reads it all the same where the screen is scaled.
+  QBackingStore* store = backingStore();
+  const bool onScreen = store && !store->size().isEmpty() && painter.paintEngine()->paintDevice() == store->paintDevice();
   if (onScreen && !failed_ && !upToDate()) {
     drawInTurn(this, [this] { drawNext(); });
   } else if (prepare() && !upToDate()) {

@@ -26,6 +26,8 @@
 #include <numbers>
 #include <vector>
 
+#include "viz/plots/painting.h"
+
 namespace glint::viz {
 namespace {
 
@@ -51,67 +53,6 @@ class PaintItem : public vtkContextItem {
   PaintItem() = default;
 };
 vtkStandardNewMacro(PaintItem)
-
-    void setText(vtkTextProperty* text, double size, const Colour& colour, bool bold = false) {
-  if (!fontFile().empty()) {
-    text->SetFontFamily(VTK_FONT_FILE);
-    text->SetFontFile(fontFile().c_str());
-  }
-  text->SetFontSize(std::max(1, int(std::lround(size))));
-  text->SetColor(colour[0], colour[1], colour[2]);
-  text->SetBold(bold);
-}
-
-/// For the painter's own strings; an axis places its labels itself.
-void setPainterText(vtkContext2D* painter, double size, const Colour& colour, bool bold = false) {
-  vtkTextProperty* text = painter->GetTextProp();
-  setText(text, size, colour, bold);
-  text->SetOrientation(0);
-  text->SetJustificationToLeft();
-  text->SetVerticalJustificationToCentered();
-}
-
-int lineType(Dash dash) {
-  return dash == Dash::Dashed ? vtkPen::DASH_LINE : dash == Dash::Dotted ? vtkPen::DOT_LINE : vtkPen::SOLID_LINE;
-}
-
-void setPen(vtkPen* pen, const Colour& colour, double width, double opacity = 1) {
-  pen->SetColorF(colour[0], colour[1], colour[2]);
-  pen->SetOpacityF(opacity);
-  pen->SetWidth(float(width));
-  pen->SetLineType(width > 0 ? vtkPen::SOLID_LINE : vtkPen::NO_PEN);
-}
-
-void setBrush(vtkContext2D* painter, const Colour& colour, double opacity = 1) {
-  painter->GetBrush()->SetColorF(colour[0], colour[1], colour[2]);
-  painter->GetBrush()->SetOpacityF(opacity);
-}
-
-/// The title of an axis, where that is too long without its unit, or else the unit alone, or nothing.
-std::string fitting(const std::string& title, const std::function<bool(const std::string&)>& fits) {
-  if (fits(title)) return title;
-  const std::size_t unit = title.find(" (");
-  if (unit == std::string::npos) return {};
-  for (const std::string& part : {title.substr(0, unit), title.substr(unit + 1)})
-    if (fits(part)) return part;
-  return {};
-}
-
-/// "a long sentence" in lines of at most `letters`.
-std::string wrapped(const std::string& sentence, int letters) {
-  std::string out;
-  int used = 0;
-  for (std::size_t i = 0; i < sentence.size();) {
-    const std::size_t end = std::min(sentence.find(' ', i), sentence.size());
-    const int word = int(end - i);
-    if (used > 0 && used + 1 + word > letters) out += '\n', used = 0;
-    if (used > 0) out += ' ', ++used;
-    out += sentence.substr(i, end - i);
-    used += word;
-    i = end + 1;
-  }
-  return out;
-}
 
 }  // namespace
 
