@@ -6,13 +6,16 @@
 
 A million triangles, 100 cameras, a preset that `glint tradeoff` measures first (about two minutes), software rendering on a virtual
 display (xvfb-run). Every slider is moved ten times a second whether the window keeps up or not, and a wait counts from the movement to the end
-of the event that painted the first overlay for that position or a later one. --page writes the table into the page.
+of the event that painted the first overlay for that position or a later one: the observed contour where the slider changes what is
+observed, else those of the models, whose wait stands beside it. Then a test tells for how long the interface stood still (STANDSTILLS),
+several times over. --page writes the tables into the page.
 """
 import argparse
 import json
 import os
 import pathlib
 import re
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -23,6 +26,11 @@ SLIDERS = [("predict.directions", "prediction"), ("predict.walk_tolerance", "pre
            ("detect.level", "detection in every frame")]
 SEMI_AXES = [0.6, 0.35, 0.25]
 PRESETS = ["fast", "balanced"]
+STANDSTILLS = {"opening": r"opening: .* at most (\d+) ms", "computing": r"computing: .* at most (\d+) ms",
+               "first results": r"showing the first results: at most (\d+) ms", "another frame": r"another frame: at most (\d+) ms",
+               "from *Stop* to the end of the run": r"stopped (?:while \w+ )?after (\d+) ms"}
+STANDSTILL_TEST = ["session", "stopAndInterfaceOnAWholeSequence"]
+RUNS = 5
 BEGIN, END = "<!-- waits begin -->", "<!-- waits end -->"
 
 
@@ -50,21 +58,38 @@ def make_sessions(glint, folder, frames):
                        stdout=subprocess.DEVNULL)
 
 
+def on_display(command, scratch):
+    environment = dict(os.environ, QT_QPA_PLATFORM="xcb", LIBGL_ALWAYS_SOFTWARE="1", XDG_DATA_HOME=scratch, XDG_CONFIG_HOME=scratch)
+    command = ["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24", *(str(c) for c in command)]
+    done = subprocess.run(command, capture_output=True, text=True, env=environment)
+    if done.returncode:
+        sys.exit(done.stderr.strip() or done.stdout.strip())
+    return done
+
+
+def standstills(args, scratch):
+    found = {what: [] for what in STANDSTILLS}
+    for _ in range(RUNS):
+        done = on_display([args.build / "bin/test_gui", *STANDSTILL_TEST], scratch)
+        for what, pattern in STANDSTILLS.items():
+            found[what].append(max(int(ms) for ms in re.findall(pattern, done.stdout + done.stderr)))
+    lines = [f"| {RUNS} runs on 60 rendered frames | median ms | most ms |", "|---|---|---|"]
+    lines += [f"| {what} | {statistics.median(ms):.0f} | {max(ms)} |" for what, ms in found.items()]
+    return "\n".join(lines)
+
+
 def measured(args, session, preset, scratch):
     models = ", ".join(json.loads(session.read_text())["request"]["models"])
-    environment = dict(os.environ, QT_QPA_PLATFORM="xcb", LIBGL_ALWAYS_SOFTWARE="1", XDG_DATA_HOME=scratch, XDG_CONFIG_HOME=scratch)
-    command = ["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24", args.build / "bin/bench_inspector", session, str(args.events),
-               *(f"slider:{name}" for name, _ in SLIDERS)]
-    done = subprocess.run([str(c) for c in command], capture_output=True, text=True, env=environment)
-    if done.returncode:
-        sys.exit(done.stderr.strip())
-    result = json.loads(done.stdout)
+    result = json.loads(on_display([args.build / "bin/bench_inspector", session, args.events, *(f"slider:{name}" for name, _ in SLIDERS)],
+                                   scratch).stdout)
     lines = [f"Preset `{preset}` ({models}): from the start to the first photograph {result['first_photograph_ms']:.0f} ms, to the "
              f"first overlay {result['first_overlay_ms']:.0f} ms, to everything {result['everything_ms']:.0f} ms.", "",
-             "| slider | what it computes again | positions | median ms | 95 % ms | most ms |", "|---|---|---|---|---|---|"]
+             "| slider | what it computes again | positions | first overlay: median ms | 95 % ms | most ms | every model: median ms | 95 % ms |",
+             "|---|---|---|---|---|---|---|---|"]
     for name, what in SLIDERS:
         s = result["sliders"][f"slider:{name}"]
-        lines.append(f"| `{name}` | {what} | {s['answered']} | {s['median_ms']:.0f} | {s['p95_ms']:.0f} | {s['max_ms']:.0f} |")
+        lines.append(f"| `{name}` | {what} | {s['answered']} | {s['median_ms']:.0f} | {s['p95_ms']:.0f} | {s['max_ms']:.0f} | "
+                     f"{s['all_median_ms']:.0f} | {s['all_p95_ms']:.0f} |")
     return "\n".join(lines)
 
 
@@ -82,6 +107,7 @@ def main():
         if not (folder / f"{PRESETS[-1]}.glint").exists():
             make_sessions(args.build / "bin/glint", folder, args.frames)
         table = "\n\n".join(measured(args, folder / f"{preset}.glint", preset, scratch) for preset in PRESETS)
+        table += ("\n\nFor how long nothing else could happen in the interface:\n\n" + standstills(args, scratch))
     print(table)
     if args.page:
         text = args.page.read_text()

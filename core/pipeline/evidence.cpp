@@ -153,6 +153,25 @@ Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene
   return truth;
 }
 
+FrameEvidence evidenceFor(const Scene& scene, int frame, const InspectionRequest& request) {
+  const Frame& f = scene.frames[static_cast<std::size_t>(frame)];
+  FrameEvidence evidence;
+  if (request.whatIf.synthesise && f.highlights.empty()) {
+    evidence.frame = frame;
+    evidence.failure = Failure{Reason::NoHighlight, "no light makes one in frame " + f.id};
+    return evidence;
+  }
+  evidence = gatherEvidence(scene, frame, request.source, request.settings);
+  if (request.truthFolder.empty()) return evidence;
+  evidence.againstTruth = true;
+  Outcome<std::vector<Highlight>> truth = readTruth(request.truthFolder, scene, frame, request.settings.number("detect.level"));
+  if (truth)
+    evidence.truth = std::move(*truth);
+  else
+    evidence.truthFailure = truth.failure();
+  return evidence;
+}
+
 Highlight withNoise(const Highlight& highlight, double sigma, unsigned seed, int frame, int index) {
   if (!(sigma > 0) || highlight.contour.points.size() < 3) return highlight;
   std::seed_seq sequence{seed, static_cast<unsigned>(frame), static_cast<unsigned>(index)};

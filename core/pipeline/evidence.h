@@ -19,6 +19,11 @@ struct SeparateLights {
 /// several lights). The light is set where the frame says which one is on (one light: its id; none stated: "light").
 FrameEvidence gatherEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings, const SeparateLights& lights = {});
 
+/// Evidence of one frame as a request asks for it, with truth where it names a folder, but without the user's changes to single
+/// highlights.
+/// @param scene  with the request's what-if
+FrameEvidence evidenceFor(const Scene& scene, int frame, const InspectionRequest& request);
+
 /// Contours stored as in data/cycles/*/contours (FOLDER/ID.json) at `level`, for scoring. FrameUnreadable when the frame has no
 /// file. InputError when a file does not parse, does not hold the level or has a contour without area.
 Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene& scene, int frame, double level);

@@ -2,9 +2,6 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cstdio>
-#include <functional>
-#include <set>
 
 #include "core/base/parallel.h"
 #include "core/pipeline/comparison.h"
@@ -12,6 +9,7 @@
 #include "core/pipeline/evidence.h"
 #include "core/pipeline/inspection.h"
 #include "core/pipeline/several_lights.h"
+#include "core/pipeline/stage_keys.h"
 #include "core/pipeline/training.h"
 #include "core/surface/mesh_policy.h"
 
@@ -20,26 +18,6 @@ namespace {
 
 double microsecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
-}
-
-std::string exactText(double v) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.17g", v);
-  return buffer;
-}
-
-/// Text that is equal when every input of a stage is: the values of all settings of the named stages, and `more`.
-std::string keyOfStages(const Settings& settings, const std::set<std::string>& stages, const std::string& more) {
-  std::string key = more;
-  for (const auto& [name, value] : settings.values()) {
-    if (!stages.count(paramSpec(name).stage)) continue;
-    key += "|" + name + "=";
-    if (const auto* text = std::get_if<std::string>(&value)) key += *text;
-    else if (const auto* number = std::get_if<double>(&value)) key += exactText(*number);
-    else if (const auto* whole = std::get_if<int>(&value)) key += std::to_string(*whole);
-    else key += std::get<bool>(value) ? "true" : "false";
-  }
-  return key;
 }
 
 std::string join(const std::vector<int>& numbers) {
@@ -130,8 +108,7 @@ class Run {
 
   void gather(const std::vector<int>& frames);
   std::vector<int> framesToGather() const;
-  /// Which light a highlight is of is found out from all frames together; what is synthesised knows it.
-  bool lightsAreOpen() const { return !r_.request.whatIf.synthesise && lightsNeedAllFrames(*r_.scene); }
+  bool lightsAreOpen() const { return lightsAreOpenIn(*r_.scene, r_.request); }
 
   Inspection& r_;
   CorrectedDepthMaps corrected_;
@@ -142,12 +119,8 @@ class Run {
 
 void Run::highlights() {
   const InspectionRequest& q = r_.request;
-  // The assignment of several lights reflects rays on the surface: its normals matter then.
   const bool together = lightsAreOpen();
-  r_.stageKeys["detect"] =
-      keyOfStages(q.settings, together ? std::set<std::string>{"detect", "surface"} : std::set<std::string>{"detect"},
-                  (q.source == FrameSource::Image ? "image|" : "radiance|") + q.truthFolder + "|" + synthesisKey(q.whatIf) +
-                      (together ? posesKey(q.whatIf) : ""));
+  r_.stageKeys["detect"] = detectKey(q, together);
   if (unchanged("detect")) {
     r_.evidence = previous_->evidence;
     for (const auto& [frame, before] : previous_->evidenceBefore) r_.evidence[std::size_t(frame)] = before;
@@ -183,19 +156,7 @@ void Run::gather(const std::vector<int>& frames) {
       [&](int n) {
         const int i = frames[n];
         const Held inMemory(held, most);
-        if (q.whatIf.synthesise && scene.frames[i].highlights.empty()) {
-          r_.evidence[i].frame = i;
-          r_.evidence[i].failure = Failure{Reason::NoHighlight, "no light makes one in frame " + scene.frames[i].id};
-          return;
-        }
-        r_.evidence[i] = gatherEvidence(scene, i, q.source, q.settings);
-        if (q.truthFolder.empty()) return;
-        r_.evidence[i].againstTruth = true;
-        Outcome<std::vector<Highlight>> truth = readTruth(q.truthFolder, scene, i, q.settings.number("detect.level"));
-        if (truth)
-          r_.evidence[i].truth = std::move(*truth);
-        else
-          r_.evidence[i].truthFailure = truth.failure();
+        r_.evidence[i] = evidenceFor(scene, i, q);
       },
       progress_, "detect");
   r_.work.framesHeldAtOnce = most;

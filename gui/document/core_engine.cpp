@@ -19,6 +19,9 @@ Engine coreEngine() {
                               const ProgressFn& progress, const Inspection* previous) {
     return inspectOneFrame(std::move(scene), request, frame, progress, previous);
   };
+  engine.observeFrame = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
+                           const ProgressFn& progress,
+                           const Inspection* known) { return observeFrame(std::move(scene), request, frame, progress, known); };
   engine.choose = [](std::shared_ptr<const Scene> scene, InspectionRequest request, std::optional<double> goodEnoughPct,
                      const ProgressFn& progress, const Inspection* previous) {
     request.models.clear();                   // evidence and views alone

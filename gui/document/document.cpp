@@ -54,6 +54,7 @@ void Document::setInspection(std::shared_ptr<const Inspection> inspection, const
   if (!inspection || inspection->given != scene_) return;  // a late result of a scene that was closed
   inspection_ = std::move(inspection);
   ahead_.reset();
+  holdAgainstObservation();
   setStale(computedFor != state_.request);
   emit inspectionChanged();
 }
@@ -61,7 +62,31 @@ void Document::setInspection(std::shared_ptr<const Inspection> inspection, const
 void Document::setFrameInspection(std::shared_ptr<const Inspection> inspection, int frame) {
   if (!inspection || inspection->given != scene_ || frame != state_.selection.frame) return;
   ahead_ = std::move(inspection);
+  holdAgainstObservation();
   emit frameInspectionChanged();
+}
+
+void Document::setObservation(std::shared_ptr<const Observation> observation) {
+  if (observation &&
+      (observation->given != scene_ || observation->frame != state_.selection.frame || observation->request != state_.request))
+    return;
+  const bool shown = observed_ != nullptr;
+  observation_ = std::move(observation);
+  holdAgainstObservation();
+  if (shown || observed_) emit frameInspectionChanged();
+}
+
+void Document::holdAgainstObservation() {
+  observed_.reset();
+  const std::shared_ptr<const Inspection> newest = results();
+  if (!observation_ || !newest) return;
+  // Results of an earlier position of the slider come after the observation of a later one: they must not put the contour back.
+  const auto key = newest->stageKeys.find("detect");
+  const bool caughtUp = newest->request == state_.request || (key != newest->stageKeys.end() && key->second == observation_->key);
+  if (caughtUp)
+    observation_.reset();
+  else
+    observed_ = std::make_shared<const Inspection>(heldAgainst(*newest, *observation_));
 }
 
 void Document::setTradeoff(std::shared_ptr<const Tradeoff> tradeoff) {
@@ -108,6 +133,8 @@ void Document::open(const Opened& opened) {
   sessionFile_ = opened.isSession ? inputFile_ : QString();
   inspection_.reset();
   ahead_.reset();
+  observed_.reset();
+  observation_.reset();
   influence_.reset();
   tradeoff_ = savedTradeoff_ = opened.tradeoff;
   unsaved_ = opened.unsaved;
@@ -285,7 +312,11 @@ void Document::apply(const ViewState& state) {
   const bool selection = state.selection != state_.selection;
   const bool layers = state.layers != state_.layers;
   const bool options = state.options != state_.options;
-  if (state.selection.frame != state_.selection.frame) ahead_.reset();
+  if (state.selection.frame != state_.selection.frame) {
+    ahead_.reset();
+    observed_.reset();
+    observation_.reset();
+  }
   state_ = state;
   if (request) {
     updateTraining();

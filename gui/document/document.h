@@ -56,11 +56,16 @@ class Document : public QObject {
   std::shared_ptr<const Inspection> inspection() const { return inspection_; }
   bool stale() const { return stale_; }
   /// Newest results for the selected frame: inspection(), or those that came before it was complete.
-  std::shared_ptr<const Inspection> frameInspection() const { return ahead_ ? ahead_ : inspection_; }
-  /// frameInspection() is not what the request asks for.
+  std::shared_ptr<const Inspection> results() const { return ahead_ ? ahead_ : inspection_; }
+  /// results(), held against what was observed in the frame since then.
+  std::shared_ptr<const Inspection> frameInspection() const { return observed_ ? observed_ : results(); }
+  /// results() are not what the request asks for.
   bool frameStale() const { return stale_ && !(ahead_ && ahead_->request == state_.request); }
   /// Results for one frame while the others' are being computed. Ignored when another frame is selected by now.
   void setFrameInspection(std::shared_ptr<const Inspection> inspection, int frame);
+  /// What the selected frame shows under the request, before there are results for it; null = what results() say. Ignored when it
+  /// is no longer asked for.
+  void setObservation(std::shared_ptr<const Observation> observation);
   void setInspection(std::shared_ptr<const Inspection> inspection, const InspectionRequest& computedFor);
 
   /// Measured speed against accuracy of this scene; null = none. Stored in the session.
@@ -127,6 +132,7 @@ class Document : public QObject {
   void push(ViewState after, const QString& text, const QString& mergeKey = {});
   void apply(const ViewState& state);
   void updateTraining();
+  void holdAgainstObservation();
   void setStale(bool stale);
 
   ParseTrain parseTrain_;
@@ -135,7 +141,8 @@ class Document : public QObject {
   std::set<int> training_;
   QString sessionFile_, inputFile_;
   std::shared_ptr<const Session> session_;
-  std::shared_ptr<const Inspection> inspection_, ahead_;
+  std::shared_ptr<const Inspection> inspection_, ahead_, observed_;
+  std::shared_ptr<const Observation> observation_;  ///< newer than results(); null = none
   std::shared_ptr<const Tradeoff> tradeoff_, savedTradeoff_;
   std::shared_ptr<const Influence> influence_;
   InspectionRequest influenceFor_;

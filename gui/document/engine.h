@@ -9,6 +9,7 @@
 
 #include "core/diagnostics/influence.h"
 #include "core/pipeline/inspection.h"
+#include "core/pipeline/observation.h"
 #include "core/pipeline/selection.h"
 #include "core/scene/relinked.h"
 #include "core/tradeoff/tradeoff.h"
@@ -51,6 +52,10 @@ struct Engine {
   std::function<Inspection(std::shared_ptr<const Scene>, const InspectionRequest&, int frame, const ProgressFn&,
                            const Inspection* previous)>
       inspectOneFrame;
+  /// As glint::observeFrame; may be empty: then what is observed comes with the models.
+  std::function<std::optional<Observation>(std::shared_ptr<const Scene>, const InspectionRequest&, int frame, const ProgressFn&,
+                                           const Inspection* known)>
+      observeFrame;
   /// The automatic choice of the model; throws Stopped and InputError. Needs no fitted model.
   std::function<glint::Selection(std::shared_ptr<const Scene>, const InspectionRequest&, std::optional<double> goodEnoughPct,
                                  const ProgressFn&, const Inspection* previous)>

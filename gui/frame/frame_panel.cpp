@@ -113,7 +113,7 @@ void FramePanel::connectDocument() {
     connect(&document_, signal, this, [this] {
       canvas_->setStale(document_.frameStale());
       if (!document_.frameStale()) canvas_->setHeld({}, {});  // the contour is there now
-      for (PhotoLoader* loader : {&loader_, &secondLoader_}) loader->setInspection(document_.frameInspection());
+      for (PhotoLoader* loader : {&loader_, &secondLoader_}) loader->setInspection(document_.results());
       showOverlay();
       for (FrameCanvas* canvas : {canvas_, second_})
         if (canvas->isVisible()) canvas->repaint();  // what the user tunes for is seen before the other panels follow

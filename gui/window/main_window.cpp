@@ -66,6 +66,7 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
       engine_(std::move(engine)),
       document_(engine_.parseTrain),
       runner_(engine_),
+      observer_(engine_, document_),
       files_(new FileActions(engine_, document_, runner_, this)),
       exports_(new ExportActions(engine_, document_, this)) {
   setAcceptDrops(true);
@@ -438,7 +439,7 @@ bool MainWindow::idle() const { return script_->done() && quiet(); }
 
 bool MainWindow::quiet() const {
   return !runner_.busy() && !frame_->busy() && !timeline_->busy() && !scene_->busy() && plots_->idle() && !explain_->busy() &&
-         !exports_->busy() && !unreadable_->busy() && !drawingsWait();
+         !exports_->busy() && !unreadable_->busy() && !observer_.busy() && !drawingsWait();
 }
 
 QPixmap MainWindow::picture() {

@@ -6,6 +6,7 @@
 #include "gui/base/actions.h"
 #include "gui/base/theme.h"
 #include "gui/document/document.h"
+#include "gui/document/observer.h"
 #include "gui/document/runner.h"
 #include "gui/window/docks.h"
 
@@ -92,6 +93,7 @@ class MainWindow : public QMainWindow {
   Engine engine_;
   Document document_;
   Runner runner_;
+  Observer observer_;
   Actions actions_;
   FileActions* files_;
   ExportActions* exports_;

@@ -41,6 +41,7 @@ struct TestClass {
 };
 QObject* makeDocumentTest();
 QObject* makeRunnerTest();
+QObject* makeObserverTest();
 QObject* makeFrameCanvasTest();
 QObject* makeFrameViewTest();
 QObject* makeThemeTest();

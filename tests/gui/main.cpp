@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   static const TestClass classes[] = {
       {"document", makeDocumentTest},
       {"runner", makeRunnerTest},
+      {"observer", makeObserverTest},
       {"frame_canvas", makeFrameCanvasTest},
       {"frame_view", makeFrameViewTest},
       {"theme", makeThemeTest},

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/pipeline/observation.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "core/pipeline/comparison.h"
+#include "core/pipeline/evidence.h"
+#include "core/pipeline/several_lights.h"
+#include "core/pipeline/stage_keys.h"
+
+namespace glint {
+
+std::optional<Observation> observeFrame(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
+                                        const ProgressFn& progress, const Inspection* known) {
+  require(scene && frame >= 0 && frame < static_cast<int>(scene->frames.size()), "observeFrame: no such frame");
+  if (lightsAreOpenIn(*scene, request)) return std::nullopt;
+  Observation seen;
+  seen.key = detectKey(request, false);
+  if (known && known->given == scene) {
+    const auto key = known->stageKeys.find("detect");
+    if (key != known->stageKeys.end() && key->second == seen.key && known->evidence[std::size_t(frame)].frame >= 0)
+      return std::nullopt;
+  }
+  const WhatIf& w = request.whatIf;
+  const std::vector<int> alone{frame};
+  seen.given = scene;
+  seen.scene = w.changesScene() ? changedScene(*scene, w, request.settings.number("detect.level"), progress, &alone) : scene;
+  seen.request = request;
+  seen.frame = frame;
+  if (!report(progress, {"detect", 0, 1})) throw Stopped{};
+  seen.evidence = evidenceFor(*seen.scene, frame, request);
+  for (const auto& [at, change] : w.highlights)
+    if (at.first == frame && at.second >= 0 && at.second < static_cast<int>(seen.evidence.highlights.size())) {
+      Highlight& h = seen.evidence.highlights[std::size_t(at.second)];
+      h = changed(h, change);
+    }
+  return seen;
+}
+
+Inspection heldAgainst(const Inspection& earlier, const Observation& observation) {
+  require(earlier.given == observation.given, "heldAgainst: results of another scene");
+  const int frame = observation.frame;
+  Inspection r;
+  r.scene = observation.scene;
+  r.given = observation.given;
+  r.surfaces = earlier.surfaces;
+  r.request = observation.request;
+  r.train = earlier.train;
+  r.evidence.resize(observation.scene->frames.size());
+  r.evidence[std::size_t(frame)] = observation.evidence;
+  std::copy_if(earlier.views.begin(), earlier.views.end(), std::back_inserter(r.views),
+               [&](const TrainingView& v) { return v.frame == frame; });
+  r.lights = earlier.lights;
+  r.lightFailures = earlier.lightFailures;
+  r.depthCorrections = earlier.depthCorrections;
+  r.stageKeys["detect"] = observation.key;
+  const Camera& camera = observation.scene->frames[std::size_t(frame)].camera;
+  for (const auto& [name, before] : earlier.models) {
+    ModelResult& now = r.models[name];
+    now.model = before.model;
+    now.fits = before.fits;
+    now.oneFrame = true;
+    for (const FrameComparison& c : before.frames) {
+      if (c.frame != frame) continue;
+      now.frames.push_back(compareFrame(observation.evidence, c.light, camera, c.prediction));
+      now.frames.back().fit = c.fit;
+    }
+  }
+  return r;
+}
+
+}  // namespace glint

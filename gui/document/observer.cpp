@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/document/observer.h"
+
+#include <utility>
+
+namespace glint::gui {
+
+Observer::Observer(const Engine& engine, Document& document, QObject* parent)
+    : QObject(parent), engine_(engine), document_(document) {
+  connect(&document_, &Document::requestChanged, this, &Observer::observe);
+}
+
+void Observer::observe() {
+  job_.drop();
+  const auto known = document_.results();
+  if (!engine_.observeFrame || !known) return;  // before the first results there is nothing that could be behind
+  const auto observe = engine_.observeFrame;
+  job_.run([this, observe, scene = document_.sharedScene(), request = document_.request(), known,
+            frame = document_.selection().frame]() -> LatestJob::Deliver {
+    std::optional<Observation> seen = observe(scene, request, frame, {}, known.get());
+    const auto observation = seen ? std::make_shared<const Observation>(std::move(*seen)) : nullptr;
+    return [this, observation] { document_.setObservation(observation); };
+  });
+}
+
+}  // namespace glint::gui
