@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <optional>
 
 #include "core/base/angle.h"
+#include "core/pipeline/inspection.h"
 
 namespace glint {
 
@@ -163,19 +166,71 @@ void addHighlight(std::vector<WhatIfKnob>& knobs, const Scene& scene, int frame,
 std::string counted(std::size_t n, const std::string& one) { return std::to_string(n) + " " + one + (n == 1 ? "" : "s"); }
 }  // namespace
 
-std::vector<WhatIfKnob> whatIfKnobs(const Scene& scene, int frame, int highlights) {
+std::vector<WhatIfKnob> whatIfKnobs(const Scene& scene, int frame, int highlights, double roughness) {
+  require(roughness > 0, "whatIfKnobs: roughness must be positive");
   require(frame >= 0 && frame < int(scene.frames.size()), "whatIfKnobs: no such frame");
   std::vector<WhatIfKnob> knobs;
   const double distance = workingDistance(scene);
   addLights(knobs, scene, distance);
   addSurface(knobs, scene, scene.frames[std::size_t(frame)].surface);
-  knobs.push_back(
-      {"Lobe",
-       number("roughness", "Roughness", "", WhatIf{}.roughness, 0.01, 0.5, 0.005, "m of the lobe that makes the contours."), true,
-       [](const WhatIf& w) { return w.roughness; }, [](WhatIf& w, double v) { w.roughness = v; }});
+  knobs.push_back({"Lobe",
+                   number("roughness", "Roughness", "", roughness, std::min(0.01, roughness), std::max(0.5, roughness), 0.005,
+                          "m of the lobe that makes the contours."),
+                   true, [](const WhatIf& w) { return w.roughness; }, [](WhatIf& w, double v) { w.roughness = v; }});
   addPose(knobs, scene, frame, distance);
   for (int h = 0; h < highlights; ++h) addHighlight(knobs, scene, frame, h);
   return knobs;
+}
+
+namespace {
+/// The fit of reflectance that tells the frame's lobe best; null = no fit of any light.
+const ModelResult::Fit* reflectanceFit(const Inspection& in, int frame) {
+  const auto result = in.models.find("reflectance");
+  if (result == in.models.end()) return nullptr;
+  const std::string surface = in.surfaces ? in.surfaces->keyOf(frame) : "";
+  const std::vector<Highlight>& shown = in.evidence[std::size_t(frame)].highlights;
+  const auto score = [&](const ModelResult::Fit& f) {
+    const bool usable = f.fit && f.fit->roughness && f.fit->lobe && lobeOf(*f.fit->lobe);
+    const bool ofFrame = (!f.surface || *f.surface == surface) &&
+                         std::any_of(shown.begin(), shown.end(), [&](const Highlight& h) { return h.light == f.light; });
+    return 2 * int(usable) + int(ofFrame);
+  };
+  const std::vector<ModelResult::Fit>& fits = result->second.fits;
+  const auto best = std::max_element(fits.begin(), fits.end(),
+                                     [&](const ModelResult::Fit& a, const ModelResult::Fit& b) { return score(a) < score(b); });
+  return best == fits.end() ? nullptr : &*best;
+}
+
+/// From the limit angle of the frame's light, else of any.
+std::optional<FittedLobe> lobeOfLimitAngle(const Inspection& in, int frame) {
+  std::optional<FittedLobe> found;
+  for (const TrainingView& v : in.views) {
+    if (found && v.frame != frame) continue;
+    const double q = v.highlight.level;
+    const auto surface = in.train.perSurface && in.surfaces ? std::optional(in.surfaces->keyOf(v.frame)) : std::nullopt;
+    const auto light = in.lights.find(lightKey(v.highlight.light, surface));
+    if (v.failure || !(q > 0 && q < 1) || light == in.lights.end()) continue;
+    const double alpha = light->second.limitAngle;
+    if (!(alpha > 0)) continue;
+    char origin[96];
+    std::snprintf(origin, sizeof origin, "limit angle %.3g deg at level %.3g, light ", degrees(alpha), q);
+    found = FittedLobe{Lobe::TorranceSparrow, std::tan(alpha) / std::sqrt(-std::log(q)), origin + v.highlight.light};
+  }
+  return found;
+}
+}  // namespace
+
+Outcome<FittedLobe> fittedLobe(const Inspection& in, int frame) {
+  require(in.scene && frame >= 0 && frame < int(in.scene->frames.size()), "fittedLobe: no such frame");
+  if (in.request.whatIf.synthesise)
+    return Failure{Reason::NotSupported, "the contours are synthesised, so no fit is of the scene as it was captured"};
+  const ModelResult::Fit* reflectance = reflectanceFit(in, frame);
+  if (reflectance && reflectance->fit && reflectance->fit->roughness && reflectance->fit->lobe)
+    if (const std::optional<Lobe> lobe = lobeOf(*reflectance->fit->lobe))
+      return FittedLobe{*lobe, *reflectance->fit->roughness, "reflectance, light " + reflectance->light};
+  if (const std::optional<FittedLobe> lobe = lobeOfLimitAngle(in, frame)) return *lobe;
+  if (reflectance && reflectance->failure) return *reflectance->failure;
+  return Failure{Reason::NotSupported, "no model was computed that tells the lobe (reflectance, or one that needs the light)"};
 }
 
 std::string summaryOf(const WhatIf& w) {

@@ -10,6 +10,7 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 #include <QVariant>
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -23,6 +24,8 @@
 namespace glint::gui {
 
 namespace {
+constexpr int kDigits = 3;
+
 QString named(const char* kind, const WhatIfKnob& knob) { return QLatin1String(kind) + toQString(knob.spec.key); }
 }  // namespace
 
@@ -32,6 +35,7 @@ WhatIfPanel::WhatIfPanel(Document& document, QWidget* parent)
       synthesise_(new QCheckBox(tr("Synthesise the contours"))),
       lobe_(new QuietComboBox),
       summary_(new QLabel),
+      origin_(new QLabel),
       resetAll_(new QToolButton) {
   auto* content = new QWidget;
   auto* column = new QVBoxLayout(content);
@@ -55,15 +59,19 @@ WhatIfPanel::WhatIfPanel(Document& document, QWidget* parent)
     lobe_->addItem(QLatin1String(nameOf(lobe)));
   synthetic->addWidget(lobe_);
   column->addLayout(synthetic);
+  origin_->setObjectName(QStringLiteral("whatif.origin"));
+  origin_->setWordWrap(true);
+  origin_->setMinimumHeight(2 * origin_->fontMetrics().lineSpacing());
+  origin_->setAlignment(Qt::AlignLeft | Qt::AlignTop);
+  column->addWidget(origin_);
   column->addStretch(1);
   setWidget(content);
   setWidgetResizable(true);
   setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
 
   connect(synthesise_, &QCheckBox::clicked, this, [this](bool on) {
-    WhatIf w = document_.request().whatIf;
-    w.synthesise = on;
-    document_.setWhatIf(w, on ? tr("What if: contours synthesised") : tr("What if: contours as captured"));
+    document_.setWhatIf(started(document_.request().whatIf, on),
+                        on ? tr("What if: contours synthesised") : tr("What if: contours as captured"));
   });
   connect(lobe_, QOverload<int>::of(&QComboBox::activated), this, [this](int index) {
     WhatIf w = document_.request().whatIf;
@@ -71,6 +79,10 @@ WhatIfPanel::WhatIfPanel(Document& document, QWidget* parent)
     document_.setWhatIf(w, tr("What if: lobe %1").arg(lobe_->itemText(index)));
   });
   connect(resetAll_, &QToolButton::clicked, this, [this] { document_.setWhatIf(WhatIf(), tr("What if: everything back")); });
+  connect(&document_, &Document::sceneOpened, this, [this] {
+    fitted_.reset();
+    whyNotFitted_.clear();
+  });
   connect(&document_, &Document::selectionChanged, this, &WhatIfPanel::rebuild);
   for (const auto signal : {&Document::sceneOpened, &Document::inspectionChanged})  // when much else has to be shown
     connect(&document_, signal, this, [this] { drawInTurn(this, [this] { rebuild(); }); });
@@ -84,13 +96,62 @@ int WhatIfPanel::highlights() const {
   return inspection && frame < inspection->evidence.size() ? int(inspection->evidence[frame].highlights.size()) : 0;
 }
 
+/// While contours are synthesised a fit gives back the lobe that made them: that of the scene as captured stays.
+void WhatIfPanel::rememberLobe() {
+  const auto inspection = document_.inspection();
+  if (!inspection || (inspection->request.whatIf.synthesise && !(whyNotFitted_.empty() && !fitted_))) return;
+  const int last = int(inspection->scene->frames.size()) - 1;
+  if (last < 0) return;
+  const Outcome<FittedLobe> found = fittedLobe(*inspection, std::clamp(document_.selection().frame, 0, last));
+  fitted_ = found ? std::optional(*found) : std::nullopt;
+  if (found)
+    whyNotFitted_.clear();
+  else  // "not supported" is the program's word for what was not asked for
+    whyNotFitted_ = found.failure().reason == Reason::NotSupported ? found.failure().detail : found.failure().message();
+}
+
+WhatIf WhatIfPanel::started(WhatIf w, bool synthesise) const {
+  const WhatIf plain;
+  const auto set = [&](Lobe lobe, double roughness) {
+    w.lobe = lobe;
+    w.roughness = roughness;
+  };
+  w.synthesise = synthesise;
+  if (fitted_) {
+    if (synthesise && w.lobe == plain.lobe && w.roughness == plain.roughness) set(fitted_->lobe, fitted_->roughness);
+    // What was started from is no change of the user's: without a synthesis nothing of it is left.
+    if (!synthesise && w.lobe == fitted_->lobe && w.roughness == fitted_->roughness) set(plain.lobe, plain.roughness);
+  }
+  return w;
+}
+
+QString WhatIfPanel::origin(const WhatIf& w) const {
+  if (!fitted_) {
+    if (whyNotFitted_.empty()) return {};
+    const QString why = toQString(whyNotFitted_);
+    if (w.synthesise) return tr("No fitted lobe to compare with: %1").arg(why);
+    return tr("Starts from the usual lobe, %1 with m = %2: %3")
+        .arg(QLatin1String(nameOf(w.lobe)), numberText(w.roughness, kDigits), why);
+  }
+  const QString lobe = tr("%1 with m = %2 (%3)")
+                           .arg(QLatin1String(nameOf(fitted_->lobe)), numberText(fitted_->roughness, kDigits),
+                                toQString(fitted_->origin).replace(QStringLiteral(" deg"), QStringLiteral("°")));
+  if (!w.synthesise) return tr("Starts from the lobe of this scene: %1").arg(lobe);
+  const bool own = w.lobe == fitted_->lobe && w.roughness == fitted_->roughness;
+  return (own ? tr("This is the lobe of the scene as captured: %1") : tr("The scene as captured has %1")).arg(lobe);
+}
+
 void WhatIfPanel::rebuild() {
   const Scene* scene = document_.scene();
+  rememberLobe();
   const int frame = document_.selection().frame, count = highlights();
-  if (scene == builtFor_ && frame == builtFrame_ && count == builtHighlights_ && knobs_) return refresh();
+  const double roughness = fitted_ ? fitted_->roughness : WhatIf{}.roughness;
+  if (scene == builtFor_ && frame == builtFrame_ && count == builtHighlights_ && roughness == builtRoughness_ && knobs_)
+    return refresh();
   builtFor_ = scene;
   builtFrame_ = frame;
   builtHighlights_ = count;
+  builtRoughness_ = roughness;
   rows_.clear();
   if (knobs_) {
     knobs_->hide();
@@ -106,7 +167,7 @@ void WhatIfPanel::rebuild() {
     grid->setColumnStretch(1, 1);
     int row = 0;
     std::string group;
-    for (const WhatIfKnob& knob : whatIfKnobs(*scene, frame, count)) {
+    for (const WhatIfKnob& knob : whatIfKnobs(*scene, frame, count, roughness)) {
       if (knob.group != group) {
         group = knob.group;
         auto* heading = new QLabel(toQString(group));
@@ -180,12 +241,14 @@ void WhatIfPanel::refresh() {
                               : tr("Observed contours come from the exact radiance of the lights below, instead of the images"));
   synthesise_->setChecked(w.synthesise);
   lobe_->setEnabled(w.synthesise);
-  lobe_->setCurrentIndex(lobe_->findText(QLatin1String(nameOf(w.lobe))));
+  const WhatIf shown = started(w, true);  // also before it is switched on: what it starts from
+  lobe_->setCurrentIndex(lobe_->findText(QLatin1String(nameOf(shown.lobe))));
+  origin_->setText(scene && !whyNot ? origin(w) : QString());
   const std::string summary = summaryOf(w);
   summary_->setText(summary.empty() ? tr("Nothing is changed: this is what was captured") : toQString(summary));
   resetAll_->setEnabled(!w.none());
   for (const Row& row : rows_) {
-    const double value = row.knob.get(w);
+    const double value = row.knob.get(w.synthesise ? w : shown);
     row.show(value);
     const bool usable = !row.knob.synthetic || w.synthesise;
     for (QWidget* widget : row.widgets) widget->setEnabled(usable);

@@ -3,6 +3,8 @@
 
 #include <QScrollArea>
 #include <functional>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "core/pipeline/what_if_knobs.h"
@@ -17,8 +19,8 @@ class QToolButton;
 namespace glint::gui {
 
 /// What if the light, the surface, a camera or a contour were another: one row per knob of `whatIfKnobs`, every change one step
-/// of undo, the results follow. Object names for tests: "slider:KEY", "value:KEY", "reset:KEY", "whatif.synthesise",
-/// "whatif.lobe".
+/// of undo, the results follow. A synthesis starts from the lobe that was fitted on the scene as captured, where there is one.
+/// Object names for tests: "slider:KEY", "value:KEY", "reset:KEY", "whatif.synthesise", "whatif.lobe", "whatif.origin".
 class WhatIfPanel : public QScrollArea {
   Q_OBJECT
  public:
@@ -36,16 +38,22 @@ class WhatIfPanel : public QScrollArea {
   void addRow(const WhatIfKnob& knob, QGridLayout* grid, int row);
   void change(const WhatIfKnob& knob, double value, int gesture);
   int highlights() const;
+  void rememberLobe();
+  WhatIf started(WhatIf w, bool synthesise) const;  ///< with the lobe to start from, or without it again
+  QString origin(const WhatIf& w) const;
 
   Document& document_;
   QCheckBox* synthesise_;
   QComboBox* lobe_;
-  QLabel* summary_;
+  QLabel *summary_, *origin_;
   QToolButton* resetAll_;
   QWidget* knobs_ = nullptr;
   std::vector<Row> rows_;
   const Scene* builtFor_ = nullptr;
   int builtFrame_ = -1, builtHighlights_ = -1;
+  double builtRoughness_ = 0;
+  std::optional<FittedLobe> fitted_;  ///< on the scene as captured; stays while its contours are synthesised
+  std::string whyNotFitted_;          ///< "" before the first results
 };
 
 }  // namespace glint::gui

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // While a what-if synthesises the contours, every view shows the photograph that belongs to them.
+#include <QCheckBox>
 #include <QImage>
+#include <QLabel>
+#include <cmath>
 
 #include "core/geometry/polyline.h"
 #include "gui/document/engine.h"
@@ -8,6 +11,7 @@
 #include "gui/frame/frame_panel.h"
 #include "gui/scene/photograph_store.h"
 #include "gui/timeline/thumbnails.h"
+#include "gui/whatif/what_if_panel.h"
 #include "gui/window/main_window.h"
 #include "tests/gui/fixture.h"
 
@@ -127,7 +131,43 @@ class WhatIfTest : public QObject {
     QCOMPARE(thumbnails.find(0), small);
   }
 
+  /// Switched on, the contours stay about where they were; switched off, nothing of it is left.
+  void aSynthesisStartsFromTheLobeOfTheScene() {
+    auto* panel = window_->findChild<WhatIfPanel*>();
+    auto* box = panel->findChild<QCheckBox*>("whatif.synthesise");
+    auto* origin = panel->findChild<QLabel*>("whatif.origin");
+    document().setModels({"dual", "reflectance"});
+    settle();
+    const FittedLobe fitted = *fittedLobe(*document().inspection(), document().selection().frame);
+    QVERIFY(fitted.roughness != WhatIf{}.roughness);
+    QTRY_VERIFY2(origin->text().contains("reflectance, light"), qPrintable(origin->text()));
+    const double area = areaOfTheContour();
+    QMetaObject::invokeMethod(box, "clicked", Q_ARG(bool, true));
+    settle();
+    QCOMPARE(document().request().whatIf.roughness, fitted.roughness);
+    QCOMPARE(document().request().whatIf.lobe, fitted.lobe);
+    constexpr double kSameArea = 0.05;  // relative: of contours in eight-bit codes
+    QVERIFY2(std::abs(areaOfTheContour() / area - 1) < kSameArea, qPrintable(QString::number(areaOfTheContour() / area)));
+    QVERIFY2(origin->text().contains("This is the lobe"), qPrintable(origin->text()));
+    QMetaObject::invokeMethod(box, "clicked", Q_ARG(bool, false));
+    settle();
+    QVERIFY(document().request().whatIf.none());
+    document().setModels({"primal"});  // tells no light, hence no lobe
+    settle();
+    QTRY_VERIFY2(origin->text().contains("usual lobe") && origin->text().contains("0.1"), qPrintable(origin->text()));
+    QMetaObject::invokeMethod(box, "clicked", Q_ARG(bool, true));
+    QCOMPARE(document().request().whatIf.roughness, WhatIf{}.roughness);
+    settle();
+    change({});
+    document().setModels({"dual"});
+    settle();
+  }
+
  private:
+  double areaOfTheContour() {
+    return document().inspection()->evidence.at(std::size_t(document().selection().frame)).highlights.at(0).areaPx2;
+  }
+
   Document& document() { return window_->document(); }
   FramePanel& panel() { return *window_->findChild<FramePanel*>(); }
   PhotoLoader& loader() { return *panel().loader(); }

@@ -186,6 +186,37 @@ TEST(WhatIf, EveryKnobChangesSomethingAndItsDefaultPutsItBack) {
   }
 }
 
+/// Contours of a known lobe tell it again: by the model that inverts the radiance, and roughly by their limit angle alone.
+TEST(WhatIf, ASynthesisStartsFromTheLobeThatTheSceneShows) {
+  constexpr double kMade = 0.07;         // another width than that of a WhatIf{}
+  constexpr double kSameLobe = 0.02;     // relative: masking, which this fit tells from a wider lobe, hardly counts here
+  constexpr double kOfLimitAngle = 0.1;  // relative: the limit angle alone knows nothing of masking and falling light
+  WhatIf made;
+  made.synthesise = true;
+  made.roughness = kMade;
+  const std::shared_ptr<const Scene> captured = changedScene(*lamp(), made, 0.5);
+  for (const char* model : {"reflectance", "limit-angle"}) {
+    const Inspection in = inspect(captured, request({model}));
+    const Outcome<FittedLobe> lobe = fittedLobe(in, 5);
+    ASSERT_TRUE(lobe) << model << ": " << lobe.failure().message();
+    const bool exact = model == std::string("reflectance");
+    EXPECT_NEAR(lobe->roughness, kMade, (exact ? kSameLobe : kOfLimitAngle) * kMade) << model;
+    EXPECT_NE(lobe->origin.find(exact ? "reflectance" : "limit angle"), std::string::npos) << lobe->origin;
+    EXPECT_NE(lobe->origin.find("lamp"), std::string::npos) << lobe->origin;
+    for (const WhatIfKnob& knob : whatIfKnobs(*captured, 5, 1, lobe->roughness))
+      if (knob.spec.key == "roughness") {
+        EXPECT_EQ(std::get<double>(knob.spec.defaultValue), lobe->roughness);
+      }
+  }
+  // primal knows no light, hence no lobe; and contours that were synthesised would only give back what made them.
+  const Outcome<FittedLobe> none = fittedLobe(inspect(captured, request({"primal"})), 5);
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.failure().reason, Reason::NotSupported);
+  InspectionRequest again = request({"reflectance"});
+  again.whatIf = made;
+  EXPECT_FALSE(fittedLobe(inspect(captured, again), 5));
+}
+
 TEST(WhatIf, KnobsSpeakDegrees) {
   WhatIf w;
   for (const WhatIfKnob& knob : whatIfKnobs(*lamp(), 2, 0))
