@@ -3,6 +3,7 @@
 
 #include <QSignalSpy>
 #include <atomic>
+#include <stdexcept>
 
 #include "tests/gui/fixture.h"
 
@@ -18,6 +19,7 @@ class ObserverTest : public QObject {
     engine_.observeFrame = [this](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
                                   const ProgressFn&, const Inspection*) -> std::optional<Observation> {
       ++asked_;
+      if (request.settings.number("detect.level") == kFails) throw std::runtime_error("this level cannot be observed");
       Observation seen;
       seen.scene = seen.given = scene;
       seen.request = request;
@@ -78,6 +80,33 @@ class ObserverTest : public QObject {
     QVERIFY(!document_->frameStale());
   }
 
+  /// Also where what was observed is older, since nothing could be observed under the newest request.
+  void resultsThatAreAskedForWinOverAnOlderObservation() {
+    showResults();
+    document_->setSetting("detect.level", 0.3);
+    QTRY_COMPARE(level(), 0.3);
+    document_->setSetting("detect.level", kFails);
+    QTRY_VERIFY(!observer_->busy());
+    QCOMPARE(level(), 0.3);
+    document_->setInspection(resultsFor(document_->request()), document_->request());
+    QCOMPARE(document_->frameInspection(), document_->results());
+  }
+
+  void anObservationThatNobodyAsksForIsIgnored() {
+    showResults();
+    document_->setSetting("detect.level", kFails);
+    QTRY_VERIFY(!observer_->busy());
+    Observation other;
+    other.scene = other.given = document_->sharedScene();
+    other.frame = 0;
+    other.request = document_->results()->request;
+    other.request.settings.set("detect.level", 0.3);
+    other.evidence = document_->results()->evidence[0];
+    other.key = keyOf(other.request);
+    document_->setObservation(std::make_shared<const Observation>(other));
+    QCOMPARE(document_->frameInspection(), document_->results());
+  }
+
   void undoToWhatIsKnownShowsItAgain() {
     showResults();
     document_->setSetting("detect.level", 0.3);
@@ -121,6 +150,7 @@ class ObserverTest : public QObject {
   /// Of the contour that is shown.
   double level() const { return document_->frameInspection()->evidence[0].highlights.at(0).level; }
 
+  static constexpr double kFails = 0.15;
   Fixture fixture_;
   Engine engine_;
   std::unique_ptr<Document> document_;
