@@ -15,6 +15,7 @@
 #include "core/light/dense_solver.h"
 #include "core/light/directed_limit.h"
 #include "core/light/estimate.h"
+#include "core/light/robust_costs.h"
 
 namespace glint {
 namespace {
@@ -32,7 +33,7 @@ double angle(const SeenPoint& s, const Eigen::Vector4d& light) {
 }
 
 /// (alpha - alpha_lim) in pixels, with d alpha / d L in closed form. The light is (l, w), or l alone where it is held at infinity.
-class AngleCost : public ceres::CostFunction {
+class AngleCost final : public ceres::CostFunction {
  public:
   /// @param noiseShare  s, see noiseShare(): the weight is k (|d alpha / d pixel| k)^-s of the light, k the held one
   AngleCost(const ContourEvidence& evidence, bool atInfinity, double noiseShare = 0)
@@ -95,31 +96,48 @@ struct Attempt {
 };
 
 /// Signed distance of a point from the level set, px.
-double residual(const ContourEvidence& e, const Attempt& a) {
+double residual(const ContourEvidence& e, const Attempt& a, double incident) {
   const double limit = a.directed ? directedLimit(a.limit, symmetric(a.extent), e.at.position, e.at.normal, e.at.toCamera, a.light) : a.limit;
-  return e.pixelsPerRadian * (angle(e.at, a.light) - limit) - e.biasPx;
+  return e.pixelsPerRadian * (incident - limit) - e.biasPx;
 }
+double residual(const ContourEvidence& e, const Attempt& a) { return residual(e, a, angle(e.at, a.light)); }
 
 double median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
   return values[values.size() / 2];
 }
 
-/// 1 / |d alpha / d pixel| of every point under a light.
-void reweight(std::vector<ContourEvidence>& points, const Eigen::Vector4d& light) {
+/// The incident angles at a contour point and at its neighbours under one light, rad; NaN where the surface ended.
+struct AnglesAround {
+  double here, left, right, up, down;
+};
+std::vector<AnglesAround> anglesAround(const std::vector<ContourEvidence>& points, const Eigen::Vector4d& light) {
+  const auto of = [&](const std::optional<SeenPoint>& s) { return s ? angle(*s, light) : std::nan(""); };
+  std::vector<AnglesAround> angles;
+  angles.reserve(points.size());
+  for (const ContourEvidence& e : points) angles.push_back({angle(e.at, light), of(e.left), of(e.right), of(e.up), of(e.down)});
+  return angles;
+}
+
+/// 1 / |d alpha / d pixel| of every point under the light of these angles.
+void reweight(std::vector<ContourEvidence>& points, const std::vector<AnglesAround>& angles) {
   std::vector<double> slopes;
   slopes.reserve(points.size());
-  for (ContourEvidence& e : points) {
-    const double here = angle(e.at, light);
-    const auto slope = [&](const std::optional<SeenPoint>& before, const std::optional<SeenPoint>& after) {
-      const double high = after ? angle(*after, light) : here, low = before ? angle(*before, light) : here;
-      return (high - low) / ((before ? kStepPx : 0) + (after ? kStepPx : 0));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const ContourEvidence& e = points[i];
+    const AnglesAround& at = angles[i];
+    const auto slope = [&](bool before, double low, bool after, double high) {
+      return ((after ? high : at.here) - (before ? low : at.here)) / ((before ? kStepPx : 0) + (after ? kStepPx : 0));
     };
-    slopes.push_back(std::hypot(slope(e.left, e.right), slope(e.up, e.down)));
+    slopes.push_back(std::hypot(slope(e.left.has_value(), at.left, e.right.has_value(), at.right),
+                                slope(e.up.has_value(), at.up, e.down.has_value(), at.down)));
   }
   // Where the angle hardly changes over the image (a facet, a start far off) a pixel must not weigh without bound.
   const double floor = std::max(0.05 * median(slopes), 1e-12);
   for (std::size_t i = 0; i < points.size(); ++i) points[i].pixelsPerRadian = 1 / std::max(slopes[i], floor);
+}
+void reweight(std::vector<ContourEvidence>& points, const Eigen::Vector4d& light) {
+  reweight(points, anglesAround(points, light));
 }
 
 /// Which share of the residuals' variance is noise of the single points: half the squared difference of neighbours on a contour, since what a
@@ -127,23 +145,25 @@ void reweight(std::vector<ContourEvidence>& points, const Eigen::Vector4d& light
 /// win under which the angle changes slowly over the image; weights that move with the light make that term a constant. What is not noise
 /// must not move them (it would gain by lights under which the angle changes fast), hence the share.
 double noiseShare(const std::vector<ContourEvidence>& points, const Attempt& a) {
+  struct Member {
+    Pixel pixel;
+    double residual, azimuth = 0;
+  };
   std::vector<double> sizes, steps;
-  std::map<int, std::vector<const ContourEvidence*>> views;
+  std::map<int, std::vector<Member>> views;
   for (const ContourEvidence& e : points) {
-    sizes.push_back(std::abs(residual(e, a)));
-    views[e.view].push_back(&e);
+    const double r = residual(e, a);
+    sizes.push_back(std::abs(r));
+    views[e.view].push_back({e.pixel, r});
   }
   for (auto& [view, members] : views) {
     // Neighbours by their azimuth about the middle: whoever gives a contour may start anywhere, or list its points in any order.
     Pixel middle(0, 0);
-    for (const ContourEvidence* e : members) middle += e->pixel / double(members.size());
-    const auto azimuth = [&](const ContourEvidence* e) {
-      return std::atan2(e->pixel.y() - middle.y(), e->pixel.x() - middle.x());
-    };
-    std::sort(members.begin(), members.end(),
-              [&](const ContourEvidence* x, const ContourEvidence* y) { return azimuth(x) < azimuth(y); });
+    for (const Member& m : members) middle += m.pixel / double(members.size());
+    for (Member& m : members) m.azimuth = std::atan2(m.pixel.y() - middle.y(), m.pixel.x() - middle.x());
+    std::sort(members.begin(), members.end(), [](const Member& x, const Member& y) { return x.azimuth < y.azimuth; });
     for (std::size_t i = 0; i < members.size(); ++i)
-      steps.push_back(std::abs(residual(*members[i], a) - residual(*members[(i + 1) % members.size()], a)));
+      steps.push_back(std::abs(members[i].residual - members[(i + 1) % members.size()].residual));
   }
   constexpr double kVisiblePx = 0.01;  // the effect goes with the square of the noise
   const double all = median(sizes);
@@ -156,15 +176,16 @@ double noiseShare(const std::vector<ContourEvidence>& points, const Attempt& a) 
 /// points do not count), and the correction is kept below s / 2: it fades where the contour is as small as the noise.
 /// The slope, taken at the noisy point, errs together with the residual: where alpha bends along its gradient g (alpha_gg) this displaces the
 /// residual by -s^2 alpha_gg, and its product with its own derivative by as much again. `share` is that of noise in s^2, see noiseShare.
-void unbias(std::vector<ContourEvidence>& points, const Attempt& a, double share) {
+void unbias(std::vector<ContourEvidence>& points, const Attempt& a, double share, const std::vector<AnglesAround>& angles) {
   std::vector<double> sizes;
-  for (const ContourEvidence& e : points) sizes.push_back(std::abs(residual(e, a)));
+  for (std::size_t i = 0; i < points.size(); ++i) sizes.push_back(std::abs(residual(points[i], a, angles[i].here)));
   const double sigma = 1.4826 * median(sizes);
-  for (ContourEvidence& e : points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    ContourEvidence& e = points[i];
     e.biasPx = 0;
     if (!e.left || !e.right || !e.up || !e.down) continue;
-    const double here = angle(e.at, a.light), left = angle(*e.left, a.light), right = angle(*e.right, a.light), up = angle(*e.up, a.light),
-                 down = angle(*e.down, a.light), step2 = kStepPx * kStepPx;
+    const auto& [here, left, right, up, down] = angles[i];
+    const double step2 = kStepPx * kStepPx;
     const double xx = (left + right - 2 * here) / step2, yy = (up + down - 2 * here) / step2;
     double bend = xx + yy;
     if (share > 0 && e.leftUp && e.rightDown) {
@@ -176,6 +197,13 @@ void unbias(std::vector<ContourEvidence>& points, const Attempt& a, double share
   }
 }
 
+/// Weights and biases for the light of an attempt.
+void renew(std::vector<ContourEvidence>& points, const Attempt& a, double share) {
+  const std::vector<AnglesAround> angles = anglesAround(points, a.light);
+  reweight(points, angles);
+  unbias(points, a, share, angles);
+}
+
 double robustCost(const std::vector<ContourEvidence>& points, const Attempt& a, double scale) {
   double sum = 0;
   for (const ContourEvidence& e : points) {
@@ -183,6 +211,13 @@ double robustCost(const std::vector<ContourEvidence>& points, const Attempt& a, 
     sum += r <= scale ? r * r : scale * (2 * r - scale);
   }
   return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
+}
+
+ceres::Problem::Options borrowedCosts() {
+  ceres::Problem::Options options;
+  options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.disable_all_safety_checks = true;
+  return options;
 }
 
 /// Solves with weights that are renewed until nothing moves. False when the solution is not usable.
@@ -193,21 +228,17 @@ bool reweighted(std::vector<ContourEvidence>& points, Attempt& a, bool atInfinit
     // The weights are held while the light moves (but for the share that is noise). A residual whose own weight moves with the light gains by
     // lights under which the angle changes faster over the image; held weights leave no such reward, and the fixed point is reached in
     // a few rounds.
-    reweight(points, a.light);
-    if (round > 0 || share > 0) unbias(points, a, share);
-    ceres::Problem::Options ownership;
-    ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    ownership.disable_all_safety_checks = true;
-    ceres::HuberLoss loss(options.robustPx);
-    std::deque<AngleCost> costs;  // cost functions cannot be moved
-    for (const ContourEvidence& e : points) costs.emplace_back(e, atInfinity, share);
+    if (round > 0 || share > 0)
+      renew(points, a, share);
+    else
+      reweight(points, a.light);
+    RobustCosts<ceres::CostFunction, AngleCost> costs(points, options.robustPx, atInfinity, share);
     const Eigen::Vector4d before = a.light;
     const double limitBefore = a.limit;
     DenseSolution solution;
     {
-      ceres::Problem problem(ownership);
-      for (AngleCost& c : costs) problem.AddResidualBlock(&c, &loss, a.light.data(), &a.limit);
+      ceres::Problem problem(borrowedCosts());
+      problem.AddResidualBlock(&costs, nullptr, a.light.data(), &a.limit);
       if (atInfinity)
         problem.SetManifold(a.light.data(), new ceres::SphereManifold<3>());
       else
@@ -253,7 +284,7 @@ Attempt solve(std::vector<ContourEvidence>& points, Eigen::Vector4d start, bool 
 }
 
 /// Residual with an extent, over the light (4), the limit angle (1) and the extent (6), with its derivatives in closed form.
-class DirectedCost : public ceres::SizedCostFunction<1, 4, 1, 6> {
+class DirectedCost final : public ceres::SizedCostFunction<1, 4, 1, 6> {
  public:
   explicit DirectedCost(const ContourEvidence& evidence) : evidence_(evidence) {}
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
@@ -310,14 +341,13 @@ Attempt directed(std::vector<ContourEvidence>& points, const Attempt& start, con
   if (a.light.w() == 0) return start;  // a direction's extent would need its own chart; none of the inputs has such a light
   const double prior = extentPrior(start, points);
   for (int round = 0; round < kMaxReweightings; ++round) {
-    reweight(points, a.light);
-    unbias(points, a, 0);
+    renew(points, a, 0);
     const Attempt before = a;
-    ceres::Problem problem;
-    for (const ContourEvidence& e : points)
-      problem.AddResidualBlock(new DirectedCost(e), new ceres::HuberLoss(options.robustPx), a.light.data(), &a.limit,
-                               a.extent.data());
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<ExtentPrior, 6, 6>(new ExtentPrior{prior}), nullptr, a.extent.data());
+    RobustCosts<ceres::CostFunction, DirectedCost> costs(points, options.robustPx);
+    ceres::AutoDiffCostFunction<ExtentPrior, 6, 6> reluctance(new ExtentPrior{prior});
+    ceres::Problem problem(borrowedCosts());
+    problem.AddResidualBlock(&costs, nullptr, a.light.data(), &a.limit, a.extent.data());
+    problem.AddResidualBlock(&reluctance, nullptr, a.extent.data());
     problem.SetManifold(a.light.data(), new ceres::SphereManifold<4>());
     const DenseSolution solution = solveDense(problem, options.maxIterations, 1e-10);  // tighter than the 1e-7 that the rounds ask for
     a.iterations += solution.iterations;
@@ -326,8 +356,7 @@ Attempt directed(std::vector<ContourEvidence>& points, const Attempt& start, con
     if (moved < 1e-7) break;  // the extent is a correction: it need not be found as well as the light
   }
   if (a.light.w() < 0) a.light = -a.light;
-  reweight(points, a.light);
-  unbias(points, a, 0);
+  renew(points, a, 0);
   a.cost = robustCost(points, a, options.robustPx);
   return a;
 }
@@ -470,8 +499,7 @@ Outcome<Best> bestAttempt(NormalisedContours& contours, const Light& start, cons
   if (!std::isfinite(best.cost) || !best.converged) return Failure{Reason::NotConverged, "light bundle"};
 
   // The evidence still holds the weights of the last attempt, which need not be the best one.
-  reweight(points, best.light);
-  unbias(points, best, best.noiseShare);
+  renew(points, best, best.noiseShare);
   return Best{best, iterations};
 }
 
@@ -492,8 +520,13 @@ double rmsElsewhere(const Attempt& found, const NormalisedContours& foundIn, Nor
 Outcome<Bundle> bundleLight(const std::vector<BundleView>& views, const Light& start, const BundleOptions& options) {
   require(options.pointsPerView >= 3 && options.robustPx > 0 && options.maxIterations >= 1, "bundleLight: options");
   const Outcome<std::vector<ContourEvidence>> evidence = contoursOnSurfaces(views, options.pointsPerView);
-  if (!evidence) return evidence.failure();
-  Outcome<NormalisedContours> contours = normalised(*evidence);
+  return evidence ? bundleLight(*evidence, views.size(), start, options) : Outcome<Bundle>(evidence.failure());
+}
+
+Outcome<Bundle> bundleLight(const std::vector<ContourEvidence>& evidence, std::size_t views, const Light& start,
+                            const BundleOptions& options) {
+  require(options.robustPx > 0 && options.maxIterations >= 1, "bundleLight: options");
+  Outcome<NormalisedContours> contours = normalised(evidence);
   if (!contours) return contours.failure();
   const Outcome<Best> found = bestAttempt(*contours, start, options);
   if (!found) return found.failure();
@@ -504,7 +537,7 @@ Outcome<Bundle> bundleLight(const std::vector<BundleView>& views, const Light& s
   bundle.limitAngle = best.limit;
   if (best.directed) bundle.extent = symmetric(best.extent) * (best.light.w() == 0 ? 1.0 : contours->scale * contours->scale);
   bundle.iterations = found->iterations;
-  std::vector<double> sums(views.size(), 0.0), counts(views.size(), 0.0);
+  std::vector<double> sums(views, 0.0), counts(views, 0.0);
   double sum = 0;
   for (const ContourEvidence& e : points) {
     const double r = residual(e, best);
@@ -513,24 +546,27 @@ Outcome<Bundle> bundleLight(const std::vector<BundleView>& views, const Light& s
     sum += r * r;
   }
   bundle.rmsPx = std::sqrt(sum / points.size());
-  for (std::size_t v = 0; v < views.size(); ++v)
-    bundle.residualPx.push_back(counts[v] > 0 ? std::sqrt(sums[v] / counts[v]) : 0.0);
+  for (std::size_t v = 0; v < views; ++v) bundle.residualPx.push_back(counts[v] > 0 ? std::sqrt(sums[v] / counts[v]) : 0.0);
   setCovariance(points, best, contours->origin, contours->scale, options.robustPx, bundle);
   return bundle;
 }
 
 Outcome<LeftOutErrors> leftOutErrors(const std::vector<BundleView>& views, const Light& start, const BundleOptions& options,
                                      int atMost) {
-  require(atMost >= 1, "leftOutErrors: atMost");
   const Outcome<std::vector<ContourEvidence>> evidence = contoursOnSurfaces(views, options.pointsPerView);
-  if (!evidence) return evidence.failure();
-  const int folds = std::min(atMost, int(views.size()));
+  return evidence ? leftOutErrors(*evidence, views.size(), start, options, atMost) : Outcome<LeftOutErrors>(evidence.failure());
+}
+
+Outcome<LeftOutErrors> leftOutErrors(const std::vector<ContourEvidence>& evidence, std::size_t views, const Light& start,
+                                     const BundleOptions& options, int atMost) {
+  require(atMost >= 1, "leftOutErrors: atMost");
+  const int folds = std::min(atMost, int(views));
   LeftOutErrors errors{std::vector<double>(std::size_t(folds)), std::vector<double>(std::size_t(folds))};
   std::vector<std::optional<Failure>> failures(static_cast<std::size_t>(folds));
   const auto fold = [&](int k) {
-    const int left = int(std::size_t(k) * views.size() / std::size_t(folds));
+    const int left = int(std::size_t(k) * views / std::size_t(folds));
     std::vector<ContourEvidence> others, own;
-    for (const ContourEvidence& e : *evidence) (e.view == left ? own : others).push_back(e);
+    for (const ContourEvidence& e : evidence) (e.view == left ? own : others).push_back(e);
     Outcome<NormalisedContours> contours = normalised(std::move(others));
     const Outcome<NormalisedContours> seen = normalised(std::move(own));
     const Outcome<Best> best = contours ? bestAttempt(*contours, start, options) : Outcome<Best>(contours.failure());

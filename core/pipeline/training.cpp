@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/light/contour_evidence.h"
 #include "core/light/estimate.h"
 #include "core/light/left_out.h"
 #include "core/light/refine_poses.h"
@@ -42,14 +43,15 @@ namespace {
 
 /// Whether the limit angle gets an extent. With -1 the views decide: only where one constant leaves residuals that are both visible and
 /// systematic is the extent tried at all, and it is kept when it predicts left-out views better by more than the standard error of the gain.
-int limitOrders(const std::vector<BundleView>& views, const Bundle& constant, const BundleOptions& options, int asked) {
+int limitOrders(const std::vector<ContourEvidence>& evidence, std::size_t views, const Bundle& constant,
+                const BundleOptions& options, int asked) {
   if (asked >= 0) return asked;
   constexpr double kVisiblePx = 0.05;      // a renderer's own noise and the detection stay below
   constexpr double kSystematic = 0.5;      // of the points count as independent: less means that residuals keep their sign along contours
-  if (views.size() < 4 || !(constant.rmsPx > kVisiblePx) || !constant.uncertainty) return 0;
-  if (constant.uncertainty->degreesOfFreedom > kSystematic * double(options.pointsPerView) * double(views.size())) return 0;
+  if (views < 4 || !(constant.rmsPx > kVisiblePx) || !constant.uncertainty) return 0;
+  if (constant.uncertainty->degreesOfFreedom > kSystematic * double(options.pointsPerView) * double(views)) return 0;
   constexpr int kLeftOut = 6;  // more views left out would not change a choice between two
-  const Outcome<LeftOutErrors> errors = leftOutErrors(views, constant.light, options, kLeftOut);
+  const Outcome<LeftOutErrors> errors = leftOutErrors(evidence, views, constant.light, options, kLeftOut);
   return errors && predictsLeftOutBetter(errors->directed, errors->constant) ? 1 : 0;
 }
 
@@ -85,11 +87,13 @@ Outcome<LightEstimate> estimateLight(const std::vector<TrainingView>& views, con
     BundleOptions options;
     options.pointsPerView = points;
     options.robustPx = settings.number("light.robust_px");
-    Outcome<Bundle> b = bundleLight(bundleViews, estimate.light, options);
+    const Outcome<std::vector<ContourEvidence>> evidence = contoursOnSurfaces(bundleViews, points);
+    if (!evidence) return evidence.failure();
+    Outcome<Bundle> b = bundleLight(*evidence, bundleViews.size(), estimate.light, options);
     if (!b) return b.failure();
-    if (limitOrders(bundleViews, *b, options, settings.integer("light.limit_orders")) > 0) {
+    if (limitOrders(*evidence, bundleViews.size(), *b, options, settings.integer("light.limit_orders")) > 0) {
       options.limitOrders = 1;
-      const Outcome<Bundle> directed = bundleLight(bundleViews, b->light, options);
+      const Outcome<Bundle> directed = bundleLight(*evidence, bundleViews.size(), b->light, options);
       if (directed) b = directed;
     }
     if (settings.flag("light.refine_poses")) {
