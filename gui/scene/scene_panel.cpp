@@ -11,7 +11,6 @@
 #include <QToolBar>
 #include <QToolButton>
 #include <QVBoxLayout>
-#include <QWidgetAction>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -21,8 +20,10 @@
 #include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/scene/before_results.h"
 #include "gui/scene/camera_glide.h"
 #include "gui/scene/scene_views.h"
+#include "gui/scene/size_action.h"
 
 namespace glint::gui {
 
@@ -30,44 +31,30 @@ namespace {
 constexpr int kGlyphSteps = 20;  // of the slider, for a factor of ten
 int sliderOf(double scale) { return int(std::lround(kGlyphSteps * std::log10(scale))); }
 double scaleOf(int slider) { return std::pow(10.0, double(slider) / kGlyphSteps); }
-
-/// The bar has its slider; the menu of what does not fit into the bar gets one of its own, with its name.
-class SizeAction : public QWidgetAction {
- public:
-  SizeAction(std::function<QSlider*()> make, QObject* parent) : QWidgetAction(parent), make_(std::move(make)) {}
-
- protected:
-  QWidget* createWidget(QWidget* parent) override {
-    QSlider* slider = make_();
-    if (!qobject_cast<QMenu*>(parent)) {
-      slider->setFixedWidth(80);
-      slider->setParent(parent);
-      return slider;
-    }
-    auto* named = new QWidget(parent);
-    auto* row = new QHBoxLayout(named);
-    row->setContentsMargins(10, 4, 10, 4);
-    row->addWidget(new QLabel(slider->toolTip()));
-    slider->setFixedWidth(120);
-    row->addWidget(slider);
-    return named;
-  }
-
- private:
-  std::function<QSlider*()> make_;
-};
 }  // namespace
 
 ScenePanel::ScenePanel(Document& document, QWidget* parent)
-    : QWidget(parent), document_(document), views_(new SceneViews), glide_(new CameraGlide(this)) {
+    : QWidget(parent),
+      document_(document),
+      views_(new SceneViews),
+      glide_(new CameraGlide(this)),
+      history_(document.undoStack()) {
   buildBars();
-  connect(&document_, &Document::staleChanged, new StaleBadge(views_), &StaleBadge::setStale);
+  auto* badge = new StaleBadge(views_);
+  const auto markStale = [this, badge] { badge->setStale(document_.stale() || views_->behind()); };
+  connect(&document_, &Document::staleChanged, badge, markStale);
+  connect(views_, &SceneViews::behindChanged, badge, markStale);
   connect(&document_, &Document::sceneOpened, this, &ScenePanel::showScene);
   connect(&document_, &Document::inspectionChanged, this, &ScenePanel::showInspection);
+  // The first of what is computed, before the rest is there.
+  connect(&document_, &Document::frameInspectionChanged, this, [this] {
+    if (!document_.inspection()) showFirst(document_.frameInspection());
+  });
   connect(&document_, &Document::layersChanged, this, &ScenePanel::showLayers);
   connect(&document_, &Document::selectionChanged, this, &ScenePanel::showSelection);
   connect(&document_, &Document::optionsChanged, this, &ScenePanel::showOptions);
   connect(&document_, &Document::requestChanged, this, &ScenePanel::showOptions);
+  connect(document_.undoStack(), &QUndoStack::indexChanged, this, &ScenePanel::followHistory);
   connect(views_, &SceneViews::taken, glide_, &CameraGlide::stop);
   connect(views_, &SceneViews::picked, this, &ScenePanel::select);
   connect(views_, &SceneViews::emptyClicked, this, [this] {
@@ -163,7 +150,7 @@ void ScenePanel::buildBars() {
 viz::SceneView& ScenePanel::view() { return views_->view(); }
 
 std::optional<viz::ViewPoint> ScenePanel::viewPoint() const {
-  return framed_ ? std::optional(views_->view().viewPoint()) : firstViewPoint_;
+  return framed_ || movedBeforeResults() ? std::optional(views_->view().viewPoint()) : firstViewPoint_;
 }
 
 void ScenePanel::renderNow() { views_->renderNow(); }
@@ -175,10 +162,46 @@ void ScenePanel::setDark(bool dark) { views_->setDark(dark); }
 void ScenePanel::showScene() {
   mayAskForInfluence_ = true;
   framed_ = false;
+  history_.forget();
+  arranged_.reset();
   glide_->stop();
   views_->setScene(document_.sharedScene());
+  beforeResults_.clear();
   showLayers();
   showSelection();
+  showOptions();
+  showFirst(knownBeforeResults(document_));
+}
+
+void ScenePanel::setViewPoint(const std::optional<viz::ViewPoint>& viewPoint) {
+  firstViewPoint_ = viewPoint;
+  if (!beforeResults_.empty() && !framed_) frameFirst();
+}
+
+void ScenePanel::frameFirst() {
+  if (movedBeforeResults()) return;
+  for (int i = 0; i < views_->viewCount(); ++i) {
+    if (firstViewPoint_)
+      views_->view(i).setViewPoint(*firstViewPoint_);
+    else
+      views_->view(i).frameAll();
+  }
+  beforeResults_ = views_->places();
+}
+
+bool ScenePanel::movedBeforeResults() const {
+  const std::vector<viz::ViewPoint> now = views_->places();
+  return !beforeResults_.empty() && !std::equal(now.begin(), now.end(), beforeResults_.begin(),
+                                                [](const auto& a, const auto& b) { return toText(a) == toText(b); });
+}
+
+void ScenePanel::showFirst(const std::shared_ptr<const Inspection>& inspection) {
+  if (!inspection) return;
+  // That there is no virtual camera is not known yet.
+  for (const SceneOptions::View& view : sceneOptions(document_).views)
+    if (view.eye == viz::Eye::VirtualCamera) return;
+  views_->setInspection(inspection);
+  frameFirst();
   showOptions();
 }
 
@@ -186,12 +209,7 @@ void ScenePanel::showInspection() {
   views_->setInspection(document_.inspection());
   if (!framed_ && document_.inspection()) {
     framed_ = true;
-    for (int i = 0; i < views_->viewCount(); ++i) {
-      if (firstViewPoint_)
-        views_->view(i).setViewPoint(*firstViewPoint_);
-      else
-        views_->view(i).frameAll();
-    }
+    frameFirst();
   }
   showOptions();
   // Reopened with its cameras coloured by what was measured then, as from a picture: measured again, once.
@@ -215,6 +233,10 @@ void ScenePanel::showSelection() {
 
 void ScenePanel::showOptions() {
   const SceneOptions options = sceneOptions(document_);
+  const std::pair<Arrangement, bool> arranged(options.arrangement, options.linked);
+  if (arranged_ && *arranged_ != arranged)
+    history_.leave(framed_ ? std::optional(views_->places()) : std::nullopt);  // before there are results they stand nowhere
+  arranged_ = arranged;
   views_->apply(options);
   showLayers();               // a view may have its own
   sizes_.removeAll(nullptr);  // that of a menu which is gone
@@ -225,6 +247,13 @@ void ScenePanel::showOptions() {
   const QSignalBlocker quietOpacity(opacity_);
   opacity_->setValue(int(std::lround(100 * options.opacity)));
   showEye();
+}
+
+void ScenePanel::followHistory() {
+  const std::optional<ViewHistory::Places> places = history_.arrive();
+  if (!places) return;
+  glide_->stop();
+  views_->setPlaces(*places);
 }
 
 void ScenePanel::showEye() {

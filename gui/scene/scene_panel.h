@@ -8,10 +8,12 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "gui/base/actions.h"
 #include "gui/document/document.h"
 #include "gui/scene/scene_options.h"
+#include "gui/scene/view_history.h"
 
 class QToolBar;
 class QMenu;
@@ -39,7 +41,7 @@ class ScenePanel : public QWidget {
   void setDark(bool dark);
   bool busy() const;  ///< photographs are on their way
   /// Where the next results are looked at from; none = show everything.
-  void setViewPoint(const std::optional<viz::ViewPoint>& viewPoint) { firstViewPoint_ = viewPoint; }
+  void setViewPoint(const std::optional<viz::ViewPoint>& viewPoint);
   /// The 3D camera to save: the one on screen, and before there are results the one that they will be looked at from.
   std::optional<viz::ViewPoint> viewPoint() const;
   QStringList savedViews() const;
@@ -76,9 +78,14 @@ class ScenePanel : public QWidget {
   void buildBars();
   void showScene();
   void showInspection();
+  /// What there is to see before all results are there; null = nothing.
+  void showFirst(const std::shared_ptr<const Inspection>& inspection);
+  void frameFirst();  ///< all views, from where the first results are looked at; not where the user has moved on
+  bool movedBeforeResults() const;
   void showLayers();
   void showSelection();
   void showOptions();
+  void followHistory();  ///< the undo stack's index has changed
   void showEye();
   void select(const viz::Picked& picked);
   void setSwitch(const char* option, bool on, const QString& text);
@@ -88,6 +95,8 @@ class ScenePanel : public QWidget {
   Document& document_;
   SceneViews* views_;
   CameraGlide* glide_;
+  ViewHistory history_;
+  std::optional<std::pair<Arrangement, bool>> arranged_;  ///< how the views are: arrangement, linked; none before a scene
   QToolBar* bar_ = nullptr;
   bool mayAskForInfluence_ = true;  ///< once for each scene by itself
   QAction* slider_ = nullptr;       ///< the last one of the bar
@@ -100,6 +109,7 @@ class ScenePanel : public QWidget {
   std::optional<WhatIf> lampStart_;  ///< while a lamp is dragged
   bool framed_ = false;              ///< the picture was framed since the scene was opened
   std::optional<viz::ViewPoint> firstViewPoint_;
+  std::vector<viz::ViewPoint> beforeResults_;  ///< where the views were put before there were results; empty = nothing was shown
 };
 
 }  // namespace glint::gui

@@ -13,8 +13,10 @@
 #include <QWheelEvent>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "gui/base/draw_turns.h"
+#include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/vtk_canvas.h"
 #include "viz/view_camera.h"
@@ -23,6 +25,7 @@ namespace glint::gui {
 
 namespace {
 constexpr int kStillMs = 300;        // after the last movement everything is drawn in full
+constexpr int kCaughtUpMs = 250;     // without another picture that was late
 constexpr int kQuickMs = 40;         // where that took longer, what changes is first drawn the quick way
 constexpr int kPhotographPx = 4096;  // widest photograph while looking through a camera
 constexpr double kGrabPx = 6;        // about the wipe's line
@@ -66,8 +69,15 @@ SceneViews::SceneViews(QWidget* parent)
   for (auto& view : views_) view = std::make_unique<viz::SceneView>(cache_);
 
   onRender_->SetClientData(this);
-  onRender_->SetCallback([](vtkObject*, unsigned long, void* self, void*) { static_cast<SceneViews*>(self)->syncCameras(); });
+  onRender_->SetCallback([](vtkObject*, unsigned long event, void* data, void*) {
+    auto* self = static_cast<SceneViews*>(data);
+    if (event == vtkCommand::StartEvent)
+      self->syncCameras();
+    else if (self->behind_)  // one that came before the mark ends it at once
+      self->caughtUp_.start(self->behindSince_.elapsed() < StaleBadge::kAfterMs ? 0 : kCaughtUpMs);
+  });
   window->AddObserver(vtkCommand::StartEvent, onRender_);
+  window->AddObserver(vtkCommand::EndEvent, onRender_);
   onInteraction_->SetClientData(this);
   onInteraction_->SetCallback([](vtkObject*, unsigned long event, void* data, void*) {
     auto* self = static_cast<SceneViews*>(data);
@@ -85,6 +95,8 @@ SceneViews::SceneViews(QWidget* parent)
   connect(&full_, &QTimer::timeout, this, [this] {
     if (widget_->isVisible()) renderFull();
   });
+  caughtUp_.setSingleShot(true);
+  connect(&caughtUp_, &QTimer::timeout, this, &SceneViews::endBehind);
   arrange();
 }
 
@@ -98,6 +110,7 @@ void SceneViews::setScene(std::shared_ptr<const Scene> scene) {
   loaded_.clear();
   toLoad_.clear();
   inspection_.reset();
+  own_.fill(false);
   for (auto& view : views_) view->setInspection(nullptr);
 }
 
@@ -106,6 +119,7 @@ void SceneViews::setInspection(const std::shared_ptr<const Inspection>& inspecti
   if (inspection) photographs_->setInspection(inspection);
   for (int i = 0; i < shown_; ++i) view(i).setInspection(inspection);
   fetchPhotograph();
+  setBehind();
   scheduleRender();
 }
 
@@ -113,6 +127,7 @@ void SceneViews::setSelection(const viz::Selection& selection) {
   selection_ = selection;
   for (int i = 0; i < shown_; ++i) view(i).setSelection(selection);
   fetchPhotograph();
+  setBehind();
   scheduleRender();
 }
 
@@ -129,6 +144,7 @@ void SceneViews::setDark(bool dark) {
 }
 
 void SceneViews::apply(const SceneOptions& options) {
+  for (int i = options.viewCount(); i < shown_; ++i) own_[std::size_t(i)] = !options_.linked && inspection_;
   options_ = options;
   arrange();
   for (int i = 0; i < kMostSceneViews; ++i) {
@@ -170,10 +186,10 @@ void SceneViews::arrange() {
   vtkRenderWindow* window = widget_->renderWindow();
   const int count = options_.viewCount();
   for (int i = shown_; i < count; ++i) {
-    // A new view starts where the active one looks from.
+    // A new view starts where the active one looks from; one that was moved by itself comes back there.
     view(i).setInspection(inspection_);
     view(i).setSelection(selection_);
-    if (shown_ > 0) view(i).setViewPoint(active().viewPoint());
+    if (shown_ > 0 && (options_.linked || !own_[std::size_t(i)])) view(i).setViewPoint(active().viewPoint());
     window->AddRenderer(view(i).renderer());
   }
   for (int i = count; i < shown_; ++i) window->RemoveRenderer(view(i).renderer());
@@ -258,6 +274,7 @@ void SceneViews::renderNow() {
     for (auto& view : views_) view->photographsArrived();
   widget_->renderNow();
   allPhotographs_ = false;
+  endBehind();
 }
 
 void SceneViews::renderMoving() {
@@ -265,6 +282,19 @@ void SceneViews::renderMoving() {
   setMoving(true);
   full_.start();
   widget_->renderWindow()->Render();
+}
+
+void SceneViews::setBehind() {
+  caughtUp_.stop();
+  if (behind_ || !inspection_) return;
+  behind_ = true;
+  behindSince_.start();
+  emit behindChanged(true);
+}
+
+void SceneViews::endBehind() {
+  caughtUp_.stop();
+  if (std::exchange(behind_, false)) emit behindChanged(false);
 }
 
 void SceneViews::setMoving(bool moving) {
@@ -281,6 +311,23 @@ void SceneViews::syncCameras() {
   const viz::ViewPoint seen = active().viewPoint();
   for (int i = 0; i < shown_; ++i)
     if (i != active_) view(i).setViewPoint(seen);
+}
+
+std::vector<viz::ViewPoint> SceneViews::places() const {
+  std::vector<viz::ViewPoint> places;
+  for (int i = 0; i < kMostSceneViews; ++i) {
+    const bool follows = options_.linked && i < shown_;  // it does when the next picture is drawn
+    places.push_back(views_[std::size_t(follows ? active_ : i)]->viewPoint());
+  }
+  return places;
+}
+
+void SceneViews::setPlaces(const std::vector<viz::ViewPoint>& places) {
+  for (int i = 0; i < kMostSceneViews; ++i) {
+    view(i).setViewPoint(places[std::size_t(i)]);
+    view(i).setParallel(options_.parallel);
+  }
+  scheduleRender();
 }
 
 int SceneViews::viewAt(const QPointF& position) const {

@@ -13,6 +13,7 @@
 #include <limits>
 #include <memory>
 #include <set>
+#include <vector>
 
 #include "gui/scene/photograph_store.h"
 #include "gui/scene/scene_options.h"
@@ -42,7 +43,12 @@ class SceneViews : public QWidget {
   /// Where a view lies in the picture: left, bottom, right, top, shares of it.
   std::array<double, 4> placeOf(int view) const;
   bool wiping() const { return options_.arrangement == Arrangement::Wipe; }
+  /// See behindChanged().
+  bool behind() const { return behind_; }
   bool busy() const { return photographs_->busy() || renderPending_; }
+  /// Where every view stands, shown or not; linked ones all where the active one does.
+  std::vector<viz::ViewPoint> places() const;
+  void setPlaces(const std::vector<viz::ViewPoint>& places);
 
   void setScene(std::shared_ptr<const Scene> scene);
   void setInspection(const std::shared_ptr<const Inspection>& inspection);
@@ -64,6 +70,9 @@ class SceneViews : public QWidget {
   void picked(const glint::viz::Picked& picked);
   void emptyClicked();
   void activeChanged();
+  /// The picture is of another selection or other results than were set. It ends only after a pause, so that a mark does not
+  /// flicker while one picture after the other is late.
+  void behindChanged(bool behind);
   void wipeMoved(double share, bool released);
   /// A true light is being dragged, m since the button went down.
   void lampMoved(const QString& light, double dx, double dy, double dz);
@@ -87,18 +96,24 @@ class SceneViews : public QWidget {
   void loadPhotograph();
   viz::LayerCache::Photograph photograph(int frame, int maxWidth);
   void setMoving(bool moving);
+  void setBehind();
+  void endBehind();
   void syncCameras();
   bool mouse(QEvent* event);
 
   std::shared_ptr<viz::LayerCache> cache_;
   PhotographStore* photographs_;
   std::array<std::unique_ptr<viz::SceneView>, kMostSceneViews> views_;
+  std::array<bool, kMostSceneViews> own_{};  ///< a view that is not shown comes back where it stands
   std::shared_ptr<const Inspection> inspection_;
   viz::Selection selection_;
   SceneOptions options_;
   VtkCanvas* widget_;
   vtkNew<vtkCallbackCommand> onRender_, onInteraction_;
-  QTimer full_;  ///< draws in full when nothing moved for a while
+  QTimer full_;      ///< draws in full when nothing moved for a while
+  QTimer caughtUp_;  ///< runs from a picture of what was set last
+  QElapsedTimer behindSince_;
+  bool behind_ = false;
   QPointF pressed_, last_;
   Drag drag_ = Drag::None;
   viz::Picked lamp_;  ///< what is dragged

@@ -14,6 +14,7 @@
 #include <QWheelEvent>
 #include <cmath>
 
+#include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/vtk_canvas.h"
 #include "gui/scene/layer_list.h"
@@ -245,6 +246,123 @@ class SceneTest : public QObject, SceneFixture {
     QCOMPARE(views().activeView(), 0);
   }
 
+  void undoBringsUnlinkedViewsBackToTheirOwnCameras() {
+    trigger("view.views-4");
+    settle();
+    trigger("view.link-views");
+    const int unlinked = document_->undoStack()->index();
+    const std::vector<viz::ViewPoint> own = lookFourWays();
+    document_->selectFrame(2);  // a step that arranges nothing lies between
+    trigger("view.link-views");
+    trigger("view.axis-back");
+    settle();
+    QVERIFY(samePlaces(placesNow(), std::vector(4, views().view(0).viewPoint())));
+    document_->undoStack()->undo();
+    settle();
+    QVERIFY(samePlaces(placesNow(), own));
+    document_->undoStack()->redo();
+    settle();
+    const viz::ViewPoint linked = views().view(0).viewPoint();
+    QVERIFY(samePlaces(placesNow(), std::vector(4, linked)));
+    document_->undoStack()->undo();
+    settle();
+    for (const char* other : {"view.views-1", "view.views-2", "view.views-wipe"}) {
+      trigger(other);
+      settle();
+      trigger("view.axis-back");
+      settle();
+      document_->undoStack()->undo();
+      settle();
+      QCOMPARE(views().viewCount(), 4);
+      QVERIFY2(samePlaces(placesNow(), own), other);
+    }
+    // A click in the history far away, and back.
+    trigger("view.views-1");
+    settle();
+    const int last = document_->undoStack()->index();
+    document_->undoStack()->setIndex(0);
+    settle();
+    QCOMPARE(views().viewCount(), 1);
+    document_->undoStack()->setIndex(last);
+    settle();
+    document_->undoStack()->setIndex(unlinked);
+    settle();
+    QVERIFY(samePlaces(placesNow(), own));
+  }
+
+  void aNewStepArrangesTheViewsAnew() {
+    trigger("view.views-4");
+    settle();
+    trigger("view.link-views");
+    lookFourWays();
+    document_->undoStack()->undo();
+    settle();
+    document_->selectFrame(2);  // the step that unlinked is gone from the history
+    trigger("view.axis-back");
+    settle();
+    const viz::ViewPoint linked = views().view(0).viewPoint();
+    trigger("view.link-views");
+    settle();
+    QVERIFY(samePlaces(placesNow(), std::vector(4, linked)));
+  }
+
+  /// One view large for a moment.
+  void unlinkedViewsComeBackWhereTheyStood() {
+    trigger("view.views-4");
+    settle();
+    trigger("view.link-views");
+    std::vector<viz::ViewPoint> own = lookFourWays();
+    trigger("view.views-1");
+    settle();
+    trigger("view.axis-back");
+    own[0] = views().view(0).viewPoint();
+    trigger("view.views-4");
+    settle();
+    QVERIFY(samePlaces(placesNow(), own));
+  }
+
+  void camerasAndSurfaceAreShownBeforeThereAreResults() {
+    const int surfaces = views().view().buildCount("surface");
+    document_->open(spread());
+    QVERIFY(!document_->inspection());
+    settle();
+    QTest::mouseClick(views().widget(), Qt::LeftButton, {}, onScreen(document_->scene()->frames[3].camera.centreInWorld()));
+    QCOMPARE(document_->selection().frame, 3);
+    QVERIFY(views().view().buildCount("surface") > surfaces);
+    // Results of the selected frame come first; whoever has moved the view by then keeps it.
+    trigger("view.axis-top");
+    const viz::ViewPoint moved = views().view().viewPoint();
+    setResults(true);
+    QCOMPARE(toText(views().view().viewPoint()), toText(moved));
+    setResults(false);
+    QCOMPARE(toText(views().view().viewPoint()), toText(moved));
+    // Who has not sees all of them.
+    document_->open(spread());
+    settle();
+    document_->setOption("scene/views", std::string("1"), "as it is");
+    setResults(false);
+    const viz::ViewPoint shown = views().view().viewPoint();
+    trigger("view.frame-all");
+    QVERIFY(samePlaces({shown}, {views().view().viewPoint()}));
+  }
+
+  void aPictureThatIsBehindTheSelectionIsMarked() {
+    const auto* badge = panel_->findChild<StaleBadge*>();
+    QVERIFY(badge && badge->isHidden() && !views().behind());
+    QSignalSpy changes(&views(), &SceneViews::behindChanged);
+    views().widget()->hide();  // nothing is drawn
+    document_->selectFrame(3);
+    QVERIFY(views().behind());
+    QTRY_VERIFY(!badge->isHidden());
+    views().widget()->show();
+    views().scheduleRender();
+    QTRY_VERIFY(badge->isHidden() && !views().behind());
+    QCOMPARE(changes.count(), 2);
+    document_->selectFrame(4);
+    views().renderNow();  // as for a picture of the window
+    QVERIFY(!views().behind() && badge->isHidden());
+  }
+
   void theWipesLineIsDragged() {
     trigger("view.views-wipe");
     settle();
@@ -424,12 +542,43 @@ class SceneTest : public QObject, SceneFixture {
   }
 
  private:
+  /// Results as the program gets them. @param first  those of the selected frame alone.
+  void setResults(bool first) {
+    auto inspection = std::make_shared<Inspection>(drawnCircles(document_->sharedScene(), document_->request()));
+    inspection->surfaces = std::make_shared<SurfaceCache>(*document_->sharedScene());
+    if (first)
+      document_->setFrameInspection(inspection, document_->selection().frame);
+    else
+      document_->setInspection(inspection, document_->request());
+    settle();
+  }
   static int differingPixels(const QImage& a, const QImage& b) {
     if (a.size() != b.size()) return a.width() * a.height();
     int n = 0;
     for (int y = 0; y < a.height(); ++y)
       for (int x = 0; x < a.width(); ++x) n += a.pixel(x, y) != b.pixel(x, y);
     return n;
+  }
+  std::vector<viz::ViewPoint> placesNow() {
+    std::vector<viz::ViewPoint> places;
+    for (int i = 0; i < views().viewCount(); ++i) places.push_back(views().view(i).viewPoint());
+    return places;
+  }
+  static bool samePlaces(const std::vector<viz::ViewPoint>& a, const std::vector<viz::ViewPoint>& b) {
+    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const auto& p, const auto& q) {
+             return (p.position - q.position).norm() < 1e-9 && (p.focalPoint - q.focalPoint).norm() < 1e-9;
+           });
+  }
+  /// Every one of four unlinked views gets a camera of its own.
+  std::vector<viz::ViewPoint> lookFourWays() {
+    const char* const ways[] = {"view.axis-front", "view.axis-left", "view.axis-top", "view.axis-right"};
+    const int w = views().widget()->width(), h = views().widget()->height();
+    for (int i = 0; i < 4; ++i) {
+      QTest::mouseClick(views().widget(), Qt::LeftButton, {}, {w * (i % 2) / 2 + 4, h * (i / 2) / 2 + 4});
+      trigger(ways[i]);
+    }
+    settle();
+    return placesNow();
   }
   QImage picture() {
     panel_->renderNow();
