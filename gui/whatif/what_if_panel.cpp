@@ -90,9 +90,9 @@ WhatIfPanel::WhatIfPanel(Document& document, QWidget* parent)
   rebuild();
 }
 
-int WhatIfPanel::highlights() const {
-  const auto inspection = document_.inspection();
-  const std::size_t frame = std::size_t(document_.selection().frame);
+int highlightsToMove(const Document& document) {
+  const auto inspection = document.inspection();
+  const std::size_t frame = std::size_t(document.selection().frame);
   return inspection && frame < inspection->evidence.size() ? int(inspection->evidence[frame].highlights.size()) : 0;
 }
 
@@ -144,7 +144,7 @@ QString WhatIfPanel::origin(const WhatIf& w) const {
 void WhatIfPanel::rebuild() {
   const Scene* scene = document_.scene();
   rememberLobe();
-  const int frame = document_.selection().frame, count = highlights();
+  const int frame = document_.selection().frame, count = highlightsToMove(document_);
   const double roughness = fitted_ ? fitted_->roughness : WhatIf{}.roughness;
   if (scene == builtFor_ && frame == builtFrame_ && count == builtHighlights_ && roughness == builtRoughness_ && knobs_)
     return refresh();
@@ -208,11 +208,12 @@ void WhatIfPanel::addRow(const WhatIfKnob& knob, QGridLayout* grid, int row) {
   const auto gesture = std::make_shared<int>(0);
   connect(slider, &QSlider::sliderPressed, this, [this, gesture] { *gesture = document_.newGesture(); });
   connect(slider, &QSlider::valueChanged, this, [this, knob, scale, slider, gesture](int position) {
-    change(knob, scale.value(position), slider->isSliderDown() ? *gesture : 0);
+    turnKnob(document_, knob, scale.value(position), slider->isSliderDown() ? *gesture : 0);
   });
   connect(box, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this,
-          [this, knob](double value) { change(knob, value, 0); });
-  connect(reset, &QToolButton::clicked, this, [this, knob] { change(knob, std::get<double>(knob.spec.defaultValue), 0); });
+          [this, knob](double value) { turnKnob(document_, knob, value); });
+  connect(reset, &QToolButton::clicked, this,
+          [this, knob] { turnKnob(document_, knob, std::get<double>(knob.spec.defaultValue)); });
   rows_.push_back({knob,
                    [slider, box, scale](double value) {
                      const QSignalBlocker quietSlider(slider), quietBox(box);
@@ -223,12 +224,24 @@ void WhatIfPanel::addRow(const WhatIfKnob& knob, QGridLayout* grid, int row) {
                    reset});
 }
 
-void WhatIfPanel::change(const WhatIfKnob& knob, double value, int gesture) {
-  WhatIf w = document_.request().whatIf;
+void turnKnob(Document& document, const WhatIfKnob& knob, double value, int gesture) {
+  WhatIf w = document.request().whatIf;
   knob.set(w, value);
-  document_.setWhatIf(
-      w, tr("What if: %1, %2 %3").arg(toQString(knob.group), toQString(knob.spec.title).toLower(), valueText(value, knob.spec)),
-      gesture > 0 ? QStringLiteral("%1#%2").arg(toQString(knob.spec.key)).arg(gesture) : QString());
+  document.setWhatIf(w,
+                     QObject::tr("What if: %1, %2 %3")
+                         .arg(toQString(knob.group), toQString(knob.spec.title).toLower(), valueText(value, knob.spec)),
+                     gesture > 0 ? QStringLiteral("%1#%2").arg(toQString(knob.spec.key)).arg(gesture) : QString());
+}
+
+bool WhatIfPanel::showKnob(const std::string& key) {
+  rebuild();  // it may wait for its turn
+  QWidget* control = knobs_ ? knobs_->findChild<QWidget*>(QLatin1String("slider:") + toQString(key)) : nullptr;
+  if (!control) control = findChild<QWidget*>(QLatin1String("whatif.") + toQString(key));
+  if (!control) return false;
+  if (!control->isEnabled()) control = synthesise_;
+  ensureWidgetVisible(control, 0, height() / 3);
+  control->setFocus(Qt::ShortcutFocusReason);
+  return true;
 }
 
 void WhatIfPanel::refresh() {

@@ -18,6 +18,11 @@ class QToolButton;
 
 namespace glint::gui {
 
+/// Highlights of the selected frame that there are knobs for: those of the newest results.
+int highlightsToMove(const Document& document);
+/// One step of undo; equal positive gestures merge. @param value  in the unit of the knob.
+void turnKnob(Document& document, const WhatIfKnob& knob, double value, int gesture = 0);
+
 /// What if the light, the surface, a camera or a contour were another: one row per knob of `whatIfKnobs`, every change one step
 /// of undo, the results follow. A synthesis starts from the lobe that was fitted on the scene as captured, where there is one.
 /// Object names for tests: "slider:KEY", "value:KEY", "reset:KEY", "whatif.synthesise", "whatif.lobe", "whatif.origin".
@@ -25,6 +30,9 @@ class WhatIfPanel : public QScrollArea {
   Q_OBJECT
  public:
   explicit WhatIfPanel(Document& document, QWidget* parent = nullptr);
+  /// Brings a knob by its key, "synthesise" or "lobe" in sight and gives it the keyboard; where it counts only for synthesised
+  /// contours and there are none, what switches them on gets the keyboard. False for an unknown key.
+  bool showKnob(const std::string& key);
 
  private:
   struct Row {
@@ -36,8 +44,6 @@ class WhatIfPanel : public QScrollArea {
   void rebuild();  ///< another frame has other knobs
   void refresh();
   void addRow(const WhatIfKnob& knob, QGridLayout* grid, int row);
-  void change(const WhatIfKnob& knob, double value, int gesture);
-  int highlights() const;
   void rememberLobe();
   WhatIf started(WhatIf w, bool synthesise) const;  ///< with the lobe to start from, or without it again
   QString origin(const WhatIf& w) const;

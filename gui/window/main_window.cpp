@@ -222,7 +222,8 @@ void MainWindow::buildDocks() {
 
   parameters_ = new ParameterPanel(document_);
   docks_.add("parameters", tr("Parameters"), parameters_, Qt::RightDockWidgetArea);
-  docks_.add("what-if", tr("What if"), new WhatIfPanel(document_), Qt::RightDockWidgetArea, "parameters");
+  whatIf_ = new WhatIfPanel(document_);
+  docks_.add("what-if", tr("What if"), whatIf_, Qt::RightDockWidgetArea, "parameters");
   docks_.add("conditioning", tr("Conditioning"), new ConditioningPanel(document_), Qt::RightDockWidgetArea);
   numbers_ = new NumbersPanel(document_);
   docks_.add("numbers", tr("Numbers"), numbers_, Qt::RightDockWidgetArea);
@@ -329,10 +330,15 @@ void MainWindow::buildMenus() {
   edit->addSeparator();
   palette_ = new Palette(
       [this](const QString& typed) {
-        return paletteItems(typed, actions_, document_, [this](const std::string& key) {
-          docks_.bring(QStringLiteral("parameters"));
-          parameters_->showParameter(key);
-        });
+        const auto leadTo = [this](const char* dock, auto show) {
+          return [this, dock, show](const std::string& key) {
+            docks_.bring(QLatin1String(dock));
+            show(key);
+          };
+        };
+        return paletteItems(typed, actions_, document_,
+                            {leadTo("parameters", [this](const std::string& key) { parameters_->showParameter(key); }),
+                             leadTo("what-if", [this](const std::string& key) { whatIf_->showKnob(key); })});
       },
       this);
   palette_->setOpener(actions_.add("edit.palette", edit, tr("&Find an action, parameter or frame…"),

@@ -36,6 +36,7 @@ class SetupPanel;
 class Timeline;
 class TradeoffPanel;
 class UnreadablePhotographs;
+class WhatIfPanel;
 
 /// The window: puts the panels together and wires them; everything else is in their own classes.
 class MainWindow : public QMainWindow {
@@ -109,6 +110,7 @@ class MainWindow : public QMainWindow {
   ExplainPanel* explain_ = nullptr;
   NumbersPanel* numbers_ = nullptr;
   ParameterPanel* parameters_ = nullptr;
+  WhatIfPanel* whatIf_ = nullptr;
   Palette* palette_ = nullptr;
   PlotsPanel* plots_ = nullptr;
   SetupPanel* setup_ = nullptr;

@@ -18,18 +18,47 @@ namespace glint::gui {
 namespace {
 constexpr int kWidth = 700, kRows = 14, kMost = 200;
 constexpr int kCellEdges = 12;  // px, left and right of a cell's text
+constexpr int kFewestLetters = 3;
+// An occurrence in the title counts before any in the place, one in the place before any elsewhere.
+constexpr int kInPlace = 2, kInTitle = 7;
 
-/// 3 at the start of a word, 2 inside one, 1 for letters in order with others between, 0 for none.
-int wordScore(const QString& word, const QString& text) {
-  for (int at = text.indexOf(word); at >= 0; at = text.indexOf(word, at + 1))
-    if (at == 0 || !text[at - 1].isLetterOrNumber()) return 3;
-  if (text.contains(word)) return 2;
+/// How a word occurs in a text.
+enum class Occurs { Not, Inside, AtStart, Whole };
+
+Occurs occurs(const QString& word, const QString& text) {
+  Occurs best = Occurs::Not;
+  const auto edge = [&text](int at) { return at < 0 || at >= text.size() || !text[at].isLetterOrNumber(); };
+  for (int at = text.indexOf(word); at >= 0; at = text.indexOf(word, at + 1)) {
+    const Occurs here = !edge(at - 1) ? Occurs::Inside : edge(at + word.size()) ? Occurs::Whole : Occurs::AtStart;
+    best = std::max(best, here);
+  }
+  return best;
+}
+
+/// The first letter begins a word; each other one comes next, or after one that was left out, or begins a word after it.
+bool lettersOf(const QString& word, const QString& text) {
+  const auto begins = [&text](int at) { return text[at].isLetterOrNumber() && (at == 0 || !text[at - 1].isLetterOrNumber()); };
+  std::vector<int> ends;  // where the letters so far may end
+  for (int at = 0; at < text.size(); ++at)
+    if (begins(at) && text[at] == word[0]) ends.push_back(at);
+  for (int i = 1; i < word.size(); ++i) {
+    std::vector<int> next;
+    for (int at = ends.empty() ? text.size() : ends.front() + 1; at < text.size(); ++at) {
+      const bool near = std::any_of(ends.begin(), ends.end(), [&](int end) { return at == end + 1 || at == end + 2; });
+      if (text[at] == word[i] && (near || begins(at))) next.push_back(at);
+    }
+    ends = std::move(next);
+  }
+  return !ends.empty();
+}
+
+bool scatteredIn(const QString& word, const QString& text) {
   int from = 0;
   for (const QChar c : word) {
     from = text.indexOf(c, from) + 1;
-    if (from == 0) return 0;
+    if (from == 0) return false;
   }
-  return word.size() > 2 ? 1 : 0;  // one or two letters are in everything
+  return true;
 }
 
 /// Words that people type for ours.
@@ -48,29 +77,27 @@ QStringList wordsOf(const QString& typed) {
 }
 }  // namespace
 
-std::optional<int> matchScore(const QString& typed, const QString& text) {
-  const QString lower = text.toLower();
-  int sum = 0;
+std::optional<PaletteMatch> matchOf(const QString& typed, const PaletteItem& item) {
+  const QString title = item.title.toLower(), place = item.place.toLower(), others = item.words.toLower();
+  PaletteMatch match;
   for (const QString& word : wordsOf(typed)) {
-    const int score = wordScore(word, lower);
-    if (score == 0) return std::nullopt;
-    sum += score;
+    int best = 0;
+    for (const QString& spelt : {word, ours(word)}) {
+      // A part of another word may be chance there: "ring" of "string".
+      const bool other = occurs(spelt, others) >= Occurs::AtStart;
+      best = std::max({best, kInTitle * int(occurs(spelt, title)), kInPlace * int(occurs(spelt, place)), int(other)});
+    }
+    match.score += best;
+    if (best > 0) continue;
+    if (word.size() < kFewestLetters) return std::nullopt;  // one or two letters are in everything
+    if (lettersOf(word, title) || lettersOf(word, place))
+      match.way = std::min(match.way, PaletteMatch::Way::Letters);
+    else if (scatteredIn(word, title + QLatin1Char(' ') + place))
+      match.way = PaletteMatch::Way::Scattered;
+    else
+      return std::nullopt;
   }
-  return sum;
-}
-
-std::optional<int> matchScore(const QString& typed, const PaletteItem& item) {
-  const QString shown = (item.title + QLatin1Char(' ') + item.place).toLower(), others = item.words.toLower();
-  int sum = 0;
-  for (const QString& word : wordsOf(typed)) {
-    // Twice the usual score, so that another word has a place between letters in order and the inside of a word.
-    int best = 2 * std::max(wordScore(word, shown), wordScore(ours(word), shown) > 1 ? 2 : 0);
-    if (best < 3 && (wordScore(word, others) == 3 || wordScore(ours(word), others) == 3)) best = 3;
-    if (best == 0) return std::nullopt;
-    sum += best;
-  }
-  // The title alone counts double, so that "level" finds the contour level before what lies in a folder of that name.
-  return sum + 2 * matchScore(typed, item.title).value_or(0);
+  return match;
 }
 
 Palette::Palette(std::function<QList<PaletteItem>(const QString&)> items, QWidget* window)
@@ -116,15 +143,20 @@ void Palette::search() {
   const QList<PaletteItem> all = source_(typed);
   // Of a line "name = value" the name is what is looked for.
   const QString wanted = typed.section(QLatin1Char('='), 0, 0).trimmed();
-  std::vector<std::pair<int, int>> found;  // minus the score, place in `all`
+  std::vector<std::pair<PaletteMatch, int>> found;  // place in `all`
   for (int i = 0; i < all.size(); ++i) {
-    if (const std::optional<int> score = matchScore(wanted, all[i])) found.push_back({-*score, i});
+    if (const std::optional<PaletteMatch> match = matchOf(wanted, all[i])) found.push_back({*match, i});
   }
-  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  // Letters that lie anywhere are a last resort.
+  if (!found.empty() && found.front().first.way > PaletteMatch::Way::Scattered)
+    found.erase(
+        std::find_if(found.begin(), found.end(), [](const auto& f) { return f.first.way == PaletteMatch::Way::Scattered; }),
+        found.end());
   if (found.size() > std::size_t(kMost)) found.resize(kMost);
   shown_.clear();
   list_->clear();
-  for (const auto& [score, i] : found) {
+  for (const auto& [match, i] : found) {
     const PaletteItem& item = all[i];
     shown_.append(item);
     auto* row = new QTreeWidgetItem(list_, {item.title, item.place, item.detail});

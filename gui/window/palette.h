@@ -4,6 +4,7 @@
 #include <QFrame>
 #include <QList>
 #include <QString>
+#include <compare>
 #include <functional>
 #include <optional>
 
@@ -23,12 +24,21 @@ struct PaletteItem {
   QString words = {};  ///< what else one may call it, not shown: its tool tip, the values that it takes, synonyms
 };
 
-/// How well an item answers what was typed: every word must occur in `text`; a word at the start of one of its words counts most,
-/// letters that only follow one another least. Nothing when a word does not occur.
-std::optional<int> matchScore(const QString& typed, const QString& text);
-/// The same for an item: its title counts most, then its place, then the beginnings of its other words; American spelling is
-/// understood.
-std::optional<int> matchScore(const QString& typed, const PaletteItem& item);
+/// How well an item answers what was typed. The way in which it was found counts before the score.
+struct PaletteMatch {
+  enum class Way {
+    Scattered,  ///< letters in order with anything between them
+    Letters,    ///< letters in order, at the starts of words or with one left out: "cnlv" of "Contour level"
+    Text        ///< every word as it was typed
+  };
+  Way way = Way::Text;
+  int score = 0;
+  friend auto operator<=>(const PaletteMatch&, const PaletteMatch&) = default;
+};
+/// Every word that was typed must occur in the item. A whole word counts more than the start of one, that more than the inside;
+/// the title counts most, then the place, then the starts of its other words; American spelling is understood. Nothing when a
+/// word does not occur.
+std::optional<PaletteMatch> matchOf(const QString& typed, const PaletteItem& item);
 
 /// The command palette: type a few letters, Return runs the item. It covers the top of its window until it is left.
 class Palette : public QFrame {

@@ -6,6 +6,7 @@
 #include <QRegularExpression>
 
 #include "gui/base/text.h"
+#include "gui/whatif/what_if_panel.h"
 
 namespace glint::gui {
 
@@ -93,6 +94,53 @@ void addAssignments(QList<PaletteItem>& items, const QString& value, Document& d
   }
 }
 
+std::vector<WhatIfKnob> knobsOf(const Document& document) {
+  if (document.frameCount() == 0) return {};
+  return whatIfKnobs(*document.scene(), document.selection().frame, highlightsToMove(document));
+}
+
+PaletteItem itemOf(const WhatIfKnob& knob, const QString& detail, bool enabled, std::function<void()> run) {
+  return {toQString(knob.spec.title),
+          QObject::tr("What if › %1").arg(toQString(knob.group)),
+          detail,
+          enabled,
+          std::move(run),
+          QObject::tr("slider change move") + QLatin1Char(' ') + toQString(knob.spec.help)};
+}
+
+void addKnobs(QList<PaletteItem>& items, Document& document, const std::function<void(const std::string&)>& show) {
+  if (document.frameCount() == 0) return;
+  const WhatIf& now = document.request().whatIf;
+  items.append({QObject::tr("Synthesise the contours"), QObject::tr("What if"),
+                now.synthesise ? QObject::tr("on") : QObject::tr("off"), true, [show] { show("synthesise"); },
+                QObject::tr("synthetic simulate")});
+  items.append({QObject::tr("Lobe that makes the contours"),
+                QObject::tr("What if"),
+                QLatin1String(nameOf(now.lobe)),
+                true,
+                [show] { show("lobe"); },
+                {}});
+  for (const WhatIfKnob& knob : knobsOf(document))
+    items.append(itemOf(knob, valueText(knob.get(now), knob.spec), true, [show, key = knob.spec.key] { show(key); }));
+}
+
+void addKnobAssignments(QList<PaletteItem>& items, const QString& value, Document& document) {
+  for (const WhatIfKnob& knob : knobsOf(document)) {
+    const ParamSpec& spec = knob.spec;
+    bool isNumber = false;
+    const double wanted = value.toDouble(&isNumber);
+    QString problem;
+    if (!isNumber)
+      problem = QObject::tr("\"%1\" is not a number").arg(value);
+    else if (!(wanted >= spec.min && wanted <= spec.max))
+      problem = QObject::tr("%1 is not within %2 … %3").arg(value, numberText(spec.min), valueText(spec.max, spec));
+    else if (knob.synthetic && !document.request().whatIf.synthesise)
+      problem = QObject::tr("only where contours are synthesised");
+    items.append(itemOf(knob, problem.isEmpty() ? QObject::tr("set to %1").arg(valueText(wanted, spec)) : problem,
+                        problem.isEmpty(), [&document, knob, wanted] { turnKnob(document, knob, wanted); }));
+  }
+}
+
 void addFrames(QList<PaletteItem>& items, Document& document) {
   for (int i = 0; i < document.frameCount(); ++i)
     items.append({QObject::tr("Frame %1").arg(toQString(document.scene()->frames[std::size_t(i)].id)),
@@ -103,19 +151,21 @@ void addFrames(QList<PaletteItem>& items, Document& document) {
 }
 }  // namespace
 
-QList<PaletteItem> paletteItems(const QString& typed, const Actions& actions, Document& document,
-                                const std::function<void(const std::string&)>& showParameter) {
+QList<PaletteItem> paletteItems(const QString& typed, const Actions& actions, Document& document, const PaletteTargets& targets) {
   QList<PaletteItem> items;
   if (const int equals = typed.indexOf(QLatin1Char('=')); equals >= 0) {
     if (const QString value = typed.mid(equals + 1).trimmed(); !value.isEmpty()) {
       addAssignments(items, value, document);
+      addKnobAssignments(items, value, document);
       return items;
     }
-    addParameters(items, document, showParameter);
+    addParameters(items, document, targets.parameter);
+    addKnobs(items, document, targets.whatIf);
     return items;
   }
   addActions(items, actions);
-  addParameters(items, document, showParameter);
+  addParameters(items, document, targets.parameter);
+  addKnobs(items, document, targets.whatIf);
   // Not before a number is typed: a thousand frames would bury the rest.
   if (document.scene() && typed.contains(QRegularExpression(QStringLiteral("\\d")))) addFrames(items, document);
   return items;

@@ -7,10 +7,13 @@
 
 namespace glint::gui {
 
-/// What the palette offers for what is typed: every action, every parameter with its value, the frames once a number is typed,
-/// and for "name = value" the parameters with that value, to be set at once.
-/// @param showParameter  brings a parameter's row in sight, ready for keys.
-QList<PaletteItem> paletteItems(const QString& typed, const Actions& actions, Document& document,
-                                const std::function<void(const std::string& key)>& showParameter);
+/// Where the palette leads: brings the row of a key in sight, ready for keys.
+struct PaletteTargets {
+  std::function<void(const std::string&key)> parameter, whatIf;
+};
+
+/// What the palette offers for what is typed: every action, every parameter and every knob of the what-if with its value, the
+/// frames once a number is typed, and for "name = value" the parameters and knobs with that value, to be set at once.
+QList<PaletteItem> paletteItems(const QString& typed, const Actions& actions, Document& document, const PaletteTargets& targets);
 
 }  // namespace glint::gui

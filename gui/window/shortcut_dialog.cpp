@@ -13,6 +13,8 @@
 #include <QScreen>
 #include <QTreeWidget>
 #include <QVBoxLayout>
+#include <algorithm>
+#include <vector>
 
 #include "gui/window/palette.h"
 
@@ -81,9 +83,15 @@ void ShortcutDialog::fill() {
 }
 
 void ShortcutDialog::filter() {
+  // As the palette: letters that lie anywhere only where nothing else is found.
+  std::vector<std::optional<PaletteMatch>> matches;
+  for (int i = 0; i < list_->topLevelItemCount(); ++i)
+    matches.push_back(matchOf(search_->text(), {list_->topLevelItem(i)->text(0), {}, {}, true, {}}));
+  const auto scattered = [](const auto& m) { return m && m->way == PaletteMatch::Way::Scattered; };
+  const bool better = std::any_of(matches.begin(), matches.end(), [&](const auto& m) { return m && !scattered(m); });
   for (int i = 0; i < list_->topLevelItemCount(); ++i) {
-    QTreeWidgetItem* row = list_->topLevelItem(i);
-    row->setHidden(!matchScore(search_->text(), row->text(0)));
+    const auto& match = matches[std::size_t(i)];
+    list_->topLevelItem(i)->setHidden(!match || (better && scattered(match)));
   }
 }
 

@@ -12,9 +12,13 @@
 #include <QTimer>
 #include <QTreeWidget>
 #include <algorithm>
+#include <cmath>
 
+#include "core/base/angle.h"
 #include "gui/base/text.h"
+#include "gui/whatif/what_if_panel.h"
 #include "gui/window/main_window.h"
+#include "gui/window/palette_items.h"
 #include "gui/window/shortcut_dialog.h"
 #include "tests/gui/fixture.h"
 
@@ -42,14 +46,85 @@ class PaletteTest : public QObject {
   }
   void cleanup() { window_.reset(); }
 
-  void wordsMatchAtStartsInsidesAndByLetters() {
-    QCOMPARE(matchScore("lev", "Contour level"), std::optional(3));
-    QCOMPARE(matchScore("evel", "Contour level"), std::optional(2));
-    QCOMPARE(matchScore("cnr", "Contour level"), std::optional(1));
-    QCOMPARE(matchScore("LEVEL con", "Contour level"), std::optional(6));
-    QCOMPARE(matchScore("", "anything"), std::optional(0));
-    QVERIFY(!matchScore("level zebra", "Contour level"));
-    QVERIFY(!matchScore("vl", "Contour level"));  // two letters in order are in everything
+  void wholeWordsCountBeforeStartsInsidesAndLetters() {
+    const auto match = [](const char* typed, const char* title) { return matchOf(QLatin1String(typed), titled(title)); };
+    QVERIFY(match("level", "Contour level") > match("lev", "Contour level"));
+    QVERIFY(match("lev", "Contour level") > match("evel", "Contour level"));
+    QVERIFY(match("evel", "Contour level") > match("cnlv", "Contour level"));
+    QVERIFY(match("cnlv", "Contour level") > match("cnr", "Contour level"));
+    QCOMPARE(match("evel", "Contour level")->way, PaletteMatch::Way::Text);
+    QCOMPARE(match("cnlv", "Contour level")->way, PaletteMatch::Way::Letters);
+    QCOMPARE(match("cnr", "Contour level")->way, PaletteMatch::Way::Scattered);
+    QVERIFY(match("LEVEL con", "Contour level") > match("level", "Contour level"));
+    QVERIFY(match("", "anything"));
+    QVERIFY(!match("level zebra", "Contour level"));
+    QVERIFY(!match("vl", "Contour level"));  // two letters in order are in everything
+    // However many words are whole: one that is only letters puts the item behind.
+    QVERIFY(match("contour evel", "Contour level") > match("contour contour lvl", "Contour level"));
+  }
+
+  void scatteredLettersAreALastResort() {
+    popUp();
+    const QTreeWidget* list = window_->commandPalette()->list();
+    for (const char* typed : {"light", "undo", "contour", "camera"}) {
+      window_->commandPalette()->line()->setText(typed);
+      QVERIFY2(list->topLevelItem(0)->text(0).contains(QLatin1String(typed), Qt::CaseInsensitive), typed);
+      for (const PaletteItem& item : paletteItems(typed, window_->actions(), window_->document(), {})) {
+        const std::optional<PaletteMatch> match = matchOf(typed, item);
+        if (match && match->way == PaletteMatch::Way::Scattered) QVERIFY2(!shows(item), qPrintable(item.title));
+      }
+    }
+    window_->commandPalette()->line()->setText("undo");
+    QCOMPARE(list->topLevelItem(0)->text(0), QStringLiteral("Undo"));
+    window_->commandPalette()->line()->setText("cotolel");  // nothing better
+    QVERIFY(!list->topLevelItem(0)->isDisabled() && list->topLevelItemCount() < 20);
+    bool found = false;
+    for (int i = 0; i < list->topLevelItemCount(); ++i) found |= list->topLevelItem(i)->text(0) == "Contour level";
+    QVERIFY(found);
+  }
+
+  void everyKnobOfTheWhatIfIsFoundAndGetsTheKeyboard() {
+    const std::vector<WhatIfKnob> knobs = whatIfKnobs(*window_->document().scene(), 0, highlightsToMove(window_->document()));
+    QVERIFY(knobs.size() > 10);
+    WhatIf synthetic;
+    for (const bool synthesise : {false, true}) {
+      synthetic.synthesise = synthesise;
+      window_->document().setWhatIf(synthetic, "Synthesise");
+      QTRY_VERIFY(window_->idle());
+      for (const WhatIfKnob& knob : knobs) {
+        popUp();
+        window_->commandPalette()->line()->setText(toQString(knob.group + " " + knob.spec.title));
+        const QTreeWidgetItem* row = window_->commandPalette()->list()->topLevelItem(0);
+        QCOMPARE(row->text(0), toQString(knob.spec.title));
+        QVERIFY(row->text(1).endsWith(toQString(knob.group)));
+        QCOMPARE(row->text(2), valueText(knob.get(synthetic), knob.spec));
+        QTest::keyClick(window_->commandPalette()->line(), Qt::Key_Return);
+        const auto* slider = window_->findChild<QWidget*>(QLatin1String("slider:") + toQString(knob.spec.key));
+        QVERIFY2(slider && slider->isVisible(), knob.spec.key.c_str());
+        if (slider->isEnabled())
+          QTRY_VERIFY2(window_->focusWidget() == slider,
+                       qPrintable(toQString(knob.spec.key) + ": " +
+                                  (window_->focusWidget() ? window_->focusWidget()->objectName() : QString())));
+      }
+    }
+  }
+
+  void aKnobIsSetByAnAssignment() {
+    Document& document = window_->document();
+    const int steps = document.undoStack()->count();
+    popUp();
+    type("turn about y = 2", Qt::Key_Return);
+    QCOMPARE(document.undoStack()->count(), steps + 1);
+    const auto turned = document.request().whatIf.poses.find(0);
+    QVERIFY(turned != document.request().whatIf.poses.end());
+    QVERIFY(std::abs(turned->second.rotation.y() - radians(2)) < 1e-12);
+    for (const char* wrong : {"turn about y = 200", "turn about y = two"}) {
+      popUp();
+      type(wrong, Qt::Key_Return);
+      QCOMPARE(document.undoStack()->count(), steps + 1);
+      QVERIFY(window_->commandPalette()->list()->topLevelItem(0)->isDisabled());
+      window_->commandPalette()->hide();
+    }
   }
 
   void everyActionIsInAMenuAndInThePalette() {
@@ -126,7 +201,7 @@ class PaletteTest : public QObject {
 
   void otherSpellingsAreUnderstood() {
     const auto matches = [](const char* typed, const char* title) {
-      return matchScore(QLatin1String(typed), PaletteItem{QLatin1String(title), {}, {}, true, {}, {}}).has_value();
+      return matchOf(QLatin1String(typed), titled(title)).has_value();
     };
     QVERIFY(matches("gray", "Grey") && matches("center", "Centre") && matches("image", "Picture") && matches("axis", "Axes"));
     QVERIFY(matches("colors", "Colours") && matches("centers", "Centres"));
@@ -260,6 +335,13 @@ class PaletteTest : public QObject {
   }
 
  private:
+  static PaletteItem titled(const char* title) { return {QLatin1String(title), {}, {}, true, {}, {}}; }
+  bool shows(const PaletteItem& item) const {
+    const QTreeWidget* list = window_->commandPalette()->list();
+    for (int i = 0; i < list->topLevelItemCount(); ++i)
+      if (list->topLevelItem(i)->text(0) == item.title && list->topLevelItem(i)->text(1) == item.place) return true;
+    return false;
+  }
   void popUp() {
     window_->actions().find("edit.palette")->trigger();
     QTRY_VERIFY(window_->commandPalette()->isVisible());
