@@ -19,6 +19,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <numbers>
+#include <optional>
 
 namespace glint::viz {
 namespace {
@@ -226,13 +227,17 @@ struct Annotations::Impl {
       setColour(actor, asText(labels[i].colour, dark));
       background(actor, 0.6);
       const Eigen::Vector2d size = sizeOf(actor);
-      const Rectangle place = freePlace(at, size, width, height, font);
-      taken.push_back(place);
-      move(actor, place.x, place.y);
+      const std::optional<Rectangle> place = freePlace(at, size, width, height, font);
+      actor->SetVisibility(place.has_value());
+      if (!place) continue;
+      taken.push_back(*place);
+      move(actor, place->x, place->y);
     }
   }
-  /// Beside a point, where nothing else stands: to the right first, then to the left, then in rows above and below.
-  Rectangle freePlace(const Eigen::Vector2d& at, const Eigen::Vector2d& size, int width, int height, double font) const {
+  /// Beside a point, where nothing else stands: to the right first, then to the left, then in rows above and below. Nothing where
+  /// a small picture has no room: a click on the point still tells what it is, texts over one another tell nothing.
+  std::optional<Rectangle> freePlace(const Eigen::Vector2d& at, const Eigen::Vector2d& size, int width, int height,
+                                     double font) const {
     const auto placed = [&](double x, double y) {
       return Rectangle{std::clamp(x, 2.0, std::max(2.0, width - size.x() - 4)),
                        std::clamp(y, 2.0, std::max(2.0, height - size.y() - 4)), size.x(), size.y()};
@@ -254,7 +259,7 @@ struct Annotations::Impl {
         }
       }
     }
-    return placed(at.x() + 0.8 * font, at.y() + 0.3 * font);
+    return {};
   }
   static Eigen::Vector3d rightOf(vtkCamera* camera) {
     return toEigen(camera->GetDirectionOfProjection()).cross(toEigen(camera->GetViewUp())).normalized();

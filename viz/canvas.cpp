@@ -15,6 +15,7 @@
 #include <mutex>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <sstream>
 
 #include "core/base/atomic_file.h"
 #include "core/base/outcome.h"
@@ -264,6 +265,19 @@ std::string Canvas::fitted(const std::string& text, double sizePx, double widthP
     if (textWidth(shorter + "\u2026", sizePx) <= widthPx) return shorter + "\u2026";
   }
   return {};
+}
+
+std::vector<std::string> Canvas::wrapped(const std::string& text, double sizePx, double widthPx) const {
+  std::vector<std::string> lines;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const std::string longer = lines.empty() ? word : lines.back() + " " + word;
+    if (!lines.empty() && textWidth(longer, sizePx) <= widthPx)
+      lines.back() = longer;
+    else
+      lines.push_back(word);
+  }
+  return lines;
 }
 
 Image Canvas::image() const {

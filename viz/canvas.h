@@ -42,6 +42,8 @@ class Canvas {
   double textWidth(const std::string& text, double sizePx) const;
   /// The text, its end replaced by an ellipsis if it is wider than `widthPx`.
   std::string fitted(const std::string& text, double sizePx, double widthPx) const;
+  /// The text in lines that are at most `widthPx` wide, broken at blanks; a single wider word is a line of its own.
+  std::vector<std::string> wrapped(const std::string& text, double sizePx, double widthPx) const;
   /// 3 channels, 0..1.
   Image image() const;
 

@@ -243,14 +243,46 @@ Image ladderPicture(const Inspection& inspection, int frame, const Outcome<Image
     canvas.text({0.8 * font, 4 * font}, "no model was computed", font, kFailed);
     return canvas.image();
   }
-  const double foot = 3.1 * font, gap = 0.5 * font, head = 2 * font;
+  // What stands below a tile: the numbers in one line, or the whole reason why there are none.
+  struct Below {
+    std::string numbers, reason;
+  };
+  std::vector<Below> below(models.size());
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const FrameScore score = frameScore(inspection.models.at(models[i]), frame);
+    if (score.errorPct) {
+      below[i].numbers = formatted("%.2f %%", *score.errorPct) + "   " + formatted("%.2f px", *score.errorPx) +
+                         (score.iou ? "   IoU " + formatted("%.3f", *score.iou) : "");
+      continue;
+    }
+    OverlayOptions captionsOnly;
+    captionsOnly.models = {models[i]};
+    for (const OverlayCaption& caption : frameOverlay(inspection, frame, captionsOnly).captions)
+      if (caption.model == models[i]) below[i].reason = caption.text.substr(std::min(caption.text.size(), models[i].size() + 2));
+  }
+  const double gap = 0.5 * font, head = 2 * font, line = 1.4 * font;
   Crop crop{-0.5, -0.5, static_cast<double>(camera.width), static_cast<double>(camera.height)};
   const std::optional<Crop> part = highlightCrop(inspection, frame, options.models, 0);
   if (part) crop = *part;
   const int count = static_cast<int>(models.size());
-  const int columns = ladderColumns(count, width - gap, height - head - gap, foot + gap, crop.width / crop.height);
-  const int rows = (count + columns - 1) / columns;
-  const double tileWidth = (width - gap) / columns - gap, tileHeight = (height - head - gap) / rows - gap;
+  int columns = 1, lines = 1;
+  double foot = 0, tileWidth = 0, tileHeight = 0;
+  const auto arrange = [&] {
+    foot = 1.7 * font + lines * line;
+    columns = ladderColumns(count, width - gap, height - head - gap, foot + gap, crop.width / crop.height);
+    const int rows = (count + columns - 1) / columns;
+    tileWidth = (width - gap) / columns - gap;
+    tileHeight = (height - head - gap) / rows - gap;
+  };
+  arrange();
+  for (int again = 0; again < 3; ++again) {  // more lines may mean other columns, and these other lines
+    int needed = 1;
+    for (const Below& b : below) needed = std::max(needed, int(canvas.wrapped(b.reason, font, tileWidth).size()));
+    const int most = std::max(1, int((0.6 * tileHeight - 1.7 * font) / line));  // the pictures are what it is about
+    if (std::min(needed, most) <= lines) break;
+    lines = std::min(needed, most);
+    arrange();
+  }
   // Every tile is filled: the part of the photograph grows to its shape.
   const Box picture{0, 0, tileWidth, std::max(16.0, tileHeight - foot)};
   crop = grownTo(crop, picture.width / picture.height, camera);
@@ -265,19 +297,18 @@ Image ladderPicture(const Inspection& inspection, int frame, const Outcome<Image
     drawPhotograph(canvas, photograph, crop, box, font, theme);
     drawOverlay(canvas, overlay, crop, box, ink);
     canvas.fill({box.x, box.y + box.height, box.width, 0.25 * font}, modelColour(models[i]));
-    const FrameScore score = frameScore(inspection.models.at(models[i]), frame);
-    std::string below;
-    if (score.errorPct)
-      below = formatted("%.2f %%", *score.errorPct) + "   " + formatted("%.2f px", *score.errorPx) +
-              (score.iou ? "   IoU " + formatted("%.3f", *score.iou) : "");
-    for (const OverlayCaption& caption : overlay.captions) {
-      if (!score.errorPct && caption.model == models[i])
-        below = caption.text.substr(std::min(caption.text.size(), models[i].size() + 2));
+    const double middle = box.x + 0.5 * box.width, top = box.y + box.height + 1.4 * font;
+    canvas.text({middle, top}, models[i], 1.1 * font, theme.ink, Align::Centre);
+    if (below[i].reason.empty()) {
+      canvas.text({middle, top + line}, canvas.fitted(below[i].numbers, font, tile.width), font, theme.ink, Align::Centre);
+      continue;
     }
-    const double middle = box.x + 0.5 * box.width;
-    canvas.text({middle, box.y + box.height + 1.4 * font}, models[i], 1.1 * font, theme.ink, Align::Centre);
-    canvas.text({middle, box.y + box.height + 2.8 * font}, canvas.fitted(below, font, tile.width), font,
-                score.errorPct ? theme.ink : kFailed, Align::Centre);
+    const std::vector<std::string> reason = canvas.wrapped(below[i].reason, font, tile.width);
+    for (int k = 0; k < std::min(lines, int(reason.size())); ++k) {
+      const bool more = k + 1 == lines && int(reason.size()) > lines;
+      canvas.text({middle, top + (k + 1) * line},
+                  canvas.fitted(reason[std::size_t(k)] + (more ? "\u2026" : ""), font, tile.width), font, kFailed, Align::Centre);
+    }
   }
   return canvas.image();
 }

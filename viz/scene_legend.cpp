@@ -39,6 +39,14 @@ void addCameras(SceneLegend& legend, const LayerInput& in) {
   for (const CameraColour& kind : kinds) legend.entries.push_back({kind.colour, kind.meaning});
 }
 
+/// The reason is that a fit of the model is no ellipsoid.
+bool isItsQuadric(const LayerInput& in, const std::string& model, const std::string& reason) {
+  const std::vector<const ModelFit*> fits = in.fits(model);
+  return std::any_of(fits.begin(), fits.end(), [&](const ModelFit* fit) {
+    return fit->quadric && !fit->ellipsoid && reason == Failure{Reason::NotAnEllipsoid, describe(*fit->quadric)}.message();
+  });
+}
+
 }  // namespace
 
 SceneLegend legendOf(const LayerInput& in, const std::vector<ShownLayer>& layers) {
@@ -76,14 +84,16 @@ SceneLegend legendOf(const LayerInput& in, const std::vector<ShownLayer>& layers
       char error[32] = "";
       if (score.errorPct) std::snprintf(error, sizeof error, "  %.2f %%", *score.errorPct);
       legend.entries.push_back({modelColour(model), model + error, true});
-      // What is wrong with the frame itself is said once, not for every model.
-      if (!score.errorPct && !score.reason.empty() && score.reason != noEvidence)
+      // What is wrong with the frame itself is said once, not for every model; a fit that is no ellipsoid by its layer.
+      if (!score.errorPct && !score.reason.empty() && score.reason != noEvidence &&
+          !(shown("ellipsoids") && isItsQuadric(in, model, score.reason)))
         legend.notes.push_back(model + ": " + score.reason);
     }
   }
   for (const ShownLayer& layer : layers) {
     if (!layer.visible) continue;
-    legend.notes.insert(legend.notes.end(), layer.content->notes.begin(), layer.content->notes.end());
+    for (const std::string& note : layer.content->notes)  // the fits of several lights may have the same fault
+      if (std::find(legend.notes.begin(), legend.notes.end(), note) == legend.notes.end()) legend.notes.push_back(note);
     legend.remarks.insert(legend.remarks.end(), layer.content->remarks.begin(), layer.content->remarks.end());
   }
   legend.title = in.inspection->scene->name + ", frame " + in.frame(in.selection.frame).id + " (" +

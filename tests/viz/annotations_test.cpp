@@ -3,17 +3,23 @@
 #include "viz/annotations.h"
 
 #include <gtest/gtest.h>
+#include <vtkActor2DCollection.h>
 #include <vtkNew.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
+#include <vtkTextActor.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "tests/viz/image_checks.h"
+#include "viz/canvas.h"
 #include "viz/convert.h"
 #include "viz/offscreen.h"
 #include "viz/scene_view.h"
@@ -52,6 +58,16 @@ class LegendPicture : public testing::Test {
     annotations.place({0, 0, 0});
     window->Render();
     legend_ = annotations.legendSize();
+    texts_.clear();
+    vtkActor2DCollection* actors = renderer->GetActors2D();
+    actors->InitTraversal();
+    while (vtkActor2D* actor = actors->GetNextActor2D()) {
+      auto* text = vtkTextActor::SafeDownCast(actor);
+      if (!text || !text->GetVisibility() || !text->GetInput()) continue;
+      double size[2];
+      text->GetSize(renderer, size);
+      texts_[text->GetInput()] = {text->GetPosition()[0], text->GetPosition()[1], size[0], size[1]};
+    }
     Image image = pictureOf(window);
     window->RemoveRenderer(renderer);
     window->Finalize();
@@ -68,6 +84,7 @@ class LegendPicture : public testing::Test {
   }
   std::unique_ptr<VirtualDisplay> display_;
   Eigen::Vector2d legend_;
+  std::map<std::string, Box> texts_;  ///< what is shown of them, window px, y up
 };
 
 constexpr double kSwatch = 3.0, kWide = 40;  // where swatches end and texts begin, where texts have ended: in heights of the text
@@ -124,6 +141,28 @@ TEST_F(LegendPicture, NotesAreInTheColourOfWhatFailedAndRemarksAreFaint) {
   EXPECT_EQ(redAndGrey({}, {}), (std::array<bool, 2>{false, false}));
   EXPECT_EQ(redAndGrey({"the fit of dual failed"}, {}), (std::array<bool, 2>{true, false}));
   EXPECT_EQ(redAndGrey({}, {"photographs of 25 of 100 cameras"}), (std::array<bool, 2>{false, true}));
+}
+
+TEST_F(LegendPicture, LabelsNeverLieOverOneAnother) {
+  constexpr int kLabels = 30;
+  const auto fill = [](Annotations& a) {
+    std::vector<DrawnLabel> labels;
+    for (int i = 0; i < kLabels; ++i) labels.push_back({{0.002 * i, 0, 0}, "label of point " + std::to_string(i), kMagenta});
+    a.setLabels(labels);
+  };
+  for (const int width : {200, 320, 800}) {
+    SCOPED_TRACE(width);
+    picture(width, true, fill);
+    std::vector<Box> shown;
+    for (const auto& [text, box] : texts_)
+      if (text.find("label") == 0) shown.push_back(box);
+    EXPECT_GE(shown.size(), 5u);
+    for (std::size_t i = 0; i < shown.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        const Box &a = shown[i], &b = shown[j];
+        EXPECT_FALSE(a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height) << i << " " << j;
+      }
+  }
 }
 
 /// The label of a point that lies under the legend stands beside it.

@@ -19,6 +19,7 @@
 
 #include "tests/tolerances.h"
 #include "tests/viz/small_inspection.h"
+#include "viz/scene_legend.h"
 #include "viz/scene_questions.h"
 #include "viz/style.h"
 #include "viz/view_camera.h"
@@ -365,6 +366,35 @@ TEST(Photographs, AreBroughtToTheGraphicsCardOnce) {
     EXPECT_EQ(cache.textureOf(pictures[0]), first) << i;  // in use all the time
   }
   EXPECT_NE(cache.textureOf(pictures[1]), second);  // not used for long
+}
+
+/// The frame has no prediction because the fit is no ellipsoid, and the layer says that of the fit; every light has its own.
+TEST(SceneLegend, AFitThatIsNoEllipsoidIsSaidOnce) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  ModelResult& dual = inspection->models.at("dual");
+  const Failure failure{Reason::NotAnEllipsoid, describe(*dual.fits[0].fit->quadric)};
+  for (FrameComparison& comparison : dual.frames) {
+    comparison.prediction.failure = failure;
+    comparison.rows[0].failure = failure;
+  }
+  dual.fits.push_back(dual.fits[0]);  // another light
+  LayerInput input;
+  input.inspection = inspection.get();
+  input.models = {"dual"};
+  input.surfaceKey = inspection->surfaces->keyOf(0);
+  input.scale = sceneScale(*inspection, nullptr, {0, 1, 2}, 1);
+  const LayerContent ellipsoids = ellipsoidsLayer(input), nothing;
+  ASSERT_EQ(ellipsoids.notes.size(), 2u);
+  for (const bool drawn : {true, false}) {
+    std::vector<ShownLayer> layers;
+    for (const Layer& layer : sceneLayers())
+      layers.push_back({layer.name == "predicted-contours" || (drawn && layer.name == "ellipsoids"),
+                        layer.name == "ellipsoids" ? &ellipsoids : &nothing});
+    const SceneLegend legend = legendOf(input, layers);
+    ASSERT_EQ(legend.notes.size(), 1u) << drawn;
+    EXPECT_NE(legend.notes[0].find("hyperboloid of two sheets"), std::string::npos) << legend.notes[0];
+  }
 }
 
 }  // namespace

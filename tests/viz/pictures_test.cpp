@@ -121,6 +121,22 @@ TEST(Canvas, LongTextIsShortenedByWholeCharacters) {
   EXPECT_EQ(canvas.fitted("ab", 20, 1000), "ab");
 }
 
+TEST(Canvas, WrapsAtBlanksAndLosesNothing) {
+  const Canvas canvas(64, 64, {0, 0, 0});
+  const std::string text = "not an ellipsoid: the quadric is a hyperboloid of two sheets";
+  const std::vector<std::string> lines = canvas.wrapped(text, 12, 120);
+  ASSERT_GT(lines.size(), 2u);
+  std::string again;
+  for (const std::string& line : lines) {
+    EXPECT_LE(canvas.textWidth(line, 12), 120) << line;
+    again += (again.empty() ? "" : " ") + line;
+  }
+  EXPECT_EQ(again, text);
+  EXPECT_EQ(canvas.wrapped(text, 12, 1e4), std::vector<std::string>{text});
+  EXPECT_EQ(canvas.wrapped("abc d", 12, 1).size(), 2u);  // a word is never broken
+  EXPECT_TRUE(canvas.wrapped("", 12, 100).empty());
+}
+
 TEST(FramePicture, DrawsThePhotographAndTheModelsInTheirColours) {
   const TemporaryFolder folder;
   const auto inspection = smallInspection(folder.path());
@@ -170,6 +186,28 @@ TEST(LadderPicture, ShowsEachModelsPredictionOnlyInItsTile) {
   }
   EXPECT_EQ(left, 0);
   EXPECT_GT(right, 200);
+}
+
+/// Lines of text below the tile of a model that refuses: bands of rows that hold the colour of failures.
+TEST(LadderPicture, AReasonIsWholeInSeveralLines) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  const Outcome<Image> photograph = readPhotograph(inspection->scene->frames[0]);
+  const auto lines = [&](const std::string& detail) {
+    for (FrameComparison& c : inspection->models.at("dual").frames)
+      c.prediction.failure = c.rows[0].failure = Failure{Reason::NotAnEllipsoid, detail};
+    const Image picture = ladderPicture(*inspection, 0, photograph, 400, 400);
+    int bands = 0, before = 0;
+    for (int y = 0; y < picture.height; ++y) {
+      int red = 0;
+      for (int x = 0; x < picture.width; ++x) red += isNear(picture, x, y, kFailed, 0.12);
+      bands += red > 0 && before == 0;
+      before = red;
+    }
+    return bands;
+  };
+  const int few = lines("short");
+  EXPECT_GE(lines("a hyperboloid of two sheets whose axes are far larger than the scene that it was fitted to"), few + 2);
 }
 
 TEST(PlotsPicture, ALargerErrorIsDrawnHigher) {
