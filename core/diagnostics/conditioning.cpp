@@ -179,9 +179,9 @@ class Findings {
     const Verdict v = above(deg, bounds::kAngleAmberDeg, bounds::kAngleRedDeg);
     const double factor = 1 / std::max(std::sin(std::min(angle, std::numbers::pi / 2)), std::numeric_limits<double>::min());
     std::string reason =
-        text("The widest angle between two %s is %.3g deg: an error across them becomes one %.3g times as large along them", what,
-             deg, factor);
-    reason += chosen(v, ".", " (amber below 5 deg).", " (red below 1.5 deg): only a direction is known well.");
+        text("The widest angle between two %s is %.3g\u00b0: an error across them becomes one %.3g times as large along them",
+             what, deg, factor);
+    reason += chosen(v, ".", " (amber below 5\u00b0).", " (red below 1.5\u00b0): only a direction is known well.");
     add("angle", "triangulation angle", deg, text("%.3g\u00b0", deg), v, reason);
   }
 
@@ -189,7 +189,7 @@ class Findings {
     const double effective = effectiveNumber(rays_, radians(bounds::kAngleAmberDeg));
     const Verdict v = above(effective, bounds::kViewsAmber, bounds::kViewsRed);
     std::string reason =
-        text("%d training highlights count as %.2g different views, those nearer than 5 deg to each other only in part: ",
+        text("%d training highlights count as %.2g different views, those nearer than 5\u00b0 to each other only in part: ",
              int(rays_.size()), effective);
     reason += chosen(v, "three or more determine an ellipsoid with a free centre.",
                      "fewer than three, which an ellipsoid with a free centre needs.",
@@ -229,7 +229,7 @@ class Findings {
       return add(
           "light", title, sigma, std::isfinite(sigma) ? text("%.2g\u00b0", degrees(sigma)) : "-", v,
           std::isfinite(sigma)
-              ? text("The light is at infinity; its direction is known to %.2g deg (one standard deviation).", degrees(sigma))
+              ? text("The light is at infinity; its direction is known to %.2g\u00b0 (one standard deviation).", degrees(sigma))
               : "The light is at infinity; its solver tells no uncertainty of the direction.");
     }
     Eigen::Vector3d at(0, 0, 0);

@@ -20,7 +20,7 @@ struct Finding {
   std::string id;     ///< "rank", "gap", "signature", "angle", "views", "light", "residual"
   std::string title;  ///< "triangulation angle"
   double value = std::numeric_limits<double>::quiet_NaN();
-  std::string text;  ///< the value with its unit: "4.3 deg"
+  std::string text;  ///< the value with its unit: "4.3°"
   Verdict verdict = Verdict::Unknown;
   std::string reason;  ///< one sentence: what the number means here and against which bound it was judged
 };

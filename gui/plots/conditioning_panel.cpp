@@ -4,6 +4,7 @@
 #include <QGridLayout>
 #include <QLabel>
 #include <QPainter>
+#include <QRegularExpression>
 #include <QVBoxLayout>
 #include <QVariant>
 #include <algorithm>
@@ -84,6 +85,20 @@ QString shortText(const Finding& f) {
   return toQString(f.text);
 }
 
+/// A number that is too wide, shorter and shorter: "1.23e-05" as "1.23e-5", "1.2e-5", "1e-5". What follows it stays ("°").
+QStringList fewerDigits(const QString& text) {
+  static const QRegularExpression number(QStringLiteral("^[0-9.]+(?:e[-+]?[0-9]+)?")), zeros(QStringLiteral("e([-+]?)0*"));
+  const QRegularExpressionMatch found = number.match(text);
+  const QString digits = found.captured();
+  QStringList shorter;
+  for (const int most : {3, 2, 1}) {
+    QString less = QString::number(digits.toDouble(), 'g', most).replace(QLatin1String("e+"), QLatin1String("e"));
+    less.replace(zeros, QStringLiteral("e\\1"));
+    shorter << less + text.mid(found.capturedEnd());
+  }
+  return shorter;
+}
+
 }  // namespace
 
 Chip::Chip(Verdict verdict, const QString& text, QWidget* parent) : QAbstractButton(parent), verdict_(verdict) {
@@ -125,6 +140,7 @@ QString Chip::shown() const {
   const bool number = !value.isEmpty() && value.at(0).isDigit();
   QStringList words{sign + text(), sign + (number ? value : text()), number ? value : text()};
   if (!unit().isEmpty()) words = unitShown_ ? QStringList{sign + text(), text()} : QStringList{sign + value, value};
+  if (number) words << fewerDigits(value);
   for (const QString& w : words)
     if (fontMetrics().horizontalAdvance(w) <= width() - 4) return w;
   return fontMetrics().elidedText(words.back(), Qt::ElideRight, width() - 4);

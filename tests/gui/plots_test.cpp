@@ -212,6 +212,13 @@ class PlotsTest : public QObject {
     const QString all = chip.shown(), sign = all.left(all.size() - 9);
     QCOMPARE(shownAt(QStringLiteral("0.0034 px")), QStringLiteral("0.0034 px"));
     QVERIFY(shownAt(QStringLiteral("0.0")).endsWith(QChar(0x2026)));
+    // Digits go before the number is cut.
+    for (const auto& [text, room, expected] :
+         {std::tuple("0.00347 px", "0.0035", "0.0035"), std::tuple("1.23e-05", "1.23e-5", "1.23e-5"),
+          std::tuple("1.23e-05", "1e-5", "1e-5"), std::tuple("12.34°", "12°", "12°")}) {
+      chip.show(Verdict::Green, QString::fromUtf8(text));
+      QCOMPARE(shownAt(QString::fromUtf8(room)), QString::fromUtf8(expected));
+    }
     QVERIFY(sign.size() > 0);
     Chip words(Verdict::Amber, QStringLiteral("hyperb. 1"));
     words.resize(metrics.horizontalAdvance(QStringLiteral("hyperb. 1")) + 5, 20);

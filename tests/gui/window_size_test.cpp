@@ -3,12 +3,15 @@
 #include <QAction>
 #include <QDockWidget>
 #include <QLabel>
+#include <QPushButton>
 #include <QRegularExpression>
 #include <QScreen>
 #include <QScrollArea>
 #include <QScrollBar>
 #include <QToolButton>
+#include <QVBoxLayout>
 
+#include "gui/base/flow_layout.h"
 #include "gui/base/panel_scroll.h"
 #include "gui/frame/frame_panel.h"
 #include "gui/window/layouts.h"
@@ -167,6 +170,54 @@ class WindowSizeTest : public QObject, WindowFixture {
     QVERIFY(!miss->text().isEmpty());
     QCOMPARE(miss->visibleRegion().boundingRect(), miss->rect());
     QVERIFY(miss->height() >= miss->heightForWidth(miss->width()));
+  }
+
+  /// What holds it gives it a limit within its own resize; it gets lower within that.
+  void aPanelOverItsLimitHasItsScrollBarAtOnce() {
+    class Host : public QWidget {
+     public:
+      Host() {
+        auto* content = new QWidget;
+        auto* flow = new FlowLayout;
+        content->setLayout(flow);
+        for (int i = 0; i < 14; ++i) flow->addWidget(new QPushButton(QStringLiteral("switch %1").arg(i)));
+        scroll = new PanelScroll(content, {150, 30}, PanelScroll::Height::Hugs);
+        auto* column = new QVBoxLayout(this);
+        column->addWidget(new QWidget, 1);
+        column->addWidget(scroll);
+      }
+      PanelScroll* scroll;
+
+     protected:
+      void resizeEvent(QResizeEvent* e) override {
+        QWidget::resizeEvent(e);
+        scroll->setMost(std::max(30, height() * 28 / 100));
+      }
+    };
+    Host host;
+    host.resize(900, 700);
+    host.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&host));
+    int bars = 0;
+    for (const QSize& size :
+         {QSize(900, 700), QSize(300, 700), QSize(300, 300), QSize(800, 300), QSize(260, 300), QSize(260, 800), QSize(260, 200),
+          QSize(900, 200), QSize(400, 500), QSize(300, 260), QSize(900, 900), QSize(240, 240)}) {
+      host.resize(size);
+      QCoreApplication::processEvents();
+      QCoreApplication::processEvents();
+      const QString at = QStringLiteral("%1 x %2: %3 of %4 px, %5 high")
+                             .arg(size.width())
+                             .arg(size.height())
+                             .arg(host.scroll->viewport()->height())
+                             .arg(host.scroll->widget()->height())
+                             .arg(host.scroll->height());
+      const bool needed = host.scroll->widget()->height() > host.scroll->height();
+      bars += needed;
+      QVERIFY2(host.scroll->verticalScrollBar()->isVisible() == needed, qPrintable(at));
+      QVERIFY2(host.scroll->height() <= std::max(30, host.height() * 28 / 100), qPrintable(at));
+      QVERIFY2(host.scroll->viewport()->height() <= host.scroll->height(), qPrintable(at));
+    }
+    QVERIFY(bars > 2);
   }
 
  private:

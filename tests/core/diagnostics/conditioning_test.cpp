@@ -107,6 +107,7 @@ TEST(Conditioning, NominalOnAPlane) {
   for (const Conditioning& c : all)
     for (const Finding& f : c.findings) {
       EXPECT_FALSE(f.reason.empty()) << f.id;
+      EXPECT_EQ(f.reason.find(" deg"), std::string::npos) << f.reason;  // windows show it
       EXPECT_FALSE(f.text.empty()) << f.id;
     }
 }
