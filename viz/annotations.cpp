@@ -24,6 +24,8 @@
 namespace glint::viz {
 namespace {
 
+constexpr double kColourBarRows = 7.8;  // lines of text from the lower edge to above the title of the colour bar
+
 /// A set of lines in display pixels.
 struct Strokes {
   vtkNew<vtkPoints> points;
@@ -305,9 +307,12 @@ struct Annotations::Impl {
     const double reach = std::max(sizeOf(barText).x(), pixels);
     taken.push_back({x1 - reach - 4, 0, reach + 8 + 1.2 * font, y + 2 * font});
   }
+  bool colourBarShown() const {
+    return scale.has_value() && (legendVisible || borderKind == Border::None);  // several views have the same
+  }
   /// Above the scale bar.
   void placeColourBar(int width, int points, double font) {
-    const bool shown = scale.has_value() && (legendVisible || borderKind == Border::None);  // several views have the same
+    const bool shown = colourBarShown();
     for (auto& text : scaleTexts) text->SetVisibility(shown);
     for (auto& step : barSteps) step->actor->SetVisibility(shown);
     if (!shown) return;
@@ -518,6 +523,13 @@ Eigen::Vector2d Annotations::legendSize() {
   Eigen::Vector2d reach(0, 0);
   for (const Impl::Rectangle& r : impl_->taken) reach = reach.cwiseMax(Eigen::Vector2d(r.x + r.width, size[1] - r.y));
   return reach;
+}
+
+double Annotations::colourBarHeight() {
+  const int height = impl_->renderer->GetSize()[1];
+  if (!impl_->colourBarShown() || height <= 0) return 0;
+  const double pixels = impl_->pixelsPerPoint(), font = pixels * fontSizeFor(static_cast<int>(height / pixels));
+  return kColourBarRows * font;
 }
 
 void Annotations::setDark(bool dark) { impl_->dark = dark; }

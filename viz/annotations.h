@@ -49,6 +49,8 @@ class Annotations {
   void setLegendVisible(bool visible);
   /// Width and height of the legend from the upper left corner, window px; 0 where there is none.
   Eigen::Vector2d legendSize();
+  /// Height of what stands with the colour bar at the lower right, window px; 0 where there is none.
+  double colourBarHeight();
   void setDark(bool dark);
   /// @param reference  world point at whose depth the scale bar is measured.
   void place(const Eigen::Vector3d& reference);

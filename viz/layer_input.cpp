@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What all layers share: sizes, the choice of frames, casting pixels onto the surface, caches.
+#include <vtkMatrix4x4.h>
 #include <vtkPropCollection.h>
 #include <vtkRenderer.h>
 
@@ -15,6 +16,7 @@
 #include "core/pipeline/training.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
+#include "viz/view_camera.h"
 
 namespace glint::viz {
 namespace {
@@ -85,6 +87,19 @@ std::vector<TrainingView> LayerInput::ownViews() const {
     if (view.failure) continue;
     view.frame = selection.frame;  // evidence of one frame alone may not tell it
     result.push_back(std::move(view));
+  }
+  return result;
+}
+
+std::vector<TrainingView> LayerInput::ownWalks() const {
+  std::vector<TrainingView> result;
+  std::vector<TrainingView> own = ownViews();
+  for (TrainingView& view : own) {
+    const auto light = inspection->lights.find(
+        lightKey(view.highlight.light, inspection->train.perSurface ? std::optional(surfaceKey) : std::nullopt));
+    if (light == inspection->lights.end()) continue;
+    addCanonicalContour(view, light->second.light, inspection->request.settings);
+    if (view.canonical && view.tangentPlane && view.brightest) result.push_back(std::move(view));
   }
   return result;
 }
@@ -296,6 +311,12 @@ std::optional<Pixel> vertexInDirection(const Camera& camera, const Highlight& ob
     best = p;
   }
   return best;
+}
+
+void LayerContent::bringNearer(vtkCamera* camera, int heightPx) const {
+  constexpr int kAsHigh = 900;  // px: beyond, lines grow with the picture
+  for (const Drawn& d : drawn)
+    if (d.nearerPx > 0) d.prop->SetUserMatrix(toVtk(nearer(camera, d.nearerPx, std::clamp(heightPx, 1, kAsHigh)).matrix()));
 }
 
 void LayerContent::drawLast(vtkRenderer& renderer) const {

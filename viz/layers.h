@@ -20,6 +20,7 @@
 #include "viz/scene_view.h"
 #include "viz/style.h"
 
+class vtkCamera;
 class vtkRenderer;
 
 namespace glint::viz {
@@ -104,6 +105,9 @@ struct LayerInput {
   /// Where the selected frame does not train: brightest point, tangent plane and virtual camera of each highlight observed in it.
   /// Without canonical contours. Empty where it trains or has no surface.
   std::vector<TrainingView> ownViews() const;
+  /// The same with the canonical contours of what was observed, by the light that the training frames gave; only those that have
+  /// one. Walks for some milliseconds.
+  std::vector<TrainingView> ownWalks() const;
   /// Usable views that a fit was made from, whatever surface they see; of the selected frame only where solo.
   std::vector<const TrainingView*> viewsOf(const ModelFit& fit) const;
   /// Usable fits of a model that apply to the shown surface.
@@ -130,6 +134,9 @@ struct Drawn {
   double lineWidthPx = 0;  ///< > 0: a line, scaled with the window
   bool pickable = true;
   std::function<Picked(vtkIdType cell)> describe = {};  ///< instead of `info`, where one actor draws many things
+  /// > 0: lies on the surface and is drawn before it, by as much as this many px measure there (in a picture 900 px high). It
+  /// moves along the rays of sight, so no gap shows from anywhere; see LayerContent::bringNearer.
+  double nearerPx = 0;
 };
 
 /// Text at a world point, drawn above everything.
@@ -154,6 +161,12 @@ struct LayerContent {
   void addMany(vtkSmartPointer<vtkProp3D> prop, std::function<Picked(vtkIdType cell)> describe, double lineWidthPx) {
     drawn.push_back({std::move(prop), {}, lineWidthPx, true, std::move(describe)});
   }
+  /// Adds what lies on the surface, see Drawn::nearerPx.
+  void addOnSurface(vtkSmartPointer<vtkProp3D> prop, const Picked& info, double lineWidthPx, double nearerPx) {
+    drawn.push_back({std::move(prop), info, lineWidthPx, true, {}, nearerPx});
+  }
+  /// For the camera of the picture that is drawn next.
+  void bringNearer(vtkCamera* camera, int heightPx) const;
   /// To the end of what VTK draws in order: of two things at one depth, the one that is drawn last shows.
   void drawLast(vtkRenderer& renderer) const;
 };

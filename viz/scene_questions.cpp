@@ -3,9 +3,11 @@
 
 #include <vtkCamera.h>
 #include <vtkCellPicker.h>
+#include <vtkMatrix4x4.h>
 #include <vtkRenderer.h>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -91,9 +93,13 @@ void addVirtualCameras(const LayerInput& in, std::vector<Eigen::Vector3d>& point
 
 }  // namespace
 
+namespace {
+constexpr double kWalkDisc = 1.15, kWalkArrow = 0.85;  // of the walk's reach, see walkLayer()
+}  // namespace
+
 DrawnParts drawnParts(const SceneView& view) {
   return {view.layerVisible("peaks"), view.layerVisible("ellipsoids"), view.layerVisible("virtual-cameras"),
-          view.layerVisible("tangent-planes")};
+          view.layerVisible("tangent-planes"), view.layerVisible("walk")};
 }
 
 std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, HighlightLook look, const DrawnParts& drawn) {
@@ -112,21 +118,37 @@ std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, Hig
   place.points.push_back(p.position);
   for (const Points& chain : castContour(camera, *in.surface, h.contour, in.scale, 0))
     place.points.insert(place.points.end(), chain.begin(), chain.end());
-  for (const TrainingView* view : in.views()) {
-    if (view->frame != in.selection.frame || !view->canonical || in.highlightOf(*view) != static_cast<int>(wanted)) continue;
-    for (const DirectionResult& d : view->canonical->directions)
-      if (d.limitAngle && !d.failure) place.points.push_back(d.onTangentPlane);
-  }
-  if (!in.inspection->isTraining(in.selection.frame)) {
+  double reach = 0;  // of the walks on T
+  const auto addWalks = [&](const CanonicalContour& canonical) {
+    for (const DirectionResult& d : canonical.directions) {
+      if (!d.limitAngle || d.failure) continue;
+      place.points.push_back(d.onTangentPlane);
+      reach = std::max(reach, (d.onTangentPlane - p.position).norm());
+    }
+  };
+  for (const TrainingView* view : in.views())
+    if (view->frame == in.selection.frame && view->canonical && in.highlightOf(*view) == static_cast<int>(wanted))
+      addWalks(*view->canonical);
+  for (const TrainingView& view : drawn.walk || in.solo ? in.ownWalks() : std::vector<TrainingView>{})  // where they are drawn
+    if (in.highlightOf(view) == static_cast<int>(wanted)) addWalks(*view.canonical);
+  if (drawn.walk || !in.inspection->isTraining(in.selection.frame)) {
     for (const std::string& model : in.models)
       for (const FrameComparison* comparison : in.comparisons(model))
         for (const FrameComparison::Row& row : comparison->rows) {
           if (row.observed != static_cast<int>(wanted) || row.predicted < 0) continue;
           const auto& canonical = comparison->prediction.highlights[static_cast<std::size_t>(row.predicted)].canonical;
-          for (std::size_t i = 0; canonical && i < canonical->directions.size(); ++i)
-            if (canonical->directions[i].limitAngle && !canonical->directions[i].failure)
-              place.points.push_back(canonical->directions[i].onTangentPlane);
+          if (canonical) addWalks(*canonical);
         }
+  }
+  if (drawn.walk &&
+      look == HighlightLook::Section) {  // the disc that it goes on, and the arrows at its end, whatever its direction
+    const Eigen::Matrix<double, 3, 2> basis = tangentBasis(p.normal);
+    for (int i = 0; i < 16; ++i) {
+      const double t = i * std::numbers::pi / 8;
+      const Eigen::Vector3d along = std::cos(t) * basis.col(0) + std::sin(t) * basis.col(1);
+      place.points.push_back(p.position + kWalkDisc * reach * along);
+      place.points.push_back(p.position + reach * along + kWalkArrow * reach * p.normal);
+    }
   }
   if (drawn.tangentPlanes && look == HighlightLook::Section) {
     const Eigen::Matrix<double, 3, 2> basis = tangentBasis(p.normal);
@@ -396,7 +418,10 @@ std::optional<Picked> pickIn(vtkRenderer* renderer, const LayerInput& in, const 
     if (d->pickable) picker->AddPickList(d->prop);
   }
   if (!picker->Pick(xDisplay, yDisplay, 0, renderer)) return result;
-  const Eigen::Vector3d at = toEigen(picker->GetPickPosition());
+  Eigen::Vector3d at = toEigen(picker->GetPickPosition());
+  if (vtkMatrix4x4* moved = picker->GetProp3D()->GetUserMatrix())  // drawn nearer than it is, see Drawn::nearerPx
+    at = (Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(moved->GetData()).inverse() * at.homogeneous())
+             .hnormalized();
   // What lies on the surface is picked before the surface itself.
   if ((at - eye).norm() > nearest + 10 * in.scale.lift) return result;
   for (const Drawn* d : drawn) {

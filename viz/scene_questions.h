@@ -24,7 +24,7 @@ struct Framing {
 };
 /// What else is drawn, and is to be held.
 struct DrawnParts {
-  bool normal = false, ellipsoids = false, virtualCameras = false, tangentPlanes = false;
+  bool normal = false, ellipsoids = false, virtualCameras = false, tangentPlanes = false, walk = false;
 };
 DrawnParts drawnParts(const SceneView& view);
 /// A highlight of the selected frame.

@@ -297,13 +297,13 @@ struct SceneView::Impl {
     const bool rescaled = wanted != lineScale;
     lineScale = wanted;
     update();
-    if (rescaled) {
-      for (LayerState& layer : layers) {
-        for (Drawn& drawn : layer.content.drawn) place(drawn, layer.visible);
-      }
-    }
+    for (LayerState& layer : layers)
+      for (Drawn& drawn : layer.content.drawn)
+        if (rescaled) place(drawn, layer.visible);
     if (frameAllPending && size[0] > 0) frameAll();
     stand();
+    for (const LayerState& layer : layers)
+      if (layer.visible) layer.content.bringNearer(renderer->GetActiveCamera(), size[1]);
     renderer->ResetCameraClippingRange();
     // A mirrored picture turns front faces into back faces, and VTK lights the two sides differently.
     if (input.eyeMirror) glFrontFace(GL_CW);
@@ -340,12 +340,10 @@ struct SceneView::Impl {
     // Beside it or below it, whichever leaves more.
     const double beside = std::min(0.92, 1 - 2 * legend.x() / whole.width),
                  below = std::min(0.92, 1 - 2 * legend.y() / whole.height);
-    if (whole.width > 1 && whole.height > 1 && std::max(beside, below) > -0.6) {
-      if (beside >= below)
-        margins.left = beside;
-      else
-        margins.top = below;
-    }
+    if (whole.width > 1 && whole.height > 1 && std::max(beside, below) > -0.6)
+      (beside >= below ? margins.left : margins.top) = std::max(beside, below);
+    if (const double bar = annotations->colourBarHeight(); bar > 0)
+      margins.bottom = std::clamp(1 - 2 * bar / whole.height, 0.3, margins.bottom);
     const double aspect = whole.width > 1 && whole.height > 1 ? static_cast<double>(whole.width) / whole.height : 4.0 / 3.0;
     place(fitted(points, back, up, aspect, margins, parallel(), reference, leastDepth));
   }

@@ -109,6 +109,18 @@ ViewPoint viewPointOf(vtkCamera* camera) {
   return view;
 }
 
+Eigen::Affine3d nearer(vtkCamera* vtk, double px, int heightPx) {
+  if (vtk->GetParallelProjection())
+    return Eigen::Affine3d(
+        Eigen::Translation3d(-2 * vtk->GetParallelScale() / heightPx * px * toEigen(vtk->GetDirectionOfProjection())));
+  constexpr double kMost = 0.2;  // of the distance: in the smallest of pictures
+  // Through a camera the picture is enlarged after VTK's own projection, see standAt().
+  if (vtkHomogeneousTransform* user = vtk->GetUserTransform()) px /= std::abs(user->GetMatrix()->GetElement(1, 1));
+  const double share = std::min(kMost, 2 * std::tan(vtk->GetViewAngle() * std::numbers::pi / 360) / heightPx * px);
+  const Eigen::Vector3d eye = toEigen(vtk->GetPosition());
+  return Eigen::Translation3d(share * eye) * Eigen::Scaling(1 - share);
+}
+
 namespace {
 /// Columns right, up, back of a view's picture.
 Eigen::Matrix3d axesOf(const ViewPoint& view) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <optional>
 #include <vector>
 
@@ -50,6 +51,10 @@ ViewPoint viewPointOf(vtkCamera* vtk);
 /// A view on the way from one to another: the focal point moves straight, the distance to it by equal ratios, and the eye turns
 /// about it the short way, upwards kept upwards. @param t  0 = from, 1 = to (exactly).
 ViewPoint between(const ViewPoint& from, const ViewPoint& to, double t);
+
+/// What moves points towards the eye along their rays of sight, by as much as `px` pixels measure where they are: in the picture
+/// they stay where they were, nearer than what they lie on. @param heightPx  of the picture, > 0.
+Eigen::Affine3d nearer(vtkCamera* vtk, double px, int heightPx);
 
 /// World point under a window px (device px, y up), as far from the eye as `anchor`: where a dragged thing goes.
 Eigen::Vector3d worldAt(vtkRenderer* renderer, double xDisplay, double yDisplay, const Eigen::Vector3d& anchor);

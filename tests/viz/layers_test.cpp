@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 #include <vtkActor.h>
+#include <vtkCamera.h>
+#include <vtkMatrix4x4.h>
+#include <vtkNew.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
@@ -196,6 +199,46 @@ LayerInput heldOutInput(const Inspection& inspection) {
   return input;
 }
 
+Eigen::Vector3d carried(vtkMatrix4x4* by, const Eigen::Vector3d& p) {
+  return (Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(by->GetData()) * p.homogeneous()).hnormalized();
+}
+
+/// No gap between a contour and its surface from anywhere, and yet it is drawn before it.
+TEST(Layers, ContoursLieOnTheSurfaceAndComeNearerAlongTheRaysOfSightAlone) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  LayerInput input = heldOutInput(*inspection);
+  input.selection.direction = 0.5;
+  constexpr int kHeight = 600;  // px
+  for (const LayerContent& content : {observedContoursLayer(input), predictedContoursLayer(input)}) {
+    int lines = 0;
+    for (const Drawn& d : content.drawn) {
+      EXPECT_GT(d.nearerPx, 0);
+      auto* actor = vtkActor::SafeDownCast(d.prop);
+      vtkPolyData* data = vtkPolyDataMapper::SafeDownCast(actor->GetMapper())->GetInput();
+      if (data->GetNumberOfLines() == 0 || data->GetNumberOfPoints() < 60) continue;  // the mark of a direction
+      ++lines;
+      for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i) EXPECT_NEAR(toEigen(data->GetPoint(i)).norm(), 0.4, kDrawn);
+      for (const bool parallel : {false, true}) {
+        vtkNew<vtkCamera> camera;
+        setViewPoint(camera, {{0.7, -1.1, 0.9}, {0.1, 0, 0}, {0, 0, 1}, 30, parallel});
+        content.bringNearer(camera, kHeight);
+        const auto onScreen = [&](const Eigen::Vector3d& p) {
+          return carried(camera->GetCompositeProjectionTransformMatrix(1.5, 0.1, 10), p);
+        };
+        const Eigen::Vector3d p = toEigen(data->GetPoint(0)), moved = carried(actor->GetUserMatrix(), p);
+        EXPECT_LT((onScreen(moved) - onScreen(p)).head<2>().norm(), kDrawn);
+        EXPECT_LT(onScreen(moved).z(), onScreen(p).z());
+        // As far as so many px measure there, seen from the front.
+        const double depth = parallel ? (Eigen::Vector3d(0.7, -1.1, 0.9) - Eigen::Vector3d(0.1, 0, 0)).norm()
+                                      : (p - Eigen::Vector3d(0.7, -1.1, 0.9)).norm();
+        EXPECT_NEAR((moved - p).norm(), d.nearerPx * 2 * std::tan(std::numbers::pi / 12) * depth / kHeight, kDrawn);
+      }
+    }
+    EXPECT_GE(lines, 1);
+  }
+}
+
 Eigen::AlignedBox3d boundsOf(const Drawn& drawn) {
   double b[6];
   std::copy_n(drawn.prop->GetBounds(), 6, b);
@@ -277,6 +320,80 @@ TEST(Layers, APredictionWithoutATangentPlaneHasNoBrightestPointOnTheSurface) {
   EXPECT_EQ(ofModel(), 2) << "a ball and its normal";
   inspection->models["canonical"].frames[5].prediction.highlights[0].tangentPlane.reset();
   EXPECT_EQ(ofModel(), 0);
+}
+
+/// The step about the normal of the peak would show a bundle of them.
+TEST(Layers, TheSelectedFrameAloneHasTheNormalOfWhatWasObservedAndNoOther) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  for (const int frame : {0, 5}) {  // trains, and not
+    LayerInput input = heldOutInput(*inspection);
+    input.selection.frame = frame;
+    input.solo = true;
+    const auto count = [&] { return peaksLayer(input).drawn.size(); };
+    EXPECT_EQ(count(), 2u) << "a ball and its normal";
+    for (const Drawn& d : peaksLayer(input).drawn) EXPECT_EQ(d.info.model, "");
+  }
+  // Where nothing was observed, what is predicted is all that there is.
+  LayerInput input = heldOutInput(*inspection);
+  inspection->evidence[5].highlights.clear();
+  input.solo = true;
+  EXPECT_EQ(peaksLayer(input).drawn.size(), 2u);
+}
+
+/// Ellipse, walks and plane of the one contour that was observed; a predicted one beside them would look as if it were theirs.
+TEST(Layers, AFrameThatDoesNotTrainHasTheCanonicalEllipseOfWhatWasObservedInIt) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  LayerInput input = heldOutInput(*inspection);
+  input.selection.model = "canonical";
+  const auto ofModels = [&] {
+    int n = 0;
+    for (const LayerContent& content : {canonicalEllipsesLayer(input), directionsLayer(input), tangentPlanesLayer(input)})
+      for (const Drawn& d : content.drawn) n += !d.info.model.empty();
+    return n;
+  };
+  EXPECT_GT(ofModels(), 0);
+  input.solo = true;
+  EXPECT_EQ(ofModels(), 0);
+  const std::vector<TrainingView> own = input.ownWalks();
+  ASSERT_EQ(own.size(), 1u);
+  ASSERT_TRUE(own[0].canonical && own[0].canonical->ellipse);
+  ASSERT_EQ(canonicalEllipsesLayer(input).drawn.size(), 1u);
+  const Eigen::AlignedBox3d drawn = boundsOf(canonicalEllipsesLayer(input).drawn[0]);
+  Eigen::AlignedBox3d expected;
+  for (const Points& chain : ellipseOnPlane(own[0].camera, *own[0].tangentPlane, *own[0].canonical->ellipse, 0))
+    for (const Eigen::Vector3d& p : chain) expected.extend(p);
+  EXPECT_LT((drawn.center() - expected.center()).norm(), kDrawn);
+  EXPECT_FALSE(directionsLayer(input).drawn.empty());
+  inspection->lights.clear();  // then nothing tells where they end
+  EXPECT_TRUE(input.ownWalks().empty());
+}
+
+TEST(Framing, HoldsTheWholeWalkWhateverItsDirection) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  const LayerInput input = heldOutInput(*inspection);
+  const std::vector<TrainingView> own = input.ownWalks();
+  ASSERT_EQ(own.size(), 1u);
+  const Eigen::Vector3d at = own[0].brightest->point.position, n = own[0].tangentPlane->normal;
+  double reach = 0;
+  for (const DirectionResult& d : own[0].canonical->directions)
+    if (d.limitAngle && !d.failure) reach = std::max(reach, (d.onTangentPlane - at).norm());
+  ASSERT_GT(reach, 0);
+  for (const bool drawn : {false, true}) {
+    const std::optional<Framing> framing =
+        highlightFraming(input, 0, HighlightLook::Section, {false, false, false, false, drawn});
+    ASSERT_TRUE(framing);
+    double disc = 0, arrows = 0;
+    for (const Eigen::Vector3d& q : framing->points) {
+      const double up = std::abs((q - at).dot(n)), out = ((q - at) - (q - at).dot(n) * n).norm();
+      if (up < input.scale.lift) disc = std::max(disc, out);
+      if (out > 0.9 * reach) arrows = std::max(arrows, up);
+    }
+    EXPECT_EQ(disc > 1.12 * reach, drawn);    // as walkLayer() draws its disc
+    EXPECT_EQ(arrows > 0.75 * reach, drawn);  // and the arrows at its end
+  }
 }
 
 TEST(Layers, TheSelectedFrameAloneNamesItsDirections) {

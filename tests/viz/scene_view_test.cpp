@@ -174,6 +174,34 @@ TEST_F(SceneViewPicture, TheColourBarStaysInsideThePicture) {
   }
 }
 
+/// What a view is fitted to stands above the colour bar, not under it.
+TEST_F(SceneViewPicture, TheColourBarLeavesFreeWhatTheViewIsFittedTo) {
+  const std::shared_ptr<Inspection> inspection = smallInspection(folder_.path());
+  constexpr double kBarPx = 80;  // of 480: the bar with its title and its ticks
+  for (const bool coloured : {false, true}) {
+    SceneView view;
+    view.setInspection(inspection);
+    for (const Layer& layer : sceneLayers()) view.setLayerVisible(layer.name, layer.name == "cameras");
+    CameraColours colours;
+    colours.by = coloured ? CameraColours::By::Influence : CameraColours::By::Role;
+    colours.model = "canonical";
+    colours.influence = {{0, 1.2e-5}, {1, -1.1e-5}};
+    view.setCameraColours(colours);
+    (void)render(view);      // which shows all, at first
+    double least = kHeight;  // px from the lower edge, of the cameras and the ball's box
+    const ViewPoint seen = view.viewPoint();
+    const Eigen::Vector3d back = (seen.position - seen.focalPoint).normalized();
+    std::vector<Eigen::Vector3d> points;
+    for (const Frame& f : inspection->scene->frames) points.push_back(f.camera.centreInWorld());
+    for (int i = 0; i < 8; ++i) points.emplace_back(i & 1 ? 0.4 : -0.4, i & 2 ? 0.4 : -0.4, i & 4 ? 0.4 : -0.4);
+    for (const Eigen::Vector3d& p : points) {
+      const double half = std::tan(seen.viewAngleDeg * std::numbers::pi / 360) * -back.dot(p - seen.position);
+      least = std::min(least, 0.5 * kHeight * (1 + seen.up.dot(p - seen.position) / half));
+    }
+    EXPECT_EQ(least > kBarPx, coloured) << least;
+  }
+}
+
 TEST(BetweenViews, StartsAndEndsExactlyAndTurnsAboutWhatIsLookedAt) {
   const ViewPoint from{{4, 0, 0}, {0, 0, 0}, {0, 0, 1}, 30}, to{{0, 1, 0}, {0, 0, 0}, {0, 0, 1}, 20, true};
   EXPECT_EQ(between(from, to, 0).position, from.position);

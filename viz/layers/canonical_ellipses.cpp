@@ -4,6 +4,8 @@
 
 namespace glint::viz {
 
+constexpr double kEllipsePx = 4;  // see Drawn::nearerPx: above its tangent plane
+
 LayerContent canonicalEllipsesLayer(const LayerInput& in) {
   LayerContent content;
   const auto add = [&](const Camera& camera, const Plane& plane, const Ellipse& ellipse, bool strong, int frame,
@@ -17,13 +19,19 @@ LayerContent canonicalEllipsesLayer(const LayerInput& in) {
                 line("semi-axis a", ellipse.semiAxes.x(), "px") + line("semi-axis b", ellipse.semiAxes.y(), "px") +
                 line("angle", ellipse.angle * 57.29577951308232, "deg");
     const double width = strong ? 3.0 : 2.0;
-    // The virtual camera sees exactly the plane where the camera sees it, and no surface before it: nothing to lift it off from.
-    const double lift = in.eyeMirror ? 0 : 2 * in.scale.lift;
-    content.add(lineActor(ellipseOnPlane(camera, plane, ellipse, lift), modelColour("canonical"), width), info, width);
+    content.addOnSurface(lineActor(ellipseOnPlane(camera, plane, ellipse, 0), modelColour("canonical"), width), info, width,
+                         kEllipsePx);
   };
   for (const TrainingView* view : in.views()) {
     if (!view->tangentPlane || !view->canonical || !view->canonical->ellipse) continue;
     add(view->camera, *view->tangentPlane, *view->canonical->ellipse, view->frame == in.selection.frame, view->frame, "");
+  }
+  // Of the selected frame alone: what was observed in it, whether it trains or not. A predicted ellipse beside it would look as
+  // if both came from the one contour.
+  if (in.solo) {
+    for (const TrainingView& view : in.ownWalks())
+      if (view.canonical->ellipse) add(view.camera, *view.tangentPlane, *view.canonical->ellipse, true, view.frame, "");
+    if (!content.drawn.empty()) return content;
   }
   for (const std::string& model : in.models) {
     for (const FrameComparison* comparison : in.comparisons(model)) {

@@ -12,6 +12,10 @@ namespace {
 
 constexpr std::size_t kMostObservedFrames = 24;  ///< the training frames of a long sequence would cover the surface
 
+// How far contours are drawn before the surface that they lie on, see Drawn::nearerPx: half of a line's width where the surface
+// slants away by 70 degrees, and a little more for what is to show above the others.
+constexpr double kObservedPx = 5, kSelectedPx = 5.5, kPredictedPx = 6, kNextModelPx = 0.25, kMarkPx = 12;
+
 constexpr int kGapPoints = 61;  ///< 20 dots with gaps of twice their length
 
 /// Every third segment of the chains.
@@ -40,13 +44,14 @@ void addMark(LayerContent& content, const LayerInput& in, const Camera& camera, 
              const Polyline& contour, const Colour& colour, const Picked& info) {
   const std::optional<Pixel> vertex = vertexInDirection(camera, observed, contour, *in.selection.direction);
   if (!vertex) return;
-  const std::optional<Eigen::Vector3d> at = castPixel(camera, *in.surface, *vertex, 4 * in.scale.lift);
+  const std::optional<Eigen::Vector3d> at = castPixel(camera, *in.surface, *vertex, 0);
   if (!at) return;
   const double r = in.scale.point;
   const Eigen::Matrix3d axes = camera.camFromWorld.linear();
-  content.add(sphereActor({*at}, 0.8 * r, colour), info);
-  content.add(lineActor({circle(*at, 1.7 * r * axes.row(0).transpose(), 1.7 * r * axes.row(1).transpose(), 32)}, in.ink(), 2),
-              info, 2);
+  content.addOnSurface(sphereActor({*at}, 0.8 * r, colour), info, 0, kMarkPx);
+  content.addOnSurface(
+      lineActor({circle(*at, 1.7 * r * axes.row(0).transpose(), 1.7 * r * axes.row(1).transpose(), 32)}, in.ink(), 2), info, 2,
+      kMarkPx);
 }
 
 /// What directions of a frame's selected highlight are measured from: the selected one, else the first of the light, else the
@@ -87,9 +92,8 @@ LayerContent observedContoursLayer(const LayerInput& in) {
       const bool strong = selected && (in.selection.highlight < 0 || in.selection.highlight == static_cast<int>(i));
       const double width = strong ? 3.0 : 1.2;
       const Colour colour = selected ? kObserved : Colour{0.80, 0.82, 0.84};
-      content.add(
-          lineActor(castContour(camera, *in.surface, h.contour, in.scale, (selected ? 3.0 : 2.2) * in.scale.lift), colour, width),
-          info, width);
+      content.addOnSurface(lineActor(castContour(camera, *in.surface, h.contour, in.scale, 0), colour, width), info, width,
+                           selected ? kSelectedPx : kObservedPx);
       if (selected && in.selection.direction && &h == selectedHighlight(in, ""))
         addMark(content, in, camera, h, h.contour, kObserved, info);
     }
@@ -101,7 +105,7 @@ LayerContent predictedContoursLayer(const LayerInput& in) {
   LayerContent content;
   if (!in.surface) return content;
   const Camera& camera = in.frame(in.selection.frame).camera;
-  double lift = 3.4;  // in steps; each model a little higher, so that equal contours do not flicker
+  double nearerPx = kPredictedPx;  // each model a little more, so that equal contours do not flicker
   for (const std::string& model : in.models) {
     for (const FrameComparison* comparison : in.comparisons(model)) {
       for (std::size_t i = 0; i < comparison->prediction.highlights.size(); ++i) {
@@ -128,7 +132,7 @@ LayerContent predictedContoursLayer(const LayerInput& in) {
           part.points = run.points;
           part.closed = run.closed;
           if (run.gap && part.points.size() > 1) part.points = resample(part, kGapPoints);
-          for (Points& chain : castContour(camera, *in.surface, part, in.scale, lift * in.scale.lift))
+          for (Points& chain : castContour(camera, *in.surface, part, in.scale, 0))
             (run.gap ? dotted : solid).push_back(std::move(chain));
         }
         const Colour colour = modelColour(model);
@@ -136,14 +140,14 @@ LayerContent predictedContoursLayer(const LayerInput& in) {
         if (observed && (in.selection.highlight < 0 || in.selection.highlight == info.highlight))
           addMark(content, in, camera, *observed, h.contour, colour, info);
         const double width = in.selection.model == model ? 3.4 : 2.2;  // the selected model stands out
-        if (!solid.empty()) content.add(lineActor(solid, colour, width), info, width);
+        if (!solid.empty()) content.addOnSurface(lineActor(solid, colour, width), info, width, nearerPx);
         if (!dotted.empty()) {
           info.text += line("this part", "not predicted, it bridges directions that failed");
-          content.add(lineActor(dots(dotted), colour, 1.5), info, 1.5);
+          content.addOnSurface(lineActor(dots(dotted), colour, 1.5), info, 1.5, nearerPx);
         }
       }
     }
-    lift += 0.3;
+    nearerPx += kNextModelPx;
   }
   return content;
 }

@@ -10,10 +10,10 @@
 namespace glint::viz {
 namespace {
 
-void addWalks(LayerContent& content, const LayerInput& in, const Camera& camera, const Plane& plane, const Eigen::Vector3d& at,
+constexpr double kWalkPx = 4.5;  // see Drawn::nearerPx: above the tangent plane
+
+void addWalks(LayerContent& content, const LayerInput& in, const Plane& plane, const Eigen::Vector3d& at,
               const CanonicalContour& canonical, int frame, const std::string& model) {
-  const double side = plane.signedDistance(camera.centreInWorld()) < 0 ? -1 : 1;
-  const Eigen::Vector3d lift = side * 1.5 * in.scale.lift * plane.normal;
   const Eigen::Matrix<double, 3, 2> basis = tangentBasis(plane.normal);
   std::vector<Segment> onPlane, between, failed;
   Points planeEnds, surfaceEnds;
@@ -21,10 +21,10 @@ void addWalks(LayerContent& content, const LayerInput& in, const Camera& camera,
   std::map<std::string, int> reasons;
   for (const DirectionResult& d : canonical.directions) {
     if (!d.limitAngle || d.failure) continue;
-    onPlane.emplace_back(at + lift, d.onTangentPlane + lift);
-    between.emplace_back(d.onTangentPlane + lift, d.onSurface + lift);
-    planeEnds.push_back(d.onTangentPlane + lift);
-    surfaceEnds.push_back(d.onSurface + lift);
+    onPlane.emplace_back(at, d.onTangentPlane);
+    between.emplace_back(d.onTangentPlane, d.onSurface);
+    planeEnds.push_back(d.onTangentPlane);
+    surfaceEnds.push_back(d.onSurface);
     lengths.push_back((d.onTangentPlane - at).norm());
   }
   double reach = 0.05 * in.scale.surfaceSize;
@@ -35,7 +35,7 @@ void addWalks(LayerContent& content, const LayerInput& in, const Camera& camera,
   for (const DirectionResult& d : canonical.directions) {
     if (d.limitAngle && !d.failure) continue;
     const Eigen::Vector3d along = std::cos(d.azimuth) * basis.col(0) + std::sin(d.azimuth) * basis.col(1);
-    failed.emplace_back(at + lift, at + lift + reach * along);
+    failed.emplace_back(at, at + reach * along);
     if (d.failure) ++reasons[nameOf(d.failure->reason)];
   }
   Picked info;
@@ -48,12 +48,12 @@ void addWalks(LayerContent& content, const LayerInput& in, const Camera& camera,
   const Colour colour = modelColour("canonical");
   const double dot = std::min(0.35 * in.scale.point, 0.08 * reach);
   if (!onPlane.empty()) {
-    content.add(segmentActor(onPlane, colour, 1.2), info, 1.2);
-    content.add(segmentActor(between, in.ink(), 1.0), info, 1.0);
-    content.add(sphereActor(planeEnds, dot, colour), info);
-    content.add(sphereActor(surfaceEnds, dot, kObserved), info);
+    content.addOnSurface(segmentActor(onPlane, colour, 1.2), info, 1.2, kWalkPx);
+    content.addOnSurface(segmentActor(between, in.ink(), 1.0), info, 1.0, kWalkPx);
+    content.addOnSurface(sphereActor(planeEnds, dot, colour), info, 0, kWalkPx);
+    content.addOnSurface(sphereActor(surfaceEnds, dot, kObserved), info, 0, kWalkPx);
   }
-  if (!failed.empty()) content.add(segmentActor(failed, kFailed, 2.0), info, 2.0);
+  if (!failed.empty()) content.addOnSurface(segmentActor(failed, kFailed, 2.0), info, 2.0, kWalkPx);
 }
 
 }  // namespace
@@ -62,15 +62,17 @@ LayerContent directionsLayer(const LayerInput& in) {
   LayerContent content;
   for (const TrainingView* view : in.views()) {
     if (view->frame != in.selection.frame || !view->tangentPlane || !view->brightest || !view->canonical) continue;
-    addWalks(content, in, view->camera, *view->tangentPlane, view->brightest->point.position, *view->canonical, view->frame, "");
+    addWalks(content, in, *view->tangentPlane, view->brightest->point.position, *view->canonical, view->frame, "");
   }
+  if (in.solo)  // what was observed, though the frame has not trained
+    for (const TrainingView& view : in.ownWalks())
+      addWalks(content, in, *view.tangentPlane, view.brightest->point.position, *view.canonical, view.frame, "");
   if (!content.drawn.empty()) return content;  // the predicted walks would lie on the observed ones
   for (const std::string& model : in.models) {
     for (const FrameComparison* comparison : in.comparisons(model)) {
       for (const PredictedHighlight& h : comparison->prediction.highlights) {
         if (!h.tangentPlane || !h.canonical) continue;
-        addWalks(content, in, in.frame(in.selection.frame).camera, *h.tangentPlane, h.brightest.point.position, *h.canonical,
-                 in.selection.frame, model);
+        addWalks(content, in, *h.tangentPlane, h.brightest.point.position, *h.canonical, in.selection.frame, model);
       }
     }
   }

@@ -52,6 +52,8 @@ LayerContent peaksLayer(const LayerInput& in) {
       ++index;
     }
   }
+  // What each model predicts is not derived from the frame: over its own normal it would be a bundle of arrows.
+  if (in.solo && !content.drawn.empty()) return content;
   for (const std::string& model : in.models) {
     for (const FrameComparison* comparison : in.comparisons(model)) {
       for (const PredictedHighlight& h : comparison->prediction.highlights) {

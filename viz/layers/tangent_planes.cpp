@@ -7,15 +7,16 @@
 namespace glint::viz {
 namespace {
 
+constexpr double kPlanePx = 2;  // see Drawn::nearerPx: below what lies on the plane
+
 void addPlane(LayerContent& content, const LayerInput& in, const Camera& camera, const Plane& plane, const Eigen::Vector3d& at,
               const std::vector<Pixel>& contour, bool strong, bool filled, const Colour& colour, const Picked& info) {
-  const double side = plane.signedDistance(camera.centreInWorld()) < 0 ? -1 : 1;
   const double radius = planeRadius(camera, plane, at, contour, in.scale);
-  const Eigen::Vector3d centre = at + side * in.scale.lift * plane.normal;
   const Eigen::Matrix<double, 3, 2> basis = tangentBasis(plane.normal);
   const double width = strong ? 2.0 : 1.0;
-  if (filled) content.add(discActor(centre, plane.normal, radius, colour, strong ? 0.32 : 0.18), info);
-  content.add(lineActor({circle(centre, radius * basis.col(0), radius * basis.col(1))}, colour, width), info, width);
+  if (filled) content.addOnSurface(discActor(at, plane.normal, radius, colour, strong ? 0.32 : 0.18), info, 0, kPlanePx);
+  content.addOnSurface(lineActor({circle(at, radius * basis.col(0), radius * basis.col(1))}, colour, width), info, width,
+                       kPlanePx + 0.5);
 }
 
 }  // namespace
@@ -47,6 +48,7 @@ LayerContent tangentPlanesLayer(const LayerInput& in) {
   // through each other, so of these then only the selected model's, as a ring.
   const std::vector<TrainingView> own = in.ownViews();
   for (const TrainingView& view : own) addObserved(view);
+  if (in.solo && !own.empty()) return content;  // what is predicted is not derived from the frame
   for (const std::string& model : in.models) {
     const bool shown = std::find(in.models.begin(), in.models.end(), in.selection.model) != in.models.end();
     if (in.selection.model != model && (shown || !own.empty())) continue;
