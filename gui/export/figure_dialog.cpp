@@ -31,7 +31,7 @@ constexpr int kOther = 5;
 }  // namespace
 
 FigureDialog::FigureDialog(const QString& title, const QString& kind, const QSize& onScreen, bool dark, QWidget* parent)
-    : QDialog(parent), kind_(QStringLiteral("export/%1/").arg(kind)), onScreen_(onScreen) {
+    : QDialog(parent), kind_(QStringLiteral("export/%1/").arg(kind)), onScreen_(onScreen), dark_(dark) {
   setWindowTitle(title);
   setObjectName(QStringLiteral("figureDialog"));
   auto* form = new QFormLayout(this);
@@ -54,7 +54,8 @@ FigureDialog::FigureDialog(const QString& title, const QString& kind, const QSiz
   form->addRow(tr("&Height"), height_);
   form->addRow(QString(), keepShape_);
   colours_ = new QComboBox;
-  colours_->addItems({tr("Dark"), tr("Light")});
+  colours_->setObjectName(QStringLiteral("figureColours"));
+  colours_->addItems({QString(), QString()});
   form->addRow(tr("&Colours"), colours_);
   transparent_ = new QCheckBox(tr("&Transparent background"));
   transparent_->setObjectName(QStringLiteral("figureTransparent"));
@@ -66,8 +67,9 @@ FigureDialog::FigureDialog(const QString& title, const QString& kind, const QSiz
   connect(buttons, &QDialogButtonBox::rejected, this, &FigureDialog::reject);
 
   const QSettings settings;
-  colours_->setCurrentIndex(dark ? 0 : 1);
   transparent_->setChecked(settings.value(kind_ + QStringLiteral("transparent"), false).toBool());
+  followBackground();
+  connect(transparent_, &QCheckBox::toggled, this, &FigureDialog::followBackground);
   const int preset = std::clamp(settings.value(kind_ + QStringLiteral("preset"), 0).toInt(), 0, kOther);
   if (preset == kOther) setSize(settings.value(kind_ + QStringLiteral("size"), onScreen).toSize());
   preset_->setCurrentIndex(preset);
@@ -108,6 +110,17 @@ void FigureDialog::followHeight() {
     aspect_ = double(width_->value()) / height_->value();
 }
 
+/// What is transparent stands on a page that the program does not see: lines and texts are for that, not for the window's theme.
+void FigureDialog::followBackground() {
+  const bool page = transparent_->isChecked();
+  colours_->setItemText(0, page ? tr("For a dark page") : tr("Dark"));
+  colours_->setItemText(1, page ? tr("For a light page") : tr("Light"));
+  colours_->setToolTip(
+      page ? tr("Lines and texts are drawn so that they are read on such a page; bright ones vanish on white paper") : QString());
+  const bool dark = page ? QSettings().value(kind_ + QStringLiteral("page-dark"), false).toBool() : dark_;
+  colours_->setCurrentIndex(dark ? 0 : 1);
+}
+
 FigureLook FigureDialog::look() const {
   return {{width_->value(), height_->value()}, transparent_->isChecked(), colours_->currentIndex() == 0};
 }
@@ -115,6 +128,7 @@ FigureLook FigureDialog::look() const {
 void FigureDialog::accept() {
   QSettings settings;
   settings.setValue(kind_ + QStringLiteral("transparent"), look().transparent);
+  if (look().transparent) settings.setValue(kind_ + QStringLiteral("page-dark"), look().dark);
   settings.setValue(kind_ + QStringLiteral("preset"), preset_->currentIndex());
   settings.setValue(kind_ + QStringLiteral("size"), look().size);
   QDialog::accept();

@@ -14,10 +14,11 @@ namespace glint::gui {
 struct FigureLook {
   QSize size{1600, 1000};  ///< px
   bool transparent = false;
-  bool dark = true;
+  bool dark = true;  ///< bright lines and texts, for a dark background or page
 };
 
-/// Asks for the size and the background of a picture. Remembers the last answer of each kind; colours start as the window's.
+/// Asks for the size and the background of a picture. Remembers the last answer of each kind; colours start as the window's, or,
+/// where the background is transparent, for the page that was chosen last (at first a light one).
 class FigureDialog : public QDialog {
   Q_OBJECT
  public:
@@ -32,9 +33,11 @@ class FigureDialog : public QDialog {
   void setSize(const QSize& size);
   void followWidth();
   void followHeight();
+  void followBackground();
 
   QString kind_;
   QSize onScreen_;
+  bool dark_;  ///< the window
   double aspect_ = 1.6;
   QComboBox *preset_, *colours_;
   QSpinBox *width_, *height_;

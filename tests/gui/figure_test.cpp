@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pictures, movies and labels that leave the program, and what comes back by dropping it on the window.
 #include <QAction>
+#include <QCheckBox>
 #include <QComboBox>
 #include <QDir>
 #include <QDragEnterEvent>
@@ -23,6 +24,7 @@
 #include "gui/document/session_file.h"
 #include "gui/export/export_actions.h"
 #include "gui/export/figure_actions.h"
+#include "gui/export/figure_dialog.h"
 #include "gui/export/movie_actions.h"
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/frame_panel.h"
@@ -290,6 +292,30 @@ class FigureTest : public QObject {
     window_->actions().find("export.scene")->trigger();
     wait();
     QCOMPARE(QImage(file).width(), 640);
+  }
+
+  /// Bright lines of a dark window would vanish on white paper.
+  void aTransparentFigureIsForALightPageUnlessADarkOneIsChosen() {
+    const auto dialog = [](bool darkWindow) {
+      return std::make_unique<FigureDialog>("figure", "test", QSize(400, 300), darkWindow, nullptr);
+    };
+    auto asked = dialog(true);
+    auto* colours = asked->findChild<QComboBox*>("figureColours");
+    auto* transparent = asked->findChild<QCheckBox*>("figureTransparent");
+    QVERIFY(asked->look().dark && !asked->look().transparent);
+    QCOMPARE(colours->currentText(), QStringLiteral("Dark"));
+    transparent->setChecked(true);
+    QVERIFY(!asked->look().dark);
+    QCOMPARE(colours->currentText(), QStringLiteral("For a light page"));
+    transparent->setChecked(false);
+    QVERIFY(asked->look().dark);
+    transparent->setChecked(true);
+    colours->setCurrentIndex(0);
+    asked->accept();
+    asked = dialog(false);  // the page does not follow the window
+    QVERIFY(asked->look().dark && asked->look().transparent);
+    asked->findChild<QCheckBox*>("figureTransparent")->setChecked(false);
+    QVERIFY(!asked->look().dark);
   }
 
   void aMovieOfTheTimeline() {
