@@ -28,6 +28,10 @@ constexpr double kWeakGap = 0.5;         // of the last two singular values: abo
 constexpr double kNeedle = 10;           // longest over middle semi-axis: a lamp's blurred image is about as wide as it is long
 constexpr double kOwnSizePct = 100;      // of the highlight's diameter: beyond, the prediction lies beside it
 constexpr double kRoundOff = 1e-9;       // of a vector's length: coordinates are known to 1e-7 at best, so this is a zero
+// Below these a number is what rounding leaves: contours are followed to about 1e-3 px.
+constexpr double kLeastPx = 1e-3, kLeastPct = 1e-3;
+constexpr double kLeastDeg = 1e-4;       // 1e-3 px at a focal length of 600 px
+constexpr double kLeastOfView = 1e-6;    // of the distance to what is seen: 1e-3 px there
 constexpr int kMostPairedViews = 12;     // 66 pairs of views tell what their epipolar lines do
 
 ExplainNumber one(const std::string& symbol, const std::string& name, double value, const std::string& unit = "") {
@@ -508,6 +512,16 @@ void comparisonStep(const Case& c, ExplainStep& step) {
       one("", c.out.model == "primal" ? "its centre from the peak" : "offset of the peaks", m.peakOffsetPx, "px"));
   if (c.inspection.isTraining(c.out.frame)) step.broken.push_back({"training-frame", {}});
 }
+/// Says of each number what is too small to mean anything. @param distance  m, to what the camera sees; > 0.
+void setLeast(std::vector<ExplainNumber>& numbers, double distance) {
+  for (ExplainNumber& n : numbers) {
+    if (n.unit == "px") n.least = kLeastPx;
+    if (n.unit == "%") n.least = kLeastPct;
+    if (n.unit == "deg") n.least = kLeastDeg;
+    if (n.unit == "m") n.least = kLeastOfView * distance;
+    if (n.unit == "1/m") n.least = kLeastOfView / distance;
+  }
+}
 }  // namespace
 
 const std::vector<std::string>& explainSteps() {
@@ -551,10 +565,15 @@ Explanation explain(const Inspection& inspection, int frame, int highlight, cons
                                                 {"projection", projectionStep},
                                                 {"inverse-walk", inverseWalkStep},
                                                 {"comparison", comparisonStep}};
+  const bool seen = out.view && out.view->brightest;
+  const double distance =
+      seen ? (out.view->brightest->point.position - c.camera().centreInWorld()).norm() : workingDistance(*inspection.scene);
   for (const std::string& id : explainSteps()) {
     ExplainStep step;
     step.id = id;
     fill.at(id)(c, step);
+    setLeast(step.numbers, distance);
+    for (BrokenAssumption& b : step.broken) setLeast(b.numbers, distance);
     out.steps.push_back(std::move(step));
   }
   return out;

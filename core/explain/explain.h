@@ -15,6 +15,7 @@ struct ExplainNumber {
   std::string name;            ///< "brightest point"
   std::vector<double> values;  ///< one, or the components of a point
   std::string unit;            ///< "m", "px", "deg", "%", "" for none
+  double least = 0;            ///< in `unit`: what is smaller is rounding and noise of the arithmetic; 0 = every value counts
 };
 
 /// An assumption of the method that this scene breaks: `id` names its sentence in resources/explain, `numbers` show it.

@@ -3,7 +3,6 @@
 
 #include <QAction>
 #include <QEvent>
-#include <QHBoxLayout>
 #include <QLabel>
 #include <QListWidget>
 #include <QMenu>
@@ -20,9 +19,9 @@
 #include <utility>
 
 #include "gui/base/eliding_delegate.h"
+#include "gui/base/flow_layout.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
-#include "gui/base/unit_text.h"
 #include "gui/explain/explain_texts.h"
 #include "gui/explain/lessons.h"
 #include "gui/explain/walk_player.h"
@@ -34,7 +33,6 @@ namespace {
 const char* const kStep = "explain/step";      // option: id of the step that is shown; "" = none
 const char* const kSolo = "scene/solo";        // option: the 3D views show what belongs to the selected frame alone
 const char* const kLesson = "explain/lesson";  // option: id of the lesson that this session is; "" = none
-constexpr int kDigits = 5;
 constexpr int kWalkHeight = 290;  // px, where there is room
 constexpr int kTextLines = 14;    // of the text and the buttons, that the list of the steps leaves room for
 
@@ -44,19 +42,12 @@ bool showsWalk(const ExplainText& text) { return text.layers.contains(QStringLit
 
 QString escaped(const std::string& s) { return toQString(s).toHtmlEscaped(); }
 
-QString valuesText(const ExplainNumber& n) {
-  QStringList parts;
-  for (const double v : n.values) parts << numberText(v, kDigits);
-  return parts.join(QStringLiteral("&nbsp;&nbsp; ")) +
-         (n.unit.empty() ? QString() : QStringLiteral("&nbsp;") + unitText(n.unit).toHtmlEscaped());
-}
-
 QString numbersTable(const std::vector<ExplainNumber>& numbers) {
   if (numbers.empty()) return {};
   QString html = QStringLiteral("<table cellspacing=0 cellpadding=2>");
   for (const ExplainNumber& n : numbers)
     html += QStringLiteral("<tr><td><i>%1</i>&nbsp;&nbsp;</td><td>%2&nbsp;&nbsp;</td><td><b>%3</b></td></tr>")
-                .arg(escaped(n.symbol), escaped(n.name), valuesText(n));
+                .arg(escaped(n.symbol), escaped(n.name), valuesHtml(n));
   return html + QStringLiteral("</table>");
 }
 
@@ -90,7 +81,7 @@ ExplainPanel::ExplainPanel(Document& document, QWidget* parent)
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(8, 6, 8, 6);
   column->setSpacing(6);
-  auto* bar = new QHBoxLayout;
+  auto* bar = new FlowLayout(4);  // in a narrow panel, or in large print, the last of it goes to a second line
   for (auto* button : {back_, next_}) {
     button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
     button->setIconSize({14, 14});
@@ -105,8 +96,8 @@ ExplainPanel::ExplainPanel(Document& document, QWidget* parent)
   leave_->setToolTip(tr("Shows the layers that were shown before"));
   place_->setAlignment(Qt::AlignCenter);
   bar->addWidget(back_);
-  bar->addWidget(place_, 1);
   bar->addWidget(next_);
+  bar->addWidget(place_);
   bar->addWidget(leave_);
   column->addLayout(bar);
   split_ = new QSplitter(Qt::Vertical);
@@ -167,6 +158,7 @@ int ExplainPanel::step() const {
 bool ExplainPanel::busy() const { return job_.busy() || walk_->busy(); }
 
 void ExplainPanel::start() {
+  emit started();  // first: a view is fitted to what a step is about in the room that it will have
   if (step() < 0) {
     const Lesson* lesson = lessonOf(document_);
     int first = 0;
@@ -174,7 +166,6 @@ void ExplainPanel::start() {
       if (lesson->steps.contains(explainTexts().steps[i].id)) first = i;
     goTo(first);
   }
-  emit started();
 }
 
 void ExplainPanel::next() { step() < 0 ? start() : goTo(step() + 1); }
@@ -265,6 +256,7 @@ void ExplainPanel::compute() {
 
 void ExplainPanel::refresh() {
   const int now = step(), count = explainTexts().steps.size();
+  if (std::exchange(explaining_, now >= 0) && now < 0) emit left();
   const QSignalBlocker quiet(steps_);
   steps_->setCurrentRow(now);
   if (now >= 0) steps_->scrollToItem(steps_->item(now));
@@ -362,6 +354,14 @@ QString ExplainPanel::html() const {
                        .arg(escaped(scene.frames[std::size_t(explanation_->frame)].id), ofSeveral,
                             explanation_->light.empty() ? QString() : tr(", light %1").arg(escaped(explanation_->light)),
                             explanation_->model.empty() ? QString() : tr(", model %1").arg(escaped(explanation_->model))));
+  // A frame that has not trained still has its own contour: what comes from that, and what from the others?
+  const bool ofObserved = text.id == QLatin1String("limit-angles") || text.id == QLatin1String("canonical-ellipse");
+  if (const auto inspection = document_.inspection();
+      ofObserved && !s.failure && inspection && !inspection->isTraining(explanation_->frame))
+    html +=
+        box(palette().color(QPalette::Highlight),
+            tr("<b>Observed here:</b> the contour, from which this walk goes out. <b>Learnt from other frames:</b> the light; "
+               "no model has learnt from this frame. <b>Predicted:</b> only the dotted ellipse of the frame view."));
   // What is wrong comes first: a low window shows no more than that.
   if (s.failure) html += box(errorColour(), tr("This scene does not get here: %1").arg(escaped(s.failure->message())));
   for (const BrokenAssumption& b : s.broken)
@@ -392,8 +392,8 @@ void ExplainPanel::addActions(Actions& actions, QMenu* menu) {
   QMenu* all = menu->addMenu(tr("&Steps"));
   for (int i = 0; i < explainTexts().steps.size(); ++i)
     actions.add("explain.step-" + explainTexts().steps[i].id, all, explainTexts().steps[i].title, [this, i] {
-      goTo(i);
       emit started();
+      goTo(i);
     });
 }
 

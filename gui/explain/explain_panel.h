@@ -45,7 +45,8 @@ class ExplainPanel : public QWidget {
   void goTo(int step);
 
  signals:
-  void started();
+  void started();  ///< someone asked for it, at any step
+  void left();     ///< also by undo, and by another scene
   /// A step asks for its part of the scene: see ScenePanel::look.
   void look(const QString& at, int highlight, const QString& model);
   void lessonRequested(const QString& session);
@@ -73,6 +74,7 @@ class ExplainPanel : public QWidget {
   std::shared_ptr<const Explanation> explanation_;
   std::map<std::string, bool> layersBefore_;  ///< what was shown before the first step
   std::string soloBefore_;                    ///< and whether of the selected frame alone
+  bool explaining_ = false;                   ///< a step was shown last
   bool lookPending_ = false;                  ///< the step on screen was gone to, and what it is about is not computed yet
   QString lookedAt_;                          ///< what the views were sent to last; "" = wherever a session left them
   Actions* actions_ = nullptr;

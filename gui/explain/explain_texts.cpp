@@ -5,6 +5,11 @@
 #include <QJsonArray>
 #include <QJsonDocument>
 #include <QJsonObject>
+#include <algorithm>
+#include <cmath>
+
+#include "gui/base/text.h"
+#include "gui/base/unit_text.h"
 
 static void initExplainResource() { Q_INIT_RESOURCE(explain); }
 
@@ -49,6 +54,28 @@ ExplainText::Words ExplainText::words(const QString& model) const {
 const ExplainTexts& explainTexts() {
   static const ExplainTexts texts = read();
   return texts;
+}
+
+QString valuesHtml(const ExplainNumber& n) {
+  constexpr int kDigits = 5;
+  constexpr double kShort = 1e-2;  // m: below, a single length is in mm
+  const double least = std::max(n.least, 0.0);
+  const bool single = n.values.size() == 1;
+  const bool rounding = std::all_of(n.values.begin(), n.values.end(), [&](double v) { return std::abs(v) < least; });
+  const bool zero = std::all_of(n.values.begin(), n.values.end(), [](double v) { return v == 0; });
+  if (rounding && !zero) return QObject::tr("0 within rounding");
+  const bool millimetres = single && n.unit == "m" && !zero && std::abs(n.values.front()) < kShort;
+  // Whole steps of a power of ten that is not larger than the least.
+  const double step = least > 0 ? std::pow(10, std::floor(std::log10(least))) : 0;
+  QStringList parts;
+  for (const double v : n.values) {
+    double rounded = step > 0 && std::isfinite(v) ? std::round(v / step) * step : v;
+    if (std::abs(v) < least) rounded = 0;
+    parts << numberText(millimetres ? 1000 * rounded : rounded, kDigits);
+  }
+  const QString unit = millimetres ? QStringLiteral("mm") : unitText(n.unit);
+  return parts.join(QStringLiteral("&nbsp;&nbsp; ")) +
+         (unit.isEmpty() ? QString() : QStringLiteral("&nbsp;") + unit.toHtmlEscaped());
 }
 
 }  // namespace glint::gui

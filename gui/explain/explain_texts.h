@@ -6,6 +6,8 @@
 #include <QString>
 #include <QStringList>
 
+#include "core/explain/explain.h"
+
 namespace glint::gui {
 
 /// What resources/explain/steps.json says of one step.
@@ -29,5 +31,9 @@ struct ExplainTexts {
 };
 /// Read once from the program's resources.
 const ExplainTexts& explainTexts();
+
+/// The values of a number with its unit, as HTML without a break: what is smaller than counts is "0 within rounding", short
+/// lengths are in mm, and no digit stands beyond what counts.
+QString valuesHtml(const ExplainNumber& number);
 
 }  // namespace glint::gui

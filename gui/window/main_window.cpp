@@ -4,6 +4,7 @@
 #include <QAbstractButton>
 #include <QApplication>
 #include <QCloseEvent>
+#include <QDockWidget>
 #include <QFileInfo>
 #include <QHBoxLayout>
 #include <QLabel>
@@ -231,7 +232,8 @@ void MainWindow::buildDocks() {
 
   explain_ = new ExplainPanel(document_);
   docks_.add("explain", tr("Explain"), explain_, Qt::RightDockWidgetArea, "parameters");
-  connect(explain_, &ExplainPanel::started, this, [this] { docks_.bring(QStringLiteral("explain")); });
+  connect(explain_, &ExplainPanel::started, this, &MainWindow::makeRoomToExplain);
+  connect(explain_, &ExplainPanel::left, this, &MainWindow::putBackAfterExplaining);
   connect(explain_, &ExplainPanel::look, scene_, &ScenePanel::look);
   connect(explain_, &ExplainPanel::look, frame_, &FramePanel::look);
   connect(explain_, &ExplainPanel::lessonRequested, files_, &FileActions::open);
@@ -370,7 +372,10 @@ void MainWindow::buildMenus() {
   layoutMenu->addSeparator();
   auto* own = new OwnLayouts(this, views_);
   own->addActions(actions_, layoutMenu);
-  connect(own, &OwnLayouts::applied, this, [this] { ownLayout_ = true; });
+  connect(own, &OwnLayouts::applied, this, [this] {
+    ownLayout_ = true;
+    beforeExplaining_.reset();
+  });
   docks_.addActions(actions_, view->addMenu(tr("&Panels")));
   view->addSeparator();
   actions_.add("view.theme", view, tr("Light or dark &theme"),
@@ -409,8 +414,38 @@ void MainWindow::applyLayout(const QString& name) {
   const Layout& layout = layoutByName(name);
   layout_ = QLatin1String(layout.name);
   ownLayout_ = false;
+  beforeExplaining_.reset();  // what was chosen meanwhile stays
   docks_.apply(layout);
   views_->setSizes({layout.sceneShare * 10, (100 - layout.sceneShare) * 10});
+}
+
+/// A text and a 3D view that fit beside each other. An own layout that shows the panel is left as it is.
+void MainWindow::makeRoomToExplain() {
+  const QString explain = QStringLiteral("explain");
+  const auto* dock = findChild<QDockWidget*>(explain);
+  const bool arranged = ownLayout_ ? dock && !dock->isHidden() : layout_ == explain;
+  if (!arranged && document_.scene()) {  // without one there is only the overview
+    const Arrangement before{layout_, ownLayout_, size(), saveState(), views_->saveState()};
+    applyLayout(explain);
+    beforeExplaining_ = before;
+  }
+  docks_.bring(explain);
+  if (!beforeExplaining_ || arranged) return;
+  // A step fits the view to what it is about: the view has to know its new size by then.
+  layout()->activate();
+  QCoreApplication::sendPostedEvents(nullptr, QEvent::LayoutRequest);
+  scene_->renderNow();
+}
+
+void MainWindow::putBackAfterExplaining() {
+  if (!beforeExplaining_) return;
+  const Arrangement before = *std::exchange(beforeExplaining_, std::nullopt);
+  if (!before.own) applyLayout(before.layout);  // also arranges the docks for what the window's size is by now
+  layout_ = before.layout;
+  ownLayout_ = before.own;
+  if (!before.own && before.size != size()) return;
+  restoreState(before.docks);
+  views_->restoreState(before.views);
 }
 
 void MainWindow::resizeEvent(QResizeEvent* e) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <QMainWindow>
+#include <optional>
 
 #include "gui/base/actions.h"
 #include "gui/base/theme.h"
@@ -89,6 +90,8 @@ class MainWindow : public QMainWindow {
   void showTitle();
   bool quiet() const;
   void addView(Opened& opened) const;
+  void makeRoomToExplain();
+  void putBackAfterExplaining();
   Opened snapshot() const;
 
   Engine engine_;
@@ -121,6 +124,13 @@ class MainWindow : public QMainWindow {
   QLabel* probe_ = nullptr;
   QString layout_, lastError_;
   bool ownLayout_ = false;  ///< the docks are where an own layout has them
+  struct Arrangement {
+    QString layout;
+    bool own = false;
+    QSize size;
+    QByteArray docks, views;
+  };
+  std::optional<Arrangement> beforeExplaining_;  ///< to go back to; none where Explain was started in a fitting one
   ScriptedActions* script_ = nullptr;
   UnreadablePhotographs* unreadable_ = nullptr;
   MissingPtr located_;      ///< was pointed at, and is being opened

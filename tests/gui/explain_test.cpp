@@ -4,6 +4,7 @@
 
 #include <QAction>
 #include <QComboBox>
+#include <QDockWidget>
 #include <QListWidget>
 #include <QTextBrowser>
 #include <QToolButton>
@@ -316,6 +317,86 @@ class ExplainTest : public QObject {
     const int beside = browser->viewport()->height() / QFontMetrics(browser->font()).lineSpacing();
     window_->resize(before);
     QVERIFY2(lines >= 8 && beside >= 5, qPrintable(QStringLiteral("%1, %2").arg(lines).arg(beside)));
+  }
+
+  void whatIsRoundingIsNoNumber() {
+    const auto text = [](std::vector<double> values, const char* unit, double least) {
+      return valuesHtml({"", "", std::move(values), unit, least}).replace(QStringLiteral("&nbsp;"), QStringLiteral(" "));
+    };
+    QCOMPARE(text({1e-7}, "m", 1e-6), QStringLiteral("0 within rounding"));
+    QCOMPARE(text({-3e-9, 2e-8}, "px", 1e-3), QStringLiteral("0 within rounding"));
+    QCOMPARE(text({0}, "px", 1e-3), QStringLiteral("0 px"));
+    QCOMPARE(text({0.000123456}, "m", 2e-6), QStringLiteral("0.123 mm"));
+    QCOMPARE(text({1.23456789}, "m", 2e-6), QStringLiteral("1.2346 m"));
+    QCOMPARE(text({1.5, 1e-8, -2}, "m", 1e-6), QStringLiteral("1.5   0   -2 m"));
+    QCOMPARE(text({0.0123456}, "px", 1e-3), QStringLiteral("0.012 px"));
+    QCOMPARE(text({1e-7}, "", 0), QStringLiteral("1e-07"));  // a ratio of singular values is no rounding
+  }
+
+  /// Whatever is on screen, starting makes room for the text and the 3D view; leaving gives back what was there.
+  void startingMakesRoomAndLeavingGivesItBack() {
+    window_->resize(1600, 1000);
+    window_->applyLayout(QStringLiteral("debug"));
+    QTest::qWait(50);
+    const auto shown = [&] {
+      QStringList names;
+      for (const QDockWidget* dock : window_->findChildren<QDockWidget*>())
+        if (!dock->isHidden()) names << dock->objectName();
+      names.sort();
+      return names;
+    };
+    const QStringList before = shown();
+    auto* scene = window_->findChild<ScenePanel*>();
+    const int width = scene->width();
+    QVERIFY(before.contains("plots"));
+    window_->actions().find("explain.start")->trigger();
+    settle();
+    QTRY_VERIFY(!shown().contains("plots") && shown().contains("explain"));
+    QTRY_VERIFY(scene->width() > width);
+    auto* browser = panel_->findChild<QTextBrowser*>("explain.text");
+    QTRY_VERIFY(browser->viewport()->height() / QFontMetrics(browser->font()).lineSpacing() >= 14);
+    panel_->findChild<QToolButton*>("explain.leave")->click();
+    QTRY_COMPARE(shown(), before);
+    QTRY_VERIFY(std::abs(scene->width() - width) <= 2);
+    // Undo leaves as well; what is chosen meanwhile stays.
+    window_->actions().find("explain.start")->trigger();
+    window_->document().undoStack()->undo();
+    QTRY_COMPARE(shown(), before);
+    window_->actions().find("explain.start")->trigger();
+    window_->applyLayout(QStringLiteral("compare"));
+    const QStringList chosen = shown();
+    panel_->leave();
+    QCOMPARE(shown(), chosen);
+    window_->applyLayout(QStringLiteral("explain"));
+  }
+
+  /// In a panel as narrow as large print makes it, no button ends beyond its edge.
+  void inANarrowPanelEveryButtonIsWhole() {
+    goTo("contour");
+    settle();
+    ExplainPanel narrow(window_->document());
+    narrow.resize(narrow.minimumSizeHint().expandedTo({220, 500}));
+    narrow.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&narrow));
+    for (const char* name : {"explain.back", "explain.next", "explain.leave"}) {
+      auto* button = narrow.findChild<QToolButton*>(name);
+      QVERIFY2(narrow.rect().contains(button->geometry()), name);
+      QVERIFY2(button->width() >= button->sizeHint().width(), name);
+    }
+  }
+
+  /// What was observed and what was predicted, in a frame that has not trained.
+  void aHeldOutFrameSaysWhatIsObserved() {
+    Document& d = window_->document();
+    for (const int frame : {0, d.frameCount() - 1}) {
+      select(frame, "canonical");
+      for (const char* step : {"limit-angles", "canonical-ellipse"}) {
+        goTo(step);
+        settle();
+        QCOMPARE(shownText().contains("Observed here"), !d.inspection()->isTraining(frame));
+        QVERIFY(!shownText().contains("does not get here"));
+      }
+    }
   }
 
   void aClickInTheListGoesThere() {

@@ -400,9 +400,9 @@ class WindowTest : public QObject, WindowFixture {
     MainWindow window(fixture_.engine());
     show(window);
     openAndWait(window);
-    window.applyLayout(QStringLiteral("compare"));
     window.document().selectFrame(window.document().frameCount() - 1);  // whose predictions fail
     window.actions().find("explain.start")->trigger();
+    window.applyLayout(QStringLiteral("compare"));
     auto* text = window.findChild<QTextBrowser*>(QStringLiteral("explain.text"));
     const auto* ladder = window.findChild<LadderPanel*>();
     QTRY_VERIFY(window.idle() && !ladder->canvases().empty());

@@ -327,6 +327,29 @@ TEST(Explain, ACoordinateThatIsRoundOffIsZero) {
   EXPECT_FALSE(std::signbit(n[0]));
 }
 
+/// Whatever the unit, a number says from where on it counts.
+TEST(Explain, EveryMeasuredNumberSaysWhatIsRounding) {
+  const Inspection inspection = inspected(sheet(0), {"primal", "canonical"});
+  const Explanation e = explain(inspection, 1, 0, "primal");
+  const std::set<std::string> measured{"m", "px", "deg", "%", "1/m"};
+  const double distance = number(stepOf(e, "peak"), "distance from the camera")[0];
+  int seen = 0;
+  for (const ExplainStep& s : e.steps)
+    for (const ExplainNumber& n : s.numbers) {
+      EXPECT_EQ(n.least > 0, measured.count(n.unit) > 0) << s.id << ": " << n.name;
+      if (n.unit == "m") {
+        EXPECT_NEAR(n.least, 1e-6 * distance, 1e-12) << n.name;
+      }
+      seen += n.unit == "m";
+    }
+  EXPECT_GE(seen, 5);
+  // The curvature of a plane.
+  for (const ExplainNumber& n : stepOf(e, "tangent-plane").numbers)
+    if (n.symbol == "kappa_1") {
+      EXPECT_LT(std::abs(n.values[0]), n.least);
+    }
+}
+
 TEST(Explain, AFrameWithoutHighlightSaysSoInEveryStepThatNeedsOne) {
   auto scene = exactScene(sheet(0), 6);
   for (Highlight& h : scene->frames[5].highlights) h.level = 0.25;  // none at the level that is asked for
