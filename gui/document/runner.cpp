@@ -69,15 +69,17 @@ void Runner::inspect(std::shared_ptr<const Scene> scene, const InspectionRequest
   post([this, scene = std::move(scene), computedFor, previous = std::move(previous), frame](int job) mutable {
     QElapsedTimer clock, lastSignal;
     clock.start();
-    int graceMs = kGraceMs;
+    int graceMs = cutOff_ ? kLongGraceMs : kGraceMs;
     const ProgressFn progress = [&](const StageEvent& e) { return report(job, clock, lastSignal, e, graceMs); };
     if (job != newest_ || job <= cancelled_) throw Stopped{};  // overtaken while it waited
     if (engine_.inspectOneFrame && frame >= 0) {
+      cutOff_ = true;
       const auto ahead = std::make_shared<const Inspection>(
           engine_.inspectOneFrame(scene, computedFor->request, frame, progress, previous.get()));
       if (job > cancelled_)
         QMetaObject::invokeMethod(
             this, [this, ahead, frame] { emit frameFinished(ahead, frame); }, Qt::QueuedConnection);
+      cutOff_ = false;
       previous = ahead;
       clock.start();
       while (sinceRest_.isValid() && sinceRest_.elapsed() < kRestEveryMs && clock.elapsed() < kPauseMs) {

@@ -29,13 +29,14 @@ using MissingPtr = std::shared_ptr<const Missing>;
 
 /// The only place that knows both Qt and the pipeline: opens inputs and computes inspections on a thread of its own.
 /// The newest request wins. A run that a newer request overtakes is stopped, except in its first `kGraceMs`: quick runs
-/// finish, so that a slider shows results while it is dragged. Once the frame that the user looks at is shown, that grace is
+/// finish, so that a slider shows results while it is dragged; the run after one that was stopped has `kLongGraceMs`, or a slider
+/// whose runs take longer would show none. Once the frame that the user looks at is shown, that grace is
 /// `kRestGraceMs`, for the rest to be finished. cancel() stops at the pipeline's next progress report.
 /// Signals arrive on the thread of this object; only the newest request reports failures.
 class Runner : public QObject {
   Q_OBJECT
  public:
-  static constexpr int kGraceMs = 250, kRestGraceMs = 40;
+  static constexpr int kGraceMs = 250, kLongGraceMs = 1500, kRestGraceMs = 40;
   /// While requests follow one another within `kPauseMs`, each computes its frame; the rest is done in a pause or every
   /// `kRestEveryMs`.
   static constexpr int kPauseMs = 150, kRestEveryMs = 500;
@@ -92,6 +93,7 @@ class Runner : public QObject {
   std::atomic<int> newest_{0};     ///< number of the newest request
   std::atomic<int> cancelled_{0};  ///< requests up to this one were cancelled by the user
   QElapsedTimer sinceRest_;        ///< since all frames were finished last; worker thread only
+  bool cutOff_ = false;      ///< the last frame that was computed ahead did not come to its end; worker thread only
   std::atomic<int> newestSave_{0}, cancelledSaves_{0};
   int pending_ = 0;  ///< posted and not yet ended; interface thread only
 };

@@ -108,6 +108,32 @@ class RunnerTest : public QObject {
     QCOMPARE(frames, (std::vector<unsigned>{1, 2, 3, 4, 5, 6, 7, 8}));
   }
 
+  /// A hand that drags on does not wait for runs that take longer than they are given at first.
+  void aSlowFrameIsSeenWhileTheHandMoves() {
+    Engine engine = fixture_.engine();
+    engine.inspectOneFrame = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int,
+                                const ProgressFn& progress, const Inspection*) {
+      for (int i = 0; i < 2 * Runner::kGraceMs / 10; ++i) {
+        if (!report(progress, {"fit", i, 100})) throw Stopped{};
+        QThread::msleep(10);
+      }
+      return drawnCircles(scene, request);
+    };
+    Runner runner(engine);
+    QSignalSpy frames(&runner, &Runner::frameFinished);
+    InspectionRequest request;
+    QElapsedTimer clock;
+    clock.start();
+    while (frames.isEmpty() && clock.elapsed() < 20'000) {
+      ++request.seed;
+      runner.inspect(fixture_.scene(), request, nullptr, 0);
+      QTest::qWait(Runner::kGraceMs / 5);
+    }
+    QVERIFY(!frames.isEmpty());
+    runner.cancel();
+    QTRY_VERIFY(!runner.busy());
+  }
+
   void wrongInputIsOneLine() {
     Runner runner(fixture_.engine());
     QSignalSpy failed(&runner, &Runner::failed), opened(&runner, &Runner::opened);
