@@ -173,6 +173,21 @@ TEST(Inspect, RefusesModelsAndFramesThatDoNotExist) {
   EXPECT_THROW(inspect(scene, q), InputError);
 }
 
+TEST(Summary, SaysWhyThereIsNothingToAverage) {
+  const auto scene = exactScene(sheet(0.4), 5);
+  InspectionRequest q;
+  q.models = {"limit-angle"};
+  q.train = "0-4";
+  const Inspection all = inspect(scene, q);
+  const ModelSummary none = summarise(all, all.models.at("limit-angle"));
+  EXPECT_FALSE(none.answered);
+  EXPECT_NE(none.reason.find("held out"), std::string::npos) << none.reason;
+  q.train = "0-3";
+  q.excluded = {4};
+  const Inspection excluded = inspect(scene, q);
+  EXPECT_EQ(summarise(excluded, excluded.models.at("limit-angle")).reason, none.reason);
+}
+
 TEST(Inspect, AllTrainingFramesExcludedIsANamedFailure) {
   const auto scene = exactScene(sheet(0), 5);
   InspectionRequest q = request();
