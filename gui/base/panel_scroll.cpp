@@ -88,9 +88,13 @@ void PanelScroll::fit() {
     height = heightFor(width, least);
   }
   widget()->resize(width, std::max(height, room.height() - (width > room.width() ? bar : 0)));
-  if (!hugs || maximumHeight() == all) return;
-  setMaximumHeight(all);
-  updateGeometry();
+  if (hugs && maximumHeight() != all) {
+    setMaximumHeight(all);
+    updateGeometry();
+  }
+  // Qt may have laid the bars out for the size that the content had before.
+  const QScrollBar* vertical = verticalScrollBar();
+  if (isVisible() && vertical->isVisible() != (vertical->maximum() > 0)) setVerticalScrollBarPolicy(verticalScrollBarPolicy());
 }
 
 }  // namespace glint::gui

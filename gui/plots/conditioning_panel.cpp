@@ -140,7 +140,10 @@ QString Chip::shown() const {
   const bool number = !value.isEmpty() && value.at(0).isDigit();
   QStringList words{sign + text(), sign + (number ? value : text()), number ? value : text()};
   if (!unit().isEmpty()) words = unitShown_ ? QStringList{sign + text(), text()} : QStringList{sign + value, value};
-  if (number) words << fewerDigits(value);
+  if (number)
+    words << fewerDigits(value);
+  else
+    words << text().replace(QLatin1String("hyperb. "), QLatin1String("hyp. "));
   for (const QString& w : words)
     if (fontMetrics().horizontalAdvance(w) <= width() - 4) return w;
   return fontMetrics().elidedText(words.back(), Qt::ElideRight, width() - 4);
@@ -300,7 +303,10 @@ void ConditioningPanel::build() {
   for (int k = 0; k < int(conditioning_.size()); ++k) {
     const Conditioning& c = conditioning_[std::size_t(k)];
     QString name = toQString(c.model);
-    if (conditioning_.size() > 4) name = name == QLatin1String("reflectance") ? tr("reflec-\ntance") : name.replace("-", "-\n");
+    if (conditioning_.size() > 4)
+      name = name == QLatin1String("reflectance") ? tr("reflec-\ntance")
+             : name == QLatin1String("canonical") ? tr("canon-\nical")
+                                                  : name.replace("-", "-\n");
     auto* head = new QLabel(name + (severalLights ? QLatin1Char('\n') + toQString(c.light) : QString()));
     head->setToolTip(toQString(c.model + ", light " + c.light + (c.surface ? ", surface " + *c.surface : std::string())));
     head->setStyleSheet(

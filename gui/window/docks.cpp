@@ -17,6 +17,7 @@ namespace glint::gui {
 namespace {
 constexpr int kNarrow = 1100, kLow = 740;  // below these, px, columns of docks would leave the views too little
 constexpr QSize kLeastContent(150, 80);
+constexpr QSize kAsTabs(800, 500);  // what every layout fits into then
 }  // namespace
 
 QDockWidget* Docks::add(const char* name, const QString& title, QWidget* content, Qt::DockWidgetArea area, const char* behind) {
@@ -30,6 +31,13 @@ QDockWidget* Docks::add(const char* name, const QString& title, QWidget* content
 }
 
 Docks::Room Docks::room() const { return {window_->width() < kNarrow, window_->height() < kLow}; }
+
+QSize Docks::least(QSize needs) const {
+  if (!room_) return needs;
+  if (!room_->narrow && needs.width() < kNarrow) needs.setWidth(std::min(needs.width(), kAsTabs.width()));
+  if (!room_->low && needs.height() < kLow) needs.setHeight(std::min(needs.height(), kAsTabs.height()));
+  return needs;
+}
 
 QString Docks::host(const Place& place, const Room& room) const {
   static const QStringList left{"setup", "layers", "history"}, right{"conditioning", "numbers"}, bottom{"timeline", "plots"};

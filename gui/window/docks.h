@@ -4,6 +4,7 @@
 #include <QList>
 #include <QMainWindow>
 #include <QMap>
+#include <QSize>
 #include <QString>
 #include <optional>
 
@@ -28,6 +29,9 @@ class Docks {
   void apply(const Layout& layout);
   /// The docks are arranged for a window of this size.
   bool fits() const { return room_ && *room_ == room(); }
+  /// The least size that the window may get. @param needs  of its docks as they are arranged now: in a smaller window they will
+  /// be tabs and need less.
+  QSize least(QSize needs) const;
   /// A widget of a dock that lies behind another tab: Qt counts it as visible.
   static bool isBehind(const QWidget* widget);
   /// One toggle for each dock; one that lies behind another comes to the front instead of going away.

@@ -456,6 +456,14 @@ void MainWindow::resizeEvent(QResizeEvent* e) {
   });
 }
 
+bool MainWindow::event(QEvent* e) {
+  const bool done = QMainWindow::event(e);
+  // Else Qt holds a window that shrinks at what its docks need now, also once they need less.
+  if (e->type() == QEvent::LayoutRequest && isVisible())
+    setMinimumSize(ownLayout_ ? QSize(0, 0) : docks_.least(minimumSizeHint()));
+  return done;
+}
+
 void MainWindow::runActions(const QStringList& ids) { script_->run(ids); }
 
 void MainWindow::setTheme(Theme theme) {

@@ -75,6 +75,7 @@ class MainWindow : public QMainWindow {
   /// As Qt's, but past what lies behind another tab.
   bool focusNextPrevChild(bool next) override;
   void resizeEvent(QResizeEvent* e) override;
+  bool event(QEvent* e) override;
   void dragEnterEvent(QDragEnterEvent* e) override;
   void dropEvent(QDropEvent* e) override;
 

@@ -223,6 +223,8 @@ class PlotsTest : public QObject {
     Chip words(Verdict::Amber, QStringLiteral("hyperb. 1"));
     words.resize(metrics.horizontalAdvance(QStringLiteral("hyperb. 1")) + 5, 20);
     QCOMPARE(words.shown(), QStringLiteral("hyperb. 1"));  // no unit
+    words.resize(metrics.horizontalAdvance(QStringLiteral("hyp. 1")) + 5, 20);
+    QCOMPARE(words.shown(), QStringLiteral("hyp. 1"));
   }
 
   /// Chips of one row: all with the unit, or all without it and the row's name with it.

@@ -10,6 +10,7 @@
 #include <QScrollBar>
 #include <QToolButton>
 #include <QVBoxLayout>
+#include <random>
 
 #include "gui/base/flow_layout.h"
 #include "gui/base/panel_scroll.h"
@@ -96,7 +97,7 @@ class WindowSizeTest : public QObject, WindowFixture {
     QVERIFY(spread());
   }
 
-  /// Without steps between. Qt first holds the window at what its docks still need, which ends when they have become tabs.
+  /// Without steps between, and at once as small as it is asked to be.
   void aWindowThatShrinksAtOnceMakesTabsOfItsDocks() {
     if (screen()->availableSize().width() < 1600) QSKIP("the screen is smaller");
     MainWindow window(fixture_.engine());
@@ -111,11 +112,10 @@ class WindowSizeTest : public QObject, WindowFixture {
       QTest::qWait(20);
       QVERIFY2(!window.tabifiedDockWidgets(parameters).contains(setup), qPrintable(name));
       window.resize(800, 500);
+      QCOMPARE(window.size(), QSize(800, 500));
       if (name == "debug") QTRY_VERIFY(window.tabifiedDockWidgets(parameters).contains(setup));  // others show one of them
-      QCOMPARE(window.width(), 800);
       QTRY_VERIFY2(window.minimumHeight() <= 500,
                    qPrintable(QStringLiteral("%1: at least %2").arg(name).arg(window.minimumHeight())));
-      window.resize(800, 500);
       QCOMPARE(window.size(), QSize(800, 500));
     }
   }
@@ -172,11 +172,11 @@ class WindowSizeTest : public QObject, WindowFixture {
     QVERIFY(miss->height() >= miss->heightForWidth(miss->width()));
   }
 
-  /// What holds it gives it a limit within its own resize; it gets lower within that.
+  /// Whatever comes together: sizes, limits, what the panel holds, and the panel itself hidden and shown again.
   void aPanelOverItsLimitHasItsScrollBarAtOnce() {
     class Host : public QWidget {
      public:
-      Host() {
+      explicit Host(QWidget* parent) : QWidget(parent) {
         auto* content = new QWidget;
         auto* flow = new FlowLayout;
         content->setLayout(flow);
@@ -194,30 +194,37 @@ class WindowSizeTest : public QObject, WindowFixture {
         scroll->setMost(std::max(30, height() * 28 / 100));
       }
     };
-    Host host;
-    host.resize(900, 700);
-    host.show();
-    QVERIFY(QTest::qWaitForWindowExposed(&host));
-    int bars = 0;
-    for (const QSize& size :
-         {QSize(900, 700), QSize(300, 700), QSize(300, 300), QSize(800, 300), QSize(260, 300), QSize(260, 800), QSize(260, 200),
-          QSize(900, 200), QSize(400, 500), QSize(300, 260), QSize(900, 900), QSize(240, 240)}) {
-      host.resize(size);
-      QCoreApplication::processEvents();
-      QCoreApplication::processEvents();
-      const QString at = QStringLiteral("%1 x %2: %3 of %4 px, %5 high")
-                             .arg(size.width())
-                             .arg(size.height())
-                             .arg(host.scroll->viewport()->height())
-                             .arg(host.scroll->widget()->height())
-                             .arg(host.scroll->height());
-      const bool needed = host.scroll->widget()->height() > host.scroll->height();
-      bars += needed;
-      QVERIFY2(host.scroll->verticalScrollBar()->isVisible() == needed, qPrintable(at));
-      QVERIFY2(host.scroll->height() <= std::max(30, host.height() * 28 / 100), qPrintable(at));
-      QVERIFY2(host.scroll->viewport()->height() <= host.scroll->height(), qPrintable(at));
+    int needed = 0, whole = 0;
+    for (const unsigned seed : {18u, 41u, 52u, 57u}) {  // of sixty, those that met a wrong bar
+      QWidget window;                                   // its own size comes and goes with the display's events
+      window.resize(900, 900);
+      Host host(&window);
+      window.show();
+      QVERIFY(QTest::qWaitForWindowExposed(&window));
+      std::mt19937 random(seed);
+      const auto any = [&random](int from, int to) { return from + int(random() % unsigned(to - from + 1)); };
+      const QList<QPushButton*> buttons = host.scroll->widget()->findChildren<QPushButton*>();
+      host.resize(500, 500);
+      for (int step = 0; step < 300; ++step) {
+        for (int k = any(1, 3); k > 0; --k) {
+          const int what = any(0, 3);
+          if (what == 0) host.resize(any(200, 900), any(120, 900));
+          if (what == 1) buttons[any(0, buttons.size() - 1)]->setVisible(any(0, 1) == 1);
+          if (what == 2) host.scroll->setMost(any(30, 200));
+          if (what == 3) host.scroll->setVisible(any(0, 3) > 0);
+        }
+        for (int turn = 0; turn < 2; ++turn) QCoreApplication::processEvents();
+        if (!host.scroll->isVisible()) continue;
+        const bool needs = host.scroll->widget()->height() > host.scroll->height();
+        ++(needs ? needed : whole);
+        QVERIFY2(host.scroll->verticalScrollBar()->isVisible() == needs, qPrintable(QStringLiteral("%1, %2: %3 of %4 px")
+                                                                                        .arg(seed)
+                                                                                        .arg(step)
+                                                                                        .arg(host.scroll->height())
+                                                                                        .arg(host.scroll->widget()->height())));
+      }
     }
-    QVERIFY(bars > 2);
+    QVERIFY(needed > 50 && whole > 50);
   }
 
  private:
