@@ -21,6 +21,7 @@ constexpr int kCellEdges = 12;  // px, left and right of a cell's text
 constexpr int kFewestLetters = 3;
 // An occurrence in the title counts before any in the place, one in the place before any elsewhere.
 constexpr int kInPlace = 2, kInTitle = 7;
+constexpr int kOccurrence = 3;  // of two that are equal the title that is nothing else comes first, then one that begins so
 
 /// How a word occurs in a text.
 enum class Occurs { Not, Inside, AtStart, Whole };
@@ -80,6 +81,8 @@ QStringList wordsOf(const QString& typed) {
 std::optional<PaletteMatch> matchOf(const QString& typed, const PaletteItem& item) {
   const QString title = item.title.toLower(), place = item.place.toLower(), others = item.words.toLower();
   PaletteMatch match;
+  const QString all = wordsOf(typed).join(QLatin1Char(' '));
+  if (!all.isEmpty()) match.score = title == all ? 2 : title.startsWith(all) ? 1 : 0;
   for (const QString& word : wordsOf(typed)) {
     int best = 0;
     for (const QString& spelt : {word, ours(word)}) {
@@ -87,7 +90,7 @@ std::optional<PaletteMatch> matchOf(const QString& typed, const PaletteItem& ite
       const bool other = occurs(spelt, others) >= Occurs::AtStart;
       best = std::max({best, kInTitle * int(occurs(spelt, title)), kInPlace * int(occurs(spelt, place)), int(other)});
     }
-    match.score += best;
+    match.score += kOccurrence * best;
     if (best > 0) continue;
     if (word.size() < kFewestLetters) return std::nullopt;  // one or two letters are in everything
     if (lettersOf(word, title) || lettersOf(word, place))

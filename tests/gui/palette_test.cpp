@@ -57,6 +57,8 @@ class PaletteTest : public QObject {
     QCOMPARE(match("cnr", "Contour level")->way, PaletteMatch::Way::Scattered);
     QVERIFY(match("LEVEL con", "Contour level") > match("level", "Contour level"));
     QVERIFY(match("", "anything"));
+    QVERIFY(match("light", "Light") > match("light", "Light or dark theme"));
+    QVERIFY(match("curv", "Curvature") > match("curv", "Lesson 4: Curvature of a mirror"));
     QVERIFY(!match("level zebra", "Contour level"));
     QVERIFY(!match("vl", "Contour level"));  // two letters in order are in everything
     // However many words are whole: one that is only letters puts the item behind.
