@@ -115,12 +115,13 @@ struct Painter {
     };
     curve(t.onSurface, now.visitedOnSurface, ink);
     curve(t.onPlane, now.visitedOnPlane, plane);
-    out.texts.push_back({{box.x, box.y + box.height + 1.2 * textPx}, "distance on T", faint});
     const double reach = now.onSurface ? t.reachOnSurface : t.reachOnPlane;
-    out.texts.push_back({{box.x + box.width, box.y + box.height + 1.2 * textPx},
-                         text(now.onSurface ? "ends at %.1f mm on S" : "ends at %.1f mm on T", 1000 * reach),
-                         now.onSurface ? ink : plane,
-                         Align::Right});
+    const std::string axis = "distance on T",
+                      end = text(now.onSurface ? "ends at %.1f mm on S" : "ends at %.1f mm on T", 1000 * reach);
+    // In a narrow picture the end says of which distance the axis is.
+    if (kGlyphWidth * textPx * static_cast<double>(axis.size() + end.size() + 1) < box.width)
+      out.texts.push_back({{box.x, box.y + box.height + 1.2 * textPx}, axis, faint});
+    out.texts.push_back({{box.x + box.width, box.y + box.height + 1.2 * textPx}, end, now.onSurface ? ink : plane, Align::Right});
   }
 };
 

@@ -201,15 +201,32 @@ TEST(WalkPicture, EachSectionSaysTheAngleOfItsStep) {
 TEST(WalkPicture, TheLettersOnTheArrowsStayBelowTheWordsAboveThem) {
   const WalkStory s = told(sphere(kRadius)).story;
   constexpr double kText = 14;
-  for (const double width : {250.0, 420.0})
+  for (const auto& [width, height] : {std::pair(250.0, 190.0), {420.0, 190.0}, {180.0, 140.0}})
     for (int step = 0; step < s.steps(); ++step) {
       double words = 0, letters = 1e9;  // the lowest baseline, the highest top
-      for (const WalkPicture::Text& t : walkPicture(s, step, width, 190, kText, true).texts) {
+      for (const WalkPicture::Text& t : walkPicture(s, step, width, height, kText, true).texts) {
         if (t.text == "Surface S" || t.text == "Plane T" || t.text.rfind("α ", 0) == 0) words = std::max(words, t.at.y());
         if (t.text == "N" || t.text == "H") letters = std::min(letters, t.at.y() - 0.75 * kText);
       }
       EXPECT_GT(letters, words) << "step " << step << ", width " << width;
     }
+}
+
+TEST(WalkPicture, InANarrowPictureTheWordsBelowTheChartDoNotMeet) {
+  const WalkStory s = told(sphere(kRadius)).story;
+  constexpr double kText = 14, kLetter = 0.6 * kText;  // px, width of a letter on average
+  for (const double width : {180.0, 250.0, 420.0}) {
+    double left = 0, right = width;
+    bool end = false;
+    for (const WalkPicture::Text& t : walkPicture(s, s.steps() - 1, width, 140, kText, true).texts) {
+      if (t.text == "distance on T") left = t.at.x() + kLetter * static_cast<double>(t.text.size());
+      if (t.text.rfind("ends at", 0) != 0) continue;
+      right = t.at.x() - kLetter * static_cast<double>(t.text.size());
+      end = true;
+    }
+    EXPECT_TRUE(end);
+    EXPECT_LE(left, right) << width;
+  }
 }
 
 }  // namespace
