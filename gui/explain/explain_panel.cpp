@@ -361,7 +361,8 @@ QString ExplainPanel::html() const {
     html +=
         box(palette().color(QPalette::Highlight),
             tr("<b>Observed here:</b> the contour, from which this walk goes out. <b>Learnt from other frames:</b> the light; "
-               "no model has learnt from this frame. <b>Predicted:</b> only the dotted ellipse of the frame view."));
+               "no model has learnt from this frame. <b>Predicted:</b> %1.")
+                .arg(inspection->models.count("canonical") ? tr("only the dotted ellipse of the frame view") : tr("nothing")));
   // What is wrong comes first: a low window shows no more than that.
   if (s.failure) html += box(errorColour(), tr("This scene does not get here: %1").arg(escaped(s.failure->message())));
   for (const BrokenAssumption& b : s.broken)

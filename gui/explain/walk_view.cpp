@@ -25,7 +25,7 @@ Qt::PenStyle penStyle(viz::Dash dash) {
 /// Paints what viz says.
 class WalkView::Picture : public QWidget {
  public:
-  explicit Picture(const WalkPlayer& player) : player_(player) { setMinimumSize(170, 140); }
+  explicit Picture(const WalkPlayer& player) : player_(player) { setMinimumSize(170, 190); }
 
  protected:
   void paintEvent(QPaintEvent*) override {
