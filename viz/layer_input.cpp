@@ -395,7 +395,7 @@ std::string line(const std::string& name, double value, const std::string& unit)
   constexpr double kLeastAngle = 1e-6;  // degrees: below is round-off
   if (unit == "deg" && std::abs(value) < kLeastAngle) value = 0;
   std::snprintf(text, sizeof text, "%.7g", value);
-  return name + " = " + text + (unit.empty() ? "" : " " + writtenUnit(unit)) + "\n";
+  return name + " = " + text + unitAfterNumber(unit) + "\n";
 }
 
 std::string line(const std::string& name, const Eigen::Vector3d& v, const std::string& unit) {

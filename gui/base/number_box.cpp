@@ -45,7 +45,7 @@ NumberBox::NumberBox(const ParamSpec& spec, QWidget* parent) : QDoubleSpinBox(pa
   setRange(spec.min, spec.max);
   setSingleStep(spec.step);
   if ((spec.max - spec.min) / spec.step > kManySteps) setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
-  if (!spec.unit.empty()) setSuffix(QStringLiteral(" ") + unitText(spec.unit));
+  setSuffix(unitAfter(spec.unit));
 }
 
 QString NumberBox::textFromValue(double value) const { return full_ ? fullText(value) : shortText(value); }

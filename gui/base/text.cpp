@@ -23,7 +23,7 @@ QString numberText(double value, int digits) {
 }
 
 QString valueText(const SettingValue& value, const ParamSpec& spec) {
-  const QString unit = spec.unit.empty() ? QString() : QStringLiteral(" ") + unitText(spec.unit);
+  const QString unit = unitAfter(spec.unit);
   if (const bool* b = std::get_if<bool>(&value)) return *b ? QStringLiteral("on") : QStringLiteral("off");
   if (const int* i = std::get_if<int>(&value)) return QString::number(*i) + unit;
   if (const double* d = std::get_if<double>(&value)) return numberText(*d, 6) + unit;

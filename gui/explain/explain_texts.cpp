@@ -73,9 +73,8 @@ QString valuesHtml(const ExplainNumber& n) {
     if (std::abs(v) < least) rounded = 0;
     parts << numberText(millimetres ? 1000 * rounded : rounded, kDigits);
   }
-  const QString unit = millimetres ? QStringLiteral("mm") : unitText(n.unit);
-  return parts.join(QStringLiteral("&nbsp;&nbsp; ")) +
-         (unit.isEmpty() ? QString() : QStringLiteral("&nbsp;") + unit.toHtmlEscaped());
+  const QString unit = unitAfter(millimetres ? "mm" : n.unit);
+  return parts.join(QStringLiteral("&nbsp;&nbsp; ")) + unit.toHtmlEscaped().replace(QLatin1Char(' '), QStringLiteral("&nbsp;"));
 }
 
 }  // namespace glint::gui

@@ -175,7 +175,7 @@ void ComparisonPanel::fill() {
     const QColor faded = palette().color(QPalette::PlaceholderText);
     for (const ComparedValue& v : comparison_->values) {
       if (!all && !v.differs) continue;
-      const QString unit = v.unit.empty() ? QString() : QStringLiteral(" ") + unitText(v.unit);
+      const QString unit = unitAfter(v.unit);
       const auto side = [&](const std::string& s) { return text(s.empty() ? QString() : toQString(s) + unit); };
       RowsModel::Row row{{text(toQString(v.group)), text(toQString(v.name)), side(v.a), side(v.b), number(v.ratio)}, -1};
       row.cells[0].colour = faded;

@@ -32,8 +32,8 @@ QString toolTipOf(const ParamSpec& spec) {
       QStringLiteral("<b>%1</b>%2<br>%3<br><tt>%4</tt>")
           .arg(toQString(spec.title).toHtmlEscaped(), symbol, toQString(spec.help).toHtmlEscaped(), toQString(spec.key));
   if (spec.max > spec.min)
-    text += QStringLiteral(" &nbsp;%1 … %2 %3")
-                .arg(numberText(spec.min, 6), numberText(spec.max, 6), unitText(spec.unit).toHtmlEscaped());
+    text += QStringLiteral(" &nbsp;%1 … %2%3")
+                .arg(numberText(spec.min, 6), numberText(spec.max, 6), unitAfter(spec.unit).toHtmlEscaped());
   return text + QStringLiteral("<br>default %1").arg(valueText(spec.defaultValue, spec).toHtmlEscaped());
 }
 

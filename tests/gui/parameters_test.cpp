@@ -90,6 +90,12 @@ class ParametersTest : public QObject {
     spec.min = -10;
     spec.max = 10;
     spec.step = 1e-6;
+    // Angles alone have no blank before their sign.
+    for (const auto& [unit, suffix] : {std::pair("deg", "°"), std::pair("px^2", " px²"), std::pair("", "")}) {
+      spec.unit = unit;
+      QCOMPARE(NumberBox(spec).suffix(), QString::fromUtf8(suffix));
+      QVERIFY(valueText(2.5, spec) == QStringLiteral("2.5") + QString::fromUtf8(suffix));
+    }
     spec.unit = "m^-1";
     QWidget window;
     NumberBox box(spec, &window);
