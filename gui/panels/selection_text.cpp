@@ -10,6 +10,7 @@
 
 #include "core/diagnostics/polar_residual.h"
 #include "gui/base/text.h"
+#include "gui/base/unit_text.h"
 
 namespace glint::gui {
 
@@ -19,7 +20,7 @@ constexpr double kDegPerRad = 57.29577951308232;
 class Lines {
  public:
   void add(const QString& name, const QString& value, const char* unit = "") {
-    lines_ << name + QStringLiteral(" = ") + value + (*unit ? QStringLiteral(" ") + QString::fromUtf8(unit) : QString());
+    lines_ << name + QStringLiteral(" = ") + value + unitAfter(unit);
   }
   void add(const QString& name, double value, const char* unit = "") { add(name, numberText(value, 6), unit); }
   template <class Vector>
@@ -54,7 +55,7 @@ NumberGroup observation(const FrameEvidence& evidence, int index, bool synthesis
     if (h.ellipse) {
       lines.addVector(QObject::tr("centre"), h.ellipse->centre, "px");
       lines.addVector(QObject::tr("semi-axes"), h.ellipse->semiAxes, "px");
-      lines.add(QObject::tr("angle"), h.ellipse->angle * kDegPerRad, "°");
+      lines.add(QObject::tr("angle"), h.ellipse->angle * kDegPerRad, "deg");
     }
     if (h.clipped) lines.note(QObject::tr("clipped: the peak is the ellipse centre"));
     if (h.touchesBorder) lines.note(QObject::tr("cut by the image border"));
@@ -89,7 +90,7 @@ NumberGroup lightGroup(const std::string& id, const LightEstimate& estimate) {
   Lines lines;
   addLight(lines, estimate.light);
   lines.add(QObject::tr("solver"), toQString(estimate.solver));
-  lines.add(QObject::tr("limit angle"), estimate.limitAngle * kDegPerRad, "°");
+  lines.add(QObject::tr("limit angle"), estimate.limitAngle * kDegPerRad, "deg");
   lines.add(QObject::tr("condition"), estimate.condition);
   if (estimate.rmsPx > 0) lines.add(QObject::tr("residual rms"), estimate.rmsPx, "px");
   return {QObject::tr("Light %1").arg(toQString(id)), lines.text()};
@@ -107,7 +108,7 @@ NumberGroup fitGroup(const std::string& model, const ModelResult::Fit& f, int fr
       lines.note(QObject::tr("Q* is a %1").arg(QString::fromUtf8(describe(*f.fit->quadric))));
     }
     if (f.fit->lightEstimate) addLight(lines, *f.fit->lightEstimate);
-    if (f.fit->limitAngle) lines.add(QObject::tr("limit angle"), *f.fit->limitAngle * kDegPerRad, "°");
+    if (f.fit->limitAngle) lines.add(QObject::tr("limit angle"), *f.fit->limitAngle * kDegPerRad, "deg");
     if (f.fit->lobe) lines.add(QObject::tr("lobe"), QString::fromStdString(*f.fit->lobe));
     if (f.fit->roughness) lines.add(QObject::tr("roughness m"), *f.fit->roughness);
     if (!f.fit->singularValues.empty()) {
@@ -132,7 +133,7 @@ NumberGroup comparison(const FrameComparison& c, int observed) {
       lines.addVector(QObject::tr("P"), p.brightest.point.position, "m");
       lines.addVector(QObject::tr("N"), p.brightest.point.normal);
       // A model without a tangent plane (primal) has no incident angle either.
-      if (p.tangentPlane) lines.add(QObject::tr("alpha"), p.brightest.alpha * kDegPerRad, "°");
+      if (p.tangentPlane) lines.add(QObject::tr("alpha"), p.brightest.alpha * kDegPerRad, "deg");
       lines.addVector(QObject::tr("peak"), p.brightest.pixel, "px");
       lines.add(QObject::tr("coverage"), p.coverage);
     }
@@ -153,7 +154,8 @@ NumberGroup selectedParts(const Inspection& inspection, const viz::Selection& se
   if (selection.highlight >= 0) lines.add(QObject::tr("highlight"), QString::number(selection.highlight + 1));
   if (!selection.light.empty()) lines.add(QObject::tr("light"), toQString(selection.light));
   if (selection.direction) {
-    lines.add(QObject::tr("direction"), *selection.direction * kDegPerRad, "° (0 right, 90 down)");
+    lines.add(QObject::tr("direction"),
+              numberText(*selection.direction * kDegPerRad, 6) + QStringLiteral("° (0 right, 90 down)"));
     if (inspection.models.count(model))
       for (const PolarResidual& residual : polarResiduals(inspection, selection.frame, model)) {
         if (residual.samples.empty() || (selection.highlight >= 0 && residual.observed != selection.highlight)) continue;

@@ -167,6 +167,9 @@ class PickingTest : public QObject {
     onlyObserved();
     pick("frame", kShowDirection, [&] { click(frame_->canvas(), frame_->canvas()->widgetFromPixel(vertex)); });
     expectDirection(vertex);
+    // The angles of ellipse, light and direction are written as elsewhere.
+    QVERIFY(numbers_->text().count(QStringLiteral("°")) >= 3);
+    QVERIFY2(!numbers_->text().contains(QStringLiteral(" °")), qPrintable(numbers_->text()));
   }
   void aContourPointInTheLadder() {
     const Pixel vertex = observed().contour.points[observed().contour.points.size() / 3];
