@@ -134,6 +134,12 @@ struct Annotations::Impl {
   vtkRenderer* renderer = nullptr;
   bool dark = true;
   std::vector<std::pair<vtkSmartPointer<vtkTextActor>, Colour>> legend;  // title first, then entries, then notes
+  struct Fitted {
+    std::string text;  // whole
+    double room = 0;   // px, that it was shortened to
+    int points = 0;
+  };
+  std::vector<Fitted> legendTexts;                                       // of `legend`
   std::vector<std::unique_ptr<Strokes>> swatches;                        // one for each legend entry
   std::vector<std::unique_ptr<Strokes>> outlines;                        // beneath them
   std::vector<char> entryAlways;
@@ -175,8 +181,23 @@ struct Annotations::Impl {
     vtkRenderWindow* window = renderer->GetRenderWindow();
     return window && window->GetDPI() > 0 ? window->GetDPI() / 72.0 : 1;
   }
+  /// What of a legend's text there is room for, ending in "…". Measured again only when room or size have changed.
+  void fitLegendText(std::size_t i, double room, int points) {
+    Fitted& f = legendTexts[i];
+    if (f.room == room && f.points == points) return;
+    f.room = room;
+    f.points = points;
+    vtkTextActor* actor = legend[i].first;
+    std::string shown = f.text;
+    actor->SetInput(shown.c_str());
+    while (!shown.empty() && sizeOf(actor).x() > room) {
+      while ((static_cast<unsigned char>(shown.back()) & 0xC0) == 0x80) shown.pop_back();  // the rest of a character
+      shown.pop_back();
+      actor->SetInput((shown + "…").c_str());
+    }
+  }
   /// @param points  size of the text for VTK. @param font  its height in pixels
-  void placeLegend(int height, int points, double font, bool narrow) {
+  void placeLegend(int width, int height, int points, double font, bool narrow) {
     const double row = 1.5 * font, left = 0.9 * font;
     double y = height - 1.9 * font;
     for (std::size_t i = 0; i < legend.size(); ++i) {
@@ -187,25 +208,28 @@ struct Annotations::Impl {
       if (entry) swatches[i - 1]->actor->SetVisibility(shown);
       if (entry) outlines[i - 1]->actor->SetVisibility(shown);
       if (!shown) continue;
-      actor->GetTextProperty()->SetFontSize(i == 0 ? points + 1 : points);
+      const double x = left + (entry ? 2.4 * font : 0);
+      const int size = i == 0 ? points + 1 : points;
+      actor->GetTextProperty()->SetFontSize(size);
+      fitLegendText(i, width - x - left, size);
       setColour(actor, entry || i == 0 ? ink() : asText(colour, dark));
       background(actor, 0.55);
-      move(actor, left + (entry ? 2.4 * font : 0), y);
-      taken.push_back({0, y - 0.3 * font, left + (entry ? 2.4 * font : 0) + sizeOf(actor).x(), row});
+      move(actor, x, y);
+      taken.push_back({0, y - 0.3 * font, x + sizeOf(actor).x(), row});
       if (entry) {
         Strokes& swatch = *swatches[i - 1];
         swatch.clear();
         swatch.origin = origin;
         swatch.add(left, y + 0.42 * font, left + 1.8 * font, y + 0.42 * font);
-        const double width = std::max(3.0, font / 4.0);
-        swatch.finish(colour, width);
+        const double stroke = std::max(3.0, font / 4.0);
+        swatch.finish(colour, stroke);
         // White on a light background is told by its edge, as the contour itself is.
         Strokes& outline = *outlines[i - 1];
         outline.clear();
         outline.origin = origin;
         const bool faint = std::abs(luminance(colour) - luminance(dark ? kDarkBackground : kLightBackground)) < 0.25;
         if (faint) outline.add(left - 1, y + 0.42 * font, left + 1.8 * font + 1, y + 0.42 * font);
-        outline.finish(ink(), width + 2);
+        outline.finish(ink(), stroke + 2);
       }
       y -= row;
     }
@@ -475,7 +499,11 @@ void Annotations::setLegend(const std::vector<LegendEntry>& entries, const std::
   }
   for (const std::string& note : notes) impl_->legend.emplace_back(textActor(note, kFailed), kFailed);
   for (const std::string& remark : remarks) impl_->legend.emplace_back(textActor(remark, kHeldOut), kHeldOut);
-  for (auto& [actor, colour] : impl_->legend) impl_->renderer->AddActor2D(actor);
+  impl_->legendTexts.clear();
+  for (auto& [actor, colour] : impl_->legend) {
+    impl_->legendTexts.push_back({actor->GetInput()});
+    impl_->renderer->AddActor2D(actor);
+  }
 }
 
 void Annotations::setLabels(const std::vector<DrawnLabel>& labels) {
@@ -519,7 +547,7 @@ Eigen::Vector2d Annotations::legendSize() {
   const double scale = impl_->pixelsPerPoint();
   const int points = fontSizeFor(static_cast<int>(size[1] / scale));
   impl_->taken.clear();
-  impl_->placeLegend(size[1], points, scale * points, size[0] < scale * kNarrowPicture);
+  impl_->placeLegend(size[0], size[1], points, scale * points, size[0] < scale * kNarrowPicture);
   Eigen::Vector2d reach(0, 0);
   for (const Impl::Rectangle& r : impl_->taken) reach = reach.cwiseMax(Eigen::Vector2d(r.x + r.width, size[1] - r.y));
   return reach;
@@ -542,7 +570,7 @@ void Annotations::place(const Eigen::Vector3d& reference) {
   const double font = scale * points;
   impl_->origin = Eigen::Vector2d(impl_->renderer->GetOrigin()[0], impl_->renderer->GetOrigin()[1]);
   impl_->taken.clear();
-  impl_->placeLegend(size[1], points, font, size[0] < scale * kNarrowPicture);
+  impl_->placeLegend(size[0], size[1], points, font, size[0] < scale * kNarrowPicture);
   impl_->placeBar(size[0], points, font, reference);
   impl_->placeColourBar(size[0], points, font);
   impl_->placeBorder(size[0], size[1], points, font);

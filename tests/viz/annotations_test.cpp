@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -141,6 +142,40 @@ TEST_F(LegendPicture, NotesAreInTheColourOfWhatFailedAndRemarksAreFaint) {
   EXPECT_EQ(redAndGrey({}, {}), (std::array<bool, 2>{false, false}));
   EXPECT_EQ(redAndGrey({"the fit of dual failed"}, {}), (std::array<bool, 2>{true, false}));
   EXPECT_EQ(redAndGrey({}, {"photographs of 25 of 100 cameras"}), (std::array<bool, 2>{false, true}));
+}
+
+TEST_F(LegendPicture, WhatThereIsNoRoomForEndsInAnEllipsis) {
+  const std::string title = "vase, frame 0045 (held out)", entry = "canonical 0.39 %",
+                    note = "primal: not reached: no prediction überlappt this highlight, nor any other one";
+  const auto fill = [&](Annotations& a) { a.setLegend({{kOrange, entry, true}}, {note}, {}, title); };
+  for (const bool dark : {true, false}) {
+    picture(320, dark, fill);
+    EXPECT_TRUE(texts_.count(title)) << "what fits stays";
+    EXPECT_TRUE(texts_.count(entry));
+    EXPECT_FALSE(texts_.count(note));
+    bool found = false;
+    for (const auto& [text, box] : texts_) {
+      if (text.empty() || text.front() != 'p') continue;
+      found = true;
+      const std::string dots = "…", kept = text.substr(0, text.size() - dots.size());
+      EXPECT_EQ(text, kept + dots);
+      EXPECT_EQ(note.substr(0, kept.size()), kept);
+      EXPECT_GT(kept.size(), 20u);
+    }
+    EXPECT_TRUE(found);
+  }
+  picture(800, true, fill);
+  EXPECT_TRUE(texts_.count(note)) << "whole where there is room";
+  std::set<std::string> cut;
+  for (int width = 200; width < 420; width += 10) {
+    picture(width, true, fill);
+    for (const auto& [text, box] : texts_) {
+      if (text.empty() || text.find(" at the surface") != std::string::npos) continue;  // ends at its place
+      EXPECT_LE(box.x + box.width, width) << text;
+      cut.insert(text);
+    }
+  }
+  for (const std::string& text : cut) EXPECT_EQ(text.find("\xC3…"), std::string::npos) << "half a character";
 }
 
 TEST_F(LegendPicture, LabelsNeverLieOverOneAnother) {
