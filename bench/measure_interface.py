@@ -4,7 +4,7 @@
 
     bench/measure_interface.py [--build build/release] [--frames 100] [--events 100] [--page docs/inspector.md]
 
-A million triangles, 100 cameras, a preset that `glint tradeoff` measures first (about two minutes), software rendering on a virtual
+A million triangles, 100 cameras, a preset that `glint tradeoff` measures first, software rendering on a virtual
 display (xvfb-run). Every slider is moved ten times a second whether the window keeps up or not, and a wait counts from the movement to the end
 of the event that painted the first overlay for that position or a later one: the observed contour where the slider changes what is
 observed, else those of the models, whose wait stands beside it. Then a test tells for how long the interface stood still (STANDSTILLS),

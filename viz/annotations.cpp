@@ -188,13 +188,20 @@ struct Annotations::Impl {
     f.room = room;
     f.points = points;
     vtkTextActor* actor = legend[i].first;
-    std::string shown = f.text;
-    actor->SetInput(shown.c_str());
-    while (!shown.empty() && sizeOf(actor).x() > room) {
-      while ((static_cast<unsigned char>(shown.back()) & 0xC0) == 0x80) shown.pop_back();  // the rest of a character
-      shown.pop_back();
-      actor->SetInput((shown + "…").c_str());
+    actor->SetInput(f.text.c_str());
+    if (sizeOf(actor).x() <= room) return;
+    // Laying out a text takes long for one that is tried at every length: halve what is in question.
+    const auto shorter = [&](std::size_t length) {
+      while (length > 0 && (static_cast<unsigned char>(f.text[length]) & 0xC0) == 0x80) --length;  // whole characters
+      return f.text.substr(0, length) + "…";
+    };
+    std::size_t fits = 0, tooLong = f.text.size();
+    while (tooLong - fits > 1) {
+      const std::size_t middle = (fits + tooLong) / 2;
+      actor->SetInput(shorter(middle).c_str());
+      (sizeOf(actor).x() <= room ? fits : tooLong) = middle;
     }
+    actor->SetInput(shorter(fits).c_str());
   }
   /// @param points  size of the text for VTK. @param font  its height in pixels
   void placeLegend(int width, int height, int points, double font, bool narrow) {

@@ -91,9 +91,6 @@ void addVirtualCameras(const LayerInput& in, std::vector<Eigen::Vector3d>& point
     }
 }
 
-}  // namespace
-
-namespace {
 constexpr double kWalkDisc = 1.15, kWalkArrow = 0.85;  // of the walk's reach, see walkLayer()
 }  // namespace
 

@@ -297,9 +297,9 @@ struct SceneView::Impl {
     const bool rescaled = wanted != lineScale;
     lineScale = wanted;
     update();
-    for (LayerState& layer : layers)
-      for (Drawn& drawn : layer.content.drawn)
-        if (rescaled) place(drawn, layer.visible);
+    if (rescaled)
+      for (LayerState& layer : layers)
+        for (Drawn& drawn : layer.content.drawn) place(drawn, layer.visible);
     if (frameAllPending && size[0] > 0) frameAll();
     stand();
     for (const LayerState& layer : layers)

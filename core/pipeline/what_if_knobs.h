@@ -31,7 +31,7 @@ std::vector<WhatIfKnob> whatIfKnobs(const Scene& scene, int frame, int highlight
 struct FittedLobe {
   Lobe lobe = Lobe::TorranceSparrow;
   double roughness = 0.1;  ///< m, > 0
-  std::string origin;      ///< "reflectance, light lamp"; "limit angle 4.77 deg at level 0.5, light lamp"
+  std::string origin;      ///< "reflectance, light lamp"; "limit angle 4.77° at level 0.5, light lamp"
 };
 /// That of the model reflectance where it was computed and fitted; else the width at which a Gaussian lobe falls to the contours'
 /// level q at the light's limit angle, m = tan(alpha_lim) / sqrt(-log q), as Torrance-Sparrow.

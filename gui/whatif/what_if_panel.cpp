@@ -133,9 +133,9 @@ QString WhatIfPanel::origin(const WhatIf& w) const {
     return tr("Starts from the usual lobe, %1 with m = %2: %3")
         .arg(QLatin1String(nameOf(w.lobe)), numberText(w.roughness, kDigits), why);
   }
-  const QString lobe = tr("%1 with m = %2 (%3)")
-                           .arg(QLatin1String(nameOf(fitted_->lobe)), numberText(fitted_->roughness, kDigits),
-                                toQString(fitted_->origin).replace(QStringLiteral(" deg"), QStringLiteral("°")));
+  const QString lobe =
+      tr("%1 with m = %2 (%3)")
+          .arg(QLatin1String(nameOf(fitted_->lobe)), numberText(fitted_->roughness, kDigits), toQString(fitted_->origin));
   if (!w.synthesise) return tr("Starts from the lobe of this scene: %1").arg(lobe);
   const bool own = w.lobe == fitted_->lobe && w.roughness == fitted_->roughness;
   return (own ? tr("This is the lobe of the scene as captured: %1") : tr("The scene as captured has %1")).arg(lobe);
