@@ -71,8 +71,7 @@ bool LayerInput::onSurface(int frame) const { return !inspection->surfaces || in
 std::vector<const TrainingView*> LayerInput::views() const {
   std::vector<const TrainingView*> result;
   for (const TrainingView& view : inspection->views) {
-    if (!view.failure && view.frame >= 0 && onSurface(view.frame) && (!solo || view.frame == selection.frame))
-      result.push_back(&view);
+    if (!view.failure && view.frame >= 0 && onSurface(view.frame) && shows(view.frame)) result.push_back(&view);
   }
   return result;
 }
@@ -80,7 +79,8 @@ std::vector<const TrainingView*> LayerInput::views() const {
 std::vector<TrainingView> LayerInput::ownViews() const {
   std::vector<TrainingView> result;
   const auto at = static_cast<std::size_t>(selection.frame);
-  if (!surface || at >= inspection->evidence.size() || inspection->isTraining(selection.frame)) return result;
+  if (!surface || at >= inspection->evidence.size() || inspection->isTraining(selection.frame) || !shows(selection.frame))
+    return result;
   const FrameEvidence& evidence = inspection->evidence[at];
   for (std::size_t i = 0; i < evidence.highlights.size(); ++i) {
     TrainingView view = trainingView(evidence, static_cast<int>(i), frame(selection.frame).camera, surface);
@@ -110,7 +110,7 @@ std::vector<const TrainingView*> LayerInput::viewsOf(const ModelFit& fit) const 
     if (view.failure || view.frame < 0 || view.highlight.light != fit.light) continue;
     if (!fit.frames.empty() && std::find(fit.frames.begin(), fit.frames.end(), view.frame) == fit.frames.end()) continue;
     if (fit.surface && inspection->surfaces && inspection->surfaces->keyOf(view.frame) != *fit.surface) continue;
-    if (!solo || view.frame == selection.frame) result.push_back(&view);
+    if (shows(view.frame)) result.push_back(&view);
   }
   return result;
 }
@@ -120,7 +120,8 @@ std::vector<const ModelFit*> LayerInput::fits(const std::string& model) const {
   const auto found = inspection->models.find(model);
   if (found == inspection->models.end()) return result;
   for (const ModelResult::Fit& fit : found->second.fits) {
-    if (fit.fit && (!fit.surface || *fit.surface == surfaceKey)) result.push_back(&*fit.fit);
+    if (fit.fit && (!fit.surface || *fit.surface == surfaceKey) && !hidden.ellipsoids.count({model, fit.fit->light}))
+      result.push_back(&*fit.fit);
   }
   return result;
 }
@@ -128,9 +129,9 @@ std::vector<const ModelFit*> LayerInput::fits(const std::string& model) const {
 std::vector<const FrameComparison*> LayerInput::comparisons(const std::string& model) const {
   std::vector<const FrameComparison*> result;
   const auto found = inspection->models.find(model);
-  if (found == inspection->models.end()) return result;
+  if (found == inspection->models.end() || !shows(selection.frame)) return result;
   for (const FrameComparison& comparison : found->second.frames) {
-    if (comparison.frame == selection.frame) result.push_back(&comparison);
+    if (comparison.frame == selection.frame && !hidden.ellipsoids.count({model, comparison.light})) result.push_back(&comparison);
   }
   return result;
 }
@@ -195,7 +196,8 @@ SceneScale sceneScale(const Inspection& inspection, const Surface* surface, cons
   return scale;
 }
 
-std::vector<int> framesToDraw(const Inspection& inspection, const std::string& surfaceKey, int selected) {
+std::vector<int> framesToDraw(const Inspection& inspection, const std::string& surfaceKey, int selected,
+                              const std::set<int>& hidden) {
   const Scene& scene = *inspection.scene;
   const int n = static_cast<int>(scene.frames.size());
   const auto fitness = [&](int frame) {
@@ -205,6 +207,7 @@ std::vector<int> framesToDraw(const Inspection& inspection, const std::string& s
   // Sequences of a moving object repeat their camera poses: equal centres and axes are one camera on screen.
   std::map<std::vector<double>, int> byPose;
   for (int i = 0; i < n; ++i) {
+    if (hidden.count(i)) continue;
     const Eigen::Matrix<double, 3, 4> pose = scene.frames[static_cast<std::size_t>(i)].camera.camFromWorld.matrix().topRows<3>();
     const std::vector<double> key(pose.data(), pose.data() + pose.size());
     const auto [at, isNew] = byPose.emplace(key, i);

@@ -4,14 +4,14 @@
 namespace glint::viz {
 
 const std::vector<LayerRecipe>& layerRecipes() {
-  constexpr unsigned kPlace = kOnInspection | kOnSurface;  // everything that lies in the scene
+  constexpr unsigned kPlace = kOnInspection | kOnSurface | kOnHidden;  // everything that lies in the scene
   static const std::vector<LayerRecipe> recipes{
-      {{"surface", "Surface", true}, kOnSurface, surfaceLayer},
+      {{"surface", "Surface", true}, kOnSurface | kOnHidden, surfaceLayer},
       {{"cameras", "Cameras", true},
        kPlace | kOnFrame | kOnModels | kOnGlyphs | kOnTheme | kOnEye | kOnColours | kOnSolo,
        camerasLayer},
       {{"photographs", "Photographs", true},
-       kOnScene | kOnSurface | kOnFrame | kOnGlyphs | kOnEye | kOnPhotographs | kOnSolo,
+       kOnScene | kOnSurface | kOnFrame | kOnGlyphs | kOnEye | kOnPhotographs | kOnSolo | kOnHidden,
        photographsLayer},
       {{"virtual-cameras", "Virtual cameras", true}, kPlace | kOnFrame | kOnGlyphs | kOnEye | kOnSolo, virtualCamerasLayer},
       {{"peaks", "Brightest points", true}, kPlace | kOnFrame | kOnModels | kOnGlyphs | kOnSolo | kOnTheme, peaksLayer},
@@ -24,7 +24,7 @@ const std::vector<LayerRecipe>& layerRecipes() {
       {{"cones", "Cones to the ellipsoid", false}, kPlace | kOnFrame | kOnModels | kOnPicked | kOnSolo, conesLayer},
       {{"ellipsoids", "Ellipsoids", true}, kPlace | kOnModels | kOnPicked | kOnTheme, ellipsoidsLayer},
       {{"light", "Light (estimate)", true}, kPlace | kOnModels | kOnGlyphs | kOnPicked | kOnTheme, lightLayer},
-      {{"true-light", "Light (truth)", true}, kOnScene | kOnSurface | kOnGlyphs, trueLightLayer},
+      {{"true-light", "Light (truth)", true}, kOnScene | kOnSurface | kOnGlyphs | kOnHidden, trueLightLayer},
       {{"rays", "Reflected rays", false}, kPlace | kOnFrame | kOnSolo | kOnGlyphs | kOnTheme, raysLayer},
       {{"observed-contours", "Observed contours", true},
        kPlace | kOnFrame | kOnHighlight | kOnPicked | kOnGlyphs | kOnTheme | kOnSolo,

@@ -12,11 +12,13 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "core/pipeline/inspection.h"
 #include "viz/convert.h"
+#include "viz/hidden_objects.h"
 #include "viz/scene_view.h"
 #include "viz/style.h"
 
@@ -90,6 +92,7 @@ struct LayerInput {
   std::vector<int> frames;     ///< frames whose cameras are drawn: one per pose, those on this surface first
   bool dark = true;
   bool solo = false;  ///< only what belongs to the selected frame
+  HiddenObjects hidden;
   CameraColours colours;
   Eye eye = Eye::Outside;            ///< other than Outside only where it is in effect
   std::optional<Plane> eyeMirror{};  ///< of the virtual camera that is looked through
@@ -98,21 +101,23 @@ struct LayerInput {
   int walkStep = 0;                         ///< see WalkStory::at
 
   const Frame& frame(int index) const { return inspection->scene->frames[static_cast<std::size_t>(index)]; }
+  /// Whether what belongs to a frame is drawn: neither hidden nor left out by solo.
+  bool shows(int frame) const { return (!solo || frame == selection.frame) && hidden.frames.count(frame) == 0; }
   /// Whether a frame sees the surface that is shown.
   bool onSurface(int frame) const;
-  /// Usable training views on the shown surface; of the selected frame only where solo.
+  /// Usable training views on the shown surface, of frames that are shown.
   std::vector<const TrainingView*> views() const;
   /// Where the selected frame does not train: brightest point, tangent plane and virtual camera of each highlight observed in it.
-  /// Without canonical contours. Empty where it trains or has no surface.
+  /// Without canonical contours. Empty where it trains, has no surface or is hidden.
   std::vector<TrainingView> ownViews() const;
   /// The same with the canonical contours of what was observed, by the light that the training frames gave; only those that have
   /// one. Walks for some milliseconds.
   std::vector<TrainingView> ownWalks() const;
-  /// Usable views that a fit was made from, whatever surface they see; of the selected frame only where solo.
+  /// Usable views that a fit was made from, whatever surface they see, of frames that are shown.
   std::vector<const TrainingView*> viewsOf(const ModelFit& fit) const;
-  /// Usable fits of a model that apply to the shown surface.
+  /// Usable fits of a model that apply to the shown surface and are not hidden.
   std::vector<const ModelFit*> fits(const std::string& model) const;
-  /// Predictions for the selected frame.
+  /// Predictions for the selected frame that are not hidden, nor is the frame.
   std::vector<const FrameComparison*> comparisons(const std::string& model) const;
   /// The mirrors of a frame's highlights: tangent planes of its training views, else at its observed peaks.
   struct Mirror {
@@ -186,7 +191,8 @@ enum Dependency : unsigned {
   kOnPhotographs = 1024,
   kOnSolo = 2048,
   kOnWalk = 4096,
-  kOnScene = 8192  ///< cameras and files: another scene, or a what-if that moves cameras
+  kOnScene = 8192,  ///< cameras and files: another scene, or a what-if that moves cameras
+  kOnHidden = 16384
 };
 
 struct LayerRecipe {
@@ -222,7 +228,9 @@ void styleSurface(const LayerContent& surface, const LayerInput& in, bool virtua
 /// Sizes for one surface of an inspection. @param surface may be null.
 SceneScale sceneScale(const Inspection& inspection, const Surface* surface, const std::vector<int>& frames, double glyphScale);
 /// Frames to draw: one for each distinct pose; where several share a pose, one that sees `surfaceKey` is taken.
-std::vector<int> framesToDraw(const Inspection& inspection, const std::string& surfaceKey, int selected);
+/// @param hidden  are not drawn.
+std::vector<int> framesToDraw(const Inspection& inspection, const std::string& surfaceKey, int selected,
+                              const std::set<int>& hidden = {});
 
 /// Pixel of a frame carried onto the surface, lifted towards the camera by `lift`; nothing where the ray misses.
 std::optional<Eigen::Vector3d> castPixel(const Camera& camera, const Surface& surface, const Pixel& pixel, double lift);

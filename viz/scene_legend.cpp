@@ -96,6 +96,8 @@ SceneLegend legendOf(const LayerInput& in, const std::vector<ShownLayer>& layers
       if (std::find(legend.notes.begin(), legend.notes.end(), note) == legend.notes.end()) legend.notes.push_back(note);
     legend.remarks.insert(legend.remarks.end(), layer.content->remarks.begin(), layer.content->remarks.end());
   }
+  if (const std::size_t hidden = in.hidden.count(); hidden > 0)
+    legend.remarks.push_back(std::to_string(hidden) + (hidden == 1 ? " object is hidden" : " objects are hidden"));
   legend.title = in.inspection->scene->name + ", frame " + in.frame(in.selection.frame).id + " (" +
                  useOf(*in.inspection, in.selection.frame) + ")";
   return legend;

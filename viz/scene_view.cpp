@@ -69,6 +69,7 @@ struct SceneView::Impl {
   std::vector<int> allFrames;  // input.frames, solo or not
   CameraColours colours;
   bool solo = false;
+  HiddenObjects hidden;
   // Through a camera
   Eye eye = Eye::Outside;
   std::string eyeProblem;  // why it is not in effect
@@ -130,6 +131,7 @@ struct SceneView::Impl {
     input.models = modelsInOrder(*inspection, models);
     input.dark = dark;
     input.solo = solo;
+    input.hidden = hidden;
     input.colours = colours;
     input.cache = cache.get();
     input.glyphScale = glyphScale;
@@ -151,10 +153,12 @@ struct SceneView::Impl {
     } catch (const InputError& error) {
       input.surfaceProblem = error.what();
     }
-    // Sizes come from all frames, so that solo changes none of them.
+    // Sizes come from all frames, so that hiding some changes none of them.
     allFrames = framesToDraw(*inspection, input.surfaceKey, selection.frame);
     input.scale = sceneScale(*inspection, input.surface.get(), allFrames, glyphScale);
-    input.frames = solo ? std::vector<int>{selection.frame} : allFrames;
+    input.frames =
+        hidden.frames.empty() ? allFrames : framesToDraw(*inspection, input.surfaceKey, selection.frame, hidden.frames);
+    if (solo) input.frames = input.shows(selection.frame) ? std::vector<int>{selection.frame} : std::vector<int>{};
     if (input.surface != before || (!input.surface && allFrames != framesBefore)) mark(kOnSurface);
     refreshEye();
   }
@@ -270,6 +274,7 @@ struct SceneView::Impl {
     glint::viz::styleSurface(layers[layerIndex("surface")].content, input, mirrored.visible && !mirrored.content.drawn.empty(),
                              moving);
   }
+  bool surfaceShown() const { return layers[layerIndex("surface")].visible && !input.hidden.hidesSurface(input.surfaceKey); }
   void updateAnnotations() {
     annotationsStale = false;
     annotations->setBadge(eyeText());
@@ -464,6 +469,13 @@ void SceneView::setSolo(bool solo) {
   impl_->mark(kOnSolo);
 }
 
+void SceneView::setHidden(const HiddenObjects& hidden) {
+  if (hidden == impl_->hidden) return;
+  impl_->hidden = hidden;
+  impl_->refreshInput();
+  impl_->mark(kOnHidden);
+}
+
 void SceneView::setCameraColours(const CameraColours& colours) {
   if (colours == impl_->colours) return;
   impl_->colours = colours;
@@ -582,8 +594,7 @@ std::optional<Picked> SceneView::pick(int xDisplay, int yDisplay) const {
     if (!layer.visible) continue;
     for (const Drawn& d : layer.content.drawn) drawn.push_back(&d);
   }
-  std::optional<Picked> picked =
-      pickIn(impl_->renderer, impl_->input, drawn, impl_->layers[layerIndex("surface")].visible, xDisplay, yDisplay);
+  std::optional<Picked> picked = pickIn(impl_->renderer, impl_->input, drawn, impl_->surfaceShown(), xDisplay, yDisplay);
   return picked ? picked : pickCamera(xDisplay, yDisplay);
 }
 

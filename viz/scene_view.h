@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/pipeline/inspection.h"
+#include "viz/hidden_objects.h"
 #include "viz/selection.h"
 
 class vtkImageData;
@@ -94,6 +95,7 @@ class SceneView {
   void setGlyphScale(double scale);
   /// Only the selected frame's camera, and what was derived from it.
   void setSolo(bool solo);
+  void setHidden(const HiddenObjects& hidden);
   void setCameraColours(const CameraColours& colours);
 
   /// What the layer "walk" draws, as far as `step`; null = nothing.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "gui/base/text.h"
+#include "gui/scene/hidden_objects_option.h"
 
 namespace glint::gui {
 
@@ -97,6 +98,7 @@ SceneOptions sceneOptions(const Document& document) {
       if (const std::optional<double> points = influenceOf(*influence, f.frame, o.colours.model))
         o.colours.influence[f.frame] = *points;
   }
+  o.hidden = hiddenObjects(document);
   o.lampsMove = document.request().whatIf.synthesise;
   const std::vector<std::string>& all = document.request().models;
   for (int i = 0; i < kMostSceneViews; ++i) {

@@ -24,6 +24,7 @@ struct SceneOptions {
   double glyphScale = 1, opacity = 0.5;
   bool lampsMove = false;  ///< true lights can be dragged
   viz::CameraColours colours;
+  viz::HiddenObjects hidden;
   struct View {
     viz::Eye eye = viz::Eye::Outside;
     std::set<std::string> models;  ///< empty = all

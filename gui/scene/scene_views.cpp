@@ -153,6 +153,7 @@ void SceneViews::apply(const SceneOptions& options) {
     v.setModels(o.models);
     v.setGlyphScale(options.glyphScale);
     v.setSolo(options.solo);
+    v.setHidden(options.hidden);
     v.setCameraColours(options.colours);
     v.setPhotographOpacity(options.opacity);
     if (i >= shown_) continue;  // the others follow when they are shown
@@ -173,6 +174,7 @@ std::unique_ptr<viz::SceneView> SceneViews::copyOf(int at) {
   copy->setModels(o.models);
   copy->setGlyphScale(options_.glyphScale);
   copy->setSolo(options_.solo);
+  copy->setHidden(options_.hidden);
   copy->setCameraColours(options_.colours);
   copy->setPhotographOpacity(options_.opacity);
   copy->setParallel(options_.parallel);

@@ -40,7 +40,8 @@ QSize Docks::least(QSize needs) const {
 }
 
 QString Docks::host(const Place& place, const Room& room) const {
-  static const QStringList left{"setup", "layers", "history"}, right{"conditioning", "numbers"}, bottom{"timeline", "plots"};
+  static const QStringList left{"setup", "layers", "tree", "history"}, right{"conditioning", "numbers"},
+      bottom{"timeline", "plots"};
   if (room.narrow && left.contains(place.name)) return QStringLiteral("parameters");
   if (room.low && left.contains(place.name) && place.name != left.front()) return left.front();
   if (room.low && right.contains(place.name)) return QStringLiteral("parameters");
@@ -85,16 +86,16 @@ void Docks::apply(const Layout& layout) {
     const QString& follows = place.behind.isEmpty() ? place.name : place.behind;
     at(place.name)->setVisible(layout.docks.contains(place.name) || layout.docks.contains(follows));
   }
-  for (const char* front : {"errors", "layers", "parameters"}) at(QLatin1String(front))->raise();
+  for (const char* front : {"errors", "tree", "parameters"}) at(QLatin1String(front))->raise();
   for (const QString& front : layout.front) at(front)->raise();
   const int width = window_->width(), height = window_->height(), right = std::min(380, width * 32 / 100);
   if (room_->narrow)
     window_->resizeDocks({at("parameters")}, {right}, Qt::Horizontal);
   else
-    window_->resizeDocks({at("setup"), at("parameters")}, {std::min(230, width * 18 / 100), right}, Qt::Horizontal);
+    window_->resizeDocks({at("setup"), at("parameters")}, {std::min(260, width * 18 / 100), right}, Qt::Horizontal);
   if (room_->low) return window_->resizeDocks({at("errors")}, {height * 3 / 10}, Qt::Vertical);
   window_->resizeDocks({at("timeline"), at("errors")}, {150, height * 3 / 10}, Qt::Vertical);
-  if (!room_->narrow) window_->resizeDocks({at("setup"), at("layers")}, {300, 240}, Qt::Vertical);
+  if (!room_->narrow) window_->resizeDocks({at("setup"), at("layers")}, {250, 290}, Qt::Vertical);
   window_->resizeDocks({at("parameters"), at("conditioning"), at("numbers")}, {400, 290, 210}, Qt::Vertical);
   if (!room_->narrow) window_->resizeDocks({at("errors"), at("plots")}, {1, 1}, Qt::Horizontal);
 }

@@ -44,6 +44,7 @@
 #include "gui/plots/plots_panel.h"
 #include "gui/scene/layer_list.h"
 #include "gui/scene/scene_panel.h"
+#include "gui/scene/scene_tree.h"
 #include "gui/timeline/timeline.h"
 #include "gui/whatif/what_if_panel.h"
 #include "gui/window/changed_inputs.h"
@@ -215,6 +216,11 @@ void MainWindow::buildDocks() {
   auto* layers = new LayerPanel(document_);
   docks_.add("layers", tr("Layers"), layers, Qt::LeftDockWidgetArea);
   connect(scene_, &ScenePanel::activeViewChanged, layers, &LayerPanel::setActiveView);
+  tree_ = new SceneTree(document_);
+  docks_.add("tree", tr("Scene tree"), tree_, Qt::LeftDockWidgetArea, "layers");
+  connect(scene_, &ScenePanel::activeViewChanged, tree_, &SceneTree::setActiveView);
+  connect(tree_, &SceneTree::frameSelectionRequested, scene_, &ScenePanel::frameSelection);
+  connect(tree_, &SceneTree::lookThroughRequested, scene_, [this] { scene_->setEye(viz::Eye::Camera); });
   auto* history = new QUndoView(document_.undoStack());
   history->setObjectName(QStringLiteral("historyList"));
   history->setEmptyLabel(tr("As opened"));
@@ -286,6 +292,7 @@ void MainWindow::buildDocks() {
   };
   connect(plots_, &PlotsPanel::influenceRequested, this, measureInfluence);
   connect(scene_, &ScenePanel::influenceRequested, this, measureInfluence);
+  connect(tree_, &SceneTree::influenceRequested, this, measureInfluence);
   connect(&runner_, &Runner::influenceMeasured, this, [this](const InfluencePtr& influence, const InspectionPtr& inspection) {
     if (inspection->given != document_.sharedScene()) return;
     document_.setInfluence(influence, inspection->request);
@@ -363,6 +370,7 @@ void MainWindow::buildMenus() {
 
   QMenu* view = menuBar()->addMenu(tr("&View"));
   scene_->addActions(actions_, view);
+  tree_->addActions(actions_, view);
   view->addSeparator();
   QMenu* layoutMenu = view->addMenu(tr("&Layout"));
   for (const Layout& layout : layouts()) {

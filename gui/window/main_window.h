@@ -31,6 +31,7 @@ class Palette;
 class ParameterPanel;
 class PlotsPanel;
 class ScenePanel;
+class SceneTree;
 class ScriptedActions;
 class StartPage;
 class SetupPanel;
@@ -107,6 +108,7 @@ class MainWindow : public QMainWindow {
   StartPage* start_ = nullptr;
   QSplitter* views_ = nullptr;
   ScenePanel* scene_ = nullptr;
+  SceneTree* tree_ = nullptr;
   FramePanel* frame_ = nullptr;
   Timeline* timeline_ = nullptr;
   ComparisonPanel* comparison_ = nullptr;

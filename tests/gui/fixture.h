@@ -71,5 +71,6 @@ QObject* makeWindowSizeTest();
 QObject* makeCameraPickingTest();
 QObject* makePlotsTest();
 QObject* makeSceneTest();
+QObject* makeSceneTreeTest();
 
 }  // namespace glint::gui

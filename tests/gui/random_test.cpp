@@ -8,6 +8,7 @@
 #include <QListWidget>
 #include <QSlider>
 #include <QToolButton>
+#include <QTreeView>
 #include <algorithm>
 #include <map>
 #include <random>
@@ -130,7 +131,17 @@ class RandomTest : public QObject {
         return QStringLiteral("timeline");
       }
       case 4: {
-        if (below(random, 2) == 0) {
+        const int what = below(random, 3);
+        if (what == 2) {  // a tick of the scene tree
+          QAbstractItemModel* tree = window.findChild<QTreeView*>(QStringLiteral("sceneTree"))->model();
+          const QModelIndex group = tree->index(below(random, tree->rowCount()), 0);
+          if (tree->rowCount(group) == 0) return QStringLiteral("object");
+          const QModelIndex object = tree->index(below(random, tree->rowCount(group)), 0, group);
+          const bool shown = object.data(Qt::CheckStateRole).toInt() == Qt::Checked;
+          tree->setData(object, shown ? Qt::Unchecked : Qt::Checked, Qt::CheckStateRole);
+          return QStringLiteral("object");
+        }
+        if (what == 0) {
           auto* list = window.findChild<QListWidget*>(QStringLiteral("layers"));
           QListWidgetItem* item = list->item(below(random, list->count()));
           item->setCheckState(item->checkState() == Qt::Checked ? Qt::Unchecked : Qt::Checked);

@@ -82,7 +82,7 @@ LayerContent conesLayer(const LayerInput& in) {
     for (const ModelFit* fit : in.fits(name))
       if (fit->ellipsoid && (model.empty() || model != in.selection.model)) model = name;
   if (model.empty()) {
-    content.remarks.push_back("cones: no model has an ellipsoid");
+    content.remarks.push_back(in.hidden.ellipsoids.empty() ? "cones: no model has an ellipsoid" : "cones: no ellipsoid is shown");
     return content;
   }
   for (const ModelFit* fit : in.fits(model)) {

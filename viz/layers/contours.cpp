@@ -35,7 +35,7 @@ std::vector<int> observedFrames(const LayerInput& in) {
   const std::size_t n = frames.size(), count = std::min(n, kMostObservedFrames);
   std::set<int> chosen;
   for (std::size_t i = 0; i < count; ++i) chosen.insert(frames[i * n / count]);
-  chosen.insert(in.selection.frame);
+  if (in.shows(in.selection.frame)) chosen.insert(in.selection.frame);
   return {chosen.begin(), chosen.end()};
 }
 

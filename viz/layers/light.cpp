@@ -71,6 +71,7 @@ LayerContent lightLayer(const LayerInput& in) {
     Picked info;
     info.layer = "light";
     info.light = key.substr(0, at);
+    if (in.hidden.lights.count(info.light)) continue;
     info.text = line("estimated light", key.substr(0, at)) + line("solver", estimate.solver) +
                 line("limit angle", estimate.limitAngle * 180 / std::numbers::pi, "deg") +
                 line("residual", estimate.rmsPx, "px") + line("condition", estimate.condition);
@@ -103,6 +104,7 @@ LayerContent lightLayer(const LayerInput& in) {
 LayerContent trueLightLayer(const LayerInput& in) {
   LayerContent content;
   for (const TrueLight& light : in.inspection->scene->lights) {
+    if (in.hidden.lights.count(light.id)) continue;
     Picked info;
     info.layer = "true-light";
     info.light = light.id;

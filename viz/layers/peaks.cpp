@@ -43,7 +43,7 @@ LayerContent peaksLayer(const LayerInput& in) {
   // Where training has no view of the selected frame, its peaks are cast here.
   const bool inTraining = in.inspection->isTraining(in.selection.frame);
   const auto selected = static_cast<std::size_t>(in.selection.frame);
-  if (!inTraining && in.surface && selected < in.inspection->evidence.size()) {
+  if (!inTraining && in.shows(in.selection.frame) && in.surface && selected < in.inspection->evidence.size()) {
     const Camera& camera = in.frame(in.selection.frame).camera;
     int index = 0;
     for (const Highlight& h : in.inspection->evidence[selected].highlights) {

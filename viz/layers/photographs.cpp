@@ -25,7 +25,8 @@ LayerContent photographsLayer(const LayerInput& in) {
   std::vector<int> chosen;
   const std::size_t n = in.frames.size(), count = std::min(n, kMostPhotographs);
   for (std::size_t i = 0; i < count; ++i) chosen.push_back(in.frames[i * n / count]);
-  if (std::find(chosen.begin(), chosen.end(), in.selection.frame) == chosen.end()) chosen.push_back(in.selection.frame);
+  if (in.shows(in.selection.frame) && std::find(chosen.begin(), chosen.end(), in.selection.frame) == chosen.end())
+    chosen.push_back(in.selection.frame);
   if (count < n)
     content.remarks.push_back("photographs of " + std::to_string(chosen.size()) + " of " + std::to_string(n) + " cameras");
   std::vector<std::string> unreadable;

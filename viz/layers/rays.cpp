@@ -50,7 +50,7 @@ LayerContent raysLayer(const LayerInput& in) {
   LayerContent content;
   int elsewhere = 0;
   for (const TrainingView& view : in.inspection->views) {
-    if (view.failure || view.frame < 0 || !view.brightest || (in.solo && view.frame != in.selection.frame)) continue;
+    if (view.failure || view.frame < 0 || !view.brightest || !in.shows(view.frame)) continue;
     const bool here = in.onSurface(view.frame);
     // The light was found by the rays of all surfaces, unless each of them has a light of its own.
     if (!here && in.inspection->train.perSurface) continue;

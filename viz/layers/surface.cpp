@@ -14,6 +14,7 @@ LayerContent surfaceLayer(const LayerInput& in) {
     content.notes.push_back("surface: " + (in.surfaceProblem.empty() ? "none" : in.surfaceProblem));
     return content;
   }
+  if (in.hidden.hidesSurface(in.surfaceKey)) return content;
   const vtkSmartPointer<vtkPolyData> triangles = in.cache->tessellation(in.surface, in.scale.surfaceBox).fine;
   if (triangles->GetNumberOfPolys() == 0) {
     content.notes.push_back("surface: no triangles to draw");

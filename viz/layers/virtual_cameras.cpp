@@ -48,7 +48,8 @@ void addPair(LayerContent& content, const LayerInput& in, int frame, const Layer
 LayerContent virtualCamerasLayer(const LayerInput& in) {
   LayerContent content;
   std::set<int> done;
-  std::vector<int> frames{in.selection.frame};  // which need not be a training frame
+  std::vector<int> frames;
+  if (in.shows(in.selection.frame)) frames.push_back(in.selection.frame);  // which need not be a training frame
   for (const TrainingView* view : in.views()) frames.push_back(view->frame);
   for (const int frame : frames) {
     if (!done.insert(frame).second) continue;
