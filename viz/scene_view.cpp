@@ -340,15 +340,7 @@ struct SceneView::Impl {
            const Eigen::Vector3d& reference, double leastDepth) {
     update();
     const PictureArea whole = area();
-    Margins margins;
-    const Eigen::Vector2d legend = annotations->legendSize();
-    // Beside it or below it, whichever leaves more.
-    const double beside = std::min(0.92, 1 - 2 * legend.x() / whole.width),
-                 below = std::min(0.92, 1 - 2 * legend.y() / whole.height);
-    if (whole.width > 1 && whole.height > 1 && std::max(beside, below) > -0.6)
-      (beside >= below ? margins.left : margins.top) = std::max(beside, below);
-    if (const double bar = annotations->colourBarHeight(); bar > 0)
-      margins.bottom = std::clamp(1 - 2 * bar / whole.height, 0.3, margins.bottom);
+    const Margins margins = marginsBeside(annotations->legendSize(), annotations->colourBarHeight(), whole);
     const double aspect = whole.width > 1 && whole.height > 1 ? static_cast<double>(whole.width) / whole.height : 4.0 / 3.0;
     place(fitted(points, back, up, aspect, margins, parallel(), reference, leastDepth));
   }

@@ -148,6 +148,16 @@ ViewPoint between(const ViewPoint& from, const ViewPoint& to, double t) {
   return view;
 }
 
+Margins marginsBeside(const Eigen::Vector2d& legendPx, double barPx, const PictureArea& whole) {
+  Margins margins;
+  const double beside = std::min(margins.left, 1 - 2 * legendPx.x() / whole.width),
+               below = std::min(margins.top, 1 - 2 * legendPx.y() / whole.height);
+  if (whole.width > 1 && whole.height > 1 && std::max(beside, below) > -0.6)
+    (beside >= below ? margins.left : margins.top) = std::max(beside, below);
+  if (barPx > 0) margins.bottom = std::clamp(1 - 2 * barPx / whole.height, 0.3, margins.bottom);
+  return margins;
+}
+
 ViewPoint fitted(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& back, const Eigen::Vector3d& up,
                  double aspect, const Margins& margins, bool parallel, const Eigen::Vector3d& reference, double leastDepth) {
   constexpr double kFieldOfView = 30 * std::numbers::pi / 180;

@@ -63,6 +63,9 @@ Eigen::Vector3d worldAt(vtkRenderer* renderer, double xDisplay, double yDisplay,
 struct Margins {
   double left = 0.92, right = 0.92, top = 0.92, bottom = 0.92;
 };
+/// What keeps off a legend in the upper left corner (beside it or below it, whichever leaves more) and a bar at the bottom.
+/// @param legendPx  width and height. @param barPx  height, 0 = none.
+Margins marginsBeside(const Eigen::Vector2d& legendPx, double barPx, const PictureArea& whole);
 /// The closest view along -`back` that holds all points (at least one) between the margins.
 /// @param back, up  unit, square to each other. @param aspect  width / height. @param reference  the focal point's depth.
 ViewPoint fitted(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& back, const Eigen::Vector3d& up,
