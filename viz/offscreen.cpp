@@ -14,6 +14,11 @@
 
 namespace glint::viz {
 
+void prepareWindow(vtkRenderWindow* window) {
+  window->SetAlphaBitPlanes(1);
+  window->SetMultiSamples(0);
+}
+
 struct Offscreen::Impl {
   std::unique_ptr<VirtualDisplay> display;  // declared first: ended after the window
   vtkSmartPointer<vtkRenderWindow> window;

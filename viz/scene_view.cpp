@@ -49,11 +49,6 @@ std::size_t layerIndex(const std::string& name) {
 
 }  // namespace
 
-void prepareWindow(vtkRenderWindow* window) {
-  window->SetAlphaBitPlanes(1);
-  window->SetMultiSamples(0);
-}
-
 struct SceneView::Impl {
   vtkNew<vtkRenderer> renderer;
   vtkNew<vtkLightKit> lights;
