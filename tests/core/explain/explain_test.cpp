@@ -340,6 +340,16 @@ TEST(Explain, EveryMeasuredNumberSaysWhatIsRounding) {
       if (n.unit == "m") {
         EXPECT_NEAR(n.least, 1e-6 * distance, 1e-12) << n.name;
       }
+      // Contours are followed to 1e-3 px; seen at a focal length of 600 px, that is this angle. Errors are printed as 0.01 %.
+      if (n.unit == "px") {
+        EXPECT_EQ(n.least, 1e-3) << n.name;
+      }
+      if (n.unit == "deg") {
+        EXPECT_NEAR(n.least, 1e-3 / 600 * 180 / std::numbers::pi, 1e-5) << n.name;
+      }
+      if (n.unit == "%") {
+        EXPECT_LT(n.least, 0.5 * 0.01) << n.name;
+      }
       seen += n.unit == "m";
     }
   EXPECT_GE(seen, 5);
