@@ -50,7 +50,6 @@
 #include "gui/window/changed_inputs.h"
 #include "gui/window/file_actions.h"
 #include "gui/window/job_status.h"
-#include "gui/window/layouts.h"
 #include "gui/window/message_bar.h"
 #include "gui/window/own_layouts.h"
 #include "gui/window/palette.h"
@@ -60,6 +59,7 @@
 #include "gui/window/shortcut_dialog.h"
 #include "gui/window/start_page.h"
 #include "gui/window/unreadable_photographs.h"
+#include "gui/window/window_layout.h"
 
 namespace glint::gui {
 
@@ -181,6 +181,7 @@ void MainWindow::buildCentre() {
   views_->addWidget(frame_);
   views_->setChildrenCollapsible(false);
   centre_->addWidget(views_);
+  layout_ = new WindowLayout(this, docks_, views_);
   // Plain arrow keys step where they mean nothing else; sliders and tables keep theirs.
   for (const auto& [key, by] : {std::pair(Qt::Key_Left, -1), std::pair(Qt::Key_Right, 1)}) {
     auto* step = new QAction(views_);
@@ -239,7 +240,7 @@ void MainWindow::buildDocks() {
   explain_ = new ExplainPanel(document_);
   docks_.add("explain", tr("Explain"), explain_, Qt::RightDockWidgetArea, "parameters");
   connect(explain_, &ExplainPanel::started, this, &MainWindow::makeRoomToExplain);
-  connect(explain_, &ExplainPanel::left, this, &MainWindow::putBackAfterExplaining);
+  connect(explain_, &ExplainPanel::left, layout_, &WindowLayout::putBack);
   connect(explain_, &ExplainPanel::look, scene_, &ScenePanel::look);
   connect(explain_, &ExplainPanel::look, frame_, &FramePanel::look);
   connect(explain_, &ExplainPanel::lessonRequested, files_, &FileActions::open);
@@ -380,10 +381,7 @@ void MainWindow::buildMenus() {
   layoutMenu->addSeparator();
   auto* own = new OwnLayouts(this, views_);
   own->addActions(actions_, layoutMenu);
-  connect(own, &OwnLayouts::applied, this, [this] {
-    ownLayout_ = true;
-    beforeExplaining_.reset();
-  });
+  connect(own, &OwnLayouts::applied, layout_, &WindowLayout::setOwn);
   docks_.addActions(actions_, view->addMenu(tr("&Panels")));
   view->addSeparator();
   actions_.add("view.theme", view, tr("Light or dark &theme"),
@@ -418,57 +416,27 @@ void MainWindow::open(const QString& input, const QString& frame) {
   files_->drop(input);  // as if it were dropped: a photograph selects its frame
 }
 
-void MainWindow::applyLayout(const QString& name) {
-  const Layout& layout = layoutByName(name);
-  layout_ = QLatin1String(layout.name);
-  ownLayout_ = false;
-  beforeExplaining_.reset();  // what was chosen meanwhile stays
-  docks_.apply(layout);
-  views_->setSizes({layout.sceneShare * 10, (100 - layout.sceneShare) * 10});
-}
+void MainWindow::applyLayout(const QString& name) { layout_->apply(name); }
 
-/// A text and a 3D view that fit beside each other. An own layout that shows the panel is left as it is.
+/// A text and a 3D view that fit beside each other.
 void MainWindow::makeRoomToExplain() {
-  const QString explain = QStringLiteral("explain");
-  const auto* dock = findChild<QDockWidget*>(explain);
-  const bool arranged = ownLayout_ ? dock && !dock->isHidden() : layout_ == explain;
-  if (!arranged && document_.scene()) {  // without one there is only the overview
-    const Arrangement before{layout_, ownLayout_, size(), saveState(), views_->saveState()};
-    applyLayout(explain);
-    beforeExplaining_ = before;
-  }
-  docks_.bring(explain);
-  if (!beforeExplaining_ || arranged) return;
+  // Without a scene there is only the overview.
+  if (!layout_->makeRoomFor(QStringLiteral("explain"), document_.scene() != nullptr)) return;
   // A step fits the view to what it is about: the view has to know its new size by then.
   layout()->activate();
   QCoreApplication::sendPostedEvents(nullptr, QEvent::LayoutRequest);
   scene_->renderNow();
 }
 
-void MainWindow::putBackAfterExplaining() {
-  if (!beforeExplaining_) return;
-  const Arrangement before = *std::exchange(beforeExplaining_, std::nullopt);
-  if (!before.own) applyLayout(before.layout);  // also arranges the docks for what the window's size is by now
-  layout_ = before.layout;
-  ownLayout_ = before.own;
-  if (!before.own && before.size != size()) return;
-  restoreState(before.docks);
-  views_->restoreState(before.views);
-}
-
 void MainWindow::resizeEvent(QResizeEvent* e) {
   QMainWindow::resizeEvent(e);
-  if (ownLayout_ || layout_.isEmpty() || !isVisible() || docks_.fits()) return;  // an own layout stays as it was kept
-  QTimer::singleShot(0, this, [this] {                                           // not while Qt lays out the docks
-    if (!ownLayout_ && !docks_.fits()) applyLayout(layout_);
-  });
+  if (layout_) layout_->followSize();
 }
 
 bool MainWindow::event(QEvent* e) {
   const bool done = QMainWindow::event(e);
   // Else Qt holds a window that shrinks at what its docks need now, also once they need less.
-  if (e->type() == QEvent::LayoutRequest && isVisible())
-    setMinimumSize(ownLayout_ ? QSize(0, 0) : docks_.least(minimumSizeHint()));
+  if (e->type() == QEvent::LayoutRequest && isVisible()) setMinimumSize(layout_->leastSize(minimumSizeHint()));
   return done;
 }
 
@@ -481,7 +449,7 @@ void MainWindow::setTheme(Theme theme) {
 }
 
 void MainWindow::addView(Opened& opened) const {
-  opened.layout = layout_.toStdString();
+  opened.layout = layout_->name().toStdString();
   opened.viewPoint = scene_->viewPoint();
 }
 

@@ -39,6 +39,7 @@ class Timeline;
 class TradeoffPanel;
 class UnreadablePhotographs;
 class WhatIfPanel;
+class WindowLayout;
 
 /// The window: puts the panels together and wires them; everything else is in their own classes.
 class MainWindow : public QMainWindow {
@@ -93,7 +94,6 @@ class MainWindow : public QMainWindow {
   bool quiet() const;
   void addView(Opened& opened) const;
   void makeRoomToExplain();
-  void putBackAfterExplaining();
   Opened snapshot() const;
 
   Engine engine_;
@@ -107,6 +107,7 @@ class MainWindow : public QMainWindow {
   QStackedWidget* centre_ = nullptr;
   StartPage* start_ = nullptr;
   QSplitter* views_ = nullptr;
+  WindowLayout* layout_ = nullptr;
   ScenePanel* scene_ = nullptr;
   SceneTree* tree_ = nullptr;
   FramePanel* frame_ = nullptr;
@@ -125,15 +126,7 @@ class MainWindow : public QMainWindow {
   QPlainTextEdit* log_ = nullptr;
   MessageBar* messageBar_ = nullptr;
   QLabel* probe_ = nullptr;
-  QString layout_, lastError_;
-  bool ownLayout_ = false;  ///< the docks are where an own layout has them
-  struct Arrangement {
-    QString layout;
-    bool own = false;
-    QSize size;
-    QByteArray docks, views;
-  };
-  std::optional<Arrangement> beforeExplaining_;  ///< to go back to; none where Explain was started in a fitting one
+  QString lastError_;
   ScriptedActions* script_ = nullptr;
   UnreadablePhotographs* unreadable_ = nullptr;
   MissingPtr located_;      ///< was pointed at, and is being opened
