@@ -10,16 +10,12 @@
 #include <QLabel>
 #include <QMenuBar>
 #include <QMimeData>
-#include <QPlainTextEdit>
 #include <QScreen>
 #include <QScrollArea>
 #include <QSplitter>
 #include <QStackedWidget>
 #include <QStatusBar>
-#include <QTime>
-#include <QTimer>
 #include <QToolBar>
-#include <QToolButton>
 #include <QUndoView>
 #include <QVBoxLayout>
 #include <utility>
@@ -36,6 +32,7 @@
 #include "gui/frame/ladder_panel.h"
 #include "gui/panels/comparison_panel.h"
 #include "gui/panels/error_table.h"
+#include "gui/panels/log_panel.h"
 #include "gui/panels/numbers_panel.h"
 #include "gui/panels/parameter_panel.h"
 #include "gui/panels/setup_panel.h"
@@ -108,7 +105,7 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
     messageBar_->showOffer(line, {{tr("Open"), [this, session] { files_->open(session); }}});
   });
   exports_->setSnapshot([this] { return snapshot(); });
-  exports_->setLog([this] { return log_->toPlainText(); });
+  exports_->setLog([this] { return log_->text(); });
   files_->setViewSource([this](Opened& opened) { addView(opened); });
   connect(&runner_, &Runner::failed, this, [this](const QString& oneLine) {
     runFailed_ = true;
@@ -257,15 +254,8 @@ void MainWindow::buildDocks() {
   docks_.add("errors", tr("Errors"), errors_, Qt::BottomDockWidgetArea);
   plots_ = new PlotsPanel(document_);
   docks_.add("plots", tr("Plots"), plots_, Qt::BottomDockWidgetArea);
-  log_ = new QPlainTextEdit;
-  log_->setReadOnly(true);
-  log_->setMaximumBlockCount(2000);
-  auto* logPanel = new QWidget;
-  auto* logColumn = new QVBoxLayout(logPanel);
-  logColumn->setContentsMargins(0, 0, 0, 0);
-  logColumn->setSpacing(2);
-  logColumn->addWidget(log_, 1);
-  docks_.add("log", tr("Log"), logPanel, Qt::BottomDockWidgetArea, "errors");
+  log_ = new LogPanel;
+  docks_.add("log", tr("Log"), log_, Qt::BottomDockWidgetArea, "errors");
   ladder_ = new LadderPanel(document_, *frame_->loader());
   docks_.add("ladder", tr("Ladder"), ladder_, Qt::BottomDockWidgetArea, "errors");
   tradeoff_ = new TradeoffPanel(document_);
@@ -309,10 +299,7 @@ void MainWindow::buildMenus() {
   unreadable_->addActions(actions_, file);
   exports_->setViews(*scene_, *frame_);
   exports_->addActions(actions_, file->addMenu(tr("&Export")));
-  auto* report = new QToolButton;  // above the log, which it holds
-  report->setObjectName(QStringLiteral("copyDiagnostic"));
-  report->setDefaultAction(actions_.find("export.diagnostic"));
-  static_cast<QVBoxLayout*>(log_->parentWidget()->layout())->insertWidget(0, report, 0, Qt::AlignRight);
+  log_->setReport(actions_.find("export.diagnostic"));
   file->addSeparator();
   actions_.add("file.quit", file, tr("&Quit"), [this] { close(); }, {QKeySequence::keyBindings(QKeySequence::Quit)});
 
@@ -497,9 +484,7 @@ void MainWindow::offerToLocate(const QString& oneLine, const MissingPtr& missing
                                     }}});
 }
 
-void MainWindow::log(const QString& line) {
-  log_->appendPlainText(QTime::currentTime().toString(QStringLiteral("HH:mm:ss  ")) + line);
-}
+void MainWindow::log(const QString& line) { log_->add(line); }
 
 void MainWindow::showTitle() {
   if (!document_.scene()) return setWindowTitle(tr("Glint inspector"));

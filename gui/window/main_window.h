@@ -12,7 +12,6 @@
 #include "gui/window/docks.h"
 
 class QLabel;
-class QPlainTextEdit;
 class QSplitter;
 class QStackedWidget;
 
@@ -25,6 +24,7 @@ class ExplainPanel;
 class FileActions;
 class FramePanel;
 class LadderPanel;
+class LogPanel;
 class MessageBar;
 class NumbersPanel;
 class Palette;
@@ -123,7 +123,7 @@ class MainWindow : public QMainWindow {
   SetupPanel* setup_ = nullptr;
   LadderPanel* ladder_ = nullptr;
   TradeoffPanel* tradeoff_ = nullptr;
-  QPlainTextEdit* log_ = nullptr;
+  LogPanel* log_ = nullptr;
   MessageBar* messageBar_ = nullptr;
   QLabel* probe_ = nullptr;
   QString lastError_;
