@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "core/base/angle.h"
+#include "core/highlight/peak.h"
 #include "core/light/estimate.h"
 #include "core/model/fit_ellipsoid.h"
 
@@ -101,12 +102,14 @@ class Findings {
     const auto estimate = inspection.lights.find(lightKey(fit.light, fit.surface));
     if (estimate != inspection.lights.end()) estimate_ = &estimate->second;
     outlines_ = outlinesOf(result.model, views_);
+    if (result.model != "primal") findStrayPeaks(inspection);  // which looks at ellipses only
     fromOutlines_ = result.model == "primal" || result.model == "dual" || result.model == "canonical";
   }
 
   Conditioning all() {
     if (fit_.failure)
       add("fit", "fit", std::nan(""), "failed", Verdict::Red, "There is no fit: " + fit_.failure->message() + ".");
+    addPeaks();
     if (fromOutlines_) addLinearSystem();
     addAngle();
     addViews();
@@ -117,7 +120,36 @@ class Findings {
 
  private:
   void add(const char* id, const char* title, double value, std::string valueText, Verdict verdict, std::string reason) {
+    if (verdict == Verdict::Green && !strayFrames_.empty()) {
+      verdict = Verdict::Amber;
+      reason += " It rests on evidence whose peak lies outside its contour, so it is no praise.";
+    }
     c_.findings.push_back({id, title, value, std::move(valueText), verdict, std::move(reason)});
+  }
+
+  void findStrayPeaks(const Inspection& inspection) {
+    for (const TrainingView& v : views_) {
+      if (v.failure || !v.brightest) continue;
+      const double away = outsideOfContour(v.highlight);
+      if (away == 0) continue;
+      farthestStray_ = std::max(farthestStray_, away);
+      strayFrames_.push_back(inspection.scene && v.frame >= 0 && std::size_t(v.frame) < inspection.scene->frames.size()
+                                 ? inspection.scene->frames[std::size_t(v.frame)].id
+                                 : std::to_string(v.frame));
+    }
+  }
+
+  void addPeaks() {
+    if (strayFrames_.empty()) return;
+    constexpr std::size_t kMostNamed = 4;
+    std::string frames;
+    for (std::size_t i = 0; i < std::min(kMostNamed, strayFrames_.size()); ++i) frames += (i ? ", " : "") + strayFrames_[i];
+    if (strayFrames_.size() > kMostNamed) frames += ", \u2026";
+    const int stray = int(strayFrames_.size());
+    add("peaks", "peaks", stray, text("%d outside", stray), Verdict::Red,
+        text("The peak lies outside its own contour in %d of %d training views (frame %s), by up to %.3g px: the ray through it "
+             "does not come from the highlight, and the light is sought where it was not seen.",
+             stray, int(rays_.size()), frames.c_str(), farthestStray_));
   }
 
   void addLinearSystem() {
@@ -286,6 +318,8 @@ class Findings {
   std::vector<ConicView> outlines_;
   const LightEstimate* estimate_ = nullptr;
   bool fromOutlines_ = false;
+  std::vector<std::string> strayFrames_;  ///< ids of those whose peak lies outside its contour
+  double farthestStray_ = 0;              ///< px
   Conditioning c_;
 };
 

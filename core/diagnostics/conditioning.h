@@ -17,7 +17,7 @@ const char* nameOf(Verdict verdict);
 
 /// One number that tells whether an answer is determined by its data.
 struct Finding {
-  std::string id;     ///< "rank", "gap", "signature", "angle", "views", "light", "residual"
+  std::string id;     ///< "fit", "peaks", "rank", "gap", "signature", "angle", "views", "light", "residual"
   std::string title;  ///< "triangulation angle"
   double value = std::numeric_limits<double>::quiet_NaN();
   std::string text;  ///< the value with its unit: "4.3°"
@@ -39,6 +39,8 @@ struct Conditioning {
 /// One entry per fit of every model, in the models' order. A fit that failed has a red finding with its reason beside what can
 /// still be said. The linear system for Q* is solved again here, whatever solver the fit used: `refined` with a prior is an
 /// ellipsoid always, and only the linear solution shows that the contours alone would have given a hyperboloid.
+/// Where a training peak lies outside its own contour (see outsideOfContour), a model that uses peaks has a red finding "peaks",
+/// and nothing that rests on its views is green: a wide angle between rays that were never seen is no good news.
 std::vector<Conditioning> conditioningOf(const Inspection& inspection);
 
 /// Widest angle between two of the unit vectors, rad; 0 for fewer than two. Of more than 256 vectors, that many evenly spread are

@@ -12,6 +12,7 @@
 #include "core/base/angle.h"
 #include "core/diagnostics/conditioning.h"
 #include "core/geometry/epipolar.h"
+#include "core/highlight/peak.h"
 #include "core/light/estimate.h"
 #include "core/pipeline/training.h"
 #include "core/surface/mesh_policy.h"
@@ -150,6 +151,8 @@ void peakStep(const Case& c, ExplainStep& step) {
   if (!c.highlight) return void(reached(c, step));
   step.numbers.push_back(pixel("p", "peak in the photograph", c.highlight->peak));
   if (c.highlight->clipped) step.broken.push_back({"clipped-peak", {}});
+  if (const double away = outsideOfContour(*c.highlight); away > 0)
+    step.broken.push_back({"peak-outside-contour", {one("", "from the peak to its contour", away, "px")}});
   if (!reached(c, step)) return;
   const TrainingView& v = *c.out.view;
   if (!v.brightest) {
@@ -171,8 +174,8 @@ void tangentStep(const Case& c, ExplainStep& step) {
           degrees(std::atan2(toCamera.cross(v.tangentPlane->normal).norm(), toCamera.dot(v.tangentPlane->normal))), "deg"));
   if (!c.surface) return;
   if (const Outcome<Curvature> k = c.surface->curvatureAt(v.brightest->point)) {
-    step.numbers.push_back(one("kappa_1", "principal curvature", k->k1, "1/m"));
-    step.numbers.push_back(one("kappa_2", "principal curvature", k->k2, "1/m"));
+    step.numbers.push_back(one("κ₁", "principal curvature", k->k1, "1/m"));
+    step.numbers.push_back(one("κ₂", "principal curvature", k->k2, "1/m"));
   }
 }
 
@@ -253,7 +256,7 @@ void lightStep(const Case& c, ExplainStep& step) {
   step.numbers.push_back(one("", "reflected rays", double(rays.size())));
   step.numbers.push_back(one("", "widest angle between them", degrees(widest), "deg"));
   if (const auto e = c.inspection.lights.find(c.out.light); e != c.inspection.lights.end() && e->second.covariance)
-    step.numbers.push_back(one("sigma", "of the light, largest axis",
+    step.numbers.push_back(one("σ", "of the light, largest axis",
                                std::sqrt(e->second.covariance->selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff()), "m"));
   if (widest < radians(kNarrowDeg)) step.broken.push_back({"rays-parallel", {one("", "widest angle", degrees(widest), "deg")}});
   for (const TrueLight& truth : c.inspection.scene->lights)

@@ -111,4 +111,11 @@ Outcome<PeakFit> fitPeak(const Image& image, int x, int y, double windowLevel) {
   return fit;
 }
 
+double outsideOfContour(const Highlight& highlight) {
+  constexpr double kPeakKnownPx = 0.5;  // a quadratic through noisy pixels finds it to a few tenths
+  if (highlight.contour.points.empty() || contains(highlight.contour, highlight.peak)) return 0;
+  const double away = distance(highlight.contour, highlight.peak);
+  return away > kPeakKnownPx ? away : 0;
+}
+
 }  // namespace glint

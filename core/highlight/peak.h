@@ -4,6 +4,7 @@
 #include "core/base/image.h"
 #include "core/base/outcome.h"
 #include "core/geometry/camera.h"
+#include "core/highlight/highlight.h"
 
 namespace glint {
 
@@ -23,5 +24,10 @@ struct PeakFit {
 /// @return TooFewPoints (narrower than a few pixels), NotConverged (no maximum inside the window: a ridge, a plateau or a
 /// border).
 Outcome<PeakFit> fitPeak(const Image& image, int x, int y, double windowLevel);
+
+/// How far the peak lies outside its own contour, px; 0 where it lies inside, or beside it by no more than a peak is known to
+/// (0.5 px). A measured peak is the maximum of the region that the contour surrounds, so one outside was moved by hand or noise,
+/// and its ray does not come from the highlight. 0 where there is no contour.
+double outsideOfContour(const Highlight& highlight);
 
 }  // namespace glint

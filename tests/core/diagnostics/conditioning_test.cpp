@@ -167,6 +167,34 @@ TEST(Conditioning, ResidualIsAShareOfTheContoursThatWereFitted) {
   }
 }
 
+/// A peak dragged far off its highlight makes the rays wider apart, which is no better triangulation.
+TEST(Conditioning, APeakOutsideItsContourIsNotPraised) {
+  InspectionRequest request;
+  request.models = {"primal", "dual", "limit-angle"};
+  request.train = "0-7";
+  const std::vector<Conditioning> before = conditioningOf(inspect(planeScene(1), request));
+  request.whatIf.highlights[{3, 0}].peakBy = {160, 0};  // the contours are some 100 px wide
+  const std::vector<Conditioning> after = conditioningOf(inspect(planeScene(1), request));
+  for (const char* model : {"dual", "limit-angle"}) {
+    EXPECT_EQ(finding(of(before, model), "angle").verdict, Verdict::Green);
+    EXPECT_GT(finding(of(after, model), "angle").value, finding(of(before, model), "angle").value) << model;
+    const Finding& peaks = finding(of(after, model), "peaks");
+    EXPECT_EQ(peaks.verdict, Verdict::Red);
+    EXPECT_EQ(peaks.value, 1);
+    EXPECT_NE(peaks.reason.find("(frame 3)"), std::string::npos) << peaks.reason;
+    for (const Finding& f : of(after, model).findings)
+      EXPECT_NE(f.verdict, Verdict::Green) << model << " " << f.id << ": " << f.reason;
+    const std::string reason = finding(of(after, model), "angle").reason;
+    EXPECT_NE(reason.find("outside its contour"), std::string::npos) << reason;
+  }
+  for (const std::vector<Conditioning>* all : {&before, &after})  // primal looks at ellipses, not at peaks
+    for (const Finding& f : of(*all, "primal").findings) EXPECT_NE(f.id, "peaks");
+  // Within its contour, a peak may be moved.
+  request.whatIf.highlights[{3, 0}].peakBy = {5, 0};
+  for (const Conditioning& c : conditioningOf(inspect(planeScene(1), request)))
+    for (const Finding& f : c.findings) EXPECT_NE(f.id, "peaks") << c.model;
+}
+
 TEST(Conditioning, DegenerateTwoViews) {
   const std::vector<Conditioning> all = conditioned(planeScene(1), "0,1");
   const Finding& f = finding(of(all, "dual"), "signature");

@@ -156,6 +156,18 @@ TEST(Explain, ALimitAngleThatVariesIsSaid) {
 }
 
 /// r (1 + e cos 3t) leaves its ellipse, the circle, by e r / sqrt 2 on average.
+TEST(Explain, APeakOutsideItsContourIsSaidWithTheRayToIt) {
+  for (const double byPx : {0.0, 20.0, 150.0}) {  // the contours are some 100 px wide
+    InspectionRequest q;
+    q.models = {"dual"};
+    q.train = "first:4";
+    q.whatIf.highlights[{1, 0}].peakBy = {byPx, 0};
+    const ExplainStep step = stepOf(explain(inspect(exactScene(sheet(0), 6), q), 1, 0, "dual"), "peak");
+    EXPECT_EQ(breaks(step, "peak-outside-contour"), byPx > 100) << byPx;
+    for (const BrokenAssumption& b : step.broken) EXPECT_GT(b.numbers.at(0).values.at(0), 20);  // px from the contour
+  }
+}
+
 TEST(Explain, AContourThatIsNoEllipseIsSaid) {
   for (const double ripple : {0.004, 0.03}) {
     auto scene = exactScene(sheet(0), 6);
@@ -355,7 +367,7 @@ TEST(Explain, EveryMeasuredNumberSaysWhatIsRounding) {
   EXPECT_GE(seen, 5);
   // The curvature of a plane.
   for (const ExplainNumber& n : stepOf(e, "tangent-plane").numbers)
-    if (n.symbol == "kappa_1") {
+    if (n.symbol == "κ₁") {
       EXPECT_LT(std::abs(n.values[0]), n.least);
     }
 }
