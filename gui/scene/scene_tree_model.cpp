@@ -20,7 +20,7 @@ namespace glint::gui {
 using Kind = SceneObject::Kind;
 
 namespace {
-constexpr int kLights = 1, kModels = 2, kCameras = 3;  // place among the groups
+constexpr int kSurfaces = 0, kLights = 1, kModels = 2, kCameras = 3;  // place among the groups
 constexpr quintptr kGroupId = 0, kObjectId = 1;        // of an object: kObjectId + its group
 constexpr quintptr kHighlightId = 100;                 // of a highlight: kHighlightId + its camera
 
@@ -129,8 +129,9 @@ SceneTreeModel::SceneTreeModel(Document& document, QObject* parent)
   connect(&document_, &Document::sceneOpened, this, &SceneTreeModel::rebuild);
   connect(&document_, &Document::inspectionChanged, this, &SceneTreeModel::followInspection);
   connect(&document_, &Document::optionsChanged, this, &SceneTreeModel::followView);
-  for (const auto signal : {&Document::layersChanged, &Document::selectionChanged, &Document::requestChanged})
-    connect(&document_, signal, this, &SceneTreeModel::emitAllChanged);
+  connect(&document_, &Document::layersChanged, this, &SceneTreeModel::emitAllChanged);
+  connect(&document_, &Document::selectionChanged, this, &SceneTreeModel::followSelection);
+  connect(&document_, &Document::requestChanged, this, &SceneTreeModel::followRoles);
   for (const auto signal : {&Document::influenceChanged, &Document::requestChanged, &Document::selectionChanged})
     connect(&document_, signal, this, &SceneTreeModel::refreshEffects);
   rebuild();
@@ -148,6 +149,10 @@ void SceneTreeModel::rebuild() {
     highlights_.resize(std::size_t(document_.frameCount()));
   }
   hidden_ = hiddenObjects(document_);
+  selection_ = document_.selection();
+  train_ = document_.request().train;
+  excluded_ = document_.request().excluded;
+  layersShown_ = layersShown();
   endResetModel();
   followInspection();
 }
@@ -167,7 +172,27 @@ void SceneTreeModel::followInspection() {
     setHighlights(i, std::move(highlights));
   }
   refreshEffects();
-  emitAllChanged();
+  emitChanged(kLights);
+  emitChanged(kModels);
+}
+
+void SceneTreeModel::followSelection() {
+  const viz::Selection now = document_.selection(), before = std::exchange(selection_, now);
+  for (const int frame : std::set<int>{before.frame, now.frame}) {
+    const QModelIndex row = indexOf(camera(frame));
+    if (!row.isValid()) continue;
+    emit dataChanged(row, row.siblingAtColumn(ColumnCount - 1));
+    if (const int n = rowCount(row); n > 0) emit dataChanged(index(0, 0, row), index(n - 1, ColumnCount - 1, row));
+  }
+  for (const int group : {kSurfaces, kLights, kModels}) emitChanged(group);
+}
+
+void SceneTreeModel::followRoles() {
+  const InspectionRequest& request = document_.request();
+  if (request.train == train_ && request.excluded == excluded_) return;
+  train_ = request.train;
+  excluded_ = request.excluded;
+  emitChanged(kCameras);
 }
 
 void SceneTreeModel::setObjects(int group, std::vector<SceneObject> objects) {
@@ -204,7 +229,10 @@ void SceneTreeModel::setHighlights(int at, std::vector<SceneObject> highlights) 
 }
 
 void SceneTreeModel::followView() {
-  hidden_ = hiddenObjects(document_);
+  viz::HiddenObjects hidden = hiddenObjects(document_);
+  const bool layers = layersShown_ != layersShown();  // the active view may have its own, which are an option
+  if (hidden == hidden_ && !layers) return;
+  hidden_ = std::move(hidden);
   emitAllChanged();
 }
 
@@ -229,11 +257,21 @@ void SceneTreeModel::setActiveView(int view) {
   emitAllChanged();
 }
 
+void SceneTreeModel::emitChanged(int group) {
+  const QModelIndex at = index(group, 0);
+  emit dataChanged(at, at.siblingAtColumn(ColumnCount - 1));
+  if (const int n = rowCount(at); n > 0) emit dataChanged(index(0, 0, at), index(n - 1, ColumnCount - 1, at));
+}
+
 void SceneTreeModel::emitAllChanged() {
-  emit dataChanged(index(0, 0), index(kGroups - 1, ColumnCount - 1));
-  for (int g = 0; g < kGroups; ++g)
-    if (const int n = int(groups_[std::size_t(g)].objects.size()); n > 0)
-      emit dataChanged(index(0, 0, index(g, 0)), index(n - 1, ColumnCount - 1, index(g, 0)));
+  layersShown_ = layersShown();
+  for (int g = 0; g < kGroups; ++g) emitChanged(g);
+}
+
+std::array<bool, SceneTreeModel::kGroups> SceneTreeModel::layersShown() const {
+  std::array<bool, kGroups> shown;
+  for (int g = 0; g < kGroups; ++g) shown[std::size_t(g)] = layerShown(groups_[std::size_t(g)]);
+  return shown;
 }
 
 // --- structure --------------------------------------------------------------------------------------------------------------
@@ -345,7 +383,7 @@ QString SceneTreeModel::detailOf(const SceneObject& o) const {
                                return l.first.substr(0, l.first.find('@')) == o.key;
                              });
       const auto known = std::any_of(scene.lights.begin(), scene.lights.end(), [&](const TrueLight& l) { return l.id == o.key; });
-      return estimated && known ? tr("estimate, truth") : estimated ? tr("estimate") : tr("truth");
+      return estimated ? tr("estimated") : known ? tr("truth only") : QString();
     }
     case Kind::Ellipsoid: {
       if (!inspection) return {};

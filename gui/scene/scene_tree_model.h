@@ -77,10 +77,14 @@ class SceneTreeModel : public QAbstractItemModel {
   void rebuild();
   void followInspection();
   void followView();
+  void followSelection();
+  void followRoles();
   void refreshEffects();
   void setObjects(int group, std::vector<SceneObject> objects);
   void setHighlights(int camera, std::vector<SceneObject> highlights);
+  void emitChanged(int group);  ///< its head and its objects
   void emitAllChanged();
+  std::array<bool, kGroups> layersShown() const;
   bool layerShown(const Group& group) const;
   QVariant groupData(const Group& group, int column, int role) const;
   QVariant objectData(const SceneObject& object, const Group& group, int row, int column, int role) const;
@@ -90,7 +94,12 @@ class SceneTreeModel : public QAbstractItemModel {
   Document& document_;
   std::array<Group, kGroups> groups_;
   std::vector<std::vector<SceneObject>> highlights_;  ///< by camera
+  // What the rows were shown for: a long sequence has a thousand, and none is told of a change that is not about it.
   viz::HiddenObjects hidden_;
+  viz::Selection selection_;
+  std::string train_;
+  std::vector<int> excluded_;
+  std::array<bool, kGroups> layersShown_{};
   std::map<int, double> effects_;  ///< what a training frame does, percentage points, by frame; empty = not measured
   double mostEffect_ = 0;
   int view_ = 0;
