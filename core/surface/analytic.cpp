@@ -26,7 +26,10 @@ namespace {
 class AnalyticSurface : public Surface {
  public:
   explicit AnalyticSurface(const AnalyticSpec& spec)
-      : shape_(makeShape(spec)), worldFromLocal_(spec.worldFromSurface), localFromWorld_(worldFromLocal_.inverse()) {
+      : shape_(makeShape(spec)),
+        worldFromLocal_(spec.worldFromSurface),
+        localFromWorld_(worldFromLocal_.inverse()),
+        bounds_(shape_->bounds(worldFromLocal_)) {
     const Matrix3d r = worldFromLocal_.linear();
     require(
         // A rotation to single precision; formats.md lets nothing else in.
@@ -97,7 +100,7 @@ class AnalyticSurface : public Surface {
     return false;
   }
 
-  AlignedBox3d bounds() const override { return shape_->bounds(worldFromLocal_); }
+  AlignedBox3d bounds() const override { return bounds_; }
 
   TriangleMesh tessellate(const AlignedBox3d& region, int resolution) const override {
     require(resolution >= 1, "tessellate: resolution must be at least 1");
@@ -182,6 +185,7 @@ class AnalyticSurface : public Surface {
 
   std::unique_ptr<const AnalyticShape> shape_;
   Eigen::Isometry3d worldFromLocal_, localFromWorld_;
+  AlignedBox3d bounds_;  ///< kept: it is asked for with every shadow ray, and a sheet samples its arc for it
 };
 
 }  // namespace

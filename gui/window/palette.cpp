@@ -156,6 +156,15 @@ void Palette::search() {
     found.erase(
         std::find_if(found.begin(), found.end(), [](const auto& f) { return f.first.way == PaletteMatch::Way::Scattered; }),
         found.end());
+  // A value is for what can take it: of the titles that hold the words, those that cannot come last and say why not.
+  if (typed.contains(QLatin1Char('='))) {
+    const auto named = [&](const auto& f) {
+      const std::optional<PaletteMatch> match = matchOf(wanted, {all[f.second].title, {}, {}, true, {}, {}});
+      return match && match->way == PaletteMatch::Way::Text;
+    };
+    const auto end = std::stable_partition(found.begin(), found.end(), named);
+    std::stable_partition(found.begin(), end, [&](const auto& f) { return all[f.second].enabled; });
+  }
   if (found.size() > std::size_t(kMost)) found.resize(kMost);
   shown_.clear();
   list_->clear();

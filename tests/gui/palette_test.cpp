@@ -255,6 +255,10 @@ class PaletteTest : public QObject {
     type("detect.level = 7", Qt::Key_Return);  // out of range: the row says so and does nothing
     QCOMPARE(window_->document().request().settings.number("detect.level"), 0.3);
     QVERIFY(window_->commandPalette()->list()->topLevelItem(0)->isDisabled());
+    // Of several with that name, the one that can take the value; "Level-set contour" is a choice, "Level-set grid" in px.
+    popUp();
+    type("level = 0.4", Qt::Key_Return);
+    QCOMPARE(window_->document().request().settings.number("detect.level"), 0.4);
   }
 
   void aFrameIsFoundByItsNumber() {
