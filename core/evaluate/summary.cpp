@@ -80,12 +80,17 @@ ModelSummary summarise(const Inspection& inspection, const ModelResult& result) 
         s.reason = c.prediction.failure->message();
         return s;
       }
-    bool anyHeldOut = false;
-    for (int i = 0; i < static_cast<int>(inspection.scene->frames.size()); ++i)
-      anyHeldOut = anyHeldOut || inspection.isHeldOut(i);
-    s.reason = !anyHeldOut     ? "no frame is held out"
-               : s.frames == 0 ? "no held-out frame has a highlight"
-                               : "no frame was predicted";
+    int heldOut = 0, unreadable = 0;
+    for (std::size_t i = 0; i < inspection.evidence.size(); ++i) {
+      if (!inspection.isHeldOut(static_cast<int>(i))) continue;
+      ++heldOut;
+      const std::optional<Failure>& failure = inspection.evidence[i].scoringFailure();
+      if (failure && failure->reason == Reason::FrameUnreadable) ++unreadable;
+    }
+    s.reason = heldOut == 0            ? "no frame is held out"
+               : unreadable == heldOut ? "no held-out frame can be read"
+               : s.frames == 0         ? "no held-out frame has a highlight"
+                                       : "no frame was predicted";
   }
   return s;
 }

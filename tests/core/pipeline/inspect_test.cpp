@@ -186,6 +186,18 @@ TEST(Summary, SaysWhyThereIsNothingToAverage) {
   q.excluded = {4};
   const Inspection excluded = inspect(scene, q);
   EXPECT_EQ(summarise(excluded, excluded.models.at("limit-angle")).reason, none.reason);
+  // Nothing predicted, nothing observed: it makes a difference whether anybody could look.
+  q.excluded.clear();
+  q.train = "0-2";
+  Inspection dark = inspect(scene, q);
+  const ModelResult nothing{"limit-angle", {}, {}};
+  for (const int i : {3, 4}) {
+    dark.evidence[std::size_t(i)].highlights.clear();
+    dark.evidence[std::size_t(i)].failure = Failure{Reason::FrameUnreadable, "gone.png: cannot be read"};
+  }
+  EXPECT_EQ(summarise(dark, nothing).reason, "no held-out frame can be read");
+  dark.evidence[4].failure = Failure{Reason::NoHighlight, ""};
+  EXPECT_EQ(summarise(dark, nothing).reason, "no held-out frame has a highlight");
 }
 
 TEST(Inspect, AllTrainingFramesExcludedIsANamedFailure) {
