@@ -100,7 +100,9 @@ SceneTree::SceneTree(Document& document, QWidget* parent)
   });
   connect(&document_, &Document::selectionChanged, this, &SceneTree::followDocument);
   // Results bring rows, which push the others away.
-  connect(shown_, &QAbstractItemModel::rowsInserted, this, &SceneTree::keepInSight);
+  connect(shown_, &QAbstractItemModel::rowsInserted, this, [this] {
+    if (!tree_->hasFocus()) keepInSight();
+  });
   connect(model_, &SceneTreeModel::effectsChanged, this, &SceneTree::showColumns);
   connect(&document_, &Document::sceneOpened, this, [this] {
     search_->clear();
@@ -145,7 +147,9 @@ void SceneTree::find(const QString& text) {
 
 void SceneTree::keepInSight() {
   const QModelIndex now = tree_->currentIndex();
-  if (!tree_->hasFocus() && now.isValid() && tree_->isExpanded(now.parent())) tree_->scrollTo(now);
+  for (QModelIndex above = now.parent(); above.isValid(); above = above.parent())
+    if (!tree_->isExpanded(above)) return;
+  if (now.isValid()) tree_->scrollTo(now);
 }
 
 // --- selection ------------------------------------------------------------------------------------------------------------
@@ -154,8 +158,10 @@ void SceneTree::mark(const SceneObject& object) {
   const QModelIndex row = shown_->mapFromSource(model_->indexOf(object));
   if (!row.isValid()) return;
   selecting_ = true;
+  tree_->setAutoScroll(false);  // it would open a group that the user has closed
   tree_->selectionModel()->setCurrentIndex(row, QItemSelectionModel::ClearAndSelect | QItemSelectionModel::Rows);
-  if (tree_->isExpanded(row.parent())) tree_->scrollTo(row);  // it opens no group that the user has closed
+  tree_->setAutoScroll(true);
+  keepInSight();
   selecting_ = false;
 }
 

@@ -50,7 +50,7 @@ class SceneTree : public QWidget {
   std::optional<SceneObject> objectAt(const QModelIndex& index) const;
   void mark(const SceneObject& object);
   void showColumns();
-  void keepInSight();  ///< the current row, unless somebody is at work in the tree
+  void keepInSight();  ///< the current row; opens no group that the user has closed
 
   Document& document_;
   SceneTreeModel* model_;

@@ -83,6 +83,12 @@ class SceneTreeTest : public QObject, SceneFixture {
     QTest::mouseClick(tree_->view()->viewport(), Qt::LeftButton, {}, tree_->view()->visualRect(highlight).center());
     QCOMPARE(document_->selection().frame, 5);
     QCOMPARE(document_->selection().highlight, 0);
+    // A group that the user has closed stays closed: a long sequence would push all else away.
+    tree_->view()->collapse(group(Kind::Camera));
+    document_->selectFrame(2);
+    QVERIFY(!tree_->view()->isExpanded(group(Kind::Camera)));
+    QCOMPARE(marked(), (std::vector<SceneObject>{camera(2)}));
+    tree_->view()->expand(group(Kind::Camera));
     // Arrow keys as clicks.
     click(camera(5), SceneTreeModel::Name);
     tree_->view()->collapse(row(camera(5)));
