@@ -24,6 +24,7 @@
 namespace glint::viz {
 namespace {
 
+constexpr double kLeastLegend = 9;      // width of a view, in heights of the text, that has room for a legend
 constexpr double kColourBarRows = 7.8;  // lines of text from the lower edge to above the title of the colour bar
 
 /// A set of lines in display pixels.
@@ -156,7 +157,7 @@ struct Annotations::Impl {
   Strokes border, handle;
   Border borderKind = Border::None;
   vtkSmartPointer<vtkTextActor> name = textActor("", kTextOnDark), badge = textActor("", kTextOnDark);
-  bool legendVisible = true;
+  bool legendVisible = true, titleVisible = true;
 
   struct Rectangle {
     double x, y, width, height;
@@ -206,11 +207,12 @@ struct Annotations::Impl {
   /// @param points  size of the text for VTK. @param font  its height in pixels
   void placeLegend(int width, int height, int points, double font, bool narrow) {
     const double row = 1.5 * font, left = 0.9 * font;
-    double y = height - 1.9 * font;
+    const bool room = width > kLeastLegend * font;              // one that is a row of "…" says nothing
+    double y = height - 1.9 * font - (titleVisible ? 0 : row);  // the view's name stands beside where the title would
     for (std::size_t i = 0; i < legend.size(); ++i) {
       auto& [actor, colour] = legend[i];
       const bool entry = i >= 1 && i <= entries;
-      const bool shown = legendVisible && (!narrow || !entry || entryAlways[i - 1]);
+      const bool shown = legendVisible && room && (i > 0 || titleVisible) && (!narrow || !entry || entryAlways[i - 1]);
       actor->SetVisibility(shown);
       if (entry) swatches[i - 1]->actor->SetVisibility(shown);
       if (entry) outlines[i - 1]->actor->SetVisibility(shown);
@@ -339,11 +341,11 @@ struct Annotations::Impl {
     taken.push_back({x1 - reach - 4, 0, reach + 8 + 1.2 * font, y + 2 * font});
   }
   bool colourBarShown() const {
-    return scale.has_value() && (legendVisible || borderKind == Border::None);  // several views have the same
+    return scale.has_value() && (legendVisible || borderKind == Border::None);  // views with the same legend have one bar
   }
   /// Above the scale bar.
   void placeColourBar(int width, int points, double font) {
-    const bool shown = colourBarShown();
+    const bool shown = colourBarShown() && width > kLeastLegend * font;
     for (auto& text : scaleTexts) text->SetVisibility(shown);
     for (auto& step : barSteps) step->actor->SetVisibility(shown);
     if (!shown) return;
@@ -546,7 +548,10 @@ void Annotations::setBorder(Border border, const std::string& name) {
   impl_->name->SetInput(name.c_str());
 }
 
-void Annotations::setLegendVisible(bool visible) { impl_->legendVisible = visible; }
+void Annotations::setLegendVisible(bool visible, bool title) {
+  impl_->legendVisible = visible;
+  impl_->titleVisible = title;
+}
 
 Eigen::Vector2d Annotations::legendSize() {
   const int* size = impl_->renderer->GetSize();

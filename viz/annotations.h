@@ -46,7 +46,8 @@ class Annotations {
   void setBadge(const std::string& text);
   /// @param name  of the view, in its upper right corner; "" = none. Border::Wipe draws the line at its left edge.
   void setBorder(Border border, const std::string& name);
-  void setLegendVisible(bool visible);
+  /// @param title  also the legend's title, which views side by side have in common.
+  void setLegendVisible(bool visible, bool title = true);
   /// Width and height of the legend from the upper left corner, window px; 0 where there is none.
   Eigen::Vector2d legendSize();
   /// Height of what stands with the colour bar at the lower right, window px; 0 where there is none.

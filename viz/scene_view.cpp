@@ -549,7 +549,7 @@ void SceneView::setFrame(bool border, bool active, const std::string& name) {
   impl_->annotationsStale = true;
 }
 
-void SceneView::setLegendVisible(bool visible) { impl_->annotations->setLegendVisible(visible); }
+void SceneView::setLegendVisible(bool visible, bool title) { impl_->annotations->setLegendVisible(visible, title); }
 void SceneView::setMoving(bool moving) {
   impl_->moving = moving;
   impl_->renderer->SetUseDepthPeeling(!moving);  // many passes; without them what shines through is only not sorted

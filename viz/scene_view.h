@@ -135,8 +135,8 @@ class SceneView {
   /// Draws a border, in the accent colour where the view is the active one. @param name  stands in the upper right corner, may be
   /// "".
   void setFrame(bool border, bool active, const std::string& name);
-  /// Legend, notes and title; labels, axes and scale stay.
-  void setLegendVisible(bool visible);
+  /// Legend, notes and title (`title`: also that); labels, axes and scale stay.
+  void setLegendVisible(bool visible, bool title = true);
   /// While something moves, a surface of more than 200,000 triangles is drawn coarsely, once its coarse version is ready.
   void setMoving(bool moving);
   /// There is a coarse version, so that setMoving() changes the picture.

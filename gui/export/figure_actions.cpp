@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/export/figure_actions.h"
 
+#include <vtkRenderer.h>
+
 #include <QBuffer>
 #include <QDir>
 #include <QFileDialog>
@@ -125,7 +127,12 @@ QImage FigureActions::sceneFigure(const FigureLook& look) const {
   const auto render = [&](int at, const QSize& size) {
     const std::unique_ptr<viz::SceneView> view = views.viewCount() > 1 ? views.copyOf(at) : views.copyOfActive();
     view->setDarkBackground(look.dark);
-    view->setLegendVisible(at == 0);
+    view->setLegendVisible(views.hasLegend(at), at == 0);
+    if (views.wiping() && views.hasLegend(1)) {  // the legend of each side stands in its own part
+      const std::array<double, 4> v = views.placeOf(at);
+      view->renderer()->SetViewport(v[0], v[1], v[2], v[3]);
+      view->setPartOfWindow(true);
+    }
     if (views.viewCount() > 1) view->setFrame(!views.wiping(), false, sceneOptions(document_).views[std::size_t(at)].name);
     return toQImage(viz::Offscreen::onOwnDisplay(size.width(), size.height())->render(*view, look.transparent));
   };

@@ -133,6 +133,7 @@ void SceneViews::setSelection(const viz::Selection& selection) {
 
 void SceneViews::setLayerVisible(int view, const std::string& name, bool visible) {
   this->view(view).setLayerVisible(name, visible);
+  showLegends();
 }
 
 std::array<double, 4> SceneViews::placeOf(int view) const { return viewport(options_, view); }
@@ -202,9 +203,22 @@ void SceneViews::arrange() {
     const std::array<double, 4> v = viewport(options_, i);
     view(i).renderer()->SetViewport(v[0], v[1], v[2], v[3]);
     view(i).setPartOfWindow(wipe);
-    view(i).setLegendVisible(i == 0);
     view(i).setFrame(count > 1 && !(wipe && i == 0), i == active_, options_.views[std::size_t(i)].name);
   }
+  showLegends();
+}
+
+void SceneViews::showLegends() {
+  for (int i = 0; i < shown_; ++i) view(i).setLegendVisible(hasLegend(i), i == 0);
+}
+
+bool SceneViews::hasLegend(int view) const {
+  if (view == 0) return true;
+  const viz::SceneView &first = *views_.front(), &other = *views_[std::size_t(view)];
+  const std::vector<viz::Layer>& layers = viz::sceneLayers();
+  return options_.views[std::size_t(view)].models != options_.views.front().models ||
+         std::any_of(layers.begin(), layers.end(),
+                     [&](const viz::Layer& layer) { return first.layerVisible(layer.name) != other.layerVisible(layer.name); });
 }
 
 void SceneViews::fetchPhotograph() {

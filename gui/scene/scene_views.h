@@ -42,6 +42,8 @@ class SceneViews : public QWidget {
   std::unique_ptr<viz::SceneView> copyOfActive() { return copyOf(active_); }
   /// Where a view lies in the picture: left, bottom, right, top, shares of it.
   std::array<double, 4> placeOf(int view) const;
+  /// The first view has the legend; another one only where it shows other models or layers, and then without the title.
+  bool hasLegend(int view) const;
   bool wiping() const { return options_.arrangement == Arrangement::Wipe; }
   /// See behindChanged().
   bool behind() const { return behind_; }
@@ -86,6 +88,7 @@ class SceneViews : public QWidget {
  private:
   enum class Drag { None, Vtk, Wipe, Photograph, Lamp };
   void arrange();
+  void showLegends();
   void fetchPhotograph();
   int viewAt(const QPointF& position) const;
   void activate(int view);

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pictures, movies and labels that leave the program, and what comes back by dropping it on the window.
+#include <vtkActor2DCollection.h>
+#include <vtkRenderer.h>
+#include <vtkTextActor.h>
+#include <vtkTextProperty.h>
+
 #include <QAction>
 #include <QCheckBox>
 #include <QComboBox>
@@ -21,6 +26,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "gui/base/text.h"
 #include "gui/document/session_file.h"
 #include "gui/export/export_actions.h"
 #include "gui/export/figure_actions.h"
@@ -29,6 +35,7 @@
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/frame_panel.h"
 #include "gui/scene/scene_panel.h"
+#include "gui/scene/scene_views.h"
 #include "gui/window/main_window.h"
 #include "tests/gui/fixture.h"
 
@@ -185,6 +192,49 @@ class FigureTest : public QObject {
     };
     QVERIFY2(inkIn({450, 60, 300, 190}) > 300, qPrintable(QString::number(inkIn({450, 60, 300, 190}))));
     QVERIFY2(inkIn({450, 360, 300, 180}) < 50, qPrintable(QString::number(inkIn({450, 360, 300, 180}))));
+  }
+
+  /// The other side of a wipe shows another model: it has its own legend and colour bar, without the title again.
+  void everyViewThatShowsSomethingElseHasItsLegend() {
+    Document& d = window_->document();
+    auto* panel = window_->findChild<ScenePanel*>();
+    const auto texts = [&](int view) {
+      panel->renderNow();
+      QStringList shown;
+      vtkActor2DCollection* actors = panel->views().view(view).renderer()->GetActors2D();
+      actors->InitTraversal();
+      while (vtkActor2D* actor = actors->GetNextActor2D())
+        if (auto* text = vtkTextActor::SafeDownCast(actor); text && text->GetVisibility() && text->GetInput())
+          shown << QString::fromUtf8(text->GetInput());
+      return shown.join(QLatin1Char('\n'));
+    };
+    d.setOption("scene/views", "wipe", "wipe");
+    d.setOption("scene/models", "dual", "A");
+    d.setOption("scene/models-2", "canonical", "B");
+    d.setOption("scene/colour-by", "error", "colours");
+    QVERIFY2(texts(0).contains(QStringLiteral("dual: contour error")), qPrintable(texts(0)));
+    QVERIFY2(texts(1).contains(QStringLiteral("canonical: contour error")), qPrintable(texts(1)));
+    const QString title = toQString(d.scene()->name) + QStringLiteral(", frame");
+    QVERIFY(texts(0).contains(title) && !texts(1).contains(title));
+    const QString file = folder_.filePath("wipe-legends.png");
+    const auto legendOfB = [&] {  // bright pixels below B's name, beside the line
+      window_->exports()->figures()->writeScene({{1600, 600}, false, true}, file);
+      wait();
+      const QImage picture(file);
+      int count = 0;
+      for (int y = 28; y < 60; ++y)
+        for (int x = 806; x < 960; ++x) count += picture.pixelColor(x, y).lightness() > 110;
+      return count;
+    };
+    const int with = legendOfB();
+    d.setOption("scene/models-2", "dual", "B as A");
+    QVERIFY2(!texts(1).contains(QStringLiteral("contour error")), qPrintable(texts(1)));
+    QVERIFY2(with > legendOfB() + 50, qPrintable(QString::number(with)));
+    // Layers of its own are something else, too; a view that has no room has none.
+    d.setOption("scene/layers-2", " cameras ", "cameras in B");
+    QVERIFY2(texts(1).contains(QStringLiteral("contour error")), qPrintable(texts(1)));
+    d.setOption("scene/wipe", 0.97, "aside");
+    QVERIFY2(!texts(1).contains(QStringLiteral("contour error")), qPrintable(texts(1)));
   }
 
   void strokesOfTwoFramesStayInTheirHalves() {
