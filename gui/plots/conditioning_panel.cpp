@@ -5,6 +5,7 @@
 #include <QLabel>
 #include <QPainter>
 #include <QRegularExpression>
+#include <QTabBar>
 #include <QVBoxLayout>
 #include <QVariant>
 #include <algorithm>
@@ -55,6 +56,8 @@ struct Row {
 };
 constexpr Row kRows[] = {
     {"fit", QT_TRANSLATE_NOOP("ConditioningPanel", "Fit"), QT_TRANSLATE_NOOP("ConditioningPanel", "Why there is no fit")},
+    {"peaks", QT_TRANSLATE_NOOP("ConditioningPanel", "Peaks"),
+     QT_TRANSLATE_NOOP("ConditioningPanel", "Training peaks that lie outside their own contour")},
     {"signature", QT_TRANSLATE_NOOP("ConditioningPanel", "Q* alone"),
      QT_TRANSLATE_NOOP("ConditioningPanel", "Kind of quadric that the contours alone give, by the signature of Q*")},
     {"rank", QT_TRANSLATE_NOOP("ConditioningPanel", "Singular values"),
@@ -72,8 +75,8 @@ constexpr Row kRows[] = {
 
 /// "hyperboloid of two sheets" does not fit a chip.
 QString shortText(const Finding& f) {
-  static const std::pair<const char*, const char*> shorter[] = {{"hyperboloid of one sheet", "hyperb. 1"},
-                                                                {"hyperboloid of two sheets", "hyperb. 2"},
+  static const std::pair<const char*, const char*> shorter[] = {{"hyperboloid of one sheet", "1-sheet"},
+                                                                {"hyperboloid of two sheets", "2-sheet"},
                                                                 {"imaginary ellipsoid", "imaginary"},
                                                                 {"flat imaginary ellipsoid", "imaginary"},
                                                                 {"flat ellipsoid", "flat"},
@@ -91,8 +94,9 @@ QStringList fewerDigits(const QString& text) {
   const QRegularExpressionMatch found = number.match(text);
   const QString digits = found.captured();
   QStringList shorter;
-  for (const int most : {3, 2, 1}) {
-    QString less = QString::number(digits.toDouble(), 'g', most).replace(QLatin1String("e+"), QLatin1String("e"));
+  for (const int most : {3, 2, 1, 0}) {  // 0: "0.00012" as "1e-4"
+    QString less = (most > 0 ? QString::number(digits.toDouble(), 'g', most) : QString::number(digits.toDouble(), 'e', 0))
+                       .replace(QLatin1String("e+"), QLatin1String("e"));
     less.replace(zeros, QStringLiteral("e\\1"));
     shorter << less + text.mid(found.capturedEnd());
   }
@@ -110,10 +114,10 @@ Chip::Chip(Verdict verdict, const QString& text, QWidget* parent) : QAbstractBut
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
 }
 
-QSize Chip::sizeHint() const { return {fontMetrics().horizontalAdvance(whole()) + 12, fontMetrics().height() + 6}; }
-QSize Chip::minimumSizeHint() const { return {44, fontMetrics().height() + 6}; }
-
-QString Chip::whole() const { return signOf(verdict_) + QChar(0x2009) + text(); }
+QSize Chip::sizeHint() const {
+  return {fontMetrics().horizontalAdvance(signOf(verdict_) + QChar(0x2009) + text()) + 12, fontMetrics().height() + 6};
+}
+QSize Chip::minimumSizeHint() const { return {40, fontMetrics().height() + 6}; }
 
 void Chip::show(Verdict verdict, const QString& text) {
   verdict_ = verdict;
@@ -133,25 +137,20 @@ void Chip::setUnitShown(bool shown) {
   update();
 }
 
-bool Chip::fitsWhole() const { return fontMetrics().horizontalAdvance(whole()) <= width() - 4; }
-
 QString Chip::shown() const {
-  const QString sign = signOf(verdict_) + QChar(0x2009), value = text().section(QLatin1Char(' '), 0, 0);
-  const bool number = !value.isEmpty() && value.at(0).isDigit();
-  QStringList words{sign + text(), sign + (number ? value : text()), number ? value : text()};
-  if (!unit().isEmpty()) words = unitShown_ ? QStringList{sign + text(), text()} : QStringList{sign + value, value};
-  if (number)
-    words << fewerDigits(value);
-  else
-    words << text().replace(QLatin1String("hyperb. "), QLatin1String("hyp. "));
+  const QString sign = signOf(verdict_), value = text().section(QLatin1Char(' '), 0, 0);
+  const QString after = unit().isEmpty() || !unitShown_ ? QString() : QLatin1Char(' ') + unit();
+  QStringList words{unit().isEmpty() ? text() : value + after};
+  static const QRegularExpression number(QStringLiteral("^[0-9.]+(e[-+]?[0-9]+)?°?$"));
+  if (number.match(value).hasMatch()) {
+    words << value + after;
+    for (const QString& less : fewerDigits(value)) words << less + after;
+  }
+  // The sign is what tells the verdict without its colour: the blank beside it and digits go before it.
   for (const QString& w : words)
-    if (fontMetrics().horizontalAdvance(w) <= width() - 4) return w;
-  return fontMetrics().elidedText(words.back(), Qt::ElideRight, width() - 4);
-}
-
-void Chip::resizeEvent(QResizeEvent* e) {
-  QAbstractButton::resizeEvent(e);
-  emit resized();
+    for (const QString& between : {QString(QChar(0x2009)), QString()})
+      if (const QString all = sign + between + w; fontMetrics().horizontalAdvance(all) <= width() - 4) return all;
+  return fontMetrics().elidedText(sign + words.back(), Qt::ElideRight, width() - 4);
 }
 
 void Chip::paintEvent(QPaintEvent*) {
@@ -178,6 +177,21 @@ ConditioningPanel::ConditioningPanel(Document& document, QWidget* parent) : QWid
   empty_ = new QLabel(tr("There are no results yet"));
   empty_->setProperty("role", "faded");
   column->addWidget(empty_);
+  lights_ = new QTabBar;
+  lights_->setObjectName(QStringLiteral("conditioningLights"));
+  lights_->setExpanding(false);
+  lights_->setDrawBase(false);
+  lights_->setElideMode(Qt::ElideMiddle);
+  lights_->setAccessibleName(tr("Light"));
+  lights_->hide();
+  column->addWidget(lights_);
+  connect(lights_, &QTabBar::currentChanged, this, [this](int tab) {
+    if (tab < 0 || filling_) return;
+    viz::Selection s = document_.selection();
+    s.light = lights_->tabData(tab).toString().toStdString();
+    if (s.light != document_.selection().light) document_.select(s);
+    follow(s.light);
+  });
   reason_ = new QLabel;
   reason_->setObjectName(QStringLiteral("conditioningReason"));
   reason_->setWordWrap(true);
@@ -200,7 +214,7 @@ ConditioningPanel::ConditioningPanel(Document& document, QWidget* parent) : QWid
       dirty_ = true;
       refresh();
     } else {
-      explainWorst();
+      follow(document_.selection().light);
     }
   });
 }
@@ -232,8 +246,9 @@ void ConditioningPanel::refresh() {
     conditioning_.erase(std::remove_if(conditioning_.begin(), conditioning_.end(),
                                        [this](const Conditioning& c) { return c.surface && *c.surface != surface_; }),
                         conditioning_.end());
+  showLights();
   // New numbers go into the same chips: a table built anew would be blank for a moment in every step of a drag.
-  std::string key;
+  std::string key = light_ + '|';
   for (const Conditioning& c : conditioning_) {
     key += c.model + '/' + c.light + '/' + c.surface.value_or("") + ':';
     for (const Finding& f : c.findings) key += f.id + ' ';
@@ -251,7 +266,7 @@ void ConditioningPanel::refresh() {
                                 QLatin1String(nameOf(finding.verdict)), toQString(finding.reason).toHtmlEscaped()));
     s.chip->setAccessibleName(toQString(c.model + " " + finding.title + " " + finding.text + ": " + nameOf(finding.verdict)));
   }
-  for (const auto& [row, title] : titles_) fitUnits(row);
+  for (const auto& [row, title] : titles_) placeUnit(row);
   empty_->setVisible(conditioning_.empty());
   if (conditioning_.empty()) return reason_->clear();
   explainWorst();
@@ -263,8 +278,9 @@ void ConditioningPanel::build() {
   delete table_;
   table_ = nullptr;
   if (conditioning_.empty()) return;
-  bool severalLights = false;
-  for (const Conditioning& c : conditioning_) severalLights = severalLights || c.light != conditioning_.front().light;
+  std::vector<int> columns;  // those of the light that is shown
+  for (int k = 0; k < int(conditioning_.size()); ++k)
+    if (conditioning_[std::size_t(k)].light == light_) columns.push_back(k);
   table_ = new QWidget;
   auto* grid = new QGridLayout(table_);
   grid->setContentsMargins(0, 0, 0, 0);
@@ -272,7 +288,8 @@ void ConditioningPanel::build() {
   int row = 1;
   for (int r = 0; r < int(std::size(kRows)); ++r) {
     bool any = false;
-    for (int k = 0; k < int(conditioning_.size()); ++k) {
+    for (int at = 0; at < int(columns.size()); ++at) {
+      const int k = columns[std::size_t(at)];
       const Conditioning& c = conditioning_[std::size_t(k)];
       for (int f = 0; f < int(c.findings.size()); ++f) {
         const Finding& finding = c.findings[std::size_t(f)];
@@ -282,14 +299,13 @@ void ConditioningPanel::build() {
         chip->setObjectName(toQString("chip_" + c.model + "_" + finding.id));
         connect(chip, &Chip::entered, this,
                 [this, k, f] { explain(conditioning_[std::size_t(k)], conditioning_[std::size_t(k)].findings[std::size_t(f)]); });
-        connect(chip, &Chip::resized, this, [this, r] { fitUnits(r); });
         connect(chip, &Chip::clicked, this, [this, k] {
           viz::Selection s = document_.selection();
           s.model = conditioning_[std::size_t(k)].model;
           s.light = conditioning_[std::size_t(k)].light;
           document_.select(s);
         });
-        grid->addWidget(chip, row, k + 1);
+        grid->addWidget(chip, row, at + 1);
         chips_.push_back({chip, k, f, r});
       }
     }
@@ -300,37 +316,72 @@ void ConditioningPanel::build() {
     grid->addWidget(title, row++, 0);
     titles_[r] = title;
   }
-  for (int k = 0; k < int(conditioning_.size()); ++k) {
-    const Conditioning& c = conditioning_[std::size_t(k)];
+  for (int at = 0; at < int(columns.size()); ++at) {
+    const Conditioning& c = conditioning_[std::size_t(columns[std::size_t(at)])];
     QString name = toQString(c.model);
-    if (conditioning_.size() > 4)
+    if (columns.size() > 4)
       name = name == QLatin1String("reflectance") ? tr("reflec-\ntance")
              : name == QLatin1String("canonical") ? tr("canon-\nical")
                                                   : name.replace("-", "-\n");
-    auto* head = new QLabel(name + (severalLights ? QLatin1Char('\n') + toQString(c.light) : QString()));
+    auto* head = new QLabel(name);
     head->setToolTip(toQString(c.model + ", light " + c.light + (c.surface ? ", surface " + *c.surface : std::string())));
     head->setStyleSheet(
         QStringLiteral("border-bottom: 2px solid %1; font-size: 8pt;").arg(toQColor(viz::modelColour(c.model)).name()));
     head->setAlignment(Qt::AlignHCenter | Qt::AlignBottom);
     head->setMinimumWidth(40);
-    grid->addWidget(head, 0, k + 1);
-    grid->setColumnStretch(k + 1, 1);
+    grid->addWidget(head, 0, at + 1);
+    grid->setColumnStretch(at + 1, 1);
   }
-  static_cast<QVBoxLayout*>(layout())->insertWidget(0, table_);
+  auto* column = static_cast<QVBoxLayout*>(layout());
+  column->insertWidget(column->indexOf(lights_) + 1, table_);
 }
 
-void ConditioningPanel::fitUnits(int row) {
+void ConditioningPanel::showLights() {
+  std::vector<std::string> ids;
+  for (const Conditioning& c : conditioning_)
+    if (std::find(ids.begin(), ids.end(), c.light) == ids.end()) ids.push_back(c.light);
+  const auto has = [&](const std::string& id) { return std::find(ids.begin(), ids.end(), id) != ids.end(); };
+  if (has(document_.selection().light)) light_ = document_.selection().light;
+  if (!has(light_)) light_ = ids.empty() ? "" : ids.front();
+  filling_ = true;
+  while (lights_->count() > int(ids.size())) lights_->removeTab(lights_->count() - 1);
+  while (lights_->count() < int(ids.size())) lights_->addTab(QString());
+  for (int i = 0; i < int(ids.size()); ++i) {
+    const std::string& id = ids[std::size_t(i)];
+    Verdict worst = Verdict::Unknown;
+    for (const Conditioning& c : conditioning_)
+      if (c.light == id && c.worst() != Verdict::Unknown)
+        worst = worst == Verdict::Unknown ? c.worst() : std::max(worst, c.worst());
+    lights_->setTabText(i, QStringLiteral("%1 %2").arg(signOf(worst), toQString(id)).trimmed());
+    lights_->setTabToolTip(
+        i, tr("Models of light %1; the worst of their numbers is %2").arg(toQString(id), QLatin1String(nameOf(worst))));
+    lights_->setTabData(i, toQString(id));
+    if (id == light_) lights_->setCurrentIndex(i);
+  }
+  filling_ = false;
+  lights_->setVisible(ids.size() > 1);
+}
+
+void ConditioningPanel::follow(const std::string& light) {
+  const bool other = light != light_ && std::any_of(conditioning_.begin(), conditioning_.end(),
+                                                    [&](const Conditioning& c) { return c.light == light; });
+  if (!other) return explainWorst();
+  light_ = light;
+  dirty_ = true;
+  refresh();
+}
+
+void ConditioningPanel::placeUnit(int row) {
   const auto title = titles_.find(row);
   if (title == titles_.end()) return;  // not built yet
   QString unit;
-  bool same = true, room = true;
+  bool same = true;
   for (const Shown& s : chips_) {
     if (s.row != row || s.chip->unit().isEmpty()) continue;
     same = same && (unit.isEmpty() || unit == s.chip->unit());
     unit = s.chip->unit();
-    room = room && s.chip->fitsWhole();
   }
-  const bool inChips = unit.isEmpty() || room || !same;
+  const bool inChips = unit.isEmpty() || !same;
   for (const Shown& s : chips_)
     if (s.row == row) s.chip->setUnitShown(inChips);
   const QString name = tr(kRows[row].title);
@@ -338,16 +389,17 @@ void ConditioningPanel::fitUnits(int row) {
 }
 
 void ConditioningPanel::explain(const Conditioning& c, const Finding& f) {
-  reason_->setText(
-      QStringLiteral("<b>%1, %2: %3</b><br>%4")
-          .arg(toQString(c.model), toQString(f.title), toQString(f.text).toHtmlEscaped(), toQString(f.reason).toHtmlEscaped()));
+  const QString whose = toQString(lights_->count() > 1 ? c.model + ", " + c.light : c.model);
+  reason_->setText(QStringLiteral("<b>%1, %2: %3</b><br>%4")
+                       .arg(whose.toHtmlEscaped(), toQString(f.title), toQString(f.text).toHtmlEscaped(),
+                            toQString(f.reason).toHtmlEscaped()));
 }
 
 void ConditioningPanel::explainWorst() {
   const std::string model = document_.plottedModel();
   const Conditioning* chosen = nullptr;
   for (const Conditioning& c : conditioning_)
-    if (c.model == model && (!chosen || c.light == document_.selection().light)) chosen = &c;
+    if (c.model == model && c.light == light_) chosen = &c;
   if (!chosen || chosen->findings.empty()) return;
   const Finding* worst = &chosen->findings.front();
   const auto rank = [](Verdict v) { return v == Verdict::Unknown ? -1 : int(v); };

@@ -12,6 +12,7 @@
 
 class QGridLayout;
 class QLabel;
+class QTabBar;
 
 namespace glint::gui {
 
@@ -26,30 +27,26 @@ class Chip : public QAbstractButton {
   QString unit() const;
   /// Where the row's name has it, no chip of the row does.
   void setUnitShown(bool shown);
-  /// There is room for sign, number and unit.
-  bool fitsWhole() const;
   QSize sizeHint() const override;
   QSize minimumSizeHint() const override;
-  /// What is written: with its sign where there is room, else the value alone; with its unit unless the row's name has that.
+  /// What is written: always the sign; of a number as many digits as there is room for; its unit unless the row's name has that.
   QString shown() const;
 
  signals:
   void entered();
-  void resized();
 
  protected:
   void paintEvent(QPaintEvent* e) override;
   void enterEvent(QEvent* e) override;
-  void resizeEvent(QResizeEvent* e) override;
 
  private:
-  QString whole() const;
   Verdict verdict_;
   bool unitShown_ = true;
 };
 
-/// The conditioning strip: one column per model, one row per quantity, the reason in words below (of the chip under the mouse,
-/// else the worst of the model that is selected). Follows every inspection. A click selects the chip's model.
+/// The conditioning strip of one light (tabs choose where there are several, and say how each one is): one column per model, one
+/// row per quantity, the reason in words below (of the chip under the mouse, else the worst of the model that is selected).
+/// Follows every inspection. A click selects the chip's model.
 class ConditioningPanel : public QWidget {
   Q_OBJECT
  public:
@@ -64,8 +61,12 @@ class ConditioningPanel : public QWidget {
  private:
   void refresh();
   void build();
-  /// A row that has no room for its unit in every chip has it in its name.
-  void fitUnits(int row);
+  void showLights();
+  /// Shows the columns of this light, if there are any.
+  void follow(const std::string& light);
+  /// The unit that all chips of a row have stands in its name, at any width and whatever the numbers are, so that it does not
+  /// move.
+  void placeUnit(int row);
   void explain(const Conditioning& c, const Finding& f);
   void explainWorst();
 
@@ -76,6 +77,9 @@ class ConditioningPanel : public QWidget {
     int row;  ///< of kRows
   };
   Document& document_;
+  QTabBar* lights_;
+  bool filling_ = false;  ///< the tabs are being changed by the panel itself
+  std::string light_;     ///< id of the one shown
   QWidget* table_ = nullptr;
   std::string tableKey_;  ///< models and quantities that the table was built for
   std::map<int, QLabel*> titles_;
