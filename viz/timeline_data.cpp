@@ -17,12 +17,20 @@ constexpr double kWorstShownPct = 1000;  // ten times the highlight's size: a mo
 TimelineData timelineData(const Scene& scene, const Inspection* inspection) {
   TimelineData data;
   const int n = static_cast<int>(scene.frames.size());
-  std::set<std::string> lights;
+  std::set<std::string> named;
   bool differ = false;
   for (const Frame& frame : scene.frames) {
-    lights.insert(frame.lightsOn.begin(), frame.lightsOn.end());
+    named.insert(frame.lightsOn.begin(), frame.lightsOn.end());
     differ = differ || frame.lightsOn != scene.frames.front().lightsOn;
   }
+  // In the scene's order, as everywhere; those that it only names with frames come after them.
+  std::vector<std::string> lights;
+  const auto add = [&](const std::string& light) {
+    if (named.erase(light) > 0) lights.push_back(light);
+  };
+  for (const TrueLight& light : scene.lights) add(light.id);
+  for (const Frame& frame : scene.frames)
+    for (const std::string& light : frame.lightsOn) add(light);
   if (differ || lights.size() > 1) {
     for (const std::string& light : lights) {
       TimelineData::LightRow row{light, {}};

@@ -22,7 +22,8 @@ struct TimelineData {
     std::string light;
     std::vector<char> on;  ///< one per frame; 2 = the frame does not say
   };
-  std::vector<LightRow> lights;  ///< empty unless the scene says for some frame which of its lights are on, and they differ
+  std::vector<LightRow>
+      lights;  ///< empty unless the scene says for some frame which of its lights are on, and they differ; in the scene's order
 };
 TimelineData timelineData(const Scene& scene, const Inspection* inspection);
 

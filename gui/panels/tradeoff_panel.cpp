@@ -21,7 +21,8 @@ namespace glint::gui {
 
 namespace {
 
-constexpr double kLeft = 62, kRight = 16, kTop = 10, kBottom = 36;
+constexpr double kTitle = 15;  // height of the y axis' title, which is written upwards
+constexpr double kLeft = 62 + kTitle, kRight = 16, kTop = 10, kBottom = 36;
 constexpr double kReachPx = 12;             // of a click
 constexpr double kSmallestErrorPct = 1e-6;  // what a logarithmic axis shows of an exact scene
 
@@ -151,7 +152,7 @@ void TradeoffPlot::paintEvent(QPaintEvent*) {
     painter.setPen(QPen(grid, 1, Qt::DotLine));
     painter.drawLine(QPointF(a.area.left(), a.y(v)), QPointF(a.area.right(), a.y(v)));
     painter.setPen(faded);
-    painter.drawText(QRectF(0, a.y(v) - 7, kLeft - 5, 14), Qt::AlignRight | Qt::AlignVCenter,
+    painter.drawText(QRectF(kTitle, a.y(v) - 7, kLeft - kTitle - 5, 14), Qt::AlignRight | Qt::AlignVCenter,
                      numberText(v) + QStringLiteral(" %"));
   }
   for (const double v : ticks(a.x0, a.x1)) {
@@ -162,6 +163,12 @@ void TradeoffPlot::paintEvent(QPaintEvent*) {
   }
   painter.setPen(faded);
   painter.drawText(QRectF(a.area.left(), height() - 17, a.area.width(), 15), Qt::AlignCenter, tr("microseconds per frame"));
+  painter.save();
+  painter.rotate(-90);
+  const QString title = tr("contour error");
+  painter.drawText(QRectF(-a.area.bottom(), 1, a.area.height(), kTitle), Qt::AlignCenter,
+                   painter.fontMetrics().elidedText(title, Qt::ElideRight, int(a.area.height())));
+  painter.restore();
 
   painter.setRenderHint(QPainter::Antialiasing);
   QPolygonF front;
@@ -196,14 +203,38 @@ void TradeoffPlot::paintEvent(QPaintEvent*) {
       }
     }
   painter.setPen(text);
-  for (int i = 0; i < int(t->points.size()); ++i) {
-    const QString names = namesOf(*t, i);
-    const std::optional<QPointF> p = positionOf(i);
-    if (names.isEmpty() || !p) continue;
-    const bool left = p->x() > a.area.right() - 90;
-    painter.drawText(QRectF(left ? p->x() - 131 : p->x() + 11, p->y() - 18, 120, 14),
-                     (left ? Qt::AlignRight : Qt::AlignLeft) | Qt::AlignVCenter, names);
+  for (const auto& [point, place] : presetNames()) painter.drawText(place, Qt::AlignCenter, namesOf(*t, point));
+}
+
+std::map<int, QRectF> TradeoffPlot::presetNames() const {
+  constexpr double kHigh = 14, kBeside = 11, kDot = 6;
+  constexpr int kRows = 4;  // farther, a name would not be seen as its point's
+  std::map<int, QRectF> names;
+  const std::shared_ptr<const Tradeoff> t = document_.tradeoff();
+  if (!t) return names;
+  QFont small = font();
+  small.setPointSizeF(font().pointSizeF() * 0.85);
+  const QFontMetrics metrics(small);
+  const QRectF area = axes().area.adjusted(0, -kTop, kRight, 0);
+  std::map<int, QPointF> dots;
+  for (int i = 0; i < int(t->points.size()); ++i)
+    if (const std::optional<QPointF> p = positionOf(i); p && !namesOf(*t, i).isEmpty()) dots[i] = *p;
+  const auto isFree = [&](const QRectF& r) {
+    return area.contains(r) &&
+           std::none_of(names.begin(), names.end(), [&](const auto& other) { return other.second.intersects(r); }) &&
+           std::none_of(dots.begin(), dots.end(), [&](const auto& dot) {
+             return r.intersects(QRectF(dot.second - QPointF(kDot, kDot), dot.second + QPointF(kDot, kDot)));
+           });
+  };
+  // Beside its point: above to the right first, then below and to the left, then in rows farther away.
+  for (const auto& [i, dot] : dots) {
+    const double wide = metrics.horizontalAdvance(namesOf(*t, i)) + 2;
+    for (int row = 0; row < kRows && !names.count(i); ++row)
+      for (const double y : {dot.y() - 18 - row * kHigh, dot.y() + 4 + row * kHigh})
+        for (const double x : {dot.x() + kBeside, dot.x() - kBeside - wide})
+          if (const QRectF place(x, y, wide, kHigh); !names.count(i) && isFree(place)) names[i] = place;
   }
+  return names;
 }
 
 void TradeoffPlot::mousePressEvent(QMouseEvent* e) {

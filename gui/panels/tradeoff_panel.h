@@ -2,6 +2,7 @@
 #pragma once
 
 #include <QWidget>
+#include <map>
 
 #include "gui/document/document.h"
 
@@ -22,6 +23,8 @@ class TradeoffPlot : public QWidget {
   std::optional<QPointF> positionOf(int point) const;
   /// The point nearest to a place, at most a few pixels away; -1 = none.
   int pointAt(const QPointF& place) const;
+  /// Where the names of presets are written, by point: beside it, and never over one another. One without room has none.
+  std::map<int, QRectF> presetNames() const;
   void load(int point);
   /// What stands in place of a plot that there is not; empty when there is one.
   QString message() const;

@@ -116,9 +116,14 @@ double TimelineStrip::lightRowHeight() const {
 }
 
 bool TimelineStrip::namesLights() const {
-  constexpr double kLeastChart = 34;
+  constexpr double kLeastChart = 24;  // its two numbers
   const double rest = height() - kMarkRow - kNumberRow - thumbnailRow().bottom() - 6;
   return rest - kNamedRow * double(data_.lights.size()) >= kLeastChart;
+}
+
+int TimelineStrip::lightAt(double y) const {
+  const double row = (y - chart().bottom() - 1) / std::max(1.0, lightRowHeight());
+  return row >= 0 && row < double(data_.lights.size()) ? int(row) : -1;
 }
 
 QRectF TimelineStrip::chart() const {
@@ -459,6 +464,19 @@ QString TimelineStrip::idText(int frame) const {
   return id.size() <= kMost ? id : QChar(0x2026) + id.right(kMost - 1);
 }
 
+QString TimelineStrip::lightTip(int row, int frame) const {
+  const viz::TimelineData::LightRow& light = data_.lights[std::size_t(row)];
+  const QString name = toQString(light.light);
+  if (frame < 0)
+    return tr("Light %1 (row %2 of %3): on in the frames where its row is yellow")
+        .arg(name)
+        .arg(row + 1)
+        .arg(data_.lights.size());
+  static const char* const states[] = {QT_TR_NOOP("off"), QT_TR_NOOP("on"),
+                                       QT_TR_NOOP("the scene does not say whether it is on")};
+  return tr("Light %1: %2").arg(name, tr(states[int(light.on[std::size_t(frame)])]));
+}
+
 QString TimelineStrip::toolTip(int frame) const {
   static const char* const roles[] = {QT_TR_NOOP("training"), QT_TR_NOOP("held out"), QT_TR_NOOP("excluded")};
   const Frame& f = document_.scene()->frames[std::size_t(frame)];
@@ -473,14 +491,22 @@ QString TimelineStrip::toolTip(int frame) const {
   return text;
 }
 
+QString TimelineStrip::tipAt(const QPoint& position) const {
+  const int frame = frameAt(position), light = lightAt(position.y());
+  const bool beside = position.x() < kLeft;  // where the rows' names stand
+  if (light >= 0 && (frame >= 0 || beside))
+    return frame < 0 ? lightTip(light, frame) : lightTip(light, frame) + QLatin1Char('\n') + toolTip(frame);
+  return frame < 0 ? QString() : toolTip(frame);
+}
+
 bool TimelineStrip::event(QEvent* e) {
   if (e->type() != QEvent::ToolTip) return QWidget::event(e);
   const auto* help = static_cast<QHelpEvent*>(e);
-  const int frame = frameAt(help->pos());
-  if (frame < 0)
+  const QString tip = tipAt(help->pos());
+  if (tip.isEmpty())
     QToolTip::hideText();
   else
-    QToolTip::showText(help->globalPos(), toolTip(frame), this);
+    QToolTip::showText(help->globalPos(), tip, this);
   return true;
 }
 

@@ -33,6 +33,8 @@ class TimelineStrip : public QWidget {
   /// Frames that are marked as without a readable photograph, with the reason.
   void setUnreadable(const QMap<int, QString>& reasons);
   QList<int> unreadable() const { return unreadable_.keys(); }
+  /// What the tool tip says there: of a light's row which light it is, and of the frame all there is; "" = none.
+  QString tipAt(const QPoint& position) const;
   int backgroundsPainted() const { return backgroundsPainted_; }
   const Thumbnails& thumbnails() const { return thumbnails_; }
   QSize sizeHint() const override { return {600, 136}; }
@@ -73,6 +75,8 @@ class TimelineStrip : public QWidget {
   QRectF chart() const;
   double lightRowHeight() const;
   QString toolTip(int frame) const;
+  QString lightTip(int row, int frame) const;  ///< frame -1: of the row
+  int lightAt(double y) const;                 ///< row, -1 outside
   /// As everywhere else in the window; the end of a long one.
   QString idText(int frame) const;
   bool namesLights() const;  ///< their rows are high enough for their names

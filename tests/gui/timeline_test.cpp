@@ -96,6 +96,37 @@ class TimelineTest : public QObject {
     QCOMPARE(document.selection().frame, 0);  // a change of role is no selection
   }
 
+  /// Which light a row is of is told where the pointer rests, also in a strip that is too low for names.
+  void rowsOfLightsSayWhichLightTheyAre() {
+    Document document(parseTrainSpec);
+    const Fixture fixture;
+    TimelineStrip strip(document);
+    Opened opened = fixture.opened();
+    auto scene = std::make_shared<Scene>(*opened.scene);
+    scene->lights.clear();
+    for (Frame& f : scene->frames) f.lightsOn = {"window", "lamp"};
+    scene->frames[1].lightsOn = {"lamp"};
+    opened.scene = scene;
+    document.open(opened);
+    for (const int height : {90, 122, 200}) {
+      strip.resize(800, height);
+      strip.grab();
+      QStringList rows;
+      for (int y = 0; y < height; ++y) {
+        const QString tip = strip.tipAt({5, y});  // beside the frames
+        if (!tip.isEmpty() && (rows.isEmpty() || rows.last() != tip)) rows << tip;
+      }
+      QCOMPARE(rows.size(), 2);
+      QVERIFY2(rows[0].contains(QStringLiteral("window")) && rows[1].contains(QStringLiteral("lamp")),
+               qPrintable(rows.join('|')));
+      const int x = int(strip.cell(1).center().x());
+      QStringList first;
+      for (int y = 0; y < height; ++y) first << strip.tipAt({x, y}).section(QLatin1Char('\n'), 0, 0);
+      QVERIFY2(first.contains(QStringLiteral("Light window: off")), qPrintable(first.join('|')));
+      QVERIFY(first.contains(QStringLiteral("Light lamp: on")));
+    }
+  }
+
   void theWheelZoomsAroundTheFrameUnderTheMouse() {
     Shown shown;
     Document& document = shown.document;

@@ -125,6 +125,16 @@ TEST(TimelineData, LightsErrorsAndColumns) {
   const TimelineData data = timelineData(*scene, inspection.get());
   ASSERT_EQ(data.lights.size(), 2u);
   EXPECT_EQ(data.lights[1].light, "b");
+  // In the order of the scene, whatever their names are.
+  Scene named = *scene;
+  named.lights.clear();
+  for (const char* id : {"b", "a"}) {
+    TrueLight light;
+    light.id = id;
+    named.lights.push_back(light);
+  }
+  ASSERT_EQ(timelineData(named, nullptr).lights.size(), 2u);
+  EXPECT_EQ(timelineData(named, nullptr).lights[0].light, "b");
   EXPECT_EQ(std::vector<char>(data.lights[1].on.begin(), data.lights[1].on.begin() + 3), (std::vector<char>{0, 1, 2}));
   ASSERT_EQ(data.series.size(), 2u);
   for (int frame = 0; frame < 6; ++frame) {

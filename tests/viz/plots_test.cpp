@@ -18,6 +18,7 @@
 #include "viz/canvas.h"
 #include "viz/convert.h"
 #include "viz/offscreen.h"
+#include "viz/plots/painting.h"
 #include "viz/plots/plot_export.h"
 #include "viz/plots/plot_view.h"
 
@@ -79,6 +80,20 @@ TEST(PlotData, Ticks) {
   named.names = {{0, "a"}, {1, "b"}, {2, "c"}, {3, "d"}};
   EXPECT_EQ(texts(ticksOf(named, -1, 4, 2)), "a c ");
   EXPECT_TRUE(ticksOf({}, 1, 1, 5).empty());
+}
+
+/// A number whose unit is nowhere cannot be read; what it is of stands in the plot's title, too.
+TEST(PlotData, TheUnitIsTheLastThingThatAShortTitleLoses) {
+  const auto within = [](const std::string& title, std::size_t letters) {
+    return fitting(title, [&](const std::string& s) { return s.size() <= letters; });
+  };
+  EXPECT_EQ(within("contour error (%)", 17), "contour error (%)");
+  EXPECT_EQ(within("contour error (%)", 16), "error (%)");
+  EXPECT_EQ(within("contour error (%)", 8), "(%)");
+  EXPECT_EQ(within("contour error (%)", 2), "");
+  EXPECT_EQ(within("semi-axis (m; lowest = 0, flat)", 22), "(m; lowest = 0, flat)");
+  EXPECT_EQ(within("semi-axis (m; lowest = 0, flat)", 12), "(m)");
+  EXPECT_EQ(within("relative to the first", 12), "");
 }
 
 TEST(PlotData, RangeTakesErrorBarsAndIgnoresGaps) {

@@ -47,10 +47,13 @@ void setBrush(vtkContext2D* painter, const Colour& colour, double opacity) {
 
 std::string fitting(const std::string& title, const std::function<bool(const std::string&)>& fits) {
   if (fits(title)) return title;
-  const std::size_t unit = title.find(" (");
+  // Words go from the front: what is measured can be told from the plot's title, the unit of its numbers from nowhere else.
+  const std::size_t unit = title.rfind(" (");
   if (unit == std::string::npos) return {};
-  for (const std::string& part : {title.substr(0, unit), title.substr(unit + 1)})
-    if (fits(part)) return part;
+  for (std::size_t at = title.find(' '); at != std::string::npos && at <= unit; at = title.find(' ', at + 1))
+    if (const std::string part = title.substr(at + 1); fits(part)) return part;
+  if (const std::size_t more = title.find(';', unit); more != std::string::npos)  // "(m; lowest = 0)"
+    if (const std::string alone = title.substr(unit + 1, more - unit - 1) + ")"; fits(alone)) return alone;
   return {};
 }
 

@@ -23,7 +23,8 @@ int lineType(Dash dash);
 void setPen(vtkPen* pen, const Colour& colour, double width, double opacity = 1);
 void setBrush(vtkContext2D* painter, const Colour& colour, double opacity = 1);
 
-/// The title of an axis, where that is too long without its unit, or else the unit alone, or nothing.
+/// The title of an axis; where that is too long, as many of its last words and its unit as fit: the unit stays longest. "" where
+/// not even that fits, or there is no unit.
 std::string fitting(const std::string& title, const std::function<bool(const std::string&)>& fits);
 /// "a long sentence" in lines of at most `letters`.
 std::string wrapped(const std::string& sentence, int letters);
