@@ -431,4 +431,15 @@ std::optional<Picked> pickIn(vtkRenderer* renderer, const LayerInput& in, const 
   return result;
 }
 
+bool besideEye(const LayerInput& in, int frame) {
+  if (in.eye == Eye::Outside) return false;
+  constexpr double kClear = 2;  // depths of a glyph that it has to be before the eye
+  const Camera& eye = in.frame(in.selection.frame).camera;
+  std::vector<Eigen::Vector3d> glyph;
+  addFrustum(in, glyph, frame);
+  return std::any_of(glyph.begin(), glyph.end(), [&](const Eigen::Vector3d& p) {
+    return eye.depth(in.eyeMirror ? in.eyeMirror->reflected(p) : p) < kClear * in.scale.cameraDepth;
+  });
+}
+
 }  // namespace glint::viz

@@ -55,4 +55,8 @@ std::optional<Picked> cameraUnder(vtkRenderer* renderer, const LayerInput& in, i
 std::optional<Picked> pickIn(vtkRenderer* renderer, const LayerInput& in, const std::vector<const Drawn*>& drawn,
                              bool surfaceShown, int xDisplay, int yDisplay);
 
+/// While looking through a camera: whether the glyph of another one begins beside or behind the eye. Its lines and its photograph
+/// would run across the whole picture, so neither is drawn. False from outside.
+bool besideEye(const LayerInput& in, int frame);
+
 }  // namespace glint::viz

@@ -194,10 +194,11 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
     toggles_.push_back(button);
   }
   rows->addWidget(legend);
-  pair_ = new PairBar(document_);
-  rows->addWidget(pair_);
   switches_ = new PanelScroll(content, {150, 30}, PanelScroll::Height::Hugs);
   column->addWidget(switches_);
+  // Not in what scrolls: in a low panel its row would be cut, and with it what the lines are.
+  pair_ = new PairBar(document_);
+  column->addWidget(pair_);
   column->addWidget(pair_->sentence());
 }
 
@@ -380,8 +381,11 @@ void FramePanel::showCaptions(const viz::FrameOverlay& overlay) {
     html += QStringLiteral("<table cellspacing='0' cellpadding='0'><tr style='color:%1'>").arg(faded) +
             cell(tr("this frame"), "left") + cell(tr("error %")) + cell(tr("px")) + cell(tr("IoU")) +
             QStringLiteral("<td></td></tr>") + rows + QStringLiteral("</table>") + reasons;
-  if (overlay.captions.size() != captionCount_) captions_->setMinimumHeight(0);
+  // A reason that has gone leaves no empty lines behind.
+  const bool noLonger = failureShown_ && reasons.isEmpty();
+  if (overlay.captions.size() != captionCount_ || noLonger) captions_->setMinimumHeight(0);
   captionCount_ = overlay.captions.size();
+  failureShown_ = !reasons.isEmpty();
   captions_->setText(html);
   // It may grow but not shrink: the pictures above it would jump with every result.
   if (captions_->isVisible())  // else its width is not yet what it will be

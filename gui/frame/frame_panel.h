@@ -93,6 +93,7 @@ class FramePanel : public QWidget {
   QAction* colourByRole_ = nullptr;
   viz::FrameOverlay shown_, shownSecond_;
   std::size_t captionCount_ = 0;
+  bool failureShown_ = false;  ///< the captions hold the reason of a failure
   bool zoomedByLook_ = false;  ///< and the user has not moved it since
   QTimer refresh_;             ///< many selections at once are drawn once
   int probedFrame_ = -1;

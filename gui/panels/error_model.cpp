@@ -21,7 +21,8 @@ const ColumnInfo kColumns[] = {
     {QT_TRANSLATE_NOOP("ErrorModel", "Role"),
      QT_TRANSLATE_NOOP("ErrorModel", "Training, held out or excluded; summaries count held-out frames")},
     {QT_TRANSLATE_NOOP("ErrorModel", "Model"), QT_TRANSLATE_NOOP("ErrorModel", "Model that predicted")},
-    {QT_TRANSLATE_NOOP("ErrorModel", "Light"), QT_TRANSLATE_NOOP("ErrorModel", "Light id")},
+    {QT_TRANSLATE_NOOP("ErrorModel", "Light"),
+     QT_TRANSLATE_NOOP("ErrorModel", "Light id; where the frame shows it several times, which highlight")},
     {QT_TRANSLATE_NOOP("ErrorModel", "Status"),
      QT_TRANSLATE_NOOP("ErrorModel",
                        "ok; missed: observed, not predicted; spurious: predicted, not observed; failed: no prediction")},
@@ -42,6 +43,8 @@ const ColumnInfo kColumns[] = {
     {QT_TRANSLATE_NOOP("ErrorModel", "Time µs"), QT_TRANSLATE_NOOP("ErrorModel", "Time of the prediction, microseconds")},
     {QT_TRANSLATE_NOOP("ErrorModel", "Reason"), QT_TRANSLATE_NOOP("ErrorModel", "Why there is no number")}};
 static_assert(std::size(kColumns) == ErrorModel::ColumnCount);
+
+constexpr double kManyDigits = 1000;  // from here on decimals say nothing
 
 int digitsOf(int column) { return column == ErrorModel::Time ? 0 : column == ErrorModel::Iou ? 4 : 3; }
 bool isNumber(int column) { return column >= ErrorModel::ErrorPct && column <= ErrorModel::Time; }
@@ -90,9 +93,18 @@ void ErrorModel::addComparison(const Inspection& inspection, const std::string& 
     rows_.push_back(base);
     return;
   }
+  const auto several = [&](int FrameComparison::Row::*index) {
+    return std::count_if(c.rows.begin(), c.rows.end(), [&](const FrameComparison::Row& r) { return r.*index >= 0; }) > 1;
+  };
+  const bool manyObserved = several(&FrameComparison::Row::observed), manyPredicted = several(&FrameComparison::Row::predicted);
   for (const FrameComparison::Row& r : c.rows) {
     Row row = base;
     row.highlight = r.observed;
+    // Numbered as everywhere, from 1.
+    if (r.observed >= 0 && manyObserved)
+      row.light = tr("%1, highlight %2").arg(base.light).arg(r.observed + 1);
+    else if (r.observed < 0 && manyPredicted)
+      row.light = tr("%1, predicted %2").arg(base.light).arg(r.predicted + 1);
     row.status = r.metrics ? tr("ok") : r.observed < 0 ? tr("spurious") : c.prediction.failure ? tr("failed") : tr("missed");
     row.problem = !r.metrics;
     if (r.failure)
@@ -144,7 +156,8 @@ QVariant ErrorModel::data(const QModelIndex& index, int role) const {
       }
       // Rows without a number come last in ascending order.
       if (role == kSortRole) return std::isfinite(number) ? number : std::numeric_limits<double>::max();
-      return std::isfinite(number) ? QString::number(number, 'f', digitsOf(column)) : QStringLiteral("–");
+      if (!std::isfinite(number)) return QStringLiteral("–");
+      return QString::number(number, 'f', std::abs(number) < kManyDigits ? digitsOf(column) : 0);
     case Qt::DecorationRole:
       if (column == Model) return colourSwatch(toQColor(viz::modelColour(row.model)));
       return {};
@@ -152,7 +165,7 @@ QVariant ErrorModel::data(const QModelIndex& index, int role) const {
       if (row.problem && (column == Status || column == ReasonText)) return warningColour();
       return {};
     case Qt::ToolTipRole:
-      return column == ReasonText ? QVariant(row.reason) : QVariant();
+      return column == ReasonText ? QVariant(row.reason) : column == Light ? QVariant(row.light) : QVariant();
     case Qt::TextAlignmentRole:
       return int((isNumber(column) ? Qt::AlignRight : Qt::AlignLeft) | Qt::AlignVCenter);
     case kProblemRole:

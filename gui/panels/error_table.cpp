@@ -28,7 +28,8 @@ namespace glint::gui {
 
 namespace {
 constexpr int kColumnGapPx = 12;           // of the summary
-constexpr int kMissed = 6, kSpurious = 7;  // columns of its values
+constexpr double kWorstPct = 1000;         // ten times the highlight's size: how far astray beyond that says nothing
+constexpr int kIou = 4, kMissed = 6, kSpurious = 7;  // columns of its values
 
 enum class Shown { All, HeldOut, Training, Problems };
 
@@ -172,7 +173,9 @@ void ErrorTable::showSummary() {
       const Statistic& e = s.contourErrorPct;
       // As many decimals as the table below, so that points stand under points.
       const auto fixed = [](double v, int decimals) {
-        return std::isfinite(v) ? QString::number(v, 'f', decimals) : QStringLiteral("–");
+        return !std::isfinite(v) ? QStringLiteral("–")
+               : v > kWorstPct   ? QStringLiteral("> 1000")
+                                 : QString::number(v, 'f', decimals);
       };
       row.values = QStringList{fixed(e.mean, 3),          fixed(e.median, 3),
                                fixed(e.p95, 3),           fixed(e.max, 3),
@@ -203,7 +206,10 @@ QString ErrorTable::summaryHtml(const std::vector<int>& columns, int problemWidt
                 .arg(heading ? QString() : QStringLiteral("<span style='color:%1'>■</span>&nbsp;").arg(row.colour), row.name);
     for (const int c : columns)
       if (c < row.values.size())
-        html += QStringLiteral("<td align='right' style='padding-right:%1px'>%2</td>").arg(kColumnGapPx).arg(row.values[c]);
+        html += QStringLiteral("<td align='right' width='%1' style='padding-right:%2px'>%3</td>")
+                    .arg(columnWidth(c) + kColumnGapPx)
+                    .arg(kColumnGapPx)
+                    .arg(row.values[c].toHtmlEscaped());
     if (!row.problem.isEmpty())
       html += QStringLiteral("<td colspan='%1' style='color:%2'>%3</td>")
                   .arg(std::max<std::size_t>(1, columns.size()))
@@ -213,6 +219,15 @@ QString ErrorTable::summaryHtml(const std::vector<int>& columns, int problemWidt
     html += QStringLiteral("</tr>");
   }
   return html + QStringLiteral("</table>");
+}
+
+int ErrorTable::columnWidth(int column) const {
+  // Of the widest number that an error, a share or a count of this column's frames can be: it stays while a slider moves.
+  const QString widest = column < 4 ? QStringLiteral("999.999") : column == kIou ? QStringLiteral("0.9999") : QString();
+  int width = summary_->fontMetrics().horizontalAdvance(widest);
+  for (const SummaryRow& row : summaryRows_)
+    if (column < row.values.size()) width = std::max(width, summary_->fontMetrics().horizontalAdvance(row.values[column]));
+  return width;
 }
 
 void ErrorTable::fitSummary() {
@@ -234,10 +249,7 @@ void ErrorTable::fitSummary() {
   int columns = 0;
   for (int used = first; columns < all; ++columns) {
     const int column = columnOrder_[std::size_t(columns)];
-    int wide = 0;
-    for (const SummaryRow& row : summaryRows_)
-      if (column < row.values.size()) wide = std::max(wide, summary_->fontMetrics().horizontalAdvance(row.values[column]));
-    used += wide + kColumnGapPx;
+    used += columnWidth(column) + kColumnGapPx;
     if (columns > 0 && used > room) break;
   }
   const auto html = [&](int count, int problemWidth) {

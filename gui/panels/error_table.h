@@ -33,6 +33,7 @@ class ErrorTable : public QWidget {
   /// The summary with as many of its columns as the dock has room for; the others are in its tooltip.
   void fitSummary();
   QString summaryHtml(const std::vector<int>& columns, int problemWidth) const;
+  int columnWidth(int column) const;  ///< px
   void showCount();
   void fitReason();
   void selectFromDocument();

@@ -257,6 +257,41 @@ class FrameViewTest : public QObject {
     QVERIFY(!frame_->secondCanvas()->isVisible());
   }
 
+  /// In a low panel the layers' buttons scroll; what the lines of a pair are stays whole.
+  void theBarOfAPairIsWholeInALowPanel() {
+    document_->setOption("frame/side-by-side", "on", QString());
+    for (const QSize size : {QSize(700, 700), QSize(490, 420), QSize(420, 360)}) {
+      frame_->resize(size);
+      settle();
+      for (const char* name : {"frame/second", "frame/epipolar", "frame/epipolar-ellipse"}) {
+        auto* box = frame_->findChild<QComboBox*>(QLatin1String(name));
+        QVERIFY(box && box->isVisible());
+        QVERIFY2(box->visibleRegion().boundingRect().size() == box->size(), name);
+      }
+    }
+  }
+
+  /// The reason of a failure takes lines below the table; once it is gone the photograph has them back.
+  void aFailureThatIsGoneLeavesNoEmptyStrip() {
+    const auto* captions = frame_->findChild<QLabel*>(QStringLiteral("frameCaptions"));
+    const auto show = [&](const QString& reason) {
+      Inspection inspection = drawnCircles(fixture_.scene(), document_->request());
+      if (!reason.isEmpty())
+        for (auto& [name, model] : inspection.models) {
+          FrameComparison& c = model.frames.front();
+          c.prediction.highlights.clear();
+          c.prediction.failure = Failure{Reason::NoBrightestPoint, reason.toStdString()};
+          c.rows = {{0, -1, {}, c.prediction.failure}};
+        }
+      document_->setInspection(std::make_shared<const Inspection>(inspection), document_->request());
+      settle();
+      return captions->height();
+    };
+    const int before = show({});
+    QVERIFY(show(QStringLiteral("a reason that takes a line of its own below the table")) > before + 20);
+    QCOMPARE(show({}), before);
+  }
+
   void theLadderIsLinked() {
     const std::vector<FrameCanvas*> tiles = ladder_->canvases();
     QCOMPARE(tiles.size(), document_->request().models.size());

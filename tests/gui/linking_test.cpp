@@ -3,6 +3,7 @@
 #include <QApplication>
 #include <QClipboard>
 #include <QLabel>
+#include <QSet>
 #include <QSignalSpy>
 #include <QTableView>
 #include <QToolButton>
@@ -116,6 +117,46 @@ class LinkingTest : public QObject {
       const QString reason = model->index(r, ErrorModel::ReasonText).data().toString();
       QVERIFY2(number != !reason.isEmpty(), qPrintable(QStringLiteral("row %1: '%2'").arg(r).arg(reason)));
     }
+  }
+
+  /// While a slider moves, numbers change and their columns stay; an error far beyond the highlight's size is only that.
+  void theSummarysColumnsStayWhereTheyAre() {
+    auto* summary = table_->findChild<QLabel*>(QStringLiteral("errorSummary"));
+    QSet<int> widths;
+    for (const double factor : {0.001, 1.0, 20.0, 12345.6}) {
+      Inspection inspection = drawnCircles(fixture_.scene(), document_->request());
+      for (auto& [name, model] : inspection.models)
+        for (FrameComparison& c : model.frames)
+          for (FrameComparison::Row& r : c.rows)
+            if (r.metrics) r.metrics->contourErrorPct *= factor;
+      document_->setInspection(std::make_shared<const Inspection>(inspection), document_->request());
+      widths << summary->sizeHint().width();
+      QCOMPARE(summary->text().contains(QStringLiteral("&gt; 1000")), factor > 1000);
+      const QString error = table_->view()->model()->index(0, ErrorModel::ErrorPct).data().toString();
+      QVERIFY2(error.size() <= 7, qPrintable(error));
+    }
+    QCOMPARE(widths.size(), 1);
+  }
+
+  /// Two highlights of one light in a frame are two rows that can be told apart.
+  void rowsOfTwoHighlightsNameThem() {
+    Inspection inspection = drawnCircles(fixture_.scene(), document_->request());
+    for (auto& [name, model] : inspection.models) {
+      FrameComparison::Row second = model.frames.front().rows.front();
+      second.observed = 1;
+      model.frames.front().rows.push_back(second);
+    }
+    document_->setInspection(std::make_shared<const Inspection>(inspection), document_->request());
+    const QAbstractItemModel* rows = table_->view()->model();
+    QSet<QString> first;
+    for (int r = 0; r < rows->rowCount(); ++r) {
+      const QString light = rows->index(r, ErrorModel::Light).data().toString();
+      if (rows->index(r, ErrorModel::Frame).data().toString() == QStringLiteral("0000"))
+        first << light;
+      else
+        QCOMPARE(light, QStringLiteral("lamp"));
+    }
+    QCOMPARE(first, (QSet<QString>{QStringLiteral("lamp, highlight 1"), QStringLiteral("lamp, highlight 2")}));
   }
 
   void undoSelectsOneRow() {

@@ -100,6 +100,42 @@ TEST(Layers, CamerasThatShareAPoseAreDrawnOnce) {
   EXPECT_NE(std::find(frames.begin(), frames.end(), 8), frames.end());  // the selected one stands for its pose
 }
 
+/// Looking through a camera, one beside it is not drawn across the photograph; one over there is.
+TEST(Layers, CamerasBesideTheEyeAreNotDrawn) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  auto scene = std::make_shared<Scene>(*inspection->scene);
+  LayerInput input;
+  input.scale = sceneScale(*inspection, nullptr, {0, 1, 2, 3}, 1);
+  const Camera eye = scene->frames[0].camera;
+  const auto moved = [&](double right, double forward) {
+    Camera camera = eye;
+    camera.camFromWorld.translation() -= input.scale.cameraDepth * Eigen::Vector3d(right, 0, forward);
+    return camera;
+  };
+  scene->frames[1].camera = moved(1, 0);     // beside
+  scene->frames[2].camera = moved(0.5, -3);  // behind
+  scene->frames[3].camera = moved(0.5, 5);   // before
+  inspection->scene = scene;
+  LayerCache cache;
+  input.cache = &cache;
+  input.inspection = inspection.get();
+  input.frames = {0, 1, 2, 3};
+  const auto lines = [&] {
+    vtkIdType n = 0;
+    for (const Drawn& d : camerasLayer(input).drawn)
+      n += vtkPolyDataMapper::SafeDownCast(vtkActor::SafeDownCast(d.prop)->GetMapper())->GetInput()->GetNumberOfCells();
+    return n;
+  };
+  for (const int frame : {1, 2, 3}) EXPECT_FALSE(besideEye(input, frame));
+  const vtkIdType all = lines(), each = all / 4;
+  input.eye = Eye::Camera;
+  EXPECT_TRUE(besideEye(input, 1));
+  EXPECT_TRUE(besideEye(input, 2));
+  EXPECT_FALSE(besideEye(input, 3));
+  EXPECT_EQ(lines(), each);
+}
+
 /// Cones of the small scene whose model has a ball as its ellipsoid; the first one drawn, which is frame 0's.
 TriangleMesh firstCone(const Inspection& inspection, const std::string& model) {
   LayerInput input;

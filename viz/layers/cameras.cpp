@@ -117,6 +117,7 @@ LayerContent camerasLayer(const LayerInput& in) {
     }
     const Colour colour = cameraColour(in, index).colour;
     const std::vector<Points> chains = frustum(camera, in.scale.cameraDepth);
+    if (!selected && besideEye(in, index)) continue;
     if (!selected) {
       (in.inspection->isTraining(index) ? training : others).add(chains, colour, index);
       continue;

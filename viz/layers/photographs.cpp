@@ -9,6 +9,7 @@
 
 #include "core/pipeline/photograph.h"
 #include "viz/layers.h"
+#include "viz/scene_questions.h"
 
 namespace glint::viz {
 namespace {
@@ -32,6 +33,7 @@ LayerContent photographsLayer(const LayerInput& in) {
   std::vector<std::string> unreadable;
   for (const int index : chosen) {
     if (in.eye != Eye::Outside && index == in.selection.frame) continue;  // it is drawn over the whole picture
+    if (besideEye(in, index)) continue;
     const Frame& frame = in.frame(index);
     LayerCache::Photograph photograph =
         in.cache->photograph(*in.inspection, index, index == in.selection.frame ? kSelected : kThumbnail);
