@@ -5,15 +5,15 @@
 #include <filesystem>
 #include <set>
 
-#include "core/scene/photographs.h"
+#include "core/scene/scene_files.h"
 
 namespace glint::cli {
 namespace fs = std::filesystem;
 
 namespace {
-void requireFolder(const std::string& folder, const std::string& flag) {
+void requireFolder(const std::string& folder, const std::string& given) {
   std::error_code ignored;  // what cannot be asked about is not there
-  if (!fs::is_directory(folder, ignored)) throw InputError("", flag + " " + folder, "there is no such folder");
+  if (!fs::is_directory(folder, ignored)) throw InputError("", given, "there is no such folder");
 }
 
 /// As the scene file writes them.
@@ -30,7 +30,10 @@ std::set<std::string> meshNames(const Scene& scene) {
 }  // namespace
 
 void SceneArguments::declarePlaces(Options& o) {
-  o.option(photographs, "--photographs", "DIR", "Folder in which photographs are looked for first, by the ends of their paths");
+  o.repeated(photographs, "--photographs", "DIR",
+             "Folder in which photographs are looked for first, by the ends of their paths; may be repeated");
+  o.repeated(files, "--files", "KIND=DIR",
+             "The same for files of frames of another kind: depth, normals, masks (or photographs); may be repeated");
   o.repeated(mesh, "--mesh", "NAME=FILE", "The mesh that the scene file calls NAME is FILE; may be repeated");
   o.repeated(meshFolders, "--meshes", "DIR",
              "Folder in which meshes are looked for that are not in their place; may be repeated");
@@ -50,7 +53,7 @@ Relinked SceneArguments::relinked() const {
     r.meshes[entry.substr(0, equals)] = entry.substr(equals + 1);
   }
   for (const std::string& folder : meshFolders) {
-    requireFolder(folder, "--meshes");
+    requireFolder(folder, "--meshes " + folder);
     r.meshFolders.push_back(folder);
   }
   return r;
@@ -64,11 +67,24 @@ void SceneArguments::check(Scene& scene) const {
       throw InputError("", "--mesh " + named + "=" + file.string(),
                        "the scene names no mesh '" + named + "'" + (known.empty() ? "" : "; there are: " + known));
     }
-  if (photographs.empty()) return;
-  requireFolder(photographs, "--photographs");
+  for (const std::string& folder : photographs) lookIn(scene, FrameFile::Photograph, folder, "--photographs " + folder);
+  for (const std::string& entry : files) {
+    const std::size_t equals = entry.find('=');
+    const auto kind =
+        std::find_if(kFrameFiles.begin(), kFrameFiles.end(), [&](FrameFile k) { return entry.substr(0, equals) == nameOf(k); });
+    if (equals == std::string::npos || kind == kFrameFiles.end())
+      throw InputError("", "--files " + entry, "expected KIND=DIR, where KIND is one of: photographs, depth, normals, masks");
+    lookIn(scene, *kind, entry.substr(equals + 1), "--files " + entry);
+  }
+}
+
+void SceneArguments::lookIn(Scene& scene, FrameFile kind, const std::string& folder, const std::string& given) const {
+  requireFolder(folder, given);
   int found = 0;
-  scene = withPhotographsIn(std::move(scene), photographs, &found);
-  if (found == 0) throw InputError("", "--photographs " + photographs, "holds no photograph of this scene");
+  scene = withFilesIn(std::move(scene), kind, folder, &found);
+  if (found == 0)
+    throw InputError("", given,
+                     kind == FrameFile::Photograph ? "holds no photograph of this scene" : "holds no such file of this scene");
 }
 
 Scene SceneArguments::read(const std::string& input) const {

@@ -12,11 +12,12 @@ namespace glint::cli {
 /// Where the files of a scene are that are not where it says; the same flags for every command that reads one.
 struct SceneArguments {
   bool allowOutside = false;
-  std::string photographs;        ///< folder; "" = where the input says
+  std::vector<std::string> photographs;  ///< folders
+  std::vector<std::string> files;        ///< KIND=DIR
   std::vector<std::string> mesh;  ///< NAME=FILE
   std::vector<std::string> meshFolders;
 
-  /// --photographs, --mesh and --meshes; with `declare` also --allow-outside.
+  /// --photographs, --files, --mesh and --meshes; with `declare` also --allow-outside.
   void declarePlaces(Options& options);
   void declare(Options& options);
   /// A scene, or that of a session. InputError, also for a flag that the scene has no use for.
@@ -25,6 +26,7 @@ struct SceneArguments {
 
  private:
   Relinked relinked() const;
+  void lookIn(Scene& scene, FrameFile kind, const std::string& folder, const std::string& given) const;
   void check(Scene& scene) const;
 };
 

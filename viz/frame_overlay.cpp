@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/scene/photographs.h"
+#include "core/scene/scene_files.h"
 #include "viz/frame_details.h"
 
 namespace glint::viz {

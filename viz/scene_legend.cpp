@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string_view>
 
-#include "core/scene/photographs.h"
+#include "core/scene/scene_files.h"
 #include "viz/frame_overlay.h"
 
 namespace glint::viz {

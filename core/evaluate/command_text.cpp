@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "core/scene/scene_files.h"
+
 namespace glint {
 
 namespace {
@@ -48,7 +50,9 @@ Outcome<std::string> commandOf(const Scene& scene, const InspectionRequest& q) {
   if (q.noisePx > 0) command += " --noise-px " + shortest(q.noisePx) + " --seed " + std::to_string(q.seed);
   if (!q.truthFolder.empty()) command += " --truth " + shellWord(q.truthFolder);
   if (scene.allowOutsidePaths) command += " --allow-outside";
-  if (!scene.photographs.empty()) command += " --photographs " + shellWord(scene.photographs.string());
+  for (const FilesFolder& f : scene.folders)
+    command += f.kind == FrameFile::Photograph ? " --photographs " + shellWord(f.folder.string())
+                                               : " --files " + shellWord(nameOf(f.kind) + ("=" + f.folder.string()));
   for (const auto& [named, file] : scene.meshes) command += " --mesh " + shellWord(named + "=" + file.string());
   return command;
 }

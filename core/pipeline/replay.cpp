@@ -155,7 +155,7 @@ Session sessionOf(const Inspection& inspection, const ProgressFn& progress) {
   Session session;
   session.input = std::filesystem::absolute(scene.file).lexically_normal();
   session.allowOutsidePaths = scene.allowOutsidePaths;
-  session.photographs = scene.photographs;
+  session.folders = scene.folders;
   session.meshes = scene.meshes;
   session.request = inspection.request;
   session.files = hashInputs(scene, inspection.request, progress);

@@ -2,8 +2,8 @@
 #include "core/pipeline/session.h"
 
 #include <algorithm>
-#include <iterator>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -12,7 +12,8 @@
 #include "core/base/json_text.h"
 #include "core/base/sha256.h"
 #include "core/pipeline/what_if_json.h"
-#include "core/scene/photographs.h"
+#include "core/scene/scene_files.h"
+#include "core/scene/scene_json.h"
 
 namespace glint {
 namespace fs = std::filesystem;
@@ -20,8 +21,9 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-// 1: the first. 2: `tradeoff` may stand in it; a file of version 1 reads as one without.
-constexpr int kVersion = 2;
+// 1: the first. 2: `tradeoff` may stand in it; a file of version 1 reads as one without. 3: `input.folders` for every kind of
+// file and `view.more_cameras`; the one folder of photographs that older ones name (`input.photographs`) is the first of them.
+constexpr int kVersion = 3;
 
 /// A setting that a program of version 1 did not have is what that program did, where that is not today's default.
 void migrateFrom1(const JsonNode& request, Settings& settings) {
@@ -117,6 +119,23 @@ InspectionRequest readRequest(const JsonNode& node, const fs::path& folder) {
   return request;
 }
 
+SessionCamera readCamera(const JsonNode& c) {
+  SessionCamera camera{c.at("position").vector3(), c.at("focal_point").vector3(), c.at("up").vector3(),
+                       c.at("view_angle_deg").number()};
+  if (const auto parallel = c.find("parallel")) camera.parallel = parallel->boolean();
+  if (!(camera.viewAngleDeg > 0 && camera.viewAngleDeg < 180)) c.at("view_angle_deg").fail("must lie between 0 and 180");
+  return camera;
+}
+
+Json toJson(const SessionCamera& c) {
+  Json camera = {{"position", toJson(c.position)},
+                 {"focal_point", toJson(c.focalPoint)},
+                 {"up", toJson(c.up)},
+                 {"view_angle_deg", c.viewAngleDeg}};
+  if (c.parallel) camera["parallel"] = true;
+  return camera;
+}
+
 SessionView readView(const JsonNode& node) {
   SessionView view;
   if (const auto n = node.find("layout")) view.layout = n->text();
@@ -124,16 +143,10 @@ SessionView readView(const JsonNode& node) {
     for (const std::string& key : n->keys()) view.layers[key] = n->at(key).boolean();
   if (const auto n = node.find("options"))
     for (const std::string& key : n->keys()) view.options[key] = n->at(key).text();
-  if (const auto n = node.find("cameras")) {
-    for (const std::string& key : n->keys()) {
-      const JsonNode c = n->at(key);
-      SessionCamera camera{c.at("position").vector3(), c.at("focal_point").vector3(), c.at("up").vector3(),
-                           c.at("view_angle_deg").number()};
-      if (const auto parallel = c.find("parallel")) camera.parallel = parallel->boolean();
-      if (!(camera.viewAngleDeg > 0 && camera.viewAngleDeg < 180)) c.at("view_angle_deg").fail("must lie between 0 and 180");
-      view.cameras[key] = camera;
-    }
-  }
+  if (const auto n = node.find("cameras"))
+    for (const std::string& key : n->keys()) view.cameras[key] = readCamera(n->at(key));
+  if (const auto n = node.find("more_cameras"))
+    for (std::size_t i = 0; i < n->size(); ++i) view.moreCameras.push_back(readCamera(n->at(i)));
   if (const auto n = node.find("selection")) {
     if (const auto m = n->find("frame")) view.frame = m->text();
     if (const auto m = n->find("model")) view.model = m->text();
@@ -168,7 +181,7 @@ Session parseSession(const std::string& json, const fs::path& file) {
   const JsonNode input = root.at("input");
   session.input = absolutePath(input.at("path"), folder);
   if (const auto n = input.find("allow_outside")) session.allowOutsidePaths = n->boolean();
-  if (const auto n = input.find("photographs"); n && !n->isNull()) session.photographs = absolutePath(*n, folder);
+  session.folders = readFilesFolders(input, folder);
   if (const auto n = input.find("meshes"); n && !n->isNull())
     for (const std::string& named : n->keys()) session.meshes[named] = absolutePath(n->at(named), folder);
   if (const auto n = input.find("files"))
@@ -213,7 +226,8 @@ void writeSession(const Session& session, const fs::path& file) {
   const auto hash = [](const std::string& hex) { return hex.empty() ? Json() : Json(hex); };
   Json root = {{"glint_session", kVersion}};
   root["input"] = {{"path", relative(session.input)}, {"allow_outside", session.allowOutsidePaths}, {"files", Json::array()}};
-  if (!session.photographs.empty()) root["input"]["photographs"] = relative(session.photographs);
+  for (const FilesFolder& f : session.folders)
+    root["input"]["folders"].push_back({{"of", nameOf(f.kind)}, {"folder", relative(f.folder)}});
   for (const auto& [named, mesh] : session.meshes) root["input"]["meshes"][named] = relative(mesh);
   for (const SessionFile& f : session.files)
     root["input"]["files"].push_back({{"path", relative(f.path)}, {"sha256", hash(f.sha256)}});
@@ -232,14 +246,8 @@ void writeSession(const Session& session, const fs::path& file) {
 
   const SessionView& v = session.view;
   root["view"] = {{"layout", v.layout}, {"layers", v.layers}, {"options", v.options}, {"cameras", Json::object()}};
-  for (const auto& [name, c] : v.cameras) {
-    Json& camera = root["view"]["cameras"][name];
-    camera = {{"position", toJson(c.position)},
-              {"focal_point", toJson(c.focalPoint)},
-              {"up", toJson(c.up)},
-              {"view_angle_deg", c.viewAngleDeg}};
-    if (c.parallel) camera["parallel"] = true;
-  }
+  for (const auto& [name, c] : v.cameras) root["view"]["cameras"][name] = toJson(c);
+  for (const SessionCamera& c : v.moreCameras) root["view"]["more_cameras"].push_back(toJson(c));
   root["view"]["selection"] = {{"frame", v.frame}, {"model", v.model}, {"light", v.light}, {"highlight", v.highlight}};
   if (session.recovery) root["recovery"] = {{"of", relative(session.recovery->of)}, {"session", session.recovery->isSession}};
   root["notes"] = session.notes;
@@ -291,6 +299,12 @@ std::string takeOver(Session& session, const Scene& scene, const fs::path& scene
 
 }  // namespace
 
+std::string relinkMeshes(Session& session, const Scene& scene) {
+  const std::string line = takeOver(session, scene, scene.file, false);
+  session.meshes = scene.meshes;
+  return line;
+}
+
 OpenedSession openSession(Session given, const Relinked& instead) {
   OpenedSession opened{std::move(given), nullptr, ""};
   Session& session = opened.session;
@@ -303,11 +317,7 @@ OpenedSession openSession(Session given, const Relinked& instead) {
   options.meshes = instead.meshes;
   options.meshes.insert(session.meshes.begin(), session.meshes.end());  // what is given now stays
   options.meshFolders = instead.meshFolders;
-  Scene scene = readScene(session.input, options);
-  if (!session.photographs.empty()) {
-    scene = withPhotographsIn(std::move(scene), session.photographs);
-    scene.photographs = session.photographs;  // also while the folder is not to be had
-  }
+  Scene scene = withFilesIn(readScene(session.input, options), session.folders);
   if (instead.any()) opened.warning = takeOver(session, scene, sceneWas, !instead.scene.empty());
   session.meshes = scene.meshes;
   opened.scene = std::make_shared<const Scene>(std::move(scene));

@@ -26,7 +26,8 @@ struct SessionCamera {
 /// What the window showed; the results do not depend on it.
 struct SessionView {
   std::string layout;                            ///< name of the arrangement of panels; "" = the program's own
-  std::map<std::string, SessionCamera> cameras;  ///< by view name
+  std::map<std::string, SessionCamera> cameras;  ///< by view name; "scene": of the first 3D view
+  std::vector<SessionCamera> moreCameras;        ///< of the second 3D view and those after it
   std::map<std::string, bool> layers;            ///< visibility by layer name, where it differs from the default
   std::map<std::string, std::string> options;    ///< how views show things, as "VIEW/NAME"; absent = default
   std::string frame, model, light;               ///< selection; "" = none
@@ -53,7 +54,7 @@ struct Session {
   std::filesystem::path file;      ///< as opened; empty for a new session
   std::filesystem::path input;     ///< absolute path of the scene
   std::optional<Recovery> recovery;  ///< set in autosaves only
-  std::filesystem::path photographs;  ///< absolute folder in which photographs are looked for first; "" = where the scene says
+  std::vector<FilesFolder> folders;  ///< in which frames' files are looked for before where the scene says; the last counts
   std::map<std::string, std::filesystem::path> meshes;  ///< absolute, those that lie elsewhere: by the path that the scene writes
   bool allowOutsidePaths = false;  ///< the scene may name files outside its folder
   std::vector<SessionFile> files;  ///< the scene file first, then everything that it names
@@ -94,6 +95,10 @@ struct OpenedSession {
 /// @param instead  where inputs are now that are not where the session says. The session then names them.
 OpenedSession openSession(const std::filesystem::path& file, const Relinked& instead = {});
 OpenedSession openSession(Session session, const Relinked& instead = {});
+
+/// Makes an open session know that meshes of its scene lie elsewhere now, as `scene` says, and forgets the hashes of where they
+/// were. One line about those whose content is not what the session was made with; "" = the same, or not known. Reads them.
+std::string relinkMeshes(Session& session, const Scene& scene);
 
 /// The session of a finished inspection, with hashes of its inputs, held-out frames, key results and digest; the view and notes
 /// are left empty. Reads every input file once. Stopped.

@@ -10,8 +10,9 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/srgb.h"
-#include "core/scene/photographs.h"
 #include "core/scene/scene.h"
+#include "core/scene/scene_files.h"
+#include "core/scene/scene_reader.h"
 
 namespace glint {
 namespace fs = std::filesystem;
@@ -240,9 +241,12 @@ Outcome<Image> readPhotograph(const Frame& frame) {
   return threeChannels(throughTable(m, [](double v) { return v; }));
 }
 
-std::string photographProblem(const Frame& frame) {
-  const fs::path& file = frame.image.empty() ? frame.radiance : frame.image;
+namespace {
+std::string fileProblem(const fs::path& file, const Camera& camera) {
   if (file.empty()) return {};
+  // What a TIFF's end must look like is not known without decoding it: that it is there is all that can be said.
+  if (const std::string magic = firstBytes(file, 4); magic == std::string("II*\0", 4) || magic == std::string("MM\0*", 4))
+    return {};
   try {
     const std::string bytes = readFile(file);
     const FileCheck check = checkContainer(bytes);
@@ -250,13 +254,28 @@ std::string photographProblem(const Frame& frame) {
     constexpr std::size_t kPngHeader = 24;  // signature 8, length and type of IHDR 8, width 4, height 4
     if (bytes.compare(0, 4, "\x89PNG") == 0 && bytes.size() >= kPngHeader) {
       const auto width = static_cast<int>(bigEndian(bytes, 16)), height = static_cast<int>(bigEndian(bytes, 20));
-      if (width != frame.camera.width || height != frame.camera.height)
-        return file.string() + ": " + wrongSize(width, height, frame.camera);
+      if (width != camera.width || height != camera.height) return file.string() + ": " + wrongSize(width, height, camera);
     }
   } catch (const InputError& e) {
     return e.what();
   }
   return {};
+}
+}  // namespace
+
+std::string frameFileProblem(const Frame& frame, FrameFile kind) {
+  switch (kind) {
+    case FrameFile::Depth:
+      return fileProblem(frame.depth, frame.camera);
+    case FrameFile::Normals:
+      return fileProblem(frame.normals, frame.camera);
+    case FrameFile::Mask:
+      return fileProblem(frame.mask, frame.camera);
+    case FrameFile::Photograph:
+      break;
+  }
+  const std::string problem = fileProblem(frame.image, frame.camera);
+  return problem.empty() ? fileProblem(frame.radiance, frame.camera) : problem;
 }
 
 Outcome<std::optional<Image>> readMask(const Frame& frame) {

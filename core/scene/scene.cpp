@@ -6,7 +6,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/json_text.h"
-#include "core/scene/photographs.h"
+#include "core/scene/scene_files.h"
 #include "core/scene/scene_json.h"
 #include "core/scene/scene_reader.h"
 
@@ -89,13 +89,7 @@ class SessionSceneReader final : public SceneReader {
     if (const auto meshes = root.at("input").find("meshes"); meshes && !meshes->isNull())
       for (const std::string& named : meshes->keys())  // what the caller says comes first
         own.meshes.emplace(named, (folder / meshes->at(named).text()).lexically_normal());
-    Scene read = readScene(scene.lexically_normal(), own);
-    if (const auto n = root.at("input").find("photographs"); n && !n->isNull()) {
-      const fs::path photographs = (folder / n->text()).lexically_normal();
-      read = withPhotographsIn(std::move(read), photographs);
-      read.photographs = photographs;  // also while the folder is not to be had
-    }
-    return read;
+    return withFilesIn(readScene(scene.lexically_normal(), own), readFilesFolders(root.at("input"), folder));
   }
 };
 

@@ -24,6 +24,7 @@ namespace glint {
 struct SurfaceSource {
   std::optional<std::filesystem::path> mesh;   ///< absolute
   std::optional<AnalyticSpec> analytic;
+  std::string named = {};  ///< the mesh's path as the scene file writes it; "" = no file has written it yet
 };
 
 /// One captured view. Paths are absolute; empty = not given.
@@ -35,6 +36,16 @@ struct Frame {
   std::string surface;                    ///< id in Scene::surfaces; "" = this frame's own depth map
   std::vector<std::string> lightsOn;      ///< empty = not stated
   std::vector<Highlight> highlights;      ///< given ones; used instead of detection when not empty
+};
+
+/// What a file of a frame shows. Photograph: Frame::image and Frame::radiance.
+enum class FrameFile { Photograph, Depth, Normals, Mask };
+
+/// A folder in which the files of one kind are looked for before the place that the scene says.
+struct FilesFolder {
+  FrameFile kind = FrameFile::Photograph;
+  std::filesystem::path folder;  ///< absolute
+  friend bool operator==(const FilesFolder&, const FilesFolder&) = default;
 };
 
 /// Truth for evaluation and display only; never read by reconstruction or prediction.
@@ -51,7 +62,7 @@ struct Scene {
   std::filesystem::path file;             ///< as opened
   std::filesystem::path folder;           ///< absolute folder of the file; all relative paths start here
   bool allowOutsidePaths = false;         ///< as it was read with (ReadOptions)
-  std::filesystem::path photographs;      ///< absolute folder in which photographs were looked for first; "" = none was given
+  std::vector<FilesFolder> folders;  ///< in which frames' files were looked for, in this order: the last that holds a file counts
   std::map<std::string, std::filesystem::path> meshes;  ///< those that lie elsewhere: by the path that the file writes, absolute
   std::vector<Frame> frames;
   std::map<std::string, SurfaceSource> surfaces;

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/scene/relinked.h"
+#include "core/scene/scene_files.h"
 #include "core/scene/scene_reader.h"
 
 namespace glint {
@@ -285,6 +286,7 @@ SurfaceSource readSurface(const JsonNode& node, const FrameContext& context, Jso
   SurfaceSource source;
   if (const auto n = node.find("mesh")) {
     source.mesh = findMesh(*n, context);
+    source.named = n->text();
   }
   if (const auto n = node.find("analytic")) {
     source.analytic = readAnalyticJson(*n);
@@ -295,6 +297,25 @@ SurfaceSource readSurface(const JsonNode& node, const FrameContext& context, Jso
 }
 
 }  // namespace
+
+std::vector<FilesFolder> readFilesFolders(const JsonNode& input, const fs::path& folder) {
+  std::vector<FilesFolder> folders;
+  const auto add = [&](FrameFile kind, const JsonNode& node) {
+    const std::string text = node.text();
+    if (text.empty()) node.fail("the path is empty");
+    if (text.find('\0') != std::string::npos) node.fail("the path contains a zero byte");
+    folders.push_back({kind, (folder / fs::path(text)).lexically_normal()});
+  };
+  if (const auto n = input.find("photographs"); n && !n->isNull()) add(FrameFile::Photograph, *n);
+  const auto all = input.find("folders");
+  for (std::size_t i = 0; all && i < all->size(); ++i) {
+    const JsonNode of = all->at(i).at("of");
+    const auto kind = std::find_if(kFrameFiles.begin(), kFrameFiles.end(), [&](FrameFile k) { return of.text() == nameOf(k); });
+    if (kind == kFrameFiles.end()) of.fail("'" + of.text() + "' is none of: photographs, depth, normals, masks");
+    add(*kind, all->at(i).at("folder"));
+  }
+  return folders;
+}
 
 Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOptions& options) {
   const JsonNode root = JsonNode::parse(text, file.string());

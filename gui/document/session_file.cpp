@@ -88,7 +88,7 @@ namespace {
 void addState(Session& session, const Opened& opened) {
   const Scene& scene = *opened.scene;
   session.request = opened.request;
-  session.photographs = scene.photographs;
+  session.folders = scene.folders;
   session.meshes = scene.meshes;
   if (opened.tradeoff) session.tradeoff = *opened.tradeoff;
   if (opened.session) {

@@ -15,7 +15,7 @@
 
 #include "core/geometry/polyline.h"
 #include "core/pipeline/what_if_knobs.h"
-#include "core/scene/photographs.h"
+#include "core/scene/scene_files.h"
 #include "gui/base/flow_layout.h"
 #include "gui/base/panel_scroll.h"
 #include "gui/base/text.h"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/pipeline/session.h"
-#include "core/scene/photographs.h"
+#include "core/scene/scene_files.h"
 #include "gui/base/text.h"
 #include "gui/window/message_bar.h"
 

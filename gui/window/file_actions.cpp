@@ -147,17 +147,23 @@ void FileActions::reopen(const OpenedPtr& opened) {
   finishOpen(state);
 }
 
-bool FileActions::locate(const MissingPtr& missing) {
-  const QString name = QFileInfo(missing->file).fileName();
-  const bool mesh = !missing->named.empty();
-  const QFileInfo opened(missing->path);
-  QFileDialog dialog(window_, tr("Where is %1?").arg(name), opened.isDir() ? missing->path : opened.path(),
+QString FileActions::whereIs(const QString& file, bool mesh, const QString& folder, QWidget* window) {
+  const QString name = QFileInfo(file).fileName();
+  QFileDialog dialog(window, tr("Where is %1?").arg(name), folder,
                      (mesh ? tr("Same name (%1);;Meshes (*.ply *.obj *.stl);;All files (*)")
                            : tr("Same name (%1);;Scenes (*.json);;All files (*)"))
                          .arg(name));
   dialog.setFileMode(QFileDialog::ExistingFile);
-  if (dialog.exec() != QDialog::Accepted || dialog.selectedFiles().isEmpty()) return false;
-  const std::filesystem::path found = dialog.selectedFiles().first().toStdString();
+  if (dialog.exec() != QDialog::Accepted || dialog.selectedFiles().isEmpty()) return {};
+  return dialog.selectedFiles().first();
+}
+
+bool FileActions::locate(const MissingPtr& missing) {
+  const bool mesh = !missing->named.empty();
+  const QFileInfo opened(missing->path);
+  const QString answer = whereIs(missing->file, mesh, opened.isDir() ? missing->path : opened.path(), window_);
+  if (answer.isEmpty()) return false;
+  const std::filesystem::path found = answer.toStdString();
   Relinked instead = missing->instead;
   if (mesh) {
     instead.meshes[missing->named] = found;

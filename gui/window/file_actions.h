@@ -43,6 +43,8 @@ class FileActions : public QObject {
   bool openRelinked(const QString& path, const glint::Relinked& instead);
   /// Takes over what is on screen with another scene; layout and 3D camera stay.
   void reopen(const glint::gui::OpenedPtr& opened);
+  /// Asks where a scene or mesh is, starting in `folder`; "" when the user gave up.
+  static QString whereIs(const QString& file, bool mesh, const QString& folder, QWidget* window);
   /// Asks where a missing scene or mesh is, then opens what needs it with it. Other meshes that are missing are looked for
   /// beside it. False when the user gave up.
   bool locate(const glint::gui::MissingPtr& missing);

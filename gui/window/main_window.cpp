@@ -55,7 +55,7 @@
 #include "gui/window/scripted_actions.h"
 #include "gui/window/shortcut_dialog.h"
 #include "gui/window/start_page.h"
-#include "gui/window/unreadable_photographs.h"
+#include "gui/window/unreadable_files.h"
 #include "gui/window/window_layout.h"
 
 namespace glint::gui {
@@ -73,7 +73,7 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   setDockNestingEnabled(true);
   setWindowIcon(icon(QStringLiteral("glint")));
   buildCentre();
-  unreadable_ = new UnreadablePhotographs(
+  unreadable_ = new UnreadableFiles(
       document_, *messageBar_, [this](const OpenedPtr& opened) { files_->reopen(opened); }, this);
   auto* changedInputs = new ChangedInputs(document_, *messageBar_, this);
   connect(changedInputs, &ChangedInputs::message, this, &MainWindow::log);
@@ -137,10 +137,10 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   connect(&runner_, &Runner::inputMissing, this, [this](const MissingPtr& missing) {
     missing_ = missing;  // failed() comes next, and shows it
   });
-  connect(unreadable_, &UnreadablePhotographs::problem, this, &MainWindow::showProblem);
-  connect(unreadable_, &UnreadablePhotographs::message, this, &MainWindow::log);
-  connect(unreadable_, &UnreadablePhotographs::changed, this, [this] { timeline_->strip()->setUnreadable(unreadable_->all()); });
-  connect(frame_, &FramePanel::photographFailed, unreadable_, &UnreadablePhotographs::note);
+  connect(unreadable_, &UnreadableFiles::problem, this, &MainWindow::showProblem);
+  connect(unreadable_, &UnreadableFiles::message, this, &MainWindow::log);
+  connect(unreadable_, &UnreadableFiles::changed, this, [this] { timeline_->strip()->setUnreadable(unreadable_->all()); });
+  connect(frame_, &FramePanel::photographFailed, unreadable_, &UnreadableFiles::note);
   auto* recovery = new Recovery(
       engine_, document_, [this] { return snapshot(); }, *files_, *messageBar_, this);
   connect(recovery, &Recovery::problem, this, &MainWindow::log);
@@ -469,7 +469,7 @@ void MainWindow::showProblem(const QString& oneLine) {
   lastError_ = oneLine;
   if (const MissingPtr missing = std::exchange(missing_, {}))
     offerToLocate(oneLine, missing);
-  else
+  else if (!unreadable_->offerMesh(oneLine))
     messageBar_->showError(oneLine);
   log(oneLine);
   emit problem(oneLine);

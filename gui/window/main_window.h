@@ -37,7 +37,7 @@ class StartPage;
 class SetupPanel;
 class Timeline;
 class TradeoffPanel;
-class UnreadablePhotographs;
+class UnreadableFiles;
 class WhatIfPanel;
 class WindowLayout;
 
@@ -128,7 +128,7 @@ class MainWindow : public QMainWindow {
   QLabel* probe_ = nullptr;
   QString lastError_;
   ScriptedActions* script_ = nullptr;
-  UnreadablePhotographs* unreadable_ = nullptr;
+  UnreadableFiles* unreadable_ = nullptr;
   MissingPtr located_;      ///< was pointed at, and is being opened
   MissingPtr missing_;      ///< why the opening that failed last did; null = for another reason, or it was said
   bool runFailed_ = false;  ///< the message bar shows why the last run failed

@@ -122,6 +122,24 @@ TEST_F(RelinkedScene, IsAnInputOfEveryCommand) {
   EXPECT_TRUE(fs::exists(folder_ / "x.png"));
 }
 
+TEST_F(RelinkedScene, FindsMasksWhereTheyAre) {
+  scene_["frames"][0]["mask"] = "masks/0.png";
+  writeScene();
+  const std::string flags = photographs() + mesh();
+  EXPECT_THAT(runGlint("detect " + inQuotes(folder_.path()) + flags + " --json -").out, HasSubstr("masks/0.png: "));
+  fs::create_directories(folder_ / "masks");
+  ASSERT_TRUE(cv::imwrite((folder_ / "masks/0.png").string(), cv::Mat(kHeight, kWidth, CV_8U, cv::Scalar(255))));
+  const std::vector<double> inPlace = errors(on("evaluate", kRequest + flags));
+  TemporaryFolder other;
+  fs::rename(folder_ / "masks", other / "masks");
+  const std::string masks = " --files masks=" + inQuotes(other.path());
+  EXPECT_EQ(errors(on("evaluate", kRequest + flags + masks)), inPlace);
+  const ProgramRun made = on("reconstruct", "--model limit-angle -o " + out("masked.glint") + flags + masks);
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_EQ(made.err, "");
+  EXPECT_EQ(errors(runGlint("evaluate " + out("masked.glint") + " --json -")), inPlace);
+}
+
 TEST_F(RelinkedScene, WrongPlacesNameTheFlag) {
   const auto refused = [&](const std::string& flags, const std::string& expected) {
     const ProgramRun run = on("evaluate", flags);
@@ -136,6 +154,10 @@ TEST_F(RelinkedScene, WrongPlacesNameTheFlag) {
   refused(meshes() + " --mesh body=x", "--mesh body=x: the scene names no mesh 'body'; there are: shape/body.ply");
   refused(mesh() + " --photographs /nowhere", "--photographs /nowhere: there is no such folder");
   refused(mesh() + " --photographs " + inQuotes(elsewhere_ / "shape"), "holds no photograph of this scene");
+  refused(mesh() + " --files depth=" + inQuotes(elsewhere_.path()), "holds no such file of this scene");
+  refused(mesh() + " --files masks=/nowhere", "--files masks=/nowhere: there is no such folder");
+  for (const char* wrong : {"mask=/", "masks", "=/"})
+    refused(mesh() + " --files " + wrong, "expected KIND=DIR, where KIND is one of: photographs, depth, normals, masks");
 }
 
 }  // namespace

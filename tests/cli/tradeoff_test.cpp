@@ -127,7 +127,7 @@ TEST_F(TradeoffCommand, ASessionKeepsItAndPresetsFindIt) {
   const ProgramRun run = onSession("tradeoff", std::string(kFew) + "--budget-us 1e9");
   ASSERT_EQ(run.code, 0) << run.err;
   const Json old = Json::parse(before), now = Json::parse(contentOf(folder_ / "run.glint"));
-  EXPECT_EQ(now["glint_session"], 2);
+  EXPECT_EQ(now["glint_session"], 3);
   const Json& t = now["tradeoff"];
   EXPECT_EQ(t["glint_tradeoff"], 1);
   EXPECT_EQ(now["request"], old["request"]) << "the choice is not imposed on the session";

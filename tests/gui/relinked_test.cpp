@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mesh that is not where the scene says: asked for, found elsewhere, remembered; and the command that names such places.
+// A mesh that is not where the scene says, depth maps, normal maps and masks: asked for, found elsewhere, remembered; and the
+// command that names such places.
 #include <QAction>
 #include <QApplication>
 #include <QClipboard>
@@ -8,10 +9,12 @@
 #include <QDirIterator>
 #include <QFile>
 #include <QFileDialog>
+#include <QImage>
 #include <QJsonArray>
 #include <QJsonDocument>
 #include <QJsonObject>
 #include <QLineEdit>
+#include <QMessageBox>
 #include <QProcess>
 #include <QPushButton>
 #include <QTimer>
@@ -19,11 +22,12 @@
 #include "core/pipeline/session.h"
 #include "gui/base/text.h"
 #include "gui/document/session_file.h"
+#include "gui/timeline/timeline.h"
 #include "gui/window/changed_inputs.h"
 #include "gui/window/file_actions.h"
 #include "gui/window/main_window.h"
 #include "gui/window/message_bar.h"
-#include "gui/window/unreadable_photographs.h"
+#include "gui/window/unreadable_files.h"
 #include "tests/gui/fixture.h"
 
 namespace glint::gui {
@@ -51,7 +55,7 @@ QPushButton* locateButton(MainWindow& window) {
   return nullptr;
 }
 
-/// Presses the real button and answers the file dialog that it opens; "" = Cancel. The dialog's title.
+/// Presses the real button and answers the dialog for files or folders that it opens; "" = Cancel. The dialog's title.
 QString locate(MainWindow& window, const QString& file) {
   QString title;
   QPushButton* button = nullptr;
@@ -66,7 +70,8 @@ QString locate(MainWindow& window, const QString& file) {
     if (!dialog) return;
     title = dialog->windowTitle();
     if (++ticks > 200) return dialog->reject();  // else the test would never end
-    if (ticks == 1) return dialog->selectNameFilter(dialog->nameFilters().last());  // which takes it a moment
+    if (ticks == 1 && !dialog->nameFilters().isEmpty())
+      return dialog->selectNameFilter(dialog->nameFilters().last());  // which takes it a moment
     auto* name = dialog->findChild<QLineEdit*>(QStringLiteral("fileNameEdit"));
     name->clear();
     name->setText(file);
@@ -83,6 +88,31 @@ void computed(MainWindow& window) {
   const Document& d = window.document();
   QTRY_VERIFY_WITH_TIMEOUT(window.idle() && d.inspection() && !d.stale(), 120000);
   QTRY_VERIFY_WITH_TIMEOUT(!window.findChild<ChangedInputs*>()->busy(), 60000);
+}
+
+/// A copy of the scene of a plane whose frames also have a depth map, a normal map and a mask.
+void writeSceneWithFrameFiles(const QString& to) {
+  copyFolder(QStringLiteral(GLINT_SOURCE_DIR "/sessions/plane"), to);
+  QFile file(to + "/scene.json");
+  QVERIFY(file.open(QIODevice::ReadWrite));
+  QJsonObject json = QJsonDocument::fromJson(file.readAll()).object();
+  QJsonArray frames = json["frames"].toArray();
+  QImage all(640, 480, QImage::Format_Grayscale8);
+  all.fill(255);
+  for (const auto& [key, folder] : {std::pair("depth", "depth"), {"normals", "normals"}, {"mask", "masks"}}) {
+    QVERIFY(QDir().mkpath(to + '/' + folder));
+    for (int i = 0; i < frames.size(); ++i) {
+      const QString name = folder + QStringLiteral("/%1.png").arg(i);
+      QVERIFY(all.save(to + '/' + name));
+      QJsonObject frame = frames[i].toObject();
+      frame[QLatin1String(key)] = name;
+      frame["depth_scale"] = 0.01;
+      frames[i] = frame;
+    }
+  }
+  json["frames"] = frames;
+  file.resize(0);
+  QVERIFY(file.write(QJsonDocument(json).toJson()) > 0);
 }
 
 /// What "Copy as command" copies is run by a shell and gives the errors that are on screen.
@@ -239,6 +269,129 @@ class RelinkedTest : public QObject {
     QVERIFY(bar->isVisible());
   }
 
+  void aDamagedMeshIsLocatedLikeAMissingOne() {
+    const QString old = path("old"), whole = path("whole.ply");
+    copyFolder(vase(), old);
+    QVERIFY(QFile::copy(old + '/' + kMesh, whole));
+    QVERIFY(QFile::resize(old + '/' + kMesh, 5000));
+    MainWindow window(coreEngine());
+    window.show();
+    window.open(old + "/vase.glint");
+    QTRY_VERIFY_WITH_TIMEOUT(locateButton(window) != nullptr, 20000);
+    QVERIFY2(window.lastError().startsWith(old + '/' + kMesh + ": "), qPrintable(window.lastError()));
+    Document& d = window.document();
+    QVERIFY(d.scene() && !d.inspection());
+    d.setLayerVisible("rays", "Rays", !d.layerVisible("rays"));  // must not be lost
+    const bool rays = d.layerVisible("rays");
+    QCOMPARE(locate(window, {}), QStringLiteral("Where is geom_00.ply?"));  // given up
+    locate(window, old + "/scene.json");                                    // it still offers, but this is no mesh
+    QTRY_VERIFY_WITH_TIMEOUT(window.lastError().startsWith(old + "/scene.json: "), 20000);
+    locate(window, whole);  // another chance
+    QTRY_COMPARE_WITH_TIMEOUT(meshOf(window), whole, 20000);
+    computed(window);
+    QVERIFY2(!window.findChild<MessageBar*>()->isVisible(), qPrintable(window.findChild<MessageBar*>()->text()));
+    QVERIFY(d.hasUnsavedChanges() && d.layerVisible("rays") == rays);
+    QVERIFY(window.findChild<ChangedInputs*>()->all().isEmpty());
+    QVERIFY(window.files()->save());
+    QTRY_VERIFY_WITH_TIMEOUT(window.idle() && !d.hasUnsavedChanges(), 60000);
+    const Session session = readSession((old + "/vase.glint").toStdString());
+    QCOMPARE(toQString(session.meshes.at(kMesh.toStdString()).string()), whole);
+    const Replay replayed = replay(session);
+    QVERIFY2(replayed.differences.empty() && replayed.compared > 0, "");
+  }
+
+  void depthMapsNormalMapsAndMasksAreLocatedAndRemembered() {
+    const QString scene = path("work/scene");
+    writeSceneWithFrameFiles(scene);
+    MainWindow window(coreEngine());
+    window.show();
+    window.open(scene + "/scene.json");
+    QTRY_VERIFY_WITH_TIMEOUT(window.document().scene() != nullptr, 20000);
+    computed(window);
+    InspectionRequest request = window.document().request();
+    request.train = "0-3";
+    window.document().setRequest(request, QStringLiteral("Hold out two"));
+    computed(window);
+    auto* unreadable = window.findChild<UnreadableFiles*>();
+    for (const FrameFile kind : kFrameFiles) QVERIFY(unreadable->all(kind).isEmpty());
+    coreEngine().save(window.document().toSave(), window.document().inspection().get(), (scene + "/own.glint").toStdString(), {});
+    const std::string inPlace = digestOf(*window.document().inspection());
+    window.document().undoStack()->undo();  // nothing is unsaved
+    for (const char* kind : {"depth", "masks"}) move(scene + '/' + kind, path("work/elsewhere/") + kind);
+    move(scene + "/normals", path("work/third"));
+
+    window.open(scene + "/own.glint");
+    QTRY_VERIFY_WITH_TIMEOUT(!window.document().sessionFile().isEmpty(), 20000);
+    computed(window);
+    auto* bar = window.findChild<MessageBar*>();
+    QTRY_VERIFY2_WITH_TIMEOUT(bar->text().startsWith("6 depth maps, 6 normal maps and 6 masks cannot be read: depth/0.png: "),
+                              qPrintable(bar->text()), 20000);
+    QVERIFY(unreadable->all().isEmpty());
+    QVERIFY2(window.findChild<Timeline*>()->strip()->unreadable().isEmpty(), "the photographs are there");
+    QCOMPARE(locate(window, path("work/elsewhere")), QStringLiteral("Where are the depth maps, normal maps and masks?"));
+    QTRY_VERIFY2_WITH_TIMEOUT(bar->text().startsWith("6 normal maps cannot be read: "), qPrintable(bar->text()), 60000);
+    computed(window);
+    QCOMPARE(locate(window, path("work/third")), QStringLiteral("Where are the normal maps?"));
+    QTRY_VERIFY_WITH_TIMEOUT(!bar->isVisible() && window.idle() && unreadable->all(FrameFile::Normals).isEmpty(), 60000);
+    computed(window);
+    QVERIFY(window.document().hasUnsavedChanges());
+    QCOMPARE(digestOf(*window.document().inspection()), inPlace);
+    const QString command = checkedCommand(window);
+    for (const QString& part :
+         {"depth=" + path("work/elsewhere"), "normals=" + path("work/third"), "masks=" + path("work/elsewhere")})
+      QVERIFY2(command.contains(" --files " + part), qPrintable(command));
+    // What would be recovered after a crash knows them, too.
+    coreEngine().autosave(window.document().toSave(), path("left.glint").toStdString());
+    QCOMPARE(openInput(path("left.glint").toStdString()).scene->folders, window.document().scene()->folders);
+
+    QVERIFY(window.files()->save());
+    QTRY_VERIFY_WITH_TIMEOUT(window.idle() && !window.document().hasUnsavedChanges(), 60000);
+    move(path("work"), path("moved"));
+    const QString session = path("moved/scene/own.glint");
+    QProcess program;
+    program.start(QStringLiteral(GLINT_CLI), {"replay", "--exact", session});
+    QVERIFY(program.waitForFinished(120000));
+    QVERIFY2(program.exitCode() == 0, program.readAllStandardError().constData());
+    window.open(session);
+    QTRY_COMPARE_WITH_TIMEOUT(window.document().sessionFile(), session, 20000);
+    computed(window);
+    for (const FrameFile kind : kFrameFiles) QVERIFY(unreadable->all(kind).isEmpty());
+    QVERIFY(!bar->isVisible() && !window.document().hasUnsavedChanges());
+    QCOMPARE(toQString(window.document().scene()->frames[0].mask.string()), path("moved/elsewhere/masks/0.png"));
+    QCOMPARE(toQString(window.document().scene()->frames[0].normals.string()), path("moved/third/0.png"));
+  }
+
+  void whatCouldBeOfTwoKindsIsAsked() {
+    const QString scene = path("scene"), elsewhere = path("elsewhere");
+    writeSceneWithFrameFiles(scene);
+    QVERIFY(QDir().mkpath(elsewhere));
+    for (const char* kind : {"normals", "masks"}) {
+      move(scene + '/' + kind + "/3.png", path("was-") + kind + "/3.png");
+      QVERIFY(QFile::copy(path("was-") + kind + "/3.png", elsewhere + "/3.png") || QFile::exists(elsewhere + "/3.png"));
+    }
+    MainWindow window(coreEngine());
+    window.show();
+    window.open(scene + "/scene.json");
+    QTRY_VERIFY_WITH_TIMEOUT(window.document().scene() != nullptr, 20000);
+    computed(window);
+    auto* bar = window.findChild<MessageBar*>();
+    QTRY_VERIFY2_WITH_TIMEOUT(bar->text().startsWith("1 normal map and 1 mask cannot be read: normals/3.png: "),
+                              qPrintable(bar->text()), 20000);
+    locate(window, elsewhere);
+    QMessageBox* question = nullptr;
+    QTRY_VERIFY_WITH_TIMEOUT((question = window.findChild<QMessageBox*>(QStringLiteral("whichFiles"))) != nullptr, 20000);
+    QVERIFY2(question->text().contains("normal maps or masks"), qPrintable(question->text()));
+    for (QAbstractButton* button : question->buttons())
+      if (button->text() == QStringLiteral("Masks")) QTest::mouseClick(button, Qt::LeftButton);
+    QTRY_COMPARE_WITH_TIMEOUT(toQString(window.document().scene()->frames[3].mask.string()), elsewhere + "/3.png", 20000);
+    computed(window);
+    QTRY_VERIFY2_WITH_TIMEOUT(bar->text().startsWith("1 normal map cannot be read: "), qPrintable(bar->text()), 20000);
+    // The normal map does not take the same file.
+    locate(window, elsewhere);
+    QTRY_VERIFY2_WITH_TIMEOUT(window.lastError().endsWith("holds no normal maps of this scene"), qPrintable(window.lastError()),
+                              20000);
+  }
+
   void theCommandNamesWherePhotographsAre() {
     const QString scene = path("scene"), elsewhere = path("else where");
     copyFolder(QStringLiteral(GLINT_SOURCE_DIR "/sessions/plane"), scene);
@@ -252,7 +405,7 @@ class RelinkedTest : public QObject {
     move(scene + "/frames", elsewhere);
     QTRY_VERIFY(window.idle());
     window.open(scene + "/plane.glint");
-    auto* unreadable = window.findChild<UnreadablePhotographs*>();
+    auto* unreadable = window.findChild<UnreadableFiles*>();
     QTRY_VERIFY_WITH_TIMEOUT(window.idle() && !unreadable->all().isEmpty(), 60000);
     unreadable->locateIn(elsewhere);
     QTRY_VERIFY_WITH_TIMEOUT(window.idle() && unreadable->all().isEmpty(), 60000);

@@ -18,7 +18,7 @@
 #include "gui/window/file_actions.h"
 #include "gui/window/main_window.h"
 #include "gui/window/message_bar.h"
-#include "gui/window/unreadable_photographs.h"
+#include "gui/window/unreadable_files.h"
 #include "tests/gui/fixture.h"
 
 namespace glint::gui {
@@ -48,7 +48,7 @@ class UnreadableTest : public QObject {
     window.open(scene + "/plane.glint");
     Document& d = window.document();
     QTRY_VERIFY_WITH_TIMEOUT(d.inspection() && window.idle(), 60000);
-    auto* unreadable = window.findChild<UnreadablePhotographs*>();
+    auto* unreadable = window.findChild<UnreadableFiles*>();
     QCOMPARE(unreadable->all().keys(), (QList<int>{2, 4}));
     QVERIFY2(unreadable->all()[2].startsWith("frames/0002.png: ") && unreadable->all()[2].contains("No such file"),
              qPrintable(unreadable->all()[2]));
@@ -83,7 +83,7 @@ class UnreadableTest : public QObject {
 
     QVERIFY(list->isEnabled());
     list->trigger();
-    auto* dialog = window.findChild<QDialog*>(QStringLiteral("unreadablePhotographs"));
+    auto* dialog = window.findChild<QDialog*>(QStringLiteral("unreadableFiles"));
     QVERIFY(dialog && dialog->isVisible());
     auto* rows = dialog->findChild<QTreeWidget*>();
     QCOMPARE(rows->topLevelItemCount(), 2);
@@ -111,7 +111,8 @@ class UnreadableTest : public QObject {
     QCOMPARE(QString::fromStdString(again.scene->frames[2].image.string()), elsewhere + "/0002.png");
     QFile saved(scene + "/plane.glint");
     QVERIFY(saved.open(QIODevice::ReadOnly));
-    QVERIFY(saved.readAll().contains("\"photographs\": \"../elsewhere\""));
+    const QByteArray text = saved.readAll();
+    QVERIFY2(text.contains("\"of\": \"photographs\"") && text.contains("\"folder\": \"../elsewhere\""), text.constData());
     saved.close();
     QVERIFY(QDir().rename(folder_.filePath("scene"), folder_.filePath("moved")));
     const Replay replayed = replay(readSession(folder_.filePath("moved/plane.glint").toStdString()));
@@ -169,7 +170,7 @@ class UnreadableTest : public QObject {
     window.show();
     window.open(QString::fromStdString(opened.path));
     QTRY_VERIFY_WITH_TIMEOUT(window.document().inspection() && window.idle(), 20000);
-    auto* unreadable = window.findChild<UnreadablePhotographs*>();
+    auto* unreadable = window.findChild<UnreadableFiles*>();
     QCOMPARE(unreadable->all().keys(), QList<int>{3});
     // The stand-in for the pipeline claims to have read all others; the frame view knows better, and leaves other messages alone.
     window.open(QStringLiteral("nowhere.json"));
@@ -187,7 +188,7 @@ class UnreadableTest : public QObject {
     window.show();
     window.open(QStringLiteral(GLINT_SOURCE_DIR "/sessions/plane/plane.glint"));
     QTRY_VERIFY_WITH_TIMEOUT(window.document().inspection() && window.idle(), 60000);
-    QVERIFY(window.findChild<UnreadablePhotographs*>()->all().isEmpty());
+    QVERIFY(window.findChild<UnreadableFiles*>()->all().isEmpty());
     QTRY_VERIFY_WITH_TIMEOUT(!window.findChild<ChangedInputs*>()->busy(), 60000);
     QVERIFY(window.findChild<ChangedInputs*>()->all().isEmpty());
     QVERIFY(!window.findChild<MessageBar*>()->isVisible());

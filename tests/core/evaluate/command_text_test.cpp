@@ -47,13 +47,14 @@ TEST(CommandText, EverythingThatHasAFlagIsThere) {
   q.truthFolder = "the truth";
   Scene scene = sceneIn("a b.json");
   scene.allowOutsidePaths = true;
-  scene.photographs = "/else where";
+  scene.folders = {{FrameFile::Photograph, "/else where"}, {FrameFile::Mask, "/m s"}, {FrameFile::Photograph, "/p2"}};
   scene.meshes = {{"it's.ply", "/m/it's.ply"}, {"m/b.ply", "/m/b2.ply"}};
   EXPECT_EQ(
       *commandOf(scene, q),
       "glint evaluate 'a b.json' --models canonical,limit-angle --train spread:6 --source image --set detect.level=0.1 "
       "--set fit.solver=anchored "
       "--set light.refine_poses=true --noise-px 0.3 --seed 7 --truth 'the truth' --allow-outside --photographs '/else where' "
+      "--files 'masks=/m s' --photographs /p2 "
       "--mesh 'it'\\''s.ply=/m/it'\\''s.ply' --mesh m/b.ply=/m/b2.ply");
 }
 

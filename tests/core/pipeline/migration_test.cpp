@@ -98,7 +98,7 @@ TEST(Migration, WrittenAgainItIsOfThisVersionAndMeansTheSame) {
   for (const char* name : {"version-1.glint", "version-2.glint", "version-2-what-if.glint"}) {
     const Session s = readSession(fixture(1).parent_path() / name);
     writeSession(s, folder / "again.glint");
-    EXPECT_THAT(contentOf(folder / "again.glint"), HasSubstr("\"glint_session\": 2"));
+    EXPECT_THAT(contentOf(folder / "again.glint"), HasSubstr("\"glint_session\": 3"));
     const Session again = readSession(folder / "again.glint");
     EXPECT_EQ(again.request, s.request) << name;
     EXPECT_EQ(again.view.layers, s.view.layers);
@@ -116,10 +116,10 @@ TEST(Migration, WrittenAgainItIsOfThisVersionAndMeansTheSame) {
 TEST(Migration, ANewerOneIsRefusedAsNewerWhateverElseIsInIt) {
   const TemporaryFolder folder;
   for (const char* rest : {"", ", \"input\": 7, \"request\": {\"brand\": \"new\"}"}) {
-    const fs::path file = folder.write("x.glint", std::string("{\"glint_session\": 3") + rest + "}");
+    const fs::path file = folder.write("x.glint", std::string("{\"glint_session\": 4") + rest + "}");
     const std::string message = inputErrorOf([&] { readSession(file); });
     EXPECT_THAT(message, HasSubstr(file.string() + ": glint_session: "));
-    EXPECT_THAT(message, HasSubstr("version 3 is newer than this program understands (2)"));
+    EXPECT_THAT(message, HasSubstr("version 4 is newer than this program understands (3)"));
   }
 }
 

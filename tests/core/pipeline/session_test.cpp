@@ -48,6 +48,7 @@ Session example(const TemporaryFolder& folder) {
   s.view.layers = {{"surface", false}, {"light", true}};
   s.view.options = {{"frame/gamma", "1.8"}, {"scene/colour-by", "error"}};
   s.view.cameras["scene"] = {{1, 2, 3}, {0.1, 0.2, 0.3}, {0, 0, 1}, 35};
+  s.view.moreCameras = {{{4, 5, 6}, {0, 0, 1}, {0, 1, 0}, 20, true}, {{7, 8, 9}, {0, 0, 0}, {1, 0, 0}, 40}};
   s.view.frame = "b";
   s.view.model = "canonical";
   s.view.highlight = 1;
@@ -82,6 +83,10 @@ TEST(Session, RoundTripKeepsEverything) {
   EXPECT_EQ(r.view.options, s.view.options);
   EXPECT_EQ(r.view.cameras.at("scene").focalPoint, Eigen::Vector3d(0.1, 0.2, 0.3));
   EXPECT_EQ(r.view.cameras.at("scene").viewAngleDeg, 35);
+  ASSERT_EQ(r.view.moreCameras.size(), 2u);
+  EXPECT_EQ(r.view.moreCameras[0].position, Eigen::Vector3d(4, 5, 6));
+  EXPECT_TRUE(r.view.moreCameras[0].parallel);
+  EXPECT_EQ(r.view.moreCameras[1].up, Eigen::Vector3d(1, 0, 0));
   EXPECT_EQ(r.view.frame, "b");
   EXPECT_EQ(r.view.highlight, 1);
   EXPECT_EQ(r.notes, s.notes);
@@ -198,8 +203,8 @@ TEST_P(BadSessions, AreOneLineWithFilePlaceAndReason) {
 INSTANTIATE_TEST_SUITE_P(
     Session, BadSessions,
     testing::Values(
-        BadSession{"\"glint_session\": 2", "\"glint_session\": 3", "glint_session: ", "newer"},
-        BadSession{"\"glint_session\": 2", "\"glint_session\": 0", "glint_session: ", "never existed"},
+        BadSession{"\"glint_session\": 3", "\"glint_session\": 4", "glint_session: ", "newer"},
+        BadSession{"\"glint_session\": 3", "\"glint_session\": 0", "glint_session: ", "never existed"},
         BadSession{"\"train\"", "\"trian\"", "request.train: ", "missing"},
         BadSession{"\"source\": \"image\"", "\"source\": \"video\"", "request.source: ", "'video'"},
         BadSession{"\"predict.directions\": 72", "\"predict.directions\": 72.5",

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <functional>
+#include <nlohmann/json.hpp>
 
 #include "core/pipeline/session.h"
 #include "core/scene/scene.h"
@@ -176,14 +177,61 @@ TEST(RelinkedMeshes, AnotherFileThanTheSessionWasMadeWithIsTold) {
   }
 }
 
-TEST(RelinkedPhotographs, AreKeptWhileTheirFolderIsNotToBeHad) {
+TEST(RelinkedFrameFiles, AreKeptWhileTheirFolderIsNotToBeHad) {
   const TemporaryFolder folder;
   Session session;
   session.input = folder.write("scene.json", minimalScene());
-  session.photographs = folder / "disk";
+  session.folders = {{FrameFile::Photograph, folder / "disk"}};
   writeSession(session, folder / "x.glint");
-  EXPECT_EQ(openSession(folder / "x.glint").scene->photographs, folder / "disk");
-  EXPECT_EQ(readScene(folder / "x.glint").photographs, folder / "disk");
+  EXPECT_EQ(openSession(folder / "x.glint").scene->folders, session.folders);
+  EXPECT_EQ(readScene(folder / "x.glint").folders, session.folders);
+}
+
+TEST(RelinkedFrameFiles, OfEveryKindAreKeptRelativeToTheSession) {
+  const TemporaryFolder folder, moved;
+  nlohmann::json json = nlohmann::json::parse(minimalScene());
+  for (const char* key : {"image", "depth", "normals", "mask"}) json["frames"][0][key] = std::string(key) + "s/0.png";
+  Session session;
+  session.input = folder.write("data/scene.json", json.dump());
+  for (const char* name : {"a/depths/0.png", "a/masks/0.png", "b/0.png", "c/0.png"}) folder.write(name, "x");
+  session.folders = {{FrameFile::Mask, folder / "a"},
+                     {FrameFile::Depth, folder / "a"},
+                     {FrameFile::Normals, folder / "b"},
+                     {FrameFile::Photograph, folder / "gone"},
+                     {FrameFile::Photograph, folder / "c"}};
+  fs::create_directories(folder / "sessions");
+  writeSession(session, folder / "sessions/x.glint");
+  EXPECT_THAT(contentOf(folder / "sessions/x.glint"), HasSubstr("\"folder\": \"../a\""));
+  fs::copy(folder.path(), moved.path(), fs::copy_options::recursive);
+  fs::remove_all(folder.path());
+  const OpenedSession opened = openSession(moved / "sessions/x.glint");
+  for (const Scene& scene : {*opened.scene, readScene(moved / "sessions/x.glint")}) {
+    const Frame& f = scene.frames[0];
+    EXPECT_EQ(f.image, moved / "c/0.png");
+    EXPECT_EQ(f.depth, moved / "a/depths/0.png");
+    EXPECT_EQ(f.normals, moved / "b/0.png");
+    EXPECT_EQ(f.mask, moved / "a/masks/0.png");
+    EXPECT_EQ(scene.folders.size(), 5u);
+  }
+}
+
+TEST(RelinkedFrameFiles, TheOneFolderOfAnOlderSessionIsTheFirst) {
+  const TemporaryFolder folder;
+  folder.write("scene.json", minimalScene());
+  const std::string rest = "\"request\": {\"models\": [], \"train\": \"0\"}}";
+  const fs::path old =
+      folder.write("old.glint", "{\"glint_session\": 2, \"input\": {\"path\": \"scene.json\", \"photographs\": \"p\"}, " + rest);
+  const std::vector<FilesFolder> one{{FrameFile::Photograph, folder / "p"}};
+  EXPECT_EQ(readSession(old).folders, one);
+  EXPECT_EQ(readScene(old).folders, one);
+  writeSession(readSession(old), folder / "new.glint");
+  EXPECT_EQ(readSession(folder / "new.glint").folders, one);
+  EXPECT_EQ(contentOf(folder / "new.glint").find("\"photographs\":"), std::string::npos);
+  const fs::path wrong = folder.write("wrong.glint",
+                                      "{\"glint_session\": 3, \"input\": {\"path\": \"scene.json\", \"folders\": [{\"of\": "
+                                      "\"mask\", \"folder\": \"p\"}]}, " +
+                                          rest);
+  EXPECT_THAT(inputErrorOf([&] { readSession(wrong); }), HasSubstr("input.folders[0].of: 'mask' is none of"));
 }
 
 }  // namespace
