@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/diagnostics/influence.h"
 #include "core/pipeline/inspection.h"
@@ -33,7 +34,7 @@ struct Opened {
   std::map<std::string, bool> layers;          ///< visibility by layer name, where it differs from the default
   std::map<std::string, std::string> options;  ///< how views show things, see ViewState
   std::string layout;                          ///< "" = keep the window's
-  std::optional<viz::ViewPoint> viewPoint;     ///< of the 3D view; none = show everything
+  std::vector<viz::ViewPoint> viewPoints;      ///< of the 3D views, those beyond the last as the first; empty = show everything
   std::shared_ptr<const Tradeoff> tradeoff;    ///< measured speed against accuracy; null = none
   std::shared_ptr<const Session> session;      ///< what the file said besides (notes, unknown keys); null for a plain scene
 };

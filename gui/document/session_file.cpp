@@ -30,6 +30,9 @@ fs::path sessionAt(const fs::path& path) {
   return found.size() == 1 ? found.front() : fs::path();
 }
 
+viz::ViewPoint viewPointOf(const SessionCamera& c) { return {c.position, c.focalPoint, c.up, c.viewAngleDeg, c.parallel}; }
+SessionCamera cameraOf(const viz::ViewPoint& v) { return {v.position, v.focalPoint, v.up, v.viewAngleDeg, v.parallel}; }
+
 int frameNumber(const Scene& scene, const std::string& id) {
   const auto it = std::find_if(scene.frames.begin(), scene.frames.end(), [&](const Frame& f) { return f.id == id; });
   return it == scene.frames.end() ? 0 : int(it - scene.frames.begin());
@@ -71,12 +74,11 @@ Opened openInput(const std::string& path, const Relinked& instead) {
   opened.options = view.options;
   opened.layout = view.layout;
   // Kept views are options while they are on screen, so that keeping one can be undone, and cameras in the file.
-  for (const auto& [name, c] : view.cameras) {
-    const viz::ViewPoint seen{c.position, c.focalPoint, c.up, c.viewAngleDeg, c.parallel};
-    if (name == kSceneView)
-      opened.viewPoint = seen;
-    else
-      opened.options[kSavedView + name] = toText(seen);
+  for (const auto& [name, camera] : view.cameras)
+    if (name != kSceneView) opened.options[kSavedView + name] = toText(viewPointOf(camera));
+  if (const auto first = view.cameras.find(kSceneView); first != view.cameras.end()) {
+    opened.viewPoints = {viewPointOf(first->second)};
+    for (const SessionCamera& camera : view.moreCameras) opened.viewPoints.push_back(viewPointOf(camera));
   }
   if (read.session.tradeoff) opened.tradeoff = std::make_shared<const Tradeoff>(*read.session.tradeoff);
   opened.session = std::make_shared<const Session>(std::move(read.session));
@@ -103,15 +105,17 @@ void addState(Session& session, const Opened& opened) {
     if (name.rfind(kept, 0) != 0)
       session.view.options[name] = value;
     else if (const std::optional<viz::ViewPoint> v = viewPointFromText(value))
-      session.view.cameras[name.substr(kept.size())] = {v->position, v->focalPoint, v->up, v->viewAngleDeg, v->parallel};
+      session.view.cameras[name.substr(kept.size())] = cameraOf(*v);
   }
   session.view.frame = scene.frames.at(std::size_t(opened.selection.frame)).id;
   session.view.model = opened.selection.model;
   session.view.light = opened.selection.light;
   session.view.highlight = opened.selection.highlight;
-  if (opened.viewPoint)
-    session.view.cameras[kSceneView] = {opened.viewPoint->position, opened.viewPoint->focalPoint, opened.viewPoint->up,
-                                        opened.viewPoint->viewAngleDeg, opened.viewPoint->parallel};
+  for (const viz::ViewPoint& seen : opened.viewPoints)
+    if (&seen == &opened.viewPoints.front())
+      session.view.cameras[kSceneView] = cameraOf(seen);
+    else
+      session.view.moreCameras.push_back(cameraOf(seen));
 }
 }  // namespace
 

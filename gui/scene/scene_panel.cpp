@@ -149,8 +149,11 @@ void ScenePanel::buildBars() {
 
 viz::SceneView& ScenePanel::view() { return views_->view(); }
 
-std::optional<viz::ViewPoint> ScenePanel::viewPoint() const {
-  return framed_ || movedBeforeResults() ? std::optional(views_->view().viewPoint()) : firstViewPoint_;
+std::vector<viz::ViewPoint> ScenePanel::viewPoints() const {
+  if (!framed_ && !movedBeforeResults()) return firstViewPoints_;
+  std::vector<viz::ViewPoint> places = views_->places();
+  places.resize(sceneOptions(document_).linked ? 1 : std::size_t(views_->viewCount()));
+  return places;
 }
 
 void ScenePanel::renderNow() { views_->renderNow(); }
@@ -173,16 +176,16 @@ void ScenePanel::showScene() {
   showFirst(knownBeforeResults(document_));
 }
 
-void ScenePanel::setViewPoint(const std::optional<viz::ViewPoint>& viewPoint) {
-  firstViewPoint_ = viewPoint;
+void ScenePanel::setViewPoints(const std::vector<viz::ViewPoint>& viewPoints) {
+  firstViewPoints_ = viewPoints;
   if (!beforeResults_.empty() && !framed_) frameFirst();
 }
 
 void ScenePanel::frameFirst() {
   if (movedBeforeResults()) return;
   for (int i = 0; i < views_->viewCount(); ++i) {
-    if (firstViewPoint_)
-      views_->view(i).setViewPoint(*firstViewPoint_);
+    if (!firstViewPoints_.empty())
+      views_->view(i).setViewPoint(firstViewPoints_[std::size_t(i) < firstViewPoints_.size() ? std::size_t(i) : 0]);
     else
       views_->view(i).frameAll();
   }

@@ -31,7 +31,7 @@ class ScenePanel : public QWidget {
  public:
   explicit ScenePanel(Document& document, QWidget* parent = nullptr);
   ~ScenePanel() override;
-  /// The first view, whose camera sessions store.
+  /// The first view.
   viz::SceneView& view();
   SceneViews& views() { return *views_; }
   /// Also fills the toolbar, whose buttons are these actions.
@@ -40,10 +40,11 @@ class ScenePanel : public QWidget {
   void renderNow();
   void setDark(bool dark);
   bool busy() const;  ///< photographs are on their way
-  /// Where the next results are looked at from; none = show everything.
-  void setViewPoint(const std::optional<viz::ViewPoint>& viewPoint);
-  /// The 3D camera to save: the one on screen, and before there are results the one that they will be looked at from.
-  std::optional<viz::ViewPoint> viewPoint() const;
+  /// Where the views look at the next results from, those beyond the last as the first; empty = show everything.
+  void setViewPoints(const std::vector<viz::ViewPoint>& viewPoints);
+  /// The 3D cameras to save: those on screen (one where they are linked), and before there are results those that they will be
+  /// looked at from.
+  std::vector<viz::ViewPoint> viewPoints() const;
   QStringList savedViews() const;
 
  public slots:
@@ -108,7 +109,7 @@ class ScenePanel : public QWidget {
   int gesture_ = 0;
   std::optional<WhatIf> lampStart_;  ///< while a lamp is dragged
   bool framed_ = false;              ///< the picture was framed since the scene was opened
-  std::optional<viz::ViewPoint> firstViewPoint_;
+  std::vector<viz::ViewPoint> firstViewPoints_;
   std::vector<viz::ViewPoint> beforeResults_;  ///< where the views were put before there were results; empty = nothing was shown
 };
 

@@ -92,7 +92,7 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   connect(files_, &FileActions::recentChanged, this, [this] { start_->setRecent(files_->recent()); });
   connect(files_, &FileActions::viewOpened, this, [this](const OpenedPtr& opened) {
     if (!opened->layout.empty()) applyLayout(toQString(opened->layout));
-    scene_->setViewPoint(opened->viewPoint);
+    scene_->setViewPoints(opened->viewPoints);
   });
   for (const auto signal : {&ExportActions::problem, &ExportActions::message})
     connect(exports_, signal, this, [this, signal](const QString& line) {
@@ -437,7 +437,7 @@ void MainWindow::setTheme(Theme theme) {
 
 void MainWindow::addView(Opened& opened) const {
   opened.layout = layout_->name().toStdString();
-  opened.viewPoint = scene_->viewPoint();
+  opened.viewPoints = scene_->viewPoints();
 }
 
 Opened MainWindow::snapshot() const {

@@ -47,7 +47,7 @@ class PickingTest : public QObject {
     opened.selection.frame = kStart;
     opened.layers.clear();
     opened.options.clear();
-    opened.viewPoint.reset();
+    opened.viewPoints.clear();
     opened_ = opened;
     inspection_ = std::make_shared<const Inspection>(inspect(opened.scene, opened.request));
   }

@@ -95,7 +95,7 @@ class ProgramTest : public QObject {
     document.select({1, "canonical", 0});
     Opened saved = document.toSave();
     saved.layout = "compare";
-    saved.viewPoint = viz::ViewPoint{{1, 2, 3}, {0, 0, 1}, {0, 1, 0}, 25};
+    saved.viewPoints = {{{1, 2, 3}, {0, 0, 1}, {0, 1, 0}, 25}};
     engine.save(saved, nullptr, file.toStdString(), {});
     const Opened back = engine.open(file.toStdString(), {});
     QVERIFY(back.isSession);
@@ -105,7 +105,8 @@ class ProgramTest : public QObject {
     QCOMPARE(back.selection.model, std::string("canonical"));
     QCOMPARE(back.selection.highlight, 0);
     QCOMPARE(back.layout, std::string("compare"));
-    QVERIFY(back.viewPoint && back.viewPoint->position == Eigen::Vector3d(1, 2, 3) && back.viewPoint->viewAngleDeg == 25);
+    QCOMPARE(int(back.viewPoints.size()), 1);
+    QVERIFY(back.viewPoints[0].position == Eigen::Vector3d(1, 2, 3) && back.viewPoints[0].viewAngleDeg == 25);
     QCOMPARE(engine.open(folder_.path().toStdString(), {}).isSession, false);  // a scene.json beside it comes first
   }
 

@@ -14,6 +14,7 @@
 #include "gui/base/text.h"
 #include "gui/scene/scene_options.h"
 #include "gui/scene/scene_panel.h"
+#include "gui/scene/scene_views.h"
 #include "gui/window/main_window.h"
 #include "gui/window/message_bar.h"
 #include "tests/gui/fixture.h"
@@ -85,6 +86,51 @@ class SessionTest : public QObject {
     QVERIFY(document.state().layers.count("rays"));
   }
 
+  void everyUnlinkedViewComesBackWithItsOwnCamera() {
+    const QString file = folder_.filePath(QStringLiteral("four.glint"));
+    const Engine engine = coreEngine();
+    Opened opened = engine.open(GLINT_SOURCE_DIR "/sessions/plane/plane.glint", {});
+    opened.options["scene/views"] = "4";
+    opened.options["scene/linked"] = "0";
+    opened.viewPoints = {{{1, -2, 3}, {0, 0, 0.1}, {0, 1, 0}, 25}};
+    engine.save(opened, nullptr, file.toStdString(), {});
+    const auto seen = [](MainWindow& window) { return window.findChild<ScenePanel*>()->viewPoints(); };
+    const auto same = [](const std::vector<viz::ViewPoint>& a, const std::vector<viz::ViewPoint>& b) {
+      constexpr double kRounding = 1e-12;  // a camera normalises its directions again
+      return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const viz::ViewPoint& x, const viz::ViewPoint& y) {
+        return (x.position - y.position).norm() < kRounding && (x.focalPoint - y.focalPoint).norm() < kRounding &&
+               (x.up - y.up).norm() < kRounding && std::abs(x.viewAngleDeg - y.viewAngleDeg) < kRounding;
+      });
+    };
+    std::vector<viz::ViewPoint> saved;
+    {
+      MainWindow window(engine);
+      openAndWait(window, file);
+      auto* scene = window.findChild<ScenePanel*>();
+      QCOMPARE(scene->views().viewCount(), 4);
+      // The file has one camera, as those of older programs: for all.
+      QVERIFY(same(seen(window), std::vector(4, seen(window)[0])));
+      for (int i = 0; i < 4; ++i) scene->views().view(i).setViewPoint({{1.5, -2, 1.0 + i}, {0, 0, 0.1}, {0, 1, 0}, 20.0 + i});
+      saved = seen(window);
+      save(window);
+      QTRY_VERIFY_WITH_TIMEOUT(window.idle(), 60000);
+    }
+    MainWindow window(engine);
+    openAndWait(window, file);
+    QVERIFY(same(seen(window), saved));
+    // One view large for a moment: they come back where the session had them.
+    Actions& actions = window.actions();
+    actions.find(QStringLiteral("view.views-1"))->trigger();
+    QTRY_VERIFY(window.idle());
+    QCOMPARE(seen(window).size(), std::size_t(1));
+    actions.find(QStringLiteral("view.views-4"))->trigger();
+    QTRY_VERIFY(window.idle());
+    QVERIFY(same(seen(window), saved));
+    actions.find(QStringLiteral("view.link-views"))->trigger();
+    QTRY_VERIFY(window.idle());
+    QCOMPARE(seen(window).size(), std::size_t(1));  // linked ones have one camera
+  }
+
   void keptViewsAreCamerasOfTheFile() {
     const QString file = folder_.filePath(QStringLiteral("views.glint"));
     const Engine engine = coreEngine();
@@ -109,7 +155,7 @@ class SessionTest : public QObject {
     const QString file = folder_.filePath(QStringLiteral("kept.glint"));
     const Engine real = coreEngine();
     Opened opened = real.open(GLINT_SOURCE_DIR "/sessions/plane/plane.glint", {});
-    opened.viewPoint = viz::ViewPoint{{1, 2, 3}, {0, 0, 0}, {0, 1, 0}, 20};
+    opened.viewPoints = {{{1, 2, 3}, {0, 0, 0}, {0, 1, 0}, 20}, {{3, 2, 1}, {0, 0, 0}, {0, 1, 0}, 20}};
     real.save(opened, nullptr, file.toStdString(), {});
     Engine engine = real;
     engine.inspect = [](std::shared_ptr<const Scene>, const InspectionRequest&, const ProgressFn&,
@@ -121,7 +167,8 @@ class SessionTest : public QObject {
     save(window);
     QTRY_VERIFY(window.idle());
     const Opened back = real.open(file.toStdString(), {});
-    QVERIFY(back.viewPoint && back.viewPoint->position == Eigen::Vector3d(1, 2, 3));
+    QCOMPARE(int(back.viewPoints.size()), 2);
+    QVERIFY(back.viewPoints[0].position == Eigen::Vector3d(1, 2, 3) && back.viewPoints[1].position == Eigen::Vector3d(3, 2, 1));
     QVERIFY2(window.statusBar()->currentMessage().contains("without results"), qPrintable(window.statusBar()->currentMessage()));
   }
 
