@@ -144,6 +144,10 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   auto* recovery = new Recovery(
       engine_, document_, [this] { return snapshot(); }, *files_, *messageBar_, this);
   connect(recovery, &Recovery::problem, this, &MainWindow::log);
+  auto* history = findChild<QUndoView*>(QStringLiteral("historyList"));
+  connect(recovery, &Recovery::opened, history, [history](bool recovered) {
+    history->setEmptyLabel(recovered ? tr("As recovered; earlier steps are not kept") : tr("As opened"));
+  });
   recovery->offer();
   start_->setRecent(files_->recent());
   showTitle();

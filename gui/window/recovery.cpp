@@ -22,6 +22,7 @@ Recovery::Recovery(const Engine& engine, Document& document, std::function<Opene
   connect(&autosave_, &Autosave::problem, this, &Recovery::problem);
   connect(&document, &Document::sceneOpened, this, [this] {
     const auto found = std::exchange(opening_, {});
+    emit opened(found.has_value());
     if (!found) return;
     QTimer::singleShot(0, this, [this, found] {
       autosave_.flush();  // what was recovered is in this program's own file before the other one goes

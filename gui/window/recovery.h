@@ -23,6 +23,7 @@ class Recovery : public QObject {
 
  signals:
   void problem(const QString& oneLine);
+  void opened(bool recovered);  ///< a scene was opened; recovered: the undo history of what was on screen then is not kept
 
  private:
   Autosave autosave_;

@@ -7,6 +7,7 @@
 #include <QProcess>
 #include <QPushButton>
 #include <QTemporaryDir>
+#include <QUndoView>
 #include <csignal>
 
 #include "gui/base/text.h"
@@ -80,6 +81,8 @@ class RecoveryTest : public QObject {
     QCOMPARE(window.document().role(5), FrameRole::Excluded);
     QVERIFY(window.document().layerVisible("rays"));
     QVERIFY(window.document().hasUnsavedChanges());
+    const auto* history = window.findChild<QUndoView*>(QStringLiteral("historyList"));
+    QCOMPARE(history->emptyLabel(), QStringLiteral("As recovered; earlier steps are not kept"));
     QCOMPARE(QFileInfo(window.document().sessionFile()).canonicalFilePath(), QFileInfo(kSession).canonicalFilePath());
     // This program keeps it now; the dead one's file is gone, and nobody is offered it twice.
     Autosave* autosave = window.findChild<Autosave*>();
@@ -95,6 +98,7 @@ class RecoveryTest : public QObject {
       MainWindow window(coreEngine());
       window.show();
       openAndWait(window, kSession);
+      QCOMPARE(window.findChild<QUndoView*>(QStringLiteral("historyList"))->emptyLabel(), QStringLiteral("As opened"));
       Autosave* autosave = window.findChild<Autosave*>();
       file = autosave->file();
       window.document().setSetting("detect.level", 0.4);
