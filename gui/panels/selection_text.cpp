@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "core/diagnostics/polar_residual.h"
+#include "core/scene/scene_files.h"
 #include "gui/base/text.h"
 #include "gui/base/unit_text.h"
 
@@ -200,6 +201,7 @@ std::vector<NumberGroup> describeSelection(const Inspection& inspection, const v
     if (light.empty() || id == light || id.rfind(light + "@", 0) == 0) groups.push_back(lightGroup(id, estimate));
   for (const auto& [id, failure] : inspection.lightFailures)
     groups.push_back({QObject::tr("Light %1").arg(toQString(id)), toQString(failure.message())});
+  for (NumberGroup& group : groups) group.lines = toQString(withoutFolder(group.lines.toStdString(), *inspection.scene));
   return groups;
 }
 

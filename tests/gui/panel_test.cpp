@@ -12,6 +12,7 @@
 #include "gui/base/text.h"
 #include "gui/document/document.h"
 #include "gui/panels/parameter_panel.h"
+#include "gui/panels/selection_text.h"
 #include "tests/gui/fixture.h"
 
 namespace glint::gui {
@@ -132,6 +133,17 @@ class PanelTest : public QObject {
       QCOMPARE(scale.value(SliderScale::kPositions), spec.max);
       for (int p = 1; p <= SliderScale::kPositions; ++p) QVERIFY2(scale.value(p) >= scale.value(p - 1), spec.key.c_str());
     }
+  }
+
+  void numbersNameFilesWithinTheSceneWithoutItsFolder() {
+    Inspection inspection = drawnCircles(document_->sharedScene(), document_->request());
+    const std::string folder = document_->scene()->folder.string();
+    inspection.evidence[0].highlights.clear();
+    inspection.evidence[0].failure = Failure{Reason::FrameUnreadable, folder + "/0000.png: cannot be read"};
+    QString all;
+    for (const NumberGroup& group : describeSelection(inspection, {0, "canonical"}, "canonical")) all += group.lines;
+    QVERIFY2(all.contains("unreadable: 0000.png: cannot be read"), qPrintable(all));
+    QVERIFY(!all.contains(toQString(folder)));
   }
 
  private:
