@@ -419,7 +419,7 @@ void ellipsoidStep(const Case& c, ExplainStep& step) {
     return;
   }
   const ModelFit& f = *c.fit->fit;
-  step.numbers.push_back(one("", "views that were used", double(f.frames.size())));
+  step.numbers.push_back(one("", "highlights that were used", double(f.frames.size())));
   if (f.ellipsoid) {
     step.numbers.push_back(point("c", "centre", f.ellipsoid->centre()));
     step.numbers.push_back(point("a, b, c", "semi-axes", f.ellipsoid->semiAxes()));

@@ -78,8 +78,8 @@ SceneTree::SceneTree(Document& document, QWidget* parent)
   head->setSectionResizeMode(SceneTreeModel::Name, QHeaderView::Stretch);
   head->setSectionResizeMode(SceneTreeModel::Detail, QHeaderView::Interactive);
   head->setSectionResizeMode(SceneTreeModel::Effect, QHeaderView::Interactive);
-  head->resizeSection(SceneTreeModel::Detail, fontMetrics().horizontalAdvance(tr("excluded")) + 22);
-  head->resizeSection(SceneTreeModel::Effect, fontMetrics().horizontalAdvance(QStringLiteral("+10.00")) + 20);
+  head->resizeSection(SceneTreeModel::Detail, fontMetrics().horizontalAdvance(tr("excluded")) + 19);
+  head->resizeSection(SceneTreeModel::Effect, fontMetrics().horizontalAdvance(tr("Helps, %")) + 14);
   tree_->sortByColumn(SceneTreeModel::Name, Qt::AscendingOrder);
   column->addWidget(tree_, 1);
 
@@ -101,6 +101,8 @@ SceneTree::SceneTree(Document& document, QWidget* parent)
   connect(&document_, &Document::selectionChanged, this, &SceneTree::followDocument);
   // Results bring rows, which push the others away.
   connect(shown_, &QAbstractItemModel::rowsInserted, this, [this] {
+    const QModelIndex models = shown_->mapFromSource(model_->groupOf(Kind::Ellipsoid));
+    for (int i = 0; i < shown_->rowCount(models); ++i) tree_->setFirstColumnSpanned(i, models, true);
     if (!tree_->hasFocus()) keepInSight();
   });
   connect(model_, &SceneTreeModel::effectsChanged, this, &SceneTree::showColumns);

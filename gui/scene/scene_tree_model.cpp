@@ -5,6 +5,7 @@
 #include <QGuiApplication>
 #include <QPalette>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/diagnostics/influence.h"
@@ -13,7 +14,6 @@
 #include "gui/base/theme.h"
 #include "gui/scene/hidden_objects_option.h"
 #include "gui/scene/scene_options.h"
-#include "viz/camera_colours.h"
 
 namespace glint::gui {
 
@@ -451,25 +451,26 @@ QVariant SceneTreeModel::groupData(const Group& group, int column, int role) con
 QVariant SceneTreeModel::objectData(const SceneObject& o, const Group& group, int row, int column, int role) const {
   switch (role) {
     case Qt::DisplayRole:
-      if (column == Detail) return detailOf(o);
+      if (column == Detail) return o.kind == Kind::Ellipsoid ? QString() : detailOf(o);
       if (column == Effect) {
         if (o.kind != Kind::Camera || !effects_.count(o.frame)) return {};
         const double points = effects_.at(o.frame);
-        const QString text = QString::number(points, 'f', std::abs(points) < 10 ? 2 : 0);
+        // Two digits of the largest, so that the column lines up and differences show.
+        const int decimals = mostEffect_ > 0 ? std::clamp(1 - int(std::floor(std::log10(mostEffect_))), 0, 6) : 0;
+        const QString text = QString::number(points, 'f', decimals);
         return points > 0 ? QLatin1Char('+') + text : text;
       }
       if (o.kind == Kind::Camera) return toQString(document_.scene()->frames[std::size_t(o.frame)].id);
       if (o.kind == Kind::Highlight) return tr("highlight %1").arg(o.highlight);
       if (o.kind == Kind::Surface) return o.key == viz::HiddenObjects::kDepthMaps ? tr("depth maps") : toQString(o.key);
-      return o.kind == Kind::Light ? toQString(o.key) : nameOf(o);
+      // A model's row is one text over all columns: the names are long, and so is what the fit is.
+      return o.kind == Kind::Light ? toQString(o.key) : tr("%1: %2").arg(nameOf(o), detailOf(o));
     case Qt::CheckStateRole:
       if (column != Name || o.kind == Kind::Highlight) return {};
       return isHiddenIn(hidden_, o) ? Qt::Unchecked : Qt::Checked;
     case Qt::DecorationRole:
       if (column == Detail && o.kind == Kind::Camera) return colourSwatch(toQColor(roleColour(document_.role(o.frame))));
       if (column == Name && o.kind == Kind::Ellipsoid) return colourSwatch(toQColor(viz::modelColour(o.key)));
-      if (column == Effect && o.kind == Kind::Camera && effects_.count(o.frame))
-        return colourSwatch(toQColor(viz::influenceColour(effects_.at(o.frame), mostEffect_)));
       return {};
     case Qt::FontRole: {
       const bool shownSurface = o.kind == Kind::Surface && groups_[0].objects.size() > 1 &&
@@ -501,7 +502,7 @@ QVariant SceneTreeModel::objectData(const SceneObject& o, const Group& group, in
 
 QVariant SceneTreeModel::headerData(int section, Qt::Orientation orientation, int role) const {
   if (orientation != Qt::Horizontal) return {};
-  static const char* const titles[] = {QT_TR_NOOP("Object"), QT_TR_NOOP("What it is"), QT_TR_NOOP("Helps")};
+  static const char* const titles[] = {QT_TR_NOOP("Object"), QT_TR_NOOP("What it is"), QT_TR_NOOP("Helps, %")};
   if (role == Qt::DisplayRole) return tr(titles[section]);
   if (role == Qt::ToolTipRole && section == Effect)
     return tr("What each training frame does for %1, %: see the plot Which view matters")

@@ -178,8 +178,8 @@ class SceneTreeTest : public QObject, SceneFixture {
     document_->setInfluence(influence, document_->request());
     QVERIFY(!tree_->view()->isColumnHidden(SceneTreeModel::Effect));
     const auto text = [&](int frame) { return row(camera(frame)).siblingAtColumn(SceneTreeModel::Effect).data().toString(); };
-    QCOMPARE(text(2), QStringLiteral("+3.00"));
-    QCOMPARE(text(1), QStringLiteral("-2.00"));
+    QCOMPARE(text(2), QStringLiteral("+3.0"));
+    QCOMPARE(text(1), QStringLiteral("-2.0"));
     QCOMPARE(text(5), QString());
     tree_->view()->sortByColumn(SceneTreeModel::Effect, Qt::DescendingOrder);
     QCOMPARE(children(group(Kind::Camera)).mid(0, 3), (QStringList{"0002", "0000", "0001"}));
