@@ -175,6 +175,8 @@ void ExportActions::addActions(Actions& actions, QMenu* menu) {
   menu->addSeparator();
   actions.add("export.command", menu, tr("Copy as co&mmand"), [this] { copyCommand(); },
               {{QKeySequence("Ctrl+Shift+C")}, {}, tr("The command line that computes what is on screen")});
+  actions.add("export.window-command", menu, tr("Copy the &window as command"), [this] { copyWindowCommand(); },
+              {{}, {}, tr("The command line that draws this window again from the saved session")});
   actions.add("export.diagnostic", menu, tr("Copy a &diagnostic report"), [this] {
     QApplication::clipboard()->setText(diagnosticReport());
     emit message(tr("The diagnostic report is on the clipboard; it names no folder of this machine"));
@@ -195,8 +197,23 @@ Outcome<std::string> ExportActions::command() const {
   return "glint evaluate " + shellWord(document_.sessionFile().toStdString());  // the session holds what has no flag
 }
 
-void ExportActions::copyCommand() {
-  const Outcome<std::string> text = command();
+Outcome<std::string> ExportActions::windowCommand() const {
+  if (!document_.scene()) return Failure{Reason::NoSurface, "no scene is open"};
+  if (document_.sessionFile().isEmpty() || document_.hasUnsavedChanges())
+    return Failure{Reason::NotSupported, "a command can only open what is stored; save the session first"};
+  const Frame& frame = document_.scene()->frames[std::size_t(document_.selection().frame)];
+  const QSize size = window_->window()->size();
+  const std::string layout = snapshot_ ? snapshot_().layout : std::string();
+  return "glint-inspector " + shellWord(document_.sessionFile().toStdString()) +
+         (layout.empty() ? std::string() : " --layout " + layout) + " --frame " + shellWord(frame.id) + " --theme " +
+         (currentTheme() == Theme::Dark ? "dark" : "light") + " --size " + std::to_string(size.width()) + "x" +
+         std::to_string(size.height()) + " --screenshot window.png --wait-idle";
+}
+
+void ExportActions::copyCommand() { copy(command()); }
+void ExportActions::copyWindowCommand() { copy(windowCommand()); }
+
+void ExportActions::copy(const Outcome<std::string>& text) {
   if (!text) return void(emit problem(tr("No command: %1").arg(toQString(text.failure().detail))));
   QApplication::clipboard()->setText(toQString(*text));
   emit message(toQString(*text));

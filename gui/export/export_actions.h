@@ -41,13 +41,17 @@ class ExportActions : public QObject {
   void writeLabels(const QString& folder);
   LongJob* longJob() { return &long_; }
 
-  /// The command line of what is on screen; on failure the reason.
+  /// The command line that computes what is on screen; on failure the reason.
   Outcome<std::string> command() const;
+  /// The command line that draws the window again, from the session that holds what it shows. The 3D cameras are those of when it
+  /// was saved. On failure the reason.
+  Outcome<std::string> windowCommand() const;
   /// Versions, settings, shape of the scene and the log, without any folder of this machine.
   QString diagnosticReport() const;
 
  public slots:
   void copyCommand();
+  void copyWindowCommand();
 
  signals:
   void problem(const QString& oneLine);
@@ -56,6 +60,7 @@ class ExportActions : public QObject {
   void sessionWritten(const QString& oneLine, const QString& session);
 
  private:
+  void copy(const Outcome<std::string>& command);
   using Write = std::function<void(const QString& file)>;
   void ask(const QString& title, const QString& name, const QString& filter, const std::function<Write()>& prepare);
 

@@ -172,6 +172,11 @@ void SceneTreeModel::followInspection() {
     setHighlights(i, std::move(highlights));
   }
   refreshEffects();
+  QStringList details;
+  for (const int group : {kLights, kModels})
+    for (const SceneObject& o : groups_[std::size_t(group)].objects) details << detailOf(o);
+  if (details == details_) return;  // under a slider most results change numbers only
+  details_ = details;
   emitChanged(kLights);
   emitChanged(kModels);
 }

@@ -3,6 +3,7 @@
 
 #include <QAbstractItemModel>
 #include <QString>
+#include <QStringList>
 #include <array>
 #include <set>
 #include <string>
@@ -100,6 +101,7 @@ class SceneTreeModel : public QAbstractItemModel {
   std::string train_;
   std::vector<int> excluded_;
   std::array<bool, kGroups> layersShown_{};
+  QStringList details_;            ///< of lights and models
   std::map<int, double> effects_;  ///< what a training frame does, percentage points, by frame; empty = not measured
   double mostEffect_ = 0;
   int view_ = 0;

@@ -131,6 +131,28 @@ class ExportTest : public QObject {
     QCOMPARE(toQString(*window_->exports()->command()), QStringLiteral("glint evaluate '/some where/a b.glint'"));
   }
 
+  void theCommandOfTheWindowDrawsItAgain() {
+    Document& d = window_->document();
+    d.setModels({"canonical"});
+    d.selectFrame(3);
+    QVERIFY(!window_->exports()->windowCommand());  // nothing stores this
+    Opened opened = d.toSave();
+    opened.layout = "compare";
+    const QString file = folder_.filePath("as it is.glint");
+    window_->applyLayout("compare");
+    saveSession(opened, nullptr, file.toStdString());
+    d.markSaved(file, d.state());
+    window_->actions().find("export.window-command")->trigger();
+    const QString command = QGuiApplication::clipboard()->text();
+    QVERIFY2(command.contains("--layout compare --frame 0003 --theme "), qPrintable(command));
+    QProcess shell;
+    shell.setWorkingDirectory(folder_.path());
+    shell.start("sh", {"-c", QString(command).replace(QStringLiteral("glint-inspector "), QStringLiteral(GLINT_INSPECTOR " "))});
+    QVERIFY(shell.waitForFinished(120000));
+    QCOMPARE(shell.exitCode(), 0);
+    QCOMPARE(QImage(folder_.filePath("window.png")).size(), window_->size());
+  }
+
   /// A folder is asked for as a folder: beside the session at first, then where the last one went.
   void aFolderOfLabelsIsProposedBesideTheSessionAndNeverWrittenOver() {
     QTemporaryDir place;
