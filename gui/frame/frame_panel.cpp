@@ -20,6 +20,7 @@
 #include "gui/base/panel_scroll.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/document/frame_roles.h"
 #include "gui/frame/develop_bar.h"
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/hand_tool.h"
@@ -252,11 +253,10 @@ void FramePanel::showTitle() {
     return;
   }
   const int frame = document_.selection().frame;
-  static const char* const roles[] = {QT_TR_NOOP("training"), QT_TR_NOOP("held out"), QT_TR_NOOP("excluded")};
   const viz::Colour colours[] = {viz::kTraining, {0.38, 0.38, 0.38}, viz::kFailed};
   const int role = int(document_.role(frame));
   title_->setText(QStringLiteral("<b>%1</b>").arg(toQString(document_.scene()->frames[std::size_t(frame)].id).toHtmlEscaped()));
-  role_->setText(tr(roles[role]));
+  role_->setText(roleName(document_.role(frame)));
   role_->setStyleSheet(
       QStringLiteral("background: %1; color: white; border-radius: 3px; padding: 1px 6px").arg(toQColor(colours[role]).name()));
   role_->show();

@@ -7,6 +7,7 @@
 
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/document/frame_roles.h"
 #include "viz/frame_overlay.h"
 
 namespace glint::gui {
@@ -48,11 +49,6 @@ constexpr double kManyDigits = 1000;  // from here on decimals say nothing
 
 int digitsOf(int column) { return column == ErrorModel::Time ? 0 : column == ErrorModel::Iou ? 4 : 3; }
 bool isNumber(int column) { return column >= ErrorModel::ErrorPct && column <= ErrorModel::Time; }
-QString roleText(FrameRole role) {
-  return role == FrameRole::Training  ? QObject::tr("training")
-         : role == FrameRole::HeldOut ? QObject::tr("held out")
-                                      : QObject::tr("excluded");
-}
 }  // namespace
 
 ErrorModel::ErrorModel(Document& document, QObject* parent) : QAbstractTableModel(parent), document_(document) {
@@ -142,7 +138,7 @@ QVariant ErrorModel::data(const QModelIndex& index, int role) const {
         case Frame:
           return role == kSortRole ? QVariant(row.frame) : QVariant(row.frameId);
         case Role:
-          return roleText(row.role);
+          return roleName(row.role);
         case Model:
           return toQString(row.model);
         case Light:

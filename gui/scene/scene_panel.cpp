@@ -20,6 +20,7 @@
 #include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/document/frame_roles.h"
 #include "gui/scene/before_results.h"
 #include "gui/scene/camera_glide.h"
 #include "gui/scene/scene_views.h"
@@ -302,13 +303,7 @@ void ScenePanel::showMenu(const viz::Picked& picked, const QPoint& global) {
   menu->setObjectName(QStringLiteral("cameraMenu"));
   menu->setAttribute(Qt::WA_DeleteOnClose);
   menu->addSection(tr("Frame %1").arg(id));
-  for (const auto& [role, title] :
-       {std::pair(FrameRole::Training, tr("&Train on it")), std::pair(FrameRole::HeldOut, tr("&Hold it out")),
-        std::pair(FrameRole::Excluded, tr("E&xclude it"))}) {
-    QAction* action = menu->addAction(title, this, [this, frame = picked.frame, role = role] { document_.setRole(frame, role); });
-    action->setCheckable(true);
-    action->setChecked(document_.role(picked.frame) == role);
-  }
+  addRoles(*menu, document_, picked.frame);
   menu->addSeparator();
   menu->addAction(tr("&Look through its camera"), this, [this, frame = picked.frame] {
     document_.selectFrame(frame);

@@ -14,6 +14,7 @@
 
 #include "gui/base/eliding_delegate.h"
 #include "gui/base/text.h"
+#include "gui/document/frame_roles.h"
 #include "gui/scene/hidden_objects_option.h"
 
 namespace glint::gui {
@@ -33,10 +34,7 @@ class Shown : public QSortFilterProxyModel {
     const QVariant left = a.data(SceneTreeModel::kSortRole), right = b.data(SceneTreeModel::kSortRole);
     const bool groups = !a.parent().isValid();
     if (groups) return (left.toInt() < right.toInt()) == (sortOrder() == Qt::AscendingOrder);
-    if (!left.isValid() || !right.isValid()) {
-      const bool rightFirst = !left.isValid() && right.isValid();
-      return rightFirst == (sortOrder() == Qt::DescendingOrder) && left.isValid() != right.isValid();
-    }
+    if (left.isValid() != right.isValid()) return left.isValid() == (sortOrder() == Qt::AscendingOrder);
     return left.toDouble() < right.toDouble();
   }
 };
@@ -290,13 +288,7 @@ void SceneTree::showMenu(const QPoint& position) {
   menu->addAction(tr("Show &all objects"), this, &SceneTree::showAll);
   if (at && (at->kind == Kind::Camera || at->kind == Kind::Highlight)) {
     menu->addSeparator();
-    for (const auto& [role, title] :
-         {std::pair(FrameRole::Training, tr("&Train on it")), std::pair(FrameRole::HeldOut, tr("Hol&d it out")),
-          std::pair(FrameRole::Excluded, tr("E&xclude it"))}) {
-      QAction* action = menu->addAction(title, this, [this, frame = at->frame, role = role] { document_.setRole(frame, role); });
-      action->setCheckable(true);
-      action->setChecked(document_.role(at->frame) == role);
-    }
+    addRoles(*menu, document_, at->frame);
     menu->addSeparator();
     menu->addAction(tr("&Look through its camera"), this, [this, frame = at->frame] {
       document_.selectFrame(frame);

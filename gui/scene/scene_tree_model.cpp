@@ -12,6 +12,7 @@
 #include "core/geometry/ellipsoid.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/document/frame_roles.h"
 #include "gui/scene/hidden_objects_option.h"
 #include "gui/scene/scene_options.h"
 
@@ -372,15 +373,7 @@ QString SceneTreeModel::detailOf(const SceneObject& o) const {
       return found->second.analytic ? toQString(found->second.analytic->type) : tr("mesh");
     }
     case Kind::Camera:
-      switch (document_.role(o.frame)) {
-        case FrameRole::Training:
-          return tr("training");
-        case FrameRole::HeldOut:
-          return tr("held out");
-        case FrameRole::Excluded:
-          return tr("excluded");
-      }
-      return {};
+      return roleName(document_.role(o.frame));
     case Kind::Highlight:
       return toQString(o.light);
     case Kind::Light: {

@@ -15,6 +15,7 @@
 #include "gui/base/focus_frame.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/document/frame_roles.h"
 #include "viz/style.h"
 
 namespace glint::gui {
@@ -416,16 +417,9 @@ void TimelineStrip::contextMenuEvent(QContextMenuEvent* e) {
   const int frame = frameAt(e->pos());
   if (frame < 0) return;
   QMenu menu(this);
-  const FrameRole role = document_.role(frame);
-  const auto add = [&](FrameRole r, const QString& text) {
-    QAction* action = menu.addAction(text, this, [this, frame, r] { document_.setRole(frame, r); });
-    action->setCheckable(true);
-    action->setChecked(role == r);
-  };
   const QString id = toQString(document_.scene()->frames[std::size_t(frame)].id);
-  add(FrameRole::Training, tr("Train on frame %1").arg(id));
-  add(FrameRole::HeldOut, tr("Hold out frame %1").arg(id));
-  add(FrameRole::Excluded, tr("Exclude frame %1").arg(id));
+  menu.addSection(tr("Frame %1").arg(id));
+  addRoles(menu, document_, frame);
   menu.addSeparator();
   menu.addAction(tr("Show beside the selected frame"), this, [this, frame, id] {
     document_.undoStack()->beginMacro(tr("Show frame %1 beside").arg(id));
@@ -478,9 +472,8 @@ QString TimelineStrip::lightTip(int row, int frame) const {
 }
 
 QString TimelineStrip::toolTip(int frame) const {
-  static const char* const roles[] = {QT_TR_NOOP("training"), QT_TR_NOOP("held out"), QT_TR_NOOP("excluded")};
   const Frame& f = document_.scene()->frames[std::size_t(frame)];
-  QString text = tr("Frame %1, %2").arg(toQString(f.id), tr(roles[int(document_.role(frame))]));
+  QString text = tr("Frame %1, %2").arg(toQString(f.id), roleName(document_.role(frame)));
   if (unreadable_.contains(frame)) text += tr("\nno photograph: %1").arg(unreadable_.value(frame));
   if (!data_.lights.empty() && !f.lightsOn.empty()) text += tr("\nlights on: %1").arg(joined(f.lightsOn));
   for (const viz::TimelineData::Series& series : data_.series) {

@@ -132,6 +132,10 @@ TEST_F(HiddenObjectsTest, ASurfaceGoesAloneAndDepthMapsGoTogether) {
   hidden.surfaces = {HiddenObjects::kDepthMaps};
   EXPECT_TRUE(hidden.hidesSurface("depth:0004") && hidden.hidesSurface("depth:0005"));
   EXPECT_FALSE(hidden.hidesSurface("body"));
+  // As SurfaceCache names a frame's own depth map.
+  auto scene = std::make_shared<Scene>(*inspection_->scene);
+  scene->frames[0].surface.clear();
+  EXPECT_TRUE(hidden.hidesSurface(SurfaceCache(*scene).keyOf(0)));
 }
 
 /// Equal poses are one camera on screen: with one frame hidden, another stands for the pose.

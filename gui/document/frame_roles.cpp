@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/document/frame_roles.h"
+
+#include <QAction>
+#include <QMenu>
+#include <utility>
+
+namespace glint::gui {
+
+QString roleName(FrameRole role) {
+  switch (role) {
+    case FrameRole::Training:
+      return QObject::tr("training");
+    case FrameRole::HeldOut:
+      return QObject::tr("held out");
+    case FrameRole::Excluded:
+      return QObject::tr("excluded");
+  }
+  return {};
+}
+
+void addRoles(QMenu& menu, Document& document, int frame) {
+  for (const auto& [role, title] :
+       {std::pair(FrameRole::Training, QObject::tr("&Train on it")), std::pair(FrameRole::HeldOut, QObject::tr("Hol&d it out")),
+        std::pair(FrameRole::Excluded, QObject::tr("E&xclude it"))}) {
+    QAction* action = menu.addAction(title, &document, [&document, frame, role = role] { document.setRole(frame, role); });
+    action->setCheckable(true);
+    action->setChecked(document.role(frame) == role);
+  }
+}
+
+}  // namespace glint::gui
