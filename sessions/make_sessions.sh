@@ -7,7 +7,7 @@ usage() {
   cat <<'HELP'
 Usage: sessions/make_sessions.sh [--results-only] [NAME...]
 
-Makes the sessions NAME... (default: plane, plane-to-cylinder, ellipsoid, vase, and every lesson, lessons/mirror ...) again:
+Makes the sessions NAME... (default: plane, plane-to-cylinder, ellipsoid, two-lamps, vase, and every lesson, lessons/mirror ...) again:
 frames, scene.json and NAME.glint. `lessons` stands for all lessons.
 
   --results-only   keep frames and scenes, compute the .glint files only (needed when a model changes)
@@ -29,14 +29,14 @@ while [ $# -gt 0 ]; do
   case "$1" in
     --results-only) data=no ;;
     --help|-h) usage; exit 0 ;;
-    plane|plane-to-cylinder|ellipsoid|vase) names+=("$1") ;;
+    plane|plane-to-cylinder|ellipsoid|two-lamps|vase) names+=("$1") ;;
     lessons) names+=("${lessons[@]}") ;;
     lessons/*) [ -d "$root/sessions/$1" ] || { echo "make_sessions.sh: no lesson $1" >&2; exit 2; }; names+=("$1") ;;
     *) echo "make_sessions.sh: unknown argument $1 (see --help)" >&2; exit 2 ;;
   esac
   shift
 done
-[ ${#names[@]} -gt 0 ] || names=(plane plane-to-cylinder ellipsoid vase "${lessons[@]}")
+[ ${#names[@]} -gt 0 ] || names=(plane plane-to-cylinder ellipsoid two-lamps vase "${lessons[@]}")
 [ -x "$glint" ] || { echo "make_sessions.sh: $glint: build the program first" >&2; exit 2; }
 
 # subset SCENE NAME SLICE: the frames of SCENE in the Python slice go to sessions/NAME, as images only: what a camera captured.
@@ -129,9 +129,9 @@ for name in "${names[@]}"; do
       plane) subset "$cycles/plane_to_cylinder/scene-analytic.json" plane 0:6 ;;
       plane-to-cylinder) subset "$cycles/plane_to_cylinder/scene-analytic.json" plane-to-cylinder : ;;
       vase) subset "$cycles/vase/scene.json" vase ::2 ;;
-      ellipsoid)
-        "$glint" synth "$root/sessions/ellipsoid/spec.json" -o "$scratch/ellipsoid"
-        subset "$scratch/ellipsoid/scene.json" ellipsoid : ;;
+      ellipsoid|two-lamps)
+        "$glint" synth "$root/sessions/$name/spec.json" -o "$scratch/$name"
+        subset "$scratch/$name/scene.json" "$name" : ;;
       lessons/*)
         if [ "$name" = lessons/waist ]; then python3 "$root/sessions/lessons/waist/make_waist.py" "$root/sessions/lessons/waist"; fi
         mkdir -p "$scratch/lessons"

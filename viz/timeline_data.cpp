@@ -14,33 +14,65 @@ namespace {
 constexpr double kWorstShownPct = 1000;  // ten times the highlight's size: a model that went astray must not flatten the others
 }
 
-TimelineData timelineData(const Scene& scene, const Inspection* inspection) {
-  TimelineData data;
-  const int n = static_cast<int>(scene.frames.size());
-  std::set<std::string> named;
+namespace {
+/// The evidence of a frame with all its lights; null where there is none yet.
+const FrameEvidence* asFound(const Inspection* inspection, std::size_t frame) {
+  if (!inspection || frame >= inspection->evidence.size()) return nullptr;
+  const auto before = inspection->evidenceBefore.find(static_cast<int>(frame));
+  return before != inspection->evidenceBefore.end() ? &before->second : &inspection->evidence[frame];
+}
+}  // namespace
+
+std::vector<LightRow> lightRows(const Scene& scene, const Inspection* inspection) {
+  std::set<std::string> known;
+  std::vector<std::set<std::string>> seen(scene.frames.size());
   bool differ = false;
-  for (const Frame& frame : scene.frames) {
-    named.insert(frame.lightsOn.begin(), frame.lightsOn.end());
+  for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+    const Frame& frame = scene.frames[i];
+    known.insert(frame.lightsOn.begin(), frame.lightsOn.end());
     differ = differ || frame.lightsOn != scene.frames.front().lightsOn;
+    const FrameEvidence* evidence = frame.lightsOn.empty() ? asFound(inspection, i) : nullptr;
+    if (!evidence) continue;
+    for (const Highlight& h : evidence->highlights)
+      if (!h.light.empty()) seen[i].insert(h.light);
+    known.insert(seen[i].begin(), seen[i].end());
   }
-  // In the scene's order, as everywhere; those that it only names with frames come after them.
+  if (!differ && known.size() < 2) return {};
+  // In the scene's order, as everywhere; those that only frames name come after them, then those that were only found.
   std::vector<std::string> lights;
   const auto add = [&](const std::string& light) {
-    if (named.erase(light) > 0) lights.push_back(light);
+    if (known.erase(light) > 0) lights.push_back(light);
   };
   for (const TrueLight& light : scene.lights) add(light.id);
   for (const Frame& frame : scene.frames)
     for (const std::string& light : frame.lightsOn) add(light);
-  if (differ || lights.size() > 1) {
-    for (const std::string& light : lights) {
-      TimelineData::LightRow row{light, {}};
-      for (const Frame& frame : scene.frames) {
-        const bool on = std::find(frame.lightsOn.begin(), frame.lightsOn.end(), light) != frame.lightsOn.end();
-        row.on.push_back(frame.lightsOn.empty() ? 2 : on ? 1 : 0);
-      }
-      data.lights.push_back(std::move(row));
+  lights.insert(lights.end(), known.begin(), known.end());
+  std::vector<LightRow> rows;
+  for (const std::string& light : lights) {
+    LightRow row{light, {}};
+    for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+      const std::vector<std::string>& on = scene.frames[i].lightsOn;
+      const bool stated = !on.empty(),
+                 lit = stated ? std::find(on.begin(), on.end(), light) != on.end() : seen[i].count(light) > 0;
+      row.captured.push_back(lit ? LightState::On : stated ? LightState::Off : LightState::NotStated);
     }
+    rows.push_back(std::move(row));
   }
+  return rows;
+}
+
+LightState lightState(const LightRow& row, const Scene& scene, const WhatIf& whatIf, int frame) {
+  const LightState captured = row.captured.at(static_cast<std::size_t>(frame));
+  if (isSwitchedOff(whatIf, frame, row.light)) return LightState::SwitchedOff;
+  return captured == LightState::Off && isOn(scene, whatIf, frame, row.light) ? LightState::SwitchedOn : captured;
+}
+
+bool isLit(LightState state) { return state == LightState::On || state == LightState::SwitchedOn; }
+
+TimelineData timelineData(const Scene& scene, const Inspection* inspection) {
+  TimelineData data;
+  const int n = static_cast<int>(scene.frames.size());
+  data.lights = lightRows(scene, inspection);
   if (!inspection) return data;
   for (const std::string& model : modelsInOrder(*inspection)) {
     TimelineData::Series series{model, {}, {}};

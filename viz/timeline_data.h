@@ -10,6 +10,16 @@
 
 namespace glint::viz {
 
+/// A light in one frame.
+enum class LightState { Off, On, NotStated, SwitchedOff, SwitchedOn };
+struct LightRow {
+  std::string light;
+  std::vector<LightState> captured;  ///< one per frame: off, on, or the frame does not say and no highlight of it was found
+};
+/// With what the user switched; what was captured dark stays off as long as no contours are synthesised.
+LightState lightState(const LightRow& row, const Scene& scene, const WhatIf& whatIf, int frame);
+bool isLit(LightState state);
+
 /// What the timeline draws, read once per result.
 struct TimelineData {
   struct Series {
@@ -18,14 +28,11 @@ struct TimelineData {
     std::vector<std::string> reason;              ///< where there is no error: why
   };
   std::vector<Series> series;  ///< from simple to rich; empty before the first result
-  struct LightRow {
-    std::string light;
-    std::vector<char> on;  ///< one per frame; 2 = the frame does not say
-  };
-  std::vector<LightRow>
-      lights;  ///< empty unless the scene says for some frame which of its lights are on, and they differ; in the scene's order
+  std::vector<LightRow> lights;  ///< empty unless there are several, or frames differ in which are on; in the scene's order
 };
+/// @param inspection  null before the first result: lights that the scene does not state are not known yet
 TimelineData timelineData(const Scene& scene, const Inspection* inspection);
+std::vector<LightRow> lightRows(const Scene& scene, const Inspection* inspection);
 
 /// Vertical axis of errors: from 0, or logarithmic where they span more than a factor of 30. Ends are round numbers.
 struct ErrorAxis {

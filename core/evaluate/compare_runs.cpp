@@ -131,6 +131,7 @@ std::map<std::string, std::string> changes(const Inspection& run) {
     all["highlight " + std::to_string(at.second) + " of " + id(at.first)] =
         "contour by " + number(h.contourBy.x()) + " " + number(h.contourBy.y()) + " px, times " + number(h.contourScale) +
         "; peak by " + number(h.peakBy.x()) + " " + number(h.peakBy.y()) + " px";
+  for (const auto& [at, on] : w.lightsSwitched) all["light " + at.second + " in " + id(at.first)] = on ? "on" : "off";
   if (!w.synthesise) return all;
   all["contours"] = "synthesised";
   all["roughness"] = number(w.roughness);

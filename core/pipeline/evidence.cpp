@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/pipeline/evidence.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <set>
 
 #include "core/geometry/distortion.h"
 
@@ -102,6 +104,35 @@ FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, 
     fitMissingEllipse(h);
   }
   return evidence;
+}
+
+bool showsSwitchedOff(const FrameEvidence& e, const WhatIf& w) {
+  const auto off = [&](const Highlight& h) { return isSwitchedOff(w, e.frame, h.light); };
+  return std::any_of(e.highlights.begin(), e.highlights.end(), off) || std::any_of(e.truth.begin(), e.truth.end(), off);
+}
+
+void dropSwitchedOff(FrameEvidence& e, const WhatIf& w) {
+  if (!showsSwitchedOff(e, w)) return;
+  std::vector<Highlight> kept;
+  std::vector<int> found;
+  std::set<std::string> lights;
+  for (std::size_t i = 0; i < e.highlights.size(); ++i) {
+    Highlight& h = e.highlights[i];
+    if (isSwitchedOff(w, e.frame, h.light)) {
+      lights.insert(h.light);
+      continue;
+    }
+    found.push_back(e.asFound(static_cast<int>(i)));
+    kept.push_back(std::move(h));
+  }
+  e.highlights = std::move(kept);
+  e.found = std::move(found);
+  if (e.highlights.empty() && !e.failure) {
+    std::string names;
+    for (const std::string& light : lights) names += (names.empty() ? "" : ", ") + light;
+    e.failure = Failure{Reason::NoHighlight, "switched off: " + names};
+  }
+  std::erase_if(e.truth, [&](const Highlight& h) { return isSwitchedOff(w, e.frame, h.light); });
 }
 
 void requireTruthFolder(const std::string& folder, const Scene& scene) {

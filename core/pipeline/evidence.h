@@ -24,6 +24,11 @@ FrameEvidence gatherEvidence(const Scene& scene, int frame, FrameSource source, 
 /// @param scene  with the request's what-if
 FrameEvidence evidenceFor(const Scene& scene, int frame, const InspectionRequest& request);
 
+/// Takes what is of lights that the what-if switched off in this frame out of highlights and truth. Where nothing is left the
+/// failure is NoHighlight.
+void dropSwitchedOff(FrameEvidence& evidence, const WhatIf& whatIf);
+bool showsSwitchedOff(const FrameEvidence& evidence, const WhatIf& whatIf);
+
 /// Contours stored as in data/cycles/*/contours (FOLDER/ID.json) at `level`, for scoring. FrameUnreadable when the frame has no
 /// file. InputError when a file does not parse, does not hold the level or has a contour without area.
 Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene& scene, int frame, double level);

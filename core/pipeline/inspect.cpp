@@ -171,7 +171,7 @@ void Run::assignSeveralLights() {
       progress_);
 }
 
-/// The user's changes to single highlights come after detection, so that moving one detects nothing again.
+/// The user's changes to single highlights and lights come after detection, so that none of them detects anything again.
 void Run::changeHighlights() {
   for (const auto& [at, change] : r_.request.whatIf.highlights) {
     const auto [frame, index] = at;
@@ -181,6 +181,11 @@ void Run::changeHighlights() {
     r_.evidenceBefore.emplace(frame, e);
     e.highlights[index] = changed(e.highlights[index], change);
   }
+  for (FrameEvidence& e : r_.evidence) {
+    if (!showsSwitchedOff(e, r_.request.whatIf)) continue;
+    r_.evidenceBefore.emplace(e.frame, e);
+    dropSwitchedOff(e, r_.request.whatIf);
+  }
 }
 
 void Run::brightestPointsAndTangentPlanes() {
@@ -189,7 +194,7 @@ void Run::brightestPointsAndTangentPlanes() {
       keyOfStages(q.settings, {"surface"},
                   r_.stageKeys["detect"] + "|" + join(r_.train.frames) + (r_.train.perSurface ? "per-surface" : "") + "|x" +
                       join(q.excluded) + "|" + exactText(q.noisePx) + "|" + std::to_string(q.seed) + "|" + posesKey(q.whatIf) +
-                      "|" + highlightsKey(q.whatIf));
+                      "|" + highlightsKey(q.whatIf) + "|" + lightsOffKey(q.whatIf));
   if (unchanged("views") && previous_->depthCorrections.empty()) {  // corrected views belong to that run's light
     r_.views = previous_->views;
     for (TrainingView& v : r_.views) v.canonical.reset();
@@ -201,7 +206,7 @@ void Run::brightestPointsAndTangentPlanes() {
     if (std::find(q.excluded.begin(), q.excluded.end(), frame) != q.excluded.end()) continue;
     FrameEvidence evidence = r_.evidence[frame];
     for (std::size_t h = 0; h < evidence.highlights.size(); ++h)
-      evidence.highlights[h] = withNoise(evidence.highlights[h], q.noisePx, q.seed, frame, static_cast<int>(h));
+      evidence.highlights[h] = withNoise(evidence.highlights[h], q.noisePx, q.seed, frame, evidence.asFound(static_cast<int>(h)));
     for (int h = 0; h < static_cast<int>(evidence.highlights.size()); ++h) {
       r_.views.push_back(trainingView(evidence, h, r_.scene->frames[frame].camera, surfaceOf(frame)));
       explainMissingSurface(frame, r_.views.back().failure);
@@ -229,9 +234,12 @@ std::vector<Group> Run::groups() const {
       if (!h.light.empty()) groupOf(h.light, surfaceKey(e.frame));
   // So does a light that is on but has no highlight that could be told from those of other lights.
   if (!r_.train.perSurface)
-    for (const Frame& f : r_.scene->frames)
-      if (f.lightsOn.size() > 1)
-        for (const std::string& light : f.lightsOn) groupOf(light, std::nullopt);
+    for (std::size_t i = 0; i < r_.scene->frames.size(); ++i) {
+      const std::vector<std::string>& on = r_.scene->frames[i].lightsOn;
+      if (on.size() > 1)
+        for (const std::string& light : on)
+          if (isOn(*r_.scene, r_.request.whatIf, static_cast<int>(i), light)) groupOf(light, std::nullopt);
+    }
   return groups;
 }
 
@@ -381,11 +389,10 @@ void Run::predictionsAndComparisons() {
     result.oneFrame = onlyFrame_ >= 0;
     for (int frame = 0; frame < static_cast<int>(r_.scene->frames.size()); ++frame) {
       if (result.oneFrame && frame != onlyFrame_) continue;
-      const std::vector<std::string>& on = r_.scene->frames[frame].lightsOn;
       for (int f = 0; f < static_cast<int>(result.fits.size()); ++f) {
         const ModelResult::Fit& fit = result.fits[f];
         if (fit.surface && *fit.surface != r_.surfaces->keyOf(frame)) continue;
-        if (!on.empty() && std::find(on.begin(), on.end(), fit.light) == on.end()) continue;  // switched off here
+        if (!isOn(*r_.scene, r_.request.whatIf, frame, fit.light)) continue;
         tasks.push_back({frame, f});
       }
     }

@@ -49,6 +49,9 @@ struct FrameEvidence {
   std::vector<Highlight> highlights;     ///< each with its light
   std::optional<Failure> failure;        ///< why there are no highlights: NoHighlight, FrameUnreadable, ...
   bool againstTruth = false;             ///< --truth is given: `truth` is scored, whatever was detected
+  std::vector<int> found;  ///< where lights are switched off: which of the highlights as found each one is; else empty
+  /// Index among the highlights as found, which is what a what-if names them by.
+  int asFound(int highlight) const { return found.empty() ? highlight : found[static_cast<std::size_t>(highlight)]; }
   std::vector<Highlight> truth;
   std::optional<Failure> truthFailure;   ///< the frame has no truth, so it cannot be scored
   /// What predictions are compared with, and why there is nothing.
@@ -107,7 +110,8 @@ struct Inspection {
   InspectionRequest request;
   TrainSpec train;
   std::vector<FrameEvidence> evidence;                     ///< one per frame; `frame` is -1 where inspectOneFrame() did not look
-  std::map<int, FrameEvidence> evidenceBefore;             ///< of frames whose highlights the what-if moved: as they were
+  std::map<int, FrameEvidence>
+      evidenceBefore;  ///< of frames whose highlights the what-if moved or whose lights it switched off: as found
   std::vector<TrainingView> views;                         ///< one per training highlight
   std::map<std::string, LightEstimate> lights;             ///< by light id (+ "@" + surface key when per surface)
   std::map<std::string, Failure> lightFailures;            ///< the same keys: why a light could not be estimated

@@ -37,6 +37,7 @@ std::optional<Observation> observeFrame(std::shared_ptr<const Scene> scene, cons
       Highlight& h = seen.evidence.highlights[std::size_t(at.second)];
       h = changed(h, change);
     }
+  dropSwitchedOff(seen.evidence, w);
   return seen;
 }
 
@@ -64,7 +65,7 @@ Inspection heldAgainst(const Inspection& earlier, const Observation& observation
     now.fits = before.fits;
     now.oneFrame = true;
     for (const FrameComparison& c : before.frames) {
-      if (c.frame != frame) continue;
+      if (c.frame != frame || !isOn(*observation.scene, observation.request.whatIf, frame, c.light)) continue;
       now.frames.push_back(compareFrame(observation.evidence, c.light, camera, c.prediction));
       now.frames.back().fit = c.fit;
     }

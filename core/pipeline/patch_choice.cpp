@@ -34,14 +34,12 @@ struct Other {
 };
 std::vector<Other> othersOf(const Inspection& inspection, const std::vector<Fold>& folds, const std::vector<Answer>& answers) {
   std::vector<Other> all, some;
-  const std::vector<Frame>& frames = inspection.scene->frames;
-  for (int f = 0; f < static_cast<int>(frames.size()); ++f) {
+  for (int f = 0; f < static_cast<int>(inspection.scene->frames.size()); ++f) {
     if (!inspection.isHeldOut(f) || inspection.isTraining(f)) continue;
     std::set<std::string> lights;
     for (std::size_t i = 0; i < folds.size(); ++i) {
       const std::string& light = folds[i].left->highlight.light;
-      const std::vector<std::string>& on = frames[f].lightsOn;
-      if (!answers[i].fit || (!on.empty() && std::find(on.begin(), on.end(), light) == on.end())) continue;
+      if (!answers[i].fit || !isOn(*inspection.scene, inspection.request.whatIf, f, light)) continue;
       if (lights.insert(light).second) all.push_back({f, &*answers[i].fit});
     }
   }

@@ -43,7 +43,8 @@ Outcome<Exposure> exposureOf(const Inspection& in, const Material& material) {
   const Outcome<SurfacePoint> hit = surface ? surface->firstHit(ray) : Outcome<SurfacePoint>(Failure{Reason::NoSurface, f.id});
   double matt = 0;
   if (hit)
-    for (const TrueLight& light : lightsOn(*in.scene, f)) matt += shade(*surface, *hit, ray.origin, light, material).diffuse;
+    for (const TrueLight& light : lightsOn(*in.scene, withoutSwitchingOff(in.request.whatIf), frame))
+      matt += shade(*surface, *hit, ray.origin, light, material).diffuse;
   Exposure exposure;
   exposure.factor = kPeakValue / ((1 + kMattShare) * brightest->peakValue);
   if (matt > 0) exposure.albedo = kMattShare * brightest->peakValue / matt;
@@ -58,7 +59,9 @@ std::string pictureKey(const Inspection& inspection) {
   // The exposure is that of all frames: as long as only some are known, pictures are those of a first look.
   const bool some =
       std::any_of(inspection.evidence.begin(), inspection.evidence.end(), [](const FrameEvidence& e) { return e.frame < 0; });
-  return synthesisKey(inspection.request.whatIf) + (picturesAreSynthesised(inspection) && some ? "|first look" : "");
+  if (!picturesAreSynthesised(inspection)) return "";
+  return synthesisKey(inspection.request.whatIf) + "|off " + lightsOffKey(inspection.request.whatIf) +
+         (some ? "|first look" : "");
 }
 
 Outcome<Image> linearImageOf(const Inspection& in, int frame, FrameSource source, int every, const ProgressFn& progress) {
@@ -73,7 +76,8 @@ Outcome<Image> linearImageOf(const Inspection& in, int frame, FrameSource source
   const Outcome<std::shared_ptr<const Surface>> surface = in.surfaces->surfaceOf(frame, NormalPolicy::Curved);
   if (!surface) return surface.failure();
   const Frame& f = in.scene->frames[std::size_t(frame)];
-  const RenderedRadiance r = renderRadiance(**surface, f.camera, lightsOn(*in.scene, f), material, every, progress);
+  const RenderedRadiance r =
+      renderRadiance(**surface, f.camera, lightsOn(*in.scene, in.request.whatIf, frame), material, every, progress);
   const bool matt = source == FrameSource::Image;
   Image picture(f.camera.width, f.camera.height, matt ? 3 : 1);
   for (std::size_t k = 0; k < picture.data.size(); ++k) {

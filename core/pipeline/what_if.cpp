@@ -49,10 +49,41 @@ TrueLight moved(TrueLight light, const Eigen::Vector3d& by) {
 }
 }  // namespace
 
-std::vector<TrueLight> lightsOn(const Scene& scene, const Frame& frame) {
+namespace {
+bool isOnAsCaptured(const Frame& frame, const std::string& light) {
+  return frame.lightsOn.empty() || std::count(frame.lightsOn.begin(), frame.lightsOn.end(), light) > 0;
+}
+}  // namespace
+
+bool isSwitchedOff(const WhatIf& w, int frame, const std::string& light) {
+  const auto found = w.lightsSwitched.find({frame, light});
+  return found != w.lightsSwitched.end() && !found->second;
+}
+
+bool isOn(const Scene& scene, const WhatIf& w, int frame, const std::string& light) {
+  const auto found = w.lightsSwitched.find({frame, light});
+  if (found != w.lightsSwitched.end() && (!found->second || w.synthesise)) return found->second;
+  return isOnAsCaptured(scene.frames[std::size_t(frame)], light);
+}
+
+WhatIf withoutSwitchingOff(WhatIf w) {
+  std::erase_if(w.lightsSwitched, [](const auto& entry) { return !entry.second; });
+  return w;
+}
+
+WhatIf switched(WhatIf w, const Scene& scene, int frame, const std::string& light, bool on) {
+  require(frame >= 0 && frame < int(scene.frames.size()), "switched: no such frame");
+  if (on == isOnAsCaptured(scene.frames[std::size_t(frame)], light))
+    w.lightsSwitched.erase({frame, light});
+  else
+    w.lightsSwitched[{frame, light}] = on;
+  return w;
+}
+
+std::vector<TrueLight> lightsOn(const Scene& scene, const WhatIf& w, int frame) {
   std::vector<TrueLight> on;
   for (const TrueLight& light : scene.lights)
-    if (frame.lightsOn.empty() || std::count(frame.lightsOn.begin(), frame.lightsOn.end(), light.id) > 0) on.push_back(light);
+    if (isOn(scene, w, frame, light.id)) on.push_back(light);
   return on;
 }
 
@@ -123,16 +154,19 @@ void synthesise(Scene& scene, const AnalyticSurfaces& surfaces, const WhatIf& wh
   Material material;
   material.lobe = whatIf.lobe;
   material.roughness = whatIf.roughness;
+  // What is switched off is synthesised too and dropped with the evidence: switching makes no contour again.
+  const WhatIf lit = withoutSwitchingOff(whatIf);
   parallelFor(
       int(frames.size()),
       [&](int n) {
-        Frame& f = scene.frames[std::size_t(frames[std::size_t(n)])];
+        const int index = frames[std::size_t(n)];
+        Frame& f = scene.frames[std::size_t(index)];
         f.highlights.clear();
         ExactOptions options;
         options.level = level;
         options.sagittaPx = kSagittaPx;
         options.marginPx = kEdgeShare * std::max(f.camera.width, f.camera.height);
-        for (const TrueLight& light : lightsOn(scene, f)) {
+        for (const TrueLight& light : lightsOn(scene, lit, index)) {
           const Outcome<std::vector<Highlight>> found =
               exactHighlights(*surfaces.at(f.surface), f.camera, light, material, options);
           if (!found) continue;  // not lit, or not visible from here
@@ -229,11 +263,20 @@ std::string highlightsKey(const WhatIf& w) {
   return key;
 }
 
+std::string lightsOffKey(const WhatIf& w) {
+  std::string key;
+  for (const auto& [at, on] : w.lightsSwitched)
+    if (!on) key += std::to_string(at.first) + "/" + at.second + ",";
+  return key;
+}
+
 std::string synthesisKey(const WhatIf& w) {
   if (!w.synthesise) return "";
   std::string key = std::string(nameOf(w.lobe)) + "," + exact(w.roughness);
   for (const auto& [id, by] : w.lightsBy) key += id + ":" + exact(by);
   for (const auto& [id, value] : w.surfaces) key += id + ":" + exact(value);
+  for (const auto& [at, on] : w.lightsSwitched)
+    if (on) key += std::to_string(at.first) + "/" + at.second + " on,";
   return key + posesKey(w);  // synthetic contours follow their cameras
 }
 

@@ -36,7 +36,10 @@ struct HighlightChange {
 struct WhatIf {
   std::map<int, PoseChange> poses;  ///< by frame
   std::map<std::pair<int, int>, HighlightChange>
-      highlights;  ///< by frame and index in its evidence; of evidence that is not there: no effect
+      highlights;  ///< by frame and index in its evidence, as found; of evidence that is not there: no effect
+  /// By frame and light id: on or off, whatever was captured. What is off makes no highlight there: none trains, none is
+  /// predicted, none is scored. On counts where contours are synthesised; no photograph shows a light that was off.
+  std::map<std::pair<int, std::string>, bool> lightsSwitched;
 
   /// Observed contours are synthesised from the scene's true lights and analytic surfaces instead of being detected; then light,
   /// surface and material below count, and a moved camera takes its contours with it.
@@ -69,8 +72,18 @@ AnalyticSpec withShape(AnalyticSpec spec, double value);
 /// NotSupported, with the first reason against it.
 std::optional<Failure> whyNotSynthesised(const Scene& scene);
 
-/// The true lights that shine on a frame: those that it names, all where it names none.
-std::vector<TrueLight> lightsOn(const Scene& scene, const Frame& frame);
+/// Whether a light may show in a frame: as the frame says (it may, where it names none), or as it was switched.
+bool isOn(const Scene& scene, const WhatIf& whatIf, int frame, const std::string& light);
+/// It was on, or nothing says that it was not, and the what-if switched it off.
+bool isSwitchedOff(const WhatIf& whatIf, int frame, const std::string& light);
+/// The same what-if with nothing switched off: what contours and the exposure are made from, so that switching off changes
+/// neither.
+WhatIf withoutSwitchingOff(WhatIf whatIf);
+/// The what-if with that light on or off in that frame; what agrees with the capture is no change.
+WhatIf switched(WhatIf whatIf, const Scene& scene, int frame, const std::string& light, bool on);
+
+/// The true lights that shine on a frame.
+std::vector<TrueLight> lightsOn(const Scene& scene, const WhatIf& whatIf, int frame);
 
 /// Distance from which sensible shifts of lights and cameras are derived: the mean distance from the cameras to the point that
 /// they look at together (least squares over the optical axes), m; 1 where there is none.
@@ -91,10 +104,11 @@ std::shared_ptr<const Scene> withContours(const Scene& changed, const WhatIf& wh
 /// A highlight with a change; its ellipse and area follow.
 Highlight changed(Highlight highlight, const HighlightChange& change);
 
-/// Equal for equal changes, exact to the last bit: the part that changes the scene's evidence from the start, that of poses, and
-/// that of highlights.
+/// Equal for equal changes, exact to the last bit: the part that changes the scene's evidence from the start, that of poses, that
+/// of highlights, and that of lights which are switched off.
 std::string synthesisKey(const WhatIf& whatIf);
 std::string posesKey(const WhatIf& whatIf);
 std::string highlightsKey(const WhatIf& whatIf);
+std::string lightsOffKey(const WhatIf& whatIf);
 
 }  // namespace glint

@@ -28,6 +28,9 @@ std::string whatIfJson(const WhatIf& w) {
                                   {"contour_by", toJson(change.contourBy)},
                                   {"contour_scale", change.contourScale},
                                   {"peak_by", toJson(change.peakBy)}});
+  if (!w.lightsSwitched.empty()) root["lights_switched"] = Json::array();
+  for (const auto& [at, on] : w.lightsSwitched)
+    root["lights_switched"].push_back({{"frame", at.first}, {"light", at.second}, {"on", on}});
   if (w.synthesise) {
     Json synthetic = {
         {"lobe", nameOf(w.lobe)}, {"roughness", w.roughness}, {"lights_by", Json::object()}, {"surfaces", Json::object()}};
@@ -51,6 +54,11 @@ WhatIf readWhatIf(const JsonNode& node) {
       HighlightChange change{n.at("contour_by").vector2(), n.at("contour_scale").number(), n.at("peak_by").vector2()};
       if (!(change.contourScale > 0)) n.at("contour_scale").fail("must be positive");
       w.highlights[{frameOf(n), n.at("highlight").integer()}] = change;
+    }
+  if (const auto lights = node.find("lights_switched"))
+    for (std::size_t i = 0; i < lights->size(); ++i) {
+      const JsonNode n = lights->at(i);
+      w.lightsSwitched[{frameOf(n), n.at("light").text()}] = n.at("on").boolean();
     }
   if (const auto s = node.find("synthesise"); s && !s->isNull()) {
     w.synthesise = true;

@@ -243,16 +243,21 @@ std::string summaryOf(const WhatIf& w) {
   }
   if (!w.poses.empty()) add(counted(w.poses.size(), "pose"));
   if (!w.highlights.empty()) add(counted(w.highlights.size(), "highlight"));
+  const auto switches = std::count_if(w.lightsSwitched.begin(), w.lightsSwitched.end(),
+                                      [&](const auto& entry) { return !entry.second || w.synthesise; });
+  if (switches > 0) add(counted(std::size_t(switches), "light") + " switched");
   return text;
 }
 
 std::string frameNote(const WhatIf& w, int frame) {
   std::string text;
-  const auto add = [&](const char* part) { text += (text.empty() ? "" : ", ") + std::string(part); };
+  const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
   if (w.synthesise) add("contours and photograph synthesised");
   if (w.poses.count(frame)) add("camera moved by hand");
   if (std::any_of(w.highlights.begin(), w.highlights.end(), [&](const auto& h) { return h.first.first == frame; }))
     add("highlight moved by hand");
+  for (const auto& [at, on] : w.lightsSwitched)
+    if (at.first == frame && (!on || w.synthesise)) add("light " + at.second + " switched " + (on ? "on" : "off"));
   return text;
 }
 

@@ -37,8 +37,9 @@ bool HandTool::take(const Pixel& at, double nearPx, Qt::KeyboardModifiers modifi
   if (!modifiers.testFlag(Qt::ControlModifier)) {
     const std::optional<viz::Grip> grip = viz::gripAt(*inspection, drag.frame, at, nearPx);
     if (!grip) return false;
-    drag.highlight = grip->highlight;
-    drag.now = inspection->evidence[std::size_t(drag.frame)].highlights[std::size_t(grip->highlight)];
+    const FrameEvidence& evidence = inspection->evidence[std::size_t(drag.frame)];
+    drag.highlight = evidence.asFound(grip->highlight);
+    drag.now = evidence.highlights[std::size_t(grip->highlight)];
     drag.held = grip->peak ? Held::Peak : modifiers.testFlag(Qt::ShiftModifier) ? Held::ContourSize : Held::Contour;
   }
   drag_ = drag;

@@ -14,6 +14,7 @@
 
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/timeline/light_switches.h"
 #include "viz/style.h"
 
 namespace glint::gui {
@@ -191,6 +192,12 @@ void Timeline::addActions(Actions& actions, QMenu* menu) {
   role("frame.train", tr("&Train on it"), FrameRole::Training);
   role("frame.hold-out", tr("&Hold it out"), FrameRole::HeldOut);
   role("frame.exclude", tr("E&xclude it"), FrameRole::Excluded);
+  QMenu* lights = menu->addMenu(tr("&Lights of it"));
+  lights->setToolTipsVisible(true);
+  connect(lights, &QMenu::aboutToShow, this, [this, lights] {
+    lights->clear();
+    addLights(*lights, document_, strip_->lights(), document_.selection().frame);
+  });
   refresh();
 }
 

@@ -16,6 +16,7 @@
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/document/frame_roles.h"
+#include "gui/timeline/light_switches.h"
 #include "viz/style.h"
 
 namespace glint::gui {
@@ -142,6 +143,11 @@ QRectF TimelineStrip::cell(int frame) const {
 QRectF TimelineStrip::roleMark(int frame) const {
   const QRectF c = cell(frame);
   return QRectF(c.left(), height() - kNumberRow - kMarkRow, c.width(), kMarkRow);
+}
+
+QRectF TimelineStrip::lightMark(int light, int frame) const {
+  const QRectF c = cell(frame);
+  return QRectF(c.left(), chart().bottom() + 1 + light * lightRowHeight(), c.width(), lightRowHeight() - 1);
 }
 
 int TimelineStrip::frameAt(const QPointF& position) const {
@@ -301,11 +307,16 @@ void TimelineStrip::paintRows(QPainter& painter) {
   double top = chart().bottom() + 1;
   const int from = std::max(0, int(first_)), to = std::min(document_.frameCount(), int(std::ceil(first_ + inView_)));
   const double wide = cell(0).width();
-  for (const viz::TimelineData::LightRow& row : data_.lights) {
+  for (const viz::LightRow& row : data_.lights) {
     for (int i = from; i < to; ++i) {
       const QRectF box(frameX(i), top, std::max(1.0, wide - (wide > 4 ? 1 : 0)), rowHeight - 1);
-      if (row.on[std::size_t(i)] == 1) painter.fillRect(box, kLightOn);
-      if (row.on[std::size_t(i)] == 0) painter.fillRect(box, palette().color(QPalette::Midlight));
+      const viz::LightState state = viz::lightState(row, *document_.scene(), document_.request().whatIf, i);
+      if (state == viz::LightState::NotStated) continue;
+      painter.fillRect(box, viz::isLit(state) ? kLightOn : palette().color(QPalette::Midlight));
+      if (state != viz::LightState::SwitchedOff && state != viz::LightState::SwitchedOn) continue;
+      // A line through it: not as captured.
+      painter.fillRect(QRectF(box.left(), box.center().y() - 1, box.width(), 2),
+                       state == viz::LightState::SwitchedOff ? errorColour() : accentColour());
     }
     top += rowHeight;
   }
@@ -399,6 +410,14 @@ void TimelineStrip::mousePressEvent(QMouseEvent* e) {
     document_.setRole(frame, next[int(document_.role(frame))]);
     return;
   }
+  if (const int light = lightAt(positionOf(*e).y()); light >= 0) {
+    const viz::LightRow& row = data_.lights[std::size_t(light)];
+    if (canSwitch(document_, viz::lightState(row, *document_.scene(), document_.request().whatIf, frame)))
+      switchLight(document_, row, frame);
+    else
+      QToolTip::showText(e->globalPos(), lightTip(light, frame), this);
+    return;
+  }
   scrubbing_ = true;
   gesture_ = document_.newGesture();
   document_.selectFrame(frame, gesture_);
@@ -407,7 +426,8 @@ void TimelineStrip::mousePressEvent(QMouseEvent* e) {
 void TimelineStrip::mouseMoveEvent(QMouseEvent* e) {
   const int frame = frameAt(positionOf(*e));
   if (!(e->buttons() & Qt::LeftButton)) {
-    setCursor(frame >= 0 && roleMark(frame).contains(positionOf(*e)) ? Qt::PointingHandCursor : Qt::ArrowCursor);
+    const bool clickable = frame >= 0 && (roleMark(frame).contains(positionOf(*e)) || lightAt(positionOf(*e).y()) >= 0);
+    setCursor(clickable ? Qt::PointingHandCursor : Qt::ArrowCursor);
     return;
   }
   if (scrubbing_ && frame >= 0) document_.selectFrame(frame, gesture_);
@@ -420,6 +440,18 @@ void TimelineStrip::contextMenuEvent(QContextMenuEvent* e) {
   const QString id = toQString(document_.scene()->frames[std::size_t(frame)].id);
   menu.addSection(tr("Frame %1").arg(id));
   addRoles(menu, document_, frame);
+  if (!data_.lights.empty()) {
+    menu.addSeparator();
+    addLights(menu, document_, data_.lights, frame);
+  }
+  if (const int light = lightAt(e->pos().y()); light >= 0) {
+    const viz::LightRow row = data_.lights[std::size_t(light)];
+    const QString name = toQString(row.light);
+    menu.addAction(tr("Light %1 off in every frame").arg(name), this,
+                   [this, row] { switchLightEverywhere(document_, row, false); });
+    menu.addAction(tr("Light %1 as captured in every frame").arg(name), this,
+                   [this, row] { switchLightEverywhere(document_, row, true); });
+  }
   menu.addSeparator();
   menu.addAction(tr("Show beside the selected frame"), this, [this, frame, id] {
     document_.undoStack()->beginMacro(tr("Show frame %1 beside").arg(id));
@@ -459,23 +491,29 @@ QString TimelineStrip::idText(int frame) const {
 }
 
 QString TimelineStrip::lightTip(int row, int frame) const {
-  const viz::TimelineData::LightRow& light = data_.lights[std::size_t(row)];
+  const viz::LightRow& light = data_.lights[std::size_t(row)];
   const QString name = toQString(light.light);
   if (frame < 0)
-    return tr("Light %1 (row %2 of %3): on in the frames where its row is yellow")
+    return tr("Light %1 (row %2 of %3): on in the frames where its row is yellow; a click switches it in a frame, a line through "
+              "it "
+              "shows what is not as captured")
         .arg(name)
         .arg(row + 1)
         .arg(data_.lights.size());
-  static const char* const states[] = {QT_TR_NOOP("off"), QT_TR_NOOP("on"),
-                                       QT_TR_NOOP("the scene does not say whether it is on")};
-  return tr("Light %1: %2").arg(name, tr(states[int(light.on[std::size_t(frame)])]));
+  const viz::LightState state = viz::lightState(light, *document_.scene(), document_.request().whatIf, frame);
+  return tr("Light %1: %2\n%3").arg(name, lightStateText(state), lightClickText(document_, state));
 }
 
 QString TimelineStrip::toolTip(int frame) const {
   const Frame& f = document_.scene()->frames[std::size_t(frame)];
   QString text = tr("Frame %1, %2").arg(toQString(f.id), roleName(document_.role(frame)));
   if (unreadable_.contains(frame)) text += tr("\nno photograph: %1").arg(unreadable_.value(frame));
-  if (!data_.lights.empty() && !f.lightsOn.empty()) text += tr("\nlights on: %1").arg(joined(f.lightsOn));
+  if (!data_.lights.empty()) {
+    std::vector<std::string> on;
+    for (const viz::LightRow& row : data_.lights)
+      if (viz::isLit(viz::lightState(row, *document_.scene(), document_.request().whatIf, frame))) on.push_back(row.light);
+    text += tr("\nlights on: %1").arg(on.empty() ? tr("none") : joined(on));
+  }
   for (const viz::TimelineData::Series& series : data_.series) {
     const std::optional<double>& pct = series.errorPct[std::size_t(frame)];
     text += QStringLiteral("\n%1: ").arg(toQString(series.model)) +

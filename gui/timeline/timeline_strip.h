@@ -15,8 +15,8 @@ namespace glint::gui {
 
 /// Strip of all frames, from top to bottom: thumbnails, errors (thin lines of all models, or bars of the selected one), lights on
 /// and off, roles by colour and shape (training: filled square, held out: ring, excluded: cross), numbers. Click and drag select;
-/// a click on a role's mark gives the frame the next role; the context menu has them all; the wheel zooms, with Shift it scrolls;
-/// Left and Right step.
+/// a click on a role's mark gives the frame the next role, one on a light switches it there; the context menu has them all; the
+/// wheel zooms, with Shift it scrolls; Left and Right step.
 ///
 /// What does not depend on the selected frame is painted once and kept, so that scrubbing over many frames draws a cursor only.
 class TimelineStrip : public QWidget {
@@ -25,6 +25,8 @@ class TimelineStrip : public QWidget {
   explicit TimelineStrip(Document& document, QWidget* parent = nullptr);
   QRectF cell(int frame) const;                ///< in widget coordinates, from the thumbnails to the errors
   QRectF roleMark(int frame) const;            ///< where a click changes the role
+  QRectF lightMark(int light, int frame) const;  ///< where a click switches that light of lights()
+  const std::vector<viz::LightRow>& lights() const { return data_.lights; }
   int frameAt(const QPointF& position) const;  ///< -1 outside
   /// Frames in view: from `firstFrame`, as many as `framesInView` (not whole numbers while zooming).
   double firstFrame() const { return first_; }

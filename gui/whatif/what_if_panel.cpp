@@ -93,7 +93,9 @@ WhatIfPanel::WhatIfPanel(Document& document, QWidget* parent)
 int highlightsToMove(const Document& document) {
   const auto inspection = document.inspection();
   const std::size_t frame = std::size_t(document.selection().frame);
-  return inspection && frame < inspection->evidence.size() ? int(inspection->evidence[frame].highlights.size()) : 0;
+  if (!inspection || frame >= inspection->evidence.size()) return 0;
+  const auto before = inspection->evidenceBefore.find(int(frame));
+  return int((before != inspection->evidenceBefore.end() ? before->second : inspection->evidence[frame]).highlights.size());
 }
 
 /// While contours are synthesised a fit gives back the lobe that made them: that of the scene as captured stays.

@@ -6,6 +6,7 @@
 #include <QRegularExpression>
 
 #include "gui/base/text.h"
+#include "gui/timeline/light_switches.h"
 #include "gui/whatif/what_if_panel.h"
 
 namespace glint::gui {
@@ -124,6 +125,19 @@ void addKnobs(QList<PaletteItem>& items, Document& document, const std::function
     items.append(itemOf(knob, valueText(knob.get(now), knob.spec), true, [show, key = knob.spec.key] { show(key); }));
 }
 
+void addLightSwitches(QList<PaletteItem>& items, Document& document) {
+  if (document.frameCount() == 0) return;
+  const int frame = document.selection().frame;
+  const QString id = toQString(document.scene()->frames[std::size_t(frame)].id);
+  for (const viz::LightRow& row : viz::lightRows(*document.scene(), document.inspection().get())) {
+    const viz::LightState state = viz::lightState(row, *document.scene(), document.request().whatIf, frame);
+    items.append({QObject::tr("Light %1 in frame %2").arg(toQString(row.light), id), QObject::tr("What if"),
+                  canSwitch(document, state) ? lightStateText(state) : lightClickText(document, state),
+                  canSwitch(document, state), [&document, row, frame] { switchLight(document, row, frame); },
+                  QObject::tr("lamp switch on off")});
+  }
+}
+
 void addKnobAssignments(QList<PaletteItem>& items, const QString& value, Document& document) {
   for (const WhatIfKnob& knob : knobsOf(document)) {
     const ParamSpec& spec = knob.spec;
@@ -166,6 +180,7 @@ QList<PaletteItem> paletteItems(const QString& typed, const Actions& actions, Do
   addActions(items, actions);
   addParameters(items, document, targets.parameter);
   addKnobs(items, document, targets.whatIf);
+  addLightSwitches(items, document);
   // Not before a number is typed: a thousand frames would bury the rest.
   if (document.scene() && typed.contains(QRegularExpression(QStringLiteral("\\d")))) addFrames(items, document);
   return items;

@@ -54,10 +54,14 @@ class RandomTest : public QObject {
   Q_OBJECT
  private slots:
   void undoneToTheFirstStateAndRedoneToTheLast_data() {
+    QTest::addColumn<QString>("name");
     QTest::addColumn<unsigned>("seed");
-    for (const unsigned seed : {1u, 3u}) QTest::newRow(qPrintable(QStringLiteral("seed %1").arg(seed))) << seed;
+    QTest::newRow("plane, seed 1") << QStringLiteral("plane") << 1u;
+    QTest::newRow("plane, seed 3") << QStringLiteral("plane") << 3u;
+    QTest::newRow("two lamps, seed 1") << QStringLiteral("two-lamps") << 1u;  // lights to be switched as well
   }
   void undoneToTheFirstStateAndRedoneToTheLast() {
+    QFETCH(QString, name);
     QFETCH(unsigned, seed);
     MainWindow window(coreEngine());
     window.resize(1500, 950);
@@ -65,9 +69,9 @@ class RandomTest : public QObject {
     QVERIFY(QTest::qWaitForWindowExposed(&window));
     // What is written beside a session is not to lie in the sources.
     const std::filesystem::path copy = copy_.path().toStdString();
-    std::filesystem::copy(GLINT_SOURCE_DIR "/sessions/plane", copy,
+    std::filesystem::copy(std::string(GLINT_SOURCE_DIR "/sessions/") + name.toStdString(), copy,
                           std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing);
-    window.open(copy_.filePath(QStringLiteral("plane.glint")));
+    window.open(copy_.filePath(name + QStringLiteral(".glint")));
     QTRY_VERIFY_WITH_TIMEOUT(window.document().scene() && window.idle() && !window.document().stale(), 120000);
     const QList<QAction*> actions = window.actions().all();
     for (const auto& [start, reason] : leftOut())
@@ -89,6 +93,7 @@ class RandomTest : public QObject {
     }
     for (const char* kind : {"action", "parameter", "timeline", "layer", "what-if"})
       QVERIFY2(done[QLatin1String(kind)] > 0, kind);  // the seeds are chosen so that each kind changed something
+    if (!window.findChild<TimelineStrip*>()->lights().empty()) QVERIFY(done[QStringLiteral("light")] > 0);
     const QByteArray lastSession = session(document);
     QVERIFY(lastSession != firstSession);
     const std::string lastResults = results(window);
@@ -131,10 +136,10 @@ class RandomTest : public QObject {
       case 3: {
         TimelineStrip* strip = window.findChild<TimelineStrip*>();
         const int frame = below(random, window.document().frameCount());
-        const bool role = below(random, 2) == 0;
-        const QRectF at = role ? strip->roleMark(frame) : strip->cell(frame);
+        const int where = below(random, strip->lights().empty() ? 2 : 3);
+        const QRectF at = where == 0 ? strip->roleMark(frame) : where == 1 ? strip->cell(frame) : strip->lightMark(0, frame);
         if (strip->isVisible()) QTest::mouseClick(strip, Qt::LeftButton, {}, at.center().toPoint());
-        return QStringLiteral("timeline");
+        return where == 2 ? QStringLiteral("light") : QStringLiteral("timeline");
       }
       case 4: {
         const int what = below(random, 3);

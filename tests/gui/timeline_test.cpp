@@ -9,6 +9,7 @@
 #include "gui/base/focus_frame.h"
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/frame_panel.h"
+#include "gui/timeline/light_switches.h"
 #include "gui/timeline/timeline_strip.h"
 #include "tests/gui/fixture.h"
 
@@ -125,6 +126,57 @@ class TimelineTest : public QObject {
       QVERIFY2(first.contains(QStringLiteral("Light window: off")), qPrintable(first.join('|')));
       QVERIFY(first.contains(QStringLiteral("Light lamp: on")));
     }
+  }
+
+  /// A click on a light's row switches it in that frame, by one step of undo, and says where it cannot.
+  void aClickOnALightSwitchesItInAFrame() {
+    Document document(parseTrainSpec);
+    const Fixture fixture;
+    TimelineStrip strip(document);
+    Opened opened = fixture.opened();
+    auto scene = std::make_shared<Scene>(*opened.scene);
+    scene->lights.clear();
+    for (Frame& f : scene->frames) f.lightsOn = {"window", "lamp"};
+    scene->frames[1].lightsOn = {"lamp"};
+    opened.scene = scene;
+    document.open(opened);
+    strip.resize(800, 160);
+    strip.grab();
+    const auto click = [&](int light, int frame) {
+      QTest::mouseClick(&strip, Qt::LeftButton, {}, strip.lightMark(light, frame).center().toPoint());
+    };
+    const auto tip = [&](int light, int frame) { return strip.tipAt(strip.lightMark(light, frame).center().toPoint()); };
+    const int steps = document.undoStack()->index();
+    click(0, 2);
+    QVERIFY(isSwitchedOff(document.request().whatIf, 2, "window"));
+    QVERIFY(!isSwitchedOff(document.request().whatIf, 2, "lamp"));
+    QCOMPARE(document.undoStack()->index(), steps + 1);
+    QCOMPARE(document.undoStack()->undoText(),
+             QStringLiteral("Switch light window off in frame ") + QString::fromStdString(scene->frames[2].id));
+    QCOMPARE(document.selection().frame, 0);  // no selection
+    QVERIFY2(tip(0, 2).startsWith(QStringLiteral("Light window: switched off by hand")), qPrintable(tip(0, 2)));
+    QVERIFY(tip(0, 2).contains(QStringLiteral("lights on: lamp")));
+    const QImage off = strip.grab().toImage();
+    document.undoStack()->undo();
+    QVERIFY(document.request().whatIf.none());
+    QVERIFY(strip.grab().toImage() != off);  // it is drawn
+    document.undoStack()->redo();
+    click(0, 2);  // back
+    QVERIFY(document.request().whatIf.none());
+    // Captured dark: nothing can show it lit, unless contours are synthesised.
+    click(0, 1);
+    QVERIFY(document.request().whatIf.none());
+    QVERIFY2(tip(0, 1).contains(QStringLiteral("synthesised")), qPrintable(tip(0, 1)));
+    WhatIf w;
+    w.synthesise = true;
+    document.setWhatIf(w, QStringLiteral("synthesise"));
+    click(0, 1);
+    QVERIFY(isOn(*scene, document.request().whatIf, 1, "window"));
+    // All at once, from the menu of the row.
+    switchLightEverywhere(document, strip.lights()[1], false);
+    for (int i = 0; i < document.frameCount(); ++i) QVERIFY(isSwitchedOff(document.request().whatIf, i, "lamp"));
+    switchLightEverywhere(document, strip.lights()[1], true);
+    QCOMPARE(document.request().whatIf.lightsSwitched.size(), std::size_t(1));
   }
 
   void theWheelZoomsAroundTheFrameUnderTheMouse() {

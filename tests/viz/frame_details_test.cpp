@@ -114,6 +114,25 @@ TEST(EpipolarPicture, LinesTouchTheEllipsesAndTheMissIsTheirs) {
   EXPECT_THROW((void)epipolarPicture(*inspection, request), std::invalid_argument);
 }
 
+/// A scene that states no lights: its rows are of those that were found, also in a frame where one is switched off.
+TEST(TimelineData, LightsThatWereFound) {
+  Scene scene;
+  scene.frames.resize(3);
+  Inspection inspection;
+  inspection.evidence.resize(3);
+  const auto show = [](FrameEvidence& e, const char* light) { e.highlights.emplace_back().light = light; };
+  show(inspection.evidence[0], "light 1");
+  EXPECT_TRUE(lightRows(scene, &inspection).empty()) << "a single one";
+  show(inspection.evidence[1], "light 1");
+  show(inspection.evidence[1], "light 2");
+  inspection.evidenceBefore[2] = inspection.evidence[1];
+  EXPECT_TRUE(lightRows(scene, nullptr).empty()) << "nothing is known before the first result";
+  const std::vector<LightRow> rows = lightRows(scene, &inspection);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[1].light, "light 2");
+  EXPECT_EQ(rows[1].captured, (std::vector<LightState>{LightState::NotStated, LightState::On, LightState::On}));
+}
+
 TEST(TimelineData, LightsErrorsAndColumns) {
   const TemporaryFolder folder;
   const auto inspection = smallInspection(folder.path());
@@ -122,7 +141,8 @@ TEST(TimelineData, LightsErrorsAndColumns) {
   EXPECT_TRUE(timelineData(*scene, nullptr).lights.empty());  // one light, always on: nothing to show
   scene->frames[1].lightsOn = {"a", "b"};
   scene->frames[2].lightsOn = {};
-  const TimelineData data = timelineData(*scene, inspection.get());
+  TimelineData data = timelineData(*scene, inspection.get());
+  data.lights = lightRows(*scene, nullptr);
   ASSERT_EQ(data.lights.size(), 2u);
   EXPECT_EQ(data.lights[1].light, "b");
   // In the order of the scene, whatever their names are.
@@ -135,7 +155,16 @@ TEST(TimelineData, LightsErrorsAndColumns) {
   }
   ASSERT_EQ(timelineData(named, nullptr).lights.size(), 2u);
   EXPECT_EQ(timelineData(named, nullptr).lights[0].light, "b");
-  EXPECT_EQ(std::vector<char>(data.lights[1].on.begin(), data.lights[1].on.begin() + 3), (std::vector<char>{0, 1, 2}));
+  const LightRow& b = data.lights[1];
+  EXPECT_EQ(std::vector<LightState>(b.captured.begin(), b.captured.begin() + 3),
+            (std::vector<LightState>{LightState::Off, LightState::On, LightState::NotStated}));
+  // As switched by hand; what was captured dark can be lit only where contours are synthesised.
+  WhatIf w = switched(switched({}, *scene, 0, "b", true), *scene, 1, "b", false);
+  EXPECT_EQ(lightState(b, *scene, w, 0), LightState::Off);
+  EXPECT_EQ(lightState(b, *scene, w, 1), LightState::SwitchedOff);
+  w.synthesise = true;
+  EXPECT_EQ(lightState(b, *scene, w, 0), LightState::SwitchedOn);
+  EXPECT_EQ(lightState(b, *scene, w, 3), LightState::Off);
   ASSERT_EQ(data.series.size(), 2u);
   for (int frame = 0; frame < 6; ++frame) {
     EXPECT_EQ(data.series[1].errorPct[static_cast<std::size_t>(frame)],

@@ -51,6 +51,18 @@ TEST(ObserveFrame, IsWhatTheFrameShowsUnderTheRequest) {
   EXPECT_EQ(seen->key, inspect(scene, request(kLow)).stageKeys.at("detect"));
 }
 
+TEST(ObserveFrame, NothingOfALightThatIsSwitchedOff) {
+  const auto scene = twoLevels();
+  const Inspection known = inspect(scene, request());
+  InspectionRequest q = request(kLow);
+  const std::string light = known.evidence[kFrame].highlights.at(0).light;
+  q.whatIf = switched({}, *scene, kFrame, light, false);
+  const std::optional<Observation> seen = observeFrame(scene, q, kFrame, {}, &known);
+  ASSERT_TRUE(seen);
+  EXPECT_TRUE(seen->evidence.highlights.empty());
+  EXPECT_TRUE(heldAgainst(known, *seen).models.at("limit-angle").frames.empty());
+}
+
 TEST(ObserveFrame, SaysNothingWhereItIsKnownOrTakesAllFrames) {
   const auto scene = twoLevels();
   const Inspection known = inspect(scene, request());

@@ -52,6 +52,20 @@ TEST(SynthesisedPhotograph, NominalPeakIsTheMirroredLampOfThePlane) {
   }
 }
 
+// The only lamp off: nothing shines there, and neither the exposure nor any other frame's picture changes.
+TEST(SynthesisedPhotograph, NominalALightSwitchedOffShinesNoMore) {
+  InspectionRequest q = synthetic();
+  const auto scene = lit(sphere(0.5));
+  const Inspection on = inspect(scene, q);
+  q.whatIf = switched(q.whatIf, *scene, 2, "lamp", false);
+  const Inspection off = inspect(scene, q);
+  EXPECT_NE(pictureKey(off), pictureKey(on));
+  const Outcome<Image> dark = linearImageOf(off, 2, FrameSource::Image);
+  ASSERT_TRUE(dark) << dark.failure().message();
+  EXPECT_EQ(*std::max_element(dark->data.begin(), dark->data.end()), 0.0f);
+  EXPECT_EQ(linearImageOf(off, 1, FrameSource::Image)->data, linearImageOf(on, 1, FrameSource::Image)->data);
+}
+
 // What is drawn over the picture belongs to it: along the contour the radiance is `detect.level` of the peak's.
 TEST(SynthesisedPhotograph, NominalContoursAreItsLevelSets) {
   for (const AnalyticSpec& surface : {sphere(0.5), sheet(1)}) {

@@ -134,6 +134,120 @@ TEST(WhatIf, ALampThatNothingReflectsIsNamed) {
   }
 }
 
+/// A sheet under two lamps, with the contours of both in every frame.
+std::shared_ptr<Scene> twoLamps() {
+  auto scene = lamp(sheet(0.3));
+  TrueLight second = scene->lights[0];
+  second.id = "second";
+  *second.position += Eigen::Vector3d(-0.5, 0.1, 0.2);
+  scene->lights.push_back(second);
+  for (Frame& f : scene->frames) f.lightsOn.clear();
+  WhatIf w;
+  w.synthesise = true;
+  auto both = std::make_shared<Scene>(*changedScene(*scene, w, 0.5));
+  for (Frame& f : both->frames) f.lightsOn = {"lamp", "second"};
+  return both;
+}
+
+int highlightsOf(const FrameEvidence& e, const std::string& light) {
+  return int(std::count_if(e.highlights.begin(), e.highlights.end(), [&](const Highlight& h) { return h.light == light; }));
+}
+
+/// The reference is a scene whose files never had that light there.
+TEST(WhatIf, ALightSwitchedOffIsAsIfItHadNeverBeenOnInThatFrame) {
+  const auto scene = twoLamps();
+  auto without = std::make_shared<Scene>(*scene);
+  InspectionRequest q = request({"dual", "limit-angle"});
+  for (const int frame : {1, 6}) {  // a training and a held-out one
+    q.whatIf = switched(q.whatIf, *scene, frame, "second", false);
+    Frame& f = without->frames[std::size_t(frame)];
+    ASSERT_EQ(f.highlights.size(), 2u);
+    std::erase_if(f.highlights, [](const Highlight& h) { return h.light == "second"; });
+    f.lightsOn = {"lamp"};
+  }
+  const Inspection start = inspect(scene, request({"dual", "limit-angle"}));
+  const Inspection off = inspect(scene, q, {}, &start), expected = inspect(without, request({"dual", "limit-angle"}));
+  EXPECT_EQ(off.work.framesDetected, 0) << "it comes after detection";
+  EXPECT_EQ(off.views.size(), start.views.size() - 1);
+  EXPECT_EQ(highlightsOf(off.evidence[6], "second"), 0);
+  EXPECT_EQ(highlightsOf(off.evidence[6], "lamp"), 1);
+  for (const auto& [name, model] : expected.models) {
+    const ModelResult& got = off.models.at(name);
+    ASSERT_EQ(got.frames.size(), model.frames.size()) << name;
+    for (std::size_t i = 0; i < model.frames.size(); ++i) {
+      EXPECT_EQ(got.frames[i].frame, model.frames[i].frame);
+      EXPECT_EQ(got.frames[i].light, model.frames[i].light);
+      ASSERT_EQ(got.frames[i].rows.size(), model.frames[i].rows.size());
+      for (std::size_t k = 0; k < model.frames[i].rows.size(); ++k) {
+        ASSERT_EQ(got.frames[i].rows[k].metrics.has_value(), model.frames[i].rows[k].metrics.has_value());
+        if (model.frames[i].rows[k].metrics) {
+          EXPECT_EQ(got.frames[i].rows[k].metrics->contourErrorPct, model.frames[i].rows[k].metrics->contourErrorPct);
+        }
+      }
+    }
+  }
+  EXPECT_NE(digestOf(off), digestOf(start));
+  EXPECT_EQ(digestOf(off), digestOf(inspect(scene, q))) << "the same from nothing";
+  EXPECT_EQ(digestOf(inspect(scene, request({"dual", "limit-angle"}), {}, &off)), digestOf(start)) << "and back";
+}
+
+TEST(WhatIf, AMovedHighlightStaysTheOneThatWasMovedWhateverIsSwitchedOff) {
+  const auto scene = twoLamps();
+  InspectionRequest q = request();
+  q.noisePx = 0.5;
+  q.whatIf.highlights[{2, 1}].peakBy = {3, 0};
+  const Inspection both = inspect(scene, q);
+  const std::string moved = both.evidence[2].highlights.at(1).light;
+  q.whatIf = switched(q.whatIf, *scene, 2, both.evidence[2].highlights.at(0).light, false);
+  const Inspection one = inspect(scene, q, {}, &both);
+  ASSERT_EQ(one.evidence[2].highlights.size(), 1u);
+  EXPECT_EQ(one.evidence[2].highlights[0].light, moved);
+  EXPECT_EQ(one.evidence[2].highlights[0].peak, both.evidence[2].highlights[1].peak);
+  EXPECT_EQ(one.evidence[2].asFound(0), 1);
+  const auto viewOf = [&](const Inspection& in) {
+    return *std::find_if(in.views.begin(), in.views.end(),
+                         [&](const TrainingView& v) { return v.frame == 2 && v.highlight.light == moved; });
+  };
+  EXPECT_EQ(viewOf(one).highlight.contour.points, viewOf(both).highlight.contour.points) << "its noise is the same";
+}
+
+TEST(WhatIf, AFrameWithoutAnyLightSaysSoAndALightThatIsNowhereOnIsNotFitted) {
+  const auto scene = twoLamps();
+  InspectionRequest q = request();
+  for (const char* light : {"lamp", "second"}) q.whatIf = switched(q.whatIf, *scene, 5, light, false);
+  const Inspection dark = inspect(scene, q);
+  ASSERT_TRUE(dark.evidence[5].failure);
+  EXPECT_EQ(dark.evidence[5].failure->reason, Reason::NoHighlight);
+  EXPECT_EQ(dark.evidence[5].failure->detail, "switched off: lamp, second");
+  for (const FrameComparison& c : dark.models.at("limit-angle").frames) EXPECT_NE(c.frame, 5) << "nothing is predicted there";
+  q.whatIf = {};
+  for (int i = 0; i < 8; ++i) q.whatIf = switched(q.whatIf, *scene, i, "second", false);
+  const Inspection one = inspect(scene, q);
+  ASSERT_EQ(one.models.at("limit-angle").fits.size(), 1u);
+  EXPECT_EQ(one.models.at("limit-angle").fits[0].light, "lamp");
+}
+
+TEST(WhatIf, ALightThatWasOffCanBeOnWhereContoursAreSynthesised) {
+  const auto scene = twoLamps();
+  scene->frames[3].lightsOn = {"lamp"};
+  std::erase_if(scene->frames[3].highlights, [](const Highlight& h) { return h.light == "second"; });
+  InspectionRequest q = request();
+  q.whatIf = switched({}, *scene, 3, "second", true);
+  EXPECT_FALSE(isOn(*scene, q.whatIf, 3, "second")) << "its photograph cannot show it";
+  EXPECT_EQ(highlightsOf(inspect(scene, q).evidence[3], "second"), 0);
+  q.whatIf.synthesise = true;
+  const Inspection lit = inspect(scene, q);
+  EXPECT_EQ(highlightsOf(lit.evidence[3], "second"), 1);
+  // Switching off synthesises nothing again.
+  InspectionRequest off = q;
+  off.whatIf = switched(off.whatIf, *scene, 4, "lamp", false);
+  const Inspection dark = inspect(scene, off, {}, &lit);
+  EXPECT_EQ(dark.scene, lit.scene);
+  EXPECT_EQ(highlightsOf(dark.evidence[4], "lamp"), 0);
+  EXPECT_EQ(lightsOn(*scene, off.whatIf, 4).size(), 1u);
+  EXPECT_EQ(switched(off.whatIf, *scene, 4, "lamp", true), q.whatIf) << "what agrees with the capture is no change";
+}
+
 TEST(WhatIf, Refusals) {
   const auto scene = lamp();
   const auto refused = [&](const std::function<void(WhatIf&)>& change) {
@@ -231,6 +345,11 @@ TEST(WhatIf, TheSummaryCounts) {
   w.highlights[{1, 0}].contourScale = 2;
   w.highlights[{2, 0}].contourScale = 2;
   EXPECT_EQ(summaryOf(w), "1 pose, 2 highlights");
+  w.lightsSwitched[{2, "lamp"}] = false;
+  w.lightsSwitched[{3, "lamp"}] = true;  // counts only where contours are synthesised
+  EXPECT_EQ(summaryOf(w), "1 pose, 2 highlights, 1 light switched");
+  EXPECT_EQ(frameNote(w, 2), "highlight moved by hand, light lamp switched off");
+  EXPECT_EQ(frameNote(w, 3), "");
 }
 
 TEST(WhatIf, JsonRoundTrip) {
@@ -240,6 +359,8 @@ TEST(WhatIf, JsonRoundTrip) {
   w.synthesise = true;
   w.lobe = Lobe::Ggx;
   w.roughness = 0.07;
+  w.lightsSwitched[{2, "a \"quoted lamp"}] = false;
+  w.lightsSwitched[{3, "b"}] = true;
   w.lightsBy["a \"quoted\" lamp"] = {1, 2, 3};
   w.surfaces["body"] = 0.4;
   EXPECT_EQ(readWhatIf(JsonNode::parse(whatIfJson(w), "x")), w);
