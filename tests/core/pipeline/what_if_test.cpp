@@ -238,6 +238,11 @@ TEST(WhatIf, ALightThatWasOffCanBeOnWhereContoursAreSynthesised) {
   q.whatIf.synthesise = true;
   const Inspection lit = inspect(scene, q);
   EXPECT_EQ(highlightsOf(lit.evidence[3], "second"), 1);
+  InspectionRequest asCaptured = q;
+  asCaptured.whatIf.lightsSwitched.clear();
+  const Inspection before = inspect(scene, asCaptured);
+  EXPECT_EQ(highlightsOf(before.evidence[3], "second"), 0);
+  EXPECT_EQ(digestOf(inspect(scene, q, {}, &before)), digestOf(lit)) << "and also after results without it";
   // Switching off synthesises nothing again.
   InspectionRequest off = q;
   off.whatIf = switched(off.whatIf, *scene, 4, "lamp", false);
