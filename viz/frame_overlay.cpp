@@ -352,6 +352,12 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
           line.width = 1;
           line.dash = Dash::Dashed;
           overlay.lines.push_back(line);
+          // On T, before the walk back onto the surface; the canonical layer has one there already.
+          if (h.canonical && h.canonical->ellipse && !shown(OverlayRole::CanonicalEllipse)) {
+            line.points = ellipsePoints(*h.canonical->ellipse);
+            line.dash = Dash::Dotted;
+            overlay.lines.push_back(line);
+          }
         }
         if (shown(OverlayRole::PredictedPeak) && h.brightest.pixel.allFinite()) {
           OverlayMark mark;
@@ -384,6 +390,12 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
       overlay.captions.push_back({modelColour(model), model, scoreText(model, score),
                                   score.matched == 0 || score.missed > 0 || score.spurious > 0, score});
     }
+  }
+  // What is selected lies on top of what almost coincides with it.
+  if (selected && !selected->model.empty()) {
+    const auto other = [&](const auto& drawnThing) { return drawnThing.model != selected->model; };
+    std::stable_partition(overlay.lines.begin(), overlay.lines.end(), other);
+    std::stable_partition(overlay.marks.begin(), overlay.marks.end(), other);
   }
   if (selected && selected->direction && shown(OverlayRole::SelectedPoint))
     addSelectedPoint(inspection, *selected, shown, drawn, overlay.marks);

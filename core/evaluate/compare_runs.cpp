@@ -128,7 +128,7 @@ std::map<std::string, std::string> changes(const Inspection& run) {
   for (const auto& [frame, pose] : w.poses)
     all["camera of " + id(frame)] = "turned " + vectorText(pose.rotation) + " rad, moved " + vectorText(pose.translation) + " m";
   for (const auto& [at, h] : w.highlights)
-    all["highlight " + std::to_string(at.second) + " of " + id(at.first)] =
+    all["highlight " + std::to_string(at.second + 1) + " of " + id(at.first)] =
         "contour by " + number(h.contourBy.x()) + " " + number(h.contourBy.y()) + " px, times " + number(h.contourScale) +
         "; peak by " + number(h.peakBy.x()) + " " + number(h.peakBy.y()) + " px";
   for (const auto& [at, on] : w.lightsSwitched) all["light " + at.second + " in " + id(at.first)] = on ? "on" : "off";

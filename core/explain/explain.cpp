@@ -305,8 +305,8 @@ void limitAngleStep(const Case& c, ExplainStep& step) {
   step.numbers.push_back(one("n", "directions", double(c.out.view->canonical->directions.size())));
   step.numbers.push_back(one("", "that reached the contour", n));
   if (n > 0) {
-    step.numbers.push_back(one("alpha_i", "smallest limit angle", degrees(least), "deg"));
-    step.numbers.push_back(one("alpha_i", "largest limit angle", degrees(most), "deg"));
+    step.numbers.push_back(one("α_i", "smallest limit angle", degrees(least), "deg"));
+    step.numbers.push_back(one("α_i", "largest limit angle", degrees(most), "deg"));
     const double mean = sum / n;
     if (most - least > kSameLimit * mean)
       step.broken.push_back({"limit-angle-varies", {one("", "spread of the limit angles", 100 * (most - least) / mean, "%")}});
@@ -421,17 +421,17 @@ void ellipsoidStep(const Case& c, ExplainStep& step) {
   const ModelFit& f = *c.fit->fit;
   step.numbers.push_back(one("", "highlights that were used", double(f.frames.size())));
   if (f.ellipsoid) {
-    step.numbers.push_back(point("c", "centre", f.ellipsoid->centre()));
+    step.numbers.push_back(point("", "centre", f.ellipsoid->centre()));
     step.numbers.push_back(point("a, b, c", "semi-axes", f.ellipsoid->semiAxes()));
   }
-  if (f.limitAngle) step.numbers.push_back(one("alpha_lim", "limit angle", degrees(*f.limitAngle), "deg"));
+  if (f.limitAngle) step.numbers.push_back(one("α_lim", "limit angle", degrees(*f.limitAngle), "deg"));
   if (f.roughness) step.numbers.push_back(one("m", "roughness", *f.roughness));
   if (f.quadric && f.gapRatio > 0) {
     step.numbers.push_back(one("", "last over second last singular value", f.gapRatio));
     if (f.gapRatio > kWeakGap) step.broken.push_back({"weak-gap", {one("", "ratio", f.gapRatio)}});
   }
   const std::optional<ContourMetrics> worst = worstInTraining(c);
-  if (worst) step.numbers.push_back(one("e", "largest error in a training frame", worst->contourErrorPx, "px"));
+  if (worst) step.numbers.push_back(one("d", "largest mean distance in a training frame", worst->contourErrorPx, "px"));
   if (!f.residualPx.empty())
     step.numbers.push_back(one("",
                                f.quadric ? "largest distance from a training contour to its outline, one way"
@@ -468,9 +468,14 @@ void projectionStep(const Case& c, ExplainStep& step) {
       pixel("", outline ? "centre of the predicted outline" : "predicted brightest point", p->brightest.pixel));
   if (c.highlight)
     step.numbers.push_back(one("", "from the observed peak", (p->brightest.pixel - c.highlight->peak).norm(), "px"));
-  if (p->ellipse)
+  // With a walk still to come this is the ellipse on T, not that of the contour in the end.
+  const bool walks = p->canonical && p->canonical->ellipse;
+  if (const std::optional<Ellipse>& e = walks ? p->canonical->ellipse : p->ellipse)
     step.numbers.push_back(
-        {"a, b", "semi-axes of the predicted ellipse", {p->ellipse->semiAxes.x(), p->ellipse->semiAxes.y()}, "px"});
+        {"a, b",
+         walks ? "semi-axes of the ellipse that a flat mirror would show" : "semi-axes of the predicted ellipse",
+         {e->semiAxes.x(), e->semiAxes.y()},
+         "px"});
   addMisses(c, step, true);
 }
 
@@ -478,7 +483,10 @@ void inverseWalkStep(const Case& c, ExplainStep& step) {
   const PredictedHighlight* p = c.predicted();
   if (!p) return projectionStep(c, step);
   step.numbers.push_back(one("", "points of the predicted contour", double(p->contour.points.size())));
-  if (p->canonical) step.numbers.push_back(one("", "share of directions that gave one", p->coverage));
+  if (p->canonical) step.numbers.push_back(one("", "of the directions gave one", 100 * p->coverage, "%"));
+  if (p->canonical && p->ellipse)
+    step.numbers.push_back(
+        {"a, b", "semi-axes of the ellipse of what came out", {p->ellipse->semiAxes.x(), p->ellipse->semiAxes.y()}, "px"});
   addMisses(c, step, false);
   if (!p->canonical) {
     const bool stopsAtTheOutline = c.out.model == "primal" || c.out.model == "dual";
@@ -508,7 +516,7 @@ void comparisonStep(const Case& c, ExplainStep& step) {
   }
   addMisses(c, step, true);
   const ContourMetrics& m = *c.row->metrics;
-  step.numbers.push_back(one("e", "mean distance of the contours", m.contourErrorPx, "px"));
+  step.numbers.push_back(one("d", "mean distance of the contours", m.contourErrorPx, "px"));
   step.numbers.push_back(one("e", "of the equivalent diameter", m.contourErrorPct, "%"));
   step.numbers.push_back(one("IoU", "overlap", m.iou));
   step.numbers.push_back(

@@ -136,7 +136,7 @@ void addHighlight(std::vector<WhatIfKnob>& knobs, const Scene& scene, int frame,
   const std::pair<int, int> at{frame, index};
   const Camera& camera = scene.frames[std::size_t(frame)].camera;
   const double reach = 0.05 * std::max(camera.width, camera.height);  // beyond that it would be another highlight
-  const std::string group = "Highlight " + std::to_string(index) + " of frame " + scene.frames[std::size_t(frame)].id;
+  const std::string group = "Highlight " + std::to_string(index + 1) + " of frame " + scene.frames[std::size_t(frame)].id;
   const auto add = [&](const std::string& key, const std::string& title, const std::string& unit, double neutral, double min,
                        double max, double step, const std::string& help, auto member) {
     knobs.push_back({group, number("highlight." + std::to_string(index) + "." + key, title, unit, neutral, min, max, step, help),

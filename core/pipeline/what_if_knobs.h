@@ -15,7 +15,7 @@ struct Inspection;
 
 /// One number of a what-if, as a panel shows it.
 struct WhatIfKnob {
-  std::string group;                         ///< "Light lamp", "Camera of frame 0003", "Highlight 0 of frame 0003"
+  std::string group;                         ///< "Light lamp", "Camera of frame 0003", "Highlight 1 of frame 0003"
   ParamSpec spec;                            ///< key unique among the knobs; the default is the value that changes nothing
   bool synthetic = false;                    ///< counts only where contours are synthesised
   std::function<double(const WhatIf&)> get;  ///< in spec.unit

@@ -57,7 +57,7 @@ const ExplainTexts& explainTexts() {
 }
 
 QString valuesHtml(const ExplainNumber& n) {
-  constexpr int kDigits = 5;
+  const int digits = n.values.size() > 1 ? 4 : 5;  // several stand in one row of a narrow panel
   constexpr double kShort = 1e-2;  // m: below, a single length is in mm
   const double least = std::max(n.least, 0.0);
   const bool single = n.values.size() == 1;
@@ -71,7 +71,7 @@ QString valuesHtml(const ExplainNumber& n) {
   for (const double v : n.values) {
     double rounded = step > 0 && std::isfinite(v) ? std::round(v / step) * step : v;
     if (std::abs(v) < least) rounded = 0;
-    parts << numberText(millimetres ? 1000 * rounded : rounded, kDigits);
+    parts << numberText(millimetres ? 1000 * rounded : rounded, digits);
   }
   const QString unit = unitAfter(millimetres ? "mm" : n.unit);
   return parts.join(QStringLiteral("&nbsp;&nbsp; ")) + unit.toHtmlEscaped().replace(QLatin1Char(' '), QStringLiteral("&nbsp;"));

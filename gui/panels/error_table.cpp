@@ -119,6 +119,9 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
                     fontMetrics().horizontalAdvance(model_->headerData(i, Qt::Horizontal, Qt::DisplayRole).toString()) + kArrow));
   // Why there is no number stands beside "failed", not out of sight behind a row of dashes.
   view_->horizontalHeader()->moveSection(ErrorModel::ReasonText, ErrorModel::Status + 1);
+  // The errors themselves are in sight without scrolling.
+  for (const int column : {ErrorModel::ErrorPx, ErrorModel::ErrorPct})
+    view_->horizontalHeader()->moveSection(view_->horizontalHeader()->visualIndex(column), ErrorModel::Model + 1);
   view_->installEventFilter(this);
   view_->viewport()->installEventFilter(this);
   column->addWidget(view_, 1);

@@ -6,6 +6,7 @@
 #include <QItemSelectionModel>
 #include <QLineEdit>
 #include <QMenu>
+#include <QMouseEvent>
 #include <QSortFilterProxyModel>
 #include <QTreeView>
 #include <QVBoxLayout>
@@ -60,7 +61,11 @@ SceneTree::SceneTree(Document& document, QWidget* parent)
   shown_->setFilterKeyColumn(0);
   shown_->setRecursiveFilteringEnabled(true);
   tree_->setObjectName(QStringLiteral("sceneTree"));
+  // Before the tree's own selection hears of it.
+  connect(shown_, &QAbstractItemModel::rowsAboutToBeRemoved, this, [this] { ++leaving_; });
   tree_->setModel(shown_);
+  connect(shown_, &QAbstractItemModel::rowsRemoved, this, [this] { --leaving_; });
+  tree_->viewport()->installEventFilter(this);
   tree_->setUniformRowHeights(true);
   tree_->setSelectionMode(QAbstractItemView::ExtendedSelection);
   tree_->setEditTriggers(QAbstractItemView::NoEditTriggers);
@@ -82,9 +87,8 @@ SceneTree::SceneTree(Document& document, QWidget* parent)
   column->addWidget(tree_, 1);
 
   connect(search_, &QLineEdit::textChanged, this, &SceneTree::find);
-  connect(tree_, &QTreeView::clicked, this, &SceneTree::clicked);
   connect(tree_, &QTreeView::doubleClicked, this, [this](const QModelIndex& index) {
-    if (index.column() != SceneTreeModel::Detail && objectAt(index)) emit frameSelectionRequested();
+    if (!ticked_ && index.column() != SceneTreeModel::Detail && objectAt(index)) emit frameSelectionRequested();
   });
   connect(head, &QHeaderView::sectionClicked, this, [this] {  // the first of the order is what one sorts for
     const QModelIndex first = shown_->index(0, 0, shown_->mapFromSource(model_->groupOf(Kind::Camera)));
@@ -94,7 +98,7 @@ SceneTree::SceneTree(Document& document, QWidget* parent)
   // Arrow keys select as clicks do.
   connect(tree_->selectionModel(), &QItemSelectionModel::currentChanged, this, [this](const QModelIndex& now) {
     const std::optional<SceneObject> object = objectAt(now);
-    if (object && !selecting_) select(*object);
+    if (object && !selecting_ && leaving_ == 0) select(*object);
   });
   connect(&document_, &Document::selectionChanged, this, &SceneTree::followDocument);
   // Results bring rows, which push the others away.
@@ -141,8 +145,13 @@ void SceneTree::showColumns() {
 
 void SceneTree::find(const QString& text) {
   shown_->setFilterFixedString(text);
-  if (text.isEmpty()) return;
-  for (int g = 0; g < shown_->rowCount(); ++g) tree_->expand(shown_->index(g, 0));
+  for (int g = 0; g < shown_->rowCount() && !text.isEmpty(); ++g) tree_->expand(shown_->index(g, 0));
+  const std::optional<SceneObject> current = objectAt(tree_->currentIndex());
+  if (current && isSelected(*current, document_.selection())) return;
+  selecting_ = true;
+  tree_->selectionModel()->clear();  // what stands there now is not what is selected
+  selecting_ = false;
+  mark({Kind::Camera, document_.selection().frame, -1, {}, {}});
 }
 
 void SceneTree::keepInSight() {
@@ -228,15 +237,39 @@ void SceneTree::select(const SceneObject& o) {
   selecting_ = false;
 }
 
-void SceneTree::clicked(const QModelIndex& index) {
+bool SceneTree::isRole(const QModelIndex& index) const {
   const std::optional<SceneObject> object = objectAt(index);
-  if (!object || object->kind != Kind::Camera || index.column() != SceneTreeModel::Detail) return;
-  if (document_.role(object->frame) != FrameRole::Excluded) return document_.setRole(object->frame, FrameRole::Excluded);
+  return object && object->kind == Kind::Camera && index.column() == SceneTreeModel::Detail;
+}
+
+bool SceneTree::isTick(const QPoint& position) const {
+  const QModelIndex index = tree_->indexAt(position);
+  if (!index.isValid() || index.column() != SceneTreeModel::Name) return false;
+  const int wide = style()->pixelMetric(QStyle::PM_IndicatorWidth) + 2 * style()->pixelMetric(QStyle::PM_FocusFrameHMargin);
+  const QRect row = tree_->visualRect(index);
+  return position.x() >= row.left() && position.x() < row.left() + wide + 2;
+}
+
+/// A click on a role is one action: it does not select as well, as in the timeline.
+bool SceneTree::eventFilter(QObject* watched, QEvent* e) {
+  const bool twice = e->type() == QEvent::MouseButtonDblClick;
+  if (watched != tree_->viewport() || (!twice && e->type() != QEvent::MouseButtonPress)) return QWidget::eventFilter(watched, e);
+  const auto* mouse = static_cast<QMouseEvent*>(e);
+  ticked_ = twice && isTick(mouse->pos());
+  const QModelIndex index = tree_->indexAt(mouse->pos());
+  if (mouse->button() != Qt::LeftButton || mouse->modifiers() != Qt::NoModifier || !isRole(index)) return false;
+  tree_->setFocus(Qt::MouseFocusReason);
+  exclude(index);
+  return true;
+}
+
+void SceneTree::exclude(const QModelIndex& index) {
+  const int frame = objectAt(index)->frame;
+  if (document_.role(frame) != FrameRole::Excluded) return document_.setRole(frame, FrameRole::Excluded);
   // Back to what it was, which the specification of the training frames still says.
   InspectionRequest request = document_.request();
-  request.excluded.erase(std::remove(request.excluded.begin(), request.excluded.end(), object->frame), request.excluded.end());
-  document_.setRequest(request,
-                       tr("Take frame %1 back").arg(toQString(document_.scene()->frames[std::size_t(object->frame)].id)));
+  request.excluded.erase(std::remove(request.excluded.begin(), request.excluded.end(), frame), request.excluded.end());
+  document_.setRequest(request, tr("Take frame %1 back").arg(toQString(document_.scene()->frames[std::size_t(frame)].id)));
 }
 
 // --- hiding -----------------------------------------------------------------------------------------------------------------

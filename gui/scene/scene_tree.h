@@ -39,11 +39,16 @@ class SceneTree : public QWidget {
   void frameSelectionRequested();  ///< the 3D view is to show what is selected (a double click)
   void lookThroughRequested();     ///< the selected frame's camera
 
+ protected:
+  bool eventFilter(QObject* watched, QEvent* e) override;
+
  private:
   void find(const QString& text);
   void followDocument();
   void select(const SceneObject& object);
-  void clicked(const QModelIndex& index);
+  bool isRole(const QModelIndex& index) const;  ///< of a camera, where one click excludes
+  void exclude(const QModelIndex& index);       ///< or take back
+  bool isTick(const QPoint& position) const;    ///< in the viewport
   void showMenu(const QPoint& position);
   void setHiddenOf(const std::vector<SceneObject>& objects, bool hide);
   QString nameOf(const std::vector<SceneObject>& objects) const;
@@ -59,6 +64,8 @@ class SceneTree : public QWidget {
   QLineEdit* search_;
   viz::Selection followed_;  ///< the last selection that the tree has shown
   bool selecting_ = false;   ///< by this tree
+  int leaving_ = 0;          ///< rows go: what then becomes the current one was not chosen by anybody
+  bool ticked_ = false;      ///< the double click that comes was on a tick
 };
 
 }  // namespace glint::gui

@@ -61,7 +61,7 @@ WhatIfPanel::WhatIfPanel(Document& document, QWidget* parent)
   column->addLayout(synthetic);
   origin_->setObjectName(QStringLiteral("whatif.origin"));
   origin_->setWordWrap(true);
-  origin_->setMinimumHeight(2 * origin_->fontMetrics().lineSpacing());
+  origin_->setMinimumHeight(3 * origin_->fontMetrics().lineSpacing());
   origin_->setAlignment(Qt::AlignLeft | Qt::AlignTop);
   column->addWidget(origin_);
   column->addStretch(1);

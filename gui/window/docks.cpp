@@ -25,6 +25,10 @@ QDockWidget* Docks::add(const char* name, const QString& title, QWidget* content
   dock->setObjectName(QLatin1String(name));
   const bool scrolls = qobject_cast<QAbstractScrollArea*>(content) != nullptr;
   dock->setWidget(scrolls ? content : new PanelScroll(content, kLeastContent));
+  // A field in a tab that goes behind another one would go on taking the keys, unseen.
+  QObject::connect(dock, &QDockWidget::visibilityChanged, window_, [this, dock](bool visible) {
+    if (const QWidget* focus = window_->focusWidget(); !visible && focus && dock->isAncestorOf(focus)) window_->setFocus();
+  });
   docks_.insert(QLatin1String(name), dock);
   places_.append({QLatin1String(name), area, QLatin1String(behind)});
   return dock;

@@ -23,6 +23,7 @@
 #include "gui/base/draw_turns.h"
 #include "gui/base/eliding_delegate.h"
 #include "gui/base/text.h"
+#include "gui/base/undo_keys.h"
 #include "gui/explain/explain_panel.h"
 #include "gui/explain/lessons.h"
 #include "gui/explain/walk_player.h"
@@ -69,6 +70,7 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
       files_(new FileActions(engine_, document_, runner_, this)),
       exports_(new ExportActions(engine_, document_, this)) {
   setAcceptDrops(true);
+  new UndoKeys(this);
   resize(QSize(1600, 1000).boundedTo(screen()->availableSize()));
   setDockNestingEnabled(true);
   setWindowIcon(icon(QStringLiteral("glint")));

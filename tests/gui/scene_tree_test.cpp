@@ -151,7 +151,11 @@ class SceneTreeTest : public QObject, SceneFixture {
     const int before = document_->undoStack()->count();
     for (const int frame : {4, 5}) {  // it trains, it is held out
       const FrameRole was = document_->role(frame);
+      const int steps = document_->undoStack()->index(), selected = document_->selection().frame;
+      QVERIFY(selected != frame);
       click(camera(frame), SceneTreeModel::Detail);
+      QCOMPARE(document_->undoStack()->index(), steps + 1);
+      QCOMPARE(document_->selection().frame, selected);  // one action: it does not select as well
       QCOMPARE(document_->role(frame), FrameRole::Excluded);
       QCOMPARE(row(camera(frame)).siblingAtColumn(SceneTreeModel::Detail).data().toString(), QStringLiteral("excluded"));
       click(camera(frame), SceneTreeModel::Detail);
@@ -194,10 +198,31 @@ class SceneTreeTest : public QObject, SceneFixture {
 
   void aSearchLeavesWhatItFinds() {
     auto* search = tree_->findChild<QLineEdit*>(QStringLiteral("treeSearch"));
+    document_->selectFrame(6);
+    const int steps = document_->undoStack()->index();
     QTest::keyClicks(search, "0011");
     QCOMPARE(children(group(Kind::Camera)), QStringList{"0011"});
+    // Looking for something selects nothing: not even what is left when the selected row goes.
+    QCOMPARE(document_->selection().frame, 6);
+    QCOMPARE(document_->undoStack()->index(), steps);
+    QVERIFY(marked().empty());
     search->clear();
     QCOMPARE(children(group(Kind::Camera)).size(), document_->frameCount());
+    QCOMPARE(marked(), (std::vector<SceneObject>{camera(6)}));
+    QTest::keyClick(tree_->view(), Qt::Key_Down);
+    QCOMPARE(document_->selection().frame, 7);
+  }
+
+  void twoClicksOnATickFlyNowhere() {
+    int flights = 0;
+    connect(tree_.get(), &SceneTree::frameSelectionRequested, this, [&] { ++flights; });
+    const QModelIndex at = row(camera(1));
+    tree_->view()->scrollTo(at);
+    const QRect line = tree_->view()->visualRect(at);
+    QTest::mouseDClick(tree_->view()->viewport(), Qt::LeftButton, {}, QPoint(line.left() + 6, line.center().y()));
+    QCOMPARE(flights, 0);
+    QTest::mouseDClick(tree_->view()->viewport(), Qt::LeftButton, {}, QPoint(line.left() + 40, line.center().y()));
+    QCOMPARE(flights, 1);
   }
 
   void whatIsHiddenIsKeptByIdsAndUnknownOnesAreIgnored() {

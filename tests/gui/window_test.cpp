@@ -18,6 +18,7 @@
 #include <QHelpEvent>
 #include <QLabel>
 #include <QListView>
+#include <QLineEdit>
 #include <QListWidget>
 #include <QPlainTextEdit>
 #include <QPushButton>
@@ -270,6 +271,45 @@ class WindowTest : public QObject, WindowFixture {
     QTRY_VERIFY(window.idle() && !window.document().stale());
     QCOMPARE(window.document().inspection()->evidence[0].highlights[0].level, 0.5);
     QVERIFY(elsewhere);
+  }
+
+  /// Qt's fields take the keys of undo for themselves, also when there is nothing left in them to undo.
+  void theKeysOfUndoTakeBackWhatWasEntered() {
+    MainWindow window(fixture_.engine());
+    openActive(window);
+    Document& document = window.document();
+    auto* box = window.findChild<QDoubleSpinBox*>(QStringLiteral("value:detect.level"));
+    box->setFocus();
+    box->selectAll();
+    QTest::keyClicks(box, "0.2");
+    QTest::keyClick(box, Qt::Key_Z, Qt::ControlModifier);  // not entered yet: the field's own
+    QCOMPARE(document.request().settings.number("detect.level"), 0.5);
+    box->selectAll();
+    QTest::keyClicks(box, "0.2");
+    QTest::keyClick(box, Qt::Key_Return);
+    QCOMPARE(document.request().settings.number("detect.level"), 0.2);
+    const int steps = document.undoStack()->index();
+    QVERIFY(box->hasFocus());
+    QTest::keyClick(box, Qt::Key_Z, Qt::ControlModifier);
+    QCOMPARE(document.undoStack()->index(), steps - 1);
+    QCOMPARE(document.request().settings.number("detect.level"), 0.5);
+    QTest::keyClick(box, Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
+    QCOMPARE(document.request().settings.number("detect.level"), 0.2);
+    // A search: first what was typed there, then what was done.
+    window.findChild<QDockWidget*>(QStringLiteral("tree"))->raise();
+    auto* search = window.findChild<QLineEdit*>(QStringLiteral("treeSearch"));
+    search->setFocus();
+    QTest::keyClicks(search, "0");
+    QTest::keyClick(search, Qt::Key_Z, Qt::ControlModifier);
+    QVERIFY(search->text().isEmpty());
+    QCOMPARE(document.undoStack()->index(), steps);
+    QTest::keyClick(search, Qt::Key_Z, Qt::ControlModifier);
+    QCOMPARE(document.undoStack()->index(), steps - 1);
+    // In a tab that goes behind another one it takes no keys any more.
+    QVERIFY(search->hasFocus());
+    window.findChild<QDockWidget*>(QStringLiteral("history"))->raise();
+    QTRY_VERIFY(!search->hasFocus());
+    QVERIFY(QApplication::focusWidget());
   }
 
   void anOwnLayoutComesBackInThisWindowAndTheNext() {

@@ -118,6 +118,30 @@ TEST(FrameOverlay, HiddenRolesAndModelsAreLeftOut) {
   for (const OverlayLine& line : frameOverlay(*inspection, 0, onlyDual).lines) EXPECT_NE(line.model, "canonical");
 }
 
+/// Models that are almost right lie on each other: the selected one is seen.
+TEST(FrameOverlay, TheSelectedModelIsDrawnLast) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  OverlayOptions options;
+  inspection->models["primal"] = inspection->models.at("canonical");
+  for (const char* model : {"primal", "canonical"}) {
+    options.selection = Selection{};
+    options.selection->frame = 0;
+    options.selection->model = model;
+    const FrameOverlay overlay = frameOverlay(*inspection, 0, options);
+    ASSERT_FALSE(overlay.lines.empty());
+    EXPECT_EQ(overlay.lines.back().model, model);
+    EXPECT_EQ(overlay.marks.back().model, model);
+    EXPECT_EQ(overlay.captions[0].model, "primal") << "what is written keeps its order";
+  }
+  // Before the walk back there is the ellipse on T: with the predicted ellipse where no canonical one is shown anyway.
+  options.hidden = {OverlayRole::CanonicalEllipse};
+  const auto predicted = ofRole(frameOverlay(*inspection, 0, options), OverlayRole::PredictedEllipse);
+  EXPECT_TRUE(std::any_of(predicted.begin(), predicted.end(), [](const OverlayLine& l) { return l.dash == Dash::Dotted; }));
+  const auto both = ofRole(frameOverlay(*inspection, 0), OverlayRole::PredictedEllipse);
+  EXPECT_TRUE(std::none_of(both.begin(), both.end(), [](const OverlayLine& l) { return l.dash == Dash::Dotted; }));
+}
+
 TEST(FrameOverlay, AFrameWithoutEvidenceSaysWhy) {
   const TemporaryFolder folder;
   const auto inspection = smallInspection(folder.path());

@@ -195,6 +195,15 @@ TEST(Plots, DialOfAPredictionThatIsOnePixelTooLarge) {
   EXPECT_FALSE(residualDial(*smallInspection(folder.path()), 2, 5).empty.empty());
 }
 
+TEST(Plots, ADialHasANumberWhateverItsRange) {
+  for (double largest = 1e-3; largest < 1e4; largest *= 1.01) {
+    const auto ticks = dialTicks({}, largest);
+    ASSERT_FALSE(ticks.empty()) << largest;
+    ASSERT_LE(ticks.size(), 4u) << largest;
+    for (const auto& [value, label] : ticks) EXPECT_TRUE(value > 0 && value <= largest) << largest;
+  }
+}
+
 TEST(Plots, TheDialShowsOneHighlightForAllModels) {
   const TemporaryFolder folder;
   const auto inspection = smallInspection(folder.path());

@@ -9,6 +9,12 @@ namespace {
 
 constexpr double kPlanePx = 2;  // see Drawn::nearerPx: below what lies on the plane
 
+/// What the plane has to reach: the contour, and the canonical one, which lies on it and is larger where the surface bulges.
+std::vector<Pixel> onPlane(std::vector<Pixel> contour, const std::optional<CanonicalContour>& canonical) {
+  if (canonical) contour.insert(contour.end(), canonical->pixels.begin(), canonical->pixels.end());
+  return contour;
+}
+
 void addPlane(LayerContent& content, const LayerInput& in, const Camera& camera, const Plane& plane, const Eigen::Vector3d& at,
               const std::vector<Pixel>& contour, bool strong, bool filled, const Colour& colour, const Picked& info) {
   const double radius = planeRadius(camera, plane, at, contour, in.scale);
@@ -35,8 +41,8 @@ LayerContent tangentPlanesLayer(const LayerInput& in) {
   const auto addObserved = [&](const TrainingView& view) {
     if (!view.tangentPlane || !view.brightest) return;
     const Eigen::Vector3d& at = view.brightest->point.position;
-    addPlane(content, in, view.camera, *view.tangentPlane, at, view.highlight.contour.points, view.frame == in.selection.frame,
-             true, kVirtualCamera, describe(*view.tangentPlane, at, view.frame, ""));
+    addPlane(content, in, view.camera, *view.tangentPlane, at, onPlane(view.highlight.contour.points, view.canonical),
+             view.frame == in.selection.frame, true, kVirtualCamera, describe(*view.tangentPlane, at, view.frame, ""));
   };
   bool trains = false;
   for (const TrainingView* view : in.views()) {
@@ -55,8 +61,8 @@ LayerContent tangentPlanesLayer(const LayerInput& in) {
     for (const FrameComparison* comparison : in.comparisons(model)) {
       for (const PredictedHighlight& h : comparison->prediction.highlights) {
         if (!h.tangentPlane) continue;
-        addPlane(content, in, in.frame(in.selection.frame).camera, *h.tangentPlane, h.brightest.point.position, h.contour.points,
-                 true, own.empty(), modelColour(model),
+        addPlane(content, in, in.frame(in.selection.frame).camera, *h.tangentPlane, h.brightest.point.position,
+                 onPlane(h.contour.points, h.canonical), true, own.empty(), modelColour(model),
                  describe(*h.tangentPlane, h.brightest.point.position, in.selection.frame, model));
       }
     }

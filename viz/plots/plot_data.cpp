@@ -161,6 +161,16 @@ std::vector<std::pair<double, std::string>> ticksOf(const PlotAxis& axis, double
   return ticks;
 }
 
+std::vector<std::pair<double, std::string>> dialTicks(const PlotAxis& axis, double largest) {
+  constexpr int kMost = 8;  // a step of a quarter of the range is always met before
+  std::vector<std::pair<double, std::string>> ticks;
+  for (int most = 2; ticks.empty() && most <= kMost; ++most) {
+    ticks = ticksOf(axis, 0, largest, most);
+    std::erase_if(ticks, [](const auto& tick) { return !(tick.first > 0); });
+  }
+  return ticks;
+}
+
 std::string plotCsv(const PlotData& plot) {
   std::string csv = "series," + quoted(plot.x.title) + "," + quoted(plot.y.title) +
                     ",lower,upper,frame,model,light,highlight,direction,label\n";

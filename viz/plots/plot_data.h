@@ -95,6 +95,8 @@ PlotRange rangeOf(const PlotData& plot);
 
 /// Positions (as `along`) and texts of at most about `most` ticks in [from, to].
 std::vector<std::pair<double, std::string>> ticksOf(const PlotAxis& axis, double from, double to, int most);
+/// Values of a dial's circles in (0, largest]: about two, at least one. @param largest  > 0.
+std::vector<std::pair<double, std::string>> dialTicks(const PlotAxis& axis, double largest);
 
 /// Comma-separated values: series, x, y, lower, upper, frame, model, light, highlight, direction, label; a first line names the
 /// columns.

@@ -424,10 +424,9 @@ void PlotView::Impl::paintDial(vtkContext2D* painter) {
         a = centre + 0.15 * radius * d, b = centre + radius * d;
     painter->DrawLine(float(a.x()), float(a.y()), float(b.x()), float(b.y()));
   }
-  const auto ticks = ticksOf(plot.y, 0, largest, 2);
+  const auto ticks = dialTicks(plot.y, largest);
   for (const auto& [value, label] : ticks)
-    if (value > 0)
-      for (const double v : {value, -value}) circle(v, grid(), 1);
+    for (const double v : {value, -value}) circle(v, grid(), 1);
   circle(0, kHalo, 3.5);
   circle(0, kObserved, 1.75);
   for (const PlotSeries& series : plot.series) {
@@ -454,7 +453,6 @@ void PlotView::Impl::paintDial(vtkContext2D* painter) {
   const Eigen::Vector2d slanted(std::cos(3 * std::numbers::pi / 8), std::sin(3 * std::numbers::pi / 8));
   for (const auto& [value, label] : ticks)
     for (const double v : {value, -value}) {
-      if (v == 0) continue;
       const Eigen::Vector2d at = centre + radius * (kZeroRadius + kReachOfDial * v / largest) * slanted;
       painter->DrawString(float(at.x()), float(at.y()), (v > 0 ? "+" : "-") + label);
     }

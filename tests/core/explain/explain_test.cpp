@@ -249,9 +249,27 @@ TEST(Explain, AFitThatHasFailedIsSaidInEveryStepThatUsesIt) {
       EXPECT_EQ(broken(*step, "prediction-misses").numbers.at(0).values.at(0), 2900) << step->id;
     for (const ExplainStep* step : {&fit, &seen, &compared}) EXPECT_TRUE(breaks(*step, why)) << step->id;
     // Frames 0 to 3 train, and frame 3 is the worst of them: by the measure of the last step.
-    EXPECT_EQ(number(fit, "largest error in a training frame")[0], 603);
+    EXPECT_EQ(number(fit, "largest mean distance in a training frame")[0], 603);
     EXPECT_EQ(number(stepOf(explain(bad, 3, 0, model), "comparison"), "mean distance of the contours")[0], 603);
   }
+}
+
+/// Before the walk back onto a bulging surface the highlight is that of a flat mirror: the ellipse on T, which the views' own
+/// walks give as well. After it, it is the one that is seen.
+TEST(Explain, TheProjectionOfCanonicalIsOnTAndTheWalkBackIsWhatIsSeen) {
+  constexpr double kSameEllipse = 0.05;  // of an axis: how well one ellipsoid explains these views
+  const Inspection inspection = inspected(sheet(1), {"canonical"});
+  const Explanation e = explain(inspection, 1, 0, "canonical");
+  const auto flat = number(stepOf(e, "projection"), "semi-axes of the ellipse that a flat mirror would show"),
+             walked = number(stepOf(e, "inverse-walk"), "semi-axes of the ellipse of what came out"),
+             canonical = number(stepOf(e, "canonical-ellipse"), "semi-axes of the canonical ellipse"),
+             observed = number(stepOf(e, "contour"), "semi-axes of its ellipse");
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    EXPECT_NEAR(flat[axis], canonical[axis], kSameEllipse * canonical[axis]);
+    EXPECT_NEAR(walked[axis], observed[axis], kSameEllipse * observed[axis]);
+  }
+  EXPECT_GT(flat[1], 1.5 * walked[1]) << "the bend is in one of them only";
+  EXPECT_EQ(number(stepOf(e, "inverse-walk"), "of the directions gave one")[0], 100);
 }
 
 /// An epipolar plane that touches an ellipsoid touches its outlines: on a table the ellipses are those of one ellipsoid for
