@@ -64,6 +64,7 @@ Command evaluateCommand() {
       report.selection = s;
       if (s.model.empty()) {
         report.whyChosen = s.why;
+        report.program = "glint " GLINT_VERSION;
         if (!a->json.empty()) context.write(a->json, evaluationJson(result, report));
         if (a->json != "-") context.print(text);
         throw CannotAnswer{{Reason::NotReached, s.why}};

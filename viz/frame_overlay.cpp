@@ -175,7 +175,7 @@ class ScoreSum {
     }
     for (const FrameComparison::Row& row : comparison.rows) {
       if (row.observed < 0) {
-        ++score_.spurious;
+        if (row.predicted >= 0) ++score_.spurious;  // else nothing could be compared
       } else if (row.predicted < 0) {
         ++score_.missed;
       } else if (row.metrics) {

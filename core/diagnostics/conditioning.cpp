@@ -223,9 +223,13 @@ class Findings {
     std::string reason =
         text("%d training highlights count as %.2g different views, those nearer than 5\u00b0 to each other only in part: ",
              int(rays_.size()), effective);
-    reason += chosen(v, "three or more determine an ellipsoid with a free centre.",
-                     "fewer than three, which an ellipsoid with a free centre needs.",
-                     "fewer than two, which determine neither the light's distance nor an ellipsoid.");
+    const bool quadric = c_.model == "primal" || c_.model == "dual" || c_.model == "canonical";
+    reason += quadric ? chosen(v, "three or more determine an ellipsoid with a free centre.",
+                               "fewer than three, which an ellipsoid with a free centre needs.",
+                               "fewer than two, which determine neither the light's distance nor an ellipsoid.")
+                      : chosen(v, "three or more determine the light and leave something to check it by.",
+                               "fewer than three: two determine the light, but nothing is left to check it by.",
+                               "fewer than two, which do not determine the light's distance.");
     add("views", "effective views", effective, text("%.2g of %d", effective, int(rays_.size())), v, reason);
   }
 

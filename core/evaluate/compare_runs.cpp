@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/evaluate/setting_text.h"
 #include "core/evaluate/summary.h"
 
 namespace glint {
@@ -25,13 +26,6 @@ std::string number(double v) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", v);
   return text;
-}
-
-std::string text(const SettingValue& value) {
-  if (const auto* s = std::get_if<std::string>(&value)) return *s;
-  if (const auto* b = std::get_if<bool>(&value)) return *b ? "on" : "off";
-  if (const auto* i = std::get_if<int>(&value)) return std::to_string(*i);
-  return number(std::get<double>(value));
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -110,7 +104,7 @@ void addRequest(Values& out, const Inspection& a, const Inspection& b) {
   for (const ParamSpec& p : allParams()) {
     const auto valueOf = [&](const InspectionRequest& q) {
       const auto found = q.settings.values().find(p.key);
-      return text(found == q.settings.values().end() ? p.defaultValue : found->second);
+      return settingText(found == q.settings.values().end() ? p.defaultValue : found->second);
     };
     out.add("settings", p.key, valueOf(qa), valueOf(qb), p.unit);
   }

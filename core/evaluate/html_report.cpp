@@ -8,6 +8,7 @@
 
 #include "core/evaluate/html_text.h"
 #include "core/evaluate/report.h"
+#include "core/evaluate/setting_text.h"
 #include "core/evaluate/summary.h"
 #include "core/pipeline/photograph.h"
 #include "core/pipeline/what_if_knobs.h"
@@ -162,7 +163,58 @@ std::string overlay(const Inspection& inspection, int frame) {
          std::to_string(frame) + "</b> (" + escaped(inspection.scene->frames[frame].id) + ")<br>" + caption + "</figcaption></figure>\n";
 }
 
-/// Up to `count` frames, the worst of each model in turn.
+/// Held-out highlights that a model did not predict, with the reason.
+struct Missed {
+  int frame;
+  std::string light, model, reason;
+};
+std::vector<Missed> missedBy(const Inspection& inspection) {
+  std::vector<Missed> all;
+  for (const std::string& name : inspection.request.models) {
+    if (!inspection.models.count(name)) continue;
+    for (const FrameComparison& c : inspection.models.at(name).frames) {
+      if (!inspection.isHeldOut(c.frame)) continue;
+      for (const FrameComparison::Row& row : c.rows)
+        if (row.observed >= 0 && !row.metrics)
+          all.push_back({c.frame, c.light, name, row.failure ? row.failure->message() : "no prediction overlaps it"});
+    }
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Missed& a, const Missed& b) { return a.frame < b.frame; });
+  return all;
+}
+
+std::string missedTable(const Inspection& inspection, const std::vector<Missed>& missed) {
+  constexpr std::size_t kMost = 60;  // rows that anybody reads
+  if (missed.empty()) return "";
+  std::string html =
+      "<h2>Highlights without a prediction</h2>\n<table><tr><th>frame</th><th>light</th><th>model</th>"
+      "<th>reason</th></tr>\n";
+  for (std::size_t i = 0; i < std::min(kMost, missed.size()); ++i) {
+    const Missed& m = missed[i];
+    html += "<tr><td>" + std::to_string(m.frame) + " (" + escaped(inspection.scene->frames[std::size_t(m.frame)].id) +
+            ")</td><td>" + escaped(m.light) + "</td><td><span class=\"swatch\" style=\"background:" + colourOf(m.model) +
+            "\"></span>" + m.model + "</td><td class=\"reason\">" + escaped(m.reason) + "</td></tr>\n";
+  }
+  html += "</table>\n";
+  if (missed.size() > kMost) html += "<p>And " + std::to_string(missed.size() - kMost) + " more.</p>\n";
+  return html;
+}
+
+/// Every setting, so that the report says by itself what was computed.
+std::string settingsTable(const Settings& settings) {
+  std::string html = "<h2>Settings</h2>\n<table><tr><th>setting</th><th>value</th><th>default</th></tr>\n";
+  for (const ParamSpec& p : allParams()) {
+    const auto found = settings.values().find(p.key);
+    const SettingValue& value = found == settings.values().end() ? p.defaultValue : found->second;
+    const bool own = value != p.defaultValue;
+    html += "<tr><td><code>" + escaped(p.key) + "</code></td><td>" + (own ? "<b>" : "") + escaped(settingText(value)) +
+            (own ? "</b>" : "") + " " + escaped(p.unit) + "</td><td>" + escaped(settingText(p.defaultValue)) + " " +
+            escaped(p.unit) + "</td></tr>\n";
+  }
+  return html + "</table>\n";
+}
+
+/// Up to `count` frames, the worst of each model in turn; first those where highlights were missed, up to a third.
 std::vector<int> worstFrames(const Inspection& inspection, std::size_t count) {
   std::vector<std::vector<std::pair<int, double>>> sorted;
   for (const std::string& name : inspection.request.models) {
@@ -172,6 +224,8 @@ std::vector<int> worstFrames(const Inspection& inspection, std::size_t count) {
   }
   std::vector<int> frames;
   std::set<int> seen;
+  for (const Missed& m : missedBy(inspection))
+    if (frames.size() < count / 3 && seen.insert(m.frame).second) frames.push_back(m.frame);
   for (std::size_t rank = 0; frames.size() < count; ++rank) {
     bool any = false;
     for (const auto& list : sorted) {
@@ -241,9 +295,12 @@ std::string evaluationHtml(const Inspection& inspection, const ReportContext& co
   }
   html += "</table>\n<h2>Error over frames</h2>\n" + errorPlot(inspection);
   html += "<p>Blue ticks mark training frames; hover over a point for its value.</p>\n";
+  html += missedTable(inspection, missedBy(inspection));
   html += "<h2>Worst frames</h2>\n<p>White: observed contour. Coloured: predictions.</p>\n<div class=\"frames\">\n";
   for (const int frame : worstFrames(inspection, 9)) html += overlay(inspection, frame);
-  html += "</div>\n</body></html>\n";
+  html += "</div>\n" + settingsTable(inspection.request.settings);
+  if (!context.program.empty()) html += "<p>Made by " + escaped(context.program) + ".</p>\n";
+  html += "</body></html>\n";
   return html;
 }
 

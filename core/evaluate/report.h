@@ -15,6 +15,7 @@ struct ReportContext {
   std::string chosenModel;    ///< "" = none
   std::string whyChosen;      ///< one sentence
   std::optional<Selection> selection;  ///< what the automatic choice tried
+  std::string program;                 ///< "glint 0.4.0"; "" = not said
 };
 
 /// The answered model with the smallest mean held-out contour error among those that predicted most frames; "" when none answered.

@@ -31,6 +31,11 @@ void StaleBadge::setStale(bool stale) {
   }
 }
 
+void StaleBadge::setUpdating(bool updating) {
+  setText(updating ? tr("updating…") : tr("out of date"));
+  place();
+}
+
 bool StaleBadge::eventFilter(QObject* watched, QEvent* event) {
   if (event->type() == QEvent::Resize) place();
   return QLabel::eventFilter(watched, event);

@@ -6,8 +6,8 @@
 
 namespace glint::gui {
 
-/// "updating…" over a corner of a panel whose numbers are of an older request. Appears after a moment, so that results that come
-/// sooner leave no flicker, and takes no clicks.
+/// "updating…", or "out of date" once nothing runs any more, over a corner of a panel whose numbers are of an older request.
+/// Appears after a moment, so that results that come sooner leave no flicker, and takes no clicks.
 class StaleBadge : public QLabel {
   Q_OBJECT
  public:
@@ -17,6 +17,7 @@ class StaleBadge : public QLabel {
 
  public slots:
   void setStale(bool stale);
+  void setUpdating(bool updating);  ///< the newer numbers are on their way; so it is at first
 
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override;

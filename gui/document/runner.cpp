@@ -92,9 +92,9 @@ void Runner::inspect(std::shared_ptr<const Scene> scene, const InspectionRequest
     const auto result =
         std::make_shared<const Inspection>(engine_.inspect(scene, computedFor->request, progress, previous.get()));
     sinceRest_.start();
-    if (job > cancelled_)
-      QMetaObject::invokeMethod(
-          this, [this, result, computedFor] { emit finished(result, computedFor); }, Qt::QueuedConnection);
+    if (job <= cancelled_) throw Stopped{};  // after its last report: nobody waits for it any more
+    QMetaObject::invokeMethod(
+        this, [this, result, computedFor] { emit finished(result, computedFor); }, Qt::QueuedConnection);
   });
 }
 

@@ -132,6 +132,8 @@ void ExportActions::addActions(Actions& actions, QMenu* menu) {
   const auto report = [this] {
     ReportContext context;
     context.input = QFileInfo(document_.inputFile()).fileName().toStdString();
+    context.program =
+        (QCoreApplication::applicationName() + QLatin1Char(' ') + QCoreApplication::applicationVersion()).toStdString();
     return context;
   };
   actions.add("export.html", menu, tr("&Report (HTML)…"), [=, this] {

@@ -101,7 +101,12 @@ void ErrorModel::addComparison(const Inspection& inspection, const std::string& 
       row.light = tr("%1, highlight %2").arg(base.light).arg(r.observed + 1);
     else if (r.observed < 0 && manyPredicted)
       row.light = tr("%1, predicted %2").arg(base.light).arg(r.predicted + 1);
-    row.status = r.metrics ? tr("ok") : r.observed < 0 ? tr("spurious") : c.prediction.failure ? tr("failed") : tr("missed");
+    const bool compared = r.observed >= 0 || r.predicted >= 0;  // else the frame cannot be read
+    row.status = r.metrics              ? tr("ok")
+                 : !compared            ? tr("not compared")
+                 : r.observed < 0       ? tr("spurious")
+                 : c.prediction.failure ? tr("failed")
+                                        : tr("missed");
     row.problem = !r.metrics;
     if (r.failure)
       row.reason = toQString(r.failure->message());

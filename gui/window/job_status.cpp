@@ -46,7 +46,8 @@ JobStatus::JobStatus(Document& document, Runner& runner, QWidget* parent)
   soon_.setInterval(kShownAfterMs);
   connect(&soon_, &QTimer::timeout, this, &JobStatus::refresh);
   const auto changed = [this] {
-    if ((runner_.busy() || document_.stale()) && document_.inspection()) {
+    const bool ended = bar_->isVisible() && !runner_.busy();  // stopped, perhaps: results stay out of date
+    if (!ended && (runner_.busy() || document_.stale()) && document_.inspection()) {
       if (!soon_.isActive() && !bar_->isVisible()) soon_.start();
     } else {
       soon_.stop();

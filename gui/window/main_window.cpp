@@ -15,6 +15,7 @@
 #include <QSplitter>
 #include <QStackedWidget>
 #include <QStatusBar>
+#include <QTimer>
 #include <QToolBar>
 #include <QUndoView>
 #include <QVBoxLayout>
@@ -22,6 +23,7 @@
 
 #include "gui/base/draw_turns.h"
 #include "gui/base/eliding_delegate.h"
+#include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/undo_keys.h"
 #include "gui/explain/explain_panel.h"
@@ -87,21 +89,15 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
       actions_, [this] { return quiet() && (document_.scene() || document_.inputFile().isEmpty()); }, this);
 
   connect(files_, &FileActions::problem, this, &MainWindow::showProblem);
-  connect(files_, &FileActions::message, this, [this](const QString& line) {
-    log(line);
-    statusBar()->showMessage(line, 6000);
-  });
+  connect(files_, &FileActions::message, this, &MainWindow::tell);
   connect(files_, &FileActions::recentChanged, this, [this] { start_->setRecent(files_->recent()); });
   connect(files_, &FileActions::viewOpened, this, [this](const OpenedPtr& opened) {
     if (!opened->layout.empty()) applyLayout(toQString(opened->layout));
     scene_->setViewPoints(opened->viewPoints);
   });
   for (const auto signal : {&ExportActions::problem, &ExportActions::message})
-    connect(exports_, signal, this, [this, signal](const QString& line) {
-      if (signal == &ExportActions::problem) return showProblem(line);
-      log(line);
-      statusBar()->showMessage(line, 6000);
-    });
+    connect(exports_, signal, this,
+            [this, signal](const QString& line) { signal == &ExportActions::problem ? showProblem(line) : tell(line); });
   connect(exports_, &ExportActions::sessionWritten, this, [this](const QString& line, const QString& session) {
     log(line);
     messageBar_->showOffer(line, {{tr("Open"), [this, session] { files_->open(session); }}});
@@ -120,6 +116,11 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
     if (document_.stale()) recompute();
   });
   connect(&runner_, &Runner::stopped, this, [this] { log(tr("Stopped")); });
+  const auto markUpdating = [this] {
+    for (StaleBadge* badge : findChildren<StaleBadge*>()) badge->setUpdating(runner_.busy() || !document_.stale());
+  };
+  connect(&runner_, &Runner::busyChanged, this, markUpdating);
+  connect(&document_, &Document::staleChanged, this, markUpdating);
   connect(&runner_, &Runner::finished, this, [this](const InspectionPtr& inspection, const OpenedPtr& computedFor) {
     if (runFailed_) messageBar_->hide();  // its reason is gone
     runFailed_ = false;
@@ -492,9 +493,18 @@ void MainWindow::offerToLocate(const QString& oneLine, const MissingPtr& missing
 
 void MainWindow::log(const QString& line) { log_->add(line); }
 
+/// What has worked.
+void MainWindow::tell(const QString& line) {
+  log(line);
+  messageBar_->overtakeError();  // it would read as if this had failed too
+  // A menu that closes clears the line of status tips: after that.
+  QTimer::singleShot(0, this, [this, line] { statusBar()->showMessage(line, 6000); });
+}
+
 void MainWindow::showTitle() {
   if (!document_.scene()) return setWindowTitle(tr("Glint inspector"));
-  setWindowTitle(QStringLiteral("%1[*] – %2").arg(QFileInfo(document_.inputFile()).fileName(), tr("Glint inspector")));
+  const QString& file = document_.sessionFile().isEmpty() ? document_.inputFile() : document_.sessionFile();
+  setWindowTitle(QStringLiteral("%1[*] – %2").arg(QFileInfo(file).fileName(), tr("Glint inspector")));
   setWindowModified(document_.hasUnsavedChanges());
 }
 

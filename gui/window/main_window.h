@@ -90,6 +90,7 @@ class MainWindow : public QMainWindow {
   void showProblem(const QString& oneLine);
   void offerToLocate(const QString& oneLine, const MissingPtr& missing);
   void log(const QString& line);
+  void tell(const QString& line);
   void showTitle();
   bool quiet() const;
   void addView(Opened& opened) const;

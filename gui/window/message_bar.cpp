@@ -38,6 +38,10 @@ void MessageBar::showOffer(const QString& oneLine, const Answers& answers) {
   offerShown_ = true;
 }
 
+void MessageBar::overtakeError() {
+  if (waits() && !offerShown_ && buttons_.isEmpty()) hide();
+}
+
 void MessageBar::closeLine() {
   hide();
   if (std::exchange(offerShown_, false)) offer_.reset();

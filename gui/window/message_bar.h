@@ -27,6 +27,8 @@ class MessageBar : public QWidget {
   void showOffer(const QString& oneLine, const Answers& answers);
   /// Worth knowing, asks for nothing: whatever else is to be said may take its place.
   void showNotice(const QString& oneLine);
+  /// Something has worked since: an error that asks for nothing goes.
+  void overtakeError();
   /// An error or an offer waits for an answer.
   bool waits() const { return !isHidden() && !notice_; }
   QString text() const;

@@ -17,8 +17,8 @@
 #include <QDoubleSpinBox>
 #include <QHelpEvent>
 #include <QLabel>
-#include <QListView>
 #include <QLineEdit>
+#include <QListView>
 #include <QListWidget>
 #include <QPlainTextEdit>
 #include <QPushButton>
@@ -30,6 +30,7 @@
 #include <QSignalSpy>
 #include <QSplitter>
 #include <QStackedWidget>
+#include <QStatusBar>
 #include <QTableView>
 #include <QTextBrowser>
 #include <QToolButton>
@@ -365,6 +366,30 @@ class WindowTest : public QObject, WindowFixture {
     QTRY_VERIFY(window.idle());
     QVERIFY(window.document().stale());
     QVERIFY(window.document().inspection() == before);
+    // The status line and the badges say so, and that nothing runs any more.
+    QTRY_VERIFY(!stop->isVisible());
+    QCOMPARE(window.findChild<QLabel*>(QStringLiteral("jobText"))->text(), QStringLiteral("results are out of date"));
+    for (const QLabel* badge : window.findChildren<QLabel*>(QStringLiteral("staleBadge")))
+      QCOMPARE(badge->text(), QStringLiteral("out of date"));
+    window.document().undoStack()->undo();
+    QTRY_VERIFY(window.idle() && !window.document().stale());
+    for (const QLabel* badge : window.findChildren<QLabel*>(QStringLiteral("staleBadge")))
+      QCOMPARE(badge->text(), QStringLiteral("updating…"));
+  }
+
+  /// What has worked says so, and takes away the message of what had not.
+  void successTakesTheErrorAway() {
+    MainWindow window(fixture_.engine());
+    show(window);
+    openAndWait(window);
+    auto* bar = window.findChild<MessageBar*>();
+    window.actions().find("export.window-command")->trigger();  // without a session: refused
+    QTRY_VERIFY(bar->isVisible());
+    window.document().markSaved(QStringLiteral("kept.glint"), window.document().state());
+    window.actions().find("export.window-command")->trigger();
+    QVERIFY(!bar->isVisible());
+    QTRY_VERIFY(window.statusBar()->currentMessage().contains(QStringLiteral("kept.glint")));
+    QVERIFY2(window.windowTitle().startsWith(QStringLiteral("kept.glint")), qPrintable(window.windowTitle()));
   }
 
   void parametersWaitForAScene() {

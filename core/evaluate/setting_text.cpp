@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/evaluate/setting_text.h"
+
+#include <cstdio>
+#include <variant>
+
+namespace glint {
+
+std::string settingText(const SettingValue& value) {
+  if (const auto* s = std::get_if<std::string>(&value)) return *s;
+  if (const auto* b = std::get_if<bool>(&value)) return *b ? "on" : "off";
+  if (const auto* i = std::get_if<int>(&value)) return std::to_string(*i);
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", std::get<double>(value));
+  return text;
+}
+
+}  // namespace glint
