@@ -175,8 +175,10 @@ std::vector<AngleByDirection> limitAngles(const Inspection& inspection, int fram
         if (row.observed == o && row.predicted >= 0 && row.predicted < int(c->prediction.highlights.size()))
           predicted = &c->prediction.highlights[std::size_t(row.predicted)];
       const auto& fits = inspection.models.at(model).fits;
-      if (c->light == h.light && c->fit >= 0 && c->fit < int(fits.size()) && fits[std::size_t(c->fit)].fit)
+      if (c->light == h.light && c->fit >= 0 && c->fit < int(fits.size()) && fits[std::size_t(c->fit)].fit) {
         a.limitAngle = fits[std::size_t(c->fit)].fit->limitAngle;
+        a.extended = fits[std::size_t(c->fit)].fit->extent.has_value();
+      }
     }
     for (int k = 0; k < directions; ++k) {
       DirectionSample s;

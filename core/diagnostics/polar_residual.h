@@ -47,6 +47,7 @@ struct AngleByDirection {
   int observed = -1;
   Pixel centre{0, 0};
   std::optional<double> limitAngle;       ///< of the model or of the light's estimate, rad
+  bool extended = false;                  ///< that is of a point: the lamp's extent changes it with the direction
   std::vector<DirectionSample> measured;  ///< alpha on the observed contour, rad
   std::vector<DirectionSample>
       predicted;  ///< alpha on the predicted contour; empty when nothing was predicted for this highlight

@@ -23,6 +23,7 @@ namespace {
 constexpr double kFlatShare = 0.05;      // of the limit angle: a normal that turns less across the highlight is that of a plane
 constexpr double kSameCurvature = 0.2;   // relative spread over the views: below, one sphere-like patch describes all of them
 constexpr double kSameLimit = 0.05;      // relative spread over the directions: beyond, one limit angle is not the contour
+constexpr double kPricePct = 1;          // of the highlight's size: below, a broken assumption has cost nothing that one sees
 constexpr double kEllipticShare = 0.01;  // of the size: a contour this near to its ellipse looks like one
 constexpr double kNarrowDeg = 2;         // between reflected rays: below, the light's distance is a guess
 constexpr double kWeakGap = 0.5;         // of the last two singular values: above, two quadrics fit almost alike
@@ -518,10 +519,15 @@ void comparisonStep(const Case& c, ExplainStep& step) {
   const ContourMetrics& m = *c.row->metrics;
   step.numbers.push_back(one("d", "mean distance of the contours", m.contourErrorPx, "px"));
   step.numbers.push_back(one("e", "of the equivalent diameter", m.contourErrorPct, "%"));
-  step.numbers.push_back(one("IoU", "overlap", m.iou));
+  step.numbers.push_back(one("IoU", "overlap of all regions of this light", c.comparison->iou));
   step.numbers.push_back(
       one("", c.out.model == "primal" ? "its centre from the peak" : "offset of the peaks", m.peakOffsetPx, "px"));
   if (c.inspection.isTraining(c.out.frame)) step.broken.push_back({"training-frame", {}});
+  // What the surface did to the model's assumption was said where the mirror was: this is its price.
+  const std::string because = c.out.model == "primal" ? "primal-off-plane" : c.out.model == "dual" ? "dual-curvature-varies" : "";
+  for (const ExplainStep& earlier : c.out.steps)
+    for (const BrokenAssumption& b : earlier.broken)
+      if (b.id == because && m.contourErrorPct > kPricePct) return step.broken.push_back(b);
 }
 /// Says of each number what is too small to mean anything. @param distance  m, to what the camera sees; > 0.
 void setLeast(std::vector<ExplainNumber>& numbers, double distance) {

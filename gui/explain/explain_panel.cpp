@@ -130,6 +130,7 @@ ExplainPanel::ExplainPanel(Document& document, QWidget* parent)
   connect(&document_, &Document::sceneOpened, this, [this] {
     lookedAt_.clear();
     soloBefore_.clear();
+    lessonRequest_ = document_.request();
   });
   connect(walk_, &WalkPlayer::changed, this, [this] {
     if (walk_->playing()) return;  // it has not changed whether there is one
@@ -316,13 +317,17 @@ QString ExplainPanel::overview() const {
       html += QStringLiteral("<p><a href='action:lesson.%1'>%2</a></p>").arg(l.id, l.title.toHtmlEscaped());
     return html;
   }
-  QString html = QStringLiteral("<h3>%1</h3><p>%2</p><h4>%3</h4><ol>")
+  QString html = QStringLiteral("<h3>%1</h3><p>%2</p><h4>%3</h4>")
                      .arg(tr("Lesson %1: %2").arg(lessons().indexOf(*lesson) + 1).arg(lesson->title.toHtmlEscaped()), lesson->see,
                           tr("Go through"));
-  for (const ExplainText& t : explainTexts().steps)
+  for (int i = 0; i < explainTexts().steps.size(); ++i) {  // numbered as in the list of all steps
+    const ExplainText& t = explainTexts().steps[i];
     if (lesson->steps.contains(t.id))
-      html += QStringLiteral("<li><a href='action:explain.step-%1'>%2</a></li>").arg(t.id, t.title.toHtmlEscaped());
-  html += QStringLiteral("</ol><h4>%1</h4><ul>").arg(tr("Try"));
+      html += QStringLiteral("<p style='margin:3px 0 3px 12px'>%1. <a href='action:explain.step-%2'>%3</a></p>")
+                  .arg(i + 1)
+                  .arg(t.id, t.title.toHtmlEscaped());
+  }
+  html += QStringLiteral("<h4>%1</h4><ul>").arg(tr("Try"));
   for (const QString& question : lesson->questions) html += QStringLiteral("<li>%1</li>").arg(question);
   return html + QStringLiteral("</ul>");
 }
@@ -337,7 +342,10 @@ QString ExplainPanel::html() const {
           .arg(text.title.toHtmlEscaped(), words.text.toHtmlEscaped(), words.equation.toHtmlEscaped(),
                palette().color(QPalette::PlaceholderText).name(), text.section.toHtmlEscaped());
   if (const Lesson* lesson = lessonOf(document_); lesson && lesson->remarks.contains(text.id))
-    html += box(accentColour(), tr("<b>In this lesson.</b> %1").arg(lesson->remarks.value(text.id)));
+    html += box(accentColour(), (document_.request() == lessonRequest_
+                                     ? tr("<b>In this lesson.</b> %1")
+                                     : tr("<b>In this lesson, as it was opened</b> (what is on screen was changed since). %1"))
+                                    .arg(lesson->remarks.value(text.id)));
   if (!explanation_ || now >= int(explanation_->steps.size())) return html;
   const ExplainStep& s = explanation_->steps[std::size_t(now)];
   const Scene& scene = *document_.scene();

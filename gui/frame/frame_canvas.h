@@ -54,6 +54,7 @@ class FrameCanvas : public QWidget {
   /// Widget (logical) coordinates of a photograph pixel, and back.
   QPointF widgetFromPixel(const Pixel& pixel) const;
   Pixel pixelFromWidget(const QPointF& position) const;
+  bool fitted() const { return fitted_; }  ///< shows the whole photograph
   double zoom() const { return zoom_; }  ///< logical widget pixels per photograph pixel
   Pixel centre() const { return pixelFromWidget(QRectF(rect()).center()); }
   /// The values of pixels are written into them from this zoom on.

@@ -65,7 +65,7 @@ FramePanel::FramePanel(Document& document, QWidget* parent) : QWidget(parent), d
   connect(canvas_, &FrameCanvas::clicked, this, &FramePanel::selectAt);
   connect(second_, &FrameCanvas::clicked, this, &FramePanel::selectModelAt);
   for (FrameCanvas* canvas : {canvas_, second_}) {
-    connect(canvas, &FrameCanvas::viewMoved, this, [this] { zoomedByLook_ = false; });
+    connect(canvas, &FrameCanvas::viewMoved, this, [this] { zoomedByLook_ = follows_ = false; });
     connect(canvas, &FrameCanvas::probed, this, [this](const QString& text) {
       probe_.forget();
       emit probed(text);
@@ -101,6 +101,7 @@ void FramePanel::connectDocument() {
   connect(&document_, &Document::sceneOpened, this, &FramePanel::showScene);
   connect(&document_, &Document::selectionChanged, this, [this] {
     canvas_->setHeld({}, {});
+    followHighlight(document_.selection().frame);
     showTitle();
     refresh_.start();
   });
@@ -432,7 +433,23 @@ void FramePanel::look(const QString& at, int highlight) {
   }
 }
 
-void FramePanel::goToHighlight() { zoomTo(document_.selection().highlight); }
+void FramePanel::goToHighlight() {
+  zoomTo(document_.selection().highlight);
+  follows_ = true;
+}
+
+/// Zoomed to the highlight one goes from frame to frame to compare it: it stays in the middle, at the same scale.
+void FramePanel::followHighlight(int frame) {
+  if (std::exchange(seenFrame_, frame) == frame || !follows_ || canvas_->fitted()) return;
+  const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  if (!inspection || std::size_t(frame) >= inspection->evidence.size()) return;
+  const std::vector<Highlight>& highlights = inspection->evidence[std::size_t(frame)].highlights;
+  if (highlights.empty()) return;
+  const std::string& light = document_.selection().light;
+  const auto same = std::find_if(highlights.begin(), highlights.end(), [&](const Highlight& h) { return h.light == light; });
+  const Highlight& h = same == highlights.end() ? highlights.front() : *same;
+  canvas_->lookAt(document_.scene()->frames[std::size_t(frame)].camera.distorted(centroid(h.contour)), canvas_->zoom());
+}
 
 void FramePanel::zoomTo(int highlight, bool withCanonical) {
   const std::shared_ptr<const Inspection> inspection = document_.inspection();

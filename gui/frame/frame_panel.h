@@ -75,6 +75,7 @@ class FramePanel : public QWidget {
   void selectModelAt(double x, double y);
   void followLink(const QString& link);
   /// @param withCanonical  also the canonical ellipses about it that are shown.
+  void followHighlight(int frame);
   void zoomTo(int highlight, bool withCanonical = false);
   QString problemText(int frame, const QString& reason) const;
 
@@ -94,6 +95,8 @@ class FramePanel : public QWidget {
   viz::FrameOverlay shown_, shownSecond_;
   std::size_t captionCount_ = 0;
   bool failureShown_ = false;  ///< the captions hold the reason of a failure
+  bool follows_ = false;       ///< zoomed to the highlight by the user, who has not moved it since
+  int seenFrame_ = -1;         ///< that was selected last
   bool zoomedByLook_ = false;  ///< and the user has not moved it since
   QTimer refresh_;             ///< many selections at once are drawn once
   int probedFrame_ = -1;

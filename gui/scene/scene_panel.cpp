@@ -502,9 +502,9 @@ void ScenePanel::addActions(Actions& actions, QMenu* menu) {
   const struct {
     const char *id, *title;
     Arrangement arrangement;
-  } arrangements[] = {{"view.views-1", QT_TR_NOOP("&One"), Arrangement::One},
-                      {"view.views-2", QT_TR_NOOP("&Two side by side"), Arrangement::SideBySide},
-                      {"view.views-4", QT_TR_NOOP("&Four"), Arrangement::Grid},
+  } arrangements[] = {{"view.views-1", QT_TR_NOOP("&One view"), Arrangement::One},
+                      {"view.views-2", QT_TR_NOOP("&Two views side by side"), Arrangement::SideBySide},
+                      {"view.views-4", QT_TR_NOOP("&Four views"), Arrangement::Grid},
                       {"view.views-wipe", QT_TR_NOOP("&Wipe between two"), Arrangement::Wipe}};
   QList<std::pair<QAction*, Arrangement>> arrangementActions;
   for (const auto& a : arrangements)

@@ -266,7 +266,12 @@ void WhatIfPanel::refresh() {
     const double value = row.knob.get(w.synthesise ? w : shown);
     row.show(value);
     const bool usable = !row.knob.synthetic || w.synthesise;
-    for (QWidget* widget : row.widgets) widget->setEnabled(usable);
+    const QString tip =
+        toQString(row.knob.spec.help) + (usable ? QString() : tr("\nOnly where contours are synthesised: tick that first."));
+    for (QWidget* widget : row.widgets) {
+      widget->setEnabled(usable);
+      widget->setToolTip(tip);
+    }
     row.reset->setEnabled(usable && value != std::get<double>(row.knob.spec.defaultValue));
   }
 }

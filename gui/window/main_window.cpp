@@ -15,10 +15,12 @@
 #include <QSplitter>
 #include <QStackedWidget>
 #include <QStatusBar>
+#include <QTableView>
 #include <QTimer>
 #include <QToolBar>
 #include <QUndoView>
 #include <QVBoxLayout>
+#include <initializer_list>
 #include <utility>
 
 #include "gui/base/draw_turns.h"
@@ -41,6 +43,7 @@
 #include "gui/panels/setup_panel.h"
 #include "gui/panels/tradeoff_panel.h"
 #include "gui/plots/conditioning_panel.h"
+#include "gui/plots/plot_canvas.h"
 #include "gui/plots/plots_panel.h"
 #include "gui/scene/layer_list.h"
 #include "gui/scene/scene_panel.h"
@@ -346,7 +349,7 @@ void MainWindow::buildMenus() {
       },
       this);
   palette_->setOpener(actions_.add("edit.palette", edit, tr("&Find an action, parameter or frame…"),
-                                   [this] { palette_->popUp(); }, {{QKeySequence("Ctrl+Shift+P"), QKeySequence("Ctrl+K")}}));
+                                   [this] { palette_->popUp(); }, {{QKeySequence("Ctrl+K"), QKeySequence("Ctrl+Shift+P")}}));
   actions_.add("edit.shortcuts", edit, tr("&Keyboard shortcuts…"), [this] { ShortcutDialog(actions_, this).exec(); });
 
   QMenu* frame = menuBar()->addMenu(tr("F&rame"));
@@ -395,6 +398,27 @@ void MainWindow::buildMenus() {
       bar->addSeparator();
   }
   actions_.loadShortcuts();
+  offerMenus();
+}
+
+/// A click with the right button: what one does there most.
+void MainWindow::offerMenus() {
+  const auto offer = [this](QWidget* view, std::initializer_list<const char*> ids) {
+    for (const char* id : ids) {
+      QAction* action = *id ? actions_.find(QLatin1String(id)) : new QAction(view);
+      require(action != nullptr, std::string("offerMenus: there is no action ") + id);
+      if (!*id) action->setSeparator(true);
+      view->addAction(action);
+    }
+    view->setContextMenuPolicy(Qt::ActionsContextMenu);
+  };
+  for (QWidget* canvas : frame_->findChildren<FrameCanvas*>())
+    offer(canvas, {"frame.highlight", "frame.fit", "frame.pixels", "frame.values", "", "frame.train", "frame.hold-out",
+                   "frame.exclude", "", "frame.hand", "frame.side-by-side", "", "export.frame"});
+  for (PlotCanvas* plot : plots_->findChildren<PlotCanvas*>())
+    offer(plot, {"plots.show-all", "", "plots.copy-png", "plots.copy-svg", "plots.copy-csv", "", "plots.save-svg",
+                 "plots.save-png", "plots.save-csv"});
+  offer(errors_->view(), {"edit.copy-error-rows", "", "export.csv", "export.json", "export.html"});
 }
 
 void MainWindow::buildStatusLine() {

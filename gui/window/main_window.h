@@ -85,6 +85,7 @@ class MainWindow : public QMainWindow {
   void buildCentre();
   void buildDocks();
   void buildMenus();
+  void offerMenus();
   void buildStatusLine();
   void recompute();
   void showProblem(const QString& oneLine);

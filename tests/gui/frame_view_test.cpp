@@ -2,6 +2,7 @@
 // The frame view and the ladder on a document: what is shown, picked, toggled, and that it is one step of undo each.
 #include <QComboBox>
 #include <QLabel>
+#include <QMouseEvent>
 #include <QSignalSpy>
 #include <QSlider>
 #include <QTextDocument>
@@ -60,6 +61,39 @@ class FrameViewTest : public QObject {
     settle();
     QCOMPARE(exposure->value(), 0);
     QVERIFY(canvas->grab().toImage() == plain);
+  }
+
+  /// From frame to frame one compares the highlight: it stays in the middle until the view is moved or shows the whole.
+  void zoomedToTheHighlightItFollowsFromFrameToFrame() {
+    FrameCanvas* canvas = frame_->canvas();
+    const auto middle = [&](int frame) {
+      const Highlight& h = document_->inspection()->evidence[std::size_t(frame)].highlights.front();
+      return (canvas->centre() - document_->scene()->frames[std::size_t(frame)].camera.distorted(centroid(h.contour))).norm();
+    };
+    document_->selectFrame(2);
+    settle();
+    QVERIFY(canvas->fitted());
+    frame_->goToHighlight();
+    const double zoom = canvas->zoom();
+    QVERIFY(middle(2) < 1);
+    document_->selectFrame(9);
+    settle();
+    QVERIFY(middle(9) < 1 && middle(2) > 2);
+    QCOMPARE(canvas->zoom(), zoom);
+    canvas->fit();
+    document_->selectFrame(3);
+    settle();
+    QVERIFY(canvas->fitted());
+    // Moved by hand it stays where it was put.
+    frame_->goToHighlight();
+    QTest::mousePress(canvas, Qt::LeftButton, {}, QPoint(200, 200));
+    QMouseEvent drag(QEvent::MouseMove, QPoint(260, 260), Qt::LeftButton, Qt::LeftButton, {});  // QTest's own has no button
+    QCoreApplication::sendEvent(canvas, &drag);
+    QTest::mouseRelease(canvas, Qt::LeftButton, {}, QPoint(260, 260));
+    const Pixel moved = canvas->centre();
+    document_->selectFrame(9);
+    settle();
+    QVERIFY((canvas->centre() - moved).norm() < 1e-9);
   }
 
   /// Else one would wonder why the highlight of the photograph stays where it was.

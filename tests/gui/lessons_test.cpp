@@ -75,6 +75,20 @@ class LessonsTest : public QObject {
     QVERIFY2(text().contains("the model fails"), qPrintable(text()));  // primal on a sphere
   }
 
+  /// A remark is about the lesson's scene: once that is bent it says so.
+  void aRemarkOfAChangedSceneSaysWhatItIsAbout() {
+    open("plane");
+    window_->actions().find("explain.step-virtual-camera")->trigger();
+    QTRY_VERIFY(!panel_->busy() && panel_->explanation());
+    QVERIFY2(text().contains("In this lesson. "), qPrintable(text()));
+    WhatIf w;
+    w.synthesise = true;
+    w.surfaces[window_->document().scene()->frames[0].surface] = 0.5;
+    window_->document().setWhatIf(w, "bend");
+    QTRY_VERIFY_WITH_TIMEOUT(window_->idle() && !window_->document().stale() && !panel_->busy(), 60000);
+    QTRY_VERIFY2(text().contains("as it was opened"), qPrintable(text()));
+  }
+
   void theWalkPlaysWithoutFillingTheHistory() {
     open("plane-to-cylinder");
     window_->actions().find("explain.step-limit-angles")->trigger();

@@ -13,6 +13,7 @@
 #include <QApplication>
 #include <QCheckBox>
 #include <QClipboard>
+#include <QContextMenuEvent>
 #include <QDockWidget>
 #include <QDoubleSpinBox>
 #include <QHelpEvent>
@@ -33,6 +34,7 @@
 #include <QStatusBar>
 #include <QTableView>
 #include <QTextBrowser>
+#include <QTimer>
 #include <QToolButton>
 #include <QToolTip>
 #include <algorithm>
@@ -43,6 +45,7 @@
 #include "gui/base/theme.h"
 #include "gui/base/vtk_canvas.h"
 #include "gui/explain/explain_panel.h"
+#include "gui/frame/frame_canvas.h"
 #include "gui/frame/frame_panel.h"
 #include "gui/frame/ladder_panel.h"
 #include "gui/plots/plot_canvas.h"
@@ -272,6 +275,30 @@ class WindowTest : public QObject, WindowFixture {
     QTRY_VERIFY(window.idle() && !window.document().stale());
     QCOMPARE(window.document().inspection()->evidence[0].highlights[0].level, 0.5);
     QVERIFY(elsewhere);
+  }
+
+  void aClickWithTheRightButtonOffersWhatOneDoesThere() {
+    MainWindow window(fixture_.engine());
+    show(window);
+    openAndWait(window);
+    const auto offers = [&](const QWidget* view, const char* id) {
+      return view->contextMenuPolicy() == Qt::ActionsContextMenu && view->actions().contains(window.actions().find(id));
+    };
+    for (const FrameCanvas* canvas : window.findChild<FramePanel*>()->findChildren<FrameCanvas*>())
+      QVERIFY(offers(canvas, "frame.highlight"));
+    const QList<PlotCanvas*> plots = window.findChildren<PlotCanvas*>();
+    QVERIFY(!plots.isEmpty());
+    // A menu that opens is closed again by a timer: it runs an event loop of its own.
+    QStringList titles;
+    QTimer::singleShot(300, &window, [&] {
+      if (QWidget* menu = QApplication::activePopupWidget()) {
+        for (const QAction* action : menu->actions()) titles << action->text();
+        menu->close();
+      }
+    });
+    QContextMenuEvent click(QContextMenuEvent::Mouse, {20, 20}, plots.front()->surface()->mapToGlobal(QPoint(20, 20)));
+    QApplication::sendEvent(plots.front()->surface(), &click);
+    QVERIFY(titles.contains(window.actions().find("plots.copy-svg")->text()));
   }
 
   /// Qt's fields take the keys of undo for themselves, also when there is nothing left in them to undo.

@@ -425,7 +425,8 @@ PlotData limitAnglePlot(const FrameSamples& samples, int highlight) {
   if (plot.series.empty()) return nothing(plot, "No contour point meets the lit surface");
   if (chosen->limitAngle) {
     PlotSeries line;
-    line.name = text("limit angle %.4g\u00b0", degrees(*chosen->limitAngle));
+    line.name = text(chosen->extended ? "limit angle %.4g\u00b0, without the lamp's extent" : "limit angle %.4g\u00b0",
+                     degrees(*chosen->limitAngle));
     line.colour = kHeldOut;
     line.dash = Dash::Dashed;
     line.width = 1.5;

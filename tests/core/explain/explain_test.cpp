@@ -272,6 +272,16 @@ TEST(Explain, TheProjectionOfCanonicalIsOnTAndTheWalkBackIsWhatIsSeen) {
   EXPECT_EQ(number(stepOf(e, "inverse-walk"), "of the directions gave one")[0], 100);
 }
 
+TEST(Explain, TheComparisonSaysWhatABrokenAssumptionHasCost) {
+  // The limit angle that the turn of the normal is held against comes with a model that knows the light.
+  const Inspection ball = inspected(sphere(0.5), {"primal", "canonical"}), table = inspected(sheet(0), {"primal", "canonical"});
+  const Explanation missed = explain(ball, 5, 0, "primal");
+  ASSERT_GT(number(stepOf(missed, "comparison"), "of the equivalent diameter")[0], 2);
+  EXPECT_TRUE(breaks(stepOf(missed, "comparison"), "primal-off-plane"));
+  EXPECT_FALSE(breaks(stepOf(explain(ball, 5, 0, "canonical"), "comparison"), "primal-off-plane")) << "it is not its assumption";
+  EXPECT_FALSE(breaks(stepOf(explain(table, 5, 0, "primal"), "comparison"), "primal-off-plane"));
+}
+
 /// An epipolar plane that touches an ellipsoid touches its outlines: on a table the ellipses are those of one ellipsoid for
 /// either kind of camera, on a ball for neither.
 TEST(Explain, TheEpipolarLinesSayHowFarTheViewsAreFromOneEllipsoid) {
