@@ -32,6 +32,8 @@ namespace glint::gui {
 
 namespace {
 const char* const kModelLayer = "frame/model/";
+// px of height: below, the switches of the overlays are behind one button, so that the photograph keeps its room.
+constexpr int kRoomForOverlays = 440, kRoomBesidePair = 560;
 }
 
 FramePanel::FramePanel(Document& document, QWidget* parent) : QWidget(parent), document_(document) {
@@ -108,6 +110,7 @@ void FramePanel::connectDocument() {
   connect(&document_, &Document::layersChanged, this, &FramePanel::showOverlay);
   connect(&document_, &Document::optionsChanged, this, [this] {
     showLook();
+    foldOverlays();
     refresh_.start();
   });
   connect(&document_, &Document::requestChanged, this, &FramePanel::showFrame);
@@ -183,6 +186,25 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
   auto* flow = new FlowLayout;
   flow->setContentsMargins(4, 0, 4, 3);
   legend->setLayout(flow);
+  folded_ = new QToolButton;
+  folded_->setObjectName(QStringLiteral("foldedOverlays"));
+  folded_->setText(tr("Overlays"));
+  folded_->setAutoRaise(true);
+  folded_->setPopupMode(QToolButton::InstantPopup);
+  auto* menu = new QMenu(folded_);
+  connect(menu, &QMenu::aboutToShow, this, [this, menu] {
+    menu->clear();
+    for (QToolButton* toggle : toggles_) {
+      QAction* action = menu->addAction(toggle->text(), toggle, &QToolButton::click);
+      action->setCheckable(true);
+      action->setChecked(toggle->isChecked());
+      action->setToolTip(toggle->toolTip());
+    }
+  });
+  menu->setToolTipsVisible(true);
+  folded_->setMenu(menu);
+  folded_->hide();
+  flow->addWidget(folded_);
   for (const viz::OverlayLayer& layer : viz::overlayLayers()) {
     auto* button = new QToolButton;
     button->setObjectName(QLatin1String(layer.name));
@@ -204,8 +226,16 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
   column->addWidget(pair_->sentence());
 }
 
+void FramePanel::foldOverlays() {
+  const bool low = height() < (pair_->on() ? kRoomBesidePair : kRoomForOverlays);
+  if (folded_->isHidden() != low) return;
+  folded_->setVisible(low);
+  for (QToolButton* toggle : toggles_) toggle->setVisible(!low);
+}
+
 void FramePanel::resizeEvent(QResizeEvent* e) {
   QWidget::resizeEvent(e);
+  foldOverlays();
   // In a low window the photograph keeps the largest share.
   switches_->setMost(std::max(30, height() * 28 / 100));
   captionsScroll_->setMost(std::max(40, height() * 28 / 100));

@@ -75,6 +75,7 @@ class FramePanel : public QWidget {
   void selectModelAt(double x, double y);
   void followLink(const QString& link);
   /// @param withCanonical  also the canonical ellipses about it that are shown.
+  void foldOverlays();
   void followHighlight(int frame);
   void zoomTo(int highlight, bool withCanonical = false);
   QString problemText(int frame, const QString& reason) const;
@@ -95,6 +96,7 @@ class FramePanel : public QWidget {
   viz::FrameOverlay shown_, shownSecond_;
   std::size_t captionCount_ = 0;
   bool failureShown_ = false;  ///< the captions hold the reason of a failure
+  QToolButton* folded_ = nullptr;  ///< the overlays' switches, where there is no room for a row of them
   bool follows_ = false;       ///< zoomed to the highlight by the user, who has not moved it since
   int seenFrame_ = -1;         ///< that was selected last
   bool zoomedByLook_ = false;  ///< and the user has not moved it since

@@ -16,6 +16,7 @@ namespace glint::gui {
 
 namespace {
 constexpr int kNarrow = 1100, kLow = 740;  // below these, px, columns of docks would leave the views too little
+constexpr int kTimeline = 150;             // px: its rows and an axis that is read
 constexpr QSize kLeastContent(150, 80);
 constexpr QSize kAsTabs(800, 500);  // what every layout fits into then
 }  // namespace
@@ -97,8 +98,12 @@ void Docks::apply(const Layout& layout) {
     window_->resizeDocks({at("parameters")}, {right}, Qt::Horizontal);
   else
     window_->resizeDocks({at("setup"), at("parameters")}, {std::min(260, width * 18 / 100), right}, Qt::Horizontal);
-  if (room_->low) return window_->resizeDocks({at("errors")}, {height * 3 / 10}, Qt::Vertical);
-  window_->resizeDocks({at("timeline"), at("errors")}, {150, height * 3 / 10}, Qt::Vertical);
+  if (room_->low) {
+    const bool timelineAlone = at("errors")->isHidden() && at("plots")->isHidden();
+    return window_->resizeDocks({at(timelineAlone ? QStringLiteral("timeline") : QStringLiteral("errors"))},
+                                {timelineAlone ? kTimeline : height * 3 / 10}, Qt::Vertical);
+  }
+  window_->resizeDocks({at("timeline"), at("errors")}, {kTimeline, height * 3 / 10}, Qt::Vertical);
   if (!room_->narrow) window_->resizeDocks({at("setup"), at("layers")}, {250, 290}, Qt::Vertical);
   window_->resizeDocks({at("parameters"), at("conditioning"), at("numbers")}, {400, 290, 210}, Qt::Vertical);
   if (!room_->narrow) window_->resizeDocks({at("errors"), at("plots")}, {1, 1}, Qt::Horizontal);

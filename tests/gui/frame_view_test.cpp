@@ -2,6 +2,7 @@
 // The frame view and the ladder on a document: what is shown, picked, toggled, and that it is one step of undo each.
 #include <QComboBox>
 #include <QLabel>
+#include <QMenu>
 #include <QMouseEvent>
 #include <QSignalSpy>
 #include <QSlider>
@@ -94,6 +95,25 @@ class FrameViewTest : public QObject {
     document_->selectFrame(9);
     settle();
     QVERIFY((canvas->centre() - moved).norm() < 1e-9);
+  }
+
+  /// In a low panel one button holds the switches of the overlays; the photograph keeps its room.
+  void aLowPanelFoldsTheSwitchesOfTheOverlays() {
+    auto* folded = frame_->findChild<QToolButton*>(QStringLiteral("foldedOverlays"));
+    auto* observed = frame_->findChild<QToolButton*>(QLatin1String(viz::overlayLayers().front().name));
+    QVERIFY(folded->isHidden() && !observed->isHidden());
+    frame_->resize(700, 400);
+    QTRY_VERIFY(!folded->isHidden() && observed->isHidden());
+    emit folded->menu()->aboutToShow();
+    QCOMPARE(folded->menu()->actions().size(), int(viz::overlayLayers().size()));
+    QAction* first = folded->menu()->actions().front();
+    const std::string layer = viz::overlayLayers().front().name;
+    const bool shown = document_->layerVisible(layer);
+    QCOMPARE(first->isChecked(), shown);
+    first->trigger();
+    QCOMPARE(document_->layerVisible(layer), !shown);
+    frame_->resize(700, 700);
+    QTRY_VERIFY(folded->isHidden() && !observed->isHidden());
   }
 
   /// Else one would wonder why the highlight of the photograph stays where it was.
