@@ -22,6 +22,7 @@
 
 #include "tests/tolerances.h"
 #include "tests/viz/small_inspection.h"
+#include "viz/glyphs.h"
 #include "viz/scene_legend.h"
 #include "viz/scene_questions.h"
 #include "viz/style.h"
@@ -450,6 +451,35 @@ TEST(Layers, TheSelectedFrameAloneNamesItsDirections) {
     EXPECT_LT((at["N"] - p.position).cross(p.normal).norm(), kDrawn);
     EXPECT_LT((at["L"] - p.position).cross(*inspection->scene->lights[0].position - p.position).norm(), kDrawn);
   }
+}
+
+/// Looked at alone a plane carries the canonical contour, which is larger than the highlight; among the others it does not hide
+/// them.
+TEST(TangentPlanes, AloneTheyReachTheCanonicalContour) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  LayerInput input = heldOutInput(*inspection);
+  input.selection.frame = 0;
+  TrainingView& view = inspection->views.front();
+  for (Pixel& p : view.canonical->pixels) p = view.brightest->pixel + 4 * (p - view.brightest->pixel);
+  if (view.canonical->pixels.empty())
+    view.canonical->pixels = {view.brightest->pixel + Pixel(60, 0), view.brightest->pixel - Pixel(60, 0)};
+  double reach = 0;
+  for (const Pixel& p : view.canonical->pixels)
+    if (const auto q = intersection(view.camera.ray(p), *view.tangentPlane))
+      reach = std::max(reach, (*q - view.brightest->point.position).norm());
+  reach = std::min(reach, 0.35 * input.scale.surfaceSize);  // no plane is drawn larger
+  const auto widest = [&] {
+    double half = 0;
+    for (const Drawn& d : tangentPlanesLayer(input).drawn)
+      if (d.info.frame == 0 && d.lineWidthPx == 0) half = std::max(half, 0.5 * boundsOf(d).sizes().maxCoeff());
+    return half;
+  };
+  input.solo = true;
+  const double alone = widest();
+  EXPECT_GE(alone, 0.99 * reach);
+  input.solo = false;
+  EXPECT_LT(widest(), 0.8 * alone);
 }
 
 TEST(Framing, HoldsTheWholeTangentPlaneThatIsDrawn) {

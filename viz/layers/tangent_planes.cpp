@@ -9,9 +9,10 @@ namespace {
 
 constexpr double kPlanePx = 2;  // see Drawn::nearerPx: below what lies on the plane
 
-/// What the plane has to reach: the contour, and the canonical one, which lies on it and is larger where the surface bulges.
-std::vector<Pixel> onPlane(std::vector<Pixel> contour, const std::optional<CanonicalContour>& canonical) {
-  if (canonical) contour.insert(contour.end(), canonical->pixels.begin(), canonical->pixels.end());
+/// What the plane has to reach: the contour, and where it is looked at alone the canonical one, which lies on it and is several
+/// times as large where the surface bulges. Of all frames together such planes would hide the surface.
+std::vector<Pixel> onPlane(const LayerInput& in, std::vector<Pixel> contour, const std::optional<CanonicalContour>& canonical) {
+  if (in.solo && canonical) contour.insert(contour.end(), canonical->pixels.begin(), canonical->pixels.end());
   return contour;
 }
 
@@ -41,7 +42,7 @@ LayerContent tangentPlanesLayer(const LayerInput& in) {
   const auto addObserved = [&](const TrainingView& view) {
     if (!view.tangentPlane || !view.brightest) return;
     const Eigen::Vector3d& at = view.brightest->point.position;
-    addPlane(content, in, view.camera, *view.tangentPlane, at, onPlane(view.highlight.contour.points, view.canonical),
+    addPlane(content, in, view.camera, *view.tangentPlane, at, onPlane(in, view.highlight.contour.points, view.canonical),
              view.frame == in.selection.frame, true, kVirtualCamera, describe(*view.tangentPlane, at, view.frame, ""));
   };
   bool trains = false;
@@ -62,7 +63,7 @@ LayerContent tangentPlanesLayer(const LayerInput& in) {
       for (const PredictedHighlight& h : comparison->prediction.highlights) {
         if (!h.tangentPlane) continue;
         addPlane(content, in, in.frame(in.selection.frame).camera, *h.tangentPlane, h.brightest.point.position,
-                 onPlane(h.contour.points, h.canonical), true, own.empty(), modelColour(model),
+                 onPlane(in, h.contour.points, h.canonical), true, own.empty(), modelColour(model),
                  describe(*h.tangentPlane, h.brightest.point.position, in.selection.frame, model));
       }
     }
