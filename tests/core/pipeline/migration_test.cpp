@@ -93,9 +93,22 @@ TEST(Migration, OfASessionWithEverythingThatVersion2Grew) {
   EXPECT_EQ(s.request.whatIf.roughness, 0.2);
 }
 
+TEST(Migration, OfASessionWithEverythingThatVersion3Grew) {
+  const Session s = readSession(fixture(3));
+  EXPECT_THAT(s.warnings, ElementsAre());
+  ASSERT_EQ(s.folders.size(), 1u);
+  EXPECT_EQ(s.folders[0].folder.lexically_normal(), (fixture(3).parent_path() / "../elsewhere/photos").lexically_normal());
+  EXPECT_EQ(s.view.cameras.at("scene").position, Eigen::Vector3d(1.5, -2, 3));
+  ASSERT_EQ(s.view.moreCameras.size(), 2u);
+  EXPECT_EQ(s.view.moreCameras[1].position, Eigen::Vector3d(4, 0, 1));
+  EXPECT_EQ(s.view.options.at("scene/hidden"), "camera 0001\n");
+  EXPECT_TRUE(isSwitchedOff(s.request.whatIf, 5, "A"));
+  EXPECT_EQ(s.notes, "of version 3");
+}
+
 TEST(Migration, WrittenAgainItIsOfThisVersionAndMeansTheSame) {
   const TemporaryFolder folder;
-  for (const char* name : {"version-1.glint", "version-2.glint", "version-2-what-if.glint"}) {
+  for (const char* name : {"version-1.glint", "version-2.glint", "version-2-what-if.glint", "version-3.glint"}) {
     const Session s = readSession(fixture(1).parent_path() / name);
     writeSession(s, folder / "again.glint");
     EXPECT_THAT(contentOf(folder / "again.glint"), HasSubstr("\"glint_session\": 3"));
@@ -125,7 +138,7 @@ TEST(Migration, ANewerOneIsRefusedAsNewerWhateverElseIsInIt) {
 
 TEST(Migration, DamagedOnesAreRefusedWithTheirName) {
   const TemporaryFolder folder;
-  for (const int version : {1, 2}) {
+  for (const int version : {1, 2, 3}) {
     const std::string whole = contentOf(fixture(version));
     for (int part = 0; part < 40; ++part) {  // cut anywhere: a disk that was full
       const fs::path file = folder.write("cut.glint", whole.substr(0, whole.size() * std::size_t(part) / 40));
