@@ -20,6 +20,9 @@
 #include <filesystem>
 #include <numbers>
 #include <optional>
+#include <utility>
+
+#include "viz/label_places.h"
 
 namespace glint::viz {
 namespace {
@@ -159,10 +162,8 @@ struct Annotations::Impl {
   vtkSmartPointer<vtkTextActor> name = textActor("", kTextOnDark), badge = textActor("", kTextOnDark);
   bool legendVisible = true, titleVisible = true;
 
-  struct Rectangle {
-    double x, y, width, height;
-  };
   std::vector<Rectangle> taken;  // by what stands still: labels keep off it
+  std::vector<Points> glyphs;    // corners of each drawn camera: labels keep off those where they can
   Eigen::Vector2d origin{0, 0};
 
   void move(vtkTextActor* actor, double x, double y) const { actor->SetPosition(origin.x() + x, origin.y() + y); }
@@ -246,55 +247,38 @@ struct Annotations::Impl {
   void placeLabels(int width, int height, int points, double font) {
     vtkCamera* camera = renderer->GetActiveCamera();
     const Eigen::Vector3d eye = toEigen(camera->GetPosition()), axis = toEigen(camera->GetDirectionOfProjection());
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-      vtkTextActor* actor = labelActors[i];
-      const bool inFront = camera->GetParallelProjection() || axis.dot(labels[i].anchor - eye) > 0;
-      renderer->SetWorldPoint(labels[i].anchor.x(), labels[i].anchor.y(), labels[i].anchor.z(), 1);
+    const auto inFront = [&](const Eigen::Vector3d& p) { return camera->GetParallelProjection() || axis.dot(p - eye) > 0; };
+    const auto onScreen = [&](const Eigen::Vector3d& p) -> Eigen::Vector2d {
+      renderer->SetWorldPoint(p.x(), p.y(), p.z(), 1);
       renderer->WorldToDisplay();
       double display[3];
       renderer->GetDisplayPoint(display);
-      const Eigen::Vector2d at = Eigen::Vector2d(display[0], display[1]) - origin;
-      const bool inside =
-          inFront && at.x() > -0.05 * width && at.x() < 1.05 * width && at.y() > -0.05 * height && at.y() < 1.05 * height;
+      return Eigen::Vector2d(display[0], display[1]) - origin;
+    };
+    std::vector<Rectangle> onGlyphs;
+    for (const Points& corners : labels.empty() ? std::vector<Points>{} : glyphs) {
+      if (!std::all_of(corners.begin(), corners.end(), inFront)) continue;
+      Eigen::AlignedBox2d box;
+      for (const Eigen::Vector3d& p : corners) box.extend(onScreen(p));
+      onGlyphs.push_back({box.min().x(), box.min().y(), box.sizes().x(), box.sizes().y()});
+    }
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      vtkTextActor* actor = labelActors[i];
+      const Eigen::Vector2d at = onScreen(labels[i].anchor);
+      const bool inside = inFront(labels[i].anchor) && at.x() > -0.05 * width && at.x() < 1.05 * width &&
+                          at.y() > -0.05 * height && at.y() < 1.05 * height;
       actor->SetVisibility(inside);
       if (!inside) continue;
       actor->GetTextProperty()->SetFontSize(points);
       setColour(actor, asText(labels[i].colour, dark));
-      background(actor, 0.6);
+      background(actor, 0.75);  // over lines, too
       const Eigen::Vector2d size = sizeOf(actor);
-      const std::optional<Rectangle> place = freePlace(at, size, width, height, font);
+      const std::optional<Rectangle> place = placeForLabel(at, size, Eigen::Vector2d(width, height), font, taken, onGlyphs);
       actor->SetVisibility(place.has_value());
       if (!place) continue;
       taken.push_back(*place);
       move(actor, place->x, place->y);
     }
-  }
-  /// Beside a point, where nothing else stands: to the right first, then to the left, then in rows above and below. Nothing where
-  /// a small picture has no room: a click on the point still tells what it is, texts over one another tell nothing.
-  std::optional<Rectangle> freePlace(const Eigen::Vector2d& at, const Eigen::Vector2d& size, int width, int height,
-                                     double font) const {
-    const auto placed = [&](double x, double y) {
-      return Rectangle{std::clamp(x, 2.0, std::max(2.0, width - size.x() - 4)),
-                       std::clamp(y, 2.0, std::max(2.0, height - size.y() - 4)), size.x(), size.y()};
-    };
-    const auto isFree = [&](const Rectangle& r) {
-      // Pushed in from the picture's edge, it must not cover its own point.
-      const double m = 0.75 * font;
-      const bool onPoint = r.x - m < at.x() && at.x() < r.x + r.width + m && r.y - m < at.y() && at.y() < r.y + r.height + m;
-      return !onPoint && std::none_of(taken.begin(), taken.end(), [&](const Rectangle& t) {
-        return r.x < t.x + t.width && t.x < r.x + r.width && r.y < t.y + t.height && t.y < r.y + r.height;
-      });
-    };
-    constexpr int kRows = 8;  // farther, a label would not be seen as its point's
-    for (int row = 0; row <= kRows; ++row) {
-      for (const double side : {1.0, -1.0}) {
-        for (const double x : {at.x() + 0.8 * font, at.x() - 0.8 * font - size.x()}) {
-          const Rectangle r = placed(x, at.y() + 0.3 * font + side * row * (size.y() + 3));
-          if (isFree(r)) return r;
-        }
-      }
-    }
-    return {};
   }
   static Eigen::Vector3d rightOf(vtkCamera* camera) {
     return toEigen(camera->GetDirectionOfProjection()).cross(toEigen(camera->GetViewUp())).normalized();
@@ -525,6 +509,8 @@ void Annotations::setLabels(const std::vector<DrawnLabel>& labels) {
   }
 }
 
+void Annotations::setGlyphs(std::vector<Points> corners) { impl_->glyphs = std::move(corners); }
+
 void Annotations::setColourBar(const std::optional<ColourBar>& bar) {
   for (auto& step : impl_->barSteps) impl_->renderer->RemoveActor2D(step->actor);
   for (auto& text : impl_->scaleTexts) impl_->renderer->RemoveActor2D(text);
@@ -561,7 +547,7 @@ Eigen::Vector2d Annotations::legendSize() {
   impl_->taken.clear();
   impl_->placeLegend(size[0], size[1], points, scale * points, size[0] < scale * kNarrowPicture);
   Eigen::Vector2d reach(0, 0);
-  for (const Impl::Rectangle& r : impl_->taken) reach = reach.cwiseMax(Eigen::Vector2d(r.x + r.width, size[1] - r.y));
+  for (const Rectangle& r : impl_->taken) reach = reach.cwiseMax(Eigen::Vector2d(r.x + r.width, size[1] - r.y));
   return reach;
 }
 

@@ -41,6 +41,8 @@ class Annotations {
   void setLegend(const std::vector<LegendEntry>& entries, const std::vector<std::string>& notes,
                  const std::vector<std::string>& remarks, const std::string& title);
   void setLabels(const std::vector<DrawnLabel>& labels);
+  /// Corners of what is drawn that a label would be hard to read on: labels keep off it where there is room.
+  void setGlyphs(std::vector<Points> corners);
   void setColourBar(const std::optional<ColourBar>& bar);
   /// A line at the top that cannot be overlooked ("through camera 0007"); "" = none.
   void setBadge(const std::string& text);

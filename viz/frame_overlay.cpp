@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "core/scene/scene_files.h"
+#include "viz/error_text.h"
 #include "viz/frame_details.h"
 
 namespace glint::viz {
@@ -63,8 +64,8 @@ void addPrediction(const PredictedHighlight& highlight, const Camera& camera, co
 
 std::string scoreText(const std::string& model, const FrameScore& score) {
   std::string text = model;
-  if (score.errorPct) text += "  " + formatted("%.2f %%", *score.errorPct);
-  if (score.errorPx) text += "  " + formatted("%.2f px", *score.errorPx);
+  if (score.errorPct) text += "  " + errorText(*score.errorPct) + " %";
+  if (score.errorPx) text += "  " + errorText(*score.errorPx) + " px";
   if (score.iou && score.matched > 0) text += "  IoU " + formatted("%.3f", *score.iou);
   if (score.missed > 0) text += "  missed " + std::to_string(score.missed);
   if (score.spurious > 0) text += "  spurious " + std::to_string(score.spurious);
@@ -321,7 +322,7 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
         line.highlight = static_cast<int>(i);
         line.colour = options.colourByRole ? roleColour : modelColour(model);
         line.halo = options.colourByRole;
-        line.label = model + (score.errorPct ? " " + formatted("%.2f %%", *score.errorPct) : std::string{});
+        line.label = model + (score.errorPct ? " " + errorText(*score.errorPct) + " %" : std::string{});
         if (shown(OverlayRole::PredictedContour)) {
           line.role = OverlayRole::PredictedContour;
           line.width = selected && selected->model == model ? 2.75 : 1.75;

@@ -151,6 +151,8 @@ struct DrawnLabel {
   Colour colour;
 };
 
+constexpr std::size_t kMostGlyphs = 64;  ///< of more cameras there is nowhere a picture that is free of them
+
 /// What one layer puts into the picture.
 struct LayerContent {
   std::vector<Drawn> drawn;
@@ -158,6 +160,8 @@ struct LayerContent {
   std::vector<std::string> notes;       ///< what could not be drawn, and why: shown in the corner
   std::vector<std::string> remarks;     ///< what was left out on purpose: the same, without alarm
   std::vector<Eigen::Vector3d> extent;  ///< points beyond the scene box that "frame all" should hold
+  std::vector<Points> glyphs;           ///< corners of drawn cameras, at most kMostGlyphs: labels keep off them
+  bool behindSurface = false;           ///< something of it is hidden by the surface from where the photographs were taken
 
   void add(vtkSmartPointer<vtkProp3D> prop, const Picked& info, double lineWidthPx = 0, bool pickable = true) {
     drawn.push_back({std::move(prop), info, lineWidthPx, pickable});
@@ -220,10 +224,13 @@ LayerContent raysLayer(const LayerInput& in);               ///< view rays and t
 LayerContent observedContoursLayer(const LayerInput& in);   ///< cast onto the surface
 LayerContent predictedContoursLayer(const LayerInput& in);  ///< of the selected frame
 
-/// How the drawn surface looks at the moment. Virtual cameras lie behind it, inside a convex one: it lets them shine through,
-/// unless it is so large that drawing it in several passes would be slow. Through a virtual camera, what lies behind its mirror
-/// is cut away. While something moves, the coarse triangles stand for it.
-void styleSurface(const LayerContent& surface, const LayerInput& in, bool virtualCamerasShown, bool moving);
+/// What the picture shows behind the surface: virtual cameras stand out beyond it, an ellipsoid may lie wholly inside.
+enum class Behind { Nothing, VirtualCameras, Ellipsoids };
+
+/// How the drawn surface looks at the moment. What lies behind it shines through, an ellipsoid more than virtual cameras, unless
+/// it is so large that drawing it in several passes would be slow. Through a virtual camera, what lies behind its mirror is cut
+/// away. While something moves, the coarse triangles stand for it.
+void styleSurface(const LayerContent& surface, const LayerInput& in, Behind behind, bool moving);
 
 /// Sizes for one surface of an inspection. @param surface may be null.
 SceneScale sceneScale(const Inspection& inspection, const Surface* surface, const std::vector<int>& frames, double glyphScale);

@@ -8,6 +8,7 @@
 
 #include "core/pipeline/what_if_knobs.h"
 #include "viz/annotations.h"
+#include "viz/error_text.h"
 
 namespace glint::viz {
 namespace {
@@ -251,7 +252,7 @@ Image ladderPicture(const Inspection& inspection, int frame, const Outcome<Image
   for (std::size_t i = 0; i < models.size(); ++i) {
     const FrameScore score = frameScore(inspection.models.at(models[i]), frame);
     if (score.errorPct) {
-      below[i].numbers = formatted("%.2f %%", *score.errorPct) + "   " + formatted("%.2f px", *score.errorPx) +
+      below[i].numbers = errorText(*score.errorPct) + " %   " + errorText(*score.errorPx) + " px" +
                          (score.iou ? "   IoU " + formatted("%.3f", *score.iou) : "");
       continue;
     }

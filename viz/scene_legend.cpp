@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "core/scene/scene_files.h"
+#include "viz/error_text.h"
 #include "viz/frame_overlay.h"
 
 namespace glint::viz {
@@ -81,8 +82,7 @@ SceneLegend legendOf(const LayerInput& in, const std::vector<ShownLayer>& layers
   if (shown("predicted-contours") || shown("ellipsoids")) {
     for (const std::string& model : in.models) {
       const FrameScore score = frameScore(in.inspection->models.at(model), in.selection.frame);
-      char error[32] = "";
-      if (score.errorPct) std::snprintf(error, sizeof error, "  %.2f %%", *score.errorPct);
+      const std::string error = score.errorPct ? "  " + errorText(*score.errorPct) + " %" : "";
       legend.entries.push_back({modelColour(model), model + error, true});
       // What is wrong with the frame itself is said once, not for every model; a fit that is no ellipsoid by its layer.
       if (!score.errorPct && !score.reason.empty() && score.reason != noEvidence &&

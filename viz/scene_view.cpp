@@ -266,8 +266,11 @@ struct SceneView::Impl {
   }
   void styleSurface() {
     const LayerState& mirrored = layers[layerIndex("virtual-cameras")];
-    glint::viz::styleSurface(layers[layerIndex("surface")].content, input, mirrored.visible && !mirrored.content.drawn.empty(),
-                             moving);
+    const LayerState& ellipsoids = layers[layerIndex("ellipsoids")];
+    const Behind behind = ellipsoids.visible && ellipsoids.content.behindSurface ? Behind::Ellipsoids
+                          : mirrored.visible && !mirrored.content.drawn.empty()  ? Behind::VirtualCameras
+                                                                                 : Behind::Nothing;
+    glint::viz::styleSurface(layers[layerIndex("surface")].content, input, behind, moving);
   }
   bool surfaceShown() const { return layers[layerIndex("surface")].visible && !input.hidden.hidesSurface(input.surfaceKey); }
   void updateAnnotations() {
@@ -282,13 +285,17 @@ struct SceneView::Impl {
     }
     std::vector<ShownLayer> shown;
     std::vector<DrawnLabel> labels;
+    std::vector<Points> glyphs;
     for (const LayerState& layer : layers) {
       shown.push_back({layer.visible, &layer.content});
-      if (layer.visible) labels.insert(labels.end(), layer.content.labels.begin(), layer.content.labels.end());
+      if (!layer.visible) continue;
+      labels.insert(labels.end(), layer.content.labels.begin(), layer.content.labels.end());
+      glyphs.insert(glyphs.end(), layer.content.glyphs.begin(), layer.content.glyphs.end());
     }
     const SceneLegend legend = legendOf(input, shown);
     annotations->setLegend(legend.entries, legend.notes, legend.remarks, legend.title);
     annotations->setLabels(labels);
+    annotations->setGlyphs(std::move(glyphs));
     annotations->setColourBar(legend.bar);
   }
   void beforeFrame() {

@@ -22,6 +22,8 @@
 #include "tests/viz/image_checks.h"
 #include "viz/canvas.h"
 #include "viz/convert.h"
+#include "viz/error_text.h"
+#include "viz/label_places.h"
 #include "viz/offscreen.h"
 #include "viz/scene_view.h"
 
@@ -176,6 +178,39 @@ TEST_F(LegendPicture, WhatThereIsNoRoomForEndsInAnEllipsis) {
     }
   }
   for (const std::string& text : cut) EXPECT_EQ(text.find("\xC3…"), std::string::npos) << "half a character";
+}
+
+/// A label on the lines of a camera is hard to read; where there is nothing else, it is still better than none.
+TEST(LabelPlaces, KeepOffCamerasWhereThereIsRoom) {
+  const Eigen::Vector2d at(200, 200), size(80, 14), picture(400, 400);
+  constexpr double kFont = 14;
+  const std::optional<Rectangle> first = placeForLabel(at, size, picture, kFont, {}, {});
+  ASSERT_TRUE(first);
+  EXPECT_GT(first->x, at.x());
+  const Rectangle beside{first->x + 30, first->y - 5, 20, 30};  // a camera to the right of the point
+  const std::optional<Rectangle> off = placeForLabel(at, size, picture, kFont, {}, {beside});
+  ASSERT_TRUE(off);
+  EXPECT_FALSE(off->overlaps(beside));
+  const Rectangle all{0, 0, 400, 400};
+  const std::optional<Rectangle> over = placeForLabel(at, size, picture, kFont, {}, {all});
+  ASSERT_TRUE(over);
+  EXPECT_EQ(over->x, first->x);
+  EXPECT_EQ(over->y, first->y);
+  EXPECT_FALSE(placeForLabel(at, size, picture, kFont, {all}, {}));
+}
+
+TEST(ErrorText, HasThreeSignificantDigits) {
+  EXPECT_EQ(errorText(0), "0.00");
+  EXPECT_EQ(errorText(0.0512), "0.05");
+  EXPECT_EQ(errorText(2.666), "2.67");
+  EXPECT_EQ(errorText(9.994), "9.99");
+  EXPECT_EQ(errorText(9.996), "10.0");
+  EXPECT_EQ(errorText(47.13), "47.1");
+  EXPECT_EQ(errorText(99.96), "100");
+  EXPECT_EQ(errorText(999.6), "1000");
+  EXPECT_EQ(errorText(1009.84), "1010");
+  EXPECT_EQ(errorText(123456), "123000");
+  EXPECT_EQ(errorText(std::nan("")), "-");
 }
 
 TEST_F(LegendPicture, LabelsNeverLieOverOneAnother) {

@@ -154,6 +154,45 @@ TEST_F(SceneViewPicture, EverythingHoldsAnEllipsoidBeyondTheCameras) {
   }
 }
 
+/// primal's ellipsoid on a ball is within it: whoever asks for ellipsoids is to see it. One before the surface needs no such
+/// help.
+TEST_F(SceneViewPicture, AnEllipsoidInsideTheSurfaceIsSeenThroughIt) {
+  const std::shared_ptr<Inspection> inspection = smallInspection(folder_.path());
+  const Ellipsoid middle(Eigen::Isometry3d::Identity(), {0.15, 0.15, 0.15});  // in a ball of 0.4
+  inspection->models.at("canonical").fits[0].fit->ellipsoid = middle;
+  inspection->models.at("canonical").fits[0].fit->quadric = middle.dual();
+  SceneView view;
+  view.setInspection(inspection);
+  const auto greenWith = [&](const std::set<std::string>& seen) {
+    for (const Layer& layer : sceneLayers()) view.setLayerVisible(layer.name, seen.count(layer.name) > 0);
+    const Image image = render(view);
+    int n = 0;  // px of the ellipsoid's colour, more green than red, off the axes in the corner; the surface is grey
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = kWidth / 4; x < kWidth * 3 / 4; ++x) n += image.at(x, y, 1) - image.at(x, y, 0) > 0.15;
+    return n;
+  };
+  constexpr int kLines = 300;  // px of its three outlines; behind an opaque ball they leave none
+  EXPECT_EQ(greenWith({"surface"}), 0);
+  EXPECT_GT(greenWith({"surface", "ellipsoids"}), kLines);
+  EXPECT_GT(greenWith({"surface", "ellipsoids", "virtual-cameras"}), kLines);
+  // Outside, the ball stays opaque.
+  LayerCache cache;
+  LayerInput input;
+  input.inspection = inspection.get();
+  input.models = {"canonical"};
+  input.surfaceKey = inspection->surfaces->keyOf(0);
+  input.surface = *inspection->surfaces->surfaceOf(0, {});
+  input.scale = sceneScale(*inspection, input.surface.get(), {0, 1, 2}, 1);
+  input.cache = &cache;
+  const Eigen::Vector3d eye = inspection->scene->frames[0].camera.centreInWorld();
+  for (const bool inside : {false, true}) {
+    const Ellipsoid small(Eigen::Isometry3d(Eigen::Translation3d(inside ? Eigen::Vector3d::Zero().eval() : 0.5 * eye)),
+                          {0.05, 0.05, 0.05});
+    inspection->models.at("canonical").fits[0].fit->ellipsoid = small;
+    EXPECT_EQ(ellipsoidsLayer(input).behindSurface, inside);
+  }
+}
+
 TEST_F(SceneViewPicture, TheColourBarStaysInsideThePicture) {
   const std::shared_ptr<Inspection> inspection = smallInspection(folder_.path());
   for (const int width : {kWidth, 240}) {

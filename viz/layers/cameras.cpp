@@ -118,6 +118,10 @@ LayerContent camerasLayer(const LayerInput& in) {
     const Colour colour = cameraColour(in, index).colour;
     const std::vector<Points> chains = frustum(camera, in.scale.cameraDepth);
     if (!selected && besideEye(in, index)) continue;
+    if (selected || content.glyphs.size() < kMostGlyphs) {
+      const std::array<Eigen::Vector3d, 4> plane = imagePlane(camera, in.scale.cameraDepth);
+      content.glyphs.push_back({camera.centreInWorld(), plane[0], plane[1], plane[2], plane[3]});
+    }
     if (!selected) {
       (in.inspection->isTraining(index) ? training : others).add(chains, colour, index);
       continue;

@@ -49,6 +49,19 @@ void addExtent(LayerContent& content, const Eigen::Affine3d& worldFromUnit) {
   }
 }
 
+/// Whether the surface hides a point from the first camera that sees the surface: one that does not change with the selection.
+bool hiddenBySurface(const LayerInput& in, const Eigen::Vector3d& point) {
+  const int frames = int(in.inspection->scene->frames.size());
+  int first = 0;
+  while (first < frames && !in.onSurface(first)) ++first;
+  if (!in.surface || first == frames) return false;
+  const Eigen::Vector3d eye = in.frame(first).camera.centreInWorld();
+  const double distance = (point - eye).norm();
+  if (!(distance > 0)) return false;
+  const Outcome<SurfacePoint> hit = in.surface->firstHit({eye, (point - eye) / distance});
+  return hit && (hit->position - eye).norm() < distance;
+}
+
 }  // namespace
 
 LayerContent ellipsoidsLayer(const LayerInput& in) {
@@ -72,6 +85,7 @@ LayerContent ellipsoidsLayer(const LayerInput& in) {
       info.model = model;
       info.light = fit->light;
       info.text = fitText(*fit) + line("centre", e.centre(), "m") + line("semi-axes", e.semiAxes(), "m");
+      content.behindSurface = content.behindSurface || hiddenBySurface(in, e.centre());
       const Colour colour = modelColour(model);
       // A vanishing axis would make the unit sphere's normals undefined: keep it thinner than a line.
       const Eigen::Vector3d axes = e.semiAxes().cwiseMax(1e-5 * std::max(e.semiAxes().maxCoeff(), 1e-300));

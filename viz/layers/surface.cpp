@@ -39,8 +39,13 @@ LayerContent surfaceLayer(const LayerInput& in) {
   return content;
 }
 
-void styleSurface(const LayerContent& surface, const LayerInput& in, bool virtualCamerasShown, bool moving) {
-  const bool translucent = virtualCamerasShown && in.eye == Eye::Outside;
+namespace {
+/// Bodies that are inside need more than what stands out beyond the surface.
+double opacityBefore(Behind behind) { return behind == Behind::Ellipsoids ? 0.35 : behind == Behind::VirtualCameras ? 0.7 : 1.0; }
+}  // namespace
+
+void styleSurface(const LayerContent& surface, const LayerInput& in, Behind behind, bool moving) {
+  const double opacity = in.eye == Eye::Outside ? opacityBefore(behind) : 1.0;
   for (const Drawn& drawn : surface.drawn) {
     auto* actor = vtkActor::SafeDownCast(drawn.prop);
     auto* mapper = actor ? vtkPolyDataMapper::SafeDownCast(actor->GetMapper()) : nullptr;
@@ -49,7 +54,7 @@ void styleSurface(const LayerContent& surface, const LayerInput& in, bool virtua
     const vtkSmartPointer<vtkPolyData> coarse = moving ? triangles.coarseIfReady() : nullptr;
     const vtkSmartPointer<vtkPolyData> shown = coarse ? coarse : triangles.fine;
     if (mapper->GetInput() != shown) mapper->SetInputData(shown);
-    actor->GetProperty()->SetOpacity(translucent && shown->GetNumberOfPolys() <= kLargeSurface ? 0.7 : 1.0);
+    actor->GetProperty()->SetOpacity(shown->GetNumberOfPolys() <= kLargeSurface ? opacity : 1.0);
     mapper->RemoveAllClippingPlanes();
     if (!in.eyeMirror) continue;
     const Plane& plane = *in.eyeMirror;  // its normal is on the camera's side, where the light is

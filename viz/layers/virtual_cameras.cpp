@@ -36,6 +36,7 @@ void addPair(LayerContent& content, const LayerInput& in, int frame, const Layer
                          {top + 0.18 * (c[0] - c[1]), top + up, top + 0.18 * (c[1] - c[0])}},
                         kVirtualCamera, width),
               info, width);
+  if (content.glyphs.size() < kMostGlyphs) content.glyphs.push_back({mirrored, c[0], c[1], c[2], c[3], top + up});
   // The pair, joined square through the tangent plane.
   content.add(segmentActor(dashed(eye, mirrored, 0.02 * in.scale.sceneSize), kVirtualCamera, 1.0), info, 1.0);
   content.add(sphereActor({plane.projected(eye)}, 0.7 * in.scale.point, kVirtualCamera), info);

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viz/label_places.h"
+
+#include <algorithm>
+
+namespace glint::viz {
+
+std::optional<Rectangle> placeForLabel(const Eigen::Vector2d& at, const Eigen::Vector2d& size, const Eigen::Vector2d& picture,
+                                       double font, const std::vector<Rectangle>& taken, const std::vector<Rectangle>& glyphs) {
+  const auto placed = [&](double x, double y) {
+    return Rectangle{std::clamp(x, 2.0, std::max(2.0, picture.x() - size.x() - 4)),
+                     std::clamp(y, 2.0, std::max(2.0, picture.y() - size.y() - 4)), size.x(), size.y()};
+  };
+  const auto keepsOff = [](const Rectangle& r, const std::vector<Rectangle>& others) {
+    return std::none_of(others.begin(), others.end(), [&](const Rectangle& other) { return r.overlaps(other); });
+  };
+  const auto isFree = [&](const Rectangle& r) {
+    // Pushed in from the picture's edge, it must not cover its own point.
+    const double m = 0.75 * font;
+    const bool onPoint = r.x - m < at.x() && at.x() < r.x + r.width + m && r.y - m < at.y() && at.y() < r.y + r.height + m;
+    return !onPoint && keepsOff(r, taken);
+  };
+  constexpr int kRows = 8;  // farther, a label would not be seen as its point's
+  std::optional<Rectangle> onAGlyph;
+  for (int row = 0; row <= kRows; ++row) {
+    for (const double side : {1.0, -1.0}) {
+      for (const double x : {at.x() + 0.8 * font, at.x() - 0.8 * font - size.x()}) {
+        const Rectangle r = placed(x, at.y() + 0.3 * font + side * row * (size.y() + 3));
+        if (!isFree(r)) continue;
+        if (keepsOff(r, glyphs)) return r;
+        if (!onAGlyph) onAGlyph = r;
+      }
+    }
+  }
+  return onAGlyph;
+}
+
+}  // namespace glint::viz
