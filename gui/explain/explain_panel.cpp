@@ -32,6 +32,7 @@ namespace glint::gui {
 namespace {
 const char* const kStep = "explain/step";      // option: id of the step that is shown; "" = none
 const char* const kSolo = "scene/solo";        // option: the 3D views show what belongs to the selected frame alone
+const char* const kLines = "frame/epipolar";   // option: tangent epipolar lines of two frames side by side
 const char* const kLesson = "explain/lesson";  // option: id of the lesson that this session is; "" = none
 constexpr int kWalkHeight = 290;  // px, where there is room
 constexpr int kTextLines = 14;    // of the text and the buttons, that the list of the steps leaves room for
@@ -51,12 +52,12 @@ QString numbersTable(const std::vector<ExplainNumber>& numbers) {
   return html + QStringLiteral("</table>");
 }
 
-/// @param solo  "" = as nobody has set it.
-void setSolo(std::map<std::string, std::string>& options, const std::string& solo) {
-  if (solo.empty())
-    options.erase(kSolo);
+/// @param value  "" = as nobody has set it.
+void set(std::map<std::string, std::string>& options, const char* option, const std::string& value) {
+  if (value.empty())
+    options.erase(option);
   else
-    options[kSolo] = solo;
+    options[option] = value;
 }
 
 QString box(const QColor& colour, const QString& content) {
@@ -131,6 +132,7 @@ ExplainPanel::ExplainPanel(Document& document, QWidget* parent)
     lookedAt_.clear();
     soloBefore_.clear();
     lessonRequest_ = document_.request();
+    linesBefore_.clear();
   });
   connect(walk_, &WalkPlayer::changed, this, [this] {
     if (walk_->playing()) return;  // it has not changed whether there is one
@@ -190,6 +192,7 @@ void ExplainPanel::goTo(int wanted) {
   if (step() < 0) {
     layersBefore_ = document_.state().layers;
     soloBefore_ = document_.option(kSolo, std::string());
+    linesBefore_ = document_.option(kLines, std::string());
   }
   std::map<std::string, bool> layers = document_.state().layers;
   for (const viz::Layer& layer : viz::sceneLayers()) layers[layer.name] = text.layers.contains(toQString(layer.name));
@@ -198,7 +201,8 @@ void ExplainPanel::goTo(int wanted) {
     for (const QString& name : any.frameLayers) layers[name.toStdString()] = text.frameLayers.contains(name);
   std::map<std::string, std::string> options = document_.state().options;
   options[kStep] = text.id.toStdString();
-  setSolo(options, text.solo ? "1" : soloBefore_);
+  set(options, kSolo, text.solo ? "1" : soloBefore_);
+  set(options, kLines, text.epipolar ? linesBefore_ : "off");
   lookPending_ = true;
   document_.setView(layers, options, tr("Explain %1: %2").arg(wanted + 1).arg(text.title));
   lookAtStep();
@@ -229,7 +233,8 @@ void ExplainPanel::leave() {
   if (step() < 0) return;
   std::map<std::string, std::string> options = document_.state().options;
   options.erase(kStep);
-  setSolo(options, soloBefore_);
+  set(options, kSolo, soloBefore_);
+  set(options, kLines, linesBefore_);
   lookPending_ = false;
   lookedAt_.clear();
   document_.setView(layersBefore_, options, tr("Leave the explanation"));
@@ -362,6 +367,12 @@ QString ExplainPanel::html() const {
                        .arg(escaped(scene.frames[std::size_t(explanation_->frame)].id), ofSeveral,
                             explanation_->light.empty() ? QString() : tr(", light %1").arg(escaped(explanation_->light)),
                             explanation_->model.empty() ? QString() : tr(", model %1").arg(escaped(explanation_->model))));
+  // Whether "any camera" is a new one here.
+  if (text.id == QLatin1String("projection") && !s.failure && inspection)
+    html +=
+        QStringLiteral("<p>%1</p>")
+            .arg(inspection->isTraining(explanation_->frame) ? tr("This camera is not new to the model: its frame has trained.")
+                                                             : tr("This camera is new to the model: its frame has not trained."));
   // A frame that has not trained still has its own contour: what comes from that, and what from the others?
   const bool ofObserved = text.id == QLatin1String("limit-angles") || text.id == QLatin1String("canonical-ellipse");
   if (const auto inspection = document_.inspection();

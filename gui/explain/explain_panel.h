@@ -74,6 +74,7 @@ class ExplainPanel : public QWidget {
   std::shared_ptr<const Explanation> explanation_;
   std::map<std::string, bool> layersBefore_;  ///< what was shown before the first step
   std::string soloBefore_;                    ///< and whether of the selected frame alone
+  std::string linesBefore_;                   ///< and which epipolar lines
   bool explaining_ = false;                   ///< a step was shown last
   bool lookPending_ = false;                  ///< the step on screen was gone to, and what it is about is not computed yet
   InspectionRequest lessonRequest_;           ///< what was asked for when the scene was opened: lessons speak of that

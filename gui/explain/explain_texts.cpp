@@ -38,7 +38,7 @@ ExplainTexts read() {
     }
     texts.steps.append({s["id"].toString(), s["title"].toString(), s["text"].toString(), s["equation"].toString(),
                         s["section"].toString(), names(s["layers"]), names(s["frame_layers"], QStringLiteral("frame/")),
-                        s["look"].toString(), s["solo"].toBool(), ofModels});
+                        s["look"].toString(), s["solo"].toBool(), s["epipolar"].toBool(), ofModels});
   }
   const QJsonObject broken = root["broken"].toObject();
   for (auto it = broken.begin(); it != broken.end(); ++it) texts.broken.insert(it.key(), it.value().toString());

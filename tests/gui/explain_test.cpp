@@ -402,6 +402,22 @@ class ExplainTest : public QObject {
     }
   }
 
+  /// A training frame's camera is no new one.
+  void aProjectionSaysWhetherTheCameraIsNew() {
+    Document& d = window_->document();
+    bool both[2] = {false, false};
+    for (const int frame : {0, d.frameCount() - 1}) {
+      select(frame, "canonical");
+      goTo("projection");
+      settle();
+      const bool trains = d.inspection()->isTraining(frame);
+      both[trains] = true;
+      QVERIFY2(!shownText().contains("a new camera"), qPrintable(shownText()));
+      QVERIFY2(shownText().contains(trains ? "not new to the model" : "is new to the model"), qPrintable(shownText()));
+    }
+    QVERIFY(both[0] && both[1]);
+  }
+
   void aClickInTheListGoesThere() {
     auto* list = panel_->findChild<QListWidget*>("explain.steps");
     window_->actions().find("explain.step-peak")->trigger();

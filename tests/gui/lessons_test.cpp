@@ -229,6 +229,28 @@ class LessonsTest : public QObject {
     QVERIFY((view.viewPoint().position - orbited.position).norm() < 1e-9);
   }
 
+  /// The epipolar lines of two frames side by side belong to the step of the cones; other steps do not draw over each other.
+  void onlyTheConesHaveEpipolarLines() {
+    open("sphere");  // two frames side by side, with lines
+    Document& d = window_->document();
+    auto* miss = window_->findChild<QLabel*>("epipolarMiss");
+    QTRY_VERIFY_WITH_TIMEOUT(window_->idle() && miss->isVisible(), 20000);
+    for (const ExplainText& step : explainTexts().steps) {
+      window_->actions().find("explain.step-" + step.id)->trigger();
+      QTRY_VERIFY_WITH_TIMEOUT(!panel_->busy() && panel_->explanation() && window_->idle(), 20000);
+      QTRY_VERIFY2(miss->isVisible() == (step.id == "ellipsoid"), qPrintable(step.id));
+    }
+    panel_->leave();
+    QCOMPARE(d.option("frame/epipolar", std::string()), std::string());
+    QTRY_VERIFY(miss->isVisible());
+    // Who wants only those of the real cameras gets them back.
+    d.setOption("frame/epipolar", "real", "lines");
+    window_->actions().find("explain.step-peak")->trigger();
+    QCOMPARE(d.option("frame/epipolar", std::string()), std::string("off"));
+    window_->actions().find("explain.step-ellipsoid")->trigger();
+    QCOMPARE(d.option("frame/epipolar", std::string()), std::string("real"));
+  }
+
  private:
   void open(const QString& id) {
     while (window_->document().undoStack()->canUndo()) window_->document().undoStack()->undo();
