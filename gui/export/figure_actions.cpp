@@ -7,13 +7,16 @@
 #include <QDir>
 #include <QFileDialog>
 #include <QFileInfo>
+#include <QFontMetricsF>
 #include <QPageSize>
 #include <QPainter>
 #include <QPdfWriter>
 #include <QRegularExpression>
 #include <QSaveFile>
 #include <QSvgGenerator>
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "gui/base/theme.h"
 #include "gui/base/to_qimage.h"
@@ -22,9 +25,11 @@
 #include "gui/export/long_job.h"
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/frame_panel.h"
+#include "gui/frame/pair_bar.h"
 #include "gui/scene/scene_panel.h"
 #include "gui/scene/scene_views.h"
 #include "viz/offscreen.h"
+#include "viz/style.h"
 
 namespace glint::gui {
 
@@ -157,9 +162,43 @@ void FigureActions::paintFrames(QPainter& painter, const FigureLook& look) const
   const QColor background = backgroundOf(look);
   const QRectF all({0, 0}, QSizeF(look.size));
   if (!frame_.secondCanvas()->isVisible()) return frame_.canvas()->drawFigure(painter, all, background);
-  const QSizeF half((all.width() - kBetweenPx) / 2, all.height());
-  frame_.canvas()->drawFigure(painter, {all.topLeft(), half}, background);
-  frame_.secondCanvas()->drawFigure(painter, {QPointF(half.width() + kBetweenPx, 0), half}, background);
+  const double key = paintKey(painter, look);
+  const QSizeF half((all.width() - kBetweenPx) / 2, all.height() - key);
+  frame_.canvas()->drawFigure(painter, {QPointF(0, key), half}, background);
+  frame_.secondCanvas()->drawFigure(painter, {QPointF(half.width() + kBetweenPx, key), half}, background);
+}
+
+double FigureActions::paintKey(QPainter& painter, const FigureLook& look) const {
+  const QList<PairBar::KeyEntry>& key = frame_.pair().key();
+  if (key.isEmpty()) return 0;
+  // In px of the window, whose texts the two pictures below have; as large as those where the figure is larger.
+  const FrameCanvas &first = *frame_.canvas(), &second = *frame_.secondCanvas();
+  const double scale = std::min(double(look.size.width()) / std::max(1, first.width() + second.width() + kBetweenPx),
+                                double(look.size.height()) / std::max(1, first.height()));
+  const QFontMetricsF metrics(first.font());
+  const double line = 1.5 * metrics.height(), square = 0.6 * metrics.height(), width = look.size.width() / scale;
+  std::vector<QPointF> places;
+  QPointF at(square, 0);
+  for (const PairBar::KeyEntry& entry : key) {
+    const double wide = 2 * square + metrics.horizontalAdvance(entry.text);
+    if (!places.empty() && at.x() + wide > width) at = {square, at.y() + line};
+    places.push_back(at);
+    at.rx() += wide + 2 * square;
+  }
+  const double height = scale * (at.y() + line);
+  if (const QColor background = backgroundOf(look); background.isValid())
+    painter.fillRect(QRectF(0, 0, look.size.width(), height), background);
+  painter.save();
+  painter.scale(scale, scale);
+  painter.setFont(first.font());
+  for (int i = 0; i < key.size(); ++i) {
+    const QRectF box(places[std::size_t(i)] + QPointF(0, (line - square) / 2), QSizeF(square, square));
+    painter.fillRect(box, key[i].colour);
+    painter.setPen(toQColor(look.dark ? viz::kTextOnDark : viz::kTextOnLight));
+    painter.drawText(QPointF(box.right() + square, box.center().y() + (metrics.ascent() - metrics.descent()) / 2), key[i].text);
+  }
+  painter.restore();
+  return height;
 }
 
 void FigureActions::writeFrame(const FigureLook& look, const QString& file) {

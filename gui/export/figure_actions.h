@@ -39,6 +39,8 @@ class FigureActions : public QObject {
   /// All 3D views as they lie beside each other, or the one.
   QImage sceneFigure(const FigureLook& look) const;
   void paintFrames(QPainter& painter, const FigureLook& look) const;
+  /// What the epipolar lines of two frames are and miss by, above the pictures. Its height, px; 0 without lines.
+  double paintKey(QPainter& painter, const FigureLook& look) const;
   void write(const QString& file, std::function<void()> work);
 
   const Engine& engine_;

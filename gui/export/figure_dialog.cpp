@@ -16,6 +16,7 @@ namespace glint::gui {
 
 namespace {
 constexpr int kLeastPx = 64, kMostPx = 16384;
+constexpr double kSameShape = 0.01;  // of width over height: as much as a splitter moves by itself between two openings
 
 struct Preset {
   const char* title;
@@ -49,6 +50,7 @@ FigureDialog::FigureDialog(const QString& title, const QString& kind, const QSiz
   width_ = pixels("figureWidth");
   height_ = pixels("figureHeight");
   keepShape_ = new QCheckBox(tr("Keep the &proportions"));
+  keepShape_->setObjectName(QStringLiteral("figureKeepShape"));
   keepShape_->setChecked(true);
   form->addRow(tr("&Width"), width_);
   form->addRow(tr("&Height"), height_);
@@ -71,12 +73,22 @@ FigureDialog::FigureDialog(const QString& title, const QString& kind, const QSiz
   followBackground();
   connect(transparent_, &QCheckBox::toggled, this, &FigureDialog::followBackground);
   const int preset = std::clamp(settings.value(kind_ + QStringLiteral("preset"), 0).toInt(), 0, kOther);
-  if (preset == kOther) setSize(settings.value(kind_ + QStringLiteral("size"), onScreen).toSize());
+  if (preset == kOther) setSize(typedSizeFor(onScreen));
   preset_->setCurrentIndex(preset);
   choose(preset);
   connect(preset_, QOverload<int>::of(&QComboBox::activated), this, &FigureDialog::choose);
   connect(width_, QOverload<int>::of(&QSpinBox::valueChanged), this, &FigureDialog::followWidth);
   connect(height_, QOverload<int>::of(&QSpinBox::valueChanged), this, &FigureDialog::followHeight);
+}
+
+/// The size that was typed last; for a picture of another shape as wide as that and of the picture's own shape.
+QSize FigureDialog::typedSizeFor(const QSize& picture) const {
+  const QSettings settings;
+  const QSize typed = settings.value(kind_ + QStringLiteral("size"), picture).toSize();
+  const QSize of = settings.value(kind_ + QStringLiteral("size-of")).toSize();
+  const auto shape = [](const QSize& s) { return double(s.width()) / std::max(1, s.height()); };
+  if (of.isValid() && std::abs(shape(of) / shape(picture) - 1) < kSameShape) return typed;
+  return {typed.width(), int(std::lround(typed.width() / shape(picture)))};
 }
 
 void FigureDialog::choose(int preset) {
@@ -131,6 +143,7 @@ void FigureDialog::accept() {
   if (look().transparent) settings.setValue(kind_ + QStringLiteral("page-dark"), look().dark);
   settings.setValue(kind_ + QStringLiteral("preset"), preset_->currentIndex());
   settings.setValue(kind_ + QStringLiteral("size"), look().size);
+  settings.setValue(kind_ + QStringLiteral("size-of"), onScreen_);
   QDialog::accept();
 }
 

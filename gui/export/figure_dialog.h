@@ -17,7 +17,8 @@ struct FigureLook {
   bool dark = true;  ///< bright lines and texts, for a dark background or page
 };
 
-/// Asks for the size and the background of a picture. Remembers the last answer of each kind; colours start as the window's, or,
+/// Asks for the size and the background of a picture. Remembers the last answer of each kind, a typed size in the shape of what
+/// is shown now; colours start as the window's, or,
 /// where the background is transparent, for the page that was chosen last (at first a light one).
 class FigureDialog : public QDialog {
   Q_OBJECT
@@ -31,6 +32,7 @@ class FigureDialog : public QDialog {
  private:
   void choose(int preset);
   void setSize(const QSize& size);
+  QSize typedSizeFor(const QSize& picture) const;
   void followWidth();
   void followHeight();
   void followBackground();

@@ -25,6 +25,7 @@
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/hand_tool.h"
 #include "gui/frame/pair_bar.h"
+#include "viz/error_text.h"
 #include "viz/frame_pick.h"
 #include "viz/walk_story.h"
 
@@ -112,6 +113,10 @@ void FramePanel::connectDocument() {
     showLook();
     foldOverlays();
     refresh_.start();
+  });
+  connect(&document_, &Document::requestChanged, this, [this] {
+    const bool what = !document_.request().whatIf.none();
+    if (std::exchange(whatIf_, what) && !what) fewerLines_ = true;
   });
   connect(&document_, &Document::requestChanged, this, &FramePanel::showFrame);
   for (const auto signal : {&Document::inspectionChanged, &Document::frameInspectionChanged})
@@ -369,8 +374,11 @@ void FramePanel::showCaptions(const viz::FrameOverlay& overlay) {
     return QStringLiteral("<td align='%1' style='padding-right:16px; white-space:nowrap'>%2</td>")
         .arg(QLatin1String(align), text);
   };
-  const auto number = [&](const std::optional<double>& value, int digits) {
-    return cell(value ? QString::number(*value, 'f', digits) : QStringLiteral("–"));
+  const auto error = [&](const std::optional<double>& value) {
+    return cell(value ? toQString(viz::errorText(*value)) : QStringLiteral("–"));
+  };
+  const auto share = [&](const std::optional<double>& value) {
+    return cell(value ? QString::number(*value, 'f', 3) : QStringLiteral("–"));
   };
   const auto link = [](const QString& target, const QString& colour, const QString& text) {
     return QStringLiteral("<a href='%1' style='color:%2; text-decoration:none'>%3</a>").arg(target, colour, text);
@@ -402,7 +410,7 @@ void FramePanel::showCaptions(const viz::FrameOverlay& overlay) {
                  link(QStringLiteral("select:") + model, shown ? plain : faded,
                       selected ? QStringLiteral("<b>%1</b>").arg(model) : model),
              "left") +
-        number(c.score.errorPct, 2) + number(c.score.errorPx, 2) + number(any ? c.score.iou : std::nullopt, 3) +
+        error(c.score.errorPct) + error(c.score.errorPx) + share(any ? c.score.iou : std::nullopt) +
         QStringLiteral("<td style='color:%1; white-space:nowrap'>%2</td></tr>")
             .arg(warning, said.join(QStringLiteral(", ")).toHtmlEscaped());
   }
@@ -414,7 +422,8 @@ void FramePanel::showCaptions(const viz::FrameOverlay& overlay) {
             QStringLiteral("<td></td></tr>") + rows + QStringLiteral("</table>") + reasons;
   // A reason that has gone leaves no empty lines behind.
   const bool noLonger = failureShown_ && reasons.isEmpty();
-  if (overlay.captions.size() != captionCount_ || noLonger) captions_->setMinimumHeight(0);
+  if (overlay.captions.size() != captionCount_ || noLonger || fewerLines_) captions_->setMinimumHeight(0);
+  if (!document_.stale()) fewerLines_ = false;  // until then these are still the lines of the what-if
   captionCount_ = overlay.captions.size();
   failureShown_ = !reasons.isEmpty();
   captions_->setText(html);

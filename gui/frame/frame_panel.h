@@ -40,6 +40,7 @@ class FramePanel : public QWidget {
   explicit FramePanel(Document& document, QWidget* parent = nullptr);
   FrameCanvas* canvas() const { return canvas_; }
   FrameCanvas* secondCanvas() const { return second_; }
+  const PairBar& pair() const { return *pair_; }  ///< what stands beside the selected frame
   PhotoLoader* loader() { return &loader_; }
   /// Something is still being read, developed or waiting to be drawn.
   bool busy() const;
@@ -99,6 +100,8 @@ class FramePanel : public QWidget {
   QToolButton* folded_ = nullptr;  ///< the overlays' switches, where there is no room for a row of them
   bool follows_ = false;       ///< zoomed to the highlight by the user, who has not moved it since
   int seenFrame_ = -1;         ///< that was selected last
+  bool whatIf_ = false;        ///< the request has a what-if
+  bool fewerLines_ = false;    ///< a what-if was put back: the captions may shrink to what there was to say before it
   bool zoomedByLook_ = false;  ///< and the user has not moved it since
   QTimer refresh_;             ///< many selections at once are drawn once
   int probedFrame_ = -1;

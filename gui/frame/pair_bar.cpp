@@ -117,6 +117,7 @@ void PairBar::refresh() {
 void PairBar::addLines(viz::FrameOverlay& first, viz::FrameOverlay& second) {
   miss_->clear();
   miss_->hide();
+  key_.clear();
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
   const std::string lines = document_.option(kLines, std::string("both"));
   if (!inspection || lines == "off") return;
@@ -140,7 +141,8 @@ void PairBar::addLines(viz::FrameOverlay& first, viz::FrameOverlay& second) {
     const QString what = picture.tangents ? tr("miss by %1 px").arg(picture.tangents->rmsPx(), 0, 'f', 2)
                                           : QString(QLatin1String(nameOf(picture.failure->reason)));
     if (!picture.tangents) reasons << title + QStringLiteral(": ") + toQString(picture.failure->message());
-    said << QStringLiteral("<span style='color:%1'>■</span> %2 %3").arg(toQColor(colour).name(), title, what);
+    key_.append({toQColor(colour), QStringLiteral("%1 %2").arg(title, what)});
+    said << QStringLiteral("<span style='color:%1'>■</span> %2").arg(key_.back().colour.name(), key_.back().text);
   }
   miss_->setText(said.join(QStringLiteral("&nbsp;&nbsp; ")));
   reasons << tr(

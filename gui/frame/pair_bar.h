@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <QColor>
+#include <QList>
 #include <QWidget>
 
 #include "gui/base/actions.h"
@@ -25,7 +27,14 @@ class PairBar : public QWidget {
   int secondFrame() const;
   /// Adds the lines to both overlays and says what they miss by.
   void addLines(viz::FrameOverlay& first, viz::FrameOverlay& second);
-  /// What the lines miss by; whoever owns the bar places it where it does not scroll. Hidden without lines.
+  /// A kind of line that is drawn: its colour, and whose it is with what it misses by.
+  struct KeyEntry {
+    QColor colour;
+    QString text;
+  };
+  /// Empty without lines.
+  const QList<KeyEntry>& key() const { return key_; }
+  /// The key as a label; whoever owns the bar places it where it does not scroll. Hidden without lines.
   QLabel* sentence() const { return miss_; }
 
  private:
@@ -35,6 +44,7 @@ class PairBar : public QWidget {
   Document& document_;
   QComboBox *second_, *lines_, *ellipse_;
   QLabel* miss_;
+  QList<KeyEntry> key_;
   QAction* toggle_ = nullptr;
 };
 

@@ -27,6 +27,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "gui/base/text.h"
+#include "gui/base/theme.h"
 #include "gui/document/session_file.h"
 #include "gui/export/export_actions.h"
 #include "gui/export/figure_actions.h"
@@ -38,6 +39,7 @@
 #include "gui/scene/scene_views.h"
 #include "gui/window/main_window.h"
 #include "tests/gui/fixture.h"
+#include "viz/epipolar_overlay.h"
 
 namespace glint::gui {
 
@@ -254,12 +256,58 @@ class FigureTest : public QObject {
       QSvgRenderer(folder_.filePath("pair.svg")).render(&painter);
     }
     const QImage png(folder_.filePath("pair.png"));  // its painter clips
+    constexpr int kKey = 60;                         // px: above is the key, whose letters are not those of the other renderer
     // The strokes of the right frame, which is drawn last, would show in the left half. Smoothing and letters of the two
     // renderers differ by 683 px there; without the cut it is 2,489 px.
     int over = 0;
-    for (int y = 0; y < 400; ++y)
+    for (int y = kKey; y < 400; ++y)
       for (int x = 0; x < 500; ++x) over += std::abs(drawn.pixelColor(x, y).lightness() - png.pixelColor(x, y).lightness()) > 60;
     QVERIFY2(over < 1400, qPrintable(QString::number(over)));
+  }
+
+  /// Without it nobody can tell the lines of real and virtual cameras apart; in the window it stands above the pictures.
+  void twoFramesKeepTheKeyOfTheirLines() {
+    window_->document().setOption("frame/side-by-side", "on", "two frames");
+    const FigureLook look{{1000, 400}, false, false};
+    for (const char* lines : {"both", "off"}) {
+      window_->document().setOption("frame/epipolar", lines, "lines");
+      QTRY_VERIFY_WITH_TIMEOUT(window_->idle(), 20000);
+      for (const char* name : {"key.svg", "key.pdf", "key.png"}) {
+        window_->exports()->figures()->writeFrame(look, folder_.filePath(name));
+        wait();
+      }
+      QFile svg(folder_.filePath("key.svg"));
+      QVERIFY(svg.open(QIODevice::ReadOnly));
+      const QString text = QString::fromUtf8(svg.readAll());
+      const bool wanted = QLatin1String(lines) == QLatin1String("both");
+      for (const char* whose : {"real cameras miss by", "virtual cameras miss by"})
+        QVERIFY2(text.contains(QLatin1String(whose)) == wanted, whose);
+      // Beginning of the first entry: a square of its colour on the page.
+      const QImage png(folder_.filePath("key.png"));
+      int marked = 0;
+      const QColor real = toQColor(viz::kRealEpipolar);
+      for (int y = 0; y < 40; ++y)
+        for (int x = 0; x < 40; ++x) marked += png.pixelColor(x, y).rgb() == real.rgb();
+      QVERIFY2(wanted ? marked > 10 : marked == 0, qPrintable(QString::number(marked)));
+    }
+  }
+
+  /// A typed size is that of the picture it was typed for.
+  void aTypedSizeTakesTheShapeOfWhatIsShown() {
+    const auto dialog = [](const QSize& shown) {
+      return std::make_unique<FigureDialog>("figure", "shape", shown, true, nullptr);
+    };
+    auto asked = dialog({400, 300});
+    asked->findChild<QSpinBox*>("figureWidth")->setValue(1200);
+    asked->accept();
+    QCOMPARE(dialog({400, 300})->look().size, QSize(1200, 900));
+    QCOMPARE(dialog({800, 600})->look().size, QSize(1200, 900));
+    QCOMPARE(dialog({800, 400})->look().size, QSize(1200, 600));
+    asked = dialog({400, 300});  // proportions that were given up stay so for the same picture
+    asked->findChild<QCheckBox*>("figureKeepShape")->setChecked(false);
+    asked->findChild<QSpinBox*>("figureHeight")->setValue(300);
+    asked->accept();
+    QCOMPARE(dialog({400, 300})->look().size, QSize(1200, 300));
   }
 
   void theFrameViewAsPictureAndAsStrokes() {

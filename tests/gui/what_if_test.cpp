@@ -3,6 +3,7 @@
 #include <QCheckBox>
 #include <QImage>
 #include <QLabel>
+#include <algorithm>
 #include <cmath>
 
 #include "core/geometry/polyline.h"
@@ -88,6 +89,39 @@ class WhatIfTest : public QObject {
     QVERIFY(!loader().picture().synthesised);
     QCOMPARE(loader().picture().shown, captured_);
     QVERIFY(!panel().canvas()->caption().contains("photograph"));
+  }
+
+  /// The lines below the photograph, which had to say more, become as few as they were.
+  void puttingEverythingBackGivesThePhotographItsRoomBack() {
+    MainWindow window(coreEngine());
+    window.resize(1280, 720);
+    window.show();
+    window.open(QStringLiteral(GLINT_SOURCE_DIR "/sessions/lessons/plane-to-cylinder/plane-to-cylinder.glint"));
+    Document& d = window.document();
+    const auto settled = [&] { return d.inspection() && !d.stale() && window.idle() && !window.framePanel()->busy(); };
+    QTRY_VERIFY_WITH_TIMEOUT(settled(), 60000);
+    d.selectFrame(d.frameCount() - 1);
+    QTRY_VERIFY_WITH_TIMEOUT(settled(), 60000);
+    const FrameCanvas* canvas = window.framePanel()->canvas();
+    auto* captions = window.findChild<QLabel*>("frameCaptions");
+    const int room = canvas->height(), lines = captions->height();
+    const double zoom = canvas->zoom();
+    int most = 0;
+    WhatIf w;
+    w.synthesise = true;
+    for (const Eigen::Vector3d& by : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1.5, 0, -0.5), Eigen::Vector3d(4, 2, -1)}) {
+      w.lightsBy[d.scene()->lights.at(0).id] = by;
+      d.setWhatIf(w, "What if");
+      QTRY_VERIFY_WITH_TIMEOUT(settled(), 60000);
+      QTest::qWait(50);
+      most = std::max(most, captions->height());
+    }
+    QVERIFY2(most > lines, "the what-if must need more lines, or this tests nothing");
+    d.setWhatIf({}, "What if: everything back");
+    QTRY_VERIFY_WITH_TIMEOUT(settled(), 60000);
+    QTRY_COMPARE(captions->height(), lines);
+    QTRY_COMPARE(canvas->height(), room);
+    QCOMPARE(canvas->zoom(), zoom);
   }
 
   void aMovedCameraAloneKeepsItsPhotograph() {
