@@ -88,6 +88,16 @@ QString shortText(const Finding& f) {
   return toQString(f.text);
 }
 
+/// Still shorter forms of shortText(), for columns as narrow as five of them are; the tool tip has the whole name.
+QStringList narrowTexts(const QString& text) {
+  static const std::pair<const char*, QStringList> narrow[] = {
+      {"1-sheet", {"hyp. 1", "hyp."}}, {"2-sheet", {"hyp. 2", "hyp."}}, {"imaginary", {"imag.", "imag", "im."}},
+      {"flat hyp.", {"flat"}},         {"ellips.", {"ell."}},           {"open", {"open"}}};
+  for (const auto& [full, shorter] : narrow)
+    if (text == QLatin1String(full)) return shorter;
+  return {};
+}
+
 /// A number that is too wide, shorter and shorter: "1.23e-05" as "1.23e-5", "1.2e-5", "1e-5". What follows it stays ("°").
 QStringList fewerDigits(const QString& text) {
   static const QRegularExpression number(QStringLiteral("^[0-9.]+(?:e[-+]?[0-9]+)?")), zeros(QStringLiteral("e([-+]?)0*"));
@@ -117,7 +127,12 @@ Chip::Chip(Verdict verdict, const QString& text, QWidget* parent) : QAbstractBut
 QSize Chip::sizeHint() const {
   return {fontMetrics().horizontalAdvance(signOf(verdict_) + QChar(0x2009) + text()) + 12, fontMetrics().height() + 6};
 }
-QSize Chip::minimumSizeHint() const { return {40, fontMetrics().height() + 6}; }
+QSize Chip::minimumSizeHint() const {
+  // A number has digits to give; the shortest form of a word has nothing.
+  const QStringList words = narrowTexts(text());
+  const int word = words.isEmpty() ? 0 : fontMetrics().horizontalAdvance(signOf(verdict_) + words.back()) + 4;
+  return {std::max(40, word), fontMetrics().height() + 6};
+}
 
 void Chip::show(Verdict verdict, const QString& text) {
   verdict_ = verdict;
@@ -146,6 +161,7 @@ QString Chip::shown() const {
     words << value + after;
     for (const QString& less : fewerDigits(value)) words << less + after;
   }
+  words << narrowTexts(text());
   // The sign is what tells the verdict without its colour: the blank beside it and digits go before it.
   for (const QString& w : words)
     for (const QString& between : {QString(QChar(0x2009)), QString()})

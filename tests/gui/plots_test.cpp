@@ -228,6 +228,13 @@ class PlotsTest : public QObject {
     Chip words(Verdict::Amber, QStringLiteral("1-sheet"));
     words.resize(metrics.horizontalAdvance(QStringLiteral("!1-sheet")) + 5, 20);
     QCOMPARE(words.shown(), QStringLiteral("!1-sheet"));  // no unit
+    // Columns as narrow as five of them are: a shorter word, not a cut one.
+    for (const char* text : {"1-sheet", "2-sheet", "imaginary", "flat hyp.", "ellips.", "open"}) {
+      Chip narrow(Verdict::Red, QLatin1String(text));
+      narrow.resize(narrow.minimumSizeHint());
+      QVERIFY2(!narrow.shown().contains(QChar(0x2026)), qPrintable(narrow.shown()));
+      QVERIFY(QFontMetrics(narrow.font()).horizontalAdvance(narrow.shown()) <= narrow.width() - 4);
+    }
   }
 
   /// Columns are of one light, chosen by a tab with its id and the sign of its worst number.
