@@ -265,11 +265,9 @@ struct SceneView::Impl {
     if (annotationsStale) updateAnnotations();
   }
   void styleSurface() {
-    const LayerState& mirrored = layers[layerIndex("virtual-cameras")];
-    const LayerState& ellipsoids = layers[layerIndex("ellipsoids")];
-    const Behind behind = ellipsoids.visible && ellipsoids.content.behindSurface ? Behind::Ellipsoids
-                          : mirrored.visible && !mirrored.content.drawn.empty()  ? Behind::VirtualCameras
-                                                                                 : Behind::Nothing;
+    const LayerState &mirrored = layers[layerIndex("virtual-cameras")], &ellipsoids = layers[layerIndex("ellipsoids")];
+    Behind behind = mirrored.visible && !mirrored.content.drawn.empty() ? Behind::VirtualCameras : Behind::Nothing;
+    if (ellipsoids.visible && ellipsoids.content.behindSurface) behind = Behind::Ellipsoids;
     glint::viz::styleSurface(layers[layerIndex("surface")].content, input, behind, moving);
   }
   bool surfaceShown() const { return layers[layerIndex("surface")].visible && !input.hidden.hidesSurface(input.surfaceKey); }
@@ -316,7 +314,6 @@ struct SceneView::Impl {
     if (input.eyeMirror) glFrontFace(GL_CW);
     annotations->place(valid() ? input.scale.surfaceBox.center() : Eigen::Vector3d::Zero().eval());
   }
-
   void afterFrame() {
     if (input.eyeMirror) glFrontFace(GL_CCW);
   }
