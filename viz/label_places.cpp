@@ -20,14 +20,16 @@ std::optional<Rectangle> placeForLabel(const Eigen::Vector2d& at, const Eigen::V
     const bool onPoint = r.x - m < at.x() && at.x() < r.x + r.width + m && r.y - m < at.y() && at.y() < r.y + r.height + m;
     return !onPoint && keepsOff(r, taken);
   };
-  constexpr int kRows = 8;  // farther, a label would not be seen as its point's
+  constexpr int kRows = 8;   // farther, a label would not be seen as its point's
+  constexpr int kAside = 3;  // rows: going farther off the cameras, it would seem to be that of another one
   std::optional<Rectangle> onAGlyph;
   for (int row = 0; row <= kRows; ++row) {
     for (const double side : {1.0, -1.0}) {
       for (const double x : {at.x() + 0.8 * font, at.x() - 0.8 * font - size.x()}) {
         const Rectangle r = placed(x, at.y() + 0.3 * font + side * row * (size.y() + 3));
         if (!isFree(r)) continue;
-        if (keepsOff(r, glyphs)) return r;
+        if (row <= kAside && keepsOff(r, glyphs)) return r;
+        if (row > kAside && onAGlyph) return onAGlyph;
         if (!onAGlyph) onAGlyph = r;
       }
     }
