@@ -99,8 +99,11 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
     scene_->setViewPoints(opened->viewPoints);
   });
   for (const auto signal : {&ExportActions::problem, &ExportActions::message})
-    connect(exports_, signal, this,
-            [this, signal](const QString& line) { signal == &ExportActions::problem ? showProblem(line) : tell(line); });
+    connect(exports_, signal, this, [this, signal](const QString& line) {
+      if (signal == &ExportActions::problem) return showProblem(line);
+      messageBar_->overtakeError();  // it would read as if this had failed too
+      tell(line);
+    });
   connect(exports_, &ExportActions::sessionWritten, this, [this](const QString& line, const QString& session) {
     log(line);
     messageBar_->showOffer(line, {{tr("Open"), [this, session] { files_->open(session); }}});
@@ -520,7 +523,6 @@ void MainWindow::log(const QString& line) { log_->add(line); }
 /// What has worked.
 void MainWindow::tell(const QString& line) {
   log(line);
-  messageBar_->overtakeError();  // it would read as if this had failed too
   // A menu that closes clears the line of status tips: after that.
   QTimer::singleShot(0, this, [this, line] { statusBar()->showMessage(line, 6000); });
 }
