@@ -453,6 +453,18 @@ TEST(Layers, TheSelectedFrameAloneNamesItsDirections) {
   }
 }
 
+/// From a camera itself the lines to virtual cameras would run across its photograph.
+TEST(VirtualCameras, AreNotJoinedWithTheirCamerasWhereOneLooksThroughOne) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  LayerInput input = heldOutInput(*inspection);
+  const std::size_t outside = virtualCamerasLayer(input).drawn.size();
+  input.eye = Eye::Camera;
+  const std::size_t through = virtualCamerasLayer(input).drawn.size();
+  EXPECT_EQ(outside, 3 * through) << "the frustum alone, without line and foot";
+  EXPECT_GT(through, 0u);
+}
+
 /// Looked at alone a plane carries the canonical contour, which is larger than the highlight; among the others it does not hide
 /// them.
 TEST(TangentPlanes, AloneTheyReachTheCanonicalContour) {

@@ -37,9 +37,11 @@ void addPair(LayerContent& content, const LayerInput& in, int frame, const Layer
                         kVirtualCamera, width),
               info, width);
   if (content.glyphs.size() < kMostGlyphs) content.glyphs.push_back({mirrored, c[0], c[1], c[2], c[3], top + up});
-  // The pair, joined square through the tangent plane.
-  content.add(segmentActor(dashed(eye, mirrored, 0.02 * in.scale.sceneSize), kVirtualCamera, 1.0), info, 1.0);
-  content.add(sphereActor({plane.projected(eye)}, 0.7 * in.scale.point, kVirtualCamera), info);
+  // The pair, joined square through the tangent plane; seen from one of them the lines would only run across the photograph.
+  if (in.eye == Eye::Outside) {
+    content.add(segmentActor(dashed(eye, mirrored, 0.02 * in.scale.sceneSize), kVirtualCamera, 1.0), info, 1.0);
+    content.add(sphereActor({plane.projected(eye)}, 0.7 * in.scale.point, kVirtualCamera), info);
+  }
   content.extent.push_back(mirrored);
   if (labelled) content.labels.push_back({mirrored, "virtual camera " + in.frame(frame).id, kVirtualCamera});
 }
