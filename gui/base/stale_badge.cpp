@@ -32,7 +32,9 @@ void StaleBadge::setStale(bool stale) {
 }
 
 void StaleBadge::setUpdating(bool updating) {
-  setText(updating ? tr("updating…") : tr("out of date"));
+  const QString words = updating ? tr("updating…") : tr("out of date");
+  if (words == text()) return;  // a slider asks for it with every step
+  setText(words);
   place();
 }
 

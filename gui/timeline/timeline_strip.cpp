@@ -49,7 +49,10 @@ TimelineStrip::TimelineStrip(Document& document, QWidget* parent) : QWidget(pare
     emit viewChanged();
   });
   connect(&document_, &Document::inspectionChanged, this, &TimelineStrip::readData);
-  connect(&document_, &Document::requestChanged, this, &TimelineStrip::readView);
+  connect(&document_, &Document::requestChanged, this, [this] {  // a slider of the detection changes nothing that is drawn
+    const InspectionRequest& q = document_.request();
+    if (q.train != drawn_.train || q.excluded != drawn_.excluded || q.whatIf != drawn_.whatIf) readView();
+  });
   connect(&document_, &Document::optionsChanged, this, &TimelineStrip::readView);
   connect(&document_, &Document::staleChanged, this, &TimelineStrip::readView);
   connect(&document_, &Document::selectionChanged, this, &TimelineStrip::showSelection);
@@ -67,6 +70,7 @@ void TimelineStrip::readView() {
   bars_ = document_.option("timeline/chart", std::string("lines")) == "bars";
   thumbnailsOn_ = document_.option("timeline/thumbnails", std::string("on")) == "on";
   plotted_ = document_.plottedModel();
+  drawn_ = {document_.request().train, document_.request().excluded, document_.request().whatIf};
   axis_ = viz::errorAxis(data_, bars_ ? plotted_ : std::string(), document_.request().excluded);
   repaintAll();
 }

@@ -87,6 +87,11 @@ class TimelineStrip : public QWidget {
   viz::TimelineData data_;
   viz::ErrorAxis axis_;
   Thumbnails thumbnails_;
+  struct Drawn {
+    std::string train;
+    std::vector<int> excluded;
+    WhatIf whatIf;
+  } drawn_;  ///< of the request
   double first_ = 0, inView_ = 1;
   bool bars_ = false, thumbnailsOn_ = true;
   std::string plotted_;

@@ -266,11 +266,12 @@ void WhatIfPanel::refresh() {
     const double value = row.knob.get(w.synthesise ? w : shown);
     row.show(value);
     const bool usable = !row.knob.synthetic || w.synthesise;
-    const QString tip =
-        toQString(row.knob.spec.help) + (usable ? QString() : tr("\nOnly where contours are synthesised: tick that first."));
+    const QString why = usable ? QString() : tr("\nOnly where contours are synthesised: tick that first.");
     for (QWidget* widget : row.widgets) {
+      if (widget->isEnabledTo(knobs_) == usable && widget->toolTip().endsWith(why))
+        continue;  // every step of a slider comes here
       widget->setEnabled(usable);
-      widget->setToolTip(tip);
+      widget->setToolTip(toQString(row.knob.spec.help) + why);
     }
     row.reset->setEnabled(usable && value != std::get<double>(row.knob.spec.defaultValue));
   }

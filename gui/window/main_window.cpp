@@ -122,11 +122,12 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
     if (document_.stale()) recompute();
   });
   connect(&runner_, &Runner::stopped, this, [this] { log(tr("Stopped")); });
-  const auto markUpdating = [this] {
-    for (StaleBadge* badge : findChildren<StaleBadge*>()) badge->setUpdating(runner_.busy() || !document_.stale());
-  };
-  connect(&runner_, &Runner::busyChanged, this, markUpdating);
-  connect(&document_, &Document::staleChanged, this, markUpdating);
+  // A run that ends and leaves what is on screen out of date was stopped, or has failed.
+  connect(&runner_, &Runner::busyChanged, this, [this, updating = true](bool busy) mutable {
+    const bool now = busy || !document_.stale();
+    if (now == std::exchange(updating, now)) return;  // every step of a slider comes here
+    for (StaleBadge* badge : findChildren<StaleBadge*>()) badge->setUpdating(now);
+  });
   connect(&runner_, &Runner::finished, this, [this](const InspectionPtr& inspection, const OpenedPtr& computedFor) {
     if (runFailed_) messageBar_->hide();  // its reason is gone
     runFailed_ = false;

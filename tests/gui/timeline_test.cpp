@@ -179,6 +179,21 @@ class TimelineTest : public QObject {
     QCOMPARE(document.request().whatIf.lightsSwitched.size(), std::size_t(1));
   }
 
+  /// A slider's step waits for what is painted in vain.
+  void aSettingPaintsNothingAgain() {
+    Shown shown;
+    TimelineStrip* strip = shown.timeline.strip();
+    shown.document.setSetting("detect.level", 0.4);  // from here on the results are stale
+    strip->grab();
+    const int painted = strip->backgroundsPainted();
+    shown.document.setSetting("detect.level", 0.3);
+    strip->grab();
+    QCOMPARE(strip->backgroundsPainted(), painted);
+    shown.document.setRole(3, FrameRole::Excluded);
+    strip->grab();
+    QVERIFY(strip->backgroundsPainted() > painted);
+  }
+
   void theWheelZoomsAroundTheFrameUnderTheMouse() {
     Shown shown;
     Document& document = shown.document;
