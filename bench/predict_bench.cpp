@@ -34,6 +34,16 @@ const FitInput& training() {
 }
 const ModelFit& fitOf(const std::string& model) {
   static std::map<std::string, ModelFit> fits;
+  if (!fits.count("reflectance")) {
+    // The contours above are those of a limit angle; a prediction asks only for a lobe.
+    ModelFit& lobe = fits["reflectance"];
+    lobe.lightEstimate = test::lightOf(scene().light);
+    lobe.lobe = "torrance-sparrow";
+    lobe.roughness = 0.1;
+    lobe.level = 0.5;
+    fits["reflectance-disc"] = lobe;
+    fits["reflectance-disc"].lightRadius = 0.15;
+  }
   if (!fits.count(model)) fits.emplace(model, *modelByName(model).fit(training(), {}));
   return fits.at(model);
 }
@@ -53,9 +63,10 @@ const Surface& surfaceOf(int triangles) {
 const Surface& surface(bool mesh) { return surfaceOf(mesh ? kMillion : 0); }
 
 /// Frames that do not train, one after another.
-void predict(benchmark::State& state, const std::string& model, int triangles, const std::vector<std::string>& set = {}) {
+void predict(benchmark::State& state, const std::string& model, int triangles, const std::vector<std::string>& set = {},
+             const std::string& fitName = "") {
   const HighlightModel& m = modelByName(model);
-  const ModelFit& fit = fitOf(model);
+  const ModelFit& fit = fitOf(fitName.empty() ? model : fitName);
   const Surface& s = surfaceOf(triangles);
   Settings settings;
   for (const std::string& v : set) settings.setFromText(v.substr(0, v.find('=')), v.substr(v.find('=') + 1));
@@ -84,6 +95,18 @@ void canonicalPredictionMeshQuadricGrid(benchmark::State& state) { predict(state
 void limitAnglePredictionMeshStar(benchmark::State& state) { predict(state, "limit-angle", kMillion, {kStar, kHints}); }
 void limitAnglePredictionMeshStarGrid(benchmark::State& state) { predict(state, "limit-angle", kMillion, {kStar}); }
 void limitAnglePredictionMeshQuadric(benchmark::State& state) { predict(state, "limit-angle", kMillion, {kQuadric, kHints}); }
+void reflectancePredictionMesh(benchmark::State& state) { predict(state, "reflectance", kMillion); }
+void reflectancePredictionMeshStar(benchmark::State& state) { predict(state, "reflectance", kMillion, {kStar}); }
+void reflectancePredictionMeshStarDisc(benchmark::State& state) {
+  predict(state, "reflectance", kMillion, {kStar}, "reflectance-disc");
+}
+void reflectancePredictionAnalytic(benchmark::State& state) { predict(state, "reflectance", 0); }
+void reflectancePredictionAnalyticStar(benchmark::State& state) { predict(state, "reflectance", 0, {kStar}); }
+BENCHMARK(reflectancePredictionMesh)->Unit(benchmark::kMicrosecond);
+BENCHMARK(reflectancePredictionMeshStar)->Unit(benchmark::kMicrosecond);
+BENCHMARK(reflectancePredictionMeshStarDisc)->Unit(benchmark::kMicrosecond);
+BENCHMARK(reflectancePredictionAnalytic)->Unit(benchmark::kMicrosecond);
+BENCHMARK(reflectancePredictionAnalyticStar)->Unit(benchmark::kMicrosecond);
 BENCHMARK(canonicalPredictionMeshHints)->Unit(benchmark::kMicrosecond);
 BENCHMARK(canonicalPredictionMeshQuadric)->Unit(benchmark::kMicrosecond);
 BENCHMARK(canonicalPredictionMeshQuadricGrid)->Unit(benchmark::kMicrosecond);
@@ -157,7 +180,7 @@ void refinedWithBundle(benchmark::State& state, bool mesh) {
   for (TrainingView& v : views) v.highlight.contour = Polyline{resample(v.highlight.contour, 72), true};
   const Settings settings;
   for (auto _ : state) {
-    FitInput input{views, *estimateLight(views, settings), {}};
+    FitInput input{views, *estimateLight(views, settings), {}, {}};
     for (TrainingView& v : input.views) addCanonicalContour(v, input.light->light, settings);
     benchmark::DoNotOptimize(modelByName("canonical").fit(input, settings));
   }

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "cli/commands.h"
-#include "cli/scene_arguments.h"
+#include "cli/inspection_arguments.h"
 #include "core/base/parallel.h"
 #include "core/highlight/report.h"
 #include "core/pipeline/evidence.h"
@@ -53,7 +53,7 @@ Command detectCommand() {
       "  glint detect scene.json --source image --out DIR from the photographs, with overlays\n";
   c.declare = [a](Options& o) {
     o.positional(a->input, "INPUT", "A scene file, a folder with one, or a session");
-    o.option(a->level, "--level", "L", "Contour level, fraction of the strongest peak above its background (0.02 to 0.98)");
+    o.option(a->level, "--level", "L", "Contour level, fraction of the strongest peak above its background (more than 0, less than 1)");
     o.choice(a->source, "--source", {"radiance", "image"}, "Which pixels, where a frame has both");
     o.repeated(a->set, "--set", "KEY=VALUE", "A setting by its dotted name, such as detect.min_area=20");
     o.option(a->out, "--out", "DIR", "Write highlights.json and overlays as PNG");
@@ -65,7 +65,7 @@ Command detectCommand() {
     try {
       settings.set("detect.level", a->level);
     } catch (const InputError&) {
-      throw InputError("", "--level", "the level is a number from 0.02 to 0.98");
+      throw InputError("", "--level", kLevelRange);
     }
     for (const std::string& text : a->set) {
       const std::size_t equals = text.find('=');

@@ -5,6 +5,7 @@
 #include "cli/inspection_arguments.h"
 #include "core/evaluate/report.h"
 #include "core/evaluate/summary.h"
+#include "core/evaluate/warnings.h"
 #include "core/pipeline/selection.h"
 
 namespace glint::cli {
@@ -45,6 +46,15 @@ Command evaluateCommand() {
     report.input = a->input;
     Inspection result;
     std::string text;
+    // What was asked for on standard output must stay parseable there: the table then stays away.
+    const bool tableToo = a->json != "-" && a->csv != "-" && a->html != "-";
+    const auto write = [&] {
+      if (!a->json.empty()) context.write(a->json, evaluationJson(result, report));
+      if (!a->csv.empty()) context.write(a->csv, evaluationCsv(result));
+      if (!a->html.empty()) context.write(a->html, evaluationHtml(result, report));
+      for (const std::string& w : warningsOf(result)) context.warn(w);
+    };
+    report.program = "glint " GLINT_VERSION;
     if (a->models == "auto") {
       std::optional<double> goodEnough;
       if (!a->goodEnough.empty()) {
@@ -58,15 +68,18 @@ Command evaluateCommand() {
       }
       request.models.clear();  // evidence and views only: the choice decides what else is computed
       result = inspect(scene, request, context.progress());
-      requireUsableViews(result);
+      if (noUsableView(result)) {  // the JSON says so too, with the reason of every training frame
+        report.whyChosen = noUsableView(result)->message();
+        write();
+        throw CannotAnswer{*noUsableView(result)};
+      }
       const Selection s = selectModel(result, goodEnough, context.progress());
       text = selectionTable(s) + "\n";
       report.selection = s;
       if (s.model.empty()) {
         report.whyChosen = s.why;
-        report.program = "glint " GLINT_VERSION;
-        if (!a->json.empty()) context.write(a->json, evaluationJson(result, report));
-        if (a->json != "-") context.print(text);
+        write();
+        if (tableToo) context.print(text);
         throw CannotAnswer{{Reason::NotReached, s.why}};
       }
       const bool keepWalks = a->sets("predict.query");  // the user decided
@@ -84,11 +97,7 @@ Command evaluateCommand() {
             "Smallest mean held-out contour error among the models that predicted most frames; --models auto chooses from "
             "the training frames alone.";
     }
-    // What was asked for on standard output must stay parseable there: the table then stays away.
-    const bool tableToo = a->json != "-" && a->csv != "-" && a->html != "-";
-    if (!a->json.empty()) context.write(a->json, evaluationJson(result, report));
-    if (!a->csv.empty()) context.write(a->csv, evaluationCsv(result));
-    if (!a->html.empty()) context.write(a->html, evaluationHtml(result, report));
+    write();
     if (tableToo) context.print(text + evaluationTable(result));
     for (const auto& [name, model] : result.models) {
       if (!summarise(result, model).answered) continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/commands.h"
 #include "cli/scene_arguments.h"
+#include "core/pipeline/camera_check.h"
 #include "core/scene/convention_report.h"
 #include "core/scene/scene.h"
 
@@ -29,7 +30,9 @@ Command infoCommand() {
   };
   c.run = [a](const Context& context) -> int {
     const Scene scene = a->places.read(a->input);
-    const ConventionReport report = conventionReport(scene, context.progress());
+    ConventionReport report = conventionReport(scene, context.progress());
+    // Only a scene whose cameras see their surface has highlights that can be asked about the cameras.
+    if (report.findings.empty()) report.take(checkCameras(scene, context.progress()));
     if (a->json.empty())
       context.print(toText(report));
     else

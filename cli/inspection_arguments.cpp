@@ -70,7 +70,7 @@ InspectionRequest InspectionArguments::request() const {
     try {
       r.settings.setFromText("detect.level", level);
     } catch (const InputError& e) {
-      throw InputError("", "--level " + level, "the level is a number from 0.02 to 0.98");
+      throw InputError("", "--level " + level, kLevelRange);
     }
   }
   if (!(noisePx >= 0 && std::isfinite(noisePx))) throw InputError("", "--noise-px", "must be finite and not negative");
@@ -115,11 +115,15 @@ void warnOfUnusedTrainingFrames(const Inspection& inspection, const Context& con
                " training frames could not be used; first: " + unused.front());
 }
 
-void requireUsableViews(const Inspection& inspection) {
+std::optional<Failure> noUsableView(const Inspection& inspection) {
   for (const TrainingView& v : inspection.views)
-    if (!v.failure) return;
+    if (!v.failure) return std::nullopt;
   const std::vector<std::string> unused = unusedTrainingFrames(inspection);
-  throw CannotAnswer{{Reason::TooFewViews, "no training frame could be used" + (unused.empty() ? "" : "; " + unused.front())}};
+  return Failure{Reason::TooFewViews, "no training frame could be used" + (unused.empty() ? "" : "; " + unused.front())};
+}
+
+void requireUsableViews(const Inspection& inspection) {
+  if (std::optional<Failure> none = noUsableView(inspection)) throw CannotAnswer{*std::move(none)};
 }
 
 }  // namespace glint::cli

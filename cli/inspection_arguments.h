@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,9 @@ struct InspectionArguments {
   std::shared_ptr<const Scene> scene() const;
 };
 
+/// What --level takes, in words: as the scene reader.
+inline constexpr const char* kLevelRange = "the level is a fraction of the peak, more than 0 and less than 1";
+
 /// Model and settings of a point of the session's trade-off: "fast", "balanced", "exact" or "chosen".
 /// InputError when the session has none.
 void applyPreset(const Session& session, const std::string& preset, InspectionRequest& request);
@@ -43,6 +47,9 @@ std::vector<std::string> splitList(const std::string& text, const std::string& f
 
 /// One warning when training frames could not be used, with the first reason; silent when all could.
 void warnOfUnusedTrainingFrames(const Inspection& inspection, const Context& context);
+
+/// Why no training view could be used at all, with the first reason; nothing where one could.
+std::optional<Failure> noUsableView(const Inspection& inspection);
 
 /// Throws CannotAnswer when no training view could be used at all, with the first reason.
 void requireUsableViews(const Inspection& inspection);

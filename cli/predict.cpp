@@ -7,6 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/evaluate/labels.h"
 #include "core/evaluate/masks.h"
+#include "core/evaluate/warnings.h"
 #include "core/highlight/report.h"
 #include "core/pipeline/frame_spec.h"
 #include "core/pipeline/photograph.h"
@@ -60,7 +61,7 @@ Command predictCommand() {
     o.option(a->out, "--out", "DIR", "Write contours, overlays and labels there");
     o.option(a->masks, "--masks", "DIR", "Write masks and COCO labels of all frames to this new folder");
     o.option(a->json, "--json", "FILE", "Write predictions.json's content there instead (- = standard output)");
-    a->places.declarePlaces(o);
+    a->places.declare(o);
   };
   c.run = [a](const Context& context) -> int {
     const OpenedSession opened = a->places.openSession(a->session);
@@ -97,6 +98,7 @@ Command predictCommand() {
     if (!a->masks.empty()) writeLabels(result, a->masks, context.progress());
     if (!a->json.empty()) context.write(a->json, predictionsJson(result, frames));
     if (a->json != "-") context.print(predictionTable(result, frames));
+    for (const std::string& w : warningsOf(result)) context.warn(w);
     std::string reason;
     for (const auto& [name, model] : result.models)
       for (const FrameComparison& f : model.frames) {

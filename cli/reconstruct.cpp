@@ -3,6 +3,7 @@
 
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
+#include "core/evaluate/warnings.h"
 #include "core/pipeline/session.h"
 
 namespace glint::cli {
@@ -36,6 +37,8 @@ std::string fitText(const ModelResult::Fit& entry, const std::string& model) {
     std::snprintf(buffer, sizeof buffer, "  light's radius    %.6g m\n", *f.lightRadius);
     out += buffer;
   }
+  if (f.lightSegment)
+    out += "  light's ends      " + vectorText(f.lightSegment->first) + " m, " + vectorText(f.lightSegment->second) + " m\n";
   if (f.roughness && f.lobe) {
     std::snprintf(buffer, sizeof buffer, "  lobe              %s, m = %.6g\n", f.lobe->c_str(), *f.roughness);
     out += buffer;
@@ -73,7 +76,7 @@ Command reconstructCommand() {
       "  glint reconstruct scene.json --model canonical -o canonical.glint\n"
       "  glint reconstruct scene.json --model limit-angle --train spread:6 -o run.glint\n";
   c.declare = [a](Options& o) {
-    a->declare(o, "Model to fit: primal, dual, canonical or limit-angle (default: all)");
+    a->declare(o, "Model to fit: primal, dual, canonical, limit-angle or reflectance (default: all)");
     o.required(a->out, "-o,--out", "FILE.glint", "The session to write");
   };
   c.run = [a](const Context& context) -> int {
@@ -96,6 +99,7 @@ Command reconstructCommand() {
       throw CannotAnswer{first.value_or(Failure{Reason::NoHighlight, "no light"})};
     }
     warnOfUnusedTrainingFrames(result, context);
+    for (const std::string& w : warningsOf(result)) context.warn(w);
     Session session = sessionOf(result, context.progress());
     session.file = a->out;
     writeSession(session, a->out);

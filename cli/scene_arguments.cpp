@@ -99,7 +99,9 @@ Scene SceneArguments::read(const std::string& input) const {
 }
 
 OpenedSession SceneArguments::openSession(const std::string& file) const {
-  OpenedSession opened = glint::openSession(file, relinked());
+  Session session = readSession(file);
+  session.allowOutsidePaths = session.allowOutsidePaths || allowOutside;
+  OpenedSession opened = glint::openSession(std::move(session), relinked());
   Scene scene = *opened.scene;
   check(scene);
   opened.scene = std::make_shared<const Scene>(std::move(scene));

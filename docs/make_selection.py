@@ -17,7 +17,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 LEVEL_SET = {"limit-angle", "reflectance"}
 # Scene, training, and which choices are right: without a tolerance, with 0.5 %, with 1 px noise on contours and peaks.
 SYNTHETIC = [
-    ("plane", "spread:8", {"primal"}, {"primal"}, {"primal"}),
+    # With noise a model of fewer numbers is more accurate than `primal`, though leaving one out cannot tell: any but `dual` is right.
+    ("plane", "spread:8", {"primal"}, {"primal"}, {"primal", "canonical"} | LEVEL_SET),
     ("sphere", "spread:8", LEVEL_SET, {"primal", "dual", "canonical"}, {"canonical"} | LEVEL_SET),
     ("cylinder", "spread:8", LEVEL_SET, {"dual", "canonical"}, {"canonical"} | LEVEL_SET),
     ("plane_to_cylinder", "spread:10", LEVEL_SET, {"canonical"}, {"canonical"} | LEVEL_SET),
@@ -56,11 +57,11 @@ def write(out, tables):
     models = ["primal", "dual", "canonical", "limit-angle", "reflectance"]
     text = ("# The automatic choice, shown\n\nWritten by `docs/make_selection.py`; every number comes from `glint evaluate --models auto`. The first scenes are made by `glint synth`\n"
             "from `resources/specs/auto`: exact contours under one limit angle (the tube light: rendered radiance). The rule is in [method.md](method.md), section 11.\n"
-            "Columns of models: leave-one-view-out error on the training views, \\* the choice, – not tried (a simpler one met the tolerance, or nothing could be better), (k of n) answered k of n views;\n"
+            "Columns of models: leave-one-view-out error on the training views, \\* the choice, – not tried (a simpler one met the tolerance, or the surface is a plane and nothing could be better), (k of n) answered k of n views;\n"
             "fewer views than there are were tried where a model could no longer become the best. Then: whether walks on local quadrics are good enough for the choice, with\n"
-            "the largest variation of the curvature that was seen (– it does not walk), error of the choice on the held-out frames, which it has not seen, time of the whole choice.\n")
+            "the largest variation of the curvature that was seen (– it does not walk), error expected and found of the choice on the held-out frames, whose contours it has not seen, time of the whole choice.\n")
     for run, _ in RUNS:
-        text += f"\n## {run[0].upper() + run[1:]}\n| scene | training | " + " | ".join(models) + " | local quadric | held out | seconds |\n|---|---|" + "---|" * (len(models) + 3) + "\n"
+        text += f"\n## {run[0].upper() + run[1:]}\n| scene | training | " + " | ".join(models) + " | local quadric | expected | held out | seconds |\n|---|---|" + "---|" * (len(models) + 4) + "\n"
         for name, train, chosen, errors, patches, held_out, seconds in tables[run]:
             cells = []
             for m in models:
@@ -70,7 +71,7 @@ def write(out, tables):
                     continue
                 partial = "" if c["answered"] == c["views"] else f" ({c['answered']} of {c['tried']})"
                 cells.append(percent(c["mean_pct"]) + partial + (" **\\***" if m == chosen else ""))
-            text += f"| {name} | `{train}` | " + " | ".join(cells) + f" | {patchText(patches)} | {percent(held_out)} | {seconds:.1f} |\n"
+            text += f"| {name} | `{train}` | " + " | ".join(cells) + f" | {patchText(patches)} | {percent(errors[chosen]['expected_pct'] if chosen else None)} | {percent(held_out)} | {seconds:.1f} |\n"
     out.write_text(text)
 
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "core/pipeline/photograph.h"
 #include "core/pipeline/what_if_knobs.h"
 #include "viz/annotations.h"
 #include "viz/error_text.h"
@@ -60,10 +61,15 @@ const Camera& cameraOf(const Inspection& inspection, int frame) {
   return inspection.scene->frames[static_cast<std::size_t>(frame)].camera;
 }
 
-void drawPhotograph(Canvas& canvas, const Outcome<Image>& photograph, const Crop& crop, const Box& box, double font,
+/// @param given  false for a frame that has contours and no photograph: no fault, the box stays empty behind the contours
+void drawPhotograph(Canvas& canvas, const Outcome<Image>& photograph, bool given, const Crop& crop, const Box& box, double font,
                     const Theme& theme) {
   if (photograph) {
     canvas.picture(*photograph, crop, box);
+  } else if (!given) {
+    canvas.fill(box, theme.panel);
+    canvas.text({box.x + 0.4 * font, box.y + box.height - 0.6 * font}, canvas.fitted("no photograph", 0.9 * font, box.width - font),
+                0.9 * font, theme.ink);
   } else {
     canvas.fill(box, theme.panel);
     canvas.text({box.x + 0.5 * box.width, box.y + 0.5 * box.height},
@@ -207,10 +213,11 @@ Image framePicture(const Inspection& inspection, int frame, const Outcome<Image>
       part = highlightCrop(inspection, frame, options.models, zoom.width / zoom.height);
     }
   }
-  drawPhotograph(canvas, photograph, whole, main, font, theme);
+  const bool given = hasPhotograph(inspection, frame);
+  drawPhotograph(canvas, photograph, given, whole, main, font, theme);
   drawOverlay(canvas, overlay, whole, main, ink * (part ? 0.6 : 1.0));
   if (part) {
-    drawPhotograph(canvas, photograph, *part, zoom, font, theme);
+    drawPhotograph(canvas, photograph, given, *part, zoom, font, theme);
     drawOverlay(canvas, overlay, *part, zoom, ink);
     outlineBox(canvas, zoom, theme.faint, 1);
     const double sx = main.width / whole.width;
@@ -295,7 +302,7 @@ Image ladderPicture(const Inspection& inspection, int frame, const Outcome<Image
     overlayOptions.models = {models[i]};
     overlayOptions.hidden = hiddenRoles(options);
     const FrameOverlay overlay = frameOverlay(inspection, frame, overlayOptions);
-    drawPhotograph(canvas, photograph, crop, box, font, theme);
+    drawPhotograph(canvas, photograph, hasPhotograph(inspection, frame), crop, box, font, theme);
     drawOverlay(canvas, overlay, crop, box, ink);
     canvas.fill({box.x, box.y + box.height, box.width, 0.25 * font}, modelColour(models[i]));
     const double middle = box.x + 0.5 * box.width, top = box.y + box.height + 1.4 * font;

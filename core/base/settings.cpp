@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/base/level_range.h"
 #include "core/base/outcome.h"
 
 namespace glint {
@@ -17,8 +18,8 @@ const std::vector<ParamSpec>& allParams() {
        "q",
        "",
        0.5,
-       0.02,
-       0.98,
+       kLeastLevel,
+       kMostLevel,
        0.01,
        {},
        "Fraction of (strongest peak - background) at which contours are taken; the same in all frames, because a limit angle "
@@ -69,6 +70,19 @@ const std::vector<ParamSpec>& allParams() {
        {},
        "Linear values at or above this are saturated; 0 = the largest code of 8- and 16-bit images, none for float images. "
        "Saturated: I >= I_max.",
+       "detect"},
+      {"detect.background",
+       "Background",
+       "B",
+       "",
+       std::string("smooth"),
+       0,
+       0,
+       0,
+       {"smooth", "lobe"},
+       "Smooth: a quadratic fitted to the pixels around a highlight; it takes in the tail of a long-tailed lobe, so that contours "
+       "come out too small. Lobe: the lobe is fitted to the pixels of the training frames, and contours are found again with the "
+       "background that it leaves. I = K S + B.",
        "detect"},
       {"surface.normals",
        "Mesh normals",
@@ -214,6 +228,30 @@ const std::vector<ParamSpec>& allParams() {
        "light's distance (standard deviation); 0 = one hundredth. What a contour point weighs against it comes from the "
        "residuals. Prior of c: covariance Σ_L + (b |L - P|)² I.",
        "fit"},
+      {"fit.evidence",
+       "Evidence",
+       "I, C_q",
+       "",
+       std::string("contours"),
+       0,
+       0,
+       0,
+       {"auto", "contours", "levels", "pixels"},
+       "What the reflectance model is fitted to. Contours: one contour per highlight. Levels: contours at several levels. Pixels: "
+       "all unclipped pixels around the highlights. Auto: pixels where there are images that a lobe explains, else contours. L, m = arg "
+       "min Σ ρ(w (I - K S(L, m) - B)).",
+       "fit"},
+      {"fit.levels",
+       "Levels",
+       "q_j",
+       "",
+       std::string("0.3,0.5,0.7"),
+       0,
+       0,
+       0,
+       {"0.3,0.5,0.7", "0.2,0.5", "0.2,0.35,0.5,0.65,0.8"},
+       "Contour levels that are evidence together where the evidence is levels. C_q: I = q I_peak.",
+       "fit"},
       {"fit.lobe",
        "Lobe",
        "log I",
@@ -234,9 +272,9 @@ const std::vector<ParamSpec>& allParams() {
        0,
        0,
        0,
-       {"point", "auto"},
-       "Reflectance model; auto: the radius of the light is estimated where it lowers the squared residuals by a fifth. R = 0: a "
-       "point.",
+       {"point", "auto", "sphere", "segment"},
+       "Reflectance model: which shapes beside a point the lamp may take. sphere: its radius R is estimated where it lowers the squared "
+       "residuals by a fifth. segment: its two ends, where they do so and predict left-out frames better. auto: both. Point: R = 0.",
        "fit"},
       {"predict.directions",
        "Directions",
@@ -270,8 +308,9 @@ const std::vector<ParamSpec>& allParams() {
        0,
        0,
        {"level-set", "star"},
-       "Level set: the exact region, whatever its shape, also split and merged. Star: one walk per direction from a single "
-       "brightest point; falls back to the level set where that does not describe the region. Region: α(P) <= α_lim on S.",
+       "Limit angle and reflectance. Level set: the exact region, whatever its shape, also split and merged. Star: one walk per direction "
+       "from every brightest point; falls back to the level set where that does not describe the region. Region: α(P) <= α_lim on S, or "
+       "I(P) >= q I(P_peak).",
        "predict"},
       {"predict.search",
        "Brightest-point search",
@@ -329,8 +368,31 @@ const std::vector<ParamSpec>& allParams() {
        0,
        0,
        {},
-       "Compute the standard deviation of every predicted contour point from the fit's covariance; it knows the noise only. σ² = "
-       "J Σ Jᵀ across the contour.",
+       "Compute the standard deviation of every predicted contour point: noise and errors of whole views as the training views show them, other lobes that "
+       "explain these about as well, and stated tolerances. A few fits. σ² = J Σ Jᵀ + Σ τ² + Σ w d² across the contour.",
+       "predict"},
+      {"input.scale_tolerance",
+       "Scale tolerance",
+       "t_s",
+       "",
+       0.0,
+       0.0,
+       0.5,
+       0.001,
+       {},
+       "The band's share of a surface that may be larger or smaller than given by up to this fraction about the origin of the world: contours do not show it. "
+       "The fit is repeated with both. Uniform: σ² = d²/3.",
+       "predict"},
+      {"input.focal_tolerance",
+       "Focal tolerance",
+       "t_f",
+       "",
+       0.0,
+       0.0,
+       0.5,
+       0.001,
+       {},
+       "The same for the focal length of all cameras, as a fraction: f (1 ± t_f). Uniform: σ² = d²/3.",
        "predict"},
   };
   return params;

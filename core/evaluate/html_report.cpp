@@ -6,10 +6,12 @@
 #include <opencv2/imgproc.hpp>
 #include <set>
 
+#include "core/evaluate/band_text.h"
 #include "core/evaluate/html_text.h"
 #include "core/evaluate/report.h"
 #include "core/evaluate/setting_text.h"
 #include "core/evaluate/summary.h"
+#include "core/evaluate/warnings.h"
 #include "core/pipeline/photograph.h"
 #include "core/pipeline/what_if_knobs.h"
 
@@ -262,6 +264,11 @@ std::string evaluationHtml(const Inspection& inspection, const ReportContext& co
           ".</p>\n";
   if (const std::string changed = summaryOf(inspection.request.whatIf); !changed.empty())
     html += "<p><b>What if: " + escaped(changed) + ".</b> This is not what was captured.</p>\n";
+  if (const std::vector<std::string> warnings = warningsOf(inspection); !warnings.empty()) {
+    html += "<h2>Warnings</h2>\n<ul>\n";
+    for (const std::string& w : warnings) html += "<li>" + escaped(w) + "</li>\n";
+    html += "</ul>\n";
+  }
   if (!context.chosenModel.empty())
     html += "<p><b>Chosen model: " + escaped(context.chosenModel) + "</b>. " + escaped(context.whyChosen) + "</p>\n";
   if (context.selection) {
@@ -275,7 +282,7 @@ std::string evaluationHtml(const Inspection& inspection, const ReportContext& co
   }
   html +=
       "<p>Errors are over held-out highlights: symmetric mean distance between predicted and observed contour, as a percentage of the "
-      "equivalent diameter of the observed region.</p>\n"
+      "equivalent diameter of the observed region. Scored against " + scoredAgainst(inspection) + ".</p>\n"
       "<table><tr><th>model</th><th>predicted</th><th>mean %</th><th>median %</th><th>p95 %</th><th>max %</th><th>mean px</th>"
       "<th>ellipse %</th><th>IoU</th><th>coverage</th><th>matched / missed / spurious</th><th>median &micro;s</th></tr>\n";
   for (const std::string& name : inspection.request.models) {
@@ -293,7 +300,11 @@ std::string evaluationHtml(const Inspection& inspection, const ReportContext& co
     html += "<td>" + format("%.4f", s.iou.mean) + "</td><td>" + format("%.3f", s.coverage.mean) + "</td><td>" + std::to_string(s.matched) +
             " / " + std::to_string(s.missed) + " / " + std::to_string(s.spurious) + "</td><td>" + format("%.0f", s.timeUs.median) + "</td></tr>\n";
   }
-  html += "</table>\n<h2>Error over frames</h2>\n" + errorPlot(inspection);
+  html += "</table>\n";
+  for (const std::string& name : inspection.request.models)
+    if (inspection.models.count(name))
+      for (const std::string& text : bandLines(inspection, inspection.models.at(name))) html += "<p>" + name + ": " + escaped(text) + "</p>\n";
+  html += "<h2>Error over frames</h2>\n" + errorPlot(inspection);
   html += "<p>Blue ticks mark training frames; hover over a point for its value.</p>\n";
   html += missedTable(inspection, missedBy(inspection));
   html += "<h2>Worst frames</h2>\n<p>White: observed contour. Coloured: predictions.</p>\n<div class=\"frames\">\n";

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "core/evaluate/warnings.h"
+
 namespace glint {
 namespace {
 
@@ -76,6 +78,7 @@ std::string predictionsJson(const Inspection& inspection, const std::vector<int>
     }
     j["models"][name] = rows;
   }
+  j["warnings"] = warningsOf(inspection);
   return j.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -6,7 +6,10 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "core/evaluate/band_text.h"
+#include "core/evaluate/detection_error.h"
 #include "core/evaluate/summary.h"
+#include "core/evaluate/warnings.h"
 #include "core/model/star.h"
 #include "core/pipeline/what_if_json.h"
 
@@ -51,7 +54,8 @@ ordered_json settingsJson(const Settings& settings) {
 }
 
 ordered_json selectionJson(const Selection& s) {
-  ordered_json j = {{"training_views", s.trainingViews}, {"left_out", s.leftOut}, {"candidates", ordered_json::array()}};
+  ordered_json j = {{"training_views", s.trainingViews}, {"left_out", s.leftOut}, {"views_to_predict", s.toPredict},
+                    {"outside", s.outside}, {"decided_by", s.decidedBy}, {"candidates", ordered_json::array()}};
   for (const Candidate& c : s.candidates)
     j["candidates"].push_back({{"model", c.model},
                                {"views", c.views},
@@ -59,6 +63,10 @@ ordered_json selectionJson(const Selection& s) {
                                {"answered", c.answered},
                                {"mean_pct", number(c.meanPct)},
                                {"standard_error_pct", number(c.standardErrorPct)},
+                               {"outlook_pct", number(c.outlookPct)},
+                               {"spread_pct", number(c.spreadPct)},
+                               {"disagreement_pct", number(c.disagreementPct)},
+                               {"expected_pct", number(c.expectedPct)},
                                {"predict_us", number(c.predictUs)},
                                {"time_us", number(c.timeUs)},
                                {"remark", c.remark}});
@@ -103,14 +111,27 @@ ordered_json fitJson(const ModelResult::Fit& entry) {
   }
   j["limit_angle_deg"] = f.limitAngle ? number(*f.limitAngle * 180 / M_PI) : ordered_json(nullptr);
   j["roughness"] = f.roughness ? number(*f.roughness) : ordered_json(nullptr);
+  if (f.extent) j["light_extent"] = rows(*f.extent);
   if (f.lobe) j["lobe"] = *f.lobe;
   if (f.lobe) j["light_radius"] = number(f.lightRadius.value_or(0));
+  if (f.lobe)
+    j["light_segment"] = f.lightSegment ? ordered_json{list(f.lightSegment->first), list(f.lightSegment->second)} : ordered_json(nullptr);
   j["gap_ratio"] = f.singularValues.empty() ? ordered_json(nullptr) : number(f.gapRatio);
-  j["condition"] = f.singularValues.empty() ? ordered_json(nullptr) : number(f.condition);
+  // Largest over smallest: of the linear system where there is one, else of the rays that fix the light (whose ratio is of squares).
+  if (!f.singularValues.empty())
+    j["condition"] = number(f.condition);
+  else
+    j["condition"] = f.lightEstimate && f.condition > 0 ? number(1 / std::sqrt(f.condition)) : ordered_json(nullptr);
   j["solver"] = f.solver;
+  if (!f.evidence.empty()) {
+    j["evidence"] = f.evidence;
+    j["levels"] = f.levels;
+    j["blur_px"] = f.blurPx ? number(*f.blurPx) : ordered_json(nullptr);
+  }
   j["residual_px"] = ordered_json::array();
   for (const double r : f.residualPx) j["residual_px"].push_back(number(r));
   j["training_frames"] = f.frames;
+  j["warnings"] = f.remarks;
   j["time_us"] = entry.failure ? ordered_json(nullptr) : number(f.timeUs);
   return j;
 }
@@ -134,6 +155,7 @@ void metricsJson(const FrameComparison::Row* row, const FrameComparison& c, orde
   // Only where walks were made on second-order patches: says whether they were good enough.
   if (row && row->predicted >= 0 && c.prediction.highlights[row->predicted].curvatureVariation)
     j["curvature_variation"] = number(*c.prediction.highlights[row->predicted].curvatureVariation);
+  if (row && row->band) j["band"] = {{"sigma_px", number(row->band->sigmaPx)}, {"coverage_95", number(row->band->coverage)}};
   j["time_us"] = number(c.prediction.timeUs);
 }
 
@@ -184,6 +206,16 @@ ordered_json modelJson(const Inspection& inspection, const ModelResult& result) 
                   {"peak_offset_px", statistic(s.peakOffsetPx)},
                   {"coverage", statistic(s.coverage)},
                   {"time_us", {{"median", number(s.timeUs.median)}, {"p99", number(s.timeP99Us)}}}};
+  if (inspection.request.settings.flag("predict.band")) {
+    const std::optional<BandScore> band = bandSummary(inspection, result);
+    j["band"] = {{"sigma_px", band ? number(band->sigmaPx) : ordered_json(nullptr)},
+                 {"coverage_95", band ? number(band->coverage) : ordered_json(nullptr)},
+                 {"scale_tolerance", inspection.request.settings.number("input.scale_tolerance")},
+                 {"focal_tolerance", inspection.request.settings.number("input.focal_tolerance")},
+                 {"remarks", ordered_json::array()}};
+    for (const ModelResult::Fit& f : result.fits)
+      for (const std::string& remark : f.bandRemarks) j["band"]["remarks"].push_back(remark);
+  }
   j["frames"] = ordered_json::array();
   for (const FrameComparison& c : result.frames)
     if (inspection.isHeldOut(c.frame)) frameRows(inspection, c, j["frames"]);
@@ -258,8 +290,15 @@ std::string evaluationJson(const Inspection& inspection, const ReportContext& co
   j["source"] = inspection.request.source == FrameSource::Image ? "image" : "radiance";
   j["settings"] = settingsJson(inspection.request.settings);
   if (!inspection.request.whatIf.none()) j["what_if"] = ordered_json::parse(whatIfJson(inspection.request.whatIf));
+  j["scored_against"] = scoredAgainst(inspection);
+  j["warnings"] = warningsOf(inspection);
   j["chosen_model"] = context.chosenModel.empty() ? ordered_json(nullptr) : ordered_json(context.chosenModel);
   j["why_chosen"] = context.whyChosen;
+  if (const std::optional<DetectionError> d = detectionError(inspection))
+    j["detection"] = {{"frames", d->frames},
+                      {"missed", d->missed},
+                      {"contour_error_pct", statistic(d->contourErrorPct)},
+                      {"contour_error_px", statistic(d->contourErrorPx)}};
   if (context.selection) j["selection"] = selectionJson(*context.selection);
   j["models"] = ordered_json::object();
   for (const std::string& name : inspection.request.models)
@@ -308,6 +347,10 @@ std::string evaluationTable(const Inspection& inspection) {
     out += line;
     if (!s.answered) out += "  " + s.reason;
     out += "\n";
+    for (const std::string& text : bandLines(inspection, it->second)) {
+      std::snprintf(line, sizeof line, "%-12s ", "");
+      out += line + text + "\n";
+    }
     double variation = 0;
     for (const FrameComparison& c : it->second.frames)
       for (const PredictedHighlight& h : c.prediction.highlights) variation = std::max(variation, h.curvatureVariation.value_or(0));
@@ -316,6 +359,11 @@ std::string evaluationTable(const Inspection& inspection) {
                     variation, kLargestVariation);
       out += line;
     }
+  }
+  if (const std::optional<DetectionError> d = detectionError(inspection)) {
+    std::snprintf(line, sizeof line, "own detection against the truth: %s %% mean, %s %% at most, %d of %d frames' highlights missed\n",
+                  cell(d->contourErrorPct.mean).c_str(), cell(d->contourErrorPct.max).c_str(), d->missed, d->frames);
+    out += line;
   }
   return out;
 }

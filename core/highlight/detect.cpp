@@ -203,6 +203,7 @@ class Detector {
       if (candidates_.empty()) return Failure{Reason::NoHighlight, "nothing rises above the background"};
       reference_ = 0;
       for (const Candidate& c : candidates_) reference_ = std::max(reference_, c.top);
+      if (options_.reference) reference_ = *options_.reference;
       if (!(reference_ > 0)) return Failure{Reason::NoHighlight, "nothing rises above the local background"};
       for (const Candidate& c : candidates_) trace(c);
     }

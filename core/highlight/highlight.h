@@ -12,6 +12,12 @@
 
 namespace glint {
 
+/// A contour of a highlight at one more level.
+struct LevelContour {
+  double level = 0;  ///< fraction of (reference - background)
+  Polyline contour;  ///< closed, ideal pixels
+};
+
 /// One highlight in one frame: evidence. All coordinates are ideal pixels (lens distortion removed).
 struct Highlight {
   std::string light;               ///< id of its light; "" while unknown
@@ -21,9 +27,12 @@ struct Highlight {
   double peakValue = 0;            ///< fitted radiance at the peak, background removed; 0 when unknown
   std::optional<Ellipse> ellipse;  ///< least-squares ellipse of the contour
   double areaPx2 = 0;
-  bool clipped = false;        ///< saturated: the peak is the ellipse centre
+  bool clipped = false;        ///< saturated: the peak is the ellipse centre, or that of a known lobe
+  /// Where a known lobe says that the contour lies at another fraction of the true peak than `level`: clipped above the level.
+  std::optional<double> trueLevel;
   bool touchesBorder = false;  ///< cut by the image border
   bool fromScene = false;      ///< given in the scene file, not detected
+  std::vector<LevelContour> otherLevels;  ///< beside `contour`, where several levels are evidence (fit.evidence = levels)
 };
 
 /// Radiance (background removed) whose fraction the contour of the highlight with this peak lies at.
@@ -44,6 +53,7 @@ struct DetectOptions {
   /// names it (the strongest peak of its light, once that is known). A peak that does not stand out of a stronger one's contour at that level is none.
   bool separatePeaks = false;
   std::vector<PeakReference> references;
+  std::optional<double> reference;  ///< contours lie at `level` of this value, wherever the strongest peak is
 };
 
 /// Highlights of a linear image (method.md section 1): level relative to the strongest fitted peak, sub-pixel contours by

@@ -6,31 +6,24 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <cstdio>
 #include <limits>
 #include <map>
 
 #include "core/base/parallel.h"
 #include "core/base/residual_spread.h"
-#include "core/light/contour_evidence.h"
+#include "core/light/bundle_attempt.h"
 #include "core/light/dense_solver.h"
-#include "core/light/directed_limit.h"
 #include "core/light/estimate.h"
 #include "core/light/robust_costs.h"
 
 namespace glint {
 namespace {
+using namespace bundling;
 constexpr double kStepPx = ContourEvidence::kStepPx;
-constexpr int kMaxReweightings = 8;
+/// Of the contours' radius, to first order, below which a limit angle says that every contour point mirrors the light.
+constexpr double kLeastLimitShare = 0.01;
 constexpr double kLeastNoiseShare = 0.1;  ///< of the residuals' variance: below, moving weights would change nothing that can be seen
-
-/// Direction to the light with N.L > 0, not normalised.
-Eigen::Vector3d towards(const SeenPoint& s, const Eigen::Vector4d& light) {
-  const Eigen::Vector3d d = light.head<3>() - light.w() * s.position;
-  return s.normal.dot(d) < 0 ? Eigen::Vector3d(-d) : d;
-}
-double angle(const SeenPoint& s, const Eigen::Vector4d& light) {
-  return incidentAngle(s.normal, towards(s, light).normalized(), s.toCamera);
-}
 
 /// (alpha - alpha_lim) in pixels, with d alpha / d L in closed form. The light is (l, w), or l alone where it is held at infinity.
 class AngleCost final : public ceres::CostFunction {
@@ -84,134 +77,6 @@ class AngleCost final : public ceres::CostFunction {
   int size_;
   double share_;
 };
-
-struct Attempt {
-  Eigen::Vector4d light = Eigen::Vector4d::Zero();
-  double limit = 0, cost = std::numeric_limits<double>::infinity();
-  double noiseShare = 0;  ///< with which the weights moved
-  int iterations = 0;
-  bool converged = false, behind = false;
-  bool directed = false;  ///< the limit angle has an extent
-  Vector6 extent = Vector6::Zero();
-};
-
-/// Signed distance of a point from the level set, px.
-double residual(const ContourEvidence& e, const Attempt& a, double incident) {
-  const double limit = a.directed ? directedLimit(a.limit, symmetric(a.extent), e.at.position, e.at.normal, e.at.toCamera, a.light) : a.limit;
-  return e.pixelsPerRadian * (incident - limit) - e.biasPx;
-}
-double residual(const ContourEvidence& e, const Attempt& a) { return residual(e, a, angle(e.at, a.light)); }
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
-
-/// The incident angles at a contour point and at its neighbours under one light, rad; NaN where the surface ended.
-struct AnglesAround {
-  double here, left, right, up, down;
-};
-std::vector<AnglesAround> anglesAround(const std::vector<ContourEvidence>& points, const Eigen::Vector4d& light) {
-  const auto of = [&](const std::optional<SeenPoint>& s) { return s ? angle(*s, light) : std::nan(""); };
-  std::vector<AnglesAround> angles;
-  angles.reserve(points.size());
-  for (const ContourEvidence& e : points) angles.push_back({angle(e.at, light), of(e.left), of(e.right), of(e.up), of(e.down)});
-  return angles;
-}
-
-/// 1 / |d alpha / d pixel| of every point under the light of these angles.
-void reweight(std::vector<ContourEvidence>& points, const std::vector<AnglesAround>& angles) {
-  std::vector<double> slopes;
-  slopes.reserve(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const ContourEvidence& e = points[i];
-    const AnglesAround& at = angles[i];
-    const auto slope = [&](bool before, double low, bool after, double high) {
-      return ((after ? high : at.here) - (before ? low : at.here)) / ((before ? kStepPx : 0) + (after ? kStepPx : 0));
-    };
-    slopes.push_back(std::hypot(slope(e.left.has_value(), at.left, e.right.has_value(), at.right),
-                                slope(e.up.has_value(), at.up, e.down.has_value(), at.down)));
-  }
-  // Where the angle hardly changes over the image (a facet, a start far off) a pixel must not weigh without bound.
-  const double floor = std::max(0.05 * median(slopes), 1e-12);
-  for (std::size_t i = 0; i < points.size(); ++i) points[i].pixelsPerRadian = 1 / std::max(slopes[i], floor);
-}
-void reweight(std::vector<ContourEvidence>& points, const Eigen::Vector4d& light) {
-  reweight(points, anglesAround(points, light));
-}
-
-/// Which share of the residuals' variance is noise of the single points: half the squared difference of neighbours on a contour, since what a
-/// model gets wrong varies slowly along it. Noise adds s^2 |d alpha / d pixel|^2 k^2 to every expected square, so with held weights k lights
-/// win under which the angle changes slowly over the image; weights that move with the light make that term a constant. What is not noise
-/// must not move them (it would gain by lights under which the angle changes fast), hence the share.
-double noiseShare(const std::vector<ContourEvidence>& points, const Attempt& a) {
-  struct Member {
-    Pixel pixel;
-    double residual, azimuth = 0;
-  };
-  std::vector<double> sizes, steps;
-  std::map<int, std::vector<Member>> views;
-  for (const ContourEvidence& e : points) {
-    const double r = residual(e, a);
-    sizes.push_back(std::abs(r));
-    views[e.view].push_back({e.pixel, r});
-  }
-  for (auto& [view, members] : views) {
-    // Neighbours by their azimuth about the middle: whoever gives a contour may start anywhere, or list its points in any order.
-    Pixel middle(0, 0);
-    for (const Member& m : members) middle += m.pixel / double(members.size());
-    for (Member& m : members) m.azimuth = std::atan2(m.pixel.y() - middle.y(), m.pixel.x() - middle.x());
-    std::sort(members.begin(), members.end(), [](const Member& x, const Member& y) { return x.azimuth < y.azimuth; });
-    for (std::size_t i = 0; i < members.size(); ++i)
-      steps.push_back(std::abs(members[i].residual - members[(i + 1) % members.size()].residual));
-  }
-  constexpr double kVisiblePx = 0.01;  // the effect goes with the square of the noise
-  const double all = median(sizes);
-  if (steps.size() < 5 || !(all > kVisiblePx)) return 0;
-  return std::min(1.0, 0.5 * std::pow(median(steps) / all, 2));
-}
-
-/// Noise moves a measured point along a contour that bends away from it: isotropic noise of variance s^2 displaces the residual by
-/// s^2 / 2 times the Laplacian of alpha on average, outwards. s is what the residuals show (their median, so that a few wild
-/// points do not count), and the correction is kept below s / 2: it fades where the contour is as small as the noise.
-/// The slope, taken at the noisy point, errs together with the residual: where alpha bends along its gradient g (alpha_gg) this displaces the
-/// residual by -s^2 alpha_gg, and its product with its own derivative by as much again. `share` is that of noise in s^2, see noiseShare.
-void unbias(std::vector<ContourEvidence>& points, const Attempt& a, double share, const std::vector<AnglesAround>& angles) {
-  std::vector<double> sizes;
-  for (std::size_t i = 0; i < points.size(); ++i) sizes.push_back(std::abs(residual(points[i], a, angles[i].here)));
-  const double sigma = 1.4826 * median(sizes);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    ContourEvidence& e = points[i];
-    e.biasPx = 0;
-    if (!e.left || !e.right || !e.up || !e.down) continue;
-    const auto& [here, left, right, up, down] = angles[i];
-    const double step2 = kStepPx * kStepPx;
-    const double xx = (left + right - 2 * here) / step2, yy = (up + down - 2 * here) / step2;
-    double bend = xx + yy;
-    if (share > 0 && e.leftUp && e.rightDown) {
-      const double xy = (angle(*e.leftUp, a.light) + angle(*e.rightDown, a.light) - 2 * here) / (2 * step2) - 0.5 * (xx + yy);
-      const Eigen::Vector2d g = Eigen::Vector2d(right - left, down - up).normalized();
-      if (g.allFinite()) bend -= 4 * share * (g.x() * g.x() * xx + g.y() * g.y() * yy + 2 * g.x() * g.y() * xy);
-    }
-    e.biasPx = 0.5 * sigma * std::clamp(sigma * bend * e.pixelsPerRadian, -1.0, 1.0);
-  }
-}
-
-/// Weights and biases for the light of an attempt.
-void renew(std::vector<ContourEvidence>& points, const Attempt& a, double share) {
-  const std::vector<AnglesAround> angles = anglesAround(points, a.light);
-  reweight(points, angles);
-  unbias(points, a, share, angles);
-}
-
-double robustCost(const std::vector<ContourEvidence>& points, const Attempt& a, double scale) {
-  double sum = 0;
-  for (const ContourEvidence& e : points) {
-    const double r = std::abs(residual(e, a));
-    sum += r <= scale ? r * r : scale * (2 * r - scale);
-  }
-  return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
-}
 
 ceres::Problem::Options borrowedCosts() {
   ceres::Problem::Options options;
@@ -271,92 +136,7 @@ Attempt solve(std::vector<ContourEvidence>& points, Eigen::Vector4d start, bool 
     if (reweighted(points, moved, atInfinity, share, options) && moved.converged) a = moved;
   }
   reweight(points, a.light);
-  if (a.light.w() < 0) a.light = -a.light;
-  std::size_t behind = 0;
-  for (const ContourEvidence& e : points) behind += e.at.normal.dot(a.light.head<3>() - a.light.w() * e.at.position) <= 0;
-  a.behind = 10 * behind > points.size();
-  if (a.light.w() == 0 && a.behind && 2 * behind > points.size()) {  // a direction has no side of its own
-    a.light.head<3>() *= -1;
-    a.behind = 10 * (points.size() - behind) > points.size();
-  }
-  a.cost = robustCost(points, a, options.robustPx);
-  return a;
-}
-
-/// Residual with an extent, over the light (4), the limit angle (1) and the extent (6), with its derivatives in closed form.
-class DirectedCost final : public ceres::SizedCostFunction<1, 4, 1, 6> {
- public:
-  explicit DirectedCost(const ContourEvidence& evidence) : evidence_(evidence) {}
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    const SeenPoint& s = evidence_.at;
-    const Eigen::Vector4d light = Eigen::Map<const Eigen::Vector4d>(parameters[0]);
-    const double constant = *parameters[1], k = evidence_.pixelsPerRadian;
-    if (!(constant > 0)) return false;
-    const Eigen::Matrix3d extent = symmetric(Eigen::Map<const Vector6>(parameters[2]));
-    if (!jacobians) {
-      *residuals =
-          k * (angle(s, light) - directedLimit(constant, extent, s.position, s.normal, s.toCamera, light)) - evidence_.biasPx;
-      return std::isfinite(*residuals);
-    }
-    const DirectedLimit limit = directedLimitWithDerivatives(constant, extent, s.position, s.normal, s.toCamera, light);
-    *residuals = k * (angle(s, light) - limit.angle) - evidence_.biasPx;
-    if (jacobians[0]) {
-      Eigen::Map<Eigen::Vector4d> byLight(jacobians[0]);
-      byLight = k * (incidentAngleByLight(s.position, s.normal, s.toCamera, light) - limit.byLight);
-    }
-    if (jacobians[1]) *jacobians[1] = -k * limit.byLimit;
-    if (jacobians[2]) {
-      Eigen::Map<Vector6> byExtent(jacobians[2]);
-      byExtent = -k * limit.byExtent;
-    }
-    return std::isfinite(*residuals);
-  }
-
- private:
-  const ContourEvidence& evidence_;
-};
-
-/// One pixel's worth of reluctance against an extent that widens the limit angle by half: entries that the contours see win over it,
-/// those that no view shows stay zero.
-double extentPrior(const Attempt& a, const std::vector<ContourEvidence>& points) {
-  double reach = 0;
-  for (const ContourEvidence& e : points)
-    reach += a.light.w() > 0 ? (a.light.head<3>() / a.light.w() - e.at.position).norm() / double(points.size()) : 1.0 / double(points.size());
-  const double width = 2 * reach * a.limit;  // of the light that is seen under the limit angle: H turns half as much as L
-  return 1 / (width * width);
-}
-struct ExtentPrior {
-  double weight;
-  template <class T>
-  bool operator()(const T* extent, T* out) const {
-    for (int i = 0; i < 6; ++i) out[i] = T(weight * (i < 3 ? 1.0 : 1.4142135623730951)) * extent[i];
-    return true;
-  }
-};
-
-/// Goes on from a solution with one constant limit angle.
-Attempt directed(std::vector<ContourEvidence>& points, const Attempt& start, const BundleOptions& options) {
-  Attempt a = start;
-  a.directed = true;
-  if (a.light.w() == 0) return start;  // a direction's extent would need its own chart; none of the inputs has such a light
-  const double prior = extentPrior(start, points);
-  for (int round = 0; round < kMaxReweightings; ++round) {
-    renew(points, a, 0);
-    const Attempt before = a;
-    RobustCosts<ceres::CostFunction, DirectedCost> costs(points, options.robustPx);
-    ceres::AutoDiffCostFunction<ExtentPrior, 6, 6> reluctance(new ExtentPrior{prior});
-    ceres::Problem problem(borrowedCosts());
-    problem.AddResidualBlock(&costs, nullptr, a.light.data(), &a.limit, a.extent.data());
-    problem.AddResidualBlock(&reluctance, nullptr, a.extent.data());
-    problem.SetManifold(a.light.data(), new ceres::SphereManifold<4>());
-    const DenseSolution solution = solveDense(problem, options.maxIterations, 1e-10);  // tighter than the 1e-7 that the rounds ask for
-    a.iterations += solution.iterations;
-    if (!solution.usable || !a.light.allFinite() || !a.extent.allFinite() || !(a.limit > 0)) return start;
-    const double moved = std::max({(a.light - before.light).norm(), std::abs(a.limit - before.limit), (a.extent - before.extent).norm() * prior});
-    if (moved < 1e-7) break;  // the extent is a correction: it need not be found as well as the light
-  }
-  if (a.light.w() < 0) a.light = -a.light;
-  renew(points, a, 0);
+  settleSide(points, a);
   a.cost = robustCost(points, a, options.robustPx);
   return a;
 }
@@ -387,13 +167,10 @@ void setCovariance(const std::vector<ContourEvidence>& points, const Attempt& a,
   const Eigen::Index parameters = a.directed ? 10 : 4;
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(std::max<Eigen::Index>(points.size() + 6, parameters), parameters);
   for (std::size_t i = 0; i < points.size() && a.directed; ++i) {
-    Eigen::RowVector4d byLight;
-    Eigen::Matrix<double, 1, 6> byExtent;
-    double value, byLimit;
-    const double* at[] = {a.light.data(), &a.limit, a.extent.data()};
-    double* blocks[] = {byLight.data(), &byLimit, byExtent.data()};
-    if (!DirectedCost(points[i]).Evaluate(at, &value, blocks)) continue;
-    jacobian.row(i) << byLight * chart, byLimit, byExtent;
+    Eigen::Matrix<double, 1, 11> row;
+    double value;
+    if (!directedResidual(points[i], a.light, a.limit, a.extent, value, &row)) continue;
+    jacobian.row(i) << row.head<4>() * chart, row.tail<7>();
   }
   const ResidualSpread spread = spreadOf(points, a, int(parameters), robustPx);
   if (a.directed)  // its prior, in units of the noise
@@ -503,13 +280,34 @@ Outcome<Best> bestAttempt(NormalisedContours& contours, const Light& start, cons
   return Best{best, iterations};
 }
 
+/// Why a limit angle is none: every point of the contours sees the light in its mirror direction, so that any light near it would do.
+std::optional<Failure> withoutLimit(const std::vector<ContourEvidence>& points, const Attempt& a) {
+  std::map<int, std::pair<Pixel, int>> middles;
+  for (const ContourEvidence& e : points) {
+    auto& [sum, n] = middles.try_emplace(e.view, Pixel(0, 0), 0).first->second;
+    sum += e.pixel;
+    ++n;
+  }
+  std::vector<double> radii, limits;
+  for (const ContourEvidence& e : points) {
+    const auto& [sum, n] = middles.at(e.view);
+    radii.push_back((e.pixel - sum / n).norm());
+    limits.push_back(a.limit * e.pixelsPerRadian);
+  }
+  if (a.limit > 0 && median(limits) > kLeastLimitShare * median(radii)) return std::nullopt;
+  char detail[160];
+  std::snprintf(detail, sizeof detail, "the limit angle comes out at %.2g deg: every contour point mirrors the light, so the contours say nothing of it",
+                a.limit * 180 / M_PI);
+  return Failure{Reason::NotConverged, detail};
+}
+
 /// RMS of the distances of points from the level set of an attempt that was found in other coordinates, px.
 double rmsElsewhere(const Attempt& found, const NormalisedContours& foundIn, NormalisedContours seen) {
   Attempt a = found;
   const double step = foundIn.scale / seen.scale;
   a.light.head<3>() = step * found.light.head<3>() + found.light.w() * (foundIn.origin - seen.origin) / seen.scale;
   a.light.normalize();
-  a.extent *= step * step;  // only a light that is near has one
+  if (a.light.w() != 0) a.extent *= step * step;  // at infinity it is an angle
   reweight(seen.points, a.light);
   double sum = 0;
   for (const ContourEvidence& e : seen.points) sum += std::pow(residual(e, a), 2);
@@ -531,7 +329,9 @@ Outcome<Bundle> bundleLight(const std::vector<ContourEvidence>& evidence, std::s
   const Outcome<Best> found = bestAttempt(*contours, start, options);
   if (!found) return found.failure();
   const std::vector<ContourEvidence>& points = contours->points;
-  const Attempt best = options.limitOrders > 0 ? directed(contours->points, found->attempt, options) : found->attempt;
+  const Attempt best = options.limitOrders > 0 ? directed(contours->points, found->attempt, options.robustPx, options.maxIterations)
+                                               : found->attempt;
+  if (const std::optional<Failure> degenerate = withoutLimit(points, best)) return *degenerate;
   Bundle bundle;
   bundle.light = inWorld(best.light, contours->origin, contours->scale);
   bundle.limitAngle = best.limit;
@@ -575,13 +375,31 @@ Outcome<LeftOutErrors> leftOutErrors(const std::vector<ContourEvidence>& evidenc
       return;
     }
     errors.constant[std::size_t(k)] = seen ? rmsElsewhere(best->attempt, *contours, *seen) : std::nan("");
-    const Attempt wide = directed(contours->points, best->attempt, options);
+    const Attempt wide = directed(contours->points, best->attempt, options.robustPx, options.maxIterations);
     errors.directed[std::size_t(k)] = seen ? rmsElsewhere(wide, *contours, *seen) : std::nan("");
   };
   parallelFor(folds, fold, {}, "light");
   for (const std::optional<Failure>& failure : failures)
     if (failure) return *failure;
   return errors;
+}
+
+std::vector<double> residualsPx(const std::vector<ContourEvidence>& evidence, std::size_t views, const Light& light, double limitAngle) {
+  std::vector<double> sums(views, 0.0), counts(views, 0.0);
+  const Outcome<NormalisedContours> contours = normalised(evidence);
+  if (!contours) return std::vector<double>(views, std::nan(""));
+  std::vector<ContourEvidence> points = contours->points;
+  Attempt a;
+  a.light << (light.homogeneous().head<3>() - light.homogeneous().w() * contours->origin) / contours->scale, light.homogeneous().w();
+  a.light.normalize();
+  a.limit = limitAngle;
+  reweight(points, a.light);
+  for (const ContourEvidence& e : points) {
+    sums[std::size_t(e.view)] += std::pow(residual(e, a), 2);
+    counts[std::size_t(e.view)] += 1;
+  }
+  for (std::size_t v = 0; v < views; ++v) sums[v] = counts[v] > 0 ? std::sqrt(sums[v] / counts[v]) : std::nan("");
+  return sums;
 }
 
 }  // namespace glint

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/light/estimate.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <cmath>
 #include <limits>
 
 #include "core/geometry/plane.h"
+#include "core/light/ray_condition.h"
 
 namespace glint {
 
@@ -14,6 +16,13 @@ ReflectedRay reflectedRay(const BrightestPoint& brightest, const Camera& camera)
   const Eigen::Vector3d eye = camera.centreInWorld();
   const SurfacePoint p = facing(brightest.point, eye);
   return {p.position, reflect((eye - p.position).normalized(), p.normal), p.normal};
+}
+
+double conditionOf(const std::vector<ReflectedRay>& rays) {
+  Eigen::Matrix3d across = Eigen::Matrix3d::Zero();
+  for (const ReflectedRay& r : rays) across += Eigen::Matrix3d::Identity() - r.direction * r.direction.transpose();
+  const Eigen::Vector3d values = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(across, Eigen::EigenvaluesOnly).eigenvalues();
+  return rays.size() >= 2 && values(2) > 0 ? std::max(0.0, values(0) / values(2)) : 0;
 }
 
 Outcome<Triangulation> triangulateLight(const std::vector<ReflectedRay>& rays, double minCondition) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
 
 #include "core/model/fit_ellipsoid.h"
 #include "core/model/models.h"
+#include "core/model/plausible.h"
 #include "core/model/star.h"
 #include "core/model/uncertainty.h"
 #include "core/surface/local_quadric.h"
@@ -27,13 +29,26 @@ class Canonical final : public HighlightModel {
     if (!input.light) return input.lightFailure ? *input.lightFailure : Failure{Reason::NoLight, ""};
     std::vector<ConicView> conics;
     ModelFit fit;
+    std::vector<UsedContour> used;
+    const auto unused = [](const TrainingView& v) -> std::optional<Failure> {
+      if (v.failure) return v.failure;
+      if (!v.virtualCamera || !v.canonical) return Failure{Reason::NoBrightestPoint, ""};
+      if (v.canonical->ellipse) return std::nullopt;
+      // The directions know why there are too few points on the tangent plane for an ellipse.
+      for (const DirectionResult& d : v.canonical->directions)
+        if (d.failure) return d.failure;
+      return Failure{Reason::NotAnEllipse, "the canonical contour"};
+    };
     for (const TrainingView& v : input.views) {
       if (v.failure || !v.virtualCamera || !v.canonical || !v.canonical->ellipse) continue;
+      // On the tangent plane the contour is larger than in the photograph, and so are its noise and what the ellipsoid leaves of it.
+      const double canonicalRadius = std::sqrt(v.canonical->ellipse->semiAxes.prod());
+      used.push_back(usedContour(v, canonicalRadius / radiusPx(v.highlight.contour)));
       conics.push_back({*v.virtualCamera, *v.canonical->ellipse, v.canonical->pixels});
       fit.frames.push_back(v.frame);
     }
     const Outcome<Reconstruction> r = fitEllipsoid(conics, anchorAtLight(input), settings);
-    if (!r) return r.failure();
+    if (!r) return withUnusedViews(r.failure(), input.views, unused);
     store(*r, fit);
     fit.lightEstimate = input.light->light;
     fit.lightCovariance = input.light->covariance;
@@ -47,7 +62,7 @@ class Canonical final : public HighlightModel {
       root.topLeftCorner(9, ellipsoid.cols()) = ellipsoid;
       root.bottomRightCorner(4, lamp.cols()) = lamp;
     }
-    return fit;
+    return explaining(std::move(fit), used, false);
   }
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {
@@ -103,9 +118,9 @@ class Canonical final : public HighlightModel {
     return p;
   }
 
-  std::vector<double> bandSigmaPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera, const Surface* surface,
+  Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera, const Surface* surface,
                                   const Settings& settings) const override {
-    return ellipsoidBandSigmaPx(*this, fit, highlight, camera, surface, settings);
+    return ellipsoidBandShiftsPx(*this, fit, highlight, camera, surface, settings);
   }
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/model/fit_ellipsoid.h"
 #include "core/model/models.h"
+#include "core/model/plausible.h"
 #include "core/model/uncertainty.h"
 
 namespace glint {
@@ -20,16 +21,23 @@ class Dual final : public HighlightModel {
   Outcome<ModelFit> fit(const FitInput& input, const Settings& settings) const override {
     std::vector<ConicView> conics;
     ModelFit fit;
+    std::vector<UsedContour> used;
+    const auto unused = [](const TrainingView& v) -> std::optional<Failure> {
+      if (v.failure) return v.failure;
+      if (!v.virtualCamera) return Failure{Reason::NoBrightestPoint, ""};
+      return v.highlight.ellipse ? std::optional<Failure>() : Failure{Reason::NotAnEllipse, "the contour"};
+    };
     for (const TrainingView& v : input.views) {
       if (v.failure || !v.virtualCamera || !v.highlight.ellipse) continue;
+      used.push_back(usedContour(v));
       conics.push_back(conicViewOf(v, *v.virtualCamera));
       fit.frames.push_back(v.frame);
     }
     const Outcome<Reconstruction> r = fitEllipsoid(conics, anchorAtLight(input), settings);
-    if (!r) return r.failure();
+    if (!r) return withUnusedViews(r.failure(), input.views, unused);
     store(*r, fit);
     fit.hints = hintsOf(input);
-    return fit;
+    return explaining(std::move(fit), used, false);
   }
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {
@@ -64,9 +72,9 @@ class Dual final : public HighlightModel {
     return p;
   }
 
-  std::vector<double> bandSigmaPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera, const Surface* surface,
+  Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera, const Surface* surface,
                                   const Settings& settings) const override {
-    return ellipsoidBandSigmaPx(*this, fit, highlight, camera, surface, settings);
+    return ellipsoidBandShiftsPx(*this, fit, highlight, camera, surface, settings);
   }
 };
 

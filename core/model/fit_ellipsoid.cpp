@@ -8,6 +8,7 @@
 
 #include "core/light/estimate.h"
 #include "core/model/ellipse_distance.h"
+#include "core/model/plausible.h"
 
 namespace glint {
 namespace {
@@ -119,7 +120,8 @@ std::optional<CentreAnchor> anchorAtLight(const FitInput& input) {
 }
 
 bool hasWholeEllipse(const TrainingView& view) {
-  return view.highlight.ellipse && !(view.failure && view.failure->reason == Reason::OutsideImage);
+  if (view.failure && view.failure->reason == Reason::OutsideImage) return false;
+  return view.highlight.ellipse && !tooSmall(view.highlight.contour);
 }
 
 std::optional<CentreAnchor> anchorFromCentres(const std::vector<TrainingView>& views) {

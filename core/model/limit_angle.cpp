@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "core/light/directed_limit.h"
 #include "core/model/level_set_prediction.h"
 #include "core/model/models.h"
+#include "core/model/plausible.h"
 #include "core/model/star.h"
+#include "core/model/star_level_set.h"
 #include "core/model/uncertainty.h"
 
 namespace glint {
@@ -25,6 +29,16 @@ std::optional<double> directedAlpha(const SurfacePoint& p, const Eigen::Vector3d
   const std::optional<double> alpha = alphaAt(p, eye, light);
   if (!alpha || !extent) return alpha;
   return *alpha * limit / directedLimit(limit, *extent, p.position, p.normal, (eye - p.position).normalized(), light.homogeneous());
+}
+
+/// In words: the length of a uniform lamp whose second moment, length^2 / 12, is that of the longest axis. `extent` is -2 log q times it.
+std::string extentRemark(const Eigen::Matrix3d& extent, bool angular, double level) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(extent);
+  const double length = std::sqrt(12 * std::max(0.0, axes.eigenvalues()(2)) / (-2 * std::log(level)));
+  char text[200];
+  std::snprintf(text, sizeof text, "the light is not a point: it reaches about %.2g %s, a long lamp or several lights whose highlights merge",
+                angular ? length * 180 / M_PI : length, angular ? "degrees" : "m");
+  return text;
 }
 
 WalkOptions walkOptions(const Settings& settings) {
@@ -54,8 +68,14 @@ class LimitAngle final : public HighlightModel {
   Outcome<ModelFit> fit(const FitInput& input, const Settings&) const override {
     if (!input.light) return input.lightFailure ? *input.lightFailure : Failure{Reason::NoLight, ""};
     ModelFit fit;
-    for (const TrainingView& v : input.views)
-      if (!v.failure) fit.frames.push_back(v.frame);
+    std::vector<UsedContour> used;
+    double level = 0;
+    for (const TrainingView& v : input.views) {
+      if (v.failure) continue;
+      fit.frames.push_back(v.frame);
+      level = v.highlight.level;
+      used.push_back(usedContour(v));
+    }
     if (!(input.light->limitAngle > 0)) return Failure{Reason::TooFewPoints, "no contour point on the surface"};
     fit.lightEstimate = input.light->light;
     fit.lightCovariance = input.light->covariance;
@@ -65,10 +85,20 @@ class LimitAngle final : public HighlightModel {
     fit.hints = hintsOf(input);
     fit.extent = input.light->extent;
     fit.uncertainty = input.light->uncertainty;
-    return fit;
+    if (fit.extent && level > 0 && level < 1) fit.remarks.push_back(extentRemark(*fit.extent, fit.lightEstimate->atInfinity(), level));
+    fit.residualPx = input.light->residualPx;
+    if (fit.residualPx.size() != used.size()) return fit;  // a light that was given, not estimated from these views
+    // The residual of a point where alpha hardly changes over the image has no bound, so that one large figure does not tell a light that
+    // explains nothing from noise: it is said, not refused.
+    Outcome<ModelFit> checked = explaining(fit, used, true);
+    if (!checked && checked.failure().reason == Reason::NotConverged) {
+      fit.remarks.push_back(checked.failure().detail);
+      return fit;
+    }
+    return checked;
   }
 
-  std::vector<double> bandSigmaPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera, const Surface* surface,
+  Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera, const Surface* surface,
                                   const Settings&) const override {
     if (!surface || !fit.uncertainty || !fit.lightEstimate || !fit.limitAngle) return {};
     const Light& light = *fit.lightEstimate;
@@ -81,13 +111,15 @@ class LimitAngle final : public HighlightModel {
       if (fit.extent) {
         // (value - limit) with every parameter moved along one column; small against a standard deviation.
         const auto moved = [&](const Eigen::VectorXd& by) -> double {
-          const Eigen::Matrix<double, 6, 1> e = by.segment<6>(5);
-          const Eigen::Matrix3d extent = *fit.extent + Eigen::Matrix3d{{e(0), e(3), e(4)}, {e(3), e(1), e(5)}, {e(4), e(5), e(2)}};
-          const Light other = Light::homogeneous(light.homogeneous() + by.head<4>());
-          const double limit = *fit.limitAngle + by(4);
-          const std::optional<double> alpha = alphaAt(at, eye, other);
-          if (!alpha) return std::nan("");
-          return *alpha - directedLimit(limit, extent, at.position, at.normal, (eye - at.position).normalized(), other.homogeneous());
+          const Eigen::Vector4d other = light.homogeneous() + by.head<4>();
+          Eigen::Matrix3d extent = *fit.extent + symmetric(by.segment<6>(5));
+          // A light at infinity keeps its angular extent where the step brings it nearer: beyond infinity is the other side of it.
+          if (light.atInfinity() && other.w() != 0) extent *= other.head<3>().squaredNorm() / (other.w() * other.w());
+          Eigen::Vector3d toLight = (other.head<3>() - other.w() * at.position).normalized();
+          if (at.normal.dot(toLight) < 0) toLight = -toLight;
+          const Eigen::Vector3d toCamera = (eye - at.position).normalized();
+          return incidentAngle(at.normal, toLight, toCamera) -
+                 directedLimit(*fit.limitAngle + by(4), extent, at.position, at.normal, toCamera, other);
         };
         const double here = directedLimit(*fit.limitAngle, *fit.extent, at.position, at.normal, (eye - at.position).normalized(), light.homogeneous());
         constexpr double kStep = 0.01;
@@ -100,7 +132,7 @@ class LimitAngle final : public HighlightModel {
       byParameters << incidentAngleByLight(at.position, at.normal, (eye - at.position).normalized(), light.homogeneous()), -1.0;
       return root.transpose() * byParameters;
     };
-    return levelSetSigmaPx(highlight.contour.points, field, camera, *surface, slopes);
+    return levelSetShiftsPx(highlight.contour.points, field, camera, *surface, slopes);
   }
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {
@@ -117,6 +149,11 @@ class LimitAngle final : public HighlightModel {
     if (!fit.extent && settings.text("predict.contour") == "star" && brightest && brightest->size() == 1)
       if (std::optional<PredictedHighlight> h = star(*fit.limitAngle, camera, *surface, light, brightest->front(), settings)) {
         p.highlights.push_back(std::move(*h));
+        return p;
+      }
+    if (!fit.extent && settings.text("predict.contour") == "star" && brightest && brightest->size() > 1)
+      if (Outcome<std::vector<PredictedHighlight>> several = stars(*fit.limitAngle, camera, *surface, light, *brightest, settings)) {
+        p.highlights = std::move(*several);
         return p;
       }
     SurfaceField field;
@@ -179,6 +216,33 @@ class LimitAngle final : public HighlightModel {
     outlineOf(c, h);
     if (const Outcome<Ellipse> e = fitEllipse(c.pixels)) h.ellipse = *e;
     return h;
+  }
+
+  /// The same around several brightest points, by walks along pixel rays on alpha^2, which is quadratic at its zeros. Why not, where two
+  /// share a region, one is no star, or the surface may reach the limit elsewhere.
+  static Outcome<std::vector<PredictedHighlight>> stars(double limit, const Camera& camera, const Surface& surface, const Light& light,
+                                                        const std::vector<BrightestPoint>& brightest, const Settings& settings) {
+    const Eigen::Vector3d eye = camera.centreInWorld();
+    const StarField field{[&](const SurfacePoint& at) {
+                            const std::optional<double> alpha = alphaAt(at, eye, light);
+                            return alpha ? *alpha * *alpha : std::nan("");
+                          },
+                          light, 0, [](const PartBounds& parts, double level) {
+                            return Eight(float(level) - parts.tanSquared.sqrt().atan().square());
+                          }};
+    std::vector<Summit> summits;
+    for (const BrightestPoint& b : brightest) {
+      Outcome<Summit> s = summitNear(field, camera, surface, b, limit * limit);
+      if (!s) return s.failure();
+      summits.push_back(*s);
+    }
+    Outcome<std::vector<PredictedHighlight>> found = starHighlights(field, camera, surface, summits, limit * limit, settings);
+    if (found)
+      for (PredictedHighlight& h : *found)  // the mirror points themselves are known better
+        h.brightest = *std::min_element(brightest.begin(), brightest.end(), [&](const BrightestPoint& a, const BrightestPoint& b) {
+          return (a.pixel - h.brightest.pixel).squaredNorm() < (b.pixel - h.brightest.pixel).squaredNorm();
+        });
+    return found;
   }
 };
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/settings.h"
@@ -17,6 +18,9 @@
 #include "core/surface/surface.h"
 
 namespace glint {
+
+struct PixelPatch;
+struct PixelFit;
 
 /// One direction of the walk from the brightest point (method.md section 6): a point or a named reason.
 struct DirectionResult {
@@ -40,6 +44,8 @@ struct TrainingView {
   Camera camera;
   std::shared_ptr<const Surface> surface;   ///< may be null only for `primal`
   Highlight highlight;
+  std::vector<LevelContour> levels;         ///< contours at other levels than highlight.level; they share the frame's maximum
+  std::shared_ptr<const PixelPatch> pixels; ///< around the highlight, where pixels are evidence (core/reflectance/pixel_patch.h)
   std::optional<BrightestPoint> brightest;  ///< observed
   std::optional<Plane> tangentPlane;        ///< normal towards the camera
   std::optional<Projection> virtualCamera;  ///< P M
@@ -54,6 +60,7 @@ struct LightEstimate {
   double limitAngle = 0;                    ///< rad; robust mean over all contour points
   double condition = 0;                     ///< of the triangulation
   double rmsPx = 0;                         ///< of the bundle's residuals, 0 when triangulated
+  std::vector<double> residualPx;           ///< RMS per view that was used (no `failure`, a brightest point), in their order
   std::string solver;                       ///< "triangulated" or "bundle"
   /// Second moment of an extended light about `light`, m^2 (rad^2 for a light at infinity): widens the limit angle where the light
   /// is long. None for a limit angle that is one constant.
@@ -67,6 +74,7 @@ struct FitInput {
   std::vector<TrainingView> views;          ///< those with `failure` are skipped
   std::optional<LightEstimate> light;       ///< for models with needsLight()
   std::optional<Failure> lightFailure;      ///< why there is none
+  std::shared_ptr<const PixelFit> pixelFit; ///< of the pixels of exactly these views, where it is known already
 };
 
 /// What fitting produced; fields that a model does not have stay empty.
@@ -82,6 +90,10 @@ struct ModelFit {
   std::optional<Eigen::Matrix3d> extent;    ///< see LightEstimate
   std::optional<double> roughness;          ///< m of the lobe
   std::optional<double> lightRadius;        ///< m, of a spherical light; empty for a point
+  std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> lightSegment;  ///< ends of a lamp with a length, world, m
+  std::string evidence;                     ///< reflectance: what the fit saw, "contours", "levels" or "pixels"
+  std::vector<double> levels;               ///< of the contours that it saw; empty for pixels
+  std::optional<double> blurPx;             ///< standard deviation of the images' blur, where pixels show it
   std::optional<std::string> lobe;          ///< name of the reflectance lobe, core/reflectance/lobe.h
   std::optional<double> level;              ///< fraction q of the peak at which the contour lies, for models that predict radiance
   double gapRatio = 0;                      ///< last / second last singular value of the linear system
@@ -94,6 +106,7 @@ struct ModelFit {
   /// limit-angle: as LightEstimate. primal, dual: of (centre (3), shape S xx yy zz xy xz yz (6)). canonical: those, then L
   /// homogeneous (4). Other models say theirs.
   std::optional<ParameterUncertainty> uncertainty;
+  std::vector<std::string> remarks;         ///< warnings in words, for the user: what makes the answer doubtful
   double timeUs = 0;
 };
 
@@ -135,10 +148,16 @@ class HighlightModel {
   /// @param surface  may be null for `primal`.
   virtual Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface,
                              const Settings& settings) const = 0;
-  /// PredictedHighlight::sigmaPx of a prediction of this fit. Empty where the fit has no uncertainty.
-  virtual std::vector<double> bandSigmaPx(const ModelFit&, const PredictedHighlight&, const Camera&, const Surface*,
-                                          const Settings&) const {
+  /// Shifts of a prediction's contour along its normals, px and positive outwards: one row per vertex, one column per column of the fit's
+  /// ParameterUncertainty::root, each for one standard deviation. A row of zeros along the surface's own edge. Empty where the fit has no uncertainty.
+  virtual Eigen::MatrixXd bandShiftsPx(const ModelFit&, const PredictedHighlight&, const Camera&, const Surface*, const Settings&) const {
     return {};
+  }
+  /// Norms of the rows of bandShiftsPx: the standard deviation that the noise in the residuals alone makes. core/model/band.h knows more.
+  std::vector<double> bandSigmaPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera, const Surface* surface,
+                                  const Settings& settings) const {
+    const Eigen::VectorXd norms = bandShiftsPx(fit, highlight, camera, surface, settings).rowwise().norm();
+    return {norms.begin(), norms.end()};
   }
 };
 

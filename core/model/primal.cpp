@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/model/fit_ellipsoid.h"
 #include "core/model/models.h"
+#include "core/model/plausible.h"
 #include "core/model/uncertainty.h"
 
 namespace glint {
@@ -20,15 +21,22 @@ class Primal final : public HighlightModel {
   Outcome<ModelFit> fit(const FitInput& input, const Settings& settings) const override {
     std::vector<ConicView> conics;
     ModelFit fit;
+    std::vector<UsedContour> used;
+    const auto unused = [](const TrainingView& v) -> std::optional<Failure> {
+      if (hasWholeEllipse(v)) return std::nullopt;
+      if (std::optional<Failure> small = tooSmall(v.highlight.contour)) return small;
+      return v.failure.value_or(Failure{Reason::NotAnEllipse, "the contour"});
+    };
     for (const TrainingView& v : input.views) {
       if (!hasWholeEllipse(v)) continue;
+      used.push_back(usedContour(v));
       conics.push_back(conicViewOf(v, v.camera.projection()));
       fit.frames.push_back(v.frame);
     }
     const Outcome<Reconstruction> r = fitEllipsoid(conics, anchorFromCentres(input.views), settings);
-    if (!r) return r.failure();
+    if (!r) return withUnusedViews(r.failure(), input.views, unused);
     store(*r, fit);
-    return fit;
+    return explaining(std::move(fit), used, false);
   }
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface*, const Settings&) const override {
@@ -50,9 +58,9 @@ class Primal final : public HighlightModel {
     return p;
   }
 
-  std::vector<double> bandSigmaPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera, const Surface* surface,
+  Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera, const Surface* surface,
                                   const Settings& settings) const override {
-    return ellipsoidBandSigmaPx(*this, fit, highlight, camera, surface, settings);
+    return ellipsoidBandShiftsPx(*this, fit, highlight, camera, surface, settings);
   }
 };
 

@@ -2,25 +2,29 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <set>
+#include <sstream>
 
 #include "core/light/estimate.h"
 #include "core/model/level_set_prediction.h"
 #include "core/model/models.h"
+#include "core/model/pixel_evidence.h"
+#include "core/model/plausible.h"
+#include "core/model/radiance_star.h"
 #include "core/model/uncertainty.h"
-#include "core/reflectance/fit.h"
+#include "core/reflectance/fit_search.h"
 #include "core/reflectance/light_radiance.h"
 #include "core/reflectance/radiance_field.h"
 
 namespace glint {
 namespace {
 
-constexpr int kAnglePoints = 36;    // of a contour, for the first guess of the roughness
+constexpr int kAnglePoints = 36;       // of a contour, for the first guess of the lobe's width
+constexpr double kWidestStart = 1.3;   // rad, of that guess
 constexpr double kScanStepPx = 16;  // of the search for a maximum away from every mirror point
 // log of an 8-bit picture's range: a lobe that has fallen further shows nothing beside the highlights of other frames.
 constexpr double kFaintest = 5.54;
-// Of the sum of squares over their mean: three standard deviations, before a cosine power is preferred to a microfacet lobe.
-constexpr double kClearGain = 9;
-constexpr std::size_t kPromisingStarts = 6;  // of those that a short fit to few points likes best
 
 /// Where the search starts: the light of the limit angle; where that model does not converge (wide lobes, grazing views), the
 /// closest point to the reflected peak rays, or their mean direction.
@@ -38,60 +42,34 @@ std::optional<Light> firstLight(const FitInput& input) {
   return mean.norm() > 1e-6 * double(rays.size()) ? std::optional<Light>(Light::towards(mean)) : std::nullopt;
 }
 
-/// The lobe of the smallest residual; each starts from the best one so far. Where none explains the contours well, the most
-/// promising starts of all lobes are tried, and the lobes follow the best of them. Where the residuals do not tell, a microfacet
-/// lobe.
-Outcome<RadianceFit> bestOf(const std::vector<Lobe>& lobes, const std::vector<RadianceView>& views, const Light& light,
-                            double roughness, RadianceFitOptions options) {
-  Outcome<RadianceFit> best = Failure{Reason::NotConverged, ""}, microfacet = best;
-  const bool lightSize = options.lightSize;
-  options.lightSize = options.otherStarts = false;
-  const auto tryFrom = [&](Lobe lobe, const Light& from, double width) {
-    Outcome<RadianceFit> f = fitRadiance(lobe, views, from, width, options);
-    const auto improve = [&](Outcome<RadianceFit>& on) {
-      if (!on || (f && (f->poor != on->poor ? on->poor : f->cost < on->cost))) on = f;
-    };
-    improve(best);
-    if (lobe == Lobe::TorranceSparrow || lobe == Lobe::Ggx) improve(microfacet);
-  };
-  const auto tryAll = [&] {
-    for (const Lobe lobe : lobes) {
-      const bool follow = best && !best->poor;
-      const Light from = follow ? best->light : light;
-      tryFrom(lobe, from, follow ? best->roughness : roughness);
-    }
-  };
-  tryAll();
-  if (!best || best->doubtful) {
-    std::vector<RadianceStart> starts;
-    for (const Lobe lobe : lobes)
-      for (const RadianceStart& s : screenStarts(lobe, views, light, roughness, options)) starts.push_back(s);
-    std::stable_sort(starts.begin(), starts.end(),
-                     [](const RadianceStart& a, const RadianceStart& b) { return a.cost < b.cost; });
-    bool better = false;
-    for (std::size_t i = 0; i < starts.size() && i < kPromisingStarts && !(best && !best->doubtful); ++i) {
-      const double before = best ? best->cost : std::numeric_limits<double>::infinity();
-      tryFrom(starts[i].lobe, starts[i].light, starts[i].roughness);
-      better = better || (best && best->cost < before);
-    }
-    if (better && lobes.size() > 1 && !best->poor) tryAll();
-  }
-  // Surfaces are rather microfacets than cosine powers: where noise leaves the choice open, a microfacet lobe is taken.
-  if (best && microfacet && !microfacet->poor && microfacet->cost - best->cost < kClearGain * best->cost / best->points)
-    best = microfacet;
-  if (!best || best->poor || !lightSize) return best;
-  // A size is tried on the best lobe; only where it shows are the others tried with one too.
-  options.lightSize = true;
-  const RadianceFit point = *best;
-  const auto withSize = [&](Lobe lobe) {
-    Outcome<RadianceFit> f = fitRadiance(lobe, views, point.light, point.roughness, options);
-    if (f && f->cost < best->cost) best = std::move(f);
-  };
-  withSize(point.lobe);
-  if (best->lightRadius > 0)
-    for (const Lobe lobe : lobes)
-      if (lobe != point.lobe) withSize(lobe);
-  return best;
+/// RMS over all contours of a training view, from that of each contour; contours of one view have about equally many points.
+std::vector<double> perView(const std::vector<double>& rms, const std::vector<std::size_t>& owner, std::size_t views) {
+  std::vector<double> squares(views, 0);
+  std::vector<int> counts(views, 0);
+  for (std::size_t i = 0; i < rms.size(); ++i) squares[owner[i]] += rms[i] * rms[i], ++counts[owner[i]];
+  for (std::size_t v = 0; v < views; ++v) squares[v] = counts[v] ? std::sqrt(squares[v] / counts[v]) : 0;
+  return squares;
+}
+
+/// Numbers between commas.
+std::vector<double> levelsIn(const std::string& text) {
+  std::vector<double> levels;
+  std::istringstream list(text);
+  for (std::string entry; std::getline(list, entry, ',');) levels.push_back(std::strtod(entry.c_str(), nullptr));
+  return levels;
+}
+
+bool isListed(double level, const std::vector<double>& listed) {
+  constexpr double kSameLevel = 1e-6;  // levels are typed with a few digits
+  return level > 0 && level < 1 &&
+         std::any_of(listed.begin(), listed.end(), [&](double l) { return std::abs(l - level) < kSameLevel; });
+}
+
+/// Levels of the contours, each once, ascending.
+std::vector<double> levelsOf(const std::vector<RadianceView>& views) {
+  std::set<double> levels;
+  for (const RadianceView& v : views) levels.insert(v.level);
+  return {levels.begin(), levels.end()};
 }
 
 /// -log I; `contour` is log I on the contour: a shadow matters inside the highlight only.
@@ -100,6 +78,12 @@ std::function<std::optional<double>(const SurfacePoint&)> valueOf(const Radiance
     const std::optional<double> log = radiance.at(at, contour);
     return log ? std::optional<double>(-*log) : std::nullopt;
   };
+}
+
+/// The lamp that a fit describes; its light must be there.
+Lamp lampOf(const ModelFit& fit) {
+  return fit.lightSegment ? Lamp::segment(fit.lightSegment->first, fit.lightSegment->second)
+                          : Lamp::sphere(*fit.lightEstimate, fit.lightRadius.value_or(0));
 }
 
 class Reflectance final : public HighlightModel {
@@ -116,60 +100,77 @@ class Reflectance final : public HighlightModel {
   Outcome<ModelFit> fit(const FitInput& input, const Settings& settings) const override {
     ModelFit fit;
     std::vector<RadianceView> views;
+    std::vector<std::size_t> owner;  // of each contour: which training view
+    const bool severalLevels = settings.text("fit.evidence") == "levels";
+    const std::vector<double> listed = levelsIn(settings.text("fit.levels"));
+    const auto add = [&](const TrainingView& v, double level, const Polyline& contour) {
+      views.push_back({v.frame, v.camera, v.surface.get(), contour.points, v.highlight.peak, level});
+      owner.push_back(fit.frames.size() - 1);
+    };
     for (const TrainingView& v : input.views) {
       if (v.failure) continue;
       if (!(v.highlight.level > 0 && v.highlight.level < 1)) return Failure{Reason::NotSupported, "a contour without a level"};
       fit.frames.push_back(v.frame);
-      views.push_back({v.frame, v.camera, v.surface.get(), v.highlight.contour.points, v.highlight.peak, v.highlight.level});
+      add(v, v.highlight.level, v.highlight.contour);
+      for (const LevelContour& c : v.levels)
+        if (severalLevels && isListed(c.level, listed)) add(v, c.level, c.contour);
     }
-    if (views.empty()) return Failure{Reason::TooFewViews, "need 1, have 0"};
+    if (views.empty()) return Failure{Reason::TooFewViews, "need 1, have 0" + unusedViews(input.views)};
+    if (severalLevels && views.size() == fit.frames.size())
+      fit.remarks.push_back("Fitted to one contour per highlight: there are none at other levels.");
+    const std::string& evidence = settings.text("fit.evidence");
+    if (evidence == "pixels" || (evidence == "auto" && havePixels(input.views))) {
+      Outcome<ModelFit> fromPixels = reflectanceFromPixels(input, settings);
+      if (fromPixels && fromPixels->lightEstimate)
+        if (const std::optional<Failure> behind = lightBehind(input.views, *fromPixels->lightEstimate)) return *behind;
+      if (fromPixels) return fromPixels;
+      fit.remarks.push_back("Fitted to contours, not to pixels: " + fromPixels.failure().message() + ".");
+    }
     const double level = views.front().level;
     RadianceFitOptions options;
     options.pointsPerView = settings.integer("light.bundle_points");
     options.robustPx = settings.number("light.robust_px");
-    options.lightSize = settings.text("fit.light_size") == "auto";
+    const std::string& lamps = settings.text("fit.light_size");
+    const LampChoices choices{lamps == "auto" || lamps == "sphere", lamps == "auto" || lamps == "segment"};
     const std::optional<Light> light = firstLight(input);
     if (!light) return input.lightFailure ? *input.lightFailure : Failure{Reason::NoLight, ""};
     const double alpha = medianContourAngle(input.views, *light, kAnglePoints);
     if (!(alpha > 0)) return Failure{Reason::PeakOffSurface, "no contour point hits the lit surface"};
-    // The width at which a Gaussian lobe falls to the level at that angle.
-    const double roughness = std::clamp(std::tan(alpha) / std::sqrt(-std::log(level)), 1e-4, 1.0);
     std::vector<Lobe> lobes{Lobe::TorranceSparrow, Lobe::Ggx, Lobe::BlinnPhong, Lobe::Phong};
     const std::string& name = settings.text("fit.lobe");
     if (name != "auto") lobes = {*lobeOf(name)};
-    Outcome<RadianceFit> best = bestOf(lobes, views, *light, roughness, options);
-    if (name != "auto" && (!best || best->poor)) {
-      // Another lobe may find the way from the first guess; from its light the lobe asked for starts close.
-      const Lobe other = lobes[0] == Lobe::TorranceSparrow ? Lobe::BlinnPhong : Lobe::TorranceSparrow;
-      if (const Outcome<RadianceFit> guide = bestOf({other}, views, *light, roughness, options); guide && !guide->poor)
-        if (Outcome<RadianceFit> again = bestOf(lobes, views, guide->light, guide->roughness, options); again && !again->poor)
-          best = std::move(again);
-    }
+    const Outcome<RadianceFit> best = searchRadiance(lobes, views, *light, std::min(alpha, kWidestStart), choices, options);
     if (!best) return best.failure();
     if (best->poor) {
       char detail[80];
       std::snprintf(detail, sizeof detail, "no light and roughness explain the contours: %.3g px remain", best->rmsPx);
       return Failure{Reason::NotConverged, detail};
     }
+    if (const std::optional<Failure> behind = lightBehind(input.views, best->light)) return *behind;
     fit.lightEstimate = best->light;
     if (!best->light.atInfinity() && best->positionCovariance.allFinite()) fit.lightCovariance = best->positionCovariance;
     fit.roughness = best->roughness;
     if (best->lightRadius > 0) fit.lightRadius = best->lightRadius;
+    fit.lightSegment = best->lamp().ends();
     fit.lobe = nameOf(best->lobe);
     fit.level = level;
-    fit.residualPx = best->residualPx;
+    fit.residualPx = perView(best->residualPx, owner, fit.frames.size());
+    fit.evidence = views.size() > fit.frames.size() ? "levels" : "contours";
+    fit.levels = levelsOf(views);
     fit.uncertainty = best->uncertainty;
     fit.solver = "contours";
     if (input.light) fit.condition = input.light->condition;
-    return fit;
+    std::vector<UsedContour> used;
+    for (const TrainingView& v : input.views)
+      if (!v.failure) used.push_back(usedContour(v));
+    return explaining(std::move(fit), used, true);
   }
 
-  std::vector<double> bandSigmaPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera,
+  Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera,
                                   const Surface* surface, const Settings&) const override {
     if (!surface || !fit.uncertainty || !fit.lightEstimate || !fit.roughness || !fit.lobe || !fit.level) return {};
-    const Light& light = *fit.lightEstimate;
-    const double radius = fit.lightRadius.value_or(0);
-    const RadianceField radiance(*surface, camera, *lobeOf(*fit.lobe), *fit.roughness, light, radius);
+    const Lamp lamp = lampOf(fit);
+    const RadianceField radiance(*surface, camera, *lobeOf(*fit.lobe), *fit.roughness, lamp);
     const std::vector<RadiancePeak> peaks = radiance.peaks({highlight.brightest.pixel}, kScanStepPx);
     if (peaks.empty()) return {};
     const double contour = peaks.front().logRadiance + std::log(*fit.level);
@@ -181,10 +182,13 @@ class Reflectance final : public HighlightModel {
     // log I(peak) - log I(point) with the parameters moved. The peak stays: its value does not change with its place, to first
     // order.
     const auto moved = [&](const SurfacePoint& at, const Eigen::VectorXd& by) -> double {
-      const Eigen::Vector4d other = light.homogeneous() + by.head<4>();
+      lobe::LampIn<double> other = lobe::inWorld(lamp);
+      other.light += by.head<4>();
+      if (other.shape == lobe::LampShape::Sphere && by.size() == 6) other.radiusSquared = std::max(0.0, other.radiusSquared + by(5));
+      if (other.shape == lobe::LampShape::Segment && by.size() == 8) other.halfAxis += by.tail<3>();
       const auto log = [&](const SurfacePoint& p) {
-        return lobe::logOfSphereLight<double>(*lobeOf(*fit.lobe), *fit.roughness * std::exp(by(4)), p.position, p.normal,
-                                              (eye - p.position).normalized(), other, radius * radius, radiance.rule());
+        return lobe::logOfLamp<double>(*lobeOf(*fit.lobe), *fit.roughness * std::exp(by(4)), p.position, p.normal,
+                                       (eye - p.position).normalized(), other, radiance.rule());
       };
       const auto here = log(at), top = log(peaks.front().point);
       return here && top ? *top - *here : std::nan("");
@@ -196,7 +200,7 @@ class Reflectance final : public HighlightModel {
         change(k) = (moved(at, kStep * root.col(k)) - moved(at, -kStep * root.col(k))) / (2 * kStep);
       return change;
     };
-    return levelSetSigmaPx(highlight.contour.points, field, camera, *surface, slopes);
+    return levelSetShiftsPx(highlight.contour.points, field, camera, *surface, slopes);
   }
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {
@@ -206,8 +210,14 @@ class Reflectance final : public HighlightModel {
       return p;
     }
     const Light& light = *fit.lightEstimate;
-    const RadianceField radiance(*surface, camera, *lobeOf(*fit.lobe), *fit.roughness, light, fit.lightRadius.value_or(0));
+    const RadianceField radiance(*surface, camera, *lobeOf(*fit.lobe), *fit.roughness, lampOf(fit));
     const auto mirrorPoints = brightestPointsFor(*surface, camera, light, settings);
+    if (mirrorPoints && settings.text("predict.contour") == "star")
+      if (Outcome<std::vector<PredictedHighlight>> found =
+              radianceStars(radiance, fit, *mirrorPoints, kFaintest, camera, *surface, settings)) {
+        p.highlights = std::move(*found);
+        return p;
+      }
     std::vector<Pixel> starts;
     if (mirrorPoints)
       for (const BrightestPoint& b : *mirrorPoints) starts.push_back(b.pixel);

@@ -13,7 +13,7 @@ constexpr double kEdgePx = 0.5;       // a polished vertex lies on the level to 
 constexpr double kStepPx = 0.5;      // of the image gradient
 constexpr double kColumnStep = 0.25;  // of a standard deviation: small for the derivative, far above the walk's tolerance
 
-/// Signed distance along `normal` from p to the nearest crossing of a polyline; 0 when the line through p misses it.
+/// Signed distance along `normal` from p to the nearest crossing of a polyline; NaN when the line through p misses it.
 double alongNormal(const Polyline& line, const Pixel& p, const Pixel& normal) {
   double best = std::numeric_limits<double>::infinity();
   const std::size_t n = line.points.size();
@@ -24,7 +24,12 @@ double alongNormal(const Polyline& line, const Pixel& p, const Pixel& normal) {
     const double at = normal.dot(a + u / (u - v) * (b - a));
     if (std::abs(at) < std::abs(best)) best = at;
   }
-  return std::isfinite(best) ? best : 0;
+  return std::isfinite(best) ? best : std::nan("");
+}
+
+std::vector<double> rowNorms(const Eigen::MatrixXd& m) {
+  const Eigen::VectorXd norms = m.rowwise().norm();
+  return {norms.begin(), norms.end()};
 }
 
 /// Nearest positive semidefinite matrix.
@@ -35,8 +40,8 @@ Eigen::Matrix3d semidefinite(const Eigen::Matrix3d& s) {
 
 }  // namespace
 
-std::vector<double> levelSetSigmaPx(const std::vector<Pixel>& points, const SurfaceField& field, const Camera& camera,
-                                    const Surface& surface, const ColumnSlopes& slopes) {
+Eigen::MatrixXd levelSetShiftsPx(const std::vector<Pixel>& points, const SurfaceField& field, const Camera& camera,
+                                 const Surface& surface, const ColumnSlopes& slopes) {
   const Eigen::Vector3d eye = camera.centreInWorld();
   const auto seen = [&](const Pixel& p) -> std::optional<SurfacePoint> {
     const Outcome<SurfacePoint> hit = surface.firstHit(camera.ray(p));
@@ -46,7 +51,7 @@ std::vector<double> levelSetSigmaPx(const std::vector<Pixel>& points, const Surf
     const std::optional<SurfacePoint> at = seen(p);
     return at ? field.value(*at) : std::nullopt;
   };
-  std::vector<double> sigma(points.size(), 0.0);
+  Eigen::MatrixXd shifts = Eigen::MatrixXd::Zero(Eigen::Index(points.size()), 0);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::optional<SurfacePoint> at = seen(points[i]);
     const std::optional<double> here = at ? field.value(*at) : std::nullopt;
@@ -59,36 +64,67 @@ std::vector<double> levelSetSigmaPx(const std::vector<Pixel>& points, const Surf
     const double gradient = std::hypot(slope({kStepPx, 0}), slope({0, kStepPx}));
     if (!(gradient > 0) || !(std::abs(*here - field.level) <= kEdgePx * gradient)) continue;
     const std::optional<Eigen::VectorXd> change = slopes(*at);
-    if (change && change->allFinite()) sigma[i] = change->norm() / gradient;
+    if (!change || !change->allFinite()) continue;
+    if (shifts.cols() == 0) shifts = Eigen::MatrixXd::Zero(shifts.rows(), change->size());
+    shifts.row(Eigen::Index(i)) = -change->transpose() / gradient;
   }
-  return sigma;
+  return shifts;
+}
+
+std::vector<double> levelSetSigmaPx(const std::vector<Pixel>& points, const SurfaceField& field, const Camera& camera,
+                                    const Surface& surface, const ColumnSlopes& slopes) {
+  return rowNorms(levelSetShiftsPx(points, field, camera, surface, slopes));
+}
+
+std::vector<Pixel> outwardNormals(const Polyline& contour) {
+  const std::size_t n = contour.points.size();
+  std::vector<Pixel> normals(n, Pixel(0, 0));
+  const double side = signedArea(contour) >= 0 ? 1 : -1;
+  for (std::size_t i = 0; n >= 3 && i < n; ++i) {
+    const Pixel tangent = contour.points[(i + 1) % n] - contour.points[(i + n - 1) % n];
+    const Pixel normal = side * Pixel(tangent.y(), -tangent.x()).normalized();
+    if (normal.allFinite()) normals[i] = normal;
+  }
+  return normals;
+}
+
+std::vector<double> shiftsAlongNormals(const Polyline& contour, const Polyline& other) {
+  const std::vector<Pixel> normals = outwardNormals(contour);
+  std::vector<double> shifts;
+  for (std::size_t i = 0; i < contour.points.size(); ++i)
+    shifts.push_back(normals[i].norm() > 0 ? alongNormal(other, contour.points[i], normals[i]) : std::nan(""));
+  return shifts;
+}
+
+Eigen::MatrixXd polylineShiftsPx(const Polyline& contour, const std::vector<std::pair<Polyline, Polyline>>& perturbed, double step) {
+  require(step > 0, "polylineShiftsPx: step");
+  const std::size_t n = contour.points.size();
+  Eigen::MatrixXd shifts = Eigen::MatrixXd::Zero(Eigen::Index(n), Eigen::Index(perturbed.size()));
+  if (n < 3) return shifts;
+  const std::vector<Pixel> normals = outwardNormals(contour);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!(normals[i].norm() > 0)) continue;
+    for (std::size_t k = 0; k < perturbed.size(); ++k) {
+      const auto& [plus, minus] = perturbed[k];
+      double change;
+      if (plus.points.size() == n && minus.points.size() == n) {
+        change = normals[i].dot(plus.points[i] - minus.points[i]);
+      } else {
+        const double after = alongNormal(plus, contour.points[i], normals[i]), before = alongNormal(minus, contour.points[i], normals[i]);
+        change = (std::isfinite(after) ? after : 0) - (std::isfinite(before) ? before : 0);
+      }
+      if (std::isfinite(change)) shifts(Eigen::Index(i), Eigen::Index(k)) = change / (2 * step);
+    }
+  }
+  return shifts;
 }
 
 std::vector<double> polylineSigmaPx(const Polyline& contour, const std::vector<std::pair<Polyline, Polyline>>& perturbed, double step) {
-  require(step > 0, "polylineSigmaPx: step");
-  const std::size_t n = contour.points.size();
-  std::vector<double> sigma(n, 0.0);
-  if (n < 3) return sigma;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Pixel tangent = contour.points[(i + 1) % n] - contour.points[(i + n - 1) % n];
-    const Pixel normal = Pixel(tangent.y(), -tangent.x()).normalized();
-    if (!normal.allFinite()) continue;
-    double sum = 0;
-    for (const auto& [plus, minus] : perturbed) {
-      double change;
-      if (plus.points.size() == n && minus.points.size() == n)
-        change = normal.dot(plus.points[i] - minus.points[i]);
-      else
-        change = alongNormal(plus, contour.points[i], normal) - alongNormal(minus, contour.points[i], normal);
-      sum += std::pow(change / (2 * step), 2);
-    }
-    if (std::isfinite(sum)) sigma[i] = std::sqrt(sum);
-  }
-  return sigma;
+  return rowNorms(polylineShiftsPx(contour, perturbed, step));
 }
 
-std::vector<double> ellipsoidBandSigmaPx(const HighlightModel& model, const ModelFit& fit, const PredictedHighlight& highlight,
-                                         const Camera& camera, const Surface* surface, const Settings& settings) {
+Eigen::MatrixXd ellipsoidBandShiftsPx(const HighlightModel& model, const ModelFit& fit, const PredictedHighlight& highlight,
+                                      const Camera& camera, const Surface* surface, const Settings& settings) {
   if (!fit.uncertainty || !fit.ellipsoid || fit.uncertainty->root.rows() < 9) return {};
   const Eigen::MatrixXd& root = fit.uncertainty->root;
   const auto predicted = [&](const Eigen::VectorXd& change) -> std::optional<Polyline> {
@@ -116,7 +152,7 @@ std::vector<double> ellipsoidBandSigmaPx(const HighlightModel& model, const Mode
     if (!plus || !minus) return {};  // the highlight would vanish or merge within the uncertainty: no band is honest
     perturbed.emplace_back(std::move(*plus), std::move(*minus));
   }
-  return polylineSigmaPx(highlight.contour, perturbed, kColumnStep);
+  return polylineShiftsPx(highlight.contour, perturbed, kColumnStep);
 }
 
 }  // namespace glint

@@ -34,6 +34,22 @@ bool leavesImage(const Polyline& line, const Camera& camera) {
   });
 }
 
+std::optional<BandScore> bandScore(const Polyline& observed, const PredictedHighlight& h) {
+  constexpr double kNormal95 = 1.959964;
+  BandScore score;
+  double count = 0;
+  for (std::size_t i = 0; i < h.sigmaPx.size(); ++i) {
+    if (!(h.sigmaPx[i] > 0)) continue;
+    count += 1;
+    score.sigmaPx += h.sigmaPx[i];
+    score.coverage += distance(observed, h.contour.points[i]) <= kNormal95 * h.sigmaPx[i];
+  }
+  if (!(count > 0)) return std::nullopt;
+  score.sigmaPx /= count;
+  score.coverage /= count;
+  return score;
+}
+
 }  // namespace
 
 FrameComparison compareFrame(const FrameEvidence& evidence, const std::string& light, const Camera& camera,
@@ -82,6 +98,7 @@ FrameComparison compareFrame(const FrameEvidence& evidence, const std::string& l
       row.metrics = compareContours(observed[o], predicted[row.predicted],
                                     clipped[row.predicted] ? std::vector<std::pair<int, int>>{} : h.gaps, h.ellipse,
                                     evidence.scored()[row.observed].peak, h.brightest.pixel, ious[pair - pairs.begin()]);
+      row.band = bandScore(observed[o], h);
     }
     c.rows.push_back(std::move(row));
   }

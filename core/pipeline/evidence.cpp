@@ -40,11 +40,41 @@ void fitMissingEllipse(Highlight& h) {
   if (const Outcome<Ellipse> e = fitEllipse(h.contour.points)) h.ellipse = *e;
 }
 
+/// Contours that the scene gives at other levels, to the highlight whose peak they enclose. One around several peaks is evidence once.
+void addOtherLevels(const std::vector<Highlight>& given, std::vector<Highlight>& highlights) {
+  for (const Highlight& other : given)
+    for (Highlight& h : highlights) {
+      if (std::abs(other.level - h.level) < kSameLevel || other.light != h.light || !contains(other.contour, h.peak)) continue;
+      h.otherLevels.push_back({other.level, other.contour});
+      break;
+    }
+}
+
 std::filesystem::path truthFile(const std::string& folder, const Frame& frame) {
   return std::filesystem::path(folder) / (frame.id + ".json");
 }
 
 }  // namespace
+
+DetectOptions detectOptionsFor(const Frame& frame, FrameSource source, const Settings& settings) {
+  DetectOptions options;
+  options.level = settings.number("detect.level");
+  options.minAreaPx2 = settings.number("detect.min_area");
+  options.minContrast = settings.number("detect.min_contrast");
+  options.peakWindowLevel = settings.number("detect.peak_window");
+  options.clipValue = settings.number("detect.clip");
+  const bool photograph = frame.radiance.empty() || (source == FrameSource::Image && !frame.image.empty());
+  if (options.clipValue == 0 && photograph) options.clipValue = 1.0;  // linearised codes end at 1
+  return options;
+}
+
+Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const Settings& settings) {
+  const Outcome<Image> linear = readLinear(frame, source);
+  if (!linear) return linear.failure();
+  const Outcome<std::optional<Image>> mask = readMask(frame);
+  if (!mask) return mask.failure();
+  return linearPixels(*linear, mask->has_value() ? &**mask : nullptr, detectOptionsFor(frame, source, settings).clipValue);
+}
 
 FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, const Settings& settings, const SeparateLights& lights) {
   const Frame& frame = scene.frames[index];
@@ -53,6 +83,7 @@ FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, 
   const double level = settings.number("detect.level");
   for (const Highlight& h : frame.highlights)
     if (std::abs(h.level - level) < kSameLevel) evidence.highlights.push_back(h);
+  addOtherLevels(frame.highlights, evidence.highlights);
   if (evidence.highlights.empty()) {
     if (frame.radiance.empty() && frame.image.empty()) {
       if (!frame.highlights.empty()) {
@@ -72,14 +103,7 @@ FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, 
       evidence.failure = mask.failure();
       return evidence;
     }
-    DetectOptions options;
-    options.level = level;
-    options.minAreaPx2 = settings.number("detect.min_area");
-    options.minContrast = settings.number("detect.min_contrast");
-    options.peakWindowLevel = settings.number("detect.peak_window");
-    options.clipValue = settings.number("detect.clip");
-    const bool photograph = frame.radiance.empty() || (source == FrameSource::Image && !frame.image.empty());
-    if (options.clipValue == 0 && photograph) options.clipValue = 1.0;  // linearised codes end at 1
+    DetectOptions options = detectOptionsFor(frame, source, settings);
     options.separatePeaks = lights.separate || frame.lightsOn.size() > 1;
     options.references = lights.references;
     for (PeakReference& r : options.references) r.peak = frame.camera.distorted(r.peak);
@@ -209,13 +233,18 @@ Highlight withNoise(const Highlight& highlight, double sigma, unsigned seed, int
   std::mt19937_64 engine(sequence);
   std::normal_distribution<double> gauss(0, sigma);
   Highlight noisy = highlight;
-  noisy.contour.points = resample(highlight.contour, kNoisePoints);
-  for (Pixel& p : noisy.contour.points) {
-    p.x() += gauss(engine);
-    p.y() += gauss(engine);
-  }
+  const auto shake = [&](Polyline& contour) {
+    contour.points = resample(contour, kNoisePoints);
+    for (Pixel& p : contour.points) {
+      p.x() += gauss(engine);
+      p.y() += gauss(engine);
+    }
+  };
+  shake(noisy.contour);
   noisy.peak.x() += gauss(engine);
   noisy.peak.y() += gauss(engine);
+  for (LevelContour& c : noisy.otherLevels)
+    if (c.contour.points.size() >= 3) shake(c.contour);
   noisy.areaPx2 = std::abs(signedArea(noisy.contour));
   noisy.ellipse.reset();
   fitMissingEllipse(noisy);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/pipeline/inspection.h"
+#include "core/reflectance/pixel_patch.h"
 
 namespace glint {
 
@@ -14,6 +15,12 @@ struct SeparateLights {
   bool separate = false;                   ///< also where the frame does not state several lights
   std::vector<PeakReference> references;   ///< ideal pixels
 };
+
+/// How a frame's image is searched, without references.
+DetectOptions detectOptionsFor(const Frame& frame, FrameSource source, const Settings& settings);
+
+/// The image that detection sees, as evidence. FrameUnreadable.
+Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const Settings& settings);
 
 /// Highlights of one frame in ideal pixels: those that the scene gives, else detected (each at the level of its own peak where the frame states
 /// several lights). The light is set where the frame says which one is on (one light: its id; none stated: "light").

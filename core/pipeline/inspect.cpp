@@ -4,10 +4,14 @@
 #include <chrono>
 
 #include "core/base/parallel.h"
+#include "core/model/pixel_evidence.h"
+#include "core/model/plausible.h"
+#include "core/pipeline/band.h"
 #include "core/pipeline/comparison.h"
 #include "core/pipeline/corrected_depth.h"
 #include "core/pipeline/evidence.h"
 #include "core/pipeline/inspection.h"
+#include "core/pipeline/lobe_stage.h"
 #include "core/pipeline/several_lights.h"
 #include "core/pipeline/stage_keys.h"
 #include "core/pipeline/training.h"
@@ -59,6 +63,7 @@ class Run {
         onlyFrame_(onlyFrame) {}
 
   void highlights();
+  void lobes();
   void assignSeveralLights();
   void changeHighlights();
   void brightestPointsAndTangentPlanes();
@@ -100,11 +105,29 @@ class Run {
       return std::any_of(e.highlights.begin(), e.highlights.end(), [&](const Highlight& h) { return h.light == light; });
     });
   }
+  /// Lights that are on in most frames of a fit and show no highlight of their own in any frame: this one's may be theirs too. "" where none is.
+  std::string mergedRemark(const ModelFit& fit) const {
+    std::map<std::string, int> on;
+    for (const int frame : fit.frames)
+      for (const std::string& light : r_.scene->frames[std::size_t(frame)].lightsOn)
+        if (light != fit.light && isOn(*r_.scene, r_.request.whatIf, frame, light)) ++on[light];
+    std::string names;
+    int most = 0;
+    for (const auto& [light, frames] : on) {
+      if (2 * frames < static_cast<int>(fit.frames.size()) || seen(light)) continue;
+      names += (names.empty() ? "" : ", ") + light;
+      most = std::max(most, frames);
+    }
+    if (names.empty()) return "";
+    return "also on in " + std::to_string(most) + " of " + std::to_string(fit.frames.size()) + " training frames, without a highlight of its own: " +
+           names + "; where highlights of several lights merge, the light that is estimated lies between them";
+  }
   bool anyModel(bool (HighlightModel::*needs)() const) const {
     return std::any_of(r_.request.models.begin(), r_.request.models.end(),
                        [&](const std::string& m) { return (modelByName(m).*needs)(); });
   }
   FitInput fitInput(const Group& group) const;
+  std::vector<std::shared_ptr<const Band>> bandsOf(const HighlightModel& model, ModelResult& result);
 
   void gather(const std::vector<int>& frames);
   std::vector<int> framesToGather() const;
@@ -121,9 +144,16 @@ void Run::highlights() {
   const InspectionRequest& q = r_.request;
   const bool together = lightsAreOpen();
   r_.stageKeys["detect"] = detectKey(q, together);
+  r_.stageKeys["lobe"] = lobeKey(q, r_.train, r_.stageKeys["detect"]);
   if (unchanged("detect")) {
     r_.evidence = previous_->evidence;
     for (const auto& [frame, before] : previous_->evidenceBefore) r_.evidence[std::size_t(frame)] = before;
+    if (unchanged("lobe")) {
+      r_.detected = previous_->detected;
+    } else {
+      for (std::size_t i = 0; i < previous_->detected.size(); ++i)
+        if (previous_->detected[i].frame >= 0) r_.evidence[i] = previous_->detected[i];
+    }
   } else {
     if (!q.truthFolder.empty()) requireTruthFolder(q.truthFolder, *r_.scene);
     r_.evidence.resize(r_.scene->frames.size());
@@ -162,6 +192,18 @@ void Run::gather(const std::vector<int>& frames) {
   r_.work.framesHeldAtOnce = most;
 }
 
+void Run::lobes() {
+  const SurfaceOfFrame surface = [this](int frame) { return surfaceOf(frame); };
+  if (unchanged("lobe")) {
+    r_.patches = previous_->patches;
+    r_.pixelFits = previous_->pixelFits;
+    r_.pixelFailures = previous_->pixelFailures;
+  } else {
+    fitLobes(r_, surface, progress_);
+  }
+  contourAgain(r_, surface, progress_);
+}
+
 void Run::assignSeveralLights() {
   glint::assignSeveralLights(
       *r_.scene, r_.evidence, [&](int frame) { return surfaceOf(frame); },
@@ -192,7 +234,7 @@ void Run::brightestPointsAndTangentPlanes() {
   const InspectionRequest& q = r_.request;
   r_.stageKeys["views"] =
       keyOfStages(q.settings, {"surface"},
-                  r_.stageKeys["detect"] + "|" + join(r_.train.frames) + (r_.train.perSurface ? "per-surface" : "") + "|x" +
+                  r_.stageKeys["lobe"] + "|" + join(r_.train.frames) + (r_.train.perSurface ? "per-surface" : "") + "|x" +
                       join(q.excluded) + "|" + exactText(q.noisePx) + "|" + std::to_string(q.seed) + "|" + posesKey(q.whatIf) +
                       "|" + highlightsKey(q.whatIf) + "|" + lightsOffKey(q.whatIf));
   if (unchanged("views") && previous_->depthCorrections.empty()) {  // corrected views belong to that run's light
@@ -213,6 +255,7 @@ void Run::brightestPointsAndTangentPlanes() {
     }
   }
   r_.work.trainingViews = static_cast<int>(r_.views.size());
+  attachPixels(r_);
 }
 
 std::vector<Group> Run::groups() const {
@@ -333,6 +376,8 @@ FitInput Run::fitInput(const Group& group) const {
   FitInput input;
   for (const int v : group.views) input.views.push_back(r_.views[v]);
   const std::string key = lightKey(group.light, group.surface);
+  // The stage's fit is of all views of the group: it serves where none of them lost its pixels since.
+  if (const auto fit = r_.pixelFits.find(key); fit != r_.pixelFits.end() && havePixels(input.views)) input.pixelFit = fit->second;
   if (const auto it = r_.lights.find(key); it != r_.lights.end()) input.light = it->second;
   else if (const auto failed = r_.lightFailures.find(key); failed != r_.lightFailures.end()) input.lightFailure = failed->second;
   return input;
@@ -363,6 +408,7 @@ void Run::modelFits() {
         fit->model = name;
         fit->light = g.light;
         fit->surface = g.surface;
+        if (std::string merged = mergedRemark(*fit); !merged.empty()) fit->remarks.push_back(std::move(merged));
         fit->timeUs = microsecondsSince(start);
         entry.fit = std::move(*fit);
       } else {
@@ -371,6 +417,26 @@ void Run::modelFits() {
       result.fits.push_back(std::move(entry));
     }
   }
+}
+
+/// One band per fit with predict.band, else nulls.
+std::vector<std::shared_ptr<const Band>> Run::bandsOf(const HighlightModel& model, ModelResult& result) {
+  std::vector<std::shared_ptr<const Band>> bands(result.fits.size());
+  for (ModelResult::Fit& fit : result.fits) fit.bandRemarks.clear();
+  if (!r_.request.settings.flag("predict.band")) return bands;
+  const std::vector<Group> all = groups();
+  parallelFor(
+      static_cast<int>(bands.size()),
+      [&](int i) {
+        ModelResult::Fit& fit = result.fits[static_cast<std::size_t>(i)];
+        const auto group = std::find_if(all.begin(), all.end(), [&](const Group& g) { return g.light == fit.light && g.surface == fit.surface; });
+        if (!fit.fit || group == all.end()) return;
+        FittedBand band = bandOf(model, *fit.fit, fitInput(*group), r_.request.settings, r_.depthCorrections.count(lightKey(fit.light, fit.surface)) > 0);
+        bands[static_cast<std::size_t>(i)] = std::move(band.band);
+        fit.bandRemarks = std::move(band.remarks);
+      },
+      progress_, "band " + model.id());
+  return bands;
 }
 
 void Run::predictionsAndComparisons() {
@@ -400,6 +466,7 @@ void Run::predictionsAndComparisons() {
     // What needs no light needs nothing but the camera (method.md section 11): no surface is loaded for it.
     const bool needsSurface = model.needsLight();
     std::atomic<int> predictions{0}, surfacesAsked{0};
+    const std::vector<std::shared_ptr<const Band>> bands = bandsOf(model, result);
     parallelFor(
         static_cast<int>(tasks.size()),
         [&](int t) {
@@ -414,9 +481,9 @@ void Run::predictionsAndComparisons() {
             const auto start = std::chrono::steady_clock::now();
             prediction = model.predict(*fit.fit, camera, surface.get(), r_.request.settings);
             prediction.timeUs = microsecondsSince(start);
-            if (r_.request.settings.flag("predict.band"))  // not part of the time: no model needs it
-              for (PredictedHighlight& h : prediction.highlights)
-                h.sigmaPx = model.bandSigmaPx(*fit.fit, h, camera, surface.get(), r_.request.settings);
+            dropTooSmall(prediction);
+            if (const std::shared_ptr<const Band>& band = bands[static_cast<std::size_t>(f)])  // not part of the time: no model needs it
+              for (PredictedHighlight& h : prediction.highlights) h.sigmaPx = band->sigmaPx(h, camera, surface.get());
             explainMissingSurface(frame, prediction.failure);
           } else {
             prediction.failure = fit.failure;
@@ -493,9 +560,12 @@ Inspection run(std::shared_ptr<const Scene> scene, const InspectionRequest& requ
   // A model named twice is one model.
   std::vector<std::string>& models = result.request.models;
   for (auto m = models.begin(); m != models.end();) m = std::find(models.begin(), m, *m) != m ? models.erase(m) : m + 1;
+  if (request.noisePx > 0 && request.settings.text("fit.evidence") == "pixels")
+    throw InputError("", "--noise-px", "noise is added to contours, which fit.evidence=pixels does not look at");
   for (const std::string& m : request.models) modelByName(m);  // unknown names are refused before any work
   Run run(result, progress, previous, onlyFrame);
   run.highlights();
+  run.lobes();
   run.changeHighlights();
   run.brightestPointsAndTangentPlanes();
   run.lights();

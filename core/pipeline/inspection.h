@@ -59,6 +59,12 @@ struct FrameEvidence {
   const std::optional<Failure>& scoringFailure() const { return againstTruth ? truthFailure : failure; }
 };
 
+/// How a predicted contour's band does against the observed one; vertices on the surface's own edge have none and do not count.
+struct BandScore {
+  double sigmaPx = 0;   ///< mean over the vertices
+  double coverage = 0;  ///< share of the vertices whose distance from the observed contour is within 1.96 sigma
+};
+
 /// Prediction of one model for one light in one frame, compared with the evidence.
 struct FrameComparison {
   int frame = -1;
@@ -71,6 +77,7 @@ struct FrameComparison {
     int predicted = -1;                  ///< index into prediction.highlights; -1 = missed
     std::optional<ContourMetrics> metrics;
     std::optional<Failure> failure;
+    std::optional<BandScore> band;       ///< of a matched pair whose prediction has a band
   };
   std::vector<Row> rows;
   double iou = 0;                        ///< over the union of all regions of this light
@@ -83,6 +90,7 @@ struct ModelResult {
     std::optional<std::string> surface;
     std::optional<ModelFit> fit;         ///< exactly one of fit and failure
     std::optional<Failure> failure;
+    std::vector<std::string> bandRemarks;  ///< predict.band: what its band holds, and what makes it wide
   };
   std::vector<Fit> fits;
   std::vector<FrameComparison> frames;   ///< every frame, training ones too; `heldOut` tells which count
@@ -93,6 +101,8 @@ struct ModelResult {
 struct WorkCounts {
   int framesDetected = 0;     ///< frames whose highlights were gathered
   int framesHeldAtOnce = 0;   ///< most frames whose images were in memory at the same time
+  int pixelFits = 0;          ///< lobes fitted to pixels
+  int framesContouredAgain = 0;  ///< with a lobe's background
   int trainingViews = 0;      ///< brightest points and tangent planes
   int lights = 0;             ///< lights estimated
   int canonicalContours = 0;
@@ -112,7 +122,12 @@ struct Inspection {
   std::vector<FrameEvidence> evidence;                     ///< one per frame; `frame` is -1 where inspectOneFrame() did not look
   std::map<int, FrameEvidence>
       evidenceBefore;  ///< of frames whose highlights the what-if moved or whose lights it switched off: as found
+  /// Where a lobe's background replaced the smooth one (detect.background = lobe): the evidence as first detected; else empty.
+  std::vector<FrameEvidence> detected;
   std::vector<TrainingView> views;                         ///< one per training highlight
+  std::map<std::pair<int, int>, std::shared_ptr<const PixelPatch>> patches;  ///< pixels by (training frame, highlight as found)
+  std::map<std::string, std::shared_ptr<const PixelFit>> pixelFits;  ///< by light key: the lobe of the training frames' pixels
+  std::map<std::string, Failure> pixelFailures;            ///< the same keys: why there is none
   std::map<std::string, LightEstimate> lights;             ///< by light id (+ "@" + surface key when per surface)
   std::map<std::string, Failure> lightFailures;            ///< the same keys: why a light could not be estimated
   std::map<std::string, DepthCorrection> depthCorrections; ///< the same keys, where light.refine_depth found one: of the views' and predictions' depth maps

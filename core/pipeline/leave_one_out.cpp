@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/model/plausible.h"
 #include "core/pipeline/training.h"
 
 namespace glint {
@@ -34,8 +35,9 @@ double variationOf(const Prediction& p) {
 Answer predictLeft(const TrainingView& left, const HighlightModel& model, const ModelFit& fit, const Settings& settings) {
   Answer answer;
   const Clock::time_point start = Clock::now();
-  const Prediction p = model.predict(fit, left.camera, left.surface.get(), settings);
+  Prediction p = model.predict(fit, left.camera, left.surface.get(), settings);
   answer.predictUs = microsecondsSince(start);
+  dropTooSmall(p);
   answer.highlights = static_cast<int>(p.highlights.size());
   answer.variation = variationOf(p);
   answer.boundToSurface = fit.quadric && !model.needsCanonicalContours();
@@ -63,7 +65,7 @@ Answer predictLeft(const TrainingView& left, const HighlightModel& model, const 
   return answer;
 }
 
-Answer leaveOut(Fold& fold, const HighlightModel& model, const Settings& settings) {
+Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Settings& settings) {
   if (model.needsLight() && !fold.lightTried) {
     fold.lightTried = true;
     const Outcome<LightEstimate> light = estimateLight(fold.others, settings);
@@ -78,11 +80,16 @@ Answer leaveOut(Fold& fold, const HighlightModel& model, const Settings& setting
   }
   FitInput input;
   input.views = fold.others;
+  input.pixelFit = fold.pixelFit;
   if (model.needsLight()) {
     input.light = fold.light;
     input.lightFailure = fold.lightFailure;
   }
-  const Outcome<ModelFit> fit = model.fit(input, settings);
+  return model.fit(input, settings);
+}
+
+Answer leaveOut(Fold& fold, const HighlightModel& model, const Settings& settings) {
+  const Outcome<ModelFit> fit = fitFold(fold, model, settings);
   if (!fit) return failed(fit.failure());
   Answer answer = predictLeft(*fold.left, model, *fit, settings);
   answer.fit = *fit;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ struct Fold {
   bool lightTried = false, canonicalTried = false;
   std::optional<LightEstimate> light;
   std::optional<Failure> lightFailure;
+  std::shared_ptr<const PixelFit> pixelFit;  ///< of exactly these views, where it is known already
 };
 
 /// What a model said about one left-out view.
@@ -34,6 +36,8 @@ struct Answer {
 
 /// One per left-out view: at most kMostLeftOut, evenly spread. Their views stay valid as long as the inspection.
 std::vector<Fold> foldsOf(const Inspection& inspection);
+/// Fits the model to the fold's other views. Fills what is missing in the fold. The model's and the light's failures.
+Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Settings& settings);
 /// Fits the model to the other views, predicts the left-out one and compares. Fills what is missing in the fold.
 Answer leaveOut(Fold& fold, const HighlightModel& model, const Settings& settings);
 /// The last step of that alone, from a fit that is there.

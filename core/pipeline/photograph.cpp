@@ -55,6 +55,11 @@ Outcome<Exposure> exposureOf(const Inspection& in, const Material& material) {
 
 bool picturesAreSynthesised(const Inspection& inspection) { return inspection.request.whatIf.synthesise; }
 
+bool hasPhotograph(const Inspection& in, int frame) {
+  const Frame& f = in.given->frames[std::size_t(frame)];
+  return picturesAreSynthesised(in) || !f.image.empty() || !f.radiance.empty();
+}
+
 std::string pictureKey(const Inspection& inspection) {
   // The exposure is that of all frames: as long as only some are known, pictures are those of a first look.
   const bool some =

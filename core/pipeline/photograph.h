@@ -17,6 +17,8 @@ inline constexpr double kPeakValue = 0.9, kMattShare = 0.08;
 /// Whether the pictures that belong to the evidence are rendered, because a what-if synthesises the contours; else they are those
 /// that were captured.
 bool picturesAreSynthesised(const Inspection& inspection);
+/// The frame has a photograph to show: an image or radiance of its own, or a synthesised one. A scene may give contours alone.
+bool hasPhotograph(const Inspection& inspection, int frame);
 /// Equal for inspections of one scene that share their pictures; "" where they were captured.
 std::string pictureKey(const Inspection& inspection);
 

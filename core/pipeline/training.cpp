@@ -7,8 +7,10 @@
 #include "core/light/contour_evidence.h"
 #include "core/light/estimate.h"
 #include "core/light/left_out.h"
+#include "core/light/ray_condition.h"
 #include "core/light/refine_poses.h"
 #include "core/model/models.h"
+#include "core/model/plausible.h"
 #include "core/model/walk.h"
 
 namespace glint {
@@ -18,7 +20,9 @@ TrainingView trainingView(const FrameEvidence& evidence, int index, const Camera
   view.frame = evidence.frame;
   view.camera = camera;
   view.highlight = evidence.highlights[index];
+  view.levels = view.highlight.otherLevels;
   view.surface = std::move(surface);
+  if ((view.failure = tooSmall(view.highlight.contour))) return view;
   if (!view.surface) {
     view.failure = Failure{Reason::NoSurface, ""};
     return view;
@@ -55,9 +59,8 @@ int limitOrders(const std::vector<ContourEvidence>& evidence, std::size_t views,
   return errors && predictsLeftOutBetter(errors->directed, errors->constant) ? 1 : 0;
 }
 
-}  // namespace
-
-Outcome<LightEstimate> estimateLight(const std::vector<TrainingView>& views, const Settings& settings) {
+/// The light, whichever side of the surface it is on.
+Outcome<LightEstimate> estimateAnyLight(const std::vector<TrainingView>& views, const Settings& settings) {
   std::vector<ReflectedRay> rays;
   std::vector<BundleView> bundleViews;
   for (const TrainingView& v : views) {
@@ -67,12 +70,14 @@ Outcome<LightEstimate> estimateLight(const std::vector<TrainingView>& views, con
   }
   const int points = settings.integer("light.bundle_points");
   const Outcome<Triangulation> t = triangulateLight(rays);
+  if (!t && t.failure().reason == Reason::TooFewViews)
+    return Failure{Reason::TooFewViews, t.failure().detail + unusedViews(views)};
   const bool bundle = settings.text("light.solver") == "bundle";
   LightEstimate estimate;
   estimate.solver = "triangulated";
+  estimate.condition = conditionOf(rays);
   if (t) {
     estimate.light = t->light;
-    estimate.condition = t->condition;
     if (!t->light.atInfinity()) estimate.covariance = t->covariance;
   } else if (!bundle || t.failure().reason != Reason::LightBehindSurface || rays.empty()) {
     return t.failure();
@@ -83,34 +88,45 @@ Outcome<LightEstimate> estimateLight(const std::vector<TrainingView>& views, con
     if (!(mean.norm() > 1e-6)) return t.failure();  // directions that cancel have no mean
     estimate.light = Light::towards(mean);
   }
+  const Outcome<std::vector<ContourEvidence>> evidence = contoursOnSurfaces(bundleViews, points);
   if (bundle) {
     BundleOptions options;
     options.pointsPerView = points;
     options.robustPx = settings.number("light.robust_px");
-    const Outcome<std::vector<ContourEvidence>> evidence = contoursOnSurfaces(bundleViews, points);
     if (!evidence) return evidence.failure();
     Outcome<Bundle> b = bundleLight(*evidence, bundleViews.size(), estimate.light, options);
     if (!b) return b.failure();
     if (limitOrders(*evidence, bundleViews.size(), *b, options, settings.integer("light.limit_orders")) > 0) {
       options.limitOrders = 1;
       const Outcome<Bundle> directed = bundleLight(*evidence, bundleViews.size(), b->light, options);
-      if (directed) b = directed;
+      if (directed && !lightBehind(views, directed->light)) b = directed;
     }
     if (settings.flag("light.refine_poses")) {
       const Outcome<PoseRefinement> refined = refinePoses(bundleViews, b->light, settings.number("light.pose_sigma"), options);
-      if (refined) b = refined->bundle;
+      if (refined && !lightBehind(views, refined->bundle.light)) b = refined->bundle;
     }
     estimate.extent = b->extent;
     estimate.solver = "bundle";
     estimate.light = b->light;
     estimate.limitAngle = b->limitAngle;
     estimate.rmsPx = b->rmsPx;
+    estimate.residualPx = b->residualPx;
     estimate.uncertainty = b->uncertainty;
     estimate.covariance.reset();
     if (!b->light.atInfinity() && b->positionCovariance.allFinite()) estimate.covariance = b->positionCovariance;
     return estimate;
   }
   estimate.limitAngle = medianContourAngle(views, estimate.light, points);
+  if (evidence) estimate.residualPx = residualsPx(*evidence, bundleViews.size(), estimate.light, estimate.limitAngle);
+  return estimate;
+}
+
+}  // namespace
+
+Outcome<LightEstimate> estimateLight(const std::vector<TrainingView>& views, const Settings& settings) {
+  Outcome<LightEstimate> estimate = estimateAnyLight(views, settings);
+  if (!estimate) return estimate;
+  if (std::optional<Failure> behind = lightBehind(views, estimate->light)) return *std::move(behind);
   return estimate;
 }
 

@@ -85,8 +85,9 @@ Outcome<ContourEvidence> gatherEvidence(const std::vector<RadianceView>& views, 
     for (const Pixel& p : view.contour)
       if (!p.allFinite()) return Failure{Reason::NotFinite, "a contour point of view " + std::to_string(v)};
     const auto [known, isNew] = frameIndex.emplace(view.frame, static_cast<int>(all.frames.size()));
-    if (isNew) all.frames.push_back({view.camera, view.surface, {}, std::nullopt});
-    all.frames[known->second].starts.push_back(view.peak);
+    if (isNew) all.frames.push_back({view.camera, view.surface, {}, {}, {}});
+    std::vector<Pixel>& starts = all.frames[known->second].starts;
+    if (std::find(starts.begin(), starts.end(), view.peak) == starts.end()) starts.push_back(view.peak);
     const std::vector<Pixel> pixels =
         view.contour.size() > std::size_t(pointsPerView) ? resample(Polyline{view.contour, true}, pointsPerView) : view.contour;
     offered += pixels.size();

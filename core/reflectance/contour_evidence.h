@@ -37,17 +37,24 @@ struct Evidence {
   double biasPx = 0;         ///< expected distance of a measured pixel outside the contour
 };
 
+/// log I with its derivatives by the unknowns of a fit: L (4), log m, then those of the lamp's shape.
+struct LogAndSlopes {
+  double value = 0;
+  Eigen::Matrix<double, 8, 1> slopes = Eigen::Matrix<double, 8, 1>::Zero();
+};
+
 /// A frame's maximum under the light of the moment.
 struct FramePeak {
   Camera camera;
   const Surface* surface = nullptr;
   std::vector<Pixel> starts;
-  std::optional<Seen> at;  ///< empty where nothing in the frame is lit
+  std::optional<Seen> at;           ///< empty where nothing in the frame is lit
+  std::optional<LogAndSlopes> log;  ///< there; shared by all points of the frame
 };
 
 /// Normalised coordinates are (x - origin) / scale.
 struct ContourEvidence {
-  std::vector<Evidence> points;
+  std::vector<Evidence> points;  ///< contour by contour, in order
   std::vector<FramePeak> frames;
   Eigen::Vector3d origin{0, 0, 0};
   double scale = 1;     ///< mean distance from the cameras

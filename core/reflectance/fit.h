@@ -6,6 +6,7 @@
 
 #include "core/base/uncertainty.h"
 #include "core/light/light.h"
+#include "core/reflectance/lamp.h"
 #include "core/reflectance/lobe.h"
 #include "core/surface/surface.h"
 
@@ -37,25 +38,32 @@ struct RadianceStart {
   double cost = 0;  ///< mean robust square per point after a short fit, px^2: starts of all lobes are compared by it
 };
 
-/// Starts along the first guess's direction, at other distances and at infinity, narrower and wider, each after a short fit to
-/// few points; best first. Empty where fitRadiance would fail.
+/// Starts along the first guess's direction at other distances and at infinity, narrower and wider; or around it, tilted by 20 and 45
+/// degrees.
+enum class StartGrid { Distances, Directions };
+/// Each start of the grid after a short fit to few points; best first. Empty where fitRadiance would fail.
 std::vector<RadianceStart> screenStarts(Lobe lobe, const std::vector<RadianceView>& views, const Light& light, double roughness,
-                                        const RadianceFitOptions& options = {});
+                                        StartGrid grid = StartGrid::Distances, const RadianceFitOptions& options = {});
 
 struct RadianceFit {
   Lobe lobe = Lobe::TorranceSparrow;
   double roughness = 0;  ///< m
   Light light;
   double lightRadius = 0;  ///< m; 0 where the contours do not show a size
-  std::optional<ParameterUncertainty>
-      uncertainty;                     ///< of (L homogeneous with |L| = 1 (4), log m (1)); none where a direction is free
+  Eigen::Vector3d lightHalfAxis{0, 0, 0};  ///< m, from the light to one end of a segment; 0 for another lamp
+  /// Of (L homogeneous with |L| = 1 (4), log m (1)), then of a sphere's squared radius (1, m^2) or a segment's half axis (3, m); none
+  /// where a direction is free.
+  std::optional<ParameterUncertainty> uncertainty;
   Eigen::Matrix3d positionCovariance;  ///< m^2; not finite for a light at infinity
   double rmsPx = 0;
   double cost = 0;                 ///< robust sum of squares, px^2: lobes are compared by it
   std::vector<double> residualPx;  ///< per view, RMS
   bool poor = false;               ///< residuals are large against the contours: a wrong lobe, or a minimum that is not the best
   bool doubtful = false;           ///< larger than a right lobe leaves: worth another search (also where poor)
+  bool noiseOnly = false;          ///< nothing that neighbours on a contour share remains
   int points = 0, iterations = 0;
+
+  Lamp lamp() const;
 };
 
 /// Light and roughness of one lobe from contours alone (method.md section 7, `reflectance`): minimises over L = (l, w) on the
@@ -68,5 +76,14 @@ struct RadianceFit {
 /// NotConverged; NotFinite.
 Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& views, const Light& light, double roughness,
                                  const RadianceFitOptions& options = {});
+
+/// The minimum that one start leads to, with everything free that the lamp's shape has: a point stays a point, a segment a segment.
+/// `lightSize` and `otherStarts` do not matter. Failures as fitRadiance; NotConverged also where a lamp grows beyond what its
+/// quadrature serves (2.5 lobe widths for a sphere, 12 for a segment).
+Outcome<RadianceFit> fitLamp(Lobe lobe, const std::vector<RadianceView>& views, const Lamp& lamp, double roughness,
+                             const RadianceFitOptions& options = {});
+
+/// RMS residual of every view under a fit, px, whether it was fitted to the view or not. Not finite where a frame shows no maximum.
+std::vector<double> rmsOfViews(const RadianceFit& fit, const std::vector<RadianceView>& views, const RadianceFitOptions& options = {});
 
 }  // namespace glint

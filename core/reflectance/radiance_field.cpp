@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/light/light.h"
 #include "core/reflectance/light_radiance.h"
 #include "core/surface/occlusion.h"
 
@@ -26,17 +25,22 @@ double depthInImage(const Pixel& p, const Camera& camera, double marginPx) {
 
 }  // namespace
 
-RadianceField::RadianceField(const Surface& surface, const Camera& camera, Lobe lobe, double roughness, const Light& light,
-                             double lightRadius)
+RadianceField::RadianceField(const Surface& surface, const Camera& camera, Lobe lobe, double roughness, const Lamp& lamp)
+    : RadianceField(surface, camera, lobe, roughness, lamp, lobe::LampRule{}) {
+  rule_ = lobe::lampRuleFor(in_.shape, lamp.isPoint() ? 0 : largestSizeRatio());
+}
+
+RadianceField::RadianceField(const Surface& surface, const Camera& camera, Lobe lobe, double roughness, const Lamp& lamp,
+                             const lobe::LampRule& rule)
     : surface_(surface),
       camera_(camera),
       eye_(camera.centreInWorld()),
       lobe_(lobe),
       roughness_(roughness),
-      light_(light),
-      radiusSquared_(lightRadius * lightRadius) {
+      lamp_(lamp),
+      in_(lobe::inWorld(lamp)),
+      rule_(rule) {
   require(roughness > 0 && std::isfinite(roughness), "RadianceField: roughness must be positive");
-  rule_ = &lobe::discRuleFor(lightRadius > 0 ? largestSizeRatio() : 0);
 }
 
 /// Of the visible points where the lobe may show, on a coarse grid; where none of them is near the mirror direction, of the
@@ -52,8 +56,7 @@ double RadianceField::largestSizeRatio() const {
       if (!p) continue;
       const double fall = fallOfLobe(*p);
       if (!std::isfinite(fall)) continue;
-      const double ratio = lobe::sizeRatio(roughness_, p->position, (eye_ - p->position).normalized(), light_.homogeneous(),
-                                           std::sqrt(radiusSquared_));
+      const double ratio = lobe::lampRatio(roughness_, p->position, (eye_ - p->position).normalized(), in_);
       if (fall < kFoot) largest = std::max(largest, ratio);
       if (fall < leastFall) leastFall = fall, nearest = ratio;
     }
@@ -63,12 +66,18 @@ double RadianceField::largestSizeRatio() const {
 std::optional<double> RadianceField::at(const SurfacePoint& p, double floor) const {
   const double seen = (eye_ - p.position).norm();
   if (!(seen > 0)) return std::nullopt;
-  const std::optional<double> log = lobe::logOfSphereLight<double>(
-      lobe_, roughness_, p.position, p.normal, (eye_ - p.position) / seen, light_.homogeneous(), radiusSquared_, *rule_);
+  const std::optional<double> log =
+      lobe::logOfLamp<double>(lobe_, roughness_, p.position, p.normal, (eye_ - p.position) / seen, in_, rule_);
   if (!log || !std::isfinite(*log)) return std::nullopt;
   const double total = *log;
   if (total < floor) return total;
-  return surface_.occluded(p, occlusionTarget(surface_, p.position, light_, seen)) ? std::nullopt : std::optional<double>(total);
+  return hidden(p, seen) ? std::nullopt : std::optional<double>(total);
+}
+
+bool RadianceField::hidden(const SurfacePoint& p, double seen) const {
+  if (!surface_.occluded(p, occlusionTarget(surface_, p.position, lamp_.centre, seen))) return false;
+  const auto ends = lamp_.ends();
+  return !ends || (surface_.occluded(p, ends->first) && surface_.occluded(p, ends->second));
 }
 
 std::optional<SurfacePoint> RadianceField::visible(const Pixel& p) const {
@@ -155,14 +164,20 @@ std::optional<RadiancePeak> RadianceField::climb(Pixel p, double marginPx) const
 double RadianceField::fallOfLobe(const SurfacePoint& p) const {
   const Eigen::Vector3d toCamera = (eye_ - p.position).normalized();
   const Eigen::Vector3d mirrored = reflect(toCamera, p.normal);
-  const Eigen::Vector4d l = light_.homogeneous();
-  const Eigen::Vector3d offset = l.head<3>() - l.w() * p.position;
+  Eigen::Vector3d offset = in_.light.head<3>() - in_.light.w() * p.position;
+  if (lamp_.isSegment()) {
+    // The segment's point nearest to the mirrored ray.
+    const Eigen::Vector3d axis = in_.light.w() * lamp_.halfAxis;
+    const Eigen::Vector3d acrossAxis = axis - axis.dot(mirrored) * mirrored, across = offset - offset.dot(mirrored) * mirrored;
+    const double squared = acrossAxis.squaredNorm();
+    offset += (squared > 0 ? std::clamp(-across.dot(acrossAxis) / squared, -1.0, 1.0) : 0.0) * axis;
+  }
   const double apart = std::atan2(offset.cross(mirrored).norm(), offset.dot(mirrored));
-  const double extent = std::atan2(std::sqrt(radiusSquared_) * std::abs(l.w()), offset.norm());
+  const double extent = std::atan2(lamp_.radius * std::abs(in_.light.w()), offset.norm());
   if (!(apart > extent)) return 0;
   // The light's point nearest to the mirror direction.
-  const Eigen::Vector3d axis = offset.cross(mirrored).normalized();
-  const Eigen::Vector3d toLight = Eigen::AngleAxisd(extent, axis) * offset.normalized();
+  const Eigen::Vector3d turn = offset.cross(mirrored).normalized();
+  const Eigen::Vector3d toLight = Eigen::AngleAxisd(extent, turn) * offset.normalized();
   const std::optional<LogRadiance> here = logRadiance(lobe_, roughness_, p.normal, toLight, toCamera);
   const std::optional<LogRadiance> top = logRadiance(lobe_, roughness_, p.normal, p.normal, p.normal);
   return here && top ? top->lobe - here->lobe : std::numeric_limits<double>::infinity();

@@ -5,8 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/light/light.h"
-#include "core/reflectance/disc_rule.h"
+#include "core/reflectance/lamp.h"
 #include "core/reflectance/lobe.h"
 #include "core/surface/surface.h"
 
@@ -23,14 +22,16 @@ struct RadiancePeak {
   bool cut = false;  ///< the radiance still rises where the domain of the search ends: the true maximum lies beyond
 };
 
-/// log I of one lobe under one light over the visible surface, up to a constant of the light (method.md section 7):
+/// log I of one lobe under one lamp over the visible surface, up to a constant of the lamp (method.md section 7):
 /// lobe, masking, cosines and falloff. Undefined off the surface, where the light is below the horizon, and in shadow.
 class RadianceField {
  public:
-  /// @param roughness    m > 0. The surface must outlive the field.
-  /// @param lightRadius  m, of a spherical light; 0 for a point. Shadows are those of its centre.
-  RadianceField(const Surface& surface, const Camera& camera, Lobe lobe, double roughness, const Light& light,
-                double lightRadius = 0);
+  /// @param roughness  m > 0. The surface must outlive the field.
+  /// @param lamp       a Light is a point. Shadows: where the lamp's centre is hidden, and both ends of a segment.
+  RadianceField(const Surface& surface, const Camera& camera, Lobe lobe, double roughness, const Lamp& lamp);
+  /// The same with a quadrature that the caller chose for the lamp's shape and size.
+  RadianceField(const Surface& surface, const Camera& camera, Lobe lobe, double roughness, const Lamp& lamp,
+                const lobe::LampRule& rule);
 
   /// @param visible  a visible point, normal towards the camera.
   /// `floor`: below it the value alone tells; the shadow ray, which costs more than all the rest, is left out.
@@ -47,25 +48,26 @@ class RadianceField {
   /// beyond, up to kPeakMargin of the image's larger side.
   std::vector<RadiancePeak> peaks(const std::vector<Pixel>& starts, double scanStepPx) const;
 
-  /// How far the lobe itself has fallen at a point below its value in the mirror direction, in log I; the light's extent towards
-  /// that direction is allowed for. A frame whose maximum lies far down the lobe shows no highlight.
+  /// How far the lobe itself has fallen at a point below its value in the mirror direction, in log I; the lamp's point nearest to
+  /// that direction counts. A frame whose maximum lies far down the lobe shows no highlight.
   double fallOfLobe(const SurfacePoint& visible) const;
 
-  /// The quadrature over the light: one for the whole field, so that it is smooth.
-  const lobe::DiscRule& rule() const { return *rule_; }
+  /// The quadrature over the lamp: one for the whole field, so that it is smooth.
+  const lobe::LampRule& rule() const { return rule_; }
 
  private:
   std::optional<SurfacePoint> visible(const Pixel& p) const;
   double largestSizeRatio() const;
+  bool hidden(const SurfacePoint& visible, double distance) const;
 
   const Surface& surface_;
   const Camera& camera_;
   Eigen::Vector3d eye_;
   Lobe lobe_;
   double roughness_;
-  Light light_;
-  double radiusSquared_;  ///< m^2
-  const lobe::DiscRule* rule_;
+  Lamp lamp_;
+  lobe::LampIn<double> in_;  ///< the same for evaluation
+  lobe::LampRule rule_;
 };
 
 }  // namespace glint

@@ -107,6 +107,45 @@ void countPixels(const Frame& frame, ConventionReport::FrameFacts& facts) {
       facts.problems.push_back(photograph.failure().detail);
 }
 
+/// Median over the triangles of their longest side.
+double medianSide(const TriangleMesh& mesh) {
+  constexpr std::size_t kSample = 20000;
+  std::vector<double> sides;
+  for (std::size_t i = 0; i < mesh.triangles.size(); i += std::max<std::size_t>(1, mesh.triangles.size() / kSample)) {
+    double longest = 0;
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3i& t = mesh.triangles[i];
+      longest = std::max(longest, (mesh.vertices[std::size_t(t[k])] - mesh.vertices[std::size_t(t[(k + 1) % 3])]).norm());
+    }
+    sides.push_back(longest);
+  }
+  return quantile(sides, 0.5);
+}
+
+/// Vertices that were rounded when they were stored, far from the origin for their size: facets and highlights are off.
+void concludeGrids(const Scene& scene, ConventionReport& report) {
+  // Rounding turns facets by about spacing / side. A mesh of 20,480 triangles without normals of its own loses a tenth of a
+  // percent of the highlight's diameter at 1/2000 of a side; what moves a vertex by a hundredth of a pixel moves the contour as
+  // much.
+  constexpr double kOfSide = 5e-4, kOfPixel = 0.01;
+  constexpr double kFar = 4;  // times its size from the origin; nearer, a shape's own round numbers look the same
+  for (const auto& s : report.surfaces) {
+    if (!s.grid || !(s.side > 0)) continue;
+    const double distance = ((s.lower + s.upper) / 2).norm(), size = (s.upper - s.lower).norm();
+    if (!(distance > kFar * size)) continue;
+    double pixels = 0;  // largest over the cameras
+    for (const auto& f : report.frames)
+      if (f.surface == s.id && f.distance > 0)
+        pixels = std::max(pixels, s.grid->spacing * scene.frames[std::size_t(f.frame)].camera.pixelFromRay(0, 0) / f.distance);
+    if (s.grid->spacing < kOfSide * s.side && pixels < kOfPixel) continue;
+    report.findings.push_back("the vertices of surface '" + s.id + "' are too coarse for their distance from the origin: at " +
+                              formatted("%.4g m %s keep steps of %.2g mm, %.2g %% of a triangle's side and %.2g px", distance,
+                                        s.grid->singlePrecision ? "floats" : "the digits of the file", 1e3 * s.grid->spacing,
+                                        100 * s.grid->spacing / s.side, pixels) +
+                              " (store them as doubles or with more digits, or nearer to the origin)");
+  }
+}
+
 /// Statements about the scene as a whole, each with the likely cause.
 void conclude(const Scene& scene, ConventionReport& report) {
   int blind = 0, lookingAway = 0, withSurface = 0, bad = 0, depthOff = 0, notFinite = 0, negative = 0;
@@ -159,6 +198,11 @@ bool ConventionReport::anyFrameSeesSurface() const {
   return std::any_of(frames.begin(), frames.end(), [](const FrameFacts& f) { return f.seesSurface; });
 }
 
+void ConventionReport::take(CameraCheck check) {
+  findings.insert(findings.end(), check.findings.begin(), check.findings.end());
+  cameras = std::move(check);
+}
+
 ConventionReport conventionReport(const Scene& scene, const ProgressFn& progress) {
   ConventionReport report;
   report.name = scene.name;
@@ -194,6 +238,10 @@ ConventionReport conventionReport(const Scene& scene, const ProgressFn& progress
     }
     facts.vertices = static_cast<int>(mesh.vertices.size());
     facts.triangles = static_cast<int>(mesh.triangles.size());
+    if (source.mesh) {
+      facts.grid = coordinateGrid(mesh.vertices);
+      facts.side = medianSide(mesh);
+    }
     facts.hasNormals = source.analytic.has_value() || !mesh.normals.empty();
     report.surfaces.push_back(facts);
   }
@@ -220,6 +268,7 @@ ConventionReport conventionReport(const Scene& scene, const ProgressFn& progress
     report.frames.push_back(std::move(facts));
   }
   conclude(scene, report);
+  concludeGrids(scene, report);
   return report;
 }
 
@@ -245,6 +294,17 @@ std::string toText(const ConventionReport& r) {
                          : std::string("       -        -");
     out += line + "\n";
   }
+  if (r.cameras && !r.cameras->hypotheses.empty()) {
+    out += formatted("\n  cameras   by the highlights of %d frames: contours fit one light ", r.cameras->views);
+    std::string separator;
+    for (const CameraCheck::Hypothesis& h : r.cameras->hypotheses) {
+      out += separator + (h.rmsPx ? formatted("to %.2g px ", *h.rmsPx) : std::string("not at all ")) + "(" + h.change + ")";
+      separator = ", ";
+    }
+    out += "\n";
+  } else if (r.cameras) {
+    out += "\n  cameras   not tested by the highlights: " + r.cameras->whyNot + "\n";
+  }
   for (const std::string& w : r.warnings) out += "warning: " + w + "\n";
   for (const std::string& f : r.findings) out += "finding: " + f + "\n";
   if (r.findings.empty()) out += "All cameras see their surface; nothing looks wrong.\n";
@@ -261,7 +321,8 @@ std::string toJson(const ConventionReport& r) {
                              {"vertices", s.vertices},
                              {"triangles", s.triangles},
                              {"normals", s.hasNormals},
-                             {"box", Json::array({vector(s.lower), vector(s.upper)})}});
+                             {"box", Json::array({vector(s.lower), vector(s.upper)})},
+                             {"grid_m", s.grid ? Json(s.grid->spacing) : Json()}});
   j["frames"] = Json::array();
   for (const auto& f : r.frames) {
     Json one = {{"index", f.frame},
@@ -279,6 +340,18 @@ std::string toJson(const ConventionReport& r) {
     one["negative"] = f.negative;
     one["problems"] = f.problems;
     j["frames"].push_back(std::move(one));
+  }
+  j["cameras"] = Json();
+  if (r.cameras) {
+    const CameraCheck& c = *r.cameras;
+    Json hypotheses = Json::array();
+    for (const CameraCheck::Hypothesis& h : c.hypotheses)
+      hypotheses.push_back({{"change", h.change}, {"rms_px", h.rmsPx ? Json(*h.rmsPx) : Json()}});
+    j["cameras"] = {{"views", c.views},
+                    {"why_not", c.whyNot.empty() ? Json() : Json(c.whyNot)},
+                    {"hypotheses", std::move(hypotheses)},
+                    {"focal_pct", c.focalPct ? Json(*c.focalPct) : Json()},
+                    {"shift_px", c.shiftPx ? Json(*c.shiftPx) : Json()}};
   }
   j["warnings"] = r.warnings;
   j["findings"] = r.findings;

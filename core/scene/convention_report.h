@@ -6,9 +6,26 @@
 #include <vector>
 
 #include "core/base/progress.h"
+#include "core/scene/coordinate_grid.h"
 #include "core/scene/scene.h"
 
 namespace glint {
+
+/// What the highlights say about images and intrinsics that cannot be seen in a single frame: mirrored images, a principal point
+/// that is half a pixel off (programs that put (0, 0) at a corner of the first pixel, not at its centre), a wrong focal length.
+struct CameraCheck {
+  /// The light and lobe that explain the contours best if the images or cameras were changed so.
+  struct Hypothesis {
+    std::string change;           ///< "as given", "images mirrored left-right", ...
+    std::optional<double> rmsPx;  ///< of the contours' residuals; none where no light explains them
+  };
+  int views = 0;
+  std::vector<Hypothesis> hypotheses;  ///< the first one is "as given"; empty where the check did not run
+  std::string whyNot;                  ///< why it did not
+  std::optional<double> focalPct;      ///< the change of the focal length that fits best, percent
+  std::optional<double> shiftPx;       ///< the shift of the principal point, the same along x and y, that fits best
+  std::vector<std::string> findings;   ///< what is clear, one line each; mostly none
+};
 
 /// What a scene was understood to be, and tests of that understanding on its own data (formats.md, "Inputs"): wrong axes, a
 /// transposed pose, wrong units and swapped files show here before they show as bad results.
@@ -18,6 +35,8 @@ struct ConventionReport {
     int vertices = 0, triangles = 0;  ///< of the mesh, or of the triangles that stand for the analytic surface
     bool hasNormals = false;
     Eigen::Vector3d lower{0, 0, 0}, upper{0, 0, 0};  ///< bounding box, m
+    std::optional<CoordinateGrid> grid;              ///< of a mesh's vertices, where they were stored with few digits
+    double side = 0;                                 ///< m, of a triangle: median of the longest ones
   };
   struct FrameFacts {
     int frame = -1;
@@ -38,8 +57,10 @@ struct ConventionReport {
   std::vector<SurfaceFacts> surfaces;
   std::vector<FrameFacts> frames;
   int lights = 0;
-  std::vector<std::string> findings;  ///< what looks wrong, one line each, with the likely cause; empty = nothing found
+  std::optional<CameraCheck> cameras;  ///< by its highlights, where they were asked
+  std::vector<std::string> findings;   ///< what looks wrong, one line each, with the likely cause; empty = nothing found
 
+  void take(CameraCheck check);  ///< with its findings
   bool anyFrameSeesSurface() const;
 };
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/base/level_range.h"
 #include "core/scene/relinked.h"
 #include "core/scene/scene_files.h"
 #include "core/scene/scene_reader.h"
@@ -52,8 +53,31 @@ void keep(Json& target, const std::string& key, Json value) {
   if (!value.empty()) target[key] = std::move(value);
 }
 
-const std::set<std::string> kCameraKeys = {"width", "height", "fx", "fy", "cx", "cy", "distortion"};
+const std::set<std::string> kCameraKeys = {"width", "height", "fx", "fy", "cx", "cy", "skew", "distortion", "model"};
 const std::set<std::string> kLightKeys = {"id", "position", "direction", "segment", "radius"};
+
+/// Keys that other programs write and that would move what a camera sees or where a surface is: to keep them and go on would answer for another
+/// scene. Matched without regard to case.
+const std::set<std::string> kCameraGeometry = {
+    "k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2", "s1", "s2", "s3", "s4", "omega", "fov", "shear", "alpha_c", "aspect", "aspect_ratio",
+    "pixel_aspect", "distortion_model", "camera_model", "projection", "fisheye", "crop", "crop_x", "crop_y", "offset_x", "offset_y", "binning",
+    "scale", "rotation", "orientation", "shift_x", "shift_y", "rolling_shutter"};
+const std::set<std::string> kFrameGeometry = {"world_from_camera", "camera_to_world", "world_to_camera", "transform_matrix", "transform",
+                                              "pose",              "scale",           "time_offset",     "world_from_object", "object_from_world",
+                                              "camera_from_object", "world_from_surface", "surface_from_world", "undistorted"};
+const std::set<std::string> kSurfaceGeometry = {"world_from_surface", "world_from_mesh", "surface_from_world", "mesh_from_world", "transform",
+                                                "transform_matrix",   "pose",            "scale",              "units",           "offset",
+                                                "origin",             "rotation",        "translation",        "displacement"};
+const std::set<std::string> kSceneGeometry = {"scale", "world_scale", "transform", "world_transform", "coordinate_system", "handedness",
+                                              "up",    "up_axis",     "convention", "origin",         "offset"};
+
+void refuseGeometry(const JsonNode& node, const std::set<std::string>& keys) {
+  for (const std::string& key : node.keys()) {
+    std::string lower = key;
+    std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    if (keys.count(lower)) node.at(key).fail("is not understood, and it would change the geometry");
+  }
+}
 
 std::set<std::string> analyticKeys(const std::string& type) {
   static const std::map<std::string, std::set<std::string>> keys = {{"plane", {}},
@@ -86,7 +110,11 @@ Camera readCameraJson(const JsonNode& node) {
     if (!(v > 0)) n.fail("must be positive (K would be singular or mirrored)");
     return v;
   };
-  camera.pixelFromRay << focal("fx"), 0, node.at("cx").number(), 0, focal("fy"), node.at("cy").number(), 0, 0, 1;
+  const auto skew = node.find("skew");
+  camera.pixelFromRay << focal("fx"), skew ? skew->number() : 0.0, node.at("cx").number(), 0, focal("fy"), node.at("cy").number(), 0, 0, 1;
+  if (const auto model = node.find("model"); model && model->text() != "OPENCV")
+    model->fail("'" + model->text() + "' is not understood: only OPENCV (distortion k1 k2 p1 p2 k3)");
+  refuseGeometry(node, kCameraGeometry);
   if (const auto d = node.find("distortion")) {
     const std::vector<double> values = d->numbers();
     if (values.size() != 4 && values.size() != 5)
@@ -100,18 +128,24 @@ Eigen::Isometry3d readPoseJson(const JsonNode& node, std::string* warning) {
   const Eigen::Matrix4d m = node.matrix4();
   if (m.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) node.fail("must be rigid: the last row must be 0 0 0 1");
   Eigen::Matrix3d r = m.topLeftCorner<3, 3>();
+  Eigen::Vector3d t = m.topRightCorner<3, 1>();
   const double deviation = (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   // Typed with four digits it is still a rotation; worse, something else was meant. What is none to single precision is repaired.
   if (!(deviation <= 1e-3)) node.fail("must be rigid: the 3x3 block is not a rotation");
   if (r.determinant() < 0) node.fail("must be rigid: the 3x3 block is mirrored (determinant -1)");
-  if (deviation > 1e-6) {  // see above
+  // Far from the origin even the tenth digit moves the camera (by deviation * |t|): the centre c of R c + t = 0 is kept. 1e-8 of the unit
+  // of length moves no pixel.
+  if (deviation > 1e-6 || deviation * t.norm() > 1e-8) {
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    r = svd.matrixU() * svd.matrixV().transpose();
-    if (warning) *warning = node.place() + ": not exactly a rotation, replaced by the nearest one";
+    const Eigen::Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose();
+    t = rotation * r.inverse() * t;
+    r = rotation;
+    // What is a rotation to single precision was meant to be one.
+    if (warning && deviation > 1e-6) *warning = node.place() + ": not exactly a rotation, replaced by the nearest one";
   }
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = r;
-  pose.translation() = m.topRightCorner<3, 1>();
+  pose.translation() = t;
   return pose;
 }
 
@@ -179,7 +213,7 @@ Highlight readHighlight(const JsonNode& node, const Camera& camera) {
   if (const auto n = node.find("light")) h.light = identifier(*n);
   if (const auto n = node.find("level")) {
     h.level = n->number();
-    if (!(h.level > 0 && h.level < 1)) n->fail("must lie between 0 and 1");
+    if (!(h.level >= kLeastLevel && h.level <= kMostLevel)) n->fail("must lie between 0 and 1, by a millionth at least");
   }
   const JsonNode contour = node.at("contour");
   const std::size_t n = contour.size();
@@ -214,6 +248,7 @@ struct FrameContext {
 Frame readFrame(const JsonNode& node, const FrameContext& context, Json& rest) {
   Frame frame;
   const Scene& scene = context.scene;
+  refuseGeometry(node, kFrameGeometry);
   frame.id = identifier(node.at("id"));
   const auto path = [&](const char* key) -> fs::path {
     const auto n = node.find(key);
@@ -284,6 +319,7 @@ fs::path findMesh(const JsonNode& node, const FrameContext& context) {
 
 SurfaceSource readSurface(const JsonNode& node, const FrameContext& context, Json& rest) {
   SurfaceSource source;
+  refuseGeometry(node, kSurfaceGeometry);
   if (const auto n = node.find("mesh")) {
     source.mesh = findMesh(*n, context);
     source.named = n->text();
@@ -324,6 +360,7 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
   scene.folder = fs::absolute(file).lexically_normal().parent_path();
   scene.allowOutsidePaths = options.allowOutsidePaths;
   Unknown unknown{scene};
+  refuseGeometry(root, kSceneGeometry);
 
   const JsonNode version = root.at("glint_scene");
   if (version.integer() != 1) version.fail("version " + std::to_string(version.integer()) + " is not understood, only 1");
@@ -410,6 +447,7 @@ Json toJson(const Camera& camera) {
   const Eigen::Matrix3d& k = camera.pixelFromRay;
   Json j = {{"width", camera.width}, {"height", camera.height}, {"fx", k(0, 0)},
             {"fy", k(1, 1)},         {"cx", k(0, 2)},           {"cy", k(1, 2)}};
+  if (k(0, 1) != 0) j["skew"] = k(0, 1);
   j["distortion"] = Json(camera.distortion);
   return j;
 }

@@ -246,21 +246,6 @@ Window windowOf(const Surface& surface, const Camera& camera, double marginFract
   return window;
 }
 
-/// Unit normals, inward, of the planes through the eye that bound a window of the image.
-std::array<Vector3d, 4> sidesOf(const Camera& camera, const Window& window) {
-  const Pixel corners[4] = {window.min, {window.max.x(), window.min.y()}, window.max, {window.min.x(), window.max.y()}};
-  const Matrix3d pixelFromWorld = camera.pixelFromRay * camera.camFromWorld.linear();
-  std::array<Vector3d, 4> sides;
-  const Vector3d middle(0.5 * (window.min.x() + window.max.x()), 0.5 * (window.min.y() + window.max.y()), 1);
-  for (int k = 0; k < 4; ++k) {
-    // The line through two corners, as a plane of rays: n = (K R)^T line.
-    Vector3d line = corners[k].homogeneous().cross(corners[(k + 1) % 4].homogeneous());
-    if (line.dot(middle) < 0) line = -line;
-    sides[k] = (pixelFromWorld.transpose() * line).normalized();
-  }
-  return sides;
-}
-
 /// Zeros of a linear interpolation of g over a triangle: barycentric weights, accepted a little outside as well.
 std::optional<Vector3d> linearZero(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   constexpr double kSlack = 0.35;  // the field is not linear over a cell; Newton decides
@@ -530,7 +515,7 @@ Outcome<std::vector<BrightestPoint>> predictedBrightestPoints(const Surface& sur
     // why.
     if (const auto* mirror = dynamic_cast<const MirrorPlaces*>(&surface))
       if (std::optional<std::vector<SurfacePoint>> places =
-              mirror->mirrorPlaces({sighting.eye, light.homogeneous(), sidesOf(camera, image)})) {
+              mirror->mirrorPlaces({sighting.eye, light.homogeneous(), sidesOf(camera, image.min, image.max)})) {
         finder.polishPlaces(std::move(*places));
         if (finder.found()) return std::move(finder).result(true);
       }

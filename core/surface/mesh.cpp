@@ -30,6 +30,10 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 /// Barycentric slack: a line through an edge must lie inside one of its two triangles despite round-off.
 constexpr double kInside = 1e-12;
 
+/// Embree asserts that no coordinate of a ray exceeds 1.8e18; here the mesh has size 2, and what is that far from it never meets
+/// it.
+constexpr double kEmbreeRange = 1e18;
+
 /// A foot this many triangles away is found sooner by a ray. Measured on a mesh of 1 million triangles: a step over an edge costs
 /// about 20 ns, a ray 400 ns and more.
 constexpr int kFootTriangles = 32;
@@ -57,12 +61,13 @@ struct Place {
   double u = 0, v = 0, t = 0;
 };
 
-class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces {
+class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces, public BoundedParts {
  public:
   MeshSurface(TriangleMesh mesh, MeshPolicy policy, bool manySearches)
       : policy_(policy.normals),
         single_(policy.rays == RayPrecision::Single && policy.normals != NormalPolicy::Curved),
-        manySearches_(manySearches), mesh_(std::move(mesh)) {
+        manySearches_(manySearches),
+        mesh_(std::move(mesh)) {
     check();
     topology_ = topologyOf(mesh_);
     require(std::find(topology_.alive.begin(), topology_.alive.end(), 1) != topology_.alive.end(),
@@ -116,6 +121,8 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces {
   std::vector<char> occludedMany(const std::vector<SurfacePoint>& from, const Vector3d& to) const override;
 
   std::optional<std::vector<SurfacePoint>> mirrorPlaces(const MirrorQuery& query) const override;
+  std::optional<std::vector<SurfacePart>> partsThatMay(const MirrorQuery& query, double lightReach, const PartTest& test,
+                                                       std::size_t most) const override;
 
   AlignedBox3d bounds() const override { return bounds_; }
 
@@ -180,12 +187,15 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces {
   }
 
   /// Middle control point of the edge curve: half-way, moved on to both tangent planes with weight 1/2.
-  Vector3d edgePoint(int a, int b) const {
-    const Vector3d &p = mesh_.vertices[a], &q = mesh_.vertices[b], &m = mesh_.normals[a], &n = mesh_.normals[b];
+  static Vector3d edgePoint(const Vector3d& p, const Vector3d& q, const Vector3d& m, const Vector3d& n) {
     return 0.5 * (p + q) - 0.25 * (m.dot(q - p) * m + n.dot(p - q) * n);
   }
+  Vector3d edgePoint(int a, int b) const {
+    return edgePoint(mesh_.vertices[a], mesh_.vertices[b], mesh_.normals[a], mesh_.normals[b]);
+  }
 
-  /// The quadratic patch of a triangle.
+  /// The quadratic patch of a triangle, from its first corner: differences of neighbouring vertices are exact however far the
+  /// mesh is from the origin, so that Newton's method settles as closely there.
   struct Patch {
     Vector3d p0, p1, p2, m01, m12, m20;
     Vector3d at(double u, double v) const {
@@ -203,8 +213,10 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces {
   };
   Patch patchOf(int triangle) const {
     const Vector3i& t = mesh_.triangles[triangle];
-    return {mesh_.vertices[t.x()],   mesh_.vertices[t.y()],   mesh_.vertices[t.z()],
-            edgePoint(t.x(), t.y()), edgePoint(t.y(), t.z()), edgePoint(t.z(), t.x())};
+    const Vector3d &a = mesh_.vertices[t.x()], b = mesh_.vertices[t.y()] - a, c = mesh_.vertices[t.z()] - a;
+    const Vector3d &l = mesh_.normals[t.x()], &m = mesh_.normals[t.y()], &n = mesh_.normals[t.z()];
+    const Vector3d zero = Vector3d::Zero();
+    return {zero, b, c, edgePoint(zero, b, l, m), edgePoint(b, c, m, n), edgePoint(c, zero, n, l)};
   }
 
   /// Line against the plane of a triangle (Moeller and Trumbore), then against its patch by Newton's method. The place may lie
@@ -227,7 +239,7 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces {
     for (int i = 0; i < 20; ++i) {
       Matrix3d j;
       j << patch.du(place.u, place.v), patch.dv(place.u, place.v), -d;
-      const Vector3d step = j.partialPivLu().solve(patch.at(place.u, place.v) - o - place.t * d);
+      const Vector3d step = j.partialPivLu().solve(patch.at(place.u, place.v) - s - place.t * d);
       if (!step.allFinite()) return false;
       place.u -= step.x();
       place.v -= step.y();
@@ -291,7 +303,9 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces {
     if (!(enter <= leave)) return std::nullopt;
     const Vector3d start = o + enter * d;
     RTCRayHit query;
-    for (int k = 0; k < 3; ++k) (&query.ray.org_x)[k] = static_cast<float>((start[k] - centre_[k]) * toEmbree_);
+    const Vector3d local = (start - centre_) * toEmbree_;
+    if (!(local.cwiseAbs().maxCoeff() < kEmbreeRange)) return std::nullopt;
+    for (int k = 0; k < 3; ++k) (&query.ray.org_x)[k] = static_cast<float>(local[k]);
     query.ray.dir_x = static_cast<float>(d.x());
     query.ray.dir_y = static_cast<float>(d.y());
     query.ray.dir_z = static_cast<float>(d.z());
@@ -333,6 +347,8 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces {
     return std::nullopt;
   }
 
+  /// Built by the first search; null where normals are no help, or searches too few to pay for it.
+  const NormalTree* normalTree() const;
   /// Where the reflection law holds on a triangle to first order; false when that is well outside of it.
   bool mirrorPlaceOn(const MirrorQuery& query, Place& place) const;
 
@@ -343,8 +359,8 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces {
     p.element = place.triangle;
     p.barycentric = {place.u, place.v};
     const Vector3d &a = mesh_.vertices[t.x()], &b = mesh_.vertices[t.y()], &c = mesh_.vertices[t.z()];
-    p.position = policy_ == NormalPolicy::Curved ? patchOf(place.triangle).at(place.u, place.v)
-                                                 : Vector3d(a + place.u * (b - a) + place.v * (c - a));
+    p.position = a + (policy_ == NormalPolicy::Curved ? patchOf(place.triangle).at(place.u, place.v)
+                                                      : Vector3d(place.u * (b - a) + place.v * (c - a)));
     if (policy_ != NormalPolicy::Facet) {
       const Vector3d n = w * mesh_.normals[t.x()] + place.u * mesh_.normals[t.y()] + place.v * mesh_.normals[t.z()];
       const double length = n.norm();
@@ -396,16 +412,40 @@ bool MeshSurface::mirrorPlaceOn(const MirrorQuery& query, Place& place) const {
   return true;
 }
 
-std::optional<std::vector<SurfacePoint>> MeshSurface::mirrorPlaces(const MirrorQuery& query) const {
-  // A smooth highlight leaves about ten parts; with more than this, normals vary within parts as much as between them.
-  constexpr std::size_t kMostPlaces = 256;
-  if (policy_ == NormalPolicy::Facet || !manySearches_) return std::nullopt;
+const NormalTree* MeshSurface::normalTree() const {
+  if (policy_ == NormalPolicy::Facet || !manySearches_) return nullptr;
   std::call_once(treeOnce_, [&] {
     std::function<Vector3d(int, int)> middle;
     if (policy_ == NormalPolicy::Curved) middle = [this](int a, int b) { return edgePoint(a, b); };
     tree_ = std::make_unique<const NormalTree>(mesh_, topology_, bounds_, middle);
   });
-  const std::optional<std::vector<int>> triangles = tree_->candidates(query, kMostPlaces);
+  return tree_.get();
+}
+
+std::optional<std::vector<SurfacePart>> MeshSurface::partsThatMay(const MirrorQuery& query, double lightReach, const PartTest& test,
+                                                                  std::size_t most) const {
+  const NormalTree* tree = normalTree();
+  if (!tree) return std::nullopt;
+  const std::optional<std::vector<std::pair<int, double>>> found = tree->partsThatMay(query, lightReach, test, most);
+  if (!found) return std::nullopt;
+  std::vector<SurfacePart> parts;
+  parts.reserve(found->size());
+  for (const auto& [triangle, radius] : *found) __builtin_prefetch(&mesh_.triangles[triangle]);  // as in mirrorPlaces
+  for (const auto& [triangle, radius] : *found)
+    for (const int v : mesh_.triangles[triangle]) {
+      __builtin_prefetch(&mesh_.vertices[v]);
+      __builtin_prefetch(&mesh_.normals[v]);
+    }
+  for (const auto& [triangle, radius] : *found) parts.push_back({pointAt({triangle, 1.0 / 3, 1.0 / 3, 0}), radius});
+  return parts;
+}
+
+std::optional<std::vector<SurfacePoint>> MeshSurface::mirrorPlaces(const MirrorQuery& query) const {
+  // A smooth highlight leaves about ten parts; with more than this, normals vary within parts as much as between them.
+  constexpr std::size_t kMostPlaces = 256;
+  const NormalTree* tree = normalTree();
+  if (!tree) return std::nullopt;
+  const std::optional<std::vector<int>> triangles = tree->candidates(query, kMostPlaces);
   if (!triangles) return std::nullopt;
   std::vector<SurfacePoint> places;
   places.reserve(triangles->size());
@@ -418,7 +458,7 @@ std::optional<std::vector<SurfacePoint>> MeshSurface::mirrorPlaces(const MirrorQ
     }
   for (const int t : *triangles) {
     Place place{t, 1.0 / 3, 1.0 / 3, 0};
-    if (!tree_->finest() || mirrorPlaceOn(query, place)) places.push_back(pointAt(place));
+    if (!tree->finest() || mirrorPlaceOn(query, place)) places.push_back(pointAt(place));
   }
   return places;
 }
@@ -438,7 +478,7 @@ std::vector<std::optional<SurfacePoint>> MeshSurface::approximateHits(const std:
       // From about the mesh: the sphere around its box.
       const double enter = std::max(0.0, (centre_ - ray.origin).dot(ray.direction) - 0.5 * size_);
       const Vector3d o = (ray.origin + enter * ray.direction - centre_) * toEmbree_;
-      if (!o.allFinite() || !ray.direction.allFinite()) {
+      if (!(o.cwiseAbs().maxCoeff() < kEmbreeRange) || !ray.direction.allFinite()) {
         valid[k] = 0;
         continue;
       }
@@ -496,6 +536,7 @@ std::vector<char> MeshSurface::occludedMany(const std::vector<SurfacePoint>& fro
         const double length = offset.norm();
         if (!p.allFinite() || !(length > 0) || !std::isfinite(length)) continue;
         const Vector3d d = offset / length, o = (p - centre_) * toEmbree_;
+        if (!(o.cwiseAbs().maxCoeff() < kEmbreeRange)) continue;
         const Eigen::Vector3f side = aside * tangentBasis(d).col(0).cast<float>();
         valid[k] = -1;
         asked[k] = 1;
@@ -506,7 +547,7 @@ std::vector<char> MeshSurface::occludedMany(const std::vector<SurfacePoint>& fro
         packet.dir_y[k] = static_cast<float>(d.y());
         packet.dir_z[k] = static_cast<float>(d.z());
         packet.tnear[k] = static_cast<float>(1e-6 * std::min(size_, length) * toEmbree_);  // as in occluded
-        packet.tfar[k] = static_cast<float>(length * toEmbree_);
+        packet.tfar[k] = static_cast<float>(std::min(length * toEmbree_, kEmbreeRange));
         packet.time[k] = 0;
         packet.mask[k] = ~0u;
         packet.id[k] = packet.flags[k] = 0;

@@ -70,10 +70,24 @@ class NormalTree::Builder {
 
   void build() {
     tree_.finest_ = most_ == 1;
-    node(0, order_.size(), 0);
+    const Node root = node(0, order_.size(), 0);
+    if (root.next >= 0) return;
+    // All triangles in one part: it is the only child of a root.
+    Block block = emptyBlock();
+    store(root, block);
+    tree_.blocks_.push_back(block);
   }
 
  private:
+  static Block emptyBlock() {
+    Block block;
+    for (Eight Block::*field : {&Block::x, &Block::y, &Block::z, &Block::radius, &Block::axisX, &Block::axisY, &Block::axisZ,
+                                &Block::cosine, &Block::sine})
+      (block.*field).setOnes();  // unused places: finite, never looked at
+    block.next.fill(-1);
+    return block;
+  }
+
   /// Of the triangles [first, end), which share the key's first `depth` digits.
   Node node(std::size_t first, std::size_t end, int depth) {
     if (end - first <= most_ && depth > 0) return part(first, end);
@@ -92,10 +106,7 @@ class NormalTree::Builder {
     }
     const int at = static_cast<int>(tree_.blocks_.size());
     tree_.blocks_.emplace_back();
-    Block block;
-    for (Eight Block::*field : {&Block::x, &Block::y, &Block::z, &Block::radius, &Block::axisX, &Block::axisY, &Block::axisZ,
-                                &Block::cosine, &Block::sine})
-      (block.*field).setOnes();  // unused places: finite, never looked at
+    Block block = emptyBlock();
     std::array<Node, 8> children;
     for (int k = 0; k < 8; ++k)
       if (bound[k] < bound[k + 1]) {
@@ -205,42 +216,61 @@ NormalTree::NormalTree(const TriangleMesh& mesh, const MeshTopology& topology, c
   Builder(*this, mesh, edgePoint, std::move(order)).build();
 }
 
-std::optional<std::vector<int>> NormalTree::candidates(const MirrorQuery& query, std::size_t most) const {
-  const Eigen::Vector3f eye = ((query.eye - centre_) * scale_).cast<float>();
+NormalTree::View NormalTree::viewOf(const MirrorQuery& query) const {
+  View view;
+  view.eye = ((query.eye - centre_) * scale_).cast<float>();
   const Vector3d l = (query.light.head<3>() - query.light.w() * centre_) * scale_;
   const double size = std::hypot(l.norm(), query.light.w());  // so that float cannot overflow
-  const Eigen::Vector3f light = (l / size).cast<float>();
-  const float w = static_cast<float>(query.light.w() / size);
-  std::array<Eigen::Vector4f, 4> sides;
+  view.light = (l / size).cast<float>();
+  view.w = static_cast<float>(query.light.w() / size);
+  view.lightUnit = size / scale_;
   for (int k = 0; k < 4; ++k)
-    sides[k] << query.sides[k].cast<float>(), static_cast<float>(query.sides[k].dot(centre_ - query.eye) * scale_);
+    view.sides[k] << query.sides[k].cast<float>(), static_cast<float>(query.sides[k].dot(centre_ - query.eye) * scale_);
+  return view;
+}
 
-  std::vector<int> found;
-  std::vector<int> tasks{0};
+NormalTree::Halfway NormalTree::halfwayOf(const Block& b, const View& view, float lightReach) {
   // Chord of the angle under which a ball is seen from a point outside of it; more than 2 from inside.
   const auto chord = [](const Eight& radiusOverDistance) -> Eight {
     const Eight s = radiusOverDistance.min(1.f);
     return s * (2.f / (1.f + (1.f - s * s).sqrt())).sqrt() + 1e3f * (radiusOverDistance - 0.999f).max(0.f);
   };
+  Halfway h;
+  const Eight vx = view.eye.x() - b.x, vy = view.eye.y() - b.y, vz = view.eye.z() - b.z;
+  const Eight lx = view.light.x() - view.w * b.x, ly = view.light.y() - view.w * b.y, lz = view.light.z() - view.w * b.z;
+  // The eye may lie inside a ball: 1e-30 keeps 0 / 0 away, and the chord is then the whole sphere.
+  h.toEye = (vx * vx + vy * vy + vz * vz).sqrt().max(1e-30f);
+  h.toLight = (lx * lx + ly * ly + lz * lz).sqrt().max(1e-30f);  // as above
+  const Eight sx = vx / h.toEye + lx / h.toLight, sy = vy / h.toEye + ly / h.toLight, sz = vz / h.toEye + lz / h.toLight;
+  h.sum = (sx * sx + sy * sy + sz * sz).sqrt().max(1e-30f);  // as above
+  // L + V moves by at most the two chords within the ball, H therefore by an angle of at most asin(of them / |L + V|).
+  h.viewChord = chord(b.radius / h.toEye);
+  const Eight moved = h.viewChord + chord((view.w * b.radius + lightReach) / h.toLight) + kDirectionMargin;
+  h.sine = (moved / h.sum).min(1.f);
+  h.cosine = (1.f - h.sine * h.sine).sqrt();
+  h.between = (b.axisX * sx + b.axisY * sy + b.axisZ * sz) / h.sum;
+  h.viewAlong = (b.axisX * vx + b.axisY * vy + b.axisZ * vz) / h.toEye;
+  return h;
+}
+
+Eight NormalTree::insideOf(const Block& b, const View& view) {
+  const auto& sides = view.sides;
+  Eight inside = sides[0].x() * b.x + sides[0].y() * b.y + sides[0].z() * b.z + sides[0].w();
+  for (int k = 1; k < 4; ++k) inside = inside.min(sides[k].x() * b.x + sides[k].y() * b.y + sides[k].z() * b.z + sides[k].w());
+  return inside + b.radius;
+}
+
+std::optional<std::vector<int>> NormalTree::candidates(const MirrorQuery& query, std::size_t most) const {
+  const View view = viewOf(query);
+  std::vector<int> found;
+  std::vector<int> tasks{0};
   while (!tasks.empty()) {
     const Block& b = blocks_[tasks.back()];
     tasks.pop_back();
-    const Eight vx = eye.x() - b.x, vy = eye.y() - b.y, vz = eye.z() - b.z;
-    const Eight lx = light.x() - w * b.x, ly = light.y() - w * b.y, lz = light.z() - w * b.z;
-    // The eye may lie inside a ball: 1e-30 keeps 0 / 0 away, and the chord is then the whole sphere.
-    const Eight toEye = (vx * vx + vy * vy + vz * vz).sqrt().max(1e-30f),
-                toLight = (lx * lx + ly * ly + lz * lz).sqrt().max(1e-30f);  // as above
-    const Eight sx = vx / toEye + lx / toLight, sy = vy / toEye + ly / toLight, sz = vz / toEye + lz / toLight;
-    const Eight sum = (sx * sx + sy * sy + sz * sz).sqrt().max(1e-30f);  // as above
-    // L + V moves by at most the two chords within the ball, H therefore by an angle of at most asin(of them / |L + V|). N is
-    // parallel to some H only if the cone around N and the one around H overlap.
-    const Eight moved = chord(b.radius / toEye) + chord(w * b.radius / toLight) + kDirectionMargin;
-    const Eight sine = (moved / sum).min(1.f), cosine = (1.f - sine * sine).sqrt();
-    const Eight between = (b.axisX * sx + b.axisY * sy + b.axisZ * sz).abs() / sum;
-    const Eight missed = b.cosine * cosine - b.sine * sine - between;
-    Eight inside = sides[0].x() * b.x + sides[0].y() * b.y + sides[0].z() * b.z + sides[0].w();
-    for (int k = 1; k < 4; ++k) inside = inside.min(sides[k].x() * b.x + sides[k].y() * b.y + sides[k].z() * b.z + sides[k].w());
-    inside += b.radius;
+    // N is parallel to some H only if the cone around N and the one around H overlap.
+    const Halfway h = halfwayOf(b, view, 0);
+    const Eight missed = b.cosine * h.cosine - b.sine * h.sine - h.between.abs();
+    const Eight inside = insideOf(b, view);
     for (int k = 0; k < b.count; ++k) {
       if (missed[k] > kCosineMargin || inside[k] < 0) continue;
       if (b.next[k] >= 0) {
@@ -249,6 +279,47 @@ std::optional<std::vector<int>> NormalTree::candidates(const MirrorQuery& query,
       }
       if (found.size() == most) return std::nullopt;
       found.push_back(-1 - b.next[k]);
+    }
+  }
+  return found;
+}
+
+std::optional<std::vector<std::pair<int, double>>> NormalTree::partsThatMay(const MirrorQuery& query, double lightReach,
+                                                                            const PartTest& test, std::size_t most) const {
+  const View view = viewOf(query);
+  const float reach = static_cast<float>(lightReach / view.lightUnit * (1 + kBallMargin));
+  const float unitSquared = static_cast<float>(view.lightUnit * view.lightUnit);
+  std::vector<std::pair<int, double>> found;
+  std::vector<int> tasks{0};
+  while (!tasks.empty()) {
+    const Block& b = blocks_[tasks.back()];
+    tasks.pop_back();
+    const Halfway h = halfwayOf(b, view, reach);
+    PartBounds bounds;
+    // The angle between axis and H, less both cones; 0 where the cones overlap or span more than a half space.
+    const Eight coneCosine = b.cosine * h.cosine - b.sine * h.sine, coneSine = b.sine * h.cosine + b.cosine * h.sine;
+    const Eight along = h.between.abs().min(1.f), across = (1.f - along * along).sqrt();
+    const Eight apartSine = (across * coneCosine - along * coneSine - kCosineMargin).max(0.f);
+    const Eight apartCosine = (along * coneCosine + across * coneSine + kCosineMargin).max(1e-3f);  // 1e-3: an angle near 90 degrees
+    const Eigen::Array<bool, 8, 1> overlap = along + kCosineMargin >= coneCosine || coneCosine <= 0.f;
+    bounds.tanSquared = overlap.select(Eight::Zero(), (apartSine / apartCosine).square());
+    // The angle between axis and V, plus both cones.
+    const Eight viewSine = h.viewChord.min(1.f), viewCosine = (1.f - viewSine * viewSine).sqrt();
+    const Eight openCosine = b.cosine * viewCosine - b.sine * viewSine, openSine = b.sine * viewCosine + b.cosine * viewSine;
+    const Eight facing = h.viewAlong.abs().min(1.f);
+    bounds.cosView = (openCosine <= 0.f)
+                         .select(Eight::Zero(), (facing * openCosine - (1.f - facing * facing).sqrt() * openSine - kCosineMargin).max(0.f));
+    bounds.cosHalf = (0.5f * h.sum * (1.f - h.sine) - kDirectionMargin).max(0.f);
+    bounds.lightSquared = ((h.toLight - view.w * b.radius - reach) * (1.f - kCosineMargin)).max(0.f).square() * unitSquared;
+    const Eight excess = test(bounds), inside = insideOf(b, view);
+    for (int k = 0; k < b.count; ++k) {
+      if (excess[k] < 0 || inside[k] < 0) continue;
+      if (b.next[k] >= 0) {
+        tasks.push_back(b.next[k]);
+        continue;
+      }
+      if (found.size() == most) return std::nullopt;
+      found.emplace_back(-1 - b.next[k], b.radius[k] / scale_);
     }
   }
   return found;

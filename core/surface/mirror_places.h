@@ -6,18 +6,14 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/surface/mesh_topology.h"
+#include "core/surface/part_bounds.h"
 #include "core/surface/surface.h"
 
 namespace glint {
-
-struct MirrorQuery {
-  Eigen::Vector3d eye;                   ///< world
-  Eigen::Vector4d light;                 ///< homogeneous, w >= 0
-  std::array<Eigen::Vector3d, 4> sides;  ///< unit, inward normals of the view's four planes, all through the eye
-};
 
 /// A surface that can rule out most of itself as a place of mirror reflection.
 class MirrorPlaces {
@@ -38,12 +34,14 @@ class NormalTree {
 
   /// A triangle from every part in which N may be parallel to H. Nothing when they are more than `most`.
   std::optional<std::vector<int>> candidates(const MirrorQuery& query, std::size_t most) const;
+  /// The same for what BoundedParts::partsThatMay asks, with the radii of the parts' balls, world units.
+  std::optional<std::vector<std::pair<int, double>>> partsThatMay(const MirrorQuery& query, double lightReach, const PartTest& test,
+                                                                  std::size_t most) const;
   /// Every part is one triangle.
   bool finest() const { return finest_; }
 
  private:
   class Builder;
-  using Eight = Eigen::Array<float, 8, 1>;
   /// Up to eight siblings: balls (centre, radius) in the box scaled to [-1, 1], and cones (axis, cosine and sine of the half
   /// angle).
   struct Block {
@@ -51,6 +49,24 @@ class NormalTree {
     std::array<int, 8> next;  ///< block of its children; of a part: -1 - triangle
     int count = 0;
   };
+
+  /// A query in the tree's scaled coordinates.
+  struct View {
+    Eigen::Vector3f eye, light;
+    float w;
+    double lightUnit;  ///< |l - w P| in world units is this times its scaled length
+    std::array<Eigen::Vector4f, 4> sides;
+  };
+  /// H over the balls of a block: the direction at their centres, and how far it turns within them.
+  struct Halfway {
+    Eight toEye, toLight, sum;    ///< lengths of V, L (scaled, not unit) and of unit(L) + unit(V), at the centres
+    Eight viewAlong, between;     ///< V.axis and H.axis, at the centres
+    Eight sine, cosine;           ///< of the half angle of the cone around H
+    Eight viewChord;              ///< of the half angle of the cone around V
+  };
+  View viewOf(const MirrorQuery& query) const;
+  static Halfway halfwayOf(const Block& b, const View& view, float lightReach);
+  static Eight insideOf(const Block& b, const View& view);
 
   Eigen::Vector3d centre_;
   double scale_ = 1;

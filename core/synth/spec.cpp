@@ -5,6 +5,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/json_text.h"
+#include "core/base/level_range.h"
 #include "core/scene/scene_json.h"
 #include "core/scene/scene_reader.h"
 #include "core/synth/synth.h"
@@ -212,7 +213,7 @@ SynthSpec readSynthSpec(const std::filesystem::path& file) {
     else if (n->text() != "radiance")
       n->fail("'" + n->text() + "' is none of: radiance, limit-angle");
   }
-  if (const auto n = root.find("level")) spec.exact.level = inRange(*n, 1e-6, 1 - 1e-6);
+  if (const auto n = root.find("level")) spec.exact.level = inRange(*n, kLeastLevel, kMostLevel);
   if (const auto n = root.find("margin_px")) spec.exact.marginPx = inRange(*n, 0, 10000);
   if (spec.exact.kind == ContourKind::LimitAngle)
     spec.exact.limitAngle = inRange(root.at("limit_angle_deg"), 1e-6, 60) * M_PI / 180;

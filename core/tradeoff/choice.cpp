@@ -58,6 +58,11 @@ void choosePoint(Tradeoff& t, const TradeoffBound& bound) {
       else if (next < 0)
         next = i;
     }
+    if (best >= 0) {  // of the same error the fastest, as the preset
+      const double same = costs[best].errorPct + kSameErrorPct;
+      for (int i = best; i >= 0; --i)
+        if (front[i] && costs[i].errorPct <= same) best = i;
+    }
     const std::string budget = number("%g us", *bound.budgetUs);
     if (best < 0) {
       t.reason = "No measured setting predicts a frame within " + budget + "; the fastest is " + said(0) + ".";

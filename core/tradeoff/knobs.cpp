@@ -24,7 +24,7 @@ const std::map<std::string, std::vector<double>>& ladders() {
 }
 
 /// They add to what a prediction says, not to its contour, and their work is no part of its time.
-const std::set<std::string> kNoKnobs{"predict.band"};
+const std::set<std::string> kNoKnobs{"predict.band", "input.scale_tolerance", "input.focal_tolerance"};
 
 }  // namespace
 

@@ -45,6 +45,9 @@ Presets presetsOf(const std::vector<Cost>& costs) {
     if (costs[i].errorPct <= kUsableErrorPct) take(p.fast, i, us);
   }
   if (p.exact < 0) return p;
+  const double same = costs[p.exact].errorPct + kSameErrorPct;
+  for (int i = 0; i < static_cast<int>(costs.size()); ++i)
+    if (front[i] && costs[i].errorPct <= same) take(p.exact, i, us);
   if (p.fast < 0)
     for (int i = 0; i < static_cast<int>(costs.size()); ++i)
       if (front[i]) take(p.fast, i, us);

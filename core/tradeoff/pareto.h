@@ -23,7 +23,9 @@ struct Presets {
 };
 /// Above this error a predicted contour is a wrong contour: a tenth of the highlight's diameter, an overlap of about 0.7.
 inline constexpr double kUsableErrorPct = 10;
-/// exact: the smallest error. fast: the smallest time among points under kUsableErrorPct (of all when none is).
+/// Errors nearer than this are the same: contours resolve ten times more, and the ways to the same contour differ by less.
+inline constexpr double kSameErrorPct = 0.005;
+/// exact: the smallest error, and of those that are the same the fastest. fast: the smallest time among points under kUsableErrorPct (of all when none is).
 /// balanced: the point of the front nearest to (the time of fast, the error of exact) with both axes logarithmic and
 /// scaled by the distance between the two, so that it does not depend on units.
 Presets presetsOf(const std::vector<Cost>& costs);

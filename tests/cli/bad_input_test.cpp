@@ -94,7 +94,7 @@ TEST_F(BadInput, TruncatedMesh) {
   writeScene();
   // detect and convert do not read the mesh.
   for (const char* command : {"info", "evaluate", "reconstruct", "render"})
-    refuses(command, 2, "body.ply: vertex 2: the PLY is truncated: the header promises 3 of these");
+    refuses(command, 2, "body.ply: header: the PLY is truncated: its header promises 3 of element 'vertex'");
 }
 
 TEST_F(BadInput, ImageMissingEmptyTruncatedOrOfAnotherSize) {

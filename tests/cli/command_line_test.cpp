@@ -144,7 +144,7 @@ TEST_F(SceneOnDisk, TruncatedMeshIsCodeTwo) {
   const ProgramRun run = info();
   EXPECT_EQ(run.code, 2);
   EXPECT_EQ(run.errorLines(), 1) << run.err;
-  EXPECT_THAT(run.err, HasSubstr("body.ply: vertex 2: the PLY is truncated"));
+  EXPECT_THAT(run.err, HasSubstr("body.ply: header: the PLY is truncated"));
 }
 
 TEST_F(SceneOnDisk, SurfaceThatNoCameraSeesIsCodeThree) {

@@ -33,7 +33,7 @@ class EvaluationContract : public SmallScene {
   static void expectContract(const ProgramRun& run) {
     ASSERT_TRUE(Json::accept(run.out)) << run.err;  // strict: neither NaN nor Infinity is JSON
     const Json j = Json::parse(run.out);
-    expectKeys(j, {{"glint_evaluation", "i"}, {"input", "s"}, {"train", "a"}, {"level", "n"}, {"settings", "o"}, {"chosen_model", "s?"},
+    expectKeys(j, {{"glint_evaluation", "i"}, {"input", "s"}, {"train", "a"}, {"level", "n"}, {"settings", "o"}, {"chosen_model", "s?"}, {"scored_against", "s"}, {"warnings", "a"},
                    {"models", "o"}}, "");
     EXPECT_EQ(j["glint_evaluation"], 1);
     for (const auto& [name, model] : j["models"].items()) {
@@ -43,7 +43,13 @@ class EvaluationContract : public SmallScene {
         const bool ok = fit["status"] == "ok";
         expectKeys(fit, {{"light", "s"}, {"surface", "s?"}, {"ellipsoid", "o?"}, {"q_dual", "a"}, {"light_position", "a?"},
                          {"limit_angle_deg", "n?"}, {"roughness", "n?"}, {"gap_ratio", "n?"}, {"condition", "n?"},
-                         {"time_us", ok ? "n" : "n?"}}, name + ".fits");
+                         {"residual_px", "a"}, {"warnings", "a"}, {"time_us", ok ? "n" : "n?"}}, name + ".fits");
+        if (ok) {
+          if (name == "limit-angle" || name == "reflectance") {
+            EXPECT_TRUE(fit["condition"].is_number()) << name;
+          }
+          EXPECT_EQ(fit["residual_px"].size(), fit["training_frames"].size()) << name;
+        }
         if (!fit["light_position"].is_null()) {
           EXPECT_EQ(fit["light_position"].size(), 4u) << name;
         }
@@ -77,6 +83,9 @@ TEST_F(EvaluationContract, AnsweredModels) {
   expectContract(run);
   const Json j = Json::parse(run.out);
   EXPECT_EQ(j["train"], Json::parse("[0,1,2,3,4,5]"));
+  EXPECT_EQ(j["scored_against"], "own detection");
+  EXPECT_TRUE(j["models"]["reflectance"]["fits"][0]["lobe"].is_string());
+  EXPECT_TRUE(j["models"]["reflectance"]["fits"][0]["light_radius"].is_number());
   EXPECT_EQ(j["level"], 0.5);
   EXPECT_EQ(j["models"].size(), 5u);
   std::string best;
@@ -88,6 +97,45 @@ TEST_F(EvaluationContract, AnsweredModels) {
   // Held-out frames only.
   for (const auto& [name, model] : j["models"].items())
     for (const Json& row : model["frames"]) EXPECT_GE(row["index"].get<int>(), 6) << name;
+}
+
+TEST_F(EvaluationContract, SaysWhatItWasScoredAgainst) {
+  for (int i = 0; i < kFrames; ++i) {
+    const Json& h = exact_["frames"][i]["highlights"][0];
+    folder_.write("truth/000" + std::to_string(i) + ".json",
+                  Json{{"levels", {{"0.50", Json::array({{{"points", h["contour"]}}})}}}, {"peak_subpixel", h["peak"]}}.dump());
+  }
+  const auto scoredAgainst = [&](const std::string& more) {
+    return Json::parse(on("evaluate", "--models limit-angle --json - " + more).out)["scored_against"];
+  };
+  EXPECT_EQ(scoredAgainst(""), "own detection");
+  EXPECT_EQ(scoredAgainst("--truth " + out("truth")), "truth");
+  withHighlights();
+  writeScene();
+  EXPECT_EQ(scoredAgainst(""), "given contours");
+}
+
+TEST_F(EvaluationContract, AnExtendedLightHasItsExtent) {
+  withHighlights();
+  writeScene();
+  const Json fit = Json::parse(on("evaluate", "--models limit-angle --json - --set light.limit_orders=1").out)["models"]["limit-angle"]["fits"][0];
+  ASSERT_EQ(fit["light_extent"].size(), 3u) << fit.dump();
+  for (const Json& row : fit["light_extent"]) EXPECT_EQ(row.size(), 3u);
+  EXPECT_FALSE(Json::parse(on("evaluate", "--models limit-angle --json -").out)["models"]["limit-angle"]["fits"][0].contains("light_extent"));
+}
+
+TEST_F(EvaluationContract, ClippedHighlightsAreNamedWithTheirFrames) {
+  for (const int frame : {2, 6}) {
+    cv::Mat m = cv::imread(radiance(frame).string(), cv::IMREAD_UNCHANGED);
+    double top = 0;
+    cv::minMaxLoc(m.reshape(1), nullptr, &top);
+    writeRadiance(frame, m * (1e4 / top));  // its peak at 10,000, all others far below
+  }
+  const ProgramRun run = on("evaluate", "--models limit-angle --set detect.clip=6000 --json - --html " + out("e.html"));
+  const std::string expected = "clipped (saturated) highlights in training frames 2 and other frames 6";
+  EXPECT_THAT(run.err, testing::HasSubstr("warning: " + expected));
+  EXPECT_THAT(Json::parse(run.out)["warnings"][0].get<std::string>(), testing::HasSubstr(expected));
+  EXPECT_THAT(contentOf(folder_ / "e.html"), testing::HasSubstr(expected));
 }
 
 TEST_F(EvaluationContract, RefusedModelsHaveTheSameKeys) { expectContract(on("evaluate", "--train 0,1 --json -")); }

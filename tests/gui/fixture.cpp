@@ -72,7 +72,7 @@ Inspection drawnCircles(std::shared_ptr<const Scene> scene, const InspectionRequ
   for (const std::string& name : request.models) {
     ModelResult& model = result.models[name];
     model.model = name;
-    model.fits.push_back({"lamp", {}, {}, Failure{Reason::TooFewViews, "a stand-in"}});
+    model.fits.push_back({"lamp", {}, {}, Failure{Reason::TooFewViews, "a stand-in"}, {}});
     for (int i = 0; i < n; ++i) {
       FrameComparison c;
       c.frame = i;
@@ -80,7 +80,7 @@ Inspection drawnCircles(std::shared_ptr<const Scene> scene, const InspectionRequ
       c.fit = 0;
       if (i == n - 1) {
         c.prediction.failure = Failure{Reason::NoBrightestPoint, "not visible"};
-        c.rows.push_back({0, -1, {}, c.prediction.failure});
+        c.rows.push_back({0, -1, {}, c.prediction.failure, {}});
       } else {
         PredictedHighlight p;
         p.contour = circle(Fixture::centre(i) + Pixel(offset, 0), Fixture::kRadius);
@@ -90,7 +90,7 @@ Inspection drawnCircles(std::shared_ptr<const Scene> scene, const InspectionRequ
         m.contourErrorPct = offset + 0.1 * ((i * 5) % n);  // not in the order of the frames: sorting must show
         m.contourErrorPx = m.contourErrorPct * 0.4;
         m.iou = 0.9;
-        c.rows.push_back({0, 0, m, {}});
+        c.rows.push_back({0, 0, m, {}, {}});
         c.iou = 0.9;
       }
       model.frames.push_back(c);

@@ -335,7 +335,7 @@ class FrameViewTest : public QObject {
           FrameComparison& c = model.frames.front();
           c.prediction.highlights.clear();
           c.prediction.failure = Failure{Reason::NoBrightestPoint, reason.toStdString()};
-          c.rows = {{0, -1, {}, c.prediction.failure}};
+          c.rows = {{0, -1, {}, c.prediction.failure, {}}};
         }
       document_->setInspection(std::make_shared<const Inspection>(inspection), document_->request());
       settle();

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # cmake -DSRC=<project> -P layers.cmake: reads every #include and every target_link_libraries and fails where an arrow of the
 # layers is broken (docs/architecture.md):
-#   cli, gui -> viz -> core,   plugins -> core and viz,   tests and bench -> everything,   nothing -> gui.
+#   cli, gui -> viz -> core -> io -> core/base,   plugins -> core and viz,   tests and bench -> everything,   nothing -> gui.
 cmake_minimum_required(VERSION 3.25)
 
 set(qt "[<\"](Qt[A-Za-z0-9]*/)?(Q[A-Z][A-Za-z0-9]*|QVTK[A-Za-z0-9]*[.]h)[>\"]")
@@ -39,9 +39,32 @@ foreach(f IN LISTS files)
   endforeach()
 endforeach()
 
+# io, headers and sources: the outside world is read with nothing but the standard library.
+file(GLOB_RECURSE files "${SRC}/io/*.h" "${SRC}/io/*.cpp")
+foreach(f IN LISTS files)
+  file(STRINGS "${f}" lines REGEX "^[ \t]*#[ \t]*include")
+  foreach(line IN LISTS lines)
+    if(NOT line MATCHES "include[ \t]*(\"(io|core/base)/[^\"]+\"|<Eigen/[A-Za-z]+>|<[a-z0-9_]+>)")
+      file(RELATIVE_PATH name "${SRC}" "${f}")
+      string(APPEND leaks "\n  ${name}: ${line}   (io includes only Eigen, std, io and core/base)")
+    endif()
+  endforeach()
+endforeach()
+file(GLOB_RECURSE files "${SRC}/core/*.cpp")
+list(FILTER files EXCLUDE REGEX "/core/scene/")
+foreach(f IN LISTS files)
+  file(STRINGS "${f}" hit REGEX "^[ \t]*#[ \t]*include[ \t]*\"io/")
+  if(hit)
+    file(RELATIVE_PATH name "${SRC}" "${f}")
+    string(APPEND leaks "\n  ${name}: ${hit}   (of core, only core/scene reads files through io)")
+  endif()
+endforeach()
+
+forbid("meshes are read by io" "<vtk[A-Za-z]*(PLY|OBJ|STL|Poly)[A-Za-z]*Reader[.]h>" core/*.cpp viz/*.cpp gui/*.cpp cli/*.cpp)
 forbid("core does not know Qt" "${qt}" core/*.cpp)
 forbid("core does not draw" "${drawing}" core/*.cpp)
 forbid("core stands below viz, gui, cli and plugins" "\"([^\"]*/)?(viz|gui|cli|plugins)/" core/*.h core/*.cpp)
+forbid("viz, gui and cli read files through core" "\"io/" viz/*.h viz/*.cpp gui/*.h gui/*.cpp cli/*.h cli/*.cpp)
 forbid("viz does not know Qt" "${qt}" viz/*.h viz/*.cpp)
 forbid("viz stands below gui, cli and plugins" "\"([^\"]*/)?(gui|cli|plugins)/" viz/*.h viz/*.cpp)
 forbid("cli does not know Qt" "${qt}" cli/*.h cli/*.cpp)
@@ -65,7 +88,8 @@ function(forbid_link what pattern)
   endforeach()
   set(leaks "${leaks}" PARENT_SCOPE)
 endfunction()
-forbid_link("Qt belongs to gui" "Qt([0-9]|[$])|GUISupportQt|glint::gui|glint_gui" core viz cli bench)
+forbid_link("Qt belongs to gui" "Qt([0-9]|[$])|GUISupportQt|glint::gui|glint_gui" io core viz cli bench)
+forbid_link("io links Eigen and core/base" "VTK|PCL|pcl_|opencv|ceres|embree|nlohmann|glint::(core|viz|gui)|glint_(core|viz|gui)" io)
 forbid_link("core does not draw" "VTK::(Rendering|Interaction|Views|Charts|IOExport)|glint::viz|glint_viz" core)
 
 if(leaks)

@@ -165,7 +165,7 @@ TEST(FrameScore, CountsMatchedMissedAndSpurious) {
   a.contourErrorPx = 0.5;
   b.contourErrorPct = 3;
   b.contourErrorPx = 1.5;
-  comparison.rows = {{0, 0, a, {}}, {1, 1, b, {}}, {2, -1, {}, {}}, {-1, 2, {}, {}}};
+  comparison.rows = {{0, 0, a, {}, {}}, {1, 1, b, {}, {}}, {2, -1, {}, {}, {}}, {-1, 2, {}, {}, {}}};
   result.frames = {comparison};
   const FrameScore score = frameScore(result, 3);
   EXPECT_EQ(score.matched, 2);

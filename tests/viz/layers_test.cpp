@@ -173,7 +173,7 @@ TEST(Layers, AConeReachesFromItsPlaceThroughTheContourToBeyondTheEllipsoid) {
     fit.model = model;
     fit.light = "lamp";
     fit.ellipsoid = Ellipsoid(place, Eigen::Vector3d::Constant(kBall));
-    inspection->models[model].fits = {{"lamp", {}, fit, {}}};
+    inspection->models[model].fits = {{"lamp", {}, fit, {}, {}}};
     const std::vector<Eigen::Vector3d> points = firstCone(*inspection, model).vertices;
     ASSERT_EQ(points.size() % 2, 0u);
     ASSERT_GT(points.size(), 100u);

@@ -212,7 +212,7 @@ TEST(Plots, TheDialShowsOneHighlightForAllModels) {
   inspection->evidence[1].highlights.push_back(second);
   FrameComparison& missed = inspection->models["dual"].frames[1];  // dual meets the second highlight only
   missed.prediction = inspection->models["canonical"].frames[1].prediction;
-  missed.rows = {{0, -1, {}, Failure{Reason::NotReached, ""}}, {1, 0, ContourMetrics{}, {}}};
+  missed.rows = {{0, -1, {}, Failure{Reason::NotReached, ""}, {}}, {1, 0, ContourMetrics{}, {}, {}}};
   EXPECT_EQ(residualDial(*inspection, 1, -1).series.size(), 1u);
   ASSERT_EQ(residualDial(*inspection, 1, 1).series.size(), 1u);
   EXPECT_THAT(residualDial(*inspection, 1, 1).series[0].name, HasSubstr("dual"));

@@ -47,7 +47,7 @@ Inspection twoContours(const Polyline& observed, const Polyline& predicted, doub
   PredictedHighlight p;
   p.contour = predicted;
   c.prediction.highlights = {p};
-  c.rows.push_back({0, 0, ContourMetrics{}, {}});
+  c.rows.push_back({0, 0, ContourMetrics{}, {}, {}});
   ModelResult& model = inspection.models["dual"];
   model.model = "dual";
   model.frames = {c};
@@ -114,7 +114,7 @@ TEST(PolarResiduals, DegenerateGapsBordersAndMisses) {
   inspection.evidence[0].highlights[0].contour = circle({30, 200}, 30.0);
   inspection.evidence[0].highlights[0].touchesBorder = true;  // x = 0 on the left is where the image ends
   EXPECT_FALSE(polarResiduals(inspection, 0, "dual", 4)[0].samples[3].value);
-  inspection.models["dual"].frames[0].rows = {{0, -1, {}, Failure{Reason::NotReached, ""}}};
+  inspection.models["dual"].frames[0].rows = {{0, -1, {}, Failure{Reason::NotReached, ""}, {}}};
   EXPECT_TRUE(polarResiduals(inspection, 0, "dual").empty());
   EXPECT_TRUE(polarResiduals(inspection, 0, "primal").empty());
   EXPECT_TRUE(polarResiduals(inspection, 7, "dual").empty());

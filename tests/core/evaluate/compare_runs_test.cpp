@@ -43,10 +43,10 @@ Inspection byHand(const std::vector<std::string>& ids, const std::vector<double>
       ContourMetrics m{};
       m.contourErrorPct = errors[static_cast<std::size_t>(i)];
       c.prediction.highlights.resize(1);
-      c.rows.push_back({0, 0, m, {}});
+      c.rows.push_back({0, 0, m, {}, {}});
     } else {
       c.prediction.failure = Failure{Reason::NoBrightestPoint, "gone"};
-      c.rows.push_back({0, -1, {}, c.prediction.failure});
+      c.rows.push_back({0, -1, {}, c.prediction.failure, {}});
     }
     model.frames.push_back(c);
     run.evidence.push_back({});

@@ -224,7 +224,7 @@ Inspection needle(const AnalyticSpec& surface, const std::string& model) {
     ContourMetrics metrics;
     metrics.contourErrorPx = 600 + comparison.frame;
     metrics.contourErrorPct = 2900;
-    comparison.rows = {{0, 0, metrics, {}}};
+    comparison.rows = {{0, 0, metrics, {}, {}}};
   }
   return inspection;
 }
@@ -328,14 +328,14 @@ TEST(Explain, AMissedHighlightIsToldFromThePredictionThatLiesBesideIt) {
   Inspection inspection = inspected(sheet(0), {"canonical"});
   FrameComparison& comparison = inspection.models.at("canonical").frames.at(5);
   ASSERT_EQ(comparison.frame, 5);
-  comparison.rows = {{0, -1, {}, Failure{Reason::NotReached, "no prediction overlaps this highlight"}}, {-1, 0, {}, {}}};
+  comparison.rows = {{0, -1, {}, Failure{Reason::NotReached, "no prediction overlaps this highlight"}, {}}, {-1, 0, {}, {}, {}}};
   const Explanation e = explain(inspection, 5, 0, "canonical");
   EXPECT_FALSE(stepOf(e, "projection").failure);
   EXPECT_TRUE(breaks(stepOf(e, "projection"), "prediction-misses"));
   EXPECT_TRUE(breaks(stepOf(e, "inverse-walk"), "prediction-misses"));
   EXPECT_TRUE(stepOf(e, "comparison").failure);
   // What is predicted for another highlight does not lie beside this one.
-  comparison.rows.back() = {1, 0, {}, {}};
+  comparison.rows.back() = {1, 0, {}, {}, {}};
   EXPECT_TRUE(stepOf(explain(inspection, 5, 0, "canonical"), "projection").failure);
   comparison.rows.pop_back();  // nothing is predicted at all: that is said instead
   comparison.prediction.highlights.clear();

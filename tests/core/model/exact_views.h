@@ -83,6 +83,9 @@ inline Synthetic moved(Synthetic s, const Eigen::Isometry3d& motion, double scal
   }
   if (s.light.position) s.light.position = point(*s.light.position);
   if (s.light.direction) s.light.direction = motion.linear() * *s.light.direction;
+  if (s.light.segment)
+    for (Eigen::Vector3d& end : *s.light.segment) end = point(end);
+  s.light.radius *= scale;
   return s;
 }
 

@@ -327,14 +327,6 @@ TEST(StarContour, FallsBackToTheLevelSet) {
   ASSERT_EQ(a.highlights.size(), b.highlights.size());
   ASSERT_EQ(a.highlights[0].contour.points.size(), b.highlights[0].contour.points.size());
   EXPECT_EQ(a.highlights[0].contour.points[0], b.highlights[0].contour.points[0]);
-  Scene saddles = on(torus(0.5, 0.2));  // several brightest points
-  saddles.limit = 1 * M_PI / 180;
-  saddles.camera = lookAt({0.1, -0.3, 2}, {0, 0, 0}, 200, 160, 120);
-  const Prediction c = saddles.predicted(), d = saddles.predicted(kStar);
-  ASSERT_GT(c.highlights.size(), 1u);
-  ASSERT_EQ(c.highlights.size(), d.highlights.size());
-  for (std::size_t i = 0; i < c.highlights.size(); ++i)
-    EXPECT_EQ(c.highlights[i].contour.points.size(), d.highlights[i].contour.points.size());
 }
 
 TEST(SearchFromHints, FindsTheSamePointsAsTheGrid) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/evaluate/metrics.h"
 #include "core/pipeline/inspection.h"
@@ -30,8 +31,9 @@ Prediction predicted(const std::string& model, const ModelFit& fit, const Synthe
   return modelByName(model).predict(fit, camera, makeAnalytic(s.surface).get(), settings);
 }
 
-/// Largest distance between two outlines, px.
+/// Largest distance between two outlines, px. A model that is refused has none: then both must be refused.
 double apart(const Polyline& a, const Polyline& b) {
+  if (a.points.empty() != b.points.empty()) return std::numeric_limits<double>::infinity();
   double worst = 0;
   for (const Pixel& p : a.points) worst = std::max(worst, distance(b, p));
   for (const Pixel& p : b.points) worst = std::max(worst, distance(a, p));
@@ -50,7 +52,14 @@ std::map<std::string, Polyline> outlines(const Synthetic& scene, bool reversed =
   const FitInput input = fitInput(training, {});
   std::map<std::string, Polyline> result;
   for (const std::string& model : kModels) {
-    const Prediction p = predicted(model, fitted(model, input), scene, scene.cameras.back());
+    const Outcome<ModelFit> fit = modelByName(model).fit(input, {});
+    if (!fit) {  // on a bent sheet primal leaves a fifth of the contours' radius
+      EXPECT_TRUE(model == "primal" || model == "dual") << fit.failure().message();
+      EXPECT_EQ(fit.failure().reason, Reason::NotConverged) << fit.failure().message();
+      result[model] = {};
+      continue;
+    }
+    const Prediction p = predicted(model, *fit, scene, scene.cameras.back());
     EXPECT_EQ(p.highlights.size(), 1u) << model << " " << (p.failure ? p.failure->message() : "");
     if (!p.highlights.empty()) result[model] = p.highlights[0].contour;
   }

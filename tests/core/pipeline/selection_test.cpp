@@ -5,8 +5,12 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
 #include <set>
 
+#include "core/evaluate/summary.h"
 #include "tests/core/pipeline/exact_scene.h"
 
 namespace glint {
@@ -14,9 +18,16 @@ namespace {
 using namespace testing_support;
 using testing::HasSubstr;
 
-Inspection evidenceOf(std::shared_ptr<const Scene> scene, const std::string& train, double noisePx = 0) {
+/// Where every model is fitted many times: one lobe, and a point light.
+void makeQuick(InspectionRequest& request) {
+  request.settings.setFromText("fit.lobe", "phong");
+  request.settings.setFromText("fit.light_size", "point");
+}
+
+Inspection evidenceOf(std::shared_ptr<const Scene> scene, const std::string& train, double noisePx = 0, bool quick = false) {
   InspectionRequest request;
   request.models.clear();
+  if (quick) makeQuick(request);
   request.train = train;
   request.noisePx = noisePx;
   return inspect(std::move(scene), request);
@@ -44,10 +55,32 @@ TEST(SelectModel, APlaneWithAToleranceNeedsOnlyTheCamera) {
   EXPECT_EQ(s.candidates.size(), 1u) << "nothing richer is computed";
 }
 
-TEST(SelectModel, NoiseMakesRicherModelsUseless) {
+/// Held-out errors of all models; infinite where one leaves a highlight out.
+std::map<std::string, double> heldOutErrors(std::shared_ptr<const Scene> scene, const std::string& train, double noisePx) {
+  InspectionRequest request;
+  makeQuick(request);
+  request.train = train;
+  request.noisePx = noisePx;
+  const Inspection all = inspect(std::move(scene), request);
+  std::map<std::string, double> errors;
+  for (const auto& [name, model] : all.models) {
+    const ModelSummary s = summarise(all, model);
+    errors[name] = s.answered && s.predicted == s.frames && s.missed == 0 ? s.contourErrorPct.mean : HUGE_VAL;
+  }
+  return errors;
+}
+
+// The noise of the left-out contours hides which model is best: leaving one out says 1.37 % of `primal` and 1.32 % of
+// `limit-angle` at 2 px. In held-out frames, against exact contours, they have 0.47 and 0.16 %: nine free numbers against four.
+TEST(SelectModel, NoiseDoesNotHideWhichModelIsBest) {
   for (const double noise : {0.5, 2.0}) {
-    const Selection s = choiceOn(sheet(0), {}, noise);
-    EXPECT_EQ(s.model, "primal") << selectionTable(s);
+    const auto scene = exactScene(sheet(0), 8);
+    const Selection s = selectModel(evidenceOf(scene, "spread:6", noise, true), {});
+    ASSERT_NE(s.model, "") << selectionTable(s);
+    const std::map<std::string, double> errors = heldOutErrors(scene, "spread:6", noise);
+    double best = HUGE_VAL;
+    for (const auto& [name, error] : errors) best = std::min(best, error);
+    EXPECT_LE(errors.at(s.model), 2 * std::max(best, kNegligiblePct)) << selectionTable(s);
   }
 }
 
@@ -107,7 +140,10 @@ TEST(SelectModel, AnEllipsoidOfTheSeenSurfaceDoesNotCarryOver) {
     scene->frames.push_back(f);
   }
   const Selection s = selectModel(evidenceOf(scene, "0-5"), {});
-  EXPECT_EQ(s.model, "canonical") << selectionTable(s);
+  // `canonical`, which was chosen while richer models were left untried, is off by 0.3 % on the bent sheet (docs/selection.md).
+  EXPECT_EQ(s.model, "limit-angle") << selectionTable(s);
+  EXPECT_LT(candidate(s, "canonical").meanPct, kNegligiblePct) << "so leaving one out does not tell";
+  EXPECT_GT(candidate(s, "canonical").disagreementPct, 2 * kNegligiblePct) << "looking ahead does";
   EXPECT_THAT(candidate(s, "primal").remark, HasSubstr("surfaces that no training view shows"));
   EXPECT_LT(candidate(s, "primal").meanPct, kNegligiblePct) << "so leaving views out alone would have taken it";
   const Selection easy = selectModel(evidenceOf(scene, "0-5"), 50.0);
@@ -133,6 +169,97 @@ TEST(SelectModel, NothingToLeaveOut) {
   const Selection none = selectModel(evidenceOf(blind, "spread:4"), {});
   EXPECT_EQ(none.model, "");
   EXPECT_EQ(none.why, "There is no training view to leave out.");
+}
+
+/// Six training views within 1.5 degrees, a lamp 2.7 m away, then eight views held out 14 degrees apart: nothing that leaving one
+/// out can show tells how the models do there.
+std::shared_ptr<Scene> narrowScene(const AnalyticSpec& spec, double stepDeg = 0.3) {
+  auto scene = std::make_shared<Scene>();
+  scene->name = "narrow";
+  scene->surfaces["body"].analytic = spec;
+  const NamedLight lamp{"lamp", {0.4, 1.2, 2.4}};
+  for (int i = 0; i < 14; ++i) {
+    const double azimuth = i < 6 ? 10 + stepDeg * i : 10 + 14 * (i - 9.5), elevation = i < 6 ? 50 + 0.3 * std::sin(2.0 * i) : 50;
+    const double a = azimuth * std::numbers::pi / 180, e = elevation * std::numbers::pi / 180;
+    Frame f;
+    f.id = "v" + std::to_string(i);
+    f.camera = lookingAt(1.3 * Eigen::Vector3d(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)), {0, 0, 0});
+    f.surface = "body";
+    f.lightsOn = {"lamp"};
+    f.highlights = exactContours(spec, f.camera, lamp);
+    scene->frames.push_back(f);
+  }
+  return scene;
+}
+
+AnalyticSpec about(AnalyticSpec spec) {
+  spec.worldFromSurface.setIdentity();
+  return spec;
+}
+
+double smallestIou(std::shared_ptr<const Scene> scene, double noisePx, unsigned seed, const std::string& model) {
+  InspectionRequest request;
+  request.models = {model};
+  request.train = "0-5";
+  request.noisePx = noisePx;
+  request.seed = seed;
+  const Inspection result = inspect(std::move(scene), request);
+  double smallest = 1;
+  for (const FrameComparison& f : result.models.at(model).frames)
+    if (result.isHeldOut(f.frame)) smallest = std::min(smallest, f.iou);
+  return smallest;
+}
+
+// On a sphere seen from almost one place every model explains the training views; `primal` misses what comes next.
+TEST(SelectModel, NarrowViewsOfASphereAreNoPlane) {
+  const auto scene = narrowScene(about(sphere(0.25)));
+  for (const unsigned seed : {1u, 2u}) {
+    InspectionRequest request;
+    request.models.clear();
+    makeQuick(request);
+    request.train = "0-5";
+    request.noisePx = 0.3;
+    request.seed = seed;
+    const Selection s = selectModel(inspect(scene, request), {});
+    ASSERT_NE(s.model, "") << selectionTable(s);
+    EXPECT_GT(smallestIou(scene, 0.3, seed, s.model), 0.5) << s.model << "\n" << selectionTable(s);
+    EXPECT_LT(smallestIou(scene, 0.3, seed, "primal"), 0.5) << "or this scene would show nothing";
+    EXPECT_THAT(candidate(s, "primal").remark, HasSubstr("needs a plane"));
+    EXPECT_EQ(s.toPredict, 8);
+    EXPECT_EQ(s.outside, 8);
+    EXPECT_EQ(s.decidedBy, "extrapolation");
+    EXPECT_THAT(s.why, HasSubstr("outside the training views"));
+  }
+}
+
+// A flat sheet shows where the mirrored lamp is, which takes a baseline: seen with 3 px of noise from almost one place no model
+// knows what is to be seen from far away, and none is chosen.
+TEST(SelectModel, AboveTheCeilingNothingIsChosen) {
+  const auto scene = narrowScene(sheet(0), 0.02);
+  const Selection s = selectModel(evidenceOf(scene, "0-5", 3.0, true), {});
+  EXPECT_EQ(s.model, "") << selectionTable(s);
+  EXPECT_THAT(s.why, HasSubstr("Refused")) << selectionTable(s);
+  EXPECT_THAT(s.why, HasSubstr("ceiling of 5 %"));
+  const Selection tolerant = selectModel(evidenceOf(scene, "0-5", 3.0, true), 50.0);
+  EXPECT_EQ(tolerant.model, "") << "no stated tolerance lifts the ceiling\n" << selectionTable(tolerant);
+  for (const auto& [name, error] : heldOutErrors(scene, "0-5", 3.0))
+    EXPECT_GT(error, kLargestExpectedPct) << name << " would have been right";
+}
+
+TEST(SelectModel, RicherModelsAreTriedThoughASimpleOneIsGood) {
+  const Selection s = choiceOn(sphere(0.5));
+  EXPECT_LT(candidate(s, "limit-angle").meanPct, kNegligiblePct);
+  EXPECT_EQ(s.candidates.back().model, "reflectance");
+  const Selection tolerant = choiceOn(sphere(0.5), 0.05);
+  EXPECT_EQ(tolerant.candidates.back().model, "limit-angle") << "unless a tolerance is stated";
+}
+
+// A tolerance is a statement about the views to predict too: what leaving one out finds good enough may not be.
+TEST(SelectModel, AToleranceCountsOutsideTheTrainingViews) {
+  const auto scene = narrowScene(about(sphere(0.25)));
+  const Selection s = selectModel(evidenceOf(scene, "0-5"), 1.0);
+  ASSERT_NE(s.model, "") << selectionTable(s);
+  EXPECT_GT(smallestIou(scene, 0, 1, s.model), 0.9) << selectionTable(s);
 }
 
 // Three views: `canonical` cannot be fitted to the two that stay, `limit-angle` can.

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
+#include <iomanip>
+#include <sstream>
+
 #include "core/scene/scene.h"
 #include "core/scene/scene_reader.h"
 #include "tests/core/scene/scene_fixture.h"
@@ -201,6 +204,49 @@ TEST(ReadScene, UnknownKeysAreWarnedOfAndKept) {
               testing::AllOf(HasSubstr("\"exposure\": 0.25"), HasSubstr("\"colour\": \"red\""), HasSubstr("null")));
 }
 
+// K = [80 2.5 31.5; 0 80 23.5; 0 0 1] at (0.2, -0.4, 2) of the camera: u = (80 * 0.2 + 2.5 * -0.4) / 2 + 31.5, v = 80 * -0.4 / 2 + 23.5.
+TEST(ReadScene, SkewIsPartOfTheCamera) {
+  const TemporaryFolder folder;
+  const auto sceneWith = [&](const std::string& more) {
+    return readScene(folder.write("scene.json", with(minimalScene(), "\"cy\": 23.5", "\"cy\": 23.5, " + more)));
+  };
+  const Scene scene = sceneWith("\"skew\": 2.5");
+  EXPECT_THAT(scene.warnings, ElementsAre());
+  const Camera& camera = scene.frames[0].camera;
+  const Eigen::Vector3d point(0.2, -0.4, 0);  // the camera stands at z = -2
+  const Pixel expected(39, 7.5);
+  ASSERT_TRUE(camera.project(point));
+  EXPECT_LT((*camera.project(point) - expected).norm(), tolerance::kExact);
+  EXPECT_LT((camera.projection().project(point) - expected).norm(), tolerance::kExact);
+  EXPECT_LT(camera.ray(expected).direction.cross(Eigen::Vector3d(0.2, -0.4, 2).normalized()).norm(), tolerance::kExact);
+  writeScene(scene, folder / "again.json");
+  EXPECT_EQ(readScene(folder / "again.json").frames[0].camera.pixelFromRay, camera.pixelFromRay);
+  // The lens bends normalised coordinates (0.1, -0.2): radial factor 1 + 0.2 * 0.05, then K.
+  const Camera bent = sceneWith("\"skew\": 2.5, \"distortion\": [0.2, 0, 0, 0, 0]").frames[0].camera;
+  const Pixel measured(80 * 0.101 + 2.5 * -0.202 + 31.5, 80 * -0.202 + 23.5);
+  EXPECT_LT((bent.distorted(expected) - measured).norm(), tolerance::kPixel);
+  EXPECT_LT((bent.undistorted(measured) - expected).norm(), tolerance::kPixel);
+}
+
+TEST(ReadScene, UnknownKeysThatWouldChangeTheGeometryAreRefused) {
+  const TemporaryFolder folder;
+  struct Row {
+    const char *from, *to, *place;
+  };
+  for (const Row& row : std::initializer_list<Row>{
+           {"\"cy\": 23.5", "\"cy\": 23.5, \"k4\": 0.1", "camera.k4: "},
+           {"\"cy\": 23.5", "\"cy\": 23.5, \"Fov\": 0.1", "camera.Fov: "},
+           {"\"cy\": 23.5", "\"cy\": 23.5, \"model\": \"OPENCV_FISHEYE\"", "camera.model: 'OPENCV_FISHEYE' is not understood"},
+           {"\"id\": \"a\"", "\"id\": \"a\", \"world_from_camera\": []", "frames[0].world_from_camera: "},
+           {"{\"analytic\"", "{\"scale\": 2, \"analytic\"", "surfaces.ball.scale: "},
+           {"{", "{\"coordinate_system\": \"y up\", ", "coordinate_system: "}}) {
+    const std::string error = inputErrorOf([&] { readScene(folder.write("scene.json", with(minimalScene(), row.from, row.to))); });
+    EXPECT_THAT(error, HasSubstr(row.place)) << row.to;
+    EXPECT_THAT(error, HasSubstr("is not understood")) << row.to;
+  }
+  EXPECT_NO_THROW(readScene(folder.write("scene.json", with(minimalScene(), "\"cy\": 23.5", "\"cy\": 23.5, \"model\": \"OPENCV\""))));
+}
+
 TEST(ReadScene, RoundedRotationIsRepairedAndWarnedOf) {
   // cos 30 deg = 0.86603 to five digits.
   const TemporaryFolder folder;
@@ -279,6 +325,27 @@ TEST(WriteScene, EveryKindOfSurfaceLightAndHighlightComesBack) {
               tolerance::kPixel);
   writeScene(again, folder / "three.json");
   EXPECT_EQ(readScene(folder / "three.json").frames.size(), 2u);
+}
+
+/// Rotations are written with nine digits as often as with all of them. At 1e6 m the tenth digit is a millimetre: the camera must stay where
+/// R c + t = 0 says, not where -R^T t does.
+TEST(ReadSceneJson, ARotationOfNineDigitsKeepsItsCameraInPlace) {
+  const Eigen::Vector3d centre(1e6, -6e5, 3e5);
+  Eigen::Matrix3d r = (Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -1).normalized())).toRotationMatrix();
+  r = (r * 1e9).array().round() / 1e9;
+  const Eigen::Vector3d t = -(r * centre);
+  std::ostringstream pose;
+  pose << std::setprecision(17) << "[[";
+  for (int i = 0; i < 3; ++i)
+    pose << r(i, 0) << "," << r(i, 1) << "," << r(i, 2) << "," << t(i) << "],[";
+  pose << "0,0,0,1]]";
+  const TemporaryFolder folder;
+  const Scene scene = readScene(
+      folder.write("scene.json", with(minimalScene(), "[[1,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,0,1]]", pose.str())));
+  const Eigen::Isometry3d& read = scene.frames[0].camera.camFromWorld;
+  EXPECT_LT((scene.frames[0].camera.centreInWorld() - centre).norm(), 1e-8);
+  EXPECT_LT((read.linear() * read.linear().transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-14);
+  EXPECT_TRUE(scene.warnings.empty());
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "core/surface/brightest_point.h"
+#include "core/surface/occlusion.h"
 #include "tests/core/surface/surfaces.h"
 #include "tests/tolerances.h"
 
@@ -31,6 +32,51 @@ std::optional<double> bruteForce(const TriangleMesh& mesh, const Ray& ray, doubl
     margin = low;
   }
   return best;
+}
+
+/// Coordinates of a million metres leave 1e-10 m of a double: the mesh answers as it does at the origin.
+TEST(Mesh, FarFromTheOriginNothingChanges) {
+  const Vector3d far(1e6, -6e5, 3e5);
+  const double slack = 2e-9;  // m; a few round-offs of the shifted vertices, origins and sums
+  const TriangleMesh near = tessellated(test::torus(0.5, 0.2), 40);
+  TriangleMesh shifted = near;
+  for (Vector3d& v : shifted.vertices) v += far;
+  for (const NormalPolicy policy : {NormalPolicy::Facet, NormalPolicy::Interpolated, NormalPolicy::Curved}) {
+    const auto here = makeMesh(near, policy), there = makeMesh(shifted, policy);
+    std::mt19937 rng(2);
+    std::uniform_real_distribution<double> u(-1, 1);
+    int hits = 0, hidden = 0;
+    for (int i = 0; i < 300; ++i) {
+      const Vector3d o = 2 * Vector3d(u(rng), u(rng), u(rng)).normalized(), to = 2 * Vector3d(u(rng), u(rng), u(rng)).normalized();
+      const Vector3d d = (0.5 * Vector3d(u(rng), u(rng), 0.2 * u(rng)) - o).normalized();
+      const Outcome<SurfacePoint> a = here->firstHit({o, d}), b = there->firstHit({o + far, d});
+      if (!a || !b || a->element != b->element) continue;  // at an outline or an edge round-off decides
+      ++hits;
+      EXPECT_LT((b->position - far - a->position).norm(), slack * (policy == NormalPolicy::Curved ? 10 : 1) / std::abs(a->normal.dot(d)));
+      EXPECT_LT((b->normal - a->normal).norm(), 1e-6);  // across 1e-9 m of triangles of 3 cm
+      hidden += here->occluded(*a, to) != there->occluded(*b, to + far);
+    }
+    EXPECT_GT(hits, 150);
+    EXPECT_LE(hidden, 1);
+  }
+}
+
+/// Embree asserts on coordinates beyond 1.8e18 and ended the program.
+TEST(Mesh, RaysFromBeyondSinglePrecision) {
+  const auto surface = makeMesh(tessellated(test::sphere(0.5), 20), NormalPolicy::Interpolated);
+  const Vector3d away(0, 0, 1e20);
+  EXPECT_FALSE(surface->firstHit({away, Vector3d(0, 0, 1)}));
+  (void)surface->firstHit({away, Vector3d(0, 0, -1)});  // a hit or none: 1e20 leaves 1e4 m of a double
+  (void)surface->firstHit({1e200 * away, Vector3d(0, 0, -1)});
+  (void)surface->approximateHits({{away, Vector3d(0, 0, 1)}, {away, Vector3d(0, 0, -1)}, {1e30 * away, Vector3d(0, 1, 0)}});
+  const Outcome<SurfacePoint> top = surface->firstHit({Vector3d(0, 0, 2), Vector3d(0, 0, -1)});
+  ASSERT_TRUE(top);
+  EXPECT_FALSE(surface->occluded(*top, away));
+  EXPECT_TRUE(surface->occluded(*top, -away));
+  const auto* many = dynamic_cast<const ManyOcclusions*>(surface.get());
+  ASSERT_TRUE(many);
+  EXPECT_EQ(many->occludedMany({*top, *top}, -away), (std::vector<char>{1, 1}));
+  EXPECT_EQ(many->occludedMany({*top}, away), (std::vector<char>{0}));
 }
 
 TEST(Mesh, HitsAgreeWithBruteForceInDouble) {

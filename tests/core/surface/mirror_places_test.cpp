@@ -90,6 +90,26 @@ Counts countMissed(const TriangleMesh& mesh, NormalPolicy policy, int trials, do
   return counts;
 }
 
+/// The tree of one triangle (or of a few in one cell) is a root with one part; it was no tree at all and was read beyond its end.
+TEST(MirrorPlaces, OneTriangle) {
+  TriangleMesh mesh;
+  mesh.vertices = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  const auto surface = makeMesh(mesh, NormalPolicy::Interpolated);
+  const auto* places = dynamic_cast<const MirrorPlaces*>(surface.get());
+  ASSERT_TRUE(places);
+  MirrorQuery query;
+  query.eye = Vector3d(0.2, 0, 2);
+  query.light << -0.2, 0, 2, 1;  // the mirror point of a plane is half-way: (0, 0, 0)
+  query.sides.fill(Vector3d(0, 0, -1));
+  const std::optional<std::vector<SurfacePoint>> found = places->mirrorPlaces(query);
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->size(), 1u);
+  EXPECT_EQ(found->front().element, 0);
+  query.light << -5, 0, 2, 1;  // half-way in angle lies outside of the triangle, and no N is parallel to H on it
+  EXPECT_TRUE(places->mirrorPlaces(query));
+}
+
 // Truth by construction. What is left are lights near a caustic (the torus' upper circle), where solutions merge: the grid of
 // rays misses those too, and more.
 TEST(MirrorPlaces, ConstructedMirrorPointsAreFound) {

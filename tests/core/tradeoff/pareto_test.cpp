@@ -55,6 +55,13 @@ TEST(Presets, ByHand) {
   EXPECT_EQ(p.exact, 5);
 }
 
+// The level set (0.0617 %, 5746 us) and the star (0.0619 %, 150 us) draw the same contour: the faster one is exact.
+TEST(Presets, TheFastestOfTheSameErrorIsExact) {
+  const Presets p = presetsOf({{0.331, 44}, {0.0619, 150}, {0.0617, 5746}});
+  EXPECT_EQ(p.exact, 1);
+  EXPECT_EQ(presetsOf({{0.331, 44}, {0.068, 150}, {0.0617, 5746}}).exact, 2);
+}
+
 TEST(Presets, NothingUsableTakesTheFastest) {
   const Presets p = presetsOf({{70, 5}, {90, 3}, {80, 9}});
   EXPECT_EQ(p.fast, 1);

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/model/band.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/uncertainty.h"
+#include "core/model/uncertainty.h"
+
+namespace glint {
+namespace {
+
+constexpr double kNormal95 = 1.959964;
+// A clipped peak may have been ten times as high: a Gaussian lobe's contour at half of it then has half the radius. 1.96 of this hold that.
+constexpr double kClippedShare = 0.25;
+
+/// Arc length at every vertex, as a share of the whole.
+std::vector<double> arcOf(const Polyline& line) {
+  std::vector<double> arc;
+  double sum = 0;
+  for (std::size_t i = 0; i < line.points.size(); ++i) {
+    arc.push_back(sum);
+    sum += (line.points[(i + 1) % line.points.size()] - line.points[i]).norm();
+  }
+  for (double& a : arc) a /= sum;
+  return arc;
+}
+
+const PredictedHighlight* nearest(const Prediction& p, const Pixel& to) {
+  const auto distance = [&](const PredictedHighlight& h) { return (centroid(h.contour) - to).norm(); };
+  const auto best = std::min_element(p.highlights.begin(), p.highlights.end(),
+                                     [&](const PredictedHighlight& a, const PredictedHighlight& b) { return distance(a) < distance(b); });
+  return best == p.highlights.end() ? nullptr : &*best;
+}
+
+/// A measured contour against the predicted one: every point's distance from its foot, and the shifts there.
+std::optional<ViewResiduals> residualsOf(const Polyline& measured, const Polyline& predicted, const Eigen::MatrixXd& shifts, int points) {
+  const std::size_t n = predicted.points.size();
+  if (n < 3 || shifts.cols() == 0 || shifts.rows() != Eigen::Index(n)) return std::nullopt;
+  const std::vector<Pixel> normals = outwardNormals(predicted);
+  const std::vector<double> arc = arcOf(predicted);
+  const std::vector<Pixel> observed = measured.points.size() > std::size_t(points) ? resample(measured, points) : measured.points;
+  std::vector<double> residual, arcs;
+  std::vector<Pixel> directions;
+  std::vector<Eigen::RowVectorXd> rows;
+  for (const Pixel& p : observed) {
+    double best = std::numeric_limits<double>::infinity(), share = 0;
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const Pixel a = predicted.points[i], along = predicted.points[(i + 1) % n] - a;
+      const double squared = along.squaredNorm(), t = squared > 0 ? std::clamp((p - a).dot(along) / squared, 0.0, 1.0) : 0.0;
+      const double d = (a + t * along - p).squaredNorm();
+      if (d < best) best = d, share = t, at = i;
+    }
+    const std::size_t next = (at + 1) % n;
+    const Eigen::Index i = Eigen::Index(at), j = Eigen::Index(next);
+    if (!(shifts.row(i).norm() > 0) || !(shifts.row(j).norm() > 0)) continue;  // the surface ends there
+    const Pixel foot = predicted.points[at] + share * (predicted.points[next] - predicted.points[at]);
+    const Pixel normal = ((1 - share) * normals[at] + share * normals[next]).normalized();
+    if (!normal.allFinite()) continue;
+    residual.push_back(std::copysign(std::sqrt(best), normal.dot(p - foot)));
+    directions.push_back(normal);
+    const double end = next == 0 ? 1.0 : arc[next];
+    arcs.push_back(arc[at] + share * (end - arc[at]));
+    rows.push_back((1 - share) * shifts.row(i) + share * shifts.row(j));
+  }
+  constexpr std::size_t kLeast = 5;  // as the light's bundle asks for
+  if (residual.size() < kLeast) return std::nullopt;
+  ViewResiduals v;
+  v.residual = Eigen::Map<const Eigen::VectorXd>(residual.data(), Eigen::Index(residual.size()));
+  v.byParameter.resize(Eigen::Index(rows.size()), shifts.cols());
+  for (std::size_t i = 0; i < rows.size(); ++i) v.byParameter.row(Eigen::Index(i)) = rows[i];
+  v.shapes = contourShapes(directions, arcs);
+  return v;
+}
+
+}  // namespace
+
+std::shared_ptr<Band> Band::of(const HighlightModel& model, const ModelFit& fit, const std::vector<TrainingView>& views,
+                               const Settings& settings) {
+  if (!fit.uncertainty) return nullptr;
+  std::vector<ViewResiduals> residuals;
+  bool clipped = false;
+  double radius = 0;
+  for (const TrainingView& v : views) {
+    if (v.failure || v.highlight.contour.points.size() < 3) continue;
+    clipped = clipped || (v.highlight.clipped && fit.evidence != "pixels");  // pixels leave out what is clipped
+    const Prediction p = model.predict(fit, v.camera, v.surface.get(), settings);
+    const PredictedHighlight* h = nearest(p, centroid(v.highlight.contour));
+    if (!h) continue;
+    const Eigen::MatrixXd shifts = model.bandShiftsPx(fit, *h, v.camera, v.surface.get(), settings);
+    if (!residuals.empty() && shifts.cols() != residuals.front().byParameter.cols()) continue;
+    if (std::optional<ViewResiduals> r = residualsOf(v.highlight.contour, h->contour, shifts, settings.integer("light.bundle_points"))) {
+      residuals.push_back(std::move(*r));
+      radius += std::sqrt(std::abs(signedArea(h->contour)) / M_PI);
+    }
+  }
+  if (residuals.empty()) return nullptr;
+  std::shared_ptr<Band> band(new Band(model, fit, settings, ViewEffects(residuals, settings.number("light.robust_px"))));
+  band->clipped_ = clipped;
+  band->radius_ = radius / double(residuals.size());
+  return band;
+}
+
+std::vector<double> Band::sigmaPx(const PredictedHighlight& highlight, const Camera& camera, const Surface* surface) const {
+  const Eigen::MatrixXd shifts = model_.bandShiftsPx(fit_, highlight, camera, surface, settings_);
+  const std::size_t n = highlight.contour.points.size();
+  if (shifts.cols() == 0 || shifts.rows() != Eigen::Index(n) || n < 3) return {};
+  const ViewEffects::Variance v = effects_.at(shifts, contourShapes(outwardNormals(highlight.contour), arcOf(highlight.contour)));
+  std::vector<double> variance(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double factor = studentFactor(0.95, v.freedom[i]) / kNormal95;
+    variance[i] = factor * factor * v.px2[i];
+    if (own_) variance[i] += shifts.row(Eigen::Index(i)).squaredNorm();
+    if (clipped_) variance[i] += std::pow(kClippedShare * (highlight.contour.points[i] - highlight.brightest.pixel).norm(), 2);
+  }
+  for (const BandAlternative& other : alternatives_) {
+    const Prediction p = other.model->predict(other.fit, other.camera ? other.camera(camera) : camera, surface, settings_);
+    const PredictedHighlight* h = nearest(p, centroid(highlight.contour));
+    if (!h) continue;
+    std::vector<double> away = shiftsAlongNormals(highlight.contour, h->contour);
+    if (other.reference) {
+      const Prediction q = other.model->predict(*other.reference, camera, surface, settings_);
+      const PredictedHighlight* from = nearest(q, centroid(highlight.contour));
+      if (!from) continue;
+      const std::vector<double> start = shiftsAlongNormals(highlight.contour, from->contour);
+      for (std::size_t i = 0; i < n; ++i) away[i] -= start[i];
+    }
+    double squares = 0, count = 0;
+    for (const double d : away)
+      if (std::isfinite(d)) squares += d * d, count += 1;
+    for (std::size_t i = 0; i < n && count > 0; ++i)
+      variance[i] += other.share * (std::isfinite(away[i]) ? away[i] * away[i] : squares / count);
+  }
+  std::vector<double> sigma(n);
+  for (std::size_t i = 0; i < n; ++i) sigma[i] = shifts.row(Eigen::Index(i)).norm() > 0 ? std::sqrt(variance[i]) : 0;
+  return sigma;
+}
+
+}  // namespace glint

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+
+#include "core/model/model.h"
+
+namespace glint {
+
+/// Smallest radius of a highlight that is an answer, px: the best detection places a contour to 0.02 px, a tenth of this, which is the
+/// share of the radius beyond which a fit counts as none.
+inline constexpr double kLeastRadiusPx = 0.2;
+
+/// Share of the contours' radius that a fit may leave of its own training contours. A tenth would refuse `primal` and `dual` in lessons and
+/// sessions that show how they fail (10 to 25 % there); beyond a twentieth a remark says what is left.
+inline constexpr double kMostResidualShare = 0.3;
+
+/// Radius of the disc with the area of a closed contour, px.
+double radiusPx(const Polyline& contour);
+/// Standard deviation of the noise of single contour points across the contour, px, from second differences of their distances from the middle
+/// (robustly): what a detector or a model gets wrong is smooth along a contour, noise is not. 0 below seven points.
+double noisePx(const Polyline& contour);
+
+/// One highlight that a fit used, as a measure of what the fit may leave of it.
+struct UsedContour {
+  double radius = 0, noise = 0;  ///< px
+  double unit = 1;               ///< how many units of ModelFit::residualPx a pixel of the photograph is; canonical contours are larger than the highlight
+};
+UsedContour usedContour(const TrainingView& view, double unit = 1);
+
+/// "the highlight has a radius of 0.0003 px, ..." for one below kLeastRadiusPx; NoHighlight.
+std::optional<Failure> tooSmall(const Polyline& contour);
+
+/// Drops predicted highlights that are too small for an answer; the prediction fails with that reason where none is left.
+void dropTooSmall(Prediction& prediction);
+
+/// LightBehindSurface where the light lies behind the tangent plane at the brightest point of a usable training view: N.(l - w P) <= 0 there, so
+/// that it could not have made this highlight. Every estimate of a light asks this, whichever way it was found.
+std::optional<Failure> lightBehind(const std::vector<TrainingView>& views, const Light& light);
+
+/// "; 5 of 6 views could not be used, frame 3: peak off surface": how many views have a reason and the first one's. Empty where none has.
+/// @param why  of a view: why it could not be used; nothing where it could
+std::string unusedViews(const std::vector<TrainingView>& views,
+                        const std::function<std::optional<Failure>(const TrainingView&)>& why);
+/// With the failure of the view itself.
+std::string unusedViews(const std::vector<TrainingView>& views);
+
+/// TooFewViews with why the other views could not be used; other failures as they are.
+Failure withUnusedViews(Failure failure, const std::vector<TrainingView>& views,
+                        const std::function<std::optional<Failure>(const TrainingView&)>& why);
+
+/// The fit, unless it leaves more than three tenths of the contours' radius in more than a third of its training views, or on the whole (root of
+/// the mean square of the shares): NotConverged says how much. What is noise of single points does not count, since every model leaves it. A
+/// robust fit may leave a smaller number of views alone, whatever they show. Such views, and a fit that leaves more than 3 px or a twentieth of
+/// the radius, become remarks.
+/// @param used    the highlights behind fit.residualPx and fit.frames, in the same order
+/// @param robust  outliers had no say in this fit: the rule for the whole is left out
+Outcome<ModelFit> explaining(ModelFit fit, const std::vector<UsedContour>& used, bool robust);
+
+}  // namespace glint

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/pipeline/lobe_stage.h"
+
+#include <algorithm>
+#include <atomic>
+#include <map>
+
+#include "core/base/parallel.h"
+#include "core/model/pixel_evidence.h"
+#include "core/pipeline/evidence.h"
+#include "core/pipeline/stage_keys.h"
+#include "core/pipeline/training.h"
+#include "core/reflectance/lobe_contour.h"
+
+namespace glint {
+namespace {
+
+std::string keyFor(const Inspection& r, const std::string& light, int frame) {
+  return lightKey(light, r.train.perSurface ? std::optional<std::string>(r.surfaces->keyOf(frame)) : std::nullopt);
+}
+
+bool trains(const Inspection& r, int frame) {
+  return std::binary_search(r.train.frames.begin(), r.train.frames.end(), frame) &&
+         std::find(r.request.excluded.begin(), r.request.excluded.end(), frame) == r.request.excluded.end();
+}
+
+std::vector<Highlight> ofOthers(const FrameEvidence& e, const std::string& light) {
+  std::vector<Highlight> others;
+  for (const Highlight& h : e.highlights)
+    if (h.light != light) others.push_back(h);
+  return others;
+}
+
+bool wasDetected(const FrameEvidence& e) {
+  return e.frame >= 0 && !e.highlights.empty() &&
+         std::none_of(e.highlights.begin(), e.highlights.end(), [](const Highlight& h) { return h.fromScene; });
+}
+
+}  // namespace
+
+bool looksAtPixels(const InspectionRequest& request) {
+  const std::string& evidence = request.settings.text("fit.evidence");
+  return request.settings.text("detect.background") == "lobe" || evidence == "auto" || evidence == "pixels";
+}
+
+std::string lobeKey(const InspectionRequest& request, const TrainSpec& train, const std::string& detectKey) {
+  std::string frames;
+  for (const int f : train.frames) frames += std::to_string(f) + ",";
+  frames += train.perSurface ? "per-surface" : "";
+  for (const int f : request.excluded) frames += "x" + std::to_string(f);
+  return keyOfStages(request.settings, {"surface"}, detectKey) + "|" + frames + "|" + posesKey(request.whatIf) + "|" +
+         lightsOffKey(request.whatIf) + "|" + request.settings.text("fit.lobe") + "|" + request.settings.text("fit.light_size") +
+         (looksAtPixels(request) ? "|pixels" : "");
+}
+
+void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, const ProgressFn& progress) {
+  if (!looksAtPixels(r.request)) return;
+  std::vector<int> frames;
+  for (const int f : r.train.frames)
+    if (trains(r, f) && wasDetected(r.evidence[static_cast<std::size_t>(f)])) frames.push_back(f);
+  struct Seen {
+    std::vector<TrainingView> views;
+    std::vector<std::pair<int, int>> ids;
+  };
+  std::vector<Seen> seen(frames.size());
+  parallelFor(
+      static_cast<int>(frames.size()),
+      [&](int n) {
+        const int f = frames[static_cast<std::size_t>(n)];
+        const Frame& frame = r.scene->frames[static_cast<std::size_t>(f)];
+        const FrameEvidence& evidence = r.evidence[static_cast<std::size_t>(f)];
+        const std::shared_ptr<const Surface> surface = surfaceOf(f);
+        const Outcome<LinearPixels> pixels = pixelsOf(frame, r.request.source, r.request.settings);
+        if (!surface || !pixels) return;
+        for (int h = 0; h < static_cast<int>(evidence.highlights.size()); ++h) {
+          const Highlight& highlight = evidence.highlights[static_cast<std::size_t>(h)];
+          if (highlight.light.empty() || isSwitchedOff(r.request.whatIf, f, highlight.light)) continue;
+          TrainingView view = trainingView(evidence, h, frame.camera, surface);
+          if (view.failure) continue;
+          Outcome<PixelPatch> patch =
+              pixelPatch(*pixels, frame.camera, *surface, f, highlight, ofOthers(evidence, highlight.light));
+          if (!patch) continue;
+          view.pixels = std::make_shared<PixelPatch>(*std::move(patch));
+          seen[static_cast<std::size_t>(n)].views.push_back(std::move(view));
+          seen[static_cast<std::size_t>(n)].ids.emplace_back(f, h);
+        }
+      },
+      progress, "pixels");
+  std::map<std::string, std::vector<TrainingView>> groups;
+  for (const Seen& s : seen)
+    for (std::size_t i = 0; i < s.views.size(); ++i) {
+      r.patches[s.ids[i]] = s.views[i].pixels;
+      groups[keyFor(r, s.views[i].highlight.light, s.views[i].frame)].push_back(s.views[i]);
+    }
+  int done = 0;
+  for (const auto& [key, views] : groups) {
+    if (!report(progress, {"lobe", done++, static_cast<int>(groups.size())})) throw Stopped{};
+    // The start is the same whatever the settings of the light are: they do not matter to where the fit ends.
+    const Outcome<LightEstimate> light = estimateLight(views, Settings{});
+    const Outcome<PixelFit> fit =
+        fitViewsPixels(views, light ? std::optional<LightEstimate>(*light) : std::nullopt, r.request.settings);
+    ++r.work.pixelFits;
+    if (fit) r.pixelFits[key] = std::make_shared<PixelFit>(*fit);
+    else r.pixelFailures.insert_or_assign(key, fit.failure());
+  }
+}
+
+void contourAgain(Inspection& r, const SurfaceOfFrame& surfaceOf, const ProgressFn& progress) {
+  if (r.request.settings.text("detect.background") != "lobe" || r.pixelFits.empty()) return;
+  r.detected.resize(r.evidence.size());
+  std::vector<int> frames;
+  for (int f = 0; f < static_cast<int>(r.evidence.size()); ++f)
+    if (wasDetected(r.evidence[static_cast<std::size_t>(f)]) && r.detected[static_cast<std::size_t>(f)].frame < 0) frames.push_back(f);
+  std::atomic<int> again{0};
+  parallelFor(
+      static_cast<int>(frames.size()),
+      [&](int n) {
+        const int f = frames[static_cast<std::size_t>(n)];
+        const Frame& frame = r.scene->frames[static_cast<std::size_t>(f)];
+        FrameEvidence& evidence = r.evidence[static_cast<std::size_t>(f)];
+        r.detected[static_cast<std::size_t>(f)] = evidence;
+        const std::shared_ptr<const Surface> surface = surfaceOf(f);
+        const Outcome<LinearPixels> pixels = pixelsOf(frame, r.request.source, r.request.settings);
+        if (!surface || !pixels) return;
+        std::map<std::string, std::vector<std::size_t>> byLight;
+        for (std::size_t h = 0; h < evidence.highlights.size(); ++h) byLight[evidence.highlights[h].light].push_back(h);
+        for (const auto& [light, indices] : byLight) {
+          const auto fit = r.pixelFits.find(keyFor(r, light, f));
+          if (light.empty() || fit == r.pixelFits.end()) continue;
+          std::vector<Highlight> found;
+          for (const std::size_t h : indices) found.push_back(evidence.highlights[h]);
+          const FrameEvidence& before = r.detected[static_cast<std::size_t>(f)];
+          Outcome<std::vector<Highlight>> traced =
+              contourWithLobe(*pixels, frame.camera, *surface, f, found, ofOthers(before, light), fit->second->model,
+                              fit->second->background, detectOptionsFor(frame, r.request.source, r.request.settings));
+          if (!traced) continue;
+          for (std::size_t k = 0; k < indices.size(); ++k) evidence.highlights[indices[k]] = std::move((*traced)[k]);
+          ++again;
+        }
+      },
+      progress, "contour again");
+  r.work.framesContouredAgain += again;
+}
+
+void attachPixels(Inspection& r) {
+  if (r.request.noisePx > 0) return;
+  std::map<int, int> next;  // views come in the order of their frame's highlights
+  for (TrainingView& v : r.views) {
+    const FrameEvidence& evidence = r.evidence[static_cast<std::size_t>(v.frame)];
+    const int index = evidence.asFound(next[v.frame]++);
+    const auto patch = r.patches.find({v.frame, index});
+    if (patch != r.patches.end() && !r.request.whatIf.highlights.count({v.frame, index})) v.pixels = patch->second;
+  }
+}
+
+}  // namespace glint

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/pipeline/inspection.h"
+
+namespace glint {
+
+/// The stage between detection and training (method.md section 15): the lobe of every light is fitted to the pixels of the training
+/// frames, and the contours of all frames are found again with the background that this lobe leaves.
+
+/// The request asks for pixels: as evidence, or for the background.
+bool looksAtPixels(const InspectionRequest& request);
+
+/// What the stage depends on, beside the evidence as detected.
+std::string lobeKey(const InspectionRequest& request, const TrainSpec& train, const std::string& detectKey);
+
+using SurfaceOfFrame = std::function<std::shared_ptr<const Surface>(int frame)>;
+
+/// Fills patches, pixelFits and pixelFailures from the training frames' evidence as detected. Frames whose contours the scene gives have
+/// no pixels. Throws Stopped.
+void fitLobes(Inspection& inspection, const SurfaceOfFrame& surfaceOf, const ProgressFn& progress);
+
+/// Replaces the evidence of frames that were not looked at before by contours with the lobe's background; keeps the evidence as
+/// detected in Inspection::detected. Throws Stopped.
+void contourAgain(Inspection& inspection, const SurfaceOfFrame& surfaceOf, const ProgressFn& progress);
+
+/// Joins the views with their pixels. None where noise was added or the user moved the highlight: its contour then says more than the
+/// pixels do.
+void attachPixels(Inspection& inspection);
+
+}  // namespace glint

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/reflectance/fit_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "core/reflectance/lobe_width.h"
+#include "core/reflectance/segment_fit.h"
+
+namespace glint {
+namespace {
+
+// Of the sum of squares over their mean: three standard deviations, before a cosine power is preferred to a microfacet lobe.
+constexpr double kClearGain = 9;
+constexpr std::size_t kPromisingStarts = 6;  // of those that a short fit to few points likes best
+constexpr int kMostRounds = 3;               // of lobes that start again from a better one: each round must have found a better light
+constexpr double kNarrowest = 1e-4, kWidest = 1.0;  // roughness of first guesses
+
+bool isMicrofacet(Lobe lobe) { return lobe == Lobe::TorranceSparrow || lobe == Lobe::Ggx; }
+
+/// Point lights of several lobes; keeps what each lobe found.
+class PointSearch {
+ public:
+  PointSearch(const std::vector<Lobe>& lobes, const std::vector<RadianceView>& views, const RadianceFitOptions& options)
+      : lobes_(lobes), views_(views), options_(options) {
+    options_.lightSize = options_.otherStarts = false;
+  }
+
+  Outcome<RadianceFit> run(const Light& light, double width) {
+    for (const Lobe lobe : lobes_) (void)(explains() ? follow(lobe) : tryFrom(lobe, light, roughnessFor(lobe, width)));
+    if (!best_ || fit().doubtful) screen(light, width, StartGrid::Distances);
+    if (!explains()) screen(light, width, StartGrid::Directions);
+    // A lobe that was tried before the best light was known starts there too. The other way round it is already so.
+    for (int round = 0; round < kMostRounds && explains(); ++round) {
+      bool better = false;
+      for (const Lobe lobe : lobes_)
+        if (lobe != fit().lobe) better = follow(lobe) || better;
+      if (!better) break;
+    }
+    if (!best_) return failure_;
+    return preferred();
+  }
+
+ private:
+  const RadianceFit& fit() const { return found_.at(*best_); }
+  bool explains() const { return best_ && !fit().poor; }
+  double level() const { return views_.empty() ? 0.5 : views_.front().level; }
+  double roughnessFor(Lobe lobe, double width) const { return std::clamp(roughnessOf(lobe, width, level()), kNarrowest, kWidest); }
+
+  static bool isBetter(const RadianceFit& a, const RadianceFit& b) { return a.poor != b.poor ? b.poor : a.cost < b.cost; }
+
+  /// Fits a lobe from a start. @return whether the best of all lobes became better.
+  bool tryFrom(Lobe lobe, const Light& light, double roughness) {
+    Outcome<RadianceFit> f = fitRadiance(lobe, views_, light, roughness, options_);
+    if (!f) {
+      if (!best_) failure_ = f.failure();
+      return false;
+    }
+    const auto known = found_.find(lobe);
+    if (known != found_.end() && !isBetter(*f, known->second)) return false;
+    found_.insert_or_assign(lobe, *std::move(f));
+    if (best_ && *best_ != lobe && !isBetter(found_.at(lobe), fit())) return false;
+    best_ = lobe;
+    followed_.clear();
+    return true;
+  }
+
+  /// From the best fit so far: once, it would lead to the same place again.
+  bool follow(Lobe lobe) {
+    if (!followed_.insert(lobe).second) return false;
+    const Light light = fit().light;
+    const double width = widthOf(fit().lobe, fit().roughness, level());
+    const bool better = tryFrom(lobe, light, roughnessFor(lobe, width));
+    followed_.insert(lobe);  // also where this lobe is the new best: it need not follow itself
+    return better;
+  }
+
+  void screen(const Light& light, double width, StartGrid grid) {
+    std::vector<RadianceStart> starts;
+    for (const Lobe lobe : lobes_)
+      for (const RadianceStart& s : screenStarts(lobe, views_, light, roughnessFor(lobe, width), grid, options_)) starts.push_back(s);
+    std::stable_sort(starts.begin(), starts.end(),
+                     [](const RadianceStart& a, const RadianceStart& b) { return a.cost < b.cost; });
+    for (std::size_t i = 0; i < starts.size() && i < kPromisingStarts && !(best_ && !fit().doubtful); ++i)
+      (void)tryFrom(starts[i].lobe, starts[i].light, starts[i].roughness);
+  }
+
+  RadianceFit preferred() const {
+    const RadianceFit* microfacet = nullptr;
+    for (const auto& [lobe, f] : found_)
+      if (isMicrofacet(lobe) && (!microfacet || isBetter(f, *microfacet))) microfacet = &f;
+    if (microfacet && !microfacet->poor && microfacet->cost - fit().cost < kClearGain * fit().cost / fit().points) return *microfacet;
+    return fit();
+  }
+
+  const std::vector<Lobe>& lobes_;
+  const std::vector<RadianceView>& views_;
+  RadianceFitOptions options_;
+  std::map<Lobe, RadianceFit> found_;
+  std::set<Lobe> followed_;  ///< lobes that started from the best fit of the moment
+  std::optional<Lobe> best_;
+  Failure failure_{Reason::NotConverged, ""};
+};
+
+/// A size is tried on the best lobe; only where it shows are the others tried with one too.
+RadianceFit withSphere(const std::vector<Lobe>& lobes, const std::vector<RadianceView>& views, const RadianceFit& point,
+                       RadianceFitOptions options) {
+  options.lightSize = true;
+  options.otherStarts = false;
+  RadianceFit best = point;
+  const auto tryLobe = [&](Lobe lobe) {
+    const Outcome<RadianceFit> f = fitRadiance(lobe, views, point.light, point.roughness, options);
+    if (f && f->cost < best.cost) best = *f;
+  };
+  tryLobe(point.lobe);
+  if (best.lightRadius > 0)
+    for (const Lobe lobe : lobes)
+      if (lobe != point.lobe) tryLobe(lobe);
+  return best;
+}
+
+}  // namespace
+
+Outcome<RadianceFit> searchRadiance(const std::vector<Lobe>& lobes, const std::vector<RadianceView>& views, const Light& light,
+                                    double widthRad, const LampChoices& lamps, const RadianceFitOptions& options) {
+  require(!lobes.empty(), "searchRadiance: no lobe");
+  Outcome<RadianceFit> best = PointSearch(lobes, views, options).run(light, widthRad);
+  if (lobes.size() == 1 && (!best || best->poor)) {
+    // Another lobe may find the way from the first guess; from its light the lobe asked for starts close.
+    const Lobe other = lobes[0] == Lobe::TorranceSparrow ? Lobe::BlinnPhong : Lobe::TorranceSparrow;
+    const Outcome<RadianceFit> guide = PointSearch({other}, views, options).run(light, widthRad);
+    if (guide && !guide->poor) {
+      const double width = widthOf(other, guide->roughness, views.front().level);
+      if (Outcome<RadianceFit> again = PointSearch(lobes, views, options).run(guide->light, width); again && !again->poor)
+        best = std::move(again);
+    }
+  }
+  if (best && !best->poor && lamps.sphere) best = withSphere(lobes, views, *best, options);
+  if (lamps.segment)
+    if (const std::optional<RadianceFit> segment = fitSegment(lobes, views, best ? &*best : nullptr, light, widthRad, options))
+      best = *segment;
+  return best;
+}
+
+}  // namespace glint

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "core/reflectance/disc_rule.h"
+#include "core/reflectance/pixel_fit.h"
+
+/// The lobe's image on the cells of patches, and the linear part of its fit; internal to core/reflectance.
+namespace glint::patch {
+
+/// The unknowns of a lobe and its lamp, in normalised coordinates (x - origin) / scale.
+struct State {
+  Eigen::Vector4d light{0, 0, 1, 0};  ///< |L| = 1
+  double logRoughness = 0, radiusSquared = 0;
+  double blurVariance = 0;  ///< px^2
+};
+
+/// The patches of one frame with positions in normalised coordinates.
+struct FramePatches {
+  std::vector<PixelPatch> patches;
+  double top = 0;  ///< largest used value of all
+  std::size_t used = 0;
+};
+
+struct Normalised {
+  std::vector<FramePatches> frames;
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  double scale = 1;
+  std::size_t cells = 0;  ///< used, of all frames
+  double radiusPx = 0;    ///< of the contours, mean
+};
+Normalised normalised(const std::vector<const PixelPatch*>& patches);
+Eigen::Vector4d normalisedLight(const Light& light, const Normalised& in);
+
+/// Two by two cells become one: four times fewer, for the search.
+PixelPatch coarsened(const PixelPatch& patch);
+
+/// S = exp(log I - logTop) over all cells of a frame's patches, blurred; logTop is the largest log I of the frame's cells.
+struct LobeImage {
+  std::vector<std::vector<double>> value;  ///< per patch and cell
+  double logTop = 0;
+  std::size_t topPatch = 0, topCell = 0;  ///< where it is
+  bool lit = false;  ///< some used cell is
+};
+LobeImage lobeImage(Lobe lobe, const FramePatches& frame, const State& at, const lobe::DiscRule& rule);
+
+/// Weights of iteratively reweighted least squares, per used cell of a frame; ones to begin with.
+using Weights = std::vector<double>;
+
+/// Strength and background coefficients of a frame for fixed weights, and the weighted residuals of all used cells.
+struct LinearFit {
+  Eigen::VectorXd coefficients;  ///< strength, then each patch's background
+  std::vector<double> residual;  ///< w (I - K S - b) / I_max, without the robust weight
+  bool solved = false;
+};
+LinearFit linearFit(const FramePatches& frame, const LobeImage& image, BackgroundKind kind, const State& at, const Weights& weights);
+
+/// Reweights until the coefficients settle. `weights` start from what they are and are left as they end.
+LinearFit robustFit(const FramePatches& frame, const LobeImage& image, BackgroundKind kind, const State& at, Weights& weights);
+
+/// rho(r) = 2 a^2 (sqrt(1 + r^2 / a^2) - 1), a = kRobust.
+double robustSquare(double residual);
+double robustWeight(double residual);
+
+int coefficientsOf(BackgroundKind kind);
+/// The background of one patch at all cells on the surface; `coefficients` are that patch's.
+std::vector<double> backgroundOf(const PixelPatch& patch, const FramePatches& frame, BackgroundKind kind, const State& at,
+                                 const Eigen::VectorXd& coefficients);
+
+/// Leaves out cells that lie in the lamp's shadow. Positions still in world.
+void dropShadowed(PixelPatch& patch, const Surface& surface, const Light& light);
+
+}  // namespace glint::patch

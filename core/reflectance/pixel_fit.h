@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/base/uncertainty.h"
+#include "core/light/light.h"
+#include "core/reflectance/lobe.h"
+#include "core/reflectance/pixel_patch.h"
+
+namespace glint {
+
+/// What lies under a highlight, in one patch. Cosine: albedo x N.L / r^2 of the highlight's own lamp, as a matt base would show; sloped:
+/// times 1 + a u + b v. Quadratic: any smooth shading, six coefficients in the pixel.
+enum class BackgroundKind { None, Cosine, SlopedCosine, Quadratic };
+/// "none", "cosine", "sloped cosine", "quadratic".
+const char* nameOf(BackgroundKind kind);
+
+/// A lobe and its lamp: all that the shape of a highlight follows from.
+struct LobeModel {
+  Lobe lobe = Lobe::TorranceSparrow;
+  double roughness = 0.1;  ///< m
+  Light light;
+  double lightRadius = 0;  ///< m, of a spherical lamp; 0 = a point
+  double blurPx = 0;       ///< standard deviation of the images' blur, measured px
+};
+
+/// The linear part of a patch under a lobe: I = strength x S + b.
+struct PatchSolution {
+  double strength = 0;         ///< of S = I / I(topPoint), before the blur; >= 0
+  SurfacePoint topPoint;       ///< the brightest cell of the frame, where S = 1: scales S
+  std::vector<double> background;  ///< b per cell of the patch, all cells on the surface
+  double relativeRms = 0;      ///< of I - strength S - b over the used cells above a tenth of the top, as a share of the frame's top
+};
+/// Strength and backgrounds of one frame's patches under a known lobe, robust (soft L1).
+/// @param patches  of one frame
+/// NoBrightestPoint where the lobe does not reach the patches, or its strength comes out as zero.
+Outcome<std::vector<PatchSolution>> solvePatches(const std::vector<const PixelPatch*>& patches, const LobeModel& model,
+                                                 BackgroundKind background);
+
+struct PixelFitOptions {
+  int maxIterations = 60;
+  bool lightSize = true;  ///< estimate the lamp's radius where the pixels show it
+  bool blur = true;       ///< estimate the blur where the pixels show it
+};
+
+struct PixelFit {
+  LobeModel model;
+  BackgroundKind background = BackgroundKind::None;
+  /// Of (L homogeneous with |L| = 1 (4), log m (1)), world, as RadianceFit::uncertainty.
+  std::optional<ParameterUncertainty> uncertainty;
+  Eigen::Matrix3d positionCovariance;  ///< m^2; not finite for a light at infinity
+  double cost = 0;                  ///< robust sum of squares over (share of the frame's top)^2: lobes are compared by it
+  double rmsPx = 0;                 ///< what remains, as a displacement of the contour at half the peak, px
+  std::vector<double> residualPx;   ///< the same per patch
+  std::vector<double> relativeRms;  ///< per patch: what remains as a share of the frame's top
+  int cells = 0, iterations = 0;
+  bool poor = false;  ///< does not explain the pixels: more than a tenth of the contours' radius, or of the top, remains
+};
+
+/// Light and lobe from the pixels themselves (method.md section 15, "Pixels"): minimises over L, log m, the lamp's radius and the
+/// blur the sum of rho(w (I - K_i S(L, m) - b) / I_i,max), w = (max(I, 0.05 I_max) / I_max)^-1/2 (photon noise), rho soft L1 at
+/// 0.01. K_i of every frame and the backgrounds b are linear and eliminated in every step (variable projection). The kind of
+/// background is chosen by the Bayesian information criterion, the lobe by the cost.
+/// @param lobes    tried in turn; the one with the least cost wins, a microfacet lobe where the costs do not tell
+/// @param light,roughness  start: what the contours say, which need not be close (clipped highlights)
+/// TooFewPoints; NotConverged; NoBrightestPoint where no lobe reaches the patches.
+/// @see Golub, Pereyra, Separable nonlinear least squares, Inverse Problems 2003.
+Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<const PixelPatch*>& patches, const Light& light,
+                            double roughness, const PixelFitOptions& options = {});
+
+}  // namespace glint

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/reflectance/pixel_patch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace glint {
+namespace {
+
+constexpr std::size_t kLeastCells = 30;   // several per unknown of the background and the lobe
+constexpr double kOthersReach = 2.5;      // footprints of another light's highlight that are left out
+constexpr double kLeastReachPx = 4;       // beyond a small highlight's edge, so that its background shows
+constexpr int kOutline = 64;              // points of an ellipse that bound its box
+
+/// Squared distance from the centre of an ellipse in units of its semi-axes.
+double squaredRadius(const Ellipse& e, const Pixel& p) {
+  const Pixel d = p - e.centre;
+  const double c = std::cos(e.angle), s = std::sin(e.angle);
+  const double x = (c * d.x() + s * d.y()) / e.semiAxes.x(), y = (-s * d.x() + c * d.y()) / e.semiAxes.y();
+  return x * x + y * y;
+}
+
+/// The ellipse at half the peak that a Gaussian lobe would have with this one at `level`, `by` times as large, and no smaller than
+/// kLeastReachPx more than it was.
+Ellipse around(const Ellipse& e, double level, double by) {
+  const double share = std::clamp(level, 0.01, 0.99), toHalf = std::sqrt(std::log(0.5) / std::log(share));
+  Ellipse wide = e;
+  for (int i = 0; i < 2; ++i) wide.semiAxes(i) = std::max(by * toHalf * e.semiAxes(i), e.semiAxes(i) + kLeastReachPx);
+  return wide;
+}
+
+}  // namespace
+
+LinearPixels linearPixels(const Image& linear, const Image* mask, double clipValue) {
+  require(linear.channels == 1 || linear.channels == 3, "linearPixels: 1 or 3 channels");
+  require(!mask || (mask->width == linear.width && mask->height == linear.height), "linearPixels: mask of another size");
+  LinearPixels p;
+  p.value = Image(linear.width, linear.height, 1);
+  p.usable.assign(p.value.data.size(), 0);
+  p.clipped.assign(p.value.data.size(), 0);
+  for (int y = 0; y < linear.height; ++y)
+    for (int x = 0; x < linear.width; ++x) {
+      bool good = !mask || mask->at(x, y) != 0.f, full = false;
+      double sum = 0;
+      for (int c = 0; c < linear.channels; ++c) {
+        const float v = linear.at(x, y, c);
+        good = good && std::isfinite(v) && v >= 0;
+        full = full || (clipValue > 0 && v >= clipValue);
+        sum += v;
+      }
+      const std::size_t i = static_cast<std::size_t>(y) * linear.width + x;
+      p.clipped[i] = full;
+      p.usable[i] = good && !full;
+      p.value.data[i] = std::isfinite(sum) ? static_cast<float>(sum / linear.channels) : 0.f;
+    }
+  return p;
+}
+
+std::size_t PixelPatch::usedCells() const { return static_cast<std::size_t>(std::count(used.begin(), used.end(), 1)); }
+
+Outcome<PixelPatch> pixelPatch(const LinearPixels& pixels, const Camera& camera, const Surface& surface, int frame,
+                               const Highlight& highlight, const std::vector<Highlight>& others, const PatchOptions& options) {
+  require(options.reach > 1 && options.cells >= 100 && options.blurPx >= 0, "pixelPatch: options");
+  if (!highlight.ellipse) return Failure{Reason::NotSupported, "a highlight without an ellipse"};
+  const Ellipse region = around(*highlight.ellipse, highlight.level, options.reach);
+  const int width = pixels.value.width, height = pixels.value.height;
+  Eigen::AlignedBox2d box;
+  for (const Pixel& p : region.sample(kOutline)) {
+    const Pixel measured = camera.distorted(p);
+    if (measured.allFinite()) box.extend(measured);
+  }
+  if (box.isEmpty()) return Failure{Reason::NotFinite, "the highlight's surroundings"};
+
+  PixelPatch patch;
+  patch.frame = frame;
+  patch.camera = camera;
+  patch.peak = highlight.peak;
+  patch.radiusPx = highlight.ellipse->semiAxes.mean();
+  patch.cellPx = std::max(1, static_cast<int>(std::ceil(std::sqrt(box.volume() / options.cells))));
+  const int margin = std::max(1, static_cast<int>(std::ceil(3 * options.blurPx / patch.cellPx)));
+  const double low = (patch.cellPx - 1) / 2.0;  // from the first pixel's centre to the cell's
+  const int left = static_cast<int>(std::floor(std::clamp(box.min().x(), 0.0, width - 1.0))) - margin * patch.cellPx;
+  const int top = static_cast<int>(std::floor(std::clamp(box.min().y(), 0.0, height - 1.0))) - margin * patch.cellPx;
+  const int right = static_cast<int>(std::ceil(std::clamp(box.max().x(), 0.0, width - 1.0))) + margin * patch.cellPx;
+  const int bottom = static_cast<int>(std::ceil(std::clamp(box.max().y(), 0.0, height - 1.0))) + margin * patch.cellPx;
+  patch.firstCell = Pixel(left + low, top + low);
+  patch.columns = (right - left) / patch.cellPx + 1;
+  patch.rows = (bottom - top) / patch.cellPx + 1;
+  const std::size_t n = static_cast<std::size_t>(patch.columns) * patch.rows;
+  patch.value.assign(n, 0);
+  patch.used.assign(n, 0);
+  patch.onSurface.assign(n, 0);
+  patch.seen.resize(n);
+
+  std::vector<Ellipse> elsewhere;
+  for (const Highlight& o : others)
+    if (o.ellipse) elsewhere.push_back(around(*o.ellipse, o.level, kOthersReach));
+  const Eigen::Vector3d eye = camera.centreInWorld();
+  for (int row = 0; row < patch.rows; ++row)
+    for (int column = 0; column < patch.columns; ++column) {
+      const std::size_t i = static_cast<std::size_t>(row) * patch.columns + column;
+      const Pixel ideal = camera.undistorted(patch.firstCell + patch.cellPx * Pixel(column, row));
+      if (!ideal.allFinite()) continue;
+      const Outcome<SurfacePoint> hit = surface.firstHit(camera.ray(ideal));
+      if (!hit || !hit->position.allFinite() || !hit->normal.allFinite()) continue;
+      const SurfacePoint p = facing(*hit, eye);
+      patch.onSurface[i] = 1;
+      patch.seen[i] = {p.position, p.normal, (eye - p.position).normalized()};
+      const int x0 = left + column * patch.cellPx, y0 = top + row * patch.cellPx;
+      if (x0 < 0 || y0 < 0 || x0 + patch.cellPx > width || y0 + patch.cellPx > height) continue;
+      double sum = 0;
+      bool whole = true;
+      for (int y = y0; y < y0 + patch.cellPx; ++y)
+        for (int x = x0; x < x0 + patch.cellPx; ++x) {
+          whole = whole && pixels.usable[static_cast<std::size_t>(y) * width + x];
+          sum += pixels.value.at(x, y);
+        }
+      patch.value[i] = static_cast<float>(sum / (patch.cellPx * patch.cellPx));
+      const bool ofOther =
+          std::any_of(elsewhere.begin(), elsewhere.end(), [&](const Ellipse& e) { return squaredRadius(e, ideal) < 1; });
+      patch.used[i] = whole && !ofOther && squaredRadius(region, ideal) < 1;
+    }
+  // A cell at the edge of the object mixes it with what lies behind.
+  std::vector<char> inside(n, 0);
+  for (int row = 1; row + 1 < patch.rows; ++row)
+    for (int column = 1; column + 1 < patch.columns; ++column) {
+      bool all = true;
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx)
+          all = all && patch.onSurface[static_cast<std::size_t>(row + dy) * patch.columns + column + dx];
+      inside[static_cast<std::size_t>(row) * patch.columns + column] = all;
+    }
+  for (std::size_t i = 0; i < n; ++i) {
+    patch.used[i] = patch.used[i] && inside[i];
+    if (patch.used[i]) patch.top = std::max<double>(patch.top, patch.value[i]);
+  }
+  if (patch.usedCells() < kLeastCells)
+    return Failure{Reason::TooFewPoints, "only " + std::to_string(patch.usedCells()) + " pixels around the highlight can be used"};
+  if (!(patch.top > 0)) return Failure{Reason::NoHighlight, "nothing but zeros around the highlight"};
+  return patch;
+}
+
+}  // namespace glint

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/reflectance/radiance_bound.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace glint {
+namespace {
+
+constexpr float kRoundOff = 1e-4f;  // of log I in single precision: a dozen operations on numbers of up to some hundred
+
+/// cos theta_V (1 + Lambda(V)) grows with cos theta_V and stays above these where V is at the horizon: m/2 for GGX, m/(2
+/// sqrt(pi)) for Beckmann slopes.
+Eight leastShadowedCosine(Lobe lobe, float m, const Eight& cosView) {
+  if (lobe == Lobe::Ggx) {
+    const float m2 = std::min(1.f, m * m);
+    return 0.5f * (cosView + (cosView.square() * (1 - m2) + m2).sqrt());
+  }
+  return cosView.max(0.27f * std::min(1.f, m));
+}
+
+}  // namespace
+
+Eight largestLogRadiance(Lobe lobe, double roughness, const PartBounds& parts) {
+  const float m = static_cast<float>(roughness), m2 = m * m;
+  const Eight& t = parts.tanSquared;
+  Eight log;
+  switch (lobe) {
+    case Lobe::Phong:
+      // sin^2 of half the angle between R and V is sin^2(theta_h) (cos^2 b + sin^2 b cos^2 f), b half the angle between L and V.
+      log = 0.5f / m2 * (1 - 2 * t / (1 + t) * parts.cosHalf.square()).max(1e-30f).log();  // 1e-30: the log of 0 is not finite
+      break;
+    case Lobe::BlinnPhong:
+      log = -1 / m2 * t.log1p();
+      break;
+    case Lobe::TorranceSparrow: {
+      // -t/m^2 + 2 log(1 + t) rises up to t = 2 m^2 - 1 for lobes wider than that.
+      const Eight at = t.max(2 * m2 - 1);
+      log = -at / m2 + 2 * at.log1p() - std::log(float(M_PI) * m2);
+      break;
+    }
+    case Lobe::Ggx:
+      // Rises with t where m > 1, towards 4 log m.
+      log = m <= 1 ? Eight(2 * (t.log1p() - (t / m2).log1p()) - std::log(float(M_PI) * m2))
+                   : Eight(Eight::Constant(4 * std::log(m) - std::log(float(M_PI) * m2)));
+      break;
+  }
+  if (lobe == Lobe::TorranceSparrow || lobe == Lobe::Ggx) log -= (4 * leastShadowedCosine(lobe, m, parts.cosView)).log();
+  return log - parts.lightSquared.max(1e-37f).log() + kRoundOff * (1 + log.abs());  // 1e-37: the smallest floats
+}
+
+}  // namespace glint

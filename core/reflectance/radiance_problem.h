@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "core/reflectance/contour_evidence.h"
+#include "core/reflectance/fit.h"
+#include "core/reflectance/lamp.h"
+
+/// The least squares problem behind fitRadiance; internal to core/reflectance.
+namespace glint::lobe {
+
+/// Entries of Parameters.
+inline constexpr int kLogRoughness = 4, kRadiusSquared = 5, kHalfAxis = 6;
+/// L = (l, w), |L| = 1; log m; the squared radius of a sphere; the half axis of a segment. In normalised coordinates.
+using Parameters = Eigen::Matrix<double, 9, 1>;
+
+/// Where a search is: a lamp of some shape and a roughness. Entries that the shape does not have are 0.
+struct State {
+  Parameters at = Parameters::Zero();
+  LampShape shape = LampShape::Point;
+
+  double roughness() const { return std::exp(at(kLogRoughness)); }
+  bool atInfinity() const { return at(3) == 0; }
+  LampIn<double> lamp() const { return {shape, at.head<4>(), at(kRadiusSquared), at.tail<3>()}; }
+};
+
+/// First entry in Parameters and number of the unknowns that only this shape has.
+constexpr int shapeStart(LampShape shape) { return shape == LampShape::Segment ? kHalfAxis : kRadiusSquared; }
+constexpr int shapeSize(LampShape shape) { return shape == LampShape::Segment ? 3 : shape == LampShape::Sphere ? 1 : 0; }
+
+struct Attempt {
+  State state;
+  double cost = std::numeric_limits<double>::infinity();
+  double noisePx = 0;  ///< of the residuals that neighbours on a contour do not share
+  int iterations = 0;
+  bool converged = false;
+};
+
+/// Contours of some views as residuals in pixels, of one lobe under one lamp.
+class RadianceProblem {
+ public:
+  RadianceProblem(Lobe lobe, const std::vector<RadianceView>& views, ContourEvidence evidence, const RadianceFitOptions& options);
+
+  /// Normalised from world coordinates and back.
+  State start(const Lamp& lamp, double roughness) const;
+  Lamp inWorld(const State& state) const;
+
+  /// The minimum that is reached from a state, with all unknowns of its shape free. A light at infinity stays there.
+  Attempt solve(const State& start);
+
+  /// Converged, with what remains below `share` of the radius, or the robust scale, once the noise is allowed for.
+  bool explains(const Attempt& a, double share) const;
+  /// Nothing that neighbours on a contour share remains.
+  bool leavesNoiseOnly(const Attempt& a) const;
+  /// Plausible as a lobe: one that falls to half at 70 degrees and more is no highlight.
+  static bool tooWide(const State& state);
+
+  /// By how much the sum of squares would fall to first order if a point became a sphere of some size; 0 where it would rise.
+  double gainBySize(const Attempt& a);
+  /// The same if it became a segment across the direction to it.
+  struct SegmentGain {
+    double gain = 0;                    ///< px^2
+    Eigen::Vector3d halfAxis{0, 0, 0};  ///< normalised coordinates: what promises most
+  };
+  SegmentGain gainByLength(const State& point);
+
+  RadianceFit describe(const Attempt& a, std::size_t views);
+  /// RMS residual of every view at a state, px, of contours that need not have been fitted. Not finite where a frame has no peak.
+  std::vector<double> rmsOfViews(const State& state, std::size_t views);
+
+  std::size_t lit() const;
+  int points() const { return static_cast<int>(points_.size()); }
+
+  // For the cost functions.
+  const FramePeak& frame(int i) const { return frames_[static_cast<std::size_t>(i)]; }
+  Lobe lobe() const { return lobe_; }
+  const LampRule& rule() const { return rule_; }
+  /// Finds every frame's maximum and log I there; `scan`: anywhere in the image, else uphill from the last one.
+  void updatePeaks(const State& state, bool scan);
+
+ private:
+  void updateLogs(const State& state);
+  double root(const Evidence& e, const Seen& s, const State& state) const;
+  Eigen::Vector2d gradient(const Evidence& e, const Stencil& s, const State& state) const;
+  double residual(const Evidence& e, const State& state) const;
+  void chooseRule(const State& state);
+  bool tooLarge(const State& state) const;
+  void settle(const State& state);
+  void relinearise(const State& state, bool moveFeet);
+  void unbias(const State& state);
+  void toFoot(Evidence& e, const State& state) const;
+  double robust(double r) const;
+  double robustCost(const State& state) const;
+  double noiseOf(const State& state) const;
+  /// The least squares step from a point lamp over L, log m and further columns: what `grown` changes against `plain`.
+  struct ProbeColumn {
+    State grown, plain;
+  };
+  struct Probe {
+    double gain = 0;        ///< of the sum of squares, px^2
+    Eigen::VectorXd extra;  ///< multiples of the further columns
+  };
+  Probe probe(const State& state, const std::vector<ProbeColumn>& columns);
+  void setUncertainty(const State& state, RadianceFit& fit) const;
+
+  Lobe lobe_;
+  LampRule rule_;
+  double largestRatio_ = 0;  ///< of the lamp at any point, in lobe widths
+  const std::vector<RadianceView>& views_;
+  std::vector<Evidence> points_;
+  std::vector<FramePeak> frames_;
+  Eigen::Vector3d origin_;
+  double scale_;
+  double radiusPx_;  ///< of the contours' regions, mean
+  RadianceFitOptions options_;
+};
+
+/// sqrt(u), continued by its tangent below a quarter of the level's: a start far off may put a contour point above the peak.
+template <class T>
+T rootOf(const T& u, double level) {
+  using std::sqrt;
+  const double knee = 0.25 * level * level;
+  return u > T(knee) ? T(sqrt(u)) : T(std::sqrt(knee)) + (u - T(knee)) / T(2 * std::sqrt(knee));
+}
+
+}  // namespace glint::lobe

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ceres/cost_function.h>
+#include <ceres/sphere_manifold.h>
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <cmath>
+
+#include "core/base/residual_spread.h"
+#include "core/reflectance/radiance_problem.h"
+#include "core/reflectance/root_cost.h"
+
+namespace glint::lobe {
+
+RadianceFit RadianceProblem::describe(const Attempt& a, std::size_t views) {
+  settle(a.state);
+  RadianceFit fit;
+  fit.lobe = lobe_;
+  fit.roughness = a.state.roughness();
+  const Lamp lamp = inWorld(a.state);
+  fit.light = lamp.centre;
+  fit.lightRadius = lamp.radius;
+  fit.lightHalfAxis = lamp.halfAxis;
+  fit.cost = a.cost;
+  fit.points = points();
+  fit.iterations = a.iterations;
+  fit.residualPx.assign(views, 0);
+  setUncertainty(a.state, fit);
+  return fit;
+}
+
+/// Residuals, and what the Jacobian at the solution makes of their spread.
+void RadianceProblem::setUncertainty(const State& state, RadianceFit& fit) const {
+  const Eigen::Index own = shapeSize(state.shape), parameters = 4 + own;
+  Eigen::Matrix<double, 4, 3, Eigen::RowMajor> chart;  // ambient from tangent coordinates of L
+  ceres::SphereManifold<4>().PlusJacobian(state.at.data(), chart.data());
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(std::max<Eigen::Index>(points(), parameters), parameters);
+  std::vector<double> residuals;
+  std::vector<int> views, counts(fit.residualPx.size(), 0);
+  double sum = 0;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Evidence& e = points_[i];
+    double residual = 0, byRoughness = 0;
+    Eigen::RowVector4d byLight;
+    Eigen::RowVector3d byShape = Eigen::RowVector3d::Zero();
+    double* slopes[] = {byLight.data(), &byRoughness, byShape.data()};
+    (void)rootCost(state.shape, *this, e)->Evaluate(Blocks(state).at, &residual, slopes);
+    jacobian.row(i).head<4>() << byLight * chart, byRoughness;
+    jacobian.row(i).tail(own) = byShape.head(own);
+    residuals.push_back(residual);
+    views.push_back(e.view);
+    sum += residual * residual;
+    fit.residualPx[e.view] += residual * residual;
+    ++counts[e.view];
+  }
+  for (std::size_t v = 0; v < counts.size(); ++v) fit.residualPx[v] = counts[v] ? std::sqrt(fit.residualPx[v] / counts[v]) : 0;
+  fit.rmsPx = std::sqrt(sum / double(points_.size()));
+  fit.positionCovariance.setZero();
+  fit.positionCovariance.diagonal().setConstant(std::numeric_limits<double>::infinity());
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(jacobian);
+  const Eigen::MatrixXd r = qr.matrixQR().topRows(parameters).triangularView<Eigen::Upper>();
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(r, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  if (!(svd.singularValues()(parameters - 1) > 1e-14 * svd.singularValues()(0))) return;  // a free direction, to round-off
+  const ResidualSpread spread = residualSpread(residuals, views, static_cast<int>(parameters), options_.robustPx);
+  const Eigen::MatrixXd root =
+      std::sqrt(spread.factor) * svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal().toDenseMatrix();
+  if (!state.atInfinity()) {
+    const double w = state.at(3);
+    Eigen::Matrix<double, 3, 4> position;  // d(l / w)
+    position << Eigen::Matrix3d::Identity() / w, -state.at.head<3>() / (w * w);
+    const Eigen::MatrixXd half = scale_ * position * chart * root.topRows<3>();
+    const Eigen::Matrix3d covariance = half * half.transpose();
+    if (covariance.allFinite()) fit.positionCovariance = covariance;
+  }
+  // In the world, with |L| = 1 again: d(y / |y|) = (I - u u^T) dy / |y|.
+  Eigen::Matrix4d toWorld = Eigen::Matrix4d::Identity();
+  toWorld.topLeftCorner<3, 3>() *= scale_;
+  toWorld.topRightCorner<3, 1>() = origin_;
+  const Eigen::Vector4d y = toWorld * state.at.head<4>(), u = y.normalized();
+  const Eigen::MatrixXd dy = toWorld * chart * root.topRows<3>();
+  ParameterUncertainty uncertainty;
+  uncertainty.root.resize(5 + own, parameters);
+  uncertainty.root.topRows<4>() = (dy - u * (u.transpose() * dy)) / y.norm();
+  uncertainty.root.row(4) = root.row(3);
+  uncertainty.root.bottomRows(own) = (state.shape == LampShape::Sphere ? scale_ * scale_ : scale_) * root.bottomRows(own);
+  uncertainty.noisePx = spread.noisePx;
+  uncertainty.degreesOfFreedom = spread.degreesOfFreedom;
+  if (uncertainty.root.allFinite()) fit.uncertainty = std::move(uncertainty);
+}
+
+}  // namespace glint::lobe

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/reflectance/root_cost.h"
+
+#include <ceres/cost_function.h>
+#include <ceres/jet.h>
+
+#include <cmath>
+
+#include "core/reflectance/light_radiance.h"
+
+namespace glint::lobe {
+namespace {
+
+template <LampShape kShape>
+using DualOf = ceres::Jet<double, 5 + shapeSize(kShape)>;
+
+/// log I at a point with its derivatives. @param parameters  L (4), log m (1), then the shape's own.
+template <LampShape kShape>
+std::optional<DualOf<kShape>> logOfDual(const RadianceProblem& problem, const Seen& s, double const* const* parameters) {
+  using Dual = DualOf<kShape>;
+  LampIn<Dual> lamp;
+  lamp.shape = kShape;
+  for (int i = 0; i < 4; ++i) lamp.light(i) = Dual(parameters[0][i], i);
+  const Dual roughness = exp(Dual(parameters[1][0], 4));
+  if (!(roughness.a > 0) || !std::isfinite(roughness.a)) return std::nullopt;
+  if constexpr (kShape == LampShape::Sphere) lamp.radiusSquared = Dual(parameters[2][0], 5);
+  if constexpr (kShape == LampShape::Segment)
+    for (int i = 0; i < 3; ++i) lamp.halfAxis(i) = Dual(parameters[2][i], 5 + i);
+  return logOfLamp<Dual>(problem.lobe(), roughness, s.position, s.normal, s.toCamera, lamp, problem.rule());
+}
+
+/// (g - sqrt(-log q)) in pixels, with its derivatives by dual numbers; g at the frame's peak is the problem's, of the same parameters.
+/// Parameter blocks: L (4), log m (1), then the shape's own.
+template <LampShape kShape>
+class RootCost final : public ceres::CostFunction {
+ public:
+  static constexpr int kOwn = shapeSize(kShape);
+  static constexpr int kBlocks = kOwn > 0 ? 3 : 2;
+  using Dual = DualOf<kShape>;
+
+  RootCost(const RadianceProblem& problem, const Evidence& evidence) : problem_(problem), e_(evidence) {
+    set_num_residuals(1);
+    *mutable_parameter_block_sizes() = {4, 1};
+    if (kOwn > 0) mutable_parameter_block_sizes()->push_back(kOwn);
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    const std::optional<Dual> residual = residualOf(parameters);
+    // A light that does not reach the point is far off: a large residual that pulls nowhere, so that the others decide.
+    residuals[0] = residual ? residual->a : kUnlitPx;
+    constexpr int kFirst[] = {0, 4, 5}, kSize[] = {4, 1, kOwn};
+    for (int b = 0; jacobians && b < kBlocks; ++b)
+      for (int i = 0; jacobians[b] && i < kSize[b]; ++i) jacobians[b][i] = residual ? residual->v(kFirst[b] + i) : 0;
+    return true;
+  }
+
+ private:
+  std::optional<Dual> residualOf(double const* const* parameters) const {
+    const std::optional<LogAndSlopes>& peak = problem_.frame(e_.frame).log;
+    if (!peak) return std::nullopt;
+    const std::optional<Dual> here = logOfDual<kShape>(problem_, e_.foot.at, parameters);
+    if (!here) return std::nullopt;
+    const Dual top(peak->value, peak->slopes.head<5 + kOwn>());
+    const Dual residual =
+        (rootOf<Dual>(top - *here, e_.level) - Dual(e_.level)) * Dual(e_.pixelsPerUnit) + Dual(e_.offsetPx - e_.biasPx);
+    if (!std::isfinite(residual.a) || !residual.v.allFinite()) return std::nullopt;
+    return residual;
+  }
+
+  const RadianceProblem& problem_;
+  const Evidence& e_;
+};
+
+template <LampShape kShape>
+std::optional<LogAndSlopes> logAndSlopesOf(const RadianceProblem& problem, const Seen& s, double const* const* parameters) {
+  const auto log = logOfDual<kShape>(problem, s, parameters);
+  if (!log || !std::isfinite(log->a) || !log->v.allFinite()) return std::nullopt;
+  LogAndSlopes result;
+  result.value = log->a;
+  result.slopes.template head<5 + shapeSize(kShape)>() = log->v;
+  return result;
+}
+
+}  // namespace
+
+std::unique_ptr<ceres::CostFunction> rootCost(LampShape shape, const RadianceProblem& problem, const Evidence& evidence) {
+  switch (shape) {
+    case LampShape::Point: return std::make_unique<RootCost<LampShape::Point>>(problem, evidence);
+    case LampShape::Sphere: return std::make_unique<RootCost<LampShape::Sphere>>(problem, evidence);
+    case LampShape::Segment: return std::make_unique<RootCost<LampShape::Segment>>(problem, evidence);
+  }
+  return nullptr;
+}
+
+std::optional<LogAndSlopes> logAndSlopes(const RadianceProblem& problem, const Seen& s, const State& state) {
+  const Blocks blocks(state);
+  switch (state.shape) {
+    case LampShape::Point: return logAndSlopesOf<LampShape::Point>(problem, s, blocks.at);
+    case LampShape::Sphere: return logAndSlopesOf<LampShape::Sphere>(problem, s, blocks.at);
+    case LampShape::Segment: return logAndSlopesOf<LampShape::Segment>(problem, s, blocks.at);
+  }
+  return std::nullopt;
+}
+
+}  // namespace glint::lobe

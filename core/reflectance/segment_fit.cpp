@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/reflectance/segment_fit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "core/light/left_out.h"
+#include "core/reflectance/lobe_width.h"
+#include "core/reflectance/radiance_problem.h"
+
+namespace glint {
+namespace {
+
+constexpr double kLeastGain = 0.2;      // of the sum of squares, before a length is believed
+constexpr std::size_t kLeastFrames = 3;  // that a comparison of left-out ones needs
+constexpr int kScreenPoints = 16, kScreenIterations = 20;
+constexpr std::size_t kPromising = 3;
+constexpr int kLeftOutPoints = 24;  // a view: enough to compare two models
+constexpr double kStartLength = 0.1;  // half the lamp's length over its distance
+// Where a lamp's length takes a part of the width that is seen, the lobe is narrower than the contours; both are tried.
+constexpr std::array<double, 2> kStartWidths{0.7, 0.35};
+
+struct Start {
+  Lamp lamp;
+  double roughness = 0;
+  double cost = 0;  ///< mean robust square per point after a short fit, px^2
+};
+
+/// Five axes across the direction to the lamp and towards it, and the one that the point's residuals promise; after short fits, best
+/// first.
+std::vector<Start> screened(Lobe lobe, const std::vector<RadianceView>& views, const Light& light, double widthRad,
+                            const std::optional<Eigen::Vector3d>& promised, RadianceFitOptions options) {
+  options.pointsPerView = std::min(options.pointsPerView, kScreenPoints);
+  options.maxIterations = std::min(options.maxIterations, kScreenIterations);
+  Outcome<lobe::ContourEvidence> gathered = lobe::gatherEvidence(views, options.pointsPerView);
+  if (!gathered) return {};
+  lobe::RadianceProblem problem(lobe, views, *std::move(gathered), options);
+  lobe::State from = problem.start(light, 1);
+  from.shape = lobe::LampShape::Segment;
+  if (!(from.at(3) > 0)) from.at(3) = 0.3 * from.at.head<3>().norm();  // at infinity a length has no meaning: some camera distances away
+  from.at.head<4>().normalize();
+  const Eigen::Vector3d towards = from.at.head<3>().normalized();
+  const double distance = from.at.head<3>().norm() / from.at(3);
+  const Eigen::Vector3d u = towards.unitOrthogonal(), v = towards.cross(u);
+  std::vector<Eigen::Vector3d> halfAxes;
+  if (promised) halfAxes.push_back(*promised);
+  for (int k = 0; k < 4; ++k)
+    halfAxes.emplace_back(kStartLength * distance * (std::cos(k * M_PI / 4) * u + std::sin(k * M_PI / 4) * v));
+  halfAxes.emplace_back(kStartLength * distance * (towards + u).normalized());
+  std::vector<Start> starts;
+  for (const Eigen::Vector3d& halfAxis : halfAxes)
+    for (const double share : kStartWidths) {
+      from.at(lobe::kLogRoughness) = std::log(roughnessOf(lobe, share * widthRad, views.front().level));
+      from.at.tail<3>() = halfAxis;
+      const lobe::Attempt a = problem.solve(from);
+      if (!std::isfinite(a.cost) || !a.state.at.allFinite() || lobe::RadianceProblem::tooWide(a.state)) continue;
+      starts.push_back({problem.inWorld(a.state), a.state.roughness(), a.cost / problem.points()});
+    }
+  std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.cost < b.cost; });
+  if (starts.size() > kPromising) starts.resize(kPromising);
+  return starts;
+}
+
+/// RMS residual of every frame under a fit to the others, px. Nothing where one of these fits fails.
+std::vector<double> leftOutErrors(const RadianceFit& fit, const std::vector<RadianceView>& views, const std::set<int>& frames,
+                                  RadianceFitOptions options) {
+  options.pointsPerView = std::min(options.pointsPerView, kLeftOutPoints);
+  std::vector<double> errors;
+  for (const int frame : frames) {
+    std::vector<RadianceView> others, left;
+    for (const RadianceView& v : views) (v.frame == frame ? left : others).push_back(v);
+    const Outcome<RadianceFit> without = fitLamp(fit.lobe, others, fit.lamp(), fit.roughness, options);
+    if (!without) return {};
+    double sum = 0;
+    for (const double rms : rmsOfViews(*without, left, options)) sum += rms * rms / double(left.size());
+    errors.push_back(std::sqrt(sum));
+  }
+  return errors;
+}
+
+}  // namespace
+
+std::optional<RadianceFit> fitSegment(const std::vector<Lobe>& lobes, const std::vector<RadianceView>& views, const RadianceFit* plain,
+                                      const Light& light, double widthRad, const RadianceFitOptions& options) {
+  std::set<int> frames;
+  for (const RadianceView& v : views) frames.insert(v.frame);
+  if (frames.size() < kLeastFrames || (plain && plain->noiseOnly)) return std::nullopt;
+  std::optional<Eigen::Vector3d> promised;
+  Light from = light;
+  double width = widthRad;
+  std::vector<Lobe> order = lobes;
+  if (plain && !plain->poor) {
+    // To first order, about the point light at the plain fit's place.
+    Outcome<lobe::ContourEvidence> gathered = lobe::gatherEvidence(views, options.pointsPerView);
+    if (!gathered) return std::nullopt;
+    lobe::RadianceProblem problem(plain->lobe, views, *std::move(gathered), options);
+    const lobe::RadianceProblem::SegmentGain gain = problem.gainByLength(problem.start(plain->light, plain->roughness));
+    if (!(gain.gain > kLeastGain * plain->cost)) return std::nullopt;
+    promised = gain.halfAxis;
+    from = plain->light;
+    width = widthOf(plain->lobe, plain->roughness, views.front().level);
+    std::stable_partition(order.begin(), order.end(), [&](Lobe l) { return l == plain->lobe; });
+  }
+  std::optional<RadianceFit> best;
+  const auto consider = [&](const Outcome<RadianceFit>& f) {
+    if (f && (!best || f->cost < best->cost)) best = *f;
+  };
+  for (const Start& s : screened(order.front(), views, from, width, promised, options)) {
+    consider(fitLamp(order.front(), views, s.lamp, s.roughness, options));
+    if (best && best->noiseOnly) break;
+  }
+  if (!best) return std::nullopt;
+  const RadianceFit first = *best;
+  for (std::size_t k = 1; k < order.size(); ++k) {
+    const double w = widthOf(first.lobe, first.roughness, views.front().level);
+    consider(fitLamp(order[k], views, first.lamp(), roughnessOf(order[k], w, views.front().level), options));
+  }
+  if (best->poor) return std::nullopt;
+  if (!plain || plain->poor) return best->doubtful ? std::nullopt : best;
+  if (!(best->cost < (1 - kLeastGain) * plain->cost)) return std::nullopt;
+  return predictsLeftOutBetter(leftOutErrors(*best, views, frames, options), leftOutErrors(*plain, views, frames, options)) ? best
+                                                                                                                             : std::nullopt;
+}
+
+}  // namespace glint

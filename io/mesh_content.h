@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace glint {
+
+/// What a mesh file holds, as it was written: no coordinate passes through single precision unless the file stores it so.
+/// Invariant: vertices are finite, there is at least one triangle, and its corners are indices of vertices.
+struct MeshContent {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<Eigen::Vector3d> normals;  ///< one per vertex, unit; empty unless every vertex of a triangle has one
+  std::vector<Eigen::Vector3i> triangles;
+};
+
+}  // namespace glint

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/mesh_reader.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "core/base/atomic_file.h"
+#include "io/mesh_builder.h"
+#include "io/stl_layout.h"
+
+namespace glint {
+
+MeshContent readMeshContent(const std::filesystem::path& file) { return parseMesh(readFile(file), file); }
+
+MeshContent parseMesh(std::string_view bytes, const std::filesystem::path& file) {
+  const std::string name = file.string();
+  if (bytes.empty()) io::fail(name, "", "the file is empty (0 bytes)");
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  const bool namedStl = extension == ".stl";
+  // A binary STL may start with "solid" too; its size follows from its facet count.
+  const bool solid = bytes.starts_with("solid");
+  const std::size_t promised = io::stlBytesPromised(bytes);
+  if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return parsePly(bytes, name);
+  if (promised == bytes.size() && bytes.find('\0') != std::string_view::npos) return parseStlBinary(bytes, name);
+  if (solid) return parseStlText(bytes, name);
+  if (namedStl) return parseStlBinary(bytes, name);
+  if (bytes.find('\0') != std::string_view::npos || bytes.find("v ") == std::string_view::npos)
+    io::fail(name, "", "is not a mesh; understood: PLY, OBJ, STL");
+  return parseObj(bytes, name);
+}
+
+}  // namespace glint

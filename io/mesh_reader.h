@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "io/mesh_content.h"
+
+namespace glint {
+
+/// Reads a PLY, OBJ or STL mesh, recognised by content. Every count, index and length is checked against the file before it is
+/// used, nothing is allocated for what the file does not hold, and numbers are read the same in every locale.
+/// Polygons become fans of triangles around their first corner. A million triangles take about a second.
+/// @throw InputError (file; line in text, byte in binary files, and the element) when the file is missing, empty, none of the
+///        three formats, truncated, longer than its header promises, or contradicts itself; when a face has fewer than three
+///        corners or names a vertex, normal or texture coordinate that does not exist; when a coordinate is not a number below
+///        1e30 in size; when there is no face.
+MeshContent readMeshContent(const std::filesystem::path& file);
+
+/// The same for bytes in memory. @param file  for messages; its extension tells a damaged STL from other binary files.
+MeshContent parseMesh(std::string_view bytes, const std::filesystem::path& file);
+
+/// One format each; `parseMesh` chooses. PLY: ascii and binary of both byte orders, any scalar types, further properties and
+/// elements are skipped. @see G. Turk, The PLY Polygon File Format, 1994.
+MeshContent parsePly(std::string_view bytes, const std::string& file);
+/// OBJ: v, vn, vt and f are read (also negative indices, v//n, mixed corners, lines that go on after a backslash), other
+/// statements are skipped. A vertex with two different normals becomes two. @see Wavefront, Object Files (.obj), Appendix B1.
+MeshContent parseObj(std::string_view bytes, const std::string& file);
+/// STL: corners at the same place become one vertex; the facets' normals are not read (the winding says the same).
+
+MeshContent parseStlText(std::string_view bytes, const std::string& file);
+MeshContent parseStlBinary(std::string_view bytes, const std::string& file);
+
+}  // namespace glint

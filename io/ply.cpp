@@ -1,0 +1,408 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "io/binary.h"
+#include "io/mesh_builder.h"
+#include "io/mesh_reader.h"
+#include "io/text_scan.h"
+
+namespace glint {
+namespace {
+
+using Eigen::Vector3d;
+
+enum class Scalar { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float32, Float64 };
+
+std::optional<Scalar> scalarNamed(std::string_view name) {
+  struct Name {
+    std::string_view text;
+    Scalar type;
+  };
+  static constexpr Name kNames[] = {
+      {"char", Scalar::Int8},     {"int8", Scalar::Int8},       {"uchar", Scalar::Uint8},    {"uint8", Scalar::Uint8},
+      {"short", Scalar::Int16},   {"int16", Scalar::Int16},     {"ushort", Scalar::Uint16},  {"uint16", Scalar::Uint16},
+      {"int", Scalar::Int32},     {"int32", Scalar::Int32},     {"uint", Scalar::Uint32},    {"uint32", Scalar::Uint32},
+      {"float", Scalar::Float32}, {"float32", Scalar::Float32}, {"double", Scalar::Float64}, {"float64", Scalar::Float64}};
+  for (const Name& n : kNames)
+    if (n.text == name) return n.type;
+  return std::nullopt;
+}
+
+std::size_t sizeOf(Scalar type) {
+  constexpr std::array<std::size_t, 8> kSizes{1, 1, 2, 2, 4, 4, 4, 8};
+  return kSizes[static_cast<std::size_t>(type)];
+}
+
+double valueOf(const char* at, Scalar type, bool big) {
+  switch (type) {
+    case Scalar::Int8:
+      return io::valueAt<std::int8_t>(at, big);
+    case Scalar::Uint8:
+      return io::valueAt<std::uint8_t>(at, big);
+    case Scalar::Int16:
+      return io::valueAt<std::int16_t>(at, big);
+    case Scalar::Uint16:
+      return io::valueAt<std::uint16_t>(at, big);
+    case Scalar::Int32:
+      return io::valueAt<std::int32_t>(at, big);
+    case Scalar::Uint32:
+      return io::valueAt<std::uint32_t>(at, big);
+    case Scalar::Float32:
+      return io::valueAt<float>(at, big);
+    case Scalar::Float64:
+      return io::valueAt<double>(at, big);
+  }
+  return 0;
+}
+
+/// What a property is to us. The first six are places in a row of numbers.
+enum Use : int { kX, kY, kZ, kNx, kNy, kNz, kNumbers, kCorners = kNumbers, kSkipped };
+
+struct Property {
+  Scalar type = Scalar::Float32;
+  std::optional<Scalar> counter;  ///< of a list
+  int use = kSkipped;
+};
+
+struct Element {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<Property> properties;
+};
+
+struct Header {
+  enum class Format { Text, LittleEndian, BigEndian } format = Format::Text;
+  std::vector<Element> elements;
+  std::size_t size = 0, lines = 0;  ///< the data begin after them
+  char lineEnd = '\n';
+};
+
+Header readHeader(std::string_view bytes, const std::string& file) {
+  Header header;
+  header.lineEnd = bytes.size() > 4 && bytes[3] == '\r' && bytes[4] != '\n' ? '\r' : '\n';
+  io::Lines lines(bytes, header.lineEnd);
+  bool formatKnown = false;
+  unsigned seen = 0;  // uses that the element at hand has, as bits
+  const Element* vertex = nullptr;
+  while (true) {
+    std::optional<std::string_view> line = lines.next();
+    const auto bad = [&](const std::string& reason) { io::fail(file, io::lineNo(lines.number()), reason); };
+    if (!line || !lines.ended()) io::fail(file, io::lineNo(lines.number() + (line ? 0 : 1)), "the PLY header is truncated");
+    const std::string_view word = io::takeWord(*line);
+    if (word == "end_header") break;
+    if (word == "format") {
+      const std::string_view name = io::takeWord(*line), version = io::takeWord(*line);
+      if (formatKnown) bad("a second format");
+      formatKnown = true;
+      if (name == "ascii")
+        header.format = Header::Format::Text;
+      else if (name == "binary_little_endian")
+        header.format = Header::Format::LittleEndian;
+      else if (name == "binary_big_endian")
+        header.format = Header::Format::BigEndian;
+      else
+        bad("unknown PLY format " + io::quoted(name));
+      if (version != "1.0") bad("unknown version " + io::quoted(version) + " of PLY, 1.0 is understood");
+    } else if (word == "element") {
+      const std::string_view name = io::takeWord(*line);
+      const std::string_view text = io::takeWord(*line);
+      const std::optional<std::int64_t> count = io::integerOf(text);
+      if (name.empty() || !count || *count < 0) bad("the PLY element has no count");
+      for (const Element& e : header.elements)
+        if (e.name == name && (name == "vertex" || name == "face")) bad("a second element " + io::quoted(name));
+      header.elements.push_back({std::string(name), static_cast<std::uint64_t>(*count), {}});
+      seen = 0;
+    } else if (word == "property") {
+      if (header.elements.empty()) bad("a PLY property before any element");
+      Element& element = header.elements.back();
+      Property p;
+      const auto scalar = [&](std::string_view name) {
+        const std::optional<Scalar> type = scalarNamed(name);
+        if (!type) bad("unknown PLY type " + io::quoted(name));
+        return *type;
+      };
+      std::string_view type = io::takeWord(*line);
+      if (type == "list") {
+        p.counter = scalar(io::takeWord(*line));
+        type = io::takeWord(*line);
+      }
+      p.type = scalar(type);
+      const std::string_view name = io::takeWord(*line);
+      if (name.empty()) bad("the PLY property has no name");
+      constexpr std::size_t kLongestName = 1000;  // no program writes longer ones: a damaged header
+      if (name.size() > kLongestName) bad("a PLY property with a name of " + std::to_string(name.size()) + " characters");
+      if (element.name == "vertex") {
+        constexpr std::string_view kNames[] = {"x", "y", "z", "nx", "ny", "nz"};
+        for (int k = 0; k < kNumbers; ++k)
+          if (name == kNames[k]) p.use = k;
+      } else if (element.name == "face" && (name == "vertex_indices" || name == "vertex_index")) {
+        p.use = kCorners;
+      }
+      if (p.use != kSkipped) {
+        if (p.use == kCorners && !p.counter) bad(io::quoted(name) + " of a face must be a list");
+        if (p.use != kCorners && p.counter) bad(io::quoted(name) + " of a vertex must be a number, not a list");
+        if (seen & (1u << p.use)) bad("a second property " + io::quoted(name));
+        seen |= 1u << p.use;
+      }
+      element.properties.push_back(p);
+    } else if (!word.empty() && word != "comment" && word != "obj_info" && lines.number() > 1) {
+      bad(io::quoted(word) + " is no statement of a PLY header");
+    }
+  }
+  if (!formatKnown) io::fail(file, "header", "the PLY has no format");
+  const Element* face = nullptr;
+  for (const Element& e : header.elements) {
+    if (e.name == "vertex") vertex = &e;
+    if (e.name == "face") face = &e;
+    if (e.properties.empty() && e.count > 0) io::fail(file, "header", "element " + io::quoted(e.name) + " has no properties");
+  }
+  const auto has = [](const Element& e, int use) {
+    for (const Property& p : e.properties)
+      if (p.use == use) return true;
+    return false;
+  };
+  if (!vertex) io::fail(file, "header", "the PLY has no element 'vertex'");
+  if (!has(*vertex, kX) || !has(*vertex, kY) || !has(*vertex, kZ)) io::fail(file, "header", "the vertices lack x, y or z");
+  if (!face || face->count == 0) io::fail(file, "header", "the mesh has no faces");
+  if (!has(*face, kCorners)) io::fail(file, "header", "the faces have no list 'vertex_indices'");
+  header.size = lines.at();
+  header.lines = lines.number();
+  return header;
+}
+
+/// Where an element is, for messages.
+std::string placeOf(const std::string& where, const Element& e, std::uint64_t index) {
+  return where + ", " + io::quoted(e.name).substr(1, std::min<std::size_t>(e.name.size(), 40)) + " " + std::to_string(index);
+}
+
+/// Values of a binary file, one after the other.
+class BinaryValues {
+ public:
+  BinaryValues(std::string_view bytes, const Header& header, const std::string& file)
+      : bytes_(bytes), file_(file), at_(header.size), big_(header.format == Header::Format::BigEndian) {}
+
+  /// Least bytes of a value and of a list: what the file cannot hold is refused before anything is allocated.
+  static std::size_t least(const Property& p) {
+    return p.counter ? sizeOf(*p.counter) + (p.use == kCorners ? 3 * sizeOf(p.type) : 0) : sizeOf(p.type);
+  }
+  std::size_t left() const { return bytes_.size() - at_; }
+  void beginRow(const Element& e, std::uint64_t index) {
+    element_ = &e;
+    index_ = index;
+    rowAt_ = at_;
+  }
+  void endRow() {}
+  std::string place() const { return placeOf(io::byteNo(rowAt_), *element_, index_); }
+  double value(Scalar type) {
+    const std::size_t size = sizeOf(type);
+    if (left() < size) truncated();
+    const double v = valueOf(bytes_.data() + at_, type, big_);
+    at_ += size;
+    return v;
+  }
+  double counter(Scalar type) { return value(type); }
+  void skip(Scalar type, std::uint64_t count) {
+    if (count > left() / sizeOf(type)) truncated();
+    at_ += count * sizeOf(type);
+  }
+  [[noreturn]] void truncated() const {
+    io::fail(file_, place(), "the PLY is truncated: the header promises " + std::to_string(element_->count) + " of these");
+  }
+  void end() const {
+    for (std::size_t i = at_; i < bytes_.size(); ++i)
+      if (!io::isPadding(bytes_[i])) io::fail(file_, io::byteNo(i), "data follow the last element that the header promises");
+  }
+
+ private:
+  std::string_view bytes_;
+  const std::string& file_;
+  std::size_t at_, rowAt_ = 0;
+  bool big_;
+  const Element* element_ = nullptr;
+  std::uint64_t index_ = 0;
+};
+
+/// Values of a text file: one line for each element.
+class TextValues {
+ public:
+  TextValues(std::string_view bytes, const Header& header, const std::string& file)
+      : size_(bytes.size() - header.size),
+        headerLines_(header.lines),
+        file_(file),
+        lines_(bytes.substr(header.size), header.lineEnd) {}
+
+  /// A digit and a blank or a line break; the last line may lack its break.
+  static std::size_t least(const Property& p) { return p.counter && p.use == kCorners ? 8 : 2; }
+  std::size_t left() const { return size_ - lines_.at() + 1; }
+  void beginRow(const Element& e, std::uint64_t index) {
+    element_ = &e;
+    index_ = index;
+    do {
+      const std::optional<std::string_view> line = lines_.next();
+      if (!line) truncated();
+      row_ = *line;
+      word_ = io::takeWord(row_);
+    } while (word_.empty());
+  }
+  void endRow() const {
+    if (!word_.empty()) io::fail(file_, place(), "has more values than the header gives properties");
+  }
+  std::string place() const { return placeOf(io::lineNo(headerLines_ + lines_.number()), *element_, index_); }
+  double value(Scalar) {
+    const std::optional<double> v = io::numberOf(take());
+    if (!v) io::fail(file_, place(), io::quoted(taken_) + " is not a number");
+    return *v;
+  }
+  double counter(Scalar type) { return value(type); }
+  void skip(Scalar, std::uint64_t count) {
+    for (std::uint64_t i = 0; i < count; ++i) take();  // ends at the end of the line, whatever the count says
+  }
+  [[noreturn]] void truncated() const {
+    io::fail(file_, place(), "the PLY is truncated: the header promises " + std::to_string(element_->count) + " of these");
+  }
+  void end() {
+    while (const std::optional<std::string_view> line = lines_.next()) {
+      std::string_view rest = *line;
+      if (!io::takeWord(rest).empty())
+        io::fail(file_, io::lineNo(headerLines_ + lines_.number()), "data follow the last element that the header promises");
+    }
+  }
+
+ private:
+  std::string_view take() {
+    if (word_.empty()) truncated();
+    taken_ = word_;
+    word_ = io::takeWord(row_);
+    return taken_;
+  }
+
+  std::size_t size_, headerLines_;
+  const std::string& file_;
+  io::Lines lines_;
+  std::string_view row_, word_, taken_;
+  const Element* element_ = nullptr;
+  std::uint64_t index_ = 0;
+};
+
+std::string asText(double v) {
+  char text[32];
+  const std::to_chars_result end = std::to_chars(text, text + sizeof text, v);  // shortest; no locale
+  return std::string(text, end.ptr);
+}
+
+template <class Values>
+class PlyBody {
+ public:
+  PlyBody(Values values, const Header& header, const std::string& file)
+      : values_(std::move(values)), header_(header), file_(file), fan_(mesh_.triangles) {}
+
+  MeshContent read() {
+    for (const Element& e : header_.elements)
+      if (e.name == "vertex") vertexCount_ = e.count;
+    if (vertexCount_ > std::uint64_t(std::numeric_limits<int>::max())) fewerBytes(vertexCount_, "vertex");
+    for (const Element& e : header_.elements) {
+      checkSize(e);
+      if (e.name == "vertex")
+        vertices(e);
+      else
+        others(e);
+    }
+    values_.end();
+    return io::finished(std::move(mesh_), file_);
+  }
+
+ private:
+  [[noreturn]] void fewerBytes(std::uint64_t count, const std::string& name) const {
+    io::fail(file_, "header",
+             "the PLY is truncated: its header promises " + std::to_string(count) + " of element " + io::quoted(name) +
+                 ", for which it is too short");
+  }
+
+  /// The file is long enough for what the header promises.
+  void checkSize(const Element& e) const {
+    std::size_t least = 0;
+    for (const Property& p : e.properties) least += Values::least(p);
+    if (least > 0 && e.count > values_.left() / least) {
+      if (e.name == "face") return;  // faces of too few corners, or a cut: the row tells which
+      fewerBytes(e.count, e.name);
+    }
+  }
+
+  void vertices(const Element& e) {
+    int found = 0;
+    for (const Property& p : e.properties) found += p.use >= kNx && p.use <= kNz;
+    const bool normals = found == 3;
+    mesh_.vertices.reserve(e.count);
+    if (normals) mesh_.normals.reserve(e.count);
+    std::array<double, kNumbers> row{};
+    for (std::uint64_t i = 0; i < e.count; ++i) {
+      values_.beginRow(e, i);
+      for (const Property& p : e.properties) {
+        if (p.use < kNumbers)
+          row[static_cast<std::size_t>(p.use)] = values_.value(p.type);
+        else
+          values_.skip(p.type, p.counter ? count(*p.counter) : 1);
+      }
+      values_.endRow();
+      const Vector3d v(row[kX], row[kY], row[kZ]);
+      if (const char* reason = io::badCoordinate(v)) io::fail(file_, values_.place(), reason);
+      mesh_.vertices.push_back(v);
+      if (normals) mesh_.normals.emplace_back(row[kNx], row[kNy], row[kNz]);
+    }
+  }
+
+  void others(const Element& e) {
+    const bool faces = e.name == "face";
+    for (std::uint64_t i = 0; i < e.count; ++i) {
+      values_.beginRow(e, i);
+      for (const Property& p : e.properties) {
+        const std::uint64_t n = p.counter ? count(*p.counter) : 1;
+        if (p.use == kCorners)
+          corners(p, n);
+        else
+          values_.skip(p.type, n);
+      }
+      values_.endRow();
+      if (faces && mesh_.triangles.size() > std::size_t(std::numeric_limits<int>::max()))
+        io::fail(file_, values_.place(), "more than 2147483647 triangles");
+    }
+  }
+
+  std::uint64_t count(Scalar counter) {
+    const double n = values_.counter(counter);
+    constexpr double kMost = 1e15;  // no file has as many, and every whole number up to it is a double
+    if (!(n >= 0 && n <= kMost && n == std::floor(n))) io::fail(file_, values_.place(), "a list has " + asText(n) + " entries");
+    return static_cast<std::uint64_t>(n);
+  }
+
+  void corners(const Property& p, std::uint64_t n) {
+    if (n < 3) io::fail(file_, values_.place(), "has " + std::to_string(n) + " corners, a face needs three");
+    fan_.begin();
+    for (std::uint64_t k = 0; k < n; ++k) {
+      const double v = values_.value(p.type);
+      if (!(v >= 0 && v < double(vertexCount_) && v == std::floor(v)))
+        io::fail(file_, values_.place(), "names vertex " + asText(v) + ", the file has " + std::to_string(vertexCount_));
+      fan_.add(static_cast<int>(v));
+    }
+  }
+
+  Values values_;
+  const Header& header_;
+  const std::string& file_;
+  MeshContent mesh_;
+  io::Fan fan_;
+  std::uint64_t vertexCount_ = 0;
+};
+
+}  // namespace
+
+MeshContent parsePly(std::string_view bytes, const std::string& file) {
+  const Header header = readHeader(bytes, file);
+  if (header.format == Header::Format::Text) return PlyBody(TextValues(bytes, header, file), header, file).read();
+  return PlyBody(BinaryValues(bytes, header, file), header, file).read();
+}
+
+}  // namespace glint

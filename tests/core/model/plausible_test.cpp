@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What no fit may pass as an answer: a light behind the surface, a contour smaller than detection resolves, training contours left unexplained.
+#include "core/model/plausible.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "core/light/contour_evidence.h"
+#include "core/light/ray_condition.h"
+#include "core/model/models.h"
+#include "tests/core/model/exact_views.h"
+#include "tests/tolerances.h"
+
+namespace glint {
+namespace {
+
+using namespace test;
+using testing::HasSubstr;
+using testing::SizeIs;
+
+Polyline circle(double radius, const Pixel& centre = {50, 40}) {
+  Polyline c{{}, true};
+  for (int i = 0; i < 720; ++i) {
+    const double t = i * std::numbers::pi / 360;
+    c.points.push_back(centre + radius * Pixel(std::cos(t), std::sin(t)));
+  }
+  return c;
+}
+
+/// Contours and all that a highlight derives from them, larger or smaller by `factor` about their middle.
+TrainingView scaled(TrainingView v, double factor) {
+  const Pixel middle = centroid(v.highlight.contour);
+  for (Pixel& p : v.highlight.contour.points) p = middle + factor * (p - middle);
+  v.highlight.areaPx2 = std::abs(signedArea(v.highlight.contour));
+  if (const Outcome<Ellipse> e = fitEllipse(v.highlight.contour.points)) v.highlight.ellipse = *e;
+  return v;
+}
+
+TEST(Plausible, AContourIsAnAnswerFromAFifthOfAPixelOn) {
+  EXPECT_NEAR(radiusPx(circle(7)), 7, 1e-3);  // the polygon's area is 1 - (pi / 720)^2 * 2 / 3 of the disc's
+  EXPECT_FALSE(tooSmall(circle(0.21)));
+  for (const double radius : {0.19, 5e-4, 0.0}) {
+    const std::optional<Failure> small = tooSmall(circle(radius));
+    ASSERT_TRUE(small) << radius;
+    EXPECT_EQ(small->reason, Reason::NoHighlight);
+  }
+  EXPECT_THAT(tooSmall(circle(5e-4))->message(), HasSubstr("no highlight: the highlight has a radius of 0.0005 px"));
+  Prediction p;
+  p.highlights.resize(2);
+  p.highlights[0].contour = circle(5e-4);
+  p.highlights[1].contour = circle(5);
+  dropTooSmall(p);
+  ASSERT_THAT(p.highlights, SizeIs(1));
+  EXPECT_FALSE(p.failure);
+  p.highlights[0].contour = circle(5e-4);
+  dropTooSmall(p);
+  EXPECT_THAT(p.highlights, SizeIs(0));
+  ASSERT_TRUE(p.failure);
+  EXPECT_EQ(p.failure->reason, Reason::NoHighlight);
+}
+
+TEST(Plausible, ATinyObservedHighlightTrainsNothing) {
+  FitInput input = fitInput(ellipsoidScene(), {});
+  for (TrainingView& v : input.views) {
+    FrameEvidence evidence;
+    evidence.frame = v.frame;
+    evidence.highlights = {scaled(v, 1e-5).highlight};
+    v = trainingView(evidence, 0, v.camera, v.surface);
+  }
+  const Outcome<LightEstimate> light = estimateLight(input.views, {});
+  ASSERT_FALSE(light);
+  input.light.reset();
+  input.lightFailure = light.failure();
+  for (const TrainingView& v : input.views) {
+    ASSERT_TRUE(v.failure);
+    EXPECT_EQ(v.failure->reason, Reason::NoHighlight) << v.failure->message();
+  }
+  for (const char* model : {"primal", "dual", "canonical", "limit-angle", "reflectance"}) {
+    const Outcome<ModelFit> fit = modelByName(model).fit(input, {});
+    ASSERT_FALSE(fit) << model;
+    EXPECT_EQ(fit.failure().reason, Reason::TooFewViews) << model;
+    EXPECT_THAT(fit.failure().message(), HasSubstr("6 of 6 views could not be used, frame 0: no highlight: the highlight has a radius of")) << model;
+  }
+}
+
+// A light at (0, 0, -40) is under the ellipsoid; every highlight is on its upper half.
+TEST(Plausible, ALightBehindATrainingHighlightIsRefusedByFrame) {
+  const FitInput input = fitInput(ellipsoidScene(), {});
+  EXPECT_FALSE(lightBehind(input.views, lightOf(ellipsoidScene().light)));
+  for (const Light& light : {Light::at({0, 0, -40}), Light::towards({0, 0, -1})}) {
+    const std::optional<Failure> behind = lightBehind(input.views, light);
+    ASSERT_TRUE(behind);
+    EXPECT_EQ(behind->reason, Reason::LightBehindSurface);
+    EXPECT_THAT(behind->detail, HasSubstr("at 6 of 6 training highlights, first in frame 0"));
+  }
+  std::vector<TrainingView> one = input.views;
+  one.resize(1);
+  one[0].failure = Failure{Reason::PeakOffSurface, ""};
+  EXPECT_FALSE(lightBehind(one, Light::at({0, 0, -40}))) << "what cannot be used has no say";
+}
+
+ModelFit fitWith(const std::vector<double>& residuals) {
+  ModelFit fit;
+  fit.residualPx = residuals;
+  for (std::size_t i = 0; i < residuals.size(); ++i) fit.frames.push_back(int(10 + i));
+  return fit;
+}
+
+TEST(Plausible, MoreThanThreeTenthsOfTheRadiusIsNoFit) {
+  const std::vector<UsedContour> radii(6, UsedContour{20, 0, 1});
+  const Outcome<ModelFit> good = explaining(fitWith({0.1, 0.2, 0.1, 0.3, 0.1, 0.1}), radii, false);
+  ASSERT_TRUE(good);
+  EXPECT_THAT(good->remarks, SizeIs(0));
+  const Outcome<ModelFit> poor = explaining(fitWith({7, 7, 7, 7, 7, 7}), radii, false);
+  ASSERT_FALSE(poor);
+  EXPECT_EQ(poor.failure().reason, Reason::NotConverged);
+  EXPECT_THAT(poor.failure().detail, HasSubstr("7 px remain in the training views, 35 % of the contours' radius (20 px)"));
+  EXPECT_THAT(poor.failure().detail, HasSubstr("more than three tenths"));
+  const Outcome<ModelFit> nan = explaining(fitWith({0.1, std::nan(""), 0.1, 0.1, 0.1, 0.1}), radii, false);
+  ASSERT_FALSE(nan);
+  EXPECT_EQ(nan.failure().reason, Reason::NotFinite);
+}
+
+// Noise as large as a seventh of the radius says nothing against a model that leaves just that; 72 points as --noise-px has them.
+TEST(Plausible, NoiseOfSinglePointsIsNoFault) {
+  Highlight h;
+  h.contour = circle(20);
+  const Highlight noisy = withNoise(h, 3, 1, 0, 0);
+  EXPECT_NEAR(noisePx(noisy.contour), 3, 1);  // from 72 points: a standard error of about 0.4
+  EXPECT_LT(noisePx(circle(20)), 0.01);
+  const std::vector<UsedContour> used(6, UsedContour{20, 3, 1});
+  EXPECT_TRUE(explaining(fitWith(std::vector<double>(6, 3.0)), used, false));
+  EXPECT_FALSE(explaining(fitWith(std::vector<double>(6, 9.0)), used, false));
+  // In units of a canonical contour that is five times as large.
+  EXPECT_TRUE(explaining(fitWith(std::vector<double>(6, 5.0)), std::vector<UsedContour>(6, UsedContour{20, 0, 5}), false));
+  EXPECT_FALSE(explaining(fitWith(std::vector<double>(6, 35.0)), std::vector<UsedContour>(6, UsedContour{20, 0, 5}), false));
+}
+
+TEST(Plausible, WhatIsLeftIsSaidInWords) {
+  const std::vector<UsedContour> radii(6, UsedContour{100, 0, 1});
+  const Outcome<ModelFit> seven = explaining(fitWith({7, 7, 7, 7, 7, 7}), radii, true);
+  ASSERT_TRUE(seven);
+  ASSERT_THAT(seven->remarks, SizeIs(1));
+  EXPECT_THAT(seven->remarks[0], HasSubstr("7 px remain in the training views, 7 % of the contours' radius"));
+  // One view that is wrong by itself: a robust fit had its reasons, least squares were bent by it.
+  const std::vector<double> one{0.1, 0.1, 90, 0.1, 0.1, 0.1};
+  const Outcome<ModelFit> robust = explaining(fitWith(one), radii, true);
+  ASSERT_TRUE(robust);
+  ASSERT_THAT(robust->remarks, SizeIs(1));
+  EXPECT_THAT(robust->remarks[0], HasSubstr("frame 12 does not go with the other training views: 90 px remain"));
+  EXPECT_FALSE(explaining(fitWith(one), radii, false));
+}
+
+// Contours that no ellipsoid shows: every second one half as large, the others twice.
+TEST(Plausible, EllipsoidsOfContoursThatContradictEachOtherAreRefused) {
+  FitInput input = fitInput(ellipsoidScene(), {});
+  for (std::size_t i = 0; i < input.views.size(); ++i) input.views[i] = scaled(input.views[i], i % 2 ? 2.0 : 0.5);
+  for (const char* model : {"primal", "dual"})
+    for (const char* solver : {"anchored", "refined"}) {
+      Settings settings;
+      settings.set("fit.solver", std::string(solver));
+      const Outcome<ModelFit> fit = modelByName(model).fit(input, settings);
+      ASSERT_FALSE(fit) << model << " " << solver;
+      EXPECT_THAT(fit.failure().message(), HasSubstr("leaves more than three tenths")) << model << " " << solver;
+    }
+}
+
+TEST(Plausible, CanonicalSaysWhyItsViewsCouldNotBeUsed) {
+  FitInput input = fitInput(ellipsoidScene(), {});
+  for (TrainingView& v : input.views) {
+    v.canonical->ellipse.reset();
+    for (DirectionResult& d : v.canonical->directions) d.failure = Failure{Reason::LightBehindSurface, ""};
+  }
+  const Outcome<ModelFit> fit = modelByName("canonical").fit(input, {});
+  ASSERT_FALSE(fit);
+  EXPECT_EQ(fit.failure().reason, Reason::TooFewViews);
+  EXPECT_THAT(fit.failure().detail, HasSubstr("have 0; 6 of 6 views could not be used, frame 0: light behind surface"));
+}
+
+TEST(Plausible, LimitAngleKnowsItsResidualsAndTheConditionOfItsLight) {
+  for (const char* solver : {"bundle", "triangulated"}) {
+    Settings settings;
+    settings.set("light.solver", std::string(solver));
+    const FitInput input = fitInput(ellipsoidScene(), settings);
+    const Outcome<ModelFit> fit = modelByName("limit-angle").fit(input, settings);
+    ASSERT_TRUE(fit) << solver;
+    ASSERT_THAT(fit->residualPx, SizeIs(6)) << solver;
+    for (const double r : fit->residualPx) EXPECT_LT(r, 1e-3) << solver;  // exact contours, 0.01 px of chords
+    EXPECT_GT(fit->condition, 0);
+    EXPECT_LE(fit->condition, 1);
+  }
+}
+
+// Two rays at right angles in a plane: sum (I - r r^T) = diag(1, 1, 2).
+TEST(RayCondition, OfRaysThatMeetAtRightAngles) {
+  const Eigen::Vector3d o(0, 0, 0), z(0, 0, 1);
+  EXPECT_NEAR(conditionOf({{o, {1, 0, 0}, z}, {o, {0, 1, 0}, z}}), 0.5, tolerance::kExact);
+  EXPECT_NEAR(conditionOf({{o, z, z}, {z, z, z}}), 0, tolerance::kExact);
+  EXPECT_EQ(conditionOf({{o, z, z}}), 0);
+}
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bands of predictions: the estimator of what whole views are off by against simulated residuals whose variances are known, and the whole
+// pipeline against exact contours of scenes in which poses, scale and peaks are wrong.
+#include <gtest/gtest.h>
+
+#include <Eigen/QR>
+#include <random>
+
+#include "core/base/uncertainty.h"
+#include "core/evaluate/band_text.h"
+#include "core/model/view_effects.h"
+#include "core/pipeline/inspection.h"
+#include "tests/core/pipeline/exact_scene.h"
+
+namespace glint {
+namespace {
+
+using namespace testing_support;
+
+constexpr int kPoints = 72;
+constexpr double kNormal95 = 1.959964;
+
+/// A round contour of a view at `place` along a baseline; four parameters: shifts, size, a shift that grows along the baseline.
+struct Round {
+  ContourShapes shapes;
+  Eigen::MatrixXd byParameter{kPoints, 4};
+  Eigen::VectorXd azimuth{kPoints};
+  explicit Round(double place) {
+    std::vector<Pixel> normals;
+    std::vector<double> arc;
+    for (int i = 0; i < kPoints; ++i) {
+      const double a = 2 * std::numbers::pi * i / kPoints;
+      azimuth(i) = a;
+      normals.emplace_back(std::cos(a), std::sin(a));
+      arc.push_back(double(i) / kPoints);
+      byParameter.row(i) << std::cos(a), std::sin(a), 1 + 0.1 * place, place * std::cos(a) + 0.05 * place;
+    }
+    shapes = contourShapes(normals, arc);
+  }
+};
+
+struct Simulated {
+  std::vector<ViewResiduals> views;
+  Eigen::VectorXd parameters;  ///< estimated; the true ones are zero
+  Eigen::MatrixXd chart;       ///< parameters in units in which a fit has equal information on all, as Band hands them over
+};
+
+/// Residuals of a least-squares fit to contours with noise of every point and a shift of every view.
+Simulated simulated(int views, double noise, double shift, unsigned seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> gauss;
+  std::vector<Round> rounds;
+  Eigen::MatrixXd all(views * kPoints, 4);
+  Eigen::VectorXd y(views * kPoints);
+  for (int v = 0; v < views; ++v) {
+    rounds.emplace_back(-0.5 + v / std::max(1.0, views - 1.0));
+    const double x = shift * gauss(engine), z = shift * gauss(engine);
+    for (int i = 0; i < kPoints; ++i)
+      y(v * kPoints + i) = noise * gauss(engine) + x * std::cos(rounds.back().azimuth(i)) + z * std::sin(rounds.back().azimuth(i));
+    all.middleRows(v * kPoints, kPoints) = rounds.back().byParameter;
+  }
+  Simulated s;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(all);
+  s.parameters = qr.solve(y);
+  const Eigen::MatrixXd upper = qr.matrixQR().topRows(4).triangularView<Eigen::Upper>();
+  s.chart = upper.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(4, 4));
+  const Eigen::VectorXd r = y - all * s.parameters;
+  for (int v = 0; v < views; ++v)
+    s.views.push_back({r.segment(v * kPoints, kPoints), rounds[std::size_t(v)].byParameter * s.chart, rounds[std::size_t(v)].shapes});
+  return s;
+}
+
+/// Share of the points of another view within the band, whose own error is a shift of this size.
+double inside(int views, double noise, double shift, int trials) {
+  double in = 0;
+  std::mt19937_64 engine(12345);
+  std::normal_distribution<double> gauss;
+  for (int t = 0; t < trials; ++t) {
+    const Simulated s = simulated(views, noise, shift, unsigned(t + 1));
+    const Round other(0.9);
+    const ViewEffects::Variance v = ViewEffects(s.views, 10).at(other.byParameter * s.chart, other.shapes);
+    const double x = shift * gauss(engine), z = shift * gauss(engine);
+    for (int i = 0; i < kPoints; ++i) {
+      const double error = other.byParameter.row(i).dot(s.parameters) - x * std::cos(other.azimuth(i)) - z * std::sin(other.azimuth(i));
+      in += std::abs(error) <= studentFactor(0.95, v.freedom[std::size_t(i)]) * std::sqrt(v.px2[std::size_t(i)]);
+    }
+  }
+  return in / (double(trials) * kPoints);
+}
+
+TEST(ViewEffects, FindsTheSizesOfNoiseAndOfShifts) {
+  const ViewEffects e(simulated(60, 0.3, 0.5, 1).views, 10);
+  EXPECT_NEAR(e.noisePx(), 0.3, 0.3 * 0.05);                        // 3000 points tell it to 1.3 %: four of those
+  EXPECT_NEAR(e.viewPx(), 0.5, 0.5 * 0.25);                         // a shift has the mean square 0.5^2 over a round contour; 120 numbers tell it to 6.5 %
+  EXPECT_LT(e.shared(), 0.1);
+}
+
+TEST(ViewEffects, ScalesWithTheResiduals) {
+  Simulated s = simulated(6, 0.3, 0.5, 2);
+  const Round other(0.9);
+  const ViewEffects before(s.views, 10);
+  for (ViewResiduals& v : s.views) v.residual *= 7;
+  const ViewEffects after(s.views, 70);
+  EXPECT_NEAR(after.viewPx(), 7 * before.viewPx(), 1e-9);
+  const auto a = before.at(other.byParameter, other.shapes), b = after.at(other.byParameter, other.shapes);
+  for (std::size_t i = 0; i < a.px2.size(); ++i) {
+    EXPECT_NEAR(b.px2[i], 49 * a.px2[i], 1e-9 * b.px2[i]);
+    EXPECT_NEAR(b.freedom[i], a.freedom[i], 1e-6 * a.freedom[i]);
+  }
+}
+
+TEST(ViewEffects, NoiseAloneIsNoErrorOfViews) {
+  int none = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) none += ViewEffects(simulated(6, 0.3, 0, seed).views, 10).viewPx() == 0;
+  EXPECT_GE(none, 24);  // five tests at 5 % each leave 77 % of the runs without any; three standard errors below
+  EXPECT_NEAR(inside(6, 0.3, 0, 100), 0.95, 0.035);
+}
+
+TEST(ViewEffects, BandsHoldAViewWhosePoseIsOff) {
+  // Of few views, pretests and the share that the parameters took keep it below 95 %.
+  EXPECT_GT(inside(20, 0.1, 0.3, 100), 0.90);
+  EXPECT_GT(inside(6, 0.1, 0.3, 100), 0.86);
+  EXPECT_LT(inside(6, 0.1, 0.3, 100), 0.99);
+}
+
+TEST(ViewEffects, DegenerateInputsStayFinite) {
+  Simulated s = simulated(2, 0, 0, 1);  // nothing is off: no variance
+  const Round other(0.9);
+  const ViewEffects exact(s.views, 1);
+  for (const double v : exact.at(other.byParameter * s.chart, other.shapes).px2) EXPECT_LT(v, 1e-20);
+  EXPECT_EQ(contourShapes({Pixel(1, 0), Pixel(0, 1), Pixel(-1, 0)}, {0, 0.3, 0.6}).columns.cols(), 1) << "three points: an offset is all they tell";
+  EXPECT_EQ(contourShapes({}, {}).columns.cols(), 0);
+  EXPECT_THROW(ViewEffects({}, 1), std::invalid_argument);
+}
+
+// --- the whole pipeline -----------------------------------------------------------------------------------------------------------
+
+InspectionRequest request(double noise) {
+  InspectionRequest q;
+  q.models = {"limit-angle"};
+  q.train = "0-5";
+  q.noisePx = noise;
+  q.settings.set("predict.band", true);
+  return q;
+}
+
+TEST(Band, HoldsPosesThatAreOff) {
+  double in = 0, count = 0, sigma = 0;
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const auto scene = exactScene(sheet(0.4), 12);
+    std::mt19937_64 engine(seed);
+    std::normal_distribution<double> gauss(0, 0.5 / 800);  // half a pixel
+    for (Frame& f : scene->frames) {
+      const Eigen::Vector3d turn(gauss(engine), gauss(engine), gauss(engine));
+      f.camera.camFromWorld = Eigen::AngleAxisd(turn.norm(), turn.normalized()) * f.camera.camFromWorld;
+    }
+    InspectionRequest q = request(0.1);
+    q.seed = seed;
+    for (const bool refine : {false, true}) {
+      q.settings.set("light.refine_poses", refine);
+      const Inspection r = inspect(scene, q);
+      const std::optional<BandScore> score = bandSummary(r, r.models.at("limit-angle"));
+      ASSERT_TRUE(score);
+      in += score->coverage;
+      sigma += score->sigmaPx;
+      count += 1;
+    }
+  }
+  EXPECT_GT(in / count, 0.85);
+  EXPECT_GT(sigma / count, 0.2) << "the pose of the view to predict is off by half a pixel itself";
+}
+
+TEST(Band, HoldsAScaleThatIsOffByItsTolerance) {
+  constexpr double kOff = 0.01;
+  const auto scene = exactScene(sphere(1), 12);
+  AnalyticSpec& body = *scene->surfaces["body"].analytic;
+  // Away from the origin, about which the scale is off: the scene moved as a whole looks the same.
+  const Eigen::Translation3d away(0, 0, 1);
+  body.worldFromSurface = away * body.worldFromSurface;
+  for (Frame& f : scene->frames) f.camera.camFromWorld = f.camera.camFromWorld * away.inverse();
+  body.radius *= 1 + kOff;  // contours are those of the surface as it is
+  body.worldFromSurface.translation() *= 1 + kOff;
+  InspectionRequest q = request(0.1);
+  const Inspection silent = inspect(scene, q);
+  q.settings.set("input.scale_tolerance", kOff);
+  const Inspection stated = inspect(scene, q);
+  const BandScore without = *bandSummary(silent, silent.models.at("limit-angle")), with = *bandSummary(stated, stated.models.at("limit-angle"));
+  EXPECT_LT(without.coverage, 0.8) << "the contours do not show a scale, or this scene is no test";
+  EXPECT_GT(with.coverage, 0.85);
+  double error = 0, count = 0;
+  for (const FrameComparison& c : stated.models.at("limit-angle").frames)
+    if (stated.isHeldOut(c.frame))
+      for (const FrameComparison::Row& row : c.rows) error += row.metrics->contourErrorPx, count += 1;
+  EXPECT_LT(with.sigmaPx, 3 * error / count) << "not wider than it must be";
+  const std::vector<std::string> lines = bandLines(stated, stated.models.at("limit-angle"));
+  EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [](const std::string& l) { return l.find("scale of the surface off by up to 1 %") != std::string::npos; }));
+}
+
+TEST(Band, SaysThatAClippedHighlightTellsNoLevel) {
+  const auto scene = exactScene(sheet(0.4), 9);
+  const auto widest = [](const Inspection& r) { return bandSummary(r, r.models.at("limit-angle"))->sigmaPx; };
+  const Inspection plain = inspect(scene, request(0.1));
+  for (Frame& f : scene->frames)
+    for (Highlight& h : f.highlights) h.clipped = true;
+  const Inspection clipped = inspect(scene, request(0.1));
+  EXPECT_GT(widest(clipped), 20 * widest(plain));
+  const std::vector<std::string> lines = bandLines(clipped, clipped.models.at("limit-angle"));
+  EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [](const std::string& l) { return l.find("clipped") != std::string::npos; }));
+}
+
+TEST(Band, IsNotComputedUnlessAskedFor) {
+  InspectionRequest q = request(0.1);
+  q.settings.reset("predict.band");
+  const Inspection r = inspect(exactScene(sheet(0.4), 9), q);
+  EXPECT_FALSE(bandSummary(r, r.models.at("limit-angle")));
+  EXPECT_TRUE(bandLines(r, r.models.at("limit-angle")).empty());
+}
+
+}  // namespace
+}  // namespace glint

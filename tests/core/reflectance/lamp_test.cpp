@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/reflectance/lamp.h"
+
+#include <ceres/jet.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/reflectance/light_radiance.h"
+#include "core/reflectance/lobe_width.h"
+
+namespace glint {
+namespace {
+
+const std::vector<Lobe> kLobes{Lobe::TorranceSparrow, Lobe::Ggx, Lobe::BlinnPhong, Lobe::Phong};
+
+/// log of (1 / 2) int over t in [-1, 1] of I_point(c + t a) sin(angle(a, direction)) dt at the origin, by Simpson's rule.
+double denseSegment(Lobe lobe, double m, const Eigen::Vector3d& n, const Eigen::Vector3d& v, const Eigen::Vector3d& c,
+                    const Eigen::Vector3d& a) {
+  constexpr int kSteps = 4000;
+  double sum = 0;
+  for (int i = 0; i <= kSteps; ++i) {
+    const Eigen::Vector3d to = c + (2.0 * i / kSteps - 1) * a;
+    const std::optional<LogRadiance> log = logRadiance(lobe, m, n, to.normalized(), v);
+    if (!log) continue;
+    const double simpson = (i == 0 || i == kSteps ? 1 : i % 2 ? 4 : 2) / (3.0 * kSteps);
+    sum += simpson * std::exp(log->total()) / to.squaredNorm() * to.cross(a).norm() / (to.norm() * a.norm());
+  }
+  return std::log(sum);
+}
+
+// From lamps far shorter than the lobe is wide to ten times as long; at the middle, at the end and at the highlight's foot; axis across
+// and slantwise.
+TEST(SegmentLight, AgreesWithADenseQuadrature) {
+  const double m = 0.03;
+  const Eigen::Vector3d n = Eigen::Vector3d::UnitZ();
+  for (const Lobe lobe : {Lobe::TorranceSparrow, Lobe::Ggx})
+    for (const double ratio : {0.1, 0.4, 0.9, 2.5, 6.0, 10.0})
+      for (const double along : {0.0, 1.0, 1.4})
+        for (const Eigen::Vector3d& axis : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0.6, 0.3, 0.7)}) {
+          const double slant = 0.3;
+          const Eigen::Vector3d v(std::sin(slant), 0, std::cos(slant));
+          const Eigen::Vector3d half = ratio * 2 * m * 2 * std::cos(slant) * axis.normalized();  // a lamp 2 m away
+          const Eigen::Vector3d c = 2 * Eigen::Vector3d(-std::sin(slant), 0, std::cos(slant)) - along * half;
+          lobe::LampIn<double> lamp = lobe::inWorld(Lamp::segment(c - half, c + half));
+          const lobe::LampRule rule = lobe::lampRuleFor(lamp.shape, lobe::lampRatio(m, Eigen::Vector3d::Zero(), v, lamp));
+          const auto value = lobe::logOfLamp<double>(lobe, m, Eigen::Vector3d::Zero(), n, v, lamp, rule);
+          ASSERT_TRUE(value);
+          // L has |L| = 1 here: distances count in units of sqrt(|c|^2 + 1).
+          const double unit = std::log(c.squaredNorm() + 1);
+          EXPECT_NEAR(*value - unit, denseSegment(lobe, m, n, v, c, half), 3e-5) << nameOf(lobe) << " " << ratio << " " << along;
+        }
+}
+
+TEST(SegmentLight, DerivativesAgreeWithDifferences) {
+  using Dual = ceres::Jet<double, 8>;
+  const Eigen::Vector3d p(0.1, -0.05, 0.02), n = Eigen::Vector3d(0.1, 0, 1).normalized(), v = Eigen::Vector3d(0.3, 0.2, 1).normalized();
+  Eigen::Matrix<double, 8, 1> at;
+  at << -0.5, -0.1, 1.4, 0.6, 0.2, 0.25, 0.1, -0.05;  // L, m, half axis
+  const lobe::LampRule rule = lobe::lampRuleFor(lobe::LampShape::Segment, 2);
+  const auto value = [&](Lobe lobe, const auto& x) {
+    using T = std::decay_t<decltype(x(0))>;
+    lobe::LampIn<T> lamp;
+    lamp.shape = lobe::LampShape::Segment;
+    lamp.light = x.template head<4>();
+    lamp.halfAxis = x.template tail<3>();
+    return *lobe::logOfLamp<T>(lobe, x(4), p, n, v, lamp, rule);
+  };
+  for (const Lobe lobe : kLobes) {
+    Eigen::Matrix<Dual, 8, 1> dual;
+    for (int i = 0; i < 8; ++i) dual(i) = Dual(at(i), i);
+    const Dual total = value(lobe, dual);
+    for (int i = 0; i < 8; ++i) {
+      Eigen::Matrix<double, 8, 1> low = at, high = at;
+      low(i) -= 1e-6;
+      high(i) += 1e-6;
+      EXPECT_NEAR(total.v(i), (value(lobe, high) - value(lobe, low)) / 2e-6, 1e-6 * (1 + std::abs(total.v(i)))) << nameOf(lobe) << i;
+    }
+  }
+}
+
+TEST(SegmentLight, SeenEndOnItSendsNothing) {
+  const lobe::LampIn<double> lamp = lobe::inWorld(Lamp::segment({0, 0, 1}, {0, 0, 2}));
+  EXPECT_FALSE(lobe::logOfLamp<double>(Lobe::Ggx, 0.1, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitZ(), lamp,
+                                       lobe::lampRuleFor(lamp.shape, 1)));
+}
+
+TEST(Lamp, KeepsItsInvariant) {
+  const Lamp segment = Lamp::segment({1, 2, 3}, {1, 2, 5});
+  EXPECT_TRUE(segment.isSegment());
+  EXPECT_EQ(segment.ends()->second, Eigen::Vector3d(1, 2, 5));
+  EXPECT_TRUE(Lamp(Light::at({1, 2, 3})).isPoint());
+  EXPECT_FALSE(Lamp::sphere(Light::at({1, 2, 3}), 0.1).ends());
+  EXPECT_THROW((void)Lamp::segment({1, 2, 3}, {1, 2, 3}), std::invalid_argument);
+  EXPECT_THROW((void)Lamp::sphere(Light::at({1, 2, 3}), -1), std::invalid_argument);
+  EXPECT_THROW((void)Lamp::sphere(Light::towards({1, 2, 3}), 0.1), std::invalid_argument);
+}
+
+// The lobe itself, evaluated with N tilted from H by the width, has fallen to the level.
+TEST(LobeWidth, IsWhereTheLobeHasFallenToTheLevel) {
+  const Eigen::Vector3d h = Eigen::Vector3d::UnitZ();
+  for (const Lobe lobe : kLobes)
+    for (const double m : {0.02, 0.1, 0.3})
+      for (const double level : {0.2, 0.5, 0.8}) {
+        const double width = widthOf(lobe, m, level);
+        ASSERT_LT(width, 0.7);
+        const Eigen::Vector3d n(std::sin(width), 0, std::cos(width));
+        const double fall = logRadiance(lobe, m, h, h, h)->lobe - logRadiance(lobe, m, n, h, h)->lobe;
+        EXPECT_NEAR(fall, -std::log(level), 1e-9) << nameOf(lobe) << " " << m << " " << level;
+        EXPECT_NEAR(roughnessOf(lobe, width, level), m, 1e-9 * m) << nameOf(lobe);
+      }
+  EXPECT_THROW((void)widthOf(Lobe::Ggx, 0, 0.5), std::invalid_argument);
+  EXPECT_THROW((void)roughnessOf(Lobe::Ggx, 0.1, 1), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A lamp with a length from contours. The frames integrate over a tube of 3 cm by another quadrature than the fit (24 nodes along and 3
+// across it, every one with its own shadow).
+#include "core/reflectance/segment_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/reflectance/fit_search.h"
+#include "core/reflectance/lobe_width.h"
+#include "tests/core/reflectance/radiance_views.h"
+
+namespace glint {
+namespace {
+
+using namespace test;
+
+const std::vector<Lobe> kMicrofacets{Lobe::TorranceSparrow, Lobe::Ggx};
+constexpr double kRoughness = 0.08, kHalfLength = 0.3;
+const Eigen::Vector3d kMiddle = 2 * Eigen::Vector3d(1.2, -1.0, 2.2).normalized();
+const Eigen::Vector3d kAxis = Eigen::Vector3d(0.6, 0.8, 0);
+
+RadianceScene longLamp(Synthetic geometry, double scale = 1) {
+  geometry.light = {};
+  geometry.light.id = "tube";
+  geometry.light.segment = {Eigen::Vector3d(scale * (kMiddle - kHalfLength * kAxis)), Eigen::Vector3d(scale * (kMiddle + kHalfLength * kAxis))};
+  geometry.light.radius = 0.015 * scale;
+  return radianceScene(std::move(geometry), Lobe::TorranceSparrow, kRoughness);
+}
+
+struct Found {
+  double centreM = 0, axisDeg = 0, halfLength = 0;
+};
+
+Found compared(const RadianceFit& fit, double scale = 1) {
+  return {(fit.light.position() / scale - kMiddle).norm(),
+          std::asin(std::min(1.0, fit.lightHalfAxis.normalized().cross(kAxis).norm())) * 180 / M_PI, fit.lightHalfAxis.norm() / scale};
+}
+
+/// Off by a tenth of the distance and some degrees, as a triangulated light is.
+Light guess(double scale = 1) { return Light::at(scale * (1.1 * kMiddle + Eigen::Vector3d(0.08, 0.05, -0.1))); }
+
+Outcome<RadianceFit> search(const std::vector<RadianceView>& views, const Light& light) {
+  return searchRadiance(kMicrofacets, views, light, widthOf(Lobe::TorranceSparrow, 1.5 * kRoughness, 0.5), {true, true});
+}
+
+TEST(FitSegment, NominalLampOfSixtyCentimetres) {
+  const RadianceScene s = longLamp(ellipsoidScene(6));
+  const auto fit = search(radianceViews(s), guess());
+  ASSERT_TRUE(fit) << fit.failure().message();
+  const Found f = compared(*fit);
+  EXPECT_EQ(fit->lobe, Lobe::TorranceSparrow);
+  EXPECT_LT(f.centreM, 5e-3);                                    // "a few mm"
+  EXPECT_LT(f.axisDeg, 0.5);
+  EXPECT_NEAR(f.halfLength, kHalfLength, 0.01 * kHalfLength);
+  EXPECT_NEAR(fit->roughness, kRoughness, 0.01 * kRoughness);    // the tube's own width counts as the lobe's
+  EXPECT_LT(fit->rmsPx, 0.02);
+}
+
+TEST(FitSegment, ScaleOfTheWorldDoesNotMatter) {
+  for (const double scale : {1e-3, 1e3}) {
+    Synthetic g = ellipsoidScene(6);
+    g.light.position.reset();
+    const RadianceScene s = longLamp(moved(g, Eigen::Isometry3d::Identity(), scale), scale);
+    const auto fit = search(radianceViews(s), guess(scale));
+    ASSERT_TRUE(fit) << fit.failure().message();
+    const Found f = compared(*fit, scale);
+    EXPECT_LT(f.centreM, 5e-3) << scale;
+    EXPECT_LT(f.axisDeg, 0.5) << scale;
+    EXPECT_NEAR(f.halfLength, kHalfLength, 0.01 * kHalfLength) << scale;
+  }
+}
+
+// One pixel on highlights some 60 px long: the length stays within a tenth, and its uncertainty holds the error.
+TEST(FitSegment, NoiseStaysWithinTheUncertainty) {
+  const RadianceScene s = longLamp(ellipsoidScene(6));
+  int found = 0, inside = 0;
+  for (unsigned seed = 1; seed <= 2; ++seed) {
+    const auto fit = search(radianceViews(s, 1, seed), guess());
+    ASSERT_TRUE(fit) << fit.failure().message();
+    if (fit->lightHalfAxis.norm() == 0) continue;
+    ++found;
+    const Found f = compared(*fit);
+    EXPECT_NEAR(f.halfLength, kHalfLength, 0.1 * kHalfLength) << seed;
+    ASSERT_TRUE(fit->uncertainty);
+    ASSERT_EQ(fit->uncertainty->root.rows(), 8);
+    const Eigen::VectorXd byLength = fit->lightHalfAxis.normalized().transpose() * fit->uncertainty->root.bottomRows(3);
+    inside += std::abs(f.halfLength - kHalfLength) < 3 * byLength.norm();
+  }
+  EXPECT_EQ(found, 2);
+  EXPECT_EQ(inside, found);
+}
+
+// A point lamp stays one: exact, with noise, and under a lobe that is not its own.
+TEST(FitSegment, DegenerateAPointHasNoLength) {
+  for (const double noise : {0.0, 0.3, 1.0}) {
+    const RadianceScene s = radianceScene(ellipsoidScene(6), Lobe::TorranceSparrow, kRoughness);
+    const Light near = Light::at(1.05 * *s.geometry.light.position);
+    for (const std::vector<Lobe>& lobes : {kMicrofacets, std::vector<Lobe>{Lobe::Ggx}}) {
+      const auto fit = searchRadiance(lobes, radianceViews(s, noise, 7), near, widthOf(Lobe::TorranceSparrow, kRoughness, 0.5), {true, true});
+      ASSERT_TRUE(fit) << fit.failure().message();
+      if (lobes.size() > 1) { EXPECT_EQ(fit->lightHalfAxis.norm(), 0) << noise; }
+    }
+  }
+}
+
+TEST(FitSegment, DegenerateTwoFramesCannotLeaveOneOut) {
+  const RadianceScene s = longLamp(ellipsoidScene(2));
+  EXPECT_FALSE(fitSegment(kMicrofacets, radianceViews(s), nullptr, guess(), 0.1));
+}
+
+}  // namespace
+}  // namespace glint
