@@ -7,7 +7,6 @@
 #include <map>
 
 #include "core/reflectance/light_radiance.h"
-#include "core/surface/occlusion.h"
 
 namespace glint::patch {
 namespace {
@@ -266,16 +265,6 @@ std::vector<double> backgroundOf(const PixelPatch& patch, const FramePatches& fr
     for (int k = 0; k < count; ++k) b[i] += coefficients(k) * basis[k] / frame.top;
   }
   return b;
-}
-
-void dropShadowed(PixelPatch& patch, const Surface& surface, const Light& light) {
-  const Eigen::Vector3d eye = patch.camera.centreInWorld();
-  for (std::size_t i = 0; i < patch.size(); ++i) {
-    if (!patch.used[i]) continue;
-    const PixelPatch::Seen& s = patch.seen[i];
-    const double seenFrom = (eye - s.position).norm();
-    if (surface.occluded(SurfacePoint{s.position, s.normal}, occlusionTarget(surface, s.position, light, seenFrom))) patch.used[i] = 0;
-  }
 }
 
 }  // namespace glint::patch

@@ -68,7 +68,4 @@ int coefficientsOf(BackgroundKind kind);
 std::vector<double> backgroundOf(const PixelPatch& patch, const FramePatches& frame, BackgroundKind kind, const State& at,
                                  const Eigen::VectorXd& coefficients);
 
-/// Leaves out cells that lie in the lamp's shadow. Positions still in world.
-void dropShadowed(PixelPatch& patch, const Surface& surface, const Light& light);
-
 }  // namespace glint::patch

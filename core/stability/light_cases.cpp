@@ -76,7 +76,7 @@ struct Refined {
   Light light;
   double limit = 0, moved = 0;
 };
-Outcome<Refined> refined(const std::vector<BundleView>& views, const Light& start, const BundleOptions& options, Refine what, double scale) {
+Outcome<Refined> refined(const std::vector<BundleView>& views, const Light& start, const BundleOptions& options, Refine what) {
   if (what == Refine::Poses) {
     const Outcome<PoseRefinement> r = refinePoses(views, start, 0.3, options);
     if (!r) return r.failure();
@@ -91,8 +91,9 @@ Outcome<Refined> refined(const std::vector<BundleView>& views, const Light& star
   if (what == Refine::Extent) wide.limitOrders = 1;
   const Outcome<Bundle> b = bundleLight(views, start, wide);
   if (!b) return b.failure();
-  // Beside the square of the light's distance, 2 m of every scene.
-  const double extent = b->extent ? b->extent->norm() / (b->light.atInfinity() ? 1.0 : 4 * scale * scale) : 0;
+  // As a squared angle: at infinity it is one already. A light at 1e9 m whose extent is 1e-8 rad wide has one of 100 m^2.
+  const double distance = b->light.atInfinity() ? 1.0 : b->light.position().norm();
+  const double extent = b->extent ? b->extent->norm() / (distance * distance) : 0;
   return Refined{b->light, b->limitAngle, extent};
 }
 
@@ -130,7 +131,7 @@ Outcome<Measured> bundleCase(const BundleScene& b, const Light& light, double co
   const Outcome<Triangulation> start = triangulateLight(rays);
   BundleOptions options;
   options.pointsPerView = b.points;
-  const Outcome<Refined> found = refined(views, start ? start->light : Light::towards(rays[0].direction), options, b.refine, b.scale);
+  const Outcome<Refined> found = refined(views, start ? start->light : Light::towards(rays[0].direction), options, b.refine);
   if (!found) return found.failure();
   const double limitError = std::abs(found->limit / b.limit - 1);
   return Measured{worstOf({lightError(found->light, light, b.scale), limitError, found->moved}), condition};
