@@ -7,11 +7,15 @@
 
 #include "core/light/estimate.h"
 #include "core/model/models.h"
+#include "core/model/plausible.h"
+#include "core/model/reflectance_settings.h"
 
 namespace glint {
 namespace {
 
 constexpr int kAnglePoints = 36;  // of a contour, for the first guess of the roughness
+constexpr double kGainWorthATrial = 0.1;      // of the cost: what an extent must promise before it is tried
+constexpr std::size_t kFewestContours = 3;    // that tell a lamp's shape
 
 /// The mean direction of the reflected peak rays, which no noise turns behind the surface.
 std::optional<Light> meanRay(const std::vector<TrainingView>& views) {
@@ -24,6 +28,50 @@ std::optional<Light> meanRay(const std::vector<TrainingView>& views) {
   }
   // Directions that cancel have no mean: 1e-6 is far above round-off.
   return mean.norm() > 1e-6 * count ? std::optional<Light>(Light::towards(mean)) : std::nullopt;
+}
+
+/// A sphere or a segment that explains the pixels clearly better than a point. What the contours say starts the search: they tell a
+/// lamp's shape quickly, the pixels then measure it without the background's share.
+std::optional<PixelFit> withExtent(const std::vector<TrainingView>& views, const std::vector<const PixelPatch*>& patches,
+                                   const PixelFit& point, const Settings& settings) {
+  const LampChoices choices = lampChoicesOf(settings);
+  if ((!choices.sphere && !choices.segment) || point.model.lamp.centre.atInfinity()) return std::nullopt;
+  std::vector<RadianceView> contours;
+  for (const TrainingView& v : views)
+    if (!v.failure && v.pixels && !v.highlight.clipped)
+      contours.push_back({v.frame, v.camera, v.surface.get(), v.highlight.contour.points, v.highlight.peak, v.highlight.level});
+  const std::vector<Lobe> lobes = lobesOf(settings);
+  std::optional<PixelFit> best;
+  const auto consider = [&](const std::vector<Lobe>& order, const Lamp& lamp, double roughness) {
+    const Outcome<PixelFit> fit = fitPixels(order, patches, lamp, roughness);
+    const PixelFit& before = best ? *best : point;
+    if (fit && (before.poor && !fit->poor ? true : fit->poor == before.poor && explainsClearlyBetter(*fit, before))) best = *fit;
+  };
+  bool tried = false;
+  if (contours.size() >= kFewestContours) {
+    const double alpha = medianContourAngle(views, point.model.lamp.centre, kAnglePoints);
+    const Outcome<RadianceFit> said =
+        alpha > 0 ? searchRadiance(lobes, contours, point.model.lamp.centre, std::min(alpha, kWidestStart), choices, radianceFitOptionsOf(settings))
+                  : Outcome<RadianceFit>(Failure{Reason::NoLight, ""});
+    if (said && !said->poor && !said->lamp().isPoint()) {
+      std::vector<Lobe> order = lobes;
+      std::stable_partition(order.begin(), order.end(), [&](Lobe l) { return l == said->lobe; });
+      consider(order, said->lamp(), said->roughness);
+      tried = true;
+    }
+  }
+  if (!tried && choices.sphere) {
+    // Contours may hide a size that pixels show: as large as half the lobe is wide, to begin with.
+    const double distance = point.model.lamp.centre.position().norm();
+    double reach = 0;
+    for (const PixelPatch* p : patches) {
+      const std::size_t middle = p->size() / 2;
+      if (p->onSurface[middle]) reach = std::max(reach, (point.model.lamp.centre.position() - p->seen[middle].position).norm());
+    }
+    const double radius = 0.5 * point.model.roughness * (reach > 0 ? reach : distance);
+    consider({point.model.lobe}, Lamp::sphere(point.model.lamp.centre, radius), point.model.roughness);
+  }
+  return best;
 }
 
 }  // namespace
@@ -48,10 +96,7 @@ Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const s
     level = v.highlight.level;
   }
   if (patches.empty()) return Failure{Reason::TooFewViews, "no training view has pixels"};
-  std::vector<Lobe> lobes{Lobe::TorranceSparrow, Lobe::Ggx, Lobe::BlinnPhong, Lobe::Phong};
-  if (const std::string& name = settings.text("fit.lobe"); name != "auto") lobes = {*lobeOf(name)};
-  PixelFitOptions options;
-  options.lightSize = settings.text("fit.light_size") != "point";
+  const std::vector<Lobe> lobes = lobesOf(settings);
   std::vector<Light> starts;
   if (light) starts.push_back(light->light);
   if (const std::optional<Light> mean = meanRay(views)) starts.push_back(*mean);
@@ -60,10 +105,12 @@ Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const s
     const double alpha = medianContourAngle(views, start, kAnglePoints);
     if (!(alpha > 0)) continue;
     const double roughness = std::clamp(std::tan(alpha) / std::sqrt(-std::log(level)), 1e-3, 1.0);  // a start within the lobes' range
-    Outcome<PixelFit> fit = fitPixels(lobes, patches, start, roughness, options);
+    Outcome<PixelFit> fit = fitPixels(lobes, patches, start, roughness);
     if (!best || (fit && (fit->poor != best->poor ? best->poor : fit->cost < best->cost))) best = std::move(fit);
     if (best && !best->poor) break;
   }
+  if (best && (best->poor || best->gainByExtent > kGainWorthATrial))
+    if (std::optional<PixelFit> extended = withExtent(views, patches, *best, settings)) best = *std::move(extended);
   if (best && best->poor) {
     char detail[120];
     std::snprintf(detail, sizeof detail, "no lobe and light explain the pixels: %.3g px remain at the contours", best->rmsPx);
@@ -84,10 +131,12 @@ Outcome<ModelFit> reflectanceFromPixels(const FitInput& input, const Settings& s
     fit.frames.push_back(v.frame);
     fit.level = v.highlight.level;
   }
-  fit.lightEstimate = pixels.model.light;
-  if (!pixels.model.light.atInfinity() && pixels.positionCovariance.allFinite()) fit.lightCovariance = pixels.positionCovariance;
+  const Lamp& lamp = pixels.model.lamp;
+  fit.lightEstimate = lamp.centre;
+  if (!lamp.centre.atInfinity() && pixels.positionCovariance.allFinite()) fit.lightCovariance = pixels.positionCovariance;
   fit.roughness = pixels.model.roughness;
-  if (pixels.model.lightRadius > 0) fit.lightRadius = pixels.model.lightRadius;
+  if (lamp.radius > 0) fit.lightRadius = lamp.radius;
+  fit.lightSegment = lamp.ends();
   fit.lobe = nameOf(pixels.model.lobe);
   fit.blurPx = pixels.model.blurPx;
   fit.residualPx = pixels.residualPx;
@@ -95,7 +144,10 @@ Outcome<ModelFit> reflectanceFromPixels(const FitInput& input, const Settings& s
   fit.evidence = "pixels";
   fit.solver = "pixels";
   if (input.light) fit.condition = input.light->condition;
-  return fit;
+  std::vector<UsedContour> used;
+  for (const TrainingView& v : input.views)
+    if (!v.failure) used.push_back(usedContour(v));
+  return explaining(std::move(fit), used, true);
 }
 
 }  // namespace glint

@@ -10,6 +10,7 @@
 #include "core/model/level_set_prediction.h"
 #include "core/model/models.h"
 #include "core/model/pixel_evidence.h"
+#include "core/model/reflectance_settings.h"
 #include "core/model/plausible.h"
 #include "core/model/radiance_star.h"
 #include "core/model/uncertainty.h"
@@ -21,7 +22,6 @@ namespace glint {
 namespace {
 
 constexpr int kAnglePoints = 36;       // of a contour, for the first guess of the lobe's width
-constexpr double kWidestStart = 1.3;   // rad, of that guess
 constexpr double kScanStepPx = 16;  // of the search for a maximum away from every mirror point
 // log of an 8-bit picture's range: a lobe that has fallen further shows nothing beside the highlights of other frames.
 constexpr double kFaintest = 5.54;
@@ -127,19 +127,12 @@ class Reflectance final : public HighlightModel {
       fit.remarks.push_back("Fitted to contours, not to pixels: " + fromPixels.failure().message() + ".");
     }
     const double level = views.front().level;
-    RadianceFitOptions options;
-    options.pointsPerView = settings.integer("light.bundle_points");
-    options.robustPx = settings.number("light.robust_px");
-    const std::string& lamps = settings.text("fit.light_size");
-    const LampChoices choices{lamps == "auto" || lamps == "sphere", lamps == "auto" || lamps == "segment"};
     const std::optional<Light> light = firstLight(input);
     if (!light) return input.lightFailure ? *input.lightFailure : Failure{Reason::NoLight, ""};
     const double alpha = medianContourAngle(input.views, *light, kAnglePoints);
     if (!(alpha > 0)) return Failure{Reason::PeakOffSurface, "no contour point hits the lit surface"};
-    std::vector<Lobe> lobes{Lobe::TorranceSparrow, Lobe::Ggx, Lobe::BlinnPhong, Lobe::Phong};
-    const std::string& name = settings.text("fit.lobe");
-    if (name != "auto") lobes = {*lobeOf(name)};
-    const Outcome<RadianceFit> best = searchRadiance(lobes, views, *light, std::min(alpha, kWidestStart), choices, options);
+    const Outcome<RadianceFit> best = searchRadiance(lobesOf(settings), views, *light, std::min(alpha, kWidestStart),
+                                                     lampChoicesOf(settings), radianceFitOptionsOf(settings));
     if (!best) return best.failure();
     if (best->poor) {
       char detail[80];

@@ -108,7 +108,7 @@ Outcome<std::vector<Highlight>> contourWithLobe(const LinearPixels& pixels, cons
   for (const PatchSolution& s : *solved) worst = std::max(worst, std::isfinite(s.relativeRms) ? s.relativeRms : 1);
   if (worst > kUnexplained) return Failure{Reason::NotConverged, "the lobe leaves more than a tenth of the peak unexplained"};
 
-  const RadianceField field(surface, camera, model.lobe, model.roughness, Lamp::sphere(model.light, model.lightRadius));
+  const RadianceField field(surface, camera, model.lobe, model.roughness, model.lamp);
   std::vector<Pixel> starts;
   for (const Highlight& h : found) starts.push_back(h.peak);
   const std::vector<RadiancePeak> peaks = field.peaks(starts, 0);

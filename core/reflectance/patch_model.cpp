@@ -169,17 +169,18 @@ PixelPatch coarsened(const PixelPatch& fine) {
   return p;
 }
 
-LobeImage lobeImage(Lobe lobe, const FramePatches& frame, const State& at, const lobe::DiscRule& rule) {
+LobeImage lobeImage(Lobe lobe, const FramePatches& frame, const State& at, const lobe::LampRule& rule) {
   LobeImage image;
   image.logTop = -std::numeric_limits<double>::infinity();
-  const double roughness = std::exp(at.logRoughness);
+  const double roughness = at.roughness();
+  const lobe::LampIn<double> lamp = at.lamp();
   for (const PixelPatch& p : frame.patches) {
     std::vector<double>& values = image.value.emplace_back(p.size(), -std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < p.size(); ++i) {
       if (!p.onSurface[i]) continue;
       const PixelPatch::Seen& s = p.seen[i];
       const std::optional<double> log =
-          lobe::logOfSphereLight<double>(lobe, roughness, s.position, s.normal, s.toCamera, at.light, at.radiusSquared, rule);
+          lobe::logOfLamp<double>(lobe, roughness, s.position, s.normal, s.toCamera, lamp, rule);
       if (!log || !std::isfinite(*log)) continue;
       values[i] = *log;
       if (!p.used[i]) continue;

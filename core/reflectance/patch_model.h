@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <vector>
 
-#include "core/reflectance/disc_rule.h"
 #include "core/reflectance/pixel_fit.h"
 
 /// The lobe's image on the cells of patches, and the linear part of its fit; internal to core/reflectance.
@@ -11,9 +11,16 @@ namespace glint::patch {
 
 /// The unknowns of a lobe and its lamp, in normalised coordinates (x - origin) / scale.
 struct State {
+  lobe::LampShape shape = lobe::LampShape::Point;
   Eigen::Vector4d light{0, 0, 1, 0};  ///< |L| = 1
-  double logRoughness = 0, radiusSquared = 0;
-  double blurVariance = 0;  ///< px^2
+  double logRoughness = 0;
+  double radiusSquared = 0;              ///< of a sphere
+  Eigen::Vector3d halfAxis{0, 0, 0};     ///< of a segment
+  double blurVariance = 0;               ///< px^2
+
+  double roughness() const { return std::exp(logRoughness); }
+  bool atInfinity() const { return light.w() == 0; }
+  lobe::LampIn<double> lamp() const { return {shape, light, radiusSquared, halfAxis}; }
 };
 
 /// The patches of one frame with positions in normalised coordinates.
@@ -43,7 +50,7 @@ struct LobeImage {
   std::size_t topPatch = 0, topCell = 0;  ///< where it is
   bool lit = false;  ///< some used cell is
 };
-LobeImage lobeImage(Lobe lobe, const FramePatches& frame, const State& at, const lobe::DiscRule& rule);
+LobeImage lobeImage(Lobe lobe, const FramePatches& frame, const State& at, const lobe::LampRule& rule);
 
 /// Weights of iteratively reweighted least squares, per used cell of a frame; ones to begin with.
 using Weights = std::vector<double>;

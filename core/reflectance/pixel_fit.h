@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/uncertainty.h"
-#include "core/light/light.h"
+#include "core/reflectance/lamp.h"
 #include "core/reflectance/lobe.h"
 #include "core/reflectance/pixel_patch.h"
 
@@ -21,9 +21,8 @@ const char* nameOf(BackgroundKind kind);
 struct LobeModel {
   Lobe lobe = Lobe::TorranceSparrow;
   double roughness = 0.1;  ///< m
-  Light light;
-  double lightRadius = 0;  ///< m, of a spherical lamp; 0 = a point
-  double blurPx = 0;       ///< standard deviation of the images' blur, measured px
+  Lamp lamp;
+  double blurPx = 0;  ///< standard deviation of the images' blur, measured px
 };
 
 /// The linear part of a patch under a lobe: I = strength x S + b.
@@ -41,8 +40,7 @@ Outcome<std::vector<PatchSolution>> solvePatches(const std::vector<const PixelPa
 
 struct PixelFitOptions {
   int maxIterations = 60;
-  bool lightSize = true;  ///< estimate the lamp's radius where the pixels show it
-  bool blur = true;       ///< estimate the blur where the pixels show it
+  bool blur = true;  ///< estimate the blur where the pixels show it
 };
 
 struct PixelFit {
@@ -55,19 +53,25 @@ struct PixelFit {
   double rmsPx = 0;                 ///< what remains, as a displacement of the contour at half the peak, px
   std::vector<double> residualPx;   ///< the same per patch
   std::vector<double> relativeRms;  ///< per patch: what remains as a share of the frame's top
+  /// To first order, by which share the cost would fall if a point had a size or a length; 0 for other lamps and at infinity.
+  double gainByExtent = 0;
   int cells = 0, iterations = 0;
   bool poor = false;  ///< does not explain the pixels: more than a tenth of the contours' radius, or of the top, remains
 };
 
-/// Light and lobe from the pixels themselves (method.md section 15, "Pixels"): minimises over L, log m, the lamp's radius and the
+/// Light and lobe from the pixels themselves (method.md section 15, "Pixels"): minimises over L, log m, the lamp's extent and the
 /// blur the sum of rho(w (I - K_i S(L, m) - b) / I_i,max), w = (max(I, 0.05 I_max) / I_max)^-1/2 (photon noise), rho soft L1 at
 /// 0.01. K_i of every frame and the backgrounds b are linear and eliminated in every step (variable projection). The kind of
-/// background is chosen by the Bayesian information criterion, the lobe by the cost.
-/// @param lobes    tried in turn; the one with the least cost wins, a microfacet lobe where the costs do not tell
-/// @param light,roughness  start: what the contours say, which need not be close (clipped highlights)
+/// background is chosen by the Bayesian information criterion, the lobe by the cost. The lamp keeps the shape of the start: a point,
+/// a sphere or a segment.
+/// @param lobes  tried in turn; the one with the least cost wins, a microfacet lobe where the costs do not tell
+/// @param lamp,roughness  start: what the contours say, which need not be close (clipped highlights)
 /// TooFewPoints; NotConverged; NoBrightestPoint where no lobe reaches the patches.
 /// @see Golub, Pereyra, Separable nonlinear least squares, Inverse Problems 2003.
-Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<const PixelPatch*>& patches, const Light& light,
+Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<const PixelPatch*>& patches, const Lamp& lamp,
                             double roughness, const PixelFitOptions& options = {});
+
+/// Whether a lamp with an extent is believed beside a point, or a segment beside a sphere: it must leave a tenth less of the cost.
+bool explainsClearlyBetter(const PixelFit& larger, const PixelFit& smaller);
 
 }  // namespace glint

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/settings.h"
+#include "core/reflectance/fit.h"
+#include "core/reflectance/fit_search.h"
+
+namespace glint {
+
+inline constexpr double kWidestStart = 1.3;  ///< rad, of the first guess of a lobe's width
+
+/// The lobes that `fit.lobe` admits.
+inline std::vector<Lobe> lobesOf(const Settings& settings) {
+  const std::string& name = settings.text("fit.lobe");
+  if (name != "auto") return {*lobeOf(name)};
+  return {Lobe::TorranceSparrow, Lobe::Ggx, Lobe::BlinnPhong, Lobe::Phong};
+}
+
+/// The shapes of a lamp, beside a point, that `fit.light_size` admits.
+inline LampChoices lampChoicesOf(const Settings& settings) {
+  const std::string& lamps = settings.text("fit.light_size");
+  return {lamps == "auto" || lamps == "sphere", lamps == "auto" || lamps == "segment"};
+}
+
+inline RadianceFitOptions radianceFitOptionsOf(const Settings& settings) {
+  RadianceFitOptions options;
+  options.pointsPerView = settings.integer("light.bundle_points");
+  options.robustPx = settings.number("light.robust_px");
+  return options;
+}
+
+}  // namespace glint

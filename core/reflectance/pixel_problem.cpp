@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/reflectance/pixel_problem.h"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "core/light/dense_solver.h"
+#include "core/reflectance/light_radiance.h"
+
+namespace glint::patch {
+namespace {
+
+constexpr double kStep = 1e-6;       // of the differences by L and log m: both of the order of one
+constexpr double kBlurStep = 1e-3;   // px^2
+constexpr double kNarrowest = 1e-5;  // roughness of a mirror: no pixel shows its lobe
+constexpr double kWidest = 3;        // roughness beyond which there is no highlight
+constexpr double kLeastSizeSquared = 1e-12;  // of the lamp's radius, normalised: keeps differences finite
+constexpr double kLargestBlurPx = 12;        // beyond it an image shows no contour that could be compared
+constexpr int kFinerRules = 3;               // times that a lamp may outgrow its quadrature
+
+/// Steps of the differences by the squared radius and by the half axis: a small share of them.
+double sizeStep(const State& at) { return std::max(kLeastSizeSquared, 1e-4 * at.radiusSquared); }  // second order stays below 1e-4
+double axisStep(const State& at) { return std::max(1e-7, 1e-4 * at.halfAxis.norm()); }
+
+State stateOf(double const* const* parameters, lobe::LampShape shape) {
+  State s;
+  s.shape = shape;
+  s.light = Eigen::Map<const Eigen::Vector4d>(parameters[0]).normalized();
+  s.logRoughness = *parameters[1];
+  s.radiusSquared = *parameters[2];
+  s.halfAxis = Eigen::Map<const Eigen::Vector3d>(parameters[3]);
+  s.blurVariance = *parameters[4];
+  return s;
+}
+
+State alongLight(const State& at, const Eigen::Vector4d& direction) {
+  State moved = at;
+  moved.light = (at.light + kStep * direction).normalized();
+  return moved;
+}
+
+/// Robust residuals of all cells over L (4), log m, a sphere's squared radius, a segment's half axis (3) and the blur's variance.
+class PixelCost final : public ceres::CostFunction {
+ public:
+  PixelCost(PixelProblem& problem, lobe::LampShape shape) : problem_(problem), shape_(shape) {
+    set_num_residuals(problem.residuals());
+    for (const int size : {4, 1, 1, 3, 1}) mutable_parameter_block_sizes()->push_back(size);
+  }
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    const State at = stateOf(parameters, shape_);
+    if (!(at.logRoughness < std::log(kWidest)) || !(at.logRoughness > std::log(kNarrowest))) return false;
+    if (shape_ == lobe::LampShape::Segment && !(at.halfAxis.norm() > 0)) return false;
+    if (!problem_.residualsAt(at, residuals)) return false;
+    if (!jacobians) return true;
+    if (jacobians[0]) {
+      const Eigen::Matrix<double, 4, 3> basis = across(at.light);
+      Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> tangent(problem_.residuals(), 3);
+      for (int k = 0; k < 3; ++k) problem_.differences(alongLight(at, basis.col(k)), kStep, tangent.data() + k, 3);
+      Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>>(jacobians[0], problem_.residuals(), 4) =
+          tangent * basis.transpose();
+    }
+    const auto scalar = [&](int block, double State::*member, double step) {
+      if (!jacobians[block]) return;
+      State moved = at;
+      moved.*member += step;
+      problem_.differences(moved, step, jacobians[block], 1);
+    };
+    scalar(1, &State::logRoughness, kStep);
+    scalar(2, &State::radiusSquared, sizeStep(at));
+    scalar(4, &State::blurVariance, kBlurStep);
+    if (jacobians[3])
+      for (int k = 0; k < 3; ++k) {
+        State moved = at;
+        moved.halfAxis(k) += axisStep(at);
+        problem_.differences(moved, axisStep(at), jacobians[3] + k, 3);
+      }
+    return true;
+  }
+
+ private:
+  PixelProblem& problem_;
+  lobe::LampShape shape_;
+};
+
+/// One run of the solver with the quadrature of the moment.
+bool run(PixelProblem& problem, Attempt& a, const SolveOptions& options, bool atInfinity) {
+  PixelCost cost(problem, a.at.shape);
+  ceres::Problem::Options ownership;
+  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem ceres(ownership);
+  State& s = a.at;
+  ceres.AddResidualBlock(&cost, nullptr, s.light.data(), &s.logRoughness, &s.radiusSquared, s.halfAxis.data(), &s.blurVariance);
+  if (atInfinity)
+    ceres.SetManifold(s.light.data(), new ceres::ProductManifold<ceres::SphereManifold<3>, ceres::SubsetManifold>(
+                                          ceres::SphereManifold<3>(), ceres::SubsetManifold(1, {0})));
+  else
+    ceres.SetManifold(s.light.data(), new ceres::SphereManifold<4>());
+  if (s.shape == lobe::LampShape::Sphere)
+    ceres.SetParameterLowerBound(&s.radiusSquared, 0, kLeastSizeSquared);
+  else
+    ceres.SetParameterBlockConstant(&s.radiusSquared);
+  if (s.shape != lobe::LampShape::Segment) ceres.SetParameterBlockConstant(s.halfAxis.data());
+  if (options.blur) {
+    ceres.SetParameterLowerBound(&s.blurVariance, 0, 0);
+    ceres.SetParameterUpperBound(&s.blurVariance, 0, kLargestBlurPx * kLargestBlurPx);
+  } else {
+    ceres.SetParameterBlockConstant(&s.blurVariance);
+  }
+  const DenseSolution solution = solveDense(ceres, options.maxIterations, options.tolerance, options.costTolerance);
+  a.iterations += solution.iterations;
+  if (!solution.usable || !s.light.allFinite() || !std::isfinite(s.logRoughness) || !s.halfAxis.allFinite()) return false;
+  a.cost = 2 * solution.cost;
+  return true;
+}
+
+}  // namespace
+
+Eigen::Matrix<double, 4, 3> across(const Eigen::Vector4d& light) {
+  Eigen::Matrix4d q = Eigen::HouseholderQR<Eigen::Matrix<double, 4, 1>>(light).householderQ();
+  return q.rightCols<3>();
+}
+
+std::vector<Moved> movedStates(const State& at, bool blur) {
+  std::vector<Moved> moved;
+  const Eigen::Matrix<double, 4, 3> basis = across(at.light);
+  for (int k = 0; k < 3; ++k) moved.push_back({alongLight(at, basis.col(k)), kStep});
+  const auto add = [&](double step, const auto& change) {
+    moved.push_back({at, step});
+    change(moved.back().state);
+  };
+  add(kStep, [](State& s) { s.logRoughness += kStep; });
+  if (at.shape == lobe::LampShape::Sphere) add(sizeStep(at), [&](State& s) { s.radiusSquared += sizeStep(at); });
+  if (at.shape == lobe::LampShape::Segment)
+    for (int k = 0; k < 3; ++k) add(axisStep(at), [&](State& s) { s.halfAxis(k) += axisStep(at); });
+  if (blur) add(kBlurStep, [](State& s) { s.blurVariance += kBlurStep; });
+  return moved;
+}
+
+PixelProblem::PixelProblem(const Normalised& evidence, Lobe lobe, BackgroundKind kind)
+    : evidence_(evidence), lobe_(lobe), kind_(kind), weights_(evidence.frames.size()) {
+  for (std::size_t f = 0; f < weights_.size(); ++f) {
+    first_.push_back(total_);
+    total_ += evidence.frames[f].used;
+    weights_[f].assign(evidence.frames[f].used, 1.0);
+  }
+}
+
+template <class F>
+void PixelProblem::each(const F& work) {
+  solved_.resize(evidence_.frames.size());
+  images_.resize(evidence_.frames.size());
+  lit_.resize(evidence_.frames.size());
+  parallelFor(static_cast<int>(evidence_.frames.size()), [&](int f) { work(static_cast<std::size_t>(f)); }, {}, "pixels");
+}
+
+bool PixelProblem::residualsAt(const State& at, double* out) {
+  bool any = false;
+  each([&](std::size_t f) { solveAt(f, at); });
+  for (std::size_t f = 0; f < solved_.size(); ++f) {
+    any = any || lit_[f];
+    for (std::size_t i = 0; i < solved_[f].residual.size(); ++i) {
+      const double r = solved_[f].residual[i];
+      if (!std::isfinite(r)) return false;
+      out[first_[f] + i] = std::copysign(std::sqrt(robustSquare(r)), r);
+    }
+  }
+  return any;
+}
+
+void PixelProblem::differences(const State& moved, double step, double* column, int stride) {
+  each([&](std::size_t f) {
+    const LinearFit there = fitFixed(f, moved);
+    for (std::size_t i = 0; i < there.residual.size(); ++i) {
+      const double r = solved_[f].residual[i], root = std::copysign(std::sqrt(robustSquare(r)), r);
+      // d r' / d r = rho'(r) r / r'.
+      const double slope = root != 0 ? robustWeight(r) * r / root : 1;
+      const double d = (there.residual[i] - r) / step;
+      column[static_cast<std::ptrdiff_t>(first_[f] + i) * stride] = std::isfinite(d) ? slope * d : 0;
+    }
+  });
+}
+
+void PixelProblem::solveAt(std::size_t f, const State& at) {
+  images_[f] = lobeImage(lobe_, evidence_.frames[f], at, rule_);
+  lit_[f] = images_[f].lit;
+  if (lit_[f]) {
+    Weights weights(weights_[f].size(), 1.0);
+    solved_[f] = robustFit(evidence_.frames[f], images_[f], kind_, at, weights);
+    weights_[f] = std::move(weights);
+    // A highlight takes nothing away from the light that is there.
+    if (solved_[f].solved && !(solved_[f].coefficients(0) > 0)) solved_[f].solved = false;
+  }
+  if (lit_[f] && solved_[f].solved) return;
+  // Nothing of the frame is explained: what it shows above zero is the residual.
+  solved_[f] = {};
+  for (const PixelPatch& p : evidence_.frames[f].patches)
+    for (std::size_t i = 0; i < p.size(); ++i)
+      if (p.used[i]) solved_[f].residual.push_back(std::sqrt(std::max(0.0f, p.value[i]) / evidence_.frames[f].top));
+}
+
+LinearFit PixelProblem::fitFixed(std::size_t f, const State& at) const {
+  const LobeImage image = lobeImage(lobe_, evidence_.frames[f], at, rule_);
+  if (!image.lit || !solved_[f].solved) return solved_[f];
+  LinearFit fit = linearFit(evidence_.frames[f], image, kind_, at, weights_[f]);
+  return fit.solved ? fit : solved_[f];
+}
+
+bool PixelProblem::chooseRule(const State& at) {
+  if (at.shape == lobe::LampShape::Point) return false;
+  double largest = 0;
+  for (const FramePatches& frame : evidence_.frames)
+    for (const PixelPatch& p : frame.patches) {
+      const std::size_t middle = static_cast<std::size_t>(p.rows / 2) * p.columns + p.columns / 2;
+      if (p.onSurface[middle])
+        largest = std::max(largest, lobe::lampRatio(at.roughness(), p.seen[middle].position, p.seen[middle].toCamera, at.lamp()));
+    }
+  const bool first = !rule_.disc && !rule_.along;
+  if (!first && largest <= largestRatio_) return false;
+  // Some reserve: the lamp may grow a little while it is sought.
+  largestRatio_ = 1.3 * largest;
+  const lobe::LampRule before = rule_;
+  rule_ = lobe::lampRuleFor(at.shape, largestRatio_);
+  return first || rule_.disc != before.disc || rule_.along != before.along;
+}
+
+Attempt solve(PixelProblem& problem, const State& start, const SolveOptions& options) {
+  Attempt a;
+  a.at = start;
+  const bool atInfinity = start.atInfinity();
+  if (atInfinity) a.at.light.normalize();
+  problem.chooseRule(a.at);
+  for (int round = 0; round < kFinerRules; ++round)
+    if (!run(problem, a, options, atInfinity) || !problem.chooseRule(a.at)) break;
+  // Beyond infinity the rays towards the lamp converge behind the scene: it is at infinity, as far as the pixels tell.
+  if (std::isfinite(a.cost) && a.at.light.w() < 0 && !atInfinity) {
+    if (a.at.shape != lobe::LampShape::Point) {
+      a.cost = std::numeric_limits<double>::infinity();  // where an extent has no meaning
+      return a;
+    }
+    State there = a.at;
+    there.light.w() = 0;
+    Attempt far = solve(problem, there, options);
+    far.iterations += a.iterations;
+    return far;
+  }
+  return a;
+}
+
+}  // namespace glint::patch
