@@ -138,7 +138,7 @@ Outcome<ModelFit> reflectanceFromPixels(const FitInput& input, const Settings& s
   if (lamp.radius > 0) fit.lightRadius = lamp.radius;
   fit.lightSegment = lamp.ends();
   fit.lobe = nameOf(pixels.model.lobe);
-  fit.blurPx = pixels.model.blurPx;
+  fit.blurPx = pixels.model.blurPx();
   fit.residualPx = pixels.residualPx;
   fit.uncertainty = pixels.uncertainty;
   fit.evidence = "pixels";

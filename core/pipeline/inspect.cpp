@@ -144,7 +144,7 @@ void Run::highlights() {
   const InspectionRequest& q = r_.request;
   const bool together = lightsAreOpen();
   r_.stageKeys["detect"] = detectKey(q, together);
-  r_.stageKeys["lobe"] = lobeKey(q, r_.train, r_.stageKeys["detect"]);
+  r_.stageKeys["lobe"] = lobeKey(q, r_.train, together);
   if (unchanged("detect")) {
     r_.evidence = previous_->evidence;
     for (const auto& [frame, before] : previous_->evidenceBefore) r_.evidence[std::size_t(frame)] = before;
@@ -199,7 +199,7 @@ void Run::lobes() {
     r_.pixelFits = previous_->pixelFits;
     r_.pixelFailures = previous_->pixelFailures;
   } else {
-    fitLobes(r_, surface, progress_);
+    fitLobes(r_, surface, lightsAreOpen(), progress_);
   }
   contourAgain(r_, surface, progress_);
 }
@@ -234,7 +234,7 @@ void Run::brightestPointsAndTangentPlanes() {
   const InspectionRequest& q = r_.request;
   r_.stageKeys["views"] =
       keyOfStages(q.settings, {"surface"},
-                  r_.stageKeys["lobe"] + "|" + join(r_.train.frames) + (r_.train.perSurface ? "per-surface" : "") + "|x" +
+                  r_.stageKeys["detect"] + "|" + r_.stageKeys["lobe"] + "|" + join(r_.train.frames) + (r_.train.perSurface ? "per-surface" : "") + "|x" +
                       join(q.excluded) + "|" + exactText(q.noisePx) + "|" + std::to_string(q.seed) + "|" + posesKey(q.whatIf) +
                       "|" + highlightsKey(q.whatIf) + "|" + lightsOffKey(q.whatIf));
   if (unchanged("views") && previous_->depthCorrections.empty()) {  // corrected views belong to that run's light

@@ -36,6 +36,11 @@ bool wasDetected(const FrameEvidence& e) {
          std::none_of(e.highlights.begin(), e.highlights.end(), [](const Highlight& h) { return h.fromScene; });
 }
 
+InspectionRequest atHalf(InspectionRequest request) {
+  request.settings.set("detect.level", 0.5);
+  return request;
+}
+
 }  // namespace
 
 bool looksAtPixels(const InspectionRequest& request) {
@@ -43,17 +48,17 @@ bool looksAtPixels(const InspectionRequest& request) {
   return request.settings.text("detect.background") == "lobe" || evidence == "auto" || evidence == "pixels";
 }
 
-std::string lobeKey(const InspectionRequest& request, const TrainSpec& train, const std::string& detectKey) {
+std::string lobeKey(const InspectionRequest& request, const TrainSpec& train, bool together) {
   std::string frames;
   for (const int f : train.frames) frames += std::to_string(f) + ",";
   frames += train.perSurface ? "per-surface" : "";
   for (const int f : request.excluded) frames += "x" + std::to_string(f);
-  return keyOfStages(request.settings, {"surface"}, detectKey) + "|" + frames + "|" + posesKey(request.whatIf) + "|" +
+  return keyOfStages(request.settings, {"surface"}, detectKey(together ? request : atHalf(request), together)) + "|" + frames + "|" + posesKey(request.whatIf) + "|" +
          lightsOffKey(request.whatIf) + "|" + request.settings.text("fit.lobe") + "|" + request.settings.text("fit.light_size") +
          (looksAtPixels(request) ? "|pixels" : "");
 }
 
-void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, const ProgressFn& progress) {
+void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, const ProgressFn& progress) {
   if (!looksAtPixels(r.request)) return;
   std::vector<int> frames;
   for (const int f : r.train.frames)
@@ -63,12 +68,14 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, const ProgressFn& 
     std::vector<std::pair<int, int>> ids;
   };
   std::vector<Seen> seen(frames.size());
+  const InspectionRequest half = atHalf(r.request);
+  const bool sameLevel = together || r.request.settings.number("detect.level") == 0.5;
   parallelFor(
       static_cast<int>(frames.size()),
       [&](int n) {
         const int f = frames[static_cast<std::size_t>(n)];
         const Frame& frame = r.scene->frames[static_cast<std::size_t>(f)];
-        const FrameEvidence& evidence = r.evidence[static_cast<std::size_t>(f)];
+        const FrameEvidence evidence = sameLevel ? r.evidence[static_cast<std::size_t>(f)] : evidenceFor(*r.scene, f, half);
         const std::shared_ptr<const Surface> surface = surfaceOf(f);
         const Outcome<LinearPixels> pixels = pixelsOf(frame, r.request.source, r.request.settings);
         if (!surface || !pixels) return;
@@ -148,8 +155,9 @@ void attachPixels(Inspection& r) {
   for (TrainingView& v : r.views) {
     const FrameEvidence& evidence = r.evidence[static_cast<std::size_t>(v.frame)];
     const int index = evidence.asFound(next[v.frame]++);
-    const auto patch = r.patches.find({v.frame, index});
-    if (patch != r.patches.end() && !r.request.whatIf.highlights.count({v.frame, index})) v.pixels = patch->second;
+    if (r.request.whatIf.highlights.count({v.frame, index})) continue;
+    for (auto p = r.patches.lower_bound({v.frame, 0}); p != r.patches.end() && p->first.first == v.frame && !v.pixels; ++p)
+      if (p->second->light == v.highlight.light && contains(v.highlight.contour, p->second->peak)) v.pixels = p->second;
   }
 }
 

@@ -17,20 +17,22 @@ namespace glint {
 /// The request asks for pixels: as evidence, or for the background.
 bool looksAtPixels(const InspectionRequest& request);
 
-/// What the stage depends on, beside the evidence as detected.
-std::string lobeKey(const InspectionRequest& request, const TrainSpec& train, const std::string& detectKey);
+/// What the stage depends on. It always looks at highlights as detected at half their peak, so that another level, which a user drags,
+/// fits no lobe again.
+/// @param together  lights are told apart from all frames: then the highlights of the request's own level are taken
+std::string lobeKey(const InspectionRequest& request, const TrainSpec& train, bool together);
 
 using SurfaceOfFrame = std::function<std::shared_ptr<const Surface>(int frame)>;
 
-/// Fills patches, pixelFits and pixelFailures from the training frames' evidence as detected. Frames whose contours the scene gives have
-/// no pixels. Throws Stopped.
-void fitLobes(Inspection& inspection, const SurfaceOfFrame& surfaceOf, const ProgressFn& progress);
+/// Fills patches, pixelFits and pixelFailures from the training frames. Frames whose contours the scene gives have no pixels. Throws
+/// Stopped.
+void fitLobes(Inspection& inspection, const SurfaceOfFrame& surfaceOf, bool together, const ProgressFn& progress);
 
 /// Replaces the evidence of frames that were not looked at before by contours with the lobe's background; keeps the evidence as
 /// detected in Inspection::detected. Throws Stopped.
 void contourAgain(Inspection& inspection, const SurfaceOfFrame& surfaceOf, const ProgressFn& progress);
 
-/// Joins the views with their pixels. None where noise was added or the user moved the highlight: its contour then says more than the
+/// Joins the views with their pixels: those of the highlight of the same light whose peak lies in the view's contour. None where noise was added or the user moved the highlight: its contour then says more than the
 /// pixels do.
 void attachPixels(Inspection& inspection);
 

@@ -94,7 +94,7 @@ Outcome<std::vector<Highlight>> contourWithLobe(const LinearPixels& pixels, cons
   std::vector<PixelPatch> patches;
   PatchOptions around;
   around.cells = kEvidenceCells;
-  around.blurPx = model.blurPx;
+  around.blurPx = model.blurPx();
   for (const Highlight& h : found) {
     Outcome<PixelPatch> patch = pixelPatch(pixels, camera, surface, frame, h, others, around);
     if (!patch) return patch.failure();
@@ -114,7 +114,7 @@ Outcome<std::vector<Highlight>> contourWithLobe(const LinearPixels& pixels, cons
   const std::vector<RadiancePeak> peaks = field.peaks(starts, 0);
   const PatchSolution& strongest = solved->front();
   std::optional<double> reference;
-  if (!peaks.empty() && model.blurPx < kSharpPx && worst < kTrusted) {
+  if (!peaks.empty() && model.blurPx() < kSharpPx && worst < kTrusted) {
     const std::optional<double> top = field.at(strongest.topPoint, std::numeric_limits<double>::infinity());
     if (top) reference = strongest.strength * std::exp(peaks.front().logRadiance - *top);
   }

@@ -16,7 +16,6 @@ constexpr double kDarkest = 0.05;    // of the top: darker pixels weigh no more
 constexpr int kReweightings = 12;
 constexpr double kSettled = 1e-9;    // of the coefficients, relative
 constexpr double kSampledFrom = 0.4; // variance in cells: from here on a sampled Gaussian has its moments to 4e-4
-constexpr double kBoxVariance = 1.0 / 12;  // of a cell
 
 /// Taps of a kernel with the variance given, in cells: three where that is small, else a sampled Gaussian.
 std::vector<double> kernelOf(double variance) {
@@ -195,7 +194,7 @@ LobeImage lobeImage(Lobe lobe, const FramePatches& frame, const State& at, const
   for (std::size_t k = 0; k < image.value.size(); ++k) {
     const PixelPatch& p = frame.patches[k];
     for (double& v : image.value[k]) v = std::exp(v - image.logTop);
-    blur(image.value[k], p.columns, p.rows, at.blurVariance / (p.cellPx * p.cellPx) + kBoxVariance);
+    blur(image.value[k], p.columns, p.rows, std::max(0.0, at.blurVariance / (p.cellPx * p.cellPx) + kPixelVariance));
   }
   return image;
 }

@@ -52,6 +52,9 @@ struct LobeImage {
 };
 LobeImage lobeImage(Lobe lobe, const FramePatches& frame, const State& at, const lobe::LampRule& rule);
 
+/// Variance of the square that a pixel averages over, px^2. A blur of minus this makes pixels of samples at their centres.
+inline constexpr double kPixelVariance = 1.0 / 12;
+
 /// Weights of iteratively reweighted least squares, per used cell of a frame; ones to begin with.
 using Weights = std::vector<double>;
 

@@ -49,7 +49,7 @@ State stateOf(const LobeModel& model, const patch::Normalised& n) {
   s.logRoughness = std::log(model.roughness);
   s.radiusSquared = std::pow(model.lamp.radius / n.scale, 2);
   s.halfAxis = model.lamp.halfAxis / n.scale;
-  s.blurVariance = model.blurPx * model.blurPx;
+  s.blurVariance = model.blurVariance;
   return s;
 }
 
@@ -187,7 +187,7 @@ Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<co
     if ((blur = b.cost < (1 - kClearGain) * a.cost)) a = b;
   }
   PixelFit fit;
-  fit.model = {chosen->lobe, a.at.roughness(), inWorld(a.at, fine), std::sqrt(std::max(0.0, a.at.blurVariance))};
+  fit.model = {chosen->lobe, a.at.roughness(), inWorld(a.at, fine), a.at.blurVariance};
   fit.background = chosen->kind;
   fit.cost = a.cost;
   fit.cells = static_cast<int>(fine.cells);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -22,7 +24,10 @@ struct LobeModel {
   Lobe lobe = Lobe::TorranceSparrow;
   double roughness = 0.1;  ///< m
   Lamp lamp;
-  double blurPx = 0;  ///< standard deviation of the images' blur, measured px
+  /// Of the images' blur beside the square that a pixel averages over, px^2. -1/12 where a pixel is the radiance at its centre alone.
+  double blurVariance = 0;
+
+  double blurPx() const { return std::sqrt(std::max(0.0, blurVariance)); }
 };
 
 /// The linear part of a patch under a lobe: I = strength x S + b.

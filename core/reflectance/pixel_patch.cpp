@@ -73,6 +73,7 @@ Outcome<PixelPatch> pixelPatch(const LinearPixels& pixels, const Camera& camera,
   if (box.isEmpty()) return Failure{Reason::NotFinite, "the highlight's surroundings"};
 
   PixelPatch patch;
+  patch.light = highlight.light;
   patch.frame = frame;
   patch.camera = camera;
   patch.peak = highlight.peak;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "core/base/image.h"
@@ -29,6 +30,7 @@ struct PixelPatch {
   struct Seen {
     Eigen::Vector3d position, normal, toCamera;
   };
+  std::string light;     ///< whose highlight it is
   int frame = 0;         ///< patches of one frame share the light's strength
   Camera camera;
   Pixel firstCell{0, 0};  ///< measured pixel of the centre of cell (0, 0)

@@ -105,7 +105,7 @@ bool run(PixelProblem& problem, Attempt& a, const SolveOptions& options, bool at
     ceres.SetParameterBlockConstant(&s.radiusSquared);
   if (s.shape != lobe::LampShape::Segment) ceres.SetParameterBlockConstant(s.halfAxis.data());
   if (options.blur) {
-    ceres.SetParameterLowerBound(&s.blurVariance, 0, 0);
+    ceres.SetParameterLowerBound(&s.blurVariance, 0, -kPixelVariance);
     ceres.SetParameterUpperBound(&s.blurVariance, 0, kLargestBlurPx * kLargestBlurPx);
   } else {
     ceres.SetParameterBlockConstant(&s.blurVariance);
