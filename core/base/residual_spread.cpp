@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "core/base/outcome.h"
 
@@ -37,6 +38,21 @@ ResidualSpread residualSpread(const std::vector<double>& residuals, const std::v
   spread.factor = inflation * k * k * squares / free / (slope * slope);
   spread.degreesOfFreedom = std::max(1.0, free / inflation);
   return spread;
+}
+
+double rmsWithoutTail(const std::vector<double>& residuals) {
+  if (residuals.empty()) return 0;
+  std::vector<double> sizes;
+  for (const double r : residuals) {
+    if (!std::isfinite(r)) return std::nan("");
+    sizes.push_back(std::abs(r));
+  }
+  const auto bulk = sizes.begin() + std::ptrdiff_t((2 * sizes.size() - 1) / 3);  // the last of the smaller two thirds
+  std::nth_element(sizes.begin(), bulk, sizes.end());
+  const double most = 2 * *bulk;
+  double sum = 0;
+  for (const double size : sizes) sum += std::pow(std::min(size, most), 2);
+  return std::sqrt(sum / double(sizes.size()));
 }
 
 }  // namespace glint

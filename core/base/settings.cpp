@@ -276,6 +276,18 @@ const std::vector<ParamSpec>& allParams() {
        "Reflectance model: which shapes beside a point the lamp may take. sphere: its radius R is estimated where it lowers the squared "
        "residuals by a fifth. segment: its two ends, where they do so and predict left-out frames better. auto: both. Point: R = 0.",
        "fit"},
+      {"fit.most_residual",
+       "Refuse above",
+       "e_max",
+       "",
+       0.1,
+       0.01,
+       10.0,
+       0.01,
+       {},
+       "A model gives no answer where its fit leaves more than this share of the contours' radius, in more than a third of the training views or, "
+       "for the ellipsoids, on the whole. Raise it to see how a model fails. Answered: e <= e_max r, e the residual without noise, r = √(A/π).",
+       "fit"},
       {"predict.directions",
        "Directions",
        "n",

@@ -301,6 +301,13 @@ std::optional<Failure> withoutLimit(const std::vector<ContourEvidence>& points, 
   return Failure{Reason::NotConverged, detail};
 }
 
+/// Distances of every view's points from the level set of an attempt, px.
+std::vector<std::vector<double>> residualsOfViews(const std::vector<ContourEvidence>& points, const Attempt& a, std::size_t views) {
+  std::vector<std::vector<double>> residuals(views);
+  for (const ContourEvidence& e : points) residuals[std::size_t(e.view)].push_back(residual(e, a));
+  return residuals;
+}
+
 /// RMS of the distances of points from the level set of an attempt that was found in other coordinates, px.
 double rmsElsewhere(const Attempt& found, const NormalisedContours& foundIn, NormalisedContours seen) {
   Attempt a = found;
@@ -337,16 +344,15 @@ Outcome<Bundle> bundleLight(const std::vector<ContourEvidence>& evidence, std::s
   bundle.limitAngle = best.limit;
   if (best.directed) bundle.extent = symmetric(best.extent) * (best.light.w() == 0 ? 1.0 : contours->scale * contours->scale);
   bundle.iterations = found->iterations;
-  std::vector<double> sums(views, 0.0), counts(views, 0.0);
   double sum = 0;
-  for (const ContourEvidence& e : points) {
-    const double r = residual(e, best);
-    sums[e.view] += r * r;
-    counts[e.view] += 1;
-    sum += r * r;
+  for (const std::vector<double>& residuals : residualsOfViews(points, best, views)) {
+    double ofView = 0;
+    for (const double r : residuals) ofView += r * r;
+    sum += ofView;
+    bundle.residualPx.push_back(residuals.empty() ? 0.0 : std::sqrt(ofView / double(residuals.size())));
+    bundle.typicalPx.push_back(rmsWithoutTail(residuals));
   }
   bundle.rmsPx = std::sqrt(sum / points.size());
-  for (std::size_t v = 0; v < views; ++v) bundle.residualPx.push_back(counts[v] > 0 ? std::sqrt(sums[v] / counts[v]) : 0.0);
   setCovariance(points, best, contours->origin, contours->scale, options.robustPx, bundle);
   return bundle;
 }
@@ -384,8 +390,7 @@ Outcome<LeftOutErrors> leftOutErrors(const std::vector<ContourEvidence>& evidenc
   return errors;
 }
 
-std::vector<double> residualsPx(const std::vector<ContourEvidence>& evidence, std::size_t views, const Light& light, double limitAngle) {
-  std::vector<double> sums(views, 0.0), counts(views, 0.0);
+std::vector<double> typicalResidualsPx(const std::vector<ContourEvidence>& evidence, std::size_t views, const Light& light, double limitAngle) {
   const Outcome<NormalisedContours> contours = normalised(evidence);
   if (!contours) return std::vector<double>(views, std::nan(""));
   std::vector<ContourEvidence> points = contours->points;
@@ -394,12 +399,10 @@ std::vector<double> residualsPx(const std::vector<ContourEvidence>& evidence, st
   a.light.normalize();
   a.limit = limitAngle;
   reweight(points, a.light);
-  for (const ContourEvidence& e : points) {
-    sums[std::size_t(e.view)] += std::pow(residual(e, a), 2);
-    counts[std::size_t(e.view)] += 1;
-  }
-  for (std::size_t v = 0; v < views; ++v) sums[v] = counts[v] > 0 ? std::sqrt(sums[v] / counts[v]) : std::nan("");
-  return sums;
+  std::vector<double> typical;
+  for (const std::vector<double>& residuals : residualsOfViews(points, a, views))
+    typical.push_back(residuals.empty() ? std::nan("") : rmsWithoutTail(residuals));
+  return typical;
 }
 
 }  // namespace glint

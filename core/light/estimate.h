@@ -53,6 +53,7 @@ struct Bundle {
   Eigen::Matrix3d positionCovariance;///< m^2; not finite for a light at infinity
   double rmsPx = 0;
   std::vector<double> residualPx;    ///< per view, RMS
+  std::vector<double> typicalPx;     ///< per view, rmsWithoutTail(): where alpha hardly changes over the image a residual has no bound
   int iterations = 0;
   /// Of (L homogeneous with |L| = 1 (4), limitAngle (1), extent xx yy zz xy xz yz where there is one), world. None when the contours leave a direction of L open.
   std::optional<ParameterUncertainty> uncertainty;

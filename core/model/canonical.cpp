@@ -62,7 +62,7 @@ class Canonical final : public HighlightModel {
       root.topLeftCorner(9, ellipsoid.cols()) = ellipsoid;
       root.bottomRightCorner(4, lamp.cols()) = lamp;
     }
-    return explaining(std::move(fit), used, false);
+    return explaining(std::move(fit), used, false, settings.number("fit.most_residual"));
   }
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {

@@ -37,7 +37,7 @@ class Dual final : public HighlightModel {
     if (!r) return withUnusedViews(r.failure(), input.views, unused);
     store(*r, fit);
     fit.hints = hintsOf(input);
-    return explaining(std::move(fit), used, false);
+    return explaining(std::move(fit), used, false, settings.number("fit.most_residual"));
   }
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {

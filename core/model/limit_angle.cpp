@@ -65,7 +65,7 @@ class LimitAngle final : public HighlightModel {
   bool needsCanonicalContours() const override { return false; }
   bool walks() const override { return true; }
 
-  Outcome<ModelFit> fit(const FitInput& input, const Settings&) const override {
+  Outcome<ModelFit> fit(const FitInput& input, const Settings& settings) const override {
     if (!input.light) return input.lightFailure ? *input.lightFailure : Failure{Reason::NoLight, ""};
     ModelFit fit;
     std::vector<UsedContour> used;
@@ -88,14 +88,7 @@ class LimitAngle final : public HighlightModel {
     if (fit.extent && level > 0 && level < 1) fit.remarks.push_back(extentRemark(*fit.extent, fit.lightEstimate->atInfinity(), level));
     fit.residualPx = input.light->residualPx;
     if (fit.residualPx.size() != used.size()) return fit;  // a light that was given, not estimated from these views
-    // The residual of a point where alpha hardly changes over the image has no bound, so that one large figure does not tell a light that
-    // explains nothing from noise: it is said, not refused.
-    Outcome<ModelFit> checked = explaining(fit, used, true);
-    if (!checked && checked.failure().reason == Reason::NotConverged) {
-      fit.remarks.push_back(checked.failure().detail);
-      return fit;
-    }
-    return checked;
+    return explaining(std::move(fit), used, true, settings.number("fit.most_residual"));
   }
 
   Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera, const Surface* surface,

@@ -60,7 +60,7 @@ struct LightEstimate {
   double limitAngle = 0;                    ///< rad; robust mean over all contour points
   double condition = 0;                     ///< of the triangulation
   double rmsPx = 0;                         ///< of the bundle's residuals, 0 when triangulated
-  std::vector<double> residualPx;           ///< RMS per view that was used (no `failure`, a brightest point), in their order
+  std::vector<double> residualPx;           ///< per view that was used (no `failure`, a brightest point), in their order: rmsWithoutTail()
   std::string solver;                       ///< "triangulated" or "bundle"
   /// Second moment of an extended light about `light`, m^2 (rad^2 for a light at infinity): widens the limit angle where the light
   /// is long. None for a limit angle that is one constant.
@@ -99,7 +99,7 @@ struct ModelFit {
   double gapRatio = 0;                      ///< last / second last singular value of the linear system
   double condition = 0;                     ///< first / second last singular value
   std::vector<double> singularValues;
-  std::vector<double> residualPx;           ///< per training view, RMS contour distance
+  std::vector<double> residualPx;           ///< per training view, RMS contour distance; of the robust models without its tail
   std::string solver;                       ///< "linear", "anchored", "refined", "bundle", ...
   std::vector<int> frames;                  ///< frames used
   std::vector<SurfacePoint> hints;          ///< brightest points of the views used, normals as observed; none where a frame showed several

@@ -91,7 +91,7 @@ Failure withUnusedViews(Failure failure, const std::vector<TrainingView>& views,
   return failure;
 }
 
-Outcome<ModelFit> explaining(ModelFit fit, const std::vector<UsedContour>& used, bool robust) {
+Outcome<ModelFit> explaining(ModelFit fit, const std::vector<UsedContour>& used, bool robust, double mostShare) {
   require(used.size() == fit.residualPx.size() && used.size() == fit.frames.size(), "explaining: one contour for every view");
   if (used.empty()) return fit;
   const double n = double(used.size());
@@ -106,13 +106,17 @@ Outcome<ModelFit> explaining(ModelFit fit, const std::vector<UsedContour>& used,
     shares += share * share / n;
     squares += left[i] * left[i] / n;
     radius += used[i].radius / n;
-    if (!(share <= kMostResidualShare)) poor.push_back(i);
+    if (!(share <= mostShare)) poor.push_back(i);
   }
   const double share = std::sqrt(shares), residual = std::sqrt(squares);
   const std::string text = figure(residual) + " px remain in the training views, " + figure(100 * share) +
                            " % of the contours' radius (" + figure(radius) + " px)";
-  if (3 * poor.size() > used.size() || (!robust && !(share <= kMostResidualShare)))
-    return Failure{Reason::NotConverged, text + ": the fit leaves more than three tenths"};
+  const bool poorViews = 3 * poor.size() > used.size();
+  if (poorViews || (!robust && !(share <= mostShare))) {
+    const std::string where = poorViews ? " in " + std::to_string(poor.size()) + " of " + std::to_string(used.size()) + " views" : "";
+    return Failure{Reason::NotConverged, text + ": more than " + figure(100 * mostShare) + " %" + where +
+                                             " is no answer (the setting fit.most_residual)"};
+  }
   for (const std::size_t i : poor)
     fit.remarks.push_back("frame " + std::to_string(fit.frames[i]) + " does not go with the other training views: " + figure(left[i]) +
                           " px remain of a contour of " + figure(used[i].radius) + " px radius");

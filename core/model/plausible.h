@@ -8,12 +8,8 @@
 namespace glint {
 
 /// Smallest radius of a highlight that is an answer, px: the best detection places a contour to 0.02 px, a tenth of this, which is the
-/// share of the radius beyond which a fit counts as none.
+/// share of the radius beyond which a fit counts as none (the default of fit.most_residual).
 inline constexpr double kLeastRadiusPx = 0.2;
-
-/// Share of the contours' radius that a fit may leave of its own training contours. A tenth would refuse `primal` and `dual` in lessons and
-/// sessions that show how they fail (10 to 25 % there); beyond a twentieth a remark says what is left.
-inline constexpr double kMostResidualShare = 0.3;
 
 /// Radius of the disc with the area of a closed contour, px.
 double radiusPx(const Polyline& contour);
@@ -49,12 +45,13 @@ std::string unusedViews(const std::vector<TrainingView>& views);
 Failure withUnusedViews(Failure failure, const std::vector<TrainingView>& views,
                         const std::function<std::optional<Failure>(const TrainingView&)>& why);
 
-/// The fit, unless it leaves more than three tenths of the contours' radius in more than a third of its training views, or on the whole (root of
-/// the mean square of the shares): NotConverged says how much. What is noise of single points does not count, since every model leaves it. A
+/// The fit, unless it leaves more than `mostShare` of the contours' radius in more than a third of its training views, or on the whole (root of
+/// the mean square of the shares): NotConverged says how much, and which setting allows more. What is noise of single points does not count, since every model leaves it. A
 /// robust fit may leave a smaller number of views alone, whatever they show. Such views, and a fit that leaves more than 3 px or a twentieth of
 /// the radius, become remarks.
 /// @param used    the highlights behind fit.residualPx and fit.frames, in the same order
 /// @param robust  outliers had no say in this fit: the rule for the whole is left out
-Outcome<ModelFit> explaining(ModelFit fit, const std::vector<UsedContour>& used, bool robust);
+/// @param mostShare  of the radius, fit.most_residual
+Outcome<ModelFit> explaining(ModelFit fit, const std::vector<UsedContour>& used, bool robust, double mostShare);
 
 }  // namespace glint

@@ -36,7 +36,7 @@ class Primal final : public HighlightModel {
     const Outcome<Reconstruction> r = fitEllipsoid(conics, anchorFromCentres(input.views), settings);
     if (!r) return withUnusedViews(r.failure(), input.views, unused);
     store(*r, fit);
-    return explaining(std::move(fit), used, false);
+    return explaining(std::move(fit), used, false, settings.number("fit.most_residual"));
   }
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface*, const Settings&) const override {

@@ -42,7 +42,7 @@ std::optional<Light> firstLight(const FitInput& input) {
   return mean.norm() > 1e-6 * double(rays.size()) ? std::optional<Light>(Light::towards(mean)) : std::nullopt;
 }
 
-/// RMS over all contours of a training view, from that of each contour; contours of one view have about equally many points.
+/// Over all contours of a training view, from the residual of each contour; contours of one view have about equally many points.
 std::vector<double> perView(const std::vector<double>& rms, const std::vector<std::size_t>& owner, std::size_t views) {
   std::vector<double> squares(views, 0);
   std::vector<int> counts(views, 0);
@@ -156,7 +156,7 @@ class Reflectance final : public HighlightModel {
     std::vector<UsedContour> used;
     for (const TrainingView& v : input.views)
       if (!v.failure) used.push_back(usedContour(v));
-    return explaining(std::move(fit), used, true);
+    return explaining(std::move(fit), used, true, settings.number("fit.most_residual"));
   }
 
   Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera,

@@ -110,14 +110,14 @@ Outcome<LightEstimate> estimateAnyLight(const std::vector<TrainingView>& views, 
     estimate.light = b->light;
     estimate.limitAngle = b->limitAngle;
     estimate.rmsPx = b->rmsPx;
-    estimate.residualPx = b->residualPx;
+    estimate.residualPx = b->typicalPx;
     estimate.uncertainty = b->uncertainty;
     estimate.covariance.reset();
     if (!b->light.atInfinity() && b->positionCovariance.allFinite()) estimate.covariance = b->positionCovariance;
     return estimate;
   }
   estimate.limitAngle = medianContourAngle(views, estimate.light, points);
-  if (evidence) estimate.residualPx = residualsPx(*evidence, bundleViews.size(), estimate.light, estimate.limitAngle);
+  if (evidence) estimate.residualPx = typicalResidualsPx(*evidence, bundleViews.size(), estimate.light, estimate.limitAngle);
   return estimate;
 }
 

@@ -57,7 +57,7 @@ struct RadianceFit {
   Eigen::Matrix3d positionCovariance;  ///< m^2; not finite for a light at infinity
   double rmsPx = 0;
   double cost = 0;                 ///< robust sum of squares, px^2: lobes are compared by it
-  std::vector<double> residualPx;  ///< per view, RMS
+  std::vector<double> residualPx;  ///< per view, rmsWithoutTail() of core/base/residual_spread.h
   bool poor = false;               ///< residuals are large against the contours: a wrong lobe, or a minimum that is not the best
   bool doubtful = false;           ///< larger than a right lobe leaves: worth another search (also where poor)
   bool noiseOnly = false;          ///< nothing that neighbours on a contour share remains

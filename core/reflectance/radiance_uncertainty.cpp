@@ -36,7 +36,8 @@ void RadianceProblem::setUncertainty(const State& state, RadianceFit& fit) const
   ceres::SphereManifold<4>().PlusJacobian(state.at.data(), chart.data());
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(std::max<Eigen::Index>(points(), parameters), parameters);
   std::vector<double> residuals;
-  std::vector<int> views, counts(fit.residualPx.size(), 0);
+  std::vector<int> views;
+  std::vector<std::vector<double>> ofViews(fit.residualPx.size());
   double sum = 0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Evidence& e = points_[i];
@@ -50,10 +51,9 @@ void RadianceProblem::setUncertainty(const State& state, RadianceFit& fit) const
     residuals.push_back(residual);
     views.push_back(e.view);
     sum += residual * residual;
-    fit.residualPx[e.view] += residual * residual;
-    ++counts[e.view];
+    ofViews[std::size_t(e.view)].push_back(residual);
   }
-  for (std::size_t v = 0; v < counts.size(); ++v) fit.residualPx[v] = counts[v] ? std::sqrt(fit.residualPx[v] / counts[v]) : 0;
+  for (std::size_t v = 0; v < ofViews.size(); ++v) fit.residualPx[v] = rmsWithoutTail(ofViews[v]);
   fit.rmsPx = std::sqrt(sum / double(points_.size()));
   fit.positionCovariance.setZero();
   fit.positionCovariance.diagonal().setConstant(std::numeric_limits<double>::infinity());

@@ -23,8 +23,8 @@ const std::map<std::string, std::vector<double>>& ladders() {
   return all;
 }
 
-/// They add to what a prediction says, not to its contour, and their work is no part of its time.
-const std::set<std::string> kNoKnobs{"predict.band", "input.scale_tolerance", "input.focal_tolerance"};
+/// They add to what a prediction says, not to its contour, and their work is no part of its time; or they decide what counts as an answer.
+const std::set<std::string> kNoKnobs{"fit.most_residual", "predict.band", "input.scale_tolerance", "input.focal_tolerance"};
 
 }  // namespace
 

@@ -31,6 +31,9 @@ TEST(Knobs, AreTheOnesOfTheMethod) {
     EXPECT_NE(find(knobs, key), nullptr) << key;
   for (const Knob& k : knobs) EXPECT_NE(paramSpec(k.key).stage, "detect") << k.key;
   EXPECT_EQ(find(knobs, "predict.band"), nullptr) << "it changes no contour and is not timed";
+  Settings loose;  // where it differs from its default as well
+  loose.set("fit.most_residual", 0.3);
+  for (const Settings& s : {Settings(), loose}) EXPECT_EQ(find(knobsOf(s), "fit.most_residual"), nullptr) << "it decides what is an answer";
   EXPECT_THAT(texts(*find(knobs, "fit.solver")), ElementsAre("linear", "anchored", "refined"));
   EXPECT_THAT(texts(*find(knobs, "predict.directions")), ElementsAre("12", "18", "24", "36", "72"));
 }
