@@ -131,9 +131,15 @@ Attempt solve(std::vector<ContourEvidence>& points, Eigen::Vector4d start, bool 
   a.limit = median(angles);
   if (!std::isfinite(a.limit)) return a;
   if (!reweighted(points, a, atInfinity, 0, options)) return a;
+  keepBiases(points, a);
   if (const double share = noiseShare(points, a); a.converged && share >= kLeastNoiseShare) {
     Attempt moved = a;
-    if (reweighted(points, moved, atInfinity, share, options) && moved.converged) a = moved;
+    if (reweighted(points, moved, atInfinity, share, options) && moved.converged) {
+      a = moved;
+      keepBiases(points, a);
+    } else {
+      restoreBiases(points, a);
+    }
   }
   reweight(points, a.light);
   settleSide(points, a);
@@ -275,8 +281,10 @@ Outcome<Best> bestAttempt(NormalisedContours& contours, const Light& start, cons
   if (best.behind) return Failure{Reason::LightBehindSurface, "every light that explains the contours is behind the surface"};
   if (!std::isfinite(best.cost) || !best.converged) return Failure{Reason::NotConverged, "light bundle"};
 
-  // The evidence still holds the weights of the last attempt, which need not be the best one.
+  // The evidence still holds weights and biases of the last attempt, which need not be the best one.
+  restoreBiases(points, best);
   renew(points, best, best.noiseShare);
+  keepBiases(points, best);
   return Best{best, iterations};
 }
 

@@ -132,6 +132,14 @@ void renew(std::vector<ContourEvidence>& points, const Attempt& a, double share)
   unbias(points, a, share, angles);
 }
 
+void keepBiases(const std::vector<ContourEvidence>& points, Attempt& a) {
+  a.biasesPx.clear();
+  for (const ContourEvidence& e : points) a.biasesPx.push_back(e.biasPx);
+}
+void restoreBiases(std::vector<ContourEvidence>& points, const Attempt& a) {
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].biasPx = a.biasesPx[i];
+}
+
 double robustCost(const std::vector<ContourEvidence>& points, const Attempt& a, double scale) {
   double sum = 0;
   for (const ContourEvidence& e : points) {

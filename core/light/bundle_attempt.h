@@ -21,6 +21,7 @@ struct Attempt {
   bool converged = false, behind = false;
   bool directed = false;  ///< the limit angle has an extent
   Vector6 extent = Vector6::Zero();  ///< normalised length squared; rad^2 for a light at infinity
+  std::vector<double> biasesPx;      ///< of the points, as its rounds left them
 };
 
 /// Incident angle of a point under a light seen with N.L > 0, rad.
@@ -34,6 +35,9 @@ double residual(const ContourEvidence& e, const Attempt& a);
 void reweight(std::vector<ContourEvidence>& points, const Eigen::Vector4d& light);
 /// Weights and biases for the light of an attempt.
 void renew(std::vector<ContourEvidence>& points, const Attempt& a, double share);
+/// A bias follows from residuals that hold the bias before: an attempt goes on from its own ones, not from those that another one left.
+void keepBiases(const std::vector<ContourEvidence>& points, Attempt& a);
+void restoreBiases(std::vector<ContourEvidence>& points, const Attempt& a);
 
 /// Which share of the residuals' variance is noise of the single points: half the squared difference of neighbours on a contour, since what a
 /// model gets wrong varies slowly along it. Noise adds s^2 |d alpha / d pixel|^2 k^2 to every expected square, so with held weights k lights

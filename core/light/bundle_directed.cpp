@@ -55,6 +55,7 @@ double meanDistance(const Eigen::Vector4d& light, const std::vector<ContourEvide
 /// From `start` in its own chart: a light at infinity stays there. `directed` is false where nothing was found in front of the surface.
 Attempt inChartOf(std::vector<ContourEvidence>& points, const Attempt& start, double robustPx, int maxIterations) {
   Attempt a = start, none = start;
+  restoreBiases(points, start);
   a.directed = true;
   none.directed = false;
   const bool atInfinity = a.light.w() == 0;
@@ -86,6 +87,7 @@ Attempt inChartOf(std::vector<ContourEvidence>& points, const Attempt& start, do
   settleSide(points, a);
   if (a.behind) return none;
   renew(points, a, 0);
+  keepBiases(points, a);
   a.cost = robustCost(points, a, robustPx);
   return a;
 }
@@ -127,6 +129,7 @@ Attempt directed(std::vector<ContourEvidence>& points, const Attempt& start, dou
     // As good but for round-off is enough for the simpler light.
     if (far.directed && (!best.directed || far.cost <= best.cost * (1 + 1e-9) + 1e-18 * double(points.size()))) best = far;
   }
+  restoreBiases(points, best);
   renew(points, best, best.directed ? 0 : best.noiseShare);
   return best;
 }

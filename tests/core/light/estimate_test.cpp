@@ -244,6 +244,19 @@ TEST(BundleLight, NoiseIsBetterThanTriangulation) {
   EXPECT_LT(medianOf(normalised), 4.8);
 }
 
+// From about 2 px on the bundle tries other starts. What it says of the best one is what the noise leaves along the normals, 432 points of it:
+// a standard error of 4 %. It held corrections that a start far off had left, and then said 25 px.
+TEST(BundleLight, WhatIsLeftIsTheNoiseWhicheverStartsWereTried) {
+  for (const double noise : {1.0, 2.0, 3.0})
+    for (unsigned seed = 0; seed < 10; ++seed) {
+      Scene s = makeScene(Light::at(kLight), 6, 2.0, 1, noise, seed);
+      const auto b = bundle(s, Light::at({1, 1, 2.2}));
+      ASSERT_TRUE(b) << noise << " " << seed << " " << b.failure().message();
+      EXPECT_NEAR(b->rmsPx / noise, 1, 0.15) << noise << " " << seed;
+      for (const double px : b->typicalPx) EXPECT_NEAR(px / noise, 1, 0.35) << noise << " " << seed;  // of 72 points: 8 %
+    }
+}
+
 TEST(BundleLight, AFewWildPointsDoNotMatter) {
   Scene s = makeScene(Light::at(kLight), 6, 2.0);
   for (BundleView& v : s.views) v.contour[7] += Pixel(25, -10);
