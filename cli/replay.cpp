@@ -16,7 +16,7 @@ Command replayCommand() {
   c.description =
       "Checks that the inputs are what they were (SHA-256), computes everything again and compares the key results:\n"
       "they agree when they differ by at most 1e-9 relatively. Exit code 1 when they do not (each difference is a\n"
-      "line on standard output), 2 when an input changed or is missing.";
+      "line on standard output, and the first stage that changed is named), 2 when an input changed or is missing.";
   c.examples =
       "  glint replay sessions/sphere.glint            the same results, on any machine\n"
       "  glint replay sessions/sphere.glint --exact    the same bits, on the machine that saved it\n";
@@ -30,6 +30,7 @@ Command replayCommand() {
     const Replay result = replay(session, context.progress());
     std::string out;
     for (const std::string& line : result.differences) out += line + "\n";
+    if (!result.firstChanged.empty()) out += "first changed stage: " + result.firstChanged + "\n";
     out += std::to_string(result.compared - static_cast<int>(std::min<std::size_t>(result.differences.size(), result.compared))) +
            " of " + std::to_string(result.compared) + " key results agree; digest " +
            (result.digestAgrees ? "equal" : "different") + "\n";

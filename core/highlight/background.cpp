@@ -14,6 +14,7 @@ constexpr double kOuter = 4.0;
 constexpr int kLeastPixels = 60;           // several per unknown
 constexpr std::size_t kMostPixels = 8000;  // a denser sample changes the fit by less than its own noise
 constexpr int kRounds = 8;
+constexpr double kNearlyAsGood = 1.1;  // of the spread: two tails that differ by less cannot be told apart
 
 struct Sample {
   Eigen::Matrix<double, 9, 1> row;
@@ -34,7 +35,7 @@ double Background::at(double x, double y) const {
          v * v * coefficients[5];
 }
 
-Background fitBackground(const Image& image, const std::vector<char>& usable, const Footprint& footprint, double fallback) {
+Background fitBackground(const Image& image, const std::vector<char>& usable, const Footprint& footprint, double fallback, Tail tail) {
   Background result;
   result.coefficients[0] = fallback;
   result.centre = footprint.centre;
@@ -56,9 +57,10 @@ Background fitBackground(const Image& image, const std::vector<char>& usable, co
       const Pixel d = Pixel(x, y) - footprint.centre;
       const double rho2 = shape.matrixL().solve(d).squaredNorm();
       if (rho2 < kInner * kInner || rho2 > kOuter * kOuter) continue;
-      const double u = d.x() / result.scale, v = d.y() / result.scale, tail = std::exp(logLevel * rho2);
+      const double u = d.x() / result.scale, v = d.y() / result.scale;
+      const double fall = tail == Tail::Ggx ? std::pow(1 + (1 / std::sqrt(footprint.level) - 1) * rho2, -2) : std::exp(logLevel * rho2);
       Sample s;
-      s.row << 1, u, v, u * u, u * v, v * v, tail, u * tail, v * tail;
+      s.row << 1, u, v, u * u, u * v, v * v, fall, u * fall, v * fall;
       s.value = image.at(x, y);
       samples.push_back(s);
     }
@@ -105,6 +107,18 @@ Background fitBackground(const Image& image, const std::vector<char>& usable, co
   result.spread = spread;
   result.pixels = static_cast<int>(samples.size());
   return result;
+}
+
+double backgroundUncertaintyPct(const Image& image, const std::vector<char>& usable, const Footprint& footprint, double peakValue) {
+  if (!(peakValue > 0) || !(footprint.level > 0 && footprint.level < 1)) return 0;
+  const Background gaussian = fitBackground(image, usable, footprint, 0, Tail::Gaussian);
+  const Background ggx = fitBackground(image, usable, footprint, 0, Tail::Ggx);
+  if (gaussian.pixels == 0 || ggx.pixels == 0) return 0;
+  if (ggx.spread > kNearlyAsGood * gaussian.spread) return 0;
+  // A background that is too high by b shifts the level q to q + (1 - q) b / I_peak; level^(rho^2) then says how far the contour moves.
+  const double off = (gaussian.at(footprint.centre.x(), footprint.centre.y()) - ggx.at(footprint.centre.x(), footprint.centre.y())) / peakValue;
+  const double q = footprint.level, moved = (1 - q) * off / (2 * q * -std::log(q));
+  return 50 * std::abs(moved);
 }
 
 }  // namespace glint

@@ -19,7 +19,7 @@ constexpr int kShift = 6;  // fractional bits of OpenCV's drawing functions
 
 Json pair(const Eigen::Vector2d& v) { return Json::array({v.x(), v.y()}); }
 
-Json toJson(const Highlight& h) {
+Json toJson(const Highlight& h, double uncertaintyPct) {
   Json j = Json::object();
   if (!h.light.empty()) j["light"] = h.light;
   j["level"] = h.level;
@@ -28,6 +28,7 @@ Json toJson(const Highlight& h) {
   j["area_px2"] = h.areaPx2;
   j["clipped"] = h.clipped;
   j["touches_border"] = h.touchesBorder;
+  j["background_uncertainty_pct"] = uncertaintyPct;
   if (h.ellipse)
     j["ellipse"] = {{"centre", pair(h.ellipse->centre)},
                     {"semi_axes", pair(h.ellipse->semiAxes)},
@@ -50,7 +51,8 @@ std::string detectionJson(const std::string& input, double level, const std::str
     Json j = {
         {"id", frame.id}, {"status", frame.failure ? "failed" : "ok"}, {"reason", frame.failure ? frame.failure->message() : ""}};
     j["highlights"] = Json::array();
-    for (const Highlight& h : frame.highlights) j["highlights"].push_back(toJson(h));
+    for (std::size_t i = 0; i < frame.highlights.size(); ++i)
+      j["highlights"].push_back(toJson(frame.highlights[i], i < frame.uncertaintyPct.size() ? frame.uncertaintyPct[i] : 0));
     list.push_back(std::move(j));
   }
   root["frames"] = std::move(list);

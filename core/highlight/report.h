@@ -17,12 +17,13 @@ namespace glint {
 struct DetectedFrame {
   std::string id;
   std::vector<Highlight> highlights;
+  std::vector<double> uncertaintyPct;  ///< per highlight: of its contour, in percent of the diameter, because the lobe's tail is unknown
   std::optional<Failure> failure;
 };
 
 /// JSON of `glint detect`: { "glint_detection": 1, "input", "level", "source", "frames": [{"id", "status", "reason",
 /// "highlights":
-/// [{"light", "level", "peak", "peak_value", "area_px2", "clipped", "touches_border", "ellipse": {"centre", "semi_axes",
+/// [{"light", "level", "peak", "peak_value", "area_px2", "clipped", "touches_border", "background_uncertainty_pct", "ellipse": {"centre", "semi_axes",
 /// "angle_deg"}, "contour"}]}] }. Pixels are ideal ones. `light` is absent while unknown.
 std::string detectionJson(const std::string& input, double level, const std::string& source,
                           const std::vector<DetectedFrame>& frames);

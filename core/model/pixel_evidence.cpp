@@ -147,7 +147,7 @@ Outcome<ModelFit> reflectanceFromPixels(const FitInput& input, const Settings& s
   std::vector<UsedContour> used;
   for (const TrainingView& v : input.views)
     if (!v.failure) used.push_back(usedContour(v));
-  return explaining(std::move(fit), used, true);
+  return explaining(std::move(fit), used, true, settings.number("fit.most_residual"));
 }
 
 }  // namespace glint

@@ -112,41 +112,50 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
   }
 }
 
+std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene& scene, const InspectionRequest& request, int f,
+                                            const FrameEvidence& detected, const std::shared_ptr<const Surface>& surface) {
+  if (!wasDetected(detected) || !surface) return std::nullopt;
+  const Frame& frame = scene.frames[static_cast<std::size_t>(f)];
+  const Outcome<LinearPixels> pixels = pixelsOf(frame, request.source, request.settings);
+  if (!pixels) return std::nullopt;
+  std::map<std::string, std::vector<std::size_t>> byLight;
+  for (std::size_t h = 0; h < detected.highlights.size(); ++h) byLight[detected.highlights[h].light].push_back(h);
+  std::optional<FrameEvidence> again;
+  for (const auto& [light, indices] : byLight) {
+    const auto fit = lobes.pixelFits.find(keyFor(lobes, light, f));
+    if (light.empty() || fit == lobes.pixelFits.end()) continue;
+    std::vector<Highlight> found;
+    for (const std::size_t h : indices) found.push_back(detected.highlights[h]);
+    Outcome<std::vector<Highlight>> traced =
+        contourWithLobe(*pixels, frame.camera, *surface, f, found, ofOthers(detected, light), fit->second->model,
+                        fit->second->background, detectOptionsFor(frame, request.source, request.settings));
+    if (!traced) continue;
+    if (!again) again = detected;
+    for (std::size_t k = 0; k < indices.size(); ++k) again->highlights[indices[k]] = std::move((*traced)[k]);
+  }
+  return again;
+}
+
 void contourAgain(Inspection& r, const SurfaceOfFrame& surfaceOf, const ProgressFn& progress) {
   if (r.request.settings.text("detect.background") != "lobe" || r.pixelFits.empty()) return;
   r.detected.resize(r.evidence.size());
   std::vector<int> frames;
   for (int f = 0; f < static_cast<int>(r.evidence.size()); ++f)
     if (wasDetected(r.evidence[static_cast<std::size_t>(f)]) && r.detected[static_cast<std::size_t>(f)].frame < 0) frames.push_back(f);
-  std::atomic<int> again{0};
+  std::atomic<int> changed{0};
   parallelFor(
       static_cast<int>(frames.size()),
       [&](int n) {
         const int f = frames[static_cast<std::size_t>(n)];
-        const Frame& frame = r.scene->frames[static_cast<std::size_t>(f)];
         FrameEvidence& evidence = r.evidence[static_cast<std::size_t>(f)];
         r.detected[static_cast<std::size_t>(f)] = evidence;
-        const std::shared_ptr<const Surface> surface = surfaceOf(f);
-        const Outcome<LinearPixels> pixels = pixelsOf(frame, r.request.source, r.request.settings);
-        if (!surface || !pixels) return;
-        std::map<std::string, std::vector<std::size_t>> byLight;
-        for (std::size_t h = 0; h < evidence.highlights.size(); ++h) byLight[evidence.highlights[h].light].push_back(h);
-        for (const auto& [light, indices] : byLight) {
-          const auto fit = r.pixelFits.find(keyFor(r, light, f));
-          if (light.empty() || fit == r.pixelFits.end()) continue;
-          std::vector<Highlight> found;
-          for (const std::size_t h : indices) found.push_back(evidence.highlights[h]);
-          const FrameEvidence& before = r.detected[static_cast<std::size_t>(f)];
-          Outcome<std::vector<Highlight>> traced =
-              contourWithLobe(*pixels, frame.camera, *surface, f, found, ofOthers(before, light), fit->second->model,
-                              fit->second->background, detectOptionsFor(frame, r.request.source, r.request.settings));
-          if (!traced) continue;
-          for (std::size_t k = 0; k < indices.size(); ++k) evidence.highlights[indices[k]] = std::move((*traced)[k]);
-          ++again;
+        if (std::optional<FrameEvidence> again = contouredAgain(r, *r.scene, r.request, f, evidence, surfaceOf(f))) {
+          evidence = *std::move(again);
+          ++changed;
         }
       },
       progress, "contour again");
-  r.work.framesContouredAgain += again;
+  r.work.framesContouredAgain += changed;
 }
 
 void attachPixels(Inspection& r) {

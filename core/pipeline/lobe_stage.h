@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,11 @@ void fitLobes(Inspection& inspection, const SurfaceOfFrame& surfaceOf, bool toge
 /// Replaces the evidence of frames that were not looked at before by contours with the lobe's background; keeps the evidence as
 /// detected in Inspection::detected. Throws Stopped.
 void contourAgain(Inspection& inspection, const SurfaceOfFrame& surfaceOf, const ProgressFn& progress);
+
+/// One frame's evidence, contoured again with the lobes that an inspection found. Empty where no light's lobe explains the frame.
+/// @param scene,request  whose frame and settings count; they may be newer than the inspection's
+std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene& scene, const InspectionRequest& request, int frame,
+                                            const FrameEvidence& detected, const std::shared_ptr<const Surface>& surface);
 
 /// Joins the views with their pixels: those of the highlight of the same light whose peak lies in the view's contour. None where noise was added or the user moved the highlight: its contour then says more than the
 /// pixels do.

@@ -8,8 +8,10 @@
 
 #include "core/pipeline/comparison.h"
 #include "core/pipeline/evidence.h"
+#include "core/pipeline/lobe_stage.h"
 #include "core/pipeline/several_lights.h"
 #include "core/pipeline/stage_keys.h"
+#include "core/surface/mesh_policy.h"
 
 namespace glint {
 
@@ -32,6 +34,14 @@ std::optional<Observation> observeFrame(std::shared_ptr<const Scene> scene, cons
   seen.frame = frame;
   if (!report(progress, {"detect", 0, 1})) throw Stopped{};
   seen.evidence = evidenceFor(*seen.scene, frame, request);
+  if (known && known->given == scene && known->surfaces && request.settings.text("detect.background") == "lobe") {
+    // The lobes of the earlier results, where the request would find the same ones.
+    const auto lobes = known->stageKeys.find("lobe");
+    const auto surface = known->surfaces->surfaceOf(frame, meshPolicy(request.settings));
+    if (lobes != known->stageKeys.end() && lobes->second == lobeKey(request, known->train, false) && surface)
+      if (std::optional<FrameEvidence> again = contouredAgain(*known, *seen.scene, request, frame, seen.evidence, *surface))
+        seen.evidence = *std::move(again);
+  }
   for (const auto& [at, change] : w.highlights)
     if (at.first == frame && at.second >= 0 && at.second < static_cast<int>(seen.evidence.highlights.size())) {
       Highlight& h = seen.evidence.highlights[std::size_t(at.second)];

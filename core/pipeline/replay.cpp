@@ -55,6 +55,40 @@ std::string shortest(double v) {
   return buffer;
 }
 
+/// What was detected, over all frames; with `detect.` before the names.
+void addDetection(KeyResults& results, const Inspection& inspection) {
+  std::vector<double> areas, peaks;
+  for (const FrameEvidence& e : inspection.evidence)
+    for (const Highlight& h : e.highlights) {
+      areas.push_back(h.areaPx2);
+      peaks.push_back(h.peak.norm());
+    }
+  results.emplace_back("detect.highlights", static_cast<double>(areas.size()));
+  addStatistic(results, "detect.area_px2", statisticOf(std::move(areas)));
+  addStatistic(results, "detect.peak_from_origin_px", statisticOf(std::move(peaks)));
+}
+
+/// In the order in which they are computed. Each uses those before it.
+enum class Stage { Detection, Light, Fit, Prediction };
+
+Stage stageOf(const std::string& keyResult) {
+  if (keyResult.rfind("detect.", 0) == 0) return Stage::Detection;
+  if (keyResult.rfind("light.", 0) == 0) return Stage::Light;
+  return keyResult.find(".fit.") != std::string::npos ? Stage::Fit : Stage::Prediction;
+}
+
+std::string wordsFor(Stage stage, bool detectionKnown) {
+  // A session of an older program knows nothing of the contours that it detected, on which all the rest depends.
+  if (!detectionKnown) return "detection, or a stage after it: the session is older and holds no results of its detection";
+  switch (stage) {
+    case Stage::Detection: return "detection";
+    case Stage::Light: return "light";
+    case Stage::Fit: return "fit";
+    case Stage::Prediction: return "prediction";
+  }
+  return "";
+}
+
 bool agree(double a, double b) {
   if (std::isnan(a) || std::isnan(b)) return std::isnan(a) && std::isnan(b);
   // formats.md: nine digits; the rest lets a zero be one that came out as round-off.
@@ -65,6 +99,7 @@ bool agree(double a, double b) {
 
 KeyResults keyResultsOf(const Inspection& inspection) {
   KeyResults results;
+  addDetection(results, inspection);
   for (const auto& [key, light] : inspection.lights) {
     const std::string name = "light." + key;
     const Eigen::Vector4d& l = light.light.homogeneous();
@@ -182,17 +217,25 @@ Replay replay(const Session& session, const ProgressFn& progress) {
   const auto find = [](const KeyResults& all, const std::string& name) {
     return std::find_if(all.begin(), all.end(), [&](const auto& r) { return r.first == name; });
   };
+  std::optional<Stage> first;
+  const auto differs = [&](const std::string& name, const std::string& how) {
+    result.differences.push_back(name + ": " + how);
+    first = first ? std::min(*first, stageOf(name)) : stageOf(name);
+  };
   for (const auto& [name, value] : session.keyResults) {
     ++result.compared;
     const auto it = find(now, name);
     if (it == now.end())
-      result.differences.push_back(name + ": was " + shortest(value) + ", is no longer computed");
+      differs(name, "was " + shortest(value) + ", is no longer computed");
     else if (!agree(value, it->second))
-      result.differences.push_back(name + ": was " + shortest(value) + ", is " + shortest(it->second));
+      differs(name, "was " + shortest(value) + ", is " + shortest(it->second));
   }
+  const bool detectionKnown = std::any_of(session.keyResults.begin(), session.keyResults.end(),
+                                          [](const auto& r) { return stageOf(r.first) == Stage::Detection; });
   for (const auto& [name, value] : now)
-    if (find(session.keyResults, name) == session.keyResults.end())
-      result.differences.push_back(name + ": is " + shortest(value) + ", was not computed");
+    if ((detectionKnown || stageOf(name) != Stage::Detection) && find(session.keyResults, name) == session.keyResults.end())
+      differs(name, "is " + shortest(value) + ", was not computed");
+  if (first) result.firstChanged = wordsFor(*first, detectionKnown);
   result.digestAgrees = digestOf(inspection) == session.digest;
   return result;
 }

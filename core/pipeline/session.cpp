@@ -31,6 +31,16 @@ void migrateFrom1(const JsonNode& request, Settings& settings) {
   if (stored && !stored->find("light.limit_orders")) settings.set("light.limit_orders", 0);  // one limit angle for each light
 }
 
+/// A program before the fit to pixels took the smooth background, fitted contours and refused no poor fit. It wrote every setting that it had, so that a list
+/// with the oldest ones and without these is its own; a list by hand that leaves them out means today's defaults.
+void migrateFromBeforePixels(const JsonNode& request, Settings& settings) {
+  const std::optional<JsonNode> stored = request.find("settings");
+  if (!stored || !stored->find("detect.clip") || !stored->find("fit.solver")) return;
+  if (!stored->find("detect.background")) settings.set("detect.background", std::string("smooth"));
+  if (!stored->find("fit.evidence")) settings.set("fit.evidence", std::string("contours"));
+  if (!stored->find("fit.most_residual")) settings.set("fit.most_residual", 10.0);  // no fit was refused for what it left
+}
+
 fs::path folderOf(const fs::path& file) { return fs::absolute(file).lexically_normal().parent_path(); }
 
 Json toJson(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
@@ -189,6 +199,7 @@ Session parseSession(const std::string& json, const fs::path& file) {
       session.files.push_back({absolutePath(n->at(i).at("path"), folder), readHash(n->at(i).at("sha256"))});
   session.request = readRequest(root.at("request"), folder);
   if (version.integer() == 1) migrateFrom1(root.at("request"), session.request.settings);
+  migrateFromBeforePixels(root.at("request"), session.request.settings);
   if (const auto n = root.find("frames")) {
     session.training = texts(n->at("training"));
     session.heldOut = texts(n->at("held_out"));

@@ -117,6 +117,7 @@ std::string digestOf(const Inspection& inspection);
 /// What a replay found. The inputs were unchanged.
 struct Replay {
   std::vector<std::string> differences;  ///< key results beyond the tolerance, one line each; empty = they agree
+  std::string firstChanged;              ///< the first stage whose results differ, in words; "" = none
   bool digestAgrees = false;
   int compared = 0;  ///< key results
 };

@@ -73,7 +73,8 @@ struct Attempt {
 struct SolveOptions {
   bool blur = false;  ///< free
   int maxIterations = 60;
-  double tolerance = 1e-9, costTolerance = 1e-12;
+  double tolerance = 1e-9;       ///< of the unknowns; contours resolve 1e-4
+  double costTolerance = 1e-12;  ///< of the cost: a session replayed elsewhere comes to the same digits
 };
 
 /// The minimum that is reached from a state with all unknowns of its shape free. A light at infinity stays there; a point that the

@@ -23,14 +23,15 @@ cv::Mat matOf(const Image& image) {
   return copy;
 }
 
-void writeImage(const fs::path& file, const cv::Mat& mat) {
+void writeImage(const fs::path& file, const cv::Mat& mat, int jpegQuality = 0) {
   // In memory first: the libraries' own writing prints, and may crash, when the disk is full.
   std::vector<unsigned char> bytes;
+  std::vector<int> parameters;
+  if (file.extension() == ".tiff") parameters = {cv::IMWRITE_TIFF_COMPRESSION, 1};  // uncompressed: the default for floats is lossy
+  if (jpegQuality > 0) parameters = {cv::IMWRITE_JPEG_QUALITY, jpegQuality};
   bool encoded = false;
   try {
-    // 1 = uncompressed: the default compression of float TIFF is lossy.
-    encoded = cv::imencode(file.extension().string(), mat, bytes,
-                           file.extension() == ".tiff" ? std::vector<int>{cv::IMWRITE_TIFF_COMPRESSION, 1} : std::vector<int>{});
+    encoded = cv::imencode(file.extension().string(), mat, bytes, parameters);
   } catch (const cv::Exception&) {
   }
   if (!encoded) throw InputError(file.string(), "", "cannot be written: the image cannot be encoded");
@@ -215,8 +216,8 @@ Scene synthesise(const SynthSpec& spec, const fs::path& folder, const ProgressFn
             for (std::size_t k = 0; k < photograph.data.size(); ++k)
               photograph.data[k] = static_cast<float>(exposure) * (r.diffuse.data[k] + r.specular.data[k / 3]);
             degrade(photograph, render, render.noise * exposure * top, static_cast<unsigned>(2 * i));
-            frame.image = file("frames", ".png");
-            writeImage(frame.image, quantised(photograph, render.bits));
+            frame.image = file("frames", render.jpegQuality > 0 ? ".jpg" : ".png");
+            writeImage(frame.image, quantised(photograph, render.bits), render.jpegQuality);
           }
           degrade(r.specular, render, render.noise * top, static_cast<unsigned>(2 * i + 1));
           frame.radiance = file("radiance", ".tiff");

@@ -126,6 +126,10 @@ RenderOptions readRender(const JsonNode& render) {
     options.bits = n->integer();
     if (options.bits != 8 && options.bits != 16 && options.bits != 32) n->fail("must be 8, 16 or 32");
   }
+  if (const auto n = render.find("jpeg_quality")) {
+    options.jpegQuality = countOf(*n, 1, 100);
+    if (options.bits != 8) n->fail("needs \"bits\": 8, which is all that JPEG holds");
+  }
   return options;
 }
 

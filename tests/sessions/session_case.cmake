@@ -46,7 +46,7 @@ elseif(CASE STREQUAL "changed_result")
   string(REPLACE "\"${key}\": ${CMAKE_MATCH_1}${CMAKE_MATCH_2}" "\"${key}\": ${CMAKE_MATCH_1}${digit}" text "${text}")
   file(WRITE ${folder}/plane.glint "${text}")
   run(replay copy/plane.glint)
-  expect(1 "${key}" "115 of 116")
+  expect(1 "${key}" "first changed stage: prediction" "124 of 125")
 elseif(CASE STREQUAL "moved")
   # A session of paths relative to its folder does not care where that is, nor where the program is started.
   file(MAKE_DIRECTORY ${WORK}/elsewhere)

@@ -41,6 +41,10 @@ void expectPlane(const Session& s) {
   EXPECT_EQ(s.request.source, FrameSource::Image);
   EXPECT_EQ(s.request.settings.number("detect.level"), 0.5);
   EXPECT_EQ(s.request.settings.text("fit.solver"), "refined");
+  // Its program had one background and one kind of evidence; today's defaults look at pixels.
+  EXPECT_EQ(s.request.settings.text("detect.background"), "smooth");
+  EXPECT_EQ(s.request.settings.text("fit.evidence"), "contours");
+  EXPECT_EQ(s.request.settings.number("fit.most_residual"), 10);  // no fit was refused
   EXPECT_THAT(s.training, ElementsAre("0000", "0001", "0002", "0003"));
   EXPECT_THAT(s.heldOut, ElementsAre("0004", "0005"));
   EXPECT_EQ(s.keyResults.size(), 116u);

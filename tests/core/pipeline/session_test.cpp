@@ -158,6 +158,7 @@ TEST(Session, ReplayAgreesAndSaysWhereItDoesNot) {
       std::make_shared<const Scene>(readScene(fs::path(GLINT_SHARED_DIR) / "data/cycles/sphere/scene-analytic.json"));
   InspectionRequest request;
   request.models = {"primal", "dual"};
+  request.settings.set("fit.most_residual", 0.3);  // neither is made for a sphere
   const Inspection inspection = inspect(scene, request);
   const TemporaryFolder folder;
   writeSession(sessionOf(inspection), folder / "x.glint");
@@ -179,6 +180,20 @@ TEST(Session, ReplayAgreesAndSaysWhereItDoesNot) {
   ASSERT_EQ(changed.differences.size(), 2u);
   EXPECT_THAT(changed.differences[0], HasSubstr("dual.contour_error_pct.mean: was "));
   EXPECT_THAT(changed.differences[1], HasSubstr("gone: was 1, is no longer computed"));
+  EXPECT_EQ(changed.firstChanged, "prediction");
+  EXPECT_EQ(same.firstChanged, "");
+
+  // Another level changes what is detected, and with it all the rest: the first stage is named. A session of an older program does not hold
+  // its detection, so that the same change shows first in the light.
+  Session level = readSession(folder / "x.glint");
+  level.request.settings.setFromText("detect.level", "0.4");
+  EXPECT_EQ(replay(level).firstChanged, "detection");
+  std::erase_if(level.keyResults, [](const auto& r) { return r.first.rfind("detect.", 0) == 0; });
+  EXPECT_THAT(replay(level).firstChanged, HasSubstr("the session is older"));
+  // The solver of the ellipsoids leaves what was detected and the light as they were.
+  Session solver = readSession(folder / "x.glint");
+  solver.request.settings.setFromText("fit.solver", "linear");
+  EXPECT_EQ(replay(solver).firstChanged, "fit");
 
   // Another setting: the digest tells, whatever the summaries say.
   Session other = session;
