@@ -45,28 +45,53 @@ vtkNew<vtkImageData> paddedField(const Image& image, double level) {
   return field;
 }
 
-/// Segments (pairs of point ids) to closed chains of point ids.
+/// Segments (pairs of point ids) to closed chains of point ids. Every point lies on an edge of the grid, between two cells, and has one
+/// segment in each. VTK directs the segments round their region, but not those of a cell with a saddle, which noise makes: a chain follows
+/// neighbours, and goes in the direction of most of its segments.
 std::vector<std::vector<vtkIdType>> chains(vtkPolyData& lines) {
   const std::size_t n = static_cast<std::size_t>(lines.GetNumberOfPoints());
-  std::vector<vtkIdType> next(n, -1);
+  struct Ends {
+    std::array<vtkIdType, 2> other{-1, -1};
+    std::array<bool, 2> starts{};  ///< the segment is directed away from this point
+    int count = 0;
+  };
+  std::vector<Ends> points(n);
+  const auto add = [&](vtkIdType at, vtkIdType other, bool starts) {
+    Ends& e = points[static_cast<std::size_t>(at)];
+    if (e.count == 2) return;
+    e.other[static_cast<std::size_t>(e.count)] = other;
+    e.starts[static_cast<std::size_t>(e.count++)] = starts;
+  };
   vtkCellArray* cells = lines.GetLines();
-  std::vector<std::vector<vtkIdType>> result;
   vtkIdType count = 0;
   const vtkIdType* ids = nullptr;
-  // Every segment is directed the same way round its region, so a point has one successor.
-  for (cells->InitTraversal(); cells->GetNextCell(count, ids);)
-    if (count == 2) next[static_cast<std::size_t>(ids[0])] = ids[1];
+  for (cells->InitTraversal(); cells->GetNextCell(count, ids);) {
+    if (count != 2 || ids[0] == ids[1]) continue;
+    add(ids[0], ids[1], true);
+    add(ids[1], ids[0], false);
+  }
+  std::vector<std::vector<vtkIdType>> result;
   std::vector<char> seen(n, 0);
   for (std::size_t start = 0; start < n; ++start) {
-    if (seen[start] || next[start] < 0) continue;
+    if (seen[start] || points[start].count < 2) continue;
     std::vector<vtkIdType> chain;
-    vtkIdType at = static_cast<vtkIdType>(start);
+    vtkIdType at = static_cast<vtkIdType>(start), from = -1;
+    int forward = 0;
+    bool closed = false;
     while (at >= 0 && !seen[static_cast<std::size_t>(at)]) {
+      const Ends& e = points[static_cast<std::size_t>(at)];
+      if (e.count < 2) break;
       seen[static_cast<std::size_t>(at)] = 1;
       chain.push_back(at);
-      at = next[static_cast<std::size_t>(at)];
+      const std::size_t on = e.other[0] == from ? 1 : 0;  // two segments to the same neighbour: the second time the other one is equal
+      forward += e.starts[on] ? 1 : -1;
+      from = at;
+      at = e.other[on];
+      closed = at == static_cast<vtkIdType>(start);
     }
-    if (at == static_cast<vtkIdType>(start)) result.push_back(std::move(chain));
+    if (!closed) continue;
+    if (forward < 0) std::reverse(chain.begin() + 1, chain.end());
+    result.push_back(std::move(chain));
   }
   return result;
 }
