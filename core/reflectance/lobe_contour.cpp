@@ -145,6 +145,7 @@ Outcome<std::vector<Highlight>> contourWithLobe(const LinearPixels& pixels, cons
     const std::optional<Highlight> traced = trace(k);
     const bool hidden = h.clipped && options.level * *reference >= clipLevel - patches[k].top * kUnexplained;
     if (traced && !hidden) {
+      h.level = options.level;
       h.contour = traced->contour;
       h.areaPx2 = traced->areaPx2;
       h.ellipse = traced->ellipse;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
 #include "core/reflectance/pixel_problem.h"
 
@@ -18,6 +19,37 @@ constexpr double kSearchTolerance = 1e-4;   // of fits that only choose a start 
 constexpr double kMicrofacetMargin = 0.02;  // of the cost, by which a cosine power must be better than a microfacet lobe
 constexpr double kClearGain = 0.1;          // of the cost, before an extent or a blur is believed
 constexpr std::size_t kCoarseFrom = 400;    // cells of a patch, from which the search takes a quarter of them
+constexpr double kMostEvaluations = 2e5;    // of an extended lamp's lobe in one look at all cells: some hundredths of a second
+constexpr double kExtentWork = 1.5e7;        // such evaluations in all: a lamp that explains the pixels takes about ten iterations
+
+/// Patches, some of them with joined cells, as one problem.
+class Cells {
+ public:
+  explicit Cells(const std::vector<const PixelPatch*>& patches) : pointers_(patches), all_(patch::normalised(patches)) {}
+  Cells(const Cells&) = delete;
+  Cells& operator=(const Cells&) = delete;
+  const patch::Normalised& all() const { return all_; }
+
+  /// Joins 2 x 2 cells of every patch that keeps enough of them; false where none does.
+  bool coarsen() {
+    bool any = false;
+    for (const PixelPatch*& p : pointers_) {
+      if (p->usedCells() <= kCoarseFrom) continue;
+      PixelPatch coarse = patch::coarsened(*p);
+      if (!(coarse.top > 0)) continue;
+      owned_.push_back(std::move(coarse));
+      p = &owned_.back();
+      any = true;
+    }
+    if (any) all_ = patch::normalised(pointers_);
+    return any;
+  }
+
+ private:
+  std::deque<PixelPatch> owned_;
+  std::vector<const PixelPatch*> pointers_;
+  patch::Normalised all_;
+};
 
 /// Bayesian information criterion of a fit to n cells, up to a constant.
 double criterion(const Attempt& a, const patch::Normalised& evidence, BackgroundKind kind) {
@@ -91,7 +123,7 @@ class Search {
  private:
   void tryOut(Lobe lobe, BackgroundKind kind, const State& from) {
     PixelProblem problem(evidence_, lobe, kind);
-    const Attempt a = patch::solve(problem, from, {false, maxIterations_, kSearchTolerance, kSearchTolerance});
+    const Attempt a = patch::solve(problem, from, {false, maxIterations_, kSearchTolerance, kSearchTolerance, kMostEvaluations, kExtentWork});
     iterations_ += a.iterations;
     if (std::isfinite(a.cost)) candidates_.push_back({lobe, kind, a, criterion(a, evidence_, kind)});
   }
@@ -156,46 +188,64 @@ bool explainsClearlyBetter(const PixelFit& larger, const PixelFit& smaller) {
 Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<const PixelPatch*>& patches, const Lamp& lamp,
                             double roughness, const PixelFitOptions& options) {
   require(!lobes.empty() && roughness > 0 && std::isfinite(roughness), "fitPixels: lobes and roughness");
-  const patch::Normalised fine = patch::normalised(patches);
-  if (fine.cells < 30) return Failure{Reason::TooFewPoints, "only " + std::to_string(fine.cells) + " pixels can be used"};
-  std::vector<PixelPatch> coarse;
-  for (const PixelPatch* p : patches) {
-    coarse.push_back(p->usedCells() > kCoarseFrom ? patch::coarsened(*p) : *p);
-    if (!(coarse.back().top > 0)) coarse.back() = *p;
-  }
-  std::vector<const PixelPatch*> coarsePointers;
-  for (const PixelPatch& p : coarse) coarsePointers.push_back(&p);
-  const patch::Normalised few = patch::normalised(coarsePointers);
+  Cells full(patches), coarse(patches);
+  if (full.all().cells < 30) return Failure{Reason::TooFewPoints, "only " + std::to_string(full.all().cells) + " pixels can be used"};
+  coarse.coarsen();
+  if (!lamp.isPoint())
+    while (coarse.coarsen()) {
+    }
+  const patch::Normalised& few = coarse.all();
 
   Search search(few, options.maxIterations);
   const std::optional<Search::Candidate> chosen = search.run(lobes, stateOf({lobes.front(), roughness, lamp, 0}, few));
   if (!chosen) return Failure{Reason::NotConverged, "no lobe reaches the pixels from the contours' light"};
   int iterations = search.iterations();
 
-  // In full, then with a blur where it shows.
-  PixelProblem problem(fine, chosen->lobe, chosen->kind);
+  // In full, as far as an extended lamp lets it, then with a blur where it shows.
   const State found = chosen->attempt.at;
-  Attempt a = patch::solve(problem, stateOf({chosen->lobe, found.roughness(), inWorld(found, few), 0}, fine), {false, options.maxIterations});
+  for (bool finer = true; finer && !lamp.isPoint();) {
+    PixelProblem trial(full.all(), chosen->lobe, chosen->kind);
+    trial.chooseRule(stateOf({chosen->lobe, found.roughness(), inWorld(found, few), 0}, full.all()));
+    finer = trial.evaluations() > kMostEvaluations && full.coarsen();
+  }
+  const patch::Normalised& fine = full.all();
+  PixelProblem problem(fine, chosen->lobe, chosen->kind);
+  patch::SolveOptions solving{false, options.maxIterations};
+  if (!lamp.isPoint()) {
+    solving.mostEvaluations = 4 * kMostEvaluations;  // it may grow a little more
+    solving.work = kExtentWork;
+  }
+  Attempt a = patch::solve(problem, stateOf({chosen->lobe, found.roughness(), inWorld(found, few), 0}, fine), solving);
   iterations += a.iterations;
   if (!std::isfinite(a.cost)) return Failure{Reason::NotConverged, "pixels"};
   bool blur = false;
-  if (options.blur) {
+  if (options.blur && (lamp.isPoint() || a.converged)) {
     State blurred = a.at;
     blurred.blurVariance = 1;
-    const Attempt b = patch::solve(problem, blurred, {true, options.maxIterations});
+    solving.blur = true;
+    const Attempt b = patch::solve(problem, blurred, solving);
     iterations += b.iterations;
     if ((blur = b.cost < (1 - kClearGain) * a.cost)) a = b;
   }
   PixelFit fit;
   fit.model = {chosen->lobe, a.at.roughness(), inWorld(a.at, fine), a.at.blurVariance};
   fit.background = chosen->kind;
-  fit.cost = a.cost;
-  fit.cells = static_cast<int>(fine.cells);
   fit.iterations = iterations;
+  // All pixels say what it leaves, so that fits can be compared.
+  const patch::Normalised whole = patch::normalised(patches);
+  PixelProblem described(whole, chosen->lobe, chosen->kind);
+  const State at = stateOf(fit.model, whole);
+  described.chooseRule(at);
+  std::vector<double> residuals(whole.cells);
+  if (!described.residualsAt(at, residuals.data())) return Failure{Reason::NotConverged, "pixels"};
+  fit.cost = 0;
+  for (const double r : residuals) fit.cost += r * r;
+  fit.cells = static_cast<int>(whole.cells);
+  patch::describeResiduals(described, fit);
+  // The cells that were fitted say how well: joined ones hold the same evidence.
   problem.chooseRule(a.at);
-  std::vector<double> residuals(fine.cells);
-  if (!problem.residualsAt(a.at, residuals.data())) return Failure{Reason::NotConverged, "pixels"};
-  patch::describeResiduals(problem, fit);
+  std::vector<double> fitted(fine.cells);
+  if (!problem.residualsAt(a.at, fitted.data())) return Failure{Reason::NotConverged, "pixels"};
   patch::describeUncertainty(problem, a.at, blur, fit);
   return fit;
 }
