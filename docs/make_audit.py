@@ -43,8 +43,8 @@ def main():
     arguments = parser.parse_args()
     for module in sorted(m.name for m in pkgutil.iter_modules([str(DOCS / "audit")])):
         importlib.import_module("audit." + module)
-    record = json.loads(RECORD.read_text()) if RECORD.exists() else {}
     lines = sorted(harness.LINES, key=lambda l: l.section)
+    keys = [f"{l.section} {l.title}" for l in lines]
     with tempfile.TemporaryDirectory() as scratch:
         runner = harness.Runner(arguments.glint, arguments.scratch or scratch, arguments.shared)
         for l in lines:
@@ -55,11 +55,13 @@ def main():
             except Exception as e:  # an old build, or a fault: both are findings
                 result = harness.Result(f"fails: {e}", False)
             print(f"{l.section} {l.title}: {result.figure}{'' if result.holds else '  MISSED'}", flush=True)
+            # Read again each time: two builds may be measured beside each other, and a run that is stopped keeps what it found.
+            record = json.loads(RECORD.read_text()) if RECORD.exists() else {}
             entry = record.setdefault(f"{l.section} {l.title}", {})
             entry["before" if arguments.before else "now"] = {"figure": result.figure, "holds": result.holds}
-    known = {f"{l.section} {l.title}" for l in lines}
-    record = {k: v for k, v in sorted(record.items()) if k in known}
-    RECORD.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n")
+            record = {k: v for k, v in sorted(record.items()) if k in keys}
+            RECORD.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n")
+    record = json.loads(RECORD.read_text()) if RECORD.exists() else {}
 
     def cell(key, when):
         entry = record.get(key, {}).get(when)

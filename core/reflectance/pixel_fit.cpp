@@ -175,6 +175,7 @@ Outcome<std::vector<PatchSolution>> solvePatches(const std::vector<const PixelPa
     s.topPoint = SurfacePoint{top.position, top.normal};
     s.background = patch::backgroundOf(n.frames[0].patches[k], n.frames[0], background, at,
                                        solved.coefficients.segment(1 + each * static_cast<Eigen::Index>(k), each));
+    s.lobe = image.value[k];
     s.relativeRms = fit.relativeRms[k];
     result.push_back(std::move(s));
   }

@@ -35,6 +35,7 @@ struct PatchSolution {
   double strength = 0;         ///< of S = I / I(topPoint), before the blur; >= 0
   SurfacePoint topPoint;       ///< the brightest cell of the frame, where S = 1: scales S
   std::vector<double> background;  ///< b per cell of the patch, all cells on the surface
+  std::vector<double> lobe;        ///< S per cell of the patch, with the blur
   double relativeRms = 0;      ///< of I - strength S - b over the used cells above a tenth of the top, as a share of the frame's top
 };
 /// Strength and backgrounds of one frame's patches under a known lobe, robust (soft L1).
