@@ -123,7 +123,12 @@ class Search {
  private:
   void tryOut(Lobe lobe, BackgroundKind kind, const State& from) {
     PixelProblem problem(evidence_, lobe, kind);
-    const Attempt a = patch::solve(problem, from, {false, maxIterations_, kSearchTolerance, kSearchTolerance, kMostEvaluations, kExtentWork});
+    patch::SolveOptions solving{false, maxIterations_, kSearchTolerance, kSearchTolerance};
+    if (from.shape != lobe::LampShape::Point) {
+      solving.mostEvaluations = kMostEvaluations;
+      solving.work = kExtentWork;
+    }
+    const Attempt a = patch::solve(problem, from, solving);
     iterations_ += a.iterations;
     if (std::isfinite(a.cost)) candidates_.push_back({lobe, kind, a, criterion(a, evidence_, kind)});
   }
