@@ -16,9 +16,9 @@ constexpr double kUnexplained = 0.1;  // of the top: beyond it the lobe says not
 constexpr double kTrusted = 0.02;     // of the top: below it the lobe's own peak is the level's reference, else the observed one
 constexpr double kSharpPx = 0.3;      // a stronger blur lowers the observed peak: the level belongs to the blurred one
 constexpr int kEvidenceCells = 3000;
-// A lobe that is off by a tenth over the radius then moves the contour by less than 0.07 % of the diameter.
-constexpr double kWindowShare = 1.0 / 15;  // of the radius: standard deviation of the window in which noise is averaged
-constexpr double kLargestWindowPx = 3, kLeastWindowPx = 0.3;
+// A lobe that is off by a tenth over the radius then moves the contour by less than 0.02 % of the diameter.
+constexpr double kWindowShare = 1.0 / 30;  // of the radius: standard deviation of the window in which noise is averaged
+constexpr double kLargestWindowPx = 1.5, kLeastWindowPx = 0.25;
 constexpr double kShownShare = 0.05;  // of the top: below it the lobe shows no factor
 
 /// Bilinear between the cells' centres; nothing beyond them.
