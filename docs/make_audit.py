@@ -39,6 +39,7 @@ def main():
     parser.add_argument("--shared", default=DOCS.parent.parent / "shared")
     parser.add_argument("--scratch", help="keeps synthetic scenes from run to run")
     parser.add_argument("--only", default="", help="sections that start with this")
+    parser.add_argument("--title", default="", help="rows whose title contains this")
     parser.add_argument("--before", action="store_true", help="record the figures as those before")
     arguments = parser.parse_args()
     for module in sorted(m.name for m in pkgutil.iter_modules([str(DOCS / "audit")])):
@@ -48,7 +49,7 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         runner = harness.Runner(arguments.glint, arguments.scratch or scratch, arguments.shared)
         for l in lines:
-            if not l.section.startswith(arguments.only):
+            if not l.section.startswith(arguments.only) or arguments.title not in l.title:
                 continue
             try:
                 result = l.check(runner)
