@@ -113,20 +113,16 @@ void addBrightestCases(Cases& cases) {
       add(name, degrees, 1e-9, "", [light, a, k] { return pointCase(k, k > 0, light, 0, 0, 1, 800, 0.1, 1 / std::cos(a)); });
     }
   // The camera stands so far that the object is seen as large as by a lens of 800 px from 1 m; the error is over the object's metre.
-  for (const double focal : {1e4, 1e5, 1e6})
+  for (const auto& [focal, words] : {std::pair(1e4, "1e4 px at 12.5 m"), std::pair(1e5, "1e5 px at 125 m"), std::pair(1e6, "1e6 px at 1,250 m")})
     for (const double k : {2.0, 0.0}) {
-      char name[64];
-      std::snprintf(name, sizeof name, "%s, focal length %.0e px at %g m", k > 0 ? "sphere" : "plane", focal, focal / 800);
-      add(name, focal, 1e-9, "", [d, focal, k]() -> Outcome<Measured> {
+      add(std::string(k > 0 ? "sphere" : "plane") + ", focal length " + words, focal, 1e-9, "", [d, focal = focal, k]() -> Outcome<Measured> {
         Outcome<Measured> m = pointCase(k, k > 0, Light::at(2 * d), 0.03, 0.02, focal / 800, focal, 0.1, focal / 800);
         if (m) m->error *= focal / 800;
         return m;
       });
     }
-  for (const double skew : {1.0, 30.0, 1000.0}) {
-    char name[64];
-    std::snprintf(name, sizeof name, "sphere, skew %g px", skew);
-    add(name, skew, 1e-9, "", [d, skew] { return pointCase(2, true, Light::at(2 * d), 0.03, 0.02, 1, 800, 0.1, 1, skew); });
+  for (const auto& [skew, words] : {std::pair(1.0, "1 px"), std::pair(30.0, "30 px"), std::pair(1000.0, "1,000 px")}) {
+    add(std::string("sphere, skew ") + words, skew, 1e-9, "", [d, skew = skew] { return pointCase(2, true, Light::at(2 * d), 0.03, 0.02, 1, 800, 0.1, 1, skew); });
   }
   for (const double scale : {1e-6, 1e6})
     add(scale < 1 ? "sphere, scene scale 1e-6" : "sphere, scene scale 1e6", scale, 1e-9, "", [scale, d] {

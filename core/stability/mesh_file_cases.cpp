@@ -218,6 +218,12 @@ void addMeshFileCases(Cases& cases) {
     char name[64];
     std::snprintf(name, sizeof name, "flat mesh, grazing %g degrees", degrees);
     cases.push_back(answerCase("brightest point", name, degrees, 1e-9, "", [flat, degrees] { return mirrorCase(flat, degrees); }));
+    if (degrees > 89.95) {
+      cases.back().name = "flat mesh, 0.2 mm under the eye: 89.99 degrees";
+      cases.back().note = "the mesh takes a pixel's height of the image, between the rays of the search";
+      cases.back().expect = Expect::AnswerOrFailure;
+      cases.back().reasons = {Reason::NoBrightestPoint};
+    }
   }
 }
 
