@@ -18,7 +18,11 @@ using patch::State;
 constexpr double kSearchTolerance = 1e-4;   // of fits that only choose a start or a background
 constexpr double kMicrofacetMargin = 0.02;  // of the cost, by which a cosine power must be better than a microfacet lobe
 constexpr double kClearGain = 0.1;          // of the cost, before an extent or a blur is believed
+// Gain of the cost over its mean per independent cell, by up to three more parameters: noise alone exceeds this in one of a million
+// images (chi squared, three degrees of freedom).
+constexpr double kBeyondNoise = 30;
 constexpr std::size_t kCoarseFrom = 400;    // cells of a patch, from which the search takes a quarter of them
+constexpr std::size_t kFewestFrom = 100;    // and below which no lamp is worth joining more
 constexpr double kMostEvaluations = 2e5;    // of an extended lamp's lobe in one look at all cells: some hundredths of a second
 constexpr double kExtentWork = 1.5e7;        // such evaluations in all: a lamp that explains the pixels takes about ten iterations
 
@@ -30,11 +34,11 @@ class Cells {
   Cells& operator=(const Cells&) = delete;
   const patch::Normalised& all() const { return all_; }
 
-  /// Joins 2 x 2 cells of every patch that keeps enough of them; false where none does.
-  bool coarsen() {
+  /// Joins 2 x 2 cells of every patch with more than `from` of them; false where none has.
+  bool coarsen(std::size_t from = kCoarseFrom) {
     bool any = false;
     for (const PixelPatch*& p : pointers_) {
-      if (p->usedCells() <= kCoarseFrom) continue;
+      if (p->usedCells() <= from) continue;
       PixelPatch coarse = patch::coarsened(*p);
       if (!(coarse.top > 0)) continue;
       owned_.push_back(std::move(coarse));
@@ -85,10 +89,17 @@ State stateOf(const LobeModel& model, const patch::Normalised& n) {
   return s;
 }
 
+/// Of the lobe in one look at all cells.
+double evaluationsOf(const LobeModel& model, const patch::Normalised& evidence) {
+  PixelProblem trial(evidence, model.lobe, BackgroundKind::None);
+  trial.chooseRule(stateOf(model, evidence));
+  return trial.evaluations();
+}
+
 /// The search over lobes and kinds of background, on coarse cells.
 class Search {
  public:
-  Search(const patch::Normalised& evidence, int maxIterations) : evidence_(evidence), maxIterations_(maxIterations) {}
+  Search(const patch::Normalised& evidence, const PixelFitOptions& options) : evidence_(evidence), options_(options) {}
 
   struct Candidate {
     Lobe lobe;
@@ -106,7 +117,9 @@ class Search {
       for (const BackgroundKind kind :
            {BackgroundKind::None, BackgroundKind::Cosine, BackgroundKind::SlopedCosine, BackgroundKind::Quadratic})
         // A lamp with an extent takes long: the first lobe tells which backgrounds compete.
-        if (!best || start.shape == lobe::LampShape::Point || kind == best->kind) tryOut(lobe, kind, from);
+        if ((!options_.background || kind == *options_.background) &&
+            (!best || start.shape == lobe::LampShape::Point || kind == best->kind))
+          tryOut(lobe, kind, from);
     }
     const Candidate* best = least([](const Candidate&) { return true; });
     if (!best) return std::nullopt;
@@ -123,7 +136,7 @@ class Search {
  private:
   void tryOut(Lobe lobe, BackgroundKind kind, const State& from) {
     PixelProblem problem(evidence_, lobe, kind);
-    patch::SolveOptions solving{false, maxIterations_, kSearchTolerance, kSearchTolerance};
+    patch::SolveOptions solving{false, options_.maxIterations, kSearchTolerance, kSearchTolerance};
     if (from.shape != lobe::LampShape::Point) {
       solving.mostEvaluations = kMostEvaluations;
       solving.work = kExtentWork;
@@ -141,7 +154,8 @@ class Search {
   }
 
   const patch::Normalised& evidence_;
-  int maxIterations_, iterations_ = 0;
+  const PixelFitOptions& options_;
+  int iterations_ = 0;
   std::vector<Candidate> candidates_;
 };
 
@@ -187,8 +201,14 @@ Outcome<std::vector<PatchSolution>> solvePatches(const std::vector<const PixelPa
   return result;
 }
 
+bool asksForExtent(const PixelFit& point) {
+  return point.patterned || point.gainByExtent > kClearGain || point.gainByExtent * point.independentCells > kBeyondNoise;
+}
+
 bool explainsClearlyBetter(const PixelFit& larger, const PixelFit& smaller) {
-  return larger.cost < (1 - kClearGain) * smaller.cost;
+  if (larger.cost < (1 - kClearGain) * smaller.cost) return true;
+  // The smaller lamp was fitted to all cells, the larger one perhaps to joined ones: its count would be theirs.
+  return (smaller.cost - larger.cost) / larger.cost * smaller.independentCells > kBeyondNoise;
 }
 
 Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<const PixelPatch*>& patches, const Lamp& lamp,
@@ -200,19 +220,21 @@ Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<co
   if (!lamp.isPoint())
     while (coarse.coarsen()) {
     }
+  const LobeModel first{lobes.front(), roughness, lamp, 0};
+  // A lamp that is wide beside its lobe takes many evaluations a cell: fewer cells then.
+  while (!lamp.isPoint() && evaluationsOf(first, coarse.all()) > kMostEvaluations && coarse.coarsen(kFewestFrom)) {
+  }
   const patch::Normalised& few = coarse.all();
 
-  Search search(few, options.maxIterations);
-  const std::optional<Search::Candidate> chosen = search.run(lobes, stateOf({lobes.front(), roughness, lamp, 0}, few));
+  Search search(few, options);
+  const std::optional<Search::Candidate> chosen = search.run(lobes, stateOf(first, few));
   if (!chosen) return Failure{Reason::NotConverged, "no lobe reaches the pixels from the contours' light"};
   int iterations = search.iterations();
 
   // In full, as far as an extended lamp lets it, then with a blur where it shows.
   const State found = chosen->attempt.at;
-  for (bool finer = true; finer && !lamp.isPoint();) {
-    PixelProblem trial(full.all(), chosen->lobe, chosen->kind);
-    trial.chooseRule(stateOf({chosen->lobe, found.roughness(), inWorld(found, few), 0}, full.all()));
-    finer = trial.evaluations() > kMostEvaluations && full.coarsen();
+  const LobeModel start{chosen->lobe, found.roughness(), inWorld(found, few), 0};
+  while (!lamp.isPoint() && evaluationsOf(start, full.all()) > kMostEvaluations && (full.coarsen() || full.coarsen(kFewestFrom))) {
   }
   const patch::Normalised& fine = full.all();
   PixelProblem problem(fine, chosen->lobe, chosen->kind);
@@ -221,7 +243,7 @@ Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<co
     solving.mostEvaluations = 4 * kMostEvaluations;  // it may grow a little more
     solving.work = kExtentWork;
   }
-  Attempt a = patch::solve(problem, stateOf({chosen->lobe, found.roughness(), inWorld(found, few), 0}, fine), solving);
+  Attempt a = patch::solve(problem, stateOf(start, fine), solving);
   iterations += a.iterations;
   if (!std::isfinite(a.cost)) return Failure{Reason::NotConverged, "pixels"};
   bool blur = false;
