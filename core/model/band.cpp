@@ -10,7 +10,6 @@
 namespace glint {
 namespace {
 
-constexpr double kNormal95 = 1.959964;
 // A clipped peak may have been ten times as high: a Gaussian lobe's contour at half of it then has half the radius. 1.96 of this hold that.
 constexpr double kClippedShare = 0.25;
 
@@ -74,6 +73,14 @@ std::optional<ViewResiduals> residualsOf(const Polyline& measured, const Polylin
   return v;
 }
 
+/// Where a highlight lies and whence it is seen: neighbouring views share a bump of the surface, and what a lobe gets wrong at an angle.
+/// @param unit  distance of a camera: what a turn by a radian is on the surface
+Eigen::VectorXd placeOf(const PredictedHighlight& h, const Camera& camera, double unit) {
+  Eigen::VectorXd place(6);
+  place << h.brightest.point.position / unit, (camera.centreInWorld() - h.brightest.point.position).normalized();
+  return place;
+}
+
 }  // namespace
 
 std::shared_ptr<Band> Band::of(const HighlightModel& model, const ModelFit& fit, const std::vector<TrainingView>& views,
@@ -81,7 +88,7 @@ std::shared_ptr<Band> Band::of(const HighlightModel& model, const ModelFit& fit,
   if (!fit.uncertainty) return nullptr;
   std::vector<ViewResiduals> residuals;
   bool clipped = false;
-  double radius = 0;
+  double radius = 0, unit = 0;
   for (const TrainingView& v : views) {
     if (v.failure || v.highlight.contour.points.size() < 3) continue;
     clipped = clipped || (v.highlight.clipped && fit.evidence != "pixels");  // pixels leave out what is clipped
@@ -91,6 +98,8 @@ std::shared_ptr<Band> Band::of(const HighlightModel& model, const ModelFit& fit,
     const Eigen::MatrixXd shifts = model.bandShiftsPx(fit, *h, v.camera, v.surface.get(), settings);
     if (!residuals.empty() && shifts.cols() != residuals.front().byParameter.cols()) continue;
     if (std::optional<ViewResiduals> r = residualsOf(v.highlight.contour, h->contour, shifts, settings.integer("light.bundle_points"))) {
+      if (!(unit > 0)) unit = (v.camera.centreInWorld() - h->brightest.point.position).norm();
+      r->where = placeOf(*h, v.camera, unit);
       residuals.push_back(std::move(*r));
       radius += std::sqrt(std::abs(signedArea(h->contour)) / M_PI);
     }
@@ -98,6 +107,7 @@ std::shared_ptr<Band> Band::of(const HighlightModel& model, const ModelFit& fit,
   if (residuals.empty()) return nullptr;
   std::shared_ptr<Band> band(new Band(model, fit, settings, ViewEffects(residuals, settings.number("light.robust_px"))));
   band->clipped_ = clipped;
+  band->unit_ = unit;
   band->radius_ = radius / double(residuals.size());
   return band;
 }
@@ -106,11 +116,11 @@ std::vector<double> Band::sigmaPx(const PredictedHighlight& highlight, const Cam
   const Eigen::MatrixXd shifts = model_.bandShiftsPx(fit_, highlight, camera, surface, settings_);
   const std::size_t n = highlight.contour.points.size();
   if (shifts.cols() == 0 || shifts.rows() != Eigen::Index(n) || n < 3) return {};
-  const ViewEffects::Variance v = effects_.at(shifts, contourShapes(outwardNormals(highlight.contour), arcOf(highlight.contour)));
+  const std::vector<double> own = effects_.sigmaPx(shifts, contourShapes(outwardNormals(highlight.contour), arcOf(highlight.contour)),
+                                                   placeOf(highlight, camera, unit_));
   std::vector<double> variance(n);
   for (std::size_t i = 0; i < n; ++i) {
-    const double factor = studentFactor(0.95, v.freedom[i]) / kNormal95;
-    variance[i] = factor * factor * v.px2[i];
+    variance[i] = own[i] * own[i];
     if (own_) variance[i] += shifts.row(Eigen::Index(i)).squaredNorm();
     if (clipped_) variance[i] += std::pow(kClippedShare * (highlight.contour.points[i] - highlight.brightest.pixel).norm(), 2);
   }

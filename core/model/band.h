@@ -50,7 +50,7 @@ class Band {
   ViewEffects effects_;
   std::vector<BandAlternative> alternatives_;
   bool own_ = false, clipped_ = false;
-  double radius_ = 0;
+  double radius_ = 0, unit_ = 1;
 };
 
 }  // namespace glint

@@ -6,9 +6,13 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <limits>
 
 #include "core/base/outcome.h"
+#include "core/base/uncertainty.h"
+#include "core/model/view_correlation.h"
 
 namespace glint {
 namespace {
@@ -21,7 +25,35 @@ constexpr double kBorrowed = 4;         // degrees of freedom that offset, shift
 // below was held by a prior.
 constexpr double kHeld = 0.2;
 constexpr double kOpen = 1e-9;  // a direction that moves no contour, to round-off
+constexpr double kNormal95 = 1.959964;
+constexpr double kWidthTolerance = 0.01;  // of a half width: far below what a few views tell of it
 constexpr double kWildSigmas = 4;
+constexpr int kLow = 3;                 // groups: offset, shift, stretch
+constexpr double kLeastWeight = 1e-3;   // of the evidence: what has less changes no band
+
+/// One part of a mixture of Student's distributions about zero.
+struct Spread {
+  double weight, sigma, freedom;
+};
+
+/// What a value of the mixture exceeds, up or down, in one of twenty times.
+double halfWidth95(const std::vector<Spread>& mixture) {
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+  for (const Spread& s : mixture) {
+    const double own = s.sigma * studentFactor(0.95, s.freedom);
+    low = std::min(low, own);
+    high = std::max(high, own);
+  }
+  while (high - low > kWidthTolerance * high) {
+    const double middle = std::sqrt(std::max(low, 1e-6 * high) * high);
+    double outside = 0;
+    for (const Spread& s : mixture)
+      if (s.sigma > 0)
+        outside += 2 * s.weight * boost::math::cdf(boost::math::complement(boost::math::students_t(s.freedom), middle / s.sigma));
+    (outside > 0.05 ? low : high) = middle;
+  }
+  return high;
+}
 
 int groupOf(int order) { return order <= 2 ? order : order <= 5 ? 3 : 4; }
 
@@ -99,11 +131,8 @@ ViewEffects::ViewEffects(const std::vector<ViewResiduals>& views, double robustP
   // the parameters, S_g and its expectation sum_h tau_h^2 tr(S_g' P N S_h S_h' P S_g) + noise^2 tr(S_g' P S_g), N the points of a view.
   Eigen::Matrix<double, kGroups + 1, 1> seen = Eigen::Matrix<double, kGroups + 1, 1>::Zero(), count = seen, weighted = seen;
   std::vector<Eigen::MatrixXd> taken(kGroups + 1, Eigen::MatrixXd::Zero(parameters, parameters)), takenWeighted = taken;
-  std::vector<Eigen::MatrixXd> own(kGroups, Eigen::MatrixXd::Zero(parameters, parameters));
-  Eigen::MatrixXd together[kGroups];
-  for (Eigen::MatrixXd& t : together) t = Eigen::MatrixXd::Zero(parameters, ContourShapes::kCount);
-  Eigen::VectorXd sums = Eigen::VectorXd::Zero(ContourShapes::kCount);
-  double sumSquares = 0, allSquares = 0, psi2 = 0, inside = 0;
+  std::vector<ViewCoefficients> coefficients;
+  double allSquares = 0, psi2 = 0, inside = 0;
   for (const ViewResiduals& v : views) {
     const Eigen::VectorXd r = v.residual.cwiseMax(-wild).cwiseMin(wild), z = v.shapes.columns.transpose() * r;
     const Eigen::MatrixXd j = v.shapes.columns.transpose() * v.byParameter, u = j * half;
@@ -120,12 +149,8 @@ ViewEffects::ViewEffects(const std::vector<ViewResiduals>& views, double robustP
       weighted(g) += n;
       taken[std::size_t(g)] += u.row(k).transpose() * u.row(k);
       takenWeighted[std::size_t(g)] += n * u.row(k).transpose() * u.row(k);
-      own[std::size_t(g)] += n * j.row(k).transpose() * j.row(k);
-      if (k < ContourShapes::kCount) {
-        together[g].col(k) += std::sqrt(n) * j.row(k).transpose();
-        if (g >= 2) sums(k) += z(k), sumSquares += z(k) * z(k);
-      }
     }
+    coefficients.push_back({z, j, v.shapes.group, n, v.where});
   }
   const Eigen::MatrixXd whole = half.transpose() * information * half;
   seen(kGroups) = std::max(0.0, allSquares - seen.head<kGroups>().sum());
@@ -140,8 +165,9 @@ ViewEffects::ViewEffects(const std::vector<ViewResiduals>& views, double robustP
   noiseFreedom_ = std::max(1.0, left(kGroups));
   double noise2 = seen(kGroups) / noiseFreedom_;
   std::vector<int> active;
+  Case independent;
   for (int g = 0; g < kGroups; ++g) {
-    freedom_[g] = weighted(g) > 0 ? expected(g, g) / (weighted(g) / count(g)) : 0;
+    independent.freedom[g] = weighted(g) > 0 ? expected(g, g) / (weighted(g) / count(g)) : 0;
     const double free = left(g);
     if (!(free > 0.5)) continue;
     const double ratio = seen(g) / free / std::max(noise2, 1e-300);  // no division by zero
@@ -162,66 +188,146 @@ ViewEffects::ViewEffects(const std::vector<ViewResiduals>& views, double robustP
     Eigen::Index smallest = 0;
     const double least = solution.head(m).minCoeff(&smallest);
     if (solution.allFinite() && least > 0 && solution(m) >= 0) {
-      for (Eigen::Index a = 0; a < m; ++a) variance_[active[std::size_t(a)]] = solution(a);
+      for (Eigen::Index a = 0; a < m; ++a) independent.variance[active[std::size_t(a)]] = solution(a);
       noise2 = solution(m);
       break;
     }
     if (solution.allFinite() && least > 0) {  // the noise came out below nothing: it is what the finest residuals show
       for (Eigen::Index a = 0; a < m; ++a)
-        variance_[active[std::size_t(a)]] = std::max(0.0, (squares(a) - noise2 * system(a, m)) / system(a, a));
+        independent.variance[active[std::size_t(a)]] = std::max(0.0, (squares(a) - noise2 * system(a, m)) / system(a, a));
       break;
     }
     active.erase(active.begin() + smallest);
   }
   noise_ = std::sqrt(noise2);
-  double low = 0, lowFree = 0;
-  for (int g = 0; g < 3; ++g) low += freedom_[g] * variance_[g], lowFree += freedom_[g];
-  for (int g = 0; g < 3 && lowFree > 0; ++g) {
-    const double free = std::max(0.0, freedom_[g]);
-    variance_[g] = (free * variance_[g] + kBorrowed * low / lowFree) / (free + kBorrowed);
-    freedom_[g] = std::min(free + 0.5 * kBorrowed, lowFree);
-  }
-  for (double& f : freedom_) f = std::max(1.0, f);
+  addPlaces(coefficients);
 
-  // Errors of one shape in all views do not average out.
-  const double number = double(views.size());
-  if (views.size() > 1 && sumSquares > 0)
-    shared_ = std::clamp((sums.squaredNorm() / sumSquares - 1) / (number - 1), 0.0, 1.0);
-  for (int g = 0; g < kGroups; ++g) {
-    const Eigen::MatrixXd middle = (1 - shared_) * own[std::size_t(g)] + shared_ * together[g] * together[g].transpose();
-    byGroup_[g] = byNoise_ * middle * byNoise_;
+  // Offset, shift and stretch of neighbours may go together; finer shapes hardly move the parameters.
+  std::vector<int> low;
+  for (int g = 0; g < kLow; ++g)
+    if (independent.variance[g] > 0) low.push_back(g);
+  Eigen::VectorXd start(low.size());
+  for (std::size_t i = 0; i < low.size(); ++i) start(Eigen::Index(i)) = independent.variance[low[i]];
+  bool placed = !low.empty();
+  for (const ViewResiduals& v : views) placed = placed && v.where.size() > 0 && v.where.size() == views.front().where.size();
+  if (placed) {
+    for (const CorrelatedEffects& e : correlatedEffects(coefficients, low, start, noise2)) {
+      if (!(e.weight > kLeastWeight)) continue;
+      Case c = independent;
+      c.length = e.length;
+      c.weight = e.weight;
+      for (std::size_t i = 0; i < low.size() && e.length > 0; ++i) {
+        c.variance[low[i]] = e.variance(Eigen::Index(i));
+        c.freedom[low[i]] = e.freedom(Eigen::Index(i));
+      }
+      cases_.push_back(std::move(c));
+    }
+  } else {
+    cases_.push_back(std::move(independent));
+  }
+  double weights = 0;
+  for (const Case& c : cases_) weights += c.weight;
+  for (Case& c : cases_) {
+    c.weight /= weights;
+    borrow(c);
+    addParameters(c);
   }
   // The Huber loss leaves more noise in the parameters than plain squares do where noise exceeds its scale.
   const double slope = std::max(inside, 1.0) / points;
   if (noise2 > 0) byNoise_ *= std::max(1.0, psi2 / points / (slope * slope) / std::max(allSquares / points, 1e-300));  // no division by zero
 }
 
+/// Few views tell little of one size of error: offset, shift and stretch borrow from each other.
+void ViewEffects::borrow(Case& c) {
+  double squares = 0, all = 0;
+  for (int g = 0; g < kLow; ++g) squares += c.freedom[g] * c.variance[g], all += c.freedom[g];
+  for (int g = 0; g < kLow && all > 0; ++g) {
+    const double free = std::max(0.0, c.freedom[g]);
+    c.variance[g] = (free * c.variance[g] + kBorrowed * squares / all) / (free + kBorrowed);
+    c.freedom[g] = std::min(free + 0.5 * kBorrowed, all);
+  }
+  for (double& f : c.freedom) f = std::max(1.0, f);
+}
+
+void ViewEffects::addPlaces(const std::vector<ViewCoefficients>& views) {
+  const Eigen::Index count = Eigen::Index(views.size());
+  for (const ViewCoefficients& v : views) {
+    where_.push_back(v.where);
+    for (std::size_t k = groupOfShape_.size(); k < v.group.size(); ++k) groupOfShape_.push_back(v.group[k]);
+  }
+  movedBy_.assign(groupOfShape_.size(), Eigen::MatrixXd::Zero(byNoise_.rows(), count));
+  for (Eigen::Index v = 0; v < count; ++v) {
+    const ViewCoefficients& view = views[std::size_t(v)];
+    for (std::size_t k = 0; k < view.group.size(); ++k)
+      movedBy_[k].col(v) = std::sqrt(view.points) * byNoise_ * view.byParameter.row(Eigen::Index(k)).transpose();
+  }
+}
+
+double ViewEffects::likeness(const Case& c, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  return a.size() > 0 && a.size() == b.size() ? viewCorrelation((a - b).norm(), c.length) : 0;
+}
+
+void ViewEffects::addParameters(Case& c) const {
+  const Eigen::Index count = Eigen::Index(where_.size());
+  Eigen::MatrixXd alike = Eigen::MatrixXd::Identity(count, count);
+  for (Eigen::Index v = 0; v < count && c.length > 0; ++v)
+    for (Eigen::Index w = 0; w < v; ++w) alike(v, w) = alike(w, v) = likeness(c, where_[std::size_t(v)], where_[std::size_t(w)]);
+  for (Eigen::MatrixXd& g : c.byGroup) g = Eigen::MatrixXd::Zero(byNoise_.rows(), byNoise_.cols());
+  for (std::size_t k = 0; k < movedBy_.size(); ++k)
+    c.byGroup[groupOfShape_[k]] += movedBy_[k] * alike * movedBy_[k].transpose();
+}
+
+double ViewEffects::mean(double (*of)(const Case&, int), int group) const {
+  double sum = 0;
+  for (const Case& c : cases_) sum += c.weight * of(c, group);
+  return sum;
+}
+
+double ViewEffects::variance(int group) const {
+  return mean([](const Case& c, int g) { return c.variance[g]; }, group);
+}
+double ViewEffects::freedom(int group) const {
+  return mean([](const Case& c, int g) { return c.freedom[g]; }, group);
+}
+
 double ViewEffects::viewPx() const {
   constexpr double kColumns[ContourShapes::kGroups] = {1, 2, 2, 6, 8};
   double sum = 0;
-  for (int g = 0; g < ContourShapes::kGroups; ++g) sum += kColumns[g] * variance_[g];
+  for (int g = 0; g < ContourShapes::kGroups; ++g) sum += kColumns[g] * variance(g);
   return std::sqrt(sum);
 }
 
-ViewEffects::Variance ViewEffects::at(const Eigen::MatrixXd& byParameter, const ContourShapes& shapes) const {
-  require(byParameter.cols() == byNoise_.cols() && byParameter.rows() == shapes.columns.rows(), "ViewEffects::at: sizes");
-  Variance result;
+std::vector<double> ViewEffects::sigmaPx(const Eigen::MatrixXd& byParameter, const ContourShapes& shapes, const Eigen::VectorXd& where) const {
+  require(byParameter.cols() == byNoise_.cols() && byParameter.rows() == shapes.columns.rows(), "ViewEffects::sigmaPx: sizes");
+  constexpr int kGroups = ContourShapes::kGroups;
   const Eigen::Index n = byParameter.rows();
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Eigen::RowVectorXd j = byParameter.row(i);
-    const double fromNoise = noise_ * noise_ * (j * byNoise_ * j.transpose()).value();
-    double sum = fromNoise, spread = fromNoise * fromNoise / noiseFreedom_;
-    double own[ContourShapes::kGroups] = {};
-    for (Eigen::Index k = 0; k < shapes.columns.cols(); ++k)
-      own[shapes.group[std::size_t(k)]] += double(n) * shapes.columns(i, k) * shapes.columns(i, k);
-    for (int g = 0; g < ContourShapes::kGroups; ++g) {
-      const double part = variance_[g] * ((j * byGroup_[g] * j.transpose()).value() + own[g]);
-      sum += part;
-      spread += part * part / freedom_[g];
+  std::vector<std::vector<Spread>> mixtures(static_cast<std::size_t>(n));
+  for (const Case& c : cases_) {
+    // What the parameters took of a neighbour's error is in this view's error, too.
+    Eigen::VectorXd alike = Eigen::VectorXd::Zero(Eigen::Index(where_.size()));
+    for (std::size_t v = 0; v < where_.size() && c.length > 0; ++v) alike(Eigen::Index(v)) = likeness(c, where, where_[v]);
+    std::vector<Eigen::VectorXd> taken;
+    for (const Eigen::MatrixXd& moved : movedBy_) taken.push_back(moved * alike);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Eigen::RowVectorXd j = byParameter.row(i);
+      const double fromNoise = noise_ * noise_ * (j * byNoise_ * j.transpose()).value();
+      double own[kGroups] = {};
+      for (Eigen::Index k = 0; k < shapes.columns.cols(); ++k) {
+        const double shape = std::sqrt(double(n)) * shapes.columns(i, k);
+        own[shapes.group[std::size_t(k)]] += shape * shape;
+        if (std::size_t(k) < taken.size()) own[shapes.group[std::size_t(k)]] -= 2 * shape * j.dot(taken[std::size_t(k)]);
+      }
+      double sum = fromNoise, squares = fromNoise * fromNoise / noiseFreedom_;
+      for (int g = 0; g < kGroups; ++g) {
+        const double part = c.variance[g] * std::max(0.0, (j * c.byGroup[g] * j.transpose()).value() + own[g]);
+        sum += part;
+        squares += part * part / c.freedom[g];
+      }
+      mixtures[std::size_t(i)].push_back({c.weight, std::sqrt(sum), squares > 0 ? std::max(1.0, sum * sum / squares) : noiseFreedom_});
     }
-    result.px2.push_back(sum);
-    result.freedom.push_back(spread > 0 ? std::max(1.0, sum * sum / spread) : noiseFreedom_);
   }
+  std::vector<double> result;
+  for (const std::vector<Spread>& m : mixtures) result.push_back(halfWidth95(m) / kNormal95);
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/geometry/camera.h"
+#include "core/model/view_correlation.h"
 
 namespace glint {
 
@@ -25,13 +26,17 @@ struct ViewResiduals {
   Eigen::VectorXd residual;
   Eigen::MatrixXd byParameter;
   ContourShapes shapes;
+  Eigen::VectorXd where;  ///< place of the view, in any unit, by which neighbours are told; empty: all are independent
 };
 
 /// What the residuals of a fit say about noise of single points and about errors that whole views have in common: poses, bumps of the
 /// surface, a model that does not quite fit. Residuals are r = J d + sum_g S_g u_g + e: parameters d, an error u_g of every view in each group of
-/// shapes (independent between views up to `shared`, variance tau_g^2 per shape) and noise e. The variances are the moment estimates
-/// (Henderson's third method): the expected squares of the residuals in every group, after the parameters took their share, equal
-/// the ones seen. Groups in which noise alone explains the squares (F test, 5 %) count as none.
+/// shapes (variance tau_g^2 per shape) and noise e. The variances are the moment estimates (Henderson's third method) for errors that are
+/// independent between views: the expected squares of the residuals in every group, after the parameters took their share, equal
+/// the ones seen. Groups in which noise alone explains the squares (F test, 5 %) count as none. Offset, shift and stretch may go together in
+/// neighbouring views, as bumps of a surface make them: the parameters then take most of the error, and a prediction far from the
+/// training views is off by more than their residuals show. view_correlation.h tells over which distances; all of them count by their
+/// share of the evidence.
 /// @see Searle, Casella, McCulloch, Variance Components, 1992, chapter 5; Satterthwaite, Biometrics 2, 1946, for the degrees of freedom.
 class ViewEffects {
  public:
@@ -40,22 +45,33 @@ class ViewEffects {
 
   double noisePx() const { return noise_; }     ///< standard deviation of one point
   double viewPx() const;                        ///< RMS over the contour of what a whole view is off by
-  double freedom(int group) const { return freedom_[group]; }
-  double variance(int group) const { return variance_[group]; }  ///< tau^2, px^2: mean square over the contour per shape
-  double shared() const { return shared_; }     ///< 0 .. 1: how far the views' errors are one and the same
+  double freedom(int group) const;              ///< of the estimate of its variance
+  double variance(int group) const;             ///< tau^2, px^2: mean square over the contour per shape
 
-  /// Variance of a predicted contour at its points, px^2, with the degrees of freedom of that estimate: of the parameters and of the
-  /// view's own error. @param byParameter  points x parameters. @param shapes  of this contour.
-  struct Variance {
-    std::vector<double> px2, freedom;
-  };
-  Variance at(const Eigen::MatrixXd& byParameter, const ContourShapes& shapes) const;
+  /// Standard deviation of a predicted contour at its points, px, in the sense that 1.96 of it hold 95 %: noise and errors of views count with
+  /// Student's factor for their degrees of freedom, the lengths over which errors go together as a mixture.
+  /// @param byParameter  points x parameters. @param shapes  of this contour. @param where  place of the view, as of the training views.
+  std::vector<double> sigmaPx(const Eigen::MatrixXd& byParameter, const ContourShapes& shapes, const Eigen::VectorXd& where) const;
 
  private:
-  double noise_ = 0, noiseFreedom_ = 1, shared_ = 0;
-  double variance_[ContourShapes::kGroups] = {}, freedom_[ContourShapes::kGroups] = {};
-  Eigen::MatrixXd byNoise_;                          ///< covariance of the parameters for unit noise
-  Eigen::MatrixXd byGroup_[ContourShapes::kGroups];  ///< and for unit tau^2
+  /// All that holds if errors go together over one length.
+  struct Case {
+    double length = 0, weight = 1;
+    double variance[ContourShapes::kGroups] = {}, freedom[ContourShapes::kGroups] = {};
+    Eigen::MatrixXd byGroup[ContourShapes::kGroups];  ///< covariance of the parameters for unit tau^2
+  };
+  static void borrow(Case& c);
+  static double likeness(const Case& c, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
+  void addPlaces(const std::vector<ViewCoefficients>& views);
+  void addParameters(Case& c) const;
+  double mean(double (*of)(const Case&, int), int group) const;
+
+  double noise_ = 0, noiseFreedom_ = 1;
+  Eigen::MatrixXd byNoise_;  ///< covariance of the parameters for unit noise
+  std::vector<Case> cases_;
+  std::vector<Eigen::VectorXd> where_;     ///< of the training views
+  std::vector<Eigen::MatrixXd> movedBy_;   ///< per shape: the parameters' error by that shape's error, parameters x views
+  std::vector<int> groupOfShape_;
 };
 
 }  // namespace glint
