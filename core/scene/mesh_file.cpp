@@ -4,10 +4,16 @@
 #include "io/mesh_reader.h"
 
 namespace glint {
+namespace {
 
-TriangleMesh readMesh(const std::filesystem::path& file) {
-  MeshContent content = readMeshContent(file);
+TriangleMesh meshOf(MeshContent content) {
   return {std::move(content.vertices), std::move(content.normals), std::move(content.triangles)};
 }
+
+}  // namespace
+
+TriangleMesh readMesh(const std::filesystem::path& file) { return meshOf(readMeshContent(file)); }
+
+TriangleMesh meshOf(std::string_view bytes, const std::filesystem::path& file) { return meshOf(parseMesh(bytes, file)); }
 
 }  // namespace glint

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 #include "core/surface/surface.h"
 
@@ -13,5 +14,7 @@ namespace glint {
 /// @throw InputError (file, place) when the file is missing, empty, not one of the three formats, truncated or longer than its
 ///        header promises, has no triangle, a coordinate that is not finite, or a face with a vertex that does not exist.
 TriangleMesh readMesh(const std::filesystem::path& file);
+/// The same of a file's content; `file` is what messages name.
+TriangleMesh meshOf(std::string_view bytes, const std::filesystem::path& file);
 
 }  // namespace glint

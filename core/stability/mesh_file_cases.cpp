@@ -7,12 +7,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/scene/mesh_file.h"
 #include "core/stability/cases.h"
 #include "core/stability/real_mesh.h"
 #include "core/stability/scene.h"
 #include "core/surface/brightest_point.h"
 #include "core/surface/mesh.h"
-#include "io/mesh_reader.h"
 
 namespace glint::stability {
 namespace {
@@ -109,8 +109,7 @@ std::string fileOf(const Bowl& bowl, const Eigen::Vector3d& offset, Format forma
 
 /// The surface that Glint makes of the file.
 std::shared_ptr<const Surface> surfaceOf(const Bowl& bowl, const Eigen::Vector3d& offset, Format format, NormalPolicy policy) {
-  MeshContent content = parseMesh(fileOf(bowl, offset, format), format == Format::Obj ? "case.obj" : "case.ply");
-  return makeMesh({std::move(content.vertices), std::move(content.normals), std::move(content.triangles)}, policy);
+  return makeMesh(meshOf(fileOf(bowl, offset, format), format == Format::Obj ? "case.obj" : "case.ply"), policy);
 }
 
 /// A place inside a triangle of the inner part of the bowl, another one for every i.

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <algorithm>
-#include <boost/math/special_functions/erf.hpp>
+#include <cmath>
 #include <utility>
 
 #include "core/reflectance/lobe.h"
@@ -24,8 +24,10 @@ T logOfLobe(Lobe lobe, const T& m, const Vec<T>& n, const Vec<T>& l, const Vec<T
     if (t <= 0) return 0;
     if (lobe == Lobe::Ggx) return (sqrt(T(1 + m * m * t * t)) - 1) / 2;
     const T a = 1 / (m * t);
-    const T pi = boost::math::constants::pi<T>();
-    return exp(T(-a * a)) / (2 * a * sqrt(pi)) - boost::math::erfc(a) / 2;
+    using std::atan;  // of exact numbers where T is one
+    using std::erfc;
+    const T pi = 4 * atan(T(1));
+    return exp(T(-a * a)) / (2 * a * sqrt(pi)) - erfc(a) / 2;
   };
   const T d = lobe == Lobe::Ggx ? T(-2 * log(T(m * m + tan2))) : T(-tan2 / (m * m));
   return d - 4 * log(c) - log(T(1 + lambda(l) + lambda(v))) - log(dot(n, v));
