@@ -88,8 +88,10 @@ class Run {
     const Outcome<std::shared_ptr<const Surface>> s = r_.surfaces->surfaceOf(frame, meshPolicy(r_.request.settings));
     if (!s) failure = s.failure();
   }
-  /// With the depth correction of a light, where the frame's surface is its own depth map.
+  /// With what a light's contours corrected: the depth of the frame's own depth map, or the normals of its mesh.
   std::shared_ptr<const Surface> surfaceOf(int frame, const std::string& key) {
+    if (const auto refined = r_.refinedNormals.find(key); refined != r_.refinedNormals.end() && refined->second.surface == r_.surfaces->keyOf(frame))
+      return refined->second.mesh;
     const auto found = r_.depthCorrections.find(key);
     const Frame& f = r_.scene->frames[frame];
     if (found == r_.depthCorrections.end() || !f.surface.empty()) return surfaceOf(frame);
@@ -97,6 +99,7 @@ class Run {
     return s ? *s : nullptr;
   }
   void refineDepthOf(const Group& group, LightEstimate& light);
+  void refineNormalsOf(const Group& group, LightEstimate& light);
   void correctViews(const Group& group);
   std::vector<Group> groups() const;
   /// Some frame, whether it trains or not, shows a highlight of this light.
@@ -237,7 +240,7 @@ void Run::brightestPointsAndTangentPlanes() {
                   r_.stageKeys["detect"] + "|" + r_.stageKeys["lobe"] + "|" + join(r_.train.frames) + (r_.train.perSurface ? "per-surface" : "") + "|x" +
                       join(q.excluded) + "|" + exactText(q.noisePx) + "|" + std::to_string(q.seed) + "|" + posesKey(q.whatIf) +
                       "|" + highlightsKey(q.whatIf) + "|" + lightsOffKey(q.whatIf));
-  if (unchanged("views") && previous_->depthCorrections.empty()) {  // corrected views belong to that run's light
+  if (unchanged("views") && previous_->depthCorrections.empty() && previous_->refinedNormals.empty()) {  // corrected views belong to that run's light
     r_.views = previous_->views;
     for (TrainingView& v : r_.views) v.canonical.reset();
     return;
@@ -297,6 +300,7 @@ void Run::lights() {
     r_.lights = previous_->lights;
     r_.lightFailures = previous_->lightFailures;
     r_.depthCorrections = previous_->depthCorrections;
+    r_.refinedNormals = previous_->refinedNormals;
     for (const Group& g : all) correctViews(g);
     return;
   }
@@ -312,6 +316,7 @@ void Run::lights() {
     Outcome<LightEstimate> light = estimateLight(views, r_.request.settings);
     ++r_.work.lights;
     if (light && r_.request.settings.flag("light.refine_depth")) refineDepthOf(all[i], *light);
+    if (light && r_.request.settings.flag("light.refine_normals")) refineNormalsOf(all[i], *light);
     if (light) r_.lights.insert_or_assign(key, *light);
     else r_.lightFailures.insert_or_assign(key, light.failure());
   }
@@ -342,8 +347,34 @@ void Run::refineDepthOf(const Group& group, LightEstimate& light) {
   if (!light.extent && refined->uncertainty) light.uncertainty = refined->uncertainty;
 }
 
+/// Corrects the mesh that a light's views see, and the light with it.
+void Run::refineNormalsOf(const Group& group, LightEstimate& light) {
+  std::vector<TrainingView> views;
+  for (const int v : group.views) views.push_back(r_.views[v]);
+  if (views.empty()) return;
+  const std::string surface = r_.surfaces->keyOf(views.front().frame);
+  const auto source = r_.scene->surfaces.find(surface);
+  if (source == r_.scene->surfaces.end() || !source->second.mesh) return;  // a shape is exact, a depth map has a depth that could be off
+  for (const TrainingView& v : views)
+    if (r_.surfaces->keyOf(v.frame) != surface) return;  // what one mesh has wrong another one has not
+  Outcome<std::optional<RefinedNormals>> refined = refineNormals(views, light, surface, r_.request.settings);
+  if (!refined || !*refined) return;
+  const std::optional<ParameterUncertainty> uncertainty = (*refined)->uncertainty;
+  r_.refinedNormals.insert_or_assign(lightKey(group.light, group.surface), **std::move(refined));
+  correctViews(group);
+  views.clear();
+  for (const int v : group.views) views.push_back(r_.views[v]);
+  if (const Outcome<LightEstimate> again = estimateLight(views, r_.request.settings)) light = *again;
+  if (!light.extent && uncertainty) light.uncertainty = uncertainty;
+}
+
 void Run::correctViews(const Group& group) {
   const std::string key = lightKey(group.light, group.surface);
+  if (const auto refined = r_.refinedNormals.find(key); refined != r_.refinedNormals.end()) {
+    for (const int v : group.views)
+      if (!r_.views[v].failure) r_.views[v] = onSurface(r_.views[v], refined->second.mesh);
+    return;
+  }
   if (!r_.depthCorrections.count(key)) return;
   for (const int v : group.views) {
     TrainingView& view = r_.views[v];
@@ -377,7 +408,7 @@ FitInput Run::fitInput(const Group& group) const {
   for (const int v : group.views) input.views.push_back(r_.views[v]);
   const std::string key = lightKey(group.light, group.surface);
   // The stage's fit is of all views of the group: it serves where none of them lost its pixels since.
-  if (const auto fit = r_.pixelFits.find(key); fit != r_.pixelFits.end() && havePixels(input.views)) input.pixelFit = fit->second;
+  if (const auto fit = r_.pixelFits.find(key); fit != r_.pixelFits.end() && havePixels(input.views) && !r_.refinedNormals.count(key)) input.pixelFit = fit->second;
   if (const auto it = r_.lights.find(key); it != r_.lights.end()) input.light = it->second;
   else if (const auto failed = r_.lightFailures.find(key); failed != r_.lightFailures.end()) input.lightFailure = failed->second;
   return input;
@@ -409,6 +440,8 @@ void Run::modelFits() {
         fit->light = g.light;
         fit->surface = g.surface;
         if (std::string merged = mergedRemark(*fit); !merged.empty()) fit->remarks.push_back(std::move(merged));
+        if (const auto refined = r_.refinedNormals.find(lightKey(g.light, g.surface)); refined != r_.refinedNormals.end() && model.needsLight())
+          fit->remarks.push_back(refined->second.remark());
         fit->timeUs = microsecondsSince(start);
         entry.fit = std::move(*fit);
       } else {
@@ -431,7 +464,7 @@ std::vector<std::shared_ptr<const Band>> Run::bandsOf(const HighlightModel& mode
         ModelResult::Fit& fit = result.fits[static_cast<std::size_t>(i)];
         const auto group = std::find_if(all.begin(), all.end(), [&](const Group& g) { return g.light == fit.light && g.surface == fit.surface; });
         if (!fit.fit || group == all.end()) return;
-        FittedBand band = bandOf(model, *fit.fit, fitInput(*group), r_.request.settings, r_.depthCorrections.count(lightKey(fit.light, fit.surface)) > 0);
+        FittedBand band = bandOf(model, *fit.fit, fitInput(*group), r_.request.settings, r_.depthCorrections.count(lightKey(fit.light, fit.surface)) + r_.refinedNormals.count(lightKey(fit.light, fit.surface)) > 0);
         bands[static_cast<std::size_t>(i)] = std::move(band.band);
         fit.bandRemarks = std::move(band.remarks);
       },

@@ -11,6 +11,7 @@
 #include "core/base/settings.h"
 #include "core/evaluate/metrics.h"
 #include "core/light/refine_depth.h"
+#include "core/pipeline/refined_normals.h"
 #include "core/model/model.h"
 #include "core/pipeline/what_if.h"
 #include "core/scene/scene.h"
@@ -131,6 +132,7 @@ struct Inspection {
   std::map<std::string, LightEstimate> lights;             ///< by light id (+ "@" + surface key when per surface)
   std::map<std::string, Failure> lightFailures;            ///< the same keys: why a light could not be estimated
   std::map<std::string, DepthCorrection> depthCorrections; ///< the same keys, where light.refine_depth found one: of the views' and predictions' depth maps
+  std::map<std::string, RefinedNormals> refinedNormals;    ///< the same keys, where light.refine_normals found a better mesh: of the views and predictions
   std::map<std::string, ModelResult> models;
   std::map<std::string, std::string> stageKeys;            ///< what each stage's result depends on: tells which stages a later run may reuse
   WorkCounts work;
