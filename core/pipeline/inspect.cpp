@@ -8,12 +8,12 @@
 #include "core/model/plausible.h"
 #include "core/pipeline/band.h"
 #include "core/pipeline/comparison.h"
-#include "core/pipeline/corrected_depth.h"
 #include "core/pipeline/evidence.h"
 #include "core/pipeline/inspection.h"
 #include "core/pipeline/lobe_stage.h"
 #include "core/pipeline/several_lights.h"
 #include "core/pipeline/stage_keys.h"
+#include "core/pipeline/surface_corrections.h"
 #include "core/pipeline/training.h"
 #include "core/surface/mesh_policy.h"
 
@@ -58,6 +58,7 @@ class Run {
   /// @param onlyFrame  as inspectOneFrame; -1 = every frame
   Run(Inspection& result, const ProgressFn& progress, const Inspection* previous, int onlyFrame)
       : r_(result),
+        corrections_(result),
         progress_(progress),
         previous_(previous && previous->given == result.given ? previous : nullptr),
         onlyFrame_(onlyFrame) {}
@@ -88,19 +89,6 @@ class Run {
     const Outcome<std::shared_ptr<const Surface>> s = r_.surfaces->surfaceOf(frame, meshPolicy(r_.request.settings));
     if (!s) failure = s.failure();
   }
-  /// With what a light's contours corrected: the depth of the frame's own depth map, or the normals of its mesh.
-  std::shared_ptr<const Surface> surfaceOf(int frame, const std::string& key) {
-    if (const auto refined = r_.refinedNormals.find(key); refined != r_.refinedNormals.end() && refined->second.surface == r_.surfaces->keyOf(frame))
-      return refined->second.mesh;
-    const auto found = r_.depthCorrections.find(key);
-    const Frame& f = r_.scene->frames[frame];
-    if (found == r_.depthCorrections.end() || !f.surface.empty()) return surfaceOf(frame);
-    const Outcome<std::shared_ptr<const Surface>> s = corrected_.surfaceOf(f, meshPolicy(r_.request.settings), key, found->second);
-    return s ? *s : nullptr;
-  }
-  void refineDepthOf(const Group& group, LightEstimate& light);
-  void refineNormalsOf(const Group& group, LightEstimate& light);
-  void correctViews(const Group& group);
   std::vector<Group> groups() const;
   /// Some frame, whether it trains or not, shows a highlight of this light.
   bool seen(const std::string& light) const {
@@ -137,7 +125,7 @@ class Run {
   bool lightsAreOpen() const { return lightsAreOpenIn(*r_.scene, r_.request); }
 
   Inspection& r_;
-  CorrectedDepthMaps corrected_;
+  SurfaceCorrections corrections_;
   const ProgressFn& progress_;
   const Inspection* previous_;
   int onlyFrame_;
@@ -301,7 +289,7 @@ void Run::lights() {
     r_.lightFailures = previous_->lightFailures;
     r_.depthCorrections = previous_->depthCorrections;
     r_.refinedNormals = previous_->refinedNormals;
-    for (const Group& g : all) correctViews(g);
+    for (const Group& g : all) corrections_.correctViews(g.views, lightKey(g.light, g.surface));
     return;
   }
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -315,73 +303,9 @@ void Run::lights() {
     }
     Outcome<LightEstimate> light = estimateLight(views, r_.request.settings);
     ++r_.work.lights;
-    if (light && r_.request.settings.flag("light.refine_depth")) refineDepthOf(all[i], *light);
-    if (light && r_.request.settings.flag("light.refine_normals")) refineNormalsOf(all[i], *light);
+    if (light) corrections_.refine(all[i].views, key, *light);
     if (light) r_.lights.insert_or_assign(key, *light);
     else r_.lightFailures.insert_or_assign(key, light.failure());
-  }
-}
-
-/// Corrects the depth maps of a light's views, and the light with them.
-void Run::refineDepthOf(const Group& group, LightEstimate& light) {
-  std::vector<TrainingView> views;
-  for (const int v : group.views) {
-    if (!r_.scene->frames[r_.views[v].frame].surface.empty()) return;  // a mesh or a shape has no depth that could be off
-    views.push_back(r_.views[v]);
-  }
-  const Outcome<DepthRefinement> refined = refineDepth(views, light.light, r_.request.settings);
-  if (!refined || !refined->correction.changesAnything()) return;
-  const std::string key = lightKey(group.light, group.surface);
-  r_.depthCorrections.insert_or_assign(key, refined->correction);
-  const std::vector<TrainingView> before = r_.views;
-  correctViews(group);
-  views.clear();
-  for (const int v : group.views) views.push_back(r_.views[v]);
-  const Outcome<LightEstimate> again = estimateLight(views, r_.request.settings);
-  if (!again || !(again->rmsPx < light.rmsPx)) {  // the corrected surfaces do not keep what the correction promised
-    r_.views = before;
-    r_.depthCorrections.erase(key);
-    return;
-  }
-  light = *again;
-  if (!light.extent && refined->uncertainty) light.uncertainty = refined->uncertainty;
-}
-
-/// Corrects the mesh that a light's views see, and the light with it.
-void Run::refineNormalsOf(const Group& group, LightEstimate& light) {
-  std::vector<TrainingView> views;
-  for (const int v : group.views) views.push_back(r_.views[v]);
-  if (views.empty()) return;
-  const std::string surface = r_.surfaces->keyOf(views.front().frame);
-  const auto source = r_.scene->surfaces.find(surface);
-  if (source == r_.scene->surfaces.end() || !source->second.mesh) return;  // a shape is exact, a depth map has a depth that could be off
-  for (const TrainingView& v : views)
-    if (r_.surfaces->keyOf(v.frame) != surface) return;  // what one mesh has wrong another one has not
-  Outcome<std::optional<RefinedNormals>> refined = refineNormals(views, light, surface, r_.request.settings);
-  if (!refined || !*refined) return;
-  const std::optional<ParameterUncertainty> uncertainty = (*refined)->uncertainty;
-  r_.refinedNormals.insert_or_assign(lightKey(group.light, group.surface), **std::move(refined));
-  correctViews(group);
-  views.clear();
-  for (const int v : group.views) views.push_back(r_.views[v]);
-  if (const Outcome<LightEstimate> again = estimateLight(views, r_.request.settings)) light = *again;
-  if (!light.extent && uncertainty) light.uncertainty = uncertainty;
-}
-
-void Run::correctViews(const Group& group) {
-  const std::string key = lightKey(group.light, group.surface);
-  if (const auto refined = r_.refinedNormals.find(key); refined != r_.refinedNormals.end()) {
-    for (const int v : group.views)
-      if (!r_.views[v].failure) r_.views[v] = onSurface(r_.views[v], refined->second.mesh);
-    return;
-  }
-  if (!r_.depthCorrections.count(key)) return;
-  for (const int v : group.views) {
-    TrainingView& view = r_.views[v];
-    FrameEvidence evidence;
-    evidence.frame = view.frame;
-    evidence.highlights = {view.highlight};
-    view = trainingView(evidence, 0, view.camera, surfaceOf(view.frame, key));
   }
 }
 
@@ -464,7 +388,7 @@ std::vector<std::shared_ptr<const Band>> Run::bandsOf(const HighlightModel& mode
         ModelResult::Fit& fit = result.fits[static_cast<std::size_t>(i)];
         const auto group = std::find_if(all.begin(), all.end(), [&](const Group& g) { return g.light == fit.light && g.surface == fit.surface; });
         if (!fit.fit || group == all.end()) return;
-        FittedBand band = bandOf(model, *fit.fit, fitInput(*group), r_.request.settings, r_.depthCorrections.count(lightKey(fit.light, fit.surface)) + r_.refinedNormals.count(lightKey(fit.light, fit.surface)) > 0);
+        FittedBand band = bandOf(model, *fit.fit, fitInput(*group), r_.request.settings, corrections_.any(lightKey(fit.light, fit.surface)));
         bands[static_cast<std::size_t>(i)] = std::move(band.band);
         fit.bandRemarks = std::move(band.remarks);
       },
@@ -508,7 +432,7 @@ void Run::predictionsAndComparisons() {
           const Camera& camera = r_.scene->frames[frame].camera;
           Prediction prediction;
           if (fit.fit) {
-            const std::shared_ptr<const Surface> surface = needsSurface ? surfaceOf(frame, lightKey(fit.light, fit.surface)) : nullptr;
+            const std::shared_ptr<const Surface> surface = needsSurface ? corrections_.surfaceOf(frame, lightKey(fit.light, fit.surface)) : nullptr;
             surfacesAsked += needsSurface;
             ++predictions;
             const auto start = std::chrono::steady_clock::now();

@@ -140,6 +140,11 @@ struct Inspection {
   bool isHeldOut(int frame) const;                         ///< counts in summaries
 };
 
+/// The surface that predictions of a light in a frame use: the frame's own, or its mesh with the normals that the light's contours corrected
+/// (light.refine_normals). Depth maps are as they are stored. The failures of SurfaceCache::surfaceOf(); NoSurface without a cache.
+/// @param light  id.
+Outcome<std::shared_ptr<const Surface>> surfaceFor(const Inspection& inspection, int frame, const std::string& light);
+
 /// scene -> highlight -> brightest point, tangent plane -> light -> virtual camera -> canonical contour -> model fit
 /// -> prediction -> comparison. Pure; throws Stopped when `progress` says so, InputError for wrong requests.
 /// @param previous  result of an earlier run on the same scene: stages whose inputs did not change are taken from it.

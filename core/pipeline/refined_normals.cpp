@@ -116,9 +116,18 @@ TrainingView onSurface(const TrainingView& view, std::shared_ptr<const Surface> 
   return other;
 }
 
+Outcome<std::shared_ptr<const Surface>> surfaceFor(const Inspection& inspection, int frame, const std::string& light) {
+  if (!inspection.surfaces) return Failure{Reason::NoSurface, ""};
+  const std::string surface = inspection.surfaces->keyOf(frame);
+  const auto refined = inspection.refinedNormals.find(lightKey(light, inspection.train.perSurface ? std::optional(surface) : std::nullopt));
+  if (refined != inspection.refinedNormals.end() && refined->second.surface == surface) return refined->second.mesh;
+  return inspection.surfaces->surfaceOf(frame, meshPolicy(inspection.request.settings));
+}
+
 Outcome<std::optional<RefinedNormals>> refineNormals(const std::vector<TrainingView>& views, const LightEstimate& light, const std::string& surface,
                                                      const Settings& settings) {
   if (settings.text("light.solver") != "bundle") return Failure{Reason::NotSupported, "light.refine_normals needs the bundle"};
+  if (meshPolicy(settings).normals == NormalPolicy::Facet) return Failure{Reason::NotSupported, "light.refine_normals needs normals that can turn"};
   const auto one = std::find_if(views.begin(), views.end(), [](const TrainingView& v) { return !v.failure && v.brightest && v.surface; });
   if (one == views.end()) return Failure{Reason::TooFewViews, ""};
   const Surface& given = *one->surface;

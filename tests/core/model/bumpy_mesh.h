@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <random>
+#include <utility>
+#include <vector>
 
-#include "core/surface/mesh.h"
-#include "tests/core/model/exact_views.h"
+#include "core/surface/analytic.h"
 
 /// Photogrammetry's meshes: right but for smooth bumps.
 namespace glint::test {
@@ -27,6 +30,17 @@ inline TriangleMesh bumpyMesh(const AnalyticSpec& spec, double slope, double len
   }
   mesh.normals.clear();
   return mesh;
+}
+
+/// Text PLY with every digit of the vertices; no normals.
+inline void writePly(const TriangleMesh& mesh, const std::filesystem::path& file) {
+  std::ofstream ply(file);
+  ply.precision(17);
+  ply << "ply\nformat ascii 1.0\nelement vertex " << mesh.vertices.size()
+      << "\nproperty double x\nproperty double y\nproperty double z\nelement face " << mesh.triangles.size()
+      << "\nproperty list uchar int vertex_indices\nend_header\n";
+  for (const Eigen::Vector3d& v : mesh.vertices) ply << v.x() << " " << v.y() << " " << v.z() << "\n";
+  for (const Eigen::Vector3i& t : mesh.triangles) ply << "3 " << t.x() << " " << t.y() << " " << t.z() << "\n";
 }
 
 }  // namespace glint::test

@@ -7,7 +7,9 @@
 #include <cmath>
 
 #include "core/geometry/polyline.h"
+#include "core/surface/mesh.h"
 #include "tests/core/model/bumpy_mesh.h"
+#include "tests/core/model/exact_views.h"
 
 namespace glint {
 namespace {
