@@ -24,7 +24,7 @@ CYCLES = [
     ("sphere", MESH_AND_ANALYTIC, ["first:6", "spread:6"]),
     ("vase", MESH_AND_ANALYTIC[:1], ["first:6", "spread:6"]),
 ]
-SOURCES = ["radiance", "image", "image, truth"]
+SOURCES = ["radiance", "radiance, truth", "image", "image, truth"]
 SYNTHETIC = [
     ("plane_to_cylinder_300", ["per-surface", "0-5"]),
     ("ellipsoid_80", ["first:6", "spread:6"]),
@@ -317,8 +317,8 @@ and on the paper's two synthetic experiments, which `glint synth` makes exactly 
   log-quadratic fit; path-traced highlights have theirs beside the mirror point (off-specular shift), so this is not an error of the geometry alone.
 - **Training** frames never count, except with `per-surface`, where each surface's models are trained and tested on the same six views.
 - **Source**: `radiance` = contours and peaks detected in the 32-bit float specular radiance; `image` = in the 8-bit sRGB photograph,
-  diffuse background removed; `image, truth` = trained on the photograph's detections, but scored against contours that another program
-  traced on the radiance (`contours/`).
+  background removed. Without `truth` the error is against Glint's own detection in the same images. `..., truth` = trained on the same
+  detections, but scored against contours that another program traced on the radiance (`contours/`): this is the column to quote.
 - **Surface**: `mesh` = the triangles that were rendered, with interpolated vertex normals; `analytic` = the exact surface.
 - **Level**: a contour lies at a fraction of the strongest peak of its frame, above the background; the same fraction everywhere (`detect.level` below).
 - Two renderings that differ in their random seed alone differ by about 0.01 px, so differences below 0.02 px say nothing.

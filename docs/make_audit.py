@@ -39,27 +39,30 @@ def main():
     parser.add_argument("--shared", default=DOCS.parent.parent / "shared")
     parser.add_argument("--scratch", help="keeps synthetic scenes from run to run")
     parser.add_argument("--only", default="", help="sections that start with this")
+    parser.add_argument("--title", default="", help="rows whose title contains this")
     parser.add_argument("--before", action="store_true", help="record the figures as those before")
     arguments = parser.parse_args()
     for module in sorted(m.name for m in pkgutil.iter_modules([str(DOCS / "audit")])):
         importlib.import_module("audit." + module)
-    record = json.loads(RECORD.read_text()) if RECORD.exists() else {}
     lines = sorted(harness.LINES, key=lambda l: l.section)
+    keys = [f"{l.section} {l.title}" for l in lines]
     with tempfile.TemporaryDirectory() as scratch:
         runner = harness.Runner(arguments.glint, arguments.scratch or scratch, arguments.shared)
         for l in lines:
-            if not l.section.startswith(arguments.only):
+            if not l.section.startswith(arguments.only) or arguments.title not in l.title:
                 continue
             try:
                 result = l.check(runner)
             except Exception as e:  # an old build, or a fault: both are findings
                 result = harness.Result(f"fails: {e}", False)
             print(f"{l.section} {l.title}: {result.figure}{'' if result.holds else '  MISSED'}", flush=True)
+            # Read again each time: two builds may be measured beside each other, and a run that is stopped keeps what it found.
+            record = json.loads(RECORD.read_text()) if RECORD.exists() else {}
             entry = record.setdefault(f"{l.section} {l.title}", {})
             entry["before" if arguments.before else "now"] = {"figure": result.figure, "holds": result.holds}
-    known = {f"{l.section} {l.title}" for l in lines}
-    record = {k: v for k, v in sorted(record.items()) if k in known}
-    RECORD.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n")
+            record = {k: v for k, v in sorted(record.items()) if k in keys}
+            RECORD.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n")
+    record = json.loads(RECORD.read_text()) if RECORD.exists() else {}
 
     def cell(key, when):
         entry = record.get(key, {}).get(when)

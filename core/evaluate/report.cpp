@@ -364,6 +364,8 @@ std::string evaluationTable(const Inspection& inspection) {
     std::snprintf(line, sizeof line, "own detection against the truth: %s %% mean, %s %% at most, %d of %d frames' highlights missed\n",
                   cell(d->contourErrorPct.mean).c_str(), cell(d->contourErrorPct.max).c_str(), d->missed, d->frames);
     out += line;
+  } else if (scoredAgainst(inspection) == "own detection") {
+    out += "errors are against the own detection; --truth DIR names known contours\n";
   }
   return out;
 }

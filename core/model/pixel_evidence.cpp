@@ -14,7 +14,6 @@ namespace glint {
 namespace {
 
 constexpr int kAnglePoints = 36;  // of a contour, for the first guess of the roughness
-constexpr double kGainWorthATrial = 0.1;      // of the cost: what an extent must promise before it is tried
 constexpr std::size_t kFewestContours = 3;    // that tell a lamp's shape
 
 /// The mean direction of the reflected peak rays, which no noise turns behind the surface.
@@ -42,8 +41,8 @@ std::optional<PixelFit> withExtent(const std::vector<TrainingView>& views, const
       contours.push_back({v.frame, v.camera, v.surface.get(), v.highlight.contour.points, v.highlight.peak, v.highlight.level});
   const std::vector<Lobe> lobes = lobesOf(settings);
   std::optional<PixelFit> best;
-  const auto consider = [&](const std::vector<Lobe>& order, const Lamp& lamp, double roughness) {
-    const Outcome<PixelFit> fit = fitPixels(order, patches, lamp, roughness);
+  const auto consider = [&](const std::vector<Lobe>& order, const Lamp& lamp, double roughness, const PixelFitOptions& options = {}) {
+    const Outcome<PixelFit> fit = fitPixels(order, patches, lamp, roughness, options);
     const PixelFit& before = best ? *best : point;
     if (fit && (before.poor && !fit->poor ? true : fit->poor == before.poor && explainsClearlyBetter(*fit, before))) best = *fit;
   };
@@ -61,15 +60,22 @@ std::optional<PixelFit> withExtent(const std::vector<TrainingView>& views, const
     }
   }
   if (!tried && choices.sphere) {
-    // Contours may hide a size that pixels show: as large as half the lobe is wide, to begin with.
+    // Contours may hide a size that pixels show: as large as half the lobe is wide, to begin with. What has a pattern may come from a lamp
+    // that is wider than the lobe: the lobe is then narrower than a point lamp makes it.
     const double distance = point.model.lamp.centre.position().norm();
     double reach = 0;
     for (const PixelPatch* p : patches) {
       const std::size_t middle = p->size() / 2;
       if (p->onSurface[middle]) reach = std::max(reach, (point.model.lamp.centre.position() - p->seen[middle].position).norm());
     }
-    const double radius = 0.5 * point.model.roughness * (reach > 0 ? reach : distance);
-    consider({point.model.lobe}, Lamp::sphere(point.model.lamp.centre, radius), point.model.roughness);
+    const double width = point.model.roughness * (reach > 0 ? reach : distance);
+    PixelFitOptions same;
+    same.background = point.background;
+    const auto sphere = [&](double radius, double roughness) {
+      consider({point.model.lobe}, Lamp::sphere(point.model.lamp.centre, radius), roughness, same);
+    };
+    if (point.patterned) sphere(1.5 * width, 0.7 * point.model.roughness);
+    if (!best) sphere(0.5 * width, point.model.roughness);
   }
   return best;
 }
@@ -109,7 +115,7 @@ Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const s
     if (!best || (fit && (fit->poor != best->poor ? best->poor : fit->cost < best->cost))) best = std::move(fit);
     if (best && !best->poor) break;
   }
-  if (best && (best->poor || best->gainByExtent > kGainWorthATrial))
+  if (best && (best->poor || asksForExtent(*best)))
     if (std::optional<PixelFit> extended = withExtent(views, patches, *best, settings)) best = *std::move(extended);
   if (best && best->poor) {
     char detail[120];
@@ -147,7 +153,14 @@ Outcome<ModelFit> reflectanceFromPixels(const FitInput& input, const Settings& s
   std::vector<UsedContour> used;
   for (const TrainingView& v : input.views)
     if (!v.failure) used.push_back(usedContour(v));
-  return explaining(std::move(fit), used, true, settings.number("fit.most_residual"));
+  Outcome<ModelFit> judged = explaining(std::move(fit), used, true, settings.number("fit.most_residual"));
+  if (judged && pixels.patterned && judged->remarks.empty()) {
+    char text[160];
+    std::snprintf(text, sizeof text, "what remains in the pixels has a pattern (%.3g px at the contours): lobe, lamp or surface may be wrong",
+                  pixels.rmsPx);
+    judged->remarks.push_back(text);
+  }
+  return judged;
 }
 
 }  // namespace glint

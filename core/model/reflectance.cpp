@@ -51,14 +51,6 @@ std::vector<double> perView(const std::vector<double>& rms, const std::vector<st
   return squares;
 }
 
-/// Numbers between commas.
-std::vector<double> levelsIn(const std::string& text) {
-  std::vector<double> levels;
-  std::istringstream list(text);
-  for (std::string entry; std::getline(list, entry, ',');) levels.push_back(std::strtod(entry.c_str(), nullptr));
-  return levels;
-}
-
 bool isListed(double level, const std::vector<double>& listed) {
   constexpr double kSameLevel = 1e-6;  // levels are typed with a few digits
   return level > 0 && level < 1 &&
@@ -102,7 +94,7 @@ class Reflectance final : public HighlightModel {
     std::vector<RadianceView> views;
     std::vector<std::size_t> owner;  // of each contour: which training view
     const bool severalLevels = settings.text("fit.evidence") == "levels";
-    const std::vector<double> listed = levelsIn(settings.text("fit.levels"));
+    const std::vector<double> listed = listedLevels(settings);
     const auto add = [&](const TrainingView& v, double level, const Polyline& contour) {
       views.push_back({v.frame, v.camera, v.surface.get(), contour.points, v.highlight.peak, level});
       owner.push_back(fit.frames.size() - 1);

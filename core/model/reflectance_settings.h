@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdlib>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -23,6 +25,14 @@ inline std::vector<Lobe> lobesOf(const Settings& settings) {
 inline LampChoices lampChoicesOf(const Settings& settings) {
   const std::string& lamps = settings.text("fit.light_size");
   return {lamps == "auto" || lamps == "sphere", lamps == "auto" || lamps == "segment"};
+}
+
+/// The levels of `fit.levels`: numbers between commas.
+inline std::vector<double> listedLevels(const Settings& settings) {
+  std::vector<double> levels;
+  std::istringstream list(settings.text("fit.levels"));
+  for (std::string entry; std::getline(list, entry, ',');) levels.push_back(std::strtod(entry.c_str(), nullptr));
+  return levels;
 }
 
 inline RadianceFitOptions radianceFitOptionsOf(const Settings& settings) {

@@ -134,6 +134,8 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
       if (lobe == "auto" || lobe == *fit.lobe) continue;
       Settings with = settings;
       with.set("fit.lobe", lobe);
+      // Under a lamp of the same shape: a wrong lobe would take long to find one that makes up for it.
+      with.set("fit.light_size", std::string(fit.lightSegment ? "segment" : fit.lightRadius.value_or(0) > 0 ? "sphere" : "point"));
       tryOther(model, with, "the lobe " + lobe);
     }
   } else if (fit.limitAngle && !fit.ellipsoid) {

@@ -40,7 +40,12 @@ void fitMissingEllipse(Highlight& h) {
   if (const Outcome<Ellipse> e = fitEllipse(h.contour.points)) h.ellipse = *e;
 }
 
-/// Contours that the scene gives at other levels, to the highlight whose peak they enclose. One around several peaks is evidence once.
+std::filesystem::path truthFile(const std::string& folder, const Frame& frame) {
+  return std::filesystem::path(folder) / (frame.id + ".json");
+}
+
+}  // namespace
+
 void addOtherLevels(const std::vector<Highlight>& given, std::vector<Highlight>& highlights) {
   for (const Highlight& other : given)
     for (Highlight& h : highlights) {
@@ -49,12 +54,6 @@ void addOtherLevels(const std::vector<Highlight>& given, std::vector<Highlight>&
       break;
     }
 }
-
-std::filesystem::path truthFile(const std::string& folder, const Frame& frame) {
-  return std::filesystem::path(folder) / (frame.id + ".json");
-}
-
-}  // namespace
 
 DetectOptions detectOptionsFor(const Frame& frame, FrameSource source, const Settings& settings) {
   DetectOptions options;

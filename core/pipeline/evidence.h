@@ -22,6 +22,9 @@ DetectOptions detectOptionsFor(const Frame& frame, FrameSource source, const Set
 /// The image that detection sees, as evidence. FrameUnreadable.
 Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const Settings& settings);
 
+/// Contours at other levels, to the highlight of the same light whose peak they enclose. One around several peaks is evidence once.
+void addOtherLevels(const std::vector<Highlight>& given, std::vector<Highlight>& highlights);
+
 /// Highlights of one frame in ideal pixels: those that the scene gives, else detected (each at the level of its own peak where the frame states
 /// several lights). The light is set where the frame says which one is on (one light: its id; none stated: "light").
 FrameEvidence gatherEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings, const SeparateLights& lights = {});

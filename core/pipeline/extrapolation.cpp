@@ -9,6 +9,7 @@
 
 #include "core/base/parallel.h"
 #include "core/evaluate/metrics.h"
+#include "core/pipeline/lobe_stage.h"
 #include "core/surface/mesh_policy.h"
 
 namespace glint {
@@ -115,8 +116,7 @@ std::map<std::string, Fold> wholeFolds(const Inspection& inspection, const std::
       all.others.push_back(v);
       all.others.back().canonical.reset();
     }
-    if (const auto known = inspection.pixelFits.find(lightKey(f.left->highlight.light, {})); known != inspection.pixelFits.end())
-      all.pixelFit = known->second;
+    all.pixelFit = pixelFitFor(inspection, lightKey(f.left->highlight.light, {}));
   }
   return whole;
 }

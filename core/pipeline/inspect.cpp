@@ -227,8 +227,8 @@ void Run::brightestPointsAndTangentPlanes() {
       keyOfStages(q.settings, {"surface"},
                   r_.stageKeys["detect"] + "|" + r_.stageKeys["lobe"] + "|" + join(r_.train.frames) + (r_.train.perSurface ? "per-surface" : "") + "|x" +
                       join(q.excluded) + "|" + exactText(q.noisePx) + "|" + std::to_string(q.seed) + "|" + posesKey(q.whatIf) +
-                      "|" + highlightsKey(q.whatIf) + "|" + lightsOffKey(q.whatIf));
-  if (unchanged("views") && previous_->depthCorrections.empty() && previous_->refinedNormals.empty()) {  // corrected views belong to that run's light
+  // Corrected normals are not those of the stage.
+  if (havePixels(input.views) && !r_.refinedNormals.count(key)) input.pixelFit = pixelFitFor(r_, key);
     r_.views = previous_->views;
     for (TrainingView& v : r_.views) v.canonical.reset();
     return;
@@ -238,6 +238,7 @@ void Run::brightestPointsAndTangentPlanes() {
     if (!report(progress_, {"surface", done++, static_cast<int>(r_.train.frames.size())})) throw Stopped{};
     if (std::find(q.excluded.begin(), q.excluded.end(), frame) != q.excluded.end()) continue;
     FrameEvidence evidence = r_.evidence[frame];
+    addDetectedLevels(r_, [this](int f) { return surfaceOf(f); }, evidence);
     for (std::size_t h = 0; h < evidence.highlights.size(); ++h)
       evidence.highlights[h] = withNoise(evidence.highlights[h], q.noisePx, q.seed, frame, evidence.asFound(static_cast<int>(h)));
     for (int h = 0; h < static_cast<int>(evidence.highlights.size()); ++h) {
@@ -332,7 +333,8 @@ FitInput Run::fitInput(const Group& group) const {
   for (const int v : group.views) input.views.push_back(r_.views[v]);
   const std::string key = lightKey(group.light, group.surface);
   // The stage's fit is of all views of the group: it serves where none of them lost its pixels since.
-  if (const auto fit = r_.pixelFits.find(key); fit != r_.pixelFits.end() && havePixels(input.views) && !r_.refinedNormals.count(key)) input.pixelFit = fit->second;
+  // Corrected normals are not those of the stage.
+  if (havePixels(input.views) && !r_.refinedNormals.count(key)) input.pixelFit = pixelFitFor(r_, key);
   if (const auto it = r_.lights.find(key); it != r_.lights.end()) input.light = it->second;
   else if (const auto failed = r_.lightFailures.find(key); failed != r_.lightFailures.end()) input.lightFailure = failed->second;
   return input;

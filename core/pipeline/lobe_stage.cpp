@@ -2,11 +2,13 @@
 #include "core/pipeline/lobe_stage.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <map>
 
 #include "core/base/parallel.h"
 #include "core/model/pixel_evidence.h"
+#include "core/model/reflectance_settings.h"
 #include "core/pipeline/evidence.h"
 #include "core/pipeline/stage_keys.h"
 #include "core/pipeline/training.h"
@@ -36,6 +38,17 @@ bool wasDetected(const FrameEvidence& e) {
          std::none_of(e.highlights.begin(), e.highlights.end(), [](const Highlight& h) { return h.fromScene; });
 }
 
+/// The lobe of the detection is the one that the pixels show, whatever the model is told to take: contours do not depend on it.
+constexpr std::array<const char*, 2> kOfTheModel{"fit.lobe", "fit.light_size"};
+Settings anyLobe(Settings settings) {
+  for (const char* key : kOfTheModel) settings.reset(key);
+  return settings;
+}
+bool takesAnyLobe(const Settings& settings) {
+  const Settings any = anyLobe(settings);
+  return std::all_of(kOfTheModel.begin(), kOfTheModel.end(), [&](const char* key) { return settings.text(key) == any.text(key); });
+}
+
 InspectionRequest atHalf(InspectionRequest request) {
   request.settings.set("detect.level", 0.5);
   return request;
@@ -54,8 +67,7 @@ std::string lobeKey(const InspectionRequest& request, const TrainSpec& train, bo
   frames += train.perSurface ? "per-surface" : "";
   for (const int f : request.excluded) frames += "x" + std::to_string(f);
   return keyOfStages(request.settings, {"surface"}, detectKey(together ? request : atHalf(request), together)) + "|" + frames + "|" + posesKey(request.whatIf) + "|" +
-         lightsOffKey(request.whatIf) + "|" + request.settings.text("fit.lobe") + "|" + request.settings.text("fit.light_size") +
-         (looksAtPixels(request) ? "|pixels" : "");
+         lightsOffKey(request.whatIf) + (looksAtPixels(request) ? "|pixels" : "");
 }
 
 void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, const ProgressFn& progress) {
@@ -105,11 +117,17 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
     // The start is the same whatever the settings of the light are: they do not matter to where the fit ends.
     const Outcome<LightEstimate> light = estimateLight(views, Settings{});
     const Outcome<PixelFit> fit =
-        fitViewsPixels(views, light ? std::optional<LightEstimate>(*light) : std::nullopt, r.request.settings);
+        fitViewsPixels(views, light ? std::optional<LightEstimate>(*light) : std::nullopt, anyLobe(r.request.settings));
     ++r.work.pixelFits;
     if (fit) r.pixelFits[key] = std::make_shared<PixelFit>(*fit);
     else r.pixelFailures.insert_or_assign(key, fit.failure());
   }
+}
+
+std::shared_ptr<const PixelFit> pixelFitFor(const Inspection& r, const std::string& key) {
+  const auto fit = r.pixelFits.find(key);
+  if (fit == r.pixelFits.end() || !takesAnyLobe(r.request.settings)) return nullptr;
+  return fit->second;
 }
 
 std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene& scene, const InspectionRequest& request, int f,
@@ -156,6 +174,25 @@ void contourAgain(Inspection& r, const SurfaceOfFrame& surfaceOf, const Progress
       },
       progress, "contour again");
   r.work.framesContouredAgain += changed;
+}
+
+void addDetectedLevels(const Inspection& r, const SurfaceOfFrame& surfaceOf, FrameEvidence& evidence) {
+  constexpr double kSameLevel = 1e-6;  // levels are typed with a few digits
+  if (r.request.settings.text("fit.evidence") != "levels" || !wasDetected(evidence)) return;
+  const std::size_t f = static_cast<std::size_t>(evidence.frame);
+  const bool withLobe = f < r.detected.size() && r.detected[f].frame >= 0;
+  for (const double level : listedLevels(r.request.settings)) {
+    if (!(level > 0 && level < 1) || std::abs(level - r.request.settings.number("detect.level")) < kSameLevel) continue;
+    InspectionRequest at = r.request;
+    at.settings.set("detect.level", level);
+    std::optional<FrameEvidence> found;
+    if (withLobe) found = contouredAgain(r, *r.scene, at, evidence.frame, r.detected[f], surfaceOf(evidence.frame));
+    if (!found) found = evidenceFor(*r.scene, evidence.frame, at);
+    std::erase_if(found->highlights, [&](const Highlight& h) { return std::abs(h.level - level) > kSameLevel; });
+    addOtherLevels(found->highlights, evidence.highlights);
+  }
+  for (std::size_t h = 0; h < evidence.highlights.size(); ++h)
+    if (r.request.whatIf.highlights.count({evidence.frame, evidence.asFound(static_cast<int>(h))})) evidence.highlights[h].otherLevels.clear();
 }
 
 void attachPixels(Inspection& r) {

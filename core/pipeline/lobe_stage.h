@@ -18,7 +18,7 @@ namespace glint {
 /// The request asks for pixels: as evidence, or for the background.
 bool looksAtPixels(const InspectionRequest& request);
 
-/// What the stage depends on. It always looks at highlights as detected at half their peak, so that another level, which a user drags,
+/// What the stage depends on; the models' settings do not count. It always looks at highlights as detected at half their peak, so that another level, which a user drags,
 /// fits no lobe again.
 /// @param together  lights are told apart from all frames: then the highlights of the request's own level are taken
 std::string lobeKey(const InspectionRequest& request, const TrainSpec& train, bool together);
@@ -29,6 +29,11 @@ using SurfaceOfFrame = std::function<std::shared_ptr<const Surface>(int frame)>;
 /// Stopped.
 void fitLobes(Inspection& inspection, const SurfaceOfFrame& surfaceOf, bool together, const ProgressFn& progress);
 
+/// The stage's fit of a light for the reflectance model. None where there is none, or where the request names the lobe or the lamp's shape:
+/// the stage does not look at these, so that contours are the same for all of them.
+/// @param key  lightKey
+std::shared_ptr<const PixelFit> pixelFitFor(const Inspection& inspection, const std::string& key);
+
 /// Replaces the evidence of frames that were not looked at before by contours with the lobe's background; keeps the evidence as
 /// detected in Inspection::detected. Throws Stopped.
 void contourAgain(Inspection& inspection, const SurfaceOfFrame& surfaceOf, const ProgressFn& progress);
@@ -38,8 +43,12 @@ void contourAgain(Inspection& inspection, const SurfaceOfFrame& surfaceOf, const
 std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene& scene, const InspectionRequest& request, int frame,
                                             const FrameEvidence& detected, const std::shared_ptr<const Surface>& surface);
 
-/// Joins the views with their pixels: those of the highlight of the same light whose peak lies in the view's contour. None where noise was added or the user moved the highlight: its contour then says more than the
-/// pixels do.
+/// Where the evidence is `levels`: contours of a frame's detected highlights at those of `fit.levels` that are not their own, found as their own
+/// were. None for what the user moved, and at levels that lie in clipped pixels.
+void addDetectedLevels(const Inspection& inspection, const SurfaceOfFrame& surfaceOf, FrameEvidence& evidence);
+
+/// Joins the views with their pixels: those of the highlight of the same light whose peak lies in the view's contour. None where noise was
+/// added or the user moved the highlight: its contour then says more than the pixels do.
 void attachPixels(Inspection& inspection);
 
 }  // namespace glint

@@ -15,6 +15,7 @@ namespace {
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr double kPoorShare = 0.1;       // of the contour's radius, or of the top: what a lobe that explains the pixels never leaves
+constexpr double kPatternShare = 0.01;   // of the radius: right lobes, lamps and surfaces leave less than a tenth of it, but for noise
 constexpr double kInsideShare = 0.1;     // of the top: cells that show the highlight
 constexpr double kEdgeLow = 0.3, kEdgeHigh = 0.7;  // of the top: cells at the contour
 constexpr double kProbe = 0.3;           // extent whose effect is probed, in lobe widths: beyond the rounding, within the first order
@@ -53,6 +54,16 @@ double gainByExtent(PixelProblem& problem, const State& point, const std::vector
   }
   least = std::min(least, left(with));
   return plain > 0 && std::isfinite(least) ? 1 - least / plain : 0;
+}
+
+/// The share of the residuals that goes on from cell to cell, along rows, as root of a mean square: noise of single pixels has none.
+double patternOf(const std::vector<double>& residuals) {
+  double products = 0, squares = 0;
+  for (std::size_t i = 1; i < residuals.size(); ++i) {
+    products += residuals[i] * residuals[i - 1];
+    squares += residuals[i] * residuals[i];
+  }
+  return squares > 0 ? std::sqrt(std::clamp(products / squares, 0.0, 1.0)) : 0;
 }
 
 }  // namespace
@@ -115,15 +126,17 @@ void describeUncertainty(PixelProblem& pixels, const State& at, bool blur, Pixel
     pixels.differences(moved[static_cast<std::size_t>(k)].state, moved[static_cast<std::size_t>(k)].step, jacobian.data() + k,
                        static_cast<int>(unknowns));
   if (at.shape == lobe::LampShape::Point && !at.atInfinity()) fit.gainByExtent = gainByExtent(pixels, at, residuals, jacobian);
-  const Eigen::MatrixXd r =
-      Eigen::HouseholderQR<Eigen::MatrixXd>(jacobian).matrixQR().topRows(unknowns).triangularView<Eigen::Upper>();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(r, Eigen::ComputeFullV);
-  if (!(svd.singularValues()(unknowns - 1) > 1e-12 * svd.singularValues()(0))) return;  // a free direction
   std::vector<int> views;
   for (std::size_t f = 0; f < pixels.evidence().frames.size(); ++f)
     views.insert(views.end(), pixels.evidence().frames[f].used, static_cast<int>(f));
   const ResidualSpread spread = residualSpread(residuals, views, static_cast<int>(unknowns), 1);
   const double inflation = std::max(1.0, double(residuals.size()) / spread.degreesOfFreedom);
+  fit.independentCells = std::max(1.0, spread.degreesOfFreedom / inflation);
+  fit.patterned = !(fit.rmsPx * patternOf(residuals) <= kPatternShare * pixels.evidence().radiusPx);
+  const Eigen::MatrixXd r =
+      Eigen::HouseholderQR<Eigen::MatrixXd>(jacobian).matrixQR().topRows(unknowns).triangularView<Eigen::Upper>();
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(r, Eigen::ComputeFullV);
+  if (!(svd.singularValues()(unknowns - 1) > 1e-12 * svd.singularValues()(0))) return;  // a free direction
   const Eigen::MatrixXd all =
       std::sqrt(spread.factor * inflation) * svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();
   const Eigen::Matrix<double, 4, 3> basis = across(at.light);
@@ -147,7 +160,7 @@ void describeUncertainty(PixelProblem& pixels, const State& at, bool blur, Pixel
   uncertainty.root.topRows<4>() = (dy - u * (u.transpose() * dy)) / y.norm();
   uncertainty.root.bottomRows<1>() = all.row(3);
   uncertainty.noisePx = fit.rmsPx;
-  uncertainty.degreesOfFreedom = std::max(1.0, spread.degreesOfFreedom / inflation);
+  uncertainty.degreesOfFreedom = fit.independentCells;
   if (uncertainty.root.allFinite()) fit.uncertainty = std::move(uncertainty);
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
 #include "core/reflectance/pixel_problem.h"
 
@@ -17,7 +18,42 @@ using patch::State;
 constexpr double kSearchTolerance = 1e-4;   // of fits that only choose a start or a background
 constexpr double kMicrofacetMargin = 0.02;  // of the cost, by which a cosine power must be better than a microfacet lobe
 constexpr double kClearGain = 0.1;          // of the cost, before an extent or a blur is believed
+// Gain of the cost over its mean per independent cell, by up to three more parameters: noise alone exceeds this in one of a million
+// images (chi squared, three degrees of freedom).
+constexpr double kBeyondNoise = 30;
 constexpr std::size_t kCoarseFrom = 400;    // cells of a patch, from which the search takes a quarter of them
+constexpr std::size_t kFewestFrom = 100;    // and below which no lamp is worth joining more
+constexpr double kMostEvaluations = 2e5;    // of an extended lamp's lobe in one look at all cells: some hundredths of a second
+constexpr double kExtentWork = 1.5e7;        // such evaluations in all: a lamp that explains the pixels takes about ten iterations
+
+/// Patches, some of them with joined cells, as one problem.
+class Cells {
+ public:
+  explicit Cells(const std::vector<const PixelPatch*>& patches) : pointers_(patches), all_(patch::normalised(patches)) {}
+  Cells(const Cells&) = delete;
+  Cells& operator=(const Cells&) = delete;
+  const patch::Normalised& all() const { return all_; }
+
+  /// Joins 2 x 2 cells of every patch with more than `from` of them; false where none has.
+  bool coarsen(std::size_t from = kCoarseFrom) {
+    bool any = false;
+    for (const PixelPatch*& p : pointers_) {
+      if (p->usedCells() <= from) continue;
+      PixelPatch coarse = patch::coarsened(*p);
+      if (!(coarse.top > 0)) continue;
+      owned_.push_back(std::move(coarse));
+      p = &owned_.back();
+      any = true;
+    }
+    if (any) all_ = patch::normalised(pointers_);
+    return any;
+  }
+
+ private:
+  std::deque<PixelPatch> owned_;
+  std::vector<const PixelPatch*> pointers_;
+  patch::Normalised all_;
+};
 
 /// Bayesian information criterion of a fit to n cells, up to a constant.
 double criterion(const Attempt& a, const patch::Normalised& evidence, BackgroundKind kind) {
@@ -53,10 +89,17 @@ State stateOf(const LobeModel& model, const patch::Normalised& n) {
   return s;
 }
 
+/// Of the lobe in one look at all cells.
+double evaluationsOf(const LobeModel& model, const patch::Normalised& evidence) {
+  PixelProblem trial(evidence, model.lobe, BackgroundKind::None);
+  trial.chooseRule(stateOf(model, evidence));
+  return trial.evaluations();
+}
+
 /// The search over lobes and kinds of background, on coarse cells.
 class Search {
  public:
-  Search(const patch::Normalised& evidence, int maxIterations) : evidence_(evidence), maxIterations_(maxIterations) {}
+  Search(const patch::Normalised& evidence, const PixelFitOptions& options) : evidence_(evidence), options_(options) {}
 
   struct Candidate {
     Lobe lobe;
@@ -74,7 +117,9 @@ class Search {
       for (const BackgroundKind kind :
            {BackgroundKind::None, BackgroundKind::Cosine, BackgroundKind::SlopedCosine, BackgroundKind::Quadratic})
         // A lamp with an extent takes long: the first lobe tells which backgrounds compete.
-        if (!best || start.shape == lobe::LampShape::Point || kind == best->kind) tryOut(lobe, kind, from);
+        if ((!options_.background || kind == *options_.background) &&
+            (!best || start.shape == lobe::LampShape::Point || kind == best->kind))
+          tryOut(lobe, kind, from);
     }
     const Candidate* best = least([](const Candidate&) { return true; });
     if (!best) return std::nullopt;
@@ -91,7 +136,12 @@ class Search {
  private:
   void tryOut(Lobe lobe, BackgroundKind kind, const State& from) {
     PixelProblem problem(evidence_, lobe, kind);
-    const Attempt a = patch::solve(problem, from, {false, maxIterations_, kSearchTolerance, kSearchTolerance});
+    patch::SolveOptions solving{false, options_.maxIterations, kSearchTolerance, kSearchTolerance};
+    if (from.shape != lobe::LampShape::Point) {
+      solving.mostEvaluations = kMostEvaluations;
+      solving.work = kExtentWork;
+    }
+    const Attempt a = patch::solve(problem, from, solving);
     iterations_ += a.iterations;
     if (std::isfinite(a.cost)) candidates_.push_back({lobe, kind, a, criterion(a, evidence_, kind)});
   }
@@ -104,7 +154,8 @@ class Search {
   }
 
   const patch::Normalised& evidence_;
-  int maxIterations_, iterations_ = 0;
+  const PixelFitOptions& options_;
+  int iterations_ = 0;
   std::vector<Candidate> candidates_;
 };
 
@@ -143,59 +194,86 @@ Outcome<std::vector<PatchSolution>> solvePatches(const std::vector<const PixelPa
     s.topPoint = SurfacePoint{top.position, top.normal};
     s.background = patch::backgroundOf(n.frames[0].patches[k], n.frames[0], background, at,
                                        solved.coefficients.segment(1 + each * static_cast<Eigen::Index>(k), each));
+    s.lobe = image.value[k];
     s.relativeRms = fit.relativeRms[k];
     result.push_back(std::move(s));
   }
   return result;
 }
 
+bool asksForExtent(const PixelFit& point) {
+  return point.patterned || point.gainByExtent > kClearGain || point.gainByExtent * point.independentCells > kBeyondNoise;
+}
+
 bool explainsClearlyBetter(const PixelFit& larger, const PixelFit& smaller) {
-  return larger.cost < (1 - kClearGain) * smaller.cost;
+  if (larger.cost < (1 - kClearGain) * smaller.cost) return true;
+  // The smaller lamp was fitted to all cells, the larger one perhaps to joined ones: its count would be theirs.
+  return (smaller.cost - larger.cost) / larger.cost * smaller.independentCells > kBeyondNoise;
 }
 
 Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<const PixelPatch*>& patches, const Lamp& lamp,
                             double roughness, const PixelFitOptions& options) {
   require(!lobes.empty() && roughness > 0 && std::isfinite(roughness), "fitPixels: lobes and roughness");
-  const patch::Normalised fine = patch::normalised(patches);
-  if (fine.cells < 30) return Failure{Reason::TooFewPoints, "only " + std::to_string(fine.cells) + " pixels can be used"};
-  std::vector<PixelPatch> coarse;
-  for (const PixelPatch* p : patches) {
-    coarse.push_back(p->usedCells() > kCoarseFrom ? patch::coarsened(*p) : *p);
-    if (!(coarse.back().top > 0)) coarse.back() = *p;
+  Cells full(patches), coarse(patches);
+  if (full.all().cells < 30) return Failure{Reason::TooFewPoints, "only " + std::to_string(full.all().cells) + " pixels can be used"};
+  coarse.coarsen();
+  if (!lamp.isPoint())
+    while (coarse.coarsen()) {
+    }
+  const LobeModel first{lobes.front(), roughness, lamp, 0};
+  // A lamp that is wide beside its lobe takes many evaluations a cell: fewer cells then.
+  while (!lamp.isPoint() && evaluationsOf(first, coarse.all()) > kMostEvaluations && coarse.coarsen(kFewestFrom)) {
   }
-  std::vector<const PixelPatch*> coarsePointers;
-  for (const PixelPatch& p : coarse) coarsePointers.push_back(&p);
-  const patch::Normalised few = patch::normalised(coarsePointers);
+  const patch::Normalised& few = coarse.all();
 
-  Search search(few, options.maxIterations);
-  const std::optional<Search::Candidate> chosen = search.run(lobes, stateOf({lobes.front(), roughness, lamp, 0}, few));
+  Search search(few, options);
+  const std::optional<Search::Candidate> chosen = search.run(lobes, stateOf(first, few));
   if (!chosen) return Failure{Reason::NotConverged, "no lobe reaches the pixels from the contours' light"};
   int iterations = search.iterations();
 
-  // In full, then with a blur where it shows.
-  PixelProblem problem(fine, chosen->lobe, chosen->kind);
+  // In full, as far as an extended lamp lets it, then with a blur where it shows.
   const State found = chosen->attempt.at;
-  Attempt a = patch::solve(problem, stateOf({chosen->lobe, found.roughness(), inWorld(found, few), 0}, fine), {false, options.maxIterations});
+  const LobeModel start{chosen->lobe, found.roughness(), inWorld(found, few), 0};
+  while (!lamp.isPoint() && evaluationsOf(start, full.all()) > kMostEvaluations && (full.coarsen() || full.coarsen(kFewestFrom))) {
+  }
+  const patch::Normalised& fine = full.all();
+  PixelProblem problem(fine, chosen->lobe, chosen->kind);
+  patch::SolveOptions solving{false, options.maxIterations};
+  if (!lamp.isPoint()) {
+    solving.mostEvaluations = 4 * kMostEvaluations;  // it may grow a little more
+    solving.work = kExtentWork;
+  }
+  Attempt a = patch::solve(problem, stateOf(start, fine), solving);
   iterations += a.iterations;
   if (!std::isfinite(a.cost)) return Failure{Reason::NotConverged, "pixels"};
   bool blur = false;
-  if (options.blur) {
+  if (options.blur && (lamp.isPoint() || a.converged)) {
     State blurred = a.at;
     blurred.blurVariance = 1;
-    const Attempt b = patch::solve(problem, blurred, {true, options.maxIterations});
+    solving.blur = true;
+    const Attempt b = patch::solve(problem, blurred, solving);
     iterations += b.iterations;
     if ((blur = b.cost < (1 - kClearGain) * a.cost)) a = b;
   }
   PixelFit fit;
   fit.model = {chosen->lobe, a.at.roughness(), inWorld(a.at, fine), a.at.blurVariance};
   fit.background = chosen->kind;
-  fit.cost = a.cost;
-  fit.cells = static_cast<int>(fine.cells);
   fit.iterations = iterations;
+  // All pixels say what it leaves, so that fits can be compared.
+  const patch::Normalised whole = patch::normalised(patches);
+  PixelProblem described(whole, chosen->lobe, chosen->kind);
+  const State at = stateOf(fit.model, whole);
+  described.chooseRule(at);
+  std::vector<double> residuals(whole.cells);
+  if (!described.residualsAt(at, residuals.data())) return Failure{Reason::NotConverged, "pixels"};
+  fit.cost = 0;
+  for (const double r : residuals) fit.cost += r * r;
+  fit.cells = static_cast<int>(whole.cells);
+  patch::describeResiduals(described, fit);
+  // The cells that were fitted say how well: joined ones hold the same evidence.
   problem.chooseRule(a.at);
-  std::vector<double> residuals(fine.cells);
-  if (!problem.residualsAt(a.at, residuals.data())) return Failure{Reason::NotConverged, "pixels"};
-  patch::describeResiduals(problem, fit);
+  std::vector<double> fitted(fine.cells);
+  if (!problem.residualsAt(a.at, fitted.data())) return Failure{Reason::NotConverged, "pixels"};
   patch::describeUncertainty(problem, a.at, blur, fit);
   return fit;
 }

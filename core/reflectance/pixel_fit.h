@@ -35,6 +35,7 @@ struct PatchSolution {
   double strength = 0;         ///< of S = I / I(topPoint), before the blur; >= 0
   SurfacePoint topPoint;       ///< the brightest cell of the frame, where S = 1: scales S
   std::vector<double> background;  ///< b per cell of the patch, all cells on the surface
+  std::vector<double> lobe;        ///< S per cell of the patch, with the blur
   double relativeRms = 0;      ///< of I - strength S - b over the used cells above a tenth of the top, as a share of the frame's top
 };
 /// Strength and backgrounds of one frame's patches under a known lobe, robust (soft L1).
@@ -46,6 +47,7 @@ Outcome<std::vector<PatchSolution>> solvePatches(const std::vector<const PixelPa
 struct PixelFitOptions {
   int maxIterations = 60;
   bool blur = true;  ///< estimate the blur where the pixels show it
+  std::optional<BackgroundKind> background;  ///< no other is tried
 };
 
 struct PixelFit {
@@ -61,6 +63,10 @@ struct PixelFit {
   /// To first order, by which share the cost would fall if a point had a size or a length; 0 for other lamps and at infinity.
   double gainByExtent = 0;
   int cells = 0, iterations = 0;
+  double independentCells = 0;  ///< fewer than `cells` where the residuals of neighbours go together
+  /// What goes on from cell to cell, as noise does not, is more than a hundredth of the contours' radius: right lobes, lamps and surfaces
+  /// leave less than a thousandth.
+  bool patterned = false;
   bool poor = false;  ///< does not explain the pixels: more than a tenth of the contours' radius, or of the top, remains
 };
 
@@ -76,7 +82,12 @@ struct PixelFit {
 Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<const PixelPatch*>& patches, const Lamp& lamp,
                             double roughness, const PixelFitOptions& options = {});
 
-/// Whether a lamp with an extent is believed beside a point, or a segment beside a sphere: it must leave a tenth less of the cost.
+/// Whether a lamp with an extent is worth a trial beside this point: to first order it would take a tenth off the cost, or more than the
+/// noise of the independent cells explains; or what the point leaves has a pattern, as far too large a lamp makes it, where first order tells
+/// nothing.
+bool asksForExtent(const PixelFit& point);
+/// Whether a lamp with an extent is believed beside a point, or a segment beside a sphere: it must leave a tenth less of the cost, or so
+/// much less that the noise of the independent cells cannot be the reason. (Noise is most of the cost of a grainy image, whatever the lamp.)
 bool explainsClearlyBetter(const PixelFit& larger, const PixelFit& smaller);
 
 }  // namespace glint

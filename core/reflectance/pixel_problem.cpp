@@ -114,6 +114,7 @@ bool run(PixelProblem& problem, Attempt& a, const SolveOptions& options, bool at
   a.iterations += solution.iterations;
   if (!solution.usable || !s.light.allFinite() || !std::isfinite(s.logRoughness) || !s.halfAxis.allFinite()) return false;
   a.cost = 2 * solution.cost;
+  a.converged = solution.converged;
   return true;
 }
 
@@ -227,14 +228,31 @@ bool PixelProblem::chooseRule(const State& at) {
   return first || rule_.disc != before.disc || rule_.along != before.along;
 }
 
+double PixelProblem::evaluations() const {
+  const double nodes = rule_.disc ? double(rule_.disc->nodes.size()) : rule_.along ? double(rule_.along->size()) : 1;
+  return nodes * double(evidence_.cells);
+}
+
 Attempt solve(PixelProblem& problem, const State& start, const SolveOptions& options) {
   Attempt a;
   a.at = start;
   const bool atInfinity = start.atInfinity();
   if (atInfinity) a.at.light.normalize();
   problem.chooseRule(a.at);
-  for (int round = 0; round < kFinerRules; ++round)
-    if (!run(problem, a, options, atInfinity) || !problem.chooseRule(a.at)) break;
+  for (int round = 0; round < kFinerRules; ++round) {
+    if (problem.evaluations() > options.mostEvaluations) {
+      a.cost = std::numeric_limits<double>::infinity();
+      return a;
+    }
+    SolveOptions within = options;
+    if (std::isfinite(options.work)) {
+      constexpr int kLeastIterations = 4, kColumns = 8;  // of the Jacobian; one more look for the residuals
+      const int afforded = static_cast<int>(std::min(1e6, options.work / (problem.evaluations() * (kColumns + 1))));
+      within.maxIterations = std::min(options.maxIterations, std::max(kLeastIterations, afforded));
+    }
+    if (!run(problem, a, within, atInfinity) || !problem.chooseRule(a.at)) break;
+    if (!a.converged && std::isfinite(options.work)) break;
+  }
   // Beyond infinity the rays towards the lamp converge behind the scene: it is at infinity, as far as the pixels tell.
   if (std::isfinite(a.cost) && a.at.light.w() < 0 && !atInfinity) {
     if (a.at.shape != lobe::LampShape::Point) {

@@ -33,6 +33,8 @@ class PixelProblem {
   /// Chooses the quadrature over the lamp for a state: it stays while a solver moves the state, so that the residuals stay smooth.
   /// @return whether it is a finer one than before.
   bool chooseRule(const State& at);
+  /// Evaluations of the lobe in one look at all cells, with the quadrature chosen.
+  double evaluations() const;
 
  private:
   template <class F>
@@ -68,6 +70,7 @@ struct Attempt {
   State at;
   double cost = std::numeric_limits<double>::infinity();
   int iterations = 0;
+  bool converged = false;
 };
 
 struct SolveOptions {
@@ -75,6 +78,8 @@ struct SolveOptions {
   int maxIterations = 60;
   double tolerance = 1e-9;       ///< of the unknowns; contours resolve 1e-4
   double costTolerance = 1e-12;  ///< of the cost: a session replayed elsewhere comes to the same digits
+  double mostEvaluations = std::numeric_limits<double>::infinity();  ///< in one look: a lamp that outgrows it is given up, with infinite cost
+  double work = std::numeric_limits<double>::infinity();  ///< evaluations in all; some iterations are always made
 };
 
 /// The minimum that is reached from a state with all unknowns of its shape free. A light at infinity stays there; a point that the

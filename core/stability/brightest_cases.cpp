@@ -38,14 +38,14 @@ std::optional<Vec<Real>> stationary(const Bent<Real>& s, const Lamp<Real>& lamp,
 
 /// The code's brightest points against the stationary point near (u, v), which must be among them.
 Outcome<Measured> pointCase(double k, bool round, const Light& light, double u, double v, double distance, double focal,
-                            double unitLength, double condition) {
+                            double unitLength, double condition, double skew = 0) {
   const Bent<Real> s{Real(k), round};
   const Lamp<Real> lamp = lampOf<Real>(light);
-  const RealView<Real> view = mirrorView(s, lamp, u, v, distance, focal);
+  const RealView<Real> view = mirrorView(s, lamp, u, v, distance, focal, skew);
   // The camera looks a little aside, so that neither the pixel's centre nor a seed is the answer.
   const Camera camera =
       cameraTowards(view.camera.centreInWorld(),
-                    rounded(s.point(Real(u), Real(v))) + Eigen::Vector3d(0.05, -0.03, 0.01) * distance * 100 / focal, focal);
+                    rounded(s.point(Real(u), Real(v))) + Eigen::Vector3d(0.05, -0.03, 0.01) * distance * 100 / focal, focal, skew);
   const std::optional<Vec<Real>> reference =
       stationary(s, lamp, RealCamera<Real>(camera).eye(), Real(u), Real(v), Real(unitLength));
   if (!reference) return Failure{Reason::NotConverged, "reference"};
@@ -104,12 +104,25 @@ void addBrightestCases(Cases& cases) {
   add("sphere of curvature 1e3 per metre", 1e3, 1e-9, "",
       [d] { return pointCase(1e3, true, Light::at(2 * d), 1e-4, 2e-4, 0.1, 5000, 1e-4, 1); });
   add("concave sphere", -0.8, 1e-9, "", [d] { return pointCase(-0.8, true, Light::at(0.5 * d), 0.05, 0.03, 0.4, 400, 0.1, 1); });
-  for (const double degrees : {80.0, 85.0, 89.0, 89.9}) {
-    const double a = degrees * std::numbers::pi / 180;
-    char name[64];
-    std::snprintf(name, sizeof name, "sphere, grazing %g degrees", degrees);
-    const Light light = Light::at(2 * Eigen::Vector3d(std::sin(a), 0, std::cos(a)));
-    add(name, degrees, 1e-9, "", [light, a] { return pointCase(0.5, true, light, 0, 0, 1, 800, 0.1, 1 / std::cos(a)); });
+  for (const double degrees : {80.0, 85.0, 89.0, 89.9, 89.99})
+    for (const double k : {0.5, 0.0}) {
+      const double a = degrees * std::numbers::pi / 180;
+      char name[64];
+      std::snprintf(name, sizeof name, "%s, grazing %g degrees", k > 0 ? "sphere" : "plane", degrees);
+      const Light light = grazingLight(degrees);
+      add(name, degrees, 1e-9, "", [light, a, k] { return pointCase(k, k > 0, light, 0, 0, 1, 800, 0.1, 1 / std::cos(a)); });
+    }
+  // The camera stands so far that the object is seen as large as by a lens of 800 px from 1 m; the error is over the object's metre.
+  for (const auto& [focal, words] : {std::pair(1e4, "1e4 px at 12.5 m"), std::pair(1e5, "1e5 px at 125 m"), std::pair(1e6, "1e6 px at 1,250 m")})
+    for (const double k : {2.0, 0.0}) {
+      add(std::string(k > 0 ? "sphere" : "plane") + ", focal length " + words, focal, 1e-9, "", [d, focal = focal, k]() -> Outcome<Measured> {
+        Outcome<Measured> m = pointCase(k, k > 0, Light::at(2 * d), 0.03, 0.02, focal / 800, focal, 0.1, focal / 800);
+        if (m) m->error *= focal / 800;
+        return m;
+      });
+    }
+  for (const auto& [skew, words] : {std::pair(1.0, "1 px"), std::pair(30.0, "30 px"), std::pair(1000.0, "1,000 px")}) {
+    add(std::string("sphere, skew ") + words, skew, 1e-9, "", [d, skew = skew] { return pointCase(2, true, Light::at(2 * d), 0.03, 0.02, 1, 800, 0.1, 1, skew); });
   }
   for (const double scale : {1e-6, 1e6})
     add(scale < 1 ? "sphere, scene scale 1e-6" : "sphere, scene scale 1e6", scale, 1e-9, "", [scale, d] {

@@ -12,9 +12,9 @@ namespace {
 
 using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 
-Camera cameraAt(const Eigen::Vector3d& eye, double focal) {
+Camera cameraAt(const Eigen::Vector3d& eye, double focal, double skew = 0.3) {
   Camera c;
-  c.pixelFromRay << focal, 0.3, 319.5, 0, 0.98 * focal, 239.5, 0, 0, 1;
+  c.pixelFromRay << focal, skew, 319.5, 0, 0.98 * focal, 239.5, 0, 0, 1;
   c.camFromWorld.linear() =
       (Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, -2, 0.5).normalized()) * Eigen::AngleAxisd(-0.2, Eigen::Vector3d::UnitZ()))
           .toRotationMatrix();
@@ -25,8 +25,9 @@ Camera cameraAt(const Eigen::Vector3d& eye, double focal) {
 }
 
 /// Pixel of a point and the ray back through it.
-Outcome<Measured> projectAndBack(double focal, const Eigen::Vector3d& eye, const Eigen::Vector3d& inCamera, double condition) {
-  const Camera c = cameraAt(eye, focal);
+Outcome<Measured> projectAndBack(double focal, const Eigen::Vector3d& eye, const Eigen::Vector3d& inCamera, double condition,
+                                 double skew = 0.3) {
+  const Camera c = cameraAt(eye, focal, skew);
   const RealCamera<Real> real(c);
   const Eigen::Vector3d world = eye + c.camFromWorld.linear().transpose() * inCamera;
   const std::optional<Pixel> pixel = c.project(world);
@@ -102,6 +103,13 @@ void addCameraCases(Cases& cases) {
   add("camera", "focal length 50,000 px", 5e4, 1e-9, "", [] {
     return projectAndBack(5e4, {1, 2, 0.5}, {0.003, -0.002, 1.2}, 1);
   });
+  for (const auto& [name, focal] : {std::pair("focal length 1e4 px at 12.5 m", 1e4), std::pair("focal length 1e5 px at 125 m", 1e5),
+                                    std::pair("focal length 1e6 px at 1,250 m", 1e6)})
+    add("camera", name, focal, 1e-9, "", [focal = focal] {
+      return projectAndBack(focal, {1, 2, 0.5}, {0.3, -0.2, focal / 800}, focal / 800);
+    });
+  for (const auto& [name, skew] : {std::pair("skew 1 px", 1.0), std::pair("skew 30 px", 30.0), std::pair("skew 1,000 px", 1000.0)})
+    add("camera", name, skew, 1e-9, "", [skew = skew] { return projectAndBack(800, {1, 2, 0.5}, {0.4, -0.3, 1.2}, 1, skew); });
   add("camera", "scene scale 1e-6", 1e-6, 1e-9, "", [] {
     return projectAndBack(800, {1e-6, 2e-6, 5e-7}, {1e-7, -2e-7, 1e-6}, 1);
   });

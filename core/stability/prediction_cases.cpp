@@ -16,7 +16,7 @@ using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<
 struct PredictionScene {
   double curvature = 0.8;
   bool round = true;
-  double scale = 1, distance = 1.5, focal = 800, limit = 0.1, condition = 1;
+  double scale = 1, distance = 1.5, focal = 800, limit = 0.1, condition = 1, skew = 0;
 };
 struct Stage {
   std::shared_ptr<const Surface> surface;
@@ -27,7 +27,7 @@ Stage stageOf(const PredictionScene& p, const Light& light) {
   const double k = p.curvature / p.scale;
   const Bent<Real> bent{Real(k), p.round};
   const double u = p.curvature > 10 ? 1e-4 : 0.05 * p.scale;
-  const RealView<Real> view = mirrorView(bent, lampOf<Real>(light), u, 0.6 * u, p.distance * p.scale, p.focal);
+  const RealView<Real> view = mirrorView(bent, lampOf<Real>(light), u, 0.6 * u, p.distance * p.scale, p.focal, p.skew);
   const Vec<Real> at = bent.point(view.u0, view.v0), n = bent.normal(view.u0, view.v0);
   return {makeAnalytic(specOf(k, p.round)), view.camera, {Real(k), p.round, at, n, view.real, view.eye, lampOf<Real>(light)}};
 }
@@ -246,7 +246,17 @@ void addPredictionCases(Cases& cases) {
       {"scene scale 1e6", 1e6, {.scale = 1e6}, Light::at(2e6 * d), 0.2},
       {"focal length 50 px", 50, {.focal = 50}, Light::at(2 * d), 0.2},
       {"focal length 50,000 px, highlight larger than the image", 5e4, {.focal = 5e4, .limit = 2e-3}, Light::at(2 * d), 0.01},
+      {"focal length 1e4 px at 18.75 m", 1e4, {.distance = 18.75, .focal = 1e4}, Light::at(2 * d), 0.2},
+      {"focal length 1e5 px at 187.5 m", 1e5, {.distance = 187.5, .focal = 1e5}, Light::at(2 * d), 0.2},
+      {"focal length 1e6 px at 1,875 m", 1e6, {.distance = 1875, .focal = 1e6}, Light::at(2 * d), 0.2},
+      {"skew 1 px", 1, {.skew = 1}, Light::at(2 * d), 0.2},
+      {"skew 30 px", 30, {.skew = 30}, Light::at(2 * d), 0.2},
+      {"skew 1,000 px", 1000, {.skew = 1000}, Light::at(2 * d), 0.2},
+      {"grazing 80 degrees", 80, {.curvature = 0.5, .limit = 0.04, .condition = 5.8}, grazingLight(80), 0.1},
       {"grazing 85 degrees", 85, {.curvature = 0.5, .limit = 0.02, .condition = 11.5}, grazingLight(85), 0.05},
+      {"grazing 89 degrees", 89, {.curvature = 0.5, .focal = 4e3, .limit = 4e-3, .condition = 57}, grazingLight(89), 0.01},
+      {"grazing 89.9 degrees", 89.9, {.curvature = 0.5, .focal = 4e4, .limit = 4e-4, .condition = 573}, grazingLight(89.9), 1e-3},
+      {"grazing 89.99 degrees", 89.99, {.curvature = 0.5, .focal = 4e5, .limit = 4e-5, .condition = 5730}, grazingLight(89.99), 1e-4},
   };
   const auto add = [&](const char* stage, const Row& row, auto run) {
     Case c;

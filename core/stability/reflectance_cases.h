@@ -6,5 +6,6 @@
 namespace glint::stability {
 
 void addReflectanceCases(Cases& cases);  ///< reflectance: predictions and fits
+void addLobeCases(Cases& cases);         ///< contours of all lobes, widths and levels
 
 }  // namespace glint::stability

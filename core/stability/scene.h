@@ -61,9 +61,9 @@ inline AnalyticSpec specOf(double k, bool round) {
 }
 
 /// A camera at `eye` that looks at `target`; the reference takes its doubles as they are.
-inline Camera cameraTowards(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, double focal) {
+inline Camera cameraTowards(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, double focal, double skew = 0) {
   Camera c;
-  c.pixelFromRay << focal, 0, 319.5, 0, focal, 239.5, 0, 0, 1;
+  c.pixelFromRay << focal, skew, 319.5, 0, focal, 239.5, 0, 0, 1;
   const Eigen::Vector3d z = (target - eye).normalized();
   Eigen::Vector3d x = z.cross(Eigen::Vector3d(0.2, 1, 0.1)).normalized();
   Eigen::Matrix3d r;
@@ -98,10 +98,11 @@ T alphaAt(const Bent<T>& s, const Lamp<T>& lamp, const Vec<T>& eye, const T& u, 
 
 /// A view whose mirror point is the surface point (u, v): the eye stands on the reflected ray, `distance` away.
 template <class T>
-RealView<T> mirrorView(const Bent<T>& s, const Lamp<T>& lamp, double u, double v, double distance, double focal) {
+RealView<T> mirrorView(const Bent<T>& s, const Lamp<T>& lamp, double u, double v, double distance, double focal,
+                       double skew = 0) {
   const Vec<T> p = s.point(T(u), T(v)), n = s.normal(T(u), T(v)), l = lamp.from(p);
   const Vec<T> r = T(2 * dot(n, l)) * n - l;
-  return {cameraTowards(rounded(p + T(distance) * r), rounded(p), focal), T(u), T(v)};
+  return {cameraTowards(rounded(p + T(distance) * r), rounded(p), focal, skew), T(u), T(v)};
 }
 
 /// Surface parameters on the curve alpha = limit, in the direction `azimuth` of the parameters from (u, v).

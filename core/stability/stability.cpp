@@ -54,12 +54,14 @@ std::vector<StabilityResult> runStability(const ProgressFn& progress) {
   stability::addAngleCases(cases);
   stability::addSurfaceCases(cases);
   stability::addMeshCases(cases);
+  stability::addMeshFileCases(cases);
   stability::addBrightestCases(cases);
   stability::addLightCases(cases);
   stability::addWalkCases(cases);
   stability::addReconstructionCases(cases);
   stability::addPredictionCases(cases);
   stability::addReflectanceCases(cases);
+  stability::addLobeCases(cases);
   stability::addBadNumberCases(cases);
   std::vector<StabilityResult> results;
   for (const Case& c : cases) {

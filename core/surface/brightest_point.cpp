@@ -26,6 +26,9 @@ using Basis = Eigen::Matrix<double, 3, 2>;
 
 /// Below this angle the reflection law holds: two decades above round-off for well-placed cameras, far below any pixel.
 constexpr double kZeroAngle = 1e-8;
+constexpr double kLeastMarginPx = 1e-3;  // round-off of a projection is far below it
+/// Cells of the seed grid along one side: 16 px apart over 7,200 px.
+constexpr double kMostCells = 450;
 /// More seeds than this mean a surface rougher than the grid; the best ones are polished.
 constexpr std::size_t kMaxSeeds = 64;
 
@@ -186,23 +189,36 @@ Search compass(const Sighting& sighting, const SurfacePoint& start, double first
   return search;
 }
 
-/// Facets: the mirror point of the facet's own plane, if it lies inside the facet.
-void tryPlaneOfFacet(const Sighting& sighting, Search& search) {
+/// Where the plane of a facet mirrors the light to the eye: on the line from the eye to the light's image,
+/// (h_L E + h_E (l - 2 h_L n)) / (h_L + w h_E), h = heights over the plane. Nothing with the light behind it.
+std::optional<Vector3d> mirrorPointOfPlane(const Sighting& sighting, const SurfacePoint& p) {
+  const Eigen::Vector4d& light = sighting.light.homogeneous();
+  // Relative to the point, so that a scene far from the origin keeps its digits.
+  const Vector3d eye = sighting.eye - p.position, l = light.head<3>() - light.w() * p.position;
+  const double eyeHeight = p.normal.dot(eye), lightHeight = p.normal.dot(l);
+  if (!(eyeHeight > 0 && lightHeight > 0)) return std::nullopt;
+  const Vector3d at = (lightHeight * eye + eyeHeight * (l - 2 * lightHeight * p.normal)) / (lightHeight + light.w() * eyeHeight);
+  return at.allFinite() ? std::optional<Vector3d>(at) : std::nullopt;
+}
+
+/// Facets: from facet to facet, each time to the mirror point of the plane stood on, until that lies inside its own facet. Grazing
+/// views make a valley of the merit that is far too narrow for a search without derivatives; a plane has its answer in closed form.
+void hopOverFacets(const Sighting& sighting, Search& search) {
+  constexpr int kMostHops = 20;
   SurfacePoint p = search.point;
-  for (int i = 0; i < 20; ++i) {
-    const Shading s = sighting.shade(p);
-    const Basis t = tangentBasis(p.normal);
-    const Vector2d step = -jacobianAt(s, p, t, {0, 0, t.col(0), t.col(1)}).partialPivLu().solve(t.transpose() * s.h);
-    if (!step.allFinite()) return;
-    const Outcome<SurfacePoint> next = sighting.moved(p, t * step);
-    if (!next || next->element != search.point.element) return;
+  for (int i = 0; i < kMostHops; ++i) {
+    const std::optional<Vector3d> offset = mirrorPointOfPlane(sighting, p);
+    if (!offset) return;
+    const Outcome<SurfacePoint> next = sighting.moved(p, *offset);
+    if (!next) return;
+    const bool arrived = next->element == p.element;
     p = *next;
-    if (step.norm() * s.inverseV < 1e-15) break;  // round-off of the distance to the eye
-  }
-  const double alpha = sighting.shade(p).alpha();
-  if (alpha < search.alpha) {
-    search.point = p;
-    search.alpha = alpha;
+    const double alpha = sighting.shade(p).alpha();
+    if (alpha < search.alpha) {
+      search.point = p;
+      search.alpha = alpha;
+    }
+    if (arrived) return;
   }
 }
 
@@ -241,8 +257,10 @@ Window windowOf(const Surface& surface, const Camera& camera, double marginFract
     if (!p) return window;  // the box reaches behind the camera: its outline is unbounded
     seen.extend(*p);
   }
-  window.min = window.min.cwiseMax(seen.min() - Vector2d::Ones());
-  window.max = window.max.cwiseMin(seen.max() + Vector2d::Ones());
+  // Round-off and a curved edge's bulge stay inside; a surface seen edge on, thinner than a pixel, still fills its window.
+  const Vector2d margin = (0.05 * seen.sizes()).cwiseMin(Vector2d::Ones()).cwiseMax(kLeastMarginPx * Vector2d::Ones());
+  window.min = window.min.cwiseMax(seen.min() - margin);
+  window.max = window.max.cwiseMin(seen.max() + margin);
   return window;
 }
 
@@ -260,8 +278,9 @@ std::optional<Vector3d> linearZero(const Vector2d& a, const Vector2d& b, const V
 }
 
 std::vector<Seed> gridSeeds(const Sighting& sighting, const Window& window, double step, int& hits) {
-  const int nx = 1 + static_cast<int>(std::ceil((window.max.x() - window.min.x()) / step));
-  const int ny = 1 + static_cast<int>(std::ceil((window.max.y() - window.min.y()) / step));
+  // Fine across a surface that is seen edge on, but not as fine along it.
+  const auto nodesAlong = [&](double length) { return 1 + static_cast<int>(std::min(std::ceil(length / step), kMostCells)); };
+  const int nx = nodesAlong(window.max.x() - window.min.x()), ny = nodesAlong(window.max.y() - window.min.y());
   const Vector2d cell((window.max.x() - window.min.x()) / (nx - 1), (window.max.y() - window.min.y()) / (ny - 1));
   const Matrix3d worldFromPixel = sighting.camera.camFromWorld.linear().transpose() *
                                   sighting.camera.pixelFromRay.triangularView<Eigen::Upper>().solve(Matrix3d::Identity());
@@ -389,7 +408,7 @@ class Finder {
 
   Outcome<std::vector<BrightestPoint>> result(bool anyHit) && {
     if (found_.empty())
-      return Failure{Reason::NoBrightestPoint, anyHit ? rejected_.text() : "off the surface: no ray of the camera meets it"};
+      return Failure{Reason::NoBrightestPoint, anyHit ? rejected_.text() : "off the surface: no ray of the search meets it, it is not in view or seen edge on"};
     const Pixel centre(0.5 * (sighting_.camera.width - 1), 0.5 * (sighting_.camera.height - 1));
     std::sort(found_.begin(), found_.end(), [&](const BrightestPoint& a, const BrightestPoint& b) {
       // Angles below kZeroAngle are round-off and must not decide the order.
@@ -422,7 +441,7 @@ class Finder {
 
   void polishFacets(const SurfacePoint& seed) {
     Search search = compass(sighting_, seed, 0.5 * footprint(seed));
-    tryPlaneOfFacet(sighting_, search);
+    hopOverFacets(sighting_, search);
     if (search.alpha > kZeroAngle) {
       // A ten-millionth of the distance is below a pixel and above round-off.
       const double jump = normalJump(sighting_, search.point, 1e-7 * (sighting_.eye - search.point.position).norm());

@@ -26,6 +26,9 @@ const std::map<std::string, std::vector<double>>& ladders() {
 /// They add to what a prediction says, not to its contour, and their work is no part of its time; or they decide what counts as an answer.
 const std::set<std::string> kNoKnobs{"fit.most_residual", "predict.band", "input.scale_tolerance", "input.focal_tolerance"};
 
+/// What only this model looks at.
+const std::set<std::string> kOfReflectance{"fit.evidence", "fit.levels", "fit.lobe", "fit.light_size"};
+
 }  // namespace
 
 SettingValue valueOf(const Settings& settings, const ParamSpec& spec) {
@@ -53,6 +56,7 @@ std::vector<Knob> knobsOf(const Settings& base, const std::vector<ParamSpec>& pa
   for (const ParamSpec& spec : params) {
     if (!stages.count(spec.stage) || kNoKnobs.count(spec.key)) continue;
     Knob knob{spec.key, {}};
+    if (kOfReflectance.count(spec.key)) knob.onlyModel = "reflectance";
     const SettingValue now = valueOf(base, spec);
     if (std::holds_alternative<bool>(spec.defaultValue)) {
       knob.values = {false, true};

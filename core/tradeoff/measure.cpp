@@ -86,6 +86,10 @@ TradeoffBench::TradeoffBench(std::shared_ptr<const Scene> scene, const Inspectio
   all_->evidence.views.clear();
   all_->evidence.stageKeys.erase("views");
 
+  if (!request.whatIf.none()) {
+    few_ = all_;  // the user's changes name frames by their number: all of them are tried
+    return;
+  }
   const TrainSpec train = all_->evidence.train;
   const auto excluded = [&](int f) {
     return std::find(request.excluded.begin(), request.excluded.end(), f) != request.excluded.end();
@@ -120,22 +124,20 @@ TradeoffBench::TradeoffBench(std::shared_ptr<const Scene> scene, const Inspectio
   part->frames.clear();
   few_->request = request;
   few_->request.excluded.clear();
-  few_->evidence.evidence.clear();
+  few_->request.models.clear();
   std::string trainIds;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     part->frames.push_back(scene->frames[chosen[i]]);
-    FrameEvidence e = all_->evidence.evidence[chosen[i]];
-    e.frame = static_cast<int>(i);
-    few_->evidence.evidence.push_back(std::move(e));
     // Ids, because an id such as "0003" would win over the number 3.
     if (std::binary_search(train.frames.begin(), train.frames.end(), chosen[i]))
       trainIds += (trainIds.empty() ? "" : ",") + scene->frames[chosen[i]].id;
   }
   few_->scene = part;
   if (!train.perSurface) few_->request.train = trainIds;
-  few_->evidence.scene = part;
-  few_->evidence.surfaces = std::make_shared<SurfaceCache>(*part);
-  few_->evidence.stageKeys = {{"detect", all_->evidence.stageKeys.at("detect")}};
+  // Detected anew, and the lobe fitted: what all trials start from. No setting of a model changes the contours that it is scored by.
+  few_->evidence = inspect(part, few_->request, progress);
+  few_->evidence.views.clear();
+  few_->evidence.stageKeys.erase("views");
 }
 
 void TradeoffBench::check() const {

@@ -49,6 +49,8 @@ std::string costText(const Cost& c) {
 /// By its name: the stage of "predict.directions" is the fit, where it is used first.
 bool usedByPrediction(const Knob& k) { return k.key.rfind("predict.", 0) == 0 || k.key.rfind("surface.", 0) == 0; }
 
+bool lookedAtBy(const Knob& k, const std::string& model) { return k.onlyModel.empty() || k.onlyModel == model; }
+
 double factor(double now, double before) {
   return before > 0 ? now / before : now > 0 ? std::numeric_limits<double>::infinity() : 1;
 }
@@ -100,7 +102,7 @@ class Search {
     std::optional<int> found = attempt({model, settings});
     for (const Knob& k : knobs_) {
       if (found) break;
-      if (usedByPrediction(k)) continue;
+      if (usedByPrediction(k) || !lookedAtBy(k, model)) continue;
       for (const SettingValue& v : k.values) {
         Trial t{model, settings};
         t.settings.set(k.key, v);
@@ -128,6 +130,7 @@ class Search {
   void oneKnobAtATime(const std::string& model) {
     const int baseIndex = bases_.at(model);
     for (const Knob& k : knobs_) {
+      if (!lookedAtBy(k, model)) continue;
       for (const SettingValue& v : k.values) {
         Trial t = tried_[baseIndex].trial;
         if (valueOf(t.settings, paramSpec(k.key)) == v) continue;

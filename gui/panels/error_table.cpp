@@ -18,6 +18,7 @@
 #include <cmath>
 
 #include "core/evaluate/summary.h"
+#include "core/evaluate/warnings.h"
 #include "gui/base/flow_layout.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
@@ -163,7 +164,7 @@ void ErrorTable::showSummary() {
   // In place of the heading: a line of its own would make the table jump under the mouse.
   summaryRows_.push_back(
       {{},
-       document_.stale() ? tr("out of date…") : tr("Held-out frames, error %"),
+       document_.stale() ? tr("out of date…") : tr("Held out, % vs %1").arg(toQString(scoredAgainst(*inspection))),
        {tr("mean"), tr("median"), tr("p95"), tr("max"), tr("IoU"), tr("predicted"), tr("missed"), tr("spurious")},
        {}});
   int missed = 0, spurious = 0;

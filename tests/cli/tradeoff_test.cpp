@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 class TradeoffCommand : public SmallScene {
  protected:
   /// Few trials: what is measured is tested elsewhere.
-  static constexpr const char* kFew = "--models dual,limit-angle --max-trials 6 --repeats 1 ";
+  static constexpr const char* kFew = "--models dual,limit-angle --set fit.most_residual=10 --max-trials 6 --repeats 1 ";
   ProgramRun tradeoff(const std::string& more) const { return on("tradeoff", kFew + more); }
 };
 
@@ -191,7 +191,7 @@ TEST_F(TradeoffCommand, StopsQuicklyAndResumes) {
   const std::size_t kept = Json::parse(contentOf(work))["coarse"].size();
   EXPECT_GT(kept, 0u);
   // Few trials suffice to see that the file is taken over and removed at the end.
-  const ProgramRun resumed = on("tradeoff", "--max-trials 2 --models primal,dual --json " + out("t.json"));
+  const ProgramRun resumed = on("tradeoff", "--max-trials 2 --models limit-angle --json " + out("t.json"));
   EXPECT_EQ(resumed.code, 0) << resumed.err;
   EXPECT_FALSE(fs::exists(work));
 }

@@ -8,6 +8,12 @@
 
 #include "gui/document/engine.h"
 
+// Qt gives up after 5 s. A busy machine takes longer, and no test needs a certain speed.
+#undef QTRY_VERIFY
+#define QTRY_VERIFY(expression) QTRY_VERIFY_WITH_TIMEOUT(expression, 60000)
+#undef QTRY_COMPARE
+#define QTRY_COMPARE(actual, expected) QTRY_COMPARE_WITH_TIMEOUT(actual, expected, 60000)
+
 namespace glint::gui {
 
 /// A scene of small photographs on disk, and an engine whose inspection is a quick stand-in: in every frame one observed circle

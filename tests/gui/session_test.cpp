@@ -179,7 +179,7 @@ class SessionTest : public QObject {
     QVERIFY(shipped.open(QIODevice::ReadOnly));
     const QByteArray text = shipped.readAll();
     const std::pair<QByteArray, QString> cases[] = {
-        {QByteArray(text).replace("\"glint_session\": 2", "\"glint_session\": 9"), QStringLiteral("newer than this program")},
+        {QByteArray(text).replace("\"glint_session\": 3", "\"glint_session\": 9"), QStringLiteral("newer than this program")},
         {text.left(text.size() / 2), QStringLiteral("bad.glint")}};
     auto* bar = window.findChild<MessageBar*>(QStringLiteral("messageBar"));
     for (const auto& [content, expected] : cases) {

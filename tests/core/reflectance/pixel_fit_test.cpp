@@ -332,6 +332,29 @@ TEST(ContourWithLobe, LiesAtItsLevelOnALongTailedLobe) {
   }
 }
 
+// Noise of 2 % of the peak on every pixel. At a vertex of a contour between two such pixels the true radiance is off by about 0.8 x 2 % (the mean
+// size of a normal deviate). The lobe keeps the shape, so that a Gaussian window of a thirtieth of the radius, 0.65 px here, may average more
+// pixels: white noise falls to 1 / (2 sqrt(pi) 0.65) = 0.43 of that.
+TEST(ContourWithLobe, NoiseOfSinglePixelsIsEvenedOut) {
+  Scene s;
+  s.roughness *= 2;
+  s.noise = 0.02;
+  const Photograph p = photograph(s, 1);
+  const Camera camera = cameraOf(s, 1);
+  const LobeModel model{s.lobe, s.roughness, Light::at(s.lamp), 0};
+  DetectOptions options;
+  const Outcome<std::vector<Highlight>> again = contourWithLobe(linearPixels(p.image, nullptr, 0), camera, *surfaceOf(s), 1, {p.highlight}, {},
+                                                                model, BackgroundKind::None, options);
+  ASSERT_TRUE(again) << again.failure().message();
+  double sum = 0;
+  for (const Pixel& at : again->front().contour.points) {
+    const std::optional<Shade> here = shade(s, camera.ray(at));
+    ASSERT_TRUE(here);
+    sum += std::abs(here->specular / p.top - 0.5);
+  }
+  EXPECT_LT(sum / double(again->front().contour.points.size()), 0.55 * 0.8 * s.noise);
+}
+
 TEST(ContourWithLobe, ALobeThatExplainsNothingIsRefused) {
   Scene s;
   const Photograph p = photograph(s, 1);

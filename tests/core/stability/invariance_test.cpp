@@ -296,6 +296,7 @@ TEST(Invariance, OrderOfLights) {
   InspectionRequest request;
   request.models = {"primal", "dual", "canonical", "limit-angle"};
   request.train = "0-4";
+  request.settings.set("fit.most_residual", 10.0);  // the sheet is no plane: what is compared counts, not how good it is
   const Inspection first = inspect(here, request), second = inspect(there, request);
   ASSERT_EQ(first.lights.size(), 2u);
   for (const auto& [id, light] : first.lights) {

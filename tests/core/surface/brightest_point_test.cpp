@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/surface/mesh.h"
 #include "tests/core/surface/surfaces.h"
 #include "tests/tolerances.h"
 
@@ -80,6 +81,25 @@ TEST(BrightestPoint, PlaneMirrorsTheLight) {
   const Vector3d image = light - 2 * n.dot(light - o) * n;
   const double t = n.dot(o - eye) / n.dot(image - eye);
   EXPECT_NEAR(((*found)[0].point.position - (eye + t * (image - eye))).norm(), 0, 1e-15);
+}
+
+/// The valley of the half angle is a thousand times longer than wide here: a search without derivatives ended on its way.
+TEST(BrightestPoint, FlatFacetsMirrorTheLightAtGrazingAngles) {
+  AnalyticSpec sheet;
+  sheet.type = "sheet";
+  sheet.length = sheet.width = 1.2;
+  const auto facets = makeMesh(makeAnalytic(sheet)->tessellate({}, 12), NormalPolicy::Facet);
+  for (const double degrees : {80.0, 85.0, 89.0, 89.9}) {
+    const double a = degrees * M_PI / 180;
+    const Vector3d eye(-0.8 * std::sin(a), 0.03, 0.8 * std::cos(a)), light(2 * std::sin(a), -0.07, 2 * std::cos(a));
+    const auto found = predictedBrightestPoints(*facets, test::lookAt(eye, {0, 0, 0}), Light::at(light));
+    ASSERT_TRUE(found) << degrees << " degrees: " << found.failure().message();
+    // The light's image is below the plane z = 0.
+    const double t = eye.z() / (eye.z() + light.z());
+    const Vector3d expected(eye.x() + t * (light.x() - eye.x()), eye.y() + t * (light.y() - eye.y()), 0);
+    // A tilt of round-off shifts the point by its distance over the cosine.
+    EXPECT_NEAR(((*found)[0].point.position - expected).norm(), 0, 1e-15 / std::cos(a)) << degrees << " degrees";
+  }
 }
 
 TEST(BrightestPoint, ConcaveSphereHasSeveral) {
