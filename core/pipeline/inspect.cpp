@@ -227,8 +227,9 @@ void Run::brightestPointsAndTangentPlanes() {
       keyOfStages(q.settings, {"surface"},
                   r_.stageKeys["detect"] + "|" + r_.stageKeys["lobe"] + "|" + join(r_.train.frames) + (r_.train.perSurface ? "per-surface" : "") + "|x" +
                       join(q.excluded) + "|" + exactText(q.noisePx) + "|" + std::to_string(q.seed) + "|" + posesKey(q.whatIf) +
-  // Corrected normals are not those of the stage.
-  if (havePixels(input.views) && !r_.refinedNormals.count(key)) input.pixelFit = pixelFitFor(r_, key);
+                      "|" + highlightsKey(q.whatIf) + "|" + lightsOffKey(q.whatIf) +
+                      (q.settings.text("fit.evidence") == "levels" ? "|" + q.settings.text("fit.levels") : ""));
+  if (unchanged("views") && previous_->depthCorrections.empty() && previous_->refinedNormals.empty()) {  // corrected views belong to that run's light
     r_.views = previous_->views;
     for (TrainingView& v : r_.views) v.canonical.reset();
     return;
@@ -333,7 +334,7 @@ FitInput Run::fitInput(const Group& group) const {
   for (const int v : group.views) input.views.push_back(r_.views[v]);
   const std::string key = lightKey(group.light, group.surface);
   // The stage's fit is of all views of the group: it serves where none of them lost its pixels since.
-  // Corrected normals are not those of the stage.
+  // Corrected normals are not those that the stage saw.
   if (havePixels(input.views) && !r_.refinedNormals.count(key)) input.pixelFit = pixelFitFor(r_, key);
   if (const auto it = r_.lights.find(key); it != r_.lights.end()) input.light = it->second;
   else if (const auto failed = r_.lightFailures.find(key); failed != r_.lightFailures.end()) input.lightFailure = failed->second;
