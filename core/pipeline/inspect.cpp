@@ -284,7 +284,9 @@ void Run::lights() {
   // Of which lights and surfaces: a look at one frame may not have seen them all.
   std::string names;
   for (const Group& g : all) names += "|" + lightKey(g.light, g.surface);
-  r_.stageKeys["light"] = keyOfStages(r_.request.settings, {"light"}, r_.stageKeys["views"] + names);
+  std::set<std::string> stages{"light"};
+  if (r_.request.settings.flag("light.refine_normals")) stages.insert("fit");  // which model explains the contours better depends on how it is fitted
+  r_.stageKeys["light"] = keyOfStages(r_.request.settings, stages, r_.stageKeys["views"] + names);
   if (!anyModel(&HighlightModel::needsLight)) return;
   if (unchanged("light") && (!previous_->lights.empty() || !previous_->lightFailures.empty())) {
     r_.lights = previous_->lights;

@@ -75,7 +75,8 @@ TEST_F(RefinedNormalsTest, HeldOutFramesGainForEveryModel) {
 
 TEST_F(RefinedNormalsTest, IncrementalEqualsFresh) {
   const auto scene = bumpy();
-  InspectionRequest finer = request(true), wider = request(true);
+  InspectionRequest finer = request(true), wider = request(true), lobe = request(true);
+  lobe.settings.set("fit.lobe", std::string("ggx"));  // reflectance may tell what the angles are
   finer.settings.set("predict.directions", 24);
   wider.settings.set("light.normal_sigma", 0.1);
   finer.models = {"canonical"};
@@ -88,6 +89,7 @@ TEST_F(RefinedNormalsTest, IncrementalEqualsFresh) {
   EXPECT_EQ(digestOf(inspect(scene, request(true), {}, &on)), digestOf(on)) << "nothing changed";
   expectFresh(finer, on, "a model that was not there");
   expectFresh(wider, on, "another prior");
+  expectFresh(lobe, on, "another lobe");
 }
 
 // Nothing is corrected that is not a mesh with normals of its own, seen by all views.
