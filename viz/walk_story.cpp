@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "core/base/angle.h"
-#include "core/surface/mesh_policy.h"
 #include "viz/frame_details.h"
 #include "viz/layers.h"
 
@@ -52,7 +51,7 @@ Outcome<Start> backwards(const Inspection& in, const Explanation& e) {
   for (const ModelResult::Fit& f : result->second.fits)
     if (f.fit && f.light == e.light && (!f.surface || *f.surface == key)) fit = &*f.fit;
   if (!fit || !in.surfaces) return none;
-  const Outcome<std::shared_ptr<const Surface>> surface = in.surfaces->surfaceOf(e.frame, meshPolicy(in.request.settings));
+  const Outcome<std::shared_ptr<const Surface>> surface = surfaceFor(in, e.frame, e.light);
   if (!surface) return surface.failure();
   if (!fit->lightEstimate && !fit->ellipsoid) return Failure{Reason::NoLight, ""};
   return Start{&*predicted->canonical, predicted->brightest, *surface,

@@ -148,8 +148,7 @@ Outcome<std::shared_ptr<const Surface>> surfaceOfFrame(const Inspection& inspect
   const Frame& f = inspection.scene->frames[std::size_t(frame)];
   if (const auto found = inspection.depthCorrections.find(light); found != inspection.depthCorrections.end() && f.surface.empty())
     return correctedDepthMap(f, policy, found->second);
-  if (!inspection.surfaces) return Failure{Reason::NoSurface, ""};
-  return inspection.surfaces->surfaceOf(frame, policy);
+  return surfaceFor(inspection, frame, light);
 }
 
 std::vector<AngleByDirection> limitAngles(const Inspection& inspection, int frame, const std::string& model,

@@ -15,7 +15,6 @@
 #include "core/highlight/peak.h"
 #include "core/light/estimate.h"
 #include "core/pipeline/training.h"
-#include "core/surface/mesh_policy.h"
 
 namespace glint {
 
@@ -112,7 +111,7 @@ void gather(Case& c) {
     if (v.frame == out.frame && v.highlight.light == out.light && (v.highlight.peak - c.highlight->peak).norm() < 1)
       out.view = v;  // px; noise moves it less
   if (!out.view && in.surfaces) {
-    const auto found = in.surfaces->surfaceOf(out.frame, meshPolicy(in.request.settings));
+    const auto found = surfaceFor(in, out.frame, out.light);
     out.view = trainingView(evidence, out.highlight, c.camera(), found ? *found : nullptr);
   }
   c.surface = out.view ? out.view->surface : nullptr;

@@ -30,7 +30,7 @@ class Band {
                                   const Settings& settings);
 
   void add(BandAlternative alternative) { alternatives_.push_back(std::move(alternative)); }
-  /// The parameters' own covariance counts beside the residuals: it holds a part (a refined depth) that no residual shows.
+  /// The parameters' own covariance counts beside the residuals: it holds a part (a refined depth or normals) that no residual shows.
   void addOwnCovariance() { own_ = true; }
 
   const ViewEffects& effects() const { return effects_; }

@@ -101,7 +101,7 @@ std::string text(const char* format, double a, double b = 0) {
 
 }  // namespace
 
-FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInput& input, const Settings& settings, bool depthRefined) {
+FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInput& input, const Settings& settings, bool surfaceRefined) {
   FittedBand result;
   const std::shared_ptr<Band> band = Band::of(model, fit, input.views, settings);
   if (!band) {
@@ -109,7 +109,7 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
     return result;
   }
   result.band = band;
-  if (depthRefined) band->addOwnCovariance();
+  if (surfaceRefined) band->addOwnCovariance();
 
   // Other lobes, or reflectance beside the limit angle. One that the evidence prefers is away by d for certain: uniform between -d and d; several that it likes alike are a mixture,
   // whose variance is d^2 times the share.

@@ -8,12 +8,12 @@
 #include "core/model/plausible.h"
 #include "core/pipeline/band.h"
 #include "core/pipeline/comparison.h"
-#include "core/pipeline/corrected_depth.h"
 #include "core/pipeline/evidence.h"
 #include "core/pipeline/inspection.h"
 #include "core/pipeline/lobe_stage.h"
 #include "core/pipeline/several_lights.h"
 #include "core/pipeline/stage_keys.h"
+#include "core/pipeline/surface_corrections.h"
 #include "core/pipeline/training.h"
 #include "core/surface/mesh_policy.h"
 
@@ -58,6 +58,7 @@ class Run {
   /// @param onlyFrame  as inspectOneFrame; -1 = every frame
   Run(Inspection& result, const ProgressFn& progress, const Inspection* previous, int onlyFrame)
       : r_(result),
+        corrections_(result),
         progress_(progress),
         previous_(previous && previous->given == result.given ? previous : nullptr),
         onlyFrame_(onlyFrame) {}
@@ -88,16 +89,6 @@ class Run {
     const Outcome<std::shared_ptr<const Surface>> s = r_.surfaces->surfaceOf(frame, meshPolicy(r_.request.settings));
     if (!s) failure = s.failure();
   }
-  /// With the depth correction of a light, where the frame's surface is its own depth map.
-  std::shared_ptr<const Surface> surfaceOf(int frame, const std::string& key) {
-    const auto found = r_.depthCorrections.find(key);
-    const Frame& f = r_.scene->frames[frame];
-    if (found == r_.depthCorrections.end() || !f.surface.empty()) return surfaceOf(frame);
-    const Outcome<std::shared_ptr<const Surface>> s = corrected_.surfaceOf(f, meshPolicy(r_.request.settings), key, found->second);
-    return s ? *s : nullptr;
-  }
-  void refineDepthOf(const Group& group, LightEstimate& light);
-  void correctViews(const Group& group);
   std::vector<Group> groups() const;
   /// Some frame, whether it trains or not, shows a highlight of this light.
   bool seen(const std::string& light) const {
@@ -134,7 +125,7 @@ class Run {
   bool lightsAreOpen() const { return lightsAreOpenIn(*r_.scene, r_.request); }
 
   Inspection& r_;
-  CorrectedDepthMaps corrected_;
+  SurfaceCorrections corrections_;
   const ProgressFn& progress_;
   const Inspection* previous_;
   int onlyFrame_;
@@ -238,7 +229,7 @@ void Run::brightestPointsAndTangentPlanes() {
                       join(q.excluded) + "|" + exactText(q.noisePx) + "|" + std::to_string(q.seed) + "|" + posesKey(q.whatIf) +
                       "|" + highlightsKey(q.whatIf) + "|" + lightsOffKey(q.whatIf) +
                       (q.settings.text("fit.evidence") == "levels" ? "|" + q.settings.text("fit.levels") : ""));
-  if (unchanged("views") && previous_->depthCorrections.empty()) {  // corrected views belong to that run's light
+  if (unchanged("views") && previous_->depthCorrections.empty() && previous_->refinedNormals.empty()) {  // corrected views belong to that run's light
     r_.views = previous_->views;
     for (TrainingView& v : r_.views) v.canonical.reset();
     return;
@@ -293,13 +284,16 @@ void Run::lights() {
   // Of which lights and surfaces: a look at one frame may not have seen them all.
   std::string names;
   for (const Group& g : all) names += "|" + lightKey(g.light, g.surface);
-  r_.stageKeys["light"] = keyOfStages(r_.request.settings, {"light"}, r_.stageKeys["views"] + names);
+  std::set<std::string> stages{"light"};
+  if (r_.request.settings.flag("light.refine_normals")) stages.insert("fit");  // which model explains the contours better depends on how it is fitted
+  r_.stageKeys["light"] = keyOfStages(r_.request.settings, stages, r_.stageKeys["views"] + names);
   if (!anyModel(&HighlightModel::needsLight)) return;
   if (unchanged("light") && (!previous_->lights.empty() || !previous_->lightFailures.empty())) {
     r_.lights = previous_->lights;
     r_.lightFailures = previous_->lightFailures;
     r_.depthCorrections = previous_->depthCorrections;
-    for (const Group& g : all) correctViews(g);
+    r_.refinedNormals = previous_->refinedNormals;
+    for (const Group& g : all) corrections_.correctViews(g.views, lightKey(g.light, g.surface));
     return;
   }
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -313,46 +307,9 @@ void Run::lights() {
     }
     Outcome<LightEstimate> light = estimateLight(views, r_.request.settings);
     ++r_.work.lights;
-    if (light && r_.request.settings.flag("light.refine_depth")) refineDepthOf(all[i], *light);
+    if (light) corrections_.refine(all[i].views, key, *light);
     if (light) r_.lights.insert_or_assign(key, *light);
     else r_.lightFailures.insert_or_assign(key, light.failure());
-  }
-}
-
-/// Corrects the depth maps of a light's views, and the light with them.
-void Run::refineDepthOf(const Group& group, LightEstimate& light) {
-  std::vector<TrainingView> views;
-  for (const int v : group.views) {
-    if (!r_.scene->frames[r_.views[v].frame].surface.empty()) return;  // a mesh or a shape has no depth that could be off
-    views.push_back(r_.views[v]);
-  }
-  const Outcome<DepthRefinement> refined = refineDepth(views, light.light, r_.request.settings);
-  if (!refined || !refined->correction.changesAnything()) return;
-  const std::string key = lightKey(group.light, group.surface);
-  r_.depthCorrections.insert_or_assign(key, refined->correction);
-  const std::vector<TrainingView> before = r_.views;
-  correctViews(group);
-  views.clear();
-  for (const int v : group.views) views.push_back(r_.views[v]);
-  const Outcome<LightEstimate> again = estimateLight(views, r_.request.settings);
-  if (!again || !(again->rmsPx < light.rmsPx)) {  // the corrected surfaces do not keep what the correction promised
-    r_.views = before;
-    r_.depthCorrections.erase(key);
-    return;
-  }
-  light = *again;
-  if (!light.extent && refined->uncertainty) light.uncertainty = refined->uncertainty;
-}
-
-void Run::correctViews(const Group& group) {
-  const std::string key = lightKey(group.light, group.surface);
-  if (!r_.depthCorrections.count(key)) return;
-  for (const int v : group.views) {
-    TrainingView& view = r_.views[v];
-    FrameEvidence evidence;
-    evidence.frame = view.frame;
-    evidence.highlights = {view.highlight};
-    view = trainingView(evidence, 0, view.camera, surfaceOf(view.frame, key));
   }
 }
 
@@ -379,7 +336,8 @@ FitInput Run::fitInput(const Group& group) const {
   for (const int v : group.views) input.views.push_back(r_.views[v]);
   const std::string key = lightKey(group.light, group.surface);
   // The stage's fit is of all views of the group: it serves where none of them lost its pixels since.
-  if (havePixels(input.views)) input.pixelFit = pixelFitFor(r_, key);
+  // Corrected normals are not those that the stage saw.
+  if (havePixels(input.views) && !r_.refinedNormals.count(key)) input.pixelFit = pixelFitFor(r_, key);
   if (const auto it = r_.lights.find(key); it != r_.lights.end()) input.light = it->second;
   else if (const auto failed = r_.lightFailures.find(key); failed != r_.lightFailures.end()) input.lightFailure = failed->second;
   return input;
@@ -411,6 +369,8 @@ void Run::modelFits() {
         fit->light = g.light;
         fit->surface = g.surface;
         if (std::string merged = mergedRemark(*fit); !merged.empty()) fit->remarks.push_back(std::move(merged));
+        if (const auto refined = r_.refinedNormals.find(lightKey(g.light, g.surface)); refined != r_.refinedNormals.end() && model.needsLight())
+          fit->remarks.push_back(refined->second.remark());
         fit->timeUs = microsecondsSince(start);
         entry.fit = std::move(*fit);
       } else {
@@ -433,7 +393,7 @@ std::vector<std::shared_ptr<const Band>> Run::bandsOf(const HighlightModel& mode
         ModelResult::Fit& fit = result.fits[static_cast<std::size_t>(i)];
         const auto group = std::find_if(all.begin(), all.end(), [&](const Group& g) { return g.light == fit.light && g.surface == fit.surface; });
         if (!fit.fit || group == all.end()) return;
-        FittedBand band = bandOf(model, *fit.fit, fitInput(*group), r_.request.settings, r_.depthCorrections.count(lightKey(fit.light, fit.surface)) > 0);
+        FittedBand band = bandOf(model, *fit.fit, fitInput(*group), r_.request.settings, corrections_.any(lightKey(fit.light, fit.surface)));
         bands[static_cast<std::size_t>(i)] = std::move(band.band);
         fit.bandRemarks = std::move(band.remarks);
       },
@@ -477,7 +437,7 @@ void Run::predictionsAndComparisons() {
           const Camera& camera = r_.scene->frames[frame].camera;
           Prediction prediction;
           if (fit.fit) {
-            const std::shared_ptr<const Surface> surface = needsSurface ? surfaceOf(frame, lightKey(fit.light, fit.surface)) : nullptr;
+            const std::shared_ptr<const Surface> surface = needsSurface ? corrections_.surfaceOf(frame, lightKey(fit.light, fit.surface)) : nullptr;
             surfacesAsked += needsSurface;
             ++predictions;
             const auto start = std::chrono::steady_clock::now();

@@ -11,6 +11,7 @@
 #include "core/base/settings.h"
 #include "core/evaluate/metrics.h"
 #include "core/light/refine_depth.h"
+#include "core/pipeline/refined_normals.h"
 #include "core/model/model.h"
 #include "core/pipeline/what_if.h"
 #include "core/scene/scene.h"
@@ -131,12 +132,18 @@ struct Inspection {
   std::map<std::string, LightEstimate> lights;             ///< by light id (+ "@" + surface key when per surface)
   std::map<std::string, Failure> lightFailures;            ///< the same keys: why a light could not be estimated
   std::map<std::string, DepthCorrection> depthCorrections; ///< the same keys, where light.refine_depth found one: of the views' and predictions' depth maps
+  std::map<std::string, RefinedNormals> refinedNormals;    ///< the same keys, where light.refine_normals found a better mesh: of the views and predictions
   std::map<std::string, ModelResult> models;
   std::map<std::string, std::string> stageKeys;            ///< what each stage's result depends on: tells which stages a later run may reuse
   WorkCounts work;
   bool isTraining(int frame) const;
   bool isHeldOut(int frame) const;                         ///< counts in summaries
 };
+
+/// The surface that predictions of a light in a frame use: the frame's own, or its mesh with the normals that the light's contours corrected
+/// (light.refine_normals). Depth maps are as they are stored. The failures of SurfaceCache::surfaceOf(); NoSurface without a cache.
+/// @param light  id.
+Outcome<std::shared_ptr<const Surface>> surfaceFor(const Inspection& inspection, int frame, const std::string& light);
 
 /// scene -> highlight -> brightest point, tangent plane -> light -> virtual camera -> canonical contour -> model fit
 /// -> prediction -> comparison. Pure; throws Stopped when `progress` says so, InputError for wrong requests.

@@ -67,6 +67,7 @@ Inspection heldAgainst(const Inspection& earlier, const Observation& observation
   r.lights = earlier.lights;
   r.lightFailures = earlier.lightFailures;
   r.depthCorrections = earlier.depthCorrections;
+  r.refinedNormals = earlier.refinedNormals;
   r.stageKeys["detect"] = observation.key;
   const Camera& camera = observation.scene->frames[std::size_t(frame)].camera;
   for (const auto& [name, before] : earlier.models) {

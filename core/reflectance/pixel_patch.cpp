@@ -142,4 +142,22 @@ Outcome<PixelPatch> pixelPatch(const LinearPixels& pixels, const Camera& camera,
   return patch;
 }
 
+PixelPatch onSurface(PixelPatch patch, const Surface& surface) {
+  const Eigen::Vector3d eye = patch.camera.centreInWorld();
+  for (int row = 0; row < patch.rows; ++row)
+    for (int column = 0; column < patch.columns; ++column) {
+      const std::size_t i = static_cast<std::size_t>(row) * patch.columns + column;
+      if (!patch.onSurface[i]) continue;
+      const Pixel ideal = patch.camera.undistorted(patch.firstCell + patch.cellPx * Pixel(column, row));
+      const Outcome<SurfacePoint> hit = surface.firstHit(patch.camera.ray(ideal));
+      if (!hit || !hit->position.allFinite() || !hit->normal.allFinite()) {
+        patch.onSurface[i] = patch.used[i] = 0;
+        continue;
+      }
+      const SurfacePoint p = facing(*hit, eye);
+      patch.seen[i] = {p.position, p.normal, (eye - p.position).normalized()};
+    }
+  return patch;
+}
+
 }  // namespace glint

@@ -61,4 +61,7 @@ struct PatchOptions {
 Outcome<PixelPatch> pixelPatch(const LinearPixels& pixels, const Camera& camera, const Surface& surface, int frame,
                                const Highlight& highlight, const std::vector<Highlight>& others, const PatchOptions& options = {});
 
+/// The same pixels, joined with another surface under the same camera.
+PixelPatch onSurface(PixelPatch patch, const Surface& surface);
+
 }  // namespace glint

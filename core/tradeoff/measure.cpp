@@ -182,7 +182,7 @@ std::vector<std::vector<double>> TradeoffBench::timesOf(const Inspection& inspec
   for (const int i : spread(counted, frames)) {
     const FrameComparison& c = result.frames[i];
     std::vector<double>& of = times.emplace_back();
-    const Outcome<std::shared_ptr<const Surface>> surface = inspection.surfaces->surfaceOf(c.frame, meshPolicy(trial.settings));
+    const Outcome<std::shared_ptr<const Surface>> surface = surfaceFor(inspection, c.frame, c.light);
     const Camera& camera = inspection.scene->frames[c.frame].camera;
     for (int r = 0; r < repeats; ++r) {
       check();

@@ -15,6 +15,7 @@
 #include "gui/base/number_box.h"
 #include "gui/base/text.h"
 #include "gui/panels/parameter_panel.h"
+#include "tests/core/model/bumpy_mesh.h"
 #include "tests/gui/fixture.h"
 
 namespace glint::gui {
@@ -31,7 +32,7 @@ struct Turn {
 
 const std::vector<Turn>& turns() {
   const std::map<std::string, std::string> kPoses{{"light.refine_poses", "true"}}, kDepth{{"light.refine_depth", "true"}},
-      kStar{{"predict.contour", "star"}},
+      kNormals{{"light.refine_normals", "true"}}, kStar{{"predict.contour", "star"}},
       kPosesOfSmooth{{"light.refine_poses", "true"}, {"detect.background", "smooth"}};  // with the lobe's background nothing is left to refine
   static const std::vector<Turn> all{
       {"detect.level", "0.3", "noisy"},
@@ -50,6 +51,8 @@ const std::vector<Turn>& turns() {
       {"light.pose_sigma", "2", "noisy", kPosesOfSmooth},
       {"light.refine_depth", "true", "depth"},
       {"light.depth_sigma", "0.05", "depth", kDepth},
+      {"light.refine_normals", "true", "bumpy"},
+      {"light.normal_sigma", "0.001", "bumpy", kNormals},
       {"fit.solver", "linear", "noisy", {}, {"canonical"}},
       {"fit.prior_bias", "3", "noisy", {}, {"canonical"}},
       {"fit.evidence", "contours", "noisy", {}, {"reflectance"}},
@@ -244,6 +247,11 @@ class ParametersTest : public QObject {
       for (Frame& frame : made->frames) {
         frame.highlights.clear();  // to be detected
         if (name == "depth") makeDepthWrong(frame);
+      }
+      if (name == "bumpy") {
+        const QString mesh = folder.filePath(QStringLiteral("body.ply"));
+        test::writePly(test::bumpyMesh(*made->surfaces.at("body").analytic, 0.02, 0.2, 5), mesh.toStdString());
+        made->surfaces["body"] = {mesh.toStdString(), std::nullopt};
       }
     }
     return kept = made;
