@@ -139,7 +139,9 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
       tryOther(model, with, "the lobe " + lobe);
     }
   } else if (fit.limitAngle && !fit.ellipsoid) {
-    tryOther(modelByName("reflectance"), settings, "reflectance");
+    Settings free = settings;
+    free.set("fit.lobe", std::string("auto"));  // a lobe that was asked for is not one that the limit angle is judged by
+    tryOther(modelByName("reflectance"), free, "reflectance");
   }
   if (std::isfinite(squares[0])) {
     const std::vector<double> shares = sharesOf(squares, fit.uncertainty->degreesOfFreedom);

@@ -11,7 +11,7 @@ import random
 
 from audit.harness import Result, line
 
-SEEDS = 10
+SEEDS = 20
 MODELS = ["limit-angle", "reflectance"]
 BASES = [("band_ellipsoid", "first:6"), ("band_sphere", "spread:6")]  # by turns
 

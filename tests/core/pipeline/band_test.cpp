@@ -316,6 +316,15 @@ TEST(Band, HoldsAScaleThatIsOffByItsTolerance) {
   EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [](const std::string& l) { return l.find("scale of the surface off by up to 1 %") != std::string::npos; }));
 }
 
+// The lobe that was asked for is that of the model reflectance. What the limit angle gets wrong is told by the lobe that fits.
+TEST(Band, OfTheLimitAngleDoesNotDependOnTheLobeAskedFor) {
+  const auto scene = exactScene(sphere(0.5), 12);
+  InspectionRequest chosen = request(0.1), wrong = request(0.1);
+  wrong.settings.set("fit.lobe", std::string("phong"));
+  const Inspection a = inspect(scene, chosen), b = inspect(scene, wrong);
+  EXPECT_EQ(bandSummary(a, a.models.at("limit-angle"))->sigmaPx, bandSummary(b, b.models.at("limit-angle"))->sigmaPx);
+}
+
 TEST(Band, SaysThatAClippedHighlightTellsNoLevel) {
   const auto scene = exactScene(sheet(0.4), 9);
   const auto widest = [](const Inspection& r) { return bandSummary(r, r.models.at("limit-angle"))->sigmaPx; };
