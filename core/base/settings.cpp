@@ -224,7 +224,7 @@ const std::vector<ParamSpec>& allParams() {
        0.5,
        0.001,
        {},
-       "Refined normals: standard deviation of the slopes of the bumps, in every direction. h is a Gaussian process over the surface; "
+       "Refined normals: standard deviation of the slopes of the bumps, in every direction. h is a Gaussian process, sd(∂h) = σ_N; "
        "left-out views choose its length and whether a quarter of this is enough.",
        "light"},
       {"fit.solver",

@@ -17,6 +17,7 @@ constexpr std::size_t kMostViews = 40;    // more are thinned out: the cost grow
 constexpr double kLongest = 4;            // times the extent of the views: longer ones look like one error of all
 constexpr int kIterations = 40;
 constexpr double kSettled = 1e-3;         // relative change of the variances: far below what a few views tell of them
+constexpr double kNothing = 1e-6;         // of the variance of the noise: what moves no contour visibly
 constexpr double kOpen = 1e-9;            // a parameter that moves no shape, to round-off
 
 /// Distance of every view to its nearest neighbour, the middle one.
@@ -87,7 +88,8 @@ class Stacked {
         const Eigen::MatrixXd& pattern = patterns[std::size_t(g)];
         const double factorOf = std::sqrt(std::max(0.0, pz.dot(pattern * pz)) / std::max(projector.cwiseProduct(pattern).sum(), 1e-300));  // no division by zero
         variance(g) *= factorOf;
-        change = std::max(change, std::abs(factorOf - 1) * (variance(g) > 1e-6 * noise_ ? 1 : 0));
+        // One that goes to nothing never settles.
+        if (variance(g) > kNothing * noise_) change = std::max(change, std::abs(factorOf - 1));
       }
       if (change < kSettled) break;
     }

@@ -28,8 +28,8 @@ constexpr double kOpen = 1e-9;  // a direction that moves no contour, to round-o
 constexpr double kNormal95 = 1.959964;
 constexpr double kWidthTolerance = 0.01;  // of a half width: far below what a few views tell of it
 constexpr double kWildSigmas = 4;
-constexpr int kLow = 3;                 // groups: offset, shift, stretch
-constexpr double kLeastWeight = 1e-3;   // of the evidence: what has less changes no band
+constexpr int kLow = 3;                // groups: offset, shift, stretch
+constexpr double kLeastWeight = 1e-3;  // of the evidence: what has less changes no band
 
 /// One part of a mixture of Student's distributions about zero.
 struct Spread {
@@ -44,8 +44,9 @@ double halfWidth95(const std::vector<Spread>& mixture) {
     low = std::min(low, own);
     high = std::max(high, own);
   }
-  while (high - low > kWidthTolerance * high) {
-    const double middle = std::sqrt(std::max(low, 1e-6 * high) * high);
+  constexpr int kMostHalvings = 60;  // a part without width would go on for ever
+  for (int i = 0; i < kMostHalvings && high - low > kWidthTolerance * high; ++i) {
+    const double middle = low > 0 ? std::sqrt(low * high) : 0.5 * high;
     double outside = 0;
     for (const Spread& s : mixture)
       if (s.sigma > 0)
