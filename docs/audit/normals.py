@@ -6,6 +6,7 @@ exact contours. `first:6` trains on one end of the path: most held-out highlight
 """
 import copy
 import functools
+import math
 import random
 import statistics
 
@@ -45,11 +46,16 @@ def both(r, bump, train, noise):
 
 
 def bumps(r, bump, train, noise, share):
+    """Means over the cases that both answer; no case may be refused that was answered without."""
     texts, holds = [], True
     for model, pairs in both(r, bump, train, noise).items():
-        without, refined = (statistics.mean(p[k] for p in pairs) for k in (0, 1))
-        holds = holds and refined <= share * without
-        texts.append("%s %.3g -> %.3g %% (worst case times %.2g)" % (model, without, refined, max(b / a for a, b in pairs)))
+        answered = [p for p in pairs if not any(map(math.isnan, p))]
+        gained, lost = (sum(math.isnan(p[k]) and not math.isnan(p[1 - k]) for p in pairs) for k in (0, 1))
+        without, refined = (statistics.mean(p[k] for p in answered) for k in (0, 1))
+        holds = holds and not lost and refined <= share * without
+        texts.append("%s %.3g -> %.3g %% (worst case times %.2g%s%s)" % (
+            model, without, refined, max(b / a for a, b in answered),
+            ", %d of %d answered only with it" % (gained, len(pairs)) if gained else "", ", %d lost" % lost if lost else ""))
     return Result("; ".join(texts), holds)
 
 
