@@ -68,8 +68,9 @@ This page is written by a program; do not edit it. From the root of the project,
     python3 docs/make_uncertainty.py
 
 ## What is checked
-Every fit carries the covariance of its parameters ([method.md](method.md), section 8a), and `glint predict` writes for every vertex of a predicted contour its
-standard deviation across the contour (`sigma_px`). The 95 % band is that times Student's factor for the degrees of freedom of the fit.
+Every fit carries the covariance of its parameters ([method.md](method.md), section 8a). This page checks that covariance alone: what the noise of single points does to a prediction. A 95 %
+band is the standard deviation across the contour times Student's factor for the degrees of freedom of the fit. The band that `glint predict` writes (`sigma_px`) starts from it and adds what
+whole views, the surface and the lobe are off by; [audit.md](audit.md), section 1.4, checks that one.
 A trial adds Gaussian noise per coordinate to 72 points of each training contour and to its peak (as `--noise-px` does), estimates everything from them, and predicts a view that was not
 used. Of its contour 36 directions are compared with the truth; a pair (trial, direction) counts as inside when the distance is within the band.
 Directions of one trial move together, so the standard error of a share is that of the mean over trials.
@@ -85,9 +86,9 @@ the model's own error, which is usually larger ([accuracy.md](accuracy.md)). Lig
 fit, its residuals are no noise.
 
 {table(fits, False) if fits else ""}
-## What the band does not know
+## What the covariance does not know
 - What the model gets wrong: an off-specular shift, an extended light, a surface or a pose that is off. Residuals that are correlated along a contour show some of that
-  and widen the band; a bias that every training view shares stays invisible.
+  and widen it; the band of `glint predict` holds more of it. A bias that every training view shares stays invisible to both.
 - Second order: noise displaces a curved contour outwards on average by sigma^2 / (2 radius), which the bundle corrects for, but a light that is poorly
   determined moves the contour along a curve.
 - Solvers without a Jacobian at the end (`linear`, `anchored`, `triangulated`) have no band.
