@@ -208,20 +208,15 @@ void setCovariance(const std::vector<ContourEvidence>& points, const Attempt& a,
       const Eigen::Matrix3d covariance = half * half.transpose();
       if (covariance.allFinite()) bundle.positionCovariance = covariance;
     }
-    // In the world, with |L| = 1 again: d(y / |y|) = (I - u u^T) dy / |y|.
+    // In the world, with |L| = 1 again.
     Eigen::Matrix4d toWorld = Eigen::Matrix4d::Identity();
     toWorld.topLeftCorner<3, 3>() *= scale;
     toWorld.topRightCorner<3, 1>() = origin;
-    const Eigen::Vector4d y = toWorld * a.light, u = y.normalized();
+    const Eigen::Vector4d y = toWorld * a.light;
     const Eigen::MatrixXd dy = toWorld * chart * root.topRows<3>();
-    ParameterUncertainty uncertainty;
-    uncertainty.root.resize(parameters + 1, parameters);
-    uncertainty.root.topRows<4>() = (dy - u * (u.transpose() * dy)) / y.norm();
-    uncertainty.root.bottomRows(parameters - 3) = root.bottomRows(parameters - 3);
-    if (a.directed && !atInfinity) uncertainty.root.bottomRows<6>() *= scale * scale;
-    uncertainty.noisePx = spread.noisePx;
-    uncertainty.degreesOfFreedom = spread.degreesOfFreedom;
-    if (uncertainty.root.allFinite()) bundle.uncertainty = std::move(uncertainty);
+    Eigen::MatrixXd others = root.bottomRows(parameters - 3);
+    if (a.directed && !atInfinity) others.bottomRows<6>() *= scale * scale;
+    if (auto known = uncertaintyOfUnit(y, dy, others, spread.noisePx, spread.degreesOfFreedom)) bundle.uncertainty = std::move(known);
   }
   if (!bundle.positionCovariance.allFinite()) {  // inf * 0 left NaN beside the diagonal
     bundle.positionCovariance.setZero();

@@ -324,7 +324,7 @@ Outcome<DepthRefinement> refineDepth(const std::vector<BundleView>& given, const
   Eigen::Matrix4d toWorld = Eigen::Matrix4d::Identity();
   toWorld.topLeftCorner<3, 3>() *= problem.scale;
   toWorld.topRightCorner<3, 1>() = problem.origin;
-  const Eigen::Vector4d world = toWorld * state.light, unit = world.normalized();
+  const Eigen::Vector4d world = toWorld * state.light;
   if (!world.allFinite() || !state.c.allFinite()) return Failure{Reason::NotFinite, "refined depth"};
   result.light = Light::homogeneous(world);
   result.limitAngle = state.limit;
@@ -345,13 +345,7 @@ Outcome<DepthRefinement> refineDepth(const std::vector<BundleView>& given, const
   const Eigen::MatrixXd root = svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();
   for (int k = 0; k < terms; ++k) result.openShare(k) = root.row(4 + k).norm();
   const Eigen::MatrixXd dy = toWorld * chartOf(state.light) * root.topRows<3>();
-  ParameterUncertainty uncertainty;
-  uncertainty.root.resize(5, columns);
-  uncertainty.root.topRows<4>() = (dy - unit * (unit.transpose() * dy)) / world.norm();
-  uncertainty.root.row(4) = root.row(3);
-  uncertainty.noisePx = spread.noisePx;
-  uncertainty.degreesOfFreedom = spread.degreesOfFreedom;
-  if (uncertainty.root.allFinite()) result.uncertainty = std::move(uncertainty);
+  result.uncertainty = uncertaintyOfUnit(world, dy, root.row(3), spread.noisePx, spread.degreesOfFreedom);
   return result;
 }
 

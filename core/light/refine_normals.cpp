@@ -427,7 +427,7 @@ Outcome<NormalRefinement> refineNormals(const std::vector<BundleView>& views, co
   state = fitted(problem, basis, amplitude, state, all);
   const Linearised at = linearised(problem, basis, amplitude, state, true);
   if (!worldLight(state).allFinite() || !state.c.allFinite()) return Failure{Reason::NotFinite, "refined normals"};
-  const Eigen::Vector4d world = worldLight(state), unit = world.normalized();
+  const Eigen::Vector4d world = worldLight(state);
   result.light = Light::homogeneous(world);
   result.limitAngle = state.limit;
   result.rmsPx = rms(at.residuals);
@@ -450,13 +450,7 @@ Outcome<NormalRefinement> refineNormals(const std::vector<BundleView>& views, co
   if (root.size() == 0) return result;
   result.openTilt = std::min(1.0, (mean * root.bottomRows(basis.terms())).norm() / mean.norm());
   const MatrixXd dy = toWorld * chartOf(state.light) * root.topRows<3>();
-  ParameterUncertainty uncertainty;
-  uncertainty.root.resize(5, root.cols());
-  uncertainty.root.topRows<4>() = (dy - unit * (unit.transpose() * dy)) / world.norm();
-  uncertainty.root.row(4) = root.row(3);
-  uncertainty.noisePx = spread.noisePx;
-  uncertainty.degreesOfFreedom = spread.degreesOfFreedom;
-  if (uncertainty.root.allFinite()) result.uncertainty = std::move(uncertainty);
+  result.uncertainty = uncertaintyOfUnit(world, dy, root.row(3), spread.noisePx, spread.degreesOfFreedom);
   return result;
 }
 

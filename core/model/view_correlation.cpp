@@ -115,7 +115,6 @@ class Stacked {
 }  // namespace
 
 double viewCorrelation(double distance, double length) {
-  if (distance == 0) return 1;
   if (length == 0) return 0;
   const double t = std::sqrt(3.0) * distance / length;  // 0 for an infinite length
   return (1 + t) * std::exp(-t);
@@ -145,8 +144,10 @@ std::vector<CorrelatedEffects> correlatedEffects(const std::vector<ViewCoefficie
     likelihood.push_back(stacked.fit(e.length, e.variance, e.freedom));
     result.push_back(std::move(e));
   }
-  const double best = *std::max_element(likelihood.begin(), likelihood.end());
-  double sum = 0;
+  double best = -std::numeric_limits<double>::infinity(), sum = 0;
+  for (const double l : likelihood)
+    if (std::isfinite(l)) best = std::max(best, l);
+  if (!std::isfinite(best)) return {{0, 1, start, none}};  // no length has one: as given
   for (std::size_t i = 0; i < result.size(); ++i) sum += result[i].weight = std::isfinite(likelihood[i]) ? std::exp(likelihood[i] - best) : 0;
   // Before the residuals are seen, independent errors (poses) are as likely as all lengths of bumps together.
   const double others = double(result.size() - 1);

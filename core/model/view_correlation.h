@@ -6,7 +6,7 @@
 
 namespace glint {
 
-/// How like the errors of two views are that lie this far apart: Matern's kernel of order 3/2, 1 at distance 0.
+/// How like the errors of two views are that lie this far apart: Matern's kernel of order 3/2.
 /// @param length  0: views are independent; infinite: all have one and the same error
 double viewCorrelation(double distance, double length);
 

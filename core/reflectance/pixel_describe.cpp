@@ -149,19 +149,13 @@ void describeUncertainty(PixelProblem& pixels, const State& at, bool blur, Pixel
     const Eigen::Matrix3d covariance = half * half.transpose();
     if (covariance.allFinite()) fit.positionCovariance = covariance;
   }
-  // In the world, with |L| = 1 again: d(y / |y|) = (I - u u^T) dy / |y|.
+  // In the world, with |L| = 1 again.
   Eigen::Matrix4d toWorld = Eigen::Matrix4d::Identity();
   toWorld.topLeftCorner<3, 3>() *= n.scale;
   toWorld.topRightCorner<3, 1>() = n.origin;
-  const Eigen::Vector4d y = toWorld * at.light, u = y.normalized();
+  const Eigen::Vector4d y = toWorld * at.light;
   const Eigen::MatrixXd dy = toWorld * basis * all.topRows<3>();
-  ParameterUncertainty uncertainty;
-  uncertainty.root.resize(5, unknowns);
-  uncertainty.root.topRows<4>() = (dy - u * (u.transpose() * dy)) / y.norm();
-  uncertainty.root.bottomRows<1>() = all.row(3);
-  uncertainty.noisePx = fit.rmsPx;
-  uncertainty.degreesOfFreedom = fit.independentCells;
-  if (uncertainty.root.allFinite()) fit.uncertainty = std::move(uncertainty);
+  if (auto known = uncertaintyOfUnit(y, dy, all.row(3), fit.rmsPx, fit.independentCells)) fit.uncertainty = std::move(known);
 }
 
 }  // namespace glint::patch

@@ -72,20 +72,15 @@ void RadianceProblem::setUncertainty(const State& state, RadianceFit& fit) const
     const Eigen::Matrix3d covariance = half * half.transpose();
     if (covariance.allFinite()) fit.positionCovariance = covariance;
   }
-  // In the world, with |L| = 1 again: d(y / |y|) = (I - u u^T) dy / |y|.
+  // In the world, with |L| = 1 again.
   Eigen::Matrix4d toWorld = Eigen::Matrix4d::Identity();
   toWorld.topLeftCorner<3, 3>() *= scale_;
   toWorld.topRightCorner<3, 1>() = origin_;
-  const Eigen::Vector4d y = toWorld * state.at.head<4>(), u = y.normalized();
+  const Eigen::Vector4d y = toWorld * state.at.head<4>();
   const Eigen::MatrixXd dy = toWorld * chart * root.topRows<3>();
-  ParameterUncertainty uncertainty;
-  uncertainty.root.resize(5 + own, parameters);
-  uncertainty.root.topRows<4>() = (dy - u * (u.transpose() * dy)) / y.norm();
-  uncertainty.root.row(4) = root.row(3);
-  uncertainty.root.bottomRows(own) = (state.shape == LampShape::Sphere ? scale_ * scale_ : scale_) * root.bottomRows(own);
-  uncertainty.noisePx = spread.noisePx;
-  uncertainty.degreesOfFreedom = spread.degreesOfFreedom;
-  if (uncertainty.root.allFinite()) fit.uncertainty = std::move(uncertainty);
+  Eigen::MatrixXd others = root.bottomRows(1 + own);
+  others.bottomRows(own) *= state.shape == LampShape::Sphere ? scale_ * scale_ : scale_;
+  if (auto known = uncertaintyOfUnit(y, dy, others, spread.noisePx, spread.degreesOfFreedom)) fit.uncertainty = std::move(known);
 }
 
 }  // namespace glint::lobe
