@@ -78,6 +78,9 @@ class Inspector {
   /// Inside an outline, or so close to one that nothing else follows from it.
   bool explained(const Pixel& p, double nearPx, const SurfacePoint& at) const {
     for (const StarOutline& o : outlines_) {
+      if (o.surelyInside(p)) return true;
+      const double least = o.leastRelativeReach(p);
+      if (least >= kOnOutline && (1 - 1 / least) * (p - o.centre).norm() >= nearPx) continue;  // far from this one
       const double r = o.relativeReach(p);
       if (r < kOnOutline) return true;
       if ((1 - 1 / r) * (p - o.centre).norm() < nearPx && !(field_.value(facing(at, sampler_.eye())) < level_)) return true;

@@ -9,7 +9,8 @@
 namespace glint {
 namespace {
 
-constexpr int kSubdivisions = 8;  // chords of 36 directions cost 0.13 % of the diameter on a circle; 288 cost 0.002 %
+// Chords of 36 directions cost 0.13 % of the diameter on a circle; 288 cost 0.002 %.
+constexpr int kVertices = 288, kSubdivisions = 8;  // at most that many between two directions
 constexpr int kStencil = 6;       // points of the interpolating polynomial: its error is below the walk's other errors
 
 /// Weights of the polynomial through `count` equally spaced points, at `at` steps after the first one.
@@ -23,14 +24,17 @@ std::array<double, kStencil> weights(int count, double at) {
   return w;
 }
 
-/// Those of a full stencil around a chord, for every subdivision: nearly all chords use these.
-const std::array<std::array<double, kStencil>, kSubdivisions>& centredWeights() {
-  static const auto table = [] {
-    std::array<std::array<double, kStencil>, kSubdivisions> t{};
-    for (int k = 0; k < kSubdivisions; ++k) t[k] = weights(kStencil, (kStencil - 1) / 2 + double(k) / kSubdivisions);
+using Table = std::array<std::array<double, kStencil>, kSubdivisions>;
+
+/// Those of a full stencil around a chord, for every one of `parts` subdivisions: nearly all chords use these.
+const Table& centredWeights(int parts) {
+  static const auto tables = [] {
+    std::array<Table, kSubdivisions + 1> t{};
+    for (int of = 1; of <= kSubdivisions; ++of)
+      for (int k = 0; k < of; ++k) t[of][k] = weights(kStencil, (kStencil - 1) / 2 + double(k) / of);
     return t;
   }();
-  return table;
+  return tables[parts];
 }
 
 }  // namespace
@@ -45,7 +49,9 @@ void outlineOf(const CanonicalContour& c, PredictedHighlight& h) {
   const auto isOk = [&](int i) { return all || ok[(i % n + n) % n] != 0; };
   h.coverage = n ? double(c.pixels.size()) / n : 0;
   h.contour = Polyline{{}, true};
-  h.contour.points.reserve(static_cast<std::size_t>(n) * kSubdivisions);
+  const int parts = std::clamp(kVertices / std::max(1, n), 1, kSubdivisions);
+  const Table& centredOnes = centredWeights(parts);
+  h.contour.points.reserve(static_cast<std::size_t>(n) * parts);
   for (int i = 0; i < n; ++i) {
     if (!ok[i]) continue;
     h.contour.points.push_back(pixelOf[i]);
@@ -66,9 +72,9 @@ void outlineOf(const CanonicalContour& c, PredictedHighlight& h) {
     const bool centred = count == kStencil && i - first == (kStencil - 1) / 2;
     double x[kStencil], y[kStencil];
     for (int a = 0, j = (first + n) % n; a < count; ++a, j = j + 1 < n ? j + 1 : 0) x[a] = pixelOf[j].x(), y[a] = pixelOf[j].y();
-    for (int k = 1; k < kSubdivisions; ++k) {
+    for (int k = 1; k < parts; ++k) {
       const std::array<double, kStencil> w =
-          centred ? centredWeights()[k] : weights(count, i - first + double(k) / kSubdivisions);
+          centred ? centredOnes[k] : weights(count, i - first + double(k) / parts);
       double sumX = 0, sumY = 0;
       if (centred)  // of known length
         for (int a = 0; a < kStencil; ++a) sumX += w[a] * x[a], sumY += w[a] * y[a];

@@ -21,7 +21,7 @@ constexpr double kWideStencil = 0.1, kNarrowStencil = 0.01;
 constexpr int kSummitSteps = 10;
 constexpr double kLargestAxisRatio = 100;  // beyond it (a fold) no second order describes the region
 
-constexpr double kReachTolerance = 1e-7;  // relative; a thousandth of what the contour may be off by
+constexpr double kReachTolerance = 1e-6;  // relative; a hundredth of what the contour may be off by
 constexpr int kRootSteps = 8;
 constexpr double kTrust = 0.35;  // of the rise and of the reach: beyond it another branch may be in between
 constexpr double kFall = 0.02;   // of the rise: a value that falls by more on its way out is no round-off or mesh noise
@@ -293,6 +293,8 @@ Outcome<StarOutline> starAround(const StarField& field, const Camera& camera, co
     if (mean <= kMeanOff * diameter && largest <= kLargestOff * diameter) break;
     if (2 * n > kMostDirections) return unknown;
   }
+  const auto [least, most] = std::minmax_element(outline.reach.begin(), outline.reach.end());
+  outline.least = *least, outline.most = *most;
   outline.pixels.resize(n);
   for (int i = 0; i < n; ++i) outline.pixels[i] = summit.pixel + outline.reach[i] * walk.ray(angle(i, n));
   return outline;
@@ -302,11 +304,9 @@ namespace {
 
 bool hiddenOrDark(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& eye, bool mayBeHidden, const Light& light,
                   const Surface& surface) {
-  const auto any = [](const std::vector<char>& v) { return std::find(v.begin(), v.end(), 1) != v.end(); };
-  if (mayBeHidden && any(occludedMany(surface, points, eye))) return true;
+  if (mayBeHidden && anyOccluded(surface, points, eye)) return true;
   const double seen = (eye - points.front().position).norm();
-  if (!light.atInfinity())
-    return any(occludedMany(surface, points, occlusionTarget(surface, points.front().position, light, seen)));
+  if (!light.atInfinity()) return anyOccluded(surface, points, occlusionTarget(surface, points.front().position, light, seen));
   // Rays to a light at infinity are parallel: each has its own target.
   return std::any_of(points.begin(), points.end(), [&](const SurfacePoint& p) {
     return surface.occluded(p, occlusionTarget(surface, p.position, light, seen));

@@ -41,8 +41,13 @@ struct StarOutline {
   std::vector<double> reach;         ///< at equal steps of t from 0
   std::vector<Pixel> pixels;         ///< of the ends
   std::vector<SurfacePoint> points;  ///< there
+  double least = 0, most = 0;        ///< of the reaches
   /// Reach of a pixel over that of the outline in its direction; below 1 inside.
   double relativeReach(const Pixel& p) const;
+  /// A lower bound of it, faster.
+  double leastRelativeReach(const Pixel& p) const { return (inverse * (p - centre)).norm() / most; }
+  /// Whether it is certainly below 1; faster.
+  bool surelyInside(const Pixel& p) const { return (inverse * (p - centre)).squaredNorm() < least * least; }
 };
 
 /// The outline of { value < level } around a summit by walks along pixel rays in equal steps of t: starting with `directions`,

@@ -118,7 +118,13 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces, 
     // Surface::occluded names the millionth; the end itself hides nothing.
     return firstPlace(from.position, offset / length, 1e-6 * std::min(size_, length), length * (1 - 1e-9)).has_value();
   }
-  std::vector<char> occludedMany(const std::vector<SurfacePoint>& from, const Vector3d& to) const override;
+  std::vector<char> occludedMany(const std::vector<SurfacePoint>& from, const Vector3d& to) const override {
+    return occlusions(from, to, 2, false);
+  }
+  bool anyOccluded(const std::vector<SurfacePoint>& from, const Vector3d& to) const override {
+    const std::vector<char> found = occlusions(from, to, 1, true);
+    return std::find(found.begin(), found.end(), 1) != found.end();
+  }
 
   std::optional<std::vector<SurfacePoint>> mirrorPlaces(const MirrorQuery& query) const override;
   std::optional<std::vector<SurfacePart>> partsThatMay(const MirrorQuery& query, double lightReach, const PartTest& test,
@@ -286,6 +292,8 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces, 
   }
 
   /// First place with a parameter in (least, most) of o + t d, |d| = 1. Embree finds triangles, double decides unless `single_`.
+  /// 1 where a point cannot see `to`. Rays that meet nothing are asked `asks` times; the rest stays 0 once `oneIsEnough` are found.
+  std::vector<char> occlusions(const std::vector<SurfacePoint>& from, const Vector3d& to, int asks, bool oneIsEnough) const;
   std::optional<Place> firstPlace(const Vector3d& o, const Vector3d& d, double least, double most) const {
     // Start where the ray enters the box: float coordinates are then of order 1 with an error of 1e-7.
     const double margin = 1e-5 * size_;
@@ -385,6 +393,8 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces, 
   EmbreeScene embree_;
   mutable std::once_flag treeOnce_;  ///< built by the first search
   mutable std::unique_ptr<const NormalTree> tree_;
+  mutable std::once_flag outwardOnce_;  ///< known from the first question about parts on
+  mutable std::optional<double> outwardDeviation_;
 };
 
 bool MeshSurface::mirrorPlaceOn(const MirrorQuery& query, Place& place) const {
@@ -426,7 +436,9 @@ std::optional<std::vector<SurfacePart>> MeshSurface::partsThatMay(const MirrorQu
                                                                   std::size_t most) const {
   const NormalTree* tree = normalTree();
   if (!tree) return std::nullopt;
-  const std::optional<std::vector<std::pair<int, double>>> found = tree->partsThatMay(query, lightReach, test, most);
+  std::call_once(outwardOnce_, [this] { outwardDeviation_ = outwardDeviation(mesh_, topology_, mesh_.normals); });
+  const std::optional<std::vector<std::pair<int, double>>> found =
+      tree->partsThatMay(query, lightReach, test, most, bounds_.contains(query.eye) ? std::nullopt : outwardDeviation_);
   if (!found) return std::nullopt;
   std::vector<SurfacePart> parts;
   parts.reserve(found->size());
@@ -518,49 +530,61 @@ std::vector<std::optional<SurfacePoint>> MeshSurface::approximateHits(const std:
   return hits;
 }
 
-std::vector<char> MeshSurface::occludedMany(const std::vector<SurfacePoint>& from, const Vector3d& to) const {
+std::vector<char> MeshSurface::occlusions(const std::vector<SurfacePoint>& from, const Vector3d& to, int asks, bool oneIsEnough) const {
   constexpr int kPacket = 8;
+  // A hit this far from both ends (in the unit of Embree, in which the mesh's size is 2) is none of single precision's making.
+  constexpr float kClear = 1e-3f;
   std::vector<char> result(from.size(), 0);
-  alignas(32) RTCRay8 packet;
+  alignas(32) RTCRayHit8 packet;
   alignas(32) int valid[kPacket];
   RTCIntersectContext context;
   for (std::size_t first = 0; first < from.size(); first += kPacket) {
-    char asked[kPacket] = {}, met[kPacket] = {};
+    char met[kPacket] = {}, clear[kPacket] = {};
     // As in `firstPlace`, a ray that meets nothing is asked once more, a little to the side: one may slip through a vertex.
-    for (const float aside : {0.f, 2e-6f}) {
+    for (int ask = 0; ask < asks; ++ask) {
+      bool any = false;
+      float length[kPacket] = {};
       for (int k = 0; k < kPacket; ++k) {
         valid[k] = 0;
         if (first + k >= from.size() || met[k]) continue;
         const Vector3d& p = from[first + k].position;
         const Vector3d offset = to - p;
-        const double length = offset.norm();
-        if (!p.allFinite() || !(length > 0) || !std::isfinite(length)) continue;
-        const Vector3d d = offset / length, o = (p - centre_) * toEmbree_;
+        const double distance = offset.norm();
+        if (!p.allFinite() || !(distance > 0) || !std::isfinite(distance)) continue;
+        const Vector3d d = offset / distance, o = (p - centre_) * toEmbree_;
         if (!(o.cwiseAbs().maxCoeff() < kEmbreeRange)) continue;
-        const Eigen::Vector3f side = aside * tangentBasis(d).col(0).cast<float>();
+        Eigen::Vector3f origin = o.cast<float>();
+        if (ask > 0) origin += 2e-6f * tangentBasis(d).col(0).cast<float>();  // as in firstPlace
         valid[k] = -1;
-        asked[k] = 1;
-        packet.org_x[k] = static_cast<float>(o.x()) + side.x();
-        packet.org_y[k] = static_cast<float>(o.y()) + side.y();
-        packet.org_z[k] = static_cast<float>(o.z()) + side.z();
-        packet.dir_x[k] = static_cast<float>(d.x());
-        packet.dir_y[k] = static_cast<float>(d.y());
-        packet.dir_z[k] = static_cast<float>(d.z());
-        packet.tnear[k] = static_cast<float>(1e-6 * std::min(size_, length) * toEmbree_);  // as in occluded
-        packet.tfar[k] = static_cast<float>(std::min(length * toEmbree_, kEmbreeRange));
-        packet.time[k] = 0;
-        packet.mask[k] = ~0u;
-        packet.id[k] = packet.flags[k] = 0;
+        any = true;
+        length[k] = static_cast<float>(std::min(distance * toEmbree_, kEmbreeRange));
+        packet.ray.org_x[k] = origin.x();
+        packet.ray.org_y[k] = origin.y();
+        packet.ray.org_z[k] = origin.z();
+        packet.ray.dir_x[k] = static_cast<float>(d.x());
+        packet.ray.dir_y[k] = static_cast<float>(d.y());
+        packet.ray.dir_z[k] = static_cast<float>(d.z());
+        packet.ray.tnear[k] = static_cast<float>(1e-6 * std::min(size_, distance) * toEmbree_);  // as in occluded
+        packet.ray.tfar[k] = length[k];
+        packet.ray.time[k] = 0;
+        packet.ray.mask[k] = ~0u;
+        packet.ray.id[k] = packet.ray.flags[k] = 0;
+        packet.hit.geomID[k] = packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
       }
+      if (!any) break;
       rtcInitIntersectContext(&context);
       context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-      rtcOccluded8(valid, embree_.scene, &context, &packet);
+      rtcIntersect8(valid, embree_.scene, &context, &packet);
       for (int k = 0; k < kPacket; ++k)
-        if (valid[k] && packet.tfar[k] < 0) met[k] = 1;  // that is how Embree marks a hit
+        if (valid[k] && packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID) {
+          met[k] = 1;
+          clear[k] = ask == 0 && packet.ray.tfar[k] > kClear && packet.ray.tfar[k] < length[k] - kClear;
+        }
     }
-    // Float says that something is met: double decides, as for a single point.
+    // Where single precision may be wrong double decides, as for a single point.
     for (int k = 0; k < kPacket; ++k)
-      if (asked[k] && met[k]) result[first + k] = occluded(from[first + k], to);
+      if (met[k]) result[first + k] = clear[k] || occluded(from[first + k], to);
+    if (oneIsEnough && std::find(result.begin() + first, result.end(), 1) != result.end()) break;
   }
   return result;
 }

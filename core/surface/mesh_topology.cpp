@@ -142,4 +142,44 @@ std::vector<Vector3d> vertexNormals(const TriangleMesh& mesh, const MeshTopology
   return normals;
 }
 
+std::optional<double> outwardDeviation(const TriangleMesh& mesh, const MeshTopology& topology, const std::vector<Vector3d>& normals) {
+  const int count = static_cast<int>(mesh.triangles.size());
+  std::vector<char> seen(count, 0);
+  std::vector<int> part;
+  double deviation = 0;
+  for (int start = 0; start < count; ++start) {
+    if (seen[start] || !topology.alive[start]) continue;
+    part.assign(1, start);
+    seen[start] = 1;
+    const Vector3d& origin = mesh.vertices[mesh.triangles[start].x()];
+    const auto area = [&](int t) -> Vector3d { return (topology.turned[t] ? -1 : 1) * faceVector(mesh, mesh.triangles[t]); };
+    Vector3d sum(0, 0, 0);
+    double total = 0, volume = 0, extent = 0;
+    for (std::size_t head = 0; head < part.size(); ++head) {
+      const int t = part[head];
+      const Vector3d a = area(t), from = mesh.vertices[mesh.triangles[t].x()] - origin;
+      sum += a;
+      total += a.norm();
+      volume += a.dot(from);
+      extent = std::max(extent, from.norm());
+      for (int k = 0; k < 3; ++k) {
+        const int n = topology.neighbours[t][k];
+        if (n < 0) return std::nullopt;
+        if (!seen[n]) seen[n] = 1, part.push_back(n);
+      }
+    }
+    // The areas of a closed, oriented part cancel. Without an orientation, or with hardly a volume, nothing says what is outward.
+    constexpr double kClosed = 1e-6, kFlat = 1e-6;  // shares of the area, and of area times extent
+    if (!(sum.norm() <= kClosed * total) || !(std::abs(volume) > kFlat * total * extent)) return std::nullopt;
+    for (const int t : part) {
+      const Vector3d out = volume > 0 ? area(t) : Vector3d(-area(t));
+      for (int k = 0; k < 3; ++k) {
+        const Vector3d& n = normals[mesh.triangles[t][k]];
+        deviation = std::max(deviation, std::atan2(out.cross(n).norm(), out.dot(n)));
+      }
+    }
+  }
+  return deviation;
+}
+
 }  // namespace glint

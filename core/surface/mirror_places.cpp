@@ -285,8 +285,11 @@ std::optional<std::vector<int>> NormalTree::candidates(const MirrorQuery& query,
 }
 
 std::optional<std::vector<std::pair<int, double>>> NormalTree::partsThatMay(const MirrorQuery& query, double lightReach,
-                                                                            const PartTest& test, std::size_t most) const {
+                                                                            const PartTest& test, std::size_t most,
+                                                                            std::optional<double> fromOutside) const {
   const View view = viewOf(query);
+  // N.V below this is turned away. 2: never.
+  const float away = fromOutside && *fromOutside < 0.5 * std::numbers::pi ? static_cast<float>(std::sin(*fromOutside)) + kCosineMargin : 2.f;
   const float reach = static_cast<float>(lightReach / view.lightUnit * (1 + kBallMargin));
   const float unitSquared = static_cast<float>(view.lightUnit * view.lightUnit);
   std::vector<std::pair<int, double>> found;
@@ -306,14 +309,15 @@ std::optional<std::vector<std::pair<int, double>>> NormalTree::partsThatMay(cons
     // The angle between axis and V, plus both cones.
     const Eight viewSine = h.viewChord.min(1.f), viewCosine = (1.f - viewSine * viewSine).sqrt();
     const Eight openCosine = b.cosine * viewCosine - b.sine * viewSine, openSine = b.sine * viewCosine + b.cosine * viewSine;
-    const Eight facing = h.viewAlong.abs().min(1.f);
-    bounds.cosView = (openCosine <= 0.f)
-                         .select(Eight::Zero(), (facing * openCosine - (1.f - facing * facing).sqrt() * openSine - kCosineMargin).max(0.f));
+    const Eight facing = h.viewAlong.abs().min(1.f), aside = (1.f - facing * facing).sqrt() * openSine;
+    bounds.cosView = (openCosine <= 0.f).select(Eight::Zero(), (facing * openCosine - aside - kCosineMargin).max(0.f));
+    // The largest N.V of a part whose axis points away from the eye.
+    const Eigen::Array<bool, 8, 1> unseen = openCosine > 0.f && h.viewAlong < 0.f && aside - facing * openCosine < -away;
     bounds.cosHalf = (0.5f * h.sum * (1.f - h.sine) - kDirectionMargin).max(0.f);
     bounds.lightSquared = ((h.toLight - view.w * b.radius - reach) * (1.f - kCosineMargin)).max(0.f).square() * unitSquared;
     const Eight excess = test(bounds), inside = insideOf(b, view);
     for (int k = 0; k < b.count; ++k) {
-      if (excess[k] < 0 || inside[k] < 0) continue;
+      if (excess[k] < 0 || inside[k] < 0 || unseen[k]) continue;
       if (b.next[k] >= 0) {
         tasks.push_back(b.next[k]);
         continue;

@@ -35,8 +35,10 @@ class NormalTree {
   /// A triangle from every part in which N may be parallel to H. Nothing when they are more than `most`.
   std::optional<std::vector<int>> candidates(const MirrorQuery& query, std::size_t most) const;
   /// The same for what BoundedParts::partsThatMay asks, with the radii of the parts' balls, world units.
+  /// @param fromOutside  parts are left out in which every normal points away from the eye by more than this angle (rad) beyond a
+  ///   right one: outwardDeviation, for an eye outside of the box.
   std::optional<std::vector<std::pair<int, double>>> partsThatMay(const MirrorQuery& query, double lightReach, const PartTest& test,
-                                                                  std::size_t most) const;
+                                                                  std::size_t most, std::optional<double> fromOutside) const;
   /// Every part is one triangle.
   bool finest() const { return finest_; }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "core/light/light.h"
@@ -14,6 +15,9 @@ class ManyOcclusions {
   virtual ~ManyOcclusions() = default;
   /// Surface::occluded of every point towards the same one: 1 where it holds.
   virtual std::vector<char> occludedMany(const std::vector<SurfacePoint>& from, const Eigen::Vector3d& to) const = 0;
+  /// Whether it holds for any of many points that lie close together. Faster where it holds for none: a ray that slips through
+  /// a vertex of what hides them is not asked again, its neighbours meet it.
+  virtual bool anyOccluded(const std::vector<SurfacePoint>& from, const Eigen::Vector3d& to) const = 0;
 };
 
 /// The same for any surface: in packets where it can, one by one elsewhere.
@@ -22,6 +26,12 @@ inline std::vector<char> occludedMany(const Surface& surface, const std::vector<
   std::vector<char> result(from.size());
   for (std::size_t i = 0; i < from.size(); ++i) result[i] = surface.occluded(from[i], to);
   return result;
+}
+
+/// Whether any of many points that lie close together is occluded.
+inline bool anyOccluded(const Surface& surface, const std::vector<SurfacePoint>& from, const Eigen::Vector3d& to) {
+  if (const auto* many = dynamic_cast<const ManyOcclusions*>(&surface)) return many->anyOccluded(from, to);
+  return std::any_of(from.begin(), from.end(), [&](const SurfacePoint& p) { return surface.occluded(p, to); });
 }
 
 /// A world point beyond everything that could hide a light at infinity from `point`: twice the surface's size away; for an unbounded

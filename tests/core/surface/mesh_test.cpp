@@ -79,6 +79,30 @@ TEST(Mesh, RaysFromBeyondSinglePrecision) {
   EXPECT_EQ(many->occludedMany({*top}, away), (std::vector<char>{0}));
 }
 
+TEST(Mesh, ManyOcclusionsAreThoseOfSinglePoints) {
+  const auto surface = makeMesh(tessellated(test::torus(0.5, 0.2), 60), NormalPolicy::Interpolated);
+  const auto& many = dynamic_cast<const ManyOcclusions&>(*surface);
+  int hidden = 0, free = 0;
+  for (const Vector3d& to : {Vector3d(0, 0, 3), Vector3d(1.5, 0.2, 0.3), Vector3d(0.1, 0.05, 0), Vector3d(400, -300, 20)}) {
+    std::vector<SurfacePoint> points;
+    std::vector<char> expected;
+    for (int i = 0; i < 400; ++i) {  // where rays from all around meet the surface
+      const double z = 1 - 2 * (i + 0.5) / 400, a = 2.399963 * i, r = std::sqrt(1 - z * z);
+      const Vector3d from = 3 * Vector3d(r * std::cos(a), r * std::sin(a), z), target(0.5 * std::cos(a), 0.5 * std::sin(a), 0);
+      const auto hit = surface->firstHit({from, (target - from).normalized()});
+      if (!hit) continue;
+      points.push_back(*hit);
+      expected.push_back(surface->occluded(*hit, to));
+      (expected.back() ? hidden : free) += 1;
+      EXPECT_EQ(many.anyOccluded({*hit, *hit, *hit}, to), expected.back() != 0) << to.transpose() << ", " << i;
+    }
+    EXPECT_EQ(many.occludedMany(points, to), expected) << to.transpose();
+    EXPECT_TRUE(many.anyOccluded(points, to));
+  }
+  EXPECT_GT(hidden, 200);
+  EXPECT_GT(free, 200);
+}
+
 TEST(Mesh, HitsAgreeWithBruteForceInDouble) {
   const TriangleMesh mesh = tessellated(test::torus(0.5, 0.2), 40);
   const auto surface = makeMesh(mesh, NormalPolicy::Facet);

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <random>
+#include <tuple>
 
 #include "core/surface/brightest_point.h"
 #include "core/surface/mesh.h"
@@ -210,6 +211,80 @@ TEST(MirrorPlaces, OnlyThoseInsideTheView) {
     near += alpha < 0.1;
   }
   EXPECT_GT(near, 0);
+}
+
+/// Which directions of the ball's faces are outward: a tetrahedron whose vertex normals are radial has acos(1/3) between them and
+/// the planes of its faces.
+TriangleMesh tetrahedron() {
+  TriangleMesh mesh;
+  for (const Vector3d& v : {Vector3d(1, 1, 1), Vector3d(1, -1, -1), Vector3d(-1, 1, -1), Vector3d(-1, -1, 1)}) {
+    mesh.vertices.push_back(v + Vector3d(5, 0, 2));
+    mesh.normals.push_back(v.normalized());
+  }
+  mesh.triangles = {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}};
+  return mesh;
+}
+
+TEST(OutwardDeviation, OfATetrahedron) {
+  const auto of = [](const TriangleMesh& mesh) { return outwardDeviation(mesh, topologyOf(mesh), mesh.normals); };
+  TriangleMesh mesh = tetrahedron();
+  EXPECT_NEAR(of(mesh).value(), std::acos(1.0 / 3), 1e-12);
+  std::swap(mesh.triangles[2].x(), mesh.triangles[2].y());  // windings do not count
+  EXPECT_NEAR(of(mesh).value(), std::acos(1.0 / 3), 1e-12);
+  for (Vector3d& n : mesh.normals) n = -n;
+  EXPECT_NEAR(of(mesh).value(), std::acos(-1.0 / 3), 1e-12);
+}
+
+TEST(OutwardDeviation, NotWithABorder) {
+  const auto of = [](const TriangleMesh& mesh) { return outwardDeviation(mesh, topologyOf(mesh), mesh.normals); };
+  TriangleMesh open = tetrahedron();
+  open.triangles.pop_back();
+  EXPECT_FALSE(of(open));
+  TriangleMesh sheet = waves(12);
+  sheet.normals = vertexNormals(sheet, topologyOf(sheet));
+  EXPECT_FALSE(of(sheet));
+  // A closed part beside an open one.
+  TriangleMesh both = tetrahedron();
+  const int first = static_cast<int>(both.vertices.size());
+  for (int k = 0; k < 3; ++k) both.vertices.push_back(Vector3d::Unit(k)), both.normals.push_back(Vector3d::Ones().normalized());
+  both.triangles.emplace_back(first, first + 1, first + 2);
+  EXPECT_FALSE(of(both));
+}
+
+// Parts that the eye sees are never left out; of a closed surface most of the far side is.
+TEST(BoundedParts, HoldAllThatIsSeen) {
+  const PartTest all = [](const PartBounds&) { return Eight(Eight::Ones()); };
+  constexpr std::size_t kMany = 1 << 20;
+  TriangleMesh openTorus = torus(60);
+  openTorus.triangles.pop_back();
+  TriangleMesh coarse = torus(8), inward = torus(60), inner = torus(60), tilted = torus(60);
+  for (Vector3d& n : inward.normals) n = -n;
+  for (Vector3d& n : tilted.normals) n = (n + 0.5 * Vector3d::UnitZ()).normalized();  // seen from below, many point away
+  for (const auto& [mesh, eye, left] :
+       {std::tuple{torus(60), Vector3d(1.1, -1.6, 1.2), 0.65}, {coarse, Vector3d(1.1, -1.6, 1.2), 1.0}, {openTorus, Vector3d(1.1, -1.6, 1.2), 1.0},
+        {inward, Vector3d(1.1, -1.6, 1.2), 1.0}, {inner, Vector3d(0.5, 0, 0.05), 1.0}, {tilted, Vector3d(1.1, -1.6, -1.2), 1.0},
+        {torus(60), Vector3d(100, 50, -30), 0.65}}) {
+    const auto surface = makeMesh(mesh, NormalPolicy::Interpolated);
+    const auto& bounded = dynamic_cast<const BoundedParts&>(*surface);
+    MirrorQuery everywhere = query(eye, Light::at({1, 0, 3}));
+    everywhere.sides.fill(Vector3d::Zero());  // rules nothing out
+    const auto parts = bounded.partsThatMay(everywhere, 0, all, kMany);
+    ASSERT_TRUE(parts);
+    EXPECT_LE(parts->size(), left * mesh.triangles.size());
+    EXPECT_GT(parts->size(), 0.3 * mesh.triangles.size());
+    std::vector<char> known(mesh.triangles.size(), 0);  // every part is one triangle
+    for (const SurfacePart& p : *parts) known[p.middle.element] = 1;
+    int seen = 0;
+    for (int i = 0; i < 20000; ++i) {  // rays in all directions, on a spiral
+      const double z = 1 - 2 * (i + 0.5) / 20000, a = 2.399963 * i, r = std::sqrt(1 - z * z);
+      const Vector3d target = 0.75 * Vector3d(r * std::cos(a), r * std::sin(a), z);
+      const auto hit = surface->firstHit({eye, (target - eye).normalized()});
+      if (!hit) continue;
+      ++seen;
+      EXPECT_TRUE(known[hit->element]) << eye.transpose();
+    }
+    EXPECT_GT(seen, 1000);
+  }
 }
 
 }  // namespace
