@@ -224,7 +224,7 @@ Outcome<StarOutline> starAround(const StarField& field, const Camera& camera, co
   outline.centre = summit.pixel;
   outline.frame = *frame;
   outline.inverse = frame->inverse();
-  int n = std::max(12, directions);  // twice the stencil between them
+  int n = std::max(12, directions / 2);  // those half-way between join them; 12: twice the stencil between them
   std::vector<double> slopes(n);
   outline.reach.resize(n);
   outline.points.resize(n);

@@ -50,10 +50,10 @@ struct StarOutline {
   bool surelyInside(const Pixel& p) const { return (inverse * (p - centre)).squaredNorm() < least * least; }
 };
 
-/// The outline of { value < level } around a summit by walks along pixel rays in equal steps of t: starting with `directions`,
-/// doubled until the curve between them, checked half-way between all neighbours, is known to 0.01 % of the diameter on the
-/// average. SurfaceEnded (or the field), NotMonotonic, NotReached where a direction fails; NotConverged where the curve stays
-/// unknown: the region is then no smooth star.
+/// The outline of { value < level } around a summit by walks along pixel rays in equal steps of t: starting with half of
+/// `directions`, doubled until the curve between them, checked half-way between all neighbours, is known to 0.01 % of the
+/// diameter on the average. SurfaceEnded (or the field), NotMonotonic, NotReached where a direction fails; NotConverged where
+/// the curve stays unknown: the region is then no smooth star.
 Outcome<StarOutline> starAround(const StarField& field, const Camera& camera, const Surface& surface, const Summit& summit,
                                 double level, int directions);
 
