@@ -32,11 +32,14 @@ std::optional<double> directedAlpha(const SurfacePoint& p, const Eigen::Vector3d
 }
 
 /// In words: the length of a uniform lamp whose second moment, length^2 / 12, is that of the longest axis. `extent` is -2 log q times it.
+/// A point lamp over a long-tailed lobe at slanted incidence asks for one, too: the model has no lobe to tell them apart by.
 std::string extentRemark(const Eigen::Matrix3d& extent, bool angular, double level) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(extent);
   const double length = std::sqrt(12 * std::max(0.0, axes.eigenvalues()(2)) / (-2 * std::log(level)));
-  char text[200];
-  std::snprintf(text, sizeof text, "the light is not a point: it reaches about %.2g %s, a long lamp or several lights whose highlights merge",
+  char text[260];
+  std::snprintf(text, sizeof text,
+                "the contours ask for a light that reaches about %.2g %s: a long lamp, several lights whose highlights merge, or a lobe that one limit angle "
+                "does not describe (compare with reflectance, which has a lobe)",
                 angular ? length * 180 / M_PI : length, angular ? "degrees" : "m");
   return text;
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/surface/mesh.h"
 
-#include <embree3/rtcore.h>
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <mutex>
 
 #include "core/geometry/plane.h"
+#include "core/surface/mesh_rays.h"
 #include "core/surface/mesh_topology.h"
 #include "core/surface/mirror_places.h"
 #include "core/surface/occlusion.h"
@@ -30,30 +29,13 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 /// Barycentric slack: a line through an edge must lie inside one of its two triangles despite round-off.
 constexpr double kInside = 1e-12;
 
-/// Embree asserts that no coordinate of a ray exceeds 1.8e18; here the mesh has size 2, and what is that far from it never meets
-/// it.
-constexpr double kEmbreeRange = 1e18;
+/// Of the mesh's size or the way, the shorter: what lies nearer to a point does not hide it (Surface::occluded).
+constexpr double kOcclusionStart = 1e-6;
 
 /// A foot this many triangles away is found sooner by a ray. Measured on a mesh of 1 million triangles: a step over an edge costs
 /// about 20 ns, a ray 400 ns and more.
 constexpr int kFootTriangles = 32;
 constexpr double kFarTriangles = 16;
-
-/// Embree objects, released with the mesh.
-struct EmbreeScene {
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
-  EmbreeScene() : device(rtcNewDevice(nullptr)) {
-    if (!device) throw std::runtime_error("Embree: no device");
-    scene = rtcNewScene(device);
-  }
-  ~EmbreeScene() {
-    if (scene) rtcReleaseScene(scene);
-    if (device) rtcReleaseDevice(device);
-  }
-  EmbreeScene(const EmbreeScene&) = delete;
-  EmbreeScene& operator=(const EmbreeScene&) = delete;
-};
 
 /// A place on a triangle: weights of its second and third corner, and the line's parameter there.
 struct Place {
@@ -115,8 +97,8 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces, 
     const Vector3d offset = to - from.position;
     const double length = offset.norm();
     if (!(length > 0)) return false;
-    // Surface::occluded names the millionth; the end itself hides nothing.
-    return firstPlace(from.position, offset / length, 1e-6 * std::min(size_, length), length * (1 - 1e-9)).has_value();
+    // The end itself hides nothing.
+    return firstPlace(from.position, offset / length, kOcclusionStart * std::min(size_, length), length * (1 - 1e-9)).has_value();
   }
   std::vector<char> occludedMany(const std::vector<SurfacePoint>& from, const Vector3d& to) const override {
     return occlusions(from, to, 2, false);
@@ -174,22 +156,7 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces, 
     }
     centre_ = bounds_.center();
     size_ = bounds_.sizes().norm();
-    toEmbree_ = 2 / size_;
-    RTCGeometry geometry = rtcNewGeometry(embree_.device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                 3 * sizeof(float), mesh_.vertices.size()));
-    auto* corners = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                   3 * sizeof(unsigned), mesh_.triangles.size()));
-    if (!vertices || !corners) throw std::runtime_error("Embree: out of memory");
-    for (std::size_t i = 0; i < mesh_.vertices.size(); ++i)
-      for (int k = 0; k < 3; ++k) vertices[3 * i + k] = static_cast<float>((mesh_.vertices[i][k] - centre_[k]) * toEmbree_);
-    for (std::size_t i = 0; i < mesh_.triangles.size(); ++i)  // ignored ones collapse to a point, which no ray hits
-      for (int k = 0; k < 3; ++k) corners[3 * i + k] = static_cast<unsigned>(mesh_.triangles[i][topology_.alive[i] ? k : 0]);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(embree_.scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcSetSceneFlags(embree_.scene, RTC_SCENE_FLAG_ROBUST);  // without it rays leak through edges
-    rtcCommitScene(embree_.scene);
+    rays_.emplace(mesh_, topology_.alive, bounds_);
   }
 
   /// Middle control point of the edge curve: half-way, moved on to both tangent planes with weight 1/2.
@@ -291,9 +258,9 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces, 
     return std::nullopt;
   }
 
-  /// First place with a parameter in (least, most) of o + t d, |d| = 1. Embree finds triangles, double decides unless `single_`.
-  /// 1 where a point cannot see `to`. Rays that meet nothing are asked `asks` times; the rest stays 0 once `oneIsEnough` are found.
+  /// 1 where a point cannot see `to`; with `oneIsEnough` the points after it stay 0.
   std::vector<char> occlusions(const std::vector<SurfacePoint>& from, const Vector3d& to, int asks, bool oneIsEnough) const;
+  /// First place with a parameter in (least, most) of o + t d, |d| = 1. Embree finds triangles, double decides unless `single_`.
   std::optional<Place> firstPlace(const Vector3d& o, const Vector3d& d, double least, double most) const {
     // Start where the ray enters the box: float coordinates are then of order 1 with an error of 1e-7.
     const double margin = 1e-5 * size_;
@@ -310,47 +277,20 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces, 
     }
     if (!(enter <= leave)) return std::nullopt;
     const Vector3d start = o + enter * d;
-    RTCRayHit query;
-    const Vector3d local = (start - centre_) * toEmbree_;
-    if (!(local.cwiseAbs().maxCoeff() < kEmbreeRange)) return std::nullopt;
-    for (int k = 0; k < 3; ++k) (&query.ray.org_x)[k] = static_cast<float>(local[k]);
-    query.ray.dir_x = static_cast<float>(d.x());
-    query.ray.dir_y = static_cast<float>(d.y());
-    query.ray.dir_z = static_cast<float>(d.z());
-    // A little farther than asked: single precision may place the hit in front or behind, and double decides.
-    const float far = std::isfinite(leave) ? static_cast<float>((leave - enter) * toEmbree_) * 1.00001f + 1e-5f : INFINITY;
-    float near = 0;
-    bool shifted = false;
-    RTCIntersectContext context;
-    for (int attempt = 0; attempt < 64; ++attempt) {
-      rtcInitIntersectContext(&context);
-      query.ray.tnear = near;
-      query.ray.tfar = far;
-      query.ray.time = 0;
-      query.ray.mask = ~0u;
-      query.ray.id = query.ray.flags = 0;
-      query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-      rtcIntersect1(embree_.scene, &context, &query);
-      if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
-        // A ray through the middle of a vertex can slip between its triangles in float (seen once in 1e4 pixel rays of a depth
-        // map, which all meet vertices): once more, a little to the side; the walk in double then decides about the true ray.
-        if (shifted) return std::nullopt;
-        shifted = true;
-        // Some ten units of single precision.
-        const Eigen::Vector3f aside = 2e-6f * tangentBasis(d).col(0).cast<float>();
-        for (int k = 0; k < 3; ++k) (&query.ray.org_x)[k] += aside[k];
-        continue;
-      }
+    MeshRays::Search search(*rays_, start, d, leave - enter);
+    constexpr int kMostHits = 64;  // before `least`
+    for (int i = 0; i < kMostHits; ++i) {
+      const std::optional<MeshRays::Hit> hit = search.next();
+      if (!hit) return std::nullopt;
       if (single_) {
-        const Place place{static_cast<int>(query.hit.primID), query.hit.u, query.hit.v, enter + query.ray.tfar / toEmbree_};
+        const Place place{hit->triangle, hit->u, hit->v, enter + hit->t};
         if (place.t > least) return place.t < most ? std::optional<Place>(place) : std::nullopt;
-      } else if (std::optional<Place> place = walk(static_cast<int>(query.hit.primID), start, d, 8)) {
+      } else if (std::optional<Place> place = walk(hit->triangle, start, d, 8)) {
         place->t += enter;
         if (place->t > least && place->t < most) return place;
         if (place->t >= most && policy_ != NormalPolicy::Curved) return std::nullopt;
       }
       // Before `least`, or over a border in double: look behind this hit.
-      near = std::max(query.ray.tfar, near) * 1.000001f + 2e-7f;
     }
     return std::nullopt;
   }
@@ -389,8 +329,8 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces, 
   MeshTopology topology_;
   AlignedBox3d bounds_;
   Vector3d centre_{0, 0, 0};
-  double size_ = 1, toEmbree_ = 1;
-  EmbreeScene embree_;
+  double size_ = 1;
+  std::optional<MeshRays> rays_;  ///< always there once built
   mutable std::once_flag treeOnce_;  ///< built by the first search
   mutable std::unique_ptr<const NormalTree> tree_;
   mutable std::once_flag outwardOnce_;  ///< known from the first question about parts on
@@ -476,45 +416,10 @@ std::optional<std::vector<SurfacePoint>> MeshSurface::mirrorPlaces(const MirrorQ
 }
 
 std::vector<std::optional<SurfacePoint>> MeshSurface::approximateHits(const std::vector<Ray>& rays) const {
-  constexpr int kPacket = 8;
   std::vector<std::optional<SurfacePoint>> hits(rays.size());
-  std::vector<Place> places(rays.size());
-  alignas(32) RTCRayHit8 packet;
-  alignas(32) int valid[kPacket];
-  RTCIntersectContext context;
-  for (std::size_t first = 0; first < rays.size(); first += kPacket) {
-    for (int k = 0; k < kPacket; ++k) {
-      valid[k] = first + k < rays.size() ? -1 : 0;
-      if (!valid[k]) continue;
-      const Ray& ray = rays[first + k];
-      // From about the mesh: the sphere around its box.
-      const double enter = std::max(0.0, (centre_ - ray.origin).dot(ray.direction) - 0.5 * size_);
-      const Vector3d o = (ray.origin + enter * ray.direction - centre_) * toEmbree_;
-      if (!(o.cwiseAbs().maxCoeff() < kEmbreeRange) || !ray.direction.allFinite()) {
-        valid[k] = 0;
-        continue;
-      }
-      packet.ray.org_x[k] = static_cast<float>(o.x());
-      packet.ray.org_y[k] = static_cast<float>(o.y());
-      packet.ray.org_z[k] = static_cast<float>(o.z());
-      packet.ray.dir_x[k] = static_cast<float>(ray.direction.x());
-      packet.ray.dir_y[k] = static_cast<float>(ray.direction.y());
-      packet.ray.dir_z[k] = static_cast<float>(ray.direction.z());
-      packet.ray.tnear[k] = 0;
-      packet.ray.tfar[k] = INFINITY;
-      packet.ray.time[k] = 0;
-      packet.ray.mask[k] = ~0u;
-      packet.ray.id[k] = packet.ray.flags[k] = 0;
-      packet.hit.geomID[k] = packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
-    }
-    // Without the flag for coherent rays: seeds lie 32 px apart, and with it they take 1.6 times as long (the dense scan of a
-    // level set shows no difference).
-    rtcInitIntersectContext(&context);
-    rtcIntersect8(valid, embree_.scene, &context, &packet);
-    for (int k = 0; k < kPacket; ++k)
-      if (valid[k] && packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID)
-        places[first + k] = {static_cast<int>(packet.hit.primID[k]), packet.hit.u[k], packet.hit.v[k], 0};
-  }
+  std::vector<Place> places;
+  places.reserve(rays.size());
+  for (const MeshRays::Hit& h : rays_->hits(rays)) places.push_back({h.triangle, h.u, h.v, 0});
   // Rays far apart meet triangles that no cache holds: ask for all of them before waiting for one.
   for (const Place& p : places)
     if (p.triangle >= 0) __builtin_prefetch(&mesh_.triangles[p.triangle]);
@@ -531,61 +436,12 @@ std::vector<std::optional<SurfacePoint>> MeshSurface::approximateHits(const std:
 }
 
 std::vector<char> MeshSurface::occlusions(const std::vector<SurfacePoint>& from, const Vector3d& to, int asks, bool oneIsEnough) const {
-  constexpr int kPacket = 8;
-  // A hit this far from both ends (in the unit of Embree, in which the mesh's size is 2) is none of single precision's making.
-  constexpr float kClear = 1e-3f;
   std::vector<char> result(from.size(), 0);
-  alignas(32) RTCRayHit8 packet;
-  alignas(32) int valid[kPacket];
-  RTCIntersectContext context;
-  for (std::size_t first = 0; first < from.size(); first += kPacket) {
-    char met[kPacket] = {}, clear[kPacket] = {};
-    // As in `firstPlace`, a ray that meets nothing is asked once more, a little to the side: one may slip through a vertex.
-    for (int ask = 0; ask < asks; ++ask) {
-      bool any = false;
-      float length[kPacket] = {};
-      for (int k = 0; k < kPacket; ++k) {
-        valid[k] = 0;
-        if (first + k >= from.size() || met[k]) continue;
-        const Vector3d& p = from[first + k].position;
-        const Vector3d offset = to - p;
-        const double distance = offset.norm();
-        if (!p.allFinite() || !(distance > 0) || !std::isfinite(distance)) continue;
-        const Vector3d d = offset / distance, o = (p - centre_) * toEmbree_;
-        if (!(o.cwiseAbs().maxCoeff() < kEmbreeRange)) continue;
-        Eigen::Vector3f origin = o.cast<float>();
-        if (ask > 0) origin += 2e-6f * tangentBasis(d).col(0).cast<float>();  // as in firstPlace
-        valid[k] = -1;
-        any = true;
-        length[k] = static_cast<float>(std::min(distance * toEmbree_, kEmbreeRange));
-        packet.ray.org_x[k] = origin.x();
-        packet.ray.org_y[k] = origin.y();
-        packet.ray.org_z[k] = origin.z();
-        packet.ray.dir_x[k] = static_cast<float>(d.x());
-        packet.ray.dir_y[k] = static_cast<float>(d.y());
-        packet.ray.dir_z[k] = static_cast<float>(d.z());
-        packet.ray.tnear[k] = static_cast<float>(1e-6 * std::min(size_, distance) * toEmbree_);  // as in occluded
-        packet.ray.tfar[k] = length[k];
-        packet.ray.time[k] = 0;
-        packet.ray.mask[k] = ~0u;
-        packet.ray.id[k] = packet.ray.flags[k] = 0;
-        packet.hit.geomID[k] = packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
-      }
-      if (!any) break;
-      rtcInitIntersectContext(&context);
-      context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-      rtcIntersect8(valid, embree_.scene, &context, &packet);
-      for (int k = 0; k < kPacket; ++k)
-        if (valid[k] && packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID) {
-          met[k] = 1;
-          clear[k] = ask == 0 && packet.ray.tfar[k] > kClear && packet.ray.tfar[k] < length[k] - kClear;
-        }
-    }
+  rays_->obstacles(from, to, kOcclusionStart, asks, [&](std::size_t i, bool certain) {
     // Where single precision may be wrong double decides, as for a single point.
-    for (int k = 0; k < kPacket; ++k)
-      if (met[k]) result[first + k] = clear[k] || occluded(from[first + k], to);
-    if (oneIsEnough && std::find(result.begin() + first, result.end(), 1) != result.end()) break;
-  }
+    result[i] = certain || occluded(from[i], to);
+    return !(result[i] && oneIsEnough);
+  });
   return result;
 }
 
