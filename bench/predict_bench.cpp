@@ -44,7 +44,11 @@ const ModelFit& fitOf(const std::string& model) {
     fits["reflectance-disc"] = lobe;
     fits["reflectance-disc"].lightRadius = 0.15;
   }
-  if (!fits.count(model)) fits.emplace(model, *modelByName(model).fit(training(), {}));
+  if (!fits.count(model)) {
+    Settings settings;
+    settings.setFromText("fit.most_residual", "10");  // the time is of interest, also where `dual` leaves too much
+    fits.emplace(model, *modelByName(model).fit(training(), settings));
+  }
   return fits.at(model);
 }
 
