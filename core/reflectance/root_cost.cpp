@@ -15,8 +15,9 @@ template <LampShape kShape>
 using DualOf = ceres::Jet<double, 5 + shapeSize(kShape)>;
 
 /// log I at a point with its derivatives. @param parameters  L (4), log m (1), then the shape's own.
+/// Flat: left to itself the compiler calls a function for every sum of dual numbers.
 template <LampShape kShape>
-std::optional<DualOf<kShape>> logOfDual(const RadianceProblem& problem, const Seen& s, double const* const* parameters) {
+[[gnu::flatten]] std::optional<DualOf<kShape>> logOfDual(const RadianceProblem& problem, const Seen& s, double const* const* parameters) {
   using Dual = DualOf<kShape>;
   LampIn<Dual> lamp;
   lamp.shape = kShape;
