@@ -139,12 +139,14 @@ def cycles_table(glint, cycles):
                                 ("vase, mesh", "scene.json", ["first:6", "spread:6"])]:
         path = cycles / name.split(",")[0] / scene
         for train in trains:
-            auto = evaluate(glint, path, "limit-angle,reflectance", train)
+            truth = ["--truth", str(cycles / name.split(",")[0] / "contours")]
+            auto = evaluate(glint, path, "limit-angle,reflectance", train, extra=truth)
+            own = evaluate(glint, path, "reflectance", train)["reflectance"]
             fit = auto["reflectance"]["fits"][0]
-            cells = [cell(evaluate(glint, path, "reflectance", train, [f"fit.lobe={l}"])["reflectance"]) for l in LOBES]
+            cells = [cell(evaluate(glint, path, "reflectance", train, [f"fit.lobe={l}"], truth)["reflectance"]) for l in LOBES]
             rows.append([name, train, cell(auto["limit-angle"]), *cells, fit["lobe"], f"{fit['roughness']:.5f}",
-                         f"{auto['reflectance']['summary']['iou']['mean']:.4f}"])
-    return table(["sequence", "training", "limit-angle"] + LOBES + ["chosen", "m", "mean IoU"], rows)
+                         f"{auto['reflectance']['summary']['iou']['mean']:.4f}", cell(own)])
+    return table(["sequence", "training", "limit-angle"] + LOBES + ["chosen", "m", "mean IoU", "own detection"], rows)
 
 
 def noise_table(glint, cycles, seeds):
@@ -219,7 +221,9 @@ The lobe is chosen by the residual. Every frame is predicted and no highlight un
             text += kept("Other shapes")
     if "cycles" in wanted and cycles.exists():
         text += f"""## Path-traced frames (a Beckmann lobe, light of 1 cm radius)
-`torrance-sparrow` is the right lobe; `ggx` on these frames is the wrong one. The last columns are of the automatic choice.
+`torrance-sparrow` is the right lobe; the others, forced on these frames, are wrong ones. Errors are against contours that another program traced
+(`SHARED/data/cycles/*/contours`). The last columns are of the automatic choice; the very last one is its error against Glint's own detection.
+Wrong lobes are fitted to the pixels, as the right one is: the whole lobe counts there, not only the level of the contour.
 
 {cycles_table(arguments.glint, cycles)}
 """
