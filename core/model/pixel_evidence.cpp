@@ -15,6 +15,9 @@ namespace {
 
 constexpr int kAnglePoints = 36;  // of a contour, for the first guess of the roughness
 constexpr std::size_t kFewestContours = 3;    // that tell a lamp's shape
+// Of a contour's radius: right lobes leave a tenth of it between contours and pixels, 2 % where JPEG of quality 20 moves the contours.
+constexpr double kContradiction = 0.025;
+constexpr double kBlurShift = 1.5;  // times blur^2 / radius: how far blur moves a contour, of a lobe with a long tail too
 
 /// The mean direction of the reflected peak rays, which no noise turns behind the surface.
 std::optional<Light> meanRay(const std::vector<TrainingView>& views) {
@@ -78,6 +81,41 @@ std::optional<PixelFit> withExtent(const std::vector<TrainingView>& views, const
     if (!best) sphere(0.5 * width, point.model.roughness);
   }
   return best;
+}
+
+/// Where the contours of the training views lie far from where a fit to their pixels puts them, that in words. Pixels far down the lobe count
+/// in the fit as much as those at the contour: a lobe that has another tail moves the contour, and what remains of the pixels may look
+/// small. Clipped highlights, whose level is not known, and what noise does to contours count for nothing.
+std::optional<std::string> contradiction(const std::vector<TrainingView>& views, const PixelFit& fit, const Settings& settings) {
+  std::vector<RadianceView> contours;
+  std::vector<UsedContour> used;
+  for (const TrainingView& v : views) {
+    if (v.failure || v.highlight.clipped) continue;
+    contours.push_back({v.frame, v.camera, v.surface.get(), v.highlight.contour.points, v.highlight.peak, v.highlight.level});
+    used.push_back(usedContour(v));
+  }
+  RadianceFit at;
+  at.lobe = fit.model.lobe;
+  at.roughness = fit.model.roughness;
+  at.light = fit.model.lamp.centre;
+  at.lightRadius = fit.model.lamp.radius;
+  at.lightHalfAxis = fit.model.lamp.halfAxis;
+  const std::vector<double> rms = rmsOfViews(at, contours, radianceFitOptionsOf(settings));
+  double shares = 0, squares = 0, count = 0;
+  for (std::size_t i = 0; i < rms.size(); ++i) {
+    if (!std::isfinite(rms[i])) continue;
+    // The fit knows the blur; the contours are moved by it.
+    const double known = std::max(used[i].noise, kBlurShift * fit.model.blurPx() * fit.model.blurPx() / used[i].radius);
+    const double left = std::max(0.0, rms[i] * rms[i] - known * known);
+    shares += left / (used[i].radius * used[i].radius);
+    squares += left;
+    count += 1;
+  }
+  if (!(count > 0) || !(std::sqrt(shares / count) > kContradiction)) return std::nullopt;
+  char text[200];
+  std::snprintf(text, sizeof text, "the contours of the training views lie %.3g px from where the fit to the pixels puts them, %.3g %% of their radius: lobe, lamp or surface may be wrong",
+                std::sqrt(squares / count), 100 * std::sqrt(shares / count));
+  return text;
 }
 
 }  // namespace
@@ -154,6 +192,8 @@ Outcome<ModelFit> reflectanceFromPixels(const FitInput& input, const Settings& s
   for (const TrainingView& v : input.views)
     if (!v.failure) used.push_back(usedContour(v));
   Outcome<ModelFit> judged = explaining(std::move(fit), used, true, settings.number("fit.most_residual"));
+  if (judged && judged->remarks.empty())
+    if (const std::optional<std::string> wrong = contradiction(input.views, pixels, settings)) judged->remarks.push_back(*wrong);
   if (judged && pixels.patterned && judged->remarks.empty()) {
     char text[160];
     std::snprintf(text, sizeof text, "what remains in the pixels has a pattern (%.3g px at the contours): lobe, lamp or surface may be wrong",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A lamp that is wider than the lobe, from 8-bit images: its size and the lobe's width are those of the specification.
+// What the reflectance model says of a lamp that is wider than the lobe, and of a lobe that is not the right one, from 8-bit images. The
+// values expected are those of the specification.
 #include <gmock/gmock.h>
 
 #include "tests/cli/small_scene.h"
@@ -13,13 +14,15 @@ constexpr double kSizeTolerance = 0.1, kRoughnessTolerance = 0.1;  // shares; 20
 
 class LampSize : public testing::Test {
  protected:
-  void SetUp() override {
+  void SetUp() override { make(R"("radius": 0.5)", 0.12); }
+  void make(const std::string& lamp, double roughness) {
     const std::filesystem::path spec = folder_.write("spec.json", R"({"glint_scene": 1, "name": "ball",
   "camera": {"width": 200, "height": 150, "fx": 250, "fy": 250, "cx": 99.5, "cy": 74.5},
   "surfaces": {"body": {"analytic": {"type": "ellipsoid", "semi_axes": [0.6, 0.45, 0.35]}}},
-  "lights": [{"id": "lamp", "position": [0.9, -0.8, 1.6], "radius": 0.5}],
+  "lights": [{"id": "lamp", "position": [0.9, -0.8, 1.6], )" + lamp + R"(}],
   "path": {"orbit": {"centre": [0, 0, 0], "radius": 1.6, "from": -1.6, "to": 0.4, "height": 0.9, "count": 8}},
-  "render": {"reflectance": "torrance-sparrow", "roughness": 0.12, "diffuse": [0.3, 0.4, 0.6], "noise": 0.002, "bits": 8, "seed": 3}})");
+  "render": {"reflectance": "torrance-sparrow", "roughness": )" + std::to_string(roughness) +
+                                                                   R"(, "diffuse": [0.3, 0.4, 0.6], "noise": 0.002, "bits": 8, "seed": 3}})");
     const ProgramRun run = runGlint("synth " + inQuotes(spec) + " -o " + inQuotes(folder_ / "scene"));
     ASSERT_EQ(run.code, 0) << run.err;
     Json scene = Json::parse(contentOf(folder_ / "scene/scene.json"));
@@ -43,8 +46,19 @@ TEST_F(LampSize, WiderThanTheLobeIsFound) {
 TEST_F(LampSize, APointInItsPlaceIsWarnedOf) {
   const Json found = fit("--set fit.light_size=point");
   EXPECT_EQ(found["light_radius"], 0.0);
-  EXPECT_THAT(found["warnings"].dump(), testing::HasSubstr("has a pattern"));
+  EXPECT_THAT(found["warnings"].dump(), testing::HasSubstr("lobe, lamp or surface may be wrong"));
 }
+
+class StatedLobe : public LampSize {
+  void SetUp() override { make(R"("radius": 0)", 0.2); }
+};
+
+// Far down the lobe a GGX is brighter: a fit to all pixels pays for that at the contour.
+TEST_F(StatedLobe, AWrongOneIsWarnedOf) {
+  EXPECT_THAT(fit("--set fit.lobe=ggx")["warnings"].dump(), testing::HasSubstr("from where the fit to the pixels puts them"));
+}
+
+TEST_F(StatedLobe, TheRightOneIsNot) { EXPECT_EQ(fit("--set fit.lobe=torrance-sparrow")["warnings"].dump(), "[]"); }
 
 }  // namespace
 }  // namespace glint
