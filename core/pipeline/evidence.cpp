@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <set>
 
+#include "core/base/atomic_file.h"
+#include "core/base/json_text.h"
+#include "core/base/safe_text.h"
 #include "core/geometry/distortion.h"
 
 namespace glint {
@@ -41,7 +41,7 @@ void fitMissingEllipse(Highlight& h) {
 }
 
 std::filesystem::path truthFile(const std::string& folder, const Frame& frame) {
-  return std::filesystem::path(folder) / (frame.id + ".json");
+  return std::filesystem::path(folder) / (fileNameOf(frame.id) + ".json");
 }
 
 }  // namespace
@@ -163,42 +163,42 @@ void requireTruthFolder(const std::string& folder, const Scene& scene) {
   if (!std::filesystem::is_directory(folder, error)) throw InputError(folder, "--truth", "there is no such folder");
   for (const Frame& frame : scene.frames)
     if (std::filesystem::exists(truthFile(folder, frame))) return;
-  throw InputError(folder, "--truth", "holds no contours of these frames, such as " + scene.frames.front().id + ".json");
+  throw InputError(folder, "--truth", "holds no contours of these frames, such as " + fileNameOf(scene.frames.front().id) + ".json");
 }
 
 Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene& scene, int index, double level) {
-  using nlohmann::json;
   const Frame& frame = scene.frames[index];
   const std::filesystem::path file = truthFile(folder, frame);
   if (!std::filesystem::exists(file)) return Failure{Reason::FrameUnreadable, file.string() + ": there is no such file"};
   std::vector<Highlight> truth;
   char key[16];
   std::snprintf(key, sizeof key, "%.2f", level);
-  try {
-    std::ifstream stream(file);
-    const json j = json::parse(stream);
-    if (!j.at("levels").contains(key) || std::abs(std::atof(key) - level) > kSameLevel)
-      throw InputError(file.string(), "levels", std::string("no contours at level ") + key + " (asked for " + std::to_string(level) + ")");
-    for (const json& c : j.at("levels").at(key)) {
-      Highlight h;
-      h.light = frame.lightsOn.empty() ? "light" : frame.lightsOn.front();
-      h.level = level;
-      for (const json& p : c.at("points")) h.contour.points.emplace_back(p.at(0).get<double>(), p.at(1).get<double>());
-      h.contour = withoutRepeats(h.contour);
-      h.areaPx2 = std::abs(signedArea(h.contour));
-      if (!(h.areaPx2 > 0)) throw InputError(file.string(), std::string("levels.") + key, "a contour encloses no area");
-      h.touchesBorder = !c.value("closed", true) || c.value("edge_fraction", 0.0) > 0;
-      h.peak = centroid(h.contour);
-      truth.push_back(std::move(h));
-    }
-    // The stored sub-pixel peak belongs to the highlight that contains it; the others keep their centroid.
-    if (j.contains("peak_subpixel")) {
-      const Pixel peak(j["peak_subpixel"].at(0).get<double>(), j["peak_subpixel"].at(1).get<double>());
-      for (Highlight& h : truth)
-        if (contains(h.contour, peak)) h.peak = peak;
-    }
-  } catch (const json::exception& e) {
-    throw InputError(file.string(), "", e.what());
+  const JsonNode root = JsonNode::parse(readFile(file), file.string());
+  const JsonNode levels = root.at("levels");
+  const std::optional<JsonNode> contours = levels.find(key);
+  constexpr double kHundredths = 100;  // the keys have two decimals
+  if (!contours || std::abs(std::round(level * kHundredths) / kHundredths - level) > kSameLevel)
+    levels.fail(std::string("no contours at level ") + key + " (asked for " + std::to_string(level) + ")");
+  for (std::size_t i = 0; i < contours->size(); ++i) {
+    const JsonNode c = contours->at(i);
+    Highlight h;
+    h.light = frame.lightsOn.empty() ? "light" : frame.lightsOn.front();
+    h.level = level;
+    const JsonNode points = c.at("points");
+    for (std::size_t k = 0; k < points.size(); ++k) h.contour.points.push_back(points.at(k).vector2());
+    h.contour = withoutRepeats(h.contour);
+    h.areaPx2 = std::abs(signedArea(h.contour));
+    if (!(h.areaPx2 > 0)) points.fail("the contour encloses no area");
+    const std::optional<JsonNode> closed = c.find("closed"), atEdge = c.find("edge_fraction");
+    h.touchesBorder = (closed && !closed->boolean()) || (atEdge && atEdge->number() > 0);
+    h.peak = centroid(h.contour);
+    truth.push_back(std::move(h));
+  }
+  // The stored sub-pixel peak belongs to the highlight that contains it; the others keep their centroid.
+  if (const std::optional<JsonNode> n = root.find("peak_subpixel"); n && !n->isNull()) {
+    const Pixel peak = n->vector2();
+    for (Highlight& h : truth)
+      if (contains(h.contour, peak)) h.peak = peak;
   }
   for (Highlight& h : truth) {
     if (const std::optional<Failure> failure = toIdealPixels(h, frame.camera)) return *failure;

@@ -25,14 +25,6 @@ double positive(const JsonNode& node) {
   return v;
 }
 
-std::string identifier(const JsonNode& node) {
-  const std::string id = node.text();
-  if (id.empty()) node.fail("must not be empty");
-  for (const char c : id)
-    if (static_cast<unsigned char>(c) < 0x20) node.fail("must not contain control characters");
-  return id;
-}
-
 /// Collects what this version does not know: kept for writing back, warned of once per place.
 struct Unknown {
   Scene& scene;
@@ -93,6 +85,17 @@ std::set<std::string> analyticKeys(const std::string& type) {
 }
 
 }  // namespace
+
+bool isIdentifier(const std::string& id) {
+  return !id.empty() && std::none_of(id.begin(), id.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
+}
+
+std::string readIdJson(const JsonNode& node) {
+  const std::string id = node.text();
+  if (id.empty()) node.fail("must not be empty");
+  if (!isIdentifier(id)) node.fail("must not contain control characters");
+  return id;
+}
 
 Camera readCameraJson(const JsonNode& node) {
   Camera camera;
@@ -184,7 +187,7 @@ AnalyticSpec readAnalyticJson(const JsonNode& node) {
 
 TrueLight readLightJson(const JsonNode& node) {
   TrueLight light;
-  light.id = identifier(node.at("id"));
+  light.id = readIdJson(node.at("id"));
   if (const auto n = node.find("position")) light.position = n->vector3();
   if (const auto n = node.find("direction")) {
     const Eigen::Vector3d d = n->vector3();
@@ -210,7 +213,7 @@ namespace {
 Highlight readHighlight(const JsonNode& node, const Camera& camera) {
   Highlight h;
   h.fromScene = true;
-  if (const auto n = node.find("light")) h.light = identifier(*n);
+  if (const auto n = node.find("light")) h.light = readIdJson(*n);
   if (const auto n = node.find("level")) {
     h.level = n->number();
     if (!(h.level >= kLeastLevel && h.level <= kMostLevel)) n->fail("must lie between 0 and 1, by a millionth at least");
@@ -249,7 +252,7 @@ Frame readFrame(const JsonNode& node, const FrameContext& context, Json& rest) {
   Frame frame;
   const Scene& scene = context.scene;
   refuseGeometry(node, kFrameGeometry);
-  frame.id = identifier(node.at("id"));
+  frame.id = readIdJson(node.at("id"));
   const auto path = [&](const char* key) -> fs::path {
     const auto n = node.find(key);
     if (!n || n->isNull()) return {};
@@ -283,7 +286,7 @@ Frame readFrame(const JsonNode& node, const FrameContext& context, Json& rest) {
     frame.surface = scene.surfaces.begin()->first;
   }
   if (const auto n = node.find("lights_on"))
-    for (std::size_t i = 0; i < n->size(); ++i) frame.lightsOn.push_back(identifier(n->at(i)));
+    for (std::size_t i = 0; i < n->size(); ++i) frame.lightsOn.push_back(readIdJson(n->at(i)));
   if (const auto n = node.find("highlights")) {
     Json rests = Json::array();
     bool any = false;
@@ -380,7 +383,7 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
   if (const auto n = root.find("surfaces")) {
     for (const std::string& id : n->keys()) {
       const JsonNode node = n->at(id);
-      if (id.empty()) node.fail("a surface needs a name");
+      if (!isIdentifier(id)) node.fail("a surface needs a name without control characters");
       Json rest = unknown.of(node, {"mesh", "analytic"});
       scene.surfaces[id] = readSurface(node, context, rest);
       keep(surfaceRests, id, rest);

@@ -19,6 +19,9 @@ Camera readCameraJson(const JsonNode& node);
 /// 4x4 rigid transform: finite, last row 0 0 0 1, rotation orthonormal to 1e-3 and right-handed. A rotation that is off by more
 /// than 1e-6 (printed with few digits) is replaced by the nearest one and `warning` says so.
 Eigen::Isometry3d readPoseJson(const JsonNode& node, std::string* warning = nullptr);
+/// A name of a frame, light or surface: not empty, no control characters.
+bool isIdentifier(const std::string& id);
+std::string readIdJson(const JsonNode& node);
 /// {"type": ..., sizes, "world_from_surface"} with every size checked for the type.
 AnalyticSpec readAnalyticJson(const JsonNode& node);
 /// {"id", one of "position" | "direction" | "segment", "radius"}. A direction is normalised.

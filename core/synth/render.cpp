@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <mutex>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -9,6 +10,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/parallel.h"
+#include "core/base/safe_text.h"
 #include "core/base/srgb.h"
 #include "core/synth/synth.h"
 
@@ -154,23 +156,52 @@ RenderedRadiance renderRadiance(const Surface& surface, const Camera& camera, co
   return result;
 }
 
-Scene synthesise(const SynthSpec& spec, const fs::path& folder, const ProgressFn& progress) {
-  Scene scene = spec.scene;
-  scene.folder = fs::absolute(folder).lexically_normal();
+namespace {
+
+void makeFolder(const fs::path& folder) {
   std::error_code error;
-  fs::create_directories(scene.folder, error);
+  fs::create_directories(folder, error);
   if (error) throw InputError(folder.string(), "", "cannot be created: " + error.message());
-  // Meshes go into the folder, so that it stands on its own.
+}
+
+/// Meshes go into the scene's folder, so that it stands on its own; two of one name are numbered.
+void copyMeshes(Scene& scene) {
+  std::map<fs::path, fs::path> copies;  // by the file that was copied
+  std::set<std::string> names;
+  std::set<fs::path> meshes;
+  for (const auto& [id, source] : scene.surfaces)
+    if (source.mesh) meshes.insert(*source.mesh);
   for (auto& [id, source] : scene.surfaces) {
     if (!source.mesh) continue;
-    const fs::path copy = scene.folder / "mesh" / source.mesh->filename();
-    fs::create_directories(copy.parent_path(), error);
-    if (!fs::equivalent(*source.mesh, copy, error))
-      fs::copy_file(*source.mesh, copy, fs::copy_options::overwrite_existing, error);
-    if (error && !fs::exists(copy)) throw InputError(copy.string(), "", "cannot be written: " + error.message());
+    if (const auto known = copies.find(*source.mesh); known != copies.end()) {
+      source.mesh = known->second;
+      continue;
+    }
+    const std::string stem = fileNameOf(source.mesh->stem().string()), extension = source.mesh->extension().string();
+    std::string name = stem + extension;
+    const auto isAnotherMesh = [&](const std::string& candidate) {
+      std::error_code ignored;  // what is not there yet is no mesh
+      return std::any_of(meshes.begin(), meshes.end(), [&](const fs::path& mesh) {
+        return mesh != *source.mesh && fs::equivalent(mesh, scene.folder / "mesh" / candidate, ignored);
+      });
+    };
+    for (int n = 2; names.count(name) || isAnotherMesh(name); ++n) name = stem + "-" + std::to_string(n) + extension;
+    names.insert(name);
+    const fs::path copy = scene.folder / "mesh" / name;
+    makeFolder(copy.parent_path());
+    std::error_code ignored;  // what cannot be asked about is another file
+    if (!fs::equivalent(*source.mesh, copy, ignored)) atomicWrite(copy, readFile(*source.mesh));
+    copies[*source.mesh] = copy;
     source.mesh = copy;
   }
-  const SurfaceCache surfaces(scene);
+}
+
+}  // namespace
+
+Scene synthesise(const SynthSpec& spec, const fs::path& folder, const ProgressFn& progress) {
+  Scene scene = spec.scene;
+  // Everything that can be wrong with the specification is found before anything is written.
+  const SurfaceCache surfaces(spec.scene);
   const int n = static_cast<int>(scene.frames.size());
   std::vector<double> tops(static_cast<std::size_t>(n), 0);
   std::mutex warningMutex;
@@ -195,14 +226,20 @@ Scene synthesise(const SynthSpec& spec, const fs::path& folder, const ProgressFn
       },
       progress, "highlights");
 
+  makeFolder(folder);
+  scene.folder = fs::absolute(folder).lexically_normal();
+  scene.file = scene.folder / "scene.json";
+  if (std::error_code ignored; fs::equivalent(spec.scene.file, scene.file, ignored))
+    throw InputError(scene.file.string(), "", "would replace the specification; choose another folder");
+  copyMeshes(scene);
+
   if (spec.render) {
     const RenderOptions& render = *spec.render;
     const double top = n > 0 ? *std::max_element(tops.begin(), tops.end()) : 0;
     const double exposure = render.exposure > 0 ? render.exposure : (top > 0 ? 0.9 / top : 1);
     for (const char* name : {"frames", "radiance", "depth", "normals", "mask"}) {
       if (render.bits == 32 && std::string(name) == "frames") continue;
-      fs::create_directories(scene.folder / name, error);
-      if (error) throw InputError((scene.folder / name).string(), "", "cannot be created: " + error.message());
+      makeFolder(scene.folder / name);
     }
     parallelFor(
         n,
@@ -210,7 +247,8 @@ Scene synthesise(const SynthSpec& spec, const fs::path& folder, const ProgressFn
           Frame& frame = scene.frames[static_cast<std::size_t>(i)];
           const Outcome<std::shared_ptr<const Surface>> surface = surfaces.surfaceOf(i, NormalPolicy::Curved);
           RenderedFrame r = renderFrame(**surface, frame.camera, lightsOf(scene, frame), spec.material, render.samples);
-          const auto file = [&](const char* kind, const char* extension) { return scene.folder / kind / (frame.id + extension); };
+          const std::string name = fileNameOf(frame.id);
+          const auto file = [&](const char* kind, const char* extension) { return scene.folder / kind / (name + extension); };
           if (render.bits != 32) {
             Image photograph(frame.camera.width, frame.camera.height, 3);
             for (std::size_t k = 0; k < photograph.data.size(); ++k)
@@ -234,7 +272,6 @@ Scene synthesise(const SynthSpec& spec, const fs::path& folder, const ProgressFn
         progress, "render");
   }
   std::sort(scene.warnings.begin(), scene.warnings.end());
-  scene.file = scene.folder / "scene.json";
   writeScene(scene, scene.file);
   return scene;
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 #include "core/base/atomic_file.h"
 #include "core/base/json_text.h"
@@ -155,13 +156,23 @@ SynthSpec readSynthSpec(const std::filesystem::path& file) {
   if (const auto n = root.find("name")) scene.name = n->text();
   const Camera camera = readCameraJson(root.at("camera"));
   const JsonNode lights = root.at("lights");
-  for (std::size_t i = 0; i < lights.size(); ++i) scene.lights.push_back(readLightJson(lights.at(i)));
+  std::set<std::string> lightIds;
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    scene.lights.push_back(readLightJson(lights.at(i)));
+    const std::string& id = scene.lights.back().id;
+    if (!lightIds.insert(id).second) lights.at(i).at("id").fail("the id '" + id + "' stands twice");
+  }
   if (scene.lights.empty()) lights.fail("is empty: a highlight needs a light");
   const JsonNode surfaces = root.at("surfaces");
   for (const std::string& id : surfaces.keys()) {
     const JsonNode node = surfaces.at(id);
+    if (!isIdentifier(id)) node.fail("an id must not be empty and must not contain control characters");
     SurfaceSource source;
-    if (const auto n = node.find("mesh")) source.mesh = resolveInside(scene.folder, n->text(), false, n->file(), n->place());
+    if (const auto n = node.find("mesh")) {
+      source.mesh = resolveInside(scene.folder, n->text(), false, n->file(), n->place());
+      std::error_code ignored;  // what cannot be asked about is not there
+      if (!std::filesystem::is_regular_file(*source.mesh, ignored)) n->fail("there is no file '" + n->text() + "'");
+    }
     if (const auto n = node.find("analytic")) source.analytic = readAnalyticJson(*n);
     if (source.mesh.has_value() == source.analytic.has_value()) node.fail("needs exactly one of mesh, analytic");
     scene.surfaces[id] = source;
@@ -181,6 +192,8 @@ SynthSpec readSynthSpec(const std::filesystem::path& file) {
     for (const double value : readSteps(*steps)) {
       AnalyticSpec step = original;
       setParameter(step, steps->at("parameter"), value);
+      if (step.type == "torus" && step.minorRadius >= step.majorRadius)
+        steps->fail("minor_radius " + std::to_string(step.minorRadius) + " must be smaller than major_radius " + std::to_string(step.majorRadius));
       order.push_back(prefix + "_" + padded(order.size()));
       scene.surfaces[order.back()].analytic = step;
     }
@@ -193,6 +206,7 @@ SynthSpec readSynthSpec(const std::filesystem::path& file) {
       for (const Eigen::Isometry3d& pose : poses) addFrame(scene, camera, pose, surface);
   } else {
     const JsonNode frames = root.at("frames");
+    std::set<std::string> frameIds;
     for (const std::string& stepped : order)
       for (std::size_t i = 0; i < frames.size(); ++i) {
         const JsonNode node = frames.at(i);
@@ -202,10 +216,15 @@ SynthSpec readSynthSpec(const std::filesystem::path& file) {
           if (!scene.surfaces.count(surface)) n->fail("there is no surface '" + surface + "'");
         }
         addFrame(scene, camera, readPoseJson(node.at("camera_from_world")), surface);
-        if (const auto n = node.find("id"); n && order.size() == 1) scene.frames.back().id = n->text();
+        if (const auto n = node.find("id"); n && order.size() == 1) {
+          scene.frames.back().id = readIdJson(*n);
+          if (!frameIds.insert(scene.frames.back().id).second) n->fail("the id '" + scene.frames.back().id + "' stands twice");
+        } else if (!frameIds.insert(scene.frames.back().id).second) {
+          node.fail("would have the id '" + scene.frames.back().id + "', which stands already");
+        }
         if (const auto n = node.find("lights_on")) {
           scene.frames.back().lightsOn.clear();
-          for (std::size_t k = 0; k < n->size(); ++k) scene.frames.back().lightsOn.push_back(n->at(k).text());
+          for (std::size_t k = 0; k < n->size(); ++k) scene.frames.back().lightsOn.push_back(readIdJson(n->at(k)));
         }
       }
     if (scene.frames.empty()) frames.fail("is empty");
