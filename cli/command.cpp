@@ -10,6 +10,8 @@
 
 #include "cli/interrupt.h"
 #include "cli/terminal.h"
+#include "core/base/limits.h"
+#include "core/base/safe_text.h"
 
 namespace glint::cli {
 
@@ -43,27 +45,37 @@ class Page final : public CLI::Formatter {
   }
 };
 
+/// The heading of the options that every command has.
+constexpr const char* kEverywhere = "Options of every command";
+
+/// "json.megabytes=512, ...": names and the values at the start.
+std::string limitNames() {
+  std::string names;
+  for (const LimitInfo& limit : limitInfos()) {
+    char value[32];
+    std::snprintf(value, sizeof value, "=%.15g", limit.standard);
+    names += (names.empty() ? "" : ", ") + limit.name + value;
+  }
+  return names;
+}
+
 constexpr const char* kExitCodes =
     "Exit codes: 0 done; 1 a comparison failed; 2 the input or the request is wrong;\n"
     "3 the data cannot answer; 130 stopped by Ctrl-C. A message is one line on standard error.";
 
-std::string oneLine(std::string text) {
-  while (!text.empty() && text.back() == '\n') text.pop_back();
-  for (char& c : text)
-    if (c == '\n' || c == '\r') c = ' ';
-  return text;
-}
-
 int fail(const std::string& line, int code) {
+  dropWarnings();
   clearProgressLine();
-  std::fprintf(stderr, "glint: %s\n", oneLine(line).c_str());
+  std::fprintf(stderr, "glint: %s\n", messageLine(line).c_str());
   return code;
 }
 
 /// Every way in which a command may end, as an exit code and at most one line.
 int guarded(const std::function<int()>& run) {
   try {
-    return run();
+    const int code = run();
+    showWarnings();
+    return code;
   } catch (const InputError& e) {
     return fail(e.what(), kWrongInput);
   } catch (const CannotAnswer& e) {
@@ -71,7 +83,7 @@ int guarded(const std::function<int()>& run) {
   } catch (const ReaderGone&) {
     return kWrongInput;  // `glint ... | head`: nobody is left to read a message's context
   } catch (const Stopped&) {
-    return fail("stopped", kStopped);
+    return claimStopMessage() ? fail("stopped", kStopped) : kStopped;
   } catch (const std::invalid_argument& e) {
     return fail(std::string("wrong request: ") + e.what(), kWrongInput);
   } catch (const std::bad_alloc&) {
@@ -121,8 +133,6 @@ void Options::choice(std::string& target, const std::string& flags, const std::v
 void Options::flag(bool& target, const std::string& flags, const std::string& help) { parser_.app.add_flag(flags, target, help); }
 
 int runCommandLine(int argc, char** argv, const std::vector<Command>& commands) {
-  // Before any thread starts: threads inherit the blocked signals.
-  const InterruptGuard interrupts;
   CLI::App app("Predicts specular highlights from a few images of a known scene.", "glint");
   app.formatter(std::make_shared<Page>());
   app.set_version_flag("--version", std::string("glint ") + GLINT_VERSION);
@@ -130,6 +140,8 @@ int runCommandLine(int argc, char** argv, const std::vector<Command>& commands) 
   app.require_subcommand(1);
   app.footer("`glint COMMAND --help` describes a command.\n" + std::string(kExitCodes));
   const Command* chosen = nullptr;
+  std::vector<std::string> limits;
+  bool allWarnings = false;
   for (const Command& command : commands) {
     CLI::App* sub = app.add_subcommand(command.name, command.summary);
     sub->formatter(std::make_shared<Page>());
@@ -140,6 +152,10 @@ int runCommandLine(int argc, char** argv, const std::vector<Command>& commands) 
     Options::Parser parser{*sub};
     Options options(parser);
     command.declare(options);
+    sub->add_option("--limit", limits, "Raise a limit on the size of inputs, in its own unit: " + limitNames() + "; may be repeated")
+        ->type_name("NAME=VALUE")->expected(1)->take_all()->group(kEverywhere);
+    sub->add_flag("--all-warnings", allWarnings, "Print each warning on a line of its own (without it, all of them share one line)")
+        ->group(kEverywhere);
     sub->callback([&chosen, &command] { chosen = &command; });
   }
   return guarded([&]() -> int {
@@ -158,8 +174,10 @@ int runCommandLine(int argc, char** argv, const std::vector<Command>& commands) 
         return fail("'" + first + "' is not a command (see glint --help)", kWrongInput);
       std::string who;
       for (const CLI::App* sub : app.get_subcommands()) who = sub->get_name() + " ";
-      return fail(oneLine(e.what()) + " (see glint " + who + "--help)", kWrongInput);
+      return fail(std::string(e.what()) + " (see glint " + who + "--help)", kWrongInput);
     }
+    for (const std::string& limit : limits) setLimit(limit);
+    showEachWarning(allWarnings);
     return chosen->run(Context());
   });
 }

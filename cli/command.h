@@ -49,11 +49,12 @@ class Context {
  public:
   /// Draws a progress line on a terminal, nothing in a pipe; returns false after Ctrl-C. Pass it to all long work.
   ProgressFn progress() const;
-  void warn(const std::string& line) const;  ///< "warning: ..." on standard error
+  /// On standard error when the command ends, together with its other warnings in one line; --all-warnings: at once, on its own.
+  void warn(const std::string& line) const;
   void info(const std::string& line) const;  ///< on standard error, on a terminal only
-  /// To standard output. InputError when that is full or closed.
+  /// To standard output, control characters from files escaped. InputError when that is full or closed.
   void print(const std::string& text) const;
-  /// "-" = standard output, else a file written atomically. InputError when it cannot be written.
+  /// "-" = standard output, unchanged; else a file written atomically. InputError when it cannot be written.
   void write(const std::string& fileOrDash, const std::string& content) const;
 };
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/commands.h"
+#include "cli/outputs.h"
+#include "cli/scene_arguments.h"
 #include "core/evaluate/compare_runs.h"
 
 namespace glint::cli {
@@ -8,6 +10,7 @@ Command compareCommand() {
   struct Arguments {
     std::string a, b, json;
     bool all = false;
+    SceneArguments places;
   };
   const auto a = std::make_shared<Arguments>();
   Command c;
@@ -24,15 +27,19 @@ Command compareCommand() {
     o.positional(a->a, "A.glint", "A session");
     o.positional(a->b, "B.glint", "The session to compare with");
     o.flag(a->all, "--all", "Also what is equal");
+    a->places.declare(o);
     o.option(a->json, "--json", "FILE", "Write the comparison there (- = standard output, instead of the text)");
   };
   c.run = [a](const Context& context) -> int {
-    const auto computed = [&](const std::string& file) {
-      const OpenedSession opened = openSession(file);
-      for (const std::string& w : opened.session.warnings) context.warn(w);
-      return inspect(opened.scene, opened.session.request, context.progress());
+    const auto opened = [&](const std::string& file) {
+      OpenedSession session = a->places.openSession(file);
+      for (const std::string& w : session.session.warnings) context.warn(w);
+      Outputs(file, *session.scene).file(a->json, "--json", OutputKind::document("glint_comparison"));
+      return session;
     };
-    const Inspection first = computed(a->a), second = computed(a->b);
+    const OpenedSession openedA = opened(a->a), openedB = opened(a->b);
+    const auto computed = [&](const OpenedSession& o) { return inspect(o.scene, o.session.request, context.progress()); };
+    const Inspection first = computed(openedA), second = computed(openedB);
     const RunComparison comparison =
         compareRuns(sessionOf(first, context.progress()), first, sessionOf(second, context.progress()), second);
     if (!a->json.empty()) context.write(a->json, comparisonJson(comparison, a->a, a->b));

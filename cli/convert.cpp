@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "cli/commands.h"
+#include "cli/outputs.h"
 #include "cli/scene_arguments.h"
 #include "core/scene/scene.h"
 
@@ -33,6 +34,7 @@ Command convertCommand() {
       throw InputError(a->output, "--output", "nerfstudio files cannot be written yet, only scene files");
     const Scene scene = a->places.read(a->input);
     for (const std::string& w : scene.warnings) context.warn(w);
+    Outputs(a->input, scene).file(a->output, "--output", OutputKind::document("glint_scene"));
     writeScene(scene, output);
     try {
       readScene(output);

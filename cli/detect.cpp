@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <numeric>
 
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
+#include "cli/outputs.h"
 #include "core/base/parallel.h"
 #include "core/highlight/background.h"
 #include "core/highlight/report.h"
@@ -99,6 +101,13 @@ Command detectCommand() {
     }
     Scene scene = a->places.read(a->input);
     for (const std::string& warning : scene.warnings) context.warn(warning);
+    Outputs outputs(a->input, scene);
+    std::vector<int> all(scene.frames.size());
+    std::iota(all.begin(), all.end(), 0);
+    std::vector<std::string> names = picturesOf(all);
+    names.emplace_back("highlights.json");
+    outputs.inFolder(a->out, "--out", names, "highlights.json", "glint_detection");
+    outputs.file(a->json, "--json", OutputKind::document("glint_detection"));
     for (Frame& frame : scene.frames) frame.highlights.clear();
     const FrameSource source = a->source == "image" ? FrameSource::Image : FrameSource::Radiance;
     std::vector<DetectedFrame> frames(scene.frames.size());

@@ -3,6 +3,7 @@
 
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
+#include "cli/outputs.h"
 #include "core/evaluate/report.h"
 #include "core/evaluate/summary.h"
 #include "core/evaluate/warnings.h"
@@ -42,6 +43,10 @@ Command evaluateCommand() {
     InspectionRequest request = a->request();
     const std::shared_ptr<const Scene> scene = a->scene();
     for (const std::string& w : scene->warnings) context.warn(w);
+    Outputs outputs(a->input, *scene);
+    outputs.file(a->json, "--json", OutputKind::document("glint_evaluation"));
+    outputs.file(a->csv, "--csv", OutputKind::table(kEvaluationCsvHeader));
+    outputs.file(a->html, "--html", OutputKind::page());
     ReportContext report;
     report.input = a->input;
     Inspection result;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/commands.h"
+#include "cli/outputs.h"
 #include "cli/scene_arguments.h"
 #include "core/pipeline/camera_check.h"
 #include "core/scene/convention_report.h"
@@ -30,6 +31,7 @@ Command infoCommand() {
   };
   c.run = [a](const Context& context) -> int {
     const Scene scene = a->places.read(a->input);
+    Outputs(a->input, scene).file(a->json, "--json", OutputKind::document("glint_info"));
     ConventionReport report = conventionReport(scene, context.progress());
     // Only a scene whose cameras see their surface has highlights that can be asked about the cameras.
     if (report.findings.empty()) report.take(checkCameras(scene, context.progress()));

@@ -1,24 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 
 int main(int argc, char** argv) {
   using namespace glint::cli;
+  // First of all: a Ctrl-C from here on ends the program in its own way, and threads inherit the blocked signals.
+  const InterruptGuard interrupts;
   // The order is that of `glint --help`; one command a line, so that two additions merge.
-  return runCommandLine(argc, argv,
-                        {
-                            infoCommand(),
-                            detectCommand(),
-                            reconstructCommand(),
-                            predictCommand(),
-                            evaluateCommand(),
-                            tradeoffCommand(),
-                            synthCommand(),
-                            convertCommand(),
-                            renderCommand(),
-                            movieCommand(),
-                            replayCommand(),
-                            compareCommand(),
-                            stabilityCommand(),
-                            settingsCommand(),
-                        });
+  const int code = runCommandLine(argc, argv,
+                                  {
+                                      infoCommand(),
+                                      detectCommand(),
+                                      reconstructCommand(),
+                                      predictCommand(),
+                                      evaluateCommand(),
+                                      tradeoffCommand(),
+                                      synthCommand(),
+                                      convertCommand(),
+                                      renderCommand(),
+                                      movieCommand(),
+                                      replayCommand(),
+                                      compareCommand(),
+                                      stabilityCommand(),
+                                      settingsCommand(),
+                                  });
+  if (interrupted()) leaveAtOnce(code);
+  return code;
 }

@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
+#include "cli/outputs.h"
 #include "cli/picture_input.h"
 #include "core/pipeline/frame_spec.h"
 #include "core/pipeline/photograph.h"
@@ -36,6 +37,10 @@ int run(const MovieArguments& a, const Context& context) {
   std::vector<int> frames;
   if (!a.frames.empty()) frames = parseFrames(a.frames, scene, "--frames");
   for (int i = 0; a.frames.empty() && i < static_cast<int>(scene.frames.size()); ++i) frames.push_back(i);
+  const int turns = std::max(2, static_cast<int>(std::lround(a.seconds * format.framesPerSecond)));
+  Outputs outputs(a.input, scene);
+  for (const std::string& file : viz::filesOfMovie(a.out, turning ? turns : static_cast<int>(frames.size())))
+    outputs.file(file, "--out", file == a.out ? OutputKind::movie() : OutputKind::png());
   std::unique_ptr<viz::Offscreen> target;
   if (a.of != "timeline") {  // a missing display is said before the long work
     Outcome<std::unique_ptr<viz::Offscreen>> display = viz::Offscreen::create(width, height);
@@ -62,7 +67,7 @@ int run(const MovieArguments& a, const Context& context) {
     view.setSelection({firstHeldOut(*inspection), opened.saved.model, opened.saved.highlight});
     target->render(view);  // what everything is framed in is known with the first picture
     const std::vector<viz::ViewPoint> views =
-        viz::turntable(view, std::max(2, static_cast<int>(std::lround(a.seconds * format.framesPerSecond))));
+        viz::turntable(view, turns);
     viz::writeMovie(
         a.out, format, static_cast<int>(views.size()),
         [&](int i) {

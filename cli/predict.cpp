@@ -4,6 +4,7 @@
 
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
+#include "cli/outputs.h"
 #include "core/base/parallel.h"
 #include "core/evaluate/labels.h"
 #include "core/evaluate/masks.h"
@@ -73,6 +74,12 @@ Command predictCommand() {
       frames = parseFrames(a->frames, scene, "--frames");
     else
       for (int i = 0; i < static_cast<int>(scene.frames.size()); ++i) frames.push_back(i);
+    Outputs outputs(a->session, scene);
+    outputs.file(a->json, "--json", OutputKind::document("glint_predictions"));
+    std::vector<std::string> names = picturesOf(frames);
+    for (const std::string& model : opened.session.request.models) names.push_back("labels_" + model + ".json");
+    names.emplace_back("predictions.json");
+    outputs.inFolder(a->out, "--out", names, "predictions.json", "glint_predictions");
     InspectionRequest request = opened.session.request;
     if (!a->preset.empty()) applyPreset(opened.session, a->preset, request);
     if (!a->out.empty() || !a->json.empty()) request.settings.set("predict.band", true);

@@ -3,6 +3,7 @@
 
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
+#include "cli/outputs.h"
 #include "core/evaluate/warnings.h"
 #include "core/pipeline/session.h"
 
@@ -84,6 +85,7 @@ Command reconstructCommand() {
     const InspectionRequest request = a->request();
     const std::shared_ptr<const Scene> scene = a->scene();
     for (const std::string& w : scene->warnings) context.warn(w);
+    Outputs(a->input, *scene).file(a->out, "--out", OutputKind::document("glint_session"));
     const Inspection result = inspect(scene, request, context.progress());
     std::string text;
     std::optional<Failure> first;

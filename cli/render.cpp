@@ -3,6 +3,7 @@
 
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
+#include "cli/outputs.h"
 #include "cli/picture_input.h"
 #include "core/pipeline/frame_spec.h"
 #include "core/pipeline/photograph.h"
@@ -53,6 +54,7 @@ int run(const RenderArguments& a, const Context& context) {
   const auto [width, height] = parseSize(a.size);
   const PictureInput::Opened opened = a.open(context);
   const Scene& scene = *opened.scene;
+  Outputs(a.input, scene).file(a.out, "--out", OutputKind::png());
   std::optional<int> frame;
   const std::string wanted = a.frame.empty() ? opened.saved.frame : a.frame;
   if (!wanted.empty()) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/commands.h"
+#include "cli/scene_arguments.h"
 #include "core/pipeline/session.h"
 
 namespace glint::cli {
@@ -8,6 +9,7 @@ Command replayCommand() {
   struct Arguments {
     std::string session;
     bool exact = false;
+    SceneArguments places;
   };
   const auto a = std::make_shared<Arguments>();
   Command c;
@@ -23,11 +25,12 @@ Command replayCommand() {
   c.declare = [a](Options& o) {
     o.positional(a->session, "FILE.glint", "The session");
     o.flag(a->exact, "--exact", "Compare the digest of all results too");
+    a->places.declare(o);
   };
   c.run = [a](const Context& context) -> int {
     const Session session = readSession(a->session);
     for (const std::string& w : session.warnings) context.warn(w);
-    const Replay result = replay(session, context.progress());
+    const Replay result = a->places.replay(session, context.progress());
     std::string out;
     for (const std::string& line : result.differences) out += line + "\n";
     if (!result.firstChanged.empty()) out += "first changed stage: " + result.firstChanged + "\n";

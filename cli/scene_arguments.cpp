@@ -40,7 +40,7 @@ void SceneArguments::declarePlaces(Options& o) {
 }
 
 void SceneArguments::declare(Options& o) {
-  o.flag(allowOutside, "--allow-outside", "Accept paths that leave the folder of the scene file");
+  o.flag(allowOutside, "--allow-outside", "Accept paths that leave the folders of the session and of the scene file");
   declarePlaces(o);
 }
 
@@ -56,6 +56,9 @@ Relinked SceneArguments::relinked() const {
     requireFolder(folder, "--meshes " + folder);
     r.meshFolders.push_back(folder);
   }
+  r.folders.assign(photographs.begin(), photographs.end());
+  for (const std::string& entry : files)
+    if (const std::size_t equals = entry.find('='); equals != std::string::npos) r.folders.push_back(entry.substr(equals + 1));
   return r;
 }
 
@@ -93,14 +96,20 @@ Scene SceneArguments::read(const std::string& input) const {
   options.allowOutsidePaths = allowOutside;
   options.meshes = r.meshes;
   options.meshFolders = r.meshFolders;
+  options.folders = r.folders;
   Scene scene = readScene(input, options);
   check(scene);
   return scene;
 }
 
+Replay SceneArguments::replay(Session session, const ProgressFn& progress) const {
+  session.allowOutsidePaths = allowOutside;
+  return glint::replay(session, relinked(), progress);
+}
+
 OpenedSession SceneArguments::openSession(const std::string& file) const {
   Session session = readSession(file);
-  session.allowOutsidePaths = session.allowOutsidePaths || allowOutside;
+  session.allowOutsidePaths = allowOutside;
   OpenedSession opened = glint::openSession(std::move(session), relinked());
   Scene scene = *opened.scene;
   check(scene);

@@ -23,6 +23,7 @@ struct SceneArguments {
   /// A scene, or that of a session. InputError, also for a flag that the scene has no use for.
   Scene read(const std::string& input) const;
   OpenedSession openSession(const std::string& file) const;
+  Replay replay(Session session, const ProgressFn& progress) const;
 
  private:
   Relinked relinked() const;

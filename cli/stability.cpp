@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "cli/commands.h"
+#include "cli/outputs.h"
 
 namespace glint::cli {
 
@@ -29,6 +30,7 @@ Command stabilityCommand() {
     o.flag(a->markdown, "--markdown", "Print the table for the documentation");
   };
   c.run = [a](const Context& context) -> int {
+    Outputs(std::vector<std::filesystem::path>{}).file(a->json, "--json", OutputKind::document("glint_stability"));
     const std::vector<StabilityResult> results = runStability(context.progress());
     if (!a->json.empty()) context.write(a->json, stabilityJson(results));
     if (a->json != "-") context.print(a->markdown ? stabilityMarkdown(results) : stabilityTable(results));

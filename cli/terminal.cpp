@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/terminal.h"
 
-#include <spdlog/sinks/stdout_sinks.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -11,10 +9,13 @@
 #include <cstdio>
 #include <cstring>
 #include <mutex>
+#include <string>
+#include <vector>
 
 #include "cli/command.h"
 #include "cli/interrupt.h"
 #include "core/base/atomic_file.h"
+#include "core/base/safe_text.h"
 
 namespace glint::cli {
 namespace {
@@ -34,14 +35,16 @@ void clearLocked() {
   lineShown = false;
 }
 
-spdlog::logger& logger() {
-  static const std::shared_ptr<spdlog::logger> log = [] {
-    auto made = std::make_shared<spdlog::logger>("glint", std::make_shared<spdlog::sinks::stderr_sink_mt>());
-    made->set_pattern("%n: %l: %v");
-    return made;
-  }();
-  return *log;
+void toOutput(const std::string& text) {
+  clearProgressLine();
+  errno = 0;
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+  if (!written && errno == EPIPE) throw ReaderGone{};
+  if (!written) throw InputError("standard output", "", std::string("cannot be written: ") + std::strerror(errno));
 }
+
+std::vector<std::string> waiting;  // guarded by lineMutex
+bool eachWarning = false;
 
 }  // namespace
 
@@ -67,27 +70,60 @@ ProgressFn Context::progress() const {
   };
 }
 
+void showEachWarning(bool each) { eachWarning = each; }
+
+void dropWarnings() {
+  const std::lock_guard<std::mutex> lock(lineMutex);
+  waiting.clear();
+}
+
+void showWarnings() {
+  const std::lock_guard<std::mutex> lock(lineMutex);
+  if (waiting.empty()) return;
+  clearLocked();
+  if (waiting.size() == 1) {
+    std::fprintf(stderr, "glint: warning: %s\n", messageLine(waiting.front()).c_str());
+  } else {
+    // Each has its share of the line; what a short one leaves goes to those after it.
+    constexpr std::size_t kFewest = 60;  // bytes: enough to say what a warning is about
+    constexpr const char* kMore = "; more with --all-warnings";
+    const std::string start = std::to_string(waiting.size()) + " warnings: ";
+    std::size_t left = kLongestMessage - start.size() - std::strlen(kMore);
+    std::string line;
+    bool whole = true;
+    for (std::size_t i = 0; i < waiting.size(); ++i) {
+      if (left < kFewest) {
+        whole = false;
+        break;
+      }
+      const std::size_t share = std::max(kFewest, left / (waiting.size() - i)) - 3;  // the bar between two
+      const std::string text = messageLine(waiting[i], share);
+      whole = whole && text == messageLine(waiting[i], std::string::npos);
+      line += (i ? " | " : "") + text;
+      left -= std::min(left, text.size() + 3);
+    }
+    std::fprintf(stderr, "glint: %s%s%s\n", start.c_str(), line.c_str(), whole ? "" : kMore);
+  }
+  waiting.clear();
+}
+
 void Context::warn(const std::string& line) const {
-  clearProgressLine();
-  logger().warn("{}", line);
+  const std::lock_guard<std::mutex> lock(lineMutex);
+  if (!eachWarning) return waiting.push_back(line);
+  clearLocked();
+  std::fprintf(stderr, "glint: warning: %s\n", messageLine(line).c_str());
 }
 
 void Context::info(const std::string& line) const {
   if (!onTerminal()) return;
   clearProgressLine();
-  logger().info("{}", line);
+  std::fprintf(stderr, "glint: info: %s\n", messageLine(line).c_str());
 }
 
-void Context::print(const std::string& text) const {
-  clearProgressLine();
-  errno = 0;
-  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
-  if (!written && errno == EPIPE) throw ReaderGone{};
-  if (!written) throw InputError("standard output", "", std::string("cannot be written: ") + std::strerror(errno));
-}
+void Context::print(const std::string& text) const { toOutput(withoutControls(text)); }
 
 void Context::write(const std::string& fileOrDash, const std::string& content) const {
-  if (fileOrDash == "-") return print(content);
+  if (fileOrDash == "-") return toOutput(content);
   atomicWrite(fileOrDash, content);
 }
 

@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
+#include "cli/outputs.h"
 #include "core/pipeline/session.h"
 #include "core/tradeoff/run.h"
 
@@ -92,6 +93,11 @@ Command tradeoffCommand() {
     }
     const std::shared_ptr<const Scene> scene = a->scene();
     for (const std::string& w : scene->warnings) context.warn(w);
+    Outputs outputs(a->input, *scene);
+    outputs.file(a->json, "--json", OutputKind::document("glint_tradeoff"));
+    outputs.file(a->html, "--html", OutputKind::page());
+    outputs.file(a->out, "--out", OutputKind::document("glint_session"));
+    outputs.file(options.workFile, "--work", OutputKind::document("glint_tradeoff_work"));
     const Tradeoff t = measureTradeoff(scene, request, options, context.progress());
 
     if (!a->json.empty()) context.write(a->json, tradeoffJson(t));

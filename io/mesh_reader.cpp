@@ -10,7 +10,7 @@
 
 namespace glint {
 
-MeshContent readMeshContent(const std::filesystem::path& file) { return parseMesh(readFile(file), file); }
+MeshContent readMeshContent(const std::filesystem::path& file) { return parseMesh(readFile(file, Limit::MeshMegabytes), file); }
 
 MeshContent parseMesh(std::string_view bytes, const std::filesystem::path& file) {
   const std::string name = file.string();

@@ -59,15 +59,14 @@ cv::Mat toBgr(const Image& picture) {
 
 void writeSeries(const std::string& file, const MovieFormat& format, int frames, const std::function<Image(int)>& picture,
                  const ProgressFn& progress) {
+  const std::vector<std::string> files = filesOfMovie(file, frames);
   std::vector<fs::path> written;
   try {
     for (int i = 0; i < frames; ++i) {
       if (!report(progress, {"frame", i, frames})) throw Stopped{};
-      char number[32];
-      std::snprintf(number, sizeof number, "_%04d.png", i);
-      const fs::path one = fs::path(file).parent_path() / (fs::path(file).stem().string() + number);
+      const std::string& one = files[static_cast<std::size_t>(i)];
       const Image frame = checked(picture(i), format);
-      writePng(frame, one.string());
+      writePng(frame, one);
       written.push_back(one);
     }
   } catch (...) {
@@ -103,6 +102,17 @@ void encode(const std::string& file, const fs::path& temporary, const MovieForma
 }
 
 }  // namespace
+
+std::vector<std::string> filesOfMovie(const std::string& file, int frames) {
+  if (endingOf(file) != ".png") return {file};
+  std::vector<std::string> files;
+  for (int i = 0; i < frames; ++i) {
+    char number[32];
+    std::snprintf(number, sizeof number, "_%04d.png", i);
+    files.push_back((fs::path(file).parent_path() / (fs::path(file).stem().string() + number)).string());
+  }
+  return files;
+}
 
 void checkMovie(const std::string& file, const MovieFormat& f) {
   require(f.width >= 16 && f.height >= 16 && f.width <= 8192 && f.height <= 8192,

@@ -25,6 +25,8 @@ struct MovieFormat {
 ///        std::invalid_argument for a format out of range or a picture of another size.
 void writeMovie(const std::string& file, const MovieFormat& format, int frames, const std::function<Image(int)>& picture,
                 const ProgressFn& progress = {});
+/// The files that `writeMovie` writes: one, or the pictures of a series.
+std::vector<std::string> filesOfMovie(const std::string& file, int frames);
 /// InputError as `writeMovie` for what is wrong before the first frame.
 void checkMovie(const std::string& file, const MovieFormat& format);
 

@@ -147,12 +147,16 @@ void removeUnfinishedWrites() {
   for (const fs::path& path : unfinished) fs::remove(path, ignored);
 }
 
-std::string readFile(const fs::path& file) {
-  Descriptor d{::open(file.c_str(), O_RDONLY | O_CLOEXEC)};
+std::string readFile(const fs::path& file, std::optional<Limit> limit) {
+  // O_NONBLOCK: a pipe without a writer would make this wait for ever; it is refused below.
+  Descriptor d{::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
   if (d.fd < 0) throw systemError(file, "cannot be read", errno);
   struct stat info {};
   if (::fstat(d.fd, &info) != 0) throw systemError(file, "cannot be read", errno);
   if (S_ISDIR(info.st_mode)) throw InputError(file.string(), "", "is a folder, not a file");
+  if (!S_ISREG(info.st_mode)) throw InputError(file.string(), "", "is a device or a pipe, not a file");
+  constexpr double kMegabyte = 1e6;
+  if (limit) requireWithin(*limit, double(info.st_size) / kMegabyte, file.string());
   std::string content;
   content.reserve(static_cast<std::size_t>(info.st_size));
   char buffer[1 << 16];

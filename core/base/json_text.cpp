@@ -1,24 +1,45 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/base/json_text.h"
 
-#include <cctype>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
+#include <unordered_map>
 
+#include "core/base/json_dom.h"
 #include "core/base/outcome.h"
 
 namespace glint {
-using Json = nlohmann::ordered_json;
+using json_dom::Json;
 
 struct JsonNode::Document {
   Json root;
   std::string file;
+  /// Members of the objects with many: the JSON library looks through all keys for one.
+  std::unordered_map<const Json*, std::unordered_map<std::string, const Json*>> members;
+
+  void index(const Json& value) {
+    constexpr std::size_t kMany = 16;  // below, looking through is as fast
+    if (value.is_array())
+      for (const Json& element : value)
+        if (element.is_structured()) index(element);
+    if (!value.is_object()) return;
+    auto* own = value.size() > kMany ? &members[&value] : nullptr;
+    for (const auto& [key, member] : value.get_ref<const Json::object_t&>()) {
+      if (own) own->emplace(key, &member);
+      if (member.is_structured()) index(member);
+    }
+  }
+  const Json* find(const Json& object, const std::string& key) const {
+    if (const auto many = members.find(&object); many != members.end()) {
+      const auto member = many->second.find(key);
+      return member == many->second.end() ? nullptr : member->second;
+    }
+    const auto member = object.find(key);
+    return member == object.end() ? nullptr : &*member;
+  }
 };
 
 namespace {
-
-constexpr int kDeepest = 100;  // no format of ours nests deeper than 8; recursion over hostile files stays harmless
 
 const Json& json(const void* value) { return *static_cast<const Json*>(value); }
 
@@ -62,21 +83,6 @@ std::string withoutNonFinite(const std::string& text) {
   return out;
 }
 
-/// "line 3, column 5" and the rest of the JSON library's message, which starts with an identifier and a position.
-std::pair<std::string, std::string> splitParseMessage(const std::string& message) {
-  std::string place = "JSON", reason = message;
-  if (const std::size_t at = message.find("at line "); at != std::string::npos) {
-    const std::size_t end = message.find(": ", at);
-    place = message.substr(at + 3, end == std::string::npos ? std::string::npos : end - at - 3);
-    if (end != std::string::npos) reason = message.substr(end + 2);
-  } else if (const std::size_t bracket = message.find("] "); bracket != std::string::npos) {
-    reason = message.substr(bracket + 2);
-  }
-  for (char& c : reason)
-    if (std::iscntrl(static_cast<unsigned char>(c))) c = ' ';
-  return {place, "not valid JSON: " + reason};
-}
-
 std::string childPlace(const std::string& place, const std::string& key) { return place.empty() ? key : place + "." + key; }
 
 }  // namespace
@@ -87,36 +93,8 @@ JsonNode::JsonNode(std::shared_ptr<const Document> document, const void* value, 
 JsonNode JsonNode::parse(const std::string& text, const std::string& file) {
   const auto document = std::make_shared<Document>();
   document->file = file;
-  // The library keeps the first or the last of two equal keys in silence; here they are an error.
-  struct Level {
-    std::set<std::string> keys;
-    std::string current;
-    std::size_t index = 0;
-  };
-  std::vector<Level> levels;
-  const auto where = [&] {
-    std::string place;
-    for (const Level& l : levels)
-      if (!l.current.empty()) place = childPlace(place, l.current);
-    return place;
-  };
-  const auto check = [&](int depth, Json::parse_event_t event, Json& parsed) {
-    if (depth > kDeepest) throw InputError(file, "JSON", "nested deeper than " + std::to_string(kDeepest) + " levels");
-    if (event == Json::parse_event_t::object_start || event == Json::parse_event_t::array_start) levels.emplace_back();
-    if (event == Json::parse_event_t::object_end || event == Json::parse_event_t::array_end) levels.pop_back();
-    if (event == Json::parse_event_t::key) {
-      Level& level = levels.back();
-      level.current = parsed.get<std::string>();
-      if (!level.keys.insert(level.current).second) throw InputError(file, where(), "this key stands here twice");
-    }
-    return true;
-  };
-  try {
-    document->root = Json::parse(withoutNonFinite(text), check);
-  } catch (const Json::exception& e) {
-    const auto [place, reason] = splitParseMessage(e.what());
-    throw InputError(file, place, reason);
-  }
+  document->root = json_dom::parse(withoutNonFinite(text), file);
+  document->index(document->root);
   const void* root = &document->root;
   return JsonNode(document, root, "");
 }
@@ -137,12 +115,14 @@ std::string wrongType(const char* expected, const Json& j) { return std::string(
 
 bool JsonNode::has(const std::string& key) const {
   if (!isObject()) fail(wrongType("an object", json(value_)));
-  return json(value_).contains(key);
+  return document_->find(json(value_), key) != nullptr;
 }
 
 std::optional<JsonNode> JsonNode::find(const std::string& key) const {
-  if (!has(key)) return std::nullopt;
-  return JsonNode(document_, &json(value_).at(key), childPlace(place_, key));
+  if (!isObject()) fail(wrongType("an object", json(value_)));
+  const Json* member = document_->find(json(value_), key);
+  if (member == nullptr) return std::nullopt;
+  return JsonNode(document_, member, childPlace(place_, key));
 }
 
 JsonNode JsonNode::at(const std::string& key) const {
@@ -278,8 +258,8 @@ void print(const Json& j, int depth, std::string& out) {
 std::string prettyJson(const std::string& text) {
   Json j;
   try {
-    j = Json::parse(text);
-  } catch (const Json::exception&) {
+    j = json_dom::parse(text, "");
+  } catch (const InputError&) {
     require(false, "prettyJson: not JSON");
   }
   std::string out;

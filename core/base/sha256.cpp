@@ -41,6 +41,8 @@ std::string Sha256::hex() {
 std::string sha256OfFile(const std::filesystem::path& file) {
   std::error_code error;
   if (std::filesystem::is_directory(file, error)) throw InputError(file.string(), "", "is a folder, not a file");
+  if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))
+    throw InputError(file.string(), "", "is a device or a pipe, not a file");
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "rb"), &std::fclose);
   if (!in) throw InputError(file.string(), "", std::string("cannot be read: ") + std::strerror(errno));
   Sha256 hash;

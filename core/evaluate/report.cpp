@@ -307,10 +307,12 @@ std::string evaluationJson(const Inspection& inspection, const ReportContext& co
   return j.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
+const char* const kEvaluationCsvHeader =
+    "model,index,id,light,highlight,status,reason,contour_error_pct,contour_error_px,ellipse_error_pct,hausdorff_px,iou,"
+    "centre_offset_px,axis_ratio_error,angle_error_deg,peak_offset_px,coverage,time_us\n";
+
 std::string evaluationCsv(const Inspection& inspection) {
-  std::string out =
-      "model,index,id,light,highlight,status,reason,contour_error_pct,contour_error_px,ellipse_error_pct,hausdorff_px,iou,"
-      "centre_offset_px,axis_ratio_error,angle_error_deg,peak_offset_px,coverage,time_us\n";
+  std::string out = kEvaluationCsvHeader;
   for (const std::string& name : inspection.request.models) {
     const auto it = inspection.models.find(name);
     if (it == inspection.models.end()) continue;

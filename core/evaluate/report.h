@@ -23,6 +23,8 @@ std::string bestModel(const Inspection& inspection);
 
 /// formats.md "evaluate --json". Numbers that are not finite become null.
 std::string evaluationJson(const Inspection& inspection, const ReportContext& context);
+/// The first line of `evaluationCsv`.
+extern const char* const kEvaluationCsvHeader;
 /// One row per (model, frame, light, highlight), with a header row.
 std::string evaluationCsv(const Inspection& inspection);
 /// A plain-text table of the models: error statistics, predicted/frames, coverage, counts, time.

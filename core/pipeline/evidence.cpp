@@ -173,7 +173,7 @@ Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene
   std::vector<Highlight> truth;
   char key[16];
   std::snprintf(key, sizeof key, "%.2f", level);
-  const JsonNode root = JsonNode::parse(readFile(file), file.string());
+  const JsonNode root = JsonNode::parse(readFile(file, Limit::JsonMegabytes), file.string());
   const JsonNode levels = root.at("levels");
   const std::optional<JsonNode> contours = levels.find(key);
   constexpr double kHundredths = 100;  // the keys have two decimals

@@ -204,14 +204,14 @@ Session sessionOf(const Inspection& inspection, const ProgressFn& progress) {
   return session;
 }
 
-Replay replay(const Session& session, const ProgressFn& progress) {
+Replay replay(const Session& session, const Relinked& instead, const ProgressFn& progress) {
   if (session.keyResults.empty())
     throw InputError(session.file.string(), "results", "the session was saved without results: there is nothing to compare");
-  const std::vector<std::string> changed = changedFiles(session, progress);
+  const std::vector<std::string> changed = changedFiles(session, instead, progress);
   if (!changed.empty())
     throw InputError(session.file.string(), "input",
                      changed.front() + (changed.size() > 1 ? " (and " + std::to_string(changed.size() - 1) + " more)" : ""));
-  const Inspection inspection = inspect(openSession(session).scene, session.request, progress);
+  const Inspection inspection = inspect(openSession(session, instead).scene, session.request, progress);
   Replay result;
   const KeyResults now = keyResultsOf(inspection);
   const auto find = [](const KeyResults& all, const std::string& name) {

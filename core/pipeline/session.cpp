@@ -5,25 +5,23 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/base/atomic_file.h"
+#include "core/base/json_dom.h"
 #include "core/base/json_text.h"
 #include "core/base/sha256.h"
 #include "core/pipeline/what_if_json.h"
+#include "core/scene/permitted.h"
 #include "core/scene/scene_files.h"
 #include "core/scene/scene_json.h"
+#include "core/scene/session_input.h"
 
 namespace glint {
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using json_dom::Json;
 
 namespace {
-
-// 1: the first. 2: `tradeoff` may stand in it; a file of version 1 reads as one without. 3: `input.folders` for every kind of
-// file and `view.more_cameras`; the one folder of photographs that older ones name (`input.photographs`) is the first of them.
-constexpr int kVersion = 3;
 
 /// A setting that a program of version 1 did not have is what that program did, where that is not today's default.
 void migrateFrom1(const JsonNode& request, Settings& settings) {
@@ -176,29 +174,24 @@ std::string readHash(const JsonNode& node) {
 
 }  // namespace
 
-Session readSession(const fs::path& file) { return parseSession(readFile(file), file); }
+Session readSession(const fs::path& file) { return parseSession(readFile(file, Limit::JsonMegabytes), file); }
 
 Session parseSession(const std::string& json, const fs::path& file) {
   const JsonNode root = JsonNode::parse(json, file.string());
   Session session;
   session.file = file;
   const fs::path folder = folderOf(file);
-  const JsonNode version = root.at("glint_session");
-  if (version.integer() > kVersion)
-    version.fail("version " + std::to_string(version.integer()) + " is newer than this program understands (" +
-                 std::to_string(kVersion) + ")");
-  if (version.integer() < 1) version.fail("version " + std::to_string(version.integer()) + " never existed");
+  const int version = readSessionVersion(root);
+  SessionInput named = readSessionInput(root, folder);
+  session.input = std::move(named.scene);
+  session.folders = std::move(named.folders);
+  session.meshes = std::move(named.meshes);
   const JsonNode input = root.at("input");
-  session.input = absolutePath(input.at("path"), folder);
-  if (const auto n = input.find("allow_outside")) session.allowOutsidePaths = n->boolean();
-  session.folders = readFilesFolders(input, folder);
-  if (const auto n = input.find("meshes"); n && !n->isNull())
-    for (const std::string& named : n->keys()) session.meshes[named] = absolutePath(n->at(named), folder);
   if (const auto n = input.find("files"))
     for (std::size_t i = 0; i < n->size(); ++i)
       session.files.push_back({absolutePath(n->at(i).at("path"), folder), readHash(n->at(i).at("sha256"))});
   session.request = readRequest(root.at("request"), folder);
-  if (version.integer() == 1) migrateFrom1(root.at("request"), session.request.settings);
+  if (version == 1) migrateFrom1(root.at("request"), session.request.settings);
   migrateFromBeforePixels(root.at("request"), session.request.settings);
   if (const auto n = root.find("frames")) {
     session.training = texts(n->at("training"));
@@ -221,7 +214,7 @@ Session parseSession(const std::string& json, const fs::path& file) {
   for (const std::string& key :
        root.unknownKeys({"glint_session", "input", "request", "frames", "view", "notes", "tradeoff", "results", "recovery"})) {
     session.warnings.push_back(key + ": unknown key, kept");
-    unknown[key] = Json::parse(root.at(key).dump());
+    json_dom::append(unknown, key, json_dom::parse(root.at(key).dump(), file.string()));
   }
   if (!unknown.empty()) session.unknownJson = unknown.dump();
   return session;
@@ -235,7 +228,7 @@ void writeSession(const Session& session, const fs::path& file) {
     return r.generic_string();
   };
   const auto hash = [](const std::string& hex) { return hex.empty() ? Json() : Json(hex); };
-  Json root = {{"glint_session", kVersion}};
+  Json root = {{"glint_session", kSessionVersion}};
   root["input"] = {{"path", relative(session.input)}, {"allow_outside", session.allowOutsidePaths}, {"files", Json::array()}};
   for (const FilesFolder& f : session.folders)
     root["input"]["folders"].push_back({{"of", nameOf(f.kind)}, {"folder", relative(f.folder)}});
@@ -269,9 +262,11 @@ void writeSession(const Session& session, const fs::path& file) {
     root["results"] = {{"key_results", std::move(key)}, {"digest", hash(session.digest)}};
   }
   if (!session.unknownJson.empty()) {
-    const Json unknown = Json::parse(session.unknownJson);
+    const Json unknown = json_dom::parse(session.unknownJson, "");
+    std::set<std::string> known;
+    for (const auto& item : root.items()) known.insert(item.key());
     for (const auto& item : unknown.items())
-      if (!root.contains(item.key())) root[item.key()] = item.value();
+      if (!known.count(item.key())) json_dom::append(root, item.key(), item.value());
   }
   atomicWrite(file, prettyJson(root.dump(-1, ' ', false, Json::error_handler_t::replace)));
 }
@@ -282,6 +277,12 @@ MissingScene::MissingScene(const fs::path& session, fs::path scene)
 OpenedSession openSession(const fs::path& file, const Relinked& instead) { return openSession(readSession(file), instead); }
 
 namespace {
+
+std::vector<fs::path> permittedFolders(const Session& session, const Relinked& instead) {
+  std::vector<fs::path> named = instead.folders;
+  named.insert(named.end(), instead.meshFolders.begin(), instead.meshFolders.end());
+  return foldersOfSession(session.file, session.input, named);
+}
 
 /// Compares what was relinked with what the session was made with, and forgets the hashes of where it was; saving hashes it where
 /// it is. One line; "" = the same files, or not known.
@@ -325,10 +326,18 @@ OpenedSession openSession(Session given, const Relinked& instead) {
   if (!fs::exists(session.input, ignored)) throw MissingScene(session.file, session.input);
   ReadOptions options;
   options.allowOutsidePaths = session.allowOutsidePaths;
+  options.folders = permittedFolders(session, instead);
+  if (!session.allowOutsidePaths) {
+    SessionInput named{session.input, session.folders, session.meshes};
+    for (const auto& given : instead.meshes) named.meshes.erase(given.first);
+    requirePermitted(named, session.file.string(), options.folders);
+    if (!session.request.truthFolder.empty())
+      requirePermitted(session.request.truthFolder, options.folders, session.file.string(), "request.truth", "--truth DIR");
+  }
   options.meshes = instead.meshes;
   options.meshes.insert(session.meshes.begin(), session.meshes.end());  // what is given now stays
   options.meshFolders = instead.meshFolders;
-  Scene scene = withFilesIn(readScene(session.input, options), session.folders);
+  Scene scene = withFilesIn(readSceneOfSession(session.input, options), session.folders);
   if (instead.any()) opened.warning = takeOver(session, scene, sceneWas, !instead.scene.empty());
   session.meshes = scene.meshes;
   opened.scene = std::make_shared<const Scene>(std::move(scene));
@@ -360,13 +369,17 @@ std::vector<SessionFile> hashInputs(const Scene& scene, const InspectionRequest&
   return files;
 }
 
-std::vector<std::string> changedFiles(const Session& session, const ProgressFn& progress) {
+std::vector<std::string> changedFiles(const Session& session, const Relinked& instead, const ProgressFn& progress) {
+  const std::vector<fs::path> permitted = permittedFolders(session, instead);
   std::vector<std::string> lines;
   int done = 0;
   for (const SessionFile& f : session.files) {
     if (!report(progress, {"hash", done++, static_cast<int>(session.files.size())})) throw Stopped{};
     std::error_code error;
-    if (!fs::exists(f.path, error)) {
+    if (!session.allowOutsidePaths && !liesIn(permitted, f.path)) {
+      // Neither whether it is there nor whether its hash matches: a session from others must not find out.
+      lines.push_back(f.path.string() + ": lies outside the folders of the session and its scene; not compared (--allow-outside accepts it)");
+    } else if (!fs::exists(f.path, error)) {
       if (!f.sha256.empty()) lines.push_back(f.path.string() + ": missing");
     } else if (sha256OfFile(f.path) != f.sha256) {
       lines.push_back(f.path.string() + ": changed");

@@ -56,7 +56,8 @@ struct Session {
   std::optional<Recovery> recovery;  ///< set in autosaves only
   std::vector<FilesFolder> folders;  ///< in which frames' files are looked for before where the scene says; the last counts
   std::map<std::string, std::filesystem::path> meshes;  ///< absolute, those that lie elsewhere: by the path that the scene writes
-  bool allowOutsidePaths = false;  ///< the scene may name files outside its folder
+  /// The session and its scene may name files outside their folders. The caller says so, never the file: reading leaves it false.
+  bool allowOutsidePaths = false;
   std::vector<SessionFile> files;  ///< the scene file first, then everything that it names
   InspectionRequest request;
   std::vector<std::string> training, heldOut;  ///< frame ids that `request.train` meant when it was saved
@@ -91,7 +92,7 @@ struct OpenedSession {
   std::shared_ptr<const Scene> scene;
   std::string warning;  ///< what was given instead is another file than the session was made with; "" = it is not
 };
-/// Reads a session and its scene. InputError; MissingScene, MissingMesh. Does not check the files' contents: see `changedFiles`.
+/// Reads a session and its scene. InputError; MissingScene, MissingMesh, OutsidePath. Does not check the files' contents: see `changedFiles`.
 /// @param instead  where inputs are now that are not where the session says. The session then names them.
 OpenedSession openSession(const std::filesystem::path& file, const Relinked& instead = {});
 OpenedSession openSession(Session session, const Relinked& instead = {});
@@ -106,8 +107,9 @@ Session sessionOf(const Inspection& inspection, const ProgressFn& progress = {})
 /// Of the scene, what it names, and the truth folder of the request.
 std::vector<SessionFile> hashInputs(const Scene& scene, const InspectionRequest& request, const ProgressFn& progress = {});
 
-/// One line "path: changed" or "path: missing" for each input that is not what it was. Stopped.
-std::vector<std::string> changedFiles(const Session& session, const ProgressFn& progress = {});
+/// One line "path: changed" or "path: missing" for each input that is not what it was; of a file that the session may not name, a line
+/// that says nothing about it. Stopped.
+std::vector<std::string> changedFiles(const Session& session, const Relinked& instead = {}, const ProgressFn& progress = {});
 
 /// Summaries of every model, limit angles and light positions; no times.
 KeyResults keyResultsOf(const Inspection& inspection);
@@ -123,7 +125,8 @@ struct Replay {
 };
 /// Recomputes a session and compares: key results agree when they differ by at most 1e-9 relatively (or 1e-12 absolutely,
 /// the round-off of numbers of order one).
-/// @throw InputError when the session has no results, or an input changed or is missing (the first is named); Stopped.
-Replay replay(const Session& session, const ProgressFn& progress = {});
+/// @param instead  of it only the folders that a person named
+/// @throw InputError when the session has no results, or an input changed or is missing (the first is named); OutsidePath; Stopped.
+Replay replay(const Session& session, const Relinked& instead = {}, const ProgressFn& progress = {});
 
 }  // namespace glint

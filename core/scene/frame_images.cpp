@@ -5,14 +5,12 @@
 #include <cstring>
 #include <functional>
 #include <opencv2/core.hpp>
-#include <opencv2/core/utils/logger.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "core/base/atomic_file.h"
 #include "core/base/srgb.h"
+#include "core/scene/image_decode.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_files.h"
-#include "core/scene/scene_reader.h"
 
 namespace glint {
 namespace fs = std::filesystem;
@@ -23,83 +21,9 @@ Failure unreadable(const fs::path& file, const std::string& reason) {
   return Failure{Reason::FrameUnreadable, file.string() + ": " + reason};
 }
 
-std::string wrongSize(int width, int height, const Camera& camera) {
+std::string wrongSize(std::uint64_t width, std::uint64_t height, const Camera& camera) {
   return "the image has " + std::to_string(width) + " x " + std::to_string(height) + " pixels, the camera " +
          std::to_string(camera.width) + " x " + std::to_string(camera.height);
-}
-
-std::uint32_t bigEndian(const std::string& bytes, std::size_t at) {
-  std::uint32_t v = 0;
-  for (std::size_t i = 0; i < 4; ++i) v = v << 8 | static_cast<unsigned char>(bytes[at + i]);
-  return v;
-}
-
-std::uint64_t littleEndian(const std::string& bytes, std::size_t at, std::size_t size) {
-  std::uint64_t v = 0;
-  for (std::size_t i = 0; i < size; ++i) v |= std::uint64_t(static_cast<unsigned char>(bytes[at + i])) << (8 * i);
-  return v;
-}
-
-/// True when every block that the offset table of an OpenEXR file names lies inside the file. Only single-part scan-line files
-/// are checked (what cameras and renderers write for one image); the decoder judges the others.
-/// @see OpenEXR File Layout: magic, version, attributes (name, type, size, value) up to an empty name, offsets, blocks.
-bool isCompleteExr(const std::string& bytes) {
-  if (bytes.size() < 9) return false;
-  const std::uint64_t flags = littleEndian(bytes, 4, 4) >> 8;
-  if (flags & 0x1A) return true;  // tiled, deep or multi-part
-  std::size_t at = 8;
-  while (at < bytes.size() && bytes[at] != 0) {
-    const std::size_t name = bytes.find('\0', at);
-    const std::size_t type = name == std::string::npos ? name : bytes.find('\0', name + 1);
-    if (type == std::string::npos || type + 5 > bytes.size()) return false;
-    const std::uint64_t size = littleEndian(bytes, type + 1, 4);
-    if (size > bytes.size() - type - 5) return false;
-    at = type + 5 + static_cast<std::size_t>(size);
-  }
-  const std::size_t table = at + 1;
-  // The table ends where the first block starts, so its length follows from the smallest offset in it.
-  std::uint64_t smallest = bytes.size();
-  for (std::size_t entry = table; entry + 8 <= smallest; entry += 8) {
-    const std::uint64_t offset = littleEndian(bytes, entry, 8);
-    if (offset + 8 > bytes.size() || offset <= table) return false;
-    if (offset + 8 + littleEndian(bytes, static_cast<std::size_t>(offset) + 4, 4) > bytes.size()) return false;
-    smallest = std::min(smallest, offset);
-  }
-  return smallest < bytes.size();
-}
-
-struct FileCheck {
-  std::string problem;  ///< "" = complete as far as the container tells
-  bool saysLinear = false;
-};
-
-/// The decoders print their own messages or return half an image when a file is cut off, so completeness is checked first:
-/// a PNG's chunks must reach IEND, a JPEG must contain its end marker, an EXR all blocks of its table.
-FileCheck checkContainer(const std::string& bytes) {
-  FileCheck check;
-  static const std::string pngMagic("\x89PNG\r\n\x1a\n", 8);
-  if (bytes.empty()) {
-    check.problem = "the file is empty (0 bytes)";
-  } else if (bytes.compare(0, pngMagic.size(), pngMagic) == 0) {
-    std::size_t at = pngMagic.size();
-    std::string type;
-    while (type != "IEND") {
-      if (at + 12 > bytes.size() || bigEndian(bytes, at) > bytes.size() - at - 12) {
-        check.problem = "the PNG is truncated";
-        break;
-      }
-      const std::size_t length = bigEndian(bytes, at);
-      type = bytes.substr(at + 4, 4);
-      // gAMA holds 100000 times the exponent: 100000 declares linear values.
-      if (type == "gAMA" && length == 4) check.saysLinear = bigEndian(bytes, at + 8) == 100000;
-      at += 12 + length;
-    }
-  } else if (bytes.compare(0, 2, "\xff\xd8") == 0) {
-    if (bytes.rfind("\xff\xd9") == std::string::npos) check.problem = "the JPEG is truncated";
-  } else if (bytes.compare(0, 4, "\x76\x2f\x31\x01") == 0) {
-    if (!isCompleteExr(bytes)) check.problem = "the EXR is truncated";
-  }
-  return check;
 }
 
 struct Decoded {
@@ -107,42 +31,35 @@ struct Decoded {
   bool saysLinear = false;
 };
 
+/// What is wrong with a file as far as its header tells; "" = nothing.
+std::string headerProblem(const ImageHeader& header, const Camera& camera) {
+  if (!header.problem.empty()) return header.problem;
+  if (header.width != static_cast<std::uint64_t>(camera.width) || header.height != static_cast<std::uint64_t>(camera.height))
+    return wrongSize(header.width, header.height, camera);
+  constexpr int kMostChannels = 4;
+  if (header.channels > kMostChannels)
+    return "the image has " + std::to_string(header.channels) + " channels, expected 1, 3 or 4";
+  return "";
+}
+
+constexpr double kMega = 1e6;
+
 Outcome<Decoded> decode(const fs::path& file, const Camera& camera) {
-  // The library's own log would add lines to the one message that a problem gets.
-  static const bool quiet = [] {
-    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-    return true;
-  }();
-  (void)quiet;
   std::string bytes;
+  ImageHeader header;
   try {
-    bytes = readFile(file);
+    bytes = readFile(file, Limit::ImageMegabytes);
+    header = readImageHeader(bytes);
+    if (const std::string problem = headerProblem(header, camera); !problem.empty()) return unreadable(file, problem);
+    requireWithin(Limit::ImageMegapixels, double(header.width) * double(header.height) / kMega, file.string());
   } catch (const InputError& e) {
     return Failure{Reason::FrameUnreadable, e.what()};
   }
-  const FileCheck check = checkContainer(bytes);
-  if (!check.problem.empty()) return unreadable(file, check.problem);
-  Decoded decoded;
-  decoded.saysLinear = check.saysLinear;
-  try {
-    const cv::Mat view(1, static_cast<int>(std::min<std::size_t>(bytes.size(), INT32_MAX)), CV_8U, bytes.data());
-    decoded.pixels = cv::imdecode(view, cv::IMREAD_UNCHANGED);
-  } catch (const std::exception&) {
-    return unreadable(file, "the image cannot be decoded (truncated or damaged)");
-  }
-  cv::Mat& m = decoded.pixels;
-  if (m.empty()) return unreadable(file, "the image cannot be decoded (not an image, truncated or damaged)");
-  if (m.cols != camera.width || m.rows != camera.height)
-    return unreadable(file, wrongSize(m.cols, m.rows, camera));
-  if (m.channels() != 1 && m.channels() != 3 && m.channels() != 4)
-    return unreadable(file, "the image has " + std::to_string(m.channels()) + " channels, expected 1, 3 or 4");
-  if (m.channels() >= 3) {
-    // Blue-green-red to red-green-blue; alpha is dropped.
-    std::vector<cv::Mat> c;
-    cv::split(m, c);
-    cv::merge(std::vector<cv::Mat>{c[2], c[1], c[0]}, m);
-  }
-  return decoded;
+  Outcome<cv::Mat> pixels = decodeImage(bytes, header);
+  if (!pixels) return unreadable(file, pixels.failure().detail);
+  if (pixels->cols != camera.width || pixels->rows != camera.height)  // a decoder may know better than the header
+    return unreadable(file, wrongSize(static_cast<std::uint64_t>(pixels->cols), static_cast<std::uint64_t>(pixels->rows), camera));
+  return Decoded{std::move(*pixels), header.saysLinear};
 }
 
 bool isFloat(const cv::Mat& m) { return m.depth() == CV_32F || m.depth() == CV_64F; }
@@ -244,18 +161,9 @@ Outcome<Image> readPhotograph(const Frame& frame) {
 namespace {
 std::string fileProblem(const fs::path& file, const Camera& camera) {
   if (file.empty()) return {};
-  // What a TIFF's end must look like is not known without decoding it: that it is there is all that can be said.
-  if (const std::string magic = firstBytes(file, 4); magic == std::string("II*\0", 4) || magic == std::string("MM\0*", 4))
-    return {};
   try {
-    const std::string bytes = readFile(file);
-    const FileCheck check = checkContainer(bytes);
-    if (!check.problem.empty()) return file.string() + ": " + check.problem;
-    constexpr std::size_t kPngHeader = 24;  // signature 8, length and type of IHDR 8, width 4, height 4
-    if (bytes.compare(0, 4, "\x89PNG") == 0 && bytes.size() >= kPngHeader) {
-      const auto width = static_cast<int>(bigEndian(bytes, 16)), height = static_cast<int>(bigEndian(bytes, 20));
-      if (width != camera.width || height != camera.height) return file.string() + ": " + wrongSize(width, height, camera);
-    }
+    const std::string problem = headerProblem(readImageHeader(readFile(file, Limit::ImageMegabytes)), camera);
+    if (!problem.empty()) return file.string() + ": " + problem;
   } catch (const InputError& e) {
     return e.what();
   }

@@ -15,6 +15,7 @@ struct Relinked {
   std::filesystem::path scene = {};                          ///< of a session
   std::map<std::string, std::filesystem::path> meshes = {};  ///< by the path that the scene file writes
   std::vector<std::filesystem::path> meshFolders = {};       ///< in which those are looked for that are not in their place
+  std::vector<std::filesystem::path> folders = {};           ///< in which the session may name files: those that a person named
   bool any() const { return !scene.empty() || !meshes.empty() || !meshFolders.empty(); }
 };
 

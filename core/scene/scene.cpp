@@ -8,7 +8,9 @@
 #include "core/base/json_text.h"
 #include "core/scene/scene_files.h"
 #include "core/scene/scene_json.h"
+#include "core/scene/permitted.h"
 #include "core/scene/scene_reader.h"
+#include "core/scene/session_input.h"
 
 namespace glint {
 namespace fs = std::filesystem;
@@ -29,8 +31,7 @@ namespace {
 bool isJsonObjectWith(const fs::path& file, const std::string& key) {
   std::error_code error;
   const auto size = fs::file_size(file, error);
-  constexpr std::uintmax_t kLargest = std::uintmax_t(1) << 30;  // a scene of 1 GB of text is no scene
-  if (error || size > kLargest) return false;
+  if (error || !fs::is_regular_file(file, error)) return false;
   const std::string start = firstBytes(file, 64);
   const std::size_t at = start.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   if (at == std::string::npos || start[at] != '{') return false;
@@ -62,7 +63,7 @@ class SceneFileReader final : public SceneReader {
     return input.filename() == "scene.json" || isJsonObjectWith(input, "glint_scene") ? input : fs::path();
   }
   Scene read(const fs::path& file, const ReadOptions& options) const override {
-    return readSceneJson(readFile(file), file, options);
+    return readSceneJson(readFile(file, Limit::JsonMegabytes), file, options);
   }
 };
 
@@ -79,17 +80,19 @@ class SessionSceneReader final : public SceneReader {
     return isJsonObjectWith(input, "glint_session") ? input : fs::path();
   }
   Scene read(const fs::path& file, const ReadOptions& options) const override {
-    const JsonNode root = JsonNode::parse(readFile(file), file.string());
-    const JsonNode path = root.at("input").at("path");
-    const fs::path scene = fs::absolute(file).parent_path() / path.text();
-    if (isJsonObjectWith(scene, "glint_session")) path.fail("a session's input must be a scene, not a session");
+    const JsonNode root = JsonNode::parse(readFile(file, Limit::JsonMegabytes), file.string());
+    readSessionVersion(root);
+    SessionInput input = readSessionInput(root, fs::absolute(file).lexically_normal().parent_path());
+    for (const auto& given : options.meshes) input.meshes.erase(given.first);  // what the caller says comes first
+    std::vector<fs::path> named = options.folders;
+    named.insert(named.end(), options.meshFolders.begin(), options.meshFolders.end());
     ReadOptions own = options;
-    if (const auto allow = root.at("input").find("allow_outside")) own.allowOutsidePaths = own.allowOutsidePaths || allow->boolean();
-    const fs::path folder = fs::absolute(file).parent_path();
-    if (const auto meshes = root.at("input").find("meshes"); meshes && !meshes->isNull())
-      for (const std::string& named : meshes->keys())  // what the caller says comes first
-        own.meshes.emplace(named, (folder / meshes->at(named).text()).lexically_normal());
-    return withFilesIn(readScene(scene.lexically_normal(), own), readFilesFolders(root.at("input"), folder));
+    own.folders = foldersOfSession(file, input.scene, named);
+    if (!options.allowOutsidePaths) requirePermitted(input, file.string(), own.folders);
+    own.meshes.insert(input.meshes.begin(), input.meshes.end());
+    std::error_code ignored;  // what cannot be asked about is not there
+    if (!fs::exists(input.scene, ignored)) root.at("input").at("path").fail("the scene " + input.scene.string() + " is not there");
+    return withFilesIn(readSceneOfSession(input.scene, own), input.folders);
   }
 };
 
@@ -114,43 +117,50 @@ const std::vector<std::unique_ptr<const SceneReader>>& sceneReaders() {
   return readers;
 }
 
-fs::path resolveInside(const fs::path& folder, const std::string& relative, bool allowOutside, const std::string& file,
+fs::path resolveInside(const fs::path& folder, const std::string& relative, const ReadOptions& options, const std::string& file,
                        const std::string& place) {
   if (relative.empty()) throw InputError(file, place, "the path is empty");
   if (relative.find('\0') != std::string::npos) throw InputError(file, place, "the path contains a zero byte");
   const fs::path path(relative);
   const fs::path absolute = (path.is_absolute() ? path : folder / path).lexically_normal();
-  if (allowOutside) return absolute;
+  if (options.allowOutsidePaths || liesIn(options.folders, absolute)) return absolute;
   if (path.is_absolute())
-    throw InputError(file, place, "'" + relative + "' is absolute; paths are relative to the file (--allow-outside accepts it)");
-  // weakly_canonical follows the links of the part that exists, so neither `..` nor a link can leave unseen.
-  std::error_code error;
-  const fs::path root = fs::weakly_canonical(folder, error);
-  const fs::path real = error ? fs::path() : fs::weakly_canonical(folder / path, error);
-  if (error) throw InputError(file, place, "'" + relative + "' cannot be resolved: " + error.message());
-  const auto [rootEnd, rest] = std::mismatch(root.begin(), root.end(), real.begin(), real.end());
-  if (rootEnd != root.end())
-    throw InputError(file, place, "'" + relative + "' leaves the folder of the file (--allow-outside accepts it)");
+    throw OutsidePath(file, place, "'" + relative + "' is absolute; paths are relative to the file (--allow-outside accepts it)");
+  if (!liesIn({folder}, folder / path))
+    throw OutsidePath(file, place, "'" + relative + "' leaves the folder of the file (--allow-outside accepts it)");
   return absolute;
 }
 
-Scene readScene(const fs::path& input, const ReadOptions& options) {
+namespace {
+
+Scene readRecognised(const fs::path& input, const ReadOptions& options, bool sessions) {
   std::error_code error;
   const fs::file_status status = fs::status(input, error);
   if (!fs::exists(status)) throw InputError(input.string(), "", "no such file or folder");
-  for (const auto& reader : sceneReaders())
-    if (const fs::path file = reader->recognise(input); !file.empty()) return reader->read(file, options);
+  for (const auto& reader : sceneReaders()) {
+    const fs::path file = reader->recognise(input);
+    if (file.empty()) continue;
+    if (!sessions && dynamic_cast<const SessionSceneReader*>(reader.get()) != nullptr)
+      throw InputError(file.string(), "", "is a session; the input of a session must be a scene");
+    return reader->read(file, options);
+  }
   if (fs::is_directory(status)) {
     const bool empty = fs::is_empty(input, error);
     throw InputError(input.string(), "",
                      std::string(empty ? "the folder is empty" : "nothing in this folder is recognised") +
                          "; understood: " + whatIsUnderstood());
   }
-  const bool empty = fs::is_regular_file(status) && fs::file_size(input, error) == 0;
+  if (!fs::is_regular_file(status)) throw InputError(input.string(), "", "is a device or a pipe, not a file");
+  const bool empty = fs::file_size(input, error) == 0;
   throw InputError(
       input.string(), "",
       std::string(empty ? "the file is empty" : "the content is not recognised") + "; understood: " + whatIsUnderstood());
 }
+
+}  // namespace
+
+Scene readScene(const fs::path& input, const ReadOptions& options) { return readRecognised(input, options, true); }
+Scene readSceneOfSession(const fs::path& input, const ReadOptions& options) { return readRecognised(input, options, false); }
 
 void writeScene(const Scene& scene, const fs::path& file) {
   const fs::path folder = fs::absolute(file).lexically_normal().parent_path();

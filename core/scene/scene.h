@@ -73,14 +73,17 @@ struct Scene {
 
 struct ReadOptions {
   bool allowOutsidePaths = false;         ///< accept paths that leave the scene's folder
+  std::vector<std::filesystem::path> folders = {};  ///< in which the scene may name files too: those that a person named
   /// Where meshes are instead, by the path that the scene file writes; a mesh may lie anywhere.
   std::map<std::string, std::filesystem::path> meshes = {};
   /// In which meshes are looked for, by the longest end of their path, that are not in their place.
   std::vector<std::filesystem::path> meshFolders = {};
 };
 
-/// Reads any input that Glint knows, recognised by content. InputError with file, place and reason; MissingMesh.
+/// Reads any input that Glint knows, recognised by content. InputError with file, place and reason; MissingMesh, OutsidePath.
 Scene readScene(const std::filesystem::path& input, const ReadOptions& options = {});
+/// The same for the input of a session, which must not be a session again.
+Scene readSceneOfSession(const std::filesystem::path& input, const ReadOptions& options = {});
 /// Writes scene.json version 1 with relative paths, atomically. InputError when it cannot be written.
 void writeScene(const Scene& scene, const std::filesystem::path& file);
 

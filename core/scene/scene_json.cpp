@@ -5,9 +5,10 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <set>
+#include <unordered_set>
 
+#include "core/base/json_dom.h"
 #include "core/base/level_range.h"
 #include "core/scene/relinked.h"
 #include "core/scene/scene_files.h"
@@ -15,7 +16,7 @@
 
 namespace glint {
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using json_dom::Json;
 
 namespace {
 
@@ -32,17 +33,22 @@ struct Unknown {
 
   Json of(const JsonNode& node, const std::set<std::string>& known) {
     Json rest = Json::object();
-    for (const std::string& key : node.unknownKeys(known)) {
+    const std::vector<std::string> keys = node.unknownKeys(known);
+    constexpr std::size_t kEach = 8;  // as many as a person reads
+    if (keys.size() > kEach)
+      scene.warnings.push_back((node.place().empty() ? "" : node.place() + ": ") + std::to_string(keys.size()) + " unknown keys, kept, such as " +
+                               keys.front());
+    for (const std::string& key : keys) {
       const JsonNode value = node.at(key);
-      scene.warnings.push_back(value.place() + ": unknown key, kept");
-      rest[key] = Json::parse(value.dump());
+      if (keys.size() <= kEach) scene.warnings.push_back(value.place() + ": unknown key, kept");
+      json_dom::append(rest, key, json_dom::parse(value.dump(), node.file()));
     }
     return rest;
   }
 };
 
 void keep(Json& target, const std::string& key, Json value) {
-  if (!value.empty()) target[key] = std::move(value);
+  if (!value.empty()) json_dom::append(target, key, std::move(value));  // every key stands once
 }
 
 const std::set<std::string> kCameraKeys = {"width", "height", "fx", "fy", "cx", "cy", "skew", "distortion", "model"};
@@ -256,7 +262,7 @@ Frame readFrame(const JsonNode& node, const FrameContext& context, Json& rest) {
   const auto path = [&](const char* key) -> fs::path {
     const auto n = node.find(key);
     if (!n || n->isNull()) return {};
-    return resolveInside(scene.folder, n->text(), context.options.allowOutsidePaths, n->file(), n->place());
+    return resolveInside(scene.folder, n->text(), context.options, n->file(), n->place());
   };
   frame.image = path("image");
   frame.radiance = path("radiance");
@@ -311,7 +317,7 @@ fs::path findMesh(const JsonNode& node, const FrameContext& context) {
   const fs::path place =
       moved != context.options.meshes.end()
           ? fs::absolute(moved->second).lexically_normal()
-          : resolveInside(context.scene.folder, named, context.options.allowOutsidePaths, node.file(), node.place());
+          : resolveInside(context.scene.folder, named, context.options, node.file(), node.place());
   fs::path found = isThere(place) ? place : fs::path();
   for (const fs::path& folder : context.options.meshFolders)
     if (found.empty()) found = sameUnder(fs::absolute(folder), place);
@@ -336,25 +342,6 @@ SurfaceSource readSurface(const JsonNode& node, const FrameContext& context, Jso
 }
 
 }  // namespace
-
-std::vector<FilesFolder> readFilesFolders(const JsonNode& input, const fs::path& folder) {
-  std::vector<FilesFolder> folders;
-  const auto add = [&](FrameFile kind, const JsonNode& node) {
-    const std::string text = node.text();
-    if (text.empty()) node.fail("the path is empty");
-    if (text.find('\0') != std::string::npos) node.fail("the path contains a zero byte");
-    folders.push_back({kind, (folder / fs::path(text)).lexically_normal()});
-  };
-  if (const auto n = input.find("photographs"); n && !n->isNull()) add(FrameFile::Photograph, *n);
-  const auto all = input.find("folders");
-  for (std::size_t i = 0; all && i < all->size(); ++i) {
-    const JsonNode of = all->at(i).at("of");
-    const auto kind = std::find_if(kFrameFiles.begin(), kFrameFiles.end(), [&](FrameFile k) { return of.text() == nameOf(k); });
-    if (kind == kFrameFiles.end()) of.fail("'" + of.text() + "' is none of: photographs, depth, normals, masks");
-    add(*kind, all->at(i).at("folder"));
-  }
-  return folders;
-}
 
 Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOptions& options) {
   const JsonNode root = JsonNode::parse(text, file.string());
@@ -479,9 +466,11 @@ Json toJson(const AnalyticSpec& spec) {
 
 /// Puts kept unknown keys back; never overwrites a known one.
 void restore(Json& target, const Json& kept) {
+  std::unordered_set<std::string> known;
+  for (const auto& item : target.items()) known.insert(item.key());
   for (const auto& item : kept.items()) {
-    if (!target.contains(item.key())) {
-      target[item.key()] = item.value();
+    if (!known.count(item.key())) {
+      json_dom::append(target, item.key(), item.value());
       continue;
     }
     Json& old = target[item.key()];
@@ -516,9 +505,13 @@ Json toJson(const TrueLight& light) {
 }  // namespace
 
 std::string sceneToJson(const Scene& scene, const fs::path& folder) {
-  const Json kept = scene.unknownJson.empty() ? Json::object() : Json::parse(scene.unknownJson);
+  const Json kept = scene.unknownJson.empty() ? Json::object() : json_dom::parse(scene.unknownJson, "");
+  std::map<std::pair<std::string, std::string>, const Json*> keptById;  // the JSON library looks through all ids for one
+  for (const auto& group : kept.items())
+    for (const auto& item : group.value().items()) keptById.emplace(std::pair(group.key(), item.key()), &item.value());
   const auto keptOf = [&](const char* group, const std::string& id) -> Json {
-    return kept.contains(group) && kept[group].contains(id) ? kept[group][id] : Json::object();
+    const auto found = keptById.find({group, id});
+    return found == keptById.end() ? Json::object() : *found->second;
   };
   const auto relative = [&](const fs::path& path, const std::string& place) {
     const fs::path r = fs::absolute(path).lexically_normal().lexically_relative(folder);

@@ -27,10 +27,6 @@ AnalyticSpec readAnalyticJson(const JsonNode& node);
 /// {"id", one of "position" | "direction" | "segment", "radius"}. A direction is normalised.
 TrueLight readLightJson(const JsonNode& node);
 
-/// Where the `input` of a session says that frames' files lie, in its order: one folder of photographs (`photographs`, what
-/// versions 1 and 2 knew), then `folders` ([{"of": "masks", "folder": "../m"}]). Relative to `folder`, which is absolute.
-std::vector<FilesFolder> readFilesFolders(const JsonNode& input, const std::filesystem::path& folder);
-
 /// A scene from the text of a scene file. `file` names it in messages; paths are relative to its folder.
 Scene readSceneJson(const std::string& text, const std::filesystem::path& file, const ReadOptions& options);
 /// The text that `writeScene` writes for a file in `folder`.

@@ -31,9 +31,9 @@ std::unique_ptr<const SceneReader> makeSessionSceneReader();  ///< the scene tha
 
 /// The file that `key` of a document in `folder` names. `relative` is taken relative to the folder; the result is absolute
 /// and lexically normal, and may not exist.
-/// @throw InputError (file, place) when it is empty, absolute, or leaves the folder (by `..` or through a symbolic link)
-///        and `allowOutside` is false.
-std::filesystem::path resolveInside(const std::filesystem::path& folder, const std::string& relative, bool allowOutside,
+/// @throw InputError (file, place) when it is empty; OutsidePath when it is absolute or leaves the folder (by `..` or through a symbolic
+///        link), unless it lies in one of `options.folders` or `options.allowOutsidePaths` is true.
+std::filesystem::path resolveInside(const std::filesystem::path& folder, const std::string& relative, const ReadOptions& options,
                                     const std::string& file, const std::string& place);
 
 /// The first `n` bytes of a file; "" when it cannot be read. For recognising contents.

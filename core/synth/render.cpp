@@ -12,6 +12,7 @@
 #include "core/base/parallel.h"
 #include "core/base/safe_text.h"
 #include "core/base/srgb.h"
+#include "core/synth/output_folder.h"
 #include "core/synth/synth.h"
 
 namespace glint {
@@ -164,6 +165,26 @@ void makeFolder(const fs::path& folder) {
   if (error) throw InputError(folder.string(), "", "cannot be created: " + error.message());
 }
 
+std::string photographExtension(const RenderOptions& render) { return render.jpegQuality > 0 ? ".jpg" : ".png"; }
+
+/// Relative to the scene's folder. A mesh that lies there already is not written.
+std::vector<fs::path> filesWritten(const Scene& scene, const std::optional<RenderOptions>& render) {
+  std::vector<fs::path> files{"scene.json"};
+  for (const auto& [id, source] : scene.surfaces) {
+    if (!source.mesh) continue;
+    const fs::path copy = fs::path("mesh") / (fileNameOf(source.mesh->stem().string()) + source.mesh->extension().string());
+    if (std::error_code ignored; !fs::equivalent(*source.mesh, scene.folder / copy, ignored)) files.push_back(copy);
+  }
+  if (!render) return files;
+  for (const Frame& frame : scene.frames) {
+    const std::string name = fileNameOf(frame.id);
+    if (render->bits != 32) files.push_back(fs::path("frames") / (name + photographExtension(*render)));
+    for (const char* kind : {"radiance", "depth", "normals"}) files.push_back(fs::path(kind) / (name + ".tiff"));
+    files.push_back(fs::path("mask") / (name + ".png"));
+  }
+  return files;
+}
+
 /// Meshes go into the scene's folder, so that it stands on its own; two of one name are numbered.
 void copyMeshes(Scene& scene) {
   std::map<fs::path, fs::path> copies;  // by the file that was copied
@@ -226,11 +247,12 @@ Scene synthesise(const SynthSpec& spec, const fs::path& folder, const ProgressFn
       },
       progress, "highlights");
 
-  makeFolder(folder);
   scene.folder = fs::absolute(folder).lexically_normal();
   scene.file = scene.folder / "scene.json";
   if (std::error_code ignored; fs::equivalent(spec.scene.file, scene.file, ignored))
     throw InputError(scene.file.string(), "", "would replace the specification; choose another folder");
+  requireSynthFolder(scene.folder, filesWritten(scene, spec.render));
+  makeFolder(folder);
   copyMeshes(scene);
 
   if (spec.render) {
@@ -248,13 +270,13 @@ Scene synthesise(const SynthSpec& spec, const fs::path& folder, const ProgressFn
           const Outcome<std::shared_ptr<const Surface>> surface = surfaces.surfaceOf(i, NormalPolicy::Curved);
           RenderedFrame r = renderFrame(**surface, frame.camera, lightsOf(scene, frame), spec.material, render.samples);
           const std::string name = fileNameOf(frame.id);
-          const auto file = [&](const char* kind, const char* extension) { return scene.folder / kind / (name + extension); };
+          const auto file = [&](const char* kind, const std::string& extension) { return scene.folder / kind / (name + extension); };
           if (render.bits != 32) {
             Image photograph(frame.camera.width, frame.camera.height, 3);
             for (std::size_t k = 0; k < photograph.data.size(); ++k)
               photograph.data[k] = static_cast<float>(exposure) * (r.diffuse.data[k] + r.specular.data[k / 3]);
             degrade(photograph, render, render.noise * exposure * top, static_cast<unsigned>(2 * i));
-            frame.image = file("frames", render.jpegQuality > 0 ? ".jpg" : ".png");
+            frame.image = file("frames", photographExtension(render));
             writeImage(frame.image, quantised(photograph, render.bits), render.jpegQuality);
           }
           degrade(r.specular, render, render.noise * top, static_cast<unsigned>(2 * i + 1));

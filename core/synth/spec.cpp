@@ -147,7 +147,7 @@ void addFrame(Scene& scene, const Camera& camera, const Eigen::Isometry3d& pose,
 }  // namespace
 
 SynthSpec readSynthSpec(const std::filesystem::path& file) {
-  const JsonNode root = JsonNode::parse(readFile(file), file.string());
+  const JsonNode root = JsonNode::parse(readFile(file, Limit::JsonMegabytes), file.string());
   SynthSpec spec;
   Scene& scene = spec.scene;
   scene.file = file;
@@ -169,7 +169,7 @@ SynthSpec readSynthSpec(const std::filesystem::path& file) {
     if (!isIdentifier(id)) node.fail("an id must not be empty and must not contain control characters");
     SurfaceSource source;
     if (const auto n = node.find("mesh")) {
-      source.mesh = resolveInside(scene.folder, n->text(), false, n->file(), n->place());
+      source.mesh = resolveInside(scene.folder, n->text(), {}, n->file(), n->place());
       std::error_code ignored;  // what cannot be asked about is not there
       if (!std::filesystem::is_regular_file(*source.mesh, ignored)) n->fail("there is no file '" + n->text() + "'");
     }

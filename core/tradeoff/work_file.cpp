@@ -81,7 +81,7 @@ WorkFile::WorkFile(std::filesystem::path file, std::string key) : file_(std::mov
   std::error_code error;
   if (file_.empty() || !std::filesystem::is_regular_file(file_, error)) return;
   try {
-    const Json j = Json::parse(readFile(file_));
+    const Json j = Json::parse(readFile(file_, Limit::JsonMegabytes));
     if (j.at("glint_tradeoff_work") != kVersion || j.at("key") != key_) return;
     readOutcomes(j.at("coarse"), coarse_);
     readOutcomes(j.at("full"), full_);

@@ -43,7 +43,7 @@ void ChangedInputs::check() {
     std::set<std::string> changed;
     for (const std::filesystem::path& p : filesOf(*scene)) changed.insert(p.string() + ": changed");
     try {
-      for (const std::string& line : changedFiles(*session, [&](const StageEvent&) { return ticket == newest_; }))
+      for (const std::string& line : changedFiles(*session, {}, [&](const StageEvent&) { return ticket == newest_; }))
         if (changed.count(line)) lines << toQString(withoutFolder(line, *scene));
     } catch (const Stopped&) {
       return LatestJob::Deliver();

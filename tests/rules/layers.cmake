@@ -27,8 +27,10 @@ function(forbid what pattern)
   set(leaks "${leaks}" PARENT_SCOPE)
 endfunction()
 
-# Headers of core: an allow list, because it is the contract of all other layers.
+# Headers of core: an allow list, because it is the contract of all other layers. json_dom.h is internal: only sources of core
+# include it (below), so the JSON library reaches no other layer.
 file(GLOB_RECURSE files "${SRC}/core/*.h")
+list(FILTER files EXCLUDE REGEX "/core/base/json_dom[.]h$")
 foreach(f IN LISTS files)
   file(STRINGS "${f}" lines REGEX "^[ \t]*#[ \t]*include")
   foreach(line IN LISTS lines)

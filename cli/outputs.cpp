@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/outputs.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+
+#include "core/base/document_kind.h"
+#include "core/scene/scene_files.h"
+
+namespace glint::cli {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The first bytes of a file; fewer where it is shorter.
+std::string headOf(const fs::path& file, std::size_t bytes) {
+  std::string head(bytes, '\0');
+  std::ifstream in(file, std::ios::binary);
+  in.read(head.data(), static_cast<std::streamsize>(bytes));
+  head.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, in.gcount())));
+  return head;
+}
+
+bool startsWith(const std::string& text, const std::string& start) { return text.compare(0, start.size(), start) == 0; }
+
+/// MP4 ("ftyp" after its length), WebM and Matroska (EBML), AVI (RIFF ... AVI).
+bool isMovie(const std::string& head) {
+  return head.compare(4, 4, "ftyp") == 0 || startsWith(head, "\x1a\x45\xdf\xa3") ||
+         (startsWith(head, "RIFF") && head.compare(8, 4, "AVI ") == 0);
+}
+
+}  // namespace
+
+OutputKind OutputKind::document(const std::string& key) { return {Form::Document, key, "a JSON file with \"" + key + "\""}; }
+OutputKind OutputKind::table(const std::string& start) { return {Form::Table, start, "a table that this command writes"}; }
+OutputKind OutputKind::page() { return {Form::Page, "", "a page that this command writes"}; }
+OutputKind OutputKind::png() { return {Form::Png, "", "a PNG"}; }
+OutputKind OutputKind::movie() { return {Form::Movie, "", "a movie"}; }
+
+bool OutputKind::holds(const fs::path& file) const {
+  std::error_code ignored;  // what cannot be asked about is not empty
+  if (fs::file_size(file, ignored) == 0) return true;
+  constexpr std::size_t kHead = 400;  // the title of a page stands within it
+  const std::string head = headOf(file, std::max(kHead, key_.size()));
+  switch (form_) {
+    case Form::Document: return documentKind(file) == key_;
+    case Form::Table: return startsWith(head, key_);
+    case Form::Page: return startsWith(head, "<!doctype html>") && head.find("<title>Glint") != std::string::npos;
+    case Form::Png: return startsWith(head, "\x89PNG\r\n\x1a\n");
+    case Form::Movie: return head.size() >= 12 && isMovie(head);
+  }
+  return false;
+}
+
+Outputs::Outputs(const std::vector<fs::path>& inputs) : inputs_(inputs) {}
+
+Outputs::Outputs(const std::string& input, const Scene& scene) : inputs_(filesOf(scene)) { inputs_.emplace_back(input); }
+
+void Outputs::requireNoInput(const fs::path& file, const std::string& flag) const {
+  std::error_code ignored;  // what cannot be asked about is another file
+  for (const fs::path& input : inputs_)
+    if (!input.empty() && fs::equivalent(file, input, ignored))
+      throw InputError(file.string(), flag, "is a file of the input, which no command replaces; name another file");
+}
+
+void Outputs::file(const std::string& file, const std::string& flag, const OutputKind& kind) {
+  if (file.empty() || file == "-") return;
+  const fs::path path = fs::absolute(file).lexically_normal();
+  if (std::find(asked_.begin(), asked_.end(), path) != asked_.end())
+    throw InputError(file, flag, "was given for another output already; name another file");
+  asked_.push_back(path);
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return;
+  requireNoInput(file, flag);
+  if (fs::is_regular_file(path, ignored) && !kind.holds(path))
+    throw InputError(file, flag, "exists and is not " + kind.words() + "; it stays as it is: name another file, or remove it first");
+}
+
+void Outputs::inFolder(const std::string& folder, const std::string& flag, const std::vector<std::string>& names,
+                       const std::string& marker, const std::string& documentKey) {
+  if (folder.empty()) return;
+  const bool ours = documentKind(fs::path(folder) / marker) == documentKey;
+  for (const std::string& name : names) {
+    const fs::path path = fs::path(folder) / name;
+    std::error_code ignored;
+    if (!fs::exists(path, ignored)) continue;
+    requireNoInput(path, flag);
+    if (!ours)
+      throw InputError(path.string(), flag, "exists, and no earlier run of this command wrote it; it stays as it is: name another folder");
+  }
+}
+
+std::vector<std::string> picturesOf(const std::vector<int>& frames) {
+  std::vector<std::string> names;
+  for (const int frame : frames) {
+    char name[32];
+    std::snprintf(name, sizeof name, "%04d.png", frame);
+    names.emplace_back(name);
+  }
+  return names;
+}
+
+}  // namespace glint::cli

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace glint::cli {
+
+/// What a file holds that a command writes.
+class OutputKind {
+ public:
+  static OutputKind document(const std::string& key);  ///< JSON with this key at its top, "glint_scene"
+  static OutputKind table(const std::string& start);   ///< text that begins like this
+  static OutputKind page();                            ///< HTML of this program
+  static OutputKind png();
+  static OutputKind movie();
+
+  /// Whether the file may be replaced by one of this kind: empty, or of this kind.
+  bool holds(const std::filesystem::path& file) const;
+  const std::string& words() const { return words_; }
+
+ private:
+  enum class Form { Document, Table, Page, Png, Movie };
+  OutputKind(Form form, std::string key, std::string words) : form_(form), key_(std::move(key)), words_(std::move(words)) {}
+  Form form_;
+  std::string key_, words_;
+};
+
+/// The files that a command was asked to write, checked before it computes: each is new, or of the kind that the command writes; none is
+/// a file of the input; no two are the same. "-", devices and pipes pass.
+class Outputs {
+ public:
+  /// @param input  as given on the command line: a file or folder
+  Outputs(const std::string& input, const Scene& scene);
+  explicit Outputs(const std::vector<std::filesystem::path>& inputs);
+
+  /// InputError (file, flag). An empty `file` was not asked for.
+  void file(const std::string& file, const std::string& flag, const OutputKind& kind);
+  /// Files with these names in a folder: where one of them exists, the folder must hold `marker`, a document of this kind, so that an
+  /// earlier run wrote them.
+  void inFolder(const std::string& folder, const std::string& flag, const std::vector<std::string>& names, const std::string& marker,
+                const std::string& documentKey);
+
+ private:
+  void requireNoInput(const std::filesystem::path& file, const std::string& flag) const;
+  std::vector<std::filesystem::path> inputs_;
+  std::vector<std::filesystem::path> asked_;
+};
+
+/// 0000.png and so on, for these frames.
+std::vector<std::string> picturesOf(const std::vector<int>& frames);
+
+}  // namespace glint::cli

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/base/json_dom.h"
+
+#include <cctype>
+#include <unordered_set>
+#include <vector>
+
+#include "core/base/limits.h"
+#include "core/base/outcome.h"
+
+namespace glint::json_dom {
+namespace {
+
+constexpr int kDeepest = 100;  // no format of ours nests deeper than 8; recursion over hostile files stays harmless
+
+/// "line 3, column 5" and the rest of the JSON library's message, which starts with an identifier and a position.
+std::pair<std::string, std::string> splitParseMessage(const std::string& message) {
+  std::string place = "JSON", reason = message;
+  if (const std::size_t at = message.find("at line "); at != std::string::npos) {
+    const std::size_t end = message.find(": ", at);
+    place = message.substr(at + 3, end == std::string::npos ? std::string::npos : end - at - 3);
+    if (end != std::string::npos) reason = message.substr(end + 2);
+  } else if (const std::size_t bracket = message.find("] "); bracket != std::string::npos) {
+    reason = message.substr(bracket + 2);
+  }
+  for (char& c : reason)
+    if (std::iscntrl(static_cast<unsigned char>(c))) c = ' ';
+  return {place, "not valid JSON: " + reason};
+}
+
+/// Builds the document from the library's events. A value under construction is moved into its parent when it ends, so no pointer
+/// into a growing list is kept.
+class Builder final : public nlohmann::json_sax<Json> {
+ public:
+  explicit Builder(const std::string& file) : file_(file) {}
+  Json root;
+
+  bool null() override { return add(nullptr); }
+  bool boolean(bool v) override { return add(v); }
+  bool number_integer(number_integer_t v) override { return add(v); }
+  bool number_unsigned(number_unsigned_t v) override { return add(v); }
+  bool number_float(number_float_t v, const string_t&) override { return add(v); }
+  bool string(string_t& v) override { return add(std::move(v)); }
+  bool binary(binary_t&) override { return false; }  // JSON text has none
+  bool start_object(std::size_t) override { return begin(Json::object()); }
+  bool start_array(std::size_t) override { return begin(Json::array()); }
+  bool end_object() override { return end(); }
+  bool end_array() override { return end(); }
+  bool key(string_t& v) override {
+    Level& level = levels_.back();
+    level.key = v;
+    if (!level.keys.insert(v).second) throw InputError(file_, where(), "this key stands here twice");
+    return true;
+  }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& e) override {
+    const auto [place, reason] = splitParseMessage(e.what());
+    throw InputError(file_, place, reason);
+  }
+
+ private:
+  struct Level {
+    Json value;
+    std::string key;
+    std::unordered_set<std::string> keys;
+  };
+
+  std::string where() const {
+    std::string place;
+    for (const Level& l : levels_)
+      if (!l.key.empty()) place += (place.empty() ? "" : ".") + l.key;
+    return place;
+  }
+  bool add(Json value) {
+    requireWithin(Limit::JsonValues, double(++values_), file_);
+    if (levels_.empty())
+      root = std::move(value);
+    else if (levels_.back().value.is_array())
+      levels_.back().value.push_back(std::move(value));
+    else
+      append(levels_.back().value, levels_.back().key, std::move(value));
+    return true;
+  }
+  bool begin(Json empty) {
+    if (levels_.size() >= std::size_t(kDeepest)) throw InputError(file_, "JSON", "nested deeper than " + std::to_string(kDeepest) + " levels");
+    levels_.push_back({std::move(empty), "", {}});
+    return true;
+  }
+  bool end() {
+    Json done = std::move(levels_.back().value);
+    levels_.pop_back();
+    return add(std::move(done));
+  }
+
+  const std::string& file_;
+  std::vector<Level> levels_;
+  std::size_t values_ = 0;
+};
+
+}  // namespace
+
+Json parse(const std::string& text, const std::string& file) {
+  constexpr double kMegabyte = 1e6;
+  requireWithin(Limit::JsonMegabytes, double(text.size()) / kMegabyte, file);
+  Builder builder(file);
+  Json::sax_parse(text, &builder);
+  return std::move(builder.root);
+}
+
+}  // namespace glint::json_dom

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Internal to core: the JSON library's document, in time proportional to the text. Its own parser looks through all keys of an object
+// for every new one, so that an object of 100,000 keys takes many seconds.
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace glint::json_dom {
+
+using Json = nlohmann::ordered_json;
+
+/// Appends a member; the caller knows that the key is new. (`object[key]` looks through all keys first.)
+inline void append(Json& object, const std::string& key, Json value) {
+  if (object.is_null()) object = Json::object();
+  auto& members = object.get_ref<Json::object_t&>();
+  static_cast<Json::object_t::Container&>(members).emplace_back(key, std::move(value));
+}
+
+/// `file` names the text in messages.
+/// @throw InputError (file; line and column, or the place of the value) for wrong syntax, a key that stands twice in one object,
+///        nesting deeper than 100, and beyond the limits json.megabytes and json.values.
+Json parse(const std::string& text, const std::string& file);
+
+}  // namespace glint::json_dom

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/base/limits.h"
+
+#include <array>
+#include <atomic>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+#include "core/base/outcome.h"
+
+namespace glint {
+namespace {
+
+constexpr std::size_t kCount = 5;
+
+/// What `setLimit` set; 0 = the standard.
+std::array<std::atomic<double>, kCount> given{};
+
+/// Whole numbers as such, others with few digits, and never rounded down to the limit itself.
+std::string shown(double v) {
+  char text[32];
+  std::snprintf(text, sizeof text, v == std::floor(v) ? "%.0f" : "%.4g", v);
+  return text;
+}
+
+}  // namespace
+
+const std::vector<LimitInfo>& limitInfos() {
+  // A scene of 10,000 frames with two contours of 200 points each has 200 MB of text and 10 million values.
+  static const std::vector<LimitInfo> infos = {{"json.megabytes", 512, "MB of JSON text"},
+                                               {"json.values", 2e7, "values in a JSON text"},
+                                               {"mesh.megabytes", 4096, "MB of a mesh"},
+                                               {"image.megabytes", 1024, "MB of an image file"},
+                                               {"image.megapixels", 200, "million pixels of an image"}};
+  return infos;
+}
+
+double limitOf(Limit limit) {
+  const auto i = static_cast<std::size_t>(limit);
+  const double set = given[i];
+  return set > 0 ? set : limitInfos()[i].standard;
+}
+
+void setLimit(const std::string& nameAndValue) {
+  const std::size_t equals = nameAndValue.find('=');
+  const std::string name = nameAndValue.substr(0, equals);
+  const std::string text = equals == std::string::npos ? "" : nameAndValue.substr(equals + 1);
+  std::string known;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    known += (known.empty() ? "" : ", ") + limitInfos()[i].name;
+    if (limitInfos()[i].name != name) continue;
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value) || !(value > 0))
+      throw InputError("", "--limit " + nameAndValue, "expected a number above 0 after '='");
+    given[i] = value;
+    return;
+  }
+  throw InputError("", "--limit " + nameAndValue, "there is no limit '" + name + "'; there are: " + known);
+}
+
+void requireWithin(Limit limit, double amount, const std::string& file, const std::string& place) {
+  const double most = limitOf(limit);
+  if (!(amount > most)) return;
+  const LimitInfo& info = limitInfos()[static_cast<std::size_t>(limit)];
+  throw InputError(file, place, "holds " + shown(amount) + " " + info.counts + ", more than " + shown(most) + " (--limit " + info.name +
+                                    "=" + shown(std::ceil(amount)) + " accepts it)");
+}
+
+}  // namespace glint

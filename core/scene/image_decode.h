@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Internal to core/scene: pixels from the bytes of a file whose header was read.
+
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "core/base/outcome.h"
+#include "core/scene/image_header.h"
+
+namespace glint {
+
+/// 1 or 3 channels in the order red, green, blue, and the file's own depth (8 or 16 bits, float); alpha is dropped. Writes nothing to
+/// standard error, whatever the decoders find.
+/// @param header  of these bytes, without a problem
+/// @return FrameUnreadable: damaged data, where a decoder would go on with grey or wrong pixels; CMYK.
+Outcome<cv::Mat> decodeImage(const std::string& bytes, const ImageHeader& header);
+
+}  // namespace glint

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/scene/session_input.h"
+
+#include <algorithm>
+
+#include "core/scene/permitted.h"
+#include "core/scene/scene_files.h"
+
+namespace glint {
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path pathOf(const JsonNode& node, const fs::path& folder) {
+  const std::string text = node.text();
+  if (text.empty()) node.fail("the path is empty");
+  if (text.find('\0') != std::string::npos) node.fail("the path contains a zero byte");
+  return (folder / fs::path(text)).lexically_normal();
+}
+
+}  // namespace
+
+int readSessionVersion(const JsonNode& root) {
+  const auto node = root.find("glint_session");
+  if (!node && root.has("glint_scene")) root.fail("is a scene, not a session (glint reconstruct makes a session of it)");
+  if (!node) root.fail("is no session: glint_session is missing");
+  const int version = node->integer();
+  if (version > kSessionVersion)
+    node->fail("version " + std::to_string(version) + " is newer than this program understands (" + std::to_string(kSessionVersion) + ")");
+  if (version < 1) node->fail("version " + std::to_string(version) + " never existed");
+  return version;
+}
+
+SessionInput readSessionInput(const JsonNode& root, const fs::path& folder) {
+  const JsonNode input = root.at("input");
+  SessionInput result;
+  result.scene = pathOf(input.at("path"), folder);
+  if (const auto n = input.find("allow_outside")) n->boolean();  // what a session says about its own rights counts for nothing
+  if (const auto n = input.find("photographs"); n && !n->isNull()) result.folders.push_back({FrameFile::Photograph, pathOf(*n, folder)});
+  const auto all = input.find("folders");
+  for (std::size_t i = 0; all && i < all->size(); ++i) {
+    const JsonNode of = all->at(i).at("of");
+    const auto kind = std::find_if(kFrameFiles.begin(), kFrameFiles.end(), [&](FrameFile k) { return of.text() == nameOf(k); });
+    if (kind == kFrameFiles.end()) of.fail("'" + of.text() + "' is none of: photographs, depth, normals, masks");
+    result.folders.push_back({*kind, pathOf(all->at(i).at("folder"), folder)});
+  }
+  if (const auto meshes = input.find("meshes"); meshes && !meshes->isNull())
+    for (const std::string& named : meshes->keys()) result.meshes[named] = pathOf(meshes->at(named), folder);
+  return result;
+}
+
+std::vector<fs::path> foldersOfSession(const fs::path& session, const fs::path& scene, const std::vector<fs::path>& named) {
+  std::vector<fs::path> folders = named;
+  if (!session.empty()) folders.push_back(fs::absolute(session).lexically_normal().parent_path());
+  std::error_code ignored;  // what cannot be asked about is a file
+  folders.push_back(fs::is_directory(scene, ignored) ? scene : scene.parent_path());
+  return folders;
+}
+
+void requirePermitted(const fs::path& path, const std::vector<fs::path>& permitted, const std::string& file, const std::string& place,
+                      const std::string& option) {
+  if (liesIn(permitted, path)) return;
+  throw OutsidePath(file, place,
+                    "'" + path.string() + "' lies neither in the folder of the session nor in that of its scene (" + option +
+                        " names it, --allow-outside accepts it)");
+}
+
+void requirePermitted(const SessionInput& input, const std::string& file, const std::vector<fs::path>& permitted) {
+  for (std::size_t i = 0; i < input.folders.size(); ++i) {
+    const FilesFolder& f = input.folders[i];
+    requirePermitted(f.folder, permitted, file, "input.folders[" + std::to_string(i) + "].folder",
+                     f.kind == FrameFile::Photograph ? "--photographs DIR" : std::string("--files ") + nameOf(f.kind) + "=DIR");
+  }
+  for (const auto& [named, mesh] : input.meshes) requirePermitted(mesh, permitted, file, "input.meshes." + named, "--mesh " + named + "=FILE");
+}
+
+}  // namespace glint
