@@ -107,6 +107,13 @@ Replay SceneArguments::replay(Session session, const ProgressFn& progress) const
   return glint::replay(session, relinked(), progress);
 }
 
+Session SceneArguments::readRequestOf(const std::string& file, bool withItsTruth) const {
+  Session session = readSession(file);
+  session.allowOutsidePaths = allowOutside;
+  if (withItsTruth) requirePermittedTruth(session, relinked());
+  return session;
+}
+
 OpenedSession SceneArguments::openSession(const std::string& file) const {
   Session session = readSession(file);
   session.allowOutsidePaths = allowOutside;
