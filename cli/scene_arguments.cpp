@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 
+#include "core/pipeline/session_rights.h"
 #include "core/scene/scene_files.h"
 
 namespace glint::cli {

@@ -11,6 +11,7 @@
 #include "core/base/json_dom.h"
 #include "core/base/json_text.h"
 #include "core/base/sha256.h"
+#include "core/pipeline/session_rights.h"
 #include "core/pipeline/what_if_json.h"
 #include "core/scene/permitted.h"
 #include "core/scene/scene_files.h"

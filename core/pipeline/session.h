@@ -104,8 +104,6 @@ std::string relinkMeshes(Session& session, const Scene& scene);
 /// The session of a finished inspection, with hashes of its inputs, held-out frames, key results and digest; the view and notes
 /// are left empty. Reads every input file once. Stopped.
 Session sessionOf(const Inspection& inspection, const ProgressFn& progress = {});
-/// OutsidePath when the truth folder that the session's request names lies in no folder that the session may name.
-void requirePermittedTruth(const Session& session, const Relinked& instead);
 /// Of the scene, what it names, and the truth folder of the request.
 std::vector<SessionFile> hashInputs(const Scene& scene, const InspectionRequest& request, const ProgressFn& progress = {});
 
