@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/pipeline/session.h"
+#include "core/scene/permitted.h"
 #include "core/scene/scene.h"
 #include "tests/core/scene/scene_fixture.h"
 
@@ -122,6 +123,19 @@ TEST(RelinkedMeshes, WhereAFileWasGivenNoOtherIsTaken) {
   EXPECT_THAT(readScene(file, options).warnings, ElementsAre(HasSubstr("'m/c.ply'")));
 }
 
+/// A session whose reader has said yes to what lies outside of its folders.
+Session permitted(const fs::path& file) {
+  Session session = readSession(file);
+  session.allowOutsidePaths = true;
+  return session;
+}
+
+ReadOptions allowingOutside() {
+  ReadOptions options;
+  options.allowOutsidePaths = true;
+  return options;
+}
+
 TEST(RelinkedMeshes, AreKeptByASessionRelativeToItself) {
   const TemporaryFolder folder, moved;
   folder.write("data/m/b.ply", "x");
@@ -136,13 +150,14 @@ TEST(RelinkedMeshes, AreKeptByASessionRelativeToItself) {
   fs::copy(folder.path(), moved.path(), fs::copy_options::recursive);
   fs::remove_all(folder / "else");
   const fs::path now = moved / "else/a2.ply";
-  const OpenedSession opened = openSession(moved / "sessions/x.glint");
+  EXPECT_THROW(openSession(moved / "sessions/x.glint"), OutsidePath) << "outside of the folders of the session and its scene";
+  const OpenedSession opened = openSession(permitted(moved / "sessions/x.glint"));
   EXPECT_EQ(*opened.scene->surfaces.at("a").mesh, now);
   EXPECT_THAT(opened.session.meshes, ElementsAre(Pair("m/a.ply", now)));
   EXPECT_EQ(opened.warning, "");
-  EXPECT_EQ(*readScene(moved / "sessions/x.glint").surfaces.at("a2").mesh, now) << "a session is an input like a scene";
+  EXPECT_EQ(*readScene(moved / "sessions/x.glint", allowingOutside()).surfaces.at("a2").mesh, now) << "a session is an input like a scene";
   // Gone again, it is asked for again, and what is given now counts.
-  EXPECT_EQ(missingIn([&] { openSession(folder / "sessions/x.glint"); }).mesh(), folder / "else/a2.ply");
+  EXPECT_EQ(missingIn([&] { openSession(permitted(folder / "sessions/x.glint")); }).mesh(), folder / "else/a2.ply");
   Relinked instead;
   instead.meshes["m/a.ply"] = now;
   EXPECT_EQ(*openSession(folder / "sessions/x.glint", instead).scene->surfaces.at("a").mesh, now);
@@ -204,8 +219,9 @@ TEST(RelinkedFrameFiles, OfEveryKindAreKeptRelativeToTheSession) {
   EXPECT_THAT(contentOf(folder / "sessions/x.glint"), HasSubstr("\"folder\": \"../a\""));
   fs::copy(folder.path(), moved.path(), fs::copy_options::recursive);
   fs::remove_all(folder.path());
-  const OpenedSession opened = openSession(moved / "sessions/x.glint");
-  for (const Scene& scene : {*opened.scene, readScene(moved / "sessions/x.glint")}) {
+  EXPECT_THROW(openSession(moved / "sessions/x.glint"), OutsidePath);
+  const OpenedSession opened = openSession(permitted(moved / "sessions/x.glint"));
+  for (const Scene& scene : {*opened.scene, readScene(moved / "sessions/x.glint", allowingOutside())}) {
     const Frame& f = scene.frames[0];
     EXPECT_EQ(f.image, moved / "c/0.png");
     EXPECT_EQ(f.depth, moved / "a/depths/0.png");
