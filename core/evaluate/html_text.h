@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <string>
 
+#include "core/base/safe_text.h"
 #include "core/evaluate/palette.h"
 
 namespace glint::html {
@@ -18,9 +19,10 @@ inline std::string format(const char* pattern, double v) {
   return buffer;
 }
 
+/// Text from anywhere as it is, never as markup; control characters are shown escaped.
 inline std::string escaped(const std::string& text) {
   std::string out;
-  for (const char c : text) {
+  for (const char c : withoutControls(text)) {
     if (c == '&')
       out += "&amp;";
     else if (c == '<')
