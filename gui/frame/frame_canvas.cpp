@@ -15,6 +15,7 @@
 
 #include "gui/base/focus_frame.h"
 #include "gui/base/stale_badge.h"
+#include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/tips.h"
 #include "gui/frame/pixel_probe.h"

@@ -2,9 +2,11 @@
 #include "gui/panels/parameter_panel.h"
 
 #include <QCheckBox>
+#include <QComboBox>
 #include <QGridLayout>
 #include <QLabel>
 #include <QSignalBlocker>
+#include <QSlider>
 #include <QToolButton>
 #include <QVariant>
 #include <cmath>
@@ -13,7 +15,6 @@
 
 #include "gui/base/elided_label.h"
 #include "gui/base/number_box.h"
-
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/tips.h"
