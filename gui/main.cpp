@@ -37,6 +37,10 @@ int run(int argc, char** argv) {
   QApplication::setAttribute(Qt::AA_EnableHighDpiScaling);
   QApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
 #endif
+  // What Qt notes for programmers (a folder that the system did not set, a style without a font) is no line for the user; a fatal one is.
+  qInstallMessageHandler([](QtMsgType type, const QMessageLogContext&, const QString& text) {
+    if (type == QtFatalMsg) std::fprintf(stderr, "glint-inspector: %s\n", text.toUtf8().constData());
+  });
   int qtArgc = 1;  // Qt's own options come from the environment; the rest of the command line is ours
   QApplication app(qtArgc, argv);
   // Qt has taken over the user's locale for the whole process. Numbers have a point here, also those that libraries read and write.
