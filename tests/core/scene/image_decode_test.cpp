@@ -127,7 +127,9 @@ TEST(ImageDecode, DamagedFilesEndInAReasonAndInSilence) {
       if (header.problem.empty() && double(header.width) * double(header.height) > kMost) continue;
       const Outcome<cv::Mat> m = decoded(bytes);
       ++(m ? read : refused);
-      if (!m) EXPECT_FALSE(m.failure().detail.empty()) << name;
+      if (!m) {
+        EXPECT_FALSE(m.failure().detail.empty()) << name;
+      }
     }
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_GT(refused, 100);
