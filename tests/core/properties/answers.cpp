@@ -13,49 +13,48 @@ class Comparison {
  public:
   Comparison(const Back& back, const std::string& scene, Differences& differences) : back_(back), scene_(scene), d_(differences) {}
 
-  void light(const std::string& name, const Light& a, const Light& b) {
+  void light(const std::string& model, const Light& a, const Light& b) {
     if (a.atInfinity() || b.atInfinity()) {
-      EXPECT_EQ(a.atInfinity(), b.atInfinity()) << scene_ << ": " << name;
+      EXPECT_EQ(a.atInfinity(), b.atInfinity()) << scene_ << ": " << model;
       if (a.atInfinity() && b.atInfinity())
-        note(name, (a.homogeneous().head<3>() - back_.linear * b.homogeneous().head<3>()).norm(), "");
+        note(model, Quantity::Light, (a.homogeneous().head<3>() - back_.linear * b.homogeneous().head<3>()).norm());
       return;
     }
-    note(name, (a.position() - back_.point(b.position())).norm() / a.position().norm(), "");
+    note(model, Quantity::Light, (a.position() - back_.point(b.position())).norm() / a.position().norm());
   }
-  void ellipsoid(const std::string& name, const Ellipsoid& a, const Ellipsoid& b) {
-    note(name + " centre", (a.centre() - back_.point(b.centre())).norm() / a.centre().norm(), "");
+  void ellipsoid(const std::string& model, const Ellipsoid& a, const Ellipsoid& b) {
+    note(model, Quantity::Centre, (a.centre() - back_.point(b.centre())).norm() / a.centre().norm());
     const Eigen::Matrix3d there = back_.scale * back_.scale * back_.linear * b.shape() * back_.linear.transpose();
-    note(name + " shape", (a.shape() - there).norm() / a.shape().norm(), "");
+    note(model, Quantity::Shape, (a.shape() - there).norm() / a.shape().norm());
   }
-  void number(const std::string& name, double a, double b, const std::string& where = "") { note(name, std::abs(b / a - 1), where); }
-  void pixels(const std::string& name, double a, double b, const std::string& where) {
-    if (std::isnan(a) && std::isnan(b)) return;
-    note(name, std::abs(a - b), where);
+  void relative(const std::string& model, Quantity quantity, double a, double b) { note(model, quantity, std::abs(b / a - 1)); }
+  void absolute(const std::string& model, Quantity quantity, double a, double b, const std::string& frame) {
+    if (!(std::isnan(a) && std::isnan(b))) note(model, quantity, std::abs(a - b), frame);
   }
-  /// Vertices one by one where both have as many, whatever the start and the sense; else distances of vertices from the other contour.
-  void contour(const std::string& name, const Polyline& a, const Polyline& there, const std::string& where) {
+  /// As curves: vertices of each from the other one, whatever the start and the sense.
+  void contour(const std::string& model, const Polyline& a, const Polyline& there, const std::string& frame) {
     Polyline b = there;
     for (Pixel& p : b.points) p = back_.pixel(p);
-    ++d_.contours;
+    ++d_.contours[model];
     double worst = 0;
     for (const Pixel& p : b.points) worst = std::max(worst, distance(a, p));
     for (const Pixel& p : a.points) worst = std::max(worst, distance(b, p));
-    note(name, worst, where);
+    note(model, Quantity::ContourPx, worst, frame);
   }
 
  private:
-  void note(const std::string& name, double difference, const std::string& where) {
-    double& worst = d_.worst[name];
-    if (difference <= worst) return;
-    worst = difference;  // NaN too: it stays, and no tolerance admits it
-    d_.where[name] = scene_ + (where.empty() ? "" : ", frame " + where);
+  void note(const std::string& model, Quantity quantity, double difference, const std::string& frame = "") {
+    Differences::Worst& worst = d_.worst[{model, quantity}];
+    // NaN is the worst: it stays, and no tolerance admits it.
+    if (std::isnan(worst.difference) || difference <= worst.difference) return;
+    worst = {difference, scene_ + (frame.empty() ? "" : ", frame " + frame)};
   }
   const Back& back_;
   const std::string& scene_;
   Differences& d_;
 };
 
-std::string reasonOf(const std::optional<Failure>& failure) { return failure ? failure->message() : "answered"; }
+std::string textOf(const std::optional<Failure>& failure) { return failure ? failure->message() : "answered"; }
 
 const FrameComparison* comparisonOf(const Inspection& r, const ModelResult& model, const std::string& frame, const std::string& light) {
   for (const FrameComparison& c : model.frames)
@@ -63,58 +62,76 @@ const FrameComparison* comparisonOf(const Inspection& r, const ModelResult& mode
   return nullptr;
 }
 
+void compareFits(const ModelFit& a, const ModelFit& b, const std::string& model, const std::string& place, Comparison& c) {
+  EXPECT_EQ(a.solver, b.solver) << place;
+  EXPECT_EQ(a.lobe, b.lobe) << place;
+  EXPECT_EQ(a.ellipsoid.has_value(), b.ellipsoid.has_value()) << place;
+  EXPECT_EQ(a.lightEstimate.has_value(), b.lightEstimate.has_value()) << place;
+  EXPECT_EQ(a.lightRadius.has_value(), b.lightRadius.has_value()) << place;
+  EXPECT_EQ(a.lightSegment.has_value(), b.lightSegment.has_value()) << place;
+  EXPECT_EQ(a.extent.has_value(), b.extent.has_value()) << place;
+  if (a.ellipsoid && b.ellipsoid) c.ellipsoid(model, *a.ellipsoid, *b.ellipsoid);
+  if (a.lightEstimate && b.lightEstimate) c.light(model, *a.lightEstimate, *b.lightEstimate);
+  if (a.limitAngle && b.limitAngle) c.relative(model, Quantity::LimitAngle, *a.limitAngle, *b.limitAngle);
+  if (a.roughness && b.roughness) c.relative(model, Quantity::Roughness, *a.roughness, *b.roughness);
+}
+
+void compareFrames(const FrameComparison& a, const FrameComparison& b, const Back& back, const std::string& model, const std::string& frame,
+                   const std::string& place, Comparison& c) {
+  const auto &h = a.prediction.highlights, &k = b.prediction.highlights;
+  EXPECT_EQ(h.size(), k.size()) << place << ": " << textOf(a.prediction.failure) << " | " << textOf(b.prediction.failure);
+  for (std::size_t i = 0; i < std::min(h.size(), k.size()); ++i) c.contour(model, h[i].contour, k[i].contour, frame);
+  EXPECT_EQ(a.rows.size(), b.rows.size()) << place;
+  for (std::size_t i = 0; i < std::min(a.rows.size(), b.rows.size()); ++i) {
+    EXPECT_EQ(a.rows[i].metrics.has_value(), b.rows[i].metrics.has_value()) << place;
+    if (!a.rows[i].metrics || !b.rows[i].metrics) continue;
+    const ContourMetrics &m = *a.rows[i].metrics, &n = *b.rows[i].metrics;
+    const double factor = std::abs(back.pixelFactor.y());
+    c.absolute(model, Quantity::ErrorPx, m.contourErrorPx, factor * n.contourErrorPx, frame);
+    c.absolute(model, Quantity::PeakPx, m.peakOffsetPx, factor * n.peakOffsetPx, frame);
+    c.absolute(model, Quantity::EllipsePct, m.ellipseErrorPct, n.ellipseErrorPct, frame);
+    c.absolute(model, Quantity::Iou, m.iou, n.iou, frame);
+  }
+}
+
 }  // namespace
 
-void compare(const Inspection& a, const Inspection& b, const Back& back, const std::string& scene, Differences& d) {
+const char* nameOf(Quantity quantity) {
+  constexpr const char* kNames[kQuantities] = {"light",           "limit angle",       "roughness",        "ellipsoid's centre", "ellipsoid's shape",
+                                               "contour, px",     "peak's error, px",  "contour's error, px", "ellipse's error, %", "IoU"};
+  return kNames[static_cast<int>(quantity)];
+}
+
+void compare(const Inspection& a, const Inspection& b, const Back& back, const std::string& scene, Differences& d,
+             const std::vector<std::string>& models) {
   Comparison c(back, scene, d);
   ASSERT_EQ(a.lights.size(), b.lights.size()) << scene;
   for (const auto& [key, light] : a.lights) {
     ASSERT_TRUE(b.lights.count(key)) << scene << ": light " << key;
-    c.light("light", light.light, b.lights.at(key).light);
-    c.number("limit angle", light.limitAngle, b.lights.at(key).limitAngle);
+    if (!models.empty()) continue;
+    c.light("all", light.light, b.lights.at(key).light);
+    c.relative("all", Quantity::LimitAngle, light.limitAngle, b.lights.at(key).limitAngle);
   }
   for (const auto& [name, model] : a.models) {
+    if (!models.empty() && std::find(models.begin(), models.end(), name) == models.end()) continue;
+    const std::string place = scene + ": " + name;
     const ModelResult& other = b.models.at(name);
     for (const ModelResult::Fit& f : model.fits) {
       const auto twin = std::find_if(other.fits.begin(), other.fits.end(), [&](const ModelResult::Fit& o) { return o.light == f.light; });
-      ASSERT_TRUE(twin != other.fits.end()) << scene << ": " << name;
-      EXPECT_EQ(f.fit.has_value(), twin->fit.has_value()) << scene << ": " << name << ": " << reasonOf(f.failure) << " | " << reasonOf(twin->failure);
+      ASSERT_TRUE(twin != other.fits.end()) << place;
+      EXPECT_EQ(f.fit.has_value(), twin->fit.has_value()) << place << ": " << textOf(f.failure) << " | " << textOf(twin->failure);
       if (f.failure && twin->failure) {
-        EXPECT_EQ(f.failure->reason, twin->failure->reason) << scene << ": " << name;
+        EXPECT_EQ(f.failure->reason, twin->failure->reason) << place;
       }
       if (!f.fit || !twin->fit) continue;
-      ++d.fits;
-      ++d.answered[name];
-      EXPECT_EQ(f.fit->solver, twin->fit->solver) << scene << ": " << name;
-      EXPECT_EQ(f.fit->ellipsoid.has_value(), twin->fit->ellipsoid.has_value()) << scene << ": " << name;
-      if (f.fit->ellipsoid && twin->fit->ellipsoid) c.ellipsoid(name + ": ellipsoid's", *f.fit->ellipsoid, *twin->fit->ellipsoid);
-      if (f.fit->lightEstimate && twin->fit->lightEstimate) c.light(name + ": light", *f.fit->lightEstimate, *twin->fit->lightEstimate);
-      if (f.fit->limitAngle && twin->fit->limitAngle) c.number(name + ": limit angle", *f.fit->limitAngle, *twin->fit->limitAngle);
-      EXPECT_EQ(f.fit->lobe, twin->fit->lobe) << scene << ": " << name;
-      if (f.fit->roughness && twin->fit->roughness) c.number(name + ": roughness", *f.fit->roughness, *twin->fit->roughness);
-      EXPECT_EQ(f.fit->lightRadius.has_value(), twin->fit->lightRadius.has_value()) << scene << ": " << name;
-      EXPECT_EQ(f.fit->lightSegment.has_value(), twin->fit->lightSegment.has_value()) << scene << ": " << name;
-      EXPECT_EQ(f.fit->extent.has_value(), twin->fit->extent.has_value()) << scene << ": " << name;
+      ++d.fits[name];
+      compareFits(*f.fit, *twin->fit, name, place, c);
     }
     for (const FrameComparison& here : model.frames) {
       const std::string frame = a.scene->frames[static_cast<std::size_t>(here.frame)].id;
       const FrameComparison* there = comparisonOf(b, other, frame, here.light);
-      ASSERT_TRUE(there) << scene << ": " << name << ", frame " << frame;
-      EXPECT_EQ(here.prediction.highlights.size(), there->prediction.highlights.size())
-          << scene << ": " << name << ", frame " << frame << ": " << reasonOf(here.prediction.failure) << " | " << reasonOf(there->prediction.failure);
-      for (std::size_t i = 0; i < std::min(here.prediction.highlights.size(), there->prediction.highlights.size()); ++i)
-        c.contour(name + ": contour, px", here.prediction.highlights[i].contour, there->prediction.highlights[i].contour, frame);
-      EXPECT_EQ(here.rows.size(), there->rows.size()) << scene << ": " << name << ", frame " << frame;
-      for (std::size_t i = 0; i < std::min(here.rows.size(), there->rows.size()); ++i) {
-        EXPECT_EQ(here.rows[i].metrics.has_value(), there->rows[i].metrics.has_value()) << scene << ": " << name << ", frame " << frame;
-        if (!here.rows[i].metrics || !there->rows[i].metrics) continue;
-        const ContourMetrics &m = *here.rows[i].metrics, &n = *there->rows[i].metrics;
-        const double zoom = std::abs(back.pixelFactor.y());
-        c.pixels(name + ": error, px", m.contourErrorPx, zoom * n.contourErrorPx, frame);
-        c.pixels(name + ": peak offset, px", m.peakOffsetPx, zoom * n.peakOffsetPx, frame);
-        c.pixels(name + ": ellipse error, %", m.ellipseErrorPct, n.ellipseErrorPct, frame);
-        c.pixels(name + ": IoU", m.iou, n.iou, frame);
-      }
+      ASSERT_TRUE(there) << place << ", frame " << frame;
+      compareFrames(here, *there, back, name, frame, place + ", frame " + frame, c);
     }
   }
 }

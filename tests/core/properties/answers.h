@@ -3,6 +3,8 @@
 
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/pipeline/inspection.h"
 #include "tests/core/properties/random_scene.h"
@@ -19,17 +21,24 @@ struct Back {
   Pixel pixel(const Pixel& p) const { return pixelFactor.cwiseProduct(p) + pixelOffset; }
 };
 
-/// Largest differences, by "model: quantity". Lights and ellipsoids are relative to their distance and size, contours and errors in px of
-/// the first scene.
+enum class Quantity { Light, LimitAngle, Roughness, Centre, Shape, ContourPx, PeakPx, ErrorPx, EllipsePct, Iou };
+constexpr int kQuantities = 10;
+const char* nameOf(Quantity quantity);
+
+/// Largest differences, by model and quantity. Lights (by distance), limit angles, roughness and ellipsoids (centre by distance, shape by size)
+/// are relative, contours, peaks and errors in px of the first scene.
 struct Differences {
-  std::map<std::string, double> worst;
-  std::map<std::string, std::string> where;  ///< of each, which scene and frame
-  int fits = 0, contours = 0;                ///< how many were compared
-  std::map<std::string, int> answered;       ///< fits by model
+  struct Worst {
+    double difference = 0;
+    std::string where;  ///< scene and frame
+  };
+  std::map<std::pair<std::string, Quantity>, Worst> worst;
+  std::map<std::string, int> fits, contours;  ///< by model, how many were compared
 };
 
 /// Compares the answer for a scene with that for a changed one; what one of them answers and the other refuses is a test failure. Frames
-/// are found by their ids.
-void compare(const Inspection& a, const Inspection& b, const Back& back, const std::string& scene, Differences& differences);
+/// are found by their ids. @param models  only these; empty = all
+void compare(const Inspection& a, const Inspection& b, const Back& back, const std::string& scene, Differences& differences,
+             const std::vector<std::string>& models = {});
 
 }  // namespace glint::testing_support

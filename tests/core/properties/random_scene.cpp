@@ -385,13 +385,15 @@ RandomScene reordered(const RandomScene& s, const std::vector<int>& order) {
   return {s.what, scene, s.training, s.size};
 }
 
-RandomScene repeated(const RandomScene& s, const std::vector<int>& frames) {
+RandomScene repeated(const RandomScene& s, const std::vector<int>& frames, bool turned) {
   auto scene = std::make_shared<Scene>(*s.scene);
   RandomScene result{s.what, scene, s.training, s.size};
   for (const int i : frames) {
     Frame again = s.scene->frames[static_cast<std::size_t>(i)];
     if (std::find(s.training.begin(), s.training.end(), again.id) != s.training.end()) result.training.push_back(again.id + " again");
     again.id += " again";
+    if (turned)
+      for (Highlight& h : again.highlights) std::rotate(h.contour.points.begin(), h.contour.points.begin() + kContourPoints / 3, h.contour.points.end());
     scene->frames.push_back(std::move(again));
   }
   return result;

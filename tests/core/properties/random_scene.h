@@ -52,7 +52,8 @@ RandomScene mirrored(const RandomScene& s, const std::filesystem::path& folder);
 RandomScene zoomed(const RandomScene& s, int zoom);
 /// Frames in the order of `order`.
 RandomScene reordered(const RandomScene& s, const std::vector<int>& order);
-/// With one more frame "ID again" after each of `frames`; it trains where the frame does.
-RandomScene repeated(const RandomScene& s, const std::vector<int>& frames);
+/// With one more frame "ID again" for each of `frames`, which trains where the frame does. @param turned  its contours start at another vertex:
+/// the same evidence, but not the same numbers.
+RandomScene repeated(const RandomScene& s, const std::vector<int>& frames, bool turned = false);
 
 }  // namespace glint::testing_support
