@@ -119,8 +119,14 @@ Camera readCameraJson(const JsonNode& node) {
     if (!(v > 0)) n.fail("must be positive (K would be singular or mirrored)");
     return v;
   };
+  // One by one: a failure inside a comma initialiser would leave it unfinished, and its destructor asserts.
+  camera.pixelFromRay.setIdentity();
+  camera.pixelFromRay(0, 0) = focal("fx");
   const auto skew = node.find("skew");
-  camera.pixelFromRay << focal("fx"), skew ? skew->number() : 0.0, node.at("cx").number(), 0, focal("fy"), node.at("cy").number(), 0, 0, 1;
+  camera.pixelFromRay(0, 1) = skew ? skew->number() : 0.0;
+  camera.pixelFromRay(0, 2) = node.at("cx").number();
+  camera.pixelFromRay(1, 1) = focal("fy");
+  camera.pixelFromRay(1, 2) = node.at("cy").number();
   if (const auto model = node.find("model"); model && model->text() != "OPENCV")
     model->fail("'" + model->text() + "' is not understood: only OPENCV (distortion k1 k2 p1 p2 k3)");
   refuseGeometry(node, kCameraGeometry);
