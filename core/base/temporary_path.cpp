@@ -100,18 +100,29 @@ TemporaryPath::TemporaryPath(const fs::path& folder, const fs::path& target, Kin
   constexpr int kTries = 100;  // another machine's process of this number may have taken a name
   for (int i = 0; i < kTries && descriptor_ < 0; ++i) {
     path_ = folder / nextName(target);
+    Registry& all = registry();
     {
-      Registry& all = registry();
+      // Before it is there: the lock is not held while the system makes it, which may take any time.
       const std::lock_guard<std::timed_mutex> lock(all.mutex);
       if (all.ending) throw Stopped{};
-      if (kind == Kind::File)
-        descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      else if (::mkdir(path_.c_str(), 0777) == 0)
-        descriptor_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-      if (descriptor_ >= 0) all.unfinished.insert(path_);
+      all.unfinished.insert(path_);
+    }
+    if (kind == Kind::File)
+      descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    else if (::mkdir(path_.c_str(), 0777) == 0)
+      descriptor_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor_ >= 0 && all.ending) {
+      std::error_code ignored;  // the next program removes it
+      fs::remove_all(path_, ignored);
+      ::close(descriptor_);
+      throw Stopped{};
     }
     if (descriptor_ < 0) {
       const int error = errno;
+      {
+        const std::lock_guard<std::timed_mutex> lock(all.mutex);
+        all.unfinished.erase(path_);
+      }
       if (error == EEXIST) continue;
       if (kind == Kind::Folder) ::rmdir(path_.c_str());
       throw InputError(target.string(), "", std::string("cannot be written: ") + std::strerror(error));
@@ -143,13 +154,14 @@ TemporaryPath::~TemporaryPath() {
 }
 
 void removeUnfinishedWrites() {
-  // Folders may be large, and the program promises to end soon: what is left after this time is removed by the next one.
-  constexpr std::chrono::milliseconds kLongest(40);
-  const auto deadline = std::chrono::steady_clock::now() + kLongest;
+  // Folders may be large, and the program promises to end soon: beyond so many files the next program removes the rest.
+  constexpr int kMostFiles = 1000;
+  constexpr std::chrono::milliseconds kLongestWait(20);
+  int files = 0;
   Registry& all = registry();
   all.ending = true;
   // A thread that holds it may be stuck in the system: on a network drive that does not answer.
-  std::unique_lock<std::timed_mutex> lock(all.mutex, kLongest / 2);
+  std::unique_lock<std::timed_mutex> lock(all.mutex, kLongestWait);
   if (!lock) return;
   const std::set<fs::path> paths = all.unfinished;
   lock.unlock();
@@ -158,7 +170,7 @@ void removeUnfinishedWrites() {
     if (fs::is_directory(path, ignored)) {
       std::error_code error;
       for (fs::recursive_directory_iterator it(path, error), end; !error && it != end; it.increment(error)) {
-        if (std::chrono::steady_clock::now() > deadline) return;
+        if (++files > kMostFiles) return;
         if (!it->is_directory(ignored)) ::unlink(it->path().c_str());
       }
     }

@@ -203,14 +203,15 @@ Found Stage::look(bool withOld, std::vector<std::string>& problems) const {
   return Found::Mixed;
 }
 
-std::vector<std::string> Stage::leftovers() const {
+std::vector<std::string> Stage::leftovers(bool work) const {
   std::set<std::string> known;
   for (const Files* files : {&good_, &old_})
     for (const auto& [name, content] : *files)
       for (fs::path p = name; !p.empty(); p = p.parent_path()) known.insert(p.string());
   std::vector<std::string> found;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(run_))
-    if (const std::string name = fs::relative(entry.path(), run_).string(); !known.count(name)) found.push_back(name);
+    if (const std::string name = fs::relative(entry.path(), run_).string(); !known.count(name))
+      if (!work || name != "t.json.work") found.push_back(name);
   return found;
 }
 

@@ -42,8 +42,9 @@ class Stage {
   ChildRun run(const ChildOptions& options) const;
   /// What is wrong goes to `problems`: a file that is cut, a leftover, another file that changed.
   Found look(bool withOld, std::vector<std::string>& problems) const;
-  /// Files and folders that are neither outputs nor on the way to one.
-  std::vector<std::string> leftovers() const;
+  /// Files and folders that are neither outputs nor on the way to one. @param work  the measured work of a trade-off may stay: it goes on
+  /// from there.
+  std::vector<std::string> leftovers(bool work = false) const;
   /// The same command once more, undisturbed: it succeeds, everything is complete, nothing is left over.
   void again(std::vector<std::string>& problems);
   bool inputsUnchanged() const { return filesIn(in_) == inputs_; }
