@@ -221,7 +221,7 @@ Session parseSession(const std::string& json, const fs::path& file) {
   return session;
 }
 
-void writeSession(const Session& session, const fs::path& file) {
+std::string sessionText(const Session& session, const fs::path& file) {
   const fs::path folder = folderOf(file);
   const auto relative = [&](const fs::path& path) {
     const fs::path r = fs::absolute(path).lexically_normal().lexically_relative(folder);
@@ -269,8 +269,10 @@ void writeSession(const Session& session, const fs::path& file) {
     for (const auto& item : unknown.items())
       if (!known.count(item.key())) json_dom::append(root, item.key(), item.value());
   }
-  atomicWrite(file, prettyJson(root.dump(-1, ' ', false, Json::error_handler_t::replace)));
+  return prettyJson(root.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
+
+void writeSession(const Session& session, const fs::path& file) { atomicWrite(file, sessionText(session, file)); }
 
 MissingScene::MissingScene(const fs::path& session, fs::path scene)
     : InputError(session.string(), "input.path", "the scene " + scene.string() + " is not there"), scene_(std::move(scene)) {}

@@ -42,7 +42,7 @@ std::vector<fs::path> sortedFiles(const fs::path& folder, const std::string& ext
   std::vector<fs::path> files;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
-    if (it->path().extension() == extension) files.push_back(it->path());
+    if (it->path().extension() == extension && it->path().filename().string()[0] != '.') files.push_back(it->path());
   std::sort(files.begin(), files.end());
   return files;
 }
