@@ -11,6 +11,7 @@
 #include "cli/interrupt.h"
 #include "cli/terminal.h"
 #include "core/base/limits.h"
+#include "core/base/number_text.h"
 #include "core/base/safe_text.h"
 
 namespace glint::cli {
@@ -53,7 +54,7 @@ std::string limitNames() {
   std::string names;
   for (const LimitInfo& limit : limitInfos()) {
     char value[32];
-    std::snprintf(value, sizeof value, "=%.15g", limit.standard);
+    printText(value, sizeof value, "=%.15g", limit.standard);
     names += (names.empty() ? "" : ", ") + limit.name + value;
   }
   return names;
@@ -107,7 +108,13 @@ void Options::required(std::string& target, const std::string& flags, const std:
   parser_.app.add_option(flags, target, help)->required()->type_name(type);
 }
 void Options::option(double& target, const std::string& flags, const std::string& type, const std::string& help) {
-  named(parser_.app.add_option(flags, target, help), type);
+  // CLI11's own conversion depends on the locale.
+  const CLI::callback_t read = [&target](const CLI::results_t& given) {
+    const std::optional<double> number = numberFrom(given.back());
+    target = number.value_or(target);
+    return number.has_value();
+  };
+  named(parser_.app.add_option(flags, read, help), type);
 }
 void Options::option(int& target, const std::string& flags, const std::string& type, const std::string& help) {
   named(parser_.app.add_option(flags, target, help), type);

@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
 #include "cli/outputs.h"
+#include "core/base/number_text.h"
 #include "core/base/parallel.h"
 #include "core/highlight/background.h"
 #include "core/highlight/report.h"
@@ -42,16 +43,16 @@ std::string table(const std::vector<DetectedFrame>& frames) {
   char line[256];
   for (const DetectedFrame& frame : frames) {
     if (frame.failure) {
-      std::snprintf(line, sizeof line, "%-12.40s  -  %.180s\n", frame.id.c_str(), frame.failure->message().c_str());
+      printText(line, sizeof line, "%-12.40s  -  %.180s\n", frame.id.c_str(), frame.failure->message().c_str());
       text += line;
     }
     for (std::size_t i = 0; i < frame.highlights.size(); ++i) {
       const Highlight& h = frame.highlights[i];
       char axes[48] = "-";
-      if (h.ellipse) std::snprintf(axes, sizeof axes, "%.2f x %.2f", h.ellipse->semiAxes.x(), h.ellipse->semiAxes.y());
-      std::snprintf(line, sizeof line, "%-12.40s  %-10.40s  %8.3f  %8.3f  %12.1f   %-15s  %s%s\n", frame.id.c_str(),
-                    h.light.c_str(), h.peak.x(), h.peak.y(), h.areaPx2, axes, h.clipped ? "clipped " : "",
-                    h.touchesBorder ? "border" : "");
+      if (h.ellipse) printText(axes, sizeof axes, "%.2f x %.2f", h.ellipse->semiAxes.x(), h.ellipse->semiAxes.y());
+      printText(line, sizeof line, "%-12.40s  %-10.40s  %8.3f  %8.3f  %12.1f   %-15s  %s%s\n", frame.id.c_str(),
+                h.light.c_str(), h.peak.x(), h.peak.y(), h.areaPx2, axes, h.clipped ? "clipped " : "",
+                h.touchesBorder ? "border" : "");
       text += line;
     }
   }
@@ -133,7 +134,7 @@ Command detectCommand() {
             const Outcome<Image> photograph = readPhotograph(frame);
             // Numbered by position: an id may hold characters that no file name may.
             char name[32];
-            std::snprintf(name, sizeof name, "%04d.png", i);
+            printText(name, sizeof name, "%04d.png", i);
             if (photograph)
               writePng(std::filesystem::path(a->out) / name,
                        drawDetection(*photograph, frame.camera, frames[static_cast<std::size_t>(i)].highlights));
@@ -151,10 +152,10 @@ Command detectCommand() {
       }
     if (open > 0) {
       char text[300];
-      std::snprintf(text, sizeof text,
-                    "the background is uncertain under %d highlight%s: their surroundings may be the tail of the highlight itself, and the "
-                    "contours up to %.2g %% of the diameter too small; evaluate and reconstruct know the surface and settle it",
-                    open, open == 1 ? "" : "s", worst);
+      printText(text, sizeof text,
+                "the background is uncertain under %d highlight%s: their surroundings may be the tail of the highlight itself, and the "
+                "contours up to %.2g %% of the diameter too small; evaluate and reconstruct know the surface and settle it",
+                open, open == 1 ? "" : "s", worst);
       context.warn(text);
     }
     if (a->json != "-") context.print(table(frames));

@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
 #include "cli/outputs.h"
+#include "core/base/number_text.h"
 #include "core/evaluate/report.h"
 #include "core/evaluate/summary.h"
 #include "core/evaluate/warnings.h"
@@ -63,12 +64,8 @@ Command evaluateCommand() {
     if (a->models == "auto") {
       std::optional<double> goodEnough;
       if (!a->goodEnough.empty()) {
-        std::size_t used = 0;
-        try {
-          goodEnough = std::stod(a->goodEnough, &used);
-        } catch (const std::exception&) {
-        }
-        if (!goodEnough || used != a->goodEnough.size() || !(*goodEnough > 0))
+        goodEnough = numberFrom(a->goodEnough);
+        if (!goodEnough || !(*goodEnough > 0))
           throw InputError("", "--good-enough-pct " + a->goodEnough, "expected a positive number of percent");
       }
       request.models.clear();  // evidence and views only: the choice decides what else is computed

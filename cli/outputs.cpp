@@ -2,10 +2,10 @@
 #include "cli/outputs.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <fstream>
 
 #include "core/base/document_kind.h"
+#include "core/base/number_text.h"
 #include "core/scene/scene_files.h"
 
 namespace glint::cli {
@@ -95,7 +95,7 @@ std::vector<std::string> picturesOf(const std::vector<int>& frames) {
   std::vector<std::string> names;
   for (const int frame : frames) {
     char name[32];
-    std::snprintf(name, sizeof name, "%04d.png", frame);
+    printText(name, sizeof name, "%04d.png", frame);
     names.emplace_back(name);
   }
   return names;

@@ -5,6 +5,7 @@
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
 #include "cli/outputs.h"
+#include "core/base/number_text.h"
 #include "core/base/parallel.h"
 #include "core/evaluate/labels.h"
 #include "core/evaluate/masks.h"
@@ -22,7 +23,7 @@ constexpr int kPictureWidth = 1280, kPictureHeight = 960;
 
 std::string predictionTable(const Inspection& inspection, const std::vector<int>& frames) {
   char line[256];
-  std::snprintf(line, sizeof line, "%-12s %6s %-16s %-10s %10s %9s  %s\n", "model", "frame", "id", "light", "highlights", "coverage", "reason");
+  printText(line, sizeof line, "%-12s %6s %-16s %-10s %10s %9s  %s\n", "model", "frame", "id", "light", "highlights", "coverage", "reason");
   std::string out = line;
   for (const std::string& name : inspection.request.models)
     for (const FrameComparison& c : inspection.models.at(name).frames) {
@@ -30,8 +31,8 @@ std::string predictionTable(const Inspection& inspection, const std::vector<int>
       double coverage = 0;
       for (const PredictedHighlight& h : c.prediction.highlights) coverage += h.coverage / double(c.prediction.highlights.size());
       const std::string reason = c.prediction.highlights.empty() && c.prediction.failure ? c.prediction.failure->message() : "";
-      std::snprintf(line, sizeof line, "%-12s %6d %-16s %-10s %10zu %9.3f  ", name.c_str(), c.frame,
-                    inspection.scene->frames[c.frame].id.c_str(), c.light.c_str(), c.prediction.highlights.size(), coverage);
+      printText(line, sizeof line, "%-12s %6d %-16s %-10s %10zu %9.3f  ", name.c_str(), c.frame,
+                inspection.scene->frames[c.frame].id.c_str(), c.light.c_str(), c.prediction.highlights.size(), coverage);
       out += line + reason + "\n";
     }
   return out;
@@ -93,7 +94,7 @@ Command predictCommand() {
           static_cast<int>(frames.size()),
           [&](int i) {
             char name[32];
-            std::snprintf(name, sizeof name, "%04d.png", frames[i]);  // by position: an id may hold what no file name may
+            printText(name, sizeof name, "%04d.png", frames[i]);  // by position: an id may hold what no file name may
             writePng(folder / name,
                      viz::framePicture(result, frames[i], photographOf(result, frames[i]), kPictureWidth, kPictureHeight));
           },

@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
 #include "cli/outputs.h"
+#include "core/base/number_text.h"
 #include "core/evaluate/warnings.h"
 #include "core/pipeline/session.h"
 
@@ -12,7 +13,7 @@ namespace {
 
 std::string vectorText(const Eigen::Vector3d& v) {
   char buffer[96];
-  std::snprintf(buffer, sizeof buffer, "%.6g %.6g %.6g", v.x(), v.y(), v.z());
+  printText(buffer, sizeof buffer, "%.6g %.6g %.6g", v.x(), v.y(), v.z());
   return buffer;
 }
 
@@ -31,27 +32,27 @@ std::string fitText(const ModelResult::Fit& entry, const std::string& model) {
   if (f.lightEstimate && f.lightEstimate->atInfinity())
     out += "  light             at infinity, towards " + vectorText(f.lightEstimate->homogeneous().head<3>()) + "\n";
   if (f.limitAngle) {
-    std::snprintf(buffer, sizeof buffer, "  limit angle       %.6g deg\n", *f.limitAngle * 180 / M_PI);
+    printText(buffer, sizeof buffer, "  limit angle       %.6g deg\n", *f.limitAngle * 180 / M_PI);
     out += buffer;
   }
   if (f.lightRadius) {
-    std::snprintf(buffer, sizeof buffer, "  light's radius    %.6g m\n", *f.lightRadius);
+    printText(buffer, sizeof buffer, "  light's radius    %.6g m\n", *f.lightRadius);
     out += buffer;
   }
   if (f.lightSegment)
     out += "  light's ends      " + vectorText(f.lightSegment->first) + " m, " + vectorText(f.lightSegment->second) + " m\n";
   if (f.roughness && f.lobe) {
-    std::snprintf(buffer, sizeof buffer, "  lobe              %s, m = %.6g\n", f.lobe->c_str(), *f.roughness);
+    printText(buffer, sizeof buffer, "  lobe              %s, m = %.6g\n", f.lobe->c_str(), *f.roughness);
     out += buffer;
   }
   if (!f.singularValues.empty()) {
-    std::snprintf(buffer, sizeof buffer, "  gap ratio         %.3g, condition %.3g\n", f.gapRatio, f.condition);
+    printText(buffer, sizeof buffer, "  gap ratio         %.3g, condition %.3g\n", f.gapRatio, f.condition);
     out += buffer;
   }
   if (!f.residualPx.empty()) {
     out += "  residuals         ";
     for (std::size_t i = 0; i < f.residualPx.size(); ++i) {
-      std::snprintf(buffer, sizeof buffer, "%s%.3g", i ? ", " : "", f.residualPx[i]);
+      printText(buffer, sizeof buffer, "%s%.3g", i ? ", " : "", f.residualPx[i]);
       out += buffer;
     }
     out += " px\n";

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/tradeoff/tradeoff.h"
 
-#include <cmath>
-
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
 #include "cli/outputs.h"
+#include "core/base/number_text.h"
 #include "core/pipeline/session.h"
 #include "core/tradeoff/run.h"
 
@@ -14,15 +13,8 @@ namespace {
 
 std::optional<double> positive(const std::string& text, const std::string& flag, const std::string& what) {
   if (text.empty()) return std::nullopt;
-  std::size_t used = 0;
-  double value = 0;
-  try {
-    value = std::stod(text, &used);
-  } catch (const std::exception&) {
-    used = 0;
-  }
-  if (used == 0 || used != text.size() || !(value > 0 && std::isfinite(value)))
-    throw InputError("", flag + " " + text, "expected a positive number of " + what);
+  const std::optional<double> value = numberFrom(text);
+  if (!value || !(*value > 0)) throw InputError("", flag + " " + text, "expected a positive number of " + what);
   return value;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <QApplication>
+#include <clocale>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -36,6 +37,8 @@ int run(int argc, char** argv) {
 #endif
   int qtArgc = 1;  // Qt's own options come from the environment; the rest of the command line is ours
   QApplication app(qtArgc, argv);
+  // Qt has taken over the user's locale for the whole process. Numbers have a point here, also those that libraries read and write.
+  std::setlocale(LC_NUMERIC, "C");
   QApplication::setOrganizationName(QStringLiteral("Glint"));
   QApplication::setApplicationName(QStringLiteral("glint-inspector"));
   QApplication::setApplicationVersion(QStringLiteral(GLINT_VERSION));

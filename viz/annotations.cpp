@@ -16,12 +16,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <numbers>
 #include <optional>
 #include <utility>
 
+#include "core/base/number_text.h"
 #include "viz/label_places.h"
 
 namespace glint::viz {
@@ -127,7 +127,7 @@ std::string lengthText(double metres) {
   for (const Unit& unit : units) {
     if (metres >= unit.size * (1 - 1e-9) || unit.size == 1e-6) {
       char text[48];
-      std::snprintf(text, sizeof text, "%.4g %s", metres / unit.size, unit.name);
+      printText(text, sizeof text, "%.4g %s", metres / unit.size, unit.name);
       return text;
     }
   }

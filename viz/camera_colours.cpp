@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "core/base/number_text.h"
 #include "viz/frame_overlay.h"
 
 namespace glint::viz {
@@ -48,7 +48,7 @@ ColourBar influenceBar(const std::string& model, double most) {
   constexpr int kSteps = 48;
   for (int i = 0; i < kSteps; ++i) bar.colours.push_back(influenceColour(2 * (i + 0.5) / kSteps - 1, 1));
   char text[32];
-  std::snprintf(text, sizeof text, "%.2g", most);
+  printText(text, sizeof text, "%.2g", most);
   bar.ticks = {{0, std::string("harms ") + text}, {0.5, "0"}, {1, std::string("helps ") + text}};
   return bar;
 }

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <opencv2/imgproc.hpp>
 
+#include "core/base/number_text.h"
 #include "core/base/outcome.h"
 #include "core/base/srgb.h"
 
@@ -17,7 +17,7 @@ constexpr float kLargestCode = 1.0f - 0.5f / 65535;
 
 std::string formatted(const char* format, double value) {
   char text[32];
-  std::snprintf(text, sizeof text, format, value);
+  printText(text, sizeof text, format, value);
   return text;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/number_text.h"
 #include "viz/frame_details.h"
 
 namespace glint::viz {
@@ -152,7 +153,7 @@ EpipolarPicture epipolarPicture(const Inspection& inspection, const PairRequest&
       line.points = overPhotograph(view.transferred[k], camera);
       line.dash = Dash::Dashed;
       char miss[32];
-      std::snprintf(miss, sizeof miss, "%.2f px", view.missPx[k]);
+      printText(miss, sizeof miss, "%.2f px", view.missPx[k]);
       line.label = "the other image's tangent, " + which + ": misses by " + miss;
       if (!line.points.empty()) picture.frames[i].lines.push_back(line);
       OverlayMark mark;

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
+
+#include "core/base/number_text.h"
 
 namespace glint::viz {
 
@@ -24,7 +25,7 @@ inline std::string errorText(double value) {
     decimals = 1;
   }
   char text[400];
-  std::snprintf(text, sizeof text, "%.*f", decimals, rounded);
+  printText(text, sizeof text, "%.*f", decimals, rounded);
   return text;
 }
 

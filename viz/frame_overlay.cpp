@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "core/base/number_text.h"
 #include "core/scene/scene_files.h"
 #include "viz/error_text.h"
 #include "viz/frame_details.h"
@@ -17,7 +17,7 @@ constexpr Colour kObservedEllipse{0.82, 0.82, 0.82};
 
 std::string formatted(const char* format, double value) {
   char text[64];
-  std::snprintf(text, sizeof text, format, value);
+  printText(text, sizeof text, format, value);
   return text;
 }
 

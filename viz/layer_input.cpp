@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numbers>
 
+#include "core/base/number_text.h"
 #include "core/base/unit_text.h"
 #include "core/pipeline/photograph.h"
 #include "core/pipeline/training.h"
@@ -397,13 +397,13 @@ std::string line(const std::string& name, double value, const std::string& unit)
   char text[64];
   constexpr double kLeastAngle = 1e-6;  // degrees: below is round-off
   if (unit == "deg" && std::abs(value) < kLeastAngle) value = 0;
-  std::snprintf(text, sizeof text, "%.7g", value);
+  printText(text, sizeof text, "%.7g", value);
   return name + " = " + text + unitAfterNumber(unit) + "\n";
 }
 
 std::string line(const std::string& name, const Eigen::Vector3d& v, const std::string& unit) {
   char text[128];
-  std::snprintf(text, sizeof text, "%.7g, %.7g, %.7g", v.x(), v.y(), v.z());
+  printText(text, sizeof text, "%.7g, %.7g, %.7g", v.x(), v.y(), v.z());
   return name + " = " + text + (unit.empty() ? "" : " " + unit) + "\n";
 }
 

@@ -12,6 +12,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "core/base/atomic_file.h"
+#include "core/base/number_text.h"
 #include "core/base/outcome.h"
 #include "viz/canvas.h"
 
@@ -108,7 +109,7 @@ std::vector<std::string> filesOfMovie(const std::string& file, int frames) {
   std::vector<std::string> files;
   for (int i = 0; i < frames; ++i) {
     char number[32];
-    std::snprintf(number, sizeof number, "_%04d.png", i);
+    printText(number, sizeof number, "_%04d.png", i);
     files.push_back((fs::path(file).parent_path() / (fs::path(file).stem().string() + number)).string());
   }
   return files;

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
+#include "core/base/number_text.h"
 #include "core/pipeline/photograph.h"
 #include "core/pipeline/what_if_knobs.h"
 #include "viz/annotations.h"
@@ -26,7 +26,7 @@ Theme themeOf(bool dark) {
 
 std::string formatted(const char* format, double value) {
   char text[64];
-  std::snprintf(text, sizeof text, format, value);
+  printText(text, sizeof text, format, value);
   return text;
 }
 

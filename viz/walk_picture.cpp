@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "core/base/angle.h"
+#include "core/base/number_text.h"
 
 namespace glint::viz {
 namespace {
@@ -16,7 +16,7 @@ constexpr double kGlyphWidth = 0.6;  // of a letter, in heights of the text, on 
 
 std::string text(const char* format, double value) {
   char line[64];
-  std::snprintf(line, sizeof line, format, value);
+  printText(line, sizeof line, format, value);
   return line;
 }
 

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numbers>
 
 #include "core/base/angle.h"
+#include "core/base/number_text.h"
 #include "viz/frame_details.h"
 #include "viz/layers.h"
 
@@ -157,8 +157,8 @@ void addWalk(const WalkStory& story, int step, FrameOverlay& overlay) {
 std::string walkText(const WalkStory& story, int step) {
   const WalkStory::Moment m = story.at(step);
   char text[96];
-  std::snprintf(text, sizeof text, "on %s: α %.2f° of %.2f°", m.onSurface ? "S" : "T", degrees(story.place(m).alpha),
-                degrees(story.trace.limitAngle));
+  printText(text, sizeof text, "on %s: α %.2f° of %.2f°", m.onSurface ? "S" : "T", degrees(story.place(m).alpha),
+            degrees(story.trace.limitAngle));
   return text;
 }
 

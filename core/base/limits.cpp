@@ -5,8 +5,8 @@
 #include <atomic>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 
+#include "core/base/number_text.h"
 #include "core/base/outcome.h"
 
 namespace glint {
@@ -20,7 +20,7 @@ std::array<std::atomic<double>, kCount> given{};
 /// Whole numbers as such, others with few digits, and never rounded down to the limit itself.
 std::string shown(double v) {
   char text[32];
-  std::snprintf(text, sizeof text, v == std::floor(v) ? "%.0f" : "%.4g", v);
+  printText(text, sizeof text, v == std::floor(v) ? "%.0f" : "%.4g", v);
   return text;
 }
 

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdio>
 #include <utility>
 
+#include "core/base/number_text.h"
 #include "core/base/sha256.h"
 
 namespace glint {
@@ -44,7 +44,7 @@ bool isControl(std::uint32_t c) {
 
 std::string formatted(const char* pattern, unsigned value) {
   char text[16];
-  std::snprintf(text, sizeof text, pattern, value);
+  printText(text, sizeof text, pattern, value);
   return text;
 }
 

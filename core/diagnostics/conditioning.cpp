@@ -5,10 +5,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 #include "core/base/angle.h"
+#include "core/base/number_text.h"
 #include "core/highlight/peak.h"
 #include "core/light/estimate.h"
 #include "core/model/fit_ellipsoid.h"
@@ -21,7 +21,7 @@ constexpr std::size_t kMostDirections = 256;  // 33,000 pairs: a millisecond
 template <class... Numbers>
 std::string text(const char* format, Numbers... numbers) {
   char buffer[320];
-  std::snprintf(buffer, sizeof buffer, format, numbers...);
+  printText(buffer, sizeof buffer, format, numbers...);
   return buffer;
 }
 

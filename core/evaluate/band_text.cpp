@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/evaluate/band_text.h"
 
-#include <cstdio>
+
+#include "core/base/number_text.h"
 
 namespace glint {
 
@@ -27,8 +28,8 @@ std::vector<std::string> bandLines(const Inspection& inspection, const ModelResu
   std::vector<std::string> lines;
   if (const std::optional<BandScore> score = bandSummary(inspection, result)) {
     char text[160];
-    std::snprintf(text, sizeof text, "bands: sigma %.3g px; %.1f %% of the vertices lie within 1.96 sigma of the %s contours", score->sigmaPx,
-                  100 * score->coverage, inspection.request.truthFolder.empty() ? "observed" : "true");
+    printText(text, sizeof text, "bands: sigma %.3g px; %.1f %% of the vertices lie within 1.96 sigma of the %s contours", score->sigmaPx,
+              100 * score->coverage, inspection.request.truthFolder.empty() ? "observed" : "true");
     lines.emplace_back(text);
   }
   for (const ModelResult::Fit& fit : result.fits)

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/base/number_text.h"
 #include "core/evaluate/setting_text.h"
 #include "core/evaluate/summary.h"
 
@@ -24,7 +24,7 @@ bool same(double a, double b) { return a == b || std::abs(a - b) <= kSame * std:
 std::string number(double v) {
   if (!std::isfinite(v)) return "none";
   char text[32];
-  std::snprintf(text, sizeof text, "%.6g", v);
+  printText(text, sizeof text, "%.6g", v);
   return text;
 }
 
@@ -307,7 +307,7 @@ std::string padded(std::string s, std::size_t width) {
 std::string percent(const std::optional<double>& v) {
   if (!v) return "-";
   char out[32];
-  std::snprintf(out, sizeof out, "%.3f", *v);
+  printText(out, sizeof out, "%.3f", *v);
   return out;
 }
 

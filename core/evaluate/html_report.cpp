@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <set>
 
+#include "core/base/number_text.h"
 #include "core/evaluate/band_text.h"
 #include "core/evaluate/html_text.h"
 #include "core/evaluate/report.h"
@@ -160,7 +160,7 @@ std::string overlay(const Inspection& inspection, int frame) {
               "\" height=\"" + std::to_string(cy1 - cy0) + "\" href=\"data:image/png;base64," + base64(png) + "\"/>\n";
   }
   char box[96];
-  std::snprintf(box, sizeof box, "%.1f %.1f %d %d", cx0 - 0.5, cy0 - 0.5, cx1 - cx0, cy1 - cy0);
+  printText(box, sizeof box, "%.1f %.1f %d %d", cx0 - 0.5, cy0 - 0.5, cx1 - cx0, cy1 - cy0);
   return "<figure><svg class=\"frame\" viewBox=\"" + std::string(box) + "\">\n" + picture + shapes + "</svg><figcaption><b>frame " +
          std::to_string(frame) + "</b> (" + escaped(inspection.scene->frames[frame].id) + ")<br>" + caption + "</figcaption></figure>\n";
 }

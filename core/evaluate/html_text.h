@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <string>
 
+#include "core/base/number_text.h"
 #include "core/evaluate/palette.h"
 
 namespace glint::html {
@@ -14,7 +15,7 @@ namespace glint::html {
 inline std::string format(const char* pattern, double v) {
   if (!std::isfinite(v)) return "&ndash;";
   char buffer[64];
-  std::snprintf(buffer, sizeof buffer, pattern, v);
+  printText(buffer, sizeof buffer, pattern, v);
   return buffer;
 }
 
@@ -39,7 +40,7 @@ inline std::string escaped(const std::string& text) {
 inline std::string colourOf(const std::string& model) {
   const std::array<int, 3> c = modelRgb(model);
   char buffer[8];
-  std::snprintf(buffer, sizeof buffer, "#%02x%02x%02x", c[0], c[1], c[2]);
+  printText(buffer, sizeof buffer, "#%02x%02x%02x", c[0], c[1], c[2]);
   return buffer;
 }
 

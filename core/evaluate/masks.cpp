@@ -3,7 +3,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -11,6 +10,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/atomic_folder.h"
+#include "core/base/number_text.h"
 #include "core/base/parallel.h"
 #include "core/evaluate/labels.h"
 #include "core/geometry/polyline.h"
@@ -133,7 +133,7 @@ void writeLabels(const Inspection& inspection, const fs::path& folder, const Pro
       for (const auto& [light, name] : folders) fs::create_directories(out / "masks" / source / name);
     const auto fileOf = [&](const Task& t) {
       char name[32];
-      std::snprintf(name, sizeof name, "%04d.png", t.frame);  // by position: an id may hold what no file name may
+      printText(name, sizeof name, "%04d.png", t.frame);  // by position: an id may hold what no file name may
       return fs::path("masks") / t.of / folders.at(t.light) / name;
     };
     std::vector<long long> pixels(tasks.size());

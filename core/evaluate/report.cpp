@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "core/base/number_text.h"
 #include "core/evaluate/band_text.h"
 #include "core/evaluate/detection_error.h"
 #include "core/evaluate/summary.h"
@@ -247,7 +247,7 @@ ordered_json trainingJson(const Inspection& inspection) {
 std::string cell(double v, const char* format = "%.4g") {
   if (!std::isfinite(v)) return "-";
   char buffer[32];
-  std::snprintf(buffer, sizeof buffer, format, v);
+  printText(buffer, sizeof buffer, format, v);
   return buffer;
 }
 
@@ -333,8 +333,8 @@ std::string evaluationCsv(const Inspection& inspection) {
 
 std::string evaluationTable(const Inspection& inspection) {
   char line[256];
-  std::snprintf(line, sizeof line, "%-12s %11s %9s %9s %9s %9s %9s %8s %8s %13s %10s\n", "model", "predicted", "mean %", "median %",
-                "p95 %", "max %", "mean px", "IoU", "coverage", "match/mis/spu", "median us");
+  printText(line, sizeof line, "%-12s %11s %9s %9s %9s %9s %9s %8s %8s %13s %10s\n", "model", "predicted", "mean %", "median %",
+            "p95 %", "max %", "mean px", "IoU", "coverage", "match/mis/spu", "median us");
   std::string out = line;
   for (const std::string& name : inspection.request.models) {
     const auto it = inspection.models.find(name);
@@ -342,29 +342,29 @@ std::string evaluationTable(const Inspection& inspection) {
     const ModelSummary s = summarise(inspection, it->second);
     const std::string predicted = std::to_string(s.predicted) + "/" + std::to_string(s.frames);
     const std::string counts = std::to_string(s.matched) + "/" + std::to_string(s.missed) + "/" + std::to_string(s.spurious);
-    std::snprintf(line, sizeof line, "%-12s %11s %9s %9s %9s %9s %9s %8s %8s %13s %10s", name.c_str(), predicted.c_str(),
-                  cell(s.contourErrorPct.mean).c_str(), cell(s.contourErrorPct.median).c_str(), cell(s.contourErrorPct.p95).c_str(),
-                  cell(s.contourErrorPct.max).c_str(), cell(s.contourErrorPx.mean).c_str(), cell(s.iou.mean, "%.4f").c_str(),
-                  cell(s.coverage.mean, "%.3f").c_str(), counts.c_str(), cell(s.timeUs.median, "%.0f").c_str());
+    printText(line, sizeof line, "%-12s %11s %9s %9s %9s %9s %9s %8s %8s %13s %10s", name.c_str(), predicted.c_str(),
+              cell(s.contourErrorPct.mean).c_str(), cell(s.contourErrorPct.median).c_str(), cell(s.contourErrorPct.p95).c_str(),
+              cell(s.contourErrorPct.max).c_str(), cell(s.contourErrorPx.mean).c_str(), cell(s.iou.mean, "%.4f").c_str(),
+              cell(s.coverage.mean, "%.3f").c_str(), counts.c_str(), cell(s.timeUs.median, "%.0f").c_str());
     out += line;
     if (!s.answered) out += "  " + s.reason;
     out += "\n";
     for (const std::string& text : bandLines(inspection, it->second)) {
-      std::snprintf(line, sizeof line, "%-12s ", "");
+      printText(line, sizeof line, "%-12s ", "");
       out += line + text + "\n";
     }
     double variation = 0;
     for (const FrameComparison& c : it->second.frames)
       for (const PredictedHighlight& h : c.prediction.highlights) variation = std::max(variation, h.curvatureVariation.value_or(0));
     if (variation > kLargestVariation) {
-      std::snprintf(line, sizeof line, "%-12s the local quadric is not good enough: curvature varies by up to %.3f over a highlight (at most %.2f)\n", "",
-                    variation, kLargestVariation);
+      printText(line, sizeof line, "%-12s the local quadric is not good enough: curvature varies by up to %.3f over a highlight (at most %.2f)\n", "",
+                variation, kLargestVariation);
       out += line;
     }
   }
   if (const std::optional<DetectionError> d = detectionError(inspection)) {
-    std::snprintf(line, sizeof line, "own detection against the truth: %s %% mean, %s %% at most, %d of %d frames' highlights missed\n",
-                  cell(d->contourErrorPct.mean).c_str(), cell(d->contourErrorPct.max).c_str(), d->missed, d->frames);
+    printText(line, sizeof line, "own detection against the truth: %s %% mean, %s %% at most, %d of %d frames' highlights missed\n",
+              cell(d->contourErrorPct.mean).c_str(), cell(d->contourErrorPct.max).c_str(), d->missed, d->frames);
     out += line;
   } else if (scoredAgainst(inspection) == "own detection") {
     out += "errors are against the own detection; --truth DIR names known contours\n";

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/evaluate/setting_text.h"
 
-#include <cstdio>
 #include <variant>
+
+#include "core/base/number_text.h"
 
 namespace glint {
 
@@ -11,7 +12,7 @@ std::string settingText(const SettingValue& value) {
   if (const auto* b = std::get_if<bool>(&value)) return *b ? "on" : "off";
   if (const auto* i = std::get_if<int>(&value)) return std::to_string(*i);
   char text[32];
-  std::snprintf(text, sizeof text, "%.6g", std::get<double>(value));
+  printText(text, sizeof text, "%.6g", std::get<double>(value));
   return text;
 }
 

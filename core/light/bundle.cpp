@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <cstdio>
 #include <limits>
 #include <map>
 
+#include "core/base/number_text.h"
 #include "core/base/parallel.h"
 #include "core/base/residual_spread.h"
 #include "core/light/bundle_attempt.h"
@@ -299,8 +299,8 @@ std::optional<Failure> withoutLimit(const std::vector<ContourEvidence>& points, 
   }
   if (a.limit > 0 && median(limits) > kLeastLimitShare * median(radii)) return std::nullopt;
   char detail[160];
-  std::snprintf(detail, sizeof detail, "the limit angle comes out at %.2g deg: every contour point mirrors the light, so the contours say nothing of it",
-                a.limit * 180 / M_PI);
+  printText(detail, sizeof detail, "the limit angle comes out at %.2g deg: every contour point mirrors the light, so the contours say nothing of it",
+            a.limit * 180 / M_PI);
   return Failure{Reason::NotConverged, detail};
 }
 

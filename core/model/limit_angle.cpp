@@ -2,8 +2,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "core/base/number_text.h"
 #include "core/light/directed_limit.h"
 #include "core/model/level_set_prediction.h"
 #include "core/model/models.h"
@@ -37,10 +37,10 @@ std::string extentRemark(const Eigen::Matrix3d& extent, bool angular, double lev
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(extent);
   const double length = std::sqrt(12 * std::max(0.0, axes.eigenvalues()(2)) / (-2 * std::log(level)));
   char text[260];
-  std::snprintf(text, sizeof text,
-                "the contours ask for a light that reaches about %.2g %s: a long lamp, several lights whose highlights merge, or a lobe that one limit angle "
-                "does not describe (compare with reflectance, which has a lobe)",
-                angular ? length * 180 / M_PI : length, angular ? "degrees" : "m");
+  printText(text, sizeof text,
+            "the contours ask for a light that reaches about %.2g %s: a long lamp, several lights whose highlights merge, or a lobe that one limit angle "
+            "does not describe (compare with reflectance, which has a lobe)",
+            angular ? length * 180 / M_PI : length, angular ? "degrees" : "m");
   return text;
 }
 

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
+
+#include "core/base/number_text.h"
 
 namespace glint {
 namespace {
@@ -14,7 +15,7 @@ constexpr double kNoiseShare = 1.2;                   // of the noise's sigma: w
 
 std::string figure(double v) {
   char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.3g", v);
+  printText(buffer, sizeof buffer, "%.3g", v);
   return buffer;
 }
 

@@ -4,10 +4,10 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numbers>
 
+#include "core/base/number_text.h"
 #include "core/model/ellipse_distance.h"
 #include "core/model/reconstruct_detail.h"
 
@@ -123,12 +123,12 @@ std::vector<double> residuals(const std::vector<ConicView>& views, const Reconst
 std::string Reconstruction::brief() const {
   std::string text = std::to_string(residualPx.size()) + (residualPx.size() == 1 ? " view" : " views");
   char part[80];
-  std::snprintf(part, sizeof part, ", gap %.2g", gapRatio);
+  printText(part, sizeof part, ", gap %.2g", gapRatio);
   text += part;
   if (!ellipsoid) text += std::string(", ") + describe(quadric);
   if (!residualPx.empty()) {
     const auto worst = std::max_element(residualPx.begin(), residualPx.end());
-    std::snprintf(part, sizeof part, ", worst %.2f px (view %d)", *worst, int(worst - residualPx.begin()));
+    printText(part, sizeof part, ", worst %.2f px (view %d)", *worst, int(worst - residualPx.begin()));
     text += part;
   }
   return text;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <set>
 #include <sstream>
 
+#include "core/base/number_text.h"
 #include "core/light/estimate.h"
 #include "core/model/level_set_prediction.h"
 #include "core/model/models.h"
@@ -128,7 +128,7 @@ class Reflectance final : public HighlightModel {
     if (!best) return best.failure();
     if (best->poor) {
       char detail[80];
-      std::snprintf(detail, sizeof detail, "no light and roughness explain the contours: %.3g px remain", best->rmsPx);
+      printText(detail, sizeof detail, "no light and roughness explain the contours: %.3g px remain", best->rmsPx);
       return Failure{Reason::NotConverged, detail};
     }
     if (const std::optional<Failure> behind = lightBehind(input.views, best->light)) return *behind;

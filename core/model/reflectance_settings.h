@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdlib>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "core/base/number_text.h"
 #include "core/base/settings.h"
 #include "core/reflectance/fit.h"
 #include "core/reflectance/fit_search.h"
@@ -31,7 +31,10 @@ inline LampChoices lampChoicesOf(const Settings& settings) {
 inline std::vector<double> listedLevels(const Settings& settings) {
   std::vector<double> levels;
   std::istringstream list(settings.text("fit.levels"));
-  for (std::string entry; std::getline(list, entry, ',');) levels.push_back(std::strtod(entry.c_str(), nullptr));
+  for (std::string entry; std::getline(list, entry, ',');) {
+    entry.erase(0, entry.find_first_not_of(' '));
+    levels.push_back(numberFrom(entry).value_or(0));
+  }
   return levels;
 }
 

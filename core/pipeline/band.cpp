@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
+#include "core/base/number_text.h"
 #include "core/pipeline/training.h"
 
 namespace glint {
@@ -95,7 +95,7 @@ std::vector<double> sharesOf(const std::vector<double>& meanSquares, double free
 
 std::string text(const char* format, double a, double b = 0) {
   char buffer[256];
-  std::snprintf(buffer, sizeof buffer, format, a, b);
+  printText(buffer, sizeof buffer, format, a, b);
   return buffer;
 }
 

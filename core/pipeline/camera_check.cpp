@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
+#include "core/base/number_text.h"
 #include "core/model/model.h"
 #include "core/pipeline/evidence.h"
 #include "core/pipeline/training.h"
@@ -31,7 +31,7 @@ struct Change {
 
 std::string formatted(const char* format, auto... values) {
   char buffer[400];
-  std::snprintf(buffer, sizeof buffer, format, values...);
+  printText(buffer, sizeof buffer, format, values...);
   return buffer;
 }
 

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <random>
 #include <set>
 
 #include "core/base/atomic_file.h"
 #include "core/base/json_text.h"
+#include "core/base/number_text.h"
 #include "core/base/safe_text.h"
 #include "core/geometry/distortion.h"
 #include "core/scene/bounded_json.h"
@@ -172,14 +172,15 @@ Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene
   const std::filesystem::path file = truthFile(folder, frame);
   if (!std::filesystem::exists(file)) return Failure{Reason::FrameUnreadable, file.string() + ": there is no such file"};
   std::vector<Highlight> truth;
-  char key[16];
-  std::snprintf(key, sizeof key, "%.2f", level);
+  char key[16], asked[32];
+  printText(key, sizeof key, "%.2f", level);
+  printText(asked, sizeof asked, "%g", level);
   const JsonNode root = JsonNode::parse(readFile(file, Limit::JsonMegabytes), file.string());
   const JsonNode levels = root.at("levels");
   const std::optional<JsonNode> contours = levels.find(key);
   constexpr double kHundredths = 100;  // the keys have two decimals
   if (!contours || std::abs(std::round(level * kHundredths) / kHundredths - level) > kSameLevel)
-    levels.fail(std::string("no contours at level ") + key + " (asked for " + std::to_string(level) + ")");
+    levels.fail(std::string("no contours at level ") + key + " (asked for " + asked + ")");
   for (std::size_t i = 0; i < contours->size(); ++i) {
     const JsonNode c = contours->at(i);
     Highlight h;

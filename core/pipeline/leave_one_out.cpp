@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "core/base/number_text.h"
 #include "core/model/plausible.h"
 #include "core/pipeline/training.h"
 
@@ -21,7 +21,7 @@ Answer failed(Failure failure) {
 
 std::string percentText(double v) {
   char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.3g %%", v);
+  printText(buffer, sizeof buffer, "%.3g %%", v);
   return buffer;
 }
 

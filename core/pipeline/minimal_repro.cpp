@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <set>
 
 #include "core/base/atomic_folder.h"
 #include "core/base/minimal_subset.h"
+#include "core/base/number_text.h"
 #include "core/base/parallel.h"
 #include "core/pipeline/comparison.h"
 #include "core/pipeline/session.h"
@@ -157,7 +157,7 @@ std::string Fault::text() const {
   const double error = errorPct.value_or(0);
   char number[64];
   // Not "1.13e+03": whole percents from a hundred on, in groups of three digits from a thousand on.
-  std::snprintf(number, sizeof number, error < 99.95 ? "%.3g" : error < 1e15 ? "%.0f" : "%.3g", error);
+  printText(number, sizeof number, error < 99.95 ? "%.3g" : error < 1e15 ? "%.0f" : "%.3g", error);
   std::string text = number;
   if (error >= 99.95 && error < 1e15)
     for (int at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) text.insert(static_cast<std::size_t>(at), ",");

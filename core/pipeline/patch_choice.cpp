@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <set>
 
+#include "core/base/number_text.h"
 #include "core/evaluate/metrics.h"
 #include "core/evaluate/summary.h"
 #include "core/model/star.h"
@@ -23,7 +23,7 @@ constexpr int kTimedViews = 3, kTimedRepeats = 3;
 
 std::string number(const char* pattern, double v) {
   char buffer[40];
-  std::snprintf(buffer, sizeof buffer, pattern, v);
+  printText(buffer, sizeof buffer, pattern, v);
   return buffer;
 }
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "core/base/number_text.h"
 #include "core/pipeline/training.h"
 #include "core/reflectance/pixel_patch.h"
 #include "core/reflectance/radiance_field.h"
@@ -99,10 +99,10 @@ class LobeAngles {
 
 std::string RefinedNormals::remark() const {
   char text[320];
-  std::snprintf(text, sizeof text,
-                "the mesh's normals were corrected (light.refine_normals): by %.2g mrad (RMS) along the training contours, of which %s leaves %.3g px instead of %.3g px; "
-                "%.0f %% of a tilt that all contours share stays open, and parts that no training highlight touched are as given",
-                1e3 * slope, model.c_str(), refinedPx, plainPx, 100 * openTilt);
+  printText(text, sizeof text,
+            "the mesh's normals were corrected (light.refine_normals): by %.2g mrad (RMS) along the training contours, of which %s leaves %.3g px instead of %.3g px; "
+            "%.0f %% of a tilt that all contours share stays open, and parts that no training highlight touched are as given",
+            1e3 * slope, model.c_str(), refinedPx, plainPx, 100 * openTilt);
   return text;
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <limits>
 
+#include "core/base/number_text.h"
 #include "core/base/sha256.h"
 #include "core/evaluate/summary.h"
 #include "core/pipeline/session.h"
@@ -51,7 +51,7 @@ void addStatistic(KeyResults& results, const std::string& name, const Statistic&
 
 std::string shortest(double v) {
   char buffer[40];
-  std::snprintf(buffer, sizeof buffer, "%.12g", v);
+  printText(buffer, sizeof buffer, "%.12g", v);
   return buffer;
 }
 

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <set>
 
+#include "core/base/number_text.h"
 #include "core/base/parallel.h"
 #include "core/evaluate/summary.h"
 #include "core/pipeline/extrapolation.h"
@@ -185,10 +185,10 @@ std::string Search::outsideText() const {
   for (const ViewToPredict& v : views_)
     if (v.outside) farthest = std::max(farthest, v.distanceDeg), tested = std::max(tested, v.testedDeg);
   char text[200];
-  std::snprintf(text, sizeof text,
-                "%d of %d views to predict lie outside the training views (up to %.3g degrees from the nearest; leaving one out "
-                "tests %.2g)",
-                s_.outside, s_.toPredict, farthest, tested);
+  printText(text, sizeof text,
+            "%d of %d views to predict lie outside the training views (up to %.3g degrees from the nearest; leaving one out "
+            "tests %.2g)",
+            s_.outside, s_.toPredict, farthest, tested);
   return text;
 }
 
@@ -580,14 +580,14 @@ std::string selectionTable(const Selection& s) {
   std::string slowestModel;
   for (const Candidate& c : s.candidates) {
     const std::string views = std::to_string(c.answered) + "/" + std::to_string(c.tried);
-    std::snprintf(line, sizeof line, "%-12s %6s %17.4g %14.4g %9.3g %11.3g %9.3g %8.2f  ", c.model.c_str(), views.c_str(),
-                  c.meanPct, c.standardErrorPct, c.outlookPct, c.expectedPct, c.predictUs, c.timeUs * 1e-6);
+    printText(line, sizeof line, "%-12s %6s %17.4g %14.4g %9.3g %11.3g %9.3g %8.2f  ", c.model.c_str(), views.c_str(),
+              c.meanPct, c.standardErrorPct, c.outlookPct, c.expectedPct, c.predictUs, c.timeUs * 1e-6);
     out += line + c.remark + "\n";
     all += c.timeUs;
     if (c.timeUs > slowest) slowest = c.timeUs, slowestModel = c.model;
   }
   if (s.candidates.size() > 1 && all > slowest) {
-    std::snprintf(line, sizeof line, "%s makes the search %.2g times as long.\n", slowestModel.c_str(), all / (all - slowest));
+    printText(line, sizeof line, "%s makes the search %.2g times as long.\n", slowestModel.c_str(), all / (all - slowest));
     out += line;
   }
   if (s.leftOut < s.trainingViews)

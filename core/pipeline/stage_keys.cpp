@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/pipeline/stage_keys.h"
 
-#include <cstdio>
 #include <variant>
+
+#include "core/base/number_text.h"
 
 namespace glint {
 
 std::string exactText(double v) {
   char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.17g", v);
+  printText(buffer, sizeof buffer, "%.17g", v);
   return buffer;
 }
 

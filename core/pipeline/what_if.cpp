@@ -4,9 +4,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 
+#include "core/base/number_text.h"
 #include "core/base/parallel.h"
 #include "core/surface/analytic.h"
 #include "core/synth/exact_highlight.h"
@@ -22,7 +22,7 @@ constexpr double kLeastSpread = 1e-9;  // of the squared sines between optical a
 
 std::string exact(double v) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.17g,", v);
+  printText(text, sizeof text, "%.17g,", v);
   return text;
 }
 

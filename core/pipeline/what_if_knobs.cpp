@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
 #include "core/base/angle.h"
+#include "core/base/number_text.h"
 #include "core/pipeline/inspection.h"
 
 namespace glint {
@@ -213,7 +213,7 @@ std::optional<FittedLobe> lobeOfLimitAngle(const Inspection& in, int frame) {
     const double alpha = light->second.limitAngle;
     if (!(alpha > 0)) continue;
     char origin[96];
-    std::snprintf(origin, sizeof origin, "limit angle %.3g\u00b0 at level %.3g, light ", degrees(alpha), q);
+    printText(origin, sizeof origin, "limit angle %.3g\u00b0 at level %.3g, light ", degrees(alpha), q);
     found = FittedLobe{Lobe::TorranceSparrow, std::tan(alpha) / std::sqrt(-std::log(q)), origin + v.highlight.light};
   }
   return found;

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/json_text.h"
+#include "core/base/number_text.h"
 #include "core/scene/mesh_file.h"
 #include "core/scene/scene_reader.h"
 #include "core/surface/analytic.h"
@@ -18,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 std::string formatted(const char* format, auto... values) {
   char buffer[512];
-  std::snprintf(buffer, sizeof buffer, format, values...);
+  printText(buffer, sizeof buffer, format, values...);
   return buffer;
 }
 

@@ -3,11 +3,14 @@
 
 // Internal to core/scene: pixels from the bytes of a file whose header was read.
 
-#include <opencv2/core.hpp>
 #include <string>
 
 #include "core/base/outcome.h"
 #include "core/scene/image_header.h"
+
+namespace cv {
+class Mat;
+}
 
 namespace glint {
 

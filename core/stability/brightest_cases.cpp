@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
+#include "core/base/number_text.h"
 #include "core/stability/cases.h"
 #include "core/stability/scene.h"
 #include "core/surface/brightest_point.h"
@@ -108,7 +109,7 @@ void addBrightestCases(Cases& cases) {
     for (const double k : {0.5, 0.0}) {
       const double a = degrees * std::numbers::pi / 180;
       char name[64];
-      std::snprintf(name, sizeof name, "%s, grazing %g degrees", k > 0 ? "sphere" : "plane", degrees);
+      printText(name, sizeof name, "%s, grazing %g degrees", k > 0 ? "sphere" : "plane", degrees);
       const Light light = grazingLight(degrees);
       add(name, degrees, 1e-9, "", [light, a, k] { return pointCase(k, k > 0, light, 0, 0, 1, 800, 0.1, 1 / std::cos(a)); });
     }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <boost/math/special_functions/erf.hpp>
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <cstdio>
 
+#include "core/base/number_text.h"
 #include "core/model/model.h"
 #include "core/stability/real_lobe.h"
 #include "core/stability/reflectance_cases.h"
@@ -37,7 +37,11 @@ Outcome<Measured> levelsCase(Lobe lobe, double m, double lowest) {
     const Prediction prediction = modelByName("reflectance").predict(fit, view.camera, surface.get(), Settings());
     if (prediction.highlights.empty()) return prediction.failure.value_or(Failure{Reason::NoHighlight, ""});
     const PredictedHighlight& h = prediction.highlights.front();
-    if (h.coverage < (wide ? 0.5 : 0.999)) return Failure{Reason::SurfaceEnded, "coverage too low at level " + std::to_string(q)};
+    if (h.coverage < (wide ? 0.5 : 0.999)) {
+      char detail[48];
+      printText(detail, sizeof detail, "coverage too low at level %g", q);
+      return Failure{Reason::SurfaceEnded, detail};
+    }
     const std::size_t stride = std::max<std::size_t>(1, h.contour.points.size() / 24);
     for (std::size_t i = 0; i < h.contour.points.size(); i += stride) {
       // A wide tail leaves the picture and its margin; the rest of its contour is as exact.
@@ -60,7 +64,7 @@ void addLobeCases(Cases& cases) {
       // GGX's tail of 0.7 falls below 0.02 behind the camera only.
       const double lowest = lobe == Lobe::Ggx && m > 0.6 ? 0.1 : 0.02;
       char name[96];
-      std::snprintf(name, sizeof name, "%s, roughness %g, levels %g to 0.98", nameOf(lobe), m, lowest);
+      printText(name, sizeof name, "%s, roughness %g, levels %g to 0.98", nameOf(lobe), m, lowest);
       cases.push_back(answerCase("lobe contour", name, m, 1e-8, "the peak is found to 1e-4 px, its value to the square of that over the width",
                                  [lobe, m, lowest] { return levelsCase(lobe, m, lowest); }));
     }

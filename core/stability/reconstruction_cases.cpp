@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <cstdio>
 #include <numbers>
 
+#include "core/base/number_text.h"
 #include "core/model/reconstruct.h"
 #include "core/stability/cases.h"
 #include "core/stability/scene.h"
@@ -159,7 +159,7 @@ void addReconstructionCases(Cases& cases) {
   // contours' round-off is left in the answer, until no digit is.
   for (const double spread : {1e-3, 1e-6, 1e-8}) {
     char name[64];
-    std::snprintf(name, sizeof name, "cameras within %.0e rad of each other", 12 * spread);
+    printText(name, sizeof name, "cameras within %.0e rad of each other", 12 * spread);
     const double condition = 1 / (144 * spread * spread);
     Case& c = add(l, name, 12 * spread, [spread, condition]() -> Outcome<Measured> {
       const Outcome<Measured> m = linear(truth(kAxes, 1), 6, {.spread = spread});

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/base/json_text.h"
+#include "core/base/number_text.h"
 #include "core/stability/stability.h"
 
 namespace glint {
@@ -13,12 +13,12 @@ namespace {
 std::string shortNumber(double x) {
   if (x == std::numeric_limits<double>::max()) return "none";
   char text[32];
-  std::snprintf(text, sizeof text, "%.3g", x);
+  printText(text, sizeof text, "%.3g", x);
   return text;
 }
 std::string exponent(double x) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.1e", x);
+  printText(text, sizeof text, "%.1e", x);
   return text;
 }
 /// A failure has no error to show.
@@ -55,8 +55,8 @@ std::string stabilityTable(const std::vector<StabilityResult>& results) {
   char line[512];
   const auto row = [&](const std::string& a, const std::string& b, const std::string& condition, const std::string& error,
                        const std::string& tolerance, const std::string& verdict) {
-    std::snprintf(line, sizeof line, "%-*s  %-*s  %10s  %9s  %9s  ", int(stage), a.c_str(), int(name), b.c_str(),
-                  condition.c_str(), error.c_str(), tolerance.c_str());
+    printText(line, sizeof line, "%-*s  %-*s  %10s  %9s  %9s  ", int(stage), a.c_str(), int(name), b.c_str(),
+              condition.c_str(), error.c_str(), tolerance.c_str());
     out += line + verdict + "\n";
   };
   row("stage", "case", "condition", "error", "tolerance", "verdict");

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
 #include "core/base/atomic_file.h"
 #include "core/base/json_text.h"
 #include "core/base/level_range.h"
 #include "core/base/limits.h"
+#include "core/base/number_text.h"
 #include "core/scene/bounded_json.h"
 #include "core/scene/scene_json.h"
 #include "core/scene/scene_reader.h"
@@ -30,7 +30,7 @@ int countOf(const JsonNode& node, int low, int high) {
 
 std::string padded(std::size_t i) {
   char text[32];
-  std::snprintf(text, sizeof text, "%04zu", i);
+  printText(text, sizeof text, "%04zu", i);
   return text;
 }
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "core/base/number_text.h"
 #include "core/base/outcome.h"
 #include "core/tradeoff/pareto.h"
 
@@ -13,7 +13,7 @@ namespace {
 
 std::string number(const char* pattern, double v) {
   char buffer[40];
-  std::snprintf(buffer, sizeof buffer, pattern, v);
+  printText(buffer, sizeof buffer, pattern, v);
   return buffer;
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/base/json_text.h"
+#include "core/base/number_text.h"
 #include "core/base/outcome.h"
 #include "core/tradeoff/knobs.h"
 #include "core/tradeoff/tradeoff.h"
@@ -168,8 +168,8 @@ std::string tradeoffTable(const Tradeoff& t) {
     if (t.chosen == i) marks += "  <- chosen";
     char line[200];
     const std::string predicted = std::to_string(p.predicted) + "/" + std::to_string(p.frames);
-    std::snprintf(line, sizeof line, "%-5s %9.1f %10.4g %8.4f %9.3f %10s %10.2f %8.1f  ", p.pareto ? "*" : "", p.predictUs,
-                  p.contourErrorPct, p.iou, p.coverage, predicted.c_str(), p.fitUs * 1e-3, p.peakMb);
+    printText(line, sizeof line, "%-5s %9.1f %10.4g %8.4f %9.3f %10s %10.2f %8.1f  ", p.pareto ? "*" : "", p.predictUs,
+              p.contourErrorPct, p.iou, p.coverage, predicted.c_str(), p.fitUs * 1e-3, p.peakMb);
     out += line + describe(t, p) + marks + "\n";
   }
   std::map<std::string, int> kinds;

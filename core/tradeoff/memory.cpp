@@ -24,7 +24,7 @@ bool restartPeakMemory() {
 double peakMemoryMb() {
   std::ifstream file("/proc/self/status");
   for (std::string line; std::getline(file, line);)
-    if (line.rfind("VmHWM:", 0) == 0) return std::stod(line.substr(6)) / 1024;  // given in kB
+    if (line.rfind("VmHWM:", 0) == 0) return static_cast<double>(std::stoll(line.substr(6))) / 1024;  // given in kB
   return std::numeric_limits<double>::quiet_NaN();
 }
 

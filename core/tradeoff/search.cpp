@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <map>
 #include <optional>
 #include <set>
 
+#include "core/base/number_text.h"
 #include "core/tradeoff/pareto.h"
 
 namespace glint {
@@ -42,7 +42,7 @@ std::string idOf(const Trial& t, const std::vector<Knob>& knobs) {
 
 std::string costText(const Cost& c) {
   char buffer[80];
-  std::snprintf(buffer, sizeof buffer, "%.3g %% at %.3g us", c.errorPct, c.us);
+  printText(buffer, sizeof buffer, "%.3g %% at %.3g us", c.errorPct, c.us);
   return buffer;
 }
 

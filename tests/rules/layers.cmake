@@ -64,6 +64,7 @@ endforeach()
 
 forbid("meshes are read by io" "<vtk[A-Za-z]*(PLY|OBJ|STL|Poly)[A-Za-z]*Reader[.]h>" core/*.cpp viz/*.cpp gui/*.cpp cli/*.cpp)
 forbid("core does not know Qt" "${qt}" core/*.cpp)
+forbid("the JSON library's document stays in sources of core" "core/base/json_dom[.]h" core/*.h viz/*.h viz/*.cpp gui/*.h gui/*.cpp cli/*.h cli/*.cpp)
 forbid("core does not draw" "${drawing}" core/*.cpp)
 forbid("core stands below viz, gui, cli and plugins" "\"([^\"]*/)?(viz|gui|cli|plugins)/" core/*.h core/*.cpp)
 forbid("viz, gui and cli read files through core" "\"io/" viz/*.h viz/*.cpp gui/*.h gui/*.cpp cli/*.h cli/*.cpp)

@@ -48,6 +48,18 @@ foreach(f IN LISTS coreSources)
   endforeach()
 endforeach()
 
+# Numbers never depend on the locale: text is made by printText and read by numberFrom or std::from_chars (core/base/number_text.h).
+# Two files may call the C functions: the one that makes them free of the locale, and one that prints no number with a point.
+file(GLOB_RECURSE numberSources "${SRC}/io/*.h" "${SRC}/io/*.cpp" "${SRC}/core/*.h" "${SRC}/core/*.cpp" "${SRC}/viz/*.h" "${SRC}/viz/*.cpp"
+     "${SRC}/cli/*.h" "${SRC}/cli/*.cpp" "${SRC}/gui/*.h" "${SRC}/gui/*.cpp")
+list(FILTER numberSources EXCLUDE REGEX "core/(base/number_text|scene/image_decode)[.]cpp$")
+foreach(f IN LISTS numberSources)
+  file(STRINGS "${f}" hit REGEX "(^|[^A-Za-z_])(snprintf|sprintf|strtod|strtof|strtold|atof|stod|stof|stold|sscanf|asprintf) *[(]")
+  if(hit)
+    complain("${f}" "depends on the locale (see core/base/number_text.h): ${hit}")
+  endif()
+endforeach()
+
 # Sources are listed, not globbed: a new file must make CMake run again, and a stray one must not enter the build.
 file(GLOB_RECURSE lists "${SRC}/io/CMakeLists.txt" "${SRC}/core/CMakeLists.txt" "${SRC}/viz/CMakeLists.txt" "${SRC}/gui/CMakeLists.txt" "${SRC}/cli/CMakeLists.txt"
      "${SRC}/plugins/CMakeLists.txt" "${SRC}/tests/CMakeLists.txt" "${SRC}/bench/CMakeLists.txt")

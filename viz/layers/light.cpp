@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cstdio>
 #include <numbers>
 
+#include "core/base/number_text.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
 
@@ -12,7 +12,7 @@ constexpr double kFarLight = 4;  ///< in scene sizes: beyond, an arrow shows the
 
 std::string distanceText(double metres) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.3g m", metres);
+  printText(text, sizeof text, "%.3g m", metres);
   return text;
 }
 

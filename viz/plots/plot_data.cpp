@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numbers>
+
+#include "core/base/number_text.h"
 
 namespace glint::viz {
 namespace {
@@ -24,7 +25,7 @@ bool fits(const PlotTarget& t, const Selection& s) {
 std::string numberText(double v, const char* format = "%.9g") {
   if (!std::isfinite(v)) return "";
   char text[40];
-  std::snprintf(text, sizeof text, format, v);
+  printText(text, sizeof text, format, v);
   return text;
 }
 

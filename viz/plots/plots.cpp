@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <limits>
 
 #include "core/base/angle.h"
+#include "core/base/number_text.h"
 #include "core/pipeline/photograph.h"
 
 namespace glint::viz {
@@ -20,7 +20,7 @@ constexpr double kSmallestPct = 1e-6;            // what a logarithmic axis show
 template <class... Numbers>
 std::string text(const char* format, Numbers... numbers) {
   char buffer[400];
-  std::snprintf(buffer, sizeof buffer, format, numbers...);
+  printText(buffer, sizeof buffer, format, numbers...);
   return buffer;
 }
 

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/base/number_text.h"
+
+#include <charconv>
+#include <clocale>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <locale.h>
+
+namespace glint {
+
+int printText(char* buffer, std::size_t size, const char* format, ...) {
+  static const locale_t plain = newlocale(LC_ALL_MASK, "C", nullptr);  // one for the process, never freed
+  const locale_t before = uselocale(plain);                           // of this thread only
+  std::va_list values;
+  va_start(values, format);
+  const int length = std::vsnprintf(buffer, size, format, values);
+  va_end(values);
+  uselocale(before);
+  return length;
+}
+
+std::optional<double> numberFrom(std::string_view text) {
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);  // from_chars knows no plus
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+}  // namespace glint
