@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viz/movie.h"
 
+#include <dlfcn.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cctype>
@@ -77,6 +79,14 @@ void writeSeries(const std::string& file, const MovieFormat& format, int frames,
   }
 }
 
+/// FFmpeg, where OpenCV works with it, writes lines of its own to standard error; its failures are told below. OpenCV sets its level once, when
+/// it opens the first file, so this comes after every opening.
+void silenceFfmpeg() {
+  constexpr int kQuiet = -8;  // AV_LOG_QUIET
+  using SetLevel = void (*)(int);
+  if (const auto setLevel = reinterpret_cast<SetLevel>(::dlsym(RTLD_DEFAULT, "av_log_set_level"))) setLevel(kQuiet);
+}
+
 void encode(const std::string& file, const fs::path& temporary, const MovieFormat& format, int frames,
             const std::function<Image(int)>& picture, const ProgressFn& progress) {
   cv::VideoWriter writer;
@@ -84,6 +94,7 @@ void encode(const std::string& file, const fs::path& temporary, const MovieForma
     if (writer.open(temporary.string(), cv::VideoWriter::fourcc(c[0], c[1], c[2], c[3]), format.framesPerSecond,
                     cv::Size(format.width, format.height)))
       break;
+  silenceFfmpeg();
   if (!writer.isOpened()) throw InputError(file, "", "cannot be written, or this computer has no encoder for " + endingOf(file));
   for (int i = 0; i < frames; ++i) {
     if (!report(progress, {"frame", i, frames})) throw Stopped{};

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Images and depth maps: the header that is checked before anything is decoded, and the decoders behind it.
+#include <opencv2/core.hpp>
+
 #include "core/scene/image_decode.h"
 #include "core/scene/image_header.h"
 #include "tests/fuzz/readers.h"

@@ -32,6 +32,7 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
     std::fprintf(stderr, "\n");
     std::exit(2);
   }
+  std::atexit([] { std::fprintf(stderr, "GLINT_FUZZ cpu seconds: %.0f\n", cpuSeconds()); });
   if (const char* text = std::getenv("GLINT_FUZZ_CPU_SECONDS")) mostCpuSeconds = std::strtod(text, nullptr);
   return 0;
 }
@@ -47,6 +48,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   constexpr unsigned kBetweenLooks = 256;
   if (mostCpuSeconds > 0 && ++count % kBetweenLooks == 0 && cpuSeconds() > mostCpuSeconds) {
     mostCpuSeconds = 0;
+    std::fprintf(stderr, "GLINT_FUZZ cpu seconds: %.0f\n", cpuSeconds());
     std::raise(SIGUSR1);  // libFuzzer ends with its figures
   }
   return 0;
