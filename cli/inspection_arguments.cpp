@@ -50,7 +50,7 @@ InspectionRequest InspectionArguments::request() const {
   const bool isSession = std::filesystem::path(input).extension() == ".glint";
   if (!preset.empty() && !isSession) throw InputError("", "--preset " + preset, "INPUT is no session, so it holds no trade-off");
   if (isSession) {
-    const Session session = readSession(input);
+    const Session session = places.readRequestOf(input, truth.empty());
     r = session.request;
     if (!preset.empty()) applyPreset(session, preset, r);
   }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 
+#include "core/pipeline/session_rights.h"
 #include "core/scene/scene_files.h"
 
 namespace glint::cli {
@@ -105,6 +106,13 @@ Scene SceneArguments::read(const std::string& input) const {
 Replay SceneArguments::replay(Session session, const ProgressFn& progress) const {
   session.allowOutsidePaths = allowOutside;
   return glint::replay(session, relinked(), progress);
+}
+
+Session SceneArguments::readRequestOf(const std::string& file, bool withItsTruth) const {
+  Session session = readSession(file);
+  session.allowOutsidePaths = allowOutside;
+  if (withItsTruth) requirePermittedTruth(session, relinked());
+  return session;
 }
 
 OpenedSession SceneArguments::openSession(const std::string& file) const {

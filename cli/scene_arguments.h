@@ -24,6 +24,8 @@ struct SceneArguments {
   Scene read(const std::string& input) const;
   OpenedSession openSession(const std::string& file) const;
   Replay replay(Session session, const ProgressFn& progress) const;
+  /// A session whose request is taken over, without its scene. OutsidePath as `openSession` where the request names a truth folder.
+  Session readRequestOf(const std::string& file, bool withItsTruth) const;
 
  private:
   Relinked relinked() const;

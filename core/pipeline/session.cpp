@@ -11,6 +11,7 @@
 #include "core/base/json_dom.h"
 #include "core/base/json_text.h"
 #include "core/base/sha256.h"
+#include "core/pipeline/session_rights.h"
 #include "core/pipeline/what_if_json.h"
 #include "core/scene/permitted.h"
 #include "core/scene/scene_files.h"
@@ -284,6 +285,15 @@ std::vector<fs::path> permittedFolders(const Session& session, const Relinked& i
   return foldersOfSession(session.file, session.input, named);
 }
 
+}  // namespace
+
+void requirePermittedTruth(const Session& session, const Relinked& instead) {
+  if (session.allowOutsidePaths || session.request.truthFolder.empty()) return;
+  requirePermitted(session.request.truthFolder, permittedFolders(session, instead), session.file.string(), "request.truth", "--truth DIR");
+}
+
+namespace {
+
 /// Compares what was relinked with what the session was made with, and forgets the hashes of where it was; saving hashes it where
 /// it is. One line; "" = the same files, or not known.
 std::string takeOver(Session& session, const Scene& scene, const fs::path& sceneWas, bool sceneMoved) {
@@ -331,8 +341,7 @@ OpenedSession openSession(Session given, const Relinked& instead) {
     SessionInput named{session.input, session.folders, session.meshes};
     for (const auto& given : instead.meshes) named.meshes.erase(given.first);
     requirePermitted(named, session.file.string(), options.folders);
-    if (!session.request.truthFolder.empty())
-      requirePermitted(session.request.truthFolder, options.folders, session.file.string(), "request.truth", "--truth DIR");
+    requirePermittedTruth(session, instead);
   }
   options.meshes = instead.meshes;
   options.meshes.insert(session.meshes.begin(), session.meshes.end());  // what is given now stays

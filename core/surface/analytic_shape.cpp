@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "core/base/number_text.h"
+
 namespace glint {
 
 using Eigen::AlignedBox3d;
@@ -18,6 +20,12 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kPi = std::numbers::pi;
 
 bool positive(double x) { return std::isfinite(x) && x > 0; }
+
+std::string shown(double x) {
+  char text[32];
+  printText(text, sizeof text, "%.6g", x);
+  return text;
+}
 
 /// Box of { c + diag(e) u : |u| <= 1 } style shapes whose world half extents are known.
 AlignedBox3d around(const Vector3d& centre, const Vector3d& half) { return {centre - half, centre + half}; }
@@ -99,7 +107,7 @@ class Cylinder : public QuadricShape {
   explicit Cylinder(double radius)
       : QuadricShape(Vector3d(1 / (radius * radius), 0, 1 / (radius * radius)).asDiagonal(), Vector3d::Zero(), -1),
         radius_(radius) {}
-  std::string describe() const override { return "cylinder of radius " + std::to_string(radius_) + " m"; }
+  std::string describe() const override { return "cylinder of radius " + shown(radius_) + " m"; }
   double size() const override { return radius_; }
   bool bounded() const override { return false; }
   AlignedBox3d bounds(const Eigen::Isometry3d& m) const override {
@@ -138,7 +146,7 @@ class Sheet : public QuadricShape {
 
   std::string describe() const override {
     if (k_ == 0 && !std::isfinite(length_) && !std::isfinite(width_)) return "plane";
-    return "sheet of curvature " + std::to_string(k_) + " per metre";
+    return "sheet of curvature " + shown(k_) + " per metre";
   }
   double size() const override {
     double s = std::min(length_, width_);
@@ -229,7 +237,7 @@ class Torus : public AnalyticShape {
  public:
   Torus(double major, double minor) : major_(major), minor_(minor) {}
   std::string describe() const override {
-    return "torus of radii " + std::to_string(major_) + " and " + std::to_string(minor_) + " m";
+    return "torus of radii " + shown(major_) + " and " + shown(minor_) + " m";
   }
 
   double value(const Vector3d& p) const override {
@@ -339,13 +347,13 @@ std::unique_ptr<const AnalyticShape> makeShape(const AnalyticSpec& spec) {
   if (spec.type == "sphere") {
     require(positive(spec.radius), "analytic sphere: radius must be positive and finite");
     return std::make_unique<SphereOrEllipsoid>(Vector3d::Constant(spec.radius),
-                                               "sphere of radius " + std::to_string(spec.radius) + " m");
+                                               "sphere of radius " + shown(spec.radius) + " m");
   }
   if (spec.type == "ellipsoid") {
     const Vector3d& a = spec.semiAxes;
     require(positive(a.x()) && positive(a.y()) && positive(a.z()), "analytic ellipsoid: semi_axes must be positive and finite");
-    return std::make_unique<SphereOrEllipsoid>(a, "ellipsoid of semi-axes " + std::to_string(a.x()) + ", " +
-                                                      std::to_string(a.y()) + ", " + std::to_string(a.z()) + " m");
+    return std::make_unique<SphereOrEllipsoid>(a, "ellipsoid of semi-axes " + shown(a.x()) + ", " +
+                                                      shown(a.y()) + ", " + shown(a.z()) + " m");
   }
   if (spec.type == "cylinder") {
     require(positive(spec.radius), "analytic cylinder: radius must be positive and finite");

@@ -14,9 +14,15 @@
 namespace glint {
 namespace {
 
+std::string shown(double v) {
+  char text[32];
+  printText(text, sizeof text, "%.6g", v);
+  return text;
+}
+
 double inRange(const JsonNode& node, double low, double high) {
   const double v = node.number();
-  if (!(v >= low && v <= high)) node.fail("must lie in " + std::to_string(low) + " .. " + std::to_string(high));
+  if (!(v >= low && v <= high)) node.fail("must lie in " + shown(low) + " .. " + shown(high));
   return v;
 }
 
@@ -193,7 +199,7 @@ SynthSpec readSynthSpec(const std::filesystem::path& file) {
       AnalyticSpec step = original;
       setParameter(step, steps->at("parameter"), value);
       if (step.type == "torus" && step.minorRadius >= step.majorRadius)
-        steps->fail("minor_radius " + std::to_string(step.minorRadius) + " must be smaller than major_radius " + std::to_string(step.majorRadius));
+        steps->fail("minor_radius " + shown(step.minorRadius) + " must be smaller than major_radius " + shown(step.majorRadius));
       order.push_back(prefix + "_" + padded(order.size()));
       scene.surfaces[order.back()].analytic = step;
     }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "core/base/number_text.h"
 #include "core/base/sha256.h"
 #include "core/pipeline/session.h"
 #include "core/surface/mesh_policy.h"
@@ -23,9 +24,11 @@ std::string idOf(const Trial& trial) {
 std::string workKey(const Scene& scene, const InspectionRequest& request, const TradeoffOptions& options,
                     const ProgressFn& progress) {
   Sha256 hash;
+  char noise[32];
+  printText(noise, sizeof noise, "%.17g", request.noisePx);
   for (const SessionFile& f : hashInputs(scene, request, progress)) hash.add(f.path.string() + "=" + f.sha256 + "\n");
   hash.add(request.train + "|" + (request.source == FrameSource::Image ? "image" : "radiance") + "|" +
-           std::to_string(request.noisePx) + "|" + std::to_string(request.seed) + "|" + request.truthFolder + "|" +
+           noise + "|" + std::to_string(request.seed) + "|" + request.truthFolder + "|" +
            std::to_string(options.repeats) + "|" + options.program);
   for (const int f : request.excluded) hash.add("x" + std::to_string(f));
   for (const ParamSpec& p : allParams()) hash.add(p.key + "=" + textOf(valueOf(request.settings, p)) + "\n");

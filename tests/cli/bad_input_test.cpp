@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "tests/cli/small_scene.h"
 
@@ -21,16 +22,22 @@ class BadInput : public SmallScene {
     writeScene();
     for (const char* command : {"info", "detect", "evaluate", "reconstruct", "render", "convert"}) refuses(command, code, message);
   }
+  /// What an older run of the command left: its kind tells that the command may replace it.
+  static std::string oldOutputOf(const std::string& command) {
+    static const std::map<std::string, std::string> keys = {{"info", "info"},           {"detect", "detection"}, {"evaluate", "evaluation"},
+                                                            {"reconstruct", "session"}, {"convert", "scene"},    {"predict", "predictions"}};
+    return command == "render" ? "\x89PNG\r\n\x1a\nold" : "{\"glint_" + keys.at(command) + "\": 1}";
+  }
   void refuses(const std::string& command, int code, const std::string& message) {
     const bool flagO = command == "reconstruct" || command == "render" || command == "convert";
-    const std::string name = command == "convert" ? "old.json" : "old";
-    folder_.write(name, "old");
+    const std::string name = command == "convert" ? "old.json" : "old", old = oldOutputOf(command);
+    folder_.write(name, old);
     const ProgramRun run = on(command, (command == "render" ? "--view frame " : "") + std::string(flagO ? "-o " : "--json ") + out(name));
     EXPECT_EQ(run.code, code) << command;
     EXPECT_EQ(run.errorLines(), 1) << command << ": " << run.err;
     EXPECT_THAT(run.err, HasSubstr(message)) << command;
     EXPECT_EQ(run.out, "") << command;
-    EXPECT_EQ(contentOf(folder_ / name), "old") << command;
+    EXPECT_EQ(contentOf(folder_ / name), old) << command;
   }
   /// Frame 7 is held out: its reason stands in the results, the other frames are answered, and nothing fails.
   void frameSevenHasReason(const std::string& reason) {
@@ -106,7 +113,7 @@ TEST_F(BadInput, ImageMissingEmptyTruncatedOrOfAnotherSize) {
   folder_.write("radiance/0007.tiff", "");
   frameSevenHasReason(file + ": the file is empty (0 bytes)");
   folder_.write("radiance/0007.tiff", bytes.substr(0, bytes.size() / 2));
-  frameSevenHasReason(file + ": the image cannot be decoded");
+  frameSevenHasReason(file + ": the TIFF is truncated");
   writeRadiance(7, cv::Mat(60, 80, CV_32FC1, cv::Scalar(1)));
   frameSevenHasReason(file + ": the image has 80 x 60 pixels, the camera 160 x 120");
 }
@@ -188,15 +195,17 @@ TEST_F(BadInput, SurfaceThatNoCameraSees) {
 
 TEST_F(BadInput, FullDiskLeavesTheOldFile) {
   saveSession("--model limit-angle");
-  folder_.write("old.json", "old");
+  const auto old = [&](const std::string& command) {
+    folder_.write(command + "-old.json", oldOutputOf(command));
+    return out(command + "-old.json");
+  };
   const std::string limit = "ulimit -f 1; ";  // no file may grow beyond one block: what a full disk does
-  const std::string old = out("old.json");
-  std::vector<ProgramRun> runs{on("evaluate", "--models limit-angle --html " + old, limit),
-                               on("detect", "--json " + old, limit),
-                               on("reconstruct", "--model limit-angle -o " + old, limit),
-                               on("render", "--view frame --models limit-angle -o " + old, limit),
-                               on("convert", "-o " + old, limit),
-                               onSession("predict", "--json " + old, limit),
+  std::vector<ProgramRun> runs{on("evaluate", "--models limit-angle --json " + old("evaluate"), limit),
+                               on("detect", "--json " + old("detect"), limit),
+                               on("reconstruct", "--model limit-angle -o " + old("reconstruct"), limit),
+                               on("render", "--view frame --models limit-angle -o " + old("render"), limit),
+                               on("convert", "-o " + old("convert"), limit),
+                               onSession("predict", "--json " + old("predict"), limit),
                                onSession("predict", "--out " + out("predicted"), limit),
                                on("detect", "--out " + out("detected"), limit),
                                runGlint("synth " + inQuotes(spec()) + " -o " + out("synth"), limit)};
@@ -205,7 +214,8 @@ TEST_F(BadInput, FullDiskLeavesTheOldFile) {
     EXPECT_EQ(runs[i].errorLines(), 1) << i << ": " << runs[i].err;
     EXPECT_THAT(runs[i].err, HasSubstr("cannot be ")) << i;
   }
-  EXPECT_EQ(contentOf(folder_ / "old.json"), "old");
+  for (const char* command : {"evaluate", "detect", "reconstruct", "render", "convert", "predict"})
+    EXPECT_EQ(contentOf(folder_ / (std::string(command) + "-old.json")), oldOutputOf(command)) << command;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_.path()))
     EXPECT_THAT(entry.path().filename().string(), testing::Not(StartsWith("."))) << "an unfinished file";
 }

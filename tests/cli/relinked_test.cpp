@@ -90,18 +90,22 @@ TEST_F(RelinkedScene, ASessionRemembersThePlaces) {
   const TemporaryFolder moved;
   fs::rename(all / "scene", moved / "scene");
   fs::rename(all / "elsewhere", moved / "elsewhere");
-  const ProgramRun replayed = runGlint("replay " + session(moved.path()));
+  // They lie outside of the folders of the session and its scene, so a person has to say yes, every time.
+  EXPECT_EQ(runGlint("replay " + session(moved.path())).code, 2);
+  const std::string yes = " --allow-outside";
+  const ProgramRun replayed = runGlint("replay " + session(moved.path()) + yes);
   EXPECT_EQ(replayed.code, 0) << replayed.err << replayed.out;
-  EXPECT_EQ(errors(runGlint("evaluate " + session(moved.path()) + " --json -")), inPlace_);
+  EXPECT_EQ(errors(runGlint("evaluate " + session(moved.path()) + " --json -" + yes)), inPlace_);
+  EXPECT_EQ(errors(runGlint("evaluate " + session(moved.path()) + " --json - --photographs " + inQuotes(moved / "elsewhere"))), inPlace_)
+      << "or name the folder";
   // A session made from that session remembers them, too.
-  EXPECT_EQ(runGlint("reconstruct " + session(moved.path()) + " --model limit-angle -o " + inQuotes(moved / "second.glint")).code,
-            0);
-  EXPECT_EQ(runGlint("replay " + inQuotes(moved / "second.glint")).code, 0);
+  EXPECT_EQ(runGlint("reconstruct " + session(moved.path()) + " --model limit-angle -o " + inQuotes(moved / "second.glint") + yes).code, 0);
+  EXPECT_EQ(runGlint("replay " + inQuotes(moved / "second.glint") + yes).code, 0);
   // What is given counts, not what the session says; another file than it was made with is told.
   fs::create_directories(moved / "third");
   fs::rename(moved / "elsewhere/shape/body.ply", moved / "third/b.ply");
-  EXPECT_EQ(runGlint("replay " + session(moved.path())).code, 2);
-  const std::string given = " --mesh shape/body.ply=" + inQuotes(moved / "third/b.ply");
+  EXPECT_EQ(runGlint("replay " + session(moved.path()) + yes).code, 2);
+  const std::string given = yes + " --mesh shape/body.ply=" + inQuotes(moved / "third/b.ply");
   EXPECT_EQ(errors(runGlint("evaluate " + session(moved.path()) + " --json -" + given)), inPlace_);
   EXPECT_EQ(runGlint("predict " + session(moved.path()) + given).err, "");
   moved.write("third/b.ply", contentOf(moved / "third/b.ply") + "\n");
@@ -137,7 +141,7 @@ TEST_F(RelinkedScene, FindsMasksWhereTheyAre) {
   const ProgramRun made = on("reconstruct", "--model limit-angle -o " + out("masked.glint") + flags + masks);
   ASSERT_EQ(made.code, 0) << made.err;
   EXPECT_EQ(made.err, "");
-  EXPECT_EQ(errors(runGlint("evaluate " + out("masked.glint") + " --json -")), inPlace);
+  EXPECT_EQ(errors(runGlint("evaluate " + out("masked.glint") + " --allow-outside --json -")), inPlace);
 }
 
 TEST_F(RelinkedScene, WrongPlacesNameTheFlag) {

@@ -48,7 +48,7 @@ TEST_F(Requests, WrongOnesNameTheFlag) {
            {"--level nan", "--level nan: the level is a fraction of the peak, more than 0 and less than 1"},
            {"--source video", "--source: 'video' is none of radiance|image"},
            {"--noise-px -1", "--noise-px: must be finite and not negative"},
-           {"--noise-px inf", "--noise-px: must be finite and not negative"},
+           {"--noise-px inf", "Could not convert: --noise-px = inf"},
            {"--models auto --good-enough-pct 0", "--good-enough-pct 0: expected a positive number of percent"},
            {"--truth /nonexistent", "/nonexistent: --truth: there is no such folder"},
            {"--nonsense", "--nonsense"}})
@@ -70,7 +70,7 @@ TEST_F(Requests, WrongSessionsAndFrames) {
   saveSession("--model limit-angle");
   for (const char* frames : {"99", "x", "0-", "3-1", "first:0"})
     refused(onSession("predict", "--frames " + std::string(frames)), "--frames " + std::string(frames) + ": ", frames);
-  refused(runGlint("predict " + out("scene.json")), "scene.json: glint_session: is missing", "a scene is no session");
+  refused(runGlint("predict " + out("scene.json")), "scene.json: is a scene, not a session", "a scene is no session");
   refused(runGlint("replay " + out("nothing.glint")), "nothing.glint: cannot be read: No such file", "no file");
   refused(on("replay"), "is a folder, not a file", "a folder");
   refused(runGlint("synth " + out("scene.json") + " -o " + out("s")), "scene.json: ", "no render");

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Commands replace only files of the kind that they write themselves, and never a file of the input.
+#include <gmock/gmock.h>
+
+#include "tests/cli/small_scene.h"
+
+namespace glint {
+namespace {
+using namespace testing_support;
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+class OutputsOfCommands : public SmallScene {
+ protected:
+  /// The command must end with 2 and one line, and leave every file as it is.
+  void refuses(const ProgramRun& run, const std::string& part) const {
+    EXPECT_EQ(run.code, 2) << run.err;
+    EXPECT_EQ(run.errorLines(), 1) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(part));
+  }
+};
+
+TEST_F(OutputsOfCommands, AFileOfTheInputIsNeverReplaced) {
+  const std::string photograph = contentOf(radiance(3)), scene = contentOf(folder_ / "scene.json");
+  const std::string kInput = "is a file of the input";
+  refuses(on("reconstruct", "-o " + inQuotes(radiance(3))), kInput);
+  refuses(on("reconstruct", "-o " + out("scene.json")), kInput);
+  refuses(on("evaluate", "--json " + inQuotes(radiance(3))), kInput);
+  refuses(on("evaluate", "--html " + out("scene.json")), kInput);
+  refuses(on("evaluate", "--csv " + inQuotes(radiance(3))), kInput);
+  refuses(on("info", "--json " + out("scene.json")), kInput);
+  refuses(on("detect", "--json " + inQuotes(radiance(3))), kInput);
+  refuses(on("convert", "-o " + out("scene.json")), kInput);
+  refuses(on("tradeoff", "--json " + inQuotes(radiance(3))), kInput);
+  refuses(on("render", "-o " + inQuotes(radiance(3))), kInput);
+  // Through a link and a roundabout path it is the same file.
+  fs::create_symlink(radiance(3), folder_ / "link.json");
+  refuses(on("evaluate", "--json " + out("link.json")), kInput);
+  refuses(on("evaluate", "--json " + inQuotes(folder_ / "radiance/../radiance/0003.tiff")), kInput);
+  EXPECT_EQ(contentOf(radiance(3)), photograph);
+  EXPECT_EQ(contentOf(folder_ / "scene.json"), scene);
+}
+
+TEST_F(OutputsOfCommands, AFileOfAnotherKindStaysAsItIs) {
+  folder_.write("notes.txt", "a person's notes\n");
+  folder_.write("other.json", R"({"glint_scene": 1})");
+  refuses(on("evaluate", "--json " + out("notes.txt")), "notes.txt: --json: exists and is not a JSON file with \"glint_evaluation\"");
+  refuses(on("evaluate", "--json " + out("other.json")), "other.json: --json: exists and is not a JSON file");
+  refuses(on("evaluate", "--html " + out("notes.txt")), "notes.txt: --html: exists and is not a page");
+  refuses(on("evaluate", "--csv " + out("notes.txt")), "notes.txt: --csv: exists and is not a table");
+  refuses(on("reconstruct", "-o " + out("other.json")), "exists and is not a JSON file with \"glint_session\"");
+  refuses(on("render", "-o " + out("notes.txt")), "notes.txt");
+  EXPECT_EQ(contentOf(folder_ / "notes.txt"), "a person's notes\n");
+  EXPECT_EQ(contentOf(folder_ / "other.json"), R"({"glint_scene": 1})");
+}
+
+TEST_F(OutputsOfCommands, TheirOwnKindIsReplaced) {
+  withHighlights();
+  writeScene();
+  const std::string files = "--json " + out("e.json") + " --csv " + out("e.csv") + " --html " + out("e.html");
+  for (int twice = 0; twice < 2; ++twice) {
+    const ProgramRun run = on("evaluate", files);
+    EXPECT_EQ(run.code, 0) << run.err;
+    saveSession();
+  }
+  refuses(on("evaluate", "--json " + out("same.json") + " --csv " + out("same.json")), "was given for another output already");
+  EXPECT_FALSE(fs::exists(folder_ / "same.json"));
+}
+
+TEST_F(OutputsOfCommands, AFolderWithFilesOfOthersIsNotWrittenInto) {
+  fs::create_directories(folder_ / "mine");
+  folder_.write("mine/0000.png", "a photograph");
+  refuses(on("detect", "--out " + out("mine")), "0000.png: --out: exists, and no earlier run of this command wrote it");
+  EXPECT_EQ(contentOf(folder_ / "mine/0000.png"), "a photograph");
+  for (int twice = 0; twice < 2; ++twice) {
+    const ProgramRun run = on("detect", "--out " + out("found"));
+    EXPECT_EQ(run.code, 0) << run.err;
+  }
+}
+
+}  // namespace
+}  // namespace glint

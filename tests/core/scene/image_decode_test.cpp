@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pixels against OpenCV's own readers, which share the decoding library but none of the code here; damaged files against silence.
+#include <png.h>
+
+#include <gmock/gmock.h>
+
+#include <cstdio>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "core/scene/image_decode.h"
+#include "tests/core/scene/scene_fixture.h"
+
+namespace glint {
+namespace {
+using namespace testing_support;
+using testing::HasSubstr;
+
+/// Smooth colours with some noise, so that every coder has something to do.
+cv::Mat picture(int type, double largest) {
+  cv::Mat m(48, 64, CV_MAKETYPE(CV_64F, CV_MAT_CN(type)));
+  for (int y = 0; y < m.rows; ++y)
+    for (int x = 0; x < m.cols * m.channels(); ++x) m.ptr<double>(y)[x] = largest * (0.1 + 0.6 * (x * 7 % 191) / 191.0 + 0.3 * y / 48.0);
+  cv::Mat out;
+  m.convertTo(out, type);
+  return out;
+}
+
+std::string encoded(const std::string& extension, const cv::Mat& m, const std::vector<int>& options = {}) {
+  std::vector<uchar> bytes;
+  EXPECT_TRUE(cv::imencode(extension, m, bytes, options));
+  return {bytes.begin(), bytes.end()};
+}
+
+Outcome<cv::Mat> decoded(const std::string& bytes) {
+  const ImageHeader header = readImageHeader(bytes);
+  if (!header.problem.empty()) return Failure{Reason::FrameUnreadable, header.problem};
+  return decodeImage(bytes, header);
+}
+
+/// What OpenCV reads, without alpha, red first.
+cv::Mat byOpenCv(const std::string& bytes) {
+  const cv::Mat m = cv::imdecode(std::vector<uchar>(bytes.begin(), bytes.end()), cv::IMREAD_UNCHANGED);
+  if (m.channels() == 1) return m;
+  std::vector<cv::Mat> c;
+  cv::split(m, c);
+  cv::Mat out;
+  cv::merge(std::vector<cv::Mat>{c[2], c[1], c[0]}, out);
+  return out;
+}
+
+void expectSame(const std::string& what, const std::string& bytes) {
+  const Outcome<cv::Mat> ours = decoded(bytes);
+  ASSERT_TRUE(ours) << what << ": " << ours.failure().message();
+  const cv::Mat theirs = byOpenCv(bytes);
+  ASSERT_EQ(ours->type(), theirs.type()) << what;
+  ASSERT_EQ(ours->size(), theirs.size()) << what;
+  EXPECT_EQ(cv::norm(*ours, theirs, cv::NORM_INF), 0) << what;
+}
+
+TEST(ImageDecode, LegalFilesAreReadAsOpenCvReadsThem) {
+  expectSame("PNG, 8 bits, colour", encoded(".png", picture(CV_8UC3, 255)));
+  expectSame("PNG, 8 bits, grey", encoded(".png", picture(CV_8UC1, 255)));
+  expectSame("PNG, 8 bits, alpha", encoded(".png", picture(CV_8UC4, 255)));
+  expectSame("PNG, 16 bits, colour", encoded(".png", picture(CV_16UC3, 65535)));
+  expectSame("PNG, 16 bits, grey", encoded(".png", picture(CV_16UC1, 65535)));
+  expectSame("PNG, 16 bits, alpha", encoded(".png", picture(CV_16UC4, 65535)));
+  expectSame("PNG, 1 bit", encoded(".png", picture(CV_8UC1, 255), {cv::IMWRITE_PNG_BILEVEL, 1}));
+  expectSame("JPEG, colour", encoded(".jpg", picture(CV_8UC3, 255)));
+  expectSame("JPEG, grey", encoded(".jpg", picture(CV_8UC1, 255)));
+  expectSame("JPEG, progressive", encoded(".jpg", picture(CV_8UC3, 255), {cv::IMWRITE_JPEG_PROGRESSIVE, 1, cv::IMWRITE_JPEG_QUALITY, 60}));
+  expectSame("TIFF, 16 bits", encoded(".tiff", picture(CV_16UC3, 65535)));
+  expectSame("TIFF, float", encoded(".tiff", picture(CV_32FC3, 3), {cv::IMWRITE_TIFF_COMPRESSION, 1}));
+  expectSame("EXR", encoded(".exr", picture(CV_32FC3, 3)));
+  expectSame("BMP", encoded(".bmp", picture(CV_8UC3, 255)));
+  expectSame("PPM", encoded(".ppm", picture(CV_8UC3, 255)));
+  expectSame("PGM, 16 bits", encoded(".pgm", picture(CV_16UC1, 65535)));
+  expectSame("HDR", encoded(".hdr", picture(CV_32FC3, 3)));
+  expectSame("WebP", encoded(".webp", picture(CV_8UC3, 255), {cv::IMWRITE_WEBP_QUALITY, 101}));
+}
+
+/// Written by libpng itself: rows in seven passes (Adam7).
+std::string interlacedPng(const cv::Mat& rgb) {
+  std::string bytes;
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png_create_info_struct(png);
+  png_set_write_fn(
+      png, &bytes, [](png_structp p, png_bytep data, png_size_t n) { static_cast<std::string*>(png_get_io_ptr(p))->append(reinterpret_cast<char*>(data), n); },
+      nullptr);
+  png_set_IHDR(png, info, png_uint_32(rgb.cols), png_uint_32(rgb.rows), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_ADAM7, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
+  std::vector<png_bytep> rows;
+  for (int y = 0; y < rgb.rows; ++y) rows.push_back(const_cast<png_bytep>(rgb.ptr(y)));
+  png_set_rows(png, info, rows.data());
+  png_write_png(png, info, PNG_TRANSFORM_IDENTITY, nullptr);
+  png_destroy_write_struct(&png, &info);
+  return bytes;
+}
+
+TEST(ImageDecode, AnInterlacedPngIsWhatWasWritten) {
+  const cv::Mat m = picture(CV_8UC3, 255);
+  const Outcome<cv::Mat> ours = decoded(interlacedPng(m));
+  ASSERT_TRUE(ours) << ours.failure().message();
+  EXPECT_EQ(cv::norm(*ours, m, cv::NORM_INF), 0);
+}
+
+/// Every damaged file is a failure with a reason, or pixels; no decoder writes a line of its own.
+TEST(ImageDecode, DamagedFilesEndInAReasonAndInSilence) {
+  const std::vector<std::pair<std::string, std::string>> files = {
+      {"png", encoded(".png", picture(CV_8UC3, 255))},   {"png16", encoded(".png", picture(CV_16UC1, 65535))},
+      {"jpg", encoded(".jpg", picture(CV_8UC3, 255))},   {"tiff", encoded(".tiff", picture(CV_32FC3, 3))},
+      {"exr", encoded(".exr", picture(CV_32FC3, 3))},    {"bmp", encoded(".bmp", picture(CV_8UC3, 255))},
+      {"ppm", encoded(".ppm", picture(CV_8UC3, 255))},   {"hdr", encoded(".hdr", picture(CV_32FC3, 3))},
+      {"webp", encoded(".webp", picture(CV_8UC3, 255))},
+  };
+  cv::RNG random(20260401);  // one seed, so that a failure comes again
+  int refused = 0, read = 0;
+  testing::internal::CaptureStderr();
+  for (const auto& [name, whole] : files)
+    for (int round = 0; round < 60; ++round) {
+      std::string bytes = whole;
+      if (round % 3 == 0) bytes.resize(static_cast<std::size_t>(random.uniform(0, int(bytes.size()))));
+      for (int k = 0; k < 1 + round % 4 && !bytes.empty(); ++k)
+        bytes[static_cast<std::size_t>(random.uniform(0, int(bytes.size())))] = static_cast<char>(random.uniform(0, 256));
+      const ImageHeader header = readImageHeader(bytes);
+      constexpr double kMost = 1e6;  // pixels: the caller refuses sizes that are not its camera's
+      if (header.problem.empty() && double(header.width) * double(header.height) > kMost) continue;
+      const Outcome<cv::Mat> m = decoded(bytes);
+      ++(m ? read : refused);
+      if (!m) {
+        EXPECT_FALSE(m.failure().detail.empty()) << name;
+      }
+    }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_GT(refused, 100);
+  EXPECT_GT(read, 20) << "the damage is too coarse to reach the decoders";
+}
+
+TEST(ImageDecode, GreyWhereDataAreMissingIsNoPicture) {
+  const std::string jpeg = encoded(".jpg", picture(CV_8UC3, 255));
+  // The end marker stays, so that the file looks whole.
+  const std::string gap = jpeg.substr(0, jpeg.size() * 2 / 3) + "\xff\xd9";
+  const Outcome<cv::Mat> m = decoded(gap);
+  ASSERT_FALSE(m);
+  EXPECT_THAT(m.failure().detail, HasSubstr("the JPEG is damaged"));
+}
+
+TEST(ImageHeader, SaysTheSizeThatTheEncoderWrote) {
+  for (const char* extension : {".png", ".jpg", ".tiff", ".exr", ".bmp", ".ppm", ".hdr", ".webp"}) {
+    const bool isFloat = std::string(extension) == ".exr" || std::string(extension) == ".hdr" || std::string(extension) == ".tiff";
+    const ImageHeader header = readImageHeader(encoded(extension, picture(isFloat ? CV_32FC3 : CV_8UC3, isFloat ? 3 : 255)));
+    EXPECT_EQ(header.problem, "") << extension;
+    EXPECT_EQ(header.width, 64u) << extension;
+    EXPECT_EQ(header.height, 48u) << extension;
+  }
+}
+
+TEST(ImageHeader, APngThatClaimsToBeHugeIsSeenBeforeItIsDecoded) {
+  std::string png = encoded(".png", picture(CV_8UC1, 255));
+  png.replace(16, 8, std::string("\0\0\xea\x60\0\0\xea\x60", 8));  // 60,000 x 60,000
+  EXPECT_EQ(readImageHeader(png).width, 60000u);
+}
+
+TEST(ImageHeader, WhatIsNoImageIsSaid) {
+  EXPECT_THAT(readImageHeader("").problem, HasSubstr("empty"));
+  EXPECT_THAT(readImageHeader("GIF89a").problem, HasSubstr("no image that is read here"));
+  EXPECT_THAT(readImageHeader("P7\nWIDTH 4\n").problem, HasSubstr("no image that is read here"));
+  for (const char* start : {"\x89PNG\r\n\x1a\n", "\xff\xd8", "BM", "P6\n", "#?RADIANCE\n", "II*"}) EXPECT_NE(readImageHeader(start).problem, "") << start;
+}
+
+}  // namespace
+}  // namespace glint
