@@ -61,7 +61,8 @@ TEST(ExplainLight, AModelWithALightOfItsOwnShowsThatOne) {
   EXPECT_NEAR(number(light, "", "distance from the true light")[0], (own - kLamp).norm(), kCopied);
   // The walk is one of the common light: said where it is shown.
   for (const char* id : {"limit-angles", "canonical-ellipse"}) {
-    const BrokenAssumption* said = broken(stepOf(inspection, 1, "reflectance", id), "other-light");
+    const ExplainStep walk = stepOf(inspection, 1, "reflectance", id);
+    const BrokenAssumption* said = broken(walk, "other-light");
     ASSERT_TRUE(said) << id;
     EXPECT_NEAR(said->numbers.at(0).values.at(0), (own - common).norm(), kCopied);
     EXPECT_FALSE(broken(stepOf(inspection, 1, "canonical", id), "other-light")) << id << ": it took the common one over";
