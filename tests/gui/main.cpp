@@ -10,6 +10,10 @@
 #include "gui/base/theme.h"
 #include "tests/gui/fixture.h"
 
+namespace glint::gui {
+QObject* makeTruthTest();
+}
+
 int main(int argc, char** argv) {
   using namespace glint::gui;
   static const TestClass classes[] = {
@@ -29,6 +33,7 @@ int main(int argc, char** argv) {
       {"unreadable", makeUnreadableTest},  {"relinked", makeRelinkedTest},
       {"what_if", makeWhatIfTest},         {"turns", makeTurnsTest},
       {"window_size", makeWindowSizeTest}, {"camera_picking", makeCameraPickingTest},
+      {"truth", makeTruthTest},
   };
   if (argc < 2) return std::fputs("usage: test_gui CLASS [QTest options]\n", stderr), 2;
   const bool untilKilled = std::strcmp(argv[1], "--until-killed") == 0;
