@@ -42,7 +42,7 @@ Command evaluateCommand() {
   };
   c.run = [a](const Context& context) -> int {
     InspectionRequest request = a->request();
-    const std::shared_ptr<const Scene> scene = a->scene();
+    const std::shared_ptr<const Scene> scene = a->scene(request);
     for (const std::string& w : scene->warnings) context.warn(w);
     Outputs outputs(a->input, *scene);
     outputs.file(a->json, "--json", OutputKind::document("glint_evaluation"));

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "core/pipeline/frame_spec.h"
 #include "core/pipeline/session.h"
 #include "core/tradeoff/choice.h"
 
@@ -35,6 +36,7 @@ void InspectionArguments::declare(Options& o, const std::string& modelsHelp) {
   o.positional(input, "INPUT", "A scene file, a folder with one, or a session");
   o.option(models, "--models,--model", "NAME[,NAME...]", modelsHelp);
   o.option(train, "--train", "SPEC", "Training frames: numbers, ids or ranges (0-5,14), first:K, spread:K, or per-surface (default: the session's, else first:6)");
+  o.option(exclude, "--exclude", "SPEC", "Frames that neither train nor are scored: numbers, ids or ranges (default: the session's, else none)");
   o.option(level, "--level", "Q", "Contour level, fraction of the peak above the background (default 0.5)");
   o.choice(source, "--source", {"", "radiance", "image"}, "Where both exist: the float radiance or the captured image (default: the session's, else radiance)");
   o.option(preset, "--preset", "NAME", "Model and settings of the session's trade-off: fast, balanced, exact or chosen");
@@ -86,7 +88,13 @@ bool InspectionArguments::sets(const std::string& key) const {
   return std::any_of(set.begin(), set.end(), [&](const std::string& entry) { return entry.rfind(key + "=", 0) == 0; });
 }
 
-std::shared_ptr<const Scene> InspectionArguments::scene() const { return std::make_shared<const Scene>(places.read(input)); }
+std::shared_ptr<const Scene> InspectionArguments::scene(InspectionRequest& request) const {
+  auto scene = std::make_shared<const Scene>(places.read(input));
+  if (exclude.empty()) return scene;
+  request.excluded = parseFrames(exclude, *scene, "--exclude");
+  if (request.excluded.size() == scene->frames.size()) throw InputError("", "--exclude " + exclude, "leaves no frame");
+  return scene;
+}
 
 namespace {
 

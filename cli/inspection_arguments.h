@@ -20,6 +20,7 @@ namespace glint::cli {
 struct InspectionArguments {
   std::string input, models, truth;
   std::string train, source, level;        ///< "" = the session's, else the default
+  std::string exclude;                     ///< "" = the session's, else none
   std::string preset;                      ///< of the session's trade-off; "" = none
   std::vector<std::string> set;
   double noisePx = 0;
@@ -32,7 +33,8 @@ struct InspectionArguments {
   InspectionRequest request() const;
   /// `--set` names this setting.
   bool sets(const std::string& key) const;
-  std::shared_ptr<const Scene> scene() const;
+  /// Reads the scene, and puts the frames of --exclude into the request: only the scene knows their ids. InputError.
+  std::shared_ptr<const Scene> scene(InspectionRequest& request) const;
 };
 
 /// What --level takes, in words: as the scene reader.

@@ -83,8 +83,8 @@ Command reconstructCommand() {
   };
   c.run = [a](const Context& context) -> int {
     if (a->models == "auto") throw InputError("", "--model auto", "choose with `glint evaluate --models auto`, then reconstruct that model");
-    const InspectionRequest request = a->request();
-    const std::shared_ptr<const Scene> scene = a->scene();
+    InspectionRequest request = a->request();
+    const std::shared_ptr<const Scene> scene = a->scene(request);
     for (const std::string& w : scene->warnings) context.warn(w);
     Outputs(a->input, *scene).file(a->out, "--out", OutputKind::document("glint_session"));
     const Inspection result = inspect(scene, request, context.progress());

@@ -83,7 +83,7 @@ Command tradeoffCommand() {
       request.models.clear();
       for (const auto& m : allModels()) request.models.push_back(m->id());
     }
-    const std::shared_ptr<const Scene> scene = a->scene();
+    const std::shared_ptr<const Scene> scene = a->scene(request);
     for (const std::string& w : scene->warnings) context.warn(w);
     Outputs outputs(a->input, *scene);
     outputs.file(a->json, "--json", OutputKind::document("glint_tradeoff"));

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <QApplication>
+#include <QLocale>
 #include <clocale>
 #include <cstdio>
 #include <exception>
 #include <string>
 
 #include "core/base/outcome.h"
+#include "gui/base/input_rules.h"
 #include "gui/scene/camera_glide.h"
 #include "gui/window/command_line.h"
 #include "gui/window/fit_on_screen.h"
@@ -44,9 +46,15 @@ int run(int argc, char** argv) {
   QApplication::setOrganizationName(QStringLiteral("Glint"));
   QApplication::setApplicationName(QStringLiteral("glint-inspector"));
   QApplication::setApplicationVersion(QStringLiteral(GLINT_VERSION));
+  QLocale::setDefault(QLocale::c());  // numbers have a point everywhere
+  installInputRules(app);
   applyTheme(app, command.theme);
 
   MainWindow window(coreEngine());
+  if (!command.run.isEmpty() && command.screenshot.isEmpty())  // a script may be waiting for it
+    QObject::connect(&window, &MainWindow::problem, [](const QString& line) {
+      std::fprintf(stderr, "glint-inspector: %s\n", line.toUtf8().constData());
+    });
   window.setTheme(command.theme);
   if (!command.size.isEmpty())
     window.resize(command.size);

@@ -10,11 +10,13 @@ namespace glint::viz {
 namespace {
 
 /// The nearest line that `counts`, if it is near enough. Later lines lie on top, so they win a tie.
-const OverlayLine* nearest(const FrameOverlay& shown, const Pixel& at, double nearPx, bool contoursOnly) {
+/// @param model  "" = all lines; else only this model's predictions
+const OverlayLine* nearest(const FrameOverlay& shown, const Pixel& at, double nearPx, bool contoursOnly, const std::string& model = "") {
   const OverlayLine* best = nullptr;
   double bestPx = nearPx;
   for (const OverlayLine& line : shown.lines) {
     if (contoursOnly && line.role != OverlayRole::ObservedContour && line.role != OverlayRole::PredictedContour) continue;
+    if (!model.empty() && (line.role != OverlayRole::PredictedContour || line.model != model)) continue;
     const double px = distance({line.points, line.closed}, at);
     if (px > bestPx) continue;
     bestPx = px;
@@ -34,7 +36,11 @@ Selection pickInFrame(const Inspection& inspection, const Selection& now, const 
   picked.direction.reset();
   picked.light.clear();
   const Pixel ideal = inspection.scene->frames[static_cast<std::size_t>(now.frame)].camera.undistorted(clicked);
-  if (const OverlayLine* line = nearest(shown, clicked, nearPx, true)) {
+  const OverlayLine* line = nearest(shown, clicked, nearPx, true);
+  // Where contours lie on one another the selected model stays, whichever of them is drawn on top.
+  if (line && line->role == OverlayRole::PredictedContour && !now.model.empty() && line->model != now.model)
+    if (const OverlayLine* own = nearest(shown, clicked, nearPx, true, now.model)) line = own;
+  if (line) {
     picked.light = line->light;
     if (line->role == OverlayRole::ObservedContour) {
       picked.highlight = line->highlight;

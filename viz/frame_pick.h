@@ -8,7 +8,7 @@
 namespace glint::viz {
 
 /// What a click into a frame's picture selects. Near a drawn contour: its highlight, its light, the direction of the clicked
-/// point and, on a prediction, its model. Inside an observed contour, away from the lines: that highlight as a whole. Elsewhere:
+/// point and, on a prediction, its model; the selected model stays where a contour of it is near, too. Inside an observed contour, away from the lines: that highlight as a whole. Elsewhere:
 /// no highlight.
 ///
 /// @param now      what is selected; its frame is the clicked one.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viz/movie.h"
 
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cctype>

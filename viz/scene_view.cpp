@@ -589,6 +589,17 @@ std::optional<Picked> SceneView::pick(int xDisplay, int yDisplay) const {
   return picked ? picked : pickCamera(xDisplay, yDisplay);
 }
 
+std::optional<Picked> SceneView::pickLamp(int xDisplay, int yDisplay) const {
+  if (!impl_->valid() || !impl_->renderer->GetRenderWindow()) return {};
+  impl_->update();
+  const LayerState& lamps = impl_->layers[layerIndex("true-light")];
+  if (!lamps.visible) return {};
+  std::vector<const Drawn*> drawn;
+  for (const Drawn& d : lamps.content.drawn) drawn.push_back(&d);
+  std::optional<Picked> picked = pickIn(impl_->renderer, impl_->input, drawn, impl_->surfaceShown(), xDisplay, yDisplay);
+  return picked && picked->layer == "true-light" ? picked : std::nullopt;
+}
+
 std::optional<Picked> SceneView::pickCamera(int xDisplay, int yDisplay) const {
   if (!impl_->valid() || !impl_->renderer->GetRenderWindow()) return {};
   impl_->update();

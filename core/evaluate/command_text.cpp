@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 
+#include "core/pipeline/frame_spec.h"
 #include "core/scene/scene_files.h"
 
 namespace glint {
@@ -35,25 +37,38 @@ std::string shellWord(const std::string& text) {
 }
 
 Outcome<std::string> commandOf(const Scene& scene, const InspectionRequest& q) {
-  if (!q.excluded.empty()) return Failure{Reason::NotSupported, "excluded frames have no flag; save a session and use it as INPUT"};
   if (!q.whatIf.none()) return Failure{Reason::NotSupported, "a what-if has no flag; save a session and use it as INPUT"};
   const InspectionRequest usual;
-  std::string command = "glint evaluate " + shellWord(scene.file.string());
+  // The command is pasted into a shell that stands in another folder.
+  const auto absolute = [](const std::filesystem::path& path) { return std::filesystem::absolute(path).lexically_normal().string(); };
+  const auto place = [&](const std::filesystem::path& path) { return shellWord(absolute(path)); };
+  std::string command = "glint evaluate " + place(scene.file);
   if (q.models != usual.models) {
     std::string models;
     for (const std::string& m : q.models) models += (models.empty() ? "" : ",") + m;
     command += " --models " + shellWord(models);
   }
   if (q.train != usual.train) command += " --train " + shellWord(q.train);
+  if (!q.excluded.empty()) {
+    const std::string spec = frameSpec(q.excluded, scene);
+    bool readsBack = false;
+    try {
+      readsBack = parseFrames(spec, scene, "--exclude") == q.excluded;
+    } catch (const InputError&) {
+      // Ids with commas that read like numbers.
+    }
+    if (!readsBack) return Failure{Reason::NotSupported, "the excluded frames cannot be named; save a session and use it as INPUT"};
+    command += " --exclude " + shellWord(spec);
+  }
   if (q.source != usual.source) command += q.source == FrameSource::Image ? " --source image" : " --source radiance";
   for (const auto& [key, value] : q.settings.values()) command += " --set " + shellWord(key + "=" + text(value));
   if (q.noisePx > 0) command += " --noise-px " + shortest(q.noisePx) + " --seed " + std::to_string(q.seed);
-  if (!q.truthFolder.empty()) command += " --truth " + shellWord(q.truthFolder);
+  if (!q.truthFolder.empty()) command += " --truth " + place(q.truthFolder);
   if (scene.allowOutsidePaths) command += " --allow-outside";
   for (const FilesFolder& f : scene.folders)
-    command += f.kind == FrameFile::Photograph ? " --photographs " + shellWord(f.folder.string())
-                                               : " --files " + shellWord(nameOf(f.kind) + ("=" + f.folder.string()));
-  for (const auto& [named, file] : scene.meshes) command += " --mesh " + shellWord(named + "=" + file.string());
+    command += f.kind == FrameFile::Photograph ? " --photographs " + place(f.folder)
+                                               : " --files " + shellWord(nameOf(f.kind) + ("=" + absolute(f.folder)));
+  for (const auto& [named, file] : scene.meshes) command += " --mesh " + shellWord(named + "=" + absolute(file));
   return command;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/base/number_text.h"
+#include "core/base/safe_text.h"
 #include "core/evaluate/palette.h"
 
 namespace glint::html {
@@ -19,9 +20,10 @@ inline std::string format(const char* pattern, double v) {
   return buffer;
 }
 
+/// Text from anywhere as it is, never as markup; control characters are shown escaped.
 inline std::string escaped(const std::string& text) {
   std::string out;
-  for (const char c : text) {
+  for (const char c : withoutControls(text)) {
     if (c == '&')
       out += "&amp;";
     else if (c == '<')

@@ -285,6 +285,7 @@ std::string evaluationJson(const Inspection& inspection, const ReportContext& co
   j["input"] = context.input;
   j["train"] = inspection.train.frames;
   j["train_spec"] = inspection.train.text;
+  j["excluded"] = inspection.request.excluded;
   j["training"] = trainingJson(inspection);
   j["level"] = inspection.request.settings.number("detect.level");
   j["source"] = inspection.request.source == FrameSource::Image ? "image" : "radiance";

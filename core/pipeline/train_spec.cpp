@@ -74,6 +74,33 @@ std::vector<int> parseFrames(const std::string& text, const Scene& scene, const 
   return {frames.begin(), frames.end()};
 }
 
+std::string frameSpec(const std::vector<int>& frames, const Scene& scene) {
+  std::map<std::string, int> ids;
+  for (int i = 0; i < static_cast<int>(scene.frames.size()); ++i) ids[scene.frames[static_cast<std::size_t>(i)].id] = i;
+  const auto isOwn = [&](const std::string& word, int frame) {
+    const auto it = ids.find(word);
+    return it == ids.end() || it->second == frame;
+  };
+  std::string text;
+  for (std::size_t i = 0; i < frames.size();) {
+    if (!text.empty()) text += ',';
+    const std::string from = std::to_string(frames[i]);
+    std::size_t j = i;
+    while (j + 1 < frames.size() && frames[j + 1] == frames[j] + 1) ++j;
+    if (j > i) {
+      const std::string to = std::to_string(frames[j]), range = from + '-' + to;
+      if (isOwn(from, frames[i]) && isOwn(to, frames[j]) && !ids.count(range)) {
+        text += range;
+        i = j + 1;
+        continue;
+      }
+    }
+    text += isOwn(from, frames[i]) ? from : scene.frames[static_cast<std::size_t>(frames[i])].id;
+    ++i;
+  }
+  return text;
+}
+
 TrainSpec parseTrainSpec(const std::string& text, const Scene& scene) {
   TrainSpec spec;
   spec.text = text;

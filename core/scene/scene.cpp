@@ -128,9 +128,11 @@ fs::path resolveInside(const fs::path& folder, const std::string& relative, cons
   const fs::path absolute = (path.is_absolute() ? path : folder / path).lexically_normal();
   if (options.allowOutsidePaths || liesIn(options.folders, absolute)) return absolute;
   if (path.is_absolute())
-    throw OutsidePath(file, place, "'" + relative + "' is absolute; paths are relative to the file (--allow-outside accepts it)");
+    throw OutsidePath(file, place, "'" + relative + "' is absolute; paths are relative to the file (--allow-outside accepts it)",
+                      realPath(absolute).parent_path());
   if (!liesIn({folder}, folder / path))
-    throw OutsidePath(file, place, "'" + relative + "' leaves the folder of the file (--allow-outside accepts it)");
+    throw OutsidePath(file, place, "'" + relative + "' leaves the folder of the file (--allow-outside accepts it)",
+                      realPath(absolute).parent_path());
   return absolute;
 }
 

@@ -57,12 +57,19 @@ std::vector<fs::path> foldersOfSession(const fs::path& session, const fs::path& 
   return folders;
 }
 
-void requirePermitted(const fs::path& path, const std::vector<fs::path>& permitted, const std::string& file, const std::string& place,
-                      const std::string& option) {
-  if (liesIn(permitted, path)) return;
+namespace {
+void require(bool lies, const fs::path& path, const std::string& file, const std::string& place, const std::string& option, const fs::path& folder) {
+  if (lies) return;
   throw OutsidePath(file, place,
                     "'" + path.string() + "' lies neither in the folder of the session nor in that of its scene (" + option +
-                        " names it, --allow-outside accepts it)");
+                        " names it, --allow-outside accepts it)",
+                    folder);
+}
+}  // namespace
+
+void requirePermitted(const fs::path& folder, const std::vector<fs::path>& permitted, const std::string& file, const std::string& place,
+                      const std::string& option) {
+  require(liesIn(permitted, folder), folder, file, place, option, realPath(folder));
 }
 
 void requirePermitted(const SessionInput& input, const std::string& file, const std::vector<fs::path>& permitted) {
@@ -71,7 +78,8 @@ void requirePermitted(const SessionInput& input, const std::string& file, const 
     requirePermitted(f.folder, permitted, file, "input.folders[" + std::to_string(i) + "].folder",
                      f.kind == FrameFile::Photograph ? "--photographs DIR" : std::string("--files ") + nameOf(f.kind) + "=DIR");
   }
-  for (const auto& [named, mesh] : input.meshes) requirePermitted(mesh, permitted, file, "input.meshes." + named, "--mesh " + named + "=FILE");
+  for (const auto& [named, mesh] : input.meshes)
+    require(liesIn(permitted, mesh), mesh, file, "input.meshes." + named, "--mesh " + named + "=FILE", realPath(mesh).parent_path());
 }
 
 }  // namespace glint

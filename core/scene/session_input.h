@@ -35,8 +35,8 @@ std::vector<std::filesystem::path> foldersOfSession(const std::filesystem::path&
 
 /// OutsidePath (place input.folders[i].folder, input.meshes.NAME) for the first that lies in none of `permitted`.
 void requirePermitted(const SessionInput& input, const std::string& file, const std::vector<std::filesystem::path>& permitted);
-/// The same for one path. @param option  that names such a folder on the command line, "--photographs"
-void requirePermitted(const std::filesystem::path& path, const std::vector<std::filesystem::path>& permitted, const std::string& file,
+/// The same for one folder. @param option  that names such a folder on the command line, "--photographs"
+void requirePermitted(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& permitted, const std::string& file,
                       const std::string& place, const std::string& option);
 
 }  // namespace glint

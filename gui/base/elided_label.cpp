@@ -7,6 +7,8 @@
 #include <QToolTip>
 #include <algorithm>
 
+#include "gui/base/tips.h"
+
 namespace glint::gui {
 
 QSize ElidedLabel::minimumSizeHint() const {
@@ -18,7 +20,7 @@ bool ElidedLabel::isCut() const { return fontMetrics().horizontalAdvance(text())
 
 bool ElidedLabel::event(QEvent* event) {
   if (event->type() == QEvent::ToolTip && toolTip().isEmpty() && isCut()) {
-    QToolTip::showText(static_cast<QHelpEvent*>(event)->globalPos(), text(), this);
+    showTip(static_cast<QHelpEvent*>(event)->globalPos(), text(), this);
     return true;
   }
   return QLabel::event(event);

@@ -5,6 +5,8 @@
 #include <QHelpEvent>
 #include <QToolTip>
 
+#include "gui/base/tips.h"
+
 namespace glint::gui {
 
 QSize ElidingDelegate::sizeHint(const QStyleOptionViewItem& option, const QModelIndex& index) const {
@@ -19,7 +21,7 @@ bool ElidingDelegate::helpEvent(QHelpEvent* event, QAbstractItemView* view, cons
                                 const QModelIndex& index) {
   if (event->type() == QEvent::ToolTip && index.isValid() && index.data(Qt::ToolTipRole).toString().isEmpty() &&
       isCut(option, index)) {
-    QToolTip::showText(event->globalPos(), index.data().toString(), view);
+    showTip(event->globalPos(), index.data().toString(), view);
     return true;
   }
   return QStyledItemDelegate::helpEvent(event, view, option, index);

@@ -6,13 +6,15 @@
 #include <QSignalBlocker>
 #include <QStyle>
 #include <QStyleOptionSpinBox>
-#include <QTextDocument>
 #include <QToolTip>
-#include <QWheelEvent>
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <variant>
 
+#include "gui/base/complaint.h"
 #include "gui/base/text.h"
+#include "gui/base/tips.h"
 #include "gui/base/unit_text.h"
 
 namespace glint::gui {
@@ -46,13 +48,27 @@ NumberBox::NumberBox(const ParamSpec& spec, QWidget* parent) : QDoubleSpinBox(pa
   setSingleStep(spec.step);
   if ((spec.max - spec.min) / spec.step > kManySteps) setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
   setSuffix(unitAfter(spec.unit));
+  whole_ = std::holds_alternative<int>(spec.defaultValue);
 }
 
 QString NumberBox::textFromValue(double value) const { return full_ ? fullText(value) : shortText(value); }
 
 double NumberBox::valueFromText(const QString& text) const {
   const QString given = bare(text, suffix());
-  return given == textFromValue(value()) ? value() : given.toDouble();
+  if (given == specialValueText()) return minimum();
+  return given == textFromValue(value()) ? value() : numberFromText(given).value_or(value());
+}
+
+QString NumberBox::problemOf(const QString& text) const {
+  const QString given = bare(text, suffix());
+  if (!specialValueText().isEmpty() && given == specialValueText()) return {};
+  QString why;
+  const std::optional<double> value = numberFromText(given, &why);
+  if (!value) return given.isEmpty() ? tr("A number is needed here") : why;
+  if (!(*value >= minimum() && *value <= maximum()))
+    return tr("%1 is not within %2 … %3").arg(given, fullText(minimum()), fullText(maximum()) + suffix());
+  if (whole_ && *value != std::round(*value)) return tr("%1 is not a whole number").arg(given);
+  return {};
 }
 
 QSize NumberBox::sizeHint() const {
@@ -74,8 +90,9 @@ void NumberBox::setFull(bool full) {
 bool NumberBox::event(QEvent* e) {
   if (e->type() != QEvent::ToolTip || shortText(value()) == fullText(value())) return QDoubleSpinBox::event(e);
   const QString exact = fullText(value()) + suffix();
-  const QString more = Qt::mightBeRichText(toolTip()) ? QStringLiteral("<br>") : QStringLiteral("\n");
-  QToolTip::showText(static_cast<QHelpEvent*>(e)->globalPos(), toolTip().isEmpty() ? exact : toolTip() + more + exact, this);
+  const QString more = hasRichTip(this) ? QStringLiteral("<br>") : QStringLiteral("\n");
+  const QString all = toolTip().isEmpty() ? exact : toolTip() + more + exact;
+  QToolTip::showText(static_cast<QHelpEvent*>(e)->globalPos(), hasRichTip(this) ? all : plainTip(all), this);
   return true;
 }
 
@@ -90,17 +107,23 @@ void NumberBox::focusOutEvent(QFocusEvent* e) {
 }
 
 QValidator::State NumberBox::validate(QString& text, int&) const {
-  bool number = false;
-  const double value = bare(text, suffix()).toDouble(&number);
-  if (!number) return QValidator::Intermediate;  // "1e-" on the way to a number
-  return value >= minimum() && value <= maximum() ? QValidator::Acceptable : QValidator::Intermediate;
+  // What is wrong may be on its way to a number ("1e-").
+  return problemOf(text).isEmpty() ? QValidator::Acceptable : QValidator::Intermediate;
 }
 
-void NumberBox::wheelEvent(QWheelEvent* e) {
-  if (hasFocus())
-    QDoubleSpinBox::wheelEvent(e);
-  else
-    e->ignore();
+/// Qt asks for this when typing is finished and the text is not acceptable; it then puts the old value back.
+void NumberBox::fixup(QString& text) const {
+  if (const QString problem = problemOf(text); !problem.isEmpty())
+    complain(const_cast<NumberBox*>(this), tr("%1; it stays %2").arg(problem, fullText(value()) + suffix()));
+}
+
+ParamSpec numberRange(double min, double max, double step) {
+  ParamSpec spec;
+  spec.defaultValue = min;
+  spec.min = min;
+  spec.max = max;
+  spec.step = step;
+  return spec;
 }
 
 SliderScale::SliderScale(const ParamSpec& spec)

@@ -7,17 +7,20 @@
 
 namespace glint::gui {
 
-/// A spin box for one numeric setting: writes numbers as short as they are ("1e-10", not 0.0000000001), accepts both, and changes
-/// its value only when typing is finished. It shows about five digits, so that the unit stays in sight, and all of them while it
-/// is edited and in its tool tip; what is shown shortened stays exact unless it is changed. The wheel changes it only while it
-/// has the focus, so that scrolling the panel changes nothing.
+/// A spin box for one number: writes it as short as it is ("1e-10", not 0.0000000001) and with a point in every locale, reads what
+/// numberFromText reads, and changes its value only when typing is finished. Where what was typed cannot be taken, it says why, below
+/// the box, and keeps its value. It shows about five digits, so that the unit stays in sight, and all of them while it
+/// is edited and in its tool tip; what is shown shortened stays exact unless it is changed.
 class NumberBox : public QDoubleSpinBox {
   Q_OBJECT
  public:
   explicit NumberBox(const ParamSpec& spec, QWidget* parent = nullptr);
+  /// What is wrong with a text that was typed; "" = nothing.
+  QString problemOf(const QString& text) const;
   QString textFromValue(double value) const override;
   double valueFromText(const QString& text) const override;
   QValidator::State validate(QString& text, int& position) const override;
+  void fixup(QString& text) const override;
   QSize sizeHint() const override;  ///< room for the longest number that it shows, and the unit
   QSize minimumSizeHint() const override { return sizeHint(); }
 
@@ -25,12 +28,15 @@ class NumberBox : public QDoubleSpinBox {
   bool event(QEvent* e) override;
   void focusInEvent(QFocusEvent* e) override;
   void focusOutEvent(QFocusEvent* e) override;
-  void wheelEvent(QWheelEvent* e) override;
 
  private:
   void setFull(bool full);
   bool full_ = false;  ///< shows all digits
+  bool whole_ = false;  ///< takes whole numbers only
 };
+
+/// For a number box that is of no setting.
+ParamSpec numberRange(double min, double max, double step);
 
 /// Slider positions 0..1000 of a setting: linear, or logarithmic in steps where the range spans many of them.
 class SliderScale {

@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "gui/base/tips.h"
+
 namespace glint::gui {
 
 void RowsModel::setRows(std::vector<Row> rows) {
@@ -23,7 +25,7 @@ QVariant RowsModel::data(const QModelIndex& index, int role) const {
     case Qt::ForegroundRole:
       return cell.colour.isValid() ? QVariant(cell.colour) : QVariant();
     case Qt::ToolTipRole:
-      return cell.tip.isEmpty() ? QVariant(cell.text) : QVariant(cell.tip);
+      return plainTip(cell.tip.isEmpty() ? cell.text : cell.tip);
     case Qt::TextAlignmentRole:
       return int(Qt::AlignVCenter) | int(cell.number ? Qt::AlignRight : Qt::AlignLeft);
     default:

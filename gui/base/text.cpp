@@ -1,18 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/base/text.h"
 
-#include <QLocale>
+#include <QObject>
 #include <QRegularExpression>
 #include <QStringList>
 #include <cmath>
 
+#include "core/base/safe_text.h"
 #include "gui/base/unit_text.h"
 
 namespace glint::gui {
 
+QString toQString(const std::string& s) {
+  const std::string safe = withoutControls(s);
+  return QString::fromUtf8(safe.data(), int(safe.size()));
+}
+
+QString nameText(const std::string& name) {
+  return toQString(name).replace(QLatin1Char('\n'), QStringLiteral("\\n")).replace(QLatin1Char('\t'), QStringLiteral("\\t"));
+}
+
+QString shownText(const QString& text) { return nameText(text.toStdString()); }
+
+QString menuText(QString text) { return text.replace(QLatin1Char('&'), QStringLiteral("&&")); }
+
 QString joined(const std::vector<std::string>& words) {
   QStringList list;
-  for (const std::string& w : words) list << toQString(w);
+  for (const std::string& w : words) list << nameText(w);
   return list.join(QStringLiteral(", "));
 }
 
@@ -33,6 +47,24 @@ QString valueText(const SettingValue& value, const ParamSpec& spec) {
 QString withMicro(QString sentence) {
   static const QRegularExpression number(QStringLiteral("(?<=[0-9]) us\\b"));
   return sentence.replace(number, QStringLiteral(" µs"));
+}
+
+std::optional<double> numberFromText(const QString& typed, QString* why) {
+  const auto fail = [&](const QString& words) {
+    if (why) *why = words;
+    return std::nullopt;
+  };
+  QString text = typed.trimmed();
+  text.replace(QChar(0x2212), QLatin1Char('-'));  // the minus of books
+  static const QRegularExpression twoMeanings(QStringLiteral("^[+-]?[1-9][0-9]{0,2},[0-9]{3}$"));
+  if (twoMeanings.match(text).hasMatch())
+    return fail(QObject::tr("%1 may mean %2 or %3: write a point, or no comma")
+                    .arg(text, QString(text).replace(QLatin1Char(','), QLatin1Char('.')), QString(text).remove(QLatin1Char(','))));
+  if (text.count(QLatin1Char(',')) == 1 && !text.contains(QLatin1Char('.'))) text.replace(QLatin1Char(','), QLatin1Char('.'));
+  bool isNumber = false;
+  const double value = text.toDouble(&isNumber);  // whatever the locale
+  if (!isNumber || !std::isfinite(value)) return fail(QObject::tr("\"%1\" is not a number").arg(shownText(typed.trimmed())));
+  return value;
 }
 
 int decimalsFor(double step) {

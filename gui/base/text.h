@@ -11,7 +11,17 @@
 
 namespace glint::gui {
 
-inline QString toQString(const std::string& s) { return QString::fromUtf8(s.data(), int(s.size())); }
+/// For people: control characters, marks that turn the direction of writing, and bytes that are not UTF-8 are shown escaped, whoever
+/// wrote the text. Line ends and tabs stay.
+QString toQString(const std::string& s);
+/// The same for a name: line ends and tabs are shown escaped, too, so that it stays one line.
+QString nameText(const std::string& name);
+/// A path or another text that comes as QString, for people: as nameText.
+QString shownText(const QString& text);
+/// For what reads it back: paths, keys, what goes to the clipboard. Not for labels.
+inline QString exactQString(const std::string& s) { return QString::fromUtf8(s.data(), int(s.size())); }
+/// As the text of a menu's entry, a tab or a button, where a single & would underline the letter after it.
+QString menuText(QString text);
 QString joined(const std::vector<std::string>& words);
 
 /// A number with `digits` significant digits, without trailing zeros; a dash when it is not finite.
@@ -20,6 +30,9 @@ QString numberText(double value, int digits = 4);
 QString valueText(const SettingValue& value, const ParamSpec& spec);
 /// A sentence of the program with "12 us" as "12 µs": what terminals and files get is plain ASCII.
 QString withMicro(QString sentence);
+/// What was typed, in any locale: "0.5", "1e-3", and "0,5", where the comma can only be a decimal one.
+/// @param why  says what is wrong where there is no number; "1,234" may be two numbers.
+std::optional<double> numberFromText(const QString& typed, QString* why = nullptr);
 /// Decimals that a spin box needs to show steps of `step`.
 int decimalsFor(double step);
 

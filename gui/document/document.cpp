@@ -5,24 +5,13 @@
 #include <utility>
 
 #include "core/explain/explain.h"
+#include "core/pipeline/frame_spec.h"
 #include "gui/base/text.h"
 #include "gui/document/state_command.h"
+#include "gui/scene/scene_options.h"
 #include "viz/frame_overlay.h"
 
 namespace glint::gui {
-
-std::string rangesText(const std::vector<int>& frames) {
-  std::string text;
-  for (std::size_t i = 0; i < frames.size();) {
-    std::size_t j = i;
-    while (j + 1 < frames.size() && frames[j + 1] == frames[j] + 1) ++j;
-    if (!text.empty()) text += ',';
-    text += std::to_string(frames[i]);
-    if (j > i) text += '-' + std::to_string(frames[j]);
-    i = j + 1;
-  }
-  return text;
-}
 
 Document::Document(ParseTrain parseTrain, QObject* parent) : QObject(parent), parseTrain_(std::move(parseTrain)) {}
 
@@ -128,7 +117,7 @@ void Document::open(const Opened& opened) {
   state_ = {opened.request, opened.selection, opened.layers, opened.options};
   state_.selection.frame = std::clamp(state_.selection.frame, 0, std::max(0, frameCount() - 1));
   saved_ = state_;
-  inputFile_ = toQString(opened.path);
+  inputFile_ = exactQString(opened.path);
   session_ = opened.session;
   sessionFile_ = opened.isSession ? inputFile_ : QString();
   inspection_.reset();
@@ -167,9 +156,23 @@ void Document::markSaved(const QString& sessionFile, const ViewState& saved, std
   emit savedStateChanged();
 }
 
+namespace {
+/// Views that were kept under a name: made on purpose, unlike how things happen to be shown.
+std::map<std::string, std::string> keptViews(const std::map<std::string, std::string>& options) {
+  std::map<std::string, std::string> kept;
+  for (const auto& [name, value] : options)
+    if (name.rfind(kSavedView, 0) == 0 && !value.empty()) kept[name] = value;
+  return kept;
+}
+}  // namespace
+
 bool Document::hasUnsavedChanges() const {
-  return scene_ && (unsaved_ || saved_.request != state_.request || saved_.layers != state_.layers ||
-                    saved_.options != state_.options || tradeoff_ != savedTradeoff_);
+  return scene_ && (unsaved_ || saved_.request != state_.request || tradeoff_ != savedTradeoff_ ||
+                    keptViews(saved_.options) != keptViews(state_.options));
+}
+
+bool Document::looksAsSaved() const {
+  return saved_.layers == state_.layers && saved_.options == state_.options;
 }
 
 void Document::setSetting(const std::string& key, const SettingValue& value, int gesture) {
@@ -223,7 +226,7 @@ void Document::setRole(int frame, FrameRole role) {
   ViewState after = state_;
   std::vector<int>& excluded = after.request.excluded;
   excluded.erase(std::remove(excluded.begin(), excluded.end(), frame), excluded.end());
-  const QString id = toQString(scene_->frames[std::size_t(frame)].id);
+  const QString id = nameText(scene_->frames[std::size_t(frame)].id);
   if (role == FrameRole::Excluded) {
     excluded.push_back(frame);
     std::sort(excluded.begin(), excluded.end());
@@ -237,7 +240,7 @@ void Document::setRole(int frame, FrameRole role) {
     training.erase(frame);
   // The words of the specification ("spread:6") are kept where the set of frames stays the same.
   if (training != training_) {
-    const std::string ranges = rangesText({training.begin(), training.end()});
+    const std::string ranges = frameSpec({training.begin(), training.end()}, *scene_);
     if (ranges.empty()) return;  // nothing to learn from is not a specification
     after.request.train = ranges;
   }
@@ -249,7 +252,7 @@ void Document::select(const viz::Selection& selection, int gesture) {
   ViewState after = state_;
   after.selection = selection;
   after.selection.frame = std::clamp(selection.frame, 0, std::max(0, frameCount() - 1));
-  const QString frame = toQString(scene_->frames[std::size_t(after.selection.frame)].id);
+  const QString frame = nameText(scene_->frames[std::size_t(after.selection.frame)].id);
   push(std::move(after), tr("Select frame %1").arg(frame), gesture > 0 ? QStringLiteral("select#%1").arg(gesture) : QString());
 }
 
@@ -260,6 +263,15 @@ void Document::selectFrame(int frame, int gesture) {
   s.highlight = -1;
   s.direction.reset();
   select(s, gesture);
+}
+
+void Document::showFrame(int frame) {
+  if (!scene_ || frame == state_.selection.frame || frame < 0 || frame >= frameCount()) return;
+  ViewState after = state_;
+  after.selection.frame = frame;
+  after.selection.highlight = -1;
+  after.selection.direction.reset();
+  apply(after);
 }
 
 void Document::setLayerVisible(const std::string& name, const std::string& title, bool visible) {
@@ -276,6 +288,10 @@ void Document::setView(const std::map<std::string, bool>& layers, const std::map
   after.options = options;
   push(std::move(after), text);
 }
+
+namespace {
+std::string optionText(double value) { return QString::number(value, 'g', 12).toStdString(); }
+}  // namespace
 
 const std::string& Document::option(const std::string& name, const std::string& otherwise) const {
   const auto it = state_.options.find(name);
@@ -297,7 +313,13 @@ void Document::setOption(const std::string& name, const std::string& value, cons
 }
 
 void Document::setOption(const std::string& name, double value, const QString& text, int gesture) {
-  setOption(name, QString::number(value, 'g', 12).toStdString(), text, gesture);
+  setOption(name, optionText(value), text, gesture);
+}
+
+void Document::showOption(const std::string& name, double value) {
+  ViewState after = state_;
+  after.options[name] = optionText(value);
+  if (after.options != state_.options) apply(after);
 }
 
 void Document::push(ViewState after, const QString& text, const QString& mergeKey) {

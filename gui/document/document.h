@@ -28,7 +28,7 @@ struct ViewState {
 
 /// What is on screen: the undoable state, the scene that it belongs to and the newest results.
 /// Widgets read it, listen to its signals and change it through the actions below; each action is one step of
-/// undo, and steps of one gesture (a slider drag, playing the timeline) merge. An action that changes nothing leaves no step.
+/// undo, and steps of one gesture (a slider drag, scrubbing) merge; playing leaves none. An action that changes nothing leaves no step.
 class Document : public QObject {
   Q_OBJECT
  public:
@@ -87,8 +87,11 @@ class Document : public QObject {
   Opened toSave() const;
   /// @param saved, tradeoff  what was written, which may be older than what is on screen.
   void markSaved(const QString& sessionFile, const ViewState& saved, std::shared_ptr<const Tradeoff> tradeoff = nullptr);
-  /// What a session stores differs from what was opened or saved last (moving through the frames does not count).
+  /// What was made differs from what was opened or saved last: the request, measurements, views kept under a name. How things are
+  /// looked at (selection, layers, options, layout) does not count; it is saved along.
   bool hasUnsavedChanges() const;
+  /// Layers and options are those that were opened or saved last.
+  bool looksAsSaved() const;
 
  public slots:
   /// @param gesture  equal positive numbers merge into one step of undo; 0 never merges.
@@ -107,10 +110,14 @@ class Document : public QObject {
   void setRole(int frame, FrameRole role);
   void select(const viz::Selection& selection, int gesture = 0);
   void selectFrame(int frame, int gesture = 0);
+  /// Selects it without a step of undo: playing.
+  void showFrame(int frame);
   void setLayerVisible(const std::string& name, const std::string& title, bool visible);
   /// @param text  what the step of undo is called; @param gesture as setSetting.
   void setOption(const std::string& name, const std::string& value, const QString& text, int gesture = 0);
   void setOption(const std::string& name, double value, const QString& text, int gesture = 0);
+  /// Sets it without a step of undo: playing.
+  void showOption(const std::string& name, double value);
   /// Layers and options changed together in one step.
   void setView(const std::map<std::string, bool>& layers, const std::map<std::string, std::string>& options, const QString& text);
 
@@ -151,8 +158,5 @@ class Document : public QObject {
   int gesture_ = 0;
   QUndoStack undo_;
 };
-
-/// "0-5,9" from sorted frame numbers; "" for none.
-std::string rangesText(const std::vector<int>& frames);
 
 }  // namespace glint::gui

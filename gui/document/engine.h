@@ -28,6 +28,8 @@ struct Opened {
   bool isSession = false;  ///< `path` is a session, so "save" writes there
   bool unsaved = false;    ///< recovered or relinked: what is on screen is not what `path` holds
   std::string warning;     ///< one line to show once; "" = none
+  std::string notice;      ///< the same, worth knowing only
+  std::string stamp;       ///< of the session file as it was read (see stampOf); "" = not known
   std::shared_ptr<const Scene> scene;
   InspectionRequest request;
   viz::Selection selection;

@@ -2,9 +2,11 @@
 #include "gui/document/runner.h"
 
 #include <exception>
+#include <stdexcept>
 #include <utility>
 
 #include "core/pipeline/session.h"
+#include "core/scene/permitted.h"
 #include "gui/base/background.h"
 #include "gui/base/text.h"
 
@@ -21,6 +23,7 @@ Runner::Runner(Engine engine, QObject* parent) : QObject(parent), engine_(std::m
   qRegisterMetaType<TradeoffPtr>("glint::gui::TradeoffPtr");
   qRegisterMetaType<InfluencePtr>("glint::gui::InfluencePtr");
   qRegisterMetaType<MissingPtr>("glint::gui::MissingPtr");
+  qRegisterMetaType<OutsidePtr>("glint::gui::OutsidePtr");
   worker_->moveToThread(&thread_);
   connect(&thread_, &QThread::finished, worker_, &QObject::deleteLater);
   startInBackground(thread_);
@@ -42,7 +45,7 @@ void Runner::open(const std::string& path, const Relinked& instead) {
   const auto work = [this, path, instead](int job) {
     const auto say = [&](const std::filesystem::path& file, const std::string& named) {
       const MissingPtr missing =
-          std::make_shared<const Missing>(Missing{toQString(path), toQString(file.string()), named, instead});
+          std::make_shared<const Missing>(Missing{exactQString(path), exactQString(file.string()), named, instead});
       QMetaObject::invokeMethod(
           this, [this, missing] { emit inputMissing(missing); }, Qt::QueuedConnection);
     };
@@ -55,6 +58,13 @@ void Runner::open(const std::string& path, const Relinked& instead) {
     } catch (const MissingMesh& e) {
       say(e.mesh(), e.named());
       throw;
+    } catch (const OutsidePath& e) {
+      const OutsidePtr outside = std::make_shared<const Outside>(Outside{exactQString(path), e.folder().string(), instead});
+      QMetaObject::invokeMethod(
+          this, [this, outside] { emit outsideNamed(outside); }, Qt::QueuedConnection);
+      // The flags that it names are of the command line.
+      const std::string words = e.what();
+      throw std::runtime_error(words.substr(0, words.rfind(" (--")));
     }
     if (job == newest_)
       QMetaObject::invokeMethod(
@@ -170,7 +180,7 @@ void Runner::save(OpenedPtr opened, InspectionPtr results, const std::string& pa
         QMetaObject::invokeMethod(
             this,
             [this, path, problem] {
-              emit saved(toQString(path), problem);
+              emit saved(exactQString(path), problem);
               countEnd();
             },
             Qt::QueuedConnection);

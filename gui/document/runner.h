@@ -27,6 +27,14 @@ struct Missing {
 };
 using MissingPtr = std::shared_ptr<const Missing>;
 
+/// A folder that a session or scene names, and may not without a person's word.
+struct Outside {
+  QString path;        ///< that was to be opened
+  std::string folder;  ///< absolute; to be put into Relinked::folders
+  Relinked instead;    ///< that it was opened with
+};
+using OutsidePtr = std::shared_ptr<const Outside>;
+
 /// The only place that knows both Qt and the pipeline: opens inputs and computes inspections on a thread of its own.
 /// The newest request wins. A run that a newer request overtakes is stopped, except in its first `kGraceMs`: quick runs
 /// finish, so that a slider shows results while it is dragged; the run after one that was stopped has `kLongGraceMs`, or a slider
@@ -75,6 +83,8 @@ class Runner : public QObject {
   void failed(const QString& oneLine);
   /// With failed() after it: opening can be tried again with the place of what is missing.
   void inputMissing(const glint::gui::MissingPtr& missing);
+  /// With failed() after it: opening can be tried again when a person allows the folder.
+  void outsideNamed(const glint::gui::OutsidePtr& outside);
   void openFailed();  ///< after failed(): what ran for the scene on screen was stopped for nothing
   void stopped();     ///< by cancel()
   void saved(const QString& path, const QString& problem);  ///< `problem` is one line, "" = the file is written
@@ -106,3 +116,4 @@ Q_DECLARE_METATYPE(glint::gui::SelectionPtr)
 Q_DECLARE_METATYPE(glint::gui::TradeoffPtr)
 Q_DECLARE_METATYPE(glint::gui::InfluencePtr)
 Q_DECLARE_METATYPE(glint::gui::MissingPtr)
+Q_DECLARE_METATYPE(glint::gui::OutsidePtr)

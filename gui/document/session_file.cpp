@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/base/atomic_file.h"
@@ -11,6 +13,7 @@
 #include "core/scene/mesh_file.h"
 #include "gui/base/text.h"
 #include "gui/document/figure.h"
+#include "gui/document/own_files.h"
 #include "gui/scene/scene_options.h"
 
 namespace glint::gui {
@@ -39,6 +42,14 @@ int frameNumber(const Scene& scene, const std::string& id) {
   const auto it = std::find_if(scene.frames.begin(), scene.frames.end(), [&](const Frame& f) { return f.id == id; });
   return it == scene.frames.end() ? 0 : int(it - scene.frames.begin());
 }
+/// What this program left behind may name what the session that it is of may name, and what it was told itself.
+Relinked withFoldersOf(Relinked instead, const Recovery& recovery, const Session& session) {
+  instead.folders.push_back(recovery.of.parent_path());
+  for (const FilesFolder& f : session.folders) instead.folders.push_back(f.folder);
+  for (const auto& [named, mesh] : session.meshes) instead.folders.push_back(mesh.parent_path());
+  if (!session.request.truthFolder.empty()) instead.folders.emplace_back(session.request.truthFolder);
+  return instead;
+}
 }  // namespace
 
 Opened openInput(const std::string& path, const Relinked& instead) {
@@ -47,11 +58,12 @@ Opened openInput(const std::string& path, const Relinked& instead) {
   opened.unsaved = instead.any();
   opened.path = path;
   const fs::path session = sessionAt(path);
-  const std::string inside = fs::path(path).extension() == ".png" ? sessionInFigure(toQString(path)).toStdString() : "";
+  const std::string inside = fs::path(path).extension() == ".png" ? sessionInFigure(exactQString(path)).toStdString() : "";
   if (session.empty() && inside.empty()) {
     ReadOptions options;
     options.meshes = instead.meshes;
     options.meshFolders = instead.meshFolders;
+    options.folders = instead.folders;
     opened.scene = std::make_shared<const Scene>(readScene(path, options));
     // A short scene opens too: the default would ask for more frames than there are.
     const int frames = int(opened.scene->frames.size());
@@ -59,16 +71,26 @@ Opened openInput(const std::string& path, const Relinked& instead) {
     return opened;
   }
   if (!session.empty()) removeAbandonedTemporaries(session.parent_path());  // of a program that was killed while it saved
-  OpenedSession read = openSession(inside.empty() ? readSession(session) : parseSession(inside, path), instead);
+  // Before it is read: what another program writes meanwhile is then seen as a change.
+  const std::string stamp = inside.empty() ? stampOf(exactQString(session.string())) : "";
+  Session stored = inside.empty() ? readSession(session) : parseSession(inside, path);
+  const std::optional<Recovery> recovery = std::exchange(stored.recovery, std::nullopt);
+  const bool ours = recovery && inside.empty() && isOwnRecovery(exactQString(session.string()));
+  OpenedSession read = openSession(stored, ours ? withFoldersOf(instead, *recovery, stored) : instead);
   const SessionView& view = read.session.view;
-  opened.path = session.string();
-  opened.isSession = true;
   opened.warning = read.warning;
-  if (read.session.recovery) {
-    opened.path = read.session.recovery->of.string();
-    opened.isSession = read.session.recovery->isSession;
+  if (ours) {
+    opened.path = recovery->of.string();
+    opened.isSession = recovery->isSession;
     opened.unsaved = true;
-    read.session.recovery.reset();
+  } else if (inside.empty()) {
+    opened.path = session.string();
+    opened.isSession = true;
+    opened.stamp = stamp;
+    if (recovery)
+      opened.notice = session.string() + ": recovery: is not believed, for this program did not leave the file behind; it is saved to itself";
+  } else {
+    opened.unsaved = true;  // the picture holds it, and is no session to save to
   }
   opened.scene = read.scene;
   opened.request = read.session.request;
@@ -99,7 +121,6 @@ void addState(Session& session, const Opened& opened) {
   if (opened.session) {
     session.notes = opened.session->notes;
     session.unknownJson = opened.session->unknownJson;
-    session.allowOutsidePaths = opened.session->allowOutsidePaths;
   }
   session.view.layout = opened.layout;
   session.view.layers = opened.layers;

@@ -3,10 +3,17 @@
 
 #include <utility>
 
+#include "gui/base/text.h"
+
 namespace glint::gui {
 
+namespace {
+/// What the history shows, and what stands in a menu after "Undo".
+QString twoTexts(const QString& text) { return text + QLatin1Char('\n') + menuText(text); }
+}  // namespace
+
 StateCommand::StateCommand(Document& document, ViewState before, ViewState after, const QString& text, QString mergeKey)
-    : QUndoCommand(text),
+    : QUndoCommand(twoTexts(text)),
       document_(document),
       before_(std::move(before)),
       after_(std::move(after)),
@@ -19,7 +26,7 @@ bool StateCommand::mergeWith(const QUndoCommand* later) {
   const auto* next = static_cast<const StateCommand*>(later);  // Qt calls this for equal id() only
   if (next->mergeKey_ != mergeKey_) return false;
   after_ = next->after_;
-  setText(next->text());
+  setText(twoTexts(next->text()));
   return true;
 }
 

@@ -84,7 +84,7 @@ void WalkPlayer::play() {
 void WalkPlayer::pause() {
   if (!playing()) return;
   timer_.stop();
-  setStep(shown_);
+  document_.showOption(kWalkStep, double(shown_));  // playing leaves no step of undo
   emit changed();
 }
 

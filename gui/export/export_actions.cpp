@@ -184,21 +184,24 @@ void ExportActions::writeLabels(const QString& folder) {
   });
 }
 
+/// A command is pasted into a shell that may stand anywhere.
+std::string ExportActions::sessionPath() const { return QFileInfo(document_.sessionFile()).absoluteFilePath().toStdString(); }
+
 Outcome<std::string> ExportActions::command() const {
   if (!document_.scene()) return Failure{Reason::NoSurface, "no scene is open"};
   Outcome<std::string> text = commandOf(*document_.scene(), document_.request());
   if (text || document_.sessionFile().isEmpty() || document_.hasUnsavedChanges()) return text;
-  return "glint evaluate " + shellWord(document_.sessionFile().toStdString());  // the session holds what has no flag
+  return "glint evaluate " + shellWord(sessionPath());  // the session holds what has no flag
 }
 
 Outcome<std::string> ExportActions::windowCommand() const {
   if (!document_.scene()) return Failure{Reason::NoSurface, "no scene is open"};
-  if (document_.sessionFile().isEmpty() || document_.hasUnsavedChanges())
+  if (document_.sessionFile().isEmpty() || document_.hasUnsavedChanges() || !document_.looksAsSaved())
     return Failure{Reason::NotSupported, "a command can only open what is stored; save the session first"};
   const Frame& frame = document_.scene()->frames[std::size_t(document_.selection().frame)];
   const QSize size = window_->window()->size();
   const std::string layout = snapshot_ ? snapshot_().layout : std::string();
-  return "glint-inspector " + shellWord(document_.sessionFile().toStdString()) +
+  return "glint-inspector " + shellWord(sessionPath()) +
          (layout.empty() ? std::string() : " --layout " + layout) + " --frame " + shellWord(frame.id) + " --theme " +
          (currentTheme() == Theme::Dark ? "dark" : "light") + " --size " + std::to_string(size.width()) + "x" +
          std::to_string(size.height()) + " --screenshot window.png --wait-idle";
@@ -209,7 +212,7 @@ void ExportActions::copyWindowCommand() { copy(windowCommand()); }
 
 void ExportActions::copy(const Outcome<std::string>& text) {
   if (!text) return void(emit problem(tr("No command: %1").arg(toQString(text.failure().detail))));
-  QApplication::clipboard()->setText(toQString(*text));
+  QApplication::clipboard()->setText(exactQString(*text));
   emit message(toQString(*text));
 }
 

@@ -60,6 +60,7 @@ class ExportActions : public QObject {
   void sessionWritten(const QString& oneLine, const QString& session);
 
  private:
+  std::string sessionPath() const;
   void copy(const Outcome<std::string>& command);
   using Write = std::function<void(const QString& file)>;
   void ask(const QString& title, const QString& name, const QString& filter, const std::function<Write()>& prepare);

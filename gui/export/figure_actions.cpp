@@ -8,6 +8,7 @@
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QFontMetricsF>
+#include <QMessageBox>
 #include <QPageSize>
 #include <QPainter>
 #include <QPdfWriter>
@@ -18,10 +19,12 @@
 #include <vector>
 
 #include "core/base/atomic_file.h"
+#include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/to_qimage.h"
 #include "gui/base/vtk_canvas.h"
 #include "gui/document/figure.h"
+#include "gui/document/own_files.h"
 #include "gui/export/long_job.h"
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/frame_panel.h"
@@ -68,14 +71,44 @@ QString suggestedFile(const Document& document, const QString& what, const QStri
   return QDir(before ? theLastExport.second : input.absolutePath()).filePath(QStringLiteral("%1-%2%3").arg(base, what, ending));
 }
 
+namespace {
+/// A file of the input stays as it is. @param unasked  the dialog has not seen this name, and has not asked.
+bool mayReplace(QWidget* window, const Document& document, const QString& file, bool unasked) {
+  if (!QFileInfo::exists(file)) return true;
+  const QString shown = shownText(QDir::toNativeSeparators(file));
+  if (isOfInput(document, file) || isShipped(file)) {
+    QMessageBox refusal(QMessageBox::Warning, QObject::tr("It stays as it is"),
+                        QObject::tr("%1 is a file of what is open, or came with the program. Choose another name.").arg(shown),
+                        QMessageBox::Ok, window);
+    refusal.setObjectName(QStringLiteral("inputRefusal"));
+    refusal.exec();
+    return false;
+  }
+  if (!unasked) return true;
+  QMessageBox question(QMessageBox::Warning, QObject::tr("Replace the file?"), QObject::tr("%1 exists already. Replace it?").arg(shown),
+                       QMessageBox::Yes | QMessageBox::No, window);
+  question.setObjectName(QStringLiteral("replaceQuestion"));
+  question.setDefaultButton(QMessageBox::No);
+  return question.exec() == QMessageBox::Yes;
+}
+}  // namespace
+
 QString askForFile(QWidget* window, const Document& document, const QString& title, const QString& suggestion,
                    const QString& filters) {
-  QString filter;
-  QString file = QFileDialog::getSaveFileName(window, title, suggestion, filters, &filter);
-  if (!file.isEmpty()) rememberExport(document, file);
-  if (file.isEmpty() || !QFileInfo(file).suffix().isEmpty()) return file;
-  const QRegularExpressionMatch ending = QRegularExpression(QStringLiteral("\\*(\\.\\w+)")).match(filter);
-  return file + ending.captured(1);
+  QString proposed = suggestion;
+  while (true) {
+    QString filter;
+    const QString chosen = QFileDialog::getSaveFileName(window, title, proposed, filters, &filter);
+    if (chosen.isEmpty()) return {};
+    QString file = chosen;
+    if (QFileInfo(file).suffix().isEmpty())
+      file += QRegularExpression(QStringLiteral("\\*(\\.\\w+)")).match(filter).captured(1);
+    if (mayReplace(window, document, file, file != chosen)) {
+      rememberExport(document, file);
+      return file;
+    }
+    proposed = file;
+  }
 }
 
 FigureActions::FigureActions(const Engine& engine, Document& document, ScenePanel& scene, FramePanel& frame, LongJob& job,

@@ -57,7 +57,8 @@ class FigureActions : public QObject {
 QString suggestedFile(const Document& document, const QString& what, const QString& ending);
 /// Something was exported as `file`.
 void rememberExport(const Document& document, const QString& file);
-/// Asks for a file to write; the chosen filter's ending is added where the name has none. "" = given up.
+/// Asks for a file to write; the chosen filter's ending is added where the name has none. Files of the input are refused, and asked again.
+/// "" = given up.
 QString askForFile(QWidget* window, const Document& document, const QString& title, const QString& suggestion,
                    const QString& filters);
 

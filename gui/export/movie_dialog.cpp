@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gui/base/number_box.h"
+
 namespace glint::gui {
 
 namespace {
@@ -46,14 +48,12 @@ MovieDialog::MovieDialog(MovieOf of, int frames, bool dark, QWidget* parent) : Q
   height_ = pixels("movieHeight");
   form->addRow(tr("&Width"), width_);
   form->addRow(tr("&Height"), height_);
-  rate_ = new QDoubleSpinBox;
+  rate_ = new NumberBox(numberRange(0.1, 120, 1));
   rate_->setObjectName(QStringLiteral("movieRate"));
-  rate_->setRange(0.1, 120);
   rate_->setDecimals(1);
   form->addRow(tr("&Pictures per second"), rate_);
-  seconds_ = new QDoubleSpinBox;
+  seconds_ = new NumberBox(numberRange(0.2, 600, 1));
   seconds_->setObjectName(QStringLiteral("movieSeconds"));
-  seconds_->setRange(0.2, 600);
   seconds_->setDecimals(1);
   seconds_->setSuffix(tr(" s"));
   form->addRow(tr("One &turn takes"), seconds_);

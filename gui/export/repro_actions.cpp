@@ -24,8 +24,9 @@ ReproDialog::ReproDialog(const Fault& fault, const QString& frame, int training,
   auto* what =
       new QLabel(tr("Searches the smallest set of training frames with which <b>%1</b> still shows in frame <b>%2</b>: %3.<br>"
                     "Now there are %4.")
-                     .arg(toQString(fault.model), frame.toHtmlEscaped(), toQString(fault.text()))
+                     .arg(nameText(fault.model).toHtmlEscaped(), frame.toHtmlEscaped(), toQString(fault.text()).toHtmlEscaped())
                      .arg(training));
+  what->setTextFormat(Qt::RichText);
   what->setWordWrap(true);
   what->setMinimumWidth(420);
   form->addRow(what);
@@ -81,7 +82,7 @@ void ReproActions::addActions(Actions& actions, QMenu* menu) {
                 const std::shared_ptr<const Inspection> inspection = document_.inspection();
                 int training = 0;
                 for (int i = 0; i < document_.frameCount(); ++i) training += inspection->isTraining(i);
-                const QString frame = toQString(inspection->scene->frames[std::size_t(of->frame)].id);
+                const QString frame = nameText(inspection->scene->frames[std::size_t(of->frame)].id);
                 ReproDialog dialog(*of, frame, training, suggestedFile(document_, "minimal", {}), window_);
                 if (dialog.exec() != QDialog::Accepted) return;
                 rememberExport(document_, dialog.folder());
@@ -102,7 +103,7 @@ void ReproActions::write(const Fault& fault, const FaultTolerance& tolerance, co
                                  .arg(repro->of)
                                  .arg(toQString(written.fault.text()), toQString(fault.text()),
                                       QDir::toNativeSeparators(toQString(written.session.string())));
-        return [this, line, shows = written.shows, session = toQString(written.session.string())] {
+        return [this, line, shows = written.shows, session = exactQString(written.session.string())] {
           if (shows)
             emit this->written(line, session);
           else

@@ -16,6 +16,7 @@
 #include "gui/base/focus_frame.h"
 #include "gui/base/stale_badge.h"
 #include "gui/base/theme.h"
+#include "gui/base/tips.h"
 #include "gui/frame/pixel_probe.h"
 #include "viz/frame_pick.h"
 #include "viz/overlay_clip.h"
@@ -390,7 +391,7 @@ bool FrameCanvas::event(QEvent* e) {
   if (label.empty())
     QToolTip::hideText();
   else
-    QToolTip::showText(help->globalPos(), QString::fromStdString(label), this);
+    showTip(help->globalPos(), toQString(label), this);
   return true;
 }
 

@@ -141,6 +141,7 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
   row->setSpacing(2);
   title_ = new QLabel;
   title_->setObjectName(QStringLiteral("frameTitle"));
+  title_->setTextFormat(Qt::RichText);
   row->addWidget(title_);
   role_ = new QLabel;
   role_->setObjectName(QStringLiteral("frameRole"));
@@ -254,7 +255,7 @@ QString FramePanel::problemText(int frame, const QString& reason) const {
   const Scene& scene = *document_.scene();
   const QString named = QLatin1String(nameOf(Reason::FrameUnreadable)) + QStringLiteral(": ");
   return tr("Frame %1 has no picture\n%2")
-      .arg(toQString(scene.frames[std::size_t(frame)].id), toQString(withoutFolder(reason.toStdString(), scene)).remove(named));
+      .arg(nameText(scene.frames[std::size_t(frame)].id), toQString(withoutFolder(reason.toStdString(), scene)).remove(named));
 }
 
 bool FramePanel::busy() const { return refresh_.isActive() || loader_.busy() || secondLoader_.busy(); }
@@ -291,7 +292,7 @@ void FramePanel::showTitle() {
   const int frame = document_.selection().frame;
   const viz::Colour colours[] = {viz::kTraining, {0.38, 0.38, 0.38}, viz::kExcluded};
   const int role = int(document_.role(frame));
-  title_->setText(QStringLiteral("<b>%1</b>").arg(toQString(document_.scene()->frames[std::size_t(frame)].id).toHtmlEscaped()));
+  title_->setText(QStringLiteral("<b>%1</b>").arg(nameText(document_.scene()->frames[std::size_t(frame)].id).toHtmlEscaped()));
   role_->setText(roleName(document_.role(frame)));
   role_->setStyleSheet(
       QStringLiteral("background: %1; color: white; border-radius: 3px; padding: 1px 6px").arg(toQColor(colours[role]).name()));
@@ -362,7 +363,7 @@ void FramePanel::showOverlay() {
     }
     const auto& frames = document_.scene()->frames;
     const auto caption = [&](int f) {
-      return QStringList{toQString(frames[std::size_t(f)].id), note(f)}.join(note(f).isEmpty() ? "" : " · ");
+      return QStringList{nameText(frames[std::size_t(f)].id), note(f)}.join(note(f).isEmpty() ? "" : " · ");
     };
     canvas_->setCaption(caption(frame));
     second_->setCaption(caption(second));
@@ -552,7 +553,7 @@ void FramePanel::addActions(Actions& actions, QMenu* menu) {
   for (const auto& model : allModels()) {
     const std::string id = model->id(), layer = kModelLayer + id;
     layerActions_[layer] =
-        actions.addToggle(QStringLiteral("frame.show-model-") + toQString(id), overlays, tr("Model %1").arg(toQString(id)),
+        actions.addToggle(QStringLiteral("frame.show-model-") + toQString(id), overlays, tr("Model %1").arg(menuText(toQString(id))),
                           [this, id, layer](bool on) { document_.setLayerVisible(layer, id, on); }, {});
   }
   colourByRole_ = actions.addToggle("frame.colour-by-role", overlays, tr("Colour predictions by the frame's &role"),

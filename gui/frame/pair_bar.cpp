@@ -65,6 +65,7 @@ PairBar::PairBar(Document& document, QWidget* parent) : QWidget(parent), documen
        {std::pair("observed", tr("observed ellipses")), std::pair("canonical", tr("canonical ellipses"))})
     ellipse_->addItem(title, QLatin1String(name));
   miss_ = new QLabel;
+  miss_->setTextFormat(Qt::RichText);
   miss_->setObjectName(QStringLiteral("epipolarMiss"));
   miss_->setTextInteractionFlags(Qt::TextSelectableByMouse);
   miss_->setWordWrap(true);
@@ -76,7 +77,7 @@ PairBar::PairBar(Document& document, QWidget* parent) : QWidget(parent), documen
   connect(&document_, &Document::sceneOpened, this, [this] {
     const QSignalBlocker quiet(second_);
     second_->clear();
-    for (int i = 0; i < document_.frameCount(); ++i) second_->addItem(toQString(document_.scene()->frames[std::size_t(i)].id), i);
+    for (int i = 0; i < document_.frameCount(); ++i) second_->addItem(nameText(document_.scene()->frames[std::size_t(i)].id), i);
     refresh();
   });
   refresh();
@@ -142,7 +143,7 @@ void PairBar::addLines(viz::FrameOverlay& first, viz::FrameOverlay& second) {
                                           : QString(QLatin1String(nameOf(picture.failure->reason)));
     if (!picture.tangents) reasons << title + QStringLiteral(": ") + toQString(picture.failure->message());
     key_.append({toQColor(colour), QStringLiteral("%1 %2").arg(title, what)});
-    said << QStringLiteral("<span style='color:%1'>■</span> %2").arg(key_.back().colour.name(), key_.back().text);
+    said << QStringLiteral("<span style='color:%1'>■</span> %2").arg(key_.back().colour.name(), key_.back().text.toHtmlEscaped());
   }
   miss_->setText(said.join(QStringLiteral("&nbsp;&nbsp; ")));
   reasons << tr(

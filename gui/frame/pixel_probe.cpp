@@ -69,7 +69,7 @@ QString probeText(const Pixel& at, const QString& values, const Outcome<PixelPro
               .arg(p.point.normal.z(), 0, 'f', 3);
   for (const PixelProbe::Incidence& incidence : p.lights) {
     text += QStringLiteral("   α");
-    if (p.lights.size() > 1) text += QStringLiteral(" ") + toQString(incidence.light);
+    if (p.lights.size() > 1) text += QStringLiteral(" ") + nameText(incidence.light);
     text += QStringLiteral(" ") + (incidence.alpha ? QString::number(degrees(*incidence.alpha), 'f', 3) + QChar(0xb0)
                                                    : PixelProbeWorker::tr("light behind"));
   }

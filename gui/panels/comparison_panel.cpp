@@ -139,7 +139,7 @@ void ComparisonPanel::compareWith(const QString& file) {
   if (!document_.inspection()) return;
   if (document_.stale()) return void(emit problem(tr("What is on screen is still being computed; compare when it is done")));
   const QString fileA = document_.sessionFile().isEmpty() ? document_.inputFile() : document_.sessionFile();
-  job_.start(tr("Comparing with %1").arg(QFileInfo(file).fileName()),
+  job_.start(tr("Comparing with %1").arg(shownText(QFileInfo(file).fileName())),
              [this, file, fileA, a = document_.inspection()](const ProgressFn& progress) {
                const Opened opened = engine_.open(file.toStdString(), {});
                const Inspection b = engine_.inspect(opened.scene, opened.request, progress, nullptr);
@@ -156,7 +156,7 @@ void ComparisonPanel::show(std::shared_ptr<const RunComparison> comparison, cons
   comparison_ = std::move(comparison);
   const auto [nameA, nameB] = shortestNames(fileA, fileB);
   const bool same = QFileInfo(fileA).absoluteFilePath() == QFileInfo(fileB).absoluteFilePath();
-  names_ = (same ? tr("A: %1 (on screen)   B: %2 (the file)") : tr("A: %1 (on screen)   B: %2")).arg(nameA, nameB);
+  names_ = (same ? tr("A: %1 (on screen)   B: %2 (the file)") : tr("A: %1 (on screen)   B: %2")).arg(shownText(nameA), shownText(nameB));
   paths_ = tr("A: %1\nB: %2")
                .arg(QDir::toNativeSeparators(QFileInfo(fileA).absoluteFilePath()),
                     QDir::toNativeSeparators(QFileInfo(fileB).absoluteFilePath()));
@@ -192,9 +192,9 @@ void ComparisonPanel::fill() {
       if (!e.errorA) notes << tr("A: %1").arg(toQString(e.reasonA));
       if (!e.errorB && (e.errorA || e.reasonB != e.reasonA)) notes << tr("B: %1").arg(toQString(e.reasonB));
       const QString note = notes.join(QStringLiteral("; "));
-      RowsModel::Row row{{text(toQString(e.id)),
+      RowsModel::Row row{{text(nameText(e.id)),
                           text(toQString(e.model)),
-                          text(toQString(e.light)),
+                          text(nameText(e.light)),
                           number(e.errorA),
                           number(e.errorB),
                           number(e.ratio, 3),

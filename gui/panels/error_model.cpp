@@ -9,6 +9,7 @@
 
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/base/tips.h"
 #include "gui/document/frame_roles.h"
 #include "viz/frame_overlay.h"
 
@@ -79,8 +80,8 @@ void ErrorModel::addComparison(const Inspection& inspection, const std::string& 
   base.frame = c.frame;
   base.role = document_.role(c.frame);
   base.model = model;
-  base.frameId = toQString(inspection.scene->frames[std::size_t(c.frame)].id);
-  base.light = toQString(c.light);
+  base.frameId = nameText(inspection.scene->frames[std::size_t(c.frame)].id);
+  base.light = nameText(c.light);
   std::fill(std::begin(base.values), std::end(base.values), std::numeric_limits<double>::quiet_NaN());
   base.values[Frame] = c.frame;
   if (c.rows.empty()) {
@@ -172,7 +173,7 @@ QVariant ErrorModel::data(const QModelIndex& index, int role) const {
     case Qt::ToolTipRole:
       if (row.role == FrameRole::Excluded && column != ReasonText && column != Light)
         return tr("This frame is excluded: it neither trains nor counts in any summary");
-      return column == ReasonText ? QVariant(row.reason) : column == Light ? QVariant(row.light) : QVariant();
+      return column == ReasonText ? QVariant(plainTip(row.reason)) : column == Light ? QVariant(plainTip(row.light)) : QVariant();
     case Qt::TextAlignmentRole:
       return int((isNumber(column) ? Qt::AlignRight : Qt::AlignLeft) | Qt::AlignVCenter);
     case kProblemRole:

@@ -22,6 +22,7 @@
 #include "gui/base/flow_layout.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/base/tips.h"
 #include "gui/panels/error_model.h"
 #include "viz/frame_overlay.h"
 
@@ -263,7 +264,7 @@ void ErrorTable::fitSummary() {
   };
   summary_->setText(html(columns, forProblems));
   while (columns > 1 && summary_->sizeHint().width() > room) summary_->setText(html(--columns, forProblems));
-  if (columns < all || problems > forProblems) summary_->setToolTip(html(all, problems + 1));
+  if (columns < all || problems > forProblems) setRichTip(summary_, html(all, problems + 1));
 }
 
 void ErrorTable::changeEvent(QEvent* event) {

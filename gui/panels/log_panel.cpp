@@ -6,6 +6,8 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
+#include "gui/base/text.h"
+
 namespace glint::gui {
 
 namespace {
@@ -22,7 +24,7 @@ LogPanel::LogPanel(QWidget* parent) : QWidget(parent), lines_(new QPlainTextEdit
 }
 
 void LogPanel::add(const QString& line) {
-  lines_->appendPlainText(QTime::currentTime().toString(QStringLiteral("HH:mm:ss  ")) + line);
+  lines_->appendPlainText(QTime::currentTime().toString(QStringLiteral("HH:mm:ss  ")) + toQString(line.toStdString()));
 }
 
 QString LogPanel::text() const { return lines_->toPlainText(); }

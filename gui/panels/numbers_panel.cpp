@@ -9,6 +9,7 @@
 
 #include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
+#include "gui/base/tips.h"
 #include "gui/panels/selection_text.h"
 #include "viz/frame_overlay.h"
 #include "viz/scene_questions.h"
@@ -79,7 +80,7 @@ QTreeWidgetItem* NumbersPanel::addGroup(const QString& title, const QString& lin
     if (line.isEmpty()) continue;
     const int equals = int(line.indexOf(QStringLiteral(" = ")));
     items << new QTreeWidgetItem(equals < 0 ? QStringList{line} : QStringList{line.left(equals), line.mid(equals + 3)});
-    items.last()->setToolTip(1, line);
+    items.last()->setToolTip(1, plainTip(line));
   }
   group->addChildren(items);
   addTopLevelItem(group);

@@ -13,9 +13,10 @@
 
 #include "gui/base/elided_label.h"
 #include "gui/base/number_box.h"
-#include "gui/base/quiet_controls.h"
+
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/base/tips.h"
 #include "gui/base/unit_text.h"
 
 namespace glint::gui {
@@ -88,15 +89,15 @@ ParameterPanel::ParameterPanel(Document& document, QWidget* parent) : QScrollAre
 }
 
 void ParameterPanel::addNumber(const ParamSpec& spec, QGridLayout* grid, int row) {
-  auto* slider = new QuietSlider(Qt::Horizontal);
+  auto* slider = new QSlider(Qt::Horizontal);
   slider->setObjectName(nameFor("slider", spec));
   slider->setRange(0, SliderScale::kPositions);
   slider->setPageStep(SliderScale::kPositions / 20);
   slider->setMinimumWidth(24);
-  slider->setToolTip(toolTipOf(spec));
+  setRichTip(slider, toolTipOf(spec));
   auto* box = new NumberBox(spec);
   box->setObjectName(nameFor("value", spec));
-  box->setToolTip(toolTipOf(spec));
+  setRichTip(box, toolTipOf(spec));
   box->setMinimumWidth(70);
   box->setMaximumWidth(92);
   grid->addWidget(slider, row, 1);
@@ -124,9 +125,9 @@ void ParameterPanel::addNumber(const ParamSpec& spec, QGridLayout* grid, int row
 }
 
 void ParameterPanel::addChoice(const ParamSpec& spec, QGridLayout* grid, int row) {
-  auto* combo = new QuietComboBox;
+  auto* combo = new QComboBox;
   combo->setObjectName(nameFor("value", spec));
-  combo->setToolTip(toolTipOf(spec));
+  setRichTip(combo, toolTipOf(spec));
   combo->setFocusPolicy(Qt::StrongFocus);
   for (const std::string& choice : spec.choices) combo->addItem(toQString(choice));
   grid->addWidget(combo, row, 1, 1, 2);
@@ -140,7 +141,7 @@ void ParameterPanel::addChoice(const ParamSpec& spec, QGridLayout* grid, int row
 void ParameterPanel::addFlag(const ParamSpec& spec, QGridLayout* grid, int row) {
   auto* check = new QCheckBox;
   check->setObjectName(nameFor("value", spec));
-  check->setToolTip(toolTipOf(spec));
+  setRichTip(check, toolTipOf(spec));
   grid->addWidget(check, row, 1, 1, 2);
   connect(check, &QCheckBox::clicked, this, [this, key = spec.key](bool on) { document_.setSetting(key, on); });
   addRow(spec, grid, row, [this, spec, check] { check->setChecked(document_.request().settings.flag(spec.key)); });
@@ -148,7 +149,7 @@ void ParameterPanel::addFlag(const ParamSpec& spec, QGridLayout* grid, int row) 
 
 void ParameterPanel::addRow(const ParamSpec& spec, QGridLayout* grid, int row, std::function<void()> refresh) {
   auto* title = new ElidedLabel(toQString(spec.title), 12);
-  title->setToolTip(toolTipOf(spec));
+  setRichTip(title, toolTipOf(spec));
   grid->addWidget(title, row, 0);
   auto* reset = new QToolButton;
   reset->setObjectName(nameFor("reset", spec));

@@ -55,7 +55,7 @@ NumberGroup observation(const FrameEvidence& evidence, int index, bool synthesis
   if (evidence.failure) lines.note(toQString(evidence.failure->message()));
   if (index >= 0) {
     const Highlight& h = evidence.highlights[std::size_t(index)];
-    if (!h.light.empty()) lines.add(QObject::tr("light"), toQString(h.light));
+    if (!h.light.empty()) lines.add(QObject::tr("light"), nameText(h.light));
     lines.addVector(QObject::tr("peak"), h.peak, "px");
     lines.add(QObject::tr("level"), h.level);
     lines.add(QObject::tr("area"), h.areaPx2, "px²");
@@ -100,7 +100,7 @@ NumberGroup lightGroup(const std::string& id, const LightEstimate& estimate) {
   lines.add(QObject::tr("limit angle"), estimate.limitAngle * kDegPerRad, "deg");
   lines.add(QObject::tr("condition"), estimate.condition);
   if (estimate.rmsPx > 0) lines.add(QObject::tr("residual rms"), estimate.rmsPx, "px");
-  return {QObject::tr("Light %1").arg(toQString(id)), lines.text()};
+  return {QObject::tr("Light %1").arg(nameText(id)), lines.text()};
 }
 
 NumberGroup fitGroup(const std::string& model, const ModelResult::Fit& f, int frame) {
@@ -161,7 +161,7 @@ NumberGroup comparison(const FrameComparison& c, int observed) {
 NumberGroup selectedParts(const Inspection& inspection, const viz::Selection& selection, const std::string& model) {
   Lines lines;
   if (selection.highlight >= 0) lines.add(QObject::tr("highlight"), QString::number(selection.highlight + 1));
-  if (!selection.light.empty()) lines.add(QObject::tr("light"), toQString(selection.light));
+  if (!selection.light.empty()) lines.add(QObject::tr("light"), nameText(selection.light));
   if (selection.direction) {
     lines.add(QObject::tr("direction"),
               numberText(*selection.direction * kDegPerRad, 6) + QStringLiteral("° (0 right, 90 down)"));
@@ -208,7 +208,7 @@ std::vector<NumberGroup> describeSelection(const Inspection& inspection, const v
   for (const auto& [id, estimate] : inspection.lights)
     if (light.empty() || id == light || id.rfind(light + "@", 0) == 0) groups.push_back(lightGroup(id, estimate));
   for (const auto& [id, failure] : inspection.lightFailures)
-    groups.push_back({QObject::tr("Light %1").arg(toQString(id)), toQString(failure.message())});
+    groups.push_back({QObject::tr("Light %1").arg(nameText(id)), toQString(failure.message())});
   for (NumberGroup& group : groups) group.lines = toQString(withoutFolder(group.lines.toStdString(), *inspection.scene));
   return groups;
 }

@@ -2,7 +2,6 @@
 #include "gui/panels/setup_panel.h"
 
 #include <QComboBox>
-#include <QDoubleSpinBox>
 #include <QGridLayout>
 #include <QHBoxLayout>
 #include <QLabel>
@@ -14,8 +13,11 @@
 #include <algorithm>
 
 #include "core/model/model.h"
+#include "gui/base/complaint.h"
+#include "gui/base/number_box.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/base/tips.h"
 
 namespace glint::gui {
 
@@ -51,11 +53,9 @@ SetupPanel::SetupPanel(Document& document, QWidget* parent) : QWidget(parent), d
   choose->setToolTip(
       tr("Takes the simplest model that predicts left-out training views as well as the best does,\nor the first one under the "
          "error beside"));
-  auto* goodEnough = new QDoubleSpinBox;
+  auto* goodEnough = new NumberBox(numberRange(0, 100, 0.1));
   goodEnough->setObjectName(QStringLiteral("goodEnough"));
-  goodEnough->setRange(0, 100);
   goodEnough->setDecimals(2);
-  goodEnough->setSingleStep(0.1);
   goodEnough->setSuffix(tr(" % will do"));
   goodEnough->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);  // the panel is narrow
   goodEnough->setSpecialValueText(tr("like the best"));
@@ -117,7 +117,7 @@ SetupPanel::SetupPanel(Document& document, QWidget* parent) : QWidget(parent), d
 
 void SetupPanel::showChoice(const QString& sentence, const QString& details) {
   choice_->setText(sentence);
-  choice_->setToolTip(details.isEmpty() ? QString() : QStringLiteral("<pre>%1</pre>").arg(details.toHtmlEscaped()));
+  setRichTip(choice_, details.isEmpty() ? QString() : QStringLiteral("<pre>%1</pre>").arg(details.toHtmlEscaped()));
   choice_->setVisible(!sentence.isEmpty());
 }
 
@@ -125,8 +125,10 @@ void SetupPanel::setTrain() {
   const std::string text = train_->currentText().trimmed().toStdString();
   if (text == document_.request().train || !document_.scene()) return;
   QString error;
-  if (!document_.setTrain(text, &error)) emit problem(error);
+  const bool taken = document_.setTrain(text, &error);
   refresh();
+  if (error.startsWith(QLatin1String("--train "))) error.remove(0, int(qstrlen("--train ")));  // here it is a box, not a flag
+  if (!taken) complain(train_, tr("%1; it stays %2").arg(error, nameText(document_.request().train)));
 }
 
 void SetupPanel::refresh() {

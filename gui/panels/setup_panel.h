@@ -22,7 +22,6 @@ class SetupPanel : public QWidget {
   void showChoice(const QString& sentence, const QString& details);
 
  signals:
-  void problem(const QString& oneLine);
   void autoRequested(double goodEnoughPct);  ///< 0 = no tolerance
 
  private:

@@ -16,6 +16,7 @@
 #include "gui/base/focus_frame.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/base/tips.h"
 
 namespace glint::gui {
 
@@ -293,7 +294,7 @@ bool TradeoffPlot::event(QEvent* e) {
     return true;
   }
   const TradeoffPoint& p = t->points[std::size_t(i)];
-  QToolTip::showText(
+  showTip(
       help->globalPos(),
       tr("%1\nerror %2 %, IoU %3, coverage %4, %5 of %6 frames predicted\n%7 µs a frame, fit %8 ms, peak memory %9 MB\nClick to "
          "load")

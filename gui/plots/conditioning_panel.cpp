@@ -14,6 +14,7 @@
 #include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/base/tips.h"
 
 namespace glint::gui {
 
@@ -210,6 +211,7 @@ ConditioningPanel::ConditioningPanel(Document& document, QWidget* parent) : QWid
   });
   reason_ = new QLabel;
   reason_->setObjectName(QStringLiteral("conditioningReason"));
+  reason_->setTextFormat(Qt::RichText);
   reason_->setWordWrap(true);
   reason_->setTextInteractionFlags(Qt::TextSelectableByMouse);
   reason_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
@@ -277,7 +279,7 @@ void ConditioningPanel::refresh() {
     const Conditioning& c = conditioning_[std::size_t(s.conditioning)];
     const Finding& finding = c.findings[std::size_t(s.finding)];
     s.chip->show(finding.verdict, shortText(finding));
-    s.chip->setToolTip(QStringLiteral("<b>%1, %2: %3</b> (%4)<br>%5")
+    setRichTip(s.chip, QStringLiteral("<b>%1, %2: %3</b> (%4)<br>%5")
                            .arg(toQString(c.model), toQString(finding.title), toQString(finding.text).toHtmlEscaped(),
                                 QLatin1String(nameOf(finding.verdict)), toQString(finding.reason).toHtmlEscaped()));
     s.chip->setAccessibleName(toQString(c.model + " " + finding.title + " " + finding.text + ": " + nameOf(finding.verdict)));
@@ -368,10 +370,10 @@ void ConditioningPanel::showLights() {
     for (const Conditioning& c : conditioning_)
       if (c.light == id && c.worst() != Verdict::Unknown)
         worst = worst == Verdict::Unknown ? c.worst() : std::max(worst, c.worst());
-    lights_->setTabText(i, QStringLiteral("%1 %2").arg(signOf(worst), toQString(id)).trimmed());
+    lights_->setTabText(i, menuText(QStringLiteral("%1 %2").arg(signOf(worst), nameText(id)).trimmed()));
     lights_->setTabToolTip(
-        i, tr("Models of light %1; the worst of their numbers is %2").arg(toQString(id), QLatin1String(nameOf(worst))));
-    lights_->setTabData(i, toQString(id));
+        i, plainTip(tr("Models of light %1; the worst of their numbers is %2").arg(nameText(id), QLatin1String(nameOf(worst)))));
+    lights_->setTabData(i, exactQString(id));
     if (id == light_) lights_->setCurrentIndex(i);
   }
   filling_ = false;

@@ -14,6 +14,7 @@
 #include "gui/base/draw_turns.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/base/tips.h"
 #include "gui/base/vtk_canvas.h"
 
 namespace glint::gui {
@@ -91,8 +92,7 @@ void PlotCanvas::hover(const QPointF& at, const QPoint& global) {
   scheduleRender();
   widget_->setCursor(sample ? Qt::PointingHandCursor : Qt::ArrowCursor);
   if (sample)
-    QToolTip::showText(global, toQString(plot().series[std::size_t(sample->series)].points[std::size_t(sample->point)].label),
-                       widget_);
+    showTip(global, toQString(plot().series[std::size_t(sample->series)].points[std::size_t(sample->point)].label), widget_);
   else
     QToolTip::hideText();
 }

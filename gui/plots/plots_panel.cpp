@@ -327,7 +327,7 @@ void PlotsPanel::copyPicture() {
 }
 
 void PlotsPanel::copyNumbers() {
-  QApplication::clipboard()->setText(toQString(viz::plotCsv(panes_[std::size_t(current_)].canvas->plot())));
+  QApplication::clipboard()->setText(exactQString(viz::plotCsv(panes_[std::size_t(current_)].canvas->plot())));
 }
 
 void PlotsPanel::copySvg() {

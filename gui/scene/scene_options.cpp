@@ -121,7 +121,7 @@ namespace {
 constexpr char kBetween = ' ';  // no layer's name holds one
 
 std::set<std::string> ownLayers(const Document& document, int view) {
-  const QStringList names = toQString(document.option(viewOption("layers", view), kNone)).split(QLatin1Char(kBetween));
+  const QStringList names = exactQString(document.option(viewOption("layers", view), kNone)).split(QLatin1Char(kBetween));
   std::set<std::string> layers;
   for (const QString& name : names)
     if (!name.isEmpty()) layers.insert(name.toStdString());
@@ -180,7 +180,7 @@ std::string toText(const viz::ViewPoint& v) {
 }
 
 std::optional<viz::ViewPoint> viewPointFromText(const std::string& text) {
-  const QStringList parts = toQString(text).split(QLatin1Char(' '));
+  const QStringList parts = exactQString(text).split(QLatin1Char(' '));
   if (parts.size() != 11) return {};
   std::array<double, 10> n;
   for (int i = 0; i < 10; ++i) {

@@ -94,6 +94,7 @@ void ScenePanel::buildBars() {
   bar_->setObjectName(QStringLiteral("sceneBar"));
   bar_->setIconSize({16, 16});
   auto* heading = new QLabel(QStringLiteral("<b>%1</b>").arg(tr("Scene")));
+  heading->setTextFormat(Qt::RichText);
   heading->setContentsMargins(4, 0, 0, 0);
   heading->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
   bar_->addWidget(heading);
@@ -298,11 +299,11 @@ void ScenePanel::moveLamp(const QString& light, const Eigen::Vector3d& by) {
 
 void ScenePanel::showMenu(const viz::Picked& picked, const QPoint& global) {
   if (!document_.scene() || picked.frame < 0 || picked.frame >= document_.frameCount()) return;
-  const QString id = toQString(document_.scene()->frames[std::size_t(picked.frame)].id);
+  const QString id = nameText(document_.scene()->frames[std::size_t(picked.frame)].id);
   auto* menu = new QMenu(this);
   menu->setObjectName(QStringLiteral("cameraMenu"));
   menu->setAttribute(Qt::WA_DeleteOnClose);
-  menu->addSection(tr("Frame %1").arg(id));
+  menu->addSection(tr("Frame %1").arg(menuText(id)));
   addRoles(*menu, document_, picked.frame);
   menu->addSeparator();
   menu->addAction(tr("&Look through its camera"), this, [this, frame = picked.frame] {
@@ -406,7 +407,7 @@ QStringList ScenePanel::savedViews() const {
   QStringList names;
   const std::string prefix = kSavedView;
   for (const auto& [name, value] : document_.state().options)
-    if (name.rfind(prefix, 0) == 0 && viewPointFromText(value)) names << toQString(name.substr(prefix.size()));
+    if (name.rfind(prefix, 0) == 0 && viewPointFromText(value)) names << exactQString(name.substr(prefix.size()));
   return names;
 }
 
@@ -430,7 +431,7 @@ void ScenePanel::goToView(const QString& name) {
 
 void ScenePanel::removeView(const QString& name) {
   // An option cannot be taken away; an empty one is none.
-  document_.setOption(kSavedView + name.toStdString(), std::string(), tr("Forget %1").arg(name));
+  document_.setOption(kSavedView + name.toStdString(), std::string(), tr("Forget %1").arg(shownText(name)));
 }
 
 // --- actions --------------------------------------------------------------------------------------------------------------
@@ -480,7 +481,7 @@ void ScenePanel::addActions(Actions& actions, QMenu* menu) {
   connect(savedMenu_, &QMenu::aboutToShow, this, [this] {
     savedMenu_->clear();
     for (const QString& name : savedViews()) {
-      QMenu* one = savedMenu_->addMenu(name);
+      QMenu* one = savedMenu_->addMenu(menuText(shownText(name)));
       one->addAction(tr("Go there"), this, [this, name] { goToView(name); });
       one->addAction(tr("Forget"), this, [this, name] { removeView(name); });
     }

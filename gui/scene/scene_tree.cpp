@@ -269,7 +269,7 @@ void SceneTree::exclude(const QModelIndex& index) {
   // Back to what it was, which the specification of the training frames still says.
   InspectionRequest request = document_.request();
   request.excluded.erase(std::remove(request.excluded.begin(), request.excluded.end(), frame), request.excluded.end());
-  document_.setRequest(request, tr("Take frame %1 back").arg(toQString(document_.scene()->frames[std::size_t(frame)].id)));
+  document_.setRequest(request, tr("Take frame %1 back").arg(nameText(document_.scene()->frames[std::size_t(frame)].id)));
 }
 
 // --- hiding -----------------------------------------------------------------------------------------------------------------

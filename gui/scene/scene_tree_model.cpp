@@ -12,6 +12,7 @@
 #include "core/geometry/ellipsoid.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/base/tips.h"
 #include "gui/document/frame_roles.h"
 #include "gui/scene/hidden_objects_option.h"
 #include "gui/scene/scene_options.h"
@@ -351,16 +352,16 @@ QString SceneTreeModel::nameOf(const SceneObject& o) const {
   const Scene* scene = document_.scene();
   switch (o.kind) {
     case Kind::Surface:
-      return o.key == viz::HiddenObjects::kDepthMaps ? tr("depth maps") : tr("surface %1").arg(toQString(o.key));
+      return o.key == viz::HiddenObjects::kDepthMaps ? tr("depth maps") : tr("surface %1").arg(nameText(o.key));
     case Kind::Camera:
-      return tr("camera %1").arg(toQString(scene->frames[std::size_t(o.frame)].id));
+      return tr("camera %1").arg(nameText(scene->frames[std::size_t(o.frame)].id));
     case Kind::Highlight:
-      return tr("highlight %1 of frame %2").arg(o.highlight).arg(toQString(scene->frames[std::size_t(o.frame)].id));
+      return tr("highlight %1 of frame %2").arg(o.highlight).arg(nameText(scene->frames[std::size_t(o.frame)].id));
     case Kind::Light:
-      return tr("light %1").arg(toQString(o.key));
+      return tr("light %1").arg(nameText(o.key));
     case Kind::Ellipsoid:
-      return objectsOf(Kind::Light).size() < 2 ? toQString(o.key)
-                                               : tr("%1 of light %2").arg(toQString(o.key), toQString(o.light));
+      return objectsOf(Kind::Light).size() < 2 ? nameText(o.key)
+                                               : tr("%1 of light %2").arg(nameText(o.key), nameText(o.light));
   }
   return {};
 }
@@ -377,7 +378,7 @@ QString SceneTreeModel::detailOf(const SceneObject& o) const {
     case Kind::Camera:
       return roleName(document_.role(o.frame));
     case Kind::Highlight:
-      return toQString(o.light);
+      return nameText(o.light);
     case Kind::Light: {
       const auto estimated = inspection && std::any_of(inspection->lights.begin(), inspection->lights.end(), [&](const auto& l) {
                                return l.first.substr(0, l.first.find('@')) == o.key;
@@ -460,11 +461,11 @@ QVariant SceneTreeModel::objectData(const SceneObject& o, const Group& group, in
         const QString text = QString::number(points, 'f', decimals);
         return points > 0 && !effectsAreErrors_ ? QLatin1Char('+') + text : text;
       }
-      if (o.kind == Kind::Camera) return toQString(document_.scene()->frames[std::size_t(o.frame)].id);
+      if (o.kind == Kind::Camera) return nameText(document_.scene()->frames[std::size_t(o.frame)].id);
       if (o.kind == Kind::Highlight) return tr("highlight %1").arg(o.highlight);
-      if (o.kind == Kind::Surface) return o.key == viz::HiddenObjects::kDepthMaps ? tr("depth maps") : toQString(o.key);
+      if (o.kind == Kind::Surface) return o.key == viz::HiddenObjects::kDepthMaps ? tr("depth maps") : nameText(o.key);
       // A model's row is one text over all columns: the names are long, and so is what the fit is.
-      return o.kind == Kind::Light ? toQString(o.key) : tr("%1: %2").arg(nameOf(o), detailOf(o));
+      return o.kind == Kind::Light ? nameText(o.key) : tr("%1: %2").arg(nameOf(o), detailOf(o));
     case Qt::CheckStateRole:
       if (column != Name || o.kind == Kind::Highlight) return {};
       return isHiddenIn(hidden_, o) ? Qt::Unchecked : Qt::Checked;
@@ -487,7 +488,7 @@ QVariant SceneTreeModel::objectData(const SceneObject& o, const Group& group, in
     case Qt::TextAlignmentRole:
       return int((column == Effect ? Qt::AlignRight : Qt::AlignLeft) | Qt::AlignVCenter);
     case Qt::ToolTipRole:
-      return tipOf(o, column);
+      return plainTip(tipOf(o, column));
     case kSortRole:
       if (column == Effect && o.kind == Kind::Camera)
         return effects_.count(o.frame) ? QVariant(effects_.at(o.frame)) : QVariant();

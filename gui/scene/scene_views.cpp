@@ -398,7 +398,7 @@ bool SceneViews::mouse(QEvent* event) {
     drag_ = active().looksThrough() ? Drag::Photograph : Drag::Vtk;
     if (options_.lampsMove && e->button() == Qt::LeftButton && drag_ == Drag::Vtk) {
       const QPointF display = toDisplay(at);
-      if (const auto hit = active().pick(int(display.x()), int(display.y()) - 1); hit && hit->layer == "true-light") {
+      if (const auto hit = active().pickLamp(int(display.x()), int(display.y()) - 1)) {
         drag_ = Drag::Lamp;
         lamp_ = *hit;
       }
@@ -422,7 +422,7 @@ bool SceneViews::mouse(QEvent* event) {
       vtkRenderer* renderer = active().renderer();
       const Eigen::Vector3d by =
           viz::worldAt(renderer, to.x(), to.y(), lamp_.position) - viz::worldAt(renderer, from.x(), from.y(), lamp_.position);
-      emit lampMoved(toQString(lamp_.light), by.x(), by.y(), by.z());
+      emit lampMoved(exactQString(lamp_.light), by.x(), by.y(), by.z());
     }
     last_ = at;
     return drag_ != Drag::Vtk;

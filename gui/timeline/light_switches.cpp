@@ -58,10 +58,10 @@ void switchLight(Document& document, const viz::LightRow& row, int frame) {
   const viz::LightState state = viz::lightState(row, *scene, now, frame);
   if (!canSwitch(document, state)) return;
   const bool on = !turnsOff(state);
-  const QString id = toQString(scene->frames[std::size_t(frame)].id);
+  const QString id = nameText(scene->frames[std::size_t(frame)].id);
   document.setWhatIf(switched(now, *scene, frame, row.light, on),
                      (on ? Texts::tr("Switch light %1 on in frame %2") : Texts::tr("Switch light %1 off in frame %2"))
-                         .arg(toQString(row.light), id));
+                         .arg(nameText(row.light), id));
 }
 
 void switchLightEverywhere(Document& document, const viz::LightRow& row, bool asCaptured) {
@@ -76,7 +76,7 @@ void switchLightEverywhere(Document& document, const viz::LightRow& row, bool as
   }
   document.setWhatIf(w, (asCaptured ? Texts::tr("Light %1 as captured in every frame")
                                     : Texts::tr("Switch light %1 off in every frame"))
-                            .arg(toQString(row.light)));
+                            .arg(nameText(row.light)));
 }
 
 void addLights(QMenu& menu, Document& document, const std::vector<viz::LightRow>& rows, int frame) {
@@ -87,7 +87,7 @@ void addLights(QMenu& menu, Document& document, const std::vector<viz::LightRow>
   }
   for (const viz::LightRow& row : rows) {
     const viz::LightState state = viz::lightState(row, *document.scene(), document.request().whatIf, frame);
-    QAction* action = menu.addAction(Texts::tr("Light %1").arg(toQString(row.light)));
+    QAction* action = menu.addAction(Texts::tr("Light %1").arg(menuText(nameText(row.light))));
     action->setCheckable(true);
     action->setChecked(turnsOff(state));
     action->setEnabled(canSwitch(document, state));

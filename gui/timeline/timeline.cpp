@@ -84,7 +84,7 @@ Timeline::Timeline(Document& document, QWidget* parent) : QWidget(parent), docum
           [play](bool on) { play->setIcon(icon(on ? QStringLiteral("pause") : QStringLiteral("play"))); });
   connect(&clock_, &QTimer::timeout, this, [this] {
     const int n = document_.frameCount();
-    if (n > 0) document_.selectFrame((document_.selection().frame + 1) % n, gesture_);
+    if (n > 0) document_.showFrame((document_.selection().frame + 1) % n);
   });
   connect(speed_, QOverload<int>::of(&QComboBox::activated), this, [this](int i) {
     document_.setOption("timeline/speed", double(kSpeeds[i]), tr("Play %1 frames per second").arg(kSpeeds[i]));
@@ -140,7 +140,6 @@ void Timeline::setBars(bool bars) {
 
 void Timeline::setPlaying(bool playing) {
   if (playing == this->playing()) return;
-  gesture_ = document_.newGesture();
   if (playing)
     clock_.start();
   else

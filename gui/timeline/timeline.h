@@ -45,7 +45,6 @@ class Timeline : public QWidget {
   QToolButton* bars_;
   QAction *barsAction_ = nullptr, *thumbnailsAction_ = nullptr;
   QTimer clock_;
-  int gesture_ = 0;
 };
 
 }  // namespace glint::gui

@@ -14,6 +14,7 @@
 #include "gui/base/focus_frame.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/base/tips.h"
 #include "gui/document/frame_roles.h"
 #include "gui/timeline/light_switches.h"
 #include "viz/style.h"
@@ -269,7 +270,7 @@ void TimelineStrip::paintRows(QPainter& painter) {
     for (std::size_t i = 0; i < data_.lights.size(); ++i) {
       const QRectF place(0, top - rowHeight * double(data_.lights.size() - i) - 1, kLeft - 5, rowHeight);
       painter.drawText(place, Qt::AlignRight | Qt::AlignVCenter,
-                       painter.fontMetrics().elidedText(toQString(data_.lights[i].light), Qt::ElideMiddle, int(kLeft) - 7));
+                       painter.fontMetrics().elidedText(nameText(data_.lights[i].light), Qt::ElideMiddle, int(kLeft) - 7));
     }
     painter.setFont(usual);
   } else if (!data_.lights.empty()) {
@@ -355,7 +356,7 @@ void TimelineStrip::mousePressEvent(QMouseEvent* e) {
     if (canSwitch(document_, viz::lightState(row, *document_.scene(), document_.request().whatIf, frame)))
       switchLight(document_, row, frame);
     else
-      QToolTip::showText(e->globalPos(), lightTip(light, frame), this);
+      showTip(e->globalPos(), lightTip(light, frame), this);
     return;
   }
   scrubbing_ = true;
@@ -377,8 +378,8 @@ void TimelineStrip::contextMenuEvent(QContextMenuEvent* e) {
   const int frame = frameAt(e->pos());
   if (frame < 0) return;
   QMenu menu(this);
-  const QString id = toQString(document_.scene()->frames[std::size_t(frame)].id);
-  menu.addSection(tr("Frame %1").arg(id));
+  const QString id = nameText(document_.scene()->frames[std::size_t(frame)].id);
+  menu.addSection(tr("Frame %1").arg(menuText(id)));
   addRoles(menu, document_, frame);
   if (!data_.lights.empty()) {
     menu.addSeparator();
@@ -386,7 +387,7 @@ void TimelineStrip::contextMenuEvent(QContextMenuEvent* e) {
   }
   if (const int light = lightAt(e->pos().y()); light >= 0) {
     const viz::LightRow row = data_.lights[std::size_t(light)];
-    const QString name = toQString(row.light);
+    const QString name = menuText(nameText(row.light));
     menu.addAction(tr("Light %1 off in every frame").arg(name), this,
                    [this, row] { switchLightEverywhere(document_, row, false); });
     menu.addAction(tr("Light %1 as captured in every frame").arg(name), this,
@@ -426,13 +427,13 @@ void TimelineStrip::keyPressEvent(QKeyEvent* e) {
 
 QString TimelineStrip::idText(int frame) const {
   constexpr int kMost = 10;  // characters
-  const QString id = toQString(document_.scene()->frames[std::size_t(frame)].id);
+  const QString id = nameText(document_.scene()->frames[std::size_t(frame)].id);
   return id.size() <= kMost ? id : QChar(0x2026) + id.right(kMost - 1);
 }
 
 QString TimelineStrip::lightTip(int row, int frame) const {
   const viz::LightRow& light = data_.lights[std::size_t(row)];
-  const QString name = toQString(light.light);
+  const QString name = nameText(light.light);
   if (frame < 0)
     return tr("Light %1 (row %2 of %3): on in the frames where its row is yellow; a click switches it in a frame, a line through "
               "it "
@@ -446,7 +447,7 @@ QString TimelineStrip::lightTip(int row, int frame) const {
 
 QString TimelineStrip::toolTip(int frame) const {
   const Frame& f = document_.scene()->frames[std::size_t(frame)];
-  QString text = tr("Frame %1, %2").arg(toQString(f.id), roleName(document_.role(frame)));
+  QString text = tr("Frame %1, %2").arg(nameText(f.id), roleName(document_.role(frame)));
   if (unreadable_.contains(frame)) text += tr("\nno photograph: %1").arg(unreadable_.value(frame));
   if (!data_.lights.empty()) {
     std::vector<std::string> on;
@@ -480,7 +481,7 @@ bool TimelineStrip::event(QEvent* e) {
   if (tip.isEmpty())
     QToolTip::hideText();
   else
-    QToolTip::showText(help->globalPos(), tip, this);
+    showTip(help->globalPos(), tip, this);
   return true;
 }
 

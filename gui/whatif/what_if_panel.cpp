@@ -17,7 +17,7 @@
 #include "core/reflectance/lobe.h"
 #include "gui/base/draw_turns.h"
 #include "gui/base/number_box.h"
-#include "gui/base/quiet_controls.h"
+
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 
@@ -33,7 +33,7 @@ WhatIfPanel::WhatIfPanel(Document& document, QWidget* parent)
     : QScrollArea(parent),
       document_(document),
       synthesise_(new QCheckBox(tr("Synthesise the contours"))),
-      lobe_(new QuietComboBox),
+      lobe_(new QComboBox),
       summary_(new QLabel),
       origin_(new QLabel),
       resetAll_(new QToolButton) {
@@ -188,7 +188,7 @@ void WhatIfPanel::addRow(const WhatIfKnob& knob, QGridLayout* grid, int row) {
   const ParamSpec& spec = knob.spec;
   const QString tip = toQString(spec.help);
   auto* title = new QLabel(toQString(spec.title));
-  auto* slider = new QuietSlider(Qt::Horizontal);
+  auto* slider = new QSlider(Qt::Horizontal);
   slider->setObjectName(named("slider:", knob));
   slider->setRange(0, SliderScale::kPositions);
   slider->setMinimumWidth(60);

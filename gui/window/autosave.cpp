@@ -107,7 +107,7 @@ std::optional<Autosave::Found> Autosave::leftBehind() const {
     Found found{info.absoluteFilePath(), {}, info.lastModified()};
     try {
       if (const Session session = readSession(found.file.toStdString()); session.recovery)
-        found.of = toQString(session.recovery->of.string());
+        found.of = exactQString(session.recovery->of.string());
     } catch (const std::exception&) {
       continue;  // not ours, or cut: nothing to offer
     }

@@ -41,16 +41,23 @@ void ChangedInputs::check() {
     QStringList lines;
     // Files that are missing or were found elsewhere are said by what needs them.
     std::set<std::string> changed;
+    int outside = 0;
     for (const std::filesystem::path& p : filesOf(*scene)) changed.insert(p.string() + ": changed");
     try {
       for (const std::string& line : changedFiles(*session, {}, [&](const StageEvent&) { return ticket == newest_; }))
-        if (changed.count(line)) lines << toQString(withoutFolder(line, *scene));
+        if (changed.count(line))
+          lines << toQString(withoutFolder(line, *scene));
+        else if (line.find(": lies outside the folders ") != std::string::npos)
+          ++outside;  // neither whether it is there nor what it holds: a session from others must not find out
     } catch (const Stopped&) {
       return LatestJob::Deliver();
     } catch (const std::exception& e) {
       lines << toQString(e.what());
     }
-    return LatestJob::Deliver([this, lines] { tell(lines); });
+    return LatestJob::Deliver([this, lines, outside] {
+      if (outside > 0) emit message(tr("%1 files lie outside the folders of the session and its scene; they are not compared").arg(outside));
+      tell(lines);
+    });
   });
 }
 

@@ -8,21 +8,30 @@
 #include <QMenu>
 #include <QMessageBox>
 #include <QMimeData>
+#include <QPushButton>
 #include <QSettings>
+#include <QStandardPaths>
 #include <QUrl>
 #include <filesystem>
+#include <set>
 #include <system_error>
 #include <utility>
+#include <vector>
 
+#include "core/scene/permitted.h"
+#include "core/scene/scene_files.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/document/figure.h"
+#include "gui/document/own_files.h"
 
 namespace glint::gui {
 
 namespace {
 constexpr int kRecent = 8;
 const QString kRecentKey = QStringLiteral("recent");
+const QString kAllowedKey = QStringLiteral("allowed-folders");  // "FILE\nFOLDER": what a person allowed a session to name
+constexpr int kMostAllowed = 500;
 constexpr int kFoldersAbove = 3;  // a photograph lies that deep in its scene's folder at most
 
 /// The frame whose picture (photograph, radiance, depth, normals or mask) a file is; -1 = none.
@@ -37,6 +46,28 @@ int frameOfPicture(const Scene& scene, const QString& file) {
   return -1;
 }
 
+QString realFile(const QString& path) {
+  const QFileInfo info(path);
+  return info.exists() ? info.canonicalFilePath() : info.absoluteFilePath();
+}
+
+QStringList allowedFolders(const QString& file) {
+  QStringList folders;
+  const QString start = realFile(file) + QLatin1Char('\n');
+  for (const QString& entry : QSettings().value(kAllowedKey).toStringList())
+    if (entry.startsWith(start)) folders << entry.mid(start.size());
+  return folders;
+}
+
+void allowFolder(const QString& file, const QString& folder) {
+  QSettings settings;
+  QStringList all = settings.value(kAllowedKey).toStringList();
+  const QString entry = realFile(file) + QLatin1Char('\n') + folder;
+  all.removeAll(entry);
+  all.prepend(entry);
+  settings.setValue(kAllowedKey, QStringList(all.mid(0, kMostAllowed)));
+}
+
 bool isPicture(const QString& path) {
   static const QStringList endings{"png", "jpg", "jpeg", "tif", "tiff", "exr", "bmp"};
   return QFileInfo(path).isFile() && endings.contains(QFileInfo(path).suffix().toLower());
@@ -44,7 +75,7 @@ bool isPicture(const QString& path) {
 }  // namespace
 
 FileActions::FileActions(const Engine& engine, Document& document, Runner& runner, QWidget* window)
-    : QObject(window), engine_(engine), document_(document), runner_(runner), window_(window) {
+    : QObject(window), engine_(engine), document_(document), runner_(runner), window_(window), rules_(document, window) {
   connect(&runner_, &Runner::opened, this, &FileActions::finishOpen);
   connect(&runner_, &Runner::saved, this, &FileActions::finishSave);
 }
@@ -55,7 +86,7 @@ void FileActions::addActions(Actions& actions, QMenu* menu) {
   QMenu* recentMenu = menu->addMenu(tr("Open &recent"));
   connect(recentMenu, &QMenu::aboutToShow, this, [this, recentMenu] {
     recentMenu->clear();
-    for (const QString& path : recent()) recentMenu->addAction(path, this, [this, path] { open(path); });
+    for (const QString& path : recent()) recentMenu->addAction(menuText(shownText(path)), this, [this, path] { open(path); });
     if (recentMenu->isEmpty()) recentMenu->addAction(tr("none"))->setEnabled(false);
   });
   menu->addSeparator();
@@ -101,7 +132,7 @@ void FileActions::drop(const QString& path) {
     }
     if (!folder.cdUp()) break;
   }
-  emit problem(tr("%1 is no photograph of a frame, and holds no session").arg(QFileInfo(path).fileName()));
+  emit problem(tr("%1 is no photograph of a frame, and holds no session").arg(shownText(QFileInfo(path).fileName())));
 }
 
 bool FileActions::mayDiscard() {
@@ -109,7 +140,11 @@ bool FileActions::mayDiscard() {
   if (!document_.hasUnsavedChanges()) return true;
   QMessageBox question(QMessageBox::Question, tr("Unsaved changes"), tr("The session has changes that are not saved."),
                        QMessageBox::Discard | QMessageBox::Cancel, window_);
+  question.setObjectName(QStringLiteral("unsavedQuestion"));
   if (engine_.save) question.addButton(QMessageBox::Save);
+  // What came with the program is never written: this leads to the question for a name.
+  if (engine_.save && (document_.sessionFile().isEmpty() || isShipped(document_.sessionFile())))
+    question.button(QMessageBox::Save)->setText(tr("Save as…"));
   question.setDefaultButton(engine_.save ? QMessageBox::Save : QMessageBox::Cancel);
   const int answer = question.exec();
   if (answer == QMessageBox::Save) return save() && waitForSave();
@@ -132,17 +167,36 @@ void FileActions::openFolderDialog() {
 
 void FileActions::open(const QString& path) {
   if (!mayDiscard()) return;
-  runner_.open(path.toStdString());
+  allowedFor_.clear();
+  run(path, {});
+}
+
+void FileActions::openRecovered(const QString& file, const QString& of) {
+  if (!mayDiscard()) return;
+  allowedFor_ = of;
+  run(file, {});
+}
+
+void FileActions::allow(const OutsidePtr& outside) {
+  if (!mayDiscard()) return;
+  allowFolder(allowedFor_.isEmpty() ? outside->path : allowedFor_, exactQString(outside->folder));
+  run(outside->path, outside->instead);
+}
+
+void FileActions::run(const QString& path, Relinked instead) {
+  for (const QString& folder : allowedFolders(allowedFor_.isEmpty() ? path : allowedFor_)) instead.folders.emplace_back(folder.toStdString());
+  runner_.open(path.toStdString(), instead);
 }
 
 bool FileActions::openRelinked(const QString& path, const Relinked& instead) {
   if (!mayDiscard()) return false;
-  runner_.open(path.toStdString(), instead);
+  run(path, instead);
   return true;
 }
 
 void FileActions::reopen(const OpenedPtr& opened) {
   auto state = std::make_shared<Opened>(*opened);
+  state->stamp = stamp_;
   if (addView_) addView_(*state);
   finishOpen(state);
 }
@@ -182,7 +236,13 @@ void FileActions::finishOpen(const OpenedPtr& opened) {
     return;
   }
   emit viewOpened(opened);
-  remember(toQString(opened->path));
+  stamp_ = opened->stamp;
+  rules_.follow(document_.sessionFile(), stamp_);
+  remember(exactQString(opened->path));
+  if (const QString other = rules_.otherHolder(); !other.isEmpty())
+    emit notice(tr("%1 is open in %2, too; saving asks before it replaces what is saved there")
+                    .arg(shownText(QFileInfo(document_.sessionFile()).fileName()), other));
+  if (!opened->notice.empty()) emit notice(toQString(opened->notice));
   if (!opened->warning.empty()) emit problem(toQString(opened->warning));
   for (const auto& [named, mesh] : opened->scene->meshes)
     emit message(tr("The mesh %1 is %2").arg(toQString(named), toQString(mesh.string())));
@@ -190,7 +250,7 @@ void FileActions::finishOpen(const OpenedPtr& opened) {
   if (const QString picture = std::exchange(photographToSelect_, {}); !picture.isEmpty()) {
     const int frame = frameOfPicture(*opened->scene, picture);
     if (frame >= 0) return document_.selectFrame(frame);
-    emit problem(tr("%1 is no photograph of a frame of %2").arg(QFileInfo(picture).fileName(), toQString(opened->path)));
+    emit problem(tr("%1 is no photograph of a frame of %2").arg(shownText(QFileInfo(picture).fileName()), toQString(opened->path)));
   }
   if (frameToSelect_.isEmpty()) return;
   const std::string wanted = frameToSelect_.toStdString();
@@ -206,14 +266,50 @@ void FileActions::finishOpen(const OpenedPtr& opened) {
     emit problem(toQString(InputError(opened->path, "--frame", "there is no frame '" + wanted + "'").what()));
 }
 
-bool FileActions::save() { return document_.sessionFile().isEmpty() ? saveAs() : saveTo(document_.sessionFile()); }
+bool FileActions::save() {
+  if (!document_.scene()) return false;
+  QString refusal;
+  const SaveRules::Answer answer = rules_.toOwnFile(refusal);
+  if (!refusal.isEmpty()) emit problem(refusal);
+  if (answer == SaveRules::Answer::SaveAs) return saveAs();
+  return answer == SaveRules::Answer::Write && saveTo(document_.sessionFile());
+}
 
 bool FileActions::saveAs() {
   if (!document_.scene()) return false;
-  QString path = QFileDialog::getSaveFileName(window_, tr("Save session"), document_.sessionFile(), tr("Sessions (*.glint)"));
-  if (path.isEmpty()) return false;
+  const QFileInfo now(document_.sessionFile().isEmpty() ? document_.inputFile() : document_.sessionFile());
+  // Beside the scene, unless that came with the program.
+  const QString folder = isShipped(now.absoluteFilePath()) ? QStandardPaths::writableLocation(QStandardPaths::DocumentsLocation)
+                                                           : now.absolutePath();
+  const QString base = now.fileName() == QLatin1String("scene.json") ? now.dir().dirName() : now.completeBaseName();
+  const QString path = QFileDialog::getSaveFileName(window_, tr("Save session"), QDir(folder).filePath(base + QStringLiteral(".glint")),
+                                                    tr("Sessions (*.glint)"), nullptr, QFileDialog::DontConfirmOverwrite);
+  return !path.isEmpty() && saveAsTo(path);
+}
+
+bool FileActions::saveAsTo(QString path) {
+  if (!document_.scene()) return false;
   if (QFileInfo(path).suffix().isEmpty()) path += QStringLiteral(".glint");
-  return saveTo(path);
+  QString refusal;
+  const SaveRules::Answer answer = rules_.toChosenFile(path, refusal);
+  if (!refusal.isEmpty()) emit problem(refusal);
+  if (answer == SaveRules::Answer::SaveAs) return saveAs();
+  return answer == SaveRules::Answer::Write && saveTo(path);
+}
+
+/// The session that was written names what is on screen, which a person opened or pointed at: it opens again without a question.
+void FileActions::rememberFoldersOfSaved(const QString& session) {
+  const Scene& scene = *document_.scene();
+  std::vector<std::filesystem::path> named;
+  for (const FilesFolder& f : scene.folders) named.push_back(f.folder);
+  for (const auto& [name, mesh] : scene.meshes) named.push_back(mesh.parent_path());
+  if (!document_.request().truthFolder.empty()) named.emplace_back(document_.request().truthFolder);
+  for (const std::filesystem::path& file : filesOf(scene)) named.push_back(file.parent_path());
+  const std::vector<std::filesystem::path> own{QFileInfo(session).absolutePath().toStdString(), scene.folder};
+  std::set<std::filesystem::path> outside;
+  for (const std::filesystem::path& folder : std::set<std::filesystem::path>(named.begin(), named.end()))
+    if (!liesIn(own, folder)) outside.insert(realPath(folder));
+  for (const std::filesystem::path& folder : outside) allowFolder(session, exactQString(folder.string()));
 }
 
 bool FileActions::saveTo(const QString& path) {
@@ -232,10 +328,14 @@ bool FileActions::saveTo(const QString& path) {
 void FileActions::finishSave(const QString& path, const QString& problem) {
   saveWorked_ = problem.isEmpty();
   if (saveWorked_) {
-    if (savingScene_ == document_.sharedScene())
-      document_.markSaved(path, saving_, savingTradeoff_);  // else another scene was opened meanwhile
+    if (savingScene_ == document_.sharedScene()) {  // else another scene was opened meanwhile
+      document_.markSaved(path, saving_, savingTradeoff_);
+      stamp_ = stampOf(path);
+      rules_.follow(path, stamp_);
+      rememberFoldersOfSaved(path);
+    }
     remember(path);
-    emit message(savingResults_ ? tr("Saved %1").arg(path) : tr("Saved %1 without results: they were not up to date").arg(path));
+    emit message((savingResults_ ? tr("Saved %1") : tr("Saved %1 without results: they were not up to date")).arg(shownText(path)));
   } else {
     emit this->problem(problem);
   }

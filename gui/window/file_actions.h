@@ -9,6 +9,7 @@
 #include "gui/base/actions.h"
 #include "gui/document/document.h"
 #include "gui/document/runner.h"
+#include "gui/window/save_rules.h"
 
 class QMenu;
 class QMimeData;
@@ -39,6 +40,11 @@ class FileActions : public QObject {
   /// scene or in the one that lies above it.
   void drop(const QString& path);
   void open(const QString& path);
+  /// What a program left behind that died. @param of  the session or scene that it is about.
+  void openRecovered(const QString& file, const QString& of);
+  /// Opens what was refused, because a person says that its folder may be read. That is remembered, for this file and this folder; a
+  /// file cannot say it itself.
+  void allow(const glint::gui::OutsidePtr& outside);
   /// Opens a session or scene of which a file lies elsewhere now. False when the user gave up.
   bool openRelinked(const QString& path, const glint::Relinked& instead);
   /// Takes over what is on screen with another scene; layout and 3D camera stay.
@@ -51,10 +57,14 @@ class FileActions : public QObject {
   /// Save in the background; false when there was nothing to save or the user gave up. Message or problem tells how it ended.
   bool save();
   bool saveAs();
+  /// Save as, to a file that was chosen; ".glint" is appended to a name without an ending. Asks before it replaces a session, and
+  /// replaces nothing else.
+  bool saveAsTo(QString path);
 
  signals:
   void problem(const QString& oneLine);
   void message(const QString& oneLine);
+  void notice(const QString& oneLine);  ///< worth knowing now, asks for nothing
   void saveEnded();
   void recentChanged();
   void viewOpened(const glint::gui::OpenedPtr& opened);  ///< after the document took it: layout and 3D camera
@@ -65,11 +75,16 @@ class FileActions : public QObject {
   void finishSave(const QString& path, const QString& problem);
   bool waitForSave();
   void remember(const QString& path);
+  void run(const QString& path, Relinked instead);
+  void rememberFoldersOfSaved(const QString& session);
 
   const Engine& engine_;
   Document& document_;
   Runner& runner_;
   QWidget* window_;
+  SaveRules rules_;
+  std::string stamp_;   ///< of the session as it was opened or saved
+  QString allowedFor_;  ///< whose permissions count for what is being opened; "" = its own
   QString frameToSelect_, photographToSelect_;
   std::shared_ptr<const Scene> savingScene_;  ///< not null while a save is under way
   ViewState saving_;                          ///< what it writes

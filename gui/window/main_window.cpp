@@ -95,7 +95,7 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   connect(files_, &FileActions::message, this, &MainWindow::tell);
   connect(files_, &FileActions::recentChanged, this, [this] { start_->setRecent(files_->recent()); });
   connect(files_, &FileActions::viewOpened, this, [this](const OpenedPtr& opened) {
-    if (!opened->layout.empty()) applyLayout(toQString(opened->layout));
+    if (!opened->layout.empty()) applyLayout(exactQString(opened->layout));
     scene_->setViewPoints(opened->viewPoints);
   });
   for (const auto signal : {&ExportActions::problem, &ExportActions::message})
@@ -139,13 +139,20 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
     located_.reset();
     messageBar_->hide();
     centre_->setCurrentWidget(views_);
-    log(tr("Opened %1").arg(document_.inputFile()));
+    log(tr("Opened %1").arg(shownText(document_.inputFile())));
     recompute();
   });
   connect(&document_, &Document::sceneOpened, this, &MainWindow::showTitle);
   connect(&document_, &Document::savedStateChanged, this, &MainWindow::showTitle);
   connect(&runner_, &Runner::inputMissing, this, [this](const MissingPtr& missing) {
     missing_ = missing;  // failed() comes next, and shows it
+  });
+  connect(&runner_, &Runner::outsideNamed, this, [this](const OutsidePtr& outside) {
+    outside_ = outside;  // failed() comes next, and shows it
+  });
+  connect(files_, &FileActions::notice, this, [this](const QString& line) {
+    log(line);
+    messageBar_->showNotice(line);
   });
   connect(unreadable_, &UnreadableFiles::problem, this, &MainWindow::showProblem);
   connect(unreadable_, &UnreadableFiles::message, this, &MainWindow::log);
@@ -209,7 +216,6 @@ void MainWindow::buildDocks() {
   setCorner(Qt::BottomLeftCorner, Qt::BottomDockWidgetArea);
   setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
   setup_ = new SetupPanel(document_);
-  connect(setup_, &SetupPanel::problem, this, &MainWindow::showProblem);
   connect(setup_, &SetupPanel::autoRequested, this, [this](double goodEnoughPct) {
     if (document_.scene() && engine_.choose)
       runner_.choose(document_.sharedScene(), document_.request(), goodEnoughPct, document_.inspection());
@@ -504,6 +510,10 @@ void MainWindow::showProblem(const QString& oneLine) {
   lastError_ = oneLine;
   if (const MissingPtr missing = std::exchange(missing_, {}))
     offerToLocate(oneLine, missing);
+  else if (const OutsidePtr outside = std::exchange(outside_, {}))
+    messageBar_->showError(tr("%1. Open it all the same, and let it use files in %2? Only if you trust who made it.")
+                               .arg(oneLine, shownText(exactQString(outside->folder))),
+                           {{tr("Allow and open"), [this, outside] { files_->allow(outside); }}});
   else if (!unreadable_->offerMesh(oneLine))
     messageBar_->showError(oneLine);
   log(oneLine);
@@ -525,13 +535,15 @@ void MainWindow::log(const QString& line) { log_->add(line); }
 void MainWindow::tell(const QString& line) {
   log(line);
   // A menu that closes clears the line of status tips: after that.
-  QTimer::singleShot(0, this, [this, line] { statusBar()->showMessage(line, 6000); });
+  QTimer::singleShot(0, this, [this, line] { statusBar()->showMessage(shownText(line), 6000); });
 }
 
 void MainWindow::showTitle() {
   if (!document_.scene()) return setWindowTitle(tr("Glint inspector"));
   const QString& file = document_.sessionFile().isEmpty() ? document_.inputFile() : document_.sessionFile();
-  setWindowTitle(QStringLiteral("%1[*] – %2").arg(QFileInfo(file).fileName(), tr("Glint inspector")));
+  // "[*]" is where Qt puts the mark of unsaved changes; twice it stands for itself.
+  const QString name = shownText(QFileInfo(file).fileName()).replace(QStringLiteral("[*]"), QStringLiteral("[*][*]"));
+  setWindowTitle(QStringLiteral("%1[*] – %2").arg(name, tr("Glint inspector")));
   setWindowModified(document_.hasUnsavedChanges());
 }
 

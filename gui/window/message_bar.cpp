@@ -6,6 +6,8 @@
 #include <QPushButton>
 #include <QToolButton>
 
+#include "core/base/safe_text.h"
+#include "gui/base/text.h"
 #include "gui/base/theme.h"
 
 namespace glint::gui {
@@ -15,6 +17,7 @@ MessageBar::MessageBar(QWidget* parent) : QWidget(parent), row_(new QHBoxLayout(
   setAutoFillBackground(true);
   row_->setContentsMargins(10, 3, 4, 3);
   label_->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  label_->setTextFormat(Qt::PlainText);
   label_->setWordWrap(true);
   row_->addWidget(label_, 1);
   auto* close = new QToolButton;
@@ -59,7 +62,7 @@ void MessageBar::showLine(const QString& oneLine, const QColor& background, cons
   p.setColor(QPalette::WindowText, Qt::white);
   setPalette(p);
   label_->setPalette(p);
-  label_->setText(oneLine);
+  label_->setText(toQString(messageLine(oneLine.toStdString())));
   for (QWidget* button : std::as_const(buttons_)) button->deleteLater();
   buttons_.clear();
   for (const auto& [title, run] : answers) {

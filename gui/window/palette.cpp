@@ -13,6 +13,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "gui/base/complaint.h"
+#include "gui/base/text.h"
+
 namespace glint::gui {
 
 namespace {
@@ -203,8 +206,20 @@ void Palette::fitColumns() {
 }
 
 void Palette::runCurrent() {
-  const int row = list_->indexOfTopLevelItem(list_->currentItem());
-  if (row < 0 || row >= shown_.size() || !shown_[row].enabled) return;
+  int row = list_->indexOfTopLevelItem(list_->currentItem());
+  if (row < 0 && !shown_.isEmpty()) row = 0;  // one that cannot be done is never the current one
+  if (row < 0 || row >= shown_.size()) {
+    if (!line_->text().trimmed().isEmpty()) complain(line_, tr("Nothing matches \"%1\"").arg(shownText(line_->text().trimmed())));
+    return;
+  }
+  if (!shown_[row].enabled) {
+    const QString& detail = shown_[row].detail;
+    // Of a value its problem; an action has its keys there.
+    const bool isValue = line_->text().contains(QLatin1Char('='));
+    complain(line_, isValue && !detail.isEmpty() ? QStringLiteral("%1: %2").arg(shown_[row].title, detail)
+                                                 : tr("%1 cannot be done now").arg(shown_[row].title));
+    return;
+  }
   const std::function<void()> run = shown_[row].run;
   hide();  // first: what runs may open a dialog
   run();

@@ -4,6 +4,8 @@
 #include <QAction>
 #include <QMap>
 #include <QRegularExpression>
+#include <optional>
+#include <variant>
 
 #include "gui/base/text.h"
 #include "gui/timeline/light_switches.h"
@@ -74,13 +76,20 @@ void addParameters(QList<PaletteItem>& items, Document& document, const std::fun
                   wordsOf(spec)});
 }
 
+/// A number as the settings read it; they know no decimal comma.
+QString settingText(const QString& typed, const ParamSpec& spec) {
+  const bool isNumber = std::holds_alternative<double>(spec.defaultValue) || std::holds_alternative<int>(spec.defaultValue);
+  const std::optional<double> number = isNumber && typed.contains(QLatin1Char(',')) ? numberFromText(typed) : std::nullopt;
+  return number ? QString::number(*number, 'g', 17) : typed;
+}
+
 /// "name = value": the value is checked by the settings themselves.
 void addAssignments(QList<PaletteItem>& items, const QString& value, Document& document) {
   for (const ParamSpec& spec : allParams()) {
     Settings tried;
     QString problem;
     try {
-      tried.setFromText(spec.key, value.toStdString());
+      tried.setFromText(spec.key, settingText(value, spec).toStdString());
     } catch (const InputError& e) {
       problem = toQString(e.what()).mid(int(e.place().size()) + 2);  // the place is what the row shows already
     }
@@ -128,10 +137,10 @@ void addKnobs(QList<PaletteItem>& items, Document& document, const std::function
 void addLightSwitches(QList<PaletteItem>& items, Document& document) {
   if (document.frameCount() == 0) return;
   const int frame = document.selection().frame;
-  const QString id = toQString(document.scene()->frames[std::size_t(frame)].id);
+  const QString id = nameText(document.scene()->frames[std::size_t(frame)].id);
   for (const viz::LightRow& row : viz::lightRows(*document.scene(), document.inspection().get())) {
     const viz::LightState state = viz::lightState(row, *document.scene(), document.request().whatIf, frame);
-    items.append({QObject::tr("Light %1 in frame %2").arg(toQString(row.light), id), QObject::tr("What if"),
+    items.append({QObject::tr("Light %1 in frame %2").arg(nameText(row.light), id), QObject::tr("What if"),
                   canSwitch(document, state) ? lightStateText(state) : lightClickText(document, state),
                   canSwitch(document, state), [&document, row, frame] { switchLight(document, row, frame); },
                   QObject::tr("lamp switch on off")});
@@ -141,14 +150,12 @@ void addLightSwitches(QList<PaletteItem>& items, Document& document) {
 void addKnobAssignments(QList<PaletteItem>& items, const QString& value, Document& document) {
   for (const WhatIfKnob& knob : knobsOf(document)) {
     const ParamSpec& spec = knob.spec;
-    bool isNumber = false;
-    const double wanted = value.toDouble(&isNumber);
     QString problem;
-    if (!isNumber)
-      problem = QObject::tr("\"%1\" is not a number").arg(value);
-    else if (!(wanted >= spec.min && wanted <= spec.max))
+    const std::optional<double> number = numberFromText(value, &problem);
+    const double wanted = number.value_or(0);
+    if (number && !(wanted >= spec.min && wanted <= spec.max))
       problem = QObject::tr("%1 is not within %2 … %3").arg(value, numberText(spec.min), valueText(spec.max, spec));
-    else if (knob.synthetic && !document.request().whatIf.synthesise)
+    else if (number && knob.synthetic && !document.request().whatIf.synthesise)
       problem = QObject::tr("only where contours are synthesised");
     items.append(itemOf(knob, problem.isEmpty() ? QObject::tr("set to %1").arg(valueText(wanted, spec)) : problem,
                         problem.isEmpty(), [&document, knob, wanted] { turnKnob(document, knob, wanted); }));
@@ -157,7 +164,7 @@ void addKnobAssignments(QList<PaletteItem>& items, const QString& value, Documen
 
 void addFrames(QList<PaletteItem>& items, Document& document) {
   for (int i = 0; i < document.frameCount(); ++i)
-    items.append({QObject::tr("Frame %1").arg(toQString(document.scene()->frames[std::size_t(i)].id)),
+    items.append({QObject::tr("Frame %1").arg(nameText(document.scene()->frames[std::size_t(i)].id)),
                   QObject::tr("Go to frame number %1").arg(i),
                   {},
                   true,

@@ -3,22 +3,19 @@
 
 #include <QDir>
 #include <QLocale>
-#include <QStandardPaths>
 #include <QTimer>
 #include <utility>
 
+#include "gui/base/text.h"
+#include "gui/document/own_files.h"
 #include "gui/window/file_actions.h"
 #include "gui/window/message_bar.h"
 
 namespace glint::gui {
 
-namespace {
-QString folder() { return QStandardPaths::writableLocation(QStandardPaths::AppDataLocation) + QStringLiteral("/recovery"); }
-}  // namespace
-
 Recovery::Recovery(const Engine& engine, Document& document, std::function<Opened()> snapshot, FileActions& files,
                    MessageBar& bar, QObject* parent)
-    : QObject(parent), autosave_(engine, document, std::move(snapshot), folder(), this), files_(files), bar_(bar) {
+    : QObject(parent), autosave_(engine, document, std::move(snapshot), recoveryFolder(), this), files_(files), bar_(bar) {
   connect(&autosave_, &Autosave::problem, this, &Recovery::problem);
   connect(&document, &Document::sceneOpened, this, [this] {
     const auto found = std::exchange(opening_, {});
@@ -36,14 +33,14 @@ void Recovery::offer() {
   if (!found) return;
   const auto recover = [this, found = *found] {
     opening_ = found;
-    files_.open(found.file);
+    files_.openRecovered(found.file, found.of);
   };
   const auto discard = [this, found = *found] {
     Autosave::discard(found);
     offer();  // there may be an older one
   };
   bar_.showOffer(tr("The program ended without saving what was changed on %1 (%2).")
-                     .arg(QDir::toNativeSeparators(found->of), QLocale().toString(found->when, QLocale::ShortFormat)),
+                     .arg(shownText(QDir::toNativeSeparators(found->of)), QLocale().toString(found->when, QLocale::ShortFormat)),
                  {{tr("Recover"), recover}, {tr("Discard"), discard}});
 }
 

@@ -9,6 +9,7 @@
 #include <QVBoxLayout>
 #include <QVariant>
 
+#include "gui/base/text.h"
 #include "gui/base/theme.h"
 
 namespace glint::gui {
@@ -60,6 +61,7 @@ void StartPage::addLesson(const QString& title, const QString& file) {
   }
   auto* link = new QLabel(
       QStringLiteral("%1 &nbsp;<a href='%2'>%3</a>").arg(lessons_->count()).arg(file.toHtmlEscaped(), title.toHtmlEscaped()));
+  link->setTextFormat(Qt::RichText);
   connect(link, &QLabel::linkActivated, this, &StartPage::openRecent);
   lessons_->addWidget(link);
 }
@@ -73,13 +75,15 @@ void StartPage::setRecent(const QStringList& files) {
   auto* heading = new QLabel(tr("Recent"));
   heading->setProperty("role", "group");
   recent_->addWidget(heading);
-  for (const QString& file : files) {
+  for (int i = 0; i < files.size(); ++i) {
+    const QString& file = files[i];
     const QFileInfo info(file);
     auto* link = new QLabel(QStringLiteral("<a href='%1'>%2</a> &nbsp;<span style='color:%3'>%4</span>")
-                                .arg(file.toHtmlEscaped(), (info.dir().dirName() + '/' + info.fileName()).toHtmlEscaped(),
+                                .arg(QString::number(i), shownText(info.dir().dirName() + '/' + info.fileName()).toHtmlEscaped(),
                                      palette().color(QPalette::PlaceholderText).name(),
-                                     QDir::toNativeSeparators(info.path()).toHtmlEscaped()));
-    connect(link, &QLabel::linkActivated, this, &StartPage::openRecent);
+                                     shownText(QDir::toNativeSeparators(info.path())).toHtmlEscaped()));
+    link->setTextFormat(Qt::RichText);
+    connect(link, &QLabel::linkActivated, this, [this, file] { emit openRecent(file); });  // a link's target is decoded: not as it was
     recent_->addWidget(link);
   }
 }

@@ -15,6 +15,7 @@
 #include "core/pipeline/session.h"
 #include "core/scene/mesh_file.h"
 #include "gui/base/text.h"
+#include "gui/base/tips.h"
 #include "gui/window/file_actions.h"
 #include "gui/window/message_bar.h"
 
@@ -174,9 +175,9 @@ void UnreadableFiles::showList() {
   rows->setAlternatingRowColors(true);
   for (const auto& [kind, lines] : all_)
     for (auto it = lines.begin(); it != lines.end(); ++it) {
-      auto* row = new QTreeWidgetItem(rows, {toQString(document_.scene()->frames[std::size_t(it.key())].id), it.value()});
+      auto* row = new QTreeWidgetItem(rows, {nameText(document_.scene()->frames[std::size_t(it.key())].id), it.value()});
       row->setData(0, Qt::UserRole, it.key());
-      row->setToolTip(1, it.value());
+      row->setToolTip(1, plainTip(it.value()));
     }
   rows->resizeColumnToContents(0);
   connect(rows, &QTreeWidget::itemClicked, this,
@@ -197,7 +198,7 @@ void UnreadableFiles::locate() {
   QStringList kinds;
   for (const auto& [kind, lines] : all_) kinds << named(kind);
   const QString folder = QFileDialog::getExistingDirectory(window_, tr("Where are the %1?").arg(listed(kinds, tr(" and "))),
-                                                           toQString(document_.scene()->folder.string()));
+                                                           exactQString(document_.scene()->folder.string()));
   if (!folder.isEmpty()) locateIn(folder);
 }
 
@@ -261,8 +262,8 @@ bool UnreadableFiles::offerMesh(const QString& oneLine) {
 void UnreadableFiles::offerMesh(const QString& oneLine, const std::string& named) {
   bar_.showError(oneLine, {{tr("Locate…"), [this, oneLine, named] {
                               const QString folder =
-                                  document_.scene() ? toQString(document_.scene()->folder.string()) : QString();
-                              const QString now = FileActions::whereIs(toQString(named), true, folder, window_);
+                                  document_.scene() ? exactQString(document_.scene()->folder.string()) : QString();
+                              const QString now = FileActions::whereIs(exactQString(named), true, folder, window_);
                               if (now.isEmpty())
                                 offerMesh(oneLine, named);
                               else
@@ -273,7 +274,7 @@ void UnreadableFiles::offerMesh(const QString& oneLine, const std::string& named
 void UnreadableFiles::locateMesh(const std::string& named, const std::filesystem::path& now) {
   const std::shared_ptr<const Scene> scene = document_.sharedScene();
   if (!scene) return;
-  tried_ = toQString(now.string());
+  tried_ = exactQString(now.string());
   triedFor_ = named;
   search_.run([this, scene, named, now, session = document_.toSave().session] {
     try {

@@ -2,6 +2,8 @@
 // Wrong requests on a good input: exit code 2 and one line that names the flag; and what few training frames can still do.
 #include <gmock/gmock.h>
 
+#include <set>
+
 #include "tests/cli/small_scene.h"
 
 namespace glint {
@@ -42,6 +44,9 @@ TEST_F(Requests, WrongOnesNameTheFlag) {
            {"--train 5-2", "--train 5-2: the range 5-2 runs backwards"},
            {"--train 0-8", "--train 0-8: there is no frame 8; frames are numbered from 0 by their order: 0 to 7, and no id is \"8\""},
            {"--train 0,,1", "--train 0,,1: empty entry"},
+           {"--exclude 9", "--exclude 9: there is no frame 9; frames are numbered from 0 by their order: 0 to 7, and no id is \"9\""},
+           {"--exclude nobody", "--exclude nobody: 'nobody' is neither a frame id nor a number"},
+           {"--exclude 0-7", "--exclude 0-7: leaves no frame"},
            {"--train=-1", "--train -1: '-1' is neither a frame id nor a number"},
            {"--level 0", "--level 0: the level is a fraction of the peak, more than 0 and less than 1"},
            {"--level 1", "--level 1: the level is a fraction of the peak, more than 0 and less than 1"},
@@ -70,10 +75,29 @@ TEST_F(Requests, WrongSessionsAndFrames) {
   saveSession("--model limit-angle");
   for (const char* frames : {"99", "x", "0-", "3-1", "first:0"})
     refused(onSession("predict", "--frames " + std::string(frames)), "--frames " + std::string(frames) + ": ", frames);
-  refused(runGlint("predict " + out("scene.json")), "scene.json: is a scene, not a session", "a scene is no session");
+  refused(runGlint("predict " + out("scene.json")), "scene.json: is a scene, not a session (glint reconstruct makes a session of it)", "a scene is no session");
   refused(runGlint("replay " + out("nothing.glint")), "nothing.glint: cannot be read: No such file", "no file");
   refused(on("replay"), "is a folder, not a file", "a folder");
   refused(runGlint("synth " + out("scene.json") + " -o " + out("s")), "scene.json: ", "no render");
+}
+
+TEST_F(Requests, ExcludedFramesNeitherTrainNorAreScored) {
+  const auto indices = [](const Json& rows) {
+    std::set<int> all;
+    for (const Json& row : rows) all.insert(row["index"].get<int>());
+    return all;
+  };
+  const ProgramRun run = on("evaluate", "--models limit-angle --train 0-5 --exclude 7,2 --json -");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json j = Json::parse(run.out);
+  EXPECT_EQ(j["excluded"], Json::array({2, 7}));
+  EXPECT_EQ(indices(j["training"]), (std::set<int>{0, 1, 3, 4, 5}));
+  EXPECT_EQ(indices(j["models"]["limit-angle"]["frames"]), std::set<int>{6});
+  // A session keeps them; what the command line says comes first.
+  saveSession("--model limit-angle --train 0-5 --exclude 7");
+  EXPECT_EQ(Json::parse(contentOf(folder_ / "run.glint"))["request"]["excluded"], Json::array({7}));
+  EXPECT_EQ(Json::parse(onSession("evaluate", "--json -").out)["excluded"], Json::array({7}));
+  EXPECT_EQ(Json::parse(onSession("evaluate", "--exclude 6 --json -").out)["excluded"], Json::array({6}));
 }
 
 TEST_F(Requests, TwoTrainingFramesAnchoredAndLimitAngleAnswer) {

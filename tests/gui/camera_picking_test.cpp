@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cameras in the 3D view, by left and right clicks on their lines and between them.
+// Cameras in the 3D view, by left and right clicks on their lines and between them; lamps behind what shines through.
 #include <QMenu>
 #include <cmath>
 
@@ -20,6 +20,37 @@ class CameraPickingTest : public QObject, SceneFixture {
     settle();
     QTest::mouseClick(views().widget(), Qt::LeftButton, {}, onScreen(document_->scene()->frames[8].camera.centreInWorld()));
     QCOMPARE(document_->selection().frame, 8);
+  }
+
+  /// An ellipsoid shines through: what lies behind it is seen, and can be taken.
+  void theLampIsDraggedThroughAnEllipsoid() {
+    auto scene = std::make_shared<Scene>(*document_->scene());
+    TrueLight lamp;
+    lamp.id = "lamp";
+    lamp.position = Eigen::Vector3d(0.3, -0.6, -0.8);
+    scene->lights = {lamp};
+    Opened opened = fixture_.opened();
+    opened.scene = scene;
+    opened.request.whatIf.synthesise = true;
+    document_->open(opened);
+    auto inspection = std::make_shared<Inspection>(drawnCircles(document_->sharedScene(), document_->request()));
+    inspection->surfaces = std::make_shared<SurfaceCache>(*document_->sharedScene());
+    ModelFit around;
+    around.model = "canonical";
+    around.light = "lamp";
+    around.ellipsoid = Ellipsoid(Eigen::Isometry3d(Eigen::Translation3d(*lamp.position)), {0.3, 0.25, 0.2});
+    inspection->models["canonical"].fits = {{"lamp", {}, around, {}, {}}};
+    document_->setInspection(inspection, document_->request());
+    showOnly({"true-light", "ellipsoids"});
+    settle();
+    panel_->frameAll();
+    settle();
+    const QPoint from = onScreen(*lamp.position), there = from + QPoint(-60, 35);
+    const double ratio = views().widget()->devicePixelRatioF();
+    const auto seen = panel_->view().pick(int(from.x() * ratio), int((views().widget()->height() - from.y()) * ratio) - 1);
+    QVERIFY2(seen && seen->layer != "true-light", "the ellipsoid lies before it");
+    drag(views().widget(), {from, from + QPoint(-20, 10), there});
+    QVERIFY(document_->request().whatIf.lightsBy.count("lamp"));
   }
 
   void aRightClickOnACameraExcludesIt() {

@@ -493,7 +493,8 @@ class FigureTest : public QObject {
     wait();
     open(kSessions + "ellipsoid/ellipsoid.glint");
     dropOn(window_.get(), file);
-    QTRY_VERIFY_WITH_TIMEOUT(window_->document().sessionFile().contains("plane.glint"), 20000);
+    QTRY_COMPARE_WITH_TIMEOUT(window_->document().inputFile(), file, 20000);
+    QVERIFY2(window_->document().sessionFile().isEmpty(), "a picture names no file to save to");
     QCOMPARE(window_->document().selection().frame, 5);
   }
 

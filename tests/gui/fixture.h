@@ -78,5 +78,8 @@ QObject* makeCameraPickingTest();
 QObject* makePlotsTest();
 QObject* makeSceneTest();
 QObject* makeSceneTreeTest();
+QObject* makeSaveTest();
+QObject* makeHostileNamesTest();
+QObject* makeTypingTest();
 
 }  // namespace glint::gui

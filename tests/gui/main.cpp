@@ -7,6 +7,7 @@
 #include <cstring>
 #include <memory>
 
+#include "gui/base/input_rules.h"
 #include "gui/base/theme.h"
 #include "tests/gui/fixture.h"
 
@@ -34,6 +35,8 @@ int main(int argc, char** argv) {
       {"what_if", makeWhatIfTest},         {"turns", makeTurnsTest},
       {"window_size", makeWindowSizeTest}, {"camera_picking", makeCameraPickingTest},
       {"truth", makeTruthTest},
+      {"save", makeSaveTest},              {"hostile_names", makeHostileNamesTest},
+      {"typing", makeTypingTest},
   };
   if (argc < 2) return std::fputs("usage: test_gui CLASS [QTest options]\n", stderr), 2;
   const bool untilKilled = std::strcmp(argv[1], "--until-killed") == 0;
@@ -43,6 +46,7 @@ int main(int argc, char** argv) {
   QSettings::setPath(QSettings::NativeFormat, QSettings::UserScope, settings.path());
   QApplication::setOrganizationName(QStringLiteral("GlintTest"));
   QApplication::setApplicationName(QStringLiteral("test_gui"));
+  installInputRules(app);
   applyTheme(app, Theme::Dark);
   if (untilKilled) return runUntilKilled();
   for (const TestClass& c : classes) {

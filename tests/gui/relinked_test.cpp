@@ -21,6 +21,7 @@
 
 #include "core/pipeline/session.h"
 #include "gui/base/text.h"
+#include "gui/document/own_files.h"
 #include "gui/document/session_file.h"
 #include "gui/timeline/timeline.h"
 #include "gui/window/changed_inputs.h"
@@ -82,6 +83,35 @@ QString locate(MainWindow& window, const QString& file) {
   QTest::mouseClick(button, Qt::LeftButton);
   if (ticks > 200) QTest::qFail("the dialog does not take the file", __FILE__, __LINE__);
   return title;
+}
+
+/// Presses "Allow and open" until nothing outside of the session's folder is asked for any more; how often.
+int allowWhatIsOutside(MainWindow& window, const QString& session) {
+  auto* bar = window.findChild<MessageBar*>(QStringLiteral("messageBar"));
+  const auto button = [bar]() -> QPushButton* {
+    for (QPushButton* b : bar->findChildren<QPushButton*>())
+      if (bar->isVisible() && b->isVisible() && b->text() == "Allow and open") return b;
+    return nullptr;
+  };
+  int asked = 0;
+  const auto opened = [&] { return window.document().inputFile() == session && window.idle(); };
+  while (QTest::qWaitFor([&] { return button() || opened(); }, 20000) && button() && asked < 5) {
+    ++asked;
+    QTest::mouseClick(button(), Qt::LeftButton);
+  }
+  return asked;
+}
+
+/// The command line's --allow-outside.
+Session trusted(Session session) {
+  session.allowOutsidePaths = true;
+  return session;
+}
+
+/// A file where only this program writes.
+std::string inRecoveryFolder(const char* name) {
+  QDir().mkpath(recoveryFolder());
+  return (recoveryFolder() + '/' + name).toStdString();
 }
 
 void computed(MainWindow& window) {
@@ -174,21 +204,23 @@ class RelinkedTest : public QObject {
     const QString command = checkedCommand(window);
     QVERIFY2(command.contains("--mesh 'mesh/geom_00.ply=" + found + "'"), qPrintable(command));
     // What would be recovered after a crash knows it, too.
-    coreEngine().autosave(window.document().toSave(), path("left.glint").toStdString());
-    const Opened recovered = openInput(path("left.glint").toStdString());
+    const std::string left = inRecoveryFolder("mesh.glint");
+    coreEngine().autosave(window.document().toSave(), left);
+    const Opened recovered = openInput(left);
     QCOMPARE(toQString(recovered.scene->surfaces.at("g00").mesh->string()), found);
 
     QVERIFY(window.files()->save());
     QTRY_VERIFY_WITH_TIMEOUT(window.idle() && !window.document().hasUnsavedChanges(), 60000);
     move(path("work"), path("moved"));
     const QString session = path("moved/old/vase.glint");
-    const Replay replayed = replay(readSession(session.toStdString()));
+    const Replay replayed = replay(trusted(readSession(session.toStdString())));
     QVERIFY2(replayed.differences.empty() && replayed.compared > 0, "");
     QProcess program;
-    program.start(QStringLiteral(GLINT_CLI), {"replay", session});
+    program.start(QStringLiteral(GLINT_CLI), {"replay", session, "--allow-outside"});
     QVERIFY(program.waitForFinished(120000));
     QVERIFY2(program.exitCode() == 0, program.readAllStandardError().constData());
-    window.open(session);
+    window.open(session);  // at a new place it is a session like one from others
+    QCOMPARE(allowWhatIsOutside(window, session), 1);
     QTRY_COMPARE_WITH_TIMEOUT(window.document().inputFile(), session, 20000);
     computed(window);
     QCOMPARE(meshOf(window), path("moved/elsewhere/another name.ply"));
@@ -296,7 +328,7 @@ class RelinkedTest : public QObject {
     QTRY_VERIFY_WITH_TIMEOUT(window.idle() && !d.hasUnsavedChanges(), 60000);
     const Session session = readSession((old + "/vase.glint").toStdString());
     QCOMPARE(toQString(session.meshes.at(kMesh.toStdString()).string()), whole);
-    const Replay replayed = replay(session);
+    const Replay replayed = replay(trusted(session));
     QVERIFY2(replayed.differences.empty() && replayed.compared > 0, "");
   }
 
@@ -341,18 +373,20 @@ class RelinkedTest : public QObject {
          {"depth=" + path("work/elsewhere"), "normals=" + path("work/third"), "masks=" + path("work/elsewhere")})
       QVERIFY2(command.contains(" --files " + part), qPrintable(command));
     // What would be recovered after a crash knows them, too.
-    coreEngine().autosave(window.document().toSave(), path("left.glint").toStdString());
-    QCOMPARE(openInput(path("left.glint").toStdString()).scene->folders, window.document().scene()->folders);
+    const std::string left = inRecoveryFolder("folders.glint");
+    coreEngine().autosave(window.document().toSave(), left);
+    QCOMPARE(openInput(left).scene->folders, window.document().scene()->folders);
 
     QVERIFY(window.files()->save());
     QTRY_VERIFY_WITH_TIMEOUT(window.idle() && !window.document().hasUnsavedChanges(), 60000);
     move(path("work"), path("moved"));
     const QString session = path("moved/scene/own.glint");
     QProcess program;
-    program.start(QStringLiteral(GLINT_CLI), {"replay", "--exact", session});
+    program.start(QStringLiteral(GLINT_CLI), {"replay", "--exact", session, "--allow-outside"});
     QVERIFY(program.waitForFinished(120000));
     QVERIFY2(program.exitCode() == 0, program.readAllStandardError().constData());
     window.open(session);
+    QCOMPARE(allowWhatIsOutside(window, session), 2);
     QTRY_COMPARE_WITH_TIMEOUT(window.document().sessionFile(), session, 20000);
     computed(window);
     for (const FrameFile kind : kFrameFiles) QVERIFY(unreadable->all(kind).isEmpty());

@@ -87,6 +87,27 @@ TEST(FramePick, ContoursInsideAndOutside) {
   EXPECT_NE(labelAt(overlay, centre + Pixel(-15.2, 0), 2).find("canonical"), std::string::npos);
 }
 
+/// Two models that predict the same: a click there leaves the selected one selected, whichever is drawn on top.
+TEST(FramePick, TheSelectedModelStaysWhereContoursOverlap) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  FrameOverlay overlay = frameOverlay(*inspection, 1);
+  std::vector<Pixel> canonical;
+  for (const OverlayLine& line : overlay.lines)
+    if (line.role == OverlayRole::PredictedContour && line.model == "canonical") canonical = line.points;
+  ASSERT_FALSE(canonical.empty());
+  for (OverlayLine& line : overlay.lines)
+    if (line.role == OverlayRole::PredictedContour) line.points = canonical;
+  const Pixel centre = inspection->evidence[1].highlights[0].ellipse->centre, at = centre + Pixel(-15.2, 0);
+  for (const std::string model : {"dual", "canonical"}) {
+    const Selection picked = pickInFrame(*inspection, {1, model}, overlay, at, 2);
+    EXPECT_EQ(picked.model, model);
+    EXPECT_EQ(picked.highlight, 0);
+    EXPECT_TRUE(picked.direction);
+  }
+  EXPECT_NE(pickInFrame(*inspection, {1, ""}, overlay, at, 2).model, "");
+}
+
 TEST(EpipolarPicture, LinesTouchTheEllipsesAndTheMissIsTheirs) {
   const TemporaryFolder folder;
   const auto inspection = smallInspection(folder.path());

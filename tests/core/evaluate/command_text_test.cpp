@@ -3,9 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <array>
 #include <cstdio>
 #include <memory>
+
+#include "core/pipeline/frame_spec.h"
 
 namespace glint {
 namespace {
@@ -32,7 +36,53 @@ Scene sceneIn(const std::string& file) {
   return scene;
 }
 
-TEST(CommandText, DefaultsAreLeftOut) { EXPECT_EQ(*commandOf(sceneIn("scene.json"), {}), "glint evaluate scene.json"); }
+TEST(CommandText, DefaultsAreLeftOut) { EXPECT_EQ(*commandOf(sceneIn("/s/scene.json"), {}), "glint evaluate /s/scene.json"); }
+
+/// The inspector may have been started with a relative path; the shell that the command is pasted into stands elsewhere.
+TEST(CommandText, EveryPathIsAbsolute) {
+  Scene scene = sceneIn("data/../scene.json");
+  scene.folders = {{FrameFile::Photograph, "photos"}, {FrameFile::Depth, "depth"}};
+  scene.meshes = {{"a.ply", "meshes/a.ply"}};
+  InspectionRequest q;
+  q.truthFolder = "truth";
+  std::array<char, 4096> here{};
+  ASSERT_NE(getcwd(here.data(), here.size()), nullptr);
+  const std::string at = std::string(here.data()) + "/";
+  EXPECT_EQ(*commandOf(scene, q), "glint evaluate " + shellWord(at + "scene.json") + " --truth " + shellWord(at + "truth") + " --photographs " +
+                                      shellWord(at + "photos") + " --files " + shellWord("depth=" + at + "depth") + " --mesh " +
+                                      shellWord("a.ply=" + at + "meshes/a.ply"));
+}
+
+Scene withIds(const std::vector<std::string>& ids) {
+  Scene scene = sceneIn("/s/scene.json");
+  for (const std::string& id : ids) {
+    Frame frame;
+    frame.id = id;
+    scene.frames.push_back(frame);
+  }
+  return scene;
+}
+
+TEST(CommandText, ExcludedFramesAreNamed) {
+  InspectionRequest q;
+  q.excluded = {1, 3, 4, 5};
+  EXPECT_EQ(*commandOf(withIds({"a", "b", "c", "d", "e", "f", "g"}), q), "glint evaluate /s/scene.json --exclude 1,3-5");
+}
+
+/// Ids win over numbers: where the ids are numbers themselves, "1" is the frame of that id.
+TEST(CommandText, WhatNamesFramesIsReadBackAsTheSameFrames) {
+  for (const std::vector<std::string>& ids :
+       {std::vector<std::string>{"1", "2", "3", "4", "5", "6"}, {"5", "4", "3", "2", "1", "0"}, {"0-2", "1-3", "a-b", "3-4", "x", "2"},
+        {"0000", "0001", "0002", "0003", "0004", "0005"}}) {
+    const Scene scene = withIds(ids);
+    for (unsigned set = 1; set < 64; ++set) {
+      std::vector<int> frames;
+      for (int i = 0; i < 6; ++i)
+        if (set >> i & 1u) frames.push_back(i);
+      EXPECT_EQ(parseFrames(frameSpec(frames, scene), scene, "--exclude"), frames) << ids[0] << " " << set << ": " << frameSpec(frames, scene);
+    }
+  }
+}
 
 TEST(CommandText, EverythingThatHasAFlagIsThere) {
   InspectionRequest q;
@@ -44,25 +94,22 @@ TEST(CommandText, EverythingThatHasAFlagIsThere) {
   q.settings.setFromText("light.refine_poses", "true");
   q.noisePx = 0.3;
   q.seed = 7;
-  q.truthFolder = "the truth";
-  Scene scene = sceneIn("a b.json");
+  q.truthFolder = "/the truth";
+  Scene scene = sceneIn("/a b.json");
   scene.allowOutsidePaths = true;
   scene.folders = {{FrameFile::Photograph, "/else where"}, {FrameFile::Mask, "/m s"}, {FrameFile::Photograph, "/p2"}};
   scene.meshes = {{"it's.ply", "/m/it's.ply"}, {"m/b.ply", "/m/b2.ply"}};
   EXPECT_EQ(
       *commandOf(scene, q),
-      "glint evaluate 'a b.json' --models canonical,limit-angle --train spread:6 --source image --set detect.level=0.1 "
+      "glint evaluate '/a b.json' --models canonical,limit-angle --train spread:6 --source image --set detect.level=0.1 "
       "--set fit.solver=anchored "
-      "--set light.refine_poses=true --noise-px 0.3 --seed 7 --truth 'the truth' --allow-outside --photographs '/else where' "
+      "--set light.refine_poses=true --noise-px 0.3 --seed 7 --truth '/the truth' --allow-outside --photographs '/else where' "
       "--files 'masks=/m s' --photographs /p2 "
       "--mesh 'it'\\''s.ply=/m/it'\\''s.ply' --mesh m/b.ply=/m/b2.ply");
 }
 
 TEST(CommandText, WhatHasNoFlagIsNamed) {
   InspectionRequest q;
-  q.excluded = {3};
-  EXPECT_EQ(commandOf(sceneIn("x"), q).failure().reason, Reason::NotSupported);
-  q.excluded.clear();
   q.whatIf.poses[1].rotation = {0.1, 0, 0};
   EXPECT_EQ(commandOf(sceneIn("x"), q).failure().reason, Reason::NotSupported);
 }

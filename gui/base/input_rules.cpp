@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/base/input_rules.h"
+
+#include <QAbstractSlider>
+#include <QAbstractSpinBox>
+#include <QApplication>
+#include <QComboBox>
+#include <QEvent>
+#include <QLabel>
+#include <QScrollBar>
+#include <QTextDocument>
+
+#include "gui/base/tips.h"
+
+namespace glint::gui {
+
+namespace {
+bool holdsAValue(const QObject* o) {
+  return qobject_cast<const QAbstractSpinBox*>(o) || qobject_cast<const QComboBox*>(o) ||
+         (qobject_cast<const QAbstractSlider*>(o) && !qobject_cast<const QScrollBar*>(o));
+}
+
+class InputRules : public QObject {
+ public:
+  using QObject::QObject;
+
+ protected:
+  bool eventFilter(QObject* watched, QEvent* event) override {
+    switch (event->type()) {
+      case QEvent::Polish:
+        polish(watched);
+        break;
+      case QEvent::ToolTipChange:
+        if (auto* widget = qobject_cast<QWidget*>(watched); widget && !hasRichTip(widget) && Qt::mightBeRichText(widget->toolTip()))
+          setRichTip(widget, plainTip(widget->toolTip()));
+        break;
+      case QEvent::Wheel:
+        if (holdsAValue(watched) && !static_cast<QWidget*>(watched)->hasFocus()) {
+          event->ignore();  // goes on to the panel that it lies in
+          return true;
+        }
+        break;
+      default:
+        break;
+    }
+    return QObject::eventFilter(watched, event);
+  }
+
+ private:
+  static void polish(QObject* watched) {
+    // The label of tool tips gets its texts from plainTip and setRichTip.
+    if (auto* label = qobject_cast<QLabel*>(watched);
+        label && label->textFormat() == Qt::AutoText && label->objectName() != QLatin1String("qtooltip_label"))
+      label->setTextFormat(Qt::PlainText);
+    // The wheel would give the focus first, and change the value then.
+    if (holdsAValue(watched))
+      if (auto* widget = static_cast<QWidget*>(watched); widget->focusPolicy() == Qt::WheelFocus)
+        widget->setFocusPolicy(Qt::StrongFocus);
+  }
+};
+}  // namespace
+
+void installInputRules(QApplication& app) { app.installEventFilter(new InputRules(&app)); }
+
+}  // namespace glint::gui

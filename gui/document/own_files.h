@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QString>
+#include <string>
+
+namespace glint::gui {
+
+class Document;
+
+/// What this program keeps for itself: autosaves and locks of sessions that are open. Both folders may not exist yet.
+QString recoveryFolder();
+QString locksFolder();
+/// Lies in recoveryFolder(): only this program writes there, so that what stands in it may be believed.
+bool isOwnRecovery(const QString& file);
+/// Lessons and sessions that came with the program, installed or in its source tree. They are read only, whatever the file system says.
+bool isShipped(const QString& file);
+/// Whether a path is a file that the open scene is made of, its session, or the input as it was opened.
+bool isOfInput(const Document& document, const QString& file);
+/// What a file holds, to see later whether it is still the same; "" when it is not there or cannot be read.
+std::string stampOf(const QString& file);
+
+}  // namespace glint::gui
