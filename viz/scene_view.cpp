@@ -271,6 +271,16 @@ struct SceneView::Impl {
     glint::viz::styleSurface(layers[layerIndex("surface")].content, input, behind, moving);
   }
   bool surfaceShown() const { return layers[layerIndex("surface")].visible && !input.hidden.hidesSurface(input.surfaceKey); }
+  /// What lies under a pixel among the visible layers first..last.
+  std::optional<Picked> pickAmong(std::size_t first, std::size_t last, int xDisplay, int yDisplay) {
+    if (!valid() || !renderer->GetRenderWindow()) return {};
+    update();
+    std::vector<const Drawn*> drawn;
+    for (std::size_t i = first; i < last; ++i)
+      if (layers[i].visible)
+        for (const Drawn& d : layers[i].content.drawn) drawn.push_back(&d);
+    return drawn.empty() ? std::nullopt : pickIn(renderer, input, drawn, surfaceShown(), xDisplay, yDisplay);
+  }
   void updateAnnotations() {
     annotationsStale = false;
     annotations->setBadge(eyeText());
@@ -578,25 +588,13 @@ void SceneView::update() { impl_->update(); }
 int SceneView::buildCount(const std::string& layer) const { return impl_->layers[layerIndex(layer)].builds; }
 
 std::optional<Picked> SceneView::pick(int xDisplay, int yDisplay) const {
-  if (!impl_->valid() || !impl_->renderer->GetRenderWindow()) return {};
-  impl_->update();
-  std::vector<const Drawn*> drawn;
-  for (const LayerState& layer : impl_->layers) {
-    if (!layer.visible) continue;
-    for (const Drawn& d : layer.content.drawn) drawn.push_back(&d);
-  }
-  std::optional<Picked> picked = pickIn(impl_->renderer, impl_->input, drawn, impl_->surfaceShown(), xDisplay, yDisplay);
+  std::optional<Picked> picked = impl_->pickAmong(0, impl_->layers.size(), xDisplay, yDisplay);
   return picked ? picked : pickCamera(xDisplay, yDisplay);
 }
 
 std::optional<Picked> SceneView::pickLamp(int xDisplay, int yDisplay) const {
-  if (!impl_->valid() || !impl_->renderer->GetRenderWindow()) return {};
-  impl_->update();
-  const LayerState& lamps = impl_->layers[layerIndex("true-light")];
-  if (!lamps.visible) return {};
-  std::vector<const Drawn*> drawn;
-  for (const Drawn& d : lamps.content.drawn) drawn.push_back(&d);
-  std::optional<Picked> picked = pickIn(impl_->renderer, impl_->input, drawn, impl_->surfaceShown(), xDisplay, yDisplay);
+  const std::size_t lamps = layerIndex("true-light");
+  std::optional<Picked> picked = impl_->pickAmong(lamps, lamps + 1, xDisplay, yDisplay);
   return picked && picked->layer == "true-light" ? picked : std::nullopt;
 }
 
