@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viz/movie.h"
 
-<<<<<<< HEAD
-=======
-#include <dlfcn.h>
-#include <fcntl.h>
-#include <unistd.h>
-
->>>>>>> fuzz
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cctype>
@@ -82,7 +75,6 @@ void writeSeries(const std::string& file, const MovieFormat& format, int frames,
   });
 }
 
-<<<<<<< HEAD
 /// A library's call, without what the library prints.
 template <class Call>
 auto quietly(const Call& call) {
@@ -95,34 +87,6 @@ struct Writer : cv::VideoWriter {
   ~Writer() override {
     quietly([&] { release(); });
   }
-=======
-/// FFmpeg, where OpenCV works with it, writes lines of its own to standard error; its failures are told below. OpenCV sets its level when
-/// it opens a file, so this comes after every opening.
-void silenceFfmpeg() {
-  constexpr int kQuiet = -8;  // AV_LOG_QUIET
-  using SetLevel = void (*)(int);
-  if (const auto setLevel = reinterpret_cast<SetLevel>(::dlsym(RTLD_DEFAULT, "av_log_set_level"))) setLevel(kQuiet);
-}
-
-/// While one lives, nothing reaches standard error. For what a library writes while it opens a file, before its level can be set.
-class QuietStandardError {
- public:
-  QuietStandardError() : before_(::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3)) {
-    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-    if (before_ >= 0 && nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
-    if (nowhere >= 0) ::close(nowhere);
-  }
-  ~QuietStandardError() {
-    if (before_ < 0) return;
-    ::dup2(before_, STDERR_FILENO);
-    ::close(before_);
-  }
-  QuietStandardError(const QuietStandardError&) = delete;
-  QuietStandardError& operator=(const QuietStandardError&) = delete;
-
- private:
-  int before_;
->>>>>>> fuzz
 };
 
 void encode(const std::string& file, const fs::path& temporary, const MovieFormat& format, int frames,
@@ -143,15 +107,7 @@ void encode(const std::string& file, const fs::path& temporary, const MovieForma
   quietly([&] { writer.release(); });
   // The writer tells of no failure: a full disk shows only here.
   cv::VideoCapture back;
-<<<<<<< HEAD
   quietly([&] { return back.open(temporary.string()); });
-=======
-  {
-    const QuietStandardError quiet;
-    back.open(temporary.string());
-  }
-  silenceFfmpeg();
->>>>>>> fuzz
   int found = 0;
   while (quietly([&] { return back.grab(); })) {
     if (!report(progress, {"reading back", found, frames})) throw Stopped{};

@@ -8,7 +8,8 @@ macro(complain file text)
 endmacro()
 
 # Files beyond 600 lines, each with the reason why it is better whole: "path: reason".
-set(longFiles "core/surface/mesh.cpp: one class, whose rays, feet and searches share its triangles")
+set(longFiles "core/surface/mesh.cpp: one class, whose rays, feet and searches share its triangles"
+              "viz/scene_view.cpp: one class, whose drawing and picking share its list of layers")
 set(maxLines 600)
 
 set(sources "")
