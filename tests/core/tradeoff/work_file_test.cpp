@@ -46,7 +46,7 @@ TEST(WorkFile, IsEmptyForAnotherKeyOrWhenItIsBroken) {
   }
   // Numbers that no int holds, and a reason that does not exist, are not taken for something else.
   const std::string start = R"({"glint_tradeoff_work":1,"key":"key","coarse":{"a":)";
-  for (const std::string& result : {R"({"reason":1e300,"detail":""})", R"({"reason":-1,"detail":""})", R"({"reason":1000,"detail":""})",
+  for (const std::string result : {R"({"reason":1e300,"detail":""})", R"({"reason":-1,"detail":""})", R"({"reason":1000,"detail":""})",
                                     R"({"reason":0.5,"detail":""})", R"({"error_pct":"1","us":1,"predictions":""})"}) {
     folder.write("w", start + result + R"(},"full":{}})");
     EXPECT_EQ(WorkFile(folder / "w", "key").size(), 0) << result;
