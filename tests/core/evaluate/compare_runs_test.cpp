@@ -9,6 +9,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/base/number_text.h"
 #include "tests/core/pipeline/exact_scene.h"
 
 namespace glint {
@@ -147,7 +148,7 @@ TEST(CompareRuns, ResultsOfTheRealPipeline) {
   EXPECT_EQ(value(c, "canonical.frames").a, "4");
   EXPECT_EQ(value(c, "canonical.frames").b, "2");
   EXPECT_DOUBLE_EQ(*value(c, "canonical.frames").ratio, 0.5);
-  EXPECT_NEAR(std::stod(value(c, "light lamp position z").a), 1.4, 0.02);  // where it is
+  EXPECT_NEAR(numberFrom(value(c, "light lamp position z").a).value_or(0), 1.4, 0.02);  // where it is
   EXPECT_EQ(value(c, "light lamp position z").unit, "m");
   for (const ComparedValue& v : c.values) EXPECT_NE(v.name.rfind("dual.", 0), 0u);  // one run alone has it
   EXPECT_TRUE(value(c, "models").differs);
