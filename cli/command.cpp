@@ -64,7 +64,14 @@ constexpr const char* kExitCodes =
     "Exit codes: 0 done; 1 a comparison failed; 2 the input or the request is wrong;\n"
     "3 the data cannot answer; 130 stopped by Ctrl-C. A message is one line on standard error.";
 
+int stopped() {
+  dropWarnings();
+  sayStopped();
+  return kStopped;
+}
+
 int fail(const std::string& line, int code) {
+  if (!finish()) return stopped();  // what fails after Ctrl-C fails because of it: its files are being removed
   dropWarnings();
   clearProgressLine();
   std::fprintf(stderr, "glint: %s\n", messageLine(line).c_str());
@@ -75,6 +82,7 @@ int fail(const std::string& line, int code) {
 int guarded(const std::function<int()>& run) {
   try {
     const int code = run();
+    if (!finish()) return stopped();
     showWarnings();
     return code;
   } catch (const InputError& e) {
@@ -82,15 +90,16 @@ int guarded(const std::function<int()>& run) {
   } catch (const CannotAnswer& e) {
     return fail(e.failure.message(), kCannotAnswer);
   } catch (const ReaderGone&) {
-    return kWrongInput;  // `glint ... | head`: nobody is left to read a message's context
+    return finish() ? kWrongInput : stopped();  // `glint ... | head`: nobody is left to read a message's context
   } catch (const Stopped&) {
-    return claimStopMessage() ? fail("stopped", kStopped) : kStopped;
+    return fail("stopped", kStopped);
   } catch (const std::invalid_argument& e) {
     return fail(std::string("wrong request: ") + e.what(), kWrongInput);
   } catch (const std::bad_alloc&) {
     return fail("out of memory", kCannotAnswer);
   } catch (const std::exception& e) {
-    return fail(std::string("unexpected: ") + e.what(), kCannotAnswer);
+    const std::string what = e.what();  // OpenCV's own exception says so
+    return fail(what.find("Insufficient memory") == std::string::npos ? "unexpected: " + what : "out of memory", kCannotAnswer);
   } catch (...) {
     return fail("unexpected failure", kCannotAnswer);
   }

@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
 #include "cli/outputs.h"
+#include "core/base/atomic_folder.h"
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
 #include "core/highlight/background.h"
@@ -123,25 +124,23 @@ Command detectCommand() {
         context.progress(), "detect");
 
     const std::string json = detectionJson(a->input, settings.number("detect.level"), a->source, frames);
-    if (!a->out.empty()) {
-      std::error_code error;
-      std::filesystem::create_directories(a->out, error);
-      if (error) throw InputError(a->out, "--out", "cannot be created: " + error.message());
-      parallelFor(
-          static_cast<int>(frames.size()),
-          [&](int i) {
-            const Frame& frame = scene.frames[static_cast<std::size_t>(i)];
-            const Outcome<Image> photograph = readPhotograph(frame);
-            // Numbered by position: an id may hold characters that no file name may.
-            char name[32];
-            printText(name, sizeof name, "%04d.png", i);
-            if (photograph)
-              writePng(std::filesystem::path(a->out) / name,
-                       drawDetection(*photograph, frame.camera, frames[static_cast<std::size_t>(i)].highlights));
-          },
-          context.progress(), "overlays");
-      context.write((std::filesystem::path(a->out) / "highlights.json").string(), json);
-    }
+    if (!a->out.empty())
+      atomicFiles(a->out, "highlights.json", [&](const std::filesystem::path& folder) {
+        parallelFor(
+            static_cast<int>(frames.size()),
+            [&](int i) {
+              const Frame& frame = scene.frames[static_cast<std::size_t>(i)];
+              const Outcome<Image> photograph = readPhotograph(frame);
+              // Numbered by position: an id may hold characters that no file name may.
+              char name[32];
+              printText(name, sizeof name, "%04d.png", i);
+              if (photograph)
+                writePng(folder / name,
+                         drawDetection(*photograph, frame.camera, frames[static_cast<std::size_t>(i)].highlights));
+            },
+            context.progress(), "overlays");
+        context.write((folder / "highlights.json").string(), json);
+      });
     if (!a->json.empty()) context.write(a->json, json);
     double worst = 0;
     int open = 0;

@@ -4,7 +4,8 @@
 namespace glint::cli {
 
 /// While it lives, Ctrl-C and SIGTERM ask the work to stop (`interrupted`), and a thread ends the program with code 130 when
-/// the work has not stopped 100 ms later. Create it in main before any other thread.
+/// the work has not stopped 100 ms later. Create it in main before any other thread. From the start of the process until then a
+/// signal ends it at once, with the same message and code.
 class InterruptGuard {
  public:
   InterruptGuard();
@@ -13,11 +14,14 @@ class InterruptGuard {
   InterruptGuard& operator=(const InterruptGuard&) = delete;
 };
 
-/// True after the first Ctrl-C.
+/// True after the first Ctrl-C, unless the command was done before it.
 bool interrupted();
 
-/// True for the first caller only, who then says that the program was stopped: the thread and the command may both come to it.
-bool claimStopMessage();
+/// The command is done and only its result remains to be said: a Ctrl-C from now on changes nothing more. False when one came before.
+bool finish();
+
+/// Says once that the program was stopped: the thread and the command may both come to it. It has been said when this returns.
+void sayStopped();
 
 /// Ends an interrupted process without waiting for destructors, which may take longer than is promised; unfinished writes are removed.
 [[noreturn]] void leaveAtOnce(int exitCode);

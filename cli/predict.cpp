@@ -6,6 +6,7 @@
 #include "cli/inspection_arguments.h"
 #include "cli/outputs.h"
 #include "core/base/number_text.h"
+#include "core/base/atomic_folder.h"
 #include "core/base/parallel.h"
 #include "core/evaluate/labels.h"
 #include "core/evaluate/masks.h"
@@ -85,24 +86,21 @@ Command predictCommand() {
     if (!a->preset.empty()) applyPreset(opened.session, a->preset, request);
     if (!a->out.empty() || !a->json.empty()) request.settings.set("predict.band", true);
     const Inspection result = inspect(opened.scene, request, context.progress());
-    if (!a->out.empty()) {
-      const std::filesystem::path folder = a->out;
-      std::error_code error;
-      std::filesystem::create_directories(folder, error);
-      if (error) throw InputError(a->out, "--out", "cannot be created: " + error.message());
-      parallelFor(
-          static_cast<int>(frames.size()),
-          [&](int i) {
-            char name[32];
-            printText(name, sizeof name, "%04d.png", frames[i]);  // by position: an id may hold what no file name may
-            writePng(folder / name,
-                     viz::framePicture(result, frames[i], photographOf(result, frames[i]), kPictureWidth, kPictureHeight));
-          },
-          context.progress(), "overlays");
-      context.write((folder / "predictions.json").string(), predictionsJson(result, frames));
-      for (const std::string& model : result.request.models)
-        context.write((folder / ("labels_" + model + ".json")).string(), cocoJson(result, model, frames));
-    }
+    if (!a->out.empty())
+      atomicFiles(a->out, "predictions.json", [&](const std::filesystem::path& folder) {
+        parallelFor(
+            static_cast<int>(frames.size()),
+            [&](int i) {
+              char name[32];
+              printText(name, sizeof name, "%04d.png", frames[i]);  // by position: an id may hold what no file name may
+              writePng(folder / name,
+                       viz::framePicture(result, frames[i], photographOf(result, frames[i]), kPictureWidth, kPictureHeight));
+            },
+            context.progress(), "overlays");
+        context.write((folder / "predictions.json").string(), predictionsJson(result, frames));
+        for (const std::string& model : result.request.models)
+          context.write((folder / ("labels_" + model + ".json")).string(), cocoJson(result, model, frames));
+      });
     if (!a->masks.empty()) writeLabels(result, a->masks, context.progress());
     if (!a->json.empty()) context.write(a->json, predictionsJson(result, frames));
     if (a->json != "-") context.print(predictionTable(result, frames));

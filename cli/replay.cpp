@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/commands.h"
 #include "cli/scene_arguments.h"
+#include "core/base/number_text.h"
 #include "core/pipeline/session.h"
 
 namespace glint::cli {
@@ -32,11 +33,13 @@ Command replayCommand() {
     for (const std::string& w : session.warnings) context.warn(w);
     const Replay result = a->places.replay(session, context.progress());
     std::string out;
+    char largest[32];
+    printText(largest, sizeof largest, "%.2g", result.largestDifference);
     for (const std::string& line : result.differences) out += line + "\n";
     if (!result.firstChanged.empty()) out += "first changed stage: " + result.firstChanged + "\n";
     out += std::to_string(result.compared - static_cast<int>(std::min<std::size_t>(result.differences.size(), result.compared))) +
            " of " + std::to_string(result.compared) + " key results agree; digest " +
-           (result.digestAgrees ? "equal" : "different") + "\n";
+           (result.digestAgrees ? "equal" : "different") + "; largest relative difference " + largest + "\n";
     context.print(out);
     return result.differences.empty() && (!a->exact || result.digestAgrees) ? kDone : kComparisonFailed;
   };

@@ -10,6 +10,7 @@
 #include "gui/base/input_rules.h"
 #include "gui/scene/camera_glide.h"
 #include "gui/window/command_line.h"
+#include "gui/window/fit_on_screen.h"
 #include "gui/window/main_window.h"
 #include "gui/window/screenshot.h"
 
@@ -43,7 +44,8 @@ int run(int argc, char** argv) {
   });
   int qtArgc = 1;  // Qt's own options come from the environment; the rest of the command line is ours
   QApplication app(qtArgc, argv);
-  // Qt has taken over the user's locale for the whole process. Numbers have a point here, also those that libraries read and write.
+  // Qt has taken over the user's locale for the whole process. Numbers have a point here, also those that libraries read and
+  // write.
   std::setlocale(LC_NUMERIC, "C");
   QApplication::setOrganizationName(QStringLiteral("Glint"));
   QApplication::setApplicationName(QStringLiteral("glint-inspector"));
@@ -58,10 +60,13 @@ int run(int argc, char** argv) {
       std::fprintf(stderr, "glint-inspector: %s\n", line.toUtf8().constData());
     });
   window.setTheme(command.theme);
-  if (!command.size.isEmpty()) window.resize(command.size);
+  if (!command.size.isEmpty())
+    window.resize(command.size);
+  else
+    new FitOnScreen(&window);  // a size that was asked for is kept
   window.applyLayout(command.layout);
   window.show();
-  window.applyLayout(command.layout);  // dock sizes are known only now
+  window.applyLayout(command.layout);                        // dock sizes are known only now
   if (!command.size.isEmpty()) window.resize(command.size);  // a large window's docks may have kept it larger
   if (!command.input.isEmpty()) window.open(command.input, command.frame);
   setAnimationsWanted(command.run.isEmpty() && command.screenshot.isEmpty());  // a script waits for no movement

@@ -7,6 +7,7 @@
 
 #include "core/base/number_text.h"
 #include "viz/frame_overlay.h"
+#include "viz/missed.h"
 
 namespace glint::viz {
 
@@ -44,7 +45,7 @@ Colour influenceColour(double points, double most) {
 
 ColourBar influenceBar(const std::string& model, double most) {
   ColourBar bar;
-  bar.title = model + ": what the view does, %";
+  bar.title = model + ": what the view does, percentage points";
   constexpr int kSteps = 48;
   for (int i = 0; i < kSteps; ++i) bar.colours.push_back(influenceColour(2 * (i + 0.5) / kSteps - 1, 1));
   char text[32];
@@ -66,22 +67,30 @@ std::string errorModel(const LayerInput& in) {
 }
 
 CameraColour cameraColour(const LayerInput& in, int frame) {
+  constexpr const char* kExcludedCamera = "excluded camera";
+  const bool excluded = !in.inspection->isTraining(frame) && !in.inspection->isHeldOut(frame);
+  if (excluded) return {kExcluded, kExcludedCamera};  // nothing is evaluated there, whatever the colours say of the others
   if (in.colours.by == CameraColours::By::Model) {
     std::string best;
     double least = 0;
+    bool missed = false;
     for (const std::string& model : in.models) {
       const FrameScore score = frameScore(in.inspection->models.at(model), frame);
-      if (!score.errorPct || (!best.empty() && *score.errorPct >= least)) continue;
+      missed = missed || score.missed > 0;
+      const std::optional<double> pct = wholeErrorPct(score);
+      if (!pct || (!best.empty() && *pct >= least)) continue;
       best = model;
-      least = *score.errorPct;
+      least = *pct;
     }
-    return best.empty() ? CameraColour{kHeldOut, "no prediction"} : CameraColour{modelColour(best), "best: " + best};
+    if (!best.empty()) return {modelColour(best), "best: " + best};
+    return missed ? CameraColour{kMissed, "every model missed a highlight"} : CameraColour{kHeldOut, "no prediction"};
   }
   if (in.colours.by == CameraColours::By::Error) {
     const std::string model = errorModel(in);
     if (model.empty()) return {kHeldOut, ""};
     const FrameScore score = frameScore(in.inspection->models.at(model), frame);
-    return {errorColour(score.errorPct ? *score.errorPct : std::nan("")), ""};
+    if (score.missed > 0) return {kMissed, "missed a highlight"};
+    return {errorColour(score.errorPct.value_or(std::nan(""))), ""};
   }
   if (in.colours.by == CameraColours::By::Influence) {
     const auto found = in.colours.influence.find(frame);
@@ -89,8 +98,7 @@ CameraColour cameraColour(const LayerInput& in, int frame) {
     return {influenceColour(found->second, mostInfluence(in.colours)), ""};
   }
   if (in.inspection->isTraining(frame)) return {kTraining, "training camera"};
-  if (in.inspection->isHeldOut(frame)) return {kHeldOut, "held-out camera"};
-  return {kExcluded, "excluded camera"};
+  return {kHeldOut, "held-out camera"};
 }
 
 }  // namespace glint::viz

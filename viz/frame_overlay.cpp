@@ -9,6 +9,7 @@
 #include "core/scene/scene_files.h"
 #include "viz/error_text.h"
 #include "viz/frame_details.h"
+#include "viz/missed.h"
 
 namespace glint::viz {
 namespace {
@@ -179,7 +180,7 @@ class ScoreSum {
         if (row.predicted >= 0) ++score_.spurious;  // else nothing could be compared
       } else if (row.predicted < 0) {
         ++score_.missed;
-      } else if (row.metrics) {
+      } else if (row.metrics && std::isfinite(row.metrics->contourErrorPct)) {
         ++score_.matched;
         pct_ += row.metrics->contourErrorPct;
         px_ += row.metrics->contourErrorPx;
@@ -211,6 +212,16 @@ class ScoreSum {
 
 }  // namespace
 
+std::optional<double> wholeErrorPct(const FrameScore& score) { return score.missed > 0 ? std::nullopt : score.errorPct; }
+
+std::string missedText(const FrameScore& score) {
+  if (score.missed == 0) return {};
+  const int all = score.missed + score.matched;
+  if (score.matched == 0) return all == 1 ? "missed the highlight" : "missed all " + std::to_string(all) + " highlights";
+  return "missed " + std::to_string(score.missed) + " of " + std::to_string(all) + " highlights, the other" +
+         (score.matched > 1 ? "s: mean " : ": ") + errorText(*score.errorPct) + " %";
+}
+
 FrameScore frameScore(const ModelResult& result, int frame) {
   ScoreSum sum;
   for (const FrameComparison& comparison : result.frames)
@@ -238,7 +249,7 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
   FrameOverlay overlay;
   const Selection* selected = options.selection && options.selection->frame == frame ? &*options.selection : nullptr;
   const bool training = inspection.isTraining(frame);
-  const Colour roleColour = training ? kTraining : inspection.isHeldOut(frame) ? kHeldOut : kFailed;
+  const Colour roleColour = training ? kTraining : inspection.isHeldOut(frame) ? kHeldOut : kExcluded;
   const auto drawn = [&](const std::string& model) {
     return !options.hiddenModels.count(model) && (options.models.empty() || options.models.count(model));
   };

@@ -12,8 +12,10 @@
 #include <opencv2/videoio.hpp>
 
 #include "core/base/atomic_file.h"
+#include "core/base/atomic_folder.h"
 #include "core/base/number_text.h"
 #include "core/base/outcome.h"
+#include "core/base/quiet_libraries.h"
 #include "viz/canvas.h"
 
 namespace glint::viz {
@@ -61,42 +63,57 @@ cv::Mat toBgr(const Image& picture) {
 void writeSeries(const std::string& file, const MovieFormat& format, int frames, const std::function<Image(int)>& picture,
                  const ProgressFn& progress) {
   const std::vector<std::string> files = filesOfMovie(file, frames);
-  std::vector<fs::path> written;
-  try {
+  const fs::path folder = fs::path(file).parent_path();
+  std::error_code ignored;  // what cannot be asked about does not exist
+  if (!fs::is_directory(folder.empty() ? "." : folder, ignored))
+    throw InputError(file, "", "cannot be written: the folder " + folder.string() + " does not exist");
+  atomicFiles(folder.empty() ? "." : folder, "", [&](const fs::path& out) {
     for (int i = 0; i < frames; ++i) {
       if (!report(progress, {"frame", i, frames})) throw Stopped{};
-      const std::string& one = files[static_cast<std::size_t>(i)];
-      const Image frame = checked(picture(i), format);
-      writePng(frame, one);
-      written.push_back(one);
+      writePng(checked(picture(i), format), (out / fs::path(files[static_cast<std::size_t>(i)]).filename()).string());
     }
-  } catch (...) {
-    std::error_code ignored;
-    for (const fs::path& one : written) fs::remove(one, ignored);
-    throw;
-  }
+  });
 }
+
+/// A library's call, without what the library prints.
+template <class Call>
+auto quietly(const Call& call) {
+  const QuietLibraries guard;
+  return call();
+}
+
+/// A writer that ends in silence too, also when a picture could not be drawn.
+struct Writer : cv::VideoWriter {
+  ~Writer() override {
+    quietly([&] { release(); });
+  }
+};
 
 void encode(const std::string& file, const fs::path& temporary, const MovieFormat& format, int frames,
             const std::function<Image(int)>& picture, const ProgressFn& progress) {
-  cv::VideoWriter writer;
+  Writer writer;
   for (const char* c : containerOf(file)->codecs)
-    if (writer.open(temporary.string(), cv::VideoWriter::fourcc(c[0], c[1], c[2], c[3]), format.framesPerSecond,
-                    cv::Size(format.width, format.height)))
+    if (quietly([&] {
+          return writer.open(temporary.string(), cv::VideoWriter::fourcc(c[0], c[1], c[2], c[3]), format.framesPerSecond,
+                             cv::Size(format.width, format.height));
+        }))
       break;
   if (!writer.isOpened()) throw InputError(file, "", "cannot be written, or this computer has no encoder for " + endingOf(file));
   for (int i = 0; i < frames; ++i) {
     if (!report(progress, {"frame", i, frames})) throw Stopped{};
-    writer.write(toBgr(checked(picture(i), format)));
+    const cv::Mat pixels = toBgr(checked(picture(i), format));
+    quietly([&] { writer.write(pixels); });
   }
-  writer.release();
+  quietly([&] { writer.release(); });
   // The writer tells of no failure: a full disk shows only here.
-  cv::VideoCapture back(temporary.string());
+  cv::VideoCapture back;
+  quietly([&] { return back.open(temporary.string()); });
   int found = 0;
-  while (back.grab()) {
+  while (quietly([&] { return back.grab(); })) {
     if (!report(progress, {"reading back", found, frames})) throw Stopped{};
     ++found;
   }
+  quietly([&] { back.release(); });
   if (found != frames)
     throw InputError(file, "",
                      std::to_string(found) + " of " + std::to_string(frames) + " frames could be read back; is the disk full?");

@@ -10,6 +10,7 @@
 #include "core/pipeline/what_if_knobs.h"
 #include "viz/annotations.h"
 #include "viz/error_text.h"
+#include "viz/missed.h"
 
 namespace glint::viz {
 namespace {
@@ -68,8 +69,8 @@ void drawPhotograph(Canvas& canvas, const Outcome<Image>& photograph, bool given
     canvas.picture(*photograph, crop, box);
   } else if (!given) {
     canvas.fill(box, theme.panel);
-    canvas.text({box.x + 0.4 * font, box.y + box.height - 0.6 * font}, canvas.fitted("no photograph", 0.9 * font, box.width - font),
-                0.9 * font, theme.ink);
+    canvas.text({box.x + 0.4 * font, box.y + box.height - 0.6 * font},
+                canvas.fitted("no photograph", 0.9 * font, box.width - font), 0.9 * font, theme.ink);
   } else {
     canvas.fill(box, theme.panel);
     canvas.text({box.x + 0.5 * box.width, box.y + 0.5 * box.height},
@@ -331,9 +332,11 @@ Image plotsPicture(const Inspection& inspection, int width, int height, const Pi
   struct Series {
     std::string model;
     std::vector<FrameScore> scores;
+    std::vector<std::optional<double>> pct;  // none where a highlight was missed, and in excluded frames
     double sum = 0;
     int answered = 0, asked = 0;
   };
+  const auto isExcluded = [&](int frame) { return !inspection.isTraining(frame) && !inspection.isHeldOut(frame); };
   std::vector<Series> all;
   double low = std::numeric_limits<double>::infinity(), high = 0;
   for (const std::string& model : models) {
@@ -341,16 +344,17 @@ Image plotsPicture(const Inspection& inspection, int width, int height, const Pi
     series.model = model;
     for (int frame = 0; frame < frames; ++frame) {
       series.scores.push_back(frameScore(inspection.models.at(model), frame));
-      const FrameScore& score = series.scores.back();
       const bool counts = inspection.isHeldOut(frame);
       series.asked += counts ? 1 : 0;
-      if (!score.errorPct) continue;
+      series.pct.push_back(isExcluded(frame) ? std::nullopt : wholeErrorPct(series.scores.back()));
+      const std::optional<double>& pct = series.pct.back();
+      if (!pct) continue;
       if (counts) {
-        series.sum += *score.errorPct;
+        series.sum += *pct;
         ++series.answered;
       }
-      high = std::max(high, *score.errorPct);
-      if (*score.errorPct > 0) low = std::min(low, *score.errorPct);
+      high = std::max(high, *pct);
+      if (*pct > 0) low = std::min(low, *pct);
     }
     all.push_back(std::move(series));
   }
@@ -381,6 +385,12 @@ Image plotsPicture(const Inspection& inspection, int width, int height, const Pi
       canvas.fill({xOf(frame - 0.5), plot.y, plot.width / frames, plot.height}, kTraining, 0.22);
       anyTraining = true;
     }
+  }
+  bool anyExcluded = false;
+  for (int frame = 0; frame < frames; ++frame) {
+    if (!isExcluded(frame)) continue;
+    canvas.fill({xOf(frame - 0.5), plot.y, plot.width / frames, plot.height}, kExcluded, 0.4);
+    anyExcluded = true;
   }
   // Error axis.
   std::vector<double> ticks;
@@ -414,11 +424,14 @@ Image plotsPicture(const Inspection& inspection, int width, int height, const Pi
     canvas.text({xOf(frame), plot.y + plot.height + 1.4 * font}, std::to_string(frame), font, theme.ink, Align::Centre);
   }
   bool anyMissing = false;
-  for (const Series& series : all) {
-    for (const FrameScore& score : series.scores) anyMissing = anyMissing || (series.answered > 0 && !score.errorPct);
-  }
+  const auto isMissing = [&](const Series& series, int frame) {
+    return series.answered > 0 && !isExcluded(frame) && !series.pct[static_cast<std::size_t>(frame)];
+  };
+  for (const Series& series : all)
+    for (int frame = 0; frame < frames; ++frame) anyMissing = anyMissing || isMissing(series, frame);
   canvas.text({plot.x + 0.5 * plot.width, plot.y + plot.height + 2.9 * font},
-              std::string("frame") + (anyTraining ? ", shaded: training" : "") + (anyMissing ? ", strokes above: no answer" : ""),
+              std::string("frame") + (anyTraining ? ", shaded blue: training" : "") + (anyExcluded ? ", brown: excluded" : "") +
+                  (anyMissing ? ", strokes above: a highlight missed, or no answer" : ""),
               font, theme.ink, Align::Centre);
   // Lines, broken where a frame has no error.
   double legendY = 3.2 * font;
@@ -426,16 +439,16 @@ Image plotsPicture(const Inspection& inspection, int width, int height, const Pi
     const Colour colour = modelColour(series.model);
     std::vector<Eigen::Vector2d> run;
     for (int frame = 0; frame <= frames; ++frame) {
-      if (frame < frames && series.scores[static_cast<std::size_t>(frame)].errorPct) {
-        run.push_back({xOf(frame), yOf(*series.scores[static_cast<std::size_t>(frame)].errorPct)});
+      if (frame < frames && series.pct[static_cast<std::size_t>(frame)]) {
+        run.push_back({xOf(frame), yOf(*series.pct[static_cast<std::size_t>(frame)])});
         continue;
       }
       canvas.stroke(run, false, colour, 1.8 * ink);
       run.clear();
     }
     for (int frame = 0; frame < frames; ++frame) {
-      const FrameScore& score = series.scores[static_cast<std::size_t>(frame)];
-      if (score.errorPct) canvas.disc({xOf(frame), yOf(*score.errorPct)}, (frames > 100 ? 1.5 : 2.8) * ink, colour);
+      const std::optional<double>& pct = series.pct[static_cast<std::size_t>(frame)];
+      if (pct) canvas.disc({xOf(frame), yOf(*pct)}, (frames > 100 ? 1.5 : 2.8) * ink, colour);
     }
     canvas.stroke({{plot.x, legendY - 0.35 * font}, {plot.x + 1.8 * font, legendY - 0.35 * font}}, false, colour, 3 * ink);
     std::string text = series.model;
@@ -459,7 +472,7 @@ Image plotsPicture(const Inspection& inspection, int width, int height, const Pi
   const double room = 0.9 * font, rowHeight = room / std::max<double>(1, static_cast<double>(all.size()));
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (int frame = 0; frame < frames; ++frame) {
-      if (all[i].scores[static_cast<std::size_t>(frame)].errorPct || all[i].answered == 0) continue;
+      if (!isMissing(all[i], frame)) continue;
       canvas.fill(
           {xOf(frame - 0.35), plot.y - room + static_cast<double>(i) * rowHeight, 0.7 * plot.width / frames, 0.7 * rowHeight},
           modelColour(all[i].model));

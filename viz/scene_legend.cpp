@@ -8,6 +8,7 @@
 #include "core/scene/scene_files.h"
 #include "viz/error_text.h"
 #include "viz/frame_overlay.h"
+#include "viz/missed.h"
 
 namespace glint::viz {
 namespace {
@@ -20,18 +21,21 @@ void addCameras(SceneLegend& legend, const LayerInput& in) {
   if (in.colours.by == CameraColours::By::Error) {
     const std::string model = errorModel(in);
     if (!model.empty()) legend.bar = errorBar(model);
-    return;
   }
   if (in.colours.by == CameraColours::By::Influence) {
-    if (const double most = mostInfluence(in.colours); most > 0)
+    if (in.colours.influence.empty()) {
+      legend.remarks.push_back(
+          "cameras: what the views do for held-out frames is not measured for this request (Plots, Measure which view matters)");
+    } else if (const double most = mostInfluence(in.colours); most > 0) {
       legend.bar = influenceBar(in.colours.model, most);
-    else
-      legend.remarks.push_back("cameras: what the views do is not measured for this request (Plots, Measure which view matters)");
-    return;
+    } else {
+      legend.remarks.push_back("cameras: leaving a view out changes the error of " + in.colours.model + " by nothing");
+    }
   }
   std::vector<CameraColour> kinds;
   for (const int frame : in.frames) {
     const CameraColour c = cameraColour(in, frame);
+    if (c.meaning.empty()) continue;  // on the scale
     if (std::none_of(kinds.begin(), kinds.end(), [&](const CameraColour& k) { return k.meaning == c.meaning; }))
       kinds.push_back(c);
   }
@@ -82,7 +86,9 @@ SceneLegend legendOf(const LayerInput& in, const std::vector<ShownLayer>& layers
   if (shown("predicted-contours") || shown("ellipsoids")) {
     for (const std::string& model : in.models) {
       const FrameScore score = frameScore(in.inspection->models.at(model), in.selection.frame);
-      const std::string error = score.errorPct ? "  " + errorText(*score.errorPct) + " %" : "";
+      const std::string error = score.missed > 0 && score.matched > 0 ? "  " + missedText(score)
+                                : score.errorPct                      ? "  " + errorText(*score.errorPct) + " %"
+                                                                      : "";
       legend.entries.push_back({modelColour(model), model + error, true});
       // What is wrong with the frame itself is said once, not for every model; a fit that is no ellipsoid by its layer.
       if (!score.errorPct && !score.reason.empty() && score.reason != noEvidence &&

@@ -173,7 +173,8 @@ std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, Hig
     place.points = {p.position, eye, mirrored};
     addFrustum(in, place.points, in.selection.frame);
     addVirtualCameras(in, place.points, drawn.virtualCameras);
-    const auto light = in.inspection->lights.find(h.light);
+    const auto light = in.inspection->lights.find(
+        lightKey(h.light, in.inspection->train.perSurface ? std::optional(in.surfaceKey) : std::nullopt));
     if (light != in.inspection->lights.end() && !light->second.light.atInfinity() &&
         (light->second.light.position() - p.position).norm() < 3 * in.scale.sceneSize)
       place.points.push_back(light->second.light.position());

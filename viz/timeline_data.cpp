@@ -7,6 +7,7 @@
 #include <set>
 
 #include "viz/frame_overlay.h"
+#include "viz/missed.h"
 
 namespace glint::viz {
 
@@ -75,14 +76,20 @@ TimelineData timelineData(const Scene& scene, const Inspection* inspection) {
   data.lights = lightRows(scene, inspection);
   if (!inspection) return data;
   for (const std::string& model : modelsInOrder(*inspection)) {
-    TimelineData::Series series{model, {}, {}};
-    for (FrameScore& score : frameScores(inspection->models.at(model), n)) {
-      series.errorPct.push_back(score.errorPct);
-      series.reason.push_back(std::move(score.reason));
+    TimelineData::Series series{model, {}, {}, {}};
+    for (const FrameScore& score : frameScores(inspection->models.at(model), n)) {
+      series.errorPct.push_back(wholeErrorPct(score));
+      series.missed.push_back(score.missed > 0);
+      const std::string missed = missedText(score);
+      series.reason.push_back(missed + (missed.empty() || score.reason.empty() ? "" : ": ") + score.reason);
     }
     data.series.push_back(std::move(series));
   }
   return data;
+}
+
+bool TimelineData::Series::answers() const {
+  return std::any_of(errorPct.begin(), errorPct.end(), [](const std::optional<double>& pct) { return pct.has_value(); });
 }
 
 double ErrorAxis::place(double pct) const {
@@ -119,15 +126,29 @@ ErrorAxis errorAxis(const TimelineData& data, const std::string& model, const st
   return axis;
 }
 
+namespace {
+/// The column that a frame is in; nothing outside of [first, last).
+std::optional<std::size_t> columnOf(std::size_t frame, double first, double last, int n) {
+  const double middle = static_cast<double>(frame) + 0.5;
+  if (middle < first || middle >= last || n < 1) return std::nullopt;
+  return static_cast<std::size_t>(std::clamp((middle - first) / (last - first) * n, 0.0, n - 1.0));
+}
+}  // namespace
+
 std::vector<std::optional<double>> columnMaxima(const std::vector<std::optional<double>>& errors, double first, double last,
                                                 int n) {
   std::vector<std::optional<double>> columns(static_cast<std::size_t>(std::max(0, n)));
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    const double middle = static_cast<double>(i) + 0.5;
-    if (!errors[i] || middle < first || middle >= last) continue;
-    const auto column = static_cast<std::size_t>(std::clamp((middle - first) / (last - first) * n, 0.0, n - 1.0));
-    if (!columns[column] || *errors[i] > *columns[column]) columns[column] = errors[i];
+    const std::optional<std::size_t> column = columnOf(i, first, last, n);
+    if (column && errors[i] && (!columns[*column] || *errors[i] > *columns[*column])) columns[*column] = errors[i];
   }
+  return columns;
+}
+
+std::vector<char> columnMarks(const std::vector<char>& marks, double first, double last, int n) {
+  std::vector<char> columns(static_cast<std::size_t>(std::max(0, n)), 0);
+  for (std::size_t i = 0; i < marks.size(); ++i)
+    if (const std::optional<std::size_t> column = columnOf(i, first, last, n); column && marks[i]) columns[*column] = 1;
   return columns;
 }
 

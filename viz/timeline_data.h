@@ -24,10 +24,12 @@ bool isLit(LightState state);
 struct TimelineData {
   struct Series {
     std::string model;
-    std::vector<std::optional<double>> errorPct;  ///< one per frame
+    std::vector<std::optional<double>> errorPct;  ///< one per frame; none where a highlight was missed
+    std::vector<char> missed;                     ///< one per frame: a highlight was missed there
     std::vector<std::string> reason;              ///< where there is no error: why
+    bool answers() const;                         ///< it has an error somewhere: else missing everything tells nothing new
   };
-  std::vector<Series> series;  ///< from simple to rich; empty before the first result
+  std::vector<Series> series;    ///< from simple to rich; empty before the first result
   std::vector<LightRow> lights;  ///< empty unless there are several, or frames differ in which are on; in the scene's order
 };
 /// @param inspection  null before the first result: lights that the scene does not state are not known yet
@@ -42,6 +44,9 @@ struct ErrorAxis {
 };
 /// @param model  only this one; "" = all.  @param ignored  frames that do not count (excluded ones).
 ErrorAxis errorAxis(const TimelineData& data, const std::string& model, const std::vector<int>& ignored);
+
+/// Whether any frame of each of n columns is marked, as columnMaxima().
+std::vector<char> columnMarks(const std::vector<char>& marks, double first, double last, int n);
 
 /// The largest error in each of n columns that share the frames [first, last): with more frames than screen columns nothing is
 /// lost.

@@ -5,13 +5,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
 #include <cstring>
-#include <mutex>
-#include <set>
 
 #include "core/base/outcome.h"
+#include "core/base/temporary_path.h"
 
 namespace glint {
 namespace fs = std::filesystem;
@@ -35,43 +33,13 @@ struct Descriptor {
   }
 };
 
-std::mutex unfinishedMutex;
-std::set<fs::path> unfinished;
-
-/// Removes a temporary file unless the rename succeeded.
-struct Temporary {
-  fs::path path;
-  bool keep = false;
-  explicit Temporary(fs::path p) : path(std::move(p)) {
-    const std::lock_guard<std::mutex> lock(unfinishedMutex);
-    unfinished.insert(path);
-  }
-  ~Temporary() {
-    const std::lock_guard<std::mutex> lock(unfinishedMutex);
-    unfinished.erase(path);
-    std::error_code ignored;
-    if (!keep) fs::remove(path, ignored);
-  }
-  Temporary(const Temporary&) = delete;
-  Temporary& operator=(const Temporary&) = delete;
-};
-
 void writeAll(int fd, std::string_view content, const fs::path& file) {
   while (!content.empty()) {
     const ssize_t n = ::write(fd, content.data(), content.size());
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) throw systemError(file, "cannot be written", errno);
+    if (n <= 0) throw systemError(file, "cannot be written", n < 0 ? errno : ENOSPC);
     content.remove_prefix(static_cast<std::size_t>(n));
   }
-}
-
-/// Hidden, in the same folder (rename is atomic within one file system only), same extension (encoders look at it).
-fs::path temporaryFor(const fs::path& file) {
-  static std::atomic<unsigned> counter{0};
-  std::string name = ".";
-  name.append(file.stem().string()).append(".").append(std::to_string(::getpid())).append("-");
-  name.append(std::to_string(counter++)).append(".tmp").append(file.extension().string());
-  return file.parent_path() / name;
 }
 
 void checkTarget(const fs::path& file) {
@@ -81,16 +49,19 @@ void checkTarget(const fs::path& file) {
   if (!fs::is_directory(folder, error))
     throw InputError(file.string(), "", "cannot be written: the folder " + folder.string() + " does not exist");
   if (fs::is_directory(file, error)) throw InputError(file.string(), "", "cannot be written: it is a folder");
+  // A rename would replace it all the same; who made it read-only wants it kept.
+  if (::access(file.c_str(), F_OK) == 0 && ::access(file.c_str(), W_OK) != 0) throw systemError(file, "cannot be written", errno);
 }
 
-void flushAndRename(const fs::path& temporary, const fs::path& file) {
-  Descriptor d{::open(temporary.c_str(), O_RDONLY | O_CLOEXEC)};
-  if (d.fd < 0) throw systemError(file, "cannot be written", errno);
-  if (::fsync(d.fd) != 0) throw systemError(file, "cannot be written", errno);
+void flushAndMove(TemporaryPath& temporary, const fs::path& file, const fs::path& requested) {
+  // Opened anew: an encoder may have replaced the file that was made.
+  Descriptor d{::open(temporary.path().c_str(), O_RDONLY | O_CLOEXEC)};
+  if (d.fd < 0) throw systemError(requested, "cannot be written", errno);
+  if (::fsync(d.fd) != 0) throw systemError(requested, "cannot be written", errno);
   // A file that already exists keeps its permissions.
   struct stat old {};
   if (::stat(file.c_str(), &old) == 0) (void)::fchmod(d.fd, old.st_mode & 07777);
-  if (::rename(temporary.c_str(), file.c_str()) != 0) throw systemError(file, "cannot be written", errno);
+  if (!temporary.moveTo(file)) throw systemError(requested, "cannot be written", errno);
 }
 
 bool isDevice(const fs::path& file) {
@@ -119,32 +90,21 @@ void atomicWrite(const fs::path& requested, std::string_view content) {
     return;
   }
   checkTarget(file);
-  Temporary temporary{temporaryFor(file)};
-  Descriptor d{::open(temporary.path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)};
-  if (d.fd < 0) throw systemError(requested, "cannot be written", errno);
-  writeAll(d.fd, content, requested);
-  if (::close(d.release()) != 0) throw systemError(requested, "cannot be written", errno);
-  flushAndRename(temporary.path, file);
-  temporary.keep = true;
+  TemporaryPath temporary(file.parent_path(), requested, TemporaryPath::Kind::File);
+  writeAll(temporary.descriptor(), content, requested);
+  flushAndMove(temporary, file, requested);
 }
 
 void atomicWrite(const fs::path& requested, const std::function<void(const fs::path&)>& write) {
   const fs::path file = realTarget(requested);
   checkTarget(file);
-  Temporary temporary{temporaryFor(file)};
-  write(temporary.path);
+  TemporaryPath temporary(file.parent_path(), requested, TemporaryPath::Kind::File);
+  write(temporary.path());
   std::error_code error;
-  const auto size = fs::file_size(temporary.path, error);
+  const auto size = fs::file_size(temporary.path(), error);
   if (error || size == 0)
     throw InputError(requested.string(), "", "cannot be written (disk full, or the folder is not writable)");
-  flushAndRename(temporary.path, file);
-  temporary.keep = true;
-}
-
-void removeUnfinishedWrites() {
-  const std::lock_guard<std::mutex> lock(unfinishedMutex);
-  std::error_code ignored;
-  for (const fs::path& path : unfinished) fs::remove(path, ignored);
+  flushAndMove(temporary, file, requested);
 }
 
 std::string readFile(const fs::path& file, std::optional<Limit> limit) {

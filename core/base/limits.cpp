@@ -12,7 +12,7 @@
 namespace glint {
 namespace {
 
-constexpr std::size_t kCount = 5;
+constexpr std::size_t kCount = 6;
 
 /// What `setLimit` set; 0 = the standard.
 std::array<std::atomic<double>, kCount> given{};
@@ -32,7 +32,8 @@ const std::vector<LimitInfo>& limitInfos() {
                                                {"json.values", 2e7, "values in a JSON text"},
                                                {"mesh.megabytes", 4096, "MB of a mesh"},
                                                {"image.megabytes", 1024, "MB of an image file"},
-                                               {"image.megapixels", 200, "million pixels of an image"}};
+                                               {"image.megapixels", 200, "million pixels of an image"},
+                                               {"synth.frames", 10000, "frames to be made"}};
   return infos;
 }
 

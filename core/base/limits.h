@@ -9,7 +9,7 @@
 namespace glint {
 
 /// Sizes that no one needs. An input beyond one of them is refused before memory is spent on it; `--limit NAME=VALUE` raises it.
-enum class Limit { JsonMegabytes, JsonValues, MeshMegabytes, ImageMegabytes, ImageMegapixels };
+enum class Limit { JsonMegabytes, JsonValues, MeshMegabytes, ImageMegabytes, ImageMegapixels, SynthFrames };
 
 /// All limits, in the order of `Limit`: name, value at the start, and what it counts, for people.
 struct LimitInfo {

@@ -3,13 +3,30 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdlib>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <system_error>
 #include <thread>
 #include <vector>
 
+#include "core/base/number_text.h"
+
 namespace glint {
+
+namespace {
+/// GLINT_THREADS where it is set (1 to 64), else the hardware's, at most 8.
+int threadCount() {
+  static const int count = [] {
+    const char* asked = std::getenv("GLINT_THREADS");
+    const std::optional<double> number = asked ? numberFrom(asked) : std::nullopt;
+    if (number && *number >= 1) return static_cast<int>(std::min(*number, 64.0));
+    return std::clamp<int>(static_cast<int>(std::thread::hardware_concurrency()), 1, 8);
+  }();
+  return count;
+}
+}  // namespace
 
 void parallelFor(int n, const std::function<void(int)>& work, const ProgressFn& progress, const std::string& stage) {
   std::atomic<int> next{0};
@@ -34,7 +51,7 @@ void parallelFor(int n, const std::function<void(int)>& work, const ProgressFn& 
     }
   };
   if (!report(progress, {stage, 0, n})) throw Stopped{};
-  const int count = std::min<int>(n, std::clamp<int>(static_cast<int>(std::thread::hardware_concurrency()), 1, 8));
+  const int count = std::min(n, threadCount());
   std::vector<std::thread> threads;
   try {
     for (int t = 1; t < count; ++t) threads.emplace_back(run);

@@ -10,8 +10,8 @@ namespace glint {
 /// of writing, and bytes that are not UTF-8 become \xNN or \uNNNN. Line ends and tabs stay.
 std::string withoutControls(std::string_view text);
 
-/// The longest message that a person is shown, in bytes.
-inline constexpr std::size_t kLongestMessage = 400;
+/// The longest message that a person is shown, in bytes: with "glint: warning: " before it, a line stays below 400.
+inline constexpr std::size_t kLongestMessage = 380;
 
 /// One line for a person: `withoutControls`, line ends and tabs as blanks, words longer than 160 bytes (paths) and what is then
 /// still longer than `most` bytes shortened in the middle ("…").

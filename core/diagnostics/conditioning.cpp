@@ -16,6 +16,7 @@
 namespace glint {
 namespace {
 
+constexpr double kOwnSizePct = 100;  // of the highlight's diameter: beyond, the outline is not that of the highlight
 constexpr std::size_t kMostDirections = 256;  // 33,000 pairs: a millisecond
 
 template <class... Numbers>
@@ -95,7 +96,7 @@ std::vector<Eigen::Vector3d> raysOf(const std::string& model, const std::vector<
 class Findings {
  public:
   Findings(const Inspection& inspection, const ModelResult& result, const ModelResult::Fit& fit)
-      : fit_(fit), views_(viewsOf(inspection, fit)), rays_(raysOf(result.model, views_)) {
+      : inspection_(inspection), result_(result), fit_(fit), views_(viewsOf(inspection, fit)), rays_(raysOf(result.model, views_)) {
     c_.model = result.model;
     c_.light = fit.light;
     c_.surface = fit.surface;
@@ -309,13 +310,35 @@ class Findings {
     const double share = rms / (diameters / n);
     const Verdict v = below(share, bounds::kResidualAmber, bounds::kResidualRed);
     std::string reason =
-        text("The training contours lie %.2g px (RMS) from what the model says of them, %.2g %% of %s mean diameter: ", rms,
-             100 * share, c_.model == "canonical" ? "the canonical contours'" : "the highlights'");
+        text("%s%.2g px, %.2g %% of %s mean diameter: ",
+             ("Distance " + residualMeaning(*fit_.fit) + ", over the training views: ").c_str(), rms, 100 * share,
+             c_.model == "canonical" ? "the canonical contours'" : "the highlights'");
+    // Every observed point may lie near an outline that runs far beyond the highlight: then this number says nothing.
+    if (const std::optional<ContourMetrics> worst = worstInTraining(); worst && worst->contourErrorPct > kOwnSizePct) {
+      reason += text("but both ways the mean distance in a training frame is up to %.3g px, more than the highlight's own size.",
+                     worst->contourErrorPx);
+      return add("residual", "fit residual", share, std::isfinite(rms) ? text("%.2g px", rms) : "-", Verdict::Red, reason);
+    }
     reason += chosen(v, "below 1 %, the model can say what was seen.", "above 1 %, the model is a summary of what was seen.",
                      "above 5 %, the model does not describe these highlights.");
     add("residual", "fit residual", share, std::isfinite(rms) ? text("%.2g px", rms) : "-", v, reason);
   }
 
+  /// The largest error of this fit in a frame that it has learnt from.
+  std::optional<ContourMetrics> worstInTraining() const {
+    std::optional<ContourMetrics> worst;
+    for (const FrameComparison& comparison : result_.frames) {
+      const bool ofThisFit = comparison.fit >= 0 && std::size_t(comparison.fit) < result_.fits.size() &&
+                             &result_.fits[std::size_t(comparison.fit)] == &fit_;
+      if (!ofThisFit || !inspection_.isTraining(comparison.frame)) continue;
+      for (const FrameComparison::Row& row : comparison.rows)
+        if (row.metrics && (!worst || row.metrics->contourErrorPx > worst->contourErrorPx)) worst = row.metrics;
+    }
+    return worst;
+  }
+
+  const Inspection& inspection_;
+  const ModelResult& result_;
   const ModelResult::Fit& fit_;
   std::vector<TrainingView> views_;
   std::vector<Eigen::Vector3d> rays_;
@@ -368,6 +391,11 @@ double effectiveNumber(const std::vector<Eigen::Vector3d>& directions, double in
   for (std::size_t i = 0; i < d.size(); ++i)
     for (std::size_t j = i + 1; j < d.size(); ++j) similar += 2 * std::max(0.0, 1 - angleBetween(d[i], d[j]) / independent);
   return double(d.size()) * double(d.size()) / similar;
+}
+
+std::string residualMeaning(const ModelFit& fit) {
+  if (!fit.quadric) return "from the observed contour to the level set, RMS";
+  return std::string("from the ") + (fit.model == "canonical" ? "canonical" : "observed") + " contour to the outline, one way, RMS";
 }
 
 std::optional<Eigen::Vector3d> semiAxesSigma(const ModelFit& fit) {

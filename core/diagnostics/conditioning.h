@@ -53,6 +53,10 @@ double widestAngle(const std::vector<Eigen::Vector3d>& directions);
 /// @see Leinster and Cobbold, Measuring diversity: the importance of species similarity, Ecology 2012.
 double effectiveNumber(const std::vector<Eigen::Vector3d>& directions, double independent);
 
+/// What ModelFit::residualPx of a fit measures: "from the observed contour to the outline, one way, RMS". It is another number than the
+/// contour error of the same frame, which goes both ways: a contour may lie along an outline that runs far beyond it.
+std::string residualMeaning(const ModelFit& fit);
+
 /// Standard deviations of the three semi-axes, m, to first order from the fit's uncertainty of the shape S: d a = v^T dS v / (2
 /// a) along the axis v. Empty when the fit has no ellipsoid or tells no uncertainty; infinite for an axis of length 0.
 std::optional<Eigen::Vector3d> semiAxesSigma(const ModelFit& fit);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <set>
@@ -36,17 +37,34 @@ std::string base64(const std::vector<unsigned char>& bytes) {
   return out;
 }
 
-/// Held-out errors of one model: (frame, mean error over its matched highlights).
-std::vector<std::pair<int, double>> errorsOver(const Inspection& inspection, const ModelResult& result) {
-  std::vector<std::pair<int, double>> out;
+/// One model over the held-out frames.
+struct ErrorsOver {
+  std::vector<std::pair<int, double>> errors;  ///< frame, mean error over its highlights, where each of them was matched
+  std::vector<int> missed;                     ///< frames of which a highlight was missed: the others' mean would make them look good
+};
+ErrorsOver errorsOver(const Inspection& inspection, const ModelResult& result) {
+  struct Sum {
+    double pct = 0;
+    int matched = 0, missed = 0;
+  };
+  std::map<int, Sum> frames;
   for (const FrameComparison& c : result.frames) {
     if (!inspection.isHeldOut(c.frame)) continue;
-    double sum = 0;
-    int n = 0;
-    for (const FrameComparison::Row& row : c.rows)
-      if (row.metrics && std::isfinite(row.metrics->contourErrorPct)) sum += row.metrics->contourErrorPct, ++n;
-    if (n) out.emplace_back(c.frame, sum / n);
+    for (const FrameComparison::Row& row : c.rows) {
+      if (row.observed < 0) continue;
+      Sum& sum = frames[c.frame];
+      if (row.metrics && std::isfinite(row.metrics->contourErrorPct))
+        sum.pct += row.metrics->contourErrorPct, ++sum.matched;
+      else
+        ++sum.missed;
+    }
   }
+  ErrorsOver out;
+  for (const auto& [frame, sum] : frames)
+    if (sum.missed > 0)
+      out.missed.push_back(frame);
+    else if (sum.matched > 0)
+      out.errors.emplace_back(frame, sum.pct / sum.matched);
   return out;
 }
 
@@ -54,11 +72,11 @@ std::string errorPlot(const Inspection& inspection) {
   const double width = 920, height = 320, left = 62, right = 12, top = 12, bottom = 38;
   double low = 1e300, high = 0;
   const int frames = static_cast<int>(inspection.scene->frames.size());
-  std::vector<std::pair<std::string, std::vector<std::pair<int, double>>>> curves;
+  std::vector<std::pair<std::string, ErrorsOver>> curves;
   for (const std::string& name : inspection.request.models) {
     if (!inspection.models.count(name)) continue;
     curves.emplace_back(name, errorsOver(inspection, inspection.models.at(name)));
-    for (const auto& [frame, e] : curves.back().second)
+    for (const auto& [frame, e] : curves.back().second.errors)
       if (e > 0) low = std::min(low, e), high = std::max(high, e);
   }
   if (!(high > 0)) return "<p>No held-out frame was matched, so there is no error to plot.</p>\n";
@@ -86,19 +104,29 @@ std::string errorPlot(const Inspection& inspection) {
     if (inspection.isTraining(f) && !inspection.train.perSurface)
       svg += "<rect class=\"train\" x=\"" + format("%.1f", x(f) - 2) + "\" y=\"" + format("%.1f", height - bottom - 6) +
              "\" width=\"4\" height=\"6\"><title>training frame " + std::to_string(f) + "</title></rect>\n";
-  for (const auto& [name, points] : curves) {
+  int row = 0;  // of crosses, one for each model that missed something and matched something
+  for (const auto& [name, curve] : curves) {
     std::string path;
     int last = -2;
-    for (const auto& [frame, e] : points) {
+    for (const auto& [frame, e] : curve.errors) {
       path += (frame == last + 1 ? " L" : " M") + format("%.1f", x(frame)) + "," + format("%.1f", y(e));
       last = frame;
     }
     svg += "<path fill=\"none\" stroke-width=\"1.6\" stroke=\"" + colourOf(name) + "\" d=\"" + path + "\"/>\n";
-    for (const auto& [frame, e] : points)
+    for (const auto& [frame, e] : curve.errors)
       svg += "<circle r=\"2.6\" fill=\"" + colourOf(name) + "\" cx=\"" + format("%.1f", x(frame)) + "\" cy=\"" + format("%.1f", y(e)) +
              "\"><title>" + name + ", frame " + std::to_string(frame) + ": " + format("%.4g", e) + " %</title></circle>\n";
+    if (curve.errors.empty() || curve.missed.empty()) continue;
+    for (const int frame : curve.missed) {
+      const double cx = x(frame), cy = top + 4 + 8 * row, r = 3;
+      svg += "<path class=\"missed\" fill=\"none\" stroke-width=\"1.6\" stroke=\"" + colourOf(name) + "\" d=\"M" + format("%.1f", cx - r) +
+             "," + format("%.1f", cy - r) + " L" + format("%.1f", cx + r) + "," + format("%.1f", cy + r) + " M" + format("%.1f", cx - r) + "," +
+             format("%.1f", cy + r) + " L" + format("%.1f", cx + r) + "," + format("%.1f", cy - r) + "\"><title>" + name + ", frame " +
+             std::to_string(frame) + ": missed a highlight</title></path>\n";
+    }
+    ++row;
   }
-  return svg + "</svg>\n";
+  return svg + "</svg>\n" + (row > 0 ? "<p>Crosses at the top: the model missed a highlight of the frame, so it has no error there.</p>\n" : "");
 }
 
 std::string pathOf(const Polyline& line) {
@@ -221,7 +249,7 @@ std::vector<int> worstFrames(const Inspection& inspection, std::size_t count) {
   std::vector<std::vector<std::pair<int, double>>> sorted;
   for (const std::string& name : inspection.request.models) {
     if (!inspection.models.count(name)) continue;
-    sorted.push_back(errorsOver(inspection, inspection.models.at(name)));
+    sorted.push_back(errorsOver(inspection, inspection.models.at(name)).errors);
     std::stable_sort(sorted.back().begin(), sorted.back().end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   }
   std::vector<int> frames;

@@ -11,6 +11,7 @@
 
 #include "core/base/angle.h"
 #include "core/diagnostics/conditioning.h"
+#include "core/explain/explain_case.h"
 #include "core/geometry/epipolar.h"
 #include "core/highlight/peak.h"
 #include "core/light/estimate.h"
@@ -18,35 +19,22 @@
 
 namespace glint {
 
+using namespace explaining;
+
 namespace {
 constexpr double kFlatShare = 0.05;      // of the limit angle: a normal that turns less across the highlight is that of a plane
 constexpr double kSameCurvature = 0.2;   // relative spread over the views: below, one sphere-like patch describes all of them
 constexpr double kSameLimit = 0.05;      // relative spread over the directions: beyond, one limit angle is not the contour
 constexpr double kPricePct = 1;          // of the highlight's size: below, a broken assumption has cost nothing that one sees
 constexpr double kEllipticShare = 0.01;  // of the size: a contour this near to its ellipse looks like one
-constexpr double kNarrowDeg = 2;         // between reflected rays: below, the light's distance is a guess
 constexpr double kWeakGap = 0.5;         // of the last two singular values: above, two quadrics fit almost alike
 constexpr double kNeedle = 10;           // longest over middle semi-axis: a lamp's blurred image is about as wide as it is long
 constexpr double kOwnSizePct = 100;      // of the highlight's diameter: beyond, the prediction lies beside it
-constexpr double kRoundOff = 1e-9;       // of a vector's length: coordinates are known to 1e-7 at best, so this is a zero
 // Below these a number is what rounding leaves: contours are followed to about 1e-3 px.
 constexpr double kLeastPx = 1e-3, kLeastPct = 1e-3;
 constexpr double kLeastDeg = 1e-4;       // 1e-3 px at a focal length of 600 px
 constexpr double kLeastOfView = 1e-6;    // of the distance to what is seen: 1e-3 px there
 constexpr int kMostPairedViews = 12;     // 66 pairs of views tell what their epipolar lines do
-
-ExplainNumber one(const std::string& symbol, const std::string& name, double value, const std::string& unit = "") {
-  return {symbol, name, {value}, unit};
-}
-ExplainNumber point(const std::string& symbol, const std::string& name, const Eigen::Vector3d& p, const std::string& unit = "m") {
-  ExplainNumber n{symbol, name, {p.x(), p.y(), p.z()}, unit};
-  for (double& v : n.values)
-    if (std::abs(v) < kRoundOff * p.norm()) v = 0;
-  return n;
-}
-ExplainNumber pixel(const std::string& symbol, const std::string& name, const Pixel& p) {
-  return {symbol, name, {p.x(), p.y()}, "px"};
-}
 
 const std::vector<std::string>& idsFromPoorToRich() {
   static const std::vector<std::string> ids = [] {
@@ -56,28 +44,6 @@ const std::vector<std::string>& idsFromPoorToRich() {
   }();
   return ids;
 }
-
-/// What the steps read from.
-struct Case {
-  const Inspection& inspection;
-  Explanation& out;
-  const Highlight* highlight = nullptr;
-  std::shared_ptr<const Surface> surface{};
-  const ModelResult* result = nullptr;
-  const ModelResult::Fit* fit = nullptr;
-  const FrameComparison* comparison = nullptr;
-  const FrameComparison::Row* row = nullptr;
-  const Camera& camera() const { return inspection.scene->frames[std::size_t(out.frame)].camera; }
-  /// That of this highlight; where it was missed, the one that lies beside it.
-  const PredictedHighlight* predicted() const {
-    if (!row) return nullptr;
-    int index = row->predicted;
-    if (index < 0)
-      for (const FrameComparison::Row& other : comparison->rows)
-        if (other.observed < 0 && other.predicted >= 0) index = other.predicted;
-    return index >= 0 ? &comparison->prediction.highlights[std::size_t(index)] : nullptr;
-  }
-};
 
 /// Light, fit and comparison of this highlight, and its view with the canonical contour.
 void gather(Case& c) {
@@ -104,8 +70,7 @@ void gather(Case& c) {
       for (const FrameComparison::Row& row : comparison.rows)
         if (!c.row || row.observed == out.highlight) c.row = &row;
     }
-  const auto light = in.lights.find(lightKey(out.light, in.train.perSurface ? std::optional(surfaceKey) : std::nullopt));
-  if (light != in.lights.end()) out.lightUsed = light->second.light;
+  if (const LightEstimate* common = c.common()) out.lightUsed = common->light;
   if (!c.highlight) return;
   for (const TrainingView& v : in.views)
     if (v.frame == out.frame && v.highlight.light == out.light && (v.highlight.peak - c.highlight->peak).norm() < 1)
@@ -210,8 +175,8 @@ void virtualCameraStep(const Case& c, ExplainStep& step) {
   if (!c.surface || !v.brightest) return;
   const Outcome<Curvature> k = c.surface->curvatureAt(v.brightest->point);
   const double limit = c.fit && c.fit->fit && c.fit->fit->limitAngle ? *c.fit->fit->limitAngle : 0;
-  const auto estimate = c.inspection.lights.find(c.out.light);
-  const double alpha = limit > 0 ? limit : estimate != c.inspection.lights.end() ? estimate->second.limitAngle : 0;
+  const LightEstimate* common = c.common();
+  const double alpha = limit > 0 ? limit : common ? common->limitAngle : 0;
   if (!k || !(alpha > 0)) return;
   const double turn = std::max(std::abs(k->k1), std::abs(k->k2)) * radiusOnPlane(v);
   step.numbers.push_back(one("", "turn of the normal from P_B to the contour", degrees(turn), "deg"));
@@ -223,7 +188,7 @@ void virtualCameraStep(const Case& c, ExplainStep& step) {
   if (wasComputed("dual")) {
     double least = std::numeric_limits<double>::infinity(), most = -least;
     for (const TrainingView& other : c.inspection.views) {
-      if (other.failure || !other.brightest || !other.surface) continue;
+      if (other.failure || !other.brightest || !other.surface || !c.sharesModel(other.frame)) continue;
       const Outcome<Curvature> there = other.surface->curvatureAt(other.brightest->point);
       if (!there) continue;
       least = std::min({least, there->k1, there->k2});
@@ -234,34 +199,6 @@ void virtualCameraStep(const Case& c, ExplainStep& step) {
       step.broken.push_back({"dual-curvature-varies",
                              {one("", "smallest curvature seen", least, "1/m"), one("", "largest curvature seen", most, "1/m")}});
   }
-}
-
-void lightStep(const Case& c, ExplainStep& step) {
-  if (!c.out.lightUsed) {
-    const auto why = c.inspection.lightFailures.find(c.out.light);
-    step.failure =
-        why != c.inspection.lightFailures.end() ? why->second : Failure{Reason::NoLight, "no model that was computed needs one"};
-    return;
-  }
-  std::vector<Eigen::Vector3d> rays;
-  for (const TrainingView& v : c.inspection.views)
-    if (!v.failure && v.brightest && v.highlight.light == c.out.light)
-      rays.push_back(reflectedRay(*v.brightest, v.camera).direction);
-  const double widest = widestAngle(rays);
-  const Light& light = *c.out.lightUsed;
-  if (light.atInfinity())
-    step.numbers.push_back(point("L", "direction of a light at infinity", light.homogeneous().head<3>(), ""));
-  else
-    step.numbers.push_back(point("L", "light", light.position()));
-  step.numbers.push_back(one("", "reflected rays", double(rays.size())));
-  step.numbers.push_back(one("", "widest angle between them", degrees(widest), "deg"));
-  if (const auto e = c.inspection.lights.find(c.out.light); e != c.inspection.lights.end() && e->second.covariance)
-    step.numbers.push_back(one("σ", "of the light, largest axis",
-                               std::sqrt(e->second.covariance->selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff()), "m"));
-  if (widest < radians(kNarrowDeg)) step.broken.push_back({"rays-parallel", {one("", "widest angle", degrees(widest), "deg")}});
-  for (const TrueLight& truth : c.inspection.scene->lights)
-    if (truth.id == c.out.light && truth.position && !light.atInfinity())
-      step.numbers.push_back(one("", "distance from the true light", (light.position() - *truth.position).norm(), "m"));
 }
 
 void contourStep(const Case& c, ExplainStep& step) {
@@ -312,6 +249,7 @@ void limitAngleStep(const Case& c, ExplainStep& step) {
       step.broken.push_back({"limit-angle-varies", {one("", "spread of the limit angles", 100 * (most - least) / mean, "%")}});
   }
   for (const auto& [reason, count] : failed) step.broken.push_back({"directions-failed", {one("", reason, count)}});
+  addOtherLight(c, step);
 }
 
 void canonicalStep(const Case& c, ExplainStep& step) {
@@ -337,6 +275,7 @@ void canonicalStep(const Case& c, ExplainStep& step) {
   step.numbers.push_back(one("", "distance of the canonical points from it", rms, "px"));
   if (rms > kEllipticShare * std::sqrt(e.semiAxes.prod()))
     step.broken.push_back({"canonical-not-elliptic", {one("", "of its size", 100 * rms / std::sqrt(e.semiAxes.prod()), "%")}});
+  addOtherLight(c, step);
 }
 
 /// How far tangent epipolar lines miss the ellipses of the views that were used, RMS over their pairs, px.

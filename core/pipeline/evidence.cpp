@@ -11,6 +11,7 @@
 #include "core/base/number_text.h"
 #include "core/base/safe_text.h"
 #include "core/geometry/distortion.h"
+#include "core/scene/bounded_json.h"
 
 namespace glint {
 namespace {
@@ -186,7 +187,7 @@ Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene
     h.light = frame.lightsOn.empty() ? "light" : frame.lightsOn.front();
     h.level = level;
     const JsonNode points = c.at("points");
-    for (std::size_t k = 0; k < points.size(); ++k) h.contour.points.push_back(points.at(k).vector2());
+    for (std::size_t k = 0; k < points.size(); ++k) h.contour.points.push_back(pixel(points.at(k)));
     h.contour = withoutRepeats(h.contour);
     h.areaPx2 = std::abs(signedArea(h.contour));
     if (!(h.areaPx2 > 0)) points.fail("the contour encloses no area");
@@ -197,7 +198,7 @@ Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene
   }
   // The stored sub-pixel peak belongs to the highlight that contains it; the others keep their centroid.
   if (const std::optional<JsonNode> n = root.find("peak_subpixel"); n && !n->isNull()) {
-    const Pixel peak = n->vector2();
+    const Pixel peak = pixel(*n);
     for (Highlight& h : truth)
       if (contains(h.contour, peak)) h.peak = peak;
   }

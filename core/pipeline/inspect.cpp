@@ -113,6 +113,22 @@ class Run {
     return "also on in " + std::to_string(most) + " of " + std::to_string(fit.frames.size()) + " training frames, without a highlight of its own: " +
            names + "; where highlights of several lights merge, the light that is estimated lies between them";
   }
+  /// Training frames that show the fit's light and have no view because they repeat another one. "" where there are none.
+  std::string repeatedRemark(const ModelFit& fit) const {
+    std::string names;
+    int count = 0;
+    for (const int frame : r_.train.frames) {
+      const std::vector<int>& excluded = r_.request.excluded;
+      if (std::find(excluded.begin(), excluded.end(), frame) != excluded.end()) continue;
+      const std::vector<Highlight>& highlights = r_.evidence[std::size_t(frame)].highlights;
+      if (std::none_of(highlights.begin(), highlights.end(), [&](const Highlight& h) { return h.light == fit.light; })) continue;
+      if (std::any_of(r_.views.begin(), r_.views.end(), [&](const TrainingView& v) { return v.frame == frame; })) continue;
+      names += (count++ == 0 ? "" : ", ") + r_.scene->frames[std::size_t(frame)].id;
+    }
+    if (count == 0) return "";
+    return std::to_string(count) + (count == 1 ? " training frame repeats" : " training frames repeat") +
+           " another one to the last digit and count once: " + names;
+  }
   bool anyModel(bool (HighlightModel::*needs)() const) const {
     return std::any_of(r_.request.models.begin(), r_.request.models.end(),
                        [&](const std::string& m) { return (modelByName(m).*needs)(); });
@@ -235,9 +251,13 @@ void Run::brightestPointsAndTangentPlanes() {
     return;
   }
   int done = 0;
+  std::vector<int> used;
   for (const int frame : r_.train.frames) {
     if (!report(progress_, {"surface", done++, static_cast<int>(r_.train.frames.size())})) throw Stopped{};
     if (std::find(q.excluded.begin(), q.excluded.end(), frame) != q.excluded.end()) continue;
+    // Noise that is added here is another one in every frame: then they are observations of their own.
+    if (!(q.noisePx > 0) && std::any_of(used.begin(), used.end(), [&](int other) { return sameObservation(r_, frame, other); })) continue;
+    used.push_back(frame);
     FrameEvidence evidence = r_.evidence[frame];
     addDetectedLevels(r_, [this](int f) { return surfaceOf(f); }, evidence);
     for (std::size_t h = 0; h < evidence.highlights.size(); ++h)
@@ -369,6 +389,7 @@ void Run::modelFits() {
         fit->light = g.light;
         fit->surface = g.surface;
         if (std::string merged = mergedRemark(*fit); !merged.empty()) fit->remarks.push_back(std::move(merged));
+        if (std::string repeated = repeatedRemark(*fit); !repeated.empty()) fit->remarks.push_back(std::move(repeated));
         if (const auto refined = r_.refinedNormals.find(lightKey(g.light, g.surface)); refined != r_.refinedNormals.end() && model.needsLight())
           fit->remarks.push_back(refined->second.remark());
         fit->timeUs = microsecondsSince(start);

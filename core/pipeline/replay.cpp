@@ -89,11 +89,15 @@ std::string wordsFor(Stage stage, bool detectionKnown) {
   return "";
 }
 
-bool agree(double a, double b) {
-  if (std::isnan(a) || std::isnan(b)) return std::isnan(a) && std::isnan(b);
-  // formats.md: nine digits; the rest lets a zero be one that came out as round-off.
-  return std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b)) + 1e-12;
+/// What formats.md lets be 1e-9 at most: the difference relative to the numbers, and to 1e-3 where they are smaller, so that a zero may
+/// be one that came out as round-off.
+double relativeDifference(double a, double b) {
+  if (std::isnan(a) || std::isnan(b)) return std::isnan(a) && std::isnan(b) ? 0 : std::numeric_limits<double>::infinity();
+  if (a == b) return 0;
+  constexpr double kSmall = 1e-3;  // 1e-9 of it is 1e-12, the round-off of numbers of order one
+  return std::abs(a - b) / (std::max(std::abs(a), std::abs(b)) + kSmall);
 }
+constexpr double kAgree = 1e-9;  // formats.md: nine digits
 
 }  // namespace
 
@@ -225,9 +229,13 @@ Replay replay(const Session& session, const Relinked& instead, const ProgressFn&
   for (const auto& [name, value] : session.keyResults) {
     ++result.compared;
     const auto it = find(now, name);
-    if (it == now.end())
+    if (it == now.end()) {
       differs(name, "was " + shortest(value) + ", is no longer computed");
-    else if (!agree(value, it->second))
+      continue;
+    }
+    const double difference = relativeDifference(value, it->second);
+    result.largestDifference = std::max(result.largestDifference, difference);
+    if (difference > kAgree)
       differs(name, "was " + shortest(value) + ", is " + shortest(it->second));
   }
   const bool detectionKnown = std::any_of(session.keyResults.begin(), session.keyResults.end(),

@@ -13,6 +13,7 @@
 #include "core/base/sha256.h"
 #include "core/pipeline/session_rights.h"
 #include "core/pipeline/what_if_json.h"
+#include "core/scene/bounded_json.h"
 #include "core/scene/permitted.h"
 #include "core/scene/scene_files.h"
 #include "core/scene/scene_json.h"
@@ -114,7 +115,7 @@ InspectionRequest readRequest(const JsonNode& node, const fs::path& folder) {
   }
   if (const auto n = node.find("settings")) request.settings = readSettings(*n);
   if (const auto n = node.find("noise_px")) {
-    request.noisePx = n->number();
+    request.noisePx = bounded(*n, kFarthestPx);
     if (request.noisePx < 0) n->fail("must not be negative");
   }
   if (const auto n = node.find("seed")) {
@@ -129,7 +130,7 @@ InspectionRequest readRequest(const JsonNode& node, const fs::path& folder) {
 }
 
 SessionCamera readCamera(const JsonNode& c) {
-  SessionCamera camera{c.at("position").vector3(), c.at("focal_point").vector3(), c.at("up").vector3(),
+  SessionCamera camera{lengths3(c.at("position")), lengths3(c.at("focal_point")), lengths3(c.at("up")),
                        c.at("view_angle_deg").number()};
   if (const auto parallel = c.find("parallel")) camera.parallel = parallel->boolean();
   if (!(camera.viewAngleDeg > 0 && camera.viewAngleDeg < 180)) c.at("view_angle_deg").fail("must lie between 0 and 180");
@@ -221,7 +222,7 @@ Session parseSession(const std::string& json, const fs::path& file) {
   return session;
 }
 
-void writeSession(const Session& session, const fs::path& file) {
+std::string sessionText(const Session& session, const fs::path& file) {
   const fs::path folder = folderOf(file);
   const auto relative = [&](const fs::path& path) {
     const fs::path r = fs::absolute(path).lexically_normal().lexically_relative(folder);
@@ -269,8 +270,10 @@ void writeSession(const Session& session, const fs::path& file) {
     for (const auto& item : unknown.items())
       if (!known.count(item.key())) json_dom::append(root, item.key(), item.value());
   }
-  atomicWrite(file, prettyJson(root.dump(-1, ' ', false, Json::error_handler_t::replace)));
+  return prettyJson(root.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
+
+void writeSession(const Session& session, const fs::path& file) { atomicWrite(file, sessionText(session, file)); }
 
 MissingScene::MissingScene(const fs::path& session, fs::path scene)
     : InputError(session.string(), "input.path", "the scene " + scene.string() + " is not there"), scene_(std::move(scene)) {}

@@ -76,6 +76,8 @@ Session readSession(const std::filesystem::path& file);
 Session parseSession(const std::string& json, const std::filesystem::path& file);
 /// Atomically; paths relative to the session's folder. InputError when it cannot be written.
 void writeSession(const Session& session, const std::filesystem::path& file);
+/// What `writeSession` writes there.
+std::string sessionText(const Session& session, const std::filesystem::path& file);
 
 /// The scene of a session is not where the session says: the one failure that a person can mend by pointing at it.
 class MissingScene : public InputError {
@@ -122,6 +124,7 @@ struct Replay {
   std::string firstChanged;              ///< the first stage whose results differ, in words; "" = none
   bool digestAgrees = false;
   int compared = 0;  ///< key results
+  double largestDifference = 0;  ///< of a key result, relative to its size (and to 1e-3 where that is smaller): what 1e-9 is compared with
 };
 /// Recomputes a session and compares: key results agree when they differ by at most 1e-9 relatively (or 1e-12 absolutely,
 /// the round-off of numbers of order one).

@@ -13,6 +13,11 @@ namespace glint {
 TrainingView trainingView(const FrameEvidence& evidence, int highlight, const Camera& camera,
                           std::shared_ptr<const Surface> surface);
 
+/// Whether two frames are one photograph given twice: the same camera, surface and highlights, to the last bit. Noise never repeats itself
+/// like that, so the second one is no further observation: it would only take weight from priors, and stand in for the first one where
+/// that is left out to judge a choice.
+bool sameObservation(const Inspection& inspection, int frame, int other);
+
 /// The light of some views of one light (method.md section 4): triangulated, then bundled when `light.solver` says so.
 /// TooFewViews; LightBehindSurface; what the bundle reports. A bundle that fails falls back to nothing: its reason is returned.
 Outcome<LightEstimate> estimateLight(const std::vector<TrainingView>& views, const Settings& settings);

@@ -3,6 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/scene/bounded_json.h"
+
 namespace glint {
 using Json = nlohmann::ordered_json;
 
@@ -46,13 +48,12 @@ WhatIf readWhatIf(const JsonNode& node) {
   if (const auto poses = node.find("poses"))
     for (std::size_t i = 0; i < poses->size(); ++i) {
       const JsonNode n = poses->at(i);
-      w.poses[frameOf(n)] = {n.at("rotation").vector3(), n.at("translation").vector3()};
+      w.poses[frameOf(n)] = {boundedAll(n.at("rotation"), kLargestFactor).vector3(), lengths3(n.at("translation"))};
     }
   if (const auto highlights = node.find("highlights"))
     for (std::size_t i = 0; i < highlights->size(); ++i) {
       const JsonNode n = highlights->at(i);
-      HighlightChange change{n.at("contour_by").vector2(), n.at("contour_scale").number(), n.at("peak_by").vector2()};
-      if (!(change.contourScale > 0)) n.at("contour_scale").fail("must be positive");
+      HighlightChange change{pixel(n.at("contour_by")), positive(n.at("contour_scale"), kFarthestPx), pixel(n.at("peak_by"))};
       w.highlights[{frameOf(n), n.at("highlight").integer()}] = change;
     }
   if (const auto lights = node.find("lights_switched"))
@@ -66,12 +67,11 @@ WhatIf readWhatIf(const JsonNode& node) {
     const std::optional<Lobe> known = lobeOf(lobe);
     if (!known) s->at("lobe").fail("there is no lobe '" + lobe + "'");
     w.lobe = *known;
-    w.roughness = s->at("roughness").number();
-    if (!(w.roughness > 0)) s->at("roughness").fail("must be positive");
+    w.roughness = positive(s->at("roughness"), kLargestFactor);
     if (const auto lights = s->find("lights_by"))
-      for (const std::string& id : lights->keys()) w.lightsBy[id] = lights->at(id).vector3();
+      for (const std::string& id : lights->keys()) w.lightsBy[id] = lengths3(lights->at(id));
     if (const auto surfaces = s->find("surfaces"))
-      for (const std::string& id : surfaces->keys()) w.surfaces[id] = surfaces->at(id).number();
+      for (const std::string& id : surfaces->keys()) w.surfaces[id] = bounded(surfaces->at(id), kFarthest);
   }
   return w;
 }

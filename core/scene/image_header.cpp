@@ -184,23 +184,25 @@ ImageHeader tiffHeader(std::string_view bytes, ImageHeader h) {
   const std::optional<std::uint64_t> entries = directory ? in.number(*directory, 2) : std::nullopt;
   if (!entries) return truncated(h);
   constexpr std::uint64_t kEntry = 12;  // bytes
-  std::optional<std::uint64_t> tileWidth, tileHeight;  // of strips nothing is asked: "all rows" is often written as 2^32 - 1
-  h.channels = 1;
+  std::optional<std::uint64_t> width, height, channels, tileWidth, tileHeight;  // of strips nothing is asked: "all rows" is often written as 2^32 - 1
+  const auto first = [](std::optional<std::uint64_t>& tag, std::uint64_t value) {
+    if (!tag) tag = value;  // the decoder ignores a tag that stands there again
+  };
   for (std::uint64_t i = 0; i < *entries; ++i) {
     const std::uint64_t at = *directory + 2 + i * kEntry;
     const auto tag = in.number(at, 2), type = in.number(at + 2, 2);
     if (!tag || !type || !in.number(at + 8, 4)) return truncated(h);
-    constexpr std::uint64_t kShort = 3;
-    const std::optional<std::uint64_t> value = in.number(at + 8, *type == kShort ? 2 : 4);
-    switch (*tag) {
-      case 256: h.width = *value; break;
-      case 257: h.height = *value; break;
-      case 277: h.channels = static_cast<int>(std::min<std::uint64_t>(*value, std::numeric_limits<int>::max())); break;
-      case 322: tileWidth = *value; break;
-      case 323: tileHeight = *value; break;
-      default: break;
-    }
+    constexpr std::uint64_t kShort = 3, kLong = 4, kChannels = 277;
+    const bool isSize = *tag == 256 || *tag == 257 || *tag == kChannels || *tag == 322 || *tag == 323;
+    if (!isSize) continue;
+    // The decoder takes other types too, of which some stand elsewhere in the file; nobody writes a size so.
+    if (*type != kShort && *type != kLong) return damaged(h, "a size is no whole number of 16 or 32 bits");
+    const std::uint64_t value = *in.number(at + 8, *type == kShort ? 2 : 4);
+    first(*tag == 256 ? width : *tag == 257 ? height : *tag == 322 ? tileWidth : *tag == 323 ? tileHeight : channels, value);
   }
+  h.width = width.value_or(0);
+  h.height = height.value_or(0);
+  h.channels = static_cast<int>(std::min<std::uint64_t>(channels.value_or(1), std::numeric_limits<int>::max()));
   if (h.width == 0 || h.height == 0) return damaged(h, "it does not say its size");
   if (tileWidth && tileHeight && !fitsImage(*tileWidth, *tileHeight, h)) return damaged(h, "its tiles are larger than the image");
   return h;

@@ -6,6 +6,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/json_text.h"
+#include "core/base/limits.h"
 #include "core/scene/scene_files.h"
 #include "core/scene/scene_json.h"
 #include "core/scene/permitted.h"
@@ -35,14 +36,16 @@ bool isJsonObjectWith(const fs::path& file, const std::string& key) {
   const std::string start = firstBytes(file, 64);
   const std::size_t at = start.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   if (at == std::string::npos || start[at] != '{') return false;
-  return firstBytes(file, static_cast<std::size_t>(size)).find("\"" + key + "\"") != std::string::npos;
+  constexpr double kMegabyte = 1e6;
+  const double most = std::min(double(size), limitOf(Limit::JsonMegabytes) * kMegabyte);  // what is longer is refused by its reader
+  return firstBytes(file, static_cast<std::size_t>(most)).find("\"" + key + "\"") != std::string::npos;
 }
 
 std::vector<fs::path> sortedFiles(const fs::path& folder, const std::string& extension) {
   std::vector<fs::path> files;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
-    if (it->path().extension() == extension) files.push_back(it->path());
+    if (it->path().extension() == extension && it->path().filename().string()[0] != '.') files.push_back(it->path());
   std::sort(files.begin(), files.end());
   return files;
 }

@@ -10,6 +10,8 @@
 
 #include "core/base/json_dom.h"
 #include "core/base/level_range.h"
+#include "core/base/limits.h"
+#include "core/scene/bounded_json.h"
 #include "core/scene/relinked.h"
 #include "core/scene/scene_files.h"
 #include "core/scene/scene_reader.h"
@@ -19,12 +21,6 @@ namespace fs = std::filesystem;
 using json_dom::Json;
 
 namespace {
-
-double positive(const JsonNode& node) {
-  const double v = node.number();
-  if (!(v > 0)) node.fail("must be positive");
-  return v;
-}
 
 /// Collects what this version does not know: kept for writing back, warned of once per place.
 struct Unknown {
@@ -113,19 +109,27 @@ Camera readCameraJson(const JsonNode& node) {
   };
   camera.width = size("width");
   camera.height = size("height");
+  constexpr double kMega = 1e6;
+  requireWithin(Limit::ImageMegapixels, double(camera.width) * camera.height / kMega, node.file(), node.place());
   const auto focal = [&](const char* key) {
     const JsonNode n = node.at(key);
     const double v = n.number();
     if (!(v > 0)) n.fail("must be positive (K would be singular or mirrored)");
-    return v;
+    return bounded(n, kFarthestPx);
   };
+  // One by one: a failure inside a comma initialiser would leave it unfinished, and its destructor asserts.
+  camera.pixelFromRay.setIdentity();
+  camera.pixelFromRay(0, 0) = focal("fx");
   const auto skew = node.find("skew");
-  camera.pixelFromRay << focal("fx"), skew ? skew->number() : 0.0, node.at("cx").number(), 0, focal("fy"), node.at("cy").number(), 0, 0, 1;
+  camera.pixelFromRay(0, 1) = skew ? bounded(*skew, kFarthestPx) : 0.0;
+  camera.pixelFromRay(0, 2) = bounded(node.at("cx"), kFarthestPx);
+  camera.pixelFromRay(1, 1) = focal("fy");
+  camera.pixelFromRay(1, 2) = bounded(node.at("cy"), kFarthestPx);
   if (const auto model = node.find("model"); model && model->text() != "OPENCV")
     model->fail("'" + model->text() + "' is not understood: only OPENCV (distortion k1 k2 p1 p2 k3)");
   refuseGeometry(node, kCameraGeometry);
   if (const auto d = node.find("distortion")) {
-    const std::vector<double> values = d->numbers();
+    const std::vector<double> values = boundedAll(*d, kLargestFactor).numbers();
     if (values.size() != 4 && values.size() != 5)
       d->fail("must have 5 numbers (k1 k2 p1 p2 k3), has " + std::to_string(values.size()));
     std::copy(values.begin(), values.end(), camera.distortion.begin());
@@ -135,6 +139,7 @@ Camera readCameraJson(const JsonNode& node) {
 
 Eigen::Isometry3d readPoseJson(const JsonNode& node, std::string* warning) {
   const Eigen::Matrix4d m = node.matrix4();
+  for (std::size_t i = 0; i < 3; ++i) bounded(node.at(i).at(3), kFarthest);
   if (m.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) node.fail("must be rigid: the last row must be 0 0 0 1");
   Eigen::Matrix3d r = m.topLeftCorner<3, 3>();
   Eigen::Vector3d t = m.topRightCorner<3, 1>();
@@ -163,22 +168,23 @@ AnalyticSpec readAnalyticJson(const JsonNode& node) {
   const JsonNode type = node.at("type");
   spec.type = type.text();
   if (spec.type == "sphere" || spec.type == "cylinder") {
-    spec.radius = positive(node.at("radius"));
+    spec.radius = positive(node.at("radius"), kFarthest);
   } else if (spec.type == "ellipsoid") {
     const JsonNode axes = node.at("semi_axes");
-    spec.semiAxes = axes.vector3();
+    spec.semiAxes = lengths3(axes);
     if (!(spec.semiAxes.minCoeff() > 0)) axes.fail("must be positive");
   } else if (spec.type == "sheet") {
-    spec.curvature = node.at("curvature").number();
-    if (const auto n = node.find("length")) spec.length = positive(*n);
-    if (const auto n = node.find("width")) spec.width = positive(*n);
+    spec.curvature = bounded(node.at("curvature"), kLargestFactor);
+    if (const auto n = node.find("length")) spec.length = positive(*n, kFarthest);
+    if (const auto n = node.find("width")) spec.width = positive(*n, kFarthest);
   } else if (spec.type == "torus") {
-    spec.majorRadius = positive(node.at("major_radius"));
+    spec.majorRadius = positive(node.at("major_radius"), kFarthest);
     const JsonNode minor = node.at("minor_radius");
-    spec.minorRadius = positive(minor);
+    spec.minorRadius = positive(minor, kFarthest);
     if (spec.minorRadius >= spec.majorRadius) minor.fail("must be smaller than major_radius");
   } else if (spec.type == "quadric") {
     const JsonNode matrix = node.at("matrix");
+    for (std::size_t i = 0; i < matrix.size(); ++i) boundedAll(matrix.at(i), kLargestFactor);
     spec.matrix = matrix.matrix4();
     const double size = spec.matrix.cwiseAbs().maxCoeff();
     if (!(size > 0)) matrix.fail("must not be zero");
@@ -194,21 +200,21 @@ AnalyticSpec readAnalyticJson(const JsonNode& node) {
 TrueLight readLightJson(const JsonNode& node) {
   TrueLight light;
   light.id = readIdJson(node.at("id"));
-  if (const auto n = node.find("position")) light.position = n->vector3();
+  if (const auto n = node.find("position")) light.position = lengths3(*n);
   if (const auto n = node.find("direction")) {
-    const Eigen::Vector3d d = n->vector3();
+    const Eigen::Vector3d d = lengths3(*n);
     if (!(d.norm() > 0)) n->fail("must not be zero");
     light.direction = d.normalized();
   }
   if (const auto n = node.find("segment")) {
     if (n->size() != 2) n->fail("must have two ends");
-    light.segment = {n->at(std::size_t(0)).vector3(), n->at(std::size_t(1)).vector3()};
+    light.segment = {lengths3(n->at(std::size_t(0))), lengths3(n->at(std::size_t(1)))};
     if ((*light.segment)[0] == (*light.segment)[1]) n->fail("the two ends must differ");
   }
   if (int(light.position.has_value()) + int(light.direction.has_value()) + int(light.segment.has_value()) != 1)
     node.fail("needs exactly one of position, direction, segment");
   if (const auto n = node.find("radius")) {
-    light.radius = n->number();
+    light.radius = bounded(*n, kFarthest);
     if (light.radius < 0) n->fail("must not be negative");
   }
   return light;
@@ -230,12 +236,12 @@ Highlight readHighlight(const JsonNode& node, const Camera& camera) {
   // Half a pixel beyond the outermost pixel centres the image ends, to the digits of a printed coordinate.
   constexpr double kBorderPx = 0.5 - 1e-9;
   for (std::size_t i = 0; i < n; ++i) {
-    const Pixel measured = contour.at(i).vector2();
+    const Pixel measured = pixel(contour.at(i));
     h.touchesBorder = h.touchesBorder || measured.minCoeff() <= -kBorderPx || measured.x() >= camera.width - 1 + kBorderPx ||
                       measured.y() >= camera.height - 1 + kBorderPx;
     h.contour.points.push_back(camera.undistorted(measured));
   }
-  h.peak = camera.undistorted(node.at("peak").vector2());
+  h.peak = camera.undistorted(pixel(node.at("peak")));
   if (!h.peak.allFinite()) node.at("peak").fail("lies where the lens distortion cannot be removed");
   for (std::size_t i = 0; i < n; ++i)
     if (!h.contour.points[i].allFinite()) contour.at(i).fail("lies where the lens distortion cannot be removed");
@@ -269,7 +275,7 @@ Frame readFrame(const JsonNode& node, const FrameContext& context, Json& rest) {
   frame.depth = path("depth");
   frame.normals = path("normals");
   frame.mask = path("mask");
-  if (const auto n = node.find("depth_scale")) frame.depthScale = positive(*n);
+  if (const auto n = node.find("depth_scale")) frame.depthScale = positive(*n, kLargestFactor);
   if (const auto n = node.find("camera")) {
     frame.camera = readCameraJson(*n);
     keep(rest, "camera", context.unknown.of(*n, kCameraKeys));

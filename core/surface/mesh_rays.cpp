@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <new>
 #include <stdexcept>
+#include <string>
 
 #include "core/geometry/plane.h"
 
@@ -40,7 +43,7 @@ void setRay(RTCRayHit8& packet, int k, const Vector3f& o, const Vector3f& d, flo
 }  // namespace
 
 MeshRays::MeshRays(const TriangleMesh& mesh, const std::vector<char>& alive, const Eigen::AlignedBox3d& bounds)
-    : centre_(bounds.center()), size_(bounds.sizes().norm()), scale_(2 / size_), device_(rtcNewDevice(nullptr)) {
+    : centre_(bounds.center()), size_(bounds.sizes().norm()), scale_(2 / size_), device_(rtcNewDevice(std::getenv("GLINT_EMBREE"))) {  // null: as it is built
   if (!device_) throw std::runtime_error("Embree: no device");
   scene_ = rtcNewScene(device_);
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -52,7 +55,7 @@ MeshRays::MeshRays(const TriangleMesh& mesh, const std::vector<char>& alive, con
     rtcReleaseGeometry(geometry);
     rtcReleaseScene(scene_);
     rtcReleaseDevice(device_);
-    throw std::runtime_error("Embree: out of memory");
+    throw std::bad_alloc();
   }
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
     for (int k = 0; k < 3; ++k) vertices[3 * i + k] = static_cast<float>((mesh.vertices[i][k] - centre_[k]) * scale_);
@@ -63,6 +66,13 @@ MeshRays::MeshRays(const TriangleMesh& mesh, const std::vector<char>& alive, con
   rtcReleaseGeometry(geometry);
   rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);  // without it rays leak through edges
   rtcCommitScene(scene_);
+  // A tree that could not be built holds nothing: every ray would miss.
+  if (const RTCError error = rtcGetDeviceError(device_); error != RTC_ERROR_NONE) {
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    throw std::runtime_error("Embree: error " + std::to_string(static_cast<int>(error)));
+  }
 }
 
 MeshRays::~MeshRays() {

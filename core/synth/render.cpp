@@ -9,9 +9,12 @@
 #include <set>
 
 #include "core/base/atomic_file.h"
+#include "core/base/atomic_folder.h"
+#include "core/base/json_text.h"
 #include "core/base/parallel.h"
 #include "core/base/safe_text.h"
 #include "core/base/srgb.h"
+#include "core/scene/scene_json.h"
 #include "core/synth/output_folder.h"
 #include "core/synth/synth.h"
 
@@ -185,8 +188,9 @@ std::vector<fs::path> filesWritten(const Scene& scene, const std::optional<Rende
   return files;
 }
 
-/// Meshes go into the scene's folder, so that it stands on its own; two of one name are numbered.
-void copyMeshes(Scene& scene) {
+/// Meshes go into the scene's folder, so that it stands on its own; two of one name are numbered. They are written into `out`, which
+/// will be that folder.
+void copyMeshes(Scene& scene, const fs::path& out) {
   std::map<fs::path, fs::path> copies;  // by the file that was copied
   std::set<std::string> names;
   std::set<fs::path> meshes;
@@ -209,12 +213,52 @@ void copyMeshes(Scene& scene) {
     for (int n = 2; names.count(name) || isAnotherMesh(name); ++n) name = stem + "-" + std::to_string(n) + extension;
     names.insert(name);
     const fs::path copy = scene.folder / "mesh" / name;
-    makeFolder(copy.parent_path());
     std::error_code ignored;  // what cannot be asked about is another file
-    if (!fs::equivalent(*source.mesh, copy, ignored)) atomicWrite(copy, readFile(*source.mesh));
+    if (!fs::equivalent(*source.mesh, copy, ignored)) {
+      makeFolder(out / "mesh");
+      atomicWrite(out / "mesh" / name, readFile(*source.mesh));
+    }
     copies[*source.mesh] = copy;
     source.mesh = copy;
   }
+}
+
+/// Photographs, radiance, depth, normals and masks of all frames, written into `out`, which will be the scene's folder.
+void renderFrames(Scene& scene, const RenderOptions& render, const Material& material, const SurfaceCache& surfaces,
+                  const std::vector<double>& tops, const fs::path& out, const ProgressFn& progress) {
+  const double top = tops.empty() ? 0 : *std::max_element(tops.begin(), tops.end());
+  const double exposure = render.exposure > 0 ? render.exposure : (top > 0 ? 0.9 / top : 1);
+  for (const char* name : {"frames", "radiance", "depth", "normals", "mask"}) {
+    if (render.bits == 32 && std::string(name) == "frames") continue;
+    makeFolder(out / name);
+  }
+  parallelFor(
+      static_cast<int>(scene.frames.size()),
+      [&](int i) {
+        Frame& frame = scene.frames[static_cast<std::size_t>(i)];
+        const Outcome<std::shared_ptr<const Surface>> surface = surfaces.surfaceOf(i, NormalPolicy::Curved);
+        RenderedFrame r = renderFrame(**surface, frame.camera, lightsOf(scene, frame), material, render.samples);
+        const auto write = [&](fs::path& named, const char* kind, const std::string& extension, const cv::Mat& mat, int jpegQuality) {
+          const fs::path file = fs::path(kind) / (fileNameOf(frame.id) + extension);
+          named = scene.folder / file;
+          writeImage(out / file, mat, jpegQuality);
+        };
+        if (render.bits != 32) {
+          Image photograph(frame.camera.width, frame.camera.height, 3);
+          for (std::size_t k = 0; k < photograph.data.size(); ++k)
+            photograph.data[k] = static_cast<float>(exposure) * (r.diffuse.data[k] + r.specular.data[k / 3]);
+          degrade(photograph, render, render.noise * exposure * top, static_cast<unsigned>(2 * i));
+          write(frame.image, "frames", photographExtension(render), quantised(photograph, render.bits), render.jpegQuality);
+        }
+        degrade(r.specular, render, render.noise * top, static_cast<unsigned>(2 * i + 1));
+        cv::Mat mask;
+        matOf(r.mask).convertTo(mask, CV_8U, 255);
+        write(frame.radiance, "radiance", ".tiff", matOf(r.specular), 0);
+        write(frame.depth, "depth", ".tiff", matOf(r.depth), 0);
+        write(frame.normals, "normals", ".tiff", matOf(r.normals), 0);
+        write(frame.mask, "mask", ".png", mask, 0);
+      },
+      progress, "render");
 }
 
 }  // namespace
@@ -252,49 +296,12 @@ Scene synthesise(const SynthSpec& spec, const fs::path& folder, const ProgressFn
   if (std::error_code ignored; fs::equivalent(spec.scene.file, scene.file, ignored))
     throw InputError(scene.file.string(), "", "would replace the specification; choose another folder");
   requireSynthFolder(scene.folder, filesWritten(scene, spec.render));
-  makeFolder(folder);
-  copyMeshes(scene);
-
-  if (spec.render) {
-    const RenderOptions& render = *spec.render;
-    const double top = n > 0 ? *std::max_element(tops.begin(), tops.end()) : 0;
-    const double exposure = render.exposure > 0 ? render.exposure : (top > 0 ? 0.9 / top : 1);
-    for (const char* name : {"frames", "radiance", "depth", "normals", "mask"}) {
-      if (render.bits == 32 && std::string(name) == "frames") continue;
-      makeFolder(scene.folder / name);
-    }
-    parallelFor(
-        n,
-        [&](int i) {
-          Frame& frame = scene.frames[static_cast<std::size_t>(i)];
-          const Outcome<std::shared_ptr<const Surface>> surface = surfaces.surfaceOf(i, NormalPolicy::Curved);
-          RenderedFrame r = renderFrame(**surface, frame.camera, lightsOf(scene, frame), spec.material, render.samples);
-          const std::string name = fileNameOf(frame.id);
-          const auto file = [&](const char* kind, const std::string& extension) { return scene.folder / kind / (name + extension); };
-          if (render.bits != 32) {
-            Image photograph(frame.camera.width, frame.camera.height, 3);
-            for (std::size_t k = 0; k < photograph.data.size(); ++k)
-              photograph.data[k] = static_cast<float>(exposure) * (r.diffuse.data[k] + r.specular.data[k / 3]);
-            degrade(photograph, render, render.noise * exposure * top, static_cast<unsigned>(2 * i));
-            frame.image = file("frames", photographExtension(render));
-            writeImage(frame.image, quantised(photograph, render.bits), render.jpegQuality);
-          }
-          degrade(r.specular, render, render.noise * top, static_cast<unsigned>(2 * i + 1));
-          frame.radiance = file("radiance", ".tiff");
-          frame.depth = file("depth", ".tiff");
-          frame.normals = file("normals", ".tiff");
-          frame.mask = file("mask", ".png");
-          writeImage(frame.radiance, matOf(r.specular));
-          writeImage(frame.depth, matOf(r.depth));
-          writeImage(frame.normals, matOf(r.normals));
-          cv::Mat mask;
-          matOf(r.mask).convertTo(mask, CV_8U, 255);
-          writeImage(frame.mask, mask);
-        },
-        progress, "render");
-  }
-  std::sort(scene.warnings.begin(), scene.warnings.end());
-  writeScene(scene, scene.file);
+  atomicFiles(folder, "scene.json", [&](const fs::path& out) {
+    copyMeshes(scene, out);
+    if (spec.render) renderFrames(scene, *spec.render, spec.material, surfaces, tops, out, progress);
+    std::sort(scene.warnings.begin(), scene.warnings.end());
+    atomicWrite(out / scene.file.filename(), prettyJson(sceneToJson(scene, scene.folder)));
+  });
   return scene;
 }
 

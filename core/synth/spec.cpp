@@ -6,7 +6,9 @@
 #include "core/base/atomic_file.h"
 #include "core/base/json_text.h"
 #include "core/base/level_range.h"
+#include "core/base/limits.h"
 #include "core/base/number_text.h"
+#include "core/scene/bounded_json.h"
 #include "core/scene/scene_json.h"
 #include "core/scene/scene_reader.h"
 #include "core/synth/synth.h"
@@ -58,9 +60,9 @@ std::vector<Eigen::Isometry3d> readPath(const JsonNode& node) {
     for (std::size_t i = 0; i < list->size(); ++i) poses.push_back(readPoseJson(list->at(i)));
   } else {
     const JsonNode orbit = node.at("orbit");
-    const Eigen::Vector3d centre = orbit.at("centre").vector3();
-    const double radius = inRange(orbit.at("radius"), 1e-9, 1e9), height = orbit.at("height").number();
-    const double from = orbit.at("from").number(), to = orbit.at("to").number();
+    const Eigen::Vector3d centre = lengths3(orbit.at("centre"));
+    const double radius = inRange(orbit.at("radius"), 1e-9, 1e9), height = bounded(orbit.at("height"), kFarthest);
+    const double from = bounded(orbit.at("from"), kLargestFactor), to = bounded(orbit.at("to"), kLargestFactor);
     const int count = countOf(orbit.at("count"), 1, 100000);
     for (int i = 0; i < count; ++i) {
       const double a = count == 1 ? from : from + (to - from) * i / (count - 1);
@@ -73,11 +75,11 @@ std::vector<Eigen::Isometry3d> readPath(const JsonNode& node) {
 
 std::vector<double> readSteps(const JsonNode& node) {
   if (const auto values = node.find("values")) {
-    const std::vector<double> list = values->numbers();
+    const std::vector<double> list = boundedAll(*values, kFarthest).numbers();
     if (list.empty()) values->fail("is empty");
     return list;
   }
-  const double from = node.at("from").number(), to = node.at("to").number();
+  const double from = bounded(node.at("from"), kFarthest), to = bounded(node.at("to"), kFarthest);
   const int count = countOf(node.at("count"), 2, 100000);
   std::vector<double> list;
   for (int i = 0; i < count; ++i) list.push_back(from + (to - from) * i / (count - 1));
@@ -116,7 +118,7 @@ Material readMaterial(const JsonNode& render) {
   if (const auto n = render.find("roughness")) material.roughness = inRange(*n, 1e-4, 10);
   if (const auto n = render.find("specular")) material.specular = inRange(*n, 1e-12, 1e12);
   if (const auto n = render.find("diffuse")) {
-    material.diffuse = n->isArray() ? n->vector3() : Eigen::Vector3d::Constant(n->number());
+    material.diffuse = n->isArray() ? boundedAll(*n, kLargestFactor).vector3() : Eigen::Vector3d::Constant(bounded(*n, kLargestFactor));
     if (!(material.diffuse.minCoeff() >= 0)) n->fail("must not be negative");
   }
   return material;
@@ -208,10 +210,12 @@ SynthSpec readSynthSpec(const std::filesystem::path& file) {
   }
   if (const auto path = root.find("path")) {
     const std::vector<Eigen::Isometry3d> poses = readPath(*path);
+    requireWithin(Limit::SynthFrames, double(order.size()) * double(poses.size()), file.string(), path->place());
     for (const std::string& surface : order)
       for (const Eigen::Isometry3d& pose : poses) addFrame(scene, camera, pose, surface);
   } else {
     const JsonNode frames = root.at("frames");
+    requireWithin(Limit::SynthFrames, double(order.size()) * double(frames.size()), file.string(), frames.place());
     std::set<std::string> frameIds;
     for (const std::string& stepped : order)
       for (std::size_t i = 0; i < frames.size(); ++i) {

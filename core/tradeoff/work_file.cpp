@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/atomic_file.h"
+#include "core/base/json_text.h"
 
 namespace glint {
 namespace {
@@ -14,7 +15,7 @@ using Json = nlohmann::ordered_json;
 constexpr int kVersion = 1;
 
 Json number(double v) { return std::isfinite(v) ? Json(v) : Json(); }
-double number(const Json& j) { return j.is_null() ? std::nan("") : j.get<double>(); }
+double number(const JsonNode& j) { return j.isNull() ? std::nan("") : j.number(); }
 
 // Settings are not stored: the id of a trial holds them, and the caller puts them back.
 Json toJson(const TrialResult& r) {
@@ -27,17 +28,17 @@ Json toJson(const TradeoffPoint& p) {
           {"fit_us", number(p.fitUs)}, {"peak_mb", number(p.peakMb)}};
 }
 
-void fromJson(const Json& j, TrialResult& r) {
+void fromJson(const JsonNode& j, TrialResult& r) {
   r.errorPct = number(j.at("error_pct"));
   r.us = number(j.at("us"));
-  r.predictions = j.at("predictions").get<std::string>();
+  r.predictions = j.at("predictions").text();
 }
-void fromJson(const Json& j, TradeoffPoint& p) {
-  p.frames = j.at("frames");
-  p.predicted = j.at("predicted");
-  p.matched = j.at("matched");
-  p.missed = j.at("missed");
-  p.spurious = j.at("spurious");
+void fromJson(const JsonNode& j, TradeoffPoint& p) {
+  p.frames = j.at("frames").integer();
+  p.predicted = j.at("predicted").integer();
+  p.matched = j.at("matched").integer();
+  p.missed = j.at("missed").integer();
+  p.spurious = j.at("spurious").integer();
   p.contourErrorPct = number(j.at("contour_error_pct"));
   p.iou = number(j.at("iou"));
   p.coverage = number(j.at("coverage"));
@@ -60,18 +61,17 @@ Json outcomes(const std::map<std::string, Outcome<T>>& all) {
 }
 
 template <class T>
-void readOutcomes(const Json& j, std::map<std::string, Outcome<T>>& all) {
-  for (const auto& item : j.items()) {
-    if (item.value().contains("reason")) {
-      const int reason = item.value().at("reason");
-      if (reason < 0 || reason > static_cast<int>(Reason::Cancelled)) throw std::out_of_range("reason");
-      all.insert_or_assign(item.key(),
-                           Failure{static_cast<Reason>(reason), item.value().at("detail").template get<std::string>()});
+void readOutcomes(const JsonNode& j, std::map<std::string, Outcome<T>>& all) {
+  for (const std::string& id : j.keys()) {
+    const JsonNode item = j.at(id);
+    if (const auto reason = item.find("reason")) {
+      if (reason->integer() < 0 || reason->integer() > static_cast<int>(Reason::Cancelled)) reason->fail("there is no such reason");
+      all.insert_or_assign(id, Failure{static_cast<Reason>(reason->integer()), item.at("detail").text()});
       continue;
     }
     T value{};
-    fromJson(item.value(), value);
-    all.insert_or_assign(item.key(), std::move(value));
+    fromJson(item, value);
+    all.insert_or_assign(id, std::move(value));
   }
 }
 
@@ -81,8 +81,8 @@ WorkFile::WorkFile(std::filesystem::path file, std::string key) : file_(std::mov
   std::error_code error;
   if (file_.empty() || !std::filesystem::is_regular_file(file_, error)) return;
   try {
-    const Json j = Json::parse(readFile(file_, Limit::JsonMegabytes));
-    if (j.at("glint_tradeoff_work") != kVersion || j.at("key") != key_) return;
+    const JsonNode j = JsonNode::parse(readFile(file_, Limit::JsonMegabytes), file_.string());
+    if (j.at("glint_tradeoff_work").integer() != kVersion || j.at("key").text() != key_) return;
     readOutcomes(j.at("coarse"), coarse_);
     readOutcomes(j.at("full"), full_);
   } catch (const std::exception&) {

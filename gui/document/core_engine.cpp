@@ -13,6 +13,7 @@ Engine coreEngine() {
   engine.open = openInput;
   engine.save = saveSession;
   engine.autosave = autosaveSession;
+  engine.recoveryText = recoveryText;
   engine.inspect = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn& progress,
                       const Inspection* previous) { return inspect(std::move(scene), request, progress, previous); };
   engine.inspectOneFrame = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,

@@ -76,6 +76,8 @@ struct Engine {
   /// Writes what is needed to go on after a crash, quickly: no hashes, no results. `open` reads it as `Opened::unsaved`.
   /// InputError.
   std::function<void(const Opened&, const std::string& path)> autosave;
+  /// What `autosave` writes there.
+  std::function<std::string(const Opened&, const std::string& path)> recoveryText;
 };
 
 /// The engine that the program uses: glint::core.

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/atomic_file.h"
+#include "core/base/temporary_path.h"
 #include "core/pipeline/session.h"
 #include "core/scene/mesh_file.h"
 #include "gui/base/text.h"
@@ -29,7 +31,7 @@ fs::path sessionAt(const fs::path& path) {
   if (fs::exists(path / "scene.json", ignored)) return {};
   std::vector<fs::path> found;
   for (const fs::directory_entry& entry : fs::directory_iterator(path, ignored))
-    if (entry.path().extension() == ".glint") found.push_back(entry.path());
+    if (entry.path().extension() == ".glint" && entry.path().filename().string()[0] != '.') found.push_back(entry.path());
   return found.size() == 1 ? found.front() : fs::path();
 }
 
@@ -68,6 +70,7 @@ Opened openInput(const std::string& path, const Relinked& instead) {
     if (frames < kDefaultTraining) opened.request.train = "first:" + std::to_string(frames);
     return opened;
   }
+  if (!session.empty()) removeAbandonedTemporaries(session.parent_path());  // of a program that was killed while it saved
   // Before it is read: what another program writes meanwhile is then seen as a change.
   const std::string stamp = inside.empty() ? stampOf(exactQString(session.string())) : "";
   Session stored = inside.empty() ? readSession(session) : parseSession(inside, path);
@@ -162,14 +165,16 @@ void saveSession(const Opened& opened, const Inspection* results, const std::str
   writeSession(session, path);
 }
 
-void autosaveSession(const Opened& opened, const std::string& path) {
+std::string recoveryText(const Opened& opened, const std::string& path) {
   Session session;
   session.input = fs::absolute(opened.scene->file).lexically_normal();
   session.allowOutsidePaths = opened.scene->allowOutsidePaths;
   const std::string& of = opened.isSession && !opened.path.empty() ? opened.path : opened.scene->file.string();
   session.recovery = Recovery{fs::absolute(of).lexically_normal(), opened.isSession && !opened.path.empty()};
   addState(session, opened);
-  writeSession(session, path);
+  return sessionText(session, path);
 }
+
+void autosaveSession(const Opened& opened, const std::string& path) { atomicWrite(path, recoveryText(opened, path)); }
 
 }  // namespace glint::gui

@@ -17,5 +17,7 @@ void saveSession(const Opened& opened, const Inspection* results, const std::str
 
 /// As Engine::autosave.
 void autosaveSession(const Opened& opened, const std::string& path);
+/// What `autosaveSession` writes there: paths are relative to the folder of `path`.
+std::string recoveryText(const Opened& opened, const std::string& path);
 
 }  // namespace glint::gui

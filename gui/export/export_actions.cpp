@@ -7,11 +7,11 @@
 #include <QFileInfo>
 #include <QMenu>
 #include <QRegularExpression>
-#include <QSaveFile>
 #include <QSysInfo>
 #include <exception>
 #include <utility>
 
+#include "core/base/atomic_file.h"
 #include "core/evaluate/command_text.h"
 #include "core/evaluate/labels.h"
 #include "core/evaluate/masks.h"
@@ -32,15 +32,7 @@ namespace glint::gui {
 namespace {
 constexpr int kFigureWidth = 1600, kFigureHeight = 1000;
 
-[[noreturn]] void cannotWrite(const QString& file, const QString& why) {
-  throw InputError(file.toStdString(), "", "cannot be written: " + why.toStdString());
-}
-
-void writeText(const QString& file, const std::string& text) {
-  QSaveFile out(file);
-  if (!out.open(QIODevice::WriteOnly) || out.write(text.data(), qint64(text.size())) != qint64(text.size()) || !out.commit())
-    cannotWrite(file, out.errorString());
-}
+void writeText(const QString& file, const std::string& text) { atomicWrite(file.toStdString(), text); }
 
 std::vector<int> allFrames(const Inspection& inspection) {
   std::vector<int> frames(inspection.scene->frames.size());

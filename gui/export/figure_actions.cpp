@@ -13,12 +13,12 @@
 #include <QPainter>
 #include <QPdfWriter>
 #include <QRegularExpression>
-#include <QSaveFile>
 #include <QSvgGenerator>
 #include <algorithm>
 #include <utility>
 #include <vector>
 
+#include "core/base/atomic_file.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/to_qimage.h"
@@ -51,9 +51,7 @@ QColor backgroundOf(const FigureLook& look) {
 }
 
 void writeBytes(const QString& file, const QByteArray& bytes) {
-  QSaveFile out(file);
-  if (!out.open(QIODevice::WriteOnly) || out.write(bytes) != bytes.size() || !out.commit())
-    throw InputError(file.toStdString(), "", "cannot be written: " + out.errorString().toStdString());
+  atomicWrite(file.toStdString(), std::string_view(bytes.constData(), std::size_t(bytes.size())));
 }
 }  // namespace
 

@@ -52,6 +52,15 @@ FrameCanvas::FrameCanvas(QWidget* parent) : QWidget(parent) {
   new FocusFrame(this);
   setAttribute(Qt::WA_OpaquePaintEvent);
   stale_ = new StaleBadge(this, Qt::BottomRightCorner);
+  awaiting_.setSingleShot(true);
+  awaiting_.setInterval(StaleBadge::kAfterMs);
+  connect(&awaiting_, &QTimer::timeout, this, [this] { update(); });
+}
+
+void FrameCanvas::setAwaited(const QString& words) {
+  if (awaited_.isEmpty()) awaiting_.start();  // while one steps on, the first photograph that is late counts
+  awaited_ = words;
+  update();
 }
 
 void FrameCanvas::setPicture(const FramePicture& picture) {
@@ -59,6 +68,8 @@ void FrameCanvas::setPicture(const FramePicture& picture) {
   picture_ = picture;
   photograph_ = picture.shown;
   message_.clear();
+  awaited_.clear();
+  awaiting_.stop();
   if (fitted_ || !sameSize) fit();
   update();
 }
@@ -71,6 +82,8 @@ void FrameCanvas::setPhotograph(const QImage& photograph) {
 
 void FrameCanvas::setMessage(const QString& message) {
   message_ = message;
+  awaited_.clear();
+  awaiting_.stop();
   picture_ = {};
   photograph_ = QImage();
   update();
@@ -145,15 +158,20 @@ void FrameCanvas::paintEvent(QPaintEvent*) {
 }
 
 void FrameCanvas::draw(QPainter& painter) const {
+  const bool late = !awaited_.isEmpty() && !awaiting_.isActive();
   if (photograph_.isNull()) {
     painter.setPen(palette().color(QPalette::WindowText));
-    painter.drawText(rect().adjusted(16, 16, -16, -16), Qt::AlignCenter | Qt::TextWordWrap, message_);
+    painter.drawText(rect().adjusted(16, 16, -16, -16), Qt::AlignCenter | Qt::TextWordWrap, late ? awaited_ : message_);
   } else {
+    constexpr double kFaint = 0.3;
+    painter.setOpacity(late ? kFaint : 1);
     drawPhotograph(painter);
+    painter.setOpacity(1);
+    if (late) drawChip(painter, awaited_, caption_.isEmpty() ? 8 : 16 + painter.fontMetrics().height() + 6);
   }
   drawOverlay(painter);
   if (!photograph_.isNull() && !scale_.empty()) drawScale(painter);
-  if (!caption_.isEmpty()) drawCaption(painter);
+  if (!caption_.isEmpty()) drawChip(painter, caption_, 8);
 }
 
 void FrameCanvas::drawFigure(QPainter& painter, const QRectF& target, const QColor& background) const {
@@ -195,14 +213,14 @@ void FrameCanvas::drawHeld(QPainter& painter) const {
   }
 }
 
-void FrameCanvas::drawCaption(QPainter& painter) const {
-  const QRect chip = QRect({8, 8}, painter.fontMetrics().size(0, caption_) + QSize(14, 6));
+void FrameCanvas::drawChip(QPainter& painter, const QString& text, int top) const {
+  const QRect chip = QRect({8, top}, painter.fontMetrics().size(0, text) + QSize(14, 6));
   painter.setRenderHint(QPainter::Antialiasing);
   painter.setPen(Qt::NoPen);
   painter.setBrush(QColor(0, 0, 0, 170));
   painter.drawRoundedRect(chip, 4, 4);
   painter.setPen(Qt::white);
-  painter.drawText(chip, Qt::AlignCenter, caption_);
+  painter.drawText(chip, Qt::AlignCenter, text);
 }
 
 void FrameCanvas::drawScale(QPainter& painter) const {

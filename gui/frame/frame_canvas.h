@@ -3,6 +3,7 @@
 
 #include <QImage>
 #include <QString>
+#include <QTimer>
 #include <QWidget>
 #include <optional>
 #include <vector>
@@ -36,6 +37,9 @@ class FrameCanvas : public QWidget {
   void setPicture(const FramePicture& picture);  ///< keeps the view where the size stays the same
   void setPhotograph(const QImage& photograph);  ///< a picture without numbers
   void setMessage(const QString& message);       ///< instead of a photograph
+  /// What is drawn is another frame's photograph until the next picture or message: where that takes a moment, it is drawn faint,
+  /// with these words.
+  void setAwaited(const QString& words);
   void setOverlay(viz::FrameOverlay overlay);
   void setStale(bool stale);
   /// Scale bar of false colours in a corner; empty = none.
@@ -55,7 +59,7 @@ class FrameCanvas : public QWidget {
   QPointF widgetFromPixel(const Pixel& pixel) const;
   Pixel pixelFromWidget(const QPointF& position) const;
   bool fitted() const { return fitted_; }  ///< shows the whole photograph
-  double zoom() const { return zoom_; }  ///< logical widget pixels per photograph pixel
+  double zoom() const { return zoom_; }    ///< logical widget pixels per photograph pixel
   Pixel centre() const { return pixelFromWidget(QRectF(rect()).center()); }
   /// The values of pixels are written into them from this zoom on.
   static constexpr double kValuesFromZoom = 44;
@@ -102,13 +106,14 @@ class FrameCanvas : public QWidget {
   void drawHeld(QPainter& painter) const;
   void drawValues(QPainter& painter, const QRect& visible) const;
   void drawScale(QPainter& painter) const;
-  void drawCaption(QPainter& painter) const;
+  void drawChip(QPainter& painter, const QString& text, int top) const;
   void probe(const QPointF& position);
 
   FramePicture picture_;
   QImage photograph_;  ///< what is on screen
   std::vector<viz::ScaleTick> scale_;
-  QString message_, caption_;
+  QString message_, caption_, awaited_;
+  QTimer awaiting_;  ///< runs until awaited_ is shown
   viz::FrameOverlay overlay_;
   double zoom_ = 1;
   QPointF corner_{0, 0};  ///< widget position of the photograph's top-left corner, pixel (-0.5, -0.5)

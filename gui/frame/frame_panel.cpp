@@ -35,7 +35,7 @@ namespace {
 const char* const kModelLayer = "frame/model/";
 // px of height: below, the switches of the overlays are behind one button, so that the photograph keeps its room.
 constexpr int kRoomForOverlays = 440, kRoomBesidePair = 560;
-}
+}  // namespace
 
 FramePanel::FramePanel(Document& document, QWidget* parent) : QWidget(parent), document_(document) {
   auto* column = new QVBoxLayout(this);
@@ -80,18 +80,18 @@ FramePanel::FramePanel(Document& document, QWidget* parent) : QWidget(parent), d
   }
   connect(&probe_, &PixelProbeWorker::probed, this, &FramePanel::probed);
   connect(&loader_, &PhotoLoader::loaded, this, [this](int frame, const FramePicture& picture) {
-    if (frame == document_.selection().frame) canvas_->setPicture(picture);
+    if (frame == document_.selection().frame) canvas_->setPicture(picture), pictured_[0] = frame;
   });
   connect(&loader_, &PhotoLoader::failed, this, [this](int frame, const QString& reason) {
     emit photographFailed(frame, reason);
-    if (frame == document_.selection().frame) canvas_->setMessage(problemText(frame, reason));
+    if (frame == document_.selection().frame) canvas_->setMessage(problemText(frame, reason)), pictured_[0] = -1;
   });
   connect(&secondLoader_, &PhotoLoader::loaded, this, [this](int frame, const FramePicture& picture) {
-    if (frame == pair_->secondFrame()) second_->setPicture(picture);
+    if (frame == pair_->secondFrame()) second_->setPicture(picture), pictured_[1] = frame;
   });
   connect(&secondLoader_, &PhotoLoader::failed, this, [this](int frame, const QString& reason) {
     emit photographFailed(frame, reason);
-    if (frame == pair_->secondFrame()) second_->setMessage(problemText(frame, reason));
+    if (frame == pair_->secondFrame()) second_->setMessage(problemText(frame, reason)), pictured_[1] = -1;
   });
   connectDocument();
   showScene();
@@ -105,8 +105,7 @@ void FramePanel::connectDocument() {
   connect(&document_, &Document::selectionChanged, this, [this] {
     canvas_->setHeld({}, {});
     followHighlight(document_.selection().frame);
-    showTitle();
-    refresh_.start();
+    refresh_.start();  // the heading with the numbers: they are of one frame
   });
   connect(&document_, &Document::layersChanged, this, &FramePanel::showOverlay);
   connect(&document_, &Document::optionsChanged, this, [this] {
@@ -264,6 +263,7 @@ bool FramePanel::busy() const { return refresh_.isActive() || loader_.busy() || 
 void FramePanel::showScene() {
   loader_.setScene(document_.sharedScene());
   secondLoader_.setScene(document_.sharedScene());
+  pictured_ = {-1, -1};
   for (FrameCanvas* canvas : {canvas_, second_}) {
     canvas->setPhotograph(QImage());
     canvas->setHeld({}, {});
@@ -290,7 +290,7 @@ void FramePanel::showTitle() {
     return;
   }
   const int frame = document_.selection().frame;
-  const viz::Colour colours[] = {viz::kTraining, {0.38, 0.38, 0.38}, viz::kFailed};
+  const viz::Colour colours[] = {viz::kTraining, {0.38, 0.38, 0.38}, viz::kExcluded};
   const int role = int(document_.role(frame));
   title_->setText(QStringLiteral("<b>%1</b>").arg(nameText(document_.scene()->frames[std::size_t(frame)].id).toHtmlEscaped()));
   role_->setText(roleName(document_.role(frame)));
@@ -309,8 +309,14 @@ void FramePanel::showFrame() {
     second_->fit();
   }
   if (document_.scene()) {
-    loader_.want(document_.selection().frame);
-    if (two) secondLoader_.want(pair_->secondFrame());
+    const auto want = [this](PhotoLoader& loader, FrameCanvas* canvas, int pictured, int frame) {
+      if (pictured != frame)
+        canvas->setAwaited(
+            tr("the photograph of %1 is being read").arg(toQString(document_.scene()->frames[std::size_t(frame)].id)));
+      loader.want(frame);
+    };
+    want(loader_, canvas_, pictured_[0], document_.selection().frame);
+    if (two) want(secondLoader_, second_, pictured_[1], pair_->secondFrame());
   }
   showOverlay();
 }

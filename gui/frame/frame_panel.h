@@ -4,6 +4,7 @@
 #include <QList>
 #include <QTimer>
 #include <QWidget>
+#include <array>
 #include <map>
 #include <memory>
 #include <string>
@@ -96,14 +97,15 @@ class FramePanel : public QWidget {
   QAction* colourByRole_ = nullptr;
   viz::FrameOverlay shown_, shownSecond_;
   std::size_t captionCount_ = 0;
-  bool failureShown_ = false;  ///< the captions hold the reason of a failure
-  QToolButton* folded_ = nullptr;  ///< the overlays' switches, where there is no room for a row of them
-  bool follows_ = false;       ///< zoomed to the highlight by the user, who has not moved it since
-  int seenFrame_ = -1;         ///< that was selected last
-  bool whatIf_ = false;        ///< the request has a what-if
-  bool fewerLines_ = false;    ///< a what-if was put back: the captions may shrink to what there was to say before it
-  bool zoomedByLook_ = false;  ///< and the user has not moved it since
-  QTimer refresh_;             ///< many selections at once are drawn once
+  bool failureShown_ = false;            ///< the captions hold the reason of a failure
+  QToolButton* folded_ = nullptr;        ///< the overlays' switches, where there is no room for a row of them
+  bool follows_ = false;                 ///< zoomed to the highlight by the user, who has not moved it since
+  int seenFrame_ = -1;                   ///< that was selected last
+  std::array<int, 2> pictured_{-1, -1};  ///< whose photographs the canvases show; -1 = nobody's
+  bool whatIf_ = false;                  ///< the request has a what-if
+  bool fewerLines_ = false;              ///< a what-if was put back: the captions may shrink to what there was to say before it
+  bool zoomedByLook_ = false;            ///< and the user has not moved it since
+  QTimer refresh_;                       ///< many selections at once are drawn once
   int probedFrame_ = -1;
   std::shared_ptr<const viz::WalkStory> walk_;
   int walkStep_ = 0;

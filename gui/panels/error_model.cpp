@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/panels/error_model.h"
 
+#include <QGuiApplication>
+#include <QPalette>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -164,14 +166,18 @@ QVariant ErrorModel::data(const QModelIndex& index, int role) const {
       if (column == Model) return colourSwatch(toQColor(viz::modelColour(row.model)));
       return {};
     case Qt::ForegroundRole:
+      if (row.role == FrameRole::Excluded)  // shown, but nothing of it counts
+        return QGuiApplication::palette().brush(QPalette::Disabled, QPalette::Text);
       if (row.problem && (column == Status || column == ReasonText)) return warningColour();
       return {};
     case Qt::ToolTipRole:
+      if (row.role == FrameRole::Excluded && column != ReasonText && column != Light)
+        return tr("This frame is excluded: it neither trains nor counts in any summary");
       return column == ReasonText ? QVariant(plainTip(row.reason)) : column == Light ? QVariant(plainTip(row.light)) : QVariant();
     case Qt::TextAlignmentRole:
       return int((isNumber(column) ? Qt::AlignRight : Qt::AlignLeft) | Qt::AlignVCenter);
     case kProblemRole:
-      return row.problem;
+      return row.problem && row.role != FrameRole::Excluded;
     case kFrameRoleRole:
       return int(row.role);
     default:

@@ -11,6 +11,8 @@
 #include "gui/base/text.h"
 #include "gui/base/tips.h"
 #include "gui/panels/selection_text.h"
+#include "viz/frame_overlay.h"
+#include "viz/scene_questions.h"
 
 namespace glint::gui {
 
@@ -29,34 +31,46 @@ NumbersPanel::NumbersPanel(Document& document, QWidget* parent) : QTreeWidget(pa
   auto* copyAction = new QAction(tr("Copy"), this);
   connect(copyAction, &QAction::triggered, this, &NumbersPanel::copy);
   addAction(copyAction);
-  connect(&document_, &Document::sceneOpened, this, [this] {
-    pickedLines_.clear();
-    refresh();
-  });
-  connect(&document_, &Document::selectionChanged, this, [this] {
-    pickedLines_.clear();
-    refresh();
-  });
+  for (const auto signal : {&Document::sceneOpened, &Document::selectionChanged})
+    connect(&document_, signal, this, [this] {
+      picked_.reset();
+      refresh();
+    });
   connect(&document_, &Document::inspectionChanged, this, &NumbersPanel::refresh);
 }
 
 void NumbersPanel::showPicked(const viz::Picked& picked) {
-  pickedTitle_ = tr("Picked: %1").arg(toQString(picked.layer));
-  pickedLines_ = toQString(picked.text);
+  picked_ = picked;
+  pickedIn_ = document_.inspection();
   refresh();
+}
+
+void NumbersPanel::addPicked() {
+  const std::shared_ptr<const Inspection> now = document_.inspection();
+  if (pickedIn_.lock() != now && now && picked_->layer == "cameras") {
+    picked_->text = viz::cameraPicked(*now, viz::modelsInOrder(*now), picked_->frame).text;
+    pickedIn_ = now;
+  }
+  const bool earlier = pickedIn_.lock() != now;
+  QTreeWidgetItem* group =
+      addGroup((earlier ? tr("Picked, in earlier results: %1") : tr("Picked: %1")).arg(toQString(picked_->layer)),
+               toQString(picked_->text));
+  for (int i = 0; earlier && i < group->childCount(); ++i)
+    for (int column = 0; column < columnCount(); ++column)
+      group->child(i)->setForeground(column, palette().brush(QPalette::Disabled, QPalette::Text));
 }
 
 void NumbersPanel::refresh() {
   clear();
   header()->setSectionResizeMode(0, QHeaderView::Interactive);  // else every line measures all others again
-  if (!pickedLines_.isEmpty()) addGroup(pickedTitle_, pickedLines_);
+  if (picked_ && !picked_->text.empty()) addPicked();
   if (const std::shared_ptr<const Inspection> inspection = document_.inspection())
     for (const NumberGroup& group : describeSelection(*inspection, document_.selection(), document_.plottedModel()))
       addGroup(group.title, group.lines);
   header()->setSectionResizeMode(0, QHeaderView::ResizeToContents);
 }
 
-void NumbersPanel::addGroup(const QString& title, const QString& lines) {
+QTreeWidgetItem* NumbersPanel::addGroup(const QString& title, const QString& lines) {
   auto* group = new QTreeWidgetItem({title});
   QFont bold = font();
   bold.setBold(true);
@@ -74,6 +88,7 @@ void NumbersPanel::addGroup(const QString& title, const QString& lines) {
   for (QTreeWidgetItem* item : items)
     if (item->text(1).isEmpty()) item->setFirstColumnSpanned(true);
   group->setExpanded(true);
+  return group;
 }
 
 QString NumbersPanel::text() const {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <QTreeWidget>
+#include <memory>
+#include <optional>
 
 #include "gui/document/document.h"
 
@@ -12,7 +14,8 @@ class NumbersPanel : public QTreeWidget {
   Q_OBJECT
  public:
   explicit NumbersPanel(Document& document, QWidget* parent = nullptr);
-  /// Shows the lines "name = value" of a pick above those of the selection, until the selection changes.
+  /// Shows the lines "name = value" of a pick above those of the selection, until the selection changes. When results change, a
+  /// camera's lines follow; of what else was picked the title says that they are of earlier results.
   void showPicked(const viz::Picked& picked);
   QString text() const;
   void copy() const;
@@ -22,10 +25,12 @@ class NumbersPanel : public QTreeWidget {
 
  private:
   void refresh();
-  void addGroup(const QString& title, const QString& lines);
+  void addPicked();
+  QTreeWidgetItem* addGroup(const QString& title, const QString& lines);
 
   Document& document_;
-  QString pickedTitle_, pickedLines_;
+  std::optional<viz::Picked> picked_;
+  std::weak_ptr<const Inspection> pickedIn_;  ///< what its lines are of
 };
 
 }  // namespace glint::gui

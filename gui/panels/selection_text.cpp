@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/diagnostics/conditioning.h"
 #include "core/diagnostics/polar_residual.h"
 #include "core/scene/scene_files.h"
 #include "gui/base/text.h"
@@ -31,6 +32,11 @@ class Lines {
     add(name, parts.join(QStringLiteral("  ")), unit);
   }
   void note(const QString& text) { lines_ << text; }
+  /// With a line below that says what it is: two px of one contour may be two different things.
+  void addWithMeaning(const QString& name, double value, const char* unit, const QString& meaning) {
+    add(name, value, unit);
+    note(QStringLiteral("(%1: %2)").arg(name, meaning));
+  }
   QString text() const { return lines_.join('\n'); }
 
  private:
@@ -119,7 +125,8 @@ NumberGroup fitGroup(const std::string& model, const ModelResult::Fit& f, int fr
     const auto used = std::find(f.fit->frames.begin(), f.fit->frames.end(), frame);
     const auto index = std::size_t(used - f.fit->frames.begin());
     if (used != f.fit->frames.end() && index < f.fit->residualPx.size())
-      lines.add(QObject::tr("residual here"), f.fit->residualPx[index], "px");
+      lines.addWithMeaning(QObject::tr("residual here"), f.fit->residualPx[index], "px",
+                           QString::fromStdString(residualMeaning(*f.fit)));
   }
   return {QObject::tr("Fit: %1").arg(toQString(model)), lines.text()};
 }
@@ -139,8 +146,9 @@ NumberGroup comparison(const FrameComparison& c, int observed) {
       lines.add(QObject::tr("coverage"), p.coverage);
     }
     if (row.metrics) {
-      lines.add(QObject::tr("error"), row.metrics->contourErrorPct, "%");
-      lines.add(QObject::tr("error"), row.metrics->contourErrorPx, "px");
+      lines.addWithMeaning(QObject::tr("error"), row.metrics->contourErrorPct, "%",
+                           QObject::tr("mean distance of the contours, both ways, of the diameter"));
+      lines.add(QObject::tr("mean distance"), row.metrics->contourErrorPx, "px");
       lines.add(QObject::tr("Hausdorff"), row.metrics->hausdorffPx, "px");
       lines.add(QObject::tr("peak offset"), row.metrics->peakOffsetPx, "px");
     }

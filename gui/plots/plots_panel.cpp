@@ -229,7 +229,7 @@ viz::PlotData PlotsPanel::data(const std::string& id) {
     empty.empty = tr("Not asked yet: \"Measure views\" leaves every training frame out once").toStdString();
     return empty;
   }
-  if (!samples_) {
+  if (!samples_ || samples_->frame != s.frame || samples_->model != document_.plottedModel()) {  // those are of another frame
     empty.empty = tr("Reading the frame").toStdString();
     return empty;
   }
@@ -247,11 +247,8 @@ void PlotsPanel::wantSamples() {
 void PlotsPanel::followSelection() {
   const viz::Selection& s = document_.selection();
   if (s.frame != shown_.frame || s.model != shown_.model) wantSamples();
-  if (s.frame != shown_.frame || s.highlight != shown_.highlight) {
-    markDirty({"dial"});
-    if (samples_ && samples_->frame == s.frame) markDirty({"lobe", "limit-angle"});
-  }
-  if (s.model != shown_.model) markDirty({"influence"});
+  if (s.frame != shown_.frame || s.highlight != shown_.highlight) markDirty({"dial", "lobe", "limit-angle"});
+  if (s.model != shown_.model) markDirty({"influence", "lobe", "limit-angle"});
   shown_ = s;
   for (Pane& pane : panes_)
     if (pane.canvas->isVisible() && !pane.dirty) pane.canvas->setSelection(s);

@@ -94,7 +94,8 @@ SceneOptions sceneOptions(const Document& document) {
   if (const auto influence = document.influence();
       influence && !document.influenceStale() && o.colours.by == viz::CameraColours::By::Influence) {
     o.colours.model = document.plottedModel();
-    for (const FrameInfluence& f : influence->frames)
+    const bool probes = !influence->probes.empty();  // else it holds errors, which neither help nor harm
+    for (const FrameInfluence& f : probes ? influence->frames : std::vector<FrameInfluence>{})
       if (const std::optional<double> points = influenceOf(*influence, f.frame, o.colours.model))
         o.colours.influence[f.frame] = *points;
   }

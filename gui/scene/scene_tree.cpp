@@ -82,7 +82,7 @@ SceneTree::SceneTree(Document& document, QWidget* parent)
   head->setSectionResizeMode(SceneTreeModel::Detail, QHeaderView::Interactive);
   head->setSectionResizeMode(SceneTreeModel::Effect, QHeaderView::Interactive);
   head->resizeSection(SceneTreeModel::Detail, fontMetrics().horizontalAdvance(tr("excluded")) + 19);
-  head->resizeSection(SceneTreeModel::Effect, fontMetrics().horizontalAdvance(tr("Helps, %")) + 14);
+  head->resizeSection(SceneTreeModel::Effect, fontMetrics().horizontalAdvance(tr("Helps, points")) + 14);
   tree_->sortByColumn(SceneTreeModel::Name, Qt::AscendingOrder);
   column->addWidget(tree_, 1);
 

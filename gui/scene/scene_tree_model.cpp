@@ -23,8 +23,8 @@ using Kind = SceneObject::Kind;
 
 namespace {
 constexpr int kSurfaces = 0, kLights = 1, kModels = 2, kCameras = 3;  // place among the groups
-constexpr quintptr kGroupId = 0, kObjectId = 1;        // of an object: kObjectId + its group
-constexpr quintptr kHighlightId = 100;                 // of a highlight: kHighlightId + its camera
+constexpr quintptr kGroupId = 0, kObjectId = 1;                       // of an object: kObjectId + its group
+constexpr quintptr kHighlightId = 100;                                // of a highlight: kHighlightId + its camera
 
 std::string surfaceKeyOf(const Frame& frame) { return frame.surface.empty() ? viz::HiddenObjects::kDepthMaps : frame.surface; }
 
@@ -250,7 +250,9 @@ void SceneTreeModel::refreshEffects() {
     for (const FrameInfluence& f : influence->frames)
       if (const std::optional<double> points = influenceOf(*influence, f.frame, document_.plottedModel()))
         effects[f.frame] = *points;
-  if (effects == effects_) return;
+  const bool errors = influence && influence->probes.empty();
+  if (effects == effects_ && errors == effectsAreErrors_) return;
+  effectsAreErrors_ = errors;
   effects_ = std::move(effects);
   mostEffect_ = 0;
   for (const auto& [frame, points] : effects_) mostEffect_ = std::max(mostEffect_, std::abs(points));
@@ -457,7 +459,7 @@ QVariant SceneTreeModel::objectData(const SceneObject& o, const Group& group, in
         // Two digits of the largest, so that the column lines up and differences show.
         const int decimals = mostEffect_ > 0 ? std::clamp(1 - int(std::floor(std::log10(mostEffect_))), 0, 6) : 0;
         const QString text = QString::number(points, 'f', decimals);
-        return points > 0 ? QLatin1Char('+') + text : text;
+        return points > 0 && !effectsAreErrors_ ? QLatin1Char('+') + text : text;
       }
       if (o.kind == Kind::Camera) return nameText(document_.scene()->frames[std::size_t(o.frame)].id);
       if (o.kind == Kind::Highlight) return tr("highlight %1").arg(o.highlight);
@@ -501,10 +503,13 @@ QVariant SceneTreeModel::objectData(const SceneObject& o, const Group& group, in
 
 QVariant SceneTreeModel::headerData(int section, Qt::Orientation orientation, int role) const {
   if (orientation != Qt::Horizontal) return {};
-  static const char* const titles[] = {QT_TR_NOOP("Object"), QT_TR_NOOP("What it is"), QT_TR_NOOP("Helps, %")};
-  if (role == Qt::DisplayRole) return tr(titles[section]);
+  static const char* const titles[] = {QT_TR_NOOP("Object"), QT_TR_NOOP("What it is"), QT_TR_NOOP("Helps, points")};
+  if (role == Qt::DisplayRole) return section == Effect && effectsAreErrors_ ? tr("Left out, %") : tr(titles[section]);
   if (role == Qt::ToolTipRole && section == Effect)
-    return tr("What each training frame does for %1, %: see the plot Which view matters")
+    return (effectsAreErrors_
+                ? tr("Error of %1 on each training frame, predicted from the others, %: see the plot Which view matters")
+                : tr("What each training frame does for %1: by how many percentage points the error of the held-out frames grows "
+                     "without it. See the plot Which view matters"))
         .arg(toQString(document_.plottedModel()));
   return {};
 }

@@ -102,7 +102,8 @@ class SceneTreeModel : public QAbstractItemModel {
   std::vector<int> excluded_;
   std::array<bool, kGroups> layersShown_{};
   QStringList details_;            ///< of lights and models
-  std::map<int, double> effects_;  ///< what a training frame does, percentage points, by frame; empty = not measured
+  std::map<int, double> effects_;  ///< what a training frame does, by frame; empty = not measured
+  bool effectsAreErrors_ = false;  ///< %, without held-out frames; else percentage points
   double mostEffect_ = 0;
   int view_ = 0;
 };

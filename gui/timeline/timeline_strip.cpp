@@ -6,7 +6,6 @@
 #include <QMenu>
 #include <QMouseEvent>
 #include <QPainter>
-#include <QPainterPath>
 #include <QToolTip>
 #include <QWheelEvent>
 #include <algorithm>
@@ -243,69 +242,6 @@ void TimelineStrip::paintThumbnails(QPainter& painter) {
   thumbnails_.want(wanted, int(std::ceil(row.height() * devicePixelRatioF())));
 }
 
-void TimelineStrip::paintErrors(QPainter& painter) {
-  const QRectF c = chart();
-  painter.setPen(QPen(palette().color(QPalette::Mid), 1, Qt::DotLine));
-  painter.drawLine(c.topLeft(), c.topRight());
-  painter.setPen(palette().color(QPalette::Mid));
-  painter.drawLine(c.bottomLeft(), c.bottomRight());
-  if (data_.series.empty()) return;
-  painter.setPen(palette().color(QPalette::PlaceholderText));
-  painter.drawText(QRectF(0, c.top() - 7, kLeft - 5, 14), Qt::AlignRight | Qt::AlignVCenter,
-                   numberText(axis_.highPct) + QStringLiteral(" %"));
-  if (c.height() > 22)
-    painter.drawText(QRectF(0, c.bottom() - 13, kLeft - 5, 14), Qt::AlignRight | Qt::AlignVCenter,
-                     axis_.logarithmic ? numberText(axis_.lowPct) + QStringLiteral(" %") : QStringLiteral("0"));
-  if (axis_.logarithmic && c.height() > 36)
-    painter.drawText(QRectF(0, c.center().y() - 7, kLeft - 5, 14), Qt::AlignRight | Qt::AlignVCenter, tr("log"));
-  painter.setRenderHint(QPainter::Antialiasing);
-  painter.setClipRect(c.adjusted(0, -2, 0, 1));
-  const int columns = int(std::min(inView_, c.width()));
-  const bool perFrame = columns >= int(inView_);
-  for (const viz::TimelineData::Series& series : data_.series) {
-    if (bars_ && series.model != plotted_) continue;
-    QColor colour = toQColor(viz::modelColour(series.model));
-    if (document_.stale()) colour.setAlpha(90);
-    std::vector<std::optional<double>> shown = series.errorPct;
-    for (const int frame : document_.request().excluded)
-      if (frame >= 0 && frame < int(shown.size())) shown[std::size_t(frame)].reset();
-    const auto yOf = [&](double pct) { return c.bottom() - std::max(1.0, c.height() * axis_.place(pct)); };
-    // Per frame where there is room, else the largest error of each screen column.
-    const int from = perFrame ? 0 : int(first_), count = perFrame ? int(shown.size()) : columns;
-    if (!perFrame) shown = viz::columnMaxima(shown, first_, first_ + inView_, columns);
-    const auto xOf = [&](int i) { return perFrame ? frameX(i + 0.5) : frameX(from + (i + 0.5) * inView_ / columns); };
-    if (bars_) {
-      const double slot = c.width() / (perFrame ? inView_ : columns), wide = std::clamp(slot - 2, std::min(1.0, slot), 14.0);
-      for (int i = 0; i < count; ++i) {
-        const std::optional<double>& pct = shown[std::size_t(i)];
-        if (pct) painter.fillRect(QRectF(xOf(i) - wide / 2, yOf(*pct), wide, c.bottom() - yOf(*pct)), colour);
-        if (!pct && perFrame && !series.reason[std::size_t(i)].empty() && document_.role(i) != FrameRole::Excluded && slot > 8) {
-          painter.setPen(warningColour());
-          painter.drawText(QRectF(xOf(i) - 10, c.bottom() - 15, 20, 14), Qt::AlignCenter, QStringLiteral("?"));
-        }
-      }
-      continue;
-    }
-    QPainterPath path;
-    bool down = false;
-    for (int i = 0; i < count; ++i) {
-      const std::optional<double>& pct = shown[std::size_t(i)];
-      if (!pct) {
-        down = false;
-        continue;
-      }
-      const QPointF at(xOf(i), yOf(*pct));
-      if (down)
-        path.lineTo(at);
-      else
-        path.moveTo(at - QPointF(1, 0)), path.lineTo(at + QPointF(1, 0));  // a lone frame is seen too
-      down = true;
-    }
-    painter.strokePath(path, QPen(colour, series.model == document_.selection().model ? 2.4 : 1.2));
-  }
-  painter.setClipping(false);
-}
-
 void TimelineStrip::paintRows(QPainter& painter) {
   painter.setRenderHint(QPainter::Antialiasing, false);
   const double rowHeight = lightRowHeight();
@@ -359,7 +295,7 @@ void TimelineStrip::paintRows(QPainter& painter) {
       else
         painter.drawPoint(mark);
     } else {
-      painter.setPen(QPen(errorColour(), 1.5));
+      painter.setPen(QPen(toQColor(viz::kExcluded).lighter(130), 1.5));
       painter.drawLine(mark - QPointF(r, 4), mark + QPointF(r, 4));
       painter.drawLine(mark + QPointF(-r, 4), mark + QPointF(r, -4));
     }
@@ -519,7 +455,10 @@ QString TimelineStrip::toolTip(int frame) const {
       if (viz::isLit(viz::lightState(row, *document_.scene(), document_.request().whatIf, frame))) on.push_back(row.light);
     text += tr("\nlights on: %1").arg(on.empty() ? tr("none") : joined(on));
   }
+  const bool excluded = document_.role(frame) == FrameRole::Excluded;
+  if (excluded && !data_.series.empty()) text += tr("\nnot evaluated");
   for (const viz::TimelineData::Series& series : data_.series) {
+    if (excluded) break;
     const std::optional<double>& pct = series.errorPct[std::size_t(frame)];
     text += QStringLiteral("\n%1: ").arg(toQString(series.model)) +
             (pct ? numberText(*pct, 3) + QStringLiteral(" %") : toQString(series.reason[std::size_t(frame)]));

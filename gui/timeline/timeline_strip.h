@@ -13,18 +13,19 @@ class QPainter;
 
 namespace glint::gui {
 
-/// Strip of all frames, from top to bottom: thumbnails, errors (thin lines of all models, or bars of the selected one), lights on
-/// and off, roles by colour and shape (training: filled square, held out: ring, excluded: cross), numbers. Click and drag select;
-/// a click on a role's mark gives the frame the next role, one on a light switches it there; the context menu has them all; the
-/// wheel zooms, with Shift it scrolls; Left and Right step.
+/// Strip of all frames, from top to bottom: thumbnails, crosses where a model missed a highlight, errors (thin lines of all
+/// models, or bars of the selected one), lights on and off, roles by colour and shape (training: filled square, held out: ring,
+/// excluded: cross), numbers. Click and drag select; a click on a role's mark gives the frame the next role, one on a light
+/// switches it there; the context menu has them all; the wheel zooms, with Shift it scrolls; Left and Right step.
 ///
 /// What does not depend on the selected frame is painted once and kept, so that scrubbing over many frames draws a cursor only.
 class TimelineStrip : public QWidget {
   Q_OBJECT
  public:
   explicit TimelineStrip(Document& document, QWidget* parent = nullptr);
-  QRectF cell(int frame) const;                ///< in widget coordinates, from the thumbnails to the errors
-  QRectF roleMark(int frame) const;            ///< where a click changes the role
+  QRectF cell(int frame) const;                  ///< in widget coordinates, from the thumbnails to the errors
+  QRectF roleMark(int frame) const;              ///< where a click changes the role
+  QRectF missedRow() const;                      ///< above the errors: frames where a model missed a highlight; empty without any
   QRectF lightMark(int light, int frame) const;  ///< where a click switches that light of lights()
   const std::vector<viz::LightRow>& lights() const { return data_.lights; }
   int frameAt(const QPointF& position) const;  ///< -1 outside
@@ -70,11 +71,13 @@ class TimelineStrip : public QWidget {
   void paintBackground();
   void paintThumbnails(QPainter& painter);
   void paintErrors(QPainter& painter);
+  void paintMissed(QPainter& painter);
   void paintRows(QPainter& painter);
   void paintUnreadable(QPainter& painter);
   double frameX(double frame) const;
   QRectF thumbnailRow() const;
   QRectF chart() const;
+  bool marksMissed(const viz::TimelineData::Series& series) const;
   double lightRowHeight() const;
   QString toolTip(int frame) const;
   QString lightTip(int row, int frame) const;  ///< frame -1: of the row

@@ -8,6 +8,7 @@
 #include <exception>
 #include <utility>
 
+#include "core/base/temporary_path.h"
 #include "core/pipeline/session.h"
 #include "gui/base/text.h"
 
@@ -15,6 +16,18 @@ namespace glint::gui {
 
 namespace {
 QString lockOf(const QString& file) { return file + QStringLiteral(".lock"); }
+
+/// What killed programs left that nobody can recover: a half-written file, the lock of a program that had nothing unsaved.
+void removeAbandoned(const QString& folder) {
+  removeAbandonedTemporaries(folder.toStdString());
+  for (const QFileInfo& info : QDir(folder).entryInfoList({lockOf(QStringLiteral("*.glint"))}, QDir::Files)) {
+    const QString file = info.absoluteFilePath();
+    if (QFile::exists(info.absoluteDir().filePath(info.completeBaseName()))) continue;
+    QLockFile lock(file);
+    lock.setStaleLockTime(0);
+    if (lock.tryLock(0)) lock.unlock();  // which removes it
+  }
+}
 }  // namespace
 
 Autosave::Autosave(const Engine& engine, Document& document, std::function<Opened()> snapshot, const QString& folder,
@@ -26,6 +39,7 @@ Autosave::Autosave(const Engine& engine, Document& document, std::function<Opene
       folder_(folder),
       worker_(new QObject) {
   QDir().mkpath(folder_);
+  removeAbandoned(folder_);
   file_ = QDir(folder_).filePath(QUuid::createUuid().toString(QUuid::WithoutBraces) + QStringLiteral(".glint"));
   lock_ = std::make_unique<QLockFile>(lockOf(file_));
   lock_->setStaleLockTime(0);  // held for as long as the program runs

@@ -3,13 +3,13 @@
 
 #include <QCoreApplication>
 #include <QPixmap>
-#include <QSaveFile>
 #include <QTimer>
 #include <cstdio>
+#include <exception>
 #include <utility>
 
-#include "core/base/outcome.h"
 #include "gui/base/text.h"
+#include "gui/base/write_png.h"
 #include "gui/window/main_window.h"
 
 namespace glint::gui {
@@ -36,10 +36,11 @@ void Screenshot::look() {
 }
 
 void Screenshot::write() {
-  QSaveFile out(file_);
-  if (!out.open(QIODevice::WriteOnly) || !window_.picture().save(&out, "PNG") || !out.commit())
-    return fail(toQString(
-        InputError(file_.toStdString(), "--screenshot", "cannot be written: " + out.errorString().toStdString()).what()));
+  try {
+    writePng(window_.picture().toImage(), file_);
+  } catch (const std::exception& e) {
+    return fail(toQString(e.what()));
+  }
   QCoreApplication::exit(0);
 }
 

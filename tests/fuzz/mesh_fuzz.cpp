@@ -1,26 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// libFuzzer's entry for one reader of meshes. A finding is a crash, a sanitizer's report, an exception other than InputError, or
-// a mesh that breaks its promises.
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-
+// The readers of meshes: a mesh that keeps its promises, or an InputError.
 #include "core/base/outcome.h"
 #include "io/mesh_reader.h"
+#include "tests/fuzz/readers.h"
 #include "tests/io/mesh_texts.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+namespace glint::fuzz {
+namespace {
+
+template <class Parse>
+bool feed(const Parse& parse, const std::string& file) {
   try {
-#if defined(GLINT_FUZZ_ply)
-    const glint::MeshContent mesh = glint::parsePly(bytes, "m.ply");
-#elif defined(GLINT_FUZZ_obj)
-    const glint::MeshContent mesh = glint::parseObj(bytes, "m.obj");
-#else
-    const glint::MeshContent mesh = glint::parseMesh(bytes, "m.stl");
-#endif
-    if (!glint::testing_support::brokenPromise(mesh).empty()) std::abort();
-  } catch (const glint::InputError&) {
+    const MeshContent mesh = parse();
+    if (const std::string broken = testing_support::brokenPromise(mesh); !broken.empty()) throw Finding{broken};
+    return true;
+  } catch (const InputError& e) {
+    checkRefusal(e, file);
+    return false;
   }
-  return 0;
 }
+
+}  // namespace
+
+bool feedPly(const std::string& bytes) {
+  return feed([&] { return parsePly(bytes, "m.ply"); }, "m.ply");
+}
+bool feedObj(const std::string& bytes) {
+  return feed([&] { return parseObj(bytes, "m.obj"); }, "m.obj");
+}
+bool feedStl(const std::string& bytes) {
+  return feed([&] { return parseMesh(bytes, "m.stl"); }, "m.stl");
+}
+
+}  // namespace glint::fuzz

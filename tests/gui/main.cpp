@@ -11,6 +11,10 @@
 #include "gui/base/theme.h"
 #include "tests/gui/fixture.h"
 
+namespace glint::gui {
+QObject* makeTruthTest();
+}
+
 int main(int argc, char** argv) {
   using namespace glint::gui;
   static const TestClass classes[] = {
@@ -30,6 +34,7 @@ int main(int argc, char** argv) {
       {"unreadable", makeUnreadableTest},  {"relinked", makeRelinkedTest},
       {"what_if", makeWhatIfTest},         {"turns", makeTurnsTest},
       {"window_size", makeWindowSizeTest}, {"camera_picking", makeCameraPickingTest},
+      {"truth", makeTruthTest},
       {"save", makeSaveTest},              {"hostile_names", makeHostileNamesTest},
       {"typing", makeTypingTest},
   };

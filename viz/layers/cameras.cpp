@@ -11,6 +11,7 @@
 #include "viz/frame_overlay.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
+#include "viz/missed.h"
 #include "viz/scene_questions.h"
 
 namespace glint::viz {
@@ -24,7 +25,9 @@ std::string cameraText(const Inspection& inspection, const std::vector<std::stri
   text += line("axis", Eigen::Vector3d(frame.camera.camFromWorld.linear().row(2).transpose()));
   for (const std::string& model : models) {
     const FrameScore score = frameScore(inspection.models.at(model), index);
-    if (score.errorPct) {
+    if (score.missed > 0) {
+      text += line(model, missedText(score));
+    } else if (score.errorPct) {
       text += line(model + " contour error", *score.errorPct, "%");
     } else if (!score.reason.empty()) {
       text += line(model, score.reason);

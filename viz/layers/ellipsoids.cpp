@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
+#include "core/diagnostics/conditioning.h"
 #include "viz/annotations.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
@@ -13,7 +14,8 @@ std::string fitText(const ModelFit& fit) {
   std::string text = line("model", fit.model) + line("light", fit.light) + line("solver", fit.solver) +
                      line("gap ratio", fit.gapRatio) + line("condition", fit.condition);
   if (!fit.residualPx.empty())
-    text += line("worst training residual", *std::max_element(fit.residualPx.begin(), fit.residualPx.end()), "px");
+    text += line("worst training residual", *std::max_element(fit.residualPx.begin(), fit.residualPx.end()), "px") +
+            "(residual: " + residualMeaning(fit) + ")\n";
   return text;
 }
 

@@ -11,7 +11,12 @@ namespace glint::viz {
 LayerContent surfaceLayer(const LayerInput& in) {
   LayerContent content;
   if (!in.surface) {
-    content.notes.push_back("surface: " + (in.surfaceProblem.empty() ? "none" : in.surfaceProblem));
+    // Before there are results a surface that is read from a file is still on its way: that is no failure.
+    const bool loading = !in.inspection->surfaces && in.inspection->evidence.empty();
+    if (loading)
+      content.remarks.push_back("surface: loading\u2026");
+    else
+      content.notes.push_back("surface: " + (in.surfaceProblem.empty() ? "none" : in.surfaceProblem));
     return content;
   }
   if (in.hidden.hidesSurface(in.surfaceKey)) return content;

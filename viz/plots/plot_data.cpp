@@ -59,7 +59,7 @@ std::vector<PlotSample> selectedSamples(const PlotData& plot, const Selection& s
     for (int p = 0; p < int(series.points.size()); ++p) {
       const PlotPoint& point = series.points[std::size_t(p)];
       const PlotTarget& t = point.target;
-      if (!std::isfinite(point.y) || t.setting >= 0 || !fits(t, selection)) continue;
+      if ((!std::isfinite(point.y) && !point.noValue) || t.setting >= 0 || !fits(t, selection)) continue;
       if (t.direction) {
         if (!selection.direction) continue;
         const double d = apart(*t.direction, *selection.direction);
@@ -100,6 +100,7 @@ PlotRange rangeOf(const PlotData& plot) {
   };
   for (const PlotSeries& series : plot.series)
     for (const PlotPoint& p : series.points) {
+      if (p.noValue) takeX(p.x);
       if (!std::isfinite(p.y)) continue;
       const double half = series.shape == PlotShape::Bars ? 0.5 * series.barWidth : 0;
       takeX(p.x - half);

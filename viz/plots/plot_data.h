@@ -22,7 +22,8 @@ struct PlotTarget {
 };
 
 struct PlotPoint {
-  double x = 0, y = 0;  ///< in the axes' units, also where an axis is logarithmic; y NaN = a gap in the line
+  double x = 0, y = 0;   ///< in the axes' units, also where an axis is logarithmic; y NaN = a gap in the line
+  bool noValue = false;  ///< y is NaN, and that is to be seen: a cross at the top of the plot, see PlotData::noValue
   std::optional<std::pair<double, double>> band;  ///< lower and upper end of the error bar
   std::string label;                              ///< lines for a tool tip
   PlotTarget target;
@@ -52,10 +53,11 @@ struct PlotAxis {
   std::vector<std::pair<double, std::string>> names{};  ///< instead of numbers: (position, text)
 };
 
-/// A range of x that is tinted over the whole height: the training frames.
+/// A range of x that is tinted over the whole height: the training frames, the excluded ones.
 struct PlotShade {
   double from = 0, to = 0;
   Colour colour{};
+  std::string name{};  ///< for the legend, which says the same name once; "" = not there
 };
 
 /// One plot: everything that is drawn and written, without how. Plain data.
@@ -68,6 +70,7 @@ struct PlotData {
   PlotAxis x, y;
   std::vector<PlotSeries> series;
   std::vector<PlotShade> shades;
+  std::string noValue;  ///< what the crosses at the top stand for, for the legend: "missed highlight"
 };
 
 /// A sample: which series, which point.

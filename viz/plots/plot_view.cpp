@@ -27,13 +27,13 @@
 #include <vector>
 
 #include "viz/plots/painting.h"
+#include "viz/plots/plot_header.h"
 
 namespace glint::viz {
 namespace {
 
-constexpr double kFont = 12, kSmallFont = 11;        // screen px
-constexpr double kLine = 18;                         // height of a line of the header, screen px
-constexpr double kLeastPlot = 100, kLeastDial = 90;  // height that the legend leaves to a plot with its axes, screen px
+constexpr double kFont = 12, kSmallFont = 11;  // screen px
+constexpr double kCross = 3.5, kCrossRow = 9;  // half size of a cross at the top, height of a series' row of them; screen px
 constexpr Colour kHalo{0.12, 0.13, 0.15};
 // A dial's circle of zero and how far the largest residual goes from it, in radii of the dial.
 constexpr double kZeroRadius = 0.58, kReachOfDial = 0.36;
@@ -66,6 +66,7 @@ struct PlotView::Impl {
   Selection selection;
   std::vector<PlotSample> marked;
   std::optional<PlotSample> hovered;
+  std::vector<int> crossRows;  // of each series: where its crosses stand, counted from the top; -1 without any
   PlotRange whole, shown;
   // Of the last picture, scene px (y up).
   bool painted = false;
@@ -89,6 +90,13 @@ struct PlotView::Impl {
     return {left + (along(plot.x, x) - shown.x0) / (shown.x1 - shown.x0) * (right - left),
             bottom + (along(plot.y, y) - shown.y0) / (shown.y1 - shown.y0) * (top - bottom)};
   }
+  /// The same for a sample; that of one without a value is its cross.
+  Eigen::Vector2d placeOf(int series, const PlotPoint& p) const {
+    if (!p.noValue || plot.dial) return place(p.x, p.y);
+    const int row = std::max(0, crossRows[std::size_t(series)]);
+    return {left + (along(plot.x, p.x) - shown.x0) / (shown.x1 - shown.x0) * (right - left),
+            top - px(0.6 * kCrossRow + row * kCrossRow)};
+  }
   bool inside(const Eigen::Vector2d& p) const {
     constexpr double kSlack = 1;
     return p.allFinite() && (plot.dial || (p.x() >= left - kSlack && p.x() <= right + kSlack && p.y() >= bottom - kSlack &&
@@ -104,6 +112,7 @@ struct PlotView::Impl {
   void paintDial(vtkContext2D* painter);
   void paintBars(vtkContext2D* painter);
   void paintErrorBars(vtkContext2D* painter);
+  void paintCrosses(vtkContext2D* painter);
   void paintMarks(vtkContext2D* painter);
   void ring(vtkContext2D* painter, const PlotSample& sample, double r, const Colour& colour, double width);
 };
@@ -144,6 +153,12 @@ void PlotView::show(const PlotData& plot) {
   if (!keep) d.shown = range;
   d.hovered.reset();
   d.marked = selectedSamples(d.plot, d.selection);
+  d.crossRows.clear();
+  int rows = 0;
+  for (const PlotSeries& series : d.plot.series) {
+    const bool any = std::any_of(series.points.begin(), series.points.end(), [](const PlotPoint& p) { return p.noValue; });
+    d.crossRows.push_back(any ? rows++ : -1);
+  }
   d.rebuild();
 }
 
@@ -252,55 +267,9 @@ void PlotView::Impl::styleAxes() {
   chart->SetHiddenAxisBorder(int(px(10)));
 }
 
-/// Title and legend at the top. Returns their height. In a low picture the legend ends early, with dots.
 double PlotView::Impl::header(vtkContext2D* painter, bool draw) {
-  const double width = actor->GetScene()->GetSceneWidth(), lineHeight = px(kLine), margin = px(8);
-  double y = actor->GetScene()->GetSceneHeight() - 0.5 * lineHeight - px(2), x = margin;
-  setPainterText(painter, px(kFont), text(), true);
-  const auto widthOf = [&](const std::string& s) {
-    float box[4];
-    painter->ComputeStringBounds(s, box);
-    return double(box[2]);
-  };
-  if (draw) painter->DrawString(float(x), float(y), plot.title);
-  x += widthOf(plot.title) + px(18);
-  setPainterText(painter, px(kSmallFont), text());
-  const double lowest = px(plot.dial ? kLeastDial : kLeastPlot) + 0.5 * lineHeight;
-  for (const PlotSeries& series : plot.series) {
-    if (!series.inLegend || isEmpty()) continue;
-    const double swatch = px(18), needed = swatch + px(5) + widthOf(series.name) + px(14);
-    if (x + needed > width - margin && x > margin) {
-      if (y - lineHeight < lowest) {
-        if (draw) painter->DrawString(float(std::min(x, width - margin - widthOf("\u2026"))), float(y), "\u2026");
-        break;
-      }
-      x = margin, y -= lineHeight;
-    }
-    if (draw) {
-      const bool line = series.shape == PlotShape::Line || series.shape == PlotShape::LineAndPoints;
-      for (const bool halo : {true, false}) {
-        if (halo && !series.halo) continue;
-        const Colour& colour = halo ? kHalo : series.colour;
-        const double more = halo ? px(2) : 0;
-        if (line) {
-          setPen(painter->GetPen(), colour, px(std::max(2.0, series.width)) + more);
-          if (!halo) painter->GetPen()->SetLineType(lineType(series.dash));
-          painter->DrawLine(float(x), float(y), float(x + swatch), float(y));
-        } else {
-          setPen(painter->GetPen(), colour, 0);
-          setBrush(painter, colour);
-          const double r = (series.shape == PlotShape::Bars ? px(5) : std::max(px(3), 0.5 * px(series.pointSize))) + 0.5 * more;
-          if (series.shape == PlotShape::Bars)
-            painter->DrawRect(float(x + 0.5 * swatch - r), float(y - r), float(2 * r), float(2 * r));
-          else
-            painter->DrawEllipse(float(x + 0.5 * swatch), float(y), float(r), float(r));
-        }
-      }
-      painter->DrawString(float(x + swatch + px(5)), float(y), series.name);
-    }
-    x += needed;
-  }
-  return actor->GetScene()->GetSceneHeight() - y + 0.5 * lineHeight;
+  return paintPlotHeader(painter, plot, {text(), faded(), style.scale, style.dark}, actor->GetScene()->GetSceneWidth(),
+                         actor->GetScene()->GetSceneHeight(), !isEmpty(), draw);
 }
 
 void PlotView::Impl::layout(vtkContext2D* painter) {
@@ -363,12 +332,13 @@ void PlotView::Impl::paintOver(vtkContext2D* painter) {
     setPen(painter->GetPen(), text(), 0);
     for (const PlotShade& shade : plot.shades) {
       const double a = std::clamp(place(shade.from, 1).x(), left, right), b = std::clamp(place(shade.to, 1).x(), left, right);
-      setBrush(painter, shade.colour, style.dark ? 0.30 : 0.16);
+      setBrush(painter, shade.colour, shadeOpacity(style.dark));
       if (b > a) painter->DrawRect(float(a), float(bottom), float(b - a), float(top - bottom));
     }
     paintBars(painter);
     paintSeries(painter);
     paintErrorBars(painter);
+    paintCrosses(painter);
   }
   paintMarks(painter);
 }
@@ -408,6 +378,14 @@ void PlotView::Impl::paintErrorBars(vtkContext2D* painter) {
       painter->DrawLine(float(low.x()), float(y0), float(low.x()), float(y1));
       for (const double y : {y0, y1}) painter->DrawLine(float(low.x() - cap), float(y), float(low.x() + cap), float(y));
     }
+}
+
+/// Of several models side by side, each in a row of its own: none hides another.
+void PlotView::Impl::paintCrosses(vtkContext2D* painter) {
+  for (int s = 0; s < int(plot.series.size()); ++s)
+    for (const PlotPoint& p : plot.series[std::size_t(s)].points)
+      if (const Eigen::Vector2d at = placeOf(s, p); p.noValue && inside(at))
+        paintCross(painter, at, px(kCross), plot.series[std::size_t(s)].colour, style.dark ? kHalo : Colour{1, 1, 1}, px(1.75));
 }
 
 void PlotView::Impl::paintDial(vtkContext2D* painter) {
@@ -463,8 +441,7 @@ void PlotView::Impl::ring(vtkContext2D* painter, const PlotSample& sample, doubl
   if (sample.series < 0 || sample.series >= int(plot.series.size())) return;
   const PlotSeries& series = plot.series[std::size_t(sample.series)];
   if (sample.point < 0 || sample.point >= int(series.points.size())) return;
-  const PlotPoint& p = series.points[std::size_t(sample.point)];
-  const Eigen::Vector2d at = place(p.x, p.y);
+  const Eigen::Vector2d at = placeOf(sample.series, series.points[std::size_t(sample.point)]);
   if (!inside(at)) return;
   setBrush(painter, colour, 0);
   setPen(painter->GetPen(), style.dark ? kHalo : Colour{1, 1, 1}, px(width + 2));
@@ -495,9 +472,8 @@ std::optional<Eigen::Vector2d> PlotView::positionOf(const PlotSample& sample) co
   const Impl& d = *impl_;
   if (!d.painted || sample.series < 0 || sample.series >= int(d.plot.series.size())) return std::nullopt;
   const std::vector<PlotPoint>& points = d.plot.series[std::size_t(sample.series)].points;
-  if (sample.point < 0 || sample.point >= int(points.size()) || !std::isfinite(points[std::size_t(sample.point)].y))
-    return std::nullopt;
-  const Eigen::Vector2d at = d.place(points[std::size_t(sample.point)].x, points[std::size_t(sample.point)].y);
+  if (sample.point < 0 || sample.point >= int(points.size())) return std::nullopt;
+  const Eigen::Vector2d at = d.placeOf(sample.series, points[std::size_t(sample.point)]);  // not finite for a gap
   if (!d.inside(at)) return std::nullopt;
   return Eigen::Vector2d(at.x(), d.sceneHeight - at.y());
 }
@@ -517,8 +493,7 @@ std::optional<PlotSample> PlotView::at(const Eigen::Vector2d& place, double reac
         if (scene.x() >= x0 && scene.x() < x1 && scene.y() >= d.bottom && scene.y() <= d.top) return PlotSample{s, i};
         continue;
       }
-      if (!std::isfinite(p.y)) continue;
-      const Eigen::Vector2d at = d.place(p.x, p.y);
+      const Eigen::Vector2d at = d.placeOf(s, p);  // not finite for a gap
       if (!d.inside(at)) continue;
       const double distance = (at - scene).norm();
       if (distance < nearest) nearest = distance, best = PlotSample{s, i};

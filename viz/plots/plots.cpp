@@ -3,77 +3,28 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <exception>
 #include <limits>
 
 #include "core/base/angle.h"
-#include "core/base/number_text.h"
 #include "core/pipeline/photograph.h"
+#include "viz/plots/plot_text.h"
 
 namespace glint::viz {
 namespace {
 
 constexpr Colour kFittedLobe{0.25, 0.56, 0.86};  // no model's; readable on white points and on both backgrounds
-constexpr double kSmallestPct = 1e-6;            // what a logarithmic axis shows of an exact scene
 
-template <class... Numbers>
-std::string text(const char* format, Numbers... numbers) {
-  char buffer[400];
-  printText(buffer, sizeof buffer, format, numbers...);
-  return buffer;
-}
-
-PlotData nothing(PlotData plot, std::string why) {
-  plot.empty = std::move(why);
-  return plot;
-}
-
-std::string frameName(const Inspection& inspection, int frame) {
-  if (inspection.scene && frame >= 0 && frame < int(inspection.scene->frames.size()))
-    return inspection.scene->frames[std::size_t(frame)].id;
-  return std::to_string(frame);
-}
-
-/// Error and number of matched highlights of every frame, one pass over the comparisons.
-struct FrameError {
-  double pct = 0;
-  int matched = 0;
-  std::string reason;
-};
-std::vector<FrameError> errorsOf(const ModelResult& result, std::size_t frames) {
-  std::vector<FrameError> errors(frames);
-  for (const FrameComparison& c : result.frames) {
-    if (c.frame < 0 || std::size_t(c.frame) >= frames) continue;
-    FrameError& e = errors[std::size_t(c.frame)];
-    for (const FrameComparison::Row& row : c.rows) {
-      if (row.metrics && std::isfinite(row.metrics->contourErrorPct)) e.pct += row.metrics->contourErrorPct, ++e.matched;
-      if (row.failure && e.reason.empty()) e.reason = row.failure->message();
-    }
-  }
-  for (FrameError& e : errors)
-    if (e.matched) e.pct /= e.matched;
-  return errors;
-}
-
-void shadeTraining(const Inspection& inspection, PlotData& plot) {
-  const int n = int(inspection.evidence.size());
-  if (inspection.train.perSurface) return;  // every frame trains: nothing to tell apart
-  for (int f = 0; f < n; ++f) {
-    if (!inspection.isTraining(f)) continue;
-    if (!plot.shades.empty() && plot.shades.back().to == f - 0.5)
-      plot.shades.back().to = f + 0.5;
-    else
-      plot.shades.push_back({f - 0.5, f + 0.5, kTraining});
-  }
-}
+std::string ofFrame(const FrameSamples& samples) { return samples.frameId.empty() ? "" : ", frame " + samples.frameId; }
 
 }  // namespace
 
 const std::vector<PlotKind>& plotKinds() {
   static const std::vector<PlotKind> all = {
       {"error", "Error per frame",
-       "Contour error of every frame and model; training frames are tinted. A click selects the frame and the model."},
+       "Contour error of every frame and model; training frames and excluded ones are tinted. A cross at the top: a highlight "
+       "was "
+       "missed, so there is no error to show. A click selects the frame and the model."},
       {"dial", "Residual dial",
        "Signed distance from the observed to the predicted contour, px, by direction in the photograph; outside the circle = "
        "predicted too large. Beside the models: the mean of its size |d|. The error table's px is another measure, the mean "
@@ -86,7 +37,7 @@ const std::vector<PlotKind>& plotKinds() {
       {"singular", "Singular values",
        "Of the linear system for Q*: a small last one beside a large second last one is a well-determined ellipsoid."},
       {"influence", "Which view matters",
-       "Every training frame left out once: how much worse the held-out frames are predicted without it. "
+       "Every training frame left out once: by how many percentage points the error of the held-out frames grows without it. "
        "An error counts at most 100 %."},
       {"tradeoff", "Speed and accuracy", "Error over time per frame of every measured setting. A click loads the setting."}};
   return all;
@@ -96,6 +47,7 @@ FrameSamples frameSamples(const Inspection& inspection, int frame, const std::st
   FrameSamples result;
   result.frame = frame;
   result.model = model;
+  result.frameId = frameName(inspection, frame);
   if (!inspection.scene || frame < 0 || frame >= int(inspection.evidence.size())) {
     result.failure = "There is no such frame.";
     return result;
@@ -155,57 +107,10 @@ FrameSamples frameSamples(const Inspection& inspection, int frame, const std::st
   return result;
 }
 
-PlotData errorPlot(const Inspection& inspection) {
-  PlotData plot;
-  plot.id = "error";
-  plot.title = "Contour error per frame";
-  plot.x.title = "frame";
-  plot.y.title = "contour error (%)";
-  plot.y.floor = kSmallestPct;
-  const std::size_t n = inspection.evidence.size();
-  if (n == 0) return nothing(plot, "There are no results yet");
-  // The axis counts frames; where their names are no such count, it says so.
-  for (std::size_t i = 0; i < n && inspection.scene; ++i)
-    if (std::atoi(inspection.scene->frames[i].id.c_str()) != int(i)) plot.x.title = "frame, by its place in the sequence";
-  std::vector<double> values;
-  for (const std::string& model : modelsInOrder(inspection)) {
-    PlotSeries series;
-    series.name = model;
-    series.colour = modelColour(model);
-    series.shape = n <= 150 ? PlotShape::LineAndPoints : PlotShape::Line;
-    series.pointSize = n <= 40 ? 6 : 4;
-    series.width = n <= 400 ? 1.75 : 1.25;
-    const std::vector<FrameError> errors = errorsOf(inspection.models.at(model), n);
-    bool any = false;
-    for (std::size_t f = 0; f < n; ++f) {
-      PlotPoint p;
-      p.x = double(f);
-      p.y = errors[f].matched ? errors[f].pct : std::nan("");
-      p.target.frame = int(f);
-      p.target.model = model;
-      const char* role = inspection.isTraining(int(f)) ? "training" : inspection.isHeldOut(int(f)) ? "held out" : "excluded";
-      p.label = "frame " + frameName(inspection, int(f)) + " (" + role + ")\n" + model + "  " +
-                (errors[f].matched          ? text("%.3g %%", errors[f].pct)
-                 : errors[f].reason.empty() ? "nothing to compare"
-                                            : errors[f].reason);
-      if (errors[f].matched) values.push_back(errors[f].pct), any = true;
-      series.points.push_back(std::move(p));
-    }
-    if (any) plot.series.push_back(std::move(series));
-  }
-  if (plot.series.empty()) return nothing(plot, "No model predicted a highlight that was observed");
-  plot.y.log = needsLogAxis(values);
-  if (!plot.y.log) plot.y.from = 0;
-  plot.x.from = -0.5;
-  plot.x.to = double(n) - 0.5;
-  shadeTraining(inspection, plot);
-  return plot;
-}
-
 PlotData lobePlot(const FrameSamples& samples, int highlight) {
   PlotData plot;
   plot.id = "lobe";
-  plot.title = "Radiance against alpha";
+  plot.title = "Radiance against alpha" + ofFrame(samples);
   plot.x.title = "alpha (\u00b0)";
   plot.y.title = "log I/K'";
   if (!samples.failure.empty()) return nothing(plot, samples.failure);
@@ -234,8 +139,8 @@ PlotData lobePlot(const FrameSamples& samples, int highlight) {
     point.y = p.logI - height;
     lowest = std::min(lowest, point.y);
     point.target = {samples.frame, samples.model, lobe->light, lobe->observed, p.direction, -1};
-    point.label = text("pixel %.1f, %.1f\nalpha %.3g\u00b0, I/K' %.3g\ndirection %.0f\u00b0", p.at.x(), p.at.y(),
-                       degrees(p.alpha), std::exp(point.y), degrees(p.direction));
+    point.label = plotText("pixel %.1f, %.1f\nalpha %.3g\u00b0, I/K' %.3g\ndirection %.0f\u00b0", p.at.x(), p.at.y(),
+                           degrees(p.alpha), std::exp(point.y), degrees(p.direction));
     (p.fitted ? bright : faint).points.push_back(std::move(point));
   }
   lowest = std::max(lowest, -6.0);  // a four-hundredth of the height: fainter pixels show the background
@@ -257,12 +162,13 @@ PlotData lobePlot(const FrameSamples& samples, int highlight) {
     }
     plot.series.push_back(std::move(curve));
   };
-  if (s.fit) addCurve(text("fitted lobe, m = %.4g, rms %.2g", s.fit->m, s.fit->rms), s.fit->m, kFittedLobe, Dash::Solid);
+  if (s.fit) addCurve(plotText("fitted lobe, m = %.4g, rms %.2g", s.fit->m, s.fit->rms), s.fit->m, kFittedLobe, Dash::Solid);
   if (lobe->roughness)
-    addCurve(samples.model + text(", m = %.4g", *lobe->roughness), *lobe->roughness, modelColour(samples.model), Dash::Dashed);
+    addCurve(samples.model + plotText(", m = %.4g", *lobe->roughness), *lobe->roughness, modelColour(samples.model),
+             Dash::Dashed);
   if (lobe->level > 0 && lobe->level < 1) {
     PlotSeries level;
-    level.name = text("level %.3g", lobe->level);
+    level.name = plotText("level %.3g", lobe->level);
     level.colour = kHeldOut;
     level.dash = Dash::Dotted;
     level.width = 1.5;
@@ -270,8 +176,8 @@ PlotData lobePlot(const FrameSamples& samples, int highlight) {
       PlotPoint p;
       p.x = x;
       p.y = std::log(lobe->level);
-      p.label = text("contour level %.3g of the peak", lobe->level) +
-                (s.fit ? text("\nreached at alpha %.4g\u00b0 by the fitted lobe", degrees(s.fit->alphaAt(lobe->level)))
+      p.label = plotText("contour level %.3g of the peak", lobe->level) +
+                (s.fit ? plotText("\nreached at alpha %.4g\u00b0 by the fitted lobe", degrees(s.fit->alphaAt(lobe->level)))
                        : std::string());
       level.points.push_back(p);
     }
@@ -279,7 +185,7 @@ PlotData lobePlot(const FrameSamples& samples, int highlight) {
   }
   plot.x.from = 0;
   if (!s.fit && s.fitFailure) plot.title += "   no lobe fits: " + s.fitFailure->message();
-  if (s.clipped > 0) plot.title += text("   %d clipped pixels left out", s.clipped);
+  if (s.clipped > 0) plot.title += plotText("   %d clipped pixels left out", s.clipped);
   return plot;
 }
 
@@ -324,10 +230,10 @@ PlotData semiAxesPlot(const Inspection& inspection) {
       p.y = axes(k);
       if (axes(k) > 0) values.push_back(axes(k));
       p.target.model = fits[i].model;
-      p.label = fits[i].model + (severalLights ? ", light " + fits[i].light : std::string()) + text("\n%.6g m", axes(k));
+      p.label = fits[i].model + (severalLights ? ", light " + fits[i].light : std::string()) + plotText("\n%.6g m", axes(k));
       if (sigma && std::isfinite((*sigma)(k))) {
         p.band = {{axes(k) - (*sigma)(k), axes(k) + (*sigma)(k)}};
-        p.label += text(" \u00b1 %.2g m", (*sigma)(k));
+        p.label += plotText(" \u00b1 %.2g m", (*sigma)(k));
       }
       series.points.push_back(std::move(p));
     }
@@ -367,7 +273,7 @@ PlotData residualDial(const Inspection& inspection, int frame, int highlight) {
       if (r.observed == shown) chosen = &r;
     if (!chosen || !std::isfinite(chosen->meanAbsPx)) continue;
     PlotSeries series;
-    series.name = model + text("  mean |d| %.2g px", chosen->meanAbsPx);
+    series.name = model + plotText("  mean |d| %.2g px", chosen->meanAbsPx);
     series.colour = modelColour(model);
     series.shape = PlotShape::LineAndPoints;
     series.pointSize = 3;
@@ -377,7 +283,7 @@ PlotData residualDial(const Inspection& inspection, int frame, int highlight) {
       p.y = s.value.value_or(std::nan(""));
       if (s.value) largest = std::max(largest, std::abs(*s.value));
       p.target = {frame, model, chosen->light, chosen->observed, s.direction, -1};
-      p.label = model + text("\ndirection %.0f\u00b0\n%+.3g px", degrees(s.direction), s.value.value_or(0));
+      p.label = model + plotText("\ndirection %.0f\u00b0\n%+.3g px", degrees(s.direction), s.value.value_or(0));
       series.points.push_back(std::move(p));
     }
     plot.series.push_back(std::move(series));
@@ -391,7 +297,7 @@ PlotData residualDial(const Inspection& inspection, int frame, int highlight) {
 PlotData limitAnglePlot(const FrameSamples& samples, int highlight) {
   PlotData plot;
   plot.id = "limit-angle";
-  plot.title = "Limit angle, " + samples.model;
+  plot.title = "Limit angle, " + samples.model + ofFrame(samples);
   plot.x.title = "direction in the photograph (\u00b0; 0 = right, 90 = down)";
   plot.y.title = "alpha (\u00b0)";
   if (!samples.failure.empty()) return nothing(plot, samples.failure);
@@ -415,7 +321,7 @@ PlotData limitAnglePlot(const FrameSamples& samples, int highlight) {
       p.y = s.value ? degrees(*s.value) : std::nan("");
       any = any || s.value.has_value();
       p.target = {samples.frame, observed ? std::string() : samples.model, chosen->light, chosen->observed, s.direction, -1};
-      p.label = std::string(name) + text("\ndirection %.0f\u00b0\nalpha %.4g\u00b0", p.x, p.y);
+      p.label = std::string(name) + plotText("\ndirection %.0f\u00b0\nalpha %.4g\u00b0", p.x, p.y);
       series.points.push_back(std::move(p));
     }
     if (any) plot.series.push_back(std::move(series));
@@ -425,8 +331,8 @@ PlotData limitAnglePlot(const FrameSamples& samples, int highlight) {
   if (plot.series.empty()) return nothing(plot, "No contour point meets the lit surface");
   if (chosen->limitAngle) {
     PlotSeries line;
-    line.name = text(chosen->extended ? "limit angle %.4g\u00b0, without the lamp's extent" : "limit angle %.4g\u00b0",
-                     degrees(*chosen->limitAngle));
+    line.name = plotText(chosen->extended ? "limit angle %.4g\u00b0, without the lamp's extent" : "limit angle %.4g\u00b0",
+                         degrees(*chosen->limitAngle));
     line.colour = kHeldOut;
     line.dash = Dash::Dashed;
     line.width = 1.5;
@@ -474,7 +380,7 @@ PlotData singularValuePlot(const std::vector<Conditioning>& conditioning) {
       p.y = c.singularValues[i] / c.singularValues.front();
       p.target.model = c.model;
       p.label = c.model + ", light " + c.light + (c.surface ? " on " + *c.surface : std::string()) +
-                text("\nsingular value %d of %d: %.3g", int(i + 1), int(c.singularValues.size()), c.singularValues[i]) +
+                plotText("\nsingular value %d of %d: %.3g", int(i + 1), int(c.singularValues.size()), c.singularValues[i]) +
                 (i + 1 == c.singularValues.size() ? "\nQ* is a " + c.quadricKind : std::string());
       series.points.push_back(std::move(p));
     }
@@ -511,7 +417,7 @@ PlotData tradeoffPlot(const Tradeoff& tradeoff) {
     p.y = t.rankedErrorPct;
     p.target.setting = i;
     p.label = describe(tradeoff, t) +
-              text("\nerror %.3g %%, %.4g µs a frame, fit %.3g ms", t.contourErrorPct, t.predictUs, t.fitUs / 1000);
+              plotText("\nerror %.3g %%, %.4g µs a frame, fit %.3g ms", t.contourErrorPct, t.predictUs, t.fitUs / 1000);
     for (const auto& [name, index] : tradeoff.presets)
       if (index == i) p.label += "\npreset '" + name + "'";
     if (t.pareto) {
@@ -535,52 +441,6 @@ PlotData tradeoffPlot(const Tradeoff& tradeoff) {
   if (models.empty()) return nothing(plot, tradeoff.reason.empty() ? "No setting was measured" : tradeoff.reason);
   plot.series.push_back(std::move(front));
   for (PlotSeries& s : models) plot.series.push_back(std::move(s));
-  return plot;
-}
-
-PlotData influencePlot(const Inspection& inspection, const Influence& influence, const std::string& model) {
-  PlotData plot;
-  plot.id = "influence";
-  const bool probes = !influence.probes.empty();
-  plot.title = probes ? "Held-out error without a frame" : "Error of a frame predicted from the others";
-  plot.x.title = "frame left out";
-  plot.y.title = probes ? "change of the error (%)" : "contour error (%)";
-  std::vector<std::string> models;
-  for (const std::string& m : modelsInOrder(inspection))
-    if (model.empty() || m == model) models.push_back(m);
-  const double width = 0.8 / double(std::max<std::size_t>(1, models.size()));
-  for (std::size_t m = 0; m < models.size(); ++m) {
-    PlotSeries series;
-    series.name = models[m];
-    series.colour = modelColour(models[m]);
-    series.shape = PlotShape::Bars;
-    series.barWidth = width * 0.9;
-    for (std::size_t i = 0; i < influence.frames.size(); ++i) {
-      const FrameInfluence& f = influence.frames[i];
-      const std::optional<double> value = influenceOf(influence, f.frame, models[m]);
-      const auto it = f.models.find(models[m]);
-      if (it == f.models.end()) continue;
-      PlotPoint p;
-      p.x = double(i) + width * (double(m) - 0.5 * double(models.size() - 1));
-      p.y = value.value_or(std::nan(""));
-      p.target.frame = f.frame;
-      p.target.model = models[m];
-      p.label = models[m] + " without frame " + frameName(inspection, f.frame);
-      const ModelInfluence& n = it->second;
-      if (n.failure) p.label += "\n" + n.failure->message();
-      if (n.changePct && n.heldOutPct)
-        p.label += text("\nheld-out frames %.3g %% (%+.2g)", *n.heldOutPct, *n.changePct) +
-                   (*n.changePct < 0 ? "\nbetter without it" : "");
-      if (n.leftOutPct) p.label += text("\nthe frame itself %.3g %%", *n.leftOutPct);
-      if (n.lightShift) p.label += text("\nlight or centre moves %.2g m", *n.lightShift);
-      if (n.axesChange) p.label += text("\nan axis changes by %.2g %%", 100 * *n.axesChange);
-      series.points.push_back(std::move(p));
-    }
-    plot.series.push_back(std::move(series));
-  }
-  for (std::size_t i = 0; i < influence.frames.size(); ++i)
-    plot.x.names.emplace_back(double(i), frameName(inspection, influence.frames[i].frame));
-  if (influence.frames.empty()) return nothing(plot, "There is no training frame that could be left out");
   return plot;
 }
 

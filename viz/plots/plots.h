@@ -24,6 +24,7 @@ const std::vector<PlotKind>& plotKinds();
 /// What reading a frame's image and surface told about it, off the interface thread.
 struct FrameSamples {
   int frame = -1;
+  std::string frameId;
   std::string model;
   std::vector<AngleByDirection> angles;
   struct Lobe {
@@ -42,8 +43,8 @@ struct FrameSamples {
 /// @param frame  an index of the inspection's scene.
 FrameSamples frameSamples(const Inspection& inspection, int frame, const std::string& model);
 
-/// Contour error of every frame, one series per model, training frames tinted; logarithmic where errors span more than a factor
-/// of 30.
+/// Contour error of every frame, one series per model, training and excluded frames tinted; logarithmic where errors span more
+/// than a factor of 30. A frame where a model missed a highlight has a cross and no error, an excluded frame neither.
 PlotData errorPlot(const Inspection& inspection);
 /// log(I/K') against alpha of one highlight's pixels, the lobe fitted to them and the model's own. @param highlight  -1 = the
 /// first.
@@ -58,7 +59,8 @@ PlotData limitAnglePlot(const FrameSamples& samples, int highlight);
 PlotData singularValuePlot(const std::vector<Conditioning>& conditioning);
 /// Ranked error over time per frame of every measured setting.
 PlotData tradeoffPlot(const Tradeoff& tradeoff);
-/// What every training frame does for the models; see influenceOf. @param model  "" = all.
+/// What every training frame does for the models; see influenceOf. Where nothing can be answered, `empty` says why.
+/// @param model  "" = all.
 PlotData influencePlot(const Inspection& inspection, const Influence& influence, const std::string& model);
 
 }  // namespace glint::viz

@@ -71,5 +71,62 @@ TEST_F(AtomicFolder, NeverOverwrites) {
   EXPECT_EQ(entries(parent_ / "full"), 1);
 }
 
+TEST_F(AtomicFolder, FilesBesideOthersAreNewOrOld) {
+  fs::create_directories(parent_ / "full" / "in");
+  std::ofstream(parent_ / "full" / "mine.txt") << "mine";
+  std::ofstream(parent_ / "full" / "a.txt") << "old";
+  std::ofstream(parent_ / "full" / "in" / "c.txt") << "mine";
+  const auto read = [&](const char* name) {
+    std::ifstream in(parent_ / "full" / name);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  const auto fails = [&](const fs::path& to) {
+    twoFiles(to);
+    throw InputError((to / "in" / "b.txt").string(), "", "disk full");
+  };
+  try {
+    atomicFiles(parent_ / "full", "a.txt", fails);
+    ADD_FAILURE() << "nothing thrown";
+  } catch (const InputError& e) {
+    EXPECT_EQ(std::string(e.what()), (parent_ / "full/in/b.txt").string() + ": disk full") << "the name that it was to have";
+  }
+  EXPECT_EQ(read("a.txt"), "old");
+  EXPECT_EQ(entries(parent_ / "full"), 3);
+  atomicFiles(parent_ / "full", "a.txt", twoFiles);
+  EXPECT_EQ(read("a.txt"), "a");
+  EXPECT_EQ(read("in/b.txt"), "b");
+  EXPECT_EQ(read("in/c.txt"), "mine");
+  EXPECT_EQ(read("mine.txt"), "mine");
+  EXPECT_EQ(entries(parent_ / "full"), 3) << "no temporary folder stays";
+}
+
+TEST_F(AtomicFolder, FilesOfANewFolderAppearWithIt) {
+  const auto fails = [&](const fs::path& to) {
+    twoFiles(to);
+    throw std::runtime_error("disk full");
+  };
+  EXPECT_THROW(atomicFiles(parent_ / "deep/new", "a.txt", fails), std::runtime_error);
+  EXPECT_EQ(entries(parent_), 0) << "the folders above it go too";
+  fs::create_directories(parent_ / "empty");
+  for (const char* name : {"deep/new", "empty"}) {
+    atomicFiles(parent_ / name, "a.txt", [&](const fs::path& to) {
+      twoFiles(to);
+      EXPECT_EQ(fs::exists(parent_ / name / "a.txt"), false);
+    });
+    EXPECT_EQ(entries(parent_ / name), 2) << name;
+  }
+  EXPECT_EQ(entries(parent_), 2);
+}
+
+/// A shell may stand in it: a new folder in its place would leave the shell in one that is gone.
+TEST_F(AtomicFolder, TheCurrentFolderStaysTheSame) {
+  const fs::path before = fs::current_path(), here = parent_ / "here";
+  fs::create_directories(here);
+  fs::current_path(here);
+  atomicFiles(".", "a.txt", twoFiles);
+  EXPECT_TRUE(fs::exists("a.txt"));
+  fs::current_path(before);
+}
+
 }  // namespace
 }  // namespace glint

@@ -167,6 +167,29 @@ TEST(Conditioning, ResidualIsAShareOfTheContoursThatWereFitted) {
   }
 }
 
+/// "2.4 px" here and "287 px" in the error table were both right, and of two different things that had one name.
+TEST(Conditioning, AResidualIsNamedByWhatItMeasuresAndIsNoPraiseOfAnOutlineThatRunsFarBeyond) {
+  using testing::HasSubstr;
+  InspectionRequest request;
+  request.models = {"dual", "canonical", "limit-angle"};
+  request.train = "0-7";
+  Inspection inspection = inspect(planeScene(1), request);
+  const auto meaning = [&](const char* model) { return residualMeaning(*inspection.models.at(model).fits.at(0).fit); };
+  EXPECT_THAT(meaning("dual"), HasSubstr("observed contour to the outline, one way"));
+  EXPECT_THAT(meaning("canonical"), HasSubstr("canonical contour to the outline, one way"));
+  EXPECT_THAT(meaning("limit-angle"), HasSubstr("level set"));
+  const Finding before = finding(of(conditioningOf(inspection), "dual"), "residual");
+  EXPECT_EQ(before.verdict, Verdict::Green);
+  EXPECT_THAT(before.reason, HasSubstr("one way"));
+  ContourMetrics& metrics = *inspection.models.at("dual").frames.at(3).rows.at(0).metrics;
+  metrics.contourErrorPx = 287;
+  metrics.contourErrorPct = 300;
+  const Finding after = finding(of(conditioningOf(inspection), "dual"), "residual");
+  EXPECT_EQ(after.verdict, Verdict::Red);
+  EXPECT_EQ(after.text, before.text) << "the same number, seen for what it is";
+  EXPECT_THAT(after.reason, HasSubstr("287 px"));
+}
+
 /// A peak dragged far off its highlight makes the rays wider apart, which is no better triangulation.
 TEST(Conditioning, APeakOutsideItsContourIsNotPraised) {
   InspectionRequest request;

@@ -39,6 +39,23 @@ TEST(HtmlReport, NamesWhatWasMissedAndWhy) {
   EXPECT_LT(html.find("<b>frame 5</b>"), html.find("<b>frame 4</b>"));
 }
 
+/// The mean over what was matched would make the frame with the miss the best of all.
+TEST(HtmlReport, AFrameWithAMissHasACrossAndNoErrorInThePlot) {
+  Inspection run = sheetRun();
+  EXPECT_THAT(evaluationHtml(run, {}), Not(HasSubstr("class=\"missed\"")));
+  run.evidence[5].highlights.push_back(run.evidence[5].highlights.at(0));
+  for (FrameComparison& c : run.models.at("dual").frames) {
+    if (c.frame != 5) continue;
+    c.rows.at(0).metrics->contourErrorPct = 1e-6;
+    c.rows.push_back({1, -1, {}, Failure{Reason::NotReached, "no prediction overlaps this highlight"}, {}});
+  }
+  const std::string html = evaluationHtml(run, {});
+  EXPECT_THAT(html, HasSubstr("<title>dual, frame 5: missed a highlight</title>"));
+  EXPECT_THAT(html, HasSubstr("Crosses at the top"));
+  EXPECT_THAT(html, Not(HasSubstr("dual, frame 5: 1e-06 %")));
+  EXPECT_THAT(html, HasSubstr("<title>dual, frame 4: "));
+}
+
 TEST(HtmlReport, SaysWithWhichSettingsAndByWhich) {
   ReportContext context;
   context.program = "glint 0 & more";

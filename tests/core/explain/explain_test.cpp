@@ -478,9 +478,9 @@ TEST(ExplainTexts, EveryStepAndEveryBrokenAssumptionHasItsSentence) {
   }
   EXPECT_EQ(ids, explainSteps());
   // Every id that the code can give, read from the code.
-  std::ifstream source(GLINT_SOURCE_DIR "/core/explain/explain.cpp");
   std::stringstream code;
-  code << source.rdbuf();
+  for (const char* name : {"explain.cpp", "light_step.cpp"})
+    code << std::ifstream(std::string(GLINT_SOURCE_DIR "/core/explain/") + name).rdbuf();
   const std::string text = code.str();
   std::set<std::string> used;
   const std::regex given("broken\\.push_back\\(\\s*\\{\"([a-z-]+)\"");

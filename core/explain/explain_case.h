@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+
+#include "core/explain/explain.h"
+
+// What the steps of an explanation read from, and how they write their numbers. Used by the steps alone.
+namespace glint::explaining {
+
+ExplainNumber one(const std::string& symbol, const std::string& name, double value, const std::string& unit = "");
+ExplainNumber point(const std::string& symbol, const std::string& name, const Eigen::Vector3d& p, const std::string& unit = "m");
+ExplainNumber pixel(const std::string& symbol, const std::string& name, const Pixel& p);
+
+struct Case {
+  const Inspection& inspection;
+  Explanation& out;
+  const Highlight* highlight = nullptr;
+  std::shared_ptr<const Surface> surface{};
+  const ModelResult* result = nullptr;
+  const ModelResult::Fit* fit = nullptr;
+  const FrameComparison* comparison = nullptr;
+  const FrameComparison::Row* row = nullptr;
+  const Camera& camera() const { return inspection.scene->frames[std::size_t(out.frame)].camera; }
+  /// That of this highlight; where it was missed, the one that lies beside it.
+  const PredictedHighlight* predicted() const;
+  /// Whether a frame has the same light and models as this one: with a model for each surface, only where it sees the same
+  /// surface.
+  bool sharesModel(int frame) const;
+  /// The light that the contours of all these frames tell; null where there is none.
+  const LightEstimate* common() const;
+  /// The light that the model has found for itself, where it is another one than that; else null.
+  const Light* own() const;
+};
+
+void lightStep(const Case& c, ExplainStep& step);
+/// Says of a step that rests on the common light that the model has another one.
+void addOtherLight(const Case& c, ExplainStep& step);
+
+}  // namespace glint::explaining

@@ -1,0 +1,161 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Renders docs/trust.md from the pieces in docs/trust (format: docs/trust/README.md), and writes such pieces.
+
+  docs/make_trust.py            renders the page; 1 when a piece is not of the format
+  docs/make_trust.py --check    says whether the page is what the pieces give; 1 when it is not
+  docs/make_trust.py piece NAME --what TEXT --command TEXT [--row NAME COUNT FINDINGS NOTE]...
+"""
+import argparse
+import datetime
+import json
+import os
+import pathlib
+import re
+import sys
+
+root = pathlib.Path(__file__).resolve().parent.parent
+page = root / "docs/trust.md"
+pieces = root / "docs/trust"
+begin, end = "<!-- table -->\n", "<!-- end of table -->\n"
+
+# In the page's order: the piece, what it is about, and the command that writes it.
+expected = [
+    ("fuzz", "Fuzz targets of the readers", "tests/run_fuzz"),
+    ("mutations", "Mutated inputs", "tests/run_mutations"),
+    ("faults", "Injected faults", "tests/run_faults"),
+    ("kills", "Kills at random", "tests/run_kills"),
+    ("determinism", "Determinism", "tests/run_determinism"),
+    ("comma_locale", "The test-suite under a comma locale", "tests/run_comma_locale"),
+    ("dev", "The test-suite with assertions on", "tests/run_sanitizers dev"),
+    ("asan", "The test-suite under the address and undefined-behaviour sanitizers", "tests/run_sanitizers asan"),
+    ("lsan", "The command line under the leak sanitizer", "tests/run_sanitizers lsan"),
+    ("tsan", "Threads under the thread sanitizer", "tests/run_sanitizers tsan"),
+    ("properties", "Property tests of the pipeline", "tests/run_nightly"),
+]
+
+
+class NotAPiece(Exception):
+    pass
+
+
+def checked(piece):
+    """The piece, when it is of the format."""
+    def text(value, name, empty=False):
+        if not isinstance(value, str) or (not empty and not value) or any(ord(c) < 32 or ord(c) == 127 for c in value):
+            raise NotAPiece(f"{name}: must be one line of text")
+    if not isinstance(piece, dict):
+        raise NotAPiece("must be an object")
+    for key in ("what", "command", "date"):
+        text(piece.get(key), key)
+    try:
+        if not re.fullmatch(r"\d{4}-\d\d-\d\d", piece["date"]):
+            raise ValueError
+        datetime.date.fromisoformat(piece["date"])
+    except ValueError:
+        raise NotAPiece("date: must be YYYY-MM-DD") from None
+    rows = piece.get("rows")
+    if not isinstance(rows, list) or not rows:
+        raise NotAPiece("rows: must be a list with at least one row")
+    for i, row in enumerate(rows):
+        if not isinstance(row, dict):
+            raise NotAPiece(f"rows[{i}]: must be an object")
+        text(row.get("name"), f"rows[{i}].name")
+        text(row.get("note"), f"rows[{i}].note", empty=True)
+        for key in ("count", "findings"):
+            value = row.get(key)
+            if not isinstance(value, int) or isinstance(value, bool) or value < 0:
+                raise NotAPiece(f"rows[{i}].{key}: must be a whole number, 0 or more")
+    return piece
+
+
+def shown(text):
+    """Plain text in a cell of a Markdown table."""
+    return re.sub(r"([\\`*_<>\[\]|#])", r"\\\1", text)
+
+
+def cell(code):
+    """Code in a cell: a bar would end it."""
+    return code.replace("|", "\\|")
+
+
+def render():
+    """The table and the details, and what is wrong with pieces."""
+    found, problems = {}, []
+    for file in sorted(pieces.glob("*.json")):
+        try:
+            found[file.stem] = checked(json.loads(file.read_text(encoding="utf-8")))
+        except (ValueError, NotAPiece) as error:
+            problems.append(f"docs/trust/{file.name}: {error}")
+            found[file.stem] = None
+    order = list(expected) + [(name, name, "") for name in found if name not in {e[0] for e in expected}]
+    head = ["| what | tried | findings | date | command |", "|---|---:|---:|---|---|"]
+    details = []
+    for name, title, command in order:
+        if name not in found:
+            head.append(f"| {title} | missing | | | `{command}` |")
+            continue
+        piece = found[name]
+        if piece is None:
+            head.append(f"| {title} | not readable | | | `{command}` |")
+            continue
+        count, findings = (sum(row[key] for row in piece["rows"]) for key in ("count", "findings"))
+        ran = piece["command"].replace("`", "'")
+        head.append(f"| [{shown(piece['what'])}](#{name.replace('_', '-')}) | {count:,} | {findings:,} | {piece['date']} | `{cell(ran)}` |")
+        details += ["", f"### {name.replace('_', ' ')}", f"{shown(piece['what'])}. {piece['date']}, `{ran}`.", "",
+                    "| name | count | findings | note |", "|---|---:|---:|---|"]
+        details += [f"| {shown(r['name'])} | {r['count']:,} | {r['findings']:,} | {shown(r['note'])} |" for r in piece["rows"]]
+    return "\n".join(head + details) + "\n", problems
+
+
+def replaceFile(file, text):
+    temporary = file.with_name(file.name + ".new")
+    temporary.write_text(text, encoding="utf-8")
+    os.replace(temporary, file)
+
+
+def writePiece(arguments):
+    if not re.fullmatch(r"[a-z][a-z0-9_]*", arguments.name):
+        sys.exit("make_trust.py: NAME: lower-case letters, digits and _ only")
+    rows = []
+    for name, count, findings, note in arguments.row:
+        if not (count.isascii() and count.isdigit() and findings.isascii() and findings.isdigit()):
+            sys.exit(f"make_trust.py: --row {name}: COUNT and FINDINGS must be whole numbers, 0 or more")
+        rows.append({"name": name, "count": int(count), "findings": int(findings), "note": note})
+    today = datetime.datetime.now(datetime.timezone.utc).date().isoformat()
+    piece = {"what": arguments.what, "command": arguments.command, "date": today, "rows": rows}
+    try:
+        checked(piece)
+    except NotAPiece as error:
+        sys.exit(f"make_trust.py: {error}")
+    pieces.mkdir(exist_ok=True)
+    replaceFile(pieces / f"{arguments.name}.json", json.dumps(piece, indent=2, ensure_ascii=False) + "\n")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--check", action="store_true", help="change nothing; 1 when the page is not what the pieces give")
+    commands = parser.add_subparsers(dest="verb")
+    piece = commands.add_parser("piece", help="write docs/trust/NAME.json")
+    piece.add_argument("name")
+    piece.add_argument("--what", required=True)
+    piece.add_argument("--command", required=True)
+    piece.add_argument("--row", nargs=4, action="append", default=[], metavar=("NAME", "COUNT", "FINDINGS", "NOTE"))
+    arguments = parser.parse_args()
+    if arguments.verb == "piece":
+        return writePiece(arguments)
+    body, problems = render()
+    head, rest = page.read_text(encoding="utf-8").split(begin)
+    text = head + begin + body + end + rest.split(end)[1]
+    for problem in problems:
+        print(f"make_trust.py: {problem}", file=sys.stderr)
+    if arguments.check:
+        if text != page.read_text(encoding="utf-8"):
+            print("make_trust.py: docs/trust.md is not what docs/trust/*.json give: run docs/make_trust.py", file=sys.stderr)
+            return 1
+    else:
+        replaceFile(page, text)
+    return 1 if problems else 0
+
+
+sys.exit(main())

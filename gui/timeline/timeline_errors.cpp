@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The errors of the timeline: lines of all models or bars of one, and above them a row for frames where a highlight was missed.
+#include <QPainter>
+#include <QPainterPath>
+#include <algorithm>
+#include <cmath>
+
+#include "gui/base/text.h"
+#include "gui/base/theme.h"
+#include "gui/timeline/timeline_strip.h"
+#include "viz/style.h"
+
+namespace glint::gui {
+
+namespace {
+constexpr double kMissedLine = 6, kLeastMissedRow = 12;  // px: height of a model's crosses; of their row with its name
+constexpr double kRoomForName = 34;                      // height of the chart, px
+}  // namespace
+
+bool TimelineStrip::marksMissed(const viz::TimelineData::Series& series) const {
+  if (bars_ && series.model != plotted_) return false;
+  // A model that answers nowhere has no line either; its crosses would fill the row.
+  if (!bars_ && data_.series.size() > 1 && !series.answers()) return false;
+  for (std::size_t i = 0; i < series.missed.size(); ++i)
+    if (series.missed[i] && document_.role(int(i)) != FrameRole::Excluded) return true;
+  return false;
+}
+
+QRectF TimelineStrip::missedRow() const {
+  const QRectF c = chart();
+  const auto models = std::count_if(data_.series.begin(), data_.series.end(), [this](const auto& s) { return marksMissed(s); });
+  if (models == 0) return QRectF(c.topLeft(), QSizeF(c.width(), 0));
+  return QRectF(c.left(), c.top(), c.width(), std::min(std::max(kLeastMissedRow, double(models) * kMissedLine), c.height() / 3));
+}
+
+/// A cross for each frame, or column of frames, where a model missed a highlight: it has no error there.
+void TimelineStrip::paintMissed(QPainter& painter) {
+  const QRectF row = missedRow();
+  if (row.height() <= 0) return;
+  painter.setClipRect(row.adjusted(0, -1, 0, 0));
+  const int columns = int(std::min(inView_, row.width()));
+  const bool perFrame = columns >= int(inView_);
+  std::vector<const viz::TimelineData::Series*> marked;
+  for (const viz::TimelineData::Series& series : data_.series)
+    if (marksMissed(series)) marked.push_back(&series);
+  const double line = row.height() / double(marked.size()), r = std::clamp(0.5 * line - 0.75, 1.0, 3.0);
+  for (std::size_t k = 0; k < marked.size(); ++k) {
+    QColor colour = toQColor(viz::modelColour(marked[k]->model));
+    if (document_.stale()) colour.setAlpha(90);
+    painter.setPen(QPen(colour, 1.5));
+    std::vector<char> shown = marked[k]->missed;
+    for (const int frame : document_.request().excluded)
+      if (frame >= 0 && frame < int(shown.size())) shown[std::size_t(frame)] = 0;
+    if (!perFrame) shown = viz::columnMarks(shown, first_, first_ + inView_, columns);
+    for (int i = 0; i < int(shown.size()); ++i) {
+      if (!shown[std::size_t(i)]) continue;
+      const QPointF at(perFrame ? frameX(i + 0.5) : frameX(first_ + (i + 0.5) * inView_ / columns),
+                       row.top() + (double(k) + 0.5) * line);
+      painter.drawLine(at - QPointF(r, r), at + QPointF(r, r));
+      painter.drawLine(at + QPointF(-r, r), at + QPointF(r, -r));
+    }
+  }
+  painter.setClipping(false);
+  if (chart().height() < kRoomForName) return;
+  painter.setPen(palette().color(QPalette::PlaceholderText));
+  const QFont usual = painter.font();
+  QFont tiny = usual;
+  tiny.setPixelSize(9);
+  painter.setFont(tiny);
+  painter.drawText(QRectF(0, row.top() - 2, chart().left() - 5, kLeastMissedRow), Qt::AlignRight | Qt::AlignVCenter,
+                   tr("missed"));
+  painter.setFont(usual);
+}
+
+void TimelineStrip::paintErrors(QPainter& painter) {
+  QRectF c = chart();
+  painter.setPen(QPen(palette().color(QPalette::Mid), 1, Qt::DotLine));
+  painter.drawLine(c.topLeft(), c.topRight());
+  painter.setPen(palette().color(QPalette::Mid));
+  painter.drawLine(c.bottomLeft(), c.bottomRight());
+  if (data_.series.empty()) return;
+  painter.setRenderHint(QPainter::Antialiasing);
+  paintMissed(painter);
+  painter.setRenderHint(QPainter::Antialiasing, false);
+  const double left = c.left() - 5;  // of what stands beside the chart
+  c.setTop(missedRow().bottom());
+  if (missedRow().height() > 0) {
+    painter.setPen(QPen(palette().color(QPalette::Mid), 1, Qt::DotLine));
+    painter.drawLine(c.topLeft(), c.topRight());
+  }
+  painter.setPen(palette().color(QPalette::PlaceholderText));
+  painter.drawText(QRectF(0, c.top() - 7, left, 14), Qt::AlignRight | Qt::AlignVCenter,
+                   numberText(axis_.highPct) + QStringLiteral(" %"));
+  if (c.height() > 22)
+    painter.drawText(QRectF(0, c.bottom() - 13, left, 14), Qt::AlignRight | Qt::AlignVCenter,
+                     axis_.logarithmic ? numberText(axis_.lowPct) + QStringLiteral(" %") : QStringLiteral("0"));
+  if (axis_.logarithmic && c.height() > 36)
+    painter.drawText(QRectF(0, c.center().y() - 7, left, 14), Qt::AlignRight | Qt::AlignVCenter, tr("log"));
+  painter.setClipRect(c.adjusted(0, -2, 0, 1));
+  QColor excluded = toQColor(viz::kExcluded);
+  excluded.setAlpha(70);
+  for (const int frame : document_.request().excluded)
+    painter.fillRect(QRectF(frameX(frame), c.top(), std::max(1.0, frameX(frame + 1) - frameX(frame)), c.height()), excluded);
+  painter.setRenderHint(QPainter::Antialiasing);
+  const int columns = int(std::min(inView_, c.width()));
+  const bool perFrame = columns >= int(inView_);
+  for (const viz::TimelineData::Series& series : data_.series) {
+    if (bars_ && series.model != plotted_) continue;
+    QColor colour = toQColor(viz::modelColour(series.model));
+    if (document_.stale()) colour.setAlpha(90);
+    std::vector<std::optional<double>> shown = series.errorPct;
+    for (const int frame : document_.request().excluded)
+      if (frame >= 0 && frame < int(shown.size())) shown[std::size_t(frame)].reset();
+    const auto yOf = [&](double pct) { return c.bottom() - std::max(1.0, c.height() * axis_.place(pct)); };
+    // Per frame where there is room, else the largest error of each screen column.
+    const int count = perFrame ? int(shown.size()) : columns;
+    if (!perFrame) shown = viz::columnMaxima(shown, first_, first_ + inView_, columns);
+    const auto xOf = [&](int i) { return perFrame ? frameX(i + 0.5) : frameX(first_ + (i + 0.5) * inView_ / columns); };
+    if (bars_) {
+      const double slot = c.width() / (perFrame ? inView_ : columns), wide = std::clamp(slot - 2, std::min(1.0, slot), 14.0);
+      for (int i = 0; i < count; ++i) {
+        const std::optional<double>& pct = shown[std::size_t(i)];
+        if (pct) painter.fillRect(QRectF(xOf(i) - wide / 2, yOf(*pct), wide, c.bottom() - yOf(*pct)), colour);
+        const bool unsaid = !pct && perFrame && !series.missed[std::size_t(i)] && !series.reason[std::size_t(i)].empty();
+        if (unsaid && document_.role(i) != FrameRole::Excluded && slot > 8) {
+          painter.setPen(warningColour());
+          painter.drawText(QRectF(xOf(i) - 10, c.bottom() - 15, 20, 14), Qt::AlignCenter, QStringLiteral("?"));
+        }
+      }
+      continue;
+    }
+    QPainterPath path;
+    bool down = false;
+    for (int i = 0; i < count; ++i) {
+      const std::optional<double>& pct = shown[std::size_t(i)];
+      if (!pct) {
+        down = false;
+        continue;
+      }
+      const QPointF at(xOf(i), yOf(*pct));
+      if (down)
+        path.lineTo(at);
+      else
+        path.moveTo(at - QPointF(1, 0)), path.lineTo(at + QPointF(1, 0));  // a lone frame is seen too
+      down = true;
+    }
+    painter.strokePath(path, QPen(colour, series.model == document_.selection().model ? 2.4 : 1.2));
+  }
+  painter.setClipping(false);
+}
+
+}  // namespace glint::gui

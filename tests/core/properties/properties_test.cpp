@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Laws of the whole pipeline on random scenes: what changes the world, its unit, the photographs' number of pixels, the order of frames or
+// how often a frame is given moves the answer along and changes nothing else.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <iostream>
+#include <numeric>
+#include <random>
+#include <set>
+
+#include "tests/core/properties/answers.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace testing_support;
+
+int numberFrom(const char* variable, int otherwise) {
+  const char* text = std::getenv(variable);
+  return text && *text ? std::atoi(text) : otherwise;
+}
+
+/// The scenes of this run: GLINT_PROPERTY_SCENES of them (nightly: more), from GLINT_PROPERTY_SEED on.
+const int kScenes = numberFrom("GLINT_PROPERTY_SCENES", 10);
+const unsigned kSeed = static_cast<unsigned>(numberFrom("GLINT_PROPERTY_SEED", 1800));
+
+class Properties : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    std::string pattern = (fs::path(testing::TempDir()) / "glint-properties-XXXXXX").string();  // tests run beside each other
+    folder_ = mkdtemp(pattern.data());
+    std::cout << kScenes << " random scenes, seed " << kSeed << " (GLINT_PROPERTY_SCENES, GLINT_PROPERTY_SEED)\n";
+  }
+  static void TearDownTestSuite() { fs::remove_all(folder_); }
+
+  static const RandomScene& scene(int number) {
+    static std::map<int, RandomScene> made;
+    const auto found = made.find(number);
+    return found != made.end() ? found->second : made.emplace(number, randomScene(draw(number, kSeed), folder_)).first->second;
+  }
+  static InspectionRequest requestFor(const RandomScene& s) {
+    InspectionRequest q;
+    q.train.clear();
+    for (const std::string& id : s.training) q.train += (q.train.empty() ? "" : ",") + id;
+    q.settings.set("fit.most_residual", 10.0);  // a plane's model on a sphere is wrong alike in both scenes: what moves along counts
+    return q;
+  }
+  static const Inspection& answer(int number) {
+    static std::map<int, Inspection> made;
+    const auto found = made.find(number);
+    return found != made.end() ? found->second : made.emplace(number, inspect(scene(number).scene, requestFor(scene(number)))).first->second;
+  }
+  static fs::path folder_;
+};
+fs::path Properties::folder_;
+
+/// What a law allows, in the units of Differences.
+struct Tolerances {
+  double light, limitAngle, roughness, centre, shape, contourPx, peakPx, errorPx, ellipsePct, iou;
+  double of(Quantity q) const {
+    const double all[kQuantities] = {light, limitAngle, roughness, centre, shape, contourPx, peakPx, errorPx, ellipsePct, iou};
+    return all[static_cast<int>(q)];
+  }
+};
+
+/// A part in 1e9 of the answer's own size; of a pixel coordinate: of the picture's width.
+constexpr double kSame = 1e-9, kSamePx = 641e-9;
+/// The bundle stops reweighting when a round moves light and limit angle by less than 1e-9 of their unit sphere, and the fit of a lobe when a
+/// round moves light and log roughness by as much; the round that they do not take would move them by about as much again. Distances
+/// of a light that is farther than the scene's size, and the next stages, magnify that a few times.
+constexpr double kStopped = 1e-8;
+/// What the stopping tolerance of the light leaves in the shape of an ellipsoid about it, whose thin axis the contours hardly see.
+constexpr double kStoppedShape = 1e-6;
+/// In a picture 641 px wide.
+constexpr double kStoppedPx = 641 * kStopped;
+constexpr Tolerances kMoved{kStopped, kStopped, kStopped, kStopped, kStoppedShape, kStoppedPx, kStoppedPx, kStoppedPx, 100 * kStopped, kStopped};
+
+/// Prints the worst of every quantity and checks it. Every model must have been compared at least `fits` times.
+void expectWithin(const Tolerances& tolerances, const Differences& d, const std::string& law, const std::vector<std::string>& models) {
+  std::cout << law << "\n";
+  int compared = 0;
+  for (const std::string& model : models) {
+    const auto count = [&](const std::map<std::string, int>& counts) { return counts.count(model) ? counts.at(model) : 0; };
+    std::cout << "  " << model << ": " << count(d.fits) << " fits, " << count(d.contours) << " contours\n";
+    EXPECT_GT(count(d.fits), 0) << law << ": " << model << " was never compared";
+    EXPECT_GT(count(d.contours), 0) << law << ": " << model << " was never compared";
+    compared += count(d.fits) + count(d.contours);
+  }
+  for (const auto& [at, worst] : d.worst) {
+    std::cout << "  " << worst.difference << "  " << at.first << ": " << nameOf(at.second) << "  (" << worst.where << ")\n";
+    EXPECT_LE(worst.difference, tolerances.of(at.second)) << law << ": " << at.first << ": " << nameOf(at.second) << " (" << worst.where << ")";
+  }
+  static std::map<const testing::TestInfo*, int> sums;
+  testing::Test::RecordProperty("compared", sums[testing::UnitTest::GetInstance()->current_test_info()] += compared);
+}
+const std::vector<std::string> kAllModels{"primal", "dual", "canonical", "limit-angle", "reflectance"};
+
+TEST_F(Properties, RigidMotionOfTheWorld) {
+  Differences d;
+  for (int i = 0; i < kScenes; ++i) {
+    std::mt19937 random(kSeed + static_cast<unsigned>(i));
+    std::uniform_real_distribution<double> u(-1, 1);
+    Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+    motion.rotate(Eigen::AngleAxisd(3 * u(random), Eigen::Vector3d(u(random), u(random), u(random)).normalized()));
+    motion.pretranslate(Eigen::Vector3d(u(random), u(random), u(random)));
+    const RandomScene other = moved(scene(i), motion, 1, folder_);
+    Back back;
+    back.linear = motion.linear().transpose();
+    back.shift = -back.linear * motion.translation();
+    compare(answer(i), inspect(other.scene, requestFor(other)), back, scene(i).what.text(), d);
+  }
+  expectWithin(kMoved, d, "rigid motion of the world", kAllModels);
+}
+
+TEST_F(Properties, UnitOfTheWorld) {
+  for (const double scale : {1e-3, 1e3}) {
+    Differences d;
+    for (int i = 0; i < kScenes; ++i) {
+      const RandomScene other = moved(scene(i), Eigen::Isometry3d::Identity(), scale, folder_);
+      Back back;
+      back.scale = 1 / scale;
+      compare(answer(i), inspect(other.scene, requestFor(other)), back, scene(i).what.text(), d);
+    }
+    expectWithin(kMoved, d, "world times " + std::to_string(scale), kAllModels);
+  }
+}
+
+/// A mean over a contour is taken at samples half a pixel apart from its first vertex on. In the mirror the walks start at another
+/// direction and go the other way round, so other points are sampled; what that does falls with the square of the distance.
+constexpr double kSampledPx = 2e-3, kSampledPct = 2e-3;
+/// On a mesh the normals have kinks at the edges of triangles. The bundle takes the mixed derivative of the angle, for the bias of noisy points,
+/// along one diagonal of the image half a pixel long; in the mirror it is the other one, across other edges.
+constexpr double kDiagonal = 1e-6;
+
+TEST_F(Properties, Mirror) {
+  Differences d, onMeshes;
+  for (int i = 0; i < kScenes; ++i) {
+    const RandomScene other = mirrored(scene(i), folder_);
+    Back back;
+    back.linear(0, 0) = -1;
+    back.pixelFactor = {-1, 1};
+    back.pixelOffset = {640, 0};
+    compare(answer(i), inspect(other.scene, requestFor(other)), back, scene(i).what.text(), scene(i).what.kind == Kind::Mesh ? onMeshes : d);
+  }
+  Tolerances tolerances = kMoved;
+  tolerances.errorPx = kSampledPx;
+  tolerances.ellipsePct = kSampledPct;
+  expectWithin(tolerances, d, "mirror", kAllModels);
+  tolerances.light = tolerances.limitAngle = tolerances.roughness = tolerances.centre = tolerances.iou = kDiagonal;
+  tolerances.shape = kDiagonal * kStoppedShape / kStopped;
+  tolerances.contourPx = tolerances.peakPx = 641 * kDiagonal;
+  expectWithin(tolerances, onMeshes, "mirror, meshes", kAllModels);
+}
+
+/// What is stated in pixels does not change with their number: the half pixel over which angles are turned into pixels, the chords of a level
+/// set (their distance from the curve), the hundredth of a pixel that a contour point is worth at best, the samples of means and of the IoU.
+constexpr Tolerances kZoomed{2e-6, 2e-6, 2e-6, 2e-4, 1e-2, 2e-3, 2e-4, 2e-3, 5e-3, 1e-3};
+
+TEST_F(Properties, NumberOfPixels) {
+  Differences d;
+  for (int i = 0; i < kScenes; ++i) {
+    constexpr int kZoom = 2;
+    const RandomScene other = zoomed(scene(i), kZoom);
+    InspectionRequest q = requestFor(other);
+    for (const char* key : {"light.robust_px", "predict.seed_step", "predict.level_set_step"}) q.settings.set(key, kZoom * q.settings.number(key));
+    Back back;
+    back.pixelFactor = Pixel::Constant(1.0 / kZoom);
+    back.pixelOffset = Pixel::Constant((1.0 / kZoom - 1) / 2);
+    compare(answer(i), inspect(other.scene, q), back, scene(i).what.text(), d);
+  }
+  expectWithin(kZoomed, d, "photographs with twice as many pixels", kAllModels);
+}
+
+TEST_F(Properties, OrderOfFrames) {
+  Differences d;
+  for (int i = 0; i < kScenes; ++i) {
+    std::vector<int> order(kTraining + kHeldOut);
+    std::iota(order.begin(), order.end(), 0);
+    std::mt19937 random(kSeed + static_cast<unsigned>(i));
+    std::shuffle(order.begin(), order.end(), random);
+    const RandomScene other = reordered(scene(i), order);
+    compare(answer(i), inspect(other.scene, requestFor(other)), {}, scene(i).what.text(), d);
+  }
+  expectWithin(kMoved, d, "order of frames", kAllModels);
+}
+
+std::vector<int> allFrames() {
+  std::vector<int> all(kTraining + kHeldOut);
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+/// One photograph given twice is one observation, so nothing at all changes.
+constexpr Tolerances kNothing{};
+
+TEST_F(Properties, EveryFrameTwice) {
+  Differences d;
+  for (int i = 0; i < kScenes; ++i) {
+    const RandomScene other = repeated(scene(i), allFrames());
+    compare(answer(i), inspect(other.scene, requestFor(other)), {}, scene(i).what.text(), d);
+  }
+  expectWithin(kNothing, d, "every frame twice", kAllModels);
+}
+
+TEST_F(Properties, OneFrameTwice) {
+  Differences d;
+  for (int i = 0; i < kScenes; ++i) {
+    const RandomScene other = repeated(scene(i), {i % kTraining});
+    compare(answer(i), inspect(other.scene, requestFor(other)), {}, scene(i).what.text(), d);
+  }
+  expectWithin(kNothing, d, "one frame twice", kAllModels);
+}
+
+/// Equal evidence in other numbers (contours that start elsewhere) has weight. All of it twice leaves a least-squares answer where it is, and on
+/// contours that a model explains exactly any weights do. The ellipsoids hold a prior, against which twice the evidence counts more.
+TEST_F(Properties, WeightsOfFrames) {
+  Differences all, one;
+  for (int i = 0; i < kScenes; ++i) {
+    const RandomScene& s = scene(i);
+    const RandomScene twice = repeated(s, allFrames(), true);
+    InspectionRequest q = requestFor(twice);
+    q.models = {"limit-angle"};
+    compare(answer(i), inspect(twice.scene, q), {}, s.what.text(), all, q.models);
+    if (s.what.noisy || s.what.radiance) continue;
+    const RandomScene other = repeated(s, {i % kTraining}, true);
+    q.train = requestFor(other).train;
+    compare(answer(i), inspect(other.scene, q), {}, s.what.text(), one, q.models);
+  }
+  expectWithin(kMoved, all, "every frame twice, contours started elsewhere", {"limit-angle"});
+  expectWithin(kMoved, one, "one frame twice, exact contours, started elsewhere", {"limit-angle"});
+}
+
+/// The sampler makes what it says: counted in the scenes themselves.
+TEST_F(Properties, ScenesOfEveryKind) {
+  std::map<std::string, int> tally;
+  for (int i = 0; i < kScenes; ++i) {
+    const RandomScene& s = scene(i);
+    const SurfaceSource& body = s.scene->surfaces.at("body");
+    ++tally[body.mesh ? "mesh" : body.analytic->type];
+    std::set<std::string> lights;
+    for (const Frame& f : s.scene->frames)
+      for (const Highlight& h : f.highlights) lights.insert(h.light);
+    ++tally[std::to_string(lights.size()) + " lights"];
+    ++tally[s.what.noisy ? "noisy" : "exact"];
+    ++tally[s.what.radiance ? "radiance" : "limit angle"];
+  }
+  for (const auto& [name, count] : tally) std::cout << count << " " << name << "\n";
+  for (const char* name : {"plane", "sphere", "cylinder", "ellipsoid", "mesh", "1 lights", "2 lights", "noisy", "exact", "radiance", "limit angle"})
+    EXPECT_GT(tally[name], 0) << name;
+}
+
+}  // namespace
+}  // namespace glint
