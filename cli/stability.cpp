@@ -35,7 +35,7 @@ Command stabilityCommand() {
     if (!a->json.empty()) context.write(a->json, stabilityJson(results));
     if (a->json != "-") context.print(a->markdown ? stabilityMarkdown(results) : stabilityTable(results));
     const bool wrong =
-        std::any_of(results.begin(), results.end(), [](const StabilityResult& r) { return r.verdict == Verdict::Wrong; });
+        std::any_of(results.begin(), results.end(), [](const StabilityResult& r) { return r.verdict == CaseVerdict::Wrong; });
     return wrong ? kComparisonFailed : kDone;
   };
   return c;

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "core/pipeline/frame_spec.h"
+#include "core/scene/permitted.h"
 #include "core/scene/scene_files.h"
 
 namespace glint {
@@ -24,6 +25,17 @@ std::string text(const SettingValue& value) {
   if (const auto* i = std::get_if<int>(&value)) return std::to_string(*i);
   return shortest(std::get<double>(value));
 }
+
+/// Whether a file lies where the command would not look without permission. The inspector remembers permissions, a command does not.
+bool namesFilesOutside(const Scene& scene) {
+  if (scene.allowOutsidePaths) return true;
+  std::vector<std::filesystem::path> named{std::filesystem::absolute(scene.file).parent_path()};
+  for (const FilesFolder& f : scene.folders) named.push_back(f.folder);
+  for (const auto& [mesh, file] : scene.meshes) named.push_back(file);
+  const std::vector<std::filesystem::path> files = filesOf(scene);
+  return std::any_of(files.begin(), files.end(), [&](const std::filesystem::path& file) { return !liesIn(named, file); });
+}
+
 }  // namespace
 
 std::string shellWord(const std::string& text) {
@@ -64,7 +76,7 @@ Outcome<std::string> commandOf(const Scene& scene, const InspectionRequest& q) {
   for (const auto& [key, value] : q.settings.values()) command += " --set " + shellWord(key + "=" + text(value));
   if (q.noisePx > 0) command += " --noise-px " + shortest(q.noisePx) + " --seed " + std::to_string(q.seed);
   if (!q.truthFolder.empty()) command += " --truth " + place(q.truthFolder);
-  if (scene.allowOutsidePaths) command += " --allow-outside";
+  if (namesFilesOutside(scene)) command += " --allow-outside";
   for (const FilesFolder& f : scene.folders)
     command += f.kind == FrameFile::Photograph ? " --photographs " + place(f.folder)
                                                : " --files " + shellWord(nameOf(f.kind) + ("=" + absolute(f.folder)));

@@ -54,6 +54,25 @@ std::optional<double> depthAt(const Image& depth, const Pixel& p) {
   return (1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * c + u * d);
 }
 
+/// Whether one of 17 x 17 pixels looks at a triangle: a large one fills the image with all its corners outside.
+bool looksAtATriangle(const TriangleMesh& mesh, const Camera& camera) {
+  constexpr int kSteps = 16;
+  for (int i = 0; i <= kSteps; ++i)
+    for (int k = 0; k <= kSteps; ++k) {
+      const Pixel measured((camera.width - 1) * double(i) / kSteps, (camera.height - 1) * double(k) / kSteps);
+      const Ray ray = camera.ray(camera.undistorted(measured));
+      for (const Eigen::Vector3i& t : mesh.triangles) {
+        const Eigen::Vector3d a = mesh.vertices[std::size_t(t[0])] - ray.origin, b = mesh.vertices[std::size_t(t[1])] - ray.origin,
+                              c = mesh.vertices[std::size_t(t[2])] - ray.origin;
+        // Signed volumes with two corners: of one sign when the ray's line passes inside; the sum weighs the distance.
+        const double u = ray.direction.dot(b.cross(c)), v = ray.direction.dot(c.cross(a)), w = ray.direction.dot(a.cross(b));
+        const bool inside = (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
+        if (inside && (u * a + v * b + w * c).dot(ray.direction) / (u + v + w) > 0) return true;
+      }
+    }
+  return false;
+}
+
 void compareVertices(const TriangleMesh& mesh, const Frame& frame, const std::optional<Image>& depth,
                      ConventionReport::FrameFacts& facts) {
   constexpr int kCellPx = 8;
@@ -77,7 +96,7 @@ void compareVertices(const TriangleMesh& mesh, const Frame& frame, const std::op
         cells[static_cast<std::size_t>((p.y() + 0.5) / kCellPx) * columns + static_cast<std::size_t>((p.x() + 0.5) / kCellPx)];
     if (const double d = camera.depth(v); d < cell.depth) cell = {d, p};
   }
-  facts.seesSurface = facts.verticesInImage > 0;
+  facts.seesSurface = facts.verticesInImage > 0 || looksAtATriangle(mesh, camera);
   if (!depth) return;
   std::vector<double> differences;
   for (const Nearest& cell : cells)

@@ -511,7 +511,8 @@ Json toJson(const TrueLight& light) {
 }  // namespace
 
 std::string sceneToJson(const Scene& scene, const fs::path& folder) {
-  const Json kept = scene.unknownJson.empty() ? Json::object() : json_dom::parse(scene.unknownJson, "");
+  // Of our own making: its limits were checked when the scene was read, and the grouping nests it a level deeper.
+  const Json kept = scene.unknownJson.empty() ? Json::object() : Json::parse(scene.unknownJson);
   std::map<std::pair<std::string, std::string>, const Json*> keptById;  // the JSON library looks through all ids for one
   for (const auto& group : kept.items())
     for (const auto& item : group.value().items()) keptById.emplace(std::pair(group.key(), item.key()), &item.value());

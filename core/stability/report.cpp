@@ -22,9 +22,9 @@ std::string exponent(double x) {
   return text;
 }
 /// A failure has no error to show.
-std::string errorText(const StabilityResult& r) { return r.verdict == Verdict::NamedFailure ? "-" : exponent(r.relativeError); }
+std::string errorText(const StabilityResult& r) { return r.verdict == CaseVerdict::NamedFailure ? "-" : exponent(r.relativeError); }
 std::string conditionText(const StabilityResult& r) {
-  return r.verdict == Verdict::NamedFailure ? "none" : shortNumber(r.condition);
+  return r.verdict == CaseVerdict::NamedFailure ? "none" : shortNumber(r.condition);
 }
 
 std::string totals(const std::vector<StabilityResult>& results) {
@@ -36,11 +36,11 @@ std::string totals(const std::vector<StabilityResult>& results) {
 
 }  // namespace
 
-const char* nameOf(Verdict verdict) {
+const char* nameOf(CaseVerdict verdict) {
   switch (verdict) {
-    case Verdict::Accurate: return "accurate";
-    case Verdict::NamedFailure: return "named failure";
-    case Verdict::Wrong: break;
+    case CaseVerdict::Accurate: return "accurate";
+    case CaseVerdict::NamedFailure: return "named failure";
+    case CaseVerdict::Wrong: break;
   }
   return "wrong";
 }

@@ -30,7 +30,7 @@ StabilityResult judge(const Case& c, const Outcome<Measured>& outcome) {
     r.relativeError = 1;
     r.reason = outcome.failure().message();
     const bool allowed = std::find(c.reasons.begin(), c.reasons.end(), outcome.failure().reason) != c.reasons.end();
-    r.verdict = c.expect != Expect::Answer && allowed ? Verdict::NamedFailure : Verdict::Wrong;
+    r.verdict = c.expect != Expect::Answer && allowed ? CaseVerdict::NamedFailure : CaseVerdict::Wrong;
     return r;
   }
   r.condition = finite(outcome->condition);
@@ -38,7 +38,7 @@ StabilityResult judge(const Case& c, const Outcome<Measured>& outcome) {
   if (c.expect == Expect::Failure) {
     r.reason = "an answer where no unique one exists";
   } else if (outcome->error <= c.tolerance) {  // false for NaN
-    r.verdict = Verdict::Accurate;
+    r.verdict = CaseVerdict::Accurate;
   } else {
     r.reason = std::isfinite(outcome->error) ? "beyond the tolerance" : "not a number";
   }
@@ -70,7 +70,7 @@ std::vector<StabilityResult> runStability(const ProgressFn& progress) {
       results.push_back(judge(c, c.run()));
     } catch (const std::exception& e) {  // no input of a case may end the program
       StabilityResult r = judge(c, Failure{Reason::NotSupported, e.what()});
-      r.verdict = Verdict::Wrong;
+      r.verdict = CaseVerdict::Wrong;
       r.reason = std::string("exception: ") + e.what();
       results.push_back(r);
     }

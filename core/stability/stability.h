@@ -8,13 +8,13 @@
 
 namespace glint {
 
-enum class Verdict {
+enum class CaseVerdict {
   Accurate,      ///< within the case's tolerance of the reference
   NamedFailure,  ///< a reason instead of an answer, where the case allows that
   Wrong,         ///< everything else: too far off, no number, an answer where none exists, a failure where there is an answer
 };
 /// "accurate", "named failure", "wrong".
-const char* nameOf(Verdict verdict);
+const char* nameOf(CaseVerdict verdict);
 
 /// One extreme and how the code met it.
 struct StabilityResult {
@@ -23,7 +23,7 @@ struct StabilityResult {
   double condition = 1;      ///< change of the answer over change of the input, both relative; the largest double where no unique answer exists
   double relativeError = 0;  ///< against a reference of higher precision; 1 where there is no answer
   double tolerance = 0;      ///< of the relative error
-  Verdict verdict = Verdict::Wrong;
+  CaseVerdict verdict = CaseVerdict::Wrong;
   std::string reason;        ///< of a named failure or of a wrong answer; empty when accurate
   std::string note;          ///< why this tolerance, or why a failure is right here
 };

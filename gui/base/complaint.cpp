@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/base/complaint.h"
 
-#include <QEvent>
+#include <QKeyEvent>
 #include <QLabel>
 #include <QPointer>
 #include <QTimer>
@@ -38,7 +38,8 @@ class Complaint : public QLabel {
     resize(width, heightForWidth(width));
     QPoint at = box->mapTo(window(), QPoint(0, box->height() + 2));
     if (at.y() + height() > window()->height()) at.setY(box->mapTo(window(), QPoint(0, 0)).y() - height() - 2);
-    move(std::clamp(at.x(), 0, std::max(0, window()->width() - width)), std::max(0, at.y()));
+    // Inside of the window also where the box has been scrolled out of it.
+    move(std::clamp(at.x(), 0, std::max(0, window()->width() - width)), std::clamp(at.y(), 0, std::max(0, window()->height() - height())));
     show();
     raise();
     away_.start();
@@ -46,7 +47,10 @@ class Complaint : public QLabel {
 
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override {
-    if (watched == box_ && (event->type() == QEvent::KeyPress || event->type() == QEvent::Hide)) hide();
+    // The Return that ended the typing may still be on its way to the box.
+    const bool typing = event->type() == QEvent::KeyPress && static_cast<QKeyEvent*>(event)->key() != Qt::Key_Return &&
+                        static_cast<QKeyEvent*>(event)->key() != Qt::Key_Enter;
+    if (watched == box_ && (typing || event->type() == QEvent::Hide)) hide();
     return QLabel::eventFilter(watched, event);
   }
 

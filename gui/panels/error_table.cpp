@@ -210,11 +210,15 @@ QString ErrorTable::summaryHtml(const std::vector<int>& columns, int problemWidt
                 .arg(kColumnGapPx)
                 .arg(heading ? QString() : QStringLiteral("<span style='color:%1'>■</span>&nbsp;").arg(row.colour), row.name);
     for (const int c : columns)
-      if (c < row.values.size())
-        html += QStringLiteral("<td align='right' width='%1' style='padding-right:%2px'>%3</td>")
+      if (c < row.values.size()) {
+        // What the errors beside them leave out is seen before they are.
+        const bool leftOut = !heading && (c == kMissed || c == kSpurious) && row.values[c] != QLatin1String("0");
+        html += QStringLiteral("<td align='right' width='%1' style='padding-right:%2px%3'>%4</td>")
                     .arg(columnWidth(c) + kColumnGapPx)
                     .arg(kColumnGapPx)
+                    .arg(leftOut ? QStringLiteral(";color:") + warningColour().name() : QString())
                     .arg(row.values[c].toHtmlEscaped());
+      }
     if (!row.problem.isEmpty())
       html += QStringLiteral("<td colspan='%1' style='color:%2'>%3</td>")
                   .arg(std::max<std::size_t>(1, columns.size()))

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <QElapsedTimer>
 #include <QMap>
 #include <QPixmap>
 #include <QWidget>
@@ -102,6 +103,8 @@ class TimelineStrip : public QWidget {
   QPixmap background_;  ///< null = to be painted
   int backgroundsPainted_ = 0;
   int gesture_ = 0;
+  QElapsedTimer stepped_;  ///< since the last step by a key or a button
+  int stepGesture_ = 0;    ///< of the run of steps that goes on
   bool scrubbing_ = false;
 };
 

@@ -62,7 +62,8 @@ configure() {
     say "the project was moved: configuring anew"
   fi
   say "configuring (preset $preset)"
-  (cd "$root" && cmake --fresh --preset "$preset")
+  # GLINT_UNITY=1: see the option of that name.
+  (cd "$root" && cmake --fresh --preset "$preset" ${GLINT_UNITY:+-DGLINT_UNITY=ON})
 }
 
 # build PRESET [TARGET...]: everything, or only the targets.

@@ -124,7 +124,7 @@ TEST_P(Faults, AFullDisk) {
   piece->add(GetParam().name + ", a disk of 4, 8 and 24 kB", tally);
 }
 
-INSTANTIATE_TEST_SUITE_P(Commands, Faults, testing::ValuesIn(workloads()), [](const auto& info) {
+INSTANTIATE_TEST_SUITE_P(Commands, Faults, testing::ValuesIn(workloads(all())), [](const auto& info) {
   std::string name = info.param.name;
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
@@ -132,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(Commands, Faults, testing::ValuesIn(workloads()), [](co
 
 /// The preloaded library does what these tests believe.
 TEST(Injection, CountsAndFails) {
-  Stage stage(workloads().front());
+  Stage stage(workloads(true).front());
   EXPECT_GE(stage.calls()[int(Call::Open)], 1);
   EXPECT_GE(stage.calls()[int(Call::Write)], 2);  // the session, and what is printed
   EXPECT_GE(stage.calls()[int(Call::Rename)], 1);

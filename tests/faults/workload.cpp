@@ -82,7 +82,7 @@ std::vector<std::string> keysOf(const std::string& json) {
 
 }  // namespace
 
-std::vector<Workload> workloads() {
+std::vector<Workload> workloads(bool every) {
   const auto make = [](const std::string& name, const std::string& arguments, const std::string& before) {
     return Workload{name, words(arguments), words(before), "glint"};
   };
@@ -105,6 +105,8 @@ std::vector<Workload> workloads() {
   for (const char* how : {"save", "autosave"})
     all.push_back({how, {how, "IN/limit-angle.glint", "limit-angle", "run.glint"}, {how, "IN/limit-angle.glint", "canonical", "run.glint"}, "glint-save"});
 #endif
+  const std::set<std::string> ways = {"reconstruct", "predict", "synth", "movie-mp4", "save"};
+  if (!every) std::erase_if(all, [&](const Workload& w) { return !ways.count(w.name); });
   return all;
 }
 

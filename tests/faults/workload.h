@@ -22,8 +22,9 @@ struct Workload {
 };
 inline void PrintTo(const Workload& w, std::ostream* out) { *out << w.name; }
 
-/// Every command that writes a file, on small shipped data, and the inspector's save and autosave.
-std::vector<Workload> workloads();
+/// Every command that writes a file, on small shipped data, and the inspector's save and autosave. Not `every`: one for each way of
+/// writing (a file, a folder with a file, a new folder, an encoder's file, the inspector's), for CI.
+std::vector<Workload> workloads(bool every);
 
 /// How the files of a workload were found after a run.
 enum class Found { Absent, Old, Complete, Mixed, Broken };

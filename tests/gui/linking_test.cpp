@@ -100,6 +100,21 @@ class LinkingTest : public QObject {
     QVERIFY(title().contains("held out"));
   }
 
+  /// A key that is held down is one intention.
+  void aRunOfStepsIsOneStepOfUndo() {
+    TimelineStrip* strip = timeline_->strip();
+    strip->setFocus();
+    for (int i = 0; i < 3; ++i) QTest::keyClick(strip, Qt::Key_Right);
+    QCOMPARE(document_->undoStack()->count(), 1);
+    QTest::qWait(700);  // the next one is another
+    QTest::keyClick(strip, Qt::Key_Right);
+    QCOMPARE(document_->undoStack()->count(), 2);
+    document_->undoStack()->undo();
+    QCOMPARE(document_->selection().frame, 3);
+    document_->undoStack()->undo();
+    QCOMPARE(document_->selection().frame, 0);
+  }
+
   void playingIsNoStepOfUndo() {
     timeline_->setPlaying(true);
     QTRY_VERIFY(document_->selection().frame >= 3);

@@ -217,7 +217,7 @@ TEST(InfluencePlot, SaysPointsWherePointsAreMeant) {
   const auto inspection = smallInspection(folder.path());
   Influence influence = influenceOfFour();
   const PlotData plot = influencePlot(*inspection, influence, "canonical");
-  EXPECT_EQ(plot.y.title, "change of the error (percentage points)");
+  EXPECT_EQ(plot.y.title, "change (percentage points)");
   const std::string& label = seriesOf(plot, "canonical").points[1].label;
   EXPECT_THAT(label, HasSubstr("3 % instead of 2.5 %: +0.5 points"));
   EXPECT_THAT(label, HasSubstr("12 % of its length"));

@@ -102,7 +102,7 @@ PlotData influencePlot(const Inspection& inspection, const Influence& influence,
   const bool probes = !influence.probes.empty();
   plot.title = probes ? "Held-out error without a frame" : "Error of a frame predicted from the others";
   plot.x.title = "frame left out";
-  plot.y.title = probes ? "change of the error (percentage points)" : "contour error (%)";
+  plot.y.title = probes ? "change (percentage points)" : "contour error (%)";
   plot.noValue = "no answer without it";
   std::vector<std::string> models;
   for (const std::string& m : modelsInOrder(inspection))

@@ -23,6 +23,7 @@ std::string plotText(const char* format, Numbers... numbers) {
 
 /// A sentence in place of a plot.
 inline PlotData nothing(PlotData plot, std::string why) {
+  plot.series.clear();
   plot.empty = std::move(why);
   return plot;
 }

@@ -53,6 +53,18 @@ TEST(CommandText, EveryPathIsAbsolute) {
                                       shellWord("a.ply=" + at + "meshes/a.ply"));
 }
 
+/// The inspector remembers what its user allowed; a command has to say it.
+TEST(CommandText, FilesOutsideOfTheNamedFoldersNeedTheFlag) {
+  Scene scene = sceneIn("/s/scene.json");
+  scene.frames.resize(1);
+  scene.frames[0].image = "/s/frames/0.png";
+  EXPECT_EQ(*commandOf(scene, {}), "glint evaluate /s/scene.json");
+  scene.frames[0].image = "/elsewhere/0.png";
+  EXPECT_EQ(*commandOf(scene, {}), "glint evaluate /s/scene.json --allow-outside");
+  scene.folders = {{FrameFile::Photograph, "/elsewhere"}};
+  EXPECT_EQ(*commandOf(scene, {}), "glint evaluate /s/scene.json --photographs /elsewhere");
+}
+
 Scene withIds(const std::vector<std::string>& ids) {
   Scene scene = sceneIn("/s/scene.json");
   for (const std::string& id : ids) {

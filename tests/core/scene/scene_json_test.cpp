@@ -204,6 +204,16 @@ TEST(ReadScene, UnknownKeysAreWarnedOfAndKept) {
               testing::AllOf(HasSubstr("\"exposure\": 0.25"), HasSubstr("\"colour\": \"red\""), HasSubstr("null")));
 }
 
+/// What nests as deep as a reader allows (100 levels) is written back, too.
+TEST(ReadScene, AnUnknownKeyThatNestsAsDeepAsAllowedIsKept) {
+  const TemporaryFolder folder;
+  std::string deep = "1";
+  for (int i = 0; i < 99; ++i) deep = "{\"a\":" + deep + "}";
+  const Scene scene = readScene(folder.write("scene.json", with(minimalScene(), "{\"glint_scene\"", "{\"flavour\": " + deep + ", \"glint_scene\"")));
+  writeScene(scene, folder / "again.json");
+  EXPECT_EQ(readScene(folder / "again.json").unknownJson, scene.unknownJson);
+}
+
 // K = [80 2.5 31.5; 0 80 23.5; 0 0 1] at (0.2, -0.4, 2) of the camera: u = (80 * 0.2 + 2.5 * -0.4) / 2 + 31.5, v = 80 * -0.4 / 2 + 23.5.
 TEST(ReadScene, SkewIsPartOfTheCamera) {
   const TemporaryFolder folder;

@@ -19,13 +19,13 @@ const std::vector<StabilityResult>& results() {
 
 TEST(Stability, NoCaseIsWrong) {
   for (const StabilityResult& r : results()) {
-    EXPECT_NE(r.verdict, Verdict::Wrong) << r.stage << ": " << r.name << ": " << r.reason << ", error " << r.relativeError;
-    EXPECT_EQ(r.verdict == Verdict::Accurate, r.reason.empty()) << r.stage << ": " << r.name;
-    if (r.verdict == Verdict::Accurate) {
+    EXPECT_NE(r.verdict, CaseVerdict::Wrong) << r.stage << ": " << r.name << ": " << r.reason << ", error " << r.relativeError;
+    EXPECT_EQ(r.verdict == CaseVerdict::Accurate, r.reason.empty()) << r.stage << ": " << r.name;
+    if (r.verdict == CaseVerdict::Accurate) {
       EXPECT_LE(r.relativeError, r.tolerance) << r.name;
     }
     // A wider tolerance and a failure both need their reason in the table.
-    if (r.tolerance > 1e-9 || r.verdict == Verdict::NamedFailure) {
+    if (r.tolerance > 1e-9 || r.verdict == CaseVerdict::NamedFailure) {
       EXPECT_FALSE(r.note.empty()) << r.stage << ": " << r.name;
     }
     EXPECT_TRUE(std::isfinite(r.parameter) && std::isfinite(r.condition) && std::isfinite(r.relativeError)) << r.name;
@@ -44,7 +44,7 @@ TEST(Stability, EveryExtremeThatMustBeAccurateIs) {
     int accurate = 0;
     for (const StabilityResult& r : results())
       if (r.name.find(words) != std::string::npos) {
-        EXPECT_EQ(r.verdict, Verdict::Accurate) << r.stage << ": " << r.name;
+        EXPECT_EQ(r.verdict, CaseVerdict::Accurate) << r.stage << ": " << r.name;
         ++accurate;
       }
     EXPECT_GE(accurate, count) << words;
