@@ -38,7 +38,8 @@ void type(QAbstractSpinBox* box, const char* text) {
 void turnWheel(QWidget* widget, int angle) {
   const QPointF at = widget->rect().center();
   QWheelEvent wheel(at, widget->mapToGlobal(at.toPoint()), {}, QPoint(0, angle), Qt::NoButton, Qt::NoModifier, Qt::NoScrollPhase, false);
-  QApplication::sendEvent(widget, &wheel);
+  QSpontaneKeyEvent::setSpontaneous(&wheel);  // as from the window system: only then what a widget does not take goes on to its parent
+  qApp->notify(widget, &wheel);  // sendEvent would take the mark away
 }
 }  // namespace
 
