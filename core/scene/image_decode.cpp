@@ -186,7 +186,8 @@ Outcome<cv::Mat> decodeJpeg(const std::string& bytes, const ImageHeader& header)
 
 // ---- The others, with OpenCV, which writes what goes wrong to std::cerr.
 
-/// While one lives, std::cerr goes nowhere. Glint itself does not use it.
+/// While one lives, std::cerr goes nowhere. Glint itself does not use it. Narrower than QuietLibraries on purpose: images are decoded on
+/// several threads, and what another thread says meanwhile must be heard.
 class QuietCerr {
  public:
   QuietCerr() {

@@ -30,6 +30,7 @@
 #include "gui/window/main_window.h"
 #include "gui/window/message_bar.h"
 #include "tests/gui/fixture.h"
+#include "tests/gui/folders.h"
 
 namespace glint::gui {
 
@@ -141,13 +142,7 @@ class HostileNamesTest : public QObject {
  private:
   /// A copy of the plane whose frames and lights have such ids.
   static void writeScene(const QString& folder) {
-    const QString from = QStringLiteral(GLINT_SOURCE_DIR "/sessions/plane");
-    QDirIterator files(from, {"*.png", "*.json"}, QDir::Files, QDirIterator::Subdirectories);
-    while (files.hasNext()) {
-      const QString name = files.next(), there = folder + '/' + QDir(from).relativeFilePath(name);
-      QVERIFY(QDir().mkpath(QFileInfo(there).path()) && QFile::copy(name, there));
-      QFile(there).setPermissions(QFile::ReadOwner | QFile::WriteOwner);
-    }
+    copyFolder(QStringLiteral(GLINT_SOURCE_DIR "/sessions/plane"), folder);
     QFile file(folder + "/scene.json");
     QVERIFY(file.open(QIODevice::ReadWrite));
     QJsonObject scene = QJsonDocument::fromJson(file.readAll()).object();

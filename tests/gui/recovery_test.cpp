@@ -17,6 +17,7 @@
 #include "gui/window/main_window.h"
 #include "gui/window/message_bar.h"
 #include "tests/gui/fixture.h"
+#include "tests/gui/folders.h"
 
 namespace glint::gui {
 
@@ -35,16 +36,6 @@ QPushButton* answer(MainWindow& window, const char* title) {
   return nullptr;
 }
 
-/// A copy of a folder's files, one level of folders deep.
-void copyFolder(const QString& from, const QString& to) {
-  QDir().mkpath(to);
-  for (const QFileInfo& info : QDir(from).entryInfoList(QDir::Files | QDir::Dirs | QDir::NoDotAndDotDot)) {
-    if (info.isDir())
-      copyFolder(info.filePath(), to + '/' + info.fileName());
-    else
-      QVERIFY(QFile::copy(info.filePath(), to + '/' + info.fileName()));
-  }
-}
 }  // namespace
 
 /// What the killed program does: three changes, then it dies without a farewell.

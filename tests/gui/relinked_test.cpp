@@ -30,20 +30,12 @@
 #include "gui/window/message_bar.h"
 #include "gui/window/unreadable_files.h"
 #include "tests/gui/fixture.h"
+#include "tests/gui/folders.h"
 
 namespace glint::gui {
 
 namespace {
 const QString kMesh = QStringLiteral("mesh/geom_00.ply");
-
-void copyFolder(const QString& from, const QString& to) {
-  QDirIterator files(from, QDir::Files, QDirIterator::Subdirectories);
-  while (files.hasNext()) {
-    const QString name = files.next(), there = to + '/' + QDir(from).relativeFilePath(name);
-    QVERIFY(QDir().mkpath(QFileInfo(there).path()) && QFile::copy(name, there));
-    QFile(there).setPermissions(QFile::ReadOwner | QFile::WriteOwner);
-  }
-}
 
 void move(const QString& from, const QString& to) {
   QVERIFY2(QDir().mkpath(QFileInfo(to).path()) && QDir().rename(from, to), qPrintable(from + " " + to));

@@ -28,20 +28,12 @@
 #include "gui/window/main_window.h"
 #include "gui/window/message_bar.h"
 #include "tests/gui/fixture.h"
+#include "tests/gui/folders.h"
 
 namespace glint::gui {
 
 namespace {
 const QString kShipped = QStringLiteral(GLINT_SOURCE_DIR "/sessions/plane");
-
-void copyFolder(const QString& from, const QString& to) {
-  QDirIterator files(from, QDir::Files, QDirIterator::Subdirectories);
-  while (files.hasNext()) {
-    const QString name = files.next(), there = to + '/' + QDir(from).relativeFilePath(name);
-    QVERIFY(QDir().mkpath(QFileInfo(there).path()) && QFile::copy(name, there));
-    QFile(there).setPermissions(QFile::ReadOwner | QFile::WriteOwner);
-  }
-}
 
 QByteArray contentOf(const QString& file) {
   QFile f(file);
