@@ -107,9 +107,8 @@ class Check {
     return list;
   }
 
-  /// Light and lobe of some views as if the cameras were changed; model = "limit-angle" has no lobe.
-  std::optional<Fitted> fit(const Change& change, const std::vector<int>& which, const std::string& lobe,
-                            const char* model = "reflectance") const {
+  /// Light and lobe of some views as if the cameras were changed.
+  std::optional<Fitted> fit(const Change& change, const std::vector<int>& which, const std::string& lobe) const {
     stopIfAsked(0, 0);
     Settings settings = settings_;
     settings.set("fit.lobe", lobe);
@@ -142,7 +141,7 @@ class Check {
       input.light = *light;
     else
       input.lightFailure = light.failure();
-    const Outcome<ModelFit> fitted = modelByName(model).fit(input, settings);
+    const Outcome<ModelFit> fitted = modelByName("reflectance").fit(input, settings);
     if (!fitted || fitted->residualPx.size() != which.size()) return std::nullopt;
     Fitted result;
     for (const double r : fitted->residualPx) result.rmsPx += r * r / double(which.size());
@@ -232,12 +231,8 @@ class Check {
       atFocal = fit(longer, all, "auto");
       add(formatted("focal length %+.2g %%", *result_.focalPct), atFocal);
     }
-    // Contours of one angle, which no lobe draws, ask for nothing where that angle explains them with the cameras as given.
-    std::optional<Fitted> byAngle;
-    if (atHalf || atFocal) byAngle = fit({}, all, "auto", "limit-angle");
     const auto clear = [&](const std::optional<Fitted>& here, const std::optional<Fitted>& other, const Change& change) {
       return here && here->rmsPx < kClearly * given.rmsPx && !(other && other->rmsPx < here->rmsPx) &&
-             !(byAngle && (byAngle->rmsPx < kVisiblePx || kClearly * byAngle->rmsPx < here->rmsPx)) &&
              bothHalvesGain(change, here->lobe);
     };
     if (byShift && std::abs(*result_.shiftPx - half.cx) < kShiftSlackPx && clear(atHalf, atFocal, half))

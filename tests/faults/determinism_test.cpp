@@ -122,8 +122,5 @@ INSTANTIATE_TEST_SUITE_P(Sessions, Determinism, testing::ValuesIn(sessions()), [
 }  // namespace glint::faults
 
 int main(int argc, char** argv) {
-  testing::InitGoogleMock(&argc, argv);
-  glint::faults::piece = new glint::faults::Piece("The same results with other threads, allocators and processor features", "tests/run_determinism");
-  testing::AddGlobalTestEnvironment(glint::faults::piece);
-  return RUN_ALL_TESTS();
+  return glint::faults::runTests(argc, argv, glint::faults::piece, "The same results with other threads, allocators and processor features", "tests/run_determinism");
 }

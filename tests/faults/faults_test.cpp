@@ -148,8 +148,5 @@ TEST(Injection, CountsAndFails) {
 }  // namespace glint::faults
 
 int main(int argc, char** argv) {
-  testing::InitGoogleMock(&argc, argv);
-  glint::faults::piece = new glint::faults::Piece("Calls that fail: writes, renames, folders, memory, threads", "tests/run_faults");
-  testing::AddGlobalTestEnvironment(glint::faults::piece);
-  return RUN_ALL_TESTS();
+  return glint::faults::runTests(argc, argv, glint::faults::piece, "Calls that fail: writes, renames, folders, memory, threads", "tests/run_faults");
 }

@@ -171,8 +171,5 @@ TEST(Leftovers, OnlyThoseOfDeadProgramsGo) {
 }  // namespace glint::faults
 
 int main(int argc, char** argv) {
-  testing::InitGoogleMock(&argc, argv);
-  glint::faults::piece = new glint::faults::Piece("Programs that are killed or asked to stop", "tests/run_kills");
-  testing::AddGlobalTestEnvironment(glint::faults::piece);
-  return RUN_ALL_TESTS();
+  return glint::faults::runTests(argc, argv, glint::faults::piece, "Programs that are killed or asked to stop", "tests/run_kills");
 }

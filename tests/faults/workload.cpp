@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/faults/workload.h"
 
+#include <gmock/gmock.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -241,6 +243,13 @@ void Piece::TearDown() {
     piece["rows"].push_back({{"name", name}, {"count", tally.runs}, {"findings", tally.problems}, {"note", note}});
   }
   std::ofstream(file) << piece.dump(1) << "\n";
+}
+
+int runTests(int argc, char** argv, Piece*& piece, const char* what, const char* command) {
+  testing::InitGoogleMock(&argc, argv);
+  piece = new Piece(what, command);
+  testing::AddGlobalTestEnvironment(piece);  // which owns it
+  return RUN_ALL_TESTS();
 }
 
 }  // namespace glint::faults

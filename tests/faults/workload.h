@@ -86,4 +86,7 @@ class Piece : public testing::Environment {
   std::vector<std::pair<std::string, Tally>> rows_;
 };
 
+/// Runs the tests of a program that adds its counts to `piece`.
+int runTests(int argc, char** argv, Piece*& piece, const char* what, const char* command);
+
 }  // namespace glint::faults
