@@ -15,12 +15,6 @@ namespace {
 constexpr int kTable = 1 << 16;  // every code of a 16-bit photograph has its own entry
 constexpr float kLargestCode = 1.0f - 0.5f / 65535;
 
-std::string formatted(const char* format, double value) {
-  char text[32];
-  printText(text, sizeof text, format, value);
-  return text;
-}
-
 std::uint8_t byteOf(double v) { return static_cast<std::uint8_t>(std::lround(255 * std::clamp(v, 0.0, 1.0))); }
 
 /// Screen byte (or place on the colour map) of linear light where 1 is white.

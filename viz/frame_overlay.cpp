@@ -16,12 +16,6 @@ namespace {
 
 constexpr Colour kObservedEllipse{0.82, 0.82, 0.82};
 
-std::string formatted(const char* format, double value) {
-  char text[64];
-  printText(text, sizeof text, format, value);
-  return text;
-}
-
 /// Both borders of the 95 % band, where it is known and wide enough to be seen beside the contour.
 void addBand(const PredictedHighlight& highlight, const Camera& camera, const OverlayLine& style,
              std::vector<OverlayLine>& lines) {

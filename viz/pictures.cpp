@@ -25,12 +25,6 @@ Theme themeOf(bool dark) {
   return {{1, 1, 1}, {0.95, 0.95, 0.95}, kTextOnLight, {0.80, 0.80, 0.80}};
 }
 
-std::string formatted(const char* format, double value) {
-  char text[64];
-  printText(text, sizeof text, format, value);
-  return text;
-}
-
 /// The largest box of an aspect ratio inside another, centred.
 Box inscribed(const Box& outer, double aspect) {
   Box box = outer;

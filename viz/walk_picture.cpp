@@ -14,12 +14,6 @@ constexpr double kDrawnLimit = 0.44;  // rad: the limit angle in the sections, 2
 constexpr double kMostStretch = 20;
 constexpr double kGlyphWidth = 0.6;  // of a letter, in heights of the text, on average
 
-std::string text(const char* format, double value) {
-  char line[64];
-  printText(line, sizeof line, format, value);
-  return line;
-}
-
 /// From the section (distance along the direction, height along N; m) to px.
 struct Section {
   Box box;
@@ -83,7 +77,7 @@ struct Painter {
   void head(const Box& box, const char* title, const std::vector<WalkPlace>& places, int visited, const Colour& colour) {
     out.texts.push_back({{box.x, box.y + textPx}, title, colour, Align::Left, true});
     const std::string alpha =
-        visited > 0 ? text("α %.2f°", degrees(places[static_cast<std::size_t>(visited - 1)].alpha)) : std::string("not yet");
+        visited > 0 ? formatted("α %.2f°", degrees(places[static_cast<std::size_t>(visited - 1)].alpha)) : std::string("not yet");
     const bool right = beside(box, title);
     out.texts.push_back({{right ? box.x + box.width : box.x, box.y + (right ? 1.0 : 2.2) * textPx},
                          alpha,
@@ -100,7 +94,7 @@ struct Painter {
     out.lines.push_back({{at(0, top), at(0, 0), at(most, 0)}, faint, 1});
     out.lines.push_back({{at(0, t.limitAngle), at(most, t.limitAngle)}, limit, 1.2, Dash::Dashed});
     out.texts.push_back(
-        {at(0, t.limitAngle) + Eigen::Vector2d(4, -0.3 * textPx), text("limit angle %.2f°", degrees(t.limitAngle)), limit});
+        {at(0, t.limitAngle) + Eigen::Vector2d(4, -0.3 * textPx), formatted("limit angle %.2f°", degrees(t.limitAngle)), limit});
     const auto curve = [&](const std::vector<WalkPlace>& places, int visited, const Colour& colour) {
       std::vector<Eigen::Vector2d> line;
       for (int i = 0; i < visited; ++i) {
@@ -117,7 +111,7 @@ struct Painter {
     curve(t.onPlane, now.visitedOnPlane, plane);
     const double reach = now.onSurface ? t.reachOnSurface : t.reachOnPlane;
     const std::string axis = "distance on T",
-                      end = text(now.onSurface ? "ends at %.1f mm on S" : "ends at %.1f mm on T", 1000 * reach);
+                      end = formatted(now.onSurface ? "ends at %.1f mm on S" : "ends at %.1f mm on T", 1000 * reach);
     // In a narrow picture the end says of which distance the axis is.
     if (kGlyphWidth * textPx * static_cast<double>(axis.size() + end.size() + 1) < box.width)
       out.texts.push_back({{box.x, box.y + box.height + 1.2 * textPx}, axis, faint});
@@ -154,7 +148,7 @@ WalkPicture walkPicture(const WalkStory& story, int step, double width, double h
   painter.head(s.box, "Plane T", story.trace.onPlane, now.visitedOnPlane, painter.plane);
   if (s.stretch > 1.05)
     painter.out.texts.push_back(
-        {{width - margin, margin + sectionHeight + 0.2 * textPx}, text("heights × %.1f", s.stretch), faint, Align::Right});
+        {{width - margin, margin + sectionHeight + 0.2 * textPx}, formatted("heights × %.1f", s.stretch), faint, Align::Right});
   const double top = margin + sectionHeight + 1.2 * textPx;
   painter.chart({margin, top, width - 2 * margin, height - top - 1.6 * textPx - margin}, now);
   return painter.out;

@@ -21,7 +21,7 @@ constexpr double kSame = 1e-9;  // relative: as `glint replay`, nine digits
 
 bool same(double a, double b) { return a == b || std::abs(a - b) <= kSame * std::max(std::abs(a), std::abs(b)); }
 
-std::string number(double v) {
+std::string sixDigits(double v) {
   if (!std::isfinite(v)) return "none";
   char text[32];
   printText(text, sizeof text, "%.6g", v);
@@ -34,7 +34,7 @@ std::string joined(const std::vector<std::string>& words) {
   return out;
 }
 
-std::string vectorText(const Eigen::Vector3d& v) { return number(v.x()) + " " + number(v.y()) + " " + number(v.z()); }
+std::string vectorText(const Eigen::Vector3d& v) { return sixDigits(v.x()) + " " + sixDigits(v.y()) + " " + sixDigits(v.z()); }
 
 std::vector<std::string> idsWhere(const Inspection& run, const std::function<bool(int)>& wanted) {
   std::vector<std::string> ids;
@@ -98,7 +98,7 @@ void addRequest(Values& out, const Inspection& a, const Inspection& b) {
     return std::string(q.source == FrameSource::Image ? "image" : "radiance");
   };
   out.add("request", "highlights from", source(qa), source(qb));
-  out.add("request", "noise on training contours", number(qa.noisePx), number(qb.noisePx), "px");
+  out.add("request", "noise on training contours", sixDigits(qa.noisePx), sixDigits(qb.noisePx), "px");
   if (qa.noisePx > 0 || qb.noisePx > 0) out.add("request", "noise seed", std::to_string(qa.seed), std::to_string(qb.seed));
   out.add("request", "truth", fs::path(qa.truthFolder).filename().string(), fs::path(qb.truthFolder).filename().string());
   for (const ParamSpec& p : allParams()) {
@@ -123,15 +123,15 @@ std::map<std::string, std::string> changes(const Inspection& run) {
     all["camera of " + id(frame)] = "turned " + vectorText(pose.rotation) + " rad, moved " + vectorText(pose.translation) + " m";
   for (const auto& [at, h] : w.highlights)
     all["highlight " + std::to_string(at.second + 1) + " of " + id(at.first)] =
-        "contour by " + number(h.contourBy.x()) + " " + number(h.contourBy.y()) + " px, times " + number(h.contourScale) +
-        "; peak by " + number(h.peakBy.x()) + " " + number(h.peakBy.y()) + " px";
+        "contour by " + sixDigits(h.contourBy.x()) + " " + sixDigits(h.contourBy.y()) + " px, times " + sixDigits(h.contourScale) +
+        "; peak by " + sixDigits(h.peakBy.x()) + " " + sixDigits(h.peakBy.y()) + " px";
   for (const auto& [at, on] : w.lightsSwitched) all["light " + at.second + " in " + id(at.first)] = on ? "on" : "off";
   if (!w.synthesise) return all;
   all["contours"] = "synthesised";
-  all["roughness"] = number(w.roughness);
+  all["roughness"] = sixDigits(w.roughness);
   all["lobe"] = nameOf(w.lobe);
   for (const auto& [light, by] : w.lightsBy) all["light " + light] = "by " + vectorText(by) + " m";
-  for (const auto& [surface, value] : w.surfaces) all["surface " + surface] = number(value);
+  for (const auto& [surface, value] : w.surfaces) all["surface " + surface] = sixDigits(value);
   return all;
 }
 
@@ -181,8 +181,8 @@ void addResults(std::vector<ComparedValue>& out, const Inspection& a, const Insp
   const auto row = [&](const std::string& name) {
     const auto va = inA.find(name), vb = inB.find(name);
     ComparedValue v{"results", name, "", "", unitOf(name), true, {}};
-    if (va != inA.end()) v.a = number(va->second);
-    if (vb != inB.end()) v.b = number(vb->second);
+    if (va != inA.end()) v.a = sixDigits(va->second);
+    if (vb != inB.end()) v.b = sixDigits(vb->second);
     if (va != inA.end() && vb != inB.end()) {
       const bool finite = std::isfinite(va->second) && std::isfinite(vb->second);
       v.differs = finite ? !same(va->second, vb->second) : std::isfinite(va->second) != std::isfinite(vb->second);
@@ -340,7 +340,7 @@ std::string comparisonText(const RunComparison& c, bool all) {
     group = v.group;
     const std::string name = v.name + (v.unit.empty() ? "" : " [" + v.unit + "]");
     const auto shown = [](const std::string& s) { return padded(s.empty() ? "-" : s, 24); };
-    out += "  " + padded(name, 44) + " " + shown(v.a) + " " + shown(v.b) + (v.ratio ? " " + number(*v.ratio) : "") + "\n";
+    out += "  " + padded(name, 44) + " " + shown(v.a) + " " + shown(v.b) + (v.ratio ? " " + sixDigits(*v.ratio) : "") + "\n";
   }
   bool head = false;
   for (const ComparedError& e : c.errors) {
@@ -350,7 +350,7 @@ std::string comparisonText(const RunComparison& c, bool all) {
              padded("B/A", 10) + "\n";
     head = true;
     out += padded(e.id, 14) + padded(e.model, 14) + padded(e.light, 10) + padded(percent(e.errorA), 12) +
-           padded(percent(e.errorB), 12) + padded(e.ratio ? number(*e.ratio) : "-", 10);
+           padded(percent(e.errorB), 12) + padded(e.ratio ? sixDigits(*e.ratio) : "-", 10);
     if (e.roleA != e.roleB) out += " " + (e.roleA.empty() ? "-" : e.roleA) + " -> " + (e.roleB.empty() ? "-" : e.roleB);
     if (!e.errorA && !e.reasonA.empty()) out += " A: " + e.reasonA;
     if (!e.errorB && !e.reasonB.empty()) out += " B: " + e.reasonB;

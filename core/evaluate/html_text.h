@@ -15,9 +15,7 @@ namespace glint::html {
 /// One number by a printf pattern; a dash when it is not finite.
 inline std::string format(const char* pattern, double v) {
   if (!std::isfinite(v)) return "&ndash;";
-  char buffer[64];
-  printText(buffer, sizeof buffer, pattern, v);
-  return buffer;
+  return formatted(pattern, v);
 }
 
 /// Text from anywhere as it is, never as markup; control characters are shown escaped.

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "core/base/json_number.h"
 #include "core/evaluate/warnings.h"
 
 namespace glint {
@@ -14,33 +15,32 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json number(double v) { return std::isfinite(v) ? ordered_json(v) : ordered_json(nullptr); }
-ordered_json pixel(const Pixel& p) { return {number(p.x()), number(p.y())}; }
-ordered_json vector(const Eigen::Vector3d& v) { return {number(v.x()), number(v.y()), number(v.z())}; }
+ordered_json pixel(const Pixel& p) { return {numberOrNull(p.x()), numberOrNull(p.y())}; }
+ordered_json vector(const Eigen::Vector3d& v) { return {numberOrNull(v.x()), numberOrNull(v.y()), numberOrNull(v.z())}; }
 
 ordered_json highlightJson(const PredictedHighlight& h) {
   ordered_json j;
   j["peak"] = pixel(h.brightest.pixel);
   j["brightest_point"] = vector(h.brightest.point.position);
   j["normal"] = vector(h.brightest.point.normal);
-  j["coverage"] = number(h.coverage);
+  j["coverage"] = numberOrNull(h.coverage);
   j["contour"] = ordered_json::array();
   for (const Pixel& p : h.contour.points) j["contour"].push_back(pixel(p));
   if (!h.sigmaPx.empty()) {
     j["sigma_px"] = ordered_json::array();
-    for (const double sigma : h.sigmaPx) j["sigma_px"].push_back(number(sigma));
+    for (const double sigma : h.sigmaPx) j["sigma_px"].push_back(numberOrNull(sigma));
   }
   j["gaps"] = ordered_json::array();
   for (const auto& [from, to] : h.gaps) j["gaps"].push_back({from, to});
   if (h.ellipse)
     j["ellipse"] = {{"centre", pixel(h.ellipse->centre)},
-                    {"semi_axes", {number(h.ellipse->semiAxes.x()), number(h.ellipse->semiAxes.y())}},
-                    {"angle_deg", number(h.ellipse->angle * 180 / M_PI)}};
+                    {"semi_axes", {numberOrNull(h.ellipse->semiAxes.x()), numberOrNull(h.ellipse->semiAxes.y())}},
+                    {"angle_deg", numberOrNull(h.ellipse->angle * 180 / M_PI)}};
   if (h.canonical) {
     j["failed_directions"] = ordered_json::array();
     for (const DirectionResult& d : h.canonical->directions)
       if (d.failure)
-        j["failed_directions"].push_back({{"azimuth_deg", number(d.azimuth * 180 / M_PI)}, {"reason", d.failure->message()}});
+        j["failed_directions"].push_back({{"azimuth_deg", numberOrNull(d.azimuth * 180 / M_PI)}, {"reason", d.failure->message()}});
   }
   return j;
 }
@@ -71,7 +71,7 @@ std::string predictionsJson(const Inspection& inspection, const std::vector<int>
       row["light"] = c.light;
       row["status"] = c.prediction.highlights.empty() ? "failed" : "ok";
       row["reason"] = c.prediction.highlights.empty() && c.prediction.failure ? c.prediction.failure->message() : "";
-      row["time_us"] = number(c.prediction.timeUs);
+      row["time_us"] = numberOrNull(c.prediction.timeUs);
       row["highlights"] = ordered_json::array();
       for (const PredictedHighlight& h : c.prediction.highlights) row["highlights"].push_back(highlightJson(h));
       rows.push_back(row);
@@ -117,8 +117,8 @@ std::string cocoJson(const Inspection& inspection, const std::string& model, con
       ordered_json polygon = ordered_json::array();
       Pixel low = drawn.points[0], high = low;
       for (const Pixel& p : drawn.points) {
-        polygon.push_back(number(p.x()));
-        polygon.push_back(number(p.y()));
+        polygon.push_back(numberOrNull(p.x()));
+        polygon.push_back(numberOrNull(p.y()));
         low = low.cwiseMin(p);
         high = high.cwiseMax(p);
       }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/base/json_number.h"
 #include "core/base/number_text.h"
 #include "core/evaluate/band_text.h"
 #include "core/evaluate/detection_error.h"
@@ -18,14 +19,13 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json number(double v) { return std::isfinite(v) ? ordered_json(v) : ordered_json(nullptr); }
 
 template <class Matrix>
 ordered_json rows(const Matrix& m) {
   ordered_json out = ordered_json::array();
   for (Eigen::Index r = 0; r < m.rows(); ++r) {
     ordered_json row = ordered_json::array();
-    for (Eigen::Index c = 0; c < m.cols(); ++c) row.push_back(number(m(r, c)));
+    for (Eigen::Index c = 0; c < m.cols(); ++c) row.push_back(numberOrNull(m(r, c)));
     out.push_back(row);
   }
   return out;
@@ -34,12 +34,12 @@ ordered_json rows(const Matrix& m) {
 template <class Vector>
 ordered_json list(const Vector& v) {
   ordered_json out = ordered_json::array();
-  for (Eigen::Index i = 0; i < v.size(); ++i) out.push_back(number(v[i]));
+  for (Eigen::Index i = 0; i < v.size(); ++i) out.push_back(numberOrNull(v[i]));
   return out;
 }
 
 ordered_json statistic(const Statistic& s) {
-  return {{"mean", number(s.mean)}, {"median", number(s.median)}, {"p95", number(s.p95)}, {"max", number(s.max)}};
+  return {{"mean", numberOrNull(s.mean)}, {"median", numberOrNull(s.median)}, {"p95", numberOrNull(s.p95)}, {"max", numberOrNull(s.max)}};
 }
 
 ordered_json settingsJson(const Settings& settings) {
@@ -61,25 +61,25 @@ ordered_json selectionJson(const Selection& s) {
                                {"views", c.views},
                                {"tried", c.tried},
                                {"answered", c.answered},
-                               {"mean_pct", number(c.meanPct)},
-                               {"standard_error_pct", number(c.standardErrorPct)},
-                               {"outlook_pct", number(c.outlookPct)},
-                               {"spread_pct", number(c.spreadPct)},
-                               {"disagreement_pct", number(c.disagreementPct)},
-                               {"expected_pct", number(c.expectedPct)},
-                               {"predict_us", number(c.predictUs)},
-                               {"time_us", number(c.timeUs)},
+                               {"mean_pct", numberOrNull(c.meanPct)},
+                               {"standard_error_pct", numberOrNull(c.standardErrorPct)},
+                               {"outlook_pct", numberOrNull(c.outlookPct)},
+                               {"spread_pct", numberOrNull(c.spreadPct)},
+                               {"disagreement_pct", numberOrNull(c.disagreementPct)},
+                               {"expected_pct", numberOrNull(c.expectedPct)},
+                               {"predict_us", numberOrNull(c.predictUs)},
+                               {"time_us", numberOrNull(c.timeUs)},
                                {"remark", c.remark}});
   if (s.patches)
     j["local_quadric"] = {{"good_enough", s.patches->goodEnough},
-                          {"curvature_variation", number(s.patches->variation)},
+                          {"curvature_variation", numberOrNull(s.patches->variation)},
                           {"limit", kLargestVariation},
                           {"views", s.patches->views},
                           {"other_frames", s.patches->others},
-                          {"mean_pct", number(s.patches->meanPct)},
-                          {"predict_us", number(s.patches->predictUs)},
-                          {"exact_predict_us", number(s.patches->exactUs)},
-                          {"time_us", number(s.patches->timeUs)},
+                          {"mean_pct", numberOrNull(s.patches->meanPct)},
+                          {"predict_us", numberOrNull(s.patches->predictUs)},
+                          {"exact_predict_us", numberOrNull(s.patches->exactUs)},
+                          {"time_us", numberOrNull(s.patches->timeUs)},
                           {"reason", s.patches->why}};
   else
     j["local_quadric"] = nullptr;
@@ -109,30 +109,30 @@ ordered_json fitJson(const ModelResult::Fit& entry) {
   } else {
     j["light_position"] = nullptr;
   }
-  j["limit_angle_deg"] = f.limitAngle ? number(*f.limitAngle * 180 / M_PI) : ordered_json(nullptr);
-  j["roughness"] = f.roughness ? number(*f.roughness) : ordered_json(nullptr);
+  j["limit_angle_deg"] = f.limitAngle ? numberOrNull(*f.limitAngle * 180 / M_PI) : ordered_json(nullptr);
+  j["roughness"] = f.roughness ? numberOrNull(*f.roughness) : ordered_json(nullptr);
   if (f.extent) j["light_extent"] = rows(*f.extent);
   if (f.lobe) j["lobe"] = *f.lobe;
-  if (f.lobe) j["light_radius"] = number(f.lightRadius.value_or(0));
+  if (f.lobe) j["light_radius"] = numberOrNull(f.lightRadius.value_or(0));
   if (f.lobe)
     j["light_segment"] = f.lightSegment ? ordered_json{list(f.lightSegment->first), list(f.lightSegment->second)} : ordered_json(nullptr);
-  j["gap_ratio"] = f.singularValues.empty() ? ordered_json(nullptr) : number(f.gapRatio);
+  j["gap_ratio"] = f.singularValues.empty() ? ordered_json(nullptr) : numberOrNull(f.gapRatio);
   // Largest over smallest: of the linear system where there is one, else of the rays that fix the light (whose ratio is of squares).
   if (!f.singularValues.empty())
-    j["condition"] = number(f.condition);
+    j["condition"] = numberOrNull(f.condition);
   else
-    j["condition"] = f.lightEstimate && f.condition > 0 ? number(1 / std::sqrt(f.condition)) : ordered_json(nullptr);
+    j["condition"] = f.lightEstimate && f.condition > 0 ? numberOrNull(1 / std::sqrt(f.condition)) : ordered_json(nullptr);
   j["solver"] = f.solver;
   if (!f.evidence.empty()) {
     j["evidence"] = f.evidence;
     j["levels"] = f.levels;
-    j["blur_px"] = f.blurPx ? number(*f.blurPx) : ordered_json(nullptr);
+    j["blur_px"] = f.blurPx ? numberOrNull(*f.blurPx) : ordered_json(nullptr);
   }
   j["residual_px"] = ordered_json::array();
-  for (const double r : f.residualPx) j["residual_px"].push_back(number(r));
+  for (const double r : f.residualPx) j["residual_px"].push_back(numberOrNull(r));
   j["training_frames"] = f.frames;
   j["warnings"] = f.remarks;
-  j["time_us"] = entry.failure ? ordered_json(nullptr) : number(f.timeUs);
+  j["time_us"] = entry.failure ? ordered_json(nullptr) : numberOrNull(f.timeUs);
   return j;
 }
 
@@ -140,7 +140,7 @@ ordered_json fitJson(const ModelResult::Fit& entry) {
 void metricsJson(const FrameComparison::Row* row, const FrameComparison& c, ordered_json& j) {
   const bool measured = row && row->metrics;
   const ContourMetrics m = measured ? *row->metrics : ContourMetrics{};
-  const auto add = [&](const char* key, double v) { j[key] = measured ? number(v) : ordered_json(nullptr); };
+  const auto add = [&](const char* key, double v) { j[key] = measured ? numberOrNull(v) : ordered_json(nullptr); };
   add("contour_error_pct", m.contourErrorPct);
   add("contour_error_px", m.contourErrorPx);
   add("ellipse_error_pct", m.ellipseErrorPct);
@@ -151,12 +151,12 @@ void metricsJson(const FrameComparison::Row* row, const FrameComparison& c, orde
   add("axis_ratio_error", m.axisRatioError);
   add("angle_error_deg", m.angleErrorDeg);
   add("peak_offset_px", m.peakOffsetPx);
-  j["coverage"] = row && row->predicted >= 0 ? number(c.prediction.highlights[row->predicted].coverage) : ordered_json(nullptr);
+  j["coverage"] = row && row->predicted >= 0 ? numberOrNull(c.prediction.highlights[row->predicted].coverage) : ordered_json(nullptr);
   // Only where walks were made on second-order patches: says whether they were good enough.
   if (row && row->predicted >= 0 && c.prediction.highlights[row->predicted].curvatureVariation)
-    j["curvature_variation"] = number(*c.prediction.highlights[row->predicted].curvatureVariation);
-  if (row && row->band) j["band"] = {{"sigma_px", number(row->band->sigmaPx)}, {"coverage_95", number(row->band->coverage)}};
-  j["time_us"] = number(c.prediction.timeUs);
+    j["curvature_variation"] = numberOrNull(*c.prediction.highlights[row->predicted].curvatureVariation);
+  if (row && row->band) j["band"] = {{"sigma_px", numberOrNull(row->band->sigmaPx)}, {"coverage_95", numberOrNull(row->band->coverage)}};
+  j["time_us"] = numberOrNull(c.prediction.timeUs);
 }
 
 void frameRows(const Inspection& inspection, const FrameComparison& c, ordered_json& out) {
@@ -205,11 +205,11 @@ ordered_json modelJson(const Inspection& inspection, const ModelResult& result) 
                   {"spurious", s.spurious},
                   {"peak_offset_px", statistic(s.peakOffsetPx)},
                   {"coverage", statistic(s.coverage)},
-                  {"time_us", {{"median", number(s.timeUs.median)}, {"p99", number(s.timeP99Us)}}}};
+                  {"time_us", {{"median", numberOrNull(s.timeUs.median)}, {"p99", numberOrNull(s.timeP99Us)}}}};
   if (inspection.request.settings.flag("predict.band")) {
     const std::optional<BandScore> band = bandSummary(inspection, result);
-    j["band"] = {{"sigma_px", band ? number(band->sigmaPx) : ordered_json(nullptr)},
-                 {"coverage_95", band ? number(band->coverage) : ordered_json(nullptr)},
+    j["band"] = {{"sigma_px", band ? numberOrNull(band->sigmaPx) : ordered_json(nullptr)},
+                 {"coverage_95", band ? numberOrNull(band->coverage) : ordered_json(nullptr)},
                  {"scale_tolerance", inspection.request.settings.number("input.scale_tolerance")},
                  {"focal_tolerance", inspection.request.settings.number("input.focal_tolerance")},
                  {"remarks", ordered_json::array()}};

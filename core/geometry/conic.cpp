@@ -13,8 +13,8 @@
 
 namespace glint {
 namespace {
-constexpr double kEps = std::numeric_limits<double>::epsilon();
-constexpr double kRankTolerance = 64 * kEps;  // a determinant below this share of its own terms is round-off
+constexpr double kRoundOff = std::numeric_limits<double>::epsilon();
+constexpr double kRankTolerance = 64 * kRoundOff;  // a determinant below this share of its own terms is round-off
 
 Eigen::Matrix2d rotation(double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
@@ -80,7 +80,7 @@ std::optional<CentredDual> centred(const DualConic& dual) {
   c.shape = first - second;
   if (!c.shape.allFinite() || !first.allFinite()) return std::nullopt;
   const Eigen::Vector2d values = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(c.shape, Eigen::EigenvaluesOnly).eigenvalues();
-  c.singular = hasNoDeterminant(c.shape) || values.cwiseAbs().minCoeff() <= 4 * kEps * (first.norm() + second.norm());
+  c.singular = hasNoDeterminant(c.shape) || values.cwiseAbs().minCoeff() <= 4 * kRoundOff * (first.norm() + second.norm());
   return c;
 }
 const char* const kSingular = "the conic is a pair of lines, a line or a point";
@@ -239,7 +239,7 @@ Outcome<Ellipse> fitEllipse(const std::vector<Pixel>& points) {
                                  .triangularView<Eigen::Upper>();
   const Eigen::JacobiSVD<Eigen::Matrix2d> axes(r2, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Vector2d spread = axes.singularValues() / std::sqrt(double(n));
-  const double rounding = 8 * kEps * std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff()) / extent;
+  const double rounding = 8 * kRoundOff * std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff()) / extent;
   // A width below 1e-10 of the length leaves fewer than six digits of the ellipse.
   if (!(spread.y() > std::max(1e-10 * spread.x(), rounding))) return Failure{Reason::RankDeficient, "the points lie on a line"};
   const Eigen::Matrix2d pixelFromUnit = axes.matrixV() * spread.asDiagonal();
@@ -261,7 +261,7 @@ Outcome<Ellipse> fitEllipse(const std::vector<Pixel>& points) {
   // is then that singular vector, as it should be.
   const Eigen::Matrix3d constraint{{0, 0, 2}, {0, -1, 0}, {2, 0, 0}};
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(r.bottomRightCorner<3, 3>(), Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Vector3d s = svd.singularValues().cwiseMax(4 * kEps * svd.singularValues()(0));
+  const Eigen::Vector3d s = svd.singularValues().cwiseMax(4 * kRoundOff * svd.singularValues()(0));
   if (!(s(0) > 0)) return Failure{Reason::RankDeficient, "the points lie on less than a conic"};
   const Eigen::Matrix3d v = svd.matrixV() * s.cwiseInverse().asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(v.transpose() * constraint * v);
@@ -271,7 +271,7 @@ Outcome<Ellipse> fitEllipse(const std::vector<Pixel>& points) {
     // Exact points of a hyperbola: the wanted eigenvalue drowns beside a huge negative one, and its vector is round-off of the
     // inverse singular values. With those floored at the root of round-off the wanted one stands out again; no ellipse is near
     // these points, so that the eight digits left are more than the answer deserves.
-    const Eigen::Vector3d floored = s.cwiseMax(std::sqrt(kEps) * s(0));
+    const Eigen::Vector3d floored = s.cwiseMax(std::sqrt(kRoundOff) * s(0));
     const Eigen::Matrix3d w = svd.matrixV() * floored.cwiseInverse().asDiagonal();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> again(w.transpose() * constraint * w);
     quadratic = (w * again.eigenvectors().col(2)).normalized();

@@ -10,7 +10,7 @@
 namespace glint {
 namespace {
 constexpr double kZero = 1e-12;  // share of the largest eigenvalue below which one counts as 0
-constexpr double kEps = std::numeric_limits<double>::epsilon();
+constexpr double kUnitRoundOff = std::numeric_limits<double>::epsilon();
 
 /// @param slack  absolute round-off of `shape`'s entries.
 Outcome<Ellipsoid> fromShape(const Eigen::Vector3d& centre, const Eigen::Matrix3d& shape, double slack) {
@@ -39,7 +39,7 @@ std::optional<CentreShape> centreAndShape(const DualQuadric& dual) {
   if (w == 0) return std::nullopt;
   const Eigen::Vector3d c = 0.5 * (q.topRightCorner<3, 1>() + q.bottomLeftCorner<1, 3>().transpose()) / w;
   const Eigen::Matrix3d cc = c * c.transpose(), upper = q.topLeftCorner<3, 3>() / w;
-  CentreShape result{c, cc - 0.5 * (upper + upper.transpose()), 8 * kEps * (cc.norm() + upper.norm())};
+  CentreShape result{c, cc - 0.5 * (upper + upper.transpose()), 8 * kUnitRoundOff * (cc.norm() + upper.norm())};
   if (!result.shape.allFinite() || !c.allFinite()) return std::nullopt;
   return result;
 }
@@ -107,7 +107,7 @@ Outcome<Ellipse> outlineEllipse(const Ellipsoid& ellipsoid, const Projection& pr
   const Eigen::Vector2d offset = -(spread * g.row(2).transpose()) / d;
   const Eigen::Matrix2d shape = offset * offset.transpose() + spread * spread.transpose() / d;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(shape);
-  if (!(eigen.eigenvalues()(0) > 4 * kEps * eigen.eigenvalues()(1)))
+  if (!(eigen.eigenvalues()(0) > 4 * kUnitRoundOff * eigen.eigenvalues()(1)))
     return Failure{Reason::NotAnEllipse, "the outline is a segment (flat ellipsoid seen edge-on)"};
   Ellipse e;
   e.centre = origin + offset;

@@ -13,10 +13,10 @@ constexpr double kInner = 1.6;  // in footprints: the lobe is below 0.17 of its 
 constexpr double kOuter = 4.0;
 constexpr int kLeastPixels = 60;           // several per unknown
 constexpr std::size_t kMostPixels = 8000;  // a denser sample changes the fit by less than its own noise
-constexpr int kRounds = 8;
+constexpr int kTrimRounds = 8;
 constexpr double kNearlyAsGood = 1.1;  // of the spread: two tails that differ by less cannot be told apart
 
-struct Sample {
+struct BackgroundSample {
   Eigen::Matrix<double, 9, 1> row;
   double value;
 };
@@ -50,7 +50,7 @@ Background fitBackground(const Image& image, const std::vector<char>& usable, co
   const int stride = std::max(1, static_cast<int>(std::sqrt(cells / static_cast<double>(kMostPixels))));
   const double logLevel = std::log(footprint.level);
 
-  std::vector<Sample> samples;
+  std::vector<BackgroundSample> samples;
   for (int y = y0; y <= y1; y += stride)
     for (int x = x0; x <= x1; x += stride) {
       if (!usable[static_cast<std::size_t>(y) * image.width + x]) continue;
@@ -59,7 +59,7 @@ Background fitBackground(const Image& image, const std::vector<char>& usable, co
       if (rho2 < kInner * kInner || rho2 > kOuter * kOuter) continue;
       const double u = d.x() / result.scale, v = d.y() / result.scale;
       const double fall = tail == Tail::Ggx ? std::pow(1 + (1 / std::sqrt(footprint.level) - 1) * rho2, -2) : std::exp(logLevel * rho2);
-      Sample s;
+      BackgroundSample s;
       s.row << 1, u, v, u * u, u * v, v * v, fall, u * fall, v * fall;
       s.value = image.at(x, y);
       samples.push_back(s);
@@ -77,7 +77,7 @@ Background fitBackground(const Image& image, const std::vector<char>& usable, co
   // Values in the tenth column; nine rows of damping and a zero one below the pixels'.
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, 10>;
   Rows rows(static_cast<Eigen::Index>(samples.size()) + 10, 10);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kTrimRounds; ++round) {
     for (std::size_t i = 0; i < samples.size(); ++i) absolute[i] = std::abs(residual[i]);
     spread = 1.4826 * medianOf(absolute);
     // Tukey's constant; the floor keeps it above round-off of the values where the image is exactly the model.

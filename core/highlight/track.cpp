@@ -24,10 +24,10 @@ constexpr double kStepShare = 0.1;        // of the highlight's size, for the de
 constexpr double kLeastSlope = 0.02;      // of the squared size of a Jacobian: below, its determinant says nothing
 constexpr std::size_t kVoters = 160;      // highlights that vote on a candidate; more would not change which one wins
 constexpr std::size_t kLeastFrames = 3;   // any two rays nearly meet
-constexpr int kRounds = 10;
+constexpr int kVoteRounds = 10;
 
 /// A reflected ray at a pixel.
-struct Sample {
+struct RaySample {
   Eigen::Vector3d origin, direction;
 };
 
@@ -36,7 +36,7 @@ struct Item {
   std::size_t frame, highlight;
   ReflectedRay ray;
   Eigen::Matrix<double, 3, 2> across;  ///< basis across the ray
-  Sample next[2];                      ///< at `step` pixels along x and y
+  RaySample next[2];                      ///< at `step` pixels along x and y
   Pixel step;
   Eigen::Matrix2d tight, loose;        ///< metrics: d^T M d <= 1 is an inlier, d in pixels
 };
@@ -176,7 +176,7 @@ std::optional<Group> bestGroup(const std::vector<Item>& items, const Members& fr
   }
   if (!best) return std::nullopt;
   Members members = inliers(items, free, *best, &Item::tight);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kVoteRounds; ++round) {
     const std::optional<Light> light = lightOf(items, members);
     if (!light) break;
     Members next = inliers(items, free, *light, &Item::tight);
@@ -218,7 +218,7 @@ std::vector<double> containing(const std::vector<Item>& items, const std::vector
 
 /// Every item to the nearest light whose mirror point it contains, lights triangulated again from those that confirm them.
 void settle(const std::vector<Item>& items, const std::vector<TrackedFrame>& frames, std::vector<Group>& groups) {
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kVoteRounds; ++round) {
     std::vector<std::vector<double>> miss;
     for (const Group& g : groups) miss.push_back(containing(items, frames, g.light));
     std::vector<Members> next(groups.size());

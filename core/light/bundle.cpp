@@ -20,7 +20,6 @@
 namespace glint {
 namespace {
 using namespace bundling;
-constexpr double kStepPx = ContourEvidence::kStepPx;
 /// Of the contours' radius, to first order, below which a limit angle says that every contour point mirrors the light.
 constexpr double kLeastLimitShare = 0.01;
 constexpr double kLeastNoiseShare = 0.1;  ///< of the residuals' variance: below, moving weights would change nothing that can be seen
@@ -52,7 +51,7 @@ class AngleCost final : public ceres::CostFunction {
     Eigen::Vector2d slope(0, 0);
     if (share_ > 0) {
       slope << angle(*evidence_.right, light) - angle(*evidence_.left, light), angle(*evidence_.down, light) - angle(*evidence_.up, light);
-      slope /= 2 * kStepPx;
+      slope /= 2 * ContourEvidence::kStepPx;
       if (!(slope.norm() > 0)) return false;
       k *= std::pow(slope.norm() * k, -share_);
     }
@@ -64,7 +63,7 @@ class AngleCost final : public ceres::CostFunction {
       };
       Eigen::Vector4d byLight = k * at(s);
       if (share_ > 0)
-        byLight -= off * share_ * k / slope.squaredNorm() / (2 * kStepPx) *
+        byLight -= off * share_ * k / slope.squaredNorm() / (2 * ContourEvidence::kStepPx) *
                    (slope.x() * (at(*evidence_.right) - at(*evidence_.left)) + slope.y() * (at(*evidence_.down) - at(*evidence_.up)));
       for (int i = 0; i < size_; ++i) jacobians[0][i] = byLight(i);
     }

@@ -7,7 +7,6 @@
 
 namespace glint::bundling {
 namespace {
-constexpr double kStepPx = ContourEvidence::kStepPx;
 
 /// Direction to the light with N.L > 0, not normalised.
 Eigen::Vector3d towards(const SeenPoint& s, const Eigen::Vector4d& light) {
@@ -55,7 +54,7 @@ void reweight(std::vector<ContourEvidence>& points, const std::vector<AnglesArou
     const ContourEvidence& e = points[i];
     const AnglesAround& at = angles[i];
     const auto slope = [&](bool before, double low, bool after, double high) {
-      return ((after ? high : at.here) - (before ? low : at.here)) / ((before ? kStepPx : 0) + (after ? kStepPx : 0));
+      return ((after ? high : at.here) - (before ? low : at.here)) / ((before ? ContourEvidence::kStepPx : 0) + (after ? ContourEvidence::kStepPx : 0));
     };
     slopes.push_back(std::hypot(slope(e.left.has_value(), at.left, e.right.has_value(), at.right),
                                 slope(e.up.has_value(), at.up, e.down.has_value(), at.down)));
@@ -112,7 +111,7 @@ void unbias(std::vector<ContourEvidence>& points, const Attempt& a, double share
     e.biasPx = 0;
     if (!e.left || !e.right || !e.up || !e.down) continue;
     const auto& [here, left, right, up, down] = angles[i];
-    const double step2 = kStepPx * kStepPx;
+    const double step2 = ContourEvidence::kStepPx * ContourEvidence::kStepPx;
     const double xx = (left + right - 2 * here) / step2, yy = (up + down - 2 * here) / step2;
     double bend = xx + yy;
     if (share > 0 && e.leftUp && e.rightDown) {

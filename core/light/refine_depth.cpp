@@ -13,19 +13,18 @@
 
 #include "core/base/residual_spread.h"
 #include "core/geometry/polyline.h"
+#include "core/light/contour_evidence.h"
 #include "core/light/dense_solver.h"
 #include "core/light/left_out.h"
+#include "core/light/refining.h"
 
 namespace glint {
 namespace {
 
 using Terms = DepthCorrection::Terms;
-constexpr double kStepPx = 0.5;         // of the image gradient, as in the bundle
-constexpr int kRounds = 20, kIterations = 50;
+constexpr int kDepthRounds = 20, kIterations = 50;
 constexpr double kTolerance = 1e-10;    // the differences by the terms keep about as many digits
-constexpr double kSettled = 1e-6;       // of the unit light, the limit angle and the priors, between rounds: far below any band
-constexpr double kSystematic = 0.5;     // share of the points that count as independent; white noise leaves nearly all of them
-constexpr double kLeastNoisePx = 0.02;  // the accuracy of detection: below, the depth would be bent to round-off
+constexpr double kDepthSettled = 1e-6;       // of the unit light, the limit angle and the priors, between rounds: far below any band
 constexpr double kColumnStep = 1e-3;    // of a prior's standard deviation, for derivatives; the angle is smooth in the depth
 
 struct Monomials {
@@ -139,7 +138,7 @@ std::vector<double> residuals(const Problem& problem, const State& s, std::vecto
   for (const Point& p : problem.points) {
     const View& v = problem.views[p.view];
     const auto a = [&](const Sample& sample) { return problem.alpha(sample, v, s.light, s.c); };
-    const double slope = std::hypot(a(p.right) - a(p.left), a(p.down) - a(p.up)) / (2 * kStepPx);
+    const double slope = std::hypot(a(p.right) - a(p.left), a(p.down) - a(p.up)) / (2 * ContourEvidence::kStepPx);
     result.push_back(slope > 0 ? (a(p.at) - s.limit) / slope : 0.0);
     if (slopes) slopes->push_back(slope);
   }
@@ -212,10 +211,10 @@ class PointCost final : public ceres::CostFunction {
 
 /// Light, limit angle and the first `terms` terms together; weights and noise are renewed until nothing moves.
 State fitted(const Problem& problem, State state, const Terms& prior, int terms, double robustPx) {
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kDepthRounds; ++round) {
     std::vector<double> slopes;
     // What remains counts as noise; it falls as the depth explains more.
-    const double noise = std::clamp(rms(residuals(problem, state, &slopes)), kLeastNoisePx, 1.0);
+    const double noise = std::clamp(rms(residuals(problem, state, &slopes)), refining::kLeastNoisePx, 1.0);
     Eigen::VectorXd c = state.c.cwiseQuotient(prior).head(terms);
     State next = state;
     ceres::Problem ceresProblem;
@@ -239,7 +238,7 @@ State fitted(const Problem& problem, State state, const Terms& prior, int terms,
     const double moved = std::max({(next.light - state.light).norm(), std::abs(next.limit - state.limit) / state.limit,
                                    (next.c - state.c).cwiseQuotient(prior).norm()});
     state = next;
-    if (moved < kSettled) break;
+    if (moved < kDepthSettled) break;
   }
   return state;
 }
@@ -285,7 +284,7 @@ Outcome<DepthRefinement> refineDepth(const std::vector<BundleView>& given, const
         g.contour.size() > std::size_t(options.pointsPerView) ? resample(Polyline{g.contour, true}, options.pointsPerView) : g.contour;
     for (const Pixel& p : pixels) {
       const auto at = [&](double x, double y) { return sampleAt(g, p + Pixel(x, y)); };
-      const std::optional<Sample> here = at(0, 0), left = at(-kStepPx, 0), right = at(kStepPx, 0), up = at(0, -kStepPx), down = at(0, kStepPx);
+      const std::optional<Sample> here = at(0, 0), left = at(-ContourEvidence::kStepPx, 0), right = at(ContourEvidence::kStepPx, 0), up = at(0, -ContourEvidence::kStepPx), down = at(0, ContourEvidence::kStepPx);
       if (!here || !left || !right || !up || !down) continue;
       problem.points.push_back({*here, *left, *right, *up, *down, int(v)});
       problem.origin += problem.views[v].worldFromCamera * Eigen::Vector3d(here->depth * here->ray);
@@ -293,8 +292,8 @@ Outcome<DepthRefinement> refineDepth(const std::vector<BundleView>& given, const
     }
   }
   // A depth that is off leaves residuals that keep their sign along contours.
-  const bool systematic = bundle->rmsPx > kLeastNoisePx && bundle->uncertainty &&
-                          bundle->uncertainty->degreesOfFreedom < kSystematic * double(problem.points.size());
+  const bool systematic = bundle->rmsPx > refining::kLeastNoisePx && bundle->uncertainty &&
+                          bundle->uncertainty->degreesOfFreedom < refining::kSystematic * double(problem.points.size());
   if (!systematic || problem.points.size() < 4 + DepthCorrection::kTerms) return result;
   problem.origin /= double(problem.points.size());
   problem.scale = distance / double(problem.points.size());

@@ -11,7 +11,9 @@
 
 #include "core/base/residual_spread.h"
 #include "core/geometry/polyline.h"
+#include "core/light/contour_evidence.h"
 #include "core/light/left_out.h"
+#include "core/light/refining.h"
 
 namespace glint {
 namespace {
@@ -20,11 +22,8 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double kStepPx = 0.5;          // of the image gradient, as in the bundle
-constexpr int kRounds = 40;
-constexpr double kSettled = 1e-7;        // of the unit light, the limit angle and the priors, between rounds: far below any band
-constexpr double kSystematic = 0.5;      // share of the points that count as independent; white noise leaves nearly all of them
-constexpr double kLeastNoisePx = 0.02;   // the accuracy of detection: below, normals would be bent to round-off
+constexpr int kNormalRounds = 40;
+constexpr double kNormalsSettled = 1e-7;        // of the unit light, the limit angle and the priors, between rounds: far below any band
 constexpr std::size_t kLeastPoints = 30;
 constexpr std::size_t kMostPoints = 1500;  // of all views: more would say little more of bumps that are as wide as a highlight
 constexpr int kLeastPerView = 12;
@@ -150,7 +149,7 @@ Linearised linearised(const Problem& problem, const Basis& basis, double amplitu
     const Point& p = problem.points[std::size_t(i)];
     // The slope over the image is that of the surface as it is: bumps turn normals much more than they change its curvature.
     const auto beside = [&](std::size_t k) { return alphaOf(p.around[k], s.light); };
-    const double slope = std::hypot(beside(1) - beside(0), beside(3) - beside(2)) / (2 * kStepPx);
+    const double slope = std::hypot(beside(1) - beside(0), beside(3) - beside(2)) / (2 * ContourEvidence::kStepPx);
     if (!(slope > 0)) continue;
     result.slopes(i) = slope;
     const Seen at = Problem::corrected(p, amplitude * basis.gradientAt(i, s.c));
@@ -184,13 +183,13 @@ double objective(const VectorXd& residuals, const VectorXd& c, double noise, dou
 /// Gauss-Newton with renewed weights and noise. Only the points of `used` count.
 State fitted(const Problem& problem, const Basis& basis, double amplitude, State state, const std::vector<char>& used) {
   const Eigen::Index m = state.c.size(), n = Eigen::Index(problem.points.size());
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kNormalRounds; ++round) {
     const Linearised at = linearised(problem, basis, amplitude, state, true);
     std::vector<double> kept;
     for (Eigen::Index i = 0; i < n; ++i)
       if (used[std::size_t(i)]) kept.push_back(at.residuals(i));
     // What remains counts as noise; it falls as the normals explain more.
-    const double noise = std::clamp(rmsWithoutTail(kept), kLeastNoisePx, 1.0);
+    const double noise = std::clamp(rmsWithoutTail(kept), refining::kLeastNoisePx, 1.0);
     MatrixXd rows = MatrixXd::Zero(n + m, 4 + m);
     VectorXd right = VectorXd::Zero(n + m);
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -219,7 +218,7 @@ State fitted(const Problem& problem, const Basis& basis, double amplitude, State
     if (!accepted) break;
     const double moved = (next.light - state.light).norm() + std::abs(next.limit - state.limit) + (next.c - state.c).norm();
     state = next;
-    if (moved < kSettled) break;
+    if (moved < kNormalsSettled) break;
   }
   return state;
 }
@@ -244,7 +243,7 @@ std::vector<double> leftOutErrors(const Problem& problem, const Basis& basis, do
     std::vector<double> own;
     for (std::size_t k = 0; k < used.size(); ++k)
       if (!used[k]) own.push_back(r(Eigen::Index(k)));
-    errors.push_back(std::max(kLeastNoisePx, rms(Eigen::Map<VectorXd>(own.data(), Eigen::Index(own.size())))));
+    errors.push_back(std::max(refining::kLeastNoisePx, rms(Eigen::Map<VectorXd>(own.data(), Eigen::Index(own.size())))));
   }
   return errors;
 }
@@ -262,7 +261,7 @@ std::optional<Point> pointAt(const BundleView& view, const Pixel& pixel) {
   const std::optional<Seen> at = seen(pixel, &p.side);
   if (!at) return std::nullopt;
   p.at = *at;
-  const Pixel offsets[] = {{-kStepPx, 0}, {kStepPx, 0}, {0, -kStepPx}, {0, kStepPx}};
+  const Pixel offsets[] = {{-ContourEvidence::kStepPx, 0}, {ContourEvidence::kStepPx, 0}, {0, -ContourEvidence::kStepPx}, {0, ContourEvidence::kStepPx}};
   for (std::size_t k = 0; k < 4; ++k) {
     const std::optional<Seen> beside = seen(pixel + offsets[k]);
     if (!beside) return std::nullopt;
@@ -417,7 +416,7 @@ Outcome<NormalRefinement> refineNormals(const std::vector<BundleView>& views, co
   result.limitAngle = state.limit;
   // Normals that are off leave residuals that keep their sign along contours.
   const ResidualSpread before = residualSpread(list(plain), owners, 4, options.robustPx);
-  if (!(result.plainRmsPx > kLeastNoisePx) || !(before.degreesOfFreedom < kSystematic * double(problem.points.size()))) return result;
+  if (!(result.plainRmsPx > refining::kLeastNoisePx) || !(before.degreesOfFreedom < refining::kSystematic * double(problem.points.size()))) return result;
 
   const std::optional<Choice> choice = choose(problem, state, basis, sigma, highlightSize(problem));
   if (!choice) return result;

@@ -7,15 +7,14 @@
 #include <cmath>
 
 #include "core/geometry/polyline.h"
+#include "core/light/contour_evidence.h"
+#include "core/light/refining.h"
 
 namespace glint {
 namespace {
 
-constexpr double kStepPx = 0.5;     // of the image gradient, as in the bundle
 constexpr double kPoseStep = 0.02;  // of a standard deviation of the prior: central differences, far above the round-off of a hit
-constexpr int kRounds = 8;
-constexpr double kSystematic = 0.5;    // share of the points that count as independent; white noise leaves nearly all of them
-constexpr double kLeastNoisePx = 0.02;  // the accuracy of detection: below, poses would be bent to round-off
+constexpr int kPoseRounds = 8;
 
 using Correction = Eigen::Matrix<double, 6, 1>;  ///< turn (3) and shift (3) in the camera's frame, in standard deviations of the prior
 
@@ -80,10 +79,10 @@ std::optional<std::vector<Correction>> step(const std::vector<View>& views, cons
     }
     for (const Pixel& p : view.pixels) {
       const std::optional<Hit> at = hitAt(surface, camera, p);
-      const std::optional<Hit> l = hitAt(surface, camera, p - Pixel(kStepPx, 0)), r = hitAt(surface, camera, p + Pixel(kStepPx, 0)),
-                               u = hitAt(surface, camera, p - Pixel(0, kStepPx)), d = hitAt(surface, camera, p + Pixel(0, kStepPx));
+      const std::optional<Hit> l = hitAt(surface, camera, p - Pixel(ContourEvidence::kStepPx, 0)), r = hitAt(surface, camera, p + Pixel(ContourEvidence::kStepPx, 0)),
+                               u = hitAt(surface, camera, p - Pixel(0, ContourEvidence::kStepPx)), d = hitAt(surface, camera, p + Pixel(0, ContourEvidence::kStepPx));
       if (!at || !l || !r || !u || !d) continue;
-      const double slope = std::hypot(alphaOf(*r, light) - alphaOf(*l, light), alphaOf(*d, light) - alphaOf(*u, light)) / (2 * kStepPx);
+      const double slope = std::hypot(alphaOf(*r, light) - alphaOf(*l, light), alphaOf(*d, light) - alphaOf(*u, light)) / (2 * ContourEvidence::kStepPx);
       if (!(slope > 0)) continue;
       Eigen::VectorXd row = Eigen::VectorXd::Zero(columns + 1);
       row.head<3>() = chart.transpose() * incidentAngleByLight(at->position, at->normal, at->toCamera, light);
@@ -152,11 +151,11 @@ Outcome<PoseRefinement> refinePoses(const std::vector<BundleView>& given, const 
   // poses would only hand noise to the light.
   std::size_t points = 0;
   for (const View& v : views) points += v.pixels.size();
-  const bool systematic = bundle->rmsPx > kLeastNoisePx && bundle->uncertainty &&
-                          bundle->uncertainty->degreesOfFreedom < kSystematic * double(points);
-  for (int round = 0; systematic && round < kRounds; ++round) {
+  const bool systematic = bundle->rmsPx > refining::kLeastNoisePx && bundle->uncertainty &&
+                          bundle->uncertainty->degreesOfFreedom < refining::kSystematic * double(points);
+  for (int round = 0; systematic && round < kPoseRounds; ++round) {
     // What remains counts as the contours' noise; it falls as the poses explain more.
-    const double noise = std::clamp(bundle->rmsPx, kLeastNoisePx, 1.0);
+    const double noise = std::clamp(bundle->rmsPx, refining::kLeastNoisePx, 1.0);
     double best = cost(*bundle, views, options, noise);
     const std::optional<std::vector<Correction>> change = step(views, *bundle, options.robustPx, noise);
     if (!change) break;

@@ -14,7 +14,7 @@
 namespace glint {
 namespace {
 
-constexpr int kAnglePoints = 36;  // of a contour, for the first guess of the roughness
+constexpr int kWidthPoints = 36;  // of a contour, for the first guess of the roughness
 constexpr std::size_t kFewestContours = 3;    // that tell a lamp's shape
 // Of a contour's radius: right lobes leave a tenth of it between contours and pixels, 2 % where JPEG of quality 20 moves the contours.
 constexpr double kContradiction = 0.025;
@@ -52,7 +52,7 @@ std::optional<PixelFit> withExtent(const std::vector<TrainingView>& views, const
   };
   bool tried = false;
   if (contours.size() >= kFewestContours) {
-    const double alpha = medianContourAngle(views, point.model.lamp.centre, kAnglePoints);
+    const double alpha = medianContourAngle(views, point.model.lamp.centre, kWidthPoints);
     const Outcome<RadianceFit> said =
         alpha > 0 ? searchRadiance(lobes, contours, point.model.lamp.centre, std::min(alpha, kWidestStart), choices, radianceFitOptionsOf(settings))
                   : Outcome<RadianceFit>(Failure{Reason::NoLight, ""});
@@ -147,7 +147,7 @@ Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const s
   if (const std::optional<Light> mean = meanRay(views)) starts.push_back(*mean);
   Outcome<PixelFit> best = Failure{Reason::NoLight, "no reflected ray to start from"};
   for (const Light& start : starts) {
-    const double alpha = medianContourAngle(views, start, kAnglePoints);
+    const double alpha = medianContourAngle(views, start, kWidthPoints);
     if (!(alpha > 0)) continue;
     const double roughness = std::clamp(std::tan(alpha) / std::sqrt(-std::log(level)), 1e-3, 1.0);  // a start within the lobes' range
     Outcome<PixelFit> fit = fitPixels(lobes, patches, start, roughness);

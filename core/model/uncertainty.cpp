@@ -6,11 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "core/light/contour_evidence.h"
+
 namespace glint {
 namespace {
 
 constexpr double kEdgePx = 0.5;       // a polished vertex lies on the level to 1e-9 px: farther off it is on the surface's edge
-constexpr double kStepPx = 0.5;      // of the image gradient
 constexpr double kColumnStep = 0.25;  // of a standard deviation: small for the derivative, far above the walk's tolerance
 
 /// Signed distance along `normal` from p to the nearest crossing of a polyline; NaN when the line through p misses it.
@@ -59,9 +60,9 @@ Eigen::MatrixXd levelSetShiftsPx(const std::vector<Pixel>& points, const Surface
     const auto slope = [&](const Pixel& by) {
       const std::optional<double> before = valueAt(points[i] - by), after = valueAt(points[i] + by);
       if (!before && !after) return 0.0;
-      return (after.value_or(*here) - before.value_or(*here)) / ((before ? kStepPx : 0) + (after ? kStepPx : 0));
+      return (after.value_or(*here) - before.value_or(*here)) / ((before ? ContourEvidence::kStepPx : 0) + (after ? ContourEvidence::kStepPx : 0));
     };
-    const double gradient = std::hypot(slope({kStepPx, 0}), slope({0, kStepPx}));
+    const double gradient = std::hypot(slope({ContourEvidence::kStepPx, 0}), slope({0, ContourEvidence::kStepPx}));
     if (!(gradient > 0) || !(std::abs(*here - field.level) <= kEdgePx * gradient)) continue;
     const std::optional<Eigen::VectorXd> change = slopes(*at);
     if (!change || !change->allFinite()) continue;

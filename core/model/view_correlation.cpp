@@ -18,7 +18,7 @@ constexpr double kLongest = 4;            // times the extent of the views: long
 constexpr int kIterations = 40;
 constexpr double kSettled = 1e-3;         // relative change of the variances: far below what a few views tell of them
 constexpr double kNothing = 1e-6;         // of the variance of the noise: what moves no contour visibly
-constexpr double kOpen = 1e-9;            // a parameter that moves no shape, to round-off
+constexpr double kOpenParameter = 1e-9;            // a parameter that moves no shape, to round-off
 
 /// Distance of every view to its nearest neighbour, the middle one.
 double spacingOf(const std::vector<const ViewCoefficients*>& views) {
@@ -52,7 +52,7 @@ class Stacked {
       j.row(i) = views[r.view]->byParameter.row(Eigen::Index(r.shape));
     }
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(j);
-    qr.setThreshold(kOpen);
+    qr.setThreshold(kOpenParameter);
     basis_ = qr.householderQ() * Eigen::MatrixXd::Identity(n, qr.rank());
     noise_ = std::max(noiseVariance, 1e-12 * z_.squaredNorm() / double(n));  // exact residuals keep a covariance that can be inverted
   }

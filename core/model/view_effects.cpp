@@ -24,7 +24,7 @@ constexpr double kBorrowed = 4;         // degrees of freedom that offset, shift
 // Eigenvalues of the parameters' information, relative to the largest, in units in which a fit without prior has equal ones: what lies
 // below was held by a prior.
 constexpr double kHeld = 0.2;
-constexpr double kOpen = 1e-9;  // a direction that moves no contour, to round-off
+constexpr double kOpenDirection = 1e-9;  // a direction that moves no contour, to round-off
 constexpr double kNormal95 = 1.959964;
 constexpr double kWidthTolerance = 0.01;  // of a half width: far below what a few views tell of it
 constexpr double kWildSigmas = 4;
@@ -121,7 +121,7 @@ ViewEffects::ViewEffects(const std::vector<ViewResiduals>& views, double robustP
   Eigen::VectorXd inverse = Eigen::VectorXd::Zero(parameters), root = inverse;
   for (Eigen::Index i = 0; i < parameters; ++i) {
     const double e = eigen.eigenvalues()(i);
-    if (!(e > kOpen * largest)) continue;
+    if (!(e > kOpenDirection * largest)) continue;
     inverse(i) = 1 / std::max(e, kHeld * largest);
     root(i) = 1 / std::sqrt(std::max(e, kHeld * largest));
   }

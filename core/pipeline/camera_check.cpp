@@ -17,7 +17,7 @@ namespace {
 constexpr int kMostViews = 8, kLeastViews = 4;
 constexpr double kClearly = 0.5;        // of the residual as given: what is left by a change that is the truth is far less
 constexpr double kClearlyFlip = 0.2;    // mirrored images leave pixels where the right ones leave hundredths
-constexpr double kVisiblePx = 0.02;     // residuals as given below this are what detection leaves on good data
+constexpr double kDetectionPx = 0.02;     // residuals as given below this are what detection leaves on good data
 constexpr double kGoodRadii = 0.01;     // residual over the contour's radius below which a light explains the contours
 constexpr double kLeastFocalPct = 0.3;  // of errors that are told: smaller ones hide in those of surfaces
 constexpr double kShiftSlackPx = 0.2;   // of what the highlights ask for about half a pixel
@@ -213,7 +213,7 @@ class Check {
   }
 
   void intrinsics(const Fitted& given, const std::vector<int>& all) {
-    if (given.rmsPx < kVisiblePx) return;
+    if (given.rmsPx < kDetectionPx) return;
     // Steps are large against detection and small against what bends the parabola.
     const Change shift{0.25, 0.25, 0, false, false}, focal{0, 0, 0.005, false, false};
     const std::optional<double> byShift = least(shift, given, all), byFocal = least(focal, given, all);

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "core/base/elapsed.h"
 #include "core/base/parallel.h"
 #include "core/evaluate/metrics.h"
 #include "core/pipeline/lobe_stage.h"

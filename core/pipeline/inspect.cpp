@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 
+#include "core/base/elapsed.h"
 #include "core/base/parallel.h"
 #include "core/model/pixel_evidence.h"
 #include "core/model/plausible.h"
@@ -19,10 +20,6 @@
 
 namespace glint {
 namespace {
-
-double microsecondsSince(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
-}
 
 std::string join(const std::vector<int>& numbers) {
   std::string text;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/elapsed.h"
 #include "core/base/number_text.h"
 #include "core/model/plausible.h"
 #include "core/pipeline/training.h"

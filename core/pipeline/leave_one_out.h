@@ -52,10 +52,6 @@ std::optional<PatchChoice> choosePatches(const Inspection& inspection, const Hig
                                          const std::vector<Fold>& folds, const std::vector<Answer>& exact, double mostPct,
                                          const ProgressFn& progress);
 
-using Clock = std::chrono::steady_clock;
-inline double microsecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-}
 /// "0.123 %".
 std::string percentText(double v);
 

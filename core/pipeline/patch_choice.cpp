@@ -4,6 +4,7 @@
 #include <limits>
 #include <set>
 
+#include "core/base/elapsed.h"
 #include "core/base/number_text.h"
 #include "core/evaluate/metrics.h"
 #include "core/evaluate/summary.h"
@@ -20,12 +21,6 @@ namespace {
 constexpr double kPatchErrorPct = 0.5;
 constexpr int kOthersLookedAt = 12;  ///< frames to predict, evenly spread
 constexpr int kTimedViews = 3, kTimedRepeats = 3;
-
-std::string number(const char* pattern, double v) {
-  char buffer[40];
-  printText(buffer, sizeof buffer, pattern, v);
-  return buffer;
-}
 
 /// Frames to predict with the light that they show and a fit of it, at most kOthersLookedAt, evenly spread.
 struct Other {
@@ -77,13 +72,13 @@ std::optional<PatchChoice> choosePatches(const Inspection& inspection, const Hig
     c.goodEnough = goodEnough;
     c.timeUs = microsecondsSince(start);
     c.why = (goodEnough ? "Walks on local quadrics are good enough: " : "Walks stay exact: ") + why + " (found in " +
-            number("%.3g ms).", c.timeUs * 1e-3);
+            formatted("%.3g ms).", c.timeUs * 1e-3);
     return c;
   };
   const auto tooCurved = [&] { return c.variation > kLargestVariation; };
   const auto curved = [&](const std::string& id) {
-    return decided(false, "over the highlight of frame " + id + " the curvature varies by " + number("%.2g", c.variation) +
-                              ", and local quadrics are good enough up to " + number("%g", kLargestVariation));
+    return decided(false, "over the highlight of frame " + id + " the curvature varies by " + formatted("%.2g", c.variation) +
+                              ", and local quadrics are good enough up to " + formatted("%g", kLargestVariation));
   };
   const auto checkStop = [&](int done, int total) {
     if (!report(progress, {"local quadrics", done, total})) throw Stopped{};
@@ -144,9 +139,9 @@ std::optional<PatchChoice> choosePatches(const Inspection& inspection, const Hig
   };
   c.predictUs = timeOf(onPatches);
   c.exactUs = timeOf(settings);
-  const std::string times = number("%.3g us", c.predictUs) + " instead of " + number("%.3g us", c.exactUs) + " a prediction";
-  return decided(true, "over a highlight the curvature varies by at most " + number("%.2g", c.variation) + " (they serve up to " +
-                           number("%g", kLargestVariation) + "), the error leaving one view out is " + percentText(c.meanPct) +
+  const std::string times = formatted("%.3g us", c.predictUs) + " instead of " + formatted("%.3g us", c.exactUs) + " a prediction";
+  return decided(true, "over a highlight the curvature varies by at most " + formatted("%.2g", c.variation) + " (they serve up to " +
+                           formatted("%g", kLargestVariation) + "), the error leaving one view out is " + percentText(c.meanPct) +
                            " (the rule allows " + percentText(mostPct) + "), and they take " + times);
 }
 

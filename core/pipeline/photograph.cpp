@@ -17,7 +17,7 @@ struct Exposure {
   double factor = 1, albedo = 0;
 };
 
-std::shared_ptr<const Surface> surfaceOf(const Inspection& in, int frame) {
+std::shared_ptr<const Surface> curvedSurface(const Inspection& in, int frame) {
   Outcome<std::shared_ptr<const Surface>> surface = in.surfaces->surfaceOf(frame, NormalPolicy::Curved);
   return surface ? *surface : nullptr;
 }
@@ -38,7 +38,7 @@ Outcome<Exposure> exposureOf(const Inspection& in, const Material& material) {
   if (!brightest || !(brightest->peakValue > 0))
     return Failure{Reason::NoHighlight, "no frame of the sequence shows a highlight"};
   const Frame& f = in.scene->frames[std::size_t(frame)];
-  const std::shared_ptr<const Surface> surface = surfaceOf(in, frame);
+  const std::shared_ptr<const Surface> surface = curvedSurface(in, frame);
   const Ray ray = f.camera.ray(brightest->peak);
   const Outcome<SurfacePoint> hit = surface ? surface->firstHit(ray) : Outcome<SurfacePoint>(Failure{Reason::NoSurface, f.id});
   double matt = 0;

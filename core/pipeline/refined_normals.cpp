@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/number_text.h"
+#include "core/light/contour_evidence.h"
 #include "core/pipeline/training.h"
 #include "core/reflectance/pixel_patch.h"
 #include "core/reflectance/radiance_field.h"
@@ -14,7 +15,6 @@ namespace glint {
 namespace {
 
 constexpr int kRounds = 2;        // what a lobe adds to the limit angle hardly depends on the bumps
-constexpr double kStepPx = 0.5;   // of the image gradient, as in the fits
 constexpr double kScanStepPx = 16;
 
 double rms(const std::vector<double>& perView) {
@@ -67,8 +67,8 @@ class LobeAngles {
       const std::optional<double> log = view.field.at(q);
       return log ? std::sqrt(std::max(0.0, *view.top - *log)) : std::nan("");
     };
-    const Pixel x(kStepPx, 0), y(0, kStepPx);
-    const auto slope = [&](const auto& f) { return std::hypot(f(p + x) - f(p - x), f(p + y) - f(p - y)) / (2 * kStepPx); };
+    const Pixel x(ContourEvidence::kStepPx, 0), y(0, ContourEvidence::kStepPx);
+    const auto slope = [&](const auto& f) { return std::hypot(f(p + x) - f(p - x), f(p + y) - f(p - y)) / (2 * ContourEvidence::kStepPx); };
     const double distance = (root(p) - view.level) / slope(root);
     const double result = angle(p) - distance * slope(angle);
     return std::isfinite(result) ? std::optional<double>(result) : std::nullopt;

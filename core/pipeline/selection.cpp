@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 
+#include "core/base/elapsed.h"
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
 #include "core/evaluate/summary.h"

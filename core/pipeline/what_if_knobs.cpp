@@ -17,7 +17,7 @@ constexpr double kCameraReach = 0.1;  // of the working distance: an error of ca
 constexpr double kSteps = 200;        // of a slider from end to end
 const char* const kAxes[] = {"x", "y", "z"};
 
-ParamSpec number(const std::string& key, const std::string& title, const std::string& unit, double neutral, double min,
+ParamSpec numberKnob(const std::string& key, const std::string& title, const std::string& unit, double neutral, double min,
                  double max, double step, const std::string& help) {
   ParamSpec s;
   s.key = key;
@@ -73,7 +73,7 @@ void addLights(std::vector<WhatIfKnob>& knobs, const Scene& scene, double distan
     const double reach = far ? 1.0 : kLightReach * distance;
     for (int axis = 0; axis < 3; ++axis)
       knobs.push_back({"Light " + light.id,
-                       number("light." + light.id + "." + kAxes[axis], std::string("Shift ") + kAxes[axis], far ? "" : "m", 0,
+                       numberKnob("light." + light.id + "." + kAxes[axis], std::string("Shift ") + kAxes[axis], far ? "" : "m", 0,
                               -reach, reach, roundStep(2 * reach), "Moves the lamp along the world's axis."),
                        true, [id = light.id, axis](const WhatIf& w) { return shiftOf(w, id)(axis); },
                        [id = light.id, axis](WhatIf& w, double v) {
@@ -92,7 +92,7 @@ void addSurface(std::vector<WhatIfKnob>& knobs, const Scene& scene, const std::s
   std::string title = shape->name;
   title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
   knobs.push_back({"Surface " + id,
-                   number("surface." + id, title, shape->unit, shape->value, shape->min, shape->max,
+                   numberKnob("surface." + id, title, shape->unit, shape->value, shape->min, shape->max,
                           roundStep(shape->max - shape->min), "The surface that every camera sees, bent or resized."),
                    true,
                    [id, shape](const WhatIf& w) {
@@ -111,7 +111,7 @@ void addPose(std::vector<WhatIfKnob>& knobs, const Scene& scene, int frame, doub
   const std::string id = scene.frames[std::size_t(frame)].id, group = "Camera of frame " + id;
   for (int axis = 0; axis < 3; ++axis)
     knobs.push_back({group,
-                     number("pose.rotate." + std::string(kAxes[axis]), std::string("Turn about ") + kAxes[axis], "deg", 0, -5, 5,
+                     numberKnob("pose.rotate." + std::string(kAxes[axis]), std::string("Turn about ") + kAxes[axis], "deg", 0, -5, 5,
                             0.02, "Turns the camera about its centre; x right, y down, z forward."),
                      false, [frame, axis](const WhatIf& w) { return degrees(lookUp(w.poses, frame).rotation(axis)); },
                      [frame, axis](WhatIf& w, double v) {
@@ -122,7 +122,7 @@ void addPose(std::vector<WhatIfKnob>& knobs, const Scene& scene, int frame, doub
   const double reach = kCameraReach * distance;
   for (int axis = 0; axis < 3; ++axis)
     knobs.push_back({group,
-                     number("pose.move." + std::string(kAxes[axis]), std::string("Move along ") + kAxes[axis], "m", 0, -reach,
+                     numberKnob("pose.move." + std::string(kAxes[axis]), std::string("Move along ") + kAxes[axis], "m", 0, -reach,
                             reach, roundStep(2 * reach), "Moves the camera along its own axis."),
                      false, [frame, axis](const WhatIf& w) { return lookUp(w.poses, frame).translation(axis); },
                      [frame, axis](WhatIf& w, double v) {
@@ -139,7 +139,7 @@ void addHighlight(std::vector<WhatIfKnob>& knobs, const Scene& scene, int frame,
   const std::string group = "Highlight " + std::to_string(index + 1) + " of frame " + scene.frames[std::size_t(frame)].id;
   const auto add = [&](const std::string& key, const std::string& title, const std::string& unit, double neutral, double min,
                        double max, double step, const std::string& help, auto member) {
-    knobs.push_back({group, number("highlight." + std::to_string(index) + "." + key, title, unit, neutral, min, max, step, help),
+    knobs.push_back({group, numberKnob("highlight." + std::to_string(index) + "." + key, title, unit, neutral, min, max, step, help),
                      false,
                      [at, member](const WhatIf& w) {
                        HighlightChange change = lookUp(w.highlights, at);
@@ -174,7 +174,7 @@ std::vector<WhatIfKnob> whatIfKnobs(const Scene& scene, int frame, int highlight
   addLights(knobs, scene, distance);
   addSurface(knobs, scene, scene.frames[std::size_t(frame)].surface);
   knobs.push_back({"Lobe",
-                   number("roughness", "Roughness", "", roughness, std::min(0.01, roughness), std::max(0.5, roughness), 0.005,
+                   numberKnob("roughness", "Roughness", "", roughness, std::min(0.01, roughness), std::max(0.5, roughness), 0.005,
                           "m of the lobe that makes the contours."),
                    true, [](const WhatIf& w) { return w.roughness; }, [](WhatIf& w, double v) { w.roughness = v; }});
   addPose(knobs, scene, frame, distance);

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kPoorShare = 0.1;    // of the radius: a wrong lobe leaves less, a wrong start leaves more
 constexpr double kDoubtShare = 0.02;  // of the radius: a right lobe leaves less
-constexpr double kLeastGain = 0.2;    // of the sum of squares, before a size is believed
-constexpr double kLeastRadiusSquared = 1e-10;  // normalised: where a radius ends that is none
+constexpr double kSphereGain = 0.2;    // of the sum of squares, before a size is believed
+constexpr double kNoRadiusSquared = 1e-10;  // normalised: where a radius ends that is none
 // Other starts are judged by a short fit to few points; the most promising are then fitted in full.
 constexpr int kScreenPoints = 16, kScreenIterations = 15;
 constexpr std::size_t kPromising = 3;
@@ -109,7 +109,7 @@ Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& vie
   }
   if (!std::isfinite(best.cost) || !best.converged) return noMinimum(problem, best, iterations);
   // A size that the contours do not show would only take up noise: it must promise, and then keep, a clear gain.
-  if (options.lightSize && good(best) && problem.gainBySize(best) > kLeastGain * best.cost) {
+  if (options.lightSize && good(best) && problem.gainBySize(best) > kSphereGain * best.cost) {
     // The width seen is that of light and lobe together: from a light that is narrower, and from one that is wider than the lobe.
     const Attempt point = best;
     for (const auto& [radius, width] : {std::pair{1.0, 0.9}, std::pair{1.6, 0.5}}) {
@@ -120,8 +120,8 @@ Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& vie
       start.at(lobe::kLogRoughness) += std::log(width);
       const Attempt sized = problem.solve(start);
       iterations += sized.iterations;
-      if (sized.converged && sized.cost < (1 - kLeastGain) * point.cost && sized.cost < best.cost &&
-          sized.state.at(lobe::kRadiusSquared) > 2 * kLeastRadiusSquared)
+      if (sized.converged && sized.cost < (1 - kSphereGain) * point.cost && sized.cost < best.cost &&
+          sized.state.at(lobe::kRadiusSquared) > 2 * kNoRadiusSquared)
         best = sized;
       if (problem.leavesNoiseOnly(best)) break;
     }

@@ -14,10 +14,10 @@ namespace glint {
 namespace {
 
 // Of the sum of squares over their mean: three standard deviations, before a cosine power is preferred to a microfacet lobe.
-constexpr double kClearGain = 9;
+constexpr double kMicrofacetGain = 9;
 constexpr std::size_t kPromisingStarts = 6;  // of those that a short fit to few points likes best
 constexpr int kMostRounds = 3;               // of lobes that start again from a better one: each round must have found a better light
-constexpr double kNarrowest = 1e-4, kWidest = 1.0;  // roughness of first guesses
+constexpr double kNarrowestGuess = 1e-4, kWidestGuess = 1.0;  // roughness of first guesses
 
 bool isMicrofacet(Lobe lobe) { return lobe == Lobe::TorranceSparrow || lobe == Lobe::Ggx; }
 
@@ -48,7 +48,7 @@ class PointSearch {
   const RadianceFit& fit() const { return found_.at(*best_); }
   bool explains() const { return best_ && !fit().poor; }
   double level() const { return views_.empty() ? 0.5 : views_.front().level; }
-  double roughnessFor(Lobe lobe, double width) const { return std::clamp(roughnessOf(lobe, width, level()), kNarrowest, kWidest); }
+  double roughnessFor(Lobe lobe, double width) const { return std::clamp(roughnessOf(lobe, width, level()), kNarrowestGuess, kWidestGuess); }
 
   static bool isBetter(const RadianceFit& a, const RadianceFit& b) { return a.poor != b.poor ? b.poor : a.cost < b.cost; }
 
@@ -92,7 +92,7 @@ class PointSearch {
     const RadianceFit* microfacet = nullptr;
     for (const auto& [lobe, f] : found_)
       if (isMicrofacet(lobe) && (!microfacet || isBetter(f, *microfacet))) microfacet = &f;
-    if (microfacet && !microfacet->poor && microfacet->cost - fit().cost < kClearGain * fit().cost / fit().points) return *microfacet;
+    if (microfacet && !microfacet->poor && microfacet->cost - fit().cost < kMicrofacetGain * fit().cost / fit().points) return *microfacet;
     return fit();
   }
 

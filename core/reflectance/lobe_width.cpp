@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-constexpr double kWidest = 1.4;  // rad
+constexpr double kWidestAngle = 1.4;  // rad
 
 /// log of the lobe's value in the mirror direction over that at theta.
 double fall(Lobe lobe, double m, double theta) {
@@ -28,7 +28,7 @@ double fall(Lobe lobe, double m, double theta) {
 double widthOf(Lobe lobe, double roughness, double level) {
   require(roughness > 0 && std::isfinite(roughness) && level > 0 && level < 1, "widthOf: roughness and level");
   // The last crossing: a wide Beckmann lobe first rises, because 1 / cos^4 outweighs its exponential there.
-  double low = 0, high = kWidest;  // a GGX lobe with m near 1 never falls that far
+  double low = 0, high = kWidestAngle;  // a GGX lobe with m near 1 never falls that far
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);
     (fall(lobe, roughness, middle) < -std::log(level) ? low : high) = middle;

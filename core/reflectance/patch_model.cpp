@@ -14,7 +14,7 @@ namespace {
 constexpr double kRobust = 0.01;     // share of the top: beyond it a residual is no noise of an image that can be used
 constexpr double kDarkest = 0.05;    // of the top: darker pixels weigh no more
 constexpr int kReweightings = 12;
-constexpr double kSettled = 1e-9;    // of the coefficients, relative
+constexpr double kCoefficientsSettled = 1e-9;    // of the coefficients, relative
 constexpr double kSampledFrom = 0.4; // variance in cells: from here on a sampled Gaussian has its moments to 4e-4
 
 /// Taps of a kernel with the variance given, in cells: three where that is small, else a sampled Gaussian.
@@ -249,7 +249,7 @@ LinearFit robustFit(const FramePatches& frame, const LobeImage& image, Backgroun
     fit = linearFit(frame, image, kind, at, weights);
     if (!fit.solved) return fit;
     for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = robustWeight(fit.residual[i]);
-    if (before.size() > 0 && (fit.coefficients - before).norm() <= kSettled * fit.coefficients.norm()) break;
+    if (before.size() > 0 && (fit.coefficients - before).norm() <= kCoefficientsSettled * fit.coefficients.norm()) break;
   }
   // With the weights as they are left: whoever holds them and moves the lobe a little compares with this.
   return linearFit(frame, image, kind, at, weights);

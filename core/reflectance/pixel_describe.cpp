@@ -14,7 +14,7 @@ namespace {
 
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr double kPoorShare = 0.1;       // of the contour's radius, or of the top: what a lobe that explains the pixels never leaves
+constexpr double kUnexplainedShare = 0.1;       // of the contour's radius, or of the top: what a lobe that explains the pixels never leaves
 constexpr double kPatternShare = 0.01;   // of the radius: right lobes, lamps and surfaces leave less than a tenth of it, but for noise
 constexpr double kInsideShare = 0.1;     // of the top: cells that show the highlight
 constexpr double kEdgeLow = 0.3, kEdgeHigh = 0.7;  // of the top: cells at the contour
@@ -105,11 +105,11 @@ void describeResiduals(const PixelProblem& pixels, PixelFit& fit) {
         squares += fit.residualPx.back() * fit.residualPx.back();
         count += 1;
       }
-      fit.poor = fit.poor || !(fit.relativeRms.back() < kPoorShare);
+      fit.poor = fit.poor || !(fit.relativeRms.back() < kUnexplainedShare);
     }
   }
   fit.rmsPx = count > 0 ? std::sqrt(squares / count) : std::nan("");
-  fit.poor = fit.poor || unexplained || !(fit.rmsPx <= kPoorShare * pixels.evidence().radiusPx);
+  fit.poor = fit.poor || unexplained || !(fit.rmsPx <= kUnexplainedShare * pixels.evidence().radiusPx);
 }
 
 /// Residuals of neighbouring cells go together along rows and along columns, so that the inflation that residualSpread() sees along

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kStep = 1e-6;       // of the differences by L and log m: both of the order of one
 constexpr double kBlurStep = 1e-3;   // px^2
-constexpr double kNarrowest = 1e-5;  // roughness of a mirror: no pixel shows its lobe
-constexpr double kWidest = 3;        // roughness beyond which there is no highlight
+constexpr double kMirrorRoughness = 1e-5;  // roughness of a mirror: no pixel shows its lobe
+constexpr double kNoHighlightRoughness = 3;        // roughness beyond which there is no highlight
 constexpr double kLeastSizeSquared = 1e-12;  // of the lamp's radius, normalised: keeps differences finite
 constexpr double kLargestBlurPx = 12;        // beyond it an image shows no contour that could be compared
 constexpr int kFinerRules = 3;               // times that a lamp may outgrow its quadrature
@@ -52,7 +52,7 @@ class PixelCost final : public ceres::CostFunction {
   }
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     const State at = stateOf(parameters, shape_);
-    if (!(at.logRoughness < std::log(kWidest)) || !(at.logRoughness > std::log(kNarrowest))) return false;
+    if (!(at.logRoughness < std::log(kNoHighlightRoughness)) || !(at.logRoughness > std::log(kMirrorRoughness))) return false;
     if (shape_ == lobe::LampShape::Segment && !(at.halfAxis.norm() > 0)) return false;
     if (!problem_.residualsAt(at, residuals)) return false;
     if (!jacobians) return true;

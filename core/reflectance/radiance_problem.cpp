@@ -23,7 +23,7 @@ constexpr int kMaxFootSteps = 4;
 constexpr double kFootPx = 1e-4;  // a foot this close serves: its error enters the residual in second order
 constexpr double kFarthestFootPx = 8;
 constexpr double kSigmaOfMedian = 1.4826;      // standard deviation over median absolute deviation of a normal distribution
-constexpr double kWidest = 3;                  // roughness of a lobe that falls to half at 70 degrees and more: no highlight
+constexpr double kWidestRoughness = 3;                  // roughness of a lobe that falls to half at 70 degrees and more: no highlight
 constexpr double kNoiseShare = 1.2;            // of the noise's sigma: what a right lobe leaves of it, with some reserve
 constexpr double kSagittaPx = 0.02;            // of contours as polylines
 constexpr double kExactPx = 1e-7;              // residuals of round-off, of which no step can be told better than another
@@ -86,7 +86,7 @@ Lamp RadianceProblem::inWorld(const State& state) const {
   return lamp;
 }
 
-bool RadianceProblem::tooWide(const State& state) { return !(state.at(kLogRoughness) < std::log(kWidest)); }
+bool RadianceProblem::tooWide(const State& state) { return !(state.at(kLogRoughness) < std::log(kWidestRoughness)); }
 
 double RadianceProblem::robust(double r) const {
   return r <= options_.robustPx ? r * r : options_.robustPx * (2 * r - options_.robustPx);

@@ -13,10 +13,10 @@
 namespace glint {
 namespace {
 
-constexpr double kLeastGain = 0.2;      // of the sum of squares, before a length is believed
+constexpr double kSegmentGain = 0.2;      // of the sum of squares, before a length is believed
 constexpr std::size_t kLeastFrames = 3;  // that a comparison of left-out ones needs
-constexpr int kScreenPoints = 16, kScreenIterations = 20;
-constexpr std::size_t kPromising = 3;
+constexpr int kAxisScreenPoints = 16, kAxisScreenIterations = 20;
+constexpr std::size_t kPromisingAxes = 3;
 constexpr int kLeftOutPoints = 24;  // a view: enough to compare two models
 constexpr double kStartLength = 0.1;  // half the lamp's length over its distance
 // Where a lamp's length takes a part of the width that is seen, the lobe is narrower than the contours; both are tried.
@@ -32,8 +32,8 @@ struct Start {
 /// first.
 std::vector<Start> screened(Lobe lobe, const std::vector<RadianceView>& views, const Light& light, double widthRad,
                             const std::optional<Eigen::Vector3d>& promised, RadianceFitOptions options) {
-  options.pointsPerView = std::min(options.pointsPerView, kScreenPoints);
-  options.maxIterations = std::min(options.maxIterations, kScreenIterations);
+  options.pointsPerView = std::min(options.pointsPerView, kAxisScreenPoints);
+  options.maxIterations = std::min(options.maxIterations, kAxisScreenIterations);
   Outcome<lobe::ContourEvidence> gathered = lobe::gatherEvidence(views, options.pointsPerView);
   if (!gathered) return {};
   lobe::RadianceProblem problem(lobe, views, *std::move(gathered), options);
@@ -59,7 +59,7 @@ std::vector<Start> screened(Lobe lobe, const std::vector<RadianceView>& views, c
       starts.push_back({problem.inWorld(a.state), a.state.roughness(), a.cost / problem.points()});
     }
   std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.cost < b.cost; });
-  if (starts.size() > kPromising) starts.resize(kPromising);
+  if (starts.size() > kPromisingAxes) starts.resize(kPromisingAxes);
   return starts;
 }
 
@@ -97,7 +97,7 @@ std::optional<RadianceFit> fitSegment(const std::vector<Lobe>& lobes, const std:
     if (!gathered) return std::nullopt;
     lobe::RadianceProblem problem(plain->lobe, views, *std::move(gathered), options);
     const lobe::RadianceProblem::SegmentGain gain = problem.gainByLength(problem.start(plain->light, plain->roughness));
-    if (!(gain.gain > kLeastGain * plain->cost)) return std::nullopt;
+    if (!(gain.gain > kSegmentGain * plain->cost)) return std::nullopt;
     promised = gain.halfAxis;
     from = plain->light;
     width = widthOf(plain->lobe, plain->roughness, views.front().level);
@@ -119,7 +119,7 @@ std::optional<RadianceFit> fitSegment(const std::vector<Lobe>& lobes, const std:
   }
   if (best->poor) return std::nullopt;
   if (!plain || plain->poor) return best->doubtful ? std::nullopt : best;
-  if (!(best->cost < (1 - kLeastGain) * plain->cost)) return std::nullopt;
+  if (!(best->cost < (1 - kSegmentGain) * plain->cost)) return std::nullopt;
   return predictsLeftOutBetter(leftOutErrors(*best, views, frames, options), leftOutErrors(*plain, views, frames, options)) ? best
                                                                                                                              : std::nullopt;
 }

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <numbers>
 
 #include "core/light/light.h"
 #include "core/stability/cases.h"
+#include "core/stability/fifty_digits.h"
 #include "core/stability/real.h"
 
 namespace glint::stability {
 namespace {
-
-using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 
 /// alpha at a surface point whose normal is turned by `alpha` (exact sines and cosines) out of the plane of reflection.
 Outcome<Measured> angleCase(double alpha, double grazing, const Light& light, const Eigen::Vector3d& point, double tolerance) {

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include "core/base/number_text.h"
 #include "core/stability/cases.h"
+#include "core/stability/fifty_digits.h"
 #include "core/stability/scene.h"
 #include "core/surface/brightest_point.h"
 
 namespace glint::stability {
 namespace {
-
-using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 
 /// Fermat's principle: the mirror point is where the path eye - surface - light is stationary. Newton's method on its gradient
 /// over (u, v), by differences of the path's length; a light at infinity counts its wave front.

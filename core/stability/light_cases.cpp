@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cstdio>
 
 #include "core/light/estimate.h"
 #include "core/light/refine_depth.h"
 #include "core/light/refine_poses.h"
 #include "core/stability/cases.h"
+#include "core/stability/fifty_digits.h"
 #include "core/stability/scene.h"
 
 namespace glint::stability {
 namespace {
-
-using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 
 /// min sum |(I - r r^T)(L - P)|^2 by its normal equations, which fifty digits can bear.
 Vec<Real> closestPoint(const std::vector<ReflectedRay>& rays) {

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <boost/math/special_functions/erf.hpp>
-#include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include "core/base/number_text.h"
 #include "core/model/model.h"
+#include "core/stability/fifty_digits.h"
 #include "core/stability/real_lobe.h"
 #include "core/stability/reflectance_cases.h"
 
 namespace glint::stability {
 namespace {
-
-using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 
 constexpr double kMarginPx = 0.65 * 640;  // how far beyond the picture a contour is followed
 constexpr double kLevels[] = {0.02, 0.1, 0.5, 0.9, 0.98};

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include "core/stability/cases.h"
+#include "core/stability/fifty_digits.h"
 #include "core/stability/real.h"
 #include "core/surface/analytic.h"
 #include "core/surface/mesh.h"
 
 namespace glint::stability {
 namespace {
-
-using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 
 /// A tessellated ellipsoid of 1 m times `scale`, at an offset.
 TriangleMesh meshOf(double scale, const Eigen::Vector3d& offset) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
@@ -10,6 +9,7 @@
 #include "core/base/number_text.h"
 #include "core/scene/mesh_file.h"
 #include "core/stability/cases.h"
+#include "core/stability/fifty_digits.h"
 #include "core/stability/real_mesh.h"
 #include "core/stability/scene.h"
 #include "core/surface/brightest_point.h"
@@ -18,7 +18,6 @@
 namespace glint::stability {
 namespace {
 
-using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 using Whole = Eigen::Matrix<std::int64_t, 3, 1>;
 
 constexpr int kSide = 13;             // vertices a side

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include "core/geometry/polyline.h"
 #include "core/model/model.h"
 #include "core/stability/cases.h"
+#include "core/stability/fifty_digits.h"
 #include "core/stability/real_walk.h"
 #include "core/surface/level_set.h"
 
 namespace glint::stability {
 namespace {
-
-using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 
 struct PredictionScene {
   double curvature = 0.8;

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <numbers>
 
 #include "core/base/number_text.h"
 #include "core/model/reconstruct.h"
 #include "core/stability/cases.h"
+#include "core/stability/fifty_digits.h"
 #include "core/stability/scene.h"
 
 namespace glint::stability {
 namespace {
-
-using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 
 /// An ellipsoid by centre and axes as doubles.
 Ellipsoid truth(const Eigen::Vector3d& axes, double scale, const Eigen::Vector3d& centre = {0.3, -0.2, 0.4}) {

@@ -4,17 +4,15 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <boost/math/special_functions/erf.hpp>
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <numbers>
 
 #include "core/model/model.h"
 #include "core/reflectance/fit.h"
+#include "core/stability/fifty_digits.h"
 #include "core/stability/real_lobe.h"
 
 namespace glint::stability {
 namespace {
-
-using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 
 struct RadianceScene {
   Lobe lobe = Lobe::TorranceSparrow;

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include "core/stability/cases.h"
+#include "core/stability/fifty_digits.h"
 #include "core/stability/real.h"
 #include "core/surface/analytic.h"
 
 namespace glint::stability {
 namespace {
-
-using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 
 /// x^T A x + 2 b.x + c with diagonal A: every analytic quadric in its own frame.
 struct RealQuadric {

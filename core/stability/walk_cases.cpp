@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cstdio>
 
 #include "core/model/walk.h"
 #include "core/stability/cases.h"
+#include "core/stability/fifty_digits.h"
 #include "core/stability/real_walk.h"
 
 namespace glint::stability {
 namespace {
-
-using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 
 struct WalkScene {
   double curvature = 0.8;
@@ -22,14 +20,14 @@ struct WalkScene {
 };
 
 /// All that a walk needs, and its exact twin.
-struct Stage {
+struct WalkStage {
   std::shared_ptr<const Surface> surface;
   Camera camera;
   Light light;
   BrightestPoint brightest;
   RealWalk<Real> real;
 };
-Stage stageOf(const WalkScene& w, const Light& light) {
+WalkStage stageOf(const WalkScene& w, const Light& light) {
   const double k = w.curvature / w.scale;
   const Bent<Real> bent{Real(k), w.round};
   const double u = w.curvature > 10 ? 1e-4 : 0.05 * w.scale, v = 0.6 * u;
@@ -47,7 +45,7 @@ Stage stageOf(const WalkScene& w, const Light& light) {
 
 /// Reaches of the limit on T and on S in 8 directions, each over its own length.
 Outcome<Measured> reachCase(const WalkScene& w, const Light& light) {
-  const Stage s = stageOf(w, light);
+  const WalkStage s = stageOf(w, light);
   WalkOptions options;
   options.toleranceRad = 1e-15;
   const TangentWalk walk(*s.surface, s.camera, s.brightest, s.light, options);
@@ -70,7 +68,7 @@ Outcome<Measured> reachCase(const WalkScene& w, const Light& light) {
 
 /// Canonical contour of a 24-gon around the peak: walk on S to the polygon, take alpha, walk on T to the same alpha.
 Outcome<Measured> canonicalCase(const WalkScene& w, const Light& light) {
-  const Stage s = stageOf(w, light);
+  const WalkStage s = stageOf(w, light);
   WalkOptions options;
   options.toleranceRad = 1e-15;
   const TangentWalk walk(*s.surface, s.camera, s.brightest, s.light, options);

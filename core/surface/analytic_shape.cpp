@@ -16,7 +16,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 namespace {
-constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kPi = std::numbers::pi;
 
 bool positive(double x) { return std::isfinite(x) && x > 0; }
@@ -184,7 +184,7 @@ class Sheet : public QuadricShape {
   std::vector<Vector3d> grid(int nu, int nv, const Vector3d& centre, double radius) const override {
     const double fallback = std::isfinite(radius) ? centre.norm() + radius : 1;
     double reach = std::min(length_ / 2, fallback);
-    if (k_ != 0) reach = std::min(std::isfinite(length_) ? length_ / 2 : kInf, kPi / std::abs(k_));
+    if (k_ != 0) reach = std::min(std::isfinite(length_) ? length_ / 2 : kInfinity, kPi / std::abs(k_));
     if (!std::isfinite(reach) || (!std::isfinite(length_) && std::abs(k_) * fallback < 1)) reach = fallback;
     const double half = std::min(width_ / 2, fallback);
     std::vector<Vector3d> points;
@@ -218,7 +218,7 @@ class GeneralQuadric : public QuadricShape {
     }
   }
   std::string describe() const override { return "quadric"; }
-  double size() const override { return centre_ ? std::sqrt(squared_.trace()) : kInf; }
+  double size() const override { return centre_ ? std::sqrt(squared_.trace()) : kInfinity; }
   bool bounded() const override { return centre_.has_value(); }
   AlignedBox3d bounds(const Eigen::Isometry3d& m) const override {
     if (!centre_) return unboundedBox();
@@ -340,10 +340,10 @@ class Torus : public AnalyticShape {
 
 void LineRoots::sort() { std::sort(t, t + count); }
 
-AlignedBox3d unboundedBox() { return {Vector3d::Constant(-kInf), Vector3d::Constant(kInf)}; }
+AlignedBox3d unboundedBox() { return {Vector3d::Constant(-kInfinity), Vector3d::Constant(kInfinity)}; }
 
 std::unique_ptr<const AnalyticShape> makeShape(const AnalyticSpec& spec) {
-  if (spec.type == "plane") return std::make_unique<Sheet>(0.0, kInf, kInf);
+  if (spec.type == "plane") return std::make_unique<Sheet>(0.0, kInfinity, kInfinity);
   if (spec.type == "sphere") {
     require(positive(spec.radius), "analytic sphere: radius must be positive and finite");
     return std::make_unique<SphereOrEllipsoid>(Vector3d::Constant(spec.radius),
@@ -363,7 +363,7 @@ std::unique_ptr<const AnalyticShape> makeShape(const AnalyticSpec& spec) {
     require(std::isfinite(spec.curvature), "analytic sheet: curvature must be finite");
     require(!spec.length || positive(*spec.length), "analytic sheet: length must be positive and finite");
     require(!spec.width || positive(*spec.width), "analytic sheet: width must be positive and finite");
-    return std::make_unique<Sheet>(spec.curvature, spec.length.value_or(kInf), spec.width.value_or(kInf));
+    return std::make_unique<Sheet>(spec.curvature, spec.length.value_or(kInfinity), spec.width.value_or(kInfinity));
   }
   if (spec.type == "torus") {
     require(positive(spec.majorRadius) && positive(spec.minorRadius), "analytic torus: radii must be positive and finite");

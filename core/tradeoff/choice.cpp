@@ -11,14 +11,8 @@
 namespace glint {
 namespace {
 
-std::string number(const char* pattern, double v) {
-  char buffer[40];
-  printText(buffer, sizeof buffer, pattern, v);
-  return buffer;
-}
-
 std::string costText(const TradeoffPoint& p) {
-  return number("%.3g %%", p.rankedErrorPct) + " at " + number("%.3g us", p.predictUs);
+  return formatted("%.3g %%", p.rankedErrorPct) + " at " + formatted("%.3g us", p.predictUs);
 }
 
 }  // namespace
@@ -63,7 +57,7 @@ void choosePoint(Tradeoff& t, const TradeoffBound& bound) {
       for (int i = best; i >= 0; --i)
         if (front[i] && costs[i].errorPct <= same) best = i;
     }
-    const std::string budget = number("%g us", *bound.budgetUs);
+    const std::string budget = formatted("%g us", *bound.budgetUs);
     if (best < 0) {
       t.reason = "No measured setting predicts a frame within " + budget + "; the fastest is " + said(0) + ".";
       return;
@@ -83,7 +77,7 @@ void choosePoint(Tradeoff& t, const TradeoffBound& bound) {
       else if (next < 0)
         next = i;
     }
-    const std::string most = number("%g %%", *bound.maxErrorPct);
+    const std::string most = formatted("%g %%", *bound.maxErrorPct);
     if (best < 0) {
       t.reason = "No measured setting has an error of at most " + most + "; the most accurate is " + said(presets.exact) + ".";
       return;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/evaluate/html_text.h"
+#include "core/tradeoff/pareto.h"
 #include "core/tradeoff/tradeoff.h"
 
 namespace glint {
@@ -13,9 +14,6 @@ namespace {
 using html::colourOf;
 using html::escaped;
 using html::format;
-
-constexpr double kSmallestUs = 1e-3;        // of a time too short to measure
-constexpr double kSmallestErrorPct = 1e-6;  // what a logarithmic axis can show of an exact scene
 
 /// A logarithmic axis over values > 0, with a margin.
 struct LogAxis {

@@ -3,6 +3,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "core/base/json_number.h"
 #include "core/base/json_text.h"
 #include "core/base/number_text.h"
 #include "core/base/outcome.h"
@@ -14,8 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double v) { return std::isfinite(v) ? Json(v) : Json(); }
-Json toJson(const SettingValue& value) {
+Json settingJson(const SettingValue& value) {
   return std::visit([](const auto& v) { return Json(v); }, value);
 }
 
@@ -23,9 +23,9 @@ Json toJson(const SettingValue& value) {
 /// dotted names that `--set` takes.
 void addSettings(Json& j, const Tradeoff& t, const std::string& model, const Settings& settings) {
   j["settings"]["model"] = model;
-  for (const std::string& key : t.knobs) j["settings"][knobName(key)] = toJson(valueOf(settings, paramSpec(key)));
+  for (const std::string& key : t.knobs) j["settings"][knobName(key)] = settingJson(valueOf(settings, paramSpec(key)));
   j["set"] = Json::object();
-  for (const auto& [key, value] : settings.values()) j["set"][key] = toJson(value);
+  for (const auto& [key, value] : settings.values()) j["set"][key] = settingJson(value);
 }
 
 double optionalNumber(const JsonNode& node) { return node.isNull() ? std::nan("") : node.number(); }
@@ -60,14 +60,14 @@ std::string tradeoffJson(const Tradeoff& t) {
   for (const TradeoffPoint& p : t.points) {
     Json point;
     addSettings(point, t, p.model, p.settings);
-    point["contour_error_pct"] = number(p.contourErrorPct);
-    point["iou"] = number(p.iou);
-    point["coverage"] = number(p.coverage);
-    point["predict_us"] = number(p.predictUs);
-    point["fit_us"] = number(p.fitUs);
-    point["peak_mb"] = number(p.peakMb);
+    point["contour_error_pct"] = numberOrNull(p.contourErrorPct);
+    point["iou"] = numberOrNull(p.iou);
+    point["coverage"] = numberOrNull(p.coverage);
+    point["predict_us"] = numberOrNull(p.predictUs);
+    point["fit_us"] = numberOrNull(p.fitUs);
+    point["peak_mb"] = numberOrNull(p.peakMb);
     point["pareto"] = p.pareto;
-    point["ranked_error_pct"] = number(p.rankedErrorPct);
+    point["ranked_error_pct"] = numberOrNull(p.rankedErrorPct);
     point["frames"] = p.frames;
     point["predicted"] = p.predicted;
     point["matched"] = p.matched;
@@ -88,8 +88,8 @@ std::string tradeoffJson(const Tradeoff& t) {
     addSettings(pruned, t, p.model, p.settings);
     pruned["kind"] = p.kind;
     pruned["reason"] = p.reason;
-    pruned["ranked_error_pct"] = number(p.rankedErrorPct);
-    pruned["predict_us"] = number(p.predictUs);
+    pruned["ranked_error_pct"] = numberOrNull(p.rankedErrorPct);
+    pruned["predict_us"] = numberOrNull(p.predictUs);
     j["pruned"].push_back(pruned);
   }
   return prettyJson(j.dump(-1, ' ', false, Json::error_handler_t::replace)) + "\n";

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/base/elapsed.h"
 #include "core/base/sha256.h"
 #include "core/evaluate/summary.h"
 #include "core/pipeline/training.h"
@@ -21,10 +22,6 @@ constexpr int kFewRepeats = 3;        // of each; the shortest counts, because o
 constexpr int kTimedFrames = 40;      // in a full measurement
 constexpr double kLongFitUs = 300e3;  // fits that take longer are not repeated
 constexpr double kSamePx = 1e-5;      // contours nearer than this are the same
-
-double microsecondsSince(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
-}
 
 double medianOf(std::vector<double> values) { return statisticOf(std::move(values)).median; }
 

@@ -7,10 +7,6 @@
 namespace glint {
 namespace {
 
-// Logarithms of errors: an exact scene has zero, and what is below a thousandth of a thousandth of the diameter is round-off.
-constexpr double kSmallestErrorPct = 1e-6;
-constexpr double kSmallestUs = 1e-3;  // a nanosecond: less was not measured
-
 bool finite(const Cost& c) { return std::isfinite(c.errorPct) && std::isfinite(c.us); }
 
 }  // namespace

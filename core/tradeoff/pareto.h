@@ -25,6 +25,10 @@ struct Presets {
 inline constexpr double kUsableErrorPct = 10;
 /// Errors nearer than this are the same: contours resolve ten times more, and the ways to the same contour differ by less.
 inline constexpr double kSameErrorPct = 0.005;
+/// Logarithms begin here: an exact scene has no error, and less than this (% of the diameter) is round-off.
+inline constexpr double kSmallestErrorPct = 1e-6;
+/// A nanosecond (us): less cannot be measured.
+inline constexpr double kSmallestUs = 1e-3;
 /// exact: the smallest error, and of those that are the same the fastest. fast: the smallest time among points under kUsableErrorPct (of all when none is).
 /// balanced: the point of the front nearest to (the time of fast, the error of exact) with both axes logarithmic and
 /// scaled by the distance between the two, so that it does not depend on units.

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/atomic_file.h"
+#include "core/base/json_number.h"
 #include "core/base/json_text.h"
 
 namespace glint {
@@ -14,23 +15,22 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kVersion = 1;
 
-Json number(double v) { return std::isfinite(v) ? Json(v) : Json(); }
-double number(const JsonNode& j) { return j.isNull() ? std::nan("") : j.number(); }
+double numberOrNan(const JsonNode& j) { return j.isNull() ? std::nan("") : j.number(); }
 
 // Settings are not stored: the id of a trial holds them, and the caller puts them back.
 Json toJson(const TrialResult& r) {
-  return {{"error_pct", number(r.errorPct)}, {"us", number(r.us)}, {"predictions", r.predictions}};
+  return {{"error_pct", numberOrNull(r.errorPct)}, {"us", numberOrNull(r.us)}, {"predictions", r.predictions}};
 }
 Json toJson(const TradeoffPoint& p) {
   return {{"frames", p.frames},        {"predicted", p.predicted},       {"matched", p.matched},
-          {"missed", p.missed},        {"spurious", p.spurious},         {"contour_error_pct", number(p.contourErrorPct)},
-          {"iou", number(p.iou)},      {"coverage", number(p.coverage)}, {"predict_us", number(p.predictUs)},
-          {"fit_us", number(p.fitUs)}, {"peak_mb", number(p.peakMb)}};
+          {"missed", p.missed},        {"spurious", p.spurious},         {"contour_error_pct", numberOrNull(p.contourErrorPct)},
+          {"iou", numberOrNull(p.iou)},      {"coverage", numberOrNull(p.coverage)}, {"predict_us", numberOrNull(p.predictUs)},
+          {"fit_us", numberOrNull(p.fitUs)}, {"peak_mb", numberOrNull(p.peakMb)}};
 }
 
 void fromJson(const JsonNode& j, TrialResult& r) {
-  r.errorPct = number(j.at("error_pct"));
-  r.us = number(j.at("us"));
+  r.errorPct = numberOrNan(j.at("error_pct"));
+  r.us = numberOrNan(j.at("us"));
   r.predictions = j.at("predictions").text();
 }
 void fromJson(const JsonNode& j, TradeoffPoint& p) {
@@ -39,12 +39,12 @@ void fromJson(const JsonNode& j, TradeoffPoint& p) {
   p.matched = j.at("matched").integer();
   p.missed = j.at("missed").integer();
   p.spurious = j.at("spurious").integer();
-  p.contourErrorPct = number(j.at("contour_error_pct"));
-  p.iou = number(j.at("iou"));
-  p.coverage = number(j.at("coverage"));
-  p.predictUs = number(j.at("predict_us"));
-  p.fitUs = number(j.at("fit_us"));
-  p.peakMb = number(j.at("peak_mb"));
+  p.contourErrorPct = numberOrNan(j.at("contour_error_pct"));
+  p.iou = numberOrNan(j.at("iou"));
+  p.coverage = numberOrNan(j.at("coverage"));
+  p.predictUs = numberOrNan(j.at("predict_us"));
+  p.fitUs = numberOrNan(j.at("fit_us"));
+  p.peakMb = numberOrNan(j.at("peak_mb"));
   p.rankedErrorPct = rankedErrorPct(p);
 }
 

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "core/pipeline/session.h"
-#include "core/scene/permitted.h"
 #include "gui/base/background.h"
 #include "gui/base/text.h"
+#include "gui/document/allowed_folders.h"
 
 namespace glint::gui {
 
@@ -62,9 +62,7 @@ void Runner::open(const std::string& path, const Relinked& instead) {
       const OutsidePtr outside = std::make_shared<const Outside>(Outside{exactQString(path), e.folder().string(), instead});
       QMetaObject::invokeMethod(
           this, [this, outside] { emit outsideNamed(outside); }, Qt::QueuedConnection);
-      // The flags that it names are of the command line.
-      const std::string words = e.what();
-      throw std::runtime_error(words.substr(0, words.rfind(" (--")));
+      throw std::runtime_error(withoutFlags(e));
     }
     if (job == newest_)
       QMetaObject::invokeMethod(

@@ -15,6 +15,7 @@
 #include <QVBoxLayout>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "gui/base/elided_label.h"
@@ -22,6 +23,7 @@
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/unit_text.h"
+#include "gui/document/allowed_folders.h"
 #include "gui/export/long_job.h"
 
 namespace glint::gui {
@@ -62,6 +64,17 @@ QTableView* table(RowsModel* model, const char* name) {
   view->horizontalHeader()->setHighlightSections(false);
   view->horizontalHeader()->setStretchLastSection(true);
   return view;
+}
+
+/// With the folders that a person allowed this file to name when it was opened.
+Opened openedFor(const Engine& engine, const QString& file) {
+  Relinked instead;
+  for (const QString& folder : allowedFolders(file)) instead.folders.emplace_back(folder.toStdString());
+  try {
+    return engine.open(file.toStdString(), instead);
+  } catch (const OutsidePath& e) {
+    throw std::runtime_error(withoutFlags(e) + "; open it once to allow that");
+  }
 }
 }  // namespace
 
@@ -141,7 +154,7 @@ void ComparisonPanel::compareWith(const QString& file) {
   const QString fileA = document_.sessionFile().isEmpty() ? document_.inputFile() : document_.sessionFile();
   job_.start(tr("Comparing with %1").arg(shownText(QFileInfo(file).fileName())),
              [this, file, fileA, a = document_.inspection()](const ProgressFn& progress) {
-               const Opened opened = engine_.open(file.toStdString(), {});
+               const Opened opened = openedFor(engine_, file);
                const Inspection b = engine_.inspect(opened.scene, opened.request, progress, nullptr);
                const auto result =
                    std::make_shared<const RunComparison>(compareRuns(sessionOf(*a, progress), *a, sessionOf(b, progress), b));

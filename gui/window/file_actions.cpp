@@ -22,6 +22,7 @@
 #include "core/scene/scene_files.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/document/allowed_folders.h"
 #include "gui/document/figure.h"
 #include "gui/document/own_files.h"
 
@@ -30,8 +31,6 @@ namespace glint::gui {
 namespace {
 constexpr int kRecent = 8;
 const QString kRecentKey = QStringLiteral("recent");
-const QString kAllowedKey = QStringLiteral("allowed-folders");  // "FILE\nFOLDER": what a person allowed a session to name
-constexpr int kMostAllowed = 500;
 constexpr int kFoldersAbove = 3;  // a photograph lies that deep in its scene's folder at most
 
 /// The frame whose picture (photograph, radiance, depth, normals or mask) a file is; -1 = none.
@@ -44,28 +43,6 @@ int frameOfPicture(const Scene& scene, const QString& file) {
       if (path->filename() == wanted.filename() && std::filesystem::weakly_canonical(*path, ignored) == wanted) return int(i);
   }
   return -1;
-}
-
-QString realFile(const QString& path) {
-  const QFileInfo info(path);
-  return info.exists() ? info.canonicalFilePath() : info.absoluteFilePath();
-}
-
-QStringList allowedFolders(const QString& file) {
-  QStringList folders;
-  const QString start = realFile(file) + QLatin1Char('\n');
-  for (const QString& entry : QSettings().value(kAllowedKey).toStringList())
-    if (entry.startsWith(start)) folders << entry.mid(start.size());
-  return folders;
-}
-
-void allowFolder(const QString& file, const QString& folder) {
-  QSettings settings;
-  QStringList all = settings.value(kAllowedKey).toStringList();
-  const QString entry = realFile(file) + QLatin1Char('\n') + folder;
-  all.removeAll(entry);
-  all.prepend(entry);
-  settings.setValue(kAllowedKey, QStringList(all.mid(0, kMostAllowed)));
 }
 
 bool isPicture(const QString& path) {

@@ -23,6 +23,7 @@
 #include "gui/base/text.h"
 #include "gui/document/own_files.h"
 #include "gui/document/session_file.h"
+#include "gui/panels/comparison_panel.h"
 #include "gui/window/changed_inputs.h"
 #include "gui/window/file_actions.h"
 #include "gui/window/main_window.h"
@@ -313,9 +314,16 @@ class SaveTest : public QObject {
     QCOMPARE(contentOf(session), before);
     window = opened(session);  // remembered
     QVERIFY(!button(*window, "Allow and open"));
+    window->comparison()->compareWith(session);  // and where it is read to be compared
+    QTRY_VERIFY_WITH_TIMEOUT(window->comparison()->comparison() && window->idle(), 60000);
     // For this session alone: a copy of it is another one.
     QVERIFY(QFile::copy(session, path("scene/copy.glint")));
     const std::shared_ptr<const Scene> scene = window->document().sharedScene();
+    QString said;
+    connect(window.get(), &MainWindow::problem, this, [&said](const QString& line) { said = line; });
+    window->comparison()->compareWith(path("scene/copy.glint"));
+    QTRY_VERIFY_WITH_TIMEOUT(!said.isEmpty() && window->idle(), 20000);
+    QVERIFY2(said.contains("elsewhere") && said.contains("open it once") && !said.contains("--"), qPrintable(said));
     window->open(path("scene/copy.glint"));
     QTRY_VERIFY_WITH_TIMEOUT(button(*window, "Allow and open") != nullptr, 20000);
     QVERIFY(window->document().sharedScene() == scene);

@@ -16,11 +16,11 @@
 namespace glint::viz {
 namespace {
 
-constexpr double kFont = 12, kSmallFont = 11;        // screen px
+constexpr double kHeaderFont = 12, kHeaderSmallFont = 11;        // screen px
 constexpr double kLine = 18;                         // height of a line, screen px
 constexpr double kLeastPlot = 100, kLeastDial = 90;  // height that the legend leaves to a plot with its axes, screen px
 constexpr double kSwatch = 18;                       // width of what stands before a name, screen px
-constexpr Colour kHalo{0.12, 0.13, 0.15};
+constexpr Colour kHeaderHalo{0.12, 0.13, 0.15};
 
 /// One entry of the legend: what is drawn about the middle of its swatch, and its name.
 struct Entry {
@@ -54,7 +54,7 @@ double paintPlotHeader(vtkContext2D* painter, const PlotData& plot, const PlotHe
   const auto px = [&](double screen) { return screen * style.scale; };
   const double lineHeight = px(kLine), margin = px(8), swatch = px(kSwatch);
   double y = height - 0.5 * lineHeight - px(2), x = margin;
-  setPainterText(painter, px(kFont), style.text, true);
+  setPainterText(painter, px(kHeaderFont), style.text, true);
   const auto widthOf = [&](const std::string& s) {
     float box[4];
     painter->ComputeStringBounds(s, box);
@@ -62,7 +62,7 @@ double paintPlotHeader(vtkContext2D* painter, const PlotData& plot, const PlotHe
   };
   if (draw) painter->DrawString(float(x), float(y), plot.title);
   x += widthOf(plot.title) + px(18);
-  setPainterText(painter, px(kSmallFont), style.text);
+  setPainterText(painter, px(kHeaderSmallFont), style.text);
 
   std::vector<Entry> entries;
   for (const PlotSeries& series : plot.series) {
@@ -71,7 +71,7 @@ double paintPlotHeader(vtkContext2D* painter, const PlotData& plot, const PlotHe
                          const bool line = series.shape == PlotShape::Line || series.shape == PlotShape::LineAndPoints;
                          for (const bool halo : {true, false}) {
                            if (halo && !series.halo) continue;
-                           const Colour& colour = halo ? kHalo : series.colour;
+                           const Colour& colour = halo ? kHeaderHalo : series.colour;
                            const double more = halo ? px(2) : 0;
                            if (line) {
                              setPen(painter->GetPen(), colour, px(std::max(2.0, series.width)) + more);
@@ -93,7 +93,7 @@ double paintPlotHeader(vtkContext2D* painter, const PlotData& plot, const PlotHe
   if (!plot.noValue.empty() && hasCrosses(plot))
     entries.push_back({plot.noValue, [&, swatch](double left, double middle) {
                          paintCross(painter, {left + 0.5 * swatch, middle}, px(3.5), style.faded,
-                                    style.dark ? kHalo : Colour{1, 1, 1}, px(1.75));
+                                    style.dark ? kHeaderHalo : Colour{1, 1, 1}, px(1.75));
                        }});
   std::vector<std::string> named;
   for (const PlotShade& shade : plot.shades) {

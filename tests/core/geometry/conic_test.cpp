@@ -25,14 +25,14 @@ Eigen::Matrix3d moved(const Eigen::Matrix3d& conic, double tx, double ty) {
   return back.transpose() * conic * back;
 }
 
-struct Case {
+struct ConicCase {
   const char* name;
   Eigen::Matrix3d conic;
   Reason expected;
 };
-std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
+std::ostream& operator<<(std::ostream& out, const ConicCase& c) { return out << c.name; }
 
-class DegenerateConic : public testing::TestWithParam<Case> {};
+class DegenerateConic : public testing::TestWithParam<ConicCase> {};
 
 TEST_P(DegenerateConic, IsRefusedByNameAtEveryScaleAndSign) {
   for (const double scale : {1.0, 1e-12, 1e12, -1.0, -1e-12, 1e-300, 1e300}) {
@@ -49,14 +49,14 @@ TEST_P(DegenerateConic, IsRefusedAwayFromTheOrigin) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Conic, DegenerateConic,
-                         testing::Values(Case{"two crossing lines", diag(1, -1, 0), Reason::RankDeficient},
-                                         Case{"double line", diag(1, 0, 0), Reason::RankDeficient},
-                                         Case{"parallel lines", diag(1, 0, -1), Reason::RankDeficient},
-                                         Case{"single point", diag(1, 1, 0), Reason::RankDeficient},
-                                         Case{"imaginary ellipse", diag(1, 1, 1), Reason::NotAnEllipse},
-                                         Case{"hyperbola", diag(1, -1, -1), Reason::NotAnEllipse},
-                                         Case{"hyperbola, other side", diag(1, -1, 1), Reason::NotAnEllipse},
-                                         Case{"parabola", parabola(), Reason::NotAnEllipse}));
+                         testing::Values(ConicCase{"two crossing lines", diag(1, -1, 0), Reason::RankDeficient},
+                                         ConicCase{"double line", diag(1, 0, 0), Reason::RankDeficient},
+                                         ConicCase{"parallel lines", diag(1, 0, -1), Reason::RankDeficient},
+                                         ConicCase{"single point", diag(1, 1, 0), Reason::RankDeficient},
+                                         ConicCase{"imaginary ellipse", diag(1, 1, 1), Reason::NotAnEllipse},
+                                         ConicCase{"hyperbola", diag(1, -1, -1), Reason::NotAnEllipse},
+                                         ConicCase{"hyperbola, other side", diag(1, -1, 1), Reason::NotAnEllipse},
+                                         ConicCase{"parabola", parabola(), Reason::NotAnEllipse}));
 
 TEST(ToEllipse, RefusesZeroAndNotFinite) {
   EXPECT_EQ(toEllipse(Conic{Eigen::Matrix3d::Zero()}).failure().reason, Reason::RankDeficient);

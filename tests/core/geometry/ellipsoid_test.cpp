@@ -119,14 +119,14 @@ TEST(Ellipsoid, RoundTripsThroughDualAtEveryScale) {
   }
 }
 
-struct Case {
+struct EllipsoidCase {
   const char* description;
   Eigen::Vector4d diagonal;
   bool accepted;
   Signature signature;
 };
-std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.description; }
-class QuadricKinds : public testing::TestWithParam<Case> {};
+std::ostream& operator<<(std::ostream& out, const EllipsoidCase& c) { return out << c.description; }
+class QuadricKinds : public testing::TestWithParam<EllipsoidCase> {};
 TEST_P(QuadricKinds, AreDescribedAndOnlyEllipsoidsAccepted) {
   Eigen::Matrix4d moved = Eigen::Matrix4d::Identity();
   moved.topRightCorner<3, 1>() << 0.5, -0.25, 2;
@@ -146,15 +146,15 @@ TEST_P(QuadricKinds, AreDescribedAndOnlyEllipsoidsAccepted) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(Ellipsoid, QuadricKinds,
-                         testing::Values(Case{"ellipsoid", {-1, -2, -3, 1}, true, {1, 3, 0}},
-                                         Case{"flat ellipsoid", {-1, -2, 0, 1}, true, {1, 2, 1}},
-                                         Case{"segment", {-1, 0, 0, 1}, false, {1, 1, 2}},
-                                         Case{"point", {0, 0, 0, 1}, false, {1, 0, 3}},
-                                         Case{"hyperboloid of one sheet", {-1, -2, 3, 1}, false, {2, 2, 0}},
-                                         Case{"hyperboloid of two sheets", {-1, 2, 3, 1}, false, {3, 1, 0}},
-                                         Case{"imaginary ellipsoid", {1, 2, 3, 1}, false, {4, 0, 0}},
-                                         Case{"flat hyperboloid", {-1, 2, 0, 1}, false, {2, 1, 1}},
-                                         Case{"quadric at infinity", {1, 2, -3, 0}, false, {}}));
+                         testing::Values(EllipsoidCase{"ellipsoid", {-1, -2, -3, 1}, true, {1, 3, 0}},
+                                         EllipsoidCase{"flat ellipsoid", {-1, -2, 0, 1}, true, {1, 2, 1}},
+                                         EllipsoidCase{"segment", {-1, 0, 0, 1}, false, {1, 1, 2}},
+                                         EllipsoidCase{"point", {0, 0, 0, 1}, false, {1, 0, 3}},
+                                         EllipsoidCase{"hyperboloid of one sheet", {-1, -2, 3, 1}, false, {2, 2, 0}},
+                                         EllipsoidCase{"hyperboloid of two sheets", {-1, 2, 3, 1}, false, {3, 1, 0}},
+                                         EllipsoidCase{"imaginary ellipsoid", {1, 2, 3, 1}, false, {4, 0, 0}},
+                                         EllipsoidCase{"flat hyperboloid", {-1, 2, 0, 1}, false, {2, 1, 1}},
+                                         EllipsoidCase{"quadric at infinity", {1, 2, -3, 0}, false, {}}));
 
 TEST(Ellipsoid, NotFiniteIsNamed) {
   EXPECT_EQ(Ellipsoid::fromDual({Eigen::Matrix4d::Constant(NAN)}).failure().reason, Reason::NotFinite);

@@ -11,7 +11,7 @@
 namespace glint {
 namespace {
 
-constexpr double kLimit = 0.08;
+constexpr double kDirectedLimit = 0.08;
 
 /// The normal tilted by 0.05 towards an azimuth, seen and lit from straight above.
 Eigen::Vector3d tilted(double azimuth) {
@@ -20,16 +20,16 @@ Eigen::Vector3d tilted(double azimuth) {
 
 // L = V = H = z: a light moved by d sideways moves H by d / (2 r). The limit becomes an ellipse of semi-axes a and hypot(a, s / (2 r)).
 TEST(DirectedLimit, IsAnEllipseUnderALightStraightAbove) {
-  const double r = 2.5, s = 0.3, longer = std::hypot(kLimit, s / (2 * r));
+  const double r = 2.5, s = 0.3, longer = std::hypot(kDirectedLimit, s / (2 * r));
   for (const double scale : {1e-6, 1.0, 1e6}) {
     Eigen::Matrix3d extent = Eigen::Matrix3d::Zero();
     extent(0, 0) = s * s * scale * scale;
     extent(2, 2) = 7 * scale * scale;  // along the ray: not seen
     for (const double azimuth : {0.0, 0.4, 1.0, M_PI / 2, 2.0, M_PI, 5.0}) {
-      const double expected = 1 / std::hypot(std::cos(azimuth) / longer, std::sin(azimuth) / kLimit);
+      const double expected = 1 / std::hypot(std::cos(azimuth) / longer, std::sin(azimuth) / kDirectedLimit);
       const Eigen::Vector3d origin(1 * scale, 2 * scale, 0);
       for (const double size : {1.0, -3e4})  // any multiple of (l, w) is the same light
-        EXPECT_NEAR(directedLimit(kLimit, extent, origin, tilted(azimuth), {0, 0, 1}, size * Eigen::Vector4d(scale, 2 * scale, r * scale, 1)),
+        EXPECT_NEAR(directedLimit(kDirectedLimit, extent, origin, tilted(azimuth), {0, 0, 1}, size * Eigen::Vector4d(scale, 2 * scale, r * scale, 1)),
                     expected, 1e-10) << scale << " " << azimuth;  // extent(2, 2) cancels to round-off
     }
   }
@@ -38,18 +38,18 @@ TEST(DirectedLimit, IsAnEllipseUnderALightStraightAbove) {
 TEST(DirectedLimit, OfALightAtInfinityIsAngular) {
   Eigen::Matrix3d extent = Eigen::Matrix3d::Zero();
   extent(1, 1) = 0.01;
-  EXPECT_NEAR(directedLimit(kLimit, extent, {5, 6, 7}, tilted(M_PI / 2), {0, 0, 1}, {0, 0, 1, 0}), std::hypot(kLimit, 0.05), tolerance::kExact);
+  EXPECT_NEAR(directedLimit(kDirectedLimit, extent, {5, 6, 7}, tilted(M_PI / 2), {0, 0, 1}, {0, 0, 1, 0}), std::hypot(kDirectedLimit, 0.05), tolerance::kExact);
   // The same from very far away, as an extent in metres.
-  EXPECT_NEAR(directedLimit(kLimit, 1e12 * extent, {5, 6, 7}, tilted(M_PI / 2), {0, 0, 1}, {0, 0, 1e6, 1}), std::hypot(kLimit, 0.05), 1e-6);
+  EXPECT_NEAR(directedLimit(kDirectedLimit, 1e12 * extent, {5, 6, 7}, tilted(M_PI / 2), {0, 0, 1}, {0, 0, 1e6, 1}), std::hypot(kDirectedLimit, 0.05), 1e-6);
 }
 
 TEST(DirectedLimit, DegenerateInputsGiveAPositiveAngle) {
   const Eigen::Matrix3d none = Eigen::Matrix3d::Zero();
-  EXPECT_DOUBLE_EQ(directedLimit(kLimit, none, {0, 0, 0}, tilted(1), {0, 0, 1}, {0, 0, 2, 1}), kLimit);
-  EXPECT_DOUBLE_EQ(directedLimit(kLimit, Eigen::Matrix3d::Identity(), {0, 0, 0}, {0, 0, 1}, {0, 0, 1}, {0, 0, 2, 1}), kLimit) << "no direction at the peak";
-  EXPECT_DOUBLE_EQ(directedLimit(kLimit, Eigen::Matrix3d::Identity(), {0, 0, 2}, tilted(1), {0, 0, 1}, {0, 0, 2, 1}), kLimit) << "at the light";
+  EXPECT_DOUBLE_EQ(directedLimit(kDirectedLimit, none, {0, 0, 0}, tilted(1), {0, 0, 1}, {0, 0, 2, 1}), kDirectedLimit);
+  EXPECT_DOUBLE_EQ(directedLimit(kDirectedLimit, Eigen::Matrix3d::Identity(), {0, 0, 0}, {0, 0, 1}, {0, 0, 1}, {0, 0, 2, 1}), kDirectedLimit) << "no direction at the peak";
+  EXPECT_DOUBLE_EQ(directedLimit(kDirectedLimit, Eigen::Matrix3d::Identity(), {0, 0, 2}, tilted(1), {0, 0, 1}, {0, 0, 2, 1}), kDirectedLimit) << "at the light";
   for (const double azimuth : {0.0, 0.7, 2.0})
-    EXPECT_NEAR(directedLimit(kLimit, -Eigen::Matrix3d::Identity(), {0, 0, 0}, tilted(azimuth), {0, 0, 1}, {0, 0, 2, 1}), 0.1 * kLimit, tolerance::kExact);
+    EXPECT_NEAR(directedLimit(kDirectedLimit, -Eigen::Matrix3d::Identity(), {0, 0, 0}, tilted(azimuth), {0, 0, 1}, {0, 0, 2, 1}), 0.1 * kDirectedLimit, tolerance::kExact);
 }
 
 /// By central differences of directedLimit(), which the tests above hold to closed forms.
@@ -98,7 +98,7 @@ TEST(DirectedLimit, DerivativesAreThoseOfTheAngle) {
     SCOPED_TRACE(light.transpose());
     for (const double size : {0.0, 0.1, 1.0, 5.0}) {
       SCOPED_TRACE(size);
-      expectDerivatives(kLimit, size * extent, point, n, v, light);
+      expectDerivatives(kDirectedLimit, size * extent, point, n, v, light);
     }
   }
 }
@@ -111,9 +111,9 @@ TEST(DirectedLimit, DerivativesWhereTheExtentIsNegative) {
   Vector6 across = Vector6::Zero(), all = Vector6::Zero();
   across << -1, 0.01, 0, 0.0005, 0, 0;
   all << -1, -1, -1, 0, 0, 0;
-  expectDerivatives(kLimit, across, point, n, v, light);
-  expectDerivatives(kLimit, all, point, n, v, light);
-  EXPECT_NEAR(directedLimitWithDerivatives(kLimit, symmetric(all), point, n, v, light).byLimit, 0.1, tolerance::kExact);
+  expectDerivatives(kDirectedLimit, across, point, n, v, light);
+  expectDerivatives(kDirectedLimit, all, point, n, v, light);
+  EXPECT_NEAR(directedLimitWithDerivatives(kDirectedLimit, symmetric(all), point, n, v, light).byLimit, 0.1, tolerance::kExact);
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ FitInput inputOf(const RadianceScene& s, int views) {
   return input;
 }
 
-double errorPct(const RadianceScene& s, const ModelFit& fit, const Camera& camera) {
+double reflectanceErrorPct(const RadianceScene& s, const ModelFit& fit, const Camera& camera) {
   const Prediction p = modelByName("reflectance").predict(fit, camera, s.surface.get(), {});
   if (p.highlights.size() != 1) return std::numeric_limits<double>::infinity();
   const Highlight truth = observed(s, camera);
@@ -71,7 +71,7 @@ TEST(Reflectance, FindsTheLobeAndPredictsOtherViews) {
     ASSERT_TRUE(fit) << fit.failure().message();
     EXPECT_EQ(fit->lobe, nameOf(lobe));
     EXPECT_NEAR(*fit->roughness, 0.12, 1e-4);
-    for (int i = 6; i < 8; ++i) EXPECT_LT(errorPct(s, *fit, s.geometry.cameras[i]), kPredictedPct) << nameOf(lobe) << " " << i;
+    for (int i = 6; i < 8; ++i) EXPECT_LT(reflectanceErrorPct(s, *fit, s.geometry.cameras[i]), kPredictedPct) << nameOf(lobe) << " " << i;
   }
 }
 
@@ -84,7 +84,7 @@ TEST(Reflectance, AnswersAtGrazingIncidenceWhereTheLimitAngleDoesNot) {
   const Outcome<ModelFit> fit = modelByName("reflectance").fit(input, {});
   ASSERT_TRUE(fit) << fit.failure().message();
   EXPECT_EQ(fit->lobe, "torrance-sparrow");
-  for (int i = 6; i < 8; ++i) EXPECT_LT(errorPct(s, *fit, s.geometry.cameras[i]), kPredictedPct) << i;
+  for (int i = 6; i < 8; ++i) EXPECT_LT(reflectanceErrorPct(s, *fit, s.geometry.cameras[i]), kPredictedPct) << i;
 }
 
 // A narrow Phong highlight at grazing incidence: from the first guess of the light no lobe converges, and the first lobe tried is
@@ -95,7 +95,7 @@ TEST(Reflectance, FindsANarrowPhongLobeAtGrazingIncidence) {
   ASSERT_TRUE(fit) << fit.failure().message();
   EXPECT_EQ(fit->lobe, "phong");
   EXPECT_NEAR(*fit->roughness, 0.05, 1e-4);
-  EXPECT_LT(errorPct(s, *fit, s.geometry.cameras[11]), kPredictedPct);
+  EXPECT_LT(reflectanceErrorPct(s, *fit, s.geometry.cameras[11]), kPredictedPct);
 }
 
 // The peak of a wide Beckmann lobe lies far from the mirror point: the first guess of the light is off, and a cosine power may converge
@@ -112,7 +112,7 @@ TEST(Reflectance, FindsWideBeckmannLobes) {
         const Outcome<ModelFit> fit = modelByName("reflectance").fit(inputOf(s, 6), {});
         ASSERT_TRUE(fit) << round << " " << m << " " << level << " " << fit.failure().message();
         EXPECT_EQ(fit->lobe, "torrance-sparrow") << round << " " << m << " " << level;
-        for (int i = 6; i < 8; ++i) EXPECT_LT(errorPct(s, *fit, s.geometry.cameras[i]), kWidePct) << round << " " << m << " " << level;
+        for (int i = 6; i < 8; ++i) EXPECT_LT(reflectanceErrorPct(s, *fit, s.geometry.cameras[i]), kWidePct) << round << " " << m << " " << level;
       }
 }
 
@@ -182,7 +182,7 @@ TEST(Reflectance, FindsALongLampAndPredictsOtherViews) {
   EXPECT_NEAR((fit->lightSegment->second - fit->lightSegment->first).norm(), 0.6, 0.006);
   for (int i = 6; i < 8; ++i) {
     const Camera& camera = s.geometry.cameras[i];
-    EXPECT_LT(errorPct(s, *fit, camera), 0.15) << i;
+    EXPECT_LT(reflectanceErrorPct(s, *fit, camera), 0.15) << i;
     const Prediction p = modelByName("reflectance").predict(*fit, camera, s.surface.get(), {});
     ASSERT_EQ(p.highlights.size(), 1u);
     for (const double sigma : modelByName("reflectance").bandSigmaPx(*fit, p.highlights[0], camera, s.surface.get(), {}))

@@ -142,7 +142,7 @@ TEST(SurfaceShape, Degenerate) {
   EXPECT_EQ(surfaceShape({{fromAbove(1), nullptr, circle(10)}}).highlights, 0);
 }
 
-Inspection evidenceOf(std::shared_ptr<const Scene> scene, const std::string& train) {
+Inspection extrapolationEvidence(std::shared_ptr<const Scene> scene, const std::string& train) {
   InspectionRequest request;
   request.models.clear();
   request.train = train;
@@ -153,11 +153,11 @@ Inspection evidenceOf(std::shared_ptr<const Scene> scene, const std::string& tra
 // does not.
 TEST(ViewsToPredict, SayWhetherTheyLieAmongTheTrainingViews) {
   const auto scene = exactScene(sphere(0.5), 16);
-  const Inspection among = evidenceOf(scene, "0,2,4,6,8,10,12,14");
+  const Inspection among = extrapolationEvidence(scene, "0,2,4,6,8,10,12,14");
   const std::vector<ViewToPredict> between = viewsToPredict(among, foldsOf(among), 20);
   EXPECT_EQ(between.size(), 8u);
   for (const ViewToPredict& v : between) EXPECT_FALSE(v.outside) << v.frame << " at " << v.distanceDeg << " of " << v.testedDeg;
-  const Inspection narrow = evidenceOf(scene, "0-3");
+  const Inspection narrow = extrapolationEvidence(scene, "0-3");
   const std::vector<ViewToPredict> beyond = viewsToPredict(narrow, foldsOf(narrow), 20);
   EXPECT_EQ(beyond.size(), 12u);
   int outside = 0;

@@ -18,7 +18,7 @@ constexpr double kLow = 0.2, kWider = 1.5;  // a second contour of this frame, a
 constexpr double kSameContour = 5e-3;  // of an overlap: a model that is exact here predicts the given contour to its sampling
 constexpr double kSamePlacePx = 0.1;   // the same, of where it lies
 
-InspectionRequest request(double level = 0.5) {
+InspectionRequest observationRequest(double level = 0.5) {
   InspectionRequest q;
   q.models = {"limit-angle"};
   q.train = "first:4";
@@ -42,19 +42,19 @@ const FrameComparison& comparisonOf(const Inspection& in) {
 
 TEST(ObserveFrame, IsWhatTheFrameShowsUnderTheRequest) {
   const auto scene = twoLevels();
-  const std::optional<Observation> seen = observeFrame(scene, request(kLow), kFrame);
+  const std::optional<Observation> seen = observeFrame(scene, observationRequest(kLow), kFrame);
   ASSERT_TRUE(seen);
   EXPECT_EQ(seen->frame, kFrame);
   EXPECT_EQ(seen->scene, scene);
   ASSERT_EQ(seen->evidence.highlights.size(), 1u);
   EXPECT_EQ(seen->evidence.highlights[0].contour.points, scene->frames[kFrame].highlights[1].contour.points);
-  EXPECT_EQ(seen->key, inspect(scene, request(kLow)).stageKeys.at("detect"));
+  EXPECT_EQ(seen->key, inspect(scene, observationRequest(kLow)).stageKeys.at("detect"));
 }
 
 TEST(ObserveFrame, NothingOfALightThatIsSwitchedOff) {
   const auto scene = twoLevels();
-  const Inspection known = inspect(scene, request());
-  InspectionRequest q = request(kLow);
+  const Inspection known = inspect(scene, observationRequest());
+  InspectionRequest q = observationRequest(kLow);
   const std::string light = known.evidence[kFrame].highlights.at(0).light;
   q.whatIf = switched({}, *scene, kFrame, light, false);
   const std::optional<Observation> seen = observeFrame(scene, q, kFrame, {}, &known);
@@ -65,27 +65,27 @@ TEST(ObserveFrame, NothingOfALightThatIsSwitchedOff) {
 
 TEST(ObserveFrame, SaysNothingWhereItIsKnownOrTakesAllFrames) {
   const auto scene = twoLevels();
-  const Inspection known = inspect(scene, request());
-  InspectionRequest other = request();
+  const Inspection known = inspect(scene, observationRequest());
+  InspectionRequest other = observationRequest();
   other.settings.set("light.robust_px", 3.0);
   EXPECT_FALSE(observeFrame(scene, other, kFrame, {}, &known)) << "nothing that is observed depends on it";
-  EXPECT_TRUE(observeFrame(scene, request(kLow), kFrame, {}, &known));
-  const Inspection one = inspectOneFrame(scene, request(), 6);
-  EXPECT_TRUE(observeFrame(scene, request(), kFrame, {}, &one)) << "this frame was not looked at";
+  EXPECT_TRUE(observeFrame(scene, observationRequest(kLow), kFrame, {}, &known));
+  const Inspection one = inspectOneFrame(scene, observationRequest(), 6);
+  EXPECT_TRUE(observeFrame(scene, observationRequest(), kFrame, {}, &one)) << "this frame was not looked at";
   const auto anotherScene = twoLevels();
-  EXPECT_TRUE(observeFrame(anotherScene, request(), kFrame, {}, &known));
+  EXPECT_TRUE(observeFrame(anotherScene, observationRequest(), kFrame, {}, &known));
 
   auto lights = std::make_shared<Scene>(*scene);
   for (Frame& f : lights->frames) {
     f.lightsOn = {"lamp", "sun"};
     for (Highlight& h : f.highlights) h.light.clear();
   }
-  EXPECT_FALSE(observeFrame(lights, request(kLow), kFrame)) << "which light it is, all frames tell";
+  EXPECT_FALSE(observeFrame(lights, observationRequest(kLow), kFrame)) << "which light it is, all frames tell";
 }
 
 TEST(ObserveFrame, SynthesisesTheContoursOfThatFrameAlone) {
   const auto scene = litScene(sphere(0.5), 8);
-  InspectionRequest q = request();
+  InspectionRequest q = observationRequest();
   q.whatIf.synthesise = true;
   q.whatIf.lightsBy["lamp"] = {0.05, 0, 0};
   const auto all = changedScene(*scene, q.whatIf, 0.5);
@@ -99,19 +99,19 @@ TEST(ObserveFrame, SynthesisesTheContoursOfThatFrameAlone) {
 
 TEST(ObserveFrame, StopsWhenAskedAndRefusesAFrameThatDoesNotExist) {
   const auto scene = twoLevels();
-  EXPECT_THROW((void)observeFrame(scene, request(), kFrame, [](const StageEvent&) { return false; }), Stopped);
-  EXPECT_THROW((void)observeFrame(scene, request(), 8), std::invalid_argument);
+  EXPECT_THROW((void)observeFrame(scene, observationRequest(), kFrame, [](const StageEvent&) { return false; }), Stopped);
+  EXPECT_THROW((void)observeFrame(scene, observationRequest(), 8), std::invalid_argument);
 }
 
 TEST(HeldAgainst, TheEarlierPredictionIsMeasuredAgainstTheNewContour) {
   const auto scene = twoLevels();
-  const Inspection earlier = inspect(scene, request());
+  const Inspection earlier = inspect(scene, observationRequest());
   ASSERT_TRUE(comparisonOf(earlier).rows.at(0).metrics);
   ASSERT_NEAR(comparisonOf(earlier).rows[0].metrics->iou, 1, kSameContour);
-  const std::optional<Observation> seen = observeFrame(scene, request(kLow), kFrame, {}, &earlier);
+  const std::optional<Observation> seen = observeFrame(scene, observationRequest(kLow), kFrame, {}, &earlier);
   ASSERT_TRUE(seen);
   const Inspection now = heldAgainst(earlier, *seen);
-  EXPECT_EQ(now.request, request(kLow));
+  EXPECT_EQ(now.request, observationRequest(kLow));
   EXPECT_EQ(now.evidence.at(kFrame).highlights.size(), 1u);
   EXPECT_EQ(now.evidence.at(0).frame, -1);
   EXPECT_TRUE(now.models.at("limit-angle").oneFrame);
@@ -124,8 +124,8 @@ TEST(HeldAgainst, TheEarlierPredictionIsMeasuredAgainstTheNewContour) {
 
 TEST(HeldAgainst, HighlightsMovedByHandStayMoved) {
   const auto scene = twoLevels();
-  const Inspection earlier = inspect(scene, request());
-  InspectionRequest q = request(kLow);
+  const Inspection earlier = inspect(scene, observationRequest());
+  InspectionRequest q = observationRequest(kLow);
   q.whatIf.highlights[{kFrame, 0}].contourBy = {3, -4};
   q.whatIf.highlights[{kFrame, 7}].contourBy = {100, 0};  // of a highlight that is not there
   q.whatIf.highlights[{0, 0}].contourBy = {100, 0};       // of another frame
@@ -136,8 +136,8 @@ TEST(HeldAgainst, HighlightsMovedByHandStayMoved) {
 
 TEST(HeldAgainst, WhereNothingIsObservedTheReasonTakesThePlaceOfErrors) {
   const auto scene = twoLevels();
-  const Inspection earlier = inspect(scene, request());
-  const std::optional<Observation> seen = observeFrame(scene, request(0.7), kFrame, {}, &earlier);  // a level without a contour
+  const Inspection earlier = inspect(scene, observationRequest());
+  const std::optional<Observation> seen = observeFrame(scene, observationRequest(0.7), kFrame, {}, &earlier);  // a level without a contour
   ASSERT_TRUE(seen);
   ASSERT_TRUE(seen->evidence.failure);
   const Inspection now = heldAgainst(earlier, *seen);
@@ -145,8 +145,8 @@ TEST(HeldAgainst, WhereNothingIsObservedTheReasonTakesThePlaceOfErrors) {
 }
 
 TEST(HeldAgainst, RefusesResultsOfAnotherScene) {
-  const Inspection earlier = inspect(twoLevels(), request());
-  const std::optional<Observation> seen = observeFrame(twoLevels(), request(kLow), kFrame);
+  const Inspection earlier = inspect(twoLevels(), observationRequest());
+  const std::optional<Observation> seen = observeFrame(twoLevels(), observationRequest(kLow), kFrame);
   ASSERT_TRUE(seen);
   EXPECT_THROW((void)heldAgainst(earlier, *seen), std::invalid_argument);
 }

@@ -11,9 +11,9 @@ namespace {
 
 using namespace testing_support;
 
-const NamedLight kLeft{"left", {-0.25, 0.1, 1.4}}, kRight{"right", {0.3, 0.0, 1.3}};
+const NamedLight kOneFrameLeft{"left", {-0.25, 0.1, 1.4}}, kOneFrameRight{"right", {0.3, 0.0, 1.3}};
 
-InspectionRequest request() {
+InspectionRequest oneFrameRequest() {
   InspectionRequest q;
   q.train = "first:4";
   return q;
@@ -41,15 +41,15 @@ void expectSameFrame(const Inspection& one, const Inspection& all, int frame) {
 
 TEST(InspectOneFrame, LooksAtTheTrainingFramesAndThatOneAndTheRestIsAddedLater) {
   const auto scene = exactScene(sheet(0.3), 12);
-  const Inspection all = inspect(scene, request());
-  const Inspection one = inspectOneFrame(scene, request(), 9);
+  const Inspection all = inspect(scene, oneFrameRequest());
+  const Inspection one = inspectOneFrame(scene, oneFrameRequest(), 9);
   EXPECT_EQ(one.work.framesDetected, 5);
   EXPECT_EQ(one.work.predictions, all.work.predictions / 12);
   EXPECT_EQ(one.evidence[9].frame, 9);
   EXPECT_EQ(one.evidence[8].frame, -1);
   expectSameFrame(one, all, 9);
 
-  const Inspection rest = inspect(scene, request(), {}, &one);
+  const Inspection rest = inspect(scene, oneFrameRequest(), {}, &one);
   EXPECT_EQ(digestOf(rest), digestOf(all));
   EXPECT_EQ(rest.work.framesDetected, 7);
   EXPECT_EQ(rest.work.fits + rest.work.lights + rest.work.trainingViews, 0);
@@ -59,7 +59,7 @@ TEST(InspectOneFrame, LooksAtTheTrainingFramesAndThatOneAndTheRestIsAddedLater) 
 /// A what-if of a long sequence is seen in the frame on screen before the contours of all others are made.
 TEST(InspectOneFrame, SynthesisesOnlyTheContoursThatItNeeds) {
   const auto scene = litScene(sheet(0.3), 12);
-  InspectionRequest q = request();
+  InspectionRequest q = oneFrameRequest();
   q.whatIf.synthesise = true;
   const auto made = [](const Inspection& in) {
     std::vector<int> frames;
@@ -93,15 +93,15 @@ TEST(InspectOneFrame, SynthesisesOnlyTheContoursThatItNeeds) {
 
 TEST(InspectOneFrame, KeepsWhatAnEarlierRunKnowsOfTheOthers) {
   const auto scene = exactScene(sheet(0.3), 12);
-  const Inspection all = inspect(scene, request());
-  InspectionRequest fewer = request();
+  const Inspection all = inspect(scene, oneFrameRequest());
+  InspectionRequest fewer = oneFrameRequest();
   fewer.models = {"canonical"};
   const Inspection one = inspectOneFrame(scene, fewer, 9, {}, &all);
   EXPECT_EQ(one.work.framesDetected + one.work.predictions, 0);
   EXPECT_FALSE(one.models.at("canonical").oneFrame);
   EXPECT_EQ(one.models.at("canonical").frames.size(), 12u);
 
-  InspectionRequest other = request();
+  InspectionRequest other = oneFrameRequest();
   other.settings.set("predict.level_set_step", 3.0);
   const Inspection changed = inspectOneFrame(scene, other, 9, {}, &all);
   EXPECT_EQ(changed.work.framesDetected + changed.work.fits, 0);
@@ -112,27 +112,27 @@ TEST(InspectOneFrame, KeepsWhatAnEarlierRunKnowsOfTheOthers) {
 TEST(InspectOneFrame, ALightThatOnlyOtherFramesShowIsNotLost) {
   // "right" is on in the last frame alone, which is held out and not the one that is looked at first.
   const auto scene =
-      exactScene(sheet(0.2), {kLeft, kRight}, 8, [](int i) { return std::vector<std::string>{i == 7 ? "right" : "left"}; });
-  const Inspection all = inspect(scene, request()), one = inspectOneFrame(scene, request(), 5);
+      exactScene(sheet(0.2), {kOneFrameLeft, kOneFrameRight}, 8, [](int i) { return std::vector<std::string>{i == 7 ? "right" : "left"}; });
+  const Inspection all = inspect(scene, oneFrameRequest()), one = inspectOneFrame(scene, oneFrameRequest(), 5);
   EXPECT_EQ(all.models.at("limit-angle").fits.size(), 2u);
   EXPECT_EQ(one.models.at("limit-angle").fits.size(), 1u);
   expectSameFrame(one, all, 5);
-  EXPECT_EQ(digestOf(inspect(scene, request(), {}, &one)), digestOf(all));
+  EXPECT_EQ(digestOf(inspect(scene, oneFrameRequest(), {}, &one)), digestOf(all));
 }
 
 TEST(InspectOneFrame, LightsThatOnlyAllFramesTellApartTakeAllFrames) {
-  const auto scene = exactScene(sheet(0.3), {kLeft, kRight}, 8, [](int) { return std::vector<std::string>{"left", "right"}; });
+  const auto scene = exactScene(sheet(0.3), {kOneFrameLeft, kOneFrameRight}, 8, [](int) { return std::vector<std::string>{"left", "right"}; });
   for (Frame& f : scene->frames)
     for (Highlight& h : f.highlights) h.light.clear();
-  const Inspection all = inspect(scene, request()), one = inspectOneFrame(scene, request(), 6);
+  const Inspection all = inspect(scene, oneFrameRequest()), one = inspectOneFrame(scene, oneFrameRequest(), 6);
   EXPECT_EQ(one.work.framesDetected, 8);
   expectSameFrame(one, all, 6);
-  EXPECT_EQ(digestOf(inspect(scene, request(), {}, &one)), digestOf(all));
+  EXPECT_EQ(digestOf(inspect(scene, oneFrameRequest(), {}, &one)), digestOf(all));
 }
 
 TEST(InspectOneFrame, AHighlightMovedByHandIsMovedOnce) {
   const auto scene = exactScene(sheet(0.3), 8);
-  InspectionRequest q = request();
+  InspectionRequest q = oneFrameRequest();
   q.whatIf.highlights[{6, 0}].contourBy = {3, -2};
   q.whatIf.highlights[{7, 0}].contourBy = {1, 1};
   const Inspection all = inspect(scene, q), one = inspectOneFrame(scene, q, 6);
@@ -142,8 +142,8 @@ TEST(InspectOneFrame, AHighlightMovedByHandIsMovedOnce) {
 
 TEST(InspectOneFrame, RefusesAFrameThatDoesNotExist) {
   const auto scene = exactScene(sheet(0), 4);
-  EXPECT_THROW(inspectOneFrame(scene, request(), 4), std::invalid_argument);
-  EXPECT_THROW(inspectOneFrame(scene, request(), -1), std::invalid_argument);
+  EXPECT_THROW(inspectOneFrame(scene, oneFrameRequest(), 4), std::invalid_argument);
+  EXPECT_THROW(inspectOneFrame(scene, oneFrameRequest(), -1), std::invalid_argument);
 }
 
 }  // namespace

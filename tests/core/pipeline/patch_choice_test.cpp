@@ -23,7 +23,7 @@ struct Chosen {
   Selection selection;
 };
 
-Chosen choiceOn(std::shared_ptr<const Scene> scene, std::optional<double> goodEnough = {}, const std::string& train = "spread:6",
+Chosen patchChoiceOn(std::shared_ptr<const Scene> scene, std::optional<double> goodEnough = {}, const std::string& train = "spread:6",
                 double noisePx = 0, const std::vector<std::pair<std::string, std::string>>& settings = {}) {
   InspectionRequest request;
   request.models.clear();
@@ -69,7 +69,7 @@ constexpr double kWalks = 0.02;
 // Nominal: exact there, so taken, and the frames to predict lose nothing that the rule does not allow.
 TEST(PatchChoice, Nominal) {
   for (const AnalyticSpec& spec : {sphere(0.5), cylinder(0.4)}) {
-    const Chosen c = choiceOn(exactScene(spec, 8));
+    const Chosen c = patchChoiceOn(exactScene(spec, 8));
     ASSERT_EQ(c.selection.model, "limit-angle") << selectionTable(c.selection);
     ASSERT_TRUE(c.selection.patches);
     const PatchChoice& p = *c.selection.patches;
@@ -101,7 +101,7 @@ TEST(PatchChoice, ABentSurfaceKeepsExactWalks) {
           [&](const Highlight& a, const Highlight& b) { return (a.peak - middle).norm() < (b.peak - middle).norm(); });
       f.highlights = {*nearest};
     }
-    const Chosen c = choiceOn(scene);
+    const Chosen c = patchChoiceOn(scene);
     ASSERT_EQ(c.selection.model, "limit-angle") << selectionTable(c.selection);
     ASSERT_TRUE(c.selection.patches);
     const PatchChoice& p = *c.selection.patches;
@@ -116,7 +116,7 @@ TEST(PatchChoice, ABentSurfaceKeepsExactWalks) {
 // Seen from v3 the light is not mirrored where the others say: no model predicts that highlight. It counts against none, and a
 // contour that is off by fifteen diameters is no answer to it: `primal` would have been the only one to answer every view.
 TEST(PatchChoice, AUselessContourIsNoAnswer) {
-  const Chosen c = choiceOn(exactScene(torus(0.1), 6), {}, "spread:6", 0,
+  const Chosen c = patchChoiceOn(exactScene(torus(0.1), 6), {}, "spread:6", 0,
                             {{"fit.lobe", "phong"}, {"fit.light_size", "point"}, {"light.bundle_points", "12"}});
   EXPECT_EQ(c.selection.model, "limit-angle") << selectionTable(c.selection);
   EXPECT_LT(c.selection.candidates[0].answered, 12);
@@ -129,7 +129,7 @@ TEST(PatchChoice, AUselessContourIsNoAnswer) {
 // tolerance allows it.
 TEST(PatchChoice, TheRuleDecidesBelowTheCriterion) {
   const auto scene = exactScene(flatterEllipsoid(0.8), 8);
-  const Chosen exact = choiceOn(scene);
+  const Chosen exact = patchChoiceOn(scene);
   ASSERT_EQ(exact.selection.model, "limit-angle") << selectionTable(exact.selection);
   ASSERT_TRUE(exact.selection.patches);
   EXPECT_LT(exact.selection.patches->variation, kLargestVariation);
@@ -140,7 +140,7 @@ TEST(PatchChoice, TheRuleDecidesBelowTheCriterion) {
   EXPECT_GT(onPatches, kNegligiblePct);
 
   // Both tolerances are below what any simpler model reaches.
-  const Chosen allowed = choiceOn(scene, 1.02 * onPatches), tight = choiceOn(scene, 0.98 * onPatches);
+  const Chosen allowed = patchChoiceOn(scene, 1.02 * onPatches), tight = patchChoiceOn(scene, 0.98 * onPatches);
   ASSERT_EQ(allowed.selection.model, "limit-angle") << selectionTable(allowed.selection);
   EXPECT_TRUE(allowed.selection.patches->goodEnough) << allowed.selection.patches->why;
   ASSERT_EQ(tight.selection.model, "limit-angle") << selectionTable(tight.selection);
@@ -149,7 +149,7 @@ TEST(PatchChoice, TheRuleDecidesBelowTheCriterion) {
 
 // Noise: it hides what the patch neglects.
 TEST(PatchChoice, Noise) {
-  const Chosen c = choiceOn(exactScene(flatterEllipsoid(0.9), 10), {}, "spread:8", 1.0);
+  const Chosen c = patchChoiceOn(exactScene(flatterEllipsoid(0.9), 10), {}, "spread:8", 1.0);
   ASSERT_TRUE(c.selection.patches) << selectionTable(c.selection);
   EXPECT_EQ(c.selection.model, "limit-angle") << selectionTable(c.selection);
   EXPECT_TRUE(c.selection.patches->goodEnough) << c.selection.patches->why;
@@ -168,7 +168,7 @@ TEST(PatchChoice, FramesToPredictMustAllowIt) {
     f.highlights.clear();
     scene->frames.push_back(f);
   }
-  const Chosen c = choiceOn(scene, kWalks, "0-5");
+  const Chosen c = patchChoiceOn(scene, kWalks, "0-5");
   ASSERT_EQ(c.selection.model, "limit-angle") << selectionTable(c.selection);
   EXPECT_FALSE(c.selection.patches->goodEnough);
   EXPECT_GT(c.selection.patches->variation, kLargestVariation);
@@ -182,23 +182,23 @@ TEST(PatchChoice, ABorderKeepsExactWalks) {
   scene->surfaces["strip"].analytic->length = 0.08;
   scene->surfaces["strip"].analytic->width = 2.0;
   for (int i = 6; i < 8; ++i) scene->frames[i].surface = "strip";
-  const Chosen c = choiceOn(scene, kWalks, "0-5");
+  const Chosen c = patchChoiceOn(scene, kWalks, "0-5");
   ASSERT_TRUE(c.selection.patches) << selectionTable(c.selection);
   EXPECT_FALSE(c.selection.patches->goodEnough) << selectionTable(c.selection);
 }
 
 TEST(PatchChoice, Degenerate) {
   // Nothing walks: nothing is looked at.
-  const Chosen plane = choiceOn(exactScene(sheet(0), 8));
+  const Chosen plane = patchChoiceOn(exactScene(sheet(0), 8));
   EXPECT_EQ(plane.selection.model, "primal");
   EXPECT_FALSE(plane.selection.patches);
   // The user's walks are on patches already.
-  const Chosen already = choiceOn(exactScene(sphere(0.5), 8), {}, "spread:6", 0, {{"predict.query", "local-quadric"}});
+  const Chosen already = patchChoiceOn(exactScene(sphere(0.5), 8), {}, "spread:6", 0, {{"predict.query", "local-quadric"}});
   EXPECT_EQ(already.selection.model, "limit-angle");
   EXPECT_FALSE(already.selection.patches);
   EXPECT_EQ(queryOf(already), "local-quadric");
   // Nothing was chosen.
-  const Chosen one = choiceOn(exactScene(sphere(0.5), 4), {}, "0");
+  const Chosen one = patchChoiceOn(exactScene(sphere(0.5), 4), {}, "0");
   EXPECT_FALSE(one.selection.patches);
   EXPECT_TRUE(chosenRequest(one.evidence.request, one.selection).models.empty());
 }
@@ -219,7 +219,7 @@ TEST(PatchChoice, FacetsHaveNoPatches) {
   scene->surfaces["facets"] = {file, std::nullopt};
   scene->frames[5].surface = "facets";
   for (const bool flat : {true, false}) {
-    const Chosen c = choiceOn(scene, kWalks, "0-4", 0, {{"surface.normals", flat ? "facet" : "interpolated"}});
+    const Chosen c = patchChoiceOn(scene, kWalks, "0-4", 0, {{"surface.normals", flat ? "facet" : "interpolated"}});
     ASSERT_TRUE(c.selection.patches) << selectionTable(c.selection);
     EXPECT_EQ(c.selection.patches->goodEnough, !flat) << c.selection.patches->why;
     if (flat) {

@@ -12,7 +12,7 @@
 namespace glint {
 namespace {
 
-const std::vector<Lobe> kLobes{Lobe::TorranceSparrow, Lobe::Ggx, Lobe::BlinnPhong, Lobe::Phong};
+const std::vector<Lobe> kLampLobes{Lobe::TorranceSparrow, Lobe::Ggx, Lobe::BlinnPhong, Lobe::Phong};
 
 /// log of (1 / 2) int over t in [-1, 1] of I_point(c + t a) sin(angle(a, direction)) dt at the origin, by Simpson's rule.
 double denseSegment(Lobe lobe, double m, const Eigen::Vector3d& n, const Eigen::Vector3d& v, const Eigen::Vector3d& c,
@@ -66,7 +66,7 @@ TEST(SegmentLight, DerivativesAgreeWithDifferences) {
     lamp.halfAxis = x.template tail<3>();
     return *lobe::logOfLamp<T>(lobe, x(4), p, n, v, lamp, rule);
   };
-  for (const Lobe lobe : kLobes) {
+  for (const Lobe lobe : kLampLobes) {
     Eigen::Matrix<Dual, 8, 1> dual;
     for (int i = 0; i < 8; ++i) dual(i) = Dual(at(i), i);
     const Dual total = value(lobe, dual);
@@ -99,7 +99,7 @@ TEST(Lamp, KeepsItsInvariant) {
 // The lobe itself, evaluated with N tilted from H by the width, has fallen to the level.
 TEST(LobeWidth, IsWhereTheLobeHasFallenToTheLevel) {
   const Eigen::Vector3d h = Eigen::Vector3d::UnitZ();
-  for (const Lobe lobe : kLobes)
+  for (const Lobe lobe : kLampLobes)
     for (const double m : {0.02, 0.1, 0.3})
       for (const double level : {0.2, 0.5, 0.8}) {
         const double width = widthOf(lobe, m, level);

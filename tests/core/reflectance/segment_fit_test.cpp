@@ -17,7 +17,7 @@ namespace {
 using namespace test;
 
 const std::vector<Lobe> kMicrofacets{Lobe::TorranceSparrow, Lobe::Ggx};
-constexpr double kRoughness = 0.08, kHalfLength = 0.3;
+constexpr double kSegmentRoughness = 0.08, kHalfLength = 0.3;
 const Eigen::Vector3d kMiddle = 2 * Eigen::Vector3d(1.2, -1.0, 2.2).normalized();
 const Eigen::Vector3d kAxis = Eigen::Vector3d(0.6, 0.8, 0);
 
@@ -26,7 +26,7 @@ RadianceScene longLamp(Synthetic geometry, double scale = 1) {
   geometry.light.id = "tube";
   geometry.light.segment = {Eigen::Vector3d(scale * (kMiddle - kHalfLength * kAxis)), Eigen::Vector3d(scale * (kMiddle + kHalfLength * kAxis))};
   geometry.light.radius = 0.015 * scale;
-  return radianceScene(std::move(geometry), Lobe::TorranceSparrow, kRoughness);
+  return radianceScene(std::move(geometry), Lobe::TorranceSparrow, kSegmentRoughness);
 }
 
 struct Found {
@@ -42,7 +42,7 @@ Found compared(const RadianceFit& fit, double scale = 1) {
 Light guess(double scale = 1) { return Light::at(scale * (1.1 * kMiddle + Eigen::Vector3d(0.08, 0.05, -0.1))); }
 
 Outcome<RadianceFit> search(const std::vector<RadianceView>& views, const Light& light) {
-  return searchRadiance(kMicrofacets, views, light, widthOf(Lobe::TorranceSparrow, 1.5 * kRoughness, 0.5), {true, true});
+  return searchRadiance(kMicrofacets, views, light, widthOf(Lobe::TorranceSparrow, 1.5 * kSegmentRoughness, 0.5), {true, true});
 }
 
 TEST(FitSegment, NominalLampOfSixtyCentimetres) {
@@ -54,7 +54,7 @@ TEST(FitSegment, NominalLampOfSixtyCentimetres) {
   EXPECT_LT(f.centreM, 5e-3);                                    // "a few mm"
   EXPECT_LT(f.axisDeg, 0.5);
   EXPECT_NEAR(f.halfLength, kHalfLength, 0.01 * kHalfLength);
-  EXPECT_NEAR(fit->roughness, kRoughness, 0.01 * kRoughness);    // the tube's own width counts as the lobe's
+  EXPECT_NEAR(fit->roughness, kSegmentRoughness, 0.01 * kSegmentRoughness);    // the tube's own width counts as the lobe's
   EXPECT_LT(fit->rmsPx, 0.02);
 }
 
@@ -95,10 +95,10 @@ TEST(FitSegment, NoiseStaysWithinTheUncertainty) {
 // A point lamp stays one: exact, with noise, and under a lobe that is not its own.
 TEST(FitSegment, DegenerateAPointHasNoLength) {
   for (const double noise : {0.0, 0.3, 1.0}) {
-    const RadianceScene s = radianceScene(ellipsoidScene(6), Lobe::TorranceSparrow, kRoughness);
+    const RadianceScene s = radianceScene(ellipsoidScene(6), Lobe::TorranceSparrow, kSegmentRoughness);
     const Light near = Light::at(1.05 * *s.geometry.light.position);
     for (const std::vector<Lobe>& lobes : {kMicrofacets, std::vector<Lobe>{Lobe::Ggx}}) {
-      const auto fit = searchRadiance(lobes, radianceViews(s, noise, 7), near, widthOf(Lobe::TorranceSparrow, kRoughness, 0.5), {true, true});
+      const auto fit = searchRadiance(lobes, radianceViews(s, noise, 7), near, widthOf(Lobe::TorranceSparrow, kSegmentRoughness, 0.5), {true, true});
       ASSERT_TRUE(fit) << fit.failure().message();
       if (lobes.size() > 1) { EXPECT_EQ(fit->lightHalfAxis.norm(), 0) << noise; }
     }

@@ -17,7 +17,7 @@ using namespace testing_support;
 using testing::HasSubstr;
 
 /// Smooth colours with some noise, so that every coder has something to do.
-cv::Mat picture(int type, double largest) {
+cv::Mat ramp(int type, double largest) {
   cv::Mat m(48, 64, CV_MAKETYPE(CV_64F, CV_MAT_CN(type)));
   for (int y = 0; y < m.rows; ++y)
     for (int x = 0; x < m.cols * m.channels(); ++x) m.ptr<double>(y)[x] = largest * (0.1 + 0.6 * (x * 7 % 191) / 191.0 + 0.3 * y / 48.0);
@@ -59,24 +59,24 @@ void expectSame(const std::string& what, const std::string& bytes) {
 }
 
 TEST(ImageDecode, LegalFilesAreReadAsOpenCvReadsThem) {
-  expectSame("PNG, 8 bits, colour", encoded(".png", picture(CV_8UC3, 255)));
-  expectSame("PNG, 8 bits, grey", encoded(".png", picture(CV_8UC1, 255)));
-  expectSame("PNG, 8 bits, alpha", encoded(".png", picture(CV_8UC4, 255)));
-  expectSame("PNG, 16 bits, colour", encoded(".png", picture(CV_16UC3, 65535)));
-  expectSame("PNG, 16 bits, grey", encoded(".png", picture(CV_16UC1, 65535)));
-  expectSame("PNG, 16 bits, alpha", encoded(".png", picture(CV_16UC4, 65535)));
-  expectSame("PNG, 1 bit", encoded(".png", picture(CV_8UC1, 255), {cv::IMWRITE_PNG_BILEVEL, 1}));
-  expectSame("JPEG, colour", encoded(".jpg", picture(CV_8UC3, 255)));
-  expectSame("JPEG, grey", encoded(".jpg", picture(CV_8UC1, 255)));
-  expectSame("JPEG, progressive", encoded(".jpg", picture(CV_8UC3, 255), {cv::IMWRITE_JPEG_PROGRESSIVE, 1, cv::IMWRITE_JPEG_QUALITY, 60}));
-  expectSame("TIFF, 16 bits", encoded(".tiff", picture(CV_16UC3, 65535)));
-  expectSame("TIFF, float", encoded(".tiff", picture(CV_32FC3, 3), {cv::IMWRITE_TIFF_COMPRESSION, 1}));
-  expectSame("EXR", encoded(".exr", picture(CV_32FC3, 3)));
-  expectSame("BMP", encoded(".bmp", picture(CV_8UC3, 255)));
-  expectSame("PPM", encoded(".ppm", picture(CV_8UC3, 255)));
-  expectSame("PGM, 16 bits", encoded(".pgm", picture(CV_16UC1, 65535)));
-  expectSame("HDR", encoded(".hdr", picture(CV_32FC3, 3)));
-  expectSame("WebP", encoded(".webp", picture(CV_8UC3, 255), {cv::IMWRITE_WEBP_QUALITY, 101}));
+  expectSame("PNG, 8 bits, colour", encoded(".png", ramp(CV_8UC3, 255)));
+  expectSame("PNG, 8 bits, grey", encoded(".png", ramp(CV_8UC1, 255)));
+  expectSame("PNG, 8 bits, alpha", encoded(".png", ramp(CV_8UC4, 255)));
+  expectSame("PNG, 16 bits, colour", encoded(".png", ramp(CV_16UC3, 65535)));
+  expectSame("PNG, 16 bits, grey", encoded(".png", ramp(CV_16UC1, 65535)));
+  expectSame("PNG, 16 bits, alpha", encoded(".png", ramp(CV_16UC4, 65535)));
+  expectSame("PNG, 1 bit", encoded(".png", ramp(CV_8UC1, 255), {cv::IMWRITE_PNG_BILEVEL, 1}));
+  expectSame("JPEG, colour", encoded(".jpg", ramp(CV_8UC3, 255)));
+  expectSame("JPEG, grey", encoded(".jpg", ramp(CV_8UC1, 255)));
+  expectSame("JPEG, progressive", encoded(".jpg", ramp(CV_8UC3, 255), {cv::IMWRITE_JPEG_PROGRESSIVE, 1, cv::IMWRITE_JPEG_QUALITY, 60}));
+  expectSame("TIFF, 16 bits", encoded(".tiff", ramp(CV_16UC3, 65535)));
+  expectSame("TIFF, float", encoded(".tiff", ramp(CV_32FC3, 3), {cv::IMWRITE_TIFF_COMPRESSION, 1}));
+  expectSame("EXR", encoded(".exr", ramp(CV_32FC3, 3)));
+  expectSame("BMP", encoded(".bmp", ramp(CV_8UC3, 255)));
+  expectSame("PPM", encoded(".ppm", ramp(CV_8UC3, 255)));
+  expectSame("PGM, 16 bits", encoded(".pgm", ramp(CV_16UC1, 65535)));
+  expectSame("HDR", encoded(".hdr", ramp(CV_32FC3, 3)));
+  expectSame("WebP", encoded(".webp", ramp(CV_8UC3, 255), {cv::IMWRITE_WEBP_QUALITY, 101}));
 }
 
 /// Written by libpng itself: rows in seven passes (Adam7).
@@ -98,7 +98,7 @@ std::string interlacedPng(const cv::Mat& rgb) {
 }
 
 TEST(ImageDecode, AnInterlacedPngIsWhatWasWritten) {
-  const cv::Mat m = picture(CV_8UC3, 255);
+  const cv::Mat m = ramp(CV_8UC3, 255);
   const Outcome<cv::Mat> ours = decoded(interlacedPng(m));
   ASSERT_TRUE(ours) << ours.failure().message();
   EXPECT_EQ(cv::norm(*ours, m, cv::NORM_INF), 0);
@@ -107,11 +107,11 @@ TEST(ImageDecode, AnInterlacedPngIsWhatWasWritten) {
 /// Every damaged file is a failure with a reason, or pixels; no decoder writes a line of its own.
 TEST(ImageDecode, DamagedFilesEndInAReasonAndInSilence) {
   const std::vector<std::pair<std::string, std::string>> files = {
-      {"png", encoded(".png", picture(CV_8UC3, 255))},   {"png16", encoded(".png", picture(CV_16UC1, 65535))},
-      {"jpg", encoded(".jpg", picture(CV_8UC3, 255))},   {"tiff", encoded(".tiff", picture(CV_32FC3, 3))},
-      {"exr", encoded(".exr", picture(CV_32FC3, 3))},    {"bmp", encoded(".bmp", picture(CV_8UC3, 255))},
-      {"ppm", encoded(".ppm", picture(CV_8UC3, 255))},   {"hdr", encoded(".hdr", picture(CV_32FC3, 3))},
-      {"webp", encoded(".webp", picture(CV_8UC3, 255))},
+      {"png", encoded(".png", ramp(CV_8UC3, 255))},   {"png16", encoded(".png", ramp(CV_16UC1, 65535))},
+      {"jpg", encoded(".jpg", ramp(CV_8UC3, 255))},   {"tiff", encoded(".tiff", ramp(CV_32FC3, 3))},
+      {"exr", encoded(".exr", ramp(CV_32FC3, 3))},    {"bmp", encoded(".bmp", ramp(CV_8UC3, 255))},
+      {"ppm", encoded(".ppm", ramp(CV_8UC3, 255))},   {"hdr", encoded(".hdr", ramp(CV_32FC3, 3))},
+      {"webp", encoded(".webp", ramp(CV_8UC3, 255))},
   };
   cv::RNG random(20260401);  // one seed, so that a failure comes again
   int refused = 0, read = 0;
@@ -137,7 +137,7 @@ TEST(ImageDecode, DamagedFilesEndInAReasonAndInSilence) {
 }
 
 TEST(ImageDecode, GreyWhereDataAreMissingIsNoPicture) {
-  const std::string jpeg = encoded(".jpg", picture(CV_8UC3, 255));
+  const std::string jpeg = encoded(".jpg", ramp(CV_8UC3, 255));
   // The end marker stays, so that the file looks whole.
   const std::string gap = jpeg.substr(0, jpeg.size() * 2 / 3) + "\xff\xd9";
   const Outcome<cv::Mat> m = decoded(gap);
@@ -148,7 +148,7 @@ TEST(ImageDecode, GreyWhereDataAreMissingIsNoPicture) {
 TEST(ImageHeader, SaysTheSizeThatTheEncoderWrote) {
   for (const char* extension : {".png", ".jpg", ".tiff", ".exr", ".bmp", ".ppm", ".hdr", ".webp"}) {
     const bool isFloat = std::string(extension) == ".exr" || std::string(extension) == ".hdr" || std::string(extension) == ".tiff";
-    const ImageHeader header = readImageHeader(encoded(extension, picture(isFloat ? CV_32FC3 : CV_8UC3, isFloat ? 3 : 255)));
+    const ImageHeader header = readImageHeader(encoded(extension, ramp(isFloat ? CV_32FC3 : CV_8UC3, isFloat ? 3 : 255)));
     EXPECT_EQ(header.problem, "") << extension;
     EXPECT_EQ(header.width, 64u) << extension;
     EXPECT_EQ(header.height, 48u) << extension;
@@ -156,7 +156,7 @@ TEST(ImageHeader, SaysTheSizeThatTheEncoderWrote) {
 }
 
 TEST(ImageHeader, APngThatClaimsToBeHugeIsSeenBeforeItIsDecoded) {
-  std::string png = encoded(".png", picture(CV_8UC1, 255));
+  std::string png = encoded(".png", ramp(CV_8UC1, 255));
   png.replace(16, 8, std::string("\0\0\xea\x60\0\0\xea\x60", 8));  // 60,000 x 60,000
   EXPECT_EQ(readImageHeader(png).width, 60000u);
 }
