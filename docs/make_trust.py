@@ -5,6 +5,7 @@
   docs/make_trust.py            renders the page; 1 when a piece is not of the format
   docs/make_trust.py --check    says whether the page is what the pieces give; 1 when it is not
   docs/make_trust.py piece NAME --what TEXT --command TEXT [--row NAME COUNT FINDINGS NOTE]...
+  docs/make_trust.py row FILE --what TEXT --command TEXT --row NAME COUNT FINDINGS NOTE    one row; the others of the file stay
 """
 import argparse
 import datetime
@@ -132,6 +133,18 @@ def writePiece(arguments):
     replaceFile(pieces / f"{arguments.name}.json", json.dumps(piece, indent=2, ensure_ascii=False) + "\n")
 
 
+def writeRow(arguments):
+    """One row of a piece that takes several runs: the piece need not be there, and other rows stay."""
+    file = pathlib.Path(arguments.file)
+    today = datetime.datetime.now(datetime.timezone.utc).date().isoformat()
+    rows = checked(json.loads(file.read_text(encoding="utf-8")))["rows"] if file.exists() else []
+    name, count, findings, note = arguments.row
+    rows = [row for row in rows if row["name"] != name] + [{"name": name, "count": int(count), "findings": int(findings), "note": f"{note}, {today}"}]
+    piece = {"what": arguments.what, "command": arguments.command, "date": today, "rows": rows}
+    checked(piece)
+    replaceFile(file, json.dumps(piece, indent=2, ensure_ascii=False) + "\n")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--check", action="store_true", help="change nothing; 1 when the page is not what the pieces give")
@@ -141,9 +154,16 @@ def main():
     piece.add_argument("--what", required=True)
     piece.add_argument("--command", required=True)
     piece.add_argument("--row", nargs=4, action="append", default=[], metavar=("NAME", "COUNT", "FINDINGS", "NOTE"))
+    row = commands.add_parser("row", help="add one row to the piece in a file, or replace the row of that name")
+    row.add_argument("file")
+    row.add_argument("--what", required=True)
+    row.add_argument("--command", required=True)
+    row.add_argument("--row", nargs=4, required=True, metavar=("NAME", "COUNT", "FINDINGS", "NOTE"))
     arguments = parser.parse_args()
     if arguments.verb == "piece":
         return writePiece(arguments)
+    if arguments.verb == "row":
+        return writeRow(arguments)
     body, problems = render()
     head, rest = page.read_text(encoding="utf-8").split(begin)
     text = head + begin + body + end + rest.split(end)[1]

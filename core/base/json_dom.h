@@ -4,12 +4,16 @@
 // Internal to core: the JSON library's document, in time proportional to the text. Its own parser looks through all keys of an object
 // for every new one, so that an object of 100,000 keys takes many seconds.
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 
 namespace glint::json_dom {
 
 using Json = nlohmann::ordered_json;
+
+/// JSON has no NaN and no infinity: null stands for both.
+inline Json numberOrNull(double v) { return std::isfinite(v) ? Json(v) : Json(); }
 
 /// Appends a member; the caller knows that the key is new. (`object[key]` looks through all keys first.)
 inline void append(Json& object, const std::string& key, Json value) {

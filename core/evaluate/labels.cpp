@@ -7,13 +7,14 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "core/base/json_number.h"
+#include "core/base/json_dom.h"
 #include "core/evaluate/warnings.h"
 
 namespace glint {
 namespace {
 
 using nlohmann::ordered_json;
+using json_dom::numberOrNull;
 
 ordered_json pixel(const Pixel& p) { return {numberOrNull(p.x()), numberOrNull(p.y())}; }
 ordered_json vector(const Eigen::Vector3d& v) { return {numberOrNull(v.x()), numberOrNull(v.y()), numberOrNull(v.z())}; }

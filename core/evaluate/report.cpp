@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/base/json_number.h"
+#include "core/base/json_dom.h"
 #include "core/base/number_text.h"
 #include "core/evaluate/band_text.h"
 #include "core/evaluate/detection_error.h"
@@ -18,6 +18,7 @@ namespace glint {
 namespace {
 
 using nlohmann::ordered_json;
+using json_dom::numberOrNull;
 
 
 template <class Matrix>

@@ -3,7 +3,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "core/base/json_number.h"
+#include "core/base/json_dom.h"
 #include "core/base/json_text.h"
 #include "core/base/number_text.h"
 #include "core/base/outcome.h"
@@ -14,6 +14,7 @@ namespace glint {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using json_dom::numberOrNull;
 
 Json settingJson(const SettingValue& value) {
   return std::visit([](const auto& v) { return Json(v); }, value);

@@ -5,13 +5,14 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/atomic_file.h"
-#include "core/base/json_number.h"
+#include "core/base/json_dom.h"
 #include "core/base/json_text.h"
 
 namespace glint {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using json_dom::numberOrNull;
 
 constexpr int kVersion = 1;
 
