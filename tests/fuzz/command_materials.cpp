@@ -111,10 +111,17 @@ std::string stlOf(const Ball& b) {
   return out.str() + "endsolid ball\n";
 }
 
-Json specOf(const Json& surface, const Json& render) {
+/// @param larger  times as many pixels along a side: highlights of photographs must be large enough to be found
+Json specOf(const Json& surface, const Json& render, double larger = 1) {
   return {{"glint_scene", 1},
           {"name", "small"},
-          {"camera", {{"width", 48}, {"height", 36}, {"fx", 60}, {"fy", 60}, {"cx", 23.5}, {"cy", 17.5}, {"distortion", {0.02, 0, 0, 0, 0}}}},
+          {"camera", {{"width", int(48 * larger)},
+                       {"height", int(36 * larger)},
+                       {"fx", 60 * larger},
+                       {"fy", 60 * larger},
+                       {"cx", 24 * larger - 0.5},
+                       {"cy", 18 * larger - 0.5},
+                       {"distortion", {0.02, 0, 0, 0, 0}}}},
           {"surfaces", {{"body", surface}}},
           {"lights", {{{"id", "lamp"}, {"position", {1.5, -1.0, 2.2}}}}},
           {"path", {{"orbit", {{"centre", {0, 0, 0}}, {"radius", 1.9}, {"height", 0.9}, {"from", -1.9}, {"to", -0.9}, {"count", 5}}}}},
@@ -155,8 +162,8 @@ std::vector<Victim> makeMaterials(const fs::path& program, const fs::path& folde
     write(folder / name, text);
 
   make.scene("given", specOf(ellipsoid, png), false);
-  make.scene("detected", specOf(ellipsoid, png), true);
-  make.scene("jpeg", specOf(ellipsoid, jpeg), true);
+  make.scene("detected", specOf(ellipsoid, png, 1.75), true);
+  make.scene("jpeg", specOf(ellipsoid, jpeg, 1.75), true);
   for (const std::string mesh : {"text.ply", "binary.ply", "ball.obj", "ball.stl"}) {
     const std::string name = mesh.substr(0, mesh.find('.')) + "-" + mesh.substr(mesh.find('.') + 1);
     make.scene(name, specOf({{"mesh", mesh}}, png), false);
@@ -184,6 +191,7 @@ std::vector<Victim> makeMaterials(const fs::path& program, const fs::path& folde
   Json steps = specOf({{"analytic", {{"type", "sheet"}, {"curvature", 0.1}}}}, png);
   steps["surface_steps"] = {{"surface", "body"}, {"parameter", "curvature"}, {"from", 0}, {"to", 0.5}, {"count", 2}};
   steps["path"]["orbit"]["count"] = 1;
+  steps["lights"][0]["position"] = {0.74, 2.15, 1.1};  // mirrored in the middle of the sheet
   write(folder / "specs/steps.json", steps.dump());
   Json frames = specOf({{"mesh", "ball.obj"}}, png);
   frames.erase("path");
@@ -201,8 +209,8 @@ std::vector<Victim> makeMaterials(const fs::path& program, const fs::path& folde
                                             "evaluate . " + limit + "--json out/e.json --csv out/e.csv --html out/e.html",
                                             "evaluate . --models dual,canonical,primal --train 0-2 --json out/e.json",
                                             "reconstruct . --model limit-angle --train 0-2 -o out/s.glint",
-                                            "render . --view frame --size 160x120 -o out/p.png",
-                                            "render . --view plots --size 160x120 -o out/p.png",
+                                            "render . " + limit + "--view frame --size 160x120 -o out/p.png",
+                                            "render . " + limit + "--view plots --size 160x120 -o out/p.png",
                                             "convert . -o out/c.json"};
   const std::vector<std::string> onMesh = {"info .", "evaluate . " + limit + "--json out/e.json", "reconstruct . --model canonical --train 0-2 -o out/s.glint"};
   const std::vector<std::string> onImage = {"info .", "detect . --json out/d.json --out out/d", "evaluate . " + limit + "--source image --json out/e.json --html out/e.html"};

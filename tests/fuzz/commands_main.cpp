@@ -19,6 +19,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
@@ -33,6 +34,7 @@ using namespace glint::fuzz;
 namespace fs = std::filesystem;
 
 constexpr double kSlowSeconds = 20;  // of the processor: the inputs are tiny, and most commands take a tenth of a second
+constexpr long kMostUnchecked = 500;  // runs, from which all commands are first tried on what is not damaged: a minute
 constexpr double kHangSeconds = 180; // on the clock, for what waits
 constexpr double kLargeMegabytes = 1000;
 constexpr std::size_t kLongestLine = 400;
@@ -216,6 +218,22 @@ void one(const Options& o, const fs::path& materials, const std::vector<const Vi
   std::ofstream(kept / "CMD") << "glint " << command << (damaged.empty() ? "" : "\n{} = " + damaged) << "\n" << wrong << "\n" << run.err;
 }
 
+/// The first command that fails on what is not damaged, with its words; "" = none. Such a command would reach nothing behind its failure.
+std::string failsUndamaged(const Options& o, const fs::path& materials, const std::vector<Victim>& victims) {
+  std::set<std::pair<std::string, std::string>> seen;
+  for (const Victim& v : victims)
+    for (const std::string& command : v.commands) {
+      if (v.reader == "places" || !seen.emplace(v.input, command).second) continue;  // most of those places are wrong ones
+      const ScratchFolder outer;
+      const fs::path folder = outer.path() / "case";
+      fs::copy(materials / v.input, folder, fs::copy_options::recursive);
+      for (const char* name : {"home", "tmp", "case/out"}) fs::create_directories(outer.path() / name);
+      const Run run = runProgram(o.program, wordsOf(command, v.word), folder, outer.path());
+      if (run.code != 0) return v.input + ": glint " + command + ": exit code " + std::to_string(run.code) + ": " + run.err;
+    }
+  return "";
+}
+
 void write(const fs::path& file, const Table& table) {
   std::ofstream out(file);
   for (const auto& [name, r] : table)
@@ -303,6 +321,11 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", e.what());
     return 2;
   }
+  if (o.count >= kMostUnchecked)
+    if (const std::string fails = failsUndamaged(o, materials.path(), victims); !fails.empty()) {
+      std::fprintf(stderr, "undamaged, %s", fails.c_str());
+      return 2;
+    }
   std::vector<const Victim*> lots;
   for (const Victim& v : victims) lots.insert(lots.end(), static_cast<std::size_t>(v.weight), &v);
 
