@@ -166,7 +166,7 @@ std::vector<Victim> makeMaterials(const fs::path& program, const fs::path& folde
   make.scene("jpeg", specOf(ellipsoid, jpeg, 1.75), true);
   for (const std::string mesh : {"text.ply", "binary.ply", "ball.obj", "ball.stl"}) {
     const std::string name = mesh.substr(0, mesh.find('.')) + "-" + mesh.substr(mesh.find('.') + 1);
-    make.scene(name, specOf({{"mesh", mesh}}, png), false);
+    make.scene(name, specOf({{"mesh", mesh}}, png, mesh == "text.ply" ? 1.75 : 1), false);
   }
   // A scene without a surface of its own: the frames' depth maps.
   fs::copy(folder / "given", folder / "depth", fs::copy_options::recursive);
