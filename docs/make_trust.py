@@ -139,6 +139,8 @@ def writeRow(arguments):
     today = datetime.datetime.now(datetime.timezone.utc).date().isoformat()
     rows = checked(json.loads(file.read_text(encoding="utf-8")))["rows"] if file.exists() else []
     name, count, findings, note = arguments.row
+    if not (count.isdigit() and findings.isdigit()):
+        sys.exit(f"make_trust.py: --row {name}: COUNT and FINDINGS must be whole numbers, 0 or more")
     rows = [row for row in rows if row["name"] != name] + [{"name": name, "count": int(count), "findings": int(findings), "note": f"{note}, {today}"}]
     piece = {"what": arguments.what, "command": arguments.command, "date": today, "rows": rows}
     checked(piece)
