@@ -57,8 +57,9 @@ struct CentrePrior {
 
 /// Refined: minimises contour distances (px, points to the outline) over the centre and the positive semidefinite S, from
 /// `start`, with the prior on the centre when there is one. Never worse than the start.
-/// TooFewViews (< 3 without a prior, < 2 with one); NotAnEllipsoid when the start has none; NotFinite. Running out of
-/// iterations is no failure: the result is still better than the start, and `solver` says so.
+/// TooFewViews (< 3 without a prior, < 2 with one); NotAnEllipsoid when the start has none; NotFinite; RankDeficient;
+/// NotConverged where the iteration ends far from a minimum (the next step is longer than the ellipsoid). Running out of iterations
+/// closer to it is no failure: the result is still better than the start, and `solver` says so.
 Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, const Ellipsoid& start,
                                            const std::optional<CentrePrior>& prior = {}, int maxIterations = 100);
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/number_text.h"
 #include "core/model/ellipse_distance.h"
 #include "core/model/reconstruct_detail.h"
 
@@ -24,6 +25,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRankRatio = 1e-9;
 /// The second axis is kept above this share of the longest, squared: a segment has no outline to step from.
 constexpr double kSegment = 1e-10;
+/// Share of the cost that the linear model may still promise at a minimum: the root of round-off, as the cost is flat to second order there.
+constexpr double kStationary = 1e-8;
 
 /// Centre and shape S = V diag(e) V^T with ascending e >= 0: distances are linear in S where an axis vanishes, while a factor of S
 /// has no slope there and would creep towards the flat ellipsoid.
@@ -266,8 +269,7 @@ Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, 
       double cost = kInfinity;
       if (step.allFinite() && contours.rows(next, rows)) cost = rows.col(9).squaredNorm();
       if (!(cost < linear.cost)) continue;
-      // 1e-8 is the root of round-off: the cost is flat to second order at its minimum.
-      converged = linear.cost - cost <= kEnough * linear.cost && linear.gain() <= 1e-8 * linear.cost;
+      converged = linear.cost - cost <= kEnough * linear.cost && linear.gain() <= kStationary * linear.cost;
       state = next;
       linear = Linearised(rows, state);
       damping = std::max(damping * 0.03, 1e-16);  // below round-off of the singular values damping does nothing
@@ -293,6 +295,12 @@ Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, 
 
   if (!(linear.smallest() > kRankRatio * linear.largest()))
     return Failure{Reason::RankDeficient, "several ellipsoids explain the contours equally well"};
+  // Where the iteration stops short of a minimum (at the limit, or because a longer shape would reach a camera) and the next step is
+  // longer than the ellipsoid, the state is a place on the way: round-off decides where on a long flat valley it lies.
+  const Step left = linear.step(0);
+  const double size = std::sqrt(state.squares.sum()), steps = std::max(left.head<3>().norm() / size, left.tail<6>().norm() / (size * size));
+  if (linear.gain() > kStationary * linear.cost && !(steps <= 1))
+    return Failure{Reason::NotConverged, formatted("the next step would be %.3g times the ellipsoid: the outlines do not determine it", steps)};
   if (state.squares(1) <= 2 * kSegment * state.squares(2))
     return Failure{Reason::NotAnEllipsoid, "the refined shape has two empty axes"};
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();

@@ -7,6 +7,7 @@
 
 #include "core/base/number_text.h"
 #include "core/base/settings.h"
+#include "core/model/model.h"
 #include "core/reflectance/fit.h"
 #include "core/reflectance/fit_search.h"
 
@@ -25,6 +26,11 @@ inline std::vector<Lobe> lobesOf(const Settings& settings) {
 inline LampChoices lampChoicesOf(const Settings& settings) {
   const std::string& lamps = settings.text("fit.light_size");
   return {lamps == "auto" || lamps == "sphere", lamps == "auto" || lamps == "segment"};
+}
+
+/// The value of `fit.light_size` under which a lamp like that of a fit is searched.
+inline std::string lampChoiceOf(const ModelFit& fit) {
+  return fit.lightSegment ? "segment" : fit.lightRadius.value_or(0) > 0 ? "sphere" : "point";
 }
 
 /// The levels of `fit.levels`: numbers between commas.

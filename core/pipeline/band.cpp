@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/base/number_text.h"
+#include "core/model/reflectance_settings.h"
 #include "core/pipeline/training.h"
 
 namespace glint {
@@ -135,7 +136,7 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
       Settings with = settings;
       with.set("fit.lobe", lobe);
       // Under a lamp of the same shape: a wrong lobe would take long to find one that makes up for it.
-      with.set("fit.light_size", std::string(fit.lightSegment ? "segment" : fit.lightRadius.value_or(0) > 0 ? "sphere" : "point"));
+      with.set("fit.light_size", lampChoiceOf(fit));
       tryOther(model, with, "the lobe " + lobe);
     }
   } else if (fit.limitAngle && !fit.ellipsoid) {

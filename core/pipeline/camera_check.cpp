@@ -7,6 +7,7 @@
 
 #include "core/base/number_text.h"
 #include "core/model/model.h"
+#include "core/model/reflectance_settings.h"
 #include "core/pipeline/evidence.h"
 #include "core/pipeline/training.h"
 #include "core/surface/mesh_policy.h"
@@ -49,7 +50,7 @@ class Check {
       return std::move(result_);
     }
     const std::vector<int> all = every(0, 1);
-    const std::optional<Fitted> given = fit({}, all, "auto");
+    const std::optional<Fitted> given = fit({}, all, {});
     add("as given", given);
     if (!given || given->rmsPx > kGoodRadii * radiusPx_) flips(given);
     if (given && result_.findings.empty()) intrinsics(*given, all);
@@ -61,9 +62,12 @@ class Check {
     FrameEvidence evidence;
     std::shared_ptr<const Surface> surface;
   };
+  struct Kind {
+    std::string lobe = "auto", lamp = "auto";  ///< values of fit.lobe and fit.light_size
+  };
   struct Fitted {
     double rmsPx = 0;
-    std::string lobe;
+    Kind kind;
   };
 
   void stopIfAsked(int done, int total) const {
@@ -108,10 +112,11 @@ class Check {
   }
 
   /// Light and lobe of some views as if the cameras were changed.
-  std::optional<Fitted> fit(const Change& change, const std::vector<int>& which, const std::string& lobe) const {
+  std::optional<Fitted> fit(const Change& change, const std::vector<int>& which, const Kind& kind) const {
     stopIfAsked(0, 0);
     Settings settings = settings_;
-    settings.set("fit.lobe", lobe);
+    settings.set("fit.lobe", kind.lobe);
+    settings.set("fit.light_size", kind.lamp);
     settings.set("fit.evidence", std::string("contours"));  // pixels would move the residuals away from them
     settings.set("light.bundle_points", 36);                // as good for comparisons, in half the time
     settings.set("fit.most_residual", 0.3);                 // what wrong cameras leave is measured here, it is no answer
@@ -146,7 +151,7 @@ class Check {
     Fitted result;
     for (const double r : fitted->residualPx) result.rmsPx += r * r / double(which.size());
     result.rmsPx = std::sqrt(result.rmsPx);
-    result.lobe = fitted->lobe.value_or("auto");
+    result.kind = {fitted->lobe.value_or("auto"), lampChoiceOf(*fitted)};
     return std::isfinite(result.rmsPx) ? std::optional<Fitted>(result) : std::nullopt;
   }
 
@@ -163,7 +168,7 @@ class Check {
       Change change;
       change.flipX = flip.x;
       change.flipY = flip.y;
-      const std::optional<Fitted> fitted = fit(change, every(0, 1), "auto");
+      const std::optional<Fitted> fitted = fit(change, every(0, 1), {});
       add(std::string("images ") + flip.name, fitted);
       if (!fitted || (best && fitted->rmsPx >= bestPx)) continue;
       best = &flip;
@@ -181,17 +186,18 @@ class Check {
   }
 
   /// How far to go along a change until the sum of squares is least: a parabola through three fits, then one about its end, where
-  /// another lobe may fit better than for the wrong cameras.
+  /// another lobe may fit better than for the wrong cameras. The shape of the lamp stays: small errors of cameras do not hide it,
+  /// and searching all shapes for every step takes half a minute where contours are damaged.
   std::optional<double> least(const Change& direction, const Fitted& given, const std::vector<int>& which) const {
     double at = 0;
     Fitted here = given;
     for (int round = 0; round < 2; ++round) {
       if (round > 0) {
-        const std::optional<Fitted> again = fit(along(direction, at), which, "auto");
+        const std::optional<Fitted> again = fit(along(direction, at), which, {"auto", given.kind.lamp});
         if (!again) return std::nullopt;
         here = *again;
       }
-      const auto up = fit(along(direction, at + 1), which, here.lobe), down = fit(along(direction, at - 1), which, here.lobe);
+      const auto up = fit(along(direction, at + 1), which, here.kind), down = fit(along(direction, at - 1), which, here.kind);
       if (!up || !down) return std::nullopt;
       const double u = up->rmsPx * up->rmsPx, d = down->rmsPx * down->rmsPx, bend = u + d - 2 * here.rmsPx * here.rmsPx;
       if (!(bend > 0)) return std::nullopt;
@@ -203,10 +209,10 @@ class Check {
   }
 
   /// Both halves of the views fit better after the change, too.
-  bool bothHalvesGain(const Change& change, const std::string& lobe) const {
+  bool bothHalvesGain(const Change& change, const Kind& kind) const {
     for (const int first : {0, 1}) {
       const std::vector<int> half = every(first, 2);
-      const std::optional<Fitted> before = fit({}, half, lobe), after = fit(change, half, lobe);
+      const std::optional<Fitted> before = fit({}, half, kind), after = fit(change, half, kind);
       if (!before || !after || !(after->rmsPx < kHalfGain * before->rmsPx)) return false;
     }
     return true;
@@ -222,18 +228,18 @@ class Check {
     if (byShift) {
       result_.shiftPx = *byShift * shift.cx;
       half.cx = half.cy = *byShift < 0 ? -0.5 : 0.5;
-      atHalf = fit(half, all, "auto");
+      atHalf = fit(half, all, {"auto", given.kind.lamp});
       add("principal point half a pixel " + std::string(half.cx < 0 ? "less" : "more"), atHalf);
     }
     if (byFocal) {
       longer = along(focal, *byFocal);
       result_.focalPct = 100 * std::expm1(longer.logFocal);
-      atFocal = fit(longer, all, "auto");
+      atFocal = fit(longer, all, {"auto", given.kind.lamp});
       add(formatted("focal length %+.2g %%", *result_.focalPct), atFocal);
     }
     const auto clear = [&](const std::optional<Fitted>& here, const std::optional<Fitted>& other, const Change& change) {
       return here && here->rmsPx < kClearly * given.rmsPx && !(other && other->rmsPx < here->rmsPx) &&
-             bothHalvesGain(change, here->lobe);
+             bothHalvesGain(change, here->kind);
     };
     if (byShift && std::abs(*result_.shiftPx - half.cx) < kShiftSlackPx && clear(atHalf, atFocal, half))
       result_.findings.push_back(

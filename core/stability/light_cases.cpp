@@ -229,8 +229,14 @@ void addLightCases(Cases& cases) {
       [=] { return bundleCase<Real>({.oneCentre = true}, lamp, 1); });
   add(b, "focal length 50 px", 50, 1e-9, "", [=] { return bundleCase<Real>({.focal = 50}, lamp, 1); });
   add(b, "focal length 50,000 px", 5e4, 1e-9, "", [=] { return bundleCase<Real>({.focal = 5e4}, lamp, 1); });
-  for (const auto& [stage, what] : {std::pair("bundle, poses refined", Refine::Poses), std::pair("bundle, depth refined", Refine::Depth),
-                                    std::pair("bundle, extent of the light", Refine::Extent)}) {
+  struct Refined {
+    const char* stage;
+    Refine what;
+  };
+  for (const Refined& r : {Refined{"bundle, poses refined", Refine::Poses}, Refined{"bundle, depth refined", Refine::Depth},
+                           Refined{"bundle, extent of the light", Refine::Extent}}) {
+    const char* const stage = r.stage;
+    const Refine what = r.what;
     const char* const note = "exact contours of a point: there is nothing to refine";
     add(stage, "light at 2 m", 2, 1e-9, note, [=] { return bundleCase<Real>({.refine = what}, lamp, 1); });
     add(stage, "scene scale 1e-6", 1e-6, 1e-9, note, [=] { return bundleCase<Real>({.scale = 1e-6, .refine = what}, Light::at(2e-6 * d), 1); });

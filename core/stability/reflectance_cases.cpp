@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <boost/math/special_functions/erf.hpp>
 #include <numbers>
+#include <tuple>
 
 #include "core/model/model.h"
 #include "core/reflectance/fit.h"
@@ -67,7 +68,8 @@ Outcome<Measured> fitCase(const RadianceScene& p, const Light& light, int copies
   for (const auto& place : places) {
     const RealView<Real> view = mirrorView(lit.surface, lit.lamp, place[0] * p.spread * p.scale, place[1] * p.spread * p.scale,
                                            p.distance * p.scale, p.focal, p.skew);
-    const auto [pu, pv] = lit.peak(view.u0, view.v0, view.eye, Real(sizeOf(p)));
+    const auto peak = lit.peak(view.u0, view.v0, view.eye, Real(sizeOf(p)));
+    const Real pu = std::get<0>(peak), pv = std::get<1>(peak);  // no structured binding: clang 14 captures none in lambdas
     const Real top = lit.at(pu, pv, view.eye);
     RadianceView v;
     v.camera = view.camera;

@@ -204,10 +204,10 @@ void copyMeshes(Scene& scene, const fs::path& out) {
     }
     const std::string stem = fileNameOf(source.mesh->stem().string()), extension = source.mesh->extension().string();
     std::string name = stem + extension;
-    const auto isAnotherMesh = [&](const std::string& candidate) {
+    const auto isAnotherMesh = [&, &mine = *source.mesh](const std::string& candidate) {
       std::error_code ignored;  // what is not there yet is no mesh
       return std::any_of(meshes.begin(), meshes.end(), [&](const fs::path& mesh) {
-        return mesh != *source.mesh && fs::equivalent(mesh, scene.folder / "mesh" / candidate, ignored);
+        return mesh != mine && fs::equivalent(mesh, scene.folder / "mesh" / candidate, ignored);
       });
     };
     for (int n = 2; names.count(name) || isAnotherMesh(name); ++n) name = stem + "-" + std::to_string(n) + extension;

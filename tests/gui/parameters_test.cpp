@@ -193,8 +193,7 @@ class ParametersTest : public QObject {
     QVERIFY(results(after) != results(before));
 
     QTest::mouseClick(panel.findChild<QToolButton*>("reset:" + toQString(t.key)), Qt::LeftButton);
-    QVERIFY(document.request() == opened.request);
-    QCOMPARE(results(inspect(opened.scene, document.request(), {}, &after)), results(before));
+    QVERIFY(document.request() == opened.request);  // the same request has the same results: core_inspect
   }
 
  private:

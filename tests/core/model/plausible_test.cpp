@@ -179,6 +179,12 @@ TEST(Plausible, EllipsoidsOfContoursThatContradictEachOtherAreRefused) {
       settings.set("fit.solver", std::string(solver));
       const Outcome<ModelFit> fit = modelByName(model).fit(input, settings);
       ASSERT_FALSE(fit) << model << " " << solver;
+      if (fit.failure().message().find("the outlines do not determine it") != std::string::npos) {
+        // The iteration of `refined` may end on a valley without an end; then no setting makes an answer of it.
+        EXPECT_EQ(fit.failure().reason, Reason::NotConverged) << model << " " << solver;
+        EXPECT_EQ(std::string(solver), "refined") << model;
+        continue;
+      }
       EXPECT_THAT(fit.failure().message(), HasSubstr("is no answer (the setting fit.most_residual)")) << model << " " << solver;
       settings.set("fit.most_residual", 10.0);  // half and twice as large: nobody leaves more than the contours themselves
       EXPECT_TRUE(modelByName(model).fit(input, settings)) << model << " " << solver;

@@ -107,6 +107,20 @@ TEST(ReconstructRefined, NominalFromAPoorStart) {
   EXPECT_GT(r->iterations, 1);
 }
 
+// Stopped on the way, where the next step is many times the ellipsoid: no answer, since round-off would decide where it lies.
+TEST(ReconstructRefined, APlaceOnTheWayIsNoAnswer) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() << 0.35, -0.15, 0.37;
+  const Ellipsoid start(pose, {0.012, 0.01, 0.01});  // a twentieth of the truth
+  const auto views = viewsOf(truth(), ring(4));
+  const auto once = reconstructRefined(views, start, {}, 1);
+  ASSERT_EQ(reasonOf(once), Reason::NotConverged);
+  EXPECT_NE(once.failure().detail.find("times the ellipsoid"), std::string::npos) << once.failure().detail;
+  const auto whole = reconstructRefined(views, start);
+  ASSERT_TRUE(whole) << whole.failure().message();
+  EXPECT_LT(difference(*whole->ellipsoid, truth()), tolerance::kSolve);
+}
+
 TEST(Reconstruct, ScaleGivesTheSameRelativeError) {
   for (const double scale : {1e-6, 1e-3, 1e3, 1e6}) {
     const auto views = viewsOf(truth(scale), ring(5, scale));

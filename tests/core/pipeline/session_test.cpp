@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/base/sha256.h"
+#include "core/pipeline/key_result_difference.h"
 #include "tests/core/scene/scene_fixture.h"
 #include "tests/shared_data.h"
 
@@ -149,6 +150,18 @@ TEST(Session, UnknownKeysAreWarnedOfAndKept) {
   EXPECT_THAT(s.warnings, ElementsAre("future: unknown key, kept"));
   writeSession(s, folder / "y.glint");
   EXPECT_THAT(contentOf(folder / "y.glint"), HasSubstr("\"future\""));
+}
+
+// docs/commands.md: 1e-9 relative, to at least 1 px or 1 % for errors of contours and 0.001 for the rest.
+TEST(Session, DifferencesOfKeyResultsAreRelativeToALeastSize) {
+  for (const char* distance : {"dual.contour_error_px.mean", "dual.contour_error_pct.max", "dual.peak_offset_px.median"}) {
+    EXPECT_NEAR(keyResultDifference(distance, 0.005, 0.005 + 1e-9), 1e-9 / 1.005, 1e-16) << distance;
+    EXPECT_NEAR(keyResultDifference(distance, 999, 999 * (1 + 1e-9)), 0.999e-9, 1e-15) << distance;
+  }
+  EXPECT_NEAR(keyResultDifference("dual.iou.mean", 0.009, 0.009 + 1e-9), 1e-7, 1e-12);
+  EXPECT_NEAR(keyResultDifference("light.lamp.x", 0, 1e-12), 1e-9, 1e-15);
+  EXPECT_EQ(keyResultDifference("dual.iou.mean", NAN, NAN), 0);
+  EXPECT_TRUE(std::isinf(keyResultDifference("dual.iou.mean", NAN, 1)));
 }
 
 /// A path-traced sphere with its analytic surface and the cheapest model: the whole way from images to numbers and back.
