@@ -53,8 +53,7 @@ constexpr const char* kEverywhere = "Options of every command";
 std::string limitNames() {
   std::string names;
   for (const LimitInfo& limit : limitInfos()) {
-    char value[32];
-    printText(value, sizeof value, "=%.15g", limit.standard);
+    const std::string value = formatted("=%.15g", limit.standard);
     names += (names.empty() ? "" : ", ") + limit.name + value;
   }
   return names;

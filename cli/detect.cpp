@@ -41,20 +41,16 @@ std::vector<double> uncertainties(const Frame& frame, FrameSource source, const 
 
 std::string table(const std::vector<DetectedFrame>& frames) {
   std::string text = "frame         light         peak x    peak y      area px2   axes px          flags\n";
-  char line[256];
   for (const DetectedFrame& frame : frames) {
     if (frame.failure) {
-      printText(line, sizeof line, "%-12.40s  -  %.180s\n", frame.id.c_str(), frame.failure->message().c_str());
-      text += line;
+      text += formatted("%-12.40s  -  %.180s\n", frame.id.c_str(), frame.failure->message().c_str());
     }
     for (std::size_t i = 0; i < frame.highlights.size(); ++i) {
       const Highlight& h = frame.highlights[i];
-      char axes[48] = "-";
-      if (h.ellipse) printText(axes, sizeof axes, "%.2f x %.2f", h.ellipse->semiAxes.x(), h.ellipse->semiAxes.y());
-      printText(line, sizeof line, "%-12.40s  %-10.40s  %8.3f  %8.3f  %12.1f   %-15s  %s%s\n", frame.id.c_str(),
-                h.light.c_str(), h.peak.x(), h.peak.y(), h.areaPx2, axes, h.clipped ? "clipped " : "",
-                h.touchesBorder ? "border" : "");
-      text += line;
+      std::string axes = "-";
+      if (h.ellipse) axes = formatted("%.2f x %.2f", h.ellipse->semiAxes.x(), h.ellipse->semiAxes.y());
+      text += formatted("%-12.40s  %-10.40s  %8.3f  %8.3f  %12.1f   %-15s  %s%s\n", frame.id.c_str(), h.light.c_str(), h.peak.x(),
+                        h.peak.y(), h.areaPx2, axes.c_str(), h.clipped ? "clipped " : "", h.touchesBorder ? "border" : "");
     }
   }
   return text;
@@ -132,8 +128,7 @@ Command detectCommand() {
               const Frame& frame = scene.frames[static_cast<std::size_t>(i)];
               const Outcome<Image> photograph = readPhotograph(frame);
               // Numbered by position: an id may hold characters that no file name may.
-              char name[32];
-              printText(name, sizeof name, "%04d.png", i);
+              const std::string name = formatted("%04d.png", i);
               if (photograph)
                 writePng(folder / name,
                          drawDetection(*photograph, frame.camera, frames[static_cast<std::size_t>(i)].highlights));
@@ -150,11 +145,10 @@ Command detectCommand() {
         open += pct > kWorthSayingPct;
       }
     if (open > 0) {
-      char text[300];
-      printText(text, sizeof text,
-                "the background is uncertain under %d highlight%s: their surroundings may be the tail of the highlight itself, and the "
-                "contours up to %.2g %% of the diameter too small; evaluate and reconstruct know the surface and settle it",
-                open, open == 1 ? "" : "s", worst);
+      const std::string text = formatted(
+          "the background is uncertain under %d highlight%s: their surroundings may be the tail of the highlight itself, and the "
+          "contours up to %.2g %% of the diameter too small; evaluate and reconstruct know the surface and settle it",
+          open, open == 1 ? "" : "s", worst);
       context.warn(text);
     }
     if (a->json != "-") context.print(table(frames));

@@ -94,8 +94,7 @@ void Outputs::inFolder(const std::string& folder, const std::string& flag, const
 std::vector<std::string> picturesOf(const std::vector<int>& frames) {
   std::vector<std::string> names;
   for (const int frame : frames) {
-    char name[32];
-    printText(name, sizeof name, "%04d.png", frame);
+    const std::string name = formatted("%04d.png", frame);
     names.emplace_back(name);
   }
   return names;

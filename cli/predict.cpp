@@ -23,18 +23,17 @@ namespace {
 constexpr int kPictureWidth = 1280, kPictureHeight = 960;
 
 std::string predictionTable(const Inspection& inspection, const std::vector<int>& frames) {
-  char line[256];
-  printText(line, sizeof line, "%-12s %6s %-16s %-10s %10s %9s  %s\n", "model", "frame", "id", "light", "highlights", "coverage", "reason");
-  std::string out = line;
+  std::string out =
+      formatted("%-12s %6s %-16s %-10s %10s %9s  %s\n", "model", "frame", "id", "light", "highlights", "coverage", "reason");
   for (const std::string& name : inspection.request.models)
     for (const FrameComparison& c : inspection.models.at(name).frames) {
       if (std::find(frames.begin(), frames.end(), c.frame) == frames.end()) continue;
       double coverage = 0;
       for (const PredictedHighlight& h : c.prediction.highlights) coverage += h.coverage / double(c.prediction.highlights.size());
       const std::string reason = c.prediction.highlights.empty() && c.prediction.failure ? c.prediction.failure->message() : "";
-      printText(line, sizeof line, "%-12s %6d %-16s %-10s %10zu %9.3f  ", name.c_str(), c.frame,
-                inspection.scene->frames[c.frame].id.c_str(), c.light.c_str(), c.prediction.highlights.size(), coverage);
-      out += line + reason + "\n";
+      out += formatted("%-12s %6d %-16s %-10s %10zu %9.3f  ", name.c_str(), c.frame, inspection.scene->frames[c.frame].id.c_str(),
+                       c.light.c_str(), c.prediction.highlights.size(), coverage) +
+             reason + "\n";
     }
   return out;
 }
@@ -91,8 +90,7 @@ Command predictCommand() {
         parallelFor(
             static_cast<int>(frames.size()),
             [&](int i) {
-              char name[32];
-              printText(name, sizeof name, "%04d.png", frames[i]);  // by position: an id may hold what no file name may
+              const std::string name = formatted("%04d.png", frames[i]);  // by position: an id may hold what no file name may
               writePng(folder / name,
                        viz::framePicture(result, frames[i], photographOf(result, frames[i]), kPictureWidth, kPictureHeight));
             },

@@ -11,17 +11,12 @@
 namespace glint::cli {
 namespace {
 
-std::string vectorText(const Eigen::Vector3d& v) {
-  char buffer[96];
-  printText(buffer, sizeof buffer, "%.6g %.6g %.6g", v.x(), v.y(), v.z());
-  return buffer;
-}
+std::string vectorText(const Eigen::Vector3d& v) { return formatted("%.6g %.6g %.6g", v.x(), v.y(), v.z()); }
 
 std::string fitText(const ModelResult::Fit& entry, const std::string& model) {
   std::string out = model + ", light " + entry.light + (entry.surface ? ", surface " + *entry.surface : "") + ": ";
   if (entry.failure) return out + entry.failure->message() + "\n";
   const ModelFit& f = *entry.fit;
-  char buffer[160];
   out += std::to_string(f.frames.size()) + " views, " + f.solver + "\n";
   if (f.ellipsoid) {
     out += "  ellipsoid centre  " + vectorText(f.ellipsoid->centre()) + " m\n";
@@ -32,28 +27,23 @@ std::string fitText(const ModelResult::Fit& entry, const std::string& model) {
   if (f.lightEstimate && f.lightEstimate->atInfinity())
     out += "  light             at infinity, towards " + vectorText(f.lightEstimate->homogeneous().head<3>()) + "\n";
   if (f.limitAngle) {
-    printText(buffer, sizeof buffer, "  limit angle       %.6g deg\n", *f.limitAngle * 180 / M_PI);
-    out += buffer;
+    out += formatted("  limit angle       %.6g deg\n", *f.limitAngle * 180 / M_PI);
   }
   if (f.lightRadius) {
-    printText(buffer, sizeof buffer, "  light's radius    %.6g m\n", *f.lightRadius);
-    out += buffer;
+    out += formatted("  light's radius    %.6g m\n", *f.lightRadius);
   }
   if (f.lightSegment)
     out += "  light's ends      " + vectorText(f.lightSegment->first) + " m, " + vectorText(f.lightSegment->second) + " m\n";
   if (f.roughness && f.lobe) {
-    printText(buffer, sizeof buffer, "  lobe              %s, m = %.6g\n", f.lobe->c_str(), *f.roughness);
-    out += buffer;
+    out += formatted("  lobe              %s, m = %.6g\n", f.lobe->c_str(), *f.roughness);
   }
   if (!f.singularValues.empty()) {
-    printText(buffer, sizeof buffer, "  gap ratio         %.3g, condition %.3g\n", f.gapRatio, f.condition);
-    out += buffer;
+    out += formatted("  gap ratio         %.3g, condition %.3g\n", f.gapRatio, f.condition);
   }
   if (!f.residualPx.empty()) {
     out += "  residuals         ";
     for (std::size_t i = 0; i < f.residualPx.size(); ++i) {
-      printText(buffer, sizeof buffer, "%s%.3g", i ? ", " : "", f.residualPx[i]);
-      out += buffer;
+      out += formatted("%s%.3g", i ? ", " : "", f.residualPx[i]);
     }
     out += " px\n";
   }

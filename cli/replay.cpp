@@ -33,8 +33,7 @@ Command replayCommand() {
     for (const std::string& w : session.warnings) context.warn(w);
     const Replay result = a->places.replay(session, context.progress());
     std::string out;
-    char largest[32];
-    printText(largest, sizeof largest, "%.2g", result.largestDifference);
+    const std::string largest = formatted("%.2g", result.largestDifference);
     for (const std::string& line : result.differences) out += line + "\n";
     if (!result.firstChanged.empty()) out += "first changed stage: " + result.firstChanged + "\n";
     out += std::to_string(result.compared - static_cast<int>(std::min<std::size_t>(result.differences.size(), result.compared))) +

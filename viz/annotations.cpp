@@ -126,9 +126,7 @@ std::string lengthText(double metres) {
   static constexpr std::array<Unit, 5> units{{{1e3, "km"}, {1, "m"}, {1e-2, "cm"}, {1e-3, "mm"}, {1e-6, "um"}}};
   for (const Unit& unit : units) {
     if (metres >= unit.size * (1 - 1e-9) || unit.size == 1e-6) {
-      char text[48];
-      printText(text, sizeof text, "%.4g %s", metres / unit.size, unit.name);
-      return text;
+      return formatted("%.4g %s", metres / unit.size, unit.name);
     }
   }
   return {};

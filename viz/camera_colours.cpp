@@ -48,9 +48,8 @@ ColourBar influenceBar(const std::string& model, double most) {
   bar.title = model + ": what the view does, percentage points";
   constexpr int kSteps = 48;
   for (int i = 0; i < kSteps; ++i) bar.colours.push_back(influenceColour(2 * (i + 0.5) / kSteps - 1, 1));
-  char text[32];
-  printText(text, sizeof text, "%.2g", most);
-  bar.ticks = {{0, std::string("harms ") + text}, {0.5, "0"}, {1, std::string("helps ") + text}};
+  const std::string text = formatted("%.2g", most);
+  bar.ticks = {{0, "harms " + text}, {0.5, "0"}, {1, "helps " + text}};
   return bar;
 }
 

@@ -152,9 +152,7 @@ EpipolarPicture epipolarPicture(const Inspection& inspection, const PairRequest&
       if (!line.points.empty()) picture.frames[i].lines.push_back(line);
       line.points = overPhotograph(view.transferred[k], camera);
       line.dash = Dash::Dashed;
-      char miss[32];
-      printText(miss, sizeof miss, "%.2f px", view.missPx[k]);
-      line.label = "the other image's tangent, " + which + ": misses by " + miss;
+      line.label = "the other image's tangent, " + which + formatted(": misses by %.2f px", view.missPx[k]);
       if (!line.points.empty()) picture.frames[i].lines.push_back(line);
       OverlayMark mark;
       mark.role = OverlayRole::EpipolarLine;

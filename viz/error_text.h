@@ -24,9 +24,7 @@ inline std::string errorText(double value) {
   } else if (value >= 9.995) {
     decimals = 1;
   }
-  char text[400];
-  printText(text, sizeof text, "%.*f", decimals, rounded);
-  return text;
+  return formatted("%.*f", decimals, rounded);
 }
 
 }  // namespace glint::viz

@@ -394,17 +394,13 @@ void LayerCache::follow(const std::shared_ptr<const Scene>& scene) {
 }
 
 std::string line(const std::string& name, double value, const std::string& unit) {
-  char text[64];
   constexpr double kLeastAngle = 1e-6;  // degrees: below is round-off
   if (unit == "deg" && std::abs(value) < kLeastAngle) value = 0;
-  printText(text, sizeof text, "%.7g", value);
-  return name + " = " + text + unitAfterNumber(unit) + "\n";
+  return name + " = " + formatted("%.7g", value) + unitAfterNumber(unit) + "\n";
 }
 
 std::string line(const std::string& name, const Eigen::Vector3d& v, const std::string& unit) {
-  char text[128];
-  printText(text, sizeof text, "%.7g, %.7g, %.7g", v.x(), v.y(), v.z());
-  return name + " = " + text + (unit.empty() ? "" : " " + unit) + "\n";
+  return name + " = " + formatted("%.7g, %.7g, %.7g", v.x(), v.y(), v.z()) + (unit.empty() ? "" : " " + unit) + "\n";
 }
 
 std::string line(const std::string& name, const std::string& value) { return name + " = " + value + "\n"; }

@@ -125,8 +125,7 @@ std::vector<std::string> filesOfMovie(const std::string& file, int frames) {
   if (endingOf(file) != ".png") return {file};
   std::vector<std::string> files;
   for (int i = 0; i < frames; ++i) {
-    char number[32];
-    printText(number, sizeof number, "_%04d.png", i);
+    const std::string number = formatted("_%04d.png", i);
     files.push_back((fs::path(file).parent_path() / (fs::path(file).stem().string() + number)).string());
   }
   return files;

@@ -156,10 +156,8 @@ void addWalk(const WalkStory& story, int step, FrameOverlay& overlay) {
 
 std::string walkText(const WalkStory& story, int step) {
   const WalkStory::Moment m = story.at(step);
-  char text[96];
-  printText(text, sizeof text, "on %s: α %.2f° of %.2f°", m.onSurface ? "S" : "T", degrees(story.place(m).alpha),
-            degrees(story.trace.limitAngle));
-  return text;
+  return formatted("on %s: α %.2f° of %.2f°", m.onSurface ? "S" : "T", degrees(story.place(m).alpha),
+                   degrees(story.trace.limitAngle));
 }
 
 }  // namespace glint::viz

@@ -18,11 +18,7 @@ constexpr std::size_t kCount = 6;
 std::array<std::atomic<double>, kCount> given{};
 
 /// Whole numbers as such, others with few digits, and never rounded down to the limit itself.
-std::string shown(double v) {
-  char text[32];
-  printText(text, sizeof text, v == std::floor(v) ? "%.0f" : "%.4g", v);
-  return text;
-}
+std::string shown(double v) { return formatted(v == std::floor(v) ? "%.0f" : "%.4g", v); }
 
 }  // namespace
 

@@ -10,15 +10,24 @@
 
 namespace glint {
 
-int printText(char* buffer, std::size_t size, const char* format, ...) {
+std::string formatted(const char* format, ...) {
   static const locale_t plain = newlocale(LC_ALL_MASK, "C", nullptr);  // one for the process, never freed
   const locale_t before = uselocale(plain);                           // of this thread only
-  std::va_list values;
+  std::va_list values, again;
   va_start(values, format);
-  const int length = std::vsnprintf(buffer, size, format, values);
+  va_copy(again, values);
+  char buffer[256];
+  const int length = std::vsnprintf(buffer, sizeof buffer, format, values);
   va_end(values);
+  std::string text;
+  if (length > 0 && std::size_t(length) < sizeof buffer) text = buffer;
+  if (length > 0 && text.empty()) {
+    text.resize(std::size_t(length));
+    std::vsnprintf(text.data(), text.size() + 1, format, again);
+  }
+  va_end(again);
   uselocale(before);
-  return length;
+  return text;
 }
 
 std::optional<double> numberFrom(std::string_view text) {

@@ -42,12 +42,6 @@ bool isControl(std::uint32_t c) {
          (c >= 0x2066 && c <= 0x2069) || c == 0xFEFF;
 }
 
-std::string byteText(const char* pattern, unsigned value) {
-  char text[16];
-  printText(text, sizeof text, pattern, value);
-  return text;
-}
-
 /// The middle taken out, whole characters kept, at most `most` bytes.
 std::string shortened(std::string_view text, std::size_t most) {
   if (text.size() <= most) return std::string(text);
@@ -65,12 +59,12 @@ std::string withoutControls(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {
     const auto [c, length] = codePoint(text, i);
     if (length == 0) {
-      out += byteText("\\x%02X", static_cast<unsigned char>(text[i]));
+      out += formatted("\\x%02X", static_cast<unsigned char>(text[i]));
       ++i;
       continue;
     }
     if (isControl(c))
-      out += byteText(c < 0x100 ? "\\x%02X" : "\\u%04X", c);
+      out += formatted(c < 0x100 ? "\\x%02X" : "\\u%04X", c);
     else
       out += text.substr(i, length);
     i += length;
@@ -100,7 +94,7 @@ std::string fileNameOf(std::string_view id) {
     const auto c = static_cast<unsigned char>(id[i]);
     const bool dots = c == '.' && (i == 0 || id[i - 1] == '.' || (i + 1 < id.size() && id[i + 1] == '.'));
     if (dots || c < 0x20 || c == 0x7F || c == '/' || c == '\\' || c == '%')
-      name += byteText("%%%02X", c);
+      name += formatted("%%%02X", c);
     else
       name += static_cast<char>(c);
   }

@@ -19,13 +19,6 @@ namespace {
 constexpr double kOwnSizePct = 100;  // of the highlight's diameter: beyond, the outline is not that of the highlight
 constexpr std::size_t kMostDirections = 256;  // 33,000 pairs: a millisecond
 
-template <class... Numbers>
-std::string text(const char* format, Numbers... numbers) {
-  char buffer[320];
-  printText(buffer, sizeof buffer, format, numbers...);
-  return buffer;
-}
-
 double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 std::vector<Eigen::Vector3d> some(const std::vector<Eigen::Vector3d>& all) {
@@ -147,10 +140,11 @@ class Findings {
     for (std::size_t i = 0; i < std::min(kMostNamed, strayFrames_.size()); ++i) frames += (i ? ", " : "") + strayFrames_[i];
     if (strayFrames_.size() > kMostNamed) frames += ", \u2026";
     const int stray = int(strayFrames_.size());
-    add("peaks", "peaks", stray, text("%d outside", stray), Verdict::Red,
-        text("The peak lies outside its own contour in %d of %d training views (frame %s), by up to %.3g px: the ray through it "
-             "does not come from the highlight, and the light is sought where it was not seen.",
-             stray, int(rays_.size()), frames.c_str(), farthestStray_));
+    add("peaks", "peaks", stray, formatted("%d outside", stray), Verdict::Red,
+        formatted(
+            "The peak lies outside its own contour in %d of %d training views (frame %s), by up to %.3g px: the ray through it "
+            "does not come from the highlight, and the light is sought where it was not seen.",
+            stray, int(rays_.size()), frames.c_str(), farthestStray_));
   }
 
   void addLinearSystem() {
@@ -176,19 +170,19 @@ class Findings {
     const std::size_t n = c_.singularValues.size();
     const double rank = c_.singularValues[n - 2] / c_.singularValues[0], gap = linear->gapRatio;
     const Verdict rankVerdict = above(rank, bounds::kRankAmber, bounds::kRankRed);
-    add("rank", "singular values", rank, text("%.2g", rank), rankVerdict,
-        text("The second last singular value is %.2g of the first: ", rank) +
+    add("rank", "singular values", rank, formatted("%.2g", rank), rankVerdict,
+        formatted("The second last singular value is %.2g of the first: ", rank) +
             chosen(rankVerdict, "above a ten-thousandth, what contours are known to, so the views tell quadrics apart.",
                    "below a ten-thousandth, what contours are known to, so a second quadric hides in the noise.",
                    "below a billionth, round-off: the views repeat one geometry and several quadrics fit."));
     const Verdict gapVerdict = below(gap, bounds::kGapAmber, bounds::kGapRed);
-    add("gap", "gap", gap, text("%.2g", gap), gapVerdict,
-        text("The last singular value is %.2g of the one before: ", gap) +
+    add("gap", "gap", gap, formatted("%.2g", gap), gapVerdict,
+        formatted("The last singular value is %.2g of the one before: ", gap) +
             chosen(gapVerdict, "below 0.2, so the best quadric fits more than five times better than the second.",
                    "above 0.2, so the second best quadric fits nearly as well.",
                    "above 0.5, where the linear solver refuses: no quadric fits better than a second one."));
     const Signature s = signatureOf(linear->quadric);
-    const std::string signs = text("(%d+ %d- %dx0)", s.positive, s.negative, s.zero);
+    const std::string signs = formatted("(%d+ %d- %dx0)", s.positive, s.negative, s.zero);
     const bool good = linear->ellipsoid.has_value();
     std::string reason = "The contours alone, without any prior, give a Q* of signature " + signs + ": " + c_.quadricKind + ".";
     if (!good)
@@ -206,24 +200,24 @@ class Findings {
     const char* what = c_.model == "primal" ? "viewing rays" : "reflected rays";
     if (rays_.size() < 2)
       return add("angle", "triangulation angle", std::nan(""), "-", Verdict::Red,
-                 text("Fewer than two %s: nothing can be triangulated.", what));
+                 formatted("Fewer than two %s: nothing can be triangulated.", what));
     const double angle = widestAngle(rays_);
     const double deg = degrees(angle);
     const Verdict v = above(deg, bounds::kAngleAmberDeg, bounds::kAngleRedDeg);
     const double factor = 1 / std::max(std::sin(std::min(angle, std::numbers::pi / 2)), std::numeric_limits<double>::min());
-    std::string reason =
-        text("The widest angle between two %s is %.3g\u00b0: an error across them becomes one %.3g times as large along them",
-             what, deg, factor);
+    std::string reason = formatted(
+        "The widest angle between two %s is %.3g\u00b0: an error across them becomes one %.3g times as large along them", what,
+        deg, factor);
     reason += chosen(v, ".", " (amber below 5\u00b0).", " (red below 1.5\u00b0): only a direction is known well.");
-    add("angle", "triangulation angle", deg, text("%.3g\u00b0", deg), v, reason);
+    add("angle", "triangulation angle", deg, formatted("%.3g\u00b0", deg), v, reason);
   }
 
   void addViews() {
     const double effective = effectiveNumber(rays_, radians(bounds::kAngleAmberDeg));
     const Verdict v = above(effective, bounds::kViewsAmber, bounds::kViewsRed);
     std::string reason =
-        text("%d training highlights count as %.2g different views, those nearer than 5\u00b0 to each other only in part: ",
-             int(rays_.size()), effective);
+        formatted("%d training highlights count as %.2g different views, those nearer than 5\u00b0 to each other only in part: ",
+                  int(rays_.size()), effective);
     const bool quadric = c_.model == "primal" || c_.model == "dual" || c_.model == "canonical";
     reason += quadric ? chosen(v, "three or more determine an ellipsoid with a free centre.",
                                "fewer than three, which an ellipsoid with a free centre needs.",
@@ -231,7 +225,7 @@ class Findings {
                       : chosen(v, "three or more determine the light and leave something to check it by.",
                                "fewer than three: two determine the light, but nothing is left to check it by.",
                                "fewer than two, which do not determine the light's distance.");
-    add("views", "effective views", effective, text("%.2g of %d", effective, int(rays_.size())), v, reason);
+    add("views", "effective views", effective, formatted("%.2g of %d", effective, int(rays_.size())), v, reason);
   }
 
   /// Mean distance from the views' brightest points (the cameras for `primal`).
@@ -263,11 +257,11 @@ class Findings {
                                ? largestSigma(Eigen::Matrix3d(u->root.topRows(3) * u->root.topRows(3).transpose()))
                                : std::nan("");
       const Verdict v = below(sigma, bounds::kLightAmber, bounds::kLightRed);
-      return add(
-          "light", title, sigma, std::isfinite(sigma) ? text("%.2g\u00b0", degrees(sigma)) : "-", v,
-          std::isfinite(sigma)
-              ? text("The light is at infinity; its direction is known to %.2g\u00b0 (one standard deviation).", degrees(sigma))
-              : "The light is at infinity; its solver tells no uncertainty of the direction.");
+      return add("light", title, sigma, std::isfinite(sigma) ? formatted("%.2g\u00b0", degrees(sigma)) : "-", v,
+                 std::isfinite(sigma)
+                     ? formatted("The light is at infinity; its direction is known to %.2g\u00b0 (one standard deviation).",
+                                 degrees(sigma))
+                     : "The light is at infinity; its solver tells no uncertainty of the direction.");
     }
     Eigen::Vector3d at(0, 0, 0);
     double sigma = std::nan("");
@@ -286,12 +280,12 @@ class Findings {
       return add("light", title, share, "-", Verdict::Unknown, "The solver of this fit tells no uncertainty.");
     const Verdict v = below(share, bounds::kLightAmber, bounds::kLightRed);
     std::string reason =
-        text("One standard deviation along the worst direction is %.2g m, %.2g %% of the distance to the surface: ", sigma,
-             100 * share);
+        formatted("One standard deviation along the worst direction is %.2g m, %.2g %% of the distance to the surface: ", sigma,
+                  100 * share);
     reason += chosen(v, "below 1 %, less than what a simple lobe gets wrong about the light.",
                      "above 1 %, what a simple lobe gets wrong about the light.",
                      "above 10 %, worse than any lobe's own error: more or wider views are needed.");
-    add("light", title, share, text("%.2g %%", 100 * share), v, reason + " It knows the noise only.");
+    add("light", title, share, formatted("%.2g %%", 100 * share), v, reason + " It knows the noise only.");
   }
 
   void addResidual() {
@@ -309,19 +303,19 @@ class Findings {
     if (n == 0 || (fit_.fit->residualPx.empty() && !(rms > 0))) return;
     const double share = rms / (diameters / n);
     const Verdict v = below(share, bounds::kResidualAmber, bounds::kResidualRed);
-    std::string reason =
-        text("%s%.2g px, %.2g %% of %s mean diameter: ",
-             ("Distance " + residualMeaning(*fit_.fit) + ", over the training views: ").c_str(), rms, 100 * share,
-             c_.model == "canonical" ? "the canonical contours'" : "the highlights'");
+    std::string reason = formatted("%s%.2g px, %.2g %% of %s mean diameter: ",
+                                   ("Distance " + residualMeaning(*fit_.fit) + ", over the training views: ").c_str(), rms,
+                                   100 * share, c_.model == "canonical" ? "the canonical contours'" : "the highlights'");
     // Every observed point may lie near an outline that runs far beyond the highlight: then this number says nothing.
     if (const std::optional<ContourMetrics> worst = worstInTraining(); worst && worst->contourErrorPct > kOwnSizePct) {
-      reason += text("but both ways the mean distance in a training frame is up to %.3g px, more than the highlight's own size.",
-                     worst->contourErrorPx);
-      return add("residual", "fit residual", share, std::isfinite(rms) ? text("%.2g px", rms) : "-", Verdict::Red, reason);
+      reason +=
+          formatted("but both ways the mean distance in a training frame is up to %.3g px, more than the highlight's own size.",
+                    worst->contourErrorPx);
+      return add("residual", "fit residual", share, std::isfinite(rms) ? formatted("%.2g px", rms) : "-", Verdict::Red, reason);
     }
     reason += chosen(v, "below 1 %, the model can say what was seen.", "above 1 %, the model is a summary of what was seen.",
                      "above 5 %, the model does not describe these highlights.");
-    add("residual", "fit residual", share, std::isfinite(rms) ? text("%.2g px", rms) : "-", v, reason);
+    add("residual", "fit residual", share, std::isfinite(rms) ? formatted("%.2g px", rms) : "-", v, reason);
   }
 
   /// The largest error of this fit in a frame that it has learnt from.

@@ -27,9 +27,9 @@ std::optional<BandScore> bandSummary(const Inspection& inspection, const ModelRe
 std::vector<std::string> bandLines(const Inspection& inspection, const ModelResult& result) {
   std::vector<std::string> lines;
   if (const std::optional<BandScore> score = bandSummary(inspection, result)) {
-    char text[160];
-    printText(text, sizeof text, "bands: sigma %.3g px; %.1f %% of the vertices lie within 1.96 sigma of the %s contours", score->sigmaPx,
-              100 * score->coverage, inspection.request.truthFolder.empty() ? "observed" : "true");
+    const std::string text =
+        formatted("bands: sigma %.3g px; %.1f %% of the vertices lie within 1.96 sigma of the %s contours", score->sigmaPx,
+                  100 * score->coverage, inspection.request.truthFolder.empty() ? "observed" : "true");
     lines.emplace_back(text);
   }
   for (const ModelResult::Fit& fit : result.fits)

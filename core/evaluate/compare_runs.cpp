@@ -23,9 +23,7 @@ bool same(double a, double b) { return a == b || std::abs(a - b) <= kSame * std:
 
 std::string sixDigits(double v) {
   if (!std::isfinite(v)) return "none";
-  char text[32];
-  printText(text, sizeof text, "%.6g", v);
-  return text;
+  return formatted("%.6g", v);
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -306,9 +304,7 @@ std::string padded(std::string s, std::size_t width) {
 
 std::string percent(const std::optional<double>& v) {
   if (!v) return "-";
-  char out[32];
-  printText(out, sizeof out, "%.3f", *v);
-  return out;
+  return formatted("%.3f", *v);
 }
 
 }  // namespace

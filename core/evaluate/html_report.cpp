@@ -187,9 +187,8 @@ std::string overlay(const Inspection& inspection, int frame) {
     picture = "<image x=\"" + format("%.1f", cx0 - 0.5) + "\" y=\"" + format("%.1f", cy0 - 0.5) + "\" width=\"" + std::to_string(cx1 - cx0) +
               "\" height=\"" + std::to_string(cy1 - cy0) + "\" href=\"data:image/png;base64," + base64(png) + "\"/>\n";
   }
-  char box[96];
-  printText(box, sizeof box, "%.1f %.1f %d %d", cx0 - 0.5, cy0 - 0.5, cx1 - cx0, cy1 - cy0);
-  return "<figure><svg class=\"frame\" viewBox=\"" + std::string(box) + "\">\n" + picture + shapes + "</svg><figcaption><b>frame " +
+  const std::string box = formatted("%.1f %.1f %d %d", cx0 - 0.5, cy0 - 0.5, cx1 - cx0, cy1 - cy0);
+  return "<figure><svg class=\"frame\" viewBox=\"" + box + "\">\n" + picture + shapes + "</svg><figcaption><b>frame " +
          std::to_string(frame) + "</b> (" + escaped(inspection.scene->frames[frame].id) + ")<br>" + caption + "</figcaption></figure>\n";
 }
 

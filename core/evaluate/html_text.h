@@ -39,9 +39,7 @@ inline std::string escaped(const std::string& text) {
 /// "#d55e00".
 inline std::string colourOf(const std::string& model) {
   const std::array<int, 3> c = modelRgb(model);
-  char buffer[8];
-  printText(buffer, sizeof buffer, "#%02x%02x%02x", c[0], c[1], c[2]);
-  return buffer;
+  return formatted("#%02x%02x%02x", c[0], c[1], c[2]);
 }
 
 }  // namespace glint::html

@@ -132,8 +132,7 @@ void writeLabels(const Inspection& inspection, const fs::path& folder, const Pro
     for (const std::string& source : of)
       for (const auto& [light, name] : folders) fs::create_directories(out / "masks" / source / name);
     const auto fileOf = [&](const Task& t) {
-      char name[32];
-      printText(name, sizeof name, "%04d.png", t.frame);  // by position: an id may hold what no file name may
+      const std::string name = formatted("%04d.png", t.frame);  // by position: an id may hold what no file name may
       return fs::path("masks") / t.of / folders.at(t.light) / name;
     };
     std::vector<long long> pixels(tasks.size());

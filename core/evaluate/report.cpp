@@ -247,9 +247,7 @@ ordered_json trainingJson(const Inspection& inspection) {
 
 std::string cell(double v, const char* format = "%.4g") {
   if (!std::isfinite(v)) return "-";
-  char buffer[32];
-  printText(buffer, sizeof buffer, format, v);
-  return buffer;
+  return formatted(format, v);
 }
 
 /// A CSV field: quoted when it holds a separator or a quote.
@@ -334,40 +332,36 @@ std::string evaluationCsv(const Inspection& inspection) {
 }
 
 std::string evaluationTable(const Inspection& inspection) {
-  char line[256];
-  printText(line, sizeof line, "%-12s %11s %9s %9s %9s %9s %9s %8s %8s %13s %10s\n", "model", "predicted", "mean %", "median %",
-            "p95 %", "max %", "mean px", "IoU", "coverage", "match/mis/spu", "median us");
-  std::string out = line;
+  std::string out = formatted("%-12s %11s %9s %9s %9s %9s %9s %8s %8s %13s %10s\n", "model", "predicted", "mean %", "median %",
+                              "p95 %", "max %", "mean px", "IoU", "coverage", "match/mis/spu", "median us");
   for (const std::string& name : inspection.request.models) {
     const auto it = inspection.models.find(name);
     if (it == inspection.models.end()) continue;
     const ModelSummary s = summarise(inspection, it->second);
     const std::string predicted = std::to_string(s.predicted) + "/" + std::to_string(s.frames);
     const std::string counts = std::to_string(s.matched) + "/" + std::to_string(s.missed) + "/" + std::to_string(s.spurious);
-    printText(line, sizeof line, "%-12s %11s %9s %9s %9s %9s %9s %8s %8s %13s %10s", name.c_str(), predicted.c_str(),
-              cell(s.contourErrorPct.mean).c_str(), cell(s.contourErrorPct.median).c_str(), cell(s.contourErrorPct.p95).c_str(),
-              cell(s.contourErrorPct.max).c_str(), cell(s.contourErrorPx.mean).c_str(), cell(s.iou.mean, "%.4f").c_str(),
-              cell(s.coverage.mean, "%.3f").c_str(), counts.c_str(), cell(s.timeUs.median, "%.0f").c_str());
-    out += line;
+    out += formatted("%-12s %11s %9s %9s %9s %9s %9s %8s %8s %13s %10s", name.c_str(), predicted.c_str(),
+                     cell(s.contourErrorPct.mean).c_str(), cell(s.contourErrorPct.median).c_str(),
+                     cell(s.contourErrorPct.p95).c_str(), cell(s.contourErrorPct.max).c_str(),
+                     cell(s.contourErrorPx.mean).c_str(), cell(s.iou.mean, "%.4f").c_str(), cell(s.coverage.mean, "%.3f").c_str(),
+                     counts.c_str(), cell(s.timeUs.median, "%.0f").c_str());
     if (!s.answered) out += "  " + s.reason;
     out += "\n";
     for (const std::string& text : bandLines(inspection, it->second)) {
-      printText(line, sizeof line, "%-12s ", "");
-      out += line + text + "\n";
+      out += formatted("%-12s ", "") + text + "\n";
     }
     double variation = 0;
     for (const FrameComparison& c : it->second.frames)
       for (const PredictedHighlight& h : c.prediction.highlights) variation = std::max(variation, h.curvatureVariation.value_or(0));
     if (variation > kLargestVariation) {
-      printText(line, sizeof line, "%-12s the local quadric is not good enough: curvature varies by up to %.3f over a highlight (at most %.2f)\n", "",
-                variation, kLargestVariation);
-      out += line;
+      out += formatted(
+          "%-12s the local quadric is not good enough: curvature varies by up to %.3f over a highlight (at most %.2f)\n", "",
+          variation, kLargestVariation);
     }
   }
   if (const std::optional<DetectionError> d = detectionError(inspection)) {
-    printText(line, sizeof line, "own detection against the truth: %s %% mean, %s %% at most, %d of %d frames' highlights missed\n",
-              cell(d->contourErrorPct.mean).c_str(), cell(d->contourErrorPct.max).c_str(), d->missed, d->frames);
-    out += line;
+    out += formatted("own detection against the truth: %s %% mean, %s %% at most, %d of %d frames' highlights missed\n",
+                     cell(d->contourErrorPct.mean).c_str(), cell(d->contourErrorPct.max).c_str(), d->missed, d->frames);
   } else if (scoredAgainst(inspection) == "own detection") {
     out += "errors are against the own detection; --truth DIR names known contours\n";
   }

@@ -11,9 +11,7 @@ std::string settingText(const SettingValue& value) {
   if (const auto* s = std::get_if<std::string>(&value)) return *s;
   if (const auto* b = std::get_if<bool>(&value)) return *b ? "on" : "off";
   if (const auto* i = std::get_if<int>(&value)) return std::to_string(*i);
-  char text[32];
-  printText(text, sizeof text, "%.6g", std::get<double>(value));
-  return text;
+  return formatted("%.6g", std::get<double>(value));
 }
 
 }  // namespace glint

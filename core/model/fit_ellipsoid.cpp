@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "core/base/number_text.h"
 #include "core/light/estimate.h"
 #include "core/model/ellipse_distance.h"
 #include "core/model/plausible.h"
@@ -57,17 +58,26 @@ double worthPx(const Ellipsoid& ellipsoid, const std::vector<ConicView>& views) 
   return std::max(kLeastWorthPx, std::sqrt(inflation * squares / (count - 9)));
 }
 
-/// The refined ellipsoid with contours and prior in the same unit: standard deviations. What a contour point is worth is not known before the
-/// fit, so it is estimated from the first one and used in the next (the solver counts a pixel as one standard deviation, so the prior is
-/// scaled instead).
+/// The refined ellipsoid with contours and prior in the same unit: standard deviations. What a contour point is worth is not
+/// known before the fit, so it is estimated from the first one and used in the next (the solver counts a pixel as one standard
+/// deviation, so the prior is scaled instead). Where the fit with the better weight is refused, the one before it stands, with a
+/// remark.
 Outcome<Reconstruction> refinedWithPrior(const std::vector<ConicView>& views, const Ellipsoid& start, const CentreAnchor& anchor, double bias) {
   const CentrePrior prior = priorWith(anchor, bias);
   Outcome<Reconstruction> refined = reconstructRefined(views, start, prior);
+  double counted = 1;  // px, as which the fit so far counts a contour point
   for (int round = 0; round < 2 && refined && refined->ellipsoid; ++round) {
     const double worth = worthPx(*refined->ellipsoid, views);
     Outcome<Reconstruction> again = reconstructRefined(views, start, CentrePrior{prior.mean, prior.covariance / (worth * worth)});
-    if (!again) break;
+    if (!again) {
+      refined->remarks.push_back(
+          formatted("this fit counts a contour point as good to %.2g px; with %.2g px, which its residuals suggest, there is no "
+                    "ellipsoid (%s)",
+                    counted, worth, again.failure().message().c_str()));
+      break;
+    }
     refined = std::move(again);
+    counted = worth;
   }
   return refined;
 }
@@ -153,6 +163,7 @@ void store(const Reconstruction& r, ModelFit& fit) {
   fit.residualPx = r.residualPx;
   fit.solver = r.solver;
   fit.uncertainty = r.uncertainty;
+  fit.remarks.insert(fit.remarks.end(), r.remarks.begin(), r.remarks.end());
 }
 
 PredictedHighlight highlightFromEllipse(const Ellipse& ellipse, const BrightestPoint& brightest, int points) {

@@ -36,12 +36,11 @@ std::optional<double> directedAlpha(const SurfacePoint& p, const Eigen::Vector3d
 std::string extentRemark(const Eigen::Matrix3d& extent, bool angular, double level) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(extent);
   const double length = std::sqrt(12 * std::max(0.0, axes.eigenvalues()(2)) / (-2 * std::log(level)));
-  char text[260];
-  printText(text, sizeof text,
-            "the contours ask for a light that reaches about %.2g %s: a long lamp, several lights whose highlights merge, or a lobe that one limit angle "
-            "does not describe (compare with reflectance, which has a lobe)",
-            angular ? length * 180 / M_PI : length, angular ? "degrees" : "m");
-  return text;
+  return formatted(
+      "the contours ask for a light that reaches about %.2g %s: a long lamp, several lights whose highlights merge, or a lobe "
+      "that one limit angle "
+      "does not describe (compare with reflectance, which has a lobe)",
+      angular ? length * 180 / M_PI : length, angular ? "degrees" : "m");
 }
 
 WalkOptions walkOptions(const Settings& settings) {

@@ -113,10 +113,10 @@ std::optional<std::string> contradiction(const std::vector<TrainingView>& views,
     count += 1;
   }
   if (!(count > 0) || !(std::sqrt(shares / count) > kContradiction)) return std::nullopt;
-  char text[200];
-  printText(text, sizeof text, "the contours of the training views lie %.3g px from where the fit to the pixels puts them, %.3g %% of their radius: lobe, lamp or surface may be wrong",
-            std::sqrt(squares / count), 100 * std::sqrt(shares / count));
-  return text;
+  return formatted(
+      "the contours of the training views lie %.3g px from where the fit to the pixels puts them, %.3g %% of their radius: lobe, "
+      "lamp or surface may be wrong",
+      std::sqrt(squares / count), 100 * std::sqrt(shares / count));
 }
 
 }  // namespace
@@ -157,8 +157,7 @@ Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const s
   if (best && (best->poor || asksForExtent(*best)))
     if (std::optional<PixelFit> extended = withExtent(views, patches, *best, settings)) best = *std::move(extended);
   if (best && best->poor) {
-    char detail[120];
-    printText(detail, sizeof detail, "no lobe and light explain the pixels: %.3g px remain at the contours", best->rmsPx);
+    const std::string detail = formatted("no lobe and light explain the pixels: %.3g px remain at the contours", best->rmsPx);
     return Failure{Reason::NotConverged, detail};
   }
   return best;
@@ -196,9 +195,8 @@ Outcome<ModelFit> reflectanceFromPixels(const FitInput& input, const Settings& s
   if (judged && judged->remarks.empty())
     if (const std::optional<std::string> wrong = contradiction(input.views, pixels, settings)) judged->remarks.push_back(*wrong);
   if (judged && pixels.patterned && judged->remarks.empty()) {
-    char text[160];
-    printText(text, sizeof text, "what remains in the pixels has a pattern (%.3g px at the contours): lobe, lamp or surface may be wrong",
-              pixels.rmsPx);
+    const std::string text = formatted(
+        "what remains in the pixels has a pattern (%.3g px at the contours): lobe, lamp or surface may be wrong", pixels.rmsPx);
     judged->remarks.push_back(text);
   }
   return judged;

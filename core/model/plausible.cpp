@@ -13,11 +13,7 @@ namespace {
 constexpr double kRemarkPx = 3, kRemarkShare = 0.05;  // what no detection leaves, and what no highlight hides
 constexpr double kNoiseShare = 1.2;                   // of the noise's sigma: what a right model leaves of it, with some reserve
 
-std::string figure(double v) {
-  char buffer[32];
-  printText(buffer, sizeof buffer, "%.3g", v);
-  return buffer;
-}
+std::string figure(double v) { return formatted("%.3g", v); }
 
 }  // namespace
 

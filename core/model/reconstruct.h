@@ -33,6 +33,7 @@ struct Reconstruction {
   std::string solver;                ///< "linear", "anchored", "refined"
   int iterations = 0;                ///< of the refinement
   std::optional<ParameterUncertainty> uncertainty;  ///< of (centre (3), S xx yy zz xy xz yz (6)); `refined` only
+  std::vector<std::string> remarks;                 ///< warnings in words, for the user: what makes the answer doubtful
   std::string brief() const;         ///< "4 views, gap 1.2e-4, worst 0.83 px (view 2)"
 };
 

@@ -122,14 +122,11 @@ std::vector<double> residuals(const std::vector<ConicView>& views, const Reconst
 
 std::string Reconstruction::brief() const {
   std::string text = std::to_string(residualPx.size()) + (residualPx.size() == 1 ? " view" : " views");
-  char part[80];
-  printText(part, sizeof part, ", gap %.2g", gapRatio);
-  text += part;
+  text += formatted(", gap %.2g", gapRatio);
   if (!ellipsoid) text += std::string(", ") + describe(quadric);
   if (!residualPx.empty()) {
     const auto worst = std::max_element(residualPx.begin(), residualPx.end());
-    printText(part, sizeof part, ", worst %.2f px (view %d)", *worst, int(worst - residualPx.begin()));
-    text += part;
+    text += formatted(", worst %.2f px (view %d)", *worst, int(worst - residualPx.begin()));
   }
   return text;
 }

@@ -127,8 +127,7 @@ class Reflectance final : public HighlightModel {
                                                      lampChoicesOf(settings), radianceFitOptionsOf(settings));
     if (!best) return best.failure();
     if (best->poor) {
-      char detail[80];
-      printText(detail, sizeof detail, "no light and roughness explain the contours: %.3g px remain", best->rmsPx);
+      const std::string detail = formatted("no light and roughness explain the contours: %.3g px remain", best->rmsPx);
       return Failure{Reason::NotConverged, detail};
     }
     if (const std::optional<Failure> behind = lightBehind(input.views, best->light)) return *behind;

@@ -37,7 +37,7 @@ double spacingOf(const std::vector<const ViewCoefficients*>& views) {
 class Stacked {
  public:
   Stacked(const std::vector<const ViewCoefficients*>& views, const std::vector<int>& groups, double noiseVariance)
-      : views_(views), groups_(groups) {
+      : views_(views) {
     for (std::size_t v = 0; v < views.size(); ++v)
       for (std::size_t k = 0; k < views[v]->group.size(); ++k) {
         const auto at = std::find(groups.begin(), groups.end(), views[v]->group[k]);
@@ -105,7 +105,6 @@ class Stacked {
     std::size_t view, shape, group;
   };
   const std::vector<const ViewCoefficients*>& views_;
-  const std::vector<int>& groups_;
   std::vector<Row> rows_;
   Eigen::VectorXd z_;
   Eigen::MatrixXd basis_;

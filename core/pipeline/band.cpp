@@ -94,12 +94,6 @@ std::vector<double> sharesOf(const std::vector<double>& meanSquares, double free
   return shares;
 }
 
-std::string text(const char* format, double a, double b = 0) {
-  char buffer[256];
-  printText(buffer, sizeof buffer, format, a, b);
-  return buffer;
-}
-
 }  // namespace
 
 FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInput& input, const Settings& settings, bool surfaceRefined) {
@@ -151,7 +145,7 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
       if (share < kLeastShare) continue;
       if (share > 0.5)
         result.remarks.push_back(others[i].name + " explains the contours better" +
-                                 text(": %.3g px remain instead of %.3g", std::sqrt(squares[i + 1]), std::sqrt(squares[0])));
+                                 formatted(": %.3g px remain instead of %.3g", std::sqrt(squares[i + 1]), std::sqrt(squares[0])));
       band->add({others[i].model, std::move(others[i].fit), {}, nullptr, share / (1 + 2 * share)});
     }
   }
@@ -171,10 +165,10 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
       if (other)
         band->add({&model, *other, moved, reference, kToleranceShare});
       else
-        result.remarks.push_back(std::string("no fit with the ") + what + text(" changed by %.3g %%: ", 100 * (factor - 1)) +
+        result.remarks.push_back(std::string("no fit with the ") + what + formatted(" changed by %.3g %%: ", 100 * (factor - 1)) +
                                  other.failure().message());
     }
-    result.remarks.push_back(std::string("the band holds a ") + what + text(" off by up to %.3g %%, as stated", 100 * t));
+    result.remarks.push_back(std::string("the band holds a ") + what + formatted(" off by up to %.3g %%, as stated", 100 * t));
   };
   tolerance("input.scale_tolerance", "scale of the surface", scaled);
   tolerance("input.focal_tolerance", "focal length", zoomed);
@@ -183,11 +177,13 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
   if (band->clipped())
     result.remarks.push_back("a training highlight is clipped: its contour lies at a level of the clipped peak, which may be far from that of the true one");
   if (effects.viewPx() > kPoorShare * band->radiusPx())
-    result.remarks.push_back(text("the model does not explain its own contours: whole views are off by %.3g px", effects.viewPx()));
+    result.remarks.push_back(
+        formatted("the model does not explain its own contours: whole views are off by %.3g px", effects.viewPx()));
   else if (effects.viewPx() > std::max(kVisiblePx, kDominates * effects.noisePx()))
-    result.remarks.push_back(text("whole views are off by %.3g px beside %.3g px of noise: poses, surface or model are off, and the band holds what the "
-                                  "training views show of it",
-                                  effects.viewPx(), effects.noisePx()));
+    result.remarks.push_back(formatted(
+        "whole views are off by %.3g px beside %.3g px of noise: poses, surface or model are off, and the band holds what the "
+        "training views show of it",
+        effects.viewPx(), effects.noisePx()));
   return result;
 }
 

@@ -30,12 +30,6 @@ struct Change {
   bool flipX = false, flipY = false;
 };
 
-std::string formatted(const char* format, auto... values) {
-  char buffer[400];
-  printText(buffer, sizeof buffer, format, values...);
-  return buffer;
-}
-
 class Check {
  public:
   Check(const Scene& scene, const ProgressFn& progress) : scene_(scene), progress_(progress) {}

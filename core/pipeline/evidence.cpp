@@ -172,15 +172,13 @@ Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene
   const std::filesystem::path file = truthFile(folder, frame);
   if (!std::filesystem::exists(file)) return Failure{Reason::FrameUnreadable, file.string() + ": there is no such file"};
   std::vector<Highlight> truth;
-  char key[16], asked[32];
-  printText(key, sizeof key, "%.2f", level);
-  printText(asked, sizeof asked, "%g", level);
+  const std::string key = formatted("%.2f", level), asked = formatted("%g", level);
   const JsonNode root = JsonNode::parse(readFile(file, Limit::JsonMegabytes), file.string());
   const JsonNode levels = root.at("levels");
   const std::optional<JsonNode> contours = levels.find(key);
   constexpr double kHundredths = 100;  // the keys have two decimals
   if (!contours || std::abs(std::round(level * kHundredths) / kHundredths - level) > kSameLevel)
-    levels.fail(std::string("no contours at level ") + key + " (asked for " + asked + ")");
+    levels.fail("no contours at level " + key + " (asked for " + asked + ")");
   for (std::size_t i = 0; i < contours->size(); ++i) {
     const JsonNode c = contours->at(i);
     Highlight h;

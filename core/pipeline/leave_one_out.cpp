@@ -20,11 +20,7 @@ Answer failed(Failure failure) {
 }
 }  // namespace
 
-std::string percentText(double v) {
-  char buffer[32];
-  printText(buffer, sizeof buffer, "%.3g %%", v);
-  return buffer;
-}
+std::string percentText(double v) { return formatted("%.3g %%", v); }
 
 double variationOf(const Prediction& p) {
   double largest = std::nan("");

@@ -155,10 +155,8 @@ Scene smallScene(const Inspection& inspection, const MinimalRepro& repro, const 
 std::string Fault::text() const {
   if (reason) return nameOf(*reason);
   const double error = errorPct.value_or(0);
-  char number[64];
   // Not "1.13e+03": whole percents from a hundred on, in groups of three digits from a thousand on.
-  printText(number, sizeof number, error < 99.95 ? "%.3g" : error < 1e15 ? "%.0f" : "%.3g", error);
-  std::string text = number;
+  std::string text = formatted(error < 99.95 ? "%.3g" : error < 1e15 ? "%.0f" : "%.3g", error);
   if (error >= 99.95 && error < 1e15)
     for (int at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) text.insert(static_cast<std::size_t>(at), ",");
   return "contour error " + text + " %";

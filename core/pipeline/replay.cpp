@@ -50,11 +50,7 @@ void addStatistic(KeyResults& results, const std::string& name, const Statistic&
   results.emplace_back(name + ".max", s.max);
 }
 
-std::string shortest(double v) {
-  char buffer[40];
-  printText(buffer, sizeof buffer, "%.12g", v);
-  return buffer;
-}
+std::string shortest(double v) { return formatted("%.12g", v); }
 
 /// What was detected, over all frames; with `detect.` before the names.
 void addDetection(KeyResults& results, const Inspection& inspection) {

@@ -185,12 +185,10 @@ std::string Search::outsideText() const {
   double farthest = 0, tested = 0;
   for (const ViewToPredict& v : views_)
     if (v.outside) farthest = std::max(farthest, v.distanceDeg), tested = std::max(tested, v.testedDeg);
-  char text[200];
-  printText(text, sizeof text,
-            "%d of %d views to predict lie outside the training views (up to %.3g degrees from the nearest; leaving one out "
-            "tests %.2g)",
-            s_.outside, s_.toPredict, farthest, tested);
-  return text;
+  return formatted(
+      "%d of %d views to predict lie outside the training views (up to %.3g degrees from the nearest; leaving one out "
+      "tests %.2g)",
+      s_.outside, s_.toPredict, farthest, tested);
 }
 
 void Search::tryNext(const HighlightModel& model) {
@@ -576,20 +574,18 @@ InspectionRequest chosenRequest(InspectionRequest request, const Selection& sele
 
 std::string selectionTable(const Selection& s) {
   std::string out = "candidate     views   leave-one-out %   std. error %   ahead %  expected %  us/frame  seconds  remark\n";
-  char line[256];
   double slowest = 0, all = 0;
   std::string slowestModel;
   for (const Candidate& c : s.candidates) {
     const std::string views = std::to_string(c.answered) + "/" + std::to_string(c.tried);
-    printText(line, sizeof line, "%-12s %6s %17.4g %14.4g %9.3g %11.3g %9.3g %8.2f  ", c.model.c_str(), views.c_str(),
-              c.meanPct, c.standardErrorPct, c.outlookPct, c.expectedPct, c.predictUs, c.timeUs * 1e-6);
-    out += line + c.remark + "\n";
+    out += formatted("%-12s %6s %17.4g %14.4g %9.3g %11.3g %9.3g %8.2f  ", c.model.c_str(), views.c_str(), c.meanPct,
+                     c.standardErrorPct, c.outlookPct, c.expectedPct, c.predictUs, c.timeUs * 1e-6) +
+           c.remark + "\n";
     all += c.timeUs;
     if (c.timeUs > slowest) slowest = c.timeUs, slowestModel = c.model;
   }
   if (s.candidates.size() > 1 && all > slowest) {
-    printText(line, sizeof line, "%s makes the search %.2g times as long.\n", slowestModel.c_str(), all / (all - slowest));
-    out += line;
+    out += formatted("%s makes the search %.2g times as long.\n", slowestModel.c_str(), all / (all - slowest));
   }
   if (s.leftOut < s.trainingViews)
     out += std::to_string(s.leftOut) + " of " + std::to_string(s.trainingViews) +

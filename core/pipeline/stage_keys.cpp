@@ -7,11 +7,7 @@
 
 namespace glint {
 
-std::string exactText(double v) {
-  char buffer[32];
-  printText(buffer, sizeof buffer, "%.17g", v);
-  return buffer;
-}
+std::string exactText(double v) { return formatted("%.17g", v); }
 
 std::string keyOfStages(const Settings& settings, const std::set<std::string>& stages, const std::string& more) {
   std::string key = more;

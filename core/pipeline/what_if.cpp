@@ -20,11 +20,7 @@ constexpr double kEdgeShare =
 constexpr double kSagittaPx = 1e-2;    // a tenth of what overlays are drawn to; finer costs time while a slider moves
 constexpr double kLeastSpread = 1e-9;  // of the squared sines between optical axes: below, they are parallel and meet nowhere
 
-std::string exact(double v) {
-  char text[32];
-  printText(text, sizeof text, "%.17g,", v);
-  return text;
-}
+std::string exact(double v) { return formatted("%.17g,", v); }
 
 std::string exact(const Eigen::Vector3d& v) { return exact(v.x()) + exact(v.y()) + exact(v.z()); }
 

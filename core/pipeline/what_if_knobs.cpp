@@ -212,8 +212,7 @@ std::optional<FittedLobe> lobeOfLimitAngle(const Inspection& in, int frame) {
     if (v.failure || !(q > 0 && q < 1) || light == in.lights.end()) continue;
     const double alpha = light->second.limitAngle;
     if (!(alpha > 0)) continue;
-    char origin[96];
-    printText(origin, sizeof origin, "limit angle %.3g\u00b0 at level %.3g, light ", degrees(alpha), q);
+    const std::string origin = formatted("limit angle %.3g\u00b0 at level %.3g, light ", degrees(alpha), q);
     found = FittedLobe{Lobe::TorranceSparrow, std::tan(alpha) / std::sqrt(-std::log(q)), origin + v.highlight.light};
   }
   return found;

@@ -17,12 +17,6 @@ namespace glint {
 namespace {
 using Json = nlohmann::ordered_json;
 
-std::string formatted(const char* format, auto... values) {
-  char buffer[512];
-  printText(buffer, sizeof buffer, format, values...);
-  return buffer;
-}
-
 /// Part of an unbounded surface that the cameras may see: around the point nearest to their optical axes.
 Eigen::AlignedBox3d regionOfInterest(const Scene& scene, const Eigen::AlignedBox3d& bounds) {
   if (bounds.min().allFinite() && bounds.max().allFinite() && !bounds.isEmpty()) return bounds;

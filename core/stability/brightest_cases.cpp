@@ -106,8 +106,7 @@ void addBrightestCases(Cases& cases) {
   for (const double degrees : {80.0, 85.0, 89.0, 89.9, 89.99})
     for (const double k : {0.5, 0.0}) {
       const double a = degrees * std::numbers::pi / 180;
-      char name[64];
-      printText(name, sizeof name, "%s, grazing %g degrees", k > 0 ? "sphere" : "plane", degrees);
+      const std::string name = formatted("%s, grazing %g degrees", k > 0 ? "sphere" : "plane", degrees);
       const Light light = grazingLight(degrees);
       add(name, degrees, 1e-9, "", [light, a, k] { return pointCase(k, k > 0, light, 0, 0, 1, 800, 0.1, 1 / std::cos(a)); });
     }

@@ -36,9 +36,7 @@ Outcome<Measured> levelsCase(Lobe lobe, double m, double lowest) {
     if (prediction.highlights.empty()) return prediction.failure.value_or(Failure{Reason::NoHighlight, ""});
     const PredictedHighlight& h = prediction.highlights.front();
     if (h.coverage < (wide ? 0.5 : 0.999)) {
-      char detail[48];
-      printText(detail, sizeof detail, "coverage too low at level %g", q);
-      return Failure{Reason::SurfaceEnded, detail};
+      return Failure{Reason::SurfaceEnded, formatted("coverage too low at level %g", q)};
     }
     const std::size_t stride = std::max<std::size_t>(1, h.contour.points.size() / 24);
     for (std::size_t i = 0; i < h.contour.points.size(); i += stride) {
@@ -61,8 +59,7 @@ void addLobeCases(Cases& cases) {
     for (const double m : {1e-3, 1e-2, 0.1, 0.3, 0.5, 0.7}) {
       // GGX's tail of 0.7 falls below 0.02 behind the camera only.
       const double lowest = lobe == Lobe::Ggx && m > 0.6 ? 0.1 : 0.02;
-      char name[96];
-      printText(name, sizeof name, "%s, roughness %g, levels %g to 0.98", nameOf(lobe), m, lowest);
+      const std::string name = formatted("%s, roughness %g, levels %g to 0.98", nameOf(lobe), m, lowest);
       cases.push_back(answerCase("lobe contour", name, m, 1e-8, "the peak is found to 1e-4 px, its value to the square of that over the width",
                                  [lobe, m, lowest] { return levelsCase(lobe, m, lowest); }));
     }

@@ -214,8 +214,7 @@ void addMeshFileCases(Cases& cases) {
   }
   for (const double degrees : {80.0, 85.0, 89.0, 89.9, 89.99}) {
     const FileScene flat{.policy = NormalPolicy::Facet, .curvature = 0, .condition = 1 / std::cos(degrees * std::numbers::pi / 180)};
-    char name[64];
-    printText(name, sizeof name, "flat mesh, grazing %g degrees", degrees);
+    const std::string name = formatted("flat mesh, grazing %g degrees", degrees);
     cases.push_back(answerCase("brightest point", name, degrees, 1e-9, "", [flat, degrees] { return mirrorCase(flat, degrees); }));
     if (degrees > 89.95) {
       cases.back().name = "flat mesh, 0.2 mm under the eye: 89.99 degrees";

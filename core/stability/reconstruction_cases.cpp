@@ -156,10 +156,9 @@ void addReconstructionCases(Cases& cases) {
   // The depth of an ellipsoid shows in its outlines by the square of the parallax, here 12 times the spread: that much of the
   // contours' round-off is left in the answer, until no digit is.
   for (const double spread : {1e-3, 1e-6, 1e-8}) {
-    char name[64];
-    printText(name, sizeof name, "cameras within %.0e rad of each other", 12 * spread);
+    const std::string name = formatted("cameras within %.0e rad of each other", 12 * spread);
     const double condition = 1 / (144 * spread * spread);
-    Case& c = add(l, name, 12 * spread, [spread, condition]() -> Outcome<Measured> {
+    Case& c = add(l, name.c_str(), 12 * spread, [spread, condition]() -> Outcome<Measured> {
       const Outcome<Measured> m = linear(truth(kAxes, 1), 6, {.spread = spread});
       if (!m) return m;
       return Measured{m->error, condition};

@@ -12,15 +12,9 @@ namespace {
 
 std::string shortNumber(double x) {
   if (x == std::numeric_limits<double>::max()) return "none";
-  char text[32];
-  printText(text, sizeof text, "%.3g", x);
-  return text;
+  return formatted("%.3g", x);
 }
-std::string exponent(double x) {
-  char text[32];
-  printText(text, sizeof text, "%.1e", x);
-  return text;
-}
+std::string exponent(double x) { return formatted("%.1e", x); }
 /// A failure has no error to show.
 std::string errorText(const StabilityResult& r) { return r.verdict == CaseVerdict::NamedFailure ? "-" : exponent(r.relativeError); }
 std::string conditionText(const StabilityResult& r) {
@@ -52,12 +46,11 @@ std::string stabilityTable(const std::vector<StabilityResult>& results) {
     name = std::max(name, r.name.size());
   }
   std::string out;
-  char line[512];
   const auto row = [&](const std::string& a, const std::string& b, const std::string& condition, const std::string& error,
                        const std::string& tolerance, const std::string& verdict) {
-    printText(line, sizeof line, "%-*s  %-*s  %10s  %9s  %9s  ", int(stage), a.c_str(), int(name), b.c_str(),
-              condition.c_str(), error.c_str(), tolerance.c_str());
-    out += line + verdict + "\n";
+    out += formatted("%-*s  %-*s  %10s  %9s  %9s  ", int(stage), a.c_str(), int(name), b.c_str(), condition.c_str(),
+                     error.c_str(), tolerance.c_str()) +
+           verdict + "\n";
   };
   row("stage", "case", "condition", "error", "tolerance", "verdict");
   for (const StabilityResult& r : results)

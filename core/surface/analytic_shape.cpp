@@ -21,11 +21,7 @@ constexpr double kPi = std::numbers::pi;
 
 bool positive(double x) { return std::isfinite(x) && x > 0; }
 
-std::string shown(double x) {
-  char text[32];
-  printText(text, sizeof text, "%.6g", x);
-  return text;
-}
+std::string shown(double x) { return formatted("%.6g", x); }
 
 /// Box of { c + diag(e) u : |u| <= 1 } style shapes whose world half extents are known.
 AlignedBox3d around(const Vector3d& centre, const Vector3d& half) { return {centre - half, centre + half}; }

@@ -16,11 +16,7 @@
 namespace glint {
 namespace {
 
-std::string shown(double v) {
-  char text[32];
-  printText(text, sizeof text, "%.6g", v);
-  return text;
-}
+std::string shown(double v) { return formatted("%.6g", v); }
 
 double inRange(const JsonNode& node, double low, double high) {
   const double v = node.number();
@@ -34,11 +30,7 @@ int countOf(const JsonNode& node, int low, int high) {
   return v;
 }
 
-std::string padded(std::size_t i) {
-  char text[32];
-  printText(text, sizeof text, "%04zu", i);
-  return text;
-}
+std::string padded(std::size_t i) { return formatted("%04zu", i); }
 
 /// Pose of a camera at `eye` that looks at `target`, image up along world +z.
 Eigen::Isometry3d lookAt(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const JsonNode& node) {

@@ -167,11 +167,10 @@ std::string tradeoffTable(const Tradeoff& t) {
     for (const auto& [name, index] : t.presets)
       if (index == i) marks += "  <- " + name;
     if (t.chosen == i) marks += "  <- chosen";
-    char line[200];
     const std::string predicted = std::to_string(p.predicted) + "/" + std::to_string(p.frames);
-    printText(line, sizeof line, "%-5s %9.1f %10.4g %8.4f %9.3f %10s %10.2f %8.1f  ", p.pareto ? "*" : "", p.predictUs,
-              p.contourErrorPct, p.iou, p.coverage, predicted.c_str(), p.fitUs * 1e-3, p.peakMb);
-    out += line + describe(t, p) + marks + "\n";
+    out += formatted("%-5s %9.1f %10.4g %8.4f %9.3f %10s %10.2f %8.1f  ", p.pareto ? "*" : "", p.predictUs, p.contourErrorPct,
+                     p.iou, p.coverage, predicted.c_str(), p.fitUs * 1e-3, p.peakMb) +
+           describe(t, p) + marks + "\n";
   }
   std::map<std::string, int> kinds;
   for (const PrunedPoint& p : t.pruned) ++kinds[p.kind];

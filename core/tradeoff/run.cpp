@@ -24,8 +24,7 @@ std::string idOf(const Trial& trial) {
 std::string workKey(const Scene& scene, const InspectionRequest& request, const TradeoffOptions& options,
                     const ProgressFn& progress) {
   Sha256 hash;
-  char noise[32];
-  printText(noise, sizeof noise, "%.17g", request.noisePx);
+  const std::string noise = formatted("%.17g", request.noisePx);
   for (const SessionFile& f : hashInputs(scene, request, progress)) hash.add(f.path.string() + "=" + f.sha256 + "\n");
   hash.add(request.train + "|" + (request.source == FrameSource::Image ? "image" : "radiance") + "|" +
            noise + "|" + std::to_string(request.seed) + "|" + request.truthFolder + "|" +

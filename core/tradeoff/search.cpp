@@ -40,11 +40,7 @@ std::string idOf(const Trial& t, const std::vector<Knob>& knobs) {
   return id;
 }
 
-std::string costText(const Cost& c) {
-  char buffer[80];
-  printText(buffer, sizeof buffer, "%.3g %% at %.3g us", c.errorPct, c.us);
-  return buffer;
-}
+std::string costText(const Cost& c) { return formatted("%.3g %% at %.3g us", c.errorPct, c.us); }
 
 /// By its name: the stage of "predict.directions" is the fit, where it is used first.
 bool usedByPrediction(const Knob& k) { return k.key.rfind("predict.", 0) == 0 || k.key.rfind("surface.", 0) == 0; }

@@ -139,6 +139,17 @@ TEST_F(Requests, AutoWritesItsJsonWhereNothingCanBeUsed) {
   for (const Json& row : j["training"]) EXPECT_EQ(row["status"], "failed");
 }
 
+/// On the shipped ellipsoid `primal` has no answer with the weights that its residuals suggest.
+TEST(Fallback, AnEllipsoidOfTheFirstWeightsSaysSo) {
+  const ProgramRun run = runGlint("evaluate '" GLINT_SOURCE_DIR
+                                  "/sessions/ellipsoid/scene.json' --models primal --source image --train spread:6 "
+                                  "--set fit.most_residual=0.3 --json -");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json fit = Json::parse(run.out)["models"]["primal"]["fits"][0];
+  EXPECT_EQ(fit["status"], "ok");
+  EXPECT_THAT(fit["warnings"].dump(), HasSubstr("which its residuals suggest, there is no ellipsoid (not converged: the next step would be"));
+}
+
 TEST_F(Requests, PredictAcceptsPathsOutsideWhereAllowed) {
   saveSession("--model limit-angle");
   const TemporaryFolder outside;

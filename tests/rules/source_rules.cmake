@@ -49,7 +49,7 @@ foreach(f IN LISTS coreSources)
   endforeach()
 endforeach()
 
-# Numbers never depend on the locale: text is made by printText and read by numberFrom or std::from_chars (core/base/number_text.h).
+# Numbers never depend on the locale: text is made by formatted and read by numberFrom or std::from_chars (core/base/number_text.h).
 # Two files may call the C functions: the one that makes them free of the locale, and one that prints no number with a point.
 file(GLOB_RECURSE numberSources "${SRC}/io/*.h" "${SRC}/io/*.cpp" "${SRC}/core/*.h" "${SRC}/core/*.cpp" "${SRC}/viz/*.h" "${SRC}/viz/*.cpp"
      "${SRC}/cli/*.h" "${SRC}/cli/*.cpp" "${SRC}/gui/*.h" "${SRC}/gui/*.cpp")

@@ -10,11 +10,7 @@ namespace {
 
 constexpr double kFarLight = 4;  ///< in scene sizes: beyond, an arrow shows the direction
 
-std::string distanceText(double metres) {
-  char text[32];
-  printText(text, sizeof text, "%.3g m", metres);
-  return text;
-}
+std::string distanceText(double metres) { return formatted("%.3g m", metres); }
 
 /// A far light as an arrow from the scene's centre.
 void addDirection(LayerContent& content, const LayerInput& in, const Eigen::Vector3d& direction, const Colour& colour,

@@ -72,7 +72,7 @@ PlotData errorPlot(const Inspection& inspection) {
       if (excluded)
         p.label += "not evaluated";
       else if (pct)
-        p.label += plotText("%.3g %%", *pct);
+        p.label += formatted("%.3g %%", *pct);
       else if (p.noValue)
         p.label += missedText(score) + (score.reason.empty() ? "" : "\n" + score.reason);
       else
@@ -141,12 +141,12 @@ PlotData influencePlot(const Inspection& inspection, const Influence& influence,
           why = models[m] + " has no fit without frame " + frameName(inspection, f.frame) + ": " + n.failure->message();
       }
       if (n.changePct && n.heldOutPct)
-        p.label += plotText("\nheld-out frames %.3g %% instead of %.3g %%: %+.2g points", *n.heldOutPct,
-                            *n.heldOutPct - *n.changePct, *n.changePct) +
+        p.label += formatted("\nheld-out frames %.3g %% instead of %.3g %%: %+.2g points", *n.heldOutPct,
+                             *n.heldOutPct - *n.changePct, *n.changePct) +
                    (*n.changePct < 0 ? "\nbetter without it" : "");
-      if (n.leftOutPct) p.label += plotText("\nthe frame itself %.3g %%", *n.leftOutPct);
-      if (n.lightShift) p.label += plotText("\nlight or centre moves %.2g m", *n.lightShift);
-      if (n.axesChange) p.label += plotText("\na semi-axis changes by %.2g %% of its length", 100 * *n.axesChange);
+      if (n.leftOutPct) p.label += formatted("\nthe frame itself %.3g %%", *n.leftOutPct);
+      if (n.lightShift) p.label += formatted("\nlight or centre moves %.2g m", *n.lightShift);
+      if (n.axesChange) p.label += formatted("\na semi-axis changes by %.2g %% of its length", 100 * *n.axesChange);
       series.points.push_back(std::move(p));
     }
     plot.series.push_back(std::move(series));

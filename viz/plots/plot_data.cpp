@@ -24,9 +24,7 @@ bool fits(const PlotTarget& t, const Selection& s) {
 
 std::string numberText(double v, const char* format = "%.9g") {
   if (!std::isfinite(v)) return "";
-  char text[40];
-  printText(text, sizeof text, format, v);
-  return text;
+  return formatted(format, v);
 }
 
 std::string quoted(const std::string& text) {

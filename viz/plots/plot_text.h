@@ -14,13 +14,6 @@ namespace glint::viz {
 
 constexpr double kSmallestPct = 1e-6;  // what a logarithmic axis shows of an exact scene
 
-template <class... Numbers>
-std::string plotText(const char* format, Numbers... numbers) {
-  char buffer[400];
-  printText(buffer, sizeof buffer, format, numbers...);
-  return buffer;
-}
-
 /// A sentence in place of a plot.
 inline PlotData nothing(PlotData plot, std::string why) {
   plot.series.clear();

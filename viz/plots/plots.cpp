@@ -139,8 +139,8 @@ PlotData lobePlot(const FrameSamples& samples, int highlight) {
     point.y = p.logI - height;
     lowest = std::min(lowest, point.y);
     point.target = {samples.frame, samples.model, lobe->light, lobe->observed, p.direction, -1};
-    point.label = plotText("pixel %.1f, %.1f\nalpha %.3g\u00b0, I/K' %.3g\ndirection %.0f\u00b0", p.at.x(), p.at.y(),
-                           degrees(p.alpha), std::exp(point.y), degrees(p.direction));
+    point.label = formatted("pixel %.1f, %.1f\nalpha %.3g\u00b0, I/K' %.3g\ndirection %.0f\u00b0", p.at.x(), p.at.y(),
+                            degrees(p.alpha), std::exp(point.y), degrees(p.direction));
     (p.fitted ? bright : faint).points.push_back(std::move(point));
   }
   lowest = std::max(lowest, -6.0);  // a four-hundredth of the height: fainter pixels show the background
@@ -162,13 +162,13 @@ PlotData lobePlot(const FrameSamples& samples, int highlight) {
     }
     plot.series.push_back(std::move(curve));
   };
-  if (s.fit) addCurve(plotText("fitted lobe, m = %.4g, rms %.2g", s.fit->m, s.fit->rms), s.fit->m, kFittedLobe, Dash::Solid);
+  if (s.fit) addCurve(formatted("fitted lobe, m = %.4g, rms %.2g", s.fit->m, s.fit->rms), s.fit->m, kFittedLobe, Dash::Solid);
   if (lobe->roughness)
-    addCurve(samples.model + plotText(", m = %.4g", *lobe->roughness), *lobe->roughness, modelColour(samples.model),
+    addCurve(samples.model + formatted(", m = %.4g", *lobe->roughness), *lobe->roughness, modelColour(samples.model),
              Dash::Dashed);
   if (lobe->level > 0 && lobe->level < 1) {
     PlotSeries level;
-    level.name = plotText("level %.3g", lobe->level);
+    level.name = formatted("level %.3g", lobe->level);
     level.colour = kHeldOut;
     level.dash = Dash::Dotted;
     level.width = 1.5;
@@ -176,8 +176,8 @@ PlotData lobePlot(const FrameSamples& samples, int highlight) {
       PlotPoint p;
       p.x = x;
       p.y = std::log(lobe->level);
-      p.label = plotText("contour level %.3g of the peak", lobe->level) +
-                (s.fit ? plotText("\nreached at alpha %.4g\u00b0 by the fitted lobe", degrees(s.fit->alphaAt(lobe->level)))
+      p.label = formatted("contour level %.3g of the peak", lobe->level) +
+                (s.fit ? formatted("\nreached at alpha %.4g\u00b0 by the fitted lobe", degrees(s.fit->alphaAt(lobe->level)))
                        : std::string());
       level.points.push_back(p);
     }
@@ -185,7 +185,7 @@ PlotData lobePlot(const FrameSamples& samples, int highlight) {
   }
   plot.x.from = 0;
   if (!s.fit && s.fitFailure) plot.title += "   no lobe fits: " + s.fitFailure->message();
-  if (s.clipped > 0) plot.title += plotText("   %d clipped pixels left out", s.clipped);
+  if (s.clipped > 0) plot.title += formatted("   %d clipped pixels left out", s.clipped);
   return plot;
 }
 
@@ -230,10 +230,10 @@ PlotData semiAxesPlot(const Inspection& inspection) {
       p.y = axes(k);
       if (axes(k) > 0) values.push_back(axes(k));
       p.target.model = fits[i].model;
-      p.label = fits[i].model + (severalLights ? ", light " + fits[i].light : std::string()) + plotText("\n%.6g m", axes(k));
+      p.label = fits[i].model + (severalLights ? ", light " + fits[i].light : std::string()) + formatted("\n%.6g m", axes(k));
       if (sigma && std::isfinite((*sigma)(k))) {
         p.band = {{axes(k) - (*sigma)(k), axes(k) + (*sigma)(k)}};
-        p.label += plotText(" \u00b1 %.2g m", (*sigma)(k));
+        p.label += formatted(" \u00b1 %.2g m", (*sigma)(k));
       }
       series.points.push_back(std::move(p));
     }
@@ -273,7 +273,7 @@ PlotData residualDial(const Inspection& inspection, int frame, int highlight) {
       if (r.observed == shown) chosen = &r;
     if (!chosen || !std::isfinite(chosen->meanAbsPx)) continue;
     PlotSeries series;
-    series.name = model + plotText("  mean |d| %.2g px", chosen->meanAbsPx);
+    series.name = model + formatted("  mean |d| %.2g px", chosen->meanAbsPx);
     series.colour = modelColour(model);
     series.shape = PlotShape::LineAndPoints;
     series.pointSize = 3;
@@ -283,7 +283,7 @@ PlotData residualDial(const Inspection& inspection, int frame, int highlight) {
       p.y = s.value.value_or(std::nan(""));
       if (s.value) largest = std::max(largest, std::abs(*s.value));
       p.target = {frame, model, chosen->light, chosen->observed, s.direction, -1};
-      p.label = model + plotText("\ndirection %.0f\u00b0\n%+.3g px", degrees(s.direction), s.value.value_or(0));
+      p.label = model + formatted("\ndirection %.0f\u00b0\n%+.3g px", degrees(s.direction), s.value.value_or(0));
       series.points.push_back(std::move(p));
     }
     plot.series.push_back(std::move(series));
@@ -321,7 +321,7 @@ PlotData limitAnglePlot(const FrameSamples& samples, int highlight) {
       p.y = s.value ? degrees(*s.value) : std::nan("");
       any = any || s.value.has_value();
       p.target = {samples.frame, observed ? std::string() : samples.model, chosen->light, chosen->observed, s.direction, -1};
-      p.label = std::string(name) + plotText("\ndirection %.0f\u00b0\nalpha %.4g\u00b0", p.x, p.y);
+      p.label = std::string(name) + formatted("\ndirection %.0f\u00b0\nalpha %.4g\u00b0", p.x, p.y);
       series.points.push_back(std::move(p));
     }
     if (any) plot.series.push_back(std::move(series));
@@ -331,8 +331,8 @@ PlotData limitAnglePlot(const FrameSamples& samples, int highlight) {
   if (plot.series.empty()) return nothing(plot, "No contour point meets the lit surface");
   if (chosen->limitAngle) {
     PlotSeries line;
-    line.name = plotText(chosen->extended ? "limit angle %.4g\u00b0, without the lamp's extent" : "limit angle %.4g\u00b0",
-                         degrees(*chosen->limitAngle));
+    line.name = formatted(chosen->extended ? "limit angle %.4g\u00b0, without the lamp's extent" : "limit angle %.4g\u00b0",
+                          degrees(*chosen->limitAngle));
     line.colour = kHeldOut;
     line.dash = Dash::Dashed;
     line.width = 1.5;
@@ -380,7 +380,7 @@ PlotData singularValuePlot(const std::vector<Conditioning>& conditioning) {
       p.y = c.singularValues[i] / c.singularValues.front();
       p.target.model = c.model;
       p.label = c.model + ", light " + c.light + (c.surface ? " on " + *c.surface : std::string()) +
-                plotText("\nsingular value %d of %d: %.3g", int(i + 1), int(c.singularValues.size()), c.singularValues[i]) +
+                formatted("\nsingular value %d of %d: %.3g", int(i + 1), int(c.singularValues.size()), c.singularValues[i]) +
                 (i + 1 == c.singularValues.size() ? "\nQ* is a " + c.quadricKind : std::string());
       series.points.push_back(std::move(p));
     }
@@ -417,7 +417,7 @@ PlotData tradeoffPlot(const Tradeoff& tradeoff) {
     p.y = t.rankedErrorPct;
     p.target.setting = i;
     p.label = describe(tradeoff, t) +
-              plotText("\nerror %.3g %%, %.4g µs a frame, fit %.3g ms", t.contourErrorPct, t.predictUs, t.fitUs / 1000);
+              formatted("\nerror %.3g %%, %.4g µs a frame, fit %.3g ms", t.contourErrorPct, t.predictUs, t.fitUs / 1000);
     for (const auto& [name, index] : tradeoff.presets)
       if (index == i) p.label += "\npreset '" + name + "'";
     if (t.pareto) {

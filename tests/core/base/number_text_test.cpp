@@ -30,8 +30,7 @@ TEST(NumberText, HasAPointUnderADecimalComma) {
   char text[32];
   std::snprintf(text, sizeof text, "%.2f", 1234.5);
   ASSERT_STREQ(text, "1234,50") << "the locale is not at work, so that this test would show nothing";
-  printText(text, sizeof text, "%.2f|%g|%s|%d", 1234.5, -2.5e-7, "a,b", 7);
-  EXPECT_STREQ(text, "1234.50|-2.5e-07|a,b|7");
+  EXPECT_EQ(formatted("%.2f|%g|%s|%d", 1234.5, -2.5e-7, "a,b", 7), "1234.50|-2.5e-07|a,b|7");
   std::snprintf(text, sizeof text, "%.1f", 0.5);
   EXPECT_STREQ(text, "0,5") << "the thread's locale must be what it was";
 }
@@ -43,11 +42,7 @@ TEST(NumberText, HasAPointInEveryThread) {
   std::thread threads[4];
   for (int t = 0; t < 4; ++t)
     threads[t] = std::thread([&seen, t] {
-      for (int i = 0; i < 1000; ++i) {
-        char text[32];
-        printText(text, sizeof text, "%.3f", t + 0.125);
-        seen[t] = text;
-      }
+      for (int i = 0; i < 1000; ++i) seen[t] = formatted("%.3f", t + 0.125);
     });
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(seen[0], "0.125");
@@ -64,10 +59,11 @@ TEST(NumberText, ReadsThePointAndNothingElse) {
     EXPECT_FALSE(numberFrom(text)) << '"' << text << '"';
 }
 
-TEST(NumberText, CutsWhatDoesNotFitAsSnprintfDoes) {
-  char text[4];
-  EXPECT_EQ(printText(text, sizeof text, "%d", 123456), 6);
-  EXPECT_STREQ(text, "123");
+TEST(NumberText, WritesTextOfAnyLength) {
+  for (const std::size_t length : {0u, 1u, 254u, 255u, 256u, 257u, 5000u}) {
+    const std::string name(length, 'x');
+    EXPECT_EQ(formatted("%s|%d", name.c_str(), 7), name + "|7") << length;
+  }
 }
 
 }  // namespace

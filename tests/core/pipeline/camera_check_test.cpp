@@ -18,14 +18,29 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// An orbit of ten cameras around a glossy body, with the contours that another lobe and light give exactly.
-Scene orbit(const AnalyticSpec& body, int frames = 10, double noisePx = 0) {
-  Scene scene;
-  scene.name = "orbit";
-  scene.surfaces["body"].analytic = body;
+TrueLight pointLamp() {
   TrueLight lamp;
   lamp.id = "lamp";
   lamp.position = Eigen::Vector3d(1.2, -1.0, 2.2);
+  return lamp;
+}
+TrueLight ballLamp() {
+  TrueLight lamp = pointLamp();
+  lamp.radius = 0.15;
+  return lamp;
+}
+TrueLight tubeLamp() {
+  TrueLight lamp;
+  lamp.id = "lamp";
+  lamp.segment = {Eigen::Vector3d(0.9, -1.2, 2.2), Eigen::Vector3d(1.5, -0.8, 2.2)};
+  return lamp;
+}
+
+/// An orbit of ten cameras around a glossy body, with the contours that another lobe and light give exactly.
+Scene orbit(const AnalyticSpec& body, int frames = 10, double noisePx = 0, const TrueLight& lamp = pointLamp()) {
+  Scene scene;
+  scene.name = "orbit";
+  scene.surfaces["body"].analytic = body;
   std::mt19937 random(5);
   std::normal_distribution<double> noise(0, 1);
   for (int i = 0; i < frames; ++i) {
@@ -111,6 +126,23 @@ TEST(CameraCheck, FocalLengthOfOnePercent) {
     ASSERT_TRUE(check.focalPct);
     EXPECT_NEAR(*check.focalPct, -pct, kFocalPct);
   }
+}
+
+/// The shape of the lamp is searched for the cameras as given, and kept for changed intrinsics.
+TEST(CameraCheck, ALampWithASizeOrALengthIsNoFault) {
+  for (const TrueLight& lamp : {ballLamp(), tubeLamp()}) {
+    const CameraCheck check = checkCameras(orbit(ellipsoid(), 10, 0, lamp));
+    EXPECT_EQ(check.views, 8) << check.whyNot;
+    EXPECT_THAT(check.findings, IsEmpty()) << (lamp.segment ? "tube" : "ball");
+  }
+}
+
+TEST(CameraCheck, FocalLengthUnderALampWithASize) {
+  const CameraCheck check = checkCameras(
+      withCameras(orbit(ellipsoid(), 10, 0, ballLamp()), [](Camera& c) { c.pixelFromRay.topLeftCorner<2, 2>() *= 1.01; }));
+  EXPECT_THAT(check.findings, ElementsAre(HasSubstr("% shorter")));
+  ASSERT_TRUE(check.focalPct);
+  EXPECT_NEAR(*check.focalPct, -1, kFocalPct);
 }
 
 TEST(CameraCheck, MirroredImages) {
