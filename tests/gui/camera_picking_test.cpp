@@ -39,6 +39,7 @@ class CameraPickingTest : public QObject, SceneFixture {
     around.model = "canonical";
     around.light = "lamp";
     around.ellipsoid = Ellipsoid(Eigen::Isometry3d(Eigen::Translation3d(*lamp.position)), {0.3, 0.25, 0.2});
+    around.quadric = around.ellipsoid->dual();  // without one nothing is drawn
     inspection->models["canonical"].fits = {{"lamp", {}, around, {}, {}}};
     document_->setInspection(inspection, document_->request());
     showOnly({"true-light", "ellipsoids"});
@@ -46,6 +47,10 @@ class CameraPickingTest : public QObject, SceneFixture {
     panel_->frameAll();
     settle();
     const QPoint from = onScreen(*lamp.position), there = from + QPoint(-60, 35);
+    const double ratio = views().widget()->devicePixelRatioF();
+    const std::optional<viz::Picked> nearest =
+        panel_->view().pick(int(from.x() * ratio), int((views().widget()->height() - 1 - from.y()) * ratio));
+    QCOMPARE(nearest ? QString::fromStdString(nearest->layer) : QString(), QStringLiteral("ellipsoids"));  // before the lamp
     drag(views().widget(), {from, from + QPoint(-20, 10), there});
     QVERIFY(document_->request().whatIf.lightsBy.count("lamp"));
   }
