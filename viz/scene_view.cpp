@@ -22,7 +22,7 @@
 #include "viz/annotations.h"
 #include "viz/frame_overlay.h"
 #include "viz/layers.h"
-#include "viz/photograph_overlay.h"
+#include "viz/photograph_stand.h"
 #include "viz/scene_legend.h"
 #include "viz/scene_questions.h"
 #include "viz/view_camera.h"
@@ -53,7 +53,7 @@ struct SceneView::Impl {
   vtkNew<vtkRenderer> renderer;
   vtkNew<vtkLightKit> lights;
   vtkNew<vtkCallbackCommand> onFrame;
-  std::unique_ptr<PhotographOverlay> photograph;  // below the annotations
+  std::unique_ptr<PhotographStand> photograph;  // below the annotations
   std::unique_ptr<Annotations> annotations;
   std::shared_ptr<const Inspection> inspection;
   Selection selection;
@@ -69,11 +69,7 @@ struct SceneView::Impl {
   Eye eye = Eye::Outside;
   std::string eyeProblem;  // why it is not in effect
   ViewPoint outside;       // what the view goes back to
-  int photographFrame = -1;
-  double opacity = 0.5, zoom = 1;
-  PictureArea lastArea;  // of the last frame, for questions while the renderer is in no window
-  Eigen::Vector2d shift{0, 0};
-  bool partOfWindow = false, moving = false, border = false, active = false;
+  bool moving = false, border = false, active = false;
   std::string name;
   double glyphScale = 1, lineScale = 1;
   bool dark = true;
@@ -88,7 +84,7 @@ struct SceneView::Impl {
     renderer->SetAutomaticLightCreation(0);
     lights->SetKeyLightIntensity(0.85);
     lights->AddLightsToRenderer(renderer);
-    photograph = std::make_unique<PhotographOverlay>(renderer);
+    photograph = std::make_unique<PhotographStand>(renderer);
     annotations = std::make_unique<Annotations>(renderer);
     for (std::size_t i = 0; i < layers.size(); ++i) layers[i].visible = sceneLayers()[i].onByDefault;
     onFrame->SetClientData(this);
@@ -188,40 +184,19 @@ struct SceneView::Impl {
     const std::string& id = input.frame(selection.frame).id;
     return eye == Eye::Camera ? "through camera " + id : "through virtual camera " + id + " (mirrored)";
   }
-  /// The picture that this view draws, or draws its part of.
-  PictureArea area() const {
-    vtkRenderWindow* window = renderer->GetRenderWindow();
-    if (!window) return lastArea;
-    const int* own = renderer->GetSize();
-    const int width = std::max(own[0], 1), height = std::max(own[1], 1);
-    if (!partOfWindow) return {width, height, 0, width};
-    const int left = renderer->GetOrigin()[0];
-    return {std::max(window->GetSize()[0], left + width), height, left, left + width};
-  }
-  PhotographPlacement placement() const { return placePhotograph(input.frame(selection.frame).camera, area(), zoom, shift); }
-  /// Lower left corner of the picture in the window.
-  Eigen::Vector2d pictureOrigin() const {
-    return partOfWindow ? Eigen::Vector2d(0, renderer->GetOrigin()[1])
-                        : Eigen::Vector2d(renderer->GetOrigin()[0], renderer->GetOrigin()[1]);
-  }
   /// Camera and photograph for the size of this frame.
   void stand() {
-    lastArea = area();
+    photograph->keepArea();
     vtkCamera* camera = renderer->GetActiveCamera();
     if (!valid() || input.eye == Eye::Outside) {
-      standFree(camera, area());
+      standFree(camera, photograph->area());
       photograph->hide();
       return;
     }
     const Camera& real = input.frame(selection.frame).camera;
     const double depth = std::max(std::abs(real.depth(input.scale.surfaceBox.center())), 1e-3 * input.scale.sceneSize);
-    PhotographPlacement place = placement();
-    standAt(camera, real, input.eyeMirror, place, area(), depth);
-    place.topLeft += pictureOrigin();
-    if (photographFrame == selection.frame)
-      photograph->place(real, place, opacity);
-    else
-      photograph->hide();
+    standAt(camera, real, input.eyeMirror, photograph->placement(real), photograph->area(), depth);
+    photograph->show(selection.frame, real);
   }
 
   void place(Drawn& drawn, bool visible) const {
@@ -284,7 +259,7 @@ struct SceneView::Impl {
   void updateAnnotations() {
     annotationsStale = false;
     annotations->setBadge(eyeText());
-    annotations->setBorder(!border ? Border::None : partOfWindow ? Border::Wipe : active ? Border::Active : Border::Around, name);
+    annotations->setBorder(!border ? Border::None : photograph->partOfWindow() ? Border::Wipe : active ? Border::Active : Border::Around, name);
     if (!valid()) {
       annotations->setLegend({}, {}, {}, "");
       annotations->setLabels({});
@@ -348,7 +323,7 @@ struct SceneView::Impl {
   void fit(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& back, const Eigen::Vector3d& up,
            const Eigen::Vector3d& reference, double leastDepth) {
     update();
-    const PictureArea whole = area();
+    const PictureArea whole = photograph->area();
     const Margins margins = marginsBeside(annotations->legendSize(), annotations->colourBarHeight(), whole);
     const double aspect = whole.width > 1 && whole.height > 1 ? static_cast<double>(whole.width) / whole.height : 4.0 / 3.0;
     place(fitted(points, back, up, aspect, margins, parallel(), reference, leastDepth));
@@ -408,8 +383,7 @@ void SceneView::setInspection(std::shared_ptr<const Inspection> inspection) {
     impl_->cache->follow(inspection ? inspection->given : nullptr);
     if (impl_->input.eye != Eye::Outside) viz::setViewPoint(impl_->renderer->GetActiveCamera(), impl_->outside);
     impl_->input = {};
-    impl_->photographFrame = -1;
-    impl_->photograph->setPhotograph(nullptr);
+    impl_->photograph->setPhotograph(-1, nullptr);
   }
   const bool moved = newScene || inspection->scene != impl_->inspection->scene;
   impl_->inspection = std::move(inspection);
@@ -514,8 +488,7 @@ void SceneView::setEye(Eye eye) {
   if (eye == impl_->eye) return;
   if (impl_->frameAllPending && impl_->valid()) impl_->frameAll();  // the view to come back to
   impl_->eye = eye;
-  impl_->zoom = 1;
-  impl_->shift.setZero();
+  impl_->photograph->resetZoom();
   if (impl_->valid()) impl_->refreshEye();
   impl_->annotationsStale = true;
 }
@@ -525,34 +498,26 @@ bool SceneView::looksThrough() const { return impl_->valid() && impl_->input.eye
 std::string SceneView::eyeText() const { return impl_->eyeText(); }
 
 void SceneView::setPhotograph(int frame, vtkSmartPointer<vtkImageData> photograph) {
-  impl_->photographFrame = photograph ? frame : -1;
-  impl_->photograph->setPhotograph(std::move(photograph));
+  impl_->photograph->setPhotograph(frame, std::move(photograph));
 }
 
-void SceneView::setPhotographOpacity(double opacity) { impl_->opacity = std::clamp(opacity, 0.0, 1.0); }
+void SceneView::setPhotographOpacity(double opacity) { impl_->photograph->setOpacity(opacity); }
 
 void SceneView::zoomPhotograph(double factor, double x, double y) {
-  if (!looksThrough()) return;
-  constexpr double kLeast = 0.2, kMost = 200;
-  const double wanted = std::clamp(impl_->zoom * factor, kLeast, kMost);
-  const PictureArea area = impl_->area();
-  // What is under the pointer stays there.
-  const Eigen::Vector2d at = Eigen::Vector2d(x, y) - impl_->pictureOrigin() - 0.5 * Eigen::Vector2d(area.width, area.height);
-  impl_->shift = at + (wanted / impl_->zoom) * (impl_->shift - at);
-  impl_->zoom = wanted;
+  if (looksThrough()) impl_->photograph->zoom(factor, {x, y});
 }
 
 void SceneView::movePhotograph(double dx, double dy) {
-  if (looksThrough()) impl_->shift += Eigen::Vector2d(dx, dy);
+  if (looksThrough()) impl_->photograph->move({dx, dy});
 }
 
 std::optional<Eigen::Vector2d> SceneView::displayOf(double idealX, double idealY) const {
   if (!looksThrough()) return {};
-  return impl_->placement().at({idealX, idealY}) + impl_->pictureOrigin();
+  return impl_->photograph->displayOf(impl_->input.frame(impl_->selection.frame).camera, {idealX, idealY});
 }
 
 void SceneView::setPartOfWindow(bool part) {
-  impl_->partOfWindow = part;
+  impl_->photograph->setPartOfWindow(part);
   impl_->annotationsStale = true;
 }
 

@@ -38,8 +38,7 @@ std::string extentRemark(const Eigen::Matrix3d& extent, bool angular, double lev
   const double length = std::sqrt(12 * std::max(0.0, axes.eigenvalues()(2)) / (-2 * std::log(level)));
   return formatted(
       "the contours ask for a light that reaches about %.2g %s: a long lamp, several lights whose highlights merge, or a lobe "
-      "that one limit angle "
-      "does not describe (compare with reflectance, which has a lobe)",
+      "that one limit angle does not describe (compare with reflectance, which has a lobe)",
       angular ? length * 180 / M_PI : length, angular ? "degrees" : "m");
 }
 

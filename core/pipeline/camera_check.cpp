@@ -238,16 +238,14 @@ class Check {
     if (byShift && std::abs(*result_.shiftPx - half.cx) < kShiftSlackPx && clear(atHalf, atFocal, half))
       result_.findings.push_back(
           formatted("the principal point is half a pixel off: the highlights of %d frames fit one light to %.2g px with %+.1f px "
-                    "added to cx and "
-                    "cy, as given to %.2g px only ",
+                    "added to cx and cy, as given to %.2g px only ",
                     result_.views, atHalf->rmsPx, half.cx, given.rmsPx) +
           (half.cx < 0 ? "(COLMAP and nerfstudio put (0.5, 0.5) at the centre of the first pixel; here it is (0, 0))"
                        : "(was half a pixel subtracted twice?)"));
     else if (byFocal && std::abs(*result_.focalPct) >= kLeastFocalPct && clear(atFocal, atHalf, longer))
       result_.findings.push_back(formatted(
           "the focal length is wrong: the highlights of %d frames fit one light to %.2g px with one %.2g %% %s, as given to %.2g "
-          "px only (a "
-          "wrong scale of the surface looks much the same)",
+          "px only (a wrong scale of the surface looks much the same)",
           result_.views, atFocal->rmsPx, std::abs(*result_.focalPct), *result_.focalPct > 0 ? "longer" : "shorter", given.rmsPx));
   }
 

@@ -59,6 +59,8 @@ QObject* makePickingTest();
 QObject* makeRandomTest();
 QObject* makeLinkingTest();
 QObject* makeWindowTest();
+QObject* makeCanvasTest();
+QObject* makeTruthTest();
 QObject* makeSessionTest();
 QObject* makeProgramTest();
 QObject* makeComparisonTest();

@@ -11,10 +11,6 @@
 #include "gui/base/theme.h"
 #include "tests/gui/fixture.h"
 
-namespace glint::gui {
-QObject* makeTruthTest();
-}
-
 int main(int argc, char** argv) {
   using namespace glint::gui;
   static const TestClass classes[] = {
@@ -34,7 +30,7 @@ int main(int argc, char** argv) {
       {"unreadable", makeUnreadableTest},  {"relinked", makeRelinkedTest},
       {"what_if", makeWhatIfTest},         {"turns", makeTurnsTest},
       {"window_size", makeWindowSizeTest}, {"camera_picking", makeCameraPickingTest},
-      {"truth", makeTruthTest},
+      {"truth", makeTruthTest},            {"canvas", makeCanvasTest},
       {"save", makeSaveTest},              {"hostile_names", makeHostileNamesTest},
       {"typing", makeTypingTest},
   };

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <optional>
 
+#include "core/base/number_text.h"
 #include "viz/missed.h"
 #include "viz/plots/plot_text.h"
 #include "viz/plots/plots.h"

@@ -4,7 +4,6 @@
 #include <string>
 #include <utility>
 
-#include "core/base/number_text.h"
 #include "core/pipeline/inspection.h"
 #include "viz/plots/plot_data.h"
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/base/angle.h"
+#include "core/base/number_text.h"
 #include "core/pipeline/photograph.h"
 #include "viz/plots/plot_text.h"
 

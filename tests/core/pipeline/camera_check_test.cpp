@@ -137,12 +137,14 @@ TEST(CameraCheck, ALampWithASizeOrALengthIsNoFault) {
   }
 }
 
-TEST(CameraCheck, FocalLengthUnderALampWithASize) {
-  const CameraCheck check = checkCameras(
-      withCameras(orbit(ellipsoid(), 10, 0, ballLamp()), [](Camera& c) { c.pixelFromRay.topLeftCorner<2, 2>() *= 1.01; }));
-  EXPECT_THAT(check.findings, ElementsAre(HasSubstr("% shorter")));
-  ASSERT_TRUE(check.focalPct);
-  EXPECT_NEAR(*check.focalPct, -1, kFocalPct);
+/// As a point the tube leaves more than the wrong focal length does.
+TEST(CameraCheck, FocalLengthUnderALampWithASizeOrALength) {
+  for (const TrueLight& lamp : {ballLamp(), tubeLamp()}) {
+    const CameraCheck check = checkCameras(
+        withCameras(orbit(ellipsoid(), 10, 0, lamp), [](Camera& c) { c.pixelFromRay.topLeftCorner<2, 2>() *= 1.01; }));
+    EXPECT_THAT(check.findings, ElementsAre(HasSubstr("% shorter"))) << (lamp.segment ? "tube" : "ball");
+    EXPECT_NEAR(check.focalPct.value_or(0), -1, kFocalPct) << (lamp.segment ? "tube" : "ball");
+  }
 }
 
 TEST(CameraCheck, MirroredImages) {
