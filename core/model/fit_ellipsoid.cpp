@@ -71,8 +71,8 @@ Outcome<Reconstruction> refinedWithPrior(const std::vector<ConicView>& views, co
     Outcome<Reconstruction> again = reconstructRefined(views, start, CentrePrior{prior.mean, prior.covariance / (worth * worth)});
     if (!again) {
       refined->remarks.push_back(
-          formatted("this fit counts a contour point as good to %.2g px; with %.2g px, which its residuals suggest, there is no "
-                    "ellipsoid (%s)",
+          formatted("the fit assumes that a contour point is accurate to %.2g px; with %.2g px, as its residuals suggest, it finds "
+                    "no ellipsoid (%s)",
                     counted, worth, again.failure().message().c_str()));
       break;
     }

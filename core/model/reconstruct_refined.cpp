@@ -300,7 +300,7 @@ Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, 
   const Step left = linear.step(0);
   const double size = std::sqrt(state.squares.sum()), steps = std::max(left.head<3>().norm() / size, left.tail<6>().norm() / (size * size));
   if (linear.gain() > kStationary * linear.cost && !(steps <= 1))
-    return Failure{Reason::NotConverged, formatted("the next step would be %.3g times the ellipsoid: the outlines do not determine it", steps)};
+    return Failure{Reason::NotConverged, formatted("the next step would be %.3g times the size of the ellipsoid: the outlines do not determine it", steps)};
   if (state.squares(1) <= 2 * kSegment * state.squares(2))
     return Failure{Reason::NotAnEllipsoid, "the refined shape has two empty axes"};
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();

@@ -48,9 +48,9 @@ class InputRules : public QObject {
 
  private:
   static void polish(QObject* watched) {
-    // The label of tool tips gets its texts from plainTip and setRichTip.
+    // The label of tool tips gets its texts from plainTip and setRichTip. It is known by its class: it is polished before it has a name.
     if (auto* label = qobject_cast<QLabel*>(watched);
-        label && label->textFormat() == Qt::AutoText && label->objectName() != QLatin1String("qtooltip_label"))
+        label && label->textFormat() == Qt::AutoText && !label->inherits("QTipLabel"))
       label->setTextFormat(Qt::PlainText);
     // The wheel would give the focus first, and change the value then.
     if (holdsAValue(watched))

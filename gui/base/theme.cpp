@@ -87,7 +87,7 @@ QString styleSheet(Theme theme) {
   const QString line = (theme == Theme::Dark ? QColor(0x3a, 0x3d, 0x41) : QColor(0xd4, 0xd8, 0xdb)).name();
   const QString faded = (theme == Theme::Dark ? QColor(0xa2, 0xa7, 0xac) : QColor(0x5c, 0x62, 0x68)).name();
   return QStringLiteral(
-             "QToolTip { border: 1px solid %1; padding: 3px; }"
+             "QToolTip { color: %5; background: %6; border: 1px solid %1; padding: 3px; }"
              "QMainWindow::separator { background: %1; width: 3px; height: 3px; }"
              "QDockWidget { font-weight: 600; }"
              "QDockWidget::title { background: %2; padding: 4px 8px; border-bottom: 1px solid %1; }"
@@ -101,8 +101,9 @@ QString styleSheet(Theme theme) {
              "padding: 3px 6px; }"
              "QScrollArea { border: 0; } QListWidget, QUndoView, QPlainTextEdit { border: 0; }"
              "QLabel[role=\"group\"] { color: %3; font-weight: 600; padding-top: 6px; }"
-             "QLabel[role=\"faded\"] { color: %3; }")
-      .arg(line, p.color(QPalette::Window).name(), faded);
+             "QLabel[role=\"faded\"] { color: %3; }"
+             "QToolButton[role=\"warning\"] { color: %4; }")
+      .arg(line, p.color(QPalette::Window).name(), faded, warningColour().name(), p.color(QPalette::ToolTipText).name(), p.color(QPalette::ToolTipBase).name());
 }
 }  // namespace
 

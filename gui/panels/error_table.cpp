@@ -8,12 +8,15 @@
 #include <QHeaderView>
 #include <QKeyEvent>
 #include <QLabel>
+#include <QMenu>
 #include <QResizeEvent>
 #include <QScrollBar>
 #include <QSortFilterProxyModel>
 #include <QTableView>
 #include <QTimer>
+#include <QToolButton>
 #include <QVBoxLayout>
+#include <QWidgetAction>
 #include <algorithm>
 #include <cmath>
 
@@ -90,6 +93,25 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   count_->setObjectName(QStringLiteral("errorCount"));
   count_->setProperty("role", "faded");
   choice->addWidget(count_);
+  warnings_ = new QToolButton;
+  warnings_->setObjectName(QStringLiteral("errorWarnings"));
+  warnings_->setAutoRaise(true);
+  warnings_->setProperty("role", "warning");
+  constexpr int kTextWidth = 520;  // px, about 80 characters a line
+  warningTexts_ = new QLabel;
+  warningTexts_->setObjectName(QStringLiteral("warningTexts"));
+  warningTexts_->setTextFormat(Qt::RichText);
+  warningTexts_->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  warningTexts_->setWordWrap(true);
+  warningTexts_->setFixedWidth(kTextWidth);
+  warningTexts_->setMargin(6);
+  auto* menu = new QMenu(warnings_);
+  auto* texts = new QWidgetAction(menu);
+  texts->setDefaultWidget(warningTexts_);
+  menu->addAction(texts);
+  connect(warnings_, &QToolButton::clicked, menu,
+          [this, menu] { menu->popup(warnings_->mapToGlobal(warnings_->rect().bottomLeft())); });
+  choice->addWidget(warnings_);
   head->addWidget(choices);
   column->addLayout(head);
 
@@ -136,6 +158,7 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   connect(model_, &QAbstractItemModel::modelReset, this, [this] {
     showSummary();
     showCount();
+    showWarnings();
     fitReason();
     selectFromDocument();
   });
@@ -143,6 +166,18 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   connect(&document_, &Document::selectionChanged, this, &ErrorTable::selectFromDocument);
   connect(view_->selectionModel(), &QItemSelectionModel::currentRowChanged, this, &ErrorTable::selectFromTable);
   showSummary();
+  showWarnings();
+}
+
+void ErrorTable::showWarnings() {
+  const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  QString tip;  // rich, so that long sentences are wrapped
+  const std::vector<std::string> texts = inspection ? warningsOf(*inspection) : std::vector<std::string>();
+  for (const std::string& text : texts) tip += QStringLiteral("<p>%1</p>").arg(nameText(text).toHtmlEscaped());
+  warnings_->setVisible(!texts.empty());
+  warnings_->setText(texts.size() == 1 ? tr("1 warning") : tr("%1 warnings").arg(texts.size()));
+  setRichTip(warnings_, tip);
+  warningTexts_->setText(tip);
 }
 
 void ErrorTable::showCount() {
@@ -268,7 +303,8 @@ void ErrorTable::fitSummary() {
   };
   summary_->setText(html(columns, forProblems));
   while (columns > 1 && summary_->sizeHint().width() > room) summary_->setText(html(--columns, forProblems));
-  if (columns < all || problems > forProblems) setRichTip(summary_, html(all, problems + 1));
+  if (columns < all || problems > forProblems)
+    setRichTip(summary_, QStringLiteral("<div style='white-space:nowrap'>") + html(all, problems + 1) + QStringLiteral("</div>"));
 }
 
 void ErrorTable::changeEvent(QEvent* event) {

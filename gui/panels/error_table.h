@@ -9,6 +9,7 @@ class QComboBox;
 class QLabel;
 class QSortFilterProxyModel;
 class QTableView;
+class QToolButton;
 
 namespace glint::gui {
 
@@ -35,6 +36,8 @@ class ErrorTable : public QWidget {
   QString summaryHtml(const std::vector<int>& columns, int problemWidth) const;
   int columnWidth(int column) const;  ///< px
   void showCount();
+  /// How many warnings the results have; a click opens their texts, which are the tool tip, too.
+  void showWarnings();
   void fitReason();
   void selectFromDocument();
   /// The current row is not left half behind the lower edge.
@@ -55,6 +58,8 @@ class ErrorTable : public QWidget {
   std::vector<int> columnOrder_;  ///< of the values: the last ones are left out first
   QComboBox* filter_;
   QLabel* count_;
+  QToolButton* warnings_ = nullptr;
+  QLabel* warningTexts_ = nullptr;
   bool selecting_ = false;  ///< the table itself caused the change that it hears of
 };
 

@@ -127,6 +127,7 @@ NumberGroup fitGroup(const std::string& model, const ModelResult::Fit& f, int fr
     if (used != f.fit->frames.end() && index < f.fit->residualPx.size())
       lines.addWithMeaning(QObject::tr("residual here"), f.fit->residualPx[index], "px",
                            QString::fromStdString(residualMeaning(*f.fit)));
+    for (const std::string& remark : f.fit->remarks) lines.note(QObject::tr("Warning: %1").arg(nameText(remark)));
   }
   return {QObject::tr("Fit: %1").arg(toQString(model)), lines.text()};
 }

@@ -147,7 +147,7 @@ TEST(Fallback, AnEllipsoidOfTheFirstWeightsSaysSo) {
   ASSERT_EQ(run.code, 0) << run.err;
   const Json fit = Json::parse(run.out)["models"]["primal"]["fits"][0];
   EXPECT_EQ(fit["status"], "ok");
-  EXPECT_THAT(fit["warnings"].dump(), HasSubstr("which its residuals suggest, there is no ellipsoid (not converged: the next step would be"));
+  EXPECT_THAT(fit["warnings"].dump(), HasSubstr("as its residuals suggest, it finds no ellipsoid (not converged: the next step would be"));
 }
 
 TEST_F(Requests, PredictAcceptsPathsOutsideWhereAllowed) {

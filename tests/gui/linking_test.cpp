@@ -3,10 +3,12 @@
 #include <QApplication>
 #include <QClipboard>
 #include <QLabel>
+#include <QMenu>
 #include <QSet>
 #include <QSignalSpy>
 #include <QTableView>
 #include <QToolButton>
+#include <QToolTip>
 
 #include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
@@ -15,6 +17,7 @@
 #include "gui/panels/error_model.h"
 #include "gui/panels/error_table.h"
 #include "gui/panels/numbers_panel.h"
+#include "gui/panels/selection_text.h"
 #include "gui/plots/conditioning_panel.h"
 #include "gui/plots/plots_panel.h"
 #include "gui/scene/scene_panel.h"
@@ -235,6 +238,39 @@ class LinkingTest : public QObject {
     }
     QVERIFY(left);
     table_->resize(900, 300);
+  }
+
+  /// What the command line warns of stands in the window, too: beside the errors, and with the numbers of the fit.
+  void warningsOfFitsAreShown() {
+    auto* button = table_->findChild<QToolButton*>(QStringLiteral("errorWarnings"));
+    QVERIFY(button && button->isHidden());
+    auto inspection = std::make_shared<Inspection>(*document_->inspection());
+    ModelFit fit;
+    fit.model = document_->plottedModel();
+    fit.light = "lamp";
+    fit.remarks = {"the fit explains <b>its</b> views poorly"};
+    inspection->models[fit.model].fits = {{"lamp", {}, fit, {}, {}}};
+    document_->setInspection(inspection, document_->request());
+    QVERIFY(!button->isHidden());
+    QCOMPARE(button->text(), QStringLiteral("1 warning"));
+    QVERIFY2(button->toolTip().contains("light lamp: the fit explains &lt;b&gt;its&lt;/b&gt; views poorly"), qPrintable(button->toolTip()));
+    QTest::mouseClick(button, Qt::LeftButton);
+    auto* menu = button->findChild<QMenu*>();
+    QTRY_VERIFY(menu->isVisible());
+    QCOMPARE(menu->findChild<QLabel*>(QStringLiteral("warningTexts"))->text(), button->toolTip());
+    menu->close();
+    // The label of tool tips takes the paragraphs for what they are.
+    QToolTip::showText(button->mapToGlobal(QPoint()), button->toolTip(), button);
+    const QLabel* tip = nullptr;
+    for (const QWidget* widget : QApplication::topLevelWidgets())
+      if (widget->inherits("QTipLabel") && widget->isVisible()) tip = qobject_cast<const QLabel*>(widget);
+    QVERIFY(tip && tip->textFormat() != Qt::PlainText && Qt::mightBeRichText(tip->text()));
+    QToolTip::hideText();
+    QString numbers;
+    viz::Selection selection;
+    selection.model = fit.model;
+    for (const NumberGroup& group : describeSelection(*inspection, selection, fit.model)) numbers += group.lines;
+    QVERIFY2(numbers.contains("Warning: the fit explains <b>its</b> views poorly"), qPrintable(numbers));
   }
 
   void staleResultsAreMarked() {

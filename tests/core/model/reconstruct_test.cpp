@@ -115,7 +115,7 @@ TEST(ReconstructRefined, APlaceOnTheWayIsNoAnswer) {
   const auto views = viewsOf(truth(), ring(4));
   const auto once = reconstructRefined(views, start, {}, 1);
   ASSERT_EQ(reasonOf(once), Reason::NotConverged);
-  EXPECT_NE(once.failure().detail.find("times the ellipsoid"), std::string::npos) << once.failure().detail;
+  EXPECT_NE(once.failure().detail.find("times the size of the ellipsoid"), std::string::npos) << once.failure().detail;
   const auto whole = reconstructRefined(views, start);
   ASSERT_TRUE(whole) << whole.failure().message();
   EXPECT_LT(difference(*whole->ellipsoid, truth()), tolerance::kSolve);
