@@ -5,7 +5,8 @@
   docs/make_trust.py            renders the page; 1 when a piece is not of the format
   docs/make_trust.py --check    says whether the page is what the pieces give; 1 when it is not
   docs/make_trust.py piece NAME --what TEXT --command TEXT [--row NAME COUNT FINDINGS NOTE]...
-  docs/make_trust.py row FILE --what TEXT --command TEXT --row NAME COUNT FINDINGS NOTE    one row; the others of the file stay
+  docs/make_trust.py row FILE --what TEXT --command TEXT --row NAME COUNT FINDINGS NOTE... [--needs NAME]...
+                                these rows, each with today's date; the others of the file stay, and what is needed and has no row is shown as missing
 """
 import argparse
 import datetime
@@ -33,11 +34,6 @@ expected = [
     ("tsan", "Threads under the thread sanitizer", "tests/run_sanitizers tsan"),
     ("properties", "Property tests of the pipeline", "tests/run_nightly"),
 ]
-
-
-# Rows that a piece of several runs needs before it is complete.
-def readersOfFuzz():
-    return re.search(r"^READER: (.*) \(default", (root / "tests/run_fuzz").read_text(encoding="utf-8"), re.M).group(1).split()
 
 
 class NotAPiece(Exception):
@@ -71,6 +67,11 @@ def checked(piece):
             value = row.get(key)
             if not isinstance(value, int) or isinstance(value, bool) or value < 0:
                 raise NotAPiece(f"rows[{i}].{key}: must be a whole number, 0 or more")
+    needed = piece.get("needs", [])
+    if not isinstance(needed, list):
+        raise NotAPiece("needs: must be a list")
+    for i, name in enumerate(needed):
+        text(name, f"needs[{i}]")
     return piece
 
 
@@ -106,7 +107,7 @@ def render():
             continue
         count, findings = (sum(row[key] for row in piece["rows"]) for key in ("count", "findings"))
         ran = piece["command"].replace("`", "'")
-        absent = [reader for reader in readersOfFuzz() if reader not in {row["name"] for row in piece["rows"]}] if name == "fuzz" else []
+        absent = [needed for needed in piece.get("needs", []) if needed not in {row["name"] for row in piece["rows"]}]
         open_ = f" ({len(absent)} rows are missing)" if absent else ""
         head.append(f"| [{shown(piece['what'])}](#{name.replace('_', '-')}){open_} | {count:,} | {findings:,} | {piece['date']} | `{cell(ran)}` |")
         details += ["", f"### {name.replace('_', ' ')}", f"{shown(piece['what'])}. {piece['date']}, `{ran}`.", "",
@@ -122,36 +123,40 @@ def replaceFile(file, text):
     os.replace(temporary, file)
 
 
-def writePiece(arguments):
-    if not re.fullmatch(r"[a-z][a-z0-9_]*", arguments.name):
-        sys.exit("make_trust.py: NAME: lower-case letters, digits and _ only")
+def write(file, arguments, earlier, note, needs):
+    """A piece with the rows of the command line after those of `earlier` that have other names."""
     rows = []
-    for name, count, findings, note in arguments.row:
+    for name, count, findings, text in arguments.row:
         if not (count.isascii() and count.isdigit() and findings.isascii() and findings.isdigit()):
             sys.exit(f"make_trust.py: --row {name}: COUNT and FINDINGS must be whole numbers, 0 or more")
-        rows.append({"name": name, "count": int(count), "findings": int(findings), "note": note})
-    today = datetime.datetime.now(datetime.timezone.utc).date().isoformat()
-    piece = {"what": arguments.what, "command": arguments.command, "date": today, "rows": rows}
+        rows.append({"name": name, "count": int(count), "findings": int(findings), "note": text + note})
+    kept = [row for row in earlier if row["name"] not in {row["name"] for row in rows}]
+    piece = {"what": arguments.what, "command": arguments.command, "date": today(), "rows": kept + rows}
+    if needs:
+        piece["needs"] = needs
     try:
         checked(piece)
     except NotAPiece as error:
         sys.exit(f"make_trust.py: {error}")
-    pieces.mkdir(exist_ok=True)
-    replaceFile(pieces / f"{arguments.name}.json", json.dumps(piece, indent=2, ensure_ascii=False) + "\n")
-
-
-def writeRow(arguments):
-    """One row of a piece that takes several runs: the piece need not be there, and other rows stay."""
-    file = pathlib.Path(arguments.file)
-    today = datetime.datetime.now(datetime.timezone.utc).date().isoformat()
-    rows = checked(json.loads(file.read_text(encoding="utf-8")))["rows"] if file.exists() else []
-    name, count, findings, note = arguments.row
-    if not (count.isdigit() and findings.isdigit()):
-        sys.exit(f"make_trust.py: --row {name}: COUNT and FINDINGS must be whole numbers, 0 or more")
-    rows = [row for row in rows if row["name"] != name] + [{"name": name, "count": int(count), "findings": int(findings), "note": f"{note}, {today}"}]
-    piece = {"what": arguments.what, "command": arguments.command, "date": today, "rows": rows}
-    checked(piece)
     replaceFile(file, json.dumps(piece, indent=2, ensure_ascii=False) + "\n")
+
+
+def today():
+    return datetime.datetime.now(datetime.timezone.utc).date().isoformat()
+
+
+def writePiece(arguments):
+    if not re.fullmatch(r"[a-z][a-z0-9_]*", arguments.name):
+        sys.exit("make_trust.py: NAME: lower-case letters, digits and _ only")
+    pieces.mkdir(exist_ok=True)
+    write(pieces / f"{arguments.name}.json", arguments, [], "", [])
+
+
+def writeRows(arguments):
+    """Rows of a piece that takes several runs: the piece need not be there, and other rows stay."""
+    file = pathlib.Path(arguments.file)
+    earlier = checked(json.loads(file.read_text(encoding="utf-8"))) if file.exists() else {"rows": []}
+    write(file, arguments, earlier["rows"], f", {today()}", arguments.needs or earlier.get("needs", []))
 
 
 def main():
@@ -163,16 +168,17 @@ def main():
     piece.add_argument("--what", required=True)
     piece.add_argument("--command", required=True)
     piece.add_argument("--row", nargs=4, action="append", default=[], metavar=("NAME", "COUNT", "FINDINGS", "NOTE"))
-    row = commands.add_parser("row", help="add one row to the piece in a file, or replace the row of that name")
+    row = commands.add_parser("row", help="add rows to the piece in a file, or replace the rows of those names")
     row.add_argument("file")
     row.add_argument("--what", required=True)
     row.add_argument("--command", required=True)
-    row.add_argument("--row", nargs=4, required=True, metavar=("NAME", "COUNT", "FINDINGS", "NOTE"))
+    row.add_argument("--row", nargs=4, action="append", required=True, metavar=("NAME", "COUNT", "FINDINGS", "NOTE"))
+    row.add_argument("--needs", action="append", default=[], metavar="NAME", help="a row that the piece needs before it is complete")
     arguments = parser.parse_args()
     if arguments.verb == "piece":
         return writePiece(arguments)
     if arguments.verb == "row":
-        return writeRow(arguments)
+        return writeRows(arguments)
     body, problems = render()
     head, rest = page.read_text(encoding="utf-8").split(begin)
     text = head + begin + body + end + rest.split(end)[1]

@@ -80,35 +80,40 @@ class Determinism : public testing::TestWithParam<std::string> {
     ASSERT_EQ(run.code, 0) << run.err;
     file_ = here;
   }
-  void expectReplay(const Setting& setting, bool exact) {
+  void expectReplays(const std::vector<Setting>& settings, const char* what, bool exact) {
+    Tally tally;
+    for (const Setting& setting : settings) expectReplay(setting, exact, tally);
+    piece->add(GetParam() + ", " + what, tally);
+  }
+  TemporaryFolder folder_;
+  fs::path file_;
+
+ private:
+  void expectReplay(const Setting& setting, bool exact, Tally& tally) {
     std::vector<std::string> command = {GLINT_PROGRAM, "replay", file_.string()};
     if (exact) command.emplace_back("--exact");
     const ChildRun run = runWith(setting, command);
     EXPECT_EQ(run.code, 0) << setting.name << "\n" << run.out << run.err;
-    Tally tally;
-    tally.runs = 1;
-    tally.problems = run.code != 0;
+    tally.runs += 1;
+    tally.problems += run.code != 0;
     std::string last = run.out.substr(0, run.out.rfind('\n'));
     last = last.substr(last.rfind('\n') + 1);
-    tally.add(last.substr(last.find("digest")));
-    piece->add(GetParam() + ", " + setting.name, tally);
+    tally.add((run.code ? setting.name + " fails; " : std::string()) + last.substr(last.find("digest")));
     RecordProperty(setting.name, last);
     if (!exact) std::printf("%s, %s: %s\n", GetParam().c_str(), setting.name.c_str(), last.c_str());
   }
-  TemporaryFolder folder_;
-  fs::path file_;
 };
 
 TEST_P(Determinism, TheSameBitsWithAnyThreadsAndMemory) {
   computeHere();
   ASSERT_FALSE(HasFatalFailure());
-  for (const Setting& setting : exactSettings()) expectReplay(setting, true);
+  expectReplays(exactSettings(), "other threads and allocators", true);
 }
 
 TEST_P(Determinism, WithinTheToleranceOnLesserProcessors) {
   computeHere();
   ASSERT_FALSE(HasFatalFailure());
-  for (const Setting& setting : maskedSettings()) expectReplay(setting, false);
+  expectReplays(maskedSettings(), "features of the processor switched off", false);
 }
 
 INSTANTIATE_TEST_SUITE_P(Sessions, Determinism, testing::ValuesIn(sessions()), [](const auto& info) {
