@@ -2,6 +2,7 @@
 #include "core/surface/mesh_rays.h"
 
 #include <embree3/rtcore.h>
+#include <tbb/cache_aligned_allocator.h>
 
 #include <algorithm>
 #include <cmath>
@@ -40,11 +41,23 @@ void setRay(RTCRayHit8& packet, int k, const Vector3f& o, const Vector3f& d, flo
   packet.hit.geomID[k] = packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
 }
 
+/// TBB waits for ever when, while Embree builds a tree, the system refuses memory for one of its tasks. Its allocator asks for large blocks
+/// and keeps them: the first one, which serves small trees and the beginning of large ones, is asked for here, where a refusal is std::bad_alloc.
+RTCDevice newDevice() {
+  constexpr std::size_t kTask = 256;  // bytes, as for a task
+  tbb::cache_aligned_allocator<char> memory;
+  memory.deallocate(memory.allocate(kTask), kTask);
+  return rtcNewDevice(std::getenv("GLINT_EMBREE"));  // null: as it is built
+}
+
 }  // namespace
 
 MeshRays::MeshRays(const TriangleMesh& mesh, const std::vector<char>& alive, const Eigen::AlignedBox3d& bounds)
-    : centre_(bounds.center()), size_(bounds.sizes().norm()), scale_(2 / size_), device_(rtcNewDevice(std::getenv("GLINT_EMBREE"))) {  // null: as it is built
-  if (!device_) throw std::runtime_error("Embree: no device");
+    : centre_(bounds.center()), size_(bounds.sizes().norm()), scale_(2 / size_), device_(newDevice()) {
+  if (!device_) {
+    if (rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    throw std::runtime_error("Embree: no device");
+  }
   scene_ = rtcNewScene(device_);
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),

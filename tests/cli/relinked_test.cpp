@@ -2,6 +2,7 @@
 // A scene whose mesh and pictures were moved: every command that reads one can be told where they are.
 #include <gmock/gmock.h>
 
+#include "core/base/number_text.h"
 #include "tests/cli/small_scene.h"
 
 namespace glint {
@@ -31,8 +32,7 @@ class RelinkedScene : public SmallScene {
     for (int j = 0; j <= kUp; ++j)
       for (int i = 0; i < kRound; ++i) {
         const double u = 2 * M_PI * i / kRound, v = M_PI * (j + 0.5 * (j == 0) - 0.5 * (j == kUp)) / kUp;
-        vertices += std::to_string(0.6 * std::sin(v) * std::cos(u)) + " " + std::to_string(0.35 * std::sin(v) * std::sin(u)) +
-                    " " + std::to_string(0.3 * std::cos(v)) + "\n";
+        vertices += formatted("%f %f %f\n", 0.6 * std::sin(v) * std::cos(u), 0.35 * std::sin(v) * std::sin(u), 0.3 * std::cos(v));
       }
     for (int j = 0; j < kUp; ++j)
       for (int i = 0; i < kRound; ++i) {

@@ -8,12 +8,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <memory>
 #include <numbers>
 #include <optional>
 
+#include "core/base/number_text.h"
 #include "core/explain/explain.h"
 #include "tests/core/pipeline/exact_scene.h"
 #include "viz/layers.h"
@@ -156,10 +156,8 @@ void expectNow(const Told& t, const std::vector<Shape>& shapes, const LayerConte
   EXPECT_NEAR(std::atan2(first.cross(last).norm(), first.dot(last)), alpha, 1e-4);
   for (std::size_t i = 1; i < sector.points.size(); ++i) EXPECT_NEAR((sector.points[i] - here).norm(), 0.9 * arrow, 1e-6);
   ASSERT_EQ(content.labels.size(), 1u);
-  char wanted[64];
-  std::snprintf(wanted, sizeof wanted, "on %s: α %.2f° of %.2f°", e.onSurface ? "S" : "T", alpha * 180 / std::numbers::pi,
-                kLimitAngle * 180 / std::numbers::pi);
-  EXPECT_EQ(content.labels[0].text, wanted);
+  EXPECT_EQ(content.labels[0].text, formatted("on %s: α %.2f° of %.2f°", e.onSurface ? "S" : "T", alpha * 180 / std::numbers::pi,
+                                              kLimitAngle * 180 / std::numbers::pi));
   EXPECT_LT((content.labels[0].anchor - here - 1.05 * arrow * n).norm(), 1e-4 * arrow);
 }
 

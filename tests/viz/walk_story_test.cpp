@@ -6,11 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <optional>
 #include <string>
 
+#include "core/base/number_text.h"
 #include "core/explain/explain.h"
 #include "core/geometry/polyline.h"
 #include "tests/core/pipeline/exact_scene.h"
@@ -99,11 +99,9 @@ TEST(WalkStory, ForwardsItGoesOnSAndThenOnTInverseTheOtherWayRound) {
       EXPECT_EQ(inverse ? m.visitedOnPlane : m.visitedOnSurface, first ? at + 1 : places) << step;
       EXPECT_EQ(inverse ? m.visitedOnSurface : m.visitedOnPlane, first ? 0 : at + 1 - places) << step;
       EXPECT_EQ(s.reached(m), at % places == places - 1) << step;
-      char expected[64];
       const WalkPlace& p = (m.onSurface ? s.trace.onSurface : s.trace.onPlane)[static_cast<std::size_t>(at % places)];
-      std::snprintf(expected, sizeof expected, "on %s: α %.2f° of %.2f°", first != inverse ? "S" : "T", degreesOf(p.alpha),
-                    degreesOf(kLimitAngle));
-      EXPECT_EQ(walkText(s, step), expected);
+      EXPECT_EQ(walkText(s, step),
+                formatted("on %s: α %.2f° of %.2f°", first != inverse ? "S" : "T", degreesOf(p.alpha), degreesOf(kLimitAngle)));
     }
   }
 }
@@ -144,13 +142,12 @@ TEST(WalkPicture, NAndHPointWhereTheNormalAndTheHalfVectorDo) {
     const WalkPicture::Text *n = nullptr, *h = nullptr;
     bool ends = false;
     for (const WalkPicture::Text& t : picture.texts) {
-      std::sscanf(t.text.c_str(), "heights × %lf", &stretch);
+      if (const std::string before = "heights × "; t.text.starts_with(before))
+        stretch = numberFrom(std::string_view(t.text).substr(before.size())).value();
       if ((t.at.x() < kWidth / 2) == onSurface && t.text == "N") n = &t;
       if ((t.at.x() < kWidth / 2) == onSurface && t.text == "H") h = &t;
-      char wanted[64];
-      std::snprintf(wanted, sizeof wanted, "ends at %.1f mm on %s",
-                    1000 * (onSurface ? s.trace.reachOnSurface : s.trace.reachOnPlane), onSurface ? "S" : "T");
-      ends |= t.text == wanted;
+      ends |= t.text == formatted("ends at %.1f mm on %s", 1000 * (onSurface ? s.trace.reachOnSurface : s.trace.reachOnPlane),
+                                  onSurface ? "S" : "T");
     }
     EXPECT_TRUE(ends);
     ASSERT_TRUE(n && h);
@@ -172,9 +169,7 @@ TEST(WalkPicture, EachSectionSaysTheAngleOfItsStep) {
   constexpr double kText = 12;
   const auto angleOn = [&](bool onSurface, int place) {
     const Eigen::Vector3d p = (onSurface ? s.trace.onSurface : s.trace.onPlane)[static_cast<std::size_t>(place)].position;
-    char text[32];
-    std::snprintf(text, sizeof text, "α %.2f°", degreesOf(alphaAt(p, onSurface ? (p - centre) / kRadius : s.normal, eye)));
-    return std::string(text);
+    return formatted("α %.2f°", degreesOf(alphaAt(p, onSurface ? (p - centre) / kRadius : s.normal, eye)));
   };
   for (const double width : {400.0, 170.0}) {  // in the narrow one angles stand below the titles
     for (const int step : {0, 9, places - 1, places + 4, 2 * places - 1}) {

@@ -9,6 +9,7 @@
 #include <random>
 #include <sstream>
 
+#include "core/base/number_text.h"
 #include "core/geometry/conic.h"
 #include "tests/shared_data.h"
 #include "tests/tolerances.h"
@@ -190,7 +191,7 @@ std::vector<std::vector<double>> readRows(const std::string& path) {
     if (line.empty() || line[0] == '#') continue;
     std::stringstream fields(line);
     rows.emplace_back();
-    for (std::string field; std::getline(fields, field, ',');) rows.back().push_back(std::stod(field));
+    for (std::string field; std::getline(fields, field, ',');) rows.back().push_back(numberFrom(field).value());
   }
   return rows;
 }

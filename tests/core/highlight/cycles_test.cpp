@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "core/base/number_text.h"
 #include "core/highlight/highlight.h"
 #include "highlight_images.h"
 #include "tests/shared_data.h"
@@ -44,7 +45,7 @@ FrameTruth readTruth(const fs::path& file) {
       line.closed = contour.at("closed");
       if (largest.points.empty() || std::abs(signedArea(line)) > std::abs(signedArea(largest))) largest = line;
     }
-    truth.contours.emplace_back(std::stod(text), withoutRepeats(largest));
+    truth.contours.emplace_back(numberFrom(text).value(), withoutRepeats(largest));
     truth.counts.push_back(list.size());
   }
   return truth;

@@ -12,6 +12,7 @@
 #include <random>
 #include <sstream>
 
+#include "core/base/number_text.h"
 #include "core/geometry/plane.h"
 #include "core/model/ellipse_distance.h"
 #include "core/model/fit_ellipsoid.h"
@@ -387,17 +388,17 @@ TEST(ReconstructLinear, RealBoxesGiveThePublishedCentres) {
   ASSERT_EQ(boxes.size(), 8u);
   Eigen::Matrix3d intrinsics;
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) intrinsics(i, j) = std::stod(k[i][j]);
+    for (int j = 0; j < 3; ++j) intrinsics(i, j) = numberFrom(k[i][j]).value();
   for (int object = 0; object < 6; ++object) {
     std::vector<ConicView> views;
     for (int f = 0; f < 8; ++f) {
       ConicView v;
       Eigen::Matrix<double, 3, 4> rt;
       for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 4; ++j) rt(i, j) = std::stod(poses[3 * f + i][j]);
+        for (int j = 0; j < 4; ++j) rt(i, j) = numberFrom(poses[3 * f + i][j]).value();
       v.projection.matrix = intrinsics * rt;
       double b[4];
-      for (int i = 0; i < 4; ++i) b[i] = std::stod(boxes[f][4 * object + i]);
+      for (int i = 0; i < 4; ++i) b[i] = numberFrom(boxes[f][4 * object + i]).value();
       const double w = (b[2] - b[0]) / 2, h = (b[3] - b[1]) / 2;
       v.ellipse = {{(b[0] + b[2]) / 2, (b[1] + b[3]) / 2}, {std::max(w, h), std::min(w, h)}, h > w ? std::numbers::pi / 2 : 0.0};
       views.push_back(v);
@@ -414,8 +415,8 @@ TEST(ReconstructLinear, RealBoxesGiveThePublishedCentres) {
         ASSERT_TRUE(e);
         gt = *e;
       } else {
-        publishedIou = std::stod(row[8]);
-        publishedCentre = std::stod(row[9]);
+        publishedIou = numberFrom(row[8]).value();
+        publishedCentre = numberFrom(row[9]).value();
       }
     }
     ASSERT_TRUE(gt);

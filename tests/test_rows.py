@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Rows for docs/trust.md of a run of ctest: one for each test program, "name<TAB>count<TAB>findings<TAB>note". Used by tests/run_sanitizers
+and tests/run_comma_locale.
+
+  tests/test_rows.py --build FOLDER [--pattern REGEX] [--leave-out REGEX] [--reports FOLDER] JUNIT    the rows
+  tests/test_rows.py --build FOLDER [--pattern REGEX] [--leave-out REGEX] --programs    names of all programs that a complete run has
+
+--pattern and --leave-out are the tests of a complete run, as ctest's -R and -E. A program of which fewer tests ran has a row of another name,
+so that it stays missing.
+"""
+import argparse
+import collections
+import pathlib
+import re
+import subprocess
+import sys
+import xml.etree.ElementTree as xml
+
+
+def programsOf(build, pattern, leaveOut):
+    """How many tests of each program a complete run has; 0 of a program that is not built."""
+    listed = subprocess.run(["ctest", "--test-dir", build, "-N"], stdout=subprocess.PIPE, text=True, check=True).stdout
+    programs = collections.Counter()
+    # ctest also names the places where it looked for a program: only lines "Test #N: NAME" are tests.
+    for name in re.findall(r"^ *Test *#\d+: *(\S+)", listed, re.M):
+        if leaveOut and re.search(leaveOut, name):
+            continue
+        if name.endswith("_NOT_BUILT"):
+            program = name.removesuffix("_NOT_BUILT").removeprefix("test_")
+            if not pattern or f"^{program}\\." in pattern:
+                programs[program] += 0
+        elif re.search(pattern, name):
+            programs[name.split(".")[0]] += 1
+    return programs
+
+
+def rowsOf(junit, programs, reports):
+    ran = collections.OrderedDict()
+    for case in xml.parse(junit).getroot().iter("testcase"):
+        name = case.get("name")
+        program = ran.setdefault(name.split(".")[0], {"count": 0, "skipped": 0, "failed": []})
+        if case.get("status") in ("disabled", "notrun") or case.find("skipped") is not None:
+            program["skipped"] += 1
+            continue
+        program["count"] += 1
+        if case.find("failure") is not None or case.get("status") == "fail":
+            program["failed"].append(name)
+    for name, program in sorted(ran.items()):
+        seen = program["count"] + program["skipped"]
+        part = "" if seen >= programs[name] else f", {seen} of {programs[name]} tests"
+        note = "tests" + (f"; {program['skipped']} skipped" if program["skipped"] else "")
+        if program["failed"]:
+            note += ": " + ", ".join(program["failed"][:20])
+        yield name + part, program["count"], len(program["failed"]), note
+    found = len(list(pathlib.Path(reports).glob("report.*"))) if reports else 0
+    if found:
+        yield "reports of the sanitizer", found, found, "of all processes; a failed test may have made them"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", required=True)
+    parser.add_argument("--pattern", default="")
+    parser.add_argument("--leave-out", default="")
+    parser.add_argument("--reports", default="")
+    parser.add_argument("--programs", action="store_true")
+    parser.add_argument("junit", nargs="?")
+    arguments = parser.parse_args()
+    programs = programsOf(arguments.build, arguments.pattern, arguments.leave_out)
+    if arguments.programs:
+        print("\n".join(sorted(programs)))
+    elif arguments.junit:
+        for row in rowsOf(arguments.junit, programs, arguments.reports):
+            print(*row, sep="\t")
+    else:
+        parser.error("JUNIT or --programs")
+
+
+sys.exit(main())
