@@ -3,7 +3,8 @@
 // values expected are those of the specification.
 #include <gmock/gmock.h>
 
-#include "core/base/number_text.h"
+#include <sstream>
+
 #include "tests/cli/small_scene.h"
 
 namespace glint {
@@ -22,7 +23,7 @@ class LampSize : public testing::Test {
   "surfaces": {"body": {"analytic": {"type": "ellipsoid", "semi_axes": [0.6, 0.45, 0.35]}}},
   "lights": [{"id": "lamp", "position": [0.9, -0.8, 1.6], )" + lamp + R"(}],
   "path": {"orbit": {"centre": [0, 0, 0], "radius": 1.6, "from": -1.6, "to": 0.4, "height": 0.9, "count": 8}},
-  "render": {"reflectance": "torrance-sparrow", "roughness": )" + formatted("%.17g", roughness) +
+  "render": {"reflectance": "torrance-sparrow", "roughness": )" + (std::ostringstream() << roughness).str() +
                                                                    R"(, "diffuse": [0.3, 0.4, 0.6], "noise": 0.002, "bits": 8, "seed": 3}})");
     const ProgramRun run = runGlint("synth " + inQuotes(spec) + " -o " + inQuotes(folder_ / "scene"));
     ASSERT_EQ(run.code, 0) << run.err;

@@ -2,7 +2,8 @@
 // A scene whose mesh and pictures were moved: every command that reads one can be told where they are.
 #include <gmock/gmock.h>
 
-#include "core/base/number_text.h"
+#include <sstream>
+
 #include "tests/cli/small_scene.h"
 
 namespace glint {
@@ -28,11 +29,12 @@ class RelinkedScene : public SmallScene {
 
   static std::string ellipsoid() {
     constexpr int kRound = 128, kUp = 64;
-    std::string vertices, faces;
+    std::ostringstream vertices;  // std::to_string writes by the locale
+    std::string faces;
     for (int j = 0; j <= kUp; ++j)
       for (int i = 0; i < kRound; ++i) {
         const double u = 2 * M_PI * i / kRound, v = M_PI * (j + 0.5 * (j == 0) - 0.5 * (j == kUp)) / kUp;
-        vertices += formatted("%f %f %f\n", 0.6 * std::sin(v) * std::cos(u), 0.35 * std::sin(v) * std::sin(u), 0.3 * std::cos(v));
+        vertices << 0.6 * std::sin(v) * std::cos(u) << " " << 0.35 * std::sin(v) * std::sin(u) << " " << 0.3 * std::cos(v) << "\n";
       }
     for (int j = 0; j < kUp; ++j)
       for (int i = 0; i < kRound; ++i) {
@@ -42,7 +44,7 @@ class RelinkedScene : public SmallScene {
       }
     return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(kRound * (kUp + 1)) +
            "\nproperty float x\nproperty float y\nproperty float z\nelement face " + std::to_string(kRound * kUp) +
-           "\nproperty list uchar int vertex_indices\nend_header\n" + vertices + faces;
+           "\nproperty list uchar int vertex_indices\nend_header\n" + vertices.str() + faces;
   }
 
   static std::vector<double> errors(const ProgramRun& run) {

@@ -3,7 +3,8 @@
 // when the specification is wrong.
 #include <gmock/gmock.h>
 
-#include "core/base/number_text.h"
+#include <sstream>
+
 #include "tests/cli/small_scene.h"
 
 namespace glint {
@@ -35,7 +36,7 @@ class WrittenNames : public testing::Test {
     EXPECT_FALSE(fs::exists(folder_ / "a")) << "written before " << run.err;
   }
   void writeTetrahedron(const std::string& name, double size) const {
-    const std::string s = formatted("%.17g", size);
+    const std::string s = (std::ostringstream() << size).str();  // std::to_string writes by the locale
     folder_.write(name, "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\nelement face 4\n"
                         "property list uchar int vertex_indices\nend_header\n" +
                             s + " 0 0\n-" + s + " 0 0\n0 " + s + " 0\n0 0 " + s + "\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n");

@@ -75,7 +75,9 @@ TEST_P(Faults, TargetsAreOldAbsentOrComplete) {
   for (std::size_t k = 0; k < failing().size(); ++k) {
     const Failing& kind = failing()[k];
     Tally tally;
-    for (const int n : chosen(stage.calls()[k], kind.inCi))
+    // Every one of synth, which builds the tree of a mesh: where memory was refused there, TBB waited for ever.
+    const bool tree = GetParam().name == "synth" && std::string(kind.call) == "memory";
+    for (const int n : chosen(stage.calls()[k], tree ? stage.calls()[k] : kind.inCi))
       for (std::size_t a = 0; a < kind.actions.size(); ++a)
         for (const bool withOld : {false, true}) {
           // A few of them in CI: every action and both beginnings take turns.
