@@ -115,6 +115,9 @@ InterruptGuard::~InterruptGuard() {
   }
   pthread_kill(waiter.native_handle(), SIGUSR1);
   waiter.join();
+  // The rest is the end of the process. It may wait for whoever reads the output, so that a signal has to end it as it did before main.
+  const sigset_t set = stopSignals();
+  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
 }
 
 }  // namespace glint::cli

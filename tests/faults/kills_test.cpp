@@ -97,16 +97,15 @@ TEST_P(Kills, AskedToStopAtEveryCall) {
       const bool withOld = n % 2 == 0 && !GetParam().before.empty();
       const int signal = n % 2 ? SIGINT : SIGTERM;
       for (const char* how : {"signal", "stuck"}) {
-        if (!all() && (int(call) % 2 == 0) == (how[1] == 'i')) continue;  // they take turns
+        // They take turns. Both at the last write: it is that of the process's end, which no longer works but may wait for a reader.
+        if (!all() && call != Call::Write && (int(call) % 2 == 0) == (how[1] == 'i')) continue;
         const Fault fault{kCallNames[int(call)], how + ("=" + std::to_string(signal)), n};
         stage.prepare(withOld);
         const ChildRun run = stage.run({.fault = fault, .cores = {oneCore()}});
         std::vector<std::string> problems;
         const Found found = stage.look(withOld, problems);
         if (run.injected != 1) problems.push_back("the signal was not sent");
-        // The last write is that of a command that is done: nothing is left to be stopped.
-        const bool done = call == Call::Write && n == count && run.code == 0 && run.err.empty() && found == Found::Complete;
-        if (!done && (run.code != 130 || run.err != "glint: stopped\n"))
+        if (run.code != 130 || run.err != "glint: stopped\n")
           problems.push_back("exit code " + std::to_string(run.code) + ", standard error: " + run.err);
         for (const std::string& l : stage.leftovers(true)) problems.push_back("it leaves " + l);
         ++tally.runs;

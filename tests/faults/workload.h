@@ -74,7 +74,8 @@ struct Tally {
   void add(const std::string& outcome) { ++outcomes[outcome]; }
 };
 
-/// Writes rows for docs/trust.md when the test program ends: the file that the environment variable GLINT_PIECE names.
+/// Writes rows for docs/trust.md when the test program ends: the file that the environment variable GLINT_PIECE names. Where a filter chose
+/// some tests only (--gtest_filter), rows of other names stay in the file, and the new ones say their day.
 class Piece : public testing::Environment {
  public:
   Piece(std::string what, std::string command) : what_(std::move(what)), command_(std::move(command)) {}
