@@ -15,6 +15,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <thread>
 
 #include "core/base/atomic_file.h"
 #include "core/base/outcome.h"
@@ -83,6 +84,24 @@ void cleanOnce(const fs::path& folder) {
     if (!all.cleaned.insert(folder).second) return;
   }
   removeAbandonedTemporaries(folder);
+}
+
+/// Removes a file or folder that threads may still write to; false when it has more files than `most`, which `files` counts.
+bool removeAside(const fs::path& path, int most, int& files) {
+  std::error_code ignored;
+  fs::path at = path;
+  if (fs::is_directory(path, ignored)) {
+    // Under another name of ours first: threads that make more files in it find no folder, so that it can be emptied.
+    const fs::path aside = path.parent_path() / nextName(path);
+    if (::rename(path.c_str(), aside.c_str()) == 0) at = aside;
+    std::error_code error;
+    for (fs::recursive_directory_iterator it(at, error), end; !error && it != end; it.increment(error)) {
+      if (++files > most) return false;
+      if (!it->is_directory(ignored)) ::unlink(it->path().c_str());
+    }
+  }
+  fs::remove_all(at, ignored);
+  return true;
 }
 
 }  // namespace
@@ -156,25 +175,26 @@ TemporaryPath::~TemporaryPath() {
 void removeUnfinishedWrites() {
   // Folders may be large, and the program promises to end soon: beyond so many files the next program removes the rest.
   constexpr int kMostFiles = 1000;
-  constexpr std::chrono::milliseconds kLongestWait(20);
+  constexpr std::chrono::milliseconds kLongestWait(20), kPause(5);
+  constexpr int kPasses = 3;
   int files = 0;
   Registry& all = registry();
   all.ending = true;
-  // A thread that holds it may be stuck in the system: on a network drive that does not answer.
-  std::unique_lock<std::timed_mutex> lock(all.mutex, kLongestWait);
-  if (!lock) return;
-  const std::set<fs::path> paths = all.unfinished;
-  lock.unlock();
-  std::error_code ignored;
-  for (const fs::path& path : paths) {
-    if (fs::is_directory(path, ignored)) {
-      std::error_code error;
-      for (fs::recursive_directory_iterator it(path, error), end; !error && it != end; it.increment(error)) {
-        if (++files > kMostFiles) return;
-        if (!it->is_directory(ignored)) ::unlink(it->path().c_str());
-      }
-    }
-    fs::remove_all(path, ignored);
+  for (int pass = 0; pass < kPasses; ++pass) {
+    // A thread that holds it may be stuck in the system: on a network drive that does not answer.
+    std::unique_lock<std::timed_mutex> lock(all.mutex, kLongestWait);
+    if (!lock) return;
+    const std::set<fs::path> paths = all.unfinished;
+    lock.unlock();
+    if (paths.empty()) return;
+    for (const fs::path& path : paths)
+      if (!removeAside(path, kMostFiles, files)) return;
+    // A thread that was just making one of them goes on, sees that the program ends, and makes no other.
+    std::this_thread::sleep_for(kPause);
+    std::error_code ignored;
+    if (std::none_of(paths.begin(), paths.end(),
+                     [&](const fs::path& path) { return fs::exists(fs::symlink_status(path, ignored)); }))
+      return;
   }
 }
 

@@ -8,7 +8,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <fstream>
+#include <thread>
 
 #include "core/base/atomic_file.h"
 #include "tests/core/scene/scene_fixture.h"
@@ -81,6 +83,33 @@ TEST(TemporaryPath, WhatIsNotAbandonedStays) {
   ::close(fd);
   removeAbandonedTemporaries(folder.path());
   EXPECT_FALSE(fs::exists(locked)) << "nobody holds it any more";
+}
+
+/// A program that is asked to stop while its threads go on writing into a folder that is not finished. Several times: it depends
+/// on the moment.
+TEST(TemporaryPath, NothingIsLeftBehindThreadsThatGoOnWriting) {
+  const TemporaryFolder folder;
+  for (int i = 0; i < 20; ++i) {
+    const pid_t pid = ::fork();
+    if (pid == 0) {
+      const TemporaryPath unfinished(folder.path(), folder / "made", TemporaryPath::Kind::Folder);
+      std::atomic<int> written{0};
+      std::vector<std::thread> threads;
+      for (int t = 0; t < 4; ++t)
+        threads.emplace_back([&, t] {
+          for (int n = 0;; ++n, ++written) {
+            std::ofstream(unfinished.path() / (std::to_string(t) + "-" + std::to_string(n))) << "half";
+            std::this_thread::sleep_for(
+                std::chrono::microseconds(500));  // far from the number of files that are too many to remove
+          }
+        });
+      while (written < 50) std::this_thread::yield();
+      removeUnfinishedWrites();
+      ::_exit(0);
+    }
+    ::waitpid(pid, nullptr, 0);
+    ASSERT_THAT(namesIn(folder.path()), IsEmpty()) << i;
+  }
 }
 
 TEST(TemporaryPath, LongNamesOfTargetsLeaveRoomForItsOwn) {
