@@ -13,6 +13,7 @@
 #include "core/base/limits.h"
 #include "core/base/number_text.h"
 #include "core/base/safe_text.h"
+#include "core/base/task_memory.h"
 
 namespace glint::cli {
 
@@ -80,6 +81,7 @@ int fail(const std::string& line, int code) {
 /// Every way in which a command may end, as an exit code and at most one line.
 int guarded(const std::function<int()>& run) {
   try {
+    reserveTaskMemory();
     const int code = run();
     if (!finish()) return stopped();
     showWarnings();

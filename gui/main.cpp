@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/base/outcome.h"
+#include "core/base/task_memory.h"
 #include "gui/base/input_rules.h"
 #include "gui/scene/camera_glide.h"
 #include "gui/window/command_line.h"
@@ -78,6 +79,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
+    glint::reserveTaskMemory();
     return run(argc, argv);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "glint-inspector: %s\n", e.what());

@@ -2,7 +2,6 @@
 #include "core/surface/mesh_rays.h"
 
 #include <embree3/rtcore.h>
-#include <tbb/cache_aligned_allocator.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/base/task_memory.h"
 #include "core/geometry/plane.h"
 
 namespace glint {
@@ -41,12 +41,8 @@ void setRay(RTCRayHit8& packet, int k, const Vector3f& o, const Vector3f& d, flo
   packet.hit.geomID[k] = packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
 }
 
-/// TBB waits for ever when, while Embree builds a tree, the system refuses memory for one of its tasks. Its allocator asks for large blocks
-/// and keeps them: the first one, which serves small trees and the beginning of large ones, is asked for here, where a refusal is std::bad_alloc.
 RTCDevice newDevice() {
-  constexpr std::size_t kTask = 256;  // bytes, as for a task
-  tbb::cache_aligned_allocator<char> memory;
-  memory.deallocate(memory.allocate(kTask), kTask);
+  reserveTaskMemory();
   return rtcNewDevice(std::getenv("GLINT_EMBREE"));  // null: as it is built
 }
 

@@ -75,9 +75,13 @@ TEST_P(Faults, TargetsAreOldAbsentOrComplete) {
   for (std::size_t k = 0; k < failing().size(); ++k) {
     const Failing& kind = failing()[k];
     Tally tally;
-    // Every one of synth, which builds the tree of a mesh: where memory was refused there, TBB waited for ever.
-    const bool tree = GetParam().name == "synth" && std::string(kind.call) == "memory";
-    for (const int n : chosen(stage.calls()[k], tree ? stage.calls()[k] : kind.inCi))
+    std::vector<int> numbers = chosen(stage.calls()[k], kind.inCi);
+    // The first ones of memory, too: while they started tasks, the libraries that stand on oneTBB waited for ever.
+    constexpr int kFirst = 6;
+    if (std::string(kind.call) == "memory" && !all())
+      for (int n = 1; n <= std::min(kFirst, stage.calls()[k]); ++n)
+        if (std::find(numbers.begin(), numbers.end(), n) == numbers.end()) numbers.push_back(n);
+    for (const int n : numbers)
       for (std::size_t a = 0; a < kind.actions.size(); ++a)
         for (const bool withOld : {false, true}) {
           // A few of them in CI: every action and both beginnings take turns.
