@@ -238,9 +238,11 @@ void Piece::TearDown() {
   std::strftime(date, sizeof date, "%F", std::localtime(&now));
   Json piece = {{"what", what_}, {"command", command_}, {"date", date}, {"rows", Json::array()}};
   const bool partly = testing::GTEST_FLAG(filter) != "*";
-  if (std::ifstream earlier(file); partly && earlier)
-    for (const Json& row : Json::parse(earlier).at("rows"))
+  if (std::ifstream in(file); partly && in) {
+    const Json earlier = Json::parse(in);
+    for (const Json& row : earlier.at("rows"))
       if (std::none_of(rows_.begin(), rows_.end(), [&](const auto& r) { return r.first == row.at("name"); })) piece["rows"].push_back(row);
+  }
   for (const auto& [name, tally] : rows_) {
     std::string note;
     for (const auto& [outcome, count] : tally.outcomes) note += (note.empty() ? "" : "; ") + outcome + ": " + std::to_string(count);
