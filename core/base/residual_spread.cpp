@@ -9,8 +9,28 @@
 
 namespace glint {
 
+namespace {
+
+/// Sum of the products of values `lag` apart within runs of one view. On closed contours only lags up to half of a run: beyond,
+/// the same pairs come again.
+double productsAt(std::size_t lag, const std::vector<double>& values, const std::vector<int>& views, Neighbours neighbours) {
+  double sum = 0;
+  for (std::size_t first = 0, end = 0; first < values.size(); first = end) {
+    while (end < values.size() && views[end] == views[first]) ++end;
+    const std::size_t size = end - first;
+    if (neighbours == Neighbours::Open) {
+      for (std::size_t i = first; i + lag < end; ++i) sum += values[i] * values[i + lag];
+    } else if (2 * lag <= size) {
+      for (std::size_t i = 0; i < size; ++i) sum += values[first + i] * values[first + (i + lag) % size];
+    }
+  }
+  return sum;
+}
+
+}  // namespace
+
 ResidualSpread residualSpread(const std::vector<double>& residuals, const std::vector<int>& views, int parameters,
-                              double robustScale) {
+                              double robustScale, Neighbours neighbours) {
   require(!residuals.empty() && residuals.size() == views.size() && robustScale > 0, "residualSpread: sizes and scale");
   const double n = double(residuals.size()), free = std::max(1.0, n - parameters);
   std::vector<double> psi, absolute;
@@ -28,12 +48,10 @@ ResidualSpread residualSpread(const std::vector<double>& residuals, const std::v
   const double slope = std::max(inliers, 1.0) / n, k = 1 + parameters / n * (1 - slope) / slope;
   double inflation = 1;
   const double noticed = 2 / std::sqrt(n);  // an autocorrelation of white residuals stays below this
-  for (int lag = 1; squares > 0 && lag <= int(n) / 2; ++lag) {
-    double sum = 0;
-    for (std::size_t i = 0; i + lag < psi.size(); ++i)
-      if (views[i] == views[i + lag]) sum += psi[i] * psi[i + lag];
-    if (!(sum / squares > noticed)) break;
-    inflation += 2 * sum / squares;
+  for (std::size_t lag = 1; squares > 0 && lag <= psi.size() / 2; ++lag) {
+    const double correlation = productsAt(lag, psi, views, neighbours) / squares;
+    if (!(correlation > noticed)) break;
+    inflation += 2 * correlation;
   }
   spread.factor = inflation * k * k * squares / free / (slope * slope);
   spread.degreesOfFreedom = std::max(1.0, free / inflation);

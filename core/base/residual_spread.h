@@ -12,13 +12,16 @@ struct ResidualSpread {
   double degreesOfFreedom = 0;  ///< of these estimates, fewer where neighbouring residuals go together
 };
 
+/// What the residuals of one view lie along: a contour, whose last is the first one's neighbour, or lines with ends.
+enum class Neighbours { Closed, Open };
+
 /// For a Huber loss of scale `robustScale` that was held: K^2 (sum psi^2 / (n - p)) / (mean psi')^2, times the inflation
 /// 1 + 2 sum rho_k of residuals that are correlated along their contour (a detected contour, or a model that does not quite fit):
-/// then n points tell less than n.
+/// then n points tell less than n. On closed contours it does not matter where they start and which way they go.
 /// @see Huber, Robust Regression: Asymptotics, Conjectures and Monte Carlo, 1973, eq. 6.11.
-/// @param residuals  in contour order within a view. @param views  of each residual; same size.
+/// @param residuals  in contour order within a view, one view after the other. @param views  of each residual; same size.
 ResidualSpread residualSpread(const std::vector<double>& residuals, const std::vector<int>& views, int parameters,
-                              double robustScale);
+                              double robustScale, Neighbours neighbours = Neighbours::Closed);
 
 /// Root of the mean square of one view's residuals without their tail: what is larger than twice the size below which two thirds of them
 /// stay counts as just that. A few points whose residual has no bound then say nothing of the others; where more than a third are

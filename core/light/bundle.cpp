@@ -2,7 +2,6 @@
 #include <ceres/ceres.h>
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -12,6 +11,7 @@
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
 #include "core/base/residual_spread.h"
+#include "core/base/svd.h"
 #include "core/light/bundle_attempt.h"
 #include "core/light/dense_solver.h"
 #include "core/light/estimate.h"
@@ -153,16 +153,6 @@ Light inWorld(const Eigen::Vector4d& light, const Eigen::Vector3d& origin, doubl
   return Light::homogeneous(world);
 }
 
-ResidualSpread spreadOf(const std::vector<ContourEvidence>& points, const Attempt& a, int parameters, double scale) {
-  std::vector<double> residuals;
-  std::vector<int> views;
-  for (const ContourEvidence& e : points) {
-    residuals.push_back(residual(e, a));
-    views.push_back(e.view);
-  }
-  return residualSpread(residuals, views, parameters, scale);
-}
-
 void setCovariance(const std::vector<ContourEvidence>& points, const Attempt& a, const Eigen::Vector3d& origin, double scale,
                    double robustPx, Bundle& bundle) {
   const double infinity = std::numeric_limits<double>::infinity();
@@ -178,7 +168,7 @@ void setCovariance(const std::vector<ContourEvidence>& points, const Attempt& a,
     jacobian.row(i) << row.head<4>() * chart, row.tail<7>();
   }
   const ResidualSpread spread = spreadOf(points, a, int(parameters), robustPx);
-  if (a.directed)  // its prior, in units of the noise
+  if (a.directed)  // its prior, in units of the noise, as in the fit
     for (int i = 0; i < 6; ++i)
       jacobian(points.size() + i, 4 + i) = std::sqrt(spread.factor) * extentPrior(a, points) * (i < 3 ? 1 : std::sqrt(2.0));
   for (std::size_t i = 0; i < points.size() && !a.directed; ++i) {

@@ -96,6 +96,16 @@ double noiseShare(const std::vector<ContourEvidence>& points, const Attempt& a) 
   return std::min(1.0, 0.5 * std::pow(median(steps) / all, 2));
 }
 
+ResidualSpread spreadOf(const std::vector<ContourEvidence>& points, const Attempt& a, int parameters, double scale) {
+  std::vector<double> residuals;
+  std::vector<int> views;
+  for (const ContourEvidence& e : points) {
+    residuals.push_back(residual(e, a));
+    views.push_back(e.view);
+  }
+  return residualSpread(residuals, views, parameters, scale);
+}
+
 namespace {
 /// Noise moves a measured point along a contour that bends away from it: isotropic noise of variance s^2 displaces the residual by
 /// s^2 / 2 times the Laplacian of alpha on average, outwards. s is what the residuals show (their median, so that a few wild
@@ -114,8 +124,10 @@ void unbias(std::vector<ContourEvidence>& points, const Attempt& a, double share
     const double step2 = ContourEvidence::kStepPx * ContourEvidence::kStepPx;
     const double xx = (left + right - 2 * here) / step2, yy = (up + down - 2 * here) / step2;
     double bend = xx + yy;
-    if (share > 0 && e.leftUp && e.rightDown) {
-      const double xy = (angle(*e.leftUp, a.light) + angle(*e.rightDown, a.light) - 2 * here) / (2 * step2) - 0.5 * (xx + yy);
+    if (share > 0 && e.leftUp && e.rightUp && e.leftDown && e.rightDown) {
+      const double falling = angle(*e.leftUp, a.light) + angle(*e.rightDown, a.light);
+      const double rising = angle(*e.rightUp, a.light) + angle(*e.leftDown, a.light);
+      const double xy = (falling - rising) / (4 * step2);
       const Eigen::Vector2d g = Eigen::Vector2d(right - left, down - up).normalized();
       if (g.allFinite()) bend -= 4 * share * (g.x() * g.x() * xx + g.y() * g.y() * yy + 2 * g.x() * g.y() * xy);
     }

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/base/residual_spread.h"
 #include "core/light/contour_evidence.h"
 #include "core/light/directed_limit.h"
 
@@ -45,6 +46,9 @@ void restoreBiases(std::vector<ContourEvidence>& points, const Attempt& a);
 /// must not move them (it would gain by lights under which the angle changes fast), hence the share.
 double noiseShare(const std::vector<ContourEvidence>& points, const Attempt& a);
 
+/// What the residuals of an attempt with so many parameters say about the noise. @param scale  of the Huber loss, px
+ResidualSpread spreadOf(const std::vector<ContourEvidence>& points, const Attempt& a, int parameters, double scale);
+
 /// Huber's sum of squares, px^2; infinite where a residual is no number.
 double robustCost(const std::vector<ContourEvidence>& points, const Attempt& a, double scale);
 
@@ -57,8 +61,8 @@ void settleSide(const std::vector<ContourEvidence>& points, Attempt& a);
 /// The points hold the weights of the result.
 Attempt directed(std::vector<ContourEvidence>& points, const Attempt& start, double robustPx, int maxIterations);
 
-/// One pixel's worth of reluctance against an extent that widens the limit angle by half: entries that the contours see win over it,
-/// those that no view shows stay zero.
+/// Reluctance against an extent, 1 / its standard deviation: one for an extent that widens the limit angle by half. Entries that
+/// the contours see win over it, those that no view shows stay zero.
 double extentPrior(const Attempt& a, const std::vector<ContourEvidence>& points);
 
 /// Residual with an extent, and its derivatives by light (4), limit (1) and extent (6) where asked. False where it is no number.

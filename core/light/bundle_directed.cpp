@@ -52,8 +52,11 @@ double meanDistance(const Eigen::Vector4d& light, const std::vector<ContourEvide
   return reach;
 }
 
-/// From `start` in its own chart: a light at infinity stays there. `directed` is false where nothing was found in front of the surface.
-Attempt inChartOf(std::vector<ContourEvidence>& points, const Attempt& start, double robustPx, int maxIterations) {
+/// From `start` in its own chart: a light at infinity stays there. `directed` is false where nothing was found in front of the
+/// surface.
+/// @param noisePx  of the points, the unit in which they and the prior are compared
+Attempt inChartOf(std::vector<ContourEvidence>& points, const Attempt& start, double noisePx, double robustPx,
+                  int maxIterations) {
   Attempt a = start, none = start;
   restoreBiases(points, start);
   a.directed = true;
@@ -65,7 +68,7 @@ Attempt inChartOf(std::vector<ContourEvidence>& points, const Attempt& start, do
     const Attempt before = a;
     Vector6 extent = a.extent / unit;
     RobustCosts<ceres::CostFunction, DirectedCost> costs(points, robustPx, unit);
-    ceres::AutoDiffCostFunction<ExtentPrior, 6, 6> reluctance(new ExtentPrior{prior * unit});
+    ceres::AutoDiffCostFunction<ExtentPrior, 6, 6> reluctance(new ExtentPrior{noisePx * prior * unit});
     ceres::Problem::Options options;
     options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     options.disable_all_safety_checks = true;
@@ -90,6 +93,21 @@ Attempt inChartOf(std::vector<ContourEvidence>& points, const Attempt& start, do
   keepBiases(points, a);
   a.cost = robustCost(points, a, robustPx);
   return a;
+}
+
+/// Twice: what the points are worth is told by the start's residuals first, which hold what the extent explains, then by those of
+/// the result.
+Attempt weighed(std::vector<ContourEvidence>& points, const Attempt& start, double robustPx, int maxIterations) {
+  constexpr double kLeastNoisePx =
+      0.01;  // below the accuracy of any detection; keeps the prior's weight above zero on exact data
+  constexpr int kConstant = 4, kWithExtent = 10;  // parameters
+  const auto noisePx = [&](const Attempt& a) {
+    return std::max(kLeastNoisePx, std::sqrt(spreadOf(points, a, a.directed ? kWithExtent : kConstant, robustPx).factor));
+  };
+  const Attempt first = inChartOf(points, start, noisePx(start), robustPx, maxIterations);
+  if (!first.directed) return first;
+  const Attempt second = inChartOf(points, first, noisePx(first), robustPx, maxIterations);
+  return second.directed ? second : first;
 }
 
 }  // namespace
@@ -118,14 +136,14 @@ double extentPrior(const Attempt& a, const std::vector<ContourEvidence>& points)
 }
 
 Attempt directed(std::vector<ContourEvidence>& points, const Attempt& start, double robustPx, int maxIterations) {
-  Attempt best = inChartOf(points, start, robustPx, maxIterations);
+  Attempt best = weighed(points, start, robustPx, maxIterations);
   if (start.light.w() > 0 && (!best.directed || best.light.w() < kFar)) {
     Attempt far = best.directed ? best : start;
     far.light.w() = 0;
     far.light.normalize();
     far.extent.setZero();
     settleSide(points, far);
-    if (!far.behind) far = inChartOf(points, far, robustPx, maxIterations);
+    if (!far.behind) far = weighed(points, far, robustPx, maxIterations);
     // As good but for round-off is enough for the simpler light.
     if (far.directed && (!best.directed || far.cost <= best.cost * (1 + 1e-9) + 1e-18 * double(points.size()))) best = far;
   }

@@ -35,7 +35,9 @@ Outcome<std::vector<ContourEvidence>> contoursOnSurfaces(const std::vector<Bundl
                         seen(p + Pixel(step, 0)),
                         seen(p - Pixel(0, step)),
                         seen(p + Pixel(0, step)),
-                        seen(p - Pixel(step, step)),
+                        seen(p + Pixel(-step, -step)),
+                        seen(p + Pixel(step, -step)),
+                        seen(p + Pixel(-step, step)),
                         seen(p + Pixel(step, step)),
                         int(v),
                         p,
@@ -61,7 +63,7 @@ Outcome<NormalisedContours> normalised(std::vector<ContourEvidence> points) {
   if (!(n.scale > 0) || !std::isfinite(n.scale)) return Failure{Reason::NotFinite, "camera distance"};
   for (ContourEvidence& e : points) {
     e.at.position = (e.at.position - n.origin) / n.scale;
-    for (std::optional<SeenPoint>* s : {&e.left, &e.right, &e.up, &e.down, &e.leftUp, &e.rightDown})
+    for (std::optional<SeenPoint>* s : {&e.left, &e.right, &e.up, &e.down, &e.leftUp, &e.rightUp, &e.leftDown, &e.rightDown})
       if (*s) (*s)->position = ((*s)->position - n.origin) / n.scale;
   }
   n.points = std::move(points);

@@ -20,7 +20,8 @@ struct ContourEvidence {
   static constexpr double kStepPx = 0.5;  ///< of the finite differences that turn an angle into pixels
   SeenPoint at;
   std::optional<SeenPoint> left, right, up, down;  ///< of the pixels kStepPx away; empty where the surface ended
-  std::optional<SeenPoint> leftUp, rightDown;      ///< along the diagonal
+  std::optional<SeenPoint> leftUp, rightUp, leftDown,
+      rightDown;  ///< along both diagonals: one alone would tell an image from its mirror image
   int view = 0;
   Pixel pixel{0, 0};
   double cameraDistance = 0;   ///< m

@@ -7,11 +7,11 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include "core/base/residual_spread.h"
+#include "core/base/svd.h"
 #include "core/geometry/polyline.h"
 #include "core/light/contour_evidence.h"
 #include "core/light/dense_solver.h"

@@ -3,13 +3,13 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include "core/base/residual_spread.h"
+#include "core/base/svd.h"
 #include "core/geometry/polyline.h"
 #include "core/light/contour_evidence.h"
 #include "core/light/left_out.h"
@@ -374,7 +374,7 @@ MatrixXd rootOf(const Linearised& at, Eigen::Index terms, const ResidualSpread& 
   rows.topRows(at.jacobian.rows()) = at.jacobian / std::sqrt(spread.factor);
   rows.bottomRightCorner(terms, terms).setIdentity();
   const MatrixXd upper = Eigen::HouseholderQR<MatrixXd>(rows).matrixQR().topRows(columns).triangularView<Eigen::Upper>();
-  const Eigen::JacobiSVD<MatrixXd> svd(upper, Eigen::ComputeFullV);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(upper, Eigen::ComputeFullV);
   if (!(svd.singularValues()(columns - 1) > 1e-14 * svd.singularValues()(0))) return {};  // free to round-off
   return svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();
 }

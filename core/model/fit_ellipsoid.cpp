@@ -18,6 +18,9 @@ constexpr int kContourPoints = 72;
 /// How far the centre may lie from the estimated light as a share of the light's distance: the light of a simple lobe is off by 1 % (path-traced
 /// plane) to 9 % (sphere).
 constexpr double kPriorBias = 0.01;
+constexpr double kSameWorth = 1e-3;  // residuals tell a standard deviation to some hundredths
+constexpr int kMostWeightings =
+    6;  // two to four mostly; where the correlation of the residuals is cut at another lag each time it goes to and fro
 constexpr double kLeastWorthPx = 0.01;  // below the accuracy of any detection; keeps the prior's weight finite on exact data
 
 CentrePrior priorWith(const CentreAnchor& anchor, double bias) {
@@ -27,10 +30,11 @@ CentrePrior priorWith(const CentreAnchor& anchor, double bias) {
   return {anchor.position, covariance};
 }
 
-/// What one contour point is worth, px: the RMS distance of the points from the outlines, times the root of 1 + 2 sum rho_k for distances
-/// that are correlated along their contour. Where the ellipsoid fits to the noise that is the noise; where it does not fit (a curved surface,
-/// slanted views) the distances wave slowly along the contour, and many points say no more than a few.
-double worthPx(const Ellipsoid& ellipsoid, const std::vector<ConicView>& views) {
+/// What one contour point is worth, px: the RMS distance of the points from the outlines, times the root of 1 + 2 sum rho_k for
+/// distances that are correlated along their contour. Where the ellipsoid fits to the noise that is the noise; where it does not
+/// fit (a curved surface, slanted views) the distances wave slowly along the contour, and many points say no more than a few.
+/// Nothing where too few views see it.
+std::optional<double> worthPx(const Ellipsoid& ellipsoid, const std::vector<ConicView>& views) {
   std::vector<std::vector<double>> distances;
   double squares = 0, count = 0;
   std::size_t longest = 0;
@@ -45,7 +49,8 @@ double worthPx(const Ellipsoid& ellipsoid, const std::vector<ConicView>& views) 
     count += double(distances.back().size());
     longest = std::max(longest, distances.back().size());
   }
-  if (!(squares > 0) || !(count > 9)) return kLeastWorthPx;
+  if (!(count > 9)) return std::nullopt;
+  if (!(squares > 0)) return kLeastWorthPx;
   double inflation = 1;
   const double noticed = 2 / std::sqrt(count);  // an autocorrelation of white noise stays below this
   for (std::size_t lag = 1; lag <= longest / 2; ++lag) {
@@ -59,25 +64,31 @@ double worthPx(const Ellipsoid& ellipsoid, const std::vector<ConicView>& views) 
 }
 
 /// The refined ellipsoid with contours and prior in the same unit: standard deviations. What a contour point is worth is not
-/// known before the fit, so it is estimated from the first one and used in the next (the solver counts a pixel as one standard
-/// deviation, so the prior is scaled instead). Where the fit with the better weight is refused, the one before it stands, with a
-/// remark.
+/// known before the fit, so it is estimated from the start, then from each fit, until it stays (the solver counts a pixel as one
+/// standard deviation, so the prior is scaled instead). A first guess in pixels would make the answer depend on their number.
+/// Where the fit with the better weight is refused, the one before it stands, with a remark.
 Outcome<Reconstruction> refinedWithPrior(const std::vector<ConicView>& views, const Ellipsoid& start, const CentreAnchor& anchor, double bias) {
   const CentrePrior prior = priorWith(anchor, bias);
-  Outcome<Reconstruction> refined = reconstructRefined(views, start, prior);
+  const auto counting = [&](double worth) {
+    return reconstructRefined(views, start, CentrePrior{prior.mean, prior.covariance / (worth * worth)});
+  };
   double counted = 1;  // px, as which the fit so far counts a contour point
-  for (int round = 0; round < 2 && refined && refined->ellipsoid; ++round) {
-    const double worth = worthPx(*refined->ellipsoid, views);
-    Outcome<Reconstruction> again = reconstructRefined(views, start, CentrePrior{prior.mean, prior.covariance / (worth * worth)});
+  Outcome<Reconstruction> refined = Failure{Reason::NotConverged, ""};
+  if (const std::optional<double> worth = worthPx(start, views)) refined = counting(counted = *worth);
+  if (!refined) refined = counting(counted = 1);
+  for (int round = 0; round < kMostWeightings && refined && refined->ellipsoid; ++round) {
+    const std::optional<double> worth = worthPx(*refined->ellipsoid, views);
+    if (!worth || std::abs(*worth / counted - 1) < kSameWorth) break;
+    Outcome<Reconstruction> again = counting(*worth);
     if (!again) {
-      refined->remarks.push_back(
-          formatted("the fit assumes that a contour point is accurate to %.2g px; with %.2g px, as its residuals suggest, it finds "
-                    "no ellipsoid (%s)",
-                    counted, worth, again.failure().message().c_str()));
+      refined->remarks.push_back(formatted(
+          "the fit assumes that a contour point is accurate to %.2g px; with %.2g px, as its residuals suggest, it finds "
+          "no ellipsoid (%s)",
+          counted, *worth, again.failure().message().c_str()));
       break;
     }
     refined = std::move(again);
-    counted = worth;
+    counted = *worth;
   }
   return refined;
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <cmath>
 #include <limits>
 
+#include "core/base/svd.h"
 #include "core/model/reconstruct_detail.h"
 
 namespace glint {
@@ -31,12 +31,12 @@ Outcome<Reconstruction> reconstructAnchored(const std::vector<ConicView>& views,
     rows.middleRows<6>(6 * i) = a - c * (c.transpose() * a);
   }
   const Eigen::Matrix<double, 7, 7> r = Eigen::HouseholderQR<Rows>(rows).matrixQR().topRows<7>().triangularView<Eigen::Upper>();
-  const Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>> svd(r.topLeftCorner<6, 6>(), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(r.topLeftCorner<6, 6>(), Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Matrix<double, 6, 1> s = svd.singularValues();
   if (!(s(5) > options.minRankRatio * s(0))) return Failure{Reason::RankDeficient, "several shapes about this centre fit"};
   Reconstruction result;
   result.solver = "anchored";
-  const Eigen::Matrix<double, 7, 1> all = Eigen::JacobiSVD<Eigen::Matrix<double, 7, 7>>(r).singularValues();
+  const Eigen::Matrix<double, 7, 1> all = Eigen::JacobiSVD<Eigen::MatrixXd>(r).singularValues();
   result.singularValues.assign(all.data(), all.data() + 7);
   result.gapRatio = all(5) > 0 ? all(6) / all(5) : 1.0;
   result.condition = s(0) / s(5);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <Eigen/LU>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "core/base/number_text.h"
+#include "core/base/svd.h"
 #include "core/model/ellipse_distance.h"
 #include "core/model/reconstruct_detail.h"
 
@@ -174,7 +174,7 @@ Outcome<Reconstruction> reconstructLinear(const std::vector<ConicView>& views, c
   const Eigen::Matrix<double, 10, 10> norm =
       Eigen::HouseholderQR<Rows>(weights).matrixQR().topRows<10>().triangularView<Eigen::Upper>();
   const Eigen::Matrix<double, 10, 10> scaled = norm.transpose().triangularView<Eigen::Lower>().solve(r.transpose()).transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix<double, 10, 10>> svd(scaled, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Reconstruction result;
   result.solver = "linear";
   const Eigen::Matrix<double, 10, 1> s = svd.singularValues();

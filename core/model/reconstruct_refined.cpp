@@ -2,12 +2,12 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/base/number_text.h"
+#include "core/base/svd.h"
 #include "core/model/ellipse_distance.h"
 #include "core/model/reconstruct_detail.h"
 
@@ -142,7 +142,7 @@ class Contours {
 
 /// The linear least-squares problem at one state, as the singular values of its triangular factor.
 struct Linearised {
-  Eigen::JacobiSVD<Eigen::Matrix<double, 9, 9>> svd;
+  Eigen::JacobiSVD<Eigen::MatrixXd> svd;
   Eigen::Matrix<double, 9, 1> along;  ///< residual along the left singular vectors
   double cost = 0;                    ///< sum of squares, px^2
   int unknowns = 9;
@@ -207,7 +207,7 @@ std::optional<ParameterUncertainty> uncertaintyOf(const Rows& rows, const State&
   q.topRows(data) *= u.noisePx;
   const Eigen::Matrix<double, 9, 9> spread = Eigen::HouseholderQR<Eigen::MatrixXd>(q).matrixQR().topRows<9>().triangularView<Eigen::Upper>();
   const Eigen::Matrix<double, 9, 9> r = qr.matrixQR().topRows<9>().triangularView<Eigen::Upper>();
-  Eigen::JacobiSVD<Eigen::Matrix<double, 9, 9>> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::JacobiSVD<Eigen::MatrixXd> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
   svd.setThreshold(kRankRatio);
   u.root = svd.solve(Eigen::Matrix<double, 9, 9>(spread.transpose()));
   u.root.topRows<3>() *= scale;

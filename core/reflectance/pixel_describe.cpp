@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/base/residual_spread.h"
+#include "core/base/svd.h"
 #include "core/reflectance/light_radiance.h"
 #include "core/reflectance/pixel_problem.h"
 
@@ -129,7 +129,7 @@ void describeUncertainty(PixelProblem& pixels, const State& at, bool blur, Pixel
   std::vector<int> views;
   for (std::size_t f = 0; f < pixels.evidence().frames.size(); ++f)
     views.insert(views.end(), pixels.evidence().frames[f].used, static_cast<int>(f));
-  const ResidualSpread spread = residualSpread(residuals, views, static_cast<int>(unknowns), 1);
+  const ResidualSpread spread = residualSpread(residuals, views, static_cast<int>(unknowns), 1, Neighbours::Open);
   const double inflation = std::max(1.0, double(residuals.size()) / spread.degreesOfFreedom);
   fit.independentCells = std::max(1.0, spread.degreesOfFreedom / inflation);
   fit.patterned = !(fit.rmsPx * patternOf(residuals) <= kPatternShare * pixels.evidence().radiusPx);

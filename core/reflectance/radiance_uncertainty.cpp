@@ -3,10 +3,10 @@
 #include <ceres/sphere_manifold.h>
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <cmath>
 
 #include "core/base/residual_spread.h"
+#include "core/base/svd.h"
 #include "core/reflectance/radiance_problem.h"
 #include "core/reflectance/root_cost.h"
 

@@ -8,6 +8,14 @@
 
 #include "core/reflectance/light_radiance.h"
 
+// Left to itself the compiler calls a function for every sum of dual numbers. With a sanitizer's checks in each of them one flat
+// function takes more than an hour to compile.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define GLINT_FLATTEN
+#else
+#define GLINT_FLATTEN [[gnu::flatten]]
+#endif
+
 namespace glint::lobe {
 namespace {
 
@@ -15,9 +23,9 @@ template <LampShape kShape>
 using DualOf = ceres::Jet<double, 5 + shapeSize(kShape)>;
 
 /// log I at a point with its derivatives. @param parameters  L (4), log m (1), then the shape's own.
-/// Flat: left to itself the compiler calls a function for every sum of dual numbers.
 template <LampShape kShape>
-[[gnu::flatten]] std::optional<DualOf<kShape>> logOfDual(const RadianceProblem& problem, const Seen& s, double const* const* parameters) {
+GLINT_FLATTEN std::optional<DualOf<kShape>> logOfDual(const RadianceProblem& problem, const Seen& s,
+                                                      double const* const* parameters) {
   using Dual = DualOf<kShape>;
   LampIn<Dual> lamp;
   lamp.shape = kShape;

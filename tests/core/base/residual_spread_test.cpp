@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -12,6 +13,44 @@
 
 namespace glint {
 namespace {
+
+// Two waves around a contour: rho_k = cos(2 pi k / 36), above the 2 / sqrt(72) = 0.24 that is noticed up to k = 7.
+TEST(ResidualSpread, OfAWaveAroundAContour) {
+  constexpr int n = 72;
+  std::vector<double> wave;
+  for (int i = 0; i < n; ++i) wave.push_back(0.3 * std::cos(2 * std::numbers::pi * i / 36 + 0.4));
+  double inflation = 1;
+  for (int k = 1; k <= 7; ++k) inflation += 2 * std::cos(2 * std::numbers::pi * k / 36);
+  const ResidualSpread spread = residualSpread(wave, std::vector<int>(n, 0), 4, 1);
+  EXPECT_NEAR(spread.degreesOfFreedom, (n - 4) / inflation, 1e-9);
+  EXPECT_NEAR(spread.factor, inflation * 0.5 * 0.3 * 0.3 * n / (n - 4), 1e-12);
+}
+
+// Whoever gives a contour may start anywhere and go either way round. Lines with ends are told apart from it.
+TEST(ResidualSpread, DoesNotDependOnWhereAContourStarts) {
+  std::mt19937 random(8);
+  std::normal_distribution<double> normal(0, 0.1);
+  std::vector<double> residuals;
+  std::vector<int> views;
+  for (const int size : {48, 30, 72})
+    for (int i = 0; i < size; ++i) {
+      residuals.push_back(0.2 + 0.01 * i + normal(random));  // a ramp: the last and the first are least alike
+      views.push_back(size);
+    }
+  const ResidualSpread spread = residualSpread(residuals, views, 4, 10);
+  EXPECT_GT(spread.degreesOfFreedom, 1);
+  std::vector<double> turned = residuals;
+  std::rotate(turned.begin(), turned.begin() + 17, turned.begin() + 48);
+  std::reverse(turned.begin() + 48, turned.begin() + 78);
+  std::rotate(turned.begin() + 78, turned.begin() + 140, turned.end());
+  const ResidualSpread other = residualSpread(turned, views, 4, 10);
+  EXPECT_NEAR(other.factor / spread.factor, 1, tolerance::kExact);
+  EXPECT_NEAR(other.degreesOfFreedom / spread.degreesOfFreedom, 1, tolerance::kExact);
+  EXPECT_GT(std::abs(residualSpread(turned, views, 4, 10, Neighbours::Open).factor /
+                         residualSpread(residuals, views, 4, 10, Neighbours::Open).factor -
+                     1),
+            1e-3);
+}
 
 TEST(RmsWithoutTail, IsTheRmsWhereNothingSticksOut) {
   EXPECT_NEAR(rmsWithoutTail({3, -4}), std::sqrt(12.5), tolerance::kExact);

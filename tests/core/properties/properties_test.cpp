@@ -23,8 +23,9 @@ int numberFrom(const char* variable, int otherwise) {
   return text && *text ? std::atoi(text) : otherwise;
 }
 
-/// The scenes of this run: GLINT_PROPERTY_SCENES of them (nightly: more), from GLINT_PROPERTY_SEED on.
-const int kScenes = numberFrom("GLINT_PROPERTY_SCENES", 10);
+/// The scenes of this run: GLINT_PROPERTY_SCENES of them (nightly: more) from number GLINT_PROPERTY_FIRST on; the seed of number
+/// 0 is GLINT_PROPERTY_SEED. One scene alone shows what a law finds there.
+const int kScenes = numberFrom("GLINT_PROPERTY_SCENES", 10), kFirst = numberFrom("GLINT_PROPERTY_FIRST", 0);
 const unsigned kSeed = static_cast<unsigned>(numberFrom("GLINT_PROPERTY_SEED", 1800));
 
 class Properties : public testing::Test {
@@ -32,14 +33,16 @@ class Properties : public testing::Test {
   static void SetUpTestSuite() {
     std::string pattern = (fs::path(testing::TempDir()) / "glint-properties-XXXXXX").string();  // tests run beside each other
     folder_ = mkdtemp(pattern.data());
-    std::cout << kScenes << " random scenes, seed " << kSeed << " (GLINT_PROPERTY_SCENES, GLINT_PROPERTY_SEED)\n";
+    std::cout << kScenes << " random scenes from number " << kFirst << " on, seed " << kSeed
+              << " (GLINT_PROPERTY_SCENES, _FIRST, _SEED)\n";
   }
   static void TearDownTestSuite() { fs::remove_all(folder_); }
 
   static const RandomScene& scene(int number) {
     static std::map<int, RandomScene> made;
     const auto found = made.find(number);
-    return found != made.end() ? found->second : made.emplace(number, randomScene(draw(number, kSeed), folder_)).first->second;
+    return found != made.end() ? found->second
+                               : made.emplace(number, randomScene(draw(kFirst + number, kSeed), folder_)).first->second;
   }
   static InspectionRequest requestFor(const RandomScene& s) {
     InspectionRequest q;
@@ -77,9 +80,16 @@ constexpr double kStoppedShape = 1e-6;
 /// In a picture 641 px wide.
 constexpr double kStoppedPx = 641 * kStopped;
 constexpr Tolerances kMoved{kStopped, kStopped, kStopped, kStopped, kStoppedShape, kStoppedPx, kStoppedPx, kStoppedPx, 100 * kStopped, kStopped};
+/// The fit of a lobe also stops where a step gains less than 1e-10 of the cost (radiance_problem.cpp). With 360 noisy points that
+/// is 2e-4 of a standard deviation, which is some 1e-3 of the light's distance.
+constexpr double kStoppedLobe = 1e-7, kStoppedLobePx = 641 * kStoppedLobe;
+constexpr Tolerances kMovedLobe{kStoppedLobe,   kStoppedLobe,   kStoppedLobe,   kStoppedLobe,       kStoppedShape,
+                                kStoppedLobePx, kStoppedLobePx, kStoppedLobePx, 100 * kStoppedLobe, kStoppedLobe};
 
-/// Prints the worst of every quantity and checks it. Every model must have been compared at least `fits` times.
-void expectWithin(const Tolerances& tolerances, const Differences& d, const std::string& law, const std::vector<std::string>& models) {
+/// Prints the worst of every quantity and checks it. Every model must have been compared. @param ofLobe  the tolerances of
+/// `reflectance`
+void expectWithin(const Tolerances& tolerances, const Tolerances& ofLobe, const Differences& d, const std::string& law,
+                  const std::vector<std::string>& models) {
   std::cout << law << "\n";
   int compared = 0;
   for (const std::string& model : models) {
@@ -91,7 +101,8 @@ void expectWithin(const Tolerances& tolerances, const Differences& d, const std:
   }
   for (const auto& [at, worst] : d.worst) {
     std::cout << "  " << worst.difference << "  " << at.first << ": " << nameOf(at.second) << "  (" << worst.where << ")\n";
-    EXPECT_LE(worst.difference, tolerances.of(at.second)) << law << ": " << at.first << ": " << nameOf(at.second) << " (" << worst.where << ")";
+    EXPECT_LE(worst.difference, (at.first == "reflectance" ? ofLobe : tolerances).of(at.second))
+        << law << ": " << at.first << ": " << nameOf(at.second) << " (" << worst.where << ")";
   }
   static std::map<const testing::TestInfo*, int> sums;
   testing::Test::RecordProperty("compared", sums[testing::UnitTest::GetInstance()->current_test_info()] += compared);
@@ -101,7 +112,7 @@ const std::vector<std::string> kAllModels{"primal", "dual", "canonical", "limit-
 TEST_F(Properties, RigidMotionOfTheWorld) {
   Differences d;
   for (int i = 0; i < kScenes; ++i) {
-    std::mt19937 random(kSeed + static_cast<unsigned>(i));
+    std::mt19937 random(scene(i).what.seed);
     std::uniform_real_distribution<double> u(-1, 1);
     Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
     motion.rotate(Eigen::AngleAxisd(3 * u(random), Eigen::Vector3d(u(random), u(random), u(random)).normalized()));
@@ -112,7 +123,7 @@ TEST_F(Properties, RigidMotionOfTheWorld) {
     back.shift = -back.linear * motion.translation();
     compare(answer(i), inspect(other.scene, requestFor(other)), back, scene(i).what.text(), d);
   }
-  expectWithin(kMoved, d, "rigid motion of the world", kAllModels);
+  expectWithin(kMoved, kMovedLobe, d, "rigid motion of the world", kAllModels);
 }
 
 TEST_F(Properties, UnitOfTheWorld) {
@@ -124,43 +135,57 @@ TEST_F(Properties, UnitOfTheWorld) {
       back.scale = 1 / scale;
       compare(answer(i), inspect(other.scene, requestFor(other)), back, scene(i).what.text(), d);
     }
-    expectWithin(kMoved, d, "world times " + std::to_string(scale), kAllModels);
+    expectWithin(kMoved, kMovedLobe, d, "world times " + std::to_string(scale), kAllModels);
   }
 }
 
 /// A mean over a contour is taken at samples half a pixel apart from its first vertex on. In the mirror the walks start at another
 /// direction and go the other way round, so other points are sampled; what that does falls with the square of the distance.
 constexpr double kSampledPx = 2e-3, kSampledPct = 2e-3;
-/// On a mesh the normals have kinks at the edges of triangles. The bundle takes the mixed derivative of the angle, for the bias of noisy points,
-/// along one diagonal of the image half a pixel long; in the mirror it is the other one, across other edges.
-constexpr double kDiagonal = 1e-6;
-
 TEST_F(Properties, Mirror) {
-  Differences d, onMeshes;
+  Differences d;
   for (int i = 0; i < kScenes; ++i) {
     const RandomScene other = mirrored(scene(i), folder_);
     Back back;
     back.linear(0, 0) = -1;
     back.pixelFactor = {-1, 1};
     back.pixelOffset = {640, 0};
-    compare(answer(i), inspect(other.scene, requestFor(other)), back, scene(i).what.text(), scene(i).what.kind == Kind::Mesh ? onMeshes : d);
+    compare(answer(i), inspect(other.scene, requestFor(other)), back, scene(i).what.text(), d);
   }
-  Tolerances tolerances = kMoved;
-  tolerances.errorPx = kSampledPx;
-  tolerances.ellipsePct = kSampledPct;
-  expectWithin(tolerances, d, "mirror", kAllModels);
-  tolerances.light = tolerances.limitAngle = tolerances.roughness = tolerances.centre = tolerances.iou = kDiagonal;
-  tolerances.shape = kDiagonal * kStoppedShape / kStopped;
-  tolerances.contourPx = tolerances.peakPx = 641 * kDiagonal;
-  expectWithin(tolerances, onMeshes, "mirror, meshes", kAllModels);
+  Tolerances tolerances = kMoved, ofLobe = kMovedLobe;
+  tolerances.errorPx = ofLobe.errorPx = kSampledPx;
+  tolerances.ellipsePct = ofLobe.ellipsePct = kSampledPct;
+  expectWithin(tolerances, ofLobe, d, "mirror", kAllModels);
 }
 
-/// What is stated in pixels does not change with their number: the half pixel over which angles are turned into pixels, the chords of a level
-/// set (their distance from the curve), the hundredth of a pixel that a contour point is worth at best, the samples of means and of the IoU.
-constexpr Tolerances kZoomed{2e-6, 2e-6, 2e-6, 2e-4, 1e-2, 2e-3, 2e-4, 2e-3, 5e-3, 1e-3};
+/// What is stated in pixels does not change with their number: the half pixel over which angles are turned into pixels, the
+/// chords of a level set (their distance from the curve, 2e-3 px, a ten-thousandth of a highlight's half width), the hundredth of
+/// a pixel that a contour point is worth at best, the samples of means and of the IoU.
+constexpr Tolerances kZoomed{2e-6, 2e-6, 2e-6, 2e-4, 1e-2, 2e-3, 2e-4, 2e-3, 1e-2, 1e-3};
+/// Between an extent that the contours hardly show and the limit angle little decides: the half pixel moves them a few times as
+/// much.
+constexpr double kTradedAngle = 1e-5;
+/// On a mesh the slope of the radiance jumps at the edges of triangles. The stencil of a brightest pixel is 0.05 px
+/// (radiance_field.cpp): across an edge the maximum is known to a tenth of that.
+constexpr double kOverAnEdgePx = 5e-3;
+
+/// Whether a light gets an extent is decided by residuals that can be seen, 0.05 px (training.cpp), so that photographs with more
+/// pixels can ask for one. True where the two answers decided differently for that reason; any other difference is a failure.
+bool onlyOneSeesAnExtent(const Inspection& a, const Inspection& b, int zoom, const std::string& scene) {
+  constexpr double kVisiblePx = 0.05;
+  bool differ = false;
+  for (const auto& [key, light] : a.lights) {
+    const LightEstimate& other = b.lights.at(key);
+    if (light.extent.has_value() == other.extent.has_value()) continue;
+    differ = true;
+    EXPECT_FALSE(light.extent) << scene;
+    EXPECT_TRUE(light.rmsPx <= kVisiblePx && zoom * light.rmsPx > kVisiblePx) << scene << ": " << light.rmsPx << " px";
+  }
+  return differ;
+}
 
 TEST_F(Properties, NumberOfPixels) {
-  Differences d;
+  Differences d, withExtents, onMeshes;
   for (int i = 0; i < kScenes; ++i) {
     constexpr int kZoom = 2;
     const RandomScene other = zoomed(scene(i), kZoom);
@@ -169,9 +194,23 @@ TEST_F(Properties, NumberOfPixels) {
     Back back;
     back.pixelFactor = Pixel::Constant(1.0 / kZoom);
     back.pixelOffset = Pixel::Constant((1.0 / kZoom - 1) / 2);
-    compare(answer(i), inspect(other.scene, q), back, scene(i).what.text(), d);
+    const Inspection larger = inspect(other.scene, q);
+    if (!onlyOneSeesAnExtent(answer(i), larger, kZoom, scene(i).what.text())) {
+      compare(answer(i), larger, back, scene(i).what.text(), scene(i).what.kind == Kind::Mesh ? onMeshes : d);
+      continue;
+    }
+    InspectionRequest p = requestFor(scene(i));
+    p.settings.set("light.limit_orders", 1);
+    q.settings.set("light.limit_orders", 1);
+    compare(inspect(scene(i).scene, p), inspect(other.scene, q), back, scene(i).what.text(), withExtents);
   }
-  expectWithin(kZoomed, d, "photographs with twice as many pixels", kAllModels);
+  const std::string law = "photographs with twice as many pixels";
+  expectWithin(kZoomed, kZoomed, d, law, kAllModels);
+  Tolerances overEdges = kZoomed, traded = kZoomed;
+  overEdges.peakPx = kOverAnEdgePx;
+  expectWithin(kZoomed, overEdges, onMeshes, law + ", meshes", kAllModels);
+  traded.limitAngle = kTradedAngle;
+  if (!withExtents.fits.empty()) expectWithin(traded, traded, withExtents, law + ", extents asked for", kAllModels);
 }
 
 TEST_F(Properties, OrderOfFrames) {
@@ -179,12 +218,12 @@ TEST_F(Properties, OrderOfFrames) {
   for (int i = 0; i < kScenes; ++i) {
     std::vector<int> order(kTraining + kHeldOut);
     std::iota(order.begin(), order.end(), 0);
-    std::mt19937 random(kSeed + static_cast<unsigned>(i));
+    std::mt19937 random(scene(i).what.seed);
     std::shuffle(order.begin(), order.end(), random);
     const RandomScene other = reordered(scene(i), order);
     compare(answer(i), inspect(other.scene, requestFor(other)), {}, scene(i).what.text(), d);
   }
-  expectWithin(kMoved, d, "order of frames", kAllModels);
+  expectWithin(kMoved, kMovedLobe, d, "order of frames", kAllModels);
 }
 
 std::vector<int> allFrames() {
@@ -201,7 +240,7 @@ TEST_F(Properties, EveryFrameTwice) {
     const RandomScene other = repeated(scene(i), allFrames());
     compare(answer(i), inspect(other.scene, requestFor(other)), {}, scene(i).what.text(), d);
   }
-  expectWithin(kNothing, d, "every frame twice", kAllModels);
+  expectWithin(kNothing, kNothing, d, "every frame twice", kAllModels);
 }
 
 TEST_F(Properties, OneFrameTwice) {
@@ -210,7 +249,7 @@ TEST_F(Properties, OneFrameTwice) {
     const RandomScene other = repeated(scene(i), {i % kTraining});
     compare(answer(i), inspect(other.scene, requestFor(other)), {}, scene(i).what.text(), d);
   }
-  expectWithin(kNothing, d, "one frame twice", kAllModels);
+  expectWithin(kNothing, kNothing, d, "one frame twice", kAllModels);
 }
 
 /// Equal evidence in other numbers (contours that start elsewhere) has weight. All of it twice leaves a least-squares answer where it is, and on
@@ -228,8 +267,8 @@ TEST_F(Properties, WeightsOfFrames) {
     q.train = requestFor(other).train;
     compare(answer(i), inspect(other.scene, q), {}, s.what.text(), one, q.models);
   }
-  expectWithin(kMoved, all, "every frame twice, contours started elsewhere", {"limit-angle"});
-  expectWithin(kMoved, one, "one frame twice, exact contours, started elsewhere", {"limit-angle"});
+  expectWithin(kMoved, kMovedLobe, all, "every frame twice, contours started elsewhere", {"limit-angle"});
+  expectWithin(kMoved, kMovedLobe, one, "one frame twice, exact contours, started elsewhere", {"limit-angle"});
 }
 
 /// The sampler makes what it says: counted in the scenes themselves.
