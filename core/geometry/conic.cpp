@@ -3,13 +3,14 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
+
+#include "core/base/dense_algebra.h"
 
 namespace glint {
 namespace {
@@ -233,10 +234,7 @@ Outcome<Ellipse> fitEllipse(const std::vector<Pixel>& points) {
   mean += low;
   Eigen::Matrix<double, Eigen::Dynamic, 2> centred(n, 2);
   for (Eigen::Index i = 0; i < n; ++i) centred.row(i) = (points[i] - mean).transpose() / extent;
-  const Eigen::Matrix2d r2 = Eigen::HouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 2>>(centred)
-                                 .matrixQR()
-                                 .topRows<2>()
-                                 .triangularView<Eigen::Upper>();
+  const Eigen::Matrix2d r2 = triangularFactor(centred);
   const Eigen::JacobiSVD<Eigen::Matrix2d> axes(r2, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Vector2d spread = axes.singularValues() / std::sqrt(double(n));
   const double rounding = 8 * kRoundOff * std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff()) / extent;
@@ -252,10 +250,7 @@ Outcome<Ellipse> fitEllipse(const std::vector<Pixel>& points) {
     const Eigen::Vector2d u = spread.cwiseInverse().cwiseProduct(axes.matrixV().transpose() * centred.row(i).transpose());
     design.row(i) << u.x(), u.y(), 1.0, u.x() * u.x(), u.x() * u.y(), u.y() * u.y();
   }
-  const Eigen::Matrix<double, 6, 6> r = Eigen::HouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 6>>(design)
-                                            .matrixQR()
-                                            .topRows<6>()
-                                            .triangularView<Eigen::Upper>();
+  const Eigen::Matrix<double, 6, 6> r = triangularFactor(design);
   // Minimise |R a|^2 under a^T K a = 1, K = [0 0 2; 0 -1 0; 2 0 0]. With R = U s V^T and b = s V^T a this is the largest
   // eigenvalue of s^-1 V^T K V s^-1. On an exact ellipse the smallest s is round-off; a floor keeps it finite, and the solution
   // is then that singular vector, as it should be.

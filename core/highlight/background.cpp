@@ -2,9 +2,10 @@
 #include "core/highlight/background.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+
+#include "core/base/dense_algebra.h"
 
 namespace glint {
 namespace {
@@ -97,8 +98,7 @@ Background fitBackground(const Image& image, const std::vector<char>& usable, co
     rows.middleRows<10>(used).setZero();
     rows.middleRows<9>(used).leftCols<9>().diagonal().setConstant(damping);
     used += 10;
-    const Eigen::Matrix<double, 10, 10> r =
-        Eigen::HouseholderQR<Rows>(rows.topRows(used)).matrixQR().topRows<10>().triangularView<Eigen::Upper>();
+    const Eigen::Matrix<double, 10, 10> r = triangularFactor(rows.topRows(used));
     solution = r.topLeftCorner<9, 9>().triangularView<Eigen::Upper>().solve(r.topRightCorner<9, 1>());
     if (!solution.allFinite()) return result;
     for (std::size_t i = 0; i < samples.size(); ++i) residual[i] = samples[i].value - samples[i].row.dot(solution);

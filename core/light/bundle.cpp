@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ceres/ceres.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <deque>
 #include <limits>
 #include <map>
 
+#include "core/base/dense_algebra.h"
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
 #include "core/base/residual_spread.h"
-#include "core/base/svd.h"
 #include "core/light/bundle_attempt.h"
 #include "core/light/dense_solver.h"
 #include "core/light/estimate.h"
@@ -180,7 +179,7 @@ void setCovariance(const std::vector<ContourEvidence>& points, const Attempt& a,
     if (!cost.Evaluate(parameters, &residual, blocks)) continue;
     jacobian.row(i) << byLight * chart, byLimit;
   }
-  const Eigen::MatrixXd r = Eigen::HouseholderQR<Eigen::MatrixXd>(jacobian).matrixQR().topRows(parameters).triangularView<Eigen::Upper>();
+  const Eigen::MatrixXd r = triangularFactor(jacobian);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(r, Eigen::ComputeFullV);
   bundle.positionCovariance = infinity * Eigen::Matrix3d::Identity();
   if (!(svd.singularValues()(parameters - 1) > 1e-14 * svd.singularValues()(0))) {  // a free direction, to round-off

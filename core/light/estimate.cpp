@@ -2,11 +2,11 @@
 #include "core/light/estimate.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <cmath>
 #include <limits>
 
+#include "core/base/dense_algebra.h"
 #include "core/geometry/plane.h"
 #include "core/light/ray_condition.h"
 
@@ -43,8 +43,7 @@ Outcome<Triangulation> triangulateLight(const std::vector<ReflectedRay>& rays, d
     rows.block<2, 3>(2 * i, 0) = across;
     rows.block<2, 1>(2 * i, 3) = across * (rays[i].origin - mean);
   }
-  const Eigen::Matrix4d r =
-      Eigen::HouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 4>>(rows).matrixQR().topRows<4>().triangularView<Eigen::Upper>();
+  const Eigen::Matrix4d r = triangularFactor(rows);
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(r.topLeftCorner<3, 3>(), Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Vector3d s = svd.singularValues();
   Triangulation result;

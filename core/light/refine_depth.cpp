@@ -10,8 +10,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/dense_algebra.h"
 #include "core/base/residual_spread.h"
-#include "core/base/svd.h"
 #include "core/geometry/polyline.h"
 #include "core/light/contour_evidence.h"
 #include "core/light/dense_solver.h"
@@ -338,7 +338,7 @@ Outcome<DepthRefinement> refineDepth(const std::vector<BundleView>& given, const
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(j.rows() + terms, columns);
   rows.topRows(j.rows()) = j / std::sqrt(spread.factor);
   rows.bottomRightCorner(terms, terms).setIdentity();
-  const Eigen::MatrixXd upper = Eigen::HouseholderQR<Eigen::MatrixXd>(rows).matrixQR().topRows(columns).triangularView<Eigen::Upper>();
+  const Eigen::MatrixXd upper = triangularFactor(rows);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(upper, Eigen::ComputeFullV);
   if (!(svd.singularValues()(columns - 1) > 1e-14 * svd.singularValues()(0))) return result;  // a free direction, to round-off
   const Eigen::MatrixXd root = svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();

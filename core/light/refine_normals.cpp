@@ -8,8 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/dense_algebra.h"
 #include "core/base/residual_spread.h"
-#include "core/base/svd.h"
 #include "core/geometry/polyline.h"
 #include "core/light/contour_evidence.h"
 #include "core/light/left_out.h"
@@ -373,7 +373,7 @@ MatrixXd rootOf(const Linearised& at, Eigen::Index terms, const ResidualSpread& 
   MatrixXd rows = MatrixXd::Zero(at.jacobian.rows() + terms, columns);
   rows.topRows(at.jacobian.rows()) = at.jacobian / std::sqrt(spread.factor);
   rows.bottomRightCorner(terms, terms).setIdentity();
-  const MatrixXd upper = Eigen::HouseholderQR<MatrixXd>(rows).matrixQR().topRows(columns).triangularView<Eigen::Upper>();
+  const MatrixXd upper = triangularFactor(rows);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(upper, Eigen::ComputeFullV);
   if (!(svd.singularValues()(columns - 1) > 1e-14 * svd.singularValues()(0))) return {};  // free to round-off
   return svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();

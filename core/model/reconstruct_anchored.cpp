@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <cmath>
 #include <limits>
 
-#include "core/base/svd.h"
+#include "core/base/dense_algebra.h"
 #include "core/model/reconstruct_detail.h"
 
 namespace glint {
@@ -30,7 +29,7 @@ Outcome<Reconstruction> reconstructAnchored(const std::vector<ConicView>& views,
     const Eigen::Matrix<double, 6, 1>& c = world.views[i].conic;
     rows.middleRows<6>(6 * i) = a - c * (c.transpose() * a);
   }
-  const Eigen::Matrix<double, 7, 7> r = Eigen::HouseholderQR<Rows>(rows).matrixQR().topRows<7>().triangularView<Eigen::Upper>();
+  const Eigen::Matrix<double, 7, 7> r = triangularFactor(rows);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(r.topLeftCorner<6, 6>(), Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Matrix<double, 6, 1> s = svd.singularValues();
   if (!(s(5) > options.minRankRatio * s(0))) return Failure{Reason::RankDeficient, "several shapes about this centre fit"};

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "core/base/dense_algebra.h"
 #include "core/base/number_text.h"
-#include "core/base/svd.h"
 #include "core/model/ellipse_distance.h"
 #include "core/model/reconstruct_detail.h"
 
@@ -85,8 +84,7 @@ std::optional<Eigen::Vector3d> axisPoint(const std::vector<ConicView>& views) {
     for (int k = 0; k < 2; ++k) rows.row(2 * i + k) = p.row(k) / p.block<1, 3>(k, 0).norm();
   }
   if (!rows.allFinite()) return std::nullopt;
-  const Eigen::Matrix4d r =
-      Eigen::HouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 4>>(rows).matrixQR().topRows<4>().triangularView<Eigen::Upper>();
+  const Eigen::Matrix4d r = triangularFactor(rows);
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(r.topLeftCorner<3, 3>(), Eigen::ComputeFullU | Eigen::ComputeFullV);
   if (!(svd.singularValues()(2) > 1e-10 * svd.singularValues()(0))) return std::nullopt;  // the axes are parallel, to round-off
   const Eigen::Vector3d x = svd.solve(-r.topRightCorner<3, 1>());
@@ -167,12 +165,10 @@ Outcome<Reconstruction> reconstructLinear(const std::vector<ConicView>& views, c
     rows.middleRows<6>(6 * i) = a - c * (c.transpose() * a);
     weights.middleRows<6>(6 * i) = kOutlineWeight * std::sqrt(kOutlineViews / double(views.size())) * a;
   }
-  const Eigen::Matrix<double, 10, 10> r =
-      Eigen::HouseholderQR<Rows>(rows).matrixQR().topRows<10>().triangularView<Eigen::Upper>();
+  const Eigen::Matrix<double, 10, 10> r = triangularFactor(rows);
   // The length held at 1 is that of Q and of its outlines, as with the scales among the unknowns: with Q alone noise draws the
   // solution towards quadrics whose outlines vanish.
-  const Eigen::Matrix<double, 10, 10> norm =
-      Eigen::HouseholderQR<Rows>(weights).matrixQR().topRows<10>().triangularView<Eigen::Upper>();
+  const Eigen::Matrix<double, 10, 10> norm = triangularFactor(weights);
   const Eigen::Matrix<double, 10, 10> scaled = norm.transpose().triangularView<Eigen::Lower>().solve(r.transpose()).transpose();
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Reconstruction result;

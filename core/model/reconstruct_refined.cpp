@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/dense_algebra.h"
 #include "core/base/number_text.h"
-#include "core/base/svd.h"
 #include "core/model/ellipse_distance.h"
 #include "core/model/reconstruct_detail.h"
 
@@ -148,7 +148,7 @@ struct Linearised {
   int unknowns = 9;
 
   Linearised(const Rows& rows, const State& state) : cost(rows.col(9).squaredNorm()) {
-    Eigen::Matrix<double, 10, 10> r = Eigen::HouseholderQR<Rows>(rows).matrixQR().topRows<10>().triangularView<Eigen::Upper>();
+    Eigen::Matrix<double, 10, 10> r = triangularFactor(rows);
     if (state.flat()) {
       // On the border of the semidefinite cone the thickness may only grow. Where the cost would rise with it, it stays zero, and
       // the step moves within the flat ellipsoids (turning the disc is among them).
@@ -161,14 +161,9 @@ struct Linearised {
         unknowns = 8;
       }
     }
-    const Eigen::Matrix<double, 9, 9> square = Eigen::HouseholderQR<Eigen::Matrix<double, 10, 9>>(r.leftCols<9>())
-                                                   .matrixQR()
-                                                   .topRows<9>()
-                                                   .triangularView<Eigen::Upper>();
-    const Eigen::Matrix<double, 10, 1> rotated =
-        Eigen::HouseholderQR<Eigen::Matrix<double, 10, 9>>(r.leftCols<9>()).householderQ().transpose() * r.col(9);
-    svd.compute(square, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    along = svd.matrixU().transpose() * rotated.head<9>();
+    const Eigen::MatrixXd factor = triangularFactor(r);
+    svd.compute(factor.topLeftCorner<9, 9>(), Eigen::ComputeFullU | Eigen::ComputeFullV);
+    along = svd.matrixU().transpose() * factor.topRightCorner<9, 1>();
   }
   double largest() const { return svd.singularValues()(0); }
   double smallest() const { return svd.singularValues()(unknowns - 1); }
@@ -205,7 +200,7 @@ std::optional<ParameterUncertainty> uncertaintyOf(const Rows& rows, const State&
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(jacobian);
   Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(rows.rows(), 9);
   q.topRows(data) *= u.noisePx;
-  const Eigen::Matrix<double, 9, 9> spread = Eigen::HouseholderQR<Eigen::MatrixXd>(q).matrixQR().topRows<9>().triangularView<Eigen::Upper>();
+  const Eigen::Matrix<double, 9, 9> spread = triangularFactor(q);
   const Eigen::Matrix<double, 9, 9> r = qr.matrixQR().topRows<9>().triangularView<Eigen::Upper>();
   Eigen::JacobiSVD<Eigen::MatrixXd> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
   svd.setThreshold(kRankRatio);

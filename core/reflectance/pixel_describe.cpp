@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/dense_algebra.h"
 #include "core/base/residual_spread.h"
-#include "core/base/svd.h"
 #include "core/reflectance/light_radiance.h"
 #include "core/reflectance/pixel_problem.h"
 
@@ -133,8 +133,7 @@ void describeUncertainty(PixelProblem& pixels, const State& at, bool blur, Pixel
   const double inflation = std::max(1.0, double(residuals.size()) / spread.degreesOfFreedom);
   fit.independentCells = std::max(1.0, spread.degreesOfFreedom / inflation);
   fit.patterned = !(fit.rmsPx * patternOf(residuals) <= kPatternShare * pixels.evidence().radiusPx);
-  const Eigen::MatrixXd r =
-      Eigen::HouseholderQR<Eigen::MatrixXd>(jacobian).matrixQR().topRows(unknowns).triangularView<Eigen::Upper>();
+  const Eigen::MatrixXd r = triangularFactor(jacobian);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(r, Eigen::ComputeFullV);
   if (!(svd.singularValues()(unknowns - 1) > 1e-12 * svd.singularValues()(0))) return;  // a free direction
   const Eigen::MatrixXd all =

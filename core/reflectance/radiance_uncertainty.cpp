@@ -5,8 +5,8 @@
 #include <Eigen/QR>
 #include <cmath>
 
+#include "core/base/dense_algebra.h"
 #include "core/base/residual_spread.h"
-#include "core/base/svd.h"
 #include "core/reflectance/radiance_problem.h"
 #include "core/reflectance/root_cost.h"
 
