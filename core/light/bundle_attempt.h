@@ -61,8 +61,8 @@ void settleSide(const std::vector<ContourEvidence>& points, Attempt& a);
 /// The points hold the weights of the result.
 Attempt directed(std::vector<ContourEvidence>& points, const Attempt& start, double robustPx, int maxIterations);
 
-/// Reluctance against an extent, 1 / its standard deviation: one for an extent that widens the limit angle by half. Entries that
-/// the contours see win over it, those that no view shows stay zero.
+/// Reluctance against an extent, 1 / its standard deviation: one for an extent that widens the limit angle by a twentieth.
+/// Entries that the contours see win over it, those that no view shows stay zero.
 double extentPrior(const Attempt& a, const std::vector<ContourEvidence>& points);
 
 /// Residual with an extent, and its derivatives by light (4), limit (1) and extent (6) where asked. False where it is no number.

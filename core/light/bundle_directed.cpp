@@ -132,7 +132,9 @@ bool directedResidual(const ContourEvidence& e, const Eigen::Vector4d& light, do
 
 double extentPrior(const Attempt& a, const std::vector<ContourEvidence>& points) {
   const double width = 2 * meanDistance(a.light, points) * a.limit;  // of the light that is seen under the limit angle: H turns half as much as L
-  return 1 / (width * width);
+  constexpr double kShare =
+      0.1;  // with 1 a fit to few views of a plane drifts along what its contours hardly show and predicts others worse
+  return 1 / (kShare * width * width);
 }
 
 Attempt directed(std::vector<ContourEvidence>& points, const Attempt& start, double robustPx, int maxIterations) {
