@@ -80,12 +80,12 @@ Attempt inChartOf(std::vector<ContourEvidence>& points, const Attempt& start, do
                                               ceres::SphereManifold<3>(), ceres::SubsetManifold(1, {0})));
     else
       problem.SetManifold(a.light.data(), new ceres::SphereManifold<4>());
-    const DenseSolution solution = solveDense(problem, maxIterations, 1e-10);  // tighter than the 1e-7 that the rounds ask for
+    const DenseSolution solution = solveDense(problem, maxIterations, 1e-12);
     a.iterations += solution.iterations;
     a.extent = unit * extent;
     if (!solution.usable || !a.light.allFinite() || !a.extent.allFinite() || !(a.limit > 0)) return none;
     const double moved = std::max({(a.light - before.light).norm(), std::abs(a.limit - before.limit), (a.extent - before.extent).norm() * prior});
-    if (moved < 1e-7) break;  // the extent is a correction: it need not be found as well as the light
+    if (moved < 1e-9) break;  // as without an extent
   }
   settleSide(points, a);
   if (a.behind) return none;
@@ -95,19 +95,28 @@ Attempt inChartOf(std::vector<ContourEvidence>& points, const Attempt& start, do
   return a;
 }
 
-/// Twice: what the points are worth is told by the start's residuals first, which hold what the extent explains, then by those of
-/// the result.
+/// What the points are worth is told by the residuals of the start, which hold what the extent explains, then by those of each
+/// result, until it stays.
 Attempt weighed(std::vector<ContourEvidence>& points, const Attempt& start, double robustPx, int maxIterations) {
   constexpr double kLeastNoisePx =
-      0.01;  // below the accuracy of any detection; keeps the prior's weight above zero on exact data
+      0.01;                            // below the accuracy of any detection; keeps the prior's weight above zero on exact data
+  constexpr double kSameNoise = 0.01;  // residuals tell a standard deviation to some hundredths
+  constexpr int kMostWeightings = 6;
   constexpr int kConstant = 4, kWithExtent = 10;  // parameters
   const auto noisePx = [&](const Attempt& a) {
     return std::max(kLeastNoisePx, std::sqrt(spreadOf(points, a, a.directed ? kWithExtent : kConstant, robustPx).factor));
   };
-  const Attempt first = inChartOf(points, start, noisePx(start), robustPx, maxIterations);
-  if (!first.directed) return first;
-  const Attempt second = inChartOf(points, first, noisePx(first), robustPx, maxIterations);
-  return second.directed ? second : first;
+  double counted = noisePx(start);
+  Attempt found = inChartOf(points, start, counted, robustPx, maxIterations);
+  for (int round = 0; round < kMostWeightings && found.directed; ++round) {
+    const double noise = noisePx(found);
+    if (std::abs(noise / counted - 1) < kSameNoise) break;
+    const Attempt again = inChartOf(points, found, noise, robustPx, maxIterations);
+    if (!again.directed) break;
+    found = again;
+    counted = noise;
+  }
+  return found;
 }
 
 }  // namespace
