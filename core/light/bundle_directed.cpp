@@ -80,7 +80,7 @@ Attempt inChartOf(std::vector<ContourEvidence>& points, const Attempt& start, do
                                               ceres::SphereManifold<3>(), ceres::SubsetManifold(1, {0})));
     else
       problem.SetManifold(a.light.data(), new ceres::SphereManifold<4>());
-    const DenseSolution solution = solveDense(problem, maxIterations, 1e-12);
+    const DenseSolution solution = solveDense(problem, maxIterations, 1e-12);  // to round-off, as without an extent
     a.iterations += solution.iterations;
     a.extent = unit * extent;
     if (!solution.usable || !a.light.allFinite() || !a.extent.allFinite() || !(a.limit > 0)) return none;
