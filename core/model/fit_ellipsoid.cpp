@@ -75,6 +75,7 @@ Outcome<Reconstruction> refinedWithPrior(const std::vector<ConicView>& views, co
   double counted = 1;  // px, as which the fit so far counts a contour point
   Outcome<Reconstruction> refined = Failure{Reason::NotConverged, ""};
   if (const std::optional<double> worth = worthPx(start, views)) refined = counting(counted = *worth);
+  // Where no weight is known, or the first one is refused: a pixel.
   if (!refined) refined = counting(counted = 1);
   for (int round = 0; round < kMostWeightings && refined && refined->ellipsoid; ++round) {
     const std::optional<double> worth = worthPx(*refined->ellipsoid, views);

@@ -119,7 +119,7 @@ const std::vector<std::string> kAllModels{"primal", "dual", "canonical", "limit-
 
 TEST_F(Properties, RigidMotionOfTheWorld) {
   Differences d;
-  for (const int i : numbers()) {
+  for (const int i : numbers({56, 97})) {
     std::mt19937 random(scene(i).what.seed);
     std::uniform_real_distribution<double> u(-1, 1);
     Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
