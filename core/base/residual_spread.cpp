@@ -29,6 +29,23 @@ double productsAt(std::size_t lag, const std::vector<double>& values, const std:
 
 }  // namespace
 
+double correlationInflation(const std::vector<double>& values, const std::vector<int>& views, Neighbours neighbours) {
+  require(values.size() == views.size(), "correlationInflation: sizes");
+  double squares = 0;
+  for (const double v : values) squares += v * v;
+  if (!(squares > 0)) return 1;
+  double inflation = 1, share = 1;
+  const double noticed = 2 / std::sqrt(double(values.size()));  // an autocorrelation of white residuals stays below this
+  for (std::size_t lag = 1; lag <= values.size() / 2; ++lag) {
+    const double correlation = productsAt(lag, values, views, neighbours) / squares;
+    if (!(correlation > noticed)) break;
+    // Shares never grow: what follows a lag that hardly counts would come and go with it.
+    share = std::min(share, (correlation - noticed) / noticed);
+    inflation += 2 * share * correlation;
+  }
+  return inflation;
+}
+
 ResidualSpread residualSpread(const std::vector<double>& residuals, const std::vector<int>& views, int parameters,
                               double robustScale, Neighbours neighbours) {
   require(!residuals.empty() && residuals.size() == views.size() && robustScale > 0, "residualSpread: sizes and scale");
@@ -46,13 +63,7 @@ ResidualSpread residualSpread(const std::vector<double>& residuals, const std::v
   // The median of |x| of a unit normal is 1 / 1.4826.
   spread.noisePx = 1.4826 * absolute[absolute.size() / 2] * std::sqrt(n / free);
   const double slope = std::max(inliers, 1.0) / n, k = 1 + parameters / n * (1 - slope) / slope;
-  double inflation = 1;
-  const double noticed = 2 / std::sqrt(n);  // an autocorrelation of white residuals stays below this
-  for (std::size_t lag = 1; squares > 0 && lag <= psi.size() / 2; ++lag) {
-    const double correlation = productsAt(lag, psi, views, neighbours) / squares;
-    if (!(correlation > noticed)) break;
-    inflation += 2 * correlation;
-  }
+  const double inflation = correlationInflation(psi, views, neighbours);
   spread.factor = inflation * k * k * squares / free / (slope * slope);
   spread.degreesOfFreedom = std::max(1.0, free / inflation);
   return spread;

@@ -15,6 +15,12 @@ struct ResidualSpread {
 /// What the residuals of one view lie along: a contour, whose last is the first one's neighbour, or lines with ends.
 enum class Neighbours { Closed, Open };
 
+/// By how much correlation along the contour makes the variance of a sum larger: 1 + 2 sum rho_k, n points tell no more than n /
+/// inflation. The sum ends where a correlation is no larger than white residuals show, 2 / sqrt(n). From twice that on, this lag
+/// and later ones count partly, so that a small change of the residuals is a small change of the sum.
+/// @param values  in contour order within a view, one view after the other. @param views  of each value; same size.
+double correlationInflation(const std::vector<double>& values, const std::vector<int>& views, Neighbours neighbours);
+
 /// For a Huber loss of scale `robustScale` that was held: K^2 (sum psi^2 / (n - p)) / (mean psi')^2, times the inflation
 /// 1 + 2 sum rho_k of residuals that are correlated along their contour (a detected contour, or a model that does not quite fit):
 /// then n points tell less than n. On closed contours it does not matter where they start and which way they go.

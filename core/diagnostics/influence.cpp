@@ -95,7 +95,7 @@ std::optional<double> influenceOf(const Influence& influence, int frame, const s
 Influence measureInfluence(const Inspection& inspection, const ProgressFn& progress, int mostProbes) {
   require(inspection.scene && inspection.surfaces && mostProbes >= 0, "measureInfluence: the inspection is empty");
   Influence influence;
-  std::vector<Fold> folds = foldsOf(inspection);
+  std::vector<Fold> folds = foldsOf(inspection, LeaveOut::Frame);
   const int n = int(folds.size());
   for (int f = 0; f < int(inspection.scene->frames.size()); ++f)
     if (std::any_of(inspection.views.begin(), inspection.views.end(),

@@ -14,6 +14,7 @@
 #include "core/light/bundle_attempt.h"
 #include "core/light/dense_solver.h"
 #include "core/light/estimate.h"
+#include "core/light/left_out.h"
 #include "core/light/robust_costs.h"
 
 namespace glint {
@@ -351,19 +352,20 @@ Outcome<Bundle> bundleLight(const std::vector<ContourEvidence>& evidence, std::s
 Outcome<LeftOutErrors> leftOutErrors(const std::vector<BundleView>& views, const Light& start, const BundleOptions& options,
                                      int atMost) {
   const Outcome<std::vector<ContourEvidence>> evidence = contoursOnSurfaces(views, options.pointsPerView);
-  return evidence ? leftOutErrors(*evidence, views.size(), start, options, atMost) : Outcome<LeftOutErrors>(evidence.failure());
+  return evidence ? leftOutErrors(*evidence, placesOf(views), start, options, atMost)
+                  : Outcome<LeftOutErrors>(evidence.failure());
 }
 
-Outcome<LeftOutErrors> leftOutErrors(const std::vector<ContourEvidence>& evidence, std::size_t views, const Light& start,
-                                     const BundleOptions& options, int atMost) {
+Outcome<LeftOutErrors> leftOutErrors(const std::vector<ContourEvidence>& evidence, const std::vector<int>& places,
+                                     const Light& start, const BundleOptions& options, int atMost) {
   require(atMost >= 1, "leftOutErrors: atMost");
-  const int folds = std::min(atMost, int(views));
+  const std::vector<int> leave = placesToLeaveOut(places, atMost);
+  const int folds = int(leave.size());
   LeftOutErrors errors{std::vector<double>(std::size_t(folds)), std::vector<double>(std::size_t(folds))};
   std::vector<std::optional<Failure>> failures(static_cast<std::size_t>(folds));
   const auto fold = [&](int k) {
-    const int left = int(std::size_t(k) * views / std::size_t(folds));
     std::vector<ContourEvidence> others, own;
-    for (const ContourEvidence& e : evidence) (e.view == left ? own : others).push_back(e);
+    for (const ContourEvidence& e : evidence) (places[std::size_t(e.view)] == leave[std::size_t(k)] ? own : others).push_back(e);
     Outcome<NormalisedContours> contours = normalised(std::move(others));
     const Outcome<NormalisedContours> seen = normalised(std::move(own));
     const Outcome<Best> best = contours ? bestAttempt(*contours, start, options) : Outcome<Best>(contours.failure());

@@ -66,13 +66,13 @@ struct Bundle {
 Outcome<Bundle> bundleLight(const std::vector<BundleView>& views, const Light& start, const BundleOptions& options = {});
 
 /// RMS distances of left-out views' contour points from the level sets of the bundles of the other views, px (to first order),
-/// one entry per view that was left out. NaN where fewer than five of its points are on a surface.
+/// one entry per place that was left out (placesOf()). NaN where fewer than five of its points are on a surface.
 struct LeftOutErrors {
   std::vector<double> constant;  ///< with one limit angle
   std::vector<double> directed;  ///< with the extent of the light, see BundleOptions::limitOrders
 };
-/// Leaves one view out at a time, evenly spread ones where there are more than `atMost`. Rays are cast once for all of them.
-/// The first failure of bundleLight() for any of them.
+/// Leaves the views of one place out at a time, evenly spread ones where there are more than `atMost` places. Rays are cast once
+/// for all of them. The first failure of bundleLight() for any of them.
 Outcome<LeftOutErrors> leftOutErrors(const std::vector<BundleView>& views, const Light& start, const BundleOptions& options,
                                      int atMost);
 

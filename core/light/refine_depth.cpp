@@ -96,6 +96,7 @@ struct Seen {
 struct Problem {
   std::vector<Point> points;
   std::vector<View> views;
+  std::vector<int> places;  ///< of placesOf(), one per view
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   double scale = 1;
 
@@ -245,14 +246,13 @@ State fitted(const Problem& problem, State state, const Terms& prior, int terms,
 
 /// RMS distance of each of some views' contours from the level set that the other views give, px.
 std::vector<double> leftOutErrors(const Problem& problem, const State& start, const Terms& prior, int terms, double robustPx) {
-  constexpr std::size_t kLeftOut = 6;  // more views left out would not change a choice between so few
-  const std::size_t views = problem.views.size(), count = std::min(kLeftOut, views);
+  constexpr int kLeftOut = 6;  // more places left out would not change a choice between so few
   std::vector<double> errors;
-  for (std::size_t i = 0; i < count; ++i) {
-    const int left = int(i * views / count);
+  for (const int left : placesToLeaveOut(problem.places, kLeftOut)) {
+    const auto isLeft = [&](const Point& p) { return problem.places[std::size_t(p.view)] == left; };
     Problem others = problem, one = problem;
-    std::erase_if(others.points, [&](const Point& p) { return p.view == left; });
-    std::erase_if(one.points, [&](const Point& p) { return p.view != left; });
+    std::erase_if(others.points, isLeft);
+    std::erase_if(one.points, [&](const Point& p) { return !isLeft(p); });
     if (one.points.empty() || others.points.size() < 30) continue;
     errors.push_back(rms(residuals(one, fitted(others, start, prior, terms, robustPx))));
   }
@@ -276,6 +276,7 @@ Outcome<DepthRefinement> refineDepth(const std::vector<BundleView>& given, const
   result.rmsPx = bundle->rmsPx;
 
   Problem problem;
+  problem.places = placesOf(given);
   double distance = 0;
   for (std::size_t v = 0; v < given.size(); ++v) {
     const BundleView& g = given[v];

@@ -31,7 +31,7 @@ constexpr int kMostTerms = 120;
 constexpr double kSmallTerm = 1e-5;      // of a height's prior variance: what is left out is invisible
 constexpr double kReaches[] = {4, 2, 1, 0.5};    // of a highlight's size: the length of the process
 constexpr double kSteepness[] = {0.0625, 0.25, 1};  // of sigma, the flattest first
-constexpr std::size_t kLeftOut = 6;      // more views left out would not change a choice between so few
+constexpr int kLeftOut = 6;                         // more places left out would not change a choice between so few
 
 struct Seen {
   Vector3d position, normal, toCamera;  ///< unit vectors away from the surface
@@ -85,6 +85,7 @@ Eigen::Matrix<double, 4, 3> chartOf(const Eigen::Vector4d& light) {
 struct Problem {
   std::vector<Point> points;
   std::size_t views = 0;
+  std::vector<int> places;  ///< of placesOf(), one per view
   Vector3d origin = Vector3d::Zero();
   double scale = 1;
   double robustPx = 1;
@@ -225,20 +226,16 @@ State fitted(const Problem& problem, const Basis& basis, double amplitude, State
 
 /// RMS distance of each of some views' contours from what the other views give, px.
 std::vector<double> leftOutErrors(const Problem& problem, const Basis& basis, double amplitude, const State& start) {
-  std::vector<int> views;
-  for (const Point& p : problem.points)
-    if (views.empty() || views.back() != p.view) views.push_back(p.view);
-  const std::size_t count = std::min(kLeftOut, views.size());
   std::vector<double> errors;
-  for (std::size_t i = 0; i < count; ++i) {
-    const int left = views[i * views.size() / count];
+  for (const int left : placesToLeaveOut(problem.places, kLeftOut)) {
     std::vector<char> used;
     std::size_t others = 0;
     for (const Point& p : problem.points) {
-      used.push_back(p.view != left);
-      others += p.view != left;
+      const bool stays = problem.places[std::size_t(p.view)] != left;
+      used.push_back(stays);
+      others += stays;
     }
-    if (others < kLeastPoints) continue;
+    if (others < kLeastPoints || others == problem.points.size()) continue;
     const VectorXd r = linearised(problem, basis, amplitude, fitted(problem, basis, amplitude, start, used), false).residuals;
     std::vector<double> own;
     for (std::size_t k = 0; k < used.size(); ++k)
@@ -273,6 +270,7 @@ std::optional<Point> pointAt(const BundleView& view, const Pixel& pixel) {
 Outcome<Problem> problemOf(const std::vector<BundleView>& views, const BundleOptions& options, const ContourAngle& angles) {
   Problem problem;
   problem.views = views.size();
+  problem.places = placesOf(views);
   problem.robustPx = options.robustPx;
   const int perView = std::min(options.pointsPerView, std::max(kLeastPerView, int(kMostPoints / std::max<std::size_t>(1, views.size()))));
   problem.scale = 0;

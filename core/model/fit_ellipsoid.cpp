@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "core/base/number_text.h"
+#include "core/base/residual_spread.h"
 #include "core/light/estimate.h"
 #include "core/model/ellipse_distance.h"
 #include "core/model/plausible.h"
@@ -19,8 +22,7 @@ constexpr int kContourPoints = 72;
 /// plane) to 9 % (sphere).
 constexpr double kPriorBias = 0.01;
 constexpr double kSameWorth = 1e-3;  // residuals tell a standard deviation to some hundredths
-constexpr int kMostWeightings =
-    6;  // two to four mostly; where the correlation of the residuals is cut at another lag each time it goes to and fro
+constexpr int kMostWeightings = 12;  // two to four mostly
 constexpr double kLeastWorthPx = 0.01;  // below the accuracy of any detection; keeps the prior's weight finite on exact data
 
 CentrePrior priorWith(const CentreAnchor& anchor, double bias) {
@@ -35,33 +37,40 @@ CentrePrior priorWith(const CentreAnchor& anchor, double bias) {
 /// fit (a curved surface, slanted views) the distances wave slowly along the contour, and many points say no more than a few.
 /// Nothing where too few views see it.
 std::optional<double> worthPx(const Ellipsoid& ellipsoid, const std::vector<ConicView>& views) {
-  std::vector<std::vector<double>> distances;
-  double squares = 0, count = 0;
-  std::size_t longest = 0;
-  for (const ConicView& view : views) {
-    const Outcome<Ellipse> e = outlineEllipse(ellipsoid, view.projection);
+  std::vector<double> distances;
+  std::vector<int> seenBy;
+  double squares = 0;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const Outcome<Ellipse> e = outlineEllipse(ellipsoid, views[v].projection);
     if (!e) continue;
-    distances.emplace_back();
-    for (const Pixel& p : view.points.empty() ? view.ellipse.sample(36) : view.points) {
-      distances.back().push_back(footOnEllipse(*e, p).distance);
-      squares += distances.back().back() * distances.back().back();
+    for (const Pixel& p : views[v].points.empty() ? views[v].ellipse.sample(36) : views[v].points) {
+      distances.push_back(footOnEllipse(*e, p).distance);
+      seenBy.push_back(int(v));
+      squares += distances.back() * distances.back();
     }
-    count += double(distances.back().size());
-    longest = std::max(longest, distances.back().size());
   }
-  if (!(count > 9)) return std::nullopt;
-  if (!(squares > 0)) return kLeastWorthPx;
-  double inflation = 1;
-  const double noticed = 2 / std::sqrt(count);  // an autocorrelation of white noise stays below this
-  for (std::size_t lag = 1; lag <= longest / 2; ++lag) {
-    double sum = 0;
-    for (const std::vector<double>& d : distances)
-      for (std::size_t i = 0; i < d.size(); ++i) sum += d[i] * d[(i + lag) % d.size()];
-    if (!(sum / squares > noticed)) break;
-    inflation += 2 * sum / squares;
-  }
-  return std::max(kLeastWorthPx, std::sqrt(inflation * squares / (count - 9)));
+  const double free = double(distances.size()) - 9;
+  if (!(free > 0)) return std::nullopt;
+  return std::max(kLeastWorthPx, std::sqrt(correlationInflation(distances, seenBy, Neighbours::Closed) * squares / free));
 }
+
+/// Looks for the value that a fit counts a contour point as and that its residuals then confirm. Taking over what the residuals
+/// say goes to and fro where a looser prior makes them much smaller; once the answers lie on both sides, the value is sought
+/// between (secant in logarithms, kept off the ends).
+class SteadyWorth {
+ public:
+  double next(double counted, double worth) {
+    const double x = std::log(counted), g = std::log(worth / counted);
+    (g > 0 ? below_ : above_) = {x, g};
+    if (!below_ || !above_) return worth;
+    constexpr double kOffTheEnds = 0.1;  // of the interval: it shrinks in every round
+    const double share = below_->second / (below_->second - above_->second);
+    return std::exp(below_->first + std::clamp(share, kOffTheEnds, 1 - kOffTheEnds) * (above_->first - below_->first));
+  }
+
+ private:
+  std::optional<std::pair<double, double>> below_, above_;  ///< log of what was counted, log of what the residuals make of it
+};
 
 /// The refined ellipsoid with contours and prior in the same unit: standard deviations. What a contour point is worth is not
 /// known before the fit, so it is estimated from the start, then from each fit, until it stays (the solver counts a pixel as one
@@ -77,19 +86,29 @@ Outcome<Reconstruction> refinedWithPrior(const std::vector<ConicView>& views, co
   if (const std::optional<double> worth = worthPx(start, views)) refined = counting(counted = *worth);
   // Where no weight is known, or the first one is refused: a pixel.
   if (!refined) refined = counting(counted = 1);
-  for (int round = 0; round < kMostWeightings && refined && refined->ellipsoid; ++round) {
+  SteadyWorth steady;
+  for (int round = 0; refined && refined->ellipsoid; ++round) {
     const std::optional<double> worth = worthPx(*refined->ellipsoid, views);
     if (!worth || std::abs(*worth / counted - 1) < kSameWorth) break;
-    Outcome<Reconstruction> again = counting(*worth);
+    if (round == kMostWeightings) {
+      refined->remarks.push_back(
+          formatted("the fit assumes that a contour point is accurate to %.2g px, and then its residuals suggest %.2g px; no "
+                    "value was found that "
+                    "agrees with itself, so shape and bands may be off by more than they say",
+                    counted, *worth));
+      break;
+    }
+    const double next = steady.next(counted, *worth);
+    Outcome<Reconstruction> again = counting(next);
     if (!again) {
       refined->remarks.push_back(formatted(
           "the fit assumes that a contour point is accurate to %.2g px; with %.2g px, as its residuals suggest, it finds "
           "no ellipsoid (%s)",
-          counted, *worth, again.failure().message().c_str()));
+          counted, next, again.failure().message().c_str()));
       break;
     }
     refined = std::move(again);
-    counted = *worth;
+    counted = next;
   }
   return refined;
 }

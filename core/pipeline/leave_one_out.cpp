@@ -6,6 +6,7 @@
 
 #include "core/base/elapsed.h"
 #include "core/base/number_text.h"
+#include "core/light/left_out.h"
 #include "core/model/plausible.h"
 #include "core/pipeline/training.h"
 
@@ -93,7 +94,8 @@ Answer leaveOut(Fold& fold, const HighlightModel& model, const Settings& setting
   return answer;
 }
 
-std::vector<Fold> foldsOf(const Inspection& inspection) {
+std::vector<Fold> foldsOf(const Inspection& inspection, LeaveOut together) {
+  const std::vector<int> places = placesOf(inspection.views);
   std::vector<int> usable;
   for (int i = 0; i < static_cast<int>(inspection.views.size()); ++i)
     if (!inspection.views[i].failure) usable.push_back(i);
@@ -101,9 +103,12 @@ std::vector<Fold> foldsOf(const Inspection& inspection) {
   std::vector<Fold> all;
   for (int f = 0; f < folds; ++f) {
     Fold fold;
-    fold.left = &inspection.views[usable[static_cast<std::size_t>(f) * n / folds]];
+    const auto left = static_cast<std::size_t>(usable[static_cast<std::size_t>(f) * n / folds]);
+    fold.left = &inspection.views[left];
     // The whole frame is left out: another highlight in it has seen the same camera and the same errors.
-    for (const TrainingView& v : inspection.views) {
+    for (std::size_t i = 0; i < inspection.views.size(); ++i) {
+      const TrainingView& v = inspection.views[i];
+      if (together == LeaveOut::Place && places[i] == places[left]) continue;
       if (v.failure || v.frame == fold.left->frame || v.highlight.light != fold.left->highlight.light) continue;
       if (inspection.train.perSurface && inspection.surfaces->keyOf(v.frame) != inspection.surfaces->keyOf(fold.left->frame))
         continue;

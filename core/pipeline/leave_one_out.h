@@ -34,8 +34,11 @@ struct Answer {
   bool boundToSurface = false;  ///< an ellipsoid of the highlight as it was seen, without the walk that takes the surface out
 };
 
+/// What is left out with a training view: its frame, or every frame from its place (core/light/left_out.h). A view from the same
+/// place would tell a model the answer; to see what one frame changes, that view must stay.
+enum class LeaveOut { Frame, Place };
 /// One per left-out view: at most kMostLeftOut, evenly spread. Their views stay valid as long as the inspection.
-std::vector<Fold> foldsOf(const Inspection& inspection);
+std::vector<Fold> foldsOf(const Inspection& inspection, LeaveOut together);
 /// Fits the model to the fold's other views. Fills what is missing in the fold. The model's and the light's failures.
 Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Settings& settings);
 /// Fits the model to the other views, predicts the left-out one and compares. Fills what is missing in the fold.

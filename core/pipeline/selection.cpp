@@ -384,7 +384,7 @@ void Search::expect(std::size_t m) {
 }
 
 Selection Search::run() {
-  folds_ = foldsOf(inspection_);
+  folds_ = foldsOf(inspection_, LeaveOut::Place);
   s_.leftOut = static_cast<int>(folds_.size());
   double noise = 0;
   for (const Fold& f : folds_) noise += contourNoisePct(f.left->highlight.contour) / double(folds_.size());

@@ -59,15 +59,15 @@ namespace {
 
 /// Whether the limit angle gets an extent. With -1 the views decide: only where one constant leaves residuals that are both visible and
 /// systematic is the extent tried at all, and it is kept when it predicts left-out views better by more than the standard error of the gain.
-int limitOrders(const std::vector<ContourEvidence>& evidence, std::size_t views, const Bundle& constant,
+int limitOrders(const std::vector<ContourEvidence>& evidence, const std::vector<int>& places, const Bundle& constant,
                 const BundleOptions& options, int asked) {
   if (asked >= 0) return asked;
   constexpr double kVisiblePx = 0.05;      // a renderer's own noise and the detection stay below
   constexpr double kSystematic = 0.5;      // of the points count as independent: less means that residuals keep their sign along contours
-  if (views < 4 || !(constant.rmsPx > kVisiblePx) || !constant.uncertainty) return 0;
-  if (constant.uncertainty->degreesOfFreedom > kSystematic * double(options.pointsPerView) * double(views)) return 0;
-  constexpr int kLeftOut = 6;  // more views left out would not change a choice between two
-  const Outcome<LeftOutErrors> errors = leftOutErrors(evidence, views, constant.light, options, kLeftOut);
+  if (countOf(places) < 4 || !(constant.rmsPx > kVisiblePx) || !constant.uncertainty) return 0;
+  if (constant.uncertainty->degreesOfFreedom > kSystematic * double(options.pointsPerView) * double(places.size())) return 0;
+  constexpr int kLeftOut = 6;  // more places left out would not change a choice between two
+  const Outcome<LeftOutErrors> errors = leftOutErrors(evidence, places, constant.light, options, kLeftOut);
   return errors && predictsLeftOutBetter(errors->directed, errors->constant) ? 1 : 0;
 }
 
@@ -108,7 +108,7 @@ Outcome<LightEstimate> estimateAnyLight(const std::vector<TrainingView>& views, 
     if (!evidence) return evidence.failure();
     Outcome<Bundle> b = bundleLight(*evidence, bundleViews.size(), estimate.light, options);
     if (!b) return b.failure();
-    if (limitOrders(*evidence, bundleViews.size(), *b, options, settings.integer("light.limit_orders")) > 0) {
+    if (limitOrders(*evidence, placesOf(bundleViews), *b, options, settings.integer("light.limit_orders")) > 0) {
       options.limitOrders = 1;
       const Outcome<Bundle> directed = bundleLight(*evidence, bundleViews.size(), b->light, options);
       if (directed && !lightBehind(views, directed->light)) b = directed;

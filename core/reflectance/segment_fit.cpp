@@ -63,14 +63,14 @@ std::vector<Start> screened(Lobe lobe, const std::vector<RadianceView>& views, c
   return starts;
 }
 
-/// RMS residual of every frame under a fit to the others, px. Nothing where one of these fits fails.
-std::vector<double> leftOutErrors(const RadianceFit& fit, const std::vector<RadianceView>& views, const std::set<int>& frames,
-                                  RadianceFitOptions options) {
+/// RMS residual of the views of every place under a fit to the others, px. Nothing where one of these fits fails.
+std::vector<double> leftOutErrors(const RadianceFit& fit, const std::vector<RadianceView>& views, RadianceFitOptions options) {
   options.pointsPerView = std::min(options.pointsPerView, kLeftOutPoints);
   std::vector<double> errors;
-  for (const int frame : frames) {
+  const std::vector<int> places = placesOf(views);
+  for (int place = 0; place < countOf(places); ++place) {
     std::vector<RadianceView> others, left;
-    for (const RadianceView& v : views) (v.frame == frame ? left : others).push_back(v);
+    for (std::size_t v = 0; v < views.size(); ++v) (places[v] == place ? left : others).push_back(views[v]);
     const Outcome<RadianceFit> without = fitLamp(fit.lobe, others, fit.lamp(), fit.roughness, options);
     if (!without) return {};
     double sum = 0;
@@ -120,8 +120,7 @@ std::optional<RadianceFit> fitSegment(const std::vector<Lobe>& lobes, const std:
   if (best->poor) return std::nullopt;
   if (!plain || plain->poor) return best->doubtful ? std::nullopt : best;
   if (!(best->cost < (1 - kSegmentGain) * plain->cost)) return std::nullopt;
-  return predictsLeftOutBetter(leftOutErrors(*best, views, frames, options), leftOutErrors(*plain, views, frames, options)) ? best
-                                                                                                                             : std::nullopt;
+  return predictsLeftOutBetter(leftOutErrors(*best, views, options), leftOutErrors(*plain, views, options)) ? best : std::nullopt;
 }
 
 }  // namespace glint

@@ -14,16 +14,45 @@
 namespace glint {
 namespace {
 
-// Two waves around a contour: rho_k = cos(2 pi k / 36), above the 2 / sqrt(72) = 0.24 that is noticed up to k = 7.
+// Two waves around a contour: rho_k = cos(2 pi k / 36), above the 2 / sqrt(72) = 0.236 that is noticed up to k = 7. The last is
+// 0.342, less than twice that, and counts by its part.
 TEST(ResidualSpread, OfAWaveAroundAContour) {
   constexpr int n = 72;
   std::vector<double> wave;
   for (int i = 0; i < n; ++i) wave.push_back(0.3 * std::cos(2 * std::numbers::pi * i / 36 + 0.4));
   double inflation = 1;
-  for (int k = 1; k <= 7; ++k) inflation += 2 * std::cos(2 * std::numbers::pi * k / 36);
+  for (int k = 1; k <= 6; ++k) inflation += 2 * std::cos(2 * std::numbers::pi * k / 36);
+  const double last = std::cos(2 * std::numbers::pi * 7 / 36), noticed = 2 / std::sqrt(72.0);
+  inflation += 2 * last * (last / noticed - 1);
   const ResidualSpread spread = residualSpread(wave, std::vector<int>(n, 0), 4, 1);
   EXPECT_NEAR(spread.degreesOfFreedom, (n - 4) / inflation, 1e-9);
   EXPECT_NEAR(spread.factor, inflation * 0.5 * 0.3 * 0.3 * n / (n - 4), 1e-12);
+}
+
+// One wave and then five: their correlation dips to what is noticed and rises again behind it. Where a lag came in or fell out as
+// a whole, a fit that uses the sum and changes the residuals went to and fro.
+TEST(CorrelationInflation, HasNoJumps) {
+  constexpr int n = 72, kSteps = 2000;
+  constexpr double kPerStep = 0.02;  // the sum is below 2 * 36 and changes by its own size over a tenth of the way
+  double before = 0, most = 0, largest = 0;
+  for (int step = 0; step <= kSteps; ++step) {
+    const double t = double(step) / kSteps;
+    std::vector<double> values;
+    for (int i = 0; i < n; ++i)
+      values.push_back((1 - t) * std::cos(2 * std::numbers::pi * i / n) + t * std::cos(5 * 2 * std::numbers::pi * i / n));
+    const double inflation = correlationInflation(values, std::vector<int>(n, 0), Neighbours::Closed);
+    if (step > 0) most = std::max(most, std::abs(inflation - before));
+    largest = std::max(largest, inflation);
+    before = inflation;
+  }
+  EXPECT_LT(most, kPerStep * largest);
+}
+
+TEST(CorrelationInflation, OfNothing) {
+  EXPECT_EQ(correlationInflation({}, {}, Neighbours::Closed), 1);
+  EXPECT_EQ(correlationInflation({0, 0, 0}, {0, 0, 0}, Neighbours::Closed), 1);
+  EXPECT_EQ(correlationInflation({1, -1, 1, -1}, {0, 0, 0, 0}, Neighbours::Closed), 1);  // neighbours that cancel promise nothing
+  EXPECT_THROW((void)correlationInflation({1, 2}, {0}, Neighbours::Closed), std::invalid_argument);
 }
 
 // Whoever gives a contour may start anywhere and go either way round. Lines with ends are told apart from it.

@@ -364,6 +364,27 @@ TEST(LeftOutErrors, OfAMovedContourIsWhatItWasMovedBy) {
   }
 }
 
+// A second photograph from the same place would tell the others the answer. With everything twice the answer without a place is
+// the answer without the view, so the errors are those of the single views; contours that start elsewhere differ by the rounding
+// of the solver alone.
+TEST(LeftOutErrors, LeavesOutTheViewsOfOnePlaceTogether) {
+  constexpr double kSolverPx = 1e-6;
+  Scene s = makeScene(Light::at(kLight), 5, 2.0);
+  for (BundleView& v : s.views) v.surface = &s.sphere;
+  for (Pixel& p : s.views[3].contour) p.x() += 0.5;
+  const Outcome<LeftOutErrors> once = leftOutErrors(s.views, Light::at(kLight), {}, 6);
+  ASSERT_TRUE(once);
+  for (int i = 0; i < 5; ++i) {
+    BundleView again = s.views[i];
+    std::rotate(again.contour.begin(), again.contour.begin() + 24, again.contour.end());
+    s.views.push_back(again);
+  }
+  const Outcome<LeftOutErrors> twice = leftOutErrors(s.views, Light::at(kLight), {}, 6);
+  ASSERT_TRUE(twice);
+  ASSERT_EQ(twice->constant.size(), 5u);
+  for (int i = 0; i < 5; ++i) EXPECT_NEAR(twice->constant[i], once->constant[i], kSolverPx) << i;
+}
+
 TEST(LeftOutErrors, LeavesOutEvenlySpreadViewsAndFails) {
   Scene s = makeScene(Light::at(kLight), 8, 2.0);
   for (BundleView& v : s.views) v.surface = &s.sphere;

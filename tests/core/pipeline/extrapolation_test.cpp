@@ -154,17 +154,17 @@ Inspection extrapolationEvidence(std::shared_ptr<const Scene> scene, const std::
 TEST(ViewsToPredict, SayWhetherTheyLieAmongTheTrainingViews) {
   const auto scene = exactScene(sphere(0.5), 16);
   const Inspection among = extrapolationEvidence(scene, "0,2,4,6,8,10,12,14");
-  const std::vector<ViewToPredict> between = viewsToPredict(among, foldsOf(among), 20);
+  const std::vector<ViewToPredict> between = viewsToPredict(among, foldsOf(among, LeaveOut::Place), 20);
   EXPECT_EQ(between.size(), 8u);
   for (const ViewToPredict& v : between) EXPECT_FALSE(v.outside) << v.frame << " at " << v.distanceDeg << " of " << v.testedDeg;
   const Inspection narrow = extrapolationEvidence(scene, "0-3");
-  const std::vector<ViewToPredict> beyond = viewsToPredict(narrow, foldsOf(narrow), 20);
+  const std::vector<ViewToPredict> beyond = viewsToPredict(narrow, foldsOf(narrow, LeaveOut::Place), 20);
   EXPECT_EQ(beyond.size(), 12u);
   int outside = 0;
   for (const ViewToPredict& v : beyond) outside += v.outside;
   EXPECT_GE(outside, 8);
   EXPECT_FALSE(beyond.front().outside) << "one step further, as was tested";
-  EXPECT_EQ(viewsToPredict(narrow, foldsOf(narrow), 5).size(), 5u);
+  EXPECT_EQ(viewsToPredict(narrow, foldsOf(narrow, LeaveOut::Place), 5).size(), 5u);
 }
 
 }  // namespace

@@ -260,16 +260,29 @@ TEST_F(Properties, OneFrameTwice) {
   expectWithin(kNothing, kNothing, d, "one frame twice", kAllModels);
 }
 
-/// Equal evidence in other numbers (contours that start elsewhere) has weight. All of it twice leaves a least-squares answer where it is, and on
-/// contours that a model explains exactly any weights do. The ellipsoids hold a prior, against which twice the evidence counts more.
+bool hasExtent(const Inspection& inspection) {
+  return std::any_of(inspection.lights.begin(), inspection.lights.end(),
+                     [](const auto& light) { return light.second.extent.has_value(); });
+}
+
+/// Equal evidence in other numbers (contours that start elsewhere) has weight. All of it twice leaves a least-squares answer
+/// where it is, and on contours that a model explains exactly any weights do. The ellipsoids hold a prior, against which twice
+/// the evidence counts more; so does the extent of a light, and where an answer has one, the law is asked of the answer without.
 TEST_F(Properties, WeightsOfFrames) {
   Differences all, one;
-  for (const int i : numbers()) {
+  for (const int i : numbers({62})) {
     const RandomScene& s = scene(i);
     const RandomScene twice = repeated(s, allFrames(), true);
     InspectionRequest q = requestFor(twice);
     q.models = {"limit-angle"};
-    compare(answer(i), inspect(twice.scene, q), {}, s.what.text(), all, q.models);
+    if (hasExtent(answer(i))) {
+      InspectionRequest p = requestFor(s);
+      p.models = q.models;
+      for (InspectionRequest* r : {&p, &q}) r->settings.set("light.limit_orders", 0);
+      compare(inspect(s.scene, p), inspect(twice.scene, q), {}, s.what.text() + ", without an extent", all, q.models);
+    } else {
+      compare(answer(i), inspect(twice.scene, q), {}, s.what.text(), all, q.models);
+    }
     if (s.what.noisy || s.what.radiance) continue;
     const RandomScene other = repeated(s, {i % kTraining}, true);
     q.train = requestFor(other).train;
@@ -277,6 +290,21 @@ TEST_F(Properties, WeightsOfFrames) {
   }
   expectWithin(kMoved, kMovedLobe, all, "every frame twice, contours started elsewhere", {"limit-angle"});
   expectWithin(kMoved, kMovedLobe, one, "one frame twice, exact contours, started elsewhere", {"limit-angle"});
+}
+
+/// What a contour point is worth is found from a fit that counts with it. Where no value agreed with itself, the shape depended
+/// on the number of rounds (five of sixty scenes).
+TEST_F(Properties, WorthOfAContourPointSettles) {
+  int ellipsoids = 0;
+  for (const int i : numbers({18, 19, 26}))
+    for (const auto& [key, model] : answer(i).models)
+      for (const ModelResult::Fit& f : model.fits) {
+        if (!f.fit || !f.fit->quadric) continue;
+        ++ellipsoids;
+        for (const std::string& remark : f.fit->remarks)
+          EXPECT_EQ(remark.find("agrees with itself"), std::string::npos) << key << " " << scene(i).what.text() << ": " << remark;
+      }
+  EXPECT_GT(ellipsoids, 0);
 }
 
 /// The sampler makes what it says: counted in the scenes themselves.
