@@ -1,0 +1,142 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tests of what turns runs of machines into docs/trust.md: tests/test_rows.py and docs/make_trust.py. A row that is lost, or a part that looks
+like a whole, would be a machine that seems to have found nothing."""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+root = pathlib.Path(__file__).resolve().parent.parent.parent
+
+# Two programs of three and one test, and one that was not built; between them what else ctest prints.
+LISTED = """Test project /somewhere
+  Test #1: core_base.A.One
+  Test #2: core_base.A.Two
+  Test #3: core_base.B.One
+  Test #4: io.Ply.Reads
+  Test #5: test_gui_NOT_BUILT
+Could not find executable /somewhere/test_gui
+Total Tests: 5
+"""
+
+
+def junit(*cases):
+    inner = {"passed": "", "failed": "<failure message=''/>", "skipped": "<skipped message=''/>"}
+    status = {"passed": "run", "failed": "fail", "skipped": "notrun"}
+    return "<testsuite>" + "".join(f'<testcase name="{n}" status="{status[s]}">{inner[s]}</testcase>' for n, s in cases) + "</testsuite>"
+
+
+class TestRows(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+        ctest = self.folder / "ctest"
+        ctest.write_text("#!/bin/sh\ncat <<'END'\n" + LISTED + "END\n", encoding="utf-8")
+        ctest.chmod(0o755)
+
+    def rows(self, *arguments, results=None):
+        if results is not None:
+            (self.folder / "results.xml").write_text(results, encoding="utf-8")
+            arguments += (str(self.folder / "results.xml"),)
+        done = subprocess.run([sys.executable, root / "tests/test_rows.py", "--build", self.folder, *arguments], text=True, check=True,
+                              stdout=subprocess.PIPE, env={**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}"})
+        return [tuple(line.split("\t")) for line in done.stdout.splitlines()]
+
+    def testCountsAndNamesWhatFailed(self):
+        results = junit(("core_base.A.One", "passed"), ("core_base.A.Two", "failed"), ("core_base.B.One", "skipped"), ("io.Ply.Reads", "passed"))
+        self.assertEqual(self.rows(results=results), [("core_base", "2", "1", "tests; 1 skipped: core_base.A.Two"), ("io", "1", "0", "tests")])
+
+    def testAPartSaysThatItIsOne(self):
+        self.assertEqual(self.rows(results=junit(("core_base.A.One", "passed"))), [("core_base, 1 of 3 tests", "1", "0", "tests")])
+
+    def testReportsOfAnyProcessAreFindings(self):
+        reports = self.folder / "reports"
+        reports.mkdir()
+        self.assertEqual(self.rows("--reports", str(reports), results=junit(("io.Ply.Reads", "passed"))), [("io", "1", "0", "tests")])
+        (reports / "report.17").write_text("AddressSanitizer", encoding="utf-8")
+        self.assertEqual(self.rows("--reports", str(reports), results=junit(("io.Ply.Reads", "passed")))[1][:3], ("reports of the sanitizer", "1", "1"))
+
+    def testProgramsThatAreNotBuiltAreNeeded(self):
+        self.assertEqual(self.rows("--programs"), [("core_base",), ("gui",), ("io",)])
+        self.assertEqual(self.rows("--programs", "--pattern", r"^core_base\.B"), [("core_base",)])
+        self.assertEqual(self.rows("--programs", "--pattern", r"^gui\."), [("gui",)])
+        self.assertEqual(self.rows("--programs", "--leave-out", r"^io\."), [("core_base",), ("gui",)])
+
+
+class MakeTrust(unittest.TestCase):
+    """In a folder of its own, with the program's copy: it looks for its pieces beside itself."""
+
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.pieces = self.folder / "docs/trust"
+        self.pieces.mkdir(parents=True)
+        shutil.copy(root / "docs/make_trust.py", self.folder / "docs")
+        (self.folder / "docs/trust.md").write_text("# Trust\n<!-- table -->\n<!-- end of table -->\n", encoding="utf-8")
+
+    def run_(self, *arguments):
+        return subprocess.run([sys.executable, self.folder / "docs/make_trust.py", *map(str, arguments)], text=True, capture_output=True)
+
+    def addRows(self, *rows, needs=()):
+        options = [word for row in rows for word in ("--row", *map(str, row))] + [f"--needs={name}" for name in needs]
+        return self.run_("row", self.pieces / "asan.json", "--what", "Sanitizer", "--command", "tests/run_sanitizers asan", *options)
+
+    def piece(self):
+        return json.loads((self.pieces / "asan.json").read_text(encoding="utf-8"))
+
+    def page(self):
+        done = self.run_()
+        return done, (self.folder / "docs/trust.md").read_text(encoding="utf-8")
+
+    def testWhatNeverRanIsMissing(self):
+        done, page = self.page()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(page.count("| missing |"), 10)
+        self.assertEqual(self.addRows(("io", 16, 0, "tests"), needs=("io", "gui")).returncode, 0)
+        _, page = self.page()
+        self.assertIn("[Sanitizer](#asan) (1 rows are missing) | 16 | 0 |", page)
+        self.assertIn("| gui | missing | | |", page)
+
+    def testRowsOfALaterRunReplaceThoseOfTheirName(self):
+        self.addRows(("io", 16, 2, "tests"), ("gui", 5, 0, "tests"))
+        self.addRows(("io", 16, 0, "tests"))
+        self.assertEqual({row["name"]: (row["count"], row["findings"]) for row in self.piece()["rows"]}, {"gui": (5, 0), "io": (16, 0)})
+
+    # A part that was run before the whole would count its tests twice.
+    def testAWholeReplacesItsParts(self):
+        self.addRows(("io, 3 of 16 tests", 3, 1, "tests"), ("io_more, 3 of 4 tests", 3, 0, "tests"))
+        self.addRows(("io", 16, 0, "tests"))
+        self.assertEqual([row["name"] for row in self.piece()["rows"]], ["io_more, 3 of 4 tests", "io"])
+
+    def testBadPiecesAreNamedAndNotShownAsClean(self):
+        for text in ("{", "[]", '{"what": "w", "command": "c", "date": "2026-02-30", "rows": []}',
+                     '{"what": "w", "command": "c", "date": "2026-02-28", "rows": [{"name": "a", "note": "", "count": -1, "findings": 0}]}'):
+            (self.pieces / "asan.json").write_text(text, encoding="utf-8")
+            done, page = self.page()
+            self.assertEqual(done.returncode, 1, text)
+            self.assertIn("docs/trust/asan.json", done.stderr)
+            self.assertIn("| not readable |", page)
+
+    def testRowsMustBeNumbers(self):
+        self.assertNotEqual(self.addRows(("io", "-1", 0, "tests")).returncode, 0)
+        self.assertNotEqual(self.addRows(("io", "many", 0, "tests")).returncode, 0)
+        self.assertFalse((self.pieces / "asan.json").exists())
+
+    def testCheckSeesAPageThatIsOld(self):
+        self.addRows(("io", 16, 0, "tests"))
+        self.assertEqual(self.run_("--check").returncode, 1)
+        self.page()
+        self.assertEqual(self.run_("--check").returncode, 0)
+
+    def testTheShippedPageIsWhatItsPiecesGive(self):
+        done = subprocess.run([sys.executable, root / "docs/make_trust.py", "--check"], text=True, capture_output=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
