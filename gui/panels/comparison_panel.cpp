@@ -73,7 +73,7 @@ Opened openedFor(const Engine& engine, const QString& file) {
   try {
     return engine.open(file.toStdString(), instead);
   } catch (const OutsidePath& e) {
-    throw std::runtime_error(withoutFlags(e) + "; open it once to allow that");
+    throw std::runtime_error(withoutFlags(e) + "; to allow that, open this session itself once");
   }
 }
 }  // namespace

@@ -323,7 +323,7 @@ class SaveTest : public QObject {
     connect(window.get(), &MainWindow::problem, this, [&said](const QString& line) { said = line; });
     window->comparison()->compareWith(path("scene/copy.glint"));
     QTRY_VERIFY_WITH_TIMEOUT(!said.isEmpty() && window->idle(), 20000);
-    QVERIFY2(said.contains("elsewhere") && said.contains("open it once") && !said.contains("--"), qPrintable(said));
+    QVERIFY2(said.contains("elsewhere") && said.contains("open this session itself") && !said.contains("--"), qPrintable(said));
     window->open(path("scene/copy.glint"));
     QTRY_VERIFY_WITH_TIMEOUT(button(*window, "Allow and open") != nullptr, 20000);
     QVERIFY(window->document().sharedScene() == scene);
