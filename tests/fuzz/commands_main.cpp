@@ -82,7 +82,9 @@ Run runProgram(const fs::path& program, const std::vector<std::string>& words, c
       ::setrlimit(what, &limit);
     };
     bound(RLIMIT_CPU, 60);
+#ifndef __SANITIZE_ADDRESS__  // it maps terabytes for its shadow
     bound(RLIMIT_AS, rlim_t(6) << 30);
+#endif
     bound(RLIMIT_CORE, 0);
     bound(RLIMIT_FSIZE, rlim_t(1) << 29);
     ::setenv("HOME", home.c_str(), 1);

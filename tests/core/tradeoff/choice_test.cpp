@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <limits>
+
 #include "core/base/outcome.h"
 #include "tests/core/tradeoff/points.h"
 
@@ -24,6 +26,13 @@ TEST(RankedError, IsTheContourErrorWhereNothingIsLeftOut) {
   TradeoffPoint p = point("dual", 3, 1);
   p.coverage = 0.99;
   EXPECT_EQ(rankedErrorPct(p), 3);
+}
+
+// A work file says what it likes: counts whose sum is no int (found by the sanitizers with the corpus of damaged work files).
+TEST(RankedError, OfTheLargestCounts) {
+  TradeoffPoint p = point("dual", 3, 1);
+  p.matched = p.missed = p.spurious = std::numeric_limits<int>::max();
+  EXPECT_DOUBLE_EQ(rankedErrorPct(p), (3 + 2 * 100) / 3.0);
 }
 
 TEST(RankedError, CountsWhatIsLeftOutAsAWholeError) {
