@@ -15,9 +15,9 @@ struct ResidualSpread {
 /// What the residuals of one view lie along: a contour, whose last is the first one's neighbour, or lines with ends.
 enum class Neighbours { Closed, Open };
 
-/// By how much correlation along the contour makes the variance of a sum larger: 1 + 2 sum rho_k, n points tell no more than n /
-/// inflation. The sum ends where a correlation is no larger than white residuals show, 2 / sqrt(n). From twice that on, this lag
-/// and later ones count partly, so that a small change of the residuals is a small change of the sum.
+/// The factor by which correlation along the contour raises the variance of a sum: 1 + 2 sum rho_k. n points then tell as much as
+/// n / inflation independent ones. The sum ends at the first lag whose correlation is no larger than white residuals show,
+/// 2 / sqrt(n). The first lag below twice that, and all later ones, count in part, so that the result has no jumps.
 /// @param values  in contour order within a view, one view after the other. @param views  of each value; same size.
 double correlationInflation(const std::vector<double>& values, const std::vector<int>& views, Neighbours neighbours);
 

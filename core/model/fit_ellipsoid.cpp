@@ -92,9 +92,9 @@ Outcome<Reconstruction> refinedWithPrior(const std::vector<ConicView>& views, co
     if (!worth || std::abs(*worth / counted - 1) < kSameWorth) break;
     if (round == kMostWeightings) {
       refined->remarks.push_back(
-          formatted("the fit assumes that a contour point is accurate to %.2g px, and then its residuals suggest %.2g px; no "
-                    "value was found that "
-                    "agrees with itself, so shape and bands may be off by more than they say",
+          formatted("the accuracy of a contour point did not settle: a fit that assumes %.2g px leaves residuals of %.2g px, so "
+                    "shape and bands may be "
+                    "off by more than stated",
                     counted, *worth));
       break;
     }

@@ -167,5 +167,20 @@ TEST(ViewsToPredict, SayWhetherTheyLieAmongTheTrainingViews) {
   EXPECT_EQ(viewsToPredict(narrow, foldsOf(narrow, LeaveOut::Place), 5).size(), 5u);
 }
 
+// A second photograph from the place of the first one, its contour started elsewhere: as evidence it is another view.
+TEST(FoldsOf, AViewFromTheSamePlaceIsLeftOutWithIt) {
+  const auto scene = exactScene(sphere(0.5), 6);
+  Frame again = scene->frames[2];
+  again.id += " again";
+  for (Highlight& h : again.highlights)
+    std::rotate(h.contour.points.begin(), h.contour.points.begin() + 5, h.contour.points.end());
+  scene->frames.push_back(again);
+  const Inspection inspection = extrapolationEvidence(scene, "0-6");
+  ASSERT_EQ(inspection.views.size(), 7u);
+  for (const Fold& f : foldsOf(inspection, LeaveOut::Place))
+    EXPECT_EQ(f.others.size(), f.left->frame == 2 || f.left->frame == 6 ? 5u : 6u);
+  for (const Fold& f : foldsOf(inspection, LeaveOut::Frame)) EXPECT_EQ(f.others.size(), 6u);
+}
+
 }  // namespace
 }  // namespace glint

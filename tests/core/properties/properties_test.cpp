@@ -302,7 +302,7 @@ TEST_F(Properties, WorthOfAContourPointSettles) {
         if (!f.fit || !f.fit->quadric) continue;
         ++ellipsoids;
         for (const std::string& remark : f.fit->remarks)
-          EXPECT_EQ(remark.find("agrees with itself"), std::string::npos) << key << " " << scene(i).what.text() << ": " << remark;
+          EXPECT_EQ(remark.find("did not settle"), std::string::npos) << key << " " << scene(i).what.text() << ": " << remark;
       }
   EXPECT_GT(ellipsoids, 0);
 }
