@@ -171,6 +171,21 @@ TEST(SelectModel, NothingToLeaveOut) {
   const Selection none = selectModel(evidenceOf(blind, "spread:4"), {});
   EXPECT_EQ(none.model, "");
   EXPECT_EQ(none.why, "There is no training view to leave out.");
+  EXPECT_THAT(one.why, HasSubstr("one training view"));
+}
+
+// Views from one place are left out together; then none is left.
+TEST(SelectModel, AllViewsFromOnePlace) {
+  auto scene = exactScene(sphere(0.5), 1);
+  for (int i = 1; i < 4; ++i) {
+    scene->frames.push_back(scene->frames.front());
+    scene->frames.back().id += std::to_string(i);
+    for (Highlight& h : scene->frames.back().highlights)
+      std::rotate(h.contour.points.begin(), h.contour.points.begin() + i, h.contour.points.end());
+  }
+  const Selection s = selectModel(evidenceOf(scene, "0-3"), {});
+  EXPECT_EQ(s.model, "");
+  EXPECT_THAT(s.why, HasSubstr("stand in one place"));
 }
 
 /// Six training views within 1.5 degrees, a lamp 2.7 m away, then eight views held out 14 degrees apart: nothing that leaving one
