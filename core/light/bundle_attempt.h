@@ -61,7 +61,7 @@ void settleSide(const std::vector<ContourEvidence>& points, Attempt& a);
 /// The points hold the weights of the result.
 Attempt directed(std::vector<ContourEvidence>& points, const Attempt& start, double robustPx, int maxIterations);
 
-/// Reluctance against an extent, 1 / its standard deviation: one for an extent that widens the limit angle by a twentieth.
+/// Reluctance against an extent, 1 / its standard deviation: one for an extent that widens the limit angle by a seventh.
 /// Entries that the contours see win over it, those that no view shows stay zero.
 double extentPrior(const Attempt& a, const std::vector<ContourEvidence>& points);
 

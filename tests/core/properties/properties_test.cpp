@@ -87,7 +87,10 @@ constexpr double kStopped = 1e-8;
 constexpr double kStoppedShape = 1e-6;
 /// In a picture 641 px wide.
 constexpr double kStoppedPx = 641 * kStopped;
-constexpr Tolerances kMoved{kStopped, kStopped, kStopped, kStopped, kStoppedShape, kStoppedPx, kStoppedPx, kStoppedPx, 100 * kStopped, kStopped};
+/// An extent that the contours hardly show trades with the limit angle: little decides between them, and the round-off of the residuals moves
+/// the angle by a few parts in 1e8 (number 97: 1e-8 whatever the solver's tolerance is below 1e-13).
+constexpr double kTradedRoundOff = 1e-7;
+constexpr Tolerances kMoved{kStopped, kTradedRoundOff, kStopped, kStopped, kStoppedShape, kStoppedPx, kStoppedPx, kStoppedPx, 100 * kStopped, kStopped};
 /// The fit of a lobe also stops where a step gains less than 1e-10 of the cost (radiance_problem.cpp). With 360 noisy points that
 /// is 2e-4 of a standard deviation, which is some 1e-3 of the light's distance.
 constexpr double kStoppedLobe = 1e-7, kStoppedLobePx = 641 * kStoppedLobe;
