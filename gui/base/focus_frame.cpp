@@ -15,13 +15,13 @@ FocusFrame::FocusFrame(QWidget* of) : QWidget(of) {
 }
 
 bool FocusFrame::eventFilter(QObject* watched, QEvent* event) {
-  const auto* focus = static_cast<const QFocusEvent*>(event);
+  const auto reason = [&] { return static_cast<const QFocusEvent*>(event)->reason(); };  // of a focus event only
   const auto elsewhere = [&] {  // another window, a menu: it comes back
-    return focus->reason() == Qt::ActiveWindowFocusReason || focus->reason() == Qt::PopupFocusReason;
+    return reason() == Qt::ActiveWindowFocusReason || reason() == Qt::PopupFocusReason;
   };
   switch (event->type()) {
     case QEvent::FocusIn:
-      if (!elsewhere()) byKeyboard_ = focus->reason() == Qt::TabFocusReason || focus->reason() == Qt::BacktabFocusReason;
+      if (!elsewhere()) byKeyboard_ = reason() == Qt::TabFocusReason || reason() == Qt::BacktabFocusReason;
       if (byKeyboard_) {
         setGeometry(parentWidget()->rect());
         raise();

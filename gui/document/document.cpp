@@ -293,7 +293,7 @@ namespace {
 std::string optionText(double value) { return QString::number(value, 'g', 12).toStdString(); }
 }  // namespace
 
-const std::string& Document::option(const std::string& name, const std::string& otherwise) const {
+std::string Document::option(const std::string& name, const std::string& otherwise) const {
   const auto it = state_.options.find(name);
   return it == state_.options.end() ? otherwise : it->second;
 }

@@ -43,7 +43,7 @@ class Document : public QObject {
   const viz::Selection& selection() const { return state_.selection; }
   bool layerVisible(const std::string& name) const;
   /// How a view shows something: see ViewState::options.
-  const std::string& option(const std::string& name, const std::string& otherwise) const;
+  std::string option(const std::string& name, const std::string& otherwise) const;
   double option(const std::string& name, double otherwise) const;
   FrameRole role(int frame) const;
   /// The model that plots show: the selected one, else the last (richest) of those computed.

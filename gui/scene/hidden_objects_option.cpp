@@ -20,7 +20,7 @@ std::optional<std::string> after(const std::string& prefix, const std::string& l
 
 viz::HiddenObjects hiddenObjects(const Document& document) {
   viz::HiddenObjects hidden;
-  const std::string& text = document.option(kOption, std::string());
+  const std::string text = document.option(kOption, std::string());
   if (text.empty() || !document.scene()) return hidden;
   std::map<std::string, int> frames;
   for (int i = 0; i < document.frameCount(); ++i) frames[document.scene()->frames[std::size_t(i)].id] = i;

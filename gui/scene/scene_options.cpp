@@ -85,7 +85,7 @@ SceneOptions sceneOptions(const Document& document) {
   o.solo = isOn(document, "scene/solo", false);
   o.glyphScale = std::clamp(document.option("scene/glyph-scale", 1.0), 0.05, 20.0);
   o.opacity = std::clamp(document.option("scene/photograph-opacity", 0.5), 0.0, 1.0);
-  const std::string& by = document.option("scene/colour-by", kNone);
+  const std::string by = document.option("scene/colour-by", kNone);
   o.colours.by = by == "model"       ? viz::CameraColours::By::Model
                  : by == "error"     ? viz::CameraColours::By::Error
                  : by == "influence" ? viz::CameraColours::By::Influence
@@ -105,7 +105,7 @@ SceneOptions sceneOptions(const Document& document) {
   for (int i = 0; i < kMostSceneViews; ++i) {
     SceneOptions::View& view = o.views[std::size_t(i)];
     view.eye = eyeOf(document.option(viewOption("look-through", o.linked ? 0 : i), kNone));
-    const std::string& models = document.option(viewOption("models", i), kNone);
+    const std::string models = document.option(viewOption("models", i), kNone);
     if (!models.empty() && models != "all")
       view.models = {models};
     else if (models.empty() && wipe && !all.empty())

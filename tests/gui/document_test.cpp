@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/document/document.h"
 
+#include <type_traits>
+
 #include "tests/gui/fixture.h"
 
 namespace glint::gui {
@@ -134,6 +136,8 @@ class DocumentTest : public QObject {
     QCOMPARE(document_->option("frame/gamma", 1.0), 1.8);
     QCOMPARE(document_->option("scene/colour-by", std::string("role")), std::string("error"));
     QCOMPARE(document_->option("frame/no-such", 0.5), 0.5);
+    // By value: a reference to a default that the caller made in the call would outlive it.
+    static_assert(std::is_same_v<decltype(document_->option("", std::string())), std::string>);
     const int steps = document_->undoStack()->count(), gesture = document_->newGesture();
     for (const double gamma : {1.9, 2.0, 2.1}) document_->setOption("frame/gamma", gamma, "Gamma", gesture);
     QCOMPARE(document_->undoStack()->count(), steps + 1);
