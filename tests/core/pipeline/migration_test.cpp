@@ -82,8 +82,10 @@ TEST(Migration, OfVersion2) {
   ASSERT_TRUE(s.tradeoff);
   EXPECT_EQ(s.tradeoff->points.size(), 2u);
   EXPECT_EQ(s.tradeoff->chosen, 1);
-  // The prior of an extent was changed since: 1.1e-3 of the limit angle. Without an extent it would differ by 1.1e-2.
-  EXPECT_LT(largestChange(openSession(fixture(2), {kScene})), 2e-3);
+  // The prior of an extent was changed since: 3.0e-2 of the limit angle, with which an extent trades. It still has one.
+  const OpenedSession opened = openSession(fixture(2), {kScene});
+  EXPECT_LT(largestChange(opened), 4e-2);
+  EXPECT_TRUE(inspect(opened.scene, opened.session.request).lights.begin()->second.extent);
 }
 
 TEST(Migration, OfASessionWithEverythingThatVersion2Grew) {
