@@ -141,9 +141,9 @@ bool directedResidual(const ContourEvidence& e, const Eigen::Vector4d& light, do
 
 double extentPrior(const Attempt& a, const std::vector<ContourEvidence>& points) {
   const double width = 2 * meanDistance(a.light, points) * a.limit;  // of the light that is seen under the limit angle: H turns half as much as L
-  // With more a fit to few views of a plane drifts along what its contours hardly show and predicts others worse (0.094 % at 0.6,
-  // 0.084 % here); with less a light that is wider than the lobe is held back (1.20 % at 0.1, 0.31 % here). docs/accuracy.md,
-  // docs/reflectance.md.
+  // A compromise, measured on docs/accuracy.md and docs/reflectance.md. With more, fits to few views of a plane drift along what their
+  // contours hardly show (plane_to_cylinder per surface: 0.093 % at 0.4, 0.084 % at 0.3); with less, a light wider than the lobe is
+  // held back (1.20 % at 0.1, 0.31 % at 0.3).
   constexpr double kShare = 0.3;
   return 1 / (kShare * width * width);
 }

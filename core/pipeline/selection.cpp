@@ -442,10 +442,9 @@ void Search::decide() {
   int best = bestOf([](std::size_t) { return true; });
   if (best < 0) {
     const bool onePlace = std::all_of(folds_.begin(), folds_.end(), [](const Fold& f) { return f.others.empty(); });
-    s_.why = s_.leftOut == 0   ? "There is no training view to leave out."
-             : s_.leftOut == 1 ? "There is one training view: without it there is nothing to fit."
-             : onePlace        ? "All training views of a light stand in one place: without it there is nothing to fit."
-                               : "No model predicted a left-out training view.";
+    s_.why = s_.leftOut == 0 ? "There is no training view to leave out."
+             : onePlace      ? "Leaving out a training view leaves nothing to fit: each fit has views from one place only."
+                             : "No model predicted a left-out training view.";
     return;
   }
   if (goodEnough_)  // a view that nothing answers tells nothing about the models

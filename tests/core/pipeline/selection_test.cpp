@@ -171,7 +171,7 @@ TEST(SelectModel, NothingToLeaveOut) {
   const Selection none = selectModel(evidenceOf(blind, "spread:4"), {});
   EXPECT_EQ(none.model, "");
   EXPECT_EQ(none.why, "There is no training view to leave out.");
-  EXPECT_THAT(one.why, HasSubstr("one training view"));
+  EXPECT_THAT(one.why, HasSubstr("from one place only"));
 }
 
 // Views from one place are left out together; then none is left.
@@ -185,7 +185,7 @@ TEST(SelectModel, AllViewsFromOnePlace) {
   }
   const Selection s = selectModel(evidenceOf(scene, "0-3"), {});
   EXPECT_EQ(s.model, "");
-  EXPECT_THAT(s.why, HasSubstr("stand in one place"));
+  EXPECT_THAT(s.why, HasSubstr("from one place only"));
 }
 
 /// Six training views within 1.5 degrees, a lamp 2.7 m away, then eight views held out 14 degrees apart: nothing that leaving one
