@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/core/pipeline/exact_scene.h"
+#include "tests/sanitizers/cases.h"
 
 namespace glint {
 namespace {
@@ -84,15 +85,6 @@ Scene withCameras(Scene scene, const std::function<void(Camera&)>& change) {
   return scene;
 }
 
-/// The cases of a test. A sanitizer makes each take minutes and sees the same code in the first.
-template <class T>
-std::vector<T> cases(std::vector<T> all) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  all.resize(1);
-#endif
-  return all;
-}
-
 TEST(CameraCheck, GoodCamerasAreLeftAlone) {
   for (const AnalyticSpec& body : cases<AnalyticSpec>({ellipsoid(), ball()}))
     for (const double noise : cases<double>({0.3, 0.0})) {
@@ -140,7 +132,7 @@ TEST(CameraCheck, FocalLengthOfOnePercent) {
 
 /// The shape of the lamp is searched for the cameras as given, and kept for changed intrinsics.
 TEST(CameraCheck, ALampWithASizeOrALengthIsNoFault) {
-  for (const TrueLight& lamp : {ballLamp(), tubeLamp()}) {
+  for (const TrueLight& lamp : cases<TrueLight>({ballLamp(), tubeLamp()})) {
     const CameraCheck check = checkCameras(orbit(ellipsoid(), 10, 0, lamp));
     EXPECT_EQ(check.views, 8) << check.whyNot;
     EXPECT_THAT(check.findings, IsEmpty()) << (lamp.segment ? "tube" : "ball");
@@ -149,7 +141,7 @@ TEST(CameraCheck, ALampWithASizeOrALengthIsNoFault) {
 
 /// As a point the tube leaves more than the wrong focal length does.
 TEST(CameraCheck, FocalLengthUnderALampWithASizeOrALength) {
-  for (const TrueLight& lamp : {ballLamp(), tubeLamp()}) {
+  for (const TrueLight& lamp : cases<TrueLight>({ballLamp(), tubeLamp()})) {
     const CameraCheck check = checkCameras(
         withCameras(orbit(ellipsoid(), 10, 0, lamp), [](Camera& c) { c.pixelFromRay.topLeftCorner<2, 2>() *= 1.01; }));
     EXPECT_THAT(check.findings, ElementsAre(HasSubstr("% shorter"))) << (lamp.segment ? "tube" : "ball");
