@@ -3,7 +3,7 @@
 """Rows for docs/trust.md of a run of ctest: one for each test program, "name<TAB>count<TAB>findings<TAB>note". Used by tests/run_sanitizers
 and tests/run_comma_locale.
 
-  tests/test_rows.py --build FOLDER [--pattern REGEX] [--leave-out REGEX] [--reports FOLDER] JUNIT    the rows
+  tests/test_rows.py --build FOLDER [--pattern REGEX] [--leave-out REGEX] [--reports FOLDER] JUNIT...    the rows; a test in several files counts as in the last one
   tests/test_rows.py --build FOLDER [--pattern REGEX] [--leave-out REGEX] --programs    names of all programs that a complete run has
 
 --pattern and --leave-out are the tests of a complete run, as ctest's -R and -E. A program of which fewer tests ran has a row of another name,
@@ -37,8 +37,8 @@ def programsOf(build, pattern, leaveOut):
 
 def rowsOf(junit, programs, reports):
     ran = collections.OrderedDict()
-    for case in xml.parse(junit).getroot().iter("testcase"):
-        name = case.get("name")
+    cases = {case.get("name"): case for file in junit for case in xml.parse(file).getroot().iter("testcase")}
+    for name, case in cases.items():
         program = ran.setdefault(name.split(".")[0], {"count": 0, "skipped": 0, "failed": []})
         if case.get("status") in ("disabled", "notrun") or case.find("skipped") is not None:
             program["skipped"] += 1
@@ -65,7 +65,7 @@ def main():
     parser.add_argument("--leave-out", default="")
     parser.add_argument("--reports", default="")
     parser.add_argument("--programs", action="store_true")
-    parser.add_argument("junit", nargs="?")
+    parser.add_argument("junit", nargs="*")
     arguments = parser.parse_args()
     programs = programsOf(arguments.build, arguments.pattern, arguments.leave_out)
     if arguments.programs:

@@ -19,6 +19,7 @@ constexpr int kIterations = 40;
 constexpr double kSettled = 1e-3;         // relative change of the variances: far below what a few views tell of them
 constexpr double kNothing = 1e-6;         // of the variance of the noise: what moves no contour visibly
 constexpr double kOpenParameter = 1e-9;            // a parameter that moves no shape, to round-off
+constexpr double kUntold = 1e-9;                   // share of an effect that the parameters do not take, to round-off
 
 /// Distance of every view to its nearest neighbour, the middle one.
 double spacingOf(const std::vector<const ViewCoefficients*>& views) {
@@ -69,6 +70,10 @@ class Stacked {
         const double alike = a.view == b.view ? 1 : viewCorrelation((views_[a.view]->where - views_[b.view]->where).norm(), length);
         patterns[a.group](i, k) = std::sqrt(views_[a.view]->points * views_[b.view]->points) * alike;
       }
+    // What the parameters take whole, as a shift that all views share, no residual tells: its likelihood would be round-off.
+    const Eigen::MatrixXd open = Eigen::MatrixXd::Identity(n, n) - basis_ * basis_.transpose();
+    for (Eigen::Index g = 0; g < m; ++g)
+      if (!(open.cwiseProduct(patterns[std::size_t(g)]).sum() > kUntold * patterns[std::size_t(g)].trace())) variance(g) = 0;
     double likelihood = 0;
     Eigen::MatrixXd projector;
     for (int iteration = 0;; ++iteration) {
@@ -87,9 +92,10 @@ class Stacked {
       for (Eigen::Index g = 0; g < m; ++g) {
         const Eigen::MatrixXd& pattern = patterns[std::size_t(g)];
         const double factorOf = std::sqrt(std::max(0.0, pz.dot(pattern * pz)) / std::max(projector.cwiseProduct(pattern).sum(), 1e-300));  // no division by zero
+        const double before = variance(g);
         variance(g) *= factorOf;
-        // One that goes to nothing never settles.
-        if (variance(g) > kNothing * noise_) change = std::max(change, std::abs(factorOf - 1));
+        // One that goes to nothing never settles, but the likelihood must be that of its last size.
+        if (std::max(before, variance(g)) > kNothing * noise_) change = std::max(change, std::abs(factorOf - 1));
       }
       if (change < kSettled) break;
     }

@@ -72,7 +72,7 @@ class RandomTest : public QObject {
     std::filesystem::copy(std::string(GLINT_SOURCE_DIR "/sessions/") + name.toStdString(), copy,
                           std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing);
     window.open(copy_.filePath(name + QStringLiteral(".glint")));
-    QTRY_VERIFY_WITH_TIMEOUT(window.document().scene() && window.idle() && !window.document().stale(), 120000);
+    QTRY_VERIFY_WITH_TIMEOUT(window.document().scene() && window.idle() && !window.document().stale(), 300000);
     const QList<QAction*> actions = window.actions().all();
     for (const auto& [start, reason] : leftOut())
       QVERIFY2(std::any_of(actions.begin(), actions.end(),

@@ -51,6 +51,11 @@ class TestRows(unittest.TestCase):
         results = junit(("core_base.A.One", "passed"), ("core_base.A.Two", "failed"), ("core_base.B.One", "skipped"), ("io.Ply.Reads", "passed"))
         self.assertEqual(self.rows(results=results), [("core_base", "2", "1", "tests; 1 skipped: core_base.A.Two"), ("io", "1", "0", "tests")])
 
+    def testATestThatRanAgainCountsAsInTheLastFile(self):
+        earlier = self.folder / "earlier.xml"
+        earlier.write_text(junit(("core_base.A.One", "passed"), ("core_base.A.Two", "failed"), ("core_base.B.One", "passed")), encoding="utf-8")
+        self.assertEqual(self.rows(str(earlier), results=junit(("core_base.A.Two", "passed"))), [("core_base", "3", "0", "tests")])
+
     def testAPartSaysThatItIsOne(self):
         self.assertEqual(self.rows(results=junit(("core_base.A.One", "passed"))), [("core_base, 1 of 3 tests", "1", "0", "tests")])
 

@@ -89,7 +89,11 @@ Simulated simulated(int views, double noise, const ShiftAt& shiftAt, unsigned se
 Simulated simulated(int views, double noise, double shift, unsigned seed) {
   std::mt19937_64 engine(seed + 1000003);
   std::normal_distribution<double> gauss;
-  return simulated(views, noise, [&](double) { return Pixel(shift * gauss(engine), shift * gauss(engine)); }, seed);
+  const auto draw = [&](double) {
+    const double x = gauss(engine), y = gauss(engine);  // as arguments their order would depend on the compiler
+    return Pixel(shift * x, shift * y);
+  };
+  return simulated(views, noise, draw, seed);
 }
 
 constexpr double kBeyond = 0.9;  ///< place of a view outside the training views
@@ -131,10 +135,14 @@ double insideOnBumps(int views, double noise, double shift, int trials, bool pla
   return in / (double(trials) * kPoints);
 }
 
+// With some of these seeds (1 and 5) round-off once made a shift that all views share, which no residual can show, the likeliest: nothing was left
+// for single views.
 TEST(ViewEffects, FindsTheSizesOfNoiseAndOfShifts) {
-  const ViewEffects e(simulated(60, 0.3, 0.5, 1).views, 10);
-  EXPECT_NEAR(e.noisePx(), 0.3, 0.3 * 0.05);                        // 3000 points tell it to 1.3 %: four of those
-  EXPECT_NEAR(e.viewPx(), 0.5, 0.5 * 0.25);                         // a shift has the mean square 0.5^2 over a round contour; 120 numbers tell it to 6.5 %
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    const ViewEffects e(simulated(60, 0.3, 0.5, seed).views, 10);
+    EXPECT_NEAR(e.noisePx(), 0.3, 0.3 * 0.05) << seed;  // 3000 points tell it to 1.3 %: four of those
+    EXPECT_NEAR(e.viewPx(), 0.5, 0.5 * 0.25) << seed;   // a shift has the mean square 0.5^2 over a round contour; 120 numbers tell it to 6.5 %
+  }
 }
 
 TEST(ViewEffects, ScalesWithTheResiduals) {

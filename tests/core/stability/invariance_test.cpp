@@ -54,15 +54,15 @@ Scene randomScene(unsigned seed, double noisePx) {
   Scene scene{stability::specOf(k, round), Light::at(uniform(1, 3) * towards), {}};
   const Bent<Real> bent{Real(k), round};
   const Lamp<Real> lamp = stability::lampOf<Real>(scene.light);
-  std::normal_distribution<double> noise(0, noisePx);
+  std::normal_distribution<double> noise;  // a standard deviation of zero is none
   for (int i = 0; i < 6; ++i) {
     const RealView<Real> view = stability::mirrorView(bent, lamp, uniform(-0.25, 0.25), uniform(-0.25, 0.25), uniform(1.2, 1.8), 800);
     View v{view.camera, stability::exactContour(bent, lamp, view, Real(limit), 60, 0.02), {}};
     const auto [x, y] = view.real.pixel(bent.point(view.u0, view.v0));
     v.peak = Pixel(static_cast<double>(x), static_cast<double>(y));
     if (noisePx > 0) {
-      for (Pixel& p : v.contour) p += Pixel(noise(rng), noise(rng));
-      v.peak += Pixel(noise(rng), noise(rng));
+      for (Pixel& p : v.contour) p += noisePx * Pixel(noise(rng), noise(rng));
+      v.peak += noisePx * Pixel(noise(rng), noise(rng));
     }
     scene.views.push_back(std::move(v));
   }
