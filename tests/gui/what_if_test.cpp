@@ -15,6 +15,7 @@
 #include "gui/whatif/what_if_panel.h"
 #include "gui/window/main_window.h"
 #include "tests/gui/fixture.h"
+#include "tests/sanitizers/cases.h"
 
 namespace glint::gui {
 
@@ -99,9 +100,9 @@ class WhatIfTest : public QObject {
     window.open(QStringLiteral(GLINT_SOURCE_DIR "/sessions/lessons/plane-to-cylinder/plane-to-cylinder.glint"));
     Document& d = window.document();
     const auto settled = [&] { return d.inspection() && !d.stale() && window.idle() && !window.framePanel()->busy(); };
-    QTRY_VERIFY_WITH_TIMEOUT(settled(), 60000);
+    QTRY_VERIFY_WITH_TIMEOUT(settled(), testing_support::kWaitMs);
     d.selectFrame(d.frameCount() - 1);
-    QTRY_VERIFY_WITH_TIMEOUT(settled(), 60000);
+    QTRY_VERIFY_WITH_TIMEOUT(settled(), testing_support::kWaitMs);
     const FrameCanvas* canvas = window.framePanel()->canvas();
     auto* captions = window.findChild<QLabel*>("frameCaptions");
     const int room = canvas->height(), lines = captions->height();
@@ -112,13 +113,13 @@ class WhatIfTest : public QObject {
     for (const Eigen::Vector3d& by : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1.5, 0, -0.5), Eigen::Vector3d(4, 2, -1)}) {
       w.lightsBy[d.scene()->lights.at(0).id] = by;
       d.setWhatIf(w, "What if");
-      QTRY_VERIFY_WITH_TIMEOUT(settled(), 60000);
+      QTRY_VERIFY_WITH_TIMEOUT(settled(), testing_support::kWaitMs);
       QTest::qWait(50);
       most = std::max(most, captions->height());
     }
     QVERIFY2(most > lines, "the what-if must need more lines, or this tests nothing");
     d.setWhatIf({}, "What if: everything back");
-    QTRY_VERIFY_WITH_TIMEOUT(settled(), 60000);
+    QTRY_VERIFY_WITH_TIMEOUT(settled(), testing_support::kWaitMs);
     QTRY_COMPARE(captions->height(), lines);
     QTRY_COMPARE(canvas->height(), room);
     QCOMPARE(canvas->zoom(), zoom);
@@ -206,7 +207,7 @@ class WhatIfTest : public QObject {
   FramePanel& panel() { return *window_->findChild<FramePanel*>(); }
   PhotoLoader& loader() { return *panel().loader(); }
 
-  void settle() { QTRY_VERIFY_WITH_TIMEOUT(document().inspection() && window_->idle() && !panel().busy(), 60000); }
+  void settle() { QTRY_VERIFY_WITH_TIMEOUT(document().inspection() && window_->idle() && !panel().busy(), testing_support::kWaitMs); }
 
   void change(const WhatIf& w) {
     document().setWhatIf(w, "What if");

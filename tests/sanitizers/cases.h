@@ -12,6 +12,9 @@ inline constexpr bool kSanitized = true;
 inline constexpr bool kSanitized = false;
 #endif
 
+/// How long a test of the window waits for results, ms.
+inline constexpr int kWaitMs = kSanitized ? 600000 : 60000;
+
 /// The cases of a test; the first alone under a sanitizer.
 template <class T>
 std::vector<T> cases(std::vector<T> all) {
