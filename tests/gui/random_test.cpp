@@ -22,6 +22,7 @@
 #include "gui/whatif/what_if_panel.h"
 #include "gui/window/main_window.h"
 #include "tests/gui/fixture.h"
+#include "tests/sanitizers/cases.h"
 #include "viz/frame_overlay.h"
 
 namespace glint::gui {
@@ -72,7 +73,7 @@ class RandomTest : public QObject {
     std::filesystem::copy(std::string(GLINT_SOURCE_DIR "/sessions/") + name.toStdString(), copy,
                           std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing);
     window.open(copy_.filePath(name + QStringLiteral(".glint")));
-    QTRY_VERIFY_WITH_TIMEOUT(window.document().scene() && window.idle() && !window.document().stale(), 300000);
+    QTRY_VERIFY_WITH_TIMEOUT(window.document().scene() && window.idle() && !window.document().stale(), 3 * testing_support::kWaitMs);
     const QList<QAction*> actions = window.actions().all();
     for (const auto& [start, reason] : leftOut())
       QVERIFY2(std::any_of(actions.begin(), actions.end(),
@@ -196,7 +197,7 @@ class RandomTest : public QObject {
     return text.open(QIODevice::ReadOnly) ? text.readAll() : QByteArray();
   }
   static std::string results(MainWindow& window) {
-    [&] { QTRY_VERIFY_WITH_TIMEOUT(window.idle() && !window.document().stale(), 120000); }();
+    [&] { QTRY_VERIFY_WITH_TIMEOUT(window.idle() && !window.document().stale(), 3 * testing_support::kWaitMs); }();
     return window.document().inspection() ? digestOf(*window.document().inspection()) : std::string();
   }
   QTemporaryDir folder_, copy_;
