@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "tests/cli/small_scene.h"
+#include "tests/sanitizers/cases.h"
 
 namespace glint {
 namespace {
@@ -177,8 +178,8 @@ TEST_F(TradeoffCommand, StopsQuicklyAndResumes) {
     _exit(99);
   }
   const fs::path work = folder_ / "t.json.work";
-  for (int i = 0; i < 600 && !fs::exists(work); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  EXPECT_TRUE(fs::exists(work)) << "no work was kept in 30 s";
+  for (int i = 0; i < testing_support::kWaitMs / 50 && !fs::exists(work); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_TRUE(fs::exists(work)) << "no work was kept in time";
   kill(child, SIGINT);
   int status = 0;
   waitpid(child, &status, 0);
