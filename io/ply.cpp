@@ -111,8 +111,11 @@ Header readHeader(std::string_view bytes, const std::string& file) {
       const std::string_view text = io::takeWord(*line);
       const std::optional<std::int64_t> count = io::integerOf(text);
       if (name.empty() || !count || *count < 0) bad("the PLY element has no count");
-      for (const Element& e : header.elements)
-        if (e.name == name && (name == "vertex" || name == "face")) bad("a second element " + io::quoted(name));
+      if (name == "vertex" || name == "face")
+        for (const Element& e : header.elements)
+          if (e.name == name) bad("a second element " + io::quoted(name));
+      constexpr std::size_t kMostElements = 1000;  // no program writes more: a damaged header
+      if (header.elements.size() >= kMostElements) bad("more than " + std::to_string(kMostElements) + " elements");
       header.elements.push_back({std::string(name), static_cast<std::uint64_t>(*count), {}});
       seen = 0;
     } else if (word == "property") {

@@ -393,7 +393,10 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
         score.reason = "not compared";  // why is said once, for the frame
         score.spurious = 0;
       }
-      overlay.captions.push_back({modelColour(model), model, scoreText(model, score),
+      // Drawn like a held-out frame's prediction, but it counts in no summary.
+      const bool excluded = !training && !inspection.isHeldOut(frame);
+      overlay.captions.push_back({modelColour(model), model,
+                                  scoreText(model, score) + (excluded ? "   excluded, not evaluated" : ""),
                                   score.matched == 0 || score.missed > 0 || score.spurious > 0, score});
     }
   }

@@ -253,6 +253,10 @@ Image ladderPicture(const Inspection& inspection, int frame, const Outcome<Image
   std::vector<Below> below(models.size());
   for (std::size_t i = 0; i < models.size(); ++i) {
     const FrameScore score = frameScore(inspection.models.at(models[i]), frame);
+    if (score.missed > 0 && score.matched > 0) {
+      below[i].reason = missedText(score);
+      continue;
+    }
     if (score.errorPct) {
       below[i].numbers = errorText(*score.errorPct) + " %   " + errorText(*score.errorPx) + " px" +
                          (score.iou ? "   IoU " + formatted("%.3f", *score.iou) : "");

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <set>
@@ -409,27 +410,36 @@ std::optional<Picked> pickIn(vtkRenderer* renderer, const LayerInput& in, const 
       nearest = (hit->position - eye).norm();
     }
   }
-  vtkNew<vtkCellPicker> picker;
-  picker->SetTolerance(0.004);
-  picker->PickFromListOn();
-  for (const Drawn* d : drawn) {
-    if (d->pickable) picker->AddPickList(d->prop);
-  }
-  if (!picker->Pick(xDisplay, yDisplay, 0, renderer)) return result;
-  Eigen::Vector3d at = toEigen(picker->GetPickPosition());
-  if (vtkMatrix4x4* moved = picker->GetProp3D()->GetUserMatrix())  // drawn nearer than it is, see Drawn::nearerPx
-    at = (Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(moved->GetData()).inverse() * at.homogeneous())
-             .hnormalized();
+  const auto pickAmong = [&](const std::function<bool(const Drawn&)>& taken) -> std::optional<Picked> {
+    vtkNew<vtkCellPicker> picker;
+    picker->SetTolerance(0.004);
+    picker->PickFromListOn();
+    for (const Drawn* d : drawn)
+      if (d->pickable && taken(*d)) picker->AddPickList(d->prop);
+    if (!picker->Pick(xDisplay, yDisplay, 0, renderer)) return {};
+    for (const Drawn* d : drawn) {
+      if (d->prop.Get() != picker->GetProp3D()) continue;
+      Picked picked = d->describe ? d->describe(picker->GetCellId()) : d->info;
+      picked.position = toEigen(picker->GetPickPosition());
+      if (vtkMatrix4x4* moved = picker->GetProp3D()->GetUserMatrix())  // drawn nearer than it is, see Drawn::nearerPx
+        picked.position = (Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(moved->GetData()).inverse() *
+                           picked.position.homogeneous())
+                              .hnormalized();
+      return picked;
+    }
+    return {};
+  };
+  std::optional<Picked> thing = pickAmong([](const Drawn&) { return true; });
   // What lies on the surface is picked before the surface itself.
-  if ((at - eye).norm() > nearest + 10 * in.scale.lift) return result;
-  for (const Drawn* d : drawn) {
-    if (d->prop.Get() != picker->GetProp3D()) continue;
-    result = d->describe ? d->describe(picker->GetCellId()) : d->info;
-    result->position = at;
-    addDirection(in, *result);
-    break;
+  if (!thing || (thing->position - eye).norm() > nearest + 10 * in.scale.lift) return result;
+  // Where contours lie on one another the selected model stays, whichever of them is drawn on top.
+  if (const std::string& model = in.selection.model; !thing->model.empty() && !model.empty() && thing->model != model) {
+    const std::optional<Picked> own =
+        pickAmong([&](const Drawn& d) { return d.info.layer == thing->layer && d.info.model == model; });
+    if (own && (own->position - thing->position).norm() < 10 * in.scale.lift) thing = own;
   }
-  return result;
+  addDirection(in, *thing);
+  return thing;
 }
 
 bool besideEye(const LayerInput& in, int frame) {

@@ -126,6 +126,7 @@ std::string readFile(const fs::path& file, std::optional<Limit> limit) {
     if (n < 0) throw systemError(file, "cannot be read", errno);
     if (n == 0) break;
     content.append(buffer, static_cast<std::size_t>(n));
+    if (limit) requireWithin(*limit, double(content.size()) / kMegabyte, file.string());  // some files of the system have no size
   }
   return content;
 }

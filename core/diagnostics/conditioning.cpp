@@ -387,8 +387,14 @@ double effectiveNumber(const std::vector<Eigen::Vector3d>& directions, double in
   return double(d.size()) * double(d.size()) / similar;
 }
 
+namespace {
+constexpr const char* kToLevelSet = "from the observed contour to the level set, RMS";
+}
+
+std::string residualMeaning(const LightEstimate&) { return kToLevelSet; }
+
 std::string residualMeaning(const ModelFit& fit) {
-  if (!fit.quadric) return "from the observed contour to the level set, RMS";
+  if (!fit.quadric) return kToLevelSet;
   return std::string("from the ") + (fit.model == "canonical" ? "canonical" : "observed") + " contour to the outline, one way, RMS";
 }
 

@@ -56,6 +56,8 @@ double effectiveNumber(const std::vector<Eigen::Vector3d>& directions, double in
 /// What ModelFit::residualPx of a fit measures: "from the observed contour to the outline, one way, RMS". It is another number than the
 /// contour error of the same frame, which goes both ways: a contour may lie along an outline that runs far beyond it.
 std::string residualMeaning(const ModelFit& fit);
+/// Of LightEstimate::rmsPx.
+std::string residualMeaning(const LightEstimate& light);
 
 /// Standard deviations of the three semi-axes, m, to first order from the fit's uncertainty of the shape S: d a = v^T dS v / (2
 /// a) along the axis v. Empty when the fit has no ellipsoid or tells no uncertainty; infinite for an axis of length 0.

@@ -201,8 +201,9 @@ struct Side {
 Side sideOf(const FrameComparison& c) {
   Side side;
   double sum = 0;
-  int n = 0;
+  int n = 0, missed = 0;
   for (const FrameComparison::Row& row : c.rows) {
+    missed += row.observed >= 0 && row.predicted < 0;
     if (row.metrics && std::isfinite(row.metrics->contourErrorPct)) {
       sum += row.metrics->contourErrorPct;
       ++n;
@@ -210,7 +211,11 @@ Side sideOf(const FrameComparison& c) {
       side.reason = row.failure->message();
     }
   }
-  if (n > 0) return {sum / n, ""};
+  // The mean of the others would make a frame with a missed highlight look good.
+  if (n > 0 && missed > 0)
+    side.reason = "missed " + std::to_string(missed) + " of " + std::to_string(missed + n) + " highlights";
+  else if (n > 0)
+    return {sum / n, ""};
   if (side.reason.empty() && c.prediction.failure) side.reason = c.prediction.failure->message();
   if (side.reason.empty()) side.reason = c.prediction.highlights.empty() ? "nothing predicted" : "nothing observed";
   return side;

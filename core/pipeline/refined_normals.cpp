@@ -100,8 +100,8 @@ class LobeAngles {
 std::string RefinedNormals::remark() const {
   return formatted(
       "the mesh's normals were corrected (light.refine_normals): by %.2g mrad (RMS) along the training contours, of which %s "
-      "leaves %.3g px instead of %.3g px; %.0f %% of a tilt that all contours share stays open, and parts that no training "
-      "highlight touched are as given",
+      "leaves %.3g px instead of %.3g px; %.0f %% of a tilt that all contours share stays open, so the light may be further off "
+      "than with the normals as given; parts that no training highlight touched are as given",
       1e3 * slope, model.c_str(), refinedPx, plainPx, 100 * openTilt);
 }
 

@@ -100,7 +100,9 @@ fs::path absolutePath(const JsonNode& node, const fs::path& folder) {
 
 InspectionRequest readRequest(const JsonNode& node, const fs::path& folder) {
   InspectionRequest request;
-  request.models = texts(node.at("models"));
+  std::set<std::string> named;  // one that is named twice is one model
+  for (const std::string& model : texts(node.at("models")))
+    if (named.insert(model).second) request.models.push_back(model);
   request.train = node.at("train").text();
   if (const auto n = node.find("excluded")) {
     for (std::size_t i = 0; i < n->size(); ++i) {
@@ -292,7 +294,12 @@ std::vector<fs::path> permittedFolders(const Session& session, const Relinked& i
 
 void requirePermittedTruth(const Session& session, const Relinked& instead) {
   if (session.allowOutsidePaths || session.request.truthFolder.empty()) return;
-  requirePermitted(session.request.truthFolder, permittedFolders(session, instead), session.file.string(), "request.truth", "--truth DIR");
+  const std::vector<fs::path> permitted = permittedFolders(session, instead);
+  const fs::path folder = session.request.truthFolder;
+  requirePermitted(folder, permitted, session.file.string(), "request.truth", "--truth DIR");
+  std::error_code error;  // what cannot be listed is not read either
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    if (it->is_symlink()) requirePermitted(it->path(), permitted, session.file.string(), "request.truth", "--truth DIR");
 }
 
 namespace {
@@ -337,6 +344,7 @@ OpenedSession openSession(Session given, const Relinked& instead) {
   if (!instead.scene.empty()) session.input = fs::absolute(instead.scene).lexically_normal();
   std::error_code ignored;
   if (!fs::exists(session.input, ignored)) throw MissingScene(session.file, session.input);
+  if (instead.scene.empty()) requireSceneFile(session.input, session.file.string());
   ReadOptions options;
   options.allowOutsidePaths = session.allowOutsidePaths;
   options.folders = permittedFolders(session, instead);
@@ -350,6 +358,7 @@ OpenedSession openSession(Session given, const Relinked& instead) {
   options.meshes.insert(session.meshes.begin(), session.meshes.end());  // what is given now stays
   options.meshFolders = instead.meshFolders;
   Scene scene = withFilesIn(readSceneOfSession(session.input, options), session.folders);
+  if (!session.allowOutsidePaths) requirePermittedFiles(scene, session.folders, session.file.string(), options.folders);
   if (instead.any()) opened.warning = takeOver(session, scene, sceneWas, !instead.scene.empty());
   session.meshes = scene.meshes;
   opened.scene = std::make_shared<const Scene>(std::move(scene));

@@ -95,7 +95,10 @@ class SessionSceneReader final : public SceneReader {
     own.meshes.insert(input.meshes.begin(), input.meshes.end());
     std::error_code ignored;  // what cannot be asked about is not there
     if (!fs::exists(input.scene, ignored)) root.at("input").at("path").fail("the scene " + input.scene.string() + " is not there");
-    return withFilesIn(readSceneOfSession(input.scene, own), input.folders);
+    requireSceneFile(input.scene, file.string());
+    Scene scene = withFilesIn(readSceneOfSession(input.scene, own), input.folders);
+    if (!options.allowOutsidePaths) requirePermittedFiles(scene, input.folders, file.string(), own.folders);
+    return scene;
   }
 };
 

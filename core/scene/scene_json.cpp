@@ -360,6 +360,7 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
 
   const JsonNode version = root.at("glint_scene");
   if (version.integer() != 1) version.fail("version " + std::to_string(version.integer()) + " is not understood, only 1");
+  if (!root.has("frames") && root.has("path")) root.fail("is a specification, not a scene (glint synth makes a scene of it)");
   scene.name = scene.folder.filename().string();
   if (const auto n = root.find("name")) scene.name = n->text();
   if (const auto n = root.find("units"); n && n->text() != "m")

@@ -10,6 +10,7 @@ namespace glint {
 namespace fs = std::filesystem;
 
 namespace {
+constexpr std::size_t kMostFolders = 100;  // every frame is looked for in each; a user names one or two of a kind
 
 fs::path pathOf(const JsonNode& node, const fs::path& folder) {
   const std::string text = node.text();
@@ -22,6 +23,8 @@ fs::path pathOf(const JsonNode& node, const fs::path& folder) {
 
 int readSessionVersion(const JsonNode& root) {
   const auto node = root.find("glint_session");
+  if (!node && root.has("path") && !root.has("frames"))
+    root.fail("is a specification, not a session (glint synth makes a scene of it, glint reconstruct a session of that)");
   if (!node && root.has("glint_scene")) root.fail("is a scene, not a session (glint reconstruct makes a session of it)");
   if (!node) root.fail("is no session: glint_session is missing");
   const int version = node->integer();
@@ -38,6 +41,8 @@ SessionInput readSessionInput(const JsonNode& root, const fs::path& folder) {
   if (const auto n = input.find("allow_outside")) n->boolean();  // what a session says about its own rights counts for nothing
   if (const auto n = input.find("photographs"); n && !n->isNull()) result.folders.push_back({FrameFile::Photograph, pathOf(*n, folder)});
   const auto all = input.find("folders");
+  if (all && all->size() > kMostFolders)
+    all->fail("names " + std::to_string(all->size()) + " folders, at most " + std::to_string(kMostFolders));
   for (std::size_t i = 0; all && i < all->size(); ++i) {
     const JsonNode of = all->at(i).at("of");
     const auto kind = std::find_if(kFrameFiles.begin(), kFrameFiles.end(), [&](FrameFile k) { return of.text() == nameOf(k); });
@@ -67,17 +72,41 @@ void require(bool lies, const fs::path& path, const std::string& file, const std
 }
 }  // namespace
 
+void requireSceneFile(const fs::path& scene, const std::string& session) {
+  std::error_code ignored;  // what cannot be asked about is no folder
+  if (fs::is_directory(scene, ignored))
+    throw InputError(session, "input.path", "'" + scene.string() + "' is a folder; name the scene's file");
+}
+
 void requirePermitted(const fs::path& folder, const std::vector<fs::path>& permitted, const std::string& file, const std::string& place,
                       const std::string& option) {
   require(liesIn(permitted, folder), folder, file, place, option, realPath(folder));
 }
 
-void requirePermitted(const SessionInput& input, const std::string& file, const std::vector<fs::path>& permitted) {
-  for (std::size_t i = 0; i < input.folders.size(); ++i) {
-    const FilesFolder& f = input.folders[i];
-    requirePermitted(f.folder, permitted, file, "input.folders[" + std::to_string(i) + "].folder",
-                     f.kind == FrameFile::Photograph ? "--photographs DIR" : std::string("--files ") + nameOf(f.kind) + "=DIR");
+namespace {
+std::string placeOf(std::size_t folder) { return "input.folders[" + std::to_string(folder) + "].folder"; }
+std::string optionOf(const FilesFolder& f) {
+  return f.kind == FrameFile::Photograph ? "--photographs DIR" : std::string("--files ") + nameOf(f.kind) + "=DIR";
+}
+}  // namespace
+
+void requirePermittedFiles(const Scene& scene, const std::vector<FilesFolder>& folders, const std::string& file,
+                           const std::vector<fs::path>& permitted) {
+  for (std::size_t i = 0; i < folders.size(); ++i) {
+    const fs::path root = fs::absolute(folders[i].folder).lexically_normal();
+    for (const Frame& frame : scene.frames)
+      for (const fs::path* p : {&frame.image, &frame.radiance, &frame.depth, &frame.normals, &frame.mask}) {
+        if (p->empty()) continue;
+        const fs::path below = fs::absolute(*p).lexically_normal().lexically_relative(root);
+        if (below.empty() || *below.begin() == "..") continue;
+        require(liesIn(permitted, *p), *p, file, placeOf(i), optionOf(folders[i]), realPath(*p).parent_path());
+      }
   }
+}
+
+void requirePermitted(const SessionInput& input, const std::string& file, const std::vector<fs::path>& permitted) {
+  for (std::size_t i = 0; i < input.folders.size(); ++i)
+    requirePermitted(input.folders[i].folder, permitted, file, placeOf(i), optionOf(input.folders[i]));
   for (const auto& [named, mesh] : input.meshes)
     require(liesIn(permitted, mesh), mesh, file, "input.meshes." + named, "--mesh " + named + "=FILE", realPath(mesh).parent_path());
 }

@@ -21,7 +21,7 @@ int readSessionVersion(const JsonNode& root);
 
 /// What the `input` of a session names, absolute. A session comes from others: `requirePermitted` before anything of it is looked at.
 struct SessionInput {
-  std::filesystem::path scene;                          ///< a file or folder; may lie anywhere
+  std::filesystem::path scene;                          ///< a file, see requireSceneFile(); may lie anywhere
   std::vector<FilesFolder> folders;                     ///< in which frames' files are looked for, in the session's order
   std::map<std::string, std::filesystem::path> meshes;  ///< by the path that the scene file writes
 };
@@ -33,8 +33,14 @@ SessionInput readSessionInput(const JsonNode& root, const std::filesystem::path&
 std::vector<std::filesystem::path> foldersOfSession(const std::filesystem::path& session, const std::filesystem::path& scene,
                                                     const std::vector<std::filesystem::path>& named);
 
+/// InputError where the scene that a session names is a folder: which of its files is meant would not be known.
+void requireSceneFile(const std::filesystem::path& scene, const std::string& session);
+
 /// OutsidePath (place input.folders[i].folder, input.meshes.NAME) for the first that lies in none of `permitted`.
 void requirePermitted(const SessionInput& input, const std::string& file, const std::vector<std::filesystem::path>& permitted);
+/// The same for the files that the folders of a session gave to its scene: a link in a folder may lead out of it.
+void requirePermittedFiles(const Scene& scene, const std::vector<FilesFolder>& folders, const std::string& file,
+                           const std::vector<std::filesystem::path>& permitted);
 /// The same for one folder. @param option  that names such a folder on the command line, "--photographs"
 void requirePermitted(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& permitted, const std::string& file,
                       const std::string& place, const std::string& option);

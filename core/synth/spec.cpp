@@ -148,6 +148,7 @@ void addFrame(Scene& scene, const Camera& camera, const Eigen::Isometry3d& pose,
 
 SynthSpec readSynthSpec(const std::filesystem::path& file) {
   const JsonNode root = JsonNode::parse(readFile(file, Limit::JsonMegabytes), file.string());
+  if (root.has("glint_session")) root.fail("is a session, not the specification of a synthetic scene");
   SynthSpec spec;
   Scene& scene = spec.scene;
   scene.file = file;

@@ -126,6 +126,12 @@ ParamSpec numberRange(double min, double max, double step) {
   return spec;
 }
 
+ParamSpec wholeRange(int min, int max) {
+  ParamSpec spec = numberRange(min, max, 1);
+  spec.defaultValue = min;
+  return spec;
+}
+
 SliderScale::SliderScale(const ParamSpec& spec)
     : min_(spec.min), max_(spec.max), step_(spec.step), logarithmic_((spec.max - spec.min) / spec.step > kManySteps) {}
 

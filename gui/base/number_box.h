@@ -2,6 +2,7 @@
 #pragma once
 
 #include <QDoubleSpinBox>
+#include <cmath>
 
 #include "core/base/settings.h"
 
@@ -15,6 +16,8 @@ class NumberBox : public QDoubleSpinBox {
   Q_OBJECT
  public:
   explicit NumberBox(const ParamSpec& spec, QWidget* parent = nullptr);
+  /// The value of a box that takes whole numbers only, see wholeRange().
+  int whole() const { return int(std::lround(value())); }
   /// What is wrong with a text that was typed; "" = nothing.
   QString problemOf(const QString& text) const;
   QString textFromValue(double value) const override;
@@ -37,6 +40,7 @@ class NumberBox : public QDoubleSpinBox {
 
 /// For a number box that is of no setting.
 ParamSpec numberRange(double min, double max, double step);
+ParamSpec wholeRange(int min, int max);
 
 /// Slider positions 0..1000 of a setting: linear, or logarithmic in steps where the range spans many of them.
 class SliderScale {

@@ -8,9 +8,10 @@
 #include <QPushButton>
 #include <QSettings>
 #include <QSignalBlocker>
-#include <QSpinBox>
 #include <algorithm>
 #include <cmath>
+
+#include "gui/base/number_box.h"
 
 namespace glint::gui {
 
@@ -40,11 +41,10 @@ FigureDialog::FigureDialog(const QString& title, const QString& kind, const QSiz
   for (const Preset& p : kPresets) preset_->addItem(tr(p.title));
   form->addRow(tr("&Size"), preset_);
   const auto pixels = [&](const char* name) {
-    auto* box = new QSpinBox;
+    auto* box = new NumberBox(wholeRange(kLeastPx, kMostPx));
     box->setObjectName(QLatin1String(name));
-    box->setRange(kLeastPx, kMostPx);
     box->setSuffix(tr(" px"));
-    box->setKeyboardTracking(false);
+    box->setStepType(QAbstractSpinBox::DefaultStepType);
     return box;
   };
   width_ = pixels("figureWidth");
@@ -77,8 +77,8 @@ FigureDialog::FigureDialog(const QString& title, const QString& kind, const QSiz
   preset_->setCurrentIndex(preset);
   choose(preset);
   connect(preset_, QOverload<int>::of(&QComboBox::activated), this, &FigureDialog::choose);
-  connect(width_, QOverload<int>::of(&QSpinBox::valueChanged), this, &FigureDialog::followWidth);
-  connect(height_, QOverload<int>::of(&QSpinBox::valueChanged), this, &FigureDialog::followHeight);
+  connect(width_, QOverload<double>::of(&NumberBox::valueChanged), this, &FigureDialog::followWidth);
+  connect(height_, QOverload<double>::of(&NumberBox::valueChanged), this, &FigureDialog::followHeight);
 }
 
 /// The size that was typed last; for a picture of another shape as wide as that and of the picture's own shape.
@@ -101,25 +101,25 @@ void FigureDialog::setSize(const QSize& size) {
   const QSignalBlocker quiet(width_), quietToo(height_);
   width_->setValue(size.width());
   height_->setValue(size.height());
-  aspect_ = double(width_->value()) / height_->value();
+  aspect_ = double(width_->whole()) / height_->whole();
 }
 
 void FigureDialog::followWidth() {
   preset_->setCurrentIndex(kOther);
   const QSignalBlocker quiet(height_);
   if (keepShape_->isChecked())
-    height_->setValue(int(std::lround(width_->value() / aspect_)));
+    height_->setValue(int(std::lround(width_->whole() / aspect_)));
   else
-    aspect_ = double(width_->value()) / height_->value();
+    aspect_ = double(width_->whole()) / height_->whole();
 }
 
 void FigureDialog::followHeight() {
   preset_->setCurrentIndex(kOther);
   const QSignalBlocker quiet(width_);
   if (keepShape_->isChecked())
-    width_->setValue(int(std::lround(height_->value() * aspect_)));
+    width_->setValue(int(std::lround(height_->whole() * aspect_)));
   else
-    aspect_ = double(width_->value()) / height_->value();
+    aspect_ = double(width_->whole()) / height_->whole();
 }
 
 /// What is transparent stands on a page that the program does not see: lines and texts are for that, not for the window's theme.
@@ -134,7 +134,7 @@ void FigureDialog::followBackground() {
 }
 
 FigureLook FigureDialog::look() const {
-  return {{width_->value(), height_->value()}, transparent_->isChecked(), colours_->currentIndex() == 0};
+  return {{width_->whole(), height_->whole()}, transparent_->isChecked(), colours_->currentIndex() == 0};
 }
 
 void FigureDialog::accept() {

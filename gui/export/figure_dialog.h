@@ -6,9 +6,10 @@
 
 class QCheckBox;
 class QComboBox;
-class QSpinBox;
 
 namespace glint::gui {
+
+class NumberBox;
 
 /// How a picture leaves the program.
 struct FigureLook {
@@ -42,7 +43,7 @@ class FigureDialog : public QDialog {
   bool dark_;  ///< the window
   double aspect_ = 1.6;
   QComboBox *preset_, *colours_;
-  QSpinBox *width_, *height_;
+  NumberBox *width_, *height_;
   QCheckBox *keepShape_, *transparent_;
 };
 

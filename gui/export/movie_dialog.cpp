@@ -3,12 +3,10 @@
 
 #include <QComboBox>
 #include <QDialogButtonBox>
-#include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QLabel>
 #include <QPushButton>
 #include <QSettings>
-#include <QSpinBox>
 #include <algorithm>
 #include <cmath>
 
@@ -37,9 +35,9 @@ MovieDialog::MovieDialog(MovieOf of, int frames, bool dark, QWidget* parent) : Q
   size_->addItem(tr("Other"));
   form->addRow(tr("S&ize"), size_);
   const auto pixels = [&](const char* name) {
-    auto* box = new QSpinBox;
+    auto* box = new NumberBox(wholeRange(64, 8192));
     box->setObjectName(QLatin1String(name));
-    box->setRange(64, 8192);
+    box->setStepType(QAbstractSpinBox::DefaultStepType);
     box->setSingleStep(2);
     box->setSuffix(tr(" px"));
     return box;
@@ -50,11 +48,9 @@ MovieDialog::MovieDialog(MovieOf of, int frames, bool dark, QWidget* parent) : Q
   form->addRow(tr("&Height"), height_);
   rate_ = new NumberBox(numberRange(0.1, 120, 1));
   rate_->setObjectName(QStringLiteral("movieRate"));
-  rate_->setDecimals(1);
   form->addRow(tr("&Pictures per second"), rate_);
   seconds_ = new NumberBox(numberRange(0.2, 600, 1));
   seconds_->setObjectName(QStringLiteral("movieSeconds"));
-  seconds_->setDecimals(1);
   seconds_->setSuffix(tr(" s"));
   form->addRow(tr("One &turn takes"), seconds_);
   colours_ = new QComboBox;
@@ -78,7 +74,7 @@ MovieDialog::MovieDialog(MovieOf of, int frames, bool dark, QWidget* parent) : Q
   const auto showSize = [this] {
     int at = kOther;
     for (int i = 0; i < kOther; ++i)
-      if (kSizes[i] == QSize(width_->value(), height_->value())) at = i;
+      if (kSizes[i] == QSize(width_->whole(), height_->whole())) at = i;
     size_->setCurrentIndex(at);
   };
   showSize();
@@ -87,9 +83,9 @@ MovieDialog::MovieDialog(MovieOf of, int frames, bool dark, QWidget* parent) : Q
     width_->setValue(kSizes[at].width());
     height_->setValue(kSizes[at].height());
   });
-  for (QSpinBox* box : {width_, height_}) connect(box, QOverload<int>::of(&QSpinBox::valueChanged), this, showSize);
-  for (QDoubleSpinBox* box : {rate_, seconds_})
-    connect(box, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, &MovieDialog::showLength);
+  for (NumberBox* box : {width_, height_}) connect(box, QOverload<double>::of(&NumberBox::valueChanged), this, showSize);
+  for (NumberBox* box : {rate_, seconds_})
+    connect(box, QOverload<double>::of(&NumberBox::valueChanged), this, &MovieDialog::showLength);
   connect(of_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, &MovieDialog::showKind);
   showKind();
 }
@@ -109,7 +105,7 @@ void MovieDialog::showLength() {
 MovieLook MovieDialog::look() const {
   MovieLook look;
   look.of = MovieOf(of_->currentIndex());
-  look.format = {width_->value(), height_->value(), rate_->value()};
+  look.format = {width_->whole(), height_->whole(), rate_->value()};
   look.frames = look.of == MovieOf::Turntable ? std::max(2, int(std::lround(seconds_->value() * rate_->value()))) : sceneFrames_;
   look.dark = colours_->currentIndex() == 0;
   return look;
@@ -117,7 +113,7 @@ MovieLook MovieDialog::look() const {
 
 void MovieDialog::accept() {
   QSettings settings;
-  settings.setValue(QStringLiteral("export/movie/size"), QSize(width_->value(), height_->value()));
+  settings.setValue(QStringLiteral("export/movie/size"), QSize(width_->whole(), height_->whole()));
   settings.setValue(QStringLiteral("export/movie/seconds"), seconds_->value());
   QDialog::accept();
 }

@@ -6,11 +6,11 @@
 #include "viz/movie.h"
 
 class QComboBox;
-class QDoubleSpinBox;
 class QLabel;
-class QSpinBox;
 
 namespace glint::gui {
+
+class NumberBox;
 
 enum class MovieOf { FrameView, LookThrough, Turntable };
 
@@ -36,8 +36,8 @@ class MovieDialog : public QDialog {
 
   int sceneFrames_;
   QComboBox *of_, *size_, *colours_;
-  QSpinBox *width_, *height_;
-  QDoubleSpinBox *rate_, *seconds_;
+  NumberBox *width_, *height_;
+  NumberBox *rate_, *seconds_;
   QLabel* length_;
 };
 

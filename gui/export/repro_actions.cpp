@@ -7,8 +7,8 @@
 #include <QFormLayout>
 #include <QLabel>
 #include <QPushButton>
-#include <QSpinBox>
 
+#include "gui/base/number_box.h"
 #include "gui/base/text.h"
 #include "gui/export/figure_actions.h"
 #include "gui/export/folder_dialog.h"
@@ -32,9 +32,8 @@ ReproDialog::ReproDialog(const Fault& fault, const QString& frame, int training,
   form->addRow(what);
   kept_ = new QComboBox;
   kept_->addItems({tr("stays as it is"), tr("stays, or becomes larger")});
-  percent_ = new QSpinBox;
+  percent_ = new NumberBox(wholeRange(1, 90));
   percent_->setObjectName(QStringLiteral("reproTolerance"));
-  percent_->setRange(1, 90);
   percent_->setValue(20);
   percent_->setSuffix(tr(" %"));
   if (fault.errorPct) {  // a named failure has no size
@@ -61,7 +60,7 @@ ReproDialog::ReproDialog(const Fault& fault, const QString& frame, int training,
 QString ReproDialog::folder() const { return folder_->folder(); }
 
 FaultTolerance ReproDialog::tolerance() const {
-  return {kept_->currentIndex() == 0 ? FaultKept::Within : FaultKept::AtLeast, percent_->value() / 100.0};
+  return {kept_->currentIndex() == 0 ? FaultKept::Within : FaultKept::AtLeast, percent_->whole() / 100.0};
 }
 
 ReproActions::ReproActions(Document& document, LongJob& job, QWidget* window)

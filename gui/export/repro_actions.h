@@ -9,10 +9,11 @@
 #include "gui/document/document.h"
 
 class QComboBox;
-class QSpinBox;
 class QWidget;
 
 namespace glint::gui {
+
+class NumberBox;
 
 class FolderRow;
 class LongJob;
@@ -27,7 +28,7 @@ class ReproDialog : public QDialog {
 
  private:
   QComboBox* kept_;
-  QSpinBox* percent_;
+  NumberBox* percent_;
   FolderRow* folder_;
 };
 

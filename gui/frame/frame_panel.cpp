@@ -310,9 +310,7 @@ void FramePanel::showFrame() {
   }
   if (document_.scene()) {
     const auto want = [this](PhotoLoader& loader, FrameCanvas* canvas, int pictured, int frame) {
-      if (pictured != frame)
-        canvas->setAwaited(
-            tr("the photograph of %1 is being read").arg(toQString(document_.scene()->frames[std::size_t(frame)].id)));
+      if (pictured != frame) canvas->setAwaited(photographAwaited(*document_.scene(), frame));
       loader.want(frame);
     };
     want(loader_, canvas_, pictured_[0], document_.selection().frame);

@@ -13,6 +13,7 @@
 #include "gui/frame/photo_loader.h"
 #include "viz/frame_overlay.h"
 #include "viz/frame_pick.h"
+#include "viz/missed.h"
 #include "viz/pictures.h"
 
 namespace glint::gui {
@@ -175,9 +176,11 @@ void LadderPanel::showTile(Tile& tile) {
   tile.failed = false;
   for (const viz::OverlayCaption& c : overlay.captions) {
     if (c.model != tile.model) continue;
-    tile.failed = !c.score.errorPct;
-    tile.below = tile.failed ? toQString(c.score.reason)
-                             : tr("%1 %   %2 px").arg(numberText(*c.score.errorPct, 3), numberText(*c.score.errorPx, 3));
+    tile.failed = !viz::wholeErrorPct(c.score);
+    const bool some = c.score.missed > 0 && c.score.matched > 0;
+    tile.below = some          ? toQString(viz::missedText(c.score))
+                 : tile.failed ? toQString(c.score.reason)
+                               : tr("%1 %   %2 px").arg(numberText(*c.score.errorPct, 3), numberText(*c.score.errorPx, 3));
     tile.brief = tile.failed ? tile.below : tr("%1 %").arg(numberText(*c.score.errorPct, 3));
     tile.text->setToolTip(toQString(c.text));
   }
@@ -187,7 +190,10 @@ void LadderPanel::showTile(Tile& tile) {
                                     : QString());
   showCaption(tile);
   tile.canvas->setOverlay(overlay);
-  if (loader_.pictureFrame() == frame) tile.canvas->setPicture(loader_.picture());
+  if (loader_.pictureFrame() == frame)
+    tile.canvas->setPicture(loader_.picture());
+  else
+    tile.canvas->setAwaited(photographAwaited(*inspection->scene, frame));
 }
 
 int LadderPanel::captionHeight(int lines) const {

@@ -24,6 +24,9 @@ struct FramePicture {
   QImage shown;  ///< shares the pixels of `developed`
 };
 
+/// What stands over the photograph of another frame meanwhile.
+QString photographAwaited(const Scene& scene, int frame);
+
 /// Reads, or renders for a what-if, photographs or radiances and develops them on a thread of its own; keeps the last ones. Only
 /// the newest wish is answered: scrubbing over hundreds of frames reads those that one stops at.
 class PhotoLoader : public QObject {

@@ -99,7 +99,8 @@ NumberGroup lightGroup(const std::string& id, const LightEstimate& estimate) {
   lines.add(QObject::tr("solver"), toQString(estimate.solver));
   lines.add(QObject::tr("limit angle"), estimate.limitAngle * kDegPerRad, "deg");
   lines.add(QObject::tr("condition"), estimate.condition);
-  if (estimate.rmsPx > 0) lines.add(QObject::tr("residual rms"), estimate.rmsPx, "px");
+  if (estimate.rmsPx > 0)
+    lines.addWithMeaning(QObject::tr("residual"), estimate.rmsPx, "px", QString::fromStdString(residualMeaning(estimate)));
   return {QObject::tr("Light %1").arg(nameText(id)), lines.text()};
 }
 

@@ -83,13 +83,59 @@ TEST_F(ReceivedSessions, NothingIsSaidAboutFilesOutside) {
 }
 
 TEST_F(ReceivedSessions, ASessionThatNamesItselfAFolderOrADeviceIsRefused) {
-  for (const std::string& path : {std::string("."), std::string("run.glint"), std::string("/dev/zero"), std::string("..")}) {
+  for (const std::string& path :
+       {std::string("."), std::string("run.glint"), std::string("/dev/zero"), std::string(".."), folder_.path().string()}) {
     session_["input"]["path"] = path;
     received_.write("run.glint", session_.dump());
     const ProgramRun run = onReceived("predict");
     EXPECT_EQ(run.code, 2) << path;
     EXPECT_EQ(run.errorLines(), 1) << run.err;
   }
+}
+
+/// A link in a folder that the session may name leads out of it all the same.
+TEST_F(ReceivedSessions, ALinkInAPermittedFolderGivesNoRight) {
+  outside_.write("0000.png", "not an image");
+  std::filesystem::create_directory(received_ / "sub");
+  std::filesystem::create_directory_symlink(outside_.path(), received_ / "sub/frames");
+  for (const char* image : {"0000.png", "frames/0000.png"}) {  // as the scene may name it
+    scene_["frames"][0]["image"] = image;
+    writeScene();
+    session_["input"]["folders"] = {{{"of", "photographs"}, {"folder", std::string(image) == "0000.png" ? "sub/frames" : "sub"}}};
+    session_["input"]["files"] = Json::array();
+    receive();
+    for (const char* command : {"predict", "detect --source image --json -", "replay"}) {
+      const ProgramRun run = onReceived(command);
+      EXPECT_EQ(run.code, 2) << command;
+      EXPECT_THAT(run.err, HasSubstr("input.folders[0].folder")) << command;
+    }
+    EXPECT_EQ(onReceived("predict", "--allow-outside").code, 0);
+  }
+}
+
+TEST_F(ReceivedSessions, ALinkInATruthFolderGivesNoRight) {
+  const std::filesystem::path secret = outside_.write("0000.json", "{\"levels\": 5}");
+  std::filesystem::create_directory(received_ / "truth");
+  std::filesystem::create_symlink(secret, received_ / "truth/0000.json");
+  session_["request"]["truth"] = "truth";
+  session_["input"]["files"] = Json::array();
+  receive();
+  const ProgramRun run = onReceived("evaluate");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.err, HasSubstr("request.truth"));
+  EXPECT_THAT(run.err, Not(HasSubstr("levels")));
+}
+
+TEST_F(ReceivedSessions, ManyFoldersAreRefusedAndRepeatedModelsAreOne) {
+  session_["request"]["models"] = Json::array();
+  for (int i = 0; i < 100000; ++i) session_["request"]["models"].push_back("limit-angle");
+  receive();
+  EXPECT_EQ(onReceived("predict").code, 0);
+  for (int i = 0; i < 101; ++i) session_["input"]["folders"].push_back({{"of", "depth"}, {"folder", "."}});
+  receive();
+  const ProgramRun run = onReceived("predict");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.err, HasSubstr("names 101 folders, at most 100"));
 }
 
 TEST_F(ReceivedSessions, AFileThatIsADeviceEnds) {
@@ -103,6 +149,21 @@ TEST_F(ReceivedSessions, ASceneIsNoSession) {
   const ProgramRun run = runGlint("predict " + inQuotes(folder_ / "scene.json"));
   EXPECT_EQ(run.code, 2);
   EXPECT_THAT(run.err, HasSubstr("is a scene, not a session"));
+}
+
+/// A document of another kind is named, not searched for what it lacks.
+TEST_F(ReceivedSessions, ASpecificationIsNeitherASceneNorASession) {
+  const std::string specification = inQuotes(std::filesystem::path(GLINT_SOURCE_DIR) / "resources/specs/ellipsoid_80.json");
+  for (const char* command : {"info ", "evaluate "}) {
+    const ProgramRun run = runGlint(command + specification);
+    EXPECT_EQ(run.code, 2) << command;
+    EXPECT_THAT(run.err, HasSubstr("is a specification, not a scene")) << command;
+  }
+  EXPECT_THAT(runGlint("predict " + specification).err, HasSubstr("is a specification, not a session"));
+  receive();
+  const ProgramRun made = onReceived("synth", "-o " + inQuotes(received_ / "made"));
+  EXPECT_EQ(made.code, 2);
+  EXPECT_THAT(made.err, HasSubstr("is a session, not the specification"));
 }
 
 TEST_F(ReceivedSessions, ANewerSessionIsRefusedByEveryCommand) {

@@ -18,7 +18,6 @@
 #include <QMimeData>
 #include <QPainter>
 #include <QProgressDialog>
-#include <QSpinBox>
 #include <QSvgRenderer>
 #include <QTimer>
 #include <QUrl>
@@ -26,6 +25,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "gui/base/number_box.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/document/session_file.h"
@@ -298,14 +298,14 @@ class FigureTest : public QObject {
       return std::make_unique<FigureDialog>("figure", "shape", shown, true, nullptr);
     };
     auto asked = dialog({400, 300});
-    asked->findChild<QSpinBox*>("figureWidth")->setValue(1200);
+    asked->findChild<NumberBox*>("figureWidth")->setValue(1200);
     asked->accept();
     QCOMPARE(dialog({400, 300})->look().size, QSize(1200, 900));
     QCOMPARE(dialog({800, 600})->look().size, QSize(1200, 900));
     QCOMPARE(dialog({800, 400})->look().size, QSize(1200, 600));
     asked = dialog({400, 300});  // proportions that were given up stay so for the same picture
     asked->findChild<QCheckBox*>("figureKeepShape")->setChecked(false);
-    asked->findChild<QSpinBox*>("figureHeight")->setValue(300);
+    asked->findChild<NumberBox*>("figureHeight")->setValue(300);
     asked->accept();
     QCOMPARE(dialog({400, 300})->look().size, QSize(1200, 300));
   }
@@ -370,9 +370,10 @@ class FigureTest : public QObject {
     const QString file = folder_.filePath("asked.png");
     QTimer::singleShot(0, this, [] {
       auto* dialog = qobject_cast<QDialog*>(QApplication::activeModalWidget());
-      auto* width = dialog->findChild<QSpinBox*>("figureWidth");
-      auto* height = dialog->findChild<QSpinBox*>("figureHeight");
+      auto* width = dialog->findChild<NumberBox*>("figureWidth");
+      auto* height = dialog->findChild<NumberBox*>("figureHeight");
       const double aspect = double(width->value()) / height->value();
+      QVERIFY(width->problemOf(QStringLiteral("5")).contains(QStringLiteral("not within")));  // said, not put back without a word
       width->setValue(640);
       QVERIFY(std::abs(640 / aspect - height->value()) <= 0.51);  // proportions are kept
       dialog->accept();

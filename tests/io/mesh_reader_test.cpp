@@ -207,6 +207,8 @@ TEST(MeshReader, DamageIsNamedWithItsPlace) {
   };
   const std::string ply = plyText(), binary = plyBinary<float>("float", false), obj = objText(), stl = stlText();
   const std::size_t head = plyHead("binary_little_endian", "float").size();
+  std::string manyElements;
+  for (int i = 0; i < 60000; ++i) manyElements += "element a 0\n";
   std::string wrongIndex = binary, wrongCount = binary, nan = binary;
   wrongIndex[head + 48 + 13 + 1] = 9;
   wrongCount[head + 48] = 2;
@@ -245,6 +247,7 @@ TEST(MeshReader, DamageIsNamedWithItsPlace) {
       {with(ply, "element face 2\n", "element face 2\nproperty list uchar int vertex_index\n"),
        "line 10: a second property 'vertex_indices'"},
       {with(ply, "element face 2", "element vertex 2\nelement face 2"), "line 8: a second element 'vertex'"},
+      {with(ply, "element face 2", manyElements + "element face 2"), "line 1007: more than 1000 elements"},
       {with(ply, "comment by hand", "property float early"), "line 3: a PLY property before any element"},
       {with(ply, "comment by hand", "format ascii 1.0"), "line 3: a second format"},
       {with(ply, "comment by hand", "elephant"), "line 3: 'elephant' is no statement"},

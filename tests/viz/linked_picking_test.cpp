@@ -85,6 +85,23 @@ TEST_F(LinkedPicking, AContourPointIsADirectionOfItsHighlight) {
   }
 }
 
+/// Two models that predict the same: a click there leaves the selected one selected, whichever is drawn on top.
+TEST_F(LinkedPicking, TheSelectedModelStaysWhereContoursOverlap) {
+  inspection_->models.at("dual").frames = inspection_->models.at("canonical").frames;
+  view_.setInspection(inspection_);
+  view_.setEye(Eye::Camera);
+  showOnly("predicted-contours");
+  const Pixel at = inspection_->evidence[0].highlights[0].peak + 15 * Pixel(std::cos(0.3), std::sin(0.3));
+  for (const char* model : {"canonical", "dual"}) {
+    view_.setSelection({0, model, -1, "", {}});
+    render(view_);
+    const std::optional<Picked> picked = pickAtPixel(at);
+    ASSERT_TRUE(picked) << model;
+    EXPECT_EQ(picked->model, model);
+    ASSERT_TRUE(picked->direction);
+  }
+}
+
 TEST_F(LinkedPicking, CameraEllipsoidLightAndVirtualCameraTellWhatTheyAre) {
   view_.setParallel(true);  // picking has no eye point then
   showOnly("cameras");

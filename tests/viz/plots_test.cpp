@@ -389,6 +389,27 @@ TEST_F(PlotDrawing, ZoomKeepsTheValueUnderTheMouse) {
   EXPECT_NEAR((*view_.positionOf({0, 2}) - next).norm(), 0, 1);
 }
 
+/// Two models with the same errors: a click there leaves the selected one selected, whichever is drawn on top.
+TEST_F(PlotDrawing, TheSelectedModelStaysWherePointsCoincide) {
+  PlotData plot = line({{0, 1}, {1, 8}, {2, 3}});
+  PlotSeries second = plot.series[0];
+  second.name = "dual";
+  for (PlotPoint& p : second.points) p.target.model = "dual";
+  second.points[2].y = 4;
+  plot.series.push_back(second);
+  view_.show(plot);
+  draw();
+  const Eigen::Vector2d both = *view_.positionOf({0, 1}) + Eigen::Vector2d(2, 1);
+  for (const int selected : {0, 1}) {
+    view_.setSelection({0, plot.series[std::size_t(selected)].name, -1, "", {}});
+    ASSERT_TRUE(view_.at(both, 10));
+    EXPECT_EQ(view_.at(both, 10)->series, selected);
+    EXPECT_EQ(view_.at(both, 10)->point, 1);
+    EXPECT_EQ(view_.at(*view_.positionOf({0, 2}), 10)->series, 0) << "where they differ the click says which";
+    EXPECT_EQ(view_.at(*view_.positionOf({1, 2}), 10)->series, 1);
+  }
+}
+
 TEST_F(PlotDrawing, BarsArePickedByTheirColumn) {
   PlotData plot = line({{0, 4}, {1, -2}, {2, 0}});
   plot.series[0].shape = PlotShape::Bars;

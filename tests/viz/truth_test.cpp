@@ -14,6 +14,7 @@
 #include "viz/camera_colours.h"
 #include "viz/layers.h"
 #include "viz/missed.h"
+#include "viz/pictures.h"
 #include "viz/plots/plot_export.h"
 #include "viz/plots/plots.h"
 #include "viz/scene_legend.h"
@@ -72,6 +73,18 @@ TEST(Missed, AFrameWithAMissedHighlightHasNoErrorAlone) {
   EXPECT_EQ(missedText(frameScore(inspection->models.at("dual"), 0)), "missed the highlight");
 }
 
+class MissedDrawing : public test::PictureTest {};
+
+/// With the photograph itself nothing else in a tile of the ladder is in the colour of failures.
+TEST_F(MissedDrawing, TheLadderSaysItInsteadOfASmallError) {
+  const TemporaryFolder folder;
+  const auto inspection = withAMiss(folder.path()), whole = smallInspection(folder.path());
+  for (const auto& i : {inspection, whole}) i->models.erase("dual");  // which misses every highlight
+  const Outcome<Image> photograph = readPhotograph(inspection->scene->frames[kTwo]);
+  EXPECT_GT(countNear(ladderPicture(*inspection, kTwo, photograph, 600, 400), kFailed, 0.1), 50);
+  EXPECT_LT(countNear(ladderPicture(*whole, kTwo, photograph, 600, 400), kFailed, 0.1), 10);
+}
+
 TEST(Missed, ThePlotHasACrossInsteadOfASmallError) {
   const TemporaryFolder folder;
   const PlotData plot = errorPlot(*withAMiss(folder.path()));
@@ -88,8 +101,6 @@ TEST(Missed, ThePlotHasACrossInsteadOfASmallError) {
   s.model = "canonical";
   EXPECT_EQ(selectedSamples(plot, s).size(), 1u) << "the cross can be selected";
 }
-
-class MissedDrawing : public test::PictureTest {};
 
 TEST_F(MissedDrawing, TheCrossStandsAboveAllErrorsAndIsPicked) {
   const TemporaryFolder folder;
@@ -159,6 +170,15 @@ TEST(Missed, ACameraIsNotColouredByTheErrorOfTheRest) {
   EXPECT_THAT(cameraColour(input, kTwo).meaning, HasSubstr("missed")) << "none is best where all miss";
   EXPECT_THAT(cameraPicked(*inspection, {"canonical"}, kTwo).text, HasSubstr("missed 1 of 2"));
   EXPECT_THAT(cameraPicked(*inspection, {"canonical"}, kTwo).text, Not(HasSubstr("contour error")));
+}
+
+TEST(Excluded, TheCaptionOfAFrameSaysThatItIsNotEvaluated) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  inspection->request.excluded = {5};
+  for (int frame = 0; frame < 6; ++frame)
+    for (const OverlayCaption& caption : frameOverlay(*inspection, frame).captions)
+      EXPECT_EQ(caption.text.find("excluded, not evaluated") != std::string::npos, frame == 5) << frame << " " << caption.text;
 }
 
 TEST(Excluded, FramesAreAKindOfTheirOwn) {

@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "core/base/number_text.h"
+#include "core/diagnostics/conditioning.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
 
@@ -69,8 +70,9 @@ LayerContent lightLayer(const LayerInput& in) {
     info.light = key.substr(0, at);
     if (in.hidden.lights.count(info.light)) continue;
     info.text = line("estimated light", key.substr(0, at)) + line("solver", estimate.solver) +
-                line("limit angle", estimate.limitAngle * 180 / std::numbers::pi, "deg") +
-                line("residual", estimate.rmsPx, "px") + line("condition", estimate.condition);
+                line("limit angle", estimate.limitAngle * 180 / std::numbers::pi, "deg") + line("condition", estimate.condition);
+    if (estimate.rmsPx > 0)  // 0: triangulated from rays alone
+      info.text += line("residual", estimate.rmsPx, "px") + "(residual: " + residualMeaning(estimate) + ")\n";
     if (estimate.covariance && estimate.covariance->allFinite()) {
       info.text += line("standard deviation", Eigen::Vector3d(estimate.covariance->diagonal().cwiseMax(0).cwiseSqrt()), "m");
     }

@@ -34,6 +34,7 @@ namespace {
 
 constexpr double kFont = 12, kSmallFont = 11;  // screen px
 constexpr double kCross = 3.5, kCrossRow = 9;  // half size of a cross at the top, height of a series' row of them; screen px
+constexpr double kCoincides = 0.3;             // of the reach of a click: nearer points are seen as one
 constexpr Colour kHalo{0.12, 0.13, 0.15};
 // A dial's circle of zero and how far the largest residual goes from it, in radii of the dial.
 constexpr double kZeroRadius = 0.58, kReachOfDial = 0.36;
@@ -101,6 +102,27 @@ struct PlotView::Impl {
     constexpr double kSlack = 1;
     return p.allFinite() && (plot.dial || (p.x() >= left - kSlack && p.x() <= right + kSlack && p.y() >= bottom - kSlack &&
                                            p.y() <= top + kSlack));
+  }
+
+  const PlotPoint& pointOf(const PlotSample& sample) const {
+    return plot.series[std::size_t(sample.series)].points[std::size_t(sample.point)];
+  }
+  /// The sample nearer to a place in the scene than `reach`; bars have none. @param model  only its samples; "" = all
+  std::optional<PlotSample> nearest(const Eigen::Vector2d& scene, double reach, const std::string& model) const {
+    std::optional<PlotSample> best;
+    for (int s = 0; s < int(plot.series.size()); ++s) {
+      const PlotSeries& series = plot.series[std::size_t(s)];
+      if (series.shape == PlotShape::Bars) continue;
+      for (int i = 0; i < int(series.points.size()); ++i) {
+        const PlotPoint& p = series.points[std::size_t(i)];
+        if (!model.empty() && p.target.model != model) continue;
+        const Eigen::Vector2d at = placeOf(s, p);  // not finite for a gap
+        if (!inside(at)) continue;
+        const double distance = (at - scene).norm();
+        if (distance < reach) reach = distance, best = PlotSample{s, i};
+      }
+    }
+    return best;
   }
 
   void rebuild();
@@ -481,25 +503,22 @@ std::optional<Eigen::Vector2d> PlotView::positionOf(const PlotSample& sample) co
 std::optional<PlotSample> PlotView::at(const Eigen::Vector2d& place, double reach) const {
   const Impl& d = *impl_;
   if (!d.painted || d.isEmpty()) return std::nullopt;
-  std::optional<PlotSample> best;
-  double nearest = reach;
   const Eigen::Vector2d scene(place.x(), d.sceneHeight - place.y());
   for (int s = 0; s < int(d.plot.series.size()); ++s) {
     const PlotSeries& series = d.plot.series[std::size_t(s)];
+    if (series.shape != PlotShape::Bars) continue;
     for (int i = 0; i < int(series.points.size()); ++i) {
-      const PlotPoint& p = series.points[std::size_t(i)];
-      if (series.shape == PlotShape::Bars) {
-        const double x0 = d.place(p.x - 0.5 * series.barWidth, 1).x(), x1 = d.place(p.x + 0.5 * series.barWidth, 1).x();
-        if (scene.x() >= x0 && scene.x() < x1 && scene.y() >= d.bottom && scene.y() <= d.top) return PlotSample{s, i};
-        continue;
-      }
-      const Eigen::Vector2d at = d.placeOf(s, p);  // not finite for a gap
-      if (!d.inside(at)) continue;
-      const double distance = (at - scene).norm();
-      if (distance < nearest) nearest = distance, best = PlotSample{s, i};
+      const double x = series.points[std::size_t(i)].x;
+      const double x0 = d.place(x - 0.5 * series.barWidth, 1).x(), x1 = d.place(x + 0.5 * series.barWidth, 1).x();
+      if (scene.x() >= x0 && scene.x() < x1 && scene.y() >= d.bottom && scene.y() <= d.top) return PlotSample{s, i};
     }
   }
-  return best;
+  const std::optional<PlotSample> best = d.nearest(scene, reach, "");
+  if (!best || d.selection.model.empty() || d.pointOf(*best).target.model == d.selection.model) return best;
+  // Where points lie on one another the selected model stays, whichever of them is drawn on top.
+  const std::optional<PlotSample> own =
+      d.nearest(d.placeOf(best->series, d.pointOf(*best)), kCoincides * reach, d.selection.model);
+  return own ? own : best;
 }
 
 void PlotView::zoom(double factor, const Eigen::Vector2d& about, bool both) {

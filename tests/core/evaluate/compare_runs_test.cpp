@@ -115,6 +115,19 @@ TEST(CompareRuns, ErrorsWithTheirRatioRolesAndReasons) {
   EXPECT_EQ(c.summaries[0].betterB, 1);
 }
 
+/// The mean of the highlights that were found would make that frame look good.
+TEST(CompareRuns, AFrameWithAMissedHighlightHasNoError) {
+  Inspection a = byHand({"a", "b"}, {1, 2}, 1), b = byHand({"a", "b"}, {1, 0.1}, 1);
+  b.models.at("dual").frames[1].rows.push_back({1, -1, {}, Failure{Reason::NotReached, "nothing overlaps it"}, {}});
+  const RunComparison c = compareRuns({}, a, {}, b);
+  ASSERT_EQ(c.errors.size(), 2u);
+  EXPECT_DOUBLE_EQ(c.errors[1].errorA.value(), 2);
+  EXPECT_FALSE(c.errors[1].errorB);
+  EXPECT_EQ(c.errors[1].reasonB, "missed 1 of 2 highlights");
+  EXPECT_FALSE(c.errors[1].ratio);
+  EXPECT_EQ(c.summaries.at(0).common, 0);
+}
+
 TEST(CompareRuns, NamesWhatChanged) {
   const Inspection a = byHand({"a", "b", "c"}, {1, 2, 3}, 1);
   Inspection b = byHand({"a", "b", "c"}, {1, 2, 3}, 2);

@@ -22,7 +22,12 @@ inline TriangleMesh bumpyMesh(const AnalyticSpec& spec, double slope, double len
   std::uniform_real_distribution<double> phase(0, 2 * M_PI);
   constexpr int kWaves = 16;
   std::vector<std::pair<Eigen::Vector3d, double>> waves;
-  for (int i = 0; i < kWaves; ++i) waves.emplace_back(Eigen::Vector3d(normal(rng), normal(rng), normal(rng)) / length, phase(rng));
+  for (int i = 0; i < kWaves; ++i) {
+    Eigen::Vector3d k;  // one number after the other: compilers differ in the order in which they evaluate arguments
+    const double f = phase(rng);
+    for (const int axis : {2, 1, 0}) k(axis) = normal(rng);
+    waves.emplace_back(k / length, f);
+  }
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     double h = 0;
     for (const auto& [k, f] : waves) h += slope * length * std::sqrt(2.0 / kWaves) * std::sin(k.dot(mesh.vertices[i]) + f);

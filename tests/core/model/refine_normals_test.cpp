@@ -10,6 +10,7 @@
 #include "core/surface/mesh.h"
 #include "tests/core/model/bumpy_mesh.h"
 #include "tests/core/model/exact_views.h"
+#include "tests/sanitizers/cases.h"
 
 namespace glint {
 namespace {
@@ -26,8 +27,9 @@ struct Case {
   std::shared_ptr<const Surface> mesh;
   std::vector<BundleView> views;
 
-  Case(Synthetic s, double slope, double scale = 1, double noisePx = 0, unsigned seed = 1) : scene(std::move(s)) {
-    mesh = makeMesh(bumpyMesh(scene.surface, slope, kLength * scale, 5), NormalPolicy::Interpolated);
+  Case(Synthetic s, double slope, double scale = 1, double noisePx = 0, unsigned seed = 1, unsigned bumps = 5)
+      : scene(std::move(s)) {
+    mesh = makeMesh(bumpyMesh(scene.surface, slope, kLength * scale, bumps), NormalPolicy::Interpolated);
     for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
       Highlight h = exactHighlightsOf(scene, scene.cameras[i])[0];
       h.contour.points = resample(h.contour, 72);
@@ -74,6 +76,30 @@ TEST(RefineNormals, Nominal) {
   EXPECT_LT(after->rmsPx, 0.15 * plain->rmsPx);
   ASSERT_TRUE(r->uncertainty);
   EXPECT_EQ(r->uncertainty->root.rows(), 5);
+}
+
+// Nominal has one set of bumps, on which the light gains, too. On others the normals gain (measured: 0.34 of their error,
+// geometric mean over six sets), but the light may lose: it was up to 5.8 times as far off as before, because a tilt that all
+// views share is nearly a moved light. The remark says so.
+TEST(RefineNormals, NormalsGainWhateverTheBumpsTheLightMayNot) {
+  double logNormals = 0;
+  const std::vector<unsigned> all = testing_support::cases<unsigned>({1, 2, 3, 4});
+  for (const unsigned bumps : all) {
+    const Case c(ellipsoidScene(8), kSlope, 1, 0, 1, bumps);
+    const Outcome<Bundle> plain = bundleLight(c.views, c.start());
+    const Outcome<NormalRefinement> r = refineNormals(c.views, c.start(), kPrior);
+    ASSERT_TRUE(plain && r && r->correction.changesAnything()) << bumps;
+    EXPECT_LT(r->rmsPx, 0.15 * r->plainRmsPx) << bumps;
+    const Outcome<std::shared_ptr<const Surface>> corrected = correctedMesh(*c.mesh, NormalPolicy::Interpolated, r->correction);
+    ASSERT_TRUE(corrected);
+    logNormals += std::log(c.normalsOff(**corrected) / c.normalsOff(*c.mesh)) / double(all.size());
+    RecordProperty("bumps_" + std::to_string(bumps),
+                   std::to_string(c.normalsOff(**corrected) / c.normalsOff(*c.mesh)) + " normals, " +
+                       std::to_string(c.lightError(r->light) / c.lightError(plain->light)) + " light");
+  }
+  if (!testing_support::kSanitized) {
+    EXPECT_LT(std::exp(logNormals), 0.8);
+  }
 }
 
 TEST(RefineNormals, Scale) {
