@@ -41,6 +41,21 @@ TEST_F(OutputsOfCommands, AFileOfTheInputIsNeverReplaced) {
   EXPECT_EQ(contentOf(folder_ / "scene.json"), scene);
 }
 
+TEST_F(OutputsOfCommands, ASessionFoundThroughItsFolderIsNeverReplaced) {
+  fs::create_directories(folder_ / "kept");
+  const ProgramRun saved = on("reconstruct", "--model limit-angle -o " + out("kept/a.glint"));
+  ASSERT_EQ(saved.code, 0) << saved.err;
+  const std::string session = contentOf(folder_ / "kept/a.glint");
+  for (const std::string& input : {out("kept"), out("kept/")})
+    refuses(runGlint("reconstruct " + input + " --model canonical -o " + out("kept/a.glint")),
+            "a.glint: --out: is a file of the input");
+  EXPECT_EQ(contentOf(folder_ / "kept/a.glint"), session);
+  // Beside a scene file a session is none of the input: the folder means the scene file.
+  ASSERT_EQ(on("reconstruct", "--model limit-angle -o " + out("b.glint")).code, 0);
+  const ProgramRun again = on("reconstruct", "--model limit-angle -o " + out("b.glint"));
+  EXPECT_EQ(again.code, 0) << again.err;
+}
+
 TEST_F(OutputsOfCommands, AFileOfAnotherKindStaysAsItIs) {
   folder_.write("notes.txt", "a person's notes\n");
   folder_.write("other.json", R"({"glint_scene": 1})");
