@@ -99,6 +99,33 @@ TEST_F(WrittenNames, MeshesOfOneNameAreNumbered) {
               contentOf(folder_ / "spec" / name / "b.ply"));
 }
 
+TEST_F(WrittenNames, ANumberedNameDoesNotReplaceTheFileOfAnother) {
+  writeTetrahedron("spec/one/b.ply", 0.3);
+  writeTetrahedron("spec/two/b.ply", 0.5);
+  folder_.write("a/b/out/mesh/b-2.ply", "a person's mesh");
+  Json spec = sphere({{{"id", "0"}, {"surface", "one"}}, {{"id", "1"}, {"surface", "two"}}});
+  spec["surfaces"] = {{"one", {{"mesh", "one/b.ply"}}}, {"two", {{"mesh", "two/b.ply"}}}};
+  const ProgramRun run = synth(spec);
+  EXPECT_EQ(run.code, 2);
+  EXPECT_EQ(run.errorLines(), 1) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("mesh/b-2.ply: exists, and no earlier run of synth wrote it"));
+  EXPECT_EQ(contentOf(folder_ / "a/b/out/mesh/b-2.ply"), "a person's mesh");
+  EXPECT_FALSE(fs::exists(folder_ / "a/b/out/scene.json"));
+}
+
+TEST_F(WrittenNames, ExtensionsOfMeshesHoldNoControls) {
+  writeTetrahedron("spec/b.p\n\x1b[31mly", 0.3);
+  writeTetrahedron("spec/c.p\xE2\x80\xAEly", 0.3);  // right to left
+  Json spec = sphere({{{"id", "0"}, {"surface", "one"}}, {{"id", "1"}, {"surface", "two"}}});
+  spec["surfaces"] = {{"one", {{"mesh", "b.p\n\x1b[31mly"}}}, {"two", {{"mesh", "c.p\xE2\x80\xAEly"}}}};
+  const ProgramRun run = synth(spec);
+  ASSERT_TRUE(run.code == 0 || run.code == 3) << run.err;  // flat faces need not show a highlight
+  EXPECT_TRUE(fs::exists(folder_ / "a/b/out/mesh/b.p%0A%1B[31mly"));
+  EXPECT_TRUE(fs::exists(folder_ / "a/b/out/mesh/c.p%E2%80%AEly"));
+  const ProgramRun info = runGlint("info " + inQuotes(folder_ / "a/b/out"));
+  EXPECT_EQ(info.code, 0) << info.err;
+}
+
 TEST_F(WrittenNames, TheSpecificationIsNotReplaced) {
   const std::string spec = sphere(Json::array({Json::object()})).dump();
   folder_.write("scene.json", spec);
