@@ -264,6 +264,12 @@ void renderFrames(Scene& scene, const RenderOptions& render, const Material& mat
       progress, "render");
 }
 
+/// What the scene's file holds, with the sign that `synth` wrote it.
+std::string textOf(Scene scene) {
+  scene.unknownJson = std::string("{\"scene\": {\"") + kMadeBy + "\": \"" + kMadeBySynth + "\"}}";
+  return prettyJson(sceneToJson(scene, scene.folder));
+}
+
 }  // namespace
 
 Scene synthesise(const SynthSpec& spec, const fs::path& folder, const ProgressFn& progress) {
@@ -304,7 +310,7 @@ Scene synthesise(const SynthSpec& spec, const fs::path& folder, const ProgressFn
     copyMeshes(scene, meshes, out);
     if (spec.render) renderFrames(scene, *spec.render, spec.material, surfaces, tops, out, progress);
     std::sort(scene.warnings.begin(), scene.warnings.end());
-    atomicWrite(out / scene.file.filename(), prettyJson(sceneToJson(scene, scene.folder)));
+    atomicWrite(out / scene.file.filename(), textOf(scene));
   });
   return scene;
 }
