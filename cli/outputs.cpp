@@ -55,7 +55,11 @@ bool OutputKind::holds(const fs::path& file) const {
 
 Outputs::Outputs(const std::vector<fs::path>& inputs) : inputs_(inputs) {}
 
-Outputs::Outputs(const std::string& input, const Scene& scene) : inputs_(filesOf(scene)) { inputs_.emplace_back(input); }
+Outputs::Outputs(const std::string& input, const Scene& scene) : inputs_(filesOf(scene)) {
+  inputs_.emplace_back(input);
+  std::error_code ignored;                                                         // what cannot be asked about is no folder
+  if (fs::is_directory(input, ignored)) inputs_.push_back(recognisedFile(input));  // a session is no file of its scene
+}
 
 void Outputs::requireNoInput(const fs::path& file, const std::string& flag) const {
   std::error_code ignored;  // what cannot be asked about is another file

@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t kLongestWord = 160;    // a path of this length still shows its folder and its name
 constexpr std::size_t kLongestName = 180;    // file systems allow 255 bytes; an extension and a temporary file's marks follow
+constexpr std::size_t kLongestExtension = 16;  // with its dot: a longer one is a part of the name
 constexpr std::size_t kHashDigits = 16;      // 64 bits: two ids of one scene never agree by chance
 constexpr std::string_view kEllipsis = "…";
 
@@ -35,9 +36,8 @@ std::pair<std::uint32_t, std::size_t> codePoint(std::string_view text, std::size
   return {value, n};
 }
 
-/// C0 without line ends and tab, DEL, C1, and what turns the direction of writing or is a line end of another kind.
+/// C0, DEL, C1, and what turns the direction of writing or is a line end of another kind: of messages and of the names of files.
 bool isControl(std::uint32_t c) {
-  if (c == '\n' || c == '\t') return false;
   return c < 0x20 || (c >= 0x7F && c < 0xA0) || c == 0x61C || (c >= 0x200E && c <= 0x200F) || (c >= 0x2028 && c <= 0x202E) ||
          (c >= 0x2066 && c <= 0x2069) || c == 0xFEFF;
 }
@@ -63,7 +63,7 @@ std::string withoutControls(std::string_view text) {
       ++i;
       continue;
     }
-    if (isControl(c))
+    if (isControl(c) && c != '\n' && c != '\t')
       out += formatted(c < 0x100 ? "\\x%02X" : "\\u%04X", c);
     else
       out += text.substr(i, length);
@@ -90,13 +90,15 @@ std::string messageLine(std::string_view given, std::size_t most) {
 std::string fileNameOf(std::string_view id) {
   if (id.empty()) return "%";
   std::string name;
-  for (std::size_t i = 0; i < id.size(); ++i) {
-    const auto c = static_cast<unsigned char>(id[i]);
+  for (std::size_t i = 0; i < id.size();) {
+    const auto [c, known] = codePoint(id, i);
+    const std::string_view bytes = id.substr(i, std::max<std::size_t>(1, known));
     const bool dots = c == '.' && (i == 0 || id[i - 1] == '.' || (i + 1 < id.size() && id[i + 1] == '.'));
-    if (dots || c < 0x20 || c == 0x7F || c == '/' || c == '\\' || c == '%')
-      name += formatted("%%%02X", c);
+    if (known == 0 || dots || isControl(c) || c == '/' || c == '\\' || c == '%')
+      for (const char byte : bytes) name += formatted("%%%02X", static_cast<unsigned char>(byte));
     else
-      name += static_cast<char>(c);
+      name += bytes;
+    i += bytes.size();
   }
   if (name.size() <= kLongestName) return name;
   std::size_t cut = kLongestName - kHashDigits - 1;
@@ -104,6 +106,16 @@ std::string fileNameOf(std::string_view id) {
   Sha256 hash;
   hash.add(id);
   return name.substr(0, cut) + "~" + hash.hex().substr(0, kHashDigits);
+}
+
+std::string copyNameOf(const std::filesystem::path& file, int number) {
+  const std::string extension = file.extension().string();
+  const bool plain = extension.size() <= kLongestExtension && std::all_of(extension.begin(), extension.end(), [](char c) {
+                       return c == '.' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+                     });
+  const std::string mark = number > 1 ? "-" + std::to_string(number) : "";
+  return plain && extension != "." ? fileNameOf(file.stem().string()) + mark + extension
+                                   : fileNameOf(file.filename().string()) + mark;
 }
 
 }  // namespace glint

@@ -10,6 +10,7 @@
 #include "core/base/minimal_subset.h"
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
+#include "core/base/safe_text.h"
 #include "core/pipeline/comparison.h"
 #include "core/pipeline/session.h"
 #include "core/pipeline/training.h"
@@ -97,8 +98,8 @@ fs::path copied(const fs::path& file, const fs::path& folder, std::map<fs::path,
   if (const auto found = done.find(file); found != done.end()) return found->second;
   std::error_code error;
   fs::create_directories(folder, error);
-  fs::path to = folder / file.filename();
-  for (int n = 2; fs::exists(to); ++n) to = folder / (file.stem().string() + "-" + std::to_string(n) + file.extension().string());
+  fs::path to = folder / copyNameOf(file);
+  for (int n = 2; fs::exists(to); ++n) to = folder / copyNameOf(file, n);
   fs::copy_file(file, to, error);
   if (error) throw InputError(file.string(), "", "cannot be copied: " + error.message());
   return done[file] = to;

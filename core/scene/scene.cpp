@@ -170,6 +170,12 @@ Scene readRecognised(const fs::path& input, const ReadOptions& options, bool ses
 Scene readScene(const fs::path& input, const ReadOptions& options) { return readRecognised(input, options, true); }
 Scene readSceneOfSession(const fs::path& input, const ReadOptions& options) { return readRecognised(input, options, false); }
 
+fs::path recognisedFile(const fs::path& input) {
+  for (const auto& reader : sceneReaders())
+    if (fs::path file = reader->recognise(input); !file.empty()) return file;
+  return {};
+}
+
 void writeScene(const Scene& scene, const fs::path& file) {
   const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
   atomicWrite(file, prettyJson(sceneToJson(scene, folder)));

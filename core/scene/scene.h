@@ -84,6 +84,9 @@ struct ReadOptions {
 Scene readScene(const std::filesystem::path& input, const ReadOptions& options = {});
 /// The same for the input of a session, which must not be a session again.
 Scene readSceneOfSession(const std::filesystem::path& input, const ReadOptions& options = {});
+/// The file that `readScene` reads first for this input: of a folder the scene file or the session in it; "" = nothing is
+/// recognised.
+std::filesystem::path recognisedFile(const std::filesystem::path& input);
 /// Writes scene.json version 1 with relative paths, atomically. InputError when it cannot be written.
 void writeScene(const Scene& scene, const std::filesystem::path& file);
 

@@ -92,6 +92,11 @@ bool isIdentifier(const std::string& id) {
   return !id.empty() && std::none_of(id.begin(), id.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
 }
 
+bool isMadeBySynth(const JsonNode& root) {
+  const auto n = root.find(kMadeBy);
+  return n && n->isString() && n->text() == kMadeBySynth;
+}
+
 std::string readIdJson(const JsonNode& node) {
   const std::string id = node.text();
   if (id.empty()) node.fail("must not be empty");
@@ -420,7 +425,9 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
     if (!scene.meshes.count(named))
       scene.warnings.push_back("no surface has the mesh '" + named + "', for which a place was given");
 
-  const Json top = unknown.of(root, {"glint_scene", "name", "units", "camera", "frames", "surfaces", "lights"});
+  std::set<std::string> topKeys = {"glint_scene", "name", "units", "camera", "frames", "surfaces", "lights"};
+  if (isMadeBySynth(root)) topKeys.insert(kMadeBy);
+  const Json top = unknown.of(root, topKeys);
   keep(unknown.kept, "scene", top);
   if (!unknown.kept.empty()) scene.unknownJson = unknown.kept.dump();
   return scene;

@@ -27,6 +27,12 @@ AnalyticSpec readAnalyticJson(const JsonNode& node);
 /// {"id", one of "position" | "direction" | "segment", "radius"}. A direction is normalised.
 TrueLight readLightJson(const JsonNode& node);
 
+/// "made_by": "glint synth" at the top of a scene file says that `synth` wrote it as it is. It is read without a warning and not
+/// kept, so that no copy that another command writes says so; another text under this key is an unknown key like others.
+inline constexpr const char* kMadeBy = "made_by";
+inline constexpr const char* kMadeBySynth = "glint synth";
+bool isMadeBySynth(const JsonNode& root);
+
 /// A scene from the text of a scene file. `file` names it in messages; paths are relative to its folder.
 Scene readSceneJson(const std::string& text, const std::filesystem::path& file, const ReadOptions& options);
 /// The text that `writeScene` writes for a file in `folder`.

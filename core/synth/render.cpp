@@ -170,14 +170,41 @@ void makeFolder(const fs::path& folder) {
 
 std::string photographExtension(const RenderOptions& render) { return render.jpegQuality > 0 ? ".jpg" : ".png"; }
 
-/// Relative to the scene's folder. A mesh that lies there already is not written.
-std::vector<fs::path> filesWritten(const Scene& scene, const std::optional<RenderOptions>& render) {
-  std::vector<fs::path> files{"scene.json"};
+/// The names in the folder `mesh` under which meshes go into the scene's folder, by the mesh. Two of one name are numbered, and
+/// none takes the place of another mesh of the scene.
+std::map<fs::path, std::string> namesOfMeshes(const Scene& scene) {
+  std::map<fs::path, std::string> names;
+  for (const auto& [id, source] : scene.surfaces)
+    if (source.mesh) names[*source.mesh];
+  std::set<std::string> taken;
+  const auto isFree = [&](const std::string& name, const fs::path& mine) {
+    std::error_code ignored;  // what is not there yet is no mesh
+    return !taken.count(name) && std::none_of(names.begin(), names.end(), [&](const auto& mesh) {
+      return mesh.first != mine && fs::equivalent(mesh.first, scene.folder / "mesh" / name, ignored);
+    });
+  };
   for (const auto& [id, source] : scene.surfaces) {
-    if (!source.mesh) continue;
-    const fs::path copy = fs::path("mesh") / (fileNameOf(source.mesh->stem().string()) + source.mesh->extension().string());
-    if (std::error_code ignored; !fs::equivalent(*source.mesh, scene.folder / copy, ignored)) files.push_back(copy);
+    if (!source.mesh || !names[*source.mesh].empty()) continue;
+    std::string name = copyNameOf(*source.mesh);
+    for (int n = 2; !isFree(name, *source.mesh); ++n) name = copyNameOf(*source.mesh, n);
+    taken.insert(name);
+    names[*source.mesh] = name;
   }
+  return names;
+}
+
+/// The mesh lies there already, and is not written.
+bool isInPlace(const fs::path& mesh, const fs::path& place) {
+  std::error_code ignored;  // what cannot be asked about is another file
+  return fs::equivalent(mesh, place, ignored);
+}
+
+/// Relative to the scene's folder.
+std::vector<fs::path> filesWritten(const Scene& scene, const std::map<fs::path, std::string>& meshes,
+                                   const std::optional<RenderOptions>& render) {
+  std::vector<fs::path> files{"scene.json"};
+  for (const auto& [mesh, name] : meshes)
+    if (!isInPlace(mesh, scene.folder / "mesh" / name)) files.push_back(fs::path("mesh") / name);
   if (!render) return files;
   for (const Frame& frame : scene.frames) {
     const std::string name = fileNameOf(frame.id);
@@ -188,39 +215,15 @@ std::vector<fs::path> filesWritten(const Scene& scene, const std::optional<Rende
   return files;
 }
 
-/// Meshes go into the scene's folder, so that it stands on its own; two of one name are numbered. They are written into `out`, which
-/// will be that folder.
-void copyMeshes(Scene& scene, const fs::path& out) {
-  std::map<fs::path, fs::path> copies;  // by the file that was copied
-  std::set<std::string> names;
-  std::set<fs::path> meshes;
-  for (const auto& [id, source] : scene.surfaces)
-    if (source.mesh) meshes.insert(*source.mesh);
-  for (auto& [id, source] : scene.surfaces) {
-    if (!source.mesh) continue;
-    if (const auto known = copies.find(*source.mesh); known != copies.end()) {
-      source.mesh = known->second;
-      continue;
-    }
-    const std::string stem = fileNameOf(source.mesh->stem().string()), extension = source.mesh->extension().string();
-    std::string name = stem + extension;
-    const auto isAnotherMesh = [&, &mine = *source.mesh](const std::string& candidate) {
-      std::error_code ignored;  // what is not there yet is no mesh
-      return std::any_of(meshes.begin(), meshes.end(), [&](const fs::path& mesh) {
-        return mesh != mine && fs::equivalent(mesh, scene.folder / "mesh" / candidate, ignored);
-      });
-    };
-    for (int n = 2; names.count(name) || isAnotherMesh(name); ++n) name = stem + "-" + std::to_string(n) + extension;
-    names.insert(name);
-    const fs::path copy = scene.folder / "mesh" / name;
-    std::error_code ignored;  // what cannot be asked about is another file
-    if (!fs::equivalent(*source.mesh, copy, ignored)) {
-      makeFolder(out / "mesh");
-      atomicWrite(out / "mesh" / name, readFile(*source.mesh));
-    }
-    copies[*source.mesh] = copy;
-    source.mesh = copy;
+/// Meshes go into the scene's folder, so that it stands on its own. They are written into `out`, which will be that folder.
+void copyMeshes(Scene& scene, const std::map<fs::path, std::string>& meshes, const fs::path& out) {
+  for (const auto& [mesh, name] : meshes) {
+    if (isInPlace(mesh, scene.folder / "mesh" / name)) continue;
+    makeFolder(out / "mesh");
+    atomicWrite(out / "mesh" / name, readFile(mesh));
   }
+  for (auto& [id, source] : scene.surfaces)
+    if (source.mesh) source.mesh = scene.folder / "mesh" / meshes.at(*source.mesh);
 }
 
 /// Photographs, radiance, depth, normals and masks of all frames, written into `out`, which will be the scene's folder.
@@ -261,6 +264,12 @@ void renderFrames(Scene& scene, const RenderOptions& render, const Material& mat
       progress, "render");
 }
 
+/// What the scene's file holds, with the sign that `synth` wrote it.
+std::string textOf(Scene scene) {
+  scene.unknownJson = std::string("{\"scene\": {\"") + kMadeBy + "\": \"" + kMadeBySynth + "\"}}";
+  return prettyJson(sceneToJson(scene, scene.folder));
+}
+
 }  // namespace
 
 Scene synthesise(const SynthSpec& spec, const fs::path& folder, const ProgressFn& progress) {
@@ -295,12 +304,13 @@ Scene synthesise(const SynthSpec& spec, const fs::path& folder, const ProgressFn
   scene.file = scene.folder / "scene.json";
   if (std::error_code ignored; fs::equivalent(spec.scene.file, scene.file, ignored))
     throw InputError(scene.file.string(), "", "would replace the specification; choose another folder");
-  requireSynthFolder(scene.folder, filesWritten(scene, spec.render));
+  const std::map<fs::path, std::string> meshes = namesOfMeshes(scene);
+  requireSynthFolder(scene.folder, filesWritten(scene, meshes, spec.render));
   atomicFiles(folder, "scene.json", [&](const fs::path& out) {
-    copyMeshes(scene, out);
+    copyMeshes(scene, meshes, out);
     if (spec.render) renderFrames(scene, *spec.render, spec.material, surfaces, tops, out, progress);
     std::sort(scene.warnings.begin(), scene.warnings.end());
-    atomicWrite(out / scene.file.filename(), prettyJson(sceneToJson(scene, scene.folder)));
+    atomicWrite(out / scene.file.filename(), textOf(scene));
   });
   return scene;
 }

@@ -41,6 +41,21 @@ TEST_F(OutputsOfCommands, AFileOfTheInputIsNeverReplaced) {
   EXPECT_EQ(contentOf(folder_ / "scene.json"), scene);
 }
 
+TEST_F(OutputsOfCommands, ASessionFoundThroughItsFolderIsNeverReplaced) {
+  fs::create_directories(folder_ / "kept");
+  const ProgramRun saved = on("reconstruct", "--model limit-angle -o " + out("kept/a.glint"));
+  ASSERT_EQ(saved.code, 0) << saved.err;
+  const std::string session = contentOf(folder_ / "kept/a.glint");
+  for (const std::string& input : {out("kept"), out("kept/")})
+    refuses(runGlint("reconstruct " + input + " --model canonical -o " + out("kept/a.glint")),
+            "a.glint: --out: is a file of the input");
+  EXPECT_EQ(contentOf(folder_ / "kept/a.glint"), session);
+  // Beside a scene file a session is none of the input: the folder means the scene file.
+  ASSERT_EQ(on("reconstruct", "--model limit-angle -o " + out("b.glint")).code, 0);
+  const ProgramRun again = on("reconstruct", "--model limit-angle -o " + out("b.glint"));
+  EXPECT_EQ(again.code, 0) << again.err;
+}
+
 TEST_F(OutputsOfCommands, AFileOfAnotherKindStaysAsItIs) {
   folder_.write("notes.txt", "a person's notes\n");
   folder_.write("other.json", R"({"glint_scene": 1})");
@@ -52,6 +67,44 @@ TEST_F(OutputsOfCommands, AFileOfAnotherKindStaysAsItIs) {
   refuses(on("render", "-o " + out("notes.txt")), "notes.txt");
   EXPECT_EQ(contentOf(folder_ / "notes.txt"), "a person's notes\n");
   EXPECT_EQ(contentOf(folder_ / "other.json"), R"({"glint_scene": 1})");
+}
+
+TEST_F(OutputsOfCommands, EveryOtherOutputRefusesAnotherKind) {
+  saveSession("--model limit-angle");
+  const std::string session = out("run.glint"), tradeoff = "tradeoff " + out("scene.json"),
+                    notWritten = "no earlier run of this command wrote it";
+  struct Row {
+    std::string arguments, flag, file, words;
+  };
+  const Row rows[] = {
+      {"movie " + session + " --size 320x240 -o " + out("m.mp4"), "--out", "m.mp4", "is not a movie"},
+      {"movie " + session + " --size 320x240 --frames 0,1 -o " + out("p.png"), "--out", "p_0001.png", "is not a PNG"},
+      {"stability --json " + out("s.json"), "--json", "s.json", "is not a JSON file with \"glint_stability\""},
+      {"compare " + session + " " + session + " --json " + out("c.json"), "--json", "c.json",
+       "is not a JSON file with \"glint_comparison\""},
+      {tradeoff + " -o " + out("t.glint"), "--out", "t.glint", "is not a JSON file with \"glint_session\""},
+      {tradeoff + " --json " + out("t.json"), "--json", "t.json", "is not a JSON file with \"glint_tradeoff\""},
+      {tradeoff + " --html " + out("t.html"), "--html", "t.html", "is not a page"},
+      {tradeoff + " --json " + out("n.json") + " --work " + out("w"), "--work", "w",
+       "is not a JSON file with \"glint_tradeoff_work\""},
+      {tradeoff + " --json " + out("n.json"), "--work", "n.json.work", "is not a JSON file with \"glint_tradeoff_work\""},
+      {"predict " + session + " --json " + out("q.json"), "--json", "q.json", "is not a JSON file with \"glint_predictions\""},
+      {"predict " + session + " --out " + out("made"), "--out", "made/predictions.json", notWritten},
+      {"predict " + session + " --out " + out("made"), "--out", "made/0003.png", notWritten},
+      {"predict " + session + " --out " + out("made"), "--out", "made/labels_limit-angle.json", notWritten},
+  };
+  const std::string other = R"({"glint_scene": 1})";  // a document of this program, but of none of these kinds
+  for (const Row& row : rows) {
+    SCOPED_TRACE(row.arguments);
+    folder_.write(row.file, other);
+    const ProgramRun run = runGlint(row.arguments);
+    refuses(run, row.file + ": " + row.flag + ": exists");
+    EXPECT_THAT(run.err, HasSubstr(row.words));
+    EXPECT_EQ(contentOf(folder_ / row.file), other);
+    fs::remove(folder_ / row.file);
+  }
+  for (const char* name : {"p.png", "p_0000.png", "n.json"}) EXPECT_FALSE(fs::exists(folder_ / name)) << name;
+  EXPECT_TRUE(fs::is_empty(folder_ / "made"));
 }
 
 TEST_F(OutputsOfCommands, TheirOwnKindIsReplaced) {

@@ -11,6 +11,7 @@ namespace glint {
 namespace {
 using namespace testing_support;
 using testing::HasSubstr;
+using testing::Not;
 namespace fs = std::filesystem;
 
 class WrittenNames : public testing::Test {
@@ -97,6 +98,69 @@ TEST_F(WrittenNames, MeshesOfOneNameAreNumbered) {
   for (const char* name : {"one", "two"})
     EXPECT_EQ(contentOf(folder_ / "a/b/out" / scene["surfaces"][name]["mesh"].get<std::string>()),
               contentOf(folder_ / "spec" / name / "b.ply"));
+}
+
+TEST_F(WrittenNames, ANumberedNameDoesNotReplaceTheFileOfAnother) {
+  writeTetrahedron("spec/one/b.ply", 0.3);
+  writeTetrahedron("spec/two/b.ply", 0.5);
+  folder_.write("a/b/out/mesh/b-2.ply", "a person's mesh");
+  Json spec = sphere({{{"id", "0"}, {"surface", "one"}}, {{"id", "1"}, {"surface", "two"}}});
+  spec["surfaces"] = {{"one", {{"mesh", "one/b.ply"}}}, {"two", {{"mesh", "two/b.ply"}}}};
+  const ProgramRun run = synth(spec);
+  EXPECT_EQ(run.code, 2);
+  EXPECT_EQ(run.errorLines(), 1) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("mesh/b-2.ply: exists, and no scene.json there says that synth wrote it"));
+  EXPECT_EQ(contentOf(folder_ / "a/b/out/mesh/b-2.ply"), "a person's mesh");
+  EXPECT_FALSE(fs::exists(folder_ / "a/b/out/scene.json"));
+}
+
+TEST_F(WrittenNames, ExtensionsOfMeshesHoldNoControls) {
+  writeTetrahedron("spec/b.p\n\x1b[31mly", 0.3);
+  writeTetrahedron("spec/c.p\xE2\x80\xAEly", 0.3);  // right to left
+  Json spec = sphere({{{"id", "0"}, {"surface", "one"}}, {{"id", "1"}, {"surface", "two"}}});
+  spec["surfaces"] = {{"one", {{"mesh", "b.p\n\x1b[31mly"}}}, {"two", {{"mesh", "c.p\xE2\x80\xAEly"}}}};
+  const ProgramRun run = synth(spec);
+  ASSERT_TRUE(run.code == 0 || run.code == 3) << run.err;  // flat faces need not show a highlight
+  EXPECT_TRUE(fs::exists(folder_ / "a/b/out/mesh/b.p%0A%1B[31mly"));
+  EXPECT_TRUE(fs::exists(folder_ / "a/b/out/mesh/c.p%E2%80%AEly"));
+  const ProgramRun info = runGlint("info " + inQuotes(folder_ / "a/b/out"));
+  EXPECT_EQ(info.code, 0) << info.err;
+}
+
+TEST_F(WrittenNames, ASceneThatLooksLikeOneOfSynthIsNotReplaced) {
+  const Json spec = sphere({{{"id", "0000"}}});
+  ASSERT_EQ(synth(spec).code, 0);
+  const fs::path made = folder_ / "a/b/out";
+  // A scene file of highlights alone, and one with every file that synth names: neither says that synth wrote it.
+  Json all = Json::parse(contentOf(made / "scene.json")), highlights = all;
+  ASSERT_EQ(all.erase("made_by"), 1u);
+  highlights.erase("made_by");
+  for (const char* key : {"image", "radiance", "depth", "normals", "mask"}) highlights["frames"][0].erase(key);
+  folder_.write("a/b/out/frames/0000.png", "a photograph");
+  for (const Json& scene : {highlights, all}) {
+    folder_.write("a/b/out/scene.json", scene.dump());
+    const ProgramRun run = synth(spec);
+    EXPECT_EQ(run.code, 2);
+    EXPECT_EQ(run.errorLines(), 1) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("scene.json: exists, and no scene.json there says that synth wrote it"));
+    EXPECT_EQ(contentOf(made / "scene.json"), scene.dump());
+    EXPECT_EQ(contentOf(made / "frames/0000.png"), "a photograph");
+  }
+}
+
+TEST_F(WrittenNames, AnEarlierSceneOfSynthIsReplaced) {
+  Json spec = sphere({{{"id", "0000"}}});
+  spec["name"] = "first";
+  ASSERT_EQ(synth(spec).code, 0);
+  spec["name"] = "second";
+  const ProgramRun run = synth(spec);
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(contentOf(folder_ / "a/b/out/scene.json"), HasSubstr("\"second\""));
+  // A copy by another command does not pass for one of synth.
+  const ProgramRun copy = runGlint("convert " + inQuotes(folder_ / "a/b/out") + " -o " + inQuotes(folder_ / "a/b/out/copy.json"));
+  EXPECT_EQ(copy.code, 0);
+  EXPECT_EQ(copy.err, "");
+  EXPECT_THAT(contentOf(folder_ / "a/b/out/copy.json"), Not(HasSubstr("made_by")));
 }
 
 TEST_F(WrittenNames, TheSpecificationIsNotReplaced) {

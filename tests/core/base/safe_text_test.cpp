@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <set>
+#include <string>
 
 namespace glint {
 namespace {
@@ -62,6 +64,39 @@ TEST(FileName, NothingLeavesTheFolder) {
   EXPECT_EQ(fileNameOf(".hidden"), "%2Ehidden");
   EXPECT_EQ(fileNameOf("a\nb"), "a%0Ab");
   EXPECT_EQ(fileNameOf(""), "%");
+}
+
+TEST(FileName, ControlsAreEscapedInUtf8) {
+  // The first and the last of each row of controls, in UTF-8; beside them, what stays.
+  EXPECT_EQ(fileNameOf("x\xC2\x80y\xC2\x9F"), "x%C2%80y%C2%9F");                // C1: U+0080, U+009F
+  EXPECT_EQ(fileNameOf("x\xE2\x80\x8Ey\xE2\x80\x8F"), "x%E2%80%8Ey%E2%80%8F");  // U+200E, U+200F
+  EXPECT_EQ(fileNameOf("x\xE2\x80\xAAy\xE2\x80\xAE"), "x%E2%80%AAy%E2%80%AE");  // U+202A, U+202E
+  EXPECT_EQ(fileNameOf("x\xE2\x81\xA6y\xE2\x81\xA9"), "x%E2%81%A6y%E2%81%A9");  // U+2066, U+2069
+  EXPECT_EQ(fileNameOf("x\xD8\x9C"), "x%D8%9C");                                // U+061C
+  EXPECT_EQ(fileNameOf("x\ty\x7F"), "x%09y%7F");
+  EXPECT_EQ(fileNameOf("\xC2\xA0\xE2\x80\x8D\xE2\x81\xAA"), "\xC2\xA0\xE2\x80\x8D\xE2\x81\xAA");  // U+00A0, U+200D, U+206A
+  EXPECT_EQ(fileNameOf("x\xFFy\xE2\x80"), "x%FFy%E2%80");                                         // not UTF-8
+}
+
+TEST(FileName, WhatIsShownEscapedIsEscapedInNamesToo) {
+  for (std::uint32_t c = 0x80; c < 0x3000; ++c) {
+    const std::string text = c < 0x800 ? std::string{char(0xC0 | c >> 6), char(0x80 | (c & 0x3F))}
+                                       : std::string{char(0xE0 | c >> 12), char(0x80 | (c >> 6 & 0x3F)), char(0x80 | (c & 0x3F))};
+    EXPECT_EQ(fileNameOf(text) == text, withoutControls(text) == text) << std::hex << c;
+  }
+}
+
+TEST(CopyName, TheExtensionIsSafeToo) {
+  EXPECT_EQ(copyNameOf("/data/b.ply"), "b.ply");
+  EXPECT_EQ(copyNameOf("b.ply", 2), "b-2.ply");
+  EXPECT_EQ(copyNameOf("b", 3), "b-3");
+  EXPECT_EQ(copyNameOf("b.tar.gz", 2), "b.tar-2.gz");
+  EXPECT_EQ(copyNameOf("b.p\n\x1b[31mly"), "b.p%0A%1B[31mly");
+  EXPECT_EQ(copyNameOf("b.p\n\x1b[31mly", 2), "b.p%0A%1B[31mly-2");
+  EXPECT_EQ(copyNameOf(".ply"), "%2Eply");
+  EXPECT_EQ(copyNameOf("b."), "b.");
+  EXPECT_LE(copyNameOf("b." + std::string(250, '\n'), 2).size(), 255u);
+  EXPECT_LE(copyNameOf("b." + std::string(250, 'x'), 2).size(), 255u);
 }
 
 TEST(FileName, DifferentIdsHaveDifferentNames) {

@@ -204,6 +204,24 @@ TEST(ReadScene, UnknownKeysAreWarnedOfAndKept) {
               testing::AllOf(HasSubstr("\"exposure\": 0.25"), HasSubstr("\"colour\": \"red\""), HasSubstr("null")));
 }
 
+TEST(ReadScene, TheSignOfSynthIsKnownAndNotKept) {
+  const TemporaryFolder folder;
+  const auto madeBy = [&](const std::string& value) {
+    return readScene(
+        folder.write("scene.json", with(minimalScene(), "{\"glint_scene\"", "{\"made_by\": " + value + ", \"glint_scene\"")));
+  };
+  const Scene made = madeBy("\"glint synth\"");
+  EXPECT_TRUE(made.warnings.empty());
+  writeScene(made, folder / "copy.json");
+  EXPECT_EQ(contentOf(folder / "copy.json").find("made_by"), std::string::npos);
+  for (const char* other : {"\"a person\"", "3", "null"}) {
+    const Scene scene = madeBy(other);
+    EXPECT_THAT(scene.warnings, ElementsAre("made_by: unknown key, kept")) << other;
+    writeScene(scene, folder / "copy.json");
+    EXPECT_THAT(contentOf(folder / "copy.json"), HasSubstr("made_by")) << other;
+  }
+}
+
 /// What nests as deep as a reader allows (100 levels) is written back, too.
 TEST(ReadScene, AnUnknownKeyThatNestsAsDeepAsAllowedIsKept) {
   const TemporaryFolder folder;
