@@ -4,10 +4,10 @@
 #include <QCoreApplication>
 #include <QPixmap>
 #include <QTimer>
-#include <cstdio>
 #include <exception>
 #include <utility>
 
+#include "gui/base/error_line.h"
 #include "gui/base/text.h"
 #include "gui/base/write_png.h"
 #include "gui/window/main_window.h"
@@ -45,7 +45,7 @@ void Screenshot::write() {
 }
 
 void Screenshot::fail(const QString& oneLine) {
-  std::fprintf(stderr, "glint-inspector: %s\n", oneLine.toUtf8().constData());
+  printErrorLine(oneLine.toStdString());
   QCoreApplication::exit(2);
 }
 
