@@ -6,11 +6,14 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/base/outcome.h"
 #include "core/base/task_memory.h"
+#include "core/scene/outputs.h"
 #include "gui/base/error_line.h"
 #include "gui/base/input_rules.h"
 #include "gui/scene/camera_glide.h"
@@ -62,6 +65,10 @@ int run(int argc, char** argv) {
   if (!platformDraws(argc, argv))
     throw glint::InputError("", "QT_QPA_PLATFORM",
                             "this Qt platform cannot draw 3D; use a display, or xvfb-run with QT_QPA_PLATFORM=xcb (see --help)");
+
+  // What can be said without opening the input is said before there is a window; Screenshot has the rest.
+  const std::vector<std::filesystem::path> input{command.input.toStdString()};
+  glint::Outputs(input).file(command.screenshot.toStdString(), "--screenshot", glint::OutputKind::png());
 
 #if QT_VERSION < QT_VERSION_CHECK(6, 0, 0)
   QApplication::setAttribute(Qt::AA_EnableHighDpiScaling);

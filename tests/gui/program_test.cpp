@@ -2,6 +2,7 @@
 // The program itself, as a script runs it.
 #include <QDir>
 #include <QFile>
+#include <QFileInfo>
 #include <QImage>
 #include <QProcess>
 #include <set>
@@ -172,6 +173,47 @@ class ProgramTest : public QObject {
     QVERIFY2(r.err.toUtf8().size() <= 400, qPrintable(r.err));
     QCOMPARE(r.err.count('\n'), 1);
     QVERIFY(!r.err.contains(QChar(0x1b)));
+  }
+
+  /// As the commands do it: a picture replaces only a PNG, and never a file of what is open.
+  void aScreenshotReplacesNoFileOfTheInput() {
+    QTemporaryDir folder;
+    const auto path = [&](const char* name) { return folder.filePath(QString::fromLatin1(name)); };
+    const auto put = [](const QString& file, const QByteArray& content) {
+      QFile out(file);
+      return out.open(QIODevice::WriteOnly) && out.write(content) == content.size();
+    };
+    const auto contentOf = [](const QString& file) {
+      QFile in(file);
+      return in.open(QIODevice::ReadOnly) ? in.readAll() : QByteArray();
+    };
+    QImage photograph(160, 120, QImage::Format_RGB32);
+    photograph.fill(Qt::darkGray);
+    QVERIFY(photograph.save(path("0000.png")));
+    QVERIFY(put(path("scene.json"), QByteArray(kScene).replace("\"id\": \"a\",", "\"id\": \"a\", \"image\": \"0000.png\",")));
+    QVERIFY(put(path("notes.txt"), "a person's notes\n"));
+    QVERIFY(QFile::link(path("0000.png"), path("link.png")));
+    struct Row {
+      QString file, mentions;
+    };
+    for (const Row& row : {Row{path("scene.json"), QStringLiteral("scene.json: --screenshot: ")},
+                           Row{path("0000.png"), QStringLiteral("is a file of the input")},
+                           Row{path("link.png"), QStringLiteral("is a file of the input")},
+                           Row{path("notes.txt"), QStringLiteral("exists and is not a PNG")}}) {
+      const QByteArray before = contentOf(row.file);
+      QVERIFY(!before.isEmpty());
+      const Run r = run({folder.path(), QStringLiteral("--screenshot"), row.file});
+      QVERIFY2(r.code == 2, qPrintable(row.file));
+      QVERIFY2(r.err.contains(row.mentions), qPrintable(r.err));
+      QCOMPARE(r.err.count('\n'), 1);
+      QCOMPARE(contentOf(row.file), before);
+    }
+    QVERIFY(QFileInfo(path("link.png")).isSymLink());
+    // Another picture is replaced.
+    QVERIFY(photograph.save(path("shot.png")));
+    const Run r = run({folder.path(), QStringLiteral("--screenshot"), path("shot.png")});
+    QVERIFY2(r.code == 0, qPrintable(r.err));
+    QVERIFY(QImage(path("shot.png")).width() > 160);
   }
 
   void aPlatformWithoutOpenGlIsRefused() {
