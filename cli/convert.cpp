@@ -2,8 +2,8 @@
 #include <filesystem>
 
 #include "cli/commands.h"
-#include "cli/outputs.h"
 #include "cli/scene_arguments.h"
+#include "core/scene/outputs.h"
 #include "core/scene/scene.h"
 
 namespace glint::cli {

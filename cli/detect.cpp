@@ -7,13 +7,13 @@
 
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
-#include "cli/outputs.h"
 #include "core/base/atomic_folder.h"
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
 #include "core/highlight/background.h"
 #include "core/highlight/report.h"
 #include "core/pipeline/evidence.h"
+#include "core/scene/outputs.h"
 
 namespace glint::cli {
 namespace {

@@ -3,12 +3,12 @@
 
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
-#include "cli/outputs.h"
 #include "core/base/number_text.h"
 #include "core/evaluate/report.h"
 #include "core/evaluate/summary.h"
 #include "core/evaluate/warnings.h"
 #include "core/pipeline/selection.h"
+#include "core/scene/outputs.h"
 
 namespace glint::cli {
 

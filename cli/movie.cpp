@@ -5,10 +5,10 @@
 
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
-#include "cli/outputs.h"
 #include "cli/picture_input.h"
 #include "core/pipeline/frame_spec.h"
 #include "core/pipeline/photograph.h"
+#include "core/scene/outputs.h"
 #include "viz/convert.h"
 #include "viz/offscreen.h"
 #include "viz/pictures.h"

@@ -4,9 +4,8 @@
 
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
-#include "cli/outputs.h"
-#include "core/base/number_text.h"
 #include "core/base/atomic_folder.h"
+#include "core/base/number_text.h"
 #include "core/base/parallel.h"
 #include "core/evaluate/labels.h"
 #include "core/evaluate/masks.h"
@@ -15,6 +14,7 @@
 #include "core/pipeline/frame_spec.h"
 #include "core/pipeline/photograph.h"
 #include "core/pipeline/session.h"
+#include "core/scene/outputs.h"
 #include "viz/pictures.h"
 
 namespace glint::cli {

@@ -3,10 +3,10 @@
 
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
-#include "cli/outputs.h"
 #include "core/base/number_text.h"
 #include "core/evaluate/warnings.h"
 #include "core/pipeline/session.h"
+#include "core/scene/outputs.h"
 
 namespace glint::cli {
 namespace {

@@ -3,10 +3,10 @@
 
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
-#include "cli/outputs.h"
 #include "cli/picture_input.h"
 #include "core/pipeline/frame_spec.h"
 #include "core/pipeline/photograph.h"
+#include "core/scene/outputs.h"
 #include "viz/offscreen.h"
 #include "viz/pictures.h"
 #include "viz/scene_view.h"

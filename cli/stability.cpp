@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "cli/commands.h"
-#include "cli/outputs.h"
+#include "core/scene/outputs.h"
 
 namespace glint::cli {
 

@@ -3,9 +3,9 @@
 
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
-#include "cli/outputs.h"
 #include "core/base/number_text.h"
 #include "core/pipeline/session.h"
+#include "core/scene/outputs.h"
 #include "core/tradeoff/run.h"
 
 namespace glint::cli {

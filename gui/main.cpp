@@ -1,19 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <QApplication>
 #include <QLocale>
+#include <algorithm>
 #include <clocale>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <filesystem>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "core/base/outcome.h"
 #include "core/base/task_memory.h"
+#include "core/scene/outputs.h"
+#include "gui/base/error_line.h"
 #include "gui/base/input_rules.h"
 #include "gui/scene/camera_glide.h"
 #include "gui/window/command_line.h"
 #include "gui/window/fit_on_screen.h"
 #include "gui/window/main_window.h"
 #include "gui/window/screenshot.h"
+#include "viz/display_connection.h"
 
 namespace {
 /// The offscreen and minimal platforms have no OpenGL: the program would run and show an empty 3D view.
@@ -23,6 +31,29 @@ bool platformDraws(int argc, char** argv) {
     if (std::string(argv[i]) == "-platform") platform = argv[i + 1];
   return platform.rfind("offscreen", 0) != 0 && platform.rfind("minimal", 0) != 0;
 }
+
+/// Whether Qt can only take X11: what was chosen, or else what the session is.
+bool onlyX11() {
+  const QString chosen = qEnvironmentVariable("QT_QPA_PLATFORM");
+  if (chosen.isEmpty())
+    return !qEnvironmentVariableIsSet("WAYLAND_DISPLAY") && !qEnvironmentVariableIsSet("WAYLAND_SOCKET") &&
+           qEnvironmentVariable("XDG_SESSION_TYPE") != QLatin1String("wayland");
+  const QStringList platforms = chosen.split(';', Qt::SkipEmptyParts);  // each "NAME:OPTIONS", tried in this order
+  return std::all_of(platforms.begin(), platforms.end(),
+                     [](const QString& platform) { return platform.section(':', 0, 0) == QLatin1String("xcb"); });
+}
+
+/// Qt ends the program where it finds no display. InputError before that; null where it may find something else than X11.
+std::unique_ptr<glint::viz::DisplayConnection> openDisplay() {
+  if (!onlyX11()) return nullptr;
+  glint::Outcome<std::unique_ptr<glint::viz::DisplayConnection>> display = glint::viz::DisplayConnection::open();
+  if (!display)
+    throw glint::InputError("", "",
+                            display.failure().detail + ", so no window can be shown; use a display, or xvfb-run (see --help)");
+  return std::move(*display);
+}
+
+bool starting = true;  ///< What Qt cannot do until its first window is the user's business, and no fault of the program.
 
 int run(int argc, char** argv) {
   using namespace glint::gui;
@@ -35,16 +66,25 @@ int run(int argc, char** argv) {
     throw glint::InputError("", "QT_QPA_PLATFORM",
                             "this Qt platform cannot draw 3D; use a display, or xvfb-run with QT_QPA_PLATFORM=xcb (see --help)");
 
+  // What can be said without opening the input is said before there is a window; Screenshot has the rest.
+  const std::vector<std::filesystem::path> input{command.input.toStdString()};
+  glint::Outputs(input).file(command.screenshot.toStdString(), "--screenshot", glint::OutputKind::png());
+
 #if QT_VERSION < QT_VERSION_CHECK(6, 0, 0)
   QApplication::setAttribute(Qt::AA_EnableHighDpiScaling);
   QApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
 #endif
   // What Qt notes for programmers (a folder that the system did not set, a style without a font) is no line for the user; a fatal one is.
   qInstallMessageHandler([](QtMsgType type, const QMessageLogContext&, const QString& text) {
-    if (type == QtFatalMsg) std::fprintf(stderr, "glint-inspector: %s\n", text.toUtf8().constData());
+    if (type != QtFatalMsg) return;
+    printErrorLine(text.toStdString());
+    if (starting) std::_Exit(2);  // Qt would abort
   });
+  std::unique_ptr<glint::viz::DisplayConnection> display = openDisplay();
   int qtArgc = 1;  // Qt's own options come from the environment; the rest of the command line is ours
   QApplication app(qtArgc, argv);
+  starting = false;
+  display.reset();  // Qt has its own
   // Qt has taken over the user's locale for the whole process. Numbers have a point here, also those that libraries read and
   // write.
   std::setlocale(LC_NUMERIC, "C");
@@ -57,9 +97,7 @@ int run(int argc, char** argv) {
 
   MainWindow window(coreEngine());
   if (!command.run.isEmpty() && command.screenshot.isEmpty())  // a script may be waiting for it
-    QObject::connect(&window, &MainWindow::problem, [](const QString& line) {
-      std::fprintf(stderr, "glint-inspector: %s\n", line.toUtf8().constData());
-    });
+    QObject::connect(&window, &MainWindow::problem, [](const QString& line) { printErrorLine(line.toStdString()); });
   window.setTheme(command.theme);
   if (!command.size.isEmpty())
     window.resize(command.size);
@@ -82,7 +120,7 @@ int main(int argc, char** argv) {
     glint::reserveTaskMemory();
     return run(argc, argv);
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "glint-inspector: %s\n", e.what());
+    glint::gui::printErrorLine(e.what());
     return 2;
   }
 }

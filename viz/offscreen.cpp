@@ -10,6 +10,7 @@
 #include <cstdlib>
 
 #include "viz/convert.h"
+#include "viz/display_connection.h"
 #include "viz/scene_view.h"
 
 namespace glint::viz {
@@ -21,6 +22,7 @@ void prepareWindow(vtkRenderWindow* window) {
 
 struct Offscreen::Impl {
   std::unique_ptr<VirtualDisplay> display;  // declared first: ended after the window
+  std::unique_ptr<DisplayConnection> connection;
   vtkSmartPointer<vtkRenderWindow> window;
 };
 
@@ -43,6 +45,15 @@ vtkSmartPointer<vtkRenderWindow> hiddenWindow(int width, int height) {
   window->SetOffScreenRendering(1);
   window->SetSize(width, height);
   return window;
+}
+
+/// VTK itself would end the program where it finds no display or no GLX.
+Outcome<std::unique_ptr<DisplayConnection>> displayFor3D() {
+  Outcome<std::unique_ptr<DisplayConnection>> connection = DisplayConnection::open();
+  if (connection && !(*connection)->has("GLX"))
+    return Failure{Reason::NotSupported,
+                   "the display '" + std::string(std::getenv("DISPLAY")) + "' cannot draw in 3D: it has no GLX"};
+  return connection;
 }
 
 /// The picture over one background.
@@ -68,9 +79,12 @@ Image withOpacity(const Image& black, const Image& white) {
 }
 }  // namespace
 
-std::unique_ptr<Offscreen> Offscreen::onOwnDisplay(int width, int height) {
+Outcome<std::unique_ptr<Offscreen>> Offscreen::onOwnDisplay(int width, int height) {
   requireSize(width, height);
+  Outcome<std::unique_ptr<DisplayConnection>> connection = displayFor3D();
+  if (!connection) return connection.failure();
   std::unique_ptr<Offscreen> result(new Offscreen);
+  result->impl_->connection = std::move(*connection);
   result->impl_->window = hiddenWindow(width, height);
   return result;
 }
@@ -85,6 +99,12 @@ Outcome<std::unique_ptr<Offscreen>> Offscreen::create(int width, int height) {
     const char* users = std::getenv("DISPLAY");
     if (!users || !*users) return display.failure();
   }
+  Outcome<std::unique_ptr<DisplayConnection>> connection = displayFor3D();
+  if (!connection) {
+    if (display) return connection.failure();
+    return Failure{Reason::NotSupported, connection.failure().detail + ", and " + display.failure().detail};
+  }
+  result->impl_->connection = std::move(*connection);
   result->impl_->window = hiddenWindow(width, height);
   return result;
 }

@@ -31,14 +31,15 @@ class VirtualDisplay {
   int pid_ = -1;
 };
 
-/// A window that is never shown. Uses a private virtual display, or the user's where Xvfb is missing but DISPLAY is set.
+/// A window that is never shown. Uses a private virtual display, or the user's where Xvfb is missing and it can be opened.
 /// Views may be rendered one after the other (turntables); a view must outlive its render call only.
 class Offscreen {
  public:
-  /// NotSupported as VirtualDisplay; std::invalid_argument unless 16 <= width, height <= 16384.
+  /// NotSupported as VirtualDisplay, or where the display cannot draw in 3D; std::invalid_argument unless 16 <= width, height <=
+  /// 16384.
   static Outcome<std::unique_ptr<Offscreen>> create(int width, int height);
-  /// The same on the display of this program, which has one. Interface thread only.
-  static std::unique_ptr<Offscreen> onOwnDisplay(int width, int height);
+  /// The same on the display of this program. NotSupported where it has none that X programs can use. Interface thread only.
+  static Outcome<std::unique_ptr<Offscreen>> onOwnDisplay(int width, int height);
   ~Offscreen();
   /// 3 channels, sRGB 0..1; with a transparent background 4, the last one opacity.
   Image render(const SceneView& view, bool transparent = false);

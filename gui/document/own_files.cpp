@@ -48,11 +48,16 @@ bool isOwnRecovery(const QString& file) {
 
 bool isShipped(const QString& file) { return !file.isEmpty() && liesIn(shippedFolders(), file.toStdString()); }
 
-bool isOfInput(const Document& document, const QString& file) {
-  if (!document.scene()) return false;
+std::vector<fs::path> filesOfInput(const Document& document) {
+  if (!document.scene()) return {};
   std::vector<fs::path> inputs = filesOf(*document.scene());
   for (const QString& path : {document.inputFile(), document.sessionFile()})
     if (!path.isEmpty()) inputs.emplace_back(path.toStdString());
+  return inputs;
+}
+
+bool isOfInput(const Document& document, const QString& file) {
+  const std::vector<fs::path> inputs = filesOfInput(document);
   const fs::path wanted = file.toStdString();
   return std::any_of(inputs.begin(), inputs.end(), [&](const fs::path& input) {
     std::error_code ignored;  // what is not there is no input

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <QString>
+#include <filesystem>
 #include <string>
+#include <vector>
 
 namespace glint::gui {
 
@@ -15,7 +17,9 @@ QString locksFolder();
 bool isOwnRecovery(const QString& file);
 /// Lessons and sessions that came with the program, installed or in its source tree. They are read only, whatever the file system says.
 bool isShipped(const QString& file);
-/// Whether a path is a file that the open scene is made of, its session, or the input as it was opened.
+/// The files that the open scene is made of, its session, and the input as it was opened; none while nothing is open.
+std::vector<std::filesystem::path> filesOfInput(const Document& document);
+/// Whether a path is one of them.
 bool isOfInput(const Document& document, const QString& file);
 /// What a file holds, to see later whether it is still the same; "" when it is not there or cannot be read.
 std::string stampOf(const QString& file);

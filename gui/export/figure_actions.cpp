@@ -154,7 +154,12 @@ void FigureActions::write(const QString& file, std::function<void()> work) {
 void FigureActions::writeScene(const FigureLook& look, const QString& file) {
   if (!file.endsWith(QStringLiteral(".png"), Qt::CaseInsensitive))
     return void(emit problem(tr("%1: the 3D view is saved as .png").arg(file)));
-  const QImage picture = sceneFigure(look);
+  QImage picture;
+  try {
+    picture = sceneFigure(look);
+  } catch (const InputError& e) {
+    return void(emit problem(toQString(e.what())));
+  }
   write(file, [this, picture, state = snapshot_(), file] { writeFigure(picture, state, engine_, file); });
 }
 
@@ -170,7 +175,9 @@ QImage FigureActions::sceneFigure(const FigureLook& look) const {
       view->setPartOfWindow(true);
     }
     if (views.viewCount() > 1) view->setFrame(!views.wiping(), false, sceneOptions(document_).views[std::size_t(at)].name);
-    return toQImage(viz::Offscreen::onOwnDisplay(size.width(), size.height())->render(*view, look.transparent));
+    const Outcome<std::unique_ptr<viz::Offscreen>> target = viz::Offscreen::onOwnDisplay(size.width(), size.height());
+    if (!target) throw InputError("", "", target.failure().message());
+    return toQImage((*target)->render(*view, look.transparent));
   };
   if (views.viewCount() == 1) return render(0, look.size);
   QImage all(look.size, look.transparent ? QImage::Format_ARGB32 : QImage::Format_RGB32);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/pipeline/photograph.h"
+#include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/export/figure_actions.h"
 #include "gui/export/long_job.h"
@@ -85,7 +86,9 @@ void MovieActions::write(const MovieLook& look, const QString& file) {
   stage_ = stage;
   stage->view = scene_.views().copyOfActive();
   stage->view->setDarkBackground(look.dark);
-  stage->target = viz::Offscreen::onOwnDisplay(width, height);
+  Outcome<std::unique_ptr<viz::Offscreen>> target = viz::Offscreen::onOwnDisplay(width, height);
+  if (!target) return void(emit problem(toQString(target.failure().message())));
+  stage->target = std::move(*target);
   if (look.of == MovieOf::Turntable) {
     stage->view->setEye(viz::Eye::Outside);
     return start(look, file, [this, stage, views = viz::turntable(*stage->view, look.frames)](int i) {

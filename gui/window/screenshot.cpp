@@ -2,14 +2,17 @@
 #include "gui/window/screenshot.h"
 
 #include <QCoreApplication>
+#include <QFileInfo>
 #include <QPixmap>
 #include <QTimer>
-#include <cstdio>
 #include <exception>
 #include <utility>
 
+#include "core/scene/outputs.h"
+#include "gui/base/error_line.h"
 #include "gui/base/text.h"
 #include "gui/base/write_png.h"
+#include "gui/document/own_files.h"
 #include "gui/window/main_window.h"
 
 namespace glint::gui {
@@ -25,7 +28,23 @@ Screenshot::Screenshot(MainWindow& window, QString file, bool waitIdle)
   QTimer::singleShot(kLookMs, this, &Screenshot::look);
 }
 
+/// InputError. Asked again at the end, because actions of `--run` may have opened or written something.
+void Screenshot::requireReplaceable() const {
+  const std::string file = file_.toStdString();
+  Outputs(filesOfInput(window_.document())).file(file, "--screenshot", OutputKind::png());
+  if (QFileInfo::exists(file_) && isShipped(file_))
+    throw InputError(file, "--screenshot", "came with the program and is never replaced; name another file");
+}
+
 void Screenshot::look() {
+  if (!checked_ && window_.document().scene()) {
+    checked_ = true;
+    try {
+      requireReplaceable();
+    } catch (const InputError& e) {
+      return fail(toQString(e.what()));
+    }
+  }
   const bool opening = !window_.document().scene() && window_.runner().busy();
   const bool quiet = waitIdle_ ? window_.idle() : !opening;
   quietLooks_ = quiet ? quietLooks_ + 1 : 0;
@@ -37,6 +56,7 @@ void Screenshot::look() {
 
 void Screenshot::write() {
   try {
+    requireReplaceable();
     writePng(window_.picture().toImage(), file_);
   } catch (const std::exception& e) {
     return fail(toQString(e.what()));
@@ -45,7 +65,7 @@ void Screenshot::write() {
 }
 
 void Screenshot::fail(const QString& oneLine) {
-  std::fprintf(stderr, "glint-inspector: %s\n", oneLine.toUtf8().constData());
+  printErrorLine(oneLine.toStdString());
   QCoreApplication::exit(2);
 }
 

@@ -9,7 +9,8 @@ namespace glint::gui {
 class MainWindow;
 
 /// `--screenshot`: writes the window as PNG and ends the program, with 0, or with 2 and one line on standard error when
-/// the input or the file cannot be used. Without `waitIdle` it waits for the input to be open, not for results.
+/// the input or the file cannot be used. A file of what is open, one that came with the program, or one that holds something else
+/// than a PNG stays as it is. Without `waitIdle` it waits for the input to be open, not for results.
 class Screenshot : public QObject {
   Q_OBJECT
  public:
@@ -18,12 +19,14 @@ class Screenshot : public QObject {
  private:
   void look();
   void write();
+  void requireReplaceable() const;
   void fail(const QString& oneLine);
 
   MainWindow& window_;
   QString file_;
   bool waitIdle_;
   int quietLooks_ = 0;
+  bool checked_ = false;  ///< against what is open, before the long wait
 };
 
 }  // namespace glint::gui

@@ -71,6 +71,22 @@ TEST_F(Requests, WrongPicturesNameTheFlag) {
   EXPECT_FALSE(fs::exists(folder_ / "x.png"));
 }
 
+/// VTK itself aborts where it finds no display, with lines of its own.
+TEST_F(Requests, ADisplayThatCannotBeOpenedIsOneLine) {
+  const std::string none = "export PATH=/nonexistent DISPLAY=:4711;", models = "--models limit-angle ";
+  for (const ProgramRun& run : {on("render", "--view scene " + models + "-o " + out("x.png"), none),
+                                on("movie", "--of turntable " + models + "-o " + out("x.avi"), none),
+                                on("movie", "--of look-through " + models + "-o " + out("x.avi"), none)}) {
+    EXPECT_EQ(run.code, 3);
+    EXPECT_EQ(run.err,
+              "glint: not supported: the display ':4711' cannot be opened, and drawing in 3D without a screen needs Xvfb: "
+              "apt-get install xvfb\n");
+  }
+  // What needs no display is drawn.
+  EXPECT_EQ(on("render", "--view frame " + models + "-o " + out("x.png"), none).code, 0);
+  EXPECT_EQ(on("evaluate", models + "--html " + out("x.html"), none).code, 0);
+}
+
 TEST_F(Requests, WrongSessionsAndFrames) {
   saveSession("--model limit-angle");
   for (const char* frames : {"99", "x", "0-", "3-1", "first:0"})

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program itself, as a script runs it.
+#include <QDir>
 #include <QFile>
+#include <QFileInfo>
 #include <QImage>
 #include <QProcess>
 #include <set>
@@ -17,11 +19,20 @@ struct Run {
   QString out, err;
 };
 
-Run run(const QStringList& arguments, const QString& platform = QStringLiteral("xcb")) {
+/// @param display  where the X server is; "none" = not set, null = that of this test
+Run run(const QStringList& arguments, const QString& platform = QStringLiteral("xcb"), const QString& display = {}) {
   static const QTemporaryDir runtime;  // without one, Qt itself writes a line
   QProcess process;
   QProcessEnvironment environment = QProcessEnvironment::systemEnvironment();
-  environment.insert(QStringLiteral("QT_QPA_PLATFORM"), platform);
+  if (platform.isEmpty())
+    environment.remove(QStringLiteral("QT_QPA_PLATFORM"));
+  else
+    environment.insert(QStringLiteral("QT_QPA_PLATFORM"), platform);
+  if (!display.isNull()) {
+    for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET", "XDG_SESSION_TYPE"})
+      environment.remove(QLatin1String(name));
+    if (display != QLatin1String("none")) environment.insert(QStringLiteral("DISPLAY"), display);
+  }
   environment.insert(QStringLiteral("XDG_RUNTIME_DIR"), runtime.path());
   environment.remove(QStringLiteral("QT_SCALE_FACTOR"));
   process.setProcessEnvironment(environment);
@@ -135,11 +146,114 @@ class ProgramTest : public QObject {
     QVERIFY(!QFile::exists(folder_.filePath(QStringLiteral("never.png"))));
   }
 
+  /// A line of at most 400 bytes, without control characters, whatever the arguments and names hold.
+  void errorLinesAreShortAndEscaped_data() {
+    QTest::addColumn<QStringList>("arguments");
+    QTest::addColumn<QString>("mentions");
+    QTest::newRow("long option") << QStringList{QStringLiteral("--nope") + QString(3000, 'a')}
+                                 << QStringLiteral("unknown option");
+    QTest::newRow("escapes") << QStringList{QStringLiteral("--x\x1b[31my\nz")} << QStringLiteral("--x\\x1B[31my z");
+    QDir folder(folder_.path());
+    const QString below = (QString(240, 'd') + '/').repeated(5);
+    QVERIFY(folder.mkpath(below));
+    const QString scene = folder.filePath(below + QStringLiteral("scene.json"));
+    QFile out(scene);
+    QVERIFY(out.open(QIODevice::WriteOnly));
+    out.write("{\"glint_scene\": 1, \"frames\": 3}");
+    out.close();
+    QTest::newRow("long path") << QStringList{scene, QStringLiteral("--screenshot"), folder.filePath(QStringLiteral("never.png"))}
+                               << QStringLiteral("scene.json");
+  }
+  void errorLinesAreShortAndEscaped() {
+    QFETCH(QStringList, arguments);
+    QFETCH(QString, mentions);
+    const Run r = run(arguments);
+    QCOMPARE(r.code, 2);
+    QVERIFY2(r.err.contains(mentions), qPrintable(r.err));
+    QVERIFY2(r.err.toUtf8().size() <= 400, qPrintable(r.err));
+    QCOMPARE(r.err.count('\n'), 1);
+    QVERIFY(!r.err.contains(QChar(0x1b)));
+  }
+
+  /// As the commands do it: a picture replaces only a PNG, and never a file of what is open.
+  void aScreenshotReplacesNoFileOfTheInput() {
+    QTemporaryDir folder;
+    const auto path = [&](const char* name) { return folder.filePath(QString::fromLatin1(name)); };
+    const auto put = [](const QString& file, const QByteArray& content) {
+      QFile out(file);
+      return out.open(QIODevice::WriteOnly) && out.write(content) == content.size();
+    };
+    const auto contentOf = [](const QString& file) {
+      QFile in(file);
+      return in.open(QIODevice::ReadOnly) ? in.readAll() : QByteArray();
+    };
+    QImage photograph(160, 120, QImage::Format_RGB32);
+    photograph.fill(Qt::darkGray);
+    QVERIFY(photograph.save(path("0000.png")));
+    QVERIFY(put(path("scene.json"), QByteArray(kScene).replace("\"id\": \"a\",", "\"id\": \"a\", \"image\": \"0000.png\",")));
+    QVERIFY(put(path("notes.txt"), "a person's notes\n"));
+    QVERIFY(QFile::link(path("0000.png"), path("link.png")));
+    struct Row {
+      QString file, mentions;
+    };
+    for (const Row& row : {Row{path("scene.json"), QStringLiteral("scene.json: --screenshot: ")},
+                           Row{path("0000.png"), QStringLiteral("is a file of the input")},
+                           Row{path("link.png"), QStringLiteral("is a file of the input")},
+                           Row{path("notes.txt"), QStringLiteral("exists and is not a PNG")}}) {
+      const QByteArray before = contentOf(row.file);
+      QVERIFY(!before.isEmpty());
+      const Run r = run({folder.path(), QStringLiteral("--screenshot"), row.file});
+      QVERIFY2(r.code == 2, qPrintable(row.file));
+      QVERIFY2(r.err.contains(row.mentions), qPrintable(r.err));
+      QCOMPARE(r.err.count('\n'), 1);
+      QCOMPARE(contentOf(row.file), before);
+    }
+    QVERIFY(QFileInfo(path("link.png")).isSymLink());
+    // Another picture is replaced.
+    QVERIFY(photograph.save(path("shot.png")));
+    const Run r = run({folder.path(), QStringLiteral("--screenshot"), path("shot.png")});
+    QVERIFY2(r.code == 0, qPrintable(r.err));
+    QVERIFY(QImage(path("shot.png")).width() > 160);
+  }
+
   void aPlatformWithoutOpenGlIsRefused() {
     const Run r =
         run({QStringLiteral("--screenshot"), folder_.filePath(QStringLiteral("never.png"))}, QStringLiteral("offscreen"));
     QCOMPARE(r.code, 2);
     QVERIFY2(r.err.contains("xvfb-run"), qPrintable(r.err));
+  }
+
+  /// Qt would end the program by itself, with SIGABRT and lines of its own.
+  void aMissingDisplayIsOneLineAndExitTwo_data() {
+    QTest::addColumn<QString>("platform");
+    QTest::addColumn<QString>("display");
+    QTest::addColumn<QString>("mentions");
+    const QString x = QStringLiteral("xcb"), none = QStringLiteral("none"), wrong = QStringLiteral(":4711");
+    const QString unset = QStringLiteral("DISPLAY is not set"), closed = QStringLiteral("the display ':4711' cannot be opened");
+    QTest::newRow("xcb, not set") << x << none << unset;
+    QTest::newRow("xcb, no server") << x << wrong << closed;
+    QTest::newRow("with options") << QStringLiteral("xcb:nograb;xcb") << wrong << closed;
+    QTest::newRow("no platform chosen, not set") << QString() << none << unset;
+    QTest::newRow("no platform chosen, no server") << QString() << wrong << closed;
+    QTest::newRow("found by Qt alone") << QStringLiteral("wayland") << none << QStringLiteral("Qt");
+    QTest::newRow("no such platform") << QStringLiteral("nonsense") << none << QStringLiteral("Qt");
+  }
+  void aMissingDisplayIsOneLineAndExitTwo() {
+    QFETCH(QString, platform);
+    QFETCH(QString, display);
+    QFETCH(QString, mentions);
+    const Run r = run({QStringLiteral("--screenshot"), folder_.filePath(QStringLiteral("never.png"))}, platform, display);
+    QCOMPARE(r.code, 2);
+    QVERIFY2(r.err.startsWith(QLatin1String("glint-inspector: ")) && r.err.contains(mentions), qPrintable(r.err));
+    QCOMPARE(r.err.count('\n'), 1);
+  }
+
+  void withoutAPlatformTheDisplayIsUsed() {
+    const QString file = folder_.filePath(QStringLiteral("default.png"));
+    const QString display = qEnvironmentVariable("DISPLAY");
+    const Run r = run({QStringLiteral("--screenshot"), file}, {}, display);
+    QVERIFY2(r.code == 0, qPrintable(r.err));
+    QVERIFY(QFile::exists(file));
   }
 
   void helpNeedsNoDisplay() {

@@ -13,6 +13,8 @@
 #include <string>
 #include <thread>
 
+#include "viz/display_connection.h"
+
 namespace glint::viz {
 namespace {
 
@@ -114,6 +116,32 @@ TEST_F(WithoutXvfb, SaysWhatToInstall) {
   EXPECT_NE(display.failure().detail.find("apt-get install xvfb"), std::string::npos);
   unsetenv("DISPLAY");
   EXPECT_FALSE(Offscreen::create(320, 200));
+}
+
+/// VTK itself would abort at its first picture.
+TEST_F(WithoutXvfb, ADisplayThatCannotBeOpenedIsNamed) {
+  setenv("PATH", "/nonexistent", 1);
+  setenv("DISPLAY", ":4711", 1);
+  const Outcome<std::unique_ptr<Offscreen>> target = Offscreen::create(320, 200);
+  ASSERT_FALSE(target);
+  EXPECT_EQ(target.failure().reason, Reason::NotSupported);
+  EXPECT_NE(target.failure().detail.find("':4711' cannot be opened"), std::string::npos) << target.failure().detail;
+  EXPECT_NE(target.failure().detail.find("apt-get install xvfb"), std::string::npos) << target.failure().detail;
+  EXPECT_FALSE(Offscreen::onOwnDisplay(320, 200));
+  unsetenv("DISPLAY");
+  EXPECT_FALSE(Offscreen::onOwnDisplay(320, 200));
+}
+
+TEST(DisplayConnection, OpensWhereAServerAnswers) {
+  if (!xvfbInstalled()) GTEST_SKIP() << "Xvfb is not installed";
+  unsetenv("DISPLAY");
+  EXPECT_FALSE(DisplayConnection::open());
+  const Outcome<std::unique_ptr<VirtualDisplay>> server = VirtualDisplay::start(320, 200);
+  ASSERT_TRUE(server) << server.failure().message();
+  const Outcome<std::unique_ptr<DisplayConnection>> display = DisplayConnection::open();
+  ASSERT_TRUE(display) << display.failure().message();
+  EXPECT_TRUE((*display)->has("GLX"));
+  EXPECT_FALSE((*display)->has("NO-SUCH-EXTENSION"));
 }
 
 TEST(Offscreen, RefusesImpossibleSizes) {

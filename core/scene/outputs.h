@@ -8,9 +8,9 @@
 
 #include "core/scene/scene.h"
 
-namespace glint::cli {
+namespace glint {
 
-/// What a file holds that a command writes.
+/// What a file holds that a program writes.
 class OutputKind {
  public:
   static OutputKind document(const std::string& key);  ///< JSON with this key at its top, "glint_scene"
@@ -30,7 +30,7 @@ class OutputKind {
   std::string key_, words_;
 };
 
-/// The files that a command was asked to write, checked before it computes: each is new, or of the kind that the command writes; none is
+/// The files that a program was asked to write, checked before it computes: each is new, or of the kind that it writes; none is
 /// a file of the input; no two are the same. "-", devices and pipes pass.
 class Outputs {
  public:
@@ -54,4 +54,4 @@ class Outputs {
 /// 0000.png and so on, for these frames.
 std::vector<std::string> picturesOf(const std::vector<int>& frames);
 
-}  // namespace glint::cli
+}  // namespace glint

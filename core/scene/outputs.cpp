@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/outputs.h"
+#include "core/scene/outputs.h"
 
 #include <algorithm>
 #include <fstream>
@@ -8,7 +8,7 @@
 #include "core/base/number_text.h"
 #include "core/scene/scene_files.h"
 
-namespace glint::cli {
+namespace glint {
 namespace fs = std::filesystem;
 
 namespace {
@@ -22,12 +22,10 @@ std::string headOf(const fs::path& file, std::size_t bytes) {
   return head;
 }
 
-bool startsWith(const std::string& text, const std::string& start) { return text.compare(0, start.size(), start) == 0; }
-
 /// MP4 ("ftyp" after its length), WebM and Matroska (EBML), AVI (RIFF ... AVI).
 bool isMovie(const std::string& head) {
-  return head.compare(4, 4, "ftyp") == 0 || startsWith(head, "\x1a\x45\xdf\xa3") ||
-         (startsWith(head, "RIFF") && head.compare(8, 4, "AVI ") == 0);
+  return head.compare(4, 4, "ftyp") == 0 || head.starts_with("\x1a\x45\xdf\xa3") ||
+         (head.starts_with("RIFF") && head.compare(8, 4, "AVI ") == 0);
 }
 
 }  // namespace
@@ -45,9 +43,12 @@ bool OutputKind::holds(const fs::path& file) const {
   const std::string head = headOf(file, std::max(kHead, key_.size()));
   switch (form_) {
     case Form::Document: return documentKind(file) == key_;
-    case Form::Table: return startsWith(head, key_);
-    case Form::Page: return startsWith(head, "<!doctype html>") && head.find("<title>Glint") != std::string::npos;
-    case Form::Png: return startsWith(head, "\x89PNG\r\n\x1a\n");
+    case Form::Table:
+      return head.starts_with(key_);
+    case Form::Page:
+      return head.starts_with("<!doctype html>") && head.find("<title>Glint") != std::string::npos;
+    case Form::Png:
+      return head.starts_with("\x89PNG\r\n\x1a\n");
     case Form::Movie: return head.size() >= 12 && isMovie(head);
   }
   return false;
@@ -65,7 +66,7 @@ void Outputs::requireNoInput(const fs::path& file, const std::string& flag) cons
   std::error_code ignored;  // what cannot be asked about is another file
   for (const fs::path& input : inputs_)
     if (!input.empty() && fs::equivalent(file, input, ignored))
-      throw InputError(file.string(), flag, "is a file of the input, which no command replaces; name another file");
+      throw InputError(file.string(), flag, "is a file of the input, which is never replaced; name another file");
 }
 
 void Outputs::file(const std::string& file, const std::string& flag, const OutputKind& kind) {
@@ -104,4 +105,4 @@ std::vector<std::string> picturesOf(const std::vector<int>& frames) {
   return names;
 }
 
-}  // namespace glint::cli
+}  // namespace glint
