@@ -98,6 +98,14 @@ class Builder final : public nlohmann::json_sax<Json> {
 
 }  // namespace
 
+std::string textWithPaths(const Json& document, const std::string& file) {
+  try {
+    return document.dump(-1, ' ', false, Json::error_handler_t::strict);
+  } catch (const Json::type_error&) {
+    throw InputError(file, "", "not written: a file or folder that it would name has a name that is not UTF-8; rename that one");
+  }
+}
+
 Json parse(const std::string& text, const std::string& file) {
   constexpr double kMegabyte = 1e6;
   requireWithin(Limit::JsonMegabytes, double(text.size()) / kMegabyte, file);

@@ -22,6 +22,10 @@ inline void append(Json& object, const std::string& key, Json value) {
   static_cast<Json::object_t::Container&>(members).emplace_back(key, std::move(value));
 }
 
+/// The text of a document that names files. @param file  that it will be
+/// @throw InputError where a path or name is not UTF-8: JSON could hold another one only, and nothing would be found there.
+std::string textWithPaths(const Json& document, const std::string& file);
+
 /// `file` names the text in messages.
 /// @throw InputError (file; line and column, or the place of the value) for wrong syntax, a key that stands twice in one object,
 ///        nesting deeper than 100, and beyond the limits json.megabytes and json.values.

@@ -272,7 +272,7 @@ std::string sessionText(const Session& session, const fs::path& file) {
     for (const auto& item : unknown.items())
       if (!known.count(item.key())) json_dom::append(root, item.key(), item.value());
   }
-  return prettyJson(root.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return prettyJson(json_dom::textWithPaths(root, file.string()));
 }
 
 void writeSession(const Session& session, const fs::path& file) { atomicWrite(file, sessionText(session, file)); }

@@ -579,7 +579,7 @@ std::string sceneToJson(const Scene& scene, const fs::path& folder) {
     }
   }
   if (kept.contains("scene")) restore(root, kept["scene"]);
-  return root.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json_dom::textWithPaths(root, folder.string());
 }
 
 }  // namespace glint

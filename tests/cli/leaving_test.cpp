@@ -94,6 +94,18 @@ TEST_F(Leaving, ComparesTwoSessions) {
   EXPECT_EQ(runGlint("compare " + out("run.glint") + " " + out("none.glint")).code, 2);
 }
 
+/// JSON holds UTF-8 only: under another name nothing would be found when the session is opened.
+TEST_F(Leaving, ASessionThatCouldNotNameItsSceneIsNotWritten) {
+  const std::filesystem::path odd = folder_ / "u\xff";
+  std::filesystem::copy(*made_ / "scene", odd, std::filesystem::copy_options::recursive);
+  const ProgramRun run =
+      runGlint("reconstruct " + inQuotes(odd / "scene.json") + " --model limit-angle -o " + inQuotes(folder_ / "u.glint"));
+  EXPECT_EQ(run.code, 2) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("a name that is not UTF-8"));
+  EXPECT_EQ(run.errorLines(), 1) << run.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "u.glint"));
+}
+
 TEST_F(Leaving, MasksInANewFolder) {
   saveSession("--model limit-angle");
   ASSERT_EQ(onSession("predict", "--masks " + out("labels")).code, 0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The same results whatever the number of threads, the allocator and what lies in fresh memory (replay --exact), and results within 1e-9
 // on a processor with fewer features (replay). GLINT_SESSIONS=all takes every shipped session (tests/run_determinism).
+#include <dlfcn.h>
 #include <gmock/gmock.h>
 
 #include <cstdlib>
@@ -41,6 +42,11 @@ std::vector<Setting> exactSettings() {
   all.push_back({"memory filled with a pattern", {{"MALLOC_PERTURB_", "165"}}});
   all.push_back({"allocations mapped one by one", {{"GLIBC_TUNABLES", "glibc.malloc.mmap_threshold=4096:glibc.malloc.mmap_max=100000:glibc.malloc.tcache_count=0"}}});
   all.push_back({"one arena, trimmed at once", {{"GLIBC_TUNABLES", "glibc.malloc.arena_max=1:glibc.malloc.trim_threshold=0:glibc.malloc.top_pad=0"}}});
+  constexpr const char* kOther = "libjemalloc.so.2";
+  if (void* other = dlopen(kOther, RTLD_LAZY)) {  // else the loader would only warn, and the row would be of the same allocator
+    dlclose(other);
+    all.push_back({"another allocator (jemalloc)", {{"LD_PRELOAD", kOther}}});
+  }
   return all;
 }
 
