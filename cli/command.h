@@ -11,7 +11,7 @@
 
 namespace glint::cli {
 
-/// Exit codes of every command (formats.md).
+/// Exit codes of every command (docs/formats.md, "Exit codes").
 enum ExitCode { kDone = 0, kComparisonFailed = 1, kWrongInput = 2, kCannotAnswer = 3, kStopped = 130 };
 
 /// Thrown by a command when the data cannot answer: one line on standard error, exit code 3.

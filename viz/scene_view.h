@@ -24,7 +24,7 @@ namespace glint::viz {
 class LayerCache;
 struct WalkStory;
 
-/// A layer of the 3D picture, toggled by name (formats.md: layer visibility in sessions uses `name`).
+/// A layer of the 3D picture, toggled by name (sessions keep visibility by `name`: docs/formats.md, "Session").
 struct Layer {
   std::string name;   ///< "surface", "virtual-cameras"
   std::string title;  ///< "Virtual cameras"

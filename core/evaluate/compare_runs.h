@@ -53,7 +53,7 @@ RunComparison compareRuns(const Session& sessionA, const Inspection& a, const Se
 
 /// A plain-text report. @param all  also what is equal.
 std::string comparisonText(const RunComparison& comparison, bool all);
-/// Keys in docs/commands.md.
+/// Keys in docs/formats.md, "compare --json".
 std::string comparisonJson(const RunComparison& comparison, const std::string& nameA, const std::string& nameB);
 
 }  // namespace glint

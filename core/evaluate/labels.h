@@ -9,7 +9,7 @@
 namespace glint {
 
 /// Predicted contours of some frames: per frame, light and model the polyline (ideal pixels), ellipse, brightest point, coverage,
-/// gaps and failed directions with their reasons. Keys as in docs/commands.md.
+/// gaps and failed directions with their reasons. Keys as in docs/formats.md, "predict --json".
 std::string predictionsJson(const Inspection& inspection, const std::vector<int>& frames);
 
 /// COCO labels (images, annotations with segmentation polygons, bounding boxes and areas, one category per light) of one

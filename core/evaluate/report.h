@@ -21,7 +21,7 @@ struct ReportContext {
 /// The answered model with the smallest mean held-out contour error among those that predicted most frames; "" when none answered.
 std::string bestModel(const Inspection& inspection);
 
-/// formats.md "evaluate --json". Numbers that are not finite become null.
+/// docs/formats.md, "evaluate --json". Numbers that are not finite become null.
 std::string evaluationJson(const Inspection& inspection, const ReportContext& context);
 /// The first line of `evaluationCsv`.
 extern const char* const kEvaluationCsvHeader;

@@ -15,7 +15,7 @@ struct Statistic {
 /// NaNs are left out. p95 and median by linear interpolation between order statistics.
 Statistic statisticOf(std::vector<double> values);
 
-/// What `evaluate` prints of one model (formats.md "summary"): held-out frames only, except per surface.
+/// What `evaluate` prints of one model (docs/formats.md, "evaluate --json"): held-out frames only, except per surface.
 struct ModelSummary {
   bool answered = false;           ///< some frame was predicted
   std::string reason;              ///< why not, when it was not

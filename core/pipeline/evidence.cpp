@@ -16,7 +16,7 @@
 namespace glint {
 namespace {
 
-constexpr int kNoisePoints = 72;       // formats.md, --noise-px
+constexpr int kNoisePoints = 72;       // docs/formats.md, "Noise"
 constexpr double kSameLevel = 1e-6;    // levels are typed with a few digits
 
 /// The reason when a part of the highlight lies where the lens distortion has no inverse.

@@ -18,7 +18,7 @@
 
 namespace glint {
 
-/// Which frames train: parsed from --train SPEC (formats.md).
+/// Which frames train: parsed from --train SPEC (docs/formats.md, "Frame SPEC").
 struct TrainSpec {
   std::string text = "first:6";
   bool perSurface = false;

@@ -92,7 +92,7 @@ bool isDistance(const std::string& keyResult) {
   return keyResult.find(".contour_error_") != std::string::npos || keyResult.find(".peak_offset_px") != std::string::npos;
 }
 
-constexpr double kAgree = 1e-9;  // formats.md: nine digits
+constexpr double kAgree = 1e-9;  // docs/commands.md, "replay": nine digits
 
 }  // namespace
 

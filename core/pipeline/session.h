@@ -49,7 +49,7 @@ struct Recovery {
   bool isSession = false;
 };
 
-/// Everything of a session file *.glint (formats.md "Session"; resources/session.schema.json).
+/// Everything of a session file *.glint (docs/formats.md, "Session"; resources/session.schema.json).
 struct Session {
   std::filesystem::path file;      ///< as opened; empty for a new session
   std::filesystem::path input;     ///< absolute path of the scene

@@ -27,8 +27,8 @@ struct CameraCheck {
   std::vector<std::string> findings;   ///< what is clear, one line each; mostly none
 };
 
-/// What a scene was understood to be, and tests of that understanding on its own data (formats.md, "Inputs"): wrong axes, a
-/// transposed pose, wrong units and swapped files show here before they show as bad results.
+/// What a scene was understood to be, and tests of that understanding on its own data (docs/formats.md, "Conventions"): wrong
+/// axes, a transposed pose, wrong units and swapped files show here before they show as bad results.
 struct ConventionReport {
   struct SurfaceFacts {
     std::string id, kind;             ///< kind: "mesh", "analytic sphere", ...

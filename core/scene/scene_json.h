@@ -11,8 +11,8 @@
 
 namespace glint {
 
-// The parts of scene.json (formats.md) that other documents share (synth SPEC.json, sessions). All throw InputError with
-// file, place and reason. Keys that a part does not know are left to the caller (JsonNode::unknownKeys).
+// The parts of scene.json (docs/formats.md, "Scene") that other documents share (synth SPEC.json, sessions). All throw
+// InputError with file, place and reason. Keys that a part does not know are left to the caller (JsonNode::unknownKeys).
 
 /// {"width", "height", "fx", "fy", "cx", "cy", "distortion"}: intrinsics only. Sizes 1 .. 65536; fx, fy > 0, so K is regular.
 Camera readCameraJson(const JsonNode& node);

@@ -36,7 +36,7 @@ std::vector<StabilityResult> runStability(const ProgressFn& progress = {});
 std::string stabilityTable(const std::vector<StabilityResult>& results);
 /// The same for docs/stability.md, with the notes.
 std::string stabilityMarkdown(const std::vector<StabilityResult>& results);
-/// formats.md, "stability --json".
+/// docs/formats.md, "stability --json".
 std::string stabilityJson(const std::vector<StabilityResult>& results);
 
 }  // namespace glint

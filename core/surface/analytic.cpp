@@ -32,7 +32,7 @@ class AnalyticSurface : public Surface {
         bounds_(shape_->bounds(worldFromLocal_)) {
     const Matrix3d r = worldFromLocal_.linear();
     require(
-        // A rotation to single precision; formats.md lets nothing else in.
+        // A rotation to single precision: readPoseJson lets nothing else in (docs/formats.md, "Frames").
         worldFromLocal_.matrix().allFinite() && (r * r.transpose() - Matrix3d::Identity()).norm() < 1e-6 && r.determinant() > 0,
         "analytic surface: world_from_surface must be rigid and finite");
   }

@@ -11,7 +11,7 @@
 
 namespace glint {
 
-/// One analytic surface of scene.json (formats.md). Field meaning depends on `type`; lengths in metres.
+/// One analytic surface of scene.json (docs/formats.md, "Analytic surfaces"). Field meaning depends on `type`; lengths in metres.
 struct AnalyticSpec {
   std::string type;                                  ///< plane, sphere, ellipsoid, cylinder, sheet, torus, quadric
   double radius = 0;                                 ///< sphere, cylinder (axis = local y)

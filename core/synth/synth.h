@@ -24,8 +24,8 @@ struct RenderOptions {
   unsigned seed = 1;  ///< of the noise; frame i uses its own stream
 };
 
-/// A synthetic scene, read from SPEC.json (formats.md): the scene without images, what its surfaces are made of, and which
-/// contours to write. The same file without "render" asks for exact highlights only.
+/// A synthetic scene, read from SPEC.json (docs/formats.md, "Synth SPEC"): the scene without images, what its surfaces are
+/// made of, and which contours to write. The same file without "render" asks for exact highlights only.
 struct SynthSpec {
   Scene scene;
   Material material;

@@ -63,7 +63,7 @@ std::string knobName(const std::string& key);
 /// "canonical, directions 24, solver anchored": the model and the knobs that differ from the program's defaults.
 std::string describe(const Tradeoff& tradeoff, const TradeoffPoint& point);
 
-/// formats.md "tradeoff --json". Numbers that are not finite become null.
+/// docs/formats.md, "tradeoff --json". Numbers that are not finite become null.
 std::string tradeoffJson(const Tradeoff& tradeoff);
 /// Reads it back (from a session). InputError with the place.
 Tradeoff readTradeoff(const JsonNode& node);

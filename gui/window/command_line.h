@@ -9,7 +9,7 @@
 
 namespace glint::gui {
 
-/// The command line of formats.md, checked.
+/// The command line of `glint-inspector --help`, checked.
 struct CommandLine {
   QString input;  ///< "" = empty state
   QString layout = QStringLiteral("debug");

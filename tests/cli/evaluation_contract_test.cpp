@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `evaluate --json` against the keys and types that formats.md promises to others.
+// `evaluate --json` against the keys and types of docs/formats.md, "evaluate --json".
 #include <gmock/gmock.h>
 
 #include "tests/cli/small_scene.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `glint tradeoff` as a user runs it: the keys that formats.md promises, exit codes, sessions, presets, interruption.
+// `glint tradeoff` as a user runs it: the keys of docs/formats.md, "tradeoff --json", exit codes, sessions, presets,
+// interruption.
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/types.h>

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# cmake -DRULES=<tests/rules> -DWORK=<scratch folder> -P rules_selftest.cmake: both checkers pass on a clean tree and fail, naming
+# cmake -DRULES=<tests/rules> -DWORK=<scratch folder> -P rules_selftest.cmake: the checkers pass on a clean tree and fail, naming
 # the file, on each planted violation. A checker that cannot fail checks nothing.
 cmake_minimum_required(VERSION 3.25)
 set(spdx "// SPDX-License-Identifier: BSD-3-Clause\n")
@@ -23,6 +23,8 @@ function(clean_tree)
   file(WRITE "${WORK}/core/scene/a.cpp" "${spdx}#include \"io/a.h\"\n")
   file(WRITE "${WORK}/viz/a.cpp" "${spdx}#include <vtkRenderer.h>\n#include \"core/part/a.h\"\n")
   file(WRITE "${WORK}/cli/a.cpp" "${spdx}#include \"viz/a.h\"\n")
+  file(WRITE "${WORK}/docs/page.md" "# Page\n\n## One thing\n\n### deep --json\n")
+  file(WRITE "${WORK}/core/part/c.h" "${spdx}/// As docs/page.md, \"One thing\", says, and docs/page.md \"deep --json\"; see docs/page.md,\n  /// \"One\n  /// thing\".\n")
   file(WRITE "${WORK}/gui/a.cpp" "${spdx}#include <QWidget>\n#include \"viz/a.h\"\n")
 endfunction()
 
@@ -40,7 +42,7 @@ endfunction()
 
 plant(source_rules.cmake core/part/a.cpp "int a;\nbool b = x > 1e-6;\n")
 
-foreach(script layers.cmake source_rules.cmake)
+foreach(script layers.cmake source_rules.cmake citations.cmake)
   clean_tree()
   check(${script})
   if(NOT rc EQUAL 0)
@@ -92,6 +94,12 @@ plant(source_rules.cmake cli/a.cpp "// see ${path}\n")
 set(host "de")
 string(APPEND host "b.debian.org")
 plant(source_rules.cmake cli/a.cpp "// from ${host}\n")
+
+
+foreach(citation "docs/nowhere.md" "docs/page.md, \"Another thing\"" "docs/page.md \"One\"" "docs/page.md,\n/// \"One\n/// hour\"" "formats.md, \"One thing\"")
+  plant(citations.cmake core/part/a.h "/// see ${citation}\n")
+endforeach()
+plant(citations.cmake tests/part/CMakeLists.txt "# see docs/page.md, \"Another thing\"\n")
 
 file(REMOVE_RECURSE "${WORK}")
 if(failures)

@@ -152,7 +152,7 @@ TEST(Session, UnknownKeysAreWarnedOfAndKept) {
   EXPECT_THAT(contentOf(folder / "y.glint"), HasSubstr("\"future\""));
 }
 
-// docs/commands.md: 1e-9 relative, to at least 1 px or 1 % for errors of contours and 0.001 for the rest.
+// docs/commands.md, "replay": 1e-9 relative, to at least 1 px or 1 % for errors of contours and 0.001 for the rest.
 TEST(Session, DifferencesOfKeyResultsAreRelativeToALeastSize) {
   for (const char* distance : {"dual.contour_error_px.mean", "dual.contour_error_pct.max", "dual.peak_offset_px.median"}) {
     EXPECT_NEAR(keyResultDifference(distance, 0.005, 0.005 + 1e-9), 1e-9 / 1.005, 1e-16) << distance;
