@@ -100,6 +100,7 @@ fs::path absolutePath(const JsonNode& node, const fs::path& folder) {
 
 InspectionRequest readRequest(const JsonNode& node, const fs::path& folder) {
   InspectionRequest request;
+  request.models.clear();
   std::set<std::string> named;  // one that is named twice is one model
   for (const std::string& model : texts(node.at("models")))
     if (named.insert(model).second) request.models.push_back(model);
