@@ -97,7 +97,7 @@ TEST_F(Leaving, ComparesTwoSessions) {
 /// JSON holds UTF-8 only: under another name nothing would be found when the session is opened.
 TEST_F(Leaving, ASessionThatCouldNotNameItsSceneIsNotWritten) {
   const std::filesystem::path odd = folder_ / "u\xff";
-  std::filesystem::copy(*made_ / "scene", odd, std::filesystem::copy_options::recursive);
+  std::filesystem::copy(spec().parent_path() / "scene", odd, std::filesystem::copy_options::recursive);
   const ProgramRun run =
       runGlint("reconstruct " + inQuotes(odd / "scene.json") + " --model limit-angle -o " + inQuotes(folder_ / "u.glint"));
   EXPECT_EQ(run.code, 2) << run.err;
