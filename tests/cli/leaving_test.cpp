@@ -101,7 +101,7 @@ TEST_F(Leaving, ASessionThatCouldNotNameItsSceneIsNotWritten) {
   const ProgramRun run =
       runGlint("reconstruct " + inQuotes(odd / "scene.json") + " --model limit-angle -o " + inQuotes(folder_ / "u.glint"));
   EXPECT_EQ(run.code, 2) << run.err;
-  EXPECT_THAT(run.err, HasSubstr("a name that is not UTF-8"));
+  EXPECT_THAT(run.err, HasSubstr("whose path is not UTF-8"));
   EXPECT_EQ(run.errorLines(), 1) << run.err;
   EXPECT_FALSE(std::filesystem::exists(folder_ / "u.glint"));
 }

@@ -2,11 +2,7 @@
 # cmake -DSRC=<project> -P citations.cmake: a page of docs that the source cites exists, and so does the section that stands in quotes behind it:
 # docs/formats.md, "Noise". A citation may go on in the next line of its comment.
 cmake_minimum_required(VERSION 3.25)
-set(broken "")
-macro(complain file text)
-  file(RELATIVE_PATH name "${SRC}" "${file}")
-  string(APPEND broken "\n  ${name}: ${text}")
-endmacro()
+include(${CMAKE_CURRENT_LIST_DIR}/complain.cmake)
 
 set(sources "")
 foreach(layer io core viz gui cli plugins tests bench)

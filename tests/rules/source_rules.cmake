@@ -1,11 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # cmake -DSRC=<project> -P source_rules.cmake: rules of the sources that a reviewer should not have to look for.
 cmake_minimum_required(VERSION 3.25)
-set(broken "")
-macro(complain file text)
-  file(RELATIVE_PATH name "${SRC}" "${file}")
-  string(APPEND broken "\n  ${name}: ${text}")
-endmacro()
+include(${CMAKE_CURRENT_LIST_DIR}/complain.cmake)
 
 # Files beyond 600 lines, each with the reason why it is better whole: "path: reason".
 set(longFiles "core/surface/mesh.cpp: one class, whose rays, feet and searches share its triangles"

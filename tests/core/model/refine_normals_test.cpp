@@ -78,9 +78,9 @@ TEST(RefineNormals, Nominal) {
   EXPECT_EQ(r->uncertainty->root.rows(), 5);
 }
 
-// Nominal has one set of bumps, on which the light gains, too. On others the normals gain (measured: 0.34 of their error,
-// geometric mean over six sets), but the light may lose: it was up to 5.8 times as far off as before, because a tilt that all
-// views share is nearly a moved light. The remark says so.
+// Nominal has one set of bumps, on which the light gains, too. On others the normals gain (measured on four sets: 0.28 of their
+// error, geometric mean), but the light may lose, 2.4 times as far off as before on the fourth: a tilt that all views share is
+// nearly a moved light. The remark says so.
 TEST(RefineNormals, NormalsGainWhateverTheBumpsTheLightMayNot) {
   double logNormals = 0;
   const std::vector<unsigned> all = testing_support::cases<unsigned>({1, 2, 3, 4});
@@ -98,7 +98,7 @@ TEST(RefineNormals, NormalsGainWhateverTheBumpsTheLightMayNot) {
                        std::to_string(c.lightError(r->light) / c.lightError(plain->light)) + " light");
   }
   if (!testing_support::kSanitized) {
-    EXPECT_LT(std::exp(logNormals), 0.8);
+    EXPECT_LT(std::exp(logNormals), 0.6);
   }
 }
 
