@@ -1,37 +1,37 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rows for docs/trust.md of a run of ctest: one for each test program, "name<TAB>count<TAB>findings<TAB>note". Used by tests/run_sanitizers
+"""Rows for docs/trust.md of a run of the tests: one for each test program, "name<TAB>count<TAB>findings<TAB>note". Used by tests/run_sanitizers
 and tests/run_comma_locale.
 
   tests/test_rows.py --build FOLDER [--pattern REGEX] [--leave-out REGEX] [--reports FOLDER] JUNIT...    the rows; a test in several files counts as in the last one
   tests/test_rows.py --build FOLDER [--pattern REGEX] [--leave-out REGEX] --programs    names of all programs that a complete run has
 
---pattern and --leave-out are the tests of a complete run, as ctest's -R and -E. A program of which fewer tests ran has a row of another name,
-so that it stays missing.
+JUNIT is what tests/suite/suite.py writes; --pattern and --leave-out are the tests of a complete run, as its --filter and --leave-out. A program of
+which fewer tests ran has a row of another name, so that it stays missing.
 """
 import argparse
 import collections
 import pathlib
 import re
-import subprocess
 import sys
 import xml.etree.ElementTree as xml
+
+sys.dont_write_bytecode = True  # no folder among the sources
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "suite"))
+import suite
 
 
 def programsOf(build, pattern, leaveOut):
     """How many tests of each program a complete run has; 0 of a program that is not built."""
-    listed = subprocess.run(["ctest", "--test-dir", build, "-N"], stdout=subprocess.PIPE, text=True, check=True).stdout
     programs = collections.Counter()
-    # ctest also names the places where it looked for a program: only lines "Test #N: NAME" are tests.
-    for name in re.findall(r"^ *Test *#\d+: *(\S+)", listed, re.M):
-        if leaveOut and re.search(leaveOut, name):
+    entries = suite.entriesOf(build)
+    for entry, names in suite.namesOf(build, pattern, leaveOut).items():
+        if names is not None:
+            programs.update(name.split(".")[0] for name in names)
             continue
-        if name.endswith("_NOT_BUILT"):
-            program = name.removesuffix("_NOT_BUILT").removeprefix("test_")
-            if not pattern or f"^{program}\\." in pattern:
-                programs[program] += 0
-        elif re.search(pattern, name):
-            programs[name.split(".")[0]] += 1
+        program = entries[entry].prefix.split(".")[0]
+        if not (leaveOut and re.search(leaveOut, f"{program}.")) and (not pattern or f"^{program}\\." in pattern):
+            programs[program] += 0
     return programs
 
 

@@ -23,20 +23,24 @@ namespace fs = std::filesystem;
 /// Numbers with a decimal comma: in iostreams always, in the C library where the machine knows such a locale or can make one.
 class CommaLocale {
  public:
-  CommaLocale() {
+  CommaLocale() : before_(std::setlocale(LC_ALL, nullptr)) {
     old_ = std::locale::global(std::locale(std::locale::classic(), new Comma));
     for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8"})
       if (std::setlocale(LC_ALL, name)) return;
     const std::string made = (folder_.path() / "de_DE.UTF-8").string();
     if (std::system(("localedef -i de_DE -f UTF-8 " + made + " > /dev/null 2>&1").c_str()) == 0) {
+      if (const char* path = std::getenv("LOCPATH")) path_ = path;
       ::setenv("LOCPATH", folder_.path().c_str(), 1);
       std::setlocale(LC_ALL, "de_DE.UTF-8");
+      if (path_.empty())
+        ::unsetenv("LOCPATH");
+      else
+        ::setenv("LOCPATH", path_.c_str(), 1);
     }
   }
   ~CommaLocale() {
-    ::unsetenv("LOCPATH");
     std::locale::global(old_);
-    std::setlocale(LC_ALL, "C");
+    std::setlocale(LC_ALL, before_.c_str());
   }
 
  private:
@@ -45,6 +49,7 @@ class CommaLocale {
     char do_thousands_sep() const override { return '.'; }
     std::string do_grouping() const override { return "\3"; }
   };
+  std::string before_, path_;
   TemporaryFolder folder_;
   std::locale old_;
 };

@@ -40,9 +40,8 @@ class LegendPicture : public testing::Test {
  protected:
   void SetUp() override {
     if (std::system("command -v Xvfb > /dev/null 2>&1") != 0) GTEST_SKIP() << "Xvfb is not installed";
-    Outcome<std::unique_ptr<VirtualDisplay>> display = VirtualDisplay::start(800, kHeight);
-    ASSERT_TRUE(display) << display.failure().message();
-    display_ = std::move(*display);
+    display_ = std::make_unique<test::TestDisplay>();
+    ASSERT_TRUE(*display_) << display_->failure().message();
   }
   Image picture(int width, bool dark, const std::function<void(Annotations&)>& fill) {
     vtkNew<vtkRenderer> renderer;
@@ -85,7 +84,7 @@ class LegendPicture : public testing::Test {
         n += isNear(image, x, y, colour, kSame);
     return n;
   }
-  std::unique_ptr<VirtualDisplay> display_;
+  std::unique_ptr<test::TestDisplay> display_;
   Eigen::Vector2d legend_;
   std::map<std::string, Box> texts_;  ///< what is shown of them, window px, y up
 };

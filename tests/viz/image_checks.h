@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/image.h"
+#include "tests/viz/test_display.h"
 #include "viz/offscreen.h"
 #include "viz/style.h"
 
@@ -48,15 +49,18 @@ class PictureTest : public testing::Test {
   static constexpr int kWidth = 640, kHeight = 480;
   void SetUp() override {
     if (std::system("command -v Xvfb > /dev/null 2>&1") != 0) GTEST_SKIP() << "Xvfb is not installed";
+    display_ = std::make_unique<TestDisplay>();
+    ASSERT_TRUE(*display_) << display_->failure().message();
     resize(kWidth, kHeight);
   }
   void resize(int width, int height) {
-    target_.reset();  // one display at a time
-    Outcome<std::unique_ptr<viz::Offscreen>> target = viz::Offscreen::create(width, height);
+    target_.reset();
+    Outcome<std::unique_ptr<viz::Offscreen>> target = viz::Offscreen::onOwnDisplay(width, height);
     ASSERT_TRUE(target) << target.failure().message();
     target_ = std::move(*target);
   }
   Image render(const viz::SceneView& view) { return target_->render(view); }
+  std::unique_ptr<TestDisplay> display_;  // declared first: it outlives the window
   std::unique_ptr<viz::Offscreen> target_;
 };
 

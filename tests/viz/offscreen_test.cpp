@@ -13,7 +13,9 @@
 #include <string>
 #include <thread>
 
+#include "tests/viz/test_display.h"
 #include "viz/display_connection.h"
+#include "viz/scene_view.h"
 
 namespace glint::viz {
 namespace {
@@ -41,11 +43,13 @@ class WithoutXvfb : public testing::Test {
  protected:
   void SetUp() override { path_ = std::getenv("PATH"); }
   void TearDown() override { setenv("PATH", path_.c_str(), 1); }
+  test::KeepsDisplay keeps_;
   std::string path_;
 };
 
 TEST(VirtualDisplay, LeavesNoProcessAndRestoresDisplay) {
   if (!xvfbInstalled()) GTEST_SKIP() << "Xvfb is not installed";
+  const test::KeepsDisplay keeps;
   unsetenv("DISPLAY");
   int pid = -1;
   {
@@ -61,7 +65,6 @@ TEST(VirtualDisplay, LeavesNoProcessAndRestoresDisplay) {
   setenv("DISPLAY", ":4711", 1);
   { const Outcome<std::unique_ptr<VirtualDisplay>> display = VirtualDisplay::start(320, 200); }
   EXPECT_STREQ(std::getenv("DISPLAY"), ":4711");
-  unsetenv("DISPLAY");
 }
 
 TEST(VirtualDisplay, EndsWhenAnExceptionPasses) {
@@ -91,6 +94,7 @@ TEST_P(KilledBy, TheServerEndsWithTheProgram) {
     sigemptyset(&blocked);
     if (GetParam() == SIGKILL) sigaddset(&blocked, SIGTERM);
     sigprocmask(SIG_BLOCK, &blocked, nullptr);
+    signal(GetParam(), SIG_DFL);  // a shell ignores SIGINT for what it starts in the background
     const Outcome<std::unique_ptr<VirtualDisplay>> display = VirtualDisplay::start(320, 200);
     const int pid = display ? (*display)->processId() : -1;
     if (write(channel[1], &pid, sizeof pid) != sizeof pid) _exit(1);
@@ -134,6 +138,7 @@ TEST_F(WithoutXvfb, ADisplayThatCannotBeOpenedIsNamed) {
 
 TEST(DisplayConnection, OpensWhereAServerAnswers) {
   if (!xvfbInstalled()) GTEST_SKIP() << "Xvfb is not installed";
+  const test::KeepsDisplay keeps;
   unsetenv("DISPLAY");
   EXPECT_FALSE(DisplayConnection::open());
   const Outcome<std::unique_ptr<VirtualDisplay>> server = VirtualDisplay::start(320, 200);
@@ -142,6 +147,21 @@ TEST(DisplayConnection, OpensWhereAServerAnswers) {
   ASSERT_TRUE(display) << display.failure().message();
   EXPECT_TRUE((*display)->has("GLX"));
   EXPECT_FALSE((*display)->has("NO-SUCH-EXTENSION"));
+}
+
+TEST(Offscreen, BringsAServerOfItsOwn) {
+  if (!xvfbInstalled()) GTEST_SKIP() << "Xvfb is not installed";
+  const test::KeepsDisplay keeps;
+  unsetenv("DISPLAY");
+  {
+    const Outcome<std::unique_ptr<Offscreen>> target = Offscreen::create(320, 200);
+    ASSERT_TRUE(target) << target.failure().message();
+    EXPECT_NE(std::getenv("DISPLAY"), nullptr);
+    const Image image = (*target)->render(SceneView());
+    EXPECT_EQ(image.width, 320);
+    EXPECT_EQ(image.height, 200);
+  }
+  EXPECT_EQ(std::getenv("DISPLAY"), nullptr);
 }
 
 TEST(Offscreen, RefusesImpossibleSizes) {

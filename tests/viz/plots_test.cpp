@@ -15,6 +15,7 @@
 
 #include "core/base/atomic_file.h"
 #include "tests/viz/small_inspection.h"
+#include "tests/viz/test_display.h"
 #include "viz/canvas.h"
 #include "viz/convert.h"
 #include "viz/offscreen.h"
@@ -275,13 +276,11 @@ TEST(Plots, EveryKindHasAName) {
   for (const PlotKind& k : plotKinds()) EXPECT_GT(std::string(k.help).size(), 20u) << k.id;
 }
 
-/// Needs a display of its own.
 class PlotDrawing : public testing::Test {
  protected:
   void SetUp() override {
-    Outcome<std::unique_ptr<VirtualDisplay>> display = VirtualDisplay::start(800, 600);
-    if (!display) GTEST_SKIP() << display.failure().message();
-    display_ = std::move(*display);
+    display_ = std::make_unique<test::TestDisplay>();
+    if (!*display_) GTEST_SKIP() << display_->failure().message();
     window_ = vtkSmartPointer<vtkRenderWindow>::New();
     window_->SetOffScreenRendering(1);
     window_->SetDPI(72);
@@ -305,7 +304,7 @@ class PlotDrawing : public testing::Test {
     grab->Update();
     return fromVtk(grab->GetOutput());
   }
-  std::unique_ptr<VirtualDisplay> display_;
+  std::unique_ptr<test::TestDisplay> display_;
   vtkSmartPointer<vtkRenderWindow> window_;
   PlotView view_;
 };

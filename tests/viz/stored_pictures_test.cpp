@@ -230,14 +230,6 @@ PlotData wordless(PlotData plot) {
 
 class StoredPlots : public StoredPictures {
  protected:
-  void SetUp() override {
-    StoredPictures::SetUp();
-    target_.reset();  // one display at a time
-    Outcome<std::unique_ptr<VirtualDisplay>> display = VirtualDisplay::start(800, 600);
-    if (!display) GTEST_SKIP() << display.failure().message();
-    display_ = std::move(*display);
-  }
-  void TearDown() override { display_.reset(); }
   std::vector<PlotData> plots() {
     PlotData axes = semiAxesPlot(*inspection_);
     for (PlotSeries& series : axes.series)
@@ -253,7 +245,6 @@ class StoredPlots : public StoredPictures {
     if (!plot.dial) return {};
     return {{0, 110, 85, 40}, {315, 110, 85, 40}, {170, 0, 60, 26}, {170, 240, 60, 20}, {190, 120, 20, 20}, {210, 10, 55, 240}};
   }
-  std::unique_ptr<VirtualDisplay> display_;
   inline static const Selection kSelected{0, "canonical", 0, "lamp", 0.7};
 };
 
