@@ -196,15 +196,16 @@ def runOnce(entry, folder, chosen, results):
     with open(folder / f"{entry.entry}.log", "a", encoding="utf-8") as all_:
         all_.write(text)
     log.unlink()
+    how = howItEnded(code, entry.seconds)
     whole = code is not None and ended.search(text) and report.exists()
     if whole:
         read(report, text, results)
         if code != 0 and not results.named("failed"):
-            results.add("(its end)", "failed", howItEnded(code, entry.seconds), "0", text[-3000:])
-    elif not readBroken(text, howItEnded(code, entry.seconds), results):
+            results.add("(its end)", "failed", how, "0", f"{text[-3000:]}{how}\n")
+    elif not readBroken(text, how, results):
         # Between two cases, or before the first: no case can be blamed.
         last = begun.findall(text)
-        results.add(f"(after {last[-1]})" if last else "(its start)", "failed", howItEnded(code, entry.seconds), "0", text[-3000:])
+        results.add(f"(after {last[-1]})" if last else "(its start)", "failed", how, "0", f"{text[-3000:]}{how}\n")
     report.unlink(missing_ok=True)
     return bool(whole)
 

@@ -33,6 +33,10 @@ TEST(Ends, Never) {
   for (;;) ::pause();
 }
 
+TEST(AtTheEnd, ComesAnExitCode) {
+  std::atexit([] { std::_Exit(9); });
+}
+
 class NoSuite : public testing::Test {
  protected:
   static void SetUpTestSuite() { ADD_FAILURE() << "nothing to stand on"; }

@@ -71,6 +71,10 @@ class Entry(Folder):
         self.assertEqual((code, results), (1, {"p.Good.A": "run", "p.Ends.Never": "failed", "p.Alone.First": "run"}))
         self.assertIn(f"no end within {seconds} s", self.cases["p.Ends.Never"].find("failure").get("message"))
 
+    def testAnExitCodeAfterAllCasesIsAFailure(self):
+        self.assertEqual(self.run_("--cases", "AtTheEnd.*"), (1, {"p.AtTheEnd.ComesAnExitCode": "run", "p.(its end)": "failed"}))
+        self.assertIn("exit code 9", self.said)
+
     def testAProgramThatDoesNotStart(self):
         broken = self.folder / "broken"
         broken.write_text("#!/bin/sh\nexit 3\n")
