@@ -20,6 +20,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import time
 import xml.etree.ElementTree as xml
 
 sys.dont_write_bytecode = True  # no folder among the sources
@@ -65,8 +66,8 @@ def exactly(names):
     return "^(" + "|".join(re.escape(name) for name in names) + ")$"
 
 
-def merged(junit, entries, folder):
-    """One JUnit test case for each case, in place of those for entries."""
+def merged(junit, entries, folder, begun):
+    """One JUnit test case for each case, in place of those for entries. Results from before `begun` are those of an earlier run."""
     suite = xml.Element("testsuite", name="Glint")
     for case in xml.parse(junit).getroot().iter("testcase"):
         name = case.get("name")
@@ -77,7 +78,7 @@ def merged(junit, entries, folder):
             if skipped is not None and not skipped.get("message", "").startswith(("SKIP_", "Disabled")):  # as "Unable to find executable"
                 skipped.tag = "failure"
                 case.set("status", "fail")
-        elif report.exists():
+        elif report.exists() and report.stat().st_mtime >= begun:
             suite.extend(xml.parse(report).getroot().iter("testcase"))
         else:  # ctest's own limit of time, or something that ended it
             broken = xml.SubElement(suite, "testcase", name=f"{entries[name].prefix}({name} left no results)", status="fail")
@@ -165,17 +166,16 @@ def main():
     if len(chosen) < len(entries):
         more += ["-R", exactly(chosen)]
     folder.mkdir(parents=True, exist_ok=True)
-    for old in [*folder.glob("*.xml"), *folder.glob("*.log")]:
-        old.unlink()
     environment = {**os.environ, "GLINT_TEST_FILTER": arguments.filter, "GLINT_TEST_LEAVE_OUT": arguments.leave_out, "GLINT_TEST_RESULTS": str(folder)}
-    junit = folder / "entries.junit"
-    junit.unlink(missing_ok=True)
+    junit = folder / f"entries-{os.getpid()}.junit"  # other runs may go on beside this one, of other entries
+    begun = time.time() - 1  # clocks of files are coarse
     # All that a test prints, not the first kilobyte: names of skipped functions stand in it.
     code = subprocess.run(["ctest", "--test-dir", build, "--output-on-failure", "--output-junit", junit, "--test-output-size-passed", "1000000", *more],
                           env=environment).returncode
     if not junit.exists():
         return code
-    suite = merged(junit, entries, folder)
+    suite = merged(junit, entries, folder, begun)
+    junit.unlink()
     if arguments.junit:
         arguments.junit.parent.mkdir(parents=True, exist_ok=True)
         xml.ElementTree(suite).write(arguments.junit, encoding="utf-8", xml_declaration=True)
