@@ -21,6 +21,7 @@ namespace glint {
 
 struct PixelPatch;
 struct PixelFit;
+struct ModelFit;
 
 /// One direction of the walk from the brightest point (method.md section 6): a point or a named reason.
 struct DirectionResult {
@@ -75,6 +76,9 @@ struct FitInput {
   std::optional<LightEstimate> light;       ///< for models with needsLight()
   std::optional<Failure> lightFailure;      ///< why there is none
   std::shared_ptr<const PixelFit> pixelFit; ///< of the pixels of exactly these views, where it is known already
+  /// By the same model, of nearly these views: cameras moved a little. `reflectance` starts from its lamp and keeps the lamp's
+  /// shape.
+  std::shared_ptr<const ModelFit> near;
 };
 
 /// What fitting produced; fields that a model does not have stay empty.

@@ -78,6 +78,19 @@ Lamp lampOf(const ModelFit& fit) {
                           : Lamp::sphere(*fit.lightEstimate, fit.lightRadius.value_or(0));
 }
 
+/// As a fit of contours: lobe, roughness and lamp.
+std::optional<RadianceFit> radianceFitOf(const ModelFit& fit) {
+  if (!fit.lightEstimate || !fit.roughness || !fit.lobe) return std::nullopt;
+  const Lamp lamp = lampOf(fit);
+  RadianceFit result;
+  result.lobe = *lobeOf(*fit.lobe);
+  result.roughness = *fit.roughness;
+  result.light = lamp.centre;
+  result.lightRadius = lamp.radius;
+  result.lightHalfAxis = lamp.halfAxis;
+  return result;
+}
+
 class Reflectance final : public HighlightModel {
  public:
   std::string id() const override { return "reflectance"; }
@@ -119,12 +132,7 @@ class Reflectance final : public HighlightModel {
       fit.remarks.push_back("Fitted to contours, not to pixels: " + fromPixels.failure().message() + ".");
     }
     const double level = views.front().level;
-    const std::optional<Light> light = firstLight(input);
-    if (!light) return input.lightFailure ? *input.lightFailure : Failure{Reason::NoLight, ""};
-    const double alpha = medianContourAngle(input.views, *light, kAnglePoints);
-    if (!(alpha > 0)) return Failure{Reason::PeakOffSurface, "no contour point hits the lit surface"};
-    const Outcome<RadianceFit> best = searchRadiance(lobesOf(settings), views, *light, std::min(alpha, kWidestStart),
-                                                     lampChoicesOf(settings), radianceFitOptionsOf(settings));
+    const Outcome<RadianceFit> best = lampOfContours(input, views, settings);
     if (!best) return best.failure();
     if (best->poor) {
       const std::string detail = formatted("no light and roughness explain the contours: %.3g px remain", best->rmsPx);
@@ -148,6 +156,19 @@ class Reflectance final : public HighlightModel {
     for (const TrainingView& v : input.views)
       if (!v.failure) used.push_back(usedContour(v));
     return explaining(std::move(fit), used, true, settings.number("fit.most_residual"));
+  }
+
+  /// From the fit that is known nearby, where it leads to an explanation; else by a search.
+  static Outcome<RadianceFit> lampOfContours(const FitInput& input, const std::vector<RadianceView>& views,
+                                             const Settings& settings) {
+    const RadianceFitOptions options = radianceFitOptionsOf(settings);
+    if (const std::optional<RadianceFit> near = input.near ? radianceFitOf(*input.near) : std::nullopt)
+      if (Outcome<RadianceFit> found = fitNear(lobesOf(settings), views, *near, options); found && !found->poor) return found;
+    const std::optional<Light> light = firstLight(input);
+    if (!light) return input.lightFailure ? *input.lightFailure : Failure{Reason::NoLight, ""};
+    const double alpha = medianContourAngle(input.views, *light, kAnglePoints);
+    if (!(alpha > 0)) return Failure{Reason::PeakOffSurface, "no contour point hits the lit surface"};
+    return searchRadiance(lobesOf(settings), views, *light, std::min(alpha, kWidestStart), lampChoicesOf(settings), options);
   }
 
   Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera,

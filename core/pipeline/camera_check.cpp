@@ -62,6 +62,7 @@ class Check {
   struct Fitted {
     double rmsPx = 0;
     Kind kind;
+    std::shared_ptr<const ModelFit> model;
   };
 
   void stopIfAsked(int done, int total) const {
@@ -105,8 +106,10 @@ class Check {
     return list;
   }
 
-  /// Light and lobe of some views as if the cameras were changed.
-  std::optional<Fitted> fit(const Change& change, const std::vector<int>& which, const Kind& kind) const {
+  /// Light and lobe of some views as if the cameras were changed. @param near  a fit for cameras that differ little, if there is
+  /// one
+  std::optional<Fitted> fit(const Change& change, const std::vector<int>& which, const Kind& kind,
+                            const Fitted* near = nullptr) const {
     stopIfAsked(0, 0);
     Settings settings = settings_;
     settings.set("fit.lobe", kind.lobe);
@@ -135,17 +138,21 @@ class Check {
       if (view.failure) return std::nullopt;
       input.views.push_back(std::move(view));
     }
-    Outcome<LightEstimate> light = estimateLight(input.views, settings);
-    if (light)
+    if (near) {
+      input.near = near->model;
+      input.light.emplace().light = *near->model->lightEstimate;  // should the search be needed all the same
+    } else if (Outcome<LightEstimate> light = estimateLight(input.views, settings)) {
       input.light = *light;
-    else
+    } else {
       input.lightFailure = light.failure();
+    }
     const Outcome<ModelFit> fitted = modelByName("reflectance").fit(input, settings);
     if (!fitted || fitted->residualPx.size() != which.size()) return std::nullopt;
     Fitted result;
     for (const double r : fitted->residualPx) result.rmsPx += r * r / double(which.size());
     result.rmsPx = std::sqrt(result.rmsPx);
     result.kind = {fitted->lobe.value_or("auto"), lampChoiceOf(*fitted)};
+    result.model = std::make_shared<const ModelFit>(*fitted);
     return std::isfinite(result.rmsPx) ? std::optional<Fitted>(result) : std::nullopt;
   }
 
@@ -180,18 +187,19 @@ class Check {
   }
 
   /// How far to go along a change until the sum of squares is least: a parabola through three fits, then one about its end, where
-  /// another lobe may fit better than for the wrong cameras. The shape of the lamp stays: small errors of cameras do not hide it,
-  /// and searching all shapes for every step takes half a minute where contours are damaged.
+  /// another lobe may fit better than for the wrong cameras. The shape of the lamp stays, small errors of cameras do not hide it;
+  /// every fit starts from the lamp of the one about which it lies.
   std::optional<double> least(const Change& direction, const Fitted& given, const std::vector<int>& which) const {
     double at = 0;
     Fitted here = given;
     for (int round = 0; round < 2; ++round) {
       if (round > 0) {
-        const std::optional<Fitted> again = fit(along(direction, at), which, {"auto", given.kind.lamp});
+        const std::optional<Fitted> again = fit(along(direction, at), which, {"auto", given.kind.lamp}, &given);
         if (!again) return std::nullopt;
         here = *again;
       }
-      const auto up = fit(along(direction, at + 1), which, here.kind), down = fit(along(direction, at - 1), which, here.kind);
+      const auto up = fit(along(direction, at + 1), which, here.kind, &here),
+                 down = fit(along(direction, at - 1), which, here.kind, &here);
       if (!up || !down) return std::nullopt;
       const double u = up->rmsPx * up->rmsPx, d = down->rmsPx * down->rmsPx, bend = u + d - 2 * here.rmsPx * here.rmsPx;
       if (!(bend > 0)) return std::nullopt;
@@ -203,10 +211,10 @@ class Check {
   }
 
   /// Both halves of the views fit better after the change, too.
-  bool bothHalvesGain(const Change& change, const Kind& kind) const {
+  bool bothHalvesGain(const Change& change, const Fitted& whole) const {
     for (const int first : {0, 1}) {
       const std::vector<int> half = every(first, 2);
-      const std::optional<Fitted> before = fit({}, half, kind), after = fit(change, half, kind);
+      const std::optional<Fitted> before = fit({}, half, whole.kind, &whole), after = fit(change, half, whole.kind, &whole);
       if (!before || !after || !(after->rmsPx < kHalfGain * before->rmsPx)) return false;
     }
     return true;
@@ -222,18 +230,18 @@ class Check {
     if (byShift) {
       result_.shiftPx = *byShift * shift.cx;
       half.cx = half.cy = *byShift < 0 ? -0.5 : 0.5;
-      atHalf = fit(half, all, {"auto", given.kind.lamp});
+      atHalf = fit(half, all, {"auto", given.kind.lamp}, &given);
       add("principal point half a pixel " + std::string(half.cx < 0 ? "less" : "more"), atHalf);
     }
     if (byFocal) {
       longer = along(focal, *byFocal);
       result_.focalPct = 100 * std::expm1(longer.logFocal);
-      atFocal = fit(longer, all, {"auto", given.kind.lamp});
+      atFocal = fit(longer, all, {"auto", given.kind.lamp}, &given);
       add(formatted("focal length %+.2g %%", *result_.focalPct), atFocal);
     }
     const auto clear = [&](const std::optional<Fitted>& here, const std::optional<Fitted>& other, const Change& change) {
       return here && here->rmsPx < kClearly * given.rmsPx && !(other && other->rmsPx < here->rmsPx) &&
-             bothHalvesGain(change, here->kind);
+             bothHalvesGain(change, *here);
     };
     if (byShift && std::abs(*result_.shiftPx - half.cx) < kShiftSlackPx && clear(atHalf, atFocal, half))
       result_.findings.push_back(

@@ -85,7 +85,7 @@ Outcome<ContourEvidence> gatherEvidence(const std::vector<RadianceView>& views, 
     for (const Pixel& p : view.contour)
       if (!p.allFinite()) return Failure{Reason::NotFinite, "a contour point of view " + std::to_string(v)};
     const auto [known, isNew] = frameIndex.emplace(view.frame, static_cast<int>(all.frames.size()));
-    if (isNew) all.frames.push_back({view.camera, view.surface, {}, {}, {}});
+    if (isNew) all.frames.push_back({view.camera, view.surface, {}, {}, {}, {}});
     std::vector<Pixel>& starts = all.frames[known->second].starts;
     if (std::find(starts.begin(), starts.end(), view.peak) == starts.end()) starts.push_back(view.peak);
     const std::vector<Pixel> pixels =

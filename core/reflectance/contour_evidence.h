@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/reflectance/fit.h"
+#include "core/reflectance/radiance_field.h"
 
 /// What the fit of a lobe sees of the contours; internal to core/reflectance.
 namespace glint::lobe {
@@ -48,6 +49,7 @@ struct FramePeak {
   Camera camera;
   const Surface* surface = nullptr;
   std::vector<Pixel> starts;
+  std::optional<CoarseScan> scan;   ///< of the image, from the first time that it was scanned
   std::optional<Seen> at;           ///< empty where nothing in the frame is lit
   std::optional<LogAndSlopes> log;  ///< there; shared by all points of the frame
 };

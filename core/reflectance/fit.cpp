@@ -12,19 +12,20 @@
 namespace glint {
 namespace {
 
-constexpr double kPoorShare = 0.1;    // of the radius: a wrong lobe leaves less, a wrong start leaves more
 constexpr double kDoubtShare = 0.02;  // of the radius: a right lobe leaves less
 constexpr double kSphereGain = 0.2;    // of the sum of squares, before a size is believed
 constexpr double kNoRadiusSquared = 1e-10;  // normalised: where a radius ends that is none
 // Other starts are judged by a short fit to few points; the most promising are then fitted in full.
 constexpr int kScreenPoints = 16, kScreenIterations = 15;
 constexpr std::size_t kPromising = 3;
+constexpr double kSamePlace = 1e-2;  // of a unit vector L and of log m: far less than a basin is wide
 // The peak of a wide lobe lies far from the mirror point, and the light that its reflection points to as far from the true one.
 constexpr std::array<double, 2> kTilts{0.35, 0.8};  // rad
 constexpr int kTiltedDirections = 6;
 
 using lobe::Attempt;
 using lobe::ContourEvidence;
+using lobe::kPoorShare;
 using lobe::LampShape;
 using lobe::RadianceProblem;
 using lobe::State;
@@ -53,6 +54,11 @@ Lamp RadianceFit::lamp() const {
   return lamp;
 }
 
+bool RadianceStart::promises() const { return excess <= lobe::kHopeless; }
+bool RadianceStart::isNear(const RadianceStart& other) const {
+  return lobe == other.lobe && (place - other.place).norm() < kSamePlace;
+}
+
 std::vector<RadianceStart> screenStarts(Lobe lobe, const std::vector<RadianceView>& views, const Light& light, double roughness,
                                         StartGrid grid, const RadianceFitOptions& options) {
   RadianceFitOptions quick = options;
@@ -70,7 +76,8 @@ std::vector<RadianceStart> screenStarts(Lobe lobe, const std::vector<RadianceVie
     from.at(lobe::kLogRoughness) = std::log(std::min(width, 1.0));
     const Attempt a = problem.solve(from);
     if (!std::isfinite(a.cost) || !a.state.at.allFinite() || RadianceProblem::tooWide(a.state)) return;
-    starts.push_back({lobe, problem.inWorld(a.state).centre, a.state.roughness(), a.cost / double(problem.points())});
+    starts.push_back({lobe, problem.inWorld(a.state).centre, a.state.roughness(), a.cost / double(problem.points()),
+                      problem.excess(a, kPoorShare), a.state.at.head<5>()});
   };
   if (grid == StartGrid::Distances) {
     for (const double distance : {0.5, 1.0, 2.0, 5.0, 0.0})
@@ -101,6 +108,7 @@ Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& vie
     std::vector<RadianceStart> starts = screenStarts(lobe, views, light, roughness, StartGrid::Distances, options);
     if (starts.size() > kPromising) starts.resize(kPromising);
     for (const RadianceStart& from : starts) {
+      if (!from.promises()) continue;
       const Attempt other = problem.solve(problem.start(from.light, from.roughness));
       iterations += other.iterations;
       if (other.converged != best.converged ? other.converged : other.cost < best.cost) best = other;

@@ -35,7 +35,13 @@ struct RadianceStart {
   Lobe lobe = Lobe::TorranceSparrow;
   Light light;
   double roughness = 0;
-  double cost = 0;  ///< mean robust square per point after a short fit, px^2: starts of all lobes are compared by it
+  double cost = 0;    ///< mean robust square per point after a short fit, px^2: starts of all lobes are compared by it
+  double excess = 0;  ///< what remains over what a fit may leave that is not poor; far above 1: not worth trying
+  Eigen::Matrix<double, 5, 1> place = Eigen::Matrix<double, 5, 1>::Zero();  ///< normalised: L with |L| = 1, log m
+
+  bool promises() const;
+  /// Both lead to the same minimum.
+  bool isNear(const RadianceStart& other) const;
 };
 
 /// Starts along the first guess's direction at other distances and at infinity, narrower and wider; or around it, tilted by 20 and 45

@@ -16,10 +16,31 @@ namespace {
 // Of the sum of squares over their mean: three standard deviations, before a cosine power is preferred to a microfacet lobe.
 constexpr double kMicrofacetGain = 9;
 constexpr std::size_t kPromisingStarts = 6;  // of those that a short fit to few points likes best
+// Where one lobe's best start leaves so many times what a poor fit may leave, no lobe explains the contours: beside one that
+// does, the others' best left 3 times that at most (wide lobes, grazing views), and those of mirrored images leave 8 and more.
+constexpr double kFarFromAnyLobe = 6;
 constexpr int kMostRounds = 3;               // of lobes that start again from a better one: each round must have found a better light
 constexpr double kNarrowestGuess = 1e-4, kWidestGuess = 1.0;  // roughness of first guesses
 
 bool isMicrofacet(Lobe lobe) { return lobe == Lobe::TorranceSparrow || lobe == Lobe::Ggx; }
+
+bool isBetter(const RadianceFit& a, const RadianceFit& b) { return a.poor != b.poor ? b.poor : a.cost < b.cost; }
+
+double clampedRoughness(Lobe lobe, double width, double level) {
+  return std::clamp(roughnessOf(lobe, width, level), kNarrowestGuess, kWidestGuess);
+}
+
+/// The best of some lobes; a microfacet lobe where the residuals do not tell.
+const RadianceFit& preferred(const std::map<Lobe, RadianceFit>& found) {
+  const RadianceFit *best = nullptr, *microfacet = nullptr;
+  for (const auto& [lobe, f] : found) {
+    if (!best || isBetter(f, *best)) best = &f;
+    if (isMicrofacet(lobe) && (!microfacet || isBetter(f, *microfacet))) microfacet = &f;
+  }
+  const bool asGood =
+      microfacet && !microfacet->poor && microfacet->cost - best->cost < kMicrofacetGain * best->cost / best->points;
+  return asGood ? *microfacet : *best;
+}
 
 /// Point lights of several lobes; keeps what each lobe found.
 class PointSearch {
@@ -41,16 +62,14 @@ class PointSearch {
       if (!better) break;
     }
     if (!best_) return failure_;
-    return preferred();
+    return preferred(found_);
   }
 
  private:
   const RadianceFit& fit() const { return found_.at(*best_); }
   bool explains() const { return best_ && !fit().poor; }
   double level() const { return views_.empty() ? 0.5 : views_.front().level; }
-  double roughnessFor(Lobe lobe, double width) const { return std::clamp(roughnessOf(lobe, width, level()), kNarrowestGuess, kWidestGuess); }
-
-  static bool isBetter(const RadianceFit& a, const RadianceFit& b) { return a.poor != b.poor ? b.poor : a.cost < b.cost; }
+  double roughnessFor(Lobe lobe, double width) const { return clampedRoughness(lobe, width, level()); }
 
   /// Fits a lobe from a start. @return whether the best of all lobes became better.
   bool tryFrom(Lobe lobe, const Light& light, double roughness) {
@@ -80,20 +99,18 @@ class PointSearch {
 
   void screen(const Light& light, double width, StartGrid grid) {
     std::vector<RadianceStart> starts;
-    for (const Lobe lobe : lobes_)
+    for (const Lobe lobe : lobes_) {
       for (const RadianceStart& s : screenStarts(lobe, views_, light, roughnessFor(lobe, width), grid, options_)) starts.push_back(s);
+      const auto far = [](const RadianceStart& s) { return s.excess > kFarFromAnyLobe; };
+      if (!starts.empty() && std::all_of(starts.begin(), starts.end(), far)) return;
+    }
     std::stable_sort(starts.begin(), starts.end(),
                      [](const RadianceStart& a, const RadianceStart& b) { return a.cost < b.cost; });
-    for (std::size_t i = 0; i < starts.size() && i < kPromisingStarts && !(best_ && !fit().doubtful); ++i)
-      (void)tryFrom(starts[i].lobe, starts[i].light, starts[i].roughness);
-  }
-
-  RadianceFit preferred() const {
-    const RadianceFit* microfacet = nullptr;
-    for (const auto& [lobe, f] : found_)
-      if (isMicrofacet(lobe) && (!microfacet || isBetter(f, *microfacet))) microfacet = &f;
-    if (microfacet && !microfacet->poor && microfacet->cost - fit().cost < kMicrofacetGain * fit().cost / fit().points) return *microfacet;
-    return fit();
+    if (starts.size() > kPromisingStarts) starts.resize(kPromisingStarts);
+    for (auto s = starts.begin(); s != starts.end() && !(best_ && !fit().doubtful); ++s) {
+      const bool tried = std::any_of(starts.begin(), s, [&](const RadianceStart& earlier) { return earlier.isNear(*s); });
+      if (s->promises() && !tried) (void)tryFrom(s->lobe, s->light, s->roughness);
+    }
   }
 
   const std::vector<Lobe>& lobes_;
@@ -143,6 +160,28 @@ Outcome<RadianceFit> searchRadiance(const std::vector<Lobe>& lobes, const std::v
     if (const std::optional<RadianceFit> segment = fitSegment(lobes, views, best ? &*best : nullptr, light, widthRad, options))
       best = *segment;
   return best;
+}
+
+Outcome<RadianceFit> fitNear(const std::vector<Lobe>& lobes, const std::vector<RadianceView>& views, const RadianceFit& near,
+                             const RadianceFitOptions& options) {
+  require(!lobes.empty() && !views.empty(), "fitNear: no lobe, or no view");
+  const double level = views.front().level, width = widthOf(near.lobe, near.roughness, level);
+  std::map<Lobe, RadianceFit> found;
+  Failure failure{Reason::NotConverged, ""};
+  for (const Lobe lobe : lobes) {
+    Outcome<RadianceFit> f =
+        fitLamp(lobe, views, near.lamp(), lobe == near.lobe ? near.roughness : clampedRoughness(lobe, width, level), options);
+    if (f)
+      found.insert_or_assign(lobe, *std::move(f));
+    else
+      failure = f.failure();
+  }
+  if (found.empty()) return failure;
+  if (near.lamp().isPoint()) return preferred(found);
+  // As searchRadiance, which takes the smallest residual where the lamp has a size.
+  const auto best =
+      std::min_element(found.begin(), found.end(), [](const auto& a, const auto& b) { return isBetter(a.second, b.second); });
+  return best->second;
 }
 
 }  // namespace glint

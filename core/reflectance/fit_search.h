@@ -22,4 +22,10 @@ struct LampChoices {
 Outcome<RadianceFit> searchRadiance(const std::vector<Lobe>& lobes, const std::vector<RadianceView>& views, const Light& light,
                                     double widthRad, const LampChoices& lamps, const RadianceFitOptions& options = {});
 
+/// The same where a fit to nearly the same views is known, as for cameras that were moved a little: every lobe starts from its
+/// lamp with the same width, and the lamp keeps its shape. A solve for each lobe in place of a search.
+/// @param near  lobe, roughness and lamp are read
+Outcome<RadianceFit> fitNear(const std::vector<Lobe>& lobes, const std::vector<RadianceView>& views, const RadianceFit& near,
+                             const RadianceFitOptions& options = {});
+
 }  // namespace glint

@@ -30,31 +30,52 @@ std::optional<T> logOfPointLight(Lobe lobe, const T& roughness, const Eigen::Vec
   return terms<T>(lobe, roughness, n, toLight, toCamera).total() - log(squared);
 }
 
-/// log of a sum of weighted exponentials, relative to the largest so far: terms may differ by more than a double's range.
+/// log of a sum of radiances of point lights, all of one lobe at one point; their exponents may differ by more than a double's
+/// range.
 template <class T>
-class LogSum {
+class RadianceSum {
  public:
-  void add(const T& weight, const T& log) {
+  RadianceSum(Lobe lobe, const T& roughness, const Eigen::Vector3d& normal, const Eigen::Vector3d& toCamera)
+      : phong_(lobe == Lobe::Phong), normal_(normal.cast<T>()), view_(toCamera.cast<T>()), seen_(normal.dot(toCamera) > 0) {
+    if (seen_) at_.emplace(lobe, roughness, normal, toCamera);
+  }
+
+  /// @param offset  L - w P of a point of the lamp. @param power  of 1 / |offset| that it has: 2, or 3 along a tube.
+  void add(double weight, const Eigen::Matrix<T, 3, 1>& offset, int power) {
     using std::exp;
-    if (!top_) {
-      top_ = log;
-      sum_ = weight;
-    } else if (log > *top_ + T(20.0)) {
-      sum_ = sum_ * exp(*top_ - log) + weight;
-      top_ = log;
+    using std::sqrt;
+    const T squared = offset.squaredNorm();
+    if (!seen_ || !(squared > T(0.0)) || !(normal_.dot(offset) > T(0.0))) return;
+    const T distance = sqrt(squared);
+    const Eigen::Matrix<T, 3, 1> toLight = offset / distance;
+    if (phong_ && !(T(2.0) * normal_.dot(toLight) * normal_.dot(view_) - toLight.dot(view_) > T(0.0))) return;
+    const typename LobeAt<T>::Value value = at_->towards(toLight);
+    const T term = T(weight) * value.over / (value.under * (power == 3 ? T(squared * distance) : squared));
+    if (!any_) {
+      any_ = true;
+      top_ = value.exponent;
+      sum_ = term;
+    } else if (!at_->hasExponent()) {
+      sum_ += term;
+    } else if (value.exponent > top_ + T(20.0)) {
+      sum_ = sum_ * exp(top_ - value.exponent) + term;
+      top_ = value.exponent;
     } else {
-      sum_ += weight * exp(log - *top_);
+      sum_ += term * exp(value.exponent - top_);
     }
   }
-  /// Nothing where nothing was added.
-  std::optional<T> value() const {
+  /// Nothing where nothing lights the point.
+  std::optional<T> log() const {
     using std::log;
-    return top_ ? std::optional<T>(*top_ + log(sum_)) : std::nullopt;
+    return any_ ? std::optional<T>(at_->constant() + top_ + log(sum_)) : std::nullopt;
   }
 
  private:
-  std::optional<T> top_;
-  T sum_{0.0};
+  bool phong_;
+  Eigen::Matrix<T, 3, 1> normal_, view_;
+  bool seen_, any_ = false;
+  std::optional<LobeAt<T>> at_;
+  T top_{0.0}, sum_{0.0};
 };
 
 /// The same for a spherical light of radius sqrt(radiusSquared), seen as a disc that faces the point. Points of the disc below
@@ -63,8 +84,6 @@ template <class T>
 std::optional<T> logOfSphereLight(Lobe lobe, const T& roughness, const Eigen::Vector3d& position, const Eigen::Vector3d& n,
                                   const Eigen::Vector3d& toCamera, const Eigen::Matrix<T, 4, 1>& light, const T& radiusSquared,
                                   const DiscRule& rule) {
-  using std::exp;
-  using std::log;
   using std::sqrt;
   if (!(radiusSquared > T(0.0))) return logOfPointLight<T>(lobe, roughness, position, n, toCamera, light);
   const Eigen::Matrix<T, 3, 1> offset = light.template head<3>() - light(3) * position.cast<T>();
@@ -82,13 +101,9 @@ std::optional<T> logOfSphereLight(Lobe lobe, const T& roughness, const Eigen::Ve
   const Eigen::Matrix<T, 3, 1> upwards = offset.cross(u);
   const Eigen::Matrix<T, 3, 1> v = upwards / sqrt(upwards.squaredNorm());
   const T radius = sqrt(radiusSquared) * light(3);
-  LogSum<T> sum;
-  for (const DiscRule::Node& node : rule.nodes) {
-    Eigen::Matrix<T, 4, 1> at = light;
-    at.template head<3>() += radius * (T(node.x) * u + T(node.y) * v);
-    if (const std::optional<T> value = logOfPointLight<T>(lobe, roughness, position, n, toCamera, at)) sum.add(T(node.weight), *value);
-  }
-  return sum.value();
+  RadianceSum<T> sum(lobe, roughness, n, toCamera);
+  for (const DiscRule::Node& node : rule.nodes) sum.add(node.weight, offset + radius * (T(node.x) * u + T(node.y) * v), 2);
+  return sum.log();
 }
 
 /// The same for a thin tube of uniform radiance with the ends l / w -+ halfAxis: the mean along it of a point light's radiance times
@@ -103,16 +118,10 @@ std::optional<T> logOfSegmentLight(Lobe lobe, const T& roughness, const Eigen::V
   // sine = |axis x offset| / (|axis| |offset|), and the cross product is the same all along the tube.
   const T across = halfAxis.cross(offset).squaredNorm() / halfAxis.squaredNorm();
   if (!(across > T(0.0))) return std::nullopt;
-  LogSum<T> sum;
-  for (const QuadratureNode& node : along) {
-    Eigen::Matrix<T, 4, 1> at = light;
-    at.template head<3>() += (T(node.x) * light(3)) * halfAxis;
-    const std::optional<T> value = logOfPointLight<T>(lobe, roughness, position, n, toCamera, at);
-    if (!value) continue;
-    const Eigen::Matrix<T, 3, 1> to = at.template head<3>() - light(3) * position.cast<T>();
-    sum.add(T(0.5 * node.weight), *value - T(0.5) * log(to.squaredNorm()));
-  }
-  const std::optional<T> total = sum.value();
+  const Eigen::Matrix<T, 3, 1> half = light(3) * halfAxis;
+  RadianceSum<T> sum(lobe, roughness, n, toCamera);
+  for (const QuadratureNode& node : along) sum.add(0.5 * node.weight, offset + T(node.x) * half, 3);
+  const std::optional<T> total = sum.log();
   return total ? std::optional<T>(*total + T(0.5) * log(across)) : std::nullopt;
 }
 

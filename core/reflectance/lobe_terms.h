@@ -80,4 +80,54 @@ Terms<T> terms(Lobe lobe, const T& m, const Eigen::Vector3d& n, const Eigen::Mat
   return out;
 }
 
+/// One lobe at one point seen from one side, under many lights: log I = constant() + log(over / under) + exponent. What does not
+/// depend on the light is found once, and a sum of radiances needs an exponential per light and no logarithm. The same terms as
+/// terms().
+template <class T>
+class LobeAt {
+ public:
+  struct Value {
+    T over, under, exponent;
+  };
+  LobeAt(Lobe lobe, const T& roughness, const Eigen::Vector3d& normal, const Eigen::Vector3d& toCamera)
+      : lobe_(lobe),
+        roughness_(roughness),
+        inverse_(T(1.0) / (roughness * roughness)),
+        normal_(normal.cast<T>()),
+        view_(toCamera.cast<T>()) {
+    using std::log;
+    if (lobe_ != Lobe::TorranceSparrow && lobe_ != Lobe::Ggx) return;
+    masking_ = T(1.0) + lambda(tanSquared<T>(normal_, view_));
+    constant_ = log(inverse_) - log(T(4 * M_PI) * normal_.dot(view_));
+  }
+  /// False where the exponent is always 0.
+  bool hasExponent() const { return lobe_ != Lobe::Ggx; }
+  const T& constant() const { return constant_; }
+
+  /// @param toLight  a unit vector on the lit side (phong: R.V > 0), which the caller has checked.
+  Value towards(const Eigen::Matrix<T, 3, 1>& toLight) const {
+    using std::log1p;
+    if (lobe_ == Lobe::Phong)
+      return {T(1.0), T(1.0),
+              T(-0.25) * inverse_ * log1p(tanSquared<T>((T(2.0) * normal_.dot(toLight) * normal_ - toLight).eval(), view_))};
+    const T tan2 = tanSquared<T>(normal_, (toLight + view_).eval());
+    if (lobe_ == Lobe::BlinnPhong) return {T(1.0), T(1.0), -inverse_ * log1p(tan2)};
+    const T secant = T(1.0) + tan2;
+    const T masking = masking_ + lambda(tanSquared<T>(normal_, toLight));
+    if (lobe_ == Lobe::TorranceSparrow) return {secant * secant, masking, -tan2 * inverse_};
+    const T tail = T(1.0) + tan2 * inverse_;
+    return {secant * secant, tail * tail * masking, T(0.0)};
+  }
+
+ private:
+  T lambda(const T& tan2) const {
+    return lobe_ == Lobe::Ggx ? ggxLambda<T>(roughness_, tan2) : beckmannLambda<T>(roughness_, tan2);
+  }
+
+  Lobe lobe_;
+  T roughness_, inverse_;  ///< m, 1 / m^2
+  Eigen::Matrix<T, 3, 1> normal_, view_;
+  T masking_{1.0}, constant_{0.0};
+};
+
 }  // namespace glint::lobe

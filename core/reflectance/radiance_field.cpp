@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/reflectance/light_radiance.h"
 #include "core/surface/occlusion.h"
@@ -13,9 +14,12 @@ namespace {
 
 constexpr double kStencilPx = 0.05;  // of the differences: their truncation moves a maximum by about 1e-4 px, round-off by less
 constexpr double kSettledPx = 1e-7;
+constexpr double kLastMovePx = 3e-4;  // Newton's next move is about the square over the highlight's width: it would be settled
 constexpr double kSamePeakPx = 0.05;
 constexpr int kMaxSteps = 80;
 constexpr double kFirstStridePx = 4, kLongestStridePx = 40;  // of steps uphill where the field is not concave
+// Of the search without derivatives; a maximum at a kink is no better known than by its last steps.
+constexpr double kFirstPatternPx = 4, kLeastPatternPx = 1e-4, kPatternShrink = 0.25;
 constexpr double kAtBorderPx = 1e-3;  // a pattern search ends this close to the border of its domain, or closer
 
 /// How far inside the domain, px; negative outside.
@@ -96,53 +100,60 @@ std::optional<RadiancePeak> RadianceField::climb(Pixel p, double marginPx) const
   };
   std::optional<double> here = value(p);
   if (!here) return std::nullopt;
-  double pattern = 4;  // px, of the search without derivatives
+  double pattern = kFirstPatternPx;
+  int heading = 0;  // eighths of a turn
   double stride = kFirstStridePx;
-  for (int step = 0; step < kMaxSteps && pattern > 1e-4; ++step) {  // px: a maximum at a kink is no better known
+  for (int step = 0; step < kMaxSteps && pattern > kLeastPatternPx; ++step) {
+    // Beside, above, and two corners: central differences of second order want no more.
     std::optional<double> f[3][3];
     bool whole = true;
-    for (int i = -1; i <= 1; ++i)
-      for (int j = -1; j <= 1; ++j) {
-        f[i + 1][j + 1] = i == 0 && j == 0 ? here : value(p + kStencilPx * Pixel(i, j));
-        whole = whole && f[i + 1][j + 1];
-      }
-    bool moved = false;
+    for (const auto& [i, j] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}}) {
+      f[i + 1][j + 1] = value(p + kStencilPx * Pixel(i, j));
+      whole = whole && f[i + 1][j + 1];
+      if (!whole) break;
+    }
+    bool moved = false, last = false;
     if (whole) {
       const Eigen::Vector2d gradient(*f[2][1] - *f[0][1], *f[1][2] - *f[1][0]);
       Eigen::Matrix2d hessian;
       hessian(0, 0) = *f[2][1] - 2 * *here + *f[0][1];
       hessian(1, 1) = *f[1][2] - 2 * *here + *f[1][0];
-      hessian(0, 1) = hessian(1, 0) = (*f[2][2] - *f[2][0] - *f[0][2] + *f[0][0]) / 4;
+      hessian(0, 1) = hessian(1, 0) = (*f[2][2] + *f[0][0] - 2 * *here - hessian(0, 0) - hessian(1, 1)) / 2;
       const bool concave = hessian(0, 0) < 0 && hessian.determinant() > 0;
       Eigen::Vector2d move =
           concave ? Eigen::Vector2d(-0.5 * kStencilPx * hessian.ldlt().solve(gradient))
                   : Eigen::Vector2d(gradient.norm() > 0 ? Eigen::Vector2d(stride * gradient.normalized()) : Pixel(0, 0));
       if (move.norm() > kLongestStridePx) move *= kLongestStridePx / move.norm();
       if (concave && move.norm() < kSettledPx) break;
-      for (double share = 1; share > 1e-3; share *= 0.5) {  // ten halvings: then the model is wrong, not the step too long
+      for (double share = 1; share > 1e-3; share *= 0.25) {  // shorter: then the model is wrong, not the step too long
         const std::optional<double> next = value(p + share * move);
         if (!next || !(*next > *here)) continue;
         p += share * move;
         here = next;
         moved = true;
+        last = concave && share == 1 && move.norm() < kLastMovePx;
         stride = std::min(share == 1 ? 2 * stride : kFirstStridePx, kLongestStridePx);
         break;
       }
       // Uphill by less than the values' own round-off: this is the top.
       if (!moved && concave && move.norm() < 1e-3) break;
     }
+    if (last) break;
     if (moved) continue;
-    // The field ends in the stencil, or has a kink (flat facets): the best of eight neighbours, closer and closer.
-    for (; !moved && pattern > 1e-4; pattern *= moved ? 1 : 0.5)
-      for (int k = 0; k < 8; ++k) {
-        const double a = k * M_PI / 4;
+    // The field ends in the stencil, or has a kink (flat facets): to better neighbours, closer and closer.
+    for (; !moved && pattern > kLeastPatternPx; pattern *= moved ? 1 : kPatternShrink)
+      for (int tried = 0; tried < 8 && step < kMaxSteps; ++tried) {
+        // The way that led on first, then the ways beside it.
+        const double a = (heading + (tried % 2 ? 1 : -1) * ((tried + 1) / 2)) * M_PI / 4;
         const Pixel q = p + pattern * Pixel(std::cos(a), std::sin(a));
         const std::optional<double> next = value(q);
         if (!next || !(*next > *here)) continue;
         p = q;
         here = next;
         moved = true;
-        break;
+        heading += (tried % 2 ? 1 : -1) * ((tried + 1) / 2);
+        tried = -1;
+        ++step;
       }
   }
   const std::optional<SurfacePoint> point = visible(p);
@@ -183,7 +194,32 @@ double RadianceField::fallOfLobe(const SurfacePoint& p) const {
   return here && top ? top->lobe - here->lobe : std::numeric_limits<double>::infinity();
 }
 
+CoarseScan coarseScan(const Surface& surface, const Camera& camera, double stepPx) {
+  CoarseScan scan;
+  std::vector<Ray> rays;
+  const int columns = std::max(1, int(std::ceil((camera.width - 1) / stepPx)));
+  const int rows = std::max(1, int(std::ceil((camera.height - 1) / stepPx)));
+  for (int y = 0; y <= rows; ++y)
+    for (int x = 0; x <= columns; ++x) {
+      scan.pixels.emplace_back(double(x) / columns * (camera.width - 1), double(y) / rows * (camera.height - 1));
+      rays.push_back(camera.ray(scan.pixels.back()));
+    }
+  scan.hits = surface.approximateHits(rays);
+  const Eigen::Vector3d eye = camera.centreInWorld();
+  for (std::optional<SurfacePoint>& hit : scan.hits)
+    if (hit) hit = facing(*hit, eye);
+  return scan;
+}
+
 std::vector<RadiancePeak> RadianceField::peaks(const std::vector<Pixel>& starts, double scanStepPx) const {
+  return scanStepPx > 0 ? peaks(starts, coarseScan(surface_, camera_, scanStepPx)) : peaksFrom(starts, nullptr);
+}
+
+std::vector<RadiancePeak> RadianceField::peaks(const std::vector<Pixel>& starts, const CoarseScan& scan) const {
+  return peaksFrom(starts, &scan);
+}
+
+std::vector<RadiancePeak> RadianceField::peaksFrom(const std::vector<Pixel>& starts, const CoarseScan* scan) const {
   std::vector<RadiancePeak> found;
   const auto add = [&](const Pixel& start, double marginPx) {
     const std::optional<RadiancePeak> peak = climb(start, marginPx);
@@ -194,28 +230,18 @@ std::vector<RadiancePeak> RadianceField::peaks(const std::vector<Pixel>& starts,
   };
   for (const Pixel& s : starts)
     if (depthInImage(s, camera_, 0) >= 0) add(s, 0);
-  if (scanStepPx > 0) {
-    std::vector<Pixel> pixels;
-    std::vector<Ray> rays;
-    const int columns = std::max(1, int(std::ceil((camera_.width - 1) / scanStepPx)));
-    const int rows = std::max(1, int(std::ceil((camera_.height - 1) / scanStepPx)));
-    for (int y = 0; y <= rows; ++y)
-      for (int x = 0; x <= columns; ++x) {
-        pixels.emplace_back(double(x) / columns * (camera_.width - 1), double(y) / rows * (camera_.height - 1));
-        rays.push_back(camera_.ray(pixels.back()));
-      }
-    const std::vector<std::optional<SurfacePoint>> hits = surface_.approximateHits(rays);
+  if (scan) {
     std::optional<std::size_t> best;
     double brightest = -std::numeric_limits<double>::infinity();
     for (const RadiancePeak& p : found) brightest = std::max(brightest, p.logRadiance);
-    for (std::size_t i = 0; i < hits.size(); ++i) {
-      if (!hits[i]) continue;
-      const std::optional<double> v = at(facing(*hits[i], eye_), brightest);
+    for (std::size_t i = 0; i < scan->hits.size(); ++i) {
+      if (!scan->hits[i]) continue;
+      const std::optional<double> v = at(*scan->hits[i], brightest);
       if (!v || *v <= brightest) continue;
       brightest = *v;
       best = i;
     }
-    if (best) add(pixels[*best], 0);
+    if (best) add(scan->pixels[*best], 0);
   }
   const auto brighter = [](const RadiancePeak& a, const RadiancePeak& b) { return a.logRadiance > b.logRadiance; };
   std::stable_sort(found.begin(), found.end(), brighter);

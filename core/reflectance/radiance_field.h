@@ -22,6 +22,13 @@ struct RadiancePeak {
   bool cut = false;  ///< the radiance still rises where the domain of the search ends: the true maximum lies beyond
 };
 
+/// What a camera sees at the pixels of a coarse grid over its image: found once for fields of any lamp and lobe.
+struct CoarseScan {
+  std::vector<Pixel> pixels;
+  std::vector<std::optional<SurfacePoint>> hits;  ///< approximate; normals face the camera
+};
+CoarseScan coarseScan(const Surface& surface, const Camera& camera, double stepPx);
+
 /// log I of one lobe under one lamp over the visible surface, up to a constant of the lamp (method.md section 7):
 /// lobe, masking, cosines and falloff. Undefined off the surface, where the light is below the horizon, and in shadow.
 class RadianceField {
@@ -47,6 +54,8 @@ class RadianceField {
   /// brightest first, each once. Where the brightest is only the border of the image, or the image holds none, it is followed
   /// beyond, up to kPeakMargin of the image's larger side.
   std::vector<RadiancePeak> peaks(const std::vector<Pixel>& starts, double scanStepPx) const;
+  /// The same with a scan that is known already, of this surface and camera.
+  std::vector<RadiancePeak> peaks(const std::vector<Pixel>& starts, const CoarseScan& scan) const;
 
   /// How far the lobe itself has fallen at a point below its value in the mirror direction, in log I; the lamp's point nearest to
   /// that direction counts. A frame whose maximum lies far down the lobe shows no highlight.
@@ -56,6 +65,7 @@ class RadianceField {
   const lobe::LampRule& rule() const { return rule_; }
 
  private:
+  std::vector<RadiancePeak> peaksFrom(const std::vector<Pixel>& starts, const CoarseScan* scan) const;
   std::optional<SurfacePoint> visible(const Pixel& p) const;
   double largestSizeRatio() const;
   bool hidden(const SurfacePoint& visible, double distance) const;

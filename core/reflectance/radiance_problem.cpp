@@ -35,6 +35,7 @@ constexpr double kLeastRadiusSquared = 1e-10;  // normalised: keeps the square r
 constexpr double kLargestSphere = 2.5, kLongestSegment = 12;
 constexpr int kSphereIterations = 25;   // a size that is there is found in a dozen; a wrong lobe creeps along a valley
 constexpr int kSegmentIterations = 60;  // three unknowns more, from starts that are far off
+constexpr int kFirstRoundIterations = 30;  // fits that explain their contours need 3, at most 20; others creep along a valley
 constexpr double kRatioReserve = 1.3;   // a segment may grow within a round
 
 /// The maxima follow the light before every evaluation.
@@ -93,8 +94,12 @@ double RadianceProblem::robust(double r) const {
 }
 
 bool RadianceProblem::explains(const Attempt& a, double share) const {
+  return a.converged && !tooWide(a.state) && excess(a, share) <= 1;
+}
+
+double RadianceProblem::excess(const Attempt& a, double share) const {
   const double farPx = std::max(options_.robustPx, share * radiusPx_), noise = kNoiseShare * a.noisePx;
-  return a.converged && !tooWide(a.state) && a.cost <= (farPx * farPx + robust(noise)) * double(points_.size());
+  return a.cost / ((farPx * farPx + robust(noise)) * double(points_.size()));
 }
 
 bool RadianceProblem::leavesNoiseOnly(const Attempt& a) const {
@@ -115,8 +120,12 @@ void RadianceProblem::updatePeaks(const State& state, bool scan) {
   const Lamp lamp = inWorld(state);
   for (FramePeak& f : frames_) {
     const RadianceField field(*f.surface, f.camera, lobe_, roughness, lamp, rule_);
-    std::vector<RadiancePeak> peaks = field.peaks(f.starts, scan ? kScanStepPx : 0);
-    if (peaks.empty() && !scan) peaks = field.peaks(f.starts, kScanStepPx);
+    const auto scanned = [&] {
+      if (!f.scan) f.scan = coarseScan(*f.surface, f.camera, kScanStepPx);
+      return field.peaks(f.starts, *f.scan);
+    };
+    std::vector<RadiancePeak> peaks = scan ? scanned() : field.peaks(f.starts, 0);
+    if (peaks.empty() && !scan) peaks = scanned();
     if (peaks.empty()) {
       f.at.reset();
       continue;
@@ -294,21 +303,30 @@ Attempt RadianceProblem::solve(const State& start) {
       if (shape == LampShape::Sphere) problem.SetParameterLowerBound(at.data() + kRadiusSquared, 0, kLeastRadiusSquared);
       // The frame's maximum is searched again at every step: no unknown settles below the 1e-11 or so to which it is found. The cost: of a sum
       // of squares over hundreds of points, thousandths of a standard deviation.
-      solution = solveDense(problem, most - a.iterations, 1e-11, 1e-10);
+      solution = solveDense(problem, round == 0 ? std::min(most, kFirstRoundIterations) : most - a.iterations, 1e-11, 1e-10);
     }
     a.iterations += solution.iterations;
     if (!solution.usable || !at.allFinite()) return a;
     a.converged = solution.converged || solution.cost <= kExactPx * kExactPx * double(points_.size()) ||
                   (at - before).norm() < kNearlySettled;
     if (a.converged && (at - before).norm() < kSettled) break;
+    if (round == 0 && !a.converged && a.iterations == kFirstRoundIterations) {
+      if (!judge(a)) return Attempt{};
+      if (excess(a, kPoorShare) > kHopeless) return a;
+    }
   }
+  return judge(a) ? a : Attempt{};
+}
+
+/// Cost and noise of a state with its own maxima, feet and weights; false where its lamp is too large.
+bool RadianceProblem::judge(Attempt& a) {
   chooseRule(a.state);
-  if (tooLarge(a.state)) return Attempt{};
+  if (tooLarge(a.state)) return false;
   updatePeaks(a.state, true);
   relinearise(a.state, true);
   a.cost = robustCost(a.state);
   a.noisePx = noiseOf(a.state);
-  return a;
+  return true;
 }
 
 RadianceProblem::Probe RadianceProblem::probe(const State& state, const std::vector<ProbeColumn>& columns) {

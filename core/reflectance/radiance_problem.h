@@ -13,6 +13,13 @@
 /// The least squares problem behind fitRadiance; internal to core/reflectance.
 namespace glint::lobe {
 
+/// Of the contours' radius: a wrong lobe leaves less, a wrong start leaves more.
+inline constexpr double kPoorShare = 0.1;
+/// A start or a long first round that leaves so many times what a poor fit may leave leads nowhere. Of starts that led to an
+/// explanation the best left 0.3 at most (wide lobes, grazing views, tubes); those of mirrored images leave 8 to 30, in pictures
+/// 48 px wide 1.2 to 1.8.
+inline constexpr double kHopeless = 1.5;
+
 /// Entries of Parameters.
 inline constexpr int kLogRoughness = 4, kRadiusSquared = 5, kHalfAxis = 6;
 /// L = (l, w), |L| = 1; log m; the squared radius of a sphere; the half axis of a segment. In normalised coordinates.
@@ -54,6 +61,8 @@ class RadianceProblem {
 
   /// Converged, with what remains below `share` of the radius, or the robust scale, once the noise is allowed for.
   bool explains(const Attempt& a, double share) const;
+  /// What remains over what explains() would allow at most, whether it converged or not.
+  double excess(const Attempt& a, double share) const;
   /// Nothing that neighbours on a contour share remains.
   bool leavesNoiseOnly(const Attempt& a) const;
   /// Plausible as a lobe: one that falls to half at 70 degrees and more is no highlight.
@@ -89,6 +98,7 @@ class RadianceProblem {
   double residual(const Evidence& e, const State& state) const;
   void chooseRule(const State& state);
   bool tooLarge(const State& state) const;
+  bool judge(Attempt& a);
   void settle(const State& state);
   void relinearise(const State& state, bool moveFeet);
   void unbias(const State& state);

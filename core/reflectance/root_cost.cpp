@@ -5,6 +5,7 @@
 #include <ceres/jet.h>
 
 #include <cmath>
+#include <type_traits>
 
 #include "core/reflectance/light_radiance.h"
 
@@ -22,20 +23,37 @@ namespace {
 template <LampShape kShape>
 using DualOf = ceres::Jet<double, 5 + shapeSize(kShape)>;
 
-/// log I at a point with its derivatives. @param parameters  L (4), log m (1), then the shape's own.
-template <LampShape kShape>
-GLINT_FLATTEN std::optional<DualOf<kShape>> logOfDual(const RadianceProblem& problem, const Seen& s,
-                                                      double const* const* parameters) {
-  using Dual = DualOf<kShape>;
-  LampIn<Dual> lamp;
+double valueOf(double x) { return x; }
+template <class T, int kSize>
+T valueOf(const ceres::Jet<T, kSize>& x) {
+  return x.a;
+}
+bool isFinite(double x) { return std::isfinite(x); }
+template <class T, int kSize>
+bool isFinite(const ceres::Jet<T, kSize>& x) {
+  return std::isfinite(x.a) && x.v.allFinite();
+}
+
+/// log I at a point, with its derivatives where the scalar carries them. @param parameters  L (4), log m (1), then the shape's
+/// own.
+template <LampShape kShape, class T>
+GLINT_FLATTEN std::optional<T> logOf(const RadianceProblem& problem, const Seen& s, double const* const* parameters) {
+  using std::exp;
+  const auto unknown = [&](double value, int i) {
+    if constexpr (std::is_same_v<T, double>)
+      return value;
+    else
+      return T(value, i);
+  };
+  LampIn<T> lamp;
   lamp.shape = kShape;
-  for (int i = 0; i < 4; ++i) lamp.light(i) = Dual(parameters[0][i], i);
-  const Dual roughness = exp(Dual(parameters[1][0], 4));
-  if (!(roughness.a > 0) || !std::isfinite(roughness.a)) return std::nullopt;
-  if constexpr (kShape == LampShape::Sphere) lamp.radiusSquared = Dual(parameters[2][0], 5);
+  for (int i = 0; i < 4; ++i) lamp.light(i) = unknown(parameters[0][i], i);
+  const T roughness = exp(unknown(parameters[1][0], 4));
+  if (!(valueOf(roughness) > 0) || !std::isfinite(valueOf(roughness))) return std::nullopt;
+  if constexpr (kShape == LampShape::Sphere) lamp.radiusSquared = unknown(parameters[2][0], 5);
   if constexpr (kShape == LampShape::Segment)
-    for (int i = 0; i < 3; ++i) lamp.halfAxis(i) = Dual(parameters[2][i], 5 + i);
-  return logOfLamp<Dual>(problem.lobe(), roughness, s.position, s.normal, s.toCamera, lamp, problem.rule());
+    for (int i = 0; i < 3; ++i) lamp.halfAxis(i) = unknown(parameters[2][i], 5 + i);
+  return logOfLamp<T>(problem.lobe(), roughness, s.position, s.normal, s.toCamera, lamp, problem.rule());
 }
 
 /// (g - sqrt(-log q)) in pixels, with its derivatives by dual numbers; g at the frame's peak is the problem's, of the same parameters.
@@ -54,26 +72,31 @@ class RootCost final : public ceres::CostFunction {
   }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    const std::optional<Dual> residual = residualOf(parameters);
+    if (!jacobians) {
+      const std::optional<double> plain = residualOf<double>(parameters, [](const LogAndSlopes& peak) { return peak.value; });
+      residuals[0] = plain.value_or(kUnlitPx);
+      return true;
+    }
+    const std::optional<Dual> residual =
+        residualOf<Dual>(parameters, [](const LogAndSlopes& peak) { return Dual(peak.value, peak.slopes.head<5 + kOwn>()); });
     // A light that does not reach the point is far off: a large residual that pulls nowhere, so that the others decide.
     residuals[0] = residual ? residual->a : kUnlitPx;
     constexpr int kFirst[] = {0, 4, 5}, kSize[] = {4, 1, kOwn};
-    for (int b = 0; jacobians && b < kBlocks; ++b)
+    for (int b = 0; b < kBlocks; ++b)
       for (int i = 0; jacobians[b] && i < kSize[b]; ++i) jacobians[b][i] = residual ? residual->v(kFirst[b] + i) : 0;
     return true;
   }
 
  private:
-  std::optional<Dual> residualOf(double const* const* parameters) const {
+  template <class T, class Top>
+  std::optional<T> residualOf(double const* const* parameters, const Top& topOf) const {
     const std::optional<LogAndSlopes>& peak = problem_.frame(e_.frame).log;
     if (!peak) return std::nullopt;
-    const std::optional<Dual> here = logOfDual<kShape>(problem_, e_.foot.at, parameters);
+    const std::optional<T> here = logOf<kShape, T>(problem_, e_.foot.at, parameters);
     if (!here) return std::nullopt;
-    const Dual top(peak->value, peak->slopes.head<5 + kOwn>());
-    const Dual residual =
-        (rootOf<Dual>(top - *here, e_.level) - Dual(e_.level)) * Dual(e_.pixelsPerUnit) + Dual(e_.offsetPx - e_.biasPx);
-    if (!std::isfinite(residual.a) || !residual.v.allFinite()) return std::nullopt;
-    return residual;
+    const T top = topOf(*peak);
+    const T residual = (rootOf<T>(top - *here, e_.level) - T(e_.level)) * T(e_.pixelsPerUnit) + T(e_.offsetPx - e_.biasPx);
+    return isFinite(residual) ? std::optional<T>(residual) : std::nullopt;
   }
 
   const RadianceProblem& problem_;
@@ -82,8 +105,8 @@ class RootCost final : public ceres::CostFunction {
 
 template <LampShape kShape>
 std::optional<LogAndSlopes> logAndSlopesOf(const RadianceProblem& problem, const Seen& s, double const* const* parameters) {
-  const auto log = logOfDual<kShape>(problem, s, parameters);
-  if (!log || !std::isfinite(log->a) || !log->v.allFinite()) return std::nullopt;
+  const auto log = logOf<kShape, DualOf<kShape>>(problem, s, parameters);
+  if (!log || !isFinite(*log)) return std::nullopt;
   LogAndSlopes result;
   result.value = log->a;
   result.slopes.template head<5 + shapeSize(kShape)>() = log->v;

@@ -18,6 +18,8 @@ constexpr std::size_t kLeastFrames = 3;  // that a comparison of left-out ones n
 constexpr int kAxisScreenPoints = 16, kAxisScreenIterations = 20;
 constexpr std::size_t kPromisingAxes = 3;
 constexpr int kLeftOutPoints = 24;  // a view: enough to compare two models
+constexpr double kSamePlace =
+    1e-2;  // of a unit vector L, log m and the half axis over the distance: far less than a basin is wide
 constexpr double kStartLength = 0.1;  // half the lamp's length over its distance
 // Where a lamp's length takes a part of the width that is seen, the lobe is narrower than the contours; both are tried.
 constexpr std::array<double, 2> kStartWidths{0.7, 0.35};
@@ -26,10 +28,18 @@ struct Start {
   Lamp lamp;
   double roughness = 0;
   double cost = 0;  ///< mean robust square per point after a short fit, px^2
+  lobe::Parameters place;  ///< normalised
+
+  /// Both lead to the same minimum; a half axis has no sense.
+  bool isNear(const Start& other) const {
+    lobe::Parameters turned = other.place;
+    turned.tail<3>() *= -1;
+    return std::min((place - other.place).norm(), (place - turned).norm()) < kSamePlace;
+  }
 };
 
-/// Five axes across the direction to the lamp and towards it, and the one that the point's residuals promise; after short fits, best
-/// first.
+/// Five axes across the direction to the lamp and towards it, and the one that the point's residuals promise; after short fits,
+/// best first, each minimum once. None that leads nowhere.
 std::vector<Start> screened(Lobe lobe, const std::vector<RadianceView>& views, const Light& light, double widthRad,
                             const std::optional<Eigen::Vector3d>& promised, RadianceFitOptions options) {
   options.pointsPerView = std::min(options.pointsPerView, kAxisScreenPoints);
@@ -56,11 +66,15 @@ std::vector<Start> screened(Lobe lobe, const std::vector<RadianceView>& views, c
       from.at.tail<3>() = halfAxis;
       const lobe::Attempt a = problem.solve(from);
       if (!std::isfinite(a.cost) || !a.state.at.allFinite() || lobe::RadianceProblem::tooWide(a.state)) continue;
-      starts.push_back({problem.inWorld(a.state), a.state.roughness(), a.cost / problem.points()});
+      if (problem.excess(a, lobe::kPoorShare) > lobe::kHopeless) continue;
+      starts.push_back({problem.inWorld(a.state), a.state.roughness(), a.cost / problem.points(), a.state.at});
     }
   std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.cost < b.cost; });
   if (starts.size() > kPromisingAxes) starts.resize(kPromisingAxes);
-  return starts;
+  std::vector<Start> different;
+  for (const Start& s : starts)
+    if (std::none_of(different.begin(), different.end(), [&](const Start& d) { return d.isNear(s); })) different.push_back(s);
+  return different;
 }
 
 /// RMS residual of the views of every place under a fit to the others, px. Nothing where one of these fits fails.

@@ -206,6 +206,30 @@ void conclude(const Scene& scene, ConventionReport& report) {
   if (scene.frames.size() == 1) report.findings.push_back("only one frame: nothing can be held out");
 }
 
+/// Triangles of the surfaces: meshes of files for as long as the report takes; those that stand for analytic surfaces are soon
+/// made again, so that a scene of thousands of them, a line of JSON each, does not take a GB.
+class Triangles {
+ public:
+  explicit Triangles(const Scene& scene) : scene_(scene) {}
+  /// Valid until the next question.
+  const TriangleMesh& of(const std::string& id) {
+    const SurfaceSource& source = scene_.surfaces.at(id);
+    std::map<std::string, TriangleMesh>& known = source.mesh ? read_ : made_;
+    const auto found = known.find(id);
+    if (found != known.end()) return found->second;
+    if (source.mesh) return known[id] = readMesh(*source.mesh);
+    if (known.size() >= kMostMade) known.clear();
+    const std::shared_ptr<const Surface> surface = makeAnalytic(*source.analytic);
+    return known[id] = surface->tessellate(regionOfInterest(scene_, surface->bounds()), kSteps);
+  }
+
+ private:
+  static constexpr int kSteps = 64;             // along each side: 4,225 vertices, 300 kB
+  static constexpr std::size_t kMostMade = 64;  // 20 MB; scenes have a few surfaces, and frames of one follow each other
+  const Scene& scene_;
+  std::map<std::string, TriangleMesh> read_, made_;
+};
+
 }  // namespace
 
 bool ConventionReport::anyFrameSeesSurface() const {
@@ -229,21 +253,14 @@ ConventionReport conventionReport(const Scene& scene, const ProgressFn& progress
     }
   report.warnings = scene.warnings;
   report.lights = static_cast<int>(scene.lights.size());
-  std::map<std::string, TriangleMesh> meshes;
+  Triangles triangles(scene);
   int done = 0;
   for (const auto& [id, source] : scene.surfaces) {
     if (!glint::report(progress, {"surface", done++, static_cast<int>(scene.surfaces.size())})) throw Stopped{};
     ConventionReport::SurfaceFacts facts;
     facts.id = id;
-    TriangleMesh& mesh = meshes[id];
-    if (source.mesh) {
-      facts.kind = "mesh";
-      mesh = readMesh(*source.mesh);
-    } else {
-      facts.kind = "analytic " + source.analytic->type;
-      const std::shared_ptr<const Surface> surface = makeAnalytic(*source.analytic);
-      mesh = surface->tessellate(regionOfInterest(scene, surface->bounds()), 64);
-    }
+    facts.kind = source.mesh ? "mesh" : "analytic " + source.analytic->type;
+    const TriangleMesh& mesh = triangles.of(id);
     Eigen::AlignedBox3d box;
     for (const Eigen::Vector3d& v : mesh.vertices) box.extend(v);
     if (!box.isEmpty()) {
@@ -272,7 +289,7 @@ ConventionReport conventionReport(const Scene& scene, const ProgressFn& progress
     if (!frame.surface.empty()) {
       for (const auto& s : report.surfaces)
         if (s.id == frame.surface) facts.distance = (frame.camera.centreInWorld() - (s.lower + s.upper) / 2).norm();
-      compareVertices(meshes.at(frame.surface), frame, usable, facts);
+      compareVertices(triangles.of(frame.surface), frame, usable, facts);
     } else if (usable) {
       facts.seesSurface = std::any_of(usable->data.begin(), usable->data.end(), [](float v) { return v > 0; });
     }

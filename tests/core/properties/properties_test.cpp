@@ -11,6 +11,7 @@
 #include <set>
 
 #include "tests/core/properties/answers.h"
+#include "tests/sanitizers/cases.h"
 
 namespace glint {
 namespace {
@@ -23,9 +24,12 @@ int numberFrom(const char* variable, int otherwise) {
   return text && *text ? std::atoi(text) : otherwise;
 }
 
+constexpr int kUsualScenes = 10, kSanitizedScenes = 1;
+
 /// The scenes of this run: GLINT_PROPERTY_SCENES of them (nightly: more) from number GLINT_PROPERTY_FIRST on; the seed of number
 /// 0 is GLINT_PROPERTY_SEED. One scene alone shows what a law finds there.
-const int kScenes = numberFrom("GLINT_PROPERTY_SCENES", 10), kFirst = numberFrom("GLINT_PROPERTY_FIRST", 0);
+const int kScenes = numberFrom("GLINT_PROPERTY_SCENES", kSanitized ? kSanitizedScenes : kUsualScenes),
+          kFirst = numberFrom("GLINT_PROPERTY_FIRST", 0);
 const unsigned kSeed = static_cast<unsigned>(numberFrom("GLINT_PROPERTY_SEED", 1800));
 
 /// Numbers of this run's scenes; by default also scenes that a law once found something in.
@@ -97,8 +101,8 @@ constexpr double kStoppedLobe = 1e-7, kStoppedLobePx = 641 * kStoppedLobe;
 constexpr Tolerances kMovedLobe{kStoppedLobe,   kStoppedLobe,   kStoppedLobe,   kStoppedLobe,       kStoppedShape,
                                 kStoppedLobePx, kStoppedLobePx, kStoppedLobePx, 100 * kStoppedLobe, kStoppedLobe};
 
-/// Prints the worst of every quantity and checks it. Every model must have been compared. @param ofLobe  the tolerances of
-/// `reflectance`
+/// Prints the worst of every quantity and checks it. Every model must have been compared; a few scenes may all refuse one. @param
+/// ofLobe  the tolerances of `reflectance`
 void expectWithin(const Tolerances& tolerances, const Tolerances& ofLobe, const Differences& d, const std::string& law,
                   const std::vector<std::string>& models) {
   std::cout << law << "\n";
@@ -106,8 +110,10 @@ void expectWithin(const Tolerances& tolerances, const Tolerances& ofLobe, const 
   for (const std::string& model : models) {
     const auto count = [&](const std::map<std::string, int>& counts) { return counts.count(model) ? counts.at(model) : 0; };
     std::cout << "  " << model << ": " << count(d.fits) << " fits, " << count(d.contours) << " contours\n";
-    EXPECT_GT(count(d.fits), 0) << law << ": " << model << " was never compared";
-    EXPECT_GT(count(d.contours), 0) << law << ": " << model << " was never compared";
+    if (kScenes >= kUsualScenes) {
+      EXPECT_GT(count(d.fits), 0) << law << ": " << model << " was never compared";
+      EXPECT_GT(count(d.contours), 0) << law << ": " << model << " was never compared";
+    }
     compared += count(d.fits) + count(d.contours);
   }
   for (const auto& [at, worst] : d.worst) {

@@ -17,9 +17,6 @@ namespace {
 
 using namespace test;
 
-/// Contours are chords within 2e-3 px of the level set (their sagitta); on highlights some 50 px wide that leaves a few 1e-5 of
-/// the roughness, and of the light's position over its distance.
-constexpr double kRecovered = 3e-4;
 constexpr double kRoughness = 0.09;
 
 const std::vector<Lobe> kLobes{Lobe::TorranceSparrow, Lobe::Ggx, Lobe::BlinnPhong, Lobe::Phong};
@@ -29,11 +26,6 @@ Light nearby(const RadianceScene& s) {
   const Eigen::Vector3d truth = *s.geometry.light.position;
   return Light::at(truth +
                    truth.norm() * (0.1 * truth.normalized() + 0.3 * s.material.roughness * Eigen::Vector3d(0.7, 0.4, -0.6)));
-}
-
-double lightError(const RadianceFit& fit, const RadianceScene& s) {
-  const Eigen::Vector3d truth = *s.geometry.light.position;
-  return (fit.light.position() - truth).norm() / truth.norm();
 }
 
 TEST(LobeTerms, DerivativesAgreeWithDifferences) {

@@ -34,7 +34,7 @@ double denseSegment(Lobe lobe, double m, const Eigen::Vector3d& n, const Eigen::
 TEST(SegmentLight, AgreesWithADenseQuadrature) {
   const double m = 0.03;
   const Eigen::Vector3d n = Eigen::Vector3d::UnitZ();
-  for (const Lobe lobe : {Lobe::TorranceSparrow, Lobe::Ggx})
+  for (const Lobe lobe : kLampLobes)
     for (const double ratio : {0.1, 0.4, 0.9, 2.5, 6.0, 10.0})
       for (const double along : {0.0, 1.0, 1.4})
         for (const Eigen::Vector3d& axis : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0.6, 0.3, 0.7)}) {

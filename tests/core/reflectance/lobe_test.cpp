@@ -135,7 +135,7 @@ double denseLog(Lobe lobe, double m, const Eigen::Vector3d& n, const Eigen::Vect
 TEST(SphereLight, AgreesWithADenseQuadrature) {
   const double m = 0.03;
   const Eigen::Vector3d n = Eigen::Vector3d::UnitZ();
-  for (const Lobe lobe : {Lobe::TorranceSparrow, Lobe::Ggx})
+  for (const Lobe lobe : {Lobe::TorranceSparrow, Lobe::Ggx, Lobe::BlinnPhong, Lobe::Phong})
     for (const double slant : {0.2, 1.1})
       for (const double ratio : {0.1, 0.3, 0.8, 1.7, 3.0, 6.0}) {
         const Eigen::Vector3d v(std::sin(slant), 0, std::cos(slant));

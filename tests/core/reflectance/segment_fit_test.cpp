@@ -16,7 +16,6 @@ namespace {
 
 using namespace test;
 
-const std::vector<Lobe> kMicrofacets{Lobe::TorranceSparrow, Lobe::Ggx};
 constexpr double kSegmentRoughness = 0.08, kHalfLength = 0.3;
 const Eigen::Vector3d kMiddle = 2 * Eigen::Vector3d(1.2, -1.0, 2.2).normalized();
 const Eigen::Vector3d kAxis = Eigen::Vector3d(0.6, 0.8, 0);
