@@ -184,7 +184,9 @@ void refinedWithBundle(benchmark::State& state, bool mesh) {
   for (TrainingView& v : views) v.highlight.contour = Polyline{resample(v.highlight.contour, 72), true};
   const Settings settings;
   for (auto _ : state) {
-    FitInput input{views, *estimateLight(views, settings), {}, {}};
+    FitInput input;
+    input.views = views;
+    input.light = *estimateLight(views, settings);
     for (TrainingView& v : input.views) addCanonicalContour(v, input.light->light, settings);
     benchmark::DoNotOptimize(modelByName("canonical").fit(input, settings));
   }

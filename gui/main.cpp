@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/limits.h"
 #include "core/base/outcome.h"
 #include "core/base/task_memory.h"
 #include "core/scene/outputs.h"
@@ -62,6 +63,7 @@ int run(int argc, char** argv) {
   const CommandLine command = parseCommandLine(arguments);
   if (command.help) return std::fputs(helpText().toUtf8().constData(), stdout) < 0;
   if (command.version) return std::puts("glint-inspector " GLINT_VERSION) < 0;
+  for (const QString& limit : command.limits) glint::setLimit(limit.toStdString());
   if (!platformDraws(argc, argv))
     throw glint::InputError("", "QT_QPA_PLATFORM",
                             "this Qt platform cannot draw 3D; use a display, or xvfb-run with QT_QPA_PLATFORM=xcb (see --help)");

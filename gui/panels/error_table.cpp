@@ -348,7 +348,7 @@ void ErrorTable::selectFromTable() {
   if (selecting_ || !current.isValid()) return;
   const int row = proxy_->mapToSource(current).row();
   selecting_ = true;
-  document_.select({model_->frameOf(row), model_->modelOf(row), model_->highlightOf(row)});
+  document_.select({model_->frameOf(row), model_->modelOf(row), model_->highlightOf(row)}, steps_.gesture(document_));
   selecting_ = false;
 }
 

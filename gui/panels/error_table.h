@@ -3,7 +3,7 @@
 
 #include <QWidget>
 
-#include "gui/document/document.h"
+#include "gui/document/step_run.h"
 
 class QComboBox;
 class QLabel;
@@ -60,6 +60,7 @@ class ErrorTable : public QWidget {
   QLabel* count_;
   QToolButton* warnings_ = nullptr;
   QLabel* warningTexts_ = nullptr;
+  StepRun steps_;           ///< from row to row
   bool selecting_ = false;  ///< the table itself caused the change that it hears of
 };
 

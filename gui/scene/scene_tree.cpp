@@ -233,7 +233,7 @@ void SceneTree::select(const SceneObject& o) {
       break;
   }
   selecting_ = true;
-  if (s != document_.selection()) document_.select(s);
+  if (s != document_.selection()) document_.select(s, steps_.gesture(document_));
   selecting_ = false;
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "gui/base/actions.h"
-#include "gui/document/document.h"
+#include "gui/document/step_run.h"
 #include "gui/scene/scene_tree_model.h"
 
 class QLineEdit;
@@ -63,6 +63,7 @@ class SceneTree : public QWidget {
   QTreeView* tree_;
   QLineEdit* search_;
   viz::Selection followed_;  ///< the last selection that the tree has shown
+  StepRun steps_;            ///< from row to row
   bool selecting_ = false;   ///< by this tree
   int leaving_ = 0;          ///< rows go: what then becomes the current one was not chosen by anybody
   bool ticked_ = false;      ///< the double click that comes was on a tick

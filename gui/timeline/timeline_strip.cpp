@@ -339,11 +339,7 @@ void TimelineStrip::wheelEvent(QWheelEvent* e) {
 void TimelineStrip::step(int by) {
   const int n = document_.frameCount();
   if (n <= 0) return;
-  // A key that is held down, and steps in quick succession, are one intention: one undo step.
-  constexpr qint64 kRunMs = 600;
-  if (!stepped_.isValid() || stepped_.elapsed() > kRunMs) stepGesture_ = document_.newGesture();
-  stepped_.start();
-  document_.selectFrame(std::clamp(document_.selection().frame + by, 0, n - 1), stepGesture_);
+  document_.selectFrame(std::clamp(document_.selection().frame + by, 0, n - 1), steps_.gesture(document_));
 }
 
 void TimelineStrip::mousePressEvent(QMouseEvent* e) {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <QElapsedTimer>
 #include <QMap>
 #include <QPixmap>
 #include <QWidget>
 
-#include "gui/document/document.h"
+#include "gui/document/step_run.h"
 #include "gui/timeline/thumbnails.h"
 #include "viz/timeline_data.h"
 
@@ -103,8 +102,7 @@ class TimelineStrip : public QWidget {
   QPixmap background_;  ///< null = to be painted
   int backgroundsPainted_ = 0;
   int gesture_ = 0;
-  QElapsedTimer stepped_;  ///< since the last step by a key or a button
-  int stepGesture_ = 0;    ///< of the run of steps that goes on
+  StepRun steps_;  ///< by a key or a button
   bool scrubbing_ = false;
 };
 

@@ -3,6 +3,7 @@
 
 #include <QRegularExpression>
 
+#include "core/base/limits.h"
 #include "core/base/outcome.h"
 #include "gui/window/layouts.h"
 
@@ -55,6 +56,8 @@ CommandLine parseCommandLine(const QStringList& arguments) {
       c.screenshot = value();
     else if (name == QStringLiteral("--size"))
       c.size = parseSize(value());
+    else if (name == QStringLiteral("--limit"))
+      c.limits << value();
     else if (name == QStringLiteral("--wait-idle"))
       c.waitIdle = true;
     else if (name.startsWith('-') && name.size() > 1)
@@ -69,6 +72,8 @@ CommandLine parseCommandLine(const QStringList& arguments) {
 }
 
 QString helpText() {
+  QStringList limits;
+  for (const LimitInfo& limit : limitInfos()) limits << QString::fromStdString(limit.name);
   return QStringLiteral(
              "Usage: glint-inspector [INPUT] [options]\n\n"
              "Shows a specular highlight reconstruction step by step: the surface, cameras, light and models in 3D, and the\n"
@@ -84,12 +89,14 @@ QString helpText() {
              "  --screenshot FILE     write the window as PNG and quit\n"
              "  --size WxH            size of the window, in pixels (default: 1600x1000)\n"
              "  --wait-idle           before the screenshot, wait until everything is computed and drawn\n"
+             "  --limit NAME=VALUE    raise a limit on the size of inputs, in its own unit; may be repeated:\n"
+             "                        %2\n"
              "  --version, -h, --help\n\n"
              "Exit codes: 0 done, 2 the input or the request is wrong (one line on standard error says where).\n"
              "A display is needed; without one run it under a virtual display:\n"
              "  QT_QPA_PLATFORM=xcb xvfb-run -a -s \"-screen 0 1600x1000x24\" glint-inspector INPUT --screenshot out.png "
              "--wait-idle\n")
-      .arg(layoutNames().join(QStringLiteral(", ")));
+      .arg(layoutNames().join(QStringLiteral(", ")), limits.join(QStringLiteral(", ")));
 }
 
 }  // namespace glint::gui

@@ -18,6 +18,7 @@ struct CommandLine {
   QStringList run;     ///< ids of actions to run once the scene is shown
   QString screenshot;  ///< PNG to write; "" = stay open
   QSize size;          ///< empty = default
+  QStringList limits;  ///< "NAME=VALUE", for setLimit()
   bool waitIdle = false;
   bool help = false, version = false;
 };

@@ -118,6 +118,21 @@ class LinkingTest : public QObject {
     QCOMPARE(document_->selection().frame, 0);
   }
 
+  void aRunOfRowsIsOneStepOfUndo() {
+    QTableView* view = table_->view();
+    view->setFocus();
+    view->selectionModel()->setCurrentIndex(view->model()->index(0, 0),
+                                            QItemSelectionModel::ClearAndSelect | QItemSelectionModel::Rows);
+    const viz::Selection first = document_->selection();
+    QTest::qWait(700);  // longer than a run's gap
+    const int before = document_->undoStack()->count();
+    for (int i = 0; i < 5; ++i) QTest::keyClick(view, Qt::Key_Down);
+    QVERIFY(document_->selection() != first);
+    QCOMPARE(document_->undoStack()->count(), before + 1);
+    document_->undoStack()->undo();
+    QVERIFY(document_->selection() == first);
+  }
+
   void playingIsNoStepOfUndo() {
     timeline_->setPlaying(true);
     QTRY_VERIFY(document_->selection().frame >= 3);

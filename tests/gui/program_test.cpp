@@ -132,6 +132,12 @@ class ProgramTest : public QObject {
     QTest::newRow("unknown theme") << QStringList{QStringLiteral("--theme"), QStringLiteral("red")} << QStringLiteral("--theme");
     QTest::newRow("size") << QStringList{QStringLiteral("--size"), QStringLiteral("12")} << QStringLiteral("--size");
     QTest::newRow("missing value") << QStringList{QStringLiteral("--frame")} << QStringLiteral("--frame");
+    QTest::newRow("unknown limit") << QStringList{QStringLiteral("--limit"), QStringLiteral("patience=3")}
+                                   << QStringLiteral("patience");
+    QTest::newRow("limit") << QStringList{QStringLiteral("--limit=json.values=3"),
+                                          QStringLiteral(GLINT_SOURCE_DIR "/sessions/plane/plane.glint"),
+                                          QStringLiteral("--screenshot"), shot}
+                           << QStringLiteral("--limit json.values=");
     QTest::newRow("two inputs") << QStringList{QStringLiteral("a"), QStringLiteral("b")} << QStringLiteral("more than one");
     QTest::newRow("unwritable") << QStringList{QStringLiteral("--screenshot"), QStringLiteral("/nowhere/x.png")}
                                 << QStringLiteral("/nowhere/x.png");

@@ -92,8 +92,13 @@ class SceneTreeTest : public QObject, SceneFixture {
     // Arrow keys as clicks.
     click(camera(5), SceneTreeModel::Name);
     tree_->view()->collapse(row(camera(5)));
+    QTest::qWait(700);  // longer than a run's gap
+    const int before = document_->undoStack()->count();
     QTest::keyClick(tree_->view(), Qt::Key_Down);
     QCOMPARE(document_->selection().frame, 6);
+    QTest::keyClick(tree_->view(), Qt::Key_Down);
+    QCOMPARE(document_->selection().frame, 7);
+    QCOMPARE(document_->undoStack()->count(), before + 1);  // a run of keys is one step
   }
 
   void aTickHidesInTheViewsAsOneStep() {
