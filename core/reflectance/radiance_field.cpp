@@ -20,7 +20,7 @@ constexpr int kMaxSteps = 80;
 constexpr double kFirstStridePx = 4, kLongestStridePx = 40;  // of steps uphill where the field is not concave
 // Of the search without derivatives; a maximum at a kink is no better known than by its last steps.
 constexpr double kFirstPatternPx = 4, kLeastPatternPx = 1e-4, kPatternShrink = 0.25;
-constexpr double kAtBorderPx = 1e-3;  // a pattern search ends this close to the border of its domain, or closer
+constexpr double kAtBorderPx = kStencilPx;  // closer to the border of its domain a climb goes on without derivatives
 
 /// How far inside the domain, px; negative outside.
 double depthInImage(const Pixel& p, const Camera& camera, double marginPx) {
@@ -152,6 +152,8 @@ std::optional<RadiancePeak> RadianceField::climb(Pixel p, double marginPx) const
         here = next;
         moved = true;
         heading += (tried % 2 ? 1 : -1) * ((tried + 1) / 2);
+        // The way along the border may be as long as the image.
+        if (tried == 0 && depthInImage(p, camera_, marginPx) < kAtBorderPx) pattern = std::min(2 * pattern, kLongestStridePx);
         tried = -1;
         ++step;
       }
