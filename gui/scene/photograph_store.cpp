@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/scene/photograph_store.h"
 
-#include <QMutexLocker>
 #include <algorithm>
 #include <exception>
 
@@ -24,7 +23,7 @@ PhotographStore::PhotographStore(QObject* parent) : QObject(parent), worker_(new
 
 PhotographStore::~PhotographStore() {
   {
-    const QMutexLocker lock(&mutex_);
+    const std::lock_guard<std::mutex> lock(mutex_);
     queue_.clear();
   }
   thread_.quit();
@@ -49,7 +48,7 @@ void PhotographStore::setInspection(const std::shared_ptr<const Inspection>& ins
 void PhotographStore::setSource(Source source) {
   source_ = std::move(source);
   wanted_.clear();
-  const QMutexLocker lock(&mutex_);
+  const std::lock_guard<std::mutex> lock(mutex_);
   queue_.clear();
   sourceToRead_ = source_;
 }
@@ -66,7 +65,7 @@ viz::LayerCache::Photograph PhotographStore::get(int frame, int maxWidth) {
   }
   if (wanted_.insert(key).second) {
     {
-      const QMutexLocker lock(&mutex_);
+      const std::lock_guard<std::mutex> lock(mutex_);
       queue_.push_back(key);
       if (queue_.size() > kMostWishes) {
         wanted_.erase(queue_.front());
@@ -84,7 +83,7 @@ void PhotographStore::readNext() {  // on the thread
   Key key(-1, 0);
   Source from;
   {
-    const QMutexLocker lock(&mutex_);
+    const std::lock_guard<std::mutex> lock(mutex_);
     from = sourceToRead_;
     if (!queue_.empty()) {
       key = queue_.back();

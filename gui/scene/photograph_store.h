@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <QMutex>
 #include <QObject>
 #include <QThread>
 #include <list>
 #include <memory>
+#include <mutex>
 #include <set>
 #include <utility>
 #include <vector>
@@ -55,7 +55,7 @@ class PhotographStore : public QObject {
   std::list<Kept> kept_;  // newest use first
   std::size_t keptBytes_ = 0;
   std::set<Key> wanted_;
-  QMutex mutex_;  // of the two below, which the thread reads
+  std::mutex mutex_;  // of the two below, which the thread reads
   std::vector<Key> queue_;
   Source sourceToRead_;
   QThread thread_;
