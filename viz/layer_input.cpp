@@ -95,10 +95,9 @@ std::vector<TrainingView> LayerInput::ownWalks() const {
   std::vector<TrainingView> result;
   std::vector<TrainingView> own = ownViews();
   for (TrainingView& view : own) {
-    const auto light = inspection->lights.find(
-        lightKey(view.highlight.light, inspection->train.perSurface ? std::optional(surfaceKey) : std::nullopt));
-    if (light == inspection->lights.end()) continue;
-    addCanonicalContour(view, light->second.light, inspection->request.settings);
+    const LightEstimate* const light = inspection->lightFor(selection.frame, view.highlight.light);
+    if (!light) continue;
+    addCanonicalContour(view, light->light, inspection->request.settings);
     if (view.canonical && view.tangentPlane && view.brightest) result.push_back(std::move(view));
   }
   return result;

@@ -174,11 +174,9 @@ std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, Hig
     place.points = {p.position, eye, mirrored};
     addFrustum(in, place.points, in.selection.frame);
     addVirtualCameras(in, place.points, drawn.virtualCameras);
-    const auto light = in.inspection->lights.find(
-        lightKey(h.light, in.inspection->train.perSurface ? std::optional(in.surfaceKey) : std::nullopt));
-    if (light != in.inspection->lights.end() && !light->second.light.atInfinity() &&
-        (light->second.light.position() - p.position).norm() < 3 * in.scale.sceneSize)
-      place.points.push_back(light->second.light.position());
+    const LightEstimate* const light = in.inspection->lightFor(in.selection.frame, h.light);
+    if (light && !light->light.atInfinity() && (light->light.position() - p.position).norm() < 3 * in.scale.sceneSize)
+      place.points.push_back(light->light.position());
     if (drawn.ellipsoids)
       for (const Eigen::Vector3d& q : ellipsoidEnds(in, in.selection.model)) place.points.push_back(q);
     place.back = (square + 0.22 * p.normal).normalized();
@@ -338,11 +336,10 @@ Picked surfaceInfo(const LayerInput& in, const SurfacePoint& hit) {
     info.text += line("pixel x", pixel->x(), "px") + line("pixel y", pixel->y(), "px");
   const Eigen::Vector3d toCamera = (eye - p.position).normalized();
   info.text += line("view angle", std::acos(std::clamp(p.normal.dot(toCamera), -1.0, 1.0)) * 180 / std::numbers::pi, "deg");
-  for (const auto& [key, estimate] : in.inspection->lights) {
-    const std::size_t at = key.find('@');
-    if (at != std::string::npos && key.substr(at + 1) != in.surfaceKey) continue;
-    const double alpha = incidentAngle(p.normal, estimate.light.directionFrom(p.position), toCamera);
-    if (std::isfinite(alpha)) info.text += line("alpha (" + key.substr(0, at) + ")", alpha * 180 / std::numbers::pi, "deg");
+  for (const auto& [light, estimate] : in.inspection->lightsFor(in.selection.frame)) {
+    if (!*estimate) continue;
+    const double alpha = incidentAngle(p.normal, (*estimate)->light.directionFrom(p.position), toCamera);
+    if (std::isfinite(alpha)) info.text += line("alpha (" + light + ")", alpha * 180 / std::numbers::pi, "deg");
   }
   const Outcome<Curvature> curvature = in.surface->curvatureAt(hit);
   if (curvature) info.text += line("k1", curvature->k1, "1/m") + line("k2", curvature->k2, "1/m");

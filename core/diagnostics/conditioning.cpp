@@ -93,8 +93,7 @@ class Findings {
     c_.model = result.model;
     c_.light = fit.light;
     c_.surface = fit.surface;
-    const auto estimate = inspection.lights.find(lightKey(fit.light, fit.surface));
-    if (estimate != inspection.lights.end()) estimate_ = &estimate->second;
+    estimate_ = inspection.lightOf(fit.key());
     outlines_ = outlinesOf(result.model, views_);
     if (result.model != "primal") findStrayPeaks(inspection);  // which looks at ellipses only
     fromOutlines_ = result.model == "primal" || result.model == "dual" || result.model == "canonical";

@@ -126,17 +126,15 @@ std::vector<PolarResidual> polarResiduals(const Inspection& inspection, int fram
 
 Outcome<Light> lightOfModel(const Inspection& inspection, int frame, const std::string& model, const std::string& light) {
   const auto result = inspection.models.find(model);
-  std::optional<std::string> surface;
-  if (inspection.train.perSurface && inspection.surfaces) surface = inspection.surfaces->keyOf(frame);
+  const FitKey key = inspection.keyFor(frame, light);
   const ModelFit* fit = nullptr;
   if (result != inspection.models.end())
     for (const ModelResult::Fit& f : result->second.fits)
-      if (f.light == light && f.fit && (!f.surface || f.surface == surface)) fit = &*f.fit;
+      if (f.key() == key && f.fit) fit = &*f.fit;
   if (fit && fit->lightEstimate) return *fit->lightEstimate;
-  const std::string key = lightKey(light, surface);
-  if (const auto it = inspection.lights.find(key); it != inspection.lights.end()) return it->second.light;
+  if (const LightEstimate* const estimate = inspection.lightOf(key)) return estimate->light;
   if (fit && fit->ellipsoid && model != "primal") return Light::at(fit->ellipsoid->centre());
-  if (const auto it = inspection.lightFailures.find(key); it != inspection.lightFailures.end()) return it->second;
+  if (const Failure* const why = inspection.lightFailureFor(frame, light)) return *why;
   return Failure{Reason::NoLight, "nothing here estimated the light '" + light + "'"};
 }
 
@@ -146,7 +144,7 @@ Outcome<std::shared_ptr<const Surface>> surfaceOfFrame(const Inspection& inspect
     if (v.frame == frame && !v.failure && v.surface && v.highlight.light == light) return v.surface;
   const MeshPolicy policy = meshPolicy(inspection.request.settings);
   const Frame& f = inspection.scene->frames[std::size_t(frame)];
-  if (const auto found = inspection.depthCorrections.find(light); found != inspection.depthCorrections.end() && f.surface.empty())
+  if (const auto found = inspection.depthCorrections.find(inspection.keyFor(frame, light)); found != inspection.depthCorrections.end() && f.surface.empty())
     return correctedDepthMap(f, policy, found->second);
   return surfaceFor(inspection, frame, light);
 }

@@ -33,7 +33,7 @@ std::vector<std::string> bandLines(const Inspection& inspection, const ModelResu
     lines.emplace_back(text);
   }
   for (const ModelResult::Fit& fit : result.fits)
-    for (const std::string& remark : fit.bandRemarks) lines.push_back((result.fits.size() > 1 ? lightKey(fit.light, fit.surface) + ": " : "") + remark);
+    for (const std::string& remark : fit.bandRemarks) lines.push_back((result.fits.size() > 1 ? textOf(fit.key()) + ": " : "") + remark);
   return lines;
 }
 

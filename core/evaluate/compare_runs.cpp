@@ -159,11 +159,13 @@ std::string unitOf(const std::string& result) {
 /// have.
 KeyResults resultsOf(const Inspection& run, const Inspection& other) {
   KeyResults all;
-  for (const auto& [key, light] : run.lights) {
-    const Eigen::Vector3d at = light.light.atInfinity() ? light.light.homogeneous().head<3>().eval() : light.light.position();
-    for (int i = 0; i < 3; ++i)
-      all.emplace_back("light " + key + (light.light.atInfinity() ? " direction " : " position ") + "xyz"[i], at[i]);
-    all.emplace_back("light " + key + " limit_angle_rad", light.limitAngle);
+  for (const auto& [key, estimate] : run.lights) {
+    if (!estimate) continue;
+    const Light& light = estimate->light;
+    const std::string name = "light " + textOf(key);
+    const Eigen::Vector3d at = light.atInfinity() ? light.homogeneous().head<3>().eval() : light.position();
+    for (int i = 0; i < 3; ++i) all.emplace_back(name + (light.atInfinity() ? " direction " : " position ") + "xyz"[i], at[i]);
+    all.emplace_back(name + " limit_angle_rad", estimate->limitAngle);
   }
   for (const auto& [name, value] : keyResultsOf(run)) {
     if (name.rfind("light.", 0) == 0) continue;

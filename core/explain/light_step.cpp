@@ -55,15 +55,11 @@ const PredictedHighlight* Case::predicted() const {
 }
 
 bool Case::sharesModel(int frame) const {
-  return !inspection.train.perSurface || !inspection.surfaces ||
-         inspection.surfaces->keyOf(frame) == inspection.surfaces->keyOf(out.frame);
+  return inspection.keyFor(frame, out.light) == inspection.keyFor(out.frame, out.light);
 }
 
 const LightEstimate* Case::common() const {
-  const bool perSurface = inspection.train.perSurface && inspection.surfaces;
-  const auto found = inspection.lights.find(
-      lightKey(out.light, perSurface ? std::optional(inspection.surfaces->keyOf(out.frame)) : std::nullopt));
-  return found == inspection.lights.end() ? nullptr : &found->second;
+  return inspection.lightFor(out.frame, out.light);
 }
 
 const Light* Case::own() const {
@@ -85,11 +81,8 @@ void lightStep(const Case& c, ExplainStep& step) {
   const LightEstimate* shared = c.common();
   const Light* own = c.own();
   if (!shared && !own) {
-    const bool perSurface = c.inspection.train.perSurface && c.inspection.surfaces;
-    const auto why = c.inspection.lightFailures.find(
-        lightKey(c.out.light, perSurface ? std::optional(c.inspection.surfaces->keyOf(c.out.frame)) : std::nullopt));
-    step.failure =
-        why != c.inspection.lightFailures.end() ? why->second : Failure{Reason::NoLight, "no model that was computed needs one"};
+    const Failure* const why = c.inspection.lightFailureFor(c.out.frame, c.out.light);
+    step.failure = why ? *why : Failure{Reason::NoLight, "no model that was computed needs one"};
     return;
   }
   const auto show = [&](const std::string& symbol, const std::string& whose, const Light& light) {

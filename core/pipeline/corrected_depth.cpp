@@ -21,9 +21,9 @@ Outcome<std::shared_ptr<const Surface>> correctedDepthMap(const Frame& frame, Me
   return makeDepthMap(image, frame.camera, options);
 }
 
-Outcome<std::shared_ptr<const Surface>> CorrectedDepthMaps::surfaceOf(const Frame& frame, MeshPolicy policy, const std::string& key,
+Outcome<std::shared_ptr<const Surface>> CorrectedDepthMaps::surfaceOf(const Frame& frame, MeshPolicy policy, const FitKey& key,
                                                                       const DepthCorrection& correction) {
-  const std::string name = key + "|" + frame.id;
+  const std::pair name(key, frame.id);
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     for (auto i = recent_.begin(); i != recent_.end(); ++i)

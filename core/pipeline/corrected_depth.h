@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/light/refine_depth.h"
+#include "core/pipeline/fit_key.h"
 #include "core/scene/scene.h"
 
 namespace glint {
@@ -18,14 +19,14 @@ Outcome<std::shared_ptr<const Surface>> correctedDepthMap(const Frame& frame, Me
 /// The last few corrected surfaces. Thread-safe.
 class CorrectedDepthMaps {
  public:
-  /// @param key  of the correction: a light's key.
-  Outcome<std::shared_ptr<const Surface>> surfaceOf(const Frame& frame, MeshPolicy policy, const std::string& key,
+  /// @param key  of the correction.
+  Outcome<std::shared_ptr<const Surface>> surfaceOf(const Frame& frame, MeshPolicy policy, const FitKey& key,
                                                     const DepthCorrection& correction);
 
  private:
   static constexpr std::size_t kKept = 2;  // as SurfaceCache::kDepthMapsKept
   std::mutex mutex_;
-  std::list<std::pair<std::string, std::shared_ptr<const Surface>>> recent_;
+  std::list<std::pair<std::pair<FitKey, std::string>, std::shared_ptr<const Surface>>> recent_;  ///< by correction and frame
 };
 
 }  // namespace glint

@@ -117,7 +117,7 @@ std::map<std::string, Fold> wholeFolds(const Inspection& inspection, const std::
       all.others.push_back(v);
       all.others.back().canonical.reset();
     }
-    all.pixelFit = pixelFitFor(inspection, lightKey(f.left->highlight.light, {}));
+    all.pixelFit = pixelFitFor(inspection, {f.left->highlight.light, {}});
   }
   return whole;
 }

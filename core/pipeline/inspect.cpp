@@ -43,10 +43,9 @@ class Held {
   std::atomic<int>& now_;
 };
 
-/// One (light, surface) that gets its own fit.
+/// What gets its own fit.
 struct Group {
-  std::string light;
-  std::optional<std::string> surface;
+  FitKey key;
   std::vector<int> views;  ///< indices into Inspection::views
 };
 
@@ -201,7 +200,6 @@ void Run::lobes() {
   if (unchanged("lobe")) {
     r_.patches = previous_->patches;
     r_.pixelFits = previous_->pixelFits;
-    r_.pixelFailures = previous_->pixelFailures;
   } else {
     fitLobes(r_, surface, lightsAreOpen(), progress_);
   }
@@ -270,28 +268,26 @@ void Run::brightestPointsAndTangentPlanes() {
 
 std::vector<Group> Run::groups() const {
   std::vector<Group> groups;
-  const auto groupOf = [&](const std::string& light, const std::optional<std::string>& surface) -> Group& {
+  const auto groupOf = [&](int frame, const std::string& light) -> Group& {
+    const FitKey key = r_.keyFor(frame, light);
     for (Group& g : groups)
-      if (g.light == light && g.surface == surface) return g;
-    groups.push_back({light, surface, {}});
+      if (g.key == key) return g;
+    groups.push_back({key, {}});
     return groups.back();
   };
-  const auto surfaceKey = [&](int frame) {
-    return r_.train.perSurface ? std::optional<std::string>(r_.surfaces->keyOf(frame)) : std::nullopt;
-  };
   for (int i = 0; i < static_cast<int>(r_.views.size()); ++i)
-    if (!r_.views[i].highlight.light.empty()) groupOf(r_.views[i].highlight.light, surfaceKey(r_.views[i].frame)).views.push_back(i);
+    if (!r_.views[i].highlight.light.empty()) groupOf(r_.views[i].frame, r_.views[i].highlight.light).views.push_back(i);
   // A light that only held-out frames show still gets a (failing) fit, so that its frames are answered with a reason.
   for (const FrameEvidence& e : r_.evidence)
     for (const Highlight& h : e.scored())
-      if (!h.light.empty()) groupOf(h.light, surfaceKey(e.frame));
+      if (!h.light.empty()) groupOf(e.frame, h.light);
   // So does a light that is on but has no highlight that could be told from those of other lights.
   if (!r_.train.perSurface)
     for (std::size_t i = 0; i < r_.scene->frames.size(); ++i) {
       const std::vector<std::string>& on = r_.scene->frames[i].lightsOn;
       if (on.size() > 1)
         for (const std::string& light : on)
-          if (isOn(*r_.scene, r_.request.whatIf, static_cast<int>(i), light)) groupOf(light, std::nullopt);
+          if (isOn(*r_.scene, r_.request.whatIf, static_cast<int>(i), light)) groupOf(static_cast<int>(i), light);
     }
   return groups;
 }
@@ -300,33 +296,31 @@ void Run::lights() {
   const std::vector<Group> all = groups();
   // Of which lights and surfaces: a look at one frame may not have seen them all.
   std::string names;
-  for (const Group& g : all) names += "|" + lightKey(g.light, g.surface);
+  for (const Group& g : all) names += "|" + textOf(g.key);
   std::set<std::string> stages{"light"};
   if (r_.request.settings.flag("light.refine_normals")) stages.insert("fit");  // which model explains the contours better depends on how it is fitted
   r_.stageKeys["light"] = keyOfStages(r_.request.settings, stages, r_.stageKeys["views"] + names);
   if (!anyModel(&HighlightModel::needsLight)) return;
-  if (unchanged("light") && (!previous_->lights.empty() || !previous_->lightFailures.empty())) {
+  if (unchanged("light") && !previous_->lights.empty()) {
     r_.lights = previous_->lights;
-    r_.lightFailures = previous_->lightFailures;
     r_.depthCorrections = previous_->depthCorrections;
     r_.refinedNormals = previous_->refinedNormals;
-    for (const Group& g : all) corrections_.correctViews(g.views, lightKey(g.light, g.surface));
+    for (const Group& g : all) corrections_.correctViews(g.views, g.key);
     return;
   }
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!report(progress_, {"light", static_cast<int>(i), static_cast<int>(all.size())})) throw Stopped{};
     std::vector<TrainingView> views;
     for (const int v : all[i].views) views.push_back(r_.views[v]);
-    const std::string key = lightKey(all[i].light, all[i].surface);
-    if (!seen(all[i].light)) {
-      r_.lightFailures.insert_or_assign(key, Failure{Reason::NoHighlight, all[i].light + " has none that could be told from those of other lights"});
+    const FitKey& key = all[i].key;
+    if (!seen(key.light)) {
+      r_.lights.insert_or_assign(key, Failure{Reason::NoHighlight, key.light + " has none that could be told from those of other lights"});
       continue;
     }
     Outcome<LightEstimate> light = estimateLight(views, r_.request.settings);
     ++r_.work.lights;
     if (light) corrections_.refine(all[i].views, key, *light);
-    if (light) r_.lights.insert_or_assign(key, *light);
-    else r_.lightFailures.insert_or_assign(key, light.failure());
+    r_.lights.insert_or_assign(key, std::move(light));
   }
 }
 
@@ -339,24 +333,24 @@ void Run::canonicalContours() {
     return;
   }
   for (const Group& g : groups()) {
-    const auto light = r_.lights.find(lightKey(g.light, g.surface));
-    if (light == r_.lights.end()) continue;
+    const LightEstimate* const light = r_.lightOf(g.key);
+    if (!light) continue;
     r_.work.canonicalContours += static_cast<int>(g.views.size());
     parallelFor(
         static_cast<int>(g.views.size()),
-        [&](int i) { addCanonicalContour(r_.views[g.views[i]], light->second.light, r_.request.settings); }, progress_, "canonical");
+        [&](int i) { addCanonicalContour(r_.views[g.views[i]], light->light, r_.request.settings); }, progress_, "canonical");
   }
 }
 
 FitInput Run::fitInput(const Group& group) const {
   FitInput input;
   for (const int v : group.views) input.views.push_back(r_.views[v]);
-  const std::string key = lightKey(group.light, group.surface);
   // The stage's fit is of all views of the group: it serves where none of them lost its pixels since.
   // Corrected normals are not those that the stage saw.
-  if (havePixels(input.views) && !r_.refinedNormals.count(key)) input.pixelFit = pixelFitFor(r_, key);
-  if (const auto it = r_.lights.find(key); it != r_.lights.end()) input.light = it->second;
-  else if (const auto failed = r_.lightFailures.find(key); failed != r_.lightFailures.end()) input.lightFailure = failed->second;
+  if (havePixels(input.views) && !r_.refinedNormals.count(group.key)) input.pixelFit = pixelFitFor(r_, group.key);
+  if (const auto found = r_.lights.find(group.key); found == r_.lights.end()) return input;
+  else if (found->second) input.light = *found->second;
+  else input.lightFailure = found->second.failure();
   return input;
 }
 
@@ -375,19 +369,19 @@ void Run::modelFits() {
     for (const Group& g : all) {
       if (!report(progress_, {"fit " + name, done++, static_cast<int>(all.size() * r_.request.models.size())})) throw Stopped{};
       ModelResult::Fit entry;
-      entry.light = g.light;
-      entry.surface = g.surface;
+      entry.light = g.key.light;
+      entry.surface = g.key.surface;
       const FitInput input = fitInput(g);
       const auto start = std::chrono::steady_clock::now();
       Outcome<ModelFit> fit = model.fit(input, r_.request.settings);
       ++r_.work.fits;
       if (fit) {
         fit->model = name;
-        fit->light = g.light;
-        fit->surface = g.surface;
+        fit->light = g.key.light;
+        fit->surface = g.key.surface;
         if (std::string merged = mergedRemark(*fit); !merged.empty()) fit->remarks.push_back(std::move(merged));
         if (std::string repeated = repeatedRemark(*fit); !repeated.empty()) fit->remarks.push_back(std::move(repeated));
-        if (const auto refined = r_.refinedNormals.find(lightKey(g.light, g.surface)); refined != r_.refinedNormals.end() && model.needsLight())
+        if (const auto refined = r_.refinedNormals.find(g.key); refined != r_.refinedNormals.end() && model.needsLight())
           fit->remarks.push_back(refined->second.remark());
         fit->timeUs = microsecondsSince(start);
         entry.fit = std::move(*fit);
@@ -409,9 +403,9 @@ std::vector<std::shared_ptr<const Band>> Run::bandsOf(const HighlightModel& mode
       static_cast<int>(bands.size()),
       [&](int i) {
         ModelResult::Fit& fit = result.fits[static_cast<std::size_t>(i)];
-        const auto group = std::find_if(all.begin(), all.end(), [&](const Group& g) { return g.light == fit.light && g.surface == fit.surface; });
+        const auto group = std::find_if(all.begin(), all.end(), [&](const Group& g) { return g.key == fit.key(); });
         if (!fit.fit || group == all.end()) return;
-        FittedBand band = bandOf(model, *fit.fit, fitInput(*group), r_.request.settings, corrections_.any(lightKey(fit.light, fit.surface)));
+        FittedBand band = bandOf(model, *fit.fit, fitInput(*group), r_.request.settings, corrections_.any(fit.key()));
         bands[static_cast<std::size_t>(i)] = std::move(band.band);
         fit.bandRemarks = std::move(band.remarks);
       },
@@ -455,7 +449,7 @@ void Run::predictionsAndComparisons() {
           const Camera& camera = r_.scene->frames[frame].camera;
           Prediction prediction;
           if (fit.fit) {
-            const std::shared_ptr<const Surface> surface = needsSurface ? corrections_.surfaceOf(frame, lightKey(fit.light, fit.surface)) : nullptr;
+            const std::shared_ptr<const Surface> surface = needsSurface ? corrections_.surfaceOf(frame, fit.key()) : nullptr;
             surfacesAsked += needsSurface;
             ++predictions;
             const auto start = std::chrono::steady_clock::now();
@@ -480,8 +474,25 @@ void Run::predictionsAndComparisons() {
 
 }  // namespace
 
-std::string lightKey(const std::string& light, const std::optional<std::string>& surface) {
-  return surface ? light + "@" + *surface : light;
+FitKey Inspection::keyFor(int frame, const std::string& light) const {
+  return {light, train.perSurface && surfaces ? std::optional(surfaces->keyOf(frame)) : std::nullopt};
+}
+
+const LightEstimate* Inspection::lightOf(const FitKey& key) const {
+  const auto found = lights.find(key);
+  return found != lights.end() && found->second ? &*found->second : nullptr;
+}
+
+const Failure* Inspection::lightFailureFor(int frame, const std::string& light) const {
+  const auto found = lights.find(keyFor(frame, light));
+  return found != lights.end() && !found->second ? &found->second.failure() : nullptr;
+}
+
+std::vector<std::pair<std::string, const Outcome<LightEstimate>*>> Inspection::lightsFor(int frame) const {
+  std::vector<std::pair<std::string, const Outcome<LightEstimate>*>> found;
+  for (const auto& [key, light] : lights)
+    if (key == keyFor(frame, key.light)) found.emplace_back(key.light, &light);
+  return found;
 }
 
 bool Inspection::isTraining(int frame) const {

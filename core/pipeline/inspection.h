@@ -11,8 +11,9 @@
 #include "core/base/settings.h"
 #include "core/evaluate/metrics.h"
 #include "core/light/refine_depth.h"
-#include "core/pipeline/refined_normals.h"
 #include "core/model/model.h"
+#include "core/pipeline/fit_key.h"
+#include "core/pipeline/refined_normals.h"
 #include "core/pipeline/what_if.h"
 #include "core/scene/scene.h"
 
@@ -40,9 +41,6 @@ struct InspectionRequest {
   WhatIf whatIf;                         ///< changes to scene and evidence that the user tries out
   friend bool operator==(const InspectionRequest&, const InspectionRequest&) = default;
 };
-
-/// Key of a light's estimate and fits: "lamp", or "lamp@g03" when every surface has its own model.
-std::string lightKey(const std::string& light, const std::optional<std::string>& surface);
 
 /// One frame's evidence.
 struct FrameEvidence {
@@ -92,6 +90,7 @@ struct ModelResult {
     std::optional<ModelFit> fit;         ///< exactly one of fit and failure
     std::optional<Failure> failure;
     std::vector<std::string> bandRemarks;  ///< predict.band: what its band holds, and what makes it wide
+    FitKey key() const { return {light, surface}; }
   };
   std::vector<Fit> fits;
   std::vector<FrameComparison> frames;   ///< every frame, training ones too; `heldOut` tells which count
@@ -127,17 +126,25 @@ struct Inspection {
   std::vector<FrameEvidence> detected;
   std::vector<TrainingView> views;                         ///< one per training highlight
   std::map<std::pair<int, int>, std::shared_ptr<const PixelPatch>> patches;  ///< pixels by (training frame, highlight as found)
-  std::map<std::string, std::shared_ptr<const PixelFit>> pixelFits;  ///< by light key: the lobe of the training frames' pixels
-  std::map<std::string, Failure> pixelFailures;            ///< the same keys: why there is none
-  std::map<std::string, LightEstimate> lights;             ///< by light id (+ "@" + surface key when per surface)
-  std::map<std::string, Failure> lightFailures;            ///< the same keys: why a light could not be estimated
-  std::map<std::string, DepthCorrection> depthCorrections; ///< the same keys, where light.refine_depth found one: of the views' and predictions' depth maps
-  std::map<std::string, RefinedNormals> refinedNormals;    ///< the same keys, where light.refine_normals found a better mesh: of the views and predictions
+  std::map<FitKey, Outcome<std::shared_ptr<const PixelFit>>> pixelFits;  ///< the lobe of the training frames' pixels
+  std::map<FitKey, Outcome<LightEstimate>> lights;         ///< see lightOf(), lightFor()
+  std::map<FitKey, DepthCorrection> depthCorrections;      ///< where light.refine_depth found one: of the views' and predictions' depth maps
+  std::map<FitKey, RefinedNormals> refinedNormals;         ///< where light.refine_normals found a better mesh: of the views and predictions
   std::map<std::string, ModelResult> models;
   std::map<std::string, std::string> stageKeys;            ///< what each stage's result depends on: tells which stages a later run may reuse
   WorkCounts work;
   bool isTraining(int frame) const;
   bool isHeldOut(int frame) const;                         ///< counts in summaries
+
+  /// Whose estimate and fits serve a light in a frame. Without a surface where `surfaces` is not set.
+  FitKey keyFor(int frame, const std::string& light) const;
+  /// The estimate of a light, null where it failed or no model needs it.
+  const LightEstimate* lightOf(const FitKey& key) const;
+  const LightEstimate* lightFor(int frame, const std::string& light) const { return lightOf(keyFor(frame, light)); }
+  /// Why a light was not estimated; null where it was, or where no model needs it.
+  const Failure* lightFailureFor(int frame, const std::string& light) const;
+  /// Every estimate or failure that serves a frame, by light id.
+  std::vector<std::pair<std::string, const Outcome<LightEstimate>*>> lightsFor(int frame) const;
 };
 
 /// The surface that predictions of a light in a frame use: the frame's own, or its mesh with the normals that the light's contours corrected

@@ -17,10 +17,6 @@
 namespace glint {
 namespace {
 
-std::string keyFor(const Inspection& r, const std::string& light, int frame) {
-  return lightKey(light, r.train.perSurface ? std::optional<std::string>(r.surfaces->keyOf(frame)) : std::nullopt);
-}
-
 bool trains(const Inspection& r, int frame) {
   return std::binary_search(r.train.frames.begin(), r.train.frames.end(), frame) &&
          std::find(r.request.excluded.begin(), r.request.excluded.end(), frame) == r.request.excluded.end();
@@ -105,29 +101,28 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
         }
       },
       progress, "pixels");
-  std::map<std::string, std::vector<TrainingView>> groups;
+  std::map<FitKey, std::vector<TrainingView>> groups;
   for (const Seen& s : seen)
     for (std::size_t i = 0; i < s.views.size(); ++i) {
       r.patches[s.ids[i]] = s.views[i].pixels;
-      groups[keyFor(r, s.views[i].highlight.light, s.views[i].frame)].push_back(s.views[i]);
+      groups[r.keyFor(s.views[i].frame, s.views[i].highlight.light)].push_back(s.views[i]);
     }
   int done = 0;
   for (const auto& [key, views] : groups) {
     if (!report(progress, {"lobe", done++, static_cast<int>(groups.size())})) throw Stopped{};
     // The start is the same whatever the settings of the light are: they do not matter to where the fit ends.
     const Outcome<LightEstimate> light = estimateLight(views, Settings{});
-    const Outcome<PixelFit> fit =
+    Outcome<PixelFit> fit =
         fitViewsPixels(views, light ? std::optional<LightEstimate>(*light) : std::nullopt, anyLobe(r.request.settings));
     ++r.work.pixelFits;
-    if (fit) r.pixelFits[key] = std::make_shared<PixelFit>(*fit);
-    else r.pixelFailures.insert_or_assign(key, fit.failure());
+    if (fit) r.pixelFits.insert_or_assign(key, std::make_shared<const PixelFit>(*std::move(fit)));
+    else r.pixelFits.insert_or_assign(key, fit.failure());
   }
 }
 
-std::shared_ptr<const PixelFit> pixelFitFor(const Inspection& r, const std::string& key) {
+std::shared_ptr<const PixelFit> pixelFitFor(const Inspection& r, const FitKey& key) {
   const auto fit = r.pixelFits.find(key);
-  if (fit == r.pixelFits.end() || !takesAnyLobe(r.request.settings)) return nullptr;
-  return fit->second;
+  return fit != r.pixelFits.end() && fit->second && takesAnyLobe(r.request.settings) ? *fit->second : nullptr;
 }
 
 std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene& scene, const InspectionRequest& request, int f,
@@ -140,13 +135,14 @@ std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene
   for (std::size_t h = 0; h < detected.highlights.size(); ++h) byLight[detected.highlights[h].light].push_back(h);
   std::optional<FrameEvidence> again;
   for (const auto& [light, indices] : byLight) {
-    const auto fit = lobes.pixelFits.find(keyFor(lobes, light, f));
-    if (light.empty() || fit == lobes.pixelFits.end()) continue;
+    const auto fit = lobes.pixelFits.find(lobes.keyFor(f, light));
+    if (light.empty() || fit == lobes.pixelFits.end() || !fit->second) continue;
+    const PixelFit& lobe = **fit->second;
     std::vector<Highlight> found;
     for (const std::size_t h : indices) found.push_back(detected.highlights[h]);
     Outcome<std::vector<Highlight>> traced =
-        contourWithLobe(*pixels, frame.camera, *surface, f, found, ofOthers(detected, light), fit->second->model,
-                        fit->second->background, detectOptionsFor(frame, request.source, request.settings));
+        contourWithLobe(*pixels, frame.camera, *surface, f, found, ofOthers(detected, light), lobe.model,
+                        lobe.background, detectOptionsFor(frame, request.source, request.settings));
     if (!traced) continue;
     if (!again) again = detected;
     for (std::size_t k = 0; k < indices.size(); ++k) again->highlights[indices[k]] = std::move((*traced)[k]);

@@ -25,14 +25,13 @@ std::string lobeKey(const InspectionRequest& request, const TrainSpec& train, bo
 
 using SurfaceOfFrame = std::function<std::shared_ptr<const Surface>(int frame)>;
 
-/// Fills patches, pixelFits and pixelFailures from the training frames. Frames whose contours the scene gives have no pixels. Throws
+/// Fills patches and pixelFits from the training frames. Frames whose contours the scene gives have no pixels. Throws
 /// Stopped.
 void fitLobes(Inspection& inspection, const SurfaceOfFrame& surfaceOf, bool together, const ProgressFn& progress);
 
 /// The stage's fit of a light for the reflectance model. None where there is none, or where the request names the lobe or the lamp's shape:
 /// the stage does not look at these, so that contours are the same for all of them.
-/// @param key  lightKey
-std::shared_ptr<const PixelFit> pixelFitFor(const Inspection& inspection, const std::string& key);
+std::shared_ptr<const PixelFit> pixelFitFor(const Inspection& inspection, const FitKey& key);
 
 /// Replaces the evidence of frames that were not looked at before by contours with the lobe's background; keeps the evidence as
 /// detected in Inspection::detected. Throws Stopped.

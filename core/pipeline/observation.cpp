@@ -65,7 +65,6 @@ Inspection heldAgainst(const Inspection& earlier, const Observation& observation
   std::copy_if(earlier.views.begin(), earlier.views.end(), std::back_inserter(r.views),
                [&](const TrainingView& v) { return v.frame == frame; });
   r.lights = earlier.lights;
-  r.lightFailures = earlier.lightFailures;
   r.depthCorrections = earlier.depthCorrections;
   r.refinedNormals = earlier.refinedNormals;
   r.stageKeys["detect"] = observation.key;

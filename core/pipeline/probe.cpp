@@ -24,12 +24,9 @@ Outcome<PixelProbe> probePixel(const Inspection& inspection, int frame, const Pi
   probe.point = facing(*hit, eye);
   probe.depth = camera.depth(probe.point.position);
   const Eigen::Vector3d toCamera = (eye - probe.point.position).normalized();
-  for (const auto& [key, estimate] : inspection.lights) {
-    const std::string id = key.substr(0, key.find('@'));
-    // Where every surface has its own model, so has every light: the one of this frame's surface.
-    const bool belongs = key == id || key == lightKey(id, inspection.surfaces->keyOf(frame));
-    if (!belongs) continue;
-    const Eigen::Vector3d toLight = estimate.light.directionFrom(probe.point.position);
+  for (const auto& [id, estimate] : inspection.lightsFor(frame)) {
+    if (!*estimate) continue;
+    const Eigen::Vector3d toLight = (*estimate)->light.directionFrom(probe.point.position);
     PixelProbe::Incidence incidence{id, {}};
     if (probe.point.normal.dot(toLight) > 0) incidence.alpha = incidentAngle(probe.point.normal, toLight, toCamera);
     probe.lights.push_back(incidence);

@@ -118,7 +118,7 @@ TrainingView onSurface(const TrainingView& view, std::shared_ptr<const Surface> 
 Outcome<std::shared_ptr<const Surface>> surfaceFor(const Inspection& inspection, int frame, const std::string& light) {
   if (!inspection.surfaces) return Failure{Reason::NoSurface, ""};
   const std::string surface = inspection.surfaces->keyOf(frame);
-  const auto refined = inspection.refinedNormals.find(lightKey(light, inspection.train.perSurface ? std::optional(surface) : std::nullopt));
+  const auto refined = inspection.refinedNormals.find(inspection.keyFor(frame, light));
   if (refined != inspection.refinedNormals.end() && refined->second.surface == surface) return refined->second.mesh;
   return inspection.surfaces->surfaceOf(frame, meshPolicy(inspection.request.settings));
 }

@@ -107,15 +107,16 @@ KeyResults keyResultsOf(const Inspection& inspection) {
   KeyResults results;
   addDetection(results, inspection);
   for (const auto& [key, light] : inspection.lights) {
-    const std::string name = "light." + key;
-    const Eigen::Vector4d& l = light.light.homogeneous();
+    if (!light) continue;
+    const std::string name = "light." + textOf(key);
+    const Eigen::Vector4d& l = light->light.homogeneous();
     for (int i = 0; i < 4; ++i) results.emplace_back(name + "." + "xyzw"[i], l[i]);
-    results.emplace_back(name + ".limit_angle_rad", light.limitAngle);
+    results.emplace_back(name + ".limit_angle_rad", light->limitAngle);
   }
   for (const auto& [name, result] : inspection.models) {
     for (const ModelResult::Fit& f : result.fits) {
       if (!f.fit) continue;
-      const std::string fit = name + ".fit." + f.light + (f.surface ? "@" + *f.surface : "");
+      const std::string fit = name + ".fit." + textOf(f.key());
       if (f.fit->ellipsoid) {
         const Eigen::Vector3d axes = f.fit->ellipsoid->semiAxes();
         for (int i = 0; i < 3; ++i) results.emplace_back(fit + ".semi_axis_" + std::to_string(i), axes[i]);
@@ -150,9 +151,10 @@ std::string digestOf(const Inspection& inspection) {
     }
   }
   for (const auto& [key, light] : inspection.lights) {
-    d.add(key);
-    d.add(light.light.homogeneous());
-    d.add(light.limitAngle);
+    if (!light) continue;
+    d.add(textOf(key));
+    d.add(light->light.homogeneous());
+    d.add(light->limitAngle);
   }
   for (const auto& [name, result] : inspection.models) {
     d.add(name);

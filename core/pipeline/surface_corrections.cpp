@@ -14,7 +14,7 @@ std::vector<TrainingView> SurfaceCorrections::of(const std::vector<int>& views) 
   return result;
 }
 
-std::shared_ptr<const Surface> SurfaceCorrections::surfaceOf(int frame, const std::string& key) {
+std::shared_ptr<const Surface> SurfaceCorrections::surfaceOf(int frame, const FitKey& key) {
   const MeshPolicy policy = meshPolicy(r_.request.settings);
   if (const auto refined = r_.refinedNormals.find(key); refined != r_.refinedNormals.end() && refined->second.surface == r_.surfaces->keyOf(frame))
     return refined->second.mesh;
@@ -26,12 +26,12 @@ std::shared_ptr<const Surface> SurfaceCorrections::surfaceOf(int frame, const st
   return s ? *s : nullptr;
 }
 
-void SurfaceCorrections::refine(const std::vector<int>& views, const std::string& key, LightEstimate& light) {
+void SurfaceCorrections::refine(const std::vector<int>& views, const FitKey& key, LightEstimate& light) {
   if (r_.request.settings.flag("light.refine_depth")) refineDepth(views, key, light);
   if (r_.request.settings.flag("light.refine_normals")) refineNormals(views, key, light);
 }
 
-void SurfaceCorrections::refineDepth(const std::vector<int>& views, const std::string& key, LightEstimate& light) {
+void SurfaceCorrections::refineDepth(const std::vector<int>& views, const FitKey& key, LightEstimate& light) {
   for (const int v : views)
     if (!r_.scene->frames[r_.views[v].frame].surface.empty()) return;  // a mesh or a shape has no depth that could be off
   const Outcome<DepthRefinement> refined = glint::refineDepth(of(views), light.light, r_.request.settings);
@@ -49,7 +49,7 @@ void SurfaceCorrections::refineDepth(const std::vector<int>& views, const std::s
   if (!light.extent && refined->uncertainty) light.uncertainty = refined->uncertainty;
 }
 
-void SurfaceCorrections::refineNormals(const std::vector<int>& views, const std::string& key, LightEstimate& light) {
+void SurfaceCorrections::refineNormals(const std::vector<int>& views, const FitKey& key, LightEstimate& light) {
   if (views.empty()) return;
   const std::string surface = r_.surfaces->keyOf(r_.views[views.front()].frame);
   const auto source = r_.scene->surfaces.find(surface);
@@ -65,7 +65,7 @@ void SurfaceCorrections::refineNormals(const std::vector<int>& views, const std:
   if (!light.extent && uncertainty) light.uncertainty = uncertainty;
 }
 
-void SurfaceCorrections::correctViews(const std::vector<int>& views, const std::string& key) {
+void SurfaceCorrections::correctViews(const std::vector<int>& views, const FitKey& key) {
   if (const auto refined = r_.refinedNormals.find(key); refined != r_.refinedNormals.end()) {
     for (const int v : views)
       if (!r_.views[v].failure) r_.views[v] = onSurface(r_.views[v], refined->second.mesh);

@@ -18,18 +18,17 @@ class SurfaceCorrections {
   explicit SurfaceCorrections(Inspection& inspection) : r_(inspection) {}
 
   /// The surface that a frame shows under a light: corrected where there is a correction of it, else as given; null where there is none. Thread-safe.
-  /// @param key  of the light, see lightKey().
-  std::shared_ptr<const Surface> surfaceOf(int frame, const std::string& key);
+  std::shared_ptr<const Surface> surfaceOf(int frame, const FitKey& key);
   /// Estimates what the settings ask for and corrects the views and the light with it, where it is worth it.
   /// @param views  of this light: indices into Inspection::views.
-  void refine(const std::vector<int>& views, const std::string& key, LightEstimate& light);
+  void refine(const std::vector<int>& views, const FitKey& key, LightEstimate& light);
   /// Puts the views on their corrected surfaces, where there are any.
-  void correctViews(const std::vector<int>& views, const std::string& key);
-  bool any(const std::string& key) const { return r_.depthCorrections.count(key) + r_.refinedNormals.count(key) > 0; }
+  void correctViews(const std::vector<int>& views, const FitKey& key);
+  bool any(const FitKey& key) const { return r_.depthCorrections.count(key) + r_.refinedNormals.count(key) > 0; }
 
  private:
-  void refineDepth(const std::vector<int>& views, const std::string& key, LightEstimate& light);
-  void refineNormals(const std::vector<int>& views, const std::string& key, LightEstimate& light);
+  void refineDepth(const std::vector<int>& views, const FitKey& key, LightEstimate& light);
+  void refineNormals(const std::vector<int>& views, const FitKey& key, LightEstimate& light);
   std::vector<TrainingView> of(const std::vector<int>& views) const;
 
   Inspection& r_;

@@ -207,10 +207,9 @@ std::optional<FittedLobe> lobeOfLimitAngle(const Inspection& in, int frame) {
   for (const TrainingView& v : in.views) {
     if (found && v.frame != frame) continue;
     const double q = v.highlight.level;
-    const auto surface = in.train.perSurface && in.surfaces ? std::optional(in.surfaces->keyOf(v.frame)) : std::nullopt;
-    const auto light = in.lights.find(lightKey(v.highlight.light, surface));
-    if (v.failure || !(q > 0 && q < 1) || light == in.lights.end()) continue;
-    const double alpha = light->second.limitAngle;
+    const LightEstimate* const light = in.lightFor(v.frame, v.highlight.light);
+    if (v.failure || !(q > 0 && q < 1) || !light) continue;
+    const double alpha = light->limitAngle;
     if (!(alpha > 0)) continue;
     const std::string origin = formatted("limit angle %.3g\u00b0 at level %.3g, light ", degrees(alpha), q);
     found = FittedLobe{Lobe::TorranceSparrow, std::tan(alpha) / std::sqrt(-std::log(q)), origin + v.highlight.light};

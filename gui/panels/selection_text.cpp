@@ -207,10 +207,10 @@ std::vector<NumberGroup> describeSelection(const Inspection& inspection, const v
         groups.push_back(fitGroup(model, result->second.fits[std::size_t(c.fit)], frame));
     }
   }
-  for (const auto& [id, estimate] : inspection.lights)
-    if (light.empty() || id == light || id.rfind(light + "@", 0) == 0) groups.push_back(lightGroup(id, estimate));
-  for (const auto& [id, failure] : inspection.lightFailures)
-    groups.push_back({QObject::tr("Light %1").arg(nameText(id)), toQString(failure.message())});
+  for (const auto& [id, estimate] : inspection.lightsFor(frame)) {
+    if (!*estimate) groups.push_back({QObject::tr("Light %1").arg(nameText(id)), toQString(estimate->failure().message())});
+    else if (light.empty() || id == light) groups.push_back(lightGroup(id, **estimate));
+  }
   for (NumberGroup& group : groups) group.lines = toQString(withoutFolder(group.lines.toStdString(), *inspection.scene));
   return groups;
 }

@@ -55,7 +55,7 @@ std::vector<SceneObject> lightsOf(const Scene& scene, const Inspection* inspecti
   for (const TrueLight& light : scene.lights) addOnce(objects, {Kind::Light, -1, -1, light.id, {}});
   if (inspection)
     for (const auto& [key, estimate] : inspection->lights)
-      addOnce(objects, {Kind::Light, -1, -1, key.substr(0, key.find('@')), {}});
+      if (estimate) addOnce(objects, {Kind::Light, -1, -1, key.light, {}});
   return objects;
 }
 
@@ -380,9 +380,7 @@ QString SceneTreeModel::detailOf(const SceneObject& o) const {
     case Kind::Highlight:
       return nameText(o.light);
     case Kind::Light: {
-      const auto estimated = inspection && std::any_of(inspection->lights.begin(), inspection->lights.end(), [&](const auto& l) {
-                               return l.first.substr(0, l.first.find('@')) == o.key;
-                             });
+      const auto estimated = inspection && std::any_of(inspection->lights.begin(), inspection->lights.end(), [&](const auto& l) { return l.first.light == o.key && l.second; });
       const auto known = std::any_of(scene.lights.begin(), scene.lights.end(), [&](const TrueLight& l) { return l.id == o.key; });
       return estimated ? tr("estimated") : known ? tr("truth only") : QString();
     }

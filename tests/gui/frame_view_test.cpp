@@ -401,7 +401,9 @@ class FrameViewTest : public QObject {
   void theProbeKnowsTheSurface() {
     auto inspection = std::make_shared<Inspection>(drawnCircles(fixture_.scene(), document_->request()));
     inspection->surfaces = std::make_shared<const SurfaceCache>(*fixture_.scene());
-    inspection->lights["lamp"].light = Light::at({0, 0, -2});
+    LightEstimate lamp;
+    lamp.light = Light::at({0, 0, -2});
+    inspection->lights.insert_or_assign({"lamp"}, lamp);
     document_->setInspection(inspection, document_->request());
     QSignalSpy probed(frame_.get(), &FramePanel::probed);
     const QPointF at = frame_->canvas()->widgetFromPixel({79.5, 59.5});

@@ -215,9 +215,9 @@ class PickingTest : public QObject {
   void aLightInTheScene() {
     pick("scene", kShowLight, [this] {
       onlyLayer("light");
-      clickWorld(inspection_->lights.begin()->second.light.position());
+      clickWorld(inspection_->lights.begin()->second->light.position());
     });
-    QCOMPARE(document_->selection().light, inspection_->lights.begin()->first);
+    QCOMPARE(document_->selection().light, inspection_->lights.begin()->first.light);
   }
 
  private:

@@ -123,7 +123,7 @@ TEST_F(LinkedPicking, CameraEllipsoidLightAndVirtualCameraTellWhatTheyAre) {
 
   showOnly("light");
   render(view_);
-  const std::optional<Picked> light = pickAt((inspection_->lights.at("lamp").light.position()));
+  const std::optional<Picked> light = pickAt(inspection_->lightFor(0, "lamp")->light.position());
   ASSERT_TRUE(light);
   EXPECT_EQ(light->layer, "light");
   EXPECT_EQ(light->light, "lamp");

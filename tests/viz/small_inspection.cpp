@@ -122,8 +122,10 @@ std::shared_ptr<Inspection> smallInspection(const std::filesystem::path& folder,
   inspection->request.models = {"dual", "canonical"};
   inspection->train.text = "0-3";
   inspection->train.frames = {0, 1, 2, 3};
-  inspection->lights["lamp"].light = Light::at(light + scale * Eigen::Vector3d(0.05, 0.02, -0.03));
-  inspection->lights["lamp"].solver = "bundle";
+  LightEstimate estimate;
+  estimate.light = Light::at(light + scale * Eigen::Vector3d(0.05, 0.02, -0.03));
+  estimate.solver = "bundle";
+  inspection->lights.insert_or_assign({"lamp"}, estimate);
 
   ModelResult canonical, dual;
   canonical.model = "canonical";

@@ -62,30 +62,29 @@ void addEstimate(LayerContent& content, const LayerInput& in, const Light& light
 
 LayerContent lightLayer(const LayerInput& in) {
   LayerContent content;
-  for (const auto& [key, estimate] : in.inspection->lights) {
-    const std::size_t at = key.find('@');
-    if (at != std::string::npos && key.substr(at + 1) != in.surfaceKey) continue;
+  for (const auto& [id, outcome] : in.inspection->lightsFor(in.selection.frame)) {
+    if (!*outcome || in.hidden.lights.count(id)) continue;
+    const LightEstimate& estimate = **outcome;
     Picked info;
     info.layer = "light";
-    info.light = key.substr(0, at);
-    if (in.hidden.lights.count(info.light)) continue;
-    info.text = line("estimated light", key.substr(0, at)) + line("solver", estimate.solver) +
+    info.light = id;
+    info.text = line("estimated light", id) + line("solver", estimate.solver) +
                 line("limit angle", estimate.limitAngle * 180 / std::numbers::pi, "deg") + line("condition", estimate.condition);
     if (estimate.rmsPx > 0)  // 0: triangulated from rays alone
-      info.text += line("residual", estimate.rmsPx, "px") + "(residual: " + residualMeaning(estimate) + ")\n";
+      info.text += line("residual", estimate.rmsPx, "px") + "(residual: " + residualMeaning(estimate) + ")
+";
     if (estimate.covariance && estimate.covariance->allFinite()) {
       info.text += line("standard deviation", Eigen::Vector3d(estimate.covariance->diagonal().cwiseMax(0).cwiseSqrt()), "m");
     }
-    addEstimate(content, in, estimate.light, 1, kLightColour, "light " + key.substr(0, at) + " (estimate)", info);
+    addEstimate(content, in, estimate.light, 1, kLightColour, "light " + id + " (estimate)", info);
   }
   // A model may refine the light by itself: drawn smaller, in the model's colour, where it differs from the common one.
   for (const std::string& model : in.models) {
     for (const ModelFit* fit : in.fits(model)) {
       if (!fit->lightEstimate) continue;
       bool common = false;
-      for (const auto& [key, estimate] : in.inspection->lights) {
-        common = common || (estimate.light.homogeneous() - fit->lightEstimate->homogeneous()).norm() < 1e-9;
-      }
+      for (const auto& [key, estimate] : in.inspection->lights)
+        common = common || (estimate && (estimate->light.homogeneous() - fit->lightEstimate->homogeneous()).norm() < 1e-9);
       if (common) continue;
       Picked info;
       info.layer = "light";

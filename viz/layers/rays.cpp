@@ -19,11 +19,9 @@ void addRay(LayerContent& content, const LayerInput& in, const TrainingView& vie
   // As far as the light where there is one in reach, so that one sees how well the rays meet there.
   double reach = 0.6 * in.scale.sceneSize;
   const Inspection& inspection = *in.inspection;
-  const auto estimate = inspection.lights.find(lightKey(
-      view.highlight.light,
-      inspection.train.perSurface && inspection.surfaces ? std::optional(inspection.surfaces->keyOf(view.frame)) : std::nullopt));
-  if (estimate != inspection.lights.end() && !estimate->second.light.atInfinity()) {
-    const double along = r.dot(estimate->second.light.position() - p.position);
+  const LightEstimate* const estimate = inspection.lightFor(view.frame, view.highlight.light);
+  if (estimate && !estimate->light.atInfinity()) {
+    const double along = r.dot(estimate->light.position() - p.position);
     if (along > 0) reach = std::min(1.1 * along, 4 * in.scale.sceneSize);
   }
   const bool selected = view.frame == in.selection.frame;

@@ -45,7 +45,7 @@ Inspection inspected(std::shared_ptr<Scene> scene, const std::string& train) {
 
 TEST(ExplainLight, AModelWithALightOfItsOwnShowsThatOne) {
   Inspection inspection = inspected(litScene(sphere(0.5), 6), "first:4");
-  const Eigen::Vector3d common = inspection.lights.at("lamp").light.position(), own = kLamp + Eigen::Vector3d(0.03, -0.02, 0.05);
+  const Eigen::Vector3d common = inspection.lightFor(0, "lamp")->light.position(), own = kLamp + Eigen::Vector3d(0.03, -0.02, 0.05);
   ModelResult other = inspection.models.at("canonical");  // found a light of its own from the same views
   other.model = "reflectance";
   other.fits.at(0).fit->model = "reflectance";
@@ -95,7 +95,7 @@ TEST(ExplainLight, WithAModelForEachSurfaceTheRaysAreThoseOfTheSurfaceConcerned)
 
 TEST(ExplainLight, AnErrorOfManySigmaIsSaid) {
   Inspection inspection = inspected(litScene(sphere(0.5), 6), "first:4");
-  LightEstimate& estimate = inspection.lights.at("lamp");
+  LightEstimate& estimate = *inspection.lights.at({"lamp", {}});
   estimate.covariance = 1e-6 * Eigen::Matrix3d::Identity();  // 1 mm
   for (const double sigmas : {35.0, 3.0}) {
     estimate.light = Light::at(kLamp + Eigen::Vector3d(0, 1e-3 * sigmas, 0));

@@ -98,7 +98,7 @@ TEST(Inspect, TwoLightsGivenByTheSceneKeepTheirNamesAndTheirFits) {
     for (std::size_t h = 0; h < 2; ++h) EXPECT_EQ(r.evidence[i].highlights[h].light, scene->frames[i].highlights[h].light);
   }
   for (const NamedLight& light : {kLeft, kRight})
-    EXPECT_LT((r.lights.at(light.id).light.position() - light.position).norm(), kChordLightM) << light.id;
+    EXPECT_LT((r.lightFor(0, light.id)->light.position() - light.position).norm(), kChordLightM) << light.id;
   const ModelSummary s = summarise(r, r.models.at("limit-angle"));
   EXPECT_EQ(s.frames, 8);  // 4 held-out frames of 2 lights
   EXPECT_EQ(s.matched, 8);
@@ -114,8 +114,8 @@ TEST(Inspect, TwoLightsNotNamedAreToldApart) {
   InspectionRequest q = request();
   const Inspection r = inspect(scene, q);
   for (const NamedLight& light : {kLeft, kRight}) {
-    ASSERT_TRUE(r.lights.count(light.id)) << light.id;
-    EXPECT_LT((r.lights.at(light.id).light.position() - light.position).norm(), kChordLightM) << light.id;
+    ASSERT_TRUE(r.lightFor(0, light.id)) << light.id;
+    EXPECT_LT((r.lightFor(0, light.id)->light.position() - light.position).norm(), kChordLightM) << light.id;
   }
   EXPECT_EQ(summarise(r, r.models.at("limit-angle")).matched, 8);
 }

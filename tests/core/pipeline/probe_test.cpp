@@ -8,6 +8,12 @@
 namespace glint {
 namespace {
 
+LightEstimate estimateOf(const Light& light) {
+  LightEstimate estimate;
+  estimate.light = light;
+  return estimate;
+}
+
 /// A unit sphere at the origin, seen from (0, 0, -3) along +z, focal length 100 px; the light where the camera is.
 Inspection ballInFront() {
   auto scene = std::make_shared<Scene>();
@@ -26,9 +32,9 @@ Inspection ballInFront() {
   Inspection inspection;
   inspection.scene = scene;
   inspection.surfaces = std::make_shared<const SurfaceCache>(*scene);
-  inspection.lights["lamp"].light = Light::at({0, 0, -3});
-  inspection.lights["behind"].light = Light::towards({0, 0, 1});
-  inspection.lights["lamp@elsewhere"].light = Light::at({5, 0, 0});
+  inspection.lights.insert_or_assign({"lamp"}, estimateOf(Light::at({0, 0, -3})));
+  inspection.lights.insert_or_assign({"behind"}, estimateOf(Light::towards({0, 0, 1})));
+  inspection.lights.insert_or_assign({"lamp", "elsewhere"}, estimateOf(Light::at({5, 0, 0})));
   return inspection;
 }
 
@@ -67,7 +73,7 @@ TEST(ProbePixel, TheNormalIsThatOfTheCamerasSide) {
   auto scene = std::make_shared<Scene>(*inspection.scene);
   scene->frames[0].camera.camFromWorld = Eigen::Isometry3d::Identity();  // inside the ball, at its centre
   inspection.scene = scene;
-  inspection.lights["lamp"].light = Light::at({0, 0, 0.5});
+  inspection.lights.insert_or_assign({"lamp"}, estimateOf(Light::at({0, 0, 0.5})));
   const Outcome<PixelProbe> probe = probePixel(inspection, 0, {50, 40});
   ASSERT_TRUE(probe);
   EXPECT_LT((probe->point.normal - Eigen::Vector3d(0, 0, -1)).norm(), 1e-9);

@@ -60,13 +60,13 @@ TEST_F(RefinedNormalsTest, HeldOutFramesGainForEveryModel) {
   without.models = with.models = {"limit-angle", "canonical", "reflectance"};
   const Inspection plain = inspect(scene, without), refined = inspect(scene, with);
   EXPECT_TRUE(plain.refinedNormals.empty());
-  ASSERT_EQ(refined.refinedNormals.count("lamp"), 1u);
+  ASSERT_EQ(refined.refinedNormals.count({"lamp"}), 1u);
   for (const std::string& model : with.models) {
     EXPECT_LT(errorPct(refined, model), 0.5 * errorPct(plain, model)) << model;
     const std::vector<std::string>& remarks = refined.models.at(model).fits.at(0).fit->remarks;
     EXPECT_TRUE(std::any_of(remarks.begin(), remarks.end(), [](const std::string& r) { return r.find("light.refine_normals") != std::string::npos; })) << model;
   }
-  const RefinedNormals& r = refined.refinedNormals.at("lamp");
+  const RefinedNormals& r = refined.refinedNormals.at({"lamp"});
   EXPECT_EQ(r.surface, "body");
   EXPECT_LT(r.refinedPx, 0.2 * r.plainPx);
   for (const TrainingView& v : refined.views) EXPECT_EQ(v.surface, r.mesh);
@@ -107,9 +107,9 @@ TEST_F(RefinedNormalsTest, WhatHasNoNormalsToTurnStays) {
   scene->surfaces["other"].analytic = other;
   scene->frames[1].surface = "other";
   const Inspection mixed = inspect(scene, request(true));
-  ASSERT_EQ(mixed.refinedNormals.count("lamp"), 1u);
-  EXPECT_NE(*surfaceFor(mixed, 1, "lamp"), mixed.refinedNormals.at("lamp").mesh);
-  EXPECT_EQ(*surfaceFor(mixed, 3, "lamp"), mixed.refinedNormals.at("lamp").mesh);
+  ASSERT_EQ(mixed.refinedNormals.count({"lamp"}), 1u);
+  EXPECT_NE(*surfaceFor(mixed, 1, "lamp"), mixed.refinedNormals.at({"lamp"}).mesh);
+  EXPECT_EQ(*surfaceFor(mixed, 3, "lamp"), mixed.refinedNormals.at({"lamp"}).mesh);
   scene->frames[2].surface = "other";
   EXPECT_TRUE(inspect(scene, request(true)).refinedNormals.empty());
 }

@@ -86,7 +86,7 @@ TEST(WhatIf, AWrongPoseSpoilsTheFitAndPuttingItBackIsTheStart) {
   q.whatIf.poses[1].rotation = {0, 0.02, 0};
   const Inspection wrong = inspect(scene, q, {}, &start);
   EXPECT_EQ(wrong.work.framesDetected, 0) << "the photograph is the same";
-  EXPECT_GT(wrong.lights.at("lamp").rmsPx, 5 * std::max(0.01, start.lights.at("lamp").rmsPx));
+  EXPECT_GT(wrong.lightFor(0, "lamp")->rmsPx, 5 * std::max(0.01, start.lightFor(0, "lamp")->rmsPx));
   EXPECT_EQ(digestOf(inspect(scene, request(), {}, &wrong)), digestOf(start));
 }
 

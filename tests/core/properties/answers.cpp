@@ -107,10 +107,10 @@ void compare(const Inspection& a, const Inspection& b, const Back& back, const s
   Comparison c(back, scene, d);
   ASSERT_EQ(a.lights.size(), b.lights.size()) << scene;
   for (const auto& [key, light] : a.lights) {
-    ASSERT_TRUE(b.lights.count(key)) << scene << ": light " << key;
-    if (!models.empty()) continue;
-    c.light("all", light.light, b.lights.at(key).light);
-    c.relative("all", Quantity::LimitAngle, light.limitAngle, b.lights.at(key).limitAngle);
+    ASSERT_TRUE(b.lights.count(key) && bool(b.lights.at(key)) == bool(light)) << scene << ": light " << textOf(key);
+    if (!models.empty() || !light) continue;
+    c.light("all", light->light, b.lightOf(key)->light);
+    c.relative("all", Quantity::LimitAngle, light->limitAngle, b.lightOf(key)->limitAngle);
   }
   for (const auto& [name, model] : a.models) {
     if (!models.empty() && std::find(models.begin(), models.end(), name) == models.end()) continue;

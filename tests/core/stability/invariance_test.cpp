@@ -299,9 +299,10 @@ TEST(Invariance, OrderOfLights) {
   request.settings.set("fit.most_residual", 10.0);  // the sheet is no plane: what is compared counts, not how good it is
   const Inspection first = inspect(here, request), second = inspect(there, request);
   ASSERT_EQ(first.lights.size(), 2u);
-  for (const auto& [id, light] : first.lights) {
-    const Eigen::Vector3d a = light.light.position(), b = second.lights.at(id).light.position();
-    EXPECT_LT((a - b).norm() / a.norm(), kSame) << id;
+  for (const auto& [key, light] : first.lights) {
+    ASSERT_TRUE(light && second.lightOf(key)) << textOf(key);
+    const Eigen::Vector3d a = light->light.position(), b = second.lightOf(key)->light.position();
+    EXPECT_LT((a - b).norm() / a.norm(), kSame) << textOf(key);
   }
   int fits = 0;
   for (const auto& [name, model] : first.models)
