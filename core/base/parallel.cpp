@@ -26,6 +26,14 @@ int threadCount() {
   }();
   return count;
 }
+
+/// This thread works for a loop of several threads.
+thread_local bool inLoop = false;
+struct InLoop {
+  explicit InLoop(bool now) : before(inLoop) { inLoop = before || now; }
+  ~InLoop() { inLoop = before; }
+  const bool before;
+};
 }  // namespace
 
 void parallelFor(int n, const std::function<void(int)>& work, const ProgressFn& progress, const std::string& stage) {
@@ -34,7 +42,9 @@ void parallelFor(int n, const std::function<void(int)>& work, const ProgressFn& 
   std::atomic<bool> stop{false}, stopped{false};
   std::exception_ptr error;
   std::mutex mutex;
+  const int count = inLoop ? 1 : std::min(n, threadCount());
   const auto run = [&] {
+    const InLoop mark(count > 1);
     while (!stop) {
       const int i = next++;
       if (i >= n) return;
@@ -51,7 +61,6 @@ void parallelFor(int n, const std::function<void(int)>& work, const ProgressFn& 
     }
   };
   if (!report(progress, {stage, 0, n})) throw Stopped{};
-  const int count = std::min(n, threadCount());
   std::vector<std::thread> threads;
   try {
     for (int t = 1; t < count; ++t) threads.emplace_back(run);

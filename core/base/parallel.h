@@ -9,7 +9,7 @@
 namespace glint {
 
 /// Calls work(i) for i in [0, n) from several threads (the hardware's, at most 8; one when n is 1). Reports progress from
-/// any of them, one at a time; throws Stopped when the progress function says stop, and rethrows the first exception of `work` or `progress`.
+/// any of them, one at a time. A loop inside of another one's work runs in the thread that calls it. Throws Stopped when the progress function says stop, and rethrows the first exception of `work` or `progress`.
 void parallelFor(int n, const std::function<void(int)>& work, const ProgressFn& progress, const std::string& stage);
 
 }  // namespace glint

@@ -103,8 +103,8 @@ Influence measureInfluence(const Inspection& inspection, const ProgressFn& progr
       ++influence.trainingFrames;
   influence.probes = probesOf(inspection, mostProbes);
   for (const Fold& fold : folds)
-    if (influence.frames.empty() || influence.frames.back().frame != fold.left->frame)
-      influence.frames.push_back({fold.left->frame, {}});
+    if (influence.frames.empty() || influence.frames.back().frame != fold.left.frame)
+      influence.frames.push_back({fold.left.frame, {}});
   std::sort(influence.frames.begin(), influence.frames.end(), [](const auto& a, const auto& b) { return a.frame < b.frame; });
   influence.frames.erase(std::unique(influence.frames.begin(), influence.frames.end(),
                                      [](const auto& a, const auto& b) { return a.frame == b.frame; }),
@@ -130,11 +130,11 @@ Influence measureInfluence(const Inspection& inspection, const ProgressFn& progr
         n * probes,
         [&](int i) {
           const int fold = i / probes, frame = influence.probes[std::size_t(i % probes)];
-          const std::string& light = folds[std::size_t(fold)].left->highlight.light;
+          const std::string& light = folds[std::size_t(fold)].left.highlight.light;
           const Answer& answer = answers[std::size_t(fold)];
           if (!answer.fit || !shows(inspection, frame, light)) return;
           const Camera& camera = inspection.scene->frames[std::size_t(frame)].camera;
-          const Outcome<std::shared_ptr<const Surface>> surface = surfaceOfFrame(inspection, frame, light);
+          const Outcome<std::shared_ptr<const Surface>> surface = folds[std::size_t(fold)].surfaceOf(frame, model);
           Prediction p = model.predict(*answer.fit, camera, surface ? surface->get() : nullptr, settings);
           errors[std::size_t(i)] = countedPct(compareFrame(inspection.evidence[std::size_t(frame)], light, camera, std::move(p)));
         },
@@ -150,20 +150,20 @@ Influence measureInfluence(const Inspection& inspection, const ProgressFn& progr
       ModelInfluence& m = frame.models[id];
       Mean left, held, before;
       for (int f = 0; f < n; ++f) {
-        if (folds[std::size_t(f)].left->frame != frame.frame) continue;
+        if (folds[std::size_t(f)].left.frame != frame.frame) continue;
         const Answer& answer = answers[std::size_t(f)];
         if (answer.errorPct) left.add(*answer.errorPct);
         if (!answer.fit) {
           if (!m.failure) m.failure = answer.failure;
           continue;
         }
-        if (const ModelFit* with = fitOf(inspection, result, *folds[std::size_t(f)].left)) compareFits(*with, *answer.fit, m);
+        if (const ModelFit* with = fitOf(inspection, result, folds[std::size_t(f)].left)) compareFits(*with, *answer.fit, m);
         for (int p = 0; p < probes; ++p) {
           const std::optional<double>& error = errors[std::size_t(f) * std::size_t(probes) + std::size_t(p)];
           if (!error) continue;
           held.add(*error);
           for (const FrameComparison& c : result.frames)
-            if (c.frame == influence.probes[std::size_t(p)] && c.light == folds[std::size_t(f)].left->highlight.light)
+            if (c.frame == influence.probes[std::size_t(p)] && c.light == folds[std::size_t(f)].left.highlight.light)
               if (const std::optional<double> pct = countedPct(c)) before.add(*pct);
         }
       }

@@ -6,8 +6,6 @@
 #include <limits>
 #include <numbers>
 
-#include "core/pipeline/corrected_depth.h"
-#include "core/surface/mesh_policy.h"
 
 namespace glint {
 namespace {
@@ -142,10 +140,6 @@ Outcome<std::shared_ptr<const Surface>> surfaceOfFrame(const Inspection& inspect
   require(frame >= 0 && frame < int(inspection.scene->frames.size()), "surfaceOfFrame: no such frame");
   for (const TrainingView& v : inspection.views)
     if (v.frame == frame && !v.failure && v.surface && v.highlight.light == light) return v.surface;
-  const MeshPolicy policy = meshPolicy(inspection.request.settings);
-  const Frame& f = inspection.scene->frames[std::size_t(frame)];
-  if (const auto found = inspection.depthCorrections.find(inspection.keyFor(frame, light)); found != inspection.depthCorrections.end() && f.surface.empty())
-    return correctedDepthMap(f, policy, found->second);
   return surfaceFor(inspection, frame, light);
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/base/number_text.h"
 #include "core/model/reflectance_settings.h"
+#include "core/pipeline/fit_engine.h"
 #include "core/pipeline/training.h"
 
 namespace glint {
@@ -39,25 +40,13 @@ CameraChange zoomed(double factor) {
   };
 }
 
-/// The input as it would be with other cameras, all derived quantities anew.
-FitInput with(const FitInput& input, const CameraChange& change, const HighlightModel& model, const Settings& settings) {
-  FitInput other;
-  for (const TrainingView& v : input.views) {
-    if (v.failure) continue;
-    FrameEvidence evidence;
-    evidence.frame = v.frame;
-    evidence.highlights = {v.highlight};
-    other.views.push_back(trainingView(evidence, 0, change(v.camera), v.surface));
-  }
-  if (!model.needsLight()) return other;
-  const Outcome<LightEstimate> light = estimateLight(other.views, settings);
-  if (light)
-    other.light = *light;
-  else
-    other.lightFailure = light.failure();
-  if (light && model.needsCanonicalContours())
-    for (TrainingView& v : other.views) addCanonicalContour(v, light->light, settings);
-  return other;
+/// The fit as it would be with other cameras, all derived quantities anew.
+Outcome<ModelFit> fitWith(const FitInput& input, const CameraChange& change, const HighlightModel& model, const Settings& settings) {
+  std::vector<TrainingView> views;
+  for (const TrainingView& v : input.views)
+    if (!v.failure) views.push_back(seenAgain(v, change(v.camera), v.surface));
+  const std::optional<Outcome<LightEstimate>> light = model.needsLight() ? std::optional(estimateLight(views, settings)) : std::nullopt;
+  return fitModel(model, std::move(views), light, settings);
 }
 
 /// Mean square of the distances of the training contours' points from the contours that a fit predicts there, px^2: the same measure for
@@ -153,7 +142,7 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
   // Pixels are not carried to other cameras: what a tolerance moves is then told by contours, before and after.
   std::shared_ptr<const ModelFit> reference;
   if (fit.evidence == "pixels") {
-    const Outcome<ModelFit> fromContours = model.fit(with(input, [](const Camera& c) { return c; }, model, settings), settings);
+    const Outcome<ModelFit> fromContours = fitWith(input, [](const Camera& c) { return c; }, model, settings);
     if (fromContours) reference = std::make_shared<const ModelFit>(*fromContours);
   }
   const auto tolerance = [&](const char* key, const char* what, CameraChange (*change)(double)) {
@@ -161,7 +150,7 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
     if (!(t > 0)) return;
     for (const double factor : {1 + t, 1 / (1 + t)}) {
       const CameraChange moved = change(factor);
-      const Outcome<ModelFit> other = model.fit(with(input, moved, model, settings), settings);
+      const Outcome<ModelFit> other = fitWith(input, moved, model, settings);
       if (other)
         band->add({&model, *other, moved, reference, kToleranceShare});
       else

@@ -9,6 +9,7 @@
 #include "core/model/model.h"
 #include "core/model/reflectance_settings.h"
 #include "core/pipeline/evidence.h"
+#include "core/pipeline/fit_engine.h"
 #include "core/pipeline/training.h"
 #include "core/surface/mesh_policy.h"
 
@@ -117,7 +118,7 @@ class Check {
     settings.set("fit.evidence", std::string("contours"));  // pixels would move the residuals away from them
     settings.set("light.bundle_points", 36);                // as good for comparisons, in half the time
     settings.set("fit.most_residual", 0.3);                 // what wrong cameras leave is measured here, it is no answer
-    FitInput input;
+    std::vector<TrainingView> views;
     for (const int i : which) {
       const View& v = views_[static_cast<std::size_t>(i)];
       Camera camera = scene_.frames[static_cast<std::size_t>(v.evidence.frame)].camera;
@@ -136,17 +137,15 @@ class Check {
       if (change.flipX != change.flipY) std::reverse(h.contour.points.begin(), h.contour.points.end());  // keeps its sense
       TrainingView view = trainingView(evidence, 0, camera, v.surface);
       if (view.failure) return std::nullopt;
-      input.views.push_back(std::move(view));
+      views.push_back(std::move(view));
     }
-    if (near) {
-      input.near = near->model;
-      input.light.emplace().light = *near->model->lightEstimate;  // should the search be needed all the same
-    } else if (Outcome<LightEstimate> light = estimateLight(input.views, settings)) {
-      input.light = *light;
-    } else {
-      input.lightFailure = light.failure();
-    }
-    const Outcome<ModelFit> fitted = modelByName("reflectance").fit(input, settings);
+    LightEstimate known;  // should the search be needed all the same
+    if (near) known.light = *near->model->lightEstimate;
+    const Outcome<LightEstimate> light = near ? Outcome<LightEstimate>(known) : estimateLight(views, settings);
+    const HighlightModel& model = modelByName("reflectance");
+    FitInput input = fitInput(model, std::move(views), light, settings);
+    if (near) input.near = near->model;
+    const Outcome<ModelFit> fitted = model.fit(input, settings);
     if (!fitted || fitted->residualPx.size() != which.size()) return std::nullopt;
     Fitted result;
     for (const double r : fitted->residualPx) result.rmsPx += r * r / double(which.size());

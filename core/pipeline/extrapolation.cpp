@@ -11,7 +11,6 @@
 #include "core/base/parallel.h"
 #include "core/evaluate/metrics.h"
 #include "core/pipeline/lobe_stage.h"
-#include "core/surface/mesh_policy.h"
 
 namespace glint {
 namespace {
@@ -26,7 +25,7 @@ Eigen::Vector3d middleOf(const std::vector<Fold>& folds, const std::string& ligh
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   int count = 0;
   for (const Fold& f : folds)
-    if (f.left->highlight.light == light && f.left->brightest) sum += f.left->brightest->point.position, ++count;
+    if (f.left.highlight.light == light && f.left.brightest) sum += f.left.brightest->point.position, ++count;
   return count ? Eigen::Vector3d(sum / count) : sum;
 }
 
@@ -67,17 +66,17 @@ std::vector<ViewToPredict> viewsToPredict(const Inspection& inspection, const st
   if (inspection.train.perSurface) return some;  // every frame trains
   const Scene& scene = *inspection.scene;
   std::set<std::string> lights, surfaces;
-  for (const Fold& f : folds) lights.insert(f.left->highlight.light), surfaces.insert(scene.frames[f.left->frame].surface);
+  for (const Fold& f : folds) lights.insert(f.left.highlight.light), surfaces.insert(scene.frames[f.left.frame].surface);
   for (const std::string& light : lights) {
     const Eigen::Vector3d middle = middleOf(folds, light);
     std::vector<const TrainingView*> training;
     for (const Fold& f : folds)
-      if (f.left->highlight.light == light) training.push_back(f.left);
+      if (f.left.highlight.light == light) training.push_back(&f.left);
     double tested = 0;
     for (const Fold& f : folds) {
-      if (f.left->highlight.light != light) continue;
+      if (f.left.highlight.light != light) continue;
       double nearest = HUGE_VAL;
-      for (const TrainingView& o : f.others) nearest = std::min(nearest, distanceDeg(f.left->camera, o.camera, middle));
+      for (const TrainingView& o : f.others) nearest = std::min(nearest, distanceDeg(f.left.camera, o.camera, middle));
       if (std::isfinite(nearest)) tested = std::max(tested, nearest);
     }
     for (int f = 0; f < static_cast<int>(scene.frames.size()); ++f) {
@@ -98,7 +97,7 @@ std::vector<ViewToPredict> viewsToPredict(const Inspection& inspection, const st
   const std::size_t count = std::min(all.size(), most);
   for (std::size_t i = 0; i < count; ++i) {
     ViewToPredict& view = all[i * all.size() / count];
-    const auto surface = inspection.surfaces->surfaceOf(view.frame, meshPolicy(inspection.request.settings));
+    const auto surface = surfaceFor(inspection, view.frame, view.light);
     if (!surface) continue;  // no prediction of any kind
     view.surface = *surface;
     some.push_back(std::move(view));
@@ -109,15 +108,17 @@ std::vector<ViewToPredict> viewsToPredict(const Inspection& inspection, const st
 std::map<std::string, Fold> wholeFolds(const Inspection& inspection, const std::vector<Fold>& folds) {
   std::map<std::string, Fold> whole;
   for (const Fold& f : folds) {
-    Fold& all = whole[f.left->highlight.light];
-    if (all.left) continue;
-    all.left = f.left;
-    for (const TrainingView& v : inspection.views) {
-      if (v.failure || v.highlight.light != f.left->highlight.light) continue;
-      all.others.push_back(v);
-      all.others.back().canonical.reset();
-    }
-    all.pixelFit = pixelFitFor(inspection, {f.left->highlight.light, {}});
+    const std::string& light = f.left.highlight.light;
+    const auto [at, isNew] = whole.try_emplace(light, f);
+    if (!isNew) continue;
+    Fold& all = at->second;
+    all.light.reset();
+    all.canonicalTried = false;
+    all.others.clear();
+    for (std::size_t v = 0; v < inspection.views.size(); ++v)
+      if (!inspection.views[v].failure && inspection.views[v].highlight.light == light)
+        all.others.push_back(inspection.viewAsGiven(static_cast<int>(v)));
+    all.pixelFit = pixelFitFor(inspection, {light, {}});
   }
   return whole;
 }
@@ -159,7 +160,7 @@ Outlook lookAhead(const HighlightModel& model, std::map<std::string, Fold>& whol
         std::vector<const ModelFit*> leftOut;
         std::size_t ofLight = 0;
         for (std::size_t f = 0; f < folds.size(); ++f) {
-          if (folds[f].left->highlight.light != view.light) continue;
+          if (folds[f].left.highlight.light != view.light) continue;
           ++ofLight;
           if (answers[f].fit) leftOut.push_back(&*answers[f].fit);
         }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <utility>
 
 #include "core/base/elapsed.h"
 #include "core/base/parallel.h"
@@ -9,12 +10,13 @@
 #include "core/model/plausible.h"
 #include "core/pipeline/band.h"
 #include "core/pipeline/comparison.h"
+#include "core/pipeline/corrected_depth.h"
 #include "core/pipeline/evidence.h"
+#include "core/pipeline/fit_engine.h"
 #include "core/pipeline/inspection.h"
 #include "core/pipeline/lobe_stage.h"
 #include "core/pipeline/several_lights.h"
 #include "core/pipeline/stage_keys.h"
-#include "core/pipeline/surface_corrections.h"
 #include "core/pipeline/training.h"
 #include "core/surface/mesh_policy.h"
 
@@ -54,7 +56,6 @@ class Run {
   /// @param onlyFrame  as inspectOneFrame; -1 = every frame
   Run(Inspection& result, const ProgressFn& progress, const Inspection* previous, int onlyFrame)
       : r_(result),
-        corrections_(result),
         progress_(progress),
         previous_(previous && previous->given == result.given ? previous : nullptr),
         onlyFrame_(onlyFrame) {}
@@ -129,7 +130,10 @@ class Run {
     return std::any_of(r_.request.models.begin(), r_.request.models.end(),
                        [&](const std::string& m) { return (modelByName(m).*needs)(); });
   }
-  FitInput fitInput(const Group& group) const;
+  FitInput fitInputOf(const HighlightModel& model, const Group& group) const;
+  /// The views of a group on the surfaces as given, or as the fits see them.
+  std::vector<TrainingView> viewsOf(const Group& group, bool asGiven) const;
+  void correct(const Group& group, const SurfaceCorrection& correction, std::vector<TrainingView> corrected);
   std::vector<std::shared_ptr<const Band>> bandsOf(const HighlightModel& model, ModelResult& result);
 
   void gather(const std::vector<int>& frames);
@@ -137,7 +141,6 @@ class Run {
   bool lightsAreOpen() const { return lightsAreOpenIn(*r_.scene, r_.request); }
 
   Inspection& r_;
-  SurfaceCorrections corrections_;
   const ProgressFn& progress_;
   const Inspection* previous_;
   int onlyFrame_;
@@ -240,9 +243,9 @@ void Run::brightestPointsAndTangentPlanes() {
                       join(q.excluded) + "|" + exactText(q.noisePx) + "|" + std::to_string(q.seed) + "|" + posesKey(q.whatIf) +
                       "|" + highlightsKey(q.whatIf) + "|" + lightsOffKey(q.whatIf) +
                       (q.settings.text("fit.evidence") == "levels" ? "|" + q.settings.text("fit.levels") : ""));
-  if (unchanged("views") && previous_->depthCorrections.empty() && previous_->refinedNormals.empty()) {  // corrected views belong to that run's light
+  if (unchanged("views")) {
     r_.views = previous_->views;
-    for (TrainingView& v : r_.views) v.canonical.reset();
+    for (std::size_t v = 0; v < r_.views.size(); ++v) r_.views[v] = previous_->viewAsGiven(static_cast<int>(v));
     return;
   }
   int done = 0;
@@ -303,24 +306,40 @@ void Run::lights() {
   if (!anyModel(&HighlightModel::needsLight)) return;
   if (unchanged("light") && !previous_->lights.empty()) {
     r_.lights = previous_->lights;
-    r_.depthCorrections = previous_->depthCorrections;
-    r_.refinedNormals = previous_->refinedNormals;
-    for (const Group& g : all) corrections_.correctViews(g.views, g.key);
+    r_.corrections = previous_->corrections;
+    r_.viewsAsGiven = previous_->viewsAsGiven;
+    r_.correctedDepthMaps = previous_->correctedDepthMaps;
+    for (const auto& [v, given] : r_.viewsAsGiven) {
+      r_.views[static_cast<std::size_t>(v)] = previous_->views[static_cast<std::size_t>(v)];
+      r_.views[static_cast<std::size_t>(v)].canonical.reset();
+    }
     return;
   }
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!report(progress_, {"light", static_cast<int>(i), static_cast<int>(all.size())})) throw Stopped{};
-    std::vector<TrainingView> views;
-    for (const int v : all[i].views) views.push_back(r_.views[v]);
     const FitKey& key = all[i].key;
     if (!seen(key.light)) {
       r_.lights.insert_or_assign(key, Failure{Reason::NoHighlight, key.light + " has none that could be told from those of other lights"});
       continue;
     }
-    Outcome<LightEstimate> light = estimateLight(views, r_.request.settings);
+    LightFit fit = fitLight(viewsOf(all[i], true), *r_.scene, *r_.surfaces, r_.request.settings);
     ++r_.work.lights;
-    if (light) corrections_.refine(all[i].views, key, *light);
-    r_.lights.insert_or_assign(key, std::move(light));
+    r_.lights.insert_or_assign(key, std::move(fit.light));
+    if (fit.correction) correct(all[i], fit.correction, std::move(fit.views));
+  }
+}
+
+std::vector<TrainingView> Run::viewsOf(const Group& group, bool asGiven) const {
+  std::vector<TrainingView> views;
+  for (const int v : group.views) views.push_back(asGiven ? r_.viewAsGiven(v) : r_.views[static_cast<std::size_t>(v)]);
+  return views;
+}
+
+void Run::correct(const Group& group, const SurfaceCorrection& correction, std::vector<TrainingView> corrected) {
+  r_.corrections.insert_or_assign(group.key, correction);
+  for (std::size_t i = 0; i < group.views.size(); ++i) {
+    TrainingView& view = r_.views[static_cast<std::size_t>(group.views[i])];
+    r_.viewsAsGiven.insert_or_assign(group.views[i], std::exchange(view, std::move(corrected[i])));
   }
 }
 
@@ -342,16 +361,15 @@ void Run::canonicalContours() {
   }
 }
 
-FitInput Run::fitInput(const Group& group) const {
-  FitInput input;
-  for (const int v : group.views) input.views.push_back(r_.views[v]);
+/// A model that needs no light takes the surfaces as given: its answer does not depend on which other models are asked for.
+FitInput Run::fitInputOf(const HighlightModel& model, const Group& group) const {
+  std::vector<TrainingView> views = viewsOf(group, !model.needsLight());
   // The stage's fit is of all views of the group: it serves where none of them lost its pixels since.
   // Corrected normals are not those that the stage saw.
-  if (havePixels(input.views) && !r_.refinedNormals.count(group.key)) input.pixelFit = pixelFitFor(r_, group.key);
-  if (const auto found = r_.lights.find(group.key); found == r_.lights.end()) return input;
-  else if (found->second) input.light = *found->second;
-  else input.lightFailure = found->second.failure();
-  return input;
+  const bool known = havePixels(views) && !r_.corrections.count(group.key);
+  const auto light = r_.lights.find(group.key);
+  return fitInput(model, std::move(views), light == r_.lights.end() ? std::nullopt : std::optional(light->second), r_.request.settings,
+                  known ? pixelFitFor(r_, group.key) : nullptr);
 }
 
 void Run::modelFits() {
@@ -371,7 +389,7 @@ void Run::modelFits() {
       ModelResult::Fit entry;
       entry.light = g.key.light;
       entry.surface = g.key.surface;
-      const FitInput input = fitInput(g);
+      const FitInput input = fitInputOf(model, g);
       const auto start = std::chrono::steady_clock::now();
       Outcome<ModelFit> fit = model.fit(input, r_.request.settings);
       ++r_.work.fits;
@@ -381,8 +399,8 @@ void Run::modelFits() {
         fit->surface = g.key.surface;
         if (std::string merged = mergedRemark(*fit); !merged.empty()) fit->remarks.push_back(std::move(merged));
         if (std::string repeated = repeatedRemark(*fit); !repeated.empty()) fit->remarks.push_back(std::move(repeated));
-        if (const auto refined = r_.refinedNormals.find(g.key); refined != r_.refinedNormals.end() && model.needsLight())
-          fit->remarks.push_back(refined->second.remark());
+        if (const auto found = r_.corrections.find(g.key); found != r_.corrections.end() && found->second.normals && model.needsLight())
+          fit->remarks.push_back(found->second.normals->remark());
         fit->timeUs = microsecondsSince(start);
         entry.fit = std::move(*fit);
       } else {
@@ -405,7 +423,7 @@ std::vector<std::shared_ptr<const Band>> Run::bandsOf(const HighlightModel& mode
         ModelResult::Fit& fit = result.fits[static_cast<std::size_t>(i)];
         const auto group = std::find_if(all.begin(), all.end(), [&](const Group& g) { return g.key == fit.key(); });
         if (!fit.fit || group == all.end()) return;
-        FittedBand band = bandOf(model, *fit.fit, fitInput(*group), r_.request.settings, corrections_.any(fit.key()));
+        FittedBand band = bandOf(model, *fit.fit, fitInputOf(model, *group), r_.request.settings, model.needsLight() && r_.corrections.count(fit.key()) > 0);
         bands[static_cast<std::size_t>(i)] = std::move(band.band);
         fit.bandRemarks = std::move(band.remarks);
       },
@@ -449,7 +467,9 @@ void Run::predictionsAndComparisons() {
           const Camera& camera = r_.scene->frames[frame].camera;
           Prediction prediction;
           if (fit.fit) {
-            const std::shared_ptr<const Surface> surface = needsSurface ? corrections_.surfaceOf(frame, fit.key()) : nullptr;
+            const Outcome<std::shared_ptr<const Surface>> found =
+                needsSurface ? surfaceFor(r_, frame, fit.light) : Outcome<std::shared_ptr<const Surface>>(std::shared_ptr<const Surface>());
+            const std::shared_ptr<const Surface> surface = found ? *found : nullptr;
             surfacesAsked += needsSurface;
             ++predictions;
             const auto start = std::chrono::steady_clock::now();
@@ -474,6 +494,13 @@ void Run::predictionsAndComparisons() {
 
 }  // namespace
 
+TrainingView Inspection::viewAsGiven(int view) const {
+  const auto given = viewsAsGiven.find(view);
+  TrainingView v = given != viewsAsGiven.end() ? given->second : views[static_cast<std::size_t>(view)];
+  v.canonical.reset();
+  return v;
+}
+
 FitKey Inspection::keyFor(int frame, const std::string& light) const {
   return {light, train.perSurface && surfaces ? std::optional(surfaces->keyOf(frame)) : std::nullopt};
 }
@@ -486,6 +513,18 @@ const LightEstimate* Inspection::lightOf(const FitKey& key) const {
 const Failure* Inspection::lightFailureFor(int frame, const std::string& light) const {
   const auto found = lights.find(keyFor(frame, light));
   return found != lights.end() && !found->second ? &found->second.failure() : nullptr;
+}
+
+Outcome<std::shared_ptr<const Surface>> surfaceFor(const Inspection& inspection, int frame, const std::string& light) {
+  if (!inspection.surfaces) return Failure{Reason::NoSurface, ""};
+  const MeshPolicy policy = meshPolicy(inspection.request.settings);
+  const FitKey key = inspection.keyFor(frame, light);
+  const auto found = inspection.corrections.find(key);
+  if (found == inspection.corrections.end()) return inspection.surfaces->surfaceOf(frame, policy);
+  const Frame& f = inspection.scene->frames[static_cast<std::size_t>(frame)];
+  if (found->second.depth && f.surface.empty() && inspection.correctedDepthMaps)
+    return inspection.correctedDepthMaps->surfaceOf(f, policy, key, *found->second.depth);
+  return correctedSurface(*inspection.scene, *inspection.surfaces, frame, found->second, policy);
 }
 
 std::vector<std::pair<std::string, const Outcome<LightEstimate>*>> Inspection::lightsFor(int frame) const {
@@ -548,6 +587,7 @@ Inspection run(std::shared_ptr<const Scene> scene, const InspectionRequest& requ
   else
     result.surfaces = std::make_shared<SurfaceCache>(*result.scene, *previous->surfaces);
   result.request = request;
+  result.correctedDepthMaps = std::make_shared<CorrectedDepthMaps>();
   // A model named twice is one model.
   std::vector<std::string>& models = result.request.models;
   for (auto m = models.begin(); m != models.end();) m = std::find(models.begin(), m, *m) != m ? models.erase(m) : m + 1;

@@ -10,14 +10,15 @@
 #include "core/base/progress.h"
 #include "core/base/settings.h"
 #include "core/evaluate/metrics.h"
-#include "core/light/refine_depth.h"
 #include "core/model/model.h"
 #include "core/pipeline/fit_key.h"
-#include "core/pipeline/refined_normals.h"
+#include "core/pipeline/surface_correction.h"
 #include "core/pipeline/what_if.h"
 #include "core/scene/scene.h"
 
 namespace glint {
+
+class CorrectedDepthMaps;
 
 /// Which frames train: parsed from --train SPEC (docs/formats.md, "Frame SPEC").
 struct TrainSpec {
@@ -124,15 +125,18 @@ struct Inspection {
       evidenceBefore;  ///< of frames whose highlights the what-if moved or whose lights it switched off: as found
   /// Where a lobe's background replaced the smooth one (detect.background = lobe): the evidence as first detected; else empty.
   std::vector<FrameEvidence> detected;
-  std::vector<TrainingView> views;                         ///< one per training highlight
+  std::vector<TrainingView> views;                         ///< one per training highlight; on the corrected surface where there is a correction
+  std::map<int, TrainingView> viewsAsGiven;                ///< by index into `views`: of those, on the surface as given; see viewAsGiven()
   std::map<std::pair<int, int>, std::shared_ptr<const PixelPatch>> patches;  ///< pixels by (training frame, highlight as found)
   std::map<FitKey, Outcome<std::shared_ptr<const PixelFit>>> pixelFits;  ///< the lobe of the training frames' pixels
   std::map<FitKey, Outcome<LightEstimate>> lights;         ///< see lightOf(), lightFor()
-  std::map<FitKey, DepthCorrection> depthCorrections;      ///< where light.refine_depth found one: of the views' and predictions' depth maps
-  std::map<FitKey, RefinedNormals> refinedNormals;         ///< where light.refine_normals found a better mesh: of the views and predictions
+  std::map<FitKey, SurfaceCorrection> corrections;         ///< of the views' and predictions' surfaces, where there is one
+  std::shared_ptr<CorrectedDepthMaps> correctedDepthMaps;  ///< recently used ones, for surfaceFor(); never null after a run
   std::map<std::string, ModelResult> models;
   std::map<std::string, std::string> stageKeys;            ///< what each stage's result depends on: tells which stages a later run may reuse
   WorkCounts work;
+  /// A training view on its surface as given, without canonical contour: what another fit than the inspection's own starts from.
+  TrainingView viewAsGiven(int view) const;
   bool isTraining(int frame) const;
   bool isHeldOut(int frame) const;                         ///< counts in summaries
 
@@ -147,8 +151,8 @@ struct Inspection {
   std::vector<std::pair<std::string, const Outcome<LightEstimate>*>> lightsFor(int frame) const;
 };
 
-/// The surface that predictions of a light in a frame use: the frame's own, or its mesh with the normals that the light's contours corrected
-/// (light.refine_normals). Depth maps are as they are stored. The failures of SurfaceCache::surfaceOf(); NoSurface without a cache.
+/// The surface that predictions of a light in a frame use: the frame's own, corrected where the light's contours correct it
+/// (light.refine_depth, light.refine_normals). Thread-safe. The failures of correctedSurface(); NoSurface without a cache.
 /// @param light  id.
 Outcome<std::shared_ptr<const Surface>> surfaceFor(const Inspection& inspection, int frame, const std::string& light);
 

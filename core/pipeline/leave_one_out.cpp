@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/base/elapsed.h"
 #include "core/base/number_text.h"
 #include "core/light/left_out.h"
 #include "core/model/plausible.h"
 #include "core/pipeline/training.h"
+#include "core/surface/mesh_policy.h"
 
 namespace glint {
 
@@ -30,10 +32,11 @@ double variationOf(const Prediction& p) {
   return largest;
 }
 
-Answer predictLeft(const TrainingView& left, const HighlightModel& model, const ModelFit& fit, const Settings& settings) {
+Answer predictLeft(const Fold& fold, const HighlightModel& model, const ModelFit& fit, const Settings& settings) {
   Answer answer;
+  const TrainingView& left = fold.left;
   const Clock::time_point start = Clock::now();
-  Prediction p = model.predict(fit, left.camera, left.surface.get(), settings);
+  Prediction p = model.predict(fit, left.camera, fold.leftSurface.get(), settings);
   answer.predictUs = microsecondsSince(start);
   dropTooSmall(p);
   answer.highlights = static_cast<int>(p.highlights.size());
@@ -63,33 +66,30 @@ Answer predictLeft(const TrainingView& left, const HighlightModel& model, const 
   return answer;
 }
 
+Outcome<std::shared_ptr<const Surface>> Fold::surfaceOf(int frame, const HighlightModel& model) const {
+  const SurfaceCorrection none;
+  return correctedSurface(*inspection->scene, *inspection->surfaces, frame, model.needsLight() && light ? light->correction : none,
+                          meshPolicy(inspection->request.settings));
+}
+
 Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Settings& settings) {
-  if (model.needsLight() && !fold.lightTried) {
-    fold.lightTried = true;
-    const Outcome<LightEstimate> light = estimateLight(fold.others, settings);
-    if (light)
-      fold.light = *light;
-    else
-      fold.lightFailure = light.failure();
+  if (!model.needsLight()) return fitModel(model, fold.others, std::nullopt, settings, fold.pixelFit);
+  if (!fold.light) {
+    fold.light = fitLight(fold.others, *fold.inspection->scene, *fold.inspection->surfaces, settings);
+    if (fold.light->correction) {
+      const Outcome<std::shared_ptr<const Surface>> surface = fold.surfaceOf(fold.left.frame, model);
+      fold.leftSurface = surface ? *surface : nullptr;
+    }
   }
-  if (model.needsCanonicalContours() && fold.light && !fold.canonicalTried) {
-    fold.canonicalTried = true;
-    for (TrainingView& v : fold.others) addCanonicalContour(v, fold.light->light, settings);
-  }
-  FitInput input;
-  input.views = fold.others;
-  input.pixelFit = fold.pixelFit;
-  if (model.needsLight()) {
-    input.light = fold.light;
-    input.lightFailure = fold.lightFailure;
-  }
-  return model.fit(input, settings);
+  if (model.needsCanonicalContours() && fold.light->light && !std::exchange(fold.canonicalTried, true))
+    for (TrainingView& v : fold.light->views) addCanonicalContour(v, fold.light->light->light, settings);
+  return fitModel(model, fold.light->views, fold.light->light, settings, fold.light->correction ? nullptr : fold.pixelFit);
 }
 
 Answer leaveOut(Fold& fold, const HighlightModel& model, const Settings& settings) {
   const Outcome<ModelFit> fit = fitFold(fold, model, settings);
   if (!fit) return failed(fit.failure());
-  Answer answer = predictLeft(*fold.left, model, *fit, settings);
+  Answer answer = predictLeft(fold, model, *fit, settings);
   answer.fit = *fit;
   return answer;
 }
@@ -104,16 +104,16 @@ std::vector<Fold> foldsOf(const Inspection& inspection, LeaveOut together) {
   for (int f = 0; f < folds; ++f) {
     Fold fold;
     const auto left = static_cast<std::size_t>(usable[static_cast<std::size_t>(f) * n / folds]);
-    fold.left = &inspection.views[left];
+    fold.inspection = &inspection;
+    fold.left = inspection.viewAsGiven(static_cast<int>(left));
+    fold.leftSurface = fold.left.surface;
+    const FitKey key = inspection.keyFor(fold.left.frame, fold.left.highlight.light);
     // The whole frame is left out: another highlight in it has seen the same camera and the same errors.
     for (std::size_t i = 0; i < inspection.views.size(); ++i) {
       const TrainingView& v = inspection.views[i];
       if (together == LeaveOut::Place && places[i] == places[left]) continue;
-      if (v.failure || v.frame == fold.left->frame || v.highlight.light != fold.left->highlight.light) continue;
-      if (inspection.train.perSurface && inspection.surfaces->keyOf(v.frame) != inspection.surfaces->keyOf(fold.left->frame))
-        continue;
-      fold.others.push_back(v);
-      fold.others.back().canonical.reset();
+      if (v.failure || v.frame == fold.left.frame || inspection.keyFor(v.frame, v.highlight.light) != key) continue;
+      fold.others.push_back(inspection.viewAsGiven(static_cast<int>(i)));
     }
     all.push_back(std::move(fold));
   }

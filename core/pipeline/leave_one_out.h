@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/pipeline/fit_engine.h"
 #include "core/pipeline/selection.h"
 
 namespace glint {
@@ -14,12 +15,15 @@ namespace glint {
 /// One left-out training view and what the others give without it. Light and canonical contours are filled by the first model
 /// that needs them and serve all that follow.
 struct Fold {
-  const TrainingView* left = nullptr;
-  std::vector<TrainingView> others;
-  bool lightTried = false, canonicalTried = false;
-  std::optional<LightEstimate> light;
-  std::optional<Failure> lightFailure;
-  std::shared_ptr<const PixelFit> pixelFit;  ///< of exactly these views, where it is known already
+  const Inspection* inspection = nullptr;
+  TrainingView left;                   ///< on its surface as given
+  std::vector<TrainingView> others;    ///< likewise
+  std::optional<LightFit> light;       ///< of the others, with their own correction of the surface
+  bool canonicalTried = false;
+  std::shared_ptr<const Surface> leftSurface;  ///< of the left-out view, corrected by what the others say
+  std::shared_ptr<const PixelFit> pixelFit;    ///< of exactly these views, where it is known already
+  /// The surface on which a model predicts in some frame. The failures of correctedSurface().
+  Outcome<std::shared_ptr<const Surface>> surfaceOf(int frame, const HighlightModel& model) const;
 };
 
 /// What a model said about one left-out view.
@@ -37,14 +41,14 @@ struct Answer {
 /// What is left out with a training view: its frame, or every frame from its place (core/light/left_out.h). A view from the same
 /// place would tell a model the answer; to see what one frame changes, that view must stay.
 enum class LeaveOut { Frame, Place };
-/// One per left-out view: at most kMostLeftOut, evenly spread. Their views stay valid as long as the inspection.
+/// One per left-out view: at most kMostLeftOut, evenly spread. Valid as long as the inspection.
 std::vector<Fold> foldsOf(const Inspection& inspection, LeaveOut together);
 /// Fits the model to the fold's other views. Fills what is missing in the fold. The model's and the light's failures.
 Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Settings& settings);
 /// Fits the model to the other views, predicts the left-out one and compares. Fills what is missing in the fold.
 Answer leaveOut(Fold& fold, const HighlightModel& model, const Settings& settings);
 /// The last step of that alone, from a fit that is there.
-Answer predictLeft(const TrainingView& left, const HighlightModel& model, const ModelFit& fit, const Settings& settings);
+Answer predictLeft(const Fold& fold, const HighlightModel& model, const ModelFit& fit, const Settings& settings);
 /// The largest curvatureVariation of the highlights; NaN when none was walked on a patch.
 double variationOf(const Prediction& prediction);
 

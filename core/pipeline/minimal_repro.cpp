@@ -3,17 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 
 #include "core/base/atomic_folder.h"
 #include "core/base/minimal_subset.h"
 #include "core/base/number_text.h"
-#include "core/base/parallel.h"
 #include "core/base/safe_text.h"
 #include "core/pipeline/comparison.h"
+#include "core/pipeline/fit_engine.h"
 #include "core/pipeline/session.h"
-#include "core/pipeline/training.h"
 #include "core/surface/mesh_policy.h"
 
 namespace glint {
@@ -42,51 +42,39 @@ Fault faultOf(const FrameComparison& c, const std::string& model) {
   return fault;
 }
 
-std::shared_ptr<const Surface> surfaceOf(const Inspection& inspection, int frame) {
-  const auto s = inspection.surfaces->surfaceOf(frame, meshPolicy(inspection.request.settings));
-  return s ? *s : nullptr;
-}
-
-/// The views of one fit: of its light, and of its surface where models are per surface.
-std::vector<const TrainingView*> viewsOf(const Inspection& inspection, const Fault& fault) {
-  std::vector<const TrainingView*> views;
-  for (const TrainingView& v : inspection.views)
-    if (v.highlight.light == fault.light &&
-        (!inspection.train.perSurface || inspection.surfaces->keyOf(v.frame) == inspection.surfaces->keyOf(fault.frame)))
-      views.push_back(&v);
+/// The views of one fit, on their surfaces as given: of its light, and of its surface where models are per surface.
+std::vector<TrainingView> viewsOf(const Inspection& inspection, const Fault& fault) {
+  std::vector<TrainingView> views;
+  for (int v = 0; v < static_cast<int>(inspection.views.size()); ++v) {
+    const TrainingView& view = inspection.views[static_cast<std::size_t>(v)];
+    if (view.highlight.light == fault.light && inspection.keyFor(view.frame, fault.light) == inspection.keyFor(fault.frame, fault.light))
+      views.push_back(inspection.viewAsGiven(v));
+  }
   return views;
 }
 
 /// The answer of the model fitted to some of the views.
-Fault answer(const Inspection& inspection, const Fault& fault, const std::vector<const TrainingView*>& all,
+Fault answer(const Inspection& inspection, const Fault& fault, const std::vector<TrainingView>& all,
              const std::vector<int>& frames, const ProgressFn& progress) {
   const HighlightModel& model = modelByName(fault.model);
   const Settings& settings = inspection.request.settings;
-  FitInput input;
-  for (const TrainingView* v : all)
-    if (std::find(frames.begin(), frames.end(), v->frame) != frames.end()) {
-      input.views.push_back(*v);
-      input.views.back().canonical.reset();
-    }
-  if (model.needsLight()) {
-    const Outcome<LightEstimate> light = estimateLight(input.views, settings);
-    if (light)
-      input.light = *light;
-    else
-      input.lightFailure = light.failure();
-  }
-  if (model.needsCanonicalContours() && input.light)
-    parallelFor(
-        static_cast<int>(input.views.size()),
-        [&](int i) { addCanonicalContour(input.views[static_cast<std::size_t>(i)], input.light->light, settings); }, progress,
-        "trying");
+  std::vector<TrainingView> views;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(views),
+               [&](const TrainingView& v) { return std::find(frames.begin(), frames.end(), v.frame) != frames.end(); });
+  std::optional<LightFit> light;
+  if (model.needsLight()) light = fitLight(views, *inspection.scene, *inspection.surfaces, settings);
   const Camera& camera = inspection.scene->frames[static_cast<std::size_t>(fault.frame)].camera;
   Prediction prediction;
-  const Outcome<ModelFit> fit = model.fit(input, settings);
-  if (fit)
-    prediction = model.predict(*fit, camera, model.needsLight() ? surfaceOf(inspection, fault.frame).get() : nullptr, settings);
-  else
+  const Outcome<ModelFit> fit = light ? fitModel(model, light->views, light->light, settings, nullptr, progress)
+                                      : fitModel(model, std::move(views), std::nullopt, settings);
+  if (fit) {
+    std::shared_ptr<const Surface> surface;
+    if (light)
+      if (auto found = correctedSurface(*inspection.scene, *inspection.surfaces, fault.frame, light->correction, meshPolicy(settings))) surface = *found;
+    prediction = model.predict(*fit, camera, surface.get(), settings);
+  } else {
     prediction.failure = fit.failure();
+  }
   return faultOf(
       compareFrame(inspection.evidence[static_cast<std::size_t>(fault.frame)], fault.light, camera, std::move(prediction)),
       fault.model);
@@ -188,9 +176,9 @@ Outcome<MinimalRepro> minimalRepro(const Inspection& inspection, const Fault& fa
   require(inspection.scene && inspection.surfaces, "minimalRepro: the inspection is empty");
   require(fault.frame >= 0 && fault.frame < static_cast<int>(inspection.scene->frames.size()), "minimalRepro: no such frame");
   require(tolerance.share >= 0 && tolerance.share <= 1, "minimalRepro: the tolerance is a share");
-  const std::vector<const TrainingView*> views = viewsOf(inspection, fault);
+  const std::vector<TrainingView> views = viewsOf(inspection, fault);
   std::set<int> training;
-  for (const TrainingView* v : views) training.insert(v->frame);
+  for (const TrainingView& v : views) training.insert(v.frame);
   const bool trains = training.count(fault.frame) > 0;
   MinimalRepro result;
   result.before = result.after = fault;

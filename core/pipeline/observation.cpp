@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/pipeline/comparison.h"
+#include "core/pipeline/corrected_depth.h"
 #include "core/pipeline/evidence.h"
 #include "core/pipeline/lobe_stage.h"
 #include "core/pipeline/several_lights.h"
@@ -65,8 +66,8 @@ Inspection heldAgainst(const Inspection& earlier, const Observation& observation
   std::copy_if(earlier.views.begin(), earlier.views.end(), std::back_inserter(r.views),
                [&](const TrainingView& v) { return v.frame == frame; });
   r.lights = earlier.lights;
-  r.depthCorrections = earlier.depthCorrections;
-  r.refinedNormals = earlier.refinedNormals;
+  r.corrections = earlier.corrections;
+  r.correctedDepthMaps = std::make_shared<CorrectedDepthMaps>();  // the frame may stand elsewhere now
   r.stageKeys["detect"] = observation.key;
   const Camera& camera = observation.scene->frames[std::size_t(frame)].camera;
   for (const auto& [name, before] : earlier.models) {

@@ -11,7 +11,6 @@
 #include "core/model/star.h"
 #include "core/pipeline/leave_one_out.h"
 #include "core/pipeline/training.h"
-#include "core/surface/mesh_policy.h"
 
 namespace glint {
 namespace {
@@ -25,6 +24,7 @@ constexpr int kTimedViews = 3, kTimedRepeats = 3;
 /// Frames to predict with the light that they show and a fit of it, at most kOthersLookedAt, evenly spread.
 struct Other {
   int frame;
+  std::string light;
   const ModelFit* fit;
 };
 std::vector<Other> othersOf(const Inspection& inspection, const std::vector<Fold>& folds, const std::vector<Answer>& answers) {
@@ -33,9 +33,9 @@ std::vector<Other> othersOf(const Inspection& inspection, const std::vector<Fold
     if (!inspection.isHeldOut(f) || inspection.isTraining(f)) continue;
     std::set<std::string> lights;
     for (std::size_t i = 0; i < folds.size(); ++i) {
-      const std::string& light = folds[i].left->highlight.light;
+      const std::string& light = folds[i].left.highlight.light;
       if (!answers[i].fit || !isOn(*inspection.scene, inspection.request.whatIf, f, light)) continue;
-      if (lights.insert(light).second) all.push_back({f, &*answers[i].fit});
+      if (lights.insert(light).second) all.push_back({f, light, &*answers[i].fit});
     }
   }
   const std::size_t n = all.size(), count = std::min<std::size_t>(n, kOthersLookedAt);
@@ -89,8 +89,8 @@ std::optional<PatchChoice> choosePatches(const Inspection& inspection, const Hig
   for (std::size_t i = 0; i < folds.size(); ++i) {
     if (!exact[i].errorPct) continue;
     checkStop(static_cast<int>(i), static_cast<int>(folds.size()));
-    const std::string& id = inspection.scene->frames[folds[i].left->frame].id;
-    const Answer a = predictLeft(*folds[i].left, model, *exact[i].fit, onPatches);
+    const std::string& id = inspection.scene->frames[folds[i].left.frame].id;
+    const Answer a = predictLeft(folds[i], model, *exact[i].fit, onPatches);
     if (std::isnan(a.variation) && a.highlights > 0) return std::nullopt;  // this fit is not walked, as with a long light
     ++c.views;
     c.variation = std::fmax(c.variation, a.variation);
@@ -106,7 +106,7 @@ std::optional<PatchChoice> choosePatches(const Inspection& inspection, const Hig
   for (const Other& o : othersOf(inspection, folds, exact)) {
     checkStop(c.views, c.views);
     const Frame& frame = inspection.scene->frames[o.frame];
-    const Outcome<std::shared_ptr<const Surface>> surface = inspection.surfaces->surfaceOf(o.frame, meshPolicy(settings));
+    const Outcome<std::shared_ptr<const Surface>> surface = surfaceFor(inspection, o.frame, o.light);
     if (!surface) continue;  // no prediction of any kind
     const Prediction walked = model.predict(*o.fit, frame.camera, surface->get(), onPatches);
     ++c.others;
@@ -130,7 +130,7 @@ std::optional<PatchChoice> choosePatches(const Inspection& inspection, const Hig
       double shortest = std::numeric_limits<double>::infinity();
       for (int r = 0; r < kTimedRepeats; ++r) {
         const Clock::time_point now = Clock::now();
-        model.predict(*exact[i].fit, folds[i].left->camera, folds[i].left->surface.get(), how);
+        model.predict(*exact[i].fit, folds[i].left.camera, folds[i].leftSurface.get(), how);
         shortest = std::min(shortest, microsecondsSince(now));
       }
       times.push_back(shortest);

@@ -6,6 +6,7 @@
 
 #include "core/base/number_text.h"
 #include "core/light/contour_evidence.h"
+#include "core/pipeline/fit_engine.h"
 #include "core/pipeline/training.h"
 #include "core/reflectance/pixel_patch.h"
 #include "core/reflectance/radiance_field.h"
@@ -36,13 +37,10 @@ Lamp lampOf(const ModelFit& fit) {
 
 /// The reflectance model of some views' contours; none where it fails.
 std::optional<ModelFit> reflectanceOf(const std::vector<TrainingView>& views, const LightEstimate& light, const Settings& settings) {
-  FitInput input;
-  input.views = views;
-  input.light = light;
   Settings contours = settings;
   contours.set("fit.evidence", std::string("contours"));
   contours.set("fit.most_residual", 1.0);  // what the bumps leave is what is looked for
-  const Outcome<ModelFit> fit = modelByName("reflectance").fit(input, contours);
+  const Outcome<ModelFit> fit = fitModel(modelByName("reflectance"), views, Outcome<LightEstimate>(light), contours);
   return fit && fit->lightEstimate && fit->roughness && fit->lobe && fit->level ? std::optional<ModelFit>(*fit) : std::nullopt;
 }
 
@@ -106,21 +104,10 @@ std::string RefinedNormals::remark() const {
 }
 
 TrainingView onSurface(const TrainingView& view, std::shared_ptr<const Surface> surface) {
-  FrameEvidence evidence;
-  evidence.frame = view.frame;
-  evidence.highlights = {view.highlight};
-  TrainingView other = trainingView(evidence, 0, view.camera, std::move(surface));
+  TrainingView other = seenAgain(view, view.camera, std::move(surface));
   other.levels = view.levels;
   if (view.pixels && other.surface) other.pixels = std::make_shared<const PixelPatch>(glint::onSurface(*view.pixels, *other.surface));
   return other;
-}
-
-Outcome<std::shared_ptr<const Surface>> surfaceFor(const Inspection& inspection, int frame, const std::string& light) {
-  if (!inspection.surfaces) return Failure{Reason::NoSurface, ""};
-  const std::string surface = inspection.surfaces->keyOf(frame);
-  const auto refined = inspection.refinedNormals.find(inspection.keyFor(frame, light));
-  if (refined != inspection.refinedNormals.end() && refined->second.surface == surface) return refined->second.mesh;
-  return inspection.surfaces->surfaceOf(frame, meshPolicy(inspection.request.settings));
 }
 
 Outcome<std::optional<RefinedNormals>> refineNormals(const std::vector<TrainingView>& views, const LightEstimate& light, const std::string& surface,

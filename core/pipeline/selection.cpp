@@ -85,7 +85,7 @@ Candidate tryModel(const Inspection& inspection, const HighlightModel& model, st
       errors.push_back(*answers[i].errorPct);
       times.push_back(answers[i].predictUs);
     } else if (c.remark.empty()) {
-      c.remark = "without frame " + inspection.scene->frames[folds[i].left->frame].id + ": " + answers[i].failure->message();
+      c.remark = "without frame " + inspection.scene->frames[folds[i].left.frame].id + ": " + answers[i].failure->message();
     }
   }
   c.tried = tried;
@@ -239,7 +239,7 @@ void Search::lookAt(std::size_t m) {
 /// The surface under the training highlights and under those that this model predicts.
 SurfaceShape Search::shapeUnder(std::size_t m) const {
   std::vector<HighlightOnSurface> highlights;
-  for (const Fold& f : folds_) highlights.push_back({f.left->camera, f.left->surface, f.left->highlight.contour});
+  for (const Fold& f : folds_) highlights.push_back({f.left.camera, f.leftSurface, f.left.highlight.contour});
   if (const std::optional<Outlook>& outlook = tried_[m].outlook)
     for (std::size_t v = 0; v < views_.size(); ++v)
       for (const PredictedHighlight& h : outlook->predictions[v])
@@ -359,7 +359,7 @@ void Search::expect(std::size_t m) {
     // A fit to one or two views less is another fit: what the fit to all leaves in the training views, and its own uncertainty.
     double sum = 0;
     for (const Fold& f : folds_) {
-      const Answer a = predictLeft(*f.left, *t.model, *t.outlook->fits.at(f.left->highlight.light), settings_);
+      const Answer a = predictLeft(f, *t.model, *t.outlook->fits.at(f.left.highlight.light), settings_);
       sum += countedPct(a) / double(folds_.size());
     }
     common = std::min(common, std::sqrt(std::max(0.0, sum * sum - noisePct_ * noisePct_)));
@@ -387,11 +387,11 @@ Selection Search::run() {
   folds_ = foldsOf(inspection_, LeaveOut::Place);
   s_.leftOut = static_cast<int>(folds_.size());
   double noise = 0;
-  for (const Fold& f : folds_) noise += contourNoisePct(f.left->highlight.contour) / double(folds_.size());
+  for (const Fold& f : folds_) noise += contourNoisePct(f.left.highlight.contour) / double(folds_.size());
   noisePct_ = noise;
   for (const TrainingView& v : inspection_.views) s_.trainingViews += v.failure ? 0 : 1;
   std::vector<HighlightOnSurface> observed;
-  for (const Fold& f : folds_) observed.push_back({f.left->camera, f.left->surface, f.left->highlight.contour});
+  for (const Fold& f : folds_) observed.push_back({f.left.camera, f.leftSurface, f.left.highlight.contour});
   trained_ = surfaceShape(observed);
   views_ = viewsToPredict(inspection_, folds_, kViewsShown);
   whole_ = wholeFolds(inspection_, folds_);

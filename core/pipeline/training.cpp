@@ -43,6 +43,13 @@ TrainingView trainingView(const FrameEvidence& evidence, int index, const Camera
   return view;
 }
 
+TrainingView seenAgain(const TrainingView& view, const Camera& camera, std::shared_ptr<const Surface> surface) {
+  FrameEvidence evidence;
+  evidence.frame = view.frame;
+  evidence.highlights = {view.highlight};
+  return trainingView(evidence, 0, camera, std::move(surface));
+}
+
 bool sameObservation(const Inspection& r, int frame, int other) {
   const Frame &a = r.scene->frames[static_cast<std::size_t>(frame)], &b = r.scene->frames[static_cast<std::size_t>(other)];
   if (a.surface != b.surface || a.depth != b.depth || a.camera.pixelFromRay != b.camera.pixelFromRay ||

@@ -13,6 +13,9 @@ namespace glint {
 TrainingView trainingView(const FrameEvidence& evidence, int highlight, const Camera& camera,
                           std::shared_ptr<const Surface> surface);
 
+/// The highlight of a view as another camera or surface would have it. Pixels and contours at other levels are not carried over.
+TrainingView seenAgain(const TrainingView& view, const Camera& camera, std::shared_ptr<const Surface> surface);
+
 /// Whether two frames are one photograph given twice: the same camera, surface and highlights, to the last bit. Noise never repeats itself
 /// like that, so the second one is no further observation: it would only take weight from priors, and stand in for the first one where
 /// that is left out to judge a choice.

@@ -9,7 +9,7 @@
 #include "core/base/elapsed.h"
 #include "core/base/sha256.h"
 #include "core/evaluate/summary.h"
-#include "core/pipeline/training.h"
+#include "core/pipeline/fit_engine.h"
 #include "core/surface/mesh_policy.h"
 #include "core/tradeoff/memory.h"
 
@@ -197,24 +197,18 @@ double TradeoffBench::fitUs(const Inspection& inspection, const Trial& trial) co
   for (int r = 0; r < repeats_; ++r) {
     double total = 0;
     for (const ModelResult::Fit& f : inspection.models.at(trial.model).fits) {
-      FitInput input;
-      for (const TrainingView& v : inspection.views)
-        if (v.highlight.light == f.light && (!f.surface || inspection.surfaces->keyOf(v.frame) == *f.surface))
-          input.views.push_back(v);
-      for (TrainingView& v : input.views) v.canonical.reset();
-      check();
-      const auto start = std::chrono::steady_clock::now();
-      if (model.needsLight()) {
-        const Outcome<LightEstimate> light = estimateLight(input.views, trial.settings);
-        if (light)
-          input.light = *light;
-        else
-          input.lightFailure = light.failure();
+      std::vector<TrainingView> views;
+      for (int v = 0; v < static_cast<int>(inspection.views.size()); ++v) {
+        const TrainingView& view = inspection.views[static_cast<std::size_t>(v)];
+        if (inspection.keyFor(view.frame, view.highlight.light) == f.key()) views.push_back(inspection.viewAsGiven(v));
       }
       check();
-      if (model.needsCanonicalContours() && input.light)
-        for (TrainingView& v : input.views) addCanonicalContour(v, input.light->light, trial.settings);
-      const Outcome<ModelFit> fit = model.fit(input, trial.settings);
+      const auto start = std::chrono::steady_clock::now();
+      std::optional<LightFit> light;
+      if (model.needsLight()) light = fitLight(std::move(views), *inspection.scene, *inspection.surfaces, trial.settings);
+      check();
+      const Outcome<ModelFit> fit = light ? fitModel(model, std::move(light->views), light->light, trial.settings)
+                                          : fitModel(model, std::move(views), std::nullopt, trial.settings);
       total += microsecondsSince(start);
       (void)fit;  // its result is in the inspection already
     }

@@ -179,7 +179,7 @@ TEST(FoldsOf, AViewFromTheSamePlaceIsLeftOutWithIt) {
   const Inspection inspection = extrapolationEvidence(scene, "0-6");
   ASSERT_EQ(inspection.views.size(), 7u);
   for (const Fold& f : foldsOf(inspection, LeaveOut::Place))
-    EXPECT_EQ(f.others.size(), f.left->frame == 2 || f.left->frame == 6 ? 5u : 6u);
+    EXPECT_EQ(f.others.size(), f.left.frame == 2 || f.left.frame == 6 ? 5u : 6u);
   for (const Fold& f : foldsOf(inspection, LeaveOut::Frame)) EXPECT_EQ(f.others.size(), 6u);
 }
 

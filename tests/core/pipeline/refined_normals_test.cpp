@@ -8,8 +8,10 @@
 #include <filesystem>
 
 #include "core/evaluate/summary.h"
+#include "core/pipeline/leave_one_out.h"
 #include "core/pipeline/session.h"
 #include "core/scene/mesh_file.h"
+#include "core/surface/mesh_policy.h"
 #include "tests/core/model/bumpy_mesh.h"
 #include "tests/core/pipeline/exact_scene.h"
 #include "tests/core/scene/scene_fixture.h"
@@ -59,14 +61,14 @@ TEST_F(RefinedNormalsTest, HeldOutFramesGainForEveryModel) {
   InspectionRequest without = request(false), with = request(true);
   without.models = with.models = {"limit-angle", "canonical", "reflectance"};
   const Inspection plain = inspect(scene, without), refined = inspect(scene, with);
-  EXPECT_TRUE(plain.refinedNormals.empty());
-  ASSERT_EQ(refined.refinedNormals.count({"lamp"}), 1u);
+  EXPECT_TRUE(plain.corrections.empty());
+  ASSERT_EQ(refined.corrections.count({"lamp"}), 1u);
   for (const std::string& model : with.models) {
     EXPECT_LT(errorPct(refined, model), 0.5 * errorPct(plain, model)) << model;
     const std::vector<std::string>& remarks = refined.models.at(model).fits.at(0).fit->remarks;
     EXPECT_TRUE(std::any_of(remarks.begin(), remarks.end(), [](const std::string& r) { return r.find("light.refine_normals") != std::string::npos; })) << model;
   }
-  const RefinedNormals& r = refined.refinedNormals.at({"lamp"});
+  const RefinedNormals& r = *refined.corrections.at({"lamp"}).normals;
   EXPECT_EQ(r.surface, "body");
   EXPECT_LT(r.refinedPx, 0.2 * r.plainPx);
   for (const TrainingView& v : refined.views) EXPECT_EQ(v.surface, r.mesh);
@@ -94,24 +96,53 @@ TEST_F(RefinedNormalsTest, IncrementalEqualsFresh) {
 
 // Nothing is corrected that is not a mesh with normals of its own, seen by all views.
 TEST_F(RefinedNormalsTest, WhatHasNoNormalsToTurnStays) {
-  EXPECT_TRUE(inspect(exactScene(sphere(0.5), kFrames), request(true)).refinedNormals.empty()) << "an exact shape";
-  EXPECT_TRUE(inspect(bumpy(0), request(true)).refinedNormals.empty()) << "a mesh without bumps";
+  EXPECT_TRUE(inspect(exactScene(sphere(0.5), kFrames), request(true)).corrections.empty()) << "an exact shape";
+  EXPECT_TRUE(inspect(bumpy(0), request(true)).corrections.empty()) << "a mesh without bumps";
   const auto scene = bumpy();
   InspectionRequest facets = request(true), triangulated = request(true);
   facets.settings.set("surface.normals", std::string("facet"));
   triangulated.settings.set("light.solver", std::string("triangulated"));
-  EXPECT_TRUE(inspect(scene, facets).refinedNormals.empty());
-  EXPECT_TRUE(inspect(scene, triangulated).refinedNormals.empty());
+  EXPECT_TRUE(inspect(scene, facets).corrections.empty());
+  EXPECT_TRUE(inspect(scene, triangulated).corrections.empty());
   // A frame that does not train and sees another surface keeps it; one that trains keeps all meshes as they are.
   AnalyticSpec other = sphere(0.5);
   scene->surfaces["other"].analytic = other;
   scene->frames[1].surface = "other";
   const Inspection mixed = inspect(scene, request(true));
-  ASSERT_EQ(mixed.refinedNormals.count({"lamp"}), 1u);
-  EXPECT_NE(*surfaceFor(mixed, 1, "lamp"), mixed.refinedNormals.at({"lamp"}).mesh);
-  EXPECT_EQ(*surfaceFor(mixed, 3, "lamp"), mixed.refinedNormals.at({"lamp"}).mesh);
+  ASSERT_EQ(mixed.corrections.count({"lamp"}), 1u);
+  EXPECT_NE(*surfaceFor(mixed, 1, "lamp"), mixed.corrections.at({"lamp"}).normals->mesh);
+  EXPECT_EQ(*surfaceFor(mixed, 3, "lamp"), mixed.corrections.at({"lamp"}).normals->mesh);
   scene->frames[2].surface = "other";
-  EXPECT_TRUE(inspect(scene, request(true)).refinedNormals.empty());
+  EXPECT_TRUE(inspect(scene, request(true)).corrections.empty());
+}
+
+// What is left out must not have helped to correct the surface that it is predicted on.
+TEST_F(RefinedNormalsTest, AFoldCorrectsTheMeshItself) {
+  const Inspection refined = inspect(bumpy(), request(true));
+  const std::shared_ptr<const Surface> ofAll = refined.corrections.at({"lamp"}).normals->mesh;
+  const std::shared_ptr<const Surface> given = *refined.surfaces->surfaceOf(0, meshPolicy(refined.request.settings));
+  std::vector<Fold> folds = foldsOf(refined, LeaveOut::Place);
+  ASSERT_EQ(folds.size(), 6u);
+  Fold& fold = folds.front();
+  EXPECT_EQ(fold.left.surface, given);
+  for (const TrainingView& v : fold.others) EXPECT_EQ(v.surface, given);
+  ASSERT_TRUE(fitFold(fold, modelByName("limit-angle"), refined.request.settings));
+  ASSERT_TRUE(fold.light && fold.light->correction.normals);
+  EXPECT_EQ(fold.leftSurface, fold.light->correction.normals->mesh);
+  EXPECT_NE(fold.leftSurface, ofAll);
+}
+
+// `dual` takes no light, so nobody corrects a surface for it; whether another model is asked for must not matter.
+TEST_F(RefinedNormalsTest, AModelWithoutALightDoesNotDependOnOtherModels) {
+  const auto scene = bumpy();
+  InspectionRequest alone = request(true), together = request(true);
+  alone.models = {"dual"};
+  together.models = {"dual", "limit-angle"};
+  const Inspection a = inspect(scene, alone), b = inspect(scene, together);
+  ASSERT_EQ(b.corrections.size(), 1u);
+  const ModelResult::Fit &one = a.models.at("dual").fits.at(0), &other = b.models.at("dual").fits.at(0);
+  ASSERT_TRUE(one.fit && other.fit);
+  EXPECT_EQ(one.fit->residualPx, other.fit->residualPx);
 }
 
 }  // namespace
