@@ -98,10 +98,10 @@ void addLimitDirections(const Inspection& inspection, int frame, const std::func
   OverlayLine style;
   bool any = false;
   for (const TrainingView& view : inspection.views) {
-    if (view.frame != frame || !view.canonical || !view.brightest || !drawn("canonical")) continue;
-    style.model = "canonical";
+    if (view.frame != frame || !view.canonical || !view.brightest || !drawn(canonicalModel().id())) continue;
+    style.model = canonicalModel().id();
     style.light = view.highlight.light;
-    style.colour = modelColour("canonical");
+    style.colour = canonicalColour();
     style.label = "walks of the observed contour";
     addWalks(*view.canonical, view.brightest->pixel, camera, style, lines);
     any = true;

@@ -144,12 +144,12 @@ Eigen::AlignedBox2d extentAround(const FrameOverlay& overlay, OverlayRole role, 
 }
 
 std::vector<std::string> modelsInOrder(const Inspection& inspection, const std::set<std::string>& only) {
-  static const std::array<const char*, 5> known{"primal", "dual", "canonical", "limit-angle", "reflectance"};
+  const std::vector<std::string> known = modelIds();
   std::vector<std::string> names;
   const auto take = [&](const std::string& name) {
     if (only.empty() || only.count(name)) names.push_back(name);
   };
-  for (const char* name : known) {
+  for (const std::string& name : known) {
     if (inspection.models.count(name)) take(name);
   }
   for (const auto& [name, result] : inspection.models) {
@@ -297,12 +297,12 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
   if (shown(OverlayRole::CanonicalEllipse)) {
     for (const TrainingView& view : inspection.views) {
       if (view.frame != frame || !view.canonical || !view.canonical->ellipse) continue;
-      if (!drawn("canonical")) continue;
+      if (!drawn(canonicalModel().id())) continue;
       OverlayLine line;
       line.role = OverlayRole::CanonicalEllipse;
       line.points = ellipsePoints(*view.canonical->ellipse);
       line.closed = true;
-      line.colour = modelColour("canonical");
+      line.colour = canonicalColour();
       line.width = 1;
       line.dash = Dash::Dotted;
       line.label = "canonical ellipse on the tangent plane";
@@ -337,7 +337,7 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
         if (shown(OverlayRole::UncertaintyBand)) addBand(h, camera, line, overlay.lines);
         line.halo = false;
         line.dash = Dash::Solid;
-        if (shown(OverlayRole::CanonicalEllipse) && !training && model == "canonical" && h.canonical && h.canonical->ellipse) {
+        if (shown(OverlayRole::CanonicalEllipse) && !training && modelByName(model).hasOutlines() && h.canonical && h.canonical->ellipse) {
           line.role = OverlayRole::CanonicalEllipse;
           line.points = ellipsePoints(*h.canonical->ellipse);
           line.closed = true;

@@ -283,8 +283,8 @@ std::optional<Framing> ellipsoidFraming(const LayerInput& in, const std::vector<
   Framing framing;
   framing.points = ellipsoidExtent(in, model);
   if (framing.points.empty()) return {};
-  // The cones of primal come from the cameras themselves, and are drawn from halfway.
-  if (model == "primal")
+  // Cones without a mirror come from the cameras themselves, and are drawn from halfway.
+  if (!modelByName(model).traits().mirrored)
     for (const ModelFit* fit : in.fits(model))
       for (const TrainingView* view : in.viewsOf(*fit))
         if (fit->ellipsoid) framing.points.push_back(0.5 * (view->camera.centreInWorld() + fit->ellipsoid->centre()));

@@ -4,21 +4,20 @@
 #include <array>
 #include <string>
 
+#include "core/evaluate/palette.h"
+
 namespace glint::viz {
 
 /// sRGB, 0..1.
 using Colour = std::array<double, 3>;
 
-/// Colour-blind safe (Okabe-Ito), the same in every view: primal orange, dual sky blue, canonical bluish green,
-/// limit-angle vermillion, reflectance reddish purple. Grey for an unknown model.
+/// Colour of a model, the same in every view and report; grey for an unknown one.
 inline Colour modelColour(const std::string& model) {
-  if (model == "primal") return {0.902, 0.624, 0.000};
-  if (model == "dual") return {0.337, 0.706, 0.914};
-  if (model == "canonical") return {0.000, 0.620, 0.451};
-  if (model == "limit-angle") return {0.835, 0.369, 0.000};
-  if (model == "reflectance") return {0.800, 0.475, 0.655};
-  return {0.6, 0.6, 0.6};
+  const std::array<int, 3> rgb = modelRgb(model);
+  return {rgb[0] / 255.0, rgb[1] / 255.0, rgb[2] / 255.0};
 }
+/// What lies on the tangent planes: canonical contours, their ellipses and the walks to them.
+inline Colour canonicalColour() { return modelColour(canonicalModel().id()); }
 inline constexpr Colour kObserved{1.0, 1.0, 1.0};  ///< drawn with a dark halo
 inline constexpr Colour kLightColour{0.941, 0.894, 0.259};
 inline constexpr Colour kVirtualCamera{0.70, 0.62, 0.95};  ///< not a model's colour

@@ -126,7 +126,7 @@ WalkPicture walkPicture(const WalkStory& story, int step, double width, double h
   const Colour faint = dark ? Colour{0.50, 0.52, 0.56} : Colour{0.55, 0.57, 0.60};
   // The light's yellow is too pale for lines on white.
   Painter painter{
-      story,  ink, faint, modelColour("canonical"), modelColour("limit-angle"), dark ? kLightColour : Colour{0.62, 0.50, 0.0},
+      story,  ink, faint, canonicalColour(), modelColour(levelSetModel().id()), dark ? kLightColour : Colour{0.62, 0.50, 0.0},
       textPx, {}};
   const WalkStory::Moment now = story.at(step);
   const double margin = 6, gap = 14, sectionHeight = 0.56 * height, half = (width - 2 * margin - gap) / 2;

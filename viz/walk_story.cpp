@@ -137,7 +137,7 @@ void addWalk(const WalkStory& story, int step, FrameOverlay& overlay) {
   // Where both walk over the same pixels, the shorter one lies on top.
   const bool planeFirst = story.trace.reachOnPlane > story.trace.reachOnSurface;
   const auto onSurface = [&] { add(story.trace.onSurface, now.visitedOnSurface, kObserved, true, "walk on S"); };
-  const auto onPlane = [&] { add(story.trace.onPlane, now.visitedOnPlane, modelColour("canonical"), true, "walk on T"); };
+  const auto onPlane = [&] { add(story.trace.onPlane, now.visitedOnPlane, canonicalColour(), true, "walk on T"); };
   if (planeFirst) onPlane();
   onSurface();
   if (!planeFirst) onPlane();
@@ -147,7 +147,7 @@ void addWalk(const WalkStory& story, int step, FrameOverlay& overlay) {
   mark.role = OverlayRole::LimitDirections;
   mark.shape = MarkShape::Circle;
   mark.at = toPhotograph(story.camera, {*at}).front();
-  mark.colour = now.onSurface ? kObserved : modelColour("canonical");
+  mark.colour = now.onSurface ? kObserved : canonicalColour();
   mark.size = 5;
   mark.width = 2;
   mark.label = walkText(story, step);

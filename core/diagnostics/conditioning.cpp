@@ -56,29 +56,19 @@ std::vector<TrainingView> viewsOf(const Inspection& inspection, const ModelResul
 }
 
 /// The outlines that the model takes for those of its ellipsoid.
-std::vector<ConicView> outlinesOf(const std::string& model, const std::vector<TrainingView>& views) {
+std::vector<ConicView> outlinesOf(const HighlightModel& model, const std::vector<TrainingView>& views) {
   std::vector<ConicView> conics;
-  for (const TrainingView& v : views) {
-    if (model == "primal") {
-      if (hasWholeEllipse(v)) conics.push_back(conicViewOf(v, v.camera.projection()));
-    } else if (v.failure || !v.virtualCamera) {
-      continue;
-    } else if (model == "dual") {
-      if (v.highlight.ellipse) conics.push_back(conicViewOf(v, *v.virtualCamera));
-    } else if (model == "canonical") {
-      if (v.canonical && v.canonical->ellipse) conics.push_back({*v.virtualCamera, *v.canonical->ellipse, v.canonical->pixels});
-    }
-  }
+  for (const TrainingView& v : views)
+    if (std::optional<ConicView> outline = model.outlineIn(v)) conics.push_back(*std::move(outline));
   return conics;
 }
 
-/// Where each view looks for the thing that is reconstructed: along its reflected ray, or straight on for `primal`, which knows
-/// no mirror.
-std::vector<Eigen::Vector3d> raysOf(const std::string& model, const std::vector<TrainingView>& views) {
+/// Where each view looks for the thing that is reconstructed: along its reflected ray, or straight on for a model that knows no mirror.
+std::vector<Eigen::Vector3d> raysOf(const HighlightModel& model, const std::vector<TrainingView>& views) {
   std::vector<Eigen::Vector3d> rays;
   for (const TrainingView& v : views) {
-    if (model == "primal") {
-      if (hasWholeEllipse(v)) rays.push_back(v.camera.ray(v.highlight.ellipse->centre).direction.normalized());
+    if (!model.traits().mirrored) {
+      if (const std::optional<ConicView> outline = model.outlineIn(v)) rays.push_back(v.camera.ray(outline->ellipse.centre).direction.normalized());
     } else if (!v.failure && v.brightest) {
       rays.push_back(reflectedRay(*v.brightest, v.camera).direction);
     }
@@ -89,21 +79,25 @@ std::vector<Eigen::Vector3d> raysOf(const std::string& model, const std::vector<
 class Findings {
  public:
   Findings(const Inspection& inspection, const ModelResult& result, const ModelResult::Fit& fit)
-      : inspection_(inspection), result_(result), fit_(fit), views_(viewsOf(inspection, fit)), rays_(raysOf(result.model, views_)) {
+      : inspection_(inspection),
+        result_(result),
+        fit_(fit),
+        model_(modelByName(result.model)),
+        views_(viewsOf(inspection, fit)),
+        rays_(raysOf(model_, views_)) {
     c_.model = result.model;
     c_.light = fit.light;
     c_.surface = fit.surface;
     estimate_ = inspection.lightOf(fit.key());
-    outlines_ = outlinesOf(result.model, views_);
-    if (result.model != "primal") findStrayPeaks(inspection);  // which looks at ellipses only
-    fromOutlines_ = result.model == "primal" || result.model == "dual" || result.model == "canonical";
+    outlines_ = outlinesOf(model_, views_);
+    if (model_.traits().mirrored) findStrayPeaks(inspection);  // without a mirror it looks at ellipses only
   }
 
   Conditioning all() {
     if (fit_.failure)
       add("fit", "fit", std::nan(""), "failed", Verdict::Red, "There is no fit: " + fit_.failure->message() + ".");
     addPeaks();
-    if (fromOutlines_) addLinearSystem();
+    if (model_.hasOutlines()) addLinearSystem();
     addAngle();
     addViews();
     addLight();
@@ -148,7 +142,7 @@ class Findings {
 
   void addLinearSystem() {
     std::optional<Eigen::Vector3d> origin;
-    if (c_.model == "primal") {
+    if (!model_.traits().mirrored) {
       if (const std::optional<CentreAnchor> anchor = anchorFromCentres(views_)) origin = anchor->position;
     } else if (estimate_ && !estimate_->light.atInfinity()) {
       origin = estimate_->light.position();
@@ -196,7 +190,7 @@ class Findings {
   }
 
   void addAngle() {
-    const char* what = c_.model == "primal" ? "viewing rays" : "reflected rays";
+    const char* what = model_.traits().mirrored ? "reflected rays" : "viewing rays";
     if (rays_.size() < 2)
       return add("angle", "triangulation angle", std::nan(""), "-", Verdict::Red,
                  formatted("Fewer than two %s: nothing can be triangulated.", what));
@@ -217,8 +211,7 @@ class Findings {
     std::string reason =
         formatted("%d training highlights count as %.2g different views, those nearer than 5\u00b0 to each other only in part: ",
                   int(rays_.size()), effective);
-    const bool quadric = c_.model == "primal" || c_.model == "dual" || c_.model == "canonical";
-    reason += quadric ? chosen(v, "three or more determine an ellipsoid with a free centre.",
+    reason += model_.hasOutlines() ? chosen(v, "three or more determine an ellipsoid with a free centre.",
                                "fewer than three, which an ellipsoid with a free centre needs.",
                                "fewer than two, which determine neither the light's distance nor an ellipsoid.")
                       : chosen(v, "three or more determine the light and leave something to check it by.",
@@ -227,13 +220,14 @@ class Findings {
     add("views", "effective views", effective, formatted("%.2g of %d", effective, int(rays_.size())), v, reason);
   }
 
-  /// Mean distance from the views' brightest points (the cameras for `primal`).
+  /// Mean distance from the views' brightest points, or from the cameras for a model that knows no mirror.
   double distanceFrom(const Eigen::Vector3d& at) const {
     double sum = 0;
     int n = 0;
     for (const TrainingView& v : views_) {
-      if (c_.model != "primal" && (v.failure || !v.brightest)) continue;
-      sum += (at - (c_.model == "primal" ? v.camera.centreInWorld() : v.brightest->point.position)).norm();
+      const bool mirrored = model_.traits().mirrored;
+      if (mirrored && (v.failure || !v.brightest)) continue;
+      sum += (at - (mirrored ? v.brightest->point.position : v.camera.centreInWorld())).norm();
       ++n;
     }
     return n ? sum / n : std::nan("");
@@ -294,7 +288,7 @@ class Findings {
     for (const double r : fit_.fit->residualPx) squares += r * r;
     if (!fit_.fit->residualPx.empty()) rms = std::sqrt(squares / double(fit_.fit->residualPx.size()));
     // Of what was fitted: the canonical contour of a bent surface is several times as large as the highlight.
-    if (fromOutlines_)
+    if (model_.hasOutlines())
       for (const ConicView& v : outlines_) diameters += 2 * std::sqrt(v.ellipse.semiAxes.prod()), ++n;
     else
       for (const TrainingView& v : views_)
@@ -304,7 +298,7 @@ class Findings {
     const Verdict v = below(share, bounds::kResidualAmber, bounds::kResidualRed);
     std::string reason = formatted("%s%.2g px, %.2g %% of %s mean diameter: ",
                                    ("Distance " + residualMeaning(*fit_.fit) + ", over the training views: ").c_str(), rms,
-                                   100 * share, c_.model == "canonical" ? "the canonical contours'" : "the highlights'");
+                                   100 * share, model_.needsCanonicalContours() ? "the canonical contours'" : "the highlights'");
     // Every observed point may lie near an outline that runs far beyond the highlight: then this number says nothing.
     if (const std::optional<ContourMetrics> worst = worstInTraining(); worst && worst->contourErrorPct > kOwnSizePct) {
       reason +=
@@ -333,11 +327,11 @@ class Findings {
   const Inspection& inspection_;
   const ModelResult& result_;
   const ModelResult::Fit& fit_;
+  const HighlightModel& model_;
   std::vector<TrainingView> views_;
   std::vector<Eigen::Vector3d> rays_;
   std::vector<ConicView> outlines_;
   const LightEstimate* estimate_ = nullptr;
-  bool fromOutlines_ = false;
   std::vector<std::string> strayFrames_;  ///< ids of those whose peak lies outside its contour
   double farthestStray_ = 0;              ///< px
   Conditioning c_;
@@ -394,7 +388,8 @@ std::string residualMeaning(const LightEstimate&) { return kToLevelSet; }
 
 std::string residualMeaning(const ModelFit& fit) {
   if (!fit.quadric) return kToLevelSet;
-  return std::string("from the ") + (fit.model == "canonical" ? "canonical" : "observed") + " contour to the outline, one way, RMS";
+  const HighlightModel* const model = findModel(fit.model);
+  return std::string("from the ") + (model && model->needsCanonicalContours() ? "canonical" : "observed") + " contour to the outline, one way, RMS";
 }
 
 std::optional<Eigen::Vector3d> semiAxesSigma(const ModelFit& fit) {

@@ -131,7 +131,7 @@ Outcome<Light> lightOfModel(const Inspection& inspection, int frame, const std::
       if (f.key() == key && f.fit) fit = &*f.fit;
   if (fit && fit->lightEstimate) return *fit->lightEstimate;
   if (const LightEstimate* const estimate = inspection.lightOf(key)) return estimate->light;
-  if (fit && fit->ellipsoid && model != "primal") return Light::at(fit->ellipsoid->centre());
+  if (fit && fit->ellipsoid && modelByName(model).traits().mirrored) return Light::at(fit->ellipsoid->centre());
   if (const Failure* const why = inspection.lightFailureFor(frame, light)) return *why;
   return Failure{Reason::NoLight, "nothing here estimated the light '" + light + "'"};
 }

@@ -4,16 +4,14 @@
 #include <array>
 #include <string>
 
+#include "core/model/model.h"
+
 namespace glint {
 
-/// Colours of the models, the same in every view and report, 8-bit sRGB; colour-blind safe (Okabe and Ito, 2008).
+/// Colour of a model (ModelTraits::rgb); grey for an unknown one.
 inline std::array<int, 3> modelRgb(const std::string& model) {
-  if (model == "primal") return {230, 159, 0};
-  if (model == "dual") return {86, 180, 233};
-  if (model == "canonical") return {0, 158, 115};
-  if (model == "limit-angle") return {213, 94, 0};
-  if (model == "reflectance") return {204, 121, 167};
-  return {153, 153, 153};
+  const HighlightModel* const found = findModel(model);
+  return found ? found->traits().rgb : std::array<int, 3>{153, 153, 153};
 }
 
 }  // namespace glint

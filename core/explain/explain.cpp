@@ -163,6 +163,8 @@ void fieldOfView(const Case& c, ExplainStep& step) {
   step.numbers.push_back(one("", "field of view across the highlight, this mirror", degrees(widestAngle(reflected)), "deg"));
 }
 
+ModelTraits::Assumes assumes(const std::string& model) { return modelByName(model).traits().surface; }
+
 void virtualCameraStep(const Case& c, ExplainStep& step) {
   if (!reached(c, step) || !c.out.view->tangentPlane || !c.out.view->virtualCamera) return;
   const TrainingView& v = *c.out.view;
@@ -180,12 +182,16 @@ void virtualCameraStep(const Case& c, ExplainStep& step) {
   if (!k || !(alpha > 0)) return;
   const double turn = std::max(std::abs(k->k1), std::abs(k->k2)) * radiusOnPlane(v);
   step.numbers.push_back(one("", "turn of the normal from P_B to the contour", degrees(turn), "deg"));
-  // Said of these two models whichever one is explained: that they fail here is why the steps that follow exist.
-  const auto wasComputed = [&](const char* model) { return c.inspection.models.count(model) > 0; };
-  if (turn > kFlatShare * alpha && wasComputed("primal"))
+  // Said of such models whichever one is explained: that they fail here is why the steps that follow exist.
+  using Assumes = ModelTraits::Assumes;
+  const auto wasComputed = [&](Assumes assumed) {
+    const auto& models = c.inspection.models;
+    return std::any_of(models.begin(), models.end(), [&](const auto& m) { return assumes(m.first) == assumed; });
+  };
+  if (turn > kFlatShare * alpha && wasComputed(Assumes::Plane))
     step.broken.push_back({"primal-off-plane",
                            {one("", "turn of the normal", degrees(turn), "deg"), one("", "limit angle", degrees(alpha), "deg")}});
-  if (wasComputed("dual")) {
+  if (wasComputed(Assumes::ConstantCurvature)) {
     double least = std::numeric_limits<double>::infinity(), most = -least;
     for (const TrainingView& other : c.inspection.views) {
       if (other.failure || !other.brightest || !other.surface || !c.sharesModel(other.frame)) continue;
@@ -216,7 +222,7 @@ void contourStep(const Case& c, ExplainStep& step) {
   for (const Pixel& p : h.contour.points) sum += std::pow(distance(own, p), 2);
   const double rms = std::sqrt(sum / double(h.contour.points.size())), share = rms / std::sqrt(h.ellipse->semiAxes.prod());
   step.numbers.push_back(one("", "distance of the contour from its ellipse", rms, "px"));
-  if (share > kEllipticShare && (c.out.model == "primal" || c.out.model == "dual"))
+  if (share > kEllipticShare && modelByName(c.out.model).traits().stopsAtOutline)
     step.broken.push_back({"contour-not-elliptic", {one("", "of the contour's size", 100 * share, "%")}});
 }
 
@@ -304,8 +310,8 @@ std::optional<double> epipolarMiss(const Case& c, bool mirrored) {
 /// Why a model fails that has failed: what it assumes, and what the views say of that.
 void addReason(const Case& c, ExplainStep& step) {
   if (!c.fit || !c.fit->fit) return;
-  if (c.out.model == "dual") step.broken.push_back({"dual-keeps-bend", {}});
-  if (c.out.model != "primal") return;
+  if (assumes(c.out.model) == ModelTraits::Assumes::ConstantCurvature) step.broken.push_back({"dual-keeps-bend", {}});
+  if (modelByName(c.out.model).traits().mirrored) return;
   std::vector<ExplainNumber> numbers;
   if (const std::optional<double> real = epipolarMiss(c, false))
     numbers.push_back(one("", "epipolar lines of the cameras miss the ellipses by", *real, "px"));
@@ -402,7 +408,7 @@ void projectionStep(const Case& c, ExplainStep& step) {
     return;
   }
   // An ellipsoid's outline alone has no brightest point: what stands for it is its centre.
-  const bool outline = c.out.model == "primal";
+  const bool outline = !modelByName(c.out.model).traits().mirrored;
   step.numbers.push_back(
       pixel("", outline ? "centre of the predicted outline" : "predicted brightest point", p->brightest.pixel));
   if (c.highlight)
@@ -428,8 +434,7 @@ void inverseWalkStep(const Case& c, ExplainStep& step) {
         {"a, b", "semi-axes of the ellipse of what came out", {p->ellipse->semiAxes.x(), p->ellipse->semiAxes.y()}, "px"});
   addMisses(c, step, false);
   if (!p->canonical) {
-    const bool stopsAtTheOutline = c.out.model == "primal" || c.out.model == "dual";
-    if (stopsAtTheOutline)
+    if (modelByName(c.out.model).traits().stopsAtOutline)
       step.broken.push_back({"outline-only", {}});
     else
       step.broken.push_back({"no-walk", {}});
@@ -459,10 +464,13 @@ void comparisonStep(const Case& c, ExplainStep& step) {
   step.numbers.push_back(one("e", "of the equivalent diameter", m.contourErrorPct, "%"));
   step.numbers.push_back(one("IoU", "overlap of all regions of this light", c.comparison->iou));
   step.numbers.push_back(
-      one("", c.out.model == "primal" ? "its centre from the peak" : "offset of the peaks", m.peakOffsetPx, "px"));
+      one("", !modelByName(c.out.model).traits().mirrored ? "its centre from the peak" : "offset of the peaks", m.peakOffsetPx, "px"));
   if (c.inspection.isTraining(c.out.frame)) step.broken.push_back({"training-frame", {}});
   // What the surface did to the model's assumption was said where the mirror was: this is its price.
-  const std::string because = c.out.model == "primal" ? "primal-off-plane" : c.out.model == "dual" ? "dual-curvature-varies" : "";
+  const ModelTraits::Assumes assumed = assumes(c.out.model);
+  const std::string because = assumed == ModelTraits::Assumes::Plane               ? "primal-off-plane"
+                              : assumed == ModelTraits::Assumes::ConstantCurvature ? "dual-curvature-varies"
+                                                                                   : "";
   for (const ExplainStep& earlier : c.out.steps)
     for (const BrokenAssumption& b : earlier.broken)
       if (b.id == because && m.contourErrorPct > kPricePct) return step.broken.push_back(b);

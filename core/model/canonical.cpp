@@ -23,6 +23,12 @@ class Canonical final : public HighlightModel {
   std::string reference() const override { return "Morgand, Tamaazousti, Bartoli, canonical JOLIMAS (2022); method.md sections 6 to 8"; }
   bool needsLight() const override { return true; }
   bool needsCanonicalContours() const override { return true; }
+  ModelTraits traits() const override { return {{0, 158, 115}}; }
+  bool hasOutlines() const override { return true; }
+  std::optional<ConicView> outlineIn(const TrainingView& v) const override {
+    if (v.failure || !v.virtualCamera || !v.canonical || !v.canonical->ellipse) return std::nullopt;
+    return ConicView{*v.virtualCamera, *v.canonical->ellipse, v.canonical->pixels};
+  }
   bool walks() const override { return true; }
 
   Outcome<ModelFit> fit(const FitInput& input, const Settings& settings) const override {
@@ -40,11 +46,12 @@ class Canonical final : public HighlightModel {
       return Failure{Reason::NotAnEllipse, "the canonical contour"};
     };
     for (const TrainingView& v : input.views) {
-      if (v.failure || !v.virtualCamera || !v.canonical || !v.canonical->ellipse) continue;
+      std::optional<ConicView> outline = outlineIn(v);
+      if (!outline) continue;
       // On the tangent plane the contour is larger than in the photograph, and so are its noise and what the ellipsoid leaves of it.
-      const double canonicalRadius = std::sqrt(v.canonical->ellipse->semiAxes.prod());
+      const double canonicalRadius = std::sqrt(outline->ellipse.semiAxes.prod());
       used.push_back(usedContour(v, canonicalRadius / radiusPx(v.highlight.contour)));
-      conics.push_back({*v.virtualCamera, *v.canonical->ellipse, v.canonical->pixels});
+      conics.push_back(*std::move(outline));
       fit.frames.push_back(v.frame);
     }
     const Outcome<Reconstruction> r = fitEllipsoid(conics, anchorAtLight(input), settings);

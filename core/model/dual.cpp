@@ -17,6 +17,12 @@ class Dual final : public HighlightModel {
   std::string reference() const override { return "Morgand et al., dual JOLIMAS (2017); method.md section 7"; }
   bool needsLight() const override { return true; }
   bool needsCanonicalContours() const override { return false; }
+  ModelTraits traits() const override { return {{86, 180, 233}, true, true, ModelTraits::Assumes::ConstantCurvature}; }
+  bool hasOutlines() const override { return true; }
+  std::optional<ConicView> outlineIn(const TrainingView& v) const override {
+    if (v.failure || !v.virtualCamera || !v.highlight.ellipse) return std::nullopt;
+    return conicViewOf(v, *v.virtualCamera);
+  }
 
   Outcome<ModelFit> fit(const FitInput& input, const Settings& settings) const override {
     std::vector<ConicView> conics;
@@ -28,9 +34,10 @@ class Dual final : public HighlightModel {
       return v.highlight.ellipse ? std::optional<Failure>() : Failure{Reason::NotAnEllipse, "the contour"};
     };
     for (const TrainingView& v : input.views) {
-      if (v.failure || !v.virtualCamera || !v.highlight.ellipse) continue;
+      std::optional<ConicView> outline = outlineIn(v);
+      if (!outline) continue;
       used.push_back(usedContour(v));
-      conics.push_back(conicViewOf(v, *v.virtualCamera));
+      conics.push_back(*std::move(outline));
       fit.frames.push_back(v.frame);
     }
     const Outcome<Reconstruction> r = fitEllipsoid(conics, anchorAtLight(input), settings);

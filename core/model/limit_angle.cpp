@@ -64,6 +64,7 @@ class LimitAngle final : public HighlightModel {
   std::string reference() const override { return "method.md section 7"; }
   bool needsLight() const override { return true; }
   bool needsCanonicalContours() const override { return false; }
+  ModelTraits traits() const override { return {{213, 94, 0}}; }
   bool walks() const override { return true; }
 
   Outcome<ModelFit> fit(const FitInput& input, const Settings& settings) const override {

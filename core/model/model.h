@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 #include "core/base/uncertainty.h"
 #include "core/geometry/ellipsoid.h"
 #include "core/geometry/plane.h"
+#include "core/model/reconstruct.h"
 #include "core/highlight/highlight.h"
 #include "core/light/light.h"
 #include "core/surface/brightest_point.h"
@@ -136,10 +138,19 @@ struct Prediction {
   double timeUs = 0;
 };
 
+/// What others must know of a model to show, check and compare it.
+struct ModelTraits {
+  std::array<int, 3> rgb{};         ///< the model's colour in every view and report, 8-bit sRGB; together colour-blind safe (Okabe and Ito, 2008)
+  bool mirrored = true;             ///< it looks from the virtual (mirrored) cameras, along reflected rays; else from the cameras themselves
+  bool stopsAtOutline = false;      ///< its predictions are an ellipsoid's outlines: no walk follows
+  enum class Assumes { AnySurface, Plane, ConstantCurvature } surface = Assumes::AnySurface;
+};
+
 /// A model of the JOLIMAS family or beyond (method.md section 7). Stateless.
 class HighlightModel {
  public:
   virtual ~HighlightModel() = default;
+  virtual ModelTraits traits() const = 0;
   virtual std::string id() const = 0;             ///< "canonical"
   virtual std::string title() const = 0;          ///< "Canonical JOLIMAS"
   virtual std::string assumption() const = 0;     ///< one sentence from method.md section 7
@@ -147,6 +158,9 @@ class HighlightModel {
   virtual bool needsLight() const = 0;            ///< the fit uses FitInput::light
   virtual bool needsCanonicalContours() const = 0;///< the fit uses TrainingView::canonical
   virtual bool walks() const { return false; }    ///< predictions follow predict.query: they can walk on local quadrics
+  virtual bool hasOutlines() const { return false; }  ///< it reconstructs an ellipsoid from one outline in each view
+  /// The outline that it takes from a view; empty where the view has none, or where the model takes none.
+  virtual std::optional<ConicView> outlineIn(const TrainingView&) const { return std::nullopt; }
   /// Named failures: TooFewViews and what the solver or the light reports.
   virtual Outcome<ModelFit> fit(const FitInput& input, const Settings& settings) const = 0;
   /// @param surface  may be null for `primal`.
@@ -169,5 +183,16 @@ class HighlightModel {
 const std::vector<std::unique_ptr<HighlightModel>>& allModels();
 /// InputError listing the known names when there is none.
 const HighlightModel& modelByName(const std::string& id);
+/// Null when there is none.
+const HighlightModel* findModel(const std::string& id);
+/// Ids of all models, in their order.
+std::vector<std::string> modelIds();
+
+/// The model that assumes least and is soon computed: what others are compared with where nothing was observed.
+const HighlightModel& levelSetModel();
+/// The model that predicts radiance, with a lobe and the lamp's shape.
+const HighlightModel& radianceModel();
+/// The model whose ellipsoid the canonical contours on the tangent planes are of.
+const HighlightModel& canonicalModel();
 
 }  // namespace glint

@@ -17,6 +17,11 @@ class Primal final : public HighlightModel {
   std::string reference() const override { return "Morgand et al., JOLIMAS (2016); method.md section 7"; }
   bool needsLight() const override { return false; }
   bool needsCanonicalContours() const override { return false; }
+  ModelTraits traits() const override { return {{230, 159, 0}, false, true, ModelTraits::Assumes::Plane}; }
+  bool hasOutlines() const override { return true; }
+  std::optional<ConicView> outlineIn(const TrainingView& v) const override {
+    return hasWholeEllipse(v) ? std::optional(conicViewOf(v, v.camera.projection())) : std::nullopt;
+  }
 
   Outcome<ModelFit> fit(const FitInput& input, const Settings& settings) const override {
     std::vector<ConicView> conics;
@@ -28,9 +33,10 @@ class Primal final : public HighlightModel {
       return v.failure.value_or(Failure{Reason::NotAnEllipse, "the contour"});
     };
     for (const TrainingView& v : input.views) {
-      if (!hasWholeEllipse(v)) continue;
+      std::optional<ConicView> outline = outlineIn(v);
+      if (!outline) continue;
       used.push_back(usedContour(v));
-      conics.push_back(conicViewOf(v, v.camera.projection()));
+      conics.push_back(*std::move(outline));
       fit.frames.push_back(v.frame);
     }
     const Outcome<Reconstruction> r = fitEllipsoid(conics, anchorFromCentres(input.views), settings);

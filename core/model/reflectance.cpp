@@ -101,6 +101,7 @@ class Reflectance final : public HighlightModel {
   std::string reference() const override { return "method.md section 7"; }
   bool needsLight() const override { return true; }
   bool needsCanonicalContours() const override { return false; }
+  ModelTraits traits() const override { return {{204, 121, 167}}; }
 
   Outcome<ModelFit> fit(const FitInput& input, const Settings& settings) const override {
     ModelFit fit;

@@ -19,14 +19,28 @@ const std::vector<std::unique_ptr<HighlightModel>>& allModels() {
   return models;
 }
 
+const HighlightModel* findModel(const std::string& id) {
+  for (const auto& m : allModels())
+    if (m->id() == id) return m.get();
+  return nullptr;
+}
+
 const HighlightModel& modelByName(const std::string& id) {
+  if (const HighlightModel* const found = findModel(id)) return *found;
   std::string known;
-  for (const auto& m : allModels()) {
-    if (m->id() == id) return *m;
-    known += (known.empty() ? "" : ", ") + m->id();
-  }
+  for (const std::string& name : modelIds()) known += (known.empty() ? "" : ", ") + name;
   throw InputError("", "model '" + id + "'", "there is no such model; known: " + known);
 }
+
+std::vector<std::string> modelIds() {
+  std::vector<std::string> ids;
+  for (const auto& m : allModels()) ids.push_back(m->id());
+  return ids;
+}
+
+const HighlightModel& canonicalModel() { return modelByName("canonical"); }
+const HighlightModel& levelSetModel() { return modelByName("limit-angle"); }
+const HighlightModel& radianceModel() { return modelByName("reflectance"); }
 
 Outcome<std::vector<BrightestPoint>> brightestPointsFor(const Surface& surface, const Camera& camera, const Light& light,
                                                         const Settings& settings, const std::vector<SurfacePoint>& hints) {

@@ -125,7 +125,7 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
   } else if (fit.limitAngle && !fit.ellipsoid) {
     Settings free = settings;
     free.set("fit.lobe", std::string("auto"));  // a lobe that was asked for is not one that the limit angle is judged by
-    tryOther(modelByName("reflectance"), free, "reflectance");
+    tryOther(radianceModel(), free, radianceModel().id());
   }
   if (std::isfinite(squares[0])) {
     const std::vector<double> shares = sharesOf(squares, fit.uncertainty->degreesOfFreedom);

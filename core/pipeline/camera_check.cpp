@@ -142,7 +142,7 @@ class Check {
     LightEstimate known;  // should the search be needed all the same
     if (near) known.light = *near->model->lightEstimate;
     const Outcome<LightEstimate> light = near ? Outcome<LightEstimate>(known) : estimateLight(views, settings);
-    const HighlightModel& model = modelByName("reflectance");
+    const HighlightModel& model = radianceModel();
     FitInput input = fitInput(model, std::move(views), light, settings);
     if (near) input.near = near->model;
     const Outcome<ModelFit> fitted = model.fit(input, settings);

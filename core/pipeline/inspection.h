@@ -31,7 +31,7 @@ TrainSpec parseTrainSpec(const std::string& text, const Scene& scene);
 
 /// What to compute. Plain data: the session file stores it, the inspector edits it.
 struct InspectionRequest {
-  std::vector<std::string> models{"primal", "dual", "canonical", "limit-angle", "reflectance"};
+  std::vector<std::string> models = modelIds();
   std::string train = "first:6";
   std::vector<int> excluded;             ///< frames never used for training nor evaluated
   FrameSource source = FrameSource::Radiance;

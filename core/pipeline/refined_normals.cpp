@@ -40,7 +40,7 @@ std::optional<ModelFit> reflectanceOf(const std::vector<TrainingView>& views, co
   Settings contours = settings;
   contours.set("fit.evidence", std::string("contours"));
   contours.set("fit.most_residual", 1.0);  // what the bumps leave is what is looked for
-  const Outcome<ModelFit> fit = fitModel(modelByName("reflectance"), views, Outcome<LightEstimate>(light), contours);
+  const Outcome<ModelFit> fit = fitModel(radianceModel(), views, Outcome<LightEstimate>(light), contours);
   return fit && fit->lightEstimate && fit->roughness && fit->lobe && fit->level ? std::optional<ModelFit>(*fit) : std::nullopt;
 }
 
@@ -130,7 +130,7 @@ Outcome<std::optional<RefinedNormals>> refineNormals(const std::vector<TrainingV
   if (!constant && !lobe) return std::optional<RefinedNormals>();
   RefinedNormals result;
   result.surface = surface;
-  result.model = constant ? "limit-angle" : "reflectance";
+  result.model = (constant ? levelSetModel() : radianceModel()).id();
   result.plainPx = rms(constant ? light.residualPx : lobe->residualPx);
   std::vector<TrainingView> now = views;
   for (int round = 0; round < (constant ? 1 : kRounds); ++round) {

@@ -15,7 +15,7 @@ namespace glint {
 struct RefinedNormals {
   std::string surface;                 ///< key of the mesh that was corrected; other surfaces stay
   std::shared_ptr<const Surface> mesh; ///< the corrected one
-  std::string model;                   ///< whose contours told: "limit-angle" or "reflectance", whichever explains them better
+  std::string model;                   ///< whose contours told: levelSetModel() or radianceModel(), whichever explains them better
   double slope = 0, openTilt = 1;      ///< as NormalRefinement
   double plainPx = 0, refinedPx = 0;   ///< what the model leaves of the training contours before and after, RMS
   std::optional<ParameterUncertainty> uncertainty;  ///< of the limit angle's light, where that model told

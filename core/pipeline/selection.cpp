@@ -250,22 +250,22 @@ SurfaceShape Search::shapeUnder(std::size_t m) const {
 void Search::checkAssumption(std::size_t m, const SurfaceShape& shape) {
   Tried& t = tried_[m];
   if (shape.highlights == 0) return;
-  const std::string& id = s_.candidates[m].model;
+  const ModelTraits::Assumes assumed = t.model->traits().surface;
   t.contradiction.clear();
-  if (id == "primal") {
+  if (assumed == ModelTraits::Assumes::Plane) {
     t.confirmed = shape.bend <= kPlaneBend;
     if (shape.bend > kNoPlaneBend)
       t.contradiction = "it needs a plane, but the surface accounts for " + percentText(100 * shape.bend) + " of the limit angle";
-  } else if (id == "dual" && shape.curvatureChange > kNotConstantCurvature) {
+  } else if (assumed == ModelTraits::Assumes::ConstantCurvature && shape.curvatureChange > kNotConstantCurvature) {
     t.contradiction = "it needs nearly constant curvature, but the curvature under the highlights differs by " +
                       percentText(100 * shape.curvatureChange);
   }
 }
 
-/// What `limit-angle`, fitted to all training views, predicts in every view to predict: it assumes little and is soon computed.
+/// What the model that assumes least, fitted to all training views, predicts in every view to predict.
 std::vector<std::vector<PredictedHighlight>> Search::witness() {
   std::vector<std::vector<PredictedHighlight>> predictions(views_.size());
-  const HighlightModel& levelSet = modelByName("limit-angle");
+  const HighlightModel& levelSet = levelSetModel();
   for (auto& [light, fold] : whole_)
     if (const Outcome<ModelFit> fit = fitFold(fold, levelSet, settings_))
       for (std::size_t v = 0; v < views_.size(); ++v)
@@ -364,7 +364,7 @@ void Search::expect(std::size_t m) {
     }
     common = std::min(common, std::sqrt(std::max(0.0, sum * sum - noisePct_ * noisePct_)));
     // Nothing was left out that could tell how far the fit is from others: another model does.
-    if (c.disagreementPct == 0 && c.model != "limit-angle") {
+    if (c.disagreementPct == 0 && t.model != &levelSetModel()) {
       const auto levelSet = witness();
       for (std::size_t v = 0; v < t.aheadPct.size(); ++v)
         if (!levelSet[v].empty())
@@ -412,8 +412,8 @@ Selection Search::run() {
       choose(m, *goodEnough_);
       return s_;
     }
-    if (!tried_[m].eligible || c.answered < c.views || !(c.meanPct <= kNegligiblePct) || c.model != "primal") continue;
-    // On a plane `primal` is exact; where its predictions are reproduced as well, nothing can be better by what contours resolve.
+    if (!tried_[m].eligible || c.answered < c.views || !(c.meanPct <= kNegligiblePct) || model->traits().surface != ModelTraits::Assumes::Plane) continue;
+    // On a plane such a model is exact; where its predictions are reproduced as well, nothing can be better by what contours resolve.
     checkAssumption(m, shapeUnder(m));
     if (!tried_[m].confirmed) continue;
     if (!views_.empty()) compareOutlooks({m});

@@ -185,7 +185,7 @@ std::vector<WhatIfKnob> whatIfKnobs(const Scene& scene, int frame, int highlight
 namespace {
 /// The fit of reflectance that tells the frame's lobe best; null = no fit of any light.
 const ModelResult::Fit* reflectanceFit(const Inspection& in, int frame) {
-  const auto result = in.models.find("reflectance");
+  const auto result = in.models.find(radianceModel().id());
   if (result == in.models.end()) return nullptr;
   const std::string surface = in.surfaces ? in.surfaces->keyOf(frame) : "";
   const std::vector<Highlight>& shown = in.evidence[std::size_t(frame)].highlights;

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "core/model/model.h"
 #include "core/tradeoff/tradeoff.h"
 
 namespace glint {
@@ -56,7 +57,7 @@ std::vector<Knob> knobsOf(const Settings& base, const std::vector<ParamSpec>& pa
   for (const ParamSpec& spec : params) {
     if (!stages.count(spec.stage) || kNoKnobs.count(spec.key)) continue;
     Knob knob{spec.key, {}};
-    if (kOfReflectance.count(spec.key)) knob.onlyModel = "reflectance";
+    if (kOfReflectance.count(spec.key)) knob.onlyModel = radianceModel().id();
     const SettingValue now = valueOf(base, spec);
     if (std::holds_alternative<bool>(spec.defaultValue)) {
       knob.values = {false, true};

@@ -381,7 +381,7 @@ QString ExplainPanel::html() const {
         box(palette().color(QPalette::Highlight),
             tr("<b>Observed here:</b> the contour, from which this walk goes out. <b>Learnt from other frames:</b> the light; "
                "no model has learnt from this frame. <b>Predicted:</b> %1.")
-                .arg(inspection->models.count("canonical") ? tr("only the dotted ellipse of the frame view") : tr("nothing")));
+                .arg(inspection->models.count(canonicalModel().id()) ? tr("only the dotted ellipse of the frame view") : tr("nothing")));
   // What is wrong comes first: a low window shows no more than that.
   if (s.failure) html += box(errorColour(), tr("This scene does not get here: %1").arg(escaped(s.failure->message())));
   for (const BrokenAssumption& b : s.broken)

@@ -337,10 +337,13 @@ void ConditioningPanel::build() {
   for (int at = 0; at < int(columns.size()); ++at) {
     const Conditioning& c = conditioning_[std::size_t(columns[std::size_t(at)])];
     QString name = toQString(c.model);
-    if (columns.size() > 4)
-      name = name == QLatin1String("reflectance") ? tr("reflec-\ntance")
-             : name == QLatin1String("canonical") ? tr("canon-\nical")
-                                                  : name.replace("-", "-\n");
+    constexpr int kLongName = 8;  // letters: a longer word does not fit into a narrow column
+    if (columns.size() > 4) {
+      if (name.contains('-'))
+        name.replace("-", "-\n");
+      else if (name.size() > kLongName)
+        name.insert((name.size() + 1) / 2, "-\n");
+    }
     auto* head = new QLabel(name);
     head->setToolTip(toQString(c.model + ", light " + c.light + (c.surface ? ", surface " + *c.surface : std::string())));
     head->setStyleSheet(

@@ -41,6 +41,7 @@ function(plant script file text_planted)
 endfunction()
 
 plant(source_rules.cmake core/part/a.cpp "int a;\nbool b = x > 1e-6;\n")
+plant(source_rules.cmake viz/a.cpp "bool b = model == \"primal\";\n")
 
 foreach(script layers.cmake source_rules.cmake citations.cmake)
   clean_tree()

@@ -21,15 +21,13 @@ struct Cone {
   bool mirrored;  ///< the apex is a virtual camera's
 };
 
-/// The cone that a model takes from a view: primal from the camera itself, the others from its mirror image.
-std::optional<Cone> coneOf(const TrainingView& view, const std::string& model) {
-  const std::optional<Ellipse> ellipse = model == "primal" || model == "dual" ? view.highlight.ellipse
-                                         : view.canonical                     ? view.canonical->ellipse
-                                                                              : std::nullopt;
-  if (!ellipse || !view.tangentPlane) return {};
+/// The cone that a model takes from a view: from its mirror image, or from the camera itself where the model knows no mirror.
+std::optional<Cone> coneOf(const TrainingView& view, const HighlightModel& model) {
+  const std::optional<ConicView> outline = model.outlineIn(view);
+  if (!outline || !view.tangentPlane) return {};
   const Eigen::Vector3d eye = view.camera.centreInWorld();
-  const bool mirrored = model != "primal";
-  return Cone{&view, *ellipse, mirrored ? view.tangentPlane->reflected(eye) : eye, mirrored};
+  const bool mirrored = model.traits().mirrored;
+  return Cone{&view, outline->ellipse, mirrored ? view.tangentPlane->reflected(eye) : eye, mirrored};
 }
 
 void addCone(LayerContent& content, const LayerInput& in, const Cone& cone, const Ellipsoid& target, const Colour& colour,
@@ -95,7 +93,7 @@ LayerContent conesLayer(const LayerInput& in) {
     std::vector<Cone> cones;
     bool elsewhere = false;
     for (const TrainingView* view : in.viewsOf(*fit)) {
-      const std::optional<Cone> cone = coneOf(*view, model);
+      const std::optional<Cone> cone = coneOf(*view, modelByName(model));
       if (!cone) continue;
       elsewhere = elsewhere || !in.onSurface(view->frame);
       cones.push_back(*cone);

@@ -45,7 +45,7 @@ void addWalks(LayerContent& content, const LayerInput& in, const Plane& plane, c
   info.text = line(model.empty() ? "directions of frame" : model + " directions of frame", in.frame(frame).id) +
               line("ended in a point", std::to_string(planeEnds.size()) + " of " + std::to_string(canonical.directions.size()));
   for (const auto& [reason, count] : reasons) info.text += line(reason, std::to_string(count));
-  const Colour colour = modelColour("canonical");
+  const Colour colour = canonicalColour();
   const double dot = std::min(0.35 * in.scale.point, 0.08 * reach);
   if (!onPlane.empty()) {
     content.addOnSurface(segmentActor(onPlane, colour, 1.2), info, 1.2, kWalkPx);

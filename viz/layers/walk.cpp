@@ -50,7 +50,7 @@ LayerContent walkLayer(const LayerInput& in) {
   const WalkPlace& place = story.place(now);
   const double size = std::max(story.trace.reachOnSurface, story.trace.reachOnPlane);
   const Eigen::Vector3d lift = std::min(in.scale.lift, 0.01 * size) * story.normal;
-  const Colour surface = in.ink(), plane = modelColour("canonical");
+  const Colour surface = in.ink(), plane = canonicalColour();
   Picked info;
   info.layer = "walk";
   info.frame = story.frame;

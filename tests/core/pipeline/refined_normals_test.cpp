@@ -132,18 +132,5 @@ TEST_F(RefinedNormalsTest, AFoldCorrectsTheMeshItself) {
   EXPECT_NE(fold.leftSurface, ofAll);
 }
 
-// `dual` takes no light, so nobody corrects a surface for it; whether another model is asked for must not matter.
-TEST_F(RefinedNormalsTest, AModelWithoutALightDoesNotDependOnOtherModels) {
-  const auto scene = bumpy();
-  InspectionRequest alone = request(true), together = request(true);
-  alone.models = {"dual"};
-  together.models = {"dual", "limit-angle"};
-  const Inspection a = inspect(scene, alone), b = inspect(scene, together);
-  ASSERT_EQ(b.corrections.size(), 1u);
-  const ModelResult::Fit &one = a.models.at("dual").fits.at(0), &other = b.models.at("dual").fits.at(0);
-  ASSERT_TRUE(one.fit && other.fit);
-  EXPECT_EQ(one.fit->residualPx, other.fit->residualPx);
-}
-
 }  // namespace
 }  // namespace glint
