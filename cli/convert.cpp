@@ -23,18 +23,18 @@ Command convertCommand() {
   c.examples = "  glint convert DIR -o DIR/scene.json\n";
   c.declare = [a](Options& o) {
     o.positional(a->input, "INPUT", "A scene file, a folder with one, or a session");
-    o.required(a->output, "-o,--output", "FILE", "The scene file to write (*.json)");
+    o.required(a->output, "-o,--out,--output", "FILE", "The scene file to write (*.json)");
     a->places.declare(o);
   };
   c.run = [a](const Context& context) -> int {
     namespace fs = std::filesystem;
     const fs::path output(a->output);
-    if (output.extension() != ".json") throw InputError(a->output, "--output", "only scene files (*.json) can be written");
+    if (output.extension() != ".json") throw InputError(a->output, "--out", "only scene files (*.json) can be written");
     if (output.filename() == "transforms.json")
-      throw InputError(a->output, "--output", "nerfstudio files cannot be written yet, only scene files");
+      throw InputError(a->output, "--out", "nerfstudio files cannot be written yet, only scene files");
     const Scene scene = a->places.read(a->input);
     for (const std::string& w : scene.warnings) context.warn(w);
-    Outputs(a->input, scene).file(a->output, "--output", OutputKind::document("glint_scene"));
+    Outputs(a->input, scene).file(a->output, "--out", OutputKind::document("glint_scene"));
     writeScene(scene, output);
     try {
       readScene(output);

@@ -21,8 +21,8 @@ Command replayCommand() {
       "they agree when they differ by at most 1e-9 relatively. Exit code 1 when they do not (each difference is a\n"
       "line on standard output, and the first stage that changed is named), 2 when an input changed or is missing.";
   c.examples =
-      "  glint replay sessions/sphere.glint            the same results, on any machine\n"
-      "  glint replay sessions/sphere.glint --exact    the same bits, on the machine that saved it\n";
+      "  glint replay sessions/ellipsoid/ellipsoid.glint            the same results, on any machine\n"
+      "  glint replay sessions/ellipsoid/ellipsoid.glint --exact    the same bits, on the machine that saved it\n";
   c.declare = [a](Options& o) {
     o.positional(a->session, "FILE.glint", "The session");
     o.flag(a->exact, "--exact", "Compare the digest of all results too");
