@@ -179,8 +179,10 @@ class HighlightModel {
   }
 };
 
-/// All models, from simple to rich. The only registration: one line each in registry.cpp.
+/// All models, from simple to rich. The only registration: one line each in registry.cpp, or addModel().
 const std::vector<std::unique_ptr<HighlightModel>>& allModels();
+/// One more model, the richest. Not thread-safe: before anything else asks for models. std::invalid_argument for a name that is taken.
+void addModel(std::unique_ptr<HighlightModel> model);
 /// InputError listing the known names when there is none.
 const HighlightModel& modelByName(const std::string& id);
 /// Null when there is none.

@@ -6,8 +6,9 @@
 
 namespace glint {
 
-const std::vector<std::unique_ptr<HighlightModel>>& allModels() {
-  static const std::vector<std::unique_ptr<HighlightModel>> models = [] {
+namespace {
+std::vector<std::unique_ptr<HighlightModel>>& registered() {
+  static std::vector<std::unique_ptr<HighlightModel>> models = [] {
     std::vector<std::unique_ptr<HighlightModel>> m;
     m.push_back(makePrimal());
     m.push_back(makeDual());
@@ -17,6 +18,14 @@ const std::vector<std::unique_ptr<HighlightModel>>& allModels() {
     return m;
   }();
   return models;
+}
+}  // namespace
+
+const std::vector<std::unique_ptr<HighlightModel>>& allModels() { return registered(); }
+
+void addModel(std::unique_ptr<HighlightModel> model) {
+  require(model && !findModel(model->id()), "addModel: a model with a name of its own");
+  registered().push_back(std::move(model));
 }
 
 const HighlightModel* findModel(const std::string& id) {

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A model is one file: this one is known to every table, check, explanation and picture without another line elsewhere.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "core/diagnostics/conditioning.h"
+#include "core/evaluate/report.h"
+#include "core/explain/explain.h"
+#include "core/model/models.h"
+#include "core/tradeoff/tradeoff.h"
+#include "tests/core/pipeline/exact_scene.h"
+#include "viz/frame_overlay.h"
+#include "viz/pictures.h"
+#include "viz/style.h"
+
+namespace glint {
+namespace {
+
+using namespace testing_support;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// The limit angle's contour as a flat mirror at the brightest point would show it.
+class FlatMirror final : public HighlightModel {
+ public:
+  std::string id() const override { return "flat-mirror"; }
+  std::string title() const override { return "Flat mirror"; }
+  std::string assumption() const override { return "The surface is its tangent plane at the brightest point."; }
+  std::string reference() const override { return "this test"; }
+  ModelTraits traits() const override { return {{240, 228, 66}, true, false, ModelTraits::Assumes::Plane}; }
+  bool needsLight() const override { return true; }
+  bool needsCanonicalContours() const override { return false; }
+
+  Outcome<ModelFit> fit(const FitInput& input, const Settings&) const override {
+    if (!input.light) return input.lightFailure.value_or(Failure{Reason::NoLight, ""});
+    ModelFit fit;
+    fit.lightEstimate = input.light->light;
+    fit.limitAngle = input.light->limitAngle;
+    fit.hints = hintsOf(input);
+    for (const TrainingView& v : input.views)
+      if (!v.failure) fit.frames.push_back(v.frame);
+    return fit;
+  }
+
+  Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {
+    Prediction p;
+    if (!surface) {
+      p.failure = Failure{Reason::NoSurface, ""};
+      return p;
+    }
+    const auto tops = brightestPointsFor(*surface, camera, *fit.lightEstimate, settings, fit.hints);
+    if (!tops) {
+      p.failure = tops.failure();
+      return p;
+    }
+    for (const BrightestPoint& top : *tops) p.highlights.push_back(around(top, fit, camera));
+    return p;
+  }
+
+ private:
+  static PredictedHighlight around(const BrightestPoint& top, const ModelFit& fit, const Camera& camera) {
+    const Eigen::Vector3d eye = camera.centreInWorld(), normal = top.point.normal;
+    const Eigen::Vector3d u = normal.unitOrthogonal(), v = normal.cross(u);
+    const auto angleAt = [&](const Eigen::Vector3d& x) {
+      const Eigen::Vector3d h = (fit.lightEstimate->directionFrom(x) + (eye - x).normalized()).normalized();
+      return std::acos(std::clamp(h.dot(normal), -1.0, 1.0));
+    };
+    PredictedHighlight found;
+    found.brightest = top;
+    found.contour.closed = true;
+    constexpr int kDirections = 72, kHalvings = 50;
+    for (int i = 0; i < kDirections; ++i) {
+      const double azimuth = 2 * std::numbers::pi * i / kDirections;
+      const Eigen::Vector3d along = std::cos(azimuth) * u + std::sin(azimuth) * v;
+      double near = 0, far = (eye - top.point.position).norm();
+      for (int n = 0; n < kHalvings; ++n) {
+        const double middle = 0.5 * (near + far);
+        (angleAt(top.point.position + middle * along) < *fit.limitAngle ? near : far) = middle;
+      }
+      found.contour.points.push_back(*camera.project(top.point.position + near * along));
+    }
+    return found;
+  }
+};
+
+class SixthModel : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { addModel(std::make_unique<FlatMirror>()); }
+  static Inspection inspected(const AnalyticSpec& surface) {
+    InspectionRequest request;
+    request.train = "spread:6";
+    request.models = {"primal", "limit-angle", "flat-mirror"};
+    return inspect(exactScene(surface, 10), request);
+  }
+};
+
+TEST_F(SixthModel, IsAmongAllModels) {
+  EXPECT_THAT(modelIds(), Contains("flat-mirror"));
+  EXPECT_THAT(InspectionRequest().models, Contains("flat-mirror"));
+  EXPECT_THROW(addModel(std::make_unique<FlatMirror>()), std::invalid_argument);
+}
+
+// On a plane it is the limit angle itself.
+TEST_F(SixthModel, IsScoredAndReported) {
+  const Inspection in = inspected(sheet(0));
+  EXPECT_THAT(viz::modelsInOrder(in, {}), ElementsAre("primal", "limit-angle", "flat-mirror"));
+  const auto report = nlohmann::json::parse(evaluationJson(in, {}));
+  constexpr double kSamePct = 0.05;  // 72 against 360 vertices
+  EXPECT_LT(report["models"]["flat-mirror"]["summary"]["contour_error_pct"]["mean"].get<double>(), kSamePct);
+  EXPECT_THAT(evaluationTable(in), HasSubstr("flat-mirror"));
+  EXPECT_THAT(evaluationCsv(in), HasSubstr("flat-mirror"));
+  EXPECT_THAT(evaluationHtml(in, {}), HasSubstr("flat-mirror"));
+}
+
+TEST_F(SixthModel, IsCheckedAndExplained) {
+  const Inspection in = inspected(sphere(0.5));
+  const std::vector<Conditioning> all = conditioningOf(in);
+  EXPECT_TRUE(std::any_of(all.begin(), all.end(), [](const Conditioning& c) { return c.model == "flat-mirror" && !c.findings.empty(); }));
+  // What its traits say it assumes is said where the surface breaks it.
+  const Explanation e = explain(in, 1, 0, "flat-mirror");
+  EXPECT_FALSE(e.steps.empty());
+  bool said = false;
+  for (const ExplainStep& step : e.steps)
+    for (const auto& broken : step.broken) said = said || broken.id == "primal-off-plane";
+  EXPECT_TRUE(said);
+}
+
+TEST_F(SixthModel, IsDrawnInItsColour) {
+  EXPECT_EQ(viz::modelColour("flat-mirror"), (viz::Colour{240 / 255.0, 228 / 255.0, 66 / 255.0}));
+  const Inspection in = inspected(sphere(0.5));
+  const viz::FrameOverlay overlay = viz::frameOverlay(in, 1, {});
+  EXPECT_TRUE(std::any_of(overlay.lines.begin(), overlay.lines.end(), [](const viz::OverlayLine& l) { return l.model == "flat-mirror"; }));
+  const Image ladder = viz::ladderPicture(in, 1, Failure{Reason::FrameUnreadable, ""}, 900, 500), plots = viz::plotsPicture(in, 900, 600);
+  EXPECT_EQ(ladder.width, 900);
+  EXPECT_EQ(plots.width, 900);
+}
+
+}  // namespace
+}  // namespace glint
