@@ -16,7 +16,7 @@
 #include "core/pipeline/inspection.h"
 #include "core/pipeline/lobe_stage.h"
 #include "core/pipeline/several_lights.h"
-#include "core/pipeline/stage_keys.h"
+#include "core/pipeline/stage_inputs.h"
 #include "core/pipeline/training.h"
 #include "core/surface/mesh_policy.h"
 
@@ -71,11 +71,7 @@ class Run {
   void predictionsAndComparisons();
 
  private:
-  bool unchanged(const std::string& stage) const {
-    if (!previous_) return false;
-    const auto it = previous_->stageKeys.find(stage);
-    return it != previous_->stageKeys.end() && it->second == r_.stageKeys.at(stage);
-  }
+  bool unchanged(Stage stage) const { return previous_ && r_.inputs.same(stage, previous_->inputs); }
   std::shared_ptr<const Surface> surfaceOf(int frame) const {
     const Outcome<std::shared_ptr<const Surface>> s = r_.surfaces->surfaceOf(frame, meshPolicy(r_.request.settings));
     return s ? *s : nullptr;
@@ -149,12 +145,12 @@ class Run {
 void Run::highlights() {
   const InspectionRequest& q = r_.request;
   const bool together = lightsAreOpen();
-  r_.stageKeys["detect"] = detectKey(q, together);
-  r_.stageKeys["lobe"] = lobeKey(q, r_.train, together);
-  if (unchanged("detect")) {
+  r_.inputs.set(Stage::Evidence, evidenceInputs(q, together));
+  r_.inputs.set(Stage::Lobes, lobeInputs(q, r_.train, together));
+  if (unchanged(Stage::Evidence)) {
     r_.evidence = previous_->evidence;
     for (const auto& [frame, before] : previous_->evidenceBefore) r_.evidence[std::size_t(frame)] = before;
-    if (unchanged("lobe")) {
+    if (unchanged(Stage::Lobes)) {
       r_.detected = previous_->detected;
     } else {
       for (std::size_t i = 0; i < previous_->detected.size(); ++i)
@@ -200,7 +196,7 @@ void Run::gather(const std::vector<int>& frames) {
 
 void Run::lobes() {
   const SurfaceOfFrame surface = [this](int frame) { return surfaceOf(frame); };
-  if (unchanged("lobe")) {
+  if (unchanged(Stage::Lobes)) {
     r_.patches = previous_->patches;
     r_.pixelFits = previous_->pixelFits;
   } else {
@@ -237,13 +233,14 @@ void Run::changeHighlights() {
 
 void Run::brightestPointsAndTangentPlanes() {
   const InspectionRequest& q = r_.request;
-  r_.stageKeys["views"] =
-      keyOfStages(q.settings, {"surface"},
-                  r_.stageKeys["detect"] + "|" + r_.stageKeys["lobe"] + "|" + join(r_.train.frames) + (r_.train.perSurface ? "per-surface" : "") + "|x" +
-                      join(q.excluded) + "|" + exactText(q.noisePx) + "|" + std::to_string(q.seed) + "|" + posesKey(q.whatIf) +
-                      "|" + highlightsKey(q.whatIf) + "|" + lightsOffKey(q.whatIf) +
-                      (q.settings.text("fit.evidence") == "levels" ? "|" + q.settings.text("fit.levels") : ""));
-  if (unchanged("views")) {
+  r_.inputs.set(Stage::Views,
+                inputsText(q.settings, {"surface"},
+                           r_.inputs.of(Stage::Evidence) + "|" + r_.inputs.of(Stage::Lobes) + "|" + join(r_.train.frames) +
+                               (r_.train.perSurface ? "per-surface" : "") + "|x" + join(q.excluded) + "|" + exactText(q.noisePx) +
+                               "|" + std::to_string(q.seed) + "|" + posesKey(q.whatIf) + "|" + highlightsKey(q.whatIf) + "|" +
+                               lightsOffKey(q.whatIf) +
+                               (q.settings.text("fit.evidence") == "levels" ? "|" + q.settings.text("fit.levels") : "")));
+  if (unchanged(Stage::Views)) {
     r_.views = previous_->views;
     for (std::size_t v = 0; v < r_.views.size(); ++v) r_.views[v] = previous_->viewAsGiven(static_cast<int>(v));
     return;
@@ -302,9 +299,9 @@ void Run::lights() {
   for (const Group& g : all) names += "|" + textOf(g.key);
   std::set<std::string> stages{"light"};
   if (r_.request.settings.flag("light.refine_normals")) stages.insert("fit");  // which model explains the contours better depends on how it is fitted
-  r_.stageKeys["light"] = keyOfStages(r_.request.settings, stages, r_.stageKeys["views"] + names);
+  r_.inputs.set(Stage::Lights, inputsText(r_.request.settings, stages, r_.inputs.of(Stage::Views) + names));
   if (!anyModel(&HighlightModel::needsLight)) return;
-  if (unchanged("light") && !previous_->lights.empty()) {
+  if (unchanged(Stage::Lights) && !previous_->lights.empty()) {
     r_.lights = previous_->lights;
     r_.corrections = previous_->corrections;
     r_.viewsAsGiven = previous_->viewsAsGiven;
@@ -344,10 +341,11 @@ void Run::correct(const Group& group, const SurfaceCorrection& correction, std::
 }
 
 void Run::canonicalContours() {
-  r_.stageKeys["canonical"] = keyOfStages(r_.request.settings, {"fit"}, r_.stageKeys["light"]);
+  r_.inputs.set(Stage::CanonicalContours, inputsText(r_.request.settings, {"fit"}, r_.inputs.of(Stage::Lights)));
   if (!anyModel(&HighlightModel::needsCanonicalContours)) return;
   const auto had = [&](const TrainingView& v) { return v.canonical.has_value(); };
-  if (unchanged("views") && unchanged("canonical") && std::any_of(previous_->views.begin(), previous_->views.end(), had)) {
+  if (unchanged(Stage::Views) && unchanged(Stage::CanonicalContours) &&
+      std::any_of(previous_->views.begin(), previous_->views.end(), had)) {
     r_.views = previous_->views;  // equal keys: the same views
     return;
   }
@@ -372,14 +370,14 @@ FitInput Run::fitInputOf(const HighlightModel& model, const Group& group) const 
 }
 
 void Run::modelFits() {
-  r_.stageKeys["fit"] = keyOfStages(r_.request.settings, {"fit"}, r_.stageKeys["light"]);
+  r_.inputs.set(Stage::Fits, inputsText(r_.request.settings, {"fit"}, r_.inputs.of(Stage::Lights)));
   const std::vector<Group> all = groups();
   int done = 0;
   for (const std::string& name : r_.request.models) {
     const HighlightModel& model = modelByName(name);
     ModelResult& result = r_.models[name];
     result.model = name;
-    if (unchanged("fit") && previous_->models.count(name)) {
+    if (unchanged(Stage::Fits) && previous_->models.count(name)) {
       result.fits = previous_->models.at(name).fits;
       continue;
     }
@@ -431,10 +429,10 @@ std::vector<std::shared_ptr<const Band>> Run::bandsOf(const HighlightModel& mode
 }
 
 void Run::predictionsAndComparisons() {
-  r_.stageKeys["predict"] = keyOfStages(r_.request.settings, {"predict", "evaluate"}, r_.stageKeys["fit"]);
+  r_.inputs.set(Stage::Predictions, inputsText(r_.request.settings, {"predict", "evaluate"}, r_.inputs.of(Stage::Fits)));
   for (const std::string& name : r_.request.models) {
     ModelResult& result = r_.models[name];
-    if (unchanged("predict") && previous_->models.count(name) && !previous_->models.at(name).oneFrame) {
+    if (unchanged(Stage::Predictions) && previous_->models.count(name) && !previous_->models.at(name).oneFrame) {
       result.frames = previous_->models.at(name).frames;
       continue;
     }

@@ -2,6 +2,7 @@
 #include "core/pipeline/inspection.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/pipeline/corrected_depth.h"
 #include "core/surface/mesh_policy.h"
@@ -13,6 +14,23 @@ TrainingView Inspection::viewAsGiven(int view) const {
   TrainingView v = given != viewsAsGiven.end() ? given->second : views[static_cast<std::size_t>(view)];
   v.canonical.reset();
   return v;
+}
+
+const FrameEvidence* Inspection::evidenceOf(int frame, const StageInputs& from) const {
+  if (!inputs.same(Stage::Evidence, from)) return nullptr;
+  const FrameEvidence& e = evidence[static_cast<std::size_t>(frame)];
+  return e.frame >= 0 ? &e : nullptr;
+}
+
+Inspection Inspection::evidenceAlone() && {
+  Inspection alone = std::move(*this);
+  alone.inputs = alone.inputs.upTo(Stage::Lobes);
+  alone.views.clear();
+  alone.viewsAsGiven.clear();
+  alone.lights.clear();
+  alone.corrections.clear();
+  alone.models.clear();
+  return alone;
 }
 
 FitKey Inspection::keyFor(int frame, const std::string& light) const {

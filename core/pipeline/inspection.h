@@ -12,6 +12,7 @@
 #include "core/evaluate/metrics.h"
 #include "core/model/model.h"
 #include "core/pipeline/fit_key.h"
+#include "core/pipeline/stage_inputs.h"
 #include "core/pipeline/surface_correction.h"
 #include "core/pipeline/what_if.h"
 #include "core/scene/scene.h"
@@ -133,10 +134,14 @@ struct Inspection {
   std::map<FitKey, SurfaceCorrection> corrections;         ///< of the views' and predictions' surfaces, where there is one
   std::shared_ptr<CorrectedDepthMaps> correctedDepthMaps;  ///< recently used ones, for surfaceFor(); never null after a run
   std::map<std::string, ModelResult> models;
-  std::map<std::string, std::string> stageKeys;            ///< what each stage's result depends on: tells which stages a later run may reuse
+  StageInputs inputs;  ///< of the stages that were computed: tells which of them a later run may take over
   WorkCounts work;
   /// A training view on its surface as given, without canonical contour: what another fit than the inspection's own starts from.
   TrainingView viewAsGiven(int view) const;
+  /// The evidence of a frame, gathered from these inputs of Stage::Evidence; null where it is of others, or was not gathered.
+  const FrameEvidence* evidenceOf(int frame, const StageInputs& from) const;
+  /// What a later run takes its evidence and lobes from, and computes everything else anew.
+  Inspection evidenceAlone() &&;
   bool isTraining(int frame) const;
   bool isHeldOut(int frame) const;                         ///< counts in summaries
 

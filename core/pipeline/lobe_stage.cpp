@@ -10,7 +10,7 @@
 #include "core/model/pixel_evidence.h"
 #include "core/model/reflectance_settings.h"
 #include "core/pipeline/evidence.h"
-#include "core/pipeline/stage_keys.h"
+#include "core/pipeline/stage_inputs.h"
 #include "core/pipeline/training.h"
 #include "core/reflectance/lobe_contour.h"
 
@@ -57,13 +57,13 @@ bool looksAtPixels(const InspectionRequest& request) {
   return request.settings.text("detect.background") == "lobe" || evidence == "auto" || evidence == "pixels";
 }
 
-std::string lobeKey(const InspectionRequest& request, const TrainSpec& train, bool together) {
+std::string lobeInputs(const InspectionRequest& request, const TrainSpec& train, bool together) {
   std::string frames;
   for (const int f : train.frames) frames += std::to_string(f) + ",";
   frames += train.perSurface ? "per-surface" : "";
   for (const int f : request.excluded) frames += "x" + std::to_string(f);
-  return keyOfStages(request.settings, {"surface"}, detectKey(together ? request : atHalf(request), together)) + "|" + frames + "|" + posesKey(request.whatIf) + "|" +
-         lightsOffKey(request.whatIf) + (looksAtPixels(request) ? "|pixels" : "");
+  return inputsText(request.settings, {"surface"}, evidenceInputs(together ? request : atHalf(request), together)) + "|" +
+         frames + "|" + posesKey(request.whatIf) + "|" + lightsOffKey(request.whatIf) + (looksAtPixels(request) ? "|pixels" : "");
 }
 
 void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, const ProgressFn& progress) {

@@ -21,7 +21,7 @@ bool looksAtPixels(const InspectionRequest& request);
 /// What the stage depends on; the models' settings do not count. It always looks at highlights as detected at half their peak, so that another level, which a user drags,
 /// fits no lobe again.
 /// @param together  lights are told apart from all frames: then the highlights of the request's own level are taken
-std::string lobeKey(const InspectionRequest& request, const TrainSpec& train, bool together);
+std::string lobeInputs(const InspectionRequest& request, const TrainSpec& train, bool together);
 
 using SurfaceOfFrame = std::function<std::shared_ptr<const Surface>(int frame)>;
 

@@ -11,7 +11,7 @@
 #include "core/pipeline/evidence.h"
 #include "core/pipeline/lobe_stage.h"
 #include "core/pipeline/several_lights.h"
-#include "core/pipeline/stage_keys.h"
+#include "core/pipeline/stage_inputs.h"
 #include "core/surface/mesh_policy.h"
 
 namespace glint {
@@ -21,12 +21,8 @@ std::optional<Observation> observeFrame(std::shared_ptr<const Scene> scene, cons
   require(scene && frame >= 0 && frame < static_cast<int>(scene->frames.size()), "observeFrame: no such frame");
   if (lightsAreOpenIn(*scene, request)) return std::nullopt;
   Observation seen;
-  seen.key = detectKey(request, false);
-  if (known && known->given == scene) {
-    const auto key = known->stageKeys.find("detect");
-    if (key != known->stageKeys.end() && key->second == seen.key && known->evidence[std::size_t(frame)].frame >= 0)
-      return std::nullopt;
-  }
+  seen.inputs = StageInputs(evidenceInputs(request, false));
+  if (known && known->given == scene && known->evidenceOf(frame, seen.inputs)) return std::nullopt;
   const WhatIf& w = request.whatIf;
   const std::vector<int> alone{frame};
   seen.given = scene;
@@ -37,9 +33,8 @@ std::optional<Observation> observeFrame(std::shared_ptr<const Scene> scene, cons
   seen.evidence = evidenceFor(*seen.scene, frame, request);
   if (known && known->given == scene && known->surfaces && request.settings.text("detect.background") == "lobe") {
     // The lobes of the earlier results, where the request would find the same ones.
-    const auto lobes = known->stageKeys.find("lobe");
     const auto surface = known->surfaces->surfaceOf(frame, meshPolicy(request.settings));
-    if (lobes != known->stageKeys.end() && lobes->second == lobeKey(request, known->train, false) && surface)
+    if (known->inputs.is(Stage::Lobes, lobeInputs(request, known->train, false)) && surface)
       if (std::optional<FrameEvidence> again = contouredAgain(*known, *seen.scene, request, frame, seen.evidence, *surface))
         seen.evidence = *std::move(again);
   }
@@ -68,7 +63,7 @@ Inspection heldAgainst(const Inspection& earlier, const Observation& observation
   r.lights = earlier.lights;
   r.corrections = earlier.corrections;
   r.correctedDepthMaps = std::make_shared<CorrectedDepthMaps>();  // the frame may stand elsewhere now
-  r.stageKeys["detect"] = observation.key;
+  r.inputs = observation.inputs;
   const Camera& camera = observation.scene->frames[std::size_t(frame)].camera;
   for (const auto& [name, before] : earlier.models) {
     ModelResult& now = r.models[name];

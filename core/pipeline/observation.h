@@ -17,7 +17,7 @@ struct Observation {
   InspectionRequest request;
   int frame = -1;
   FrameEvidence evidence;
-  std::string key;  ///< the inspection's key of the stage "detect" for this request
+  StageInputs inputs;  ///< of the evidence alone
 };
 
 /// Nothing where `known` holds this frame's evidence already, or where lights can only be told from all frames. InputError for

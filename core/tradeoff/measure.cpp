@@ -79,9 +79,7 @@ TradeoffBench::TradeoffBench(std::shared_ptr<const Scene> scene, const Inspectio
   all_->scene = scene;
   all_->request = request;
   all_->request.models.clear();
-  all_->evidence = inspect(scene, all_->request, progress);
-  all_->evidence.views.clear();
-  all_->evidence.stageKeys.erase("views");
+  all_->evidence = inspect(scene, all_->request, progress).evidenceAlone();
 
   if (!request.whatIf.none()) {
     few_ = all_;  // the user's changes name frames by their number: all of them are tried
@@ -132,9 +130,7 @@ TradeoffBench::TradeoffBench(std::shared_ptr<const Scene> scene, const Inspectio
   few_->scene = part;
   if (!train.perSurface) few_->request.train = trainIds;
   // Detected anew, and the lobe fitted: what all trials start from. No setting of a model changes the contours that it is scored by.
-  few_->evidence = inspect(part, few_->request, progress);
-  few_->evidence.views.clear();
-  few_->evidence.stageKeys.erase("views");
+  few_->evidence = inspect(part, few_->request, progress).evidenceAlone();
 }
 
 void TradeoffBench::check() const {

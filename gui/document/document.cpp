@@ -70,8 +70,7 @@ void Document::holdAgainstObservation() {
   const std::shared_ptr<const Inspection> newest = results();
   if (!observation_ || !newest) return;
   // Results of an earlier position of the slider come after the observation of a later one: they must not put the contour back.
-  const auto key = newest->stageKeys.find("detect");
-  const bool caughtUp = newest->request == state_.request || (key != newest->stageKeys.end() && key->second == observation_->key);
+  const bool caughtUp = newest->request == state_.request || newest->inputs.same(Stage::Evidence, observation_->inputs);
   if (caughtUp)
     observation_.reset();
   else

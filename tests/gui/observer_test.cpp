@@ -25,8 +25,8 @@ class ObserverTest : public QObject {
       seen.request = request;
       seen.frame = frame;
       seen.evidence = drawnCircles(scene, request).evidence[std::size_t(frame)];
-      seen.key = keyOf(request);
-      if (seen.key == keyOf({})) return std::nullopt;  // the results hold it
+      seen.inputs = StageInputs(keyOf(request));
+      if (seen.inputs.is(Stage::Evidence, keyOf({}))) return std::nullopt;  // the results hold it
       return seen;
     };
     document_ = std::make_unique<Document>(parseTrainSpec);
@@ -102,7 +102,7 @@ class ObserverTest : public QObject {
     other.request = document_->results()->request;
     other.request.settings.set("detect.level", 0.3);
     other.evidence = document_->results()->evidence[0];
-    other.key = keyOf(other.request);
+    other.inputs = StageInputs(keyOf(other.request));
     document_->setObservation(std::make_shared<const Observation>(other));
     QCOMPARE(document_->frameInspection(), document_->results());
   }
@@ -140,7 +140,7 @@ class ObserverTest : public QObject {
   static std::string keyOf(const InspectionRequest& request) { return std::to_string(request.settings.number("detect.level")); }
   static std::shared_ptr<const Inspection> resultsOf(std::shared_ptr<const Scene> scene, const InspectionRequest& request) {
     Inspection results = drawnCircles(std::move(scene), request);
-    results.stageKeys["detect"] = keyOf(request);
+    results.inputs = StageInputs(keyOf(request));
     return std::make_shared<const Inspection>(std::move(results));
   }
   std::shared_ptr<const Inspection> resultsFor(const InspectionRequest& request) const {
