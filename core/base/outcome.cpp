@@ -35,6 +35,12 @@ const char* nameOf(Reason reason) {
   return "unknown";
 }
 
+std::optional<Reason> reasonNamed(std::string_view name) {
+  for (int i = 0; i <= static_cast<int>(Reason::Cancelled); ++i)
+    if (nameOf(static_cast<Reason>(i)) == name) return static_cast<Reason>(i);
+  return std::nullopt;
+}
+
 std::string Failure::message() const {
   return detail.empty() ? std::string(nameOf(reason)) : std::string(nameOf(reason)) + ": " + detail;
 }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -41,6 +43,8 @@ enum class Reason {
 
 /// Stable, lower-case text of a reason ("too few views").
 const char* nameOf(Reason reason);
+/// The reason of that name; nothing where there is none.
+std::optional<Reason> reasonNamed(std::string_view name);
 
 struct Failure {
   Reason reason;

@@ -80,7 +80,8 @@ const std::vector<ParamSpec>& allParams() {
        0,
        0,
        {"smooth", "lobe"},
-       "Smooth: a quadratic fitted to the pixels around a highlight; it takes in the tail of a long-tailed lobe, so that contours "
+       "Smooth: a quadratic fitted to the pixels around a highlight; it takes in the tail of a long-tailed lobe, so that "
+       "contours "
        "come out too small. Lobe: the lobe is fitted to the pixels of the training frames, and contours are found again with the "
        "background that it leaves. I = K S + B.",
        "detect"},
@@ -212,7 +213,8 @@ const std::vector<ParamSpec>& allParams() {
        0,
        0,
        {},
-       "Bundle: correct smooth bumps of a mesh that all views see, together with the light, held by a prior; kept where left-out views gain, and "
+       "Bundle: correct smooth bumps of a mesh that all views see, together with the light, held by a prior; kept where left-out "
+       "views gain, and "
        "predictions use the corrected mesh. L, h = arg min Σ ρ(e_ij(L, h)) + prior, N' ~ N - ∇h.",
        "light"},
       {"light.normal_sigma",
@@ -224,7 +226,8 @@ const std::vector<ParamSpec>& allParams() {
        0.5,
        0.001,
        {},
-       "Refined normals: standard deviation of the slopes of the bumps, in every direction. h is a Gaussian process, sd(∂h) = σ_N; "
+       "Refined normals: standard deviation of the slopes of the bumps, in every direction. h is a Gaussian process, sd(∂h) = "
+       "σ_N; "
        "left-out views choose its length and whether a quarter of this is enough.",
        "light"},
       {"fit.solver",
@@ -261,8 +264,10 @@ const std::vector<ParamSpec>& allParams() {
        0,
        0,
        {"auto", "contours", "levels", "pixels"},
-       "What the reflectance model is fitted to. Contours: one contour per highlight. Levels: contours at several levels. Pixels: "
-       "all unclipped pixels around the highlights. Auto: pixels where there are images that a lobe explains, else contours. L, m = arg "
+       "What the reflectance model is fitted to. Contours: one contour per highlight. Levels: contours at several levels. "
+       "Pixels: "
+       "all unclipped pixels around the highlights. Auto: pixels where there are images that a lobe explains, else contours. L, "
+       "m = arg "
        "min Σ ρ(w (I - K S(L, m) - B)).",
        "fit"},
       {"fit.levels",
@@ -297,8 +302,10 @@ const std::vector<ParamSpec>& allParams() {
        0,
        0,
        {"point", "auto", "sphere", "segment"},
-       "Reflectance model: which shapes beside a point the lamp may take. sphere: its radius R is estimated where it lowers the squared "
-       "residuals by a fifth. segment: its two ends, where they do so and predict left-out frames better. auto: both. Point: R = 0.",
+       "Reflectance model: which shapes beside a point the lamp may take. sphere: its radius R is estimated where it lowers the "
+       "squared "
+       "residuals by a fifth. segment: its two ends, where they do so and predict left-out frames better. auto: both. Point: R = "
+       "0.",
        "fit"},
       {"fit.most_residual",
        "Refuse above",
@@ -309,8 +316,33 @@ const std::vector<ParamSpec>& allParams() {
        10.0,
        0.01,
        {},
-       "A model gives no answer where its fit leaves more than this share of the contours' radius, in more than a third of the training views or, "
-       "for the ellipsoids, on the whole. Raise it to see how a model fails. Answered: e <= e_max r, e the residual without noise, r = √(A/π).",
+       "A model gives no answer where its fit leaves more than this share of the contours' radius, in more than a third of the "
+       "training views or, "
+       "for the ellipsoids, on the whole. Raise it to see how a model fails. Answered: e <= e_max r, e the residual without "
+       "noise, r = √(A/π).",
+       "fit"},
+      {"fit.directions",
+       "Directions",
+       "n",
+       "",
+       36,
+       6,
+       720,
+       1,
+       {},
+       "Directions of the walks that give a training view's contour on its tangent plane (the paper: 36). v_i = (cos 2πi/n, sin "
+       "2πi/n) on T.",
+       "fit"},
+      {"fit.walk_tolerance",
+       "Walk tolerance",
+       "ε",
+       "rad",
+       1e-10,
+       1e-15,
+       1e-3,
+       1e-10,
+       {},
+       "A walk from a training view ends when alpha is this close to the limit angle. |α - α_lim| < ε.",
        "fit"},
       {"predict.directions",
        "Directions",
@@ -321,8 +353,8 @@ const std::vector<ParamSpec>& allParams() {
        720,
        1,
        {},
-       "Directions of the walk in the tangent plane (the paper: 36). v_i = (cos 2πi/n, sin 2πi/n) on T.",
-       "fit"},
+       "Directions of the walks that predict a contour (the paper: 36). v_i = (cos 2πi/n, sin 2πi/n) on T.",
+       "predict"},
       {"predict.query",
        "Surface queries",
        "k1, k2",
@@ -344,8 +376,10 @@ const std::vector<ParamSpec>& allParams() {
        0,
        0,
        {"level-set", "star"},
-       "Limit angle and reflectance. Level set: the exact region, whatever its shape, also split and merged. Star: one walk per direction "
-       "from every brightest point; falls back to the level set where that does not describe the region. Region: α(P) <= α_lim on S, or "
+       "Limit angle and reflectance. Level set: the exact region, whatever its shape, also split and merged. Star: one walk per "
+       "direction "
+       "from every brightest point; falls back to the level set where that does not describe the region. Region: α(P) <= α_lim "
+       "on S, or "
        "I(P) >= q I(P_peak).",
        "predict"},
       {"predict.search",
@@ -393,8 +427,8 @@ const std::vector<ParamSpec>& allParams() {
        1e-3,
        1e-10,
        {},
-       "The walk along a direction ends when alpha is this close to the limit angle. |α - α_lim| < ε.",
-       "fit"},
+       "A walk of a prediction ends when alpha is this close to the limit angle. |α - α_lim| < ε.",
+       "predict"},
       {"predict.band",
        "Uncertainty band",
        "σ",
@@ -404,7 +438,8 @@ const std::vector<ParamSpec>& allParams() {
        0,
        0,
        {},
-       "Compute the standard deviation of every predicted contour point: noise and errors of whole views as the training views show them, other lobes that "
+       "Compute the standard deviation of every predicted contour point: noise and errors of whole views as the training views "
+       "show them, other lobes that "
        "explain these about as well, and stated tolerances. A few fits. σ² = J Σ Jᵀ + Σ τ² + Σ w d² across the contour.",
        "predict"},
       {"input.scale_tolerance",
@@ -416,7 +451,8 @@ const std::vector<ParamSpec>& allParams() {
        0.5,
        0.001,
        {},
-       "The band's share of a surface that may be larger or smaller than given by up to this fraction about the origin of the world: contours do not show it. "
+       "The band's share of a surface that may be larger or smaller than given by up to this fraction about the origin of the "
+       "world: contours do not show it. "
        "The fit is repeated with both. Uniform: σ² = d²/3.",
        "predict"},
       {"input.focal_tolerance",

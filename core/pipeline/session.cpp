@@ -31,14 +31,30 @@ void migrateFrom1(const JsonNode& request, Settings& settings) {
   if (stored && !stored->find("light.limit_orders")) settings.set("light.limit_orders", 0);  // one limit angle for each light
 }
 
-/// A program before the fit to pixels took the smooth background, fitted contours and refused no poor fit. It wrote every setting that it had, so that a list
-/// with the oldest ones and without these is its own; a list by hand that leaves them out means today's defaults.
+/// Every program wrote all settings that it had, so that a list with the oldest ones shows by what it lacks how old it is; a list
+/// by hand that leaves settings out means today's defaults.
+bool writtenByProgram(const JsonNode& settings) { return settings.find("detect.clip") && settings.find("fit.solver"); }
+
+/// A program before the fit to pixels took the smooth background, fitted contours and refused no poor fit.
 void migrateFromBeforePixels(const JsonNode& request, Settings& settings) {
   const std::optional<JsonNode> stored = request.find("settings");
-  if (!stored || !stored->find("detect.clip") || !stored->find("fit.solver")) return;
+  if (!stored || !writtenByProgram(*stored)) return;
   if (!stored->find("detect.background")) settings.set("detect.background", std::string("smooth"));
   if (!stored->find("fit.evidence")) settings.set("fit.evidence", std::string("contours"));
   if (!stored->find("fit.most_residual")) settings.set("fit.most_residual", 10.0);  // no fit was refused for what it left
+}
+
+/// Before the fit had its own directions and walk tolerance, it took those of the prediction. A setting that stands at its
+/// default stays at it.
+void giveFitItsWalks(Settings& settings) {
+  for (const auto& [of, from] :
+       {std::pair("fit.directions", "predict.directions"), std::pair("fit.walk_tolerance", "predict.walk_tolerance")})
+    if (const auto value = settings.values().find(from); value != settings.values().end()) settings.set(of, value->second);
+}
+
+bool isBeforeWalksOfTheFit(const JsonNode& request) {
+  const std::optional<JsonNode> stored = request.find("settings");
+  return stored && writtenByProgram(*stored) && !stored->find("fit.directions");
 }
 
 fs::path folderOf(const fs::path& file) { return fs::absolute(file).lexically_normal().parent_path(); }
@@ -198,6 +214,8 @@ Session parseSession(const std::string& json, const fs::path& file) {
   session.request = readRequest(root.at("request"), folder);
   if (version == 1) migrateFrom1(root.at("request"), session.request.settings);
   migrateFromBeforePixels(root.at("request"), session.request.settings);
+  const bool oneSetOfWalks = isBeforeWalksOfTheFit(root.at("request"));
+  if (oneSetOfWalks) giveFitItsWalks(session.request.settings);
   if (const auto n = root.find("frames")) {
     session.training = texts(n->at("training"));
     session.heldOut = texts(n->at("held_out"));
@@ -207,6 +225,10 @@ Session parseSession(const std::string& json, const fs::path& file) {
     session.recovery = Recovery{absolutePath(n->at("of"), folder), n->at("session").boolean()};
   if (const auto n = root.find("notes")) session.notes = n->text();
   if (const auto n = root.find("tradeoff"); n && !n->isNull()) session.tradeoff = readTradeoff(*n);
+  if (session.tradeoff && oneSetOfWalks) {
+    for (TradeoffPoint& p : session.tradeoff->points) giveFitItsWalks(p.settings);
+    for (PrunedPoint& p : session.tradeoff->pruned) giveFitItsWalks(p.settings);
+  }
   if (const auto n = root.find("results"); n && !n->isNull()) {
     const JsonNode key = n->at("key_results");
     for (const std::string& name : key.keys()) {

@@ -163,9 +163,9 @@ Outcome<DepthRefinement> refineDepth(const std::vector<TrainingView>& views, con
 void addCanonicalContour(TrainingView& view, const Light& light, const Settings& settings) {
   if (view.failure || !view.brightest) return;
   WalkOptions options;
-  options.toleranceRad = settings.number("predict.walk_tolerance");
+  options.toleranceRad = settings.number("fit.walk_tolerance");
   const TangentWalk walk(*view.surface, view.camera, *view.brightest, light, options);
-  view.canonical = canonicalContour(walk, view.camera, view.highlight.contour, settings.integer("predict.directions"));
+  view.canonical = canonicalContour(walk, view.camera, view.highlight.contour, settings.integer("fit.directions"));
 }
 
 }  // namespace glint

@@ -42,7 +42,7 @@ std::string idOf(const Trial& t, const std::vector<Knob>& knobs) {
 
 std::string costText(const Cost& c) { return formatted("%.3g %% at %.3g us", c.errorPct, c.us); }
 
-/// By its name: the stage of "predict.directions" is the fit, where it is used first.
+/// Its time is measured, that of a fit is not.
 bool usedByPrediction(const Knob& k) { return k.key.rfind("predict.", 0) == 0 || k.key.rfind("surface.", 0) == 0; }
 
 bool lookedAtBy(const Knob& k, const std::string& model) { return k.onlyModel.empty() || k.onlyModel == model; }

@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using json_dom::numberOrNull;
 
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;  // 1 held reasons as numbers, whose meaning the next program changed
 
 double numberOrNan(const JsonNode& j) { return j.isNull() ? std::nan("") : j.number(); }
 
@@ -56,7 +56,7 @@ Json outcomes(const std::map<std::string, Outcome<T>>& all) {
     if (outcome)
       j[id] = toJson(*outcome);
     else
-      j[id] = {{"reason", static_cast<int>(outcome.failure().reason)}, {"detail", outcome.failure().detail}};
+      j[id] = {{"reason", nameOf(outcome.failure().reason)}, {"detail", outcome.failure().detail}};
   }
   return j;
 }
@@ -66,8 +66,9 @@ void readOutcomes(const JsonNode& j, std::map<std::string, Outcome<T>>& all) {
   for (const std::string& id : j.keys()) {
     const JsonNode item = j.at(id);
     if (const auto reason = item.find("reason")) {
-      if (reason->integer() < 0 || reason->integer() > static_cast<int>(Reason::Cancelled)) reason->fail("there is no such reason");
-      all.insert_or_assign(id, Failure{static_cast<Reason>(reason->integer()), item.at("detail").text()});
+      const std::optional<Reason> named = reasonNamed(reason->text());
+      if (!named) reason->fail("there is no such reason");
+      all.insert_or_assign(id, Failure{*named, item.at("detail").text()});
       continue;
     }
     T value{};

@@ -182,7 +182,7 @@ std::vector<Victim> makeMaterials(const fs::path& program, const fs::path& folde
     for (const Json& h : frame.value("highlights", Json::array())) contours.push_back({{"closed", true}, {"edge_fraction", 0.0}, {"points", h["contour"]}});
     write(folder / "given/truth" / (frame["id"].get<std::string>() + ".json"), Json{{"levels", {{"0.50", contours}}}, {"peak_subpixel", nullptr}}.dump());
   }
-  write(folder / "given/run.work", R"({"glint_tradeoff_work":1,"key":"","coarse":{},"full":{}})");
+  write(folder / "given/run.work", R"({"glint_tradeoff_work":2,"key":"","coarse":{},"full":{}})");
   write(folder / "given/folder/a.txt", "nothing of ours");
   fs::create_directories(folder / "specs");
   Json small = specOf(ellipsoid, png);

@@ -61,6 +61,8 @@ const std::vector<Turn>& turns() {
       {"fit.lobe", "phong", "noisy", {}, {"reflectance"}},
       {"fit.light_size", "point", "large lamp", {}, {"reflectance"}},
       {"fit.most_residual", "1", "noisy", {}, {"primal"}},  // refused at a tenth: the surface is no plane
+      {"fit.directions", "12", "noisy", {}, {"canonical"}},
+      {"fit.walk_tolerance", "0.001", "noisy", {}, {"canonical"}},
       {"predict.directions", "12", "noisy", {}, {"canonical"}},
       {"predict.query", "local-quadric", "noisy", kStar},
       {"predict.contour", "star", "noisy"},

@@ -22,6 +22,8 @@ TEST(Settings, EveryDescriptionIsUsable) {
     EXPECT_FALSE(p.symbol.empty()) << p.key;
     EXPECT_NE((p.symbol + p.help).find_first_of("=<"), std::string::npos) << p.key << " has no equation";
     EXPECT_TRUE(stages.count(p.stage)) << p.key;
+    // What the user says about the input serves the bands of predictions; every other name says the stage that uses the setting.
+    EXPECT_TRUE(p.key.rfind(p.stage + ".", 0) == 0 || (p.key.rfind("input.", 0) == 0 && p.stage == "predict")) << p.key;
     Settings s;
     EXPECT_NO_THROW(s.set(p.key, p.defaultValue)) << p.key << ": the default must lie in its own range";
     EXPECT_TRUE(s.values().empty()) << "a default is not stored";

@@ -113,6 +113,31 @@ TEST(Migration, OfASessionWithEverythingThatVersion3Grew) {
   EXPECT_EQ(s.notes, "of version 3");
 }
 
+/// The fit took the prediction's directions and walk tolerance before it had its own; the points of a trade-off were measured so,
+/// too.
+TEST(Migration, TheFitKeepsTheDirectionsOfThePrediction) {
+  std::string text = contentOf(fixture(2));
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+  };
+  replace("\"predict.directions\": 36", "\"predict.directions\": 24");
+  replace("\"predict.walk_tolerance\": 1e-10", "\"predict.walk_tolerance\": 1e-6");
+  replace("\"set\": {}", "\"set\": {\"predict.directions\": 12}");
+  const Session old = parseSession(text, fixture(2));
+  EXPECT_EQ(old.request.settings.integer("fit.directions"), 24);
+  EXPECT_EQ(old.request.settings.number("fit.walk_tolerance"), 1e-6);
+  EXPECT_EQ(old.tradeoff->points[0].settings.integer("fit.directions"), 12);
+  EXPECT_EQ(old.tradeoff->points[1].settings.integer("fit.directions"), 36);
+
+  replace("\"predict.directions\": 24", "\"fit.directions\": 48,\n      \"predict.directions\": 24");
+  const Session now = parseSession(text, fixture(2));
+  EXPECT_EQ(now.request.settings.integer("fit.directions"), 48);
+  EXPECT_EQ(now.request.settings.integer("predict.directions"), 24);
+  EXPECT_EQ(now.tradeoff->points[0].settings.integer("fit.directions"), 36);
+}
+
 TEST(Migration, WrittenAgainItIsOfThisVersionAndMeansTheSame) {
   const TemporaryFolder folder;
   for (const char* name : {"version-1.glint", "version-2.glint", "version-2-what-if.glint", "version-3.glint"}) {

@@ -45,13 +45,13 @@ TEST(WorkFile, IsEmptyForAnotherKeyOrWhenItIsBroken) {
     EXPECT_EQ(WorkFile(folder / "w", "key").size(), 0);
   }
   // Numbers that no int holds, and a reason that does not exist, are not taken for something else.
-  const std::string start = R"({"glint_tradeoff_work":1,"key":"key","coarse":{"a":)";
-  for (const std::string result : {R"({"reason":1e300,"detail":""})", R"({"reason":-1,"detail":""})", R"({"reason":1000,"detail":""})",
-                                    R"({"reason":0.5,"detail":""})", R"({"error_pct":"1","us":1,"predictions":""})"}) {
+  const std::string start = R"({"glint_tradeoff_work":2,"key":"key","coarse":{"a":)";
+  for (const std::string result : {R"({"reason":3,"detail":""})", R"({"reason":"","detail":""})", R"({"reason":"too few view","detail":""})",
+                                    R"({"reason":null,"detail":""})", R"({"error_pct":"1","us":1,"predictions":""})"}) {
     folder.write("w", start + result + R"(},"full":{}})");
     EXPECT_EQ(WorkFile(folder / "w", "key").size(), 0) << result;
   }
-  folder.write("w", start + R"({"reason":0,"detail":""}},"full":{}})");
+  folder.write("w", start + R"({"reason":"too few views","detail":""}},"full":{}})");
   EXPECT_EQ(WorkFile(folder / "w", "key").size(), 1) << "the same file with nothing wrong";
   EXPECT_EQ(WorkFile(folder.path(), "key").size(), 0) << "a folder";
   EXPECT_EQ(WorkFile("", "key").size(), 0);
