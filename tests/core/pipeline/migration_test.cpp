@@ -85,7 +85,7 @@ TEST(Migration, OfVersion2) {
   // The prior of an extent was changed since: 3.0e-2 of the limit angle, with which an extent trades. It still has one.
   const OpenedSession opened = openSession(fixture(2), {kScene});
   EXPECT_LT(largestChange(opened), 4e-2);
-  EXPECT_TRUE(inspect(opened.scene, opened.session.request).lights.begin()->second.extent);
+  EXPECT_TRUE(inspect(opened.scene, opened.session.request).lights.begin()->second->extent);
 }
 
 TEST(Migration, OfASessionWithEverythingThatVersion2Grew) {
