@@ -104,13 +104,14 @@ def main():
 
     lines = ["""# Performance
 
-This page is written by a program; do not edit it. After a release build, from the root of the project:
+How long each stage takes, how the cost grows, and what bounds it. A program writes this page; do not edit it. After a release build, from the root
+of the project:
 
     python3 bench/make_performance.py --programs build/release/bin
 """]
     lines.append(f"CPU time of one thread (not wall time), median of {a.repetitions} repetitions, and the fastest of them. Machine: "
                  f"{context['num_cpus']} cores at {context['mhz_per_cpu']} MHz, shared with other work (load average {context['load_avg'][0]:.1f} "
-                 "at the start): caches and clock were not ours alone, so a quiet machine is faster than this.\n")
+                 "at the start): caches and clock were shared, so an idle machine is faster.\n")
     lines += ["| what | median ms | fastest ms | aim ms | |", "| --- | --- | --- | --- | --- |"]
     for program, name, text, aim in ROWS:
         values = times.get((program, name))
@@ -135,14 +136,14 @@ This page is written by a program; do not edit it. After a release build, from t
     old = output.read_text() if output and output.exists() else ""
     kept = old[old.index(BEGIN) + len(BEGIN):old.index(END)].strip() if BEGIN in old and END in old else "Not measured yet."
     lines.append(f"""
-## Beside what one would otherwise do
+## Compared with alternatives
 
-The same contours of a sphere, from a path tracer and from a plain NumPy program, one after another on this machine, one thread:
+The same contours of a sphere, from a path tracer and from a plain NumPy program, one after the other on the same computer, one thread:
 
     python3 bench/compare_alternatives.py FOLDER_OF_CYCLES_SPHERE
 
-Errors are mean distances to the reference contours, as a share of their diameter. The path tracer is given what the models have to
-find out: light, material and level.
+Errors are mean distances to the reference contours, as a share of their diameter. The path tracer is given what the models must
+find: light, material and level.
 
 {BEGIN}
 {kept}

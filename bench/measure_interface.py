@@ -84,7 +84,7 @@ def measured(args, session, preset, scratch):
                                    scratch).stdout)
     lines = [f"Preset `{preset}` ({models}): from the start to the first photograph {result['first_photograph_ms']:.0f} ms, to the "
              f"first overlay {result['first_overlay_ms']:.0f} ms, to everything {result['everything_ms']:.0f} ms.", "",
-             "| slider | what it computes again | positions | first overlay: median ms | 95 % ms | most ms | every model: median ms | 95 % ms |",
+             "| slider | recomputes | positions | first overlay: median ms | 95 % ms | most ms | every model: median ms | 95 % ms |",
              "|---|---|---|---|---|---|---|---|"]
     for name, what in SLIDERS:
         s = result["sliders"][f"slider:{name}"]
@@ -107,7 +107,7 @@ def main():
         if not (folder / f"{PRESETS[-1]}.glint").exists():
             make_sessions(args.build / "bin/glint", folder, args.frames)
         table = "\n\n".join(measured(args, folder / f"{preset}.glint", preset, scratch) for preset in PRESETS)
-        table += ("\n\nFor how long nothing else could happen in the interface:\n\n" + standstills(args, scratch))
+        table += ("\n\nHow long the interface stands still:\n\n" + standstills(args, scratch))
     print(table)
     if args.page:
         text = args.page.read_text()

@@ -48,7 +48,7 @@ class Page final : public CLI::Formatter {
 };
 
 /// The heading of the options that every command has.
-constexpr const char* kEverywhere = "Options of every command";
+constexpr const char* kEverywhere = "Options common to all commands";
 
 /// "json.megabytes=512, ...": names and the values at the start.
 std::string limitNames() {
@@ -62,7 +62,7 @@ std::string limitNames() {
 
 constexpr const char* kExitCodes =
     "Exit codes: 0 done; 1 a comparison failed; 2 the input or the request is wrong;\n"
-    "3 the data cannot answer; 130 stopped by Ctrl-C. A message is one line on standard error.";
+    "3 the data cannot answer; 130 stopped by Ctrl-C. Each message is one line on standard error.";
 
 int stopped() {
   dropWarnings();
@@ -95,14 +95,15 @@ int guarded(const std::function<int()>& run) {
   } catch (const Stopped&) {
     return fail("stopped", kStopped);
   } catch (const std::invalid_argument& e) {
-    return fail(std::string("wrong request: ") + e.what(), kWrongInput);
+    return fail(std::string("invalid request: ") + e.what(), kWrongInput);
   } catch (const std::bad_alloc&) {
     return fail("out of memory", kCannotAnswer);
   } catch (const std::exception& e) {
     const std::string what = e.what();  // OpenCV's own exception says so
-    return fail(what.find("Insufficient memory") == std::string::npos ? "unexpected: " + what : "out of memory", kCannotAnswer);
+    return fail(what.find("Insufficient memory") == std::string::npos ? "unexpected error: " + what : "out of memory",
+                kCannotAnswer);
   } catch (...) {
-    return fail("unexpected failure", kCannotAnswer);
+    return fail("unexpected error", kCannotAnswer);
   }
 }
 
@@ -144,7 +145,7 @@ void Options::choice(std::string& target, const std::string& flags, const std::v
   named(parser_.app.add_option(flags, target, help), type)->check([values, type](const std::string& given) {
     for (const std::string& v : values)
       if (v == given) return std::string();
-    return "'" + given + "' is none of " + type;
+    return "'" + given + "' is not one of " + type;
   });
 }
 void Options::flag(bool& target, const std::string& flags, const std::string& help) { parser_.app.add_flag(flags, target, help); }
@@ -153,7 +154,7 @@ int runCommandLine(int argc, char** argv, const std::vector<Command>& commands) 
   CLI::App app("Predicts specular highlights from a few images of a known scene.", "glint");
   app.formatter(std::make_shared<Page>());
   app.set_version_flag("--version", std::string("glint ") + GLINT_VERSION);
-  app.set_help_flag("-h,--help", "This page");
+  app.set_help_flag("-h,--help", "Show this page");
   app.require_subcommand(1);
   app.footer("`glint COMMAND --help` describes a command.\n" + std::string(kExitCodes));
   const Command* chosen = nullptr;
@@ -169,9 +170,13 @@ int runCommandLine(int argc, char** argv, const std::vector<Command>& commands) 
     Options::Parser parser{*sub};
     Options options(parser);
     command.declare(options);
-    sub->add_option("--limit", limits, "Raise a limit on the size of inputs, in its own unit: " + limitNames() + "; may be repeated")
-        ->type_name("NAME=VALUE")->expected(1)->take_all()->group(kEverywhere);
-    sub->add_flag("--all-warnings", allWarnings, "Print each warning on a line of its own (without it, all of them share one line)")
+    sub->add_option("--limit", limits,
+                    "Raise a limit on input size, in the unit of its name: " + limitNames() + "; may be repeated")
+        ->type_name("NAME=VALUE")
+        ->expected(1)
+        ->take_all()
+        ->group(kEverywhere);
+    sub->add_flag("--all-warnings", allWarnings, "Print each warning on a separate line (default: all on one line)")
         ->group(kEverywhere);
     sub->callback([&chosen, &command] { chosen = &command; });
   }

@@ -15,20 +15,20 @@ Command compareCommand() {
   const auto a = std::make_shared<Arguments>();
   Command c;
   c.name = "compare";
-  c.summary = "Say what differs between two sessions: inputs, parameters, results, the error of every frame";
+  c.summary = "List the differences between two sessions: inputs, settings, results, error of each frame";
   c.description =
-      "Computes both sessions again and compares them: input files by their hashes, training and excluded frames, models,\n"
-      "settings with their units, what-if, key results, and the contour error of every frame that either of them has (frames\n"
-      "are the same when their ids are). Differences are a finding: the exit code is 0.";
+      "Recomputes both sessions and compares them: input files by hash, training and excluded frames, models, settings\n"
+      "with their units, what-if, key results, and the contour error of every frame that either session has (frames\n"
+      "match when their ids match). Differences are not an error: the exit code is 0.";
   c.examples =
-      "  glint compare before.glint after.glint              what differs\n"
+      "  glint compare before.glint after.glint              list the differences\n"
       "  glint compare before.glint after.glint --all --json both.json\n";
   c.declare = [a](Options& o) {
-    o.positional(a->a, "A.glint", "A session");
-    o.positional(a->b, "B.glint", "The session to compare with");
-    o.flag(a->all, "--all", "Also what is equal");
+    o.positional(a->a, "A.glint", "The first session");
+    o.positional(a->b, "B.glint", "The second session");
+    o.flag(a->all, "--all", "Also list equal values");
     a->places.declare(o);
-    o.option(a->json, "--json", "FILE", "Write the comparison there (- = standard output, instead of the text)");
+    o.option(a->json, "--json", "FILE", "Write the comparison as JSON (- = standard output, replaces the text)");
   };
   c.run = [a](const Context& context) -> int {
     const auto opened = [&](const std::string& file) {

@@ -16,13 +16,13 @@ Command convertCommand() {
   const auto a = std::make_shared<Arguments>();
   Command c;
   c.name = "convert";
-  c.summary = "Write any input as a scene file";
+  c.summary = "Convert any input to a scene file";
   c.description =
-      "Reads INPUT and writes it as scene.json, version 1, with paths relative to the new file; images and meshes stay\n"
-      "where they are. Keys that this version does not know are kept.";
+      "Reads INPUT and writes it as scene.json, version 1, with paths relative to the new file. Images and meshes stay\n"
+      "in place. Unknown keys are kept.";
   c.examples = "  glint convert DIR -o DIR/scene.json\n";
   c.declare = [a](Options& o) {
-    o.positional(a->input, "INPUT", "A scene file, a folder with one, or a session");
+    o.positional(a->input, "INPUT", "Scene file, folder that contains one, or session");
     o.required(a->output, "-o,--out,--output", "FILE", "The scene file to write (*.json)");
     a->places.declare(o);
   };
@@ -39,7 +39,7 @@ Command convertCommand() {
     try {
       readScene(output);
     } catch (const InputError& e) {
-      context.warn(std::string("reading it back needs --allow-outside: ") + e.what());
+      context.warn(std::string("reading this file needs --allow-outside: ") + e.what());
     }
     return kDone;
   };

@@ -68,21 +68,22 @@ Command detectCommand() {
   const auto a = std::make_shared<Arguments>();
   Command c;
   c.name = "detect";
-  c.summary = "Highlights of every frame: contour, peak, ellipse";
+  c.summary = "Detect the highlights in every frame: contour, peak, ellipse";
   c.description =
-      "Detects the highlights in every frame, whatever highlights the scene file gives: a log-quadratic peak, the diffuse\n"
+      "Detects the highlights in every frame and ignores those that the scene file gives: a log-quadratic peak, the diffuse\n"
       "background around it removed, and the sub-pixel iso-contour at a level relative to the strongest peak of the frame.\n"
-      "Prints a table in ideal pixels; with --out it writes highlights.json and one overlay a frame.";
+      "Prints a table in ideal pixels. --out also writes highlights.json and one overlay per frame.";
   c.examples =
       "  glint detect scene.json                          a table of all highlights\n"
       "  glint detect scene.json --source image --out DIR from the photographs, with overlays\n";
   c.declare = [a](Options& o) {
-    o.positional(a->input, "INPUT", "A scene file, a folder with one, or a session");
-    o.option(a->level, "--level", "L", "Contour level, fraction of the strongest peak above its background (more than 0, less than 1)");
-    o.choice(a->source, "--source", {"radiance", "image"}, "Which pixels, where a frame has both");
-    o.repeated(a->set, "--set", "KEY=VALUE", "A setting by its dotted name, such as detect.min_area=20");
-    o.option(a->out, "--out", "DIR", "Write highlights.json and overlays as PNG");
-    o.option(a->json, "--json", "FILE", "Write highlights.json there (- = standard output, instead of the table)");
+    o.positional(a->input, "INPUT", "Scene file, folder that contains one, or session");
+    o.option(a->level, "--level", "L",
+             "Contour level: fraction of the strongest peak above its background (more than 0, less than 1)");
+    o.choice(a->source, "--source", {"radiance", "image"}, "Pixels to use where a frame has both");
+    o.repeated(a->set, "--set", "KEY=VALUE", "Any setting by its dotted name, such as detect.min_area=20; may be repeated");
+    o.option(a->out, "--out", "DIR", "Write highlights.json and PNG overlays to this folder");
+    o.option(a->json, "--json", "FILE", "Write highlights.json to this file (- = standard output, replaces the table)");
     a->places.declare(o);
   };
   c.run = [a](const Context& context) -> int {
@@ -94,7 +95,7 @@ Command detectCommand() {
     }
     for (const std::string& text : a->set) {
       const std::size_t equals = text.find('=');
-      if (equals == std::string::npos) throw InputError("", "--set " + text, "must be KEY=VALUE");
+      if (equals == std::string::npos) throw InputError("", "--set " + text, "expected KEY=VALUE");
       settings.setFromText(text.substr(0, equals), text.substr(equals + 1));
     }
     Scene scene = a->places.read(a->input);
@@ -146,8 +147,8 @@ Command detectCommand() {
       }
     if (open > 0) {
       const std::string text = formatted(
-          "the background is uncertain under %d highlight%s: their surroundings may be the tail of the highlight itself, and the "
-          "contours up to %.2g %% of the diameter too small; evaluate and reconstruct know the surface and settle it",
+          "the background is uncertain under %d highlight%s: the surroundings may be the tail of the highlight, so contours "
+          "may be up to %.2g %% of the diameter too small; evaluate and reconstruct resolve this because they know the surface",
           open, open == 1 ? "" : "s", worst);
       context.warn(text);
     }

@@ -19,15 +19,15 @@ Command evaluateCommand() {
   const auto a = std::make_shared<Arguments>();
   Command c;
   c.name = "evaluate";
-  c.summary = "Fit models on training frames, predict the held-out ones, compare";
+  c.summary = "Fit models to training frames, predict held-out frames and compare";
   c.description =
-      "Finds the highlights of every frame, fits each model on the training frames, predicts every frame and compares with\n"
-      "what was observed there. The table counts held-out frames only (all frames with --train per-surface). Errors are\n"
-      "symmetric mean contour distances in pixels and in percent of the equivalent diameter of the observed highlight;\n"
-      "predicted/frames and coverage stand beside them, because a model must not win by leaving things out.\n"
-      "With --models auto the simplest model is chosen whose leave-one-view-out error on the training frames is within one\n"
-      "standard error of the best, or under --good-enough-pct. Where walks on local quadrics are good enough for it by the same\n"
-      "rule, predict.query becomes local-quadric, unless --set says what it is to be.";
+      "Finds the highlights in every frame, fits each model to the training frames, predicts every frame and compares\n"
+      "predictions with observations. The table covers held-out frames only (all frames with --train per-surface). Errors\n"
+      "are symmetric mean contour distances in pixels and in percent of the equivalent diameter of the observed highlight;\n"
+      "predicted/frames and coverage are shown beside them, so that no model wins by leaving highlights out.\n"
+      "--models auto chooses the simplest model whose leave-one-view-out error on the training frames is within one\n"
+      "standard error of the best, or under --good-enough-pct. If walks on local quadrics are good enough by the same\n"
+      "rule, predict.query becomes local-quadric, unless --set gives it.";
   c.examples =
       "  glint evaluate scene.json                                all models, trained on the first 6 frames\n"
       "  glint evaluate scene.json --train spread:6 --html r.html a page with plots and the worst frames\n"
@@ -35,10 +35,10 @@ Command evaluateCommand() {
       "  glint evaluate scene.json --train 0-5 --json - --set fit.solver=anchored\n";
   c.declare = [a](Options& o) {
     a->declare(o, "Models to compare: primal, dual, canonical, limit-angle, reflectance; or auto (default: all)");
-    o.option(a->goodEnough, "--good-enough-pct", "E", "With auto: a contour error in percent that is good enough");
-    o.option(a->json, "--json", "FILE", "The whole evaluation as JSON (- = standard output)");
-    o.option(a->csv, "--csv", "FILE", "One row per model, frame and highlight (- = standard output)");
-    o.option(a->html, "--html", "FILE", "A self-contained page");
+    o.option(a->goodEnough, "--good-enough-pct", "E", "With --models auto: contour error in percent that is good enough");
+    o.option(a->json, "--json", "FILE", "Write the whole evaluation as JSON (- = standard output)");
+    o.option(a->csv, "--csv", "FILE", "Write CSV, one row per model, frame and highlight (- = standard output)");
+    o.option(a->html, "--html", "FILE", "Write a self-contained HTML page");
   };
   c.run = [a](const Context& context) -> int {
     InspectionRequest request = a->request();
@@ -66,7 +66,7 @@ Command evaluateCommand() {
       if (!a->goodEnough.empty()) {
         goodEnough = numberFrom(a->goodEnough);
         if (!goodEnough || !(*goodEnough > 0))
-          throw InputError("", "--good-enough-pct " + a->goodEnough, "expected a positive number of percent");
+          throw InputError("", "--good-enough-pct " + a->goodEnough, "expected a positive number, in percent");
       }
       request.models.clear();  // evidence and views only: the choice decides what else is computed
       result = inspect(scene, request, context.progress());
@@ -85,7 +85,7 @@ Command evaluateCommand() {
         throw CannotAnswer{{Reason::NotReached, s.why}};
       }
       const bool keepWalks = a->sets("predict.query");  // the user decided
-      if (keepWalks && s.patches && s.patches->goodEnough) text += "predict.query stays as it was set.\n\n";
+      if (keepWalks && s.patches && s.patches->goodEnough) text += "predict.query stays as set.\n\n";
       request = chosenRequest(request, s);
       if (keepWalks) request.settings.set("predict.query", result.request.settings.text("predict.query"));
       report.chosenModel = s.model;
@@ -96,7 +96,7 @@ Command evaluateCommand() {
       report.chosenModel = bestModel(result);
       if (!report.chosenModel.empty())
         report.whyChosen =
-            "Smallest mean held-out contour error among the models that predicted most frames; --models auto chooses from "
+            "Smallest mean held-out contour error among the models that predicted the most frames; --models auto chooses from "
             "the training frames alone.";
     }
     write();

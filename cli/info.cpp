@@ -16,17 +16,17 @@ Command infoCommand() {
   const auto a = std::make_shared<Arguments>();
   Command c;
   c.name = "info";
-  c.summary = "What was recognised, and whether its conventions hold";
+  c.summary = "Report what was recognised and check its conventions";
   c.description =
-      "Reads the scene, every surface and every image, and tests the reading on the data itself: how many vertices of\n"
-      "the surface project inside each frame, whether the depth maps agree with the surface (median and 95 %), and\n"
-      "which images contain NaN or negative values. What looks wrong is listed as a finding with its likely cause.";
+      "Reads the scene, every surface and every image, and checks the result against the data: how many vertices of the\n"
+      "surface project inside each frame, whether depth maps agree with the surface (median and 95 %), and which images\n"
+      "contain NaN or negative values. Each problem is listed as a finding with its likely cause.";
   c.examples =
       "  glint info scene.json                 the report as text\n"
       "  glint info DIR --json -               the same as JSON on standard output\n";
   c.declare = [a](Options& o) {
-    o.positional(a->input, "INPUT", "A scene file, a folder with one, or a session");
-    o.option(a->json, "--json", "FILE", "Write the report as JSON (- = standard output) instead of text");
+    o.positional(a->input, "INPUT", "Scene file, folder that contains one, or session");
+    o.option(a->json, "--json", "FILE", "Write the report as JSON instead of text (- = standard output)");
     a->places.declare(o);
   };
   c.run = [a](const Context& context) -> int {

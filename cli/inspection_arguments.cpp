@@ -20,37 +20,40 @@ std::vector<std::string> splitList(const std::string& text, const std::string& f
     if (part.empty()) throw InputError("", flag + " " + text, "empty entry");
     parts.push_back(part);
   }
-  if (parts.empty()) throw InputError("", flag, "names nothing");
+  if (parts.empty()) throw InputError("", flag, "expected at least one name");
   return parts;
 }
 
 void applyPreset(const Session& session, const std::string& preset, InspectionRequest& request) {
   if (!session.tradeoff)
-    throw InputError("", "--preset " + preset, "the session has no trade-off: measure it with `glint tradeoff " + session.file.string() + "`");
+    throw InputError("", "--preset " + preset,
+                     "the session has no trade-off; run `glint tradeoff " + session.file.string() + "` first");
   const TradeoffPoint& point = pointOfPreset(*session.tradeoff, preset);
   request.models = {point.model};
   request.settings = point.settings;
 }
 
 void InspectionArguments::declare(Options& o, const std::string& modelsHelp) {
-  o.positional(input, "INPUT", "A scene file, a folder with one, or a session");
+  o.positional(input, "INPUT", "Scene file, folder that contains one, or session");
   o.option(models, "--models,--model", "NAME[,NAME...]", modelsHelp);
   o.option(train, "--train", "SPEC", "Training frames: numbers, ids or ranges (0-5,14), first:K, spread:K, or per-surface (default: the session's, else first:6)");
-  o.option(exclude, "--exclude", "SPEC", "Frames that neither train nor are scored: numbers, ids or ranges (default: the session's, else none)");
-  o.option(level, "--level", "Q", "Contour level, fraction of the peak above the background (default 0.5)");
-  o.choice(source, "--source", {"", "radiance", "image"}, "Where both exist: the float radiance or the captured image (default: the session's, else radiance)");
-  o.option(preset, "--preset", "NAME", "Model and settings of the session's trade-off: fast, balanced, exact or chosen");
+  o.option(exclude, "--exclude", "SPEC",
+           "Frames to exclude from training and scoring: numbers, ids or ranges (default: the session's, else none)");
+  o.option(level, "--level", "Q", "Contour level: fraction of the peak above the background (default: the session's, else 0.5)");
+  o.choice(source, "--source", {"", "radiance", "image"},
+           "Pixels to use where a frame has both: float radiance or captured image (default: the session's, else radiance)");
+  o.option(preset, "--preset", "NAME", "Take model and settings from the session's trade-off: fast, balanced, exact or chosen");
   o.repeated(set, "--set", "KEY=VALUE", "Any setting by its dotted name (`glint settings` lists them); may be repeated");
-  o.option(noisePx, "--noise-px", "S", "Gaussian noise per coordinate on training contours (72 points) and peaks, px");
-  o.option(seed, "--seed", "N", "Seed of that noise");
-  o.option(truth, "--truth", "DIR", "Score against contours stored as FRAME.json instead of the own detection");
+  o.option(noisePx, "--noise-px", "S", "Add Gaussian noise to each coordinate of training contours (72 points) and peaks, px");
+  o.option(seed, "--seed", "N", "Seed of the noise");
+  o.option(truth, "--truth", "DIR", "Score against contours stored as FRAME.json instead of detected ones");
   places.declare(o);
 }
 
 InspectionRequest InspectionArguments::request() const {
   InspectionRequest r;
   const bool isSession = std::filesystem::path(input).extension() == ".glint";
-  if (!preset.empty() && !isSession) throw InputError("", "--preset " + preset, "INPUT is no session, so it holds no trade-off");
+  if (!preset.empty() && !isSession) throw InputError("", "--preset " + preset, "INPUT is not a session, so it has no trade-off");
   if (isSession) {
     const Session session = places.readRequestOf(input, truth.empty());
     r = session.request;
@@ -59,7 +62,7 @@ InspectionRequest InspectionArguments::request() const {
   if (!models.empty() && models != "auto") r.models = splitList(models, "--models");
   for (auto m = r.models.begin(); m != r.models.end(); ++m) {
     modelByName(*m);
-    if (std::find(r.models.begin(), m, *m) != m) throw InputError("", "--models " + models, "'" + *m + "' stands twice");
+    if (std::find(r.models.begin(), m, *m) != m) throw InputError("", "--models " + models, "'" + *m + "' is named twice");
   }
   if (!train.empty()) r.train = train;
   if (!source.empty()) r.source = source == "image" ? FrameSource::Image : FrameSource::Radiance;
@@ -92,7 +95,7 @@ std::shared_ptr<const Scene> InspectionArguments::scene(InspectionRequest& reque
   auto scene = std::make_shared<const Scene>(places.read(input));
   if (exclude.empty()) return scene;
   request.excluded = parseFrames(exclude, *scene, "--exclude");
-  if (request.excluded.size() == scene->frames.size()) throw InputError("", "--exclude " + exclude, "leaves no frame");
+  if (request.excluded.size() == scene->frames.size()) throw InputError("", "--exclude " + exclude, "excludes every frame");
   return scene;
 }
 

@@ -38,7 +38,7 @@ struct InspectionArguments {
 };
 
 /// What --level takes, in words: as the scene reader.
-inline constexpr const char* kLevelRange = "the level is a fraction of the peak, more than 0 and less than 1";
+inline constexpr const char* kLevelRange = "must be a fraction of the peak, more than 0 and less than 1";
 
 /// Model and settings of a point of the session's trade-off: "fast", "balanced", "exact" or "chosen".
 /// InputError when the session has none.

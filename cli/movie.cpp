@@ -28,9 +28,9 @@ int run(const MovieArguments& a, const Context& context) {
   const bool turning = a.of == "turntable";
   viz::MovieFormat format{width, height, a.framesPerSecond > 0 ? a.framesPerSecond : turning ? 25.0 : 5.0};
   if (!(format.framesPerSecond >= 0.1 && format.framesPerSecond <= 240))
-    throw InputError("", "--fps", "must be within 0.1 and 240");
+    throw InputError("", "--fps", "must be between 0.1 and 240");
   if (!(a.seconds > 0 && a.seconds <= 3600)) throw InputError("", "--seconds", "must be above 0 and at most 3600");
-  if (width > 8192 || height > 8192) throw InputError("", "--size", "a movie is at most 8192 px wide and high");
+  if (width > 8192 || height > 8192) throw InputError("", "--size", "a movie can be at most 8192 px wide and high");
   viz::checkMovie(a.out, format);
   const PictureInput::Opened opened = a.open(context);
   const Scene& scene = *opened.scene;
@@ -97,26 +97,27 @@ Command movieCommand() {
   const auto a = std::make_shared<MovieArguments>();
   Command c;
   c.name = "movie";
-  c.summary = "Write a movie of the timeline or of a turntable";
+  c.summary = "Write a movie: timeline, look-through or turntable";
   c.description =
-      "Computes the inspection of a scene or session and draws it as a movie without opening a window.\n"
+      "Computes a scene or session and draws it as a movie without opening a window.\n"
       "  timeline      every frame with the observed contour and each model's prediction, errors below; needs no display\n"
-      "  look-through  the scene in 3D through the camera of every frame, its photograph over it\n"
-      "  turntable     the scene in 3D, turned once about its upward axis\n"
-      "The ending says what is written: .mp4, .webm, .avi, .mkv, or .png for a numbered series of pictures.\n"
-      "look-through and turntable start a private virtual display as `glint render` does.";
+      "  look-through  the 3D scene through the camera of each frame, overlaid with its photograph\n"
+      "  turntable     the 3D scene, rotated once about its vertical axis\n"
+      "The file extension selects the format: .mp4, .webm, .avi, .mkv, or .png for a numbered sequence of pictures.\n"
+      "look-through and turntable start a private virtual display, like `glint render`.";
   c.examples =
-      "  glint movie run.glint -o timeline.mp4                              all frames, 5 a second\n"
-      "  glint movie run.glint --of turntable --seconds 10 -o turn.webm     once around\n"
+      "  glint movie run.glint -o timeline.mp4                              all frames, 5 per second\n"
+      "  glint movie run.glint --of turntable --seconds 10 -o turn.webm     one full turn\n"
       "  glint movie scene.json --frames 6-20 --size 1920x1080 -o part.png  pictures part_0000.png ...\n";
   c.declare = [a](Options& o) {
     a->declare(o);
-    o.required(a->out, "-o,--out", "MP4", "The movie");
-    o.choice(a->of, "--of", {"timeline", "look-through", "turntable"}, "What moves");
-    o.option(a->frames, "--frames", "SPEC", "timeline, look-through: numbers, ids, ranges, first:K or spread:K (default: all)");
-    o.option(a->size, "--size", "WxH", "Size of the picture, px; even");
-    o.option(a->framesPerSecond, "--fps", "F", "Pictures per second; 0 = 5 for frames, 25 for a turntable");
-    o.option(a->seconds, "--seconds", "T", "turntable: time of one turn");
+    o.required(a->out, "-o,--out", "MP4", "The movie to write");
+    o.choice(a->of, "--of", {"timeline", "look-through", "turntable"}, "What the movie shows");
+    o.option(a->frames, "--frames", "SPEC",
+             "Frames for timeline and look-through: numbers, ids, ranges, first:K or spread:K (default: all)");
+    o.option(a->size, "--size", "WxH", "Picture size, px; even numbers");
+    o.option(a->framesPerSecond, "--fps", "F", "Pictures per second; 0 = default (turntable 25, others 5)");
+    o.option(a->seconds, "--seconds", "T", "Duration of one turn of the turntable, s");
   };
   c.run = [a](const Context& context) { return run(*a, context); };
   return c;

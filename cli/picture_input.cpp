@@ -33,7 +33,7 @@ void applyLayers(const std::string& text, viz::SceneView& view) {
     if (std::none_of(layers.begin(), layers.end(), [&](const viz::Layer& layer) { return layer.name == name; })) {
       std::string known;
       for (const viz::Layer& layer : layers) known += (known.empty() ? "" : ", ") + layer.name;
-      throw InputError("", "--layers", "no layer \"" + name + "\"; there are: " + known);
+      throw InputError("", "--layers", "unknown layer \"" + name + "\"; known: " + known);
     }
     view.setLayerVisible(name, part[0] != '-');
   }
@@ -46,22 +46,24 @@ std::pair<int, int> parseSize(const std::string& text) {
   int width = 0, height = 0;
   char x = 0, rest = 0;
   if (!(in >> width >> x >> height) || (x != 'x' && x != 'X') || in >> rest)
-    throw InputError("", "--size", "\"" + text + "\" is not WxH");
+    throw InputError("", "--size", "\"" + text + "\" is not of the form WxH");
   if (width < 64 || height < 64 || width > 16384 || height > 16384)
-    throw InputError("", "--size", "width and height must be within 64 and 16384 px");
+    throw InputError("", "--size", "width and height must be between 64 and 16384 px");
   return {width, height};
 }
 
 void PictureInput::declare(Options& o) {
-  o.positional(input, "FILE.glint|INPUT", "A session, a scene file or a folder with one");
+  o.positional(input, "FILE.glint|INPUT", "Session, scene file, or folder that contains one");
   o.option(layers, "--layers", "LIST",
-           "Layers of the scene to add or take away, in order: +rays,-surface; also all, none. Write --layers=-surface");
-  o.option(models, "--models", "A,B", "Models to compute and draw (default: all, or the session's)");
-  o.option(train, "--train", "SPEC", "Training frames: 0-5, first:6, spread:6, per-surface (default: first:6, or the session's)");
-  o.choice(source, "--source", {"", "radiance", "image"}, "Where highlights are found (default: radiance, or the session's)");
-  o.repeated(set, "--set", "KEY=VALUE", "Any setting by its dotted name (glint settings)");
-  o.choice(theme, "--theme", {"dark", "light"}, "Background");
-  o.option(glyphs, "--glyphs", "FACTOR", "Size of drawn cameras, points and arrows, relative to the default");
+           "Scene layers to show or hide, in order: +rays,-surface; also all, none. Needs the equals sign: --layers=-surface");
+  o.option(models, "--models", "A,B", "Models to compute and draw (default: the session's, else all)");
+  o.option(train, "--train", "SPEC",
+           "Training frames: 0-5, first:6, spread:6, per-surface (default: the session's, else first:6)");
+  o.choice(source, "--source", {"", "radiance", "image"},
+           "Pixels to use where a frame has both: float radiance or captured image (default: the session's, else radiance)");
+  o.repeated(set, "--set", "KEY=VALUE", "Any setting by its dotted name (`glint settings` lists them); may be repeated");
+  o.choice(theme, "--theme", {"dark", "light"}, "Theme of the picture");
+  o.option(glyphs, "--glyphs", "FACTOR", "Size of cameras, points and arrows relative to the default");
   places.declare(o);
 }
 
@@ -79,7 +81,7 @@ PictureInput::Opened PictureInput::open(const Context& context) const {
     opened.scene = std::make_shared<const Scene>(places.read(input));
     for (const std::string& w : opened.scene->warnings) context.warn(w);
   }
-  if (opened.scene->frames.empty()) throw CannotAnswer{{Reason::TooFewViews, input + ": no frames"}};
+  if (opened.scene->frames.empty()) throw CannotAnswer{{Reason::TooFewViews, input + ": the scene has no frames"}};
   if (!train.empty()) opened.request.train = train;
   if (!source.empty()) opened.request.source = source == "image" ? FrameSource::Image : FrameSource::Radiance;
   for (const std::string& entry : set) {

@@ -50,19 +50,20 @@ Command predictCommand() {
   c.name = "predict";
   c.summary = "Predict highlights with a saved session: contours, overlays, labels";
   c.description =
-      "Opens a session, fits its models again and predicts the highlights of the frames asked for. With --out it writes\n"
-      "predictions.json (contours in ideal pixels with their standard deviations, brightest points, coverage, failed directions\n"
-      "with reasons), one overlay PNG a frame, and labels_MODEL.json in COCO format for each model.";
+      "Opens a session, refits its models and predicts the highlights of the selected frames. --out writes predictions.json\n"
+      "(contours in ideal pixels with their standard deviations, brightest points, coverage, failed directions with reasons),\n"
+      "one overlay PNG per frame, and labels_MODEL.json in COCO format for each model.";
   c.examples =
       "  glint predict run.glint                       a table of all frames\n"
       "  glint predict run.glint --frames 6-20 --out predicted\n";
   c.declare = [a](Options& o) {
     o.positional(a->session, "FILE.glint", "A session written by `glint reconstruct` or the inspector");
     o.option(a->frames, "--frames", "SPEC", "Frames to predict: numbers, ids, ranges, first:K or spread:K (default: all)");
-    o.option(a->preset, "--preset", "NAME", "Model and settings of the session's trade-off: fast, balanced, exact or chosen");
-    o.option(a->out, "--out", "DIR", "Write contours, overlays and labels there");
+    o.option(a->preset, "--preset", "NAME",
+             "Take model and settings from the session's trade-off: fast, balanced, exact or chosen");
+    o.option(a->out, "--out", "DIR", "Write contours, overlays and labels to this folder");
     o.option(a->masks, "--masks", "DIR", "Write masks and COCO labels of all frames to this new folder");
-    o.option(a->json, "--json", "FILE", "Write predictions.json's content there instead (- = standard output)");
+    o.option(a->json, "--json", "FILE", "Write predictions.json to this file (- = standard output, replaces the table)");
     a->places.declare(o);
   };
   c.run = [a](const Context& context) -> int {

@@ -22,7 +22,7 @@ std::string fitText(const ModelResult::Fit& entry, const std::string& model) {
     out += "  ellipsoid centre  " + vectorText(f.ellipsoid->centre()) + " m\n";
     out += "  semi-axes         " + vectorText(f.ellipsoid->semiAxes()) + " m\n";
   }
-  if (f.quadric && !f.ellipsoid) out += "  Q* is no ellipsoid: " + std::string(describe(*f.quadric)) + "\n";
+  if (f.quadric && !f.ellipsoid) out += "  Q* is not an ellipsoid: " + std::string(describe(*f.quadric)) + "\n";
   if (f.lightEstimate && !f.lightEstimate->atInfinity()) out += "  light             " + vectorText(f.lightEstimate->position()) + " m\n";
   if (f.lightEstimate && f.lightEstimate->atInfinity())
     out += "  light             at infinity, towards " + vectorText(f.lightEstimate->homogeneous().head<3>()) + "\n";
@@ -30,10 +30,10 @@ std::string fitText(const ModelResult::Fit& entry, const std::string& model) {
     out += formatted("  limit angle       %.6g deg\n", *f.limitAngle * 180 / M_PI);
   }
   if (f.lightRadius) {
-    out += formatted("  light's radius    %.6g m\n", *f.lightRadius);
+    out += formatted("  light radius      %.6g m\n", *f.lightRadius);
   }
   if (f.lightSegment)
-    out += "  light's ends      " + vectorText(f.lightSegment->first) + " m, " + vectorText(f.lightSegment->second) + " m\n";
+    out += "  light ends        " + vectorText(f.lightSegment->first) + " m, " + vectorText(f.lightSegment->second) + " m\n";
   if (f.roughness && f.lobe) {
     out += formatted("  lobe              %s, m = %.6g\n", f.lobe->c_str(), *f.roughness);
   }
@@ -59,10 +59,10 @@ Command reconstructCommand() {
   const auto a = std::make_shared<Arguments>();
   Command c;
   c.name = "reconstruct";
-  c.summary = "Fit a model on training frames and save the session";
+  c.summary = "Fit a model to training frames and save a session";
   c.description =
-      "Finds the highlights, fits the model on the training frames and writes a session (*.glint): the inputs with their\n"
-      "hashes, every parameter, the frames and the results. `glint predict`, `glint render`, `glint replay` and\n"
+      "Finds the highlights, fits the model to the training frames and writes a session (*.glint): the inputs with their\n"
+      "hashes, every setting, the frames and the results. `glint predict`, `glint render`, `glint replay` and\n"
       "glint-inspector open it.";
   c.examples =
       "  glint reconstruct scene.json --model canonical -o canonical.glint\n"
@@ -72,7 +72,8 @@ Command reconstructCommand() {
     o.required(a->out, "-o,--out", "FILE.glint", "The session to write");
   };
   c.run = [a](const Context& context) -> int {
-    if (a->models == "auto") throw InputError("", "--model auto", "choose with `glint evaluate --models auto`, then reconstruct that model");
+    if (a->models == "auto")
+      throw InputError("", "--model auto", "not available here; choose a model with `glint evaluate --models auto` first");
     InspectionRequest request = a->request();
     const std::shared_ptr<const Scene> scene = a->scene(request);
     for (const std::string& w : scene->warnings) context.warn(w);

@@ -39,7 +39,7 @@ void requireContent(const RenderArguments& a, const Inspection& inspection, int 
     for (const auto& [name, model] : inspection.models)
       if (std::any_of(model.frames.begin(), model.frames.end(), predicted)) return;
     requireUsableViews(inspection);
-    throw CannotAnswer{{Reason::NotReached, "no model predicted anything"}};
+    throw CannotAnswer{{Reason::NotReached, "no model predicted a highlight"}};
   }
   if (a.view == "scene") return;
   const Outcome<Image> photograph = photographOf(inspection, frame);
@@ -59,7 +59,7 @@ int run(const RenderArguments& a, const Context& context) {
   const std::string wanted = a.frame.empty() ? opened.saved.frame : a.frame;
   if (!wanted.empty()) {
     const std::vector<int> frames = parseFrames(wanted, scene, "--frame");
-    if (frames.size() != 1) throw InputError("", "--frame", "\"" + wanted + "\" must name one frame");
+    if (frames.size() != 1) throw InputError("", "--frame", "\"" + wanted + "\" must name exactly one frame");
     frame = frames[0];
   }
   const auto inspection = std::make_shared<const Inspection>(inspect(opened.scene, opened.request, context.progress()));
@@ -89,29 +89,30 @@ Command renderCommand() {
   const auto a = std::make_shared<RenderArguments>();
   Command c;
   c.name = "render";
-  c.summary = "Draw the scene, a frame, the models side by side, or the errors, as a PNG";
+  c.summary = "Draw the scene, a frame, the models side by side or the errors as a PNG";
   c.description =
-      "Computes the inspection of a scene or session and draws it without opening a window.\n"
+      "Computes a scene or session and draws it without opening a window.\n"
       "  scene    in 3D: surface, cameras with their photographs, virtual cameras, lights, ellipsoids, contours\n"
       "  frame    one photograph with the observed contour and each model's prediction\n"
       "  ladder   the same frame for each model, side by side, with its error below\n"
-      "  plots    contour error over frames, one line for each model\n"
-      "frame, ladder and plots need no display. scene starts a private virtual display (Xvfb) and ends it afterwards;\n"
-      "where Xvfb is not installed it uses DISPLAY, and without that it ends with exit code 3.\n"
-      "Layers of the scene (those marked * are shown without being asked for):\n  ";
+      "  plots    contour error over frames, one line per model\n"
+      "frame, ladder and plots need no display. scene starts a private virtual display (Xvfb) and stops it afterwards;\n"
+      "without Xvfb it uses DISPLAY, and without that it ends with exit code 3.\n"
+      "Scene layers (* = shown by default):\n  ";
   for (const viz::Layer& layer : viz::sceneLayers()) c.description += layer.name + (layer.onByDefault ? "* " : " ");
   c.examples =
       "  glint render scene.json -o scene.png                                   the scene in 3D\n"
       "  glint render scene.json --view frame --frame 0012 -o frame.png         one frame with its overlay\n"
-      "  glint render scene.json --view ladder --size 2000x700 -o ladder.png    one tile for each model\n"
+      "  glint render scene.json --view ladder --size 2000x700 -o ladder.png    one tile per model\n"
       "  glint render a.glint --layers=none,+surface,+rays,+light -o rays.png   chosen layers\n";
   c.declare = [a](Options& o) {
     a->declare(o);
-    o.required(a->out, "-o,--out", "PNG", "The picture");
+    o.required(a->out, "-o,--out", "PNG", "The picture to write");
     o.choice(a->view, "--view", {"scene", "frame", "ladder", "plots"}, "What to draw");
-    o.option(a->frame, "--frame", "ID", "The frame that is shown or selected: id or number (default: the first held-out one)");
-    o.option(a->size, "--size", "WxH", "Size of the picture, px");
-    o.flag(a->through, "--through", "scene: look from the frame's camera");
+    o.option(a->frame, "--frame", "ID",
+             "Frame to show or select: id or number (default: the session's, else the first held-out frame)");
+    o.option(a->size, "--size", "WxH", "Picture size, px");
+    o.flag(a->through, "--through", "Look through the frame's camera (scene view)");
   };
   c.run = [a](const Context& context) { return run(*a, context); };
   return c;

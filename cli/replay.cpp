@@ -15,17 +15,17 @@ Command replayCommand() {
   const auto a = std::make_shared<Arguments>();
   Command c;
   c.name = "replay";
-  c.summary = "Recompute a session and compare with what it stored";
+  c.summary = "Recompute a session and compare with its stored results";
   c.description =
-      "Checks that the inputs are what they were (SHA-256), computes everything again and compares the key results:\n"
-      "they agree when they differ by at most 1e-9 relatively. Exit code 1 when they do not (each difference is a\n"
-      "line on standard output, and the first stage that changed is named), 2 when an input changed or is missing.";
+      "Checks that the inputs are unchanged (SHA-256), recomputes everything and compares the key results, which agree\n"
+      "when their relative difference is at most 1e-9. Exit code 1: results differ (each difference is one line on\n"
+      "standard output, followed by the first stage that changed); 2: an input changed or is missing.";
   c.examples =
       "  glint replay sessions/ellipsoid/ellipsoid.glint            the same results, on any machine\n"
       "  glint replay sessions/ellipsoid/ellipsoid.glint --exact    the same bits, on the machine that saved it\n";
   c.declare = [a](Options& o) {
-    o.positional(a->session, "FILE.glint", "The session");
-    o.flag(a->exact, "--exact", "Compare the digest of all results too");
+    o.positional(a->session, "FILE.glint", "The session to replay");
+    o.flag(a->exact, "--exact", "Also compare the digest of all results");
     a->places.declare(o);
   };
   c.run = [a](const Context& context) -> int {

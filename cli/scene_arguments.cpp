@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 namespace {
 void requireFolder(const std::string& folder, const std::string& given) {
   std::error_code ignored;  // what cannot be asked about is not there
-  if (!fs::is_directory(folder, ignored)) throw InputError("", given, "there is no such folder");
+  if (!fs::is_directory(folder, ignored)) throw InputError("", given, "this folder does not exist");
 }
 
 /// As the scene file writes them.
@@ -32,16 +32,15 @@ std::set<std::string> meshNames(const Scene& scene) {
 
 void SceneArguments::declarePlaces(Options& o) {
   o.repeated(photographs, "--photographs", "DIR",
-             "Folder in which photographs are looked for first, by the ends of their paths; may be repeated");
+             "Folder to search first for photographs, by the ends of their paths; may be repeated");
   o.repeated(files, "--files", "KIND=DIR",
-             "The same for files of frames of another kind: depth, normals, masks (or photographs); may be repeated");
-  o.repeated(mesh, "--mesh", "NAME=FILE", "The mesh that the scene file calls NAME is FILE; may be repeated");
-  o.repeated(meshFolders, "--meshes", "DIR",
-             "Folder in which meshes are looked for that are not in their place; may be repeated");
+             "Folder to search first for other frame files: depth, normals, masks (or photographs); may be repeated");
+  o.repeated(mesh, "--mesh", "NAME=FILE", "Use FILE as the mesh that the scene file calls NAME; may be repeated");
+  o.repeated(meshFolders, "--meshes", "DIR", "Folder to search for meshes that are not in their place; may be repeated");
 }
 
 void SceneArguments::declare(Options& o) {
-  o.flag(allowOutside, "--allow-outside", "Accept paths that leave the folders of the session and of the scene file");
+  o.flag(allowOutside, "--allow-outside", "Accept paths outside the folders of the session and the scene file");
   declarePlaces(o);
 }
 
@@ -69,7 +68,7 @@ void SceneArguments::check(Scene& scene) const {
       std::string known;
       for (const std::string& name : meshNames(scene)) known += (known.empty() ? "" : ", ") + name;
       throw InputError("", "--mesh " + named + "=" + file.string(),
-                       "the scene names no mesh '" + named + "'" + (known.empty() ? "" : "; there are: " + known));
+                       "the scene has no mesh '" + named + "'" + (known.empty() ? "" : "; known: " + known));
     }
   for (const std::string& folder : photographs) lookIn(scene, FrameFile::Photograph, folder, "--photographs " + folder);
   for (const std::string& entry : files) {
@@ -87,8 +86,9 @@ void SceneArguments::lookIn(Scene& scene, FrameFile kind, const std::string& fol
   int found = 0;
   scene = withFilesIn(std::move(scene), kind, folder, &found);
   if (found == 0)
-    throw InputError("", given,
-                     kind == FrameFile::Photograph ? "holds no photograph of this scene" : "holds no such file of this scene");
+    throw InputError(
+        "", given,
+        kind == FrameFile::Photograph ? "contains no photograph of this scene" : "contains no such file of this scene");
 }
 
 Scene SceneArguments::read(const std::string& input) const {

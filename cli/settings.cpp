@@ -52,7 +52,7 @@ Command settingsCommand() {
   Command c;
   c.name = "settings";
   c.summary = "List every setting that --set KEY=VALUE takes";
-  c.description = "Each with its default, unit, range or choices, and meaning, in the order of the pipeline.";
+  c.description = "Prints each setting with its default, unit, range or choices, and meaning, in pipeline order.";
   c.examples = "  glint settings\n  glint evaluate scene.json --set predict.directions=72\n";
   c.declare = [](Options&) {};
   c.run = [](const Context& context) -> int {

@@ -16,17 +16,17 @@ Command stabilityCommand() {
   const auto a = std::make_shared<Arguments>();
   Command c;
   c.name = "stability";
-  c.summary = "Check the numerics at the extremes against references of higher precision";
+  c.summary = "Check the numerics at extremes against higher-precision references";
   c.description =
-      "Light at a billion metres, curvature of 1e-9 per metre, a thousand views, flat ellipsoids, NaN in every input ...: every\n"
-      "case is compared with an independent reference of fifty digits. The verdict is accurate, a named failure where no unique\n"
-      "answer exists, or wrong. Exit code 1 when any case is wrong.";
+      "Light at a billion metres, curvature of 1e-9 per metre, a thousand views, flat ellipsoids, NaN in every input ...: each\n"
+      "case is compared with an independent fifty-digit reference. The verdict is accurate, named failure (where no unique\n"
+      "answer exists) or wrong. Exit code 1 when any case is wrong.";
   c.examples =
       "  glint stability                    the table\n"
-      "  glint stability --json -           for a script\n"
+      "  glint stability --json -           JSON for a script\n"
       "  glint stability --markdown         the table of docs/stability.md, with the reasons of its limits\n";
   c.declare = [a](Options& o) {
-    o.option(a->json, "--json", "FILE", "All cases as JSON (- = standard output, without the table)");
+    o.option(a->json, "--json", "FILE", "Write all cases as JSON (- = standard output, replaces the table)");
     o.flag(a->markdown, "--markdown", "Print the table for the documentation");
   };
   c.run = [a](const Context& context) -> int {

@@ -12,15 +12,15 @@ Command synthCommand() {
   const auto a = std::make_shared<Arguments>();
   Command c;
   c.name = "synth";
-  c.summary = "A synthetic scene with exact contours, peaks and frames";
+  c.summary = "Make a synthetic scene with exact contours, peaks and frames";
   c.description =
-      "Makes the scene that SPEC.json describes: exact highlights traced on the analytic field (not on pixels), and, with\n"
-      "\"render\" in it, frames with depth, normals and masks. Reflectances: phong, blinn-phong, torrance-sparrow, ggx; lights:\n"
-      "points, directions, spheres, tubes. resources/specs holds the two experiments of the paper.";
+      "Makes the scene described by SPEC.json: exact highlights traced on the analytic field (not on pixels) and, where it\n"
+      "has \"render\", frames with depth, normals and masks. Reflectances: phong, blinn-phong, torrance-sparrow, ggx. Lights:\n"
+      "point, directional, sphere, tube. resources/specs holds the two experiments of the paper.";
   c.examples = "  glint synth resources/specs/ellipsoid_80.json -o DIR    then: glint evaluate DIR --train spread:6\n";
   c.declare = [a](Options& o) {
     o.positional(a->spec, "SPEC", "Specification (JSON): a scene without images, with path, surface_steps, contour, render");
-    o.required(a->out, "-o,--out", "DIR", "Folder for scene.json and the images; made when missing");
+    o.required(a->out, "-o,--out", "DIR", "Folder for scene.json and the images; created if missing");
   };
   c.run = [a](const Context& context) -> int {
     const SynthSpec spec = readSynthSpec(a->spec);

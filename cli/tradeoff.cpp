@@ -14,7 +14,7 @@ namespace {
 std::optional<double> positive(const std::string& text, const std::string& flag, const std::string& what) {
   if (text.empty()) return std::nullopt;
   const std::optional<double> value = numberFrom(text);
-  if (!value || !(*value > 0)) throw InputError("", flag + " " + text, "expected a positive number of " + what);
+  if (!value || !(*value > 0)) throw InputError("", flag + " " + text, "expected a positive number, in " + what);
   return value;
 }
 
@@ -38,39 +38,38 @@ Command tradeoffCommand() {
   c.name = "tradeoff";
   c.summary = "Measure speed against accuracy of models and settings on this input";
   c.description =
-      "Tries models and settings on the input: first on few frames, giving up what another setting beats, then what is left on\n"
-      "all of them. Prints error, time per frame, fit time and memory of each, marks those that no other beats in both error "
-      "and\n"
-      "time, and picks one: the most accurate within --budget-us, the fastest within --max-error-pct, else the balanced preset.\n"
-      "What is measured so far is kept in FILE.work beside the first output file; the same command resumes from it.\n"
-      "A session as INPUT stores the result (--keep-session: not), so that the inspector shows it and --preset finds it.";
+      "Tries models and settings on the input: first on a few frames, dropping those that another setting beats, then the\n"
+      "rest on all frames. Prints error, time per frame, fit time and memory of each, marks those that no other beats in both\n"
+      "error and time, and chooses one: the most accurate within --budget-us, the fastest within --max-error-pct, else the\n"
+      "balanced preset. Unfinished work is kept in FILE.work beside the first output file; the same command resumes from it.\n"
+      "If INPUT is a session, the result is stored in it for the inspector and --preset (except with --keep-session).";
   c.examples =
       "  glint tradeoff scene.json --html tradeoff.html\n"
-      "  glint tradeoff scene.json --budget-us 100 -o fast.glint   a session with the settings that were chosen\n"
+      "  glint tradeoff scene.json --budget-us 100 -o fast.glint   a session with the chosen settings\n"
       "  glint tradeoff run.glint --max-error-pct 0.5 --json -\n"
       "  glint evaluate run.glint --preset fast\n";
   c.declare = [a](Options& o) {
-    a->declare(o, "Models to compare (default: all, or the session's)");
-    o.option(a->budget, "--budget-us", "T", "Choose the most accurate setting within this many microseconds a frame");
+    a->declare(o, "Models to compare (default: the session's, else all)");
+    o.option(a->budget, "--budget-us", "T", "Choose the most accurate setting within this many microseconds per frame");
     o.option(a->maxError, "--max-error-pct", "E", "Choose the fastest setting with at most this contour error in percent");
-    o.option(a->json, "--json", "FILE", "Everything as JSON (- = standard output)");
-    o.option(a->html, "--html", "FILE", "A self-contained page with the front");
-    o.option(a->out, "-o,--out", "FILE.glint", "Write a session with the chosen settings, their results and the front");
-    o.option(a->work, "--work", "FILE", "Keep unfinished work here (default: beside the first output file)");
-    o.option(a->repeats, "--repeats", "N", "Repeats of every timed prediction");
-    o.option(a->maxTrials, "--max-trials", "N", "Most settings tried on few frames");
-    o.flag(a->keepSession, "--keep-session", "Do not store the result in the session that INPUT names");
+    o.option(a->json, "--json", "FILE", "Write everything as JSON (- = standard output)");
+    o.option(a->html, "--html", "FILE", "Write a self-contained HTML page with the Pareto front");
+    o.option(a->out, "-o,--out", "FILE.glint", "Write a session with the chosen settings, their results and the Pareto front");
+    o.option(a->work, "--work", "FILE", "File for unfinished work (default: beside the first output file)");
+    o.option(a->repeats, "--repeats", "N", "Repeats of each timed prediction");
+    o.option(a->maxTrials, "--max-trials", "N", "Maximum number of settings tried on a few frames");
+    o.flag(a->keepSession, "--keep-session", "Do not store the result in the session INPUT");
   };
   c.run = [a](const Context& context) -> int {
     if (a->models == "auto")
-      throw InputError("", "--models auto", "the trade-off compares models: name them, or leave the flag away");
-    if (!a->preset.empty()) throw InputError("", "--preset " + a->preset, "the trade-off finds the presets");
+      throw InputError("", "--models auto", "not available here; name the models to compare or omit the flag");
+    if (!a->preset.empty()) throw InputError("", "--preset " + a->preset, "not available here; this command finds the presets");
     TradeoffOptions options;
     options.bound.budgetUs = positive(a->budget, "--budget-us", "microseconds");
     options.bound.maxErrorPct = positive(a->maxError, "--max-error-pct", "percent");
     if (options.bound.budgetUs && options.bound.maxErrorPct)
-      throw InputError("", "--budget-us, --max-error-pct", "give one of the two");
-    if (a->repeats < 1 || a->repeats > 1000) throw InputError("", "--repeats", "must be 1 to 1000");
+      throw InputError("", "--budget-us, --max-error-pct", "give only one of the two");
+    if (a->repeats < 1 || a->repeats > 1000) throw InputError("", "--repeats", "must be between 1 and 1000");
     if (a->maxTrials < 1) throw InputError("", "--max-trials", "must be at least 1");
     const bool isSession = std::filesystem::path(a->input).extension() == ".glint";
     options.repeats = a->repeats;

@@ -300,31 +300,32 @@ def page(runs, lamps, frames, method):
     settings = next(run.result["settings"] for run in runs.values() if run.result)
     out = ["""# Accuracy
 
-This page is written by a program; do not edit it. After a release build, from the root of the project:
+How far predicted highlights lie from the observed ones, on sequences with known truth. A program writes this page; do not edit it. After a release build, from the root of the
+project:
 
     python3 docs/make_accuracy.py --glint build/release/bin/glint --shared ../shared
 
-It runs `glint evaluate` on path-traced sequences whose truth is known and that another program rendered (`../shared/data/cycles`),
+It runs `glint evaluate` on path-traced sequences with known truth, rendered by another program (`../shared/data/cycles`),
 and on the paper's two synthetic experiments, which `glint synth` makes exactly (`resources/specs`).
 
 ## How to read the tables
 - **contour error** (`mean %`, `median %`, `p95 %`, `max %`): symmetric mean distance between the predicted and the observed contour, as a
-  percentage of the equivalent diameter of the observed region, per matched highlight; `mean px` is the same in pixels. `ellipse %` compares the
-  ellipses fitted to both, the paper's kind of comparison.
-- `predicted`: frames with a prediction of those that should have one. `coverage`: share of directions (or of the outline) that gave a
-  point. `matched/missed/spurious` counts highlights. A mean says little where frames, coverage or matches are missing: read them first.
+  percentage of the equivalent diameter of the observed region, per matched highlight; `mean px` is the same in pixels. `ellipse %` compares
+  ellipses fitted to both, as the paper does.
+- `predicted`: frames with a prediction, of those that should have one. `coverage`: share of directions (or of the outline) that gave a
+  point. `matched/missed/spurious` counts highlights. Read these first: a mean says little where frames, coverage or matches are missing.
 - `IoU`: over the union of all regions of a frame. `peak px`: predicted brightest point to observed peak. The observed peak is the maximum of a
-  log-quadratic fit; path-traced highlights have theirs beside the mirror point (off-specular shift), so this is not an error of the geometry alone.
-- **Training** frames never count, except with `per-surface`, where each surface's models are trained and tested on the same six views.
+  log-quadratic fit; a path-traced highlight has its peak beside the mirror point (off-specular shift), so this is not only an error of the geometry.
+- **Training** frames never count, except with `per-surface`, where each surface's models are trained and tested on the same six frames.
 - **Source**: `radiance` = contours and peaks detected in the 32-bit float specular radiance; `image` = in the 8-bit sRGB photograph,
   background removed. Without `truth` the error is against Glint's own detection in the same images. `..., truth` = trained on the same
-  detections, but scored against contours that another program traced on the radiance (`contours/`): this is the column to quote.
-- **Surface**: `mesh` = the triangles that were rendered, with interpolated vertex normals; `analytic` = the exact surface.
-- **Level**: a contour lies at a fraction of the strongest peak of its frame, above the background; the same fraction everywhere (`detect.level` below).
-- Two renderings that differ in their random seed alone differ by about 0.01 px, so differences below 0.02 px say nothing.
+  detections, but scored against contours that another program traced on the radiance (`contours/`): quote this column.
+- **Surface**: `mesh` = the rendered triangles, with interpolated vertex normals; `analytic` = the exact surface.
+- **Level**: a contour lies at a fraction of the strongest peak of its frame above the background, the same fraction everywhere (`detect.level` below).
+- Two renderings with different random seeds differ by about 0.01 px, so differences below 0.02 px mean nothing.
 
 ## Settings
-All runs use the defaults; what a run changes stands in its table.
+All runs use the defaults; the tables name what a run changes.
 
 """]
     out.append(table(["setting", "value"], [[f"`{k}`", f"`{v}`" if isinstance(v, str) else f"`{json.dumps(v)}`"] for k, v in settings.items()]))
@@ -352,7 +353,7 @@ All runs use the defaults; what a run changes stands in its table.
         if run.result:
             answers.append((key, run.unanswered(frames[key])))
     silent = [f"{key}: {bad}" for key, bad in answers if bad]
-    out.append("\nEvery frame answered, by a number or by a named reason, in each model: " +
+    out.append("\nEvery frame has a number or a named reason in each model: " +
                (f"**missed**: {'; '.join(silent)}.\n" if silent else f"met in all {len(answers)} runs.\n"))
     rows = []
     for key, run in runs.items():
@@ -371,7 +372,7 @@ All runs use the defaults; what a run changes stands in its table.
     out.append(table(["sequence", "training", "model", "bound", "measured"],
                      [[n, f"`{t}`", m, f"≤ {b}", judged(runs[n, "analytic", t, "exact"], m, b)] for n, t, m, b in SYNTHETIC_BOUNDS]))
 
-    out.append("\n## Beside them: the prototype and the paper\nAn independent prototype (Python, analytic surfaces) and the paper, as quoted in "
+    out.append("\n## Compared with the prototype and the paper\nAn independent prototype (Python, analytic surfaces) and the paper, quoted from "
                "section 9 of method.md. On exact data, plane to cylinder:\n\n")
     out.append(as_tables(quoted(method, "| | exp 1")))
     out.append("\nEllipsoid, 80 frames:\n\n" + as_tables(quoted(method, "| model | training frames")))

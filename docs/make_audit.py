@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes docs/audit.md: what an audit from outside found, measured with the build before and with this one.
+"""Writes docs/audit.md: findings of an external audit, measured with the build before and with this one.
 
   docs/make_audit.py                        runs every check with build/release/bin/glint and writes the page
-  docs/make_audit.py --only 1.2             one section; the others keep the figures of the last run
-  docs/make_audit.py --glint OLD --before   records the figures of an older build as the column "before"
+  docs/make_audit.py --only 1.2             runs one section; the others keep the figures of the last run
+  docs/make_audit.py --glint OLD --before   records the figures of an older build in the column "before"
 
-Every figure comes from a run of the program on scenes that docs/audit/specs describe, scored against the exact contours of `glint synth`,
-not against contours that the program detected.
+Every figure comes from a run of the program on scenes in docs/audit/specs, scored against the exact contours of `glint synth`, not
+against contours that the program detected.
 """
 import argparse
 import importlib
@@ -24,8 +24,8 @@ from audit import harness  # noqa: E402
 RECORD = DOCS / "audit" / "figures.json"
 HEAD = """# Audit
 
-An audit from outside found answers that were wrong and looked right. Each row is one of its findings, measured before and now.
-"Before" is the build at which the audit was made (4e34f8f). Errors are mean distances between predicted and *exact* contours in held-out frames, as a
+An external audit found answers that were wrong but looked right. Each row is one finding, measured before and now.
+"Before" is the audited build (4e34f8f). Errors are mean distances between predicted and *exact* contours in held-out frames, as a
 percentage of the highlight's diameter, unless a row says otherwise. A row that does not hold is marked **missed**.
 
 `docs/make_audit.py` runs every check and writes this page.
@@ -37,10 +37,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--glint", default=DOCS.parent / "build/release/bin/glint")
     parser.add_argument("--shared", default=DOCS.parent.parent / "shared")
-    parser.add_argument("--scratch", help="keeps synthetic scenes from run to run")
-    parser.add_argument("--only", default="", help="sections that start with this")
-    parser.add_argument("--title", default="", help="rows whose title contains this")
-    parser.add_argument("--before", action="store_true", help="record the figures as those before")
+    parser.add_argument("--scratch", help="keep synthetic scenes from run to run here")
+    parser.add_argument("--only", default="", help="only sections that start with this")
+    parser.add_argument("--title", default="", help="only rows whose title contains this")
+    parser.add_argument("--before", action="store_true", help="record the figures in the column 'before'")
     arguments = parser.parse_args()
     for module in sorted(m.name for m in pkgutil.iter_modules([str(DOCS / "audit")])):
         importlib.import_module("audit." + module)

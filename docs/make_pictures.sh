@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Draws docs/pictures/*.png again: the README's tour, from the shipped sessions.
-# Usage: docs/make_pictures.sh   (GLINT_BIN=FOLDER: where the programs are; default build/release/bin). Needs xvfb-run; with
-# ImageMagick's mogrify the files become a third of their size.
+# Draws docs/pictures/*.png from the shipped sessions, for README and docs/inspector.md.
+# Usage: docs/make_pictures.sh   (GLINT_BIN=FOLDER: where the programs are; default build/release/bin). Needs xvfb-run;
+# ImageMagick's mogrify cuts the file sizes to a third.
 set -euo pipefail
 root=$(dirname -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")")
 bin=${GLINT_BIN:-$root/build/release/bin}

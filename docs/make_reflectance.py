@@ -175,7 +175,7 @@ def main():
     parser.add_argument("--shared", default="../shared", type=pathlib.Path)
     parser.add_argument("--seeds", default=20, type=int)
     parser.add_argument("-o", default="docs/reflectance.md", type=pathlib.Path)
-    parser.add_argument("--sections", default="exact,shapes,cycles,noise", help="the others are kept as the page has them")
+    parser.add_argument("--sections", default="exact,shapes,cycles,noise", help="sections to make again, separated by commas; the page keeps the others")
     arguments = parser.parse_args()
     wanted = arguments.sections.split(",")
     cycles = arguments.shared / "data" / "cycles"
@@ -191,9 +191,9 @@ def main():
 
     text = """# Lobes compared: Phong, Blinn-Phong, Torrance-Sparrow, GGX
 
-The paper leaves the comparison of reflectance models as future work. Here it is, for the prediction of contours: the model `reflectance`
-(docs/method.md section 7) fitted with every lobe to the same contours, whether the lobe is the true one or not. Numbers are the mean
-contour error on held-out frames in percent of the highlight's equivalent diameter; a note in brackets says where not every highlight was
+How well each reflectance lobe predicts contours, the true one and the wrong ones. The paper leaves this comparison as future work. The model `reflectance`
+(docs/method.md section 7) is fitted with every lobe to the same contours, whether the lobe is true or not. Numbers are the mean
+contour error on held-out frames in percent of the highlight's equivalent diameter; a note in brackets marks scenes where some highlights were not
 answered. Written by:
 
     python3 docs/make_reflectance.py --glint build/release/bin/glint --shared ../shared
@@ -204,8 +204,8 @@ answered. Written by:
         if "exact" in wanted:
             exact, right, scenes = exact_table(arguments.glint, folder)
             text += f"""## Exact contours, first 6 of 12 frames train
-Contours are traced on the radiance itself, so what the true lobe (bold) leaves is the contours' own sagitta; what a wrong lobe leaves is the loss.
-The lobe of the smallest residual was the true one in {right} of {scenes} scenes.
+Contours are traced on the radiance itself, so the true lobe (bold) leaves only the contours' sagitta; a wrong lobe leaves the loss.
+The lobe with the smallest residual was the true one in {right} of {scenes} scenes.
 
 {exact}
 """
@@ -213,7 +213,7 @@ The lobe of the smallest residual was the true one in {right} of {scenes} scenes
             text += kept("Exact contours")
         if "shapes" in wanted:
             text += f"""## Other shapes and lights, exact contours, first 6 of 12 frames train
-The lobe is chosen by the residual. Every frame is predicted and no highlight unmatched where no note says otherwise.
+The residual chooses the lobe. Every frame is predicted and every highlight matched unless a note says otherwise.
 
 {shapes_table(arguments.glint, folder)}
 """
@@ -221,9 +221,9 @@ The lobe is chosen by the residual. Every frame is predicted and no highlight un
             text += kept("Other shapes")
     if "cycles" in wanted and cycles.exists():
         text += f"""## Path-traced frames (a Beckmann lobe, light of 1 cm radius)
-`torrance-sparrow` is the right lobe; the others, forced on these frames, are wrong ones. Errors are against contours that another program traced
-(`SHARED/data/cycles/*/contours`). The last columns are of the automatic choice; the very last one is its error against Glint's own detection.
-Wrong lobes are fitted to the pixels, as the right one is: the whole lobe counts there, not only the level of the contour.
+`torrance-sparrow` is the right lobe; the others are forced on these frames and wrong. Errors are against contours that another program traced
+(`SHARED/data/cycles/*/contours`). The last columns show the automatic choice; the last one is its error against Glint's own detection.
+Wrong lobes are fitted to the pixels, like the right one: the whole lobe counts there, not only the level of the contour.
 
 {cycles_table(arguments.glint, cycles)}
 """
@@ -231,19 +231,19 @@ Wrong lobes are fitted to the pixels, as the right one is: the whole lobe counts
         text += kept("Path-traced")
     if "noise" in wanted and cycles.exists():
         text += f"""## One pixel of noise on training contours (sphere, analytic)
-`--noise-px 1`: 72 points of every training contour and its peak; held-out contours stay clean; the lobe is chosen by the residual each time.
+`--noise-px 1`: noise on 72 points of every training contour and on its peak; held-out contours stay clean; the residual chooses the lobe each time.
 
 {noise_table(arguments.glint, cycles, arguments.seeds)}"""
     else:
         text += kept("One pixel").rstrip("\n") + "\n"
     text += """
-## What to take from it
+## Conclusions
 - Near the mirror direction every lobe falls as exp(-theta^2 / m^2): on frontal views of narrow highlights a wrong lobe costs little, and
-  `limit-angle`, which has no lobe at all, is nearly as good.
-- At grazing incidence the lobes part: masking, 1 / cos(theta_V) and the off-specular shift move peak and contour. A model without these terms
-  (Blinn-Phong) keeps the bias of `limit-angle`; Phong, whose highlight is round around the mirror direction of the light, has another shape.
-- One level of one contour tells Beckmann from GGX by the contour's change over views, not by its tails: with noise of a pixel the residuals
-  of the two are nearly equal, either may be chosen, and the price of the wrong one is then below the noise's own.
+  `limit-angle`, which has no lobe, is nearly as good.
+- At grazing incidence the lobes differ: masking, 1 / cos(theta_V) and the off-specular shift move peak and contour. A model without these terms
+  (Blinn-Phong) keeps the bias of `limit-angle`; Phong, whose highlight is round about the light's mirror direction, has another shape.
+- With one level, Beckmann and GGX differ only by how the contour changes over the frames, not by its tails. With a pixel of noise their residuals
+  are nearly equal; either may be chosen, and the wrong one then costs less than the noise.
 """
     arguments.o.write_text(text)
 

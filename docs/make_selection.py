@@ -4,7 +4,7 @@
 
     docs/make_selection.py --glint build/release/bin/glint [--shared ../shared]
 
-Ends with 1 when a choice is not among those that follow from what the models assume.
+Exit code 1 if a choice is not among those that the assumptions of the models allow.
 """
 import argparse
 import json
@@ -55,11 +55,14 @@ def patchText(patches):
 
 def write(out, tables):
     models = ["primal", "dual", "canonical", "limit-angle", "reflectance"]
-    text = ("# The automatic choice, shown\n\nWritten by `docs/make_selection.py`; every number comes from `glint evaluate --models auto`. The first scenes are made by `glint synth`\n"
+    text = ("# Automatic choice\n"
+            "\n"
+            "What `glint evaluate --models auto` chooses on scenes where the right answer is known, and at what cost. Written by `docs/make_selection.py`. `glint synth` makes the first scenes\n"
             "from `resources/specs/auto`: exact contours under one limit angle (the tube light: rendered radiance). The rule is in [method.md](method.md), section 11.\n"
-            "Columns of models: leave-one-view-out error on the training views, \\* the choice, – not tried (a simpler one met the tolerance, or the surface is a plane and nothing could be better), (k of n) answered k of n views;\n"
-            "fewer views than there are were tried where a model could no longer become the best. Then: whether walks on local quadrics are good enough for the choice, with\n"
-            "the largest variation of the curvature that was seen (– it does not walk), error expected and found of the choice on the held-out frames, whose contours it has not seen, time of the whole choice.\n")
+            "\n"
+            "Columns of models: error on training frames, each left out in turn. \\* the choice; – not tried (a simpler model met the tolerance, or the surface is a plane and nothing could be better); (k of n) answered k of n views (one for each highlight of a training frame).\n"
+            "Where a model could no longer become the best, fewer views than there are were tried. Further columns: whether walks on local quadrics are good enough for the choice, with the largest\n"
+            "variation of curvature seen (– it does not walk); error expected for the choice, and found on the held-out frames, whose contours it has not seen; time of the whole choice.\n")
     for run, _ in RUNS:
         text += f"\n## {run[0].upper() + run[1:]}\n| scene | training | " + " | ".join(models) + " | local quadric | expected | held out | seconds |\n|---|---|" + "---|" * (len(models) + 4) + "\n"
         for name, train, chosen, errors, patches, held_out, seconds in tables[run]:

@@ -320,7 +320,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--glint", default="build/release/bin/glint")
     parser.add_argument("--seeds", type=int, default=5)
-    parser.add_argument("--only", help="keys of the studies to make again, with commas; the page keeps its other sections")
+    parser.add_argument("--only", help="studies to make again, keys separated by commas; the page keeps its other sections")
     parser.add_argument("--jobs", type=int, default=1)
     a = parser.parse_args()
     root = pathlib.Path(__file__).resolve().parent.parent
@@ -329,16 +329,17 @@ def main():
         maker.degrees = arc_degrees(maker.base)
         text = f"""# Sensitivity
 
-This page is written by a program; do not edit it. After a release build, from the root of the project:
+How the contour error of each model grows with image resolution, noise and errors of cameras and normals. A program writes this page; do not edit it. After a release
+build, from the root of the project:
 
     python3 docs/make_sensitivity.py
 
 ## What is measured
 The ellipsoid of `resources/specs/ellipsoid_80.json` (0.6 x 0.35 x 0.25 m, cameras at about 2 m, f = {FOCAL:g} px), a point light, and a Torrance-Sparrow lobe of roughness 0.12; contours are level sets of the exact
-radiance at {LEVEL}. Six training views are spread over the 80 poses, ten others are held out; only training data are disturbed. Figures are the mean contour error of the held-out frames in percent
-of the highlight's diameter, the median of {a.seeds} seeds where chance is involved (3 for normals). A dash: some frame was not predicted in half of the runs or more; `primal` and
-`dual` mostly refuse by name, because their fit leaves more than a tenth of the contours' radius.
-Models are those that the program has. Only the ones that know the reflectance can reach zero on exact data: for `limit-angle` the off-specular shift remains, for the ellipsoid models the shape.
+radiance at {LEVEL}. Six training frames are spread over the 80 poses, ten others are held out; only training data are disturbed. Figures are the mean contour error of the held-out frames in percent
+of the highlight's diameter, the median of {a.seeds} seeds where chance is involved (3 for normals). A dash: in half of the runs or more some frame was not predicted; `primal` and
+`dual` mostly fail with a named reason, because their fit leaves more than a tenth of the contours' radius.
+Only models that know the reflectance can reach zero on exact data: for `limit-angle` the off-specular shift remains, for the ellipsoid models the shape.
 """
         page = root / "docs/sensitivity.md"
         kept = {}

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the table of docs/stability.md again, from `glint stability --markdown`."""
+"""Writes the table of docs/stability.md from `glint stability --markdown`."""
 import argparse
 import pathlib
 import subprocess

@@ -5,7 +5,7 @@ path-traced frames with their meshes, and on a mesh of a million triangles.
 
     docs/make_tradeoff.py [--glint build/release/bin/glint] [--shared ../shared] [--only NAME ...]
 
-Scenes of --shared that are not there are left out; with --only the other tables stay as they are.
+Scenes missing from --shared are skipped; with --only the other tables stay as they are.
 """
 import argparse
 import json
@@ -52,7 +52,7 @@ def table(glint, title, scene, train):
     marks = {}
     for preset, index in t["presets"].items():
         marks.setdefault(index, []).append(preset)
-    text = f"### {title}\n`--train {train}`, {seconds:.0f} s: {t['trials']} settings tried on few frames, {len(t['points'])} measured in full, {len(t['pruned'])} given up.\n\n"
+    text = f"### {title}\n`--train {train}`, {seconds:.0f} s: {t['trials']} settings tried on few frames, {len(t['points'])} measured in full, {len(t['pruned'])} dropped.\n\n"
     text += "| front | µs a frame | error % | IoU | predicted | fit ms | peak MB | setting | preset |\n|---|---|---|---|---|---|---|---|---|\n"
     number = lambda v, digits=3: "–" if v is None else f"{v:.{digits}g}" if abs(v) < 1000 else f"{v:.0f}"
     for i, p in enumerate(t["points"]):

@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Renders docs/trust.md from the pieces in docs/trust (format: docs/trust/README.md), and writes such pieces.
 
-  docs/make_trust.py            renders the page; 1 when a piece is not of the format
-  docs/make_trust.py --check    says whether the page is what the pieces give; 1 when it is not
+  docs/make_trust.py            renders the page; exit 1 if a piece is not in the format
+  docs/make_trust.py --check    says whether the page matches the pieces; exit 1 if not
   docs/make_trust.py piece NAME --what TEXT --command TEXT [--row NAME COUNT FINDINGS NOTE]...
   docs/make_trust.py row FILE --what TEXT --command TEXT --row NAME COUNT FINDINGS NOTE... [--needs NAME]...
-                                these rows, each with today's date; the others of the file stay, and what is needed and has no row is shown as missing
+                                adds these rows, each with today's date; other rows stay, and needed rows that are absent are shown as missing
 """
 import argparse
 import datetime
@@ -164,19 +164,19 @@ def writeRows(arguments):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--check", action="store_true", help="change nothing; 1 when the page is not what the pieces give")
+    parser.add_argument("--check", action="store_true", help="change nothing; exit 1 if the page does not match the pieces")
     commands = parser.add_subparsers(dest="verb")
     piece = commands.add_parser("piece", help="write docs/trust/NAME.json")
     piece.add_argument("name")
     piece.add_argument("--what", required=True)
     piece.add_argument("--command", required=True)
     piece.add_argument("--row", nargs=4, action="append", default=[], metavar=("NAME", "COUNT", "FINDINGS", "NOTE"))
-    row = commands.add_parser("row", help="add rows to the piece in a file, or replace the rows of those names")
+    row = commands.add_parser("row", help="add rows to the piece in a file, or replace rows of the same names")
     row.add_argument("file")
     row.add_argument("--what", required=True)
     row.add_argument("--command", required=True)
     row.add_argument("--row", nargs=4, action="append", required=True, metavar=("NAME", "COUNT", "FINDINGS", "NOTE"))
-    row.add_argument("--needs", action="append", default=[], metavar="NAME", help="a row that the piece needs before it is complete")
+    row.add_argument("--needs", action="append", default=[], metavar="NAME", help="a row that a complete piece needs")
     arguments = parser.parse_args()
     if arguments.verb == "piece":
         return writePiece(arguments)
@@ -189,7 +189,7 @@ def main():
         print(f"make_trust.py: {problem}", file=sys.stderr)
     if arguments.check:
         if text != page.read_text(encoding="utf-8"):
-            print("make_trust.py: docs/trust.md is not what docs/trust/*.json give: run docs/make_trust.py", file=sys.stderr)
+            print("make_trust.py: docs/trust.md does not match docs/trust/*.json: run docs/make_trust.py", file=sys.stderr)
             return 1
     else:
         replaceFile(page, text)

@@ -51,11 +51,11 @@ def table(rows, judged):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--program", default="build/release/bin/coverage_trials")
-    parser.add_argument("--trials", type=int, default=1000, help="of level-set models")
-    parser.add_argument("--ellipsoid-trials", type=int, default=100, help="of ellipsoid models, whose bands take longer")
+    parser.add_argument("--trials", type=int, default=1000, help="for level-set models")
+    parser.add_argument("--ellipsoid-trials", type=int, default=100, help="for ellipsoid models, whose bands take longer")
     parser.add_argument("--models", default="limit-angle,reflectance")
-    parser.add_argument("--output", default="docs/uncertainty.md", help="- prints it")
-    parser.add_argument("--earlier", nargs="*", default=[], help="files with what the program printed before: their models are not tried again")
+    parser.add_argument("--output", default="docs/uncertainty.md", help="file to write; - prints it")
+    parser.add_argument("--earlier", nargs="*", default=[], help="files with earlier output of the program: their models are not tried again")
     a = parser.parse_args()
     models = a.models.split(",")
     exact = trials(a.program, a.trials, [m for m in models if m in LEVEL_SETS], a.earlier)
@@ -63,34 +63,35 @@ def main():
     met = sum(LOW <= r["share"] <= HIGH for r in exact)
     text = f"""# Uncertainty
 
-This page is written by a program; do not edit it. From the root of the project, after `cmake --build --preset release --target coverage_trials`:
+How often the truth lies inside the predicted 95 % band. A program writes this page; do not edit it. From the root of the project, after
+`cmake --build --preset release --target coverage_trials`:
 
     python3 docs/make_uncertainty.py
 
 ## What is checked
-Every fit carries the covariance of its parameters ([method.md](method.md), section 8a). This page checks that covariance alone: what the noise of single points does to a prediction. A 95 %
-band is the standard deviation across the contour times Student's factor for the degrees of freedom of the fit. The band that `glint predict` writes (`sigma_px`) starts from it and adds what
-whole views, the surface and the lobe are off by; [audit.md](audit.md), section 1.4, checks that one.
-A trial adds Gaussian noise per coordinate to 72 points of each training contour and to its peak (as `--noise-px` does), estimates everything from them, and predicts a view that was not
-used. Of its contour 36 directions are compared with the truth; a pair (trial, direction) counts as inside when the distance is within the band.
+Every fit carries the covariance of its parameters ([method.md](method.md), section 8a). This page checks only that covariance: the effect of noise in single points. A 95 %
+band is the standard deviation across the contour times Student's factor for the degrees of freedom of the fit. The band that `glint predict` writes (`sigma_px`) starts from it and adds the errors of
+whole frames, the surface and the lobe; [audit.md](audit.md), section 1.4, checks that band.
+A trial adds Gaussian noise per coordinate to 72 points of each training contour and to its peak (like `--noise-px`), estimates everything from them, and predicts a frame that was not
+used. 36 directions of its contour are compared with the truth; a pair (trial, direction) counts as inside if the distance is within the band.
 Directions of one trial move together, so the standard error of a share is that of the mean over trials.
-`mean sigma` and `RMS error` are over all pairs; `estimated noise` is what the residuals say about the contours' noise.
+`mean sigma` and `RMS error` are over all pairs; `estimated noise` is the contours' noise according to the residuals.
 
 ## Level sets
-The contours are exact level sets of the limit angle, or of the radiance of the lobe that is fitted (`reflectance`), so the model is right and the share should be 95 %. {met} of {len(exact)} lie between 93 and 97 %.
+The contours are exact level sets of the limit angle, or of the radiance of the fitted lobe (`reflectance`), so the model is right and the share should be 95 %. {met} of {len(exact)} lie between 93 and 97 %.
 
 {table(exact, True)}
 ## Ellipsoids
-The bands of the ellipsoid models (`--models limit-angle,canonical` adds their table here) are not promised to cover. An ellipsoid is not exact on a curved surface, so here the truth is the same model's prediction from noise-free contours: the band is about noise alone and says nothing about
-the model's own error, which is usually larger ([accuracy.md](accuracy.md)). Light and ellipsoid are taken as independent although the same noise enters both, and where the ellipsoid does not
-fit, its residuals are no noise.
+The bands of the ellipsoid models (`--models limit-angle,canonical` adds their table here) have no promised coverage. An ellipsoid is not exact on a curved surface, so here the truth is the same model's prediction from noise-free contours: the band covers noise only, not
+the model's own error, which is usually larger ([accuracy.md](accuracy.md)). Light and ellipsoid are treated as independent although the same noise enters both, and where the ellipsoid does not
+fit, its residuals are not noise.
 
 {table(fits, False) if fits else ""}
-## What the covariance does not know
-- What the model gets wrong: an off-specular shift, an extended light, a surface or a pose that is off. Residuals that are correlated along a contour show some of that
-  and widen it; the band of `glint predict` holds more of it. A bias that every training view shares stays invisible to both.
-- Second order: noise displaces a curved contour outwards on average by sigma^2 / (2 radius), which the bundle corrects for, but a light that is poorly
-  determined moves the contour along a curve.
+## What the covariance misses
+- Errors of the model: an off-specular shift, an extended light, an inaccurate surface or pose. Residuals correlated along a contour show some of it
+  and widen the covariance; the band of `glint predict` holds more of it. A bias that every training frame shares stays invisible to both.
+- Second order: noise displaces a curved contour outwards on average by sigma^2 / (2 radius). The bundle corrects this, but a poorly determined
+  light moves the contour along a curve.
 - Solvers without a Jacobian at the end (`linear`, `anchored`, `triangulated`) have no band.
 """
     if a.output == "-":

@@ -26,7 +26,7 @@ MeshContent parseMesh(std::string_view bytes, const std::filesystem::path& file)
   if (solid) return parseStlText(bytes, name);
   if (namedStl) return parseStlBinary(bytes, name);
   if (bytes.find('\0') != std::string_view::npos || bytes.find("v ") == std::string_view::npos)
-    io::fail(name, "", "is not a mesh; understood: PLY, OBJ, STL");
+    io::fail(name, "", "is not a mesh; supported: PLY, OBJ, STL");
   return parseObj(bytes, name);
 }
 

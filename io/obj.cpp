@@ -18,7 +18,7 @@ class ObjReader {
   MeshContent read() {
     while (std::optional<std::string_view> line = lines_.next()) statement(whole(*line));
     checkReferences();
-    if (mesh_.triangles.empty()) io::fail(file_, "", "no mesh: neither PLY nor STL, and as OBJ it has no faces");
+    if (mesh_.triangles.empty()) io::fail(file_, "", "is not a mesh: neither PLY nor STL, and as OBJ it has no faces");
     takeNormals();
     return io::finished(std::move(mesh_), file_);
   }
@@ -127,7 +127,7 @@ class ObjReader {
     for (const References* r : {&vertices_, &textures_, &normals_})
       if (r->largest > r->count)
         io::fail(file_, io::lineNo(r->largestLine),
-                 std::string("a face names ") + r->kind + " " + std::to_string(r->largest) + ", the file has " +
+                 std::string("a face names ") + r->kind + " " + std::to_string(r->largest) + "; the file has " +
                      std::to_string(r->count));
   }
 

@@ -95,7 +95,7 @@ Header readHeader(std::string_view bytes, const std::string& file) {
     if (word == "end_header") break;
     if (word == "format") {
       const std::string_view name = io::takeWord(*line), version = io::takeWord(*line);
-      if (formatKnown) bad("a second format");
+      if (formatKnown) bad("duplicate format");
       formatKnown = true;
       if (name == "ascii")
         header.format = Header::Format::Text;
@@ -105,7 +105,7 @@ Header readHeader(std::string_view bytes, const std::string& file) {
         header.format = Header::Format::BigEndian;
       else
         bad("unknown PLY format " + io::quoted(name));
-      if (version != "1.0") bad("unknown version " + io::quoted(version) + " of PLY, 1.0 is understood");
+      if (version != "1.0") bad("unknown PLY version " + io::quoted(version) + "; only 1.0 is supported");
     } else if (word == "element") {
       const std::string_view name = io::takeWord(*line);
       const std::string_view text = io::takeWord(*line);
@@ -113,7 +113,7 @@ Header readHeader(std::string_view bytes, const std::string& file) {
       if (name.empty() || !count || *count < 0) bad("the PLY element has no count");
       if (name == "vertex" || name == "face")
         for (const Element& e : header.elements)
-          if (e.name == name) bad("a second element " + io::quoted(name));
+          if (e.name == name) bad("duplicate element " + io::quoted(name));
       constexpr std::size_t kMostElements = 1000;  // no program writes more: a damaged header
       if (header.elements.size() >= kMostElements) bad("more than " + std::to_string(kMostElements) + " elements");
       header.elements.push_back({std::string(name), static_cast<std::uint64_t>(*count), {}});
@@ -136,7 +136,7 @@ Header readHeader(std::string_view bytes, const std::string& file) {
       const std::string_view name = io::takeWord(*line);
       if (name.empty()) bad("the PLY property has no name");
       constexpr std::size_t kLongestName = 1000;  // no program writes longer ones: a damaged header
-      if (name.size() > kLongestName) bad("a PLY property with a name of " + std::to_string(name.size()) + " characters");
+      if (name.size() > kLongestName) bad("a PLY property name of " + std::to_string(name.size()) + " characters is too long");
       if (element.name == "vertex") {
         constexpr std::string_view kNames[] = {"x", "y", "z", "nx", "ny", "nz"};
         for (int k = 0; k < kNumbers; ++k)
@@ -147,12 +147,12 @@ Header readHeader(std::string_view bytes, const std::string& file) {
       if (p.use != kSkipped) {
         if (p.use == kCorners && !p.counter) bad(io::quoted(name) + " of a face must be a list");
         if (p.use != kCorners && p.counter) bad(io::quoted(name) + " of a vertex must be a number, not a list");
-        if (seen & (1u << p.use)) bad("a second property " + io::quoted(name));
+        if (seen & (1u << p.use)) bad("duplicate property " + io::quoted(name));
         seen |= 1u << p.use;
       }
       element.properties.push_back(p);
     } else if (!word.empty() && word != "comment" && word != "obj_info" && lines.number() > 1) {
-      bad(io::quoted(word) + " is no statement of a PLY header");
+      bad(io::quoted(word) + " is not a PLY header statement");
     }
   }
   if (!formatKnown) io::fail(file, "header", "the PLY has no format");
@@ -212,11 +212,11 @@ class BinaryValues {
     at_ += count * sizeOf(type);
   }
   [[noreturn]] void truncated() const {
-    io::fail(file_, place(), "the PLY is truncated: the header promises " + std::to_string(element_->count) + " of these");
+    io::fail(file_, place(), "the PLY is truncated: the header declares " + std::to_string(element_->count) + " of these");
   }
   void end() const {
     for (std::size_t i = at_; i < bytes_.size(); ++i)
-      if (!io::isPadding(bytes_[i])) io::fail(file_, io::byteNo(i), "data follow the last element that the header promises");
+      if (!io::isPadding(bytes_[i])) io::fail(file_, io::byteNo(i), "unexpected data after the last element of the header");
   }
 
  private:
@@ -251,7 +251,7 @@ class TextValues {
     } while (word_.empty());
   }
   void endRow() const {
-    if (!word_.empty()) io::fail(file_, place(), "has more values than the header gives properties");
+    if (!word_.empty()) io::fail(file_, place(), "has more values than the header has properties");
   }
   std::string place() const { return placeOf(io::lineNo(headerLines_ + lines_.number()), *element_, index_); }
   double value(Scalar) {
@@ -264,13 +264,13 @@ class TextValues {
     for (std::uint64_t i = 0; i < count; ++i) take();  // ends at the end of the line, whatever the count says
   }
   [[noreturn]] void truncated() const {
-    io::fail(file_, place(), "the PLY is truncated: the header promises " + std::to_string(element_->count) + " of these");
+    io::fail(file_, place(), "the PLY is truncated: the header declares " + std::to_string(element_->count) + " of these");
   }
   void end() {
     while (const std::optional<std::string_view> line = lines_.next()) {
       std::string_view rest = *line;
       if (!io::takeWord(rest).empty())
-        io::fail(file_, io::lineNo(headerLines_ + lines_.number()), "data follow the last element that the header promises");
+        io::fail(file_, io::lineNo(headerLines_ + lines_.number()), "unexpected data after the last element of the header");
     }
   }
 
@@ -320,8 +320,8 @@ class PlyBody {
  private:
   [[noreturn]] void fewerBytes(std::uint64_t count, const std::string& name) const {
     io::fail(file_, "header",
-             "the PLY is truncated: its header promises " + std::to_string(count) + " of element " + io::quoted(name) +
-                 ", for which it is too short");
+             "the PLY is truncated: its header declares " + std::to_string(count) + " of element " + io::quoted(name) +
+                 ", more than the file can hold");
   }
 
   /// The file is long enough for what the header promises.
@@ -382,12 +382,12 @@ class PlyBody {
   }
 
   void corners(const Property& p, std::uint64_t n) {
-    if (n < 3) io::fail(file_, values_.place(), "has " + std::to_string(n) + " corners, a face needs three");
+    if (n < 3) io::fail(file_, values_.place(), "has " + std::to_string(n) + " corners; a face needs three");
     fan_.begin();
     for (std::uint64_t k = 0; k < n; ++k) {
       const double v = values_.value(p.type);
       if (!(v >= 0 && v < double(vertexCount_) && v == std::floor(v)))
-        io::fail(file_, values_.place(), "names vertex " + asText(v) + ", the file has " + std::to_string(vertexCount_));
+        io::fail(file_, values_.place(), "names vertex " + asText(v) + "; the file has " + std::to_string(vertexCount_));
       fan_.add(static_cast<int>(v));
     }
   }

@@ -88,12 +88,12 @@ MeshContent parseStlBinary(std::string_view bytes, const std::string& file) {
   if (promised > bytes.size())
     io::fail(
         file, io::byteNo(bytes.size()) + ", facet " + std::to_string((bytes.size() - io::kStlHead) / io::kStlFacet),
-        "the STL is truncated: its header promises " + std::to_string((promised - io::kStlHead) / io::kStlFacet) + " facets");
+        "the STL is truncated: its header declares " + std::to_string((promised - io::kStlHead) / io::kStlFacet) + " facets");
   for (std::size_t i = promised; i < bytes.size(); ++i)
     if (!io::isPadding(bytes[i]))
       io::fail(file, io::byteNo(i),
-               "data follow the last of the " + std::to_string((promised - io::kStlHead) / io::kStlFacet) +
-                   " facets that the header promises");
+               "unexpected data after the " + std::to_string((promised - io::kStlHead) / io::kStlFacet) +
+                   " facets that the header declares");
   MeshContent mesh;
   Welder welder(mesh.vertices);
   mesh.triangles.reserve((promised - io::kStlHead) / io::kStlFacet);
@@ -147,7 +147,8 @@ MeshContent parseStlText(std::string_view bytes, const std::string& file) {
           if (!value) bad(text.empty() ? "a vertex needs three numbers" : io::quoted(text) + " is not a number");
           corners[corner][k] = *value;
         }
-        if (const std::string_view rest = io::takeWord(*line); !rest.empty()) bad(io::quoted(rest) + " follows a vertex");
+        if (const std::string_view rest = io::takeWord(*line); !rest.empty())
+          bad("unexpected " + io::quoted(rest) + " after a vertex");
         if (++corner < 3) break;
         inside = Inside::LoopDone;
         addFacet(mesh, welder, corners, file, io::lineNo(lines.number()));

@@ -7,15 +7,15 @@ usage() {
   cat <<'HELP'
 Usage: sessions/make_sessions.sh [--results-only] [NAME...]
 
-Makes the sessions NAME... (default: plane, plane-to-cylinder, ellipsoid, two-lamps, vase, and every lesson, lessons/mirror ...) again:
-frames, scene.json and NAME.glint. `lessons` stands for all lessons.
+Makes the sessions NAME... again: frames, scene.json and NAME.glint. Default: plane, plane-to-cylinder, ellipsoid, two-lamps, vase, and every
+lesson (lessons/mirror ...). `lessons` means all lessons.
 
-  --results-only   keep frames and scenes, compute the .glint files only (needed when a model changes)
-  --help           this page
+  --results-only   keep frames and scenes, compute only the .glint files (needed when a model changes)
+  --help           show this page
 
 GLINT=FILE         the program (default: build/release/bin/glint)
 CYCLES=DIR         the rendered sequences (default: ../shared/data/cycles)
-Needs bash and Python 3, and for the vase and the sheets the rendered sequences.
+Needs bash and Python 3; for the vase and the sheets also the rendered sequences.
 HELP
 }
 
@@ -32,12 +32,12 @@ while [ $# -gt 0 ]; do
     plane|plane-to-cylinder|ellipsoid|two-lamps|vase) names+=("$1") ;;
     lessons) names+=("${lessons[@]}") ;;
     lessons/*) [ -d "$root/sessions/$1" ] || { echo "make_sessions.sh: no lesson $1" >&2; exit 2; }; names+=("$1") ;;
-    *) echo "make_sessions.sh: unknown argument $1 (see --help)" >&2; exit 2 ;;
+    *) echo "make_sessions.sh: unknown argument $1; see --help" >&2; exit 2 ;;
   esac
   shift
 done
 [ ${#names[@]} -gt 0 ] || names=(plane plane-to-cylinder ellipsoid two-lamps vase "${lessons[@]}")
-[ -x "$glint" ] || { echo "make_sessions.sh: $glint: build the program first" >&2; exit 2; }
+[ -x "$glint" ] || { echo "make_sessions.sh: $glint is missing: build the program first" >&2; exit 2; }
 
 # subset SCENE NAME SLICE: the frames of SCENE in the Python slice go to sessions/NAME, as images only: what a camera captured.
 # Radiance, depth, normals, masks and exact highlights stay behind, so that a session detects its highlights itself.

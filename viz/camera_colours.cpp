@@ -45,7 +45,7 @@ Colour influenceColour(double points, double most) {
 
 ColourBar influenceBar(const std::string& model, double most) {
   ColourBar bar;
-  bar.title = model + ": what the view does, percentage points";
+  bar.title = model + ": influence, percentage points";
   constexpr int kSteps = 48;
   for (int i = 0; i < kSteps; ++i) bar.colours.push_back(influenceColour(2 * (i + 0.5) / kSteps - 1, 1));
   const std::string text = formatted("%.2g", most);

@@ -164,7 +164,7 @@ struct Canvas::Impl {
 };
 
 Canvas::Canvas(int width, int height, const Colour& background) : impl_(std::make_unique<Impl>()) {
-  require(width >= 16 && height >= 16 && width <= 16384 && height <= 16384, "Canvas: size must be within 16 and 16384 pixels");
+  require(width >= 16 && height >= 16 && width <= 16384 && height <= 16384, "Canvas: size must be between 16 and 16384 pixels");
   impl_->width = width;
   impl_->height = height;
   impl_->fine = cv::Mat(height * kFine, width * kFine, CV_8UC3, scalar(background));

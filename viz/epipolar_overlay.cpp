@@ -43,7 +43,7 @@ Outcome<PairView> viewOf(const Inspection& inspection, int frame, int highlight,
   if (request.ellipse == PairEllipse::Canonical) {
     if (!training || !training->canonical || !training->canonical->ellipse)
       return Failure{Reason::NotSupported,
-                     "frame " + f.id + " has no canonical ellipse: only training frames of a model that walks do"};
+                     "frame " + f.id + " has no canonical ellipse; only training frames of a model with walks have one"};
     view.ellipse = *training->canonical->ellipse;
   } else if (h.ellipse) {
     view.ellipse = *h.ellipse;
@@ -56,7 +56,7 @@ Outcome<PairView> viewOf(const Inspection& inspection, int frame, int highlight,
     } else if (const Plane* plane = predictedPlane(inspection, frame, highlight)) {
       view.projection = virtualCamera(f.camera, *plane);
     } else {
-      return Failure{Reason::NotSupported, "frame " + f.id + ": no tangent plane is known, so there is no virtual camera"};
+      return Failure{Reason::NotSupported, "frame " + f.id + ": no virtual camera because the tangent plane is unknown"};
     }
   }
   return view;
@@ -116,13 +116,13 @@ EpipolarPicture epipolarPicture(const Inspection& inspection, const PairRequest&
                : none;
   };
   const std::vector<Highlight>&first = highlightsOf(request.frames[0]), &second = highlightsOf(request.frames[1]);
-  if (static_cast<std::size_t>(highlights[0]) >= first.size()) return fail({Reason::NoHighlight, "the first frame shows none"});
+  if (static_cast<std::size_t>(highlights[0]) >= first.size()) return fail({Reason::NoHighlight, "none in the first frame"});
   const std::string light = first[static_cast<std::size_t>(highlights[0])].light;
   for (std::size_t i = 0; i < second.size() && highlights[1] < 0; ++i)
     if (second[i].light == light) highlights[1] = static_cast<int>(i);
-  if (highlights[1] < 0) return fail({Reason::NoHighlight, "the second frame shows none of this light"});
+  if (highlights[1] < 0) return fail({Reason::NoHighlight, "none of this light in the second frame"});
   if (request.frames[0] == request.frames[1])
-    return fail({Reason::RankDeficient, "both frames are the same: choose another one"});
+    return fail({Reason::RankDeficient, "both frames are the same; choose another frame"});
 
   std::array<PairView, 2> views;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -152,7 +152,7 @@ EpipolarPicture epipolarPicture(const Inspection& inspection, const PairRequest&
       if (!line.points.empty()) picture.frames[i].lines.push_back(line);
       line.points = overPhotograph(view.transferred[k], camera);
       line.dash = Dash::Dashed;
-      line.label = "the other image's tangent, " + which + formatted(": misses by %.2f px", view.missPx[k]);
+      line.label = "tangent from the other image, " + which + formatted(": misses by %.2f px", view.missPx[k]);
       if (!line.points.empty()) picture.frames[i].lines.push_back(line);
       OverlayMark mark;
       mark.role = OverlayRole::EpipolarLine;

@@ -72,26 +72,24 @@ std::string scoreText(const std::string& model, const FrameScore& score) {
 
 const std::vector<OverlayLayer>& overlayLayers() {
   static const std::vector<OverlayLayer> layers{
-      {OverlayRole::ObservedContour, "frame/observed", "Observed", "Contour found in the photograph, at the contour level: white",
-       true},
+      {OverlayRole::ObservedContour, "frame/observed", "Observed",
+       "Contour detected in the photograph at the contour level: white", true},
       {OverlayRole::ObservedEllipse, "frame/observed-ellipse", "Ellipse", "Ellipse fitted to the observed contour: grey, dashed",
        true},
       {OverlayRole::PredictedContour, "frame/predicted", "Predicted",
-       "Contour that each model predicts, in its colour: dashed in frames that do not train, dotted where directions failed",
+       "Contour predicted by each model, in its colour: dashed in frames not used for training, dotted where directions failed",
        true},
       {OverlayRole::PredictedEllipse, "frame/predicted-ellipse", "Pred. ellipse",
        "Ellipse fitted to each predicted contour, dashed", true},
       {OverlayRole::UncertaintyBand, "frame/band", "Band",
-       "95 % band of each predicted contour, where Predict > Band is on and the band is wider than half a pixel", true},
+       "95 % band of each predicted contour, if Predict > Uncertainty band is on and the band is wider than half a pixel", true},
       {OverlayRole::CanonicalEllipse, "frame/canonical", "Canonical",
-       "Ellipse of the canonical contour on the tangent plane, dotted: of the observation in training frames, predicted "
-       "elsewhere",
-       true},
+       "Ellipse of the canonical contour on the tangent plane, dotted: observed in training frames, predicted elsewhere", true},
       {OverlayRole::ObservedPeak, "frame/peak", "Peaks", "Observed peak: cross; predicted brightest points: circles", true},
       {OverlayRole::ResidualArrows, "frame/residuals", "Residuals",
        "Arrows from the observed to the predicted contour, every 10 degrees", false},
       {OverlayRole::LimitDirections, "frame/directions", "Directions",
-       "Walks from the brightest point: to the limit angle on the surface, dotted on to the same angle on the tangent plane",
+       "Walks from the brightest point: to the limit angle on the surface; dotted: on to the same angle on the tangent plane",
        false}};
   return layers;
 }
@@ -381,7 +379,7 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
       }
     }
     if (!answered) {
-      std::string reason = "no answer for this frame";
+      std::string reason = "no prediction for this frame";
       for (const ModelResult::Fit& fit : result.fits) {
         if (fit.failure) reason = fit.failure->message();
       }

@@ -98,7 +98,8 @@ void encode(const std::string& file, const fs::path& temporary, const MovieForma
                              cv::Size(format.width, format.height));
         }))
       break;
-  if (!writer.isOpened()) throw InputError(file, "", "cannot be written, or this computer has no encoder for " + endingOf(file));
+  if (!writer.isOpened())
+    throw InputError(file, "", "cannot be written: no access, or no encoder on this computer for " + endingOf(file));
   for (int i = 0; i < frames; ++i) {
     if (!report(progress, {"frame", i, frames})) throw Stopped{};
     const cv::Mat pixels = toBgr(checked(picture(i), format));
@@ -115,8 +116,9 @@ void encode(const std::string& file, const fs::path& temporary, const MovieForma
   }
   quietly([&] { back.release(); });
   if (found != frames)
-    throw InputError(file, "",
-                     std::to_string(found) + " of " + std::to_string(frames) + " frames could be read back; is the disk full?");
+    throw InputError(
+        file, "",
+        "only " + std::to_string(found) + " of " + std::to_string(frames) + " frames could be read back; the disk may be full");
 }
 
 }  // namespace
@@ -133,10 +135,11 @@ std::vector<std::string> filesOfMovie(const std::string& file, int frames) {
 
 void checkMovie(const std::string& file, const MovieFormat& f) {
   require(f.width >= 16 && f.height >= 16 && f.width <= 8192 && f.height <= 8192,
-          "writeMovie: size must be within 16 and 8192 pixels");
-  require(f.framesPerSecond >= 0.1 && f.framesPerSecond <= 240, "writeMovie: frames per second must be within 0.1 and 240");
+          "writeMovie: size must be between 16 and 8192 pixels");
+  require(f.framesPerSecond >= 0.1 && f.framesPerSecond <= 240, "writeMovie: frames per second must be between 0.1 and 240");
   if (endingOf(file) == ".png") return;
-  if (!containerOf(file)) throw InputError(file, "", "a movie ends in .mp4, .webm, .avi, .mkv, or .png for a series of pictures");
+  if (!containerOf(file))
+    throw InputError(file, "", "the name of a movie must end in .mp4, .webm, .avi, .mkv, or in .png for an image sequence");
   if (f.width % 2 || f.height % 2) throw InputError(file, "", "width and height of a video must be even");
 }
 

@@ -35,7 +35,8 @@ Offscreen::~Offscreen() {
 
 namespace {
 void requireSize(int width, int height) {
-  require(width >= 16 && height >= 16 && width <= 16384 && height <= 16384, "Offscreen: size must be within 16 and 16384 pixels");
+  require(width >= 16 && height >= 16 && width <= 16384 && height <= 16384,
+          "Offscreen: size must be between 16 and 16384 pixels");
 }
 
 vtkSmartPointer<vtkRenderWindow> hiddenWindow(int width, int height) {

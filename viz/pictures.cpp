@@ -239,11 +239,11 @@ Image ladderPicture(const Inspection& inspection, int frame, const Outcome<Image
   Canvas canvas(width, height, theme.background);
   const double font = std::clamp(height / 42.0, 10.0, 40.0), ink = std::max(1.0, height / 900.0);
   canvas.text({0.8 * font, 1.4 * font},
-              canvas.fitted(titleOf(inspection, frame) + ": from simple to rich", 1.1 * font, width - 1.6 * font), 1.1 * font,
-              theme.ink);
+              canvas.fitted(titleOf(inspection, frame) + ": from simplest to richest", 1.1 * font, width - 1.6 * font),
+              1.1 * font, theme.ink);
   const std::vector<std::string> models = modelsInOrder(inspection, options.models);
   if (models.empty()) {
-    canvas.text({0.8 * font, 4 * font}, "no model was computed", font, kFailed);
+    canvas.text({0.8 * font, 4 * font}, "no models computed", font, kFailed);
     return canvas.image();
   }
   // What stands below a tile: the numbers in one line, or the whole reason why there are none.
@@ -358,8 +358,7 @@ Image plotsPicture(const Inspection& inspection, int width, int height, const Pi
   }
   canvas.text({0.8 * font, 1.5 * font}, inspection.scene->name + ": contour error over frames", 1.2 * font, theme.ink);
   if (!(high > 0) || frames == 0) {
-    canvas.text({0.8 * font, 4 * font}, models.empty() ? "no model was computed" : "no frame has an error to draw", font,
-                kFailed);
+    canvas.text({0.8 * font, 4 * font}, models.empty() ? "no models computed" : "no errors to plot", font, kFailed);
     return canvas.image();
   }
   const bool logarithmic = high / low > 30;
@@ -429,7 +428,7 @@ Image plotsPicture(const Inspection& inspection, int width, int height, const Pi
     for (int frame = 0; frame < frames; ++frame) anyMissing = anyMissing || isMissing(series, frame);
   canvas.text({plot.x + 0.5 * plot.width, plot.y + plot.height + 2.9 * font},
               std::string("frame") + (anyTraining ? ", shaded blue: training" : "") + (anyExcluded ? ", brown: excluded" : "") +
-                  (anyMissing ? ", strokes above: a highlight missed, or no answer" : ""),
+                  (anyMissing ? ", strokes above: missed highlight or no prediction" : ""),
               font, theme.ink, Align::Centre);
   // Lines, broken where a frame has no error.
   double legendY = 3.2 * font;
@@ -454,7 +453,7 @@ Image plotsPicture(const Inspection& inspection, int width, int height, const Pi
       text += ":  mean " + formatted("%.3g %%", series.sum / series.answered) + " over " + std::to_string(series.answered) +
               " of " + std::to_string(series.asked) + (inspection.train.perSurface ? " frames" : " held-out frames");
     } else {
-      text += ":  no held-out frame answered";
+      text += ":  no prediction in any held-out frame";
       for (const FrameScore& score : series.scores) {
         if (!score.reason.empty()) {
           text += " (" + score.reason + ")";

@@ -24,12 +24,11 @@ void addCameras(SceneLegend& legend, const LayerInput& in) {
   }
   if (in.colours.by == CameraColours::By::Influence) {
     if (in.colours.influence.empty()) {
-      legend.remarks.push_back(
-          "cameras: what the views do for held-out frames is not measured for this request (Plots, Measure which view matters)");
+      legend.remarks.push_back("cameras: influence not measured for these settings (Plots > Measure influence of frames)");
     } else if (const double most = mostInfluence(in.colours); most > 0) {
       legend.bar = influenceBar(in.colours.model, most);
     } else {
-      legend.remarks.push_back("cameras: leaving a view out changes the error of " + in.colours.model + " by nothing");
+      legend.remarks.push_back("cameras: leaving out a frame does not change the error of " + in.colours.model);
     }
   }
   std::vector<CameraColour> kinds;
@@ -73,8 +72,8 @@ SceneLegend legendOf(const LayerInput& in, const std::vector<ShownLayer>& layers
   if (drawn("virtual-cameras") || drawn("tangent-planes"))
     legend.entries.push_back({kVirtualCamera, "virtual camera, tangent plane"});
   if (drawn("observed-contours")) legend.entries.push_back({kObserved, "observed contour"});
-  if (drawn("light")) legend.entries.push_back({kLightColour, "light, estimated"});
-  if (drawn("true-light")) legend.entries.push_back({kTruth, "light, truth"});
+  if (drawn("light")) legend.entries.push_back({kLightColour, "light (estimate)"});
+  if (drawn("true-light")) legend.entries.push_back({kTruth, "light (truth)"});
   std::string noEvidence;
   if (const auto at = static_cast<std::size_t>(in.selection.frame); at < in.inspection->evidence.size()) {
     const std::optional<Failure>& failure = in.inspection->evidence[at].scoringFailure();
@@ -103,7 +102,7 @@ SceneLegend legendOf(const LayerInput& in, const std::vector<ShownLayer>& layers
     legend.remarks.insert(legend.remarks.end(), layer.content->remarks.begin(), layer.content->remarks.end());
   }
   if (const std::size_t hidden = in.hidden.count(); hidden > 0)
-    legend.remarks.push_back(std::to_string(hidden) + (hidden == 1 ? " object is hidden" : " objects are hidden"));
+    legend.remarks.push_back(std::to_string(hidden) + (hidden == 1 ? " object hidden" : " objects hidden"));
   legend.title = in.inspection->scene->name + ", frame " + in.frame(in.selection.frame).id + " (" +
                  useOf(*in.inspection, in.selection.frame) + ")";
   return legend;

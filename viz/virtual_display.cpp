@@ -75,7 +75,8 @@ std::string readNumber(int fd) {
 
 Outcome<std::unique_ptr<VirtualDisplay>> VirtualDisplay::start(int width, int height) {
   const std::string program = findProgram("Xvfb");
-  if (program.empty()) return Failure{Reason::NotSupported, "drawing in 3D without a screen needs Xvfb: apt-get install xvfb"};
+  if (program.empty())
+    return Failure{Reason::NotSupported, "3D rendering without a display needs Xvfb; install it: apt-get install xvfb"};
   std::array<int, 2> channel;
   if (pipe(channel.data()) != 0) return Failure{Reason::NotSupported, std::string("cannot start Xvfb: ") + std::strerror(errno)};
   const std::string fd = std::to_string(channel[1]), screen = std::to_string(width) + "x" + std::to_string(height) + "x24";

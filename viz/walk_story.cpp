@@ -27,15 +27,14 @@ struct Start {
 Outcome<Start> forwards(const Explanation& e) {
   if (!e.view) return Failure{Reason::NoHighlight, ""};
   if (e.view->failure) return *e.view->failure;
-  if (!e.lightUsed) return Failure{Reason::NoLight, "the walk needs the light"};
-  if (!e.view->canonical || !e.view->brightest || !e.view->surface)
-    return Failure{Reason::NoSurface, "there is nothing to walk on"};
+  if (!e.lightUsed) return Failure{Reason::NoLight, "the walk needs a light"};
+  if (!e.view->canonical || !e.view->brightest || !e.view->surface) return Failure{Reason::NoSurface, "nothing to walk on"};
   return Start{&*e.view->canonical, *e.view->brightest, e.view->surface, *e.lightUsed};
 }
 
 Outcome<Start> backwards(const Inspection& in, const Explanation& e) {
   const auto result = in.models.find(e.model);
-  if (result == in.models.end()) return Failure{Reason::NoHighlight, "there is no model"};
+  if (result == in.models.end()) return Failure{Reason::NoHighlight, "no model"};
   const Failure none{Reason::NotSupported, e.model + " predicts without a walk"};
   const PredictedHighlight* predicted = nullptr;
   for (const FrameComparison& comparison : result->second.frames) {
@@ -101,7 +100,7 @@ Outcome<WalkStory> walkStory(const Inspection& inspection, const Explanation& ex
     best = &d;
     bestDirection = seen;
   }
-  if (!best) return why ? *why : Failure{Reason::NotReached, "no direction arrived"};
+  if (!best) return why ? *why : Failure{Reason::NotReached, "no direction reached its end"};
   const TangentWalk walk(*start->surface, camera, start->brightest, start->lamp);
   Outcome<WalkTrace> trace = traceWalk(walk, *start->surface, *best, kPlaces);
   if (!trace) return trace.failure();

@@ -22,7 +22,7 @@ namespace {
 using Write = std::function<void(const fs::path&)>;
 
 [[noreturn]] void cannotBeMade(const fs::path& given, int error) {
-  throw InputError(given.string(), "", std::string("cannot be made: ") + std::strerror(error));
+  throw InputError(given.string(), "", std::string("cannot be created: ") + std::strerror(error));
 }
 
 fs::path absoluteFolder(const fs::path& given) {
@@ -112,7 +112,8 @@ void atomicFolder(const fs::path& given, const Write& write) {
   std::error_code error;
   const bool exists = fs::exists(folder, error);
   if (exists && !fs::is_directory(folder, error)) throw InputError(given.string(), "", "is a file, not a folder");
-  if (exists && !fs::is_empty(folder, error)) throw InputError(given.string(), "", "the folder is not empty; choose a new one");
+  if (exists && !fs::is_empty(folder, error))
+    throw InputError(given.string(), "", "the folder is not empty; choose a new folder");
   writeBeside(folder, given, write);
 }
 

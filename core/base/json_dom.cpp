@@ -49,7 +49,7 @@ class Builder final : public nlohmann::json_sax<Json> {
   bool key(string_t& v) override {
     Level& level = levels_.back();
     level.key = v;
-    if (!level.keys.insert(v).second) throw InputError(file_, where(), "this key stands here twice");
+    if (!level.keys.insert(v).second) throw InputError(file_, where(), "duplicate key");
     return true;
   }
   bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& e) override {

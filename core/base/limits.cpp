@@ -24,12 +24,10 @@ std::string shown(double v) { return formatted(v == std::floor(v) ? "%.0f" : "%.
 
 const std::vector<LimitInfo>& limitInfos() {
   // A scene of 10,000 frames with two contours of 200 points each has 200 MB of text and 10 million values.
-  static const std::vector<LimitInfo> infos = {{"json.megabytes", 512, "MB of JSON text"},
-                                               {"json.values", 2e7, "values in a JSON text"},
-                                               {"mesh.megabytes", 4096, "MB of a mesh"},
-                                               {"image.megabytes", 1024, "MB of an image file"},
-                                               {"image.megapixels", 200, "million pixels of an image"},
-                                               {"synth.frames", 10000, "frames to be made"}};
+  static const std::vector<LimitInfo> infos = {
+      {"json.megabytes", 512, "MB of JSON text"},  {"json.values", 2e7, "values in a JSON text"},
+      {"mesh.megabytes", 4096, "MB of mesh data"}, {"image.megabytes", 1024, "MB of image data"},
+      {"image.megapixels", 200, "million pixels"}, {"synth.frames", 10000, "frames"}};
   return infos;
 }
 
@@ -50,19 +48,20 @@ void setLimit(const std::string& nameAndValue) {
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value) || !(value > 0))
-      throw InputError("", "--limit " + nameAndValue, "expected a number above 0 after '='");
+      throw InputError("", "--limit " + nameAndValue, "expected a positive number after '='");
     given[i] = value;
     return;
   }
-  throw InputError("", "--limit " + nameAndValue, "there is no limit '" + name + "'; there are: " + known);
+  throw InputError("", "--limit " + nameAndValue, "unknown limit '" + name + "'; known: " + known);
 }
 
 void requireWithin(Limit limit, double amount, const std::string& file, const std::string& place) {
   const double most = limitOf(limit);
   if (!(amount > most)) return;
   const LimitInfo& info = limitInfos()[static_cast<std::size_t>(limit)];
-  throw InputError(file, place, "holds " + shown(amount) + " " + info.counts + ", more than " + shown(most) + " (--limit " + info.name +
-                                    "=" + shown(std::ceil(amount)) + " accepts it)");
+  throw InputError(file, place,
+                   "contains " + shown(amount) + " " + info.counts + "; the limit is " + shown(most) + " (--limit " + info.name +
+                       "=" + shown(std::ceil(amount)) + " raises it)");
 }
 
 }  // namespace glint

@@ -22,11 +22,11 @@ const std::vector<ParamSpec>& allParams() {
        kMostLevel,
        0.01,
        {},
-       "Fraction of (strongest peak - background) at which contours are taken; the same in all frames, because a limit angle "
-       "means something only for one level. Contour: I - B = q (I_peak - B), B the background.",
+       "Fraction of (strongest peak - background) at which contours are taken. It is the same in all frames, because a limit "
+       "angle is meaningful for one level only. Contour: I - B = q (I_peak - B), B the background.",
        "detect"},
       {"detect.min_area",
-       "Smallest highlight",
+       "Minimum area",
        "A_min",
        "px^2",
        12.0,
@@ -37,7 +37,7 @@ const std::vector<ParamSpec>& allParams() {
        "Smaller blobs do not constrain the five parameters of an ellipse. Kept: area A >= A_min.",
        "detect"},
       {"detect.min_contrast",
-       "Smallest contrast",
+       "Minimum contrast",
        "c",
        "",
        3.0,
@@ -45,7 +45,8 @@ const std::vector<ParamSpec>& allParams() {
        50.0,
        0.5,
        {},
-       "Peak over the spread of the background; below this a blob is noise or a diffuse bump. Kept: (I_peak - B) / σ_B >= c.",
+       "Ratio of peak height to background spread; a blob below this is noise or a diffuse bump. Kept: (I_peak - B) / σ_B >= "
+       "c.",
        "detect"},
       {"detect.peak_window",
        "Peak window",
@@ -56,8 +57,8 @@ const std::vector<ParamSpec>& allParams() {
        0.99,
        0.01,
        {},
-       "Pixels above this fraction of the peak enter the quadratic fit to log I, whose maximum is the peak. log I = log K - "
-       "(α/m)² where I >= w I_peak.",
+       "Pixels above this fraction of the peak are used in the quadratic fit to log I, whose maximum is the peak. log I = log "
+       "K - (α/m)² where I >= w I_peak.",
        "detect"},
       {"detect.clip",
        "Saturation value",
@@ -80,10 +81,9 @@ const std::vector<ParamSpec>& allParams() {
        0,
        0,
        {"smooth", "lobe"},
-       "Smooth: a quadratic fitted to the pixels around a highlight; it takes in the tail of a long-tailed lobe, so that "
-       "contours "
-       "come out too small. Lobe: the lobe is fitted to the pixels of the training frames, and contours are found again with the "
-       "background that it leaves. I = K S + B.",
+       "Smooth: a quadratic fitted to the pixels around a highlight; it absorbs the tail of a long-tailed lobe, which makes "
+       "contours too small. Lobe: the lobe is fitted to the pixels of the training frames, and contours are found again over "
+       "the background that remains. I = K S + B.",
        "detect"},
       {"surface.normals",
        "Mesh normals",
@@ -95,7 +95,7 @@ const std::vector<ParamSpec>& allParams() {
        0,
        {"facet", "interpolated", "curved"},
        "Facet: flat triangles. Interpolated: flat positions, vertex normals. Curved: a smooth patch through the vertex normals "
-       "(Phong tessellation). They turn H = (L + V)/|L + V| into α = angle(N, H).",
+       "(Phong tessellation). They give α = angle(N, H), H = (L + V)/|L + V|.",
        "surface"},
       {"surface.rays",
        "Ray precision",
@@ -106,8 +106,8 @@ const std::vector<ParamSpec>& allParams() {
        0,
        0,
        {"double", "single"},
-       "Double: single precision finds the triangle of a mesh that a ray meets, double decides where. Single: the ray tracer's "
-       "own answer, good to about 1e-7 of the mesh's size.",
+       "Double: single precision finds the mesh triangle that a ray hits, double precision the point. Single: the ray tracer's "
+       "own result, accurate to about 1e-7 of the mesh size.",
        "surface"},
       {"light.solver",
        "Light",
@@ -153,8 +153,8 @@ const std::vector<ParamSpec>& allParams() {
        1,
        1,
        {},
-       "0: one limit angle. 1: with the extent of a long or wide light (bundle only), six more numbers. -1: whichever predicts "
-       "left-out training views better. α_lim(φ)² = det M / (pᵀ M p), M = α_lim² I + A E Aᵀ, E the extent.",
+       "0: one limit angle. 1: also the extent of a long or wide light (bundle only), six more parameters. -1: whichever "
+       "predicts left-out training views better. α_lim(φ)² = det M / (pᵀ M p), M = α_lim² I + A E Aᵀ, E the extent.",
        "light"},
       {"light.refine_poses",
        "Refine poses",
@@ -165,7 +165,7 @@ const std::vector<ParamSpec>& allParams() {
        0,
        0,
        {},
-       "Bundle: correct small errors of the training cameras' poses together with the light, held by a prior; the views "
+       "Bundle: correct small pose errors of the training cameras together with the light, constrained by a prior; the views "
        "themselves keep their poses. L, ω, t = arg min Σ ρ(e_ij(L, ω_i, t_i)) + prior.",
        "light"},
       {"light.pose_sigma",
@@ -177,8 +177,8 @@ const std::vector<ParamSpec>& allParams() {
        100.0,
        0.1,
        {},
-       "Refined poses: standard deviation of their error, as pixels by which a turn about each axis and a shift along each move "
-       "the image. Prior: |ω|² / σ_ω² + |t|² / σ_t², σ_ω = σ / f, σ_t = σ Z / f.",
+       "Refined poses: standard deviation of their error, as the pixels by which a rotation about each axis and a shift along "
+       "it move the image. Prior: |ω|² / σ_ω² + |t|² / σ_t², σ_ω = σ / f, σ_t = σ Z / f.",
        "light"},
       {"light.refine_depth",
        "Refine depth",
@@ -189,7 +189,7 @@ const std::vector<ParamSpec>& allParams() {
        0,
        0,
        {},
-       "Bundle: correct a smooth error of the depth maps, the same in all frames, together with the light, held by a prior; "
+       "Bundle: correct a smooth depth-map error, the same in all frames, together with the light, constrained by a prior; "
        "predictions use the corrected surfaces. L, δ = arg min Σ ρ(e_ij(L, δ)) + prior.",
        "light"},
       {"light.depth_sigma",
@@ -201,7 +201,7 @@ const std::vector<ParamSpec>& allParams() {
        0.1,
        0.001,
        {},
-       "Refined depth: standard deviation of its error near the image's border, as a fraction of the depth. z becomes z (1 + Σ "
+       "Refined depth: standard deviation of its error near the image border, as a fraction of the depth. z becomes z (1 + Σ "
        "c_kl xᵏ yˡ), δ = Σ c_kl xᵏ yˡ.",
        "light"},
       {"light.refine_normals",
@@ -213,9 +213,9 @@ const std::vector<ParamSpec>& allParams() {
        0,
        0,
        {},
-       "Bundle: correct smooth bumps of a mesh that all views see, together with the light, held by a prior; kept where left-out "
-       "views gain, and "
-       "predictions use the corrected mesh. L, h = arg min Σ ρ(e_ij(L, h)) + prior, N' ~ N - ∇h.",
+       "Bundle: correct smooth bumps of a mesh that all views see, together with the light, constrained by a prior. The "
+       "correction is kept if it improves left-out views; predictions then use the corrected mesh. L, h = arg min Σ ρ(e_ij(L, "
+       "h)) + prior, N' ~ N - ∇h.",
        "light"},
       {"light.normal_sigma",
        "Normal error",
@@ -227,8 +227,7 @@ const std::vector<ParamSpec>& allParams() {
        0.001,
        {},
        "Refined normals: standard deviation of the slopes of the bumps, in every direction. h is a Gaussian process, sd(∂h) = "
-       "σ_N; "
-       "left-out views choose its length and whether a quarter of this is enough.",
+       "σ_N; left-out views choose its length and whether a quarter of this value is enough.",
        "light"},
       {"fit.solver",
        "Ellipsoid solver",
@@ -251,9 +250,9 @@ const std::vector<ParamSpec>& allParams() {
        10.0,
        0.01,
        {},
-       "Refined solver: how far the ellipsoid's centre may lie from the light beside the light's own noise, as a fraction of the "
-       "light's distance (standard deviation); 0 = one hundredth. What a contour point weighs against it comes from the "
-       "residuals. Prior of c: covariance Σ_L + (b |L - P|)² I.",
+       "Refined solver: how far the ellipsoid's centre may lie from the light, in addition to the light's own noise, as a "
+       "fraction of the light's distance (standard deviation); 0 = one hundredth. The weight of contour points against this "
+       "prior comes from their residuals. Prior of c: covariance Σ_L + (b |L - P|)² I.",
        "fit"},
       {"fit.evidence",
        "Evidence",
@@ -264,11 +263,9 @@ const std::vector<ParamSpec>& allParams() {
        0,
        0,
        {"auto", "contours", "levels", "pixels"},
-       "What the reflectance model is fitted to. Contours: one contour per highlight. Levels: contours at several levels. "
-       "Pixels: "
-       "all unclipped pixels around the highlights. Auto: pixels where there are images that a lobe explains, else contours. L, "
-       "m = arg "
-       "min Σ ρ(w (I - K S(L, m) - B)).",
+       "Data that the reflectance model is fitted to. Contours: one contour per highlight. Levels: contours at several levels. "
+       "Pixels: all unclipped pixels around the highlights. Auto: pixels if there are images that a lobe explains, else "
+       "contours. L, m = arg min Σ ρ(w (I - K S(L, m) - B)).",
        "fit"},
       {"fit.levels",
        "Levels",
@@ -279,7 +276,7 @@ const std::vector<ParamSpec>& allParams() {
        0,
        0,
        {"0.3,0.5,0.7", "0.2,0.5", "0.2,0.35,0.5,0.65,0.8"},
-       "Contour levels that are evidence together where the evidence is levels. C_q: I = q I_peak.",
+       "Contour levels that are used together if the evidence is levels. C_q: I = q I_peak.",
        "fit"},
       {"fit.lobe",
        "Lobe",
@@ -290,11 +287,11 @@ const std::vector<ParamSpec>& allParams() {
        0,
        0,
        {"auto", "torrance-sparrow", "ggx", "blinn-phong", "phong"},
-       "Specular lobe of the reflectance model; auto: the one whose fit leaves the smallest residual. Torrance-Sparrow: log I = "
-       "-tan²θ/m² - 4 log cos θ - log(1 + Λ(L) + Λ(V)) - log cos θ_V - 2 log r, θ = α.",
+       "Specular lobe of the reflectance model; auto: the lobe whose fit leaves the smallest residual. Torrance-Sparrow: log I "
+       "= -tan²θ/m² - 4 log cos θ - log(1 + Λ(L) + Λ(V)) - log cos θ_V - 2 log r, θ = α.",
        "fit"},
       {"fit.light_size",
-       "Light's size",
+       "Light size",
        "R",
        "",
        std::string("auto"),
@@ -302,10 +299,9 @@ const std::vector<ParamSpec>& allParams() {
        0,
        0,
        {"point", "auto", "sphere", "segment"},
-       "Reflectance model: which shapes beside a point the lamp may take. sphere: its radius R is estimated where it lowers the "
-       "squared "
-       "residuals by a fifth. segment: its two ends, where they do so and predict left-out frames better. auto: both. Point: R = "
-       "0.",
+       "Reflectance model: shapes that the light may have besides a point. sphere: its radius R is estimated if this lowers "
+       "the squared residuals by a fifth. segment: its two ends are estimated if this does the same and predicts left-out "
+       "frames better. auto: both. Point: R = 0.",
        "fit"},
       {"fit.most_residual",
        "Refuse above",
@@ -316,9 +312,8 @@ const std::vector<ParamSpec>& allParams() {
        10.0,
        0.01,
        {},
-       "A model gives no answer where its fit leaves more than this share of the contours' radius, in more than a third of the "
-       "training views or, "
-       "for the ellipsoids, on the whole. Raise it to see how a model fails. Answered: e <= e_max r, e the residual without "
+       "A model is refused if its residual exceeds this fraction of the contours' radius in more than a third of the training "
+       "views or, for ellipsoids, overall. Raise it to see how a model fails. Answered: e <= e_max r, e the residual without "
        "noise, r = √(A/π).",
        "fit"},
       {"fit.directions",
@@ -330,8 +325,8 @@ const std::vector<ParamSpec>& allParams() {
        720,
        1,
        {},
-       "Directions of the walks that give a training view's contour on its tangent plane (the paper: 36). v_i = (cos 2πi/n, sin "
-       "2πi/n) on T.",
+       "Number of walks that map a training view's contour to its tangent plane (the paper: 36). v_i = (cos 2πi/n, sin 2πi/n) "
+       "on T.",
        "fit"},
       {"fit.walk_tolerance",
        "Walk tolerance",
@@ -353,7 +348,7 @@ const std::vector<ParamSpec>& allParams() {
        720,
        1,
        {},
-       "Directions of the walks that predict a contour (the paper: 36). v_i = (cos 2πi/n, sin 2πi/n) on T.",
+       "Number of walks that predict a contour (the paper: 36). v_i = (cos 2πi/n, sin 2πi/n) on T.",
        "predict"},
       {"predict.query",
        "Surface queries",
@@ -364,8 +359,8 @@ const std::vector<ParamSpec>& allParams() {
        0,
        0,
        {"exact", "local-quadric"},
-       "Exact: every foot is found on the surface. Local quadric: walks use the patch k1 x^2 + k2 y^2 + c z^2 + 2 z = 0 at the "
-       "brightest point; no ray is cast, and the curvature's variation over the highlight is lost.",
+       "Exact: every foot point is found on the surface. Local quadric: walks use the patch k1 x^2 + k2 y^2 + c z^2 + 2 z = 0 "
+       "at the brightest point; no ray is cast, and variation of the curvature over the highlight is ignored.",
        "predict"},
       {"predict.contour",
        "Level-set contour",
@@ -376,11 +371,9 @@ const std::vector<ParamSpec>& allParams() {
        0,
        0,
        {"level-set", "star"},
-       "Limit angle and reflectance. Level set: the exact region, whatever its shape, also split and merged. Star: one walk per "
-       "direction "
-       "from every brightest point; falls back to the level set where that does not describe the region. Region: α(P) <= α_lim "
-       "on S, or "
-       "I(P) >= q I(P_peak).",
+       "Limit angle and reflectance only. Level set: the exact region of any shape, also split and merged. Star: one walk per "
+       "direction from every brightest point; falls back to the level set if this does not describe the region. Region: α(P) "
+       "<= α_lim on S, or I(P) >= q I(P_peak).",
        "predict"},
       {"predict.search",
        "Brightest-point search",
@@ -392,7 +385,7 @@ const std::vector<ParamSpec>& allParams() {
        0,
        {"grid", "hints"},
        "Grid: a grid of rays finds every brightest point. Hints: one search from the most promising brightest point of the "
-       "training views; the grid where that fails or training frames showed several highlights. P_B: N × H = 0.",
+       "training views; the grid if that fails or if training frames show several highlights. P_B: N × H = 0.",
        "predict"},
       {"predict.seed_step",
        "Seed spacing",
@@ -403,7 +396,7 @@ const std::vector<ParamSpec>& allParams() {
        128.0,
        1.0,
        {},
-       "Spacing of the ray grid from which brightest points are searched; smooth meshes find them without it. Rays at pixels (i "
+       "Spacing of the ray grid that starts the search for brightest points; smooth meshes do not need it. Rays at pixels (i "
        "h, j h), i, j = 0, 1, ...",
        "predict"},
       {"predict.level_set_step",
@@ -415,7 +408,7 @@ const std::vector<ParamSpec>& allParams() {
        32.0,
        0.5,
        {},
-       "Spacing of the scan that finds the components of a level set; vertices are then polished. Field sampled at pixels (i h, "
+       "Spacing of the scan that finds the components of a level set; vertices are then refined. Field sampled at pixels (i h, "
        "j h), i, j = 0, 1, ...",
        "predict"},
       {"predict.walk_tolerance",
@@ -438,9 +431,9 @@ const std::vector<ParamSpec>& allParams() {
        0,
        0,
        {},
-       "Compute the standard deviation of every predicted contour point: noise and errors of whole views as the training views "
-       "show them, other lobes that "
-       "explain these about as well, and stated tolerances. A few fits. σ² = J Σ Jᵀ + Σ τ² + Σ w d² across the contour.",
+       "Compute the standard deviation of every predicted contour point: from noise and whole-view errors in the training "
+       "views, from other lobes that explain these views about as well, and from the stated tolerances. Takes a few fits. σ² = "
+       "J Σ Jᵀ + Σ τ² + Σ w d² across the contour.",
        "predict"},
       {"input.scale_tolerance",
        "Scale tolerance",
@@ -451,9 +444,8 @@ const std::vector<ParamSpec>& allParams() {
        0.5,
        0.001,
        {},
-       "The band's share of a surface that may be larger or smaller than given by up to this fraction about the origin of the "
-       "world: contours do not show it. "
-       "The fit is repeated with both. Uniform: σ² = d²/3.",
+       "Added to the band: the surface may be larger or smaller than given by up to this fraction about the world origin, "
+       "which contours do not show. The fit is repeated at both limits. Uniform: σ² = d²/3.",
        "predict"},
       {"input.focal_tolerance",
        "Focal tolerance",
@@ -473,7 +465,7 @@ const std::vector<ParamSpec>& allParams() {
 const ParamSpec& paramSpec(const std::string& key) {
   for (const ParamSpec& p : allParams())
     if (p.key == key) return p;
-  throw InputError("", "--set " + key, "no such setting (`glint settings` lists them)");
+  throw InputError("", "--set " + key, "unknown setting (`glint settings` lists them)");
 }
 
 const SettingValue& Settings::value(const std::string& key) const {
@@ -521,7 +513,7 @@ void Settings::set(const std::string& key, const SettingValue& v) {
     if (std::find(spec.choices.begin(), spec.choices.end(), *s) == spec.choices.end()) {
       std::string all;
       for (const std::string& c : spec.choices) all += (all.empty() ? "" : ", ") + c;
-      throw InputError("", "--set " + key, "'" + *s + "' is none of: " + all);
+      throw InputError("", "--set " + key, "'" + *s + "' is not one of: " + all);
     }
   }
   if (checked == spec.defaultValue) values_.erase(key);

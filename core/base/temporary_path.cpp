@@ -155,7 +155,7 @@ TemporaryPath::TemporaryPath(const fs::path& folder, const fs::path& target, Kin
       descriptor_ = -1;
     }
   }
-  if (descriptor_ < 0) throw InputError(target.string(), "", "cannot be written: no name for a temporary file is free");
+  if (descriptor_ < 0) throw InputError(target.string(), "", "cannot be written: no free name for a temporary file");
 }
 
 bool TemporaryPath::moveTo(const fs::path& target) {

@@ -94,8 +94,7 @@ class Findings {
   }
 
   Conditioning all() {
-    if (fit_.failure)
-      add("fit", "fit", std::nan(""), "failed", Verdict::Red, "There is no fit: " + fit_.failure->message() + ".");
+    if (fit_.failure) add("fit", "fit", std::nan(""), "failed", Verdict::Red, "No fit: " + fit_.failure->message() + ".");
     addPeaks();
     if (model_.hasOutlines()) addLinearSystem();
     addAngle();
@@ -109,7 +108,7 @@ class Findings {
   void add(const char* id, const char* title, double value, std::string valueText, Verdict verdict, std::string reason) {
     if (verdict == Verdict::Green && !strayFrames_.empty()) {
       verdict = Verdict::Amber;
-      reason += " It rests on evidence whose peak lies outside its contour, so it is no praise.";
+      reason += " It rests on evidence whose peak lies outside its contour, so it proves little.";
     }
     c_.findings.push_back({id, title, value, std::move(valueText), verdict, std::move(reason)});
   }
@@ -136,7 +135,7 @@ class Findings {
     add("peaks", "peaks", stray, formatted("%d outside", stray), Verdict::Red,
         formatted(
             "The peak lies outside its own contour in %d of %d training views (frame %s), by up to %.3g px: the ray through it "
-            "does not come from the highlight, and the light is sought where it was not seen.",
+            "does not come from the highlight, so the light is sought in the wrong place.",
             stray, int(rays_.size()), frames.c_str(), farthestStray_));
   }
 
@@ -154,8 +153,8 @@ class Findings {
     const Outcome<Reconstruction> linear = reconstructLinear(outlines_, origin, anything);
     if (!linear) {
       add("signature", "Q*", std::nan(""), "undetermined", fit_.fit ? Verdict::Amber : Verdict::Red,
-          "The contours alone determine no quadric (" + linear.failure().message() + ")" +
-              (fit_.fit ? "; the ellipsoid shown rests on where its centre is expected." : "."));
+          "The contours alone do not determine a quadric (" + linear.failure().message() + ")" +
+              (fit_.fit ? "; the ellipsoid shown relies on the expected position of its centre." : "."));
       return;
     }
     c_.singularValues = linear->singularValues;
@@ -164,24 +163,24 @@ class Findings {
     const double rank = c_.singularValues[n - 2] / c_.singularValues[0], gap = linear->gapRatio;
     const Verdict rankVerdict = above(rank, bounds::kRankAmber, bounds::kRankRed);
     add("rank", "singular values", rank, formatted("%.2g", rank), rankVerdict,
-        formatted("The second last singular value is %.2g of the first: ", rank) +
-            chosen(rankVerdict, "above a ten-thousandth, what contours are known to, so the views tell quadrics apart.",
-                   "below a ten-thousandth, what contours are known to, so a second quadric hides in the noise.",
-                   "below a billionth, round-off: the views repeat one geometry and several quadrics fit."));
+        formatted("The second-last singular value is %.2g of the first: ", rank) +
+            chosen(rankVerdict, "above 1e-4, the accuracy of contours, so the views tell quadrics apart.",
+                   "below 1e-4, the accuracy of contours, so a second quadric hides in the noise.",
+                   "below 1e-9, round-off: the views repeat one geometry and several quadrics fit."));
     const Verdict gapVerdict = below(gap, bounds::kGapAmber, bounds::kGapRed);
     add("gap", "gap", gap, formatted("%.2g", gap), gapVerdict,
         formatted("The last singular value is %.2g of the one before: ", gap) +
             chosen(gapVerdict, "below 0.2, so the best quadric fits more than five times better than the second.",
-                   "above 0.2, so the second best quadric fits nearly as well.",
-                   "above 0.5, where the linear solver refuses: no quadric fits better than a second one."));
+                   "above 0.2, so the second-best quadric fits nearly as well.",
+                   "above 0.5, where the linear solver refuses: no quadric fits clearly better than another."));
     const Signature s = signatureOf(linear->quadric);
     const std::string signs = formatted("(%d+ %d- %dx0)", s.positive, s.negative, s.zero);
     const bool good = linear->ellipsoid.has_value();
     std::string reason = "The contours alone, without any prior, give a Q* of signature " + signs + ": " + c_.quadricKind + ".";
     if (!good)
-      reason += fit_.fit && fit_.fit->ellipsoid
-                    ? " The solver '" + fit_.fit->solver + "' forced an ellipsoid; it leans on where its centre is expected."
-                    : " That is no ellipsoid, so it has no outline to predict with.";
+      reason += fit_.fit && fit_.fit->ellipsoid ? " The solver '" + fit_.fit->solver +
+                                                      "' forced an ellipsoid; it relies on the expected position of its centre."
+                                                : " This is not an ellipsoid, so it has no outline to predict with.";
     add("signature", "Q*", double(s.positive - s.negative), c_.quadricKind,
         good                              ? Verdict::Green
         : fit_.fit && fit_.fit->ellipsoid ? Verdict::Amber
@@ -198,9 +197,9 @@ class Findings {
     const double deg = degrees(angle);
     const Verdict v = above(deg, bounds::kAngleAmberDeg, bounds::kAngleRedDeg);
     const double factor = 1 / std::max(std::sin(std::min(angle, std::numbers::pi / 2)), std::numeric_limits<double>::min());
-    std::string reason = formatted(
-        "The widest angle between two %s is %.3g\u00b0: an error across them becomes one %.3g times as large along them", what,
-        deg, factor);
+    std::string reason =
+        formatted("The widest angle between two %s is %.3g\u00b0: an error across them is %.3g times as large along them", what,
+                  deg, factor);
     reason += chosen(v, ".", " (amber below 5\u00b0).", " (red below 1.5\u00b0): only a direction is known well.");
     add("angle", "triangulation angle", deg, formatted("%.3g\u00b0", deg), v, reason);
   }
@@ -209,14 +208,14 @@ class Findings {
     const double effective = effectiveNumber(rays_, radians(bounds::kAngleAmberDeg));
     const Verdict v = above(effective, bounds::kViewsAmber, bounds::kViewsRed);
     std::string reason =
-        formatted("%d training highlights count as %.2g different views, those nearer than 5\u00b0 to each other only in part: ",
+        formatted("%d training highlights count as %.2g different views (those within 5\u00b0 of each other count in part): ",
                   int(rays_.size()), effective);
     reason += model_.hasOutlines() ? chosen(v, "three or more determine an ellipsoid with a free centre.",
-                               "fewer than three, which an ellipsoid with a free centre needs.",
-                               "fewer than two, which determine neither the light's distance nor an ellipsoid.")
-                      : chosen(v, "three or more determine the light and leave something to check it by.",
-                               "fewer than three: two determine the light, but nothing is left to check it by.",
-                               "fewer than two, which do not determine the light's distance.");
+                                            "fewer than three, which an ellipsoid with a free centre needs.",
+                                            "fewer than two, which determine neither the light's distance nor an ellipsoid.")
+                                   : chosen(v, "three or more determine the light and leave data to check it.",
+                                            "fewer than three: two determine the light, but no data is left to check it.",
+                                            "fewer than two, which do not determine the light's distance.");
     add("views", "effective views", effective, formatted("%.2g of %d", effective, int(rays_.size())), v, reason);
   }
 
@@ -254,7 +253,7 @@ class Findings {
                  std::isfinite(sigma)
                      ? formatted("The light is at infinity; its direction is known to %.2g\u00b0 (one standard deviation).",
                                  degrees(sigma))
-                     : "The light is at infinity; its solver tells no uncertainty of the direction.");
+                     : "The light is at infinity; its solver gives no uncertainty of the direction.");
     }
     Eigen::Vector3d at(0, 0, 0);
     double sigma = std::nan("");
@@ -270,15 +269,15 @@ class Findings {
     }
     const double share = sigma / distanceFrom(at);
     if (!std::isfinite(share))
-      return add("light", title, share, "-", Verdict::Unknown, "The solver of this fit tells no uncertainty.");
+      return add("light", title, share, "-", Verdict::Unknown, "The solver of this fit gives no uncertainty.");
     const Verdict v = below(share, bounds::kLightAmber, bounds::kLightRed);
     std::string reason =
         formatted("One standard deviation along the worst direction is %.2g m, %.2g %% of the distance to the surface: ", sigma,
                   100 * share);
-    reason += chosen(v, "below 1 %, less than what a simple lobe gets wrong about the light.",
-                     "above 1 %, what a simple lobe gets wrong about the light.",
-                     "above 10 %, worse than any lobe's own error: more or wider views are needed.");
-    add("light", title, share, formatted("%.2g %%", 100 * share), v, reason + " It knows the noise only.");
+    reason += chosen(v, "below 1 %, less than the error of the light that a simple lobe causes.",
+                     "above 1 %, the error of the light that a simple lobe causes.",
+                     "above 10 %, worse than the error that any lobe causes: add more views, or views farther apart.");
+    add("light", title, share, formatted("%.2g %%", 100 * share), v, reason + " It covers noise only.");
   }
 
   void addResidual() {
@@ -302,12 +301,13 @@ class Findings {
     // Every observed point may lie near an outline that runs far beyond the highlight: then this number says nothing.
     if (const std::optional<ContourMetrics> worst = worstInTraining(); worst && worst->contourErrorPct > kOwnSizePct) {
       reason +=
-          formatted("but both ways the mean distance in a training frame is up to %.3g px, more than the highlight's own size.",
+          formatted("but the mean distance both ways in a training frame is up to %.3g px, more than the size of the highlight.",
                     worst->contourErrorPx);
       return add("residual", "fit residual", share, std::isfinite(rms) ? formatted("%.2g px", rms) : "-", Verdict::Red, reason);
     }
-    reason += chosen(v, "below 1 %, the model can say what was seen.", "above 1 %, the model is a summary of what was seen.",
-                     "above 5 %, the model does not describe these highlights.");
+    reason +=
+        chosen(v, "below 1 %, the model reproduces the highlights.", "above 1 %, the model only approximates the highlights.",
+               "above 5 %, the model does not describe these highlights.");
     add("residual", "fit residual", share, std::isfinite(rms) ? formatted("%.2g px", rms) : "-", v, reason);
   }
 

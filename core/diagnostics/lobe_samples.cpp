@@ -26,7 +26,7 @@ Outcome<LobeFit> fitLobe(const std::vector<LobeSample>& samples) {
   for (const LobeSample& s : samples)
     if (s.fitted) brightest = fit.pixels++ ? std::max(brightest, s.logI) : s.logI;
   if (fit.pixels < kLeastPixels)
-    return Failure{Reason::TooFewPoints, std::to_string(fit.pixels) + " pixels above the fit's level"};
+    return Failure{Reason::TooFewPoints, std::to_string(fit.pixels) + " pixels above the level of the fit"};
   // log I = a - b alpha^2 about the weighted means; weights relative to the brightest pixel, so that none overflows.
   double w = 0, x = 0, y = 0;
   for (const LobeSample& s : samples) {
@@ -143,7 +143,7 @@ Outcome<LobeSamples> lobeSamples(const Image& linear, const Image* mask, const H
   constexpr double kContrast = 3;          // as DetectOptions::minContrast
   constexpr double kFloatRoundOff = 1e-5;  // of the value: some steps of single precision, in which images are stored
   if (!(brightest > std::max(kContrast * background.spread, kFloatRoundOff * std::abs(result.background))))
-    return Failure{Reason::NoHighlight, "nothing stands out of the background"};
+    return Failure{Reason::NoHighlight, "nothing stands out from the background"};
   const double least = std::log(options.fitLevel * brightest);
   for (LobeSample& s : result.samples) s.fitted = s.logI >= least;
   Outcome<LobeFit> fit = fitLobe(result.samples);

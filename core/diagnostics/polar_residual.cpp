@@ -133,7 +133,7 @@ Outcome<Light> lightOfModel(const Inspection& inspection, int frame, const std::
   if (const LightEstimate* const estimate = inspection.lightOf(key)) return estimate->light;
   if (fit && fit->ellipsoid && modelByName(model).traits().mirrored) return Light::at(fit->ellipsoid->centre());
   if (const Failure* const why = inspection.lightFailureFor(frame, light)) return *why;
-  return Failure{Reason::NoLight, "nothing here estimated the light '" + light + "'"};
+  return Failure{Reason::NoLight, "the light '" + light + "' was not estimated"};
 }
 
 Outcome<std::shared_ptr<const Surface>> surfaceOfFrame(const Inspection& inspection, int frame, const std::string& light) {

@@ -69,7 +69,8 @@ Outcome<std::string> commandOf(const Scene& scene, const InspectionRequest& q) {
     } catch (const InputError&) {
       // Ids with commas that read like numbers.
     }
-    if (!readsBack) return Failure{Reason::NotSupported, "the excluded frames cannot be named; save a session and use it as INPUT"};
+    if (!readsBack)
+      return Failure{Reason::NotSupported, "the excluded frames cannot be written as a SPEC; save a session and use it as INPUT"};
     command += " --exclude " + shellWord(spec);
   }
   if (q.source != usual.source) command += q.source == FrameSource::Image ? " --source image" : " --source radiance";

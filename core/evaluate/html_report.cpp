@@ -216,7 +216,7 @@ std::string missedTable(const Inspection& inspection, const std::vector<Missed>&
   constexpr std::size_t kMost = 60;  // rows that anybody reads
   if (missed.empty()) return "";
   std::string html =
-      "<h2>Highlights without a prediction</h2>\n<table><tr><th>frame</th><th>light</th><th>model</th>"
+      "<h2>Missed highlights</h2>\n<table><tr><th>frame</th><th>light</th><th>model</th>"
       "<th>reason</th></tr>\n";
   for (std::size_t i = 0; i < std::min(kMost, missed.size()); ++i) {
     const Missed& m = missed[i];
@@ -286,11 +286,11 @@ std::string evaluationHtml(const Inspection& inspection, const ReportContext& co
           std::to_string(inspection.train.frames.size()) + " of " + std::to_string(inspection.scene->frames.size()) +
           " frames), level " + format("%g", inspection.request.settings.number("detect.level")) +
           (inspection.request.whatIf.synthesise              ? ""
-           : inspection.request.source == FrameSource::Image ? ", from the captured images"
-                                                             : ", from the float radiance where there is one") +
+           : inspection.request.source == FrameSource::Image ? ", from captured images"
+                                                             : ", from float radiance where available") +
           ".</p>\n";
   if (const std::string changed = summaryOf(inspection.request.whatIf); !changed.empty())
-    html += "<p><b>What if: " + escaped(changed) + ".</b> This is not what was captured.</p>\n";
+    html += "<p><b>What if: " + escaped(changed) + ".</b> The scene differs from the captured one.</p>\n";
   if (const std::vector<std::string> warnings = warningsOf(inspection); !warnings.empty()) {
     html += "<h2>Warnings</h2>\n<ul>\n";
     for (const std::string& w : warnings) html += "<li>" + escaped(w) + "</li>\n";
@@ -299,8 +299,9 @@ std::string evaluationHtml(const Inspection& inspection, const ReportContext& co
   if (!context.chosenModel.empty())
     html += "<p><b>Chosen model: " + escaped(context.chosenModel) + "</b>. " + escaped(context.whyChosen) + "</p>\n";
   if (context.selection) {
-    html += "<table><tr><th>candidate</th><th>left-out views answered</th><th>leave-one-out error %</th><th>standard error %</th>"
-            "<th>&micro;s a frame</th><th>remark</th></tr>\n";
+    html +=
+        "<table><tr><th>candidate</th><th>left-out views answered</th><th>leave-one-out error %</th><th>standard error %</th>"
+        "<th>&micro;s/frame</th><th>remark</th></tr>\n";
     for (const Candidate& c : context.selection->candidates)
       html += "<tr><td><span class=\"swatch\" style=\"background:" + colourOf(c.model) + "\"></span>" + c.model + "</td><td>" +
               std::to_string(c.answered) + " / " + std::to_string(c.tried) + "</td><td>" + format("%.3g", c.meanPct) + "</td><td>" +
@@ -308,8 +309,10 @@ std::string evaluationHtml(const Inspection& inspection, const ReportContext& co
     html += "</table>\n";
   }
   html +=
-      "<p>Errors are over held-out highlights: symmetric mean distance between predicted and observed contour, as a percentage of the "
-      "equivalent diameter of the observed region. Scored against " + scoredAgainst(inspection) + ".</p>\n"
+      "<p>Errors are taken over held-out highlights: symmetric mean distance between predicted and observed contour, as a "
+      "percentage of the equivalent diameter of the observed region. Scored against " +
+      scoredAgainst(inspection) +
+      ".</p>\n"
       "<table><tr><th>model</th><th>predicted</th><th>mean %</th><th>median %</th><th>p95 %</th><th>max %</th><th>mean px</th>"
       "<th>ellipse %</th><th>IoU</th><th>coverage</th><th>matched / missed / spurious</th><th>median &micro;s</th></tr>\n";
   for (const std::string& name : inspection.request.models) {

@@ -78,7 +78,7 @@ std::vector<Task> tasksOf(const Inspection& inspection, const std::set<std::stri
         Task task{f, light, model, {}, ""};
         const auto found = answers.find({f, light});
         if (found == answers.end()) {
-          task.reason = "not predicted: the light is off here";
+          task.reason = "not predicted: the light is off in this frame";
         } else {
           const Prediction& p = found->second->prediction;
           for (const PredictedHighlight& h : p.highlights) task.contours.push_back(h.contour);

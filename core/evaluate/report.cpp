@@ -354,16 +354,16 @@ std::string evaluationTable(const Inspection& inspection) {
     for (const FrameComparison& c : it->second.frames)
       for (const PredictedHighlight& h : c.prediction.highlights) variation = std::max(variation, h.curvatureVariation.value_or(0));
     if (variation > kLargestVariation) {
-      out += formatted(
-          "%-12s the local quadric is not good enough: curvature varies by up to %.3f over a highlight (at most %.2f)\n", "",
-          variation, kLargestVariation);
+      out +=
+          formatted("%-12s the local quadric is not good enough: curvature varies by up to %.3f over a highlight (limit %.2f)\n",
+                    "", variation, kLargestVariation);
     }
   }
   if (const std::optional<DetectionError> d = detectionError(inspection)) {
-    out += formatted("own detection against the truth: %s %% mean, %s %% at most, %d of %d frames' highlights missed\n",
+    out += formatted("own detection against truth: %s %% mean, %s %% max; %d true highlights missed in %d frames\n",
                      cell(d->contourErrorPct.mean).c_str(), cell(d->contourErrorPct.max).c_str(), d->missed, d->frames);
   } else if (scoredAgainst(inspection) == "own detection") {
-    out += "errors are against the own detection; --truth DIR names known contours\n";
+    out += "errors are relative to Glint's own detection; --truth DIR scores against known contours\n";
   }
   return out;
 }

@@ -22,8 +22,9 @@ void warnOfClipped(const Inspection& inspection, std::vector<std::string>& warni
   std::string text = "clipped (saturated) highlights in ";
   if (!training.empty()) text += "training frames " + frameList(training);
   if (!others.empty()) text += (training.empty() ? "frames " : " and other frames ") + frameList(others);
-  warnings.push_back(text + (known ? ": the peak, and with it the level of the contour, is that of the lobe that was fitted around the clipping"
-                                   : ": the peak is unknown there, so a contour lies at a smaller fraction of it than the stated level"));
+  warnings.push_back(text +
+                     (known ? ": the peak, and so the level of the contour, comes from the lobe fitted around the clipped pixels"
+                            : ": the peak is unknown, so a contour lies at a smaller fraction of it than the stated level"));
 }
 
 }  // namespace

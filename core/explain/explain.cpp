@@ -246,7 +246,7 @@ void limitAngleStep(const Case& c, ExplainStep& step) {
     }
   }
   step.numbers.push_back(one("n", "directions", double(c.out.view->canonical->directions.size())));
-  step.numbers.push_back(one("", "that reached the contour", n));
+  step.numbers.push_back(one("", "reached the contour", n));
   if (n > 0) {
     step.numbers.push_back(one("α_i", "smallest limit angle", degrees(least), "deg"));
     step.numbers.push_back(one("α_i", "largest limit angle", degrees(most), "deg"));
@@ -271,7 +271,7 @@ void canonicalStep(const Case& c, ExplainStep& step) {
   if (c.highlight->ellipse)
     step.numbers.push_back(
         {"",
-         "against the observed one's",
+         "relative to the observed",
          {e.semiAxes.x() / c.highlight->ellipse->semiAxes.x(), e.semiAxes.y() / c.highlight->ellipse->semiAxes.y()},
          "times"});
   double sum = 0;
@@ -356,7 +356,7 @@ std::optional<ContourMetrics> worstInTraining(const Case& c) {
 
 void ellipsoidStep(const Case& c, ExplainStep& step) {
   if (!c.fit) {
-    step.failure = Failure{Reason::NoHighlight, "there is no model of this light"};
+    step.failure = Failure{Reason::NoHighlight, "no model of this light"};
     return;
   }
   if (!c.fit->fit) {
@@ -364,7 +364,7 @@ void ellipsoidStep(const Case& c, ExplainStep& step) {
     return;
   }
   const ModelFit& f = *c.fit->fit;
-  step.numbers.push_back(one("", "highlights that were used", double(f.frames.size())));
+  step.numbers.push_back(one("", "highlights used", double(f.frames.size())));
   if (f.ellipsoid) {
     step.numbers.push_back(point("", "centre", f.ellipsoid->centre()));
     step.numbers.push_back(point("a, b, c", "semi-axes", f.ellipsoid->semiAxes()));
@@ -372,7 +372,7 @@ void ellipsoidStep(const Case& c, ExplainStep& step) {
   if (f.limitAngle) step.numbers.push_back(one("α_lim", "limit angle", degrees(*f.limitAngle), "deg"));
   if (f.roughness) step.numbers.push_back(one("m", "roughness", *f.roughness));
   if (f.quadric && f.gapRatio > 0) {
-    step.numbers.push_back(one("", "last over second last singular value", f.gapRatio));
+    step.numbers.push_back(one("", "last over second-last singular value", f.gapRatio));
     if (f.gapRatio > kWeakGap) step.broken.push_back({"weak-gap", {one("", "ratio", f.gapRatio)}});
   }
   const std::optional<ContourMetrics> worst = worstInTraining(c);
@@ -428,10 +428,10 @@ void inverseWalkStep(const Case& c, ExplainStep& step) {
   const PredictedHighlight* p = c.predicted();
   if (!p) return projectionStep(c, step);
   step.numbers.push_back(one("", "points of the predicted contour", double(p->contour.points.size())));
-  if (p->canonical) step.numbers.push_back(one("", "of the directions gave one", 100 * p->coverage, "%"));
+  if (p->canonical) step.numbers.push_back(one("", "of directions gave a point", 100 * p->coverage, "%"));
   if (p->canonical && p->ellipse)
     step.numbers.push_back(
-        {"a, b", "semi-axes of the ellipse of what came out", {p->ellipse->semiAxes.x(), p->ellipse->semiAxes.y()}, "px"});
+        {"a, b", "semi-axes of the resulting ellipse", {p->ellipse->semiAxes.x(), p->ellipse->semiAxes.y()}, "px"});
   addMisses(c, step, false);
   if (!p->canonical) {
     if (modelByName(c.out.model).traits().stopsAtOutline)
@@ -452,9 +452,8 @@ void comparisonStep(const Case& c, ExplainStep& step) {
     return;
   }
   if (c.row->failure || !c.row->metrics) {
-    step.failure = c.row->failure
-                       ? *c.row->failure
-                       : Failure{Reason::NoHighlight, c.row->observed < 0 ? "a highlight that nobody observed" : "missed"};
+    step.failure = c.row->failure ? *c.row->failure
+                                  : Failure{Reason::NoHighlight, c.row->observed < 0 ? "spurious highlight" : "missed highlight"};
     addMisses(c, step, true);
     return;
   }

@@ -82,7 +82,7 @@ void lightStep(const Case& c, ExplainStep& step) {
   const Light* own = c.own();
   if (!shared && !own) {
     const Failure* const why = c.inspection.lightFailureFor(c.out.frame, c.out.light);
-    step.failure = why ? *why : Failure{Reason::NoLight, "no model that was computed needs one"};
+    step.failure = why ? *why : Failure{Reason::NoLight, "no computed model needs one"};
     return;
   }
   const auto show = [&](const std::string& symbol, const std::string& whose, const Light& light) {
@@ -92,7 +92,7 @@ void lightStep(const Case& c, ExplainStep& step) {
       step.numbers.push_back(point(symbol, "light" + whose, light.position()));
   };
   const Light& light = own ? *own : shared->light;
-  show("L", own ? ", as " + c.out.model + " has found it" : std::string(), light);
+  show("L", own ? ", as found by " + c.out.model : std::string(), light);
   if (own && shared) show("L\u2080", ", from all contours together", shared->light);
   // Those that this light was found from.
   std::vector<Eigen::Vector3d> rays;
@@ -104,7 +104,7 @@ void lightStep(const Case& c, ExplainStep& step) {
   step.numbers.push_back(one("", "widest angle between them", degrees(widest), "deg"));
   const std::optional<Eigen::Matrix3d>& covariance = own ? c.fit->fit->lightCovariance : shared->covariance;
   const double sigma = covariance && covariance->allFinite() ? largestSigma(*covariance) : std::nan("");
-  if (std::isfinite(sigma)) step.numbers.push_back(one("σ", "of L, largest axis: noise alone", sigma, "m"));
+  if (std::isfinite(sigma)) step.numbers.push_back(one("σ", "of L, largest axis: noise only", sigma, "m"));
   if (widest < radians(kNarrowDeg)) step.broken.push_back({"rays-parallel", {one("", "widest angle", degrees(widest), "deg")}});
   for (const TrueLight& truth : c.inspection.scene->lights) {
     if (truth.id != c.out.light || !truth.position || light.atInfinity()) continue;

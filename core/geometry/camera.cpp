@@ -101,7 +101,7 @@ Outcome<Pixel> withoutDistortion(const Camera& camera, const Pixel& measured) {
   }
   // A few units of round-off of the polynomial; anything larger is a fold that Newton's method ran into.
   if (!(error.norm() <= 1e-14 * size))
-    return Failure{Reason::NotConverged, "no ideal pixel is seen there: the lens distortion folds back before it"};
+    return Failure{Reason::NotConverged, "no ideal pixel maps there: the lens distortion folds back before it"};
   return Pixel((camera.pixelFromRay * x.homogeneous()).head<2>());
 }
 

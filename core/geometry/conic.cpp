@@ -257,7 +257,7 @@ Outcome<Ellipse> fitEllipse(const std::vector<Pixel>& points) {
   const Eigen::Matrix3d constraint{{0, 0, 2}, {0, -1, 0}, {2, 0, 0}};
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(r.bottomRightCorner<3, 3>(), Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Vector3d s = svd.singularValues().cwiseMax(4 * kRoundOff * svd.singularValues()(0));
-  if (!(s(0) > 0)) return Failure{Reason::RankDeficient, "the points lie on less than a conic"};
+  if (!(s(0) > 0)) return Failure{Reason::RankDeficient, "the points do not determine a conic"};
   const Eigen::Matrix3d v = svd.matrixV() * s.cwiseInverse().asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(v.transpose() * constraint * v);
   Eigen::Vector3d quadratic = (v * eigen.eigenvectors().col(2)).normalized();

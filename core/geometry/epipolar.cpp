@@ -22,7 +22,7 @@ Outcome<Pair> pairOf(const Projection& first, const Projection& second) {
   const Eigen::Vector3d c1 = -lu1.solve(first.matrix.col(3)), c2 = -lu2.solve(second.matrix.col(3));
   const Eigen::Vector3d baseline = c1 - c2;
   if (!(baseline.norm() > 1e-12 * (c1.norm() + c2.norm())))  // shorter than that it is the centres' round-off
-    return Failure{Reason::RankDeficient, "the two cameras share their centre: there are no epipolar lines"};
+    return Failure{Reason::RankDeficient, "the two cameras share their centre, so no epipolar lines exist"};
   Pair pair;
   pair.epipole2 = (m2 * baseline).normalized();
   pair.epipole1 = (m1 * baseline).normalized();

@@ -212,7 +212,7 @@ class Detector {
     if (found_.empty()) {
       if (failedByBadPixels_ > 0)
         return Failure{Reason::NotFinite,
-                       std::to_string(p_.badCount) + " pixels are not finite or negative, and the highlight touches them"};
+                       std::to_string(p_.badCount) + " pixels are negative or not finite, and the highlight touches them"};
       return Failure{Reason::NoHighlight, "no region is large and bright enough"};
     }
     return std::move(found_);
@@ -461,7 +461,7 @@ Outcome<std::vector<Highlight>> detectHighlights(const Image& linear, const Imag
   const Prepared prepared = prepare(linear, mask, options.clipValue);
   if (prepared.usableCount == 0) {
     if (prepared.badCount > 0)
-      return Failure{Reason::NotFinite, std::to_string(prepared.badCount) + " pixels are not finite or negative"};
+      return Failure{Reason::NotFinite, std::to_string(prepared.badCount) + " pixels are negative or not finite"};
     return Failure{Reason::NoHighlight, "the mask is empty"};
   }
   return Detector(prepared, options).run();

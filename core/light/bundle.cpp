@@ -287,9 +287,9 @@ std::optional<Failure> withoutLimit(const std::vector<ContourEvidence>& points, 
     limits.push_back(a.limit * e.pixelsPerRadian);
   }
   if (a.limit > 0 && median(limits) > kLeastLimitShare * median(radii)) return std::nullopt;
-  const std::string detail =
-      formatted("the limit angle comes out at %.2g deg: every contour point mirrors the light, so the contours say nothing of it",
-                a.limit * 180 / M_PI);
+  const std::string detail = formatted(
+      "the limit angle comes out at %.2g deg: every contour point mirrors the light, so the contours do not determine it",
+      a.limit * 180 / M_PI);
   return Failure{Reason::NotConverged, detail};
 }
 

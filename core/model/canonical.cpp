@@ -17,8 +17,9 @@ class Canonical final : public HighlightModel {
   std::string id() const override { return "canonical"; }
   std::string title() const override { return "Canonical JOLIMAS"; }
   std::string assumption() const override {
-    return "After carrying each contour to its tangent plane by limit angles, the ellipses are outlines of one fixed ellipsoid in the "
-           "virtual cameras: any smooth surface.";
+    return "Each contour is carried to its tangent plane by limit angles; the ellipses there are outlines of one fixed ellipsoid "
+           "in "
+           "the virtual cameras. Valid on any smooth surface.";
   }
   std::string reference() const override { return "Morgand, Tamaazousti, Bartoli, canonical JOLIMAS (2022); method.md sections 6 to 8"; }
   bool needsLight() const override { return true; }

@@ -12,7 +12,8 @@ class Dual final : public HighlightModel {
   std::string id() const override { return "dual"; }
   std::string title() const override { return "Dual JOLIMAS"; }
   std::string assumption() const override {
-    return "The image ellipses are outlines of one fixed ellipsoid in the virtual (mirrored) cameras: approximate on constant curvature.";
+    return "The image ellipses are outlines of one fixed ellipsoid in the virtual (mirrored) cameras. Approximate where the "
+           "curvature is constant.";
   }
   std::string reference() const override { return "Morgand et al., dual JOLIMAS (2017); method.md section 7"; }
   bool needsLight() const override { return true; }

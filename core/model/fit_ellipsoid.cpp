@@ -92,9 +92,8 @@ Outcome<Reconstruction> refinedWithPrior(const std::vector<ConicView>& views, co
     if (!worth || std::abs(*worth / counted - 1) < kSameWorth) break;
     if (round == kMostWeightings) {
       refined->remarks.push_back(
-          formatted("the accuracy of a contour point did not settle: a fit that assumes %.2g px leaves residuals of %.2g px, so "
-                    "shape and bands may be "
-                    "off by more than stated",
+          formatted("the accuracy of contour points did not settle: a fit that assumes %.2g px leaves residuals of %.2g px, so "
+                    "shape and bands may be off by more than stated",
                     counted, *worth));
       break;
     }
@@ -102,7 +101,7 @@ Outcome<Reconstruction> refinedWithPrior(const std::vector<ConicView>& views, co
     Outcome<Reconstruction> again = counting(next);
     if (!again) {
       refined->remarks.push_back(formatted(
-          "the fit assumes that a contour point is accurate to %.2g px; with %.2g px, as its residuals suggest, it finds "
+          "the fit assumes that contour points are accurate to %.2g px; with %.2g px, as its residuals suggest, it finds "
           "no ellipsoid (%s)",
           counted, next, again.failure().message().c_str()));
       break;

@@ -37,8 +37,8 @@ std::string extentRemark(const Eigen::Matrix3d& extent, bool angular, double lev
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(extent);
   const double length = std::sqrt(12 * std::max(0.0, axes.eigenvalues()(2)) / (-2 * std::log(level)));
   return formatted(
-      "the contours ask for a light that reaches about %.2g %s: a long lamp, several lights whose highlights merge, or a lobe "
-      "that one limit angle does not describe (compare with reflectance, which has a lobe)",
+      "the contours suggest a light about %.2g %s long: a long light, several lights whose highlights merge, or a lobe that one "
+      "limit angle does not describe (compare with reflectance, which has a lobe)",
       angular ? length * 180 / M_PI : length, angular ? "degrees" : "m");
 }
 
@@ -59,7 +59,8 @@ class LimitAngle final : public HighlightModel {
   std::string id() const override { return "limit-angle"; }
   std::string title() const override { return "Limit angle"; }
   std::string assumption() const override {
-    return "The contour is the level set alpha = alpha_lim on the surface; no ellipsoid: any smooth surface, point-like light.";
+    return "The contour is the level set alpha = alpha_lim on the surface, without an ellipsoid. Valid on any smooth surface "
+           "with a point-like light.";
   }
   std::string reference() const override { return "method.md section 7"; }
   bool needsLight() const override { return true; }

@@ -114,8 +114,8 @@ std::optional<std::string> contradiction(const std::vector<TrainingView>& views,
   }
   if (!(count > 0) || !(std::sqrt(shares / count) > kContradiction)) return std::nullopt;
   return formatted(
-      "the contours of the training views lie %.3g px from where the fit to the pixels puts them, %.3g %% of their radius: lobe, "
-      "lamp or surface may be wrong",
+      "the contours of the training views lie %.3g px from those of the fit to the pixels, %.3g %% of their radius: lobe, light "
+      "or surface may be wrong",
       std::sqrt(squares / count), 100 * std::sqrt(shares / count));
 }
 
@@ -196,7 +196,7 @@ Outcome<ModelFit> reflectanceFromPixels(const FitInput& input, const Settings& s
     if (const std::optional<std::string> wrong = contradiction(input.views, pixels, settings)) judged->remarks.push_back(*wrong);
   if (judged && pixels.patterned && judged->remarks.empty()) {
     const std::string text = formatted(
-        "what remains in the pixels has a pattern (%.3g px at the contours): lobe, lamp or surface may be wrong", pixels.rmsPx);
+        "the pixel residuals have a pattern (%.3g px at the contours): lobe, light or surface may be wrong", pixels.rmsPx);
     judged->remarks.push_back(text);
   }
   return judged;

@@ -39,7 +39,7 @@ std::optional<Failure> tooSmall(const Polyline& contour) {
   const double radius = radiusPx(contour);
   if (radius >= kLeastRadiusPx) return std::nullopt;
   return Failure{Reason::NoHighlight, "the highlight has a radius of " + figure(radius) + " px; below " + figure(kLeastRadiusPx) +
-                                       " px no detection finds its contour to a tenth of that"};
+                                          " px its contour cannot be detected to a tenth of the radius"};
 }
 
 void dropTooSmall(Prediction& prediction) {
@@ -62,8 +62,8 @@ std::optional<Failure> lightBehind(const std::vector<TrainingView>& views, const
     if (behind++ == 0) first = v.frame;
   }
   if (behind == 0) return std::nullopt;
-  return Failure{Reason::LightBehindSurface, "the light that fits best lies behind the surface at " + std::to_string(behind) + " of " +
-                                                 std::to_string(usable) + " training highlights, first in frame " +
+  return Failure{Reason::LightBehindSurface, "the best-fitting light lies behind the surface at " + std::to_string(behind) +
+                                                 " of " + std::to_string(usable) + " training highlights, first in frame " +
                                                  std::to_string(first)};
 }
 
@@ -97,7 +97,8 @@ Outcome<ModelFit> explaining(ModelFit fit, const std::vector<UsedContour>& used,
   std::vector<std::size_t> poor;
   for (std::size_t i = 0; i < used.size(); ++i) {
     const double residual = fit.residualPx[i] / used[i].unit, noise = kNoiseShare * used[i].noise;
-    if (!std::isfinite(residual)) return Failure{Reason::NotFinite, "the fit shows no highlight in training frame " + std::to_string(fit.frames[i])};
+    if (!std::isfinite(residual))
+      return Failure{Reason::NotFinite, "the fit predicts no highlight in training frame " + std::to_string(fit.frames[i])};
     left.push_back(std::sqrt(std::max(0.0, residual * residual - noise * noise)));
     const double share = left[i] / used[i].radius;
     shares += share * share / n;
@@ -111,12 +112,12 @@ Outcome<ModelFit> explaining(ModelFit fit, const std::vector<UsedContour>& used,
   const bool poorViews = 3 * poor.size() > used.size();
   if (poorViews || (!robust && !(share <= mostShare))) {
     const std::string where = poorViews ? " in " + std::to_string(poor.size()) + " of " + std::to_string(used.size()) + " views" : "";
-    return Failure{Reason::NotConverged, text + ": more than " + figure(100 * mostShare) + " %" + where +
-                                             " is no answer (the setting fit.most_residual)"};
+    return Failure{Reason::NotConverged,
+                   text + ": over the limit of " + figure(100 * mostShare) + " %" + where + " (setting fit.most_residual)"};
   }
   for (const std::size_t i : poor)
-    fit.remarks.push_back("frame " + std::to_string(fit.frames[i]) + " does not go with the other training views: " + figure(left[i]) +
-                          " px remain of a contour of " + figure(used[i].radius) + " px radius");
+    fit.remarks.push_back("frame " + std::to_string(fit.frames[i]) + " is inconsistent with the other training views: " +
+                          figure(left[i]) + " px remain of a contour of " + figure(used[i].radius) + " px radius");
   if (poor.empty() && (residual > kRemarkPx || share > kRemarkShare))
     fit.remarks.push_back("the fit explains its training views poorly: " + text);
   return fit;

@@ -12,7 +12,7 @@ class Primal final : public HighlightModel {
   std::string id() const override { return "primal"; }
   std::string title() const override { return "Primal JOLIMAS"; }
   std::string assumption() const override {
-    return "The image ellipses are outlines of one fixed ellipsoid in the real cameras: true on planes.";
+    return "The image ellipses are outlines of one fixed ellipsoid in the real cameras. Exact on planes.";
   }
   std::string reference() const override { return "Morgand et al., JOLIMAS (2016); method.md section 7"; }
   bool needsLight() const override { return false; }

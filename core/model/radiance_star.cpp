@@ -46,7 +46,7 @@ Outcome<std::vector<PredictedHighlight>> radianceStars(const RadianceField& radi
   const auto brightest =
       std::min_element(summits.begin(), summits.end(), [](const Summit& a, const Summit& b) { return a.value < b.value; });
   if (brightest == summits.end() || !(radiance.fallOfLobe(brightest->point) < faintest))
-    return Failure{Reason::NoBrightestPoint, "the brightest place is far down the lobe"};
+    return Failure{Reason::NoBrightestPoint, "the brightest point is far down the lobe"};
   return starHighlights(field, camera, surface, summits, brightest->value + rise, settings);
 }
 

@@ -45,7 +45,7 @@ Outcome<Reconstruction> reconstructAnchored(const std::vector<ConicView>& views,
   if (!solution.allFinite()) return Failure{Reason::NotFinite, "shape"};
   const Eigen::Vector3d squares = eigen.eigenvalues().cwiseMax(0.0);  // nearest positive semidefinite matrix
   if (!(squares(1) > 1e-12 * squares(2)))  // an axis below a millionth of the longest is the root of round-off
-    return Failure{Reason::NotAnEllipsoid, "the shape that fits about this centre has two empty axes"};
+    return Failure{Reason::NotAnEllipsoid, "the shape fitted about this centre has two zero axes"};
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = eigen.eigenvectors();
   if (pose.linear().determinant() < 0) pose.linear().col(0) *= -1;

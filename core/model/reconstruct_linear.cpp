@@ -179,7 +179,8 @@ Outcome<Reconstruction> reconstructLinear(const std::vector<ConicView>& views, c
     return Failure{Reason::RankDeficient, "several quadrics fit: the views share their centre or repeat one geometry"};
   result.gapRatio = s(9) / s(8);
   result.condition = s(0) / s(8);
-  if (!(result.gapRatio < options.maxGapRatio)) return Failure{Reason::RankDeficient, "no quadric fits better than a second one"};
+  if (!(result.gapRatio < options.maxGapRatio))
+    return Failure{Reason::RankDeficient, "no quadric fits clearly better than another"};
 
   const Eigen::Matrix<double, 10, 1> q = norm.triangularView<Eigen::Upper>().solve(svd.matrixV().col(9));
   Eigen::Matrix4d local;

@@ -297,7 +297,7 @@ Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, 
   if (linear.gain() > kStationary * linear.cost && !(steps <= 1))
     return Failure{Reason::NotConverged, formatted("the next step would be %.3g times the size of the ellipsoid: the outlines do not determine it", steps)};
   if (state.squares(1) <= 2 * kSegment * state.squares(2))
-    return Failure{Reason::NotAnEllipsoid, "the refined shape has two empty axes"};
+    return Failure{Reason::NotAnEllipsoid, "the refined shape has two zero axes"};
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = state.vectors;
   if (pose.linear().determinant() < 0) pose.linear().col(0) *= -1;

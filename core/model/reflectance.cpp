@@ -96,7 +96,8 @@ class Reflectance final : public HighlightModel {
   std::string id() const override { return "reflectance"; }
   std::string title() const override { return "Reflectance"; }
   std::string assumption() const override {
-    return "The contour is a level set of a full reflectance model on the surface: wide highlights and grazing views too.";
+    return "The contour is a level set of a full reflectance model on the surface. Also valid for wide highlights and grazing "
+           "views.";
   }
   std::string reference() const override { return "method.md section 7"; }
   bool needsLight() const override { return true; }
@@ -123,7 +124,7 @@ class Reflectance final : public HighlightModel {
     }
     if (views.empty()) return Failure{Reason::TooFewViews, "need 1, have 0" + unusedViews(input.views)};
     if (severalLevels && views.size() == fit.frames.size())
-      fit.remarks.push_back("Fitted to one contour per highlight: there are none at other levels.");
+      fit.remarks.push_back("Fitted to one contour per highlight: no other levels are given.");
     const std::string& evidence = settings.text("fit.evidence");
     if (evidence == "pixels" || (evidence == "auto" && havePixels(input.views))) {
       Outcome<ModelFit> fromPixels = reflectanceFromPixels(input, settings);

@@ -68,8 +68,8 @@ class Inspector {
   std::optional<Failure> byGrid() const;
 
  private:
-  static Failure elsewhere() { return {Reason::NotSupported, "another region without a maximum of its own"}; }
-  static Failure undecided() { return {Reason::NotSupported, "bounds leave much of the surface open"}; }
+  static Failure elsewhere() { return {Reason::NotSupported, "another region without its own maximum"}; }
+  static Failure undecided() { return {Reason::NotSupported, "the bounds leave much of the surface undecided"}; }
   double relativeReach(const Pixel& p) const {
     double least = std::numeric_limits<double>::infinity();
     for (const StarOutline& o : outlines_) least = std::min(least, o.relativeReach(p));

@@ -24,7 +24,7 @@ std::vector<std::unique_ptr<HighlightModel>>& registered() {
 const std::vector<std::unique_ptr<HighlightModel>>& allModels() { return registered(); }
 
 void addModel(std::unique_ptr<HighlightModel> model) {
-  require(model && !findModel(model->id()), "addModel: a model with a name of its own");
+  require(model && !findModel(model->id()), "addModel: a model needs its own name");
   registered().push_back(std::move(model));
 }
 
@@ -38,7 +38,7 @@ const HighlightModel& modelByName(const std::string& id) {
   if (const HighlightModel* const found = findModel(id)) return *found;
   std::string known;
   for (const std::string& name : modelIds()) known += (known.empty() ? "" : ", ") + name;
-  throw InputError("", "model '" + id + "'", "there is no such model; known: " + known);
+  throw InputError("", "model '" + id + "'", "unknown model; known: " + known);
 }
 
 std::vector<std::string> modelIds() {

@@ -101,7 +101,7 @@ class Walk {
 
  private:
   static Failure ended() { return {Reason::SurfaceEnded, "the surface or the lit side ends inside the region"}; }
-  static Failure lost() { return {Reason::NotConverged, "a direction's end"}; }
+  static Failure lost() { return {Reason::NotConverged, "the end of a direction"}; }
   /// A root between two reaches, by regula falsi (Illinois) in reach^2.
   Outcome<End> between(const Eigen::Vector2d& ray, double low, double valueLow, double high, double valueHigh,
                        SurfacePoint at) const {
@@ -140,7 +140,7 @@ Outcome<Summit> summitNear(const StarField& field, const Camera& camera, const S
                            double rise) {
   const PixelSampler sampler(field.value, camera, surface);
   const Failure ended{Reason::SurfaceEnded, "the surface or the lit side ends at the maximum"},
-      rough{Reason::NotConverged, "no smooth single maximum beside the mirror point"};
+      rough{Reason::NotConverged, "no smooth single maximum near the mirror point"};
   Summit top;
   top.pixel = start.pixel;
   std::optional<PixelSample> here = sampler.near(start.pixel, start.point);
@@ -217,7 +217,7 @@ Outcome<StarOutline> starAround(const StarField& field, const Camera& camera, co
                                 double level, int directions) {
   const double rise = level - summit.value;
   const std::optional<Eigen::Matrix2d> frame = frameOf(summit.hessian, rise);
-  if (!frame) return Failure{Reason::NotConverged, "a maximum too long for its width"};
+  if (!frame) return Failure{Reason::NotConverged, "the maximum is too long for its width"};
   const PixelSampler sampler(field.value, camera, surface);
   const Walk walk(sampler, summit, *frame, level);
   StarOutline outline;

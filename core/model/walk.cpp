@@ -135,7 +135,7 @@ Outcome<double> TangentWalk::reachOnPlane(const Eigen::Vector3d& d, double limit
   bool below = fa < 0;
   for (int i = 0; i < options_.maxSteps; ++i) {
     const double b = a + step, fb = f(b);
-    if (std::isnan(fb)) return Failure{Reason::NotReached, "the tangent plane's walk left the lit side"};
+    if (std::isnan(fb)) return Failure{Reason::NotReached, "the walk on the tangent plane left the lit side"};
     if (below && fb >= 0) return bracketedRoot(f, a, fa, b, fb, options_.toleranceRad);
     if (fb < 0) below = true;
     if (below && fb < highest - kFallFraction * limit && highest > fa && fb < fa)

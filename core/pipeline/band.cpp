@@ -89,7 +89,7 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
   FittedBand result;
   const std::shared_ptr<Band> band = Band::of(model, fit, input.views, settings);
   if (!band) {
-    result.remarks.push_back("the fit has no uncertainty: its predictions have no band");
+    result.remarks.push_back("the fit has no uncertainty, so its predictions have no band");
     return result;
   }
   result.band = band;
@@ -157,22 +157,26 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
         result.remarks.push_back(std::string("no fit with the ") + what + formatted(" changed by %.3g %%: ", 100 * (factor - 1)) +
                                  other.failure().message());
     }
-    result.remarks.push_back(std::string("the band holds a ") + what + formatted(" off by up to %.3g %%, as stated", 100 * t));
+    result.remarks.push_back(std::string("the band allows for a ") + what +
+                             formatted(" off by up to %.3g %%, as stated", 100 * t));
   };
   tolerance("input.scale_tolerance", "scale of the surface", scaled);
   tolerance("input.focal_tolerance", "focal length", zoomed);
 
   const ViewEffects& effects = band->effects();
   if (band->clipped())
-    result.remarks.push_back("a training highlight is clipped: its contour lies at a level of the clipped peak, which may be far from that of the true one");
+    result.remarks.push_back(
+        "a training highlight is clipped: its contour lies at a level of the clipped peak, which may be far from that of the "
+        "true peak");
   if (effects.viewPx() > kPoorShare * band->radiusPx())
     result.remarks.push_back(
         formatted("the model does not explain its own contours: whole views are off by %.3g px", effects.viewPx()));
   else if (effects.viewPx() > std::max(kVisiblePx, kDominates * effects.noisePx()))
-    result.remarks.push_back(formatted(
-        "whole views are off by %.3g px beside %.3g px of noise: poses, surface or model are off, and the band holds what the "
-        "training views show of it",
-        effects.viewPx(), effects.noisePx()));
+    result.remarks.push_back(
+        formatted("whole views are off by %.3g px besides %.3g px of noise: poses, surface or model are inaccurate, and the band "
+                  "covers what "
+                  "the training views show of it",
+                  effects.viewPx(), effects.noisePx()));
   return result;
 }
 

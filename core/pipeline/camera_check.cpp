@@ -41,7 +41,7 @@ class Check {
     if (!result_.whyNot.empty()) return std::move(result_);
     if (result_.views < kLeastViews) {
       result_.whyNot =
-          formatted("%d frames show one whole highlight on a named surface, %d are needed", result_.views, kLeastViews);
+          formatted("%d frames show one whole highlight on a named surface; %d are needed", result_.views, kLeastViews);
       return std::move(result_);
     }
     const std::vector<int> all = every(0, 1);
@@ -176,7 +176,7 @@ class Check {
     }
     if (!best || bestPx > kGoodRadii * radiusPx_ || (given && bestPx > kClearlyFlip * given->rmsPx)) return;
     result_.findings.push_back(
-        formatted("the images are %s: the highlights of %d frames then fit one light to %.2g px, as given ", best->name,
+        formatted("the images are %s: corrected, the highlights of %d frames fit one light to %.2g px; as given, ", best->name,
                   result_.views, bestPx) +
         (given ? formatted("only to %.2g px", given->rmsPx) : std::string("no light explains them")));
   }
@@ -245,14 +245,15 @@ class Check {
     if (byShift && std::abs(*result_.shiftPx - half.cx) < kShiftSlackPx && clear(atHalf, atFocal, half))
       result_.findings.push_back(
           formatted("the principal point is half a pixel off: the highlights of %d frames fit one light to %.2g px with %+.1f px "
-                    "added to cx and cy, as given to %.2g px only ",
+                    "added to cx and cy; as given, only to %.2g px ",
                     result_.views, atHalf->rmsPx, half.cx, given.rmsPx) +
           (half.cx < 0 ? "(COLMAP and nerfstudio put (0.5, 0.5) at the centre of the first pixel; here it is (0, 0))"
                        : "(was half a pixel subtracted twice?)"));
     else if (byFocal && std::abs(*result_.focalPct) >= kLeastFocalPct && clear(atFocal, atHalf, longer))
       result_.findings.push_back(formatted(
-          "the focal length is wrong: the highlights of %d frames fit one light to %.2g px with one %.2g %% %s, as given to %.2g "
-          "px only (a wrong scale of the surface looks much the same)",
+          "the focal length is wrong: the highlights of %d frames fit one light to %.2g px with one that is %.2g %% %s; as "
+          "given, "
+          "only to %.2g px (a wrong scale of the surface looks much the same)",
           result_.views, atFocal->rmsPx, std::abs(*result_.focalPct), *result_.focalPct > 0 ? "longer" : "shorter", given.rmsPx));
   }
 

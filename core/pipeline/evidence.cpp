@@ -87,10 +87,10 @@ FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, 
   if (evidence.highlights.empty()) {
     if (frame.radiance.empty() && frame.image.empty()) {
       if (!frame.highlights.empty()) {
-        evidence.failure = Failure{Reason::NoHighlight, "frame " + frame.id + " gives highlights at other levels only"};
+        evidence.failure = Failure{Reason::NoHighlight, "frame " + frame.id + " has highlights at other levels only"};
         return evidence;
       }
-      evidence.failure = Failure{Reason::FrameUnreadable, "frame " + frame.id + " has neither image, radiance nor highlights"};
+      evidence.failure = Failure{Reason::FrameUnreadable, "frame " + frame.id + " has no image, radiance or highlights"};
       return evidence;
     }
     const Outcome<Image> linear = readLinear(frame, source);
@@ -161,16 +161,17 @@ void dropSwitchedOff(FrameEvidence& e, const WhatIf& w) {
 
 void requireTruthFolder(const std::string& folder, const Scene& scene) {
   std::error_code error;
-  if (!std::filesystem::is_directory(folder, error)) throw InputError(folder, "--truth", "there is no such folder");
+  if (!std::filesystem::is_directory(folder, error)) throw InputError(folder, "--truth", "this folder does not exist");
   for (const Frame& frame : scene.frames)
     if (std::filesystem::exists(truthFile(folder, frame))) return;
-  throw InputError(folder, "--truth", "holds no contours of these frames, such as " + fileNameOf(scene.frames.front().id) + ".json");
+  throw InputError(folder, "--truth",
+                   "contains no contours of these frames, such as " + fileNameOf(scene.frames.front().id) + ".json");
 }
 
 Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene& scene, int index, double level) {
   const Frame& frame = scene.frames[index];
   const std::filesystem::path file = truthFile(folder, frame);
-  if (!std::filesystem::exists(file)) return Failure{Reason::FrameUnreadable, file.string() + ": there is no such file"};
+  if (!std::filesystem::exists(file)) return Failure{Reason::FrameUnreadable, file.string() + ": this file does not exist"};
   std::vector<Highlight> truth;
   const std::string key = formatted("%.2f", level), asked = formatted("%g", level);
   const JsonNode root = JsonNode::parse(readFile(file, Limit::JsonMegabytes), file.string());
@@ -178,7 +179,7 @@ Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene
   const std::optional<JsonNode> contours = levels.find(key);
   constexpr double kHundredths = 100;  // the keys have two decimals
   if (!contours || std::abs(std::round(level * kHundredths) / kHundredths - level) > kSameLevel)
-    levels.fail("no contours at level " + key + " (asked for " + asked + ")");
+    levels.fail("no contours at level " + key + " (requested " + asked + ")");
   for (std::size_t i = 0; i < contours->size(); ++i) {
     const JsonNode c = contours->at(i);
     Highlight h;
@@ -212,7 +213,7 @@ FrameEvidence evidenceFor(const Scene& scene, int frame, const InspectionRequest
   FrameEvidence evidence;
   if (request.whatIf.synthesise && f.highlights.empty()) {
     evidence.frame = frame;
-    evidence.failure = Failure{Reason::NoHighlight, "no light makes one in frame " + f.id};
+    evidence.failure = Failure{Reason::NoHighlight, "no light produces one in frame " + f.id};
     return evidence;
   }
   evidence = gatherEvidence(scene, frame, request.source, request.settings);

@@ -103,8 +103,9 @@ class Run {
       most = std::max(most, frames);
     }
     if (names.empty()) return "";
-    return "also on in " + std::to_string(most) + " of " + std::to_string(fit.frames.size()) + " training frames, without a highlight of its own: " +
-           names + "; where highlights of several lights merge, the light that is estimated lies between them";
+    return "also on in " + std::to_string(most) + " of " + std::to_string(fit.frames.size()) +
+           " training frames, without a separate highlight: " + names +
+           "; where highlights of several lights merge, the estimated light lies between these lights";
   }
   /// Training frames that show the fit's light and have no view because they repeat another one. "" where there are none.
   std::string repeatedRemark(const ModelFit& fit) const {
@@ -120,7 +121,7 @@ class Run {
     }
     if (count == 0) return "";
     return std::to_string(count) + (count == 1 ? " training frame repeats" : " training frames repeat") +
-           " another one to the last digit and count once: " + names;
+           " another one exactly and count once: " + names;
   }
   bool anyModel(bool (HighlightModel::*needs)() const) const {
     return std::any_of(r_.request.models.begin(), r_.request.models.end(),
@@ -316,7 +317,8 @@ void Run::lights() {
     if (!report(progress_, {"light", static_cast<int>(i), static_cast<int>(all.size())})) throw Stopped{};
     const FitKey& key = all[i].key;
     if (!seen(key.light)) {
-      r_.lights.insert_or_assign(key, Failure{Reason::NoHighlight, key.light + " has none that could be told from those of other lights"});
+      r_.lights.insert_or_assign(
+          key, Failure{Reason::NoHighlight, key.light + " has none that can be distinguished from those of other lights"});
       continue;
     }
     LightFit fit = fitLight(viewsOf(all[i], true), *r_.scene, *r_.surfaces, r_.request.settings);
@@ -536,7 +538,7 @@ Inspection run(std::shared_ptr<const Scene> scene, const InspectionRequest& requ
   std::vector<std::string>& models = result.request.models;
   for (auto m = models.begin(); m != models.end();) m = std::find(models.begin(), m, *m) != m ? models.erase(m) : m + 1;
   if (request.noisePx > 0 && request.settings.text("fit.evidence") == "pixels")
-    throw InputError("", "--noise-px", "noise is added to contours, which fit.evidence=pixels does not look at");
+    throw InputError("", "--noise-px", "noise is added to contours, which fit.evidence=pixels does not use");
   for (const std::string& m : request.models) modelByName(m);  // unknown names are refused before any work
   Run run(result, progress, previous, onlyFrame);
   run.highlights();

@@ -197,8 +197,7 @@ Outcome<MinimalRepro> minimalRepro(const Inspection& inspection, const Fault& fa
     return sameFault(fault, answer(inspection, fault, views, withFault(frames), quiet), tolerance);
   };
   if (!report(progress, {"trying", 0, 0})) throw Stopped{};
-  if (!shows(items))
-    return Failure{Reason::NotReached, "with the same frames the fit shows another fault than the one that was selected"};
+  if (!shows(items)) return Failure{Reason::NotReached, "with the same frames the fit does not show the selected fault"};
   const auto ask = [&](int asked, int left) {
     return report(progress, {"trying, " + std::to_string(left) + " frames left", asked, 0});
   };

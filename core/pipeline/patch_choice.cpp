@@ -114,13 +114,12 @@ std::optional<PatchChoice> choosePatches(const Inspection& inspection, const Hig
     if (tooCurved()) return curved(frame.id);
     const Prediction whole = model.predict(*o.fit, frame.camera, surface->get(), settings);
     if (!sameHighlights(whole, walked))
-      return decided(false,
-                     "in frame " + frame.id + ", which is to be predicted, local quadrics do not give the same highlights");
+      return decided(false, "in frame " + frame.id + ", a frame to predict, local quadrics do not give the same highlights");
   }
 
   c.meanPct = sum / c.views;
   if (c.meanPct > mostPct)
-    return decided(false, "on local quadrics the error leaving one view out would be " + percentText(c.meanPct) + ", over the " +
+    return decided(false, "on local quadrics the leave-one-out error is " + percentText(c.meanPct) + ", above the " +
                               percentText(mostPct) + " that the rule allows");
 
   // For the report alone, so that a choice is the same on every machine. Folds run side by side; these times are of one thread.
@@ -139,9 +138,10 @@ std::optional<PatchChoice> choosePatches(const Inspection& inspection, const Hig
   };
   c.predictUs = timeOf(onPatches);
   c.exactUs = timeOf(settings);
-  const std::string times = formatted("%.3g us", c.predictUs) + " instead of " + formatted("%.3g us", c.exactUs) + " a prediction";
-  return decided(true, "over a highlight the curvature varies by at most " + formatted("%.2g", c.variation) + " (they serve up to " +
-                           formatted("%g", kLargestVariation) + "), the error leaving one view out is " + percentText(c.meanPct) +
+  const std::string times =
+      formatted("%.3g us", c.predictUs) + " instead of " + formatted("%.3g us", c.exactUs) + " per prediction";
+  return decided(true, "over a highlight the curvature varies by at most " + formatted("%.2g", c.variation) + " (limit " +
+                           formatted("%g", kLargestVariation) + "), the leave-one-out error is " + percentText(c.meanPct) +
                            " (the rule allows " + percentText(mostPct) + "), and they take " + times);
 }
 

@@ -97,9 +97,9 @@ class LobeAngles {
 
 std::string RefinedNormals::remark() const {
   return formatted(
-      "the mesh's normals were corrected (light.refine_normals): by %.2g mrad (RMS) along the training contours, of which %s "
-      "leaves %.3g px instead of %.3g px; %.0f %% of a tilt that all contours share stays open, so the light may be further off "
-      "than with the normals as given; parts that no training highlight touched are as given",
+      "the mesh's normals were corrected (light.refine_normals): by %.2g mrad (RMS) along the training contours, where %s "
+      "leaves %.3g px instead of %.3g px; %.0f %% of a tilt shared by all contours stays undetermined, so the light may be "
+      "further off than with the given normals; parts that no training highlight touched are as given",
       1e3 * slope, model.c_str(), refinedPx, plainPx, 100 * openTilt);
 }
 
@@ -112,8 +112,10 @@ TrainingView onSurface(const TrainingView& view, std::shared_ptr<const Surface> 
 
 Outcome<std::optional<RefinedNormals>> refineNormals(const std::vector<TrainingView>& views, const LightEstimate& light, const std::string& surface,
                                                      const Settings& settings) {
-  if (settings.text("light.solver") != "bundle") return Failure{Reason::NotSupported, "light.refine_normals needs the bundle"};
-  if (meshPolicy(settings).normals == NormalPolicy::Facet) return Failure{Reason::NotSupported, "light.refine_normals needs normals that can turn"};
+  if (settings.text("light.solver") != "bundle")
+    return Failure{Reason::NotSupported, "light.refine_normals needs light.solver=bundle"};
+  if (meshPolicy(settings).normals == NormalPolicy::Facet)
+    return Failure{Reason::NotSupported, "light.refine_normals does not work with surface.normals=facet"};
   const auto one = std::find_if(views.begin(), views.end(), [](const TrainingView& v) { return !v.failure && v.brightest && v.surface; });
   if (one == views.end()) return Failure{Reason::TooFewViews, ""};
   const Surface& given = *one->surface;

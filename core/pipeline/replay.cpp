@@ -76,7 +76,7 @@ Stage stageOf(const std::string& keyResult) {
 
 std::string wordsFor(Stage stage, bool detectionKnown) {
   // A session of an older program knows nothing of the contours that it detected, on which all the rest depends.
-  if (!detectionKnown) return "detection, or a stage after it: the session is older and holds no results of its detection";
+  if (!detectionKnown) return "detection or a later stage: the session is older and has no detection results";
   switch (stage) {
     case Stage::Detection: return "detection";
     case Stage::Light: return "light";
@@ -214,7 +214,7 @@ Session sessionOf(const Inspection& inspection, const ProgressFn& progress) {
 
 Replay replay(const Session& session, const Relinked& instead, const ProgressFn& progress) {
   if (session.keyResults.empty())
-    throw InputError(session.file.string(), "results", "the session was saved without results: there is nothing to compare");
+    throw InputError(session.file.string(), "results", "the session was saved without results; nothing to compare");
   const std::vector<std::string> changed = changedFiles(session, instead, progress);
   if (!changed.empty())
     throw InputError(session.file.string(), "input",

@@ -186,8 +186,8 @@ std::string Search::outsideText() const {
   for (const ViewToPredict& v : views_)
     if (v.outside) farthest = std::max(farthest, v.distanceDeg), tested = std::max(tested, v.testedDeg);
   return formatted(
-      "%d of %d views to predict lie outside the training views (up to %.3g degrees from the nearest; leaving one out "
-      "tests %.2g)",
+      "%d of %d views to predict lie outside the training views (up to %.3g degrees from the nearest; leave-one-out "
+      "tests up to %.2g)",
       s_.outside, s_.toPredict, farthest, tested);
 }
 
@@ -206,7 +206,7 @@ void Search::tryNext(const HighlightModel& model) {
   if (t.bound)
     c.remark =
         "not eligible: frames to predict show surfaces that no training view shows, and its ellipsoid belongs to the surface "
-        "it was seen on";
+        "it was fitted on";
   else if (c.tried < c.views)
     c.remark = "given up after " + std::to_string(c.tried) + " views: already worse than the best" +
                (c.remark.empty() ? "" : "; " + c.remark);
@@ -257,7 +257,7 @@ void Search::checkAssumption(std::size_t m, const SurfaceShape& shape) {
     if (shape.bend > kNoPlaneBend)
       t.contradiction = "it needs a plane, but the surface accounts for " + percentText(100 * shape.bend) + " of the limit angle";
   } else if (assumed == ModelTraits::Assumes::ConstantCurvature && shape.curvatureChange > kNotConstantCurvature) {
-    t.contradiction = "it needs nearly constant curvature, but the curvature under the highlights differs by " +
+    t.contradiction = "it needs nearly constant curvature, but the curvature under the highlights varies by " +
                       percentText(100 * shape.curvatureChange);
   }
 }
@@ -296,7 +296,7 @@ bool Search::meetsTolerance(std::size_t m) {
   s_.candidates[m].outlookPct = aheadPct;
   if (aheadPct <= *goodEnough_) return true;
   s_.candidates[m].remark =
-      "under the tolerance leaving one out, but its predictions outside the training views are uncertain by " +
+      "under the tolerance in leave-one-out, but its predictions outside the training views are uncertain by " +
       percentText(aheadPct);
   return false;
 }
@@ -406,8 +406,8 @@ Selection Search::run() {
       if (!meetsTolerance(m)) continue;
       expect(m);
       if (!(s_.candidates[m].expectedPct <= kLargestExpectedPct)) continue;
-      s_.why = "The simplest model under the stated tolerance of " + percentText(*goodEnough_) + ": " + c.model + " has " +
-               percentText(c.meanPct) + " leaving one view out; richer models were not tried.";
+      s_.why = "Simplest model under the stated tolerance of " + percentText(*goodEnough_) + ": " + c.model +
+               " has a leave-one-view-out error of " + percentText(c.meanPct) + "; richer models were not tried.";
       s_.decidedBy = "leave-one-out";
       choose(m, *goodEnough_);
       return s_;
@@ -419,10 +419,9 @@ Selection Search::run() {
     if (!views_.empty()) compareOutlooks({m});
     if (views_.empty() || c.outlookPct <= kNegligiblePct) {
       expect(m);
-      s_.why = c.model + " has " + percentText(c.meanPct) +
-               " leaving one view out, and the surface is a plane as far as contours resolve (" + percentText(kNegligiblePct) +
-               ") in every view, which is what it assumes. Richer models were not tried: none could be better by what contours "
-               "resolve.";
+      s_.why = c.model + " has a leave-one-view-out error of " + percentText(c.meanPct) +
+               ", and the surface is a plane in every view as far as contours resolve (" + percentText(kNegligiblePct) +
+               "), as this model assumes. Richer models were not tried: none could be better by more than that.";
       s_.decidedBy = "leave-one-out";
       choose(m, 2 * kNegligiblePct);
       return s_;
@@ -442,7 +441,7 @@ void Search::decide() {
   int best = bestOf([](std::size_t) { return true; });
   if (best < 0) {
     const bool onePlace = std::all_of(folds_.begin(), folds_.end(), [](const Fold& f) { return f.others.empty(); });
-    s_.why = s_.leftOut == 0 ? "There is no training view to leave out."
+    s_.why = s_.leftOut == 0 ? "No training view can be left out."
              : onePlace      ? "Leaving out a training view leaves nothing to fit: each fit has views from one place only."
                              : "No model predicted a left-out training view.";
     return;
@@ -450,8 +449,8 @@ void Search::decide() {
   if (goodEnough_)  // a view that nothing answers tells nothing about the models
     for (std::size_t m = 0; m < tried_.size() && s_.model.empty(); ++m)
       if (tried_[m].eligible && ranked(m) <= *goodEnough_ && s_.outside == 0) {
-        s_.why = "The simplest model under the stated tolerance of " + percentText(*goodEnough_) + ": " + s_.candidates[m].model +
-                 " has " + percentText(ranked(m)) + " leaving one view out, counting the views that any model answers.";
+        s_.why = "Simplest model under the stated tolerance of " + percentText(*goodEnough_) + ": " + s_.candidates[m].model +
+                 " has a leave-one-view-out error of " + percentText(ranked(m)) + " over the views that any model answers.";
         s_.decidedBy = "leave-one-out";
         choose(m, *goodEnough_);
         return;
@@ -471,7 +470,7 @@ void Search::decide() {
     constexpr double kClear = 2;  // times as good, and standard errors
     if (ranked(allowed) > kClear * atLeastNegligible(ranked(best)) && e.mean > kClear * e.standardError) {
       s_.candidates[best].remark =
-          "kept though " + tried_[best].contradiction + ": every model that the surface allows is worse than twice as far off";
+          "kept although " + tried_[best].contradiction + ": every model that the surface allows has more than twice the error";
       tried_[best].contradiction.clear();
     } else {
       best = allowed;
@@ -496,7 +495,7 @@ void Search::decide() {
     }
     const Excess e = excessOf(tried_[m].answers, tried_[best].answers, known_.possible);
     if (e.mean > atLeastNegligible(e.standardError)) {
-      addRemark(m, "worse than the best by " + percentText(e.mean) + " leaving one out");
+      addRemark(m, "worse than the best by " + percentText(e.mean) + " in leave-one-out");
     } else {
       plausible.push_back(m);
       slack = std::max(slack, e.standardError);
@@ -535,8 +534,9 @@ void Search::decide() {
   const std::string where = s_.outside > 0 ? outsideText() : std::string("the views to predict lie among the training views");
   if (!(c.expectedPct <= kLargestExpectedPct)) {
     s_.why = "Refused: the smallest expected error is " + percentText(c.expectedPct) + " of the diameter, of " + c.model +
-             ", over the ceiling of " + percentText(kLargestExpectedPct) + ". Leaving one view out it has " + errorText(choice) +
-             (s_.toPredict ? ", in the views to predict its contours are uncertain by " + percentText(c.outlookPct) + "; " + where
+             ", above the limit of " + percentText(kLargestExpectedPct) + ". Its leave-one-view-out error is " +
+             errorText(choice) +
+             (s_.toPredict ? "; in the views to predict its contours are uncertain by " + percentText(c.outlookPct) + "; " + where
                            : "") +
              ".";
     return;
@@ -547,15 +547,15 @@ void Search::decide() {
                                                        : "what contours resolve (" + percentText(kNegligiblePct) + ")";
   const std::string leftOut = static_cast<int>(choice) == best
                                   ? c.model + " has the smallest leave-one-view-out error, " + errorText(choice)
-                                  : c.model + " has " + errorText(choice) + " leaving one view out, within " + slackText +
-                                        " of the best, " + s_.candidates[best].model + " with " + errorText(best);
+                                  : c.model + " has a leave-one-view-out error of " + errorText(choice) + ", within " +
+                                        slackText + " of the best, " + s_.candidates[best].model + " with " + errorText(best);
   s_.decidedBy = ahead || s_.outside > 0 ? "extrapolation" : "leave-one-out";
   if (ahead)
     s_.why = "The views to predict decided: " + leftOut + "; there its contours are uncertain by " + percentText(c.outlookPct) +
              ", those of simpler models by more than " + percentText(kAsGood * atLeastNegligible(c.outlookPct)) + "; " + where +
              ".";
   else
-    s_.why = "The simplest model that is as good as the best: " + leftOut + "; " + where +
+    s_.why = "Simplest model that is as good as the best: " + leftOut + "; " + where +
              (std::isfinite(c.outlookPct) ? ", where its contours are uncertain by " + percentText(c.outlookPct) : "") + ".";
   if (goodEnough_) s_.why += " No model reached the stated tolerance of " + percentText(*goodEnough_) + ".";
   choose(choice, ranked(best) + slack);

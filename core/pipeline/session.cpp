@@ -81,7 +81,7 @@ Settings readSettings(const JsonNode& node) {
     const JsonNode value = node.at(key);
     const auto& all = allParams();
     const auto spec = std::find_if(all.begin(), all.end(), [&](const ParamSpec& s) { return s.key == key; });
-    if (spec == all.end()) value.fail("there is no such setting");
+    if (spec == all.end()) value.fail("unknown setting");
     try {
       if (std::holds_alternative<bool>(spec->defaultValue))
         settings.set(key, value.boolean());
@@ -129,7 +129,7 @@ InspectionRequest readRequest(const JsonNode& node, const fs::path& folder) {
   }
   if (const auto n = node.find("source")) {
     const std::string source = n->text();
-    if (source != "radiance" && source != "image") n->fail("'" + source + "' is none of: radiance, image");
+    if (source != "radiance" && source != "image") n->fail("'" + source + "' is not one of: radiance, image");
     request.source = source == "image" ? FrameSource::Image : FrameSource::Radiance;
   }
   if (const auto n = node.find("settings")) request.settings = readSettings(*n);
@@ -152,7 +152,7 @@ SessionCamera readCamera(const JsonNode& c) {
   SessionCamera camera{lengths3(c.at("position")), lengths3(c.at("focal_point")), lengths3(c.at("up")),
                        c.at("view_angle_deg").number()};
   if (const auto parallel = c.find("parallel")) camera.parallel = parallel->boolean();
-  if (!(camera.viewAngleDeg > 0 && camera.viewAngleDeg < 180)) c.at("view_angle_deg").fail("must lie between 0 and 180");
+  if (!(camera.viewAngleDeg > 0 && camera.viewAngleDeg < 180)) c.at("view_angle_deg").fail("must be between 0 and 180");
   return camera;
 }
 
@@ -301,7 +301,7 @@ std::string sessionText(const Session& session, const fs::path& file) {
 void writeSession(const Session& session, const fs::path& file) { atomicWrite(file, sessionText(session, file)); }
 
 MissingScene::MissingScene(const fs::path& session, fs::path scene)
-    : InputError(session.string(), "input.path", "the scene " + scene.string() + " is not there"), scene_(std::move(scene)) {}
+    : InputError(session.string(), "input.path", "the scene " + scene.string() + " does not exist"), scene_(std::move(scene)) {}
 
 OpenedSession openSession(const fs::path& file, const Relinked& instead) { return openSession(readSession(file), instead); }
 
@@ -336,7 +336,7 @@ std::string takeOver(Session& session, const Scene& scene, const fs::path& scene
     const auto known =
         std::find_if(session.files.begin(), session.files.end(), [&](const SessionFile& f) { return f.path == was; });
     if (known != session.files.end() && !known->sha256.empty() && sha256OfFile(now) != known->sha256)
-      others.push_back(now.string() + " is not the " + what + " that the session was made with: its content differs");
+      others.push_back(now.string() + " differs from the " + what + " that the session was made with");
     moved.insert(was);
   };
   if (sceneMoved && !session.files.empty()) compare("scene", session.files.front().path, scene.file);

@@ -43,8 +43,8 @@ std::vector<int> parseFrames(const std::string& text, const Scene& scene, const 
     if (!number && word.find(':') != std::string::npos) throw bad("expected first:K or spread:K");
     if (!number) throw bad("'" + word + "' is neither a frame id nor a number");
     if (*number >= n)
-      throw bad("there is no frame " + word + "; frames are numbered from 0 by their order: 0 to " + std::to_string(n - 1) +
-                ", and no id is \"" + word + "\"");
+      throw bad("frame " + word + " does not exist; frames are numbered 0 to " + std::to_string(n - 1) +
+                " in their order, and no id is \"" + word + "\"");
     return *number;
   };
   if (!text.empty() && text.back() == ',') throw bad("empty entry");

@@ -150,7 +150,8 @@ Outcome<LightEstimate> estimateLight(const std::vector<TrainingView>& views, con
 }
 
 Outcome<DepthRefinement> refineDepth(const std::vector<TrainingView>& views, const Light& start, const Settings& settings) {
-  if (settings.text("light.solver") != "bundle") return Failure{Reason::NotSupported, "light.refine_depth needs the bundle"};
+  if (settings.text("light.solver") != "bundle")
+    return Failure{Reason::NotSupported, "light.refine_depth needs light.solver=bundle"};
   std::vector<BundleView> bundleViews;
   for (const TrainingView& v : views)
     if (!v.failure && v.brightest) bundleViews.push_back({v.camera, v.surface.get(), v.highlight.contour.points, v.brightest});

@@ -182,8 +182,8 @@ std::shared_ptr<const Scene> changedScene(const Scene& given, const WhatIf& what
                                           const std::vector<int>* frames) {
   auto scene = std::make_shared<Scene>(given);
   for (const auto& [frame, change] : whatIf.poses) {
-    if (frame < 0 || frame >= int(scene->frames.size())) refuse(given, "there is no frame " + std::to_string(frame));
-    if (!change.rotation.allFinite() || !change.translation.allFinite()) refuse(given, "a pose that is not finite");
+    if (frame < 0 || frame >= int(scene->frames.size())) refuse(given, "frame " + std::to_string(frame) + " does not exist");
+    if (!change.rotation.allFinite() || !change.translation.allFinite()) refuse(given, "a pose is not finite");
     scene->frames[std::size_t(frame)].camera = moved(scene->frames[std::size_t(frame)].camera, change);
   }
   if (!whatIf.synthesise) return scene;
@@ -194,7 +194,7 @@ std::shared_ptr<const Scene> changedScene(const Scene& given, const WhatIf& what
   for (const auto& [id, by] : whatIf.lightsBy) {
     const auto light =
         std::find_if(scene->lights.begin(), scene->lights.end(), [&, name = id](const TrueLight& l) { return l.id == name; });
-    if (light == scene->lights.end()) refuse(given, "there is no light '" + id + "'");
+    if (light == scene->lights.end()) refuse(given, "light '" + id + "' does not exist");
     *light = moved(*light, by);
   }
   AnalyticSurfaces surfaces;
@@ -210,7 +210,7 @@ std::shared_ptr<const Scene> changedScene(const Scene& given, const WhatIf& what
   }
   for (const auto& [id, value] : whatIf.surfaces)
     if (!surfaces.count(id) || !shapeOf(*scene->surfaces[id].analytic))
-      refuse(given, "surface '" + id + "' has no shape to change");
+      refuse(given, "surface '" + id + "' has no adjustable shape");
 
   for (Frame& f : scene->frames) {
     f.image.clear();  // it shows what was captured

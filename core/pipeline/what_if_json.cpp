@@ -65,7 +65,7 @@ WhatIf readWhatIf(const JsonNode& node) {
     w.synthesise = true;
     const std::string lobe = s->at("lobe").text();
     const std::optional<Lobe> known = lobeOf(lobe);
-    if (!known) s->at("lobe").fail("there is no lobe '" + lobe + "'");
+    if (!known) s->at("lobe").fail("unknown lobe '" + lobe + "'");
     w.lobe = *known;
     w.roughness = positive(s->at("roughness"), kLargestFactor);
     if (const auto lights = s->find("lights_by"))

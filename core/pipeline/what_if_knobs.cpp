@@ -74,7 +74,7 @@ void addLights(std::vector<WhatIfKnob>& knobs, const Scene& scene, double distan
     for (int axis = 0; axis < 3; ++axis)
       knobs.push_back({"Light " + light.id,
                        numberKnob("light." + light.id + "." + kAxes[axis], std::string("Shift ") + kAxes[axis], far ? "" : "m", 0,
-                              -reach, reach, roundStep(2 * reach), "Moves the lamp along the world's axis."),
+                                  -reach, reach, roundStep(2 * reach), "Moves the light along this world axis."),
                        true, [id = light.id, axis](const WhatIf& w) { return shiftOf(w, id)(axis); },
                        [id = light.id, axis](WhatIf& w, double v) {
                          Eigen::Vector3d by = shiftOf(w, id);
@@ -93,7 +93,7 @@ void addSurface(std::vector<WhatIfKnob>& knobs, const Scene& scene, const std::s
   title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
   knobs.push_back({"Surface " + id,
                    numberKnob("surface." + id, title, shape->unit, shape->value, shape->min, shape->max,
-                          roundStep(shape->max - shape->min), "The surface that every camera sees, bent or resized."),
+                              roundStep(shape->max - shape->min), "Bends or resizes the surface for every camera."),
                    true,
                    [id, shape](const WhatIf& w) {
                      const auto it = w.surfaces.find(id);
@@ -111,8 +111,8 @@ void addPose(std::vector<WhatIfKnob>& knobs, const Scene& scene, int frame, doub
   const std::string id = scene.frames[std::size_t(frame)].id, group = "Camera of frame " + id;
   for (int axis = 0; axis < 3; ++axis)
     knobs.push_back({group,
-                     numberKnob("pose.rotate." + std::string(kAxes[axis]), std::string("Turn about ") + kAxes[axis], "deg", 0, -5, 5,
-                            0.02, "Turns the camera about its centre; x right, y down, z forward."),
+                     numberKnob("pose.rotate." + std::string(kAxes[axis]), std::string("Turn about ") + kAxes[axis], "deg", 0, -5,
+                                5, 0.02, "Rotates the camera about its centre; x right, y down, z forward."),
                      false, [frame, axis](const WhatIf& w) { return degrees(lookUp(w.poses, frame).rotation(axis)); },
                      [frame, axis](WhatIf& w, double v) {
                        PoseChange change = lookUp(w.poses, frame);
@@ -175,7 +175,7 @@ std::vector<WhatIfKnob> whatIfKnobs(const Scene& scene, int frame, int highlight
   addSurface(knobs, scene, scene.frames[std::size_t(frame)].surface);
   knobs.push_back({"Lobe",
                    numberKnob("roughness", "Roughness", "", roughness, std::min(0.01, roughness), std::max(0.5, roughness), 0.005,
-                          "m of the lobe that makes the contours."),
+                              "Roughness m of the lobe that makes the contours."),
                    true, [](const WhatIf& w) { return w.roughness; }, [](WhatIf& w, double v) { w.roughness = v; }});
   addPose(knobs, scene, frame, distance);
   for (int h = 0; h < highlights; ++h) addHighlight(knobs, scene, frame, h);
@@ -221,14 +221,14 @@ std::optional<FittedLobe> lobeOfLimitAngle(const Inspection& in, int frame) {
 Outcome<FittedLobe> fittedLobe(const Inspection& in, int frame) {
   require(in.scene && frame >= 0 && frame < int(in.scene->frames.size()), "fittedLobe: no such frame");
   if (in.request.whatIf.synthesise)
-    return Failure{Reason::NotSupported, "the contours are synthesised, so no fit is of the scene as it was captured"};
+    return Failure{Reason::NotSupported, "the contours are synthesised, so no fit describes the captured scene"};
   const ModelResult::Fit* reflectance = reflectanceFit(in, frame);
   if (reflectance && reflectance->fit && reflectance->fit->roughness && reflectance->fit->lobe)
     if (const std::optional<Lobe> lobe = lobeOf(*reflectance->fit->lobe))
       return FittedLobe{*lobe, *reflectance->fit->roughness, "reflectance, light " + reflectance->light};
   if (const std::optional<FittedLobe> lobe = lobeOfLimitAngle(in, frame)) return *lobe;
   if (reflectance && reflectance->failure) return *reflectance->failure;
-  return Failure{Reason::NotSupported, "no model was computed that tells the lobe (reflectance, or one that needs the light)"};
+  return Failure{Reason::NotSupported, "no computed model gives the lobe (reflectance does, or a model that needs the light)"};
 }
 
 std::string summaryOf(const WhatIf& w) {

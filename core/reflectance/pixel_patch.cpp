@@ -138,7 +138,7 @@ Outcome<PixelPatch> pixelPatch(const LinearPixels& pixels, const Camera& camera,
   }
   if (patch.usedCells() < kLeastCells)
     return Failure{Reason::TooFewPoints, "only " + std::to_string(patch.usedCells()) + " pixels around the highlight can be used"};
-  if (!(patch.top > 0)) return Failure{Reason::NoHighlight, "nothing but zeros around the highlight"};
+  if (!(patch.top > 0)) return Failure{Reason::NoHighlight, "only zeros around the highlight"};
   return patch;
 }
 

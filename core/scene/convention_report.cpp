@@ -153,10 +153,10 @@ void concludeGrids(const Scene& scene, ConventionReport& report) {
         pixels = std::max(pixels, s.grid->spacing * scene.frames[std::size_t(f.frame)].camera.pixelFromRay(0, 0) / f.distance);
     if (s.grid->spacing < kOfSide * s.side && pixels < kOfPixel) continue;
     report.findings.push_back("the vertices of surface '" + s.id + "' are too coarse for their distance from the origin: at " +
-                              formatted("%.4g m %s keep steps of %.2g mm, %.2g %% of a triangle's side and %.2g px", distance,
-                                        s.grid->singlePrecision ? "floats" : "the digits of the file", 1e3 * s.grid->spacing,
+                              formatted("%.4g m %s resolve steps of %.2g mm, %.2g %% of a triangle's side and %.2g px", distance,
+                                        s.grid->singlePrecision ? "floats" : "the digits in the file", 1e3 * s.grid->spacing,
                                         100 * s.grid->spacing / s.side, pixels) +
-                              " (store them as doubles or with more digits, or nearer to the origin)");
+                              " (store them as doubles, with more digits, or closer to the origin)");
   }
 }
 
@@ -189,7 +189,7 @@ void conclude(const Scene& scene, ConventionReport& report) {
     if (2 * lookingAway > withSurface)
       line += ": they look away from it (camera axes must be x right, y down, z forward; OpenGL's point backwards)";
     else
-      line += " (is camera_from_world the inverse of what the file holds?)";
+      line += " (does the file contain the inverse of camera_from_world?)";
     report.findings.push_back(line);
   }
   if (depthOff)
@@ -326,7 +326,7 @@ std::string toText(const ConventionReport& r) {
     out += line + "\n";
   }
   if (r.cameras && !r.cameras->hypotheses.empty()) {
-    out += formatted("\n  cameras   by the highlights of %d frames: contours fit one light ", r.cameras->views);
+    out += formatted("\n  cameras   from the highlights of %d frames: contours fit one light ", r.cameras->views);
     std::string separator;
     for (const CameraCheck::Hypothesis& h : r.cameras->hypotheses) {
       out += separator + (h.rmsPx ? formatted("to %.2g px ", *h.rmsPx) : std::string("not at all ")) + "(" + h.change + ")";
@@ -334,11 +334,11 @@ std::string toText(const ConventionReport& r) {
     }
     out += "\n";
   } else if (r.cameras) {
-    out += "\n  cameras   not tested by the highlights: " + r.cameras->whyNot + "\n";
+    out += "\n  cameras   not checked with highlights: " + r.cameras->whyNot + "\n";
   }
   for (const std::string& w : r.warnings) out += "warning: " + w + "\n";
   for (const std::string& f : r.findings) out += "finding: " + f + "\n";
-  if (r.findings.empty()) out += "All cameras see their surface; nothing looks wrong.\n";
+  if (r.findings.empty()) out += "All cameras see their surface; no problems found.\n";
   return out;
 }
 

@@ -138,7 +138,7 @@ Outcome<Image> readLinear(const Frame& frame, FrameSource source) {
   const cv::Mat& m = decoded->pixels;
   if (isFloat(m)) return floatImage(m);
   if (useRadiance) return unreadable(file, "radiance must be 32-bit float (give an 8- or 16-bit picture as image)");
-  if (!isCode(m)) return unreadable(file, "the pixel type is not understood (8-bit, 16-bit or float)");
+  if (!isCode(m)) return unreadable(file, "the pixel type is not supported (8-bit, 16-bit or float)");
   if (m.depth() == CV_16U && decoded->saysLinear) return throughTable(m, [](double v) { return v; });
   return throughTable(m, linearFromSrgb);
 }
@@ -153,7 +153,7 @@ Outcome<Image> readPhotograph(const Frame& frame) {
   if (!decoded) return decoded.failure();
   const cv::Mat& m = decoded->pixels;
   if (isFloat(m)) return toneMapped(floatImage(m));
-  if (!isCode(m)) return unreadable(frame.image, "the pixel type is not understood (8-bit, 16-bit or float)");
+  if (!isCode(m)) return unreadable(frame.image, "the pixel type is not supported (8-bit, 16-bit or float)");
   if (m.depth() == CV_16U && decoded->saysLinear) return threeChannels(throughTable(m, srgbFromLinear));
   return threeChannels(throughTable(m, [](double v) { return v; }));
 }
@@ -204,7 +204,7 @@ Outcome<std::optional<Image>> readDepth(const Frame& frame) {
   if (!decoded) return decoded.failure();
   const cv::Mat& m = decoded->pixels;
   if (m.channels() != 1)
-    return unreadable(frame.depth, "a depth image has one channel, this one has " + std::to_string(m.channels()));
+    return unreadable(frame.depth, "a depth image has one channel; this one has " + std::to_string(m.channels()));
   if (!isFloat(m) && !(frame.depthScale > 0))
     return unreadable(frame.depth, "an integer depth image needs depth_scale (metres per unit)");
   const double scale = frame.depthScale > 0 ? frame.depthScale : 1.0;
@@ -218,7 +218,7 @@ Outcome<std::optional<Image>> readNormals(const Frame& frame) {
   if (!decoded) return decoded.failure();
   const cv::Mat& m = decoded->pixels;
   if (m.channels() != 3)
-    return unreadable(frame.normals, "a normal image has three channels, this one has " + std::to_string(m.channels()));
+    return unreadable(frame.normals, "a normal image has three channels; this one has " + std::to_string(m.channels()));
   if (isFloat(m)) return std::optional<Image>(floatImage(m));
   if (m.depth() != CV_16U) return unreadable(frame.normals, "normals must be float or 16-bit");
   return std::optional<Image>(toImage(m, [](double v) { return static_cast<float>(v / 65532.0 * 2 - 1); }));

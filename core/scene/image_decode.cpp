@@ -87,7 +87,7 @@ Outcome<cv::Mat> decodePng(const std::string& bytes, const ImageHeader& header) 
   cv::Mat pixels;
   if (done && (png_get_image_width(png, info) != header.width || png_get_image_height(png, info) != header.height ||
                (channels != 1 && channels != 3) || (bits != 8 && bits != 16))) {
-    std::snprintf(job.error, sizeof job.error, "its header contradicts itself");
+    std::snprintf(job.error, sizeof job.error, "its header is inconsistent");
     done = false;
   }
   if (done) {
@@ -174,8 +174,8 @@ Outcome<cv::Mat> decodeJpeg(const std::string& bytes, const ImageHeader& header)
   };
   if (!done) return failure(std::string("the JPEG is damaged (") + job.error + ")");
   if (info.num_components != 1 && info.num_components != 3)
-    return failure("the JPEG has " + std::to_string(info.num_components) + " components (CMYK is not read; save it as RGB)");
-  if (info.image_width != header.width || info.image_height != header.height) return failure("the JPEG has two sizes");
+    return failure("the JPEG has " + std::to_string(info.num_components) + " components (CMYK is not supported; save it as RGB)");
+  if (info.image_width != header.width || info.image_height != header.height) return failure("the JPEG has two different sizes");
   info.out_color_space = info.num_components == 1 ? JCS_GRAYSCALE : JCS_RGB;
   cv::Mat pixels(static_cast<int>(header.height), static_cast<int>(header.width), info.num_components == 1 ? CV_8UC1 : CV_8UC3);
   done = readJpegRows(job, info, pixels.data, pixels.step);

@@ -196,14 +196,14 @@ ImageHeader tiffHeader(std::string_view bytes, ImageHeader h) {
     const bool isSize = *tag == 256 || *tag == 257 || *tag == kChannels || *tag == 322 || *tag == 323;
     if (!isSize) continue;
     // The decoder takes other types too, of which some stand elsewhere in the file; nobody writes a size so.
-    if (*type != kShort && *type != kLong) return damaged(h, "a size is no whole number of 16 or 32 bits");
+    if (*type != kShort && *type != kLong) return damaged(h, "a size is not a 16- or 32-bit whole number");
     const std::uint64_t value = *in.number(at + 8, *type == kShort ? 2 : 4);
     first(*tag == 256 ? width : *tag == 257 ? height : *tag == 322 ? tileWidth : *tag == 323 ? tileHeight : channels, value);
   }
   h.width = width.value_or(0);
   h.height = height.value_or(0);
   h.channels = static_cast<int>(std::min<std::uint64_t>(channels.value_or(1), std::numeric_limits<int>::max()));
-  if (h.width == 0 || h.height == 0) return damaged(h, "it does not say its size");
+  if (h.width == 0 || h.height == 0) return damaged(h, "its size is missing");
   if (tileWidth && tileHeight && !fitsImage(*tileWidth, *tileHeight, h)) return damaged(h, "its tiles are larger than the image");
   return h;
 }
@@ -257,7 +257,7 @@ ImageHeader hdrHeader(std::string_view bytes, ImageHeader h) {
   constexpr std::size_t kLongestHeader = 1 << 16;  // bytes
   if (at == std::string_view::npos || at > kLongestHeader) return truncated(h);
   at += 2;
-  if (bytes.substr(at, 3) != "-Y ") return failed(h, "the HDR has its rows in an order that is not read here");
+  if (bytes.substr(at, 3) != "-Y ") return failed(h, "the row order of the HDR is not supported");
   at += 3;
   const std::optional<std::uint64_t> height = textNumber(bytes, at);
   if (bytes.substr(std::min(at, bytes.size()), 4) != " +X ") return truncated(h);
@@ -288,7 +288,7 @@ ImageHeader webpHeader(std::string_view bytes, ImageHeader h) {
     h.width = *in.number(24, 3) + 1;
     h.height = *in.number(27, 3) + 1;
   } else {
-    return damaged(h, "it begins with no image");
+    return damaged(h, "it does not begin with an image");
   }
   return h;
 }
@@ -340,7 +340,7 @@ ImageHeader readImageHeader(std::string_view bytes) {
     header.format = ImageFormat::Pnm;
     return pnmHeader(bytes, header);
   }
-  return failed(header, "the file is no image that is read here (PNG, JPEG, EXR, TIFF, BMP, PNM, HDR, WebP)");
+  return failed(header, "the file is not a supported image (PNG, JPEG, EXR, TIFF, BMP, PNM, HDR, WebP)");
 }
 
 }  // namespace glint

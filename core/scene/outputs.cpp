@@ -31,9 +31,9 @@ bool isMovie(const std::string& head) {
 }  // namespace
 
 OutputKind OutputKind::document(const std::string& key) { return {Form::Document, key, "a JSON file with \"" + key + "\""}; }
-OutputKind OutputKind::table(const std::string& start) { return {Form::Table, start, "a table that this command writes"}; }
-OutputKind OutputKind::page() { return {Form::Page, "", "a page that this command writes"}; }
-OutputKind OutputKind::png() { return {Form::Png, "", "a PNG"}; }
+OutputKind OutputKind::table(const std::string& start) { return {Form::Table, start, "a table written by this command"}; }
+OutputKind OutputKind::page() { return {Form::Page, "", "a page written by this command"}; }
+OutputKind OutputKind::png() { return {Form::Png, "", "a PNG file"}; }
 OutputKind OutputKind::movie() { return {Form::Movie, "", "a movie"}; }
 
 bool OutputKind::holds(const fs::path& file) const {
@@ -66,20 +66,22 @@ void Outputs::requireNoInput(const fs::path& file, const std::string& flag) cons
   std::error_code ignored;  // what cannot be asked about is another file
   for (const fs::path& input : inputs_)
     if (!input.empty() && fs::equivalent(file, input, ignored))
-      throw InputError(file.string(), flag, "is a file of the input, which is never replaced; name another file");
+      throw InputError(file.string(), flag, "is an input file and is never overwritten; choose another file");
 }
 
 void Outputs::file(const std::string& file, const std::string& flag, const OutputKind& kind) {
   if (file.empty() || file == "-") return;
   const fs::path path = fs::absolute(file).lexically_normal();
   if (std::find(asked_.begin(), asked_.end(), path) != asked_.end())
-    throw InputError(file, flag, "was given for another output already; name another file");
+    throw InputError(file, flag, "is already used for another output; choose another file");
   asked_.push_back(path);
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return;
   requireNoInput(file, flag);
   if (fs::is_regular_file(path, ignored) && !kind.holds(path))
-    throw InputError(file, flag, "exists and is not " + kind.words() + "; it stays as it is: name another file, or remove it first");
+    throw InputError(
+        file, flag,
+        "already exists and is not " + kind.words() + "; nothing is overwritten: choose another file or remove this one");
 }
 
 void Outputs::inFolder(const std::string& folder, const std::string& flag, const std::vector<std::string>& names,
@@ -92,7 +94,8 @@ void Outputs::inFolder(const std::string& folder, const std::string& flag, const
     if (!fs::exists(path, ignored)) continue;
     requireNoInput(path, flag);
     if (!ours)
-      throw InputError(path.string(), flag, "exists, and no earlier run of this command wrote it; it stays as it is: name another folder");
+      throw InputError(path.string(), flag,
+                       "already exists and was not written by this command; nothing is overwritten: choose another folder");
   }
 }
 

@@ -8,7 +8,7 @@ namespace glint {
 namespace fs = std::filesystem;
 
 MissingMesh::MissingMesh(const std::string& file, const std::string& place, std::string named, fs::path mesh)
-    : InputError(file, place, "there is no file '" + mesh.string() + "'"), named_(std::move(named)), mesh_(std::move(mesh)) {}
+    : InputError(file, place, "file '" + mesh.string() + "' does not exist"), named_(std::move(named)), mesh_(std::move(mesh)) {}
 
 fs::path sameUnder(const fs::path& folder, const fs::path& file) {
   if (file.empty()) return {};

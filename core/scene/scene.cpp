@@ -94,7 +94,8 @@ class SessionSceneReader final : public SceneReader {
     if (!options.allowOutsidePaths) requirePermitted(input, file.string(), own.folders);
     own.meshes.insert(input.meshes.begin(), input.meshes.end());
     std::error_code ignored;  // what cannot be asked about is not there
-    if (!fs::exists(input.scene, ignored)) root.at("input").at("path").fail("the scene " + input.scene.string() + " is not there");
+    if (!fs::exists(input.scene, ignored))
+      root.at("input").at("path").fail("the scene " + input.scene.string() + " does not exist");
     requireSceneFile(input.scene, file.string());
     Scene scene = withFilesIn(readSceneOfSession(input.scene, own), input.folders);
     if (!options.allowOutsidePaths) requirePermittedFiles(scene, input.folders, file.string(), own.folders);
@@ -131,7 +132,8 @@ fs::path resolveInside(const fs::path& folder, const std::string& relative, cons
   const fs::path absolute = (path.is_absolute() ? path : folder / path).lexically_normal();
   if (options.allowOutsidePaths || liesIn(options.folders, absolute)) return absolute;
   if (path.is_absolute())
-    throw OutsidePath(file, place, "'" + relative + "' is absolute; paths are relative to the file (--allow-outside accepts it)",
+    throw OutsidePath(file, place,
+                      "'" + relative + "' is absolute; paths must be relative to the file (--allow-outside accepts it)",
                       realPath(absolute).parent_path());
   if (!liesIn({folder}, folder / path))
     throw OutsidePath(file, place, "'" + relative + "' leaves the folder of the file (--allow-outside accepts it)",
@@ -156,13 +158,13 @@ Scene readRecognised(const fs::path& input, const ReadOptions& options, bool ses
     const bool empty = fs::is_empty(input, error);
     throw InputError(input.string(), "",
                      std::string(empty ? "the folder is empty" : "nothing in this folder is recognised") +
-                         "; understood: " + whatIsUnderstood());
+                         "; supported: " + whatIsUnderstood());
   }
   if (!fs::is_regular_file(status)) throw InputError(input.string(), "", "is a device or a pipe, not a file");
   const bool empty = fs::file_size(input, error) == 0;
   throw InputError(
       input.string(), "",
-      std::string(empty ? "the file is empty" : "the content is not recognised") + "; understood: " + whatIsUnderstood());
+      std::string(empty ? "the file is empty" : "the content is not recognised") + "; supported: " + whatIsUnderstood());
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ void refuseGeometry(const JsonNode& node, const std::set<std::string>& keys) {
   for (const std::string& key : node.keys()) {
     std::string lower = key;
     std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    if (keys.count(lower)) node.at(key).fail("is not understood, and it would change the geometry");
+    if (keys.count(lower)) node.at(key).fail("is not supported and would change the geometry");
   }
 }
 
@@ -131,7 +131,7 @@ Camera readCameraJson(const JsonNode& node) {
   camera.pixelFromRay(1, 1) = focal("fy");
   camera.pixelFromRay(1, 2) = bounded(node.at("cy"), kFarthestPx);
   if (const auto model = node.find("model"); model && model->text() != "OPENCV")
-    model->fail("'" + model->text() + "' is not understood: only OPENCV (distortion k1 k2 p1 p2 k3)");
+    model->fail("'" + model->text() + "' is not supported, only OPENCV (distortion k1 k2 p1 p2 k3)");
   refuseGeometry(node, kCameraGeometry);
   if (const auto d = node.find("distortion")) {
     const std::vector<double> values = boundedAll(*d, kLargestFactor).numbers();
@@ -196,7 +196,7 @@ AnalyticSpec readAnalyticJson(const JsonNode& node) {
     constexpr double kTyped = 1e-9;  // relative: more digits than a printed matrix has wrong
     if ((spec.matrix - spec.matrix.transpose()).cwiseAbs().maxCoeff() > kTyped * size) matrix.fail("must be symmetric");
   } else if (spec.type != "plane") {
-    type.fail("'" + spec.type + "' is none of: plane, sphere, ellipsoid, cylinder, sheet, torus, quadric");
+    type.fail("'" + spec.type + "' is not one of: plane, sphere, ellipsoid, cylinder, sheet, torus, quadric");
   }
   if (const auto pose = node.find("world_from_surface")) spec.worldFromSurface = readPoseJson(*pose);
   return spec;
@@ -233,7 +233,7 @@ Highlight readHighlight(const JsonNode& node, const Camera& camera) {
   if (const auto n = node.find("light")) h.light = readIdJson(*n);
   if (const auto n = node.find("level")) {
     h.level = n->number();
-    if (!(h.level >= kLeastLevel && h.level <= kMostLevel)) n->fail("must lie between 0 and 1, by a millionth at least");
+    if (!(h.level >= kLeastLevel && h.level <= kMostLevel)) n->fail("must be between 0.000001 and 0.999999");
   }
   const JsonNode contour = node.at("contour");
   const std::size_t n = contour.size();
@@ -294,7 +294,7 @@ Frame readFrame(const JsonNode& node, const FrameContext& context, Json& rest) {
   if (!warning.empty()) context.scene.warnings.push_back(warning);
   if (const auto n = node.find("surface"); n && !n->isNull()) {
     frame.surface = n->text();
-    if (!scene.surfaces.count(frame.surface)) n->fail("there is no surface '" + frame.surface + "'");
+    if (!scene.surfaces.count(frame.surface)) n->fail("surface '" + frame.surface + "' does not exist");
   } else if (frame.depth.empty()) {
     if (scene.surfaces.size() != 1)
       throw InputError(node.file(), node.place() + ".surface",
@@ -364,12 +364,12 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
   refuseGeometry(root, kSceneGeometry);
 
   const JsonNode version = root.at("glint_scene");
-  if (version.integer() != 1) version.fail("version " + std::to_string(version.integer()) + " is not understood, only 1");
-  if (!root.has("frames") && root.has("path")) root.fail("is a specification, not a scene (glint synth makes a scene of it)");
+  if (version.integer() != 1) version.fail("version " + std::to_string(version.integer()) + " is not supported, only 1");
+  if (!root.has("frames") && root.has("path")) root.fail("is a specification, not a scene (`glint synth` makes a scene from it)");
   scene.name = scene.folder.filename().string();
   if (const auto n = root.find("name")) scene.name = n->text();
   if (const auto n = root.find("units"); n && n->text() != "m")
-    n->fail("'" + n->text() + "' is not understood: lengths are metres (\"m\")");
+    n->fail("'" + n->text() + "' is not supported: lengths are in metres (\"m\")");
 
   std::optional<Camera> shared;
   if (const auto n = root.find("camera")) {
@@ -397,7 +397,7 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
       const JsonNode node = n->at(i);
       scene.lights.push_back(readLightJson(node));
       const std::string& id = scene.lights.back().id;
-      if (!lightIds.insert(id).second) node.at("id").fail("the id '" + id + "' stands twice");
+      if (!lightIds.insert(id).second) node.at("id").fail("duplicate id '" + id + "'");
       keep(lightRests, id, unknown.of(node, kLightKeys));
     }
   }
@@ -412,7 +412,7 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
     Json rest = unknown.of(node, {"id", "image", "radiance", "depth", "normals", "mask", "depth_scale", "camera",
                                   "camera_from_world", "surface", "lights_on", "highlights"});
     Frame frame = readFrame(node, context, rest);
-    if (!frameIds.insert(frame.id).second) node.at("id").fail("the id '" + frame.id + "' stands twice");
+    if (!frameIds.insert(frame.id).second) node.at("id").fail("duplicate id '" + frame.id + "'");
     if (!lightIds.empty())
       for (const std::string& light : frame.lightsOn)
         if (!lightIds.count(light)) scene.warnings.push_back(node.place() + ".lights_on: '" + light + "' is not in lights");
@@ -423,7 +423,7 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
 
   for (const auto& [named, place] : options.meshes)
     if (!scene.meshes.count(named))
-      scene.warnings.push_back("no surface has the mesh '" + named + "', for which a place was given");
+      scene.warnings.push_back("no surface has the mesh '" + named + "' for which a file was given");
 
   std::set<std::string> topKeys = {"glint_scene", "name", "units", "camera", "frames", "surfaces", "lights"};
   if (isMadeBySynth(root)) topKeys.insert(kMadeBy);

@@ -24,13 +24,15 @@ fs::path pathOf(const JsonNode& node, const fs::path& folder) {
 int readSessionVersion(const JsonNode& root) {
   const auto node = root.find("glint_session");
   if (!node && root.has("path") && !root.has("frames"))
-    root.fail("is a specification, not a session (glint synth makes a scene of it, glint reconstruct a session of that)");
-  if (!node && root.has("glint_scene")) root.fail("is a scene, not a session (glint reconstruct makes a session of it)");
-  if (!node) root.fail("is no session: glint_session is missing");
+    root.fail(
+        "is a specification, not a session (`glint synth` makes a scene from it, `glint reconstruct` a session from that scene)");
+  if (!node && root.has("glint_scene")) root.fail("is a scene, not a session (`glint reconstruct` makes a session from it)");
+  if (!node) root.fail("is not a session: glint_session is missing");
   const int version = node->integer();
   if (version > kSessionVersion)
-    node->fail("version " + std::to_string(version) + " is newer than this program understands (" + std::to_string(kSessionVersion) + ")");
-  if (version < 1) node->fail("version " + std::to_string(version) + " never existed");
+    node->fail("version " + std::to_string(version) + " is newer than this program supports (" + std::to_string(kSessionVersion) +
+               ")");
+  if (version < 1) node->fail("version " + std::to_string(version) + " does not exist");
   return version;
 }
 
@@ -46,7 +48,7 @@ SessionInput readSessionInput(const JsonNode& root, const fs::path& folder) {
   for (std::size_t i = 0; all && i < all->size(); ++i) {
     const JsonNode of = all->at(i).at("of");
     const auto kind = std::find_if(kFrameFiles.begin(), kFrameFiles.end(), [&](FrameFile k) { return of.text() == nameOf(k); });
-    if (kind == kFrameFiles.end()) of.fail("'" + of.text() + "' is none of: photographs, depth, normals, masks");
+    if (kind == kFrameFiles.end()) of.fail("'" + of.text() + "' is not one of: photographs, depth, normals, masks");
     result.folders.push_back({*kind, pathOf(all->at(i).at("folder"), folder)});
   }
   if (const auto meshes = input.find("meshes"); meshes && !meshes->isNull())
@@ -66,7 +68,7 @@ namespace {
 void require(bool lies, const fs::path& path, const std::string& file, const std::string& place, const std::string& option, const fs::path& folder) {
   if (lies) return;
   throw OutsidePath(file, place,
-                    "'" + path.string() + "' lies neither in the folder of the session nor in that of its scene (" + option +
+                    "'" + path.string() + "' is outside the folders of the session and its scene (" + option +
                         " names it, --allow-outside accepts it)",
                     folder);
 }

@@ -76,7 +76,7 @@ struct SurfaceCache::Impl {
       return makeDepthMap(**depth, frame.camera, options);
     }
     const auto it = sources.find(frame.surface);
-    if (it == sources.end()) return Failure{Reason::NoSurface, "there is no surface '" + frame.surface + "'"};
+    if (it == sources.end()) return Failure{Reason::NoSurface, "surface '" + frame.surface + "' does not exist"};
     if (it->second.analytic) return makeAnalytic(*it->second.analytic);
     if (!it->second.mesh) return Failure{Reason::NoSurface, "surface '" + frame.surface + "' is neither a mesh nor analytic"};
     TriangleMesh mesh = once(meshes, frame.surface, [&] { return readMesh(*it->second.mesh); });

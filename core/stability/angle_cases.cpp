@@ -39,7 +39,7 @@ void addAngleCases(Cases& cases) {
     c.parameter = parameter;
     // The unit vectors are doubles: alpha itself is known to round-off of 1, and L + V to that over its length.
     c.tolerance = std::max(1e-9, 8 * kRound / alpha / std::cos(grazing * std::numbers::pi / 180));
-    if (c.tolerance > 1e-9) c.note = "8 units of round-off of the unit vectors, over alpha; acos would lose half of the digits";
+    if (c.tolerance > 1e-9) c.note = "8 units of round-off of the unit vectors, over alpha; acos would lose half the digits";
     c.run = [=] { return angleCase(alpha, grazing, light, point, 0); };
     cases.push_back(c);
   };

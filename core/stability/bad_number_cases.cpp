@@ -57,7 +57,7 @@ std::vector<ConicView> threeViews() {
 
 void addBadNumberCases(Cases& cases) {
   const auto add = [&](const char* name, std::vector<Reason> reasons, std::function<Outcome<Measured>()> run,
-                       const char* note = "no number, no answer") -> Case& {
+                       const char* note = "not a number, so no answer") -> Case& {
     Case c;
     c.stage = "bad numbers";
     c.name = name;
@@ -171,7 +171,7 @@ void addBadNumberCases(Cases& cases) {
   });
   add(
       "all contour points the same", {Reason::TooFewPoints, Reason::RankDeficient},
-      [] { return failureOf(fitEllipse(std::vector<Pixel>(36, Pixel(320.5, 240.25)))); }, "a point is no ellipse");
+      [] { return failureOf(fitEllipse(std::vector<Pixel>(36, Pixel(320.5, 240.25)))); }, "a point is not an ellipse");
   add(
       "contour points on a line", {Reason::RankDeficient},
       [] {
@@ -179,7 +179,7 @@ void addBadNumberCases(Cases& cases) {
         for (int i = 0; i < 36; ++i) p.emplace_back(300 + i, 200 + 0.5 * i);
         return failureOf(fitEllipse(p));
       },
-      "a line is no ellipse");
+      "a line is not an ellipse");
 
   const auto answer = [&](const char* name, double tolerance, std::function<Outcome<Measured>()> run, const char* note = "") {
     Case c;
@@ -223,7 +223,7 @@ void addBadNumberCases(Cases& cases) {
         const Light light = Light::homogeneous(Eigen::Vector4d(3e-310, 4e-310, 0, 1e-310));
         return Measured{(light.position() - Eigen::Vector3d(3, 4, 0)).norm() / 5};
       },
-      "denormals have 13 digits left here");
+      "denormals have only 13 digits here");
 }
 
 }  // namespace glint::stability

@@ -195,7 +195,7 @@ void addLightCases(Cases& cases) {
     };
     cases.push_back(c);
     c.name = "one ray";
-    c.note = "a ray is no point";
+    c.note = "one ray does not define a point";
     c.reasons = {Reason::TooFewViews};
     c.run = [d]() -> Outcome<Measured> {
       const Outcome<Triangulation> r = triangulateLight({{{0, 0, 0}, d, Eigen::Vector3d::UnitZ()}});
@@ -223,9 +223,9 @@ void addLightCases(Cases& cases) {
   add(b, "1,000 views", 1000, 1e-9, "", [=] { return bundleCase<long double>({.views = 1000, .points = 8}, lamp, 1); });
   add(b, "6 views, each 20 times", 20, 1e-9, "",
       [=] { return bundleCase<Real>({.views = 120, .points = 12, .distinct = 6}, lamp, 1); });
-  add(b, "cameras 1e-6 m apart", 1e-6, 1e-9, "one contour tells the light already",
+  add(b, "cameras 1e-6 m apart", 1e-6, 1e-9, "one contour already determines the light",
       [=] { return bundleCase<Real>({.base = 1e-6}, lamp, 1e6); });
-  add(b, "all cameras in one centre", 0, 1e-9, "one contour tells the light already",
+  add(b, "all cameras in one centre", 0, 1e-9, "one contour already determines the light",
       [=] { return bundleCase<Real>({.oneCentre = true}, lamp, 1); });
   add(b, "focal length 50 px", 50, 1e-9, "", [=] { return bundleCase<Real>({.focal = 50}, lamp, 1); });
   add(b, "focal length 50,000 px", 5e4, 1e-9, "", [=] { return bundleCase<Real>({.focal = 5e4}, lamp, 1); });
@@ -237,7 +237,7 @@ void addLightCases(Cases& cases) {
                            Refined{"bundle, extent of the light", Refine::Extent}}) {
     const char* const stage = r.stage;
     const Refine what = r.what;
-    const char* const note = "exact contours of a point: there is nothing to refine";
+    const char* const note = "exact contours of a point light: nothing to refine";
     add(stage, "light at 2 m", 2, 1e-9, note, [=] { return bundleCase<Real>({.refine = what}, lamp, 1); });
     add(stage, "scene scale 1e-6", 1e-6, 1e-9, note, [=] { return bundleCase<Real>({.scale = 1e-6, .refine = what}, Light::at(2e-6 * d), 1); });
     add(stage, "scene scale 1e6", 1e6, 1e-9, note, [=] { return bundleCase<Real>({.scale = 1e6, .refine = what}, Light::at(2e6 * d), 1); });

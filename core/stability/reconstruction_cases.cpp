@@ -164,7 +164,7 @@ void addReconstructionCases(Cases& cases) {
       return Measured{m->error, condition};
     });
     if (64 * kRound * condition > 1e-9) {
-      c.note = "the outlines show the depth by the square of the parallax: their round-off over it leaves fewer than nine digits";
+      c.note = "outlines show depth through the squared parallax: their round-off over it leaves fewer than nine digits";
       c.expect = Expect::Failure;
       c.reasons = {Reason::RankDeficient};
     }

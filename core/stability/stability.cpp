@@ -36,7 +36,7 @@ StabilityResult judge(const Case& c, const Outcome<Measured>& outcome) {
   r.condition = finite(outcome->condition);
   r.relativeError = finite(outcome->error);
   if (c.expect == Expect::Failure) {
-    r.reason = "an answer where no unique one exists";
+    r.reason = "an answer although no unique one exists";
   } else if (outcome->error <= c.tolerance) {  // false for NaN
     r.verdict = CaseVerdict::Accurate;
   } else {

@@ -408,7 +408,9 @@ class Finder {
 
   Outcome<std::vector<BrightestPoint>> result(bool anyHit) && {
     if (found_.empty())
-      return Failure{Reason::NoBrightestPoint, anyHit ? rejected_.text() : "off the surface: no ray of the search meets it; it is out of view or seen edge on"};
+      return Failure{
+          Reason::NoBrightestPoint,
+          anyHit ? rejected_.text() : "off the surface: no ray of the search meets it; it is out of view or seen edge-on"};
     const Pixel centre(0.5 * (sighting_.camera.width - 1), 0.5 * (sighting_.camera.height - 1));
     std::sort(found_.begin(), found_.end(), [&](const BrightestPoint& a, const BrightestPoint& b) {
       // Angles below kZeroAngle are round-off and must not decide the order.

@@ -68,7 +68,7 @@ double medianDepth(const cv::Mat1f& depth) {
 
 Outcome<std::shared_ptr<const Surface>> makeDepthMap(const Image& depth, const Camera& camera, const DepthMapOptions& options) {
   require(depth.channels == 1, "depth map: one channel expected");
-  require(depth.width == camera.width && depth.height == camera.height, "depth map: of another size than the camera's images");
+  require(depth.width == camera.width && depth.height == camera.height, "depth map: the size differs from the camera's images");
   require(options.normalRadius > 0 && options.largestHolePx >= 0 && options.inpaintRadiusPx > 0 && options.jump > 0,
           "depth map: radii and jump must be positive");
   const int width = depth.width, height = depth.height;

@@ -28,8 +28,9 @@ void requireSynthFolder(const fs::path& folder, const std::vector<fs::path>& nam
   for (const fs::path& name : names) {
     std::error_code ignored;
     if (fs::exists(folder / name, ignored))
-      throw InputError((folder / name).string(), "",
-                       "exists, and no scene.json there says that synth wrote it; it stays as it is: choose another folder");
+      throw InputError(
+          (folder / name).string(), "",
+          "already exists, and no scene.json there says that synth wrote it; nothing is overwritten: choose another folder");
   }
 }
 

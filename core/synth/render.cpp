@@ -303,7 +303,7 @@ Scene synthesise(const SynthSpec& spec, const fs::path& folder, const ProgressFn
   scene.folder = fs::absolute(folder).lexically_normal();
   scene.file = scene.folder / "scene.json";
   if (std::error_code ignored; fs::equivalent(spec.scene.file, scene.file, ignored))
-    throw InputError(scene.file.string(), "", "would replace the specification; choose another folder");
+    throw InputError(scene.file.string(), "", "would overwrite the specification; choose another folder");
   const std::map<fs::path, std::string> meshes = namesOfMeshes(scene);
   requireSynthFolder(scene.folder, filesWritten(scene, meshes, spec.render));
   atomicFiles(folder, "scene.json", [&](const fs::path& out) {

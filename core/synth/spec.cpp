@@ -20,13 +20,13 @@ std::string shown(double v) { return formatted("%.6g", v); }
 
 double inRange(const JsonNode& node, double low, double high) {
   const double v = node.number();
-  if (!(v >= low && v <= high)) node.fail("must lie in " + shown(low) + " .. " + shown(high));
+  if (!(v >= low && v <= high)) node.fail("must be in " + shown(low) + " .. " + shown(high));
   return v;
 }
 
 int countOf(const JsonNode& node, int low, int high) {
   const int v = node.integer();
-  if (v < low || v > high) node.fail("must lie in " + std::to_string(low) + " .. " + std::to_string(high));
+  if (v < low || v > high) node.fail("must be in " + std::to_string(low) + " .. " + std::to_string(high));
   return v;
 }
 
@@ -97,14 +97,14 @@ void setParameter(AnalyticSpec& spec, const JsonNode& name, double value) {
   else if (torus && parameter == "minor_radius")
     spec.minorRadius = value;
   else
-    name.fail("'" + parameter + "' is not a parameter of a " + spec.type);
+    name.fail("'" + parameter + "' is not a parameter of " + spec.type);
 }
 
 Material readMaterial(const JsonNode& render) {
   Material material;
   if (const auto n = render.find("reflectance")) {
     const std::optional<Lobe> lobe = lobeOf(n->text());
-    if (!lobe) n->fail("'" + n->text() + "' is none of: phong, blinn-phong, torrance-sparrow, ggx");
+    if (!lobe) n->fail("'" + n->text() + "' is not one of: phong, blinn-phong, torrance-sparrow, ggx");
     material.lobe = *lobe;
   }
   if (const auto n = render.find("roughness")) material.roughness = inRange(*n, 1e-4, 10);
@@ -129,7 +129,7 @@ RenderOptions readRender(const JsonNode& render) {
   }
   if (const auto n = render.find("jpeg_quality")) {
     options.jpegQuality = countOf(*n, 1, 100);
-    if (options.bits != 8) n->fail("needs \"bits\": 8, which is all that JPEG holds");
+    if (options.bits != 8) n->fail("needs \"bits\": 8, the only depth of JPEG");
   }
   return options;
 }
@@ -161,7 +161,7 @@ SynthSpec readSynthSpec(const std::filesystem::path& file) {
   for (std::size_t i = 0; i < lights.size(); ++i) {
     scene.lights.push_back(readLightJson(lights.at(i)));
     const std::string& id = scene.lights.back().id;
-    if (!lightIds.insert(id).second) lights.at(i).at("id").fail("the id '" + id + "' stands twice");
+    if (!lightIds.insert(id).second) lights.at(i).at("id").fail("duplicate id '" + id + "'");
   }
   if (scene.lights.empty()) lights.fail("is empty: a highlight needs a light");
   const JsonNode surfaces = root.at("surfaces");
@@ -172,7 +172,7 @@ SynthSpec readSynthSpec(const std::filesystem::path& file) {
     if (const auto n = node.find("mesh")) {
       source.mesh = resolveInside(scene.folder, n->text(), {}, n->file(), n->place());
       std::error_code ignored;  // what cannot be asked about is not there
-      if (!std::filesystem::is_regular_file(*source.mesh, ignored)) n->fail("there is no file '" + n->text() + "'");
+      if (!std::filesystem::is_regular_file(*source.mesh, ignored)) n->fail("file '" + n->text() + "' does not exist");
     }
     if (const auto n = node.find("analytic")) source.analytic = readAnalyticJson(*n);
     if (source.mesh.has_value() == source.analytic.has_value()) node.fail("needs exactly one of mesh, analytic");
@@ -184,7 +184,7 @@ SynthSpec readSynthSpec(const std::filesystem::path& file) {
   if (const auto steps = root.find("surface_steps")) {
     const JsonNode name = steps->at("surface");
     const auto base = scene.surfaces.find(name.text());
-    if (base == scene.surfaces.end()) name.fail("there is no surface '" + name.text() + "'");
+    if (base == scene.surfaces.end()) name.fail("surface '" + name.text() + "' does not exist");
     if (!base->second.analytic) name.fail("'" + name.text() + "' is a mesh: only analytic surfaces have parameters");
     const AnalyticSpec original = *base->second.analytic;
     const std::string prefix = base->first;
@@ -216,14 +216,14 @@ SynthSpec readSynthSpec(const std::filesystem::path& file) {
         std::string surface = stepped;
         if (const auto n = node.find("surface"); n && !root.has("surface_steps")) {
           surface = n->text();
-          if (!scene.surfaces.count(surface)) n->fail("there is no surface '" + surface + "'");
+          if (!scene.surfaces.count(surface)) n->fail("surface '" + surface + "' does not exist");
         }
         addFrame(scene, camera, readPoseJson(node.at("camera_from_world")), surface);
         if (const auto n = node.find("id"); n && order.size() == 1) {
           scene.frames.back().id = readIdJson(*n);
-          if (!frameIds.insert(scene.frames.back().id).second) n->fail("the id '" + scene.frames.back().id + "' stands twice");
+          if (!frameIds.insert(scene.frames.back().id).second) n->fail("duplicate id '" + scene.frames.back().id + "'");
         } else if (!frameIds.insert(scene.frames.back().id).second) {
-          node.fail("would have the id '" + scene.frames.back().id + "', which stands already");
+          node.fail("the id '" + scene.frames.back().id + "' of this frame already exists");
         }
         if (const auto n = node.find("lights_on")) {
           scene.frames.back().lightsOn.clear();
@@ -237,7 +237,7 @@ SynthSpec readSynthSpec(const std::filesystem::path& file) {
     if (n->text() == "limit-angle")
       spec.exact.kind = ContourKind::LimitAngle;
     else if (n->text() != "radiance")
-      n->fail("'" + n->text() + "' is none of: radiance, limit-angle");
+      n->fail("'" + n->text() + "' is not one of: radiance, limit-angle");
   }
   if (const auto n = root.find("level")) spec.exact.level = inRange(*n, kLeastLevel, kMostLevel);
   if (const auto n = root.find("margin_px")) spec.exact.marginPx = inRange(*n, 0, 10000);

@@ -38,11 +38,11 @@ void choosePoint(Tradeoff& t, const TradeoffBound& bound) {
   t.chosen.reset();
   const Presets presets = presetsOf(costs);
   if (presets.exact < 0) {
-    t.reason = "No setting predicted a highlight that was observed.";
+    t.reason = "No setting predicted an observed highlight.";
     return;
   }
   t.presets = {{"fast", presets.fast}, {"balanced", presets.balanced}, {"exact", presets.exact}};
-  const auto said = [&](int i) { return describe(t, t.points[i]) + " (" + costText(t.points[i]) + " a frame)"; };
+  const auto said = [&](int i) { return describe(t, t.points[i]) + " (" + costText(t.points[i]) + " per frame)"; };
   if (bound.budgetUs) {
     int best = -1, next = -1;
     for (int i = 0; i < static_cast<int>(costs.size()); ++i) {
@@ -63,7 +63,7 @@ void choosePoint(Tradeoff& t, const TradeoffBound& bound) {
       return;
     }
     t.chosen = best;
-    t.reason = "The most accurate setting within " + budget + " a frame is " + said(best) +
+    t.reason = "The most accurate setting within " + budget + " per frame is " + said(best) +
                (next < 0 ? "; no slower one is more accurate."
                          : "; the next more accurate one, " + said(next) + ", is over the budget.");
     return;
@@ -105,7 +105,7 @@ const TradeoffPoint& pointOfPreset(const Tradeoff& t, const std::string& name) {
   if (it == t.presets.end()) {
     std::string known;
     for (const auto& [preset, index] : t.presets) known += preset + ", ";
-    throw fail("there is no such preset; known: " + known + "chosen");
+    throw fail("unknown preset; known: " + known + "chosen");
   }
   return t.points[it->second];
 }

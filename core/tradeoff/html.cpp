@@ -86,7 +86,7 @@ std::string svgOf(const Tradeoff& t) {
       svg += "<circle cx=\"" + px(x(p)) + "\" cy=\"" + px(y(p)) + "\" r=\"" + (onFront ? "5.5" : "4") + "\" stroke=\"" + colour +
              "\" stroke-width=\"1.6\" fill=\"" + (onFront ? colour : "none") + "\"><title>" + std::to_string(i) + ": " +
              escaped(describe(t, p)) + "\n" + format("%.4g", p.contourErrorPct) + " %, IoU " + format("%.4f", p.iou) +
-             ", coverage " + format("%.3f", p.coverage) + ", " + format("%.4g", p.predictUs) + " µs a frame</title></circle>\n";
+             ", coverage " + format("%.3f", p.coverage) + ", " + format("%.4g", p.predictUs) + " µs/frame</title></circle>\n";
     }
   std::map<int, std::string> labels;
   for (const char* name : {"fast", "balanced", "exact"})
@@ -142,7 +142,7 @@ std::string tradeoffHtml(const Tradeoff& t) {
           "</b></p>\n";
   html += svgOf(t) + legendOf(t);
   html +=
-      "<h2>Settings measured in full</h2>\n<table><tr><th></th><th class=\"text\">setting</th><th>&micro;s a frame</th><th>error "
+      "<h2>Settings measured in full</h2>\n<table><tr><th></th><th class=\"text\">setting</th><th>&micro;s/frame</th><th>error "
       "%</th><th>IoU</th>"
       "<th>coverage</th><th>predicted</th><th>matched / missed / spurious</th><th>fit ms</th><th>peak MB</th></tr>\n";
   for (int i = 0; i < static_cast<int>(t.points.size()); ++i) {
@@ -159,16 +159,16 @@ std::string tradeoffHtml(const Tradeoff& t) {
             "</td><td>" + format("%.1f", p.peakMb) + "</td></tr>\n";
   }
   html +=
-      "</table>\n<p class=\"faded\">Only settings that differ from the program's defaults are named. Error: symmetric mean "
+      "</table>\n<p class=\"faded\">Only settings that differ from the defaults are listed. Error: symmetric mean "
       "distance between predicted and "
       "observed contour, in percent of the equivalent diameter of the observed region, mean over held-out highlights. Where a "
-      "setting missed highlights, invented "
-      "some or left directions out, the plot counts these as 100 %. " +
+      "setting missed highlights, predicted "
+      "spurious ones or left directions out, the plot counts these as 100 %. " +
       escaped(t.measurement) + "</p>\n";
   std::map<std::string, std::vector<const PrunedPoint*>> kinds;
   for (const PrunedPoint& p : t.pruned) kinds[p.kind].push_back(&p);
-  html += "<h2>Not measured in full</h2>\n<p>" + std::to_string(t.trials) + " settings were tried on few frames; " +
-          std::to_string(t.pruned.size()) + " of those considered were given up, for these reasons:</p>\n";
+  html += "<h2>Not measured in full</h2>\n<p>" + std::to_string(t.trials) + " settings were tried on a few frames; " +
+          std::to_string(t.pruned.size()) + " of those considered were dropped, for these reasons:</p>\n";
   for (const auto& [kind, list] : kinds) {
     html += "<details><summary>" + std::to_string(list.size()) + " " + escaped(kind) + "</summary>\n<table>";
     for (const PrunedPoint* p : list) {

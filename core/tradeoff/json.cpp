@@ -98,7 +98,7 @@ std::string tradeoffJson(const Tradeoff& t) {
 
 Tradeoff readTradeoff(const JsonNode& node) {
   Tradeoff t;
-  if (node.at("glint_tradeoff").integer() != 1) node.at("glint_tradeoff").fail("this program understands version 1");
+  if (node.at("glint_tradeoff").integer() != 1) node.at("glint_tradeoff").fail("only version 1 is supported");
   t.input = node.at("input").text();
   for (std::size_t i = 0; i < node.at("train").size(); ++i) t.train.push_back(node.at("train").at(i).integer());
   t.trainSpec = node.at("train_spec").text();
@@ -107,7 +107,7 @@ Tradeoff readTradeoff(const JsonNode& node) {
     try {
       paramSpec(t.knobs.back());
     } catch (const InputError&) {
-      node.at("knobs").at(i).fail("there is no such setting");
+      node.at("knobs").at(i).fail("unknown setting");
     }
   }
   const JsonNode points = node.at("points");
@@ -133,7 +133,7 @@ Tradeoff readTradeoff(const JsonNode& node) {
   }
   const auto index = [&](const JsonNode& n) {
     const int i = n.integer();
-    if (i < 0 || i >= static_cast<int>(t.points.size())) n.fail("is no index into points");
+    if (i < 0 || i >= static_cast<int>(t.points.size())) n.fail("is not an index into points");
     return i;
   };
   const JsonNode presets = node.at("presets");
@@ -175,7 +175,7 @@ std::string tradeoffTable(const Tradeoff& t) {
   std::map<std::string, int> kinds;
   for (const PrunedPoint& p : t.pruned) ++kinds[p.kind];
   out += "\n" + std::to_string(t.points.size()) + " settings measured in full, " + std::to_string(t.trials) +
-         " tried on few frames, " + std::to_string(t.pruned.size()) + " pruned";
+         " tried on a few frames, " + std::to_string(t.pruned.size()) + " dropped";
   std::string list;
   for (const auto& [kind, count] : kinds) list += (list.empty() ? ": " : ", ") + std::to_string(count) + " " + kind;
   return out + list + ".\n" + t.measurement + "\n" + t.reason + "\n";

@@ -42,7 +42,7 @@ void requireHeldOutFrames(const Scene& scene, const InspectionRequest& request) 
   for (int f = 0; f < frames; ++f)
     if (!in(request.excluded, f) && (train.perSurface || !in(train.frames, f))) return;
   std::string what =
-      "no frame is left to measure the error on: each of the " + std::to_string(frames) + " is a training frame or left out";
+      "no frame is left to measure the error on: each of the " + std::to_string(frames) + " is a training frame or excluded";
   if (frames > 1) what += "; train with fewer, for example --train first:" + std::to_string(std::min(frames - 1, 4));
   throw InputError("", "--train " + request.train, what);
 }
@@ -118,7 +118,7 @@ Tradeoff measureTradeoff(std::shared_ptr<const Scene> scene, const InspectionReq
       std::to_string(options.repeats) +
       " repeats. Memory: peak resident size of the whole process while it fits and predicts all frames " +
       (bench.memoryResets() ? "with this setting (the kernel's high-water mark, reset before)."
-                            : "since it started (the system does not allow to reset the mark).");
+                            : "since it started (the system does not allow resetting the mark).");
   return t;
 }
 

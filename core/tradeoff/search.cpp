@@ -115,8 +115,8 @@ class Search {
     for (const auto& [other, index] : bases_) {
       if (other == model || !clearlyDominates(tried_[index].cost(), mine.cost(), kHopelessError, kHopelessTime)) continue;
       prune(mine.trial, "model dominated",
-            "none of its knobs was tried: " + costText(mine.cost()) + " against " + costText(tried_[index].cost()) + " with " +
-                other,
+            "none of its settings was varied: " + costText(mine.cost()) + " against " + costText(tried_[index].cost()) +
+                " with " + other,
             mine.cost());
       return true;
     }
@@ -191,7 +191,7 @@ class Search {
           if (const int better = dominator(expected); better >= 0) {
             seen_.insert(idOf(t, knobs_));
             prune(t, "expected to be dominated",
-                  "its knobs one by one promise " + costText(expected) + ", worse than " + costText(tried_[better].cost()) +
+                  "its settings, one by one, promise " + costText(expected) + ", worse than " + costText(tried_[better].cost()) +
                       " with " + tried_[better].trial.model);
             continue;
           }
@@ -226,7 +226,7 @@ class Search {
         const auto same = std::find_if(kept.begin(), kept.end(), [&](int k) { return sameAs(tried_[k], t); });
         if (same != kept.end()) {
           prune(t.trial, "indistinguishable",
-                costText(t.cost()) + ", as " + costText(tried_[*same].cost()) + " of the same model", t.cost());
+                costText(t.cost()) + ", the same as " + costText(tried_[*same].cost()) + " of the same model", t.cost());
           continue;
         }
         if (static_cast<int>(kept.size()) >= options_.maxFinalists) {

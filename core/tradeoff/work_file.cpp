@@ -67,7 +67,7 @@ void readOutcomes(const JsonNode& j, std::map<std::string, Outcome<T>>& all) {
     const JsonNode item = j.at(id);
     if (const auto reason = item.find("reason")) {
       const std::optional<Reason> named = reasonNamed(reason->text());
-      if (!named) reason->fail("there is no such reason");
+      if (!named) reason->fail("unknown reason");
       all.insert_or_assign(id, Failure{*named, item.at("detail").text()});
       continue;
     }

@@ -64,9 +64,9 @@ QString NumberBox::problemOf(const QString& text) const {
   if (!specialValueText().isEmpty() && given == specialValueText()) return {};
   QString why;
   const std::optional<double> value = numberFromText(given, &why);
-  if (!value) return given.isEmpty() ? tr("A number is needed here") : why;
+  if (!value) return given.isEmpty() ? tr("Enter a number") : why;
   if (!(*value >= minimum() && *value <= maximum()))
-    return tr("%1 is not within %2 … %3").arg(given, fullText(minimum()), fullText(maximum()) + suffix());
+    return tr("%1 is outside %2 … %3").arg(given, fullText(minimum()), fullText(maximum()) + suffix());
   if (whole_ && *value != std::round(*value)) return tr("%1 is not a whole number").arg(given);
   return {};
 }
@@ -114,7 +114,7 @@ QValidator::State NumberBox::validate(QString& text, int&) const {
 /// Qt asks for this when typing is finished and the text is not acceptable; it then puts the old value back.
 void NumberBox::fixup(QString& text) const {
   if (const QString problem = problemOf(text); !problem.isEmpty())
-    complain(const_cast<NumberBox*>(this), tr("%1; it stays %2").arg(problem, fullText(value()) + suffix()));
+    complain(const_cast<NumberBox*>(this), tr("%1; keeping %2").arg(problem, fullText(value()) + suffix()));
 }
 
 ParamSpec numberRange(double min, double max, double step) {

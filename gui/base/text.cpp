@@ -58,8 +58,9 @@ std::optional<double> numberFromText(const QString& typed, QString* why) {
   text.replace(QChar(0x2212), QLatin1Char('-'));  // the minus of books
   static const QRegularExpression twoMeanings(QStringLiteral("^[+-]?[1-9][0-9]{0,2},[0-9]{3}$"));
   if (twoMeanings.match(text).hasMatch())
-    return fail(QObject::tr("%1 may mean %2 or %3: write a point, or no comma")
-                    .arg(text, QString(text).replace(QLatin1Char(','), QLatin1Char('.')), QString(text).remove(QLatin1Char(','))));
+    return fail(
+        QObject::tr("%1 is ambiguous (%2 or %3): use a decimal point or no comma")
+            .arg(text, QString(text).replace(QLatin1Char(','), QLatin1Char('.')), QString(text).remove(QLatin1Char(','))));
   if (text.count(QLatin1Char(',')) == 1 && !text.contains(QLatin1Char('.'))) text.replace(QLatin1Char(','), QLatin1Char('.'));
   bool isNumber = false;
   const double value = text.toDouble(&isNumber);  // whatever the locale

@@ -135,7 +135,7 @@ void VtkCanvas::paintEvent(QPaintEvent*) {
     painter.drawImage(rect(), picture_);
   if (failed_)
     painter.drawText(rect(), Qt::AlignCenter | Qt::TextWordWrap,
-                     tr("This view needs OpenGL 3.2, which this display does not offer."));
+                     tr("This view needs OpenGL 3.2, which this display does not support."));
 }
 
 }  // namespace glint::gui

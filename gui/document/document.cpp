@@ -211,7 +211,7 @@ bool Document::setTrain(const std::string& specification, QString* error) {
 void Document::setSource(FrameSource source) {
   ViewState after = state_;
   after.request.source = source;
-  push(std::move(after), source == FrameSource::Radiance ? tr("Use the radiance") : tr("Use the photographs"));
+  push(std::move(after), source == FrameSource::Radiance ? tr("Detect in radiance") : tr("Detect in photographs"));
 }
 
 void Document::setWhatIf(const WhatIf& whatIf, const QString& text, const QString& mergeKey) {

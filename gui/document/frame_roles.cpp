@@ -20,9 +20,9 @@ QString roleName(FrameRole role) {
 }
 
 void addRoles(QMenu& menu, Document& document, int frame) {
-  for (const auto& [role, title] :
-       {std::pair(FrameRole::Training, QObject::tr("&Train on it")), std::pair(FrameRole::HeldOut, QObject::tr("Hol&d it out")),
-        std::pair(FrameRole::Excluded, QObject::tr("E&xclude it"))}) {
+  for (const auto& [role, title] : {std::pair(FrameRole::Training, QObject::tr("&Train on this frame")),
+                                    std::pair(FrameRole::HeldOut, QObject::tr("Hol&d out this frame")),
+                                    std::pair(FrameRole::Excluded, QObject::tr("E&xclude this frame"))}) {
     QAction* action = menu.addAction(title, &document, [&document, frame, role = role] { document.setRole(frame, role); });
     action->setCheckable(true);
     action->setChecked(document.role(frame) == role);

@@ -171,7 +171,7 @@ void Runner::save(OpenedPtr opened, InspectionPtr results, const std::string& pa
           };
           engine_.save(*opened, results.get(), path, progress);
         } catch (const Stopped&) {
-          problem = toQString(path) + tr(": saving was stopped, nothing was written");
+          problem = toQString(path) + tr(": saving stopped; nothing was written");
         } catch (const std::exception& e) {
           problem = toQString(e.what());
         }

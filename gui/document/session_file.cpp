@@ -88,7 +88,8 @@ Opened openInput(const std::string& path, const Relinked& instead) {
     opened.isSession = true;
     opened.stamp = stamp;
     if (recovery)
-      opened.notice = session.string() + ": recovery: is not believed, for this program did not leave the file behind; it is saved to itself";
+      opened.notice =
+          session.string() + ": recovery: ignored because this program did not write the file; saving writes to this file";
   } else {
     opened.unsaved = true;  // the picture holds it, and is no session to save to
   }

@@ -94,7 +94,7 @@ ExplainPanel::ExplainPanel(Document& document, QWidget* parent)
   next_->setIcon(icon(QStringLiteral("next")));
   leave_->setObjectName(QStringLiteral("explain.leave"));
   leave_->setText(tr("Leave"));
-  leave_->setToolTip(tr("Shows the layers that were shown before"));
+  leave_->setToolTip(tr("Restores the previous layers"));
   place_->setAlignment(Qt::AlignCenter);
   bar->addWidget(back_);
   bar->addWidget(next_);
@@ -176,7 +176,7 @@ void ExplainPanel::back() { goTo(step() - 1); }
 
 void ExplainPanel::openLesson(const QString& id) {
   const QString file = lessonFile(id);
-  if (file.isEmpty()) return emit problem(tr("The session of the lesson %1 is not beside the program").arg(id));
+  if (file.isEmpty()) return emit problem(tr("Cannot find the session of lesson %1 beside the program").arg(id));
   emit lessonRequested(file);
 }
 
@@ -237,7 +237,7 @@ void ExplainPanel::leave() {
   set(options, kLines, linesBefore_);
   lookPending_ = false;
   lookedAt_.clear();
-  document_.setView(layersBefore_, options, tr("Leave the explanation"));
+  document_.setView(layersBefore_, options, tr("Leave explanation"));
   emit look(QStringLiteral("scene"), -1, QString());
 }
 
@@ -315,16 +315,15 @@ QString ExplainPanel::overview() const {
   const Lesson* lesson = lessonOf(document_);
   if (!lesson) {
     QString html = tr(
-        "<p>Eleven steps from the photograph to the predicted highlight, on the scene that is open: each with its picture, its "
-        "equation and its "
-        "numbers, and with what breaks here.</p><h4>Lessons</h4>");
+        "<p>Eleven steps from the photograph to the predicted highlight of the open scene, each with its picture, equation and "
+        "numbers, and the assumptions that break here.</p><h4>Lessons</h4>");
     for (const Lesson& l : lessons())
       html += QStringLiteral("<p><a href='action:lesson.%1'>%2</a></p>").arg(l.id, l.title.toHtmlEscaped());
     return html;
   }
   QString html = QStringLiteral("<h3>%1</h3><p>%2</p><h4>%3</h4>")
                      .arg(tr("Lesson %1: %2").arg(lessons().indexOf(*lesson) + 1).arg(lesson->title.toHtmlEscaped()), lesson->see,
-                          tr("Go through"));
+                          tr("Steps"));
   for (int i = 0; i < explainTexts().steps.size(); ++i) {  // numbered as in the list of all steps
     const ExplainText& t = explainTexts().steps[i];
     if (lesson->steps.contains(t.id))
@@ -347,10 +346,10 @@ QString ExplainPanel::html() const {
           .arg(text.title.toHtmlEscaped(), words.text.toHtmlEscaped(), words.equation.toHtmlEscaped(),
                palette().color(QPalette::PlaceholderText).name(), text.section.toHtmlEscaped());
   if (const Lesson* lesson = lessonOf(document_); lesson && lesson->remarks.contains(text.id))
-    html += box(accentColour(), (document_.request() == lessonRequest_
-                                     ? tr("<b>In this lesson.</b> %1")
-                                     : tr("<b>In this lesson, as it was opened</b> (what is on screen was changed since). %1"))
-                                    .arg(lesson->remarks.value(text.id)));
+    html += box(accentColour(),
+                (document_.request() == lessonRequest_ ? tr("<b>In this lesson.</b> %1")
+                                                       : tr("<b>In this lesson as opened</b> (changed since then). %1"))
+                    .arg(lesson->remarks.value(text.id)));
   if (!explanation_ || now >= int(explanation_->steps.size())) return html;
   const ExplainStep& s = explanation_->steps[std::size_t(now)];
   const Scene& scene = *document_.scene();
@@ -369,43 +368,43 @@ QString ExplainPanel::html() const {
                             explanation_->model.empty() ? QString() : tr(", model %1").arg(escaped(explanation_->model))));
   // Whether "any camera" is a new one here.
   if (text.id == QLatin1String("projection") && !s.failure && inspection)
-    html +=
-        QStringLiteral("<p>%1</p>")
-            .arg(inspection->isTraining(explanation_->frame) ? tr("This camera is not new to the model: its frame has trained.")
-                                                             : tr("This camera is new to the model: its frame has not trained."));
+    html += QStringLiteral("<p>%1</p>")
+                .arg(inspection->isTraining(explanation_->frame)
+                         ? tr("This camera is not new to the model: it was trained on this frame.")
+                         : tr("This camera is new to the model: it was not trained on this frame."));
   // A frame that has not trained still has its own contour: what comes from that, and what from the others?
   const bool ofObserved = text.id == QLatin1String("limit-angles") || text.id == QLatin1String("canonical-ellipse");
   if (const auto inspection = document_.inspection();
       ofObserved && !s.failure && inspection && !inspection->isTraining(explanation_->frame))
-    html +=
-        box(palette().color(QPalette::Highlight),
-            tr("<b>Observed here:</b> the contour, from which this walk goes out. <b>Learnt from other frames:</b> the light; "
-               "no model has learnt from this frame. <b>Predicted:</b> %1.")
-                .arg(inspection->models.count(canonicalModel().id()) ? tr("only the dotted ellipse of the frame view") : tr("nothing")));
+    html += box(palette().color(QPalette::Highlight),
+                tr("<b>Observed here:</b> the contour on which this walk is based. <b>From other frames:</b> the light; "
+                   "no model was trained on this frame. <b>Predicted:</b> %1.")
+                    .arg(inspection->models.count(canonicalModel().id()) ? tr("only the dotted ellipse in the frame view")
+                                                                         : tr("nothing")));
   // What is wrong comes first: a low window shows no more than that.
-  if (s.failure) html += box(errorColour(), tr("This scene does not get here: %1").arg(escaped(s.failure->message())));
+  if (s.failure) html += box(errorColour(), tr("This scene does not reach this step: %1").arg(escaped(s.failure->message())));
   for (const BrokenAssumption& b : s.broken)
     html += box(warningColour(), explainTexts().broken.value(toQString(b.id)).toHtmlEscaped() + numbersTable(b.numbers));
   if (!s.failure && s.broken.empty() && !walk_->problem().isEmpty() && showsWalk(text))
-    html += box(warningColour(), tr("There is no walk to show: %1").arg(walk_->problem().toHtmlEscaped()));
+    html += box(warningColour(), tr("No walk to show: %1").arg(walk_->problem().toHtmlEscaped()));
   return html + (s.broken.empty() && !s.failure ? QString() : QStringLiteral("<br>")) + numbersTable(s.numbers);
 }
 
 void ExplainPanel::addActions(Actions& actions, QMenu* menu) {
   actions_ = &actions;
-  actions.add("explain.start", menu, tr("&Explain what is on screen"), [this] { start(); }, {{Qt::Key_F1}});
+  actions.add("explain.start", menu, tr("&Explain this scene"), [this] { start(); }, {{Qt::Key_F1}});
   actions.add("explain.next", menu, tr("&Next step"), [this] { next(); }, {{QKeySequence("Ctrl+Right")}});
   actions.add("explain.back", menu, tr("Step &back"), [this] { back(); }, {{QKeySequence("Ctrl+Left")}});
-  actions.add("explain.leave", menu, tr("&Leave the explanation"), [this] { leave(); });
+  actions.add("explain.leave", menu, tr("&Leave explanation"), [this] { leave(); });
   menu->addSeparator();
-  actions.add("explain.play-walk", menu, tr("&Play or pause the walk"), [this] { walk_->toggle(); },
-              {{Qt::Key_W}, "play", tr("The limit-angle walk of the selected direction, on S and on T")});
-  actions.add("explain.walk-on", menu, tr("Walk one step &on"), [this] { walk_->setStep(walk_->step() + 1); },
+  actions.add("explain.play-walk", menu, tr("&Play or pause walk"), [this] { walk_->toggle(); },
+              {{Qt::Key_W}, "play", tr("Limit-angle walk of the selected direction, on S and T")});
+  actions.add("explain.walk-on", menu, tr("Walk one step &forward"), [this] { walk_->setStep(walk_->step() + 1); },
               {{Qt::Key_Period}});
   actions.add("explain.walk-back", menu, tr("Walk one step bac&k"), [this] { walk_->setStep(walk_->step() - 1); },
               {{Qt::Key_Comma}});
   menu->addSeparator();
-  QMenu* taught = menu->addMenu(tr("L&essons"));
+  QMenu* taught = menu->addMenu(tr("Less&ons"));
   for (const Lesson& lesson : lessons())
     actions.add("lesson." + lesson.id, taught, tr("Lesson %1: %2").arg(taught->actions().size() + 1).arg(lesson.title),
                 [this, id = lesson.id] { openLesson(id); });

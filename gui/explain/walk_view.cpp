@@ -94,7 +94,7 @@ WalkView::WalkView(Document& document, WalkPlayer& player, QWidget* parent)
   play_->setObjectName(QStringLiteral("explain.play"));
   play_->setIconSize({14, 14});
   slider_->setObjectName(QStringLiteral("explain.walk-step"));
-  slider_->setToolTip(tr("How far the walk has come: on S until the limit angle, on T until the same angle"));
+  slider_->setToolTip(tr("Progress of the walk: on S to the limit angle, on T to the same angle"));
   row->addWidget(play_);
   row->addWidget(slider_, 1);
   row->addWidget(where_);
@@ -121,7 +121,7 @@ void WalkView::refresh() {
   slider_->setEnabled(story != nullptr);
   play_->setEnabled(story != nullptr);
   play_->setIcon(icon(player_.playing() ? QStringLiteral("pause") : QStringLiteral("play")));
-  play_->setToolTip(player_.playing() ? tr("Pause (W)") : tr("Play the walk (W)"));
+  play_->setToolTip(player_.playing() ? tr("Pause (W)") : tr("Play walk (W)"));
   where_->setText(story ? tr("%1 of %2").arg(player_.step() + 1).arg(story->steps()) : QString());
   picture_->update();
 }

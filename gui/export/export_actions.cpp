@@ -101,7 +101,7 @@ void ExportActions::addActions(Actions& actions, QMenu* menu) {
       };
     });
   };
-  actions.add("export.frame", menu, tr("&Frame with its errors…"), [=, this] {
+  actions.add("export.frame", menu, tr("&Frame with errors…"), [=, this] {
     picture(tr("Frame as picture"), QStringLiteral("frame.png"),
             [](const Inspection& i, int frame, const viz::PictureOptions& o) {
               return viz::framePicture(i, frame, photographOf(i, frame), kFigureWidth, kFigureHeight, o);
@@ -113,8 +113,8 @@ void ExportActions::addActions(Actions& actions, QMenu* menu) {
               return viz::ladderPicture(i, frame, photographOf(i, frame), kFigureWidth, kFigureHeight, o);
             });
   });
-  actions.add("export.plots", menu, tr("Errors over frames as &picture…"), [=, this] {
-    picture(tr("Errors as picture"), QStringLiteral("errors.png"), [](const Inspection& i, int, const viz::PictureOptions& o) {
+  actions.add("export.plots", menu, tr("Error &plot…"), [=, this] {
+    picture(tr("Error plot"), QStringLiteral("errors.png"), [](const Inspection& i, int, const viz::PictureOptions& o) {
       return viz::plotsPicture(i, kFigureWidth, kFigureHeight, o);
     });
   });
@@ -147,7 +147,7 @@ void ExportActions::addActions(Actions& actions, QMenu* menu) {
       return [inspection = document_.inspection()](const QString& file) { writeText(file, evaluationCsv(*inspection)); };
     });
   });
-  actions.add("export.coco", menu, tr("Labels of the plotted model (C&OCO)…"), [=, this] {
+  actions.add("export.coco", menu, tr("Labels of plotted model (C&OCO)…"), [=, this] {
     ask(tr("Labels"), QStringLiteral("labels.json"), tr("COCO (*.json)"), [this]() -> Write {
       return [inspection = document_.inspection(), model = document_.plottedModel()](const QString& file) {
         writeText(file, cocoJson(*inspection, model, allFrames(*inspection)));
@@ -158,22 +158,22 @@ void ExportActions::addActions(Actions& actions, QMenu* menu) {
               [this] {
                 if (!document_.inspection()) return;
                 FolderDialog dialog(tr("Labels with masks"),
-                                    tr("Writes a folder with a mask for every frame, light and model, and COCO labels."),
+                                    tr("Writes a folder with COCO labels and one mask per frame, light and model."),
                                     suggestedFile(document_, "labels", {}), tr("Write"), window_);
                 if (dialog.exec() != QDialog::Accepted) return;
                 rememberExport(document_, dialog.folder());
                 writeLabels(dialog.folder());
               },
-              {{}, {}, tr("A folder with a mask for each frame, light and model, and COCO labels")});
+              {{}, {}, tr("Folder with COCO labels and one mask per frame, light and model")});
   repro_->addActions(actions, menu);
   menu->addSeparator();
-  actions.add("export.command", menu, tr("Copy as co&mmand"), [this] { copyCommand(); },
-              {{QKeySequence("Ctrl+Shift+C")}, {}, tr("The command line that computes what is on screen")});
-  actions.add("export.window-command", menu, tr("Copy the &window as command"), [this] { copyWindowCommand(); },
-              {{}, {}, tr("The command line that draws this window again from the saved session")});
-  actions.add("export.diagnostic", menu, tr("Copy a &diagnostic report"), [this] {
+  actions.add("export.command", menu, tr("Copy as comma&nd"), [this] { copyCommand(); },
+              {{QKeySequence("Ctrl+Shift+C")}, {}, tr("Command line that computes these results")});
+  actions.add("export.window-command", menu, tr("Copy &window as command"), [this] { copyWindowCommand(); },
+              {{}, {}, tr("Command line that redraws this window from the saved session")});
+  actions.add("export.diagnostic", menu, tr("Copy &diagnostic report"), [this] {
     QApplication::clipboard()->setText(diagnosticReport());
-    emit message(tr("The diagnostic report is on the clipboard; it names no folder of this machine"));
+    emit message(tr("Diagnostic report copied to the clipboard; it contains no folder names of this computer"));
   });
 }
 
@@ -197,7 +197,7 @@ Outcome<std::string> ExportActions::command() const {
 Outcome<std::string> ExportActions::windowCommand() const {
   if (!document_.scene()) return Failure{Reason::NoSurface, "no scene is open"};
   if (document_.sessionFile().isEmpty() || document_.hasUnsavedChanges() || !document_.looksAsSaved())
-    return Failure{Reason::NotSupported, "a command can only open what is stored; save the session first"};
+    return Failure{Reason::NotSupported, "the command opens a saved session; save this session first"};
   const Frame& frame = document_.scene()->frames[std::size_t(document_.selection().frame)];
   const QSize size = window_->window()->size();
   const std::string layout = snapshot_ ? snapshot_().layout : std::string();
@@ -211,7 +211,7 @@ void ExportActions::copyCommand() { copy(command()); }
 void ExportActions::copyWindowCommand() { copy(windowCommand()); }
 
 void ExportActions::copy(const Outcome<std::string>& text) {
-  if (!text) return void(emit problem(tr("No command: %1").arg(toQString(text.failure().detail))));
+  if (!text) return void(emit problem(tr("Cannot copy a command: %1").arg(toQString(text.failure().detail))));
   QApplication::clipboard()->setText(exactQString(*text));
   emit message(toQString(*text));
 }
@@ -221,7 +221,7 @@ QString ExportActions::diagnosticReport() const {
       QStringLiteral("%1 %2").arg(QCoreApplication::applicationName(), QCoreApplication::applicationVersion()),
       QStringLiteral("Qt %1, %2, %3").arg(qVersion(), QSysInfo::prettyProductName(), QSysInfo::currentCpuArchitecture())};
   if (const Scene* scene = document_.scene()) {
-    lines << QStringLiteral("scene: %1 frames, %2 surfaces, %3 lights stated, %4 warnings")
+    lines << QStringLiteral("scene: %1 frames, %2 surfaces, %3 lights given, %4 warnings")
                  .arg(scene->frames.size())
                  .arg(scene->surfaces.size())
                  .arg(scene->lights.size())

@@ -77,16 +77,17 @@ bool mayReplace(QWidget* window, const Document& document, const QString& file, 
   if (!QFileInfo::exists(file)) return true;
   const QString shown = shownText(QDir::toNativeSeparators(file));
   if (isOfInput(document, file) || isShipped(file)) {
-    QMessageBox refusal(QMessageBox::Warning, QObject::tr("It stays as it is"),
-                        QObject::tr("%1 is a file of what is open, or came with the program. Choose another name.").arg(shown),
-                        QMessageBox::Ok, window);
+    QMessageBox refusal(
+        QMessageBox::Warning, QObject::tr("File not replaced"),
+        QObject::tr("%1 is an input file or came with the program, so it is not overwritten. Choose another name.").arg(shown),
+        QMessageBox::Ok, window);
     refusal.setObjectName(QStringLiteral("inputRefusal"));
     refusal.exec();
     return false;
   }
   if (!unasked) return true;
-  QMessageBox question(QMessageBox::Warning, QObject::tr("Replace the file?"), QObject::tr("%1 exists already. Replace it?").arg(shown),
-                       QMessageBox::Yes | QMessageBox::No, window);
+  QMessageBox question(QMessageBox::Warning, QObject::tr("Replace file?"),
+                       QObject::tr("%1 already exists. Replace it?").arg(shown), QMessageBox::Yes | QMessageBox::No, window);
   question.setObjectName(QStringLiteral("replaceQuestion"));
   question.setDefaultButton(QMessageBox::No);
   return question.exec() == QMessageBox::Yes;
@@ -119,29 +120,28 @@ void FigureActions::addActions(Actions& actions, QMenu* menu) {
   actions.add("export.scene", menu, tr("&3D view…"),
               [this] {
                 if (!document_.inspection()) return;
-                FigureDialog dialog(tr("3D view as a picture"), QStringLiteral("scene"), shownSize(*scene_.views().widget()),
+                FigureDialog dialog(tr("3D view as picture"), QStringLiteral("scene"), shownSize(*scene_.views().widget()),
                                     currentTheme() == Theme::Dark, window_);
                 if (dialog.exec() != QDialog::Accepted) return;
                 const QString file = askForFile(window_, document_, dialog.windowTitle(), suggestedFile(document_, "3d", ".png"),
-                                                tr("Pictures with the session inside (*.png)"));
+                                                tr("Pictures with embedded session (*.png)"));
                 if (!file.isEmpty()) writeScene(dialog.look(), file);
               },
-              {{}, {}, tr("As it is on screen, at any size, also with a transparent background")});
+              {{}, {}, tr("As on screen, at any size, optionally with a transparent background")});
   actions.add(
       "export.frame-view", menu, tr("Frame &view…"),
       [this] {
         if (!document_.scene()) return;
         QSize shown = shownSize(*frame_.canvas());
         if (frame_.secondCanvas()->isVisible()) shown.rwidth() *= 2;
-        FigureDialog dialog(tr("Frame view as a picture"), QStringLiteral("frame"), shown, currentTheme() == Theme::Dark,
-                            window_);
+        FigureDialog dialog(tr("Frame view as picture"), QStringLiteral("frame"), shown, currentTheme() == Theme::Dark, window_);
         if (dialog.exec() != QDialog::Accepted) return;
-        const QString file = askForFile(
-            window_, document_, dialog.windowTitle(), suggestedFile(document_, "frame", ".png"),
-            tr("Pictures with the session inside (*.png);;Overlays as strokes, SVG (*.svg);;Overlays as strokes, PDF (*.pdf)"));
+        const QString file =
+            askForFile(window_, document_, dialog.windowTitle(), suggestedFile(document_, "frame", ".png"),
+                       tr("Pictures with embedded session (*.png);;Vector overlays, SVG (*.svg);;Vector overlays, PDF (*.pdf)"));
         if (!file.isEmpty()) writeFrame(dialog.look(), file);
       },
-      {{}, {}, tr("As it is on screen, at any size; as SVG or PDF the contours stay strokes over the photograph")});
+      {{}, {}, tr("As on screen, at any size; SVG and PDF keep the contours as vector strokes over the photograph")});
 }
 
 void FigureActions::write(const QString& file, std::function<void()> work) {
@@ -153,7 +153,7 @@ void FigureActions::write(const QString& file, std::function<void()> work) {
 
 void FigureActions::writeScene(const FigureLook& look, const QString& file) {
   if (!file.endsWith(QStringLiteral(".png"), Qt::CaseInsensitive))
-    return void(emit problem(tr("%1: the 3D view is saved as .png").arg(file)));
+    return void(emit problem(tr("%1: the 3D view can only be saved as .png").arg(file)));
   QImage picture;
   try {
     picture = sceneFigure(look);
@@ -272,7 +272,7 @@ void FigureActions::writeFrame(const FigureLook& look, const QString& file) {
     QPainter painter(&pdf);
     paintFrames(painter, look);
   } else {
-    return void(emit problem(tr("%1: the frame view is saved as .png, .svg or .pdf").arg(file)));
+    return void(emit problem(tr("%1: the frame view can only be saved as .png, .svg or .pdf").arg(file)));
   }
   write(file, [content = bytes.data(), file] { writeBytes(file, content); });
 }

@@ -24,11 +24,11 @@ struct Preset {
   int width, height;  // px; width 0 = as on screen, `height` times; -1 = whatever is typed
 };
 const Preset kPresets[] = {{QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "As on screen"), 0, 1},
-                           {QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "Twice as on screen"), 0, 2},
+                           {QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "Twice the screen size"), 0, 2},
                            {QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "Slide, 1920 × 1080"), 1920, 1080},
                            {QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "Screen, 3840 × 2160"), 3840, 2160},
-                           {QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "Column of a paper, 85 mm at 600 dpi"), 2008, 1506},
-                           {QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "Other"), -1, 0}};
+                           {QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "Paper column, 85 mm at 600 dpi"), 2008, 1506},
+                           {QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "Custom"), -1, 0}};
 constexpr int kOther = 5;
 }  // namespace
 
@@ -49,7 +49,7 @@ FigureDialog::FigureDialog(const QString& title, const QString& kind, const QSiz
   };
   width_ = pixels("figureWidth");
   height_ = pixels("figureHeight");
-  keepShape_ = new QCheckBox(tr("Keep the &proportions"));
+  keepShape_ = new QCheckBox(tr("Keep &proportions"));
   keepShape_->setObjectName(QStringLiteral("figureKeepShape"));
   keepShape_->setChecked(true);
   form->addRow(tr("&Width"), width_);
@@ -63,7 +63,7 @@ FigureDialog::FigureDialog(const QString& title, const QString& kind, const QSiz
   transparent_->setObjectName(QStringLiteral("figureTransparent"));
   form->addRow(QString(), transparent_);
   auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel);
-  buttons->button(QDialogButtonBox::Ok)->setText(tr("Choose a file…"));
+  buttons->button(QDialogButtonBox::Ok)->setText(tr("Choose file…"));
   form->addRow(buttons);
   connect(buttons, &QDialogButtonBox::accepted, this, &FigureDialog::accept);
   connect(buttons, &QDialogButtonBox::rejected, this, &FigureDialog::reject);
@@ -127,8 +127,8 @@ void FigureDialog::followBackground() {
   const bool page = transparent_->isChecked();
   colours_->setItemText(0, page ? tr("For a dark page") : tr("Dark"));
   colours_->setItemText(1, page ? tr("For a light page") : tr("Light"));
-  colours_->setToolTip(
-      page ? tr("Lines and texts are drawn so that they are read on such a page; bright ones vanish on white paper") : QString());
+  colours_->setToolTip(page ? tr("Lines and text are drawn to be legible on such a page; bright ones vanish on white paper")
+                            : QString());
   const bool dark = page ? QSettings().value(kind_ + QStringLiteral("page-dark"), false).toBool() : dark_;
   colours_->setCurrentIndex(dark ? 0 : 1);
 }

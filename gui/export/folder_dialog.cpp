@@ -35,8 +35,8 @@ FolderRow::FolderRow(const QString& suggested, QWidget* parent)
   line_->setObjectName(QStringLiteral("newFolder"));
   line_->setMinimumWidth(360);
   grid->addWidget(line_, 0, 0);
-  auto* choose = new QPushButton(tr("Where…"));
-  choose->setToolTip(tr("Chooses the folder that the new one is to lie in"));
+  auto* choose = new QPushButton(tr("Browse…"));
+  choose->setToolTip(tr("Choose where to create the new folder"));
   choose->setAutoDefault(false);
   grid->addWidget(choose, 0, 1);
   note_->setWordWrap(true);
@@ -52,23 +52,23 @@ FolderRow::FolderRow(const QString& suggested, QWidget* parent)
 QString FolderRow::folder() const { return QDir::cleanPath(QDir::fromNativeSeparators(line_->text().trimmed())); }
 
 QString FolderRow::problem() const {
-  if (line_->text().trimmed().isEmpty()) return tr("A folder needs a name");
+  if (line_->text().trimmed().isEmpty()) return tr("Enter a folder name");
   const QFileInfo info(folder());
-  if (!info.isAbsolute()) return tr("The whole path is needed, from the root on");
-  if (taken(folder())) return tr("There is something already, and nothing is written over it");
-  if (!info.dir().exists()) return tr("There is no folder %1").arg(QDir::toNativeSeparators(info.path()));
+  if (!info.isAbsolute()) return tr("Enter the full path");
+  if (taken(folder())) return tr("This folder already exists; nothing will be overwritten");
+  if (!info.dir().exists()) return tr("Folder %1 does not exist").arg(QDir::toNativeSeparators(info.path()));
   return {};
 }
 
 void FolderRow::chooseParent() {
   const QFileInfo now(folder());
-  const QString chosen = QFileDialog::getExistingDirectory(this, tr("The new folder lies in"), now.path());
+  const QString chosen = QFileDialog::getExistingDirectory(this, tr("Location of the new folder"), now.path());
   if (!chosen.isEmpty()) line_->setText(QDir::toNativeSeparators(freeName(QDir(chosen).filePath(now.fileName()))));
 }
 
 void FolderRow::showNote() {
   const QString why = problem();
-  note_->setText(why.isEmpty() ? tr("This folder is made.") : why);
+  note_->setText(why.isEmpty() ? tr("This folder will be created.") : why);
   QPalette p = palette();
   if (!why.isEmpty()) p.setColor(QPalette::WindowText, warningColour());
   note_->setPalette(p);

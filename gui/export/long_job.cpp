@@ -42,7 +42,7 @@ LongJob::~LongJob() {
 }
 
 void LongJob::start(const QString& title, Work work) {
-  if (running_) return void(emit problem(tr("%1 is still under way").arg(title_)));
+  if (running_) return void(emit problem(tr("Still running: %1").arg(title_)));
   running_ = true;
   stop_ = false;
   title_ = title;
@@ -124,7 +124,7 @@ void LongJob::end(const Deliver& deliver, bool stopped, const QString& trouble) 
   dialog_->deleteLater();
   dialog_ = nullptr;
   if (stopped)
-    emit message(tr("%1: stopped, nothing was written").arg(title_));
+    emit message(tr("%1: stopped; nothing was written").arg(title_));
   else if (!trouble.isEmpty())
     emit problem(trouble);
   else if (deliver)

@@ -37,10 +37,10 @@ MovieActions::MovieActions(Document& document, ScenePanel& scene, FramePanel& fr
 }
 
 void MovieActions::addActions(Actions& actions, QMenu* menu) {
-  actions.add("export.movie", menu, tr("&Movie of the timeline…"), [this] { ask(MovieOf::FrameView); },
-              {{}, {}, tr("Frame after frame, as pictures with contours or through the cameras")});
-  actions.add("export.turntable", menu, tr("Movie of a &turntable…"), [this] { ask(MovieOf::Turntable); },
-              {{}, {}, tr("The 3D view turned once about the upward axis")});
+  actions.add("export.movie", menu, tr("&Movie of timeline…"), [this] { ask(MovieOf::FrameView); },
+              {{}, {}, tr("Frame by frame: photographs with contours, or the scene through each camera")});
+  actions.add("export.turntable", menu, tr("Movie of &turntable…"), [this] { ask(MovieOf::Turntable); },
+              {{}, {}, tr("One turn of the 3D view about the up axis")});
 }
 
 void MovieActions::ask(MovieOf of) {
@@ -50,7 +50,7 @@ void MovieActions::ask(MovieOf of) {
   const MovieLook look = dialog.look();
   const QString file = askForFile(
       window_, document_, tr("Movie"), suggestedFile(document_, look.of == MovieOf::Turntable ? "turntable" : "timeline", ".mp4"),
-      tr("H.264 (*.mp4);;VP8 (*.webm);;Motion JPEG (*.avi);;Lossless (*.mkv);;Series of pictures (*.png)"));
+      tr("H.264 (*.mp4);;VP8 (*.webm);;Motion JPEG (*.avi);;Lossless (*.mkv);;Image sequence (*.png)"));
   if (!file.isEmpty()) write(look, file);
 }
 
@@ -65,7 +65,7 @@ void MovieActions::start(const MovieLook& look, const QString& file, std::functi
 void MovieActions::write(const MovieLook& look, const QString& file) {
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
   if (!inspection) return;
-  if (job_.busy()) return void(emit problem(tr("Something is still being written")));
+  if (job_.busy()) return void(emit problem(tr("Another export is still running")));
   const int width = look.format.width, height = look.format.height;
   if (look.of == MovieOf::FrameView) {
     const viz::OverlayOptions shown = frame_.overlayOptions();

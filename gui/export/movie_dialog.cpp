@@ -26,13 +26,13 @@ MovieDialog::MovieDialog(MovieOf of, int frames, bool dark, QWidget* parent) : Q
   auto* form = new QFormLayout(this);
   of_ = new QComboBox;
   of_->setObjectName(QStringLiteral("movieOf"));
-  of_->addItems({tr("Timeline: frames with their contours and errors"), tr("Timeline: the scene through each frame's camera"),
-                 tr("Turntable: the 3D view turned once")});
+  of_->addItems({tr("Timeline: frames with contours and errors"), tr("Timeline: scene through each frame's camera"),
+                 tr("Turntable: one turn of the 3D view")});
   of_->setCurrentIndex(int(of));
   form->addRow(tr("&Shows"), of_);
   size_ = new QComboBox;
   for (const QSize& s : kSizes) size_->addItem(QStringLiteral("%1 × %2").arg(s.width()).arg(s.height()));
-  size_->addItem(tr("Other"));
+  size_->addItem(tr("Custom"));
   form->addRow(tr("S&ize"), size_);
   const auto pixels = [&](const char* name) {
     auto* box = new NumberBox(wholeRange(64, 8192));
@@ -52,7 +52,7 @@ MovieDialog::MovieDialog(MovieOf of, int frames, bool dark, QWidget* parent) : Q
   seconds_ = new NumberBox(numberRange(0.2, 600, 1));
   seconds_->setObjectName(QStringLiteral("movieSeconds"));
   seconds_->setSuffix(tr(" s"));
-  form->addRow(tr("One &turn takes"), seconds_);
+  form->addRow(tr("Time per &turn"), seconds_);
   colours_ = new QComboBox;
   colours_->addItems({tr("Dark"), tr("Light")});
   colours_->setCurrentIndex(dark ? 0 : 1);
@@ -61,7 +61,7 @@ MovieDialog::MovieDialog(MovieOf of, int frames, bool dark, QWidget* parent) : Q
   length_->setProperty("role", "faded");
   form->addRow(QString(), length_);
   auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel);
-  buttons->button(QDialogButtonBox::Ok)->setText(tr("Choose a file…"));
+  buttons->button(QDialogButtonBox::Ok)->setText(tr("Choose file…"));
   form->addRow(buttons);
   connect(buttons, &QDialogButtonBox::accepted, this, &MovieDialog::accept);
   connect(buttons, &QDialogButtonBox::rejected, this, &MovieDialog::reject);

@@ -18,12 +18,12 @@ namespace glint::gui {
 
 ReproDialog::ReproDialog(const Fault& fault, const QString& frame, int training, const QString& folder, QWidget* parent)
     : QDialog(parent), folder_(new FolderRow(folder)) {
-  setWindowTitle(tr("Minimal session of a fault"));
+  setWindowTitle(tr("Minimal session for an error"));
   setObjectName(QStringLiteral("reproDialog"));
   auto* form = new QFormLayout(this);
   auto* what =
-      new QLabel(tr("Searches the smallest set of training frames with which <b>%1</b> still shows in frame <b>%2</b>: %3.<br>"
-                    "Now there are %4.")
+      new QLabel(tr("Finds the smallest set of training frames that reproduces this result of <b>%1</b> in frame <b>%2</b>: %3."
+                    "<br>Training frames now: %4.")
                      .arg(nameText(fault.model).toHtmlEscaped(), frame.toHtmlEscaped(), toQString(fault.text()).toHtmlEscaped())
                      .arg(training));
   what->setTextFormat(Qt::RichText);
@@ -31,14 +31,14 @@ ReproDialog::ReproDialog(const Fault& fault, const QString& frame, int training,
   what->setMinimumWidth(420);
   form->addRow(what);
   kept_ = new QComboBox;
-  kept_->addItems({tr("stays as it is"), tr("stays, or becomes larger")});
+  kept_->addItems({tr("stays the same"), tr("stays or grows")});
   percent_ = new NumberBox(wholeRange(1, 90));
   percent_->setObjectName(QStringLiteral("reproTolerance"));
   percent_->setValue(20);
   percent_->setSuffix(tr(" %"));
   if (fault.errorPct) {  // a named failure has no size
-    form->addRow(tr("The &error"), kept_);
-    form->addRow(tr("&Tolerance, of the error"), percent_);
+    form->addRow(tr("&Error"), kept_);
+    form->addRow(tr("&Relative tolerance"), percent_);
   } else {
     kept_->setParent(this);
     percent_->setParent(this);
@@ -47,8 +47,8 @@ ReproDialog::ReproDialog(const Fault& fault, const QString& frame, int training,
   }
   auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel);
   QPushButton* go = buttons->button(QDialogButtonBox::Ok);
-  go->setText(tr("Search and write"));
-  form->addRow(tr("New &folder for it"), folder_);
+  go->setText(tr("Find and write"));
+  form->addRow(tr("New &folder"), folder_);
   form->addRow(buttons);
   const auto check = [this, go] { go->setEnabled(folder_->problem().isEmpty()); };
   connect(folder_, &FolderRow::changed, this, check);
@@ -67,13 +67,13 @@ ReproActions::ReproActions(Document& document, LongJob& job, QWidget* window)
     : QObject(window), document_(document), job_(job), window_(window) {}
 
 Outcome<Fault> ReproActions::fault() const {
-  if (!document_.inspection() || document_.stale()) return Failure{Reason::NotSupported, "the results are not up to date"};
+  if (!document_.inspection() || document_.stale()) return Failure{Reason::NotSupported, "results are out of date"};
   const viz::Selection& s = document_.selection();
   return faultOf(*document_.inspection(), s.frame, document_.plottedModel(), s.light);
 }
 
 void ReproActions::addActions(Actions& actions, QMenu* menu) {
-  actions.add("export.repro", menu, tr("Minimal &session of this fault…"),
+  actions.add("export.repro", menu, tr("Minimal &session for this error…"),
               [this] {
                 if (!document_.inspection()) return;
                 const Outcome<Fault> of = fault();
@@ -87,17 +87,17 @@ void ReproActions::addActions(Actions& actions, QMenu* menu) {
                 rememberExport(document_, dialog.folder());
                 write(*of, dialog.tolerance(), dialog.folder());
               },
-              {{}, {}, tr("The smallest set of training frames that still shows the error of the selected frame and model")});
+              {{}, {}, tr("Smallest set of training frames that still shows the error of the selected frame and model")});
 }
 
 void ReproActions::write(const Fault& fault, const FaultTolerance& tolerance, const QString& folder) {
   job_.start(
-      tr("Searching a minimal session"),
+      tr("Searching for a minimal session"),
       [this, fault, tolerance, folder, inspection = document_.inspection()](const ProgressFn& progress) -> LongJob::Deliver {
         const Outcome<MinimalRepro> repro = minimalRepro(*inspection, fault, tolerance, progress);
         if (!repro) return [this, why = toQString(repro.failure().message())] { emit problem(why); };
         const WrittenRepro written = writeRepro(*inspection, *repro, tolerance, folder.toStdString(), progress);
-        const QString line = tr("%1 of %2 training frames, %3 (was %4): wrote %5")
+        const QString line = tr("Wrote %5: %1 of %2 training frames, %3 (was %4)")
                                  .arg(repro->kept.size())
                                  .arg(repro->of)
                                  .arg(toQString(written.fault.text()), toQString(fault.text()),
@@ -106,7 +106,7 @@ void ReproActions::write(const Fault& fault, const FaultTolerance& tolerance, co
           if (shows)
             emit this->written(line, session);
           else
-            emit problem(tr("The written session shows another fault than the one on screen. %1").arg(line));
+            emit problem(tr("The written session shows a different error from the one on screen. %1").arg(line));
         };
       });
 }

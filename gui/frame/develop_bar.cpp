@@ -47,24 +47,22 @@ DevelopBar::DevelopBar(Document& document, QWidget* parent) : QWidget(parent), d
   source_->setObjectName(QStringLiteral("frameSource"));
   source_->addItem(tr("Photograph"), QStringLiteral("photograph"));
   source_->addItem(tr("Radiance"), QStringLiteral("radiance"));
-  source_->setToolTip(tr("What is shown; both are measured by the probe. Frames without one show the other."));
+  source_->setToolTip(tr("Image to show; the probe measures both. Frames that lack one show the other."));
   source_->setFocusPolicy(Qt::NoFocus);  // arrow keys step through the frames
   row->addWidget(source_);
   connect(source_, QOverload<int>::of(&QComboBox::activated), this, [this](int i) {
-    document_.setOption("frame/source", source_->itemData(i).toString().toStdString(),
-                        tr("Show the %1").arg(source_->itemText(i)));
+    document_.setOption("frame/source", source_->itemData(i).toString().toStdString(), tr("Show %1").arg(source_->itemText(i)));
   });
-  exposure_ =
-      addSlider(kExposure, tr("Exposure"), tr("Brightness on screen in stops (factors of two of light); changes no result"),
-                int(kMinStops / kExposureStep), int(kMaxStops / kExposureStep), kExposureStep, 0, &exposureLabel_);
+  exposure_ = addSlider(kExposure, tr("Exposure"), tr("Display brightness in stops (factors of two); does not affect results"),
+                        int(kMinStops / kExposureStep), int(kMaxStops / kExposureStep), kExposureStep, 0, &exposureLabel_);
   gamma_ =
-      addSlider(kGamma, tr("Gamma"), tr("Above 1 brightens the dark parts on screen; changes no result"),
+      addSlider(kGamma, tr("Gamma"), tr("Above 1, brightens dark areas on screen; does not affect results"),
                 int(std::lround(kMinGamma / kGammaStep)), int(std::lround(kMaxGamma / kGammaStep)), kGammaStep, 1, &gammaLabel_);
   falseColour_ = addToggle("frame/false-colour", QStringLiteral("false-colour"), tr("False colour"),
-                           tr("Linear radiance on a perceptually uniform colour map, with its scale"));
+                           tr("Linear radiance on a perceptually uniform colour map, with scale"));
   clipped_ =
       addToggle("frame/clipped", QStringLiteral("clipped"), tr("Clipped pixels"),
-                tr("Pink: clipped in the photograph; in the radiance, brighter than white at this exposure. Red: no number"));
+                tr("Pink: clipped in the photograph; in the radiance, brighter than white at this exposure. Red: not a number"));
   connect(&document_, &Document::optionsChanged, this, &DevelopBar::refresh);
   connect(&document_, &Document::sceneOpened, this, &DevelopBar::refresh);
   refresh();
@@ -82,7 +80,7 @@ QSlider* DevelopBar::addSlider(const char* option, const QString& title, const Q
   slider->setPageStep(4);
   slider->setFixedWidth(60);
   slider->setFocusPolicy(Qt::NoFocus);
-  slider->setToolTip(tip + tr("; double click resets"));
+  slider->setToolTip(tip + tr("; double-click to reset"));
   slider->installEventFilter(this);
   layout()->addWidget(slider);
   slider->setValue(int(std::lround(usual / step)));
@@ -142,7 +140,7 @@ void DevelopBar::addActions(Actions& actions, QMenu* menu) {
                                  },
                                  {});
   };
-  toggle("frame.radiance", tr("Show the &radiance"), "frame/source", "radiance", "photograph");
+  toggle("frame.radiance", tr("Show &radiance"), "frame/source", "radiance", "photograph");
   toggle("frame.false-colour", tr("&False colour"), "frame/false-colour", "on", "off");
   toggle("frame.clipped", tr("Mark &clipped pixels"), "frame/clipped", "on", "off");
   const auto nudge = [&](const char* id, const QString& title, QSlider* slider, int by, const char* key) {

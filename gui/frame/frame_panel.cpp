@@ -161,16 +161,16 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
     bar->widgetForAction(action)->setObjectName(QLatin1String(iconName));
     return action;
   };
-  connect(tool("highlight", tr("Zoom to the highlight (F or H)")), &QAction::triggered, this, &FramePanel::goToHighlight);
+  connect(tool("highlight", tr("Zoom to highlight (F or H)")), &QAction::triggered, this, &FramePanel::goToHighlight);
   connect(tool("pixels", tr("One screen pixel per photograph pixel (1)")), &QAction::triggered, canvas_,
           &FrameCanvas::onePixelPerPixel);
-  connect(tool("fit", tr("Whole photograph (0, double click)")), &QAction::triggered, this, [this] {
+  connect(tool("fit", tr("Whole photograph (0, double-click)")), &QAction::triggered, this, [this] {
     canvas_->fit();
     second_->fit();
   });
   hand_ = new HandTool(document_, this);
   canvas_->setDragTool(hand_);
-  QAction* byHand = tool("hand", tr("Move highlights, peaks and the camera by hand: a what-if (E)"));
+  QAction* byHand = tool("hand", tr("What-if: move highlights, peaks and the camera by hand (E)"));
   byHand->setCheckable(true);
   connect(byHand, &QAction::triggered, hand_, &HandTool::setOn);
   connect(hand_, &HandTool::onChanged, byHand, &QAction::setChecked);
@@ -254,7 +254,7 @@ void FramePanel::changeEvent(QEvent* e) {
 QString FramePanel::problemText(int frame, const QString& reason) const {
   const Scene& scene = *document_.scene();
   const QString named = QLatin1String(nameOf(Reason::FrameUnreadable)) + QStringLiteral(": ");
-  return tr("Frame %1 has no picture\n%2")
+  return tr("Frame %1 has no image\n%2")
       .arg(nameText(scene.frames[std::size_t(frame)].id), toQString(withoutFolder(reason.toStdString(), scene)).remove(named));
 }
 
@@ -527,23 +527,22 @@ void FramePanel::zoomTo(int highlight, bool withCanonical) {
 }
 
 void FramePanel::addActions(Actions& actions, QMenu* menu) {
-  actions.add("frame.highlight", menu, tr("&Zoom to the highlight"), [this] { goToHighlight(); },
+  actions.add("frame.highlight", menu, tr("&Zoom to highlight"), [this] { goToHighlight(); },
               {{Qt::Key_F, Qt::Key_H}, "highlight"});
   actions.add("frame.fit", menu, tr("&Whole photograph"), [this] { canvas_->fit(); }, {{Qt::Key_0}, "fit"});
-  actions.add("frame.pixels", menu, tr("Screen pixel per pixel"), [this] { canvas_->onePixelPerPixel(); },
-              {{Qt::Key_1}, "pixels"});
+  actions.add("frame.pixels", menu, tr("&Actual pixels"), [this] { canvas_->onePixelPerPixel(); }, {{Qt::Key_1}, "pixels"});
   const auto zoom = [this](double factor) { canvas_->setZoom(canvas_->zoom() * factor, QRectF(canvas_->rect()).center()); };
   actions.add("frame.zoom-in", menu, tr("Zoom &in"), [zoom] { zoom(2); }, {{QKeySequence("Ctrl+Alt+Up")}});
   actions.add("frame.zoom-out", menu, tr("Zoom &out"), [zoom] { zoom(0.5); }, {{QKeySequence("Ctrl+Alt+Down")}});
   actions.add("frame.values", menu, tr("Zoom to pixel &values"),
               [this] { canvas_->setZoom(1.2 * FrameCanvas::kValuesFromZoom, QRectF(canvas_->rect()).center()); });
   QAction* hand = actions.addToggle(
-      "frame.hand", menu, tr("Move by ha&nd"), [this](bool on) { hand_->setOn(on); },
-      {{Qt::Key_E}, "hand", tr("Drag an observed contour (Shift: its size), its peak, or with Ctrl the camera; a what-if")});
+      "frame.hand", menu, tr("Move by han&d"), [this](bool on) { hand_->setOn(on); },
+      {{Qt::Key_E}, "hand", tr("What-if: drag an observed contour (Shift: resize it), its peak or, with Ctrl, the camera")});
   hand->setChecked(hand_->isOn());
   connect(hand_, &HandTool::onChanged, hand, &QAction::setChecked);
-  develop_->addActions(actions, menu->addMenu(tr("&Picture")));
-  QMenu* overlays = menu->addMenu(tr("O&verlays"));
+  develop_->addActions(actions, menu->addMenu(tr("Photog&raph")));
+  QMenu* overlays = menu->addMenu(tr("Ov&erlays"));
   for (const viz::OverlayLayer& layer : viz::overlayLayers())
     layerActions_[layer.name] = actions.addToggle(
         QStringLiteral("frame.show-") + QString(QLatin1String(layer.name)).section('/', 1), overlays, tr(layer.title),
@@ -554,7 +553,7 @@ void FramePanel::addActions(Actions& actions, QMenu* menu) {
         actions.addToggle(QStringLiteral("frame.show-model-") + toQString(id), overlays, tr("Model %1").arg(menuText(toQString(id))),
                           [this, id, layer](bool on) { document_.setLayerVisible(layer, id, on); }, {});
   }
-  colourByRole_ = actions.addToggle("frame.colour-by-role", overlays, tr("Colour predictions by the frame's &role"),
+  colourByRole_ = actions.addToggle("frame.colour-by-role", overlays, tr("Colour predictions by frame &role"),
                                     [this](bool on) {
                                       document_.setOption("frame/colour-by", on ? "role" : "model",
                                                           on ? tr("Colour by role") : tr("Colour by model"));

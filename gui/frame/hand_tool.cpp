@@ -53,7 +53,7 @@ void HandTool::carry(const Pixel& to) {
   static const char* const names[] = {QT_TR_NOOP("contour moved"), QT_TR_NOOP("contour resized"), QT_TR_NOOP("peak moved"),
                                       QT_TR_NOOP("camera turned")};
   const QString frame = nameText(document_.scene()->frames[std::size_t(drag_->frame)].id);
-  document_.setWhatIf(w, tr("What if: %1 in frame %2").arg(tr(names[int(drag_->held)]), frame),
+  document_.setWhatIf(w, tr("What-if: %1 in frame %2").arg(tr(names[int(drag_->held)]), frame),
                       QStringLiteral("hand#%1").arg(drag_->gesture));
   if (drag_->held == Held::Camera) return;  // what it shows stays where it is
   const WhatIf alone = dragged({}, drag_->held, drag_->frame, drag_->camera, drag_->highlight, drag_->now, drag_->from,

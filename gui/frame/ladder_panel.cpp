@@ -25,7 +25,7 @@ constexpr QChar kSquare(0x25A0);
 
 LadderPanel::LadderPanel(Document& document, PhotoLoader& loader, QWidget* parent)
     : QWidget(parent), document_(document), loader_(loader) {
-  empty_ = new QLabel(tr("No model was computed yet"), this);
+  empty_ = new QLabel(tr("No models computed yet"), this);
   empty_->setAlignment(Qt::AlignCenter);
   refresh_.setSingleShot(true);
   refresh_.setInterval(0);
@@ -249,7 +249,7 @@ void LadderPanel::lookAtHighlight() {
 }
 
 void LadderPanel::addActions(Actions& actions, QMenu* menu) {
-  actions.add("ladder.highlight", menu, tr("&Ladder: zoom to the highlight"), [this] { lookAtHighlight(); });
+  actions.add("ladder.highlight", menu, tr("Ladder: zoom to highlight"), [this] { lookAtHighlight(); });
 }
 
 }  // namespace glint::gui

@@ -47,10 +47,10 @@ PairBar::PairBar(Document& document, QWidget* parent) : QWidget(parent), documen
     return box;
   };
   label(tr("Beside"));
-  second_ = combo(kSecond, tr("Frame beside the selected one"));
+  second_ = combo(kSecond, tr("Second frame"));
   auto* swap = new QToolButton;
   swap->setText(QStringLiteral("⇄"));
-  swap->setToolTip(tr("Swap the two frames"));
+  swap->setToolTip(tr("Swap frames"));
   swap->setAutoRaise(true);
   row->addWidget(swap);
   connect(swap, &QToolButton::clicked, this, &PairBar::swap);
@@ -99,7 +99,7 @@ int PairBar::secondFrame() const {
 void PairBar::swap() {
   const int first = document_.selection().frame, second = secondFrame();
   if (first == second) return;
-  document_.undoStack()->beginMacro(tr("Swap the two frames"));
+  document_.undoStack()->beginMacro(tr("Swap frames"));
   document_.setOption(kSecond, double(first), QString());
   document_.selectFrame(second);
   document_.undoStack()->endMacro();
@@ -147,8 +147,8 @@ void PairBar::addLines(viz::FrameOverlay& first, viz::FrameOverlay& second) {
   }
   miss_->setText(said.join(QStringLiteral("&nbsp;&nbsp; ")));
   reasons << tr(
-      "By how much the tangents carried over from the other image (dashed) miss the ellipse, rms. "
-      "An ellipsoid that has both ellipses as outlines would make it 0.");
+      "RMS distance by which the tangents transferred from the other image (dashed) miss the ellipse. "
+      "It is 0 if one ellipsoid has both ellipses as outlines.");
   miss_->setToolTip(reasons.join(QStringLiteral("\n")));
   miss_->setVisible(on());
 }
@@ -158,7 +158,7 @@ void PairBar::addActions(Actions& actions, QMenu* menu) {
       "frame.side-by-side", menu, tr("&Two frames side by side"),
       [this](bool on) { document_.setOption(kOn, on ? "on" : "off", on ? tr("Two frames side by side") : tr("One frame")); },
       {{Qt::Key_D}, "side-by-side"});
-  actions.add("frame.swap", menu, tr("S&wap the two frames"), [this] { swap(); });
+  actions.add("frame.swap", menu, tr("S&wap frames"), [this] { swap(); });
   const auto choose = [&](const char* id, const QString& title, const char* option, const char* value) {
     actions.add(QLatin1String(id), menu, title, [this, title, option, value] {
       if (on()) return document_.setOption(option, value, title);
@@ -171,7 +171,7 @@ void PairBar::addActions(Actions& actions, QMenu* menu) {
   choose("frame.epipolar-off", tr("Epipolar lines: none"), kLines, "off");
   choose("frame.epipolar-real", tr("Epipolar lines of real cameras"), kLines, "real");
   choose("frame.epipolar-virtual", tr("Epipolar lines of virtual cameras"), kLines, "virtual");
-  choose("frame.epipolar-both", tr("Epipolar lines of both"), kLines, "both");
+  choose("frame.epipolar-both", tr("Epipolar lines of real and virtual cameras"), kLines, "both");
   choose("frame.epipolar-observed", tr("Epipolar lines of observed ellipses"), kEllipse, "observed");
   choose("frame.epipolar-canonical", tr("Epipolar lines of canonical ellipses"), kEllipse, "canonical");
   refresh();

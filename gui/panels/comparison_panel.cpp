@@ -73,7 +73,7 @@ Opened openedFor(const Engine& engine, const QString& file) {
   try {
     return engine.open(file.toStdString(), instead);
   } catch (const OutsidePath& e) {
-    throw std::runtime_error(withoutFlags(e) + "; to allow that, open this session itself once");
+    throw std::runtime_error(withoutFlags(e) + "; to allow this, first open that session itself");
   }
 }
 }  // namespace
@@ -101,14 +101,14 @@ ComparisonPanel::ComparisonPanel(const Engine& engine, Document& document, LongJ
   title_->setObjectName(QStringLiteral("comparisonTitle"));
   title_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);  // a long line would make the dock wider than its place
   row->addWidget(title_, 1);
-  onlyDifferences_ = new QCheckBox(tr("Only differences"));
+  onlyDifferences_ = new QCheckBox(tr("Differences only"));
   onlyDifferences_->setObjectName(QStringLiteral("onlyDifferences"));
   onlyDifferences_->setChecked(true);
   row->addWidget(onlyDifferences_);
   auto* button = new QPushButton(tr("Compare with…"));
   row->addWidget(button);
   column->addLayout(row);
-  values_ = new RowsModel({tr("Of"), tr("What"), tr("A"), tr("B"), tr("B / A")}, this);
+  values_ = new RowsModel({tr("Group"), tr("Item"), tr("A"), tr("B"), tr("B / A")}, this);
   errors_ = new RowsModel({tr("Frame"), tr("Model"), tr("Light"), tr("A, %"), tr("B, %"), tr("B / A"), tr("Note")}, this);
   models_ = new RowsModel(
       {tr("Held out in both"), tr("Answers"), tr("A, mean %"), tr("B, mean %"), tr("B / A"), tr("A better"), tr("B better")},
@@ -118,10 +118,10 @@ ComparisonPanel::ComparisonPanel(const Engine& engine, Document& document, LongJ
   modelTable_ = table(models_, "comparedModels");
   auto* tabs = new QTabWidget;
   tabs->setDocumentMode(true);
-  tabs->addTab(valueTable_, tr("What changed"));
+  tabs->addTab(valueTable_, tr("Changes"));
   tabs->addTab(modelTable_, tr("Models"));
   tabs->addTab(errorTable_, tr("Frames"));
-  tabs->setTabToolTip(2, tr("A click selects the frame, the model and the light"));
+  tabs->setTabToolTip(2, tr("Click to select frame, model and light"));
   column->addWidget(tabs, 1);
   connect(button, &QPushButton::clicked, this, &ComparisonPanel::choose);
   connect(onlyDifferences_, &QCheckBox::toggled, this, &ComparisonPanel::fill);
@@ -138,19 +138,19 @@ ComparisonPanel::ComparisonPanel(const Engine& engine, Document& document, LongJ
 
 void ComparisonPanel::addActions(Actions& actions, QMenu* menu) {
   actions.add("file.compare", menu, tr("&Compare with session…"), [this] { choose(); },
-              {{}, {}, tr("What changed in inputs, parameters and results, and the error of every frame with both")});
+              {{}, {}, tr("Changes of inputs, settings and results, and the error of every frame in both")});
 }
 
 void ComparisonPanel::choose() {
   if (!document_.inspection()) return;
-  const QString file = QFileDialog::getOpenFileName(this, tr("Compare with a session"), document_.inputFile(),
+  const QString file = QFileDialog::getOpenFileName(this, tr("Compare with session"), document_.inputFile(),
                                                     tr("Sessions, figures and scenes (*.glint *.png *.json);;All files (*)"));
   if (!file.isEmpty()) compareWith(file);
 }
 
 void ComparisonPanel::compareWith(const QString& file) {
   if (!document_.inspection()) return;
-  if (document_.stale()) return void(emit problem(tr("What is on screen is still being computed; compare when it is done")));
+  if (document_.stale()) return void(emit problem(tr("Computation is not finished; compare when results are up to date")));
   const QString fileA = document_.sessionFile().isEmpty() ? document_.inputFile() : document_.sessionFile();
   job_.start(tr("Comparing with %1").arg(shownText(QFileInfo(file).fileName())),
              [this, file, fileA, a = document_.inspection()](const ProgressFn& progress) {
@@ -232,9 +232,9 @@ void ComparisonPanel::fill() {
 }
 
 void ComparisonPanel::showState() {
-  if (!comparison_) return title_->setText(tr("Nothing is compared yet."));
+  if (!comparison_) return title_->setText(tr("Nothing compared yet."));
   QString line = tr("%1 differences   %2").arg(comparison_->differences()).arg(names_);
-  if (of_ != document_.inspection()) line += tr("   (what is on screen has changed since: compare again)");
+  if (of_ != document_.inspection()) line += tr("   (results have changed since; compare again)");
   title_->setText(line);
   title_->setToolTip(paths_ + QLatin1Char('\n') + line);
 }

@@ -24,9 +24,9 @@ const ColumnInfo kColumns[] = {
     {QT_TRANSLATE_NOOP("ErrorModel", "Frame"), QT_TRANSLATE_NOOP("ErrorModel", "Frame id")},
     {QT_TRANSLATE_NOOP("ErrorModel", "Role"),
      QT_TRANSLATE_NOOP("ErrorModel", "Training, held out or excluded; summaries count held-out frames")},
-    {QT_TRANSLATE_NOOP("ErrorModel", "Model"), QT_TRANSLATE_NOOP("ErrorModel", "Model that predicted")},
+    {QT_TRANSLATE_NOOP("ErrorModel", "Model"), QT_TRANSLATE_NOOP("ErrorModel", "Predicting model")},
     {QT_TRANSLATE_NOOP("ErrorModel", "Light"),
-     QT_TRANSLATE_NOOP("ErrorModel", "Light id; where the frame shows it several times, which highlight")},
+     QT_TRANSLATE_NOOP("ErrorModel", "Light id; with several highlights of one light, which highlight")},
     {QT_TRANSLATE_NOOP("ErrorModel", "Status"),
      QT_TRANSLATE_NOOP("ErrorModel",
                        "ok; missed: observed, not predicted; spurious: predicted, not observed; failed: no prediction")},
@@ -37,15 +37,15 @@ const ColumnInfo kColumns[] = {
                        "Mean contour distance, px: symmetric, over the length of both contours, without sign. "
                        "(The residual dial shows the signed distance by direction.)")},
     {QT_TRANSLATE_NOOP("ErrorModel", "Ellipse %"),
-     QT_TRANSLATE_NOOP("ErrorModel", "The same between the fitted and the predicted ellipse")},
+     QT_TRANSLATE_NOOP("ErrorModel", "As Error %, between the fitted and the predicted ellipse")},
     {QT_TRANSLATE_NOOP("ErrorModel", "Hausd. px"), QT_TRANSLATE_NOOP("ErrorModel", "Hausdorff distance, pixels")},
     {QT_TRANSLATE_NOOP("ErrorModel", "IoU"), QT_TRANSLATE_NOOP("ErrorModel", "Intersection over union of the filled contours")},
     {QT_TRANSLATE_NOOP("ErrorModel", "Coverage"),
-     QT_TRANSLATE_NOOP("ErrorModel", "Share of the directions that gave a contour point")},
+     QT_TRANSLATE_NOOP("ErrorModel", "Share of directions that gave a contour point")},
     {QT_TRANSLATE_NOOP("ErrorModel", "Centre px"), QT_TRANSLATE_NOOP("ErrorModel", "Distance of the area centroids, pixels")},
     {QT_TRANSLATE_NOOP("ErrorModel", "Peak px"), QT_TRANSLATE_NOOP("ErrorModel", "Distance of the peaks, pixels")},
-    {QT_TRANSLATE_NOOP("ErrorModel", "Time µs"), QT_TRANSLATE_NOOP("ErrorModel", "Time of the prediction, microseconds")},
-    {QT_TRANSLATE_NOOP("ErrorModel", "Reason"), QT_TRANSLATE_NOOP("ErrorModel", "Why there is no number")}};
+    {QT_TRANSLATE_NOOP("ErrorModel", "Time µs"), QT_TRANSLATE_NOOP("ErrorModel", "Prediction time, microseconds")},
+    {QT_TRANSLATE_NOOP("ErrorModel", "Reason"), QT_TRANSLATE_NOOP("ErrorModel", "Reason for a missing value")}};
 static_assert(std::size(kColumns) == ErrorModel::ColumnCount);
 
 constexpr double kManyDigits = 1000;  // from here on decimals say nothing
@@ -172,7 +172,7 @@ QVariant ErrorModel::data(const QModelIndex& index, int role) const {
       return {};
     case Qt::ToolTipRole:
       if (row.role == FrameRole::Excluded && column != ReasonText && column != Light)
-        return tr("This frame is excluded: it neither trains nor counts in any summary");
+        return tr("Excluded frame: used neither for training nor in any summary");
       return column == ReasonText ? QVariant(plainTip(row.reason)) : column == Light ? QVariant(plainTip(row.light)) : QVariant();
     case Qt::TextAlignmentRole:
       return int((isNumber(column) ? Qt::AlignRight : Qt::AlignLeft) | Qt::AlignVCenter);

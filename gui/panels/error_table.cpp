@@ -87,7 +87,7 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   auto* choice = new QHBoxLayout(choices);
   choice->setContentsMargins(0, 0, 0, 0);
   choice->setSpacing(6);
-  choice->addWidget(new QLabel(tr("Rows of")));
+  choice->addWidget(new QLabel(tr("Show")));
   choice->addWidget(filter_);
   count_ = new QLabel;
   count_->setObjectName(QStringLiteral("errorCount"));

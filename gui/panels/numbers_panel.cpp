@@ -53,7 +53,7 @@ void NumbersPanel::addPicked() {
   }
   const bool earlier = pickedIn_.lock() != now;
   QTreeWidgetItem* group =
-      addGroup((earlier ? tr("Picked, in earlier results: %1") : tr("Picked: %1")).arg(toQString(picked_->layer)),
+      addGroup((earlier ? tr("Picked (results out of date): %1") : tr("Picked: %1")).arg(toQString(picked_->layer)),
                toQString(picked_->text));
   for (int i = 0; earlier && i < group->childCount(); ++i)
     for (int column = 0; column < columnCount(); ++column)

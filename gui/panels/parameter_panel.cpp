@@ -59,7 +59,7 @@ ParameterPanel::ParameterPanel(Document& document, QWidget* parent) : QScrollAre
   grid->setVerticalSpacing(2);
   grid->setColumnStretch(1, 1);
   int row = 0;
-  hint_ = new QLabel(tr("Parameters belong to a scene: open one to change them"));
+  hint_ = new QLabel(tr("Open a scene to change its settings"));
   hint_->setObjectName(QStringLiteral("parametersHint"));
   hint_->setWordWrap(true);
   hint_->setProperty("role", "faded");

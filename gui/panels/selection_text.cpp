@@ -126,7 +126,7 @@ NumberGroup fitGroup(const std::string& model, const ModelResult::Fit& f, int fr
     const auto used = std::find(f.fit->frames.begin(), f.fit->frames.end(), frame);
     const auto index = std::size_t(used - f.fit->frames.begin());
     if (used != f.fit->frames.end() && index < f.fit->residualPx.size())
-      lines.addWithMeaning(QObject::tr("residual here"), f.fit->residualPx[index], "px",
+      lines.addWithMeaning(QObject::tr("residual, this frame"), f.fit->residualPx[index], "px",
                            QString::fromStdString(residualMeaning(*f.fit)));
     for (const std::string& remark : f.fit->remarks) lines.note(QObject::tr("Warning: %1").arg(nameText(remark)));
   }
@@ -149,7 +149,7 @@ NumberGroup comparison(const FrameComparison& c, int observed) {
     }
     if (row.metrics) {
       lines.addWithMeaning(QObject::tr("error"), row.metrics->contourErrorPct, "%",
-                           QObject::tr("mean distance of the contours, both ways, of the diameter"));
+                           QObject::tr("mean contour distance, symmetric, relative to the diameter"));
       lines.add(QObject::tr("mean distance"), row.metrics->contourErrorPx, "px");
       lines.add(QObject::tr("Hausdorff"), row.metrics->hausdorffPx, "px");
       lines.add(QObject::tr("peak offset"), row.metrics->peakOffsetPx, "px");
@@ -176,7 +176,7 @@ NumberGroup selectedParts(const Inspection& inspection, const viz::Selection& se
         const auto nearest = std::min_element(residual.samples.begin(), residual.samples.end(),
                                               [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
         lines.addVector(QObject::tr("observed contour"), nearest->at, "px");
-        if (nearest->value) lines.add(QObject::tr("%1 lies outside by").arg(toQString(model)), *nearest->value, "px");
+        if (nearest->value) lines.add(QObject::tr("signed distance to %1").arg(toQString(model)), *nearest->value, "px");
       }
   }
   return {QObject::tr("Selected"), lines.text()};

@@ -51,15 +51,16 @@ SetupPanel::SetupPanel(Document& document, QWidget* parent) : QWidget(parent), d
   auto* choose = new QPushButton(tr("Auto"));
   choose->setObjectName(QStringLiteral("autoModel"));
   choose->setToolTip(
-      tr("Takes the simplest model that predicts left-out training views as well as the best does,\nor the first one under the "
-         "error beside"));
+      tr("Chooses the simplest model that predicts left-out training frames as well as the best one,\nor stops at the first "
+         "model below the error entered beside"));
   auto* goodEnough = new NumberBox(numberRange(0, 100, 0.1));
   goodEnough->setObjectName(QStringLiteral("goodEnough"));
   goodEnough->setDecimals(2);
-  goodEnough->setSuffix(tr(" % will do"));
+  goodEnough->setSuffix(tr(" % or less"));
   goodEnough->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);  // the panel is narrow
-  goodEnough->setSpecialValueText(tr("like the best"));
-  goodEnough->setToolTip(tr("A contour error that is good enough: nothing richer is then tried. 0 = like the best"));
+  goodEnough->setSpecialValueText(tr("best accuracy"));
+  goodEnough->setToolTip(
+      tr("Stop at the first model below this contour error; richer models are not tried. 0 = as accurate as the best model"));
   auto* row = new QHBoxLayout;
   row->setSpacing(4);
   row->addWidget(choose);
@@ -81,14 +82,14 @@ SetupPanel::SetupPanel(Document& document, QWidget* parent) : QWidget(parent), d
   train_->setInsertPolicy(QComboBox::NoInsert);
   train_->addItems({QStringLiteral("first:6"), QStringLiteral("spread:6"), QStringLiteral("per-surface")});
   train_->setToolTip(
-      tr("Frame numbers or ranges (0-5, or 0,14,28), first:N, spread:N, or per-surface: for every surface a model of its own "
-         "from all of its frames"));
+      tr("Frame numbers or ranges (0-5, or 0,14,28), first:N, spread:N, or per-surface: a separate model for each surface, "
+         "trained on all of its frames"));
   grid->addWidget(new QLabel(tr("Frames")), 5, 0);
   grid->addWidget(train_, 5, 1);
   source_ = new QComboBox;
   source_->setObjectName(QStringLiteral("source"));
   source_->addItems({tr("radiance (float)"), tr("photographs")});
-  source_->setToolTip(tr("Which pictures the highlights are detected in, where a frame has both"));
+  source_->setToolTip(tr("Images in which highlights are detected, where a frame has both"));
   grid->addWidget(new QLabel(tr("Detect in")), 6, 0);
   grid->addWidget(source_, 6, 1);
   counts_ = new QLabel;
@@ -128,7 +129,7 @@ void SetupPanel::setTrain() {
   const bool taken = document_.setTrain(text, &error);
   refresh();
   if (error.startsWith(QLatin1String("--train "))) error.remove(0, int(qstrlen("--train ")));  // here it is a box, not a flag
-  if (!taken) complain(train_, tr("%1; it stays %2").arg(error, nameText(document_.request().train)));
+  if (!taken) complain(train_, tr("%1; keeping %2").arg(error, nameText(document_.request().train)));
 }
 
 void SetupPanel::refresh() {

@@ -114,8 +114,8 @@ QString TradeoffPlot::message() const {
   const std::shared_ptr<const Tradeoff> t = document_.tradeoff();
   if (!document_.scene()) return tr("No scene");
   if (t) return axes().valid ? QString() : withMicro(toQString(t->reason));
-  return measuring_ ? tr("Measuring: the status bar counts the settings. Esc stops; \"Measure\" goes on from there")
-                    : tr("Not measured yet: \"Measure\" tries models and settings on these frames");
+  return measuring_ ? tr("Measuring; the status bar shows progress. Esc stops; \"Measure\" continues from there")
+                    : tr("Not measured yet: \"Measure\" tests models and settings on these frames");
 }
 
 void TradeoffPlot::setMeasuring(bool measuring) {
@@ -294,15 +294,15 @@ bool TradeoffPlot::event(QEvent* e) {
     return true;
   }
   const TradeoffPoint& p = t->points[std::size_t(i)];
-  showTip(
-      help->globalPos(),
-      tr("%1\nerror %2 %, IoU %3, coverage %4, %5 of %6 frames predicted\n%7 µs a frame, fit %8 ms, peak memory %9 MB\nClick to "
-         "load")
-          .arg(toQString(describe(*t, p)), numberText(p.contourErrorPct, 3), numberText(p.iou, 4), numberText(p.coverage, 3))
-          .arg(p.predicted)
-          .arg(p.frames)
-          .arg(numberText(p.predictUs, 4), numberText(p.fitUs * 1e-3, 3), numberText(p.peakMb, 4)),
-      this);
+  showTip(help->globalPos(),
+          tr("%1\nerror %2 %, IoU %3, coverage %4, %5 of %6 frames predicted\n%7 µs per frame, fit %8 ms, peak memory %9 "
+             "MB\nClick to "
+             "load")
+              .arg(toQString(describe(*t, p)), numberText(p.contourErrorPct, 3), numberText(p.iou, 4), numberText(p.coverage, 3))
+              .arg(p.predicted)
+              .arg(p.frames)
+              .arg(numberText(p.predictUs, 4), numberText(p.fitUs * 1e-3, 3), numberText(p.peakMb, 4)),
+          this);
   return true;
 }
 
@@ -314,8 +314,8 @@ TradeoffPanel::TradeoffPanel(Document& document, QWidget* parent) : QWidget(pare
   measure_ = new QPushButton(tr("Measure"));
   measure_->setObjectName(QStringLiteral("measureTradeoff"));
   measure_->setToolTip(
-      tr("Tries models and settings on these frames and draws what each microsecond buys.\nEsc stops; nothing on screen changes "
-         "until it is done"));
+      tr("Tests models and settings on these frames and plots error against time.\nEsc stops; nothing on screen changes "
+         "until the measurement is done"));
   column->addWidget(measure_);
   presets_ = new QWidget;
   auto* presets = new QVBoxLayout(presets_);
@@ -370,7 +370,7 @@ void TradeoffPanel::refresh() {
   }
   QString words = t ? withMicro(toQString(t->reason)) : QString();
   if (t && document_.scene() && t->trainSpec != document_.request().train)
-    words += tr(" (Measured with training frames %1.)").arg(toQString(t->trainSpec));
+    words += tr(" (Measured on training frames %1.)").arg(toQString(t->trainSpec));
   sentence_->setText(words);
   sentence_->setVisible(!words.isEmpty());
 }

@@ -56,19 +56,19 @@ struct Row {
   const char* tip;
 };
 constexpr Row kRows[] = {
-    {"fit", QT_TRANSLATE_NOOP("ConditioningPanel", "Fit"), QT_TRANSLATE_NOOP("ConditioningPanel", "Why there is no fit")},
+    {"fit", QT_TRANSLATE_NOOP("ConditioningPanel", "Fit"), QT_TRANSLATE_NOOP("ConditioningPanel", "Reason for a missing fit")},
     {"peaks", QT_TRANSLATE_NOOP("ConditioningPanel", "Peaks"),
      QT_TRANSLATE_NOOP("ConditioningPanel", "Training peaks that lie outside their own contour")},
     {"signature", QT_TRANSLATE_NOOP("ConditioningPanel", "Q* alone"),
      QT_TRANSLATE_NOOP("ConditioningPanel", "Kind of quadric that the contours alone give, by the signature of Q*")},
     {"rank", QT_TRANSLATE_NOOP("ConditioningPanel", "Singular values"),
-     QT_TRANSLATE_NOOP("ConditioningPanel", "Second last over first singular value")},
+     QT_TRANSLATE_NOOP("ConditioningPanel", "Second-last over first singular value")},
     {"gap", QT_TRANSLATE_NOOP("ConditioningPanel", "Gap"),
-     QT_TRANSLATE_NOOP("ConditioningPanel", "Last over second last singular value")},
+     QT_TRANSLATE_NOOP("ConditioningPanel", "Last over second-last singular value")},
     {"angle", QT_TRANSLATE_NOOP("ConditioningPanel", "Triangulation"),
      QT_TRANSLATE_NOOP("ConditioningPanel", "Widest angle between the rays of two views")},
     {"views", QT_TRANSLATE_NOOP("ConditioningPanel", "Effective views"),
-     QT_TRANSLATE_NOOP("ConditioningPanel", "Training highlights, those seen from nearly the same side counted once")},
+     QT_TRANSLATE_NOOP("ConditioningPanel", "Training highlights, counting those seen from nearly the same side once")},
     {"light", QT_TRANSLATE_NOOP("ConditioningPanel", "Light ±"),
      QT_TRANSLATE_NOOP("ConditioningPanel", "Standard deviation of the light (or the ellipsoid's centre) over its distance")},
     {"residual", QT_TRANSLATE_NOOP("ConditioningPanel", "Residual"),
@@ -191,7 +191,7 @@ ConditioningPanel::ConditioningPanel(Document& document, QWidget* parent) : QWid
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(6, 4, 6, 4);
   column->setSpacing(4);
-  empty_ = new QLabel(tr("There are no results yet"));
+  empty_ = new QLabel(tr("No results yet"));
   empty_->setProperty("role", "faded");
   column->addWidget(empty_);
   lights_ = new QTabBar;
@@ -374,8 +374,8 @@ void ConditioningPanel::showLights() {
       if (c.light == id && c.worst() != Verdict::Unknown)
         worst = worst == Verdict::Unknown ? c.worst() : std::max(worst, c.worst());
     lights_->setTabText(i, menuText(QStringLiteral("%1 %2").arg(signOf(worst), nameText(id)).trimmed()));
-    lights_->setTabToolTip(
-        i, plainTip(tr("Models of light %1; the worst of their numbers is %2").arg(nameText(id), QLatin1String(nameOf(worst)))));
+    lights_->setTabToolTip(i,
+                           plainTip(tr("Models of light %1; worst value: %2").arg(nameText(id), QLatin1String(nameOf(worst)))));
     lights_->setTabData(i, exactQString(id));
     if (id == light_) lights_->setCurrentIndex(i);
   }

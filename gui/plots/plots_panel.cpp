@@ -102,8 +102,8 @@ void PlotsPanel::buildPane(int index) {
   if (index == 0) {
     auto* influence = new QToolButton;
     influence->setObjectName(QStringLiteral("askInfluence"));
-    influence->setText(tr("Measure views"));
-    influence->setToolTip(tr("Leaves every training frame out once and tells what the models lose"));
+    influence->setText(tr("Measure"));
+    influence->setToolTip(tr("Leaves out each training frame in turn and shows how much the models lose"));
     influence->setAutoRaise(true);
     connect(influence, &QToolButton::clicked, this, &PlotsPanel::askForInfluence);
     row->addWidget(influence);
@@ -120,7 +120,7 @@ void PlotsPanel::buildPane(int index) {
       saveAs(ending);
     });
   menu->addSeparator();
-  menu->addAction(tr("Copy the picture"), this, [this, index] {
+  menu->addAction(tr("Copy as picture"), this, [this, index] {
     current_ = index;
     copyPicture();
   });
@@ -128,7 +128,7 @@ void PlotsPanel::buildPane(int index) {
     current_ = index;
     copySvg();
   });
-  menu->addAction(tr("Copy the numbers"), this, [this, index] {
+  menu->addAction(tr("Copy numbers"), this, [this, index] {
     current_ = index;
     copyNumbers();
   });
@@ -210,8 +210,8 @@ viz::PlotData PlotsPanel::data(const std::string& id) {
     // Of a scene just opened, the selected frame's results come before all others, and the frame view shows them too.
     if (id == "dial" && document_.frameInspection()) return viz::residualDial(*document_.frameInspection(), s.frame, s.highlight);
     empty.empty = (!document_.scene()            ? tr("No scene")
-                   : document_.frameInspection() ? tr("The other frames follow")
-                                                 : tr("There are no results yet"))
+                   : document_.frameInspection() ? tr("Computing the other frames…")
+                                                 : tr("No results yet"))
                       .toStdString();
     return empty;
   }
@@ -223,14 +223,14 @@ viz::PlotData PlotsPanel::data(const std::string& id) {
     if (document_.influence()) {
       viz::PlotData plot = viz::influencePlot(*inspection, *document_.influence(),
                                               document_.plottedModel());  // one model: a poor one's scale would hide the others
-      if (document_.influenceStale()) plot.title += tr("   (of an earlier request)").toStdString();
+      if (document_.influenceStale()) plot.title += tr("   (out of date)").toStdString();
       return plot;
     }
-    empty.empty = tr("Not asked yet: \"Measure views\" leaves every training frame out once").toStdString();
+    empty.empty = tr("Not measured yet: \"Measure\" leaves out each training frame in turn").toStdString();
     return empty;
   }
   if (!samples_ || samples_->frame != s.frame || samples_->model != document_.plottedModel()) {  // those are of another frame
-    empty.empty = tr("Reading the frame").toStdString();
+    empty.empty = tr("Reading frame…").toStdString();
     return empty;
   }
   return id == "lobe" ? viz::lobePlot(*samples_, s.highlight) : viz::limitAnglePlot(*samples_, s.highlight);
@@ -299,7 +299,7 @@ bool PlotsPanel::saveTo(const QString& file, QString* problem) {
       viz::writePng(viz::plotImage(canvas->plot(), style, document_.selection(), int(w * kPictureScale), int(h * kPictureScale)),
                     file.toStdString());
     } else {
-      throw InputError(file.toStdString(), "", "a plot is saved as .svg, .png or .csv");
+      throw InputError(file.toStdString(), "", "a plot can only be saved as .svg, .png or .csv");
     }
   } catch (const std::exception& e) {
     if (problem) *problem = toQString(e.what());
@@ -310,9 +310,9 @@ bool PlotsPanel::saveTo(const QString& file, QString* problem) {
 
 void PlotsPanel::saveAs(const char* ending) {
   const QString type = QString::fromLatin1(ending);
-  const QString file = askForFile(this, document_, tr("Save the plot"),
-                                  suggestedFile(document_, toQString(kind(current_)), QLatin1Char('.') + type),
-                                  QStringLiteral("%1 (*.%2)").arg(type.toUpper(), type));
+  const QString file =
+      askForFile(this, document_, tr("Save plot"), suggestedFile(document_, toQString(kind(current_)), QLatin1Char('.') + type),
+                 QStringLiteral("%1 (*.%2)").arg(type.toUpper(), type));
   if (file.isEmpty()) return;
   QString line;
   if (!saveTo(file, &line)) emit problem(line);
@@ -355,19 +355,19 @@ void PlotsPanel::addActions(Actions& actions, QMenu* menu) {
       QStringLiteral("plots.two"), menu, tr("&Two plots side by side"),
       [this](bool on) { document_.setOption("plots/two", on ? "on" : "off", on ? tr("Two plots") : tr("One plot")); }, {});
   two_->setChecked(document_.option("plots/two", std::string("on")) == "on");
-  actions.add(QStringLiteral("plots.show-all"), menu, tr("Show the &whole plot"),
+  actions.add(QStringLiteral("plots.show-all"), menu, tr("Show &whole plot"),
               [this] { panes_[std::size_t(current_)].canvas->showAll(); });
   menu->addSeparator();
-  actions.add(QStringLiteral("plots.influence"), menu, tr("&Measure which view matters"), [this] { askForInfluence(); },
-              {{}, {}, tr("Leaves every training frame out once and tells what the models lose")});
+  actions.add(QStringLiteral("plots.influence"), menu, tr("&Measure influence of frames"), [this] { askForInfluence(); },
+              {{}, {}, tr("Leaves out each training frame in turn and shows how much the models lose")});
   menu->addSeparator();
   for (const char* ending : {"svg", "png", "csv"})
     actions.add(QStringLiteral("plots.save-") + QString::fromLatin1(ending), menu,
-                tr("Save the plot as %1…").arg(QString::fromLatin1(ending).toUpper()), [this, ending] { saveAs(ending); });
-  actions.add(QStringLiteral("plots.copy-png"), menu, tr("Copy the &plot as a picture"), [this] { copyPicture(); },
+                tr("Save plot as %1…").arg(QString::fromLatin1(ending).toUpper()), [this, ending] { saveAs(ending); });
+  actions.add(QStringLiteral("plots.copy-png"), menu, tr("Copy &plot as picture"), [this] { copyPicture(); },
               {{}, QStringLiteral("copy")});
-  actions.add(QStringLiteral("plots.copy-svg"), menu, tr("Copy the plot as &SVG"), [this] { copySvg(); });
-  actions.add(QStringLiteral("plots.copy-csv"), menu, tr("Copy the plot's &numbers (CSV)"), [this] { copyNumbers(); });
+  actions.add(QStringLiteral("plots.copy-svg"), menu, tr("Copy plot as &SVG"), [this] { copySvg(); });
+  actions.add(QStringLiteral("plots.copy-csv"), menu, tr("Copy plot &numbers (CSV)"), [this] { copyNumbers(); });
 }
 
 }  // namespace glint::gui

@@ -64,7 +64,7 @@ LayerPanel::LayerPanel(Document& document, QWidget* parent)
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(2);
   own_->setObjectName(QStringLiteral("ownLayers"));
-  own_->setToolTip(tr("The checklist below is then about the active 3D view alone; a click on a view makes it the active one"));
+  own_->setToolTip(tr("The list below then applies to the active 3D view only; click a view to activate it"));
   own_->setContentsMargins(4, 0, 0, 0);
   column->addWidget(own_);
   column->addWidget(list_, 1);
@@ -82,7 +82,7 @@ void LayerPanel::setActiveView(int view) {
 
 void LayerPanel::refresh() {
   own_->setVisible(sceneOptions(document_).viewCount() > 1);
-  own_->setText(tr("View %1: layers of its own").arg(QLatin1Char(char('A' + view_))));
+  own_->setText(tr("View %1: own layers").arg(QLatin1Char(char('A' + view_))));
   own_->setChecked(hasOwnLayers(document_, view_));
 }
 

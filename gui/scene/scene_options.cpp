@@ -162,12 +162,11 @@ void setLayerVisibleIn(Document& document, int view, const std::string& layer, c
 void setOwnLayers(Document& document, int view, bool own) {
   if (own == hasOwnLayers(document, view)) return;
   if (!own)
-    return document.setOption(viewOption("layers", view), std::string(),
-                              QObject::tr("View %1 with the layers of all").arg(nameOf(view)));
+    return document.setOption(viewOption("layers", view), std::string(), QObject::tr("View %1: shared layers").arg(nameOf(view)));
   std::set<std::string> shown;
   for (const viz::Layer& layer : viz::sceneLayers())
     if (document.layerVisible(layer.name)) shown.insert(layer.name);
-  setLayers(document, view, shown, QObject::tr("View %1 with layers of its own").arg(nameOf(view)));
+  setLayers(document, view, shown, QObject::tr("View %1: own layers").arg(nameOf(view)));
 }
 
 std::string toText(const viz::ViewPoint& v) {

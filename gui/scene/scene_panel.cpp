@@ -79,7 +79,7 @@ ScenePanel::ScenePanel(Document& document, QWidget* parent)
   connect(views_, &SceneViews::menuWanted, this, &ScenePanel::showMenu);
   connect(views_, &SceneViews::wipeMoved, this, [this](double share, bool released) {
     if (gesture_ == 0) gesture_ = document_.newGesture();
-    document_.setOption("scene/wipe", std::clamp(share, 0.02, 0.98), tr("Move the wipe"), gesture_);
+    document_.setOption("scene/wipe", std::clamp(share, 0.02, 0.98), tr("Move wipe"), gesture_);
     if (released) gesture_ = 0;
   });
 }
@@ -130,7 +130,7 @@ void ScenePanel::buildBars() {
   row->setSpacing(6);
   row->addStretch(1);  // which camera it is stands in the picture
   row->addWidget(new QLabel(tr("Photograph")));
-  opacity_ = slider("photographOpacity", 0, 100, tr("How much the photograph covers the scene"));
+  opacity_ = slider("photographOpacity", 0, 100, tr("Opacity of the photograph over the scene"));
   opacity_->setFixedWidth(110);
   connect(opacity_, &QSlider::valueChanged, this, [this](int percent) {
     document_.setOption("scene/photograph-opacity", percent / 100.0, tr("Photograph over the scene: %1 %").arg(percent),
@@ -140,7 +140,7 @@ void ScenePanel::buildBars() {
   auto* back = new QToolButton;
   back->setObjectName(QStringLiteral("leaveEye"));
   back->setIcon(icon(QStringLiteral("close")));
-  back->setToolTip(tr("Back outside (Esc)"));
+  back->setToolTip(tr("Leave camera (Esc)"));
   back->setAutoRaise(true);
   connect(back, &QToolButton::clicked, this, [this] { setEye(viz::Eye::Outside); });
   row->addWidget(back);
@@ -293,7 +293,7 @@ void ScenePanel::moveLamp(const QString& light, const Eigen::Vector3d& by) {
   }
   for (const TrueLight& lamp : document_.scene()->lights)
     if (lamp.id == light.toStdString())
-      document_.setWhatIf(draggedLight(*lampStart_, lamp, by), tr("What if: light %1 moved").arg(light),
+      document_.setWhatIf(draggedLight(*lampStart_, lamp, by), tr("What-if: light %1 moved").arg(light),
                           QStringLiteral("lamp#%1").arg(gesture_));
 }
 
@@ -431,7 +431,7 @@ void ScenePanel::goToView(const QString& name) {
 
 void ScenePanel::removeView(const QString& name) {
   // An option cannot be taken away; an empty one is none.
-  document_.setOption(kSavedView + name.toStdString(), std::string(), tr("Forget %1").arg(shownText(name)));
+  document_.setOption(kSavedView + name.toStdString(), std::string(), tr("Delete %1").arg(shownText(name)));
 }
 
 // --- actions --------------------------------------------------------------------------------------------------------------
@@ -448,13 +448,13 @@ void ScenePanel::addActions(Actions& actions, QMenu* menu) {
   };
   actions.add("view.frame-all", menu, tr("Show &everything"), [this] { frameAll(); }, {{Qt::Key_A}, "frame-all"});
   actions.add(
-      "view.frame-selection", menu, tr("Show the &selection"), [this] { frameSelection(); },
+      "view.frame-selection", menu, tr("Show &selection"), [this] { frameSelection(); },
       {{int(Qt::SHIFT) | Qt::Key_A}, "frame-selection", tr("The selected highlight, ellipsoid or camera fills the 3D view")});
-  QAction* camera = toggle("view.look-through", menu, tr("Look through the frame's &camera"),
+  QAction* camera = toggle("view.look-through", menu, tr("Look through &camera"),
                            {{Qt::Key_C}, "camera", tr("With the photograph over the scene; follows the selected frame")},
                            [this](bool on) { setEye(on ? viz::Eye::Camera : viz::Eye::Outside); });
-  QAction* mirrored = toggle("view.look-through-virtual", menu, tr("Look through the &virtual camera"),
-                             {{Qt::Key_V}, "virtual-camera", tr("Mirrored in the tangent plane: it sees the side of the light")},
+  QAction* mirrored = toggle("view.look-through-virtual", menu, tr("Look through &virtual camera"),
+                             {{Qt::Key_V}, "virtual-camera", tr("Mirrored in the tangent plane: shows the side of the light")},
                              [this](bool on) { setEye(on ? viz::Eye::VirtualCamera : viz::Eye::Outside); });
 
   QMenu* axes = menu->addMenu(tr("Look &along"));
@@ -475,19 +475,19 @@ void ScenePanel::addActions(Actions& actions, QMenu* menu) {
       toggle("view.parallel", axes, tr("&Parallel projection"), {{Qt::Key_5}, {}, tr("Without perspective")},
              [this](bool on) { setSwitch("scene/parallel", on, on ? tr("Parallel projection") : tr("Perspective")); });
   axes->addSeparator();
-  actions.add("view.save-view", axes, tr("&Keep this view"), [this] { saveView(); },
+  actions.add("view.save-view", axes, tr("&Save this view"), [this] { saveView(); },
               {{QKeySequence("Shift+K")}, {}, tr("Stored with the session")});
-  savedMenu_ = axes->addMenu(tr("Kept &views"));
+  savedMenu_ = axes->addMenu(tr("Saved &views"));
   connect(savedMenu_, &QMenu::aboutToShow, this, [this] {
     savedMenu_->clear();
     for (const QString& name : savedViews()) {
       QMenu* one = savedMenu_->addMenu(menuText(shownText(name)));
-      one->addAction(tr("Go there"), this, [this, name] { goToView(name); });
-      one->addAction(tr("Forget"), this, [this, name] { removeView(name); });
+      one->addAction(tr("Go to view"), this, [this, name] { goToView(name); });
+      one->addAction(tr("Delete"), this, [this, name] { removeView(name); });
     }
-    if (savedMenu_->isEmpty()) savedMenu_->addAction(tr("None yet"))->setEnabled(false);
+    if (savedMenu_->isEmpty()) savedMenu_->addAction(tr("none"))->setEnabled(false);
   });
-  actions.add("view.next-view", axes, tr("&Next kept view"),
+  actions.add("view.next-view", axes, tr("&Next saved view"),
               [this] {
                 const QStringList names = savedViews();
                 if (names.isEmpty()) return;
@@ -506,7 +506,7 @@ void ScenePanel::addActions(Actions& actions, QMenu* menu) {
   } arrangements[] = {{"view.views-1", QT_TR_NOOP("&One view"), Arrangement::One},
                       {"view.views-2", QT_TR_NOOP("&Two views side by side"), Arrangement::SideBySide},
                       {"view.views-4", QT_TR_NOOP("&Four views"), Arrangement::Grid},
-                      {"view.views-wipe", QT_TR_NOOP("&Wipe between two"), Arrangement::Wipe}};
+                      {"view.views-wipe", QT_TR_NOOP("&Wipe between two views"), Arrangement::Wipe}};
   QList<std::pair<QAction*, Arrangement>> arrangementActions;
   for (const auto& a : arrangements)
     arrangementActions.append(
@@ -515,22 +515,22 @@ void ScenePanel::addActions(Actions& actions, QMenu* menu) {
   QAction* linked = toggle(
       "view.link-views", arrange, tr("&Linked cameras"), {{int(Qt::CTRL) | Qt::Key_L}, {}, tr("All 3D views move together")},
       [this](bool on) { setSwitch("scene/linked", on, on ? tr("Link the 3D views") : tr("Unlink the 3D views")); });
-  actions.add("view.next-models", arrange, tr("Other &model in the active view"), [this] { nextModels(); },
-              {{Qt::Key_M}, {}, tr("All models, then each alone")});
+  actions.add("view.next-models", arrange, tr("Next &model in active view"), [this] { nextModels(); },
+              {{Qt::Key_M}, {}, tr("Cycles through all models, then each alone")});
 
-  QMenu* colours = menu->addMenu(tr("&Colour cameras by"));
+  QMenu* colours = menu->addMenu(tr("Colour cameras b&y"));
   QList<std::pair<QAction*, QString>> colourActions;
   for (const auto& [by, title] : {std::pair("role", tr("&Role")), std::pair("model", tr("Best &model")),
-                                  std::pair("error", tr("&Error")), std::pair("influence", tr("What the &view does"))}) {
+                                  std::pair("error", tr("&Error")), std::pair("influence", tr("&Influence"))}) {
     const QString name = QLatin1String(by);
     colourActions.append(
         {toggle((std::string("view.colour-") + by).c_str(), colours, title, {}, [this, name](bool) { setColourBy(name); }),
          name});
   }
-  QAction* solo = toggle("view.solo", menu, tr("Only the selected &frame"),
-                         {{int(Qt::SHIFT) | Qt::Key_S}, "solo", tr("Hides the other cameras and what belongs to them")},
-                         [this](bool on) { setSwitch("scene/solo", on, on ? tr("Only the selected frame") : tr("All frames")); });
-  actions.add("view.glyphs-larger", menu, tr("&Larger cameras and points"), [this] { scaleGlyphs(1.25); },
+  QAction* solo = toggle("view.solo", menu, tr("Only selected &frame"),
+                         {{int(Qt::SHIFT) | Qt::Key_S}, "solo", tr("Hides the other cameras and their objects")},
+                         [this](bool on) { setSwitch("scene/solo", on, on ? tr("Only selected frame") : tr("All frames")); });
+  actions.add("view.glyphs-larger", menu, tr("La&rger cameras and points"), [this] { scaleGlyphs(1.25); },
               {{Qt::Key_BracketRight}});
   actions.add("view.glyphs-smaller", menu, tr("S&maller cameras and points"), [this] { scaleGlyphs(0.8); },
               {{Qt::Key_BracketLeft}});
@@ -566,9 +566,9 @@ void ScenePanel::addActions(Actions& actions, QMenu* menu) {
   };
   button(camera, nullptr, "", {});
   button(mirrored, nullptr, "", {});
-  button(nullptr, axes, "axes", tr("Axis views, projection, kept views"));
-  button(nullptr, arrange, "views", tr("One, two or four 3D views, wipe"));
-  button(nullptr, colours, "palette", tr("What the cameras' colours say"));
+  button(nullptr, axes, "axes", tr("Axis views, projection, saved views"));
+  button(nullptr, arrange, "views", tr("One, two or four 3D views, or a wipe"));
+  button(nullptr, colours, "palette", tr("Camera colours"));
   button(solo, nullptr, "", {});
   button(actions.find("view.frame-selection"), nullptr, "", {});
   button(actions.find("view.frame-all"), nullptr, "", {});

@@ -52,7 +52,7 @@ SceneTree::SceneTree(Document& document, QWidget* parent)
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(2);
   search_->setObjectName(QStringLiteral("treeSearch"));
-  search_->setPlaceholderText(tr("Find an object…"));
+  search_->setPlaceholderText(tr("Find object…"));
   search_->setClearButtonEnabled(true);
   column->addWidget(search_);
   shown_->setSourceModel(model_);
@@ -82,7 +82,7 @@ SceneTree::SceneTree(Document& document, QWidget* parent)
   head->setSectionResizeMode(SceneTreeModel::Detail, QHeaderView::Interactive);
   head->setSectionResizeMode(SceneTreeModel::Effect, QHeaderView::Interactive);
   head->resizeSection(SceneTreeModel::Detail, fontMetrics().horizontalAdvance(tr("excluded")) + 19);
-  head->resizeSection(SceneTreeModel::Effect, fontMetrics().horizontalAdvance(tr("Helps, points")) + 14);
+  head->resizeSection(SceneTreeModel::Effect, fontMetrics().horizontalAdvance(tr("Influence, pp")) + 14);
   tree_->sortByColumn(SceneTreeModel::Name, Qt::AscendingOrder);
   column->addWidget(tree_, 1);
 
@@ -269,7 +269,7 @@ void SceneTree::exclude(const QModelIndex& index) {
   // Back to what it was, which the specification of the training frames still says.
   InspectionRequest request = document_.request();
   request.excluded.erase(std::remove(request.excluded.begin(), request.excluded.end(), frame), request.excluded.end());
-  document_.setRequest(request, tr("Take frame %1 back").arg(nameText(document_.scene()->frames[std::size_t(frame)].id)));
+  document_.setRequest(request, tr("Include frame %1").arg(nameText(document_.scene()->frames[std::size_t(frame)].id)));
 }
 
 // --- hiding -----------------------------------------------------------------------------------------------------------------
@@ -327,17 +327,17 @@ void SceneTree::showMenu(const QPoint& position) {
       document_.selectFrame(frame);
       emit lookThroughRequested();
     });
-    menu->addAction(tr("&Measure which view matters"), this, &SceneTree::influenceRequested);
+    menu->addAction(tr("&Measure influence of frames"), this, &SceneTree::influenceRequested);
   }
   menu->popup(tree_->viewport()->mapToGlobal(position));
 }
 
 void SceneTree::addActions(Actions& actions, QMenu* menu) {
   QMenu* objects = menu->addMenu(tr("O&bjects"));
-  actions.add("view.hide-object", objects, tr("&Hide the selected object"), [this] { hideSelected(); },
-              {{QKeySequence("Ctrl+H")}, {}, tr("What is selected in the scene tree")});
-  actions.add("view.only-object", objects, tr("Show &only the selected object"), [this] { showSelectedOnly(); },
-              {{QKeySequence("Ctrl+Shift+H")}, {}, tr("Hides the others of its kind")});
+  actions.add("view.hide-object", objects, tr("&Hide selected object"), [this] { hideSelected(); },
+              {{QKeySequence("Ctrl+H")}, {}, tr("Hides the object selected in the scene tree")});
+  actions.add("view.only-object", objects, tr("Show &only selected object"), [this] { showSelectedOnly(); },
+              {{QKeySequence("Ctrl+Shift+H")}, {}, tr("Hides all other objects of its kind")});
   actions.add("view.all-objects", objects, tr("Show &all objects"), [this] { showAll(); }, {{QKeySequence("Ctrl+Alt+H")}});
 }
 

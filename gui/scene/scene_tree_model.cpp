@@ -402,10 +402,10 @@ QString SceneTreeModel::detailOf(const SceneObject& o) const {
 
 QString SceneTreeModel::tipOf(const SceneObject& o, int column) const {
   if (column == Detail && o.kind == Kind::Camera)
-    return document_.role(o.frame) == FrameRole::Excluded ? tr("A click takes it back to what it was before")
-                                                          : tr("A click excludes it");
+    return document_.role(o.frame) == FrameRole::Excluded ? tr("Click to restore its previous role")
+                                                          : tr("Click to exclude this frame");
   if (column == Effect && o.kind == Kind::Camera && effects_.count(o.frame))
-    return tr("What the frame does for %1: %2 %. Positive: it helps; negative: the model is better off without it")
+    return tr("Influence on %1: %2 %. Positive: the frame helps; negative: the model is better without it")
         .arg(toQString(document_.plottedModel()), QString::number(effects_.at(o.frame), 'g', 3));
   return column == Detail ? detailOf(o) : QString();
 }
@@ -439,7 +439,7 @@ QVariant SceneTreeModel::groupData(const Group& group, int column, int role) con
       if (all == 0 || !layerShown(group)) return QGuiApplication::palette().brush(QPalette::Disabled, QPalette::Text);
       return {};
     case Qt::ToolTipRole:
-      return layerShown(group) ? QString() : tr("Their layers are off: see Layers");
+      return layerShown(group) ? QString() : tr("Hidden because their layers are off; see Layers");
     case kSortRole:
       return int(&group - groups_.data());
     default:
@@ -501,13 +501,13 @@ QVariant SceneTreeModel::objectData(const SceneObject& o, const Group& group, in
 
 QVariant SceneTreeModel::headerData(int section, Qt::Orientation orientation, int role) const {
   if (orientation != Qt::Horizontal) return {};
-  static const char* const titles[] = {QT_TR_NOOP("Object"), QT_TR_NOOP("What it is"), QT_TR_NOOP("Helps, points")};
+  static const char* const titles[] = {QT_TR_NOOP("Object"), QT_TR_NOOP("Type"), QT_TR_NOOP("Influence, pp")};
   if (role == Qt::DisplayRole) return section == Effect && effectsAreErrors_ ? tr("Left out, %") : tr(titles[section]);
   if (role == Qt::ToolTipRole && section == Effect)
     return (effectsAreErrors_
-                ? tr("Error of %1 on each training frame, predicted from the others, %: see the plot Which view matters")
-                : tr("What each training frame does for %1: by how many percentage points the error of the held-out frames grows "
-                     "without it. See the plot Which view matters"))
+                ? tr("Error of %1 on each training frame, predicted from the others, %. See the plot Influence of frames")
+                : tr("Influence of each training frame on %1: increase of the held-out error without it, in percentage points. "
+                     "See the plot Influence of frames"))
         .arg(toQString(document_.plottedModel()));
   return {};
 }

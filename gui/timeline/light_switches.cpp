@@ -23,7 +23,7 @@ QString lightStateText(viz::LightState state) {
     case viz::LightState::On:
       return Texts::tr("on");
     case viz::LightState::NotStated:
-      return Texts::tr("the scene does not say whether it is on");
+      return Texts::tr("not stated in the scene");
     case viz::LightState::SwitchedOff:
       return Texts::tr("switched off by hand");
     case viz::LightState::SwitchedOn:
@@ -34,16 +34,16 @@ QString lightStateText(viz::LightState state) {
 
 QString lightClickText(const Document& document, viz::LightState state) {
   if (!canSwitch(document, state))
-    return Texts::tr("captured so; it can be switched on where contours are synthesised (What if)");
+    return Texts::tr("off as captured; can be switched on once contours are synthesised (What-if)");
   switch (state) {
     case viz::LightState::Off:
-      return Texts::tr("a click switches it on here");
+      return Texts::tr("click to switch on in this frame");
     case viz::LightState::SwitchedOff:
-      return Texts::tr("its highlight here neither trains nor counts; a click puts it back");
+      return Texts::tr("its highlight in this frame is used neither for training nor for evaluation; click to restore it");
     case viz::LightState::SwitchedOn:
-      return Texts::tr("a click switches it off again");
+      return Texts::tr("click to switch off again");
     default:
-      return Texts::tr("a click switches it off here");
+      return Texts::tr("click to switch off in this frame");
   }
 }
 
@@ -74,15 +74,15 @@ void switchLightEverywhere(Document& document, const viz::LightRow& row, bool as
     else if (turnsOff(viz::lightState(row, *scene, w, frame)))
       w = switched(std::move(w), *scene, frame, row.light, false);
   }
-  document.setWhatIf(w, (asCaptured ? Texts::tr("Light %1 as captured in every frame")
-                                    : Texts::tr("Switch light %1 off in every frame"))
-                            .arg(nameText(row.light)));
+  document.setWhatIf(w,
+                     (asCaptured ? Texts::tr("Restore light %1 in every frame") : Texts::tr("Switch light %1 off in every frame"))
+                         .arg(nameText(row.light)));
 }
 
 void addLights(QMenu& menu, Document& document, const std::vector<viz::LightRow>& rows, int frame) {
   if (!document.scene() || frame < 0 || frame >= document.frameCount()) return;
   if (rows.empty()) {
-    menu.addAction(Texts::tr("All frames show the same single light: exclude a frame instead"))->setEnabled(false);
+    menu.addAction(Texts::tr("All frames show the same single light; exclude a frame instead"))->setEnabled(false);
     return;
   }
   for (const viz::LightRow& row : rows) {

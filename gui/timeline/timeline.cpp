@@ -47,7 +47,7 @@ Timeline::Timeline(Document& document, QWidget* parent) : QWidget(parent), docum
   for (QToolButton* b : {back, play, next}) buttons->addWidget(b);
   speed_ = new QComboBox;
   speed_->setObjectName(QStringLiteral("playSpeed"));
-  speed_->setToolTip(tr("Speed of playing, frames per second"));
+  speed_->setToolTip(tr("Playback speed, frames per second"));
   for (const int s : kSpeeds) speed_->addItem(tr("%1/s").arg(s), s);
   buttons->addWidget(speed_, 1);
   auto* plotted = new QHBoxLayout;
@@ -55,9 +55,9 @@ Timeline::Timeline(Document& document, QWidget* parent) : QWidget(parent), docum
   model_ = new QComboBox;
   model_->setObjectName(QStringLiteral("plottedModel"));
   model_->setIconSize({11, 11});
-  model_->setToolTip(tr("The selected model: thick line, or bars"));
+  model_->setToolTip(tr("Selected model: thick line or bars"));
   model_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
-  bars_ = button("bars", tr("Errors of the selected model as bars, instead of lines of all models"), "timelineBars");
+  bars_ = button("bars", tr("Errors of the selected model as bars instead of lines of all models"), "timelineBars");
   bars_->setCheckable(true);
   plotted->addWidget(model_, 1);
   plotted->addWidget(bars_);
@@ -87,7 +87,7 @@ Timeline::Timeline(Document& document, QWidget* parent) : QWidget(parent), docum
     if (n > 0) document_.showFrame((document_.selection().frame + 1) % n);
   });
   connect(speed_, QOverload<int>::of(&QComboBox::activated), this, [this](int i) {
-    document_.setOption("timeline/speed", double(kSpeeds[i]), tr("Play %1 frames per second").arg(kSpeeds[i]));
+    document_.setOption("timeline/speed", double(kSpeeds[i]), tr("Play at %1 frames per second").arg(kSpeeds[i]));
   });
   connect(bars_, &QToolButton::clicked, this, &Timeline::setBars);
   connect(model_, QOverload<int>::of(&QComboBox::activated), this, [this](int i) {
@@ -149,7 +149,7 @@ void Timeline::setPlaying(bool playing) {
 
 void Timeline::changeSpeed(int steps) {
   const int index = std::clamp(speed_->currentIndex() + steps, 0, int(std::size(kSpeeds)) - 1);
-  document_.setOption("timeline/speed", double(kSpeeds[index]), tr("Play %1 frames per second").arg(kSpeeds[index]));
+  document_.setOption("timeline/speed", double(kSpeeds[index]), tr("Play at %1 frames per second").arg(kSpeeds[index]));
 }
 
 void Timeline::stepToRole(FrameRole role, int by) {
@@ -176,8 +176,8 @@ void Timeline::addActions(Actions& actions, QMenu* menu) {
   actions.add("timeline.zoom-in", timeline, tr("Zoom &in"), [this] { strip_->zoom(2); });
   actions.add("timeline.zoom-out", timeline, tr("Zoom &out"), [this] { strip_->zoom(0.5); });
   actions.add("timeline.show-all", timeline, tr("Show all fra&mes"), [this] { strip_->showAll(); });
-  barsAction_ = actions.addToggle("timeline.bars", timeline, tr("Errors of the selected model as &bars"),
-                                  [this](bool on) { setBars(on); }, {});
+  barsAction_ =
+      actions.addToggle("timeline.bars", timeline, tr("Errors of selected model as &bars"), [this](bool on) { setBars(on); }, {});
   thumbnailsAction_ = actions.addToggle("timeline.thumbnails", timeline, tr("T&humbnails"),
                                         [this](bool on) {
                                           document_.setOption("timeline/thumbnails", on ? "on" : "off",
@@ -188,10 +188,10 @@ void Timeline::addActions(Actions& actions, QMenu* menu) {
   const auto role = [&](const char* id, const QString& text, FrameRole r) {
     actions.add(QLatin1String(id), menu, text, [this, r] { document_.setRole(document_.selection().frame, r); });
   };
-  role("frame.train", tr("&Train on it"), FrameRole::Training);
-  role("frame.hold-out", tr("&Hold it out"), FrameRole::HeldOut);
-  role("frame.exclude", tr("E&xclude it"), FrameRole::Excluded);
-  QMenu* lights = menu->addMenu(tr("&Lights of it"));
+  role("frame.train", tr("&Train on this frame"), FrameRole::Training);
+  role("frame.hold-out", tr("&Hold out this frame"), FrameRole::HeldOut);
+  role("frame.exclude", tr("E&xclude this frame"), FrameRole::Excluded);
+  QMenu* lights = menu->addMenu(tr("Li&ghts of this frame"));
   lights->setToolTipsVisible(true);
   connect(lights, &QMenu::aboutToShow, this, [this, lights] {
     lights->clear();

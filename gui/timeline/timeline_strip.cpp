@@ -389,13 +389,13 @@ void TimelineStrip::contextMenuEvent(QContextMenuEvent* e) {
   if (const int light = lightAt(e->pos().y()); light >= 0) {
     const viz::LightRow row = data_.lights[std::size_t(light)];
     const QString name = menuText(nameText(row.light));
-    menu.addAction(tr("Light %1 off in every frame").arg(name), this,
+    menu.addAction(tr("Switch light %1 off in every frame").arg(name), this,
                    [this, row] { switchLightEverywhere(document_, row, false); });
-    menu.addAction(tr("Light %1 as captured in every frame").arg(name), this,
+    menu.addAction(tr("Restore light %1 in every frame").arg(name), this,
                    [this, row] { switchLightEverywhere(document_, row, true); });
   }
   menu.addSeparator();
-  menu.addAction(tr("Show beside the selected frame"), this, [this, frame, id] {
+  menu.addAction(tr("Show beside selected frame"), this, [this, frame, id] {
     document_.undoStack()->beginMacro(tr("Show frame %1 beside").arg(id));
     document_.setOption("frame/second", double(frame), QString());
     document_.setOption("frame/side-by-side", "on", QString());
@@ -436,9 +436,8 @@ QString TimelineStrip::lightTip(int row, int frame) const {
   const viz::LightRow& light = data_.lights[std::size_t(row)];
   const QString name = nameText(light.light);
   if (frame < 0)
-    return tr("Light %1 (row %2 of %3): on in the frames where its row is yellow; a click switches it in a frame, a line through "
-              "it "
-              "shows what is not as captured")
+    return tr("Light %1 (row %2 of %3): on in frames where its row is yellow. Click to switch it in a frame; a line through "
+              "it marks a change from what was captured")
         .arg(name)
         .arg(row + 1)
         .arg(data_.lights.size());

@@ -32,7 +32,7 @@ QString named(const char* kind, const WhatIfKnob& knob) { return QLatin1String(k
 WhatIfPanel::WhatIfPanel(Document& document, QWidget* parent)
     : QScrollArea(parent),
       document_(document),
-      synthesise_(new QCheckBox(tr("Synthesise the contours"))),
+      synthesise_(new QCheckBox(tr("Synthesise contours"))),
       lobe_(new QComboBox),
       summary_(new QLabel),
       origin_(new QLabel),
@@ -47,14 +47,14 @@ WhatIfPanel::WhatIfPanel(Document& document, QWidget* parent)
   summary_->setMinimumHeight(2 * summary_->fontMetrics().lineSpacing());  // its rows stay where they are under the mouse
   head->addWidget(summary_, 1);
   resetAll_->setObjectName(QStringLiteral("whatif.reset"));
-  resetAll_->setText(tr("Put everything back"));
+  resetAll_->setText(tr("Reset what-if"));
   head->addWidget(resetAll_, 0, Qt::AlignTop);
   column->addLayout(head);
   auto* synthetic = new QHBoxLayout;
   synthesise_->setObjectName(QStringLiteral("whatif.synthesise"));
   synthetic->addWidget(synthesise_, 1);
   lobe_->setObjectName(QStringLiteral("whatif.lobe"));
-  lobe_->setToolTip(tr("The lobe that makes the contours"));
+  lobe_->setToolTip(tr("Lobe of the synthesised contours"));
   for (const Lobe lobe : {Lobe::TorranceSparrow, Lobe::Ggx, Lobe::BlinnPhong, Lobe::Phong})
     lobe_->addItem(QLatin1String(nameOf(lobe)));
   synthetic->addWidget(lobe_);
@@ -71,14 +71,14 @@ WhatIfPanel::WhatIfPanel(Document& document, QWidget* parent)
 
   connect(synthesise_, &QCheckBox::clicked, this, [this](bool on) {
     document_.setWhatIf(started(document_.request().whatIf, on),
-                        on ? tr("What if: contours synthesised") : tr("What if: contours as captured"));
+                        on ? tr("What-if: contours synthesised") : tr("What-if: contours as captured"));
   });
   connect(lobe_, QOverload<int>::of(&QComboBox::activated), this, [this](int index) {
     WhatIf w = document_.request().whatIf;
     w.lobe = *lobeOf(lobe_->itemText(index).toStdString());
-    document_.setWhatIf(w, tr("What if: lobe %1").arg(lobe_->itemText(index)));
+    document_.setWhatIf(w, tr("What-if: lobe %1").arg(lobe_->itemText(index)));
   });
-  connect(resetAll_, &QToolButton::clicked, this, [this] { document_.setWhatIf(WhatIf(), tr("What if: everything back")); });
+  connect(resetAll_, &QToolButton::clicked, this, [this] { document_.setWhatIf(WhatIf(), tr("What-if: reset")); });
   connect(&document_, &Document::sceneOpened, this, [this] {
     fitted_.reset();
     whyNotFitted_.clear();
@@ -132,7 +132,7 @@ QString WhatIfPanel::origin(const WhatIf& w) const {
     if (whyNotFitted_.empty()) return {};
     const QString why = toQString(whyNotFitted_);
     if (w.synthesise) return tr("No fitted lobe to compare with: %1").arg(why);
-    return tr("Starts from the usual lobe, %1 with m = %2: %3")
+    return tr("Starts from the default lobe, %1 with m = %2: %3")
         .arg(QLatin1String(nameOf(w.lobe)), numberText(w.roughness, kDigits), why);
   }
   const QString lobe =
@@ -140,7 +140,7 @@ QString WhatIfPanel::origin(const WhatIf& w) const {
           .arg(QLatin1String(nameOf(fitted_->lobe)), numberText(fitted_->roughness, kDigits), toQString(fitted_->origin));
   if (!w.synthesise) return tr("Starts from the lobe of this scene: %1").arg(lobe);
   const bool own = w.lobe == fitted_->lobe && w.roughness == fitted_->roughness;
-  return (own ? tr("This is the lobe of the scene as captured: %1") : tr("The scene as captured has %1")).arg(lobe);
+  return (own ? tr("Same lobe as captured: %1") : tr("Lobe as captured: %1")).arg(lobe);
 }
 
 void WhatIfPanel::rebuild() {
@@ -200,7 +200,7 @@ void WhatIfPanel::addRow(const WhatIfKnob& knob, QGridLayout* grid, int row) {
   reset->setIcon(icon(QStringLiteral("reset")));
   reset->setIconSize({13, 13});
   reset->setAutoRaise(true);
-  reset->setToolTip(tr("Back to %1").arg(valueText(spec.defaultValue, spec)));
+  reset->setToolTip(tr("Reset to %1").arg(valueText(spec.defaultValue, spec)));
   for (QWidget* w : std::initializer_list<QWidget*>{title, slider, box}) w->setToolTip(tip);
   grid->addWidget(title, row, 0);
   grid->addWidget(slider, row, 1);
@@ -230,7 +230,7 @@ void turnKnob(Document& document, const WhatIfKnob& knob, double value, int gest
   WhatIf w = document.request().whatIf;
   knob.set(w, value);
   document.setWhatIf(w,
-                     QObject::tr("What if: %1, %2 %3")
+                     QObject::tr("What-if: %1, %2 %3")
                          .arg(toQString(knob.group), toQString(knob.spec.title).toLower(), valueText(value, knob.spec)),
                      gesture > 0 ? QStringLiteral("%1#%2").arg(toQString(knob.spec.key)).arg(gesture) : QString());
 }
@@ -251,22 +251,22 @@ void WhatIfPanel::refresh() {
   const Scene* scene = document_.scene();
   const std::optional<Failure> whyNot = scene ? whyNotSynthesised(*scene) : std::nullopt;
   synthesise_->setEnabled(scene && !whyNot);
-  synthesise_->setToolTip(whyNot
-                              ? tr("Not here: %1").arg(toQString(whyNot->detail))
-                              : tr("Observed contours come from the exact radiance of the lights below, instead of the images"));
+  synthesise_->setToolTip(
+      whyNot ? tr("Not available: %1").arg(toQString(whyNot->detail))
+             : tr("Computes observed contours from the exact radiance of the lights below instead of the images"));
   synthesise_->setChecked(w.synthesise);
   lobe_->setEnabled(w.synthesise);
   const WhatIf shown = started(w, true);  // also before it is switched on: what it starts from
   lobe_->setCurrentIndex(lobe_->findText(QLatin1String(nameOf(shown.lobe))));
   origin_->setText(scene && !whyNot ? origin(w) : QString());
   const std::string summary = summaryOf(w);
-  summary_->setText(summary.empty() ? tr("Nothing is changed: this is what was captured") : toQString(summary));
+  summary_->setText(summary.empty() ? tr("No changes: scene as captured") : toQString(summary));
   resetAll_->setEnabled(!w.none());
   for (const Row& row : rows_) {
     const double value = row.knob.get(w.synthesise ? w : shown);
     row.show(value);
     const bool usable = !row.knob.synthetic || w.synthesise;
-    const QString why = usable ? QString() : tr("\nOnly where contours are synthesised: tick that first.");
+    const QString why = usable ? QString() : tr("\nRequires synthesised contours; tick that box first.");
     for (QWidget* widget : row.widgets) {
       if (widget->isEnabledTo(knobs_) == usable && widget->toolTip().endsWith(why))
         continue;  // every step of a slider comes here

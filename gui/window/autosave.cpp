@@ -84,7 +84,7 @@ void Autosave::schedule() {
           QMetaObject::invokeMethod(
               this,
               [this, line = toQString(e.what())] {
-                if (!std::exchange(reported_, true)) emit problem(tr("Nothing can be recovered after a crash: %1").arg(line));
+                if (!std::exchange(reported_, true)) emit problem(tr("Changes cannot be recovered after a crash: %1").arg(line));
               },
               Qt::QueuedConnection);
         }

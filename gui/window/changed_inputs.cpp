@@ -55,7 +55,8 @@ void ChangedInputs::check() {
       lines << toQString(e.what());
     }
     return LatestJob::Deliver([this, lines, outside] {
-      if (outside > 0) emit message(tr("%1 files lie outside the folders of the session and its scene; they are not compared").arg(outside));
+      if (outside > 0)
+        emit message(tr("%1 files outside the folders of the session and its scene are not checked for changes").arg(outside));
       tell(lines);
     });
   });
@@ -64,11 +65,11 @@ void ChangedInputs::check() {
 void ChangedInputs::tell(const QStringList& lines) {
   all_ = lines;
   if (all_.isEmpty()) return;
-  for (const QString& line : all_) emit message(tr("Since the session was saved: %1").arg(line));
+  for (const QString& line : all_) emit message(tr("Since this session was saved: %1").arg(line));
   if (bar_.waits()) return;
   QString named = QStringList(all_.mid(0, kNamed)).join(QStringLiteral("; "));
-  if (all_.size() > kNamed) named += tr("; and %1 more, see the log").arg(all_.size() - kNamed);
-  bar_.showNotice(tr("Inputs are not what they were when the session was saved, so results may differ: %1").arg(named));
+  if (all_.size() > kNamed) named += tr("; %1 more in the log").arg(all_.size() - kNamed);
+  bar_.showNotice(tr("Input files changed since this session was saved; results may differ: %1").arg(named));
 }
 
 }  // namespace glint::gui

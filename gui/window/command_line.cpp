@@ -14,7 +14,7 @@ QSize parseSize(const QString& text) {
   const QRegularExpressionMatch m = QRegularExpression(QStringLiteral("^(\\d{1,5})[xX](\\d{1,5})$")).match(text);
   const QSize size(m.captured(1).toInt(), m.captured(2).toInt());
   if (!m.hasMatch() || size.width() < 320 || size.height() < 240 || size.width() > 16384 || size.height() > 16384)
-    throw InputError("", "--size", "'" + text.toStdString() + "' is not WIDTHxHEIGHT from 320x240 to 16384x16384");
+    throw InputError("", "--size", "'" + text.toStdString() + "' is not WIDTHxHEIGHT between 320x240 and 16384x16384");
   return size;
 }
 }  // namespace
@@ -42,11 +42,11 @@ CommandLine parseCommandLine(const QStringList& arguments) {
       if (!layoutNames().contains(c.layout))
         throw InputError(
             "", "--layout",
-            "'" + c.layout.toStdString() + "' is none of: " + layoutNames().join(QStringLiteral(", ")).toStdString());
+            "'" + c.layout.toStdString() + "' is not one of: " + layoutNames().join(QStringLiteral(", ")).toStdString());
     } else if (name == QStringLiteral("--theme")) {
       const QString theme = value();
       if (theme != QStringLiteral("light") && theme != QStringLiteral("dark"))
-        throw InputError("", "--theme", "'" + theme.toStdString() + "' is none of: light, dark");
+        throw InputError("", "--theme", "'" + theme.toStdString() + "' is not one of: light, dark");
       c.theme = theme == QStringLiteral("dark") ? Theme::Dark : Theme::Light;
     } else if (name == QStringLiteral("--frame"))
       c.frame = value();
@@ -61,7 +61,7 @@ CommandLine parseCommandLine(const QStringList& arguments) {
     else if (name == QStringLiteral("--wait-idle"))
       c.waitIdle = true;
     else if (name.startsWith('-') && name.size() > 1)
-      throw InputError("", name.toStdString(), "unknown option (see --help)");
+      throw InputError("", name.toStdString(), "unknown option; see --help");
     else if (c.input.isEmpty())
       c.input = name;
     else
@@ -76,24 +76,23 @@ QString helpText() {
   for (const LimitInfo& limit : limitInfos()) limits << QString::fromStdString(limit.name);
   return QStringLiteral(
              "Usage: glint-inspector [INPUT] [options]\n\n"
-             "Shows a specular highlight reconstruction step by step: the surface, cameras, light and models in 3D, and the\n"
-             "predicted over the captured highlight in every frame.\n\n"
-             "  INPUT                 a scene file (scene.json), a session (*.glint) or a folder that holds one; none = start "
-             "empty\n\n"
+             "Shows a specular highlight reconstruction step by step: surface, cameras, light and models in 3D, and the\n"
+             "predicted and observed highlights in every frame.\n\n"
+             "  INPUT                 a scene file (scene.json), a session (*.glint) or a folder containing one;\n"
+             "                        default: start empty\n\n"
              "  --layout NAME         arrangement of the panels: %1\n"
              "  --theme light|dark    colours (default: dark)\n"
-             "  --frame ID            frame to select: its id, else its number in the input, from 0\n"
-             "  --run ID[,ID...]      run actions by their ids once the scene is shown (explain.step-contour, view.panel-plots "
-             "...);\n"
-             "                        a wrong one lists them all\n"
+             "  --frame ID            frame to select: id, or number in the input (from 0)\n"
+             "  --run ID[,ID...]      run actions by id once the scene is shown (explain.step-contour, view.panel-plots ...);\n"
+             "                        an unknown id lists them all\n"
              "  --screenshot FILE     write the window as PNG and quit\n"
-             "  --size WxH            size of the window, in pixels (default: 1600x1000)\n"
-             "  --wait-idle           before the screenshot, wait until everything is computed and drawn\n"
+             "  --size WxH            window size in pixels (default: 1600x1000)\n"
+             "  --wait-idle           take the screenshot once everything is computed and drawn\n"
              "  --limit NAME=VALUE    raise a limit on the size of inputs, in its own unit; may be repeated:\n"
              "                        %2\n"
              "  --version, -h, --help\n\n"
-             "Exit codes: 0 done, 2 the input or the request is wrong (one line on standard error says where).\n"
-             "A display is needed; without one run it under a virtual display:\n"
+             "Exit codes: 0 done, 2 invalid input or request (one line on standard error says where).\n"
+             "Needs a display. Without one, use a virtual display:\n"
              "  QT_QPA_PLATFORM=xcb xvfb-run -a -s \"-screen 0 1600x1000x24\" glint-inspector INPUT --screenshot out.png "
              "--wait-idle\n")
       .arg(layoutNames().join(QStringLiteral(", ")), limits.join(QStringLiteral(", ")));

@@ -75,7 +75,7 @@ void Docks::arrange(const Room& room) {
 
 QDockWidget* Docks::at(const QString& name) const {
   QDockWidget* dock = docks_.value(name);
-  require(dock != nullptr, "Docks: there is no dock " + name.toStdString());
+  require(dock != nullptr, "Docks: no dock named " + name.toStdString());
   return dock;
 }
 

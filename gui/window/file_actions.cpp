@@ -109,13 +109,14 @@ void FileActions::drop(const QString& path) {
     }
     if (!folder.cdUp()) break;
   }
-  emit problem(tr("%1 is no photograph of a frame, and holds no session").arg(shownText(QFileInfo(path).fileName())));
+  emit problem(
+      tr("%1 is neither a photograph of a frame nor a figure with a session").arg(shownText(QFileInfo(path).fileName())));
 }
 
 bool FileActions::mayDiscard() {
   waitForSave();
   if (!document_.hasUnsavedChanges()) return true;
-  QMessageBox question(QMessageBox::Question, tr("Unsaved changes"), tr("The session has changes that are not saved."),
+  QMessageBox question(QMessageBox::Question, tr("Unsaved changes"), tr("This session has unsaved changes."),
                        QMessageBox::Discard | QMessageBox::Cancel, window_);
   question.setObjectName(QStringLiteral("unsavedQuestion"));
   if (engine_.save) question.addButton(QMessageBox::Save);
@@ -129,7 +130,7 @@ bool FileActions::mayDiscard() {
 }
 
 void FileActions::openDialog() {
-  const QString path = QFileDialog::getOpenFileName(window_, tr("Open a scene or session"), document_.inputFile(),
+  const QString path = QFileDialog::getOpenFileName(window_, tr("Open scene or session"), document_.inputFile(),
                                                     tr("Scenes, sessions and figures (*.json *.glint *.png);;All files (*)"));
   if (!path.isEmpty()) open(path);
 }
@@ -137,7 +138,7 @@ void FileActions::openDialog() {
 void FileActions::openFolderDialog() {
   // Of a file, the dialog would take the name for a folder's, which does not exist.
   const QString now = document_.inputFile();
-  const QString path = QFileDialog::getExistingDirectory(window_, tr("Open a folder with a scene"),
+  const QString path = QFileDialog::getExistingDirectory(window_, tr("Open scene folder"),
                                                          now.isEmpty() ? QString() : QFileInfo(now).absolutePath());
   if (!path.isEmpty()) open(path);
 }
@@ -217,17 +218,18 @@ void FileActions::finishOpen(const OpenedPtr& opened) {
   rules_.follow(document_.sessionFile(), stamp_);
   remember(exactQString(opened->path));
   if (const QString other = rules_.otherHolder(); !other.isEmpty())
-    emit notice(tr("%1 is open in %2, too; saving asks before it replaces what is saved there")
+    emit notice(tr("%1 is also open in %2; saving here asks before it overwrites what is saved there")
                     .arg(shownText(QFileInfo(document_.sessionFile()).fileName()), other));
   if (!opened->notice.empty()) emit notice(toQString(opened->notice));
   if (!opened->warning.empty()) emit problem(toQString(opened->warning));
   for (const auto& [named, mesh] : opened->scene->meshes)
-    emit message(tr("The mesh %1 is %2").arg(toQString(named), toQString(mesh.string())));
+    emit message(tr("Using %2 for the mesh %1").arg(toQString(named), toQString(mesh.string())));
   for (const std::string& warning : opened->scene->warnings) emit message(toQString(warning));
   if (const QString picture = std::exchange(photographToSelect_, {}); !picture.isEmpty()) {
     const int frame = frameOfPicture(*opened->scene, picture);
     if (frame >= 0) return document_.selectFrame(frame);
-    emit problem(tr("%1 is no photograph of a frame of %2").arg(shownText(QFileInfo(picture).fileName()), toQString(opened->path)));
+    emit problem(
+        tr("%1 is not a photograph of a frame of %2").arg(shownText(QFileInfo(picture).fileName()), toQString(opened->path)));
   }
   if (frameToSelect_.isEmpty()) return;
   const std::string wanted = frameToSelect_.toStdString();
@@ -240,7 +242,7 @@ void FileActions::finishOpen(const OpenedPtr& opened) {
   if (isNumber && number >= 0 && number < int(frames.size()))
     document_.selectFrame(number);
   else
-    emit problem(toQString(InputError(opened->path, "--frame", "there is no frame '" + wanted + "'").what()));
+    emit problem(toQString(InputError(opened->path, "--frame", "no frame '" + wanted + "'").what()));
 }
 
 bool FileActions::save() {
@@ -312,7 +314,8 @@ void FileActions::finishSave(const QString& path, const QString& problem) {
       rememberFoldersOfSaved(path);
     }
     remember(path);
-    emit message((savingResults_ ? tr("Saved %1") : tr("Saved %1 without results: they were not up to date")).arg(shownText(path)));
+    emit message(
+        (savingResults_ ? tr("Saved %1") : tr("Saved %1 without results: results are out of date")).arg(shownText(path)));
   } else {
     emit this->problem(problem);
   }

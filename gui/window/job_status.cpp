@@ -60,7 +60,7 @@ JobStatus::JobStatus(Document& document, Runner& runner, QWidget* parent)
   connect(&document_, &Document::sceneOpened, this, &JobStatus::refresh);
   connect(&runner_, &Runner::progressed, this, [this](const QString& stage, int done, int total) {
     if (!bar_->isVisible()) return;
-    const QString words = stage == QStringLiteral("hash") ? tr("checking the input files") : stage;
+    const QString words = stage == QStringLiteral("hash") ? tr("checking input files") : stage;
     text_->setText(total > 0 ? tr("%1 %2/%3").arg(words).arg(done).arg(total) : words);
     bar_->setRange(0, total);
     bar_->setValue(done);

@@ -121,7 +121,7 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
     runFailed_ = false;  // the message stays
     if (document_.stale()) recompute();
   });
-  connect(&runner_, &Runner::stopped, this, [this] { log(tr("Stopped")); });
+  connect(&runner_, &Runner::stopped, this, [this] { log(tr("Computation stopped")); });
   // A run that ends and leaves what is on screen out of date was stopped, or has failed.
   connect(&runner_, &Runner::busyChanged, this, [this, updating = true](bool busy) mutable {
     const bool now = busy || !document_.stale();
@@ -163,7 +163,7 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   connect(recovery, &Recovery::problem, this, &MainWindow::log);
   auto* history = findChild<QUndoView*>(QStringLiteral("historyList"));
   connect(recovery, &Recovery::opened, history, [history](bool recovered) {
-    history->setEmptyLabel(recovered ? tr("As recovered; earlier steps are not kept") : tr("As opened"));
+    history->setEmptyLabel(recovered ? tr("As recovered; earlier steps are lost") : tr("As opened"));
   });
   recovery->offer();
   start_->setRecent(files_->recent());
@@ -223,7 +223,7 @@ void MainWindow::buildDocks() {
   connect(&runner_, &Runner::chosen, this, [this](const SelectionPtr& selection, const OpenedPtr& computedFor) {
     if (computedFor->scene != document_.sharedScene() || computedFor->request != document_.request()) return;  // too late
     const QString table = toQString(selectionTable(*selection));
-    log(tr("Automatic choice of the model\n") + table);
+    log(tr("Automatic choice of model\n") + table);
     setup_->showChoice(toQString(selection->why + (selection->patches ? " " + selection->patches->why : "")), table);
     if (!selection->model.empty())
       document_.setRequest(chosenRequest(document_.request(), *selection),
@@ -246,9 +246,9 @@ void MainWindow::buildDocks() {
   docks_.add("history", tr("History"), history, Qt::LeftDockWidgetArea, "layers");
 
   parameters_ = new ParameterPanel(document_);
-  docks_.add("parameters", tr("Parameters"), parameters_, Qt::RightDockWidgetArea);
+  docks_.add("parameters", tr("Settings"), parameters_, Qt::RightDockWidgetArea);
   whatIf_ = new WhatIfPanel(document_);
-  docks_.add("what-if", tr("What if"), whatIf_, Qt::RightDockWidgetArea, "parameters");
+  docks_.add("what-if", tr("What-if"), whatIf_, Qt::RightDockWidgetArea, "parameters");
   docks_.add("conditioning", tr("Conditioning"), new ConditioningPanel(document_), Qt::RightDockWidgetArea);
   numbers_ = new NumbersPanel(document_);
   docks_.add("numbers", tr("Numbers"), numbers_, Qt::RightDockWidgetArea);
@@ -330,7 +330,7 @@ void MainWindow::buildMenus() {
   edit->addSeparator();
   actions_.add("edit.copy-numbers", edit, tr("Copy &numbers"), [this] { numbers_->copy(); }, {{}, "copy"});
   actions_.add("edit.copy-error-rows", edit, tr("Copy &error rows"), [this] { errors_->copySelection(); });
-  actions_.add("edit.stop", edit, tr("&Stop what runs"),
+  actions_.add("edit.stop", edit, tr("&Stop computation"),
                [this] {
                  runner_.cancel();
                  exports_->longJob()->cancel();
@@ -341,8 +341,8 @@ void MainWindow::buildMenus() {
     return [this, button] { findChild<QAbstractButton*>(QLatin1String(button))->click(); };
   };
   edit->addSeparator();
-  actions_.add("edit.auto-model", edit, tr("Choose the &model automatically"), press("autoModel"));
-  actions_.add("edit.what-if-back", edit, tr("Put everything of the &what-if back"), press("whatif.reset"));
+  actions_.add("edit.auto-model", edit, tr("Choose &model automatically"), press("autoModel"));
+  actions_.add("edit.what-if-back", edit, tr("Reset &what-if"), press("whatif.reset"));
 
   edit->addSeparator();
   palette_ = new Palette(
@@ -358,8 +358,8 @@ void MainWindow::buildMenus() {
                              leadTo("what-if", [this](const std::string& key) { whatIf_->showKnob(key); })});
       },
       this);
-  palette_->setOpener(actions_.add("edit.palette", edit, tr("&Find an action, parameter or frame…"),
-                                   [this] { palette_->popUp(); }, {{QKeySequence("Ctrl+K"), QKeySequence("Ctrl+Shift+P")}}));
+  palette_->setOpener(actions_.add("edit.palette", edit, tr("&Find action, setting or frame…"), [this] { palette_->popUp(); },
+                                   {{QKeySequence("Ctrl+K"), QKeySequence("Ctrl+Shift+P")}}));
   actions_.add("edit.shortcuts", edit, tr("&Keyboard shortcuts…"), [this] { ShortcutDialog(actions_, this).exec(); });
 
   QMenu* frame = menuBar()->addMenu(tr("F&rame"));
@@ -391,7 +391,7 @@ void MainWindow::buildMenus() {
   connect(own, &OwnLayouts::applied, layout_, &WindowLayout::setOwn);
   docks_.addActions(actions_, view->addMenu(tr("&Panels")));
   view->addSeparator();
-  actions_.add("view.theme", view, tr("Light or dark &theme"),
+  actions_.add("view.theme", view, tr("Switch light/dark &theme"),
                [this] { setTheme(currentTheme() == Theme::Dark ? Theme::Light : Theme::Dark); }, {{}, "theme"});
 
   explain_->addActions(actions_, menuBar()->addMenu(tr("E&xplain")));
@@ -416,7 +416,7 @@ void MainWindow::offerMenus() {
   const auto offer = [this](QWidget* view, std::initializer_list<const char*> ids) {
     for (const char* id : ids) {
       QAction* action = *id ? actions_.find(QLatin1String(id)) : new QAction(view);
-      require(action != nullptr, std::string("offerMenus: there is no action ") + id);
+      require(action != nullptr, std::string("offerMenus: no action named ") + id);
       if (!*id) action->setSeparator(true);
       view->addAction(action);
     }
@@ -511,7 +511,7 @@ void MainWindow::showProblem(const QString& oneLine) {
   if (const MissingPtr missing = std::exchange(missing_, {}))
     offerToLocate(oneLine, missing);
   else if (const OutsidePtr outside = std::exchange(outside_, {}))
-    messageBar_->showError(tr("%1. Open it all the same, and let it use files in %2? Only if you trust who made it.")
+    messageBar_->showError(tr("%1. Open it anyway and let it use files in %2? Do this only if you trust its author.")
                                .arg(oneLine, shownText(exactQString(outside->folder))),
                            {{tr("Allow and open"), [this, outside] { files_->allow(outside); }}});
   else if (!unreadable_->offerMesh(oneLine))

@@ -20,9 +20,9 @@ void OwnLayouts::addActions(Actions& actions, QMenu* menu) {
   for (int place = 1; place <= kPlaces; ++place)
     goTo_ << actions.add(QStringLiteral("view.layout-own-%1").arg(place), menu, tr("Own layout &%1").arg(place),
                          [this, place] { apply(place); });
-  QMenu* keepMenu = menu->addMenu(tr("&Keep the layout on screen"));
+  QMenu* keepMenu = menu->addMenu(tr("&Save current layout"));
   for (int place = 1; place <= kPlaces; ++place)
-    actions.add(QStringLiteral("view.layout-keep-%1").arg(place), keepMenu, tr("Keep the layout as own layout &%1").arg(place),
+    actions.add(QStringLiteral("view.layout-keep-%1").arg(place), keepMenu, tr("Save as own layout &%1").arg(place),
                 [this, place] { keep(place); });
   refresh();
 }

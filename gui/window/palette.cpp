@@ -113,7 +113,7 @@ Palette::Palette(std::function<QList<PaletteItem>(const QString&)> items, QWidge
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(6, 6, 6, 6);
   column->setSpacing(4);
-  line_->setPlaceholderText(tr("Action, parameter (name = value sets it), frame number"));
+  line_->setPlaceholderText(tr("Action, setting (name = value sets it) or frame"));
   line_->setClearButtonEnabled(true);
   line_->installEventFilter(this);
   column->addWidget(line_);
@@ -184,7 +184,7 @@ void Palette::search() {
     fitColumns();
     return list_->setCurrentItem(list_->topLevelItem(0));
   }
-  auto* none = new QTreeWidgetItem(list_, {tr("No action or parameter matches")});
+  auto* none = new QTreeWidgetItem(list_, {tr("No matching action or setting")});
   none->setFirstColumnSpanned(true);
   none->setDisabled(true);
 }
@@ -217,7 +217,7 @@ void Palette::runCurrent() {
     // Of a value its problem; an action has its keys there.
     const bool isValue = line_->text().contains(QLatin1Char('='));
     complain(line_, isValue && !detail.isEmpty() ? QStringLiteral("%1: %2").arg(shown_[row].title, detail)
-                                                 : tr("%1 cannot be done now").arg(shown_[row].title));
+                                                 : tr("%1 is not available now").arg(shown_[row].title));
     return;
   }
   const std::function<void()> run = shown_[row].run;

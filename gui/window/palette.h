@@ -17,7 +17,7 @@ namespace glint::gui {
 /// One thing that the palette finds.
 struct PaletteItem {
   QString title;   ///< "Contour level"
-  QString place;   ///< "Parameters › detect.level", where else it is
+  QString place;   ///< "Settings › detect.level", where else it is
   QString detail;  ///< a shortcut or a value
   bool enabled = true;
   std::function<void()> run;

@@ -71,7 +71,7 @@ void addActions(QList<PaletteItem>& items, const Actions& actions) {
 
 void addParameters(QList<PaletteItem>& items, Document& document, const std::function<void(const std::string&)>& show) {
   for (const ParamSpec& spec : allParams())
-    items.append({toQString(spec.title), QObject::tr("Parameters › %1").arg(toQString(spec.key)),
+    items.append({toQString(spec.title), QObject::tr("Settings › %1").arg(toQString(spec.key)),
                   valueText(valueOf(document.request().settings, spec), spec), true, [show, key = spec.key] { show(key); },
                   wordsOf(spec)});
 }
@@ -93,7 +93,7 @@ void addAssignments(QList<PaletteItem>& items, const QString& value, Document& d
     } catch (const InputError& e) {
       problem = toQString(e.what()).mid(int(e.place().size()) + 2);  // the place is what the row shows already
     }
-    const QString place = QObject::tr("Parameters › %1").arg(toQString(spec.key));
+    const QString place = QObject::tr("Settings › %1").arg(toQString(spec.key));
     if (!problem.isEmpty()) {
       items.append({toQString(spec.title), place, problem, false, {}});
       continue;
@@ -111,7 +111,7 @@ std::vector<WhatIfKnob> knobsOf(const Document& document) {
 
 PaletteItem itemOf(const WhatIfKnob& knob, const QString& detail, bool enabled, std::function<void()> run) {
   return {toQString(knob.spec.title),
-          QObject::tr("What if › %1").arg(toQString(knob.group)),
+          QObject::tr("What-if › %1").arg(toQString(knob.group)),
           detail,
           enabled,
           std::move(run),
@@ -121,11 +121,11 @@ PaletteItem itemOf(const WhatIfKnob& knob, const QString& detail, bool enabled, 
 void addKnobs(QList<PaletteItem>& items, Document& document, const std::function<void(const std::string&)>& show) {
   if (document.frameCount() == 0) return;
   const WhatIf& now = document.request().whatIf;
-  items.append({QObject::tr("Synthesise the contours"), QObject::tr("What if"),
+  items.append({QObject::tr("Synthesise contours"), QObject::tr("What-if"),
                 now.synthesise ? QObject::tr("on") : QObject::tr("off"), true, [show] { show("synthesise"); },
                 QObject::tr("synthetic simulate")});
-  items.append({QObject::tr("Lobe that makes the contours"),
-                QObject::tr("What if"),
+  items.append({QObject::tr("Lobe of synthesised contours"),
+                QObject::tr("What-if"),
                 QLatin1String(nameOf(now.lobe)),
                 true,
                 [show] { show("lobe"); },
@@ -140,7 +140,7 @@ void addLightSwitches(QList<PaletteItem>& items, Document& document) {
   const QString id = nameText(document.scene()->frames[std::size_t(frame)].id);
   for (const viz::LightRow& row : viz::lightRows(*document.scene(), document.inspection().get())) {
     const viz::LightState state = viz::lightState(row, *document.scene(), document.request().whatIf, frame);
-    items.append({QObject::tr("Light %1 in frame %2").arg(nameText(row.light), id), QObject::tr("What if"),
+    items.append({QObject::tr("Light %1 in frame %2").arg(nameText(row.light), id), QObject::tr("What-if"),
                   canSwitch(document, state) ? lightStateText(state) : lightClickText(document, state),
                   canSwitch(document, state), [&document, row, frame] { switchLight(document, row, frame); },
                   QObject::tr("lamp switch on off")});
@@ -154,9 +154,9 @@ void addKnobAssignments(QList<PaletteItem>& items, const QString& value, Documen
     const std::optional<double> number = numberFromText(value, &problem);
     const double wanted = number.value_or(0);
     if (number && !(wanted >= spec.min && wanted <= spec.max))
-      problem = QObject::tr("%1 is not within %2 … %3").arg(value, numberText(spec.min), valueText(spec.max, spec));
+      problem = QObject::tr("%1 is outside %2 … %3").arg(value, numberText(spec.min), valueText(spec.max, spec));
     else if (number && knob.synthetic && !document.request().whatIf.synthesise)
-      problem = QObject::tr("only where contours are synthesised");
+      problem = QObject::tr("requires synthesised contours");
     items.append(itemOf(knob, problem.isEmpty() ? QObject::tr("set to %1").arg(valueText(wanted, spec)) : problem,
                         problem.isEmpty(), [&document, knob, wanted] { turnKnob(document, knob, wanted); }));
   }
@@ -165,7 +165,7 @@ void addKnobAssignments(QList<PaletteItem>& items, const QString& value, Documen
 void addFrames(QList<PaletteItem>& items, Document& document) {
   for (int i = 0; i < document.frameCount(); ++i)
     items.append({QObject::tr("Frame %1").arg(nameText(document.scene()->frames[std::size_t(i)].id)),
-                  QObject::tr("Go to frame number %1").arg(i),
+                  QObject::tr("Select frame number %1").arg(i),
                   {},
                   true,
                   [&document, i] { document.selectFrame(i); }});

@@ -39,7 +39,7 @@ void Recovery::offer() {
     Autosave::discard(found);
     offer();  // there may be an older one
   };
-  bar_.showOffer(tr("The program ended without saving what was changed on %1 (%2).")
+  bar_.showOffer(tr("Glint inspector closed unexpectedly with unsaved changes to %1 (%2).")
                      .arg(shownText(QDir::toNativeSeparators(found->of)), QLocale().toString(found->when, QLocale::ShortFormat)),
                  {{tr("Recover"), recover}, {tr("Discard"), discard}});
 }

@@ -21,7 +21,7 @@ QString shownPath(const QString& file) { return shownText(QDir::toNativeSeparato
 QString whyNoSession(const QString& file) {
   if (QFileInfo(file).isDir()) return tr("%1 is a folder; choose another name").arg(shownPath(file));
   if (documentKind(file.toStdString()) == "glint_session") return {};
-  return tr("%1 exists and is no session; it stays as it is: choose another name").arg(shownPath(file));
+  return tr("%1 exists and is not a session, so it is not overwritten; choose another name").arg(shownPath(file));
 }
 }  // namespace
 
@@ -38,31 +38,31 @@ SaveRules::Answer SaveRules::toOwnFile(QString& refusal) {
   if (exists) refusal = whyNoSession(file);
   if (!refusal.isEmpty()) return Answer::Cancel;
   if (!other.isEmpty())
-    return ask(tr("%1 is open in %2, too. What is saved here replaces what is saved there.").arg(shownPath(file), other), true);
+    return ask(tr("%1 is also open in %2. Saving here overwrites what is saved there.").arg(shownPath(file), other), true);
   if (!exists) return Answer::Write;
-  if (stamp_.empty()) return ask(tr("What was recovered takes the place of what %1 holds now.").arg(shownPath(file)), true);
+  if (stamp_.empty()) return ask(tr("The recovered session overwrites the current contents of %1.").arg(shownPath(file)), true);
   if (stampOf(file) == stamp_) return Answer::Write;
-  return ask(tr("Another program has changed %1 since it was opened or saved here.").arg(shownPath(file)), true);
+  return ask(tr("%1 was changed by another program after it was opened or saved here.").arg(shownPath(file)), true);
 }
 
 SaveRules::Answer SaveRules::toChosenFile(const QString& file, QString& refusal) {
   const QFileInfo info(file);
   if (!info.exists()) return Answer::Write;
   if (isShipped(file)) {
-    refusal = tr("%1 came with the program and stays as it is; choose another place").arg(shownPath(file));
+    refusal = tr("%1 came with the program and is not overwritten; choose another location").arg(shownPath(file));
     return Answer::Cancel;
   }
   if (info.canonicalFilePath() == QFileInfo(document_.sessionFile()).canonicalFilePath()) return toOwnFile(refusal);
   refusal = whyNoSession(file);
   if (!refusal.isEmpty()) return Answer::Cancel;
   const QString other = lock_.otherHolder(file);
-  return ask(other.isEmpty() ? tr("%1 exists already: another session.").arg(shownPath(file))
-                             : tr("%1 exists already: another session, which is open in %2.").arg(shownPath(file), other),
+  return ask(other.isEmpty() ? tr("Another session named %1 already exists.").arg(shownPath(file))
+                             : tr("Another session named %1 already exists and is open in %2.").arg(shownPath(file), other),
              false);
 }
 
 SaveRules::Answer SaveRules::ask(const QString& what, bool otherName) {
-  QMessageBox question(QMessageBox::Warning, tr("Replace the session?"), what, QMessageBox::Cancel, window_);
+  QMessageBox question(QMessageBox::Warning, tr("Replace session?"), what, QMessageBox::Cancel, window_);
   question.setObjectName(QStringLiteral("replaceQuestion"));
   question.setTextFormat(Qt::PlainText);
   const QPushButton* replace = question.addButton(tr("Replace"), QMessageBox::DestructiveRole);

@@ -26,7 +26,8 @@ void ScriptedActions::run(const QStringList& ids) {
   for (const QAction* action : actions_.all()) known << Actions::id(action);
   for (const QString& id : ids)
     if (!known.contains(id))
-      throw InputError("", "--run", "'" + id.toStdString() + "' is none of: " + known.join(QStringLiteral(", ")).toStdString());
+      throw InputError("", "--run",
+                       "'" + id.toStdString() + "' is not one of: " + known.join(QStringLiteral(", ")).toStdString());
   waiting_ += ids;
   if (!waiting_.isEmpty()) clock_.start(kLookMs);
 }

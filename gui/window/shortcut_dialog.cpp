@@ -30,7 +30,7 @@ ShortcutDialog::ShortcutDialog(Actions& actions, QWidget* parent)
   search_->setClearButtonEnabled(true);
   column->addWidget(search_);
   list_->setObjectName(QStringLiteral("shortcuts"));
-  list_->setHeaderLabels({tr("Action"), tr("Key"), tr("By default")});
+  list_->setHeaderLabels({tr("Action"), tr("Key"), tr("Default")});
   list_->setRootIsDecorated(false);
   list_->header()->setStretchLastSection(false);
   list_->header()->setSectionResizeMode(0, QHeaderView::Stretch);
@@ -41,7 +41,7 @@ ShortcutDialog::ShortcutDialog(Actions& actions, QWidget* parent)
   note_->setWordWrap(true);
   column->addWidget(note_);
   auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
-  auto* reset = buttons->addButton(tr("All to default"), QDialogButtonBox::ResetRole);
+  auto* reset = buttons->addButton(tr("Reset all"), QDialogButtonBox::ResetRole);
   reset->setObjectName(QStringLiteral("allShortcuts"));
   for (QAbstractButton* button : buttons->buttons())  // Enter in the search line presses none of them
     static_cast<QPushButton*>(button)->setAutoDefault(false);
@@ -55,10 +55,10 @@ ShortcutDialog::ShortcutDialog(Actions& actions, QWidget* parent)
 void ShortcutDialog::resetAll() {
   int own = 0;
   for (const QAction* action : actions_.all()) own += action->shortcuts() != Actions::defaultShortcuts(action);
-  if (own == 0) return note_->setText(tr("All keys are the default ones."));
+  if (own == 0) return note_->setText(tr("All shortcuts are already the defaults."));
   const auto answer = QMessageBox::question(
       this, tr("Keyboard shortcuts"),
-      own == 1 ? tr("Give up your own key of one action?") : tr("Give up your own keys of %1 actions?").arg(own),
+      own == 1 ? tr("Reset your custom shortcut of one action?") : tr("Reset your custom shortcuts of %1 actions?").arg(own),
       QMessageBox::Yes | QMessageBox::No, QMessageBox::No);
   if (answer != QMessageBox::Yes) return;
   for (QAction* action : actions_.all()) actions_.setShortcuts(action, Actions::defaultShortcuts(action));
@@ -102,7 +102,7 @@ void ShortcutDialog::setShortcut(QAction* action, const QKeySequence& key) {
     QList<QKeySequence> rest = other->shortcuts();
     rest.removeAll(key);
     actions_.setShortcuts(other, rest);
-    note_->setText(tr("%1 was the key of “%2”, which has %3 now.")
+    note_->setText(tr("%1 was the shortcut of “%2”, which now has %3.")
                        .arg(key.toString(QKeySequence::NativeText), Actions::title(other),
                             rest.isEmpty() ? tr("none") : QKeySequence::listToString(rest, QKeySequence::NativeText)));
     if (auto* edit = list_->findChild<QKeySequenceEdit*>(QStringLiteral("key:") + Actions::id(other)))

@@ -29,13 +29,13 @@ StartPage::StartPage(QWidget* parent) : QWidget(parent) {
   column->addWidget(title);
   auto* text = new QLabel(
       tr("Open a scene to see its surface, cameras and highlights, the ellipsoids reconstructed from them,\n"
-         "and the predicted over the captured highlight in every frame.\n\n"
-         "A scene is a scene.json, a session (*.glint), or a folder that holds one.\nYou can also drop it on this window."));
+         "and the predicted and observed highlights in every frame.\n\n"
+         "A scene is a scene.json, a session (*.glint) or a folder containing one.\nYou can also drop it on this window."));
   text->setProperty("role", "faded");
   column->addWidget(text);
   auto* buttons = new QHBoxLayout;
-  auto* file = new QPushButton(icon(QStringLiteral("open")), tr("Open a scene or session…"));
-  auto* folder = new QPushButton(tr("Open a folder…"));
+  auto* file = new QPushButton(icon(QStringLiteral("open")), tr("Open scene or session…"));
+  auto* folder = new QPushButton(tr("Open folder…"));
   connect(file, &QPushButton::clicked, this, &StartPage::openFile);
   connect(folder, &QPushButton::clicked, this, &StartPage::openFolder);
   buttons->addWidget(file);

@@ -83,8 +83,8 @@ std::set<FrameFile> UnreadableFiles::kinds() const {
 void UnreadableFiles::addActions(Actions& actions, QMenu* menu) {
   // Its id is from when there were only photographs: the user's own shortcuts go by it.
   QAction* action = actions.add(
-      "file.unreadable-photographs", menu, tr("Files that cannot be &read…"), [this] { showList(); },
-      {{}, {}, tr("Photographs, depth maps, normal maps and masks: of which frames, why, and where they are instead")});
+      "file.unreadable-photographs", menu, tr("&Unreadable files…"), [this] { showList(); },
+      {{}, {}, tr("Photographs, depth maps, normal maps and masks that cannot be read, with reasons; locates them elsewhere")});
   enable_ = [this, action] { action->setEnabled(!all_.empty()); };
   connect(this, &UnreadableFiles::changed, action, enable_);
   enable_();
@@ -156,7 +156,7 @@ void UnreadableFiles::tell() {
     counts << counted(kind, lines.size());
     for (auto it = lines.begin(); it != lines.end() && first.size() < kNamed; ++it) first << it.value();
   }
-  said_ = tr("%1 cannot be read: %2").arg(listed(counts, tr(" and ")), first.join(QStringLiteral("; ")));
+  said_ = tr("Cannot read %1: %2").arg(listed(counts, tr(" and ")), first.join(QStringLiteral("; ")));
   if (count() > first.size()) said_ += tr("; and %1 more").arg(count() - first.size());
   bar_.showError(said_, {{tr("List…"), [this] { showList(); }}, {tr("Locate…"), [this] { locate(); }}});
 }
@@ -167,7 +167,7 @@ void UnreadableFiles::showList() {
   list_ = new QDialog(window_);
   list_->setObjectName(QStringLiteral("unreadableFiles"));
   list_->setAttribute(Qt::WA_DeleteOnClose);
-  list_->setWindowTitle(tr("Files that cannot be read"));
+  list_->setWindowTitle(tr("Unreadable files"));
   auto* column = new QVBoxLayout(list_);
   auto* rows = new QTreeWidget;
   rows->setHeaderLabels({tr("Frame"), tr("File and reason")});
@@ -185,7 +185,7 @@ void UnreadableFiles::showList() {
   column->addWidget(rows);
   auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
   QPushButton* find = buttons->addButton(tr("Locate…"), QDialogButtonBox::ActionRole);
-  find->setToolTip(tr("Looks for all files of these kinds in another folder, by their names"));
+  find->setToolTip(tr("Looks in another folder for all files of these kinds, by name"));
   connect(find, &QPushButton::clicked, this, &UnreadableFiles::locate);
   connect(buttons, &QDialogButtonBox::rejected, list_.data(), &QDialog::close);
   column->addWidget(buttons);
@@ -231,10 +231,10 @@ void UnreadableFiles::locateIn(const QString& folder, const std::set<FrameFile>&
       for (const FrameFile kind : kinds) names << named(kind);
       const QString what = listed(names, tr(" and "));
       if (mended == 0)
-        return void(emit problem(files == 0 ? tr("%1 holds no %2 of this scene").arg(folder, listed(names, tr(" or ")))
-                                            : tr("%1 holds none of the %2 that cannot be read").arg(folder, what)));
+        return void(emit problem(files == 0 ? tr("%1 contains no %2 of this scene").arg(folder, listed(names, tr(" or ")))
+                                            : tr("%1 contains none of the unreadable %2").arg(folder, what)));
       reopen(moved, document_.toSave().session, "");
-      emit message(tr("%1 of %2 %3 that could not be read are in %4").arg(mended).arg(wanted).arg(what, folder));
+      emit message(tr("Found %1 of %2 unreadable %3 in %4").arg(mended).arg(wanted).arg(what, folder));
     });
   });
 }
@@ -295,8 +295,8 @@ void UnreadableFiles::askWhich(const QString& folder, const std::set<FrameFile>&
   QStringList names;
   for (const FrameFile kind : kinds) names << named(kind);
   auto* question =
-      new QMessageBox(QMessageBox::Question, tr("Which files are these?"),
-                      tr("%1 holds files that could be %2: they have the same names.").arg(folder, listed(names, tr(" or "))),
+      new QMessageBox(QMessageBox::Question, tr("Which kind of file?"),
+                      tr("%1 contains files that could be %2: they have the same names.").arg(folder, listed(names, tr(" or "))),
                       QMessageBox::Cancel, window_);
   question->setObjectName(QStringLiteral("whichFiles"));
   question->setAttribute(Qt::WA_DeleteOnClose);

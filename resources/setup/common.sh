@@ -19,7 +19,7 @@ missing_packages() {
 # Installs what is missing, and only that. Nothing is removed or upgraded on purpose: --no-remove makes apt refuse instead.
 install_missing() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
-    say "no apt here: expecting the libraries of resources/setup/packages-debian12.txt to be installed already"
+    say "no apt: the packages in resources/setup/packages-debian12.txt must be installed already"
     return 0
   fi
   local missing
@@ -27,21 +27,21 @@ install_missing() {
   [ ${#missing[@]} -gt 0 ] || return 0
   local as_root=()
   if [ "$(id -u)" -ne 0 ]; then
-    command -v sudo >/dev/null || die "missing packages, and neither root nor sudo to install them; as root, run:
+    command -v sudo >/dev/null || die "packages are missing, and neither root nor sudo is available to install them; as root, run:
   apt-get install --no-remove --no-install-recommends ${missing[*]}"
     as_root=(sudo)
   fi
   say "installing ${#missing[@]} missing packages: ${missing[*]}"
-  "${as_root[@]}" apt-get update -q </dev/null || say "apt-get update failed; trying with the package lists at hand"
+  "${as_root[@]}" apt-get update -q </dev/null || say "apt-get update failed; using the package lists at hand"
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-remove --no-install-recommends \
     -o Dpkg::Use-Pty=0 -o DPkg::Lock::Timeout=300 "${missing[@]}" </dev/null ||
-    die "apt-get could not install the packages above"
+    die "apt-get cannot install the packages above"
 }
 
 # Parallel compile jobs: GLINT_JOBS, else one per core, but no more than the memory carries (the largest files take 1.5 GB).
 build_jobs() {
   if [ -n "${GLINT_JOBS:-}" ]; then
-    case "$GLINT_JOBS" in *[!0-9]*|0*) die "GLINT_JOBS must be a whole number from 1, not '$GLINT_JOBS'" ;; esac
+    case "$GLINT_JOBS" in *[!0-9]*|0*) die "GLINT_JOBS must be a whole number of at least 1, not '$GLINT_JOBS'" ;; esac
     echo "$GLINT_JOBS"
     return
   fi
@@ -59,7 +59,7 @@ configure() {
   if [ -f "$folder/build.ninja" ] && [ "$folder/build.ninja" -nt "$root/CMakePresets.json" ]; then
     home=$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' "$folder/CMakeCache.txt")
     [ "$home" != "$root" ] || return 0
-    say "the project was moved: configuring anew"
+    say "the project was moved; configuring again"
   fi
   say "configuring (preset $preset)"
   # Scripts build whole programs: several files as one take half the time. GLINT_UNITY=OFF for a build in which files change often.
@@ -90,7 +90,7 @@ have_display() {
 # on_virtual_display COMMAND...: runs it on a display of its own, drawn in software. Qt's "offscreen" platform is no way out:
 # it leaves VTK's views blank without an error.
 on_virtual_display() {
-  command -v xvfb-run >/dev/null || die "no display, and no xvfb-run to start a virtual one (packages xvfb and xauth)"
+  command -v xvfb-run >/dev/null || die "no display, and no xvfb-run for a virtual one (packages xvfb and xauth)"
   env -u WAYLAND_DISPLAY QT_QPA_PLATFORM=xcb LIBGL_ALWAYS_SOFTWARE=1 \
     xvfb-run -a -s "-screen 0 1600x1000x24 -nolisten tcp" "$@" </dev/null
 }

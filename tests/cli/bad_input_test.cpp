@@ -80,7 +80,7 @@ TEST_F(BadInput, WrongType) {
 
 TEST_F(BadInput, IdsTwice) {
   scene_["frames"][2]["id"] = "0001";
-  everyCommandRefuses(2, "scene.json: frames[2].id: the id '0001' stands twice");
+  everyCommandRefuses(2, "scene.json: frames[2].id: duplicate id '0001'");
 }
 
 TEST_F(BadInput, EmptyFolder) {
@@ -101,7 +101,7 @@ TEST_F(BadInput, TruncatedMesh) {
   writeScene();
   // detect and convert do not read the mesh.
   for (const char* command : {"info", "evaluate", "reconstruct", "render"})
-    refuses(command, 2, "body.ply: header: the PLY is truncated: its header promises 3 of element 'vertex'");
+    refuses(command, 2, "body.ply: header: the PLY is truncated: its header declares 3 of element 'vertex'");
 }
 
 TEST_F(BadInput, ImageMissingEmptyTruncatedOrOfAnotherSize) {
@@ -123,7 +123,7 @@ TEST_F(BadInput, RadianceNanNegativeOrWithoutHighlight) {
     cv::Mat m = blob();
     m.at<float>(70, 96) = value;
     writeRadiance(7, m);
-    frameSevenHasReason("not finite: 1 pixels are not finite or negative, and the highlight touches them");
+    frameSevenHasReason("not finite: 1 pixels are negative or not finite, and the highlight touches them");
   }
   writeRadiance(7, cv::Mat(kHeight, kWidth, CV_32FC1, cv::Scalar(0.1)));
   frameSevenHasReason("no highlight: nothing rises above the background");

@@ -85,7 +85,7 @@ TEST_F(SceneOnDisk, InfoSaysWhatItIs) {
   EXPECT_EQ(run.code, 0);
   EXPECT_EQ(run.err, "");
   EXPECT_THAT(run.out, HasSubstr("analytic sphere"));
-  EXPECT_THAT(run.out, HasSubstr("nothing looks wrong"));
+  EXPECT_THAT(run.out, HasSubstr("no problems found"));
 }
 
 TEST_F(SceneOnDisk, InfoJsonGoesToStandardOutputAloneAndHasNoNan) {
@@ -123,10 +123,10 @@ TEST_F(SceneOnDisk, BadFilesAreCodeTwoWithFilePlaceAndReasonOnOneLine) {
        {Row{"[0,1,0,0]", "[0,NaN,0,0]", "scene.json: frames[0].camera_from_world[1][1]: must be a finite number"},
         Row{"\"fx\": 80", "\"fx\": 0", "scene.json: camera.fx: must be positive"},
         Row{"\"width\": 64", "\"width\": \"wide\"", "scene.json: camera.width: must be a finite number, is text"},
-        Row{"\"id\": \"b\"", "\"id\": \"a\"", "scene.json: frames[1].id: the id 'a' stands twice"},
+        Row{"\"id\": \"b\"", "\"id\": \"a\"", "scene.json: frames[1].id: duplicate id 'a'"},
         Row{"\"frames\": [", "\"frames\": [[", "scene.json: line "},
         Row{"\"analytic\": {\"type\": \"sphere\", \"radius\": 0.4}", "\"mesh\": \"body.ply\"",
-            "scene.json: surfaces.ball.mesh: there is no file"}}) {
+            "scene.json: surfaces.ball.mesh: file '"}}) {
     rewrite(row.from, row.to);
     const ProgramRun run = info();
     EXPECT_EQ(run.code, 2) << row.to;

@@ -48,7 +48,7 @@ TEST_F(LampSize, WiderThanTheLobeIsFound) {
 TEST_F(LampSize, APointInItsPlaceIsWarnedOf) {
   const Json found = fit("--set fit.light_size=point");
   EXPECT_EQ(found["light_radius"], 0.0);
-  EXPECT_THAT(found["warnings"].dump(), testing::HasSubstr("lobe, lamp or surface may be wrong"));
+  EXPECT_THAT(found["warnings"].dump(), testing::HasSubstr("lobe, light or surface may be wrong"));
 }
 
 class StatedLobe : public LampSize {
@@ -57,7 +57,7 @@ class StatedLobe : public LampSize {
 
 // Far down the lobe a GGX is brighter: a fit to all pixels pays for that at the contour.
 TEST_F(StatedLobe, AWrongOneIsWarnedOf) {
-  EXPECT_THAT(fit("--set fit.lobe=ggx")["warnings"].dump(), testing::HasSubstr("from where the fit to the pixels puts them"));
+  EXPECT_THAT(fit("--set fit.lobe=ggx")["warnings"].dump(), testing::HasSubstr("from those of the fit to the pixels"));
 }
 
 TEST_F(StatedLobe, TheRightOneIsNot) { EXPECT_EQ(fit("--set fit.lobe=torrance-sparrow")["warnings"].dump(), "[]"); }

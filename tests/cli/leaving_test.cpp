@@ -65,7 +65,7 @@ TEST_F(Leaving, AMovieOfTheTimelineAsPictures) {
 
 TEST_F(Leaving, WrongMoviesNameWhatIsWrong) {
   for (const auto& [flags, expected] :
-       std::initializer_list<std::pair<const char*, const char*>>{{"-o m.gif", "a movie ends in .mp4"},
+       std::initializer_list<std::pair<const char*, const char*>>{{"-o m.gif", "the name of a movie must end in .mp4"},
                                                                   {"--size 321x240 -o m.mp4", "must be even"},
                                                                   {"--fps 1000 -o m.mp4", "--fps: "},
                                                                   {"--of turntable --seconds 0 -o m.mp4", "--seconds: "},

@@ -22,7 +22,7 @@ class OutputsOfCommands : public SmallScene {
 
 TEST_F(OutputsOfCommands, AFileOfTheInputIsNeverReplaced) {
   const std::string photograph = contentOf(radiance(3)), scene = contentOf(folder_ / "scene.json");
-  const std::string kInput = "is a file of the input";
+  const std::string kInput = "is an input file";
   refuses(on("reconstruct", "-o " + inQuotes(radiance(3))), kInput);
   refuses(on("reconstruct", "-o " + out("scene.json")), kInput);
   refuses(on("evaluate", "--json " + inQuotes(radiance(3))), kInput);
@@ -48,7 +48,7 @@ TEST_F(OutputsOfCommands, ASessionFoundThroughItsFolderIsNeverReplaced) {
   const std::string session = contentOf(folder_ / "kept/a.glint");
   for (const std::string& input : {out("kept"), out("kept/")})
     refuses(runGlint("reconstruct " + input + " --model canonical -o " + out("kept/a.glint")),
-            "a.glint: --out: is a file of the input");
+            "a.glint: --out: is an input file");
   EXPECT_EQ(contentOf(folder_ / "kept/a.glint"), session);
   // Beside a scene file a session is none of the input: the folder means the scene file.
   ASSERT_EQ(on("reconstruct", "--model limit-angle -o " + out("b.glint")).code, 0);
@@ -59,11 +59,12 @@ TEST_F(OutputsOfCommands, ASessionFoundThroughItsFolderIsNeverReplaced) {
 TEST_F(OutputsOfCommands, AFileOfAnotherKindStaysAsItIs) {
   folder_.write("notes.txt", "a person's notes\n");
   folder_.write("other.json", R"({"glint_scene": 1})");
-  refuses(on("evaluate", "--json " + out("notes.txt")), "notes.txt: --json: exists and is not a JSON file with \"glint_evaluation\"");
-  refuses(on("evaluate", "--json " + out("other.json")), "other.json: --json: exists and is not a JSON file");
-  refuses(on("evaluate", "--html " + out("notes.txt")), "notes.txt: --html: exists and is not a page");
-  refuses(on("evaluate", "--csv " + out("notes.txt")), "notes.txt: --csv: exists and is not a table");
-  refuses(on("reconstruct", "-o " + out("other.json")), "exists and is not a JSON file with \"glint_session\"");
+  refuses(on("evaluate", "--json " + out("notes.txt")),
+          "notes.txt: --json: already exists and is not a JSON file with \"glint_evaluation\"");
+  refuses(on("evaluate", "--json " + out("other.json")), "other.json: --json: already exists and is not a JSON file");
+  refuses(on("evaluate", "--html " + out("notes.txt")), "notes.txt: --html: already exists and is not a page");
+  refuses(on("evaluate", "--csv " + out("notes.txt")), "notes.txt: --csv: already exists and is not a table");
+  refuses(on("reconstruct", "-o " + out("other.json")), "already exists and is not a JSON file with \"glint_session\"");
   refuses(on("render", "-o " + out("notes.txt")), "notes.txt");
   EXPECT_EQ(contentOf(folder_ / "notes.txt"), "a person's notes\n");
   EXPECT_EQ(contentOf(folder_ / "other.json"), R"({"glint_scene": 1})");
@@ -116,14 +117,14 @@ TEST_F(OutputsOfCommands, TheirOwnKindIsReplaced) {
     EXPECT_EQ(run.code, 0) << run.err;
     saveSession();
   }
-  refuses(on("evaluate", "--json " + out("same.json") + " --csv " + out("same.json")), "was given for another output already");
+  refuses(on("evaluate", "--json " + out("same.json") + " --csv " + out("same.json")), "is already used for another output");
   EXPECT_FALSE(fs::exists(folder_ / "same.json"));
 }
 
 TEST_F(OutputsOfCommands, AFolderWithFilesOfOthersIsNotWrittenInto) {
   fs::create_directories(folder_ / "mine");
   folder_.write("mine/0000.png", "a photograph");
-  refuses(on("detect", "--out " + out("mine")), "0000.png: --out: exists, and no earlier run of this command wrote it");
+  refuses(on("detect", "--out " + out("mine")), "0000.png: --out: already exists and was not written by this command");
   EXPECT_EQ(contentOf(folder_ / "mine/0000.png"), "a photograph");
   for (int twice = 0; twice < 2; ++twice) {
     const ProgramRun run = on("detect", "--out " + out("found"));

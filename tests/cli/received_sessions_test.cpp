@@ -172,7 +172,7 @@ TEST_F(ReceivedSessions, ANewerSessionIsRefusedByEveryCommand) {
   for (const char* command : {"info", "predict", "evaluate", "replay", "detect --json -", "tradeoff"}) {
     const ProgramRun run = onReceived(command);
     EXPECT_EQ(run.code, 2) << command;
-    EXPECT_THAT(run.err, HasSubstr("version 4 is newer than this program understands")) << command;
+    EXPECT_THAT(run.err, HasSubstr("version 4 is newer than this program supports")) << command;
   }
 }
 

@@ -70,8 +70,7 @@ TEST_F(RelinkedScene, IsEvaluatedAsInItsPlace) {
   const ProgramRun missing = on("evaluate", kRequest + photographs());
   EXPECT_EQ(missing.code, 2);
   EXPECT_EQ(missing.errorLines(), 1);
-  EXPECT_THAT(missing.err,
-              HasSubstr("scene.json: surfaces.body.mesh: there is no file '" + (folder_ / "shape/body.ply").string()));
+  EXPECT_THAT(missing.err, HasSubstr("scene.json: surfaces.body.mesh: file '" + (folder_ / "shape/body.ply").string()));
   EXPECT_EQ(errors(on("evaluate", kRequest + photographs() + mesh())), inPlace_);
   EXPECT_EQ(errors(on("evaluate", kRequest + photographs() + meshes())), inPlace_);
   fs::rename(elsewhere_ / "shape/body.ply", elsewhere_ / "other name.ply");
@@ -114,7 +113,7 @@ TEST_F(RelinkedScene, ASessionRemembersThePlaces) {
   EXPECT_EQ(runGlint("predict " + session(moved.path()) + given).err, "");
   moved.write("third/b.ply", contentOf(moved / "third/b.ply") + "\n");
   EXPECT_THAT(runGlint("predict " + session(moved.path()) + given).err,
-              HasSubstr("b.ply is not the mesh that the session was made with"));
+              HasSubstr("b.ply differs from the mesh that the session was made with"));
 }
 
 TEST_F(RelinkedScene, IsAnInputOfEveryCommand) {
@@ -157,13 +156,13 @@ TEST_F(RelinkedScene, WrongPlacesNameTheFlag) {
   };
   for (const char* wrong : {"x", "=x", "x="})
     refused(std::string("--mesh ") + wrong, std::string("--mesh ") + wrong + ": expected NAME=FILE");
-  refused("--meshes /nowhere", "--meshes /nowhere: there is no such folder");
-  refused("--mesh shape/body.ply=/nowhere/b.ply", "scene.json: surfaces.body.mesh: there is no file '/nowhere/b.ply'");
-  refused(meshes() + " --mesh body=x", "--mesh body=x: the scene names no mesh 'body'; there are: shape/body.ply");
-  refused(mesh() + " --photographs /nowhere", "--photographs /nowhere: there is no such folder");
-  refused(mesh() + " --photographs " + inQuotes(elsewhere_ / "shape"), "holds no photograph of this scene");
-  refused(mesh() + " --files depth=" + inQuotes(elsewhere_.path()), "holds no such file of this scene");
-  refused(mesh() + " --files masks=/nowhere", "--files masks=/nowhere: there is no such folder");
+  refused("--meshes /nowhere", "--meshes /nowhere: this folder does not exist");
+  refused("--mesh shape/body.ply=/nowhere/b.ply", "scene.json: surfaces.body.mesh: file '/nowhere/b.ply' does not exist");
+  refused(meshes() + " --mesh body=x", "--mesh body=x: the scene has no mesh 'body'; known: shape/body.ply");
+  refused(mesh() + " --photographs /nowhere", "--photographs /nowhere: this folder does not exist");
+  refused(mesh() + " --photographs " + inQuotes(elsewhere_ / "shape"), "contains no photograph of this scene");
+  refused(mesh() + " --files depth=" + inQuotes(elsewhere_.path()), "contains no such file of this scene");
+  refused(mesh() + " --files masks=/nowhere", "--files masks=/nowhere: this folder does not exist");
   for (const char* wrong : {"mask=/", "masks", "=/"})
     refused(mesh() + " --files " + wrong, "expected KIND=DIR, where KIND is one of: photographs, depth, normals, masks");
 }

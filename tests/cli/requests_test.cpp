@@ -28,11 +28,11 @@ TEST_F(Requests, WrongOnesNameTheFlag) {
     const char *flags, *expected;
   };
   for (const Row& row : std::initializer_list<Row>{
-           {"--models bogus", "model 'bogus': there is no such model; known: primal, dual, canonical, limit-angle"},
+           {"--models bogus", "model 'bogus': unknown model; known: primal, dual, canonical, limit-angle"},
            {"--models primal,,dual", "--models primal,,dual: empty entry"},
-           {"--models dual,dual", "--models dual,dual: 'dual' stands twice"},
-           {"--set nokey=1", "--set nokey: no such setting"},
-           {"--set fit.solver=magic", "--set fit.solver: 'magic' is none of: linear, anchored, refined"},
+           {"--models dual,dual", "--models dual,dual: 'dual' is named twice"},
+           {"--set nokey=1", "--set nokey: unknown setting"},
+           {"--set fit.solver=magic", "--set fit.solver: 'magic' is not one of: linear, anchored, refined"},
            {"--set fit.solver", "--set fit.solver: expected KEY=VALUE"},
            {"--set predict.directions=1.5", "--set predict.directions: '1.5' is not a whole number"},
            {"--set predict.directions=-1", "--set predict.directions: -1 is outside 6 .. 720"},
@@ -42,25 +42,27 @@ TEST_F(Requests, WrongOnesNameTheFlag) {
            {"--train spread:x", "--train spread:x: expected first:K or spread:K"},
            {"--train middle:3", "--train middle:3: expected first:K or spread:K"},
            {"--train 5-2", "--train 5-2: the range 5-2 runs backwards"},
-           {"--train 0-8", "--train 0-8: there is no frame 8; frames are numbered from 0 by their order: 0 to 7, and no id is \"8\""},
+           {"--train 0-8", "--train 0-8: frame 8 does not exist; frames are numbered 0 to 7 in their order, and no id is \"8\""},
            {"--train 0,,1", "--train 0,,1: empty entry"},
-           {"--exclude 9", "--exclude 9: there is no frame 9; frames are numbered from 0 by their order: 0 to 7, and no id is \"9\""},
+           {"--exclude 9", "--exclude 9: frame 9 does not exist; frames are numbered 0 to 7 in their order, and no id is \"9\""},
            {"--exclude nobody", "--exclude nobody: 'nobody' is neither a frame id nor a number"},
-           {"--exclude 0-7", "--exclude 0-7: leaves no frame"},
+           {"--exclude 0-7", "--exclude 0-7: excludes every frame"},
            {"--train=-1", "--train -1: '-1' is neither a frame id nor a number"},
-           {"--level 0", "--level 0: the level is a fraction of the peak, more than 0 and less than 1"},
-           {"--level 1", "--level 1: the level is a fraction of the peak, more than 0 and less than 1"},
-           {"--level nan", "--level nan: the level is a fraction of the peak, more than 0 and less than 1"},
-           {"--source video", "--source: 'video' is none of radiance|image"},
+           {"--level 0", "--level 0: must be a fraction of the peak, more than 0 and less than 1"},
+           {"--level 1", "--level 1: must be a fraction of the peak, more than 0 and less than 1"},
+           {"--level nan", "--level nan: must be a fraction of the peak, more than 0 and less than 1"},
+           {"--source video", "--source: 'video' is not one of radiance|image"},
            {"--noise-px -1", "--noise-px: must be finite and not negative"},
            {"--noise-px inf", "Could not convert: --noise-px = inf"},
-           {"--models auto --good-enough-pct 0", "--good-enough-pct 0: expected a positive number of percent"},
-           {"--truth /nonexistent", "/nonexistent: --truth: there is no such folder"},
+           {"--models auto --good-enough-pct 0", "--good-enough-pct 0: expected a positive number, in percent"},
+           {"--truth /nonexistent", "/nonexistent: --truth: this folder does not exist"},
            {"--nonsense", "--nonsense"}})
     refused(on("evaluate", row.flags), row.expected, row.flags);
-  refused(on("evaluate", "--truth " + out("radiance")), "--truth: holds no contours of these frames, such as 0000.json", "--truth");
-  refused(on("detect", "--level 2"), "--level: the level is a fraction of the peak, more than 0 and less than 1", "detect");
-  refused(on("reconstruct", "--model auto -o " + out("x")), "--model auto: choose with `glint evaluate --models auto`", "auto");
+  refused(on("evaluate", "--truth " + out("radiance")), "--truth: contains no contours of these frames, such as 0000.json",
+          "--truth");
+  refused(on("detect", "--level 2"), "--level: must be a fraction of the peak, more than 0 and less than 1", "detect");
+  refused(on("reconstruct", "--model auto -o " + out("x")),
+          "--model auto: not available here; choose a model with `glint evaluate --models auto`", "auto");
 }
 
 TEST_F(Requests, WrongPicturesNameTheFlag) {
@@ -91,7 +93,8 @@ TEST_F(Requests, WrongSessionsAndFrames) {
   saveSession("--model limit-angle");
   for (const char* frames : {"99", "x", "0-", "3-1", "first:0"})
     refused(onSession("predict", "--frames " + std::string(frames)), "--frames " + std::string(frames) + ": ", frames);
-  refused(runGlint("predict " + out("scene.json")), "scene.json: is a scene, not a session (glint reconstruct makes a session of it)", "a scene is no session");
+  refused(runGlint("predict " + out("scene.json")),
+          "scene.json: is a scene, not a session (`glint reconstruct` makes a session from it)", "a scene is no session");
   refused(runGlint("replay " + out("nothing.glint")), "nothing.glint: cannot be read: No such file", "no file");
   refused(on("replay"), "is a folder, not a file", "a folder");
   refused(runGlint("synth " + out("scene.json") + " -o " + out("s")), "scene.json: ", "no render");
@@ -199,7 +202,8 @@ TEST_F(Requests, FrameWithoutTruthIsUnscoredWithItsReason) {
   EXPECT_EQ(model["summary"]["frames"], 2);
   EXPECT_EQ(model["summary"]["predicted"], 1);
   EXPECT_EQ(model["frames"][0]["status"], "ok");
-  EXPECT_EQ(model["frames"][1]["reason"], "frame unreadable: " + (folder_ / "truth/0007.json").string() + ": there is no such file");
+  EXPECT_EQ(model["frames"][1]["reason"],
+            "frame unreadable: " + (folder_ / "truth/0007.json").string() + ": this file does not exist");
   folder_.write("truth/0006.json", "{\"levels\": 3}");
   const ProgramRun broken = on("evaluate", "--models limit-angle --truth " + out("truth"));
   refused(broken, "truth/0006.json: ", "broken truth");

@@ -102,7 +102,7 @@ TEST_F(TradeoffCommand, WithoutAHeldOutFrameItIsRefusedBeforeTheFirstTrial) {
     const ProgramRun run = tradeoff("--train " + std::string(train) + " --json " + file);
     EXPECT_EQ(run.code, 2) << run.err;
     EXPECT_EQ(run.errorLines(), 1) << run.err;
-    EXPECT_THAT(run.err, HasSubstr("each of the 8 is a training frame or left out"));
+    EXPECT_THAT(run.err, HasSubstr("each of the 8 is a training frame or excluded"));
     EXPECT_THAT(run.err, HasSubstr("for example --train first:4"));
     EXPECT_THAT(run.err, testing::Not(HasSubstr("try settings"))) << "nothing was tried";
     EXPECT_FALSE(fs::exists(folder_ / "t.json"));

@@ -73,14 +73,14 @@ TEST_F(WrittenNames, TruthIsLookedForUnderTheNameThatIsWritten) {
 }
 
 TEST_F(WrittenNames, WrongSpecificationsAreRefusedBeforeAnythingIsWritten) {
-  refuses(sphere({{{"id", "0"}}, {{"id", "0"}}}), "frames[1].id: the id '0' stands twice");
+  refuses(sphere({{{"id", "0"}}, {{"id", "0"}}}), "frames[1].id: duplicate id '0'");
   refuses(sphere({{{"id", "a\nb"}}}), "frames[0].id: must not contain control characters");
   Json twoLamps = sphere(Json::array({Json::object()}));
   twoLamps["lights"].push_back(twoLamps["lights"][0]);
-  refuses(twoLamps, "lights[1].id: the id 'lamp' stands twice");
+  refuses(twoLamps, "lights[1].id: duplicate id 'lamp'");
   Json noMesh = sphere(Json::array({Json::object()}));
   noMesh["surfaces"] = {{"body", {{"mesh", "nope.ply"}}}};
-  refuses(noMesh, "surfaces.body.mesh: there is no file 'nope.ply'");
+  refuses(noMesh, "surfaces.body.mesh: file 'nope.ply' does not exist");
   Json torus = sphere(Json::array({Json::object()}));
   torus["surfaces"] = {{"body", {{"analytic", {{"type", "torus"}, {"major_radius", 0.4}, {"minor_radius", 0.1}}}}}};
   torus["surface_steps"] = {{"surface", "body"}, {"parameter", "minor_radius"}, {"values", {0.1, 0.5}}};
@@ -109,7 +109,7 @@ TEST_F(WrittenNames, ANumberedNameDoesNotReplaceTheFileOfAnother) {
   const ProgramRun run = synth(spec);
   EXPECT_EQ(run.code, 2);
   EXPECT_EQ(run.errorLines(), 1) << run.err;
-  EXPECT_THAT(run.err, HasSubstr("mesh/b-2.ply: exists, and no scene.json there says that synth wrote it"));
+  EXPECT_THAT(run.err, HasSubstr("mesh/b-2.ply: already exists, and no scene.json there says that synth wrote it"));
   EXPECT_EQ(contentOf(folder_ / "a/b/out/mesh/b-2.ply"), "a person's mesh");
   EXPECT_FALSE(fs::exists(folder_ / "a/b/out/scene.json"));
 }
@@ -142,7 +142,7 @@ TEST_F(WrittenNames, ASceneThatLooksLikeOneOfSynthIsNotReplaced) {
     const ProgramRun run = synth(spec);
     EXPECT_EQ(run.code, 2);
     EXPECT_EQ(run.errorLines(), 1) << run.err;
-    EXPECT_THAT(run.err, HasSubstr("scene.json: exists, and no scene.json there says that synth wrote it"));
+    EXPECT_THAT(run.err, HasSubstr("scene.json: already exists, and no scene.json there says that synth wrote it"));
     EXPECT_EQ(contentOf(made / "scene.json"), scene.dump());
     EXPECT_EQ(contentOf(made / "frames/0000.png"), "a photograph");
   }
@@ -168,7 +168,7 @@ TEST_F(WrittenNames, TheSpecificationIsNotReplaced) {
   folder_.write("scene.json", spec);
   const ProgramRun run = runGlint("synth " + inQuotes(folder_ / "scene.json") + " -o " + inQuotes(folder_.path()));
   EXPECT_EQ(run.code, 2);
-  EXPECT_THAT(run.err, HasSubstr("would replace the specification"));
+  EXPECT_THAT(run.err, HasSubstr("would overwrite the specification"));
   EXPECT_EQ(contentOf(folder_ / "scene.json"), spec);
 }
 

@@ -147,7 +147,8 @@ std::string complaint(const Run& run, const std::string& command, const std::map
   if (!run.err.empty() && run.err.back() != '\n') return "a line without an end";
   if (run.err.size() > kLongestLine + 1) return "a line of " + std::to_string(run.err.size() - 1) + " bytes";
   if (!run.err.empty() && run.err.rfind("glint: ", 0) != 0) return "a line that is not the program's own";
-  if (run.err.rfind("glint: unexpected", 0) == 0 || run.err.rfind("glint: out of memory", 0) == 0 || run.err.rfind("glint: wrong request", 0) == 0)
+  if (run.err.rfind("glint: unexpected", 0) == 0 || run.err.rfind("glint: out of memory", 0) == 0 ||
+      run.err.rfind("glint: invalid request", 0) == 0)
     return "a failure that nobody meant";
   if (const std::string kind = kindOfLine(run.err); !kind.empty()) return "standard error: " + kind;
   if (const std::string kind = kindOfLine(run.out); !kind.empty()) return "standard output: " + kind;

@@ -64,7 +64,8 @@ class CameraPickingTest : public QObject, SceneFixture {
     QVERIFY(menu && menu->isVisible());
     QCOMPARE(document_->selection().frame, 0);  // it asks, it does not select
     const QList<QAction*> actions = menu->actions();
-    const auto exclude = std::find_if(actions.begin(), actions.end(), [](QAction* a) { return a->text() == "E&xclude it"; });
+    const auto exclude =
+        std::find_if(actions.begin(), actions.end(), [](QAction* a) { return a->text() == "E&xclude this frame"; });
     QVERIFY(exclude != actions.end());
     (*exclude)->trigger();
     menu->close();

@@ -123,14 +123,14 @@ class ExplainTest : public QObject {
     window_->actions().find("explain.step-light")->trigger();
     QTRY_VERIFY_WITH_TIMEOUT(settled(), 60000);
     auto* text = panel_->findChild<QTextBrowser*>("explain.text");
-    QVERIFY(!text->toPlainText().contains("does not get here"));
+    QVERIFY(!text->toPlainText().contains("does not reach this step"));
     d.setModels({"primal"});  // it needs no light, so none is estimated
     QTRY_VERIFY_WITH_TIMEOUT(settled(), 60000);
-    QTRY_VERIFY2(text->toPlainText().contains("does not get here"), qPrintable(text->toPlainText()));
-    QVERIFY2(text->toPlainText().contains("no model that was computed needs one"), qPrintable(text->toPlainText()));
+    QTRY_VERIFY2(text->toPlainText().contains("does not reach this step"), qPrintable(text->toPlainText()));
+    QVERIFY2(text->toPlainText().contains("no computed model needs one"), qPrintable(text->toPlainText()));
     d.undoStack()->undo();
     QTRY_VERIFY_WITH_TIMEOUT(settled(), 60000);
-    QTRY_VERIFY(!text->toPlainText().contains("does not get here"));
+    QTRY_VERIFY(!text->toPlainText().contains("does not reach this step"));
   }
 
   /// The views show what a step speaks of, also when something else is selected meanwhile.
@@ -397,7 +397,7 @@ class ExplainTest : public QObject {
         goTo(step);
         settle();
         QCOMPARE(shownText().contains("Observed here"), !d.inspection()->isTraining(frame));
-        QVERIFY(!shownText().contains("does not get here"));
+        QVERIFY(!shownText().contains("does not reach this step"));
       }
     }
   }

@@ -247,7 +247,7 @@ class ExportTest : public QObject {
           dir.filePath("hidden"), dir.filePath("file"), dir.filePath("file/in"), dir.filePath("no/such")})
       QVERIFY2(!possible(typed), qPrintable(typed));
     line->setText(" ");
-    QCOMPARE(row.problem(), QStringLiteral("A folder needs a name"));
+    QCOMPARE(row.problem(), QStringLiteral("Enter a folder name"));
   }
 
   void whereTheLastExportWentCountsForItsInputOnly() {

@@ -86,7 +86,7 @@ class LessonsTest : public QObject {
     w.surfaces[window_->document().scene()->frames[0].surface] = 0.5;
     window_->document().setWhatIf(w, "bend");
     QTRY_VERIFY_WITH_TIMEOUT(window_->idle() && !window_->document().stale() && !panel_->busy(), 60000);
-    QTRY_VERIFY2(text().contains("as it was opened"), qPrintable(text()));
+    QTRY_VERIFY2(text().contains("as opened"), qPrintable(text()));
   }
 
   void theWalkPlaysWithoutFillingTheHistory() {

@@ -57,7 +57,7 @@ class PaletteTest : public QObject {
     QCOMPARE(match("cnr", "Contour level")->way, PaletteMatch::Way::Scattered);
     QVERIFY(match("LEVEL con", "Contour level") > match("level", "Contour level"));
     QVERIFY(match("", "anything"));
-    QVERIFY(match("light", "Light") > match("light", "Light or dark theme"));
+    QVERIFY(match("light", "Light") > match("light", "Switch light/dark theme"));
     QVERIFY(match("curv", "Curvature") > match("curv", "Lesson 4: Curvature of a mirror"));
     QVERIFY(!match("level zebra", "Contour level"));
     QVERIFY(!match("vl", "Contour level"));  // two letters in order are in everything
@@ -193,12 +193,12 @@ class PaletteTest : public QObject {
     QVERIFY(finds("log radiance", "False colour"));
     QVERIFY(finds("false color", "False colour"));
     QVERIFY(finds("saturated", "Mark clipped pixels"));
-    QVERIFY(finds("fills", "Show the selection"));  // of its tool tip alone
+    QVERIFY(finds("fills", "Show selection"));      // of its tool tip alone
     QVERIFY(finds("blinn-phong", "Lobe"));          // of its values alone
     QVERIFY(finds("axis front", "Front"));          // of its id
     // What is called so comes before what is only explained so.
     window_->commandPalette()->line()->setText("theme");
-    QCOMPARE(window_->commandPalette()->list()->topLevelItem(0)->text(0), QStringLiteral("Light or dark theme"));
+    QCOMPARE(window_->commandPalette()->list()->topLevelItem(0)->text(0), QStringLiteral("Switch light/dark theme"));
   }
 
   void otherSpellingsAreUnderstood() {
@@ -215,7 +215,7 @@ class PaletteTest : public QObject {
     type("zzzzqq", Qt::Key_Return);
     const QTreeWidget* list = window_->commandPalette()->list();
     QCOMPARE(list->topLevelItemCount(), 1);
-    QCOMPARE(list->topLevelItem(0)->text(0), QStringLiteral("No action or parameter matches"));
+    QCOMPARE(list->topLevelItem(0)->text(0), QStringLiteral("No matching action or setting"));
     QVERIFY(list->topLevelItem(0)->isDisabled());
     QVERIFY(window_->commandPalette()->isVisible());
   }

@@ -73,7 +73,7 @@ class RecoveryTest : public QObject {
     QVERIFY(window.document().layerVisible("rays"));
     QVERIFY(window.document().hasUnsavedChanges());
     const auto* history = window.findChild<QUndoView*>(QStringLiteral("historyList"));
-    QCOMPARE(history->emptyLabel(), QStringLiteral("As recovered; earlier steps are not kept"));
+    QCOMPARE(history->emptyLabel(), QStringLiteral("As recovered; earlier steps are lost"));
     QCOMPARE(QFileInfo(window.document().sessionFile()).canonicalFilePath(), QFileInfo(kSession).canonicalFilePath());
     // This program keeps it now; the dead one's file is gone, and nobody is offered it twice.
     Autosave* autosave = window.findChild<Autosave*>();
@@ -184,7 +184,7 @@ class RecoveryTest : public QObject {
     scene.write("\n");  // the same scene, but not the same file
     scene.close();
     const Opened opened = openInput(kSession, {(other + "/scene.json").toStdString()});
-    QVERIFY(toQString(opened.warning).contains("content differs"));
+    QVERIFY(toQString(opened.warning).contains("differs from the "));
     QVERIFY(opened.unsaved);
   }
 

@@ -293,7 +293,7 @@ class RelinkedTest : public QObject {
     QTRY_VERIFY_WITH_TIMEOUT(window.document().sharedScene() != before, 20000);
     computed(window);
     auto* bar = window.findChild<MessageBar*>();
-    QCOMPARE(bar->text(), path("geom_00.ply") + " is not the mesh that the session was made with: its content differs");
+    QCOMPARE(bar->text(), path("geom_00.ply") + " differs from the mesh that the session was made with");
     QVERIFY(bar->isVisible());
   }
 

@@ -119,7 +119,7 @@ class TruthTest : public QObject {
     numbers.showPicked(ellipsoid);
     QVERIFY(numbers.text().startsWith(QStringLiteral("Picked: ellipsoids")));
     document_->setInspection(std::make_shared<Inspection>(*first), document_->request());
-    QVERIFY2(numbers.text().startsWith(QStringLiteral("Picked, in earlier results: ellipsoids")), qPrintable(numbers.text()));
+    QVERIFY2(numbers.text().startsWith(QStringLiteral("Picked (results out of date): ellipsoids")), qPrintable(numbers.text()));
     document_->selectFrame(3);
     QVERIFY(!numbers.text().contains(QStringLiteral("Picked")));
   }
@@ -159,7 +159,7 @@ class TruthTest : public QObject {
       return canvas.grab().toImage().pixelColor(canvas.width() / 2, canvas.height() / 2).lightness();
     };
     const int before = brightness();
-    canvas.setAwaited(QStringLiteral("the photograph of 7 is being read"));
+    canvas.setAwaited(QStringLiteral("reading the photograph of 7"));
     QCOMPARE(brightness(), before);  // one that comes soon leaves no flicker
     QTRY_VERIFY(brightness() < before - 60);
     canvas.setPhotograph(white);

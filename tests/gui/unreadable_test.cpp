@@ -142,7 +142,7 @@ class UnreadableTest : public QObject {
     QCOMPARE(changed->all(), (QStringList{"scene.json: changed", "frames/0002.png: changed"}));
     QString log;
     for (const QPlainTextEdit* edit : window.findChildren<QPlainTextEdit*>()) log += edit->toPlainText();
-    for (const QString& line : changed->all()) QVERIFY2(log.contains("Since the session was saved: " + line), qPrintable(log));
+    for (const QString& line : changed->all()) QVERIFY2(log.contains("Since this session was saved: " + line), qPrintable(log));
     auto* bar = window.findChild<MessageBar*>();
     QVERIFY2(bar->isVisible() && bar->text().contains("frames/0003.png"), "what cannot be read is more urgent");
     QVERIFY(QFile::copy(QStringLiteral(GLINT_SOURCE_DIR "/sessions/plane/frames/0003.png"), scene + "/frames/0003.png"));

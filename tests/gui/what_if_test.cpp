@@ -112,13 +112,13 @@ class WhatIfTest : public QObject {
     w.synthesise = true;
     for (const Eigen::Vector3d& by : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1.5, 0, -0.5), Eigen::Vector3d(4, 2, -1)}) {
       w.lightsBy[d.scene()->lights.at(0).id] = by;
-      d.setWhatIf(w, "What if");
+      d.setWhatIf(w, "What-if");
       QTRY_VERIFY_WITH_TIMEOUT(settled(), testing_support::kWaitMs);
       QTest::qWait(50);
       most = std::max(most, captions->height());
     }
     QVERIFY2(most > lines, "the what-if must need more lines, or this tests nothing");
-    d.setWhatIf({}, "What if: everything back");
+    d.setWhatIf({}, "What-if: reset");
     QTRY_VERIFY_WITH_TIMEOUT(settled(), testing_support::kWaitMs);
     QTRY_COMPARE(captions->height(), lines);
     QTRY_COMPARE(canvas->height(), room);
@@ -183,13 +183,13 @@ class WhatIfTest : public QObject {
     QCOMPARE(document().request().whatIf.lobe, fitted.lobe);
     constexpr double kSameArea = 0.05;  // relative: of contours in eight-bit codes
     QVERIFY2(std::abs(areaOfTheContour() / area - 1) < kSameArea, qPrintable(QString::number(areaOfTheContour() / area)));
-    QVERIFY2(origin->text().contains("This is the lobe"), qPrintable(origin->text()));
+    QVERIFY2(origin->text().contains("Same lobe as captured"), qPrintable(origin->text()));
     QMetaObject::invokeMethod(box, "clicked", Q_ARG(bool, false));
     settle();
     QVERIFY(document().request().whatIf.none());
     document().setModels({"primal"});  // tells no light, hence no lobe
     settle();
-    QTRY_VERIFY2(origin->text().contains("usual lobe") && origin->text().contains("0.1"), qPrintable(origin->text()));
+    QTRY_VERIFY2(origin->text().contains("default lobe") && origin->text().contains("0.1"), qPrintable(origin->text()));
     QMetaObject::invokeMethod(box, "clicked", Q_ARG(bool, true));
     QCOMPARE(document().request().whatIf.roughness, WhatIf{}.roughness);
     settle();
@@ -210,7 +210,7 @@ class WhatIfTest : public QObject {
   void settle() { QTRY_VERIFY_WITH_TIMEOUT(document().inspection() && window_->idle() && !panel().busy(), testing_support::kWaitMs); }
 
   void change(const WhatIf& w) {
-    document().setWhatIf(w, "What if");
+    document().setWhatIf(w, "What-if");
     settle();
   }
 

@@ -55,7 +55,7 @@ class WindowTest : public QObject, WindowFixture {
     show(window);
     bool offered = false;
     for (const QPushButton* button : window.findChildren<QPushButton*>())
-      offered |= button->isVisible() && button->text().contains("Open a scene");
+      offered |= button->isVisible() && button->text().contains("Open scene");
     QVERIFY(offered);
     QTRY_VERIFY(window.idle());
     QVERIFY(!window.picture().isNull());

@@ -142,7 +142,7 @@ TEST_F(LegendPicture, NotesAreInTheColourOfWhatFailedAndRemarksAreFaint) {
   };
   EXPECT_EQ(redAndGrey({}, {}), (std::array<bool, 2>{false, false}));
   EXPECT_EQ(redAndGrey({"the fit of dual failed"}, {}), (std::array<bool, 2>{true, false}));
-  EXPECT_EQ(redAndGrey({}, {"photographs of 25 of 100 cameras"}), (std::array<bool, 2>{false, true}));
+  EXPECT_EQ(redAndGrey({}, {"photographs: 25 of 100 cameras"}), (std::array<bool, 2>{false, true}));
 }
 
 TEST_F(LegendPicture, WhatThereIsNoRoomForEndsInAnEllipsis) {

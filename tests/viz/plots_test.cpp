@@ -155,7 +155,7 @@ TEST(Plots, FramesThatAreNoCountAreSaidToBePlaces) {
   auto scene = std::make_shared<Scene>(*inspection.scene);
   scene->frames[1].id = "0002";  // every second frame of a sequence
   inspection.scene = scene;
-  EXPECT_THAT(errorPlot(inspection).x.title, HasSubstr("place in the sequence"));
+  EXPECT_THAT(errorPlot(inspection).x.title, HasSubstr("position in the sequence"));
 }
 
 TEST(Plots, ErrorsOfEveryFrame) {
@@ -456,7 +456,7 @@ TEST_F(PlotDrawing, AnEmptyPlotSaysWhyAndPicksNothing) {
   PlotData plot;
   plot.id = "error";
   plot.title = "Error";
-  plot.empty = "There are no results yet";
+  plot.empty = "No results yet";
   view_.show(plot);
   const Image image = draw();
   EXPECT_GT(countOf(image, {0.64, 0.66, 0.68}), 20) << "the sentence";

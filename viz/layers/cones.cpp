@@ -87,7 +87,7 @@ LayerContent conesLayer(const LayerInput& in) {
     if (!fit->ellipsoid || (!in.selection.light.empty() && in.selection.light != fit->light)) continue;
     const Ellipsoid& target = *fit->ellipsoid;
     if (!target.centre().allFinite() || (target.centre() - in.scale.sceneBox.center()).norm() > 20 * in.scale.sceneSize) {
-      content.remarks.push_back("cones: the ellipsoid is too far away to draw them");
+      content.remarks.push_back("cones: the ellipsoid is too far away to draw");
       continue;
     }
     std::vector<Cone> cones;
@@ -98,9 +98,9 @@ LayerContent conesLayer(const LayerInput& in) {
       elsewhere = elsewhere || !in.onSurface(view->frame);
       cones.push_back(*cone);
     }
-    if (elsewhere) content.remarks.push_back("cones: of the views that trained; they saw another surface");
+    if (elsewhere) content.remarks.push_back("cones: from the training frames, which saw another surface");
     const std::size_t every = std::max<std::size_t>(1, (cones.size() + kMostCones - 1) / kMostCones);
-    if (every > 1) content.remarks.push_back("cones: one of " + std::to_string(every) + " is drawn");
+    if (every > 1) content.remarks.push_back("cones: one in " + std::to_string(every) + " drawn");
     for (std::size_t i = 0; i < cones.size(); ++i) {
       const bool strong = cones[i].view->frame == in.selection.frame;
       if (!strong && i % every != 0) continue;

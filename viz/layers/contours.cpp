@@ -142,7 +142,7 @@ LayerContent predictedContoursLayer(const LayerInput& in) {
         const double width = in.selection.model == model ? 3.4 : 2.2;  // the selected model stands out
         if (!solid.empty()) content.addOnSurface(lineActor(solid, colour, width), info, width, nearerPx);
         if (!dotted.empty()) {
-          info.text += line("this part", "not predicted, it bridges directions that failed");
+          info.text += line("this part", "not predicted; bridges failed directions");
           content.addOnSurface(lineActor(dots(dotted), colour, 1.5), info, 1.5, nearerPx);
         }
       }

@@ -42,8 +42,9 @@ void addWalks(LayerContent& content, const LayerInput& in, const Plane& plane, c
   info.layer = "directions";
   info.frame = frame;
   info.model = model;
-  info.text = line(model.empty() ? "directions of frame" : model + " directions of frame", in.frame(frame).id) +
-              line("ended in a point", std::to_string(planeEnds.size()) + " of " + std::to_string(canonical.directions.size()));
+  info.text =
+      line(model.empty() ? "directions of frame" : model + " directions of frame", in.frame(frame).id) +
+      line("reached an end point", std::to_string(planeEnds.size()) + " of " + std::to_string(canonical.directions.size()));
   for (const auto& [reason, count] : reasons) info.text += line(reason, std::to_string(count));
   const Colour colour = canonicalColour();
   const double dot = std::min(0.35 * in.scale.point, 0.08 * reach);

@@ -28,13 +28,13 @@ void addDegenerate(LayerContent& content, const LayerInput& in, const ModelFit& 
   info.layer = "ellipsoids";
   info.model = fit.model;
   info.light = fit.light;
-  info.text = fitText(fit) + line("Q*", wire.kind + ", no ellipsoid");
+  info.text = fitText(fit) + line("Q*", wire.kind + ", not an ellipsoid");
   std::vector<Segment> dashes = wire.axes;
   for (const Points& curve : wire.curves) {
     for (std::size_t i = 0; i + 1 < curve.size(); i += 2) dashes.emplace_back(curve[i], curve[i + 1]);
   }
   const bool drawn = !dashes.empty();
-  content.notes.push_back(fit.model + ": Q* is no ellipsoid (" + wire.kind + (drawn ? ")" : "), outside the picture"));
+  content.notes.push_back(fit.model + ": Q* is not an ellipsoid (" + wire.kind + (drawn ? ")" : "), outside the view"));
   if (!drawn) return;
   const double width = in.selection.model == fit.model ? 2.5 : 1.4;
   content.add(segmentActor(dashes, kFailed, width), info, width);
@@ -79,7 +79,7 @@ LayerContent ellipsoidsLayer(const LayerInput& in) {
       if (!e.centre().allFinite() || !e.semiAxes().allFinite()) continue;
       if (e.semiAxes().maxCoeff() > 20 * in.scale.sceneSize ||
           (e.centre() - in.scale.sceneBox.center()).norm() > 50 * in.scale.sceneSize) {
-        content.notes.push_back(model + ": the ellipsoid is far larger or farther than the scene, not drawn");
+        content.notes.push_back(model + ": ellipsoid not drawn, far larger or farther away than the scene");
         continue;
       }
       Picked info;
@@ -104,7 +104,7 @@ LayerContent ellipsoidsLayer(const LayerInput& in) {
       // A needle far across the scene must not shrink the rest: cameras, surface and lights frame the picture.
       if (2 * e.semiAxes().maxCoeff() > in.scale.sceneSize)
         content.remarks.push_back(model + ": ellipsoid " + lengthText(2 * e.semiAxes().maxCoeff()) +
-                                  " long, may leave the picture");
+                                  " long, may extend beyond the view");
       else
         addExtent(content, worldFromUnit);
     }

@@ -29,7 +29,7 @@ LayerContent photographsLayer(const LayerInput& in) {
   if (in.shows(in.selection.frame) && std::find(chosen.begin(), chosen.end(), in.selection.frame) == chosen.end())
     chosen.push_back(in.selection.frame);
   if (count < n)
-    content.remarks.push_back("photographs of " + std::to_string(chosen.size()) + " of " + std::to_string(n) + " cameras");
+    content.remarks.push_back("photographs: " + std::to_string(chosen.size()) + " of " + std::to_string(n) + " cameras");
   std::vector<std::string> unreadable;
   for (const int index : chosen) {
     if (!hasPhotograph(*in.inspection, index)) continue;  // nothing to read, so nothing that cannot be read
@@ -71,7 +71,7 @@ LayerContent photographsLayer(const LayerInput& in) {
     std::string names;
     for (std::size_t i = 0; i < std::min(unreadable.size(), kMostNamed); ++i) names += (i > 0 ? ", " : " ") + unreadable[i];
     if (unreadable.size() > kMostNamed) names += " and " + std::to_string(unreadable.size() - kMostNamed) + " more";
-    content.notes.push_back("photographs that could not be read:" + names);
+    content.notes.push_back("unreadable photographs:" + names);
   }
   return content;
 }

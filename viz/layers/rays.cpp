@@ -59,8 +59,8 @@ LayerContent raysLayer(const LayerInput& in) {
   }
   for (const TrainingView& view : in.ownViews()) addRay(content, in, view, false);
   if (elsewhere > 0)
-    content.remarks.push_back("rays: " + std::to_string(elsewhere) + (elsewhere == 1 ? " leaves" : " leave") +
-                              " another surface, faded");
+    content.remarks.push_back("rays: " + std::to_string(elsewhere) + (elsewhere == 1 ? " starts" : " start") +
+                              " on another surface (faded)");
   return content;
 }
 

@@ -43,10 +43,10 @@ PlotData errorPlot(const Inspection& inspection) {
   plot.y.floor = kSmallestPct;
   plot.noValue = "missed a highlight";
   const std::size_t n = inspection.evidence.size();
-  if (n == 0) return nothing(plot, "There are no results yet");
+  if (n == 0) return nothing(plot, "No results yet");
   // The axis counts frames; where their names are no such count, it says so.
   for (std::size_t i = 0; i < n && inspection.scene; ++i)
-    if (std::atoi(inspection.scene->frames[i].id.c_str()) != int(i)) plot.x.title = "frame, by its place in the sequence";
+    if (std::atoi(inspection.scene->frames[i].id.c_str()) != int(i)) plot.x.title = "frame, by position in the sequence";
   std::vector<double> values;
   std::string silent;  // models that matched no highlight at all: their crosses would fill the plot
   for (const std::string& model : modelsInOrder(inspection)) {
@@ -87,7 +87,7 @@ PlotData errorPlot(const Inspection& inspection) {
     else
       silent += (silent.empty() ? "" : ", ") + model;
   }
-  if (plot.series.empty()) return nothing(plot, "No model predicted a highlight that was observed");
+  if (plot.series.empty()) return nothing(plot, "No model predicted an observed highlight");
   if (!silent.empty()) plot.title += "   (" + silent + ": no highlight predicted)";
   plot.y.log = needsLogAxis(values);
   if (!plot.y.log) plot.y.from = 0;
@@ -104,13 +104,12 @@ PlotData influencePlot(const Inspection& inspection, const Influence& influence,
   plot.title = probes ? "Held-out error without a frame" : "Error of a frame predicted from the others";
   plot.x.title = "frame left out";
   plot.y.title = probes ? "change (percentage points)" : "contour error (%)";
-  plot.noValue = "no answer without it";
+  plot.noValue = "no prediction without it";
   std::vector<std::string> models;
   for (const std::string& m : modelsInOrder(inspection))
     if (model.empty() || m == model) models.push_back(m);
-  if (influence.frames.empty()) return nothing(plot, "There is no training frame that could be left out");
-  if (models.empty())
-    return nothing(plot, model.empty() ? "No model was computed" : "The model '" + model + "' was not computed");
+  if (influence.frames.empty()) return nothing(plot, "No training frame can be left out");
+  if (models.empty()) return nothing(plot, model.empty() ? "No models computed" : "The model '" + model + "' was not computed");
   const double width = 0.8 / double(models.size());
   bool any = false;
   std::string why;  // the first reason for no answer
@@ -121,7 +120,7 @@ PlotData influencePlot(const Inspection& inspection, const Influence& influence,
     series.shape = PlotShape::Bars;
     series.barWidth = width * 0.9;
     for (const ModelResult::Fit& fit : inspection.models.at(models[m]).fits)
-      if (fit.failure && why.empty()) why = models[m] + " has no fit to leave a frame out of: " + fit.failure->message();
+      if (fit.failure && why.empty()) why = models[m] + " has no fit: " + fit.failure->message();
     for (std::size_t i = 0; i < influence.frames.size(); ++i) {
       const FrameInfluence& f = influence.frames[i];
       const std::optional<double> value = influenceOf(influence, f.frame, models[m]);
@@ -145,15 +144,14 @@ PlotData influencePlot(const Inspection& inspection, const Influence& influence,
         p.label += formatted("\nheld-out frames %.3g %% instead of %.3g %%: %+.2g points", *n.heldOutPct,
                              *n.heldOutPct - *n.changePct, *n.changePct) +
                    (*n.changePct < 0 ? "\nbetter without it" : "");
-      if (n.leftOutPct) p.label += formatted("\nthe frame itself %.3g %%", *n.leftOutPct);
+      if (n.leftOutPct) p.label += formatted("\nerror of this frame %.3g %%", *n.leftOutPct);
       if (n.lightShift) p.label += formatted("\nlight or centre moves %.2g m", *n.lightShift);
       if (n.axesChange) p.label += formatted("\na semi-axis changes by %.2g %% of its length", 100 * *n.axesChange);
       series.points.push_back(std::move(p));
     }
     plot.series.push_back(std::move(series));
   }
-  if (!any)
-    return nothing(plot, !why.empty() ? why : std::string("Nothing was predicted without any one of the training frames"));
+  if (!any) return nothing(plot, !why.empty() ? why : std::string("No predictions with any one training frame left out"));
   for (std::size_t i = 0; i < influence.frames.size(); ++i)
     plot.x.names.emplace_back(double(i), frameName(inspection, influence.frames[i].frame));
   return plot;

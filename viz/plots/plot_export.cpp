@@ -18,7 +18,7 @@ class Drawn {
  public:
   Drawn(const PlotData& plot, const PlotStyle& style, const Selection& selection, int width, int height) {
     require(width >= 64 && height >= 64 && width <= 16384 && height <= 16384,
-            "plot: width and height must be within 64 and 16384 pixels");
+            "plot: width and height must be between 64 and 16384 pixels");
     view_.setStyle(style);
     view_.show(plot);
     view_.setSelection(selection);

@@ -23,24 +23,23 @@ std::string ofFrame(const FrameSamples& samples) { return samples.frameId.empty(
 const std::vector<PlotKind>& plotKinds() {
   static const std::vector<PlotKind> all = {
       {"error", "Error per frame",
-       "Contour error of every frame and model; training frames and excluded ones are tinted. A cross at the top: a highlight "
-       "was "
-       "missed, so there is no error to show. A click selects the frame and the model."},
+       "Contour error of every frame and model; training and excluded frames are tinted. A cross at the top marks a missed "
+       "highlight, for which there is no error. Click to select frame and model."},
       {"dial", "Residual dial",
-       "Signed distance from the observed to the predicted contour, px, by direction in the photograph; outside the circle = "
-       "predicted too large. Beside the models: the mean of its size |d|. The error table's px is another measure, the mean "
+       "Signed distance from the observed to the predicted contour, px, by direction in the photograph; outside the circle: "
+       "prediction too large. Beside the models: mean |d|. The px of the error table is a different measure, the mean "
        "contour distance: symmetric, over the length of both contours."},
       {"limit-angle", "Limit angle by direction",
-       "alpha = angle(N, H) along the contours: one value all around where the highlight is a level set of the angle."},
-      {"lobe", "Lobe",
-       "Logarithm of the radiance against alpha, with the lobe |alpha| = m sqrt(-log I/K') fitted to the pixels."},
+       "alpha = angle(N, H) along the contours: the same value in all directions if the highlight is a level set of the angle."},
+      {"lobe", "Lobe", "Logarithm of radiance against alpha, with the lobe |alpha| = m sqrt(-log I/K') fitted to the pixels."},
       {"axes", "Semi-axes", "Semi-axes of each model's ellipsoid, longest first, with one standard deviation where it is known."},
       {"singular", "Singular values",
-       "Of the linear system for Q*: a small last one beside a large second last one is a well-determined ellipsoid."},
-      {"influence", "Which view matters",
-       "Every training frame left out once: by how many percentage points the error of the held-out frames grows without it. "
-       "An error counts at most 100 %."},
-      {"tradeoff", "Speed and accuracy", "Error over time per frame of every measured setting. A click loads the setting."}};
+       "Of the linear system for Q*. A small last value beside a large second-last value means a well-determined ellipsoid."},
+      {"influence", "Influence of frames",
+       "Each training frame left out in turn: increase of the held-out error without it, in percentage points. "
+       "Errors are capped at 100 %."},
+      {"tradeoff", "Speed and accuracy",
+       "Error against time per frame of every measured setting. Click a point to load its setting."}};
   return all;
 }
 
@@ -50,7 +49,7 @@ FrameSamples frameSamples(const Inspection& inspection, int frame, const std::st
   result.model = model;
   result.frameId = frameName(inspection, frame);
   if (!inspection.scene || frame < 0 || frame >= int(inspection.evidence.size())) {
-    result.failure = "There is no such frame.";
+    result.failure = "No such frame.";
     return result;
   }
   const FrameEvidence& evidence = inspection.evidence[std::size_t(frame)];
@@ -118,7 +117,7 @@ PlotData lobePlot(const FrameSamples& samples, int highlight) {
   const FrameSamples::Lobe* lobe = nullptr;
   for (const FrameSamples::Lobe& l : samples.lobes)
     if (l.observed == highlight || (highlight < 0 && !lobe)) lobe = &l;
-  if (!lobe) return nothing(plot, "There is no highlight in this frame");
+  if (!lobe) return nothing(plot, "No highlight in this frame");
   if (!lobe->samples)
     return nothing(plot, "No lobe: " + (lobe->failure ? lobe->failure->message() : std::string("nothing sampled")));
   const LobeSamples& s = *lobe->samples;
@@ -211,7 +210,7 @@ PlotData semiAxesPlot(const Inspection& inspection) {
     }
   if (fits.empty())
     return nothing(plot, inspection.models.empty()
-                             ? "There are no results yet"
+                             ? "No results yet"
                              : "No model here has an ellipsoid" + (refused.empty() ? std::string() : " (" + refused + ")"));
   std::vector<double> values;
   bool severalLights = false;
@@ -289,7 +288,7 @@ PlotData residualDial(const Inspection& inspection, int frame, int highlight) {
     }
     plot.series.push_back(std::move(series));
   }
-  if (plot.series.empty()) return nothing(plot, "No model's prediction meets a highlight observed in this frame");
+  if (plot.series.empty()) return nothing(plot, "No prediction overlaps a highlight observed in this frame");
   plot.y.to = largest > 0 ? largest : 1;
   plot.y.from = -*plot.y.to;
   return plot;
@@ -306,8 +305,8 @@ PlotData limitAnglePlot(const FrameSamples& samples, int highlight) {
   for (const AngleByDirection& a : samples.angles)
     if (a.observed == highlight || (highlight < 0 && !chosen)) chosen = &a;
   if (!chosen)
-    return nothing(plot, samples.model.empty() ? "There are no results yet"
-                                               : "The model '" + samples.model + "' knows no light for this highlight");
+    return nothing(
+        plot, samples.model.empty() ? "No results yet" : "The model '" + samples.model + "' has no light for this highlight");
   const auto add = [&](const char* name, const std::vector<DirectionSample>& values, const Colour& colour, bool observed) {
     PlotSeries series;
     series.name = name;
@@ -329,7 +328,7 @@ PlotData limitAnglePlot(const FrameSamples& samples, int highlight) {
   };
   add("observed contour", chosen->measured, kObserved, true);
   add("predicted contour", chosen->predicted, modelColour(samples.model), false);
-  if (plot.series.empty()) return nothing(plot, "No contour point meets the lit surface");
+  if (plot.series.empty()) return nothing(plot, "No contour point lies on the lit surface");
   if (chosen->limitAngle) {
     PlotSeries line;
     line.name = formatted(chosen->extended ? "limit angle %.4g\u00b0, without the lamp's extent" : "limit angle %.4g\u00b0",
@@ -360,7 +359,7 @@ PlotData singularValuePlot(const std::vector<Conditioning>& conditioning) {
   PlotData plot;
   plot.id = "singular";
   plot.title = "Singular values";
-  plot.x.title = "number";
+  plot.x.title = "index";
   plot.y.title = "relative to the first";
   plot.y.log = true;
   plot.y.floor = 1e-17;
@@ -389,7 +388,7 @@ PlotData singularValuePlot(const std::vector<Conditioning>& conditioning) {
     plot.series.push_back(std::move(series));
   }
   if (plot.series.empty())
-    return nothing(plot, conditioning.empty() ? "There are no results yet" : "No model here solves a linear system for Q*");
+    return nothing(plot, conditioning.empty() ? "No results yet" : "No model here solves a linear system for Q*");
   plot.x.from = 0.5;
   plot.x.to = double(most) + 0.5;
   for (std::size_t i = 1; i <= most; ++i) plot.x.names.emplace_back(double(i), std::to_string(i));
@@ -418,7 +417,7 @@ PlotData tradeoffPlot(const Tradeoff& tradeoff) {
     p.y = t.rankedErrorPct;
     p.target.setting = i;
     p.label = describe(tradeoff, t) +
-              formatted("\nerror %.3g %%, %.4g µs a frame, fit %.3g ms", t.contourErrorPct, t.predictUs, t.fitUs / 1000);
+              formatted("\nerror %.3g %%, %.4g µs per frame, fit %.3g ms", t.contourErrorPct, t.predictUs, t.fitUs / 1000);
     for (const auto& [name, index] : tradeoff.presets)
       if (index == i) p.label += "\npreset '" + name + "'";
     if (t.pareto) {
@@ -439,7 +438,7 @@ PlotData tradeoffPlot(const Tradeoff& tradeoff) {
     }
     series->points.push_back(std::move(p));
   }
-  if (models.empty()) return nothing(plot, tradeoff.reason.empty() ? "No setting was measured" : tradeoff.reason);
+  if (models.empty()) return nothing(plot, tradeoff.reason.empty() ? "No settings measured" : tradeoff.reason);
   plot.series.push_back(std::move(front));
   for (PlotSeries& s : models) plot.series.push_back(std::move(s));
   return plot;

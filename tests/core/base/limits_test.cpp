@@ -30,7 +30,7 @@ class WithLimit {
 
 TEST(Limits, AreNamedAndRaisedByName) {
   const std::string message = inputErrorOf([] { requireWithin(Limit::ImageMegapixels, 300, "a.png", "frames[0]"); });
-  EXPECT_EQ(message, "a.png: frames[0]: holds 300 million pixels of an image, more than 200 (--limit image.megapixels=300 accepts it)");
+  EXPECT_EQ(message, "a.png: frames[0]: contains 300 million pixels; the limit is 200 (--limit image.megapixels=300 raises it)");
   const WithLimit raised("image.megapixels", 300);
   EXPECT_NO_THROW(requireWithin(Limit::ImageMegapixels, 300, "a.png"));
   EXPECT_THROW(requireWithin(Limit::ImageMegapixels, 300.5, "a.png"), InputError);
@@ -79,7 +79,7 @@ TEST(JsonText, AnObjectOfManyKeysIsReadAndAsked) {
 }
 
 TEST(JsonText, AKeyThatStandsTwiceIsNamedWithItsPlace) {
-  EXPECT_EQ(inputErrorOf([] { JsonNode::parse(R"({"a": {"b": 1, "c": 2, "b": 3}})", "s.json"); }), "s.json: a.b: this key stands here twice");
+  EXPECT_EQ(inputErrorOf([] { JsonNode::parse(R"({"a": {"b": 1, "c": 2, "b": 3}})", "s.json"); }), "s.json: a.b: duplicate key");
   EXPECT_NO_THROW(JsonNode::parse(R"({"a": {"b": 1}, "c": {"b": 2}})", "s.json"));
 }
 

@@ -61,10 +61,12 @@ TEST_P(BadSetting, IsRefusedInOneLine) {
   EXPECT_TRUE(s.values().empty()) << "nothing is half set";
 }
 INSTANTIATE_TEST_SUITE_P(Rows, BadSetting,
-                         testing::Values(Bad{"predict.directionz", "3", "no such setting"}, Bad{"predict.directions", "3.5", "whole number"},
+                         testing::Values(Bad{"predict.directionz", "3", "unknown setting"},
+                                         Bad{"predict.directions", "3.5", "whole number"},
                                          Bad{"predict.directions", "5", "outside 6 .. 720"}, Bad{"detect.level", "nan", "number"},
                                          Bad{"detect.level", "0.5x", "number"}, Bad{"detect.level", "1e400", "number"},
-                                         Bad{"fit.solver", "magic", "linear, anchored, refined"}, Bad{"detect.level", "", "number"}));
+                                         Bad{"fit.solver", "magic", "linear, anchored, refined"},
+                                         Bad{"detect.level", "", "number"}));
 
 TEST(ParallelFor, VisitsEachIndexOnceAndCanBeStopped) {
   std::vector<std::atomic<int>> visits(1000);

@@ -23,7 +23,7 @@ Inspection sheetRun() {
 
 TEST(HtmlReport, NamesWhatWasMissedAndWhy) {
   Inspection run = sheetRun();
-  EXPECT_THAT(evaluationHtml(run, {}), Not(HasSubstr("Highlights without a prediction")));
+  EXPECT_THAT(evaluationHtml(run, {}), Not(HasSubstr("Missed highlights")));
   for (FrameComparison& c : run.models.at("dual").frames) {
     if (c.frame != 0 && c.frame != 5) continue;  // 0 trains: it is not part of what the report is about
     ASSERT_FALSE(c.rows.empty());
@@ -31,9 +31,10 @@ TEST(HtmlReport, NamesWhatWasMissedAndWhy) {
     c.rows[0].failure = Failure{Reason::NotReached, "frame " + std::to_string(c.frame) + " <went astray>"};
   }
   const std::string html = evaluationHtml(run, {});
-  EXPECT_THAT(html, HasSubstr("Highlights without a prediction"));
+  EXPECT_THAT(html, HasSubstr("Missed highlights"));
   EXPECT_THAT(html, HasSubstr("frame 5 &lt;went astray&gt;"));
-  const std::string table = html.substr(html.find("Highlights without"), html.find("Worst frames") - html.find("Highlights without"));
+  const std::string table =
+      html.substr(html.find("Missed highlights"), html.find("Worst frames") - html.find("Missed highlights"));
   EXPECT_THAT(table, Not(HasSubstr("frame 0")));
   EXPECT_THAT(html.substr(html.find("Worst frames")), HasSubstr("<b>frame 5</b>")) << "it is shown, and first";
   EXPECT_LT(html.find("<b>frame 5</b>"), html.find("<b>frame 4</b>"));

@@ -66,7 +66,7 @@ TEST(Explain, OnAPlaneEverythingHolds) {
   EXPECT_NEAR(virtualCentre[2], -eye.z(), 1e-9);
   EXPECT_NEAR(number(stepOf(e, "limit-angles"), "smallest limit angle")[0], kLimitAngle * kDegree, kChordDeg);
   EXPECT_NEAR(number(stepOf(e, "limit-angles"), "largest limit angle")[0], kLimitAngle * kDegree, kChordDeg);
-  EXPECT_NEAR(number(stepOf(e, "canonical-ellipse"), "against the observed one's")[0], 1, 1e-3)
+  EXPECT_NEAR(number(stepOf(e, "canonical-ellipse"), "relative to the observed")[0], 1, 1e-3)
       << "a plane has nothing to take out";
   EXPECT_FALSE(breaks(stepOf(e, "virtual-camera"), "primal-off-plane"));
   EXPECT_TRUE(breaks(stepOf(e, "comparison"), "training-frame"));
@@ -85,7 +85,7 @@ TEST(Explain, OnASphereItSaysWhyPrimalFails) {
   EXPECT_FALSE(breaks(stepOf(e, "comparison"), "training-frame"));
   // A held-out frame has its own view and canonical contour; on a sphere they lie outside the observed one.
   ASSERT_TRUE(e.view && e.view->canonical);
-  EXPECT_GT(number(stepOf(e, "canonical-ellipse"), "against the observed one's")[1], 1.2);
+  EXPECT_GT(number(stepOf(e, "canonical-ellipse"), "relative to the observed")[1], 1.2);
 }
 
 TEST(Explain, DualFailsWhereTheCurvatureVariesAndTheHighlightIsNotFlat) {
@@ -202,7 +202,7 @@ TEST(Explain, TwoQuadricsThatFitAlmostAlikeAreSaid) {
   for (const double ratio : {fit->gapRatio, 0.4, 0.6, 0.97}) {
     fit->gapRatio = ratio;
     const ExplainStep step = stepOf(explain(inspection, 5, 0, "canonical"), "ellipsoid");
-    EXPECT_EQ(number(step, "last over second last singular value")[0], ratio);
+    EXPECT_EQ(number(step, "last over second-last singular value")[0], ratio);
     EXPECT_EQ(breaks(step, "weak-gap"), ratio > 0.5) << ratio;
   }
 }
@@ -261,7 +261,7 @@ TEST(Explain, TheProjectionOfCanonicalIsOnTAndTheWalkBackIsWhatIsSeen) {
   const Inspection inspection = inspected(sheet(1), {"canonical"});
   const Explanation e = explain(inspection, 1, 0, "canonical");
   const auto flat = number(stepOf(e, "projection"), "semi-axes of the ellipse that a flat mirror would show"),
-             walked = number(stepOf(e, "inverse-walk"), "semi-axes of the ellipse of what came out"),
+             walked = number(stepOf(e, "inverse-walk"), "semi-axes of the resulting ellipse"),
              canonical = number(stepOf(e, "canonical-ellipse"), "semi-axes of the canonical ellipse"),
              observed = number(stepOf(e, "contour"), "semi-axes of its ellipse");
   for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -269,7 +269,7 @@ TEST(Explain, TheProjectionOfCanonicalIsOnTAndTheWalkBackIsWhatIsSeen) {
     EXPECT_NEAR(walked[axis], observed[axis], kSameEllipse * observed[axis]);
   }
   EXPECT_GT(flat[1], 1.5 * walked[1]) << "the bend is in one of them only";
-  EXPECT_EQ(number(stepOf(e, "inverse-walk"), "of the directions gave one")[0], 100);
+  EXPECT_EQ(number(stepOf(e, "inverse-walk"), "of directions gave a point")[0], 100);
 }
 
 TEST(Explain, TheComparisonSaysWhatABrokenAssumptionHasCost) {

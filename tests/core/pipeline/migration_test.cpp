@@ -164,7 +164,7 @@ TEST(Migration, ANewerOneIsRefusedAsNewerWhateverElseIsInIt) {
     const fs::path file = folder.write("x.glint", std::string("{\"glint_session\": 4") + rest + "}");
     const std::string message = inputErrorOf([&] { readSession(file); });
     EXPECT_THAT(message, HasSubstr(file.string() + ": glint_session: "));
-    EXPECT_THAT(message, HasSubstr("version 4 is newer than this program understands (3)"));
+    EXPECT_THAT(message, HasSubstr("version 4 is newer than this program supports (3)"));
   }
 }
 

@@ -170,7 +170,7 @@ TEST(SelectModel, NothingToLeaveOut) {
   for (Frame& f : blind->frames) f.highlights.clear();
   const Selection none = selectModel(evidenceOf(blind, "spread:4"), {});
   EXPECT_EQ(none.model, "");
-  EXPECT_EQ(none.why, "There is no training view to leave out.");
+  EXPECT_EQ(none.why, "No training view can be left out.");
   EXPECT_THAT(one.why, HasSubstr("from one place only"));
 }
 
@@ -257,7 +257,7 @@ TEST(SelectModel, AboveTheCeilingNothingIsChosen) {
   const Selection s = selectModel(evidenceOf(scene, "0-5", 3.0, true, kAnswersAll), {});
   EXPECT_EQ(s.model, "") << selectionTable(s);
   EXPECT_THAT(s.why, HasSubstr("Refused")) << selectionTable(s);
-  EXPECT_THAT(s.why, HasSubstr("ceiling of 5 %"));
+  EXPECT_THAT(s.why, HasSubstr("limit of 5 %"));
   const Selection tolerant = selectModel(evidenceOf(scene, "0-5", 3.0, true, kAnswersAll), 50.0);
   EXPECT_EQ(tolerant.model, "") << "no stated tolerance lifts the ceiling\n" << selectionTable(tolerant);
   for (const auto& [name, error] : heldOutErrors(scene, "0-5", 3.0))

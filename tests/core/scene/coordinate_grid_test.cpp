@@ -94,7 +94,7 @@ TEST(CoordinateGrid, InfoTellsWhereItIsTooCoarse) {
   const Vector3d far(100000, 0, 0);
   const std::vector<std::string> found = findingsOf(asFloats(globe(far)), far);
   ASSERT_EQ(coarse(found), 1);
-  EXPECT_THAT(found, testing::Contains(HasSubstr("floats keep steps of 7.8 mm")));  // 2^(16 - 23) m
+  EXPECT_THAT(found, testing::Contains(HasSubstr("floats resolve steps of 7.8 mm")));  // 2^(16 - 23) m
   EXPECT_EQ(coarse(findingsOf(rounded(globe(far), 1e-2), far)), 1);
   EXPECT_EQ(coarse(findingsOf(globe(far), far)), 0);
   EXPECT_EQ(coarse(findingsOf(asFloats(globe({3, 0, 0})), {3, 0, 0})), 0);

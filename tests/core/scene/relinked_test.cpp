@@ -65,7 +65,7 @@ TEST(MissingMesh, NamesFilePlaceAndPath) {
   EXPECT_EQ(e.mesh(), folder / "m/b.ply");
   EXPECT_EQ(e.file(), file);
   EXPECT_EQ(e.place(), "surfaces.b.mesh");
-  EXPECT_EQ(e.what(), file.string() + ": surfaces.b.mesh: there is no file '" + (folder / "m/b.ply").string() + "'");
+  EXPECT_EQ(e.what(), file.string() + ": surfaces.b.mesh: file '" + (folder / "m/b.ply").string() + "' does not exist");
   // A folder of that name is no mesh.
   fs::create_directories(folder / "m/b.ply");
   EXPECT_EQ(missingIn([&] { readScene(file); }).named(), "m/b.ply");
@@ -187,7 +187,7 @@ TEST(RelinkedMeshes, AnotherFileThanTheSessionWasMadeWithIsTold) {
     EXPECT_THAT(changedFiles(found.session), IsEmpty()) << "where it was is not missed any more";
     EXPECT_EQ(found.session.files.size(), sceneToo ? 0u : 2u);
     EXPECT_EQ(openSession(folder / "x.glint", different).warning,
-              (other / "different.ply").string() + " is not the mesh that the session was made with: its content differs")
+              (other / "different.ply").string() + " differs from the mesh that the session was made with")
         << sceneToo;
   }
 }
@@ -247,7 +247,7 @@ TEST(RelinkedFrameFiles, TheOneFolderOfAnOlderSessionIsTheFirst) {
                                       "{\"glint_session\": 3, \"input\": {\"path\": \"scene.json\", \"folders\": [{\"of\": "
                                       "\"mask\", \"folder\": \"p\"}]}, " +
                                           rest);
-  EXPECT_THAT(inputErrorOf([&] { readSession(wrong); }), HasSubstr("input.folders[0].of: 'mask' is none of"));
+  EXPECT_THAT(inputErrorOf([&] { readSession(wrong); }), HasSubstr("input.folders[0].of: 'mask' is not one of"));
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ TEST(FrameFileProblems, KnowsWhichKindOfFileIsMissing) {
     for (const auto& [frame, line] : lines) EXPECT_EQ(fileNamedIn(line, scene.frames[std::size_t(frame)]), kind);
   EXPECT_EQ(fileNamedIn(readMask(scene.frames[1]).failure().detail, scene.frames[1]), FrameFile::Mask);
   EXPECT_EQ(fileNamedIn(readDepth(scene.frames[0]).failure().detail, scene.frames[0]), FrameFile::Depth);
-  EXPECT_EQ(fileNamedIn("frame a.png has neither image, radiance nor highlights", scene.frames[0]), std::nullopt);
+  EXPECT_EQ(fileNamedIn("frame a.png has no image, radiance or highlights", scene.frames[0]), std::nullopt);
 }
 
 TEST(WithMeshAt, EverySurfaceOfTheMeshHasTheOther) {

@@ -113,7 +113,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"empty id", "\"id\": \"a\"", "\"id\": \"\"", "frames[0].id: ", "empty"},
         BadCase{"ids twice", "\"frames\": [",
                 R"("frames": [{"id": "a", "camera_from_world": [[1,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,0,1]]},)",
-                "frames[1].id: ", "'a' stands twice"},
+                "frames[1].id: ", "duplicate id 'a'"},
         BadCase{"a surface twice", "\"surfaces\": {", "\"surfaces\": {\"ball\": {\"analytic\": {\"type\": \"plane\"}}, ",
                 "surfaces.ball: ", "twice"},
         BadCase{"a light twice", "\"surfaces\"",
@@ -134,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"unknown surface", "\"id\": \"a\"", "\"id\": \"a\", \"surface\": \"box\"",
                 "frames[0].surface: ", "no surface 'box'"},
         BadCase{"no surface at all", "\"surfaces\"", "\"sufraces\"", "frames[0].surface: ", "no surface and the frame no depth"},
-        BadCase{"unknown analytic type", "\"sphere\"", "\"cube\"", "surfaces.ball.analytic.type: ", "'cube' is none of"},
+        BadCase{"unknown analytic type", "\"sphere\"", "\"cube\"", "surfaces.ball.analytic.type: ", "'cube' is not one of"},
         BadCase{"negative radius", "0.4", "-0.4", "surfaces.ball.analytic.radius: ", "positive"},
         BadCase{"number too large", "0.4", "1e999", "JSON: not valid JSON: ", "number overflow"},
         BadCase{"missing mesh", "\"analytic\": {\"type\": \"sphere\", \"radius\": 0.4}", "\"mesh\": \"body.ply\"",
@@ -264,13 +264,13 @@ TEST(ReadScene, UnknownKeysThatWouldChangeTheGeometryAreRefused) {
   for (const Row& row : std::initializer_list<Row>{
            {"\"cy\": 23.5", "\"cy\": 23.5, \"k4\": 0.1", "camera.k4: "},
            {"\"cy\": 23.5", "\"cy\": 23.5, \"Fov\": 0.1", "camera.Fov: "},
-           {"\"cy\": 23.5", "\"cy\": 23.5, \"model\": \"OPENCV_FISHEYE\"", "camera.model: 'OPENCV_FISHEYE' is not understood"},
+           {"\"cy\": 23.5", "\"cy\": 23.5, \"model\": \"OPENCV_FISHEYE\"", "camera.model: 'OPENCV_FISHEYE' is not supported"},
            {"\"id\": \"a\"", "\"id\": \"a\", \"world_from_camera\": []", "frames[0].world_from_camera: "},
            {"{\"analytic\"", "{\"scale\": 2, \"analytic\"", "surfaces.ball.scale: "},
            {"{", "{\"coordinate_system\": \"y up\", ", "coordinate_system: "}}) {
     const std::string error = inputErrorOf([&] { readScene(folder.write("scene.json", with(minimalScene(), row.from, row.to))); });
     EXPECT_THAT(error, HasSubstr(row.place)) << row.to;
-    EXPECT_THAT(error, HasSubstr("is not understood")) << row.to;
+    EXPECT_THAT(error, HasSubstr("is not supported")) << row.to;
   }
   EXPECT_NO_THROW(readScene(folder.write("scene.json", with(minimalScene(), "\"cy\": 23.5", "\"cy\": 23.5, \"model\": \"OPENCV\""))));
 }

@@ -75,10 +75,10 @@ TEST(TradeoffJson, NamesThePlaceOfWhatIsWrong) {
     return "accepted";
   };
   EXPECT_THAT(messageOf("\"glint_tradeoff\": 1", "\"glint_tradeoff\": 2"), HasSubstr("glint_tradeoff"));
-  EXPECT_THAT(messageOf("\"exact\": 2", "\"exact\": 3"), HasSubstr("presets.exact: is no index into points"));
+  EXPECT_THAT(messageOf("\"exact\": 2", "\"exact\": 3"), HasSubstr("presets.exact: is not an index into points"));
   EXPECT_THAT(messageOf("\"predict.directions\": 24", "\"predict.directions\": 1"),
               HasSubstr("points[2].set.predict.directions"));
-  EXPECT_THAT(messageOf("\"surface.normals\"", "\"surface.abnormals\""), HasSubstr("knobs[0]: there is no such setting"));
+  EXPECT_THAT(messageOf("\"surface.normals\"", "\"surface.abnormals\""), HasSubstr("knobs[0]: unknown setting"));
 }
 
 TEST(TradeoffHtml, IsSelfContainedAndEscaped) {

@@ -118,7 +118,7 @@ TEST(PeakMemory, SeesAnAllocationUntilItIsRestarted) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the sanitizer keeps freed memory";
 #endif
-  if (!restartPeakMemory()) GTEST_SKIP() << "the system does not allow to reset the mark";
+  if (!restartPeakMemory()) GTEST_SKIP() << "the system does not allow resetting the mark";
   const double before = peakMemoryMb();
   {
     std::vector<char> block(64 << 20, 1);
