@@ -53,7 +53,7 @@ Outcome<std::unique_ptr<DisplayConnection>> displayFor3D() {
   Outcome<std::unique_ptr<DisplayConnection>> connection = DisplayConnection::open();
   if (connection && !(*connection)->has("GLX"))
     return Failure{Reason::NotSupported,
-                   "the display '" + std::string(std::getenv("DISPLAY")) + "' cannot draw in 3D: it has no GLX"};
+                   "the display '" + std::string(std::getenv("DISPLAY")) + "' cannot draw 3D: it has no GLX"};
   return connection;
 }
 

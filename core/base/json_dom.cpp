@@ -102,7 +102,8 @@ std::string textWithPaths(const Json& document, const std::string& file) {
   try {
     return document.dump(-1, ' ', false, Json::error_handler_t::strict);
   } catch (const Json::type_error&) {
-    throw InputError(file, "", "not written: it names a file or folder whose path is not UTF-8; rename that file or folder");
+    throw InputError(file, "",
+                     "cannot be written: it names a file or folder whose path is not UTF-8; rename that file or folder");
   }
 }
 

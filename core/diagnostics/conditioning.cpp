@@ -164,9 +164,9 @@ class Findings {
     const Verdict rankVerdict = above(rank, bounds::kRankAmber, bounds::kRankRed);
     add("rank", "singular values", rank, formatted("%.2g", rank), rankVerdict,
         formatted("The second-last singular value is %.2g of the first: ", rank) +
-            chosen(rankVerdict, "above 1e-4, the accuracy of contours, so the views tell quadrics apart.",
+            chosen(rankVerdict, "above 1e-4, the accuracy of contours, so the views tell quadrics apart.",  // kRankAmber
                    "below 1e-4, the accuracy of contours, so a second quadric hides in the noise.",
-                   "below 1e-9, round-off: the views repeat one geometry and several quadrics fit."));
+                   "below 1e-9, round-off: the views repeat one geometry and several quadrics fit."));  // kRankRed
     const Verdict gapVerdict = below(gap, bounds::kGapAmber, bounds::kGapRed);
     add("gap", "gap", gap, formatted("%.2g", gap), gapVerdict,
         formatted("The last singular value is %.2g of the one before: ", gap) +

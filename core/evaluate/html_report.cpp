@@ -290,7 +290,7 @@ std::string evaluationHtml(const Inspection& inspection, const ReportContext& co
                                                              : ", from float radiance where available") +
           ".</p>\n";
   if (const std::string changed = summaryOf(inspection.request.whatIf); !changed.empty())
-    html += "<p><b>What if: " + escaped(changed) + ".</b> The scene differs from the captured one.</p>\n";
+    html += "<p><b>What-if: " + escaped(changed) + ".</b> The scene differs from the captured one.</p>\n";
   if (const std::vector<std::string> warnings = warningsOf(inspection); !warnings.empty()) {
     html += "<h2>Warnings</h2>\n<ul>\n";
     for (const std::string& w : warnings) html += "<li>" + escaped(w) + "</li>\n";

@@ -197,7 +197,7 @@ Outcome<MinimalRepro> minimalRepro(const Inspection& inspection, const Fault& fa
     return sameFault(fault, answer(inspection, fault, views, withFault(frames), quiet), tolerance);
   };
   if (!report(progress, {"trying", 0, 0})) throw Stopped{};
-  if (!shows(items)) return Failure{Reason::NotReached, "with the same frames the fit does not show the selected fault"};
+  if (!shows(items)) return Failure{Reason::NotReached, "a fit to the same frames does not show the selected error"};
   const auto ask = [&](int asked, int left) {
     return report(progress, {"trying, " + std::to_string(left) + " frames left", asked, 0});
   };

@@ -44,7 +44,7 @@ SessionInput readSessionInput(const JsonNode& root, const fs::path& folder) {
   if (const auto n = input.find("photographs"); n && !n->isNull()) result.folders.push_back({FrameFile::Photograph, pathOf(*n, folder)});
   const auto all = input.find("folders");
   if (all && all->size() > kMostFolders)
-    all->fail("names " + std::to_string(all->size()) + " folders, at most " + std::to_string(kMostFolders));
+    all->fail("names " + std::to_string(all->size()) + " folders; the limit is " + std::to_string(kMostFolders));
   for (std::size_t i = 0; all && i < all->size(); ++i) {
     const JsonNode of = all->at(i).at("of");
     const auto kind = std::find_if(kFrameFiles.begin(), kFrameFiles.end(), [&](FrameFile k) { return of.text() == nameOf(k); });
@@ -77,7 +77,7 @@ void require(bool lies, const fs::path& path, const std::string& file, const std
 void requireSceneFile(const fs::path& scene, const std::string& session) {
   std::error_code ignored;  // what cannot be asked about is no folder
   if (fs::is_directory(scene, ignored))
-    throw InputError(session, "input.path", "'" + scene.string() + "' is a folder; name the scene's file");
+    throw InputError(session, "input.path", "'" + scene.string() + "' is a folder; name the scene file");
 }
 
 void requirePermitted(const fs::path& folder, const std::vector<fs::path>& permitted, const std::string& file, const std::string& place,

@@ -194,7 +194,7 @@ def bands(r, place, arguments, model):
     session = place / (model + ".glint")
     done = r.glint("reconstruct", place, "--models", model, *arguments, "-o", session)
     if done.returncode:
-        if "no such setting" in done.stderr:
+        if "no such setting" in done.stderr or "unknown setting" in done.stderr:
             raise RuntimeError(done.stderr.strip())
         return None
     done = r.glint("predict", session, "--json", "-")

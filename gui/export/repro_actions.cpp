@@ -22,7 +22,7 @@ ReproDialog::ReproDialog(const Fault& fault, const QString& frame, int training,
   setObjectName(QStringLiteral("reproDialog"));
   auto* form = new QFormLayout(this);
   auto* what =
-      new QLabel(tr("Finds the smallest set of training frames that reproduces this result of <b>%1</b> in frame <b>%2</b>: %3."
+      new QLabel(tr("Finds the smallest set of training frames that reproduces this error of <b>%1</b> in frame <b>%2</b>: %3."
                     "<br>Training frames now: %4.")
                      .arg(nameText(fault.model).toHtmlEscaped(), frame.toHtmlEscaped(), toQString(fault.text()).toHtmlEscaped())
                      .arg(training));
@@ -106,7 +106,7 @@ void ReproActions::write(const Fault& fault, const FaultTolerance& tolerance, co
           if (shows)
             emit this->written(line, session);
           else
-            emit problem(tr("The written session shows a different error from the one on screen. %1").arg(line));
+            emit problem(tr("The written session does not show the selected error. %1").arg(line));
         };
       });
 }

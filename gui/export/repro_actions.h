@@ -32,7 +32,7 @@ class ReproDialog : public QDialog {
   FolderRow* folder_;
 };
 
-/// The smallest set of training frames that still shows the selected fault, as a session folder.
+/// The smallest set of training frames that still shows the selected error, as a session folder.
 class ReproActions : public QObject {
   Q_OBJECT
  public:

@@ -26,7 +26,7 @@ QImage imageOf(const std::shared_ptr<const viz::Picture8>& picture) {
 }  // namespace
 
 QString photographAwaited(const Scene& scene, int frame) {
-  return QObject::tr("the photograph of %1 is being read").arg(nameText(scene.frames[std::size_t(frame)].id));
+  return QObject::tr("reading the photograph of %1").arg(nameText(scene.frames[std::size_t(frame)].id));
 }
 
 PhotoLoader::PhotoLoader(QObject* parent) : QObject(parent), worker_(new QObject) {

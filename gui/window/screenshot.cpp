@@ -33,7 +33,7 @@ void Screenshot::requireReplaceable() const {
   const std::string file = file_.toStdString();
   Outputs(filesOfInput(window_.document())).file(file, "--screenshot", OutputKind::png());
   if (QFileInfo::exists(file_) && isShipped(file_))
-    throw InputError(file, "--screenshot", "came with the program and is never replaced; name another file");
+    throw InputError(file, "--screenshot", "came with the program and is never overwritten; choose another file");
 }
 
 void Screenshot::look() {

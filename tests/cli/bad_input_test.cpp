@@ -89,7 +89,7 @@ TEST_F(BadInput, EmptyFolder) {
     const ProgramRun run = on(command);
     EXPECT_EQ(run.code, 2) << command;
     EXPECT_EQ(run.errorLines(), 1) << run.err;
-    EXPECT_THAT(run.err, HasSubstr(folder_.path().string() + ": the folder is empty; understood: scene file"));
+    EXPECT_THAT(run.err, HasSubstr(folder_.path().string() + ": the folder is empty; supported: scene file"));
   }
 }
 

@@ -73,7 +73,7 @@ TEST_F(OutputsOfCommands, AFileOfAnotherKindStaysAsItIs) {
 TEST_F(OutputsOfCommands, EveryOtherOutputRefusesAnotherKind) {
   saveSession("--model limit-angle");
   const std::string session = out("run.glint"), tradeoff = "tradeoff " + out("scene.json"),
-                    notWritten = "no earlier run of this command wrote it";
+                    notWritten = "was not written by this command";
   struct Row {
     std::string arguments, flag, file, words;
   };
@@ -99,7 +99,7 @@ TEST_F(OutputsOfCommands, EveryOtherOutputRefusesAnotherKind) {
     SCOPED_TRACE(row.arguments);
     folder_.write(row.file, other);
     const ProgramRun run = runGlint(row.arguments);
-    refuses(run, row.file + ": " + row.flag + ": exists");
+    refuses(run, row.file + ": " + row.flag + ": already exists");
     EXPECT_THAT(run.err, HasSubstr(row.words));
     EXPECT_EQ(contentOf(folder_ / row.file), other);
     fs::remove(folder_ / row.file);

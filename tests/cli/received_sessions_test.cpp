@@ -135,7 +135,7 @@ TEST_F(ReceivedSessions, ManyFoldersAreRefusedAndRepeatedModelsAreOne) {
   receive();
   const ProgramRun run = onReceived("predict");
   EXPECT_EQ(run.code, 2);
-  EXPECT_THAT(run.err, HasSubstr("names 101 folders, at most 100"));
+  EXPECT_THAT(run.err, HasSubstr("names 101 folders; the limit is 100"));
 }
 
 TEST_F(ReceivedSessions, AFileThatIsADeviceEnds) {

@@ -81,8 +81,8 @@ TEST_F(Requests, ADisplayThatCannotBeOpenedIsOneLine) {
                                 on("movie", "--of look-through " + models + "-o " + out("x.avi"), none)}) {
     EXPECT_EQ(run.code, 3);
     EXPECT_EQ(run.err,
-              "glint: not supported: the display ':4711' cannot be opened, and drawing in 3D without a screen needs Xvfb: "
-              "apt-get install xvfb\n");
+              "glint: not supported: the display ':4711' cannot be opened, and 3D rendering without a display needs Xvfb; "
+              "install it: apt-get install xvfb\n");
   }
   // What needs no display is drawn.
   EXPECT_EQ(on("render", "--view frame " + models + "-o " + out("x.png"), none).code, 0);

@@ -66,7 +66,7 @@ TEST_F(TradeoffCommand, BoundsChooseOrEndWithCodeThree) {
   ASSERT_EQ(rich.code, 0) << rich.err;
   const Json j = Json::parse(contentOf(folder_ / "rich.json"));
   EXPECT_EQ(j["chosen"], j["presets"]["exact"]);
-  EXPECT_THAT(rich.out, HasSubstr("The most accurate setting within 1e+09 us a frame is "));
+  EXPECT_THAT(rich.out, HasSubstr("The most accurate setting within 1e+09 us per frame is "));
   const ProgramRun poor = tradeoff("--budget-us 1e-3 --json " + out("poor.json") + " -o " + out("poor.glint"));
   EXPECT_EQ(poor.code, 3);
   EXPECT_EQ(poor.errorLines(), 1) << poor.err;

@@ -373,7 +373,7 @@ class FigureTest : public QObject {
       auto* width = dialog->findChild<NumberBox*>("figureWidth");
       auto* height = dialog->findChild<NumberBox*>("figureHeight");
       const double aspect = double(width->value()) / height->value();
-      QVERIFY(width->problemOf(QStringLiteral("5")).contains(QStringLiteral("not within")));  // said, not put back without a word
+      QVERIFY(width->problemOf(QStringLiteral("5")).contains(QStringLiteral("outside")));  // said, not put back without a word
       width->setValue(640);
       QVERIFY(std::abs(640 / aspect - height->value()) <= 0.51);  // proportions are kept
       dialog->accept();

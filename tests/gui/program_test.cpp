@@ -205,7 +205,7 @@ class ProgramTest : public QObject {
     for (const Row& row :
          {Row{path("scene.json"), QStringLiteral("scene.json: --screenshot: ")},
           Row{path("0000.png"), QStringLiteral("is an input file")}, Row{path("link.png"), QStringLiteral("is an input file")},
-          Row{path("notes.txt"), QStringLiteral("exists and is not a PNG")}}) {
+          Row{path("notes.txt"), QStringLiteral("already exists and is not a PNG")}}) {
       const QByteArray before = contentOf(row.file);
       QVERIFY(!before.isEmpty());
       const Run r = run({folder.path(), QStringLiteral("--screenshot"), row.file});

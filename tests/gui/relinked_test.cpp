@@ -352,12 +352,12 @@ class RelinkedTest : public QObject {
     QTRY_VERIFY_WITH_TIMEOUT(!window.document().sessionFile().isEmpty(), 20000);
     computed(window);
     auto* bar = window.findChild<MessageBar*>();
-    QTRY_VERIFY2_WITH_TIMEOUT(bar->text().startsWith("6 depth maps, 6 normal maps and 6 masks cannot be read: depth/0.png: "),
+    QTRY_VERIFY2_WITH_TIMEOUT(bar->text().startsWith("Cannot read 6 depth maps, 6 normal maps and 6 masks: depth/0.png: "),
                               qPrintable(bar->text()), 20000);
     QVERIFY(unreadable->all().isEmpty());
     QVERIFY2(window.findChild<Timeline*>()->strip()->unreadable().isEmpty(), "the photographs are there");
     QCOMPARE(locate(window, path("work/elsewhere")), QStringLiteral("Where are the depth maps, normal maps and masks?"));
-    QTRY_VERIFY2_WITH_TIMEOUT(bar->text().startsWith("6 normal maps cannot be read: "), qPrintable(bar->text()), 60000);
+    QTRY_VERIFY2_WITH_TIMEOUT(bar->text().startsWith("Cannot read 6 normal maps: "), qPrintable(bar->text()), 60000);
     computed(window);
     QCOMPARE(locate(window, path("work/third")), QStringLiteral("Where are the normal maps?"));
     QTRY_VERIFY_WITH_TIMEOUT(!bar->isVisible() && window.idle() && unreadable->all(FrameFile::Normals).isEmpty(), 60000);
@@ -405,7 +405,7 @@ class RelinkedTest : public QObject {
     QTRY_VERIFY_WITH_TIMEOUT(window.document().scene() != nullptr, 20000);
     computed(window);
     auto* bar = window.findChild<MessageBar*>();
-    QTRY_VERIFY2_WITH_TIMEOUT(bar->text().startsWith("1 normal map and 1 mask cannot be read: normals/3.png: "),
+    QTRY_VERIFY2_WITH_TIMEOUT(bar->text().startsWith("Cannot read 1 normal map and 1 mask: normals/3.png: "),
                               qPrintable(bar->text()), 20000);
     locate(window, elsewhere);
     QMessageBox* question = nullptr;
@@ -415,11 +415,11 @@ class RelinkedTest : public QObject {
       if (button->text() == QStringLiteral("Masks")) QTest::mouseClick(button, Qt::LeftButton);
     QTRY_COMPARE_WITH_TIMEOUT(toQString(window.document().scene()->frames[3].mask.string()), elsewhere + "/3.png", 20000);
     computed(window);
-    QTRY_VERIFY2_WITH_TIMEOUT(bar->text().startsWith("1 normal map cannot be read: "), qPrintable(bar->text()), 20000);
+    QTRY_VERIFY2_WITH_TIMEOUT(bar->text().startsWith("Cannot read 1 normal map: "), qPrintable(bar->text()), 20000);
     // The normal map does not take the same file.
     locate(window, elsewhere);
-    QTRY_VERIFY2_WITH_TIMEOUT(window.lastError().endsWith("holds no normal maps of this scene"), qPrintable(window.lastError()),
-                              20000);
+    QTRY_VERIFY2_WITH_TIMEOUT(window.lastError().endsWith("contains no normal maps of this scene"),
+                              qPrintable(window.lastError()), 20000);
   }
 
   void theCommandNamesWherePhotographsAre() {

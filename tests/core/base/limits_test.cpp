@@ -46,7 +46,7 @@ TEST(Limits, WhatIsNoLimitOrNoNumberIsRefusedByName) {
 TEST(Limits, AJsonTextBeyondThemIsRefusedWithItsFile) {
   const WithLimit few("json.values", 10);
   EXPECT_THAT(inputErrorOf([] { JsonNode::parse("[1,2,3,4,5,6,7,8,9,10]", "a.json"); }),
-              StartsWith("a.json: holds 11 values in a JSON text, more than 10"));
+              StartsWith("a.json: contains 11 values in a JSON text; the limit is 10"));
   EXPECT_NO_THROW(JsonNode::parse("[1,2,3,4,5,6,7,8,9]", "a.json"));
 }
 
@@ -54,7 +54,8 @@ TEST(Limits, AFileBeyondThemIsNotRead) {
   const TemporaryFolder folder;
   const auto file = folder.write("a.json", std::string(2'000'000, ' '));
   const WithLimit small("json.megabytes", 1);
-  EXPECT_THAT(inputErrorOf([&] { readFile(file, Limit::JsonMegabytes); }), HasSubstr("a.json: holds 2 MB of JSON text, more than 1"));
+  EXPECT_THAT(inputErrorOf([&] { readFile(file, Limit::JsonMegabytes); }),
+              HasSubstr("a.json: contains 2 MB of JSON text; the limit is 1"));
 }
 
 TEST(Limits, ADeviceOrAPipeIsNoFile) {

@@ -132,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"no width", "\"width\": 64", "\"width\": 0", "camera.width: ", "1 .. 65536"},
         BadCase{"no camera", "\"camera\":", "\"kamera\":", "frames[0].camera: ", "missing"},
         BadCase{"unknown surface", "\"id\": \"a\"", "\"id\": \"a\", \"surface\": \"box\"",
-                "frames[0].surface: ", "no surface 'box'"},
+                "frames[0].surface: ", "surface 'box' does not exist"},
         BadCase{"no surface at all", "\"surfaces\"", "\"sufraces\"", "frames[0].surface: ", "no surface and the frame no depth"},
         BadCase{"unknown analytic type", "\"sphere\"", "\"cube\"", "surfaces.ball.analytic.type: ", "'cube' is not one of"},
         BadCase{"negative radius", "0.4", "-0.4", "surfaces.ball.analytic.radius: ", "positive"},

@@ -64,14 +64,14 @@ TEST(ChoosePoint, SortsMarksTheFrontAndTakesTheBalancedPreset) {
   EXPECT_THAT(front, testing::ElementsAre(true, true, false, true, true));
   EXPECT_EQ(t.presets, (std::map<std::string, int>{{"fast", 1}, {"balanced", 3}, {"exact", 4}}));
   EXPECT_EQ(t.chosen, 3);
-  EXPECT_THAT(t.reason, HasSubstr("canonical (1 % at 16 us a frame)"));
+  EXPECT_THAT(t.reason, HasSubstr("canonical (1 % at 16 us per frame)"));
 }
 
 TEST(ChoosePoint, BudgetTakesTheMostAccurateWithin) {
   Tradeoff t = five();
   choosePoint(t, {.budgetUs = 15.9});
   EXPECT_EQ(t.chosen, 1);
-  EXPECT_THAT(t.reason, HasSubstr("The most accurate setting within 15.9 us a frame is dual (8 % at 4 us a frame)"));
+  EXPECT_THAT(t.reason, HasSubstr("The most accurate setting within 15.9 us per frame is dual (8 % at 4 us per frame)"));
   EXPECT_THAT(t.reason, HasSubstr("the next more accurate one, canonical"));
   choosePoint(t, {.budgetUs = 16});
   EXPECT_EQ(t.chosen, 3);
@@ -79,7 +79,7 @@ TEST(ChoosePoint, BudgetTakesTheMostAccurateWithin) {
   EXPECT_EQ(t.chosen, 4);
   choosePoint(t, {.budgetUs = 0.5});
   EXPECT_FALSE(t.chosen);
-  EXPECT_THAT(t.reason, HasSubstr("within 0.5 us; the fastest is primal (20 % at 1 us a frame)"));
+  EXPECT_THAT(t.reason, HasSubstr("within 0.5 us; the fastest is primal (20 % at 1 us per frame)"));
   EXPECT_EQ(t.presets.size(), 3u);  // they do not depend on the bound
 }
 
@@ -94,7 +94,7 @@ TEST(ChoosePoint, LargestErrorTakesTheFastestUnder) {
   EXPECT_EQ(t.chosen, 0);
   choosePoint(t, {.maxErrorPct = 0.3});
   EXPECT_FALSE(t.chosen);
-  EXPECT_THAT(t.reason, HasSubstr("the most accurate is limit-angle (0.4 % at 1.02e+03 us a frame)"));
+  EXPECT_THAT(t.reason, HasSubstr("the most accurate is limit-angle (0.4 % at 1.02e+03 us per frame)"));
 }
 
 TEST(ChoosePoint, LeavingOutDoesNotWin) {
