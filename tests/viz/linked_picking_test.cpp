@@ -111,7 +111,7 @@ TEST_F(LinkedPicking, CameraEllipsoidLightAndVirtualCameraTellWhatTheyAre) {
   ASSERT_TRUE(frustum);
   EXPECT_EQ(frustum->layer, "cameras");
   EXPECT_EQ(frustum->frame, 2);
-  EXPECT_NE(frustum->text.find("use = training"), std::string::npos);
+  EXPECT_NE(frustum->text.find("role = training"), std::string::npos);
 
   showOnly("ellipsoids");
   view_.setModels({"canonical"});
