@@ -1,39 +1,49 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <QObject>
-#include <QThread>
-#include <atomic>
 #include <functional>
+#include <type_traits>
+#include <utility>
+
+#include "gui/base/job_queue.h"
 
 namespace glint::gui {
 
-/// Runs small jobs on a thread of its own; the newest wins: what waits is dropped, and the answer of a job that a newer one
+/// Runs small jobs off the interface thread; the newest wins: what waits is dropped, and the answer of a job that a newer one
 /// overtook is not delivered.
-class LatestJob : public QObject {
-  Q_OBJECT
+class LatestJob {
  public:
-  using Deliver = std::function<void()>;  ///< runs on the thread of this object
+  using Deliver = std::function<void()>;  ///< runs on the interface thread
 
-  explicit LatestJob(QObject* parent = nullptr);
-  ~LatestJob() override;  ///< waits for what runs
-  /// @param work  runs on the worker and says what to do with its result; it must not touch widgets.
-  void run(std::function<Deliver()> work);
-  /// Nothing of what was asked for is of use any more.
-  void drop() {
-    ++newest_;
-    awaited_ = false;
+  /// @param work  Deliver() or Deliver(const JobToken&): runs elsewhere, must not touch widgets, says what to do with its result.
+  /// @param failed  takes what it throws, as one line; without it that is told as unexpected.
+  template <class Work>
+  void run(Work work, std::function<void(const QString&)> failed = {}) {
+    awaited_ = true;
+    queue_.start(
+        [work = std::move(work)](const JobToken& token) mutable -> Deliver {
+          if constexpr (std::is_invocable_v<Work&, const JobToken&>)
+            return work(token);
+          else
+            return work();
+        },
+        [this, failed = std::move(failed)](const JobResult<Deliver>& result) {
+          if (result.overtaken) return;
+          awaited_ = false;
+          if (result.value && *result.value) return (*result.value)();
+          if (failed && !result.failure().isEmpty()) failed(result.failure());
+        },
+        Asks::Newest);
   }
-  bool busy() const { return pending_ > 0; }
+  /// Nothing of what was asked for is of use any more.
+  void drop() { queue_.drop(), awaited_ = false; }
+  bool busy() const { return queue_.busy(); }
   /// An answer will be delivered: the newest job runs and was not dropped. (A dropped one may still be busy.)
   bool awaited() const { return awaited_; }
 
  private:
-  QThread thread_;
-  QObject* worker_;
-  std::atomic<int> newest_{0};
-  int pending_ = 0;       ///< interface thread only
-  bool awaited_ = false;  ///< interface thread only
+  bool awaited_ = false;
+  JobQueue queue_;
 };
 
 }  // namespace glint::gui

@@ -17,7 +17,12 @@ void Observer::observe() {
   const auto observe = engine_.observeFrame;
   job_.run([this, observe, scene = document_.sharedScene(), request = document_.request(), known,
             frame = document_.selection().frame]() -> LatestJob::Deliver {
-    std::optional<Observation> seen = observe(scene, request, frame, {}, known.get());
+    std::optional<Observation> seen;
+    try {
+      seen = observe(scene, request, frame, {}, known.get());
+    } catch (const InputError&) {
+      return {};  // the run beside it fails for the same reason, and says so
+    }
     const auto observation = seen ? std::make_shared<const Observation>(std::move(*seen)) : nullptr;
     return [this, observation] { document_.setObservation(observation); };
   });

@@ -9,7 +9,8 @@
 namespace glint::gui {
 
 /// Observes the selected frame anew as soon as a request changes what is observed in it (a threshold, a synthesised lamp), beside
-/// the run that computes everything: the contour follows the hand, models come after it. Failures are left to that run.
+/// the run that computes everything: the contour follows the hand, models come after it. What cannot be read is left to that run
+/// to say.
 class Observer : public QObject {
  public:
   Observer(const Engine& engine, Document& document, QObject* parent = nullptr);

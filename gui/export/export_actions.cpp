@@ -72,20 +72,11 @@ void ExportActions::ask(const QString& title, const QString& name, const QString
       askForFile(window_, document_, title,
                  suggestedFile(document_, proposed.completeBaseName(), QLatin1Char('.') + proposed.suffix()), filter);
   if (file.isEmpty()) return;
-  job_.run([this, file, write = prepare()] {
-    QString trouble;
-    try {
-      write(file);
-    } catch (const std::exception& e) {
-      trouble = toQString(e.what());
-    }
-    return LatestJob::Deliver([this, file, trouble] {
-      if (trouble.isEmpty())
-        emit message(tr("Wrote %1").arg(QDir::toNativeSeparators(file)));
-      else
-        emit problem(trouble);
-    });
-  });
+  const auto work = [this, file, write = prepare()] {
+    write(file);
+    return LatestJob::Deliver([this, file] { emit message(tr("Wrote %1").arg(QDir::toNativeSeparators(file))); });
+  };
+  job_.run(work, [this](const QString& trouble) { emit problem(trouble); });
 }
 
 void ExportActions::addActions(Actions& actions, QMenu* menu) {

@@ -22,10 +22,7 @@ ChangedInputs::ChangedInputs(Document& document, MessageBar& bar, QObject* paren
   connect(&document_, &Document::inspectionChanged, this, &ChangedInputs::check);
 }
 
-ChangedInputs::~ChangedInputs() { ++newest_; }
-
 void ChangedInputs::forget() {
-  ++newest_;
   job_.drop();
   all_.clear();
   checked_ = false;
@@ -37,20 +34,18 @@ void ChangedInputs::check() {
   checked_ = true;
   const std::shared_ptr<const Session> session = document_.toSave().session;
   if (!session || session->files.empty()) return;
-  job_.run([this, session, scene = document_.sharedScene(), ticket = newest_.load()] {
+  job_.run([this, session, scene = document_.sharedScene()](const JobToken& token) {
     QStringList lines;
     // Files that are missing or were found elsewhere are said by what needs them.
     std::set<std::string> changed;
     int outside = 0;
     for (const std::filesystem::path& p : filesOf(*scene)) changed.insert(p.string() + ": changed");
     try {
-      for (const std::string& line : changedFiles(*session, {}, [&](const StageEvent&) { return ticket == newest_; }))
+      for (const std::string& line : changedFiles(*session, {}, [&](const StageEvent&) { return token.wanted(); }))
         if (changed.count(line))
           lines << toQString(withoutFolder(line, *scene));
         else if (line.find(": lies outside the folders ") != std::string::npos)
           ++outside;  // neither whether it is there nor what it holds: a session from others must not find out
-    } catch (const Stopped&) {
-      return LatestJob::Deliver();
     } catch (const std::exception& e) {
       lines << toQString(e.what());
     }

@@ -3,7 +3,6 @@
 
 #include <QObject>
 #include <QStringList>
-#include <atomic>
 #include <memory>
 
 #include "gui/base/latest_job.h"
@@ -19,7 +18,6 @@ class ChangedInputs : public QObject {
   Q_OBJECT
  public:
   ChangedInputs(Document& document, MessageBar& bar, QObject* parent);
-  ~ChangedInputs() override;
   /// One line for each: "frames/0002.png: changed".
   const QStringList& all() const { return all_; }
   bool busy() const { return job_.awaited(); }
@@ -36,7 +34,6 @@ class ChangedInputs : public QObject {
   MessageBar& bar_;
   QStringList all_;
   bool checked_ = false;
-  std::atomic<int> newest_{0};  ///< a running comparison of an older one stops
   LatestJob job_;
 };
 

@@ -25,6 +25,7 @@
 
 #include "gui/base/draw_turns.h"
 #include "gui/base/eliding_delegate.h"
+#include "gui/base/job_queue.h"
 #include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/undo_keys.h"
@@ -135,7 +136,10 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   });
   connect(&runner_, &Runner::frameFinished, &document_, &Document::setFrameInspection);
   connect(&document_, &Document::requestChanged, this, &MainWindow::recompute);
+  connect(&unexpected(), &Unexpected::problem, this,
+          [this](const QString& line) { tell(tr("Unexpected failure: %1").arg(line)); });
   connect(&document_, &Document::sceneOpened, this, [this] {
+    unexpected().forget();
     located_.reset();
     messageBar_->hide();
     centre_->setCurrentWidget(views_);
@@ -531,7 +535,7 @@ void MainWindow::offerToLocate(const QString& oneLine, const MissingPtr& missing
 
 void MainWindow::log(const QString& line) { log_->add(line); }
 
-/// What has worked.
+/// In the log and, for a while, in the status line.
 void MainWindow::tell(const QString& line) {
   log(line);
   // A menu that closes clears the line of status tips: after that.

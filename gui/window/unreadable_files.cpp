@@ -276,19 +276,16 @@ void UnreadableFiles::locateMesh(const std::string& named, const std::filesystem
   if (!scene) return;
   tried_ = exactQString(now.string());
   triedFor_ = named;
-  search_.run([this, scene, named, now, session = document_.toSave().session] {
-    try {
-      readMesh(now);  // what is no mesh must not take the place of what is open
-      const auto moved = std::make_shared<const Scene>(withMeshAt(*scene, named, now));
-      const auto knows = session ? std::make_shared<Session>(*session) : nullptr;
-      const std::string warning = knows ? relinkMeshes(*knows, *moved) : "";
-      return LatestJob::Deliver([this, scene, moved, knows, warning] {
-        if (scene == document_.sharedScene()) reopen(moved, knows, warning);
-      });
-    } catch (const std::exception& e) {
-      return LatestJob::Deliver([this, line = toQString(e.what())] { emit problem(line); });
-    }
-  });
+  const auto work = [this, scene, named, now, session = document_.toSave().session] {
+    readMesh(now);  // what is no mesh must not take the place of what is open
+    const auto moved = std::make_shared<const Scene>(withMeshAt(*scene, named, now));
+    const auto knows = session ? std::make_shared<Session>(*session) : nullptr;
+    const std::string warning = knows ? relinkMeshes(*knows, *moved) : "";
+    return LatestJob::Deliver([this, scene, moved, knows, warning] {
+      if (scene == document_.sharedScene()) reopen(moved, knows, warning);
+    });
+  };
+  search_.run(work, [this](const QString& failure) { emit problem(failure); });
 }
 
 void UnreadableFiles::askWhich(const QString& folder, const std::set<FrameFile>& kinds) {

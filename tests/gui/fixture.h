@@ -57,6 +57,7 @@ QObject* makePanelTest();
 QObject* makeParametersTest();
 QObject* makePickingTest();
 QObject* makeRandomTest();
+QObject* makeJobsTest();
 QObject* makeLinkingTest();
 QObject* makeWindowTest();
 QObject* makeCanvasTest();

@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
       {"window_size", makeWindowSizeTest}, {"camera_picking", makeCameraPickingTest},
       {"truth", makeTruthTest},            {"canvas", makeCanvasTest},
       {"save", makeSaveTest},              {"hostile_names", makeHostileNamesTest},
-      {"typing", makeTypingTest},
+      {"typing", makeTypingTest},          {"jobs", makeJobsTest},
   };
   if (argc < 2) return std::fputs("usage: test_gui CLASS [QTest options]\n", stderr), 2;
   const bool untilKilled = std::strcmp(argv[1], "--until-killed") == 0;

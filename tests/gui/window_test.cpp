@@ -30,6 +30,7 @@
 #include <QToolTip>
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "gui/base/panel_scroll.h"
 #include "gui/base/text.h"
@@ -39,6 +40,7 @@
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/frame_panel.h"
 #include "gui/frame/ladder_panel.h"
+#include "gui/panels/log_panel.h"
 #include "gui/plots/plot_canvas.h"
 #include "gui/window/layouts.h"
 #include "gui/window/main_window.h"
@@ -482,6 +484,24 @@ class WindowTest : public QObject, WindowFixture {
     QTRY_VERIFY(window.idle() && window.document().inspection());
     QVERIFY(shown());
     QCOMPARE(earlyDial, dial());
+  }
+
+  /// A bug in a job ends neither the program nor unseen.
+  void whatNobodyExpectedIsToldOnce() {
+    Engine engine = fixture_.engine();
+    engine.observeFrame = [](std::shared_ptr<const Scene>, const InspectionRequest&, int, const ProgressFn&,
+                             const Inspection*) -> std::optional<Observation> { throw std::runtime_error("an empty vector"); };
+    MainWindow window(engine);
+    show(window);
+    openAndWait(window);
+    const auto told = [&] { return window.findChild<LogPanel*>()->text().count("Unexpected failure: an empty vector"); };
+    window.document().setSetting("detect.level", 0.3);
+    QTRY_COMPARE(told(), 1);
+    QTRY_VERIFY(window.statusBar()->currentMessage().contains("an empty vector"));
+    window.document().setSetting("detect.level", 0.4);
+    QTRY_VERIFY(window.idle());
+    QCOMPARE(told(), 1);
+    QVERIFY(window.lastError().isEmpty());
   }
 
   void historyEntriesThatAreCutHaveTheirTextAsToolTip() {
