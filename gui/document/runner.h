@@ -4,10 +4,9 @@
 #include <QElapsedTimer>
 #include <QObject>
 #include <QString>
-#include <QThread>
-#include <atomic>
 #include <memory>
 
+#include "gui/base/job_queue.h"
 #include "gui/document/engine.h"
 
 namespace glint::gui {
@@ -35,7 +34,7 @@ struct Outside {
 };
 using OutsidePtr = std::shared_ptr<const Outside>;
 
-/// The only place that knows both Qt and the pipeline: opens inputs and computes inspections on a thread of its own.
+/// The only place that knows both Qt and the pipeline: opens inputs and computes inspections in jobs of its own.
 /// The newest request wins. A run that a newer request overtakes is stopped, except in its first `kGraceMs`: quick runs
 /// finish, so that a slider shows results while it is dragged; the run after one that was stopped has `kLongGraceMs`, or a slider
 /// whose runs take longer would show none. Once the frame that the user looks at is shown, that grace is
@@ -50,7 +49,6 @@ class Runner : public QObject {
   static constexpr int kPauseMs = 150, kRestEveryMs = 500;
 
   explicit Runner(Engine engine, QObject* parent = nullptr);
-  ~Runner() override;  ///< stops what runs and waits for it
 
   /// @param instead  where inputs are now that are not where the session or scene says.
   void open(const std::string& path, const Relinked& instead = {});
@@ -67,8 +65,8 @@ class Runner : public QObject {
   void measure(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const std::string& file);
   /// What every training frame does; answers with influenceMeasured().
   void influence(InspectionPtr inspection);
-  void cancel();
-  bool busy() const { return pending_ > 0; }
+  void cancel() { jobs_.stop(); }
+  bool busy() const { return jobs_.busy(); }
 
  signals:
   void busyChanged(bool busy);
@@ -90,22 +88,16 @@ class Runner : public QObject {
   void saved(const QString& path, const QString& problem);  ///< `problem` is one line, "" = the file is written
 
  private:
-  enum class End { Done, Stopped, Failed };
-  void post(std::function<void(int job)> work, std::function<void()> onFailure = {});
-  void showProgress(QElapsedTimer& lastSignal, const StageEvent& event);
-  bool report(int job, const QElapsedTimer& clock, QElapsedTimer& lastSignal, const StageEvent& event, int graceMs = kGraceMs);
-  void countEnd();
-  void end(int job, End how, const QString& message, const std::function<void()>& onFailure);
+  /// @param about  comes with the result in the signal.
+  template <class Work, class About, class Result>
+  void compute(About about, Work work, void (Runner::*tell)(const std::shared_ptr<const Result>&, const About&));
+  ProgressFn progressOf(const JobToken& token, int graceMs = kGraceMs);
+  void end(const JobEnd& end);
 
   Engine engine_;
-  QThread thread_;
-  QObject* worker_;                ///< lives on thread_; lambdas posted to it run there
-  std::atomic<int> newest_{0};     ///< number of the newest request
-  std::atomic<int> cancelled_{0};  ///< requests up to this one were cancelled by the user
-  QElapsedTimer sinceRest_;        ///< since all frames were finished last; worker thread only
-  bool cutOff_ = false;      ///< the last frame that was computed ahead did not come to its end; worker thread only
-  std::atomic<int> newestSave_{0}, cancelledSaves_{0};
-  int pending_ = 0;  ///< posted and not yet ended; interface thread only
+  QElapsedTimer sinceRest_;  ///< since all frames were finished last; jobs only
+  bool cutOff_ = false;      ///< the last frame that was computed ahead did not come to its end; jobs only
+  JobQueue jobs_;
 };
 
 }  // namespace glint::gui

@@ -144,6 +144,32 @@ class RunnerTest : public QObject {
     QCOMPARE(opened.count(), 0);
   }
 
+  void onlyCancelStopsASave() {
+    Engine engine = fixture_.engine();
+    std::atomic<bool> saving{false};
+    engine.save = [&saving](const Opened&, const Inspection*, const std::string&, const ProgressFn& progress) {
+      saving = true;
+      for (int i = 0; i < 50; ++i) {
+        if (!report(progress, {"hash", i, 50})) throw Stopped{};
+        QThread::msleep(2);
+      }
+    };
+    Runner runner(engine);
+    QSignalSpy saved(&runner, &Runner::saved), failed(&runner, &Runner::failed);
+    runner.save(std::make_shared<const Opened>(), nullptr, "a.glint");
+    QTRY_VERIFY(saving);
+    runner.open("nowhere/scene.json");
+    QTRY_COMPARE(failed.count(), 1);
+    QCOMPARE(saved.count(), 1);
+    QCOMPARE(saved[0], QList<QVariant>({"a.glint", ""}));
+    saving = false;
+    runner.save(std::make_shared<const Opened>(), nullptr, "b.glint");
+    QTRY_VERIFY(saving);
+    runner.cancel();
+    QTRY_COMPARE(saved.count(), 2);
+    QVERIFY(saved[1][1].toString().contains("b.glint: saving stopped"));
+  }
+
   void destructionStopsWhatRuns() {
     QElapsedTimer clock;
     clock.start();
