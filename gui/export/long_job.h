@@ -3,19 +3,17 @@
 
 #include <QObject>
 #include <QString>
-#include <QThread>
-#include <atomic>
 #include <functional>
 
-#include "core/base/progress.h"
+#include "gui/base/job_queue.h"
 
 class QProgressDialog;
 class QWidget;
 
 namespace glint::gui {
 
-/// Work of seconds or minutes that leaves the interface free: one at a time on a thread of its own, with a small window that
-/// names it, shows what remains and stops it.
+/// Work of seconds or minutes that leaves the interface free: one at a time, with a small window that names it, shows what
+/// remains and stops it. Where it goes, what runs is stopped and waited for.
 class LongJob : public QObject {
   Q_OBJECT
  public:
@@ -24,32 +22,26 @@ class LongJob : public QObject {
   using Work = std::function<Deliver(const ProgressFn&)>;
 
   explicit LongJob(QWidget* window);
-  ~LongJob() override;  ///< stops what runs and waits for it
   /// @param title  "Writing masks". A second job is refused with a problem while one runs.
   void start(const QString& title, Work work);
   /// For the worker: runs something on the interface thread and waits for it, so that what has to be drawn there comes in slices.
   /// Throws what `work` throws; Stopped.
-  void onInterface(const std::function<void()>& work);
-  bool busy() const { return running_; }
+  void onInterface(const std::function<void()>& work) { token_->onOwner(work); }
+  bool busy() const { return dialog_ != nullptr; }
 
  public slots:
-  void cancel() { stop_ = true; }
+  void cancel() { jobs_.stop(); }
 
  signals:
   void problem(const QString& oneLine);
   void message(const QString& oneLine);  ///< it was stopped
 
  private:
-  void end(const Deliver& deliver, bool stopped, const QString& trouble);
-  void show(const QString& stage, int done, int total);
-
   QWidget* window_;
-  QProgressDialog* dialog_ = nullptr;
+  QProgressDialog* dialog_ = nullptr;  ///< while something runs
   QString title_;
-  QThread thread_;
-  QObject* worker_;
-  std::atomic<bool> stop_{false};
-  bool running_ = false;
+  const JobToken* token_ = nullptr;  ///< of what runs; the worker only
+  JobQueue jobs_;
 };
 
 }  // namespace glint::gui
