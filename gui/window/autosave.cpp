@@ -32,29 +32,20 @@ void removeAbandoned(const QString& folder) {
 
 Autosave::Autosave(const Engine& engine, Document& document, std::function<Opened()> snapshot, const QString& folder,
                    QObject* parent)
-    : QObject(parent),
-      engine_(engine),
-      document_(document),
-      snapshot_(std::move(snapshot)),
-      folder_(folder),
-      worker_(new QObject) {
+    : QObject(parent), engine_(engine), document_(document), snapshot_(std::move(snapshot)), folder_(folder) {
   QDir().mkpath(folder_);
   removeAbandoned(folder_);
   file_ = QDir(folder_).filePath(QUuid::createUuid().toString(QUuid::WithoutBraces) + QStringLiteral(".glint"));
   lock_ = std::make_unique<QLockFile>(lockOf(file_));
   lock_->setStaleLockTime(0);  // held for as long as the program runs
   lock_->tryLock(0);
-  worker_->moveToThread(&thread_);
-  connect(&thread_, &QThread::finished, worker_, &QObject::deleteLater);
-  thread_.start();
   connect(&document_, &Document::savedStateChanged, this, &Autosave::schedule);
   connect(&document_, &Document::sceneOpened, this, &Autosave::schedule);
   connect(&document_, &Document::tradeoffChanged, this, &Autosave::schedule);
 }
 
 Autosave::~Autosave() {
-  thread_.quit();
-  thread_.wait();
+  jobs_.close();
   QFile::remove(file_);  // ended in order: what is not saved was given up
 }
 
@@ -62,39 +53,14 @@ void Autosave::schedule() {
   if (!engine_.autosave) return;
   std::shared_ptr<const Opened> state;
   if (document_.hasUnsavedChanges()) state = std::make_shared<const Opened>(snapshot_());
-  const std::lock_guard<std::mutex> guard(mutex_);
-  newest_ = std::move(state);
-  if (std::exchange(queued_, true)) return;
-  QMetaObject::invokeMethod(
-      worker_,
-      [this] {
-        std::shared_ptr<const Opened> wanted;
-        {
-          const std::lock_guard<std::mutex> inner(mutex_);
-          wanted = newest_;
-          queued_ = false;
-        }
-        if (!wanted) {
-          QFile::remove(file_);
-          return;
-        }
-        try {
-          engine_.autosave(*wanted, file_.toStdString());
-        } catch (const std::exception& e) {
-          QMetaObject::invokeMethod(
-              this,
-              [this, line = toQString(e.what())] {
-                if (!std::exchange(reported_, true)) emit problem(tr("Changes cannot be recovered after a crash: %1").arg(line));
-              },
-              Qt::QueuedConnection);
-        }
-      },
-      Qt::QueuedConnection);
-}
-
-void Autosave::flush() {
-  QMetaObject::invokeMethod(
-      worker_, [] {}, Qt::BlockingQueuedConnection);
+  const auto work = [this, state](const JobToken&) {
+    state ? engine_.autosave(*state, file_.toStdString()) : void(QFile::remove(file_));
+  };
+  const auto done = [this](const JobResult<void>& result) {
+    if (!result.failure().isEmpty() && !std::exchange(reported_, true))
+      emit problem(tr("Changes cannot be recovered after a crash: %1").arg(result.failure()));
+  };
+  jobs_.start(work, done, Asks::Newest);
 }
 
 std::optional<Autosave::Found> Autosave::leftBehind() const {

@@ -4,18 +4,17 @@
 #include <QDateTime>
 #include <QLockFile>
 #include <QObject>
-#include <QThread>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 
+#include "gui/base/job_queue.h"
 #include "gui/document/document.h"
 
 namespace glint::gui {
 
-/// Keeps what is not saved in a file that outlives a crash: written after every action on a thread of its own (the newest state
-/// wins), removed once nothing is unsaved or the program ends in order. At most the last action is lost.
+/// Keeps what is not saved in a file that outlives a crash: written after every action off the interface thread (the newest
+/// state wins), removed once nothing is unsaved or the program ends in order. At most the last action is lost.
 class Autosave : public QObject {
   Q_OBJECT
  public:
@@ -33,7 +32,7 @@ class Autosave : public QObject {
   std::optional<Found> leftBehind() const;
   static void discard(const Found& found);
   /// Waits until the newest state is written. For tests and for the end of the program.
-  void flush();
+  void flush() { jobs_.wait(); }
   QString file() const { return file_; }
 
  signals:
@@ -47,12 +46,8 @@ class Autosave : public QObject {
   std::function<Opened()> snapshot_;
   QString folder_, file_;
   std::unique_ptr<QLockFile> lock_;
-  QThread thread_;
-  QObject* worker_;
-  std::mutex mutex_;                      ///< guards the two below
-  std::shared_ptr<const Opened> newest_;  ///< to be written; null = the file is to be removed
-  bool queued_ = false;
   bool reported_ = false;  ///< a folder that cannot be written is told once
+  JobQueue jobs_{JobQueue::Rank::Foreground};
 };
 
 }  // namespace glint::gui
