@@ -45,6 +45,7 @@ struct TestClass {
   const char* name;
   TestFactory make;
 };
+QObject* makeDecodedFramesTest();
 QObject* makeDocumentTest();
 QObject* makeRunnerTest();
 QObject* makeObserverTest();

@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
       {"truth", makeTruthTest},            {"canvas", makeCanvasTest},
       {"save", makeSaveTest},              {"hostile_names", makeHostileNamesTest},
       {"typing", makeTypingTest},          {"jobs", makeJobsTest},
+      {"decoded_frames", makeDecodedFramesTest},
   };
   if (argc < 2) return std::fputs("usage: test_gui CLASS [QTest options]\n", stderr), 2;
   const bool untilKilled = std::strcmp(argv[1], "--until-killed") == 0;
