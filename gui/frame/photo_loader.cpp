@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <utility>
 
 #include "gui/base/text.h"
@@ -29,41 +28,22 @@ QString photographAwaited(const Scene& scene, int frame) {
   return QObject::tr("reading the photograph of %1").arg(nameText(scene.frames[std::size_t(frame)].id));
 }
 
-PhotoLoader::PhotoLoader(QObject* parent) : QObject(parent), worker_(new QObject) {
-  worker_->moveToThread(&thread_);
-  connect(&thread_, &QThread::finished, worker_, &QObject::deleteLater);
-  thread_.start();
-}
-
-PhotoLoader::~PhotoLoader() {
-  ++newest_;
-  thread_.quit();
-  thread_.wait();
-}
-
 void PhotoLoader::forget() {
-  ++newest_;
-  kept_.clear();
+  jobs_.drop();
   lastFrame_ = -1;
 }
 
 void PhotoLoader::setScene(std::shared_ptr<const Scene> scene) {
   forget();
+  pictures_ = {std::move(scene)};
   last_ = {};
   wanted_ = -1;
-  synthesis_.reset();
-  pictureKey_.clear();
-  scene_ = std::move(scene);
 }
 
 void PhotoLoader::setInspection(std::shared_ptr<const Inspection> inspection) {
-  if (inspection && inspection->given != scene_) return;
-  const std::string key = inspection ? pictureKey(*inspection) : "";
-  if (key == pictureKey_) return;
+  if (!pictures_.follow(std::move(inspection))) return;
   forget();
-  pictureKey_ = key;
-  synthesis_ = key.empty() ? nullptr : std::move(inspection);
-  if (wanted_ >= 0) want(wanted_);
+  want(wanted_);
 }
 
 void PhotoLoader::setLook(FrameSource source, const viz::Development& development) {
@@ -71,91 +51,68 @@ void PhotoLoader::setLook(FrameSource source, const viz::Development& developmen
   source_ = source;
   development_ = development;
   lastFrame_ = -1;
-  if (wanted_ >= 0) want(wanted_);
+  want(wanted_);
 }
 
 void PhotoLoader::want(int frame) {
-  if (!scene_ || frame < 0 || frame >= int(scene_->frames.size())) return;
-  const int ticket = ++newest_;
+  if (!pictures_.contain(frame)) return;
   wanted_ = frame;
   if (frame == lastFrame_) {
+    jobs_.drop();
     emit loaded(frame, last_);
     return;
   }
-  ++pending_;
-  const Kept* found = kept_.object(keyOf(frame));
-  Wish wish{ticket, frame, scene_, synthesis_, source_, development_, found ? *found : Kept()};
-  QMetaObject::invokeMethod(
-      worker_, [this, wish = std::move(wish)] { answer(wish); }, Qt::QueuedConnection);
+  const auto work = [this, frame, pictures = pictures_, source = source_, how = development_](const JobToken& token) {
+    return answer(token, frame, pictures, source, how);
+  };
+  const auto done = [this, frame](const JobResult<Outcome<FramePicture>>& result) {
+    if (result.overtaken || result.stopped) return;
+    if (!result.value) return void(emit failed(frame, result.failure()));
+    const Outcome<FramePicture>& picture = *result.value;
+    if (!picture) return void(emit failed(frame, toQString(picture.failure().message())));
+    lastFrame_ = frame;
+    last_ = *picture;
+    emit loaded(frame, *picture);
+  };
+  jobs_.start(work, done, Asks::Newest);
 }
 
-void PhotoLoader::answer(const Wish& wish) {  // on the thread
-  const auto send = [&](const FramePicture& picture, const QString& reason) {
-    QMetaObject::invokeMethod(
-        this, [this, ticket = wish.ticket, frame = wish.frame, picture, reason] { deliver(ticket, frame, picture, reason); },
-        Qt::QueuedConnection);
-  };
-  const auto wanted = [&] { return wish.ticket == newest_; };
+Outcome<FramePicture> PhotoLoader::answer(const JobToken& token, int frame, const FramePictures& pictures, FrameSource source,
+                                          const viz::Development& how) {  // in a job
+  const Frame& f = pictures.frame(frame);
   FramePicture picture;
-  picture.values = wish.values;
-  picture.synthesised = wish.synthesis != nullptr;
-  const Frame& f = wish.scene->frames[std::size_t(wish.frame)];
-  picture.kind = wish.source != FrameSource::Radiance         ? viz::Values::Srgb
+  picture.synthesised = pictures.synthesis != nullptr;
+  picture.kind = source != FrameSource::Radiance              ? viz::Values::Srgb
                  : f.radiance.empty() && !picture.synthesised ? viz::Values::Linearised
                                                               : viz::Values::Linear;
-  const auto developed = [&](const Outcome<Image>& image) {
-    if (image) picture.values = std::make_shared<const Image>(*image);
-    if (!picture.values || !wanted()) return;
-    picture.developed = std::make_shared<const viz::Picture8>(viz::develop(*picture.values, picture.kind, wish.development));
+  const auto develop = [&](DecodedFrames::Held values) {
+    if (!token.wanted()) throw Stopped{};
+    picture.values = std::move(values);
+    picture.developed = std::make_shared<const viz::Picture8>(viz::develop(*picture.values, picture.kind, how));
     picture.shown = imageOf(picture.developed);
   };
-  const auto rendered = [&](int every) {
-    const ProgressFn going = [&](const StageEvent&) { return wanted(); };
-    return wish.source == FrameSource::Radiance ? linearImageOf(*wish.synthesis, wish.frame, FrameSource::Radiance, every, going)
-                                                : photographOf(*wish.synthesis, wish.frame, every, going);
-  };
-  QString reason;
-  try {
-    if (wanted() && picture.values) {
-      developed(Failure{});
-    } else if (wanted()) {
-      ++reads_;
-      if (picture.synthesised) {
+  const ProgressFn going = [&](const StageEvent&) { return token.wanted(); };
+  DecodedFrames::Held values = decodedFrames().find(pictures, frame, source);
+  if (!values) {
+    ++reads_;
+    if (picture.synthesised) {
+      if (Outcome<Image> quick = decodeFrame(pictures, frame, source, quickStep(f.camera), going)) {
+        develop(std::make_shared<const Image>(std::move(*quick)));
         picture.complete = false;
-        developed(rendered(quickStep(f.camera)));
-        if (!picture.shown.isNull()) send(picture, {});
+        token.deliver([this, token, frame, picture] {
+          if (token.overtaken()) return;
+          last_ = picture;
+          emit loaded(frame, picture);
+        });
         picture.complete = true;
       }
-      const Outcome<Image> image = picture.synthesised                    ? rendered(1)
-                                   : wish.source == FrameSource::Radiance ? readLinear(f, wish.source)
-                                                                          : readPhotograph(f);
-      if (!image) reason = toQString(image.failure().message());
-      developed(image);
     }
-  } catch (const Stopped&) {  // another one is wished for by now
-    picture.shown = {};
-  } catch (const std::exception& e) {
-    reason = toQString(e.what());
+    Outcome<DecodedFrames::Held> whole = decodedFrames().whole(pictures, frame, source, going);
+    if (!whole) return whole.failure();
+    values = std::move(*whole);
   }
-  picture.complete = true;
-  send(picture, reason);
-}
-
-void PhotoLoader::deliver(int ticket, int frame, const FramePicture& picture, const QString& reason) {
-  if (picture.complete) --pending_;
-  if (ticket == newest_) {
-    if (picture.shown.isNull()) {
-      emit failed(frame, reason);
-    } else {
-      if (picture.complete) {
-        kept_.insert(keyOf(frame), new Kept(picture.values), 1 + int(picture.values->data.size() * sizeof(float) >> 20));
-        lastFrame_ = frame;
-      }
-      last_ = picture;
-      emit loaded(frame, picture);
-    }
-  }
-  if (pending_ == 0) emit idle();
+  develop(std::move(values));
+  return picture;
 }
 
 }  // namespace glint::gui

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <QCache>
 #include <QImage>
 #include <QObject>
 #include <QString>
-#include <QThread>
 #include <atomic>
 #include <memory>
 
-#include "core/pipeline/photograph.h"
+#include "gui/base/decoded_frames.h"
+#include "gui/base/job_queue.h"
 #include "viz/develop.h"
 
 namespace glint::gui {
@@ -27,13 +26,12 @@ struct FramePicture {
 /// What stands over the photograph of another frame meanwhile.
 QString photographAwaited(const Scene& scene, int frame);
 
-/// Reads, or renders for a what-if, photographs or radiances and develops them on a thread of its own; keeps the last ones. Only
-/// the newest wish is answered: scrubbing over hundreds of frames reads those that one stops at.
+/// Reads, or renders for a what-if, photographs or radiances and develops them off the interface thread. Only the newest wish is
+/// answered: scrubbing over hundreds of frames reads those that one stops at.
 class PhotoLoader : public QObject {
   Q_OBJECT
  public:
-  explicit PhotoLoader(QObject* parent = nullptr);
-  ~PhotoLoader() override;
+  explicit PhotoLoader(QObject* parent = nullptr) : QObject(parent) {}
   void setScene(std::shared_ptr<const Scene> scene);
   /// Where a what-if synthesises the contours, the pictures are those that belong to these results; null = as captured. Where
   /// this changes them, the last wish is answered again: by a quick look first, then by the whole.
@@ -42,7 +40,7 @@ class PhotoLoader : public QObject {
   void setLook(FrameSource source, const viz::Development& development);
   /// Answers with loaded() or failed(), at once when the frame was the last one.
   void want(int frame);
-  bool busy() const { return pending_ > 0; }
+  bool busy() const { return jobs_.busy(); }
   int reads() const { return reads_; }  ///< files decoded so far
   /// The last answer.
   const FramePicture& picture() const { return last_; }
@@ -51,36 +49,20 @@ class PhotoLoader : public QObject {
  signals:
   void loaded(int frame, const glint::gui::FramePicture& picture);
   void failed(int frame, const QString& reason);
-  void idle();
 
  private:
-  using Kept = std::shared_ptr<const Image>;
-  struct Wish {
-    int ticket, frame;
-    std::shared_ptr<const Scene> scene;
-    std::shared_ptr<const Inspection> synthesis;
-    FrameSource source;
-    viz::Development development;
-    Kept values;  ///< null: to be read
-  };
-  void answer(const Wish& wish);
-  void deliver(int ticket, int frame, const FramePicture& picture, const QString& reason);
+  Outcome<FramePicture> answer(const JobToken& token, int frame, const FramePictures& pictures, FrameSource source,
+                               const viz::Development& how);
   void forget();
-  int keyOf(int frame) const { return 2 * frame + (source_ == FrameSource::Radiance ? 1 : 0); }
 
-  std::shared_ptr<const Scene> scene_;
-  std::shared_ptr<const Inspection> synthesis_;  ///< null: the scene's files
-  std::string pictureKey_;
+  FramePictures pictures_;
   FrameSource source_ = FrameSource::Image;
   viz::Development development_;
   int wanted_ = -1;
-  QCache<int, Kept> kept_{384};  ///< decoded images by keyOf, cost in MiB
   FramePicture last_;
   int lastFrame_ = -1;
-  QThread thread_;
-  QObject* worker_;
-  std::atomic<int> newest_{0}, reads_{0};
-  int pending_ = 0;
+  std::atomic<int> reads_{0};
+  JobQueue jobs_{JobQueue::Rank::Foreground};
 };
 
 }  // namespace glint::gui

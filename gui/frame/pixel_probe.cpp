@@ -2,22 +2,20 @@
 #include "gui/frame/pixel_probe.h"
 
 #include <cmath>
-#include <exception>
 #include <optional>
 #include <utility>
 
 #include "core/base/angle.h"
-#include "core/pipeline/photograph.h"
+#include "gui/base/decoded_frames.h"
 #include "gui/base/text.h"
 #include "viz/develop.h"
 
 namespace glint::gui {
 
 struct PixelProbeWorker::Images {
-  std::shared_ptr<const Scene> scene;
+  FramePictures of;
   int frame = -1;
-  std::string key;  // of synthesised pictures
-  std::optional<Image> photograph, radiance;
+  DecodedFrames::Held photograph, radiance;  // null where there is none
 };
 
 PixelProbeWorker::PixelProbeWorker(QObject* parent) : QObject(parent), images_(std::make_shared<Images>()) {}
@@ -25,35 +23,34 @@ PixelProbeWorker::PixelProbeWorker(QObject* parent) : QObject(parent), images_(s
 void PixelProbeWorker::want(std::shared_ptr<const Scene> scene, std::shared_ptr<const Inspection> inspection, int frame,
                             const Pixel& at) {
   if (!scene || frame < 0 || frame >= int(scene->frames.size())) return;
-  job_.run([this, frame, at, scene = std::move(scene), inspection = std::move(inspection), images = images_] {
-    QString text;
-    try {
-      const Frame& f = scene->frames[std::size_t(frame)];
-      const bool synthesised = inspection && picturesAreSynthesised(*inspection);
-      const std::string key = synthesised ? pictureKey(*inspection) : "";
-      if (images->scene != scene || images->frame != frame || images->key != key) {
-        *images = {scene, frame, key, {}, {}};
-        if (synthesised) {
-          if (Outcome<Image> image = linearImageOf(*inspection, frame, FrameSource::Radiance))
-            images->radiance = std::move(*image);
-        } else if (!f.image.empty()) {
-          if (Outcome<Image> image = readPhotograph(f)) images->photograph = std::move(*image);
-        }
-        if (!synthesised && !f.radiance.empty())
-          if (Outcome<Image> image = readLinear(f, FrameSource::Radiance)) images->radiance = std::move(*image);
-      }
-      const int x = int(std::lround(at.x())), y = int(std::lround(at.y()));
-      QStringList values;
-      if (images->photograph) values << toQString(viz::valueText(*images->photograph, viz::Values::Srgb, x, y));
-      if (images->radiance) values << toQString(viz::valueText(*images->radiance, viz::Values::Linear, x, y));
-      const std::optional<Outcome<PixelProbe>> probe =
-          inspection ? std::optional(probePixel(*inspection, frame, at)) : std::nullopt;
-      text = probeText(at, values.join(QStringLiteral("   ")), probe ? &*probe : nullptr);
-    } catch (const std::exception& e) {
-      text = toQString(e.what());
+  const auto work = [this, frame, at, scene = std::move(scene), inspection = std::move(inspection), images = images_] {
+    FramePictures pictures{scene};
+    pictures.follow(inspection);
+    if (!(images->of == pictures) || images->frame != frame) {
+      *images = {};  // until all of it is read
+      const auto read = [&](FrameSource source, bool there) {
+        const Outcome<DecodedFrames::Held> image =
+            there ? decodedFrames().part(pictures, frame, source, 1) : DecodedFrames::Held();
+        return image ? *image : nullptr;
+      };
+      const Frame& f = pictures.frame(frame);
+      const bool synthesised = pictures.synthesis != nullptr;
+      images->photograph = read(FrameSource::Image, !synthesised && !f.image.empty());
+      images->radiance = read(FrameSource::Radiance, synthesised || !f.radiance.empty());
+      images->frame = frame;
+      pictures.synthesis.reset();  // large, and only compared by its key
+      images->of = std::move(pictures);
     }
+    const int x = int(std::lround(at.x())), y = int(std::lround(at.y()));
+    QStringList values;
+    if (images->photograph) values << toQString(viz::valueText(*images->photograph, viz::Values::Srgb, x, y));
+    if (images->radiance) values << toQString(viz::valueText(*images->radiance, viz::Values::Linear, x, y));
+    const std::optional<Outcome<PixelProbe>> probe =
+        inspection ? std::optional(probePixel(*inspection, frame, at)) : std::nullopt;
+    const QString text = probeText(at, values.join(QStringLiteral("   ")), probe ? &*probe : nullptr);
     return LatestJob::Deliver([this, text] { emit probed(text); });
-  });
+  };
+  job_.run(work, [this](const QString& failure) { emit probed(failure); });
 }
 
 QString probeText(const Pixel& at, const QString& values, const Outcome<PixelProbe>* probe) {

@@ -26,7 +26,7 @@ class PixelProbeWorker : public QObject {
   void probed(const QString& text);
 
  private:
-  struct Images;  ///< of the frame asked for last; used by the thread only
+  struct Images;  ///< of the frame asked for last; used by its jobs only
 
   std::shared_ptr<Images> images_;
   LatestJob job_;
