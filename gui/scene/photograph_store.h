@@ -1,66 +1,53 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <QCache>
 #include <QObject>
-#include <QThread>
-#include <list>
+#include <QPair>
 #include <memory>
 #include <mutex>
 #include <set>
-#include <utility>
 #include <vector>
 
+#include "gui/base/decoded_frames.h"
+#include "gui/base/job_queue.h"
 #include "viz/layers.h"
 
 namespace glint::gui {
 
-/// Photographs for the 3D views as textures, read (or rendered for a what-if) on a thread of their own: the newest wishes first,
+/// Photographs for the 3D views as textures, read (or rendered for a what-if) off the interface thread: the newest wishes first,
 /// the last results kept.
 class PhotographStore : public QObject {
   Q_OBJECT
  public:
-  explicit PhotographStore(QObject* parent = nullptr);
-  ~PhotographStore() override;
+  explicit PhotographStore(QObject* parent = nullptr) : QObject(parent) {}
   void setScene(std::shared_ptr<const Scene> scene);
   /// The results whose photographs are wanted: of a scene as read, or synthesised ones. While those that a what-if changed are
   /// made again, get() gives the ones before.
   void setInspection(const std::shared_ptr<const Inspection>& inspection);
   /// The texture, or `arriving` with a later signal. @param maxWidth  px.
   viz::LayerCache::Photograph get(int frame, int maxWidth);
-  bool busy() const { return pending_ > 0; }
+  bool busy() const { return jobs_.busy(); }
 
  signals:
   void arrived(int frame);
 
  private:
-  using Key = std::pair<int, int>;  // frame, width
+  using Texture = vtkSmartPointer<vtkImageData>;
+  using Key = QPair<int, int>;  // frame, width
   struct Kept {
-    Key key;
-    vtkSmartPointer<vtkImageData> texture;  // null: cannot be read
-    std::size_t bytes = 0;
-    std::string pictures;  // pictureKey() that they belong to
+    Texture texture;   // null: cannot be read
+    QString pictures;  // key of those that it belongs to
   };
-  /// What is read from, and the pictureKey() of it.
-  struct Source {
-    std::shared_ptr<const Scene> scene;
-    std::shared_ptr<const Inspection> synthesis;  // null: the scene's files
-    std::string pictures;
-  };
-  void readNext();
-  void deliver(const Source& from, const Key& key, const vtkSmartPointer<vtkImageData>& texture);
+  void forgetWishes();
+  void wish(const Key& key);
 
-  void setSource(Source source);
-
-  Source source_;
-  std::list<Kept> kept_;  // newest use first
-  std::size_t keptBytes_ = 0;
-  std::set<Key> wanted_;
-  std::mutex mutex_;  // of the two below, which the thread reads
-  std::vector<Key> queue_;
-  Source sourceToRead_;
-  QThread thread_;
-  QObject* worker_;
-  int pending_ = 0;
+  FramePictures pictures_;
+  QCache<Key, Kept> kept_{384 << 20};  // cost in bytes
+  std::set<Key> wished_;
+  std::mutex mutex_;  // of the next
+  std::vector<Key> waiting_;
+  JobQueue jobs_;
 };
 
 }  // namespace glint::gui
