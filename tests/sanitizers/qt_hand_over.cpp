@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// For the thread sanitizer only. Qt is not compiled with it: that the event queue orders what one thread posts before what another one runs
-// is invisible to it (futexes and atomics inside the library), and every result that a worker hands over would look like a race. Rather than
-// silence all that happens below Qt's event loop, which is all that the workers do, the two calls that hand work over are told to the
-// sanitizer: what was done before invokeMethod() is before what the slot does, and what the slots did is before the return of QThread::wait().
-// Linked into the executable, these definitions take the place of the library's for our own calls.
+// For the thread sanitizer only. Qt is not compiled with it: that its queues order what one thread posts before what another one
+// runs is invisible to it (futexes and atomics inside the library), and every result that a job hands over would look like a
+// race. Rather than silence all that happens below Qt, which is all that jobs do, the two calls that hand work over are told to
+// the sanitizer: what was done before invokeMethod() is before what the slot does, and what was done before QThreadPool::start()
+// is before what the runnable does. (JobQueue waits for its jobs with a mutex of its own, which the sanitizer sees.) Linked into
+// the executable, these definitions take the place of the library's for our own calls.
 #include <dlfcn.h>
 
-#include <QDeadlineTimer>
 #include <QMetaObject>
 #include <QObject>
-#include <QThread>
+#include <QRunnable>
+#include <QThreadPool>
 #include <cstdlib>
 
 extern "C" {
@@ -18,8 +19,6 @@ void __tsan_release(void* address);
 }
 
 namespace {
-
-char workDone;  // its address stands for all that slots have done
 
 template <class Function>
 Function real(const char* name) {
@@ -40,8 +39,6 @@ class HandedOver : public QtPrivate::QSlotObjectBase {
     __tsan_acquire(slot);
     if (which == Call) {
       slot->call(receiver, arguments);
-      __tsan_release(slot);  // whoever drops the last reference destroys what the call used
-      __tsan_release(&workDone);
     } else if (which == Compare) {
       *same = false;
     } else if (which == Destroy) {
@@ -52,21 +49,32 @@ class HandedOver : public QtPrivate::QSlotObjectBase {
   QtPrivate::QSlotObjectBase* slot_;
 };
 
+/// Runs another runnable, which is not deleted, in the same way.
+class HandedRunnable : public QRunnable {
+ public:
+  __attribute__((no_sanitize("thread"))) explicit HandedRunnable(QRunnable* runnable) : runnable_(runnable) {}
+  __attribute__((no_sanitize("thread"))) void run() override {
+    __tsan_acquire(runnable_);
+    runnable_->run();
+  }
+
+ private:
+  QRunnable* runnable_;
+};
+
 }  // namespace
 
 bool QMetaObject::invokeMethodImpl(QObject* object, QtPrivate::QSlotObjectBase* slot, Qt::ConnectionType type, void* result) {
   using Function = bool (*)(QObject*, QtPrivate::QSlotObjectBase*, Qt::ConnectionType, void*);
   static const auto function = real<Function>("_ZN11QMetaObject16invokeMethodImplEP7QObjectPN9QtPrivate15QSlotObjectBaseEN2Qt14ConnectionTypeEPv");
   __tsan_release(slot);
-  const bool done = function(object, new HandedOver(slot), type, result);
-  __tsan_acquire(&workDone);  // of a blocking call
-  return done;
+  return function(object, new HandedOver(slot), type, result);
 }
 
-bool QThread::wait(QDeadlineTimer deadline) {
-  using Function = bool (*)(QThread*, QDeadlineTimer);
-  static const auto function = real<Function>("_ZN7QThread4waitE14QDeadlineTimer");
-  const bool done = function(this, deadline);
-  __tsan_acquire(&workDone);
-  return done;
+void QThreadPool::start(QRunnable* runnable, int priority) {
+  using Function = void (*)(QThreadPool*, QRunnable*, int);
+  static const auto function = real<Function>("_ZN11QThreadPool5startEP9QRunnablei");
+  if (runnable->autoDelete()) return function(this, runnable, priority);  // one of Qt's own
+  __tsan_release(runnable);
+  function(this, new HandedRunnable(runnable), priority);
 }
