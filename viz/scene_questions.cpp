@@ -16,7 +16,7 @@
 #include <numbers>
 #include <set>
 
-#include "core/light/light.h"
+#include "core/geometry/light.h"
 #include "core/surface/brightest_point.h"
 
 namespace glint::viz {

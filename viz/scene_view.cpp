@@ -17,7 +17,7 @@
 #include <numbers>
 #include <utility>
 
-#include "core/light/light.h"
+#include "core/geometry/light.h"
 #include "core/surface/mesh_policy.h"
 #include "viz/annotations.h"
 #include "viz/frame_overlay.h"

@@ -8,7 +8,7 @@
 
 #include "core/explain/explain.h"
 #include "core/explain/walk_trace.h"
-#include "core/light/light.h"
+#include "core/geometry/light.h"
 #include "viz/frame_overlay.h"
 #include "viz/style.h"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/base/image.h"
+#include "core/geometry/light.h"
 #include "core/highlight/highlight.h"
-#include "core/light/light.h"
 #include "core/surface/surface.h"
 
 namespace glint {

@@ -12,10 +12,10 @@
 #include "core/base/settings.h"
 #include "core/base/uncertainty.h"
 #include "core/geometry/ellipsoid.h"
+#include "core/geometry/light.h"
 #include "core/geometry/plane.h"
-#include "core/model/reconstruct.h"
 #include "core/highlight/highlight.h"
-#include "core/light/light.h"
+#include "core/model/reconstruct.h"
 #include "core/surface/brightest_point.h"
 #include "core/surface/surface.h"
 

@@ -7,7 +7,7 @@
 
 #include "core/base/uncertainty.h"
 #include "core/geometry/ellipsoid.h"
-#include "core/light/light.h"
+#include "core/geometry/light.h"
 
 namespace glint {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/base/outcome.h"
-#include "core/light/light.h"
+#include "core/geometry/light.h"
 #include "core/model/level_set_prediction.h"
 #include "core/surface/part_bounds.h"
 

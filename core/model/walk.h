@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/base/outcome.h"
+#include "core/geometry/light.h"
 #include "core/geometry/plane.h"
 #include "core/geometry/polyline.h"
-#include "core/light/light.h"
 #include "core/model/model.h"
 #include "core/surface/brightest_point.h"
 #include "core/surface/local_quadric.h"

@@ -2,7 +2,7 @@
 #include "core/pipeline/probe.h"
 
 #include "core/geometry/distortion.h"
-#include "core/light/light.h"
+#include "core/geometry/light.h"
 #include "core/surface/mesh_policy.h"
 
 namespace glint {

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "core/base/parallel.h"
-#include "core/highlight/track.h"
+#include "core/light/track.h"
 
 namespace glint {
 namespace {

@@ -18,7 +18,7 @@ bool lightsNeedAllFrames(const Scene& scene);
 /// The same for what a request asks for: what is synthesised knows its lights.
 bool lightsAreOpenIn(const Scene& scene, const InspectionRequest& request);
 
-/// Gives every highlight its light where several are on or none is stated (core/highlight/track.h), and brings the highlights of
+/// Gives every highlight its light where several are on or none is stated (core/light/track.h), and brings the highlights of
 /// one light in a frame to one level. Does nothing where every highlight has its light.
 /// @param evidence     one per frame; changed in place
 /// @param surfaceOf    of a frame; null where it has none

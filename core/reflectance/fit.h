@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/uncertainty.h"
-#include "core/light/light.h"
+#include "core/geometry/light.h"
 #include "core/reflectance/lamp.h"
 #include "core/reflectance/lobe.h"
 #include "core/surface/surface.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/quadrature.h"
-#include "core/light/light.h"
+#include "core/geometry/light.h"
 #include "core/reflectance/disc_rule.h"
 
 namespace glint {

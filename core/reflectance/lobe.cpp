@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/base/outcome.h"
-#include "core/light/light.h"
+#include "core/geometry/light.h"
 #include "core/reflectance/lobe_terms.h"
 
 namespace glint {

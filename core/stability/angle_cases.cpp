@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "core/light/light.h"
+#include "core/geometry/light.h"
 #include "core/stability/cases.h"
 #include "core/stability/fifty_digits.h"
 #include "core/stability/real.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/geometry/camera.h"
-#include "core/light/light.h"
+#include "core/geometry/light.h"
 #include "core/stability/real.h"
 #include "core/surface/analytic.h"
 

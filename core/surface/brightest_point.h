@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/light/light.h"
+#include "core/geometry/light.h"
 #include "core/surface/surface.h"
 
 namespace glint {

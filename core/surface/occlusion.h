@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/light/light.h"
+#include "core/geometry/light.h"
 #include "core/surface/surface.h"
 
 namespace glint {

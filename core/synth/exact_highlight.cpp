@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/light/light.h"
+#include "core/geometry/light.h"
 #include "core/surface/brightest_point.h"
 #include "core/surface/level_set.h"
 #include "core/surface/occlusion.h"

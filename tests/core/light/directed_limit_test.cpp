@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/light/light.h"
+#include "core/geometry/light.h"
 #include "tests/tolerances.h"
 
 namespace glint {

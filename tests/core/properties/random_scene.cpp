@@ -11,7 +11,7 @@
 #include <stdexcept>
 
 #include "core/geometry/conic.h"
-#include "core/light/light.h"
+#include "core/geometry/light.h"
 #include "core/reflectance/lobe.h"
 #include "core/scene/mesh_file.h"
 #include "core/surface/brightest_point.h"

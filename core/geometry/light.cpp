@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/light/light.h"
+#include "core/geometry/light.h"
 
 #include <Eigen/Geometry>
 #include <cmath>

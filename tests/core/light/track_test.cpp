@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/highlight/track.h"
+#include "core/light/track.h"
 
 #include <gtest/gtest.h>
 
