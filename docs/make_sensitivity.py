@@ -18,7 +18,7 @@ TRAIN = [0, 13, 26, 39, 53, 66]                  # spread over the 80 poses
 HELD_OUT = [4, 11, 18, 30, 35, 44, 49, 60, 70, 76]
 FOCAL = 800.0
 DISTANCE = 2.1                                   # m, cameras to the object
-COLOURS = {"primal": "#e69f00", "dual": "#56b4e9", "canonical": "#009e73", "limit-angle": "#d55e00", "reflectance": "#cc79a7"}  # core/evaluate/palette.h
+COLOURS = {"primal": "#e69f00", "dual": "#56b4e9", "canonical": "#009e73", "limit-angle": "#d55e00", "reflectance": "#cc79a7"}  # ModelTraits::rgb
 
 
 def fail(text):

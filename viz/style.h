@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "core/evaluate/palette.h"
+#include "core/model/palette.h"
 
 namespace glint::viz {
 

@@ -6,20 +6,20 @@
 #include <opencv2/imgproc.hpp>
 #include <set>
 
+#include "core/base/html_text.h"
 #include "core/base/number_text.h"
 #include "core/evaluate/band_text.h"
-#include "core/evaluate/html_text.h"
 #include "core/evaluate/report.h"
 #include "core/evaluate/setting_text.h"
 #include "core/evaluate/summary.h"
 #include "core/evaluate/warnings.h"
+#include "core/model/palette.h"
 #include "core/pipeline/photograph.h"
 #include "core/pipeline/what_if_knobs.h"
 
 namespace glint {
 namespace {
 
-using html::colourOf;
 using html::escaped;
 using html::format;
 
@@ -112,14 +112,14 @@ std::string errorPlot(const Inspection& inspection) {
       path += (frame == last + 1 ? " L" : " M") + format("%.1f", x(frame)) + "," + format("%.1f", y(e));
       last = frame;
     }
-    svg += "<path fill=\"none\" stroke-width=\"1.6\" stroke=\"" + colourOf(name) + "\" d=\"" + path + "\"/>\n";
+    svg += "<path fill=\"none\" stroke-width=\"1.6\" stroke=\"" + modelHex(name) + "\" d=\"" + path + "\"/>\n";
     for (const auto& [frame, e] : curve.errors)
-      svg += "<circle r=\"2.6\" fill=\"" + colourOf(name) + "\" cx=\"" + format("%.1f", x(frame)) + "\" cy=\"" + format("%.1f", y(e)) +
+      svg += "<circle r=\"2.6\" fill=\"" + modelHex(name) + "\" cx=\"" + format("%.1f", x(frame)) + "\" cy=\"" + format("%.1f", y(e)) +
              "\"><title>" + name + ", frame " + std::to_string(frame) + ": " + format("%.4g", e) + " %</title></circle>\n";
     if (curve.errors.empty() || curve.missed.empty()) continue;
     for (const int frame : curve.missed) {
       const double cx = x(frame), cy = top + 4 + 8 * row, r = 3;
-      svg += "<path class=\"missed\" fill=\"none\" stroke-width=\"1.6\" stroke=\"" + colourOf(name) + "\" d=\"M" + format("%.1f", cx - r) +
+      svg += "<path class=\"missed\" fill=\"none\" stroke-width=\"1.6\" stroke=\"" + modelHex(name) + "\" d=\"M" + format("%.1f", cx - r) +
              "," + format("%.1f", cy - r) + " L" + format("%.1f", cx + r) + "," + format("%.1f", cy + r) + " M" + format("%.1f", cx - r) + "," +
              format("%.1f", cy + r) + " L" + format("%.1f", cx + r) + "," + format("%.1f", cy - r) + "\"><title>" + name + ", frame " +
              std::to_string(frame) + ": missed a highlight</title></path>\n";
@@ -158,13 +158,13 @@ std::string overlay(const Inspection& inspection, int frame) {
     for (const FrameComparison& c : inspection.models.at(name).frames) {
       if (c.frame != frame) continue;
       for (const PredictedHighlight& h : c.prediction.highlights) {
-        shapes += "<path class=\"predicted\" stroke=\"" + colourOf(name) + "\" d=\"" + pathOf(h.contour) + "\"/>\n";
+        shapes += "<path class=\"predicted\" stroke=\"" + modelHex(name) + "\" d=\"" + pathOf(h.contour) + "\"/>\n";
       }
       for (const FrameComparison::Row& row : c.rows) {
         std::string text = row.metrics ? format("%.3g", row.metrics->contourErrorPct) + " %" : "";
         if (!row.metrics && row.failure) text = escaped(row.failure->message());
         else if (!row.metrics) text = "spurious";
-        caption += "<span style=\"color:" + colourOf(name) + "\">&#9632;</span> " + name + " " + text + "<br>";
+        caption += "<span style=\"color:" + modelHex(name) + "\">&#9632;</span> " + name + " " + text + "<br>";
       }
     }
   }
@@ -221,7 +221,7 @@ std::string missedTable(const Inspection& inspection, const std::vector<Missed>&
   for (std::size_t i = 0; i < std::min(kMost, missed.size()); ++i) {
     const Missed& m = missed[i];
     html += "<tr><td>" + std::to_string(m.frame) + " (" + escaped(inspection.scene->frames[std::size_t(m.frame)].id) +
-            ")</td><td>" + escaped(m.light) + "</td><td><span class=\"swatch\" style=\"background:" + colourOf(m.model) +
+            ")</td><td>" + escaped(m.light) + "</td><td><span class=\"swatch\" style=\"background:" + modelHex(m.model) +
             "\"></span>" + m.model + "</td><td class=\"reason\">" + escaped(m.reason) + "</td></tr>\n";
   }
   html += "</table>\n";
@@ -303,7 +303,7 @@ std::string evaluationHtml(const Inspection& inspection, const ReportContext& co
         "<table><tr><th>candidate</th><th>left-out views answered</th><th>leave-one-out error %</th><th>standard error %</th>"
         "<th>&micro;s/frame</th><th>remark</th></tr>\n";
     for (const Candidate& c : context.selection->candidates)
-      html += "<tr><td><span class=\"swatch\" style=\"background:" + colourOf(c.model) + "\"></span>" + c.model + "</td><td>" +
+      html += "<tr><td><span class=\"swatch\" style=\"background:" + modelHex(c.model) + "\"></span>" + c.model + "</td><td>" +
               std::to_string(c.answered) + " / " + std::to_string(c.tried) + "</td><td>" + format("%.3g", c.meanPct) + "</td><td>" +
               format("%.2g", c.standardErrorPct) + "</td><td>" + format("%.3g", c.predictUs) + "</td><td class=\"reason\">" + escaped(c.remark) + "</td></tr>\n";
     html += "</table>\n";
@@ -318,7 +318,7 @@ std::string evaluationHtml(const Inspection& inspection, const ReportContext& co
   for (const std::string& name : inspection.request.models) {
     if (!inspection.models.count(name)) continue;
     const ModelSummary s = summarise(inspection, inspection.models.at(name));
-    html += "<tr><td><span class=\"swatch\" style=\"background:" + colourOf(name) + "\"></span>" + name + "</td><td>" +
+    html += "<tr><td><span class=\"swatch\" style=\"background:" + modelHex(name) + "\"></span>" + name + "</td><td>" +
             std::to_string(s.predicted) + "/" + std::to_string(s.frames) + "</td>";
     if (!s.answered) {
       html += "<td class=\"reason\" colspan=\"10\">" + escaped(s.reason) + "</td></tr>\n";

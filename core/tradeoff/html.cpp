@@ -4,14 +4,14 @@
 #include <map>
 #include <vector>
 
-#include "core/evaluate/html_text.h"
+#include "core/base/html_text.h"
+#include "core/model/palette.h"
 #include "core/tradeoff/pareto.h"
 #include "core/tradeoff/tradeoff.h"
 
 namespace glint {
 namespace {
 
-using html::colourOf;
 using html::escaped;
 using html::format;
 
@@ -82,7 +82,7 @@ std::string svgOf(const Tradeoff& t) {
     for (int i = 0; i < static_cast<int>(t.points.size()); ++i) {
       const TradeoffPoint& p = t.points[i];
       if (p.pareto != onFront || !std::isfinite(p.rankedErrorPct)) continue;
-      const std::string colour = colourOf(p.model);
+      const std::string colour = modelHex(p.model);
       svg += "<circle cx=\"" + px(x(p)) + "\" cy=\"" + px(y(p)) + "\" r=\"" + (onFront ? "5.5" : "4") + "\" stroke=\"" + colour +
              "\" stroke-width=\"1.6\" fill=\"" + (onFront ? colour : "none") + "\"><title>" + std::to_string(i) + ": " +
              escaped(describe(t, p)) + "\n" + format("%.4g", p.contourErrorPct) + " %, IoU " + format("%.4f", p.iou) +
@@ -111,7 +111,7 @@ std::string legendOf(const Tradeoff& t) {
   for (const TradeoffPoint& p : t.points) {
     if (std::count(seen.begin(), seen.end(), p.model)) continue;
     seen.push_back(p.model);
-    out += "<span class=\"swatch\" style=\"background:" + colourOf(p.model) + "\"></span>" + escaped(p.model) + " &nbsp; ";
+    out += "<span class=\"swatch\" style=\"background:" + modelHex(p.model) + "\"></span>" + escaped(p.model) + " &nbsp; ";
   }
   return out +
          "&mdash; filled: on the front, no other setting is both faster and more accurate; ring: chosen. Hover over a point for "
@@ -151,7 +151,7 @@ std::string tradeoffHtml(const Tradeoff& t) {
     for (const auto& [name, index] : t.presets)
       if (index == i) marks += " " + name;
     html += std::string("<tr") + (t.chosen == i ? " class=\"chosen\"" : "") + "><td>" + marks +
-            "</td><td class=\"text\"><span class=\"swatch\" style=\"background:" + colourOf(p.model) + "\"></span>" +
+            "</td><td class=\"text\"><span class=\"swatch\" style=\"background:" + modelHex(p.model) + "\"></span>" +
             escaped(describe(t, p)) + "</td><td>" + format("%.1f", p.predictUs) + "</td><td>" +
             format("%.3g", p.contourErrorPct) + "</td><td>" + format("%.4f", p.iou) + "</td><td>" + format("%.3f", p.coverage) +
             "</td><td>" + std::to_string(p.predicted) + "/" + std::to_string(p.frames) + "</td><td>" + std::to_string(p.matched) +

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/evaluate/palette.h"
+#include "core/model/palette.h"
 #include "tests/tolerances.h"
 #include "tests/viz/small_inspection.h"
 

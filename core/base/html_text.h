@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 #include "core/base/number_text.h"
 #include "core/base/safe_text.h"
-#include "core/evaluate/palette.h"
 
 namespace glint::html {
 
@@ -34,12 +31,6 @@ inline std::string escaped(const std::string& text) {
       out += c;
   }
   return out;
-}
-
-/// "#d55e00".
-inline std::string colourOf(const std::string& model) {
-  const std::array<int, 3> c = modelRgb(model);
-  return formatted("#%02x%02x%02x", c[0], c[1], c[2]);
 }
 
 }  // namespace glint::html
