@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/evaluate/summary.h"
+#include "core/evaluate/statistic.h"
 #include "core/pipeline/inspection.h"
 
 namespace glint {

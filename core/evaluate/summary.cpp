@@ -2,34 +2,8 @@
 #include "core/evaluate/summary.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace glint {
-namespace {
-
-double quantile(const std::vector<double>& sorted, double q) {
-  if (sorted.empty()) return std::nan("");
-  const double at = q * double(sorted.size() - 1);
-  const std::size_t i = static_cast<std::size_t>(at);
-  const double t = at - double(i);
-  return i + 1 < sorted.size() ? (1 - t) * sorted[i] + t * sorted[i + 1] : sorted[i];
-}
-
-}  // namespace
-
-Statistic statisticOf(std::vector<double> values) {
-  std::erase_if(values, [](double v) { return !std::isfinite(v); });
-  std::sort(values.begin(), values.end());
-  Statistic s;
-  s.count = static_cast<int>(values.size());
-  double sum = 0;
-  for (const double v : values) sum += v;
-  s.mean = values.empty() ? std::nan("") : sum / double(values.size());
-  s.median = quantile(values, 0.5);
-  s.p95 = quantile(values, 0.95);
-  s.max = values.empty() ? std::nan("") : values.back();
-  return s;
-}
 
 ModelSummary summarise(const Inspection& inspection, const ModelResult& result) {
   ModelSummary s;
@@ -68,7 +42,7 @@ ModelSummary summarise(const Inspection& inspection, const ModelResult& result) 
   s.iou = statisticOf(iou);
   s.timeUs = statisticOf(time);
   std::sort(time.begin(), time.end());
-  s.timeP99Us = quantile(time, 0.99);
+  s.timeP99Us = quantileOf(time, 0.99);
   if (!s.answered) {
     for (const ModelResult::Fit& f : result.fits)
       if (f.failure) {

@@ -4,16 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "core/evaluate/statistic.h"
 #include "core/pipeline/inspection.h"
 
 namespace glint {
-
-struct Statistic {
-  double mean = 0, median = 0, p95 = 0, max = 0;  ///< NaN when count is 0
-  int count = 0;
-};
-/// NaNs are left out. p95 and median by linear interpolation between order statistics.
-Statistic statisticOf(std::vector<double> values);
 
 /// What `evaluate` prints of one model (docs/formats.md, "evaluate --json"): held-out frames only, except per surface.
 struct ModelSummary {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <set>
 
 #include "core/base/atomic_file.h"
 #include "core/base/json_text.h"
@@ -130,35 +129,6 @@ FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, 
   return evidence;
 }
 
-bool showsSwitchedOff(const FrameEvidence& e, const WhatIf& w) {
-  const auto off = [&](const Highlight& h) { return isSwitchedOff(w, e.frame, h.light); };
-  return std::any_of(e.highlights.begin(), e.highlights.end(), off) || std::any_of(e.truth.begin(), e.truth.end(), off);
-}
-
-void dropSwitchedOff(FrameEvidence& e, const WhatIf& w) {
-  if (!showsSwitchedOff(e, w)) return;
-  std::vector<Highlight> kept;
-  std::vector<int> found;
-  std::set<std::string> lights;
-  for (std::size_t i = 0; i < e.highlights.size(); ++i) {
-    Highlight& h = e.highlights[i];
-    if (isSwitchedOff(w, e.frame, h.light)) {
-      lights.insert(h.light);
-      continue;
-    }
-    found.push_back(e.asFound(static_cast<int>(i)));
-    kept.push_back(std::move(h));
-  }
-  e.highlights = std::move(kept);
-  e.found = std::move(found);
-  if (e.highlights.empty() && !e.failure) {
-    std::string names;
-    for (const std::string& light : lights) names += (names.empty() ? "" : ", ") + light;
-    e.failure = Failure{Reason::NoHighlight, "switched off: " + names};
-  }
-  std::erase_if(e.truth, [&](const Highlight& h) { return isSwitchedOff(w, e.frame, h.light); });
-}
-
 void requireTruthFolder(const std::string& folder, const Scene& scene) {
   std::error_code error;
   if (!std::filesystem::is_directory(folder, error)) throw InputError(folder, "--truth", "this folder does not exist");
@@ -206,25 +176,6 @@ Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene
     fitMissingEllipse(h);
   }
   return truth;
-}
-
-FrameEvidence evidenceFor(const Scene& scene, int frame, const InspectionRequest& request) {
-  const Frame& f = scene.frames[static_cast<std::size_t>(frame)];
-  FrameEvidence evidence;
-  if (request.whatIf.synthesise && f.highlights.empty()) {
-    evidence.frame = frame;
-    evidence.failure = Failure{Reason::NoHighlight, "no light produces one in frame " + f.id};
-    return evidence;
-  }
-  evidence = gatherEvidence(scene, frame, request.source, request.settings);
-  if (request.truthFolder.empty()) return evidence;
-  evidence.againstTruth = true;
-  Outcome<std::vector<Highlight>> truth = readTruth(request.truthFolder, scene, frame, request.settings.number("detect.level"));
-  if (truth)
-    evidence.truth = std::move(*truth);
-  else
-    evidence.truthFailure = truth.failure();
-  return evidence;
 }
 
 Highlight withNoise(const Highlight& highlight, double sigma, unsigned seed, int frame, int index) {

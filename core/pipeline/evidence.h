@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "core/pipeline/inspection.h"
+#include "core/base/settings.h"
+#include "core/pipeline/frame_evidence.h"
 #include "core/reflectance/pixel_patch.h"
+#include "core/scene/scene.h"
 
 namespace glint {
 
@@ -28,16 +30,6 @@ void addOtherLevels(const std::vector<Highlight>& given, std::vector<Highlight>&
 /// Highlights of one frame in ideal pixels: those that the scene gives, else detected (each at the level of its own peak where the frame states
 /// several lights). The light is set where the frame says which one is on (one light: its id; none stated: "light").
 FrameEvidence gatherEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings, const SeparateLights& lights = {});
-
-/// Evidence of one frame as a request asks for it, with truth where it names a folder, but without the user's changes to single
-/// highlights.
-/// @param scene  with the request's what-if
-FrameEvidence evidenceFor(const Scene& scene, int frame, const InspectionRequest& request);
-
-/// Takes what is of lights that the what-if switched off in this frame out of highlights and truth. Where nothing is left the
-/// failure is NoHighlight.
-void dropSwitchedOff(FrameEvidence& evidence, const WhatIf& whatIf);
-bool showsSwitchedOff(const FrameEvidence& evidence, const WhatIf& whatIf);
 
 /// Contours stored as in data/cycles/*/contours (FOLDER/ID.json) at `level`, for scoring. FrameUnreadable when the frame has no
 /// file. InputError when a file does not parse, does not hold the level or has a contour without area.

@@ -15,6 +15,7 @@
 #include "core/pipeline/fit_engine.h"
 #include "core/pipeline/inspection.h"
 #include "core/pipeline/lobe_stage.h"
+#include "core/pipeline/requested_evidence.h"
 #include "core/pipeline/several_lights.h"
 #include "core/pipeline/stage_inputs.h"
 #include "core/pipeline/training.h"
@@ -50,6 +51,21 @@ struct Group {
   FitKey key;
   std::vector<int> views;  ///< indices into Inspection::views
 };
+
+/// Whether two frames are one photograph given twice: the same camera, surface and highlights, to the last bit. Noise never repeats itself
+/// like that, so the second one is no further observation: it would only take weight from priors, and stand in for the first one where
+/// that is left out to judge a choice.
+bool sameObservation(const Inspection& r, int frame, int other) {
+  const Frame &a = r.scene->frames[static_cast<std::size_t>(frame)], &b = r.scene->frames[static_cast<std::size_t>(other)];
+  if (a.surface != b.surface || a.depth != b.depth || a.camera.pixelFromRay != b.camera.pixelFromRay ||
+      a.camera.camFromWorld.matrix() != b.camera.camFromWorld.matrix())
+    return false;
+  const std::vector<Highlight>&h = r.evidence[static_cast<std::size_t>(frame)].highlights,
+        &k = r.evidence[static_cast<std::size_t>(other)].highlights;
+  return !h.empty() && std::equal(h.begin(), h.end(), k.begin(), k.end(), [](const Highlight& x, const Highlight& y) {
+    return x.light == y.light && x.level == y.level && x.peak == y.peak && x.contour.points == y.contour.points;
+  });
+}
 
 class Run {
  public:

@@ -5,9 +5,22 @@
 #include <utility>
 
 #include "core/pipeline/corrected_depth.h"
+#include "core/pipeline/frame_spec.h"
 #include "core/surface/mesh_policy.h"
 
 namespace glint {
+
+TrainSpec parseTrainSpec(const std::string& text, const Scene& scene) {
+  TrainSpec spec;
+  spec.text = text;
+  if (text == "per-surface") {
+    spec.perSurface = true;
+    for (int i = 0; i < static_cast<int>(scene.frames.size()); ++i) spec.frames.push_back(i);
+    return spec;
+  }
+  spec.frames = parseFrames(text, scene, "--train");
+  return spec;
+}
 
 TrainingView Inspection::viewAsGiven(int view) const {
   const auto given = viewsAsGiven.find(view);

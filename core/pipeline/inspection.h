@@ -9,9 +9,10 @@
 
 #include "core/base/progress.h"
 #include "core/base/settings.h"
-#include "core/evaluate/metrics.h"
 #include "core/model/model.h"
+#include "core/pipeline/comparison.h"
 #include "core/pipeline/fit_key.h"
+#include "core/pipeline/frame_evidence.h"
 #include "core/pipeline/stage_inputs.h"
 #include "core/pipeline/surface_correction.h"
 #include "core/pipeline/what_if.h"
@@ -42,46 +43,6 @@ struct InspectionRequest {
   std::string truthFolder;               ///< --truth DIR, "" = own detection
   WhatIf whatIf;                         ///< changes to scene and evidence that the user tries out
   friend bool operator==(const InspectionRequest&, const InspectionRequest&) = default;
-};
-
-/// One frame's evidence.
-struct FrameEvidence {
-  int frame = -1;
-  std::vector<Highlight> highlights;     ///< each with its light
-  std::optional<Failure> failure;        ///< why there are no highlights: NoHighlight, FrameUnreadable, ...
-  bool againstTruth = false;             ///< --truth is given: `truth` is scored, whatever was detected
-  std::vector<int> found;  ///< where lights are switched off: which of the highlights as found each one is; else empty
-  /// Index among the highlights as found, which is what a what-if names them by.
-  int asFound(int highlight) const { return found.empty() ? highlight : found[static_cast<std::size_t>(highlight)]; }
-  std::vector<Highlight> truth;
-  std::optional<Failure> truthFailure;   ///< the frame has no truth, so it cannot be scored
-  /// What predictions are compared with, and why there is nothing.
-  const std::vector<Highlight>& scored() const { return againstTruth ? truth : highlights; }
-  const std::optional<Failure>& scoringFailure() const { return againstTruth ? truthFailure : failure; }
-};
-
-/// How a predicted contour's band does against the observed one; vertices on the surface's own edge have none and do not count.
-struct BandScore {
-  double sigmaPx = 0;   ///< mean over the vertices
-  double coverage = 0;  ///< share of the vertices whose distance from the observed contour is within 1.96 sigma
-};
-
-/// Prediction of one model for one light in one frame, compared with the evidence.
-struct FrameComparison {
-  int frame = -1;
-  std::string light;
-  int fit = -1;                          ///< index into ModelResult::fits
-  Prediction prediction;
-  /// One row per matched pair, per missed observed and per spurious predicted highlight.
-  struct Row {
-    int observed = -1;                   ///< index into FrameEvidence::scored(); -1 = spurious
-    int predicted = -1;                  ///< index into prediction.highlights; -1 = missed
-    std::optional<ContourMetrics> metrics;
-    std::optional<Failure> failure;
-    std::optional<BandScore> band;       ///< of a matched pair whose prediction has a band
-  };
-  std::vector<Row> rows;
-  double iou = 0;                        ///< over the union of all regions of this light
 };
 
 struct ModelResult {

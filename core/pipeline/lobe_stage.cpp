@@ -10,6 +10,7 @@
 #include "core/model/pixel_evidence.h"
 #include "core/model/reflectance_settings.h"
 #include "core/pipeline/evidence.h"
+#include "core/pipeline/requested_evidence.h"
 #include "core/pipeline/stage_inputs.h"
 #include "core/pipeline/training.h"
 #include "core/reflectance/lobe_contour.h"

@@ -11,6 +11,7 @@
 #include "core/pipeline/evidence.h"
 #include "core/pipeline/lobe_stage.h"
 #include "core/pipeline/several_lights.h"
+#include "core/pipeline/requested_evidence.h"
 #include "core/pipeline/stage_inputs.h"
 #include "core/surface/mesh_policy.h"
 

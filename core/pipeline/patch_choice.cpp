@@ -7,7 +7,7 @@
 #include "core/base/elapsed.h"
 #include "core/base/number_text.h"
 #include "core/evaluate/metrics.h"
-#include "core/evaluate/summary.h"
+#include "core/evaluate/statistic.h"
 #include "core/model/star.h"
 #include "core/pipeline/leave_one_out.h"
 #include "core/pipeline/training.h"

@@ -9,7 +9,7 @@
 #include "core/base/elapsed.h"
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
-#include "core/evaluate/summary.h"
+#include "core/evaluate/statistic.h"
 #include "core/pipeline/extrapolation.h"
 #include "core/pipeline/surface_assumption.h"
 

@@ -68,10 +68,6 @@ bool lightsNeedAllFrames(const Scene& scene) {
   });
 }
 
-bool lightsAreOpenIn(const Scene& scene, const InspectionRequest& request) {
-  return !request.whatIf.synthesise && lightsNeedAllFrames(scene);
-}
-
 void assignSeveralLights(const Scene& scene, std::vector<FrameEvidence>& evidence,
                          const std::function<std::shared_ptr<const Surface>(int frame)>& surfaceOf,
                          const std::function<FrameEvidence(int frame, const SeparateLights&)>& detectAgain,

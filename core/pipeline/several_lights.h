@@ -7,16 +7,12 @@
 
 #include "core/base/progress.h"
 #include "core/pipeline/evidence.h"
-#include "core/pipeline/inspection.h"
 
 namespace glint {
 
 /// Some frame shows highlights whose light is not known from the frame alone: no frame's evidence is final before all are
 /// gathered.
 bool lightsNeedAllFrames(const Scene& scene);
-
-/// The same for what a request asks for: what is synthesised knows its lights.
-bool lightsAreOpenIn(const Scene& scene, const InspectionRequest& request);
 
 /// Gives every highlight its light where several are on or none is stated (core/light/track.h), and brings the highlights of
 /// one light in a frame to one level. Does nothing where every highlight has its light.

@@ -50,18 +50,6 @@ TrainingView seenAgain(const TrainingView& view, const Camera& camera, std::shar
   return trainingView(evidence, 0, camera, std::move(surface));
 }
 
-bool sameObservation(const Inspection& r, int frame, int other) {
-  const Frame &a = r.scene->frames[static_cast<std::size_t>(frame)], &b = r.scene->frames[static_cast<std::size_t>(other)];
-  if (a.surface != b.surface || a.depth != b.depth || a.camera.pixelFromRay != b.camera.pixelFromRay ||
-      a.camera.camFromWorld.matrix() != b.camera.camFromWorld.matrix())
-    return false;
-  const std::vector<Highlight>&h = r.evidence[static_cast<std::size_t>(frame)].highlights,
-        &k = r.evidence[static_cast<std::size_t>(other)].highlights;
-  return !h.empty() && std::equal(h.begin(), h.end(), k.begin(), k.end(), [](const Highlight& x, const Highlight& y) {
-    return x.light == y.light && x.level == y.level && x.peak == y.peak && x.contour.points == y.contour.points;
-  });
-}
-
 namespace {
 
 /// Whether the limit angle gets an extent. With -1 the views decide: only where one constant leaves residuals that are both visible and

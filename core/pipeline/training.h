@@ -3,7 +3,10 @@
 
 #include <vector>
 
-#include "core/pipeline/inspection.h"
+#include "core/base/settings.h"
+#include "core/light/refine_depth.h"
+#include "core/model/model.h"
+#include "core/pipeline/frame_evidence.h"
 #include "core/surface/surface.h"
 
 namespace glint {
@@ -15,11 +18,6 @@ TrainingView trainingView(const FrameEvidence& evidence, int highlight, const Ca
 
 /// The highlight of a view as another camera or surface would have it. Pixels and contours at other levels are not carried over.
 TrainingView seenAgain(const TrainingView& view, const Camera& camera, std::shared_ptr<const Surface> surface);
-
-/// Whether two frames are one photograph given twice: the same camera, surface and highlights, to the last bit. Noise never repeats itself
-/// like that, so the second one is no further observation: it would only take weight from priors, and stand in for the first one where
-/// that is left out to judge a choice.
-bool sameObservation(const Inspection& inspection, int frame, int other);
 
 /// The light of some views of one light (method.md section 4): triangulated, then bundled when `light.solver` says so.
 /// TooFewViews; LightBehindSurface; what the bundle reports. A bundle that fails falls back to nothing: its reason is returned.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/pipeline/fitted_lobe.h"
 #include "core/pipeline/what_if_knobs.h"
 #include "gui/document/document.h"
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <set>
 
+#include "core/pipeline/fitted_lobe.h"
 #include "core/pipeline/inspection.h"
 #include "core/pipeline/session.h"
 #include "core/pipeline/what_if_json.h"

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
+#include "core/pipeline/frame_spec.h"
+
 #include <charconv>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 
-#include "core/pipeline/frame_spec.h"
-#include "core/pipeline/inspection.h"
+#include "core/base/outcome.h"
 
 namespace glint {
 namespace {
@@ -99,18 +100,6 @@ std::string frameSpec(const std::vector<int>& frames, const Scene& scene) {
     ++i;
   }
   return text;
-}
-
-TrainSpec parseTrainSpec(const std::string& text, const Scene& scene) {
-  TrainSpec spec;
-  spec.text = text;
-  if (text == "per-surface") {
-    spec.perSurface = true;
-    for (int i = 0; i < static_cast<int>(scene.frames.size()); ++i) spec.frames.push_back(i);
-    return spec;
-  }
-  spec.frames = parseFrames(text, scene, "--train");
-  return spec;
 }
 
 }  // namespace glint
