@@ -66,22 +66,22 @@ void addDetection(KeyResults& results, const Inspection& inspection) {
 }
 
 /// In the order in which they are computed. Each uses those before it.
-enum class Stage { Detection, Light, Fit, Prediction };
+enum class ResultStage { Detection, Light, Fit, Prediction };
 
-Stage stageOf(const std::string& keyResult) {
-  if (keyResult.rfind("detect.", 0) == 0) return Stage::Detection;
-  if (keyResult.rfind("light.", 0) == 0) return Stage::Light;
-  return keyResult.find(".fit.") != std::string::npos ? Stage::Fit : Stage::Prediction;
+ResultStage stageOf(const std::string& keyResult) {
+  if (keyResult.rfind("detect.", 0) == 0) return ResultStage::Detection;
+  if (keyResult.rfind("light.", 0) == 0) return ResultStage::Light;
+  return keyResult.find(".fit.") != std::string::npos ? ResultStage::Fit : ResultStage::Prediction;
 }
 
-std::string wordsFor(Stage stage, bool detectionKnown) {
+std::string wordsFor(ResultStage stage, bool detectionKnown) {
   // A session of an older program knows nothing of the contours that it detected, on which all the rest depends.
   if (!detectionKnown) return "detection or a later stage: the session is older and has no detection results";
   switch (stage) {
-    case Stage::Detection: return "detection";
-    case Stage::Light: return "light";
-    case Stage::Fit: return "fit";
-    case Stage::Prediction: return "prediction";
+    case ResultStage::Detection: return "detection";
+    case ResultStage::Light: return "light";
+    case ResultStage::Fit: return "fit";
+    case ResultStage::Prediction: return "prediction";
   }
   return "";
 }
@@ -225,7 +225,7 @@ Replay replay(const Session& session, const Relinked& instead, const ProgressFn&
   const auto find = [](const KeyResults& all, const std::string& name) {
     return std::find_if(all.begin(), all.end(), [&](const auto& r) { return r.first == name; });
   };
-  std::optional<Stage> first;
+  std::optional<ResultStage> first;
   const auto differs = [&](const std::string& name, const std::string& how) {
     result.differences.push_back(name + ": " + how);
     first = first ? std::min(*first, stageOf(name)) : stageOf(name);
@@ -243,9 +243,9 @@ Replay replay(const Session& session, const Relinked& instead, const ProgressFn&
       differs(name, "was " + shortest(value) + ", is " + shortest(it->second));
   }
   const bool detectionKnown = std::any_of(session.keyResults.begin(), session.keyResults.end(),
-                                          [](const auto& r) { return stageOf(r.first) == Stage::Detection; });
+                                          [](const auto& r) { return stageOf(r.first) == ResultStage::Detection; });
   for (const auto& [name, value] : now)
-    if ((detectionKnown || stageOf(name) != Stage::Detection) && find(session.keyResults, name) == session.keyResults.end())
+    if ((detectionKnown || stageOf(name) != ResultStage::Detection) && find(session.keyResults, name) == session.keyResults.end())
       differs(name, "is " + shortest(value) + ", was not computed");
   if (first) result.firstChanged = wordsFor(*first, detectionKnown);
   result.digestAgrees = digestOf(inspection) == session.digest;
