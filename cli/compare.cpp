@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/commands.h"
 #include "cli/scene_arguments.h"
-#include "core/evaluate/compare_runs.h"
+#include "core/report/compare_runs.h"
 #include "core/scene/outputs.h"
 
 namespace glint::cli {

@@ -10,9 +10,9 @@
 #include "core/base/atomic_folder.h"
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
+#include "core/fit/evidence.h"
 #include "core/highlight/background.h"
 #include "core/highlight/report.h"
-#include "core/pipeline/evidence.h"
 #include "core/scene/outputs.h"
 
 namespace glint::cli {

@@ -4,11 +4,11 @@
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
 #include "core/base/number_text.h"
-#include "core/evaluate/report.h"
-#include "core/evaluate/summary.h"
-#include "core/evaluate/warnings.h"
-#include "core/pipeline/selection.h"
+#include "core/inspect/summary.h"
+#include "core/report/report.h"
+#include "core/report/warnings.h"
 #include "core/scene/outputs.h"
+#include "core/selection/selection.h"
 
 namespace glint::cli {
 

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <sstream>
 
-#include "core/pipeline/frame_spec.h"
-#include "core/pipeline/session.h"
+#include "core/scene/frame_spec.h"
+#include "core/session/session.h"
 #include "core/tradeoff/choice.h"
 
 namespace glint::cli {

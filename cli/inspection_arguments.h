@@ -8,7 +8,7 @@
 
 #include "cli/command.h"
 #include "cli/scene_arguments.h"
-#include "core/pipeline/inspection.h"
+#include "core/inspect/inspection.h"
 
 namespace glint {
 struct Session;

@@ -9,7 +9,7 @@
 
 #include "cli/command.h"
 #include "cli/scene_arguments.h"
-#include "core/pipeline/session.h"
+#include "core/session/session.h"
 #include "viz/scene_view.h"
 
 namespace glint::cli {

@@ -2,7 +2,7 @@
 #include "cli/commands.h"
 #include "cli/scene_arguments.h"
 #include "core/base/number_text.h"
-#include "core/pipeline/session.h"
+#include "core/session/session.h"
 
 namespace glint::cli {
 

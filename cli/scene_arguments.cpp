@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <set>
 
-#include "core/pipeline/session_rights.h"
 #include "core/scene/scene_files.h"
+#include "core/session/session_rights.h"
 
 namespace glint::cli {
 namespace fs = std::filesystem;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "core/pipeline/session.h"
+#include "core/session/session.h"
 
 namespace glint::cli {
 

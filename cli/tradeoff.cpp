@@ -4,9 +4,9 @@
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
 #include "core/base/number_text.h"
-#include "core/pipeline/session.h"
 #include "core/scene/outputs.h"
-#include "core/tradeoff/run.h"
+#include "core/session/session.h"
+#include "core/trials/run.h"
 
 namespace glint::cli {
 namespace {

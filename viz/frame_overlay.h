@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/geometry/camera.h"
-#include "core/pipeline/inspection.h"
+#include "core/inspect/inspection.h"
 #include "viz/selection.h"
 #include "viz/style.h"
 

@@ -12,8 +12,8 @@
 
 #include "core/base/number_text.h"
 #include "core/base/unit_text.h"
-#include "core/pipeline/photograph.h"
-#include "core/pipeline/training.h"
+#include "core/fit/training.h"
+#include "core/inspect/photograph.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
 #include "viz/view_camera.h"

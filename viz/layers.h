@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "core/pipeline/inspection.h"
+#include "core/inspect/inspection.h"
 #include "viz/convert.h"
 #include "viz/hidden_objects.h"
 #include "viz/scene_view.h"

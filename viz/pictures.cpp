@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "core/base/number_text.h"
-#include "core/pipeline/photograph.h"
-#include "core/pipeline/what_if_knobs.h"
+#include "core/inspect/photograph.h"
+#include "core/what_if/knobs.h"
 #include "viz/annotations.h"
 #include "viz/error_text.h"
 #include "viz/missed.h"

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "core/pipeline/inspection.h"
+#include "core/inspect/inspection.h"
 #include "viz/hidden_objects.h"
 #include "viz/selection.h"
 

@@ -6,8 +6,8 @@
 
 #include "core/base/parallel.h"
 #include "core/diagnostics/polar_residual.h"
-#include "core/pipeline/comparison.h"
-#include "core/pipeline/leave_one_out.h"
+#include "core/score/comparison.h"
+#include "core/selection/leave_one_out.h"
 
 namespace glint {
 namespace {

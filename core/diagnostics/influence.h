@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/pipeline/inspection.h"
+#include "core/inspect/inspection.h"
 
 namespace glint {
 
@@ -45,7 +45,7 @@ struct Influence {
 /// tried or nothing was predicted.
 std::optional<double> influenceOf(const Influence& influence, int frame, const std::string& model);
 
-/// Fits every model of the inspection again without each training frame (core/pipeline/leave_one_out.h), and predicts the frame
+/// Fits every model of the inspection again without each training frame (core/selection/leave_one_out.h), and predicts the frame
 /// and some held-out frames. Uses the evidence and views of the inspection; noise on contours is part of them. Several threads;
 /// throws Stopped.
 /// @param mostProbes  held-out frames with highlights, evenly spread, that are predicted again for every frame and model.

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/pipeline/inspection.h"
+#include "core/inspect/inspection.h"
 
 namespace glint {
 

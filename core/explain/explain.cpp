@@ -12,10 +12,10 @@
 #include "core/base/angle.h"
 #include "core/diagnostics/conditioning.h"
 #include "core/explain/explain_case.h"
+#include "core/fit/training.h"
 #include "core/geometry/epipolar.h"
 #include "core/highlight/peak.h"
 #include "core/light/estimate.h"
-#include "core/pipeline/training.h"
 
 namespace glint {
 

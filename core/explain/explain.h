@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/pipeline/inspection.h"
+#include "core/inspect/inspection.h"
 
 namespace glint {
 

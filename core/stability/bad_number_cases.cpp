@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "core/evaluate/metrics.h"
 #include "core/geometry/distortion.h"
 #include "core/geometry/ellipsoid.h"
 #include "core/highlight/highlight.h"
 #include "core/light/estimate.h"
 #include "core/model/reconstruct.h"
+#include "core/score/metrics.h"
 #include "core/stability/cases.h"
 #include "core/stability/scene.h"
 #include "core/surface/depth_map.h"

@@ -9,7 +9,7 @@
 #include <memory>
 #include <mutex>
 
-#include "core/pipeline/photograph.h"
+#include "core/inspect/photograph.h"
 
 namespace glint::gui {
 

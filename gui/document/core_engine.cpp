@@ -2,7 +2,7 @@
 #include <QCoreApplication>
 #include <filesystem>
 
-#include "core/tradeoff/run.h"
+#include "core/trials/run.h"
 #include "gui/document/engine.h"
 #include "gui/document/session_file.h"
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/explain/explain.h"
-#include "core/pipeline/frame_spec.h"
+#include "core/scene/frame_spec.h"
 #include "gui/base/text.h"
 #include "gui/document/state_command.h"
 #include "gui/scene/scene_options.h"

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "core/diagnostics/influence.h"
-#include "core/pipeline/inspection.h"
-#include "core/pipeline/observation.h"
-#include "core/pipeline/selection.h"
+#include "core/inspect/inspection.h"
+#include "core/inspect/observation.h"
 #include "core/scene/relinked.h"
+#include "core/selection/selection.h"
 #include "core/tradeoff/tradeoff.h"
 #include "viz/scene_view.h"
 

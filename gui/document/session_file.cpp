@@ -9,8 +9,8 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/temporary_path.h"
-#include "core/pipeline/session.h"
 #include "core/scene/mesh_file.h"
+#include "core/session/session.h"
 #include "gui/base/text.h"
 #include "gui/document/figure.h"
 #include "gui/document/own_files.h"

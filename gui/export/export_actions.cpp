@@ -12,11 +12,11 @@
 #include <utility>
 
 #include "core/base/atomic_file.h"
-#include "core/evaluate/command_text.h"
-#include "core/evaluate/labels.h"
-#include "core/evaluate/masks.h"
-#include "core/evaluate/report.h"
-#include "core/pipeline/photograph.h"
+#include "core/inspect/photograph.h"
+#include "core/report/command_text.h"
+#include "core/report/labels.h"
+#include "core/report/masks.h"
+#include "core/report/report.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/to_qimage.h"

@@ -14,8 +14,8 @@
 #include <utility>
 
 #include "core/geometry/polyline.h"
-#include "core/pipeline/what_if_knobs.h"
 #include "core/scene/scene_files.h"
+#include "core/what_if/knobs.h"
 #include "gui/base/flow_layout.h"
 #include "gui/base/panel_scroll.h"
 #include "gui/base/text.h"

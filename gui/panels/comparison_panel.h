@@ -4,7 +4,7 @@
 #include <QWidget>
 #include <memory>
 
-#include "core/evaluate/compare_runs.h"
+#include "core/report/compare_runs.h"
 #include "gui/base/actions.h"
 #include "gui/document/document.h"
 

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/pipeline/inspection.h"
+#include "core/inspect/inspection.h"
 #include "gui/document/document.h"
 
 namespace glint::gui {

@@ -20,8 +20,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/evaluate/summary.h"
-#include "core/evaluate/warnings.h"
+#include "core/inspect/summary.h"
+#include "core/report/warnings.h"
 #include "gui/base/flow_layout.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"

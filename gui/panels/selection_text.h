@@ -4,7 +4,7 @@
 #include <QString>
 #include <vector>
 
-#include "core/pipeline/inspection.h"
+#include "core/inspect/inspection.h"
 #include "viz/scene_view.h"
 
 namespace glint::gui {

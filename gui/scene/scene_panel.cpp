@@ -16,7 +16,7 @@
 #include <functional>
 #include <utility>
 
-#include "core/pipeline/what_if_drag.h"
+#include "core/what_if/drag.h"
 #include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"

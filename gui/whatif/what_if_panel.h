@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/pipeline/fitted_lobe.h"
-#include "core/pipeline/what_if_knobs.h"
+#include "core/inspect/fitted_lobe.h"
+#include "core/what_if/knobs.h"
 #include "gui/document/document.h"
 
 class QCheckBox;

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/base/temporary_path.h"
-#include "core/pipeline/session.h"
+#include "core/session/session.h"
 #include "gui/base/text.h"
 
 namespace glint::gui {

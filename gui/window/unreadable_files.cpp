@@ -12,8 +12,8 @@
 #include <QVBoxLayout>
 #include <optional>
 
-#include "core/pipeline/session.h"
 #include "core/scene/mesh_file.h"
+#include "core/session/session.h"
 #include "gui/base/text.h"
 #include "gui/base/tips.h"
 #include "gui/window/file_actions.h"

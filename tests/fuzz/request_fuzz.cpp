@@ -5,8 +5,8 @@
 
 #include "core/base/outcome.h"
 #include "core/base/settings.h"
-#include "core/pipeline/inspection.h"
-#include "core/tradeoff/work_file.h"
+#include "core/inspect/inspection.h"
+#include "core/trials/work_file.h"
 #include "tests/fuzz/readers.h"
 #include "tests/fuzz/scratch_file.h"
 

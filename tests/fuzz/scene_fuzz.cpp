@@ -2,10 +2,10 @@
 // The readers of JSON documents: scene, session, specification of synth, contours of --truth. What was read can be written, and what was
 // written is read again.
 #include "core/base/outcome.h"
-#include "core/pipeline/evidence.h"
-#include "core/pipeline/inspection.h"
-#include "core/pipeline/session.h"
+#include "core/fit/evidence.h"
+#include "core/inspect/inspection.h"
 #include "core/scene/scene_json.h"
+#include "core/session/session.h"
 #include "core/synth/synth.h"
 #include "tests/fuzz/readers.h"
 #include "tests/fuzz/scratch_file.h"

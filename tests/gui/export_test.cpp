@@ -18,7 +18,7 @@
 #include <QPushButton>
 #include <QTimer>
 
-#include "core/evaluate/report.h"
+#include "core/report/report.h"
 #include "gui/base/text.h"
 #include "gui/document/figure.h"
 #include "gui/document/session_file.h"

@@ -23,7 +23,7 @@
 #include <QTextDocument>
 #include <QToolTip>
 
-#include "core/evaluate/report.h"
+#include "core/report/report.h"
 #include "gui/base/text.h"
 #include "gui/base/tips.h"
 #include "gui/timeline/timeline.h"

@@ -10,7 +10,7 @@
 #include <QToolButton>
 #include <map>
 
-#include "core/pipeline/session.h"
+#include "core/session/session.h"
 #include "core/synth/synth.h"
 #include "gui/base/number_box.h"
 #include "gui/base/text.h"

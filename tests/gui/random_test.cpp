@@ -15,7 +15,7 @@
 #include <map>
 #include <random>
 
-#include "core/pipeline/session.h"
+#include "core/session/session.h"
 #include "gui/base/text.h"
 #include "gui/panels/parameter_panel.h"
 #include "gui/timeline/timeline.h"

@@ -20,7 +20,7 @@
 #include <QPushButton>
 #include <QTimer>
 
-#include "core/pipeline/session.h"
+#include "core/session/session.h"
 #include "gui/base/text.h"
 #include "gui/document/own_files.h"
 #include "gui/document/session_file.h"

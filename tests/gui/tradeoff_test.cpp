@@ -5,7 +5,7 @@
 #include <QPushButton>
 #include <QSignalSpy>
 
-#include "core/pipeline/session.h"
+#include "core/session/session.h"
 #include "gui/document/session_file.h"
 #include "gui/panels/setup_panel.h"
 #include "gui/panels/tradeoff_panel.h"

@@ -10,7 +10,7 @@
 
 #include "core/explain/explain.h"
 #include "core/geometry/epipolar.h"
-#include "core/pipeline/session.h"
+#include "core/session/session.h"
 
 namespace glint {
 namespace {

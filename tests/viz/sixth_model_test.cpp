@@ -8,11 +8,11 @@
 #include <numbers>
 
 #include "core/diagnostics/conditioning.h"
-#include "core/evaluate/report.h"
 #include "core/explain/explain.h"
 #include "core/model/models.h"
+#include "core/report/report.h"
 #include "core/tradeoff/tradeoff.h"
-#include "tests/core/pipeline/exact_scene.h"
+#include "tests/core/inspect/exact_scene.h"
 #include "viz/frame_overlay.h"
 #include "viz/pictures.h"
 #include "viz/style.h"

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "core/pipeline/inspection.h"
+#include "core/inspect/inspection.h"
 #include "viz/walk_story.h"
 
 namespace glint::test {

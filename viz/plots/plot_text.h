@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "core/pipeline/inspection.h"
+#include "core/inspect/inspection.h"
 #include "viz/plots/plot_data.h"
 
 namespace glint::viz {

@@ -8,7 +8,7 @@
 
 #include "core/base/angle.h"
 #include "core/base/number_text.h"
-#include "core/pipeline/photograph.h"
+#include "core/inspect/photograph.h"
 #include "viz/plots/plot_text.h"
 
 namespace glint::viz {

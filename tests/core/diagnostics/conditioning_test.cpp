@@ -9,7 +9,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "tests/core/pipeline/exact_scene.h"
+#include "tests/core/inspect/exact_scene.h"
 #include "tests/tolerances.h"
 
 namespace glint {

@@ -6,7 +6,7 @@
 
 #include <atomic>
 
-#include "tests/core/pipeline/exact_scene.h"
+#include "tests/core/inspect/exact_scene.h"
 
 namespace glint {
 namespace {

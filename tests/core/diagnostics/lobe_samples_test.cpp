@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "tests/core/pipeline/exact_scene.h"
+#include "tests/core/inspect/exact_scene.h"
 
 namespace glint {
 namespace {

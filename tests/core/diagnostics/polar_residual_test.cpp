@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/core/pipeline/exact_scene.h"
+#include "tests/core/inspect/exact_scene.h"
 #include "tests/tolerances.h"
 
 namespace glint {

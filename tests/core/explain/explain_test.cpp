@@ -14,7 +14,7 @@
 
 #include "core/explain/walk_trace.h"
 #include "core/geometry/epipolar.h"
-#include "tests/core/pipeline/exact_scene.h"
+#include "tests/core/inspect/exact_scene.h"
 
 namespace glint {
 namespace {

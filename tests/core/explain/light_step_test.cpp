@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "core/explain/explain.h"
-#include "tests/core/pipeline/exact_scene.h"
+#include "tests/core/inspect/exact_scene.h"
 
 namespace glint {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <random>
 
-#include "core/evaluate/metrics.h"
 #include "core/model/models.h"
 #include "core/model/star.h"
+#include "core/score/metrics.h"
 #include "core/surface/mesh.h"
 #include "tests/core/model/exact_views.h"
 #include "tests/tolerances.h"

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/evaluate/metrics.h"
-#include "core/pipeline/inspection.h"
+#include "core/inspect/inspection.h"
+#include "core/score/metrics.h"
 #include "tests/core/model/exact_views.h"
 #include "tests/tolerances.h"
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/evaluate/metrics.h"
 #include "core/model/models.h"
+#include "core/score/metrics.h"
 #include "tests/core/reflectance/radiance_views.h"
 
 namespace glint {

@@ -7,10 +7,10 @@
 
 #include <cmath>
 
-#include "core/evaluate/metrics.h"
 #include "core/model/models.h"
 #include "core/model/radiance_star.h"
 #include "core/reflectance/radiance_bound.h"
+#include "core/score/metrics.h"
 #include "core/surface/mesh.h"
 #include "tests/core/model/exact_views.h"
 

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "core/evaluate/metrics.h"
 #include "core/light/directed_limit.h"
 #include "core/light/estimate.h"
 #include "core/model/models.h"
+#include "core/score/metrics.h"
 #include "tests/core/model/exact_views.h"
 
 namespace glint {

@@ -9,12 +9,12 @@
 #include <random>
 
 #include "core/geometry/plane.h"
+#include "core/inspect/inspection.h"
 #include "core/light/estimate.h"
 #include "core/model/reconstruct.h"
 #include "core/model/walk.h"
-#include "core/pipeline/inspection.h"
 #include "core/stability/scene.h"
-#include "tests/core/pipeline/exact_scene.h"
+#include "tests/core/inspect/exact_scene.h"
 
 namespace glint {
 namespace {

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/fit/evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "core/base/atomic_file.h"
+#include "core/base/json_text.h"
+#include "core/base/number_text.h"
+#include "core/base/safe_text.h"
+#include "core/geometry/distortion.h"
+#include "core/scene/bounded_json.h"
+
+namespace glint {
+namespace {
+
+constexpr int kNoisePoints = 72;       // docs/formats.md, "Noise"
+constexpr double kSameLevel = 1e-6;    // levels are typed with a few digits
+
+/// The reason when a part of the highlight lies where the lens distortion has no inverse.
+std::optional<Failure> toIdealPixels(Highlight& h, const Camera& camera) {
+  if (!camera.hasDistortion()) return std::nullopt;
+  const auto undistort = [&](Pixel& p) -> std::optional<Failure> {
+    const Outcome<Pixel> ideal = withoutDistortion(camera, p);
+    if (!ideal) return ideal.failure();
+    p = *ideal;
+    return std::nullopt;
+  };
+  for (Pixel& p : h.contour.points)
+    if (const std::optional<Failure> failure = undistort(p)) return failure;
+  if (const std::optional<Failure> failure = undistort(h.peak)) return failure;
+  h.areaPx2 = std::abs(signedArea(h.contour));
+  h.ellipse.reset();
+  return std::nullopt;
+}
+
+void fitMissingEllipse(Highlight& h) {
+  if (h.ellipse || h.contour.points.size() < 5) return;
+  if (const Outcome<Ellipse> e = fitEllipse(h.contour.points)) h.ellipse = *e;
+}
+
+std::filesystem::path truthFile(const std::string& folder, const Frame& frame) {
+  return std::filesystem::path(folder) / (fileNameOf(frame.id) + ".json");
+}
+
+}  // namespace
+
+void addOtherLevels(const std::vector<Highlight>& given, std::vector<Highlight>& highlights) {
+  for (const Highlight& other : given)
+    for (Highlight& h : highlights) {
+      if (std::abs(other.level - h.level) < kSameLevel || other.light != h.light || !contains(other.contour, h.peak)) continue;
+      h.otherLevels.push_back({other.level, other.contour});
+      break;
+    }
+}
+
+DetectOptions detectOptionsFor(const Frame& frame, FrameSource source, const Settings& settings) {
+  DetectOptions options;
+  options.level = settings.number("detect.level");
+  options.minAreaPx2 = settings.number("detect.min_area");
+  options.minContrast = settings.number("detect.min_contrast");
+  options.peakWindowLevel = settings.number("detect.peak_window");
+  options.clipValue = settings.number("detect.clip");
+  const bool photograph = frame.radiance.empty() || (source == FrameSource::Image && !frame.image.empty());
+  if (options.clipValue == 0 && photograph) options.clipValue = 1.0;  // linearised codes end at 1
+  return options;
+}
+
+Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const Settings& settings) {
+  const Outcome<Image> linear = readLinear(frame, source);
+  if (!linear) return linear.failure();
+  const Outcome<std::optional<Image>> mask = readMask(frame);
+  if (!mask) return mask.failure();
+  return linearPixels(*linear, mask->has_value() ? &**mask : nullptr, detectOptionsFor(frame, source, settings).clipValue);
+}
+
+FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, const Settings& settings, const SeparateLights& lights) {
+  const Frame& frame = scene.frames[index];
+  FrameEvidence evidence;
+  evidence.frame = index;
+  const double level = settings.number("detect.level");
+  for (const Highlight& h : frame.highlights)
+    if (std::abs(h.level - level) < kSameLevel) evidence.highlights.push_back(h);
+  addOtherLevels(frame.highlights, evidence.highlights);
+  if (evidence.highlights.empty()) {
+    if (frame.radiance.empty() && frame.image.empty()) {
+      if (!frame.highlights.empty()) {
+        evidence.failure = Failure{Reason::NoHighlight, "frame " + frame.id + " has highlights at other levels only"};
+        return evidence;
+      }
+      evidence.failure = Failure{Reason::FrameUnreadable, "frame " + frame.id + " has no image, radiance or highlights"};
+      return evidence;
+    }
+    const Outcome<Image> linear = readLinear(frame, source);
+    if (!linear) {
+      evidence.failure = linear.failure();
+      return evidence;
+    }
+    const Outcome<std::optional<Image>> mask = readMask(frame);
+    if (!mask) {
+      evidence.failure = mask.failure();
+      return evidence;
+    }
+    DetectOptions options = detectOptionsFor(frame, source, settings);
+    options.separatePeaks = lights.separate || frame.lightsOn.size() > 1;
+    options.references = lights.references;
+    for (PeakReference& r : options.references) r.peak = frame.camera.distorted(r.peak);
+    Outcome<std::vector<Highlight>> found = detectHighlights(*linear, mask->has_value() ? &**mask : nullptr, options);
+    if (!found) {
+      evidence.failure = found.failure();
+      return evidence;
+    }
+    for (Highlight& h : *found) {
+      if (std::optional<Failure> failure = toIdealPixels(h, frame.camera))
+        evidence.failure = std::move(failure);  // stands only when no other highlight is left
+      else
+        evidence.highlights.push_back(std::move(h));
+    }
+    if (evidence.highlights.empty()) return evidence;
+    evidence.failure.reset();
+  }
+  for (Highlight& h : evidence.highlights) {
+    // With several lights on, the assignment over all frames decides.
+    if (h.light.empty() && frame.lightsOn.size() <= 1) h.light = frame.lightsOn.empty() ? "light" : frame.lightsOn.front();
+    if (h.areaPx2 == 0) h.areaPx2 = std::abs(signedArea(h.contour));
+    fitMissingEllipse(h);
+  }
+  return evidence;
+}
+
+void requireTruthFolder(const std::string& folder, const Scene& scene) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error)) throw InputError(folder, "--truth", "this folder does not exist");
+  for (const Frame& frame : scene.frames)
+    if (std::filesystem::exists(truthFile(folder, frame))) return;
+  throw InputError(folder, "--truth",
+                   "contains no contours of these frames, such as " + fileNameOf(scene.frames.front().id) + ".json");
+}
+
+Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene& scene, int index, double level) {
+  const Frame& frame = scene.frames[index];
+  const std::filesystem::path file = truthFile(folder, frame);
+  if (!std::filesystem::exists(file)) return Failure{Reason::FrameUnreadable, file.string() + ": this file does not exist"};
+  std::vector<Highlight> truth;
+  const std::string key = formatted("%.2f", level), asked = formatted("%g", level);
+  const JsonNode root = JsonNode::parse(readFile(file, Limit::JsonMegabytes), file.string());
+  const JsonNode levels = root.at("levels");
+  const std::optional<JsonNode> contours = levels.find(key);
+  constexpr double kHundredths = 100;  // the keys have two decimals
+  if (!contours || std::abs(std::round(level * kHundredths) / kHundredths - level) > kSameLevel)
+    levels.fail("no contours at level " + key + " (requested " + asked + ")");
+  for (std::size_t i = 0; i < contours->size(); ++i) {
+    const JsonNode c = contours->at(i);
+    Highlight h;
+    h.light = frame.lightsOn.empty() ? "light" : frame.lightsOn.front();
+    h.level = level;
+    const JsonNode points = c.at("points");
+    for (std::size_t k = 0; k < points.size(); ++k) h.contour.points.push_back(pixel(points.at(k)));
+    h.contour = withoutRepeats(h.contour);
+    h.areaPx2 = std::abs(signedArea(h.contour));
+    if (!(h.areaPx2 > 0)) points.fail("the contour encloses no area");
+    const std::optional<JsonNode> closed = c.find("closed"), atEdge = c.find("edge_fraction");
+    h.touchesBorder = (closed && !closed->boolean()) || (atEdge && atEdge->number() > 0);
+    h.peak = centroid(h.contour);
+    truth.push_back(std::move(h));
+  }
+  // The stored sub-pixel peak belongs to the highlight that contains it; the others keep their centroid.
+  if (const std::optional<JsonNode> n = root.find("peak_subpixel"); n && !n->isNull()) {
+    const Pixel peak = pixel(*n);
+    for (Highlight& h : truth)
+      if (contains(h.contour, peak)) h.peak = peak;
+  }
+  for (Highlight& h : truth) {
+    if (const std::optional<Failure> failure = toIdealPixels(h, frame.camera)) return *failure;
+    fitMissingEllipse(h);
+  }
+  return truth;
+}
+
+Highlight withNoise(const Highlight& highlight, double sigma, unsigned seed, int frame, int index) {
+  if (!(sigma > 0) || highlight.contour.points.size() < 3) return highlight;
+  std::seed_seq sequence{seed, static_cast<unsigned>(frame), static_cast<unsigned>(index)};
+  std::mt19937_64 engine(sequence);
+  std::normal_distribution<double> gauss(0, sigma);
+  Highlight noisy = highlight;
+  const auto shake = [&](Polyline& contour) {
+    contour.points = resample(contour, kNoisePoints);
+    for (Pixel& p : contour.points) {
+      p.x() += gauss(engine);
+      p.y() += gauss(engine);
+    }
+  };
+  shake(noisy.contour);
+  noisy.peak.x() += gauss(engine);
+  noisy.peak.y() += gauss(engine);
+  for (LevelContour& c : noisy.otherLevels)
+    if (c.contour.points.size() >= 3) shake(c.contour);
+  noisy.areaPx2 = std::abs(signedArea(noisy.contour));
+  noisy.ellipse.reset();
+  fitMissingEllipse(noisy);
+  return noisy;
+}
+
+}  // namespace glint

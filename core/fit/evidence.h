@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/settings.h"
+#include "core/fit/frame_evidence.h"
+#include "core/reflectance/pixel_patch.h"
+#include "core/scene/scene.h"
+
+namespace glint {
+
+/// How the highlights of several lights are detected (DetectOptions::separatePeaks).
+struct SeparateLights {
+  bool separate = false;                   ///< also where the frame does not state several lights
+  std::vector<PeakReference> references;   ///< ideal pixels
+};
+
+/// How a frame's image is searched, without references.
+DetectOptions detectOptionsFor(const Frame& frame, FrameSource source, const Settings& settings);
+
+/// The image that detection sees, as evidence. FrameUnreadable.
+Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const Settings& settings);
+
+/// Contours at other levels, to the highlight of the same light whose peak they enclose. One around several peaks is evidence once.
+void addOtherLevels(const std::vector<Highlight>& given, std::vector<Highlight>& highlights);
+
+/// Highlights of one frame in ideal pixels: those that the scene gives, else detected (each at the level of its own peak where the frame states
+/// several lights). The light is set where the frame says which one is on (one light: its id; none stated: "light").
+FrameEvidence gatherEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings, const SeparateLights& lights = {});
+
+/// Contours stored as in data/cycles/*/contours (FOLDER/ID.json) at `level`, for scoring. FrameUnreadable when the frame has no
+/// file. InputError when a file does not parse, does not hold the level or has a contour without area.
+Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene& scene, int frame, double level);
+
+/// InputError when `folder` is none, or holds contours of no frame at all.
+void requireTruthFolder(const std::string& folder, const Scene& scene);
+
+/// The contour resampled to 72 points, with independent Gaussian noise per coordinate on them and on the peak (--noise-px).
+/// Depends on seed, frame and index only, not on which frames train.
+Highlight withNoise(const Highlight& highlight, double sigmaPx, unsigned seed, int frame, int index);
+
+}  // namespace glint

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/inspect/lobe_stage.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <map>
+
+#include "core/base/parallel.h"
+#include "core/fit/evidence.h"
+#include "core/fit/training.h"
+#include "core/inspect/requested_evidence.h"
+#include "core/inspect/stage_inputs.h"
+#include "core/model/pixel_evidence.h"
+#include "core/model/reflectance_settings.h"
+#include "core/reflectance/lobe_contour.h"
+
+namespace glint {
+namespace {
+
+bool trains(const Inspection& r, int frame) {
+  return std::binary_search(r.train.frames.begin(), r.train.frames.end(), frame) &&
+         std::find(r.request.excluded.begin(), r.request.excluded.end(), frame) == r.request.excluded.end();
+}
+
+std::vector<Highlight> ofOthers(const FrameEvidence& e, const std::string& light) {
+  std::vector<Highlight> others;
+  for (const Highlight& h : e.highlights)
+    if (h.light != light) others.push_back(h);
+  return others;
+}
+
+bool wasDetected(const FrameEvidence& e) {
+  return e.frame >= 0 && !e.highlights.empty() &&
+         std::none_of(e.highlights.begin(), e.highlights.end(), [](const Highlight& h) { return h.fromScene; });
+}
+
+/// The lobe of the detection is the one that the pixels show, whatever the model is told to take: contours do not depend on it.
+constexpr std::array<const char*, 2> kOfTheModel{"fit.lobe", "fit.light_size"};
+Settings anyLobe(Settings settings) {
+  for (const char* key : kOfTheModel) settings.reset(key);
+  return settings;
+}
+bool takesAnyLobe(const Settings& settings) {
+  const Settings any = anyLobe(settings);
+  return std::all_of(kOfTheModel.begin(), kOfTheModel.end(), [&](const char* key) { return settings.text(key) == any.text(key); });
+}
+
+InspectionRequest atHalf(InspectionRequest request) {
+  request.settings.set("detect.level", 0.5);
+  return request;
+}
+
+}  // namespace
+
+bool looksAtPixels(const InspectionRequest& request) {
+  const std::string& evidence = request.settings.text("fit.evidence");
+  return request.settings.text("detect.background") == "lobe" || evidence == "auto" || evidence == "pixels";
+}
+
+std::string lobeInputs(const InspectionRequest& request, const TrainSpec& train, bool together) {
+  std::string frames;
+  for (const int f : train.frames) frames += std::to_string(f) + ",";
+  frames += train.perSurface ? "per-surface" : "";
+  for (const int f : request.excluded) frames += "x" + std::to_string(f);
+  return inputsText(request.settings, {"surface"}, evidenceInputs(together ? request : atHalf(request), together)) + "|" +
+         frames + "|" + posesKey(request.whatIf) + "|" + lightsOffKey(request.whatIf) + (looksAtPixels(request) ? "|pixels" : "");
+}
+
+void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, const ProgressFn& progress) {
+  if (!looksAtPixels(r.request)) return;
+  std::vector<int> frames;
+  for (const int f : r.train.frames)
+    if (trains(r, f) && wasDetected(r.evidence[static_cast<std::size_t>(f)])) frames.push_back(f);
+  struct Seen {
+    std::vector<TrainingView> views;
+    std::vector<std::pair<int, int>> ids;
+  };
+  std::vector<Seen> seen(frames.size());
+  const InspectionRequest half = atHalf(r.request);
+  const bool sameLevel = together || r.request.settings.number("detect.level") == 0.5;
+  parallelFor(
+      static_cast<int>(frames.size()),
+      [&](int n) {
+        const int f = frames[static_cast<std::size_t>(n)];
+        const Frame& frame = r.scene->frames[static_cast<std::size_t>(f)];
+        const FrameEvidence evidence = sameLevel ? r.evidence[static_cast<std::size_t>(f)] : evidenceFor(*r.scene, f, half);
+        const std::shared_ptr<const Surface> surface = surfaceOf(f);
+        const Outcome<LinearPixels> pixels = pixelsOf(frame, r.request.source, r.request.settings);
+        if (!surface || !pixels) return;
+        for (int h = 0; h < static_cast<int>(evidence.highlights.size()); ++h) {
+          const Highlight& highlight = evidence.highlights[static_cast<std::size_t>(h)];
+          if (highlight.light.empty() || isSwitchedOff(r.request.whatIf, f, highlight.light)) continue;
+          TrainingView view = trainingView(evidence, h, frame.camera, surface);
+          if (view.failure) continue;
+          Outcome<PixelPatch> patch =
+              pixelPatch(*pixels, frame.camera, *surface, f, highlight, ofOthers(evidence, highlight.light));
+          if (!patch) continue;
+          view.pixels = std::make_shared<PixelPatch>(*std::move(patch));
+          seen[static_cast<std::size_t>(n)].views.push_back(std::move(view));
+          seen[static_cast<std::size_t>(n)].ids.emplace_back(f, h);
+        }
+      },
+      progress, "pixels");
+  std::map<FitKey, std::vector<TrainingView>> groups;
+  for (const Seen& s : seen)
+    for (std::size_t i = 0; i < s.views.size(); ++i) {
+      r.patches[s.ids[i]] = s.views[i].pixels;
+      groups[r.keyFor(s.views[i].frame, s.views[i].highlight.light)].push_back(s.views[i]);
+    }
+  int done = 0;
+  for (const auto& [key, views] : groups) {
+    if (!report(progress, {"lobe", done++, static_cast<int>(groups.size())})) throw Stopped{};
+    // The start is the same whatever the settings of the light are: they do not matter to where the fit ends.
+    const Outcome<LightEstimate> light = estimateLight(views, Settings{});
+    Outcome<PixelFit> fit =
+        fitViewsPixels(views, light ? std::optional<LightEstimate>(*light) : std::nullopt, anyLobe(r.request.settings));
+    ++r.work.pixelFits;
+    if (fit) r.pixelFits.insert_or_assign(key, std::make_shared<const PixelFit>(*std::move(fit)));
+    else r.pixelFits.insert_or_assign(key, fit.failure());
+  }
+}
+
+std::shared_ptr<const PixelFit> pixelFitFor(const Inspection& r, const FitKey& key) {
+  const auto fit = r.pixelFits.find(key);
+  return fit != r.pixelFits.end() && fit->second && takesAnyLobe(r.request.settings) ? *fit->second : nullptr;
+}
+
+std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene& scene, const InspectionRequest& request, int f,
+                                            const FrameEvidence& detected, const std::shared_ptr<const Surface>& surface) {
+  if (!wasDetected(detected) || !surface) return std::nullopt;
+  const Frame& frame = scene.frames[static_cast<std::size_t>(f)];
+  const Outcome<LinearPixels> pixels = pixelsOf(frame, request.source, request.settings);
+  if (!pixels) return std::nullopt;
+  std::map<std::string, std::vector<std::size_t>> byLight;
+  for (std::size_t h = 0; h < detected.highlights.size(); ++h) byLight[detected.highlights[h].light].push_back(h);
+  std::optional<FrameEvidence> again;
+  for (const auto& [light, indices] : byLight) {
+    const auto fit = lobes.pixelFits.find(lobes.keyFor(f, light));
+    if (light.empty() || fit == lobes.pixelFits.end() || !fit->second) continue;
+    const PixelFit& lobe = **fit->second;
+    std::vector<Highlight> found;
+    for (const std::size_t h : indices) found.push_back(detected.highlights[h]);
+    Outcome<std::vector<Highlight>> traced =
+        contourWithLobe(*pixels, frame.camera, *surface, f, found, ofOthers(detected, light), lobe.model,
+                        lobe.background, detectOptionsFor(frame, request.source, request.settings));
+    if (!traced) continue;
+    if (!again) again = detected;
+    for (std::size_t k = 0; k < indices.size(); ++k) again->highlights[indices[k]] = std::move((*traced)[k]);
+  }
+  return again;
+}
+
+void contourAgain(Inspection& r, const SurfaceOfFrame& surfaceOf, const ProgressFn& progress) {
+  if (r.request.settings.text("detect.background") != "lobe" || r.pixelFits.empty()) return;
+  r.detected.resize(r.evidence.size());
+  std::vector<int> frames;
+  for (int f = 0; f < static_cast<int>(r.evidence.size()); ++f)
+    if (wasDetected(r.evidence[static_cast<std::size_t>(f)]) && r.detected[static_cast<std::size_t>(f)].frame < 0) frames.push_back(f);
+  std::atomic<int> changed{0};
+  parallelFor(
+      static_cast<int>(frames.size()),
+      [&](int n) {
+        const int f = frames[static_cast<std::size_t>(n)];
+        FrameEvidence& evidence = r.evidence[static_cast<std::size_t>(f)];
+        r.detected[static_cast<std::size_t>(f)] = evidence;
+        if (std::optional<FrameEvidence> again = contouredAgain(r, *r.scene, r.request, f, evidence, surfaceOf(f))) {
+          evidence = *std::move(again);
+          ++changed;
+        }
+      },
+      progress, "contour again");
+  r.work.framesContouredAgain += changed;
+}
+
+void addDetectedLevels(const Inspection& r, const SurfaceOfFrame& surfaceOf, FrameEvidence& evidence) {
+  constexpr double kSameLevel = 1e-6;  // levels are typed with a few digits
+  if (r.request.settings.text("fit.evidence") != "levels" || !wasDetected(evidence)) return;
+  const std::size_t f = static_cast<std::size_t>(evidence.frame);
+  const bool withLobe = f < r.detected.size() && r.detected[f].frame >= 0;
+  for (const double level : listedLevels(r.request.settings)) {
+    if (!(level > 0 && level < 1) || std::abs(level - r.request.settings.number("detect.level")) < kSameLevel) continue;
+    InspectionRequest at = r.request;
+    at.settings.set("detect.level", level);
+    std::optional<FrameEvidence> found;
+    if (withLobe) found = contouredAgain(r, *r.scene, at, evidence.frame, r.detected[f], surfaceOf(evidence.frame));
+    if (!found) found = evidenceFor(*r.scene, evidence.frame, at);
+    std::erase_if(found->highlights, [&](const Highlight& h) { return std::abs(h.level - level) > kSameLevel; });
+    addOtherLevels(found->highlights, evidence.highlights);
+  }
+  for (std::size_t h = 0; h < evidence.highlights.size(); ++h)
+    if (r.request.whatIf.highlights.count({evidence.frame, evidence.asFound(static_cast<int>(h))})) evidence.highlights[h].otherLevels.clear();
+}
+
+void attachPixels(Inspection& r) {
+  if (r.request.noisePx > 0) return;
+  std::map<int, int> next;  // views come in the order of their frame's highlights
+  for (TrainingView& v : r.views) {
+    const FrameEvidence& evidence = r.evidence[static_cast<std::size_t>(v.frame)];
+    const int index = evidence.asFound(next[v.frame]++);
+    if (r.request.whatIf.highlights.count({v.frame, index})) continue;
+    for (auto p = r.patches.lower_bound({v.frame, 0}); p != r.patches.end() && p->first.first == v.frame && !v.pixels; ++p)
+      if (p->second->light == v.highlight.light && contains(v.highlight.contour, p->second->peak)) v.pixels = p->second;
+  }
+}
+
+}  // namespace glint

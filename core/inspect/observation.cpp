@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/inspect/observation.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "core/fit/corrected_depth.h"
+#include "core/fit/evidence.h"
+#include "core/fit/several_lights.h"
+#include "core/inspect/lobe_stage.h"
+#include "core/inspect/requested_evidence.h"
+#include "core/inspect/stage_inputs.h"
+#include "core/score/comparison.h"
+#include "core/surface/mesh_policy.h"
+
+namespace glint {
+
+std::optional<Observation> observeFrame(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
+                                        const ProgressFn& progress, const Inspection* known) {
+  require(scene && frame >= 0 && frame < static_cast<int>(scene->frames.size()), "observeFrame: no such frame");
+  if (lightsAreOpenIn(*scene, request)) return std::nullopt;
+  Observation seen;
+  seen.inputs = StageInputs(evidenceInputs(request, false));
+  if (known && known->given == scene && known->evidenceOf(frame, seen.inputs)) return std::nullopt;
+  const WhatIf& w = request.whatIf;
+  const std::vector<int> alone{frame};
+  seen.given = scene;
+  seen.scene = w.changesScene() ? changedScene(*scene, w, request.settings.number("detect.level"), progress, &alone) : scene;
+  seen.request = request;
+  seen.frame = frame;
+  if (!report(progress, {"detect", 0, 1})) throw Stopped{};
+  seen.evidence = evidenceFor(*seen.scene, frame, request);
+  if (known && known->given == scene && known->surfaces && request.settings.text("detect.background") == "lobe") {
+    // The lobes of the earlier results, where the request would find the same ones.
+    const auto surface = known->surfaces->surfaceOf(frame, meshPolicy(request.settings));
+    if (known->inputs.is(Stage::Lobes, lobeInputs(request, known->train, false)) && surface)
+      if (std::optional<FrameEvidence> again = contouredAgain(*known, *seen.scene, request, frame, seen.evidence, *surface))
+        seen.evidence = *std::move(again);
+  }
+  for (const auto& [at, change] : w.highlights)
+    if (at.first == frame && at.second >= 0 && at.second < static_cast<int>(seen.evidence.highlights.size())) {
+      Highlight& h = seen.evidence.highlights[std::size_t(at.second)];
+      h = changed(h, change);
+    }
+  dropSwitchedOff(seen.evidence, w);
+  return seen;
+}
+
+Inspection heldAgainst(const Inspection& earlier, const Observation& observation) {
+  require(earlier.given == observation.given, "heldAgainst: results of another scene");
+  const int frame = observation.frame;
+  Inspection r;
+  r.scene = observation.scene;
+  r.given = observation.given;
+  r.surfaces = earlier.surfaces;
+  r.request = observation.request;
+  r.train = earlier.train;
+  r.evidence.resize(observation.scene->frames.size());
+  r.evidence[std::size_t(frame)] = observation.evidence;
+  std::copy_if(earlier.views.begin(), earlier.views.end(), std::back_inserter(r.views),
+               [&](const TrainingView& v) { return v.frame == frame; });
+  r.lights = earlier.lights;
+  r.corrections = earlier.corrections;
+  r.correctedDepthMaps = std::make_shared<CorrectedDepthMaps>();  // the frame may stand elsewhere now
+  r.inputs = observation.inputs;
+  const Camera& camera = observation.scene->frames[std::size_t(frame)].camera;
+  for (const auto& [name, before] : earlier.models) {
+    ModelResult& now = r.models[name];
+    now.model = before.model;
+    now.fits = before.fits;
+    now.oneFrame = true;
+    for (const FrameComparison& c : before.frames) {
+      if (c.frame != frame || !isOn(*observation.scene, observation.request.whatIf, frame, c.light)) continue;
+      now.frames.push_back(compareFrame(observation.evidence, c.light, camera, c.prediction));
+      now.frames.back().fit = c.fit;
+    }
+  }
+  return r;
+}
+
+}  // namespace glint

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/inspect/inspection.h"
+
+namespace glint {
+
+/// What one frame shows under a request, without anything that follows from it: there long before lights and models are, so that
+/// a hand which drags a threshold or a lamp sees the contour follow.
+struct Observation {
+  std::shared_ptr<const Scene> scene;  ///< with the request's what-if; of synthesised contours only this frame's
+  std::shared_ptr<const Scene> given;  ///< as it was read
+  InspectionRequest request;
+  int frame = -1;
+  FrameEvidence evidence;
+  StageInputs inputs;  ///< of the evidence alone
+};
+
+/// Nothing where `known` holds this frame's evidence already, or where lights can only be told from all frames. InputError for
+/// wrong requests, as inspect(); Stopped.
+std::optional<Observation> observeFrame(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
+                                        const ProgressFn& progress = {}, const Inspection* known = nullptr);
+
+/// What earlier results say about the frame, held against a newer observation of it: their fits and predictions, the new
+/// evidence, and errors between the two. Only this frame's: `ModelResult::oneFrame`.
+/// @param earlier  of the same scene as read
+Inspection heldAgainst(const Inspection& earlier, const Observation& observation);
+
+}  // namespace glint

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/inspect/requested_evidence.h"
+
+#include <algorithm>
+#include <set>
+
+#include "core/fit/evidence.h"
+#include "core/fit/several_lights.h"
+
+namespace glint {
+
+FrameEvidence evidenceFor(const Scene& scene, int frame, const InspectionRequest& request) {
+  const Frame& f = scene.frames[static_cast<std::size_t>(frame)];
+  FrameEvidence evidence;
+  if (request.whatIf.synthesise && f.highlights.empty()) {
+    evidence.frame = frame;
+    evidence.failure = Failure{Reason::NoHighlight, "no light produces one in frame " + f.id};
+    return evidence;
+  }
+  evidence = gatherEvidence(scene, frame, request.source, request.settings);
+  if (request.truthFolder.empty()) return evidence;
+  evidence.againstTruth = true;
+  Outcome<std::vector<Highlight>> truth = readTruth(request.truthFolder, scene, frame, request.settings.number("detect.level"));
+  if (truth)
+    evidence.truth = std::move(*truth);
+  else
+    evidence.truthFailure = truth.failure();
+  return evidence;
+}
+
+bool showsSwitchedOff(const FrameEvidence& e, const WhatIf& w) {
+  const auto off = [&](const Highlight& h) { return isSwitchedOff(w, e.frame, h.light); };
+  return std::any_of(e.highlights.begin(), e.highlights.end(), off) || std::any_of(e.truth.begin(), e.truth.end(), off);
+}
+
+void dropSwitchedOff(FrameEvidence& e, const WhatIf& w) {
+  if (!showsSwitchedOff(e, w)) return;
+  std::vector<Highlight> kept;
+  std::vector<int> found;
+  std::set<std::string> lights;
+  for (std::size_t i = 0; i < e.highlights.size(); ++i) {
+    Highlight& h = e.highlights[i];
+    if (isSwitchedOff(w, e.frame, h.light)) {
+      lights.insert(h.light);
+      continue;
+    }
+    found.push_back(e.asFound(static_cast<int>(i)));
+    kept.push_back(std::move(h));
+  }
+  e.highlights = std::move(kept);
+  e.found = std::move(found);
+  if (e.highlights.empty() && !e.failure) {
+    std::string names;
+    for (const std::string& light : lights) names += (names.empty() ? "" : ", ") + light;
+    e.failure = Failure{Reason::NoHighlight, "switched off: " + names};
+  }
+  std::erase_if(e.truth, [&](const Highlight& h) { return isSwitchedOff(w, e.frame, h.light); });
+}
+
+bool lightsAreOpenIn(const Scene& scene, const InspectionRequest& request) {
+  return !request.whatIf.synthesise && lightsNeedAllFrames(scene);
+}
+
+}  // namespace glint

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/inspect/inspection.h"
+
+namespace glint {
+
+/// Evidence of one frame as a request asks for it, with truth where it names a folder, but without the user's changes to single
+/// highlights.
+/// @param scene  with the request's what-if
+FrameEvidence evidenceFor(const Scene& scene, int frame, const InspectionRequest& request);
+
+/// Takes what is of lights that the what-if switched off in this frame out of highlights and truth. Where nothing is left the
+/// failure is NoHighlight.
+void dropSwitchedOff(FrameEvidence& evidence, const WhatIf& whatIf);
+bool showsSwitchedOff(const FrameEvidence& evidence, const WhatIf& whatIf);
+
+/// lightsNeedAllFrames() for what a request asks for: what is synthesised knows its lights.
+bool lightsAreOpenIn(const Scene& scene, const InspectionRequest& request);
+
+}  // namespace glint

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/inspect/inspection.h"
+#include "core/score/statistic.h"
+
+namespace glint {
+
+/// How far the contours that the frames' own pixels gave lie from the truth that `--truth` names: whoever trusts an error against own
+/// detection must know this one.
+struct DetectionError {
+  Statistic contourErrorPct, contourErrorPx;  ///< over highlights that overlap a true one, all frames
+  int frames = 0;   ///< with truth
+  int missed = 0;   ///< true highlights without a detected one
+};
+/// None without truth, or where no frame's highlights were detected.
+std::optional<DetectionError> detectionError(const Inspection& inspection);
+
+}  // namespace glint

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "core/base/image.h"
+#include "core/inspect/inspection.h"
+
+namespace glint {
+
+/// The pixels of highlights in the captured image: 1 channel, 255 where the pixel's centre lies inside a contour, else 0.
+/// @param contours  closed, ideal pixels; lens distortion is put back. Contours with fewer than 3 finite points hold no pixel.
+Image maskOf(const std::vector<Polyline>& contours, const Camera& camera);
+
+/// The labels of an inspection as a folder:
+///   masks/observed/LIGHT/0007.png  and  masks/MODEL/LIGHT/0007.png    one 8-bit mask per frame (by position) and light, all 0
+///                                                                      where there is no highlight
+///   labels_MODEL.json                                                  COCO, see `cocoJson`
+///   masks.json      keys: glint_masks 1, scene, masks[]: frame, id, light, of ("observed" or the model), file, pixels, reason
+/// Observed means what predictions are compared with. A light's folder is its id, with what no file name may hold replaced.
+/// Whole or not at all. InputError, see `atomicFolder`; Stopped.
+void writeLabels(const Inspection& inspection, const std::filesystem::path& folder, const ProgressFn& progress = {});
+
+}  // namespace glint

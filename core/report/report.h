@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/inspect/inspection.h"
+#include "core/selection/selection.h"
+
+namespace glint {
+
+/// Facts about a run that the inspection does not hold.
+struct ReportContext {
+  std::string input;          ///< as the user named it
+  std::string chosenModel;    ///< "" = none
+  std::string whyChosen;      ///< one sentence
+  std::optional<Selection> selection;  ///< what the automatic choice tried
+  std::string program;                 ///< "glint 0.4.0"; "" = not said
+};
+
+/// The answered model with the smallest mean held-out contour error among those that predicted most frames; "" when none answered.
+std::string bestModel(const Inspection& inspection);
+
+/// docs/formats.md, "evaluate --json". Numbers that are not finite become null.
+std::string evaluationJson(const Inspection& inspection, const ReportContext& context);
+/// The first line of `evaluationCsv`.
+extern const char* const kEvaluationCsvHeader;
+/// One row per (model, frame, light, highlight), with a header row.
+std::string evaluationCsv(const Inspection& inspection);
+/// A plain-text table of the models: error statistics, predicted/frames, coverage, counts, time.
+std::string evaluationTable(const Inspection& inspection);
+/// One self-contained page: table, error over frames per model, the worst frames with overlays.
+std::string evaluationHtml(const Inspection& inspection, const ReportContext& context);
+
+}  // namespace glint

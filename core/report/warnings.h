@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/inspect/inspection.h"
+
+namespace glint {
+
+/// What makes the answers of a run doubtful, in words, one sentence each, the same for text, JSON and HTML: clipped highlights with their frames,
+/// frames in which highlights of several lights are one, and the remarks of every fit after its model and light.
+std::vector<std::string> warningsOf(const Inspection& inspection);
+
+/// What the predictions of held-out frames are scored against: "truth" (--truth), "given contours" (of the scene file) or "own detection" (of at
+/// least one held-out frame).
+std::string scoredAgainst(const Inspection& inspection);
+
+/// "0, 3, 7 and 5 more": at most eight frames by their numbers.
+std::string frameList(const std::vector<int>& frames);
+
+}  // namespace glint

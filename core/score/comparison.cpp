@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/score/comparison.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace glint {
+namespace {
+
+/// Sutherland-Hodgman against the rectangle of pixel centres [0, w-1] x [0, h-1], where detection's contours end.
+Polyline clippedToImage(const Polyline& line, const Camera& camera) {
+  Polyline result = line;
+  const double edges[4] = {0, -(camera.width - 1.0), 0, -(camera.height - 1.0)};
+  for (int side = 0; side < 4; ++side) {
+    const int axis = side / 2;
+    const double sign = side % 2 == 0 ? 1 : -1;
+    const auto value = [&](const Pixel& p) { return sign * p[axis] - edges[side]; };
+    Polyline next{{}, true};
+    const auto& p = result.points;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      const Pixel &a = p[i], &b = p[(i + 1) % p.size()];
+      const double fa = value(a), fb = value(b);
+      if (fa >= 0) next.points.push_back(a);
+      if ((fa >= 0) != (fb >= 0)) next.points.push_back(a + fa / (fa - fb) * (b - a));
+    }
+    result = std::move(next);
+  }
+  return result;
+}
+
+bool leavesImage(const Polyline& line, const Camera& camera) {
+  return std::any_of(line.points.begin(), line.points.end(), [&](const Pixel& p) {
+    return !(p.x() >= 0 && p.y() >= 0 && p.x() <= camera.width - 1 && p.y() <= camera.height - 1);
+  });
+}
+
+std::optional<BandScore> bandScore(const Polyline& observed, const PredictedHighlight& h) {
+  constexpr double kNormal95 = 1.959964;
+  BandScore score;
+  double count = 0;
+  for (std::size_t i = 0; i < h.sigmaPx.size(); ++i) {
+    if (!(h.sigmaPx[i] > 0)) continue;
+    count += 1;
+    score.sigmaPx += h.sigmaPx[i];
+    score.coverage += distance(observed, h.contour.points[i]) <= kNormal95 * h.sigmaPx[i];
+  }
+  if (!(count > 0)) return std::nullopt;
+  score.sigmaPx /= count;
+  score.coverage /= count;
+  return score;
+}
+
+}  // namespace
+
+FrameComparison compareFrame(const FrameEvidence& evidence, const std::string& light, const Camera& camera,
+                             Prediction prediction) {
+  FrameComparison c;
+  c.frame = evidence.frame;
+  c.light = light;
+  c.prediction = std::move(prediction);
+  const std::optional<Failure>& unscored = evidence.scoringFailure();
+  if (unscored && unscored->reason != Reason::NoHighlight && evidence.scored().empty()) {
+    FrameComparison::Row row;
+    row.failure = unscored;
+    c.rows.push_back(row);
+    return c;
+  }
+  std::vector<int> observedIndex;
+  std::vector<Polyline> observed, predicted;
+  for (int i = 0; i < static_cast<int>(evidence.scored().size()); ++i) {
+    const Highlight& h = evidence.scored()[i];
+    if (h.light != light || h.contour.points.size() < 3) continue;
+    observedIndex.push_back(i);
+    observed.push_back(h.contour);
+  }
+  const bool cut = std::any_of(observedIndex.begin(), observedIndex.end(),
+                               [&](int i) { return evidence.scored()[i].touchesBorder && !evidence.scored()[i].fromScene; });
+  std::vector<char> clipped(c.prediction.highlights.size(), 0);
+  for (std::size_t i = 0; i < c.prediction.highlights.size(); ++i) {
+    const PredictedHighlight& h = c.prediction.highlights[i];
+    clipped[i] = cut && leavesImage(h.contour, camera);
+    predicted.push_back(clipped[i] ? clippedToImage(h.contour, camera) : h.contour);
+  }
+  std::vector<double> ious;
+  const std::vector<std::pair<int, int>> pairs = matchByOverlap(observed, predicted, &ious);
+  std::vector<char> used(predicted.size(), 0);
+  for (int o = 0; o < static_cast<int>(observed.size()); ++o) {
+    FrameComparison::Row row;
+    row.observed = observedIndex[o];
+    const auto pair = std::find_if(pairs.begin(), pairs.end(), [&](const auto& p) { return p.first == o; });
+    if (pair == pairs.end()) {
+      row.failure =
+          c.prediction.failure ? *c.prediction.failure : Failure{Reason::NotReached, "no prediction overlaps this highlight"};
+    } else {
+      row.predicted = pair->second;
+      used[pair->second] = 1;
+      const PredictedHighlight& h = c.prediction.highlights[row.predicted];
+      row.metrics = compareContours(observed[o], predicted[row.predicted],
+                                    clipped[row.predicted] ? std::vector<std::pair<int, int>>{} : h.gaps, h.ellipse,
+                                    evidence.scored()[row.observed].peak, h.brightest.pixel, ious[pair - pairs.begin()]);
+      row.band = bandScore(observed[o], h);
+    }
+    c.rows.push_back(std::move(row));
+  }
+  for (int p = 0; p < static_cast<int>(predicted.size()); ++p) {
+    if (used[p] || clippedToImage(c.prediction.highlights[p].contour, camera).points.empty()) continue;  // nobody could see it
+    FrameComparison::Row row;
+    row.predicted = p;
+    c.rows.push_back(row);
+  }
+  c.iou = observed.size() == 1 && predicted.size() == 1 && ious.size() == 1 ? ious[0] : regionIou(observed, predicted);
+  return c;
+}
+
+}  // namespace glint

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/fit/fit_engine.h"
+#include "core/selection/selection.h"
+
+namespace glint {
+
+/// One left-out training view and what the others give without it. Light and canonical contours are filled by the first model
+/// that needs them and serve all that follow.
+struct Fold {
+  const Inspection* inspection = nullptr;
+  TrainingView left;                   ///< on its surface as given
+  std::vector<TrainingView> others;    ///< likewise
+  std::optional<LightFit> light;       ///< of the others, with their own correction of the surface
+  bool canonicalTried = false;
+  std::shared_ptr<const Surface> leftSurface;  ///< of the left-out view, corrected by what the others say
+  std::shared_ptr<const PixelFit> pixelFit;    ///< of exactly these views, where it is known already
+  /// The surface on which a model predicts in some frame. The failures of correctedSurface().
+  Outcome<std::shared_ptr<const Surface>> surfaceOf(int frame, const HighlightModel& model) const;
+};
+
+/// What a model said about one left-out view.
+struct Answer {
+  std::optional<double> errorPct;
+  std::optional<Failure> failure;
+  double predictUs = 0;
+  std::optional<ModelFit> fit;
+  int highlights = 0;           ///< predicted
+  double coverage = 0;          ///< of the one that was compared
+  double variation = 0;         ///< the largest of all; NaN when nothing was walked on a patch
+  bool boundToSurface = false;  ///< an ellipsoid of the highlight as it was seen, without the walk that takes the surface out
+};
+
+/// What is left out with a training view: its frame, or every frame from its place (core/light/left_out.h). A view from the same
+/// place would tell a model the answer; to see what one frame changes, that view must stay.
+enum class LeaveOut { Frame, Place };
+/// One per left-out view: at most kMostLeftOut, evenly spread. Valid as long as the inspection.
+std::vector<Fold> foldsOf(const Inspection& inspection, LeaveOut together);
+/// Fits the model to the fold's other views. Fills what is missing in the fold. The model's and the light's failures.
+Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Settings& settings);
+/// Fits the model to the other views, predicts the left-out one and compares. Fills what is missing in the fold.
+Answer leaveOut(Fold& fold, const HighlightModel& model, const Settings& settings);
+/// The last step of that alone, from a fit that is there.
+Answer predictLeft(const Fold& fold, const HighlightModel& model, const ModelFit& fit, const Settings& settings);
+/// The largest curvatureVariation of the highlights; NaN when none was walked on a patch.
+double variationOf(const Prediction& prediction);
+
+/// Whether local quadrics serve the model that was chosen. None when it does not walk or walks on them already.
+/// @param exact    one answer per fold, of exact walks.
+/// @param mostPct  the error that the rule would still take.
+std::optional<PatchChoice> choosePatches(const Inspection& inspection, const HighlightModel& model,
+                                         const std::vector<Fold>& folds, const std::vector<Answer>& exact, double mostPct,
+                                         const ProgressFn& progress);
+
+/// "0.123 %".
+std::string percentText(double v);
+
+}  // namespace glint

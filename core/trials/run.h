@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "core/inspect/inspection.h"
+#include "core/tradeoff/choice.h"
+#include "core/trials/search.h"
+
+namespace glint {
+
+struct TradeoffOptions {
+  std::string input;  ///< as the user named it, for the report
+  TradeoffBound bound;
+  int repeats = 5;  ///< of every timed prediction
+  SearchOptions search;
+  std::filesystem::path
+      workFile;         ///< interrupted work is resumed from here; the caller removes it once the result is safe; empty = none
+  std::string program;  ///< version: work of another one is not resumed
+};
+
+/// Measures what each sensible setting costs and gives on this input (method.md section 12): searchTrials on few frames, then a
+/// full measurement of what is left, then the front, the presets and the choice.
+/// @param request  its models are compared; its settings are the base from which knobs are turned.
+/// @throw Stopped (the work so far stays in the work file); InputError, also at once where the request leaves no frame held out.
+Tradeoff measureTradeoff(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const TradeoffOptions& options,
+                         const ProgressFn& progress = {});
+
+}  // namespace glint

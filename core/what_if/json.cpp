@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/what_if/json.h"
+
+#include <nlohmann/json.hpp>
+
+#include "core/scene/bounded_json.h"
+
+namespace glint {
+using Json = nlohmann::ordered_json;
+
+namespace {
+Json toJson(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
+Json toJson(const Pixel& p) { return Json::array({p.x(), p.y()}); }
+
+int frameOf(const JsonNode& node) {
+  const int frame = node.at("frame").integer();
+  if (frame < 0) node.at("frame").fail("must not be negative");
+  return frame;
+}
+}  // namespace
+
+std::string whatIfJson(const WhatIf& w) {
+  Json root = {{"poses", Json::array()}, {"highlights", Json::array()}};
+  for (const auto& [frame, change] : w.poses)
+    root["poses"].push_back(
+        {{"frame", frame}, {"rotation", toJson(change.rotation)}, {"translation", toJson(change.translation)}});
+  for (const auto& [at, change] : w.highlights)
+    root["highlights"].push_back({{"frame", at.first},
+                                  {"highlight", at.second},
+                                  {"contour_by", toJson(change.contourBy)},
+                                  {"contour_scale", change.contourScale},
+                                  {"peak_by", toJson(change.peakBy)}});
+  if (!w.lightsSwitched.empty()) root["lights_switched"] = Json::array();
+  for (const auto& [at, on] : w.lightsSwitched)
+    root["lights_switched"].push_back({{"frame", at.first}, {"light", at.second}, {"on", on}});
+  if (w.synthesise) {
+    Json synthetic = {
+        {"lobe", nameOf(w.lobe)}, {"roughness", w.roughness}, {"lights_by", Json::object()}, {"surfaces", Json::object()}};
+    for (const auto& [id, by] : w.lightsBy) synthetic["lights_by"][id] = toJson(by);
+    for (const auto& [id, value] : w.surfaces) synthetic["surfaces"][id] = value;
+    root["synthesise"] = std::move(synthetic);
+  }
+  return root.dump();
+}
+
+WhatIf readWhatIf(const JsonNode& node) {
+  WhatIf w;
+  if (const auto poses = node.find("poses"))
+    for (std::size_t i = 0; i < poses->size(); ++i) {
+      const JsonNode n = poses->at(i);
+      w.poses[frameOf(n)] = {boundedAll(n.at("rotation"), kLargestFactor).vector3(), lengths3(n.at("translation"))};
+    }
+  if (const auto highlights = node.find("highlights"))
+    for (std::size_t i = 0; i < highlights->size(); ++i) {
+      const JsonNode n = highlights->at(i);
+      HighlightChange change{pixel(n.at("contour_by")), positive(n.at("contour_scale"), kFarthestPx), pixel(n.at("peak_by"))};
+      w.highlights[{frameOf(n), n.at("highlight").integer()}] = change;
+    }
+  if (const auto lights = node.find("lights_switched"))
+    for (std::size_t i = 0; i < lights->size(); ++i) {
+      const JsonNode n = lights->at(i);
+      w.lightsSwitched[{frameOf(n), n.at("light").text()}] = n.at("on").boolean();
+    }
+  if (const auto s = node.find("synthesise"); s && !s->isNull()) {
+    w.synthesise = true;
+    const std::string lobe = s->at("lobe").text();
+    const std::optional<Lobe> known = lobeOf(lobe);
+    if (!known) s->at("lobe").fail("unknown lobe '" + lobe + "'");
+    w.lobe = *known;
+    w.roughness = positive(s->at("roughness"), kLargestFactor);
+    if (const auto lights = s->find("lights_by"))
+      for (const std::string& id : lights->keys()) w.lightsBy[id] = lengths3(lights->at(id));
+    if (const auto surfaces = s->find("surfaces"))
+      for (const std::string& id : surfaces->keys()) w.surfaces[id] = bounded(surfaces->at(id), kFarthest);
+  }
+  return w;
+}
+
+}  // namespace glint

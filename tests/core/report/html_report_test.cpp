@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the report says in words: what was computed with, and what there is no number for.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/report/report.h"
+#include "tests/core/inspect/exact_scene.h"
+
+namespace glint {
+namespace {
+
+using namespace testing_support;
+using testing::HasSubstr;
+using testing::Not;
+
+Inspection sheetRun() {
+  InspectionRequest q;
+  q.models = {"dual"};
+  q.train = "first:4";
+  q.settings.set("fit.solver", std::string("linear"));
+  return inspect(exactScene(sheet(0), 6), q);
+}
+
+TEST(HtmlReport, NamesWhatWasMissedAndWhy) {
+  Inspection run = sheetRun();
+  EXPECT_THAT(evaluationHtml(run, {}), Not(HasSubstr("Missed highlights")));
+  for (FrameComparison& c : run.models.at("dual").frames) {
+    if (c.frame != 0 && c.frame != 5) continue;  // 0 trains: it is not part of what the report is about
+    ASSERT_FALSE(c.rows.empty());
+    c.rows[0].metrics.reset();
+    c.rows[0].failure = Failure{Reason::NotReached, "frame " + std::to_string(c.frame) + " <went astray>"};
+  }
+  const std::string html = evaluationHtml(run, {});
+  EXPECT_THAT(html, HasSubstr("Missed highlights"));
+  EXPECT_THAT(html, HasSubstr("frame 5 &lt;went astray&gt;"));
+  const std::string table =
+      html.substr(html.find("Missed highlights"), html.find("Worst frames") - html.find("Missed highlights"));
+  EXPECT_THAT(table, Not(HasSubstr("frame 0")));
+  EXPECT_THAT(html.substr(html.find("Worst frames")), HasSubstr("<b>frame 5</b>")) << "it is shown, and first";
+  EXPECT_LT(html.find("<b>frame 5</b>"), html.find("<b>frame 4</b>"));
+}
+
+/// The mean over what was matched would make the frame with the miss the best of all.
+TEST(HtmlReport, AFrameWithAMissHasACrossAndNoErrorInThePlot) {
+  Inspection run = sheetRun();
+  EXPECT_THAT(evaluationHtml(run, {}), Not(HasSubstr("class=\"missed\"")));
+  run.evidence[5].highlights.push_back(run.evidence[5].highlights.at(0));
+  for (FrameComparison& c : run.models.at("dual").frames) {
+    if (c.frame != 5) continue;
+    c.rows.at(0).metrics->contourErrorPct = 1e-6;
+    c.rows.push_back({1, -1, {}, Failure{Reason::NotReached, "no prediction overlaps this highlight"}, {}});
+  }
+  const std::string html = evaluationHtml(run, {});
+  EXPECT_THAT(html, HasSubstr("<title>dual, frame 5: missed a highlight</title>"));
+  EXPECT_THAT(html, HasSubstr("Crosses at the top"));
+  EXPECT_THAT(html, Not(HasSubstr("dual, frame 5: 1e-06 %")));
+  EXPECT_THAT(html, HasSubstr("<title>dual, frame 4: "));
+}
+
+TEST(HtmlReport, SaysWithWhichSettingsAndByWhich) {
+  ReportContext context;
+  context.program = "glint 0 & more";
+  const std::string html = evaluationHtml(sheetRun(), context);
+  for (const ParamSpec& p : allParams()) EXPECT_THAT(html, HasSubstr("<code>" + p.key + "</code>"));
+  EXPECT_THAT(html, HasSubstr("<b>linear</b>")) << "what differs from the default stands out";
+  EXPECT_THAT(html, HasSubstr("Made by glint 0 &amp; more."));
+  EXPECT_THAT(html, Not(HasSubstr("src=\"http"))) << "nothing is fetched";
+}
+
+}  // namespace
+}  // namespace glint
