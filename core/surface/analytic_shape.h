@@ -47,7 +47,7 @@ class AnalyticShape {
 /// std::invalid_argument as makeAnalytic.
 std::unique_ptr<const AnalyticShape> makeShape(const AnalyticSpec& spec);
 
-/// Zero set inside `localBox` by flying edges on resolution^3 cells; vertices polished on f, local frame, no normals.
+/// Zero set inside `localBox` by marching cubes on resolution^3 cells; vertices polished on f, local frame, no normals.
 TriangleMesh contourShape(const AnalyticShape& shape, const Eigen::AlignedBox3d& localBox, int resolution);
 
 /// Box with infinite extents.

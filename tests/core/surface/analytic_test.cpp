@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
+#include <numbers>
 #include <random>
+#include <utility>
 
 #include "tests/core/surface/surfaces.h"
 #include "tests/tolerances.h"
@@ -238,6 +241,29 @@ TEST(Analytic, TessellationLiesOnTheSurfaceInsideItsBounds) {
       EXPECT_GE(n.dot(mesh.normals[t[0]] + mesh.normals[t[1]] + mesh.normals[t[2]]), 0) << row.name;
     }
   }
+}
+
+// A quadric has no grid of its own: it is contoured. Oracles: Euler's formula, every edge between two triangles that go round it the opposite way, and
+// the volume of an ellipsoid.
+TEST(Analytic, AContouredEllipsoidIsClosed) {
+  AnalyticSpec spec;
+  spec.type = "quadric";
+  spec.matrix.diagonal() << 1 / 0.36, 1 / 0.1225, 1 / 0.0625, -1;
+  const TriangleMesh mesh = makeAnalytic(spec)->tessellate(Eigen::AlignedBox3d(Vector3d::Constant(-0.7), Vector3d::Constant(0.7)), 40);
+  std::map<std::pair<int, int>, int> edges;
+  double volume = 0;
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    for (int i = 0; i < 3; ++i) ++edges[{t[i], t[(i + 1) % 3]}];
+    volume += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]])) / 6;
+  }
+  for (const auto& [edge, count] : edges) {
+    EXPECT_EQ(count, 1);
+    EXPECT_EQ(edges.count({edge.second, edge.first}), 1u);
+  }
+  EXPECT_EQ(int(mesh.vertices.size()) - int(edges.size() / 2) + int(mesh.triangles.size()), 2);
+  const double whole = 4.0 / 3 * std::numbers::pi * 0.6 * 0.35 * 0.25;
+  EXPECT_NEAR(volume, whole, 0.02 * whole);  // the vertices lie on it, the triangles inside: measured 1.5 %
+  EXPECT_LT(volume, whole);
 }
 
 TEST(Analytic, DegenerateSpecificationsAreTheCallersBug) {
