@@ -39,6 +39,7 @@ class HandedOver : public QtPrivate::QSlotObjectBase {
     __tsan_acquire(slot);
     if (which == Call) {
       slot->call(receiver, arguments);
+      __tsan_release(slot);  // whoever drops the last reference destroys what the call used
     } else if (which == Compare) {
       *same = false;
     } else if (which == Destroy) {
