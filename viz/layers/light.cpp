@@ -71,8 +71,7 @@ LayerContent lightLayer(const LayerInput& in) {
     info.text = line("estimated light", id) + line("solver", estimate.solver) +
                 line("limit angle", estimate.limitAngle * 180 / std::numbers::pi, "deg") + line("condition", estimate.condition);
     if (estimate.rmsPx > 0)  // 0: triangulated from rays alone
-      info.text += line("residual", estimate.rmsPx, "px") + "(residual: " + residualMeaning(estimate) + ")
-";
+      info.text += line("residual", estimate.rmsPx, "px") + "(residual: " + residualMeaning(estimate) + ")\n";
     if (estimate.covariance && estimate.covariance->allFinite()) {
       info.text += line("standard deviation", Eigen::Vector3d(estimate.covariance->diagonal().cwiseMax(0).cwiseSqrt()), "m");
     }
