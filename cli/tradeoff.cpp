@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "core/report/tradeoff_html.h"
 #include "core/tradeoff/tradeoff.h"
 
 #include "cli/commands.h"

@@ -6,8 +6,9 @@
 #include <cmath>
 
 #include "core/base/number_text.h"
-#include "viz/frame_overlay.h"
-#include "viz/missed.h"
+#include "core/draw/frame_overlay.h"
+#include "core/inspect/frame_score.h"
+#include "viz/style.h"
 
 namespace glint::viz {
 

@@ -15,7 +15,6 @@
 #include <mutex>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <sstream>
 
 #include "core/base/atomic_file.h"
 #include "core/base/outcome.h"
@@ -70,9 +69,10 @@ std::mutex& textMutex() {
   return mutex;
 }
 
-void setUp(vtkTextProperty* look, double sizePx) {
+void setUp(vtkTextProperty* look, double sizePx, bool bold) {
   look->SetFontSize(std::max(6, static_cast<int>(std::lround(sizePx))));
   look->SetColor(1, 1, 1);
+  look->SetBold(bold);
   if (!fontFile().empty()) {
     look->SetFontFamily(VTK_FONT_FILE);
     look->SetFontFile(fontFile().c_str());
@@ -84,12 +84,12 @@ struct Glyphs {
   int width = 0, height = 0;
   std::vector<unsigned char> alpha;
 };
-Glyphs rendered(const std::string& text, double sizePx) {
+Glyphs rendered(const std::string& text, double sizePx, bool bold) {
   Glyphs glyphs;
   if (text.empty()) return glyphs;
   const std::lock_guard lock(textMutex());
   vtkNew<vtkTextProperty> look;
-  setUp(look, sizePx);
+  setUp(look, sizePx, bold);
   vtkNew<vtkImageData> image;
   int dims[2] = {0, 0};
   if (!vtkFreeTypeTools::GetInstance()->RenderString(look, vtkUnicodeString::from_utf8(text), 72, image, dims)) return glyphs;
@@ -107,7 +107,7 @@ Glyphs rendered(const std::string& text, double sizePx) {
 
 /// Rows of a rendered line below its baseline: those under the ink of a letter that stands on it.
 int descentOf(double sizePx) {
-  const Glyphs e = rendered("E", sizePx);
+  const Glyphs e = rendered("E", sizePx, false);
   for (int y = 0; y < e.height; ++y) {
     for (int x = 0; x < e.width; ++x) {
       if (e.alpha[static_cast<std::size_t>(y) * static_cast<std::size_t>(e.width) + static_cast<std::size_t>(x)] > 127) return y;
@@ -127,7 +127,7 @@ struct Canvas::Impl {
     double size;
     Colour colour;
     Align align;
-    bool vertical;
+    bool vertical, bold;
   };
   std::vector<Text> texts;  // laid over the averaged picture: FreeType smooths by itself
 
@@ -139,7 +139,7 @@ struct Canvas::Impl {
   }
   /// Text is always rendered level and turned here: FreeType's box is then the line's, from descender to ascender.
   void print(cv::Mat& target, const Text& t) const {
-    const Glyphs glyphs = rendered(t.text, t.size);
+    const Glyphs glyphs = rendered(t.text, t.size, t.bold);
     const double shift = t.align == Align::Left ? 0 : t.align == Align::Centre ? 0.5 * glyphs.width : glyphs.width;
     const int x0 = static_cast<int>(std::lround(t.at.x())), y0 = static_cast<int>(std::lround(t.at.y()));
     const int start = static_cast<int>(std::lround(shift)), descent = descentOf(t.size);
@@ -239,45 +239,18 @@ void Canvas::disc(const Eigen::Vector2d& centre, double radius, const Colour& co
 }
 
 void Canvas::text(const Eigen::Vector2d& at, const std::string& text, double sizePx, const Colour& colour, Align align,
-                  bool vertical) {
-  impl_->texts.push_back({at, text, sizePx, colour, align, vertical});
+                  bool vertical, bool bold) {
+  impl_->texts.push_back({at, text, sizePx, colour, align, vertical, bold});
 }
 
-double Canvas::textWidth(const std::string& text, double sizePx) const {
+double Canvas::textWidth(const std::string& text, double sizePx, bool bold) const {
   if (text.empty()) return 0;
   const std::lock_guard lock(textMutex());
   vtkNew<vtkTextProperty> look;
-  setUp(look, sizePx);
+  setUp(look, sizePx, bold);
   int box[4] = {0, 0, 0, 0};
   if (!vtkFreeTypeTools::GetInstance()->GetBoundingBox(look, vtkUnicodeString::from_utf8(text), 72, box)) return 0;
   return box[1] - box[0] + 1;
-}
-
-std::string Canvas::fitted(const std::string& text, double sizePx, double widthPx) const {
-  if (textWidth(text, sizePx) <= widthPx) return text;
-  std::string shorter = text;
-  while (!shorter.empty()) {
-    do {  // whole UTF-8 characters
-      const bool continuation = (static_cast<unsigned char>(shorter.back()) & 0xC0) == 0x80;
-      shorter.pop_back();
-      if (!continuation) break;
-    } while (!shorter.empty());
-    if (textWidth(shorter + "\u2026", sizePx) <= widthPx) return shorter + "\u2026";
-  }
-  return {};
-}
-
-std::vector<std::string> Canvas::wrapped(const std::string& text, double sizePx, double widthPx) const {
-  std::vector<std::string> lines;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    const std::string longer = lines.empty() ? word : lines.back() + " " + word;
-    if (!lines.empty() && textWidth(longer, sizePx) <= widthPx)
-      lines.back() = longer;
-    else
-      lines.push_back(word);
-  }
-  return lines;
 }
 
 Image Canvas::image() const {

@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "core/geometry/polyline.h"
-#include "viz/frame_details.h"
+#include "core/draw/frame_details.h"
+#include "viz/style.h"
 
 namespace glint::viz {
 namespace {

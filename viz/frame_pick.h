@@ -3,7 +3,8 @@
 
 #include <optional>
 
-#include "viz/frame_overlay.h"
+#include "core/draw/frame_overlay.h"
+#include "viz/style.h"
 
 namespace glint::viz {
 

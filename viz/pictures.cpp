@@ -5,17 +5,18 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/error_text.h"
 #include "core/base/number_text.h"
+#include "core/draw/overlay_painter.h"
+#include "core/draw/plots.h"
+#include "core/inspect/frame_score.h"
 #include "core/inspect/photograph.h"
 #include "core/what_if/knobs.h"
-#include "viz/annotations.h"
-#include "viz/error_text.h"
-#include "viz/missed.h"
+#include "viz/plot_export.h"
+#include "viz/style.h"
 
 namespace glint::viz {
 namespace {
-
-constexpr Colour kHalo{0.05, 0.05, 0.05};
 
 struct Theme {
   Colour background, panel, ink, faint;
@@ -81,37 +82,6 @@ std::set<OverlayRole> hiddenRoles(const PictureOptions& options) {
 }
 
 }  // namespace
-
-void drawOverlay(Canvas& canvas, const FrameOverlay& overlay, const Crop& crop, const Box& box, double inkScale) {
-  const auto place = [&](const Pixel& p) {
-    return Eigen::Vector2d(box.x + (p.x() - crop.x) * box.width / crop.width,
-                           box.y + (p.y() - crop.y) * box.height / crop.height);
-  };
-  for (const OverlayLine& line : overlay.lines) {
-    std::vector<Eigen::Vector2d> points;
-    points.reserve(line.points.size());
-    for (const Pixel& p : line.points) points.push_back(place(p));
-    if (line.halo) canvas.stroke(points, line.closed, kHalo, inkScale * (line.width + 2), Dash::Solid, box);
-    canvas.stroke(points, line.closed, line.colour, inkScale * line.width, line.dash, box);
-  }
-  for (const OverlayMark& mark : overlay.marks) {
-    const Eigen::Vector2d c = place(mark.at);
-    const double r = inkScale * mark.size;
-    const auto draw = [&](const Colour& colour, double width, double reach) {
-      if (mark.shape == MarkShape::Cross) {
-        canvas.stroke({c - Eigen::Vector2d(reach, 0), c + Eigen::Vector2d(reach, 0)}, false, colour, width, Dash::Solid, box);
-        canvas.stroke({c - Eigen::Vector2d(0, reach), c + Eigen::Vector2d(0, reach)}, false, colour, width, Dash::Solid, box);
-      } else {
-        std::vector<Eigen::Vector2d> ring;
-        for (int i = 0; i < 24; ++i)
-          ring.push_back(c + reach * Eigen::Vector2d(std::cos(i * 0.2617993878), std::sin(i * 0.2617993878)));
-        canvas.stroke(ring, true, colour, width, Dash::Solid, box);
-      }
-    };
-    if (mark.halo) draw(kHalo, inkScale * (mark.width + 1.5), mark.shape == MarkShape::Cross ? r + inkScale : r);
-    draw(mark.colour, inkScale * mark.width, r);
-  }
-}
 
 std::optional<Crop> highlightCrop(const Inspection& inspection, int frame, const std::set<std::string>& models, double aspect) {
   const Camera& camera = cameraOf(inspection, frame);
@@ -210,10 +180,10 @@ Image framePicture(const Inspection& inspection, int frame, const Outcome<Image>
   }
   const bool given = hasPhotograph(inspection, frame);
   drawPhotograph(canvas, photograph, given, whole, main, font, theme);
-  drawOverlay(canvas, overlay, whole, main, ink * (part ? 0.6 : 1.0));
+  paintOverlay(canvas, overlay, whole, main, ink * (part ? 0.6 : 1.0));
   if (part) {
     drawPhotograph(canvas, photograph, given, *part, zoom, font, theme);
-    drawOverlay(canvas, overlay, *part, zoom, ink);
+    paintOverlay(canvas, overlay, *part, zoom, ink);
     outlineBox(canvas, zoom, theme.faint, 1);
     const double sx = main.width / whole.width;
     outlineBox(canvas,
@@ -302,7 +272,7 @@ Image ladderPicture(const Inspection& inspection, int frame, const Outcome<Image
     overlayOptions.hidden = hiddenRoles(options);
     const FrameOverlay overlay = frameOverlay(inspection, frame, overlayOptions);
     drawPhotograph(canvas, photograph, hasPhotograph(inspection, frame), crop, box, font, theme);
-    drawOverlay(canvas, overlay, crop, box, ink);
+    paintOverlay(canvas, overlay, crop, box, ink);
     canvas.fill({box.x, box.y + box.height, box.width, 0.25 * font}, modelColour(models[i]));
     const double middle = box.x + 0.5 * box.width, top = box.y + box.height + 1.4 * font;
     canvas.text({middle, top}, models[i], 1.1 * font, theme.ink, Align::Centre);
@@ -322,161 +292,13 @@ Image ladderPicture(const Inspection& inspection, int frame, const Outcome<Image
 
 Image plotsPicture(const Inspection& inspection, int width, int height, const PictureOptions& options) {
   require(inspection.scene != nullptr, "picture: no scene");
-  const Theme theme = themeOf(options.dark);
-  Canvas canvas(width, height, theme.background);
-  const double font = std::clamp(height / 38.0, 10.0, 40.0), ink = std::max(1.0, height / 700.0);
-  const int frames = static_cast<int>(inspection.scene->frames.size());
-  const std::vector<std::string> models = modelsInOrder(inspection, options.models);
-  struct Series {
-    std::string model;
-    std::vector<FrameScore> scores;
-    std::vector<std::optional<double>> pct;  // none where a highlight was missed, and in excluded frames
-    double sum = 0;
-    int answered = 0, asked = 0;
-  };
-  const auto isExcluded = [&](int frame) { return !inspection.isTraining(frame) && !inspection.isHeldOut(frame); };
-  std::vector<Series> all;
-  double low = std::numeric_limits<double>::infinity(), high = 0;
-  for (const std::string& model : models) {
-    Series series;
-    series.model = model;
-    for (int frame = 0; frame < frames; ++frame) {
-      series.scores.push_back(frameScore(inspection.models.at(model), frame));
-      const bool counts = inspection.isHeldOut(frame);
-      series.asked += counts ? 1 : 0;
-      series.pct.push_back(isExcluded(frame) ? std::nullopt : wholeErrorPct(series.scores.back()));
-      const std::optional<double>& pct = series.pct.back();
-      if (!pct) continue;
-      if (counts) {
-        series.sum += *pct;
-        ++series.answered;
-      }
-      high = std::max(high, *pct);
-      if (*pct > 0) low = std::min(low, *pct);
-    }
-    all.push_back(std::move(series));
-  }
-  canvas.text({0.8 * font, 1.5 * font}, inspection.scene->name + ": contour error over frames", 1.2 * font, theme.ink);
-  if (!(high > 0) || frames == 0) {
-    canvas.text({0.8 * font, 4 * font}, models.empty() ? "no models computed" : "no errors to plot", font, kFailed);
-    return canvas.image();
-  }
-  const bool logarithmic = high / low > 30;
-  double bottom = 0, top = 1.08 * high;
-  if (logarithmic) {
-    bottom = std::log10(std::max(low, 1e-5 * high)) - 0.05;
-    top = std::log10(high) + 0.05;
-  }
-  const double rowsOfLegend = static_cast<double>(all.size());
-  const Box plot{5.2 * font, (3.4 + 1.4 * rowsOfLegend) * font, width - 7 * font, height - (7.6 + 1.4 * rowsOfLegend) * font};
-  const auto xOf = [&](double frame) { return plot.x + (frame + 0.5) / frames * plot.width; };
-  const auto yOf = [&](double pct) {
-    const double v = logarithmic ? std::log10(std::max(pct, 1e-300)) : pct;
-    return plot.y + plot.height * (1 - std::clamp((v - bottom) / (top - bottom), 0.0, 1.0));
-  };
-  canvas.fill(plot, theme.panel);
-  bool anyTraining = false;
-  if (!inspection.train.perSurface) {
-    for (int frame = 0; frame < frames; ++frame) {
-      if (!inspection.isTraining(frame)) continue;
-      canvas.fill({xOf(frame - 0.5), plot.y, plot.width / frames, plot.height}, kTraining, 0.22);
-      anyTraining = true;
-    }
-  }
-  bool anyExcluded = false;
-  for (int frame = 0; frame < frames; ++frame) {
-    if (!isExcluded(frame)) continue;
-    canvas.fill({xOf(frame - 0.5), plot.y, plot.width / frames, plot.height}, kExcluded, 0.4);
-    anyExcluded = true;
-  }
-  // Error axis.
-  std::vector<double> ticks;
-  if (logarithmic) {
-    const bool sparse = top - bottom > 2.5;
-    for (int decade = static_cast<int>(std::floor(bottom)); decade <= static_cast<int>(std::ceil(top)); ++decade) {
-      for (const double factor : {1.0, 2.0, 5.0}) {
-        if (sparse && factor > 1) continue;
-        const double v = factor * std::pow(10.0, decade);
-        if (std::log10(v) >= bottom && std::log10(v) <= top) ticks.push_back(v);
-      }
-    }
-  } else {
-    const double step = roundLength(top / 4);
-    for (int i = 0; i * step <= top; ++i) ticks.push_back(i * step);
-  }
-  for (const double v : ticks) {
-    canvas.stroke({{plot.x, yOf(v)}, {plot.x + plot.width, yOf(v)}}, false, theme.faint, 1);
-    canvas.text({plot.x - 0.5 * font, yOf(v) + 0.35 * font}, formatted("%.4g", v), font, theme.ink, Align::Right);
-  }
-  canvas.text({1.3 * font, plot.y + 0.5 * plot.height}, logarithmic ? "contour error, % (log)" : "contour error, %", font,
-              theme.ink, Align::Centre, true);
-  // Frame axis.
-  const double perLabel = std::max(1.0, std::ceil(2.2 * font * frames / plot.width));
-  const int step = std::max(1, static_cast<int>(perLabel <= 1   ? 1
-                                                : perLabel <= 2 ? 2
-                                                : perLabel <= 5 ? 5
-                                                                : 10 * std::ceil(perLabel / 10)));
-  for (int frame = 0; frame < frames; frame += step) {
-    canvas.stroke({{xOf(frame), plot.y + plot.height}, {xOf(frame), plot.y + plot.height + 0.3 * font}}, false, theme.ink, 1);
-    canvas.text({xOf(frame), plot.y + plot.height + 1.4 * font}, std::to_string(frame), font, theme.ink, Align::Centre);
-  }
-  bool anyMissing = false;
-  const auto isMissing = [&](const Series& series, int frame) {
-    return series.answered > 0 && !isExcluded(frame) && !series.pct[static_cast<std::size_t>(frame)];
-  };
-  for (const Series& series : all)
-    for (int frame = 0; frame < frames; ++frame) anyMissing = anyMissing || isMissing(series, frame);
-  canvas.text({plot.x + 0.5 * plot.width, plot.y + plot.height + 2.9 * font},
-              std::string("frame") + (anyTraining ? ", shaded blue: training" : "") + (anyExcluded ? ", brown: excluded" : "") +
-                  (anyMissing ? ", strokes above: missed highlight or no prediction" : ""),
-              font, theme.ink, Align::Centre);
-  // Lines, broken where a frame has no error.
-  double legendY = 3.2 * font;
-  for (const Series& series : all) {
-    const Colour colour = modelColour(series.model);
-    std::vector<Eigen::Vector2d> run;
-    for (int frame = 0; frame <= frames; ++frame) {
-      if (frame < frames && series.pct[static_cast<std::size_t>(frame)]) {
-        run.push_back({xOf(frame), yOf(*series.pct[static_cast<std::size_t>(frame)])});
-        continue;
-      }
-      canvas.stroke(run, false, colour, 1.8 * ink);
-      run.clear();
-    }
-    for (int frame = 0; frame < frames; ++frame) {
-      const std::optional<double>& pct = series.pct[static_cast<std::size_t>(frame)];
-      if (pct) canvas.disc({xOf(frame), yOf(*pct)}, (frames > 100 ? 1.5 : 2.8) * ink, colour);
-    }
-    canvas.stroke({{plot.x, legendY - 0.35 * font}, {plot.x + 1.8 * font, legendY - 0.35 * font}}, false, colour, 3 * ink);
-    std::string text = series.model;
-    if (series.answered > 0) {
-      text += ":  mean " + formatted("%.3g %%", series.sum / series.answered) + " over " + std::to_string(series.answered) +
-              " of " + std::to_string(series.asked) + (inspection.train.perSurface ? " frames" : " held-out frames");
-    } else {
-      text += ":  no prediction in any held-out frame";
-      for (const FrameScore& score : series.scores) {
-        if (!score.reason.empty()) {
-          text += " (" + score.reason + ")";
-          break;
-        }
-      }
-    }
-    canvas.text({plot.x + 2.4 * font, legendY}, canvas.fitted(text, font, plot.width - 2.4 * font), font,
-                series.answered > 0 ? theme.ink : kFailed);
-    legendY += 1.4 * font;
-  }
-  // Frames that a model left out: a short stroke above the plot in its colour, one row for each model.
-  const double room = 0.9 * font, rowHeight = room / std::max<double>(1, static_cast<double>(all.size()));
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    for (int frame = 0; frame < frames; ++frame) {
-      if (!isMissing(all[i], frame)) continue;
-      canvas.fill(
-          {xOf(frame - 0.35), plot.y - room + static_cast<double>(i) * rowHeight, 0.7 * plot.width / frames, 0.7 * rowHeight},
-          modelColour(all[i].model));
-    }
-  }
-  outlineBox(canvas, plot, theme.faint, 1);
-  return canvas.image();
+  ErrorPlotOptions shown;
+  shown.models = options.models;
+  shown.means = true;
+  PlotData plot = errorPlot(inspection, shown);
+  plot.title = inspection.scene->name + ": contour error over frames";
+  constexpr double kScreenHeight = 460;  // of a plot whose texts have their usual size, px
+  return plotImage(plot, {options.dark, std::clamp(height / kScreenHeight, 0.85, 3.5)}, {}, width, height);
 }
 
 }  // namespace glint::viz

@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "core/draw/frame_overlay.h"
 #include "viz/canvas.h"
+#include "viz/style.h"
 
 namespace glint::viz {
 
@@ -27,12 +29,9 @@ Image framePicture(const Inspection& inspection, int frame, const Outcome<Image>
 Image ladderPicture(const Inspection& inspection, int frame, const Outcome<Image>& photograph, int width, int height,
                     const PictureOptions& options = {});
 
-/// Contour error over frames, one line for each model; training frames are shaded, frames without an answer marked above.
-/// The error axis is logarithmic where the errors span more than a factor of 30.
+/// Contour error over frames (errorPlot), with the means of held-out frames in the legend. std::invalid_argument unless
+/// 64 <= width, height <= 16384.
 Image plotsPicture(const Inspection& inspection, int width, int height, const PictureOptions& options = {});
-
-/// Draws an overlay: image pixels of `crop` are stretched over `box`. Marks and widths keep their screen size times `inkScale`.
-void drawOverlay(Canvas& canvas, const FrameOverlay& overlay, const Crop& crop, const Box& box, double inkScale);
 
 /// The part of the photograph that holds the frame's contours with a margin, `aspect` = width / height (0 = as the contours are);
 /// nothing without contours.

@@ -6,9 +6,10 @@
 #include <string_view>
 
 #include "core/scene/scene_files.h"
-#include "viz/error_text.h"
-#include "viz/frame_overlay.h"
-#include "viz/missed.h"
+#include "core/base/error_text.h"
+#include "core/draw/frame_overlay.h"
+#include "core/inspect/frame_score.h"
+#include "viz/style.h"
 
 namespace glint::viz {
 namespace {

@@ -20,11 +20,12 @@
 #include "core/geometry/light.h"
 #include "core/surface/mesh_policy.h"
 #include "viz/annotations.h"
-#include "viz/frame_overlay.h"
+#include "core/draw/frame_overlay.h"
 #include "viz/layers.h"
 #include "viz/photograph_stand.h"
 #include "viz/scene_legend.h"
 #include "viz/scene_questions.h"
+#include "viz/style.h"
 #include "viz/view_camera.h"
 
 namespace glint::viz {

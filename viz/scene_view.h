@@ -13,7 +13,8 @@
 
 #include "core/inspect/inspection.h"
 #include "viz/hidden_objects.h"
-#include "viz/selection.h"
+#include "core/draw/selection.h"
+#include "viz/style.h"
 
 class vtkImageData;
 class vtkRenderer;

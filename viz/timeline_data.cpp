@@ -6,8 +6,9 @@
 #include <limits>
 #include <set>
 
-#include "viz/frame_overlay.h"
-#include "viz/missed.h"
+#include "core/draw/frame_overlay.h"
+#include "core/inspect/frame_score.h"
+#include "viz/style.h"
 
 namespace glint::viz {
 

@@ -8,8 +8,9 @@
 
 #include "core/base/angle.h"
 #include "core/base/number_text.h"
-#include "viz/frame_details.h"
+#include "core/draw/frame_details.h"
 #include "viz/layers.h"
+#include "viz/style.h"
 
 namespace glint::viz {
 namespace {

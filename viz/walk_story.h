@@ -9,7 +9,7 @@
 #include "core/explain/explain.h"
 #include "core/explain/walk_trace.h"
 #include "core/geometry/light.h"
-#include "viz/frame_overlay.h"
+#include "core/draw/frame_overlay.h"
 #include "viz/style.h"
 
 namespace glint::viz {

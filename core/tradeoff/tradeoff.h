@@ -69,7 +69,5 @@ std::string tradeoffJson(const Tradeoff& tradeoff);
 Tradeoff readTradeoff(const JsonNode& node);
 /// A plain-text table of the front and the presets.
 std::string tradeoffTable(const Tradeoff& tradeoff);
-/// A page that needs no other file: the front as SVG, the points, what was pruned and why.
-std::string tradeoffHtml(const Tradeoff& tradeoff);
 
 }  // namespace glint

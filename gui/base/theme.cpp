@@ -117,11 +117,11 @@ void applyTheme(QApplication& app, Theme theme) {
 
 Theme currentTheme() { return theTheme; }
 QIcon icon(const QString& name) { return QIcon(new SvgIconEngine(name)); }
-QColor accentColour() { return toQColor(viz::kActiveView); }
+QColor accentColour() { return toQColor(draw::kActiveView); }
 QColor focusColour() { return theTheme == Theme::Dark ? QColor(0x8c, 0xc4, 0xff) : QColor(0x0b, 0x57, 0xa4); }
 QColor warningColour() { return theTheme == Theme::Dark ? QColor(0xe0, 0xa8, 0x30) : QColor(0xa0, 0x6a, 0x00); }
 QColor errorColour() { return theTheme == Theme::Dark ? QColor(0xf0, 0x7a, 0x6a) : QColor(0xb3, 0x2a, 0x1a); }
-QColor toQColor(const viz::Colour& c) { return QColor::fromRgbF(c[0], c[1], c[2]); }
+QColor toQColor(const draw::Colour& c) { return QColor::fromRgbF(c[0], c[1], c[2]); }
 
 QIcon colourSwatch(const QColor& colour) {
   QIcon swatch;

@@ -23,7 +23,7 @@ QColor accentColour();
 QColor focusColour();    ///< the ring around what the keyboard acts on
 QColor warningColour();  ///< amber: stale, out of date
 QColor errorColour();
-QColor toQColor(const viz::Colour& c);
+QColor toQColor(const draw::Colour& c);
 /// Square of the model's fixed colour, for lists and legends.
 QIcon colourSwatch(const QColor& colour);
 

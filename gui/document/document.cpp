@@ -9,7 +9,7 @@
 #include "gui/base/text.h"
 #include "gui/document/state_command.h"
 #include "gui/scene/scene_options.h"
-#include "viz/frame_overlay.h"
+#include "core/draw/frame_overlay.h"
 
 namespace glint::gui {
 
@@ -19,7 +19,7 @@ bool Document::layerVisible(const std::string& name) const {
   if (const auto it = state_.layers.find(name); it != state_.layers.end()) return it->second;
   for (const viz::Layer& layer : viz::sceneLayers())
     if (layer.name == name) return layer.onByDefault;
-  for (const viz::OverlayLayer& layer : viz::overlayLayers())
+  for (const draw::OverlayLayer& layer : draw::overlayLayers())
     if (layer.name == name) return layer.onByDefault;
   return true;
 }
@@ -246,7 +246,7 @@ void Document::setRole(int frame, FrameRole role) {
   push(std::move(after), role == FrameRole::Training ? tr("Train on frame %1").arg(id) : tr("Hold out frame %1").arg(id));
 }
 
-void Document::select(const viz::Selection& selection, int gesture) {
+void Document::select(const draw::Selection& selection, int gesture) {
   if (!scene_) return;
   ViewState after = state_;
   after.selection = selection;
@@ -256,7 +256,7 @@ void Document::select(const viz::Selection& selection, int gesture) {
 }
 
 void Document::selectFrame(int frame, int gesture) {
-  viz::Selection s = state_.selection;
+  draw::Selection s = state_.selection;
   if (s.frame == frame) return;
   s.frame = frame;
   s.highlight = -1;

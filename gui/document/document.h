@@ -20,7 +20,7 @@ enum class FrameRole { Training, HeldOut, Excluded };
 /// Everything that undo restores: plain data, compared and copied as a whole.
 struct ViewState {
   InspectionRequest request;
-  viz::Selection selection;
+  draw::Selection selection;
   std::map<std::string, bool> layers;  ///< scene layers by their name, frame overlays as "frame/NAME"
   std::map<std::string, std::string>
       options;  ///< how views show things, as "VIEW/NAME": "frame/gamma", "scene/colour-by"; absent = default
@@ -40,7 +40,7 @@ class Document : public QObject {
   int frameCount() const { return scene_ ? int(scene_->frames.size()) : 0; }
   const ViewState& state() const { return state_; }
   const InspectionRequest& request() const { return state_.request; }
-  const viz::Selection& selection() const { return state_.selection; }
+  const draw::Selection& selection() const { return state_.selection; }
   bool layerVisible(const std::string& name) const;
   /// How a view shows something: see ViewState::options.
   std::string option(const std::string& name, const std::string& otherwise) const;
@@ -108,7 +108,7 @@ class Document : public QObject {
   /// @param mergeKey  equal texts that are not empty merge into one step.
   void setWhatIf(const glint::WhatIf& whatIf, const QString& text, const QString& mergeKey = {});
   void setRole(int frame, FrameRole role);
-  void select(const viz::Selection& selection, int gesture = 0);
+  void select(const draw::Selection& selection, int gesture = 0);
   void selectFrame(int frame, int gesture = 0);
   /// Selects it without a step of undo: playing.
   void showFrame(int frame);

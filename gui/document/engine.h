@@ -32,7 +32,7 @@ struct Opened {
   std::string stamp;       ///< of the session file as it was read (see stampOf); "" = not known
   std::shared_ptr<const Scene> scene;
   InspectionRequest request;
-  viz::Selection selection;
+  draw::Selection selection;
   std::map<std::string, bool> layers;          ///< visibility by layer name, where it differs from the default
   std::map<std::string, std::string> options;  ///< how views show things, see ViewState
   std::string layout;                          ///< "" = keep the window's

@@ -50,7 +50,7 @@ void WalkPlayer::ask() {
   asked_ = question;
   // Depth maps are read for it: not here.
   job_.run([this, question] {
-    const viz::Selection& s = question.selection;
+    const draw::Selection& s = question.selection;
     const int frame = std::clamp(s.frame, 0, int(question.inspection->scene->frames.size()) - 1);
     const Explanation explanation = explain(*question.inspection, frame, s.highlight, s.model);
     const Outcome<viz::WalkStory> found = viz::walkStory(*question.inspection, explanation, question.inverse, s.direction);

@@ -37,7 +37,7 @@ class WalkPlayer : public QObject {
  private:
   struct Question {
     std::shared_ptr<const Inspection> inspection;
-    viz::Selection selection;
+    draw::Selection selection;
     bool inverse = false;
     friend bool operator==(const Question&, const Question&) = default;
   };

@@ -17,8 +17,8 @@
 namespace glint::gui {
 
 namespace {
-Qt::PenStyle penStyle(viz::Dash dash) {
-  return dash == viz::Dash::Solid ? Qt::SolidLine : dash == viz::Dash::Dashed ? Qt::DashLine : Qt::DotLine;
+Qt::PenStyle penStyle(draw::Dash dash) {
+  return dash == draw::Dash::Solid ? Qt::SolidLine : dash == draw::Dash::Dashed ? Qt::DashLine : Qt::DotLine;
 }
 }  // namespace
 
@@ -68,7 +68,7 @@ class WalkView::Picture : public QWidget {
       painter.setPen(toQColor(text.colour));
       const QString s = toQString(text.text);
       const double w = QFontMetricsF(painter.font()).horizontalAdvance(s);
-      const double x = text.at.x() - (text.align == viz::Align::Left ? 0 : text.align == viz::Align::Centre ? w / 2 : w);
+      const double x = text.at.x() - (text.align == draw::Align::Left ? 0 : text.align == draw::Align::Centre ? w / 2 : w);
       painter.drawText(QPointF(x, text.at.y()), s);
     }
   }

@@ -232,7 +232,7 @@ double FigureActions::paintKey(QPainter& painter, const FigureLook& look) const 
   for (int i = 0; i < key.size(); ++i) {
     const QRectF box(places[std::size_t(i)] + QPointF(0, (line - square) / 2), QSizeF(square, square));
     painter.fillRect(box, key[i].colour);
-    painter.setPen(toQColor(look.dark ? viz::kTextOnDark : viz::kTextOnLight));
+    painter.setPen(toQColor(look.dark ? draw::kTextOnDark : draw::kTextOnLight));
     painter.drawText(QPointF(box.right() + square, box.center().y() + (metrics.ascent() - metrics.descent()) / 2), key[i].text);
   }
   painter.restore();

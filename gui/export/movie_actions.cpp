@@ -68,7 +68,7 @@ void MovieActions::write(const MovieLook& look, const QString& file) {
   if (job_.busy()) return void(emit problem(tr("Another export is still running")));
   const int width = look.format.width, height = look.format.height;
   if (look.of == MovieOf::FrameView) {
-    const viz::OverlayOptions shown = frame_.overlayOptions();
+    const draw::OverlayOptions shown = frame_.overlayOptions();
     viz::PictureOptions options;
     options.dark = look.dark;
     options.hidden = shown.hidden;
@@ -106,7 +106,7 @@ void MovieActions::write(const MovieLook& look, const QString& file) {
     const vtkSmartPointer<vtkImageData> texture = photograph ? viz::toTexture(*photograph, kPhotographPx) : nullptr;
     Image picture;
     job_.onInterface([&] {
-      viz::Selection there = selection;
+      draw::Selection there = selection;
       there.frame = frame;
       there.direction.reset();
       stage->view->setSelection(there);

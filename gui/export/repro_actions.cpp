@@ -68,7 +68,7 @@ ReproActions::ReproActions(Document& document, LongJob& job, QWidget* window)
 
 Outcome<Fault> ReproActions::fault() const {
   if (!document_.inspection() || document_.stale()) return Failure{Reason::NotSupported, "results are out of date"};
-  const viz::Selection& s = document_.selection();
+  const draw::Selection& s = document_.selection();
   return faultOf(*document_.inspection(), s.frame, document_.plottedModel(), s.light);
 }
 

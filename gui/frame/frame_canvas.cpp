@@ -6,21 +6,21 @@
 #include <QLinearGradient>
 #include <QMouseEvent>
 #include <QPainter>
-#include <QPainterPath>
 #include <QToolTip>
 #include <QWheelEvent>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "core/draw/overlay_painter.h"
 #include "gui/base/focus_frame.h"
+#include "gui/base/qt_painter.h"
 #include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/tips.h"
 #include "gui/frame/pixel_probe.h"
 #include "viz/frame_pick.h"
-#include "viz/overlay_clip.h"
 
 namespace glint::gui {
 
@@ -38,12 +38,6 @@ QPointF positionOf(const QMouseEvent& e) {
 #endif
 }
 
-QPen penOf(const viz::OverlayLine& line, const QColor& colour, double width) {
-  QPen pen(colour, width, Qt::SolidLine, Qt::FlatCap, Qt::RoundJoin);
-  if (line.dash == viz::Dash::Dashed) pen.setDashPattern({4, 3});
-  if (line.dash == viz::Dash::Dotted) pen.setDashPattern({1, 2});
-  return pen;
-}
 }  // namespace
 
 FrameCanvas::FrameCanvas(QWidget* parent) : QWidget(parent) {
@@ -89,7 +83,7 @@ void FrameCanvas::setMessage(const QString& message) {
   update();
 }
 
-void FrameCanvas::setOverlay(viz::FrameOverlay overlay) {
+void FrameCanvas::setOverlay(draw::FrameOverlay overlay) {
   overlay_ = std::move(overlay);
   update();
 }
@@ -188,9 +182,7 @@ void FrameCanvas::drawFigure(QPainter& painter, const QRectF& target, const QCol
     copy.fit();
   else
     copy.lookAt(centre(), zoom_);
-  // Vector formats know no clipping: what lies beside the picture would lie over its neighbour.
-  copy.overlay_ =
-      viz::cutTo(overlay_, {copy.pixelFromWidget({0, 0}), copy.pixelFromWidget(QPointF(copy.width(), copy.height()))});
+  copy.overlay_ = overlay_;
   painter.save();
   painter.setClipRect(target);
   if (background.isValid()) painter.fillRect(target, background);
@@ -299,33 +291,12 @@ void FrameCanvas::drawPhotograph(QPainter& painter) const {
 }
 
 void FrameCanvas::drawOverlay(QPainter& painter) const {
-  painter.setRenderHint(QPainter::Antialiasing);
-  painter.setBrush(Qt::NoBrush);
-  for (const viz::OverlayLine& line : overlay_.lines) {
-    if (line.points.size() < 2) continue;
-    QPolygonF polygon;
-    polygon.reserve(int(line.points.size()));
-    for (const Pixel& p : line.points) polygon << widgetFromPixel(p);
-    QPainterPath path;
-    path.addPolygon(polygon);
-    if (line.closed) path.closeSubpath();
-    if (line.halo) painter.strokePath(path, penOf(line, kHalo, line.width + 2));
-    painter.strokePath(path, penOf(line, toQColor(line.colour), line.width));
-  }
-  for (const viz::OverlayMark& mark : overlay_.marks) {
-    const QPointF at = widgetFromPixel(mark.at);
-    const auto draw = [&](const QColor& colour, double width) {
-      painter.setPen(QPen(colour, width));
-      if (mark.shape == viz::MarkShape::Circle) {
-        painter.drawEllipse(at, mark.size, mark.size);
-      } else {
-        painter.drawLine(at - QPointF(mark.size, 0), at + QPointF(mark.size, 0));
-        painter.drawLine(at - QPointF(0, mark.size), at + QPointF(0, mark.size));
-      }
-    };
-    if (mark.halo) draw(kHalo, mark.width + 2);
-    draw(toQColor(mark.colour), mark.width);
-  }
+  constexpr double kBeside = 4;  // px: strokes that are cut at the border do not end within sight
+  const double beside = figure_ ? 0 : kBeside;
+  const draw::Box box{-beside, -beside, width() + 2 * beside, height() + 2 * beside};
+  const Pixel from = pixelFromWidget({box.x, box.y}), to = pixelFromWidget({box.x + box.width, box.y + box.height});
+  QtPainter into(painter);
+  draw::paintOverlay(into, overlay_, {from.x(), from.y(), to.x() - from.x(), to.y() - from.y()}, box);
 }
 
 void FrameCanvas::resizeEvent(QResizeEvent*) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "gui/frame/photo_loader.h"
-#include "viz/frame_overlay.h"
+#include "core/draw/frame_overlay.h"
 
 namespace glint::gui {
 
@@ -40,7 +40,7 @@ class FrameCanvas : public QWidget {
   /// What is drawn is another frame's photograph until the next picture or message: where that takes a moment, it is drawn faint,
   /// with these words.
   void setAwaited(const QString& words);
-  void setOverlay(viz::FrameOverlay overlay);
+  void setOverlay(draw::FrameOverlay overlay);
   void setStale(bool stale);
   /// Scale bar of false colours in a corner; empty = none.
   void setScale(std::vector<viz::ScaleTick> ticks);
@@ -114,7 +114,7 @@ class FrameCanvas : public QWidget {
   std::vector<viz::ScaleTick> scale_;
   QString message_, caption_, awaited_;
   QTimer awaiting_;  ///< runs until awaited_ is shown
-  viz::FrameOverlay overlay_;
+  draw::FrameOverlay overlay_;
   double zoom_ = 1;
   QPointF corner_{0, 0};  ///< widget position of the photograph's top-left corner, pixel (-0.5, -0.5)
   bool fitted_ = true;    ///< follows the widget's size until the user zooms or pans

@@ -25,7 +25,7 @@
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/hand_tool.h"
 #include "gui/frame/pair_bar.h"
-#include "viz/error_text.h"
+#include "core/base/error_text.h"
 #include "viz/frame_pick.h"
 #include "viz/walk_story.h"
 
@@ -210,7 +210,7 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
   folded_->setMenu(menu);
   folded_->hide();
   flow->addWidget(folded_);
-  for (const viz::OverlayLayer& layer : viz::overlayLayers()) {
+  for (const draw::OverlayLayer& layer : draw::overlayLayers()) {
     auto* button = new QToolButton;
     button->setObjectName(QLatin1String(layer.name));
     button->setText(tr(layer.title));
@@ -290,7 +290,7 @@ void FramePanel::showTitle() {
     return;
   }
   const int frame = document_.selection().frame;
-  const viz::Colour colours[] = {viz::kTraining, {0.38, 0.38, 0.38}, viz::kExcluded};
+  const draw::Colour colours[] = {draw::kTraining, {0.38, 0.38, 0.38}, draw::kExcluded};
   const int role = int(document_.role(frame));
   title_->setText(QStringLiteral("<b>%1</b>").arg(nameText(document_.scene()->frames[std::size_t(frame)].id).toHtmlEscaped()));
   role_->setText(roleName(document_.role(frame)));
@@ -319,11 +319,11 @@ void FramePanel::showFrame() {
   showOverlay();
 }
 
-viz::OverlayOptions FramePanel::overlayOptions() const {
-  viz::OverlayOptions options;
-  for (const viz::OverlayLayer& layer : viz::overlayLayers())
+draw::OverlayOptions FramePanel::overlayOptions() const {
+  draw::OverlayOptions options;
+  for (const draw::OverlayLayer& layer : draw::overlayLayers())
     if (!document_.layerVisible(layer.name)) options.hidden.insert(layer.role);
-  if (options.hidden.count(viz::OverlayRole::ObservedPeak)) options.hidden.insert(viz::OverlayRole::PredictedPeak);
+  if (options.hidden.count(draw::OverlayRole::ObservedPeak)) options.hidden.insert(draw::OverlayRole::PredictedPeak);
   for (const std::string& model : document_.request().models)
     if (!document_.layerVisible(kModelLayer + model)) options.hiddenModels.insert(model);
   options.colourByRole = document_.option("frame/colour-by", std::string("model")) == "role";
@@ -339,16 +339,16 @@ void FramePanel::showWalk(std::shared_ptr<const viz::WalkStory> walk, int step) 
 }
 
 void FramePanel::showOverlay() {
-  const std::vector<viz::OverlayLayer>& layers = viz::overlayLayers();
+  const std::vector<draw::OverlayLayer>& layers = draw::overlayLayers();
   for (std::size_t i = 0; i < layers.size(); ++i) toggles_[i]->setChecked(document_.layerVisible(layers[i].name));
   for (const auto& [name, action] : layerActions_) action->setChecked(document_.layerVisible(name));
-  const viz::OverlayOptions options = overlayOptions();
+  const draw::OverlayOptions options = overlayOptions();
   if (colourByRole_) colourByRole_->setChecked(options.colourByRole);
   const std::shared_ptr<const Inspection> inspection = document_.frameInspection();
   const int frame = document_.selection().frame;
   const bool two = document_.scene() && pair_->on();
   shown_ = shownSecond_ = {};
-  if (inspection && frame < int(inspection->evidence.size())) shown_ = viz::frameOverlay(*inspection, frame, options);
+  if (inspection && frame < int(inspection->evidence.size())) shown_ = draw::frameOverlay(*inspection, frame, options);
   if (walk_ && walk_->frame == frame) viz::addWalk(*walk_, walkStep_, shown_);
   showCaptions(shown_);
   // What was changed by hand or synthesised would else be taken for what was captured.
@@ -356,7 +356,7 @@ void FramePanel::showOverlay() {
   if (two) {
     const int second = pair_->secondFrame();
     if (const auto all = document_.inspection(); all && second < int(all->evidence.size())) {
-      shownSecond_ = viz::frameOverlay(*all, second, options);
+      shownSecond_ = draw::frameOverlay(*all, second, options);
       pair_->addLines(shown_, shownSecond_);
     }
     const auto& frames = document_.scene()->frames;
@@ -372,7 +372,7 @@ void FramePanel::showOverlay() {
   canvas_->setOverlay(shown_);
 }
 
-void FramePanel::showCaptions(const viz::FrameOverlay& overlay) {
+void FramePanel::showCaptions(const draw::FrameOverlay& overlay) {
   const QString faded = palette().color(QPalette::PlaceholderText).name(), warning = warningColour().name();
   const QString plain = palette().color(QPalette::Text).name();
   const auto cell = [](const QString& text, const char* align = "right") {
@@ -380,7 +380,7 @@ void FramePanel::showCaptions(const viz::FrameOverlay& overlay) {
         .arg(QLatin1String(align), text);
   };
   const auto error = [&](const std::optional<double>& value) {
-    return cell(value ? toQString(viz::errorText(*value)) : QStringLiteral("–"));
+    return cell(value ? toQString(errorText(*value)) : QStringLiteral("–"));
   };
   const auto share = [&](const std::optional<double>& value) {
     return cell(value ? QString::number(*value, 'f', 3) : QStringLiteral("–"));
@@ -390,7 +390,7 @@ void FramePanel::showCaptions(const viz::FrameOverlay& overlay) {
   };
   QString rows, reasons;
   QStringList notes;
-  for (const viz::OverlayCaption& c : overlay.captions) {
+  for (const draw::OverlayCaption& c : overlay.captions) {
     if (c.model.empty()) {
       notes << toQString(c.text).toHtmlEscaped();
       continue;
@@ -444,7 +444,7 @@ void FramePanel::followLink(const QString& target) {
     const std::string layer = kModelLayer + model;
     document_.setLayerVisible(layer, model, !document_.layerVisible(layer));
   } else {
-    viz::Selection s = document_.selection();
+    draw::Selection s = document_.selection();
     s.model = s.model == model ? std::string() : model;
     document_.select(s);
   }
@@ -460,9 +460,9 @@ void FramePanel::selectAt(double x, double y) {
 void FramePanel::selectModelAt(double x, double y) {
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
   if (!inspection) return;
-  viz::Selection there = document_.selection();
+  draw::Selection there = document_.selection();
   there.frame = pair_->secondFrame();
-  viz::Selection s = document_.selection();
+  draw::Selection s = document_.selection();
   s.model = viz::pickInFrame(*inspection, there, shownSecond_, {x, y}, FrameCanvas::kNearScreenPx / second_->zoom()).model;
   document_.select(s);
 }
@@ -511,9 +511,9 @@ void FramePanel::zoomTo(int highlight, bool withCanonical) {
     if (withCanonical) {  // on a bulging mirror several times as large
       const Camera& camera = document_.scene()->frames[std::size_t(frame)].camera;
       const Eigen::AlignedBox2d photograph(Pixel(0, 0), Pixel(camera.width, camera.height));
-      const viz::FrameOverlay overlay = viz::frameOverlay(*inspection, frame, overlayOptions());
+      const draw::FrameOverlay overlay = draw::frameOverlay(*inspection, frame, overlayOptions());
       const Eigen::AlignedBox2d around =
-          viz::extentAround(overlay, viz::OverlayRole::CanonicalEllipse, box.center()).intersection(photograph);
+          draw::extentAround(overlay, draw::OverlayRole::CanonicalEllipse, box.center()).intersection(photograph);
       if (!around.isEmpty() && !box.contains(around)) {
         share = 0.85;
         box.extend(around);
@@ -543,7 +543,7 @@ void FramePanel::addActions(Actions& actions, QMenu* menu) {
   connect(hand_, &HandTool::onChanged, hand, &QAction::setChecked);
   develop_->addActions(actions, menu->addMenu(tr("Photog&raph")));
   QMenu* overlays = menu->addMenu(tr("Ov&erlays"));
-  for (const viz::OverlayLayer& layer : viz::overlayLayers())
+  for (const draw::OverlayLayer& layer : draw::overlayLayers())
     layerActions_[layer.name] = actions.addToggle(
         QStringLiteral("frame.show-") + QString(QLatin1String(layer.name)).section('/', 1), overlays, tr(layer.title),
         [this, &layer](bool on) { document_.setLayerVisible(layer.name, layer.title, on); }, {{}, {}, tr(layer.tip)});

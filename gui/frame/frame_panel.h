@@ -14,7 +14,7 @@
 #include "gui/document/document.h"
 #include "gui/frame/photo_loader.h"
 #include "gui/frame/pixel_probe.h"
-#include "viz/frame_overlay.h"
+#include "core/draw/frame_overlay.h"
 
 class QLabel;
 class QToolButton;
@@ -49,7 +49,7 @@ class FramePanel : public QWidget {
   /// The image points of a walk, as far as `step`; null = none.
   void showWalk(std::shared_ptr<const viz::WalkStory> walk, int step);
   /// What of the overlays is shown, and how.
-  viz::OverlayOptions overlayOptions() const;
+  draw::OverlayOptions overlayOptions() const;
   /// A step of the explanation is about a highlight ("tangent", "highlight": zooms to it) or about the scene (the whole
   /// photograph again, unless the user has moved on since).
   void look(const QString& at, int highlight);
@@ -72,7 +72,7 @@ class FramePanel : public QWidget {
   void showTitle();
   void showLook();
   void showOverlay();
-  void showCaptions(const viz::FrameOverlay& overlay);
+  void showCaptions(const draw::FrameOverlay& overlay);
   void selectAt(double x, double y);
   void selectModelAt(double x, double y);
   void followLink(const QString& link);
@@ -92,10 +92,10 @@ class FramePanel : public QWidget {
   QLabel *title_, *role_, *zoom_, *captions_;
   QAction* sideBySide_;
   PanelScroll *switches_, *captionsScroll_;
-  std::vector<QToolButton*> toggles_;             ///< one per viz::overlayLayers()
+  std::vector<QToolButton*> toggles_;             ///< one per draw::overlayLayers()
   std::map<std::string, QAction*> layerActions_;  ///< by layer name
   QAction* colourByRole_ = nullptr;
-  viz::FrameOverlay shown_, shownSecond_;
+  draw::FrameOverlay shown_, shownSecond_;
   std::size_t captionCount_ = 0;
   bool failureShown_ = false;            ///< the captions hold the reason of a failure
   QToolButton* folded_ = nullptr;        ///< the overlays' switches, where there is no room for a row of them

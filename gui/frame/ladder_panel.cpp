@@ -11,9 +11,9 @@
 #include "gui/base/theme.h"
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/photo_loader.h"
-#include "viz/frame_overlay.h"
+#include "core/draw/frame_overlay.h"
 #include "viz/frame_pick.h"
-#include "viz/missed.h"
+#include "core/inspect/frame_score.h"
 #include "viz/pictures.h"
 
 namespace glint::gui {
@@ -81,7 +81,7 @@ void LadderPanel::refresh() {
   const std::shared_ptr<const Inspection> inspection = this->inspection();
   const int frame = document_.selection().frame;
   const bool any = inspection && frame < int(inspection->evidence.size());
-  const std::vector<std::string> models = any ? viz::modelsInOrder(*inspection) : std::vector<std::string>();
+  const std::vector<std::string> models = any ? modelsInOrder(*inspection) : std::vector<std::string>();
   std::vector<std::string> shown;
   for (const Tile& tile : tiles_) shown.push_back(tile.model);
   if (models != shown) rebuild(models);
@@ -90,7 +90,7 @@ void LadderPanel::refresh() {
   if (frame != frame_ || whole_) {
     frame_ = frame;
     recentre_ = true;
-    const std::optional<viz::Crop> crop = any ? viz::highlightCrop(*inspection, frame, {}, 0) : std::nullopt;
+    const std::optional<draw::Crop> crop = any ? viz::highlightCrop(*inspection, frame, {}, 0) : std::nullopt;
     whole_ = !crop;
     if (crop) crop_ = *crop;
     if (!crop && document_.scene()) {
@@ -162,23 +162,23 @@ void LadderPanel::arrange() {
 void LadderPanel::showTile(Tile& tile) {
   const std::shared_ptr<const Inspection> inspection = this->inspection();
   const int frame = document_.selection().frame;
-  viz::OverlayOptions options;
+  draw::OverlayOptions options;
   options.models = {tile.model};
   options.selection = document_.selection();
-  for (const viz::OverlayLayer& layer : viz::overlayLayers())
+  for (const draw::OverlayLayer& layer : draw::overlayLayers())
     if (!document_.layerVisible(layer.name)) options.hidden.insert(layer.role);
-  if (options.hidden.count(viz::OverlayRole::ObservedPeak)) options.hidden.insert(viz::OverlayRole::PredictedPeak);
+  if (options.hidden.count(draw::OverlayRole::ObservedPeak)) options.hidden.insert(draw::OverlayRole::PredictedPeak);
   options.residualScale = std::clamp(document_.option("frame/residual-scale", 1.0), 1.0, 1000.0);
-  const viz::FrameOverlay overlay = viz::frameOverlay(*inspection, frame, options);
+  const draw::FrameOverlay overlay = draw::frameOverlay(*inspection, frame, options);
   const bool selected = document_.selection().model == tile.model;
   tile.below.clear();
   tile.brief.clear();
   tile.failed = false;
-  for (const viz::OverlayCaption& c : overlay.captions) {
+  for (const draw::OverlayCaption& c : overlay.captions) {
     if (c.model != tile.model) continue;
-    tile.failed = !viz::wholeErrorPct(c.score);
+    tile.failed = !wholeErrorPct(c.score);
     const bool some = c.score.missed > 0 && c.score.matched > 0;
-    tile.below = some          ? toQString(viz::missedText(c.score))
+    tile.below = some          ? toQString(missedText(c.score))
                  : tile.failed ? toQString(c.score.reason)
                                : tr("%1 %   %2 px").arg(numberText(*c.score.errorPct, 3), numberText(*c.score.errorPx, 3));
     tile.brief = tile.failed ? tile.below : tr("%1 %").arg(numberText(*c.score.errorPct, 3));
@@ -223,7 +223,7 @@ void LadderPanel::showCaption(const Tile& tile) {
   const QString below = left > 0 ? plain.elidedText(fitting, Qt::ElideRight, left).toHtmlEscaped() : QString();
   tile.text->setText(
       QStringLiteral("<span style='color:%1'>%2</span>%3<b>%4</b>%5%6")
-          .arg(toQColor(viz::modelColour(tile.model)).name(), QString(kSquare), space, model.toHtmlEscaped(),
+          .arg(toQColor(draw::modelColour(tile.model)).name(), QString(kSquare), space, model.toHtmlEscaped(),
                lines_ == 2 ? QStringLiteral("<br>") : space + space,
                tile.failed ? QStringLiteral("<span style='color:%1'>%2</span>").arg(warningColour().name(), below) : below));
 }
@@ -231,13 +231,13 @@ void LadderPanel::showCaption(const Tile& tile) {
 void LadderPanel::selectIn(const std::string& model, double x, double y) {
   const std::shared_ptr<const Inspection> inspection = this->inspection();
   if (!inspection) return;
-  viz::OverlayOptions options;
+  draw::OverlayOptions options;
   options.models = {model};
-  viz::Selection s = document_.selection();
+  draw::Selection s = document_.selection();
   double zoom = 1;
   for (const Tile& tile : tiles_)
     if (tile.model == model) zoom = tile.canvas->zoom();
-  const viz::FrameOverlay overlay = viz::frameOverlay(*inspection, s.frame, options);
+  const draw::FrameOverlay overlay = draw::frameOverlay(*inspection, s.frame, options);
   s = viz::pickInFrame(*inspection, s, overlay, {x, y}, FrameCanvas::kNearScreenPx / zoom);
   s.model = model;
   document_.select(s);

@@ -115,25 +115,25 @@ void PairBar::refresh() {
   ellipse_->setCurrentIndex(std::max(0, ellipse_->findData(toQString(document_.option(kEllipse, std::string("observed"))))));
 }
 
-void PairBar::addLines(viz::FrameOverlay& first, viz::FrameOverlay& second) {
+void PairBar::addLines(draw::FrameOverlay& first, draw::FrameOverlay& second) {
   miss_->clear();
   miss_->hide();
   key_.clear();
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
   const std::string lines = document_.option(kLines, std::string("both"));
   if (!inspection || lines == "off") return;
-  viz::PairRequest request;
+  draw::PairRequest request;
   request.frames = {document_.selection().frame, secondFrame()};
   request.highlight = document_.selection().highlight;
-  request.ellipse = document_.option(kEllipse, std::string("observed")) == "canonical" ? viz::PairEllipse::Canonical
-                                                                                       : viz::PairEllipse::Observed;
+  request.ellipse = document_.option(kEllipse, std::string("observed")) == "canonical" ? draw::PairEllipse::Canonical
+                                                                                       : draw::PairEllipse::Observed;
   QStringList said, reasons;
   for (const auto& [name, title, cameras, colour] :
-       {std::tuple("real", tr("real cameras"), viz::PairCameras::Real, viz::kRealEpipolar),
-        std::tuple("virtual", tr("virtual cameras"), viz::PairCameras::Virtual, viz::kVirtualCamera)}) {
+       {std::tuple("real", tr("real cameras"), draw::PairCameras::Real, draw::kRealEpipolar),
+        std::tuple("virtual", tr("virtual cameras"), draw::PairCameras::Virtual, draw::kVirtualCamera)}) {
     if (lines != name && lines != "both") continue;
     request.cameras = cameras;
-    const viz::EpipolarPicture picture = viz::epipolarPicture(*inspection, request);
+    const draw::EpipolarPicture picture = draw::epipolarPicture(*inspection, request);
     first.lines.insert(first.lines.end(), picture.frames[0].lines.begin(), picture.frames[0].lines.end());
     first.marks.insert(first.marks.end(), picture.frames[0].marks.begin(), picture.frames[0].marks.end());
     second.lines.insert(second.lines.end(), picture.frames[1].lines.begin(), picture.frames[1].lines.end());

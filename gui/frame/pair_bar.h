@@ -7,7 +7,7 @@
 
 #include "gui/base/actions.h"
 #include "gui/document/document.h"
-#include "viz/epipolar_overlay.h"
+#include "core/draw/epipolar_overlay.h"
 
 class QComboBox;
 class QLabel;
@@ -26,7 +26,7 @@ class PairBar : public QWidget {
   bool on() const;
   int secondFrame() const;
   /// Adds the lines to both overlays and says what they miss by.
-  void addLines(viz::FrameOverlay& first, viz::FrameOverlay& second);
+  void addLines(draw::FrameOverlay& first, draw::FrameOverlay& second);
   /// A kind of line that is drawn: its colour, and whose it is with what it misses by.
   struct KeyEntry {
     QColor colour;

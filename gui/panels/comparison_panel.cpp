@@ -244,7 +244,7 @@ void ComparisonPanel::selectRow(const QModelIndex& row) {
   if (!comparison_ || at < 0 || std::size_t(at) >= comparison_->errors.size()) return;
   const ComparedError& e = comparison_->errors[std::size_t(at)];
   if (e.frameA < 0 || e.frameA >= document_.frameCount()) return;
-  viz::Selection s = document_.selection();
+  draw::Selection s = document_.selection();
   s.frame = e.frameA;
   s.model = e.model;
   s.light = e.light;

@@ -11,7 +11,7 @@
 #include "gui/base/theme.h"
 #include "gui/base/tips.h"
 #include "gui/document/frame_roles.h"
-#include "viz/frame_overlay.h"
+#include "core/draw/frame_overlay.h"
 
 namespace glint::gui {
 
@@ -66,7 +66,7 @@ void ErrorModel::rebuild() {
   beginResetModel();
   rows_.clear();
   if (const std::shared_ptr<const Inspection> inspection = document_.inspection()) {
-    const std::vector<std::string> models = viz::modelsInOrder(*inspection);
+    const std::vector<std::string> models = modelsInOrder(*inspection);
     for (int frame = 0; frame < int(inspection->evidence.size()); ++frame)
       for (const std::string& model : models)
         for (const FrameComparison& c : inspection->models.at(model).frames)
@@ -163,7 +163,7 @@ QVariant ErrorModel::data(const QModelIndex& index, int role) const {
       if (!std::isfinite(number)) return QStringLiteral("–");
       return QString::number(number, 'f', std::abs(number) < kManyDigits ? digitsOf(column) : 0);
     case Qt::DecorationRole:
-      if (column == Model) return colourSwatch(toQColor(viz::modelColour(row.model)));
+      if (column == Model) return colourSwatch(toQColor(draw::modelColour(row.model)));
       return {};
     case Qt::ForegroundRole:
       if (row.role == FrameRole::Excluded)  // shown, but nothing of it counts

@@ -27,7 +27,7 @@
 #include "gui/base/theme.h"
 #include "gui/base/tips.h"
 #include "gui/panels/error_model.h"
-#include "viz/frame_overlay.h"
+#include "core/draw/frame_overlay.h"
 
 namespace glint::gui {
 
@@ -204,9 +204,9 @@ void ErrorTable::showSummary() {
        {tr("mean"), tr("median"), tr("p95"), tr("max"), tr("IoU"), tr("predicted"), tr("missed"), tr("spurious")},
        {}});
   int missed = 0, spurious = 0;
-  for (const std::string& name : viz::modelsInOrder(*inspection)) {
+  for (const std::string& name : modelsInOrder(*inspection)) {
     const ModelSummary s = summarise(*inspection, inspection->models.at(name));
-    SummaryRow row{toQColor(viz::modelColour(name)).name(), toQString(name), {}, {}};
+    SummaryRow row{toQColor(draw::modelColour(name)).name(), toQString(name), {}, {}};
     if (s.answered) {
       missed += s.missed;
       spurious += s.spurious;
@@ -319,7 +319,7 @@ void ErrorTable::resizeEvent(QResizeEvent* event) {
 
 void ErrorTable::selectFromDocument() {
   if (selecting_) return;
-  const viz::Selection& s = document_.selection();
+  const draw::Selection& s = document_.selection();
   int best = -1, bestScore = 0;
   for (int row = 0; row < proxy_->rowCount(); ++row) {
     const int source = proxy_->mapToSource(proxy_->index(row, 0)).row();

@@ -11,7 +11,7 @@
 #include "gui/base/text.h"
 #include "gui/base/tips.h"
 #include "gui/panels/selection_text.h"
-#include "viz/frame_overlay.h"
+#include "core/draw/frame_overlay.h"
 #include "viz/scene_questions.h"
 
 namespace glint::gui {
@@ -48,7 +48,7 @@ void NumbersPanel::showPicked(const viz::Picked& picked) {
 void NumbersPanel::addPicked() {
   const std::shared_ptr<const Inspection> now = document_.inspection();
   if (pickedIn_.lock() != now && now && picked_->layer == "cameras") {
-    picked_->text = viz::cameraPicked(*now, viz::modelsInOrder(*now), picked_->frame).text;
+    picked_->text = viz::cameraPicked(*now, modelsInOrder(*now), picked_->frame).text;
     pickedIn_ = now;
   }
   const bool earlier = pickedIn_.lock() != now;

@@ -160,7 +160,7 @@ NumberGroup comparison(const FrameComparison& c, int observed) {
   return {QObject::tr("Prediction"), lines.text()};
 }
 /// What is selected of the frame, beside its model: highlight, light, point of the contours.
-NumberGroup selectedParts(const Inspection& inspection, const viz::Selection& selection, const std::string& model) {
+NumberGroup selectedParts(const Inspection& inspection, const draw::Selection& selection, const std::string& model) {
   Lines lines;
   if (selection.highlight >= 0) lines.add(QObject::tr("highlight"), QString::number(selection.highlight + 1));
   if (!selection.light.empty()) lines.add(QObject::tr("light"), nameText(selection.light));
@@ -183,7 +183,7 @@ NumberGroup selectedParts(const Inspection& inspection, const viz::Selection& se
 }
 }  // namespace
 
-std::vector<NumberGroup> describeSelection(const Inspection& inspection, const viz::Selection& selection,
+std::vector<NumberGroup> describeSelection(const Inspection& inspection, const draw::Selection& selection,
                                            const std::string& model) {
   std::vector<NumberGroup> groups;
   const int frame = selection.frame;

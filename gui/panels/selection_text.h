@@ -16,7 +16,7 @@ struct NumberGroup {
 
 /// What is selected, and numbers of the selected frame and highlight: the observation, its brightest point and tangent plane, the
 /// light, and the model's fit and prediction. Numbers of the inspection and of core/diagnostics; none is computed here.
-std::vector<NumberGroup> describeSelection(const Inspection& inspection, const viz::Selection& selection,
+std::vector<NumberGroup> describeSelection(const Inspection& inspection, const draw::Selection& selection,
                                            const std::string& model);
 
 }  // namespace glint::gui

@@ -37,7 +37,7 @@ SetupPanel::SetupPanel(Document& document, QWidget* parent) : QWidget(parent), d
   models_->setIconSize({11, 11});
   models_->setSelectionMode(QAbstractItemView::NoSelection);
   for (const auto& model : allModels()) {
-    auto* item = new QListWidgetItem(colourSwatch(toQColor(viz::modelColour(model->id()))), toQString(model->id()), models_);
+    auto* item = new QListWidgetItem(colourSwatch(toQColor(draw::modelColour(model->id()))), toQString(model->id()), models_);
     item->setToolTip(QStringLiteral("<b>%1</b><br>%2<br>%3")
                          .arg(toQString(model->title()).toHtmlEscaped(), toQString(model->assumption()).toHtmlEscaped(),
                               toQString(model->reference()).toHtmlEscaped()));

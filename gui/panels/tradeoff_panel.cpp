@@ -188,7 +188,7 @@ void TradeoffPlot::paintEvent(QPaintEvent*) {
       const TradeoffPoint& point = t->points[std::size_t(i)];
       const std::optional<QPointF> p = positionOf(i);
       if (!p || point.pareto != onFront) continue;
-      const QColor colour = toQColor(viz::modelColour(point.model));
+      const QColor colour = toQColor(draw::modelColour(point.model));
       painter.setPen(QPen(colour, 1.6));
       painter.setBrush(onFront ? QBrush(colour) : QBrush(Qt::NoBrush));
       const double r = onFront ? 5 : 4;

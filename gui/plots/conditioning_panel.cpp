@@ -204,7 +204,7 @@ ConditioningPanel::ConditioningPanel(Document& document, QWidget* parent) : QWid
   column->addWidget(lights_);
   connect(lights_, &QTabBar::currentChanged, this, [this](int tab) {
     if (tab < 0 || filling_) return;
-    viz::Selection s = document_.selection();
+    draw::Selection s = document_.selection();
     s.light = lights_->tabData(tab).toString().toStdString();
     if (s.light != document_.selection().light) document_.select(s);
     follow(s.light);
@@ -318,7 +318,7 @@ void ConditioningPanel::build() {
         connect(chip, &Chip::entered, this,
                 [this, k, f] { explain(conditioning_[std::size_t(k)], conditioning_[std::size_t(k)].findings[std::size_t(f)]); });
         connect(chip, &Chip::clicked, this, [this, k] {
-          viz::Selection s = document_.selection();
+          draw::Selection s = document_.selection();
           s.model = conditioning_[std::size_t(k)].model;
           s.light = conditioning_[std::size_t(k)].light;
           document_.select(s);
@@ -347,7 +347,7 @@ void ConditioningPanel::build() {
     auto* head = new QLabel(name);
     head->setToolTip(toQString(c.model + ", light " + c.light + (c.surface ? ", surface " + *c.surface : std::string())));
     head->setStyleSheet(
-        QStringLiteral("border-bottom: 2px solid %1; font-size: 8pt;").arg(toQColor(viz::modelColour(c.model)).name()));
+        QStringLiteral("border-bottom: 2px solid %1; font-size: 8pt;").arg(toQColor(draw::modelColour(c.model)).name()));
     head->setAlignment(Qt::AlignHCenter | Qt::AlignBottom);
     head->setMinimumWidth(40);
     grid->addWidget(head, 0, at + 1);

@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/plots/plot_canvas.h"
 
-#include <vtkGenericOpenGLRenderWindow.h>
-#include <vtkNew.h>
-#include <vtkRenderer.h>
-
 #include <QMouseEvent>
+#include <QPainter>
 #include <QToolTip>
-#include <QVBoxLayout>
 #include <QWheelEvent>
 #include <cmath>
 
-#include "gui/base/draw_turns.h"
+#include "gui/base/qt_painter.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/tips.h"
-#include "gui/base/vtk_canvas.h"
 
 namespace glint::gui {
 
@@ -23,148 +18,103 @@ namespace {
 constexpr double kReachPx = 10;     // of a click or the mouse, screen px
 constexpr double kDragPx = 4;       // a press that moves further is a drag
 constexpr double kWheelStep = 1.2;  // zoom of one notch
+
+Eigen::Vector2d placeOf(const QPointF& at) { return {at.x(), at.y()}; }
 }  // namespace
 
-PlotCanvas::PlotCanvas(QWidget* parent) : QWidget(parent), widget_(new VtkCanvas), view_(std::make_unique<viz::PlotView>()) {
-  auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
-  layout->addWidget(widget_);
-  widget_->renderWindow()->SetMultiSamples(8);
-  widget_->setTextScaled(false);  // the plot scales its text itself
-  widget_->renderWindow()->AddRenderer(view_->renderer());
-  widget_->installEventFilter(this);
+PlotCanvas::PlotCanvas(QWidget* parent) : QWidget(parent) {
+  setMouseTracking(true);
+  setAttribute(Qt::WA_OpaquePaintEvent);
 }
 
-PlotCanvas::~PlotCanvas() {
-  widget_->removeEventFilter(this);
-  widget_->renderWindow()->RemoveRenderer(view_->renderer());
+const draw::PlotData& PlotCanvas::plot() const { return view_.plot(); }
+draw::PlotStyle PlotCanvas::style() const { return {currentTheme() == Theme::Dark, 1}; }  // Qt scales to the device's pixels
+
+void PlotCanvas::paintEvent(QPaintEvent*) {
+  QPainter painter(this);
+  QtPainter into(painter);
+  view_.setStyle(style());
+  view_.paint(into, width(), height());
 }
 
-QWidget* PlotCanvas::surface() const { return widget_; }
-const viz::PlotData& PlotCanvas::plot() const { return view_->plot(); }
-viz::PlotStyle PlotCanvas::style() const { return {currentTheme() == Theme::Dark, devicePixelRatioF()}; }
-
-void PlotCanvas::renderNow() {
-  view_->setStyle(style());
-  widget_->renderNow();
-}
-
-void PlotCanvas::scheduleRender() {
-  drawInTurn(this, [this] {
-    if (widget_->isVisible()) renderNow();
-  });
-}
-
-void PlotCanvas::show(const viz::PlotData& plot) {
+void PlotCanvas::show(const draw::PlotData& plot) {
   hovered_.reset();
-  view_->setStyle(style());
-  view_->show(plot);
-  scheduleRender();
+  view_.show(plot);
+  update();
 }
 
-void PlotCanvas::setSelection(const viz::Selection& selection) {
-  view_->setSelection(selection);
-  scheduleRender();
+void PlotCanvas::setSelection(const draw::Selection& selection) {
+  view_.setSelection(selection);
+  update();
 }
 
 void PlotCanvas::showAll() {
-  view_->showAll();
-  scheduleRender();
+  view_.showAll();
+  update();
 }
 
-std::optional<QPointF> PlotCanvas::positionOf(const viz::PlotSample& sample) const {
-  const std::optional<Eigen::Vector2d> at = view_->positionOf(sample);
+std::optional<QPointF> PlotCanvas::positionOf(const draw::PlotSample& sample) const {
+  const std::optional<Eigen::Vector2d> at = view_.positionOf(sample);
   if (!at) return std::nullopt;
-  const double ratio = devicePixelRatioF();
-  return QPointF(at->x() / ratio, at->y() / ratio);
+  return QPointF(at->x(), at->y());
 }
 
-std::optional<viz::PlotSample> PlotCanvas::sampleAt(const QPointF& at) const {
-  const double ratio = devicePixelRatioF();
-  return view_->at({at.x() * ratio, at.y() * ratio}, kReachPx * ratio);
-}
+std::optional<draw::PlotSample> PlotCanvas::sampleAt(const QPointF& at) const { return view_.at(placeOf(at), kReachPx); }
 
 void PlotCanvas::hover(const QPointF& at, const QPoint& global) {
-  const std::optional<viz::PlotSample> sample = sampleAt(at);
+  const std::optional<draw::PlotSample> sample = sampleAt(at);
   if (sample == hovered_) return;
   hovered_ = sample;
-  view_->setHovered(sample);
-  scheduleRender();
-  widget_->setCursor(sample ? Qt::PointingHandCursor : Qt::ArrowCursor);
+  view_.setHovered(sample);
+  update();
+  setCursor(sample ? Qt::PointingHandCursor : Qt::ArrowCursor);
   if (sample)
-    showTip(global, toQString(plot().series[std::size_t(sample->series)].points[std::size_t(sample->point)].label), widget_);
+    showTip(global, toQString(plot().series[std::size_t(sample->series)].points[std::size_t(sample->point)].label), this);
   else
     QToolTip::hideText();
 }
 
-bool PlotCanvas::eventFilter(QObject* watched, QEvent* event) {
-  if (watched != widget_) return QWidget::eventFilter(watched, event);
-  const double ratio = devicePixelRatioF();
-  switch (event->type()) {
-    case QEvent::MouseButtonPress: {
-      const auto* mouse = static_cast<QMouseEvent*>(event);
-      emit touched();
-      pressed_ = last_ = mouse->localPos();
-      held_ = mouse->button() == Qt::LeftButton;
-      dragging_ = false;
-      return true;
-    }
-    case QEvent::MouseMove: {
-      const auto* mouse = static_cast<QMouseEvent*>(event);
-      if (!held_) return hover(mouse->localPos(), mouse->globalPos()), true;
-      dragging_ = dragging_ || (mouse->localPos() - pressed_).manhattanLength() >= kDragPx;
-      if (dragging_) {
-        const QPointF by = mouse->localPos() - last_;
-        last_ = mouse->localPos();
-        view_->pan({by.x() * ratio, by.y() * ratio});
-        scheduleRender();
-      }
-      return true;
-    }
-    case QEvent::MouseButtonRelease: {
-      const auto* mouse = static_cast<QMouseEvent*>(event);
-      const bool click = held_ && !dragging_;
-      held_ = false;
-      if (click)
-        if (const std::optional<viz::PlotSample> sample = sampleAt(mouse->localPos()))
-          emit clicked(plot().series[std::size_t(sample->series)].points[std::size_t(sample->point)].target);
-      return true;
-    }
-    case QEvent::MouseButtonDblClick:
-      showAll();
-      return true;
-    case QEvent::Wheel: {
-      const auto* wheel = static_cast<QWheelEvent*>(event);
-      const double notches = wheel->angleDelta().y() / 120.0;
-      view_->zoom(std::pow(kWheelStep, notches), {wheel->position().x() * ratio, wheel->position().y() * ratio},
-                  wheel->modifiers() & Qt::ControlModifier);
-      scheduleRender();
-      return true;
-    }
-    case QEvent::Leave:
-      hovered_.reset();
-      view_->setHovered({});
-      scheduleRender();
-      return false;
-    case QEvent::KeyPress:
-    case QEvent::KeyRelease:
-      event->ignore();  // the window's shortcuts; VTK's own keys mean nothing here
-      return true;
-    case QEvent::ToolTip:
-      return true;  // hover() shows them
-    default:
-      return false;
-  }
+void PlotCanvas::mousePressEvent(QMouseEvent* e) {
+  emit touched();
+  pressed_ = last_ = e->localPos();
+  held_ = e->button() == Qt::LeftButton;
+  dragging_ = false;
 }
 
-void PlotCanvas::showEvent(QShowEvent* e) {
-  QWidget::showEvent(e);
-  scheduleRender();
+void PlotCanvas::mouseMoveEvent(QMouseEvent* e) {
+  if (!held_) return hover(e->localPos(), e->globalPos());
+  dragging_ = dragging_ || (e->localPos() - pressed_).manhattanLength() >= kDragPx;
+  if (!dragging_) return;
+  view_.pan(placeOf(e->localPos() - last_));
+  last_ = e->localPos();
+  update();
 }
 
-void PlotCanvas::changeEvent(QEvent* e) {
-  QWidget::changeEvent(e);
-  if (e->type() == QEvent::PaletteChange || e->type() == QEvent::StyleChange) scheduleRender();
+void PlotCanvas::mouseReleaseEvent(QMouseEvent* e) {
+  const bool click = held_ && !dragging_;
+  held_ = false;
+  if (!click) return;
+  if (const std::optional<draw::PlotSample> sample = sampleAt(e->localPos()))
+    emit clicked(plot().series[std::size_t(sample->series)].points[std::size_t(sample->point)].target);
+}
+
+void PlotCanvas::mouseDoubleClickEvent(QMouseEvent*) { showAll(); }
+
+void PlotCanvas::wheelEvent(QWheelEvent* e) {
+  view_.zoom(std::pow(kWheelStep, e->angleDelta().y() / 120.0), placeOf(e->position()), e->modifiers() & Qt::ControlModifier);
+  update();
+  e->accept();
+}
+
+void PlotCanvas::leaveEvent(QEvent*) {
+  hovered_.reset();
+  view_.setHovered({});
+  update();
+}
+
+bool PlotCanvas::event(QEvent* e) {
+  if (e->type() == QEvent::ToolTip) return true;  // hover() shows them
+  return QWidget::event(e);
 }
 
 }  // namespace glint::gui

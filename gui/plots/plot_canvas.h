@@ -3,14 +3,11 @@
 
 #include <QPointF>
 #include <QWidget>
-#include <memory>
 #include <optional>
 
-#include "viz/plots/plot_view.h"
+#include "core/draw/plot_view.h"
 
 namespace glint::gui {
-
-class VtkCanvas;
 
 /// Shows one plot. Hover tells a sample's value, a click selects it, the wheel zooms along x (with Ctrl along both), dragging
 /// moves what is zoomed, a double click shows everything again.
@@ -18,37 +15,38 @@ class PlotCanvas : public QWidget {
   Q_OBJECT
  public:
   explicit PlotCanvas(QWidget* parent = nullptr);
-  ~PlotCanvas() override;
   QSize sizeHint() const override { return {520, 260}; }
   QSize minimumSizeHint() const override { return {220, 130}; }
 
-  void show(const viz::PlotData& plot);
-  void setSelection(const viz::Selection& selection);
-  const viz::PlotData& plot() const;
-  viz::PlotStyle style() const;
+  void show(const draw::PlotData& plot);
+  void setSelection(const draw::Selection& selection);
+  const draw::PlotData& plot() const;
+  draw::PlotStyle style() const;
   void showAll();
   /// Where a sample is drawn, in this widget's coordinates; empty when it is not.
-  std::optional<QPointF> positionOf(const viz::PlotSample& sample) const;
-  void renderNow();
-  QWidget* surface() const;  ///< what takes the mouse
+  std::optional<QPointF> positionOf(const draw::PlotSample& sample) const;
+  void renderNow() { repaint(); }
 
  signals:
-  void clicked(const viz::PlotTarget& target);
+  void clicked(const draw::PlotTarget& target);
   void touched();  ///< pressed anywhere: this is the plot that actions are about
 
  protected:
-  bool eventFilter(QObject* watched, QEvent* event) override;
-  void showEvent(QShowEvent* e) override;
-  void changeEvent(QEvent* e) override;
+  void paintEvent(QPaintEvent* e) override;
+  void mousePressEvent(QMouseEvent* e) override;
+  void mouseMoveEvent(QMouseEvent* e) override;
+  void mouseReleaseEvent(QMouseEvent* e) override;
+  void mouseDoubleClickEvent(QMouseEvent* e) override;
+  void wheelEvent(QWheelEvent* e) override;
+  void leaveEvent(QEvent* e) override;
+  bool event(QEvent* e) override;
 
  private:
-  void scheduleRender();
-  std::optional<viz::PlotSample> sampleAt(const QPointF& at) const;
+  std::optional<draw::PlotSample> sampleAt(const QPointF& at) const;
   void hover(const QPointF& at, const QPoint& global);
 
-  VtkCanvas* widget_;
-  std::unique_ptr<viz::PlotView> view_;
-  std::optional<viz::PlotSample> hovered_;
+  draw::PlotView view_;
+  std::optional<draw::PlotSample> hovered_;
   QPointF pressed_, last_;
   bool dragging_ = false, held_ = false;
 };

@@ -25,7 +25,7 @@
 #include "gui/export/figure_actions.h"
 #include "gui/plots/plot_canvas.h"
 #include "viz/canvas.h"
-#include "viz/plots/plot_export.h"
+#include "viz/plot_export.h"
 
 namespace glint::gui {
 
@@ -35,8 +35,8 @@ const char* const kDefaults[2] = {"error", "dial"};
 constexpr double kPictureScale = 2;  // of saved and copied pictures: sharp on paper and on dense screens
 
 bool isKind(const std::string& id) {
-  const auto& kinds = viz::plotKinds();
-  return std::any_of(kinds.begin(), kinds.end(), [&](const viz::PlotKind& k) { return id == k.id; });
+  const auto& kinds = draw::plotKinds();
+  return std::any_of(kinds.begin(), kinds.end(), [&](const draw::PlotKind& k) { return id == k.id; });
 }
 }  // namespace
 
@@ -90,7 +90,7 @@ void PlotsPanel::buildPane(int index) {
   row->setContentsMargins(4, 2, 4, 2);
   pane.selector = new QComboBox;
   pane.selector->setObjectName(QStringLiteral("plot%1").arg(index));
-  for (const viz::PlotKind& k : viz::plotKinds()) {
+  for (const draw::PlotKind& k : draw::plotKinds()) {
     pane.selector->addItem(tr(k.title), QString::fromLatin1(k.id));
     pane.selector->setItemData(pane.selector->count() - 1, tr(k.help), Qt::ToolTipRole);
   }
@@ -152,7 +152,7 @@ std::string PlotsPanel::kind(int pane) const {
 
 void PlotsPanel::setKind(int pane, const std::string& id) {
   if (id == kind(pane)) return;
-  for (const viz::PlotKind& k : viz::plotKinds())
+  for (const draw::PlotKind& k : draw::plotKinds())
     if (id == k.id) document_.setOption(kOptions[pane], id, tr("Plot: %1").arg(tr(k.title)));
 }
 
@@ -190,38 +190,38 @@ void PlotsPanel::refresh() {
     Pane& pane = panes_[std::size_t(i)];
     if (!pane.dirty || !pane.canvas->isVisible()) continue;
     pane.dirty = false;
-    viz::PlotData plot = data(kind(i));
+    draw::PlotData plot = data(kind(i));
     plot.id = kind(i);  // also where there is nothing to show
     pane.canvas->show(plot);
     pane.canvas->setSelection(document_.selection());
   }
 }
 
-viz::PlotData PlotsPanel::data(const std::string& id) {
-  viz::PlotData empty;
+draw::PlotData PlotsPanel::data(const std::string& id) {
+  draw::PlotData empty;
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
-  const viz::Selection& s = document_.selection();
+  const draw::Selection& s = document_.selection();
   if (id == "tradeoff") {
-    if (document_.tradeoff()) return viz::tradeoffPlot(*document_.tradeoff());
+    if (document_.tradeoff()) return draw::tradeoffPlot(*document_.tradeoff());
     empty.empty = tr("Not measured yet: see the panel \"Speed and accuracy\"").toStdString();
     return empty;
   }
   if (!inspection) {
     // Of a scene just opened, the selected frame's results come before all others, and the frame view shows them too.
-    if (id == "dial" && document_.frameInspection()) return viz::residualDial(*document_.frameInspection(), s.frame, s.highlight);
+    if (id == "dial" && document_.frameInspection()) return draw::residualDial(*document_.frameInspection(), s.frame, s.highlight);
     empty.empty = (!document_.scene()            ? tr("No scene")
                    : document_.frameInspection() ? tr("Computing the other frames…")
                                                  : tr("No results yet"))
                       .toStdString();
     return empty;
   }
-  if (id == "error") return viz::errorPlot(*inspection);
-  if (id == "axes") return viz::semiAxesPlot(*inspection);
-  if (id == "singular") return viz::singularValuePlot(conditioningOf(*inspection));
-  if (id == "dial") return viz::residualDial(*inspection, s.frame, s.highlight);
+  if (id == "error") return draw::errorPlot(*inspection);
+  if (id == "axes") return draw::semiAxesPlot(*inspection);
+  if (id == "singular") return draw::singularValuePlot(conditioningOf(*inspection));
+  if (id == "dial") return draw::residualDial(*inspection, s.frame, s.highlight);
   if (id == "influence") {
     if (document_.influence()) {
-      viz::PlotData plot = viz::influencePlot(*inspection, *document_.influence(),
+      draw::PlotData plot = draw::influencePlot(*inspection, *document_.influence(),
                                               document_.plottedModel());  // one model: a poor one's scale would hide the others
       if (document_.influenceStale()) plot.title += tr("   (out of date)").toStdString();
       return plot;
@@ -233,7 +233,7 @@ viz::PlotData PlotsPanel::data(const std::string& id) {
     empty.empty = tr("Reading frame…").toStdString();
     return empty;
   }
-  return id == "lobe" ? viz::lobePlot(*samples_, s.highlight) : viz::limitAnglePlot(*samples_, s.highlight);
+  return id == "lobe" ? draw::lobePlot(*samples_, s.highlight) : draw::limitAnglePlot(*samples_, s.highlight);
 }
 
 void PlotsPanel::wantSamples() {
@@ -245,7 +245,7 @@ void PlotsPanel::wantSamples() {
 }
 
 void PlotsPanel::followSelection() {
-  const viz::Selection& s = document_.selection();
+  const draw::Selection& s = document_.selection();
   if (s.frame != shown_.frame || s.model != shown_.model) wantSamples();
   if (s.frame != shown_.frame || s.highlight != shown_.highlight) markDirty({"dial", "lobe", "limit-angle"});
   if (s.model != shown_.model) markDirty({"influence", "lobe", "limit-angle"});
@@ -254,14 +254,14 @@ void PlotsPanel::followSelection() {
     if (pane.canvas->isVisible() && !pane.dirty) pane.canvas->setSelection(s);
 }
 
-void PlotsPanel::clicked(const viz::PlotTarget& target) {
+void PlotsPanel::clicked(const draw::PlotTarget& target) {
   if (target.setting >= 0) {
     const std::shared_ptr<const Tradeoff> t = document_.tradeoff();
     if (!t || target.setting >= int(t->points.size())) return;
     const TradeoffPoint& point = t->points[std::size_t(target.setting)];
     return document_.load(point, tr("Load %1").arg(toQString(describe(*t, point))));
   }
-  document_.select(viz::selectionOf(target, document_.selection()));
+  document_.select(draw::selectionOf(target, document_.selection()));
 }
 
 void PlotsPanel::askForInfluence() {
@@ -288,7 +288,7 @@ bool PlotsPanel::saveTo(const QString& file, QString* problem) {
   const PlotCanvas* canvas = panes_[std::size_t(current_)].canvas;
   const QString ending = QFileInfo(file).suffix().toLower();
   const int w = std::max(320, canvas->width()), h = std::max(200, canvas->height());
-  viz::PlotStyle style{canvas->style().dark, 1};
+  draw::PlotStyle style{canvas->style().dark, 1};
   try {
     if (ending == QStringLiteral("csv")) {
       viz::writePlotCsv(canvas->plot(), file.toStdString());
@@ -320,14 +320,14 @@ void PlotsPanel::saveAs(const char* ending) {
 
 void PlotsPanel::copyPicture() {
   const PlotCanvas* canvas = panes_[std::size_t(current_)].canvas;
-  const viz::PlotStyle style{canvas->style().dark, kPictureScale};
+  const draw::PlotStyle style{canvas->style().dark, kPictureScale};
   QApplication::clipboard()->setImage(
       toQImage(viz::plotImage(canvas->plot(), style, document_.selection(), int(std::max(320, canvas->width()) * kPictureScale),
                               int(std::max(200, canvas->height()) * kPictureScale))));
 }
 
 void PlotsPanel::copyNumbers() {
-  QApplication::clipboard()->setText(exactQString(viz::plotCsv(panes_[std::size_t(current_)].canvas->plot())));
+  QApplication::clipboard()->setText(exactQString(draw::plotCsv(panes_[std::size_t(current_)].canvas->plot())));
 }
 
 void PlotsPanel::copySvg() {
@@ -343,7 +343,7 @@ void PlotsPanel::copySvg() {
 }
 
 void PlotsPanel::addActions(Actions& actions, QMenu* menu) {
-  for (const viz::PlotKind& k : viz::plotKinds())
+  for (const draw::PlotKind& k : draw::plotKinds())
     actions.add(QStringLiteral("plots.show-") + QString::fromLatin1(k.id), menu, tr(k.title),
                 [this, id = std::string(k.id)] {
                   setKind(current_, id);

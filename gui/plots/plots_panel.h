@@ -63,10 +63,10 @@ class PlotsPanel : public QWidget {
   void setDirty(std::initializer_list<const char*> kinds);   ///< none = all
   void markDirty(std::initializer_list<const char*> kinds);  ///< those plots are drawn again; none named = all
   void refresh();
-  viz::PlotData data(const std::string& id);
+  draw::PlotData data(const std::string& id);
   void wantSamples();
   void followSelection();
-  void clicked(const viz::PlotTarget& target);
+  void clicked(const draw::PlotTarget& target);
   void askForInfluence();
   void saveAs(const char* ending);
 
@@ -75,7 +75,7 @@ class PlotsPanel : public QWidget {
   QSplitter* splitter_;
   SamplesLoader loader_;
   FrameSamplesPtr samples_;
-  viz::Selection shown_;  ///< selection of the last followSelection
+  draw::Selection shown_;  ///< selection of the last followSelection
   int current_ = 0;       ///< pane that actions are about
   bool wantsInfluence_ = false;
   QAction* two_ = nullptr;

@@ -9,9 +9,9 @@ namespace glint::gui {
 void SamplesLoader::want(std::shared_ptr<const Inspection> inspection, int frame, const std::string& model) {
   if (!inspection) return job_.drop();
   job_.run([this, inspection = std::move(inspection), frame, model] {
-    auto samples = std::make_shared<viz::FrameSamples>();
+    auto samples = std::make_shared<draw::FrameSamples>();
     try {
-      *samples = viz::frameSamples(*inspection, frame, model);
+      *samples = draw::frameSamples(*inspection, frame, model);
     } catch (const std::exception& e) {
       samples->failure = e.what();
     }

@@ -5,13 +5,13 @@
 #include <memory>
 
 #include "gui/base/latest_job.h"
-#include "viz/plots/plots.h"
+#include "core/draw/plots.h"
 
 namespace glint::gui {
 
-using FrameSamplesPtr = std::shared_ptr<const viz::FrameSamples>;
+using FrameSamplesPtr = std::shared_ptr<const draw::FrameSamples>;
 
-/// Samples frames (viz::frameSamples: reads the image and the surface) off the interface thread. Only the newest wish is
+/// Samples frames (draw::frameSamples: reads the image and the surface) off the interface thread. Only the newest wish is
 /// answered.
 class SamplesLoader : public QObject {
   Q_OBJECT

@@ -59,7 +59,7 @@ ScenePanel::ScenePanel(Document& document, QWidget* parent)
   connect(views_, &SceneViews::taken, glide_, &CameraGlide::stop);
   connect(views_, &SceneViews::picked, this, &ScenePanel::select);
   connect(views_, &SceneViews::emptyClicked, this, [this] {
-    viz::Selection s = document_.selection();
+    draw::Selection s = document_.selection();
     s = {s.frame, "", -1, "", {}};  // a frame is always selected
     document_.select(s);
   });
@@ -271,7 +271,7 @@ void ScenePanel::showEye() {
 // --- to the document ----------------------------------------------------------------------------------------------------
 
 void ScenePanel::select(const viz::Picked& picked) {
-  viz::Selection s = document_.selection();
+  draw::Selection s = document_.selection();
   if (picked.frame >= 0 && picked.frame != s.frame) {
     s.frame = picked.frame;
     s.highlight = -1;

@@ -175,7 +175,7 @@ void SceneTree::mark(const SceneObject& object) {
 }
 
 void SceneTree::followDocument() {
-  const viz::Selection now = document_.selection(), before = std::exchange(followed_, now);
+  const draw::Selection now = document_.selection(), before = std::exchange(followed_, now);
   if (selecting_) return;
   const std::optional<SceneObject> current = objectAt(tree_->currentIndex());
   const bool frame = now.frame != before.frame;
@@ -201,7 +201,7 @@ void SceneTree::followDocument() {
 }
 
 void SceneTree::select(const SceneObject& o) {
-  viz::Selection s = document_.selection();
+  draw::Selection s = document_.selection();
   const auto moveTo = [&](int frame) {
     if (frame == s.frame) return;
     s.frame = frame;

@@ -62,7 +62,7 @@ class SceneTree : public QWidget {
   QSortFilterProxyModel* shown_;  ///< found and sorted
   QTreeView* tree_;
   QLineEdit* search_;
-  viz::Selection followed_;  ///< the last selection that the tree has shown
+  draw::Selection followed_;  ///< the last selection that the tree has shown
   StepRun steps_;            ///< from row to row
   bool selecting_ = false;   ///< by this tree
   int leaving_ = 0;          ///< rows go: what then becomes the current one was not chosen by anybody

@@ -70,8 +70,8 @@ std::vector<SceneObject> modelsOf(const InspectionRequest& request, const Inspec
   return objects;
 }
 
-viz::Colour roleColour(FrameRole role) {
-  return role == FrameRole::Training ? viz::kTraining : role == FrameRole::HeldOut ? viz::kHeldOut : viz::kExcluded;
+draw::Colour roleColour(FrameRole role) {
+  return role == FrameRole::Training ? draw::kTraining : role == FrameRole::HeldOut ? draw::kHeldOut : draw::kExcluded;
 }
 }  // namespace
 
@@ -105,7 +105,7 @@ bool isHiddenIn(const viz::HiddenObjects& hidden, const SceneObject& o) {
   return false;
 }
 
-bool isSelected(const SceneObject& o, const viz::Selection& s) {
+bool isSelected(const SceneObject& o, const draw::Selection& s) {
   switch (o.kind) {
     case Kind::Surface:
       return false;
@@ -184,7 +184,7 @@ void SceneTreeModel::followInspection() {
 }
 
 void SceneTreeModel::followSelection() {
-  const viz::Selection now = document_.selection(), before = std::exchange(selection_, now);
+  const draw::Selection now = document_.selection(), before = std::exchange(selection_, now);
   for (const int frame : std::set<int>{before.frame, now.frame}) {
     const QModelIndex row = indexOf(camera(frame));
     if (!row.isValid()) continue;
@@ -469,7 +469,7 @@ QVariant SceneTreeModel::objectData(const SceneObject& o, const Group& group, in
       return isHiddenIn(hidden_, o) ? Qt::Unchecked : Qt::Checked;
     case Qt::DecorationRole:
       if (column == Detail && o.kind == Kind::Camera) return colourSwatch(toQColor(roleColour(document_.role(o.frame))));
-      if (column == Name && o.kind == Kind::Ellipsoid) return colourSwatch(toQColor(viz::modelColour(o.key)));
+      if (column == Name && o.kind == Kind::Ellipsoid) return colourSwatch(toQColor(draw::modelColour(o.key)));
       return {};
     case Qt::FontRole: {
       const bool shownSurface = o.kind == Kind::Surface && groups_[0].objects.size() > 1 &&

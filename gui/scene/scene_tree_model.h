@@ -30,7 +30,7 @@ struct SceneObject {
 void setHiddenIn(viz::HiddenObjects& hidden, const SceneObject& object, bool hide);
 bool isHiddenIn(const viz::HiddenObjects& hidden, const SceneObject& object);
 /// Whether the selection is, or holds, the object. Never of a surface.
-bool isSelected(const SceneObject& object, const viz::Selection& selection);
+bool isSelected(const SceneObject& object, const draw::Selection& selection);
 
 /// The scene as a tree: surfaces, cameras with the highlights observed in them, lights and the models' ellipsoids. A tick says
 /// that an object is drawn; to change it is one step of undo.
@@ -97,7 +97,7 @@ class SceneTreeModel : public QAbstractItemModel {
   std::vector<std::vector<SceneObject>> highlights_;  ///< by camera
   // What the rows were shown for: a long sequence has a thousand, and none is told of a change that is not about it.
   viz::HiddenObjects hidden_;
-  viz::Selection selection_;
+  draw::Selection selection_;
   std::string train_;
   std::vector<int> excluded_;
   std::array<bool, kGroups> layersShown_{};

@@ -123,7 +123,7 @@ void SceneViews::setInspection(const std::shared_ptr<const Inspection>& inspecti
   scheduleRender();
 }
 
-void SceneViews::setSelection(const viz::Selection& selection) {
+void SceneViews::setSelection(const draw::Selection& selection) {
   selection_ = selection;
   for (int i = 0; i < shown_; ++i) view(i).setSelection(selection);
   fetchPhotograph();

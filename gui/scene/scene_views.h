@@ -54,7 +54,7 @@ class SceneViews : public QWidget {
 
   void setScene(std::shared_ptr<const Scene> scene);
   void setInspection(const std::shared_ptr<const Inspection>& inspection);
-  void setSelection(const viz::Selection& selection);
+  void setSelection(const draw::Selection& selection);
   void setLayerVisible(int view, const std::string& name, bool visible);
   void setDark(bool dark);
   void apply(const SceneOptions& options);
@@ -109,7 +109,7 @@ class SceneViews : public QWidget {
   std::array<std::unique_ptr<viz::SceneView>, kMostSceneViews> views_;
   std::array<bool, kMostSceneViews> own_{};  ///< a view that is not shown comes back where it stands
   std::shared_ptr<const Inspection> inspection_;
-  viz::Selection selection_;
+  draw::Selection selection_;
   SceneOptions options_;
   VtkCanvas* widget_;
   vtkNew<vtkCallbackCommand> onRender_, onInteraction_;

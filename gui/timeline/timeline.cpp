@@ -91,7 +91,7 @@ Timeline::Timeline(Document& document, QWidget* parent) : QWidget(parent), docum
   });
   connect(bars_, &QToolButton::clicked, this, &Timeline::setBars);
   connect(model_, QOverload<int>::of(&QComboBox::activated), this, [this](int i) {
-    viz::Selection s = document_.selection();
+    draw::Selection s = document_.selection();
     s.model = model_->itemText(i).toStdString();
     document_.select(s);
   });
@@ -111,7 +111,7 @@ void Timeline::refresh() {
   const QSignalBlocker a(model_), b(speed_);
   model_->clear();
   for (const std::string& m : document_.request().models)
-    model_->addItem(colourSwatch(toQColor(viz::modelColour(m))), toQString(m));
+    model_->addItem(colourSwatch(toQColor(draw::modelColour(m))), toQString(m));
   model_->setCurrentIndex(model_->findText(toQString(document_.plottedModel())));
   const double speed = std::clamp(document_.option("timeline/speed", kUsualSpeed), 0.1, 60.0);
   const auto* nearest = std::min_element(std::begin(kSpeeds), std::end(kSpeeds),

@@ -45,7 +45,7 @@ void TimelineStrip::paintMissed(QPainter& painter) {
     if (marksMissed(series)) marked.push_back(&series);
   const double line = row.height() / double(marked.size()), r = std::clamp(0.5 * line - 0.75, 1.0, 3.0);
   for (std::size_t k = 0; k < marked.size(); ++k) {
-    QColor colour = toQColor(viz::modelColour(marked[k]->model));
+    QColor colour = toQColor(draw::modelColour(marked[k]->model));
     if (document_.stale()) colour.setAlpha(90);
     painter.setPen(QPen(colour, 1.5));
     std::vector<char> shown = marked[k]->missed;
@@ -97,7 +97,7 @@ void TimelineStrip::paintErrors(QPainter& painter) {
   if (axis_.logarithmic && c.height() > 36)
     painter.drawText(QRectF(0, c.center().y() - 7, left, 14), Qt::AlignRight | Qt::AlignVCenter, tr("log"));
   painter.setClipRect(c.adjusted(0, -2, 0, 1));
-  QColor excluded = toQColor(viz::kExcluded);
+  QColor excluded = toQColor(draw::kExcluded);
   excluded.setAlpha(70);
   for (const int frame : document_.request().excluded)
     painter.fillRect(QRectF(frameX(frame), c.top(), std::max(1.0, frameX(frame + 1) - frameX(frame)), c.height()), excluded);
@@ -106,7 +106,7 @@ void TimelineStrip::paintErrors(QPainter& painter) {
   const bool perFrame = columns >= int(inView_);
   for (const viz::TimelineData::Series& series : data_.series) {
     if (bars_ && series.model != plotted_) continue;
-    QColor colour = toQColor(viz::modelColour(series.model));
+    QColor colour = toQColor(draw::modelColour(series.model));
     if (document_.stale()) colour.setAlpha(90);
     std::vector<std::optional<double>> shown = series.errorPct;
     for (const int frame : document_.request().excluded)

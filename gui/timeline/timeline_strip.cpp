@@ -26,7 +26,7 @@ constexpr double kLeft = 56, kRight = 10, kTop = 4, kMarkRow = 17, kNumberRow = 
 constexpr double kThumbnailHeight = 34, kRoomForThumbnails = 112;  // below this height only errors and roles are shown
 constexpr double kMinFramesInView = 4;
 constexpr double kNamedRow = 10;          // height of a light's row with its name
-const QColor kLightOn(0xf0, 0xe4, 0x42);  // viz::kLightColour
+const QColor kLightOn(0xf0, 0xe4, 0x42);  // draw::kLightColour
 QPointF positionOf(const QMouseEvent& e) {
 #if QT_VERSION >= QT_VERSION_CHECK(6, 0, 0)
   return e.position();
@@ -287,15 +287,15 @@ void TimelineStrip::paintRows(QPainter& painter) {
     const FrameRole role = document_.role(i);
     const QPointF mark = roleMark(i).center();
     if (role == FrameRole::Training) {
-      painter.fillRect(QRectF(mark - QPointF(r, 4.5), mark + QPointF(r, 4.5)), toQColor(viz::kTraining).lighter(130));
+      painter.fillRect(QRectF(mark - QPointF(r, 4.5), mark + QPointF(r, 4.5)), toQColor(draw::kTraining).lighter(130));
     } else if (role == FrameRole::HeldOut) {
-      painter.setPen(QPen(toQColor(viz::kHeldOut), 1.3));
+      painter.setPen(QPen(toQColor(draw::kHeldOut), 1.3));
       if (wide > 6)
         painter.drawEllipse(mark, r - 0.5, r - 0.5);
       else
         painter.drawPoint(mark);
     } else {
-      painter.setPen(QPen(toQColor(viz::kExcluded).lighter(130), 1.5));
+      painter.setPen(QPen(toQColor(draw::kExcluded).lighter(130), 1.5));
       painter.drawLine(mark - QPointF(r, 4), mark + QPointF(r, 4));
       painter.drawLine(mark + QPointF(-r, 4), mark + QPointF(r, -4));
     }

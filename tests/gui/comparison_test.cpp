@@ -125,7 +125,7 @@ class ComparisonTest : public QObject {
     Document& d = window_->document();
     int frame = 0;
     while (!d.inspection()->isHeldOut(frame)) ++frame;
-    viz::Selection s = d.selection();
+    draw::Selection s = d.selection();
     s.frame = frame;
     s.model = "limit-angle";
     d.select(s);

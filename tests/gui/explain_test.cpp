@@ -89,7 +89,7 @@ class ExplainTest : public QObject {
 
   void itSaysWhyPrimalFailsWhereTheSheetIsBent() {
     const int last = window_->document().frameCount() - 1;  // the most bent sheet of the sequence
-    viz::Selection s;
+    draw::Selection s;
     s.frame = last;
     s.model = "primal";
     window_->document().select(s);
@@ -138,7 +138,7 @@ class ExplainTest : public QObject {
     auto* scene = window_->findChild<ScenePanel*>();
     FrameCanvas* canvas = window_->framePanel()->canvas();
     const auto eye = [&] { return scene->view().viewPoint().position; };
-    viz::Selection s;
+    draw::Selection s;
     s.frame = 0;
     s.model = "canonical";
     window_->document().select(s);
@@ -269,13 +269,13 @@ class ExplainTest : public QObject {
     QTRY_VERIFY_WITH_TIMEOUT(document.scene() && window.idle() && document.inspection() && !document.stale(), 120000);
     double most = 0;
     for (int frame = 0; frame < document.frameCount(); ++frame) {
-      const viz::FrameOverlay overlay = viz::frameOverlay(*document.inspection(), frame, window.framePanel()->overlayOptions());
+      const draw::FrameOverlay overlay = draw::frameOverlay(*document.inspection(), frame, window.framePanel()->overlayOptions());
       const std::vector<Highlight>& highlights = document.inspection()->evidence[std::size_t(frame)].highlights;
       if (highlights.empty()) continue;
       Eigen::AlignedBox2d ellipse, contour;
       for (const Pixel& p : highlights[0].contour.points) contour.extend(p);
-      for (const viz::OverlayLine& line : overlay.lines)
-        if (line.role == viz::OverlayRole::CanonicalEllipse)
+      for (const draw::OverlayLine& line : overlay.lines)
+        if (line.role == draw::OverlayRole::CanonicalEllipse)
           for (const Pixel& p : line.points) ellipse.extend(p);
       if (ellipse.isEmpty()) continue;
       most = std::max(most, (ellipse.sizes().array() / contour.sizes().array()).maxCoeff());
@@ -427,7 +427,7 @@ class ExplainTest : public QObject {
 
  private:
   void select(int frame, const char* model) {
-    viz::Selection s;
+    draw::Selection s;
     s.frame = frame;
     s.model = model;
     window_->document().select(s);

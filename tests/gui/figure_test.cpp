@@ -39,7 +39,7 @@
 #include "gui/scene/scene_views.h"
 #include "gui/window/main_window.h"
 #include "tests/gui/fixture.h"
-#include "viz/epipolar_overlay.h"
+#include "core/draw/epipolar_overlay.h"
 
 namespace glint::gui {
 
@@ -285,7 +285,7 @@ class FigureTest : public QObject {
       // Beginning of the first entry: a square of its colour on the page.
       const QImage png(folder_.filePath("key.png"));
       int marked = 0;
-      const QColor real = toQColor(viz::kRealEpipolar);
+      const QColor real = toQColor(draw::kRealEpipolar);
       for (int y = 0; y < 40; ++y)
         for (int x = 0; x < 40; ++x) marked += png.pixelColor(x, y).rgb() == real.rgb();
       QVERIFY2(wanted ? marked > 10 : marked == 0, qPrintable(QString::number(marked)));

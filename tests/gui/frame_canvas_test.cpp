@@ -30,12 +30,12 @@ double redCentre(const QImage& image, int row) {
   return sum > 50 ? weighted / sum : -1;
 }
 
-viz::FrameOverlay verticalLine(double x) {
-  viz::OverlayLine line;
+draw::FrameOverlay verticalLine(double x) {
+  draw::OverlayLine line;
   for (int y = 0; y <= 480; y += 20) line.points.push_back({x, y - 0.5});
   line.colour = {1, 0, 0};
   line.width = 2;
-  viz::FrameOverlay overlay;
+  draw::FrameOverlay overlay;
   overlay.lines.push_back(line);
   return overlay;
 }

@@ -100,14 +100,14 @@ class FrameViewTest : public QObject {
   /// In a low panel one button holds the switches of the overlays; the photograph keeps its room.
   void aLowPanelFoldsTheSwitchesOfTheOverlays() {
     auto* folded = frame_->findChild<QToolButton*>(QStringLiteral("foldedOverlays"));
-    auto* observed = frame_->findChild<QToolButton*>(QLatin1String(viz::overlayLayers().front().name));
+    auto* observed = frame_->findChild<QToolButton*>(QLatin1String(draw::overlayLayers().front().name));
     QVERIFY(folded->isHidden() && !observed->isHidden());
     frame_->resize(700, 400);
     QTRY_VERIFY(!folded->isHidden() && observed->isHidden());
     emit folded->menu()->aboutToShow();
-    QCOMPARE(folded->menu()->actions().size(), int(viz::overlayLayers().size()));
+    QCOMPARE(folded->menu()->actions().size(), int(draw::overlayLayers().size()));
     QAction* first = folded->menu()->actions().front();
-    const std::string layer = viz::overlayLayers().front().name;
+    const std::string layer = draw::overlayLayers().front().name;
     const bool shown = document_->layerVisible(layer);
     QCOMPARE(first->isChecked(), shown);
     first->trigger();
@@ -248,7 +248,7 @@ class FrameViewTest : public QObject {
   /// The ring of the selected point lies on the observed contour within 0.1 device pixels.
   void theSelectedPointLiesOnItsPixel() {
     for (const char* layer : {"frame/predicted", "frame/peak"}) document_->setLayerVisible(layer, layer, false);
-    viz::Selection s = document_->selection();
+    draw::Selection s = document_->selection();
     s.highlight = 0;
     s.direction = 0.0;
     document_->select(s);
@@ -259,7 +259,7 @@ class FrameViewTest : public QObject {
       canvas->lookAt(expected + Pixel(0.31, 0.17), zoom);
       canvas->setOverlay({});
       const QImage without = canvas->grab().toImage();
-      viz::FrameOverlay overlay = viz::frameOverlay(*document_->inspection(), 0, options());
+      draw::FrameOverlay overlay = draw::frameOverlay(*document_->inspection(), 0, options());
       overlay.lines.clear();
       canvas->setOverlay(overlay);
       const QImage with = canvas->grab().toImage();
@@ -420,9 +420,9 @@ class FrameViewTest : public QObject {
     QTRY_VERIFY(!frame_->busy());
     QTest::qWait(30);
   }
-  viz::OverlayOptions options() const {
-    viz::OverlayOptions o;
-    o.hidden = {viz::OverlayRole::PredictedContour, viz::OverlayRole::PredictedPeak, viz::OverlayRole::ObservedPeak};
+  draw::OverlayOptions options() const {
+    draw::OverlayOptions o;
+    o.hidden = {draw::OverlayRole::PredictedContour, draw::OverlayRole::PredictedPeak, draw::OverlayRole::ObservedPeak};
     o.selection = document_->selection();
     return o;
   }

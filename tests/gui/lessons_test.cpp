@@ -171,7 +171,7 @@ class LessonsTest : public QObject {
       // Over the photograph a ring of 5 px stands about the current place.
       const viz::WalkStory& story = *walk.story();
       const viz::WalkStory::Moment now = story.at(step);
-      const QColor own = toQColor(now.onSurface ? viz::kObserved : viz::modelColour("canonical"));
+      const QColor own = toQColor(now.onSurface ? draw::kObserved : draw::modelColour("canonical"));
       const QPointF at = canvas->widgetFromPixel(story.camera.distorted(*story.camera.project(story.place(now).position)));
       const QImage photograph = canvas->grab().toImage();
       int ring = 0;
@@ -191,7 +191,7 @@ class LessonsTest : public QObject {
     QTRY_VERIFY(walk.story());
     QVERIFY(!walk.story()->inverse);
     for (const double direction : {1.0, -2.0}) {
-      viz::Selection s = window_->document().selection();
+      draw::Selection s = window_->document().selection();
       s.direction = direction;
       window_->document().select(s);
       QTRY_VERIFY(!walk.busy() && walk.story() &&

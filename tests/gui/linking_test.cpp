@@ -123,7 +123,7 @@ class LinkingTest : public QObject {
     view->setFocus();
     view->selectionModel()->setCurrentIndex(view->model()->index(0, 0),
                                             QItemSelectionModel::ClearAndSelect | QItemSelectionModel::Rows);
-    const viz::Selection first = document_->selection();
+    const draw::Selection first = document_->selection();
     QTest::qWait(700);  // longer than a run's gap
     const int before = document_->undoStack()->count();
     for (int i = 0; i < 5; ++i) QTest::keyClick(view, Qt::Key_Down);
@@ -282,7 +282,7 @@ class LinkingTest : public QObject {
     QVERIFY(tip && tip->textFormat() != Qt::PlainText && Qt::mightBeRichText(tip->text()));
     QToolTip::hideText();
     QString numbers;
-    viz::Selection selection;
+    draw::Selection selection;
     selection.model = fit.model;
     for (const NumberGroup& group : describeSelection(*inspection, selection, fit.model)) numbers += group.lines;
     QVERIFY2(numbers.contains("Warning: the fit explains <b>its</b> views poorly"), qPrintable(numbers));

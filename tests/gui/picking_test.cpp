@@ -110,7 +110,7 @@ class PickingTest : public QObject {
   }
   void aSampleOfTheErrors() {
     // The errors of primal and canonical lie on the same pixel here; that of limit-angle lies apart from both.
-    viz::Selection other = document_->selection();
+    draw::Selection other = document_->selection();
     other.model = "canonical";
     document_->select(other);
     pick("plots", both(kShowFrame, kShowModel), [this] { clickSample(0, "error", "limit-angle", 4); });
@@ -224,10 +224,10 @@ class PickingTest : public QObject {
   /// Picks, and expects one more step of undo, a change in every view that shows such a thing, and the same pictures when the
   /// same is selected without the mouse. Every other thing that is selected on the way is undone first.
   void pick(const QString& place, const Views& shownBy, const std::function<void()>& byMouse) {
-    const viz::Selection before = document_->selection();
+    const draw::Selection before = document_->selection();
     const std::map<QString, QImage> old = pictures();
     byMouse();
-    const viz::Selection picked = document_->selection();
+    const draw::Selection picked = document_->selection();
     QVERIFY2(!(picked == before), "nothing was picked");
     const std::map<QString, QImage> now = pictures();
     document_->select(before);
@@ -246,12 +246,12 @@ class PickingTest : public QObject {
   }
   const Highlight& observed() const { return inspection_->evidence[kStart].highlights.at(0); }
   void onlyObserved() {
-    for (const viz::OverlayLayer& layer : viz::overlayLayers())
-      document_->setLayerVisible(layer.name, layer.title, layer.role == viz::OverlayRole::ObservedContour);
+    for (const draw::OverlayLayer& layer : draw::overlayLayers())
+      document_->setLayerVisible(layer.name, layer.title, layer.role == draw::OverlayRole::ObservedContour);
     settle();
   }
   void expectDirection(const Pixel& vertex) {
-    const viz::Selection s = document_->selection();
+    const draw::Selection s = document_->selection();
     QCOMPARE(s.highlight, 0);
     QVERIFY(s.direction);
     double area = 0;  // of the contour, with its first moments: the centroid by Green's theorem
@@ -274,7 +274,7 @@ class PickingTest : public QObject {
       const auto at = canvas->positionOf({s, point});
       if (!at) break;
       const auto direction = canvas->plot().series[std::size_t(s)].points[std::size_t(point)].target.direction;
-      click(canvas->surface(), *at);
+      click(canvas, *at);
       return direction;
     }
     QTest::qFail("no such sample", __FILE__, __LINE__);

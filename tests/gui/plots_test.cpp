@@ -65,14 +65,14 @@ class PlotsTest : public QObject {
     QVERIFY(series >= 0);
     const auto at = canvas->positionOf({series, 7});
     QVERIFY(at);
-    QTest::mouseClick(canvas->surface(), Qt::LeftButton, {}, at->toPoint());
+    QTest::mouseClick(canvas, Qt::LeftButton, {}, at->toPoint());
     QCOMPARE(document_->selection().frame, 7);
     QCOMPARE(document_->selection().model, std::string("dual"));
     QVERIFY(canvas->plot().shades.size() >= 1);  // first:6 trains
     document_->undoStack()->undo();
     QCOMPARE(document_->selection().frame, 0);
     // Beside every sample nothing is selected.
-    QTest::mouseClick(canvas->surface(), Qt::LeftButton, {}, QPoint(4, 4));
+    QTest::mouseClick(canvas, Qt::LeftButton, {}, QPoint(4, 4));
     QCOMPARE(document_->selection().frame, 0);
   }
 
@@ -80,15 +80,15 @@ class PlotsTest : public QObject {
     PlotCanvas* dial = panel_->canvas(1);
     QCOMPARE(dial->plot().id, std::string("dial"));
     panel_->renderNow();
-    const viz::PlotSample sample{0, 17};
+    const draw::PlotSample sample{0, 17};
     const auto at = dial->positionOf(sample);
     QVERIFY(at);
-    QTest::mouseClick(dial->surface(), Qt::LeftButton, {}, at->toPoint());
+    QTest::mouseClick(dial, Qt::LeftButton, {}, at->toPoint());
     QVERIFY(document_->selection().direction.has_value());
     // Another model's curve may run over this one; the direction is that of the place in any case.
     QVERIFY(std::abs(*document_->selection().direction - *dial->plot().series[0].points[17].target.direction) < 0.2);
     QCOMPARE(document_->selection().highlight, 0);
-    QVERIFY(!viz::selectedSamples(dial->plot(), document_->selection()).empty());
+    QVERIFY(!draw::selectedSamples(dial->plot(), document_->selection()).empty());
     document_->selectFrame(3);
     QVERIFY(!document_->selection().direction.has_value());
     panel_->renderNow();
@@ -113,7 +113,7 @@ class PlotsTest : public QObject {
   }
 
   void everyPlotIsMadeOffOrOnTheInterfaceThread() {
-    for (const viz::PlotKind& kind : viz::plotKinds()) {
+    for (const draw::PlotKind& kind : draw::plotKinds()) {
       document_->setOption("plots/first", kind.id, QStringLiteral("Plot"));
       QTRY_VERIFY(panel_->idle());
       panel_->renderNow();
@@ -155,12 +155,12 @@ class PlotsTest : public QObject {
     panel_->renderNow();
     const QPointF first = *canvas->positionOf({0, 2}), second = *canvas->positionOf({0, 3});
     const QPointF at = first;
-    QWheelEvent wheel(at, canvas->surface()->mapToGlobal(at.toPoint()), {}, {0, 480}, Qt::NoButton, Qt::NoModifier,
+    QWheelEvent wheel(at, canvas->mapToGlobal(at.toPoint()), {}, {0, 480}, Qt::NoButton, Qt::NoModifier,
                       Qt::NoScrollPhase, false);
-    QCoreApplication::sendEvent(canvas->surface(), &wheel);
+    QCoreApplication::sendEvent(canvas, &wheel);
     panel_->renderNow();
     QVERIFY(canvas->positionOf({0, 3})->x() - canvas->positionOf({0, 2})->x() > 1.5 * (second.x() - first.x()));
-    QTest::mouseDClick(canvas->surface(), Qt::LeftButton, {}, QPoint(200, 150));
+    QTest::mouseDClick(canvas, Qt::LeftButton, {}, QPoint(200, 150));
     panel_->renderNow();
     QVERIFY(std::abs(canvas->positionOf({0, 3})->x() - second.x()) < 1.5);
   }
@@ -187,7 +187,7 @@ class PlotsTest : public QObject {
     QCOMPARE(canvas->plot().id, std::string("influence"));
     const auto at = canvas->positionOf({0, 2});
     QVERIFY(at);
-    QTest::mouseClick(canvas->surface(), Qt::LeftButton, {}, (*at + QPointF(0, 2)).toPoint());
+    QTest::mouseClick(canvas, Qt::LeftButton, {}, (*at + QPointF(0, 2)).toPoint());
     QCOMPARE(window.document().selection().frame, 2);
     QVERIFY(!window.document().influenceStale());
     window.document().setTrain("0-4");
@@ -263,7 +263,7 @@ class PlotsTest : public QObject {
     QVERIFY(strip.chip("canonical", "fit")->toolTip().contains(QStringLiteral("of the window")));
     for (Chip* chip : strip.findChildren<Chip*>())
       QTRY_VERIFY(chip->mapTo(&strip, QPoint(chip->width(), 0)).x() <= strip.width());
-    viz::Selection s = document_->selection();  // chosen elsewhere
+    draw::Selection s = document_->selection();  // chosen elsewhere
     s.light = "lamp";
     document_->select(s);
     QCOMPARE(tabs->currentIndex(), 0);

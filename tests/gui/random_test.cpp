@@ -23,7 +23,7 @@
 #include "gui/window/main_window.h"
 #include "tests/gui/fixture.h"
 #include "tests/sanitizers/cases.h"
-#include "viz/frame_overlay.h"
+#include "core/draw/frame_overlay.h"
 
 namespace glint::gui {
 
@@ -158,7 +158,7 @@ class RandomTest : public QObject {
           QListWidgetItem* item = list->item(below(random, list->count()));
           item->setCheckState(item->checkState() == Qt::Checked ? Qt::Unchecked : Qt::Checked);
         } else {
-          const viz::OverlayLayer& layer = viz::overlayLayers()[std::size_t(below(random, int(viz::overlayLayers().size())))];
+          const draw::OverlayLayer& layer = draw::overlayLayers()[std::size_t(below(random, int(draw::overlayLayers().size())))];
           if (auto* toggle = window.findChild<QToolButton*>(QLatin1String(layer.name))) toggle->click();
         }
         return QStringLiteral("layer");

@@ -63,7 +63,7 @@ class SceneTreeTest : public QObject, SceneFixture {
     QCOMPARE(document_->selection().frame, 7);
     document_->selectFrame(3);
     QCOMPARE(marked(), (std::vector<SceneObject>{camera(3)}));
-    viz::Selection s = document_->selection();
+    draw::Selection s = document_->selection();
     const SceneObject ellipsoid = tree_->model().objectsOf(Kind::Ellipsoid).back();
     s.model = ellipsoid.key;
     document_->select(s);

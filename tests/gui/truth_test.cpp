@@ -20,7 +20,7 @@
 #include "gui/window/fit_on_screen.h"
 #include "gui/window/main_window.h"
 #include "tests/gui/fixture.h"
-#include "viz/error_text.h"
+#include "core/base/error_text.h"
 #include "viz/scene_questions.h"
 
 namespace glint::gui {
@@ -136,8 +136,8 @@ class TruthTest : public QObject {
     const auto* captions = panel.findChild<QLabel*>(QStringLiteral("frameCaptions"));
     const auto agree = [&] {
       const int frame = plain(title).toInt();  // fixture: "0007"
-      const viz::FrameScore score = viz::frameScore(inspection->models.at("canonical"), frame);
-      return plain(captions).contains(toQString(viz::errorText(*score.errorPct)));
+      const FrameScore score = frameScore(inspection->models.at("canonical"), frame);
+      return plain(captions).contains(toQString(errorText(*score.errorPct)));
     };
     QVERIFY(agree());
     for (const int frame : {3, 7, 2, 9}) {

@@ -229,8 +229,8 @@ class WindowTest : public QObject, WindowFixture {
         menu->close();
       }
     });
-    QContextMenuEvent click(QContextMenuEvent::Mouse, {20, 20}, plots.front()->surface()->mapToGlobal(QPoint(20, 20)));
-    QApplication::sendEvent(plots.front()->surface(), &click);
+    QContextMenuEvent click(QContextMenuEvent::Mouse, {20, 20}, plots.front()->mapToGlobal(QPoint(20, 20)));
+    QApplication::sendEvent(plots.front(), &click);
     QVERIFY(titles.contains(window.actions().find("plots.copy-svg")->text()));
   }
 
@@ -410,7 +410,7 @@ class WindowTest : public QObject, WindowFixture {
     window.document().selectFrame(frame);
     const auto* label = window.findChild<QLabel*>(QStringLiteral("frameCaptions"));
     int reasons = 0;
-    for (const viz::OverlayCaption& c : viz::frameOverlay(*window.document().inspection(), frame, {}).captions) {
+    for (const draw::OverlayCaption& c : draw::frameOverlay(*window.document().inspection(), frame, {}).captions) {
       const QString sentence = toQString(c.score.reason).section(QStringLiteral(": "), 1);
       if (c.model.empty() || sentence.isEmpty()) continue;
       ++reasons;

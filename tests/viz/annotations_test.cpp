@@ -22,7 +22,7 @@
 #include "tests/viz/image_checks.h"
 #include "viz/canvas.h"
 #include "viz/convert.h"
-#include "viz/error_text.h"
+#include "core/base/error_text.h"
 #include "viz/label_places.h"
 #include "viz/offscreen.h"
 #include "viz/scene_view.h"

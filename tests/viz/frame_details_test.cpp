@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "tests/viz/small_inspection.h"
-#include "viz/epipolar_overlay.h"
+#include "core/draw/epipolar_overlay.h"
 #include "viz/frame_pick.h"
 #include "viz/timeline_data.h"
 

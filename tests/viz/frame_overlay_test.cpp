@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "viz/frame_overlay.h"
+#include "core/draw/frame_overlay.h"
 
 #include <gtest/gtest.h>
 

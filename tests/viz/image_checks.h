@@ -28,14 +28,14 @@ inline int countDifferent(const Image& a, const Image& b) {
   return count;
 }
 
-inline bool isNear(const Image& image, int x, int y, const viz::Colour& colour, double tolerance) {
+inline bool isNear(const Image& image, int x, int y, const draw::Colour& colour, double tolerance) {
   for (int c = 0; c < 3; ++c) {
     if (std::abs(image.at(x, y, c) - colour[static_cast<std::size_t>(c)]) > tolerance) return false;
   }
   return true;
 }
 
-inline int countNear(const Image& image, const viz::Colour& colour, double tolerance = 0.06) {
+inline int countNear(const Image& image, const draw::Colour& colour, double tolerance = 0.06) {
   int count = 0;
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) count += isNear(image, x, y, colour, tolerance);

@@ -35,10 +35,10 @@ std::string fileOf(const std::string& name) { return GLINT_SOURCE_DIR "/tests/vi
 
 }  // namespace
 
-double seenShare(const Image& a, const Image& b, const std::vector<viz::Box>& masked) {
+double seenShare(const Image& a, const Image& b, const std::vector<draw::Box>& masked) {
   if (a.width != b.width || a.height != b.height || a.channels != 3 || b.channels != 3) return 1;
   cv::Mat compared(a.height, a.width, CV_8U, cv::Scalar(1));
-  for (const viz::Box& box : masked) {
+  for (const draw::Box& box : masked) {
     const cv::Rect rect(int(box.x), int(box.y), int(std::ceil(box.width)), int(std::ceil(box.height)));
     compared(rect & cv::Rect(0, 0, a.width, a.height)).setTo(0);
   }

@@ -20,7 +20,7 @@ constexpr double kMostSeen = 0.003, kMostSeenInPlots = 0.0015, kMostSeenWithoutD
 /// Share of the pixels where an eye would see a difference: after a small blur, one picture has a colour there that the other one
 /// does not have within a pixel, by the distance in CIELAB (CIE 1976). 1 for pictures of different sizes. @param a, b  3
 /// channels, sRGB 0..1. @param masked  rectangles that are not compared (text: fonts differ between machines).
-double seenShare(const Image& a, const Image& b, const std::vector<viz::Box>& masked = {});
+double seenShare(const Image& a, const Image& b, const std::vector<draw::Box>& masked = {});
 
 /// tests/viz/pictures/NAME.png. Fails the test when it cannot be read.
 Image storedPicture(const std::string& name);

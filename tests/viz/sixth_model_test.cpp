@@ -13,7 +13,7 @@
 #include "core/report/report.h"
 #include "core/tradeoff/tradeoff.h"
 #include "tests/core/inspect/exact_scene.h"
-#include "viz/frame_overlay.h"
+#include "core/draw/frame_overlay.h"
 #include "viz/pictures.h"
 #include "viz/style.h"
 
@@ -108,7 +108,7 @@ TEST_F(SixthModel, IsAmongAllModels) {
 // On a plane it is the limit angle itself.
 TEST_F(SixthModel, IsScoredAndReported) {
   const Inspection in = inspected(sheet(0));
-  EXPECT_THAT(viz::modelsInOrder(in, {}), ElementsAre("primal", "limit-angle", "flat-mirror"));
+  EXPECT_THAT(modelsInOrder(in, {}), ElementsAre("primal", "limit-angle", "flat-mirror"));
   const auto report = nlohmann::json::parse(evaluationJson(in, {}));
   constexpr double kSamePct = 0.05;  // 72 against 360 vertices
   EXPECT_LT(report["models"]["flat-mirror"]["summary"]["contour_error_pct"]["mean"].get<double>(), kSamePct);
@@ -131,10 +131,10 @@ TEST_F(SixthModel, IsCheckedAndExplained) {
 }
 
 TEST_F(SixthModel, IsDrawnInItsColour) {
-  EXPECT_EQ(viz::modelColour("flat-mirror"), (viz::Colour{240 / 255.0, 228 / 255.0, 66 / 255.0}));
+  EXPECT_EQ(draw::modelColour("flat-mirror"), (draw::Colour{240 / 255.0, 228 / 255.0, 66 / 255.0}));
   const Inspection in = inspected(sphere(0.5));
-  const viz::FrameOverlay overlay = viz::frameOverlay(in, 1, {});
-  EXPECT_TRUE(std::any_of(overlay.lines.begin(), overlay.lines.end(), [](const viz::OverlayLine& l) { return l.model == "flat-mirror"; }));
+  const draw::FrameOverlay overlay = draw::frameOverlay(in, 1, {});
+  EXPECT_TRUE(std::any_of(overlay.lines.begin(), overlay.lines.end(), [](const draw::OverlayLine& l) { return l.model == "flat-mirror"; }));
   const Image ladder = viz::ladderPicture(in, 1, Failure{Reason::FrameUnreadable, ""}, 900, 500), plots = viz::plotsPicture(in, 900, 600);
   EXPECT_EQ(ladder.width, 900);
   EXPECT_EQ(plots.width, 900);

@@ -19,10 +19,10 @@
 #include "tests/viz/image_checks.h"
 #include "tests/viz/perceptual.h"
 #include "tests/viz/small_inspection.h"
-#include "viz/epipolar_overlay.h"
+#include "core/draw/epipolar_overlay.h"
 #include "viz/pictures.h"
-#include "viz/plots/plot_export.h"
-#include "viz/plots/plots.h"
+#include "viz/plot_export.h"
+#include "core/draw/plots.h"
 #include "viz/scene_view.h"
 
 namespace glint::viz {

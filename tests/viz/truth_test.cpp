@@ -2,9 +2,6 @@
 // A picture must not look better than what it shows: missed highlights, excluded frames, influences without an answer, what is
 // loading.
 #include <gmock/gmock.h>
-#include <vtkNew.h>
-#include <vtkRenderWindow.h>
-#include <vtkRenderer.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,10 +10,10 @@
 #include "tests/viz/small_inspection.h"
 #include "viz/camera_colours.h"
 #include "viz/layers.h"
-#include "viz/missed.h"
+#include "core/inspect/frame_score.h"
 #include "viz/pictures.h"
-#include "viz/plots/plot_export.h"
-#include "viz/plots/plots.h"
+#include "viz/plot_export.h"
+#include "core/draw/plots.h"
 #include "viz/scene_legend.h"
 #include "viz/scene_questions.h"
 #include "viz/timeline_data.h"
@@ -105,12 +102,8 @@ TEST_F(MissedDrawing, TheCrossStandsAboveAllErrorsAndIsPicked) {
   const TemporaryFolder folder;
   PlotView view;
   view.show(errorPlot(*withAMiss(folder.path())));
-  vtkNew<vtkRenderWindow> window;
-  window->SetOffScreenRendering(1);
-  window->SetDPI(72);
-  window->SetSize(600, 400);
-  window->AddRenderer(view.renderer());
-  window->Render();
+  Canvas canvas(600, 400, kDarkBackground);
+  view.paint(canvas, 600, 400);
   const auto at = view.positionOf({0, kTwo});
   ASSERT_TRUE(at);
   for (int i = 0; i < 6; ++i) {
@@ -121,8 +114,6 @@ TEST_F(MissedDrawing, TheCrossStandsAboveAllErrorsAndIsPicked) {
   const auto picked = view.at(*at + Eigen::Vector2d(1, 1), 6);
   ASSERT_TRUE(picked);
   EXPECT_EQ(picked->point, kTwo);
-  window->RemoveRenderer(view.renderer());
-  window->Finalize();
   // The mark is drawn: without it there is less of the model's colour.
   const PlotData with = errorPlot(*withAMiss(folder.path()));
   PlotData without = with;

@@ -8,10 +8,10 @@
 #include <cmath>
 
 #include "viz/camera_colours.h"
-#include "viz/frame_overlay.h"
+#include "core/draw/frame_overlay.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
-#include "viz/missed.h"
+#include "core/inspect/frame_score.h"
 #include "viz/scene_questions.h"
 
 namespace glint::viz {

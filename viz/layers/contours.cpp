@@ -3,7 +3,7 @@
 #include <set>
 
 #include "core/geometry/polyline.h"
-#include "viz/frame_overlay.h"
+#include "core/draw/frame_overlay.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/outcome.h"
+#include "core/report/tradeoff_html.h"
 #include "core/tradeoff/choice.h"
 #include "tests/core/tradeoff/points.h"
 

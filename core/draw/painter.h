@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "core/draw/colours.h"
+
+namespace glint::draw {
+
+/// A rectangle of the canvas, px from the top left.
+struct Box {
+  double x = 0, y = 0, width = 0, height = 0;
+};
+/// A part of an image in its own pixels: (x, y) = left and top *edge*, so a whole image is (-0.5, -0.5, w, h).
+using Crop = Box;
+
+enum class Dash { Solid, Dashed, Dotted };
+enum class Align { Left, Centre, Right };
+
+/// What charts and overlays are painted with, whatever takes the strokes: pixels in memory (viz/canvas.h), a file that scales
+/// (core/draw/svg_painter.h) or the screen (gui/base/qt_painter.h). Coordinates are px, (0, 0) is the top left corner and y points
+/// down. What is painted later lies on top.
+class Painter {
+ public:
+  virtual ~Painter() = default;
+  /// @param opacity  0..1
+  virtual void fill(const Box& box, const Colour& colour, double opacity = 1) = 0;
+  /// A polyline, cut at `clip` unless that is empty. Points that are not finite are left out.
+  virtual void stroke(const std::vector<Eigen::Vector2d>& points, bool closed, const Colour& colour, double widthPx,
+                      Dash dash = Dash::Solid, const Box& clip = {}) = 0;
+  virtual void disc(const Eigen::Vector2d& centre, double radius, const Colour& colour) = 0;
+  /// A circle's line; by default a polygon.
+  virtual void ring(const Eigen::Vector2d& centre, double radius, const Colour& colour, double widthPx, const Box& clip = {});
+  /// One line of text; `at` is the baseline's left end, middle or right end. `vertical`: it runs upwards.
+  virtual void text(const Eigen::Vector2d& at, const std::string& text, double sizePx, const Colour& colour,
+                    Align align = Align::Left, bool vertical = false, bool bold = false) = 0;
+  virtual double textWidth(const std::string& text, double sizePx, bool bold = false) const = 0;
+  /// What stands at a place in words, for pictures that answer the mouse by themselves; others leave it out.
+  virtual void hint(const Eigen::Vector2d& /*centre*/, double /*radius*/, const std::string& /*text*/) {}
+
+  /// The text, its end replaced by an ellipsis if it is wider than `widthPx`.
+  std::string fitted(const std::string& text, double sizePx, double widthPx) const;
+  /// The text in lines that are at most `widthPx` wide, broken at blanks; a single wider word is a line of its own.
+  std::vector<std::string> wrapped(const std::string& text, double sizePx, double widthPx) const;
+};
+
+/// How far below a middle line the baseline lies of letters that are centred on it, px.
+inline double belowMiddle(double sizePx) { return 0.36 * sizePx; }
+
+}  // namespace glint::draw

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/draw/plot_header.h"
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace glint::draw {
+namespace {
+
+constexpr double kLine = 18;                         // height of a line, screen px
+constexpr double kLeastPlot = 100, kLeastDial = 90;  // height that the legend leaves to a plot with its axes, screen px
+constexpr double kSwatch = 18;                       // width of what stands before a name, screen px
+
+/// One entry of the legend: what is drawn from the left end of its swatch about the line's middle, and its name.
+struct Entry {
+  std::string name;
+  std::function<void(double left, double middle)> paint;
+};
+
+bool hasCrosses(const PlotData& plot) {
+  for (const PlotSeries& series : plot.series)
+    for (const PlotPoint& p : series.points)
+      if (p.noValue) return true;
+  return false;
+}
+
+void paintSwatch(Painter& painter, const PlotSeries& series, const PlotLook& look, double left, double middle) {
+  const double swatch = look.px(kSwatch);
+  for (const bool halo : {true, false}) {
+    if (halo && !series.halo) continue;
+    const Colour& colour = halo ? kHalo : series.colour;
+    const double more = halo ? look.px(2) : 0;
+    if (series.shape == PlotShape::Line || series.shape == PlotShape::LineAndPoints) {
+      painter.stroke({{left, middle}, {left + swatch, middle}}, false, colour, look.px(std::max(2.0, series.width)) + more,
+                     halo ? Dash::Solid : series.dash);
+    } else if (series.shape == PlotShape::Bars) {
+      const double r = look.px(5) + 0.5 * more;
+      painter.fill({left + 0.5 * swatch - r, middle - r, 2 * r, 2 * r}, colour);
+    } else {
+      painter.disc({left + 0.5 * swatch, middle}, std::max(look.px(3), 0.5 * look.px(series.pointSize)) + 0.5 * more, colour);
+    }
+  }
+}
+
+std::vector<Entry> entriesOf(Painter& painter, const PlotData& plot, const PlotLook& look) {
+  const double swatch = look.px(kSwatch);
+  std::vector<Entry> entries;
+  for (const PlotSeries& series : plot.series)
+    if (series.inLegend)
+      entries.push_back({series.name, [&](double left, double middle) { paintSwatch(painter, series, look, left, middle); }});
+  if (!plot.noValue.empty() && hasCrosses(plot))
+    entries.push_back({plot.noValue, [&painter, &look, swatch](double left, double middle) {
+                         paintCross(painter, {left + 0.5 * swatch, middle}, look.faded, look);
+                       }});
+  std::vector<std::string> named;
+  for (const PlotShade& shade : plot.shades) {
+    if (shade.name.empty() || std::find(named.begin(), named.end(), shade.name) != named.end()) continue;
+    named.push_back(shade.name);
+    entries.push_back({shade.name, [&painter, &look, &shade, swatch](double left, double middle) {
+                         painter.fill({left + look.px(3), middle - look.px(5), swatch - look.px(6), look.px(10)}, shade.colour,
+                                      std::min(1.0, 1.5 * look.shadeOpacity));
+                       }});
+  }
+  return entries;
+}
+
+}  // namespace
+
+void paintCross(Painter& painter, const Eigen::Vector2d& at, const Colour& colour, const PlotLook& look) {
+  constexpr double kHalf = 3.5, kWidth = 1.75;  // screen px
+  for (const bool outer : {true, false}) {
+    const double r = look.px(outer ? kHalf + 0.6 * kWidth : kHalf);
+    for (const Eigen::Vector2d& arm : {Eigen::Vector2d(r, r), Eigen::Vector2d(r, -r)})
+      painter.stroke({at - arm, at + arm}, false, outer ? look.around : colour, look.px(outer ? 2.2 * kWidth : kWidth));
+  }
+}
+
+double paintPlotHeader(Painter& painter, const PlotData& plot, const PlotLook& look, double width, double height, bool legend,
+                       bool draw) {
+  const double lineHeight = look.px(kLine), margin = look.px(8), swatch = look.px(kSwatch), small = look.px(kPlotSmallFont);
+  const double gap = look.px(5);
+  double y = 0.5 * lineHeight + look.px(2), x = margin;  // y: the line's middle
+  if (draw)
+    painter.text({x, y + belowMiddle(look.px(kPlotFont))}, plot.title, look.px(kPlotFont), look.text, Align::Left, false, true);
+  x += painter.textWidth(plot.title, look.px(kPlotFont), true) + look.px(18);
+  const double lowest = height - look.px(plot.dial ? kLeastDial : kLeastPlot) - 0.5 * lineHeight;
+  for (const Entry& entry : legend ? entriesOf(painter, plot, look) : std::vector<Entry>{}) {
+    const double needed = swatch + gap + painter.textWidth(entry.name, small) + look.px(14);
+    if (x + needed > width - margin && x > margin) {
+      if (y + lineHeight > lowest) {
+        const std::string dots = "\u2026";
+        if (draw) painter.text({std::min(x, width - margin - painter.textWidth(dots, small)), y + belowMiddle(small)}, dots, small, look.text);
+        break;
+      }
+      x = margin;
+      y += lineHeight;
+    }
+    if (draw) {
+      entry.paint(x, y);
+      painter.text({x + swatch + gap, y + belowMiddle(small)}, entry.name, small, look.text);
+    }
+    x += needed;
+  }
+  return y + 0.5 * lineHeight;
+}
+
+}  // namespace glint::draw

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/draw/plot_painter.h"
+
+namespace glint::draw {
+
+/// Colours and sizes of a plot on a dark or light background.
+struct PlotLook {
+  explicit PlotLook(const PlotStyle& style)
+      : scale(style.scale),
+        dark(style.dark),
+        background(style.dark ? kDarkBackground : kLightBackground),
+        text(style.dark ? kTextOnDark : kTextOnLight),
+        faded(style.dark ? Colour{0.64, 0.66, 0.68} : Colour{0.36, 0.38, 0.41}),
+        grid(style.dark ? Colour{0.24, 0.255, 0.275} : Colour{0.86, 0.87, 0.88}),
+        around(style.dark ? kHalo : Colour{1, 1, 1}),
+        shadeOpacity(style.dark ? 0.30 : 0.16) {}
+  double px(double screen) const { return screen * scale; }
+  double scale;  ///< device pixels per screen px
+  bool dark;
+  Colour background, text, faded, grid;
+  Colour around;        ///< of rings and crosses, so that they show on lines and tints
+  double shadeOpacity;  ///< of a tinted range of x
+};
+
+inline constexpr double kPlotFont = 12, kPlotSmallFont = 11;  // screen px
+
+/// Title and legend at the top of a plot: its series, its tinted ranges, and what the crosses stand for. Returns their height,
+/// device px. In a low picture the legend ends early, with dots. @param draw  else it is only measured. @param legend  else the
+/// title alone.
+double paintPlotHeader(Painter& painter, const PlotData& plot, const PlotLook& look, double width, double height, bool legend,
+                       bool draw);
+
+/// A cross about a place, with a stroke of the background around it.
+void paintCross(Painter& painter, const Eigen::Vector2d& at, const Colour& colour, const PlotLook& look);
+
+}  // namespace glint::draw

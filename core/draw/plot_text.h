@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "core/inspect/inspection.h"
+#include "core/draw/plot_data.h"
+
+namespace glint::draw {
+
+// What the makers of plots have in common.
+
+constexpr double kSmallestPct = 1e-6;  // what a logarithmic axis shows of an exact scene
+
+/// A sentence in place of a plot.
+inline PlotData nothing(PlotData plot, std::string why) {
+  plot.series.clear();
+  plot.empty = std::move(why);
+  return plot;
+}
+
+/// As the scene names it; its number where it does not.
+inline std::string frameName(const Inspection& inspection, int frame) {
+  if (inspection.scene && frame >= 0 && frame < int(inspection.scene->frames.size()))
+    return inspection.scene->frames[std::size_t(frame)].id;
+  return std::to_string(frame);
+}
+
+}  // namespace glint::draw

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "core/base/image.h"
+#include "core/draw/plot_view.h"
+#include "viz/style.h"
+
+namespace glint::viz {
+
+/// A picture of a plot of `width` x `height` device px, 3 channels; needs no display. std::invalid_argument unless
+/// 64 <= width, height <= 16384.
+Image plotImage(const PlotData& plot, const PlotStyle& style, const Selection& selection, int width, int height);
+
+/// The same as SVG, as SvgPainter writes it. Written as a whole or not at all. InputError when it cannot be written.
+void writePlotSvg(const PlotData& plot, const PlotStyle& style, const Selection& selection, int width, int height,
+                  const std::string& file);
+
+/// InputError when it cannot be written.
+void writePlotCsv(const PlotData& plot, const std::string& file);
+
+}  // namespace glint::viz
