@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/draw/plot_header.h"
+#include "core/draw/plot_notes.h"
 
 namespace glint::draw {
 namespace {
@@ -37,6 +38,7 @@ class PlotPicture {
   void paintSeries();
   void paintErrorBars();
   void paintSamples();
+  void paintNotes();
   void layOutDial(double head);
   void paintDial();
   void paintMarks(const PlotMarks& marks);
@@ -162,26 +164,37 @@ void PlotPicture::paintErrorBars() {
     }
 }
 
-/// Crosses, notes and hints. Crosses of several models side by side: each in a row of its own, so that none hides another.
+/// Crosses and hints. Crosses of several models side by side: each in a row of its own, so that none hides another.
 void PlotPicture::paintSamples() {
   constexpr double kReach = 5;  // of a hint, screen px
-  const double font = px(kPlotFont);
   for (int s = 0; s < int(plot_.series.size()); ++s) {
     const PlotSeries& series = plot_.series[std::size_t(s)];
     for (const PlotPoint& p : series.points) {
       const Eigen::Vector2d at = at_.placeOf(plot_, s, p);
       if (!at_.inside(plot_, at)) continue;
       if (p.noValue && !plot_.dial) paintCross(painter_, at, series.colour, look_);
-      if (!p.note.empty()) {
-        painter_.ring(at, px(10), look_.text, px(1.6));
-        const double textWidth = painter_.textWidth(p.note, font, true), beside = px(13);
-        const bool atLeft = at.x() + beside + textWidth > at_.right;
-        painter_.text({at.x() + (atLeft ? -beside : beside), at.y() - px(9)}, p.note, font, look_.text, atLeft ? Align::Right : Align::Left,
-                      false, true);
-      }
       painter_.hint(at, px(kReach), p.label);
     }
   }
+}
+
+void PlotPicture::paintNotes() {
+  const double font = px(kPlotFont);
+  std::vector<Eigen::Vector2d> points;
+  std::vector<std::string> notes;
+  std::vector<double> widths;
+  for (int s = 0; s < int(plot_.series.size()); ++s)
+    for (const PlotPoint& p : plot_.series[std::size_t(s)].points) {
+      const Eigen::Vector2d at = at_.placeOf(plot_, s, p);
+      if (p.note.empty() || !at_.inside(plot_, at)) continue;
+      painter_.ring(at, px(9), look_.text, px(1.6));
+      points.push_back(at);
+      notes.push_back(p.note);
+      widths.push_back(painter_.textWidth(p.note, font, true));
+    }
+  const std::vector<std::optional<Box>> places = notePlaces(points, widths, 1.3 * font, area(), look_.scale);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (places[i]) painter_.text({places[i]->x, places[i]->y + font}, notes[i], font, look_.text, Align::Left, false, true);
 }
 
 void PlotPicture::layOutDial(double head) {
@@ -284,6 +297,7 @@ std::optional<PlotPlaces> PlotPicture::paint(const PlotMarks& marks) {
     paintErrorBars();
   }
   paintSamples();
+  paintNotes();
   paintMarks(marks);
   return at_;
 }

@@ -16,6 +16,8 @@ class PlotView {
   void show(const PlotData& plot);
   const PlotData& plot() const { return plot_; }
   void setSelection(const Selection& selection);
+  /// Instead of those of the selection, until the next plot or selection.
+  void setMarked(const std::vector<PlotSample>& samples) { marks_.selected = samples; }
   void setHovered(const std::optional<PlotSample>& sample) { marks_.hovered = sample; }
   /// @see paintPlot
   void paint(Painter& painter, double width, double height);

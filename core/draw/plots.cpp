@@ -418,7 +418,8 @@ PlotData tradeoffPlot(const Tradeoff& tradeoff) {
     p.y = t.rankedErrorPct;
     p.target.setting = i;
     p.label = describe(tradeoff, t) +
-              formatted("\nerror %.3g %%, %.4g µs per frame, fit %.3g ms", t.contourErrorPct, t.predictUs, t.fitUs / 1000);
+              formatted("\nerror %.3g %%, IoU %.4f, coverage %.3f, %d of %d frames predicted\n%.4g µs per frame, fit %.3g ms, peak memory %.4g MB",
+                        t.contourErrorPct, t.iou, t.coverage, t.predicted, t.frames, t.predictUs, t.fitUs / 1000, t.peakMb);
     for (const auto& [name, index] : tradeoff.presets) {
       if (index != i) continue;
       p.label += "\npreset '" + name + "'";
@@ -427,12 +428,14 @@ PlotData tradeoffPlot(const Tradeoff& tradeoff) {
     if (tradeoff.chosen == i && p.note.empty()) p.note = "chosen";
     p.hollow = !t.pareto;
     if (t.pareto) {
+      PlotPoint step = p;
+      step.note.clear();
       if (!front.points.empty()) {  // until then the error before is the best to be had
-        PlotPoint corner = p;
-        corner.y = front.points.back().y;
-        front.points.push_back(corner);
+        step.y = front.points.back().y;
+        front.points.push_back(step);
+        step.y = p.y;
       }
-      front.points.push_back(p);
+      front.points.push_back(step);
     }
     auto series = std::find_if(models.begin(), models.end(), [&](const PlotSeries& s) { return s.name == t.model; });
     if (series == models.end()) {

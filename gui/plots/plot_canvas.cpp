@@ -48,6 +48,11 @@ void PlotCanvas::setSelection(const draw::Selection& selection) {
   update();
 }
 
+void PlotCanvas::setMarked(const std::vector<draw::PlotSample>& samples) {
+  view_.setMarked(samples);
+  update();
+}
+
 void PlotCanvas::showAll() {
   view_.showAll();
   update();

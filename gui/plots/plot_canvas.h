@@ -20,6 +20,8 @@ class PlotCanvas : public QWidget {
 
   void show(const draw::PlotData& plot);
   void setSelection(const draw::Selection& selection);
+  /// Instead of the samples of the selection.
+  void setMarked(const std::vector<draw::PlotSample>& samples);
   const draw::PlotData& plot() const;
   draw::PlotStyle style() const;
   void showAll();

@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/base/base64.h"
 #include "core/draw/overlay_painter.h"
+#include "core/draw/plot_notes.h"
 #include "core/draw/plot_view.h"
 #include "core/draw/svg_painter.h"
 
@@ -98,22 +101,52 @@ TEST(PlotPainter, EverySampleSaysItsValueUnderTheMouse) {
   EXPECT_LT(view.positionOf({0, 1})->y(), view.positionOf({0, 2})->y()) << "the cross stands above the values";
 }
 
-TEST(PlotPainter, ANotedSampleIsNamedInsideThePicture) {
+TEST(PlotPainter, ANotedSampleHasARingAndItsName) {
   PlotData plot;
   PlotSeries series;
   series.shape = PlotShape::Points;
   for (const double x : {0.0, 1.0}) {
     PlotPoint p;
     p.x = x;
-    p.note = "balanced, exact";
+    p.note = x > 0 ? "balanced, exact" : "";
     series.points.push_back(p);
   }
   plot.series = {series};
   SvgPainter painter(400, 300);
-  paintPlot(painter, plot, {false, 1}, rangeOf(plot), {}, 400, 300);
+  const auto places = paintPlot(painter, plot, {false, 1}, rangeOf(plot), {}, 400, 300);
+  ASSERT_TRUE(places);
   const std::string svg = painter.element("plot");
-  EXPECT_EQ(countOf(svg, ">balanced, exact</text>"), 2);
-  EXPECT_EQ(countOf(svg, "text-anchor=\"end\" font-weight=\"bold\""), 1) << "that at the right border stands at its left";
+  const std::size_t at = svg.find(">balanced, exact</text>");
+  ASSERT_NE(at, std::string::npos);
+  const std::size_t x = svg.rfind(" x=\"", at);
+  EXPECT_LT(std::stod(svg.substr(x + 4)), places->placeOf(plot, 0, plot.series[0].points[1]).x()) << "at the right border it stands at the left";
+}
+
+/// Points that are near to each other: their names stay apart, and beside their points.
+TEST(NotePlaces, NamesNeverLieOverOneAnother) {
+  const Box area{60, 10, 420, 190};
+  for (const double apart : {0.0, 0.5, 4.0, 20.0, 60.0}) {
+    SCOPED_TRACE(apart);
+    const std::vector<Eigen::Vector2d> points{{100, 100}, {100 + apart, 100 - apart}, {470, 20}};
+    const auto places = notePlaces(points, {40, 60, 50}, 15, area, 1);
+    ASSERT_EQ(places.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) {
+      ASSERT_TRUE(places[i]) << i;
+      const Box& a = *places[i];
+      EXPECT_GE(a.x, area.x);
+      EXPECT_GE(a.y, area.y);
+      EXPECT_LE(a.x + a.width, area.x + area.width);
+      EXPECT_LE(a.y + a.height, area.y + area.height);
+      EXPECT_LT(std::abs(a.y + 0.5 * a.height - points[i].y()), 70);
+      for (std::size_t j = 0; j < 3; ++j) {
+        const Box& b = *places[j];
+        EXPECT_TRUE(i == j || a.x >= b.x + b.width || b.x >= a.x + a.width || a.y >= b.y + b.height || b.y >= a.y + a.height) << i << j;
+        const Eigen::Vector2d& p = points[j];
+        EXPECT_FALSE(p.x() > a.x && p.x() < a.x + a.width && p.y() > a.y && p.y() < a.y + a.height) << i << j;
+      }
+    }
+  }
+  EXPECT_FALSE(notePlaces({{50, 50}}, {400}, 15, {0, 0, 100, 100}, 1)[0]) << "without room it is left out";
 }
 
 TEST(OverlayPainter, MarksOutsideTheirBoxAreNotPainted) {
