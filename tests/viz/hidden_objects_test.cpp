@@ -112,7 +112,7 @@ TEST_F(HiddenObjectsTest, ALightGoesAsEstimateAndTruth) {
                          [](const Picked& p) { return (p.layer == "light" && p.model.empty()) || p.layer == "true-light"; });
   };
   TrueLight truth;
-  truth.id = inspection_->lights.begin()->first;
+  truth.id = inspection_->lights.begin()->first.light;
   truth.position = Eigen::Vector3d(0.5, 0, 1);
   auto scene = std::make_shared<Scene>(*inspection_->scene);
   scene->lights = {truth};

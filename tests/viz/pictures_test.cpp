@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/draw/overlay_painter.h"
 #include "core/scene/scene.h"
 #include "tests/viz/small_inspection.h"
 #include "viz/annotations.h"
@@ -25,7 +26,7 @@ bool isNear(const Image& image, int x, int y, const Colour& colour, double toler
   return true;
 }
 
-int countNear(const Image& image, const Colour& colour, double tolerance = 0.08) {
+int countOfColour(const Image& image, const Colour& colour, double tolerance = 0.08) {
   int count = 0;
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) count += isNear(image, x, y, colour, tolerance);
@@ -71,7 +72,7 @@ TEST(Canvas, ImagePixelsAndOverlayPointsShareOneGrid) {
   mark.halo = false;
   overlay.marks.push_back(mark);
   Canvas marked(240, 160, {0, 0, 0});
-  drawOverlay(marked, overlay, whole, box, 1);
+  paintOverlay(marked, overlay, whole, box, 1);
   const Image cross = marked.image();
   sum = sx = sy = 0;
   for (int y = 0; y < 160; ++y) {
@@ -145,21 +146,21 @@ TEST(FramePicture, DrawsThePhotographAndTheModelsInTheirColours) {
   const Image picture = framePicture(*inspection, 0, photograph, 900, 600);
   EXPECT_EQ(picture.width, 900);
   EXPECT_EQ(picture.height, 600);
-  EXPECT_GT(countNear(picture, {1, 0, 0}), 5000);
-  EXPECT_GT(countNear(picture, {0, 1, 0}), 5000);
-  EXPECT_GT(countNear(picture, modelColour("canonical"), 0.1), 100);
+  EXPECT_GT(countOfColour(picture, {1, 0, 0}), 5000);
+  EXPECT_GT(countOfColour(picture, {0, 1, 0}), 5000);
+  EXPECT_GT(countOfColour(picture, modelColour("canonical"), 0.1), 100);
   PictureOptions bare;
   bare.hidden = {OverlayRole::PredictedContour, OverlayRole::PredictedEllipse, OverlayRole::PredictedPeak,
                  OverlayRole::CanonicalEllipse};
-  EXPECT_LT(countNear(framePicture(*inspection, 0, photograph, 900, 600, bare), modelColour("canonical"), 0.1),
-            0.7 * countNear(picture, modelColour("canonical"), 0.1));
+  EXPECT_LT(countOfColour(framePicture(*inspection, 0, photograph, 900, 600, bare), modelColour("canonical"), 0.1),
+            0.7 * countOfColour(picture, modelColour("canonical"), 0.1));
 }
 
 TEST(FramePicture, AMissingPhotographIsSaidInItsPlace) {
   const TemporaryFolder folder;
   const auto inspection = smallInspection(folder.path());
   const Image picture = framePicture(*inspection, 0, Failure{Reason::FrameUnreadable, "x.png"}, 600, 400);
-  EXPECT_GT(countNear(picture, kFailed, 0.2), 30);
+  EXPECT_GT(countOfColour(picture, kFailed, 0.2), 30);
 }
 
 TEST(Pictures, EverySizeWorks) {
@@ -237,7 +238,7 @@ TEST(PlotsPicture, SaysSoWhenThereIsNothingToPlot) {
   const TemporaryFolder folder;
   const auto inspection = smallInspection(folder.path());
   inspection->models.erase("canonical");
-  EXPECT_GT(countNear(plotsPicture(*inspection, 600, 400), kFailed, 0.2), 30);
+  EXPECT_GT(countOfColour(plotsPicture(*inspection, 600, 400), kFailed, 0.2), 30);
 }
 
 TEST(WritePng, IsReadBackAndRefusesAFolderThatIsNotThere) {

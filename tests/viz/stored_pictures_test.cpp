@@ -16,6 +16,7 @@
 #include <set>
 
 #include "core/base/outcome.h"
+#include "core/draw/overlay_painter.h"
 #include "tests/viz/image_checks.h"
 #include "tests/viz/perceptual.h"
 #include "tests/viz/small_inspection.h"
@@ -168,7 +169,7 @@ class StoredFrames : public StoredPictures {
     options.hidden = hidden;
     options.residualScale = 2;
     options.selection = Selection{0, "canonical", 0, "lamp", 0.7};
-    drawOverlay(canvas, frameOverlay(*inspection_, 0, options), crop, box, 1);
+    paintOverlay(canvas, frameOverlay(*inspection_, 0, options), crop, box, 1);
     return canvas.image();
   }
   /// Frames 0 and 2 side by side with the tangent epipolar lines of their ellipses.
@@ -181,7 +182,7 @@ class StoredFrames : public StoredPictures {
       const Box box{240.0 * i, 0, 240, 180};
       canvas.picture(*readPhotograph(inspection_->scene->frames[0]), {-0.5, -0.5, 320, 240}, box);
       canvas.fill(box, {0.25, 0.25, 0.25}, 0.7);
-      if (withLines) drawOverlay(canvas, both.frames[std::size_t(i)], {-0.5, -0.5, 320, 240}, box, 1);
+      if (withLines) paintOverlay(canvas, both.frames[std::size_t(i)], {-0.5, -0.5, 320, 240}, box, 1);
     }
     return canvas.image();
   }
