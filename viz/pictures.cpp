@@ -298,7 +298,9 @@ Image plotsPicture(const Inspection& inspection, int width, int height, const Pi
   PlotData plot = errorPlot(inspection, shown);
   plot.title = inspection.scene->name + ": contour error over frames";
   constexpr double kScreenHeight = 460;  // of a plot whose texts have their usual size, px
-  return plotImage(plot, {options.dark, std::clamp(height / kScreenHeight, 0.85, 3.5)}, {}, width, height);
+  Selection none;
+  none.frame = -1;
+  return plotImage(plot, {options.dark, std::clamp(height / kScreenHeight, 0.85, 3.5)}, none, width, height);
 }
 
 }  // namespace glint::viz

@@ -30,7 +30,7 @@ Image ladderPicture(const Inspection& inspection, int frame, const Outcome<Image
                     const PictureOptions& options = {});
 
 /// Contour error over frames (errorPlot), with the means of held-out frames in the legend. std::invalid_argument unless
-/// 64 <= width, height <= 16384.
+/// 16 <= width, height <= 16384.
 Image plotsPicture(const Inspection& inspection, int width, int height, const PictureOptions& options = {});
 
 /// The part of the photograph that holds the frame's contours with a margin, `aspect` = width / height (0 = as the contours are);

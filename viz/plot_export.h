@@ -10,7 +10,7 @@
 namespace glint::viz {
 
 /// A picture of a plot of `width` x `height` device px, 3 channels; needs no display. std::invalid_argument unless
-/// 64 <= width, height <= 16384.
+/// 16 <= width, height <= 16384.
 Image plotImage(const PlotData& plot, const PlotStyle& style, const Selection& selection, int width, int height);
 
 /// The same as SVG, as SvgPainter writes it. Written as a whole or not at all. InputError when it cannot be written.

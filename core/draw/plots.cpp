@@ -363,7 +363,7 @@ PlotData singularValuePlot(const std::vector<Conditioning>& conditioning) {
   plot.x.title = "index";
   plot.y.title = "relative to the first";
   plot.y.log = true;
-  plot.y.floor = 1e-17;
+  plot.y.floor = 1e-17;  // below what doubles resolve of the first: zero is drawn there
   std::size_t most = 0;
   std::vector<std::string> named;
   for (const Conditioning& c : conditioning) {

@@ -41,6 +41,7 @@ std::string errorPlotOf(const Inspection& inspection) {
 /// Observed and predicted contours of a frame over its photograph, around what is drawn, with every model's error.
 std::string frameFigure(const Inspection& inspection, int frame) {
   draw::OverlayOptions options;
+  options.hidden = {draw::OverlayRole::PredictedPeak};
   for (const draw::OverlayLayer& layer : draw::overlayLayers())
     if (layer.role != draw::OverlayRole::ObservedContour && layer.role != draw::OverlayRole::PredictedContour)
       options.hidden.insert(layer.role);

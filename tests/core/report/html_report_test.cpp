@@ -51,10 +51,10 @@ TEST(HtmlReport, AFrameWithAMissHasACrossAndNoErrorInThePlot) {
     c.rows.push_back({1, -1, {}, Failure{Reason::NotReached, "no prediction overlaps this highlight"}, {}});
   }
   const std::string html = evaluationHtml(run, {});
-  EXPECT_THAT(html, HasSubstr("<title>frame 5 (held out)\ndual  missed 1 of 2 highlights"));
+  EXPECT_THAT(html, HasSubstr("<title>frame v5 (held out)\ndual  missed 1 of 2 highlights"));
   EXPECT_THAT(html, HasSubstr(">missed a highlight</text>")) << "the legend says what the cross is";
   EXPECT_THAT(html, Not(HasSubstr("dual  1e-06 %")));
-  EXPECT_THAT(html, HasSubstr("<title>frame 4 (held out)\ndual  "));
+  EXPECT_THAT(html, HasSubstr("<title>frame v4 (held out)\ndual  "));
 }
 
 TEST(HtmlReport, SaysWithWhichSettingsAndByWhich) {
