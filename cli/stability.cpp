@@ -10,7 +10,7 @@ namespace glint::cli {
 
 Command stabilityCommand() {
   struct Arguments {
-    std::string json;
+    std::string json, stage;
     bool markdown = false;
   };
   const auto a = std::make_shared<Arguments>();
@@ -23,15 +23,17 @@ Command stabilityCommand() {
       "answer exists) or wrong. Exit code 1 when any case is wrong.";
   c.examples =
       "  glint stability                    the table\n"
+      "  glint stability --stage conic      one stage alone\n"
       "  glint stability --json -           JSON for a script\n"
       "  glint stability --markdown         the table of docs/stability.md, with the reasons of its limits\n";
   c.declare = [a](Options& o) {
     o.option(a->json, "--json", "FILE", "Write all cases as JSON (- = standard output, replaces the table)");
+    o.option(a->stage, "--stage", "NAME", "Run only the cases of one stage, as the table names it");
     o.flag(a->markdown, "--markdown", "Print the table for the documentation");
   };
   c.run = [a](const Context& context) -> int {
     Outputs(std::vector<std::filesystem::path>{}).file(a->json, "--json", OutputKind::document("glint_stability"));
-    const std::vector<StabilityResult> results = runStability(context.progress());
+    const std::vector<StabilityResult> results = runStability(context.progress(), a->stage);
     if (!a->json.empty()) context.write(a->json, stabilityJson(results));
     if (a->json != "-") context.print(a->markdown ? stabilityMarkdown(results) : stabilityTable(results));
     const bool wrong =

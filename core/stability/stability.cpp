@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <set>
 
 #include "core/stability/cases.h"
 #include "core/stability/reflectance_cases.h"
@@ -47,7 +48,7 @@ StabilityResult judge(const Case& c, const Outcome<Measured>& outcome) {
 
 }  // namespace
 
-std::vector<StabilityResult> runStability(const ProgressFn& progress) {
+std::vector<StabilityResult> runStability(const ProgressFn& progress, const std::string& stage) {
   stability::Cases cases;
   stability::addConicCases(cases);
   stability::addCameraCases(cases);
@@ -63,6 +64,14 @@ std::vector<StabilityResult> runStability(const ProgressFn& progress) {
   stability::addReflectanceCases(cases);
   stability::addLobeCases(cases);
   stability::addBadNumberCases(cases);
+  if (!stage.empty()) {
+    std::set<std::string> stages;
+    for (const Case& c : cases) stages.insert(c.stage);
+    std::string all;
+    for (const std::string& s : stages) all += (all.empty() ? "" : ", ") + s;
+    if (!stages.count(stage)) throw InputError("", "--stage", "must be one of " + all);
+    std::erase_if(cases, [&](const Case& c) { return c.stage != stage; });
+  }
   std::vector<StabilityResult> results;
   for (const Case& c : cases) {
     if (!report(progress, {"stability", int(results.size()), int(cases.size())})) throw Stopped{};

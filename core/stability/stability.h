@@ -29,8 +29,9 @@ struct StabilityResult {
 };
 
 /// The extremes of method.md section 13, one after the other. Each compares the code with a reference of higher precision that
-/// shares no code with it. Throws Stopped when `progress` says so. Some ten seconds.
-std::vector<StabilityResult> runStability(const ProgressFn& progress = {});
+/// shares no code with it. Throws Stopped when `progress` says so. A minute or two.
+/// @param stage  only its cases; "" = all. InputError when there is no such stage.
+std::vector<StabilityResult> runStability(const ProgressFn& progress = {}, const std::string& stage = "");
 
 /// Columns for a terminal, with a line of totals.
 std::string stabilityTable(const std::vector<StabilityResult>& results);
