@@ -7,6 +7,7 @@
 #include <QWheelEvent>
 #include <cmath>
 
+#include "gui/base/draw_turns.h"
 #include "gui/base/qt_painter.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
@@ -37,20 +38,27 @@ void PlotCanvas::paintEvent(QPaintEvent*) {
   view_.paint(into, width(), height());
 }
 
+/// In a turn of its own: several views that change at once must not make the interface stand still together.
+void PlotCanvas::scheduleRender() {
+  drawInTurn(this, [this] {
+    if (isVisible()) repaint();
+  });
+}
+
 void PlotCanvas::show(const draw::PlotData& plot) {
   hovered_.reset();
   view_.show(plot);
-  update();
+  scheduleRender();
 }
 
 void PlotCanvas::setSelection(const draw::Selection& selection) {
   view_.setSelection(selection);
-  update();
+  scheduleRender();
 }
 
 void PlotCanvas::setMarked(const std::vector<draw::PlotSample>& samples) {
   view_.setMarked(samples);
-  update();
+  scheduleRender();
 }
 
 void PlotCanvas::showAll() {

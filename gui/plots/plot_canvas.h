@@ -44,6 +44,7 @@ class PlotCanvas : public QWidget {
   bool event(QEvent* e) override;
 
  private:
+  void scheduleRender();
   std::optional<draw::PlotSample> sampleAt(const QPointF& at) const;
   void hover(const QPointF& at, const QPoint& global);
 
