@@ -425,15 +425,16 @@ PlotData tradeoffPlot(const Tradeoff& tradeoff) {
       p.label += "\npreset '" + name + "'";
       p.note += (p.note.empty() ? "" : ", ") + name;
     }
-    if (tradeoff.chosen == i && p.note.empty()) p.note = "chosen";
+    if (tradeoff.chosen == i) p.note += p.note.empty() ? "chosen" : " (chosen)";
     p.hollow = !t.pareto;
     if (t.pareto) {
       PlotPoint step = p;
       step.note.clear();
       if (!front.points.empty()) {  // until then the error before is the best to be had
-        step.y = front.points.back().y;
-        front.points.push_back(step);
-        step.y = p.y;
+        PlotPoint corner;  // no setting lies there: it has no label and nothing to load
+        corner.x = p.x;
+        corner.y = front.points.back().y;
+        front.points.push_back(corner);
       }
       front.points.push_back(step);
     }

@@ -33,8 +33,8 @@ std::string svgOf(const Tradeoff& t) {
 }
 
 constexpr const char* kLegend =
-    "<p>Discs: on the front, no other setting is both faster and more accurate. Named: the presets, or the chosen setting. Hover over "
-    "a point for its setting.</p>\n";
+    "<p>Filled points lie on the front: no other setting is both faster and more accurate. Names mark the presets and the chosen "
+    "setting. Hover over a point for its setting.</p>\n";
 
 }  // namespace
 
