@@ -79,8 +79,8 @@ void predict(benchmark::State& state, const std::string& model, int triangles, c
   m.predict(fit, scene().cameras[0], &s, settings);  // the first search on a mesh builds its tree
   for (auto _ : state) {
     const Prediction p = m.predict(fit, scene().cameras[frame], &s, settings);
-    found += p.highlights.size();
-    for (const PredictedHighlight& h : p.highlights) coverage += h.coverage;
+    found += p.highlights().size();
+    for (const PredictedHighlight& h : p.highlights()) coverage += h.coverage;
     ++calls;
     frame = (frame + 7) % scene().cameras.size();
   }

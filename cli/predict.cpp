@@ -29,10 +29,10 @@ std::string predictionTable(const Inspection& inspection, const std::vector<int>
     for (const FrameComparison& c : inspection.models.at(name).frames) {
       if (std::find(frames.begin(), frames.end(), c.frame) == frames.end()) continue;
       double coverage = 0;
-      for (const PredictedHighlight& h : c.prediction.highlights) coverage += h.coverage / double(c.prediction.highlights.size());
-      const std::string reason = c.prediction.highlights.empty() && c.prediction.failure ? c.prediction.failure->message() : "";
+      for (const PredictedHighlight& h : c.prediction.highlights()) coverage += h.coverage / double(c.prediction.highlights().size());
+      const std::string reason = c.prediction.highlights().empty() && c.prediction.failure() ? c.prediction.failure()->message() : "";
       out += formatted("%-12s %6d %-16s %-10s %10zu %9.3f  ", name.c_str(), c.frame, inspection.scene->frames[c.frame].id.c_str(),
-                       c.light.c_str(), c.prediction.highlights.size(), coverage) +
+                       c.light.c_str(), c.prediction.highlights().size(), coverage) +
              reason + "\n";
     }
   return out;
@@ -108,11 +108,11 @@ Command predictCommand() {
     for (const auto& [name, model] : result.models)
       for (const FrameComparison& f : model.frames) {
         if (std::find(frames.begin(), frames.end(), f.frame) == frames.end()) continue;
-        if (!f.prediction.highlights.empty()) {
+        if (!f.prediction.highlights().empty()) {
           warnOfUnusedTrainingFrames(result, context);
           return kDone;
         }
-        if (reason.empty() && f.prediction.failure) reason = name + ": " + f.prediction.failure->message();
+        if (reason.empty() && f.prediction.failure()) reason = name + ": " + f.prediction.failure()->message();
       }
     requireUsableViews(result);
     throw CannotAnswer{{Reason::NotReached, "no highlight was predicted; " + reason}};

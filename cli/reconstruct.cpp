@@ -15,7 +15,7 @@ std::string vectorText(const Eigen::Vector3d& v) { return formatted("%.6g %.6g %
 
 std::string fitText(const ModelResult::Fit& entry, const std::string& model) {
   std::string out = model + ", light " + entry.light + (entry.surface ? ", surface " + *entry.surface : "") + ": ";
-  if (entry.failure) return out + entry.failure->message() + "\n";
+  if (entry.failure()) return out + entry.failure()->message() + "\n";
   const ModelFit& f = *entry.fit;
   out += std::to_string(f.frames.size()) + " views, " + f.solver + "\n";
   if (f.ellipsoid) {
@@ -86,7 +86,7 @@ Command reconstructCommand() {
       for (const ModelResult::Fit& f : result.models.at(name).fits) {
         text += fitText(f, name);
         any = any || f.fit;
-        if (f.failure && !first) first = Failure{f.failure->reason, name + ", light " + f.light + ": " + f.failure->detail};
+        if (f.failure() && !first) first = Failure{f.failure()->reason, name + ", light " + f.light + ": " + f.failure()->detail};
       }
     if (!any) {
       requireUsableViews(result);

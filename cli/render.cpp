@@ -34,7 +34,7 @@ Image scenePicture(const RenderArguments& a, const PictureInput::Opened& opened,
 /// A picture that could only repeat an error is refused with that error. The scene in 3D is always worth drawing: it shows
 /// why no camera sees the surface.
 void requireContent(const RenderArguments& a, const Inspection& inspection, int frame) {
-  const auto predicted = [&](const FrameComparison& c) { return !c.prediction.highlights.empty(); };
+  const auto predicted = [&](const FrameComparison& c) { return !c.prediction.highlights().empty(); };
   if (a.view == "plots") {
     for (const auto& [name, model] : inspection.models)
       if (std::any_of(model.frames.begin(), model.frames.end(), predicted)) return;

@@ -134,7 +134,7 @@ std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, Hig
       for (const FrameComparison* comparison : in.comparisons(model))
         for (const FrameComparison::Row& row : comparison->rows) {
           if (row.observed != static_cast<int>(wanted) || row.predicted < 0) continue;
-          const auto& canonical = comparison->prediction.highlights[static_cast<std::size_t>(row.predicted)].canonical;
+          const auto& canonical = comparison->prediction.highlights()[static_cast<std::size_t>(row.predicted)].canonical;
           if (canonical) addWalks(*canonical);
         }
   }

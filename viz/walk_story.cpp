@@ -40,10 +40,10 @@ Outcome<Start> backwards(const Inspection& in, const Explanation& e) {
   const PredictedHighlight* predicted = nullptr;
   for (const FrameComparison& comparison : result->second.frames) {
     if (comparison.frame != e.frame || comparison.light != e.light) continue;
-    if (comparison.prediction.failure) return *comparison.prediction.failure;
+    if (comparison.prediction.failure()) return *comparison.prediction.failure();
     for (const FrameComparison::Row& row : comparison.rows)
       if (row.predicted >= 0 && (!predicted || row.observed == e.highlight))
-        predicted = &comparison.prediction.highlights[static_cast<std::size_t>(row.predicted)];
+        predicted = &comparison.prediction.highlights()[static_cast<std::size_t>(row.predicted)];
   }
   if (!predicted || !predicted->canonical) return none;
   const ModelFit* fit = nullptr;

@@ -14,6 +14,19 @@ struct ParameterUncertainty {
   double degreesOfFreedom = 0;  ///< of that estimate
 };
 
+/// Neighbouring parameters with a name: which rows of a root, or entries of a change, are theirs.
+struct ParameterBlock {
+  int first = 0, size = 0;
+  template <class Matrix>
+  auto of(Matrix& m) const {
+    return m.middleRows(first, size);
+  }
+  template <class Matrix>
+  bool isIn(const Matrix& m) const {
+    return m.rows() >= first + size;
+  }
+};
+
 /// Of a vector brought to length 1 and of further parameters, from that of the vector y as it was: d(y / |y|) = (I - u u^T) dy / |y|, u = y / |y|.
 /// @param y  not zero. @param dy  4 x k and @param others  rows x k: columns of the root as in ParameterUncertainty.
 /// @return root of 4 + rows parameters; nothing where it is not finite.

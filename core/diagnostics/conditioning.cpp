@@ -94,7 +94,7 @@ class Findings {
   }
 
   Conditioning all() {
-    if (fit_.failure) add("fit", "fit", std::nan(""), "failed", Verdict::Red, "No fit: " + fit_.failure->message() + ".");
+    if (fit_.failure()) add("fit", "fit", std::nan(""), "failed", Verdict::Red, "No fit: " + fit_.failure()->message() + ".");
     addPeaks();
     if (model_.hasOutlines()) addLinearSystem();
     addAngle();
@@ -393,9 +393,9 @@ std::string residualMeaning(const ModelFit& fit) {
 }
 
 std::optional<Eigen::Vector3d> semiAxesSigma(const ModelFit& fit) {
-  if (!fit.ellipsoid || !fit.uncertainty || fit.uncertainty->root.rows() < 9 || fit.uncertainty->root.cols() == 0)
+  if (!fit.ellipsoid || !fit.uncertainty || !parameters::kShape.isIn(fit.uncertainty->root) || fit.uncertainty->root.cols() == 0)
     return std::nullopt;
-  const Eigen::MatrixXd shape = fit.uncertainty->root.middleRows(3, 6);  // xx yy zz xy xz yz
+  const Eigen::MatrixXd shape = parameters::kShape.of(fit.uncertainty->root);
   Eigen::Vector3d sigma;
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d v = fit.ellipsoid->worldFromBody().linear().col(i);

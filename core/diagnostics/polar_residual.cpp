@@ -93,10 +93,10 @@ std::vector<PolarResidual> polarResiduals(const Inspection& inspection, int fram
   for (const FrameComparison* c : comparisonsOf(inspection, frame, model))
     for (const FrameComparison::Row& row : c->rows) {
       if (row.observed < 0 || row.predicted < 0 || row.observed >= int(evidence->scored().size()) ||
-          row.predicted >= int(c->prediction.highlights.size()))
+          row.predicted >= int(c->prediction.highlights().size()))
         continue;
       const Highlight& observed = evidence->scored()[std::size_t(row.observed)];
-      const PredictedHighlight& predicted = c->prediction.highlights[std::size_t(row.predicted)];
+      const PredictedHighlight& predicted = c->prediction.highlights()[std::size_t(row.predicted)];
       PolarResidual r;
       r.model = model;
       r.light = c->light;
@@ -163,8 +163,8 @@ std::vector<AngleByDirection> limitAngles(const Inspection& inspection, int fram
     const PredictedHighlight* predicted = nullptr;
     for (const FrameComparison* c : comparisons) {
       for (const FrameComparison::Row& row : c->rows)
-        if (row.observed == o && row.predicted >= 0 && row.predicted < int(c->prediction.highlights.size()))
-          predicted = &c->prediction.highlights[std::size_t(row.predicted)];
+        if (row.observed == o && row.predicted >= 0 && row.predicted < int(c->prediction.highlights().size()))
+          predicted = &c->prediction.highlights()[std::size_t(row.predicted)];
       const auto& fits = inspection.models.at(model).fits;
       if (c->light == h.light && c->fit >= 0 && c->fit < int(fits.size()) && fits[std::size_t(c->fit)].fit) {
         a.limitAngle = fits[std::size_t(c->fit)].fit->limitAngle;

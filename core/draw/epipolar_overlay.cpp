@@ -26,8 +26,8 @@ const Plane* predictedPlane(const Inspection& inspection, int frame, int highlig
   for (const std::string& model : modelsInOrder(inspection)) {
     for (const FrameComparison& comparison : inspection.models.at(model).frames) {
       if (comparison.frame != frame) continue;
-      for (std::size_t i = 0; i < comparison.prediction.highlights.size(); ++i) {
-        const PredictedHighlight& h = comparison.prediction.highlights[i];
+      for (std::size_t i = 0; i < comparison.prediction.highlights().size(); ++i) {
+        const PredictedHighlight& h = comparison.prediction.highlights()[i];
         if (h.tangentPlane && observedOf(comparison, static_cast<int>(i)) == highlight) return &*h.tangentPlane;
       }
     }

@@ -77,7 +77,7 @@ void addResidualArrows(const Inspection& inspection, const FrameComparison& comp
   if (!origin) return;
   const Polyline& contour =
       inspection.evidence[static_cast<std::size_t>(comparison.frame)].scored()[static_cast<std::size_t>(observed)].contour;
-  const PredictedHighlight& prediction = comparison.prediction.highlights[static_cast<std::size_t>(predicted)];
+  const PredictedHighlight& prediction = comparison.prediction.highlights()[static_cast<std::size_t>(predicted)];
   for (int i = 0; i < kArrows; ++i) {
     const double direction = 2 * kPi * i / kArrows;
     const std::optional<double> from = reach(contour, *origin, direction);
@@ -112,7 +112,7 @@ void addLimitDirections(const Inspection& inspection, int frame, const std::func
     if (result == inspection.models.end() || !drawn(model)) return false;
     for (const FrameComparison& comparison : result->second.frames) {
       if (comparison.frame != frame) continue;
-      for (const PredictedHighlight& h : comparison.prediction.highlights) {
+      for (const PredictedHighlight& h : comparison.prediction.highlights()) {
         if (!h.canonical || !h.brightest.pixel.allFinite()) continue;
         style.model = model;
         style.light = comparison.light;
@@ -158,9 +158,9 @@ void addSelectedPoint(const Inspection& inspection, const Selection& selection, 
     if (!drawn(model)) continue;
     for (const FrameComparison& comparison : inspection.models.at(model).frames) {
       if (comparison.frame != selection.frame) continue;
-      for (std::size_t i = 0; i < comparison.prediction.highlights.size(); ++i) {
+      for (std::size_t i = 0; i < comparison.prediction.highlights().size(); ++i) {
         if (observedOf(comparison, static_cast<int>(i)) != highlight) continue;
-        const std::optional<Pixel> at = onPrediction(comparison.prediction.highlights[i], *origin, *selection.direction);
+        const std::optional<Pixel> at = onPrediction(comparison.prediction.highlights()[i], *origin, *selection.direction);
         if (at) add(*at, modelColour(model), model, model == selection.model ? 6 : 4.5);
       }
     }

@@ -226,8 +226,8 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
       if (comparison.frame != frame) continue;
       answered = true;
       if (!drawn(model)) continue;
-      for (std::size_t i = 0; i < comparison.prediction.highlights.size(); ++i) {
-        const PredictedHighlight& h = comparison.prediction.highlights[i];
+      for (std::size_t i = 0; i < comparison.prediction.highlights().size(); ++i) {
+        const PredictedHighlight& h = comparison.prediction.highlights()[i];
         OverlayLine line;
         line.model = model;
         line.light = comparison.light;
@@ -290,7 +290,7 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
     if (!answered) {
       std::string reason = "no prediction for this frame";
       for (const ModelResult::Fit& fit : result.fits) {
-        if (fit.failure) reason = fit.failure->message();
+        if (fit.failure()) reason = fit.failure()->message();
       }
       FrameScore none;
       none.reason = reason;

@@ -134,7 +134,7 @@ PlotData influencePlot(const Inspection& inspection, const Influence& influence,
     series.shape = PlotShape::Bars;
     series.barWidth = width * 0.9;
     for (const ModelResult::Fit& fit : inspection.models.at(models[m]).fits)
-      if (fit.failure && why.empty()) why = models[m] + " has no fit: " + fit.failure->message();
+      if (fit.failure() && why.empty()) why = models[m] + " has no fit: " + fit.failure()->message();
     for (std::size_t i = 0; i < influence.frames.size(); ++i) {
       const FrameInfluence& f = influence.frames[i];
       const std::optional<double> value = influenceOf(influence, f.frame, models[m]);

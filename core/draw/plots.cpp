@@ -206,8 +206,8 @@ PlotData semiAxesPlot(const Inspection& inspection) {
     for (const ModelResult::Fit& f : inspection.models.at(model).fits) {
       if (f.fit && f.fit->ellipsoid)
         fits.push_back({model, f.light + (f.surface ? " on " + *f.surface : std::string()), &*f.fit});
-      else if (f.failure)
-        refused += (refused.empty() ? "" : "; ") + model + ": " + f.failure->message();
+      else if (f.failure())
+        refused += (refused.empty() ? "" : "; ") + model + ": " + f.failure()->message();
     }
   if (fits.empty())
     return nothing(plot, inspection.models.empty()

@@ -360,7 +360,7 @@ void ellipsoidStep(const Case& c, ExplainStep& step) {
     return;
   }
   if (!c.fit->fit) {
-    step.failure = c.fit->failure;
+    step.failure = c.fit->fit.failure();
     return;
   }
   const ModelFit& f = *c.fit->fit;
@@ -403,7 +403,7 @@ void projectionStep(const Case& c, ExplainStep& step) {
   }
   const PredictedHighlight* p = c.predicted();
   if (!p) {
-    step.failure = c.comparison->prediction.failure ? *c.comparison->prediction.failure
+    step.failure = c.comparison->prediction.failure() ? *c.comparison->prediction.failure()
                                                     : Failure{Reason::NoBrightestPoint, "this highlight is not predicted"};
     return;
   }

@@ -51,7 +51,7 @@ const PredictedHighlight* Case::predicted() const {
   if (index < 0)
     for (const FrameComparison::Row& other : comparison->rows)
       if (other.observed < 0 && other.predicted >= 0) index = other.predicted;
-  return index >= 0 ? &comparison->prediction.highlights[std::size_t(index)] : nullptr;
+  return index >= 0 ? &comparison->prediction.highlights()[std::size_t(index)] : nullptr;
 }
 
 bool Case::sharesModel(int frame) const {

@@ -58,7 +58,7 @@ double meanSquare(const HighlightModel& model, const ModelFit& fit, const FitInp
     const Prediction p = model.predict(fit, v.camera, v.surface.get(), settings);
     const std::vector<Pixel> points = resample(v.highlight.contour, settings.integer("light.bundle_points"));
     double best = std::numeric_limits<double>::infinity();
-    for (const PredictedHighlight& h : p.highlights) {
+    for (const PredictedHighlight& h : p.highlights()) {
       double squares = 0;
       for (const Pixel& at : points) squares += std::pow(distance(h.contour, at), 2);
       best = std::min(best, squares);

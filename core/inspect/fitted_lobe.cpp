@@ -54,7 +54,7 @@ Outcome<FittedLobe> fittedLobe(const Inspection& in, int frame) {
     if (const std::optional<Lobe> lobe = lobeOf(*reflectance->fit->lobe))
       return FittedLobe{*lobe, *reflectance->fit->roughness, "reflectance, light " + reflectance->light};
   if (const std::optional<FittedLobe> lobe = lobeOfLimitAngle(in, frame)) return *lobe;
-  if (reflectance && reflectance->failure) return *reflectance->failure;
+  if (reflectance && reflectance->failure()) return *reflectance->failure();
   return Failure{Reason::NotSupported, "no computed model gives the lobe (reflectance does, or a model that needs the light)"};
 }
 

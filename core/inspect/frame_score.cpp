@@ -29,22 +29,22 @@ namespace {
 class ScoreSum {
  public:
   void add(const FrameComparison& comparison) {
-    note(comparison.prediction.failure);
-    if (!comparison.prediction.highlights.empty()) {
+    note(comparison.prediction.failure());
+    if (!comparison.prediction.highlights().empty()) {
       ++predictedLights_;
       iou_ += comparison.iou;
     }
     for (const FrameComparison::Row& row : comparison.rows) {
       if (row.observed < 0) {
         if (row.predicted >= 0) ++score_.spurious;  // else nothing could be compared
-      } else if (row.predicted < 0) {
+      } else if (row.predicted < 0 || !row.metrics) {  // what could not be compared must not make the frame look good either
         ++score_.missed;
-      } else if (row.metrics && std::isfinite(row.metrics->contourErrorPct)) {
+      } else if (std::isfinite(row.metrics->contourErrorPct)) {
         ++score_.matched;
         pct_ += row.metrics->contourErrorPct;
         px_ += row.metrics->contourErrorPx;
       }
-      note(row.failure);
+      if (row.failure) note(&*row.failure);
     }
   }
   FrameScore score() const {
@@ -60,7 +60,7 @@ class ScoreSum {
   }
 
  private:
-  void note(const std::optional<Failure>& failure) {
+  void note(const Failure* failure) {
     if (failure && reason_.empty()) reason_ = failure->message();
   }
   FrameScore score_;
@@ -79,6 +79,12 @@ std::string missedText(const FrameScore& score) {
   if (score.matched == 0) return all == 1 ? "missed the highlight" : "missed all " + std::to_string(all) + " highlights";
   return "missed " + std::to_string(score.missed) + " of " + std::to_string(all) + " highlights, the other" +
          (score.matched > 1 ? "s: mean " : ": ") + errorText(*score.errorPct) + " %";
+}
+
+FrameScore scoreOf(const FrameComparison& comparison) {
+  ScoreSum sum;
+  sum.add(comparison);
+  return sum.score();
 }
 
 FrameScore frameScore(const ModelResult& result, int frame) {

@@ -93,10 +93,10 @@ class Run {
     return s ? *s : nullptr;
   }
   /// A step that missed the surface gets the reason why there is none: the file that cannot be read.
-  void explainMissingSurface(int frame, std::optional<Failure>& failure) const {
-    if (!failure || failure->reason != Reason::NoSurface) return;
+  Failure explained(int frame, const Failure& failure) const {
+    if (failure.reason != Reason::NoSurface) return failure;
     const Outcome<std::shared_ptr<const Surface>> s = r_.surfaces->surfaceOf(frame, meshPolicy(r_.request.settings));
-    if (!s) failure = s.failure();
+    return s ? failure : s.failure();
   }
   std::vector<Group> groups() const;
   /// Some frame, whether it trains or not, shows a highlight of this light.
@@ -276,7 +276,7 @@ void Run::brightestPointsAndTangentPlanes() {
       evidence.highlights[h] = withNoise(evidence.highlights[h], q.noisePx, q.seed, frame, evidence.asFound(static_cast<int>(h)));
     for (int h = 0; h < static_cast<int>(evidence.highlights.size()); ++h) {
       r_.views.push_back(trainingView(evidence, h, r_.scene->frames[frame].camera, surfaceOf(frame)));
-      explainMissingSurface(frame, r_.views.back().failure);
+      if (std::optional<Failure>& why = r_.views.back().failure) why = explained(frame, *why);
     }
   }
   r_.work.trainingViews = static_cast<int>(r_.views.size());
@@ -417,10 +417,8 @@ void Run::modelFits() {
         if (const auto found = r_.corrections.find(g.key); found != r_.corrections.end() && found->second.normals && model.needsLight())
           fit->remarks.push_back(found->second.normals->remark());
         fit->timeUs = microsecondsSince(start);
-        entry.fit = std::move(*fit);
-      } else {
-        entry.failure = fit.failure();
       }
+      entry.fit = std::move(fit);
       result.fits.push_back(std::move(entry));
     }
   }
@@ -492,10 +490,10 @@ void Run::predictionsAndComparisons() {
             prediction.timeUs = microsecondsSince(start);
             dropTooSmall(prediction);
             if (const std::shared_ptr<const Band>& band = bands[static_cast<std::size_t>(f)])  // not part of the time: no model needs it
-              for (PredictedHighlight& h : prediction.highlights) h.sigmaPx = band->sigmaPx(h, camera, surface.get());
-            explainMissingSurface(frame, prediction.failure);
+              for (PredictedHighlight& h : prediction.editable()) h.sigmaPx = band->sigmaPx(h, camera, surface.get());
+            if (const Failure* why = prediction.failure()) prediction = explained(frame, *why);
           } else {
-            prediction.failure = fit.failure;
+            prediction = fit.fit.failure();
           }
           result.frames[t] = compareFrame(r_.evidence[frame], fit.light, camera, std::move(prediction));
           result.frames[t].fit = f;

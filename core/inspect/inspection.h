@@ -50,9 +50,9 @@ struct ModelResult {
   struct Fit {
     std::string light;
     std::optional<std::string> surface;
-    std::optional<ModelFit> fit;         ///< exactly one of fit and failure
-    std::optional<Failure> failure;
+    Outcome<ModelFit> fit = Failure{Reason::TooFewViews, "not fitted"};
     std::vector<std::string> bandRemarks;  ///< predict.band: what its band holds, and what makes it wide
+    const Failure* failure() const { return fit ? nullptr : &fit.failure(); }
     FitKey key() const { return {light, surface}; }
   };
   std::vector<Fit> fits;

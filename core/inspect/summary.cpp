@@ -10,7 +10,7 @@ ModelSummary summarise(const Inspection& inspection, const ModelResult& result) 
   std::vector<double> pct, px, ellipse, hausdorff, peak, coverage, iou, time;
   for (const FrameComparison& c : result.frames) {
     if (!inspection.isHeldOut(c.frame)) continue;
-    const bool predicted = !c.prediction.highlights.empty();
+    const bool predicted = !c.prediction.highlights().empty();
     bool observed = false, unreadable = false;
     for (const FrameComparison::Row& row : c.rows) {
       if (row.observed >= 0) observed = true;
@@ -24,7 +24,7 @@ ModelSummary summarise(const Inspection& inspection, const ModelResult& result) 
       ellipse.push_back(row.metrics->ellipseErrorPct);
       hausdorff.push_back(row.metrics->hausdorffPx);
       peak.push_back(row.metrics->peakOffsetPx);
-      coverage.push_back(c.prediction.highlights[row.predicted].coverage);
+      coverage.push_back(c.prediction.highlights()[row.predicted].coverage);
     }
     if (!observed && !unreadable) continue;  // nothing was there to predict; what was predicted is spurious
     ++s.frames;
@@ -45,13 +45,13 @@ ModelSummary summarise(const Inspection& inspection, const ModelResult& result) 
   s.timeP99Us = quantileOf(time, 0.99);
   if (!s.answered) {
     for (const ModelResult::Fit& f : result.fits)
-      if (f.failure) {
-        s.reason = f.failure->message();
+      if (f.failure()) {
+        s.reason = f.failure()->message();
         return s;
       }
     for (const FrameComparison& c : result.frames)
-      if (inspection.isHeldOut(c.frame) && c.prediction.failure) {
-        s.reason = c.prediction.failure->message();
+      if (inspection.isHeldOut(c.frame) && c.prediction.failure()) {
+        s.reason = c.prediction.failure()->message();
         return s;
       }
     int heldOut = 0, unreadable = 0;

@@ -27,9 +27,9 @@ std::vector<double> arcOf(const Polyline& line) {
 
 const PredictedHighlight* nearest(const Prediction& p, const Pixel& to) {
   const auto distance = [&](const PredictedHighlight& h) { return (centroid(h.contour) - to).norm(); };
-  const auto best = std::min_element(p.highlights.begin(), p.highlights.end(),
+  const auto best = std::min_element(p.highlights().begin(), p.highlights().end(),
                                      [&](const PredictedHighlight& a, const PredictedHighlight& b) { return distance(a) < distance(b); });
-  return best == p.highlights.end() ? nullptr : &*best;
+  return best == p.highlights().end() ? nullptr : &*best;
 }
 
 /// A measured contour against the predicted one: every point's distance from its foot, and the shifts there.

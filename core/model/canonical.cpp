@@ -64,42 +64,39 @@ class Canonical final : public HighlightModel {
     fit.hints = hintsOf(input);
     if (fit.uncertainty && input.light->uncertainty) {
       // The light moves the prediction on its own as well. Taken as independent: the contours' noise enters both, through different residuals.
-      const Eigen::MatrixXd ellipsoid = fit.uncertainty->root, lamp = input.light->uncertainty->root.topRows(4);
+      const Eigen::MatrixXd ellipsoid = fit.uncertainty->root, lamp = parameters::kLight.of(input.light->uncertainty->root);
       Eigen::MatrixXd& root = fit.uncertainty->root;
-      root = Eigen::MatrixXd::Zero(13, ellipsoid.cols() + lamp.cols());
-      root.topLeftCorner(9, ellipsoid.cols()) = ellipsoid;
-      root.bottomRightCorner(4, lamp.cols()) = lamp;
+      root = Eigen::MatrixXd::Zero(ellipsoid.rows() + lamp.rows(), ellipsoid.cols() + lamp.cols());
+      root.topLeftCorner(ellipsoid.rows(), ellipsoid.cols()) = ellipsoid;
+      parameters::kLampOfEllipsoid.of(root).rightCols(lamp.cols()) = lamp;
     }
     return explaining(std::move(fit), used, false, settings.number("fit.most_residual"));
   }
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {
-    Prediction p;
-    const auto fail = [&](Failure f) {
-      p.failure = std::move(f);
-      return p;
-    };
-    if (!surface) return fail({Reason::NoSurface, ""});
-    if (!fit.ellipsoid) return fail({Reason::NotAnEllipsoid, fit.quadric ? describe(*fit.quadric) : ""});
+    if (!surface) return Failure{Reason::NoSurface, ""};
+    if (!fit.ellipsoid) return Failure{Reason::NotAnEllipsoid, fit.quadric ? describe(*fit.quadric) : ""};
     const Light light = fit.lightEstimate ? *fit.lightEstimate : Light::at(fit.ellipsoid->centre());
     const auto brightest = brightestPointsFor(*surface, camera, light, settings, fit.hints);
-    if (!brightest) return fail(brightest.failure());
+    if (!brightest) return brightest.failure();
     const bool localQuadric = settings.text("predict.query") == "local-quadric";
     WalkOptions walkOptions;
     walkOptions.toleranceRad = settings.number("predict.walk_tolerance");
     if (localQuadric) walkOptions.toleranceRad = std::max(walkOptions.toleranceRad, kPatchToleranceRad);
+    std::vector<PredictedHighlight> found;
+    std::optional<Failure> why;
     for (const BrightestPoint& b : *brightest) {
       std::optional<LocalQuadric> patch;
       if (localQuadric) {
         Outcome<LocalQuadric> q = LocalQuadric::of(*surface, b.point);
-        if (!q) return fail(q.failure());
+        if (!q) return q.failure();
         patch = std::move(*q);
       }
       const Surface& walked = patch ? static_cast<const Surface&>(*patch) : *surface;
       const TangentWalk walk(walked, camera, b, light, walkOptions);
       const Outcome<Ellipse> e = outlineEllipse(*fit.ellipsoid, virtualCamera(camera, walk.tangentPlane()));
       if (!e) {
-        p.failure = e.failure();
+        why = e.failure();
         continue;
       }
       PredictedHighlight h;
@@ -114,16 +111,15 @@ class Canonical final : public HighlightModel {
         // Too little to close a contour; the first named reason tells why.
         for (const DirectionResult& d : h.canonical->directions)
           if (d.failure) {
-            p.failure = d.failure;
+            why = d.failure;
             break;
           }
         continue;
       }
-      p.highlights.push_back(std::move(h));
+      found.push_back(std::move(h));
     }
-    dropEnclosed(p.highlights);
-    if (!p.highlights.empty()) p.failure.reset();
-    return p;
+    dropEnclosed(found);
+    return {std::move(found), std::move(why)};
   }
 
   Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera, const Surface* surface,

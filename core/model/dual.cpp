@@ -49,35 +49,26 @@ class Dual final : public HighlightModel {
   }
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {
-    Prediction p;
-    if (!surface) {
-      p.failure = Failure{Reason::NoSurface, ""};
-      return p;
-    }
-    if (!fit.ellipsoid) {
-      p.failure = Failure{Reason::NotAnEllipsoid, fit.quadric ? describe(*fit.quadric) : ""};
-      return p;
-    }
+    if (!surface) return Failure{Reason::NoSurface, ""};
+    if (!fit.ellipsoid) return Failure{Reason::NotAnEllipsoid, fit.quadric ? describe(*fit.quadric) : ""};
     // The model stores no light: its brightest point is that of a light at the ellipsoid's centre.
     const auto brightest = brightestPointsFor(*surface, camera, Light::at(fit.ellipsoid->centre()), settings, fit.hints);
-    if (!brightest) {
-      p.failure = brightest.failure();
-      return p;
-    }
+    if (!brightest) return brightest.failure();
+    std::vector<PredictedHighlight> found;
+    std::optional<Failure> why;
     for (const BrightestPoint& b : *brightest) {
       const Plane plane = Plane::through(b.point.position, b.point.normal);
       const Outcome<Ellipse> e = outlineEllipse(*fit.ellipsoid, virtualCamera(camera, plane));
       if (!e) {
-        p.failure = e.failure();
+        why = e.failure();
         continue;
       }
       PredictedHighlight h = highlightFromEllipse(*e, b);
       h.tangentPlane = plane;
-      p.highlights.push_back(std::move(h));
+      found.push_back(std::move(h));
     }
-    dropEnclosed(p.highlights);
-    if (!p.highlights.empty()) p.failure.reset();
-    return p;
+    dropEnclosed(found);
+    return {std::move(found), std::move(why)};
   }
 
   Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera, const Surface* surface,

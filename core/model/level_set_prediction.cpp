@@ -73,7 +73,7 @@ Prediction predictLevelSet(const SurfaceField& field, const Camera& camera, cons
     options.marginPx = kMarginFraction * std::max(camera.width, camera.height);
     components = traceLevelSets(exact, batch, field.level, camera.width, camera.height, options);
   }
-  Prediction prediction;
+  std::vector<PredictedHighlight> found;
   for (const LevelSetComponent& c : components) {
     PredictedHighlight h;
     h.contour = c.outline;
@@ -92,17 +92,15 @@ Prediction predictLevelSet(const SurfaceField& field, const Camera& camera, cons
       h.brightest.alpha = c.minimum;
     }
     h.tangentPlane = Plane::through(h.brightest.point.position, h.brightest.point.normal);
-    prediction.highlights.push_back(std::move(h));
+    found.push_back(std::move(h));
   }
-  if (prediction.highlights.empty()) {
-    const bool outside = !field.peaks.empty() && std::all_of(field.peaks.begin(), field.peaks.end(), [&](const FieldPeak& p) {
-      const Pixel& q = p.point.pixel;
-      return q.x() < -0.5 || q.y() < -0.5 || q.x() > camera.width - 0.5 || q.y() > camera.height - 0.5;
-    });
-    prediction.failure = outside ? Failure{Reason::OutsideImage, "the whole highlight lies outside the image"}
-                                 : Failure{Reason::NotReached, "no level set in the image"};
-  }
-  return prediction;
+  if (!found.empty()) return found;
+  const bool outside = !field.peaks.empty() && std::all_of(field.peaks.begin(), field.peaks.end(), [&](const FieldPeak& p) {
+    const Pixel& q = p.point.pixel;
+    return q.x() < -0.5 || q.y() < -0.5 || q.x() > camera.width - 0.5 || q.y() > camera.height - 0.5;
+  });
+  return outside ? Failure{Reason::OutsideImage, "the whole highlight lies outside the image"}
+                 : Failure{Reason::NotReached, "no level set in the image"};
 }
 
 }  // namespace glint

@@ -107,15 +107,15 @@ class LimitAngle final : public HighlightModel {
       if (fit.extent) {
         // (value - limit) with every parameter moved along one column; small against a standard deviation.
         const auto moved = [&](const Eigen::VectorXd& by) -> double {
-          const Eigen::Vector4d other = light.homogeneous() + by.head<4>();
-          Eigen::Matrix3d extent = *fit.extent + symmetric(by.segment<6>(5));
+          const Eigen::Vector4d other = light.homogeneous() + parameters::kLight.of(by);
+          Eigen::Matrix3d extent = *fit.extent + symmetric(parameters::kExtent.of(by));
           // A light at infinity keeps its angular extent where the step brings it nearer: beyond infinity is the other side of it.
           if (light.atInfinity() && other.w() != 0) extent *= other.head<3>().squaredNorm() / (other.w() * other.w());
           Eigen::Vector3d toLight = (other.head<3>() - other.w() * at.position).normalized();
           if (at.normal.dot(toLight) < 0) toLight = -toLight;
           const Eigen::Vector3d toCamera = (eye - at.position).normalized();
           return incidentAngle(at.normal, toLight, toCamera) -
-                 directedLimit(*fit.limitAngle + by(4), extent, at.position, at.normal, toCamera, other);
+                 directedLimit(*fit.limitAngle + by(parameters::kLimitAngle.first), extent, at.position, at.normal, toCamera, other);
         };
         const double here = directedLimit(*fit.limitAngle, *fit.extent, at.position, at.normal, (eye - at.position).normalized(), light.homogeneous());
         constexpr double kStep = 0.01;
@@ -132,49 +132,38 @@ class LimitAngle final : public HighlightModel {
   }
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {
-    Prediction p;
-    if (!surface || !fit.lightEstimate || !fit.limitAngle) {
-      p.failure = Failure{surface ? Reason::NoLight : Reason::NoSurface, ""};
-      return p;
-    }
+    if (!surface || !fit.lightEstimate || !fit.limitAngle) return Failure{surface ? Reason::NoLight : Reason::NoSurface, ""};
     const Light& light = *fit.lightEstimate;
     const Eigen::Vector3d eye = camera.centreInWorld();
     const auto brightest = brightestPointsFor(*surface, camera, light, settings, fit.hints);
     if (!fit.extent && settings.text("predict.query") == "local-quadric")
       return onLocalQuadrics(*fit.limitAngle, camera, *surface, light, brightest, settings);
     if (!fit.extent && settings.text("predict.contour") == "star" && brightest && brightest->size() == 1)
-      if (std::optional<PredictedHighlight> h = star(*fit.limitAngle, camera, *surface, light, brightest->front(), settings)) {
-        p.highlights.push_back(std::move(*h));
-        return p;
-      }
+      if (std::optional<PredictedHighlight> h = star(*fit.limitAngle, camera, *surface, light, brightest->front(), settings)) 
+        return std::vector{std::move(*h)};
     if (!fit.extent && settings.text("predict.contour") == "star" && brightest && brightest->size() > 1)
-      if (Outcome<std::vector<PredictedHighlight>> several = stars(*fit.limitAngle, camera, *surface, light, *brightest, settings)) {
-        p.highlights = std::move(*several);
-        return p;
-      }
+      if (Outcome<std::vector<PredictedHighlight>> several = stars(*fit.limitAngle, camera, *surface, light, *brightest, settings)) 
+        return std::move(*several);
     SurfaceField field;
     field.value = [&](const SurfacePoint& at) { return directedAlpha(at, eye, light, *fit.limitAngle, fit.extent); };
     field.level = *fit.limitAngle;
     if (brightest)
       for (const BrightestPoint& b : *brightest) field.peaks.push_back({b, b.alpha});
-    p = predictLevelSet(field, camera, *surface, settings);
-    if (p.failure && !brightest) p.failure = brightest.failure();
-    return p;
+    Prediction p = predictLevelSet(field, camera, *surface, settings);
+    return p.failure() && !brightest ? Prediction(brightest.failure()) : p;
   }
 
  private:
   /// One star on the patch of every brightest point; a patch knows nothing of other highlights nor of the surface's border.
   static Prediction onLocalQuadrics(double limit, const Camera& camera, const Surface& surface, const Light& light,
                                     const Outcome<std::vector<BrightestPoint>>& brightest, const Settings& settings) {
-    Prediction p;
-    if (!brightest) {
-      p.failure = brightest.failure();
-      return p;
-    }
+    if (!brightest) return brightest.failure();
+    std::vector<PredictedHighlight> found;
+    std::optional<Failure> why;
     for (const BrightestPoint& b : *brightest) {
       const Outcome<LocalQuadric> patch = LocalQuadric::of(surface, b.point);
       if (!patch) {
-        p.failure = patch.failure();
+        why = patch.failure();
         continue;
       }
       WalkOptions options = walkOptions(settings);
@@ -186,16 +175,15 @@ class LimitAngle final : public HighlightModel {
       const CanonicalContour c = starContour(walk, *patch, camera, limit, settings.integer("predict.directions"));
       outlineOf(c, h);
       if (h.contour.points.size() < 3) {
-        p.failure = firstFailure(c);
+        why = firstFailure(c);
         continue;
       }
       h.curvatureVariation = curvatureVariation(*patch, surface, c);
       if (const Outcome<Ellipse> e = fitEllipse(c.pixels)) h.ellipse = *e;
-      p.highlights.push_back(std::move(h));
+      found.push_back(std::move(h));
     }
-    dropEnclosed(p.highlights);
-    if (!p.highlights.empty()) p.failure.reset();
-    return p;
+    dropEnclosed(found);
+    return {std::move(found), std::move(why)};
   }
 
   /// The level set around the only brightest point by walks on the surface. Nothing when some direction fails: the region is then

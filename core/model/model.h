@@ -3,10 +3,13 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "core/base/settings.h"
@@ -68,7 +71,7 @@ struct LightEstimate {
   /// Second moment of an extended light about `light`, m^2 (rad^2 for a light at infinity): widens the limit angle where the light
   /// is long. None for a limit angle that is one constant.
   std::optional<Eigen::Matrix3d> extent;
-  /// Of (L homogeneous with |L| = 1 (4), limit angle (1), then extent xx yy zz xy xz yz where there is one); bundle only.
+  /// Of parameters::kLight, kLimitAngle and, where there is one, kExtent; bundle only.
   std::optional<ParameterUncertainty> uncertainty;
 };
 
@@ -109,8 +112,7 @@ struct ModelFit {
   std::string solver;                       ///< "linear", "anchored", "refined", "bundle", ...
   std::vector<int> frames;                  ///< frames used
   std::vector<SurfacePoint> hints;          ///< brightest points of the views used, normals as observed; none where a frame showed several
-  /// limit-angle: as LightEstimate. primal, dual: of (centre (3), shape S xx yy zz xy xz yz (6)). canonical: those, then L
-  /// homogeneous (4). Other models say theirs.
+  /// Of the blocks in `parameters`, family by family; other models say theirs.
   std::optional<ParameterUncertainty> uncertainty;
   std::vector<std::string> remarks;         ///< warnings in words, for the user: what makes the answer doubtful
   double timeUs = 0;
@@ -131,12 +133,34 @@ struct PredictedHighlight {
   std::vector<double> sigmaPx;
 };
 
-/// Prediction of one light in one view: zero or more highlights, or the reason for none.
-struct Prediction {
-  std::vector<PredictedHighlight> highlights;
-  std::optional<Failure> failure;           ///< set when `highlights` is empty
+/// Prediction of one light in one view: highlights, at least one, or the reason why there is none.
+class Prediction {
+ public:
+  Prediction() : answer_(Failure{Reason::NotReached, "nothing was predicted"}) {}
+  Prediction(Failure reason) : answer_(std::move(reason)) {}
+  /// @param why  the answer where `found` is empty
+  Prediction(std::vector<PredictedHighlight> found, std::optional<Failure> why = std::nullopt);
+  const std::vector<PredictedHighlight>& highlights() const;          ///< none where there is a failure
+  std::span<PredictedHighlight> editable();                           ///< the same, to add to them
+  const Failure* failure() const { return std::get_if<Failure>(&answer_); }  ///< null where there are highlights
+  /// Drops the highlights for which there is a reason; where none is left, the first reason is the answer.
+  void drop(const std::function<std::optional<Failure>(const PredictedHighlight&)>& reasonFor);
+
   double timeUs = 0;
+
+ private:
+  std::variant<std::vector<PredictedHighlight>, Failure> answer_;
 };
+
+/// The parameters of ModelFit::uncertainty and LightEstimate::uncertainty, by family.
+namespace parameters {
+// The light and limit-angle: L homogeneous with |L| = 1; rad; xx yy zz xy xz yz where there is an extent.
+inline constexpr ParameterBlock kLight{0, 4}, kLimitAngle{4, 1}, kExtent{5, 6};
+// primal, dual, canonical: centre; S, xx yy zz xy xz yz; of canonical, whose light moves its predictions, L too.
+inline constexpr ParameterBlock kCentre{0, 3}, kShape{3, 6}, kLampOfEllipsoid{9, 4};
+// reflectance: after L the logarithm of the roughness, then of lamps with a size radius^2 or half the axis.
+inline constexpr ParameterBlock kLogRoughness{4, 1}, kRadiusSquared{5, 1}, kHalfAxis{5, 3};
+}  // namespace parameters
 
 /// What others must know of a model to show, check and compare it.
 struct ModelTraits {

@@ -43,13 +43,7 @@ std::optional<Failure> tooSmall(const Polyline& contour) {
 }
 
 void dropTooSmall(Prediction& prediction) {
-  std::optional<Failure> reason;
-  std::erase_if(prediction.highlights, [&](const PredictedHighlight& h) {
-    std::optional<Failure> small = tooSmall(h.contour);
-    if (small && !reason) reason = small;
-    return small.has_value();
-  });
-  if (prediction.highlights.empty() && reason) prediction.failure = std::move(reason);
+  prediction.drop([](const PredictedHighlight& h) { return tooSmall(h.contour); });
 }
 
 std::optional<Failure> lightBehind(const std::vector<TrainingView>& views, const Light& light) {

@@ -46,22 +46,14 @@ class Primal final : public HighlightModel {
   }
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface*, const Settings&) const override {
-    Prediction p;
-    if (!fit.ellipsoid) {
-      p.failure = Failure{Reason::NotAnEllipsoid, fit.quadric ? describe(*fit.quadric) : ""};
-      return p;
-    }
+    if (!fit.ellipsoid) return Failure{Reason::NotAnEllipsoid, fit.quadric ? describe(*fit.quadric) : ""};
     const Outcome<Ellipse> e = outlineEllipse(*fit.ellipsoid, camera.projection());
-    if (!e) {
-      p.failure = e.failure();
-      return p;
-    }
+    if (!e) return e.failure();
     BrightestPoint brightest;
     brightest.pixel = e->centre;
     brightest.point.position = fit.ellipsoid->centre();
     brightest.point.normal = (camera.centreInWorld() - brightest.point.position).normalized();
-    p.highlights.push_back(highlightFromEllipse(*e, brightest));
-    return p;
+    return std::vector{highlightFromEllipse(*e, brightest)};
   }
 
   Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera, const Surface* surface,

@@ -190,11 +190,12 @@ class Reflectance final : public HighlightModel {
     // order.
     const auto moved = [&](const SurfacePoint& at, const Eigen::VectorXd& by) -> double {
       lobe::LampIn<double> other = lobe::inWorld(lamp);
-      other.light += by.head<4>();
-      if (other.shape == lobe::LampShape::Sphere && by.size() == 6) other.radiusSquared = std::max(0.0, other.radiusSquared + by(5));
-      if (other.shape == lobe::LampShape::Segment && by.size() == 8) other.halfAxis += by.tail<3>();
+      other.light += parameters::kLight.of(by);
+      if (other.shape == lobe::LampShape::Sphere && parameters::kRadiusSquared.isIn(by))
+        other.radiusSquared = std::max(0.0, other.radiusSquared + by(parameters::kRadiusSquared.first));
+      if (other.shape == lobe::LampShape::Segment && parameters::kHalfAxis.isIn(by)) other.halfAxis += parameters::kHalfAxis.of(by);
       const auto log = [&](const SurfacePoint& p) {
-        return lobe::logOfLamp<double>(*lobeOf(*fit.lobe), *fit.roughness * std::exp(by(4)), p.position, p.normal,
+        return lobe::logOfLamp<double>(*lobeOf(*fit.lobe), *fit.roughness * std::exp(by(parameters::kLogRoughness.first)), p.position, p.normal,
                                        (eye - p.position).normalized(), other, radiance.rule());
       };
       const auto here = log(at), top = log(peaks.front().point);
@@ -211,36 +212,23 @@ class Reflectance final : public HighlightModel {
   }
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {
-    Prediction p;
-    if (!surface || !fit.lightEstimate || !fit.roughness || !fit.lobe || !fit.level) {
-      p.failure = Failure{surface ? Reason::NoLight : Reason::NoSurface, ""};
-      return p;
-    }
+    if (!surface || !fit.lightEstimate || !fit.roughness || !fit.lobe || !fit.level)
+      return Failure{surface ? Reason::NoLight : Reason::NoSurface, ""};
     const Light& light = *fit.lightEstimate;
     const RadianceField radiance(*surface, camera, *lobeOf(*fit.lobe), *fit.roughness, lampOf(fit));
     const auto mirrorPoints = brightestPointsFor(*surface, camera, light, settings);
     if (mirrorPoints && settings.text("predict.contour") == "star")
       if (Outcome<std::vector<PredictedHighlight>> found =
-              radianceStars(radiance, fit, *mirrorPoints, kFaintest, camera, *surface, settings)) {
-        p.highlights = std::move(*found);
-        return p;
-      }
+              radianceStars(radiance, fit, *mirrorPoints, kFaintest, camera, *surface, settings)) 
+        return std::move(*found);
     std::vector<Pixel> starts;
     if (mirrorPoints)
       for (const BrightestPoint& b : *mirrorPoints) starts.push_back(b.pixel);
     const std::vector<RadiancePeak> peaks = radiance.peaks(starts, kScanStepPx);
-    if (peaks.empty()) {
-      p.failure = mirrorPoints ? Failure{Reason::NoBrightestPoint, "nothing in the image is lit"} : mirrorPoints.failure();
-      return p;
-    }
-    if (peaks.front().cut) {
-      p.failure = Failure{Reason::OutsideImage, "the radiance rises beyond the image"};
-      return p;
-    }
-    if (const double fall = radiance.fallOfLobe(peaks.front().point); !(fall < kFaintest)) {
-      p.failure = Failure{Reason::NoBrightestPoint, "no visible point is near the mirror direction of the light"};
-      return p;
-    }
+    if (peaks.empty()) return mirrorPoints ? Failure{Reason::NoBrightestPoint, "nothing in the image is lit"} : mirrorPoints.failure();
+    if (peaks.front().cut) return Failure{Reason::OutsideImage, "the radiance rises beyond the image"};
+    if (const double fall = radiance.fallOfLobe(peaks.front().point); !(fall < kFaintest))
+      return Failure{Reason::NoBrightestPoint, "no visible point is near the mirror direction of the light"};
     SurfaceField field;
     const double contour = peaks.front().logRadiance + std::log(*fit.level);
     field.value = valueOf(radiance, contour);

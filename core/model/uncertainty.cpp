@@ -126,25 +126,25 @@ std::vector<double> polylineSigmaPx(const Polyline& contour, const std::vector<s
 
 Eigen::MatrixXd ellipsoidBandShiftsPx(const HighlightModel& model, const ModelFit& fit, const PredictedHighlight& highlight,
                                       const Camera& camera, const Surface* surface, const Settings& settings) {
-  if (!fit.uncertainty || !fit.ellipsoid || fit.uncertainty->root.rows() < 9) return {};
+  if (!fit.uncertainty || !fit.ellipsoid || !parameters::kShape.isIn(fit.uncertainty->root)) return {};
   const Eigen::MatrixXd& root = fit.uncertainty->root;
   const auto predicted = [&](const Eigen::VectorXd& change) -> std::optional<Polyline> {
-    const Eigen::Matrix<double, 6, 1> d = change.segment<6>(3);
+    const Eigen::Matrix<double, 6, 1> d = parameters::kShape.of(change);
     const Eigen::Matrix3d shape =
         fit.ellipsoid->shape() + Eigen::Matrix3d{{d(0), d(3), d(4)}, {d(3), d(1), d(5)}, {d(4), d(5), d(2)}};
-    const Outcome<Ellipsoid> moved = Ellipsoid::fromCentreAndShape(fit.ellipsoid->centre() + change.head<3>(), semidefinite(shape));
+    const Outcome<Ellipsoid> moved = Ellipsoid::fromCentreAndShape(fit.ellipsoid->centre() + parameters::kCentre.of(change), semidefinite(shape));
     if (!moved) return std::nullopt;
     ModelFit other = fit;
     other.ellipsoid = *moved;
     other.quadric = moved->dual();
-    if (fit.lightEstimate && change.size() >= 13)
-      other.lightEstimate = Light::homogeneous(fit.lightEstimate->homogeneous() + change.segment<4>(9));
+    if (fit.lightEstimate && parameters::kLampOfEllipsoid.isIn(change))
+      other.lightEstimate = Light::homogeneous(fit.lightEstimate->homogeneous() + parameters::kLampOfEllipsoid.of(change));
     const Prediction p = model.predict(other, camera, surface, settings);
     const auto distance = [&](const PredictedHighlight& h) { return (h.brightest.pixel - highlight.brightest.pixel).norm(); };
-    const auto nearest = std::min_element(p.highlights.begin(), p.highlights.end(), [&](const PredictedHighlight& a, const PredictedHighlight& b) {
+    const auto nearest = std::min_element(p.highlights().begin(), p.highlights().end(), [&](const PredictedHighlight& a, const PredictedHighlight& b) {
       return distance(a) < distance(b);
     });
-    if (nearest == p.highlights.end()) return std::nullopt;
+    if (nearest == p.highlights().end()) return std::nullopt;
     return nearest->contour;
   };
   std::vector<std::pair<Polyline, Polyline>> perturbed;

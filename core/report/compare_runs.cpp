@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/base/number_text.h"
+#include "core/inspect/frame_score.h"
 #include "core/inspect/summary.h"
 #include "core/report/setting_text.h"
 
@@ -201,26 +202,12 @@ struct Side {
 };
 
 Side sideOf(const FrameComparison& c) {
-  Side side;
-  double sum = 0;
-  int n = 0, missed = 0;
-  for (const FrameComparison::Row& row : c.rows) {
-    missed += row.observed >= 0 && row.predicted < 0;
-    if (row.metrics && std::isfinite(row.metrics->contourErrorPct)) {
-      sum += row.metrics->contourErrorPct;
-      ++n;
-    } else if (row.failure && side.reason.empty()) {
-      side.reason = row.failure->message();
-    }
-  }
-  // The mean of the others would make a frame with a missed highlight look good.
-  if (n > 0 && missed > 0)
-    side.reason = "missed " + std::to_string(missed) + " of " + std::to_string(missed + n) + " highlights";
-  else if (n > 0)
-    return {sum / n, ""};
-  if (side.reason.empty() && c.prediction.failure) side.reason = c.prediction.failure->message();
-  if (side.reason.empty()) side.reason = c.prediction.highlights.empty() ? "nothing predicted" : "nothing observed";
-  return side;
+  const FrameScore score = scoreOf(c);
+  if (const std::optional<double> pct = wholeErrorPct(score)) return {pct, ""};
+  if (score.matched > 0)
+    return {{}, "missed " + std::to_string(score.missed) + " of " + std::to_string(score.missed + score.matched) + " highlights"};
+  if (!score.reason.empty()) return {{}, score.reason};
+  return {{}, c.prediction.failure() ? "nothing predicted" : "nothing observed"};
 }
 
 std::string roleOf(const Inspection& run, int frame) {

@@ -70,11 +70,11 @@ std::string predictionsJson(const Inspection& inspection, const std::vector<int>
       row["index"] = c.frame;
       row["id"] = inspection.scene->frames[c.frame].id;
       row["light"] = c.light;
-      row["status"] = c.prediction.highlights.empty() ? "failed" : "ok";
-      row["reason"] = c.prediction.highlights.empty() && c.prediction.failure ? c.prediction.failure->message() : "";
+      row["status"] = c.prediction.highlights().empty() ? "failed" : "ok";
+      row["reason"] = c.prediction.highlights().empty() && c.prediction.failure() ? c.prediction.failure()->message() : "";
       row["time_us"] = numberOrNull(c.prediction.timeUs);
       row["highlights"] = ordered_json::array();
-      for (const PredictedHighlight& h : c.prediction.highlights) row["highlights"].push_back(highlightJson(h));
+      for (const PredictedHighlight& h : c.prediction.highlights()) row["highlights"].push_back(highlightJson(h));
       rows.push_back(row);
     }
     j["models"][name] = rows;
@@ -111,7 +111,7 @@ std::string cocoJson(const Inspection& inspection, const std::string& model, con
     auto light = std::find(lights.begin(), lights.end(), c.light);
     if (light == lights.end()) light = lights.insert(lights.end(), c.light);
     const Camera& camera = inspection.scene->frames[c.frame].camera;
-    for (const PredictedHighlight& h : c.prediction.highlights) {
+    for (const PredictedHighlight& h : c.prediction.highlights()) {
       Polyline drawn{{}, true};
       for (const Pixel& p : h.contour.points) drawn.points.push_back(camera.distorted(p) + Pixel(0.5, 0.5));
       if (drawn.points.size() < 3) continue;

@@ -81,8 +81,8 @@ std::vector<Task> tasksOf(const Inspection& inspection, const std::set<std::stri
           task.reason = "not predicted: the light is off in this frame";
         } else {
           const Prediction& p = found->second->prediction;
-          for (const PredictedHighlight& h : p.highlights) task.contours.push_back(h.contour);
-          if (p.highlights.empty() && p.failure) task.reason = p.failure->message();
+          for (const PredictedHighlight& h : p.highlights()) task.contours.push_back(h.contour);
+          if (p.failure()) task.reason = p.failure()->message();
         }
         tasks.push_back(std::move(task));
       }

@@ -91,10 +91,10 @@ ordered_json fitJson(const ModelResult::Fit& entry) {
   ordered_json j;
   j["light"] = entry.light;
   j["surface"] = entry.surface ? ordered_json(*entry.surface) : ordered_json(nullptr);
-  j["status"] = entry.failure ? "failed" : "ok";
-  j["reason"] = entry.failure ? entry.failure->message() : "";
+  j["status"] = entry.failure() ? "failed" : "ok";
+  j["reason"] = entry.failure() ? entry.failure()->message() : "";
   // A failed fit has every key too, without values: a reader need not ask which are there.
-  const ModelFit f = entry.fit.value_or(ModelFit{});
+  const ModelFit f = entry.fit ? *entry.fit : ModelFit{};
   if (f.ellipsoid) {
     j["ellipsoid"] = {{"centre", list(f.ellipsoid->centre())},
                       {"semi_axes", list(f.ellipsoid->semiAxes())},
@@ -133,7 +133,7 @@ ordered_json fitJson(const ModelResult::Fit& entry) {
   for (const double r : f.residualPx) j["residual_px"].push_back(numberOrNull(r));
   j["training_frames"] = f.frames;
   j["warnings"] = f.remarks;
-  j["time_us"] = entry.failure ? ordered_json(nullptr) : numberOrNull(f.timeUs);
+  j["time_us"] = entry.failure() ? ordered_json(nullptr) : numberOrNull(f.timeUs);
   return j;
 }
 
@@ -152,10 +152,10 @@ void metricsJson(const FrameComparison::Row* row, const FrameComparison& c, orde
   add("axis_ratio_error", m.axisRatioError);
   add("angle_error_deg", m.angleErrorDeg);
   add("peak_offset_px", m.peakOffsetPx);
-  j["coverage"] = row && row->predicted >= 0 ? numberOrNull(c.prediction.highlights[row->predicted].coverage) : ordered_json(nullptr);
+  j["coverage"] = row && row->predicted >= 0 ? numberOrNull(c.prediction.highlights()[row->predicted].coverage) : ordered_json(nullptr);
   // Only where walks were made on second-order patches: says whether they were good enough.
-  if (row && row->predicted >= 0 && c.prediction.highlights[row->predicted].curvatureVariation)
-    j["curvature_variation"] = numberOrNull(*c.prediction.highlights[row->predicted].curvatureVariation);
+  if (row && row->predicted >= 0 && c.prediction.highlights()[row->predicted].curvatureVariation)
+    j["curvature_variation"] = numberOrNull(*c.prediction.highlights()[row->predicted].curvatureVariation);
   if (row && row->band) j["band"] = {{"sigma_px", numberOrNull(row->band->sigmaPx)}, {"coverage_95", numberOrNull(row->band->coverage)}};
   j["time_us"] = numberOrNull(c.prediction.timeUs);
 }
@@ -170,10 +170,10 @@ void frameRows(const Inspection& inspection, const FrameComparison& c, ordered_j
     return j;
   };
   const FrameEvidence& e = inspection.evidence[c.frame];
-  if (c.rows.empty() && c.prediction.highlights.empty()) {
+  if (c.rows.empty() && c.prediction.highlights().empty()) {
     ordered_json j = base(0);
     j["status"] = e.scoringFailure() ? "nothing observed" : "failed";
-    j["reason"] = e.scoringFailure() ? e.scoringFailure()->message() : c.prediction.failure ? c.prediction.failure->message() : "no highlight";
+    j["reason"] = e.scoringFailure() ? e.scoringFailure()->message() : c.prediction.failure() ? c.prediction.failure()->message() : "no highlight";
     metricsJson(nullptr, c, j);
     out.push_back(j);
     return;
@@ -352,7 +352,7 @@ std::string evaluationTable(const Inspection& inspection) {
     }
     double variation = 0;
     for (const FrameComparison& c : it->second.frames)
-      for (const PredictedHighlight& h : c.prediction.highlights) variation = std::max(variation, h.curvatureVariation.value_or(0));
+      for (const PredictedHighlight& h : c.prediction.highlights()) variation = std::max(variation, h.curvatureVariation.value_or(0));
     if (variation > kLargestVariation) {
       out +=
           formatted("%-12s the local quadric is not good enough: curvature varies by up to %.3f over a highlight (limit %.2f)\n",

@@ -75,9 +75,9 @@ FrameComparison compareFrame(const FrameEvidence& evidence, const std::string& l
   }
   const bool cut = std::any_of(observedIndex.begin(), observedIndex.end(),
                                [&](int i) { return evidence.scored()[i].touchesBorder && !evidence.scored()[i].fromScene; });
-  std::vector<char> clipped(c.prediction.highlights.size(), 0);
-  for (std::size_t i = 0; i < c.prediction.highlights.size(); ++i) {
-    const PredictedHighlight& h = c.prediction.highlights[i];
+  std::vector<char> clipped(c.prediction.highlights().size(), 0);
+  for (std::size_t i = 0; i < c.prediction.highlights().size(); ++i) {
+    const PredictedHighlight& h = c.prediction.highlights()[i];
     clipped[i] = cut && leavesImage(h.contour, camera);
     predicted.push_back(clipped[i] ? clippedToImage(h.contour, camera) : h.contour);
   }
@@ -90,11 +90,11 @@ FrameComparison compareFrame(const FrameEvidence& evidence, const std::string& l
     const auto pair = std::find_if(pairs.begin(), pairs.end(), [&](const auto& p) { return p.first == o; });
     if (pair == pairs.end()) {
       row.failure =
-          c.prediction.failure ? *c.prediction.failure : Failure{Reason::NotReached, "no prediction overlaps this highlight"};
+          c.prediction.failure() ? *c.prediction.failure() : Failure{Reason::NotReached, "no prediction overlaps this highlight"};
     } else {
       row.predicted = pair->second;
       used[pair->second] = 1;
-      const PredictedHighlight& h = c.prediction.highlights[row.predicted];
+      const PredictedHighlight& h = c.prediction.highlights()[row.predicted];
       row.metrics = compareContours(observed[o], predicted[row.predicted],
                                     clipped[row.predicted] ? std::vector<std::pair<int, int>>{} : h.gaps, h.ellipse,
                                     evidence.scored()[row.observed].peak, h.brightest.pixel, ious[pair - pairs.begin()]);
@@ -103,7 +103,7 @@ FrameComparison compareFrame(const FrameEvidence& evidence, const std::string& l
     c.rows.push_back(std::move(row));
   }
   for (int p = 0; p < static_cast<int>(predicted.size()); ++p) {
-    if (used[p] || clippedToImage(c.prediction.highlights[p].contour, camera).points.empty()) continue;  // nobody could see it
+    if (used[p] || clippedToImage(c.prediction.highlights()[p].contour, camera).points.empty()) continue;  // nobody could see it
     FrameComparison::Row row;
     row.predicted = p;
     c.rows.push_back(row);

@@ -28,7 +28,7 @@ struct FrameComparison {
   /// One row per matched pair, per missed observed and per spurious predicted highlight.
   struct Row {
     int observed = -1;                   ///< index into FrameEvidence::scored(); -1 = spurious
-    int predicted = -1;                  ///< index into prediction.highlights; -1 = missed
+    int predicted = -1;                  ///< index into prediction.highlights(); -1 = missed
     std::optional<ContourMetrics> metrics;
     std::optional<Failure> failure;
     std::optional<BandScore> band;       ///< of a matched pair whose prediction has a band

@@ -154,7 +154,7 @@ Outlook lookAhead(const HighlightModel& model, std::map<std::string, Fold>& whol
         const Outcome<ModelFit>& fit = outlook.fits.at(view.light);
         if (!fit) return;
         const auto predict = [&](const ModelFit& f) {
-          return model.predict(f, view.camera, view.surface.get(), settings).highlights;
+          return model.predict(f, view.camera, view.surface.get(), settings).highlights();
         };
         outlook.predictions[i] = predict(*fit);
         std::vector<const ModelFit*> leftOut;

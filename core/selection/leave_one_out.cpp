@@ -27,7 +27,7 @@ std::string percentText(double v) { return formatted("%.3g %%", v); }
 
 double variationOf(const Prediction& p) {
   double largest = std::nan("");
-  for (const PredictedHighlight& h : p.highlights)
+  for (const PredictedHighlight& h : p.highlights())
     if (h.curvatureVariation) largest = std::fmax(largest, *h.curvatureVariation);
   return largest;
 }
@@ -39,21 +39,21 @@ Answer predictLeft(const Fold& fold, const HighlightModel& model, const ModelFit
   Prediction p = model.predict(fit, left.camera, fold.leftSurface.get(), settings);
   answer.predictUs = microsecondsSince(start);
   dropTooSmall(p);
-  answer.highlights = static_cast<int>(p.highlights.size());
+  answer.highlights = static_cast<int>(p.highlights().size());
   answer.variation = variationOf(p);
   answer.boundToSurface = fit.quadric && !model.needsCanonicalContours();
-  if (p.highlights.empty()) {
-    answer.failure = p.failure ? *p.failure : Failure{Reason::NotReached, "no prediction"};
+  if (p.highlights().empty()) {
+    answer.failure = p.failure() ? *p.failure() : Failure{Reason::NotReached, "no prediction"};
     return answer;
   }
   std::vector<Polyline> predicted;
-  for (const PredictedHighlight& h : p.highlights) predicted.push_back(h.contour);
+  for (const PredictedHighlight& h : p.highlights()) predicted.push_back(h.contour);
   const auto pairs = matchByOverlap({left.highlight.contour}, predicted);
   if (pairs.empty()) {
     answer.failure = Failure{Reason::NotReached, "the prediction does not overlap the observed contour"};
     return answer;
   }
-  const PredictedHighlight& h = p.highlights[pairs[0].second];
+  const PredictedHighlight& h = p.highlights()[pairs[0].second];
   answer.coverage = h.coverage;
   const ContourMetrics m =
       compareContours(left.highlight.contour, h.contour, h.gaps, h.ellipse, left.highlight.peak, h.brightest.pixel);

@@ -45,11 +45,11 @@ std::vector<Other> othersOf(const Inspection& inspection, const std::vector<Fold
 
 bool sameHighlights(const Prediction& exact, const Prediction& walked) {
   std::vector<Polyline> a, b;
-  for (const PredictedHighlight& h : exact.highlights) a.push_back(h.contour);
-  for (const PredictedHighlight& h : walked.highlights) b.push_back(h.contour);
+  for (const PredictedHighlight& h : exact.highlights()) a.push_back(h.contour);
+  for (const PredictedHighlight& h : walked.highlights()) b.push_back(h.contour);
   const auto pairs = matchByOverlap(a, b);
   return a.size() == b.size() && pairs.size() == a.size() && std::all_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
-           const PredictedHighlight &e = exact.highlights[pair.first], &w = walked.highlights[pair.second];
+           const PredictedHighlight &e = exact.highlights()[pair.first], &w = walked.highlights()[pair.second];
            const ContourMetrics m =
                compareContours(e.contour, w.contour, w.gaps, w.ellipse, e.brightest.pixel, w.brightest.pixel);
            return w.coverage >= e.coverage && m.contourErrorPct <= kPatchErrorPct;

@@ -270,7 +270,7 @@ std::vector<std::vector<PredictedHighlight>> Search::witness() {
     if (const Outcome<ModelFit> fit = fitFold(fold, levelSet, settings_))
       for (std::size_t v = 0; v < views_.size(); ++v)
         if (views_[v].light == light)
-          predictions[v] = levelSet.predict(*fit, views_[v].camera, views_[v].surface.get(), settings_).highlights;
+          predictions[v] = levelSet.predict(*fit, views_[v].camera, views_[v].surface.get(), settings_).highlights();
   return predictions;
 }
 

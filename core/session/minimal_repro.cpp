@@ -34,7 +34,7 @@ Fault faultOf(const FrameComparison& c, const std::string& model) {
       reason = row.failure->reason;
     }
   }
-  if (c.prediction.failure) reason = c.prediction.failure->reason;
+  if (c.prediction.failure()) reason = c.prediction.failure()->reason;
   if (n > 0)
     fault.errorPct = sum / n;
   else
@@ -73,7 +73,7 @@ Fault answer(const Inspection& inspection, const Fault& fault, const std::vector
       if (auto found = correctedSurface(*inspection.scene, *inspection.surfaces, fault.frame, light->correction, meshPolicy(settings))) surface = *found;
     prediction = model.predict(*fit, camera, surface.get(), settings);
   } else {
-    prediction.failure = fit.failure();
+    prediction = fit.failure();
   }
   return faultOf(
       compareFrame(inspection.evidence[static_cast<std::size_t>(fault.frame)], fault.light, camera, std::move(prediction)),

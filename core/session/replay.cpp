@@ -36,7 +36,7 @@ class Digest {
     add(static_cast<double>(line.points.size()));
     for (const Pixel& p : line.points) add(p);
   }
-  void add(const std::optional<Failure>& failure) { add(failure ? std::string(nameOf(failure->reason)) : std::string()); }
+  void add(const Failure* failure) { add(failure ? std::string(nameOf(failure->reason)) : std::string()); }
   std::string hex() { return hash_.hex(); }
 
  private:
@@ -143,7 +143,7 @@ KeyResults keyResultsOf(const Inspection& inspection) {
 std::string digestOf(const Inspection& inspection) {
   Digest d;
   for (const FrameEvidence& e : inspection.evidence) {
-    d.add(e.failure);
+    d.add(e.failure ? &*e.failure : nullptr);
     for (const Highlight& h : e.highlights) {
       d.add(h.light);
       d.add(h.peak);
@@ -161,7 +161,7 @@ std::string digestOf(const Inspection& inspection) {
     for (const ModelResult::Fit& f : result.fits) {
       d.add(f.light);
       d.add(f.surface.value_or(""));
-      d.add(f.failure);
+      d.add(f.failure());
       if (!f.fit) continue;
       if (f.fit->quadric) d.add(f.fit->quadric->matrix);
       if (f.fit->limitAngle) d.add(*f.fit->limitAngle);
@@ -171,8 +171,8 @@ std::string digestOf(const Inspection& inspection) {
     for (const FrameComparison& c : result.frames) {
       d.add(static_cast<double>(c.frame));
       d.add(c.light);
-      d.add(c.prediction.failure);
-      for (const PredictedHighlight& h : c.prediction.highlights) {
+      d.add(c.prediction.failure());
+      for (const PredictedHighlight& h : c.prediction.highlights()) {
         d.add(h.contour);
         d.add(h.coverage);
         for (const double s : h.sigmaPx) d.add(s);
@@ -180,7 +180,7 @@ std::string digestOf(const Inspection& inspection) {
       for (const FrameComparison::Row& row : c.rows) {
         d.add(static_cast<double>(row.observed));
         d.add(static_cast<double>(row.predicted));
-        d.add(row.failure);
+        d.add(row.failure ? &*row.failure : nullptr);
         if (!row.metrics) continue;
         const ContourMetrics& m = *row.metrics;
         for (const double v : {m.contourErrorPx, m.contourErrorPct, m.ellipseErrorPct, m.hausdorffPx, m.iou, m.centreOffsetPx,

@@ -33,8 +33,8 @@ Outcome<Measured> levelsCase(Lobe lobe, double m, double lowest) {
     fit.roughness = m;
     fit.level = q;
     const Prediction prediction = modelByName("reflectance").predict(fit, view.camera, surface.get(), Settings());
-    if (prediction.highlights.empty()) return prediction.failure.value_or(Failure{Reason::NoHighlight, ""});
-    const PredictedHighlight& h = prediction.highlights.front();
+    if (prediction.highlights().empty()) return prediction.failure().value_or(Failure{Reason::NoHighlight, ""});
+    const PredictedHighlight& h = prediction.highlights().front();
     if (h.coverage < (wide ? 0.5 : 0.999)) {
       return Failure{Reason::SurfaceEnded, formatted("coverage too low at level %g", q)};
     }

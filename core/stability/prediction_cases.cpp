@@ -38,8 +38,8 @@ Outcome<Measured> limitAngleCase(const PredictionScene& p, const Light& light) {
   fit.lightEstimate = light;
   fit.limitAngle = p.limit;
   const Prediction prediction = modelByName("limit-angle").predict(fit, s.camera, s.surface.get(), Settings());
-  if (prediction.highlights.empty()) return prediction.failure.value_or(Failure{Reason::NoHighlight, ""});
-  const PredictedHighlight& h = prediction.highlights.front();
+  if (prediction.highlights().empty()) return prediction.failure().value_or(Failure{Reason::NoHighlight, ""});
+  const PredictedHighlight& h = prediction.highlights().front();
   if (h.coverage < 0.999) return Failure{Reason::SurfaceEnded, "coverage below 1"};
   double worst = 0;
   const std::size_t stride = std::max<std::size_t>(1, h.contour.points.size() / 40);
@@ -113,8 +113,8 @@ Outcome<Measured> canonicalCase(const PredictionScene& p, const Light& light, do
   settings.set("predict.directions", 8);
   settings.set("predict.walk_tolerance", 1e-15);
   const Prediction prediction = modelByName("canonical").predict(fit, s.camera, s.surface.get(), settings);
-  if (prediction.highlights.empty()) return prediction.failure.value_or(Failure{Reason::NoHighlight, ""});
-  const PredictedHighlight& h = prediction.highlights.front();
+  if (prediction.highlights().empty()) return prediction.failure().value_or(Failure{Reason::NoHighlight, ""});
+  const PredictedHighlight& h = prediction.highlights().front();
   // The reference starts at the true mirror point, not at the one found: the light's foot on the reflected path.
   const RealConic conic = mirroredOutline(e, s.real);
   double worst = 0;
@@ -148,8 +148,8 @@ Outcome<Measured> dualCase(const PredictionScene& p, const Light& light, double 
   ModelFit fit;
   fit.ellipsoid = e;
   const Prediction prediction = modelByName("dual").predict(fit, s.camera, s.surface.get(), Settings());
-  if (prediction.highlights.empty()) return prediction.failure.value_or(Failure{Reason::NoHighlight, ""});
-  const PredictedHighlight& h = prediction.highlights.front();
+  if (prediction.highlights().empty()) return prediction.failure().value_or(Failure{Reason::NoHighlight, ""});
+  const PredictedHighlight& h = prediction.highlights().front();
   const RealConic conic = mirroredOutline(e, s.real);
   double worst = 0;
   for (std::size_t i = 0; i < h.contour.points.size(); i += 15) {
@@ -179,7 +179,7 @@ Outcome<Measured> plateCase() {
   fit.lightEstimate = plate.light;
   fit.limitAngle = 0.1;
   const Prediction prediction = modelByName("limit-angle").predict(fit, plate.camera, plate.surface.get(), Settings());
-  if (prediction.highlights.empty()) return prediction.failure.value_or(Failure{Reason::NoHighlight, ""});
+  if (prediction.highlights().empty()) return prediction.failure().value_or(Failure{Reason::NoHighlight, ""});
   const RealCamera<Real> real(plate.camera);
   const Real half = Real(0.04) / 2;
   std::pair<Real, Real> corner[4];
@@ -193,7 +193,7 @@ Outcome<Measured> plateCase() {
         std::max(longest, Real(sqrt((b.first - a.first) * (b.first - a.first) + (b.second - a.second) * (b.second - a.second))));
   }
   double worst = 0;
-  for (const Pixel& q : prediction.highlights.front().contour.points) {
+  for (const Pixel& q : prediction.highlights().front().contour.points) {
     Real nearest = Real(1e9);
     for (int i = 0; i < 4; ++i) {
       const auto &a = corner[i], &b = corner[(i + 1) % 4];
@@ -203,7 +203,7 @@ Outcome<Measured> plateCase() {
     worst = worstOf({worst, static_cast<double>(nearest / longest)});
   }
   // The vertices lie on the edges; that they go all the way round shows in the area, which cut corners change a little.
-  const double found = std::abs(signedArea(prediction.highlights.front().contour));
+  const double found = std::abs(signedArea(prediction.highlights().front().contour));
   if (!(std::abs(found / static_cast<double>(abs(area)) - 1) < 1e-3)) return Measured{1};
   return Measured{worst};
 }
@@ -301,7 +301,7 @@ void addPredictionCases(Cases& cases) {
       fit.lightEstimate = scene.light;
       fit.ellipsoid = ellipsoidAt(scene.light, 0.3);
       const Prediction p = modelByName("canonical").predict(fit, scene.camera, scene.surface.get(), Settings());
-      if (p.highlights.empty()) return p.failure.value_or(Failure{Reason::NotSupported, "unnamed"});
+      if (p.highlights().empty()) return p.failure().value_or(Failure{Reason::NotSupported, "unnamed"});
       return Measured{0};
     };
     cases.push_back(plate);
@@ -319,7 +319,7 @@ void addPredictionCases(Cases& cases) {
     const Prediction p =
         modelByName("limit-angle")
             .predict(fit, cameraTowards({0.2, 0.1, 1}, {0, 0, 0}, 800), makeAnalytic(specOf(0, false)).get(), Settings());
-    if (p.highlights.empty()) return p.failure.value_or(Failure{Reason::NotSupported, "unnamed"});
+    if (p.highlights().empty()) return p.failure().value_or(Failure{Reason::NotSupported, "unnamed"});
     return Measured{0};
   };
   cases.push_back(c);

@@ -45,8 +45,8 @@ Outcome<Measured> predictionCase(const RadianceScene& p, const Light& light) {
   fit.level = 0.5;
   const auto surface = makeAnalytic(specOf(k, p.round));
   const Prediction prediction = modelByName("reflectance").predict(fit, view.camera, surface.get(), Settings());
-  if (prediction.highlights.empty()) return prediction.failure.value_or(Failure{Reason::NoHighlight, ""});
-  const PredictedHighlight& h = prediction.highlights.front();
+  if (prediction.highlights().empty()) return prediction.failure().value_or(Failure{Reason::NoHighlight, ""});
+  const PredictedHighlight& h = prediction.highlights().front();
   if (h.coverage < 0.999) return Failure{Reason::SurfaceEnded, "coverage below 1"};
   double worst = 0;
   const std::size_t stride = std::max<std::size_t>(1, h.contour.points.size() / 40);

@@ -39,7 +39,7 @@ std::string predictionsDigest(const Inspection& inspection, const std::string& m
   const auto add = [&](double v) { hash.add(std::to_string(std::llround(v / kSamePx)) + ","); };
   for (const FrameComparison& c : inspection.models.at(model).frames) {
     hash.add("f" + std::to_string(c.frame));
-    for (const PredictedHighlight& h : c.prediction.highlights) {
+    for (const PredictedHighlight& h : c.prediction.highlights()) {
       // The same outline may start anywhere and have other vertices; its area and centroid tell contours apart.
       const Pixel middle = centroid(h.contour);
       add(middle.x());

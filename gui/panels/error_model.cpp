@@ -85,9 +85,9 @@ void ErrorModel::addComparison(const Inspection& inspection, const std::string& 
   std::fill(std::begin(base.values), std::end(base.values), std::numeric_limits<double>::quiet_NaN());
   base.values[Frame] = c.frame;
   if (c.rows.empty()) {
-    if (!c.prediction.failure) return;
+    if (!c.prediction.failure()) return;
     base.status = tr("failed");
-    base.reason = toQString(c.prediction.failure->message());
+    base.reason = toQString(c.prediction.failure()->message());
     base.problem = true;
     rows_.push_back(base);
     return;
@@ -108,13 +108,13 @@ void ErrorModel::addComparison(const Inspection& inspection, const std::string& 
     row.status = r.metrics              ? tr("ok")
                  : !compared            ? tr("not compared")
                  : r.observed < 0       ? tr("spurious")
-                 : c.prediction.failure ? tr("failed")
+                 : c.prediction.failure() ? tr("failed")
                                         : tr("missed");
     row.problem = !r.metrics;
     if (r.failure)
       row.reason = toQString(r.failure->message());
-    else if (c.prediction.failure)
-      row.reason = toQString(c.prediction.failure->message());
+    else if (c.prediction.failure())
+      row.reason = toQString(c.prediction.failure()->message());
     else if (!r.metrics)
       row.reason = r.observed < 0 ? tr("no observed highlight overlaps it") : tr("no prediction overlaps it");
     if (r.metrics) {
@@ -126,8 +126,8 @@ void ErrorModel::addComparison(const Inspection& inspection, const std::string& 
       row.values[CentreOffset] = r.metrics->centreOffsetPx;
       row.values[PeakOffset] = r.metrics->peakOffsetPx;
     }
-    if (r.predicted >= 0 && r.predicted < int(c.prediction.highlights.size())) {
-      row.values[Coverage] = c.prediction.highlights[std::size_t(r.predicted)].coverage;
+    if (r.predicted >= 0 && r.predicted < int(c.prediction.highlights().size())) {
+      row.values[Coverage] = c.prediction.highlights()[std::size_t(r.predicted)].coverage;
       row.values[Time] = c.prediction.timeUs;
     }
     rows_.push_back(row);

@@ -106,7 +106,7 @@ NumberGroup lightGroup(const std::string& id, const LightEstimate& estimate) {
 
 NumberGroup fitGroup(const std::string& model, const ModelResult::Fit& f, int frame) {
   Lines lines;
-  if (f.failure) lines.note(toQString(f.failure->message()));
+  if (f.failure()) lines.note(toQString(f.failure()->message()));
   if (f.fit) {
     lines.add(QObject::tr("solver"), toQString(f.fit->solver));
     if (f.fit->ellipsoid) {
@@ -135,11 +135,11 @@ NumberGroup fitGroup(const std::string& model, const ModelResult::Fit& f, int fr
 
 NumberGroup comparison(const FrameComparison& c, int observed) {
   Lines lines;
-  if (c.prediction.failure) lines.note(toQString(c.prediction.failure->message()));
+  if (c.prediction.failure()) lines.note(toQString(c.prediction.failure()->message()));
   for (const FrameComparison::Row& row : c.rows) {
     if (observed >= 0 && row.observed >= 0 && row.observed != observed) continue;
-    if (row.predicted >= 0 && row.predicted < int(c.prediction.highlights.size())) {
-      const PredictedHighlight& p = c.prediction.highlights[std::size_t(row.predicted)];
+    if (row.predicted >= 0 && row.predicted < int(c.prediction.highlights().size())) {
+      const PredictedHighlight& p = c.prediction.highlights()[std::size_t(row.predicted)];
       lines.addVector(QObject::tr("P"), p.brightest.point.position, "m");
       lines.addVector(QObject::tr("N"), p.brightest.point.normal);
       // A model without a tangent plane (primal) has no incident angle either.

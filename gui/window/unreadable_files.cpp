@@ -113,7 +113,7 @@ void UnreadableFiles::check() {
   for (std::size_t i = 0; i < in->evidence.size(); ++i) look(int(i), in->evidence[i].failure, FrameFile::Photograph);
   for (const TrainingView& view : in->views) look(view.frame, view.failure, {});
   for (const auto& [name, model] : in->models)
-    for (const FrameComparison& c : model.frames) look(c.frame, c.prediction.failure, {});
+    for (const FrameComparison& c : model.frames) look(c.frame, c.prediction.failure(), {});
   add(found);
   if (checked_ == in->given) return;
   checked_ = in->given;

@@ -40,7 +40,7 @@ class CameraPickingTest : public QObject, SceneFixture {
     around.light = "lamp";
     around.ellipsoid = Ellipsoid(Eigen::Isometry3d(Eigen::Translation3d(*lamp.position)), {0.3, 0.25, 0.2});
     around.quadric = around.ellipsoid->dual();  // without one nothing is drawn
-    inspection->models["canonical"].fits = {{"lamp", {}, around, {}, {}}};
+    inspection->models["canonical"].fits = {{"lamp", {}, around, {}}};
     document_->setInspection(inspection, document_->request());
     showOnly({"true-light", "ellipsoids"});
     settle();

@@ -72,20 +72,20 @@ Inspection drawnCircles(std::shared_ptr<const Scene> scene, const InspectionRequ
   for (const std::string& name : request.models) {
     ModelResult& model = result.models[name];
     model.model = name;
-    model.fits.push_back({"lamp", {}, {}, Failure{Reason::TooFewViews, "a stand-in"}, {}});
+    model.fits.push_back({"lamp", {}, Failure{Reason::TooFewViews, "a stand-in"}, {}});
     for (int i = 0; i < n; ++i) {
       FrameComparison c;
       c.frame = i;
       c.light = "lamp";
       c.fit = 0;
       if (i == n - 1) {
-        c.prediction.failure = Failure{Reason::NoBrightestPoint, "not visible"};
-        c.rows.push_back({0, -1, {}, c.prediction.failure, {}});
+        c.prediction = Failure{Reason::NoBrightestPoint, "not visible"};
+        c.rows.push_back({0, -1, {}, *c.prediction.failure(), {}});
       } else {
         PredictedHighlight p;
         p.contour = circle(Fixture::centre(i) + Pixel(offset, 0), Fixture::kRadius);
         p.brightest.pixel = Fixture::centre(i) + Pixel(offset, 0);
-        c.prediction.highlights.push_back(p);
+        c.prediction = std::vector{p};
         ContourMetrics m;
         m.contourErrorPct = offset + 0.1 * ((i * 5) % n);  // not in the order of the frames: sorting must show
         m.contourErrorPx = m.contourErrorPct * 0.4;

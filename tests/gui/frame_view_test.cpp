@@ -333,9 +333,8 @@ class FrameViewTest : public QObject {
       if (!reason.isEmpty())
         for (auto& [name, model] : inspection.models) {
           FrameComparison& c = model.frames.front();
-          c.prediction.highlights.clear();
-          c.prediction.failure = Failure{Reason::NoBrightestPoint, reason.toStdString()};
-          c.rows = {{0, -1, {}, c.prediction.failure, {}}};
+          c.prediction = Failure{Reason::NoBrightestPoint, reason.toStdString()};
+          c.rows = {{0, -1, {}, *c.prediction.failure(), {}}};
         }
       document_->setInspection(std::make_shared<const Inspection>(inspection), document_->request());
       settle();

@@ -264,7 +264,7 @@ class LinkingTest : public QObject {
     fit.model = document_->plottedModel();
     fit.light = "lamp";
     fit.remarks = {"the fit explains <b>its</b> views poorly"};
-    inspection->models[fit.model].fits = {{"lamp", {}, fit, {}, {}}};
+    inspection->models[fit.model].fits = {{"lamp", {}, fit, {}}};
     document_->setInspection(inspection, document_->request());
     QVERIFY(!button->isHidden());
     QCOMPARE(button->text(), QStringLiteral("1 warning"));

@@ -289,7 +289,6 @@ class PlotsTest : public QObject {
       fit.lightEstimate = Light::at({0, 0, -1.4});
       fit.lightCovariance = sigma * sigma * Eigen::Matrix3d::Identity();
       model.fits.front().fit = fit;
-      model.fits.front().failure.reset();
       if (name != "primal") sigma *= 2;
     }
     document_->setInspection(std::make_shared<const Inspection>(inspection), document_->request());

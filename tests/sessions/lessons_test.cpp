@@ -211,7 +211,7 @@ TEST(Lessons, WaistTheHighlightSplitsAfterItsMirrorPoint) {
     points.push_back(mirrorPoints(in.scene->frames[std::size_t(frame)].camera.centreInWorld(), lamp));
     std::size_t predicted = 0;
     for (const FrameComparison& c : in.models.at("canonical").frames)
-      if (c.frame == frame) predicted = c.prediction.highlights.size();
+      if (c.frame == frame) predicted = c.prediction.highlights().size();
     EXPECT_EQ(predicted > 0, points.back() > 0) << "frame " << frame << ": a walk starts at a mirror point";
     EXPECT_LE(predicted, std::size_t(points.back())) << "frame " << frame;
     if (frame >= 6) {

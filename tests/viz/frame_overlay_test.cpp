@@ -72,7 +72,7 @@ TEST(FrameOverlay, LensDistortionIsAppliedBecauseThePhotographHasIt) {
 TEST(FrameOverlay, GapsAreDottedAndNothingIsLost) {
   const TemporaryFolder folder;
   const auto inspection = smallInspection(folder.path());
-  PredictedHighlight& highlight = inspection->models["canonical"].frames[0].prediction.highlights[0];
+  PredictedHighlight& highlight = inspection->models["canonical"].frames[0].prediction.highlights()[0];
   highlight.gaps = {{70, 3}, {20, 21}};  // the first one runs over the end of the list
   const auto lines = ofRole(frameOverlay(*inspection, 0), OverlayRole::PredictedContour);
   ASSERT_EQ(lines.size(), 4u);
@@ -158,7 +158,7 @@ TEST(FrameScore, CountsMatchedMissedAndSpurious) {
   ModelResult result;
   FrameComparison comparison;
   comparison.frame = 3;
-  comparison.prediction.highlights.resize(2);
+  comparison.prediction = std::vector<PredictedHighlight>(2);
   comparison.iou = 0.8;
   ContourMetrics a, b;
   a.contourErrorPct = 1;
@@ -175,6 +175,10 @@ TEST(FrameScore, CountsMatchedMissedAndSpurious) {
   EXPECT_DOUBLE_EQ(*score.errorPx, 1);
   EXPECT_DOUBLE_EQ(*score.iou, 0.8);
   EXPECT_FALSE(frameScore(result, 4).errorPct);
+  // A prediction that could not be compared is no good one: the others' mean must not stand for the frame.
+  result.frames[0].rows = {{0, 0, a, {}, {}}, {1, 1, {}, Failure{Reason::NotConverged, "no distance"}, {}}};
+  EXPECT_EQ(frameScore(result, 3).missed, 1);
+  EXPECT_FALSE(wholeErrorPct(frameScore(result, 3)));
 }
 
 TEST(Style, ReportsAndViewsUseTheSameColours) {

@@ -173,7 +173,7 @@ TEST(Layers, AConeReachesFromItsPlaceThroughTheContourToBeyondTheEllipsoid) {
     fit.model = model;
     fit.light = "lamp";
     fit.ellipsoid = Ellipsoid(place, Eigen::Vector3d::Constant(kBall));
-    inspection->models[model].fits = {{"lamp", {}, fit, {}, {}}};
+    inspection->models[model].fits = {{"lamp", {}, fit, {}}};
     const std::vector<Eigen::Vector3d> points = firstCone(*inspection, model).vertices;
     ASSERT_EQ(points.size() % 2, 0u);
     ASSERT_GT(points.size(), 100u);
@@ -287,7 +287,7 @@ TEST(Layers, AFrameThatDoesNotTrainHasItsRayAndItsPlaneFromWhatWasObserved) {
   const auto inspection = smallInspection(folder.path());
   LayerInput input = heldOutInput(*inspection);
   // The mirror point of frame 5 is what the scene's closed form says, as in its prediction.
-  const PredictedHighlight& exact = inspection->models["canonical"].frames[5].prediction.highlights[0];
+  const PredictedHighlight& exact = inspection->models["canonical"].frames[5].prediction.highlights()[0];
   const Eigen::Vector3d p = exact.brightest.point.position, eye = inspection->scene->frames[5].camera.centreInWorld();
   Eigen::AlignedBox3d ray;
   for (const Drawn& d : raysLayer(input).drawn)
@@ -355,7 +355,7 @@ TEST(Layers, APredictionWithoutATangentPlaneHasNoBrightestPointOnTheSurface) {
     return n;
   };
   EXPECT_EQ(ofModel(), 2) << "a ball and its normal";
-  inspection->models["canonical"].frames[5].prediction.highlights[0].tangentPlane.reset();
+  inspection->models["canonical"].frames[5].prediction.highlights()[0].tangentPlane.reset();
   EXPECT_EQ(ofModel(), 0);
 }
 
@@ -445,7 +445,7 @@ TEST(Layers, TheSelectedFrameAloneNamesItsDirections) {
     for (const LayerContent& content : {raysLayer(input), peaksLayer(input)})
       for (const DrawnLabel& label : content.labels) at[label.text] = label.anchor;
     ASSERT_EQ(at.size(), 3u) << frame;
-    const SurfacePoint p = inspection->models["canonical"].frames[std::size_t(frame)].prediction.highlights[0].brightest.point;
+    const SurfacePoint p = inspection->models["canonical"].frames[std::size_t(frame)].prediction.highlights()[0].brightest.point;
     const Eigen::Vector3d eye = inspection->scene->frames[std::size_t(frame)].camera.centreInWorld();
     EXPECT_LT((at["V"] - p.position).cross(eye - p.position).norm(), kDrawn);
     EXPECT_LT((at["N"] - p.position).cross(p.normal).norm(), kDrawn);
@@ -501,7 +501,7 @@ TEST(Framing, HoldsTheWholeTangentPlaneThatIsDrawn) {
   Eigen::AlignedBox3d disc;
   for (const Drawn& d : tangentPlanesLayer(input).drawn)
     if (d.info.frame == 5) disc.extend(boundsOf(d));
-  const BrightestPoint& b = inspection->models["canonical"].frames[5].prediction.highlights[0].brightest;
+  const BrightestPoint& b = inspection->models["canonical"].frames[5].prediction.highlights()[0].brightest;
   const double radius =
       0.5 * disc.diagonal().norm() / std::sqrt(2.0);  // its box has sides 2 r sin to each axis, and those squares sum up to 2
   for (const bool drawn : {false, true}) {
@@ -521,7 +521,7 @@ TEST(Framing, HoldsTheVirtualCamerasThatAreDrawn) {
   const auto inspection = smallInspection(folder.path());
   const LayerInput input = heldOutInput(*inspection);
   const auto held = [&](const std::optional<Framing>& framing, int frame) {
-    const BrightestPoint& b = inspection->models["canonical"].frames[std::size_t(frame)].prediction.highlights[0].brightest;
+    const BrightestPoint& b = inspection->models["canonical"].frames[std::size_t(frame)].prediction.highlights()[0].brightest;
     const Plane plane = Plane::through(b.point.position, b.point.normal);
     std::vector<Eigen::Vector3d> camera;
     addFrustum(input, camera, frame);
@@ -570,7 +570,7 @@ TEST(SceneLegend, AFitThatIsNoEllipsoidIsSaidOnce) {
   ModelResult& dual = inspection->models.at("dual");
   const Failure failure{Reason::NotAnEllipsoid, describe(*dual.fits[0].fit->quadric)};
   for (FrameComparison& comparison : dual.frames) {
-    comparison.prediction.failure = failure;
+    comparison.prediction = failure;
     comparison.rows[0].failure = failure;
   }
   dual.fits.push_back(dual.fits[0]);  // another light

@@ -195,8 +195,10 @@ TEST(LadderPicture, AReasonIsWholeInSeveralLines) {
   const auto inspection = smallInspection(folder.path());
   const Outcome<Image> photograph = readPhotograph(inspection->scene->frames[0]);
   const auto lines = [&](const std::string& detail) {
-    for (FrameComparison& c : inspection->models.at("dual").frames)
-      c.prediction.failure = c.rows[0].failure = Failure{Reason::NotAnEllipsoid, detail};
+    for (FrameComparison& c : inspection->models.at("dual").frames) {
+      c.prediction = Failure{Reason::NotAnEllipsoid, detail};
+      c.rows[0].failure = *c.prediction.failure();
+    }
     const Image picture = ladderPicture(*inspection, 0, photograph, 400, 400);
     int bands = 0, before = 0;
     for (int y = 0; y < picture.height; ++y) {

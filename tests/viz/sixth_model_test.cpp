@@ -48,18 +48,12 @@ class FlatMirror final : public HighlightModel {
   }
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {
-    Prediction p;
-    if (!surface) {
-      p.failure = Failure{Reason::NoSurface, ""};
-      return p;
-    }
+    if (!surface) return Failure{Reason::NoSurface, ""};
     const auto tops = brightestPointsFor(*surface, camera, *fit.lightEstimate, settings, fit.hints);
-    if (!tops) {
-      p.failure = tops.failure();
-      return p;
-    }
-    for (const BrightestPoint& top : *tops) p.highlights.push_back(around(top, fit, camera));
-    return p;
+    if (!tops) return tops.failure();
+    std::vector<PredictedHighlight> found;
+    for (const BrightestPoint& top : *tops) found.push_back(around(top, fit, camera));
+    return found;
   }
 
  private:

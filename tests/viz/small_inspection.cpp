@@ -138,14 +138,14 @@ std::shared_ptr<Inspection> smallInspection(const std::filesystem::path& folder,
   fit.ellipsoid = Ellipsoid(place, scale * Eigen::Vector3d(0.25, 0.2, 0.12));
   fit.quadric = fit.ellipsoid->dual();
   fit.lightEstimate = Light::at(light);
-  canonical.fits.push_back({"lamp", {}, fit, {}, {}});
+  canonical.fits.push_back({"lamp", {}, fit, {}});
   // A two-sheet hyperboloid: the dual model's quadric, which must not be drawn as an ellipsoid.
   ModelFit hyperboloid;
   hyperboloid.model = "dual";
   hyperboloid.light = "lamp";
   const double area = scale * scale;
   hyperboloid.quadric = DualQuadric{Eigen::Vector4d(-0.01 * area, 0.02 * area, 0.02 * area, 1).asDiagonal()};
-  dual.fits.push_back({"lamp", {}, hyperboloid, {}, {}});
+  dual.fits.push_back({"lamp", {}, hyperboloid, {}});
 
   for (int i = 0; i < 6; ++i) {
     const Camera& camera = scene->frames[static_cast<std::size_t>(i)].camera;
@@ -205,7 +205,7 @@ std::shared_ptr<Inspection> smallInspection(const std::filesystem::path& folder,
     comparison.frame = i;
     comparison.light = "lamp";
     comparison.fit = 0;
-    comparison.prediction.highlights.push_back(predicted);
+    comparison.prediction = std::vector{predicted};
     ContourMetrics metrics;
     metrics.contourErrorPx = 1;
     metrics.contourErrorPct = 100.0 / (2 * kContourPx);
@@ -215,8 +215,8 @@ std::shared_ptr<Inspection> smallInspection(const std::filesystem::path& folder,
     FrameComparison refused;
     refused.frame = i;
     refused.light = "lamp";
-    refused.prediction.failure = Failure{Reason::NotAnEllipsoid, "a hyperboloid"};
-    refused.rows.push_back({0, -1, {}, refused.prediction.failure, {}});
+    refused.prediction = Failure{Reason::NotAnEllipsoid, "a hyperboloid"};
+    refused.rows.push_back({0, -1, {}, *refused.prediction.failure(), {}});
     dual.frames.push_back(refused);
   }
   inspection->models["canonical"] = canonical;

@@ -35,7 +35,7 @@ LayerContent canonicalEllipsesLayer(const LayerInput& in) {
   }
   for (const std::string& model : in.models) {
     for (const FrameComparison* comparison : in.comparisons(model)) {
-      for (const PredictedHighlight& h : comparison->prediction.highlights) {
+      for (const PredictedHighlight& h : comparison->prediction.highlights()) {
         if (!h.tangentPlane || !h.canonical || !h.canonical->ellipse) continue;
         add(in.frame(in.selection.frame).camera, *h.tangentPlane, *h.canonical->ellipse, true, in.selection.frame, model);
       }

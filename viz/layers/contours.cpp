@@ -108,8 +108,8 @@ LayerContent predictedContoursLayer(const LayerInput& in) {
   double nearerPx = kPredictedPx;  // each model a little more, so that equal contours do not flicker
   for (const std::string& model : in.models) {
     for (const FrameComparison* comparison : in.comparisons(model)) {
-      for (std::size_t i = 0; i < comparison->prediction.highlights.size(); ++i) {
-        const PredictedHighlight& h = comparison->prediction.highlights[i];
+      for (std::size_t i = 0; i < comparison->prediction.highlights().size(); ++i) {
+        const PredictedHighlight& h = comparison->prediction.highlights()[i];
         Picked info;
         info.layer = "predicted-contours";
         info.frame = in.selection.frame;

@@ -71,7 +71,7 @@ LayerContent directionsLayer(const LayerInput& in) {
   if (!content.drawn.empty()) return content;  // the predicted walks would lie on the observed ones
   for (const std::string& model : in.models) {
     for (const FrameComparison* comparison : in.comparisons(model)) {
-      for (const PredictedHighlight& h : comparison->prediction.highlights) {
+      for (const PredictedHighlight& h : comparison->prediction.highlights()) {
         if (!h.tangentPlane || !h.canonical) continue;
         addWalks(content, in, *h.tangentPlane, h.brightest.point.position, *h.canonical, in.selection.frame, model);
       }

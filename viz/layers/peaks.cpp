@@ -57,7 +57,7 @@ LayerContent peaksLayer(const LayerInput& in) {
   if (in.solo && !content.drawn.empty()) return content;
   for (const std::string& model : in.models) {
     for (const FrameComparison* comparison : in.comparisons(model)) {
-      for (const PredictedHighlight& h : comparison->prediction.highlights) {
+      for (const PredictedHighlight& h : comparison->prediction.highlights()) {
         // Without a tangent plane it is no point of the surface: primal has the middle of its ellipsoid there.
         if (!h.tangentPlane || !h.brightest.point.position.allFinite() || h.brightest.point.normal.norm() < 0.5) continue;
         add(h.brightest, in.frame(in.selection.frame).camera, 1.0, modelColour(model),

@@ -60,7 +60,7 @@ LayerContent tangentPlanesLayer(const LayerInput& in) {
     const bool shown = std::find(in.models.begin(), in.models.end(), in.selection.model) != in.models.end();
     if (in.selection.model != model && (shown || !own.empty())) continue;
     for (const FrameComparison* comparison : in.comparisons(model)) {
-      for (const PredictedHighlight& h : comparison->prediction.highlights) {
+      for (const PredictedHighlight& h : comparison->prediction.highlights()) {
         if (!h.tangentPlane) continue;
         addPlane(content, in, in.frame(in.selection.frame).camera, *h.tangentPlane, h.brightest.point.position,
                  onPlane(in, h.contour.points, h.canonical), true, own.empty(), modelColour(model),

@@ -219,7 +219,7 @@ Inspection needle(const AnalyticSpec& surface, const std::string& model) {
   ModelResult& result = inspection.models.at(model);
   result.fits.at(0).fit->ellipsoid = Ellipsoid(result.fits[0].fit->ellipsoid->worldFromBody(), {0.02, 2.2, 0.015});
   for (FrameComparison& comparison : result.frames) {
-    PredictedHighlight& p = comparison.prediction.highlights.at(0);
+    PredictedHighlight& p = comparison.prediction.highlights().at(0);
     p.brightest.pixel = Pixel(-500, 100);
     ContourMetrics metrics;
     metrics.contourErrorPx = 600 + comparison.frame;
@@ -338,7 +338,7 @@ TEST(Explain, AMissedHighlightIsToldFromThePredictionThatLiesBesideIt) {
   comparison.rows.back() = {1, 0, {}, {}, {}};
   EXPECT_TRUE(stepOf(explain(inspection, 5, 0, "canonical"), "projection").failure);
   comparison.rows.pop_back();  // nothing is predicted at all: that is said instead
-  comparison.prediction.highlights.clear();
+  comparison.prediction = Failure{Reason::NoBrightestPoint, ""};
   EXPECT_TRUE(stepOf(explain(inspection, 5, 0, "canonical"), "projection").failure);
 }
 

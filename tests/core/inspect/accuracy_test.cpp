@@ -78,7 +78,7 @@ TEST_P(OnBothSources, VaseEveryFrameIsAnswered) {
   for (const auto& [name, model] : inspection.models) {
     std::vector<int> rows(scene->frames.size(), 0);
     for (const FrameComparison& c : model.frames) {
-      EXPECT_NE(c.prediction.highlights.empty(), !c.prediction.failure) << name << " " << c.frame;
+      EXPECT_NE(c.prediction.highlights().empty(), !c.prediction.failure()) << name << " " << c.frame;
       for (const FrameComparison::Row& row : c.rows) {
         ++rows[c.frame];
         if (row.observed >= 0) {

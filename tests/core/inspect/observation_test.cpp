@@ -117,7 +117,7 @@ TEST(HeldAgainst, TheEarlierPredictionIsMeasuredAgainstTheNewContour) {
   EXPECT_TRUE(now.models.at("limit-angle").oneFrame);
   ASSERT_EQ(now.models.at("limit-angle").frames.size(), 1u);
   const FrameComparison& c = comparisonOf(now);
-  EXPECT_EQ(c.prediction.highlights.at(0).contour.points, comparisonOf(earlier).prediction.highlights.at(0).contour.points);
+  EXPECT_EQ(c.prediction.highlights().at(0).contour.points, comparisonOf(earlier).prediction.highlights().at(0).contour.points);
   // Areas of similar figures go with the square of their size.
   EXPECT_NEAR(c.rows.at(0).metrics->iou, 1 / (kWider * kWider), kSameContour);
 }

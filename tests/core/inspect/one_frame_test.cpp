@@ -32,9 +32,9 @@ void expectSameFrame(const Inspection& one, const Inspection& all, int frame) {
     ASSERT_EQ(got.size(), wanted.size()) << name;
     for (std::size_t i = 0; i < got.size(); ++i) {
       EXPECT_EQ(got[i]->iou, wanted[i]->iou) << name;
-      ASSERT_EQ(got[i]->prediction.highlights.size(), wanted[i]->prediction.highlights.size()) << name;
-      for (std::size_t h = 0; h < got[i]->prediction.highlights.size(); ++h)
-        EXPECT_EQ(got[i]->prediction.highlights[h].contour.points, wanted[i]->prediction.highlights[h].contour.points) << name;
+      ASSERT_EQ(got[i]->prediction.highlights().size(), wanted[i]->prediction.highlights().size()) << name;
+      for (std::size_t h = 0; h < got[i]->prediction.highlights().size(); ++h)
+        EXPECT_EQ(got[i]->prediction.highlights()[h].contour.points, wanted[i]->prediction.highlights()[h].contour.points) << name;
     }
   }
 }

@@ -93,7 +93,7 @@ TEST_F(DepthFrames, TheCacheHoldsAFewWhateverTheirNumber) {
   EXPECT_GE(s.loads, kFrames);
   EXPECT_LE(s.loads, kTraining + kFrames);
   ASSERT_TRUE(result.models.at("limit-angle").fits[0].fit);
-  for (const FrameComparison& c : result.models.at("limit-angle").frames) EXPECT_FALSE(c.prediction.failure) << c.frame;
+  for (const FrameComparison& c : result.models.at("limit-angle").frames) EXPECT_FALSE(c.prediction.failure()) << c.frame;
 }
 
 TEST_F(DepthFrames, AModelWithoutASurfaceLoadsNoneForItsPredictions) {

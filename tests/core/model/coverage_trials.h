@@ -74,8 +74,8 @@ inline CoverageResult runCoverageTrials(const CoverageTrials& t) {
     const Outcome<ModelFit> fit = fitted(0, 0);
     if (!fit) throw std::runtime_error("noise-free fit: " + fit.failure().message());
     const Prediction p = model.predict(*fit, heldOut, surface.get(), t.settings);
-    if (p.highlights.empty()) throw std::runtime_error("noise-free prediction");
-    truth = p.highlights[0].contour;
+    if (p.highlights().empty()) throw std::runtime_error("noise-free prediction");
+    truth = p.highlights()[0].contour;
   }
   CoverageResult result;
   result.trials = t.trials;
@@ -88,12 +88,12 @@ inline CoverageResult runCoverageTrials(const CoverageTrials& t) {
       continue;
     }
     const Prediction p = model.predict(*fit, heldOut, surface.get(), t.settings);
-    if (p.highlights.size() != 1) {
+    if (p.highlights().size() != 1) {
       ++result.failed;
       continue;
     }
-    const std::vector<double> sigma = model.bandSigmaPx(*fit, p.highlights[0], heldOut, surface.get(), t.settings);
-    const Polyline& contour = p.highlights[0].contour;
+    const std::vector<double> sigma = model.bandSigmaPx(*fit, p.highlights()[0], heldOut, surface.get(), t.settings);
+    const Polyline& contour = p.highlights()[0].contour;
     if (sigma.size() != contour.points.size()) {
       ++result.failed;
       continue;

@@ -60,8 +60,8 @@ std::map<std::string, Polyline> outlines(const Synthetic& scene, bool reversed =
       continue;
     }
     const Prediction p = predicted(model, *fit, scene, scene.cameras.back());
-    EXPECT_EQ(p.highlights.size(), 1u) << model << " " << (p.failure ? p.failure->message() : "");
-    if (!p.highlights.empty()) result[model] = p.highlights[0].contour;
+    EXPECT_EQ(p.highlights().size(), 1u) << model << " " << (p.failure() ? p.failure()->message() : "");
+    if (!p.highlights().empty()) result[model] = p.highlights()[0].contour;
   }
   return result;
 }
@@ -101,8 +101,8 @@ TEST(ModelLaws, LimitAngleReturnsTheMeasuredContour) {
     EXPECT_NEAR(*fit.limitAngle, scene.limitAngle, 1e-5);
     for (const Camera& camera : scene.cameras) {
       const Prediction p = predicted("limit-angle", fit, scene, camera);
-      ASSERT_EQ(p.highlights.size(), 1u);
-      EXPECT_LT(errorPct(exactHighlightsOf(scene, camera)[0], p.highlights[0]), 0.01) << scene.surface.type;
+      ASSERT_EQ(p.highlights().size(), 1u);
+      EXPECT_LT(errorPct(exactHighlightsOf(scene, camera)[0], p.highlights()[0]), 0.01) << scene.surface.type;
     }
   }
 }
@@ -116,9 +116,9 @@ TEST(ModelLaws, DualAndCanonicalReturnTheContourOnAPlane) {
     const ModelFit fit = fitted(model, input);
     for (const Camera& camera : scene.cameras) {
       const Prediction p = predicted(model, fit, scene, camera);
-      ASSERT_EQ(p.highlights.size(), 1u);
-      EXPECT_LT(errorPct(exactHighlightsOf(scene, camera)[0], p.highlights[0]), 0.3) << model;
-      EXPECT_EQ(p.highlights[0].coverage, 1);
+      ASSERT_EQ(p.highlights().size(), 1u);
+      EXPECT_LT(errorPct(exactHighlightsOf(scene, camera)[0], p.highlights()[0]), 0.3) << model;
+      EXPECT_EQ(p.highlights()[0].coverage, 1);
     }
   }
 }
@@ -158,8 +158,8 @@ TEST(ModelRefusals, NoViewsAndNoSurface) {
   const FitInput input = fitInput(scene, {});
   for (const std::string model : {"dual", "canonical", "limit-angle"}) {
     const Prediction p = modelByName(model).predict(fitted(model, input), scene.cameras[0], nullptr, {});
-    ASSERT_TRUE(p.failure) << model;
-    EXPECT_EQ(p.failure->reason, Reason::NoSurface);
+    ASSERT_TRUE(p.failure()) << model;
+    EXPECT_EQ(p.failure()->reason, Reason::NoSurface);
   }
 }
 
@@ -173,8 +173,8 @@ TEST(LimitAngleModel, LightAtInfinity) {
   EXPECT_LT(fit.lightEstimate->directionFrom({0, 0, 0}).cross(*scene.light.direction).norm(), 1e-4);
   for (const Camera& camera : scene.cameras) {
     const Prediction p = predicted("limit-angle", fit, scene, camera);
-    ASSERT_EQ(p.highlights.size(), 1u);
-    EXPECT_LT(errorPct(exactHighlightsOf(scene, camera)[0], p.highlights[0]), 0.01);
+    ASSERT_EQ(p.highlights().size(), 1u);
+    EXPECT_LT(errorPct(exactHighlightsOf(scene, camera)[0], p.highlights()[0]), 0.01);
   }
 }
 
@@ -184,12 +184,12 @@ TEST(CanonicalModel, DirectionsOverTheEdgeAreNamed) {
   const ModelFit fit = fitted("canonical", fitInput(scene, {}));
   const Camera& camera = scene.cameras[2];
   const Prediction whole = predicted("canonical", fit, scene, camera);
-  ASSERT_EQ(whole.highlights.size(), 1u);
+  ASSERT_EQ(whole.highlights().size(), 1u);
   Synthetic small = scene;
-  small.surface.width = 2 * std::abs(whole.highlights[0].brightest.point.position.y()) + 0.08;
+  small.surface.width = 2 * std::abs(whole.highlights()[0].brightest.point.position.y()) + 0.08;
   const Prediction p = predicted("canonical", fit, small, camera);
-  ASSERT_EQ(p.highlights.size(), 1u) << p.failure->message();
-  const PredictedHighlight& h = p.highlights[0];
+  ASSERT_EQ(p.highlights().size(), 1u) << p.failure()->message();
+  const PredictedHighlight& h = p.highlights()[0];
   EXPECT_LT(h.coverage, 0.9);
   EXPECT_GT(h.coverage, 0.3);
   EXPECT_FALSE(h.gaps.empty());
@@ -215,14 +215,14 @@ TEST(CanonicalModel, DirectionsOverTheHorizonAreNamed) {
   fit.lightEstimate = lightOf(scene.light);
   fit.ellipsoid = Ellipsoid(pose, Eigen::Vector3d(0.5, 0.5, 0.5));
   const Prediction p = predicted("canonical", fit, scene, scene.cameras[0]);
-  ASSERT_EQ(p.highlights.size(), 1u) << p.failure->message();
+  ASSERT_EQ(p.highlights().size(), 1u) << p.failure()->message();
   int hidden = 0;
-  for (const DirectionResult& d : p.highlights[0].canonical->directions) {
+  for (const DirectionResult& d : p.highlights()[0].canonical->directions) {
     ASSERT_NE(d.limitAngle.has_value(), d.failure.has_value());
     hidden += d.failure && d.failure->reason == Reason::Occluded;
   }
   EXPECT_GT(hidden, 0);
-  EXPECT_LT(p.highlights[0].coverage, 1);
+  EXPECT_LT(p.highlights()[0].coverage, 1);
 }
 
 // Two lamps; the second is off in the last frames: nothing is predicted for it there.

@@ -49,18 +49,17 @@ TEST(Plausible, AContourIsAnAnswerFromAFifthOfAPixelOn) {
     EXPECT_EQ(small->reason, Reason::NoHighlight);
   }
   EXPECT_THAT(tooSmall(circle(5e-4))->message(), HasSubstr("no highlight: the highlight has a radius of 0.0005 px"));
-  Prediction p;
-  p.highlights.resize(2);
-  p.highlights[0].contour = circle(5e-4);
-  p.highlights[1].contour = circle(5);
+  Prediction p = std::vector<PredictedHighlight>(2);
+  p.editable()[0].contour = circle(5e-4);
+  p.editable()[1].contour = circle(5);
   dropTooSmall(p);
-  ASSERT_THAT(p.highlights, SizeIs(1));
-  EXPECT_FALSE(p.failure);
-  p.highlights[0].contour = circle(5e-4);
+  ASSERT_THAT(p.highlights(), SizeIs(1));
+  EXPECT_FALSE(p.failure());
+  p.editable()[0].contour = circle(5e-4);
   dropTooSmall(p);
-  EXPECT_THAT(p.highlights, SizeIs(0));
-  ASSERT_TRUE(p.failure);
-  EXPECT_EQ(p.failure->reason, Reason::NoHighlight);
+  EXPECT_THAT(p.highlights(), SizeIs(0));
+  ASSERT_TRUE(p.failure());
+  EXPECT_EQ(p.failure()->reason, Reason::NoHighlight);
 }
 
 TEST(Plausible, ATinyObservedHighlightTrainsNothing) {

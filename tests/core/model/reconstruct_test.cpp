@@ -311,9 +311,9 @@ TEST(FitEllipsoid, DegenerateALinearQuadricThatIsNoEllipsoidIsReturnedAndNamed) 
   ModelFit fit;
   fit.quadric = truth;
   const Prediction p = modelByName("primal").predict(fit, lookAt({0.1, 0, 2}, {0, 0, 0}), nullptr, Settings());
-  ASSERT_TRUE(p.failure);
-  EXPECT_EQ(p.failure->reason, Reason::NotAnEllipsoid);
-  EXPECT_EQ(p.failure->detail, "hyperboloid of one sheet");
+  ASSERT_TRUE(p.failure());
+  EXPECT_EQ(p.failure()->reason, Reason::NotAnEllipsoid);
+  EXPECT_EQ(p.failure()->detail, "hyperboloid of one sheet");
 }
 
 // Another program's linear reconstruction (72 contour points per view, algebraic fit). The level sets are not exactly conics and

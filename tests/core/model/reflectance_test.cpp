@@ -57,9 +57,9 @@ FitInput inputOf(const RadianceScene& s, int views) {
 
 double reflectanceErrorPct(const RadianceScene& s, const ModelFit& fit, const Camera& camera) {
   const Prediction p = modelByName("reflectance").predict(fit, camera, s.surface.get(), {});
-  if (p.highlights.size() != 1) return std::numeric_limits<double>::infinity();
+  if (p.highlights().size() != 1) return std::numeric_limits<double>::infinity();
   const Highlight truth = observed(s, camera);
-  const PredictedHighlight& h = p.highlights.front();
+  const PredictedHighlight& h = p.highlights().front();
   EXPECT_EQ(h.coverage, 1);
   return compareContours(truth.contour, h.contour, h.gaps, h.ellipse, truth.peak, h.brightest.pixel).contourErrorPct;
 }
@@ -184,8 +184,8 @@ TEST(Reflectance, FindsALongLampAndPredictsOtherViews) {
     const Camera& camera = s.geometry.cameras[i];
     EXPECT_LT(reflectanceErrorPct(s, *fit, camera), 0.15) << i;
     const Prediction p = modelByName("reflectance").predict(*fit, camera, s.surface.get(), {});
-    ASSERT_EQ(p.highlights.size(), 1u);
-    for (const double sigma : modelByName("reflectance").bandSigmaPx(*fit, p.highlights[0], camera, s.surface.get(), {}))
+    ASSERT_EQ(p.highlights().size(), 1u);
+    for (const double sigma : modelByName("reflectance").bandSigmaPx(*fit, p.highlights()[0], camera, s.surface.get(), {}))
       EXPECT_TRUE(std::isfinite(sigma) && sigma < 1) << sigma;
   }
   Settings point;
@@ -221,9 +221,9 @@ TEST(Reflectance, HighlightsThatNobodySeesAreNamed) {
     for (const Lobe lobe : {Lobe::TorranceSparrow, Lobe::Ggx, Lobe::BlinnPhong, Lobe::Phong}) {
       const Prediction p = modelByName("reflectance")
                                .predict(fitOf(Light::at(row.light), lobe, 0.06), camera, makeAnalytic(row.surface).get(), {});
-      ASSERT_TRUE(p.highlights.empty()) << nameOf(lobe) << " " << row.light.transpose();
-      ASSERT_TRUE(p.failure);
-      EXPECT_EQ(p.failure->reason, row.reason) << nameOf(lobe) << " " << row.light.transpose();
+      ASSERT_TRUE(p.highlights().empty()) << nameOf(lobe) << " " << row.light.transpose();
+      ASSERT_TRUE(p.failure());
+      EXPECT_EQ(p.failure()->reason, row.reason) << nameOf(lobe) << " " << row.light.transpose();
     }
 }
 
@@ -239,8 +239,8 @@ TEST(Reflectance, HighlightsWithTheirPeakBeyondTheBorderKeepTheirShape) {
   const Prediction p =
       modelByName("reflectance")
           .predict(fitOf(Light::at({1.5, 0.9, 1.2}), Lobe::Ggx, 0.15), s.geometry.cameras[0], s.surface.get(), {});
-  ASSERT_EQ(p.highlights.size(), 1u) << p.failure->message();
-  const PredictedHighlight& h = p.highlights.front();
+  ASSERT_EQ(p.highlights().size(), 1u) << p.failure()->message();
+  const PredictedHighlight& h = p.highlights().front();
   EXPECT_LT(compareContours(truth->front().contour, h.contour, h.gaps, h.ellipse, truth->front().peak, h.brightest.pixel)
                 .contourErrorPct,
             kPredictedPct);

@@ -102,8 +102,8 @@ TEST(RadianceStars, AreWhatTheSettingAsksFor) {
   const ModelFit fit = radianceFit(lightOf(s.light), Lobe::Ggx, 0.1);
   const Prediction whole = modelByName("reflectance").predict(fit, s.cameras[1], surface.get(), {}),
                    star = modelByName("reflectance").predict(fit, s.cameras[1], surface.get(), kStar);
-  expectSameContours(whole.highlights, star.highlights, "setting", 1e-2);
-  EXPECT_NE(whole.highlights.at(0).contour.points.size(), star.highlights.at(0).contour.points.size());
+  expectSameContours(whole.highlights(), star.highlights(), "setting", 1e-2);
+  EXPECT_NE(whole.highlights().at(0).contour.points.size(), star.highlights().at(0).contour.points.size());
 }
 
 TEST(RadianceStars, Scale) {
@@ -144,10 +144,10 @@ TEST(RadianceStars, SeveralHighlightsOfOneLight) {
   const auto surface = makeAnalytic(ring.spec);
   const ModelFit fit = radianceFit(ring.light, Lobe::TorranceSparrow, 0.05);
   const auto whole = modelByName("reflectance").predict(fit, ring.camera, surface.get(), {});
-  ASSERT_GE(whole.highlights.size(), 2u);
+  ASSERT_GE(whole.highlights().size(), 2u);
   const auto stars = starsOf(fit, ring.camera, *surface);
   ASSERT_TRUE(stars) << stars.failure().message();
-  expectSameContours(whole.highlights, *stars, surface->describe(), 0.05);
+  expectSameContours(whole.highlights(), *stars, surface->describe(), 0.05);
 }
 
 TEST(RadianceStars, LimitAngleWithSeveralBrightestPoints) {
@@ -158,9 +158,9 @@ TEST(RadianceStars, LimitAngleWithSeveralBrightestPoints) {
   for (const auto& surface : {makeAnalytic(ring.spec), meshOf(ring.spec, 400)}) {
     const Prediction whole = modelByName("limit-angle").predict(fit, ring.camera, surface.get(), {}),
                      stars = modelByName("limit-angle").predict(fit, ring.camera, surface.get(), kStar);
-    ASSERT_GE(whole.highlights.size(), 2u);
-    expectSameContours(whole.highlights, stars.highlights, surface->describe(), 1e-3);
-    EXPECT_NE(whole.highlights[0].contour.points.size(), stars.highlights[0].contour.points.size()) << "the stars were not used";
+    ASSERT_GE(whole.highlights().size(), 2u);
+    expectSameContours(whole.highlights(), stars.highlights(), surface->describe(), 1e-3);
+    EXPECT_NE(whole.highlights()[0].contour.points.size(), stars.highlights()[0].contour.points.size()) << "the stars were not used";
   }
 }
 
@@ -210,9 +210,9 @@ TEST(RadianceStars, FallBackByName) {
     const HighlightModel& model = modelByName("reflectance");
     const Prediction whole = model.predict(fit, row.camera, row.surface.get(), {}),
                      star = model.predict(fit, row.camera, row.surface.get(), kStar);
-    ASSERT_EQ(whole.highlights.size(), star.highlights.size()) << row.what;
-    for (std::size_t i = 0; i < whole.highlights.size(); ++i)
-      EXPECT_EQ(whole.highlights[i].contour.points, star.highlights[i].contour.points) << row.what;
+    ASSERT_EQ(whole.highlights().size(), star.highlights().size()) << row.what;
+    for (std::size_t i = 0; i < whole.highlights().size(); ++i)
+      EXPECT_EQ(whole.highlights()[i].contour.points, star.highlights()[i].contour.points) << row.what;
   }
 }
 
@@ -236,8 +236,8 @@ TEST(RadianceStars, ARegionWithoutAMirrorPointIsNotOverlooked) {
   const ModelFit fit = radianceFit(Light::at(lamp), Lobe::TorranceSparrow, 0.05);
   const Prediction whole = modelByName("reflectance").predict(fit, camera, surface.get(), {}),
                    star = modelByName("reflectance").predict(fit, camera, surface.get(), kStar);
-  ASSERT_EQ(whole.highlights.size(), 2u);
-  ASSERT_EQ(star.highlights.size(), 2u);
+  ASSERT_EQ(whole.highlights().size(), 2u);
+  ASSERT_EQ(star.highlights().size(), 2u);
   const auto stars = starsOf(fit, camera, *surface);
   ASSERT_FALSE(stars);
   EXPECT_EQ(stars.failure().reason, Reason::NotSupported) << stars.failure().message();

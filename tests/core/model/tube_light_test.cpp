@@ -72,8 +72,8 @@ Outcomes heldOutError(const TrueLight& light, int orders, double scale = 1, doub
   result.light = *fit->lightEstimate;
   for (const auto& [camera, highlight] : heldOut) {
     const Prediction p = model.predict(*fit, camera, surface.get(), settings);
-    if (p.highlights.size() != 1) throw std::runtime_error("no prediction");
-    const PredictedHighlight& h = p.highlights[0];
+    if (p.highlights().size() != 1) throw std::runtime_error("no prediction");
+    const PredictedHighlight& h = p.highlights()[0];
     result.errorPct += compareContours(highlight.contour, h.contour, h.gaps, h.ellipse, highlight.peak, h.brightest.pixel).contourErrorPct /
                        double(heldOut.size());
     if (noise > 0) {

@@ -180,9 +180,9 @@ TEST(Band, IsTheSameInPixelsAtEveryScale) {
       ASSERT_TRUE(fit) << name << " " << fit.failure().message();
       const auto surface = makeAnalytic(s.surface);
       const Prediction p = model.predict(*fit, s.cameras[2], surface.get(), {});
-      ASSERT_EQ(p.highlights.size(), 1u) << name;
-      const std::vector<double> sigma = model.bandSigmaPx(*fit, p.highlights[0], s.cameras[2], surface.get(), {});
-      ASSERT_EQ(sigma.size(), p.highlights[0].contour.points.size()) << name << " " << scale;
+      ASSERT_EQ(p.highlights().size(), 1u) << name;
+      const std::vector<double> sigma = model.bandSigmaPx(*fit, p.highlights()[0], s.cameras[2], surface.get(), {});
+      ASSERT_EQ(sigma.size(), p.highlights()[0].contour.points.size()) << name << " " << scale;
       double mean = 0;
       for (const double x : sigma) {
         ASSERT_TRUE(std::isfinite(x) && x > 0) << name;
@@ -206,8 +206,8 @@ TEST(Band, IsEmptyWhereNothingIsKnown) {
     ASSERT_TRUE(fit) << name;
     EXPECT_FALSE(fit->uncertainty) << name;
     const Prediction p = model.predict(*fit, scene.cameras[0], surface.get(), settings);
-    ASSERT_FALSE(p.highlights.empty());
-    EXPECT_TRUE(model.bandSigmaPx(*fit, p.highlights[0], scene.cameras[0], surface.get(), settings).empty()) << name;
+    ASSERT_FALSE(p.highlights().empty());
+    EXPECT_TRUE(model.bandSigmaPx(*fit, p.highlights()[0], scene.cameras[0], surface.get(), settings).empty()) << name;
   }
 }
 

@@ -78,8 +78,8 @@ void compareFits(const ModelFit& a, const ModelFit& b, const std::string& model,
 
 void compareFrames(const FrameComparison& a, const FrameComparison& b, const Back& back, const std::string& model, const std::string& frame,
                    const std::string& place, Comparison& c) {
-  const auto &h = a.prediction.highlights, &k = b.prediction.highlights;
-  EXPECT_EQ(h.size(), k.size()) << place << ": " << textOf(a.prediction.failure) << " | " << textOf(b.prediction.failure);
+  const auto &h = a.prediction.highlights(), &k = b.prediction.highlights();
+  EXPECT_EQ(h.size(), k.size()) << place << ": " << textOf(a.prediction.failure()) << " | " << textOf(b.prediction.failure());
   for (std::size_t i = 0; i < std::min(h.size(), k.size()); ++i) c.contour(model, h[i].contour, k[i].contour, frame);
   EXPECT_EQ(a.rows.size(), b.rows.size()) << place;
   for (std::size_t i = 0; i < std::min(a.rows.size(), b.rows.size()); ++i) {

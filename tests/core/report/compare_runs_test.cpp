@@ -43,11 +43,11 @@ Inspection byHand(const std::vector<std::string>& ids, const std::vector<double>
     if (errors[static_cast<std::size_t>(i)] >= 0) {
       ContourMetrics m{};
       m.contourErrorPct = errors[static_cast<std::size_t>(i)];
-      c.prediction.highlights.resize(1);
+      c.prediction = std::vector<PredictedHighlight>(1);
       c.rows.push_back({0, 0, m, {}, {}});
     } else {
-      c.prediction.failure = Failure{Reason::NoBrightestPoint, "gone"};
-      c.rows.push_back({0, -1, {}, c.prediction.failure, {}});
+      c.prediction = Failure{Reason::NoBrightestPoint, "gone"};
+      c.rows.push_back({0, -1, {}, *c.prediction.failure(), {}});
     }
     model.frames.push_back(c);
     run.evidence.push_back({});

@@ -32,14 +32,14 @@ FrameEvidence observed(const std::vector<Polyline>& contours, bool cut = false) 
 }
 
 Prediction predicted(const std::vector<Polyline>& contours) {
-  Prediction p;
+  std::vector<PredictedHighlight> found;
   for (const Polyline& c : contours) {
     PredictedHighlight h;
     h.contour = c;
     h.brightest.pixel = centroid(c);
-    p.highlights.push_back(h);
+    found.push_back(h);
   }
-  return p;
+  return found;
 }
 
 struct Counts {
