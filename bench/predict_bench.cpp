@@ -150,12 +150,12 @@ BENCHMARK(partWalkMesh)->Unit(benchmark::kMicrosecond);
 std::vector<BundleView> bundleViews(bool mesh) {
   std::vector<BundleView> views;
   for (const TrainingView& v : training().views)
-    views.push_back({v.camera, &surface(mesh), v.highlight.contour.points, v.brightest});
+    views.push_back({v.camera, &surface(mesh), v.highlight.contour.points, v.seen->brightest});
   return views;
 }
 Light triangulated() {
   std::vector<ReflectedRay> rays;
-  for (const TrainingView& v : training().views) rays.push_back(reflectedRay(*v.brightest, v.camera));
+  for (const TrainingView& v : training().views) rays.push_back(reflectedRay(v.seen->brightest, v.camera));
   return triangulateLight(rays)->light;
 }
 void bundle(benchmark::State& state, bool mesh) {

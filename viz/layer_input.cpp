@@ -71,7 +71,7 @@ bool LayerInput::onSurface(int frame) const { return !inspection->surfaces || in
 std::vector<const TrainingView*> LayerInput::views() const {
   std::vector<const TrainingView*> result;
   for (const TrainingView& view : inspection->views) {
-    if (!view.failure && view.frame >= 0 && onSurface(view.frame) && shows(view.frame)) result.push_back(&view);
+    if (view.seen && view.frame >= 0 && onSurface(view.frame) && shows(view.frame)) result.push_back(&view);
   }
   return result;
 }
@@ -84,7 +84,7 @@ std::vector<TrainingView> LayerInput::ownViews() const {
   const FrameEvidence& evidence = inspection->evidence[at];
   for (std::size_t i = 0; i < evidence.highlights.size(); ++i) {
     TrainingView view = trainingView(evidence, static_cast<int>(i), frame(selection.frame).camera, surface);
-    if (view.failure) continue;
+    if (!view.seen) continue;
     view.frame = selection.frame;  // evidence of one frame alone may not tell it
     result.push_back(std::move(view));
   }
@@ -98,7 +98,7 @@ std::vector<TrainingView> LayerInput::ownWalks() const {
     const LightEstimate* const light = inspection->lightFor(selection.frame, view.highlight.light);
     if (!light) continue;
     addCanonicalContour(view, light->light, inspection->request.settings);
-    if (view.canonical && view.tangentPlane && view.brightest) result.push_back(std::move(view));
+    if (view.canonical && view.seen) result.push_back(std::move(view));
   }
   return result;
 }
@@ -106,7 +106,7 @@ std::vector<TrainingView> LayerInput::ownWalks() const {
 std::vector<const TrainingView*> LayerInput::viewsOf(const ModelFit& fit) const {
   std::vector<const TrainingView*> result;
   for (const TrainingView& view : inspection->views) {
-    if (view.failure || view.frame < 0 || view.highlight.light != fit.light) continue;
+    if (!view.seen || view.frame < 0 || view.highlight.light != fit.light) continue;
     if (!fit.frames.empty() && std::find(fit.frames.begin(), fit.frames.end(), view.frame) == fit.frames.end()) continue;
     if (fit.surface && inspection->surfaces && inspection->surfaces->keyOf(view.frame) != *fit.surface) continue;
     if (shows(view.frame)) result.push_back(&view);
@@ -153,8 +153,8 @@ int LayerInput::highlightOf(const TrainingView& view) const {
 std::vector<LayerInput::Mirror> LayerInput::mirrors(int frame) const {
   std::vector<Mirror> result;
   for (const TrainingView* view : views()) {
-    if (view->frame == frame && view->tangentPlane)
-      result.push_back({*view->tangentPlane, highlightOf(*view), view->highlight.light});
+    if (view->frame == frame && view->seen)
+      result.push_back({view->seen->tangentPlane, highlightOf(*view), view->highlight.light});
   }
   if (!result.empty() || !surface || static_cast<std::size_t>(frame) >= inspection->evidence.size()) return result;
   // A held-out frame has no training view: its mirrors are the tangent planes at the observed peaks.

@@ -203,7 +203,7 @@ std::vector<Eigen::Vector3d> ellipsoidExtent(const LayerInput& in, const std::st
     if (!model.empty() && name != model) continue;
     for (const ModelFit* fit : in.fits(name))
       for (const TrainingView* view : in.viewsOf(*fit))
-        if (view->brightest) points.push_back(view->brightest->point.position);
+        if (view->seen) points.push_back(view->seen->brightest.point.position);
   }
   return points;
 }
@@ -262,7 +262,7 @@ Eigen::Vector3d overviewDirection(const LayerInput& in, const std::vector<int>& 
   // From above the highlights, a little aside of the cameras: then neither the surface nor the frustums hide what matters.
   Eigen::Vector3d normals = Eigen::Vector3d::Zero();
   for (const TrainingView& view : in.inspection->views) {
-    if (view.brightest && view.tangentPlane) normals += facing(view.brightest->point, view.camera.centreInWorld()).normal;
+    if (view.seen) normals += facing(view.seen->brightest.point, view.camera.centreInWorld()).normal;
   }
   const Eigen::Vector3d towardsCameras = eyes - in.scale.surfaceBox.center();
   Eigen::Vector3d towards = normals.norm() > 0.1 ? normals.normalized() : towardsCameras.normalized();
@@ -299,8 +299,8 @@ std::optional<Framing> ellipsoidFraming(const LayerInput& in, const std::vector<
   Eigen::Vector3d up = upwards(in, frames), normals = Eigen::Vector3d::Zero();
   int views = 0;
   for (const TrainingView* view : in.views()) {
-    if (!view->tangentPlane || !view->brightest) continue;
-    normals += facing(view->brightest->point, view->camera.centreInWorld()).normal;
+    if (!view->seen) continue;
+    normals += facing(view->seen->brightest.point, view->camera.centreInWorld()).normal;
     ++views;
   }
   if (views > 0 && normals.norm() > 0.8 * views) up = normals.normalized();

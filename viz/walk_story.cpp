@@ -27,10 +27,10 @@ struct Start {
 
 Outcome<Start> forwards(const Explanation& e) {
   if (!e.view) return Failure{Reason::NoHighlight, ""};
-  if (e.view->failure) return *e.view->failure;
+  if (!e.view->seen) return e.view->seen.failure();
   if (!e.lightUsed) return Failure{Reason::NoLight, "the walk needs a light"};
-  if (!e.view->canonical || !e.view->brightest || !e.view->surface) return Failure{Reason::NoSurface, "nothing to walk on"};
-  return Start{&*e.view->canonical, *e.view->brightest, e.view->surface, *e.lightUsed};
+  if (!e.view->canonical || !e.view->surface) return Failure{Reason::NoSurface, "nothing to walk on"};
+  return Start{&*e.view->canonical, e.view->seen->brightest, e.view->surface, *e.lightUsed};
 }
 
 Outcome<Start> backwards(const Inspection& in, const Explanation& e) {

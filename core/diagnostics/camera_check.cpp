@@ -136,7 +136,7 @@ class Check {
       for (Pixel& p : h.contour.points) p = turned(p);
       if (change.flipX != change.flipY) std::reverse(h.contour.points.begin(), h.contour.points.end());  // keeps its sense
       TrainingView view = trainingView(evidence, 0, camera, v.surface);
-      if (view.failure) return std::nullopt;
+      if (!view.seen) return std::nullopt;
       views.push_back(std::move(view));
     }
     LightEstimate known;  // should the search be needed all the same

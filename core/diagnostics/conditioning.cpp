@@ -69,8 +69,8 @@ std::vector<Eigen::Vector3d> raysOf(const HighlightModel& model, const std::vect
   for (const TrainingView& v : views) {
     if (!model.traits().mirrored) {
       if (const std::optional<ConicView> outline = model.outlineIn(v)) rays.push_back(v.camera.ray(outline->ellipse.centre).direction.normalized());
-    } else if (!v.failure && v.brightest) {
-      rays.push_back(reflectedRay(*v.brightest, v.camera).direction);
+    } else if (v.seen) {
+      rays.push_back(reflectedRay(v.seen->brightest, v.camera).direction);
     }
   }
   return rays;
@@ -115,7 +115,7 @@ class Findings {
 
   void findStrayPeaks(const Inspection& inspection) {
     for (const TrainingView& v : views_) {
-      if (v.failure || !v.brightest) continue;
+      if (!v.seen) continue;
       const double away = outsideOfContour(v.highlight);
       if (away == 0) continue;
       farthestStray_ = std::max(farthestStray_, away);
@@ -225,8 +225,8 @@ class Findings {
     int n = 0;
     for (const TrainingView& v : views_) {
       const bool mirrored = model_.traits().mirrored;
-      if (mirrored && (v.failure || !v.brightest)) continue;
-      sum += (at - (mirrored ? v.brightest->point.position : v.camera.centreInWorld())).norm();
+      if (mirrored && !v.seen) continue;
+      sum += (at - (mirrored ? v.seen->brightest.point.position : v.camera.centreInWorld())).norm();
       ++n;
     }
     return n ? sum / n : std::nan("");
@@ -291,7 +291,7 @@ class Findings {
       for (const ConicView& v : outlines_) diameters += 2 * std::sqrt(v.ellipse.semiAxes.prod()), ++n;
     else
       for (const TrainingView& v : views_)
-        if (!v.failure && v.highlight.areaPx2 > 0) diameters += 2 * std::sqrt(v.highlight.areaPx2 / std::numbers::pi), ++n;
+        if (v.seen && v.highlight.areaPx2 > 0) diameters += 2 * std::sqrt(v.highlight.areaPx2 / std::numbers::pi), ++n;
     if (n == 0 || (fit_.fit->residualPx.empty() && !(rms > 0))) return;
     const double share = rms / (diameters / n);
     const Verdict v = below(share, bounds::kResidualAmber, bounds::kResidualRed);

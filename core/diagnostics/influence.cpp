@@ -99,7 +99,7 @@ Influence measureInfluence(const Inspection& inspection, const ProgressFn& progr
   const int n = int(folds.size());
   for (int f = 0; f < int(inspection.scene->frames.size()); ++f)
     if (std::any_of(inspection.views.begin(), inspection.views.end(),
-                    [&](const TrainingView& v) { return v.frame == f && !v.failure; }))
+                    [&](const TrainingView& v) { return v.frame == f && v.seen; }))
       ++influence.trainingFrames;
   influence.probes = probesOf(inspection, mostProbes);
   for (const Fold& fold : folds)

@@ -139,7 +139,7 @@ Outcome<Light> lightOfModel(const Inspection& inspection, int frame, const std::
 Outcome<std::shared_ptr<const Surface>> surfaceOfFrame(const Inspection& inspection, int frame, const std::string& light) {
   require(frame >= 0 && frame < int(inspection.scene->frames.size()), "surfaceOfFrame: no such frame");
   for (const TrainingView& v : inspection.views)
-    if (v.frame == frame && !v.failure && v.surface && v.highlight.light == light) return v.surface;
+    if (v.frame == frame && v.seen && v.surface && v.highlight.light == light) return v.surface;
   return surfaceFor(inspection, frame, light);
 }
 

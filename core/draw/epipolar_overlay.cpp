@@ -17,7 +17,7 @@ struct PairView {
 
 const TrainingView* trainingViewOf(const Inspection& inspection, int frame, const std::string& light) {
   for (const TrainingView& view : inspection.views)
-    if (view.frame == frame && view.highlight.light == light && !view.failure) return &view;
+    if (view.frame == frame && view.highlight.light == light && view.seen) return &view;
   return nullptr;
 }
 
@@ -51,8 +51,8 @@ Outcome<PairView> viewOf(const Inspection& inspection, int frame, int highlight,
     return Failure{Reason::TooFewPoints, "frame " + f.id + ": no ellipse fits the observed contour"};
   }
   if (request.cameras == PairCameras::Virtual) {
-    if (training && training->virtualCamera) {
-      view.projection = *training->virtualCamera;
+    if (training && training->seen) {
+      view.projection = training->seen->virtualCamera;
     } else if (const Plane* plane = predictedPlane(inspection, frame, highlight)) {
       view.projection = virtualCamera(f.camera, *plane);
     } else {

@@ -98,12 +98,12 @@ void addLimitDirections(const Inspection& inspection, int frame, const std::func
   OverlayLine style;
   bool any = false;
   for (const TrainingView& view : inspection.views) {
-    if (view.frame != frame || !view.canonical || !view.brightest || !drawn(canonicalModel().id())) continue;
+    if (view.frame != frame || !view.canonical || !view.seen || !drawn(canonicalModel().id())) continue;
     style.model = canonicalModel().id();
     style.light = view.highlight.light;
     style.colour = canonicalColour();
     style.label = "walks of the observed contour";
-    addWalks(*view.canonical, view.brightest->pixel, camera, style, lines);
+    addWalks(*view.canonical, view.seen->brightest.pixel, camera, style, lines);
     any = true;
   }
   if (any) return;

@@ -80,7 +80,7 @@ void gather(Case& c) {
     out.view = trainingView(evidence, out.highlight, c.camera(), found ? *found : nullptr);
   }
   c.surface = out.view ? out.view->surface : nullptr;
-  if (out.view && !out.view->failure && !out.view->canonical && out.lightUsed)
+  if (out.view && out.view->seen && !out.view->canonical && out.lightUsed)
     addCanonicalContour(*out.view, *out.lightUsed, in.request.settings);
 }
 
@@ -90,8 +90,8 @@ bool reached(const Case& c, ExplainStep& step) {
     step.failure = why ? *why : Failure{Reason::NoHighlight, "the frame shows none"};
   } else if (!c.out.view) {
     step.failure = Failure{Reason::NoSurface, ""};
-  } else if (c.out.view->failure) {
-    step.failure = c.out.view->failure;
+  } else {
+    step.failure = c.out.view->failure();
   }
   return !step.failure;
 }
@@ -102,11 +102,11 @@ double radiusOnPlane(const TrainingView& v) {
   int n = 0;
   for (const Pixel& p : v.highlight.contour.points) {
     const Ray ray = v.camera.ray(p);
-    const double across = v.tangentPlane->normal.dot(ray.direction);
+    const double across = v.seen->tangentPlane.normal.dot(ray.direction);
     if (across == 0) continue;
-    const double t = -v.tangentPlane->signedDistance(ray.origin) / across;
+    const double t = -v.seen->tangentPlane.signedDistance(ray.origin) / across;
     if (!(t > 0)) continue;
-    sum += (ray.at(t) - v.brightest->point.position).norm();
+    sum += (ray.at(t) - v.seen->brightest.point.position).norm();
     ++n;
   }
   return n > 0 ? sum / n : 0;
@@ -120,25 +120,21 @@ void peakStep(const Case& c, ExplainStep& step) {
     step.broken.push_back({"peak-outside-contour", {one("", "from the peak to its contour", away, "px")}});
   if (!reached(c, step)) return;
   const TrainingView& v = *c.out.view;
-  if (!v.brightest) {
-    step.failure = Failure{Reason::NoSurface, "the frame has no surface for the ray to hit"};
-    return;
-  }
-  step.numbers.push_back(point("P_B", "brightest point", v.brightest->point.position));
+  step.numbers.push_back(point("P_B", "brightest point", v.seen->brightest.point.position));
   step.numbers.push_back(
-      one("", "distance from the camera", (v.brightest->point.position - v.camera.centreInWorld()).norm(), "m"));
+      one("", "distance from the camera", (v.seen->brightest.point.position - v.camera.centreInWorld()).norm(), "m"));
 }
 
 void tangentStep(const Case& c, ExplainStep& step) {
-  if (!reached(c, step) || !c.out.view->brightest || !c.out.view->tangentPlane) return;
+  if (!reached(c, step) || !c.out.view->seen) return;
   const TrainingView& v = *c.out.view;
-  const Eigen::Vector3d toCamera = (v.camera.centreInWorld() - v.brightest->point.position).normalized();
-  step.numbers.push_back(point("N", "normal at P_B", v.tangentPlane->normal, ""));
+  const Eigen::Vector3d toCamera = (v.camera.centreInWorld() - v.seen->brightest.point.position).normalized();
+  step.numbers.push_back(point("N", "normal at P_B", v.seen->tangentPlane.normal, ""));
   step.numbers.push_back(
       one("", "angle between N and the view ray",
-          degrees(std::atan2(toCamera.cross(v.tangentPlane->normal).norm(), toCamera.dot(v.tangentPlane->normal))), "deg"));
+          degrees(std::atan2(toCamera.cross(v.seen->tangentPlane.normal).norm(), toCamera.dot(v.seen->tangentPlane.normal))), "deg"));
   if (!c.surface) return;
-  if (const Outcome<Curvature> k = c.surface->curvatureAt(v.brightest->point)) {
+  if (const Outcome<Curvature> k = c.surface->curvatureAt(v.seen->brightest.point)) {
     step.numbers.push_back(one("κ₁", "principal curvature", k->k1, "1/m"));
     step.numbers.push_back(one("κ₂", "principal curvature", k->k2, "1/m"));
   }
@@ -166,16 +162,16 @@ void fieldOfView(const Case& c, ExplainStep& step) {
 ModelTraits::Assumes assumes(const std::string& model) { return modelByName(model).traits().surface; }
 
 void virtualCameraStep(const Case& c, ExplainStep& step) {
-  if (!reached(c, step) || !c.out.view->tangentPlane || !c.out.view->virtualCamera) return;
+  if (!reached(c, step) || !c.out.view->seen) return;
   const TrainingView& v = *c.out.view;
   step.numbers.push_back(point("C", "camera centre", v.camera.centreInWorld()));
-  step.numbers.push_back(point("C_v", "centre of the virtual camera", v.tangentPlane->reflected(v.camera.centreInWorld())));
+  step.numbers.push_back(point("C_v", "centre of the virtual camera", v.seen->tangentPlane.reflected(v.camera.centreInWorld())));
   step.numbers.push_back(
-      one("det M", "of the mirror's 3x3 block", v.tangentPlane->reflection().topLeftCorner<3, 3>().determinant()));
+      one("det M", "of the mirror's 3x3 block", v.seen->tangentPlane.reflection().topLeftCorner<3, 3>().determinant()));
   fieldOfView(c, step);
   // How far the surface is from a plane within the highlight: the normal's turn against the limit angle.
-  if (!c.surface || !v.brightest) return;
-  const Outcome<Curvature> k = c.surface->curvatureAt(v.brightest->point);
+  if (!c.surface || !v.seen) return;
+  const Outcome<Curvature> k = c.surface->curvatureAt(v.seen->brightest.point);
   const double limit = c.fit && c.fit->fit && c.fit->fit->limitAngle ? *c.fit->fit->limitAngle : 0;
   const LightEstimate* common = c.common();
   const double alpha = limit > 0 ? limit : common ? common->limitAngle : 0;
@@ -194,8 +190,8 @@ void virtualCameraStep(const Case& c, ExplainStep& step) {
   if (wasComputed(Assumes::ConstantCurvature)) {
     double least = std::numeric_limits<double>::infinity(), most = -least;
     for (const TrainingView& other : c.inspection.views) {
-      if (other.failure || !other.brightest || !other.surface || !c.sharesModel(other.frame)) continue;
-      const Outcome<Curvature> there = other.surface->curvatureAt(other.brightest->point);
+      if (!other.seen || !other.surface || !c.sharesModel(other.frame)) continue;
+      const Outcome<Curvature> there = other.surface->curvatureAt(other.seen->brightest.point);
       if (!there) continue;
       least = std::min({least, there->k1, there->k2});
       most = std::max({most, there->k1, there->k2});
@@ -289,7 +285,7 @@ std::optional<double> epipolarMiss(const Case& c, bool mirrored) {
   std::vector<const TrainingView*> views;
   for (const TrainingView& v : c.inspection.views) {
     const std::vector<int>& used = c.fit->fit->frames;
-    if (v.failure || !v.highlight.ellipse || !v.virtualCamera || v.highlight.light != c.out.light) continue;
+    if (!v.seen || !v.highlight.ellipse || v.highlight.light != c.out.light) continue;
     if (std::find(used.begin(), used.end(), v.frame) != used.end()) views.push_back(&v);
   }
   const std::size_t every = (views.size() + kMostPairedViews - 1) / kMostPairedViews;
@@ -297,7 +293,7 @@ std::optional<double> epipolarMiss(const Case& c, bool mirrored) {
   int n = 0;
   for (std::size_t i = 0; i < views.size(); i += every)
     for (std::size_t j = i + every; j < views.size(); j += every) {
-      const auto camera = [&](const TrainingView& v) { return mirrored ? *v.virtualCamera : v.camera.projection(); };
+      const auto camera = [&](const TrainingView& v) { return mirrored ? v.seen->virtualCamera : v.camera.projection(); };
       const Outcome<EpipolarTangents> t =
           epipolarTangents(camera(*views[i]), *views[i]->highlight.ellipse, camera(*views[j]), *views[j]->highlight.ellipse);
       if (!t || !std::isfinite(t->rmsPx())) continue;
@@ -527,9 +523,9 @@ Explanation explain(const Inspection& inspection, int frame, int highlight, cons
                                                 {"projection", projectionStep},
                                                 {"inverse-walk", inverseWalkStep},
                                                 {"comparison", comparisonStep}};
-  const bool seen = out.view && out.view->brightest;
+  const bool seen = out.view && out.view->seen;
   const double distance =
-      seen ? (out.view->brightest->point.position - c.camera().centreInWorld()).norm() : workingDistance(*inspection.scene);
+      seen ? (out.view->seen->brightest.point.position - c.camera().centreInWorld()).norm() : workingDistance(*inspection.scene);
   for (const std::string& id : explainSteps()) {
     ExplainStep step;
     step.id = id;

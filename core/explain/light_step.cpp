@@ -97,8 +97,8 @@ void lightStep(const Case& c, ExplainStep& step) {
   // Those that this light was found from.
   std::vector<Eigen::Vector3d> rays;
   for (const TrainingView& v : c.inspection.views)
-    if (!v.failure && v.brightest && v.highlight.light == c.out.light && c.sharesModel(v.frame))
-      rays.push_back(reflectedRay(*v.brightest, v.camera).direction);
+    if (v.seen && v.highlight.light == c.out.light && c.sharesModel(v.frame))
+      rays.push_back(reflectedRay(v.seen->brightest, v.camera).direction);
   const double widest = widestAngle(rays);
   step.numbers.push_back(one("", "reflected rays", double(rays.size())));
   step.numbers.push_back(one("", "widest angle between them", degrees(widest), "deg"));

@@ -44,7 +44,7 @@ CameraChange zoomed(double factor) {
 Outcome<ModelFit> fitWith(const FitInput& input, const CameraChange& change, const HighlightModel& model, const Settings& settings) {
   std::vector<TrainingView> views;
   for (const TrainingView& v : input.views)
-    if (!v.failure) views.push_back(seenAgain(v, change(v.camera), v.surface));
+    if (v.seen) views.push_back(seenAgain(v, change(v.camera), v.surface));
   const std::optional<Outcome<LightEstimate>> light = model.needsLight() ? std::optional(estimateLight(views, settings)) : std::nullopt;
   return fitModel(model, std::move(views), light, settings);
 }
@@ -54,7 +54,7 @@ Outcome<ModelFit> fitWith(const FitInput& input, const CameraChange& change, con
 double meanSquare(const HighlightModel& model, const ModelFit& fit, const FitInput& input, const Settings& settings) {
   double sum = 0, count = 0;
   for (const TrainingView& v : input.views) {
-    if (v.failure) continue;
+    if (!v.seen) continue;
     const Prediction p = model.predict(fit, v.camera, v.surface.get(), settings);
     const std::vector<Pixel> points = resample(v.highlight.contour, settings.integer("light.bundle_points"));
     double best = std::numeric_limits<double>::infinity();

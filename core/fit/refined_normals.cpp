@@ -27,7 +27,7 @@ double rms(const std::vector<double>& perView) {
 std::vector<BundleView> bundleViewsOf(const std::vector<TrainingView>& views) {
   std::vector<BundleView> result;
   for (const TrainingView& v : views)
-    if (!v.failure && v.brightest) result.push_back({v.camera, v.surface.get(), v.highlight.contour.points, v.brightest});
+    if (v.seen) result.push_back({v.camera, v.surface.get(), v.highlight.contour.points, v.seen->brightest});
   return result;
 }
 
@@ -49,7 +49,7 @@ class LobeAngles {
  public:
   LobeAngles(const ModelFit& fit, const std::vector<TrainingView>& views) : light_(*fit.lightEstimate) {
     for (const TrainingView& v : views) {
-      if (v.failure || !v.brightest) continue;
+      if (!v.seen) continue;
       auto view = std::make_shared<View>(v, *lobeOf(*fit.lobe), *fit.roughness, lampOf(fit));
       const std::vector<RadiancePeak> peaks = view->field.peaks({v.highlight.peak}, kScanStepPx);
       if (!peaks.empty()) view->top = peaks.front().logRadiance;
@@ -116,7 +116,7 @@ Outcome<std::optional<RefinedNormals>> refineNormals(const std::vector<TrainingV
     return Failure{Reason::NotSupported, "light.refine_normals needs light.solver=bundle"};
   if (meshPolicy(settings).normals == NormalPolicy::Facet)
     return Failure{Reason::NotSupported, "light.refine_normals does not work with surface.normals=facet"};
-  const auto one = std::find_if(views.begin(), views.end(), [](const TrainingView& v) { return !v.failure && v.brightest && v.surface; });
+  const auto one = std::find_if(views.begin(), views.end(), [](const TrainingView& v) { return v.seen && v.surface; });
   if (one == views.end()) return Failure{Reason::TooFewViews, ""};
   const Surface& given = *one->surface;
   BundleOptions options;
@@ -145,7 +145,7 @@ Outcome<std::optional<RefinedNormals>> refineNormals(const std::vector<TrainingV
     const Outcome<std::shared_ptr<const Surface>> mesh = correctedMesh(given, meshPolicy(settings), refined->correction);
     if (!mesh) return mesh.failure();
     now.clear();
-    for (const TrainingView& v : views) now.push_back(v.failure ? v : onSurface(v, *mesh));
+    for (const TrainingView& v : views) now.push_back(!v.seen ? v : onSurface(v, *mesh));
     const Outcome<LightEstimate> again = estimateLight(now, settings);
     if (!again) return std::optional<RefinedNormals>();
     if (!constant) lobe = reflectanceOf(now, *again, settings);

@@ -17,7 +17,7 @@ void correctViews(std::vector<TrainingView>& views, const Scene& scene, const Su
                   MeshPolicy policy) {
   if (!correction) return;
   for (TrainingView& v : views) {
-    if (v.failure) continue;
+    if (!v.seen) continue;
     const Outcome<std::shared_ptr<const Surface>> surface = correctedSurface(scene, surfaces, v.frame, correction, policy);
     v = onSurface(v, surface ? *surface : nullptr);
   }

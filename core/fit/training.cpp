@@ -15,6 +15,20 @@
 
 namespace glint {
 
+namespace {
+Outcome<SeenOnSurface> seenOnSurface(const TrainingView& view) {
+  if (std::optional<Failure> small = tooSmall(view.highlight.contour)) return *std::move(small);
+  if (!view.surface) return Failure{Reason::NoSurface, ""};
+  // A contour that the scene gives is whole even where it leaves the image; a detected one is cut there.
+  if (view.highlight.touchesBorder && !view.highlight.fromScene)
+    return Failure{Reason::OutsideImage, "the image border cuts the highlight"};
+  const Outcome<BrightestPoint> brightest = observedBrightestPoint(*view.surface, view.camera, view.highlight.peak);
+  if (!brightest) return brightest.failure();
+  const Plane plane = Plane::through(brightest->point.position, brightest->point.normal);
+  return SeenOnSurface{*brightest, plane, virtualCamera(view.camera, plane)};
+}
+}  // namespace
+
 TrainingView trainingView(const FrameEvidence& evidence, int index, const Camera& camera, std::shared_ptr<const Surface> surface) {
   TrainingView view;
   view.frame = evidence.frame;
@@ -22,24 +36,7 @@ TrainingView trainingView(const FrameEvidence& evidence, int index, const Camera
   view.highlight = evidence.highlights[index];
   view.levels = view.highlight.otherLevels;
   view.surface = std::move(surface);
-  if ((view.failure = tooSmall(view.highlight.contour))) return view;
-  if (!view.surface) {
-    view.failure = Failure{Reason::NoSurface, ""};
-    return view;
-  }
-  // A contour that the scene gives is whole even where it leaves the image; a detected one is cut there.
-  if (view.highlight.touchesBorder && !view.highlight.fromScene) {
-    view.failure = Failure{Reason::OutsideImage, "the image border cuts the highlight"};
-    return view;
-  }
-  const Outcome<BrightestPoint> brightest = observedBrightestPoint(*view.surface, camera, view.highlight.peak);
-  if (!brightest) {
-    view.failure = brightest.failure();
-    return view;
-  }
-  view.brightest = *brightest;
-  view.tangentPlane = Plane::through(brightest->point.position, brightest->point.normal);
-  view.virtualCamera = virtualCamera(camera, *view.tangentPlane);
+  view.seen = seenOnSurface(view);
   return view;
 }
 
@@ -71,9 +68,9 @@ Outcome<LightEstimate> estimateAnyLight(const std::vector<TrainingView>& views, 
   std::vector<ReflectedRay> rays;
   std::vector<BundleView> bundleViews;
   for (const TrainingView& v : views) {
-    if (v.failure || !v.brightest) continue;
-    rays.push_back(reflectedRay(*v.brightest, v.camera));
-    bundleViews.push_back({v.camera, v.surface.get(), v.highlight.contour.points, v.brightest});
+    if (!v.seen) continue;
+    rays.push_back(reflectedRay(v.seen->brightest, v.camera));
+    bundleViews.push_back({v.camera, v.surface.get(), v.highlight.contour.points, v.seen->brightest});
   }
   const int points = settings.integer("light.bundle_points");
   const Outcome<Triangulation> t = triangulateLight(rays);
@@ -142,7 +139,7 @@ Outcome<DepthRefinement> refineDepth(const std::vector<TrainingView>& views, con
     return Failure{Reason::NotSupported, "light.refine_depth needs light.solver=bundle"};
   std::vector<BundleView> bundleViews;
   for (const TrainingView& v : views)
-    if (!v.failure && v.brightest) bundleViews.push_back({v.camera, v.surface.get(), v.highlight.contour.points, v.brightest});
+    if (v.seen) bundleViews.push_back({v.camera, v.surface.get(), v.highlight.contour.points, v.seen->brightest});
   BundleOptions options;
   options.pointsPerView = settings.integer("light.bundle_points");
   options.robustPx = settings.number("light.robust_px");
@@ -150,10 +147,10 @@ Outcome<DepthRefinement> refineDepth(const std::vector<TrainingView>& views, con
 }
 
 void addCanonicalContour(TrainingView& view, const Light& light, const Settings& settings) {
-  if (view.failure || !view.brightest) return;
+  if (!view.seen) return;
   WalkOptions options;
   options.toleranceRad = settings.number("fit.walk_tolerance");
-  const TangentWalk walk(*view.surface, view.camera, *view.brightest, light, options);
+  const TangentWalk walk(*view.surface, view.camera, view.seen->brightest, light, options);
   view.canonical = canonicalContour(walk, view.camera, view.highlight.contour, settings.integer("fit.directions"));
 }
 

@@ -35,7 +35,7 @@ std::optional<FittedLobe> lobeOfLimitAngle(const Inspection& in, int frame) {
     if (found && v.frame != frame) continue;
     const double q = v.highlight.level;
     const LightEstimate* const light = in.lightFor(v.frame, v.highlight.light);
-    if (v.failure || !(q > 0 && q < 1) || !light) continue;
+    if (!v.seen || !(q > 0 && q < 1) || !light) continue;
     const double alpha = light->limitAngle;
     if (!(alpha > 0)) continue;
     const std::string origin = formatted("limit angle %.3g\u00b0 at level %.3g, light ", degrees(alpha), q);

@@ -276,7 +276,7 @@ void Run::brightestPointsAndTangentPlanes() {
       evidence.highlights[h] = withNoise(evidence.highlights[h], q.noisePx, q.seed, frame, evidence.asFound(static_cast<int>(h)));
     for (int h = 0; h < static_cast<int>(evidence.highlights.size()); ++h) {
       r_.views.push_back(trainingView(evidence, h, r_.scene->frames[frame].camera, surfaceOf(frame)));
-      if (std::optional<Failure>& why = r_.views.back().failure) why = explained(frame, *why);
+      if (TrainingView& view = r_.views.back(); !view.seen) view.seen = explained(frame, view.seen.failure());
     }
   }
   r_.work.trainingViews = static_cast<int>(r_.views.size());

@@ -92,7 +92,7 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
           const Highlight& highlight = evidence.highlights[static_cast<std::size_t>(h)];
           if (highlight.light.empty() || isSwitchedOff(r.request.whatIf, f, highlight.light)) continue;
           TrainingView view = trainingView(evidence, h, frame.camera, surface);
-          if (view.failure) continue;
+          if (!view.seen) continue;
           Outcome<PixelPatch> patch =
               pixelPatch(*pixels, frame.camera, *surface, f, highlight, ofOthers(evidence, highlight.light));
           if (!patch) continue;

@@ -27,8 +27,8 @@ class Canonical final : public HighlightModel {
   ModelTraits traits() const override { return {{0, 158, 115}}; }
   bool hasOutlines() const override { return true; }
   std::optional<ConicView> outlineIn(const TrainingView& v) const override {
-    if (v.failure || !v.virtualCamera || !v.canonical || !v.canonical->ellipse) return std::nullopt;
-    return ConicView{*v.virtualCamera, *v.canonical->ellipse, v.canonical->pixels};
+    if (!v.seen || !v.canonical || !v.canonical->ellipse) return std::nullopt;
+    return ConicView{v.seen->virtualCamera, *v.canonical->ellipse, v.canonical->pixels};
   }
   bool walks() const override { return true; }
 
@@ -38,8 +38,8 @@ class Canonical final : public HighlightModel {
     ModelFit fit;
     std::vector<UsedContour> used;
     const auto unused = [](const TrainingView& v) -> std::optional<Failure> {
-      if (v.failure) return v.failure;
-      if (!v.virtualCamera || !v.canonical) return Failure{Reason::NoBrightestPoint, ""};
+      if (!v.seen) return v.seen.failure();
+      if (!v.canonical) return Failure{Reason::NoBrightestPoint, ""};
       if (v.canonical->ellipse) return std::nullopt;
       // The directions know why there are too few points on the tangent plane for an ellipse.
       for (const DirectionResult& d : v.canonical->directions)

@@ -8,7 +8,7 @@ namespace glint {
 double medianContourAngle(const std::vector<TrainingView>& views, const Light& light, int pointsPerView) {
   std::vector<double> alphas;
   for (const TrainingView& v : views) {
-    if (v.failure || v.highlight.contour.points.size() < 3) continue;
+    if (!v.seen || v.highlight.contour.points.size() < 3) continue;
     const Eigen::Vector3d eye = v.camera.centreInWorld();
     for (const Pixel& p : resample(v.highlight.contour, pointsPerView)) {
       const Outcome<SurfacePoint> hit = v.surface->firstHit(v.camera.ray(p));

@@ -21,8 +21,8 @@ class Dual final : public HighlightModel {
   ModelTraits traits() const override { return {{86, 180, 233}, true, true, ModelTraits::Assumes::ConstantCurvature}; }
   bool hasOutlines() const override { return true; }
   std::optional<ConicView> outlineIn(const TrainingView& v) const override {
-    if (v.failure || !v.virtualCamera || !v.highlight.ellipse) return std::nullopt;
-    return conicViewOf(v, *v.virtualCamera);
+    if (!v.seen || !v.highlight.ellipse) return std::nullopt;
+    return conicViewOf(v, v.seen->virtualCamera);
   }
 
   Outcome<ModelFit> fit(const FitInput& input, const Settings& settings) const override {
@@ -30,8 +30,7 @@ class Dual final : public HighlightModel {
     ModelFit fit;
     std::vector<UsedContour> used;
     const auto unused = [](const TrainingView& v) -> std::optional<Failure> {
-      if (v.failure) return v.failure;
-      if (!v.virtualCamera) return Failure{Reason::NoBrightestPoint, ""};
+      if (!v.seen) return v.seen.failure();
       return v.highlight.ellipse ? std::optional<Failure>() : Failure{Reason::NotAnEllipse, "the contour"};
     };
     for (const TrainingView& v : input.views) {

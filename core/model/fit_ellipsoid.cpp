@@ -154,13 +154,13 @@ std::optional<CentreAnchor> anchorAtLight(const FitInput& input) {
   CentreAnchor anchor{input.light->light.position(), input.light->covariance, 0};
   int n = 0;
   for (const TrainingView& v : input.views)
-    if (!v.failure && v.brightest) anchor.distance += (anchor.position - v.brightest->point.position).norm(), ++n;
+    if (v.seen) anchor.distance += (anchor.position - v.seen->brightest.point.position).norm(), ++n;
   if (n > 0) anchor.distance /= n;
   return anchor;
 }
 
 bool hasWholeEllipse(const TrainingView& view) {
-  if (view.failure && view.failure->reason == Reason::OutsideImage) return false;
+  if (!view.seen && view.seen.failure().reason == Reason::OutsideImage) return false;
   return view.highlight.ellipse && !tooSmall(view.highlight.contour);
 }
 

@@ -74,7 +74,7 @@ class LimitAngle final : public HighlightModel {
     std::vector<UsedContour> used;
     double level = 0;
     for (const TrainingView& v : input.views) {
-      if (v.failure) continue;
+      if (!v.seen) continue;
       fit.frames.push_back(v.frame);
       level = v.highlight.level;
       used.push_back(usedContour(v));

@@ -44,6 +44,13 @@ struct CanonicalContour {
   std::optional<Ellipse> ellipse;           ///< fitted to `pixels`
 };
 
+/// A highlight on its surface.
+struct SeenOnSurface {
+  BrightestPoint brightest;   ///< observed
+  Plane tangentPlane;         ///< there; normal towards the camera
+  Projection virtualCamera;   ///< P M
+};
+
 /// One observation used for training: one highlight of one light in one frame, with what was derived from it.
 struct TrainingView {
   int frame = -1;
@@ -52,11 +59,11 @@ struct TrainingView {
   Highlight highlight;
   std::vector<LevelContour> levels;         ///< contours at other levels than highlight.level; they share the frame's maximum
   std::shared_ptr<const PixelPatch> pixels; ///< around the highlight, where pixels are evidence (core/reflectance/pixel_patch.h)
-  std::optional<BrightestPoint> brightest;  ///< observed
-  std::optional<Plane> tangentPlane;        ///< normal towards the camera
-  std::optional<Projection> virtualCamera;  ///< P M
-  std::optional<CanonicalContour> canonical;
-  std::optional<Failure> failure;           ///< why this view could not be used; nothing else is then trusted
+  /// Or why this view cannot be used; `primal` alone, which needs no surface, looks at the reason.
+  Outcome<SeenOnSurface> seen = Failure{Reason::NotReached, "nothing was observed"};
+  std::optional<CanonicalContour> canonical;///< of a view that was seen, once its light is known
+
+  std::optional<Failure> failure() const { return seen ? std::nullopt : std::optional(seen.failure()); }
 };
 
 /// The light of a set of views, from section 4, with what the bundle adds.
@@ -66,7 +73,7 @@ struct LightEstimate {
   double limitAngle = 0;                    ///< rad; robust mean over all contour points
   double condition = 0;                     ///< of the triangulation
   double rmsPx = 0;                         ///< of the bundle's residuals, 0 when triangulated
-  std::vector<double> residualPx;           ///< per view that was used (no `failure`, a brightest point), in their order: rmsWithoutTail()
+  std::vector<double> residualPx;           ///< per view that was used (those `seen`), in their order: rmsWithoutTail()
   std::string solver;                       ///< "triangulated" or "bundle"
   /// Second moment of an extended light about `light`, m^2 (rad^2 for a light at infinity): widens the limit angle where the light
   /// is long. None for a limit angle that is one constant.
@@ -77,7 +84,7 @@ struct LightEstimate {
 
 /// What a fit may use. Views are of one light (and one surface, when models are per surface).
 struct FitInput {
-  std::vector<TrainingView> views;          ///< those with `failure` are skipped
+  std::vector<TrainingView> views;          ///< those that were not `seen` are skipped
   std::optional<LightEstimate> light;       ///< for models with needsLight()
   std::optional<Failure> lightFailure;      ///< why there is none
   std::shared_ptr<const PixelFit> pixelFit; ///< of the pixels of exactly these views, where it is known already

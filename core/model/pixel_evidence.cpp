@@ -25,8 +25,8 @@ std::optional<Light> meanRay(const std::vector<TrainingView>& views) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   double count = 0;
   for (const TrainingView& v : views) {
-    if (v.failure || !v.brightest) continue;
-    mean += reflectedRay(*v.brightest, v.camera).direction;
+    if (!v.seen) continue;
+    mean += reflectedRay(v.seen->brightest, v.camera).direction;
     count += 1;
   }
   // Directions that cancel have no mean: 1e-6 is far above round-off.
@@ -41,7 +41,7 @@ std::optional<PixelFit> withExtent(const std::vector<TrainingView>& views, const
   if ((!choices.sphere && !choices.segment) || point.model.lamp.centre.atInfinity()) return std::nullopt;
   std::vector<RadianceView> contours;
   for (const TrainingView& v : views)
-    if (!v.failure && v.pixels && !v.highlight.clipped)
+    if (v.seen && v.pixels && !v.highlight.clipped)
       contours.push_back({v.frame, v.camera, v.surface.get(), v.highlight.contour.points, v.highlight.peak, v.highlight.level});
   const std::vector<Lobe> lobes = lobesOf(settings);
   std::optional<PixelFit> best;
@@ -91,7 +91,7 @@ std::optional<std::string> contradiction(const std::vector<TrainingView>& views,
   std::vector<RadianceView> contours;
   std::vector<UsedContour> used;
   for (const TrainingView& v : views) {
-    if (v.failure || v.highlight.clipped) continue;
+    if (!v.seen || v.highlight.clipped) continue;
     contours.push_back({v.frame, v.camera, v.surface.get(), v.highlight.contour.points, v.highlight.peak, v.highlight.level});
     used.push_back(usedContour(v));
   }
@@ -124,7 +124,7 @@ std::optional<std::string> contradiction(const std::vector<TrainingView>& views,
 bool havePixels(const std::vector<TrainingView>& views) {
   bool any = false;
   for (const TrainingView& v : views) {
-    if (v.failure) continue;
+    if (!v.seen) continue;
     if (!v.pixels) return false;
     any = true;
   }
@@ -136,7 +136,7 @@ Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const s
   std::vector<const PixelPatch*> patches;
   double level = 0.5;
   for (const TrainingView& v : views) {
-    if (v.failure || !v.pixels) continue;
+    if (!v.seen || !v.pixels) continue;
     patches.push_back(v.pixels.get());
     level = v.highlight.level;
   }
@@ -171,7 +171,7 @@ Outcome<ModelFit> reflectanceFromPixels(const FitInput& input, const Settings& s
   const PixelFit& pixels = *known;
   ModelFit fit;
   for (const TrainingView& v : input.views) {
-    if (v.failure) continue;
+    if (!v.seen) continue;
     fit.frames.push_back(v.frame);
     fit.level = v.highlight.level;
   }
@@ -190,7 +190,7 @@ Outcome<ModelFit> reflectanceFromPixels(const FitInput& input, const Settings& s
   if (input.light) fit.condition = input.light->condition;
   std::vector<UsedContour> used;
   for (const TrainingView& v : input.views)
-    if (!v.failure) used.push_back(usedContour(v));
+    if (v.seen) used.push_back(usedContour(v));
   Outcome<ModelFit> judged = explaining(std::move(fit), used, true, settings.number("fit.most_residual"));
   if (judged && judged->remarks.empty())
     if (const std::optional<std::string> wrong = contradiction(input.views, pixels, settings)) judged->remarks.push_back(*wrong);

@@ -49,9 +49,9 @@ void dropTooSmall(Prediction& prediction) {
 std::optional<Failure> lightBehind(const std::vector<TrainingView>& views, const Light& light) {
   int behind = 0, usable = 0, first = -1;
   for (const TrainingView& v : views) {
-    if (v.failure || !v.brightest) continue;
+    if (!v.seen) continue;
     ++usable;
-    const SurfacePoint p = facing(v.brightest->point, v.camera.centreInWorld());
+    const SurfacePoint p = facing(v.seen->brightest.point, v.camera.centreInWorld());
     if (p.normal.dot(light.directionFrom(p.position)) > 0) continue;
     if (behind++ == 0) first = v.frame;
   }
@@ -73,7 +73,7 @@ std::string unusedViews(const std::vector<TrainingView>& views,
 }
 
 std::string unusedViews(const std::vector<TrainingView>& views) {
-  return unusedViews(views, [](const TrainingView& v) { return v.failure; });
+  return unusedViews(views, [](const TrainingView& v) { return v.failure(); });
 }
 
 Failure withUnusedViews(Failure failure, const std::vector<TrainingView>& views,

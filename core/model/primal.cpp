@@ -30,7 +30,7 @@ class Primal final : public HighlightModel {
     const auto unused = [](const TrainingView& v) -> std::optional<Failure> {
       if (hasWholeEllipse(v)) return std::nullopt;
       if (std::optional<Failure> small = tooSmall(v.highlight.contour)) return small;
-      return v.failure.value_or(Failure{Reason::NotAnEllipse, "the contour"});
+      return v.failure().value_or(Failure{Reason::NotAnEllipse, "the contour"});
     };
     for (const TrainingView& v : input.views) {
       std::optional<ConicView> outline = outlineIn(v);

@@ -33,8 +33,8 @@ std::optional<Light> firstLight(const FitInput& input) {
   std::vector<ReflectedRay> rays;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const TrainingView& v : input.views) {
-    if (v.failure || !v.brightest) continue;
-    rays.push_back(reflectedRay(*v.brightest, v.camera));
+    if (!v.seen) continue;
+    rays.push_back(reflectedRay(v.seen->brightest, v.camera));
     mean += rays.back().direction;
   }
   if (const Outcome<Triangulation> t = triangulateLight(rays)) return t->light;
@@ -115,7 +115,7 @@ class Reflectance final : public HighlightModel {
       owner.push_back(fit.frames.size() - 1);
     };
     for (const TrainingView& v : input.views) {
-      if (v.failure) continue;
+      if (!v.seen) continue;
       if (!(v.highlight.level > 0 && v.highlight.level < 1)) return Failure{Reason::NotSupported, "a contour without a level"};
       fit.frames.push_back(v.frame);
       add(v, v.highlight.level, v.highlight.contour);
@@ -156,7 +156,7 @@ class Reflectance final : public HighlightModel {
     if (input.light) fit.condition = input.light->condition;
     std::vector<UsedContour> used;
     for (const TrainingView& v : input.views)
-      if (!v.failure) used.push_back(usedContour(v));
+      if (v.seen) used.push_back(usedContour(v));
     return explaining(std::move(fit), used, true, settings.number("fit.most_residual"));
   }
 

@@ -87,7 +87,7 @@ std::vector<SurfacePoint> hintsOf(const FitInput& input) {
   for (const TrainingView& v : input.views) {
     if (std::find(frames.begin(), frames.end(), v.frame) != frames.end()) return {};  // several highlights: one start does not find all
     frames.push_back(v.frame);
-    if (!v.failure && v.brightest) hints.push_back(v.brightest->point);
+    if (v.seen) hints.push_back(v.seen->brightest.point);
   }
   return hints;
 }

@@ -238,7 +238,7 @@ ordered_json trainingJson(const Inspection& inspection) {
     for (const TrainingView& v : inspection.views) {
       if (v.frame != frame) continue;
       any = true;
-      add(frame, v.highlight.light, v.failure);
+      add(frame, v.highlight.light, v.failure());
     }
     if (!any && inspection.isTraining(frame)) add(frame, "", inspection.evidence[frame].failure.value_or(Failure{Reason::NoHighlight, ""}));
   }

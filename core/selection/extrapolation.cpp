@@ -25,7 +25,7 @@ Eigen::Vector3d middleOf(const std::vector<Fold>& folds, const std::string& ligh
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   int count = 0;
   for (const Fold& f : folds)
-    if (f.left.highlight.light == light && f.left.brightest) sum += f.left.brightest->point.position, ++count;
+    if (f.left.highlight.light == light && f.left.seen) sum += f.left.seen->brightest.point.position, ++count;
   return count ? Eigen::Vector3d(sum / count) : sum;
 }
 
@@ -116,7 +116,7 @@ std::map<std::string, Fold> wholeFolds(const Inspection& inspection, const std::
     all.canonicalTried = false;
     all.others.clear();
     for (std::size_t v = 0; v < inspection.views.size(); ++v)
-      if (!inspection.views[v].failure && inspection.views[v].highlight.light == light)
+      if (inspection.views[v].seen && inspection.views[v].highlight.light == light)
         all.others.push_back(inspection.viewAsGiven(static_cast<int>(v)));
     all.pixelFit = pixelFitFor(inspection, {light, {}});
   }

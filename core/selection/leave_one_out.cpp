@@ -98,7 +98,7 @@ std::vector<Fold> foldsOf(const Inspection& inspection, LeaveOut together) {
   const std::vector<int> places = placesOf(inspection.views);
   std::vector<int> usable;
   for (int i = 0; i < static_cast<int>(inspection.views.size()); ++i)
-    if (!inspection.views[i].failure) usable.push_back(i);
+    if (inspection.views[i].seen) usable.push_back(i);
   const int n = static_cast<int>(usable.size()), folds = std::min(n, kMostLeftOut);
   std::vector<Fold> all;
   for (int f = 0; f < folds; ++f) {
@@ -112,7 +112,7 @@ std::vector<Fold> foldsOf(const Inspection& inspection, LeaveOut together) {
     for (std::size_t i = 0; i < inspection.views.size(); ++i) {
       const TrainingView& v = inspection.views[i];
       if (together == LeaveOut::Place && places[i] == places[left]) continue;
-      if (v.failure || v.frame == fold.left.frame || inspection.keyFor(v.frame, v.highlight.light) != key) continue;
+      if (!v.seen || v.frame == fold.left.frame || inspection.keyFor(v.frame, v.highlight.light) != key) continue;
       fold.others.push_back(inspection.viewAsGiven(static_cast<int>(i)));
     }
     all.push_back(std::move(fold));

@@ -389,7 +389,7 @@ Selection Search::run() {
   double noise = 0;
   for (const Fold& f : folds_) noise += contourNoisePct(f.left.highlight.contour) / double(folds_.size());
   noisePct_ = noise;
-  for (const TrainingView& v : inspection_.views) s_.trainingViews += v.failure ? 0 : 1;
+  for (const TrainingView& v : inspection_.views) s_.trainingViews += v.seen ? 1 : 0;
   std::vector<HighlightOnSurface> observed;
   for (const Fold& f : folds_) observed.push_back({f.left.camera, f.leftSurface, f.left.highlight.contour});
   trained_ = surfaceShape(observed);

@@ -75,14 +75,14 @@ NumberGroup observation(const FrameEvidence& evidence, int index, bool synthesis
 
 NumberGroup trainingView(const TrainingView& view) {
   Lines lines;
-  if (view.failure) lines.note(toQString(view.failure->message()));
-  if (view.brightest) {
-    lines.addVector(QObject::tr("P"), view.brightest->point.position, "m");
-    lines.addVector(QObject::tr("N"), view.brightest->point.normal);
+  if (!view.seen) lines.note(toQString(view.seen.failure().message()));
+  if (view.seen) {
+    lines.addVector(QObject::tr("P"), view.seen->brightest.point.position, "m");
+    lines.addVector(QObject::tr("N"), view.seen->brightest.point.normal);
   }
-  if (view.tangentPlane) {
-    lines.addVector(QObject::tr("T normal"), view.tangentPlane->normal);
-    lines.add(QObject::tr("T offset"), view.tangentPlane->offset, "m");
+  if (view.seen) {
+    lines.addVector(QObject::tr("T normal"), view.seen->tangentPlane.normal);
+    lines.add(QObject::tr("T offset"), view.seen->tangentPlane.offset, "m");
   }
   if (view.canonical) {
     const auto& d = view.canonical->directions;

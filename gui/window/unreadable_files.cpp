@@ -111,7 +111,7 @@ void UnreadableFiles::check() {
       found[kind ? *kind : *usual].emplace(frame, failure->detail);
   };
   for (std::size_t i = 0; i < in->evidence.size(); ++i) look(int(i), in->evidence[i].failure, FrameFile::Photograph);
-  for (const TrainingView& view : in->views) look(view.frame, view.failure, {});
+  for (const TrainingView& view : in->views) look(view.frame, view.failure(), {});
   for (const auto& [name, model] : in->models)
     for (const FrameComparison& c : model.frames) look(c.frame, c.prediction.failure(), {});
   add(found);

@@ -214,7 +214,7 @@ class LessonsTest : public QObject {
     const double far = distance();
     window_->actions().find("explain.step-limit-angles")->trigger();
     QTRY_VERIFY2(distance() < 0.5 * far, "the highlight fills the view");
-    const Eigen::Vector3d peak = panel_->explanation()->view->brightest->point.position;
+    const Eigen::Vector3d peak = panel_->explanation()->view->seen->brightest.point.position;
     QVERIFY((view.viewPoint().focalPoint - peak).norm() < 0.2);
     window_->actions().find("explain.step-ellipsoid")->trigger();
     QTRY_VERIFY(distance() > 1.5);

@@ -277,9 +277,10 @@ class PlotsTest : public QObject {
     TrainingView view;
     view.camera = fixture_.scene()->frames[0].camera;
     view.highlight.light = "lamp";
-    view.brightest.emplace();
-    view.brightest->point.position = {0, 0, -0.4};
-    view.brightest->point.normal = {0, 0, -1};
+    SeenOnSurface seen;
+    seen.brightest.point.position = {0, 0, -0.4};
+    seen.brightest.point.normal = {0, 0, -1};
+    view.seen = seen;
     inspection.views = {view};
     double sigma = 2.7e-5;  // at a distance of 1 m: 0.0027 %
     for (auto& [name, model] : inspection.models) {

@@ -87,8 +87,8 @@ TEST(Lessons, MirrorTheVirtualCameraSeesTheLampAtThePeak) {
     const Explanation e = explain(in, frame, 0, "canonical");
     const Eigen::Vector3d eye = in.scene->frames[std::size_t(frame)].camera.centreInWorld();
     EXPECT_NEAR(number(stepOf(e, "virtual-camera"), "centre of the virtual camera", 2), -eye.z(), 1e-9) << "the table is z = 0";
-    ASSERT_TRUE(e.view && e.view->virtualCamera);
-    const Eigen::Vector3d seen = e.view->virtualCamera->matrix * lamp.homogeneous();
+    ASSERT_TRUE(e.view && e.view->seen);
+    const Eigen::Vector3d seen = e.view->seen->virtualCamera.matrix * lamp.homogeneous();
     EXPECT_LT((Pixel(seen.head<2>() / seen.z()) - e.view->highlight.peak).norm(), kContour);
     EXPECT_NEAR(number(stepOf(e, "virtual-camera"), "field of view across the highlight, this mirror"),
                 number(stepOf(e, "virtual-camera"), "field of view across the highlight, flat mirror"), 1e-9);
@@ -115,7 +115,7 @@ TEST(Lessons, SphereEpipolarTangentsMissForRealCamerasAndNearlyMeetForVirtualOne
     return t ? t->rmsPx() : std::nan("");
   };
   const double real = missPx(a.view->camera.projection(), b.view->camera.projection());
-  const double mirrored = missPx(*a.view->virtualCamera, *b.view->virtualCamera);
+  const double mirrored = missPx(a.view->seen->virtualCamera, b.view->seen->virtualCamera);
   RecordProperty("real_px", std::to_string(real));
   RecordProperty("virtual_px", std::to_string(mirrored));
   EXPECT_GT(real, 10 * mirrored) << real << " px for real cameras, " << mirrored << " px for virtual ones";
@@ -134,8 +134,8 @@ TEST(Lessons, BentMirrorItsFieldOfViewFollowsTheMirrorEquation) {
   for (int k = 0; k < 5; ++k) {
     const int frame = 3 * k + 1;  // camera and lamp in the plane x = 0, square to the bend
     const Explanation e = explain(in, frame, 0, "canonical");
-    ASSERT_TRUE(e.view && e.view->brightest && e.view->surface);
-    const Eigen::Vector3d eye = e.view->camera.centreInWorld(), at = e.view->brightest->point.position;
+    ASSERT_TRUE(e.view && e.view->seen && e.view->surface);
+    const Eigen::Vector3d eye = e.view->camera.centreInWorld(), at = e.view->seen->brightest.point.position;
     EXPECT_LT(std::abs(at.x()), 1e-4);
     const double d = (eye - at).norm(), r = (lamp - at).norm(), cosine = (eye - at).normalized().z(), kappa = curvatures[k];
     // Across the bend (sagittal): alpha(w) = w (kappa + (1/d + 1/r) / (2 cos theta)), and rays a distance 2 w apart leave as if from

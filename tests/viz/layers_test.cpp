@@ -163,9 +163,9 @@ TEST(Layers, AConeReachesFromItsPlaceThroughTheContourToBeyondTheEllipsoid) {
   for (const bool mirrored : {false, true}) {
     SCOPED_TRACE(mirrored);
     const std::string model = mirrored ? "dual" : "primal";
-    const Eigen::Vector3d apex = mirrored ? view.tangentPlane->reflected(eye) : eye;
+    const Eigen::Vector3d apex = mirrored ? view.seen->tangentPlane.reflected(eye) : eye;
     // A ball on the axis of the contour's cone: at the brightest point, or as far beyond it as the mirrored camera is before it.
-    const Eigen::Vector3d centre = mirrored ? 2 * view.brightest->point.position - apex : view.brightest->point.position;
+    const Eigen::Vector3d centre = mirrored ? 2 * view.seen->brightest.point.position - apex : view.seen->brightest.point.position;
     constexpr double kBall = 0.05;
     Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
     place.translation() = centre;
@@ -183,12 +183,12 @@ TEST(Layers, AConeReachesFromItsPlaceThroughTheContourToBeyondTheEllipsoid) {
       const Eigen::Vector3d &near = points[i], &far = points[i + 1];
       EXPECT_NEAR((far - apex).dot(axis), end, kDrawn);
       if (mirrored)
-        EXPECT_NEAR(view.tangentPlane->signedDistance(near), 0, kDrawn);
+        EXPECT_NEAR(view.seen->tangentPlane.signedDistance(near), 0, kDrawn);
       else
         EXPECT_NEAR((near - apex).dot(axis), 0.5 * end, kDrawn);
       // Both ends are seen on the contour: a camera behind the mirror sees there what the camera itself sees.
       for (const Eigen::Vector3d& p : {near, far}) {
-        const std::optional<Pixel> pixel = view.camera.project(mirrored ? view.tangentPlane->reflected(p) : p);
+        const std::optional<Pixel> pixel = view.camera.project(mirrored ? view.seen->tangentPlane.reflected(p) : p);
         ASSERT_TRUE(pixel);
         EXPECT_NEAR((*pixel - view.highlight.peak).norm(), view.highlight.ellipse->semiAxes.x(), kDrawnPx);
       }
@@ -399,7 +399,7 @@ TEST(Layers, AFrameThatDoesNotTrainHasTheCanonicalEllipseOfWhatWasObservedInIt) 
   ASSERT_EQ(canonicalEllipsesLayer(input).drawn.size(), 1u);
   const Eigen::AlignedBox3d drawn = boundsOf(canonicalEllipsesLayer(input).drawn[0]);
   Eigen::AlignedBox3d expected;
-  for (const Points& chain : ellipseOnPlane(own[0].camera, *own[0].tangentPlane, *own[0].canonical->ellipse, 0))
+  for (const Points& chain : ellipseOnPlane(own[0].camera, own[0].seen->tangentPlane, *own[0].canonical->ellipse, 0))
     for (const Eigen::Vector3d& p : chain) expected.extend(p);
   EXPECT_LT((drawn.center() - expected.center()).norm(), kDrawn);
   EXPECT_FALSE(directionsLayer(input).drawn.empty());
@@ -413,7 +413,7 @@ TEST(Framing, HoldsTheWholeWalkWhateverItsDirection) {
   const LayerInput input = heldOutInput(*inspection);
   const std::vector<TrainingView> own = input.ownWalks();
   ASSERT_EQ(own.size(), 1u);
-  const Eigen::Vector3d at = own[0].brightest->point.position, n = own[0].tangentPlane->normal;
+  const Eigen::Vector3d at = own[0].seen->brightest.point.position, n = own[0].seen->tangentPlane.normal;
   double reach = 0;
   for (const DirectionResult& d : own[0].canonical->directions)
     if (d.limitAngle && !d.failure) reach = std::max(reach, (d.onTangentPlane - at).norm());
@@ -473,13 +473,13 @@ TEST(TangentPlanes, AloneTheyReachTheCanonicalContour) {
   LayerInput input = heldOutInput(*inspection);
   input.selection.frame = 0;
   TrainingView& view = inspection->views.front();
-  for (Pixel& p : view.canonical->pixels) p = view.brightest->pixel + 4 * (p - view.brightest->pixel);
+  for (Pixel& p : view.canonical->pixels) p = view.seen->brightest.pixel + 4 * (p - view.seen->brightest.pixel);
   if (view.canonical->pixels.empty())
-    view.canonical->pixels = {view.brightest->pixel + Pixel(60, 0), view.brightest->pixel - Pixel(60, 0)};
+    view.canonical->pixels = {view.seen->brightest.pixel + Pixel(60, 0), view.seen->brightest.pixel - Pixel(60, 0)};
   double reach = 0;
   for (const Pixel& p : view.canonical->pixels)
-    if (const auto q = intersection(view.camera.ray(p), *view.tangentPlane))
-      reach = std::max(reach, (*q - view.brightest->point.position).norm());
+    if (const auto q = intersection(view.camera.ray(p), view.seen->tangentPlane))
+      reach = std::max(reach, (*q - view.seen->brightest.point.position).norm());
   reach = std::min(reach, 0.35 * input.scale.surfaceSize);  // no plane is drawn larger
   const auto widest = [&] {
     double half = 0;

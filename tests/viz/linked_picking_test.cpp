@@ -135,7 +135,7 @@ TEST_F(LinkedPicking, CameraEllipsoidLightAndVirtualCameraTellWhatTheyAre) {
   view_.frameAll();
   render(view_);
   const std::optional<Picked> mirrored =
-      pickAt((inspection_->views[3].tangentPlane->reflected(inspection_->views[3].camera.centreInWorld())));
+      pickAt((inspection_->views[3].seen->tangentPlane.reflected(inspection_->views[3].camera.centreInWorld())));
   ASSERT_TRUE(mirrored);
   EXPECT_EQ(mirrored->layer, "virtual-cameras");
   EXPECT_EQ(mirrored->frame, 3);

@@ -138,8 +138,8 @@ TEST_F(LookThrough, GeometryAndPhotographAgreeAtEveryWindowSize) {
 /// The mirrored camera is left-handed: a picture that is flipped or not mirrored puts the points elsewhere.
 TEST_F(LookThrough, TheVirtualCameraProjectsAsPM) {
   const std::shared_ptr<Inspection> plain = smallInspection(folder_.path());
-  const Plane plane = *plain->views[0].tangentPlane;
-  const Eigen::Vector3d at = plain->views[0].brightest->point.position, eye = plain->views[0].camera.centreInWorld();
+  const Plane plane = plain->views[0].seen->tangentPlane;
+  const Eigen::Vector3d at = plain->views[0].seen->brightest.point.position, eye = plain->views[0].camera.centreInWorld();
   const Eigen::Vector3d away = (at - plane.reflected(eye)).normalized();  // the virtual camera's view of the brightest point
   const Eigen::Matrix<double, 3, 2> side = tangentBasis(away);
   const std::vector<Eigen::Vector3d> points{at + 0.4 * away + 0.1 * side.col(0), at + 0.4 * away - 0.07 * side.col(1),
@@ -182,7 +182,7 @@ TEST_F(LookThrough, OutlinesInTheVirtualCameraAreTheImageEllipses) {
   const Image with = render(view);
   const Camera& camera = inspection->scene->frames[0].camera;
   const Outcome<Ellipse> outline = outlineEllipse(*inspection->models.at("canonical").fits[0].fit->ellipsoid,
-                                                  virtualCamera(camera, *inspection->views[0].tangentPlane));
+                                                  virtualCamera(camera, inspection->views[0].seen->tangentPlane));
   ASSERT_TRUE(outline);
   Eigen::AlignedBox2d drawn, expected;
   for (int y = 60; y < kHeight - 70; ++y) {

@@ -43,7 +43,7 @@ class FlatMirror final : public HighlightModel {
     fit.limitAngle = input.light->limitAngle;
     fit.hints = hintsOf(input);
     for (const TrainingView& v : input.views)
-      if (!v.failure) fit.frames.push_back(v.frame);
+      if (v.seen) fit.frames.push_back(v.frame);
     return fit;
   }
 

@@ -189,9 +189,7 @@ std::shared_ptr<Inspection> smallInspection(const std::filesystem::path& folder,
       view.frame = i;
       view.camera = camera;
       view.highlight = highlight;
-      view.brightest = brightest;
-      view.tangentPlane = plane;
-      view.virtualCamera = virtualCamera(camera, plane);
+      view.seen = SeenOnSurface{brightest, plane, virtualCamera(camera, plane)};
       view.canonical = walk;
       inspection->views.push_back(view);
     }

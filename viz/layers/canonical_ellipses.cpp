@@ -23,14 +23,14 @@ LayerContent canonicalEllipsesLayer(const LayerInput& in) {
                          kEllipsePx);
   };
   for (const TrainingView* view : in.views()) {
-    if (!view->tangentPlane || !view->canonical || !view->canonical->ellipse) continue;
-    add(view->camera, *view->tangentPlane, *view->canonical->ellipse, view->frame == in.selection.frame, view->frame, "");
+    if (!view->seen || !view->canonical || !view->canonical->ellipse) continue;
+    add(view->camera, view->seen->tangentPlane, *view->canonical->ellipse, view->frame == in.selection.frame, view->frame, "");
   }
   // Of the selected frame alone: what was observed in it, whether it trains or not. A predicted ellipse beside it would look as
   // if both came from the one contour.
   if (in.solo) {
     for (const TrainingView& view : in.ownWalks())
-      if (view.canonical->ellipse) add(view.camera, *view.tangentPlane, *view.canonical->ellipse, true, view.frame, "");
+      if (view.canonical->ellipse) add(view.camera, view.seen->tangentPlane, *view.canonical->ellipse, true, view.frame, "");
     if (!content.drawn.empty()) return content;
   }
   for (const std::string& model : in.models) {

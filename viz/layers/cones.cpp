@@ -24,10 +24,10 @@ struct Cone {
 /// The cone that a model takes from a view: from its mirror image, or from the camera itself where the model knows no mirror.
 std::optional<Cone> coneOf(const TrainingView& view, const HighlightModel& model) {
   const std::optional<ConicView> outline = model.outlineIn(view);
-  if (!outline || !view.tangentPlane) return {};
+  if (!outline || !view.seen) return {};
   const Eigen::Vector3d eye = view.camera.centreInWorld();
   const bool mirrored = model.traits().mirrored;
-  return Cone{&view, outline->ellipse, mirrored ? view.tangentPlane->reflected(eye) : eye, mirrored};
+  return Cone{&view, outline->ellipse, mirrored ? view.seen->tangentPlane.reflected(eye) : eye, mirrored};
 }
 
 void addCone(LayerContent& content, const LayerInput& in, const Cone& cone, const Ellipsoid& target, const Colour& colour,
@@ -41,7 +41,7 @@ void addCone(LayerContent& content, const LayerInput& in, const Cone& cone, cons
   TriangleMesh sheet;
   Points near, far;
   for (const Pixel& pixel : pixels) {
-    const std::optional<Eigen::Vector3d> onPlane = intersection(cone.view->camera.ray(pixel), *cone.view->tangentPlane);
+    const std::optional<Eigen::Vector3d> onPlane = intersection(cone.view->camera.ray(pixel), cone.view->seen->tangentPlane);
     if (!onPlane) return;  // T is seen edge-on
     const Eigen::Vector3d along = *onPlane - cone.apex;
     const double forward = along.dot(axis);

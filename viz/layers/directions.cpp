@@ -62,12 +62,12 @@ void addWalks(LayerContent& content, const LayerInput& in, const Plane& plane, c
 LayerContent directionsLayer(const LayerInput& in) {
   LayerContent content;
   for (const TrainingView* view : in.views()) {
-    if (view->frame != in.selection.frame || !view->tangentPlane || !view->brightest || !view->canonical) continue;
-    addWalks(content, in, *view->tangentPlane, view->brightest->point.position, *view->canonical, view->frame, "");
+    if (view->frame != in.selection.frame || !view->seen || !view->canonical) continue;
+    addWalks(content, in, view->seen->tangentPlane, view->seen->brightest.point.position, *view->canonical, view->frame, "");
   }
   if (in.solo)  // what was observed, though the frame has not trained
     for (const TrainingView& view : in.ownWalks())
-      addWalks(content, in, *view.tangentPlane, view.brightest->point.position, *view.canonical, view.frame, "");
+      addWalks(content, in, view.seen->tangentPlane, view.seen->brightest.point.position, *view.canonical, view.frame, "");
   if (!content.drawn.empty()) return content;  // the predicted walks would lie on the observed ones
   for (const std::string& model : in.models) {
     for (const FrameComparison* comparison : in.comparisons(model)) {

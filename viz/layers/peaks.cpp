@@ -36,10 +36,10 @@ LayerContent peaksLayer(const LayerInput& in) {
       content.labels.push_back({p.position + 1.2 * size * in.scale.arrow * p.normal, "N", in.ink()});
   };
   for (const TrainingView* view : in.views()) {
-    if (!view->brightest) continue;
+    if (!view->seen) continue;
     const bool selected = view->frame == in.selection.frame;
-    add(*view->brightest, view->camera, selected ? 1.3 : 0.8, kObserved,
-        brightestInfo(in, *view->brightest, view->frame, "", in.highlightOf(*view), view->highlight.light));
+    add(view->seen->brightest, view->camera, selected ? 1.3 : 0.8, kObserved,
+        brightestInfo(in, view->seen->brightest, view->frame, "", in.highlightOf(*view), view->highlight.light));
   }
   // Where training has no view of the selected frame, its peaks are cast here.
   const bool inTraining = in.inspection->isTraining(in.selection.frame);

@@ -14,7 +14,7 @@ constexpr double kElsewhere = 0.35;  // opacity of rays that left a surface whic
 
 void addRay(LayerContent& content, const LayerInput& in, const TrainingView& view, bool elsewhere) {
   const Eigen::Vector3d eye = view.camera.centreInWorld();
-  const SurfacePoint p = facing(view.brightest->point, eye);
+  const SurfacePoint p = facing(view.seen->brightest.point, eye);
   const Eigen::Vector3d v = (eye - p.position).normalized(), r = reflect(v, p.normal);
   // As far as the light where there is one in reach, so that one sees how well the rays meet there.
   double reach = 0.6 * in.scale.sceneSize;
@@ -50,7 +50,7 @@ LayerContent raysLayer(const LayerInput& in) {
   LayerContent content;
   int elsewhere = 0;
   for (const TrainingView& view : in.inspection->views) {
-    if (view.failure || view.frame < 0 || !view.brightest || !in.shows(view.frame)) continue;
+    if (!view.seen || view.frame < 0 || !in.shows(view.frame)) continue;
     const bool here = in.onSurface(view.frame);
     // The light was found by the rays of all surfaces, unless each of them has a light of its own.
     if (!here && in.inspection->train.perSurface) continue;

@@ -40,10 +40,10 @@ LayerContent tangentPlanesLayer(const LayerInput& in) {
     return info;
   };
   const auto addObserved = [&](const TrainingView& view) {
-    if (!view.tangentPlane || !view.brightest) return;
-    const Eigen::Vector3d& at = view.brightest->point.position;
-    addPlane(content, in, view.camera, *view.tangentPlane, at, onPlane(in, view.highlight.contour.points, view.canonical),
-             view.frame == in.selection.frame, true, kVirtualCamera, describe(*view.tangentPlane, at, view.frame, ""));
+    if (!view.seen) return;
+    const Eigen::Vector3d& at = view.seen->brightest.point.position;
+    addPlane(content, in, view.camera, view.seen->tangentPlane, at, onPlane(in, view.highlight.contour.points, view.canonical),
+             view.frame == in.selection.frame, true, kVirtualCamera, describe(view.seen->tangentPlane, at, view.frame, ""));
   };
   bool trains = false;
   for (const TrainingView* view : in.views()) {

@@ -299,7 +299,7 @@ TEST(Explain, TheEpipolarLinesSayHowFarTheViewsAreFromOneEllipsoid) {
   const Inspection seen = inspected(sphere(0.5), {"primal"});
   const auto camera = [](const TrainingView& v, bool mirrored) {
     Eigen::Matrix4d reflection = Eigen::Matrix4d::Identity();
-    const Plane& plane = *v.tangentPlane;
+    const Plane& plane = v.seen->tangentPlane;
     reflection.topLeftCorner<3, 3>() -= 2 * plane.normal * plane.normal.transpose();
     reflection.topRightCorner<3, 1>() = -2 * plane.offset * plane.normal;
     Projection p = v.camera.projection();
@@ -361,7 +361,7 @@ TEST(Explain, SaysOfEachModelWhatItDoesInsteadOfAWalk) {
 /// Coordinates are good to about 1e-7: what is a thousandth of that and less is no number.
 TEST(Explain, ACoordinateThatIsRoundOffIsZero) {
   Inspection inspection = inspected(sheet(0), {"canonical"});
-  for (TrainingView& v : inspection.views) v.tangentPlane->normal = {-1.2306e-10, 2e-7, 1};
+  for (TrainingView& v : inspection.views) v.seen->tangentPlane.normal = {-1.2306e-10, 2e-7, 1};
   const std::vector<double> n = number(stepOf(explain(inspection, 1, 0, "canonical"), "tangent-plane"), "normal at P_B");
   EXPECT_EQ(n, (std::vector<double>{0, 2e-7, 1}));
   EXPECT_FALSE(std::signbit(n[0]));
@@ -420,7 +420,7 @@ TEST(Explain, AFrameWithoutHighlightSaysSoInEveryStepThatNeedsOne) {
 TEST(WalkTrace, OnAPlaneBothWalksAreOne) {
   const Inspection inspection = inspected(sheet(0), {"canonical"});
   const Explanation e = explain(inspection, 2, 0, "canonical");
-  const TangentWalk walk(*e.view->surface, e.view->camera, *e.view->brightest, *e.lightUsed);
+  const TangentWalk walk(*e.view->surface, e.view->camera, e.view->seen->brightest, *e.lightUsed);
   const Outcome<WalkTrace> t = traceWalk(walk, *e.view->surface, e.view->canonical->directions[7], 25);
   ASSERT_TRUE(t);
   ASSERT_EQ(t->onSurface.size(), 25u);
@@ -434,13 +434,13 @@ TEST(WalkTrace, OnAPlaneBothWalksAreOne) {
   }
   EXPECT_NEAR(t->onSurface.back().alpha, t->limitAngle, 1e-6);
   EXPECT_NEAR(t->onPlane.back().alpha, t->limitAngle, 1e-6);
-  EXPECT_NEAR(t->onSurface.front().alpha, e.view->brightest->alpha, kCusp);
+  EXPECT_NEAR(t->onSurface.front().alpha, e.view->seen->brightest.alpha, kCusp);
 }
 
 TEST(WalkTrace, OnASphereTheSurfaceFallsByItsSagittaAndTheNormalTurns) {
   const Inspection inspection = inspected(sphere(0.5), {"canonical"});
   const Explanation e = explain(inspection, 2, 0, "canonical");
-  const TangentWalk walk(*e.view->surface, e.view->camera, *e.view->brightest, *e.lightUsed);
+  const TangentWalk walk(*e.view->surface, e.view->camera, e.view->seen->brightest, *e.lightUsed);
   const Outcome<WalkTrace> t = traceWalk(walk, *e.view->surface, e.view->canonical->directions[0], 25);
   ASSERT_TRUE(t);
   EXPECT_GT(t->reachOnPlane, t->reachOnSurface) << "the normal of a convex surface turns, so its limit is nearer";
@@ -461,7 +461,7 @@ TEST(WalkTrace, OnASphereTheSurfaceFallsByItsSagittaAndTheNormalTurns) {
 TEST(WalkTrace, AFailedDirectionKeepsItsReason) {
   const Inspection inspection = inspected(sheet(0), {"canonical"});
   const Explanation e = explain(inspection, 2, 0, "canonical");
-  const TangentWalk walk(*e.view->surface, e.view->camera, *e.view->brightest, *e.lightUsed);
+  const TangentWalk walk(*e.view->surface, e.view->camera, e.view->seen->brightest, *e.lightUsed);
   DirectionResult d = e.view->canonical->directions[0];
   d.failure = Failure{Reason::SurfaceEnded, "edge"};
   EXPECT_EQ(traceWalk(walk, *e.view->surface, d, 25).failure().reason, Reason::SurfaceEnded);

@@ -75,8 +75,8 @@ TEST(Plausible, ATinyObservedHighlightTrainsNothing) {
   input.light.reset();
   input.lightFailure = light.failure();
   for (const TrainingView& v : input.views) {
-    ASSERT_TRUE(v.failure);
-    EXPECT_EQ(v.failure->reason, Reason::NoHighlight) << v.failure->message();
+    ASSERT_FALSE(v.seen);
+    EXPECT_EQ(v.seen.failure().reason, Reason::NoHighlight) << v.seen.failure().message();
   }
   for (const char* model : {"primal", "dual", "canonical", "limit-angle", "reflectance"}) {
     const Outcome<ModelFit> fit = modelByName(model).fit(input, {});

@@ -162,7 +162,7 @@ TEST(TubeLight, NoLightBehindAHighlightPasses) {
       if (!light) continue;
       ++answers;
       for (const TrainingView& v : views) {
-        const Eigen::Vector3d p = v.brightest->point.position;  // on the sphere about the origin: its own normal
+        const Eigen::Vector3d p = v.seen->brightest.point.position;  // on the sphere about the origin: its own normal
         EXPECT_GT(p.dot(light->light.homogeneous().head<3>() - light->light.homogeneous().w() * p), 0) << seed << " " << orders;
       }
     }
