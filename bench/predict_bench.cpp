@@ -36,13 +36,10 @@ const ModelFit& fitOf(const std::string& model) {
   static std::map<std::string, ModelFit> fits;
   if (!fits.count("reflectance")) {
     // The contours above are those of a limit angle; a prediction asks only for a lobe.
-    ModelFit& lobe = fits["reflectance"];
-    lobe.lightEstimate = test::lightOf(scene().light);
-    lobe.lobe = "torrance-sparrow";
-    lobe.roughness = 0.1;
-    lobe.level = 0.5;
-    fits["reflectance-disc"] = lobe;
-    fits["reflectance-disc"].lightRadius = 0.15;
+    for (const auto& [name, radius] : {std::pair("reflectance", 0.0), std::pair("reflectance-disc", 0.15)}) {
+      fits[name].lightEstimate = test::lightOf(scene().light);
+      fits[name].family = ReflectanceFit{Lobe::TorranceSparrow, 0.1, 0.5, radius};
+    }
   }
   if (!fits.count(model)) {
     Settings settings;
@@ -142,7 +139,7 @@ void partWalkMesh(benchmark::State& state) {
   const Camera& camera = scene().cameras[8];
   const auto found = predictedBrightestPoints(surface(true), camera, *fit.lightEstimate, BrightestPointOptions{});
   const TangentWalk walk(surface(true), camera, found->at(0), *fit.lightEstimate);
-  const Outcome<Ellipse> ellipse = outlineEllipse(*fit.ellipsoid, virtualCamera(camera, walk.tangentPlane()));
+  const Outcome<Ellipse> ellipse = outlineEllipse(*fit.ellipsoid(), virtualCamera(camera, walk.tangentPlane()));
   for (auto _ : state) benchmark::DoNotOptimize(predictFromEllipse(walk, surface(true), camera, *ellipse, 36));
 }
 BENCHMARK(partWalkMesh)->Unit(benchmark::kMicrosecond);

@@ -18,27 +18,27 @@ std::string fitText(const ModelResult::Fit& entry, const std::string& model) {
   if (entry.failure()) return out + entry.failure()->message() + "\n";
   const ModelFit& f = *entry.fit;
   out += std::to_string(f.frames.size()) + " views, " + f.solver + "\n";
-  if (f.ellipsoid) {
-    out += "  ellipsoid centre  " + vectorText(f.ellipsoid->centre()) + " m\n";
-    out += "  semi-axes         " + vectorText(f.ellipsoid->semiAxes()) + " m\n";
+  const EllipsoidFit* const fitted = f.as<EllipsoidFit>();
+  if (f.ellipsoid()) {
+    out += "  ellipsoid centre  " + vectorText(f.ellipsoid()->centre()) + " m\n";
+    out += "  semi-axes         " + vectorText(f.ellipsoid()->semiAxes()) + " m\n";
+  } else if (fitted) {
+    out += "  Q* is not an ellipsoid: " + std::string(describe(fitted->quadric)) + "\n";
   }
-  if (f.quadric && !f.ellipsoid) out += "  Q* is not an ellipsoid: " + std::string(describe(*f.quadric)) + "\n";
   if (f.lightEstimate && !f.lightEstimate->atInfinity()) out += "  light             " + vectorText(f.lightEstimate->position()) + " m\n";
   if (f.lightEstimate && f.lightEstimate->atInfinity())
     out += "  light             at infinity, towards " + vectorText(f.lightEstimate->homogeneous().head<3>()) + "\n";
-  if (f.limitAngle) {
-    out += formatted("  limit angle       %.6g deg\n", *f.limitAngle * 180 / M_PI);
+  if (f.limitAngle()) {
+    out += formatted("  limit angle       %.6g deg\n", *f.limitAngle() * 180 / M_PI);
   }
-  if (f.lightRadius) {
-    out += formatted("  light radius      %.6g m\n", *f.lightRadius);
+  if (const ReflectanceFit* const lobe = f.as<ReflectanceFit>()) {
+    if (lobe->lightRadius > 0) out += formatted("  light radius      %.6g m\n", lobe->lightRadius);
+    if (const auto& ends = lobe->lightSegment)
+      out += "  light ends        " + vectorText(ends->first) + " m, " + vectorText(ends->second) + " m\n";
+    out += formatted("  lobe              %s, m = %.6g\n", nameOf(lobe->lobe), lobe->roughness);
   }
-  if (f.lightSegment)
-    out += "  light ends        " + vectorText(f.lightSegment->first) + " m, " + vectorText(f.lightSegment->second) + " m\n";
-  if (f.roughness && f.lobe) {
-    out += formatted("  lobe              %s, m = %.6g\n", f.lobe->c_str(), *f.roughness);
-  }
-  if (!f.singularValues.empty()) {
-    out += formatted("  gap ratio         %.3g, condition %.3g\n", f.gapRatio, f.condition);
+  if (fitted && !fitted->singularValues.empty()) {
+    out += formatted("  gap ratio         %.3g, condition %.3g\n", fitted->gapRatio, f.condition);
   }
   if (!f.residualPx.empty()) {
     out += "  residuals         ";

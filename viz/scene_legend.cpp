@@ -48,7 +48,8 @@ void addCameras(SceneLegend& legend, const LayerInput& in) {
 bool isItsQuadric(const LayerInput& in, const std::string& model, const std::string& reason) {
   const std::vector<const ModelFit*> fits = in.fits(model);
   return std::any_of(fits.begin(), fits.end(), [&](const ModelFit* fit) {
-    return fit->quadric && !fit->ellipsoid && reason == Failure{Reason::NotAnEllipsoid, describe(*fit->quadric)}.message();
+    const EllipsoidFit* const e = fit->as<EllipsoidFit>();
+    return e && !e->ellipsoid && reason == Failure{Reason::NotAnEllipsoid, describe(e->quadric)}.message();
   });
 }
 

@@ -43,9 +43,9 @@ std::vector<Eigen::Vector3d> selectedExtent(const LayerInput& in) {
   if (!points.empty()) return points;
   if (!in.selection.model.empty()) {
     for (const ModelFit* fit : in.fits(in.selection.model)) {
-      if (!fit->ellipsoid || fit->ellipsoid->semiAxes().maxCoeff() > 20 * in.scale.sceneSize) continue;
-      const Eigen::Matrix3d axes = fit->ellipsoid->worldFromBody().linear() * fit->ellipsoid->semiAxes().asDiagonal();
-      for (int i = 0; i < 6; ++i) points.push_back(fit->ellipsoid->centre() + (i % 2 ? -1 : 1) * axes.col(i / 2));
+      if (!fit->ellipsoid() || fit->ellipsoid()->semiAxes().maxCoeff() > 20 * in.scale.sceneSize) continue;
+      const Eigen::Matrix3d axes = fit->ellipsoid()->worldFromBody().linear() * fit->ellipsoid()->semiAxes().asDiagonal();
+      for (int i = 0; i < 6; ++i) points.push_back(fit->ellipsoid()->centre() + (i % 2 ? -1 : 1) * axes.col(i / 2));
     }
   }
   if (!points.empty()) return points;
@@ -62,11 +62,11 @@ std::vector<Eigen::Vector3d> ellipsoidEnds(const LayerInput& in, const std::stri
   for (const std::string& name : in.models) {
     for (const ModelFit* fit : in.fits(name)) {
       const double most = (name == model ? 5 : 0.5) * in.scale.sceneSize;  // a needle of another model must not shrink the rest
-      if (!fit->ellipsoid || fit->ellipsoid->semiAxes().maxCoeff() > most ||
-          (fit->ellipsoid->centre() - in.scale.sceneBox.center()).norm() > 5 * in.scale.sceneSize)
+      if (!fit->ellipsoid() || fit->ellipsoid()->semiAxes().maxCoeff() > most ||
+          (fit->ellipsoid()->centre() - in.scale.sceneBox.center()).norm() > 5 * in.scale.sceneSize)
         continue;
-      const Eigen::Matrix3d axes = fit->ellipsoid->worldFromBody().linear() * fit->ellipsoid->semiAxes().asDiagonal();
-      for (int i = 0; i < 6; ++i) points.push_back(fit->ellipsoid->centre() + (i % 2 ? -1.1 : 1.1) * axes.col(i / 2));
+      const Eigen::Matrix3d axes = fit->ellipsoid()->worldFromBody().linear() * fit->ellipsoid()->semiAxes().asDiagonal();
+      for (int i = 0; i < 6; ++i) points.push_back(fit->ellipsoid()->centre() + (i % 2 ? -1.1 : 1.1) * axes.col(i / 2));
     }
   }
   return points;
@@ -287,7 +287,7 @@ std::optional<Framing> ellipsoidFraming(const LayerInput& in, const std::vector<
   if (!modelByName(model).traits().mirrored)
     for (const ModelFit* fit : in.fits(model))
       for (const TrainingView* view : in.viewsOf(*fit))
-        if (fit->ellipsoid) framing.points.push_back(0.5 * (view->camera.centreInWorld() + fit->ellipsoid->centre()));
+        if (fit->ellipsoid()) framing.points.push_back(0.5 * (view->camera.centreInWorld() + fit->ellipsoid()->centre()));
   if (drawn.virtualCameras) addVirtualCameras(in, framing.points, true);
   // The surface, too, where it is no larger than all that: half of it would puzzle.
   Eigen::AlignedBox3d held;

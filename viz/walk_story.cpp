@@ -53,9 +53,9 @@ Outcome<Start> backwards(const Inspection& in, const Explanation& e) {
   if (!fit || !in.surfaces) return none;
   const Outcome<std::shared_ptr<const Surface>> surface = surfaceFor(in, e.frame, e.light);
   if (!surface) return surface.failure();
-  if (!fit->lightEstimate && !fit->ellipsoid) return Failure{Reason::NoLight, ""};
+  if (!fit->lightEstimate && !fit->ellipsoid()) return Failure{Reason::NoLight, ""};
   return Start{&*predicted->canonical, predicted->brightest, *surface,
-               fit->lightEstimate ? *fit->lightEstimate : Light::at(fit->ellipsoid->centre())};
+               fit->lightEstimate ? *fit->lightEstimate : Light::at(fit->ellipsoid()->centre())};
 }
 
 }  // namespace

@@ -8,7 +8,8 @@
 namespace glint {
 
 /// The text that `std::printf` would write, of any length: formatted("%.3g %%", 12.5). Numbers have a decimal point whatever
-/// locale the process or the thread has set (Qt sets the user's for the whole process). Safe from every thread.
+/// locale the process or the thread has set (Qt sets the user's for the whole process). Safe from every thread. Not fmt: the compiler
+/// checks these formats at every call, and fmt's templates would be compiled in every file that writes a number.
 [[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
 
 /// The number that the whole text is: "0.5", "-1e-3", "+2". No locale, no blanks, nothing behind it. Empty for anything else, and for what

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/base/median.h"
 #include "core/base/outcome.h"
 
 namespace glint {
@@ -58,10 +59,9 @@ ResidualSpread residualSpread(const std::vector<double>& residuals, const std::v
     squares += psi.back() * psi.back();
     inliers += std::abs(r) <= robustScale;
   }
-  std::nth_element(absolute.begin(), absolute.begin() + absolute.size() / 2, absolute.end());
   ResidualSpread spread;
   // The median of |x| of a unit normal is 1 / 1.4826.
-  spread.noisePx = 1.4826 * absolute[absolute.size() / 2] * std::sqrt(n / free);
+  spread.noisePx = 1.4826 * upperMedian(absolute) * std::sqrt(n / free);
   const double slope = std::max(inliers, 1.0) / n, k = 1 + parameters / n * (1 - slope) / slope;
   const double inflation = correlationInflation(psi, views, neighbours);
   spread.factor = inflation * k * k * squares / free / (slope * slope);
@@ -76,9 +76,7 @@ double rmsWithoutTail(const std::vector<double>& residuals) {
     if (!std::isfinite(r)) return std::nan("");
     sizes.push_back(std::abs(r));
   }
-  const auto bulk = sizes.begin() + std::ptrdiff_t((2 * sizes.size() - 1) / 3);  // the last of the smaller two thirds
-  std::nth_element(sizes.begin(), bulk, sizes.end());
-  const double most = 2 * *bulk;
+  const double most = 2 * ranked(sizes, (2 * sizes.size() - 1) / 3);  // the last of the smaller two thirds
   double sum = 0;
   for (const double size : sizes) sum += std::pow(std::min(size, most), 2);
   return std::sqrt(sum / double(sizes.size()));

@@ -150,7 +150,8 @@ class Check {
     Fitted result;
     for (const double r : fitted->residualPx) result.rmsPx += r * r / double(which.size());
     result.rmsPx = std::sqrt(result.rmsPx);
-    result.kind = {fitted->lobe.value_or("auto"), lampChoiceOf(*fitted)};
+    const ReflectanceFit& lobe = std::get<ReflectanceFit>(fitted->family);
+    result.kind = {nameOf(lobe.lobe), lampChoiceOf(lobe)};
     result.model = std::make_shared<const ModelFit>(*fitted);
     return std::isfinite(result.rmsPx) ? std::optional<Fitted>(result) : std::nullopt;
   }

@@ -178,13 +178,13 @@ class Findings {
     const bool good = linear->ellipsoid.has_value();
     std::string reason = "The contours alone, without any prior, give a Q* of signature " + signs + ": " + c_.quadricKind + ".";
     if (!good)
-      reason += fit_.fit && fit_.fit->ellipsoid ? " The solver '" + fit_.fit->solver +
-                                                      "' forced an ellipsoid; it relies on the expected position of its centre."
-                                                : " This is not an ellipsoid, so it has no outline to predict with.";
+      reason += fit_.fit && fit_.fit->ellipsoid() ? " The solver '" + fit_.fit->solver +
+                                                        "' forced an ellipsoid; it relies on the expected position of its centre."
+                                                  : " This is not an ellipsoid, so it has no outline to predict with.";
     add("signature", "Q*", double(s.positive - s.negative), c_.quadricKind,
-        good                              ? Verdict::Green
-        : fit_.fit && fit_.fit->ellipsoid ? Verdict::Amber
-                                          : Verdict::Red,
+        good                                ? Verdict::Green
+        : fit_.fit && fit_.fit->ellipsoid() ? Verdict::Amber
+                                            : Verdict::Red,
         reason);
   }
 
@@ -260,8 +260,8 @@ class Findings {
     if (hasLight) {
       at = fit->lightEstimate->position();
       if (fit->lightCovariance) sigma = largestSigma(*fit->lightCovariance);
-    } else if (fit->ellipsoid) {
-      at = fit->ellipsoid->centre();
+    } else if (fit->ellipsoid()) {
+      at = fit->ellipsoid()->centre();
       if (fit->uncertainty && fit->uncertainty->root.rows() >= 3)
         sigma = largestSigma(Eigen::Matrix3d(fit->uncertainty->root.topRows(3) * fit->uncertainty->root.topRows(3).transpose()));
     } else {
@@ -387,21 +387,22 @@ constexpr const char* kToLevelSet = "from the observed contour to the level set,
 std::string residualMeaning(const LightEstimate&) { return kToLevelSet; }
 
 std::string residualMeaning(const ModelFit& fit) {
-  if (!fit.quadric) return kToLevelSet;
+  if (!fit.as<EllipsoidFit>()) return kToLevelSet;
   const HighlightModel* const model = findModel(fit.model);
   return std::string("from the ") + (model && model->needsCanonicalContours() ? "canonical" : "observed") + " contour to the outline, one way, RMS";
 }
 
 std::optional<Eigen::Vector3d> semiAxesSigma(const ModelFit& fit) {
-  if (!fit.ellipsoid || !fit.uncertainty || !parameters::kShape.isIn(fit.uncertainty->root) || fit.uncertainty->root.cols() == 0)
+  const Ellipsoid* const e = fit.ellipsoid();
+  if (!e || !fit.uncertainty || !parameters::kShape.isIn(fit.uncertainty->root) || fit.uncertainty->root.cols() == 0)
     return std::nullopt;
   const Eigen::MatrixXd shape = parameters::kShape.of(fit.uncertainty->root);
   Eigen::Vector3d sigma;
   for (int i = 0; i < 3; ++i) {
-    const Eigen::Vector3d v = fit.ellipsoid->worldFromBody().linear().col(i);
+    const Eigen::Vector3d v = e->worldFromBody().linear().col(i);
     Eigen::Matrix<double, 1, 6> squares;
     squares << v.x() * v.x(), v.y() * v.y(), v.z() * v.z(), 2 * v.x() * v.y(), 2 * v.x() * v.z(), 2 * v.y() * v.z();
-    sigma(i) = (squares * shape).norm() / (2 * fit.ellipsoid->semiAxes()(i));
+    sigma(i) = (squares * shape).norm() / (2 * e->semiAxes()(i));
   }
   return sigma;
 }

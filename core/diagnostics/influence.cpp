@@ -56,17 +56,17 @@ std::optional<Eigen::Vector3d> placeOf(const ModelFit& fit) {
     if (fit.lightEstimate->atInfinity()) return std::nullopt;
     return fit.lightEstimate->position();
   }
-  if (fit.ellipsoid) return fit.ellipsoid->centre();
+  if (fit.ellipsoid()) return fit.ellipsoid()->centre();
   return std::nullopt;
 }
 
 void compareFits(const ModelFit& with, const ModelFit& without, ModelInfluence& influence) {
   const std::optional<Eigen::Vector3d> a = placeOf(with), b = placeOf(without);
   if (a && b) influence.lightShift = std::max(influence.lightShift.value_or(0), (*a - *b).norm());
-  if (!with.ellipsoid || !without.ellipsoid) return;
+  if (!with.ellipsoid() || !without.ellipsoid()) return;
   double change = influence.axesChange.value_or(0);
   for (int i = 0; i < 3; ++i) {
-    const double before = with.ellipsoid->semiAxes()(i), after = without.ellipsoid->semiAxes()(i);
+    const double before = with.ellipsoid()->semiAxes()(i), after = without.ellipsoid()->semiAxes()(i);
     if (before > 0) change = std::max(change, std::abs(after - before) / before);
   }
   influence.axesChange = change;

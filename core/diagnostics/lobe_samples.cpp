@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/median.h"
 #include "core/highlight/background.h"
 
 namespace glint {
@@ -99,10 +100,9 @@ Outcome<LobeSamples> lobeSamples(const Image& linear, const Image* mask, const H
       if (glossy && std::isfinite(v)) darkest.push_back(v);
     }
   if (darkest.empty()) return Failure{Reason::TooFewPoints, "no glossy pixel around the highlight"};
-  std::nth_element(darkest.begin(), darkest.begin() + std::ptrdiff_t(darkest.size() / 10), darkest.end());
   Footprint local = footprint;
   local.centre -= Pixel(x0, y0);
-  const Background background = fitBackground(cut, usable, local, darkest[darkest.size() / 10]);
+  const Background background = fitBackground(cut, usable, local, ranked(darkest, darkest.size() / 10));
   result.background = background.at(local.centre.x(), local.centre.y());
 
   const double area = std::numbers::pi * options.reach * options.reach * std::sqrt(footprint.shape.determinant());

@@ -131,7 +131,7 @@ Outcome<Light> lightOfModel(const Inspection& inspection, int frame, const std::
       if (f.key() == key && f.fit) fit = &*f.fit;
   if (fit && fit->lightEstimate) return *fit->lightEstimate;
   if (const LightEstimate* const estimate = inspection.lightOf(key)) return estimate->light;
-  if (fit && fit->ellipsoid && modelByName(model).traits().mirrored) return Light::at(fit->ellipsoid->centre());
+  if (fit && fit->ellipsoid() && modelByName(model).traits().mirrored) return Light::at(fit->ellipsoid()->centre());
   if (const Failure* const why = inspection.lightFailureFor(frame, light)) return *why;
   return Failure{Reason::NoLight, "the light '" + light + "' was not estimated"};
 }
@@ -167,8 +167,9 @@ std::vector<AngleByDirection> limitAngles(const Inspection& inspection, int fram
           predicted = &c->prediction.highlights()[std::size_t(row.predicted)];
       const auto& fits = inspection.models.at(model).fits;
       if (c->light == h.light && c->fit >= 0 && c->fit < int(fits.size()) && fits[std::size_t(c->fit)].fit) {
-        a.limitAngle = fits[std::size_t(c->fit)].fit->limitAngle;
-        a.extended = fits[std::size_t(c->fit)].fit->extent.has_value();
+        const ModelFit& fit = *fits[std::size_t(c->fit)].fit;
+        a.limitAngle = fit.limitAngle();
+        a.extended = fit.as<LimitAngleFit>() && fit.as<LimitAngleFit>()->extent;
       }
     }
     for (int k = 0; k < directions; ++k) {

@@ -99,7 +99,7 @@ FrameSamples frameSamples(const Inspection& inspection, int frame, const std::st
       }
       if (const auto it = inspection.models.find(model); it != inspection.models.end())
         for (const ModelResult::Fit& f : it->second.fits)
-          if (f.fit && f.light == h.light && f.fit->roughness) lobe.roughness = f.fit->roughness;
+          if (f.fit && f.light == h.light && f.fit->as<ReflectanceFit>()) lobe.roughness = f.fit->as<ReflectanceFit>()->roughness;
       result.lobes.push_back(std::move(lobe));
     }
   } catch (const InputError& e) {
@@ -204,7 +204,7 @@ PlotData semiAxesPlot(const Inspection& inspection) {
   std::string refused;
   for (const std::string& model : modelsInOrder(inspection))
     for (const ModelResult::Fit& f : inspection.models.at(model).fits) {
-      if (f.fit && f.fit->ellipsoid)
+      if (f.fit && f.fit->ellipsoid())
         fits.push_back({model, f.light + (f.surface ? " on " + *f.surface : std::string()), &*f.fit});
       else if (f.failure())
         refused += (refused.empty() ? "" : "; ") + model + ": " + f.failure()->message();
@@ -224,7 +224,7 @@ PlotData semiAxesPlot(const Inspection& inspection) {
     series.pointSize = 9;
     for (std::size_t before = 0; before < i; ++before) series.inLegend = series.inLegend && fits[before].model != fits[i].model;
     const std::optional<Eigen::Vector3d> sigma = semiAxesSigma(*fits[i].fit);
-    const Eigen::Vector3d axes = fits[i].fit->ellipsoid->semiAxes();
+    const Eigen::Vector3d axes = fits[i].fit->ellipsoid()->semiAxes();
     for (int k = 0; k < 3; ++k) {
       PlotPoint p;
       p.x = k + 0.7 * ((double(i) + 0.5) / double(fits.size()) - 0.5);  // side by side, so that none hides another

@@ -172,7 +172,7 @@ void virtualCameraStep(const Case& c, ExplainStep& step) {
   // How far the surface is from a plane within the highlight: the normal's turn against the limit angle.
   if (!c.surface || !v.seen) return;
   const Outcome<Curvature> k = c.surface->curvatureAt(v.seen->brightest.point);
-  const double limit = c.fit && c.fit->fit && c.fit->fit->limitAngle ? *c.fit->fit->limitAngle : 0;
+  const double limit = c.fit && c.fit->fit ? c.fit->fit->limitAngle().value_or(0) : 0;
   const LightEstimate* common = c.common();
   const double alpha = limit > 0 ? limit : common ? common->limitAngle : 0;
   if (!k || !(alpha > 0)) return;
@@ -361,26 +361,27 @@ void ellipsoidStep(const Case& c, ExplainStep& step) {
   }
   const ModelFit& f = *c.fit->fit;
   step.numbers.push_back(one("", "highlights used", double(f.frames.size())));
-  if (f.ellipsoid) {
-    step.numbers.push_back(point("", "centre", f.ellipsoid->centre()));
-    step.numbers.push_back(point("a, b, c", "semi-axes", f.ellipsoid->semiAxes()));
+  const EllipsoidFit* const quadric = f.as<EllipsoidFit>();
+  if (f.ellipsoid()) {
+    step.numbers.push_back(point("", "centre", f.ellipsoid()->centre()));
+    step.numbers.push_back(point("a, b, c", "semi-axes", f.ellipsoid()->semiAxes()));
   }
-  if (f.limitAngle) step.numbers.push_back(one("α_lim", "limit angle", degrees(*f.limitAngle), "deg"));
-  if (f.roughness) step.numbers.push_back(one("m", "roughness", *f.roughness));
-  if (f.quadric && f.gapRatio > 0) {
-    step.numbers.push_back(one("", "last over second-last singular value", f.gapRatio));
-    if (f.gapRatio > kWeakGap) step.broken.push_back({"weak-gap", {one("", "ratio", f.gapRatio)}});
+  if (f.limitAngle()) step.numbers.push_back(one("α_lim", "limit angle", degrees(*f.limitAngle()), "deg"));
+  if (const ReflectanceFit* const lobe = f.as<ReflectanceFit>()) step.numbers.push_back(one("m", "roughness", lobe->roughness));
+  if (quadric && quadric->gapRatio > 0) {
+    step.numbers.push_back(one("", "last over second-last singular value", quadric->gapRatio));
+    if (quadric->gapRatio > kWeakGap) step.broken.push_back({"weak-gap", {one("", "ratio", quadric->gapRatio)}});
   }
   const std::optional<ContourMetrics> worst = worstInTraining(c);
   if (worst) step.numbers.push_back(one("d", "largest mean distance in a training frame", worst->contourErrorPx, "px"));
   if (!f.residualPx.empty())
     step.numbers.push_back(one("",
-                               f.quadric ? "largest distance from a training contour to its outline, one way"
-                                         : "largest distance of a training contour from its level set",
+                               quadric ? "largest distance from a training contour to its outline, one way"
+                                       : "largest distance of a training contour from its level set",
                                *std::max_element(f.residualPx.begin(), f.residualPx.end()), "px"));
   const std::size_t before = step.broken.size();
-  if (f.ellipsoid) {
-    Eigen::Vector3d axes = f.ellipsoid->semiAxes();
+  if (f.ellipsoid()) {
+    Eigen::Vector3d axes = f.ellipsoid()->semiAxes();
     std::sort(axes.data(), axes.data() + 3);
     if (axes[2] > kNeedle * axes[1])
       step.broken.push_back({"needle", {one("", "longest semi-axis", axes[2], "m"), one("", "the next one", axes[1], "m")}});
@@ -388,8 +389,8 @@ void ellipsoidStep(const Case& c, ExplainStep& step) {
   if (worst && worst->contourErrorPct > kOwnSizePct)
     step.broken.push_back({"training-missed", {one("e", "of the highlight's equivalent diameter", worst->contourErrorPct, "%")}});
   if (step.broken.size() > before) addReason(c, step);
-  if (f.quadric && !f.ellipsoid) step.broken.push_back({"not-an-ellipsoid", {}});
-  if (!f.quadric) step.broken.push_back({"no-ellipsoid", {}});
+  if (quadric && !f.ellipsoid()) step.broken.push_back({"not-an-ellipsoid", {}});
+  if (!quadric) step.broken.push_back({"no-ellipsoid", {}});
 }
 
 void projectionStep(const Case& c, ExplainStep& step) {
@@ -497,7 +498,7 @@ std::string modelToExplain(const Inspection& inspection, const std::string& want
     if (it == inspection.models.end()) continue;
     richest = id;
     for (const ModelResult::Fit& f : it->second.fits)
-      if (f.fit && f.fit->ellipsoid) withEllipsoid = id;
+      if (f.fit && f.fit->ellipsoid()) withEllipsoid = id;
   }
   return withEllipsoid.empty() ? richest : withEllipsoid;
 }

@@ -113,16 +113,17 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
     squares.push_back(square);
     others.push_back({&m, std::move(*other), name});
   };
-  if (fit.lobe) {
+  const ReflectanceFit* const fitted = fit.as<ReflectanceFit>();
+  if (fitted) {
     for (const std::string& lobe : paramSpec("fit.lobe").choices) {
-      if (lobe == "auto" || lobe == *fit.lobe) continue;
+      if (lobe == "auto" || lobe == nameOf(fitted->lobe)) continue;
       Settings with = settings;
       with.set("fit.lobe", lobe);
       // Under a lamp of the same shape: a wrong lobe would take long to find one that makes up for it.
-      with.set("fit.light_size", lampChoiceOf(fit));
+      with.set("fit.light_size", lampChoiceOf(*fitted));
       tryOther(model, with, "the lobe " + lobe);
     }
-  } else if (fit.limitAngle && !fit.ellipsoid) {
+  } else if (fit.as<LimitAngleFit>()) {
     Settings free = settings;
     free.set("fit.lobe", std::string("auto"));  // a lobe that was asked for is not one that the limit angle is judged by
     tryOther(radianceModel(), free, radianceModel().id());
@@ -141,7 +142,7 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
 
   // Pixels are not carried to other cameras: what a tolerance moves is then told by contours, before and after.
   std::shared_ptr<const ModelFit> reference;
-  if (fit.evidence == "pixels") {
+  if (fitted && fitted->evidence == "pixels") {
     const Outcome<ModelFit> fromContours = fitWith(input, [](const Camera& c) { return c; }, model, settings);
     if (fromContours) reference = std::make_shared<const ModelFit>(*fromContours);
   }

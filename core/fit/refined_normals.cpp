@@ -8,6 +8,7 @@
 #include "core/fit/fit_engine.h"
 #include "core/fit/training.h"
 #include "core/light/contour_evidence.h"
+#include "core/model/reflectance_settings.h"
 #include "core/reflectance/pixel_patch.h"
 #include "core/reflectance/radiance_field.h"
 #include "core/surface/mesh_policy.h"
@@ -31,26 +32,23 @@ std::vector<BundleView> bundleViewsOf(const std::vector<TrainingView>& views) {
   return result;
 }
 
-Lamp lampOf(const ModelFit& fit) {
-  return fit.lightSegment ? Lamp::segment(fit.lightSegment->first, fit.lightSegment->second) : Lamp::sphere(*fit.lightEstimate, fit.lightRadius.value_or(0));
-}
-
 /// The reflectance model of some views' contours; none where it fails.
 std::optional<ModelFit> reflectanceOf(const std::vector<TrainingView>& views, const LightEstimate& light, const Settings& settings) {
   Settings contours = settings;
   contours.set("fit.evidence", std::string("contours"));
   contours.set("fit.most_residual", 1.0);  // what the bumps leave is what is looked for
   const Outcome<ModelFit> fit = fitModel(radianceModel(), views, Outcome<LightEstimate>(light), contours);
-  return fit && fit->lightEstimate && fit->roughness && fit->lobe && fit->level ? std::optional<ModelFit>(*fit) : std::nullopt;
+  return fit && fit->lightEstimate && fit->as<ReflectanceFit>() ? std::optional<ModelFit>(*fit) : std::nullopt;
 }
 
 /// The angle of the contour that a reflectance fit predicts, near a pixel: that of the pixel less its distance from the predicted contour.
 class LobeAngles {
  public:
   LobeAngles(const ModelFit& fit, const std::vector<TrainingView>& views) : light_(*fit.lightEstimate) {
+    const ReflectanceFit& lobe = *fit.as<ReflectanceFit>();
     for (const TrainingView& v : views) {
       if (!v.seen) continue;
-      auto view = std::make_shared<View>(v, *lobeOf(*fit.lobe), *fit.roughness, lampOf(fit));
+      auto view = std::make_shared<View>(v, lobe.lobe, lobe.roughness, lampOf(lobe, light_));
       const std::vector<RadiancePeak> peaks = view->field.peaks({v.highlight.peak}, kScanStepPx);
       if (!peaks.empty()) view->top = peaks.front().logRadiance;
       view->level = std::sqrt(-std::log(v.highlight.level));

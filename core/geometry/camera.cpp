@@ -67,6 +67,7 @@ Pixel Camera::undistorted(const Pixel& measured) const {
   return ideal ? *ideal : Pixel::Constant(std::numeric_limits<double>::quiet_NaN());
 }
 
+// Not OpenCV's undistortPoints: it answers beyond the fold, too, and does not say so.
 Outcome<Pixel> withoutDistortion(const Camera& camera, const Pixel& measured) {
   if (!measured.allFinite()) return Failure{Reason::NotFinite, "pixel"};
   if (!camera.hasDistortion()) return measured;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/dense_algebra.h"
+#include "core/base/median.h"
 
 namespace glint {
 namespace {
@@ -21,12 +22,6 @@ struct BackgroundSample {
   Eigen::Matrix<double, 9, 1> row;
   double value;
 };
-
-double medianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -71,7 +66,7 @@ Background fitBackground(const Image& image, const std::vector<char>& usable, co
   std::vector<double> residual(samples.size()), absolute(samples.size());
   std::vector<double> values(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) values[i] = samples[i].value;
-  const double start = medianOf(values);
+  const double start = upperMedian(values);
   for (std::size_t i = 0; i < samples.size(); ++i) residual[i] = samples[i].value - start;
   Eigen::Matrix<double, 9, 1> solution = Eigen::Matrix<double, 9, 1>::Zero();
   double spread = 0;
@@ -80,7 +75,7 @@ Background fitBackground(const Image& image, const std::vector<char>& usable, co
   Rows rows(static_cast<Eigen::Index>(samples.size()) + 10, 10);
   for (int round = 0; round < kTrimRounds; ++round) {
     for (std::size_t i = 0; i < samples.size(); ++i) absolute[i] = std::abs(residual[i]);
-    spread = 1.4826 * medianOf(absolute);
+    spread = 1.4826 * upperMedian(absolute);
     // Tukey's constant; the floor keeps it above round-off of the values where the image is exactly the model.
     const double cut = 4.685 * std::max(spread, 1e-12 * (std::abs(start) + 1e-300));
     Eigen::Index used = 0;

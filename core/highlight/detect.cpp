@@ -4,7 +4,9 @@
 #include <numeric>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+#include <utility>
 
+#include "core/base/median.h"
 #include "core/highlight/background.h"
 #include "core/highlight/highlight.h"
 #include "core/highlight/iso_contour.h"
@@ -80,13 +82,10 @@ Level robustLevel(const Prepared& p) {
   for (std::size_t i = 0; i < p.usable.size(); i += stride)
     if (p.usable[i]) values.push_back(p.value.data[i]);
   if (values.empty()) return {};
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
   Level level;
-  level.median = *middle;
+  level.median = ranked(values, values.size() / 2);
   for (float& v : values) v = std::abs(v - static_cast<float>(level.median));
-  std::nth_element(values.begin(), middle, values.end());
-  level.spread = 1.4826 * *middle;
+  level.spread = 1.4826 * ranked(values, values.size() / 2);
   return level;
 }
 
@@ -104,9 +103,7 @@ double noiseOf(const Prepared& p) {
           std::abs(v(-1, -1) + v(1, -1) + v(-1, 1) + v(1, 1) - 2 * (v(0, -1) + v(0, 1) + v(-1, 0) + v(1, 0)) + 4 * v(0, 0)));
     }
   if (response.empty()) return 0;
-  const auto middle = response.begin() + static_cast<std::ptrdiff_t>(response.size() / 2);
-  std::nth_element(response.begin(), middle, response.end());
-  return 1.4826 * *middle / 6.0;  // the mask's own norm is 6
+  return 1.4826 * upperMedian(std::move(response)) / 6.0;  // the mask's own norm is 6
 }
 
 /// A connected region that may hold one or more highlights, with its background removed.

@@ -17,7 +17,7 @@ const ModelResult::Fit* reflectanceFit(const Inspection& in, int frame) {
   const std::string surface = in.surfaces ? in.surfaces->keyOf(frame) : "";
   const std::vector<Highlight>& shown = in.evidence[std::size_t(frame)].highlights;
   const auto score = [&](const ModelResult::Fit& f) {
-    const bool usable = f.fit && f.fit->roughness && f.fit->lobe && lobeOf(*f.fit->lobe);
+    const bool usable = f.fit && f.fit->as<ReflectanceFit>();
     const bool ofFrame = (!f.surface || *f.surface == surface) &&
                          std::any_of(shown.begin(), shown.end(), [&](const Highlight& h) { return h.light == f.light; });
     return 2 * int(usable) + int(ofFrame);
@@ -50,9 +50,9 @@ Outcome<FittedLobe> fittedLobe(const Inspection& in, int frame) {
   if (in.request.whatIf.synthesise)
     return Failure{Reason::NotSupported, "the contours are synthesised, so no fit describes the captured scene"};
   const ModelResult::Fit* reflectance = reflectanceFit(in, frame);
-  if (reflectance && reflectance->fit && reflectance->fit->roughness && reflectance->fit->lobe)
-    if (const std::optional<Lobe> lobe = lobeOf(*reflectance->fit->lobe))
-      return FittedLobe{*lobe, *reflectance->fit->roughness, "reflectance, light " + reflectance->light};
+  if (reflectance && reflectance->fit)
+    if (const ReflectanceFit* const fit = reflectance->fit->as<ReflectanceFit>())
+      return FittedLobe{fit->lobe, fit->roughness, "reflectance, light " + reflectance->light};
   if (const std::optional<FittedLobe> lobe = lobeOfLimitAngle(in, frame)) return *lobe;
   if (reflectance && reflectance->failure()) return *reflectance->failure();
   return Failure{Reason::NotSupported, "no computed model gives the lobe (reflectance does, or a model that needs the light)"};

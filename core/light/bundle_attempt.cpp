@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "core/base/median.h"
+
 namespace glint::bundling {
 namespace {
 
@@ -17,11 +19,6 @@ Eigen::Vector3d towards(const SeenPoint& s, const Eigen::Vector4d& light) {
 
 double angle(const SeenPoint& s, const Eigen::Vector4d& light) {
   return incidentAngle(s.normal, towards(s, light).normalized(), s.toCamera);
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
 }
 
 namespace {
@@ -60,7 +57,7 @@ void reweight(std::vector<ContourEvidence>& points, const std::vector<AnglesArou
                                 slope(e.up.has_value(), at.up, e.down.has_value(), at.down)));
   }
   // Where the angle hardly changes over the image (a facet, a start far off) a pixel must not weigh without bound.
-  const double floor = std::max(0.05 * median(slopes), 1e-12);
+  const double floor = std::max(0.05 * upperMedian(slopes), 1e-12);
   for (std::size_t i = 0; i < points.size(); ++i) points[i].pixelsPerRadian = 1 / std::max(slopes[i], floor);
 }
 }  // namespace
@@ -91,9 +88,9 @@ double noiseShare(const std::vector<ContourEvidence>& points, const Attempt& a) 
       steps.push_back(std::abs(members[i].residual - members[(i + 1) % members.size()].residual));
   }
   constexpr double kVisiblePx = 0.01;  // the effect goes with the square of the noise
-  const double all = median(sizes);
+  const double all = upperMedian(sizes);
   if (steps.size() < 5 || !(all > kVisiblePx)) return 0;
-  return std::min(1.0, 0.5 * std::pow(median(steps) / all, 2));
+  return std::min(1.0, 0.5 * std::pow(upperMedian(steps) / all, 2));
 }
 
 ResidualSpread spreadOf(const std::vector<ContourEvidence>& points, const Attempt& a, int parameters, double scale) {
@@ -115,7 +112,7 @@ namespace {
 void unbias(std::vector<ContourEvidence>& points, const Attempt& a, double share, const std::vector<AnglesAround>& angles) {
   std::vector<double> sizes;
   for (std::size_t i = 0; i < points.size(); ++i) sizes.push_back(std::abs(residual(points[i], a, angles[i].here)));
-  const double sigma = 1.4826 * median(sizes);
+  const double sigma = 1.4826 * upperMedian(sizes);
   for (std::size_t i = 0; i < points.size(); ++i) {
     ContourEvidence& e = points[i];
     e.biasPx = 0;

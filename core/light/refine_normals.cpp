@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/base/dense_algebra.h"
+#include "core/base/median.h"
 #include "core/base/residual_spread.h"
 #include "core/geometry/polyline.h"
 #include "core/light/contour_evidence.h"
@@ -319,8 +320,7 @@ double highlightSize(const Problem& problem) {
     sizes.push_back(2 * std::sqrt(sum / double(end - first)));
     first = end;
   }
-  std::nth_element(sizes.begin(), sizes.begin() + std::ptrdiff_t(sizes.size() / 2), sizes.end());
-  return sizes[sizes.size() / 2];
+  return upperMedian(sizes);
 }
 
 struct Choice {
@@ -393,8 +393,7 @@ Outcome<NormalRefinement> refineNormals(const std::vector<BundleView>& views, co
   state.light.normalize();
   std::vector<double> first;
   for (const Point& p : problem.points) first.push_back(alphaOf(p.at, state.light) - p.expected);
-  std::nth_element(first.begin(), first.begin() + std::ptrdiff_t(first.size() / 2), first.end());
-  state.limit = first[first.size() / 2];
+  state.limit = upperMedian(first);
   Basis basis;
   state.c.resize(0);
   state = fitted(problem, basis, 0, state, all);

@@ -87,11 +87,12 @@ std::shared_ptr<Band> Band::of(const HighlightModel& model, const ModelFit& fit,
                                const Settings& settings) {
   if (!fit.uncertainty) return nullptr;
   std::vector<ViewResiduals> residuals;
+  const ReflectanceFit* const lobe = fit.as<ReflectanceFit>();
   bool clipped = false;
   double radius = 0, unit = 0;
   for (const TrainingView& v : views) {
     if (!v.seen || v.highlight.contour.points.size() < 3) continue;
-    clipped = clipped || (v.highlight.clipped && fit.evidence != "pixels");  // pixels leave out what is clipped
+    clipped = clipped || (v.highlight.clipped && !(lobe && lobe->evidence == "pixels"));  // pixels leave out what is clipped
     const Prediction p = model.predict(fit, v.camera, v.surface.get(), settings);
     const PredictedHighlight* h = nearest(p, centroid(v.highlight.contour));
     if (!h) continue;

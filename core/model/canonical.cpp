@@ -60,7 +60,7 @@ class Canonical final : public HighlightModel {
     store(*r, fit);
     fit.lightEstimate = input.light->light;
     fit.lightCovariance = input.light->covariance;
-    fit.limitAngle = input.light->limitAngle;
+    std::get<EllipsoidFit>(fit.family).limitAngle = input.light->limitAngle;
     fit.hints = hintsOf(input);
     if (fit.uncertainty && input.light->uncertainty) {
       // The light moves the prediction on its own as well. Taken as independent: the contours' noise enters both, through different residuals.
@@ -75,8 +75,9 @@ class Canonical final : public HighlightModel {
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {
     if (!surface) return Failure{Reason::NoSurface, ""};
-    if (!fit.ellipsoid) return Failure{Reason::NotAnEllipsoid, fit.quadric ? describe(*fit.quadric) : ""};
-    const Light light = fit.lightEstimate ? *fit.lightEstimate : Light::at(fit.ellipsoid->centre());
+    const Outcome<Ellipsoid> ellipsoid = ellipsoidOf(fit);
+    if (!ellipsoid) return ellipsoid.failure();
+    const Light light = fit.lightEstimate ? *fit.lightEstimate : Light::at(ellipsoid->centre());
     const auto brightest = brightestPointsFor(*surface, camera, light, settings, fit.hints);
     if (!brightest) return brightest.failure();
     const bool localQuadric = settings.text("predict.query") == "local-quadric";
@@ -94,7 +95,7 @@ class Canonical final : public HighlightModel {
       }
       const Surface& walked = patch ? static_cast<const Surface&>(*patch) : *surface;
       const TangentWalk walk(walked, camera, b, light, walkOptions);
-      const Outcome<Ellipse> e = outlineEllipse(*fit.ellipsoid, virtualCamera(camera, walk.tangentPlane()));
+      const Outcome<Ellipse> e = outlineEllipse(*ellipsoid, virtualCamera(camera, walk.tangentPlane()));
       if (!e) {
         why = e.failure();
         continue;

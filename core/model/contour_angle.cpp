@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <utility>
 
+#include "core/base/median.h"
 #include "core/model/models.h"
 
 namespace glint {
@@ -19,8 +21,7 @@ double medianContourAngle(const std::vector<TrainingView>& views, const Light& l
     }
   }
   if (alphas.empty()) return 0;
-  std::nth_element(alphas.begin(), alphas.begin() + alphas.size() / 2, alphas.end());
-  return alphas[alphas.size() / 2];
+  return upperMedian(std::move(alphas));
 }
 
 }  // namespace glint

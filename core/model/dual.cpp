@@ -49,15 +49,16 @@ class Dual final : public HighlightModel {
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {
     if (!surface) return Failure{Reason::NoSurface, ""};
-    if (!fit.ellipsoid) return Failure{Reason::NotAnEllipsoid, fit.quadric ? describe(*fit.quadric) : ""};
+    const Outcome<Ellipsoid> ellipsoid = ellipsoidOf(fit);
+    if (!ellipsoid) return ellipsoid.failure();
     // The model stores no light: its brightest point is that of a light at the ellipsoid's centre.
-    const auto brightest = brightestPointsFor(*surface, camera, Light::at(fit.ellipsoid->centre()), settings, fit.hints);
+    const auto brightest = brightestPointsFor(*surface, camera, Light::at(ellipsoid->centre()), settings, fit.hints);
     if (!brightest) return brightest.failure();
     std::vector<PredictedHighlight> found;
     std::optional<Failure> why;
     for (const BrightestPoint& b : *brightest) {
       const Plane plane = Plane::through(b.point.position, b.point.normal);
-      const Outcome<Ellipse> e = outlineEllipse(*fit.ellipsoid, virtualCamera(camera, plane));
+      const Outcome<Ellipse> e = outlineEllipse(*ellipsoid, virtualCamera(camera, plane));
       if (!e) {
         why = e.failure();
         continue;

@@ -185,15 +185,18 @@ ConicView conicViewOf(const TrainingView& view, const Projection& projection) {
 }
 
 void store(const Reconstruction& r, ModelFit& fit) {
-  fit.quadric = r.quadric;
-  fit.ellipsoid = r.ellipsoid;
-  fit.singularValues = r.singularValues;
-  fit.gapRatio = r.gapRatio;
+  fit.family = EllipsoidFit{r.quadric, r.ellipsoid, r.singularValues, r.gapRatio};
   fit.condition = r.condition;
   fit.residualPx = r.residualPx;
   fit.solver = r.solver;
   fit.uncertainty = r.uncertainty;
   fit.remarks.insert(fit.remarks.end(), r.remarks.begin(), r.remarks.end());
+}
+
+Outcome<Ellipsoid> ellipsoidOf(const ModelFit& fit) {
+  if (fit.ellipsoid()) return *fit.ellipsoid();
+  const EllipsoidFit* const other = fit.as<EllipsoidFit>();
+  return Failure{Reason::NotAnEllipsoid, other ? describe(other->quadric) : ""};
 }
 
 PredictedHighlight highlightFromEllipse(const Ellipse& ellipse, const BrightestPoint& brightest, int points) {

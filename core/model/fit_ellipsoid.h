@@ -46,6 +46,8 @@ ConicView conicViewOf(const TrainingView& view, const Projection& projection);
 
 /// Copies a reconstruction into the fields of a fit.
 void store(const Reconstruction& reconstruction, ModelFit& fit);
+/// The ellipsoid of a fit; NotAnEllipsoid, with what Q* is instead.
+Outcome<Ellipsoid> ellipsoidOf(const ModelFit& fit);
 
 /// The ellipse as a polyline of `points` vertices, as a highlight without directions. @param brightest its peak.
 PredictedHighlight highlightFromEllipse(const Ellipse& ellipse, const BrightestPoint& brightest, int points = 360);

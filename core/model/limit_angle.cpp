@@ -82,13 +82,13 @@ class LimitAngle final : public HighlightModel {
     if (!(input.light->limitAngle > 0)) return Failure{Reason::TooFewPoints, "no contour point on the surface"};
     fit.lightEstimate = input.light->light;
     fit.lightCovariance = input.light->covariance;
-    fit.limitAngle = input.light->limitAngle;
+    fit.family = LimitAngleFit{input.light->limitAngle, input.light->extent};
     fit.solver = input.light->solver;
     fit.condition = input.light->condition;
     fit.hints = hintsOf(input);
-    fit.extent = input.light->extent;
     fit.uncertainty = input.light->uncertainty;
-    if (fit.extent && level > 0 && level < 1) fit.remarks.push_back(extentRemark(*fit.extent, fit.lightEstimate->atInfinity(), level));
+    if (input.light->extent && level > 0 && level < 1)
+      fit.remarks.push_back(extentRemark(*input.light->extent, fit.lightEstimate->atInfinity(), level));
     fit.residualPx = input.light->residualPx;
     if (fit.residualPx.size() != used.size()) return fit;  // a light that was given, not estimated from these views
     return explaining(std::move(fit), used, true, settings.number("fit.most_residual"));
@@ -96,32 +96,35 @@ class LimitAngle final : public HighlightModel {
 
   Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera, const Surface* surface,
                                   const Settings&) const override {
-    if (!surface || !fit.uncertainty || !fit.lightEstimate || !fit.limitAngle) return {};
+    const LimitAngleFit* const fitted = fit.as<LimitAngleFit>();
+    if (!surface || !fit.uncertainty || !fit.lightEstimate || !fitted) return {};
     const Light& light = *fit.lightEstimate;
     const Eigen::Vector3d eye = camera.centreInWorld();
     SurfaceField field;
-    field.value = [&](const SurfacePoint& at) { return directedAlpha(at, eye, light, *fit.limitAngle, fit.extent); };
-    field.level = *fit.limitAngle;
+    field.value = [&](const SurfacePoint& at) { return directedAlpha(at, eye, light, fitted->limitAngle, fitted->extent); };
+    field.level = fitted->limitAngle;
     const Eigen::MatrixXd& root = fit.uncertainty->root;
     const ColumnSlopes slopes = [&](const SurfacePoint& at) -> std::optional<Eigen::VectorXd> {
-      if (fit.extent) {
+      if (fitted->extent) {
         // (value - limit) with every parameter moved along one column; small against a standard deviation.
         const auto moved = [&](const Eigen::VectorXd& by) -> double {
           const Eigen::Vector4d other = light.homogeneous() + parameters::kLight.of(by);
-          Eigen::Matrix3d extent = *fit.extent + symmetric(parameters::kExtent.of(by));
+          Eigen::Matrix3d extent = *fitted->extent + symmetric(parameters::kExtent.of(by));
           // A light at infinity keeps its angular extent where the step brings it nearer: beyond infinity is the other side of it.
           if (light.atInfinity() && other.w() != 0) extent *= other.head<3>().squaredNorm() / (other.w() * other.w());
           Eigen::Vector3d toLight = (other.head<3>() - other.w() * at.position).normalized();
           if (at.normal.dot(toLight) < 0) toLight = -toLight;
           const Eigen::Vector3d toCamera = (eye - at.position).normalized();
+          const double limit = fitted->limitAngle + by(parameters::kLimitAngle.first);
           return incidentAngle(at.normal, toLight, toCamera) -
-                 directedLimit(*fit.limitAngle + by(parameters::kLimitAngle.first), extent, at.position, at.normal, toCamera, other);
+                 directedLimit(limit, extent, at.position, at.normal, toCamera, other);
         };
-        const double here = directedLimit(*fit.limitAngle, *fit.extent, at.position, at.normal, (eye - at.position).normalized(), light.homogeneous());
+        const double here = directedLimit(fitted->limitAngle, *fitted->extent, at.position, at.normal,
+                                          (eye - at.position).normalized(), light.homogeneous());
         constexpr double kStep = 0.01;
         Eigen::VectorXd change(root.cols());
         for (Eigen::Index k = 0; k < root.cols(); ++k)
-          change(k) = (moved(kStep * root.col(k)) - moved(-kStep * root.col(k))) / (2 * kStep) * *fit.limitAngle / here;
+          change(k) = (moved(kStep * root.col(k)) - moved(-kStep * root.col(k))) / (2 * kStep) * fitted->limitAngle / here;
         return change;
       }
       Eigen::VectorXd byParameters(5);
@@ -132,21 +135,23 @@ class LimitAngle final : public HighlightModel {
   }
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {
-    if (!surface || !fit.lightEstimate || !fit.limitAngle) return Failure{surface ? Reason::NoLight : Reason::NoSurface, ""};
+    const LimitAngleFit* const fitted = fit.as<LimitAngleFit>();
+    if (!surface || !fit.lightEstimate || !fitted) return Failure{surface ? Reason::NoLight : Reason::NoSurface, ""};
     const Light& light = *fit.lightEstimate;
     const Eigen::Vector3d eye = camera.centreInWorld();
     const auto brightest = brightestPointsFor(*surface, camera, light, settings, fit.hints);
-    if (!fit.extent && settings.text("predict.query") == "local-quadric")
-      return onLocalQuadrics(*fit.limitAngle, camera, *surface, light, brightest, settings);
-    if (!fit.extent && settings.text("predict.contour") == "star" && brightest && brightest->size() == 1)
-      if (std::optional<PredictedHighlight> h = star(*fit.limitAngle, camera, *surface, light, brightest->front(), settings)) 
+    if (!fitted->extent && settings.text("predict.query") == "local-quadric")
+      return onLocalQuadrics(fitted->limitAngle, camera, *surface, light, brightest, settings);
+    if (!fitted->extent && settings.text("predict.contour") == "star" && brightest && brightest->size() == 1)
+      if (std::optional<PredictedHighlight> h = star(fitted->limitAngle, camera, *surface, light, brightest->front(), settings))
         return std::vector{std::move(*h)};
-    if (!fit.extent && settings.text("predict.contour") == "star" && brightest && brightest->size() > 1)
-      if (Outcome<std::vector<PredictedHighlight>> several = stars(*fit.limitAngle, camera, *surface, light, *brightest, settings)) 
+    if (!fitted->extent && settings.text("predict.contour") == "star" && brightest && brightest->size() > 1)
+      if (Outcome<std::vector<PredictedHighlight>> several =
+              stars(fitted->limitAngle, camera, *surface, light, *brightest, settings))
         return std::move(*several);
     SurfaceField field;
-    field.value = [&](const SurfacePoint& at) { return directedAlpha(at, eye, light, *fit.limitAngle, fit.extent); };
-    field.level = *fit.limitAngle;
+    field.value = [&](const SurfacePoint& at) { return directedAlpha(at, eye, light, fitted->limitAngle, fitted->extent); };
+    field.level = fitted->limitAngle;
     if (brightest)
       for (const BrightestPoint& b : *brightest) field.peaks.push_back({b, b.alpha});
     Prediction p = predictLevelSet(field, camera, *surface, settings);

@@ -19,6 +19,7 @@
 #include "core/geometry/plane.h"
 #include "core/highlight/highlight.h"
 #include "core/model/reconstruct.h"
+#include "core/reflectance/lobe.h"
 #include "core/surface/brightest_point.h"
 #include "core/surface/surface.h"
 
@@ -93,28 +94,42 @@ struct FitInput {
   std::shared_ptr<const ModelFit> near;
 };
 
-/// What fitting produced; fields that a model does not have stay empty.
+/// An ellipsoid about the light, fitted to outlines: primal, dual, canonical.
+struct EllipsoidFit {
+  DualQuadric quadric;                      ///< Q*
+  std::optional<Ellipsoid> ellipsoid{};     ///< when Q* is one
+  std::vector<double> singularValues{};     ///< of the linear system, descending
+  double gapRatio = 0;                      ///< last / second last of them
+  std::optional<double> limitAngle{};       ///< rad, of the light's contours; canonical only
+};
+
+/// The limit angle of a light's contours.
+struct LimitAngleFit {
+  double limitAngle = 0;                    ///< rad
+  std::optional<Eigen::Matrix3d> extent{};  ///< see LightEstimate
+};
+
+/// A reflectance lobe and the shape of the lamp about ModelFit::lightEstimate.
+struct ReflectanceFit {
+  Lobe lobe = Lobe::TorranceSparrow;
+  double roughness = 0;                     ///< m of the lobe
+  double level = 0;                         ///< fraction q of the peak at which the contour lies
+  double lightRadius = 0;                   ///< m, of a spherical light; 0 for a point or a segment
+  std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> lightSegment{};  ///< ends of a lamp with a length, world, m
+  std::string evidence{};                   ///< what the fit saw, "contours", "levels" or "pixels"
+  std::vector<double> levels{};             ///< of the contours that it saw; empty for pixels
+  std::optional<double> blurPx{};           ///< standard deviation of the images' blur, where pixels show it
+};
+
+/// What fitting produced.
 struct ModelFit {
   std::string model;
   std::string light;                        ///< id
   std::optional<std::string> surface;       ///< key, when the model belongs to one surface only
-  std::optional<DualQuadric> quadric;       ///< Q*
-  std::optional<Ellipsoid> ellipsoid;       ///< when Q* is one
+  std::variant<std::monostate, EllipsoidFit, LimitAngleFit, ReflectanceFit> family;  ///< empty for a model beyond these
   std::optional<Light> lightEstimate;
   std::optional<Eigen::Matrix3d> lightCovariance;  ///< m^2, of the position
-  std::optional<double> limitAngle;         ///< rad
-  std::optional<Eigen::Matrix3d> extent;    ///< see LightEstimate
-  std::optional<double> roughness;          ///< m of the lobe
-  std::optional<double> lightRadius;        ///< m, of a spherical light; empty for a point
-  std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> lightSegment;  ///< ends of a lamp with a length, world, m
-  std::string evidence;                     ///< reflectance: what the fit saw, "contours", "levels" or "pixels"
-  std::vector<double> levels;               ///< of the contours that it saw; empty for pixels
-  std::optional<double> blurPx;             ///< standard deviation of the images' blur, where pixels show it
-  std::optional<std::string> lobe;          ///< name of the reflectance lobe, core/reflectance/lobe.h
-  std::optional<double> level;              ///< fraction q of the peak at which the contour lies, for models that predict radiance
-  double gapRatio = 0;                      ///< last / second last singular value of the linear system
-  double condition = 0;                     ///< first / second last singular value
-  std::vector<double> singularValues;
+  double condition = 0;                     ///< of an ellipsoid first / second last singular value, else as LightEstimate
   std::vector<double> residualPx;           ///< per training view, RMS contour distance; of the robust models without its tail
   std::string solver;                       ///< "linear", "anchored", "refined", "bundle", ...
   std::vector<int> frames;                  ///< frames used
@@ -123,6 +138,20 @@ struct ModelFit {
   std::optional<ParameterUncertainty> uncertainty;
   std::vector<std::string> remarks;         ///< warnings in words, for the user: what makes the answer doubtful
   double timeUs = 0;
+
+  /// Null where the model is of another family.
+  template <class Family> const Family* as() const { return std::get_if<Family>(&family); }
+  /// Null where there is none.
+  const Ellipsoid* ellipsoid() const {
+    const EllipsoidFit* const e = as<EllipsoidFit>();
+    return e && e->ellipsoid ? &*e->ellipsoid : nullptr;
+  }
+  /// rad; none where neither ellipsoid nor contours know it.
+  std::optional<double> limitAngle() const {
+    if (const EllipsoidFit* const e = as<EllipsoidFit>()) return e->limitAngle;
+    const LimitAngleFit* const contours = as<LimitAngleFit>();
+    return contours ? std::optional(contours->limitAngle) : std::nullopt;
+  }
 };
 
 /// One predicted highlight.

@@ -170,22 +170,19 @@ Outcome<ModelFit> reflectanceFromPixels(const FitInput& input, const Settings& s
   if (!known) return known.failure();
   const PixelFit& pixels = *known;
   ModelFit fit;
+  double level = 0;
   for (const TrainingView& v : input.views) {
     if (!v.seen) continue;
     fit.frames.push_back(v.frame);
-    fit.level = v.highlight.level;
+    level = v.highlight.level;
   }
   const Lamp& lamp = pixels.model.lamp;
   fit.lightEstimate = lamp.centre;
   if (!lamp.centre.atInfinity() && pixels.positionCovariance.allFinite()) fit.lightCovariance = pixels.positionCovariance;
-  fit.roughness = pixels.model.roughness;
-  if (lamp.radius > 0) fit.lightRadius = lamp.radius;
-  fit.lightSegment = lamp.ends();
-  fit.lobe = nameOf(pixels.model.lobe);
-  fit.blurPx = pixels.model.blurPx();
+  fit.family = ReflectanceFit{pixels.model.lobe, pixels.model.roughness, level, lamp.radius, lamp.ends(), "pixels", {},
+                       pixels.model.blurPx()};
   fit.residualPx = pixels.residualPx;
   fit.uncertainty = pixels.uncertainty;
-  fit.evidence = "pixels";
   fit.solver = "pixels";
   if (input.light) fit.condition = input.light->condition;
   std::vector<UsedContour> used;

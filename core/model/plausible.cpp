@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/median.h"
 #include "core/base/number_text.h"
 
 namespace glint {
@@ -27,8 +28,7 @@ double noisePx(const Polyline& contour) {
   std::vector<double> differences;
   const auto distance = [&](std::size_t i) { return (contour.points[i % n] - middle).norm(); };
   for (std::size_t i = 0; i < n; ++i) differences.push_back(std::abs(distance(i) - 2 * distance(i + 1) + distance(i + 2)));
-  std::nth_element(differences.begin(), differences.begin() + std::ptrdiff_t(n / 2), differences.end());
-  return 1.4826 * differences[n / 2] / std::sqrt(6.0);  // 1 - 2 1: variance 6 of that of a point
+  return 1.4826 * upperMedian(differences) / std::sqrt(6.0);  // 1 - 2 1: variance 6 of that of a point
 }
 
 UsedContour usedContour(const TrainingView& view, double unit) {

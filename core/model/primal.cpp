@@ -46,12 +46,13 @@ class Primal final : public HighlightModel {
   }
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface*, const Settings&) const override {
-    if (!fit.ellipsoid) return Failure{Reason::NotAnEllipsoid, fit.quadric ? describe(*fit.quadric) : ""};
-    const Outcome<Ellipse> e = outlineEllipse(*fit.ellipsoid, camera.projection());
+    const Outcome<Ellipsoid> ellipsoid = ellipsoidOf(fit);
+    if (!ellipsoid) return ellipsoid.failure();
+    const Outcome<Ellipse> e = outlineEllipse(*ellipsoid, camera.projection());
     if (!e) return e.failure();
     BrightestPoint brightest;
     brightest.pixel = e->centre;
-    brightest.point.position = fit.ellipsoid->centre();
+    brightest.point.position = ellipsoid->centre();
     brightest.point.normal = (camera.centreInWorld() - brightest.point.position).normalized();
     return std::vector{highlightFromEllipse(*e, brightest)};
   }

@@ -14,19 +14,17 @@ namespace {
 constexpr double kSamePeakPx = 0.05;  // as RadianceField::peaks
 
 /// How far the points of an extended light lie from its centre, m.
-double reachOf(const ModelFit& fit) {
-  const double radius = fit.lightRadius.value_or(0);
-  return fit.lightSegment ? radius + 0.5 * (fit.lightSegment->second - fit.lightSegment->first).norm() : radius;
+double reachOf(const ReflectanceFit& fit) {
+  return fit.lightSegment ? 0.5 * (fit.lightSegment->second - fit.lightSegment->first).norm() : fit.lightRadius;
 }
 
 }  // namespace
 
-Outcome<std::vector<PredictedHighlight>> radianceStars(const RadianceField& radiance, const ModelFit& fit,
-                                                       const std::vector<BrightestPoint>& mirrorPoints, double faintest,
-                                                       const Camera& camera, const Surface& surface, const Settings& settings) {
-  const Lobe lobe = *lobeOf(*fit.lobe);
-  const Light& light = *fit.lightEstimate;
-  const double roughness = *fit.roughness, rise = -std::log(*fit.level);
+Outcome<std::vector<PredictedHighlight>> radianceStars(const RadianceField& radiance, const ReflectanceFit& fit,
+                                                       const Light& light, const std::vector<BrightestPoint>& mirrorPoints,
+                                                       double faintest, const Camera& camera, const Surface& surface,
+                                                       const Settings& settings) {
+  const double rise = -std::log(fit.level);
   StarField field{[&](const SurfacePoint& at) {
                     // Above any floor, so that no shadow is asked for.
                     const std::optional<double> log = radiance.at(at, std::numeric_limits<double>::infinity());
@@ -34,7 +32,7 @@ Outcome<std::vector<PredictedHighlight>> radianceStars(const RadianceField& radi
                   },
                   light, reachOf(fit) * light.homogeneous().w(),
                   [&](const PartBounds& parts, double highest) {
-                    return Eight(largestLogRadiance(lobe, roughness, parts) + float(highest));
+                    return Eight(largestLogRadiance(fit.lobe, fit.roughness, parts) + float(highest));
                   }};
   std::vector<Summit> summits;
   for (const BrightestPoint& b : mirrorPoints) {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/base/dense_algebra.h"
+#include "core/base/median.h"
 #include "core/base/number_text.h"
 #include "core/model/ellipse_distance.h"
 #include "core/model/reconstruct_detail.h"
@@ -63,10 +64,7 @@ Normalisation normalise(const std::vector<ConicView>& views, const Eigen::Vector
     const Ellipse local{{0, 0}, v.ellipse.semiAxes / radius, v.ellipse.angle};
     n.views.push_back({p, vech(local.dual().matrix).normalized()});
   }
-  if (!sizes.empty()) {
-    std::nth_element(sizes.begin(), sizes.begin() + sizes.size() / 2, sizes.end());
-    n.scale = sizes[sizes.size() / 2];
-  }
+  if (!sizes.empty()) n.scale = upperMedian(sizes);
   for (NormalisedView& v : n.views) {
     v.projection.leftCols<3>() *= n.scale;
     const double depth = std::abs(v.projection(2, 3)), size = v.projection.norm();

@@ -72,19 +72,14 @@ std::function<std::optional<double>(const SurfacePoint&)> valueOf(const Radiance
   };
 }
 
-/// The lamp that a fit describes; its light must be there.
-Lamp lampOf(const ModelFit& fit) {
-  return fit.lightSegment ? Lamp::segment(fit.lightSegment->first, fit.lightSegment->second)
-                          : Lamp::sphere(*fit.lightEstimate, fit.lightRadius.value_or(0));
-}
-
 /// As a fit of contours: lobe, roughness and lamp.
 std::optional<RadianceFit> radianceFitOf(const ModelFit& fit) {
-  if (!fit.lightEstimate || !fit.roughness || !fit.lobe) return std::nullopt;
-  const Lamp lamp = lampOf(fit);
+  const ReflectanceFit* const fitted = fit.as<ReflectanceFit>();
+  if (!fit.lightEstimate || !fitted) return std::nullopt;
+  const Lamp lamp = lampOf(*fitted, *fit.lightEstimate);
   RadianceFit result;
-  result.lobe = *lobeOf(*fit.lobe);
-  result.roughness = *fit.roughness;
+  result.lobe = fitted->lobe;
+  result.roughness = fitted->roughness;
   result.light = lamp.centre;
   result.lightRadius = lamp.radius;
   result.lightHalfAxis = lamp.halfAxis;
@@ -143,14 +138,10 @@ class Reflectance final : public HighlightModel {
     if (const std::optional<Failure> behind = lightBehind(input.views, best->light)) return *behind;
     fit.lightEstimate = best->light;
     if (!best->light.atInfinity() && best->positionCovariance.allFinite()) fit.lightCovariance = best->positionCovariance;
-    fit.roughness = best->roughness;
-    if (best->lightRadius > 0) fit.lightRadius = best->lightRadius;
-    fit.lightSegment = best->lamp().ends();
-    fit.lobe = nameOf(best->lobe);
-    fit.level = level;
+    const char* const seen = views.size() > fit.frames.size() ? "levels" : "contours";
+    fit.family = ReflectanceFit{best->lobe,          best->roughness, level, best->lightRadius,
+                                best->lamp().ends(), seen,            levelsOf(views)};
     fit.residualPx = perView(best->residualPx, owner, fit.frames.size());
-    fit.evidence = views.size() > fit.frames.size() ? "levels" : "contours";
-    fit.levels = levelsOf(views);
     fit.uncertainty = best->uncertainty;
     fit.solver = "contours";
     if (input.light) fit.condition = input.light->condition;
@@ -175,12 +166,13 @@ class Reflectance final : public HighlightModel {
 
   Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera,
                                   const Surface* surface, const Settings&) const override {
-    if (!surface || !fit.uncertainty || !fit.lightEstimate || !fit.roughness || !fit.lobe || !fit.level) return {};
-    const Lamp lamp = lampOf(fit);
-    const RadianceField radiance(*surface, camera, *lobeOf(*fit.lobe), *fit.roughness, lamp);
+    const ReflectanceFit* const fitted = fit.as<ReflectanceFit>();
+    if (!surface || !fit.uncertainty || !fit.lightEstimate || !fitted) return {};
+    const Lamp lamp = lampOf(*fitted, *fit.lightEstimate);
+    const RadianceField radiance(*surface, camera, fitted->lobe, fitted->roughness, lamp);
     const std::vector<RadiancePeak> peaks = radiance.peaks({highlight.brightest.pixel}, kScanStepPx);
     if (peaks.empty()) return {};
-    const double contour = peaks.front().logRadiance + std::log(*fit.level);
+    const double contour = peaks.front().logRadiance + std::log(fitted->level);
     SurfaceField field;
     field.value = valueOf(radiance, contour);
     field.level = -contour;
@@ -195,8 +187,9 @@ class Reflectance final : public HighlightModel {
         other.radiusSquared = std::max(0.0, other.radiusSquared + by(parameters::kRadiusSquared.first));
       if (other.shape == lobe::LampShape::Segment && parameters::kHalfAxis.isIn(by)) other.halfAxis += parameters::kHalfAxis.of(by);
       const auto log = [&](const SurfacePoint& p) {
-        return lobe::logOfLamp<double>(*lobeOf(*fit.lobe), *fit.roughness * std::exp(by(parameters::kLogRoughness.first)), p.position, p.normal,
-                                       (eye - p.position).normalized(), other, radiance.rule());
+        const double roughness = fitted->roughness * std::exp(by(parameters::kLogRoughness.first));
+        return lobe::logOfLamp<double>(fitted->lobe, roughness, p.position, p.normal, (eye - p.position).normalized(), other,
+                                       radiance.rule());
       };
       const auto here = log(at), top = log(peaks.front().point);
       return here && top ? *top - *here : std::nan("");
@@ -212,14 +205,14 @@ class Reflectance final : public HighlightModel {
   }
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {
-    if (!surface || !fit.lightEstimate || !fit.roughness || !fit.lobe || !fit.level)
-      return Failure{surface ? Reason::NoLight : Reason::NoSurface, ""};
+    const ReflectanceFit* const fitted = fit.as<ReflectanceFit>();
+    if (!surface || !fit.lightEstimate || !fitted) return Failure{surface ? Reason::NoLight : Reason::NoSurface, ""};
     const Light& light = *fit.lightEstimate;
-    const RadianceField radiance(*surface, camera, *lobeOf(*fit.lobe), *fit.roughness, lampOf(fit));
+    const RadianceField radiance(*surface, camera, fitted->lobe, fitted->roughness, lampOf(*fitted, light));
     const auto mirrorPoints = brightestPointsFor(*surface, camera, light, settings);
     if (mirrorPoints && settings.text("predict.contour") == "star")
       if (Outcome<std::vector<PredictedHighlight>> found =
-              radianceStars(radiance, fit, *mirrorPoints, kFaintest, camera, *surface, settings)) 
+              radianceStars(radiance, *fitted, light, *mirrorPoints, kFaintest, camera, *surface, settings))
         return std::move(*found);
     std::vector<Pixel> starts;
     if (mirrorPoints)
@@ -230,7 +223,7 @@ class Reflectance final : public HighlightModel {
     if (const double fall = radiance.fallOfLobe(peaks.front().point); !(fall < kFaintest))
       return Failure{Reason::NoBrightestPoint, "no visible point is near the mirror direction of the light"};
     SurfaceField field;
-    const double contour = peaks.front().logRadiance + std::log(*fit.level);
+    const double contour = peaks.front().logRadiance + std::log(fitted->level);
     field.value = valueOf(radiance, contour);
     field.level = -contour;
     const Eigen::Vector3d eye = camera.centreInWorld();

@@ -29,8 +29,14 @@ inline LampChoices lampChoicesOf(const Settings& settings) {
 }
 
 /// The value of `fit.light_size` under which a lamp like that of a fit is searched.
-inline std::string lampChoiceOf(const ModelFit& fit) {
-  return fit.lightSegment ? "segment" : fit.lightRadius.value_or(0) > 0 ? "sphere" : "point";
+inline std::string lampChoiceOf(const ReflectanceFit& fit) {
+  return fit.lightSegment ? "segment" : fit.lightRadius > 0 ? "sphere" : "point";
+}
+
+/// The lamp that a fit of a lobe describes. @param centre  of a lamp that is no segment, ModelFit::lightEstimate.
+inline Lamp lampOf(const ReflectanceFit& fit, const Light& centre) {
+  const auto& ends = fit.lightSegment;
+  return ends ? Lamp::segment(ends->first, ends->second) : Lamp::sphere(centre, fit.lightRadius);
 }
 
 /// The levels of `fit.levels`: numbers between commas.

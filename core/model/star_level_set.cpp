@@ -102,7 +102,7 @@ class Walk {
  private:
   static Failure ended() { return {Reason::SurfaceEnded, "the surface or the lit side ends inside the region"}; }
   static Failure lost() { return {Reason::NotConverged, "the end of a direction"}; }
-  /// A root between two reaches, by regula falsi (Illinois) in reach^2.
+  /// A root between two reaches, by regula falsi (Illinois) in reach^2; our own for the reason in walk.cpp.
   Outcome<End> between(const Eigen::Vector2d& ray, double low, double valueLow, double high, double valueHigh,
                        SurfacePoint at) const {
     double a = low * low, b = high * high, fa = valueLow, fb = valueHigh;

@@ -126,17 +126,18 @@ std::vector<double> polylineSigmaPx(const Polyline& contour, const std::vector<s
 
 Eigen::MatrixXd ellipsoidBandShiftsPx(const HighlightModel& model, const ModelFit& fit, const PredictedHighlight& highlight,
                                       const Camera& camera, const Surface* surface, const Settings& settings) {
-  if (!fit.uncertainty || !fit.ellipsoid || !parameters::kShape.isIn(fit.uncertainty->root)) return {};
+  const Ellipsoid* const ellipsoid = fit.ellipsoid();
+  if (!fit.uncertainty || !ellipsoid || !parameters::kShape.isIn(fit.uncertainty->root)) return {};
   const Eigen::MatrixXd& root = fit.uncertainty->root;
   const auto predicted = [&](const Eigen::VectorXd& change) -> std::optional<Polyline> {
     const Eigen::Matrix<double, 6, 1> d = parameters::kShape.of(change);
     const Eigen::Matrix3d shape =
-        fit.ellipsoid->shape() + Eigen::Matrix3d{{d(0), d(3), d(4)}, {d(3), d(1), d(5)}, {d(4), d(5), d(2)}};
-    const Outcome<Ellipsoid> moved = Ellipsoid::fromCentreAndShape(fit.ellipsoid->centre() + parameters::kCentre.of(change), semidefinite(shape));
+        ellipsoid->shape() + Eigen::Matrix3d{{d(0), d(3), d(4)}, {d(3), d(1), d(5)}, {d(4), d(5), d(2)}};
+    const Outcome<Ellipsoid> moved =
+        Ellipsoid::fromCentreAndShape(ellipsoid->centre() + parameters::kCentre.of(change), semidefinite(shape));
     if (!moved) return std::nullopt;
     ModelFit other = fit;
-    other.ellipsoid = *moved;
-    other.quadric = moved->dual();
+    other.family = EllipsoidFit{moved->dual(), *moved};
     if (fit.lightEstimate && parameters::kLampOfEllipsoid.isIn(change))
       other.lightEstimate = Light::homogeneous(fit.lightEstimate->homogeneous() + parameters::kLampOfEllipsoid.of(change));
     const Prediction p = model.predict(other, camera, surface, settings);

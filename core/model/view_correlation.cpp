@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/median.h"
 #include "core/base/outcome.h"
 
 namespace glint {
@@ -30,8 +31,7 @@ double spacingOf(const std::vector<const ViewCoefficients*>& views) {
       if (w != v) best = std::min(best, (w->where - v->where).norm());
     nearest.push_back(best);
   }
-  std::nth_element(nearest.begin(), nearest.begin() + long(nearest.size() / 2), nearest.end());
-  return nearest[nearest.size() / 2];
+  return upperMedian(nearest);
 }
 
 /// The shapes of the groups of all views below one another.

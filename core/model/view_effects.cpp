@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/median.h"
 #include "core/base/outcome.h"
 #include "core/base/uncertainty.h"
 #include "core/model/view_correlation.h"
@@ -113,8 +114,7 @@ ViewEffects::ViewEffects(const std::vector<ViewResiduals>& views, double robustP
   }
   require(!sizes.empty(), "ViewEffects: no residuals");
   // Wild points must not pass for noise, nor for an error of their view.
-  std::nth_element(sizes.begin(), sizes.begin() + long(sizes.size() / 2), sizes.end());
-  const double wild = std::max(kWildSigmas * 1.4826 * sizes[sizes.size() / 2], 1e-12);  // no division by zero
+  const double wild = std::max(kWildSigmas * 1.4826 * upperMedian(sizes), 1e-12);  // no division by zero
 
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
   const double largest = parameters > 0 ? std::max(0.0, eigen.eigenvalues()(parameters - 1)) : 0;

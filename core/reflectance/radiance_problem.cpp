@@ -9,6 +9,7 @@
 #include <cmath>
 #include <memory>
 
+#include "core/base/median.h"
 #include "core/light/dense_solver.h"
 #include "core/reflectance/light_radiance.h"
 #include "core/reflectance/radiance_field.h"
@@ -193,10 +194,8 @@ void RadianceProblem::relinearise(const State& state, bool moveFeet) {
     const double slope = gradient(e, e.foot, state).norm();
     slopes.push_back(std::isfinite(slope) ? slope : 0);
   }
-  std::vector<double> sorted = slopes;
-  std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
   // Where the field hardly changes over the image (a start far off) a pixel must not weigh without bound.
-  const double floor = std::max(0.05 * sorted[sorted.size() / 2], 1e-12);
+  const double floor = std::max(0.05 * upperMedian(slopes), 1e-12);
   for (std::size_t i = 0; i < points_.size(); ++i) points_[i].pixelsPerUnit = 1 / std::max(slopes[i], floor);
   if (moveFeet) unbias(state);
 }
@@ -214,8 +213,7 @@ void RadianceProblem::unbias(const State& state) {
     if (std::isfinite(r)) sizes.push_back(r);
   }
   if (sizes.empty()) return;
-  std::nth_element(sizes.begin(), sizes.begin() + sizes.size() / 2, sizes.end());
-  const double sigma = kSigmaOfMedian * sizes[sizes.size() / 2];
+  const double sigma = kSigmaOfMedian * upperMedian(sizes);
   // Beyond a radius of curvature the expansion in sigma says nothing more.
   for (Evidence& e : points_) e.biasPx = 0.5 * sigma * std::min(1.0, sigma * e.curvature);
 }
@@ -239,8 +237,7 @@ double RadianceProblem::noiseOf(const State& state) const {
     if (std::isfinite(d)) differences.push_back(std::abs(d) / std::sqrt(6.0));
   }
   if (differences.empty()) return 0;
-  std::nth_element(differences.begin(), differences.begin() + differences.size() / 2, differences.end());
-  return kSigmaOfMedian * differences[differences.size() / 2];
+  return kSigmaOfMedian * upperMedian(differences);
 }
 
 void RadianceProblem::chooseRule(const State& state) {

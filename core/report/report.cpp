@@ -95,14 +95,17 @@ ordered_json fitJson(const ModelResult::Fit& entry) {
   j["reason"] = entry.failure() ? entry.failure()->message() : "";
   // A failed fit has every key too, without values: a reader need not ask which are there.
   const ModelFit f = entry.fit ? *entry.fit : ModelFit{};
-  if (f.ellipsoid) {
-    j["ellipsoid"] = {{"centre", list(f.ellipsoid->centre())},
-                      {"semi_axes", list(f.ellipsoid->semiAxes())},
-                      {"world_from_ellipsoid", rows(f.ellipsoid->worldFromBody().matrix())}};
+  const EllipsoidFit* const quadric = f.as<EllipsoidFit>();
+  const LimitAngleFit* const contours = f.as<LimitAngleFit>();
+  const ReflectanceFit* const lobe = f.as<ReflectanceFit>();
+  if (const Ellipsoid* const e = f.ellipsoid()) {
+    j["ellipsoid"] = {{"centre", list(e->centre())},
+                      {"semi_axes", list(e->semiAxes())},
+                      {"world_from_ellipsoid", rows(e->worldFromBody().matrix())}};
   } else {
     j["ellipsoid"] = nullptr;
   }
-  j["q_dual"] = f.quadric ? rows(f.quadric->matrix) : ordered_json::array();
+  j["q_dual"] = quadric ? rows(quadric->quadric.matrix) : ordered_json::array();
   if (f.lightEstimate) {
     // Homogeneous with a last coordinate of 1 where the light is finite, as a reader expects.
     const Eigen::Vector4d l = f.lightEstimate->homogeneous();
@@ -110,24 +113,27 @@ ordered_json fitJson(const ModelResult::Fit& entry) {
   } else {
     j["light_position"] = nullptr;
   }
-  j["limit_angle_deg"] = f.limitAngle ? numberOrNull(*f.limitAngle * 180 / M_PI) : ordered_json(nullptr);
-  j["roughness"] = f.roughness ? numberOrNull(*f.roughness) : ordered_json(nullptr);
-  if (f.extent) j["light_extent"] = rows(*f.extent);
-  if (f.lobe) j["lobe"] = *f.lobe;
-  if (f.lobe) j["light_radius"] = numberOrNull(f.lightRadius.value_or(0));
-  if (f.lobe)
-    j["light_segment"] = f.lightSegment ? ordered_json{list(f.lightSegment->first), list(f.lightSegment->second)} : ordered_json(nullptr);
-  j["gap_ratio"] = f.singularValues.empty() ? ordered_json(nullptr) : numberOrNull(f.gapRatio);
+  j["limit_angle_deg"] = f.limitAngle() ? numberOrNull(*f.limitAngle() * 180 / M_PI) : ordered_json(nullptr);
+  j["roughness"] = lobe ? numberOrNull(lobe->roughness) : ordered_json(nullptr);
+  if (contours && contours->extent) j["light_extent"] = rows(*contours->extent);
+  if (lobe) {
+    j["lobe"] = nameOf(lobe->lobe);
+    j["light_radius"] = numberOrNull(lobe->lightRadius);
+    const auto& ends = lobe->lightSegment;
+    j["light_segment"] = ends ? ordered_json{list(ends->first), list(ends->second)} : ordered_json(nullptr);
+  }
+  const bool isSolved = quadric && !quadric->singularValues.empty();
+  j["gap_ratio"] = isSolved ? numberOrNull(quadric->gapRatio) : ordered_json(nullptr);
   // Largest over smallest: of the linear system where there is one, else of the rays that fix the light (whose ratio is of squares).
-  if (!f.singularValues.empty())
+  if (isSolved)
     j["condition"] = numberOrNull(f.condition);
   else
     j["condition"] = f.lightEstimate && f.condition > 0 ? numberOrNull(1 / std::sqrt(f.condition)) : ordered_json(nullptr);
   j["solver"] = f.solver;
-  if (!f.evidence.empty()) {
-    j["evidence"] = f.evidence;
-    j["levels"] = f.levels;
-    j["blur_px"] = f.blurPx ? numberOrNull(*f.blurPx) : ordered_json(nullptr);
+  if (lobe) {
+    j["evidence"] = lobe->evidence;
+    j["levels"] = lobe->levels;
+    j["blur_px"] = lobe->blurPx ? numberOrNull(*lobe->blurPx) : ordered_json(nullptr);
   }
   j["residual_px"] = ordered_json::array();
   for (const double r : f.residualPx) j["residual_px"].push_back(numberOrNull(r));

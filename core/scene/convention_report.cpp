@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/json_text.h"
+#include "core/base/median.h"
 #include "core/base/number_text.h"
 #include "core/scene/mesh_file.h"
 #include "core/scene/scene_reader.h"
@@ -32,9 +33,7 @@ Eigen::AlignedBox3d regionOfInterest(const Scene& scene, const Eigen::AlignedBox
 
 double quantile(std::vector<double>& values, double q) {
   if (values.empty()) return 0;
-  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(q * double(values.size() - 1));
-  std::nth_element(values.begin(), nth, values.end());
-  return *nth;
+  return ranked(values, static_cast<std::size_t>(q * double(values.size() - 1)));
 }
 
 /// Depth at a pixel by bilinear interpolation; nothing at holes and at steps of more than 2 %.

@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 
 #include "core/base/atomic_file.h"
+#include "core/base/median.h"
 #include "core/base/srgb.h"
 #include "core/scene/image_decode.h"
 #include "core/scene/scene.h"
@@ -116,11 +117,7 @@ Image toneMapped(const Image& linear) {
   for (const float v : linear.data)
     if (std::isfinite(v) && v > 0) values.push_back(v);
   double white = 1;
-  if (!values.empty()) {
-    const auto nth = values.begin() + static_cast<std::ptrdiff_t>(0.999 * double(values.size() - 1));
-    std::nth_element(values.begin(), nth, values.end());
-    white = *nth;
-  }
+  if (!values.empty()) white = ranked(values, static_cast<std::size_t>(0.999 * double(values.size() - 1)));
   Image out = linear;
   for (float& v : out.data) v = std::isfinite(v) && v > 0 ? static_cast<float>(srgbFromLinear(std::min(1.0, v / white))) : 0.f;
   return threeChannels(out);

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 
+// Our own distances of polylines: the libraries' polygons have no gaps, which predictions have where directions fail.
 namespace glint {
 namespace {
 

@@ -41,7 +41,7 @@ Answer predictLeft(const Fold& fold, const HighlightModel& model, const ModelFit
   dropTooSmall(p);
   answer.highlights = static_cast<int>(p.highlights().size());
   answer.variation = variationOf(p);
-  answer.boundToSurface = fit.quadric && !model.needsCanonicalContours();
+  answer.boundToSurface = fit.as<EllipsoidFit>() && !model.needsCanonicalContours();
   if (p.highlights().empty()) {
     answer.failure = p.failure() ? *p.failure() : Failure{Reason::NotReached, "no prediction"};
     return answer;

@@ -228,7 +228,7 @@ void Search::lookAt(std::size_t m) {
   s_.candidates[m].timeUs += t.outlook->timeUs;
   for (const auto& [light, fit] : t.outlook->fits) {
     if (fit) {
-      t.ellipsoid = t.ellipsoid || fit->quadric;
+      t.ellipsoid = t.ellipsoid || fit->as<EllipsoidFit>();
     } else {
       t.eligible = false;
       s_.candidates[m].remark = "from all training views: " + fit.failure().message();

@@ -12,6 +12,7 @@
 #include "core/base/number_text.h"
 #include "core/base/safe_text.h"
 #include "core/fit/fit_engine.h"
+#include "core/inspect/frame_score.h"
 #include "core/score/comparison.h"
 #include "core/session/session.h"
 #include "core/surface/mesh_policy.h"
@@ -22,23 +23,12 @@ namespace {
 namespace fs = std::filesystem;
 
 Fault faultOf(const FrameComparison& c, const std::string& model) {
-  Fault fault{c.frame, model, c.light, {}, {}};
-  double sum = 0;
-  int n = 0;
-  std::optional<Reason> reason;
-  for (const FrameComparison::Row& row : c.rows) {
-    if (row.metrics && std::isfinite(row.metrics->contourErrorPct)) {
-      sum += row.metrics->contourErrorPct;
-      ++n;
-    } else if (row.failure && !reason) {
-      reason = row.failure->reason;
-    }
-  }
-  if (c.prediction.failure()) reason = c.prediction.failure()->reason;
-  if (n > 0)
-    fault.errorPct = sum / n;
-  else
-    fault.reason = reason.value_or(Reason::NoHighlight);  // nothing observed
+  Fault fault{c.frame, model, c.light, scoreOf(c).errorPct, {}};
+  if (fault.errorPct) return fault;
+  const auto failed = std::find_if(c.rows.begin(), c.rows.end(), [](const FrameComparison::Row& row) { return row.failure.has_value(); });
+  fault.reason = c.prediction.failure()  ? c.prediction.failure()->reason
+                 : failed != c.rows.end() ? failed->failure->reason
+                                          : Reason::NoHighlight;  // nothing observed
   return fault;
 }
 

@@ -117,12 +117,12 @@ KeyResults keyResultsOf(const Inspection& inspection) {
     for (const ModelResult::Fit& f : result.fits) {
       if (!f.fit) continue;
       const std::string fit = name + ".fit." + textOf(f.key());
-      if (f.fit->ellipsoid) {
-        const Eigen::Vector3d axes = f.fit->ellipsoid->semiAxes();
+      if (f.fit->ellipsoid()) {
+        const Eigen::Vector3d axes = f.fit->ellipsoid()->semiAxes();
         for (int i = 0; i < 3; ++i) results.emplace_back(fit + ".semi_axis_" + std::to_string(i), axes[i]);
       }
-      if (f.fit->limitAngle) results.emplace_back(fit + ".limit_angle_rad", *f.fit->limitAngle);
-      if (f.fit->roughness) results.emplace_back(fit + ".roughness", *f.fit->roughness);
+      if (f.fit->limitAngle()) results.emplace_back(fit + ".limit_angle_rad", *f.fit->limitAngle());
+      if (const auto* const lobe = f.fit->as<ReflectanceFit>()) results.emplace_back(fit + ".roughness", lobe->roughness);
     }
     const ModelSummary s = summarise(inspection, result);
     for (const auto& [what, count] : {std::pair<const char*, int>{"frames", s.frames},
@@ -163,9 +163,9 @@ std::string digestOf(const Inspection& inspection) {
       d.add(f.surface.value_or(""));
       d.add(f.failure());
       if (!f.fit) continue;
-      if (f.fit->quadric) d.add(f.fit->quadric->matrix);
-      if (f.fit->limitAngle) d.add(*f.fit->limitAngle);
-      if (f.fit->roughness) d.add(*f.fit->roughness);
+      if (const EllipsoidFit* const e = f.fit->as<EllipsoidFit>()) d.add(e->quadric.matrix);
+      if (f.fit->limitAngle()) d.add(*f.fit->limitAngle());
+      if (const ReflectanceFit* const lobe = f.fit->as<ReflectanceFit>()) d.add(lobe->roughness);
       for (const double r : f.fit->residualPx) d.add(r);
     }
     for (const FrameComparison& c : result.frames) {

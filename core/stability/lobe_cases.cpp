@@ -29,9 +29,7 @@ Outcome<Measured> levelsCase(Lobe lobe, double m, double lowest) {
     if (q < lowest) continue;
     ModelFit fit;
     fit.lightEstimate = light;
-    fit.lobe = nameOf(lobe);
-    fit.roughness = m;
-    fit.level = q;
+    fit.family = ReflectanceFit{lobe, m, q};
     const Prediction prediction = modelByName("reflectance").predict(fit, view.camera, surface.get(), Settings());
     if (prediction.highlights().empty()) return prediction.failure().value_or(Failure{Reason::NoHighlight, ""});
     const PredictedHighlight& h = prediction.highlights().front();

@@ -36,7 +36,7 @@ Outcome<Measured> limitAngleCase(const PredictionScene& p, const Light& light) {
   const Stage s = stageOf(p, light);
   ModelFit fit;
   fit.lightEstimate = light;
-  fit.limitAngle = p.limit;
+  fit.family = LimitAngleFit{p.limit};
   const Prediction prediction = modelByName("limit-angle").predict(fit, s.camera, s.surface.get(), Settings());
   if (prediction.highlights().empty()) return prediction.failure().value_or(Failure{Reason::NoHighlight, ""});
   const PredictedHighlight& h = prediction.highlights().front();
@@ -108,7 +108,7 @@ Outcome<Measured> canonicalCase(const PredictionScene& p, const Light& light, do
   const Ellipsoid e = ellipsoidAt(light, size * p.scale);
   ModelFit fit;
   fit.lightEstimate = light;
-  fit.ellipsoid = e;
+  fit.family = EllipsoidFit{e.dual(), e};
   Settings settings;
   settings.set("predict.directions", 8);
   settings.set("predict.walk_tolerance", 1e-15);
@@ -146,7 +146,7 @@ Outcome<Measured> dualCase(const PredictionScene& p, const Light& light, double 
   const Stage s = stageOf(p, light);
   const Ellipsoid e = ellipsoidAt(light, size * p.scale);
   ModelFit fit;
-  fit.ellipsoid = e;
+  fit.family = EllipsoidFit{e.dual(), e};
   const Prediction prediction = modelByName("dual").predict(fit, s.camera, s.surface.get(), Settings());
   if (prediction.highlights().empty()) return prediction.failure().value_or(Failure{Reason::NoHighlight, ""});
   const PredictedHighlight& h = prediction.highlights().front();
@@ -177,7 +177,7 @@ Outcome<Measured> plateCase() {
   const Plate plate;
   ModelFit fit;
   fit.lightEstimate = plate.light;
-  fit.limitAngle = 0.1;
+  fit.family = LimitAngleFit{0.1};
   const Prediction prediction = modelByName("limit-angle").predict(fit, plate.camera, plate.surface.get(), Settings());
   if (prediction.highlights().empty()) return prediction.failure().value_or(Failure{Reason::NoHighlight, ""});
   const RealCamera<Real> real(plate.camera);
@@ -299,7 +299,8 @@ void addPredictionCases(Cases& cases) {
       const Plate scene;
       ModelFit fit;
       fit.lightEstimate = scene.light;
-      fit.ellipsoid = ellipsoidAt(scene.light, 0.3);
+      const Ellipsoid e = ellipsoidAt(scene.light, 0.3);
+      fit.family = EllipsoidFit{e.dual(), e};
       const Prediction p = modelByName("canonical").predict(fit, scene.camera, scene.surface.get(), Settings());
       if (p.highlights().empty()) return p.failure().value_or(Failure{Reason::NotSupported, "unnamed"});
       return Measured{0};
@@ -315,7 +316,7 @@ void addPredictionCases(Cases& cases) {
   c.run = []() -> Outcome<Measured> {
     ModelFit fit;
     fit.lightEstimate = Light::at({0.1, 0.2, -2});
-    fit.limitAngle = 0.1;
+    fit.family = LimitAngleFit{0.1};
     const Prediction p =
         modelByName("limit-angle")
             .predict(fit, cameraTowards({0.2, 0.1, 1}, {0, 0, 0}, 800), makeAnalytic(specOf(0, false)).get(), Settings());

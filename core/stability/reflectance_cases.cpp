@@ -40,9 +40,7 @@ Outcome<Measured> predictionCase(const RadianceScene& p, const Light& light) {
   const Real top = lit.at(pu, pv, view.eye);
   ModelFit fit;
   fit.lightEstimate = light;
-  fit.lobe = nameOf(p.lobe);
-  fit.roughness = p.roughness;
-  fit.level = 0.5;
+  fit.family = ReflectanceFit{p.lobe, p.roughness, 0.5};
   const auto surface = makeAnalytic(specOf(k, p.round));
   const Prediction prediction = modelByName("reflectance").predict(fit, view.camera, surface.get(), Settings());
   if (prediction.highlights().empty()) return prediction.failure().value_or(Failure{Reason::NoHighlight, ""});

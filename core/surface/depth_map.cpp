@@ -12,8 +12,10 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/photo.hpp>
+#include <utility>
 #include <vector>
 
+#include "core/base/median.h"
 #include "core/surface/mesh.h"
 
 namespace glint {
@@ -59,9 +61,7 @@ double medianDepth(const cv::Mat1f& depth) {
   for (const float z : depth)
     if (z > 0) values.push_back(z);
   if (values.empty()) return 1;
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return upperMedian(std::move(values));
 }
 
 }  // namespace

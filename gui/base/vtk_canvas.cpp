@@ -61,7 +61,7 @@ bool VtkCanvas::prepare() {
   // "less", the first of it would hide all that comes after (a photograph its captions).
   context_.functions()->glDepthFunc(GL_LEQUAL);
   adapter_ = std::make_unique<QVTKRenderWindowAdapter>(&context_, window_, this);
-  adapter_->setEnableHiDPI(textScaled_);
+  adapter_->setEnableHiDPI(true);
   adapter_->setUnscaledDPI(72);
   fitWindow();
   return true;

@@ -33,8 +33,6 @@ class VtkCanvas : public QWidget {
   bool ready() const { return adapter_ != nullptr; }
   /// Draws at once, also before the first turn; for who needs the picture or its coordinates now.
   void renderNow();
-  /// False: texts are not scaled with the device's pixel ratio. Before the first picture.
-  void setTextScaled(bool scaled) { textScaled_ = scaled; }
 
  protected:
   bool event(QEvent* event) override;
@@ -56,7 +54,7 @@ class VtkCanvas : public QWidget {
   QImage picture_;
   QSize fitted_, drawnFor_;  ///< size of the widget that the window has, and that the last picture was drawn for
   double fittedRatio_ = 0, drawnRatio_ = 0;
-  bool drawn_ = false, painting_ = false, textScaled_ = true, failed_ = false;
+  bool drawn_ = false, painting_ = false, failed_ = false;
 };
 
 }  // namespace glint::gui

@@ -109,18 +109,21 @@ NumberGroup fitGroup(const std::string& model, const ModelResult::Fit& f, int fr
   if (f.failure()) lines.note(toQString(f.failure()->message()));
   if (f.fit) {
     lines.add(QObject::tr("solver"), toQString(f.fit->solver));
-    if (f.fit->ellipsoid) {
-      lines.addVector(QObject::tr("ellipsoid centre"), f.fit->ellipsoid->centre(), "m");
-      lines.addVector(QObject::tr("semi-axes"), f.fit->ellipsoid->semiAxes(), "m");
-    } else if (f.fit->quadric) {
-      lines.note(QObject::tr("Q* is a %1").arg(QString::fromUtf8(describe(*f.fit->quadric))));
+    const EllipsoidFit* const fitted = f.fit->as<EllipsoidFit>();
+    if (f.fit->ellipsoid()) {
+      lines.addVector(QObject::tr("ellipsoid centre"), f.fit->ellipsoid()->centre(), "m");
+      lines.addVector(QObject::tr("semi-axes"), f.fit->ellipsoid()->semiAxes(), "m");
+    } else if (fitted) {
+      lines.note(QObject::tr("Q* is a %1").arg(QString::fromUtf8(describe(fitted->quadric))));
     }
     if (f.fit->lightEstimate) addLight(lines, *f.fit->lightEstimate);
-    if (f.fit->limitAngle) lines.add(QObject::tr("limit angle"), *f.fit->limitAngle * kDegPerRad, "deg");
-    if (f.fit->lobe) lines.add(QObject::tr("lobe"), QString::fromStdString(*f.fit->lobe));
-    if (f.fit->roughness) lines.add(QObject::tr("roughness m"), *f.fit->roughness);
-    if (!f.fit->singularValues.empty()) {
-      lines.add(QObject::tr("gap ratio"), f.fit->gapRatio);
+    if (f.fit->limitAngle()) lines.add(QObject::tr("limit angle"), *f.fit->limitAngle() * kDegPerRad, "deg");
+    if (const ReflectanceFit* const lobe = f.fit->as<ReflectanceFit>()) {
+      lines.add(QObject::tr("lobe"), QLatin1String(nameOf(lobe->lobe)));
+      lines.add(QObject::tr("roughness m"), lobe->roughness);
+    }
+    if (fitted && !fitted->singularValues.empty()) {
+      lines.add(QObject::tr("gap ratio"), fitted->gapRatio);
       lines.add(QObject::tr("condition"), f.fit->condition);
     }
     const auto used = std::find(f.fit->frames.begin(), f.fit->frames.end(), frame);

@@ -394,7 +394,8 @@ QString SceneTreeModel::detailOf(const SceneObject& o) const {
         if (fit.light == o.light && (!shown || (fit.surface && *fit.surface == here))) shown = &fit;
       if (!shown) return {};
       if (!shown->fit) return tr("no fit");
-      return shown->fit->quadric ? QString::fromLatin1(describe(*shown->fit->quadric)) : tr("no ellipsoid");
+      const EllipsoidFit* const fitted = shown->fit->as<EllipsoidFit>();
+      return fitted ? QString::fromLatin1(describe(fitted->quadric)) : tr("no ellipsoid");
     }
   }
   return {};

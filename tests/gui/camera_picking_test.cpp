@@ -38,8 +38,8 @@ class CameraPickingTest : public QObject, SceneFixture {
     ModelFit around;
     around.model = "canonical";
     around.light = "lamp";
-    around.ellipsoid = Ellipsoid(Eigen::Isometry3d(Eigen::Translation3d(*lamp.position)), {0.3, 0.25, 0.2});
-    around.quadric = around.ellipsoid->dual();  // without one nothing is drawn
+    const Ellipsoid ellipsoid(Eigen::Isometry3d(Eigen::Translation3d(*lamp.position)), {0.3, 0.25, 0.2});
+    around.family = EllipsoidFit{ellipsoid.dual(), ellipsoid};
     inspection->models["canonical"].fits = {{"lamp", {}, around, {}}};
     document_->setInspection(inspection, document_->request());
     showOnly({"true-light", "ellipsoids"});

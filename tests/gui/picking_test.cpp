@@ -129,7 +129,7 @@ class PickingTest : public QObject {
   void anEllipsoidInTheScene() {
     const Ellipsoid* ellipsoid = nullptr;
     for (const ModelResult::Fit& fit : inspection_->models.at("canonical").fits)
-      if (fit.fit && fit.fit->ellipsoid) ellipsoid = &*fit.fit->ellipsoid;
+      if (fit.fit && fit.fit->ellipsoid()) ellipsoid = fit.fit->ellipsoid();
     QVERIFY(ellipsoid);
     pick("scene", kShowModel, [&] {
       onlyLayer("ellipsoids");

@@ -49,7 +49,9 @@ bool breaks(const ExplainStep& s, const std::string& id) {
   return false;
 }
 
-const Ellipsoid& ellipsoidOf(const Inspection& in, const std::string& model) { return *in.models.at(model).fits.at(0).fit->ellipsoid; }
+const Ellipsoid& ellipsoidOf(const Inspection& in, const std::string& model) {
+  return *in.models.at(model).fits.at(0).fit->ellipsoid();
+}
 
 /// Contour errors of the held-out frames of a model, %.
 std::vector<double> errors(const Inspection& in, const std::string& model) {

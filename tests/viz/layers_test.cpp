@@ -172,7 +172,8 @@ TEST(Layers, AConeReachesFromItsPlaceThroughTheContourToBeyondTheEllipsoid) {
     ModelFit fit;
     fit.model = model;
     fit.light = "lamp";
-    fit.ellipsoid = Ellipsoid(place, Eigen::Vector3d::Constant(kBall));
+    const Ellipsoid ball(place, Eigen::Vector3d::Constant(kBall));
+    fit.family = EllipsoidFit{ball.dual(), ball};
     inspection->models[model].fits = {{"lamp", {}, fit, {}}};
     const std::vector<Eigen::Vector3d> points = firstCone(*inspection, model).vertices;
     ASSERT_EQ(points.size() % 2, 0u);
@@ -568,7 +569,7 @@ TEST(SceneLegend, AFitThatIsNoEllipsoidIsSaidOnce) {
   const TemporaryFolder folder;
   const auto inspection = smallInspection(folder.path());
   ModelResult& dual = inspection->models.at("dual");
-  const Failure failure{Reason::NotAnEllipsoid, describe(*dual.fits[0].fit->quadric)};
+  const Failure failure{Reason::NotAnEllipsoid, describe(dual.fits[0].fit->as<EllipsoidFit>()->quadric)};
   for (FrameComparison& comparison : dual.frames) {
     comparison.prediction = failure;
     comparison.rows[0].failure = failure;

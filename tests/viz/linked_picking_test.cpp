@@ -116,7 +116,7 @@ TEST_F(LinkedPicking, CameraEllipsoidLightAndVirtualCameraTellWhatTheyAre) {
   showOnly("ellipsoids");
   view_.setModels({"canonical"});
   render(view_);
-  const std::optional<Picked> ellipsoid = pickAt((inspection_->models.at("canonical").fits[0].fit->ellipsoid->centre()));
+  const std::optional<Picked> ellipsoid = pickAt((inspection_->models.at("canonical").fits[0].fit->ellipsoid()->centre()));
   ASSERT_TRUE(ellipsoid);
   EXPECT_EQ(ellipsoid->model, "canonical");
   EXPECT_EQ(ellipsoid->light, "lamp");

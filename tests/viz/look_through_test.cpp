@@ -181,7 +181,7 @@ TEST_F(LookThrough, OutlinesInTheVirtualCameraAreTheImageEllipses) {
   view.setModels({"canonical"});
   const Image with = render(view);
   const Camera& camera = inspection->scene->frames[0].camera;
-  const Outcome<Ellipse> outline = outlineEllipse(*inspection->models.at("canonical").fits[0].fit->ellipsoid,
+  const Outcome<Ellipse> outline = outlineEllipse(*inspection->models.at("canonical").fits[0].fit->ellipsoid(),
                                                   virtualCamera(camera, inspection->views[0].seen->tangentPlane));
   ASSERT_TRUE(outline);
   Eigen::AlignedBox2d drawn, expected;

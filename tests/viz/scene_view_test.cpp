@@ -131,8 +131,7 @@ TEST_F(SceneViewPicture, TheHorizonStaysLevelWhereCamerasLookDownSteeply) {
 TEST_F(SceneViewPicture, EverythingHoldsAnEllipsoidBeyondTheCameras) {
   const std::shared_ptr<Inspection> inspection = smallInspection(folder_.path());
   const Ellipsoid wide(Eigen::Isometry3d(Eigen::Translation3d(2.6, -2.1, 1.6)), {0.7, 0.9, 0.5});
-  inspection->models.at("canonical").fits[0].fit->ellipsoid = wide;
-  inspection->models.at("canonical").fits[0].fit->quadric = wide.dual();
+  inspection->models.at("canonical").fits[0].fit->family = EllipsoidFit{wide.dual(), wide};
   SceneView view;
   view.setInspection(inspection);
   const std::set<std::string> seen{"surface", "cameras", "ellipsoids"};
@@ -159,8 +158,7 @@ TEST_F(SceneViewPicture, EverythingHoldsAnEllipsoidBeyondTheCameras) {
 TEST_F(SceneViewPicture, AnEllipsoidInsideTheSurfaceIsSeenThroughIt) {
   const std::shared_ptr<Inspection> inspection = smallInspection(folder_.path());
   const Ellipsoid middle(Eigen::Isometry3d::Identity(), {0.15, 0.15, 0.15});  // in a ball of 0.4
-  inspection->models.at("canonical").fits[0].fit->ellipsoid = middle;
-  inspection->models.at("canonical").fits[0].fit->quadric = middle.dual();
+  inspection->models.at("canonical").fits[0].fit->family = EllipsoidFit{middle.dual(), middle};
   SceneView view;
   view.setInspection(inspection);
   const auto greenWith = [&](const std::set<std::string>& seen) {
@@ -188,7 +186,7 @@ TEST_F(SceneViewPicture, AnEllipsoidInsideTheSurfaceIsSeenThroughIt) {
   for (const bool inside : {false, true}) {
     const Ellipsoid small(Eigen::Isometry3d(Eigen::Translation3d(inside ? Eigen::Vector3d::Zero().eval() : 0.5 * eye)),
                           {0.05, 0.05, 0.05});
-    inspection->models.at("canonical").fits[0].fit->ellipsoid = small;
+    inspection->models.at("canonical").fits[0].fit->family = EllipsoidFit{small.dual(), small};
     EXPECT_EQ(ellipsoidsLayer(input).behindSurface, inside);
   }
 }
@@ -452,7 +450,7 @@ TEST_F(SceneViewPicture, ADegenerateQuadricIsDrawnDashedInRedWithItsName) {
   for (const auto& [diagonal, name] : cases) {
     SCOPED_TRACE(name);
     ModelFit& fit = *inspection->models.at("dual").fits[0].fit;
-    fit.quadric = DualQuadric{diagonal.asDiagonal()};
+    fit.family = EllipsoidFit{{diagonal.asDiagonal()}};
     LayerInput input;
     input.inspection = inspection.get();
     input.models = {"dual"};

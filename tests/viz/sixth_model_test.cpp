@@ -40,7 +40,7 @@ class FlatMirror final : public HighlightModel {
     if (!input.light) return input.lightFailure.value_or(Failure{Reason::NoLight, ""});
     ModelFit fit;
     fit.lightEstimate = input.light->light;
-    fit.limitAngle = input.light->limitAngle;
+    fit.family = LimitAngleFit{input.light->limitAngle};
     fit.hints = hintsOf(input);
     for (const TrainingView& v : input.views)
       if (v.seen) fit.frames.push_back(v.frame);
@@ -74,7 +74,7 @@ class FlatMirror final : public HighlightModel {
       double near = 0, far = (eye - top.point.position).norm();
       for (int n = 0; n < kHalvings; ++n) {
         const double middle = 0.5 * (near + far);
-        (angleAt(top.point.position + middle * along) < *fit.limitAngle ? near : far) = middle;
+        (angleAt(top.point.position + middle * along) < *fit.limitAngle() ? near : far) = middle;
       }
       found.contour.points.push_back(*camera.project(top.point.position + near * along));
     }

@@ -135,8 +135,8 @@ std::shared_ptr<Inspection> smallInspection(const std::filesystem::path& folder,
   fit.light = "lamp";
   Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
   place.translation() = light;
-  fit.ellipsoid = Ellipsoid(place, scale * Eigen::Vector3d(0.25, 0.2, 0.12));
-  fit.quadric = fit.ellipsoid->dual();
+  const Ellipsoid ellipsoid(place, scale * Eigen::Vector3d(0.25, 0.2, 0.12));
+  fit.family = EllipsoidFit{ellipsoid.dual(), ellipsoid};
   fit.lightEstimate = Light::at(light);
   canonical.fits.push_back({"lamp", {}, fit, {}});
   // A two-sheet hyperboloid: the dual model's quadric, which must not be drawn as an ellipsoid.
@@ -144,7 +144,7 @@ std::shared_ptr<Inspection> smallInspection(const std::filesystem::path& folder,
   hyperboloid.model = "dual";
   hyperboloid.light = "lamp";
   const double area = scale * scale;
-  hyperboloid.quadric = DualQuadric{Eigen::Vector4d(-0.01 * area, 0.02 * area, 0.02 * area, 1).asDiagonal()};
+  hyperboloid.family = EllipsoidFit{{Eigen::Vector4d(-0.01 * area, 0.02 * area, 0.02 * area, 1).asDiagonal()}};
   dual.fits.push_back({"lamp", {}, hyperboloid, {}});
 
   for (int i = 0; i < 6; ++i) {

@@ -78,14 +78,14 @@ LayerContent conesLayer(const LayerInput& in) {
   std::string model;  // the selected one, else the richest with an ellipsoid
   for (const std::string& name : in.models)
     for (const ModelFit* fit : in.fits(name))
-      if (fit->ellipsoid && (model.empty() || model != in.selection.model)) model = name;
+      if (fit->ellipsoid() && (model.empty() || model != in.selection.model)) model = name;
   if (model.empty()) {
     content.remarks.push_back(in.hidden.ellipsoids.empty() ? "cones: no model has an ellipsoid" : "cones: no ellipsoid is shown");
     return content;
   }
   for (const ModelFit* fit : in.fits(model)) {
-    if (!fit->ellipsoid || (!in.selection.light.empty() && in.selection.light != fit->light)) continue;
-    const Ellipsoid& target = *fit->ellipsoid;
+    if (!fit->ellipsoid() || (!in.selection.light.empty() && in.selection.light != fit->light)) continue;
+    const Ellipsoid& target = *fit->ellipsoid();
     if (!target.centre().allFinite() || (target.centre() - in.scale.sceneBox.center()).norm() > 20 * in.scale.sceneSize) {
       content.remarks.push_back("cones: the ellipsoid is too far away to draw");
       continue;

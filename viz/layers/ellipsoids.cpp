@@ -10,9 +10,9 @@
 namespace glint::viz {
 namespace {
 
-std::string fitText(const ModelFit& fit) {
+std::string fitText(const ModelFit& fit, const EllipsoidFit& fitted) {
   std::string text = line("model", fit.model) + line("light", fit.light) + line("solver", fit.solver) +
-                     line("gap ratio", fit.gapRatio) + line("condition", fit.condition);
+                     line("gap ratio", fitted.gapRatio) + line("condition", fit.condition);
   if (!fit.residualPx.empty())
     text += line("worst training residual", *std::max_element(fit.residualPx.begin(), fit.residualPx.end()), "px") +
             "(residual: " + residualMeaning(fit) + ")\n";
@@ -20,15 +20,15 @@ std::string fitText(const ModelFit& fit) {
 }
 
 /// A Q* that is no ellipsoid: a wire dashed in the colour of failures, named where it stands and in the notes.
-void addDegenerate(LayerContent& content, const LayerInput& in, const ModelFit& fit) {
+void addDegenerate(LayerContent& content, const LayerInput& in, const ModelFit& fit, const EllipsoidFit& fitted) {
   const Eigen::Vector3d centre = in.scale.sceneBox.center();
   const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.45 * in.scale.sceneSize);
-  const QuadricWire wire = wireOf(*fit.quadric, Eigen::AlignedBox3d(centre - half, centre + half));
+  const QuadricWire wire = wireOf(fitted.quadric, Eigen::AlignedBox3d(centre - half, centre + half));
   Picked info;
   info.layer = "ellipsoids";
   info.model = fit.model;
   info.light = fit.light;
-  info.text = fitText(fit) + line("Q*", wire.kind + ", not an ellipsoid");
+  info.text = fitText(fit, fitted) + line("Q*", wire.kind + ", not an ellipsoid");
   std::vector<Segment> dashes = wire.axes;
   for (const Points& curve : wire.curves) {
     for (std::size_t i = 0; i + 1 < curve.size(); i += 2) dashes.emplace_back(curve[i], curve[i + 1]);
@@ -70,12 +70,13 @@ LayerContent ellipsoidsLayer(const LayerInput& in) {
   LayerContent content;
   for (const std::string& model : in.models) {
     for (const ModelFit* fit : in.fits(model)) {
-      if (!fit->quadric) continue;
-      if (!fit->ellipsoid) {
-        addDegenerate(content, in, *fit);
+      const EllipsoidFit* const fitted = fit->as<EllipsoidFit>();
+      if (!fitted) continue;
+      if (!fitted->ellipsoid) {
+        addDegenerate(content, in, *fit, *fitted);
         continue;
       }
-      const Ellipsoid& e = *fit->ellipsoid;
+      const Ellipsoid& e = *fitted->ellipsoid;
       if (!e.centre().allFinite() || !e.semiAxes().allFinite()) continue;
       if (e.semiAxes().maxCoeff() > 20 * in.scale.sceneSize ||
           (e.centre() - in.scale.sceneBox.center()).norm() > 50 * in.scale.sceneSize) {
@@ -86,7 +87,7 @@ LayerContent ellipsoidsLayer(const LayerInput& in) {
       info.layer = "ellipsoids";
       info.model = model;
       info.light = fit->light;
-      info.text = fitText(*fit) + line("centre", e.centre(), "m") + line("semi-axes", e.semiAxes(), "m");
+      info.text = fitText(*fit, *fitted) + line("centre", e.centre(), "m") + line("semi-axes", e.semiAxes(), "m");
       content.behindSurface = content.behindSurface || hiddenBySurface(in, e.centre());
       const Colour colour = modelColour(model);
       // A vanishing axis would make the unit sphere's normals undefined: keep it thinner than a line.

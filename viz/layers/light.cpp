@@ -90,7 +90,7 @@ LayerContent lightLayer(const LayerInput& in) {
       info.model = model;
       info.light = fit->light;
       info.text = line("light of model", model);
-      if (fit->limitAngle) info.text += line("limit angle", *fit->limitAngle * 180 / std::numbers::pi, "deg");
+      if (fit->limitAngle()) info.text += line("limit angle", *fit->limitAngle() * 180 / std::numbers::pi, "deg");
       addEstimate(content, in, *fit->lightEstimate, 0.7, modelColour(model), model + " light", info);
     }
   }

@@ -246,7 +246,8 @@ TEST(Conditioning, DegenerateOneViewRepeated) {
 TEST(SemiAxesSigma, AlongTheAxes) {
   ModelFit fit;
   EXPECT_FALSE(semiAxesSigma(fit));
-  fit.ellipsoid = *Ellipsoid::fromCentreAndShape({1, 2, 3}, Vector3d(0.25, 0.09, 0.04).asDiagonal());
+  const Ellipsoid e = *Ellipsoid::fromCentreAndShape({1, 2, 3}, Vector3d(0.25, 0.09, 0.04).asDiagonal());
+  fit.family = EllipsoidFit{e.dual(), e};
   EXPECT_FALSE(semiAxesSigma(fit));
   fit.uncertainty.emplace();
   fit.uncertainty->root = Eigen::MatrixXd::Zero(9, 3);

@@ -196,11 +196,10 @@ TEST(Explain, AContourThatIsNoEllipseIsSaid) {
 /// The last two singular values of a fit: exact contours of a plane leave one quadric, so their ratio is set here.
 TEST(Explain, TwoQuadricsThatFitAlmostAlikeAreSaid) {
   Inspection inspection = inspected(sheet(0), {"canonical"});
-  std::optional<ModelFit>& fit = inspection.models.at("canonical").fits.at(0).fit;
-  ASSERT_TRUE(fit && fit->quadric);
-  EXPECT_LT(fit->gapRatio, 0.01);
-  for (const double ratio : {fit->gapRatio, 0.4, 0.6, 0.97}) {
-    fit->gapRatio = ratio;
+  EllipsoidFit& fit = std::get<EllipsoidFit>(inspection.models.at("canonical").fits.at(0).fit->family);
+  EXPECT_LT(fit.gapRatio, 0.01);
+  for (const double ratio : {fit.gapRatio, 0.4, 0.6, 0.97}) {
+    fit.gapRatio = ratio;
     const ExplainStep step = stepOf(explain(inspection, 5, 0, "canonical"), "ellipsoid");
     EXPECT_EQ(number(step, "last over second-last singular value")[0], ratio);
     EXPECT_EQ(breaks(step, "weak-gap"), ratio > 0.5) << ratio;
@@ -217,7 +216,8 @@ const BrokenAssumption& broken(const ExplainStep& s, const std::string& id) {
 Inspection needle(const AnalyticSpec& surface, const std::string& model) {
   Inspection inspection = inspected(surface, {model});
   ModelResult& result = inspection.models.at(model);
-  result.fits.at(0).fit->ellipsoid = Ellipsoid(result.fits[0].fit->ellipsoid->worldFromBody(), {0.02, 2.2, 0.015});
+  std::optional<Ellipsoid>& ellipsoid = std::get<EllipsoidFit>(result.fits.at(0).fit->family).ellipsoid;
+  ellipsoid = Ellipsoid(ellipsoid->worldFromBody(), {0.02, 2.2, 0.015});
   for (FrameComparison& comparison : result.frames) {
     PredictedHighlight& p = comparison.prediction.highlights().at(0);
     p.brightest.pixel = Pixel(-500, 100);

@@ -36,7 +36,7 @@ ModelFit limitAngleFit(const Light& light, double limit) {
   ModelFit fit;
   fit.model = "limit-angle";
   fit.lightEstimate = light;
-  fit.limitAngle = limit;
+  fit.family = LimitAngleFit{limit};
   return fit;
 }
 

@@ -98,7 +98,7 @@ TEST(ModelLaws, SymmetricInTheOrderOfViews) {
 TEST(ModelLaws, LimitAngleReturnsTheMeasuredContour) {
   for (const Synthetic& scene : {sheetScene(0), sheetScene(1.2), ellipsoidScene()}) {
     const ModelFit fit = fitted("limit-angle", fitInput(scene, {}));
-    EXPECT_NEAR(*fit.limitAngle, scene.limitAngle, 1e-5);
+    EXPECT_NEAR(*fit.limitAngle(), scene.limitAngle, 1e-5);
     for (const Camera& camera : scene.cameras) {
       const Prediction p = predicted("limit-angle", fit, scene, camera);
       ASSERT_EQ(p.highlights().size(), 1u);
@@ -213,7 +213,8 @@ TEST(CanonicalModel, DirectionsOverTheHorizonAreNamed) {
   ModelFit fit;
   fit.model = "canonical";
   fit.lightEstimate = lightOf(scene.light);
-  fit.ellipsoid = Ellipsoid(pose, Eigen::Vector3d(0.5, 0.5, 0.5));
+  const Ellipsoid ball(pose, Eigen::Vector3d(0.5, 0.5, 0.5));
+  fit.family = EllipsoidFit{ball.dual(), ball};
   const Prediction p = predicted("canonical", fit, scene, scene.cameras[0]);
   ASSERT_EQ(p.highlights().size(), 1u) << p.failure()->message();
   int hidden = 0;

@@ -249,7 +249,7 @@ TEST(Plausible, LimitAngleAnswersWhereATenthOfTheContourIsWild) {
   const Outcome<ModelFit> fit = modelByName("limit-angle").fit(input, settings);
   ASSERT_TRUE(fit) << fit.failure().message();
   EXPECT_GT(light->rmsPx, kTenth * radiusPx(input.views[0].highlight.contour)) << "all points counted alike, it would be refused";
-  EXPECT_NEAR(*fit->limitAngle / ellipsoidScene().limitAngle, 1, 0.1);
+  EXPECT_NEAR(*fit->limitAngle() / ellipsoidScene().limitAngle, 1, 0.1);
 }
 
 TEST(Plausible, CanonicalSaysWhyItsViewsCouldNotBeUsed) {

@@ -309,7 +309,7 @@ TEST(FitEllipsoid, DegenerateALinearQuadricThatIsNoEllipsoidIsReturnedAndNamed) 
     EXPECT_LT((r->quadric.matrix / r->quadric.matrix(3, 3) - truth.matrix).norm(), tolerance::kSolve);
   }
   ModelFit fit;
-  fit.quadric = truth;
+  fit.family = EllipsoidFit{truth};
   const Prediction p = modelByName("primal").predict(fit, lookAt({0.1, 0, 2}, {0, 0, 0}), nullptr, Settings());
   ASSERT_TRUE(p.failure());
   EXPECT_EQ(p.failure()->reason, Reason::NotAnEllipsoid);

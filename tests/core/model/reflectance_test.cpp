@@ -69,8 +69,8 @@ TEST(Reflectance, FindsTheLobeAndPredictsOtherViews) {
     const RadianceScene s = radianceScene(ellipsoidScene(8), lobe, 0.12);
     const Outcome<ModelFit> fit = modelByName("reflectance").fit(inputOf(s, 6), {});
     ASSERT_TRUE(fit) << fit.failure().message();
-    EXPECT_EQ(fit->lobe, nameOf(lobe));
-    EXPECT_NEAR(*fit->roughness, 0.12, 1e-4);
+    EXPECT_EQ(fit->as<ReflectanceFit>()->lobe, lobe);
+    EXPECT_NEAR(fit->as<ReflectanceFit>()->roughness, 0.12, 1e-4);
     for (int i = 6; i < 8; ++i) EXPECT_LT(reflectanceErrorPct(s, *fit, s.geometry.cameras[i]), kPredictedPct) << nameOf(lobe) << " " << i;
   }
 }
@@ -83,7 +83,7 @@ TEST(Reflectance, AnswersAtGrazingIncidenceWhereTheLimitAngleDoesNot) {
   input.lightFailure = Failure{Reason::NotConverged, "light bundle"};
   const Outcome<ModelFit> fit = modelByName("reflectance").fit(input, {});
   ASSERT_TRUE(fit) << fit.failure().message();
-  EXPECT_EQ(fit->lobe, "torrance-sparrow");
+  EXPECT_EQ(fit->as<ReflectanceFit>()->lobe, Lobe::TorranceSparrow);
   for (int i = 6; i < 8; ++i) EXPECT_LT(reflectanceErrorPct(s, *fit, s.geometry.cameras[i]), kPredictedPct) << i;
 }
 
@@ -93,8 +93,8 @@ TEST(Reflectance, FindsANarrowPhongLobeAtGrazingIncidence) {
   const RadianceScene s = radianceScene(grazingScene(12), Lobe::Phong, 0.05);
   const Outcome<ModelFit> fit = modelByName("reflectance").fit(inputOf(s, 6), {});
   ASSERT_TRUE(fit) << fit.failure().message();
-  EXPECT_EQ(fit->lobe, "phong");
-  EXPECT_NEAR(*fit->roughness, 0.05, 1e-4);
+  EXPECT_EQ(fit->as<ReflectanceFit>()->lobe, Lobe::Phong);
+  EXPECT_NEAR(fit->as<ReflectanceFit>()->roughness, 0.05, 1e-4);
   EXPECT_LT(reflectanceErrorPct(s, *fit, s.geometry.cameras[11]), kPredictedPct);
 }
 
@@ -111,7 +111,7 @@ TEST(Reflectance, FindsWideBeckmannLobes) {
         s.level = level;
         const Outcome<ModelFit> fit = modelByName("reflectance").fit(inputOf(s, 6), {});
         ASSERT_TRUE(fit) << round << " " << m << " " << level << " " << fit.failure().message();
-        EXPECT_EQ(fit->lobe, "torrance-sparrow") << round << " " << m << " " << level;
+        EXPECT_EQ(fit->as<ReflectanceFit>()->lobe, Lobe::TorranceSparrow) << round << " " << m << " " << level;
         for (int i = 6; i < 8; ++i) EXPECT_LT(reflectanceErrorPct(s, *fit, s.geometry.cameras[i]), kWidePct) << round << " " << m << " " << level;
       }
 }
@@ -144,12 +144,12 @@ TEST(Reflectance, SeveralLevelsNameTheLobe) {
         }
       const Outcome<ModelFit> fit = modelByName("reflectance").fit(input, settings), one = modelByName("reflectance").fit(input, {});
       ASSERT_TRUE(fit && one);
-      EXPECT_EQ(fit->evidence, "levels");
-      EXPECT_EQ(fit->levels, std::vector<double>({0.3, 0.5, 0.7}));
+      EXPECT_EQ(fit->as<ReflectanceFit>()->evidence, "levels");
+      EXPECT_EQ(fit->as<ReflectanceFit>()->levels, std::vector<double>({0.3, 0.5, 0.7}));
       EXPECT_EQ(fit->residualPx.size(), 6u);
-      EXPECT_EQ(one->evidence, "contours");
-      right += fit->lobe == nameOf(lobe);
-      rightFromOne += one->lobe == nameOf(lobe);
+      EXPECT_EQ(one->as<ReflectanceFit>()->evidence, "contours");
+      right += fit->as<ReflectanceFit>()->lobe == lobe;
+      rightFromOne += one->as<ReflectanceFit>()->lobe == lobe;
       ++runs;
     }
   EXPECT_EQ(right, runs);
@@ -163,7 +163,7 @@ TEST(Reflectance, LevelsThatAreNotThereAreRemarked) {
   settings.set("fit.evidence", std::string("levels"));
   const Outcome<ModelFit> fit = modelByName("reflectance").fit(inputOf(s, 6), settings);
   ASSERT_TRUE(fit) << fit.failure().message();
-  EXPECT_EQ(fit->evidence, "contours");
+  EXPECT_EQ(fit->as<ReflectanceFit>()->evidence, "contours");
   EXPECT_EQ(fit->remarks.size(), 1u);
 }
 
@@ -177,9 +177,10 @@ TEST(Reflectance, FindsALongLampAndPredictsOtherViews) {
   const RadianceScene s = radianceScene(std::move(geometry), Lobe::TorranceSparrow, 0.08);
   const Outcome<ModelFit> fit = modelByName("reflectance").fit(inputOf(s, 6), {});
   ASSERT_TRUE(fit) << fit.failure().message();
-  ASSERT_TRUE(fit->lightSegment);
-  EXPECT_FALSE(fit->lightRadius);
-  EXPECT_NEAR((fit->lightSegment->second - fit->lightSegment->first).norm(), 0.6, 0.006);
+  const ReflectanceFit& lobe = *fit->as<ReflectanceFit>();
+  ASSERT_TRUE(lobe.lightSegment);
+  EXPECT_EQ(lobe.lightRadius, 0);
+  EXPECT_NEAR((lobe.lightSegment->second - lobe.lightSegment->first).norm(), 0.6, 0.006);
   for (int i = 6; i < 8; ++i) {
     const Camera& camera = s.geometry.cameras[i];
     EXPECT_LT(reflectanceErrorPct(s, *fit, camera), 0.15) << i;
@@ -191,15 +192,13 @@ TEST(Reflectance, FindsALongLampAndPredictsOtherViews) {
   Settings point;
   point.set("fit.light_size", std::string("point"));
   const Outcome<ModelFit> blind = modelByName("reflectance").fit(inputOf(s, 6), point);
-  EXPECT_FALSE(blind && blind->lightSegment);
+  EXPECT_FALSE(blind && blind->as<ReflectanceFit>()->lightSegment);
 }
 
 ModelFit fitOf(const Light& light, Lobe lobe, double roughness) {
   ModelFit fit;
   fit.lightEstimate = light;
-  fit.lobe = nameOf(lobe);
-  fit.roughness = roughness;
-  fit.level = 0.5;
+  fit.family = ReflectanceFit{lobe, roughness, 0.5};
   return fit;
 }
 

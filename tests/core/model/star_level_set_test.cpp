@@ -32,10 +32,7 @@ const Settings kStar = starSettings();
 ModelFit radianceFit(const Light& light, Lobe lobe, double roughness, double radius = 0) {
   ModelFit fit;
   fit.lightEstimate = light;
-  fit.lobe = nameOf(lobe);
-  fit.roughness = roughness;
-  fit.level = 0.5;
-  if (radius > 0) fit.lightRadius = radius;
+  fit.family = ReflectanceFit{lobe, roughness, 0.5, radius};
   return fit;
 }
 
@@ -43,9 +40,9 @@ ModelFit radianceFit(const Light& light, Lobe lobe, double roughness, double rad
 Outcome<std::vector<PredictedHighlight>> starsOf(const ModelFit& fit, const Camera& camera, const Surface& surface) {
   const auto mirrorPoints = brightestPointsFor(surface, camera, *fit.lightEstimate, kStar);
   if (!mirrorPoints) return mirrorPoints.failure();
-  const RadianceField radiance(surface, camera, *lobeOf(*fit.lobe), *fit.roughness,
-                               Lamp::sphere(*fit.lightEstimate, fit.lightRadius.value_or(0)));
-  return radianceStars(radiance, fit, *mirrorPoints, 5.54, camera, surface, kStar);
+  const ReflectanceFit& lobe = *fit.as<ReflectanceFit>();
+  const RadianceField radiance(surface, camera, lobe.lobe, lobe.roughness, Lamp::sphere(*fit.lightEstimate, lobe.lightRadius));
+  return radianceStars(radiance, lobe, *fit.lightEstimate, *mirrorPoints, 5.54, camera, surface, kStar);
 }
 
 void expectSameContours(const std::vector<PredictedHighlight>& whole, const std::vector<PredictedHighlight>& stars,
@@ -154,7 +151,7 @@ TEST(RadianceStars, LimitAngleWithSeveralBrightestPoints) {
   const Ring ring;
   ModelFit fit;
   fit.lightEstimate = ring.light;
-  fit.limitAngle = 0.04;
+  fit.family = LimitAngleFit{0.04};
   for (const auto& surface : {makeAnalytic(ring.spec), meshOf(ring.spec, 400)}) {
     const Prediction whole = modelByName("limit-angle").predict(fit, ring.camera, surface.get(), {}),
                      stars = modelByName("limit-angle").predict(fit, ring.camera, surface.get(), kStar);

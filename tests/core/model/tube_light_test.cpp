@@ -67,8 +67,8 @@ Outcomes heldOutError(const TrueLight& light, int orders, double scale = 1, doub
   const Outcome<ModelFit> fit = model.fit(input, settings);
   if (!fit) throw std::runtime_error(fit.failure().message());
   Outcomes result;
-  result.extent = fit->extent;
-  result.limit = *fit->limitAngle;
+  result.extent = fit->as<LimitAngleFit>()->extent;
+  result.limit = *fit->limitAngle();
   result.light = *fit->lightEstimate;
   for (const auto& [camera, highlight] : heldOut) {
     const Prediction p = model.predict(*fit, camera, surface.get(), settings);

@@ -309,7 +309,7 @@ TEST_F(Properties, WorthOfAContourPointSettles) {
   for (const int i : numbers({18, 19, 26}))
     for (const auto& [key, model] : answer(i).models)
       for (const ModelResult::Fit& f : model.fits) {
-        if (!f.fit || !f.fit->quadric) continue;
+        if (!f.fit || !f.fit->as<EllipsoidFit>()) continue;
         ++ellipsoids;
         for (const std::string& remark : f.fit->remarks)
           EXPECT_EQ(remark.find("did not settle"), std::string::npos) << key << " " << scene(i).what.text() << ": " << remark;

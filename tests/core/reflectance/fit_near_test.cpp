@@ -104,14 +104,13 @@ TEST(FitNear, TheModelSearchesWhereTheStartLeadsNowhere) {
   scene.material->roughness = kNearRoughness;
   FitInput input = fitInput(scene, {});
   ModelFit behind;
-  behind.lobe = nameOf(Lobe::TorranceSparrow);
-  behind.roughness = kNearRoughness;
+  behind.family = ReflectanceFit{Lobe::TorranceSparrow, kNearRoughness};
   behind.lightEstimate = Light::at(-*scene.light.position);
   input.near = std::make_shared<const ModelFit>(behind);
   const Outcome<ModelFit> fit = modelByName("reflectance").fit(input, {});
   ASSERT_TRUE(fit) << fit.failure().message();
   EXPECT_LT((fit->lightEstimate->position() - *scene.light.position).norm(), kRecovered * scene.light.position->norm());
-  EXPECT_NEAR(fit->roughness.value_or(0), kNearRoughness, kRecovered * kNearRoughness);
+  EXPECT_NEAR(fit->as<ReflectanceFit>()->roughness, kNearRoughness, kRecovered * kNearRoughness);
 }
 
 }  // namespace

@@ -310,8 +310,8 @@ TEST(Invariance, OrderOfLights) {
       const auto& others = second.models.at(name).fits;
       const auto twin = std::find_if(others.begin(), others.end(), [&](const ModelResult::Fit& o) { return o.light == f.light; });
       ASSERT_TRUE(twin != others.end() && f.fit && twin->fit) << name;
-      if (f.fit->ellipsoid) {
-        EXPECT_LT((f.fit->ellipsoid->centre() - twin->fit->ellipsoid->centre()).norm() / f.fit->ellipsoid->semiAxes().x(), kSame) << name;
+      if (const Ellipsoid* const e = f.fit->ellipsoid()) {
+        EXPECT_LT((e->centre() - twin->fit->ellipsoid()->centre()).norm() / e->semiAxes().x(), kSame) << name;
       }
       ++fits;
     }
