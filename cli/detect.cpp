@@ -22,7 +22,8 @@ namespace {
 constexpr double kWorthSayingPct = 0.25;
 
 /// What the unknown tail of the lobe leaves open, per highlight. The surroundings are looked at in measured pixels.
-std::vector<double> uncertainties(const Frame& frame, FrameSource source, const Settings& settings, const std::vector<Highlight>& highlights) {
+std::vector<double> uncertainties(const Frame& frame, FrameSource source, const Settings& settings,
+                                  const std::vector<Highlight>& highlights) {
   std::vector<double> result(highlights.size(), 0);
   const Outcome<LinearPixels> pixels = pixelsOf(frame, source, settings);
   if (!pixels) return result;
@@ -116,7 +117,8 @@ Command detectCommand() {
           FrameEvidence evidence = gatherEvidence(scene, i, source, settings);
           const Frame& frame = scene.frames[static_cast<std::size_t>(i)];
           std::vector<double> uncertain = uncertainties(frame, source, settings, evidence.highlights);
-          frames[static_cast<std::size_t>(i)] = {frame.id, std::move(evidence.highlights), std::move(uncertain), std::move(evidence.failure)};
+          frames[static_cast<std::size_t>(i)] = {frame.id, std::move(evidence.highlights), std::move(uncertain),
+                                                 std::move(evidence.failure)};
         },
         context.progress(), "detect");
 
@@ -131,8 +133,7 @@ Command detectCommand() {
               // Numbered by position: an id may hold characters that no file name may.
               const std::string name = formatted("%04d.png", i);
               if (photograph)
-                writePng(folder / name,
-                         drawDetection(*photograph, frame.camera, frames[static_cast<std::size_t>(i)].highlights));
+                writePng(folder / name, drawDetection(*photograph, frame.camera, frames[static_cast<std::size_t>(i)].highlights));
             },
             context.progress(), "overlays");
         context.write((folder / "highlights.json").string(), json);

@@ -36,7 +36,9 @@ void applyPreset(const Session& session, const std::string& preset, InspectionRe
 void InspectionArguments::declare(Options& o, const std::string& modelsHelp) {
   o.positional(input, "INPUT", "Scene file, folder that contains one, or session");
   o.option(models, "--models,--model", "NAME[,NAME...]", modelsHelp);
-  o.option(train, "--train", "SPEC", "Training frames: numbers, ids or ranges (0-5,14), first:K, spread:K, or per-surface (default: the session's, else first:6)");
+  o.option(train, "--train", "SPEC",
+           "Training frames: numbers, ids or ranges (0-5,14), first:K, spread:K, or per-surface (default: the session's, else "
+           "first:6)");
   o.option(exclude, "--exclude", "SPEC",
            "Frames to exclude from training and scoring: numbers, ids or ranges (default: the session's, else none)");
   o.option(level, "--level", "Q", "Contour level: fraction of the peak above the background (default: the session's, else 0.5)");

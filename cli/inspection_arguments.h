@@ -19,9 +19,9 @@ namespace glint::cli {
 /// Arguments shared by evaluate, reconstruct and others: everything that an InspectionRequest holds.
 struct InspectionArguments {
   std::string input, models, truth;
-  std::string train, source, level;        ///< "" = the session's, else the default
-  std::string exclude;                     ///< "" = the session's, else none
-  std::string preset;                      ///< of the session's trade-off; "" = none
+  std::string train, source, level;  ///< "" = the session's, else the default
+  std::string exclude;               ///< "" = the session's, else none
+  std::string preset;                ///< of the session's trade-off; "" = none
   std::vector<std::string> set;
   double noisePx = 0;
   unsigned seed = 1;

@@ -66,8 +66,7 @@ int run(const MovieArguments& a, const Context& context) {
   if (turning) {
     view.setSelection({firstHeldOut(*inspection), opened.saved.model, opened.saved.highlight});
     target->render(view);  // what everything is framed in is known with the first picture
-    const std::vector<viz::ViewPoint> views =
-        viz::turntable(view, turns);
+    const std::vector<viz::ViewPoint> views = viz::turntable(view, turns);
     viz::writeMovie(
         a.out, format, static_cast<int>(views.size()),
         [&](int i) {

@@ -29,8 +29,10 @@ std::string predictionTable(const Inspection& inspection, const std::vector<int>
     for (const FrameComparison& c : inspection.models.at(name).frames) {
       if (std::find(frames.begin(), frames.end(), c.frame) == frames.end()) continue;
       double coverage = 0;
-      for (const PredictedHighlight& h : c.prediction.highlights()) coverage += h.coverage / double(c.prediction.highlights().size());
-      const std::string reason = c.prediction.highlights().empty() && c.prediction.failure() ? c.prediction.failure()->message() : "";
+      for (const PredictedHighlight& h : c.prediction.highlights())
+        coverage += h.coverage / double(c.prediction.highlights().size());
+      const std::string reason =
+          c.prediction.highlights().empty() && c.prediction.failure() ? c.prediction.failure()->message() : "";
       out += formatted("%-12s %6d %-16s %-10s %10zu %9.3f  ", name.c_str(), c.frame, inspection.scene->frames[c.frame].id.c_str(),
                        c.light.c_str(), c.prediction.highlights().size(), coverage) +
              reason + "\n";

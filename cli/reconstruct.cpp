@@ -25,7 +25,8 @@ std::string fitText(const ModelResult::Fit& entry, const std::string& model) {
   } else if (fitted) {
     out += "  Q* is not an ellipsoid: " + std::string(describe(fitted->quadric)) + "\n";
   }
-  if (f.lightEstimate && !f.lightEstimate->atInfinity()) out += "  light             " + vectorText(f.lightEstimate->position()) + " m\n";
+  if (f.lightEstimate && !f.lightEstimate->atInfinity())
+    out += "  light             " + vectorText(f.lightEstimate->position()) + " m\n";
   if (f.lightEstimate && f.lightEstimate->atInfinity())
     out += "  light             at infinity, towards " + vectorText(f.lightEstimate->homogeneous().head<3>()) + "\n";
   if (f.limitAngle()) {

@@ -14,7 +14,7 @@ struct SceneArguments {
   bool allowOutside = false;
   std::vector<std::string> photographs;  ///< folders
   std::vector<std::string> files;        ///< KIND=DIR
-  std::vector<std::string> mesh;  ///< NAME=FILE
+  std::vector<std::string> mesh;         ///< NAME=FILE
   std::vector<std::string> meshFolders;
 
   /// --photographs, --files, --mesh and --meshes; with `declare` also --allow-outside.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/report/tradeoff_html.h"
 #include "core/tradeoff/tradeoff.h"
 
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
 #include "core/base/number_text.h"
+#include "core/report/tradeoff_html.h"
 #include "core/scene/outputs.h"
 #include "core/session/session.h"
 #include "core/trials/run.h"

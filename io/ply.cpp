@@ -38,22 +38,14 @@ std::size_t sizeOf(Scalar type) {
 
 double valueOf(const char* at, Scalar type, bool big) {
   switch (type) {
-    case Scalar::Int8:
-      return io::valueAt<std::int8_t>(at, big);
-    case Scalar::Uint8:
-      return io::valueAt<std::uint8_t>(at, big);
-    case Scalar::Int16:
-      return io::valueAt<std::int16_t>(at, big);
-    case Scalar::Uint16:
-      return io::valueAt<std::uint16_t>(at, big);
-    case Scalar::Int32:
-      return io::valueAt<std::int32_t>(at, big);
-    case Scalar::Uint32:
-      return io::valueAt<std::uint32_t>(at, big);
-    case Scalar::Float32:
-      return io::valueAt<float>(at, big);
-    case Scalar::Float64:
-      return io::valueAt<double>(at, big);
+    case Scalar::Int8: return io::valueAt<std::int8_t>(at, big);
+    case Scalar::Uint8: return io::valueAt<std::uint8_t>(at, big);
+    case Scalar::Int16: return io::valueAt<std::int16_t>(at, big);
+    case Scalar::Uint16: return io::valueAt<std::uint16_t>(at, big);
+    case Scalar::Int32: return io::valueAt<std::int32_t>(at, big);
+    case Scalar::Uint32: return io::valueAt<std::uint32_t>(at, big);
+    case Scalar::Float32: return io::valueAt<float>(at, big);
+    case Scalar::Float64: return io::valueAt<double>(at, big);
   }
   return 0;
 }

@@ -141,9 +141,9 @@ struct Annotations::Impl {
     double room = 0;   // px, that it was shortened to
     int points = 0;
   };
-  std::vector<Fitted> legendTexts;                                       // of `legend`
-  std::vector<std::unique_ptr<Strokes>> swatches;                        // one for each legend entry
-  std::vector<std::unique_ptr<Strokes>> outlines;                        // beneath them
+  std::vector<Fitted> legendTexts;                 // of `legend`
+  std::vector<std::unique_ptr<Strokes>> swatches;  // one for each legend entry
+  std::vector<std::unique_ptr<Strokes>> outlines;  // beneath them
   std::vector<char> entryAlways;
   std::size_t entries = 0;
   std::vector<DrawnLabel> labels;

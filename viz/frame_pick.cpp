@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "core/geometry/polyline.h"
 #include "core/draw/frame_details.h"
+#include "core/geometry/polyline.h"
 #include "viz/style.h"
 
 namespace glint::viz {
@@ -12,7 +12,8 @@ namespace {
 
 /// The nearest line that `counts`, if it is near enough. Later lines lie on top, so they win a tie.
 /// @param model  "" = all lines; else only this model's predictions
-const OverlayLine* nearest(const FrameOverlay& shown, const Pixel& at, double nearPx, bool contoursOnly, const std::string& model = "") {
+const OverlayLine* nearest(const FrameOverlay& shown, const Pixel& at, double nearPx, bool contoursOnly,
+                           const std::string& model = "") {
   const OverlayLine* best = nullptr;
   double bestPx = nearPx;
   for (const OverlayLine& line : shown.lines) {

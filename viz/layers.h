@@ -73,8 +73,8 @@ class LayerCache {
  private:
   PhotographSource source_;
   std::shared_ptr<const Scene> scene_;
-  std::vector<std::pair<std::pair<int, int>, vtkSmartPointer<vtkImageData>>> photographs_;  ///< oldest first
-  std::string photographsKey_;                                                              ///< pictureKey() of those
+  std::vector<std::pair<std::pair<int, int>, vtkSmartPointer<vtkImageData>>> photographs_;       ///< oldest first
+  std::string photographsKey_;                                                                   ///< pictureKey() of those
   std::vector<std::pair<vtkSmartPointer<vtkImageData>, vtkSmartPointer<vtkTexture>>> textures_;  ///< longest unused first
   std::vector<std::pair<std::shared_ptr<const Surface>, Triangles>> tessellations_;
 };

@@ -11,7 +11,8 @@ namespace glint::viz {
 namespace {
 
 PlotView viewOf(const PlotData& plot, const PlotStyle& style, const Selection& selection, int width, int height) {
-  require(width >= 16 && height >= 16 && width <= 16384 && height <= 16384, "plot: width and height must be between 16 and 16384 pixels");
+  require(width >= 16 && height >= 16 && width <= 16384 && height <= 16384,
+          "plot: width and height must be between 16 and 16384 pixels");
   PlotView view;
   view.setStyle(style);
   view.show(plot);

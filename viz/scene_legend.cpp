@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <string_view>
 
-#include "core/scene/scene_files.h"
 #include "core/base/error_text.h"
 #include "core/draw/frame_overlay.h"
 #include "core/inspect/frame_score.h"
+#include "core/scene/scene_files.h"
 #include "viz/style.h"
 
 namespace glint::viz {

@@ -17,10 +17,10 @@
 #include <numbers>
 #include <utility>
 
+#include "core/draw/frame_overlay.h"
 #include "core/geometry/light.h"
 #include "core/surface/mesh_policy.h"
 #include "viz/annotations.h"
-#include "core/draw/frame_overlay.h"
 #include "viz/layers.h"
 #include "viz/photograph_stand.h"
 #include "viz/scene_legend.h"
@@ -260,7 +260,11 @@ struct SceneView::Impl {
   void updateAnnotations() {
     annotationsStale = false;
     annotations->setBadge(eyeText());
-    annotations->setBorder(!border ? Border::None : photograph->partOfWindow() ? Border::Wipe : active ? Border::Active : Border::Around, name);
+    annotations->setBorder(!border                      ? Border::None
+                           : photograph->partOfWindow() ? Border::Wipe
+                           : active                     ? Border::Active
+                                                        : Border::Around,
+                           name);
     if (!valid()) {
       annotations->setLegend({}, {}, {}, "");
       annotations->setLabels({});

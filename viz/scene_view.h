@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "core/draw/selection.h"
 #include "core/inspect/inspection.h"
 #include "viz/hidden_objects.h"
-#include "core/draw/selection.h"
 #include "viz/style.h"
 
 class vtkImageData;

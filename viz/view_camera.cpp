@@ -205,18 +205,12 @@ AxisDirections axisDirections(AxisView view, const Eigen::Vector3d& up) {
   const Eigen::Vector3d front = std::abs(up.z()) > 0.5 ? -Eigen::Vector3d::UnitY().eval() : Eigen::Vector3d::UnitZ().eval();
   const Eigen::Vector3d right = up.cross(front);
   switch (view) {
-    case AxisView::Front:
-      return {front, up};
-    case AxisView::Back:
-      return {-front, up};
-    case AxisView::Left:
-      return {-right, up};
-    case AxisView::Right:
-      return {right, up};
-    case AxisView::Top:
-      return {up, -front};
-    case AxisView::Bottom:
-      return {-up, front};
+    case AxisView::Front: return {front, up};
+    case AxisView::Back: return {-front, up};
+    case AxisView::Left: return {-right, up};
+    case AxisView::Right: return {right, up};
+    case AxisView::Top: return {up, -front};
+    case AxisView::Bottom: return {-up, front};
   }
   return {front, up};
 }

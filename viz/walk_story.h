@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "core/draw/frame_overlay.h"
 #include "core/explain/explain.h"
 #include "core/explain/walk_trace.h"
 #include "core/geometry/light.h"
-#include "core/draw/frame_overlay.h"
 #include "viz/style.h"
 
 namespace glint::viz {

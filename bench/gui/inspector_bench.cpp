@@ -5,8 +5,8 @@
 #include <QAbstractSlider>
 #include <QApplication>
 #include <QElapsedTimer>
-#include <QTimer>
 #include <QThread>
+#include <QTimer>
 #include <algorithm>
 #include <cstdio>
 #include <deque>
@@ -57,7 +57,8 @@ template <class Condition>
 bool waitFor(Condition done, int ms = kGiveUpMs) {
   QElapsedTimer clock;
   clock.start();
-  QTimer tick;  // Qt's processEvents with a time limit does not wait, and whoever turns round and round takes time from the program
+  QTimer
+      tick;  // Qt's processEvents with a time limit does not wait, and whoever turns round and round takes time from the program
   tick.setTimerType(Qt::PreciseTimer);
   tick.start(kTickMs);
   while (!done() && clock.elapsed() < ms) QCoreApplication::processEvents(QEventLoop::WaitForMoreEvents);

@@ -29,7 +29,8 @@ fs::path absoluteFolder(const fs::path& given) {
   fs::path folder = fs::absolute(given).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();  // "labels/"
   std::error_code error;
-  if (const fs::path real = fs::is_symlink(folder, error) ? fs::canonical(folder, error) : fs::path(); !real.empty()) folder = real;
+  if (const fs::path real = fs::is_symlink(folder, error) ? fs::canonical(folder, error) : fs::path(); !real.empty())
+    folder = real;
   return folder;
 }
 
@@ -38,7 +39,8 @@ struct Parents {
   std::vector<fs::path> made;  // the deepest first
   explicit Parents(const fs::path& folder, const fs::path& given) {
     std::error_code error;
-    for (fs::path p = folder; !p.empty() && !fs::exists(p, error) && p.has_relative_path(); p = p.parent_path()) made.push_back(p);
+    for (fs::path p = folder; !p.empty() && !fs::exists(p, error) && p.has_relative_path(); p = p.parent_path())
+      made.push_back(p);
     fs::create_directories(folder, error);
     if (error) {
       remove();
@@ -73,7 +75,8 @@ void fill(const fs::path& temporary, const fs::path& given, const Write& write) 
 /// A rename can put a new folder in the place of this empty one: same file system, allowed, and nobody's current folder.
 bool canBeReplaced(const fs::path& folder) {
   std::error_code error;
-  struct stat here {}, above {};
+  struct stat here {
+  }, above{};
   if (!fs::is_empty(folder, error) || error) return false;
   if (::stat(folder.c_str(), &here) != 0 || ::stat(folder.parent_path().c_str(), &above) != 0) return false;
   if (here.st_dev != above.st_dev || ::access(folder.parent_path().c_str(), W_OK) != 0) return false;

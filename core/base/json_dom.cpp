@@ -81,7 +81,8 @@ class Builder final : public nlohmann::json_sax<Json> {
     return true;
   }
   bool begin(Json empty) {
-    if (levels_.size() >= std::size_t(kDeepest)) throw InputError(file_, "JSON", "nested deeper than " + std::to_string(kDeepest) + " levels");
+    if (levels_.size() >= std::size_t(kDeepest))
+      throw InputError(file_, "JSON", "nested deeper than " + std::to_string(kDeepest) + " levels");
     levels_.push_back({std::move(empty), "", {}});
     return true;
   }

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/base/number_text.h"
 
+#include <locale.h>
+
 #include <charconv>
 #include <clocale>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
-#include <locale.h>
 
 namespace glint {
 
 std::string formatted(const char* format, ...) {
   static const locale_t plain = newlocale(LC_ALL_MASK, "C", nullptr);  // one for the process, never freed
-  const locale_t before = uselocale(plain);                           // of this thread only
+  const locale_t before = uselocale(plain);                            // of this thread only
   std::va_list values, again;
   va_start(values, format);
   va_copy(again, values);

@@ -13,32 +13,32 @@ namespace glint {
 /// Why the data cannot answer. Every member has a text (`nameOf`) that reports and JSON use;
 /// the texts are stable, so scripts may compare them.
 enum class Reason {
-  TooFewViews,          ///< fewer views than the unknowns need
-  TooFewPoints,         ///< fewer points than the unknowns need
-  RankDeficient,        ///< the linear system has more than one solution
-  NotAnEllipse,         ///< the conic is a hyperbola, a parabola, imaginary or degenerate
-  NotAnEllipsoid,       ///< the quadric has the wrong signature
-  ParallelRays,         ///< rays too parallel for a point: the answer is a direction
-  LightBehindSurface,   ///< N.(L - P) <= 0
-  NoHit,                ///< the ray misses the surface
-  SurfaceEnded,         ///< walked over the border or into a hole of the surface
-  Occluded,             ///< another part of the surface is in front
-  NotReached,           ///< the walk ended before the limit angle or the contour was reached
-  NotMonotonic,         ///< the angle fell again before the limit was reached
-  NoBrightestPoint,     ///< the reflection law holds nowhere that is visible and lit
-  NoHighlight,          ///< nothing in the frame rises above the local background
-  Clipped,              ///< the highlight is saturated: it has no single peak
-  OutsideImage,         ///< the highlight leaves the image
-  BehindCamera,         ///< the point is not in front of the camera
-  PeakOffSurface,       ///< the ray through the measured peak misses the surface
-  NoLight,              ///< the model or the frame has no light to reflect
-  LightOff,             ///< the light is switched off in this frame
-  NotFinite,            ///< a NaN or an infinity in the input of this step
-  NotConverged,         ///< the iteration stopped before its tolerance
-  NotSupported,         ///< the combination asked for does not exist
-  NoSurface,            ///< the frame has no surface
-  FrameUnreadable,      ///< the frame's image could not be used
-  Cancelled,            ///< stopped by the caller
+  TooFewViews,         ///< fewer views than the unknowns need
+  TooFewPoints,        ///< fewer points than the unknowns need
+  RankDeficient,       ///< the linear system has more than one solution
+  NotAnEllipse,        ///< the conic is a hyperbola, a parabola, imaginary or degenerate
+  NotAnEllipsoid,      ///< the quadric has the wrong signature
+  ParallelRays,        ///< rays too parallel for a point: the answer is a direction
+  LightBehindSurface,  ///< N.(L - P) <= 0
+  NoHit,               ///< the ray misses the surface
+  SurfaceEnded,        ///< walked over the border or into a hole of the surface
+  Occluded,            ///< another part of the surface is in front
+  NotReached,          ///< the walk ended before the limit angle or the contour was reached
+  NotMonotonic,        ///< the angle fell again before the limit was reached
+  NoBrightestPoint,    ///< the reflection law holds nowhere that is visible and lit
+  NoHighlight,         ///< nothing in the frame rises above the local background
+  Clipped,             ///< the highlight is saturated: it has no single peak
+  OutsideImage,        ///< the highlight leaves the image
+  BehindCamera,        ///< the point is not in front of the camera
+  PeakOffSurface,      ///< the ray through the measured peak misses the surface
+  NoLight,             ///< the model or the frame has no light to reflect
+  LightOff,            ///< the light is switched off in this frame
+  NotFinite,           ///< a NaN or an infinity in the input of this step
+  NotConverged,        ///< the iteration stopped before its tolerance
+  NotSupported,        ///< the combination asked for does not exist
+  NoSurface,           ///< the frame has no surface
+  FrameUnreadable,     ///< the frame's image could not be used
+  Cancelled,           ///< stopped by the caller
 };
 
 /// Stable, lower-case text of a reason ("too few views").

@@ -11,10 +11,10 @@
 namespace glint {
 namespace {
 
-constexpr std::size_t kLongestWord = 160;    // a path of this length still shows its folder and its name
-constexpr std::size_t kLongestName = 180;    // file systems allow 255 bytes; an extension and a temporary file's marks follow
+constexpr std::size_t kLongestWord = 160;      // a path of this length still shows its folder and its name
+constexpr std::size_t kLongestName = 180;      // file systems allow 255 bytes; an extension and a temporary file's marks follow
 constexpr std::size_t kLongestExtension = 16;  // with its dot: a longer one is a part of the name
-constexpr std::size_t kHashDigits = 16;      // 64 bits: two ids of one scene never agree by chance
+constexpr std::size_t kHashDigits = 16;        // 64 bits: two ids of one scene never agree by chance
 constexpr std::string_view kEllipsis = "…";
 
 bool continues(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }

@@ -505,7 +505,8 @@ void Settings::set(const std::string& key, const SettingValue& v) {
   if (checked.index() != spec.defaultValue.index()) throw InputError("", "--set " + key, "the value has the wrong type");
   const auto inRange = [&](double x) {
     if (!(x >= spec.min && x <= spec.max))
-      throw InputError("", "--set " + key, glint::number(x) + " is outside " + glint::number(spec.min) + " .. " + glint::number(spec.max));
+      throw InputError("", "--set " + key,
+                       glint::number(x) + " is outside " + glint::number(spec.min) + " .. " + glint::number(spec.max));
   };
   if (const int* i = std::get_if<int>(&checked)) inRange(*i);
   if (const double* d = std::get_if<double>(&checked)) inRange(*d);
@@ -516,13 +517,17 @@ void Settings::set(const std::string& key, const SettingValue& v) {
       throw InputError("", "--set " + key, "'" + *s + "' is not one of: " + all);
     }
   }
-  if (checked == spec.defaultValue) values_.erase(key);
-  else values_[key] = checked;
+  if (checked == spec.defaultValue)
+    values_.erase(key);
+  else
+    values_[key] = checked;
 }
 
 void Settings::setFromText(const std::string& key, const std::string& text) {
   const ParamSpec& spec = paramSpec(key);
-  const auto bad = [&](const char* what) -> InputError { return InputError("", "--set " + key, "'" + text + "' is not " + what); };
+  const auto bad = [&](const char* what) -> InputError {
+    return InputError("", "--set " + key, "'" + text + "' is not " + what);
+  };
   if (std::holds_alternative<bool>(spec.defaultValue)) {
     if (text == "true" || text == "on" || text == "1") return set(key, true);
     if (text == "false" || text == "off" || text == "0") return set(key, false);

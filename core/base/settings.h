@@ -12,15 +12,15 @@ using SettingValue = std::variant<bool, int, double, std::string>;
 
 /// Describes one setting: enough to build a panel row, a `--set` parser and a table of settings from it.
 struct ParamSpec {
-  std::string key;      ///< dotted name, "predict.directions"
-  std::string title;    ///< "Directions"
-  std::string symbol;   ///< symbol in method.md, "n"; may be empty
-  std::string unit;     ///< "px", "deg", "" for none
+  std::string key;     ///< dotted name, "predict.directions"
+  std::string title;   ///< "Directions"
+  std::string symbol;  ///< symbol in method.md, "n"; may be empty
+  std::string unit;    ///< "px", "deg", "" for none
   SettingValue defaultValue;
-  double min = 0, max = 0, step = 0;   ///< numeric settings only; closed range
-  std::vector<std::string> choices;    ///< string settings only; the legal values
-  std::string help;                    ///< one or two sentences, with the equation where there is one
-  std::string stage;                   ///< first pipeline stage that depends on it: "detect", "surface", "light", "fit", "predict", "evaluate"
+  double min = 0, max = 0, step = 0;  ///< numeric settings only; closed range
+  std::vector<std::string> choices;   ///< string settings only; the legal values
+  std::string help;                   ///< one or two sentences, with the equation where there is one
+  std::string stage;  ///< first pipeline stage that depends on it: "detect", "surface", "light", "fit", "predict", "evaluate"
 };
 
 /// Every setting of the program, in the order of the pipeline. The one place that defines them.

@@ -65,7 +65,8 @@ bool isOurs(const std::string& name) {
 bool sameFile(const struct stat& a, const struct stat& b) { return a.st_dev == b.st_dev && a.st_ino == b.st_ino; }
 
 void removeIfAbandoned(const fs::path& path) {
-  struct stat named {}, opened {};
+  struct stat named {
+  }, opened{};
   if (::lstat(path.c_str(), &named) != 0 || named.st_uid != ::geteuid()) return;
   if (!S_ISREG(named.st_mode) && !S_ISDIR(named.st_mode)) return;
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);

@@ -9,8 +9,8 @@
 
 namespace glint {
 
-std::optional<ParameterUncertainty> uncertaintyOfUnit(const Eigen::Vector4d& y, const Eigen::MatrixXd& dy, const Eigen::MatrixXd& others,
-                                                      double noisePx, double degreesOfFreedom) {
+std::optional<ParameterUncertainty> uncertaintyOfUnit(const Eigen::Vector4d& y, const Eigen::MatrixXd& dy,
+                                                      const Eigen::MatrixXd& others, double noisePx, double degreesOfFreedom) {
   require(dy.rows() == 4 && dy.cols() == others.cols(), "uncertaintyOfUnit: sizes");
   const Eigen::Vector4d u = y.normalized();
   ParameterUncertainty result;

@@ -30,8 +30,8 @@ struct ParameterBlock {
 /// Of a vector brought to length 1 and of further parameters, from that of the vector y as it was: d(y / |y|) = (I - u u^T) dy / |y|, u = y / |y|.
 /// @param y  not zero. @param dy  4 x k and @param others  rows x k: columns of the root as in ParameterUncertainty.
 /// @return root of 4 + rows parameters; nothing where it is not finite.
-std::optional<ParameterUncertainty> uncertaintyOfUnit(const Eigen::Vector4d& y, const Eigen::MatrixXd& dy, const Eigen::MatrixXd& others,
-                                                      double noisePx, double degreesOfFreedom);
+std::optional<ParameterUncertainty> uncertaintyOfUnit(const Eigen::Vector4d& y, const Eigen::MatrixXd& dy,
+                                                      const Eigen::MatrixXd& others, double noisePx, double degreesOfFreedom);
 
 /// Half width, in standard deviations, of the interval that holds `coverage` of a Student distribution: 1.96 for 95 % and many
 /// degrees of freedom, more where few residuals tell the noise. std::invalid_argument unless 0 < coverage < 1 and dof > 0.

@@ -19,7 +19,7 @@ namespace {
 constexpr int kMostViews = 8, kLeastViews = 4;
 constexpr double kClearly = 0.5;        // of the residual as given: what is left by a change that is the truth is far less
 constexpr double kClearlyFlip = 0.2;    // mirrored images leave pixels where the right ones leave hundredths
-constexpr double kDetectionPx = 0.02;     // residuals as given below this are what detection leaves on good data
+constexpr double kDetectionPx = 0.02;   // residuals as given below this are what detection leaves on good data
 constexpr double kGoodRadii = 0.01;     // residual over the contour's radius below which a light explains the contours
 constexpr double kLeastFocalPct = 0.3;  // of errors that are told: smaller ones hide in those of surfaces
 constexpr double kShiftSlackPx = 0.2;   // of what the highlights ask for about half a pixel

@@ -16,7 +16,7 @@
 namespace glint {
 namespace {
 
-constexpr double kOwnSizePct = 100;  // of the highlight's diameter: beyond, the outline is not that of the highlight
+constexpr double kOwnSizePct = 100;           // of the highlight's diameter: beyond, the outline is not that of the highlight
 constexpr std::size_t kMostDirections = 256;  // 33,000 pairs: a millisecond
 
 double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
@@ -68,7 +68,8 @@ std::vector<Eigen::Vector3d> raysOf(const HighlightModel& model, const std::vect
   std::vector<Eigen::Vector3d> rays;
   for (const TrainingView& v : views) {
     if (!model.traits().mirrored) {
-      if (const std::optional<ConicView> outline = model.outlineIn(v)) rays.push_back(v.camera.ray(outline->ellipse.centre).direction.normalized());
+      if (const std::optional<ConicView> outline = model.outlineIn(v))
+        rays.push_back(v.camera.ray(outline->ellipse.centre).direction.normalized());
     } else if (v.seen) {
       rays.push_back(reflectedRay(v.seen->brightest, v.camera).direction);
     }
@@ -341,14 +342,10 @@ class Findings {
 
 const char* nameOf(Verdict verdict) {
   switch (verdict) {
-    case Verdict::Green:
-      return "good";
-    case Verdict::Amber:
-      return "doubtful";
-    case Verdict::Red:
-      return "bad";
-    case Verdict::Unknown:
-      return "unknown";
+    case Verdict::Green: return "good";
+    case Verdict::Amber: return "doubtful";
+    case Verdict::Red: return "bad";
+    case Verdict::Unknown: return "unknown";
   }
   return "";
 }
@@ -389,7 +386,8 @@ std::string residualMeaning(const LightEstimate&) { return kToLevelSet; }
 std::string residualMeaning(const ModelFit& fit) {
   if (!fit.as<EllipsoidFit>()) return kToLevelSet;
   const HighlightModel* const model = findModel(fit.model);
-  return std::string("from the ") + (model && model->needsCanonicalContours() ? "canonical" : "observed") + " contour to the outline, one way, RMS";
+  return std::string("from the ") + (model && model->needsCanonicalContours() ? "canonical" : "observed") +
+         " contour to the outline, one way, RMS";
 }
 
 std::optional<Eigen::Vector3d> semiAxesSigma(const ModelFit& fit) {

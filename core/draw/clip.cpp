@@ -36,7 +36,9 @@ std::vector<Chain> chainsInside(const std::vector<Eigen::Vector2d>& points, bool
   const std::size_t n = whole.points.size();
   if (n < 2) return {};
   const Eigen::Vector2d low(box.x, box.y), high(box.x + box.width, box.y + box.height);
-  const auto contains = [&](const Eigen::Vector2d& p) { return (p.array() >= low.array()).all() && (p.array() <= high.array()).all(); };
+  const auto contains = [&](const Eigen::Vector2d& p) {
+    return (p.array() >= low.array()).all() && (p.array() <= high.array()).all();
+  };
   if (!(box.width > 0) || std::all_of(whole.points.begin(), whole.points.end(), contains)) return {whole};
   std::vector<Chain> chains;
   std::vector<Eigen::Vector2d> piece;

@@ -30,6 +30,6 @@ inline constexpr Colour kSurface{0.46, 0.49, 0.53};        ///< subdued, so that
 inline constexpr Colour kActiveView{0.184, 0.486, 0.769};  ///< the accent colour: border of the active view, badges
 inline constexpr Colour kDarkBackground{0.10, 0.11, 0.13}, kLightBackground{0.97, 0.97, 0.97};
 inline constexpr Colour kTextOnDark{0.92, 0.92, 0.92}, kTextOnLight{0.10, 0.10, 0.10};
-inline constexpr Colour kHalo{0.12, 0.13, 0.15};           ///< dark stroke beneath what is white on every background
+inline constexpr Colour kHalo{0.12, 0.13, 0.15};  ///< dark stroke beneath what is white on every background
 
 }  // namespace glint::draw

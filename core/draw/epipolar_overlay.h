@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/epipolar.h"
 #include "core/draw/frame_overlay.h"
+#include "core/geometry/epipolar.h"
 
 namespace glint::draw {
 

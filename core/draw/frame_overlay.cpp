@@ -7,8 +7,8 @@
 
 #include "core/base/error_text.h"
 #include "core/base/number_text.h"
-#include "core/scene/scene_files.h"
 #include "core/draw/frame_details.h"
+#include "core/scene/scene_files.h"
 
 namespace glint::draw {
 namespace {
@@ -244,7 +244,8 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
         if (shown(OverlayRole::UncertaintyBand)) addBand(h, camera, line, overlay.lines);
         line.halo = false;
         line.dash = Dash::Solid;
-        if (shown(OverlayRole::CanonicalEllipse) && !training && modelByName(model).hasOutlines() && h.canonical && h.canonical->ellipse) {
+        if (shown(OverlayRole::CanonicalEllipse) && !training && modelByName(model).hasOutlines() && h.canonical &&
+            h.canonical->ellipse) {
           line.role = OverlayRole::CanonicalEllipse;
           line.points = ellipsePoints(*h.canonical->ellipse);
           line.closed = true;

@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "core/base/number_text.h"
-#include "core/inspect/frame_score.h"
 #include "core/draw/plot_text.h"
 #include "core/draw/plots.h"
+#include "core/inspect/frame_score.h"
 
 namespace glint::draw {
 namespace {

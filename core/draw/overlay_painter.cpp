@@ -5,7 +5,8 @@ namespace glint::draw {
 
 void paintOverlay(Painter& painter, const FrameOverlay& overlay, const Crop& crop, const Box& box, double inkScale, bool hints) {
   const auto place = [&](const Pixel& p) {
-    return Eigen::Vector2d(box.x + (p.x() - crop.x) * box.width / crop.width, box.y + (p.y() - crop.y) * box.height / crop.height);
+    return Eigen::Vector2d(box.x + (p.x() - crop.x) * box.width / crop.width,
+                           box.y + (p.y() - crop.y) * box.height / crop.height);
   };
   for (const OverlayLine& line : overlay.lines) {
     std::vector<Eigen::Vector2d> points;

@@ -91,7 +91,9 @@ double paintPlotHeader(Painter& painter, const PlotData& plot, const PlotLook& l
     if (x + needed > width - margin && x > margin) {
       if (y + lineHeight > lowest) {
         const std::string dots = "\u2026";
-        if (draw) painter.text({std::min(x, width - margin - painter.textWidth(dots, small)), y + belowMiddle(small)}, dots, small, look.text);
+        if (draw)
+          painter.text({std::min(x, width - margin - painter.textWidth(dots, small)), y + belowMiddle(small)}, dots, small,
+                       look.text);
         break;
       }
       x = margin;

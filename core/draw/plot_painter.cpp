@@ -85,14 +85,16 @@ void PlotPicture::paintAxes() {
   const auto title = [&](const std::string& text, double room) {
     return fitting(text, [&](const std::string& part) { return painter_.textWidth(part, font) <= room; });
   };
-  painter_.text({0.5 * (at_.left + at_.right), height_ - px(6)}, title(plot_.x.title, width_ - px(20)), font, look_.faded, Align::Centre);
-  painter_.text({px(5) + font, 0.5 * (at_.top + at_.bottom)}, title(plot_.y.title, at_.bottom - at_.top + px(20)), font, look_.faded,
-                Align::Centre, true);
+  painter_.text({0.5 * (at_.left + at_.right), height_ - px(6)}, title(plot_.x.title, width_ - px(20)), font, look_.faded,
+                Align::Centre);
+  painter_.text({px(5) + font, 0.5 * (at_.top + at_.bottom)}, title(plot_.y.title, at_.bottom - at_.top + px(20)), font,
+                look_.faded, Align::Centre, true);
 }
 
 void PlotPicture::paintShades() {
   for (const PlotShade& shade : plot_.shades) {
-    const double a = std::clamp(at_.xOf(plot_, shade.from), at_.left, at_.right), b = std::clamp(at_.xOf(plot_, shade.to), at_.left, at_.right);
+    const double a = std::clamp(at_.xOf(plot_, shade.from), at_.left, at_.right),
+                 b = std::clamp(at_.xOf(plot_, shade.to), at_.left, at_.right);
     painter_.fill({a, at_.top, b - a, at_.bottom - at_.top}, shade.colour, look_.shadeOpacity);
   }
 }
@@ -107,7 +109,8 @@ void PlotPicture::paintBars() {
       const Eigen::Vector2d a = at_.place(plot_, p.x - 0.5 * series.barWidth, plot_.y.log ? plot_.y.floor : 0),
                             b = at_.place(plot_, p.x + 0.5 * series.barWidth, p.y);
       const double x0 = std::clamp(a.x(), at_.left, at_.right), x1 = std::clamp(b.x(), at_.left, at_.right);
-      double y0 = std::clamp(std::min(a.y(), b.y()), at_.top, at_.bottom), y1 = std::clamp(std::max(a.y(), b.y()), at_.top, at_.bottom);
+      double y0 = std::clamp(std::min(a.y(), b.y()), at_.top, at_.bottom),
+             y1 = std::clamp(std::max(a.y(), b.y()), at_.top, at_.bottom);
       if (y1 - y0 < px(1.5)) y0 = y1 - px(1.5);  // a bar of nothing is still a sample
       painter_.fill({x0, y0, x1 - x0, y1 - y0}, series.colour);
     }
@@ -223,7 +226,8 @@ void PlotPicture::paintDial() {
     const std::size_t n = series.points.size();
     for (std::size_t i = 0; i < n; ++i) {
       const PlotPoint &p = series.points[i], &q = series.points[(i + 1) % n];
-      if (std::isfinite(p.y) && std::isfinite(q.y)) line(at_.place(plot_, p.x, p.y), at_.place(plot_, q.x, q.y), series.colour, series.width);
+      if (std::isfinite(p.y) && std::isfinite(q.y))
+        line(at_.place(plot_, p.x, p.y), at_.place(plot_, q.x, q.y), series.colour, series.width);
     }
   }
   const struct {
@@ -232,7 +236,10 @@ void PlotPicture::paintDial() {
   } names[] = {{"right", 1, 0}, {"left", -1, 0}, {"up", 0, -1}, {"down", 0, 1}};
   for (const auto& n : names) {
     const Eigen::Vector2d at = centre + (radius + px(n.x != 0 ? 4 : 8)) * Eigen::Vector2d(n.x, n.y);
-    painter_.text({at.x(), at.y() + belowMiddle(small)}, n.text, small, look_.faded, n.x > 0 ? Align::Left : n.x < 0 ? Align::Right : Align::Centre);
+    painter_.text({at.x(), at.y() + belowMiddle(small)}, n.text, small, look_.faded,
+                  n.x > 0   ? Align::Left
+                  : n.x < 0 ? Align::Right
+                            : Align::Centre);
   }
   const Eigen::Vector2d slanted(std::cos(3 * std::numbers::pi / 8), -std::sin(3 * std::numbers::pi / 8));
   for (const auto& [value, label] : ticks)

@@ -17,7 +17,8 @@ double PlotPlaces::xOf(const PlotData& plot, double x) const {
 
 Eigen::Vector2d PlotPlaces::place(const PlotData& plot, double x, double y) const {
   if (plot.dial) {
-    const double r = radius * (kZeroRadius + kReachOfDial * y / std::max(plot.y.to.value_or(1), std::numeric_limits<double>::min()));
+    const double r =
+        radius * (kZeroRadius + kReachOfDial * y / std::max(plot.y.to.value_or(1), std::numeric_limits<double>::min()));
     return centre + std::max(0.0, r) * Eigen::Vector2d(std::cos(x), std::sin(x));
   }
   return {xOf(plot, x), bottom - (along(plot.y, y) - shown.y0) / (shown.y1 - shown.y0) * (bottom - top)};
@@ -31,7 +32,8 @@ Eigen::Vector2d PlotPlaces::placeOf(const PlotData& plot, int series, const Plot
 
 bool PlotPlaces::inside(const PlotData& plot, const Eigen::Vector2d& p) const {
   constexpr double kSlack = 1;
-  return p.allFinite() && (plot.dial || (p.x() >= left - kSlack && p.x() <= right + kSlack && p.y() >= top - kSlack && p.y() <= bottom + kSlack));
+  return p.allFinite() &&
+         (plot.dial || (p.x() >= left - kSlack && p.x() <= right + kSlack && p.y() >= top - kSlack && p.y() <= bottom + kSlack));
 }
 
 std::vector<int> crossRowsOf(const PlotData& plot) {

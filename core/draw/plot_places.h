@@ -10,12 +10,12 @@ namespace glint::draw {
 
 /// Where a plot's values lie in a picture of it: device px, (0, 0) = top left, y down.
 struct PlotPlaces {
-  PlotRange shown;                                   ///< the part of the range between the borders below
-  double left = 0, right = 1, top = 0, bottom = 1;   ///< of the area with the values
-  Eigen::Vector2d centre{0, 0};                      ///< of a dial
+  PlotRange shown;                                  ///< the part of the range between the borders below
+  double left = 0, right = 1, top = 0, bottom = 1;  ///< of the area with the values
+  Eigen::Vector2d centre{0, 0};                     ///< of a dial
   double radius = 1;
-  double scale = 1;                                  ///< device pixels per screen px
-  std::vector<int> crossRows;                        ///< of each series: where its crosses stand, counted from the top; -1 without any
+  double scale = 1;            ///< device pixels per screen px
+  std::vector<int> crossRows;  ///< of each series: where its crosses stand, counted from the top; -1 without any
 
   double xOf(const PlotData& plot, double x) const;
   /// Not finite for a gap.

@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
-#include "core/inspect/inspection.h"
 #include "core/draw/plot_data.h"
+#include "core/inspect/inspection.h"
 
 namespace glint::draw {
 

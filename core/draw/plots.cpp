@@ -8,9 +8,9 @@
 
 #include "core/base/angle.h"
 #include "core/base/number_text.h"
+#include "core/draw/plot_text.h"
 #include "core/inspect/frame_score.h"
 #include "core/inspect/photograph.h"
-#include "core/draw/plot_text.h"
 
 namespace glint::draw {
 namespace {
@@ -417,9 +417,11 @@ PlotData tradeoffPlot(const Tradeoff& tradeoff) {
     p.x = t.predictUs;
     p.y = t.rankedErrorPct;
     p.target.setting = i;
-    p.label = describe(tradeoff, t) +
-              formatted("\nerror %.3g %%, IoU %.4f, coverage %.3f, %d of %d frames predicted\n%.4g µs per frame, fit %.3g ms, peak memory %.4g MB",
-                        t.contourErrorPct, t.iou, t.coverage, t.predicted, t.frames, t.predictUs, t.fitUs / 1000, t.peakMb);
+    p.label = describe(tradeoff, t) + formatted(
+                                          "\nerror %.3g %%, IoU %.4f, coverage %.3f, %d of %d frames predicted\n%.4g µs per "
+                                          "frame, fit %.3g ms, peak memory %.4g MB",
+                                          t.contourErrorPct, t.iou, t.coverage, t.predicted, t.frames, t.predictUs,
+                                          t.fitUs / 1000, t.peakMb);
     for (const auto& [name, index] : tradeoff.presets) {
       if (index != i) continue;
       p.label += "\npreset '" + name + "'";
@@ -431,7 +433,7 @@ PlotData tradeoffPlot(const Tradeoff& tradeoff) {
       PlotPoint step = p;
       step.note.clear();
       if (!front.points.empty()) {  // until then the error before is the best to be had
-        PlotPoint corner;  // no setting lies there: it has no label and nothing to load
+        PlotPoint corner;           // no setting lies there: it has no label and nothing to load
         corner.x = p.x;
         corner.y = front.points.back().y;
         front.points.push_back(corner);

@@ -9,8 +9,8 @@
 #include "core/diagnostics/influence.h"
 #include "core/diagnostics/lobe_samples.h"
 #include "core/diagnostics/polar_residual.h"
-#include "core/tradeoff/tradeoff.h"
 #include "core/draw/plot_data.h"
+#include "core/tradeoff/tradeoff.h"
 
 namespace glint::draw {
 

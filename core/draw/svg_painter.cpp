@@ -14,17 +14,16 @@ namespace {
 
 /// Advance widths of DejaVu Sans 2.37 for the letters from blank to tilde, thousandths of the font's size.
 constexpr int kAdvance[2][95] = {
-    {318, 401, 460, 838, 636, 950, 780, 275, 390, 390, 500, 838, 318, 361, 318, 337, 636, 636, 636,
-     636, 636, 636, 636, 636, 636, 636, 337, 337, 838, 838, 838, 531, 1000, 684, 686, 698, 770, 632,
-     575, 775, 752, 295, 295, 656, 557, 863, 748, 787, 603, 787, 695, 635, 611, 732, 684, 989, 685,
-     611, 685, 390, 337, 390, 838, 500, 500, 613, 635, 550, 635, 615, 352, 635, 634, 278, 278, 579,
-     278, 974, 634, 612, 635, 635, 411, 521, 392, 634, 592, 818, 592, 592, 525, 636, 337, 636, 838},
-    {348, 456, 521, 838, 696, 1002, 872, 306, 457, 457, 523, 838, 380, 415, 380, 365, 696, 696, 696,
-     696, 696, 696, 696, 696, 696, 696, 400, 400, 838, 838, 838, 580, 1000, 774, 762, 734, 830, 683,
-     683, 821, 837, 372, 372, 775, 637, 995, 837, 850, 733, 850, 770, 720, 682, 812, 774, 1103, 771,
-     724, 725, 457, 365, 457, 838, 500, 500, 675, 716, 593, 716, 678, 435, 716, 712, 343, 343, 665,
-     343, 1042, 712, 687, 716, 716, 493, 595, 478, 712, 652, 924, 645, 652, 582, 712, 365, 712, 838}};
-constexpr int kOtherAdvance = 650;  // of letters beyond those: Greek ones, the degree sign and the plus-minus sign have 500 to 840
+    {318, 401, 460, 838, 636, 950, 780, 275, 390,  390, 500, 838, 318, 361, 318, 337, 636, 636, 636, 636, 636, 636, 636, 636,
+     636, 636, 337, 337, 838, 838, 838, 531, 1000, 684, 686, 698, 770, 632, 575, 775, 752, 295, 295, 656, 557, 863, 748, 787,
+     603, 787, 695, 635, 611, 732, 684, 989, 685,  611, 685, 390, 337, 390, 838, 500, 500, 613, 635, 550, 635, 615, 352, 635,
+     634, 278, 278, 579, 278, 974, 634, 612, 635,  635, 411, 521, 392, 634, 592, 818, 592, 592, 525, 636, 337, 636, 838},
+    {348, 456, 521, 838, 696, 1002, 872, 306,  457,  457, 523, 838, 380, 415, 380, 365, 696, 696, 696, 696, 696, 696, 696, 696,
+     696, 696, 400, 400, 838, 838,  838, 580,  1000, 774, 762, 734, 830, 683, 683, 821, 837, 372, 372, 775, 637, 995, 837, 850,
+     733, 850, 770, 720, 682, 812,  774, 1103, 771,  724, 725, 457, 365, 457, 838, 500, 500, 675, 716, 593, 716, 678, 435, 716,
+     712, 343, 343, 665, 343, 1042, 712, 687,  716,  716, 493, 595, 478, 712, 652, 924, 645, 652, 582, 712, 365, 712, 838}};
+constexpr int kOtherAdvance =
+    650;  // of letters beyond those: Greek ones, the degree sign and the plus-minus sign have 500 to 840
 
 std::string hex(const Colour& c) {
   const auto part = [](double v) { return int(std::lround(255 * std::clamp(v, 0.0, 1.0))); };
@@ -47,8 +46,8 @@ SvgPainter::SvgPainter(double width, double height, const std::optional<Colour>&
 
 void SvgPainter::fill(const Box& box, const Colour& colour, double opacity) {
   if (!(box.width > 0) || !(box.height > 0)) return;
-  body_ += "<rect x=\"" + num(box.x) + "\" y=\"" + num(box.y) + "\" width=\"" + num(box.width) + "\" height=\"" + num(box.height) +
-           "\" fill=\"" + hex(colour) + (opacity < 1 ? "\" fill-opacity=\"" + num(opacity) : "") + "\"/>\n";
+  body_ += "<rect x=\"" + num(box.x) + "\" y=\"" + num(box.y) + "\" width=\"" + num(box.width) + "\" height=\"" +
+           num(box.height) + "\" fill=\"" + hex(colour) + (opacity < 1 ? "\" fill-opacity=\"" + num(opacity) : "") + "\"/>\n";
 }
 
 void SvgPainter::stroke(const std::vector<Eigen::Vector2d>& points, bool closed, const Colour& colour, double widthPx, Dash dash,
@@ -74,13 +73,15 @@ void SvgPainter::stroke(const std::vector<Eigen::Vector2d>& points, bool closed,
 
 void SvgPainter::disc(const Eigen::Vector2d& centre, double radius, const Colour& colour) {
   if (!centre.allFinite()) return;
-  body_ += "<circle cx=\"" + num(centre.x()) + "\" cy=\"" + num(centre.y()) + "\" r=\"" + num(radius) + "\" fill=\"" + hex(colour) + "\"/>\n";
+  body_ += "<circle cx=\"" + num(centre.x()) + "\" cy=\"" + num(centre.y()) + "\" r=\"" + num(radius) + "\" fill=\"" +
+           hex(colour) + "\"/>\n";
 }
 
 void SvgPainter::text(const Eigen::Vector2d& at, const std::string& text, double sizePx, const Colour& colour, Align align,
                       bool vertical, bool bold) {
   if (text.empty()) return;
-  body_ += "<text font-size=\"" + num(sizePx) + "\" fill=\"" + hex(colour) + "\" textLength=\"" + num(textWidth(text, sizePx, bold)) + "\"";
+  body_ += "<text font-size=\"" + num(sizePx) + "\" fill=\"" + hex(colour) + "\" textLength=\"" +
+           num(textWidth(text, sizePx, bold)) + "\"";
   if (align != Align::Left) body_ += align == Align::Centre ? " text-anchor=\"middle\"" : " text-anchor=\"end\"";
   if (bold) body_ += " font-weight=\"bold\"";
   body_ += vertical ? " transform=\"translate(" + num(at.x()) + " " + num(at.y()) + ") rotate(-90)\""
@@ -108,13 +109,14 @@ void SvgPainter::hint(const Eigen::Vector2d& centre, double radius, const std::s
     lines += (from > 0 ? "\n" : "") + html::escaped(text.substr(from, end - from));
     from = end + 1;
   }
-  hints_ += "<circle cx=\"" + num(centre.x()) + "\" cy=\"" + num(centre.y()) + "\" r=\"" + num(radius) + "\" fill-opacity=\"0\"><title>" +
-            lines + "</title></circle>\n";
+  hints_ += "<circle cx=\"" + num(centre.x()) + "\" cy=\"" + num(centre.y()) + "\" r=\"" + num(radius) +
+            "\" fill-opacity=\"0\"><title>" + lines + "</title></circle>\n";
 }
 
 void SvgPainter::picture(const std::vector<unsigned char>& encoded, const std::string& mime, const Box& box) {
-  body_ += "<image x=\"" + num(box.x) + "\" y=\"" + num(box.y) + "\" width=\"" + num(box.width) + "\" height=\"" + num(box.height) +
-           "\" preserveAspectRatio=\"none\" image-rendering=\"pixelated\" href=\"data:" + mime + ";base64," + base64(encoded) + "\"/>\n";
+  body_ += "<image x=\"" + num(box.x) + "\" y=\"" + num(box.y) + "\" width=\"" + num(box.width) + "\" height=\"" +
+           num(box.height) + "\" preserveAspectRatio=\"none\" image-rendering=\"pixelated\" href=\"data:" + mime + ";base64," +
+           base64(encoded) + "\"/>\n";
 }
 
 std::string SvgPainter::open(const std::string& attributes) const {

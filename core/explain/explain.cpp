@@ -32,9 +32,9 @@ constexpr double kNeedle = 10;           // longest over middle semi-axis: a lam
 constexpr double kOwnSizePct = 100;      // of the highlight's diameter: beyond, the prediction lies beside it
 // Below these a number is what rounding leaves: contours are followed to about 1e-3 px.
 constexpr double kLeastPx = 1e-3, kLeastPct = 1e-3;
-constexpr double kLeastDeg = 1e-4;       // 1e-3 px at a focal length of 600 px
-constexpr double kLeastOfView = 1e-6;    // of the distance to what is seen: 1e-3 px there
-constexpr int kMostPairedViews = 12;     // 66 pairs of views tell what their epipolar lines do
+constexpr double kLeastDeg = 1e-4;     // 1e-3 px at a focal length of 600 px
+constexpr double kLeastOfView = 1e-6;  // of the distance to what is seen: 1e-3 px there
+constexpr int kMostPairedViews = 12;   // 66 pairs of views tell what their epipolar lines do
 
 const std::vector<std::string>& idsFromPoorToRich() {
   static const std::vector<std::string> ids = [] {
@@ -130,9 +130,9 @@ void tangentStep(const Case& c, ExplainStep& step) {
   const TrainingView& v = *c.out.view;
   const Eigen::Vector3d toCamera = (v.camera.centreInWorld() - v.seen->brightest.point.position).normalized();
   step.numbers.push_back(point("N", "normal at P_B", v.seen->tangentPlane.normal, ""));
-  step.numbers.push_back(
-      one("", "angle between N and the view ray",
-          degrees(std::atan2(toCamera.cross(v.seen->tangentPlane.normal).norm(), toCamera.dot(v.seen->tangentPlane.normal))), "deg"));
+  step.numbers.push_back(one(
+      "", "angle between N and the view ray",
+      degrees(std::atan2(toCamera.cross(v.seen->tangentPlane.normal).norm(), toCamera.dot(v.seen->tangentPlane.normal))), "deg"));
   if (!c.surface) return;
   if (const Outcome<Curvature> k = c.surface->curvatureAt(v.seen->brightest.point)) {
     step.numbers.push_back(one("κ₁", "principal curvature", k->k1, "1/m"));
@@ -401,7 +401,7 @@ void projectionStep(const Case& c, ExplainStep& step) {
   const PredictedHighlight* p = c.predicted();
   if (!p) {
     step.failure = c.comparison->prediction.failure() ? *c.comparison->prediction.failure()
-                                                    : Failure{Reason::NoBrightestPoint, "this highlight is not predicted"};
+                                                      : Failure{Reason::NoBrightestPoint, "this highlight is not predicted"};
     return;
   }
   // An ellipsoid's outline alone has no brightest point: what stands for it is its centre.
@@ -459,8 +459,8 @@ void comparisonStep(const Case& c, ExplainStep& step) {
   step.numbers.push_back(one("d", "mean distance of the contours", m.contourErrorPx, "px"));
   step.numbers.push_back(one("e", "of the equivalent diameter", m.contourErrorPct, "%"));
   step.numbers.push_back(one("IoU", "overlap of all regions of this light", c.comparison->iou));
-  step.numbers.push_back(
-      one("", !modelByName(c.out.model).traits().mirrored ? "its centre from the peak" : "offset of the peaks", m.peakOffsetPx, "px"));
+  step.numbers.push_back(one("", !modelByName(c.out.model).traits().mirrored ? "its centre from the peak" : "offset of the peaks",
+                             m.peakOffsetPx, "px"));
   if (c.inspection.isTraining(c.out.frame)) step.broken.push_back({"training-frame", {}});
   // What the surface did to the model's assumption was said where the mirror was: this is its price.
   const ModelTraits::Assumes assumed = assumes(c.out.model);

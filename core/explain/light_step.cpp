@@ -54,13 +54,9 @@ const PredictedHighlight* Case::predicted() const {
   return index >= 0 ? &comparison->prediction.highlights()[std::size_t(index)] : nullptr;
 }
 
-bool Case::sharesModel(int frame) const {
-  return inspection.keyFor(frame, out.light) == inspection.keyFor(out.frame, out.light);
-}
+bool Case::sharesModel(int frame) const { return inspection.keyFor(frame, out.light) == inspection.keyFor(out.frame, out.light); }
 
-const LightEstimate* Case::common() const {
-  return inspection.lightFor(out.frame, out.light);
-}
+const LightEstimate* Case::common() const { return inspection.lightFor(out.frame, out.light); }
 
 const Light* Case::own() const {
   if (!fit || !fit->fit || !fit->fit->lightEstimate) return nullptr;

@@ -15,10 +15,10 @@ namespace {
 
 using CameraChange = std::function<Camera(const Camera&)>;
 
-constexpr double kVisiblePx = 0.05;     // errors of whole views below this are not worth a word
-constexpr double kDominates = 2;        // times the noise of a point
-constexpr double kPoorShare = 0.1;      // of the contour's radius: a model that is off by more explains nothing
-constexpr double kLeastShare = 0.02;    // of the evidence: below, an alternative is not predicted
+constexpr double kVisiblePx = 0.05;   // errors of whole views below this are not worth a word
+constexpr double kDominates = 2;      // times the noise of a point
+constexpr double kPoorShare = 0.1;    // of the contour's radius: a model that is off by more explains nothing
+constexpr double kLeastShare = 0.02;  // of the evidence: below, an alternative is not predicted
 // A tolerance +-t is a uniform error, of variance t^2 / 3 (JCGM 100:2008, 4.3.7), each of its two ends half of it. A little more, t^2 / 2.5, so that the
 // band still holds an input at the very end of its tolerance when noise comes on top: 1.96 sigma is then 1.24 d.
 constexpr double kToleranceShare = 0.2;
@@ -41,11 +41,13 @@ CameraChange zoomed(double factor) {
 }
 
 /// The fit as it would be with other cameras, all derived quantities anew.
-Outcome<ModelFit> fitWith(const FitInput& input, const CameraChange& change, const HighlightModel& model, const Settings& settings) {
+Outcome<ModelFit> fitWith(const FitInput& input, const CameraChange& change, const HighlightModel& model,
+                          const Settings& settings) {
   std::vector<TrainingView> views;
   for (const TrainingView& v : input.views)
     if (v.seen) views.push_back(seenAgain(v, change(v.camera), v.surface));
-  const std::optional<Outcome<LightEstimate>> light = model.needsLight() ? std::optional(estimateLight(views, settings)) : std::nullopt;
+  const std::optional<Outcome<LightEstimate>> light =
+      model.needsLight() ? std::optional(estimateLight(views, settings)) : std::nullopt;
   return fitModel(model, std::move(views), light, settings);
 }
 
@@ -85,7 +87,8 @@ std::vector<double> sharesOf(const std::vector<double>& meanSquares, double free
 
 }  // namespace
 
-FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInput& input, const Settings& settings, bool surfaceRefined) {
+FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInput& input, const Settings& settings,
+                  bool surfaceRefined) {
   FittedBand result;
   const std::shared_ptr<Band> band = Band::of(model, fit, input.views, settings);
   if (!band) {
@@ -143,7 +146,8 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
   // Pixels are not carried to other cameras: what a tolerance moves is then told by contours, before and after.
   std::shared_ptr<const ModelFit> reference;
   if (fitted && fitted->evidence == "pixels") {
-    const Outcome<ModelFit> fromContours = fitWith(input, [](const Camera& c) { return c; }, model, settings);
+    const Outcome<ModelFit> fromContours = fitWith(
+        input, [](const Camera& c) { return c; }, model, settings);
     if (fromContours) reference = std::make_shared<const ModelFit>(*fromContours);
   }
   const auto tolerance = [&](const char* key, const char* what, CameraChange (*change)(double)) {

@@ -19,6 +19,7 @@ struct FittedBand {
 /// evidence that its residuals leave it; and the fit repeated with the cameras that a scale or focal length off by its stated tolerance
 /// (input.scale_tolerance, input.focal_tolerance) amounts to. A few fits; nothing is cached.
 /// @param surfaceRefined  the views' surfaces are corrected depth maps or meshes
-FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInput& input, const Settings& settings, bool surfaceRefined);
+FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInput& input, const Settings& settings,
+                  bool surfaceRefined);
 
 }  // namespace glint

@@ -5,7 +5,8 @@
 
 namespace glint {
 
-Outcome<std::shared_ptr<const Surface>> correctedDepthMap(const Frame& frame, MeshPolicy policy, const DepthCorrection& correction) {
+Outcome<std::shared_ptr<const Surface>> correctedDepthMap(const Frame& frame, MeshPolicy policy,
+                                                          const DepthCorrection& correction) {
   if (!frame.surface.empty()) return Failure{Reason::NoSurface, "frame " + frame.id + " does not see its own depth"};
   Outcome<std::optional<Image>> depth = readDepth(frame);
   if (!depth) return depth.failure();

@@ -14,7 +14,8 @@
 namespace glint {
 
 /// A frame's own depth map with its stored depth corrected. NoSurface when the frame has another surface or no depth; FrameUnreadable.
-Outcome<std::shared_ptr<const Surface>> correctedDepthMap(const Frame& frame, MeshPolicy policy, const DepthCorrection& correction);
+Outcome<std::shared_ptr<const Surface>> correctedDepthMap(const Frame& frame, MeshPolicy policy,
+                                                          const DepthCorrection& correction);
 
 /// The last few corrected surfaces. Thread-safe.
 class CorrectedDepthMaps {

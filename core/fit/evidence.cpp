@@ -15,8 +15,8 @@
 namespace glint {
 namespace {
 
-constexpr int kNoisePoints = 72;       // docs/formats.md, "Noise"
-constexpr double kSameLevel = 1e-6;    // levels are typed with a few digits
+constexpr int kNoisePoints = 72;     // docs/formats.md, "Noise"
+constexpr double kSameLevel = 1e-6;  // levels are typed with a few digits
 
 /// The reason when a part of the highlight lies where the lens distortion has no inverse.
 std::optional<Failure> toIdealPixels(Highlight& h, const Camera& camera) {
@@ -75,7 +75,8 @@ Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const Set
   return linearPixels(*linear, mask->has_value() ? &**mask : nullptr, detectOptionsFor(frame, source, settings).clipValue);
 }
 
-FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, const Settings& settings, const SeparateLights& lights) {
+FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, const Settings& settings,
+                             const SeparateLights& lights) {
   const Frame& frame = scene.frames[index];
   FrameEvidence evidence;
   evidence.frame = index;

@@ -14,8 +14,8 @@ namespace glint {
 
 /// How the highlights of several lights are detected (DetectOptions::separatePeaks).
 struct SeparateLights {
-  bool separate = false;                   ///< also where the frame does not state several lights
-  std::vector<PeakReference> references;   ///< ideal pixels
+  bool separate = false;                  ///< also where the frame does not state several lights
+  std::vector<PeakReference> references;  ///< ideal pixels
 };
 
 /// How a frame's image is searched, without references.
@@ -29,7 +29,8 @@ void addOtherLevels(const std::vector<Highlight>& given, std::vector<Highlight>&
 
 /// Highlights of one frame in ideal pixels: those that the scene gives, else detected (each at the level of its own peak where the frame states
 /// several lights). The light is set where the frame says which one is on (one light: its id; none stated: "light").
-FrameEvidence gatherEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings, const SeparateLights& lights = {});
+FrameEvidence gatherEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings,
+                             const SeparateLights& lights = {});
 
 /// Contours stored as in data/cycles/*/contours (FOLDER/ID.json) at `level`, for scoring. FrameUnreadable when the frame has no
 /// file. InputError when a file does not parse, does not hold the level or has a contour without area.

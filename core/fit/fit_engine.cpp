@@ -30,7 +30,8 @@ class LightFitter {
 
   void refineDepth(LightFit& fit) const {
     for (const TrainingView& v : fit.views)
-      if (!scene_.frames[static_cast<std::size_t>(v.frame)].surface.empty()) return;  // a mesh or a shape has no depth that could be off
+      if (!scene_.frames[static_cast<std::size_t>(v.frame)].surface.empty())
+        return;  // a mesh or a shape has no depth that could be off
     const Outcome<DepthRefinement> refined = glint::refineDepth(fit.views, fit.light->light, settings_);
     if (!refined || !refined->correction.changesAnything()) return;
     SurfaceCorrection correction;
@@ -46,9 +47,12 @@ class LightFitter {
     if (fit.views.empty()) return;
     const std::string surface = surfaces_.keyOf(fit.views.front().frame);
     const auto source = scene_.surfaces.find(surface);
-    if (source == scene_.surfaces.end() || !source->second.mesh) return;  // a shape is exact, a depth map has a depth that could be off
+    if (source == scene_.surfaces.end() || !source->second.mesh)
+      return;  // a shape is exact, a depth map has a depth that could be off
     // What one mesh has wrong another one has not.
-    if (std::any_of(fit.views.begin(), fit.views.end(), [&](const TrainingView& v) { return surfaces_.keyOf(v.frame) != surface; })) return;
+    if (std::any_of(fit.views.begin(), fit.views.end(),
+                    [&](const TrainingView& v) { return surfaces_.keyOf(v.frame) != surface; }))
+      return;
     Outcome<std::optional<RefinedNormals>> refined = glint::refineNormals(fit.views, *fit.light, surface, settings_);
     if (!refined || !*refined) return;
     const std::optional<ParameterUncertainty> uncertainty = (*refined)->uncertainty;
@@ -70,8 +74,9 @@ LightFit fitLight(std::vector<TrainingView> views, const Scene& scene, const Sur
   return LightFitter(scene, surfaces, settings).run(std::move(views));
 }
 
-FitInput fitInput(const HighlightModel& model, std::vector<TrainingView> views, const std::optional<Outcome<LightEstimate>>& light,
-                  const Settings& settings, std::shared_ptr<const PixelFit> pixelFit, const ProgressFn& progress) {
+FitInput fitInput(const HighlightModel& model, std::vector<TrainingView> views,
+                  const std::optional<Outcome<LightEstimate>>& light, const Settings& settings,
+                  std::shared_ptr<const PixelFit> pixelFit, const ProgressFn& progress) {
   FitInput input;
   input.views = std::move(views);
   input.pixelFit = std::move(pixelFit);
@@ -92,8 +97,9 @@ FitInput fitInput(const HighlightModel& model, std::vector<TrainingView> views, 
   return input;
 }
 
-Outcome<ModelFit> fitModel(const HighlightModel& model, std::vector<TrainingView> views, const std::optional<Outcome<LightEstimate>>& light,
-                           const Settings& settings, std::shared_ptr<const PixelFit> pixelFit, const ProgressFn& progress) {
+Outcome<ModelFit> fitModel(const HighlightModel& model, std::vector<TrainingView> views,
+                           const std::optional<Outcome<LightEstimate>>& light, const Settings& settings,
+                           std::shared_ptr<const PixelFit> pixelFit, const ProgressFn& progress) {
   return model.fit(fitInput(model, std::move(views), light, settings, std::move(pixelFit), progress), settings);
 }
 

@@ -25,11 +25,13 @@ LightFit fitLight(std::vector<TrainingView> views, const Scene& scene, const Sur
 /// What a model is fitted to: the views, with canonical contours under the light where the model needs them and a view has none.
 /// @param light     for models that need one; empty where none was asked for.
 /// @param pixelFit  of the pixels of exactly these views, where it is known already.
-FitInput fitInput(const HighlightModel& model, std::vector<TrainingView> views, const std::optional<Outcome<LightEstimate>>& light,
-                  const Settings& settings, std::shared_ptr<const PixelFit> pixelFit = nullptr, const ProgressFn& progress = {});
+FitInput fitInput(const HighlightModel& model, std::vector<TrainingView> views,
+                  const std::optional<Outcome<LightEstimate>>& light, const Settings& settings,
+                  std::shared_ptr<const PixelFit> pixelFit = nullptr, const ProgressFn& progress = {});
 
 /// Fits a model to that. The model's failures.
-Outcome<ModelFit> fitModel(const HighlightModel& model, std::vector<TrainingView> views, const std::optional<Outcome<LightEstimate>>& light,
-                           const Settings& settings, std::shared_ptr<const PixelFit> pixelFit = nullptr, const ProgressFn& progress = {});
+Outcome<ModelFit> fitModel(const HighlightModel& model, std::vector<TrainingView> views,
+                           const std::optional<Outcome<LightEstimate>>& light, const Settings& settings,
+                           std::shared_ptr<const PixelFit> pixelFit = nullptr, const ProgressFn& progress = {});
 
 }  // namespace glint

@@ -10,7 +10,7 @@ namespace glint {
 /// Whose estimate, fit or correction it is: that of a light, on one surface alone where every surface has its own models
 /// (TrainSpec::perSurface).
 struct FitKey {
-  std::string light;                   ///< id
+  std::string light;                        ///< id
   std::optional<std::string> surface = {};  ///< SurfaceCache::keyOf(); none: of all surfaces together
   friend auto operator<=>(const FitKey&, const FitKey&) = default;
 };

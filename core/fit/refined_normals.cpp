@@ -16,7 +16,7 @@
 namespace glint {
 namespace {
 
-constexpr int kRounds = 2;        // what a lobe adds to the limit angle hardly depends on the bumps
+constexpr int kRounds = 2;  // what a lobe adds to the limit angle hardly depends on the bumps
 constexpr double kScanStepPx = 16;
 
 double rms(const std::vector<double>& perView) {
@@ -33,7 +33,8 @@ std::vector<BundleView> bundleViewsOf(const std::vector<TrainingView>& views) {
 }
 
 /// The reflectance model of some views' contours; none where it fails.
-std::optional<ModelFit> reflectanceOf(const std::vector<TrainingView>& views, const LightEstimate& light, const Settings& settings) {
+std::optional<ModelFit> reflectanceOf(const std::vector<TrainingView>& views, const LightEstimate& light,
+                                      const Settings& settings) {
   Settings contours = settings;
   contours.set("fit.evidence", std::string("contours"));
   contours.set("fit.most_residual", 1.0);  // what the bumps leave is what is looked for
@@ -64,7 +65,9 @@ class LobeAngles {
       return log ? std::sqrt(std::max(0.0, *view.top - *log)) : std::nan("");
     };
     const Pixel x(ContourEvidence::kStepPx, 0), y(0, ContourEvidence::kStepPx);
-    const auto slope = [&](const auto& f) { return std::hypot(f(p + x) - f(p - x), f(p + y) - f(p - y)) / (2 * ContourEvidence::kStepPx); };
+    const auto slope = [&](const auto& f) {
+      return std::hypot(f(p + x) - f(p - x), f(p + y) - f(p - y)) / (2 * ContourEvidence::kStepPx);
+    };
     const double distance = (root(p) - view.level) / slope(root);
     const double result = angle(p) - distance * slope(angle);
     return std::isfinite(result) ? std::optional<double>(result) : std::nullopt;
@@ -104,12 +107,13 @@ std::string RefinedNormals::remark() const {
 TrainingView onSurface(const TrainingView& view, std::shared_ptr<const Surface> surface) {
   TrainingView other = seenAgain(view, view.camera, std::move(surface));
   other.levels = view.levels;
-  if (view.pixels && other.surface) other.pixels = std::make_shared<const PixelPatch>(glint::onSurface(*view.pixels, *other.surface));
+  if (view.pixels && other.surface)
+    other.pixels = std::make_shared<const PixelPatch>(glint::onSurface(*view.pixels, *other.surface));
   return other;
 }
 
-Outcome<std::optional<RefinedNormals>> refineNormals(const std::vector<TrainingView>& views, const LightEstimate& light, const std::string& surface,
-                                                     const Settings& settings) {
+Outcome<std::optional<RefinedNormals>> refineNormals(const std::vector<TrainingView>& views, const LightEstimate& light,
+                                                     const std::string& surface, const Settings& settings) {
   if (settings.text("light.solver") != "bundle")
     return Failure{Reason::NotSupported, "light.refine_normals needs light.solver=bundle"};
   if (meshPolicy(settings).normals == NormalPolicy::Facet)
@@ -154,7 +158,8 @@ Outcome<std::optional<RefinedNormals>> refineNormals(const std::vector<TrainingV
     result.refinedPx = rms(constant ? again->residualPx : lobe->residualPx);
     if (constant) result.uncertainty = refined->uncertainty;
   }
-  if (!(result.refinedPx < result.plainPx)) return std::optional<RefinedNormals>();  // the corrected mesh does not keep what the correction promised
+  if (!(result.refinedPx < result.plainPx))
+    return std::optional<RefinedNormals>();  // the corrected mesh does not keep what the correction promised
   return std::optional<RefinedNormals>(std::move(result));
 }
 

@@ -13,11 +13,11 @@ namespace glint {
 
 /// A mesh with corrected normals, and what led to it (light.refine_normals).
 struct RefinedNormals {
-  std::string surface;                 ///< key of the mesh that was corrected; other surfaces stay
-  std::shared_ptr<const Surface> mesh; ///< the corrected one
-  std::string model;                   ///< whose contours told: levelSetModel() or radianceModel(), whichever explains them better
-  double slope = 0, openTilt = 1;      ///< as NormalRefinement
-  double plainPx = 0, refinedPx = 0;   ///< what the model leaves of the training contours before and after, RMS
+  std::string surface;                  ///< key of the mesh that was corrected; other surfaces stay
+  std::shared_ptr<const Surface> mesh;  ///< the corrected one
+  std::string model;                  ///< whose contours told: levelSetModel() or radianceModel(), whichever explains them better
+  double slope = 0, openTilt = 1;     ///< as NormalRefinement
+  double plainPx = 0, refinedPx = 0;  ///< what the model leaves of the training contours before and after, RMS
   std::optional<ParameterUncertainty> uncertainty;  ///< of the limit angle's light, where that model told
   /// For the user: how far the normals turned, what it gained and what stays open.
   std::string remark() const;
@@ -27,8 +27,8 @@ struct RefinedNormals {
 /// what the angle along each contour should be (refineNormals), and must leave less on the corrected mesh than on the given one. Empty where nothing is gained.
 /// @param views    with their light as estimated. @param surface  their key.
 /// NotSupported unless `light.solver` is bundle and the mesh has vertex normals; the failures of refineNormals().
-Outcome<std::optional<RefinedNormals>> refineNormals(const std::vector<TrainingView>& views, const LightEstimate& light, const std::string& surface,
-                                                     const Settings& settings);
+Outcome<std::optional<RefinedNormals>> refineNormals(const std::vector<TrainingView>& views, const LightEstimate& light,
+                                                     const std::string& surface, const Settings& settings);
 
 /// A training view on another surface: brightest point, tangent plane and pixels anew. `canonical` is left to the caller.
 TrainingView onSurface(const TrainingView& view, std::shared_ptr<const Surface> surface);

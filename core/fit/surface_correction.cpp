@@ -13,8 +13,8 @@ Outcome<std::shared_ptr<const Surface>> correctedSurface(const Scene& scene, con
   return surfaces.surfaceOf(frame, policy);
 }
 
-void correctViews(std::vector<TrainingView>& views, const Scene& scene, const SurfaceCache& surfaces, const SurfaceCorrection& correction,
-                  MeshPolicy policy) {
+void correctViews(std::vector<TrainingView>& views, const Scene& scene, const SurfaceCache& surfaces,
+                  const SurfaceCorrection& correction, MeshPolicy policy) {
   if (!correction) return;
   for (TrainingView& v : views) {
     if (!v.seen) continue;

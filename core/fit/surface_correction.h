@@ -24,7 +24,7 @@ Outcome<std::shared_ptr<const Surface>> correctedSurface(const Scene& scene, con
 
 /// Puts views on their corrected surfaces: brightest points, tangent planes and pixels anew. Views with `failure` stay as they are; one whose
 /// surface is lost gets a failure.
-void correctViews(std::vector<TrainingView>& views, const Scene& scene, const SurfaceCache& surfaces, const SurfaceCorrection& correction,
-                  MeshPolicy policy);
+void correctViews(std::vector<TrainingView>& views, const Scene& scene, const SurfaceCache& surfaces,
+                  const SurfaceCorrection& correction, MeshPolicy policy);
 
 }  // namespace glint

@@ -29,7 +29,8 @@ Outcome<SeenOnSurface> seenOnSurface(const TrainingView& view) {
 }
 }  // namespace
 
-TrainingView trainingView(const FrameEvidence& evidence, int index, const Camera& camera, std::shared_ptr<const Surface> surface) {
+TrainingView trainingView(const FrameEvidence& evidence, int index, const Camera& camera,
+                          std::shared_ptr<const Surface> surface) {
   TrainingView view;
   view.frame = evidence.frame;
   view.camera = camera;
@@ -54,8 +55,9 @@ namespace {
 int limitOrders(const std::vector<ContourEvidence>& evidence, const std::vector<int>& places, const Bundle& constant,
                 const BundleOptions& options, int asked) {
   if (asked >= 0) return asked;
-  constexpr double kVisiblePx = 0.05;      // a renderer's own noise and the detection stay below
-  constexpr double kSystematic = 0.5;      // of the points count as independent: less means that residuals keep their sign along contours
+  constexpr double kVisiblePx = 0.05;  // a renderer's own noise and the detection stay below
+  constexpr double kSystematic =
+      0.5;  // of the points count as independent: less means that residuals keep their sign along contours
   if (countOf(places) < 4 || !(constant.rmsPx > kVisiblePx) || !constant.uncertainty) return 0;
   if (constant.uncertainty->degreesOfFreedom > kSystematic * double(options.pointsPerView) * double(places.size())) return 0;
   constexpr int kLeftOut = 6;  // more places left out would not change a choice between two

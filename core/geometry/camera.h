@@ -36,8 +36,8 @@ using Distortion = std::array<double, 5>;
 /// Invariant: pixelFromRay is upper triangular with positive focal lengths and (2,2) == 1;
 /// camFromWorld is rigid; width and height are positive.
 struct Camera {
-  Eigen::Matrix3d pixelFromRay = Eigen::Matrix3d::Identity();          ///< K: pixels from camera-frame rays
-  Eigen::Isometry3d camFromWorld = Eigen::Isometry3d::Identity();      ///< R, t of pixel ~ K (R X + t)
+  Eigen::Matrix3d pixelFromRay = Eigen::Matrix3d::Identity();      ///< K: pixels from camera-frame rays
+  Eigen::Isometry3d camFromWorld = Eigen::Isometry3d::Identity();  ///< R, t of pixel ~ K (R X + t)
   Distortion distortion{};
   int width = 0, height = 0;
 

@@ -10,9 +10,13 @@
 namespace glint {
 
 /// Point conic: x^T C x = 0 for homogeneous pixels x; an ellipse's interior is negative.
-struct Conic { Eigen::Matrix3d matrix; };
+struct Conic {
+  Eigen::Matrix3d matrix;
+};
 /// Line conic: l^T C* l = 0 for homogeneous lines l.
-struct DualConic { Eigen::Matrix3d matrix; };
+struct DualConic {
+  Eigen::Matrix3d matrix;
+};
 
 /// An ellipse. Invariant: semiAxes.x() >= semiAxes.y() > 0; angle in (-pi/2, pi/2] is that of the
 /// longer axis from +x towards +y (clockwise on the screen, because y is down).
@@ -21,9 +25,9 @@ struct Ellipse {
   Eigen::Vector2d semiAxes;
   double angle = 0;
 
-  Conic conic() const;      ///< x^T C x with interior negative, scaled so that the centre has value -1
-  DualConic dual() const;   ///< C* = [c c^T - S, c ; c^T, 1] with the 2x2 shape S
-  Pixel at(double t) const; ///< centre + R (a cos t, b sin t)
+  Conic conic() const;       ///< x^T C x with interior negative, scaled so that the centre has value -1
+  DualConic dual() const;    ///< C* = [c c^T - S, c ; c^T, 1] with the 2x2 shape S
+  Pixel at(double t) const;  ///< centre + R (a cos t, b sin t)
   double area() const;
   /// n points at equal parameter steps, without repeating the first.
   std::vector<Pixel> sample(int n) const;

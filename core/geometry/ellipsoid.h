@@ -11,7 +11,9 @@
 namespace glint {
 
 /// Dual quadric Q* (planes): pi^T Q* pi = 0. Ellipsoid: Q* = [ c c^T - S , c ; c^T , 1 ] up to scale (method.md section 0).
-struct DualQuadric { Eigen::Matrix4d matrix; };
+struct DualQuadric {
+  Eigen::Matrix4d matrix;
+};
 
 /// A solid ellipsoid, world units. Invariant: semi-axes finite, >= 0, in descending order, at most one of them 0.
 class Ellipsoid {
@@ -45,7 +47,9 @@ Outcome<Ellipse> outlineEllipse(const Ellipsoid& ellipsoid, const Projection& pr
 
 /// Counts of positive and negative eigenvalues, flipped so that (3,3) of the quadric is positive. By Sylvester's law they are
 /// those of (3,3) and of -S, zero below 1e-12 of the largest of S: independent of the unit of length; "hyperboloid", "ellipsoid", "cone" ... for messages.
-struct Signature { int positive = 0, negative = 0, zero = 0; };
+struct Signature {
+  int positive = 0, negative = 0, zero = 0;
+};
 Signature signatureOf(const DualQuadric& quadric);
 const char* describe(const DualQuadric& quadric);
 

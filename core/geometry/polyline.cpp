@@ -120,7 +120,8 @@ Polyline withoutRepeats(const Polyline& line, double tolerance) {
   Polyline out{{}, line.closed};
   for (const Pixel& p : line.points)
     if (out.points.empty() || (p - out.points.back()).norm() > tolerance) out.points.push_back(p);
-  while (out.closed && out.points.size() > 1 && (out.points.front() - out.points.back()).norm() <= tolerance) out.points.pop_back();
+  while (out.closed && out.points.size() > 1 && (out.points.front() - out.points.back()).norm() <= tolerance)
+    out.points.pop_back();
   return out;
 }
 

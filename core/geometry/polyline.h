@@ -14,11 +14,11 @@ struct Polyline {
   bool closed = true;
 };
 
-double length(const Polyline& line);                              ///< px, includes the closing segment
-double signedArea(const Polyline& line);                          ///< px^2, shoelace, open lines are closed first; positive when clockwise on screen
-Pixel centroid(const Polyline& line);                             ///< area centroid; mean of the points when the area vanishes
-bool contains(const Polyline& line, const Pixel& p);              ///< even-odd rule; boundary points either way
-double distance(const Polyline& line, const Pixel& p);            ///< px to the nearest point of the chain; infinity when empty
+double length(const Polyline& line);      ///< px, includes the closing segment
+double signedArea(const Polyline& line);  ///< px^2, shoelace, open lines are closed first; positive when clockwise on screen
+Pixel centroid(const Polyline& line);     ///< area centroid; mean of the points when the area vanishes
+bool contains(const Polyline& line, const Pixel& p);    ///< even-odd rule; boundary points either way
+double distance(const Polyline& line, const Pixel& p);  ///< px to the nearest point of the chain; infinity when empty
 /// Farthest crossing of the half line from `origin` in `direction` (rad, 0 = right, pi/2 = down) with the chain, px from the origin; nothing
 /// when they do not meet. The farthest, because on a contour that folds back the outer side is the one that is seen.
 std::optional<double> reach(const Polyline& line, const Pixel& origin, double direction);

@@ -31,7 +31,8 @@ double Background::at(double x, double y) const {
          v * v * coefficients[5];
 }
 
-Background fitBackground(const Image& image, const std::vector<char>& usable, const Footprint& footprint, double fallback, Tail tail) {
+Background fitBackground(const Image& image, const std::vector<char>& usable, const Footprint& footprint, double fallback,
+                         Tail tail) {
   Background result;
   result.coefficients[0] = fallback;
   result.centre = footprint.centre;
@@ -54,7 +55,8 @@ Background fitBackground(const Image& image, const std::vector<char>& usable, co
       const double rho2 = shape.matrixL().solve(d).squaredNorm();
       if (rho2 < kInner * kInner || rho2 > kOuter * kOuter) continue;
       const double u = d.x() / result.scale, v = d.y() / result.scale;
-      const double fall = tail == Tail::Ggx ? std::pow(1 + (1 / std::sqrt(footprint.level) - 1) * rho2, -2) : std::exp(logLevel * rho2);
+      const double fall =
+          tail == Tail::Ggx ? std::pow(1 + (1 / std::sqrt(footprint.level) - 1) * rho2, -2) : std::exp(logLevel * rho2);
       BackgroundSample s;
       s.row << 1, u, v, u * u, u * v, v * v, fall, u * fall, v * fall;
       s.value = image.at(x, y);
@@ -104,14 +106,16 @@ Background fitBackground(const Image& image, const std::vector<char>& usable, co
   return result;
 }
 
-double backgroundUncertaintyPct(const Image& image, const std::vector<char>& usable, const Footprint& footprint, double peakValue) {
+double backgroundUncertaintyPct(const Image& image, const std::vector<char>& usable, const Footprint& footprint,
+                                double peakValue) {
   if (!(peakValue > 0) || !(footprint.level > 0 && footprint.level < 1)) return 0;
   const Background gaussian = fitBackground(image, usable, footprint, 0, Tail::Gaussian);
   const Background ggx = fitBackground(image, usable, footprint, 0, Tail::Ggx);
   if (gaussian.pixels == 0 || ggx.pixels == 0) return 0;
   if (ggx.spread > kNearlyAsGood * gaussian.spread) return 0;
   // A background that is too high by b shifts the level q to q + (1 - q) b / I_peak; level^(rho^2) then says how far the contour moves.
-  const double off = (gaussian.at(footprint.centre.x(), footprint.centre.y()) - ggx.at(footprint.centre.x(), footprint.centre.y())) / peakValue;
+  const double off =
+      (gaussian.at(footprint.centre.x(), footprint.centre.y()) - ggx.at(footprint.centre.x(), footprint.centre.y())) / peakValue;
   const double q = footprint.level, moved = (1 - q) * off / (2 * q * -std::log(q));
   return 50 * std::abs(moved);
 }

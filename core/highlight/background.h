@@ -46,6 +46,7 @@ Background fitBackground(const Image& image, const std::vector<char>& usable, co
 /// the surroundings at least nearly as well, the difference at the highlight counts; a Gaussian tail that fits clearly better leaves none.
 /// @param footprint  of the highlight at its level. @param peakValue  above the background
 /// @return change of the contour's radius, in percent of its diameter; 0 where the surroundings tell nothing (few pixels)
-double backgroundUncertaintyPct(const Image& image, const std::vector<char>& usable, const Footprint& footprint, double peakValue);
+double backgroundUncertaintyPct(const Image& image, const std::vector<char>& usable, const Footprint& footprint,
+                                double peakValue);
 
 }  // namespace glint

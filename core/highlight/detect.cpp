@@ -237,8 +237,9 @@ class Detector {
     std::vector<cv::Rect> boxes(static_cast<std::size_t>(count));
     for (int label = 1; label < count; ++label) {
       if (stats.at<int>(label, cv::CC_STAT_AREA) < 0.5 * options_.minAreaPx2) continue;
-      boxes[static_cast<std::size_t>(label)] = cv::Rect(stats.at<int>(label, cv::CC_STAT_LEFT), stats.at<int>(label, cv::CC_STAT_TOP),
-                                                        stats.at<int>(label, cv::CC_STAT_WIDTH), stats.at<int>(label, cv::CC_STAT_HEIGHT));
+      boxes[static_cast<std::size_t>(label)] =
+          cv::Rect(stats.at<int>(label, cv::CC_STAT_LEFT), stats.at<int>(label, cv::CC_STAT_TOP),
+                   stats.at<int>(label, cv::CC_STAT_WIDTH), stats.at<int>(label, cv::CC_STAT_HEIGHT));
     }
     return boxes;
   }
@@ -254,7 +255,8 @@ class Detector {
     c.box = grown(tight, kRoiMargin, p_.value.width, p_.value.height);
     c.background.coefficients[0] = base_;
     if (options_.removeBackground)
-      c.background = fitBackground(p_.value, p_.usable, footprintOf(labels_, label, tight, kCandidateShare * options_.level), base_);
+      c.background =
+          fitBackground(p_.value, p_.usable, footprintOf(labels_, label, tight, kCandidateShare * options_.level), base_);
     c.corrected = correctedRoi(p_, c.background, c.box);
     cv::Mat region = labels_(c.box) == label;
     const cv::Point at = strongestPixel(c.corrected, region);
@@ -309,10 +311,13 @@ class Detector {
       if (label == 0 || boxes[static_cast<std::size_t>(label)].empty()) continue;
       Pixel peak(s.at.x, s.at.y);
       // A region that reaches a stronger peak has that one's background and top, not its own.
-      const bool alone = std::none_of(seeds.begin(), seeds.end(), [&](const Seed& o) { return o.value > s.value && labels_.at<int>(o.at) == label; });
+      const bool alone = std::none_of(seeds.begin(), seeds.end(),
+                                      [&](const Seed& o) { return o.value > s.value && labels_.at<int>(o.at) == label; });
       auto [candidate, found] = candidateOf(label, boxes[static_cast<std::size_t>(label)]);
-      if (!alone) found.value = s.value - candidate.background.at(s.at.x, s.at.y);
-      else peak = found.at;
+      if (!alone)
+        found.value = s.value - candidate.background.at(s.at.x, s.at.y);
+      else
+        peak = found.at;
       if (!(found.value > 0)) continue;
       reference_ = found.value;
       for (const PeakReference& r : options_.references)
@@ -323,8 +328,8 @@ class Detector {
       for (std::size_t i = found_.size(); i-- > before;) {
         const bool own = contains(found_[i].contour, peak);
         const bool taken = own && std::any_of(seeds.begin(), seeds.end(), [&](const Seed& o) {
-          return o.value > s.value && contains(found_[i].contour, Pixel(o.at.x, o.at.y));
-        });
+                             return o.value > s.value && contains(found_[i].contour, Pixel(o.at.x, o.at.y));
+                           });
         if (own && !taken) continue;
         found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(i));
         strength_.erase(strength_.begin() + static_cast<std::ptrdiff_t>(i));
@@ -357,7 +362,8 @@ class Detector {
     }
     std::vector<const Polyline*> outer;
     for (const IsoContour& contour : contours) {
-      if (signedArea(contour.line) < std::max(options_.minAreaPx2, 1e-9)) continue;  // holes are negative, lines without area none
+      if (signedArea(contour.line) < std::max(options_.minAreaPx2, 1e-9))
+        continue;  // holes are negative, lines without area none
       const Pixel& any = contour.line.points.front();
       if (std::any_of(outer.begin(), outer.end(), [&](const Polyline* o) { return contains(*o, any); })) continue;
       outer.push_back(&contour.line);

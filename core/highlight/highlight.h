@@ -27,11 +27,11 @@ struct Highlight {
   double peakValue = 0;            ///< fitted radiance at the peak, background removed; 0 when unknown
   std::optional<Ellipse> ellipse;  ///< least-squares ellipse of the contour
   double areaPx2 = 0;
-  bool clipped = false;        ///< saturated: the peak is the ellipse centre, or that of a known lobe
+  bool clipped = false;  ///< saturated: the peak is the ellipse centre, or that of a known lobe
   /// Where a known lobe says that the contour lies at another fraction of the true peak than `level`: clipped above the level.
   std::optional<double> trueLevel;
-  bool touchesBorder = false;  ///< cut by the image border
-  bool fromScene = false;      ///< given in the scene file, not detected
+  bool touchesBorder = false;             ///< cut by the image border
+  bool fromScene = false;                 ///< given in the scene file, not detected
   std::vector<LevelContour> otherLevels;  ///< beside `contour`, where several levels are evidence (fit.evidence = levels)
 };
 

@@ -17,7 +17,8 @@ namespace glint {
 struct DetectedFrame {
   std::string id;
   std::vector<Highlight> highlights;
-  std::vector<double> uncertaintyPct;  ///< per highlight: of its contour, in percent of the diameter, because the lobe's tail is unknown
+  std::vector<double>
+      uncertaintyPct;  ///< per highlight: of its contour, in percent of the diameter, because the lobe's tail is unknown
   std::optional<Failure> failure;
 };
 

@@ -36,7 +36,7 @@ class ScoreSum {
     }
     for (const FrameComparison::Row& row : comparison.rows) {
       if (row.observed < 0) {
-        if (row.predicted >= 0) ++score_.spurious;  // else nothing could be compared
+        if (row.predicted >= 0) ++score_.spurious;     // else nothing could be compared
       } else if (row.predicted < 0 || !row.metrics) {  // what could not be compared must not make the frame look good either
         ++score_.missed;
       } else if (std::isfinite(row.metrics->contourErrorPct)) {

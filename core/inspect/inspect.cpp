@@ -268,10 +268,12 @@ void Run::brightestPointsAndTangentPlanes() {
     if (!report(progress_, {"surface", done++, static_cast<int>(r_.train.frames.size())})) throw Stopped{};
     if (std::find(q.excluded.begin(), q.excluded.end(), frame) != q.excluded.end()) continue;
     // Noise that is added here is another one in every frame: then they are observations of their own.
-    if (!(q.noisePx > 0) && std::any_of(used.begin(), used.end(), [&](int other) { return sameObservation(r_, frame, other); })) continue;
+    if (!(q.noisePx > 0) && std::any_of(used.begin(), used.end(), [&](int other) { return sameObservation(r_, frame, other); }))
+      continue;
     used.push_back(frame);
     FrameEvidence evidence = r_.evidence[frame];
-    addDetectedLevels(r_, [this](int f) { return surfaceOf(f); }, evidence);
+    addDetectedLevels(
+        r_, [this](int f) { return surfaceOf(f); }, evidence);
     for (std::size_t h = 0; h < evidence.highlights.size(); ++h)
       evidence.highlights[h] = withNoise(evidence.highlights[h], q.noisePx, q.seed, frame, evidence.asFound(static_cast<int>(h)));
     for (int h = 0; h < static_cast<int>(evidence.highlights.size()); ++h) {
@@ -315,7 +317,8 @@ void Run::lights() {
   std::string names;
   for (const Group& g : all) names += "|" + textOf(g.key);
   std::set<std::string> stages{"light"};
-  if (r_.request.settings.flag("light.refine_normals")) stages.insert("fit");  // which model explains the contours better depends on how it is fitted
+  if (r_.request.settings.flag("light.refine_normals"))
+    stages.insert("fit");  // which model explains the contours better depends on how it is fitted
   r_.inputs.set(Stage::Lights, inputsText(r_.request.settings, stages, r_.inputs.of(Stage::Views) + names));
   if (!anyModel(&HighlightModel::needsLight)) return;
   if (unchanged(Stage::Lights) && !previous_->lights.empty()) {
@@ -383,8 +386,8 @@ FitInput Run::fitInputOf(const HighlightModel& model, const Group& group) const 
   // Corrected normals are not those that the stage saw.
   const bool known = havePixels(views) && !r_.corrections.count(group.key);
   const auto light = r_.lights.find(group.key);
-  return fitInput(model, std::move(views), light == r_.lights.end() ? std::nullopt : std::optional(light->second), r_.request.settings,
-                  known ? pixelFitFor(r_, group.key) : nullptr);
+  return fitInput(model, std::move(views), light == r_.lights.end() ? std::nullopt : std::optional(light->second),
+                  r_.request.settings, known ? pixelFitFor(r_, group.key) : nullptr);
 }
 
 void Run::modelFits() {
@@ -414,7 +417,8 @@ void Run::modelFits() {
         fit->surface = g.key.surface;
         if (std::string merged = mergedRemark(*fit); !merged.empty()) fit->remarks.push_back(std::move(merged));
         if (std::string repeated = repeatedRemark(*fit); !repeated.empty()) fit->remarks.push_back(std::move(repeated));
-        if (const auto found = r_.corrections.find(g.key); found != r_.corrections.end() && found->second.normals && model.needsLight())
+        if (const auto found = r_.corrections.find(g.key);
+            found != r_.corrections.end() && found->second.normals && model.needsLight())
           fit->remarks.push_back(found->second.normals->remark());
         fit->timeUs = microsecondsSince(start);
       }
@@ -436,7 +440,8 @@ std::vector<std::shared_ptr<const Band>> Run::bandsOf(const HighlightModel& mode
         ModelResult::Fit& fit = result.fits[static_cast<std::size_t>(i)];
         const auto group = std::find_if(all.begin(), all.end(), [&](const Group& g) { return g.key == fit.key(); });
         if (!fit.fit || group == all.end()) return;
-        FittedBand band = bandOf(model, *fit.fit, fitInputOf(model, *group), r_.request.settings, model.needsLight() && r_.corrections.count(fit.key()) > 0);
+        FittedBand band = bandOf(model, *fit.fit, fitInputOf(model, *group), r_.request.settings,
+                                 model.needsLight() && r_.corrections.count(fit.key()) > 0);
         bands[static_cast<std::size_t>(i)] = std::move(band.band);
         fit.bandRemarks = std::move(band.remarks);
       },
@@ -481,7 +486,8 @@ void Run::predictionsAndComparisons() {
           Prediction prediction;
           if (fit.fit) {
             const Outcome<std::shared_ptr<const Surface>> found =
-                needsSurface ? surfaceFor(r_, frame, fit.light) : Outcome<std::shared_ptr<const Surface>>(std::shared_ptr<const Surface>());
+                needsSurface ? surfaceFor(r_, frame, fit.light)
+                             : Outcome<std::shared_ptr<const Surface>>(std::shared_ptr<const Surface>());
             const std::shared_ptr<const Surface> surface = found ? *found : nullptr;
             surfacesAsked += needsSurface;
             ++predictions;
@@ -489,7 +495,8 @@ void Run::predictionsAndComparisons() {
             prediction = model.predict(*fit.fit, camera, surface.get(), r_.request.settings);
             prediction.timeUs = microsecondsSince(start);
             dropTooSmall(prediction);
-            if (const std::shared_ptr<const Band>& band = bands[static_cast<std::size_t>(f)])  // not part of the time: no model needs it
+            if (const std::shared_ptr<const Band>& band =
+                    bands[static_cast<std::size_t>(f)])  // not part of the time: no model needs it
               for (PredictedHighlight& h : prediction.editable()) h.sigmaPx = band->sigmaPx(h, camera, surface.get());
             if (const Failure* why = prediction.failure()) prediction = explained(frame, *why);
           } else {

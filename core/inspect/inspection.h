@@ -26,7 +26,7 @@ class CorrectedDepthMaps;
 struct TrainSpec {
   std::string text = "first:6";
   bool perSurface = false;
-  std::vector<int> frames;      ///< sorted, unique; all frames when perSurface
+  std::vector<int> frames;  ///< sorted, unique; all frames when perSurface
 };
 /// InputError (place "--train") when it does not parse or names a frame that does not exist.
 TrainSpec parseTrainSpec(const std::string& text, const Scene& scene);
@@ -35,13 +35,13 @@ TrainSpec parseTrainSpec(const std::string& text, const Scene& scene);
 struct InspectionRequest {
   std::vector<std::string> models = modelIds();
   std::string train = "first:6";
-  std::vector<int> excluded;             ///< frames never used for training nor evaluated
+  std::vector<int> excluded;  ///< frames never used for training nor evaluated
   FrameSource source = FrameSource::Radiance;
   Settings settings;
-  double noisePx = 0;                    ///< Gaussian noise on training contours (72 points) and peaks
+  double noisePx = 0;  ///< Gaussian noise on training contours (72 points) and peaks
   unsigned seed = 1;
-  std::string truthFolder;               ///< --truth DIR, "" = own detection
-  WhatIf whatIf;                         ///< changes to scene and evidence that the user tries out
+  std::string truthFolder;  ///< --truth DIR, "" = own detection
+  WhatIf whatIf;            ///< changes to scene and evidence that the user tries out
   friend bool operator==(const InspectionRequest&, const InspectionRequest&) = default;
 };
 
@@ -56,23 +56,23 @@ struct ModelResult {
     FitKey key() const { return {light, surface}; }
   };
   std::vector<Fit> fits;
-  std::vector<FrameComparison> frames;   ///< every frame, training ones too; `heldOut` tells which count
-  bool oneFrame = false;                 ///< `frames` has one frame's alone, see inspectOneFrame()
+  std::vector<FrameComparison> frames;  ///< every frame, training ones too; `heldOut` tells which count
+  bool oneFrame = false;                ///< `frames` has one frame's alone, see inspectOneFrame()
 };
 
 /// What one run of `inspect` computed itself; what it took over from an earlier run or did not need counts nothing.
 struct WorkCounts {
-  int framesDetected = 0;     ///< frames whose highlights were gathered
-  int framesHeldAtOnce = 0;   ///< most frames whose images were in memory at the same time
-  int pixelFits = 0;          ///< lobes fitted to pixels
+  int framesDetected = 0;        ///< frames whose highlights were gathered
+  int framesHeldAtOnce = 0;      ///< most frames whose images were in memory at the same time
+  int pixelFits = 0;             ///< lobes fitted to pixels
   int framesContouredAgain = 0;  ///< with a lobe's background
-  int trainingViews = 0;      ///< brightest points and tangent planes
-  int lights = 0;             ///< lights estimated
+  int trainingViews = 0;         ///< brightest points and tangent planes
+  int lights = 0;                ///< lights estimated
   int canonicalContours = 0;
   int fits = 0;
   int predictions = 0;
   int comparisons = 0;
-  int surfacesAsked = 0;      ///< predictions that asked for the surface of their frame
+  int surfacesAsked = 0;  ///< predictions that asked for the surface of their frame
 };
 
 /// Everything that was computed; the viewer shows all of it.
@@ -82,16 +82,16 @@ struct Inspection {
   std::shared_ptr<const SurfaceCache> surfaces;
   InspectionRequest request;
   TrainSpec train;
-  std::vector<FrameEvidence> evidence;                     ///< one per frame; `frame` is -1 where inspectOneFrame() did not look
+  std::vector<FrameEvidence> evidence;  ///< one per frame; `frame` is -1 where inspectOneFrame() did not look
   std::map<int, FrameEvidence>
       evidenceBefore;  ///< of frames whose highlights the what-if moved or whose lights it switched off: as found
   /// Where a lobe's background replaced the smooth one (detect.background = lobe): the evidence as first detected; else empty.
   std::vector<FrameEvidence> detected;
-  std::vector<TrainingView> views;                         ///< one per training highlight; on the corrected surface where there is a correction
-  std::map<int, TrainingView> viewsAsGiven;                ///< by index into `views`: of those, on the surface as given; see viewAsGiven()
+  std::vector<TrainingView> views;           ///< one per training highlight; on the corrected surface where there is a correction
+  std::map<int, TrainingView> viewsAsGiven;  ///< by index into `views`: of those, on the surface as given; see viewAsGiven()
   std::map<std::pair<int, int>, std::shared_ptr<const PixelPatch>> patches;  ///< pixels by (training frame, highlight as found)
-  std::map<FitKey, Outcome<std::shared_ptr<const PixelFit>>> pixelFits;  ///< the lobe of the training frames' pixels
-  std::map<FitKey, Outcome<LightEstimate>> lights;         ///< see lightOf(), lightFor()
+  std::map<FitKey, Outcome<std::shared_ptr<const PixelFit>>> pixelFits;      ///< the lobe of the training frames' pixels
+  std::map<FitKey, Outcome<LightEstimate>> lights;                           ///< see lightOf(), lightFor()
   std::map<FitKey, SurfaceCorrection> corrections;         ///< of the views' and predictions' surfaces, where there is one
   std::shared_ptr<CorrectedDepthMaps> correctedDepthMaps;  ///< recently used ones, for surfaceFor(); never null after a run
   std::map<std::string, ModelResult> models;
@@ -104,7 +104,7 @@ struct Inspection {
   /// What a later run takes its evidence and lobes from, and computes everything else anew.
   Inspection evidenceAlone() &&;
   bool isTraining(int frame) const;
-  bool isHeldOut(int frame) const;                         ///< counts in summaries
+  bool isHeldOut(int frame) const;  ///< counts in summaries
 
   /// Whose estimate and fits serve a light in a frame. Without a surface where `surfaces` is not set.
   FitKey keyFor(int frame, const std::string& light) const;

@@ -43,7 +43,8 @@ Settings anyLobe(Settings settings) {
 }
 bool takesAnyLobe(const Settings& settings) {
   const Settings any = anyLobe(settings);
-  return std::all_of(kOfTheModel.begin(), kOfTheModel.end(), [&](const char* key) { return settings.text(key) == any.text(key); });
+  return std::all_of(kOfTheModel.begin(), kOfTheModel.end(),
+                     [&](const char* key) { return settings.text(key) == any.text(key); });
 }
 
 InspectionRequest atHalf(InspectionRequest request) {
@@ -116,8 +117,10 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
     Outcome<PixelFit> fit =
         fitViewsPixels(views, light ? std::optional<LightEstimate>(*light) : std::nullopt, anyLobe(r.request.settings));
     ++r.work.pixelFits;
-    if (fit) r.pixelFits.insert_or_assign(key, std::make_shared<const PixelFit>(*std::move(fit)));
-    else r.pixelFits.insert_or_assign(key, fit.failure());
+    if (fit)
+      r.pixelFits.insert_or_assign(key, std::make_shared<const PixelFit>(*std::move(fit)));
+    else
+      r.pixelFits.insert_or_assign(key, fit.failure());
   }
 }
 
@@ -142,8 +145,8 @@ std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene
     std::vector<Highlight> found;
     for (const std::size_t h : indices) found.push_back(detected.highlights[h]);
     Outcome<std::vector<Highlight>> traced =
-        contourWithLobe(*pixels, frame.camera, *surface, f, found, ofOthers(detected, light), lobe.model,
-                        lobe.background, detectOptionsFor(frame, request.source, request.settings));
+        contourWithLobe(*pixels, frame.camera, *surface, f, found, ofOthers(detected, light), lobe.model, lobe.background,
+                        detectOptionsFor(frame, request.source, request.settings));
     if (!traced) continue;
     if (!again) again = detected;
     for (std::size_t k = 0; k < indices.size(); ++k) again->highlights[indices[k]] = std::move((*traced)[k]);
@@ -156,7 +159,8 @@ void contourAgain(Inspection& r, const SurfaceOfFrame& surfaceOf, const Progress
   r.detected.resize(r.evidence.size());
   std::vector<int> frames;
   for (int f = 0; f < static_cast<int>(r.evidence.size()); ++f)
-    if (wasDetected(r.evidence[static_cast<std::size_t>(f)]) && r.detected[static_cast<std::size_t>(f)].frame < 0) frames.push_back(f);
+    if (wasDetected(r.evidence[static_cast<std::size_t>(f)]) && r.detected[static_cast<std::size_t>(f)].frame < 0)
+      frames.push_back(f);
   std::atomic<int> changed{0};
   parallelFor(
       static_cast<int>(frames.size()),
@@ -189,7 +193,8 @@ void addDetectedLevels(const Inspection& r, const SurfaceOfFrame& surfaceOf, Fra
     addOtherLevels(found->highlights, evidence.highlights);
   }
   for (std::size_t h = 0; h < evidence.highlights.size(); ++h)
-    if (r.request.whatIf.highlights.count({evidence.frame, evidence.asFound(static_cast<int>(h))})) evidence.highlights[h].otherLevels.clear();
+    if (r.request.whatIf.highlights.count({evidence.frame, evidence.asFound(static_cast<int>(h))}))
+      evidence.highlights[h].otherLevels.clear();
 }
 
 void attachPixels(Inspection& r) {

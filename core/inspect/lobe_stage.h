@@ -39,8 +39,9 @@ void contourAgain(Inspection& inspection, const SurfaceOfFrame& surfaceOf, const
 
 /// One frame's evidence, contoured again with the lobes that an inspection found. Empty where no light's lobe explains the frame.
 /// @param scene,request  whose frame and settings count; they may be newer than the inspection's
-std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene& scene, const InspectionRequest& request, int frame,
-                                            const FrameEvidence& detected, const std::shared_ptr<const Surface>& surface);
+std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene& scene, const InspectionRequest& request,
+                                            int frame, const FrameEvidence& detected,
+                                            const std::shared_ptr<const Surface>& surface);
 
 /// Where the evidence is `levels`: contours of a frame's detected highlights at those of `fit.levels` that are not their own, found as their own
 /// were. None for what the user moved, and at levels that lie in clipped pixels.

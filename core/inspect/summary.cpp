@@ -15,9 +15,12 @@ ModelSummary summarise(const Inspection& inspection, const ModelResult& result) 
     for (const FrameComparison::Row& row : c.rows) {
       if (row.observed >= 0) observed = true;
       if (row.failure && row.observed < 0 && row.predicted < 0) unreadable = true;
-      if (row.observed >= 0 && row.predicted >= 0) ++s.matched;
-      else if (row.observed >= 0) ++s.missed;
-      else if (row.predicted >= 0) ++s.spurious;
+      if (row.observed >= 0 && row.predicted >= 0)
+        ++s.matched;
+      else if (row.observed >= 0)
+        ++s.missed;
+      else if (row.predicted >= 0)
+        ++s.spurious;
       if (!row.metrics) continue;
       pct.push_back(row.metrics->contourErrorPct);
       px.push_back(row.metrics->contourErrorPx);

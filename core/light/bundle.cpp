@@ -22,7 +22,8 @@ namespace {
 using namespace bundling;
 /// Of the contours' radius, to first order, below which a limit angle says that every contour point mirrors the light.
 constexpr double kLeastLimitShare = 0.01;
-constexpr double kLeastNoiseShare = 0.1;  ///< of the residuals' variance: below, moving weights would change nothing that can be seen
+constexpr double kLeastNoiseShare =
+    0.1;  ///< of the residuals' variance: below, moving weights would change nothing that can be seen
 
 /// (alpha - alpha_lim) in pixels, with d alpha / d L in closed form. The light is (l, w), or l alone where it is held at infinity.
 class AngleCost final : public ceres::CostFunction {
@@ -50,7 +51,8 @@ class AngleCost final : public ceres::CostFunction {
     double k = evidence_.pixelsPerRadian;
     Eigen::Vector2d slope(0, 0);
     if (share_ > 0) {
-      slope << angle(*evidence_.right, light) - angle(*evidence_.left, light), angle(*evidence_.down, light) - angle(*evidence_.up, light);
+      slope << angle(*evidence_.right, light) - angle(*evidence_.left, light),
+          angle(*evidence_.down, light) - angle(*evidence_.up, light);
       slope /= 2 * ContourEvidence::kStepPx;
       if (!(slope.norm() > 0)) return false;
       k *= std::pow(slope.norm() * k, -share_);
@@ -63,8 +65,9 @@ class AngleCost final : public ceres::CostFunction {
       };
       Eigen::Vector4d byLight = k * at(s);
       if (share_ > 0)
-        byLight -= off * share_ * k / slope.squaredNorm() / (2 * ContourEvidence::kStepPx) *
-                   (slope.x() * (at(*evidence_.right) - at(*evidence_.left)) + slope.y() * (at(*evidence_.down) - at(*evidence_.up)));
+        byLight -=
+            off * share_ * k / slope.squaredNorm() / (2 * ContourEvidence::kStepPx) *
+            (slope.x() * (at(*evidence_.right) - at(*evidence_.left)) + slope.y() * (at(*evidence_.down) - at(*evidence_.up)));
       for (int i = 0; i < size_; ++i) jacobians[0][i] = byLight(i);
     }
     if (jacobians[1]) jacobians[1][0] = -k;
@@ -205,7 +208,8 @@ void setCovariance(const std::vector<ContourEvidence>& points, const Attempt& a,
     const Eigen::MatrixXd dy = toWorld * chart * root.topRows<3>();
     Eigen::MatrixXd others = root.bottomRows(parameters - 3);
     if (a.directed && !atInfinity) others.bottomRows<6>() *= scale * scale;
-    if (auto known = uncertaintyOfUnit(y, dy, others, spread.noisePx, spread.degreesOfFreedom)) bundle.uncertainty = std::move(known);
+    if (auto known = uncertaintyOfUnit(y, dy, others, spread.noisePx, spread.degreesOfFreedom))
+      bundle.uncertainty = std::move(known);
   }
   if (!bundle.positionCovariance.allFinite()) {  // inf * 0 left NaN beside the diagonal
     bundle.positionCovariance.setZero();
@@ -294,7 +298,8 @@ std::optional<Failure> withoutLimit(const std::vector<ContourEvidence>& points, 
 }
 
 /// Distances of every view's points from the level set of an attempt, px.
-std::vector<std::vector<double>> residualsOfViews(const std::vector<ContourEvidence>& points, const Attempt& a, std::size_t views) {
+std::vector<std::vector<double>> residualsOfViews(const std::vector<ContourEvidence>& points, const Attempt& a,
+                                                  std::size_t views) {
   std::vector<std::vector<double>> residuals(views);
   for (const ContourEvidence& e : points) residuals[std::size_t(e.view)].push_back(residual(e, a));
   return residuals;
@@ -328,8 +333,9 @@ Outcome<Bundle> bundleLight(const std::vector<ContourEvidence>& evidence, std::s
   const Outcome<Best> found = bestAttempt(*contours, start, options);
   if (!found) return found.failure();
   const std::vector<ContourEvidence>& points = contours->points;
-  const Attempt best = options.limitOrders > 0 ? directed(contours->points, found->attempt, options.robustPx, options.maxIterations)
-                                               : found->attempt;
+  const Attempt best = options.limitOrders > 0
+                           ? directed(contours->points, found->attempt, options.robustPx, options.maxIterations)
+                           : found->attempt;
   if (const std::optional<Failure> degenerate = withoutLimit(points, best)) return *degenerate;
   Bundle bundle;
   bundle.light = inWorld(best.light, contours->origin, contours->scale);
@@ -383,12 +389,14 @@ Outcome<LeftOutErrors> leftOutErrors(const std::vector<ContourEvidence>& evidenc
   return errors;
 }
 
-std::vector<double> typicalResidualsPx(const std::vector<ContourEvidence>& evidence, std::size_t views, const Light& light, double limitAngle) {
+std::vector<double> typicalResidualsPx(const std::vector<ContourEvidence>& evidence, std::size_t views, const Light& light,
+                                       double limitAngle) {
   const Outcome<NormalisedContours> contours = normalised(evidence);
   if (!contours) return std::vector<double>(views, std::nan(""));
   std::vector<ContourEvidence> points = contours->points;
   Attempt a;
-  a.light << (light.homogeneous().head<3>() - light.homogeneous().w() * contours->origin) / contours->scale, light.homogeneous().w();
+  a.light << (light.homogeneous().head<3>() - light.homogeneous().w() * contours->origin) / contours->scale,
+      light.homogeneous().w();
   a.light.normalize();
   a.limit = limitAngle;
   reweight(points, a.light);

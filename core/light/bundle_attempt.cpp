@@ -23,7 +23,8 @@ double angle(const SeenPoint& s, const Eigen::Vector4d& light) {
 
 namespace {
 double residual(const ContourEvidence& e, const Attempt& a, double incident) {
-  const double limit = a.directed ? directedLimit(a.limit, symmetric(a.extent), e.at.position, e.at.normal, e.at.toCamera, a.light) : a.limit;
+  const double limit =
+      a.directed ? directedLimit(a.limit, symmetric(a.extent), e.at.position, e.at.normal, e.at.toCamera, a.light) : a.limit;
   return e.pixelsPerRadian * (incident - limit) - e.biasPx;
 }
 }  // namespace
@@ -51,7 +52,8 @@ void reweight(std::vector<ContourEvidence>& points, const std::vector<AnglesArou
     const ContourEvidence& e = points[i];
     const AnglesAround& at = angles[i];
     const auto slope = [&](bool before, double low, bool after, double high) {
-      return ((after ? high : at.here) - (before ? low : at.here)) / ((before ? ContourEvidence::kStepPx : 0) + (after ? ContourEvidence::kStepPx : 0));
+      return ((after ? high : at.here) - (before ? low : at.here)) /
+             ((before ? ContourEvidence::kStepPx : 0) + (after ? ContourEvidence::kStepPx : 0));
     };
     slopes.push_back(std::hypot(slope(e.left.has_value(), at.left, e.right.has_value(), at.right),
                                 slope(e.up.has_value(), at.up, e.down.has_value(), at.down)));

@@ -20,7 +20,7 @@ struct Attempt {
   double noiseShare = 0;  ///< with which the weights moved
   int iterations = 0;
   bool converged = false, behind = false;
-  bool directed = false;  ///< the limit angle has an extent
+  bool directed = false;             ///< the limit angle has an extent
   Vector6 extent = Vector6::Zero();  ///< normalised length squared; rad^2 for a light at infinity
   std::vector<double> biasesPx;      ///< of the points, as its rounds left them
 };
@@ -66,7 +66,7 @@ Attempt directed(std::vector<ContourEvidence>& points, const Attempt& start, dou
 double extentPrior(const Attempt& a, const std::vector<ContourEvidence>& points);
 
 /// Residual with an extent, and its derivatives by light (4), limit (1) and extent (6) where asked. False where it is no number.
-bool directedResidual(const ContourEvidence& e, const Eigen::Vector4d& light, double limit, const Vector6& extent, double& residual,
-                      Eigen::Matrix<double, 1, 11>* derivatives);
+bool directedResidual(const ContourEvidence& e, const Eigen::Vector4d& light, double limit, const Vector6& extent,
+                      double& residual, Eigen::Matrix<double, 1, 11>* derivatives);
 
 }  // namespace glint::bundling

@@ -84,7 +84,8 @@ Attempt inChartOf(std::vector<ContourEvidence>& points, const Attempt& start, do
     a.iterations += solution.iterations;
     a.extent = unit * extent;
     if (!solution.usable || !a.light.allFinite() || !a.extent.allFinite() || !(a.limit > 0)) return none;
-    const double moved = std::max({(a.light - before.light).norm(), std::abs(a.limit - before.limit), (a.extent - before.extent).norm() * prior});
+    const double moved =
+        std::max({(a.light - before.light).norm(), std::abs(a.limit - before.limit), (a.extent - before.extent).norm() * prior});
     if (moved < 1e-9) break;  // as without an extent
   }
   settleSide(points, a);
@@ -121,8 +122,8 @@ Attempt weighed(std::vector<ContourEvidence>& points, const Attempt& start, doub
 
 }  // namespace
 
-bool directedResidual(const ContourEvidence& e, const Eigen::Vector4d& light, double constant, const Vector6& entries, double& residual,
-                      Eigen::Matrix<double, 1, 11>* derivatives) {
+bool directedResidual(const ContourEvidence& e, const Eigen::Vector4d& light, double constant, const Vector6& entries,
+                      double& residual, Eigen::Matrix<double, 1, 11>* derivatives) {
   if (!(constant > 0)) return false;
   const SeenPoint& s = e.at;
   const double k = e.pixelsPerRadian;
@@ -140,7 +141,8 @@ bool directedResidual(const ContourEvidence& e, const Eigen::Vector4d& light, do
 }
 
 double extentPrior(const Attempt& a, const std::vector<ContourEvidence>& points) {
-  const double width = 2 * meanDistance(a.light, points) * a.limit;  // of the light that is seen under the limit angle: H turns half as much as L
+  const double width =
+      2 * meanDistance(a.light, points) * a.limit;  // of the light that is seen under the limit angle: H turns half as much as L
   // A compromise, measured on docs/accuracy.md and docs/reflectance.md. With more, fits to few views of a plane drift along what their
   // contours hardly show (plane_to_cylinder per surface: 0.093 % at 0.4, 0.084 % at 0.3); with less, a light wider than the lobe is
   // held back (1.20 % at 0.1, 0.31 % at 0.3).

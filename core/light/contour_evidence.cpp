@@ -16,9 +16,8 @@ Outcome<std::vector<ContourEvidence>> contoursOnSurfaces(const std::vector<Bundl
     require(view.surface != nullptr, "bundleLight: a view without surface");
     for (const Pixel& p : view.contour)
       if (!p.allFinite()) return Failure{Reason::NotFinite, "a contour point of view " + std::to_string(v)};
-    const std::vector<Pixel> pixels = view.contour.size() > std::size_t(pointsPerView)
-                                          ? resample(Polyline{view.contour, true}, pointsPerView)
-                                          : view.contour;
+    const std::vector<Pixel> pixels =
+        view.contour.size() > std::size_t(pointsPerView) ? resample(Polyline{view.contour, true}, pointsPerView) : view.contour;
     offered += pixels.size();
     const Eigen::Vector3d eye = view.camera.centreInWorld();
     const auto seen = [&](const Pixel& p) -> std::optional<SeenPoint> {

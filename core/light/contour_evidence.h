@@ -51,7 +51,8 @@ Outcome<Bundle> bundleLight(const std::vector<ContourEvidence>& evidence, std::s
 
 /// Distance of every view's contour from the level set alpha = limitAngle under a light that was found elsewhere, px to first order: the
 /// rmsWithoutTail() of its points. NaN for a view without a point on its surface, and for all of them below five points.
-std::vector<double> typicalResidualsPx(const std::vector<ContourEvidence>& evidence, std::size_t views, const Light& light, double limitAngle);
+std::vector<double> typicalResidualsPx(const std::vector<ContourEvidence>& evidence, std::size_t views, const Light& light,
+                                       double limitAngle);
 Outcome<LeftOutErrors> leftOutErrors(const std::vector<ContourEvidence>& evidence, const std::vector<int>& places,
                                      const Light& start, const BundleOptions& options, int atMost);
 

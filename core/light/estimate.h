@@ -20,9 +20,10 @@ ReflectedRay reflectedRay(const BrightestPoint& brightest, const Camera& camera)
 
 struct Triangulation {
   Light light;
-  double condition = 0;              ///< smallest over largest eigenvalue of sum (I - r r^T), in (0, 1]; small = nearly parallel
-  Eigen::Matrix3d covariance;        ///< m^2 of the position, from the rays' residual spread (unit variance when exact); zero for a direction
-  double residual = 0;               ///< RMS distance of the rays from the light, m (0 for a direction)
+  double condition = 0;  ///< smallest over largest eigenvalue of sum (I - r r^T), in (0, 1]; small = nearly parallel
+  Eigen::Matrix3d
+      covariance;       ///< m^2 of the position, from the rays' residual spread (unit variance when exact); zero for a direction
+  double residual = 0;  ///< RMS distance of the rays from the light, m (0 for a direction)
 };
 
 /// Closest point to the reflected rays, min sum |(I - r r^T)(L - P)|^2 (method.md section 4), by a QR or SVD of the stacked
@@ -34,26 +35,28 @@ Outcome<Triangulation> triangulateLight(const std::vector<ReflectedRay>& rays, d
 struct BundleView {
   Camera camera;
   const Surface* surface = nullptr;
-  std::vector<Pixel> contour;        ///< ideal pixels, about equally spaced
+  std::vector<Pixel> contour;  ///< ideal pixels, about equally spaced
   std::optional<BrightestPoint> brightest;
 };
 
 struct BundleOptions {
-  int pointsPerView = 72;            ///< contour points used, equally spaced in arc length
-  double robustPx = 1.0;             ///< scale of the Huber/Cauchy loss, px
+  int pointsPerView = 72;  ///< contour points used, equally spaced in arc length
+  double robustPx = 1.0;   ///< scale of the Huber/Cauchy loss, px
   int maxIterations = 100;
-  int limitOrders = 0;               ///< 0: one limit angle; 1: also the extent of the light (directed_limit.h), from the second even order on
+  int limitOrders = 0;  ///< 0: one limit angle; 1: also the extent of the light (directed_limit.h), from the second even order on
 };
 
 struct Bundle {
   Light light;
-  double limitAngle = 0;             ///< rad
+  double limitAngle = 0;                  ///< rad
   std::optional<Eigen::Matrix3d> extent;  ///< m^2 (rad^2 at infinity), see directed_limit.h; with limitOrders 1
-  Eigen::Matrix<double, 4, 4> covariance;  ///< of (tangent coordinates of L (3), alpha_lim) in the solver's chart; scaled by the residual variance
-  Eigen::Matrix3d positionCovariance;///< m^2; not finite for a light at infinity
+  Eigen::Matrix<double, 4, 4>
+      covariance;  ///< of (tangent coordinates of L (3), alpha_lim) in the solver's chart; scaled by the residual variance
+  Eigen::Matrix3d positionCovariance;  ///< m^2; not finite for a light at infinity
   double rmsPx = 0;
-  std::vector<double> residualPx;    ///< per view, RMS
-  std::vector<double> typicalPx;     ///< per view, rmsWithoutTail(): where alpha hardly changes over the image a residual has no bound
+  std::vector<double> residualPx;  ///< per view, RMS
+  std::vector<double>
+      typicalPx;  ///< per view, rmsWithoutTail(): where alpha hardly changes over the image a residual has no bound
   int iterations = 0;
   /// Of (L homogeneous with |L| = 1 (4), limitAngle (1), extent xx yy zz xy xz yz where there is one), world. None when the contours leave a direction of L open.
   std::optional<ParameterUncertainty> uncertainty;

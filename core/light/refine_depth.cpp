@@ -24,7 +24,7 @@ namespace {
 using Terms = DepthCorrection::Terms;
 constexpr int kDepthRounds = 20, kIterations = 50;
 constexpr double kTolerance = 1e-10;    // the differences by the terms keep about as many digits
-constexpr double kDepthSettled = 1e-6;       // of the unit light, the limit angle and the priors, between rounds: far below any band
+constexpr double kDepthSettled = 1e-6;  // of the unit light, the limit angle and the priors, between rounds: far below any band
 constexpr double kColumnStep = 1e-3;    // of a prior's standard deviation, for derivatives; the angle is smooth in the depth
 
 struct Monomials {
@@ -102,7 +102,8 @@ struct Problem {
 
   Seen seen(const Sample& s, const View& v, const Terms& c) const {
     const double factor = 1 + c.dot(s.terms.value), depth = s.depth * factor;
-    const double byU = s.depthByU * factor + s.depth * c.dot(s.terms.byX), byV = s.depthByV * factor + s.depth * c.dot(s.terms.byY);
+    const double byU = s.depthByU * factor + s.depth * c.dot(s.terms.byX),
+                 byV = s.depthByV * factor + s.depth * c.dot(s.terms.byY);
     const Eigen::Vector3d u = byU * s.ray + depth * s.rayByU, w = byV * s.ray + depth * s.rayByV;
     Seen result;
     const Eigen::Vector3d position = v.worldFromCamera * Eigen::Vector3d(depth * s.ray);
@@ -117,7 +118,9 @@ struct Problem {
     if (s.normal.dot(d) < 0) d = -d;
     return incidentAngle(s.normal, d, s.toCamera);
   }
-  double alpha(const Sample& s, const View& v, const Eigen::Vector4d& light, const Terms& c) const { return alpha(seen(s, v, c), light); }
+  double alpha(const Sample& s, const View& v, const Eigen::Vector4d& light, const Terms& c) const {
+    return alpha(seen(s, v, c), light);
+  }
   /// d alpha / d c_k in units of the prior.
   double alphaByTerm(const Sample& s, const View& v, const Eigen::Vector4d& light, const Terms& c, const Terms& prior,
                      int k) const {
@@ -158,7 +161,8 @@ Eigen::Matrix<double, 4, 3> chartOf(const Eigen::Vector4d& light) {
 }
 
 /// d residual / d (chart of L, limit, the first `terms` of c in units of the prior), px, with the weights held.
-Eigen::MatrixXd jacobian(const Problem& problem, const State& s, const std::vector<double>& slopes, const Terms& prior, int terms) {
+Eigen::MatrixXd jacobian(const Problem& problem, const State& s, const std::vector<double>& slopes, const Terms& prior,
+                         int terms) {
   const Eigen::Matrix<double, 4, 3> chart = chartOf(s.light);
   Eigen::MatrixXd j = Eigen::MatrixXd::Zero(Eigen::Index(problem.points.size()), 4 + terms);
   for (std::size_t i = 0; i < problem.points.size(); ++i) {
@@ -266,7 +270,8 @@ double DepthCorrection::factorAt(const Camera& camera, const Pixel& ideal) const
   return 1 + coefficients.dot(monomials(x.x(), x.y()).value);
 }
 
-Outcome<DepthRefinement> refineDepth(const std::vector<BundleView>& given, const Light& start, double sigma, const BundleOptions& options) {
+Outcome<DepthRefinement> refineDepth(const std::vector<BundleView>& given, const Light& start, double sigma,
+                                     const BundleOptions& options) {
   require(sigma > 0, "refineDepth: sigma");
   const Outcome<Bundle> bundle = bundleLight(given, start, options);
   if (!bundle) return bundle.failure();
@@ -281,11 +286,14 @@ Outcome<DepthRefinement> refineDepth(const std::vector<BundleView>& given, const
   for (std::size_t v = 0; v < given.size(); ++v) {
     const BundleView& g = given[v];
     problem.views.push_back({g.camera.camFromWorld.inverse(), g.camera.centreInWorld()});
-    const std::vector<Pixel> pixels =
-        g.contour.size() > std::size_t(options.pointsPerView) ? resample(Polyline{g.contour, true}, options.pointsPerView) : g.contour;
+    const std::vector<Pixel> pixels = g.contour.size() > std::size_t(options.pointsPerView)
+                                          ? resample(Polyline{g.contour, true}, options.pointsPerView)
+                                          : g.contour;
     for (const Pixel& p : pixels) {
       const auto at = [&](double x, double y) { return sampleAt(g, p + Pixel(x, y)); };
-      const std::optional<Sample> here = at(0, 0), left = at(-ContourEvidence::kStepPx, 0), right = at(ContourEvidence::kStepPx, 0), up = at(0, -ContourEvidence::kStepPx), down = at(0, ContourEvidence::kStepPx);
+      const std::optional<Sample> here = at(0, 0), left = at(-ContourEvidence::kStepPx, 0),
+                                  right = at(ContourEvidence::kStepPx, 0), up = at(0, -ContourEvidence::kStepPx),
+                                  down = at(0, ContourEvidence::kStepPx);
       if (!here || !left || !right || !up || !down) continue;
       problem.points.push_back({*here, *left, *right, *up, *down, int(v)});
       problem.origin += problem.views[v].worldFromCamera * Eigen::Vector3d(here->depth * here->ray);

@@ -19,9 +19,9 @@ struct DepthCorrection {
 };
 
 struct DepthRefinement {
-  Light light;                       ///< with the corrected depth
-  double limitAngle = 0;             ///< rad
-  double rmsPx = 0;                  ///< of the residuals
+  Light light;            ///< with the corrected depth
+  double limitAngle = 0;  ///< rad
+  double rmsPx = 0;       ///< of the residuals
   DepthCorrection correction;
   /// Standard deviation of each coefficient over that of its prior, in (0, 1]: 1 where the contours say nothing or the term is not used.
   DepthCorrection::Terms openShare = DepthCorrection::Terms::Ones();
@@ -36,6 +36,7 @@ struct DepthRefinement {
 /// fourth degree are used only where they predict left-out views better by more than the standard error of the gain.
 /// A depth that is tilted alike in all views is nearly the same as a light that is moved where the cameras look in one direction: openShare tells.
 /// The bundle's own failures; std::invalid_argument unless sigma > 0.
-Outcome<DepthRefinement> refineDepth(const std::vector<BundleView>& views, const Light& start, double sigma, const BundleOptions& options = {});
+Outcome<DepthRefinement> refineDepth(const std::vector<BundleView>& views, const Light& start, double sigma,
+                                     const BundleOptions& options = {});
 
 }  // namespace glint

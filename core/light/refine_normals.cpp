@@ -24,13 +24,13 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 constexpr int kNormalRounds = 40;
-constexpr double kNormalsSettled = 1e-7;        // of the unit light, the limit angle and the priors, between rounds: far below any band
+constexpr double kNormalsSettled = 1e-7;  // of the unit light, the limit angle and the priors, between rounds: far below any band
 constexpr std::size_t kLeastPoints = 30;
 constexpr std::size_t kMostPoints = 1500;  // of all views: more would say little more of bumps that are as wide as a highlight
 constexpr int kLeastPerView = 12;
 constexpr int kMostTerms = 120;
-constexpr double kSmallTerm = 1e-5;      // of a height's prior variance: what is left out is invisible
-constexpr double kReaches[] = {4, 2, 1, 0.5};    // of a highlight's size: the length of the process
+constexpr double kSmallTerm = 1e-5;                 // of a height's prior variance: what is left out is invisible
+constexpr double kReaches[] = {4, 2, 1, 0.5};       // of a highlight's size: the length of the process
 constexpr double kSteepness[] = {0.0625, 0.25, 1};  // of sigma, the flattest first
 constexpr int kLeftOut = 6;                         // more places left out would not change a choice between so few
 
@@ -104,7 +104,8 @@ Basis basisOf(const Problem& problem, double length) {
   const std::vector<Point>& points = problem.points;
   const Eigen::Index n = Eigen::Index(points.size());
   const auto kernel = [&](Eigen::Index i, Eigen::Index j) {
-    return std::exp(-0.5 * (points[std::size_t(i)].at.position - points[std::size_t(j)].at.position).squaredNorm() / (length * length));
+    return std::exp(-0.5 * (points[std::size_t(i)].at.position - points[std::size_t(j)].at.position).squaredNorm() /
+                    (length * length));
   };
   Basis b;
   b.length = length;
@@ -115,7 +116,8 @@ Basis basisOf(const Problem& problem, double length) {
     Eigen::Index best = 0;
     if (!(left.maxCoeff(&best) > kSmallTerm)) break;
     const double root = std::sqrt(left(best));
-    for (Eigen::Index i = 0; i < n; ++i) columns(i, m) = (kernel(i, best) - columns.row(i).head(m).dot(columns.row(best).head(m))) / root;
+    for (Eigen::Index i = 0; i < n; ++i)
+      columns(i, m) = (kernel(i, best) - columns.row(i).head(m).dot(columns.row(best).head(m))) / root;
     left -= columns.col(m).cwiseAbs2();
     b.centres.push_back(int(best));
   }
@@ -127,7 +129,8 @@ Basis basisOf(const Problem& problem, double length) {
     for (Eigen::Index i = 0; i < n; ++i)
       for (Eigen::Index j = 0; j < m; ++j) {
         const Eigen::Index z = b.centres[std::size_t(j)];
-        slopes(j, i) = -(points[std::size_t(i)].at.position(k) - points[std::size_t(z)].at.position(k)) / (length * length) * kernel(i, z);
+        slopes(j, i) =
+            -(points[std::size_t(i)].at.position(k) - points[std::size_t(z)].at.position(k)) / (length * length) * kernel(i, z);
       }
     b.gradient[std::size_t(k)] = lower.triangularView<Eigen::Lower>().solve(slopes).transpose();
   }
@@ -196,7 +199,8 @@ State fitted(const Problem& problem, const Basis& basis, double amplitude, State
     VectorXd right = VectorXd::Zero(n + m);
     for (Eigen::Index i = 0; i < n; ++i) {
       if (!used[std::size_t(i)]) continue;
-      const double root = std::sqrt(std::min(1.0, problem.robustPx / std::max(std::abs(at.residuals(i)), 1e-300))) / noise;  // no division by zero
+      const double root = std::sqrt(std::min(1.0, problem.robustPx / std::max(std::abs(at.residuals(i)), 1e-300))) /
+                          noise;  // no division by zero
       rows.row(i) = root * at.jacobian.row(i);
       right(i) = -root * at.residuals(i);
     }
@@ -259,7 +263,10 @@ std::optional<Point> pointAt(const BundleView& view, const Pixel& pixel) {
   const std::optional<Seen> at = seen(pixel, &p.side);
   if (!at) return std::nullopt;
   p.at = *at;
-  const Pixel offsets[] = {{-ContourEvidence::kStepPx, 0}, {ContourEvidence::kStepPx, 0}, {0, -ContourEvidence::kStepPx}, {0, ContourEvidence::kStepPx}};
+  const Pixel offsets[] = {{-ContourEvidence::kStepPx, 0},
+                           {ContourEvidence::kStepPx, 0},
+                           {0, -ContourEvidence::kStepPx},
+                           {0, ContourEvidence::kStepPx}};
   for (std::size_t k = 0; k < 4; ++k) {
     const std::optional<Seen> beside = seen(pixel + offsets[k]);
     if (!beside) return std::nullopt;
@@ -273,7 +280,8 @@ Outcome<Problem> problemOf(const std::vector<BundleView>& views, const BundleOpt
   problem.views = views.size();
   problem.places = placesOf(views);
   problem.robustPx = options.robustPx;
-  const int perView = std::min(options.pointsPerView, std::max(kLeastPerView, int(kMostPoints / std::max<std::size_t>(1, views.size()))));
+  const int perView =
+      std::min(options.pointsPerView, std::max(kLeastPerView, int(kMostPoints / std::max<std::size_t>(1, views.size()))));
   problem.scale = 0;
   for (std::size_t v = 0; v < views.size(); ++v) {
     require(views[v].surface != nullptr, "refineNormals: a view without surface");
@@ -296,7 +304,8 @@ Outcome<Problem> problemOf(const std::vector<BundleView>& views, const BundleOpt
     }
   }
   if (problem.points.size() < kLeastPoints)
-    return Failure{Reason::TooFewPoints, "need " + std::to_string(kLeastPoints) + " on the surface, have " + std::to_string(problem.points.size())};
+    return Failure{Reason::TooFewPoints,
+                   "need " + std::to_string(kLeastPoints) + " on the surface, have " + std::to_string(problem.points.size())};
   problem.origin /= double(problem.points.size());
   problem.scale /= double(problem.points.size());
   if (!(problem.scale > 0) || !std::isfinite(problem.scale)) return Failure{Reason::NotFinite, "camera distance"};
@@ -313,7 +322,8 @@ double highlightSize(const Problem& problem) {
   for (std::size_t first = 0; first < problem.points.size();) {
     std::size_t end = first;
     Vector3d middle = Vector3d::Zero();
-    for (; end < problem.points.size() && problem.points[end].view == problem.points[first].view; ++end) middle += problem.points[end].at.position;
+    for (; end < problem.points.size() && problem.points[end].view == problem.points[first].view; ++end)
+      middle += problem.points[end].at.position;
     middle /= double(end - first);
     double sum = 0;
     for (std::size_t i = first; i < end; ++i) sum += (problem.points[i].at.position - middle).squaredNorm();
@@ -325,8 +335,8 @@ double highlightSize(const Problem& problem) {
 
 struct Choice {
   Basis basis;
-  double amplitude = 0;          ///< standard deviation of the height
-  std::vector<double> leftOut;   ///< errors of left-out views
+  double amplitude = 0;         ///< standard deviation of the height
+  std::vector<double> leftOut;  ///< errors of left-out views
 };
 
 double meanLog(const std::vector<double>& errors) {
@@ -358,7 +368,8 @@ std::optional<Choice> choose(const Problem& problem, const State& plain, const B
   const Choice* chosen = nullptr;
   for (const std::vector<Choice>& row : choices) {
     for (const Choice& c : row)
-      if (!predictsLeftOutBetter(best->leftOut, c.leftOut) && (!chosen || meanLog(c.leftOut) < meanLog(chosen->leftOut))) chosen = &c;
+      if (!predictsLeftOutBetter(best->leftOut, c.leftOut) && (!chosen || meanLog(c.leftOut) < meanLog(chosen->leftOut)))
+        chosen = &c;
     if (chosen) break;
   }
   if (!chosen || !predictsLeftOutBetter(chosen->leftOut, leftOutErrors(problem, none, 0, plain))) return std::nullopt;
@@ -379,8 +390,8 @@ MatrixXd rootOf(const Linearised& at, Eigen::Index terms, const ResidualSpread& 
 
 }  // namespace
 
-Outcome<NormalRefinement> refineNormals(const std::vector<BundleView>& views, const Light& start, double sigma, const BundleOptions& options,
-                                        const ContourAngle& angles) {
+Outcome<NormalRefinement> refineNormals(const std::vector<BundleView>& views, const Light& start, double sigma,
+                                        const BundleOptions& options, const ContourAngle& angles) {
   require(sigma > 0, "refineNormals: sigma");
   Outcome<Problem> made = problemOf(views, options, angles);
   if (!made) return made.failure();
@@ -407,13 +418,17 @@ Outcome<NormalRefinement> refineNormals(const std::vector<BundleView>& views, co
   Eigen::Matrix4d toWorld = Eigen::Matrix4d::Identity();
   toWorld.topLeftCorner<3, 3>() *= problem.scale;
   toWorld.topRightCorner<3, 1>() = problem.origin;
-  const auto worldLight = [&](const State& s) { return Eigen::Vector4d(toWorld * (s.light.w() < 0 ? Eigen::Vector4d(-s.light) : s.light)); };
+  const auto worldLight = [&](const State& s) {
+    return Eigen::Vector4d(toWorld * (s.light.w() < 0 ? Eigen::Vector4d(-s.light) : s.light));
+  };
   if (!worldLight(state).allFinite()) return Failure{Reason::NotFinite, "light"};
   result.light = Light::homogeneous(worldLight(state));
   result.limitAngle = state.limit;
   // Normals that are off leave residuals that keep their sign along contours.
   const ResidualSpread before = residualSpread(list(plain), owners, 4, options.robustPx);
-  if (!(result.plainRmsPx > refining::kLeastNoisePx) || !(before.degreesOfFreedom < refining::kSystematic * double(problem.points.size()))) return result;
+  if (!(result.plainRmsPx > refining::kLeastNoisePx) ||
+      !(before.degreesOfFreedom < refining::kSystematic * double(problem.points.size())))
+    return result;
 
   const std::optional<Choice> choice = choose(problem, state, basis, sigma, highlightSize(problem));
   if (!choice) return result;
@@ -429,7 +444,8 @@ Outcome<NormalRefinement> refineNormals(const std::vector<BundleView>& views, co
   result.rmsPx = rms(at.residuals);
   result.correction.length = basis.length * problem.scale;
   result.correction.weights = amplitude * problem.scale * basis.weightsOfTerms * state.c;
-  for (const int i : basis.centres) result.correction.centres.push_back(problem.origin + problem.scale * problem.points[std::size_t(i)].at.position);
+  for (const int i : basis.centres)
+    result.correction.centres.push_back(problem.origin + problem.scale * problem.points[std::size_t(i)].at.position);
   MatrixXd mean = MatrixXd::Zero(3, basis.terms());
   for (std::size_t i = 0; i < problem.points.size(); ++i) {
     const Vector3d& n = problem.points[i].at.normal;

@@ -39,7 +39,7 @@ struct NormalRefinement {
 /// @param angles  what a model richer than one limit angle expects; empty: one limit angle.
 /// TooFewPoints below 30 points on the surface; NotFinite; std::invalid_argument unless sigma > 0.
 /// @see Rasmussen and Williams, Gaussian Processes for Machine Learning, 2006, sec. 9.4 (observations of derivatives).
-Outcome<NormalRefinement> refineNormals(const std::vector<BundleView>& views, const Light& start, double sigma, const BundleOptions& options = {},
-                                        const ContourAngle& angles = {});
+Outcome<NormalRefinement> refineNormals(const std::vector<BundleView>& views, const Light& start, double sigma,
+                                        const BundleOptions& options = {}, const ContourAngle& angles = {});
 
 }  // namespace glint

@@ -16,7 +16,8 @@ namespace {
 constexpr double kPoseStep = 0.02;  // of a standard deviation of the prior: central differences, far above the round-off of a hit
 constexpr int kPoseRounds = 8;
 
-using Correction = Eigen::Matrix<double, 6, 1>;  ///< turn (3) and shift (3) in the camera's frame, in standard deviations of the prior
+using Correction =
+    Eigen::Matrix<double, 6, 1>;  ///< turn (3) and shift (3) in the camera's frame, in standard deviations of the prior
 
 struct View {
   const BundleView* given;
@@ -61,7 +62,8 @@ std::vector<BundleView> withCameras(const std::vector<View>& views) {
 }
 
 /// One joint step. @return the corrections of all views, or nothing where too few points are on the surface.
-std::optional<std::vector<Correction>> step(const std::vector<View>& views, const Bundle& bundle, double robustPx, double noisePx) {
+std::optional<std::vector<Correction>> step(const std::vector<View>& views, const Bundle& bundle, double robustPx,
+                                            double noisePx) {
   const Eigen::Vector4d& light = bundle.light.homogeneous();
   // Tangent directions of |L| = 1: the three columns of Q after the first, for the QR of L itself.
   const Eigen::Matrix4d q = Eigen::HouseholderQR<Eigen::Vector4d>(light).householderQ();
@@ -79,10 +81,13 @@ std::optional<std::vector<Correction>> step(const std::vector<View>& views, cons
     }
     for (const Pixel& p : view.pixels) {
       const std::optional<Hit> at = hitAt(surface, camera, p);
-      const std::optional<Hit> l = hitAt(surface, camera, p - Pixel(ContourEvidence::kStepPx, 0)), r = hitAt(surface, camera, p + Pixel(ContourEvidence::kStepPx, 0)),
-                               u = hitAt(surface, camera, p - Pixel(0, ContourEvidence::kStepPx)), d = hitAt(surface, camera, p + Pixel(0, ContourEvidence::kStepPx));
+      const std::optional<Hit> l = hitAt(surface, camera, p - Pixel(ContourEvidence::kStepPx, 0)),
+                               r = hitAt(surface, camera, p + Pixel(ContourEvidence::kStepPx, 0)),
+                               u = hitAt(surface, camera, p - Pixel(0, ContourEvidence::kStepPx)),
+                               d = hitAt(surface, camera, p + Pixel(0, ContourEvidence::kStepPx));
       if (!at || !l || !r || !u || !d) continue;
-      const double slope = std::hypot(alphaOf(*r, light) - alphaOf(*l, light), alphaOf(*d, light) - alphaOf(*u, light)) / (2 * ContourEvidence::kStepPx);
+      const double slope = std::hypot(alphaOf(*r, light) - alphaOf(*l, light), alphaOf(*d, light) - alphaOf(*u, light)) /
+                           (2 * ContourEvidence::kStepPx);
       if (!(slope > 0)) continue;
       Eigen::VectorXd row = Eigen::VectorXd::Zero(columns + 1);
       row.head<3>() = chart.transpose() * incidentAngleByLight(at->position, at->normal, at->toCamera, light);
@@ -131,17 +136,20 @@ double cost(const Bundle& bundle, const std::vector<View>& views, const BundleOp
 
 }  // namespace
 
-Outcome<PoseRefinement> refinePoses(const std::vector<BundleView>& given, const Light& start, double sigmaPx, const BundleOptions& options) {
+Outcome<PoseRefinement> refinePoses(const std::vector<BundleView>& given, const Light& start, double sigmaPx,
+                                    const BundleOptions& options) {
   require(sigmaPx > 0, "refinePoses: sigmaPx");
   Outcome<Bundle> bundle = bundleLight(given, start, options);
   if (!bundle) return bundle.failure();
   std::vector<View> views;
   for (const BundleView& g : given) {
-    View v{&g, g.contour.size() > std::size_t(options.pointsPerView) ? resample(Polyline{g.contour, true}, options.pointsPerView) : g.contour};
+    View v{&g, g.contour.size() > std::size_t(options.pointsPerView) ? resample(Polyline{g.contour, true}, options.pointsPerView)
+                                                                     : g.contour};
     double distance = 0;
     int n = 0;
     for (const Pixel& p : v.pixels)
-      if (const std::optional<Hit> hit = hitAt(*g.surface, g.camera, p)) distance += (hit->position - g.camera.centreInWorld()).norm(), ++n;
+      if (const std::optional<Hit> hit = hitAt(*g.surface, g.camera, p))
+        distance += (hit->position - g.camera.centreInWorld()).norm(), ++n;
     const double focal = g.camera.pixelFromRay(0, 0);
     v.turn = sigmaPx / focal;
     v.shift = n > 0 ? sigmaPx / focal * distance / n : 0;

@@ -18,12 +18,12 @@
 namespace glint {
 namespace {
 
-constexpr double kTightShare = 0.2;       // of the highlight's size: slanted lobes have their peak off the mirror point
-constexpr double kLooseShare = 1.0;       // the mirror point lies inside the contour
-constexpr double kStepShare = 0.1;        // of the highlight's size, for the derivative: a mesh's normals are noisy over a pixel
-constexpr double kLeastSlope = 0.02;      // of the squared size of a Jacobian: below, its determinant says nothing
-constexpr std::size_t kVoters = 160;      // highlights that vote on a candidate; more would not change which one wins
-constexpr std::size_t kLeastFrames = 3;   // any two rays nearly meet
+constexpr double kTightShare = 0.2;      // of the highlight's size: slanted lobes have their peak off the mirror point
+constexpr double kLooseShare = 1.0;      // the mirror point lies inside the contour
+constexpr double kStepShare = 0.1;       // of the highlight's size, for the derivative: a mesh's normals are noisy over a pixel
+constexpr double kLeastSlope = 0.02;     // of the squared size of a Jacobian: below, its determinant says nothing
+constexpr std::size_t kVoters = 160;     // highlights that vote on a candidate; more would not change which one wins
+constexpr std::size_t kLeastFrames = 3;  // any two rays nearly meet
 constexpr int kVoteRounds = 10;
 
 /// A reflected ray at a pixel.
@@ -36,9 +36,9 @@ struct Item {
   std::size_t frame, highlight;
   ReflectedRay ray;
   Eigen::Matrix<double, 3, 2> across;  ///< basis across the ray
-  RaySample next[2];                      ///< at `step` pixels along x and y
+  RaySample next[2];                   ///< at `step` pixels along x and y
   Pixel step;
-  Eigen::Matrix2d tight, loose;        ///< metrics: d^T M d <= 1 is an inlier, d in pixels
+  Eigen::Matrix2d tight, loose;  ///< metrics: d^T M d <= 1 is an inlier, d in pixels
 };
 
 /// Squared semi-axes of the contour about its peak; zero where there is none.
@@ -89,7 +89,8 @@ std::optional<Pixel> toMirrorPoint(const Item& item, const Light& light) {
   const Eigen::Vector3d here = item.ray.direction - to;
   Eigen::Matrix2d slope;
   for (int k = 0; k < 2; ++k)
-    slope.col(k) = item.across.transpose() * (item.next[k].direction - light.directionFrom(item.next[k].origin) - here) / item.step(k);
+    slope.col(k) =
+        item.across.transpose() * (item.next[k].direction - light.directionFrom(item.next[k].origin) - here) / item.step(k);
   const double least = kLeastSlope * slope.squaredNorm();
   if (!(least > 0)) return std::nullopt;
   double determinant = slope.determinant();
@@ -102,7 +103,7 @@ std::optional<Pixel> toMirrorPoint(const Item& item, const Light& light) {
 }
 
 /// Squared distance in units of the metric; infinite where the light cannot be seen.
-double missSquared(const Item& item, const Light& light, const Eigen::Matrix2d Item::* metric) {
+double missSquared(const Item& item, const Light& light, const Eigen::Matrix2d Item::*metric) {
   const std::optional<Pixel> by = toMirrorPoint(item, light);
   return by ? by->dot(item.*metric * *by) : std::numeric_limits<double>::infinity();
 }
@@ -122,7 +123,7 @@ std::optional<Light> lightOf(const std::vector<Item>& items, const Members& memb
   return Light::towards(mean);
 }
 
-Members inliers(const std::vector<Item>& items, const Members& among, const Light& light, const Eigen::Matrix2d Item::* metric) {
+Members inliers(const std::vector<Item>& items, const Members& among, const Light& light, const Eigen::Matrix2d Item::*metric) {
   Members result;
   for (const std::size_t k : among)
     if (missSquared(items[k], light, metric) <= 1) result.push_back(k);
@@ -144,7 +145,8 @@ Members thinned(const Members& all, std::size_t count) {
 }
 
 /// Pairs of different frames, all of them or a seeded choice.
-std::vector<std::pair<std::size_t, std::size_t>> seedPairs(const std::vector<Item>& items, const Members& among, const TrackOptions& options) {
+std::vector<std::pair<std::size_t, std::size_t>> seedPairs(const std::vector<Item>& items, const Members& among,
+                                                           const TrackOptions& options) {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t a = 0; a < among.size(); ++a)
     for (std::size_t b = a + 1; b < among.size(); ++b)
@@ -163,7 +165,8 @@ struct Group {
 };
 
 /// The light that most of `free` confirm, refined on its own inliers. None when too few frames do.
-std::optional<Group> bestGroup(const std::vector<Item>& items, const Members& free, std::size_t leastFrames, const TrackOptions& options) {
+std::optional<Group> bestGroup(const std::vector<Item>& items, const Members& free, std::size_t leastFrames,
+                               const TrackOptions& options) {
   const Members voters = thinned(free, kVoters);
   std::optional<Light> best;
   double most = 0;
@@ -205,13 +208,16 @@ std::vector<double> containing(const std::vector<Item>& items, const std::vector
     if (loose <= 1) miss[k] = loose;
     if (by[k]->dot(items[k].tight * *by[k]) <= 1) confirming[items[k].frame].push_back(k);
   }
-  const auto mirrorPoint = [&](std::size_t k) -> Pixel { return frames[items[k].frame].highlights[items[k].highlight].peak + *by[k]; };
+  const auto mirrorPoint = [&](std::size_t k) -> Pixel {
+    return frames[items[k].frame].highlights[items[k].highlight].peak + *by[k];
+  };
   for (std::size_t k = 0; k < items.size(); ++k) {
     if (!(miss[k] <= 1)) continue;
     const auto found = confirming.find(items[k].frame);
     if (found == confirming.end()) continue;
     for (const std::size_t o : found->second)
-      if (o != k && by[o]->norm() < by[k]->norm() && (mirrorPoint(o) - mirrorPoint(k)).norm() < kSamePoint * by[k]->norm()) miss[k] = infinity;
+      if (o != k && by[o]->norm() < by[k]->norm() && (mirrorPoint(o) - mirrorPoint(k)).norm() < kSamePoint * by[k]->norm())
+        miss[k] = infinity;
   }
   return miss;
 }
@@ -284,7 +290,8 @@ std::vector<Group> findGroups(const std::vector<Item>& items, const std::vector<
       for (std::size_t g = 0; g < next.size() && proven; ++g) {
         std::vector<Group> others = next;
         others.erase(others.begin() + static_cast<std::ptrdiff_t>(g));
-        proven = framesOf(items, next[g].members) >= kLeastFrames && (g + 1 < next.size() || provenBySight(items, next[g], others));
+        proven =
+            framesOf(items, next[g].members) >= kLeastFrames && (g + 1 < next.size() || provenBySight(items, next[g], others));
       }
       if (!proven) break;
     }
@@ -294,7 +301,8 @@ std::vector<Group> findGroups(const std::vector<Item>& items, const std::vector<
 }
 
 /// How well a name goes with a group: frames where it is on and seen, against frames where it is seen but off.
-double agreement(const std::vector<TrackedFrame>& frames, const std::vector<Item>& items, const Group& group, const std::string& name) {
+double agreement(const std::vector<TrackedFrame>& frames, const std::vector<Item>& items, const Group& group,
+                 const std::string& name) {
   std::set<std::size_t> seen;
   double sum = 0;
   for (const std::size_t k : group.members) {
@@ -306,15 +314,17 @@ double agreement(const std::vector<TrackedFrame>& frames, const std::vector<Item
     const std::vector<std::string>& on = frames[f].lightsOn;
     if (on.empty()) continue;
     const bool stated = std::find(on.begin(), on.end(), name) != on.end();
-    if (seen.count(f)) sum += stated ? 1 : -1;
-    else if (stated) sum -= 1e-3;  // it may be hidden there
+    if (seen.count(f))
+      sum += stated ? 1 : -1;
+    else if (stated)
+      sum -= 1e-3;  // it may be hidden there
   }
   return sum;
 }
 
 /// A different name for every group, best agreement over all of them (greedily where there are too many orders to try).
-std::vector<std::string> namesFor(const std::vector<TrackedFrame>& frames, const std::vector<Item>& items, const std::vector<Group>& groups,
-                                  const std::set<std::string>& ids) {
+std::vector<std::string> namesFor(const std::vector<TrackedFrame>& frames, const std::vector<Item>& items,
+                                  const std::vector<Group>& groups, const std::set<std::string>& ids) {
   const std::vector<std::string> names(ids.begin(), ids.end());
   std::vector<std::vector<double>> score;
   for (const Group& g : groups) {
@@ -366,7 +376,10 @@ int assignLights(std::vector<TrackedFrame>& frames, const std::function<std::sha
   else
     several = crowded >= kLeastFrames;
   const auto onlyLight = [&](const TrackedFrame& f) {
-    return !stated ? std::string("light") : f.lightsOn.size() == 1 ? f.lightsOn.front() : ids.size() == 1 ? *ids.begin() : std::string();
+    return !stated                  ? std::string("light")
+           : f.lightsOn.size() == 1 ? f.lightsOn.front()
+           : ids.size() == 1        ? *ids.begin()
+                                    : std::string();
   };
   const auto nameAllOf = [&](TrackedFrame& frame, const std::string& name) {
     for (Highlight& h : frame.highlights)
@@ -390,7 +403,8 @@ int assignLights(std::vector<TrackedFrame>& frames, const std::function<std::sha
     return 0;
   }
   std::vector<std::string> names;
-  if (stated) names = namesFor(frames, items, groups, ids);
+  if (stated)
+    names = namesFor(frames, items, groups, ids);
   else
     for (std::size_t g = 0; g < groups.size(); ++g) names.push_back(g == 0 ? "light" : "light-" + std::to_string(g + 1));
 

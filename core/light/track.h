@@ -20,9 +20,10 @@ struct TrackedFrame {
 };
 
 struct TrackOptions {
-  double inlierPx = 3;   ///< a light is confirmed by peaks this close to its mirror point; a fifth of the highlight's size is added (in squares)
-  int maxPairs = 3000;   ///< pairs of highlights tried as seeds
-  unsigned seed = 1;     ///< of the choice of pairs when there are more
+  double inlierPx =
+      3;  ///< a light is confirmed by peaks this close to its mirror point; a fifth of the highlight's size is added (in squares)
+  int maxPairs = 3000;  ///< pairs of highlights tried as seeds
+  unsigned seed = 1;    ///< of the choice of pairs when there are more
 };
 
 /// Sets the light of every highlight, in place.

@@ -27,13 +27,15 @@ std::vector<double> arcOf(const Polyline& line) {
 
 const PredictedHighlight* nearest(const Prediction& p, const Pixel& to) {
   const auto distance = [&](const PredictedHighlight& h) { return (centroid(h.contour) - to).norm(); };
-  const auto best = std::min_element(p.highlights().begin(), p.highlights().end(),
-                                     [&](const PredictedHighlight& a, const PredictedHighlight& b) { return distance(a) < distance(b); });
+  const auto best =
+      std::min_element(p.highlights().begin(), p.highlights().end(),
+                       [&](const PredictedHighlight& a, const PredictedHighlight& b) { return distance(a) < distance(b); });
   return best == p.highlights().end() ? nullptr : &*best;
 }
 
 /// A measured contour against the predicted one: every point's distance from its foot, and the shifts there.
-std::optional<ViewResiduals> residualsOf(const Polyline& measured, const Polyline& predicted, const Eigen::MatrixXd& shifts, int points) {
+std::optional<ViewResiduals> residualsOf(const Polyline& measured, const Polyline& predicted, const Eigen::MatrixXd& shifts,
+                                         int points) {
   const std::size_t n = predicted.points.size();
   if (n < 3 || shifts.cols() == 0 || shifts.rows() != Eigen::Index(n)) return std::nullopt;
   const std::vector<Pixel> normals = outwardNormals(predicted);
@@ -98,7 +100,8 @@ std::shared_ptr<Band> Band::of(const HighlightModel& model, const ModelFit& fit,
     if (!h) continue;
     const Eigen::MatrixXd shifts = model.bandShiftsPx(fit, *h, v.camera, v.surface.get(), settings);
     if (!residuals.empty() && shifts.cols() != residuals.front().byParameter.cols()) continue;
-    if (std::optional<ViewResiduals> r = residualsOf(v.highlight.contour, h->contour, shifts, settings.integer("light.bundle_points"))) {
+    if (std::optional<ViewResiduals> r =
+            residualsOf(v.highlight.contour, h->contour, shifts, settings.integer("light.bundle_points"))) {
       if (!(unit > 0)) unit = (v.camera.centreInWorld() - h->brightest.point.position).norm();
       r->where = placeOf(*h, v.camera, unit);
       residuals.push_back(std::move(*r));
@@ -117,8 +120,8 @@ std::vector<double> Band::sigmaPx(const PredictedHighlight& highlight, const Cam
   const Eigen::MatrixXd shifts = model_.bandShiftsPx(fit_, highlight, camera, surface, settings_);
   const std::size_t n = highlight.contour.points.size();
   if (shifts.cols() == 0 || shifts.rows() != Eigen::Index(n) || n < 3) return {};
-  const std::vector<double> own = effects_.sigmaPx(shifts, contourShapes(outwardNormals(highlight.contour), arcOf(highlight.contour)),
-                                                   placeOf(highlight, camera, unit_));
+  const std::vector<double> own = effects_.sigmaPx(
+      shifts, contourShapes(outwardNormals(highlight.contour), arcOf(highlight.contour)), placeOf(highlight, camera, unit_));
   std::vector<double> variance(n);
   for (std::size_t i = 0; i < n; ++i) {
     variance[i] = own[i] * own[i];

@@ -21,7 +21,9 @@ class Canonical final : public HighlightModel {
            "in "
            "the virtual cameras. Valid on any smooth surface.";
   }
-  std::string reference() const override { return "Morgand, Tamaazousti, Bartoli, canonical JOLIMAS (2022); method.md sections 6 to 8"; }
+  std::string reference() const override {
+    return "Morgand, Tamaazousti, Bartoli, canonical JOLIMAS (2022); method.md sections 6 to 8";
+  }
   bool needsLight() const override { return true; }
   bool needsCanonicalContours() const override { return true; }
   ModelTraits traits() const override { return {{0, 158, 115}}; }
@@ -123,8 +125,8 @@ class Canonical final : public HighlightModel {
     return {std::move(found), std::move(why)};
   }
 
-  Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera, const Surface* surface,
-                                  const Settings& settings) const override {
+  Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera,
+                               const Surface* surface, const Settings& settings) const override {
     return ellipsoidBandShiftsPx(*this, fit, highlight, camera, surface, settings);
   }
 };

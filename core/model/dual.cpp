@@ -71,8 +71,8 @@ class Dual final : public HighlightModel {
     return {std::move(found), std::move(why)};
   }
 
-  Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera, const Surface* surface,
-                                  const Settings& settings) const override {
+  Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera,
+                               const Surface* surface, const Settings& settings) const override {
     return ellipsoidBandShiftsPx(*this, fit, highlight, camera, surface, settings);
   }
 };

@@ -21,8 +21,8 @@ constexpr int kContourPoints = 72;
 /// How far the centre may lie from the estimated light as a share of the light's distance: the light of a simple lobe is off by 1 % (path-traced
 /// plane) to 9 % (sphere).
 constexpr double kPriorBias = 0.01;
-constexpr double kSameWorth = 1e-3;  // residuals tell a standard deviation to some hundredths
-constexpr int kMostWeightings = 12;  // two to four mostly
+constexpr double kSameWorth = 1e-3;     // residuals tell a standard deviation to some hundredths
+constexpr int kMostWeightings = 12;     // two to four mostly
 constexpr double kLeastWorthPx = 0.01;  // below the accuracy of any detection; keeps the prior's weight finite on exact data
 
 CentrePrior priorWith(const CentreAnchor& anchor, double bias) {
@@ -76,7 +76,8 @@ class SteadyWorth {
 /// known before the fit, so it is estimated from the start, then from each fit, until it stays (the solver counts a pixel as one
 /// standard deviation, so the prior is scaled instead). A first guess in pixels would make the answer depend on their number.
 /// Where the fit with the better weight is refused, the one before it stands, with a remark.
-Outcome<Reconstruction> refinedWithPrior(const std::vector<ConicView>& views, const Ellipsoid& start, const CentreAnchor& anchor, double bias) {
+Outcome<Reconstruction> refinedWithPrior(const std::vector<ConicView>& views, const Ellipsoid& start, const CentreAnchor& anchor,
+                                         double bias) {
   const CentrePrior prior = priorWith(anchor, bias);
   const auto counting = [&](double worth) {
     return reconstructRefined(views, start, CentrePrior{prior.mean, prior.covariance / (worth * worth)});
@@ -128,8 +129,10 @@ Outcome<Reconstruction> fitEllipsoid(const std::vector<ConicView>& views, const 
   std::optional<Ellipsoid> start;
   if (anchor) {
     const Outcome<Reconstruction> anchored = reconstructAnchored(views, anchor->position);
-    if (anchored) start = anchored->ellipsoid;
-    else if (!linear) return anchored.failure();
+    if (anchored)
+      start = anchored->ellipsoid;
+    else if (!linear)
+      return anchored.failure();
   }
   // With an anchor its solution is the better start: the linear one can lie far from the light.
   if (!start && linear) start = linear->ellipsoid;

@@ -14,7 +14,7 @@ namespace glint {
 struct CentreAnchor {
   Eigen::Vector3d position;
   std::optional<Eigen::Matrix3d> covariance;  ///< m^2, of the noise only
-  double distance = 0;                        ///< m, typical distance from the surface (or the cameras); scale of the anchor's bias
+  double distance = 0;  ///< m, typical distance from the surface (or the cameras); scale of the anchor's bias
 };
 
 /// The anchor at an estimated light; empty for a light at infinity. The distance is the mean one from the views' brightest points.

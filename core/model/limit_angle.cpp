@@ -28,7 +28,8 @@ std::optional<double> directedAlpha(const SurfacePoint& p, const Eigen::Vector3d
                                     const std::optional<Eigen::Matrix3d>& extent) {
   const std::optional<double> alpha = alphaAt(p, eye, light);
   if (!alpha || !extent) return alpha;
-  return *alpha * limit / directedLimit(limit, *extent, p.position, p.normal, (eye - p.position).normalized(), light.homogeneous());
+  return *alpha * limit /
+         directedLimit(limit, *extent, p.position, p.normal, (eye - p.position).normalized(), light.homogeneous());
 }
 
 /// In words: the length of a uniform lamp whose second moment, length^2 / 12, is that of the longest axis. `extent` is -2 log q times it.
@@ -94,8 +95,8 @@ class LimitAngle final : public HighlightModel {
     return explaining(std::move(fit), used, true, settings.number("fit.most_residual"));
   }
 
-  Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera, const Surface* surface,
-                                  const Settings&) const override {
+  Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera,
+                               const Surface* surface, const Settings&) const override {
     const LimitAngleFit* const fitted = fit.as<LimitAngleFit>();
     if (!surface || !fit.uncertainty || !fit.lightEstimate || !fitted) return {};
     const Light& light = *fit.lightEstimate;
@@ -209,16 +210,17 @@ class LimitAngle final : public HighlightModel {
 
   /// The same around several brightest points, by walks along pixel rays on alpha^2, which is quadratic at its zeros. Why not, where two
   /// share a region, one is no star, or the surface may reach the limit elsewhere.
-  static Outcome<std::vector<PredictedHighlight>> stars(double limit, const Camera& camera, const Surface& surface, const Light& light,
-                                                        const std::vector<BrightestPoint>& brightest, const Settings& settings) {
+  static Outcome<std::vector<PredictedHighlight>> stars(double limit, const Camera& camera, const Surface& surface,
+                                                        const Light& light, const std::vector<BrightestPoint>& brightest,
+                                                        const Settings& settings) {
     const Eigen::Vector3d eye = camera.centreInWorld();
-    const StarField field{[&](const SurfacePoint& at) {
-                            const std::optional<double> alpha = alphaAt(at, eye, light);
-                            return alpha ? *alpha * *alpha : std::nan("");
-                          },
-                          light, 0, [](const PartBounds& parts, double level) {
-                            return Eight(float(level) - parts.tanSquared.sqrt().atan().square());
-                          }};
+    const StarField field{
+        [&](const SurfacePoint& at) {
+          const std::optional<double> alpha = alphaAt(at, eye, light);
+          return alpha ? *alpha * *alpha : std::nan("");
+        },
+        light, 0,
+        [](const PartBounds& parts, double level) { return Eight(float(level) - parts.tanSquared.sqrt().atan().square()); }};
     std::vector<Summit> summits;
     for (const BrightestPoint& b : brightest) {
       Outcome<Summit> s = summitNear(field, camera, surface, b, limit * limit);
@@ -228,9 +230,10 @@ class LimitAngle final : public HighlightModel {
     Outcome<std::vector<PredictedHighlight>> found = starHighlights(field, camera, surface, summits, limit * limit, settings);
     if (found)
       for (PredictedHighlight& h : *found)  // the mirror points themselves are known better
-        h.brightest = *std::min_element(brightest.begin(), brightest.end(), [&](const BrightestPoint& a, const BrightestPoint& b) {
-          return (a.pixel - h.brightest.pixel).squaredNorm() < (b.pixel - h.brightest.pixel).squaredNorm();
-        });
+        h.brightest =
+            *std::min_element(brightest.begin(), brightest.end(), [&](const BrightestPoint& a, const BrightestPoint& b) {
+              return (a.pixel - h.brightest.pixel).squaredNorm() < (b.pixel - h.brightest.pixel).squaredNorm();
+            });
     return found;
   }
 };

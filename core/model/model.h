@@ -41,28 +41,28 @@ struct DirectionResult {
 /// The contour carried to the tangent plane.
 struct CanonicalContour {
   std::vector<DirectionResult> directions;
-  std::vector<Pixel> pixels;                ///< canonical points of the directions that succeeded, in the photograph
-  std::optional<Ellipse> ellipse;           ///< fitted to `pixels`
+  std::vector<Pixel> pixels;       ///< canonical points of the directions that succeeded, in the photograph
+  std::optional<Ellipse> ellipse;  ///< fitted to `pixels`
 };
 
 /// A highlight on its surface.
 struct SeenOnSurface {
-  BrightestPoint brightest;   ///< observed
-  Plane tangentPlane;         ///< there; normal towards the camera
-  Projection virtualCamera;   ///< P M
+  BrightestPoint brightest;  ///< observed
+  Plane tangentPlane;        ///< there; normal towards the camera
+  Projection virtualCamera;  ///< P M
 };
 
 /// One observation used for training: one highlight of one light in one frame, with what was derived from it.
 struct TrainingView {
   int frame = -1;
   Camera camera;
-  std::shared_ptr<const Surface> surface;   ///< may be null only for `primal`
+  std::shared_ptr<const Surface> surface;  ///< may be null only for `primal`
   Highlight highlight;
-  std::vector<LevelContour> levels;         ///< contours at other levels than highlight.level; they share the frame's maximum
-  std::shared_ptr<const PixelPatch> pixels; ///< around the highlight, where pixels are evidence (core/reflectance/pixel_patch.h)
+  std::vector<LevelContour> levels;          ///< contours at other levels than highlight.level; they share the frame's maximum
+  std::shared_ptr<const PixelPatch> pixels;  ///< around the highlight, where pixels are evidence (core/reflectance/pixel_patch.h)
   /// Or why this view cannot be used; `primal` alone, which needs no surface, looks at the reason.
   Outcome<SeenOnSurface> seen = Failure{Reason::NotReached, "nothing was observed"};
-  std::optional<CanonicalContour> canonical;///< of a view that was seen, once its light is known
+  std::optional<CanonicalContour> canonical;  ///< of a view that was seen, once its light is known
 
   std::optional<Failure> failure() const { return seen ? std::nullopt : std::optional(seen.failure()); }
 };
@@ -70,12 +70,12 @@ struct TrainingView {
 /// The light of a set of views, from section 4, with what the bundle adds.
 struct LightEstimate {
   Light light;
-  std::optional<Eigen::Matrix3d> covariance;///< m^2 of the position; none for a light at infinity
-  double limitAngle = 0;                    ///< rad; robust mean over all contour points
-  double condition = 0;                     ///< of the triangulation
-  double rmsPx = 0;                         ///< of the bundle's residuals, 0 when triangulated
-  std::vector<double> residualPx;           ///< per view that was used (those `seen`), in their order: rmsWithoutTail()
-  std::string solver;                       ///< "triangulated" or "bundle"
+  std::optional<Eigen::Matrix3d> covariance;  ///< m^2 of the position; none for a light at infinity
+  double limitAngle = 0;                      ///< rad; robust mean over all contour points
+  double condition = 0;                       ///< of the triangulation
+  double rmsPx = 0;                           ///< of the bundle's residuals, 0 when triangulated
+  std::vector<double> residualPx;             ///< per view that was used (those `seen`), in their order: rmsWithoutTail()
+  std::string solver;                         ///< "triangulated" or "bundle"
   /// Second moment of an extended light about `light`, m^2 (rad^2 for a light at infinity): widens the limit angle where the light
   /// is long. None for a limit angle that is one constant.
   std::optional<Eigen::Matrix3d> extent;
@@ -85,10 +85,10 @@ struct LightEstimate {
 
 /// What a fit may use. Views are of one light (and one surface, when models are per surface).
 struct FitInput {
-  std::vector<TrainingView> views;          ///< those that were not `seen` are skipped
-  std::optional<LightEstimate> light;       ///< for models with needsLight()
-  std::optional<Failure> lightFailure;      ///< why there is none
-  std::shared_ptr<const PixelFit> pixelFit; ///< of the pixels of exactly these views, where it is known already
+  std::vector<TrainingView> views;           ///< those that were not `seen` are skipped
+  std::optional<LightEstimate> light;        ///< for models with needsLight()
+  std::optional<Failure> lightFailure;       ///< why there is none
+  std::shared_ptr<const PixelFit> pixelFit;  ///< of the pixels of exactly these views, where it is known already
   /// By the same model, of nearly these views: cameras moved a little. `reflectance` starts from its lamp and keeps the lamp's
   /// shape.
   std::shared_ptr<const ModelFit> near;
@@ -96,11 +96,11 @@ struct FitInput {
 
 /// An ellipsoid about the light, fitted to outlines: primal, dual, canonical.
 struct EllipsoidFit {
-  DualQuadric quadric;                      ///< Q*
-  std::optional<Ellipsoid> ellipsoid{};     ///< when Q* is one
-  std::vector<double> singularValues{};     ///< of the linear system, descending
-  double gapRatio = 0;                      ///< last / second last of them
-  std::optional<double> limitAngle{};       ///< rad, of the light's contours; canonical only
+  DualQuadric quadric;                   ///< Q*
+  std::optional<Ellipsoid> ellipsoid{};  ///< when Q* is one
+  std::vector<double> singularValues{};  ///< of the linear system, descending
+  double gapRatio = 0;                   ///< last / second last of them
+  std::optional<double> limitAngle{};    ///< rad, of the light's contours; canonical only
 };
 
 /// The limit angle of a light's contours.
@@ -112,35 +112,39 @@ struct LimitAngleFit {
 /// A reflectance lobe and the shape of the lamp about ModelFit::lightEstimate.
 struct ReflectanceFit {
   Lobe lobe = Lobe::TorranceSparrow;
-  double roughness = 0;                     ///< m of the lobe
-  double level = 0;                         ///< fraction q of the peak at which the contour lies
-  double lightRadius = 0;                   ///< m, of a spherical light; 0 for a point or a segment
+  double roughness = 0;    ///< m of the lobe
+  double level = 0;        ///< fraction q of the peak at which the contour lies
+  double lightRadius = 0;  ///< m, of a spherical light; 0 for a point or a segment
   std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> lightSegment{};  ///< ends of a lamp with a length, world, m
-  std::string evidence{};                   ///< what the fit saw, "contours", "levels" or "pixels"
-  std::vector<double> levels{};             ///< of the contours that it saw; empty for pixels
-  std::optional<double> blurPx{};           ///< standard deviation of the images' blur, where pixels show it
+  std::string evidence{};          ///< what the fit saw, "contours", "levels" or "pixels"
+  std::vector<double> levels{};    ///< of the contours that it saw; empty for pixels
+  std::optional<double> blurPx{};  ///< standard deviation of the images' blur, where pixels show it
 };
 
 /// What fitting produced.
 struct ModelFit {
   std::string model;
-  std::string light;                        ///< id
-  std::optional<std::string> surface;       ///< key, when the model belongs to one surface only
+  std::string light;                   ///< id
+  std::optional<std::string> surface;  ///< key, when the model belongs to one surface only
   std::variant<std::monostate, EllipsoidFit, LimitAngleFit, ReflectanceFit> family;  ///< empty for a model beyond these
   std::optional<Light> lightEstimate;
   std::optional<Eigen::Matrix3d> lightCovariance;  ///< m^2, of the position
-  double condition = 0;                     ///< of an ellipsoid first / second last singular value, else as LightEstimate
-  std::vector<double> residualPx;           ///< per training view, RMS contour distance; of the robust models without its tail
-  std::string solver;                       ///< "linear", "anchored", "refined", "bundle", ...
-  std::vector<int> frames;                  ///< frames used
-  std::vector<SurfacePoint> hints;          ///< brightest points of the views used, normals as observed; none where a frame showed several
+  double condition = 0;                            ///< of an ellipsoid first / second last singular value, else as LightEstimate
+  std::vector<double> residualPx;  ///< per training view, RMS contour distance; of the robust models without its tail
+  std::string solver;              ///< "linear", "anchored", "refined", "bundle", ...
+  std::vector<int> frames;         ///< frames used
+  std::vector<SurfacePoint>
+      hints;  ///< brightest points of the views used, normals as observed; none where a frame showed several
   /// Of the blocks in `parameters`, family by family; other models say theirs.
   std::optional<ParameterUncertainty> uncertainty;
-  std::vector<std::string> remarks;         ///< warnings in words, for the user: what makes the answer doubtful
+  std::vector<std::string> remarks;  ///< warnings in words, for the user: what makes the answer doubtful
   double timeUs = 0;
 
   /// Null where the model is of another family.
-  template <class Family> const Family* as() const { return std::get_if<Family>(&family); }
+  template <class Family>
+  const Family* as() const {
+    return std::get_if<Family>(&family);
+  }
   /// Null where there is none.
   const Ellipsoid* ellipsoid() const {
     const EllipsoidFit* const e = as<EllipsoidFit>();
@@ -156,14 +160,15 @@ struct ModelFit {
 
 /// One predicted highlight.
 struct PredictedHighlight {
-  Polyline contour;                         ///< the prediction: ideal pixels; closed over gaps for areas
-  std::vector<std::pair<int, int>> gaps;    ///< contour segments (from vertex, to vertex) that bridge failed directions
+  Polyline contour;                       ///< the prediction: ideal pixels; closed over gaps for areas
+  std::vector<std::pair<int, int>> gaps;  ///< contour segments (from vertex, to vertex) that bridge failed directions
   std::optional<Ellipse> ellipse;
   BrightestPoint brightest;
   std::optional<Plane> tangentPlane;
-  std::optional<CanonicalContour> canonical;///< directions with their ends on S and T
-  double coverage = 1;                      ///< share of directions that gave a point
-  std::optional<double> curvatureVariation; ///< predict.query = local-quadric only, see `curvatureVariation` in core/model/star.h
+  std::optional<CanonicalContour> canonical;  ///< directions with their ends on S and T
+  double coverage = 1;                        ///< share of directions that gave a point
+  std::optional<double>
+      curvatureVariation;  ///< predict.query = local-quadric only, see `curvatureVariation` in core/model/star.h
   /// One per vertex of `contour`: standard deviation across the contour from the fit's uncertainty, px; 0 where the contour runs along
   /// the surface's edge. Empty unless asked for (predict.band) and known.
   std::vector<double> sigmaPx;
@@ -176,8 +181,8 @@ class Prediction {
   Prediction(Failure reason) : answer_(std::move(reason)) {}
   /// @param why  the answer where `found` is empty
   Prediction(std::vector<PredictedHighlight> found, std::optional<Failure> why = std::nullopt);
-  const std::vector<PredictedHighlight>& highlights() const;          ///< none where there is a failure
-  std::span<PredictedHighlight> editable();                           ///< the same, to add to them
+  const std::vector<PredictedHighlight>& highlights() const;                 ///< none where there is a failure
+  std::span<PredictedHighlight> editable();                                  ///< the same, to add to them
   const Failure* failure() const { return std::get_if<Failure>(&answer_); }  ///< null where there are highlights
   /// Drops the highlights for which there is a reason; where none is left, the first reason is the answer.
   void drop(const std::function<std::optional<Failure>(const PredictedHighlight&)>& reasonFor);
@@ -200,9 +205,10 @@ inline constexpr ParameterBlock kLogRoughness{4, 1}, kRadiusSquared{5, 1}, kHalf
 
 /// What others must know of a model to show, check and compare it.
 struct ModelTraits {
-  std::array<int, 3> rgb{};         ///< the model's colour in every view and report, 8-bit sRGB; together colour-blind safe (Okabe and Ito, 2008)
-  bool mirrored = true;             ///< it looks from the virtual (mirrored) cameras, along reflected rays; else from the cameras themselves
-  bool stopsAtOutline = false;      ///< its predictions are an ellipsoid's outlines: no walk follows
+  std::array<int, 3>
+      rgb{};  ///< the model's colour in every view and report, 8-bit sRGB; together colour-blind safe (Okabe and Ito, 2008)
+  bool mirrored = true;  ///< it looks from the virtual (mirrored) cameras, along reflected rays; else from the cameras themselves
+  bool stopsAtOutline = false;  ///< its predictions are an ellipsoid's outlines: no walk follows
   enum class Assumes { AnySurface, Plane, ConstantCurvature } surface = Assumes::AnySurface;
 };
 
@@ -211,13 +217,13 @@ class HighlightModel {
  public:
   virtual ~HighlightModel() = default;
   virtual ModelTraits traits() const = 0;
-  virtual std::string id() const = 0;             ///< "canonical"
-  virtual std::string title() const = 0;          ///< "Canonical JOLIMAS"
-  virtual std::string assumption() const = 0;     ///< one sentence from method.md section 7
-  virtual std::string reference() const = 0;      ///< paper or "method.md section 7"
-  virtual bool needsLight() const = 0;            ///< the fit uses FitInput::light
-  virtual bool needsCanonicalContours() const = 0;///< the fit uses TrainingView::canonical
-  virtual bool walks() const { return false; }    ///< predictions follow predict.query: they can walk on local quadrics
+  virtual std::string id() const = 0;                 ///< "canonical"
+  virtual std::string title() const = 0;              ///< "Canonical JOLIMAS"
+  virtual std::string assumption() const = 0;         ///< one sentence from method.md section 7
+  virtual std::string reference() const = 0;          ///< paper or "method.md section 7"
+  virtual bool needsLight() const = 0;                ///< the fit uses FitInput::light
+  virtual bool needsCanonicalContours() const = 0;    ///< the fit uses TrainingView::canonical
+  virtual bool walks() const { return false; }        ///< predictions follow predict.query: they can walk on local quadrics
   virtual bool hasOutlines() const { return false; }  ///< it reconstructs an ellipsoid from one outline in each view
   /// The outline that it takes from a view; empty where the view has none, or where the model takes none.
   virtual std::optional<ConicView> outlineIn(const TrainingView&) const { return std::nullopt; }
@@ -228,12 +234,13 @@ class HighlightModel {
                              const Settings& settings) const = 0;
   /// Shifts of a prediction's contour along its normals, px and positive outwards: one row per vertex, one column per column of the fit's
   /// ParameterUncertainty::root, each for one standard deviation. A row of zeros along the surface's own edge. Empty where the fit has no uncertainty.
-  virtual Eigen::MatrixXd bandShiftsPx(const ModelFit&, const PredictedHighlight&, const Camera&, const Surface*, const Settings&) const {
+  virtual Eigen::MatrixXd bandShiftsPx(const ModelFit&, const PredictedHighlight&, const Camera&, const Surface*,
+                                       const Settings&) const {
     return {};
   }
   /// Norms of the rows of bandShiftsPx: the standard deviation that the noise in the residuals alone makes. core/model/band.h knows more.
-  std::vector<double> bandSigmaPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera, const Surface* surface,
-                                  const Settings& settings) const {
+  std::vector<double> bandSigmaPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera,
+                                  const Surface* surface, const Settings& settings) const {
     const Eigen::VectorXd norms = bandShiftsPx(fit, highlight, camera, surface, settings).rowwise().norm();
     return {norms.begin(), norms.end()};
   }

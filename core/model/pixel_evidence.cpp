@@ -14,8 +14,8 @@
 namespace glint {
 namespace {
 
-constexpr int kWidthPoints = 36;  // of a contour, for the first guess of the roughness
-constexpr std::size_t kFewestContours = 3;    // that tell a lamp's shape
+constexpr int kWidthPoints = 36;            // of a contour, for the first guess of the roughness
+constexpr std::size_t kFewestContours = 3;  // that tell a lamp's shape
 // Of a contour's radius: right lobes leave a tenth of it between contours and pixels, 2 % where JPEG of quality 20 moves the contours.
 constexpr double kContradiction = 0.025;
 constexpr double kBlurShift = 1.5;  // times blur^2 / radius: how far blur moves a contour, of a lobe with a long tail too
@@ -45,7 +45,8 @@ std::optional<PixelFit> withExtent(const std::vector<TrainingView>& views, const
       contours.push_back({v.frame, v.camera, v.surface.get(), v.highlight.contour.points, v.highlight.peak, v.highlight.level});
   const std::vector<Lobe> lobes = lobesOf(settings);
   std::optional<PixelFit> best;
-  const auto consider = [&](const std::vector<Lobe>& order, const Lamp& lamp, double roughness, const PixelFitOptions& options = {}) {
+  const auto consider = [&](const std::vector<Lobe>& order, const Lamp& lamp, double roughness,
+                            const PixelFitOptions& options = {}) {
     const Outcome<PixelFit> fit = fitPixels(order, patches, lamp, roughness, options);
     const PixelFit& before = best ? *best : point;
     if (fit && (before.poor && !fit->poor ? true : fit->poor == before.poor && explainsClearlyBetter(*fit, before))) best = *fit;
@@ -53,9 +54,10 @@ std::optional<PixelFit> withExtent(const std::vector<TrainingView>& views, const
   bool tried = false;
   if (contours.size() >= kFewestContours) {
     const double alpha = medianContourAngle(views, point.model.lamp.centre, kWidthPoints);
-    const Outcome<RadianceFit> said =
-        alpha > 0 ? searchRadiance(lobes, contours, point.model.lamp.centre, std::min(alpha, kWidestStart), choices, radianceFitOptionsOf(settings))
-                  : Outcome<RadianceFit>(Failure{Reason::NoLight, ""});
+    const Outcome<RadianceFit> said = alpha > 0
+                                          ? searchRadiance(lobes, contours, point.model.lamp.centre,
+                                                           std::min(alpha, kWidestStart), choices, radianceFitOptionsOf(settings))
+                                          : Outcome<RadianceFit>(Failure{Reason::NoLight, ""});
     if (said && !said->poor && !said->lamp().isPoint()) {
       std::vector<Lobe> order = lobes;
       std::stable_partition(order.begin(), order.end(), [&](Lobe l) { return l == said->lobe; });
@@ -149,7 +151,8 @@ Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const s
   for (const Light& start : starts) {
     const double alpha = medianContourAngle(views, start, kWidthPoints);
     if (!(alpha > 0)) continue;
-    const double roughness = std::clamp(std::tan(alpha) / std::sqrt(-std::log(level)), 1e-3, 1.0);  // a start within the lobes' range
+    const double roughness =
+        std::clamp(std::tan(alpha) / std::sqrt(-std::log(level)), 1e-3, 1.0);  // a start within the lobes' range
     Outcome<PixelFit> fit = fitPixels(lobes, patches, start, roughness);
     if (!best || (fit && (fit->poor != best->poor ? best->poor : fit->cost < best->cost))) best = std::move(fit);
     if (best && !best->poor) break;
@@ -179,8 +182,8 @@ Outcome<ModelFit> reflectanceFromPixels(const FitInput& input, const Settings& s
   const Lamp& lamp = pixels.model.lamp;
   fit.lightEstimate = lamp.centre;
   if (!lamp.centre.atInfinity() && pixels.positionCovariance.allFinite()) fit.lightCovariance = pixels.positionCovariance;
-  fit.family = ReflectanceFit{pixels.model.lobe, pixels.model.roughness, level, lamp.radius, lamp.ends(), "pixels", {},
-                       pixels.model.blurPx()};
+  fit.family = ReflectanceFit{pixels.model.lobe,    pixels.model.roughness, level, lamp.radius, lamp.ends(), "pixels", {},
+                              pixels.model.blurPx()};
   fit.residualPx = pixels.residualPx;
   fit.uncertainty = pixels.uncertainty;
   fit.solver = "pixels";

@@ -105,7 +105,8 @@ Outcome<ModelFit> explaining(ModelFit fit, const std::vector<UsedContour>& used,
                            " % of the contours' radius (" + figure(radius) + " px)";
   const bool poorViews = 3 * poor.size() > used.size();
   if (poorViews || (!robust && !(share <= mostShare))) {
-    const std::string where = poorViews ? " in " + std::to_string(poor.size()) + " of " + std::to_string(used.size()) + " views" : "";
+    const std::string where =
+        poorViews ? " in " + std::to_string(poor.size()) + " of " + std::to_string(used.size()) + " views" : "";
     return Failure{Reason::NotConverged,
                    text + ": over the limit of " + figure(100 * mostShare) + " %" + where + " (setting fit.most_residual)"};
   }

@@ -20,7 +20,8 @@ double noisePx(const Polyline& contour);
 /// One highlight that a fit used, as a measure of what the fit may leave of it.
 struct UsedContour {
   double radius = 0, noise = 0;  ///< px
-  double unit = 1;               ///< how many units of ModelFit::residualPx a pixel of the photograph is; canonical contours are larger than the highlight
+  double unit =
+      1;  ///< how many units of ModelFit::residualPx a pixel of the photograph is; canonical contours are larger than the highlight
 };
 UsedContour usedContour(const TrainingView& view, double unit = 1);
 

@@ -57,8 +57,8 @@ class Primal final : public HighlightModel {
     return std::vector{highlightFromEllipse(*e, brightest)};
   }
 
-  Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera, const Surface* surface,
-                                  const Settings& settings) const override {
+  Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera,
+                               const Surface* surface, const Settings& settings) const override {
     return ellipsoidBandShiftsPx(*this, fit, highlight, camera, surface, settings);
   }
 };

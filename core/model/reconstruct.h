@@ -13,28 +13,28 @@ namespace glint {
 
 /// One view for the reconstruction of an ellipsoid from its outlines: the conic and the (real or virtual) projection.
 struct ConicView {
-  Projection projection;   ///< P or P M
-  Ellipse ellipse;         ///< measured outline, px
+  Projection projection;      ///< P or P M
+  Ellipse ellipse;            ///< measured outline, px
   std::vector<Pixel> points;  ///< contour points for `refined`; may be empty (then sampled from the ellipse)
 };
 
 struct ReconstructOptions {
-  double minRankRatio = 1e-9;     ///< second last over first singular value: below, several views show the same geometry
-  double maxGapRatio = 0.5;       ///< last over second last: above, the solution is not unique
+  double minRankRatio = 1e-9;  ///< second last over first singular value: below, several views show the same geometry
+  double maxGapRatio = 0.5;    ///< last over second last: above, the solution is not unique
 };
 
 struct Reconstruction {
-  DualQuadric quadric;               ///< Q*, (3,3) = +1 where possible
-  std::optional<Ellipsoid> ellipsoid;///< empty when Q* is not one (only `linear` may return that)
-  std::vector<double> singularValues;///< of the normalised linear system, descending
-  double gapRatio = 0;               ///< last / second last; near 1 = ambiguous
-  double condition = 0;              ///< first / second last
-  std::vector<double> residualPx;    ///< per view, RMS distance of the contour points to the outline
-  std::string solver;                ///< "linear", "anchored", "refined"
-  int iterations = 0;                ///< of the refinement
+  DualQuadric quadric;                              ///< Q*, (3,3) = +1 where possible
+  std::optional<Ellipsoid> ellipsoid;               ///< empty when Q* is not one (only `linear` may return that)
+  std::vector<double> singularValues;               ///< of the normalised linear system, descending
+  double gapRatio = 0;                              ///< last / second last; near 1 = ambiguous
+  double condition = 0;                             ///< first / second last
+  std::vector<double> residualPx;                   ///< per view, RMS distance of the contour points to the outline
+  std::string solver;                               ///< "linear", "anchored", "refined"
+  int iterations = 0;                               ///< of the refinement
   std::optional<ParameterUncertainty> uncertainty;  ///< of (centre (3), S xx yy zz xy xz yz (6)); `refined` only
   std::vector<std::string> remarks;                 ///< warnings in words, for the user: what makes the answer doubtful
-  std::string brief() const;         ///< "4 views, gap 1.2e-4, worst 0.83 px (view 2)"
+  std::string brief() const;                        ///< "4 views, gap 1.2e-4, worst 0.83 px (view 2)"
 };
 
 /// Linear: s_i vech(C_i*) = vech(P_i Q* P_i^T), images and world normalised, smallest singular vector. The scales s_i are eliminated
@@ -53,7 +53,7 @@ Outcome<Reconstruction> reconstructAnchored(const std::vector<ConicView>& views,
 /// Prior on the centre for `refined`.
 struct CentrePrior {
   Eigen::Vector3d mean;
-  Eigen::Matrix3d covariance;        ///< m^2, positive definite
+  Eigen::Matrix3d covariance;  ///< m^2, positive definite
 };
 
 /// Refined: minimises contour distances (px, points to the outline) over the centre and the positive semidefinite S, from

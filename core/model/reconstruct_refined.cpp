@@ -44,7 +44,8 @@ struct State {
   State after(const Step& step) const {
     const double r = 1 / std::sqrt(2.0);
     Eigen::Matrix3d s = vectors * squares.asDiagonal() * vectors.transpose();
-    s += Eigen::Matrix3d{{step(3), r * step(6), r * step(7)}, {r * step(6), step(4), r * step(8)}, {r * step(7), r * step(8), step(5)}};
+    s += Eigen::Matrix3d{
+        {step(3), r * step(6), r * step(7)}, {r * step(6), step(4), r * step(8)}, {r * step(7), r * step(8), step(5)}};
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(s);
     State next;
     next.centre = centre + step.head<3>();
@@ -293,9 +294,12 @@ Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, 
   // Where the iteration stops short of a minimum (at the limit, or because a longer shape would reach a camera) and the next step is
   // longer than the ellipsoid, the state is a place on the way: round-off decides where on a long flat valley it lies.
   const Step left = linear.step(0);
-  const double size = std::sqrt(state.squares.sum()), steps = std::max(left.head<3>().norm() / size, left.tail<6>().norm() / (size * size));
+  const double size = std::sqrt(state.squares.sum()),
+               steps = std::max(left.head<3>().norm() / size, left.tail<6>().norm() / (size * size));
   if (linear.gain() > kStationary * linear.cost && !(steps <= 1))
-    return Failure{Reason::NotConverged, formatted("the next step would be %.3g times the size of the ellipsoid: the outlines do not determine it", steps)};
+    return Failure{
+        Reason::NotConverged,
+        formatted("the next step would be %.3g times the size of the ellipsoid: the outlines do not determine it", steps)};
   if (state.squares(1) <= 2 * kSegment * state.squares(2))
     return Failure{Reason::NotAnEllipsoid, "the refined shape has two zero axes"};
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();

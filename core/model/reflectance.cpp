@@ -10,9 +10,9 @@
 #include "core/model/level_set_prediction.h"
 #include "core/model/models.h"
 #include "core/model/pixel_evidence.h"
-#include "core/model/reflectance_settings.h"
 #include "core/model/plausible.h"
 #include "core/model/radiance_star.h"
+#include "core/model/reflectance_settings.h"
 #include "core/model/uncertainty.h"
 #include "core/reflectance/fit_search.h"
 #include "core/reflectance/light_radiance.h"
@@ -21,7 +21,7 @@
 namespace glint {
 namespace {
 
-constexpr int kAnglePoints = 36;       // of a contour, for the first guess of the lobe's width
+constexpr int kAnglePoints = 36;    // of a contour, for the first guess of the lobe's width
 constexpr double kScanStepPx = 16;  // of the search for a maximum away from every mirror point
 // log of an 8-bit picture's range: a lobe that has fallen further shows nothing beside the highlights of other frames.
 constexpr double kFaintest = 5.54;
@@ -139,8 +139,8 @@ class Reflectance final : public HighlightModel {
     fit.lightEstimate = best->light;
     if (!best->light.atInfinity() && best->positionCovariance.allFinite()) fit.lightCovariance = best->positionCovariance;
     const char* const seen = views.size() > fit.frames.size() ? "levels" : "contours";
-    fit.family = ReflectanceFit{best->lobe,          best->roughness, level, best->lightRadius,
-                                best->lamp().ends(), seen,            levelsOf(views)};
+    fit.family =
+        ReflectanceFit{best->lobe, best->roughness, level, best->lightRadius, best->lamp().ends(), seen, levelsOf(views)};
     fit.residualPx = perView(best->residualPx, owner, fit.frames.size());
     fit.uncertainty = best->uncertainty;
     fit.solver = "contours";
@@ -165,7 +165,7 @@ class Reflectance final : public HighlightModel {
   }
 
   Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera,
-                                  const Surface* surface, const Settings&) const override {
+                               const Surface* surface, const Settings&) const override {
     const ReflectanceFit* const fitted = fit.as<ReflectanceFit>();
     if (!surface || !fit.uncertainty || !fit.lightEstimate || !fitted) return {};
     const Lamp lamp = lampOf(*fitted, *fit.lightEstimate);
@@ -185,7 +185,8 @@ class Reflectance final : public HighlightModel {
       other.light += parameters::kLight.of(by);
       if (other.shape == lobe::LampShape::Sphere && parameters::kRadiusSquared.isIn(by))
         other.radiusSquared = std::max(0.0, other.radiusSquared + by(parameters::kRadiusSquared.first));
-      if (other.shape == lobe::LampShape::Segment && parameters::kHalfAxis.isIn(by)) other.halfAxis += parameters::kHalfAxis.of(by);
+      if (other.shape == lobe::LampShape::Segment && parameters::kHalfAxis.isIn(by))
+        other.halfAxis += parameters::kHalfAxis.of(by);
       const auto log = [&](const SurfacePoint& p) {
         const double roughness = fitted->roughness * std::exp(by(parameters::kLogRoughness.first));
         return lobe::logOfLamp<double>(fitted->lobe, roughness, p.position, p.normal, (eye - p.position).normalized(), other,
@@ -218,7 +219,8 @@ class Reflectance final : public HighlightModel {
     if (mirrorPoints)
       for (const BrightestPoint& b : *mirrorPoints) starts.push_back(b.pixel);
     const std::vector<RadiancePeak> peaks = radiance.peaks(starts, kScanStepPx);
-    if (peaks.empty()) return mirrorPoints ? Failure{Reason::NoBrightestPoint, "nothing in the image is lit"} : mirrorPoints.failure();
+    if (peaks.empty())
+      return mirrorPoints ? Failure{Reason::NoBrightestPoint, "nothing in the image is lit"} : mirrorPoints.failure();
     if (peaks.front().cut) return Failure{Reason::OutsideImage, "the radiance rises beyond the image"};
     if (const double fall = radiance.fallOfLobe(peaks.front().point); !(fall < kFaintest))
       return Failure{Reason::NoBrightestPoint, "no visible point is near the mirror direction of the light"};

@@ -85,7 +85,8 @@ std::vector<SurfacePoint> hintsOf(const FitInput& input) {
   std::vector<SurfacePoint> hints;
   std::vector<int> frames;
   for (const TrainingView& v : input.views) {
-    if (std::find(frames.begin(), frames.end(), v.frame) != frames.end()) return {};  // several highlights: one start does not find all
+    if (std::find(frames.begin(), frames.end(), v.frame) != frames.end())
+      return {};  // several highlights: one start does not find all
     frames.push_back(v.frame);
     if (v.seen) hints.push_back(v.seen->brightest.point);
   }
@@ -99,7 +100,8 @@ void dropEnclosed(std::vector<PredictedHighlight>& highlights) {
   });
   std::vector<PredictedHighlight> kept;
   for (PredictedHighlight& h : highlights) {
-    const bool enclosed = std::any_of(kept.begin(), kept.end(), [&](const PredictedHighlight& k) { return contains(k.contour, h.brightest.pixel); });
+    const bool enclosed = std::any_of(kept.begin(), kept.end(),
+                                      [&](const PredictedHighlight& k) { return contains(k.contour, h.brightest.pixel); });
     if (!enclosed) kept.push_back(std::move(h));
   }
   highlights = std::move(kept);

@@ -11,7 +11,7 @@ namespace {
 
 // Chords of 36 directions cost 0.13 % of the diameter on a circle; 288 cost 0.002 %.
 constexpr int kVertices = 288, kSubdivisions = 8;  // at most that many between two directions
-constexpr int kStencil = 6;       // points of the interpolating polynomial: its error is below the walk's other errors
+constexpr int kStencil = 6;  // points of the interpolating polynomial: its error is below the walk's other errors
 
 /// Weights of the polynomial through `count` equally spaced points, at `at` steps after the first one.
 std::array<double, kStencil> weights(int count, double at) {
@@ -73,8 +73,7 @@ void outlineOf(const CanonicalContour& c, PredictedHighlight& h) {
     double x[kStencil], y[kStencil];
     for (int a = 0, j = (first + n) % n; a < count; ++a, j = j + 1 < n ? j + 1 : 0) x[a] = pixelOf[j].x(), y[a] = pixelOf[j].y();
     for (int k = 1; k < parts; ++k) {
-      const std::array<double, kStencil> w =
-          centred ? centredOnes[k] : weights(count, i - first + double(k) / parts);
+      const std::array<double, kStencil> w = centred ? centredOnes[k] : weights(count, i - first + double(k) / parts);
       double sumX = 0, sumY = 0;
       if (centred)  // of known length
         for (int a = 0; a < kStencil; ++a) sumX += w[a] * x[a], sumY += w[a] * y[a];

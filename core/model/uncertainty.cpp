@@ -60,7 +60,8 @@ Eigen::MatrixXd levelSetShiftsPx(const std::vector<Pixel>& points, const Surface
     const auto slope = [&](const Pixel& by) {
       const std::optional<double> before = valueAt(points[i] - by), after = valueAt(points[i] + by);
       if (!before && !after) return 0.0;
-      return (after.value_or(*here) - before.value_or(*here)) / ((before ? ContourEvidence::kStepPx : 0) + (after ? ContourEvidence::kStepPx : 0));
+      return (after.value_or(*here) - before.value_or(*here)) /
+             ((before ? ContourEvidence::kStepPx : 0) + (after ? ContourEvidence::kStepPx : 0));
     };
     const double gradient = std::hypot(slope({ContourEvidence::kStepPx, 0}), slope({0, ContourEvidence::kStepPx}));
     if (!(gradient > 0) || !(std::abs(*here - field.level) <= kEdgePx * gradient)) continue;
@@ -97,7 +98,8 @@ std::vector<double> shiftsAlongNormals(const Polyline& contour, const Polyline& 
   return shifts;
 }
 
-Eigen::MatrixXd polylineShiftsPx(const Polyline& contour, const std::vector<std::pair<Polyline, Polyline>>& perturbed, double step) {
+Eigen::MatrixXd polylineShiftsPx(const Polyline& contour, const std::vector<std::pair<Polyline, Polyline>>& perturbed,
+                                 double step) {
   require(step > 0, "polylineShiftsPx: step");
   const std::size_t n = contour.points.size();
   Eigen::MatrixXd shifts = Eigen::MatrixXd::Zero(Eigen::Index(n), Eigen::Index(perturbed.size()));
@@ -111,7 +113,8 @@ Eigen::MatrixXd polylineShiftsPx(const Polyline& contour, const std::vector<std:
       if (plus.points.size() == n && minus.points.size() == n) {
         change = normals[i].dot(plus.points[i] - minus.points[i]);
       } else {
-        const double after = alongNormal(plus, contour.points[i], normals[i]), before = alongNormal(minus, contour.points[i], normals[i]);
+        const double after = alongNormal(plus, contour.points[i], normals[i]),
+                     before = alongNormal(minus, contour.points[i], normals[i]);
         change = (std::isfinite(after) ? after : 0) - (std::isfinite(before) ? before : 0);
       }
       if (std::isfinite(change)) shifts(Eigen::Index(i), Eigen::Index(k)) = change / (2 * step);
@@ -120,7 +123,8 @@ Eigen::MatrixXd polylineShiftsPx(const Polyline& contour, const std::vector<std:
   return shifts;
 }
 
-std::vector<double> polylineSigmaPx(const Polyline& contour, const std::vector<std::pair<Polyline, Polyline>>& perturbed, double step) {
+std::vector<double> polylineSigmaPx(const Polyline& contour, const std::vector<std::pair<Polyline, Polyline>>& perturbed,
+                                    double step) {
   return rowNorms(polylineShiftsPx(contour, perturbed, step));
 }
 
@@ -142,9 +146,9 @@ Eigen::MatrixXd ellipsoidBandShiftsPx(const HighlightModel& model, const ModelFi
       other.lightEstimate = Light::homogeneous(fit.lightEstimate->homogeneous() + parameters::kLampOfEllipsoid.of(change));
     const Prediction p = model.predict(other, camera, surface, settings);
     const auto distance = [&](const PredictedHighlight& h) { return (h.brightest.pixel - highlight.brightest.pixel).norm(); };
-    const auto nearest = std::min_element(p.highlights().begin(), p.highlights().end(), [&](const PredictedHighlight& a, const PredictedHighlight& b) {
-      return distance(a) < distance(b);
-    });
+    const auto nearest =
+        std::min_element(p.highlights().begin(), p.highlights().end(),
+                         [&](const PredictedHighlight& a, const PredictedHighlight& b) { return distance(a) < distance(b); });
     if (nearest == p.highlights().end()) return std::nullopt;
     return nearest->contour;
   };

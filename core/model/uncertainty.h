@@ -27,8 +27,10 @@ std::vector<double> levelSetSigmaPx(const std::vector<Pixel>& points, const Surf
 /// The same for a contour that is predicted point by point: one pair of polylines per column, predicted at plus and minus `step` columns.
 /// The change across the contour of vertex i is that of vertex i where the polylines have equally many vertices (a predicted direction keeps
 /// its number), else the distance along the normal to the perturbed polyline. Positive outwards.
-Eigen::MatrixXd polylineShiftsPx(const Polyline& contour, const std::vector<std::pair<Polyline, Polyline>>& perturbed, double step);
-std::vector<double> polylineSigmaPx(const Polyline& contour, const std::vector<std::pair<Polyline, Polyline>>& perturbed, double step);
+Eigen::MatrixXd polylineShiftsPx(const Polyline& contour, const std::vector<std::pair<Polyline, Polyline>>& perturbed,
+                                 double step);
+std::vector<double> polylineSigmaPx(const Polyline& contour, const std::vector<std::pair<Polyline, Polyline>>& perturbed,
+                                    double step);
 
 /// Unit normals of a closed contour at its vertices, outwards; zero where neighbouring vertices coincide.
 std::vector<Pixel> outwardNormals(const Polyline& contour);

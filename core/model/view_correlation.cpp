@@ -13,14 +13,14 @@
 namespace glint {
 namespace {
 
-constexpr std::size_t kFewestViews = 4;   // fewer show no trend beside what the parameters take
-constexpr std::size_t kMostViews = 40;    // more are thinned out: the cost grows with the cube
-constexpr double kLongest = 4;            // times the extent of the views: longer ones look like one error of all
+constexpr std::size_t kFewestViews = 4;  // fewer show no trend beside what the parameters take
+constexpr std::size_t kMostViews = 40;   // more are thinned out: the cost grows with the cube
+constexpr double kLongest = 4;           // times the extent of the views: longer ones look like one error of all
 constexpr int kIterations = 40;
-constexpr double kSettled = 1e-3;         // relative change of the variances: far below what a few views tell of them
-constexpr double kNothing = 1e-6;         // of the variance of the noise: what moves no contour visibly
-constexpr double kOpenParameter = 1e-9;            // a parameter that moves no shape, to round-off
-constexpr double kUntold = 1e-9;                   // share of an effect that the parameters do not take, to round-off
+constexpr double kSettled = 1e-3;        // relative change of the variances: far below what a few views tell of them
+constexpr double kNothing = 1e-6;        // of the variance of the noise: what moves no contour visibly
+constexpr double kOpenParameter = 1e-9;  // a parameter that moves no shape, to round-off
+constexpr double kUntold = 1e-9;         // share of an effect that the parameters do not take, to round-off
 
 /// Distance of every view to its nearest neighbour, the middle one.
 double spacingOf(const std::vector<const ViewCoefficients*>& views) {
@@ -55,7 +55,8 @@ class Stacked {
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(j);
     qr.setThreshold(kOpenParameter);
     basis_ = qr.householderQ() * Eigen::MatrixXd::Identity(n, qr.rank());
-    noise_ = std::max(noiseVariance, 1e-12 * z_.squaredNorm() / double(n));  // exact residuals keep a covariance that can be inverted
+    noise_ =
+        std::max(noiseVariance, 1e-12 * z_.squaredNorm() / double(n));  // exact residuals keep a covariance that can be inverted
   }
   bool tells() const { return basis_.rows() > basis_.cols() && z_.squaredNorm() > 0; }
 
@@ -67,7 +68,8 @@ class Stacked {
       for (Eigen::Index k = 0; k < n; ++k) {
         const Row &a = rows_[std::size_t(i)], &b = rows_[std::size_t(k)];
         if (a.shape != b.shape || a.group != b.group) continue;
-        const double alike = a.view == b.view ? 1 : viewCorrelation((views_[a.view]->where - views_[b.view]->where).norm(), length);
+        const double alike =
+            a.view == b.view ? 1 : viewCorrelation((views_[a.view]->where - views_[b.view]->where).norm(), length);
         patterns[a.group](i, k) = std::sqrt(views_[a.view]->points * views_[b.view]->points) * alike;
       }
     // What the parameters take whole, as a shift that all views share, no residual tells: its likelihood would be round-off.
@@ -91,7 +93,8 @@ class Stacked {
       double change = 0;
       for (Eigen::Index g = 0; g < m; ++g) {
         const Eigen::MatrixXd& pattern = patterns[std::size_t(g)];
-        const double factorOf = std::sqrt(std::max(0.0, pz.dot(pattern * pz)) / std::max(projector.cwiseProduct(pattern).sum(), 1e-300));  // no division by zero
+        const double factorOf = std::sqrt(std::max(0.0, pz.dot(pattern * pz)) /
+                                          std::max(projector.cwiseProduct(pattern).sum(), 1e-300));  // no division by zero
         const double before = variance(g);
         variance(g) *= factorOf;
         // One that goes to nothing never settles, but the likelihood must be that of its last size.
@@ -153,7 +156,8 @@ std::vector<CorrelatedEffects> correlatedEffects(const std::vector<ViewCoefficie
   for (const double l : likelihood)
     if (std::isfinite(l)) best = std::max(best, l);
   if (!std::isfinite(best)) return {{0, 1, start, none}};  // no length has one: as given
-  for (std::size_t i = 0; i < result.size(); ++i) sum += result[i].weight = std::isfinite(likelihood[i]) ? std::exp(likelihood[i] - best) : 0;
+  for (std::size_t i = 0; i < result.size(); ++i)
+    sum += result[i].weight = std::isfinite(likelihood[i]) ? std::exp(likelihood[i] - best) : 0;
   // Before the residuals are seen, independent errors (poses) are as likely as all lengths of bumps together.
   const double others = double(result.size() - 1);
   sum += (others - 1) * result.front().weight;

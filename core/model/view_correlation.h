@@ -22,9 +22,9 @@ struct ViewCoefficients {
 /// What the residuals say if the errors of views go together over `length`.
 struct CorrelatedEffects {
   double length = 0;
-  double weight = 1;              ///< share of the evidence; of all lengths together 1
-  Eigen::VectorXd variance;       ///< of each group asked for, tau^2, px^2
-  Eigen::VectorXd freedom;        ///< degrees of freedom of each
+  double weight = 1;         ///< share of the evidence; of all lengths together 1
+  Eigen::VectorXd variance;  ///< of each group asked for, tau^2, px^2
+  Eigen::VectorXd freedom;   ///< degrees of freedom of each
 };
 
 /// Variances of the groups, and the weight of the lengths, by restricted maximum likelihood: z = J d + u + e with d free, u of covariance

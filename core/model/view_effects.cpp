@@ -21,7 +21,8 @@ namespace {
 constexpr int kHighest = 9;             // order of the harmonics: finer errors of a contour average out over it
 constexpr int kPointsPerShape = 3;      // at least: the rest of the points tells the noise
 constexpr double kSignificance = 0.05;  // at which an error of whole views is believed
-constexpr double kBorrowed = 4;         // degrees of freedom that offset, shift and stretch borrow from each other: few views tell little of one
+constexpr double kBorrowed =
+    4;  // degrees of freedom that offset, shift and stretch borrow from each other: few views tell little of one
 // Eigenvalues of the parameters' information, relative to the largest, in units in which a fit without prior has equal ones: what lies
 // below was held by a prior.
 constexpr double kHeld = 0.2;
@@ -106,7 +107,8 @@ ViewEffects::ViewEffects(const std::vector<ViewResiduals>& views, double robustP
   double points = 0;
   std::vector<double> sizes;
   for (const ViewResiduals& v : views) {
-    require(v.byParameter.cols() == parameters && v.residual.size() == v.byParameter.rows() && v.residual.size() == v.shapes.columns.rows(),
+    require(v.byParameter.cols() == parameters && v.residual.size() == v.byParameter.rows() &&
+                v.residual.size() == v.shapes.columns.rows(),
             "ViewEffects: sizes");
     information += v.byParameter.transpose() * v.byParameter;
     points += double(v.residual.size());
@@ -235,7 +237,8 @@ ViewEffects::ViewEffects(const std::vector<ViewResiduals>& views, double robustP
   }
   // The Huber loss leaves more noise in the parameters than plain squares do where noise exceeds its scale.
   const double slope = std::max(inside, 1.0) / points;
-  if (noise2 > 0) byNoise_ *= std::max(1.0, psi2 / points / (slope * slope) / std::max(allSquares / points, 1e-300));  // no division by zero
+  if (noise2 > 0)
+    byNoise_ *= std::max(1.0, psi2 / points / (slope * slope) / std::max(allSquares / points, 1e-300));  // no division by zero
 }
 
 /// Few views tell little of one size of error: offset, shift and stretch borrow from each other.
@@ -274,8 +277,7 @@ void ViewEffects::addParameters(Case& c) const {
   for (Eigen::Index v = 0; v < count && c.length > 0; ++v)
     for (Eigen::Index w = 0; w < v; ++w) alike(v, w) = alike(w, v) = likeness(c, where_[std::size_t(v)], where_[std::size_t(w)]);
   for (Eigen::MatrixXd& g : c.byGroup) g = Eigen::MatrixXd::Zero(byNoise_.rows(), byNoise_.cols());
-  for (std::size_t k = 0; k < movedBy_.size(); ++k)
-    c.byGroup[groupOfShape_[k]] += movedBy_[k] * alike * movedBy_[k].transpose();
+  for (std::size_t k = 0; k < movedBy_.size(); ++k) c.byGroup[groupOfShape_[k]] += movedBy_[k] * alike * movedBy_[k].transpose();
 }
 
 double ViewEffects::mean(double (*of)(const Case&, int), int group) const {
@@ -298,7 +300,8 @@ double ViewEffects::viewPx() const {
   return std::sqrt(sum);
 }
 
-std::vector<double> ViewEffects::sigmaPx(const Eigen::MatrixXd& byParameter, const ContourShapes& shapes, const Eigen::VectorXd& where) const {
+std::vector<double> ViewEffects::sigmaPx(const Eigen::MatrixXd& byParameter, const ContourShapes& shapes,
+                                         const Eigen::VectorXd& where) const {
   require(byParameter.cols() == byNoise_.cols() && byParameter.rows() == shapes.columns.rows(), "ViewEffects::sigmaPx: sizes");
   constexpr int kGroups = ContourShapes::kGroups;
   const Eigen::Index n = byParameter.rows();
@@ -324,7 +327,8 @@ std::vector<double> ViewEffects::sigmaPx(const Eigen::MatrixXd& byParameter, con
         sum += part;
         squares += part * part / c.freedom[g];
       }
-      mixtures[std::size_t(i)].push_back({c.weight, std::sqrt(sum), squares > 0 ? std::max(1.0, sum * sum / squares) : noiseFreedom_});
+      mixtures[std::size_t(i)].push_back(
+          {c.weight, std::sqrt(sum), squares > 0 ? std::max(1.0, sum * sum / squares) : noiseFreedom_});
     }
   }
   std::vector<double> result;

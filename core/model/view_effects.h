@@ -43,15 +43,16 @@ class ViewEffects {
   /// @param robustPx  scale of the fit's Huber loss, px. Needs one view with residuals, all of equally many parameters.
   ViewEffects(const std::vector<ViewResiduals>& views, double robustPx);
 
-  double noisePx() const { return noise_; }     ///< standard deviation of one point
-  double viewPx() const;                        ///< RMS over the contour of what a whole view is off by
-  double freedom(int group) const;              ///< of the estimate of its variance
-  double variance(int group) const;             ///< tau^2, px^2: mean square over the contour per shape
+  double noisePx() const { return noise_; }  ///< standard deviation of one point
+  double viewPx() const;                     ///< RMS over the contour of what a whole view is off by
+  double freedom(int group) const;           ///< of the estimate of its variance
+  double variance(int group) const;          ///< tau^2, px^2: mean square over the contour per shape
 
   /// Standard deviation of a predicted contour at its points, px, in the sense that 1.96 of it hold 95 %: noise and errors of views count with
   /// Student's factor for their degrees of freedom, the lengths over which errors go together as a mixture.
   /// @param byParameter  points x parameters. @param shapes  of this contour. @param where  place of the view, as of the training views.
-  std::vector<double> sigmaPx(const Eigen::MatrixXd& byParameter, const ContourShapes& shapes, const Eigen::VectorXd& where) const;
+  std::vector<double> sigmaPx(const Eigen::MatrixXd& byParameter, const ContourShapes& shapes,
+                              const Eigen::VectorXd& where) const;
 
  private:
   /// All that holds if errors go together over one length.
@@ -69,8 +70,8 @@ class ViewEffects {
   double noise_ = 0, noiseFreedom_ = 1;
   Eigen::MatrixXd byNoise_;  ///< covariance of the parameters for unit noise
   std::vector<Case> cases_;
-  std::vector<Eigen::VectorXd> where_;     ///< of the training views
-  std::vector<Eigen::MatrixXd> movedBy_;   ///< per shape: the parameters' error by that shape's error, parameters x views
+  std::vector<Eigen::VectorXd> where_;    ///< of the training views
+  std::vector<Eigen::MatrixXd> movedBy_;  ///< per shape: the parameters' error by that shape's error, parameters x views
   std::vector<int> groupOfShape_;
 };
 

@@ -12,9 +12,9 @@
 namespace glint {
 namespace {
 
-constexpr double kStepGrowth = 1.35;     // marching: fast enough for long walks, fine enough not to step over a lobe
-constexpr double kFallFraction = 0.02;   // a fall of alpha by more than this share of the limit is not round-off or mesh noise
-constexpr int kRootIterations = 60;      // bracketed: bisection alone needs 52
+constexpr double kStepGrowth = 1.35;    // marching: fast enough for long walks, fine enough not to step over a lobe
+constexpr double kFallFraction = 0.02;  // a fall of alpha by more than this share of the limit is not round-off or mesh noise
+constexpr int kRootIterations = 60;     // bracketed: bisection alone needs 52
 
 /// Root of f in [a, b] with f(a) < 0 <= f(b): regula falsi with the Anderson-Bjorck weights, bisection when it stalls.
 /// `f` returns NaN to give up. Returns the last argument evaluated. (Boost's toms748_solve takes a tenth fewer steps, 2.0 for 2.2 on a
@@ -35,13 +35,17 @@ double bracketedRoot(F&& f, double a, double fa, double b, double fb, double tol
         const double m = 1 - fx / fa;
         fb *= m > 0 ? m : 0.5;
       }
-      a = x; fa = fx; side = -1;
+      a = x;
+      fa = fx;
+      side = -1;
     } else {
       if (side == 1) {
         const double m = 1 - fx / fb;
         fa *= m > 0 ? m : 0.5;
       }
-      b = x; fb = fx; side = 1;
+      b = x;
+      fb = fx;
+      side = 1;
     }
     if (b - a <= 4e-16 * std::abs(b)) return x;  // two neighbouring doubles
   }
@@ -65,7 +69,8 @@ TangentWalk::TangentWalk(const Surface& surface, const Camera& camera, const Bri
   // Image y points down: keep azimuths turning from +x to +y on the screen.
   const Eigen::Vector3d down = camera.camFromWorld.linear().row(1).transpose();
   if (basis_.col(1).dot(down) < 0) basis_.col(1) = -basis_.col(1);
-  if (const auto* patch = dynamic_cast<const LocalQuadric*>(&surface); patch && patch->origin().position == brightest_.point.position) {
+  if (const auto* patch = dynamic_cast<const LocalQuadric*>(&surface);
+      patch && patch->origin().position == brightest_.point.position) {
     const Eigen::Matrix3d& frame = patch->worldFromPatch();
     side_ = n == frame.col(2) ? 1 : -1;
     if (n == side_ * frame.col(2)) {
@@ -94,7 +99,8 @@ Eigen::Matrix2d TangentWalk::angularRate() const {
   const Eigen::Vector3d v = toEye / r, l = toLight / q, sum = l + v;
   const double length = sum.norm();
   const Eigen::Vector3d h = sum / length;
-  const Eigen::Matrix2d vv = basis_.transpose() * v * (v.transpose() * basis_), ll = basis_.transpose() * l * (l.transpose() * basis_);
+  const Eigen::Matrix2d vv = basis_.transpose() * v * (v.transpose() * basis_),
+                        ll = basis_.transpose() * l * (l.transpose() * basis_);
   const Eigen::Vector2d hb = basis_.transpose() * h;
   const Eigen::Matrix2d id = Eigen::Matrix2d::Identity();
   // At P_B the tangential part of H vanishes (or nearly, for an observed peak), so that B^T (I - H H^T) is B^T up to h_b.
@@ -142,7 +148,8 @@ Outcome<double> TangentWalk::reachOnPlane(const Eigen::Vector3d& d, double limit
     if (below && fb < highest - kFallFraction * limit && highest > fa && fb < fa)
       return Failure{Reason::NotMonotonic, "alpha falls before it reaches the limit on the tangent plane"};
     if (below) highest = std::max(highest, fb);
-    a = b; fa = fb;
+    a = b;
+    fa = fb;
     step *= kStepGrowth;
   }
   return Failure{Reason::NotReached, "alpha stays under the limit on the tangent plane"};
@@ -195,7 +202,9 @@ Outcome<TangentWalk::Reach> TangentWalk::reachOnSurface(const Eigen::Vector3d& d
         return Failure{Reason::NotMonotonic, "alpha falls before it reaches the limit"};
       highest = std::max(highest, fb);
     }
-    a = b; fa = fb; at = *next;
+    a = b;
+    fa = fb;
+    at = *next;
     if (stopped && step < 1e-6 * scale) return *stopped;  // the edge is found to a millionth of the walk
     if (!stopped) step *= kStepGrowth;
   }
@@ -250,8 +259,10 @@ std::optional<TangentWalk::Reach> TangentWalk::reachOnPatch(const Eigen::Vector3
       next += f[0] * f[1] * second;
     }
     if (!(std::abs(next - expectedSquared) < 2 * kTrust * expectedSquared)) return std::nullopt;
-    u[2] = u[1]; f[2] = f[1];
-    u[1] = u[0]; f[1] = f[0];
+    u[2] = u[1];
+    f[2] = f[1];
+    u[1] = u[0];
+    f[1] = f[0];
     u[0] = next;
   }
   return std::nullopt;
@@ -259,8 +270,8 @@ std::optional<TangentWalk::Reach> TangentWalk::reachOnPatch(const Eigen::Vector3
 
 Outcome<TangentWalk::Reach> TangentWalk::reachNear(const Eigen::Vector3d& d, double limit, double expected,
                                                    const SurfacePoint& neighbour, double scale) const {
-  constexpr double kTrust = 0.25;   // of the limit and of the expected distance: beyond it another branch may be in between
-  constexpr int kMost = 12;         // three or four are usual; kinks of a coarse mesh take some more
+  constexpr double kTrust = 0.25;  // of the limit and of the expected distance: beyond it another branch may be in between
+  constexpr int kMost = 12;        // three or four are usual; kinks of a coarse mesh take some more
   if (patch_)
     if (std::optional<Reach> reach = reachOnPatch(d, limit, expected)) return *reach;
   const Eigen::Vector3d& origin = brightest_.point.position;
@@ -287,8 +298,10 @@ Outcome<TangentWalk::Reach> TangentWalk::reachNear(const Eigen::Vector3d& d, dou
         next += f[0] * f[1] * second;
       }
       if (!(std::abs(next - expected) < kTrust * expected)) break;
-      s[2] = s[1]; f[2] = f[1];
-      s[1] = s[0]; f[1] = f[0];
+      s[2] = s[1];
+      f[2] = f[1];
+      s[1] = s[0];
+      f[1] = f[0];
       s[0] = next;
     }
   return reachOnSurface(d, limit, scale);
@@ -362,13 +375,18 @@ Outcome<TangentWalk::Reach> TangentWalk::reachContour(const Eigen::Vector3d& d, 
         s = bracketedRoot(f, a, fa, b, fb, roundOffPx);
         if (lost) return *lost;
         const double u = (pixel - p).dot(q - p) / (q - p).squaredNorm();
-        if (u < 0) edge = (edge + n - 1) % n;
-        else if (u > 1) edge = (edge + 1) % n;
-        else break;
+        if (u < 0)
+          edge = (edge + n - 1) % n;
+        else if (u > 1)
+          edge = (edge + 1) % n;
+        else
+          break;
       }
       return Reach{s, hit};
     }
-    a = b; at = *next; from = to;
+    a = b;
+    at = *next;
+    from = to;
     step *= kStepGrowth;
   }
   return Failure{Reason::NotReached, "the walk did not meet the contour"};
@@ -447,8 +465,10 @@ void keepVisible(CanonicalContour& c, const std::vector<SurfacePoint>& ends, con
     DirectionResult& r = c.directions[i];
     if (r.failure) continue;
     const std::optional<Pixel> pixel = camera.project(ends[i].position);
-    if (hidden[k++]) r.failure = Failure{Reason::Occluded, "another part of the surface is in front"};
-    else if (!pixel) r.failure = Failure{Reason::BehindCamera, ""};
+    if (hidden[k++])
+      r.failure = Failure{Reason::Occluded, "another part of the surface is in front"};
+    else if (!pixel)
+      r.failure = Failure{Reason::BehindCamera, ""};
     if (r.failure) {
       r.limitAngle.reset();
       continue;

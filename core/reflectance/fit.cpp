@@ -12,8 +12,8 @@
 namespace glint {
 namespace {
 
-constexpr double kDoubtShare = 0.02;  // of the radius: a right lobe leaves less
-constexpr double kSphereGain = 0.2;    // of the sum of squares, before a size is believed
+constexpr double kDoubtShare = 0.02;        // of the radius: a right lobe leaves less
+constexpr double kSphereGain = 0.2;         // of the sum of squares, before a size is believed
 constexpr double kNoRadiusSquared = 1e-10;  // normalised: where a radius ends that is none
 // Other starts are judged by a short fit to few points; the most promising are then fitted in full.
 constexpr int kScreenPoints = 16, kScreenIterations = 15;
@@ -149,7 +149,8 @@ Outcome<RadianceFit> fitLamp(Lobe lobe, const std::vector<RadianceView>& views, 
   return described(problem, found, views.size(), found.iterations);
 }
 
-std::vector<double> rmsOfViews(const RadianceFit& fit, const std::vector<RadianceView>& views, const RadianceFitOptions& options) {
+std::vector<double> rmsOfViews(const RadianceFit& fit, const std::vector<RadianceView>& views,
+                               const RadianceFitOptions& options) {
   Outcome<ContourEvidence> gathered = lobe::gatherEvidence(views, options.pointsPerView);
   if (!gathered) return std::vector<double>(views.size(), std::numeric_limits<double>::quiet_NaN());
   RadianceProblem problem(fit.lobe, views, *std::move(gathered), options);

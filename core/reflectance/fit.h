@@ -55,7 +55,7 @@ struct RadianceFit {
   Lobe lobe = Lobe::TorranceSparrow;
   double roughness = 0;  ///< m
   Light light;
-  double lightRadius = 0;  ///< m; 0 where the contours do not show a size
+  double lightRadius = 0;                  ///< m; 0 where the contours do not show a size
   Eigen::Vector3d lightHalfAxis{0, 0, 0};  ///< m, from the light to one end of a segment; 0 for another lamp
   /// Of (L homogeneous with |L| = 1 (4), log m (1)), then of a sphere's squared radius (1, m^2) or a segment's half axis (3, m); none
   /// where a direction is free.
@@ -90,6 +90,7 @@ Outcome<RadianceFit> fitLamp(Lobe lobe, const std::vector<RadianceView>& views, 
                              const RadianceFitOptions& options = {});
 
 /// RMS residual of every view under a fit, px, whether it was fitted to the view or not. Not finite where a frame shows no maximum.
-std::vector<double> rmsOfViews(const RadianceFit& fit, const std::vector<RadianceView>& views, const RadianceFitOptions& options = {});
+std::vector<double> rmsOfViews(const RadianceFit& fit, const std::vector<RadianceView>& views,
+                               const RadianceFitOptions& options = {});
 
 }  // namespace glint

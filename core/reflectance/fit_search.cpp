@@ -19,7 +19,7 @@ constexpr std::size_t kPromisingStarts = 6;  // of those that a short fit to few
 // Where one lobe's best start leaves so many times what a poor fit may leave, no lobe explains the contours: beside one that
 // does, the others' best left 3 times that at most (wide lobes, grazing views), and those of mirrored images leave 8 and more.
 constexpr double kFarFromAnyLobe = 6;
-constexpr int kMostRounds = 3;               // of lobes that start again from a better one: each round must have found a better light
+constexpr int kMostRounds = 3;  // of lobes that start again from a better one: each round must have found a better light
 constexpr double kNarrowestGuess = 1e-4, kWidestGuess = 1.0;  // roughness of first guesses
 
 bool isMicrofacet(Lobe lobe) { return lobe == Lobe::TorranceSparrow || lobe == Lobe::Ggx; }
@@ -100,7 +100,8 @@ class PointSearch {
   void screen(const Light& light, double width, StartGrid grid) {
     std::vector<RadianceStart> starts;
     for (const Lobe lobe : lobes_) {
-      for (const RadianceStart& s : screenStarts(lobe, views_, light, roughnessFor(lobe, width), grid, options_)) starts.push_back(s);
+      for (const RadianceStart& s : screenStarts(lobe, views_, light, roughnessFor(lobe, width), grid, options_))
+        starts.push_back(s);
       const auto far = [](const RadianceStart& s) { return s.excess > kFarFromAnyLobe; };
       if (!starts.empty() && std::all_of(starts.begin(), starts.end(), far)) return;
     }

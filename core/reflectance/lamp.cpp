@@ -34,9 +34,7 @@ namespace lobe {
 
 LampIn<double> inWorld(const Lamp& lamp) {
   LampIn<double> in;
-  in.shape = lamp.isSegment()  ? LampShape::Segment
-             : lamp.radius > 0 ? LampShape::Sphere
-                               : LampShape::Point;
+  in.shape = lamp.isSegment() ? LampShape::Segment : lamp.radius > 0 ? LampShape::Sphere : LampShape::Point;
   in.light = lamp.centre.homogeneous();
   in.radiusSquared = lamp.radius * lamp.radius;
   in.halfAxis = lamp.halfAxis;

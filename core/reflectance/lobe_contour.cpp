@@ -38,7 +38,8 @@ std::optional<double> smoothlyBetween(const PixelPatch& p, const std::vector<dou
   const int column = static_cast<int>(std::floor(u)), row = static_cast<int>(std::floor(v));
   if (column < 1 || row < 1 || column + 2 >= p.columns || row + 2 >= p.rows) return between(p, cells, x, y);
   const auto taps = [](double t) {
-    return std::array<double, 4>{t * (-0.5 + t * (1 - 0.5 * t)), 1 + t * t * (-2.5 + 1.5 * t), t * (0.5 + t * (2 - 1.5 * t)), t * t * (-0.5 + 0.5 * t)};
+    return std::array<double, 4>{t * (-0.5 + t * (1 - 0.5 * t)), 1 + t * t * (-2.5 + 1.5 * t), t * (0.5 + t * (2 - 1.5 * t)),
+                                 t * t * (-0.5 + 0.5 * t)};
   };
   const std::array<double, 4> across = taps(u - column), down = taps(v - row);
   double sum = 0;
@@ -57,11 +58,12 @@ struct Corrected {
   Pixel origin{0, 0};  ///< measured pixel of its first pixel
 };
 Corrected corrected(const LinearPixels& pixels, const PixelPatch& patch, const std::vector<double>& background) {
-  const int x0 = std::max(0, static_cast<int>(std::ceil(patch.firstCell.x()))), y0 = std::max(0, static_cast<int>(std::ceil(patch.firstCell.y())));
+  const int x0 = std::max(0, static_cast<int>(std::ceil(patch.firstCell.x()))),
+            y0 = std::max(0, static_cast<int>(std::ceil(patch.firstCell.y())));
   const int x1 = std::min(pixels.value.width - 1, static_cast<int>(patch.firstCell.x() + (patch.columns - 1) * patch.cellPx));
   const int y1 = std::min(pixels.value.height - 1, static_cast<int>(patch.firstCell.y() + (patch.rows - 1) * patch.cellPx));
-  Corrected c{Image(std::max(1, x1 - x0 + 1), std::max(1, y1 - y0 + 1), 1), Image(std::max(1, x1 - x0 + 1), std::max(1, y1 - y0 + 1), 1),
-              Pixel(x0, y0)};
+  Corrected c{Image(std::max(1, x1 - x0 + 1), std::max(1, y1 - y0 + 1), 1),
+              Image(std::max(1, x1 - x0 + 1), std::max(1, y1 - y0 + 1), 1), Pixel(x0, y0)};
   for (int y = y0; y <= y1; ++y)
     for (int x = x0; x <= x1; ++x) {
       const std::optional<double> b = between(patch, background, x, y);
@@ -105,7 +107,8 @@ void evenOut(Corrected& c, const LinearPixels& pixels, const PixelPatch& patch, 
         for (int k = -reach; k <= reach; ++k) {
           const int u = rows ? x + k : x, v = rows ? y : y + k;
           if (u < 0 || v < 0 || u >= w || v >= h) continue;
-          sums[static_cast<std::size_t>(y) * w + x] += taps[static_cast<std::size_t>(k + reach)] * of[static_cast<std::size_t>(v) * w + u];
+          sums[static_cast<std::size_t>(y) * w + x] +=
+              taps[static_cast<std::size_t>(k + reach)] * of[static_cast<std::size_t>(v) * w + u];
         }
     of = std::move(sums);
   };
@@ -118,7 +121,8 @@ void evenOut(Corrected& c, const LinearPixels& pixels, const PixelPatch& patch, 
 }
 
 /// The contour that belongs to a highlight found before: the one that overlaps it most, in ideal pixels.
-std::optional<Highlight> sameHighlight(std::vector<Highlight> traced, const Pixel& origin, const Highlight& before, const Camera& camera) {
+std::optional<Highlight> sameHighlight(std::vector<Highlight> traced, const Pixel& origin, const Highlight& before,
+                                       const Camera& camera) {
   std::optional<Highlight> best;
   double largest = 0;
   for (Highlight& h : traced) {
@@ -155,9 +159,10 @@ bool anyClipped(const LinearPixels& pixels, const Polyline& measured) {
 
 }  // namespace
 
-Outcome<std::vector<Highlight>> contourWithLobe(const LinearPixels& pixels, const Camera& camera, const Surface& surface, int frame,
-                                                const std::vector<Highlight>& found, const std::vector<Highlight>& others,
-                                                const LobeModel& model, BackgroundKind background, const DetectOptions& options) {
+Outcome<std::vector<Highlight>> contourWithLobe(const LinearPixels& pixels, const Camera& camera, const Surface& surface,
+                                                int frame, const std::vector<Highlight>& found,
+                                                const std::vector<Highlight>& others, const LobeModel& model,
+                                                BackgroundKind background, const DetectOptions& options) {
   std::vector<PixelPatch> patches;
   PatchOptions around;
   around.cells = kEvidenceCells;

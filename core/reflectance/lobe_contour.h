@@ -19,8 +19,9 @@ namespace glint {
 /// @param options    as they were detected with (level, smallest area, contrast)
 /// @return           the same highlights in the same order, each contoured again. NoBrightestPoint where the lobe does not reach them;
 ///                   NotConverged where it does not explain the frame; TooFewPoints.
-Outcome<std::vector<Highlight>> contourWithLobe(const LinearPixels& pixels, const Camera& camera, const Surface& surface, int frame,
-                                                const std::vector<Highlight>& found, const std::vector<Highlight>& others,
-                                                const LobeModel& model, BackgroundKind background, const DetectOptions& options);
+Outcome<std::vector<Highlight>> contourWithLobe(const LinearPixels& pixels, const Camera& camera, const Surface& surface,
+                                                int frame, const std::vector<Highlight>& found,
+                                                const std::vector<Highlight>& others, const LobeModel& model,
+                                                BackgroundKind background, const DetectOptions& options);
 
 }  // namespace glint

@@ -11,11 +11,11 @@
 namespace glint::patch {
 namespace {
 
-constexpr double kRobust = 0.01;     // share of the top: beyond it a residual is no noise of an image that can be used
-constexpr double kDarkest = 0.05;    // of the top: darker pixels weigh no more
+constexpr double kRobust = 0.01;   // share of the top: beyond it a residual is no noise of an image that can be used
+constexpr double kDarkest = 0.05;  // of the top: darker pixels weigh no more
 constexpr int kReweightings = 12;
-constexpr double kCoefficientsSettled = 1e-9;    // of the coefficients, relative
-constexpr double kSampledFrom = 0.4; // variance in cells: from here on a sampled Gaussian has its moments to 4e-4
+constexpr double kCoefficientsSettled = 1e-9;  // of the coefficients, relative
+constexpr double kSampledFrom = 0.4;           // variance in cells: from here on a sampled Gaussian has its moments to 4e-4
 
 /// Taps of a kernel with the variance given, in cells: three where that is small, else a sampled Gaussian.
 std::vector<double> kernelOf(double variance) {
@@ -178,8 +178,7 @@ LobeImage lobeImage(Lobe lobe, const FramePatches& frame, const State& at, const
     for (std::size_t i = 0; i < p.size(); ++i) {
       if (!p.onSurface[i]) continue;
       const PixelPatch::Seen& s = p.seen[i];
-      const std::optional<double> log =
-          lobe::logOfLamp<double>(lobe, roughness, s.position, s.normal, s.toCamera, lamp, rule);
+      const std::optional<double> log = lobe::logOfLamp<double>(lobe, roughness, s.position, s.normal, s.toCamera, lamp, rule);
       if (!log || !std::isfinite(*log)) continue;
       values[i] = *log;
       if (!p.used[i]) continue;
@@ -209,7 +208,8 @@ LinearFit linearFit(const FramePatches& frame, const LobeImage& image, Backgroun
   // Rows in double, columns of one size each, normal equations: the residuals are as good as those of a QR, which is all that the fit
   // of the lobe sees, at a tenth of the time. A trace of damping keeps directions that the pixels do not tell at zero.
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows =
-      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>::Zero(static_cast<Eigen::Index>(frame.used), unknowns);
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>::Zero(static_cast<Eigen::Index>(frame.used),
+                                                                                   unknowns);
   Eigen::VectorXd values(static_cast<Eigen::Index>(frame.used)), roots(static_cast<Eigen::Index>(frame.used));
   Eigen::Index n = 0;
   for (std::size_t k = 0; k < frame.patches.size(); ++k) {

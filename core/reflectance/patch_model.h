@@ -14,9 +14,9 @@ struct State {
   lobe::LampShape shape = lobe::LampShape::Point;
   Eigen::Vector4d light{0, 0, 1, 0};  ///< |L| = 1
   double logRoughness = 0;
-  double radiusSquared = 0;              ///< of a sphere
-  Eigen::Vector3d halfAxis{0, 0, 0};     ///< of a segment
-  double blurVariance = 0;               ///< px^2
+  double radiusSquared = 0;           ///< of a sphere
+  Eigen::Vector3d halfAxis{0, 0, 0};  ///< of a segment
+  double blurVariance = 0;            ///< px^2
 
   double roughness() const { return std::exp(logRoughness); }
   bool atInfinity() const { return light.w() == 0; }
@@ -48,7 +48,7 @@ struct LobeImage {
   std::vector<std::vector<double>> value;  ///< per patch and cell
   double logTop = 0;
   std::size_t topPatch = 0, topCell = 0;  ///< where it is
-  bool lit = false;  ///< some used cell is
+  bool lit = false;                       ///< some used cell is
 };
 LobeImage lobeImage(Lobe lobe, const FramePatches& frame, const State& at, const lobe::LampRule& rule);
 
@@ -64,7 +64,8 @@ struct LinearFit {
   std::vector<double> residual;  ///< w (I - K S - b) / I_max, without the robust weight
   bool solved = false;
 };
-LinearFit linearFit(const FramePatches& frame, const LobeImage& image, BackgroundKind kind, const State& at, const Weights& weights);
+LinearFit linearFit(const FramePatches& frame, const LobeImage& image, BackgroundKind kind, const State& at,
+                    const Weights& weights);
 
 /// Reweights until the coefficients settle. `weights` start from what they are and are left as they end.
 LinearFit robustFit(const FramePatches& frame, const LobeImage& image, BackgroundKind kind, const State& at, Weights& weights);

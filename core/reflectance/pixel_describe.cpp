@@ -14,11 +14,13 @@ namespace {
 
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr double kUnexplainedShare = 0.1;       // of the contour's radius, or of the top: what a lobe that explains the pixels never leaves
-constexpr double kPatternShare = 0.01;   // of the radius: right lobes, lamps and surfaces leave less than a tenth of it, but for noise
-constexpr double kInsideShare = 0.1;     // of the top: cells that show the highlight
+constexpr double kUnexplainedShare =
+    0.1;  // of the contour's radius, or of the top: what a lobe that explains the pixels never leaves
+constexpr double kPatternShare =
+    0.01;  // of the radius: right lobes, lamps and surfaces leave less than a tenth of it, but for noise
+constexpr double kInsideShare = 0.1;               // of the top: cells that show the highlight
 constexpr double kEdgeLow = 0.3, kEdgeHigh = 0.7;  // of the top: cells at the contour
-constexpr double kProbe = 0.3;           // extent whose effect is probed, in lobe widths: beyond the rounding, within the first order
+constexpr double kProbe = 0.3;  // extent whose effect is probed, in lobe widths: beyond the rounding, within the first order
 
 /// By which share the cost would fall to first order if the point became a sphere or a segment: least squares of the residuals over
 /// the point's columns and those of the extents.

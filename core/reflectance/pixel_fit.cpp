@@ -21,10 +21,10 @@ constexpr double kClearGain = 0.1;          // of the cost, before an extent or 
 // Gain of the cost over its mean per independent cell, by up to three more parameters: noise alone exceeds this in one of a million
 // images (chi squared, three degrees of freedom).
 constexpr double kBeyondNoise = 30;
-constexpr std::size_t kCoarseFrom = 400;    // cells of a patch, from which the search takes a quarter of them
-constexpr std::size_t kFewestFrom = 100;    // and below which no lamp is worth joining more
-constexpr double kMostEvaluations = 2e5;    // of an extended lamp's lobe in one look at all cells: some hundredths of a second
-constexpr double kExtentWork = 1.5e7;        // such evaluations in all: a lamp that explains the pixels takes about ten iterations
+constexpr std::size_t kCoarseFrom = 400;  // cells of a patch, from which the search takes a quarter of them
+constexpr std::size_t kFewestFrom = 100;  // and below which no lamp is worth joining more
+constexpr double kMostEvaluations = 2e5;  // of an extended lamp's lobe in one look at all cells: some hundredths of a second
+constexpr double kExtentWork = 1.5e7;     // such evaluations in all: a lamp that explains the pixels takes about ten iterations
 
 /// Patches, some of them with joined cells, as one problem.
 class Cells {
@@ -215,7 +215,8 @@ Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<co
                             double roughness, const PixelFitOptions& options) {
   require(!lobes.empty() && roughness > 0 && std::isfinite(roughness), "fitPixels: lobes and roughness");
   Cells full(patches), coarse(patches);
-  if (full.all().cells < 30) return Failure{Reason::TooFewPoints, "only " + std::to_string(full.all().cells) + " pixels can be used"};
+  if (full.all().cells < 30)
+    return Failure{Reason::TooFewPoints, "only " + std::to_string(full.all().cells) + " pixels can be used"};
   coarse.coarsen();
   if (!lamp.isPoint())
     while (coarse.coarsen()) {
@@ -234,7 +235,8 @@ Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<co
   // In full, as far as an extended lamp lets it, then with a blur where it shows.
   const State found = chosen->attempt.at;
   const LobeModel start{chosen->lobe, found.roughness(), inWorld(found, few), 0};
-  while (!lamp.isPoint() && evaluationsOf(start, full.all()) > kMostEvaluations && (full.coarsen() || full.coarsen(kFewestFrom))) {
+  while (!lamp.isPoint() && evaluationsOf(start, full.all()) > kMostEvaluations &&
+         (full.coarsen() || full.coarsen(kFewestFrom))) {
   }
   const patch::Normalised& fine = full.all();
   PixelProblem problem(fine, chosen->lobe, chosen->kind);

@@ -32,11 +32,11 @@ struct LobeModel {
 
 /// The linear part of a patch under a lobe: I = strength x S + b.
 struct PatchSolution {
-  double strength = 0;         ///< of S = I / I(topPoint), before the blur; >= 0
-  SurfacePoint topPoint;       ///< the brightest cell of the frame, where S = 1: scales S
+  double strength = 0;             ///< of S = I / I(topPoint), before the blur; >= 0
+  SurfacePoint topPoint;           ///< the brightest cell of the frame, where S = 1: scales S
   std::vector<double> background;  ///< b per cell of the patch, all cells on the surface
   std::vector<double> lobe;        ///< S per cell of the patch, with the blur
-  double relativeRms = 0;      ///< of I - strength S - b over the used cells above a tenth of the top, as a share of the frame's top
+  double relativeRms = 0;  ///< of I - strength S - b over the used cells above a tenth of the top, as a share of the frame's top
 };
 /// Strength and backgrounds of one frame's patches under a known lobe, robust (soft L1).
 /// @param patches  of one frame
@@ -46,7 +46,7 @@ Outcome<std::vector<PatchSolution>> solvePatches(const std::vector<const PixelPa
 
 struct PixelFitOptions {
   int maxIterations = 60;
-  bool blur = true;  ///< estimate the blur where the pixels show it
+  bool blur = true;                          ///< estimate the blur where the pixels show it
   std::optional<BackgroundKind> background;  ///< no other is tried
 };
 
@@ -56,10 +56,10 @@ struct PixelFit {
   /// Of (L homogeneous with |L| = 1 (4), log m (1)), world, as RadianceFit::uncertainty.
   std::optional<ParameterUncertainty> uncertainty;
   Eigen::Matrix3d positionCovariance;  ///< m^2; not finite for a light at infinity
-  double cost = 0;                  ///< robust sum of squares over (share of the frame's top)^2: lobes are compared by it
-  double rmsPx = 0;                 ///< what remains, as a displacement of the contour at half the peak, px
-  std::vector<double> residualPx;   ///< the same per patch
-  std::vector<double> relativeRms;  ///< per patch: what remains as a share of the frame's top
+  double cost = 0;                     ///< robust sum of squares over (share of the frame's top)^2: lobes are compared by it
+  double rmsPx = 0;                    ///< what remains, as a displacement of the contour at half the peak, px
+  std::vector<double> residualPx;      ///< the same per patch
+  std::vector<double> relativeRms;     ///< per patch: what remains as a share of the frame's top
   /// To first order, by which share the cost would fall if a point had a size or a length; 0 for other lamps and at infinity.
   double gainByExtent = 0;
   int cells = 0, iterations = 0;

@@ -8,10 +8,10 @@
 namespace glint {
 namespace {
 
-constexpr std::size_t kLeastCells = 30;   // several per unknown of the background and the lobe
-constexpr double kOthersReach = 2.5;      // footprints of another light's highlight that are left out
-constexpr double kLeastReachPx = 4;       // beyond a small highlight's edge, so that its background shows
-constexpr int kOutline = 64;              // points of an ellipse that bound its box
+constexpr std::size_t kLeastCells = 30;  // several per unknown of the background and the lobe
+constexpr double kOthersReach = 2.5;     // footprints of another light's highlight that are left out
+constexpr double kLeastReachPx = 4;      // beyond a small highlight's edge, so that its background shows
+constexpr int kOutline = 64;             // points of an ellipse that bound its box
 
 /// Squared distance from the centre of an ellipse in units of its semi-axes.
 double squaredRadius(const Ellipse& e, const Pixel& p) {
@@ -137,7 +137,8 @@ Outcome<PixelPatch> pixelPatch(const LinearPixels& pixels, const Camera& camera,
     if (patch.used[i]) patch.top = std::max<double>(patch.top, patch.value[i]);
   }
   if (patch.usedCells() < kLeastCells)
-    return Failure{Reason::TooFewPoints, "only " + std::to_string(patch.usedCells()) + " pixels around the highlight can be used"};
+    return Failure{Reason::TooFewPoints,
+                   "only " + std::to_string(patch.usedCells()) + " pixels around the highlight can be used"};
   if (!(patch.top > 0)) return Failure{Reason::NoHighlight, "only zeros around the highlight"};
   return patch;
 }

@@ -14,16 +14,18 @@
 namespace glint::patch {
 namespace {
 
-constexpr double kStep = 1e-6;       // of the differences by L and log m: both of the order of one
-constexpr double kBlurStep = 1e-3;   // px^2
-constexpr double kMirrorRoughness = 1e-5;  // roughness of a mirror: no pixel shows its lobe
-constexpr double kNoHighlightRoughness = 3;        // roughness beyond which there is no highlight
+constexpr double kStep = 1e-6;               // of the differences by L and log m: both of the order of one
+constexpr double kBlurStep = 1e-3;           // px^2
+constexpr double kMirrorRoughness = 1e-5;    // roughness of a mirror: no pixel shows its lobe
+constexpr double kNoHighlightRoughness = 3;  // roughness beyond which there is no highlight
 constexpr double kLeastSizeSquared = 1e-12;  // of the lamp's radius, normalised: keeps differences finite
 constexpr double kLargestBlurPx = 12;        // beyond it an image shows no contour that could be compared
 constexpr int kFinerRules = 3;               // times that a lamp may outgrow its quadrature
 
 /// Steps of the differences by the squared radius and by the half axis: a small share of them.
-double sizeStep(const State& at) { return std::max(kLeastSizeSquared, 1e-4 * at.radiusSquared); }  // second order stays below 1e-4
+double sizeStep(const State& at) {
+  return std::max(kLeastSizeSquared, 1e-4 * at.radiusSquared);
+}  // second order stays below 1e-4
 double axisStep(const State& at) { return std::max(1e-7, 1e-4 * at.halfAxis.norm()); }
 
 State stateOf(double const* const* parameters, lobe::LampShape shape) {
@@ -155,7 +157,8 @@ void PixelProblem::each(const F& work) {
   solved_.resize(evidence_.frames.size());
   images_.resize(evidence_.frames.size());
   lit_.resize(evidence_.frames.size());
-  parallelFor(static_cast<int>(evidence_.frames.size()), [&](int f) { work(static_cast<std::size_t>(f)); }, {}, "pixels");
+  parallelFor(
+      static_cast<int>(evidence_.frames.size()), [&](int f) { work(static_cast<std::size_t>(f)); }, {}, "pixels");
 }
 
 bool PixelProblem::residualsAt(const State& at, double* out) {

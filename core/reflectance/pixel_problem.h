@@ -78,7 +78,8 @@ struct SolveOptions {
   int maxIterations = 60;
   double tolerance = 1e-9;       ///< of the unknowns; contours resolve 1e-4
   double costTolerance = 1e-12;  ///< of the cost: a session replayed elsewhere comes to the same digits
-  double mostEvaluations = std::numeric_limits<double>::infinity();  ///< in one look: a lamp that outgrows it is given up, with infinite cost
+  double mostEvaluations =
+      std::numeric_limits<double>::infinity();  ///< in one look: a lamp that outgrows it is given up, with infinite cost
   double work = std::numeric_limits<double>::infinity();  ///< evaluations in all; some iterations are always made
 };
 

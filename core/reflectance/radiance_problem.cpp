@@ -24,7 +24,7 @@ constexpr int kMaxFootSteps = 4;
 constexpr double kFootPx = 1e-4;  // a foot this close serves: its error enters the residual in second order
 constexpr double kFarthestFootPx = 8;
 constexpr double kSigmaOfMedian = 1.4826;      // standard deviation over median absolute deviation of a normal distribution
-constexpr double kWidestRoughness = 3;                  // roughness of a lobe that falls to half at 70 degrees and more: no highlight
+constexpr double kWidestRoughness = 3;         // roughness of a lobe that falls to half at 70 degrees and more: no highlight
 constexpr double kNoiseShare = 1.2;            // of the noise's sigma: what a right lobe leaves of it, with some reserve
 constexpr double kSagittaPx = 0.02;            // of contours as polylines
 constexpr double kExactPx = 1e-7;              // residuals of round-off, of which no step can be told better than another
@@ -34,10 +34,10 @@ constexpr double kProbeRadius = 0.4;           // of the lobe's width, as angles
 constexpr double kLeastRadiusSquared = 1e-10;  // normalised: keeps the square root's derivative finite
 // In lobe widths: beyond it contours show the lamp and hardly the lobe, and sums over a disc take minutes.
 constexpr double kLargestSphere = 2.5, kLongestSegment = 12;
-constexpr int kSphereIterations = 25;   // a size that is there is found in a dozen; a wrong lobe creeps along a valley
-constexpr int kSegmentIterations = 60;  // three unknowns more, from starts that are far off
+constexpr int kSphereIterations = 25;      // a size that is there is found in a dozen; a wrong lobe creeps along a valley
+constexpr int kSegmentIterations = 60;     // three unknowns more, from starts that are far off
 constexpr int kFirstRoundIterations = 30;  // fits that explain their contours need 3, at most 20; others creep along a valley
-constexpr double kRatioReserve = 1.3;   // a segment may grow within a round
+constexpr double kRatioReserve = 1.3;      // a segment may grow within a round
 
 /// The maxima follow the light before every evaluation.
 class PeaksFollow : public ceres::EvaluationCallback {
@@ -291,7 +291,8 @@ Attempt RadianceProblem::solve(const State& start) {
       ceres::Problem problem(ownership);
       std::vector<double*> blocks{at.data(), at.data() + kLogRoughness};
       if (shape != LampShape::Point) blocks.push_back(at.data() + shapeStart(shape));
-      for (const Evidence& e : points_) problem.AddResidualBlock(costs.emplace_back(rootCost(shape, *this, e)).get(), &loss, blocks);
+      for (const Evidence& e : points_)
+        problem.AddResidualBlock(costs.emplace_back(rootCost(shape, *this, e)).get(), &loss, blocks);
       if (a.state.atInfinity())
         problem.SetManifold(at.data(), new ceres::ProductManifold<ceres::SphereManifold<3>, ceres::SubsetManifold>(
                                            ceres::SphereManifold<3>(), ceres::SubsetManifold(1, {0})));
@@ -384,7 +385,8 @@ RadianceProblem::SegmentGain RadianceProblem::gainByLength(const State& point) {
   }
   const Probe found = probe(point, columns);
   Eigen::Matrix2d moment;  // of the lamp, over the probe's
-  moment << found.extra(0) + 0.5 * found.extra(2), 0.5 * found.extra(2), 0.5 * found.extra(2), found.extra(1) + 0.5 * found.extra(2);
+  moment << found.extra(0) + 0.5 * found.extra(2), 0.5 * found.extra(2), 0.5 * found.extra(2),
+      found.extra(1) + 0.5 * found.extra(2);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(moment);
   if (!moment.allFinite() || !(eigen.eigenvalues()(1) > 0)) return none;
   const Eigen::Vector2d main = eigen.eigenvectors().col(1);

@@ -13,7 +13,7 @@
 namespace glint {
 namespace {
 
-constexpr double kSegmentGain = 0.2;      // of the sum of squares, before a length is believed
+constexpr double kSegmentGain = 0.2;     // of the sum of squares, before a length is believed
 constexpr std::size_t kLeastFrames = 3;  // that a comparison of left-out ones needs
 constexpr int kAxisScreenPoints = 16, kAxisScreenIterations = 20;
 constexpr std::size_t kPromisingAxes = 3;
@@ -27,7 +27,7 @@ constexpr std::array<double, 2> kStartWidths{0.7, 0.35};
 struct Start {
   Lamp lamp;
   double roughness = 0;
-  double cost = 0;  ///< mean robust square per point after a short fit, px^2
+  double cost = 0;         ///< mean robust square per point after a short fit, px^2
   lobe::Parameters place;  ///< normalised
 
   /// Both lead to the same minimum; a half axis has no sense.
@@ -49,7 +49,8 @@ std::vector<Start> screened(Lobe lobe, const std::vector<RadianceView>& views, c
   lobe::RadianceProblem problem(lobe, views, *std::move(gathered), options);
   lobe::State from = problem.start(light, 1);
   from.shape = lobe::LampShape::Segment;
-  if (!(from.at(3) > 0)) from.at(3) = 0.3 * from.at.head<3>().norm();  // at infinity a length has no meaning: some camera distances away
+  if (!(from.at(3) > 0))
+    from.at(3) = 0.3 * from.at.head<3>().norm();  // at infinity a length has no meaning: some camera distances away
   from.at.head<4>().normalize();
   const Eigen::Vector3d towards = from.at.head<3>().normalized();
   const double distance = from.at.head<3>().norm() / from.at(3);
@@ -96,8 +97,9 @@ std::vector<double> leftOutErrors(const RadianceFit& fit, const std::vector<Radi
 
 }  // namespace
 
-std::optional<RadianceFit> fitSegment(const std::vector<Lobe>& lobes, const std::vector<RadianceView>& views, const RadianceFit* plain,
-                                      const Light& light, double widthRad, const RadianceFitOptions& options) {
+std::optional<RadianceFit> fitSegment(const std::vector<Lobe>& lobes, const std::vector<RadianceView>& views,
+                                      const RadianceFit* plain, const Light& light, double widthRad,
+                                      const RadianceFitOptions& options) {
   std::set<int> frames;
   for (const RadianceView& v : views) frames.insert(v.frame);
   if (frames.size() < kLeastFrames || (plain && plain->noiseOnly)) return std::nullopt;

@@ -14,7 +14,8 @@ namespace glint {
 /// @param lobes     those to try. @param plain  the best point or sphere, or null where there is none.
 /// @param light     first guess, used where `plain` is null or poor. @param widthRad  as searchRadiance.
 /// @return nothing where the contours do not ask for a length, or with fewer than three frames.
-std::optional<RadianceFit> fitSegment(const std::vector<Lobe>& lobes, const std::vector<RadianceView>& views, const RadianceFit* plain,
-                                      const Light& light, double widthRad, const RadianceFitOptions& options = {});
+std::optional<RadianceFit> fitSegment(const std::vector<Lobe>& lobes, const std::vector<RadianceView>& views,
+                                      const RadianceFit* plain, const Light& light, double widthRad,
+                                      const RadianceFitOptions& options = {});
 
 }  // namespace glint

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/report/band_text.h"
 
-
 #include "core/base/number_text.h"
 
 namespace glint {
@@ -33,7 +32,8 @@ std::vector<std::string> bandLines(const Inspection& inspection, const ModelResu
     lines.emplace_back(text);
   }
   for (const ModelResult::Fit& fit : result.fits)
-    for (const std::string& remark : fit.bandRemarks) lines.push_back((result.fits.size() > 1 ? textOf(fit.key()) + ": " : "") + remark);
+    for (const std::string& remark : fit.bandRemarks)
+      lines.push_back((result.fits.size() > 1 ? textOf(fit.key()) + ": " : "") + remark);
   return lines;
 }
 

@@ -40,7 +40,8 @@ bool namesFilesOutside(const Scene& scene) {
 
 std::string shellWord(const std::string& text) {
   const auto plain = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || std::string("_-./=:,+@%").find(c) != std::string::npos;
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+           std::string("_-./=:,+@%").find(c) != std::string::npos;
   };
   if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return text;
   std::string quoted = "'";
@@ -52,7 +53,9 @@ Outcome<std::string> commandOf(const Scene& scene, const InspectionRequest& q) {
   if (!q.whatIf.none()) return Failure{Reason::NotSupported, "a what-if has no flag; save a session and use it as INPUT"};
   const InspectionRequest usual;
   // The command is pasted into a shell that stands in another folder.
-  const auto absolute = [](const std::filesystem::path& path) { return std::filesystem::absolute(path).lexically_normal().string(); };
+  const auto absolute = [](const std::filesystem::path& path) {
+    return std::filesystem::absolute(path).lexically_normal().string();
+  };
   const auto place = [&](const std::filesystem::path& path) { return shellWord(absolute(path)); };
   std::string command = "glint evaluate " + place(scene.file);
   if (q.models != usual.models) {

@@ -122,8 +122,8 @@ std::map<std::string, std::string> changes(const Inspection& run) {
     all["camera of " + id(frame)] = "turned " + vectorText(pose.rotation) + " rad, moved " + vectorText(pose.translation) + " m";
   for (const auto& [at, h] : w.highlights)
     all["highlight " + std::to_string(at.second + 1) + " of " + id(at.first)] =
-        "contour by " + sixDigits(h.contourBy.x()) + " " + sixDigits(h.contourBy.y()) + " px, times " + sixDigits(h.contourScale) +
-        "; peak by " + sixDigits(h.peakBy.x()) + " " + sixDigits(h.peakBy.y()) + " px";
+        "contour by " + sixDigits(h.contourBy.x()) + " " + sixDigits(h.contourBy.y()) + " px, times " +
+        sixDigits(h.contourScale) + "; peak by " + sixDigits(h.peakBy.x()) + " " + sixDigits(h.peakBy.y()) + " px";
   for (const auto& [at, on] : w.lightsSwitched) all["light " + at.second + " in " + id(at.first)] = on ? "on" : "off";
   if (!w.synthesise) return all;
   all["contours"] = "synthesised";

@@ -10,8 +10,8 @@ namespace glint {
 /// detection must know this one.
 struct DetectionError {
   Statistic contourErrorPct, contourErrorPx;  ///< over highlights that overlap a true one, all frames
-  int frames = 0;   ///< with truth
-  int missed = 0;   ///< true highlights without a detected one
+  int frames = 0;                             ///< with truth
+  int missed = 0;                             ///< true highlights without a detected one
 };
 /// None without truth, or where no frame's highlights were detected.
 std::optional<DetectionError> detectionError(const Inspection& inspection);

@@ -8,8 +8,8 @@
 #include "core/base/html_text.h"
 #include "core/base/number_text.h"
 #include "core/draw/overlay_painter.h"
-#include "core/draw/plots.h"
 #include "core/draw/plot_painter.h"
+#include "core/draw/plots.h"
 #include "core/draw/svg_painter.h"
 #include "core/inspect/frame_score.h"
 #include "core/inspect/photograph.h"
@@ -54,8 +54,10 @@ std::string frameFigure(const Inspection& inspection, int frame) {
   const Camera& camera = inspection.scene->frames[std::size_t(frame)].camera;
   if (observed.isEmpty()) observed = Eigen::AlignedBox2d(Pixel(0, 0), Pixel(camera.width - 1, camera.height - 1));
   const double pad = std::max(12.0, 0.5 * observed.sizes().maxCoeff());
-  const int x0 = std::clamp(int(observed.min().x() - pad), 0, camera.width - 1), y0 = std::clamp(int(observed.min().y() - pad), 0, camera.height - 1);
-  const int x1 = std::clamp(int(observed.max().x() + pad), x0 + 1, camera.width), y1 = std::clamp(int(observed.max().y() + pad), y0 + 1, camera.height);
+  const int x0 = std::clamp(int(observed.min().x() - pad), 0, camera.width - 1),
+            y0 = std::clamp(int(observed.min().y() - pad), 0, camera.height - 1);
+  const int x1 = std::clamp(int(observed.max().x() + pad), x0 + 1, camera.width),
+            y1 = std::clamp(int(observed.max().y() + pad), y0 + 1, camera.height);
   // Integer coordinates are pixel centres, so the image starts half a pixel earlier.
   const draw::Crop crop{x0 - 0.5, y0 - 0.5, double(x1 - x0), double(y1 - y0)};
   const draw::Box box{0, 0, kFrameWidth, kFrameWidth * crop.height / crop.width};
@@ -65,7 +67,8 @@ std::string frameFigure(const Inspection& inspection, int frame) {
     for (int y = y0; y < y1; ++y)
       for (int x = x0; x < x1; ++x)
         for (int k = 0; k < 3; ++k)
-          part.at<cv::Vec3b>(y - y0, x - x0)[2 - k] = cv::saturate_cast<unsigned char>(255 * photo->at(x, y, std::min(k, photo->channels - 1)));
+          part.at<cv::Vec3b>(y - y0, x - x0)[2 - k] =
+              cv::saturate_cast<unsigned char>(255 * photo->at(x, y, std::min(k, photo->channels - 1)));
     std::vector<unsigned char> png;
     cv::imencode(".png", part, png);
     painter.picture(png, "image/png", box);
@@ -73,7 +76,8 @@ std::string frameFigure(const Inspection& inspection, int frame) {
   draw::paintOverlay(painter, overlay, crop, box);
   std::string caption;
   for (const draw::OverlayCaption& c : overlay.captions)
-    caption += (c.model.empty() ? "" : "<span style=\"color:" + modelHex(c.model) + "\">&#9632;</span> ") + escaped(c.text) + "<br>";
+    caption +=
+        (c.model.empty() ? "" : "<span style=\"color:" + modelHex(c.model) + "\">&#9632;</span> ") + escaped(c.text) + "<br>";
   const std::string name = std::to_string(frame);
   return "<figure>" + painter.element("contours of frame " + name) + "<figcaption><b>frame " + name + "</b> (" +
          escaped(inspection.scene->frames[std::size_t(frame)].id) + ")<br>" + caption + "</figcaption></figure>\n";
@@ -140,7 +144,8 @@ std::vector<int> worstFrames(const Inspection& inspection, std::size_t count) {
     for (int frame = 0; frame < int(scores.size()); ++frame)
       if (const std::optional<double> pct = wholeErrorPct(scores[std::size_t(frame)]); pct && inspection.isHeldOut(frame))
         sorted.back().emplace_back(frame, *pct);
-    std::stable_sort(sorted.back().begin(), sorted.back().end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+    std::stable_sort(sorted.back().begin(), sorted.back().end(),
+                     [](const auto& a, const auto& b) { return a.second > b.second; });
   }
   std::vector<int> frames;
   std::set<int> seen;
@@ -162,12 +167,15 @@ std::vector<int> worstFrames(const Inspection& inspection, std::size_t count) {
 
 std::string evaluationHtml(const Inspection& inspection, const ReportContext& context) {
   std::string html =
-      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Glint evaluation: " + escaped(inspection.scene->name) +
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Glint evaluation: " +
+      escaped(inspection.scene->name) +
       "</title>\n<style>body{font:14px/1.45 sans-serif;margin:2em auto;max-width:980px;padding:0 1em;color:#222}"
-      "table{border-collapse:collapse;margin:1em 0;width:100%}th,td{padding:.25em .6em;border-bottom:1px solid #ddd;text-align:right}"
+      "table{border-collapse:collapse;margin:1em 0;width:100%}th,td{padding:.25em .6em;border-bottom:1px solid "
+      "#ddd;text-align:right}"
       "th:first-child,td:first-child,td.reason{text-align:left}td:first-child{white-space:nowrap}svg{width:100%;height:auto}"
       ".frames{display:grid;grid-template-columns:repeat(auto-fill,minmax(290px,1fr));gap:1em}figure{margin:0}"
-      "figcaption{font-size:12px;color:#444}.swatch{display:inline-block;width:.8em;height:.8em;margin-right:.4em}</style></head><body>\n";
+      "figcaption{font-size:12px;color:#444}.swatch{display:inline-block;width:.8em;height:.8em;margin-right:.4em}</style></"
+      "head><body>\n";
   html += "<h1>" + escaped(inspection.scene->name) + "</h1>\n<p>Input <code>" + escaped(context.input) +
           "</code>, training <code>" + escaped(inspection.train.text) + "</code> (" +
           std::to_string(inspection.train.frames.size()) + " of " + std::to_string(inspection.scene->frames.size()) +
@@ -191,8 +199,9 @@ std::string evaluationHtml(const Inspection& inspection, const ReportContext& co
         "<th>&micro;s/frame</th><th>remark</th></tr>\n";
     for (const Candidate& c : context.selection->candidates)
       html += "<tr><td><span class=\"swatch\" style=\"background:" + modelHex(c.model) + "\"></span>" + c.model + "</td><td>" +
-              std::to_string(c.answered) + " / " + std::to_string(c.tried) + "</td><td>" + format("%.3g", c.meanPct) + "</td><td>" +
-              format("%.2g", c.standardErrorPct) + "</td><td>" + format("%.3g", c.predictUs) + "</td><td class=\"reason\">" + escaped(c.remark) + "</td></tr>\n";
+              std::to_string(c.answered) + " / " + std::to_string(c.tried) + "</td><td>" + format("%.3g", c.meanPct) +
+              "</td><td>" + format("%.2g", c.standardErrorPct) + "</td><td>" + format("%.3g", c.predictUs) +
+              "</td><td class=\"reason\">" + escaped(c.remark) + "</td></tr>\n";
     html += "</table>\n";
   }
   html +=
@@ -214,13 +223,15 @@ std::string evaluationHtml(const Inspection& inspection, const ReportContext& co
     for (const double v : {s.contourErrorPct.mean, s.contourErrorPct.median, s.contourErrorPct.p95, s.contourErrorPct.max,
                            s.contourErrorPx.mean, s.ellipseErrorPct.mean})
       html += "<td>" + format("%.3g", v) + "</td>";
-    html += "<td>" + format("%.4f", s.iou.mean) + "</td><td>" + format("%.3f", s.coverage.mean) + "</td><td>" + std::to_string(s.matched) +
-            " / " + std::to_string(s.missed) + " / " + std::to_string(s.spurious) + "</td><td>" + format("%.0f", s.timeUs.median) + "</td></tr>\n";
+    html += "<td>" + format("%.4f", s.iou.mean) + "</td><td>" + format("%.3f", s.coverage.mean) + "</td><td>" +
+            std::to_string(s.matched) + " / " + std::to_string(s.missed) + " / " + std::to_string(s.spurious) + "</td><td>" +
+            format("%.0f", s.timeUs.median) + "</td></tr>\n";
   }
   html += "</table>\n";
   for (const std::string& name : inspection.request.models)
     if (inspection.models.count(name))
-      for (const std::string& text : bandLines(inspection, inspection.models.at(name))) html += "<p>" + name + ": " + escaped(text) + "</p>\n";
+      for (const std::string& text : bandLines(inspection, inspection.models.at(name)))
+        html += "<p>" + name + ": " + escaped(text) + "</p>\n";
   html += "<h2>Error over frames</h2>\n" + errorPlotOf(inspection);
   html += "<p>Blue: training frames. Hover over a point for its value.</p>\n";
   html += missedTable(inspection, missedBy(inspection));

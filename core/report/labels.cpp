@@ -13,8 +13,8 @@
 namespace glint {
 namespace {
 
-using nlohmann::ordered_json;
 using json_dom::numberOrNull;
+using nlohmann::ordered_json;
 
 ordered_json pixel(const Pixel& p) { return {numberOrNull(p.x()), numberOrNull(p.y())}; }
 ordered_json vector(const Eigen::Vector3d& v) { return {numberOrNull(v.x()), numberOrNull(v.y()), numberOrNull(v.z())}; }
@@ -41,7 +41,8 @@ ordered_json highlightJson(const PredictedHighlight& h) {
     j["failed_directions"] = ordered_json::array();
     for (const DirectionResult& d : h.canonical->directions)
       if (d.failure)
-        j["failed_directions"].push_back({{"azimuth_deg", numberOrNull(d.azimuth * 180 / M_PI)}, {"reason", d.failure->message()}});
+        j["failed_directions"].push_back(
+            {{"azimuth_deg", numberOrNull(d.azimuth * 180 / M_PI)}, {"reason", d.failure->message()}});
   }
   return j;
 }
@@ -102,9 +103,10 @@ std::string cocoJson(const Inspection& inspection, const std::string& model, con
     if (file.empty()) j["images"].back()["note"] = "no photograph: file_name is the frame's id";
   }
   if (without > 0)
-    j["info"]["note"] =
-        std::to_string(without) + " of " + std::to_string(frames.size()) + " images have no photograph that shows these highlights" +
-        (inspection.request.whatIf.synthesise ? " (their contours are synthesised)" : "") + ": their file_name is the frame's id";
+    j["info"]["note"] = std::to_string(without) + " of " + std::to_string(frames.size()) +
+                        " images have no photograph that shows these highlights" +
+                        (inspection.request.whatIf.synthesise ? " (their contours are synthesised)" : "") +
+                        ": their file_name is the frame's id";
   int id = 1;
   for (const FrameComparison& c : inspection.models.at(model).frames) {
     if (std::find(frames.begin(), frames.end(), c.frame) == frames.end()) continue;
@@ -133,7 +135,8 @@ std::string cocoJson(const Inspection& inspection, const std::string& model, con
     }
   }
   for (std::size_t i = 0; i < lights.size(); ++i)
-    j["categories"].push_back({{"id", static_cast<int>(i) + 1}, {"name", "highlight " + lights[i]}, {"supercategory", "specular highlight"}});
+    j["categories"].push_back(
+        {{"id", static_cast<int>(i) + 1}, {"name", "highlight " + lights[i]}, {"supercategory", "specular highlight"}});
   return j.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -17,9 +17,8 @@
 namespace glint {
 namespace {
 
-using nlohmann::ordered_json;
 using json_dom::numberOrNull;
-
+using nlohmann::ordered_json;
 
 template <class Matrix>
 ordered_json rows(const Matrix& m) {
@@ -40,23 +39,31 @@ ordered_json list(const Vector& v) {
 }
 
 ordered_json statistic(const Statistic& s) {
-  return {{"mean", numberOrNull(s.mean)}, {"median", numberOrNull(s.median)}, {"p95", numberOrNull(s.p95)}, {"max", numberOrNull(s.max)}};
+  return {{"mean", numberOrNull(s.mean)},
+          {"median", numberOrNull(s.median)},
+          {"p95", numberOrNull(s.p95)},
+          {"max", numberOrNull(s.max)}};
 }
 
 ordered_json settingsJson(const Settings& settings) {
   ordered_json out = ordered_json::object();
   for (const ParamSpec& p : allParams()) {
-    if (std::holds_alternative<bool>(p.defaultValue)) out[p.key] = settings.flag(p.key);
-    else if (std::holds_alternative<int>(p.defaultValue)) out[p.key] = settings.integer(p.key);
-    else if (std::holds_alternative<double>(p.defaultValue)) out[p.key] = settings.number(p.key);
-    else out[p.key] = settings.text(p.key);
+    if (std::holds_alternative<bool>(p.defaultValue))
+      out[p.key] = settings.flag(p.key);
+    else if (std::holds_alternative<int>(p.defaultValue))
+      out[p.key] = settings.integer(p.key);
+    else if (std::holds_alternative<double>(p.defaultValue))
+      out[p.key] = settings.number(p.key);
+    else
+      out[p.key] = settings.text(p.key);
   }
   return out;
 }
 
 ordered_json selectionJson(const Selection& s) {
-  ordered_json j = {{"training_views", s.trainingViews}, {"left_out", s.leftOut}, {"views_to_predict", s.toPredict},
-                    {"outside", s.outside}, {"decided_by", s.decidedBy}, {"candidates", ordered_json::array()}};
+  ordered_json j = {{"training_views", s.trainingViews}, {"left_out", s.leftOut},
+                    {"views_to_predict", s.toPredict},   {"outside", s.outside},
+                    {"decided_by", s.decidedBy},         {"candidates", ordered_json::array()}};
   for (const Candidate& c : s.candidates)
     j["candidates"].push_back({{"model", c.model},
                                {"views", c.views},
@@ -158,11 +165,13 @@ void metricsJson(const FrameComparison::Row* row, const FrameComparison& c, orde
   add("axis_ratio_error", m.axisRatioError);
   add("angle_error_deg", m.angleErrorDeg);
   add("peak_offset_px", m.peakOffsetPx);
-  j["coverage"] = row && row->predicted >= 0 ? numberOrNull(c.prediction.highlights()[row->predicted].coverage) : ordered_json(nullptr);
+  j["coverage"] =
+      row && row->predicted >= 0 ? numberOrNull(c.prediction.highlights()[row->predicted].coverage) : ordered_json(nullptr);
   // Only where walks were made on second-order patches: says whether they were good enough.
   if (row && row->predicted >= 0 && c.prediction.highlights()[row->predicted].curvatureVariation)
     j["curvature_variation"] = numberOrNull(*c.prediction.highlights()[row->predicted].curvatureVariation);
-  if (row && row->band) j["band"] = {{"sigma_px", numberOrNull(row->band->sigmaPx)}, {"coverage_95", numberOrNull(row->band->coverage)}};
+  if (row && row->band)
+    j["band"] = {{"sigma_px", numberOrNull(row->band->sigmaPx)}, {"coverage_95", numberOrNull(row->band->coverage)}};
   j["time_us"] = numberOrNull(c.prediction.timeUs);
 }
 
@@ -179,7 +188,9 @@ void frameRows(const Inspection& inspection, const FrameComparison& c, ordered_j
   if (c.rows.empty() && c.prediction.highlights().empty()) {
     ordered_json j = base(0);
     j["status"] = e.scoringFailure() ? "nothing observed" : "failed";
-    j["reason"] = e.scoringFailure() ? e.scoringFailure()->message() : c.prediction.failure() ? c.prediction.failure()->message() : "no highlight";
+    j["reason"] = e.scoringFailure()       ? e.scoringFailure()->message()
+                  : c.prediction.failure() ? c.prediction.failure()->message()
+                                           : "no highlight";
     metricsJson(nullptr, c, j);
     out.push_back(j);
     return;
@@ -187,7 +198,9 @@ void frameRows(const Inspection& inspection, const FrameComparison& c, ordered_j
   for (const FrameComparison::Row& row : c.rows) {
     ordered_json j = base(row.observed >= 0 ? row.observed : row.predicted);
     j["status"] = row.metrics ? "ok" : row.observed >= 0 ? "missed" : row.predicted >= 0 ? "spurious" : "failed";
-    j["reason"] = row.failure ? row.failure->message() : row.observed < 0 && e.scoringFailure() ? e.scoringFailure()->message() : "";
+    j["reason"] = row.failure                              ? row.failure->message()
+                  : row.observed < 0 && e.scoringFailure() ? e.scoringFailure()->message()
+                                                           : "";
     metricsJson(&row, c, j);
     out.push_back(j);
   }
@@ -246,7 +259,8 @@ ordered_json trainingJson(const Inspection& inspection) {
       any = true;
       add(frame, v.highlight.light, v.failure());
     }
-    if (!any && inspection.isTraining(frame)) add(frame, "", inspection.evidence[frame].failure.value_or(Failure{Reason::NoHighlight, ""}));
+    if (!any && inspection.isTraining(frame))
+      add(frame, "", inspection.evidence[frame].failure.value_or(Failure{Reason::NoHighlight, ""}));
   }
   return out;
 }
@@ -326,10 +340,10 @@ std::string evaluationCsv(const Inspection& inspection) {
     for (const FrameComparison& c : it->second.frames)
       if (inspection.isHeldOut(c.frame)) frameRows(inspection, c, rows);
     for (const ordered_json& r : rows) {
-      out += csvText(name) + "," + r["index"].dump() + "," + csvText(r["id"]) + "," + csvText(r["light"]) + "," + r["highlight"].dump() +
-             "," + csvText(r["status"]) + "," + csvText(r["reason"]);
-      for (const char* key : {"contour_error_pct", "contour_error_px", "ellipse_error_pct", "hausdorff_px", "iou", "centre_offset_px",
-                              "axis_ratio_error", "angle_error_deg", "peak_offset_px", "coverage", "time_us"})
+      out += csvText(name) + "," + r["index"].dump() + "," + csvText(r["id"]) + "," + csvText(r["light"]) + "," +
+             r["highlight"].dump() + "," + csvText(r["status"]) + "," + csvText(r["reason"]);
+      for (const char* key : {"contour_error_pct", "contour_error_px", "ellipse_error_pct", "hausdorff_px", "iou",
+                              "centre_offset_px", "axis_ratio_error", "angle_error_deg", "peak_offset_px", "coverage", "time_us"})
         out += "," + (r.contains(key) && !r[key].is_null() ? r[key].dump() : "");
       out += "\n";
     }
@@ -358,7 +372,8 @@ std::string evaluationTable(const Inspection& inspection) {
     }
     double variation = 0;
     for (const FrameComparison& c : it->second.frames)
-      for (const PredictedHighlight& h : c.prediction.highlights()) variation = std::max(variation, h.curvatureVariation.value_or(0));
+      for (const PredictedHighlight& h : c.prediction.highlights())
+        variation = std::max(variation, h.curvatureVariation.value_or(0));
     if (variation > kLargestVariation) {
       out +=
           formatted("%-12s the local quadric is not good enough: curvature varies by up to %.3f over a highlight (limit %.2f)\n",

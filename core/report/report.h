@@ -11,9 +11,9 @@ namespace glint {
 
 /// Facts about a run that the inspection does not hold.
 struct ReportContext {
-  std::string input;          ///< as the user named it
-  std::string chosenModel;    ///< "" = none
-  std::string whyChosen;      ///< one sentence
+  std::string input;                   ///< as the user named it
+  std::string chosenModel;             ///< "" = none
+  std::string whyChosen;               ///< one sentence
   std::optional<Selection> selection;  ///< what the automatic choice tried
   std::string program;                 ///< "glint 0.4.0"; "" = not said
 };

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "core/report/tradeoff_html.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <vector>
 
 #include "core/base/html_text.h"
-#include "core/draw/plots.h"
 #include "core/draw/plot_painter.h"
+#include "core/draw/plots.h"
 #include "core/draw/svg_painter.h"
 #include "core/model/palette.h"
-#include "core/report/tradeoff_html.h"
 #include "core/tradeoff/tradeoff.h"
 
 namespace glint {
@@ -27,7 +28,8 @@ std::string svgOf(const Tradeoff& t) {
   for (const bool dark : {false, true}) {
     draw::SvgPainter painter(kWidth, kHeight);
     draw::paintPlot(painter, plot, {dark, 1}, draw::rangeOf(plot), {}, kWidth, kHeight);
-    html += std::string("<div class=\"") + (dark ? "dark" : "light") + "\">" + painter.element("contour error against time per frame") + "</div>\n";
+    html += std::string("<div class=\"") + (dark ? "dark" : "light") + "\">" +
+            painter.element("contour error against time per frame") + "</div>\n";
   }
   return html;
 }

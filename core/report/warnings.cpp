@@ -13,7 +13,8 @@ void warnOfClipped(const Inspection& inspection, std::vector<std::string>& warni
   for (const FrameEvidence& e : inspection.evidence) {
     const auto clipped = [](const Highlight& h) { return h.clipped; };
     if (e.frame < 0 || std::none_of(e.highlights.begin(), e.highlights.end(), clipped)) continue;
-    if (std::find(inspection.request.excluded.begin(), inspection.request.excluded.end(), e.frame) != inspection.request.excluded.end())
+    if (std::find(inspection.request.excluded.begin(), inspection.request.excluded.end(), e.frame) !=
+        inspection.request.excluded.end())
       continue;
     for (const Highlight& h : e.highlights) known = known && (!h.clipped || h.trueLevel);
     (inspection.isTraining(e.frame) ? training : others).push_back(e.frame);

@@ -55,7 +55,8 @@ bool looksAtATriangle(const TriangleMesh& mesh, const Camera& camera) {
       const Pixel measured((camera.width - 1) * double(i) / kSteps, (camera.height - 1) * double(k) / kSteps);
       const Ray ray = camera.ray(camera.undistorted(measured));
       for (const Eigen::Vector3i& t : mesh.triangles) {
-        const Eigen::Vector3d a = mesh.vertices[std::size_t(t[0])] - ray.origin, b = mesh.vertices[std::size_t(t[1])] - ray.origin,
+        const Eigen::Vector3d a = mesh.vertices[std::size_t(t[0])] - ray.origin,
+                              b = mesh.vertices[std::size_t(t[1])] - ray.origin,
                               c = mesh.vertices[std::size_t(t[2])] - ray.origin;
         // Signed volumes with two corners: of one sign when the ray's line passes inside; the sum weighs the distance.
         const double u = ray.direction.dot(b.cross(c)), v = ray.direction.dot(c.cross(a)), w = ray.direction.dot(a.cross(b));

@@ -41,13 +41,13 @@ struct ConventionReport {
   struct FrameFacts {
     int frame = -1;
     std::string id, surface;
-    int vertices = 0;                                   ///< of its surface; 0 when it has only depth
-    int verticesInFront = 0;                            ///< with positive depth
-    int verticesInImage = 0;                            ///< that project inside the image
-    bool seesSurface = false;                           ///< at least one vertex, a pixel that looks at a triangle, or a valid depth pixel
-    double distance = 0;                                ///< m, camera to the centre of the surface's box; 0 without a surface
-    int depthSamples = 0;                               ///< nearest vertices of 8-pixel cells compared with the depth map
-    double depthMedian = 0, depthP95 = 0;               ///< m, |vertex depth - depth map|
+    int vertices = 0;                      ///< of its surface; 0 when it has only depth
+    int verticesInFront = 0;               ///< with positive depth
+    int verticesInImage = 0;               ///< that project inside the image
+    bool seesSurface = false;              ///< at least one vertex, a pixel that looks at a triangle, or a valid depth pixel
+    double distance = 0;                   ///< m, camera to the centre of the surface's box; 0 without a surface
+    int depthSamples = 0;                  ///< nearest vertices of 8-pixel cells compared with the depth map
+    double depthMedian = 0, depthP95 = 0;  ///< m, |vertex depth - depth map|
     long long pixels = 0, notFinite = 0, negative = 0;  ///< values of the linear image
     std::string source;                                 ///< "radiance" or "image", "" when the frame has neither
     std::vector<std::string> problems;                  ///< files that cannot be read, one line each

@@ -59,7 +59,8 @@ Outcome<Decoded> decode(const fs::path& file, const Camera& camera) {
   Outcome<cv::Mat> pixels = decodeImage(bytes, header);
   if (!pixels) return unreadable(file, pixels.failure().detail);
   if (pixels->cols != camera.width || pixels->rows != camera.height)  // a decoder may know better than the header
-    return unreadable(file, wrongSize(static_cast<std::uint64_t>(pixels->cols), static_cast<std::uint64_t>(pixels->rows), camera));
+    return unreadable(file,
+                      wrongSize(static_cast<std::uint64_t>(pixels->cols), static_cast<std::uint64_t>(pixels->rows), camera));
   return Decoded{std::move(*pixels), header.saysLinear};
 }
 
@@ -170,14 +171,10 @@ std::string fileProblem(const fs::path& file, const Camera& camera) {
 
 std::string frameFileProblem(const Frame& frame, FrameFile kind) {
   switch (kind) {
-    case FrameFile::Depth:
-      return fileProblem(frame.depth, frame.camera);
-    case FrameFile::Normals:
-      return fileProblem(frame.normals, frame.camera);
-    case FrameFile::Mask:
-      return fileProblem(frame.mask, frame.camera);
-    case FrameFile::Photograph:
-      break;
+    case FrameFile::Depth: return fileProblem(frame.depth, frame.camera);
+    case FrameFile::Normals: return fileProblem(frame.normals, frame.camera);
+    case FrameFile::Mask: return fileProblem(frame.mask, frame.camera);
+    case FrameFile::Photograph: break;
   }
   const std::string problem = fileProblem(frame.image, frame.camera);
   return problem.empty() ? fileProblem(frame.radiance, frame.camera) : problem;

@@ -31,8 +31,7 @@ std::vector<int> parseFrames(const std::string& text, const Scene& scene, const 
     if (!k) throw bad("expected first:K or spread:K");
     if (*k < 1 || *k > n) throw bad("the input has " + std::to_string(n) + " frames");
     std::vector<int> frames;
-    for (int i = 0; i < *k; ++i)
-      frames.push_back(kind == "first" ? i : static_cast<int>(static_cast<long long>(i) * n / *k));
+    for (int i = 0; i < *k; ++i) frames.push_back(kind == "first" ? i : static_cast<int>(static_cast<long long>(i) * n / *k));
     return frames;
   }
   // Frame ids win over numbers: "0003" may be an id or the number 3. Numbers are positions in the input.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/scene/image_decode.h"
 
+#include <jerror.h>
+#include <jpeglib.h>
 #include <png.h>
 
 #include <csetjmp>
@@ -13,13 +15,12 @@
 #include <streambuf>
 #include <vector>
 
-#include <jerror.h>
-#include <jpeglib.h>
-
 namespace glint {
 namespace {
 
-Failure undecodable(const std::string& reason) { return Failure{Reason::FrameUnreadable, "the image cannot be decoded: " + reason}; }
+Failure undecodable(const std::string& reason) {
+  return Failure{Reason::FrameUnreadable, "the image cannot be decoded: " + reason};
+}
 
 // ---- PNG. libpng reports errors by a jump over C frames, so the functions that it may leave own nothing.
 
@@ -91,7 +92,8 @@ Outcome<cv::Mat> decodePng(const std::string& bytes, const ImageHeader& header) 
     done = false;
   }
   if (done) {
-    pixels.create(static_cast<int>(header.height), static_cast<int>(header.width), CV_MAKETYPE(bits == 16 ? CV_16U : CV_8U, channels));
+    pixels.create(static_cast<int>(header.height), static_cast<int>(header.width),
+                  CV_MAKETYPE(bits == 16 ? CV_16U : CV_8U, channels));
     std::vector<png_bytep> rows(static_cast<std::size_t>(pixels.rows));
     for (int y = 0; y < pixels.rows; ++y) rows[static_cast<std::size_t>(y)] = pixels.ptr(y);
     done = readPngRows(job, png, rows.data());
@@ -123,10 +125,8 @@ void judgeJpeg(j_common_ptr info, int level) {
     case JWRN_EXTRANEOUS_DATA:  // bytes between segments, which some cameras write
     case JWRN_ADOBE_XFORM:
     case JWRN_JFIF_MAJOR:
-    case JWRN_TOO_MUCH_DATA:
-      return;
-    default:
-      leaveJpeg(info);
+    case JWRN_TOO_MUCH_DATA: return;
+    default: leaveJpeg(info);
   }
 }
 

@@ -17,7 +17,8 @@ class Bytes {
     if (at > bytes_.size() || bytes_.size() - at < static_cast<std::uint64_t>(size)) return std::nullopt;
     std::uint64_t v = 0;
     for (int i = 0; i < size; ++i) {
-      const auto byte = static_cast<unsigned char>(bytes_[static_cast<std::size_t>(at) + static_cast<std::size_t>(big_ ? i : size - 1 - i)]);
+      const auto byte =
+          static_cast<unsigned char>(bytes_[static_cast<std::size_t>(at) + static_cast<std::size_t>(big_ ? i : size - 1 - i)]);
       v = v << 8 | byte;
     }
     return v;
@@ -37,7 +38,9 @@ ImageHeader failed(ImageHeader header, const std::string& problem) {
   return header;
 }
 
-ImageHeader truncated(const ImageHeader& header) { return failed(header, std::string("the ") + nameOf(header.format) + " is truncated"); }
+ImageHeader truncated(const ImageHeader& header) {
+  return failed(header, std::string("the ") + nameOf(header.format) + " is truncated");
+}
 
 ImageHeader damaged(const ImageHeader& header, const std::string& what) {
   return failed(header, std::string("the ") + nameOf(header.format) + " is damaged: " + what);
@@ -169,8 +172,9 @@ ImageHeader exrHeader(std::string_view bytes, ImageHeader h) {
   if (!facts->width || !facts->height || *facts->width < 1 || *facts->height < 1) return damaged(h, "it has no data window");
   h.width = static_cast<std::uint64_t>(*facts->width);
   h.height = static_cast<std::uint64_t>(*facts->height);
-  if (facts->tileWidth && (*facts->tileWidth < 1 || *facts->tileHeight < 1 ||
-                           !fitsImage(static_cast<std::uint64_t>(*facts->tileWidth), static_cast<std::uint64_t>(*facts->tileHeight), h)))
+  if (facts->tileWidth &&
+      (*facts->tileWidth < 1 || *facts->tileHeight < 1 ||
+       !fitsImage(static_cast<std::uint64_t>(*facts->tileWidth), static_cast<std::uint64_t>(*facts->tileHeight), h)))
     return damaged(h, "its tiles are larger than the image");
   constexpr std::uint64_t kTiledDeepOrMultiPart = 0x1A;
   if (*version >> 8 & kTiledDeepOrMultiPart) return h;
@@ -184,7 +188,8 @@ ImageHeader tiffHeader(std::string_view bytes, ImageHeader h) {
   const std::optional<std::uint64_t> entries = directory ? in.number(*directory, 2) : std::nullopt;
   if (!entries) return truncated(h);
   constexpr std::uint64_t kEntry = 12;  // bytes
-  std::optional<std::uint64_t> width, height, channels, tileWidth, tileHeight;  // of strips nothing is asked: "all rows" is often written as 2^32 - 1
+  std::optional<std::uint64_t> width, height, channels, tileWidth,
+      tileHeight;  // of strips nothing is asked: "all rows" is often written as 2^32 - 1
   const auto first = [](std::optional<std::uint64_t>& tag, std::uint64_t value) {
     if (!tag) tag = value;  // the decoder ignores a tag that stands there again
   };
@@ -236,7 +241,8 @@ std::optional<std::uint64_t> textNumber(std::string_view bytes, std::size_t& at)
   constexpr std::size_t kDigits = 9;  // more is no size of an image, and would not fit the arithmetic
   std::uint64_t value = 0;
   const std::size_t start = at;
-  while (at < bytes.size() && bytes[at] >= '0' && bytes[at] <= '9' && at - start < kDigits) value = 10 * value + static_cast<std::uint64_t>(bytes[at++] - '0');
+  while (at < bytes.size() && bytes[at] >= '0' && bytes[at] <= '9' && at - start < kDigits)
+    value = 10 * value + static_cast<std::uint64_t>(bytes[at++] - '0');
   if (at == start) return std::nullopt;
   return value;
 }
@@ -319,10 +325,14 @@ const char* nameOf(ImageFormat format) {
 
 ImageHeader readImageHeader(std::string_view bytes) {
   static const Magic kMagics[] = {
-      {ImageFormat::Png, kPng, pngHeader},          {ImageFormat::Jpeg, "\xff\xd8", jpegHeader},
-      {ImageFormat::Exr, "\x76\x2f\x31\x01", exrHeader}, {ImageFormat::Tiff, kLittleTiff, tiffHeader},
-      {ImageFormat::Tiff, kBigTiff, tiffHeader},    {ImageFormat::Bmp, "BM", bmpHeader},
-      {ImageFormat::Hdr, "#?RADIANCE", hdrHeader},  {ImageFormat::Hdr, "#?RGBE", hdrHeader},
+      {ImageFormat::Png, kPng, pngHeader},
+      {ImageFormat::Jpeg, "\xff\xd8", jpegHeader},
+      {ImageFormat::Exr, "\x76\x2f\x31\x01", exrHeader},
+      {ImageFormat::Tiff, kLittleTiff, tiffHeader},
+      {ImageFormat::Tiff, kBigTiff, tiffHeader},
+      {ImageFormat::Bmp, "BM", bmpHeader},
+      {ImageFormat::Hdr, "#?RADIANCE", hdrHeader},
+      {ImageFormat::Hdr, "#?RGBE", hdrHeader},
   };
   ImageHeader header;
   if (bytes.empty()) return failed(header, "the file is empty (0 bytes)");

@@ -43,12 +43,9 @@ bool OutputKind::holds(const fs::path& file) const {
   const std::string head = headOf(file, std::max(kHead, key_.size()));
   switch (form_) {
     case Form::Document: return documentKind(file) == key_;
-    case Form::Table:
-      return head.starts_with(key_);
-    case Form::Page:
-      return head.starts_with("<!doctype html>") && head.find("<title>Glint") != std::string::npos;
-    case Form::Png:
-      return head.starts_with("\x89PNG\r\n\x1a\n");
+    case Form::Table: return head.starts_with(key_);
+    case Form::Page: return head.starts_with("<!doctype html>") && head.find("<title>Glint") != std::string::npos;
+    case Form::Png: return head.starts_with("\x89PNG\r\n\x1a\n");
     case Form::Movie: return head.size() >= 12 && isMovie(head);
   }
   return false;

@@ -42,8 +42,8 @@ class Outputs {
   void file(const std::string& file, const std::string& flag, const OutputKind& kind);
   /// Files with these names in a folder: where one of them exists, the folder must hold `marker`, a document of this kind, so that an
   /// earlier run wrote them.
-  void inFolder(const std::string& folder, const std::string& flag, const std::vector<std::string>& names, const std::string& marker,
-                const std::string& documentKey);
+  void inFolder(const std::string& folder, const std::string& flag, const std::vector<std::string>& names,
+                const std::string& marker, const std::string& documentKey);
 
  private:
   void requireNoInput(const std::filesystem::path& file, const std::string& flag) const;

@@ -7,9 +7,9 @@
 #include "core/base/atomic_file.h"
 #include "core/base/json_text.h"
 #include "core/base/limits.h"
+#include "core/scene/permitted.h"
 #include "core/scene/scene_files.h"
 #include "core/scene/scene_json.h"
-#include "core/scene/permitted.h"
 #include "core/scene/scene_reader.h"
 #include "core/scene/session_input.h"
 
@@ -37,7 +37,8 @@ bool isJsonObjectWith(const fs::path& file, const std::string& key) {
   const std::size_t at = start.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   if (at == std::string::npos || start[at] != '{') return false;
   constexpr double kMegabyte = 1e6;
-  const double most = std::min(double(size), limitOf(Limit::JsonMegabytes) * kMegabyte);  // what is longer is refused by its reader
+  const double most =
+      std::min(double(size), limitOf(Limit::JsonMegabytes) * kMegabyte);  // what is longer is refused by its reader
   return firstBytes(file, static_cast<std::size_t>(most)).find("\"" + key + "\"") != std::string::npos;
 }
 

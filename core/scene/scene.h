@@ -22,7 +22,7 @@ namespace glint {
 
 /// Where a surface comes from: exactly one of the two is set.
 struct SurfaceSource {
-  std::optional<std::filesystem::path> mesh;   ///< absolute
+  std::optional<std::filesystem::path> mesh;  ///< absolute
   std::optional<AnalyticSpec> analytic;
   std::string named = {};  ///< the mesh's path as the scene file writes it; "" = no file has written it yet
 };
@@ -31,11 +31,11 @@ struct SurfaceSource {
 struct Frame {
   std::string id;
   std::filesystem::path image, radiance, depth, normals, mask;
-  double depthScale = 0;                  ///< metres per stored unit; 0 = not given (then depth must be float)
+  double depthScale = 0;  ///< metres per stored unit; 0 = not given (then depth must be float)
   Camera camera;
-  std::string surface;                    ///< id in Scene::surfaces; "" = this frame's own depth map
-  std::vector<std::string> lightsOn;      ///< empty = not stated
-  std::vector<Highlight> highlights;      ///< given ones; used instead of detection when not empty
+  std::string surface;                ///< id in Scene::surfaces; "" = this frame's own depth map
+  std::vector<std::string> lightsOn;  ///< empty = not stated
+  std::vector<Highlight> highlights;  ///< given ones; used instead of detection when not empty
 };
 
 /// What a file of a frame shows. Photograph: Frame::image and Frame::radiance.
@@ -59,20 +59,21 @@ struct TrueLight {
 /// Everything a scene file says, checked. Images and surfaces are loaded on demand.
 struct Scene {
   std::string name;
-  std::filesystem::path file;             ///< as opened
-  std::filesystem::path folder;           ///< absolute folder of the file; all relative paths start here
-  bool allowOutsidePaths = false;         ///< as it was read with (ReadOptions)
+  std::filesystem::path file;        ///< as opened
+  std::filesystem::path folder;      ///< absolute folder of the file; all relative paths start here
+  bool allowOutsidePaths = false;    ///< as it was read with (ReadOptions)
   std::vector<FilesFolder> folders;  ///< in which frames' files were looked for, in this order: the last that holds a file counts
   std::map<std::string, std::filesystem::path> meshes;  ///< those that lie elsewhere: by the path that the file writes, absolute
   std::vector<Frame> frames;
   std::map<std::string, SurfaceSource> surfaces;
   std::vector<TrueLight> lights;
-  std::vector<std::string> warnings;      ///< unknown keys and other oddities, one line each
-  std::string unknownJson;                ///< unknown keys, kept for writing back, grouped by scene, camera, frames, surfaces, lights; "" = none
+  std::vector<std::string> warnings;  ///< unknown keys and other oddities, one line each
+  std::string
+      unknownJson;  ///< unknown keys, kept for writing back, grouped by scene, camera, frames, surfaces, lights; "" = none
 };
 
 struct ReadOptions {
-  bool allowOutsidePaths = false;         ///< accept paths that leave the scene's folder
+  bool allowOutsidePaths = false;                   ///< accept paths that leave the scene's folder
   std::vector<std::filesystem::path> folders = {};  ///< in which the scene may name files too: those that a person named
   /// Where meshes are instead, by the path that the scene file writes; a mesh may lie anywhere.
   std::map<std::string, std::filesystem::path> meshes = {};
@@ -122,9 +123,9 @@ class SurfaceCache {
   /// Depth maps kept for the next question, beside those that somebody holds. One of 1920 x 1080 takes several hundred MB.
   static constexpr int kDepthMapsKept = 2;
   struct Statistics {
-    int loads = 0;             ///< surfaces built so far
-    int depthMaps = 0;         ///< of them, held now
-    int mostDepthMaps = 0;     ///< held at any time
+    int loads = 0;          ///< surfaces built so far
+    int depthMaps = 0;      ///< of them, held now
+    int mostDepthMaps = 0;  ///< held at any time
   };
   Statistics statistics() const;
 

@@ -24,14 +24,10 @@ std::vector<fs::path> filesOf(const Scene& scene) {
 
 const char* nameOf(FrameFile kind) {
   switch (kind) {
-    case FrameFile::Photograph:
-      return "photographs";
-    case FrameFile::Depth:
-      return "depth";
-    case FrameFile::Normals:
-      return "normals";
-    case FrameFile::Mask:
-      return "masks";
+    case FrameFile::Photograph: return "photographs";
+    case FrameFile::Depth: return "depth";
+    case FrameFile::Normals: return "normals";
+    case FrameFile::Mask: return "masks";
   }
   return "";
 }
@@ -84,14 +80,10 @@ namespace {
 /// The paths of one kind, the one that counts first where both could be the same file.
 std::vector<fs::path*> filesOfKind(Frame& frame, FrameFile kind) {
   switch (kind) {
-    case FrameFile::Photograph:
-      return {&frame.image, &frame.radiance};
-    case FrameFile::Depth:
-      return {&frame.depth};
-    case FrameFile::Normals:
-      return {&frame.normals};
-    case FrameFile::Mask:
-      return {&frame.mask};
+    case FrameFile::Photograph: return {&frame.image, &frame.radiance};
+    case FrameFile::Depth: return {&frame.depth};
+    case FrameFile::Normals: return {&frame.normals};
+    case FrameFile::Mask: return {&frame.mask};
   }
   return {};
 }

@@ -32,8 +32,8 @@ struct Unknown {
     const std::vector<std::string> keys = node.unknownKeys(known);
     constexpr std::size_t kEach = 8;  // as many as a person reads
     if (keys.size() > kEach)
-      scene.warnings.push_back((node.place().empty() ? "" : node.place() + ": ") + std::to_string(keys.size()) + " unknown keys, kept, such as " +
-                               keys.front());
+      scene.warnings.push_back((node.place().empty() ? "" : node.place() + ": ") + std::to_string(keys.size()) +
+                               " unknown keys, kept, such as " + keys.front());
     for (const std::string& key : keys) {
       const JsonNode value = node.at(key);
       if (keys.size() <= kEach) scene.warnings.push_back(value.place() + ": unknown key, kept");
@@ -52,18 +52,44 @@ const std::set<std::string> kLightKeys = {"id", "position", "direction", "segmen
 
 /// Keys that other programs write and that would move what a camera sees or where a surface is: to keep them and go on would answer for another
 /// scene. Matched without regard to case.
-const std::set<std::string> kCameraGeometry = {
-    "k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2", "s1", "s2", "s3", "s4", "omega", "fov", "shear", "alpha_c", "aspect", "aspect_ratio",
-    "pixel_aspect", "distortion_model", "camera_model", "projection", "fisheye", "crop", "crop_x", "crop_y", "offset_x", "offset_y", "binning",
-    "scale", "rotation", "orientation", "shift_x", "shift_y", "rolling_shutter"};
-const std::set<std::string> kFrameGeometry = {"world_from_camera", "camera_to_world", "world_to_camera", "transform_matrix", "transform",
-                                              "pose",              "scale",           "time_offset",     "world_from_object", "object_from_world",
-                                              "camera_from_object", "world_from_surface", "surface_from_world", "undistorted"};
-const std::set<std::string> kSurfaceGeometry = {"world_from_surface", "world_from_mesh", "surface_from_world", "mesh_from_world", "transform",
-                                                "transform_matrix",   "pose",            "scale",              "units",           "offset",
-                                                "origin",             "rotation",        "translation",        "displacement"};
-const std::set<std::string> kSceneGeometry = {"scale", "world_scale", "transform", "world_transform", "coordinate_system", "handedness",
-                                              "up",    "up_axis",     "convention", "origin",         "offset"};
+const std::set<std::string> kCameraGeometry = {"k1",           "k2",          "k3",           "k4",           "k5",
+                                               "k6",           "p1",          "p2",           "s1",           "s2",
+                                               "s3",           "s4",          "omega",        "fov",          "shear",
+                                               "alpha_c",      "aspect",      "aspect_ratio", "pixel_aspect", "distortion_model",
+                                               "camera_model", "projection",  "fisheye",      "crop",         "crop_x",
+                                               "crop_y",       "offset_x",    "offset_y",     "binning",      "scale",
+                                               "rotation",     "orientation", "shift_x",      "shift_y",      "rolling_shutter"};
+const std::set<std::string> kFrameGeometry = {"world_from_camera",
+                                              "camera_to_world",
+                                              "world_to_camera",
+                                              "transform_matrix",
+                                              "transform",
+                                              "pose",
+                                              "scale",
+                                              "time_offset",
+                                              "world_from_object",
+                                              "object_from_world",
+                                              "camera_from_object",
+                                              "world_from_surface",
+                                              "surface_from_world",
+                                              "undistorted"};
+const std::set<std::string> kSurfaceGeometry = {"world_from_surface",
+                                                "world_from_mesh",
+                                                "surface_from_world",
+                                                "mesh_from_world",
+                                                "transform",
+                                                "transform_matrix",
+                                                "pose",
+                                                "scale",
+                                                "units",
+                                                "offset",
+                                                "origin",
+                                                "rotation",
+                                                "translation",
+                                                "displacement"};
+const std::set<std::string> kSceneGeometry = {"scale",      "world_scale", "transform", "world_transform", "coordinate_system",
+                                              "handedness", "up",          "up_axis",   "convention",      "origin",
+                                              "offset"};
 
 void refuseGeometry(const JsonNode& node, const std::set<std::string>& keys) {
   for (const std::string& key : node.keys()) {
@@ -89,7 +115,8 @@ std::set<std::string> analyticKeys(const std::string& type) {
 }  // namespace
 
 bool isIdentifier(const std::string& id) {
-  return !id.empty() && std::none_of(id.begin(), id.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
+  return !id.empty() &&
+         std::none_of(id.begin(), id.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
 }
 
 bool isMadeBySynth(const JsonNode& root) {
@@ -325,10 +352,9 @@ fs::path findMesh(const JsonNode& node, const FrameContext& context) {
     return fs::is_regular_file(file, ignored);
   };
   const auto moved = context.options.meshes.find(named);
-  const fs::path place =
-      moved != context.options.meshes.end()
-          ? fs::absolute(moved->second).lexically_normal()
-          : resolveInside(context.scene.folder, named, context.options, node.file(), node.place());
+  const fs::path place = moved != context.options.meshes.end()
+                             ? fs::absolute(moved->second).lexically_normal()
+                             : resolveInside(context.scene.folder, named, context.options, node.file(), node.place());
   fs::path found = isThere(place) ? place : fs::path();
   for (const fs::path& folder : context.options.meshFolders)
     if (found.empty()) found = sameUnder(fs::absolute(folder), place);

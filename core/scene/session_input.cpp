@@ -41,7 +41,8 @@ SessionInput readSessionInput(const JsonNode& root, const fs::path& folder) {
   SessionInput result;
   result.scene = pathOf(input.at("path"), folder);
   if (const auto n = input.find("allow_outside")) n->boolean();  // what a session says about its own rights counts for nothing
-  if (const auto n = input.find("photographs"); n && !n->isNull()) result.folders.push_back({FrameFile::Photograph, pathOf(*n, folder)});
+  if (const auto n = input.find("photographs"); n && !n->isNull())
+    result.folders.push_back({FrameFile::Photograph, pathOf(*n, folder)});
   const auto all = input.find("folders");
   if (all && all->size() > kMostFolders)
     all->fail("names " + std::to_string(all->size()) + " folders; the limit is " + std::to_string(kMostFolders));
@@ -65,7 +66,8 @@ std::vector<fs::path> foldersOfSession(const fs::path& session, const fs::path& 
 }
 
 namespace {
-void require(bool lies, const fs::path& path, const std::string& file, const std::string& place, const std::string& option, const fs::path& folder) {
+void require(bool lies, const fs::path& path, const std::string& file, const std::string& place, const std::string& option,
+             const fs::path& folder) {
   if (lies) return;
   throw OutsidePath(file, place,
                     "'" + path.string() + "' is outside the folders of the session and its scene (" + option +
@@ -80,8 +82,8 @@ void requireSceneFile(const fs::path& scene, const std::string& session) {
     throw InputError(session, "input.path", "'" + scene.string() + "' is a folder; name the scene file");
 }
 
-void requirePermitted(const fs::path& folder, const std::vector<fs::path>& permitted, const std::string& file, const std::string& place,
-                      const std::string& option) {
+void requirePermitted(const fs::path& folder, const std::vector<fs::path>& permitted, const std::string& file,
+                      const std::string& place, const std::string& option) {
   require(liesIn(permitted, folder), folder, file, place, option, realPath(folder));
 }
 
@@ -110,7 +112,8 @@ void requirePermitted(const SessionInput& input, const std::string& file, const 
   for (std::size_t i = 0; i < input.folders.size(); ++i)
     requirePermitted(input.folders[i].folder, permitted, file, placeOf(i), optionOf(input.folders[i]));
   for (const auto& [named, mesh] : input.meshes)
-    require(liesIn(permitted, mesh), mesh, file, "input.meshes." + named, "--mesh " + named + "=FILE", realPath(mesh).parent_path());
+    require(liesIn(permitted, mesh), mesh, file, "input.meshes." + named, "--mesh " + named + "=FILE",
+            realPath(mesh).parent_path());
 }
 
 }  // namespace glint

@@ -42,7 +42,7 @@ void requirePermitted(const SessionInput& input, const std::string& file, const 
 void requirePermittedFiles(const Scene& scene, const std::vector<FilesFolder>& folders, const std::string& file,
                            const std::vector<std::filesystem::path>& permitted);
 /// The same for one folder. @param option  that names such a folder on the command line, "--photographs"
-void requirePermitted(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& permitted, const std::string& file,
-                      const std::string& place, const std::string& option);
+void requirePermitted(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& permitted,
+                      const std::string& file, const std::string& place, const std::string& option);
 
 }  // namespace glint

@@ -113,7 +113,8 @@ std::string SurfaceCache::keyOf(int index) const {
 
 Outcome<std::shared_ptr<const Surface>> SurfaceCache::surfaceOf(int index, MeshPolicy policy) const {
   const Frame& frame = impl_->frame(index);
-  const std::string key = keyOf(index) + "|" + std::to_string(static_cast<int>(policy.normals)) + std::to_string(static_cast<int>(policy.rays));
+  const std::string key =
+      keyOf(index) + "|" + std::to_string(static_cast<int>(policy.normals)) + std::to_string(static_cast<int>(policy.rays));
   if (frame.surface.empty()) impl_->touch(key);
   return impl_->once(impl_->surfaces, key, [&] {
     {

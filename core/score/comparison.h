@@ -23,23 +23,24 @@ struct BandScore {
 struct FrameComparison {
   int frame = -1;
   std::string light;
-  int fit = -1;                          ///< index into the fits of the model
+  int fit = -1;  ///< index into the fits of the model
   Prediction prediction;
   /// One row per matched pair, per missed observed and per spurious predicted highlight.
   struct Row {
-    int observed = -1;                   ///< index into FrameEvidence::scored(); -1 = spurious
-    int predicted = -1;                  ///< index into prediction.highlights(); -1 = missed
+    int observed = -1;   ///< index into FrameEvidence::scored(); -1 = spurious
+    int predicted = -1;  ///< index into prediction.highlights(); -1 = missed
     std::optional<ContourMetrics> metrics;
     std::optional<Failure> failure;
-    std::optional<BandScore> band;       ///< of a matched pair whose prediction has a band
+    std::optional<BandScore> band;  ///< of a matched pair whose prediction has a band
   };
   std::vector<Row> rows;
-  double iou = 0;                        ///< over the union of all regions of this light
+  double iou = 0;  ///< over the union of all regions of this light
 };
 
 /// Matches a prediction with the frame's scored highlights of one light by overlap and measures each pair (method.md
 /// section 10); what has no partner becomes a row of its own. Predictions are clipped to the image when the observed
 /// contour was cut by its border.
-FrameComparison compareFrame(const FrameEvidence& evidence, const std::string& light, const Camera& camera, Prediction prediction);
+FrameComparison compareFrame(const FrameEvidence& evidence, const std::string& light, const Camera& camera,
+                             Prediction prediction);
 
 }  // namespace glint

@@ -12,23 +12,24 @@ namespace glint {
 
 /// method.md section 10, predicted against observed.
 struct ContourMetrics {
-  double contourErrorPx = 0;      ///< symmetric mean distance over arc length; gaps are not bridged
-  double contourErrorPct = 0;     ///< of the equivalent diameter of the observed region
-  double ellipseErrorPct = 0;     ///< the same between the ellipse of the observed contour and the predicted ellipse; NaN without one
+  double contourErrorPx = 0;   ///< symmetric mean distance over arc length; gaps are not bridged
+  double contourErrorPct = 0;  ///< of the equivalent diameter of the observed region
+  double ellipseErrorPct =
+      0;  ///< the same between the ellipse of the observed contour and the predicted ellipse; NaN without one
   double hausdorffPx = 0;
-  double iou = 0;                 ///< of the filled contours
-  double centreOffsetPx = 0;      ///< between area centroids
-  double axisRatioError = 0;      ///< predicted/observed axis ratio difference of the fitted ellipses
-  double angleErrorDeg = 0;       ///< between the major axes, 0..90; 0 when either is a circle within 1 %
+  double iou = 0;             ///< of the filled contours
+  double centreOffsetPx = 0;  ///< between area centroids
+  double axisRatioError = 0;  ///< predicted/observed axis ratio difference of the fitted ellipses
+  double angleErrorDeg = 0;   ///< between the major axes, 0..90; 0 when either is a circle within 1 %
   double peakOffsetPx = 0;
 };
 
 /// @param gaps  segments of `predicted` (from vertex, to vertex) that are not part of it: not sampled, no distance to them.
 /// @param iou  regionIou of the two where it is known already.
 /// @return values are finite, or NaN where the input does not define them (documented per field).
-ContourMetrics compareContours(const Polyline& observed, const Polyline& predicted,
-                               const std::vector<std::pair<int, int>>& gaps, const std::optional<Ellipse>& predictedEllipse,
-                               const Pixel& observedPeak, const Pixel& predictedPeak, std::optional<double> iou = {});
+ContourMetrics compareContours(const Polyline& observed, const Polyline& predicted, const std::vector<std::pair<int, int>>& gaps,
+                               const std::optional<Ellipse>& predictedEllipse, const Pixel& observedPeak,
+                               const Pixel& predictedPeak, std::optional<double> iou = {});
 
 /// IoU of two filled regions, each the union of closed polylines; exact up to a raster of `cellPx`.
 double regionIou(const std::vector<Polyline>& a, const std::vector<Polyline>& b, double cellPx = 0.1);

@@ -68,8 +68,8 @@ Answer predictLeft(const Fold& fold, const HighlightModel& model, const ModelFit
 
 Outcome<std::shared_ptr<const Surface>> Fold::surfaceOf(int frame, const HighlightModel& model) const {
   const SurfaceCorrection none;
-  return correctedSurface(*inspection->scene, *inspection->surfaces, frame, model.needsLight() && light ? light->correction : none,
-                          meshPolicy(inspection->request.settings));
+  return correctedSurface(*inspection->scene, *inspection->surfaces, frame,
+                          model.needsLight() && light ? light->correction : none, meshPolicy(inspection->request.settings));
 }
 
 Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Settings& settings) {

@@ -16,9 +16,9 @@ namespace glint {
 /// that needs them and serve all that follow.
 struct Fold {
   const Inspection* inspection = nullptr;
-  TrainingView left;                   ///< on its surface as given
-  std::vector<TrainingView> others;    ///< likewise
-  std::optional<LightFit> light;       ///< of the others, with their own correction of the surface
+  TrainingView left;                 ///< on its surface as given
+  std::vector<TrainingView> others;  ///< likewise
+  std::optional<LightFit> light;     ///< of the others, with their own correction of the surface
   bool canonicalTried = false;
   std::shared_ptr<const Surface> leftSurface;  ///< of the left-out view, corrected by what the others say
   std::shared_ptr<const PixelFit> pixelFit;    ///< of exactly these views, where it is known already

@@ -412,7 +412,9 @@ Selection Search::run() {
       choose(m, *goodEnough_);
       return s_;
     }
-    if (!tried_[m].eligible || c.answered < c.views || !(c.meanPct <= kNegligiblePct) || model->traits().surface != ModelTraits::Assumes::Plane) continue;
+    if (!tried_[m].eligible || c.answered < c.views || !(c.meanPct <= kNegligiblePct) ||
+        model->traits().surface != ModelTraits::Assumes::Plane)
+      continue;
     // On a plane such a model is exact; where its predictions are reproduced as well, nothing can be better by what contours resolve.
     checkAssumption(m, shapeUnder(m));
     if (!tried_[m].confirmed) continue;

@@ -26,32 +26,32 @@ struct Candidate {
   /// Contour error to expect in the views to predict: what leaving one out shows, less the noise of the left-out contours, where they
   /// lie inside the training views; that and `outlookPct` where they lie outside. NaN where not computed.
   double expectedPct = std::nan("");
-  std::string remark;    ///< "chosen", "as good as the best, but richer", the first reason of a failure, ...
+  std::string remark;  ///< "chosen", "as good as the best, but richer", the first reason of a failure, ...
 };
 
 /// Whether the chosen model may walk on local quadrics instead of the surface (`predict.query=local-quadric`).
 struct PatchChoice {
-  bool goodEnough = false;      ///< so predict.query may be set
-  double variation = 0;         ///< largest curvatureVariation (core/model/star.h) seen; NaN when no patch could be walked
-  int views = 0;                ///< left-out training views walked on patches
-  int others = 0;               ///< frames to predict whose variation was looked at; of those only camera and surface are used
-  double meanPct = 0;           ///< leave-one-view-out error on patches; NaN when it was not needed or not every view answered
-  double predictUs = 0;         ///< of a prediction on patches, median over views; NaN when it was not needed
-  double exactUs = 0;           ///< the same with exact walks
-  double timeUs = 0;            ///< what finding all this out took
-  std::string why;              ///< one sentence
+  bool goodEnough = false;  ///< so predict.query may be set
+  double variation = 0;     ///< largest curvatureVariation (core/model/star.h) seen; NaN when no patch could be walked
+  int views = 0;            ///< left-out training views walked on patches
+  int others = 0;           ///< frames to predict whose variation was looked at; of those only camera and surface are used
+  double meanPct = 0;       ///< leave-one-view-out error on patches; NaN when it was not needed or not every view answered
+  double predictUs = 0;     ///< of a prediction on patches, median over views; NaN when it was not needed
+  double exactUs = 0;       ///< the same with exact walks
+  double timeUs = 0;        ///< what finding all this out took
+  std::string why;          ///< one sentence
 };
 
 struct Selection {
-  std::string model;                  ///< "" when no candidate answered every view that can be answered, or all expect too large an error
-  std::string why;                    ///< one sentence
-  int trainingViews = 0;              ///< usable ones
-  int leftOut = 0;                    ///< of them left out, one at a time: at most kMostLeftOut, evenly spread
-  int toPredict = 0;                  ///< views to predict that were looked at, and of them those outside the training views
+  std::string model;      ///< "" when no candidate answered every view that can be answered, or all expect too large an error
+  std::string why;        ///< one sentence
+  int trainingViews = 0;  ///< usable ones
+  int leftOut = 0;        ///< of them left out, one at a time: at most kMostLeftOut, evenly spread
+  int toPredict = 0;      ///< views to predict that were looked at, and of them those outside the training views
   int outside = 0;
-  std::string decidedBy;              ///< "leave-one-out" or "extrapolation"; "" when nothing was chosen
-  std::vector<Candidate> candidates;  ///< from simple to rich, as far as the search went
-  std::optional<PatchChoice> patches; ///< none when the chosen model does not walk, or walks on patches already
+  std::string decidedBy;               ///< "leave-one-out" or "extrapolation"; "" when nothing was chosen
+  std::vector<Candidate> candidates;   ///< from simple to rich, as far as the search went
+  std::optional<PatchChoice> patches;  ///< none when the chosen model does not walk, or walks on patches already
 };
 
 /// An error as large as the highlight itself is worth no more than no prediction; a missing prediction counts as this.

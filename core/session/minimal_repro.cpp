@@ -25,8 +25,9 @@ namespace fs = std::filesystem;
 Fault faultOf(const FrameComparison& c, const std::string& model) {
   Fault fault{c.frame, model, c.light, scoreOf(c).errorPct, {}};
   if (fault.errorPct) return fault;
-  const auto failed = std::find_if(c.rows.begin(), c.rows.end(), [](const FrameComparison::Row& row) { return row.failure.has_value(); });
-  fault.reason = c.prediction.failure()  ? c.prediction.failure()->reason
+  const auto failed =
+      std::find_if(c.rows.begin(), c.rows.end(), [](const FrameComparison::Row& row) { return row.failure.has_value(); });
+  fault.reason = c.prediction.failure()   ? c.prediction.failure()->reason
                  : failed != c.rows.end() ? failed->failure->reason
                                           : Reason::NoHighlight;  // nothing observed
   return fault;
@@ -37,7 +38,8 @@ std::vector<TrainingView> viewsOf(const Inspection& inspection, const Fault& fau
   std::vector<TrainingView> views;
   for (int v = 0; v < static_cast<int>(inspection.views.size()); ++v) {
     const TrainingView& view = inspection.views[static_cast<std::size_t>(v)];
-    if (view.highlight.light == fault.light && inspection.keyFor(view.frame, fault.light) == inspection.keyFor(fault.frame, fault.light))
+    if (view.highlight.light == fault.light &&
+        inspection.keyFor(view.frame, fault.light) == inspection.keyFor(fault.frame, fault.light))
       views.push_back(inspection.viewAsGiven(v));
   }
   return views;
@@ -60,7 +62,9 @@ Fault answer(const Inspection& inspection, const Fault& fault, const std::vector
   if (fit) {
     std::shared_ptr<const Surface> surface;
     if (light)
-      if (auto found = correctedSurface(*inspection.scene, *inspection.surfaces, fault.frame, light->correction, meshPolicy(settings))) surface = *found;
+      if (auto found =
+              correctedSurface(*inspection.scene, *inspection.surfaces, fault.frame, light->correction, meshPolicy(settings)))
+        surface = *found;
     prediction = model.predict(*fit, camera, surface.get(), settings);
   } else {
     prediction = fit.failure();

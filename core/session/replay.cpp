@@ -239,8 +239,7 @@ Replay replay(const Session& session, const Relinked& instead, const ProgressFn&
     }
     const double difference = keyResultDifference(name, value, it->second);
     result.largestDifference = std::max(result.largestDifference, difference);
-    if (difference > kAgree)
-      differs(name, "was " + shortest(value) + ", is " + shortest(it->second));
+    if (difference > kAgree) differs(name, "was " + shortest(value) + ", is " + shortest(it->second));
   }
   const bool detectionKnown = std::any_of(session.keyResults.begin(), session.keyResults.end(),
                                           [](const auto& r) { return stageOf(r.first) == ResultStage::Detection; });

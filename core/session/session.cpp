@@ -422,7 +422,8 @@ std::vector<std::string> changedFiles(const Session& session, const Relinked& in
     std::error_code error;
     if (!session.allowOutsidePaths && !liesIn(permitted, f.path)) {
       // Neither whether it is there nor whether its hash matches: a session from others must not find out.
-      lines.push_back(f.path.string() + ": lies outside the folders of the session and its scene; not compared (--allow-outside accepts it)");
+      lines.push_back(f.path.string() +
+                      ": lies outside the folders of the session and its scene; not compared (--allow-outside accepts it)");
     } else if (!fs::exists(f.path, error)) {
       if (!f.sha256.empty()) lines.push_back(f.path.string() + ": missing");
     } else if (sha256OfFile(f.path) != f.sha256) {

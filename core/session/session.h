@@ -51,8 +51,8 @@ struct Recovery {
 
 /// Everything of a session file *.glint (docs/formats.md, "Session"; resources/session.schema.json).
 struct Session {
-  std::filesystem::path file;      ///< as opened; empty for a new session
-  std::filesystem::path input;     ///< absolute path of the scene
+  std::filesystem::path file;        ///< as opened; empty for a new session
+  std::filesystem::path input;       ///< absolute path of the scene
   std::optional<Recovery> recovery;  ///< set in autosaves only
   std::vector<FilesFolder> folders;  ///< in which frames' files are looked for before where the scene says; the last counts
   std::map<std::string, std::filesystem::path> meshes;  ///< absolute, those that lie elsewhere: by the path that the scene writes
@@ -124,7 +124,8 @@ struct Replay {
   std::string firstChanged;              ///< the first stage whose results differ, in words; "" = none
   bool digestAgrees = false;
   int compared = 0;  ///< key results
-  double largestDifference = 0;  ///< of a key result, relative to its size (and to 1e-3 where that is smaller): what 1e-9 is compared with
+  double largestDifference =
+      0;  ///< of a key result, relative to its size (and to 1e-3 where that is smaller): what 1e-9 is compared with
 };
 /// Recomputes a session and compares: key results agree when they differ by at most 1e-9 relatively (or 1e-12 absolutely,
 /// the round-off of numbers of order one).

@@ -42,9 +42,9 @@ Outcome<Measured> pointCase(double k, bool round, const Light& light, double u, 
   const Lamp<Real> lamp = lampOf<Real>(light);
   const RealView<Real> view = mirrorView(s, lamp, u, v, distance, focal, skew);
   // The camera looks a little aside, so that neither the pixel's centre nor a seed is the answer.
-  const Camera camera =
-      cameraTowards(view.camera.centreInWorld(),
-                    rounded(s.point(Real(u), Real(v))) + Eigen::Vector3d(0.05, -0.03, 0.01) * distance * 100 / focal, focal, skew);
+  const Camera camera = cameraTowards(
+      view.camera.centreInWorld(),
+      rounded(s.point(Real(u), Real(v))) + Eigen::Vector3d(0.05, -0.03, 0.01) * distance * 100 / focal, focal, skew);
   const std::optional<Vec<Real>> reference =
       stationary(s, lamp, RealCamera<Real>(camera).eye(), Real(u), Real(v), Real(unitLength));
   if (!reference) return Failure{Reason::NotConverged, "reference"};
@@ -111,16 +111,19 @@ void addBrightestCases(Cases& cases) {
       add(name, degrees, 1e-9, "", [light, a, k] { return pointCase(k, k > 0, light, 0, 0, 1, 800, 0.1, 1 / std::cos(a)); });
     }
   // The camera stands so far that the object is seen as large as by a lens of 800 px from 1 m; the error is over the object's metre.
-  for (const auto& [focal, words] : {std::pair(1e4, "1e4 px at 12.5 m"), std::pair(1e5, "1e5 px at 125 m"), std::pair(1e6, "1e6 px at 1,250 m")})
+  for (const auto& [focal, words] :
+       {std::pair(1e4, "1e4 px at 12.5 m"), std::pair(1e5, "1e5 px at 125 m"), std::pair(1e6, "1e6 px at 1,250 m")})
     for (const double k : {2.0, 0.0}) {
-      add(std::string(k > 0 ? "sphere" : "plane") + ", focal length " + words, focal, 1e-9, "", [d, focal = focal, k]() -> Outcome<Measured> {
-        Outcome<Measured> m = pointCase(k, k > 0, Light::at(2 * d), 0.03, 0.02, focal / 800, focal, 0.1, focal / 800);
-        if (m) m->error *= focal / 800;
-        return m;
-      });
+      add(std::string(k > 0 ? "sphere" : "plane") + ", focal length " + words, focal, 1e-9, "",
+          [d, focal = focal, k]() -> Outcome<Measured> {
+            Outcome<Measured> m = pointCase(k, k > 0, Light::at(2 * d), 0.03, 0.02, focal / 800, focal, 0.1, focal / 800);
+            if (m) m->error *= focal / 800;
+            return m;
+          });
     }
   for (const auto& [skew, words] : {std::pair(1.0, "1 px"), std::pair(30.0, "30 px"), std::pair(1000.0, "1,000 px")}) {
-    add(std::string("sphere, skew ") + words, skew, 1e-9, "", [d, skew = skew] { return pointCase(2, true, Light::at(2 * d), 0.03, 0.02, 1, 800, 0.1, 1, skew); });
+    add(std::string("sphere, skew ") + words, skew, 1e-9, "",
+        [d, skew = skew] { return pointCase(2, true, Light::at(2 * d), 0.03, 0.02, 1, 800, 0.1, 1, skew); });
   }
   for (const double scale : {1e-6, 1e6})
     add(scale < 1 ? "sphere, scene scale 1e-6" : "sphere, scene scale 1e6", scale, 1e-9, "", [scale, d] {

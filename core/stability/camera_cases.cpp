@@ -101,12 +101,14 @@ void addCameraCases(Cases& cases) {
   add("camera", "focal length 50,000 px", 5e4, 1e-9, "", [] {
     return projectAndBack(5e4, {1, 2, 0.5}, {0.003, -0.002, 1.2}, 1);
   });
-  for (const auto& [name, focal] : {std::pair("focal length 1e4 px at 12.5 m", 1e4), std::pair("focal length 1e5 px at 125 m", 1e5),
-                                    std::pair("focal length 1e6 px at 1,250 m", 1e6)})
+  for (const auto& [name, focal] :
+       {std::pair("focal length 1e4 px at 12.5 m", 1e4), std::pair("focal length 1e5 px at 125 m", 1e5),
+        std::pair("focal length 1e6 px at 1,250 m", 1e6)})
     add("camera", name, focal, 1e-9, "", [focal = focal] {
       return projectAndBack(focal, {1, 2, 0.5}, {0.3, -0.2, focal / 800}, focal / 800);
     });
-  for (const auto& [name, skew] : {std::pair("skew 1 px", 1.0), std::pair("skew 30 px", 30.0), std::pair("skew 1,000 px", 1000.0)})
+  for (const auto& [name, skew] :
+       {std::pair("skew 1 px", 1.0), std::pair("skew 30 px", 30.0), std::pair("skew 1,000 px", 1000.0)})
     add("camera", name, skew, 1e-9, "", [skew = skew] { return projectAndBack(800, {1, 2, 0.5}, {0.4, -0.3, 1.2}, 1, skew); });
   add("camera", "scene scale 1e-6", 1e-6, 1e-9, "", [] {
     return projectAndBack(800, {1e-6, 2e-6, 5e-7}, {1e-7, -2e-7, 1e-6}, 1);

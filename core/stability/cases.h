@@ -68,7 +68,7 @@ void addCameraCases(Cases& cases);          ///< projection, rays, lens distorti
 void addAngleCases(Cases& cases);           ///< the incident angle
 void addSurfaceCases(Cases& cases);         ///< ray hits, feet, curvatures
 void addMeshCases(Cases& cases);            ///< meshes, broken ones too
-void addMeshFileCases(Cases& cases);         ///< meshes as io reads them, far from the origin
+void addMeshFileCases(Cases& cases);        ///< meshes as io reads them, far from the origin
 void addBrightestCases(Cases& cases);       ///< predicted brightest points
 void addLightCases(Cases& cases);           ///< triangulation and bundle
 void addWalkCases(Cases& cases);            ///< walks on T and S, canonical contours

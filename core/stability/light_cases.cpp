@@ -239,8 +239,10 @@ void addLightCases(Cases& cases) {
     const Refine what = r.what;
     const char* const note = "exact contours of a point light: nothing to refine";
     add(stage, "light at 2 m", 2, 1e-9, note, [=] { return bundleCase<Real>({.refine = what}, lamp, 1); });
-    add(stage, "scene scale 1e-6", 1e-6, 1e-9, note, [=] { return bundleCase<Real>({.scale = 1e-6, .refine = what}, Light::at(2e-6 * d), 1); });
-    add(stage, "scene scale 1e6", 1e6, 1e-9, note, [=] { return bundleCase<Real>({.scale = 1e6, .refine = what}, Light::at(2e6 * d), 1); });
+    add(stage, "scene scale 1e-6", 1e-6, 1e-9, note,
+        [=] { return bundleCase<Real>({.scale = 1e-6, .refine = what}, Light::at(2e-6 * d), 1); });
+    add(stage, "scene scale 1e6", 1e6, 1e-9, note,
+        [=] { return bundleCase<Real>({.scale = 1e6, .refine = what}, Light::at(2e6 * d), 1); });
     add(stage, "light at 1e9 m", 1e9, 1e-9, note, [=] { return bundleCase<Real>({.refine = what}, Light::at(1e9 * d), 1e9); });
     add(stage, "light at infinity", 0, 1e-9, note, [=] { return bundleCase<Real>({.refine = what}, Light::towards(d), 1); });
     add(stage, "6 views, each 20 times", 20, 1e-9, note,

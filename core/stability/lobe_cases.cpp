@@ -58,7 +58,8 @@ void addLobeCases(Cases& cases) {
       // GGX's tail of 0.7 falls below 0.02 behind the camera only.
       const double lowest = lobe == Lobe::Ggx && m > 0.6 ? 0.1 : 0.02;
       const std::string name = formatted("%s, roughness %g, levels %g to 0.98", nameOf(lobe), m, lowest);
-      cases.push_back(answerCase("lobe contour", name, m, 1e-8, "the peak is found to 1e-4 px, its value to the square of that over the width",
+      cases.push_back(answerCase("lobe contour", name, m, 1e-8,
+                                 "the peak is found to 1e-4 px, its value to the square of that over the width",
                                  [lobe, m, lowest] { return levelsCase(lobe, m, lowest); }));
     }
 }

@@ -20,7 +20,7 @@ namespace {
 
 using Whole = Eigen::Matrix<std::int64_t, 3, 1>;
 
-constexpr int kSide = 13;             // vertices a side
+constexpr int kSide = 13;                // vertices a side
 constexpr std::int64_t kEdge = 100'000;  // between them
 constexpr double kEdgeMetres = 0.1;
 
@@ -145,9 +145,9 @@ Outcome<Measured> hitCase(const FileScene& f) {
     const Ray ray{from, rounded(target - origin).normalized()};
     const Outcome<SurfacePoint> hit = surface->firstHit(ray);
     if (!hit) return hit.failure();
-    const auto reference = exact.hitNear(f.policy, place.element, Real(place.b), Real(place.c), origin, exactly<Real>(ray.direction));
-    const double position =
-        static_cast<double>(length(local(exactly<Real>(hit->position), f.offset) - reference.point));
+    const auto reference =
+        exact.hitNear(f.policy, place.element, Real(place.b), Real(place.c), origin, exactly<Real>(ray.direction));
+    const double position = static_cast<double>(length(local(exactly<Real>(hit->position), f.offset) - reference.point));
     const double normal = apart(hit->normal, reference.normal);
     // A facet's normal turns by the error of its vertices over its edge.
     worst = worstOf({worst, position, f.policy == NormalPolicy::Facet ? normal * kEdgeMetres : normal});
@@ -166,11 +166,12 @@ Outcome<Measured> mirrorCase(const FileScene& f, double degrees) {
   for (int i = 0; i < 8; ++i) {
     const Place place = placeOf(i);
     const auto at = exact.at(f.policy, place.element, Real(place.b), Real(place.c));
-    const Eigen::Vector3d n = rounded(at.normal), t = n.cross(Eigen::Vector3d(std::cos(1.0 * i), std::sin(1.0 * i), 0.1)).normalized();
+    const Eigen::Vector3d n = rounded(at.normal),
+                          t = n.cross(Eigen::Vector3d(std::cos(1.0 * i), std::sin(1.0 * i), 0.1)).normalized();
     const Eigen::Vector3d toLight = std::cos(a) * n + std::sin(a) * t, toEye = 2 * toLight.dot(n) * n - toLight;
     const Light light = Light::at(f.offset + rounded(at.point) + 2 * toLight);
-    const Camera camera = cameraTowards(f.offset + rounded(at.point) + toEye,
-                                        f.offset + rounded(at.point) + 0.02 * t.cross(n), 800);
+    const Camera camera =
+        cameraTowards(f.offset + rounded(at.point) + toEye, f.offset + rounded(at.point) + 0.02 * t.cross(n), 800);
     Lamp<Real> lamp = lampOf<Real>(light);
     lamp = {local(Real(1 / lamp.w) * lamp.l, f.offset), Real(1)};
     const auto reference = exact.mirrorNear(f.policy, place.element, Real(place.b), Real(place.c),
@@ -213,9 +214,11 @@ void addMeshFileCases(Cases& cases) {
       }
   }
   for (const double degrees : {80.0, 85.0, 89.0, 89.9, 89.99}) {
-    const FileScene flat{.policy = NormalPolicy::Facet, .curvature = 0, .condition = 1 / std::cos(degrees * std::numbers::pi / 180)};
+    const FileScene flat{
+        .policy = NormalPolicy::Facet, .curvature = 0, .condition = 1 / std::cos(degrees * std::numbers::pi / 180)};
     const std::string name = formatted("flat mesh, grazing %g degrees", degrees);
-    cases.push_back(answerCase("brightest point", name, degrees, 1e-9, "", [flat, degrees] { return mirrorCase(flat, degrees); }));
+    cases.push_back(
+        answerCase("brightest point", name, degrees, 1e-9, "", [flat, degrees] { return mirrorCase(flat, degrees); }));
     if (degrees > 89.95) {
       cases.back().name = "flat mesh, 0.2 mm under the eye: 89.99 degrees";
       cases.back().note = "the mesh takes a pixel's height of the image, between the rays of the search";

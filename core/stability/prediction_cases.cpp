@@ -254,7 +254,11 @@ void addPredictionCases(Cases& cases) {
       {"grazing 85 degrees", 85, {.curvature = 0.5, .limit = 0.02, .condition = 11.5}, grazingLight(85), 0.05},
       {"grazing 89 degrees", 89, {.curvature = 0.5, .focal = 4e3, .limit = 4e-3, .condition = 57}, grazingLight(89), 0.01},
       {"grazing 89.9 degrees", 89.9, {.curvature = 0.5, .focal = 4e4, .limit = 4e-4, .condition = 573}, grazingLight(89.9), 1e-3},
-      {"grazing 89.99 degrees", 89.99, {.curvature = 0.5, .focal = 4e5, .limit = 4e-5, .condition = 5730}, grazingLight(89.99), 1e-4},
+      {"grazing 89.99 degrees",
+       89.99,
+       {.curvature = 0.5, .focal = 4e5, .limit = 4e-5, .condition = 5730},
+       grazingLight(89.99),
+       1e-4},
   };
   const auto add = [&](const char* stage, const Row& row, auto run) {
     Case c;

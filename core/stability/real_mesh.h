@@ -28,8 +28,8 @@ struct RealMesh {
       normal = normal + w[i] * unit(normals[triangles[element][i]]);
     }
     if (policy == NormalPolicy::Facet) {
-      const Vec<T> &p = vertices[triangles[element].x()], &q = vertices[triangles[element].y()],
-                   &r = vertices[triangles[element].z()];
+      const Vec<T>&p = vertices[triangles[element].x()], &q = vertices[triangles[element].y()],
+            &r = vertices[triangles[element].z()];
       return {flat, unit(cross(q - p, r - p))};
     }
     if (policy == NormalPolicy::Interpolated) return {flat, unit(normal)};

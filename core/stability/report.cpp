@@ -16,7 +16,9 @@ std::string shortNumber(double x) {
 }
 std::string exponent(double x) { return formatted("%.1e", x); }
 /// A failure has no error to show.
-std::string errorText(const StabilityResult& r) { return r.verdict == CaseVerdict::NamedFailure ? "-" : exponent(r.relativeError); }
+std::string errorText(const StabilityResult& r) {
+  return r.verdict == CaseVerdict::NamedFailure ? "-" : exponent(r.relativeError);
+}
 std::string conditionText(const StabilityResult& r) {
   return r.verdict == CaseVerdict::NamedFailure ? "none" : shortNumber(r.condition);
 }
@@ -62,8 +64,8 @@ std::string stabilityTable(const std::vector<StabilityResult>& results) {
 std::string stabilityMarkdown(const std::vector<StabilityResult>& results) {
   std::string out = "| stage | case | condition | relative error | tolerance | verdict | why |\n|---|---|---|---|---|---|---|\n";
   for (const StabilityResult& r : results)
-    out += "| " + r.stage + " | " + r.name + " | " + conditionText(r) + " | " + errorText(r) + " | " + exponent(r.tolerance) + " | " +
-           nameOf(r.verdict) + (r.reason.empty() ? "" : ": " + r.reason) + " | " + r.note + " |\n";
+    out += "| " + r.stage + " | " + r.name + " | " + conditionText(r) + " | " + errorText(r) + " | " + exponent(r.tolerance) +
+           " | " + nameOf(r.verdict) + (r.reason.empty() ? "" : ": " + r.reason) + " | " + r.note + " |\n";
   return out + "\n" + totals(results) + "\n";
 }
 

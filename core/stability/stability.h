@@ -19,13 +19,14 @@ const char* nameOf(CaseVerdict verdict);
 /// One extreme and how the code met it.
 struct StabilityResult {
   std::string name, stage;
-  double parameter = 0;      ///< what was driven to the extreme; its unit is in the name
-  double condition = 1;      ///< change of the answer over change of the input, both relative; the largest double where no unique answer exists
+  double parameter = 0;  ///< what was driven to the extreme; its unit is in the name
+  double condition =
+      1;  ///< change of the answer over change of the input, both relative; the largest double where no unique answer exists
   double relativeError = 0;  ///< against a reference of higher precision; 1 where there is no answer
   double tolerance = 0;      ///< of the relative error
   CaseVerdict verdict = CaseVerdict::Wrong;
-  std::string reason;        ///< of a named failure or of a wrong answer; empty when accurate
-  std::string note;          ///< why this tolerance, or why a failure is right here
+  std::string reason;  ///< of a named failure or of a wrong answer; empty when accurate
+  std::string note;    ///< why this tolerance, or why a failure is right here
 };
 
 /// The extremes of method.md section 13, one after the other. Each compares the code with a reference of higher precision that

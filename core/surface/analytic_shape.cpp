@@ -232,9 +232,7 @@ class GeneralQuadric : public QuadricShape {
 class Torus : public AnalyticShape {
  public:
   Torus(double major, double minor) : major_(major), minor_(minor) {}
-  std::string describe() const override {
-    return "torus of radii " + shown(major_) + " and " + shown(minor_) + " m";
-  }
+  std::string describe() const override { return "torus of radii " + shown(major_) + " and " + shown(minor_) + " m"; }
 
   double value(const Vector3d& p) const override {
     const double q = std::hypot(p.x(), p.y()) - major_;
@@ -342,14 +340,13 @@ std::unique_ptr<const AnalyticShape> makeShape(const AnalyticSpec& spec) {
   if (spec.type == "plane") return std::make_unique<Sheet>(0.0, kInfinity, kInfinity);
   if (spec.type == "sphere") {
     require(positive(spec.radius), "analytic sphere: radius must be positive and finite");
-    return std::make_unique<SphereOrEllipsoid>(Vector3d::Constant(spec.radius),
-                                               "sphere of radius " + shown(spec.radius) + " m");
+    return std::make_unique<SphereOrEllipsoid>(Vector3d::Constant(spec.radius), "sphere of radius " + shown(spec.radius) + " m");
   }
   if (spec.type == "ellipsoid") {
     const Vector3d& a = spec.semiAxes;
     require(positive(a.x()) && positive(a.y()) && positive(a.z()), "analytic ellipsoid: semi_axes must be positive and finite");
-    return std::make_unique<SphereOrEllipsoid>(a, "ellipsoid of semi-axes " + shown(a.x()) + ", " +
-                                                      shown(a.y()) + ", " + shown(a.z()) + " m");
+    return std::make_unique<SphereOrEllipsoid>(
+        a, "ellipsoid of semi-axes " + shown(a.x()) + ", " + shown(a.y()) + ", " + shown(a.z()) + " m");
   }
   if (spec.type == "cylinder") {
     require(positive(spec.radius), "analytic cylinder: radius must be positive and finite");

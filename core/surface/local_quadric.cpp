@@ -103,7 +103,8 @@ Outcome<Curvature> LocalQuadric::curvatureAt(const SurfacePoint& p) const {
 }
 
 Eigen::AlignedBox3d LocalQuadric::bounds() const {
-  return {Vector3d::Constant(-std::numeric_limits<double>::infinity()), Vector3d::Constant(std::numeric_limits<double>::infinity())};
+  return {Vector3d::Constant(-std::numeric_limits<double>::infinity()),
+          Vector3d::Constant(std::numeric_limits<double>::infinity())};
 }
 
 TriangleMesh LocalQuadric::tessellate(const Eigen::AlignedBox3d& region, int resolution) const {
@@ -114,8 +115,7 @@ TriangleMesh LocalQuadric::tessellate(const Eigen::AlignedBox3d& region, int res
   for (int j = 0; j <= resolution; ++j)
     for (int i = 0; i <= resolution; ++i) {
       const double a = size * (2.0 * i / resolution - 1), b = size * (2.0 * j / resolution - 1);
-      const Outcome<SurfacePoint> p =
-          foot(origin_.position + a * frame_.col(0) + b * frame_.col(1), origin_.normal, origin_);
+      const Outcome<SurfacePoint> p = foot(origin_.position + a * frame_.col(0) + b * frame_.col(1), origin_.normal, origin_);
       if (!p) continue;
       index[j * (resolution + 1) + i] = static_cast<int>(mesh.vertices.size());
       mesh.vertices.push_back(p->position);
@@ -123,7 +123,8 @@ TriangleMesh LocalQuadric::tessellate(const Eigen::AlignedBox3d& region, int res
     }
   for (int j = 0; j < resolution; ++j)
     for (int i = 0; i < resolution; ++i) {
-      const int n = j * (resolution + 1) + i, a = index[n], b = index[n + 1], c = index[n + resolution + 1], d = index[n + resolution + 2];
+      const int n = j * (resolution + 1) + i, a = index[n], b = index[n + 1], c = index[n + resolution + 1],
+                d = index[n + resolution + 2];
       if (a < 0 || b < 0 || c < 0 || d < 0) continue;
       mesh.triangles.emplace_back(a, b, d);
       mesh.triangles.emplace_back(a, d, c);

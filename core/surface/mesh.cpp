@@ -330,7 +330,7 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces, 
   AlignedBox3d bounds_;
   Vector3d centre_{0, 0, 0};
   double size_ = 1;
-  std::optional<MeshRays> rays_;  ///< always there once built
+  std::optional<MeshRays> rays_;     ///< always there once built
   mutable std::once_flag treeOnce_;  ///< built by the first search
   mutable std::unique_ptr<const NormalTree> tree_;
   mutable std::once_flag outwardOnce_;  ///< known from the first question about parts on
@@ -372,8 +372,8 @@ const NormalTree* MeshSurface::normalTree() const {
   return tree_.get();
 }
 
-std::optional<std::vector<SurfacePart>> MeshSurface::partsThatMay(const MirrorQuery& query, double lightReach, const PartTest& test,
-                                                                  std::size_t most) const {
+std::optional<std::vector<SurfacePart>> MeshSurface::partsThatMay(const MirrorQuery& query, double lightReach,
+                                                                  const PartTest& test, std::size_t most) const {
   const NormalTree* tree = normalTree();
   if (!tree) return std::nullopt;
   std::call_once(outwardOnce_, [this] { outwardDeviation_ = outwardDeviation(mesh_, topology_, mesh_.normals); });
@@ -435,7 +435,8 @@ std::vector<std::optional<SurfacePoint>> MeshSurface::approximateHits(const std:
   return hits;
 }
 
-std::vector<char> MeshSurface::occlusions(const std::vector<SurfacePoint>& from, const Vector3d& to, int asks, bool oneIsEnough) const {
+std::vector<char> MeshSurface::occlusions(const std::vector<SurfacePoint>& from, const Vector3d& to, int asks,
+                                          bool oneIsEnough) const {
   std::vector<char> result(from.size(), 0);
   rays_->obstacles(from, to, kOcclusionStart, asks, [&](std::size_t i, bool certain) {
     // Where single precision may be wrong double decides, as for a single point.

@@ -9,7 +9,9 @@ namespace glint {
 /// What `surface.normals` and `surface.rays` ask for.
 inline MeshPolicy meshPolicy(const Settings& settings) {
   const std::string& normals = settings.text("surface.normals");
-  return {normals == "facet" ? NormalPolicy::Facet : normals == "curved" ? NormalPolicy::Curved : NormalPolicy::Interpolated,
+  return {normals == "facet"    ? NormalPolicy::Facet
+          : normals == "curved" ? NormalPolicy::Curved
+                                : NormalPolicy::Interpolated,
           settings.text("surface.rays") == "single" ? RayPrecision::Single : RayPrecision::Double};
 }
 

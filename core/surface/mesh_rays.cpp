@@ -23,8 +23,9 @@ namespace {
 constexpr int kPacket = 8;
 /// Embree asserts that no coordinate of a ray exceeds 1.8e18. What is that far from the mesh never meets it.
 constexpr double kRange = 1e18;
-constexpr float kAside = 2e-6f;   // some ten units of single precision: far enough from a vertex, and double decides about the true ray
-constexpr float kClear = 1e-3f;   // of the unit: what is met this far from both ends is none of single precision's making
+constexpr float kAside =
+    2e-6f;  // some ten units of single precision: far enough from a vertex, and double decides about the true ray
+constexpr float kClear = 1e-3f;  // of the unit: what is met this far from both ends is none of single precision's making
 
 void setRay(RTCRayHit8& packet, int k, const Vector3f& o, const Vector3f& d, float from, float to) {
   packet.ray.org_x[k] = o.x();
@@ -56,10 +57,10 @@ MeshRays::MeshRays(const TriangleMesh& mesh, const std::vector<char>& alive, con
   }
   scene_ = rtcNewScene(device_);
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                                                               mesh.vertices.size()));
-  auto* corners = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned),
-                                                                 mesh.triangles.size()));
+  auto* vertices = static_cast<float*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.vertices.size()));
+  auto* corners = static_cast<unsigned*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), mesh.triangles.size()));
   if (!vertices || !corners) {
     rtcReleaseGeometry(geometry);
     rtcReleaseScene(scene_);
@@ -89,7 +90,8 @@ MeshRays::~MeshRays() {
   rtcReleaseDevice(device_);
 }
 
-MeshRays::Search::Search(const MeshRays& rays, const Vector3d& start, const Vector3d& d, double length) : rays_(rays), direction_(d) {
+MeshRays::Search::Search(const MeshRays& rays, const Vector3d& start, const Vector3d& d, double length)
+    : rays_(rays), direction_(d) {
   const Vector3d local = (start - rays.centre_) * rays.scale_;
   outside_ = !(local.cwiseAbs().maxCoeff() < kRange);
   if (outside_) return;

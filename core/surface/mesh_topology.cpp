@@ -142,7 +142,8 @@ std::vector<Vector3d> vertexNormals(const TriangleMesh& mesh, const MeshTopology
   return normals;
 }
 
-std::optional<double> outwardDeviation(const TriangleMesh& mesh, const MeshTopology& topology, const std::vector<Vector3d>& normals) {
+std::optional<double> outwardDeviation(const TriangleMesh& mesh, const MeshTopology& topology,
+                                       const std::vector<Vector3d>& normals) {
   const int count = static_cast<int>(mesh.triangles.size());
   std::vector<char> seen(count, 0);
   std::vector<int> part;

@@ -29,6 +29,7 @@ std::vector<Eigen::Vector3d> vertexNormals(const TriangleMesh& mesh, const MeshT
 /// seen only where its outward normal faces the eye, unless the part turns inside out where it passes through itself.
 /// Nothing for a mesh with a border, an edge of more than two triangles, or no orientation.
 /// @param normals  unit, of the vertices
-std::optional<double> outwardDeviation(const TriangleMesh& mesh, const MeshTopology& topology, const std::vector<Eigen::Vector3d>& normals);
+std::optional<double> outwardDeviation(const TriangleMesh& mesh, const MeshTopology& topology,
+                                       const std::vector<Eigen::Vector3d>& normals);
 
 }  // namespace glint

@@ -289,7 +289,8 @@ std::optional<std::vector<std::pair<int, double>>> NormalTree::partsThatMay(cons
                                                                             std::optional<double> fromOutside) const {
   const View view = viewOf(query);
   // N.V below this is turned away. 2: never.
-  const float away = fromOutside && *fromOutside < 0.5 * std::numbers::pi ? static_cast<float>(std::sin(*fromOutside)) + kCosineMargin : 2.f;
+  const float away =
+      fromOutside && *fromOutside < 0.5 * std::numbers::pi ? static_cast<float>(std::sin(*fromOutside)) + kCosineMargin : 2.f;
   const float reach = static_cast<float>(lightReach / view.lightUnit * (1 + kBallMargin));
   const float unitSquared = static_cast<float>(view.lightUnit * view.lightUnit);
   std::vector<std::pair<int, double>> found;
@@ -303,7 +304,8 @@ std::optional<std::vector<std::pair<int, double>>> NormalTree::partsThatMay(cons
     const Eight coneCosine = b.cosine * h.cosine - b.sine * h.sine, coneSine = b.sine * h.cosine + b.cosine * h.sine;
     const Eight along = h.between.abs().min(1.f), across = (1.f - along * along).sqrt();
     const Eight apartSine = (across * coneCosine - along * coneSine - kCosineMargin).max(0.f);
-    const Eight apartCosine = (along * coneCosine + across * coneSine + kCosineMargin).max(1e-3f);  // 1e-3: an angle near 90 degrees
+    const Eight apartCosine =
+        (along * coneCosine + across * coneSine + kCosineMargin).max(1e-3f);  // 1e-3: an angle near 90 degrees
     const Eigen::Array<bool, 8, 1> overlap = along + kCosineMargin >= coneCosine || coneCosine <= 0.f;
     bounds.tanSquared = overlap.select(Eight::Zero(), (apartSine / apartCosine).square());
     // The angle between axis and V, plus both cones.

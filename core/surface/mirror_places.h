@@ -37,8 +37,9 @@ class NormalTree {
   /// The same for what BoundedParts::partsThatMay asks, with the radii of the parts' balls, world units.
   /// @param fromOutside  parts are left out in which every normal points away from the eye by more than this angle (rad) beyond a
   ///   right one: outwardDeviation, for an eye outside of the box.
-  std::optional<std::vector<std::pair<int, double>>> partsThatMay(const MirrorQuery& query, double lightReach, const PartTest& test,
-                                                                  std::size_t most, std::optional<double> fromOutside) const;
+  std::optional<std::vector<std::pair<int, double>>> partsThatMay(const MirrorQuery& query, double lightReach,
+                                                                  const PartTest& test, std::size_t most,
+                                                                  std::optional<double> fromOutside) const;
   /// Every part is one triangle.
   bool finest() const { return finest_; }
 
@@ -61,10 +62,10 @@ class NormalTree {
   };
   /// H over the balls of a block: the direction at their centres, and how far it turns within them.
   struct Halfway {
-    Eight toEye, toLight, sum;    ///< lengths of V, L (scaled, not unit) and of unit(L) + unit(V), at the centres
-    Eight viewAlong, between;     ///< V.axis and H.axis, at the centres
-    Eight sine, cosine;           ///< of the half angle of the cone around H
-    Eight viewChord;              ///< of the half angle of the cone around V
+    Eight toEye, toLight, sum;  ///< lengths of V, L (scaled, not unit) and of unit(L) + unit(V), at the centres
+    Eight viewAlong, between;   ///< V.axis and H.axis, at the centres
+    Eight sine, cosine;         ///< of the half angle of the cone around H
+    Eight viewChord;            ///< of the half angle of the cone around V
   };
   View viewOf(const MirrorQuery& query) const;
   static Halfway halfwayOf(const Block& b, const View& view, float lightReach);

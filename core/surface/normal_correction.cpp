@@ -16,8 +16,10 @@ Eigen::Vector3d NormalCorrection::gradientAt(const Eigen::Vector3d& x) const {
   return g;
 }
 
-Outcome<std::shared_ptr<const Surface>> correctedMesh(const Surface& mesh, MeshPolicy policy, const NormalCorrection& correction) {
-  require(correction.length > 0 && correction.weights.size() == Eigen::Index(correction.centres.size()), "correctedMesh: a weight per centre, a length");
+Outcome<std::shared_ptr<const Surface>> correctedMesh(const Surface& mesh, MeshPolicy policy,
+                                                      const NormalCorrection& correction) {
+  require(correction.length > 0 && correction.weights.size() == Eigen::Index(correction.centres.size()),
+          "correctedMesh: a weight per centre, a length");
   if (policy.normals == NormalPolicy::Facet) return Failure{Reason::NotSupported, "facet normals cannot be corrected"};
   TriangleMesh turned = mesh.tessellate(Eigen::AlignedBox3d(), 0);
   if (turned.triangles.empty() || turned.normals.size() != turned.vertices.size())

@@ -43,7 +43,8 @@ inline Eigen::Vector3d beyondSurface(const Surface& surface, const Eigen::Vector
 }
 
 /// Where occlusion of a light is tested to: the light, or `beyondSurface` when it is at infinity or farther than doubles reach.
-inline Eigen::Vector3d occlusionTarget(const Surface& surface, const Eigen::Vector3d& point, const Light& light, double viewDistance) {
+inline Eigen::Vector3d occlusionTarget(const Surface& surface, const Eigen::Vector3d& point, const Light& light,
+                                       double viewDistance) {
   if (!light.atInfinity()) {
     const Eigen::Vector3d position = light.position();
     if (position.allFinite()) return position;

@@ -148,7 +148,8 @@ Outcome<std::vector<Highlight>> exactHighlights(const Surface& surface, const Ca
     h.peakValue = limit ? 0 : std::exp(value);
     const double outer = options.marginPx - 1e-6;  // px: vertices on the border lie on it to the root finder's tolerance
     for (const Pixel& p : h.contour.points)
-      h.touchesBorder = h.touchesBorder || p.minCoeff() < -outer || p.x() > camera.width - 1 + outer || p.y() > camera.height - 1 + outer;
+      h.touchesBorder =
+          h.touchesBorder || p.minCoeff() < -outer || p.x() > camera.width - 1 + outer || p.y() > camera.height - 1 + outer;
     if (const Outcome<Ellipse> ellipse = fitEllipse(h.contour.points)) h.ellipse = *ellipse;
     highlights.push_back(std::move(h));
   }

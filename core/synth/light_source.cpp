@@ -41,7 +41,8 @@ std::vector<LightSample> sampleSphere(const Eigen::Vector3d& centre, double radi
 }
 
 /// Errors of log I below 1e-7 down to a thousandth of the peak, to three lobe widths.
-std::vector<LightSample> sampleSphere(const Eigen::Vector3d& centre, double radius, const Eigen::Vector3d& point, double lobeWidth) {
+std::vector<LightSample> sampleSphere(const Eigen::Vector3d& centre, double radius, const Eigen::Vector3d& point,
+                                      double lobeWidth) {
   const double ratio = std::atan2(radius, (centre - point).norm()) / lobeWidth;
   struct Rung {
     double ratio;  // largest that the rule serves

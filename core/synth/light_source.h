@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "core/reflectance/lobe.h"
 #include "core/scene/scene.h"
 #include "core/surface/surface.h"
-#include "core/reflectance/lobe.h"
 
 namespace glint {
 
@@ -28,8 +28,8 @@ struct Shading {
 
 /// One direction that light comes from.
 struct LightSample {
-  Eigen::Vector3d direction;  ///< unit, from the point to the light
-  double weight = 0;          ///< irradiance on a plane facing it
+  Eigen::Vector3d direction;              ///< unit, from the point to the light
+  double weight = 0;                      ///< irradiance on a plane facing it
   std::optional<Eigen::Vector3d> target;  ///< a world point towards which occlusion is tested; empty for a light at infinity
 };
 

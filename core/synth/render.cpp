@@ -33,7 +33,8 @@ void writeImage(const fs::path& file, const cv::Mat& mat, int jpegQuality = 0) {
   // In memory first: the libraries' own writing prints, and may crash, when the disk is full.
   std::vector<unsigned char> bytes;
   std::vector<int> parameters;
-  if (file.extension() == ".tiff") parameters = {cv::IMWRITE_TIFF_COMPRESSION, 1};  // uncompressed: the default for floats is lossy
+  if (file.extension() == ".tiff")
+    parameters = {cv::IMWRITE_TIFF_COMPRESSION, 1};  // uncompressed: the default for floats is lossy
   if (jpegQuality > 0) parameters = {cv::IMWRITE_JPEG_QUALITY, jpegQuality};
   bool encoded = false;
   try {
@@ -241,7 +242,8 @@ void renderFrames(Scene& scene, const RenderOptions& render, const Material& mat
         Frame& frame = scene.frames[static_cast<std::size_t>(i)];
         const Outcome<std::shared_ptr<const Surface>> surface = surfaces.surfaceOf(i, NormalPolicy::Curved);
         RenderedFrame r = renderFrame(**surface, frame.camera, lightsOf(scene, frame), material, render.samples);
-        const auto write = [&](fs::path& named, const char* kind, const std::string& extension, const cv::Mat& mat, int jpegQuality) {
+        const auto write = [&](fs::path& named, const char* kind, const std::string& extension, const cv::Mat& mat,
+                               int jpegQuality) {
           const fs::path file = fs::path(kind) / (fileNameOf(frame.id) + extension);
           named = scene.folder / file;
           writeImage(out / file, mat, jpegQuality);

@@ -110,7 +110,8 @@ Material readMaterial(const JsonNode& render) {
   if (const auto n = render.find("roughness")) material.roughness = inRange(*n, 1e-4, 10);
   if (const auto n = render.find("specular")) material.specular = inRange(*n, 1e-12, 1e12);
   if (const auto n = render.find("diffuse")) {
-    material.diffuse = n->isArray() ? boundedAll(*n, kLargestFactor).vector3() : Eigen::Vector3d::Constant(bounded(*n, kLargestFactor));
+    material.diffuse =
+        n->isArray() ? boundedAll(*n, kLargestFactor).vector3() : Eigen::Vector3d::Constant(bounded(*n, kLargestFactor));
     if (!(material.diffuse.minCoeff() >= 0)) n->fail("must not be negative");
   }
   return material;

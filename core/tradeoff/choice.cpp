@@ -20,7 +20,8 @@ std::string costText(const TradeoffPoint& p) {
 double rankedErrorPct(const TradeoffPoint& p) {
   const bool complete = p.missed == 0 && p.spurious == 0 && p.predicted == p.frames && p.coverage >= kFullCoverage;
   if (complete) return p.contourErrorPct;
-  const double missed = p.missed, spurious = p.spurious, all = p.matched + missed + spurious;  // counts of a file may be as large as an int
+  const double missed = p.missed, spurious = p.spurious,
+               all = p.matched + missed + spurious;  // counts of a file may be as large as an int
   if (all == 0) return 100;
   const double coverage = std::isfinite(p.coverage) ? std::clamp(p.coverage, 0.0, 1.0) : 0;
   const double matched = p.matched > 0 ? coverage * p.contourErrorPct + (1 - coverage) * 100 : 0;

@@ -12,7 +12,7 @@ namespace glint {
 struct Knob {
   std::string key;                   ///< dotted name
   std::vector<SettingValue> values;  ///< the base value among them
-  std::string onlyModel = {};  ///< the one model that looks at it; "" = any
+  std::string onlyModel = {};        ///< the one model that looks at it; "" = any
 };
 
 /// The knobs of `params` (method.md section 12), so that a setting which is added later is tried without further work: of the

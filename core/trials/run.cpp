@@ -26,9 +26,9 @@ std::string workKey(const Scene& scene, const InspectionRequest& request, const 
   Sha256 hash;
   const std::string noise = formatted("%.17g", request.noisePx);
   for (const SessionFile& f : hashInputs(scene, request, progress)) hash.add(f.path.string() + "=" + f.sha256 + "\n");
-  hash.add(request.train + "|" + (request.source == FrameSource::Image ? "image" : "radiance") + "|" +
-           noise + "|" + std::to_string(request.seed) + "|" + request.truthFolder + "|" +
-           std::to_string(options.repeats) + "|" + options.program);
+  hash.add(request.train + "|" + (request.source == FrameSource::Image ? "image" : "radiance") + "|" + noise + "|" +
+           std::to_string(request.seed) + "|" + request.truthFolder + "|" + std::to_string(options.repeats) + "|" +
+           options.program);
   for (const int f : request.excluded) hash.add("x" + std::to_string(f));
   for (const ParamSpec& p : allParams()) hash.add(p.key + "=" + textOf(valueOf(request.settings, p)) + "\n");
   return hash.hex();

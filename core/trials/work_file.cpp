@@ -23,10 +23,17 @@ Json toJson(const TrialResult& r) {
   return {{"error_pct", numberOrNull(r.errorPct)}, {"us", numberOrNull(r.us)}, {"predictions", r.predictions}};
 }
 Json toJson(const TradeoffPoint& p) {
-  return {{"frames", p.frames},        {"predicted", p.predicted},       {"matched", p.matched},
-          {"missed", p.missed},        {"spurious", p.spurious},         {"contour_error_pct", numberOrNull(p.contourErrorPct)},
-          {"iou", numberOrNull(p.iou)},      {"coverage", numberOrNull(p.coverage)}, {"predict_us", numberOrNull(p.predictUs)},
-          {"fit_us", numberOrNull(p.fitUs)}, {"peak_mb", numberOrNull(p.peakMb)}};
+  return {{"frames", p.frames},
+          {"predicted", p.predicted},
+          {"matched", p.matched},
+          {"missed", p.missed},
+          {"spurious", p.spurious},
+          {"contour_error_pct", numberOrNull(p.contourErrorPct)},
+          {"iou", numberOrNull(p.iou)},
+          {"coverage", numberOrNull(p.coverage)},
+          {"predict_us", numberOrNull(p.predictUs)},
+          {"fit_us", numberOrNull(p.fitUs)},
+          {"peak_mb", numberOrNull(p.peakMb)}};
 }
 
 void fromJson(const JsonNode& j, TrialResult& r) {

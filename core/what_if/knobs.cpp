@@ -17,7 +17,7 @@ constexpr double kSteps = 200;        // of a slider from end to end
 const char* const kAxes[] = {"x", "y", "z"};
 
 ParamSpec numberKnob(const std::string& key, const std::string& title, const std::string& unit, double neutral, double min,
-                 double max, double step, const std::string& help) {
+                     double max, double step, const std::string& help) {
   ParamSpec s;
   s.key = key;
   s.title = title;
@@ -122,7 +122,7 @@ void addPose(std::vector<WhatIfKnob>& knobs, const Scene& scene, int frame, doub
   for (int axis = 0; axis < 3; ++axis)
     knobs.push_back({group,
                      numberKnob("pose.move." + std::string(kAxes[axis]), std::string("Move along ") + kAxes[axis], "m", 0, -reach,
-                            reach, roundStep(2 * reach), "Moves the camera along its own axis."),
+                                reach, roundStep(2 * reach), "Moves the camera along its own axis."),
                      false, [frame, axis](const WhatIf& w) { return lookUp(w.poses, frame).translation(axis); },
                      [frame, axis](WhatIf& w, double v) {
                        PoseChange change = lookUp(w.poses, frame);
@@ -138,17 +138,17 @@ void addHighlight(std::vector<WhatIfKnob>& knobs, const Scene& scene, int frame,
   const std::string group = "Highlight " + std::to_string(index + 1) + " of frame " + scene.frames[std::size_t(frame)].id;
   const auto add = [&](const std::string& key, const std::string& title, const std::string& unit, double neutral, double min,
                        double max, double step, const std::string& help, auto member) {
-    knobs.push_back({group, numberKnob("highlight." + std::to_string(index) + "." + key, title, unit, neutral, min, max, step, help),
-                     false,
-                     [at, member](const WhatIf& w) {
-                       HighlightChange change = lookUp(w.highlights, at);
-                       return member(change);
-                     },
-                     [at, member](WhatIf& w, double v) {
-                       HighlightChange change = lookUp(w.highlights, at);
-                       member(change) = v;
-                       store(w.highlights, at, change);
-                     }});
+    knobs.push_back(
+        {group, numberKnob("highlight." + std::to_string(index) + "." + key, title, unit, neutral, min, max, step, help), false,
+         [at, member](const WhatIf& w) {
+           HighlightChange change = lookUp(w.highlights, at);
+           return member(change);
+         },
+         [at, member](WhatIf& w, double v) {
+           HighlightChange change = lookUp(w.highlights, at);
+           member(change) = v;
+           store(w.highlights, at, change);
+         }});
   };
   add("contour.x", "Contour right", "px", 0, -reach, reach, 0.1, "Moves the observed contour.",
       [](HighlightChange& c) -> double& { return c.contourBy.x(); });

@@ -73,10 +73,8 @@ void ClearStyle::drawPrimitive(PrimitiveElement element, const QStyleOption* opt
                                const QWidget* widget) const {
   switch (element) {
     case PE_IndicatorCheckBox:
-    case PE_IndicatorItemViewItemCheck:
-      return drawIndicator(option, painter, false);
-    case PE_IndicatorRadioButton:
-      return drawIndicator(option, painter, true);
+    case PE_IndicatorItemViewItemCheck: return drawIndicator(option, painter, false);
+    case PE_IndicatorRadioButton: return drawIndicator(option, painter, true);
     case PE_FrameFocusRect:
       // A click shows by itself where it went; only the keyboard needs the ring.
       if (option->state & State_KeyboardFocusChange) drawRing(option->rect, painter);
@@ -85,8 +83,7 @@ void ClearStyle::drawPrimitive(PrimitiveElement element, const QStyleOption* opt
       QProxyStyle::drawPrimitive(element, option, painter, widget);
       if (option->state & State_HasFocus) drawRing(option->rect, painter);
       return;
-    default:
-      return QProxyStyle::drawPrimitive(element, option, painter, widget);
+    default: return QProxyStyle::drawPrimitive(element, option, painter, widget);
   }
 }
 

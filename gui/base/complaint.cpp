@@ -31,15 +31,17 @@ class Complaint : public QLabel {
     if (box_) box_->removeEventFilter(this);
     box_ = box;
     box->installEventFilter(this);
-    setStyleSheet(QStringLiteral("QLabel { background: %1; color: %2; border-radius: 3px }")
-                      .arg(errorColour().name(), currentTheme() == Theme::Dark ? QStringLiteral("black") : QStringLiteral("white")));
+    setStyleSheet(
+        QStringLiteral("QLabel { background: %1; color: %2; border-radius: 3px }")
+            .arg(errorColour().name(), currentTheme() == Theme::Dark ? QStringLiteral("black") : QStringLiteral("white")));
     setText(words);
     const int width = std::min({kWidest, window()->width(), fontMetrics().horizontalAdvance(words) + 14});
     resize(width, heightForWidth(width));
     QPoint at = box->mapTo(window(), QPoint(0, box->height() + 2));
     if (at.y() + height() > window()->height()) at.setY(box->mapTo(window(), QPoint(0, 0)).y() - height() - 2);
     // Inside of the window also where the box has been scrolled out of it.
-    move(std::clamp(at.x(), 0, std::max(0, window()->width() - width)), std::clamp(at.y(), 0, std::max(0, window()->height() - height())));
+    move(std::clamp(at.x(), 0, std::max(0, window()->width() - width)),
+         std::clamp(at.y(), 0, std::max(0, window()->height() - height())));
     show();
     raise();
     away_.start();

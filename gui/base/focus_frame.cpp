@@ -16,7 +16,7 @@ FocusFrame::FocusFrame(QWidget* of) : QWidget(of) {
 
 bool FocusFrame::eventFilter(QObject* watched, QEvent* event) {
   const auto reason = [&] { return static_cast<const QFocusEvent*>(event)->reason(); };  // of a focus event only
-  const auto elsewhere = [&] {  // another window, a menu: it comes back
+  const auto elsewhere = [&] {                                                           // another window, a menu: it comes back
     return reason() == Qt::ActiveWindowFocusReason || reason() == Qt::PopupFocusReason;
   };
   switch (event->type()) {
@@ -36,11 +36,8 @@ bool FocusFrame::eventFilter(QObject* watched, QEvent* event) {
       byKeyboard_ = false;
       hide();
       break;
-    case QEvent::Resize:
-      setGeometry(parentWidget()->rect());
-      break;
-    default:
-      break;
+    case QEvent::Resize: setGeometry(parentWidget()->rect()); break;
+    default: break;
   }
   return QWidget::eventFilter(watched, event);
 }

@@ -27,11 +27,10 @@ class InputRules : public QObject {
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override {
     switch (event->type()) {
-      case QEvent::Polish:
-        polish(watched);
-        break;
+      case QEvent::Polish: polish(watched); break;
       case QEvent::ToolTipChange:
-        if (auto* widget = qobject_cast<QWidget*>(watched); widget && !hasRichTip(widget) && Qt::mightBeRichText(widget->toolTip()))
+        if (auto* widget = qobject_cast<QWidget*>(watched);
+            widget && !hasRichTip(widget) && Qt::mightBeRichText(widget->toolTip()))
           setRichTip(widget, plainTip(widget->toolTip()));
         break;
       case QEvent::Wheel:
@@ -40,8 +39,7 @@ class InputRules : public QObject {
           return true;
         }
         break;
-      default:
-        break;
+      default: break;
     }
     return QObject::eventFilter(watched, event);
   }

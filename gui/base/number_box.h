@@ -34,7 +34,7 @@ class NumberBox : public QDoubleSpinBox {
 
  private:
   void setFull(bool full);
-  bool full_ = false;  ///< shows all digits
+  bool full_ = false;   ///< shows all digits
   bool whole_ = false;  ///< takes whole numbers only
 };
 

@@ -49,7 +49,8 @@ void QtPainter::disc(const Eigen::Vector2d& centre, double radius, const draw::C
   painter_.setBrush(Qt::NoBrush);
 }
 
-void QtPainter::ring(const Eigen::Vector2d& centre, double radius, const draw::Colour& colour, double widthPx, const draw::Box& clip) {
+void QtPainter::ring(const Eigen::Vector2d& centre, double radius, const draw::Colour& colour, double widthPx,
+                     const draw::Box& clip) {
   const bool whole = !(clip.width > 0) || (centre.x() - radius >= clip.x && centre.x() + radius <= clip.x + clip.width &&
                                            centre.y() - radius >= clip.y && centre.y() + radius <= clip.y + clip.height);
   if (!whole) return Painter::ring(centre, radius, colour, widthPx, clip);
@@ -64,8 +65,8 @@ QFont QtPainter::fontOf(double sizePx, bool bold) const {
   return font;
 }
 
-void QtPainter::text(const Eigen::Vector2d& at, const std::string& text, double sizePx, const draw::Colour& colour, draw::Align align,
-                     bool vertical, bool bold) {
+void QtPainter::text(const Eigen::Vector2d& at, const std::string& text, double sizePx, const draw::Colour& colour,
+                     draw::Align align, bool vertical, bool bold) {
   if (text.empty()) return;
   const double width = textWidth(text, sizePx, bold);
   const double start = align == draw::Align::Left ? 0 : align == draw::Align::Centre ? -0.5 * width : -width;

@@ -18,7 +18,8 @@ class QtPainter : public draw::Painter {
   void stroke(const std::vector<Eigen::Vector2d>& points, bool closed, const draw::Colour& colour, double widthPx,
               draw::Dash dash = draw::Dash::Solid, const draw::Box& clip = {}) override;
   void disc(const Eigen::Vector2d& centre, double radius, const draw::Colour& colour) override;
-  void ring(const Eigen::Vector2d& centre, double radius, const draw::Colour& colour, double widthPx, const draw::Box& clip = {}) override;
+  void ring(const Eigen::Vector2d& centre, double radius, const draw::Colour& colour, double widthPx,
+            const draw::Box& clip = {}) override;
   void text(const Eigen::Vector2d& at, const std::string& text, double sizePx, const draw::Colour& colour,
             draw::Align align = draw::Align::Left, bool vertical = false, bool bold = false) override;
   double textWidth(const std::string& text, double sizePx, bool bold = false) const override;

@@ -18,18 +18,12 @@ QVariant RowsModel::data(const QModelIndex& index, int role) const {
   if (role == kTagRole) return row.tag;
   const Cell& cell = row.cells[std::size_t(index.column())];
   switch (role) {
-    case Qt::DisplayRole:
-      return cell.text;
-    case kSortRole:
-      return cell.sort.isValid() ? cell.sort : QVariant(cell.text);
-    case Qt::ForegroundRole:
-      return cell.colour.isValid() ? QVariant(cell.colour) : QVariant();
-    case Qt::ToolTipRole:
-      return plainTip(cell.tip.isEmpty() ? cell.text : cell.tip);
-    case Qt::TextAlignmentRole:
-      return int(Qt::AlignVCenter) | int(cell.number ? Qt::AlignRight : Qt::AlignLeft);
-    default:
-      return {};
+    case Qt::DisplayRole: return cell.text;
+    case kSortRole: return cell.sort.isValid() ? cell.sort : QVariant(cell.text);
+    case Qt::ForegroundRole: return cell.colour.isValid() ? QVariant(cell.colour) : QVariant();
+    case Qt::ToolTipRole: return plainTip(cell.tip.isEmpty() ? cell.text : cell.tip);
+    case Qt::TextAlignmentRole: return int(Qt::AlignVCenter) | int(cell.number ? Qt::AlignRight : Qt::AlignLeft);
+    default: return {};
   }
 }
 

@@ -103,7 +103,8 @@ QString styleSheet(Theme theme) {
              "QLabel[role=\"group\"] { color: %3; font-weight: 600; padding-top: 6px; }"
              "QLabel[role=\"faded\"] { color: %3; }"
              "QToolButton[role=\"warning\"] { color: %4; }")
-      .arg(line, p.color(QPalette::Window).name(), faded, warningColour().name(), p.color(QPalette::ToolTipText).name(), p.color(QPalette::ToolTipBase).name());
+      .arg(line, p.color(QPalette::Window).name(), faded, warningColour().name(), p.color(QPalette::ToolTipText).name(),
+           p.color(QPalette::ToolTipBase).name());
 }
 }  // namespace
 

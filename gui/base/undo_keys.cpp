@@ -14,8 +14,10 @@ namespace glint::gui {
 namespace {
 /// Typing that is not entered yet.
 bool isPending(const QAbstractSpinBox& box) {
-  if (const auto* number = qobject_cast<const NumberBox*>(&box); number && !number->problemOf(number->text()).isEmpty()) return true;
-  if (const auto* number = qobject_cast<const QDoubleSpinBox*>(&box)) return number->valueFromText(number->text()) != number->value();
+  if (const auto* number = qobject_cast<const NumberBox*>(&box); number && !number->problemOf(number->text()).isEmpty())
+    return true;
+  if (const auto* number = qobject_cast<const QDoubleSpinBox*>(&box))
+    return number->valueFromText(number->text()) != number->value();
   const auto* whole = qobject_cast<const QSpinBox*>(&box);
   return whole && whole->cleanText() != QString::number(whole->value());
 }

@@ -15,7 +15,8 @@ void writePng(const QImage& picture, const QString& file, const QString& key, co
   bytes.open(QIODevice::WriteOnly);
   QImageWriter writer(&bytes, "png");
   if (!key.isEmpty()) writer.setText(key, text);
-  if (!writer.write(picture)) throw InputError(file.toStdString(), "", "cannot be written: " + writer.errorString().toStdString());
+  if (!writer.write(picture))
+    throw InputError(file.toStdString(), "", "cannot be written: " + writer.errorString().toStdString());
   atomicWrite(file.toStdString(), std::string_view(bytes.data().constData(), std::size_t(bytes.size())));
 }
 

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/draw/frame_overlay.h"
 #include "core/explain/explain.h"
 #include "core/scene/frame_spec.h"
 #include "gui/base/text.h"
 #include "gui/document/state_command.h"
 #include "gui/scene/scene_options.h"
-#include "core/draw/frame_overlay.h"
 
 namespace glint::gui {
 
@@ -170,9 +170,7 @@ bool Document::hasUnsavedChanges() const {
                     keptViews(saved_.options) != keptViews(state_.options));
 }
 
-bool Document::looksAsSaved() const {
-  return saved_.layers == state_.layers && saved_.options == state_.options;
-}
+bool Document::looksAsSaved() const { return saved_.layers == state_.layers && saved_.options == state_.options; }
 
 void Document::setSetting(const std::string& key, const SettingValue& value, int gesture) {
   ViewState after = state_;

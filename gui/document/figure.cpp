@@ -12,7 +12,8 @@ const char* const kSessionKey = "glint-session";
 }  // namespace
 
 void writeFigure(const QImage& picture, const Opened& state, const Engine& engine, const QString& file) {
-  writePng(picture, file, QString::fromLatin1(kSessionKey), QString::fromStdString(engine.recoveryText(state, file.toStdString())));
+  writePng(picture, file, QString::fromLatin1(kSessionKey),
+           QString::fromStdString(engine.recoveryText(state, file.toStdString())));
 }
 
 QString sessionInFigure(const QString& picture) { return QImageReader(picture).text(QString::fromLatin1(kSessionKey)); }

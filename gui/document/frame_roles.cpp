@@ -9,12 +9,9 @@ namespace glint::gui {
 
 QString roleName(FrameRole role) {
   switch (role) {
-    case FrameRole::Training:
-      return QObject::tr("training");
-    case FrameRole::HeldOut:
-      return QObject::tr("held out");
-    case FrameRole::Excluded:
-      return QObject::tr("excluded");
+    case FrameRole::Training: return QObject::tr("training");
+    case FrameRole::HeldOut: return QObject::tr("held out");
+    case FrameRole::Excluded: return QObject::tr("excluded");
   }
   return {};
 }

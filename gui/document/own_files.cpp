@@ -29,11 +29,13 @@ QString ownFolder(const char* name) {
 
 std::vector<fs::path> shippedFolders() {
   std::vector<fs::path> folders;
-  if (const QString lessons = qEnvironmentVariable("GLINT_LESSONS"); !lessons.isEmpty()) folders.emplace_back(lessons.toStdString());
+  if (const QString lessons = qEnvironmentVariable("GLINT_LESSONS"); !lessons.isEmpty())
+    folders.emplace_back(lessons.toStdString());
   QDir at(QCoreApplication::applicationDirPath());
   folders.emplace_back(at.filePath(QStringLiteral("../share/glint")).toStdString());
   for (int up = 0; up < kFoldersAbove; ++up, at.cdUp())
-    if (at.exists(QStringLiteral("sessions/lessons"))) folders.emplace_back(at.filePath(QStringLiteral("sessions")).toStdString());
+    if (at.exists(QStringLiteral("sessions/lessons")))
+      folders.emplace_back(at.filePath(QStringLiteral("sessions")).toStdString());
   return folders;
 }
 }  // namespace

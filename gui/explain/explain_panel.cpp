@@ -34,8 +34,8 @@ const char* const kStep = "explain/step";      // option: id of the step that is
 const char* const kSolo = "scene/solo";        // option: the 3D views show what belongs to the selected frame alone
 const char* const kLines = "frame/epipolar";   // option: tangent epipolar lines of two frames side by side
 const char* const kLesson = "explain/lesson";  // option: id of the lesson that this session is; "" = none
-constexpr int kWalkHeight = 290;  // px, where there is room
-constexpr int kTextLines = 14;    // of the text and the buttons, that the list of the steps leaves room for
+constexpr int kWalkHeight = 290;               // px, where there is room
+constexpr int kTextLines = 14;                 // of the text and the buttons, that the list of the steps leaves room for
 
 const Lesson* lessonOf(const Document& document) { return lessonById(toQString(document.option(kLesson, std::string()))); }
 

@@ -58,7 +58,7 @@ const ExplainTexts& explainTexts() {
 
 QString valuesHtml(const ExplainNumber& n) {
   const int digits = n.values.size() > 1 ? 4 : 5;  // several stand in one row of a narrow panel
-  constexpr double kShort = 1e-2;  // m: below, a single length is in mm
+  constexpr double kShort = 1e-2;                  // m: below, a single length is in mm
   const double least = std::max(n.least, 0.0);
   const bool single = n.values.size() == 1;
   const bool rounding = std::all_of(n.values.begin(), n.values.end(), [&](double v) { return std::abs(v) < least; });

@@ -192,10 +192,9 @@ Outcome<std::string> ExportActions::windowCommand() const {
   const Frame& frame = document_.scene()->frames[std::size_t(document_.selection().frame)];
   const QSize size = window_->window()->size();
   const std::string layout = snapshot_ ? snapshot_().layout : std::string();
-  return "glint-inspector " + shellWord(sessionPath()) +
-         (layout.empty() ? std::string() : " --layout " + layout) + " --frame " + shellWord(frame.id) + " --theme " +
-         (currentTheme() == Theme::Dark ? "dark" : "light") + " --size " + std::to_string(size.width()) + "x" +
-         std::to_string(size.height()) + " --screenshot window.png --wait-idle";
+  return "glint-inspector " + shellWord(sessionPath()) + (layout.empty() ? std::string() : " --layout " + layout) + " --frame " +
+         shellWord(frame.id) + " --theme " + (currentTheme() == Theme::Dark ? "dark" : "light") + " --size " +
+         std::to_string(size.width()) + "x" + std::to_string(size.height()) + " --screenshot window.png --wait-idle";
 }
 
 void ExportActions::copyCommand() { copy(command()); }

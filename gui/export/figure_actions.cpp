@@ -102,8 +102,7 @@ QString askForFile(QWidget* window, const Document& document, const QString& tit
     const QString chosen = QFileDialog::getSaveFileName(window, title, proposed, filters, &filter);
     if (chosen.isEmpty()) return {};
     QString file = chosen;
-    if (QFileInfo(file).suffix().isEmpty())
-      file += QRegularExpression(QStringLiteral("\\*(\\.\\w+)")).match(filter).captured(1);
+    if (QFileInfo(file).suffix().isEmpty()) file += QRegularExpression(QStringLiteral("\\*(\\.\\w+)")).match(filter).captured(1);
     if (mayReplace(window, document, file, file != chosen)) {
       rememberExport(document, file);
       return file;

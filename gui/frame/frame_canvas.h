@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "gui/frame/photo_loader.h"
 #include "core/draw/frame_overlay.h"
+#include "gui/frame/photo_loader.h"
 
 namespace glint::gui {
 

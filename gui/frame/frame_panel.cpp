@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/base/error_text.h"
 #include "core/geometry/polyline.h"
 #include "core/scene/scene_files.h"
 #include "core/what_if/knobs.h"
@@ -25,7 +26,6 @@
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/hand_tool.h"
 #include "gui/frame/pair_bar.h"
-#include "core/base/error_text.h"
 #include "viz/frame_pick.h"
 #include "viz/walk_story.h"
 
@@ -549,9 +549,9 @@ void FramePanel::addActions(Actions& actions, QMenu* menu) {
         [this, &layer](bool on) { document_.setLayerVisible(layer.name, layer.title, on); }, {{}, {}, tr(layer.tip)});
   for (const auto& model : allModels()) {
     const std::string id = model->id(), layer = kModelLayer + id;
-    layerActions_[layer] =
-        actions.addToggle(QStringLiteral("frame.show-model-") + toQString(id), overlays, tr("Model %1").arg(menuText(toQString(id))),
-                          [this, id, layer](bool on) { document_.setLayerVisible(layer, id, on); }, {});
+    layerActions_[layer] = actions.addToggle(QStringLiteral("frame.show-model-") + toQString(id), overlays,
+                                             tr("Model %1").arg(menuText(toQString(id))),
+                                             [this, id, layer](bool on) { document_.setLayerVisible(layer, id, on); }, {});
   }
   colourByRole_ = actions.addToggle("frame.colour-by-role", overlays, tr("Colour predictions by frame &role"),
                                     [this](bool on) {

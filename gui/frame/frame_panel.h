@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "core/draw/frame_overlay.h"
 #include "gui/base/actions.h"
 #include "gui/document/document.h"
 #include "gui/frame/photo_loader.h"
 #include "gui/frame/pixel_probe.h"
-#include "core/draw/frame_overlay.h"
 
 class QLabel;
 class QToolButton;

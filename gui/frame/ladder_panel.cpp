@@ -7,13 +7,13 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
+#include "core/draw/frame_overlay.h"
+#include "core/inspect/frame_score.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/photo_loader.h"
-#include "core/draw/frame_overlay.h"
 #include "viz/frame_pick.h"
-#include "core/inspect/frame_score.h"
 #include "viz/pictures.h"
 
 namespace glint::gui {

@@ -70,7 +70,7 @@ class LadderPanel : public QWidget {
   bool moved_ = false;    ///< the user chose the zoom: it stays, only the centre follows
   bool recentre_ = true;  ///< the next arrangement puts the contours into the middle
   bool whole_ = false;    ///< there were no contours to look at yet
-  draw::Crop crop_;        ///< of the frame's contours
+  draw::Crop crop_;       ///< of the frame's contours
 };
 
 }  // namespace glint::gui

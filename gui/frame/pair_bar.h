@@ -5,9 +5,9 @@
 #include <QList>
 #include <QWidget>
 
+#include "core/draw/epipolar_overlay.h"
 #include "gui/base/actions.h"
 #include "gui/document/document.h"
-#include "core/draw/epipolar_overlay.h"
 
 class QComboBox;
 class QLabel;

@@ -169,7 +169,8 @@ void ComparisonPanel::show(std::shared_ptr<const RunComparison> comparison, cons
   comparison_ = std::move(comparison);
   const auto [nameA, nameB] = shortestNames(fileA, fileB);
   const bool same = QFileInfo(fileA).absoluteFilePath() == QFileInfo(fileB).absoluteFilePath();
-  names_ = (same ? tr("A: %1 (on screen)   B: %2 (the file)") : tr("A: %1 (on screen)   B: %2")).arg(shownText(nameA), shownText(nameB));
+  names_ = (same ? tr("A: %1 (on screen)   B: %2 (the file)") : tr("A: %1 (on screen)   B: %2"))
+               .arg(shownText(nameA), shownText(nameB));
   paths_ = tr("A: %1\nB: %2")
                .arg(QDir::toNativeSeparators(QFileInfo(fileA).absoluteFilePath()),
                     QDir::toNativeSeparators(QFileInfo(fileB).absoluteFilePath()));

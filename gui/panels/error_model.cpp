@@ -7,11 +7,11 @@
 #include <cmath>
 #include <limits>
 
+#include "core/draw/frame_overlay.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/tips.h"
 #include "gui/document/frame_roles.h"
-#include "core/draw/frame_overlay.h"
 
 namespace glint::gui {
 
@@ -105,11 +105,11 @@ void ErrorModel::addComparison(const Inspection& inspection, const std::string& 
     else if (r.observed < 0 && manyPredicted)
       row.light = tr("%1, predicted %2").arg(base.light).arg(r.predicted + 1);
     const bool compared = r.observed >= 0 || r.predicted >= 0;  // else the frame cannot be read
-    row.status = r.metrics              ? tr("ok")
-                 : !compared            ? tr("not compared")
-                 : r.observed < 0       ? tr("spurious")
+    row.status = r.metrics                ? tr("ok")
+                 : !compared              ? tr("not compared")
+                 : r.observed < 0         ? tr("spurious")
                  : c.prediction.failure() ? tr("failed")
-                                        : tr("missed");
+                                          : tr("missed");
     row.problem = !r.metrics;
     if (r.failure)
       row.reason = toQString(r.failure->message());
@@ -143,20 +143,13 @@ QVariant ErrorModel::data(const QModelIndex& index, int role) const {
     case Qt::DisplayRole:
     case kSortRole:
       switch (column) {
-        case Frame:
-          return role == kSortRole ? QVariant(row.frame) : QVariant(row.frameId);
-        case Role:
-          return roleName(row.role);
-        case Model:
-          return toQString(row.model);
-        case Light:
-          return row.light;
-        case Status:
-          return row.status;
-        case ReasonText:
-          return row.reason;
-        default:
-          break;
+        case Frame: return role == kSortRole ? QVariant(row.frame) : QVariant(row.frameId);
+        case Role: return roleName(row.role);
+        case Model: return toQString(row.model);
+        case Light: return row.light;
+        case Status: return row.status;
+        case ReasonText: return row.reason;
+        default: break;
       }
       // Rows without a number come last in ascending order.
       if (role == kSortRole) return std::isfinite(number) ? number : std::numeric_limits<double>::max();
@@ -174,14 +167,10 @@ QVariant ErrorModel::data(const QModelIndex& index, int role) const {
       if (row.role == FrameRole::Excluded && column != ReasonText && column != Light)
         return tr("Excluded frame: used neither for training nor in any summary");
       return column == ReasonText ? QVariant(plainTip(row.reason)) : column == Light ? QVariant(plainTip(row.light)) : QVariant();
-    case Qt::TextAlignmentRole:
-      return int((isNumber(column) ? Qt::AlignRight : Qt::AlignLeft) | Qt::AlignVCenter);
-    case kProblemRole:
-      return row.problem && row.role != FrameRole::Excluded;
-    case kFrameRoleRole:
-      return int(row.role);
-    default:
-      return {};
+    case Qt::TextAlignmentRole: return int((isNumber(column) ? Qt::AlignRight : Qt::AlignLeft) | Qt::AlignVCenter);
+    case kProblemRole: return row.problem && row.role != FrameRole::Excluded;
+    case kFrameRoleRole: return int(row.role);
+    default: return {};
   }
 }
 

@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/draw/frame_overlay.h"
 #include "core/inspect/summary.h"
 #include "core/report/warnings.h"
 #include "gui/base/flow_layout.h"
@@ -27,13 +28,12 @@
 #include "gui/base/theme.h"
 #include "gui/base/tips.h"
 #include "gui/panels/error_model.h"
-#include "core/draw/frame_overlay.h"
 
 namespace glint::gui {
 
 namespace {
-constexpr int kColumnGapPx = 12;           // of the summary
-constexpr double kWorstPct = 1000;         // ten times the highlight's size: how far astray beyond that says nothing
+constexpr int kColumnGapPx = 12;                     // of the summary
+constexpr double kWorstPct = 1000;                   // ten times the highlight's size: how far astray beyond that says nothing
 constexpr int kIou = 4, kMissed = 6, kSpurious = 7;  // columns of its values
 
 enum class Shown { All, HeldOut, Training, Problems };
@@ -51,14 +51,10 @@ class RowFilter : public QSortFilterProxyModel {
     const QModelIndex index = sourceModel()->index(row, 0, parent);
     const auto role = FrameRole(sourceModel()->data(index, ErrorModel::kFrameRoleRole).toInt());
     switch (shown_) {
-      case Shown::HeldOut:
-        return role == FrameRole::HeldOut;
-      case Shown::Training:
-        return role == FrameRole::Training;
-      case Shown::Problems:
-        return sourceModel()->data(index, ErrorModel::kProblemRole).toBool();
-      case Shown::All:
-        break;
+      case Shown::HeldOut: return role == FrameRole::HeldOut;
+      case Shown::Training: return role == FrameRole::Training;
+      case Shown::Problems: return sourceModel()->data(index, ErrorModel::kProblemRole).toBool();
+      case Shown::All: break;
     }
     return true;
   }

@@ -7,11 +7,11 @@
 #include <QHeaderView>
 #include <QKeyEvent>
 
+#include "core/draw/frame_overlay.h"
 #include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/tips.h"
 #include "gui/panels/selection_text.h"
-#include "core/draw/frame_overlay.h"
 #include "viz/scene_questions.h"
 
 namespace glint::gui {

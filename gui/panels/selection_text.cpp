@@ -211,8 +211,10 @@ std::vector<NumberGroup> describeSelection(const Inspection& inspection, const d
     }
   }
   for (const auto& [id, estimate] : inspection.lightsFor(frame)) {
-    if (!*estimate) groups.push_back({QObject::tr("Light %1").arg(nameText(id)), toQString(estimate->failure().message())});
-    else if (light.empty() || id == light) groups.push_back(lightGroup(id, **estimate));
+    if (!*estimate)
+      groups.push_back({QObject::tr("Light %1").arg(nameText(id)), toQString(estimate->failure().message())});
+    else if (light.empty() || id == light)
+      groups.push_back(lightGroup(id, **estimate));
   }
   for (NumberGroup& group : groups) group.lines = toQString(withoutFolder(group.lines.toStdString(), *inspection.scene));
   return groups;

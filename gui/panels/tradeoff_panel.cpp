@@ -99,15 +99,11 @@ void TradeoffPlot::moveAlongFront(int by) {
 
 void TradeoffPlot::keyPressEvent(QKeyEvent* e) {
   switch (e->key()) {
-    case Qt::Key_Left:
-      return moveAlongFront(-1);
-    case Qt::Key_Right:
-      return moveAlongFront(1);
+    case Qt::Key_Left: return moveAlongFront(-1);
+    case Qt::Key_Right: return moveAlongFront(1);
     case Qt::Key_Return:
-    case Qt::Key_Enter:
-      return load(current_);
-    default:
-      PlotCanvas::keyPressEvent(e);
+    case Qt::Key_Enter: return load(current_);
+    default: PlotCanvas::keyPressEvent(e);
   }
 }
 

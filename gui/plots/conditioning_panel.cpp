@@ -23,28 +23,20 @@ namespace {
 /// Dark enough for white text in both themes.
 QColor colourOf(Verdict verdict) {
   switch (verdict) {
-    case Verdict::Green:
-      return QColor(0x2c, 0x7a, 0x4b);
-    case Verdict::Amber:
-      return QColor(0x9a, 0x68, 0x00);
-    case Verdict::Red:
-      return QColor(0xb0, 0x2e, 0x24);
-    case Verdict::Unknown:
-      return QColor(0x6a, 0x70, 0x76);
+    case Verdict::Green: return QColor(0x2c, 0x7a, 0x4b);
+    case Verdict::Amber: return QColor(0x9a, 0x68, 0x00);
+    case Verdict::Red: return QColor(0xb0, 0x2e, 0x24);
+    case Verdict::Unknown: return QColor(0x6a, 0x70, 0x76);
   }
   return {};
 }
 
 QString signOf(Verdict verdict) {
   switch (verdict) {
-    case Verdict::Green:
-      return QStringLiteral("✓");
-    case Verdict::Amber:
-      return QStringLiteral("!");
-    case Verdict::Red:
-      return QStringLiteral("✕");
-    case Verdict::Unknown:
-      return {};
+    case Verdict::Green: return QStringLiteral("✓");
+    case Verdict::Amber: return QStringLiteral("!");
+    case Verdict::Red: return QStringLiteral("✕");
+    case Verdict::Unknown: return {};
   }
   return {};
 }

@@ -208,7 +208,8 @@ draw::PlotData PlotsPanel::data(const std::string& id) {
   }
   if (!inspection) {
     // Of a scene just opened, the selected frame's results come before all others, and the frame view shows them too.
-    if (id == "dial" && document_.frameInspection()) return draw::residualDial(*document_.frameInspection(), s.frame, s.highlight);
+    if (id == "dial" && document_.frameInspection())
+      return draw::residualDial(*document_.frameInspection(), s.frame, s.highlight);
     empty.empty = (!document_.scene()            ? tr("No scene")
                    : document_.frameInspection() ? tr("Computing the other frames…")
                                                  : tr("No results yet"))
@@ -222,7 +223,7 @@ draw::PlotData PlotsPanel::data(const std::string& id) {
   if (id == "influence") {
     if (document_.influence()) {
       draw::PlotData plot = draw::influencePlot(*inspection, *document_.influence(),
-                                              document_.plottedModel());  // one model: a poor one's scale would hide the others
+                                                document_.plottedModel());  // one model: a poor one's scale would hide the others
       if (document_.influenceStale()) plot.title += tr("   (out of date)").toStdString();
       return plot;
     }

@@ -76,7 +76,7 @@ class PlotsPanel : public QWidget {
   SamplesLoader loader_;
   FrameSamplesPtr samples_;
   draw::Selection shown_;  ///< selection of the last followSelection
-  int current_ = 0;       ///< pane that actions are about
+  int current_ = 0;        ///< pane that actions are about
   bool wantsInfluence_ = false;
   QAction* two_ = nullptr;
 };

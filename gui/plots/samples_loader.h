@@ -4,8 +4,8 @@
 #include <QObject>
 #include <memory>
 
-#include "gui/base/latest_job.h"
 #include "core/draw/plots.h"
+#include "gui/base/latest_job.h"
 
 namespace glint::gui {
 

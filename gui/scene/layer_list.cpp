@@ -17,10 +17,10 @@ namespace glint::gui {
 namespace {
 /// What the legend of a narrow 3D view leaves out.
 const std::pair<const char*, draw::Colour> kColours[] = {{"virtual-cameras", draw::kVirtualCamera},
-                                                        {"tangent-planes", draw::kVirtualCamera},
-                                                        {"light", draw::kLightColour},
-                                                        {"true-light", draw::kTruth},
-                                                        {"observed-contours", draw::kObserved}};
+                                                         {"tangent-planes", draw::kVirtualCamera},
+                                                         {"light", draw::kLightColour},
+                                                         {"true-light", draw::kTruth},
+                                                         {"observed-contours", draw::kObserved}};
 }  // namespace
 
 LayerList::LayerList(Document& document, QWidget* parent) : QListWidget(parent), document_(document) {

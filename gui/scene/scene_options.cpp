@@ -34,13 +34,10 @@ bool isOn(const Document& document, const char* name, bool otherwise) {
 
 int SceneOptions::viewCount() const {
   switch (arrangement) {
-    case Arrangement::One:
-      return 1;
+    case Arrangement::One: return 1;
     case Arrangement::SideBySide:
-    case Arrangement::Wipe:
-      return 2;
-    case Arrangement::Grid:
-      return 4;
+    case Arrangement::Wipe: return 2;
+    case Arrangement::Grid: return 4;
   }
   return 1;
 }
@@ -51,26 +48,19 @@ std::string viewOption(const char* name, int view) {
 
 const char* toText(Arrangement arrangement) {
   switch (arrangement) {
-    case Arrangement::One:
-      return "1";
-    case Arrangement::SideBySide:
-      return "2";
-    case Arrangement::Grid:
-      return "4";
-    case Arrangement::Wipe:
-      return "wipe";
+    case Arrangement::One: return "1";
+    case Arrangement::SideBySide: return "2";
+    case Arrangement::Grid: return "4";
+    case Arrangement::Wipe: return "wipe";
   }
   return "1";
 }
 
 const char* toText(viz::Eye eye) {
   switch (eye) {
-    case viz::Eye::Outside:
-      return "outside";
-    case viz::Eye::Camera:
-      return "camera";
-    case viz::Eye::VirtualCamera:
-      return "virtual";
+    case viz::Eye::Outside: return "outside";
+    case viz::Eye::Camera: return "camera";
+    case viz::Eye::VirtualCamera: return "virtual";
   }
   return "outside";
 }

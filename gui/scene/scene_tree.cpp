@@ -216,17 +216,13 @@ void SceneTree::select(const SceneObject& o) {
       if (seen != frames.end()) moveTo(int(seen - frames.begin()));
       break;
     }
-    case Kind::Camera:
-      moveTo(o.frame);
-      break;
+    case Kind::Camera: moveTo(o.frame); break;
     case Kind::Highlight:
       moveTo(o.frame);
       s.highlight = o.highlight;
       s.light = o.light;
       break;
-    case Kind::Light:
-      s.light = o.key;
-      break;
+    case Kind::Light: s.light = o.key; break;
     case Kind::Ellipsoid:
       s.model = o.key;
       s.light = o.light;

@@ -63,10 +63,10 @@ class SceneTree : public QWidget {
   QTreeView* tree_;
   QLineEdit* search_;
   draw::Selection followed_;  ///< the last selection that the tree has shown
-  StepRun steps_;            ///< from row to row
-  bool selecting_ = false;   ///< by this tree
-  int leaving_ = 0;          ///< rows go: what then becomes the current one was not chosen by anybody
-  bool ticked_ = false;      ///< the double click that comes was on a tick
+  StepRun steps_;             ///< from row to row
+  bool selecting_ = false;    ///< by this tree
+  int leaving_ = 0;           ///< rows go: what then becomes the current one was not chosen by anybody
+  bool ticked_ = false;       ///< the double click that comes was on a tick
 };
 
 }  // namespace glint::gui

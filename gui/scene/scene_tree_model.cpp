@@ -77,46 +77,32 @@ draw::Colour roleColour(FrameRole role) {
 
 void setHiddenIn(viz::HiddenObjects& hidden, const SceneObject& o, bool hide) {
   switch (o.kind) {
-    case Kind::Surface:
-      return hideOrShow(hidden.surfaces, o.key, hide);
-    case Kind::Camera:
-      return hideOrShow(hidden.frames, o.frame, hide);
-    case Kind::Light:
-      return hideOrShow(hidden.lights, o.key, hide);
-    case Kind::Ellipsoid:
-      return hideOrShow(hidden.ellipsoids, {o.key, o.light}, hide);
-    case Kind::Highlight:
-      return;
+    case Kind::Surface: return hideOrShow(hidden.surfaces, o.key, hide);
+    case Kind::Camera: return hideOrShow(hidden.frames, o.frame, hide);
+    case Kind::Light: return hideOrShow(hidden.lights, o.key, hide);
+    case Kind::Ellipsoid: return hideOrShow(hidden.ellipsoids, {o.key, o.light}, hide);
+    case Kind::Highlight: return;
   }
 }
 
 bool isHiddenIn(const viz::HiddenObjects& hidden, const SceneObject& o) {
   switch (o.kind) {
-    case Kind::Surface:
-      return hidden.surfaces.count(o.key) > 0;
+    case Kind::Surface: return hidden.surfaces.count(o.key) > 0;
     case Kind::Camera:
-    case Kind::Highlight:
-      return hidden.frames.count(o.frame) > 0;
-    case Kind::Light:
-      return hidden.lights.count(o.key) > 0;
-    case Kind::Ellipsoid:
-      return hidden.ellipsoids.count({o.key, o.light}) > 0;
+    case Kind::Highlight: return hidden.frames.count(o.frame) > 0;
+    case Kind::Light: return hidden.lights.count(o.key) > 0;
+    case Kind::Ellipsoid: return hidden.ellipsoids.count({o.key, o.light}) > 0;
   }
   return false;
 }
 
 bool isSelected(const SceneObject& o, const draw::Selection& s) {
   switch (o.kind) {
-    case Kind::Surface:
-      return false;
-    case Kind::Camera:
-      return s.frame == o.frame;
-    case Kind::Highlight:
-      return s.frame == o.frame && s.highlight == o.highlight;
-    case Kind::Light:
-      return s.light == o.key;
-    case Kind::Ellipsoid:
-      return s.model == o.key && (s.light.empty() || s.light == o.light);
+    case Kind::Surface: return false;
+    case Kind::Camera: return s.frame == o.frame;
+    case Kind::Highlight: return s.frame == o.frame && s.highlight == o.highlight;
+    case Kind::Light: return s.light == o.key;
+    case Kind::Ellipsoid: return s.model == o.key && (s.light.empty() || s.light == o.light);
   }
   return false;
 }
@@ -351,17 +337,13 @@ Qt::ItemFlags SceneTreeModel::flags(const QModelIndex& index) const {
 QString SceneTreeModel::nameOf(const SceneObject& o) const {
   const Scene* scene = document_.scene();
   switch (o.kind) {
-    case Kind::Surface:
-      return o.key == viz::HiddenObjects::kDepthMaps ? tr("depth maps") : tr("surface %1").arg(nameText(o.key));
-    case Kind::Camera:
-      return tr("camera %1").arg(nameText(scene->frames[std::size_t(o.frame)].id));
+    case Kind::Surface: return o.key == viz::HiddenObjects::kDepthMaps ? tr("depth maps") : tr("surface %1").arg(nameText(o.key));
+    case Kind::Camera: return tr("camera %1").arg(nameText(scene->frames[std::size_t(o.frame)].id));
     case Kind::Highlight:
       return tr("highlight %1 of frame %2").arg(o.highlight).arg(nameText(scene->frames[std::size_t(o.frame)].id));
-    case Kind::Light:
-      return tr("light %1").arg(nameText(o.key));
+    case Kind::Light: return tr("light %1").arg(nameText(o.key));
     case Kind::Ellipsoid:
-      return objectsOf(Kind::Light).size() < 2 ? nameText(o.key)
-                                               : tr("%1 of light %2").arg(nameText(o.key), nameText(o.light));
+      return objectsOf(Kind::Light).size() < 2 ? nameText(o.key) : tr("%1 of light %2").arg(nameText(o.key), nameText(o.light));
   }
   return {};
 }
@@ -375,12 +357,11 @@ QString SceneTreeModel::detailOf(const SceneObject& o) const {
       if (found == scene.surfaces.end()) return tr("per frame");
       return found->second.analytic ? toQString(found->second.analytic->type) : tr("mesh");
     }
-    case Kind::Camera:
-      return roleName(document_.role(o.frame));
-    case Kind::Highlight:
-      return nameText(o.light);
+    case Kind::Camera: return roleName(document_.role(o.frame));
+    case Kind::Highlight: return nameText(o.light);
     case Kind::Light: {
-      const auto estimated = inspection && std::any_of(inspection->lights.begin(), inspection->lights.end(), [&](const auto& l) { return l.first.light == o.key && l.second; });
+      const auto estimated = inspection && std::any_of(inspection->lights.begin(), inspection->lights.end(),
+                                                       [&](const auto& l) { return l.first.light == o.key && l.second; });
       const auto known = std::any_of(scene.lights.begin(), scene.lights.end(), [&](const TrueLight& l) { return l.id == o.key; });
       return estimated ? tr("estimated") : known ? tr("truth only") : QString();
     }
@@ -439,12 +420,9 @@ QVariant SceneTreeModel::groupData(const Group& group, int column, int role) con
     case Qt::ForegroundRole:
       if (all == 0 || !layerShown(group)) return QGuiApplication::palette().brush(QPalette::Disabled, QPalette::Text);
       return {};
-    case Qt::ToolTipRole:
-      return layerShown(group) ? QString() : tr("Hidden because their layers are off; see Layers");
-    case kSortRole:
-      return int(&group - groups_.data());
-    default:
-      return {};
+    case Qt::ToolTipRole: return layerShown(group) ? QString() : tr("Hidden because their layers are off; see Layers");
+    case kSortRole: return int(&group - groups_.data());
+    default: return {};
   }
 }
 
@@ -484,19 +462,15 @@ QVariant SceneTreeModel::objectData(const SceneObject& o, const Group& group, in
       if (isHiddenIn(hidden_, o) || !layerShown(group))
         return QGuiApplication::palette().brush(QPalette::Disabled, QPalette::Text);
       return {};
-    case Qt::TextAlignmentRole:
-      return int((column == Effect ? Qt::AlignRight : Qt::AlignLeft) | Qt::AlignVCenter);
-    case Qt::ToolTipRole:
-      return plainTip(tipOf(o, column));
+    case Qt::TextAlignmentRole: return int((column == Effect ? Qt::AlignRight : Qt::AlignLeft) | Qt::AlignVCenter);
+    case Qt::ToolTipRole: return plainTip(tipOf(o, column));
     case kSortRole:
       if (column == Effect && o.kind == Kind::Camera)
         return effects_.count(o.frame) ? QVariant(effects_.at(o.frame)) : QVariant();
       if (column == Detail && o.kind == Kind::Camera) return int(document_.role(o.frame));
       return row;
-    case kFindRole:
-      return nameOf(o) + QLatin1Char(' ') + detailOf(o);
-    default:
-      return {};
+    case kFindRole: return nameOf(o) + QLatin1Char(' ') + detailOf(o);
+    default: return {};
   }
 }
 

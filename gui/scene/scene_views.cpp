@@ -33,14 +33,10 @@ constexpr double kGrabPx = 6;        // about the wipe's line
 /// left, bottom, right, top of each view, shares of the window.
 std::array<double, 4> viewport(const SceneOptions& o, int view) {
   switch (o.arrangement) {
-    case Arrangement::One:
-      return {0, 0, 1, 1};
-    case Arrangement::SideBySide:
-      return {0.5 * view, 0, 0.5 * (view + 1), 1};
-    case Arrangement::Grid:
-      return {0.5 * (view % 2), view < 2 ? 0.5 : 0, 0.5 * (view % 2 + 1), view < 2 ? 1 : 0.5};
-    case Arrangement::Wipe:
-      return view == 0 ? std::array<double, 4>{0, 0, o.wipe, 1} : std::array<double, 4>{o.wipe, 0, 1, 1};
+    case Arrangement::One: return {0, 0, 1, 1};
+    case Arrangement::SideBySide: return {0.5 * view, 0, 0.5 * (view + 1), 1};
+    case Arrangement::Grid: return {0.5 * (view % 2), view < 2 ? 0.5 : 0, 0.5 * (view % 2 + 1), view < 2 ? 1 : 0.5};
+    case Arrangement::Wipe: return view == 0 ? std::array<double, 4>{0, 0, o.wipe, 1} : std::array<double, 4>{o.wipe, 0, 1, 1};
   }
   return {0, 0, 1, 1};
 }
@@ -480,8 +476,7 @@ bool SceneViews::eventFilter(QObject* watched, QEvent* event) {
     case QEvent::KeyRelease:  // VTK's own keys (wireframe, quit, ...) are not ours; the window's shortcuts come before this
       event->ignore();
       return true;
-    default:
-      break;
+    default: break;
   }
   return QWidget::eventFilter(watched, event);
 }

@@ -18,16 +18,11 @@ bool turnsOff(viz::LightState state) { return viz::isLit(state) || state == viz:
 
 QString lightStateText(viz::LightState state) {
   switch (state) {
-    case viz::LightState::Off:
-      return Texts::tr("off");
-    case viz::LightState::On:
-      return Texts::tr("on");
-    case viz::LightState::NotStated:
-      return Texts::tr("not stated in the scene");
-    case viz::LightState::SwitchedOff:
-      return Texts::tr("switched off by hand");
-    case viz::LightState::SwitchedOn:
-      return Texts::tr("switched on by hand");
+    case viz::LightState::Off: return Texts::tr("off");
+    case viz::LightState::On: return Texts::tr("on");
+    case viz::LightState::NotStated: return Texts::tr("not stated in the scene");
+    case viz::LightState::SwitchedOff: return Texts::tr("switched off by hand");
+    case viz::LightState::SwitchedOn: return Texts::tr("switched on by hand");
   }
   return {};
 }
@@ -36,14 +31,11 @@ QString lightClickText(const Document& document, viz::LightState state) {
   if (!canSwitch(document, state))
     return Texts::tr("off as captured; can be switched on once contours are synthesised (What-if)");
   switch (state) {
-    case viz::LightState::Off:
-      return Texts::tr("click to switch on in this frame");
+    case viz::LightState::Off: return Texts::tr("click to switch on in this frame");
     case viz::LightState::SwitchedOff:
       return Texts::tr("its highlight in this frame is used neither for training nor for evaluation; click to restore it");
-    case viz::LightState::SwitchedOn:
-      return Texts::tr("click to switch off again");
-    default:
-      return Texts::tr("click to switch off in this frame");
+    case viz::LightState::SwitchedOn: return Texts::tr("click to switch off again");
+    default: return Texts::tr("click to switch off in this frame");
   }
 }
 

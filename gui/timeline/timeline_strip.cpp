@@ -407,22 +407,14 @@ void TimelineStrip::contextMenuEvent(QContextMenuEvent* e) {
 void TimelineStrip::keyPressEvent(QKeyEvent* e) {
   const int n = document_.frameCount();
   switch (e->key()) {
-    case Qt::Key_Left:
-      return step(-1);
-    case Qt::Key_Right:
-      return step(1);
-    case Qt::Key_Home:
-      return step(-n);
-    case Qt::Key_End:
-      return step(n);
-    case Qt::Key_T:
-      return document_.setRole(document_.selection().frame, FrameRole::Training);
-    case Qt::Key_O:
-      return document_.setRole(document_.selection().frame, FrameRole::HeldOut);
-    case Qt::Key_X:
-      return document_.setRole(document_.selection().frame, FrameRole::Excluded);
-    default:
-      QWidget::keyPressEvent(e);
+    case Qt::Key_Left: return step(-1);
+    case Qt::Key_Right: return step(1);
+    case Qt::Key_Home: return step(-n);
+    case Qt::Key_End: return step(n);
+    case Qt::Key_T: return document_.setRole(document_.selection().frame, FrameRole::Training);
+    case Qt::Key_O: return document_.setRole(document_.selection().frame, FrameRole::HeldOut);
+    case Qt::Key_X: return document_.setRole(document_.selection().frame, FrameRole::Excluded);
+    default: QWidget::keyPressEvent(e);
   }
 }
 

@@ -17,7 +17,6 @@
 #include "core/reflectance/lobe.h"
 #include "gui/base/draw_turns.h"
 #include "gui/base/number_box.h"
-
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 

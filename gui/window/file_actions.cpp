@@ -162,7 +162,8 @@ void FileActions::allow(const OutsidePtr& outside) {
 }
 
 void FileActions::run(const QString& path, Relinked instead) {
-  for (const QString& folder : allowedFolders(allowedFor_.isEmpty() ? path : allowedFor_)) instead.folders.emplace_back(folder.toStdString());
+  for (const QString& folder : allowedFolders(allowedFor_.isEmpty() ? path : allowedFor_))
+    instead.folders.emplace_back(folder.toStdString());
   runner_.open(path.toStdString(), instead);
 }
 
@@ -261,8 +262,9 @@ bool FileActions::saveAs() {
   const QString folder = isShipped(now.absoluteFilePath()) ? QStandardPaths::writableLocation(QStandardPaths::DocumentsLocation)
                                                            : now.absolutePath();
   const QString base = now.fileName() == QLatin1String("scene.json") ? now.dir().dirName() : now.completeBaseName();
-  const QString path = QFileDialog::getSaveFileName(window_, tr("Save session"), QDir(folder).filePath(base + QStringLiteral(".glint")),
-                                                    tr("Sessions (*.glint)"), nullptr, QFileDialog::DontConfirmOverwrite);
+  const QString path =
+      QFileDialog::getSaveFileName(window_, tr("Save session"), QDir(folder).filePath(base + QStringLiteral(".glint")),
+                                   tr("Sessions (*.glint)"), nullptr, QFileDialog::DontConfirmOverwrite);
   return !path.isEmpty() && saveAsTo(path);
 }
 

@@ -131,9 +131,9 @@ class MainWindow : public QMainWindow {
   QString lastError_;
   ScriptedActions* script_ = nullptr;
   UnreadableFiles* unreadable_ = nullptr;
-  MissingPtr located_;      ///< was pointed at, and is being opened
-  OutsidePtr outside_;      ///< a folder that the opening that failed last may not name; null = for another reason, or it was said
-  MissingPtr missing_;      ///< why the opening that failed last did; null = for another reason, or it was said
+  MissingPtr located_;  ///< was pointed at, and is being opened
+  OutsidePtr outside_;  ///< a folder that the opening that failed last may not name; null = for another reason, or it was said
+  MissingPtr missing_;  ///< why the opening that failed last did; null = for another reason, or it was said
   bool runFailed_ = false;  ///< the message bar shows why the last run failed
 };
 

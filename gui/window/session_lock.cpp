@@ -57,7 +57,8 @@ QString SessionLock::otherHolder(const QString& session) {
   qint64 process = 0;
   QString host, program;
   if (!tried->getLockInfo(&process, &host, &program)) return QCoreApplication::translate("SessionLock", "another program");
-  if (process == QCoreApplication::applicationPid()) return QCoreApplication::translate("SessionLock", "another window of this program");
+  if (process == QCoreApplication::applicationPid())
+    return QCoreApplication::translate("SessionLock", "another window of this program");
   return QCoreApplication::translate("SessionLock", "another program (process %1)").arg(process);
 }
 

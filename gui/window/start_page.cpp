@@ -83,7 +83,8 @@ void StartPage::setRecent(const QStringList& files) {
                                      palette().color(QPalette::PlaceholderText).name(),
                                      shownText(QDir::toNativeSeparators(info.path())).toHtmlEscaped()));
     link->setTextFormat(Qt::RichText);
-    connect(link, &QLabel::linkActivated, this, [this, file] { emit openRecent(file); });  // a link's target is decoded: not as it was
+    connect(link, &QLabel::linkActivated, this,
+            [this, file] { emit openRecent(file); });  // a link's target is decoded: not as it was
     recent_->addWidget(link);
   }
 }

@@ -34,14 +34,10 @@ bool decoded(const Inspection& in, std::size_t frame) {
 QString counted(FrameFile kind, int n) {
   const QString number = QString::number(n) + QLatin1Char(' ');
   switch (kind) {
-    case FrameFile::Photograph:
-      return number + (n == 1 ? UnreadableFiles::tr("photograph") : UnreadableFiles::tr("photographs"));
-    case FrameFile::Depth:
-      return number + (n == 1 ? UnreadableFiles::tr("depth map") : UnreadableFiles::tr("depth maps"));
-    case FrameFile::Normals:
-      return number + (n == 1 ? UnreadableFiles::tr("normal map") : UnreadableFiles::tr("normal maps"));
-    case FrameFile::Mask:
-      return number + (n == 1 ? UnreadableFiles::tr("mask") : UnreadableFiles::tr("masks"));
+    case FrameFile::Photograph: return number + (n == 1 ? UnreadableFiles::tr("photograph") : UnreadableFiles::tr("photographs"));
+    case FrameFile::Depth: return number + (n == 1 ? UnreadableFiles::tr("depth map") : UnreadableFiles::tr("depth maps"));
+    case FrameFile::Normals: return number + (n == 1 ? UnreadableFiles::tr("normal map") : UnreadableFiles::tr("normal maps"));
+    case FrameFile::Mask: return number + (n == 1 ? UnreadableFiles::tr("mask") : UnreadableFiles::tr("masks"));
   }
   return number;
 }

@@ -20,19 +20,22 @@ class BadInput : public SmallScene {
   /// Every command that reads the scene, each with an output that an older run left.
   void everyCommandRefuses(int code, const std::string& message) {
     writeScene();
-    for (const char* command : {"info", "detect", "evaluate", "reconstruct", "render", "convert"}) refuses(command, code, message);
+    for (const char* command : {"info", "detect", "evaluate", "reconstruct", "render", "convert"})
+      refuses(command, code, message);
   }
   /// What an older run of the command left: its kind tells that the command may replace it.
   static std::string oldOutputOf(const std::string& command) {
-    static const std::map<std::string, std::string> keys = {{"info", "info"},           {"detect", "detection"}, {"evaluate", "evaluation"},
-                                                            {"reconstruct", "session"}, {"convert", "scene"},    {"predict", "predictions"}};
+    static const std::map<std::string, std::string> keys = {{"info", "info"},           {"detect", "detection"},
+                                                            {"evaluate", "evaluation"}, {"reconstruct", "session"},
+                                                            {"convert", "scene"},       {"predict", "predictions"}};
     return command == "render" ? "\x89PNG\r\n\x1a\nold" : "{\"glint_" + keys.at(command) + "\": 1}";
   }
   void refuses(const std::string& command, int code, const std::string& message) {
     const bool flagO = command == "reconstruct" || command == "render" || command == "convert";
     const std::string name = command == "convert" ? "old.json" : "old", old = oldOutputOf(command);
     folder_.write(name, old);
-    const ProgramRun run = on(command, (command == "render" ? "--view frame " : "") + std::string(flagO ? "-o " : "--json ") + out(name));
+    const ProgramRun run =
+        on(command, (command == "render" ? "--view frame " : "") + std::string(flagO ? "-o " : "--json ") + out(name));
     EXPECT_EQ(run.code, code) << command;
     EXPECT_EQ(run.errorLines(), 1) << command << ": " << run.err;
     EXPECT_THAT(run.err, HasSubstr(message)) << command;
@@ -134,8 +137,9 @@ TEST_F(BadInput, TrainingFrameThatCannotBeUsedIsAWarningAndAReason) {
   const ProgramRun run = on("evaluate", "--models limit-angle --json -");
   EXPECT_EQ(run.code, 0);
   EXPECT_EQ(run.errorLines(), 1) << run.err;
-  EXPECT_THAT(run.err, StartsWith("glint: warning: 1 of 6 training frames could not be used; first: frame 0001: frame unreadable: " +
-                                  radiance(1).string()));
+  EXPECT_THAT(run.err,
+              StartsWith("glint: warning: 1 of 6 training frames could not be used; first: frame 0001: frame unreadable: " +
+                         radiance(1).string()));
   const Json training = Json::parse(run.out)["training"];
   ASSERT_EQ(training.size(), 6u);
   EXPECT_EQ(training[0]["status"], "ok");
@@ -260,7 +264,8 @@ TEST_F(BadInput, InterruptedWorkLeavesNoFile) {
   ASSERT_EQ(std::system(("mkfifo " + inQuotes(radiance(3))).c_str()), 0);
   for (const std::string& command : {"evaluate " + inQuotes(folder_.path()) + " --json " + out("x"),
                                      "reconstruct " + inQuotes(folder_.path()) + " -o " + out("x")}) {
-    const ProgramRun run = runGlint(command + " & child=$!; exec 3>" + inQuotes(radiance(3)) + "; kill -TERM $child; wait $child");
+    const ProgramRun run =
+        runGlint(command + " & child=$!; exec 3>" + inQuotes(radiance(3)) + "; kill -TERM $child; wait $child");
     EXPECT_EQ(run.code, 130) << run.err;
     EXPECT_EQ(run.err, "glint: stopped\n");
     EXPECT_FALSE(fs::exists(folder_ / "x"));

@@ -45,8 +45,10 @@ constexpr const char* kReflectance = "evaluate case/scene.json --models reflecta
 
 const std::vector<Case> kCases = {
     {"camera-1e20-embree-abort", kEvaluate, Expected::Refused, "scene.json: frames[0].camera_from_world"},
-    {"camera-1e20-embree-abort", "reconstruct . --model limit-angle --train 0-1 -o out/x.glint", Expected::Refused, "scene.json: frames[0].camera_from_world"},
-    {"camera-1e20-embree-abort", "render . --view frame -o out/x.png", Expected::Refused, "scene.json: frames[0].camera_from_world"},
+    {"camera-1e20-embree-abort", "reconstruct . --model limit-angle --train 0-1 -o out/x.glint", Expected::Refused,
+     "scene.json: frames[0].camera_from_world"},
+    {"camera-1e20-embree-abort", "render . --view frame -o out/x.png", Expected::Refused,
+     "scene.json: frames[0].camera_from_world"},
     {"obj-mixed-corners", "info scene.json", Expected::Answered, ""},
     {"obj-normal-index-out-of-range", "info scene.json", Expected::Refused, "b.obj: line "},
     {"obj-normal-index-small", "info scene.json", Expected::Either, "b.obj: line "},
@@ -84,9 +86,11 @@ const std::vector<Case> kCases = {
 };
 
 /// Folders with a test of their own below.
-const std::set<std::string> kOwnTests = {"exr-offset-wrap", "png-bomb", "jpeg-png-decoder-lines", "movie-disk-full", "session-quadratic", "truth-json-exception"};
+const std::set<std::string> kOwnTests = {"exr-offset-wrap", "png-bomb",          "jpeg-png-decoder-lines",
+                                         "movie-disk-full", "session-quadratic", "truth-json-exception"};
 /// Folders of the inspector: gui-locale-decimal-comma runs under a comma locale, the other two in tests/gui.
-const std::set<std::string> kOfTheInspector = {"gui-banner-rich-text", "gui-locale-decimal-comma", "gui-save-overwrites-recovery-of"};
+const std::set<std::string> kOfTheInspector = {"gui-banner-rich-text", "gui-locale-decimal-comma",
+                                               "gui-save-overwrites-recovery-of"};
 
 /// Every file below a folder, but those below its out/, with its content.
 std::map<fs::path, std::string> filesBelow(const fs::path& folder) {
@@ -115,7 +119,8 @@ class Copy {
     const ProgramRun run = runGlint(arguments, "cd '" + folder_.string() + "'; " + bounds_);
     const std::map<fs::path, std::string> after = filesBelow(outer_.path());
     for (const auto& [file, content] : after)
-      EXPECT_TRUE(isOutput(file) || (before.count(file) && before.at(file) == content)) << file << " was written by: " << arguments;
+      EXPECT_TRUE(isOutput(file) || (before.count(file) && before.at(file) == content))
+          << file << " was written by: " << arguments;
     for (const auto& [file, content] : before)
       EXPECT_TRUE(isOutput(file) || after.count(file)) << file << " was removed by: " << arguments;
     return run;
@@ -179,15 +184,17 @@ TEST(DamagedFolders, EachHasATest) {
   known.insert(kOfTheInspector.begin(), kOfTheInspector.end());
   for (const Case& c : kCases) known.insert(c.folder);
   for (const fs::directory_entry& entry : fs::directory_iterator(kDamaged))
-    EXPECT_TRUE(!entry.is_directory() || known.count(entry.path().filename())) << entry.path() << " is new: give it a row or a test";
+    EXPECT_TRUE(!entry.is_directory() || known.count(entry.path().filename()))
+        << entry.path() << " is new: give it a row or a test";
 }
 
 /// A scene of 64 x 48 with one picture of that name, at the place of the third frame of four.
 std::string sceneWithFrame(const std::string& key, const std::string& file) {
   std::string frames;
   for (int i = 0; i < 4; ++i)
-    frames += std::string(i ? "," : "") + R"({"id":")" + std::to_string(i) + R"(",)" + (i == 3 ? "\"" + key + "\":\"" + file + "\"," : "") +
-              R"("camera_from_world":[[1,0,0,0.)" + std::to_string(i) + R"(],[0,1,0,0],[0,0,1,2],[0,0,0,1]]})";
+    frames += std::string(i ? "," : "") + R"({"id":")" + std::to_string(i) + R"(",)" +
+              (i == 3 ? "\"" + key + "\":\"" + file + "\"," : "") + R"("camera_from_world":[[1,0,0,0.)" + std::to_string(i) +
+              R"(],[0,1,0,0],[0,0,1,2],[0,0,0,1]]})";
   return R"({"glint_scene":1,"camera":{"width":64,"height":48,"fx":80,"fy":80,"cx":31.5,"cy":23.5},"frames":[)" + frames +
          R"(],"surfaces":{"s":{"analytic":{"type":"sphere","radius":0.4}}}})";
 }
@@ -203,7 +210,8 @@ void expectFrameRefused(const Copy& copy, const std::string& file) {
 
 TEST(DamagedFolders, ImagesThatAreLargerThanTheySayAreRefusedBeforeDecoding) {
   GLINT_NEEDS_SHARED_DATA();
-  for (const auto& [folder, file, key] : {std::tuple("exr-offset-wrap", "0003.exr", "radiance"), std::tuple("png-bomb", "0003.png", "image")}) {
+  for (const auto& [folder, file, key] :
+       {std::tuple("exr-offset-wrap", "0003.exr", "radiance"), std::tuple("png-bomb", "0003.png", "image")}) {
     const Copy copy(folder);
     std::ofstream(copy.folder() / "fed.json") << sceneWithFrame(key, file);
     expectFrameRefused(copy, file);
@@ -224,11 +232,16 @@ TEST(DamagedFolders, DecodersWriteNoLinesOfTheirOwn) {
   type.replace(exr.find("float", at), 5, "flOat");
   std::string noisy = jpeg;
   noisy.insert(noisy.size() / 2, std::string(300, '\x11'));
-  for (const auto& [name, bytes] : {std::pair<std::string, std::string>{"a.exr", attribute}, {"b.exr", type}, {"c.jpg", jpeg}, {"d.jpg", noisy},
-                                    {"e.jpg", jpeg.substr(0, jpeg.size() / 2)}, {"f.png", png}}) {
+  for (const auto& [name, bytes] : {std::pair<std::string, std::string>{"a.exr", attribute},
+                                    {"b.exr", type},
+                                    {"c.jpg", jpeg},
+                                    {"d.jpg", noisy},
+                                    {"e.jpg", jpeg.substr(0, jpeg.size() / 2)},
+                                    {"f.png", png}}) {
     const Copy copy("jpeg-png-decoder-lines");
     std::ofstream(copy.folder() / name, std::ios::binary) << bytes;
-    std::ofstream(copy.folder() / "fed.json") << sceneWithFrame(name.find("exr") != std::string::npos ? "radiance" : "image", name);
+    std::ofstream(copy.folder() / "fed.json")
+        << sceneWithFrame(name.find("exr") != std::string::npos ? "radiance" : "image", name);
     expectManners(copy.run("info fed.json"), Expected::Either);
     expectManners(copy.run("detect fed.json"), Expected::Either);
   }

@@ -33,17 +33,37 @@ class EvaluationContract : public SmallScene {
   static void expectContract(const ProgramRun& run) {
     ASSERT_TRUE(Json::accept(run.out)) << run.err;  // strict: neither NaN nor Infinity is JSON
     const Json j = Json::parse(run.out);
-    expectKeys(j, {{"glint_evaluation", "i"}, {"input", "s"}, {"train", "a"}, {"level", "n"}, {"settings", "o"}, {"chosen_model", "s?"}, {"scored_against", "s"}, {"warnings", "a"},
-                   {"models", "o"}}, "");
+    expectKeys(j,
+               {{"glint_evaluation", "i"},
+                {"input", "s"},
+                {"train", "a"},
+                {"level", "n"},
+                {"settings", "o"},
+                {"chosen_model", "s?"},
+                {"scored_against", "s"},
+                {"warnings", "a"},
+                {"models", "o"}},
+               "");
     EXPECT_EQ(j["glint_evaluation"], 1);
     for (const auto& [name, model] : j["models"].items()) {
       expectKeys(model, {{"status", "s"}, {"reason", "s"}, {"fits", "a"}, {"summary", "o"}, {"frames", "a"}}, name);
       EXPECT_EQ(model["status"] == "ok", model["reason"] == "") << name;
       for (const Json& fit : model["fits"]) {
         const bool ok = fit["status"] == "ok";
-        expectKeys(fit, {{"light", "s"}, {"surface", "s?"}, {"ellipsoid", "o?"}, {"q_dual", "a"}, {"light_position", "a?"},
-                         {"limit_angle_deg", "n?"}, {"roughness", "n?"}, {"gap_ratio", "n?"}, {"condition", "n?"},
-                         {"residual_px", "a"}, {"warnings", "a"}, {"time_us", ok ? "n" : "n?"}}, name + ".fits");
+        expectKeys(fit,
+                   {{"light", "s"},
+                    {"surface", "s?"},
+                    {"ellipsoid", "o?"},
+                    {"q_dual", "a"},
+                    {"light_position", "a?"},
+                    {"limit_angle_deg", "n?"},
+                    {"roughness", "n?"},
+                    {"gap_ratio", "n?"},
+                    {"condition", "n?"},
+                    {"residual_px", "a"},
+                    {"warnings", "a"},
+                    {"time_us", ok ? "n" : "n?"}},
+                   name + ".fits");
         if (ok) {
           if (name == "limit-angle" || name == "reflectance") {
             EXPECT_TRUE(fit["condition"].is_number()) << name;
@@ -57,9 +77,19 @@ class EvaluationContract : public SmallScene {
           expectKeys(fit["ellipsoid"], {{"centre", "a"}, {"semi_axes", "a"}, {"world_from_ellipsoid", "a"}}, name + ".ellipsoid");
       }
       const Json& summary = model["summary"];
-      expectKeys(summary, {{"frames", "i"}, {"predicted", "i"}, {"contour_error_pct", "o"}, {"contour_error_px", "o"}, {"iou", "o"},
-                           {"matched", "i"}, {"missed", "i"}, {"spurious", "i"}, {"peak_offset_px", "o"}, {"coverage", "o"},
-                           {"time_us", "o"}}, name + ".summary");
+      expectKeys(summary,
+                 {{"frames", "i"},
+                  {"predicted", "i"},
+                  {"contour_error_pct", "o"},
+                  {"contour_error_px", "o"},
+                  {"iou", "o"},
+                  {"matched", "i"},
+                  {"missed", "i"},
+                  {"spurious", "i"},
+                  {"peak_offset_px", "o"},
+                  {"coverage", "o"},
+                  {"time_us", "o"}},
+                 name + ".summary");
       const std::string value = summary["predicted"] > 0 ? "n" : "n?";
       for (const char* key : {"mean", "median", "p95", "max"})
         expectKeys(summary["contour_error_pct"], {{key, value}}, name + ".contour_error_pct");
@@ -68,10 +98,24 @@ class EvaluationContract : public SmallScene {
       expectKeys(summary["time_us"], {{"median", value}, {"p99", value}}, name + ".time_us");
       for (const Json& row : model["frames"]) {
         const std::string metric = row["status"] == "ok" ? "n" : "n?";
-        expectKeys(row, {{"index", "i"}, {"id", "s"}, {"light", "s"}, {"highlight", "i"}, {"status", "s"}, {"reason", "s"},
-                         {"contour_error_pct", metric}, {"contour_error_px", metric}, {"hausdorff_px", metric}, {"iou", metric},
-                         {"centre_offset_px", metric}, {"axis_ratio_error", metric}, {"angle_error_deg", metric},
-                         {"peak_offset_px", metric}, {"coverage", metric}, {"time_us", "n"}}, name + ".frames");
+        expectKeys(row,
+                   {{"index", "i"},
+                    {"id", "s"},
+                    {"light", "s"},
+                    {"highlight", "i"},
+                    {"status", "s"},
+                    {"reason", "s"},
+                    {"contour_error_pct", metric},
+                    {"contour_error_px", metric},
+                    {"hausdorff_px", metric},
+                    {"iou", metric},
+                    {"centre_offset_px", metric},
+                    {"axis_ratio_error", metric},
+                    {"angle_error_deg", metric},
+                    {"peak_offset_px", metric},
+                    {"coverage", metric},
+                    {"time_us", "n"}},
+                   name + ".frames");
       }
     }
   }
@@ -118,10 +162,12 @@ TEST_F(EvaluationContract, SaysWhatItWasScoredAgainst) {
 TEST_F(EvaluationContract, AnExtendedLightHasItsExtent) {
   withHighlights();
   writeScene();
-  const Json fit = Json::parse(on("evaluate", "--models limit-angle --json - --set light.limit_orders=1").out)["models"]["limit-angle"]["fits"][0];
+  const Json fit = Json::parse(
+      on("evaluate", "--models limit-angle --json - --set light.limit_orders=1").out)["models"]["limit-angle"]["fits"][0];
   ASSERT_EQ(fit["light_extent"].size(), 3u) << fit.dump();
   for (const Json& row : fit["light_extent"]) EXPECT_EQ(row.size(), 3u);
-  EXPECT_FALSE(Json::parse(on("evaluate", "--models limit-angle --json -").out)["models"]["limit-angle"]["fits"][0].contains("light_extent"));
+  EXPECT_FALSE(Json::parse(on("evaluate", "--models limit-angle --json -").out)["models"]["limit-angle"]["fits"][0].contains(
+      "light_extent"));
 }
 
 TEST_F(EvaluationContract, ClippedHighlightsAreNamedWithTheirFrames) {

@@ -18,13 +18,16 @@ class LampSize : public testing::Test {
  protected:
   void SetUp() override { make(R"("radius": 0.5)", 0.12); }
   void make(const std::string& lamp, double roughness) {
-    const std::filesystem::path spec = folder_.write("spec.json", R"({"glint_scene": 1, "name": "ball",
+    const std::filesystem::path spec =
+        folder_.write("spec.json", R"({"glint_scene": 1, "name": "ball",
   "camera": {"width": 200, "height": 150, "fx": 250, "fy": 250, "cx": 99.5, "cy": 74.5},
   "surfaces": {"body": {"analytic": {"type": "ellipsoid", "semi_axes": [0.6, 0.45, 0.35]}}},
-  "lights": [{"id": "lamp", "position": [0.9, -0.8, 1.6], )" + lamp + R"(}],
+  "lights": [{"id": "lamp", "position": [0.9, -0.8, 1.6], )" +
+                                       lamp + R"(}],
   "path": {"orbit": {"centre": [0, 0, 0], "radius": 1.6, "from": -1.6, "to": 0.4, "height": 0.9, "count": 8}},
-  "render": {"reflectance": "torrance-sparrow", "roughness": )" + (std::ostringstream() << roughness).str() +
-                                                                   R"(, "diffuse": [0.3, 0.4, 0.6], "noise": 0.002, "bits": 8, "seed": 3}})");
+  "render": {"reflectance": "torrance-sparrow", "roughness": )" +
+                                       (std::ostringstream() << roughness).str() +
+                                       R"(, "diffuse": [0.3, 0.4, 0.6], "noise": 0.002, "bits": 8, "seed": 3}})");
     const ProgramRun run = runGlint("synth " + inQuotes(spec) + " -o " + inQuotes(folder_ / "scene"));
     ASSERT_EQ(run.code, 0) << run.err;
     Json scene = Json::parse(contentOf(folder_ / "scene/scene.json"));
@@ -32,7 +35,8 @@ class LampSize : public testing::Test {
     folder_.write("scene/scene.json", scene.dump());
   }
   Json fit(const std::string& more = "") const {
-    const ProgramRun run = runGlint("evaluate " + inQuotes(folder_ / "scene") + " --models reflectance --train first:6 --json - " + more);
+    const ProgramRun run =
+        runGlint("evaluate " + inQuotes(folder_ / "scene") + " --models reflectance --train first:6 --json - " + more);
     EXPECT_EQ(run.code, 0) << run.err;
     return Json::parse(run.out)["models"]["reflectance"]["fits"][0];
   }

@@ -34,7 +34,8 @@ class RelinkedScene : public SmallScene {
     for (int j = 0; j <= kUp; ++j)
       for (int i = 0; i < kRound; ++i) {
         const double u = 2 * M_PI * i / kRound, v = M_PI * (j + 0.5 * (j == 0) - 0.5 * (j == kUp)) / kUp;
-        vertices << 0.6 * std::sin(v) * std::cos(u) << " " << 0.35 * std::sin(v) * std::sin(u) << " " << 0.3 * std::cos(v) << "\n";
+        vertices << 0.6 * std::sin(v) * std::cos(u) << " " << 0.35 * std::sin(v) * std::sin(u) << " " << 0.3 * std::cos(v)
+                 << "\n";
       }
     for (int j = 0; j < kUp; ++j)
       for (int i = 0; i < kRound; ++i) {
@@ -99,7 +100,8 @@ TEST_F(RelinkedScene, ASessionRemembersThePlaces) {
   const ProgramRun replayed = runGlint("replay " + session(moved.path()) + yes);
   EXPECT_EQ(replayed.code, 0) << replayed.err << replayed.out;
   EXPECT_EQ(errors(runGlint("evaluate " + session(moved.path()) + " --json -" + yes)), inPlace_);
-  EXPECT_EQ(errors(runGlint("evaluate " + session(moved.path()) + " --json - --photographs " + inQuotes(moved / "elsewhere"))), inPlace_)
+  EXPECT_EQ(errors(runGlint("evaluate " + session(moved.path()) + " --json - --photographs " + inQuotes(moved / "elsewhere"))),
+            inPlace_)
       << "or name the folder";
   // A session made from that session remembers them, too.
   EXPECT_EQ(runGlint("reconstruct " + session(moved.path()) + kQuick + " -o " + inQuotes(moved / "second.glint") + yes).code, 0);

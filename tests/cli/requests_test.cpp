@@ -132,8 +132,10 @@ TEST_F(Requests, TwoTrainingFramesAnchoredAndLimitAngleAnswer) {
         continue;
       }
       EXPECT_EQ(models[name]["status"], anchored ? "ok" : "failed") << solver << " " << name;
-      if (anchored) EXPECT_EQ(models[name]["summary"]["predicted"], 6) << name;
-      else EXPECT_EQ(models[name]["reason"], "too few views: a free centre needs 3 views, have 2") << solver << " " << name;
+      if (anchored)
+        EXPECT_EQ(models[name]["summary"]["predicted"], 6) << name;
+      else
+        EXPECT_EQ(models[name]["reason"], "too few views: a free centre needs 3 views, have 2") << solver << " " << name;
     }
   }
   const ProgramRun none = on("reconstruct", "--train 0,1 --model canonical -o " + out("x.glint"));
@@ -145,7 +147,8 @@ TEST_F(Requests, TwoTrainingFramesAnchoredAndLimitAngleAnswer) {
 TEST_F(Requests, AutoWritesItsJsonWhereNothingCanBeUsed) {
   for (Json& frame : scene_["frames"]) frame.erase("radiance");
   writeScene();
-  const ProgramRun run = on("evaluate", "--models auto --json " + out("e.json") + " --csv " + out("e.csv") + " --html " + out("e.html"));
+  const ProgramRun run =
+      on("evaluate", "--models auto --json " + out("e.json") + " --csv " + out("e.csv") + " --html " + out("e.html"));
   EXPECT_EQ(run.code, 3);
   EXPECT_EQ(run.errorLines(), 1) << run.err;
   EXPECT_THAT(run.err, HasSubstr("no training frame could be used"));
@@ -166,7 +169,8 @@ TEST(Fallback, AnEllipsoidOfTheFirstWeightsSaysSo) {
   ASSERT_EQ(run.code, 0) << run.err;
   const Json fit = Json::parse(run.out)["models"]["primal"]["fits"][0];
   EXPECT_EQ(fit["status"], "ok");
-  EXPECT_THAT(fit["warnings"].dump(), HasSubstr("as its residuals suggest, it finds no ellipsoid (not converged: the next step would be"));
+  EXPECT_THAT(fit["warnings"].dump(),
+              HasSubstr("as its residuals suggest, it finds no ellipsoid (not converged: the next step would be"));
 }
 
 TEST_F(Requests, PredictAcceptsPathsOutsideWhereAllowed) {
@@ -193,7 +197,8 @@ TEST_F(Requests, LevelTakesWhatTheSceneReaderTakes) {
 TEST_F(Requests, FrameWithoutTruthIsUnscoredWithItsReason) {
   for (int i = 0; i < kFrames - 1; ++i) {  // frame 7 gets none
     const Json& highlight = exact_["frames"][i]["highlights"][0];
-    const Json truth = {{"levels", {{"0.50", Json::array({{{"points", highlight["contour"]}}})}}}, {"peak_subpixel", highlight["peak"]}};
+    const Json truth = {{"levels", {{"0.50", Json::array({{{"points", highlight["contour"]}}})}}},
+                        {"peak_subpixel", highlight["peak"]}};
     folder_.write("truth/000" + std::to_string(i) + ".json", truth.dump());
   }
   const ProgramRun run = on("evaluate", "--models limit-angle --json - --truth " + out("truth"));

@@ -179,7 +179,8 @@ TEST_F(TradeoffCommand, StopsQuicklyAndResumes) {
     _exit(99);
   }
   const fs::path work = folder_ / "t.json.work";
-  for (int i = 0; i < testing_support::kWaitMs / 50 && !fs::exists(work); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  for (int i = 0; i < testing_support::kWaitMs / 50 && !fs::exists(work); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
   EXPECT_TRUE(fs::exists(work)) << "no work was kept in time";
   kill(child, SIGINT);
   int status = 0;

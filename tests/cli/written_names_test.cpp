@@ -18,7 +18,8 @@ class WrittenNames : public testing::Test {
  protected:
   /// A sphere, seen once for each entry of `frames`.
   static Json sphere(const Json& frames) {
-    Json spec = Json::parse(R"({"glint_scene": 1, "camera": {"width": 64, "height": 48, "fx": 80, "fy": 80, "cx": 31.5, "cy": 23.5},
+    Json spec =
+        Json::parse(R"({"glint_scene": 1, "camera": {"width": 64, "height": 48, "fx": 80, "fy": 80, "cx": 31.5, "cy": 23.5},
       "surfaces": {"body": {"analytic": {"type": "sphere", "radius": 0.4}}}, "lights": [{"id": "lamp", "position": [0.3, 0.2, -2]}],
       "render": {"reflectance": "ggx", "roughness": 0.2, "bits": 8, "samples": 1}})");
     spec["frames"] = frames;
@@ -38,9 +39,11 @@ class WrittenNames : public testing::Test {
   }
   void writeTetrahedron(const std::string& name, double size) const {
     const std::string s = (std::ostringstream() << size).str();  // std::to_string writes by the locale
-    folder_.write(name, "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\nelement face 4\n"
-                        "property list uchar int vertex_indices\nend_header\n" +
-                            s + " 0 0\n-" + s + " 0 0\n0 " + s + " 0\n0 0 " + s + "\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n");
+    folder_.write(
+        name,
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\nelement face 4\n"
+        "property list uchar int vertex_indices\nend_header\n" +
+            s + " 0 0\n-" + s + " 0 0\n0 " + s + " 0\n0 0 " + s + "\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n");
   }
   TemporaryFolder folder_;
 };

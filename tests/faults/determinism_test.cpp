@@ -19,8 +19,9 @@ Piece* piece = nullptr;
 std::vector<std::string> sessions() {
   const char* asked = std::getenv("GLINT_SESSIONS");
   if (asked && std::strcmp(asked, "all") == 0)
-    return {"plane", "plane-to-cylinder", "ellipsoid", "two-lamps", "vase", "lessons/mirror", "lessons/plane", "lessons/sphere",
-            "lessons/bent-mirror", "lessons/plane-to-cylinder", "lessons/waist"};
+    return {"plane",          "plane-to-cylinder", "ellipsoid",      "two-lamps",           "vase",
+            "lessons/mirror", "lessons/plane",     "lessons/sphere", "lessons/bent-mirror", "lessons/plane-to-cylinder",
+            "lessons/waist"};
   return {"plane", "vase"};  // the smallest, and the one with a mesh
 }
 
@@ -37,11 +38,18 @@ std::vector<Setting> exactSettings() {
   std::vector<Setting> all;
   for (const char* n : {"1", "2", "4"})
     all.push_back({std::string(n) + (*n == '1' ? " thread" : " threads"),
-                   {{"GLINT_THREADS", n}, {"OMP_NUM_THREADS", n}, {"OPENCV_FOR_THREADS_NUM", n}, {"VTK_SMP_MAX_THREADS", n}, {"GLINT_EMBREE", std::string("threads=") + n}},
+                   {{"GLINT_THREADS", n},
+                    {"OMP_NUM_THREADS", n},
+                    {"OPENCV_FOR_THREADS_NUM", n},
+                    {"VTK_SMP_MAX_THREADS", n},
+                    {"GLINT_EMBREE", std::string("threads=") + n}},
                    *n == '1'});
   all.push_back({"memory filled with a pattern", {{"MALLOC_PERTURB_", "165"}}});
-  all.push_back({"allocations mapped one by one", {{"GLIBC_TUNABLES", "glibc.malloc.mmap_threshold=4096:glibc.malloc.mmap_max=100000:glibc.malloc.tcache_count=0"}}});
-  all.push_back({"one arena, trimmed at once", {{"GLIBC_TUNABLES", "glibc.malloc.arena_max=1:glibc.malloc.trim_threshold=0:glibc.malloc.top_pad=0"}}});
+  all.push_back(
+      {"allocations mapped one by one",
+       {{"GLIBC_TUNABLES", "glibc.malloc.mmap_threshold=4096:glibc.malloc.mmap_max=100000:glibc.malloc.tcache_count=0"}}});
+  all.push_back({"one arena, trimmed at once",
+                 {{"GLIBC_TUNABLES", "glibc.malloc.arena_max=1:glibc.malloc.trim_threshold=0:glibc.malloc.top_pad=0"}}});
   constexpr const char* kOther = "libjemalloc.so.2";
   if (void* other = dlopen(kOther, RTLD_LAZY)) {  // else the loader would only warn, and the row would be of the same allocator
     dlclose(other);
@@ -53,7 +61,8 @@ std::vector<Setting> exactSettings() {
 std::vector<Setting> maskedSettings() {
   const std::string noAvx512 = "-AVX512F,-AVX512VL,-AVX512BW,-AVX512DQ,-AVX512CD";
   return {{"C library without AVX-512", {{"GLIBC_TUNABLES", "glibc.cpu.hwcaps=" + noAvx512}}},
-          {"C library without AVX2 and FMA", {{"GLIBC_TUNABLES", "glibc.cpu.hwcaps=" + noAvx512 + ",-AVX2,-AVX2_Usable,-FMA,-FMA_Usable,-FMA4"}}},
+          {"C library without AVX2 and FMA",
+           {{"GLIBC_TUNABLES", "glibc.cpu.hwcaps=" + noAvx512 + ",-AVX2,-AVX2_Usable,-FMA,-FMA_Usable,-FMA4"}}},
           {"OpenCV without AVX-512", {{"OPENCV_CPU_DISABLE", "AVX512_SKX"}}},
           {"OpenCV without AVX2", {{"OPENCV_CPU_DISABLE", "AVX512_SKX,AVX2,FMA3,FP16,AVX"}}},
           {"Embree with AVX2", {{"GLINT_EMBREE", "isa=avx2"}}},
@@ -133,5 +142,7 @@ INSTANTIATE_TEST_SUITE_P(Sessions, Determinism, testing::ValuesIn(sessions()), [
 }  // namespace glint::faults
 
 int main(int argc, char** argv) {
-  return glint::faults::runTests(argc, argv, glint::faults::piece, "The same results with other threads, allocators and processor features", "tests/run_determinism");
+  return glint::faults::runTests(argc, argv, glint::faults::piece,
+                                 "The same results with other threads, allocators and processor features",
+                                 "tests/run_determinism");
 }

@@ -57,7 +57,8 @@ std::vector<std::string> problemsOf(const Stage& stage, const ChildRun& run, Fou
   if (run.timedOut) problems.emplace_back("it hangs");
   if (run.signalled) problems.push_back("it dies of signal " + std::to_string(run.code - 128));
   if (run.code != 0 && run.code != 2 && run.code != 3) problems.push_back("exit code " + std::to_string(run.code));
-  if (run.code == 0 && found != Found::Complete) problems.push_back(std::string("exit code 0, but the outputs are ") + kFoundNames[int(found)]);
+  if (run.code == 0 && found != Found::Complete)
+    problems.push_back(std::string("exit code 0, but the outputs are ") + kFoundNames[int(found)]);
   const std::string start = stage.workload().program + ": ";
   if (run.code != 0 && (run.errorLines() != 1 || run.err.rfind(start, 0) != 0))
     problems.push_back("standard error is not one line of the program: " + run.err);
@@ -100,7 +101,8 @@ TEST_P(Faults, TargetsAreOldAbsentOrComplete) {
           ++tally.runs;
           tally.problems += !problems.empty();
           tally.add("exit " + std::to_string(run.code) + ", " + kFoundNames[int(found)]);
-          for (const std::string& p : problems) ADD_FAILURE() << GetParam().name << " " << fault.text() << (withOld ? " (old files)" : "") << ": " << p;
+          for (const std::string& p : problems)
+            ADD_FAILURE() << GetParam().name << " " << fault.text() << (withOld ? " (old files)" : "") << ": " << p;
         }
     EXPECT_TRUE(stage.inputsUnchanged());
     if (tally.runs) piece->add(GetParam().name + ", " + kind.call, tally);
@@ -115,7 +117,8 @@ TEST_P(Faults, AFullDisk) {
   for (const char* size : {"size=8k", "size=4k", "size=24k"}) {
     if (!all() && tally.runs > 0) break;
     stage.prepare(false);
-    if (::mount("tmpfs", stage.folder().c_str(), "tmpfs", 0, size) != 0) GTEST_SKIP() << "mounting needs the right to: " << std::strerror(errno);
+    if (::mount("tmpfs", stage.folder().c_str(), "tmpfs", 0, size) != 0)
+      GTEST_SKIP() << "mounting needs the right to: " << std::strerror(errno);
     const ChildRun run = stage.run({});
     std::vector<std::string> problems;
     const Found found = stage.look(false, problems);
@@ -154,5 +157,6 @@ TEST(Injection, CountsAndFails) {
 }  // namespace glint::faults
 
 int main(int argc, char** argv) {
-  return glint::faults::runTests(argc, argv, glint::faults::piece, "Calls that fail: writes, renames, folders, memory, threads", "tests/run_faults");
+  return glint::faults::runTests(argc, argv, glint::faults::piece, "Calls that fail: writes, renames, folders, memory, threads",
+                                 "tests/run_faults");
 }

@@ -41,8 +41,7 @@ F real(const char* name) {
   return reinterpret_cast<F>(dlsym(RTLD_NEXT, name));
 }
 // Looked up at first use, once per function.
-#define REAL(name) \
-  static const auto next = real<decltype(&::name)>(#name)
+#define REAL(name) static const auto next = real<decltype(&::name)>(#name)
 
 /// Counts a call and says what is to happen to it.
 Action happens(Call call) {
@@ -92,7 +91,11 @@ void parse(const char* text) {
   const struct {
     const char* name;
     Action action;
-  } actions[] = {{":errno=", Action::Once}, {":from=", Action::From}, {":short", Action::Short}, {":signal=", Action::Signal}, {":stuck=", Action::Stuck}};
+  } actions[] = {{":errno=", Action::Once},
+                 {":from=", Action::From},
+                 {":short", Action::Short},
+                 {":signal=", Action::Signal},
+                 {":stuck=", Action::Stuck}};
   for (const auto& a : actions)
     if (strncmp(second, a.name, strlen(a.name)) == 0) action = a.action;
 }
@@ -311,7 +314,9 @@ static bool memoryFails(size_t bytes) {
   return true;
 }
 void* malloc(size_t bytes) { return memoryFails(bytes) ? nullptr : __libc_malloc(bytes); }
-void* calloc(size_t n, size_t size) { return size && n < SIZE_MAX / size && memoryFails(n * size) ? nullptr : __libc_calloc(n, size); }
+void* calloc(size_t n, size_t size) {
+  return size && n < SIZE_MAX / size && memoryFails(n * size) ? nullptr : __libc_calloc(n, size);
+}
 void* realloc(void* old, size_t bytes) { return memoryFails(bytes) ? nullptr : __libc_realloc(old, bytes); }
 void* memalign(size_t alignment, size_t bytes) { return memoryFails(bytes) ? nullptr : __libc_memalign(alignment, bytes); }
 void* aligned_alloc(size_t alignment, size_t bytes) { return memoryFails(bytes) ? nullptr : __libc_memalign(alignment, bytes); }

@@ -2,8 +2,8 @@
 // Killed or asked to stop, at every call that writes and at random moments: every output is old, absent or complete, and the same command
 // runs again and leaves nothing over. GLINT_KILLS is the number of random kills of the whole program, GLINT_SEED their seed
 // (tests/run_kills); with fewer than a hundred only some of the calls are tried.
-#include <gmock/gmock.h>
 #include <fcntl.h>
+#include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/file.h>
 #include <unistd.h>
@@ -29,7 +29,8 @@ bool all() { return randomKills() >= 100; }
 std::vector<Workload> killed() {
   std::vector<Workload> chosen;
   for (Workload& w : workloads(all()))
-    if (w.name != "convert" && w.name != "render" && w.name != "evaluate") chosen.push_back(std::move(w));  // one file, as reconstruct
+    if (w.name != "convert" && w.name != "render" && w.name != "evaluate")
+      chosen.push_back(std::move(w));  // one file, as reconstruct
   return chosen;
 }
 
@@ -40,11 +41,13 @@ class Kills : public testing::TestWithParam<Workload> {
     const Found found = stage.look(withOld, problems);
     const bool ended = !run.signalled;
     tally.add(std::string(ended ? "ended before it, " : "") + kFoundNames[int(found)]);
-    if (ended && found != Found::Complete) problems.push_back("it ended with " + std::to_string(run.code) + " and is not complete: " + run.err);
+    if (ended && found != Found::Complete)
+      problems.push_back("it ended with " + std::to_string(run.code) + " and is not complete: " + run.err);
     stage.again(problems);
     ++tally.runs;
     tally.problems += !problems.empty();
-    for (const std::string& p : problems) ADD_FAILURE() << GetParam().name << " " << what << (withOld ? " (old files): " : ": ") << p;
+    for (const std::string& p : problems)
+      ADD_FAILURE() << GetParam().name << " " << what << (withOld ? " (old files): " : ": ") << p;
   }
 };
 
@@ -111,7 +114,8 @@ TEST_P(Kills, AskedToStopAtEveryCall) {
         ++tally.runs;
         tally.problems += !problems.empty();
         tally.add(kFoundNames[int(found)]);
-        for (const std::string& p : problems) ADD_FAILURE() << GetParam().name << " " << fault.text() << (withOld ? " (old files): " : ": ") << p;
+        for (const std::string& p : problems)
+          ADD_FAILURE() << GetParam().name << " " << fault.text() << (withOld ? " (old files): " : ": ") << p;
       }
     }
   }
@@ -151,7 +155,8 @@ TEST(Leftovers, OnlyThoseOfDeadProgramsGo) {
   const ChildRun killed = stage.run({.fault = Fault{"rename", "signal=9", 1}, .cores = {oneCore()}});
   ASSERT_TRUE(killed.signalled);
   ASSERT_EQ(stage.leftovers().size(), 1u);
-  const std::vector<std::string> users = {".run.tmp.glint", ".run.glint-notes.tmp", "run.glint-1-1.tmp.glint", ".run.glint-1-1.tmp.glint.keep"};
+  const std::vector<std::string> users = {".run.tmp.glint", ".run.glint-notes.tmp", "run.glint-1-1.tmp.glint",
+                                          ".run.glint-1-1.tmp.glint.keep"};
   for (const std::string& name : users) std::ofstream(stage.folder() / name) << "mine";
   const std::string living = ".run.glint-1-7.tmp.glint";  // locked by this process, which lives
   const int fd = ::open((stage.folder() / living).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
@@ -170,5 +175,6 @@ TEST(Leftovers, OnlyThoseOfDeadProgramsGo) {
 }  // namespace glint::faults
 
 int main(int argc, char** argv) {
-  return glint::faults::runTests(argc, argv, glint::faults::piece, "Programs that are killed or asked to stop", "tests/run_kills");
+  return glint::faults::runTests(argc, argv, glint::faults::piece, "Programs that are killed or asked to stop",
+                                 "tests/run_kills");
 }

@@ -25,11 +25,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using testing_support::TemporaryFolder;
 
-std::vector<std::string> environmentOf(const ChildOptions& options, const std::filesystem::path& countsFile, const std::string& program) {
+std::vector<std::string> environmentOf(const ChildOptions& options, const std::filesystem::path& countsFile,
+                                       const std::string& program) {
   std::map<std::string, std::string> all;
   for (char** e = environ; *e; ++e) {
     const std::string text = *e;
-    if (const std::size_t equals = text.find('='); equals != std::string::npos) all[text.substr(0, equals)] = text.substr(equals + 1);
+    if (const std::size_t equals = text.find('='); equals != std::string::npos)
+      all[text.substr(0, equals)] = text.substr(equals + 1);
   }
   for (const auto& [name, value] : options.environment) all[name] = value;
   if (options.fault) {
@@ -87,7 +89,8 @@ ChildRun runChild(const std::vector<std::string>& command, const std::filesystem
   const TemporaryFolder own;
   const CountsFile counts(own / "counts");
   std::vector<std::string> arguments = command,
-                           environment = environmentOf(options, own / "counts", std::filesystem::path(command[0]).filename().string());
+                           environment =
+                               environmentOf(options, own / "counts", std::filesystem::path(command[0]).filename().string());
   const std::vector<char*> argv = pointers(arguments), envp = pointers(environment);
   const std::string out = (own / "out").string(), err = (own / "err").string(), home = folder.string();
   cpu_set_t cores;

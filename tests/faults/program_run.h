@@ -19,7 +19,7 @@ struct Fault {
 };
 
 struct ChildRun {
-  int code = -1;       ///< exit code; 128 + signal when a signal ended it
+  int code = -1;  ///< exit code; 128 + signal when a signal ended it
   bool signalled = false, timedOut = false;
   std::string out, err;
   std::vector<int> calls = std::vector<int>(kCalls);
@@ -29,11 +29,11 @@ struct ChildRun {
 };
 
 struct ChildOptions {
-  std::optional<Fault> fault = {};         ///< counted and, with an action, injected
+  std::optional<Fault> fault = {};  ///< counted and, with an action, injected
   std::map<std::string, std::string> environment = {};
-  std::vector<int> cores = {};             ///< the processor cores it may use; empty: all
-  int secondsAtMost = 120;                 ///< then it hangs, and is killed
-  std::optional<double> killAfterMs = {};  ///< SIGKILL at this time
+  std::vector<int> cores = {};                  ///< the processor cores it may use; empty: all
+  int secondsAtMost = 120;                      ///< then it hangs, and is killed
+  std::optional<double> killAfterMs = {};       ///< SIGKILL at this time
   std::optional<double> interruptAfterMs = {};  ///< SIGINT or SIGTERM (`signal`) at this time
   int signal = 2;
 };

@@ -89,23 +89,34 @@ std::vector<Workload> workloads(bool every) {
     return Workload{name, words(arguments), words(before), "glint"};
   };
   std::vector<Workload> all = {
-      make("reconstruct", "reconstruct IN/scene.json --model limit-angle -o run.glint", "reconstruct IN/scene.json --model canonical -o run.glint"),
+      make("reconstruct", "reconstruct IN/scene.json --model limit-angle -o run.glint",
+           "reconstruct IN/scene.json --model canonical -o run.glint"),
       make("predict", "predict IN/limit-angle.glint --frames 4,5 --out predicted --json p.json",
            "predict IN/canonical.glint --frames 4,5 --out predicted --json p.json"),
       make("masks", "predict IN/limit-angle.glint --frames 4,5 --masks labels", ""),
       make("evaluate", "evaluate IN/scene.json --train first:4 --models limit-angle --json e.json --html e.html --csv e.csv",
            "evaluate IN/scene.json --train first:4 --models canonical --json e.json --html e.html --csv e.csv"),
-      make("detect", "detect IN/scene.json --out found --json d.json", "detect IN/scene.json --level 0.4 --out found --json d.json"),
-      make("tradeoff", "tradeoff IN/scene.json --train first:4 --models canonical --repeats 1 --max-trials 2 --json t.json --html t.html -o t.glint",
-           "tradeoff IN/scene.json --train first:4 --models limit-angle --repeats 1 --max-trials 2 --json t.json --html t.html -o t.glint"),
+      make("detect", "detect IN/scene.json --out found --json d.json",
+           "detect IN/scene.json --level 0.4 --out found --json d.json"),
+      make("tradeoff",
+           "tradeoff IN/scene.json --train first:4 --models canonical --repeats 1 --max-trials 2 --json t.json --html t.html -o "
+           "t.glint",
+           "tradeoff IN/scene.json --train first:4 --models limit-angle --repeats 1 --max-trials 2 --json t.json --html t.html "
+           "-o t.glint"),
       make("synth", "synth IN/spec.json -o made", "synth IN/before.json -o made"),
-      make("movie-mp4", "movie IN/limit-angle.glint --frames 0-2 --size 160x120 -o m.mp4", "movie IN/limit-angle.glint --frames 3-5 --size 160x120 -o m.mp4"),
-      make("movie-png", "movie IN/limit-angle.glint --frames 0-2 --size 160x120 -o m.png", "movie IN/limit-angle.glint --frames 3-5 --size 160x120 -o m.png"),
-      make("render", "render IN/limit-angle.glint --view frame --size 160x120 -o r.png", "render IN/limit-angle.glint --view ladder --size 160x120 -o r.png"),
+      make("movie-mp4", "movie IN/limit-angle.glint --frames 0-2 --size 160x120 -o m.mp4",
+           "movie IN/limit-angle.glint --frames 3-5 --size 160x120 -o m.mp4"),
+      make("movie-png", "movie IN/limit-angle.glint --frames 0-2 --size 160x120 -o m.png",
+           "movie IN/limit-angle.glint --frames 3-5 --size 160x120 -o m.png"),
+      make("render", "render IN/limit-angle.glint --view frame --size 160x120 -o r.png",
+           "render IN/limit-angle.glint --view ladder --size 160x120 -o r.png"),
       make("convert", "convert IN/scene.json -o converted.json", "convert IN/other.json -o converted.json")};
 #ifdef GLINT_SAVE
   for (const char* how : {"save", "autosave"})
-    all.push_back({how, {how, "IN/limit-angle.glint", "limit-angle", "run.glint"}, {how, "IN/limit-angle.glint", "canonical", "run.glint"}, "glint-save"});
+    all.push_back({how,
+                   {how, "IN/limit-angle.glint", "limit-angle", "run.glint"},
+                   {how, "IN/limit-angle.glint", "canonical", "run.glint"},
+                   "glint-save"});
 #endif
   const std::set<std::string> ways = {"reconstruct", "predict", "synth", "movie-mp4", "save"};
   if (!every) std::erase_if(all, [&](const Workload& w) { return !ways.count(w.name); });
@@ -172,7 +183,8 @@ bool Stage::isValid(const std::string& name, const std::string& content, const s
   if (content == good) return true;
   const std::string ending = fs::path(name).extension().string();
   if (ending == ".json" || ending == ".glint") return !keysOf(content).empty() && keysOf(content) == keysOf(good);
-  if (ending == ".html") return content.rfind("<!doctype html>", 0) == 0 && content.find("</html>", content.size() - 10) != std::string::npos;
+  if (ending == ".html")
+    return content.rfind("<!doctype html>", 0) == 0 && content.find("</html>", content.size() - 10) != std::string::npos;
   if (ending == ".csv") return std::count(content.begin(), content.end(), '\n') == std::count(good.begin(), good.end(), '\n');
   if (ending == ".png") return picture(content).size() == picture(good).size();
   if (ending == ".mp4") return framesOf(content) == framesOf(good);
@@ -191,7 +203,8 @@ Found Stage::look(bool withOld, std::vector<std::string>& problems) const {
     const bool there = found != now.end(), hadOld = withOld && before != old_.end();
     const bool isOld = hadOld ? there && found->second == before->second : !there;
     // An old file is as valid as a new one: where the two differ, it is not complete, else "written" and "left alone" would look alike.
-    const bool isNew = there && good != good_.end() && (found->second == good->second || (!isOld && isValid(name, found->second, good->second)));
+    const bool isNew =
+        there && good != good_.end() && (found->second == good->second || (!isOld && isValid(name, found->second, good->second)));
     const bool isGood = good != good_.end() ? isNew : isOld || !there;
     if (there && !isGood && !isOld) {
       problems.push_back(name + " is neither old nor complete (" + std::to_string(found->second.size()) + " bytes)");
@@ -243,11 +256,13 @@ void Piece::TearDown() {
   if (std::ifstream in(file); partly && in) {
     const Json earlier = Json::parse(in);
     for (const Json& row : earlier.at("rows"))
-      if (std::none_of(rows_.begin(), rows_.end(), [&](const auto& r) { return r.first == row.at("name"); })) piece["rows"].push_back(row);
+      if (std::none_of(rows_.begin(), rows_.end(), [&](const auto& r) { return r.first == row.at("name"); }))
+        piece["rows"].push_back(row);
   }
   for (const auto& [name, tally] : rows_) {
     std::string note;
-    for (const auto& [outcome, count] : tally.outcomes) note += (note.empty() ? "" : "; ") + outcome + ": " + std::to_string(count);
+    for (const auto& [outcome, count] : tally.outcomes)
+      note += (note.empty() ? "" : "; ") + outcome + ": " + std::to_string(count);
     if (partly) note += (note.empty() ? "" : ", ") + std::string(date);
     piece["rows"].push_back({{"name", name}, {"count", tally.runs}, {"findings", tally.problems}, {"note", note}});
   }

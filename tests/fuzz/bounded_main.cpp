@@ -23,11 +23,11 @@ namespace {
 using namespace glint::fuzz;
 namespace fs = std::filesystem;
 
-constexpr unsigned kHang = 60;                // s for one input, of which most take a millisecond: generous, for machines under load
-constexpr std::size_t kMostBytes = 1 << 18;   // of one input
-const std::string* current = nullptr;         // what a signal finds
-std::string findingFile;                      // with its zero byte, for `open`
-char nowFeeding[160];                         // "input 17 of seed 3"
+constexpr unsigned kHang = 60;  // s for one input, of which most take a millisecond: generous, for machines under load
+constexpr std::size_t kMostBytes = 1 << 18;  // of one input
+const std::string* current = nullptr;        // what a signal finds
+std::string findingFile;                     // with its zero byte, for `open`
+char nowFeeding[160];                        // "input 17 of seed 3"
 
 void keepCurrent() {
   if (!current) return;
@@ -98,11 +98,16 @@ int main(int argc, char** argv) {
   double seconds = 10;
   for (int i = 3; i + 1 < argc; i += 2) {
     const std::string flag = argv[i];
-    if (flag == "--inputs") inputs = std::atol(argv[i + 1]);
-    else if (flag == "--seconds") seconds = std::atof(argv[i + 1]);
-    else if (flag == "--seed") seed = std::atol(argv[i + 1]);
-    else if (flag == "--first") first = std::atol(argv[i + 1]);
-    else return usage();
+    if (flag == "--inputs")
+      inputs = std::atol(argv[i + 1]);
+    else if (flag == "--seconds")
+      seconds = std::atof(argv[i + 1]);
+    else if (flag == "--seed")
+      seed = std::atol(argv[i + 1]);
+    else if (flag == "--first")
+      first = std::atol(argv[i + 1]);
+    else
+      return usage();
   }
   findingFile = "finding-" + reader->name;
   for (const int number : {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL, SIGALRM}) std::signal(number, onSignal);
@@ -130,7 +135,7 @@ int main(int argc, char** argv) {
     const std::string bytes = mutated(seeds[below(rng, seeds.size())], reader->form, rng, kMostBytes);
     if (!feed(*reader, bytes, counts)) return 1;
   }
-  std::printf("%s: %zu files of the corpus, %ld of them readable; %ld inputs in %.1f s, %ld read, %ld refused, no finding\n", reader->name.c_str(),
-              seeds.size(), readable, counts.inputs, passed(), counts.read, counts.refused);
+  std::printf("%s: %zu files of the corpus, %ld of them readable; %ld inputs in %.1f s, %ld read, %ld refused, no finding\n",
+              reader->name.c_str(), seeds.size(), readable, counts.inputs, passed(), counts.read, counts.refused);
   return 0;
 }

@@ -92,7 +92,8 @@ std::string objOf(const Ball& b) {
   for (const Eigen::Vector3d& v : b.vertices) out << "v " << v.x() << " " << v.y() << " " << v.z() << "\n";
   for (const Eigen::Vector3d& v : b.vertices) out << "vn " << v.x() << " " << v.y() << " " << v.z() << "\n";
   for (const Eigen::Vector3i& t : b.triangles)
-    out << "f " << t.x() + 1 << "//" << t.x() + 1 << " " << t.y() + 1 << "//" << t.y() + 1 << " " << t.z() + 1 << "//" << t.z() + 1 << "\n";
+    out << "f " << t.x() + 1 << "//" << t.x() + 1 << " " << t.y() + 1 << "//" << t.y() + 1 << " " << t.z() + 1 << "//"
+        << t.z() + 1 << "\n";
   return out.str();
 }
 
@@ -115,16 +116,18 @@ std::string stlOf(const Ball& b) {
 Json specOf(const Json& surface, const Json& render, double larger = 1) {
   return {{"glint_scene", 1},
           {"name", "small"},
-          {"camera", {{"width", int(48 * larger)},
-                       {"height", int(36 * larger)},
-                       {"fx", 60 * larger},
-                       {"fy", 60 * larger},
-                       {"cx", 24 * larger - 0.5},
-                       {"cy", 18 * larger - 0.5},
-                       {"distortion", {0.02, 0, 0, 0, 0}}}},
+          {"camera",
+           {{"width", int(48 * larger)},
+            {"height", int(36 * larger)},
+            {"fx", 60 * larger},
+            {"fy", 60 * larger},
+            {"cx", 24 * larger - 0.5},
+            {"cy", 18 * larger - 0.5},
+            {"distortion", {0.02, 0, 0, 0, 0}}}},
           {"surfaces", {{"body", surface}}},
           {"lights", {{{"id", "lamp"}, {"position", {1.5, -1.0, 2.2}}}}},
-          {"path", {{"orbit", {{"centre", {0, 0, 0}}, {"radius", 1.9}, {"height", 0.9}, {"from", -1.9}, {"to", -0.9}, {"count", 5}}}}},
+          {"path",
+           {{"orbit", {{"centre", {0, 0, 0}}, {"radius", 1.9}, {"height", 0.9}, {"from", -1.9}, {"to", -0.9}, {"count", 5}}}}},
           {"render", render}};
 }
 
@@ -158,7 +161,10 @@ std::vector<Victim> makeMaterials(const fs::path& program, const fs::path& folde
   const Json png = {{"reflectance", "ggx"}, {"roughness", 0.25}, {"diffuse", 0.05}, {"bits", 8}};
   const Json jpeg = {{"reflectance", "ggx"}, {"roughness", 0.25}, {"diffuse", 0.05}, {"bits", 8}, {"jpeg_quality", 90}};
   const Ball b = ball(0.4);
-  for (const auto& [name, text] : {std::pair<std::string, std::string>{"text.ply", plyOf(b, false)}, {"binary.ply", plyOf(b, true)}, {"ball.obj", objOf(b)}, {"ball.stl", stlOf(b)}})
+  for (const auto& [name, text] : {std::pair<std::string, std::string>{"text.ply", plyOf(b, false)},
+                                   {"binary.ply", plyOf(b, true)},
+                                   {"ball.obj", objOf(b)},
+                                   {"ball.stl", stlOf(b)}})
     write(folder / name, text);
 
   make.scene("given", specOf(ellipsoid, png), false);
@@ -179,8 +185,10 @@ std::vector<Victim> makeMaterials(const fs::path& program, const fs::path& folde
   const Json scene = Json::parse(contentOf(folder / "given/scene.json"));
   for (const Json& frame : scene["frames"]) {
     Json contours = Json::array();
-    for (const Json& h : frame.value("highlights", Json::array())) contours.push_back({{"closed", true}, {"edge_fraction", 0.0}, {"points", h["contour"]}});
-    write(folder / "given/truth" / (frame["id"].get<std::string>() + ".json"), Json{{"levels", {{"0.50", contours}}}, {"peak_subpixel", nullptr}}.dump());
+    for (const Json& h : frame.value("highlights", Json::array()))
+      contours.push_back({{"closed", true}, {"edge_fraction", 0.0}, {"points", h["contour"]}});
+    write(folder / "given/truth" / (frame["id"].get<std::string>() + ".json"),
+          Json{{"levels", {{"0.50", contours}}}, {"peak_subpixel", nullptr}}.dump());
   }
   write(folder / "given/run.work", R"({"glint_tradeoff_work":2,"key":"","coarse":{},"full":{}})");
   write(folder / "given/folder/a.txt", "nothing of ours");
@@ -197,7 +205,8 @@ std::vector<Victim> makeMaterials(const fs::path& program, const fs::path& folde
   frames.erase("path");
   frames["frames"] = Json::array();
   for (int i = 0; i < 2; ++i)
-    frames["frames"].push_back({{"id", "f" + std::to_string(i)}, {"camera_from_world", {{1, 0, 0, 0.1 * i}, {0, 1, 0, 0}, {0, 0, 1, 1.6}, {0, 0, 0, 1}}}});
+    frames["frames"].push_back({{"id", "f" + std::to_string(i)},
+                                {"camera_from_world", {{1, 0, 0, 0.1 * i}, {0, 1, 0, 0}, {0, 0, 1, 1.6}, {0, 0, 0, 1}}}});
   frames["lights"][0]["position"] = {0.4, 0.3, -2.5};
   write(folder / "specs/frames.json", frames.dump());
   fs::copy(folder / "ball.obj", folder / "specs/ball.obj");
@@ -212,8 +221,10 @@ std::vector<Victim> makeMaterials(const fs::path& program, const fs::path& folde
                                             "render . " + limit + "--view frame --size 160x120 -o out/p.png",
                                             "render . " + limit + "--view plots --size 160x120 -o out/p.png",
                                             "convert . -o out/c.json"};
-  const std::vector<std::string> onMesh = {"info .", "evaluate . " + limit + "--json out/e.json", "reconstruct . --model canonical --train 0-2 -o out/s.glint"};
-  const std::vector<std::string> onImage = {"info .", "detect . --json out/d.json --out out/d", "evaluate . " + limit + "--source image --json out/e.json --html out/e.html"};
+  const std::vector<std::string> onMesh = {"info .", "evaluate . " + limit + "--json out/e.json",
+                                           "reconstruct . --model canonical --train 0-2 -o out/s.glint"};
+  const std::vector<std::string> onImage = {"info .", "detect . --json out/d.json --out out/d",
+                                            "evaluate . " + limit + "--source image --json out/e.json --html out/e.html"};
   const std::vector<std::string> onSession = {"info run.glint",
                                               "predict run.glint --json out/p.json --out out/p --masks out/m",
                                               "replay run.glint",
@@ -231,25 +242,71 @@ std::vector<Victim> makeMaterials(const fs::path& program, const fs::path& folde
   add({"scene", "depth", "scene.json", Form::Json, onScene, "", 4});
   add({"scene", "text-ply", "scene.json", Form::Json, onScene, "", 3});
   add({"session", "given", "run.glint", Form::Json, onSession, "", 14});
-  for (const std::string spec : {"orbit.json", "steps.json", "frames.json"}) add({"synth", "specs", spec, Form::Json, {"synth " + spec + " -o out/s"}, "", 4});
-  add({"truth", "given", "truth/0003.json", Form::Json, {"evaluate . " + limit + "--truth truth --json out/e.json", "evaluate . --models canonical --train 0-2 --truth truth --csv out/e.csv"}, "", 4});
-  add({"work file", "given", "run.work", Form::Json, {"tradeoff . --models limit-angle --train 0-2 --max-trials 1 --repeats 1 --work run.work --json out/t.json"}, "", 1});
+  for (const std::string spec : {"orbit.json", "steps.json", "frames.json"})
+    add({"synth", "specs", spec, Form::Json, {"synth " + spec + " -o out/s"}, "", 4});
+  add({"truth",
+       "given",
+       "truth/0003.json",
+       Form::Json,
+       {"evaluate . " + limit + "--truth truth --json out/e.json",
+        "evaluate . --models canonical --train 0-2 --truth truth --csv out/e.csv"},
+       "",
+       4});
+  add({"work file",
+       "given",
+       "run.work",
+       Form::Json,
+       {"tradeoff . --models limit-angle --train 0-2 --max-trials 1 --repeats 1 --work run.work --json out/t.json"},
+       "",
+       1});
   add({"PLY", "text-ply", "mesh/text.ply", Form::Text, onMesh, "", 4});
   add({"PLY", "binary-ply", "mesh/binary.ply", Form::Text, onMesh, "", 3});
   add({"OBJ", "ball-obj", "mesh/ball.obj", Form::Text, onMesh, "", 3});
   add({"STL", "ball-stl", "mesh/ball.stl", Form::Text, onMesh, "", 3});
   add({"PNG", "detected", "frames/0001.png", Form::Bytes, onImage, "", 3});
   add({"JPEG", "jpeg", "frames/0001.jpg", Form::Bytes, onImage, "", 3});
-  add({"TIFF radiance", "detected", "radiance/0001.tiff", Form::Bytes, {"info .", "detect . --json out/d.json --out out/d", "evaluate . " + limit + "--json out/e.json"}, "", 3});
+  add({"TIFF radiance",
+       "detected",
+       "radiance/0001.tiff",
+       Form::Bytes,
+       {"info .", "detect . --json out/d.json --out out/d", "evaluate . " + limit + "--json out/e.json"},
+       "",
+       3});
   add({"depth", "depth", "depth/0001.tiff", Form::Bytes, onMesh, "", 3});
   add({"normals", "depth", "normals/0001.tiff", Form::Bytes, onMesh, "", 2});
   add({"mask", "detected", "mask/0001.png", Form::Bytes, onImage, "", 2});
-  add({"--set", "given", "", Form::Text, {"evaluate . --models limit-angle,canonical --train 0-2 --set {}", "detect . --set {}"}, "predict.directions=36", 1});
-  add({"--set", "given", "", Form::Text, {"evaluate . --models limit-angle,canonical --train 0-2 --set {}", "detect . --set {}"}, "detect.level=0.5", 1});
-  add({"--train", "given", "", Form::Text, {"evaluate . --models limit-angle --train {}", "reconstruct . --model limit-angle --train {} -o out/s.glint", "predict run.glint --frames {} --json out/p.json"}, "0-2,4", 1});
+  add({"--set",
+       "given",
+       "",
+       Form::Text,
+       {"evaluate . --models limit-angle,canonical --train 0-2 --set {}", "detect . --set {}"},
+       "predict.directions=36",
+       1});
+  add({"--set",
+       "given",
+       "",
+       Form::Text,
+       {"evaluate . --models limit-angle,canonical --train 0-2 --set {}", "detect . --set {}"},
+       "detect.level=0.5",
+       1});
+  add({"--train",
+       "given",
+       "",
+       Form::Text,
+       {"evaluate . --models limit-angle --train {}", "reconstruct . --model limit-angle --train {} -o out/s.glint",
+        "predict run.glint --frames {} --json out/p.json"},
+       "0-2,4",
+       1});
   add({"--train", "given", "", Form::Text, {"evaluate . --models limit-angle --train {}"}, "spread:3", 1});
-  add({"places", "given", "", Form::Text, {"info {}", "evaluate {} --models limit-angle", "convert . -o {}", "predict run.glint --out {}", "evaluate . --models limit-angle --json {}",
-                                           "synth scene.json -o {}", "info . --photographs {}", "info . --meshes {}", "evaluate . --models limit-angle --truth {}", "info . --limit {}"}, "folder/../scene.json", 2});
+  add({"places",
+       "given",
+       "",
+       Form::Text,
+       {"info {}", "evaluate {} --models limit-angle", "convert . -o {}", "predict run.glint --out {}",
+        "evaluate . --models limit-angle --json {}", "synth scene.json -o {}", "info . --photographs {}", "info . --meshes {}",
+        "evaluate . --models limit-angle --truth {}", "info . --limit {}"},
+       "folder/../scene.json",
+       2});
   std::erase_if(victims, [&](const Victim& v) {
     if (v.file.empty() || fs::exists(folder / v.input / v.file)) return false;
     throw std::runtime_error("no material " + v.input + "/" + v.file);

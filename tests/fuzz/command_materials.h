@@ -11,9 +11,9 @@ namespace glint::fuzz {
 
 /// One way to hand damage to the program: a file of a small input, or words of its command line.
 struct Victim {
-  std::string reader;                 ///< row of the table: "scene", "PNG", "--train"
-  std::string input;                  ///< folder of the materials that is copied
-  std::string file;                   ///< in that folder; "" = a word of the command line is damaged instead
+  std::string reader;  ///< row of the table: "scene", "PNG", "--train"
+  std::string input;   ///< folder of the materials that is copied
+  std::string file;    ///< in that folder; "" = a word of the command line is damaged instead
   Form form = Form::Bytes;
   std::vector<std::string> commands;  ///< "evaluate . --json out/e.json"; run in the copy. "{}" stands for the damaged word.
   std::string word;                   ///< what "{}" is before

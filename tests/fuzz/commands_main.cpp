@@ -33,9 +33,9 @@ namespace {
 using namespace glint::fuzz;
 namespace fs = std::filesystem;
 
-constexpr double kSlowSeconds = 20;  // of the processor: the inputs are tiny, and most commands take a tenth of a second
+constexpr double kSlowSeconds = 20;   // of the processor: the inputs are tiny, and most commands take a tenth of a second
 constexpr long kMostUnchecked = 500;  // runs, from which all commands are first tried on what is not damaged: a minute
-constexpr double kHangSeconds = 180; // on the clock, for what waits
+constexpr double kHangSeconds = 180;  // on the clock, for what waits
 constexpr double kLargeMegabytes = 1000;
 constexpr std::size_t kLongestLine = 400;
 constexpr std::size_t kMostBytes = 1 << 20;
@@ -123,7 +123,8 @@ std::map<std::string, std::string> filesBelow(const fs::path& outer) {
   for (fs::recursive_directory_iterator it(outer), end; it != end; ++it) {
     const std::string name = it->path().lexically_relative(outer).string();
     if (name == "case/out") it.disable_recursion_pending();
-    if (name != "stdout" && name != "stderr" && name != "case/out") files[name] = it->is_regular_file() ? contentOf(it->path()) : "a folder";
+    if (name != "stdout" && name != "stderr" && name != "case/out")
+      files[name] = it->is_regular_file() ? contentOf(it->path()) : "a folder";
   }
   return files;
 }
@@ -134,7 +135,8 @@ std::string kindOfLine(const std::string& text) {
 }
 
 /// All that is wrong with a run; "" = nothing.
-std::string complaint(const Run& run, const std::string& command, const std::map<std::string, std::string>& before, const fs::path& outer) {
+std::string complaint(const Run& run, const std::string& command, const std::map<std::string, std::string>& before,
+                      const fs::path& outer) {
   if (run.hung) return "no end after " + std::to_string(int(kHangSeconds)) + " s";
   if (run.code == -SIGXCPU || run.seconds > kSlowSeconds) return "slow: " + std::to_string(run.seconds) + " s of the processor";
   if (run.code < 0) return "signal " + std::to_string(-run.code);
@@ -164,7 +166,8 @@ std::string complaint(const Run& run, const std::string& command, const std::map
     if (!after.count(name) && !(ownWork && name == "case/run.work")) return "removed: " + name;
   std::error_code none;
   for (const fs::directory_entry& entry : fs::directory_iterator(outer / "case/out", none))
-    if (entry.path().extension() == ".json" && !nlohmann::json::accept(contentOf(entry.path()))) return "no JSON: " + entry.path().filename().string();
+    if (entry.path().extension() == ".json" && !nlohmann::json::accept(contentOf(entry.path())))
+      return "no JSON: " + entry.path().filename().string();
   return "";
 }
 
@@ -183,7 +186,8 @@ void one(const Options& o, const fs::path& materials, const std::vector<const Vi
   fs::copy(materials / v.input, folder, fs::copy_options::recursive);
   for (const char* name : {"home", "tmp", "canary", "case/out"}) fs::create_directories(outer.path() / name);
   outer.write("canary/song.txt", "la");
-  const std::vector<std::string> paths = {"../canary/song.txt", (outer.path() / "canary/song.txt").string(), (outer.path() / "canary/new").string(), "../canary/new", "../../escape"};
+  const std::vector<std::string> paths = {"../canary/song.txt", (outer.path() / "canary/song.txt").string(),
+                                          (outer.path() / "canary/new").string(), "../canary/new", "../../escape"};
   std::string damaged;
   if (v.file.empty()) {
     damaged = mutated(v.word, v.form, rng, 2000, paths);
@@ -208,7 +212,8 @@ void one(const Options& o, const fs::path& materials, const std::vector<const Vi
   row.largest = std::max(row.largest, run.megabytes);
   if (wrong.empty()) return;
   ++row.findings;
-  std::printf("FINDING %ld: %s: glint %s (%s): %s\n", number, v.reader.c_str(), command.c_str(), wrong.c_str(), glint::messageLine(run.err.empty() ? damaged : run.err).c_str());
+  std::printf("FINDING %ld: %s: glint %s (%s): %s\n", number, v.reader.c_str(), command.c_str(), wrong.c_str(),
+              glint::messageLine(run.err.empty() ? damaged : run.err).c_str());
   std::fflush(stdout);
   if (o.keep.empty()) return;
   std::error_code error;
@@ -218,7 +223,9 @@ void one(const Options& o, const fs::path& materials, const std::vector<const Vi
       fs::create_directories((kept / name.substr(5)).parent_path(), error);
       std::ofstream(kept / name.substr(5), std::ios::binary) << content;
     }
-  std::ofstream(kept / "CMD") << "glint " << command << (damaged.empty() ? "" : "\n{} = " + damaged) << "\n" << wrong << "\n" << run.err;
+  std::ofstream(kept / "CMD") << "glint " << command << (damaged.empty() ? "" : "\n{} = " + damaged) << "\n"
+                              << wrong << "\n"
+                              << run.err;
 }
 
 /// The first command that fails on what is not damaged, with its words; "" = none. Such a command would reach nothing behind its failure.
@@ -240,7 +247,8 @@ std::string failsUndamaged(const Options& o, const fs::path& materials, const st
 void write(const fs::path& file, const Table& table) {
   std::ofstream out(file);
   for (const auto& [name, r] : table)
-    out << name << "\t" << r.runs << " " << r.answered << " " << r.wrong << " " << r.cannot << " " << r.findings << " " << r.slowest << " " << r.largest << "\n";
+    out << name << "\t" << r.runs << " " << r.answered << " " << r.wrong << " " << r.cannot << " " << r.findings << " "
+        << r.slowest << " " << r.largest << "\n";
 }
 
 void add(const fs::path& file, Table& table) {
@@ -251,21 +259,36 @@ void add(const fs::path& file, Table& table) {
     std::getline(in, rest);
     std::istringstream(rest) >> r.runs >> r.answered >> r.wrong >> r.cannot >> r.findings >> r.slowest >> r.largest;
     Row& sum = table[name];
-    sum = {sum.runs + r.runs, sum.answered + r.answered, sum.wrong + r.wrong, sum.cannot + r.cannot, sum.findings + r.findings, std::max(sum.slowest, r.slowest), std::max(sum.largest, r.largest)};
+    sum = {sum.runs + r.runs,
+           sum.answered + r.answered,
+           sum.wrong + r.wrong,
+           sum.cannot + r.cannot,
+           sum.findings + r.findings,
+           std::max(sum.slowest, r.slowest),
+           std::max(sum.largest, r.largest)};
   }
 }
 
 std::string markdown(const Table& table) {
-  std::string text = "| damaged | command | runs | answered | exit 2 | exit 3 | findings | slowest, s | largest, MB |\n|---|---|---|---|---|---|---|---|---|\n";
+  std::string text =
+      "| damaged | command | runs | answered | exit 2 | exit 3 | findings | slowest, s | largest, MB "
+      "|\n|---|---|---|---|---|---|---|---|---|\n";
   Row all;
   const auto line = [&](const std::string& name, const Row& r) {
     char numbers[200];
-    std::snprintf(numbers, sizeof numbers, " | %ld | %ld | %ld | %ld | %ld | %.1f | %.0f |\n", r.runs, r.answered, r.wrong, r.cannot, r.findings, r.slowest, r.largest);
+    std::snprintf(numbers, sizeof numbers, " | %ld | %ld | %ld | %ld | %ld | %.1f | %.0f |\n", r.runs, r.answered, r.wrong,
+                  r.cannot, r.findings, r.slowest, r.largest);
     text += "| " + name + numbers;
   };
   for (const auto& [name, r] : table) {
     line(name, r);
-    all = {all.runs + r.runs, all.answered + r.answered, all.wrong + r.wrong, all.cannot + r.cannot, all.findings + r.findings, std::max(all.slowest, r.slowest), std::max(all.largest, r.largest)};
+    all = {all.runs + r.runs,
+           all.answered + r.answered,
+           all.wrong + r.wrong,
+           all.cannot + r.cannot,
+           all.findings + r.findings,
+           std::max(all.slowest, r.slowest),
+           std::max(all.largest, r.largest)};
   }
   line("all | ", all);
   return text;
@@ -276,19 +299,27 @@ std::string pieceOf(const Options& o, const Table& table) {
   Table things;
   for (const auto& [name, r] : table) {
     Row& sum = things[name.substr(0, name.find(" | "))];
-    sum = {sum.runs + r.runs, sum.answered + r.answered, sum.wrong + r.wrong, sum.cannot + r.cannot, sum.findings + r.findings, std::max(sum.slowest, r.slowest), std::max(sum.largest, r.largest)};
+    sum = {sum.runs + r.runs,
+           sum.answered + r.answered,
+           sum.wrong + r.wrong,
+           sum.cannot + r.cannot,
+           sum.findings + r.findings,
+           std::max(sum.slowest, r.slowest),
+           std::max(sum.largest, r.largest)};
   }
   char day[32];
   const std::time_t now = std::time(nullptr);
   std::strftime(day, sizeof day, "%Y-%m-%d", std::gmtime(&now));
   nlohmann::ordered_json piece = {{"what", "Damaged inputs through the program itself"},
-                                  {"command", "tests/run_mutations --seed " + std::to_string(o.seed) + " --first " + std::to_string(o.first) + " --count " + std::to_string(o.count)},
+                                  {"command", "tests/run_mutations --seed " + std::to_string(o.seed) + " --first " +
+                                                  std::to_string(o.first) + " --count " + std::to_string(o.count)},
                                   {"date", day}};
   for (const auto& [name, r] : things)
     piece["rows"].push_back({{"name", name},
                              {"count", r.runs},
                              {"findings", r.findings},
-                             {"note", "answered " + std::to_string(r.answered) + ", refused " + std::to_string(r.wrong) + ", cannot answer " + std::to_string(r.cannot)}});
+                             {"note", "answered " + std::to_string(r.answered) + ", refused " + std::to_string(r.wrong) +
+                                          ", cannot answer " + std::to_string(r.cannot)}});
   return piece.dump(1) + "\n";
 }
 
@@ -297,13 +328,20 @@ bool parse(int argc, char** argv, Options& o) {
   o.program = fs::absolute(argv[1]);
   for (int i = 2; i + 1 < argc; i += 2) {
     const std::string flag = argv[i], value = argv[i + 1];
-    if (flag == "--seed") o.seed = std::strtoull(value.c_str(), nullptr, 10);
-    else if (flag == "--count") o.count = std::atol(value.c_str());
-    else if (flag == "--first") o.first = std::atol(value.c_str());
-    else if (flag == "--jobs") o.jobs = std::max(1, std::atoi(value.c_str()));
-    else if (flag == "--keep") o.keep = fs::absolute(value);
-    else if (flag == "--piece") o.piece = fs::absolute(value);
-    else return false;
+    if (flag == "--seed")
+      o.seed = std::strtoull(value.c_str(), nullptr, 10);
+    else if (flag == "--count")
+      o.count = std::atol(value.c_str());
+    else if (flag == "--first")
+      o.first = std::atol(value.c_str());
+    else if (flag == "--jobs")
+      o.jobs = std::max(1, std::atoi(value.c_str()));
+    else if (flag == "--keep")
+      o.keep = fs::absolute(value);
+    else if (flag == "--piece")
+      o.piece = fs::absolute(value);
+    else
+      return false;
   }
   return true;
 }
@@ -351,7 +389,8 @@ int main(int argc, char** argv) {
   }
   Table table;
   for (int w = 0; w < o.jobs; ++w) add(materials.path() / ("counts-" + std::to_string(w)), table);
-  std::printf("Seed %llu, numbers %ld to %ld\n%s", static_cast<unsigned long long>(o.seed), o.first, o.first + o.count - 1, markdown(table).c_str());
+  std::printf("Seed %llu, numbers %ld to %ld\n%s", static_cast<unsigned long long>(o.seed), o.first, o.first + o.count - 1,
+              markdown(table).c_str());
   if (!o.piece.empty()) std::ofstream(o.piece) << pieceOf(o, table);
   long findings = 0;
   for (const auto& [name, r] : table) findings += r.findings;

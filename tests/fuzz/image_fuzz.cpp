@@ -13,7 +13,8 @@ constexpr std::uint64_t kMostPixels = 1 << 16;  // a larger image takes time in 
 
 ImageHeader checkedHeader(const std::string& bytes) {
   const ImageHeader header = readImageHeader(bytes);
-  if (!header.problem.empty() && (header.width != 0 || header.height != 0)) throw Finding{"a size beside the problem " + header.problem};
+  if (!header.problem.empty() && (header.width != 0 || header.height != 0))
+    throw Finding{"a size beside the problem " + header.problem};
   if (header.channels < 0) throw Finding{"a negative number of channels"};
   return header;
 }
@@ -24,7 +25,8 @@ bool feedImageHeader(const std::string& bytes) { return checkedHeader(bytes).pro
 
 bool feedImage(const std::string& bytes) {
   const ImageHeader header = checkedHeader(bytes);
-  if (!header.problem.empty() || header.width > kMostPixels || header.height > kMostPixels || header.width * header.height > kMostPixels)
+  if (!header.problem.empty() || header.width > kMostPixels || header.height > kMostPixels ||
+      header.width * header.height > kMostPixels)
     return false;
   const Outcome<cv::Mat> pixels = decodeImage(bytes, header);
   if (!pixels) {
@@ -33,7 +35,8 @@ bool feedImage(const std::string& bytes) {
   }
   // Who passes the check of the header by another size than the decoder sees can make it take any amount of memory.
   if (static_cast<std::uint64_t>(pixels->cols) > header.width || static_cast<std::uint64_t>(pixels->rows) > header.height)
-    throw Finding{"decoded " + std::to_string(pixels->cols) + " x " + std::to_string(pixels->rows) + ", more than its header says"};
+    throw Finding{"decoded " + std::to_string(pixels->cols) + " x " + std::to_string(pixels->rows) +
+                  ", more than its header says"};
   if (pixels->channels() != 1 && pixels->channels() != 3) throw Finding{std::to_string(pixels->channels()) + " channels"};
   return true;
 }

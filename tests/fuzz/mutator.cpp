@@ -12,13 +12,58 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Numbers at which arithmetic, casts and sizes break, as JSON or as a word of a text. Some are no JSON (NaN), as other programs write it.
-const std::vector<std::string> kNumbers = {
-    "0",          "-0.0",       "1",           "-1",          "2",          "0.5",        "-0.5",       "1e308",        "-1e308",
-    "1e-308",     "5e-324",     "1e999",       "-1e999",      "NaN",        "Infinity",   "-Infinity",  "9e18",         "-9e18",
-    "255",        "256",        "65535",       "65536",       "65537",      "2147483647", "2147483648", "-2147483648",  "-2147483649",
-    "4294967295", "4294967296", "1e9",         "1e20",        "-1e20",      "1e-9",       "1e-20",      "0.1e1",        "3.0000000001",
-    "100000",     "1000000",    "9223372036854775807",        "18446744073709551616",     "nan",        "1e30",         "1e16",
-    "0x10",       "1,5",        "00012",       "+1",          ".5",         "1e",         "--1",        "0.3333333333", "12345678.9"};
+const std::vector<std::string> kNumbers = {"0",
+                                           "-0.0",
+                                           "1",
+                                           "-1",
+                                           "2",
+                                           "0.5",
+                                           "-0.5",
+                                           "1e308",
+                                           "-1e308",
+                                           "1e-308",
+                                           "5e-324",
+                                           "1e999",
+                                           "-1e999",
+                                           "NaN",
+                                           "Infinity",
+                                           "-Infinity",
+                                           "9e18",
+                                           "-9e18",
+                                           "255",
+                                           "256",
+                                           "65535",
+                                           "65536",
+                                           "65537",
+                                           "2147483647",
+                                           "2147483648",
+                                           "-2147483648",
+                                           "-2147483649",
+                                           "4294967295",
+                                           "4294967296",
+                                           "1e9",
+                                           "1e20",
+                                           "-1e20",
+                                           "1e-9",
+                                           "1e-20",
+                                           "0.1e1",
+                                           "3.0000000001",
+                                           "100000",
+                                           "1000000",
+                                           "9223372036854775807",
+                                           "18446744073709551616",
+                                           "nan",
+                                           "1e30",
+                                           "1e16",
+                                           "0x10",
+                                           "1,5",
+                                           "00012",
+                                           "+1",
+                                           ".5",
+                                           "1e",
+                                           "--1",
+                                           "0.3333333333",
+                                           "12345678.9"};
 
 const std::vector<std::string> kTexts = {"",
                                          ".",
@@ -56,9 +101,10 @@ const std::vector<std::string> kTexts = {"",
                                          "body.ply",
                                          "frames/0000.png"};
 
-const std::vector<std::string> kKeys = {"x",      "",          "id",    "mesh",   "analytic", "camera", "scale", "k1",    "frames",
-                                        "lights", "surfaces",  "image", "depth",  "mask",     "path",   "files", "what_if", "truth",
-                                        "radius", "semi_axes", "type",  "segment", "direction", "matrix", "levels", "points"};
+const std::vector<std::string> kKeys = {"x",       "",          "id",      "mesh",     "analytic", "camera",    "scale",
+                                        "k1",      "frames",    "lights",  "surfaces", "image",    "depth",     "mask",
+                                        "path",    "files",     "what_if", "truth",    "radius",   "semi_axes", "type",
+                                        "segment", "direction", "matrix",  "levels",   "points"};
 
 template <class T>
 const T& oneOf(const std::vector<T>& all, Rng& rng) {
@@ -174,7 +220,8 @@ class JsonDamage {
       }
       value = marked(raw + "\"");
     } else if (which == 3) {
-      const char* const kEscapes[] = {"\"\\u0000\"", "\"\\ud800\"", "\"\\u001b[2J\"", "\"\\u000a\"", "\"\\u202e\"", "\"\\x\"", "\"\\ud83d\\ude00\""};
+      const char* const kEscapes[] = {"\"\\u0000\"", "\"\\ud800\"", "\"\\u001b[2J\"",    "\"\\u000a\"",
+                                      "\"\\u202e\"", "\"\\x\"",     "\"\\ud83d\\ude00\""};
       value = marked(kEscapes[below(rng_, std::size(kEscapes))]);
     } else {
       value = oneOf(kTexts, rng_);
@@ -231,7 +278,12 @@ class JsonDamage {
     std::size_t i = 0;
     for (const auto& [key, value] : at.parent->get_ref<const Json::object_t&>()) {
       const bool here = i++ == at.index;
-      members.emplace_back(!here ? key : which == 0 ? oneOf(kTexts, rng_) : which == 1 ? key + " " : which == 2 ? added : oneOf(kKeys, rng_), value);
+      members.emplace_back(!here        ? key
+                           : which == 0 ? oneOf(kTexts, rng_)
+                           : which == 1 ? key + " "
+                           : which == 2 ? added
+                                        : oneOf(kKeys, rng_),
+                           value);
     }
     *at.parent = std::move(changed);
   }
@@ -386,10 +438,28 @@ std::string mutatedBytes(std::string bytes, Rng& rng) {
       bytes.replace(to, std::min(block.size(), size - to), block);
       break;
     }
-    case 7: std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), length, static_cast<char>(below(rng, 2) ? 0xff : 0)); break;
+    case 7:
+      std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), length, static_cast<char>(below(rng, 2) ? 0xff : 0));
+      break;
     default: {  // a number of 1, 2, 4 or 8 bytes, of either order
-      const std::uint64_t kValues[] = {0, 1, 0x7f, 0x80, 0xff, 0x7fff, 0x8000, 0xffff, 0x10000, 0x7fffffff, 0x80000000, 0xffffffff, 0x100000000,
-                                       0x7fffffffffffffff, 0x8000000000000000, 0xffffffffffffffff, size, size + 1};
+      const std::uint64_t kValues[] = {0,
+                                       1,
+                                       0x7f,
+                                       0x80,
+                                       0xff,
+                                       0x7fff,
+                                       0x8000,
+                                       0xffff,
+                                       0x10000,
+                                       0x7fffffff,
+                                       0x80000000,
+                                       0xffffffff,
+                                       0x100000000,
+                                       0x7fffffffffffffff,
+                                       0x8000000000000000,
+                                       0xffffffffffffffff,
+                                       size,
+                                       size + 1};
       char raw[8];
       const std::size_t n = std::size_t(1) << below(rng, 4);
       const std::uint64_t value = kValues[below(rng, std::size(kValues))];

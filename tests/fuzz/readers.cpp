@@ -10,12 +10,18 @@ namespace glint::fuzz {
 
 const std::vector<Reader>& readers() {
   static const std::vector<Reader> all = {
-      {"scene", Form::Json, feedScene},        {"session", Form::Json, feedSession},
-      {"synth", Form::Json, feedSynth},        {"truth", Form::Json, feedTruth},
-      {"work_file", Form::Json, feedWorkFile}, {"settings", Form::Text, feedSettings},
-      {"train", Form::Text, feedTrain},        {"ply", Form::Text, feedPly},
-      {"obj", Form::Text, feedObj},            {"stl", Form::Text, feedStl},
-      {"image_header", Form::Bytes, feedImageHeader}, {"image", Form::Bytes, feedImage},
+      {"scene", Form::Json, feedScene},
+      {"session", Form::Json, feedSession},
+      {"synth", Form::Json, feedSynth},
+      {"truth", Form::Json, feedTruth},
+      {"work_file", Form::Json, feedWorkFile},
+      {"settings", Form::Text, feedSettings},
+      {"train", Form::Text, feedTrain},
+      {"ply", Form::Text, feedPly},
+      {"obj", Form::Text, feedObj},
+      {"stl", Form::Text, feedStl},
+      {"image_header", Form::Bytes, feedImageHeader},
+      {"image", Form::Bytes, feedImage},
   };
   return all;
 }
@@ -29,7 +35,8 @@ void checkRefusal(const std::exception& e, const std::string& file) {
   const std::string line = messageLine(e.what());
   if (line.empty()) throw Finding{"a refusal without words"};
   if (line.size() > kLongestMessage) throw Finding{"a message of " + std::to_string(line.size()) + " bytes"};
-  if (line.find('\n') != std::string::npos || withoutControls(line) != line) throw Finding{"a message that is not one plain line: " + line};
+  if (line.find('\n') != std::string::npos || withoutControls(line) != line)
+    throw Finding{"a message that is not one plain line: " + line};
   if (line.find(file) == std::string::npos) throw Finding{"a message without the file's name: " + line};
 }
 

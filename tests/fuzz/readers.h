@@ -24,17 +24,17 @@ struct Finding {
 };
 
 // One function for each, by the file that holds it.
-bool feedScene(const std::string& bytes);          // scene_fuzz.cpp
+bool feedScene(const std::string& bytes);  // scene_fuzz.cpp
 bool feedSession(const std::string& bytes);
 bool feedSynth(const std::string& bytes);
 bool feedTruth(const std::string& bytes);
-bool feedWorkFile(const std::string& bytes);       // request_fuzz.cpp
+bool feedWorkFile(const std::string& bytes);  // request_fuzz.cpp
 bool feedSettings(const std::string& bytes);
 bool feedTrain(const std::string& bytes);
-bool feedPly(const std::string& bytes);            // mesh_fuzz.cpp
+bool feedPly(const std::string& bytes);  // mesh_fuzz.cpp
 bool feedObj(const std::string& bytes);
 bool feedStl(const std::string& bytes);
-bool feedImageHeader(const std::string& bytes);    // image_fuzz.cpp
+bool feedImageHeader(const std::string& bytes);  // image_fuzz.cpp
 bool feedImage(const std::string& bytes);
 
 /// Checks what every refusal promises: one line that a person may see, with the file's name in it when `file` is not empty.

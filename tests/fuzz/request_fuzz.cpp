@@ -55,7 +55,8 @@ bool feedTrain(const std::string& bytes) {
     const int count = static_cast<int>(scene.frames.size());
     if (spec.frames.empty()) throw Finding{"a specification that names no frame"};
     for (std::size_t i = 0; i < spec.frames.size(); ++i)
-      if (spec.frames[i] < 0 || spec.frames[i] >= count || (i > 0 && spec.frames[i] <= spec.frames[i - 1])) throw Finding{"frames that are not sorted, or do not exist"};
+      if (spec.frames[i] < 0 || spec.frames[i] >= count || (i > 0 && spec.frames[i] <= spec.frames[i - 1]))
+        throw Finding{"frames that are not sorted, or do not exist"};
     return true;
   } catch (const InputError& e) {
     checkRefusal(e, "--train");

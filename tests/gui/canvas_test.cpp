@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The widget that shows what VTK draws.
-#include "gui/base/vtk_canvas.h"
-
 #include <vtkActor2D.h>
 #include <vtkGenericOpenGLRenderWindow.h>
 #include <vtkPlaneSource.h>
@@ -13,6 +11,7 @@
 
 #include <cmath>
 
+#include "gui/base/vtk_canvas.h"
 #include "tests/gui/fixture.h"
 
 namespace glint::gui {

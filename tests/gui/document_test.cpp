@@ -151,21 +151,11 @@ class DocumentTest : public QObject {
     const auto random = [&seed](int n) { return int((seed = seed * 1664525u + 1013904223u) >> 16) % n; };
     for (int i = 0; i < 200; ++i) {
       switch (random(5)) {
-        case 0:
-          document_->setSetting("detect.level", 0.1 + 0.01 * random(50));
-          break;
-        case 1:
-          document_->setRole(random(12), FrameRole(random(3)));
-          break;
-        case 2:
-          document_->selectFrame(random(12));
-          break;
-        case 3:
-          document_->setLayerVisible("rays", "Rays", random(2) == 0);
-          break;
-        default:
-          document_->setSource(random(2) ? FrameSource::Image : FrameSource::Radiance);
-          break;
+        case 0: document_->setSetting("detect.level", 0.1 + 0.01 * random(50)); break;
+        case 1: document_->setRole(random(12), FrameRole(random(3))); break;
+        case 2: document_->selectFrame(random(12)); break;
+        case 3: document_->setLayerVisible("rays", "Rays", random(2) == 0); break;
+        default: document_->setSource(random(2) ? FrameSource::Image : FrameSource::Radiance); break;
       }
     }
     QVERIFY(document_->undoStack()->count() > 100);

@@ -122,7 +122,8 @@ class ExportTest : public QObject {
     const QString stood = QDir::currentPath();
     QVERIFY(QDir::setCurrent(QFileInfo(kSession).path()));
     window_->open(QStringLiteral("scene.json"));
-    QTRY_VERIFY_WITH_TIMEOUT(window_->document().inputFile() == "scene.json" && window_->idle() && window_->document().inspection(), 60000);
+    QTRY_VERIFY_WITH_TIMEOUT(
+        window_->document().inputFile() == "scene.json" && window_->idle() && window_->document().inspection(), 60000);
     Document& d = window_->document();
     d.setModels({"canonical"});
     QVERIFY(d.setTrain("0-3"));  // so that a frame is held out, and the command has an answer

@@ -25,6 +25,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "core/draw/epipolar_overlay.h"
 #include "gui/base/number_box.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
@@ -39,7 +40,6 @@
 #include "gui/scene/scene_views.h"
 #include "gui/window/main_window.h"
 #include "tests/gui/fixture.h"
-#include "core/draw/epipolar_overlay.h"
 
 namespace glint::gui {
 

@@ -43,8 +43,8 @@ const QString kTurned = QChar(0x202E) + QStringLiteral("gpj.exe") + QChar(0x2028
 
 bool isControl(QChar c) {
   const ushort u = c.unicode();
-  return (u < 0x20 && u != '\n' && u != '\t') || (u >= 0x7F && u < 0xA0) || (u >= 0x202A && u <= 0x202E) || (u >= 0x2066 && u <= 0x2069) ||
-         u == 0x2028 || u == 0x200F;
+  return (u < 0x20 && u != '\n' && u != '\t') || (u >= 0x7F && u < 0xA0) || (u >= 0x202A && u <= 0x202E) ||
+         (u >= 0x2066 && u <= 0x2069) || u == 0x2028 || u == 0x200F;
 }
 }  // namespace
 
@@ -92,7 +92,8 @@ class HostileNamesTest : public QObject {
     window.show();
     window.open(odd);
     QTRY_VERIFY_WITH_TIMEOUT(window.document().scene() != nullptr, 60000);
-    QVERIFY2(window.windowTitle().startsWith("<b>odd[*][*].json[*]"), qPrintable(window.windowTitle()));  // Qt's way to write "[*]"
+    QVERIFY2(window.windowTitle().startsWith("<b>odd[*][*].json[*]"),
+             qPrintable(window.windowTitle()));  // Qt's way to write "[*]"
   }
 
   void labelsTipsAndBoxesArePlainUnlessTheProgramSaysOtherwise() {
@@ -179,7 +180,9 @@ class HostileNamesTest : public QObject {
   void checkText(const QString& text, const QString& where) {
     seen_ += text + '\n';
     for (const QChar c : text)
-      QVERIFY2(!isControl(c), qPrintable(QStringLiteral("%1: U+%2 in %3").arg(where).arg(c.unicode(), 4, 16).arg(toQString(text.toStdString()))));
+      QVERIFY2(
+          !isControl(c),
+          qPrintable(QStringLiteral("%1: U+%2 in %3").arg(where).arg(c.unicode(), 4, 16).arg(toQString(text.toStdString()))));
   }
   /// A tool tip is taken for markup when it looks like it.
   void checkTip(const QString& tip, const QString& where) {
@@ -225,7 +228,8 @@ class HostileNamesTest : public QObject {
     }
     for (const QAction* action : window.findChildren<QAction*>()) {
       checkText(action->text(), when + " action");
-      if (action->text().contains("<img")) QVERIFY2(!action->text().contains(QRegularExpression("[^&]&amp")), qPrintable(action->text()));
+      if (action->text().contains("<img"))
+        QVERIFY2(!action->text().contains(QRegularExpression("[^&]&amp")), qPrintable(action->text()));
     }
     const TimelineStrip* strip = window.findChild<Timeline*>()->strip();
     for (int x = 2; x < strip->width(); x += 40)

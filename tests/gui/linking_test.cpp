@@ -268,7 +268,8 @@ class LinkingTest : public QObject {
     document_->setInspection(inspection, document_->request());
     QVERIFY(!button->isHidden());
     QCOMPARE(button->text(), QStringLiteral("1 warning"));
-    QVERIFY2(button->toolTip().contains("light lamp: the fit explains &lt;b&gt;its&lt;/b&gt; views poorly"), qPrintable(button->toolTip()));
+    QVERIFY2(button->toolTip().contains("light lamp: the fit explains &lt;b&gt;its&lt;/b&gt; views poorly"),
+             qPrintable(button->toolTip()));
     QTest::mouseClick(button, Qt::LeftButton);
     auto* menu = button->findChild<QMenu*>();
     QTRY_VERIFY(menu->isVisible());

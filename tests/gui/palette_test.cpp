@@ -193,9 +193,9 @@ class PaletteTest : public QObject {
     QVERIFY(finds("log radiance", "False colour"));
     QVERIFY(finds("false color", "False colour"));
     QVERIFY(finds("saturated", "Mark clipped pixels"));
-    QVERIFY(finds("fills", "Show selection"));      // of its tool tip alone
-    QVERIFY(finds("blinn-phong", "Lobe"));          // of its values alone
-    QVERIFY(finds("axis front", "Front"));          // of its id
+    QVERIFY(finds("fills", "Show selection"));  // of its tool tip alone
+    QVERIFY(finds("blinn-phong", "Lobe"));      // of its values alone
+    QVERIFY(finds("axis front", "Front"));      // of its id
     // What is called so comes before what is only explained so.
     window_->commandPalette()->line()->setText("theme");
     QCOMPARE(window_->commandPalette()->list()->topLevelItem(0)->text(0), QStringLiteral("Switch light/dark theme"));

@@ -34,7 +34,8 @@ struct Turn {
 const std::vector<Turn>& turns() {
   const std::map<std::string, std::string> kPoses{{"light.refine_poses", "true"}}, kDepth{{"light.refine_depth", "true"}},
       kNormals{{"light.refine_normals", "true"}}, kStar{{"predict.contour", "star"}},
-      kPosesOfSmooth{{"light.refine_poses", "true"}, {"detect.background", "smooth"}};  // with the lobe's background nothing is left to refine
+      kPosesOfSmooth{{"light.refine_poses", "true"},
+                     {"detect.background", "smooth"}};  // with the lobe's background nothing is left to refine
   static const std::vector<Turn> all{
       {"detect.level", "0.3", "noisy"},
       {"detect.min_area", "5000", "noisy"},
@@ -115,8 +116,11 @@ class ParametersTest : public QObject {
     auto* other = new QLineEdit(&window);
     window.show();
     const auto shown = [&] { return box.text(); };
-    const std::pair<double, const char*> cases[] = {{-0.3979442, "-0.39794 m^-1"}, {0.5, "0.5 m^-1"}, {1.23456e-7, "1.23e-07 m^-1"},
-                                                    {-0.00123456, "-0.00123 m^-1"}, {9.87654321, "9.8765 m^-1"}};
+    const std::pair<double, const char*> cases[] = {{-0.3979442, "-0.39794 m^-1"},
+                                                    {0.5, "0.5 m^-1"},
+                                                    {1.23456e-7, "1.23e-07 m^-1"},
+                                                    {-0.00123456, "-0.00123 m^-1"},
+                                                    {9.87654321, "9.8765 m^-1"}};
     for (const auto& [value, text] : cases) {
       box.setValue(value);
       QCOMPARE(shown(), QString::fromLatin1(text));

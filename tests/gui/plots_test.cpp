@@ -155,8 +155,8 @@ class PlotsTest : public QObject {
     panel_->renderNow();
     const QPointF first = *canvas->positionOf({0, 2}), second = *canvas->positionOf({0, 3});
     const QPointF at = first;
-    QWheelEvent wheel(at, canvas->mapToGlobal(at.toPoint()), {}, {0, 480}, Qt::NoButton, Qt::NoModifier,
-                      Qt::NoScrollPhase, false);
+    QWheelEvent wheel(at, canvas->mapToGlobal(at.toPoint()), {}, {0, 480}, Qt::NoButton, Qt::NoModifier, Qt::NoScrollPhase,
+                      false);
     QCoreApplication::sendEvent(canvas, &wheel);
     panel_->renderNow();
     QVERIFY(canvas->positionOf({0, 3})->x() - canvas->positionOf({0, 2})->x() > 1.5 * (second.x() - first.x()));

@@ -15,6 +15,7 @@
 #include <map>
 #include <random>
 
+#include "core/draw/frame_overlay.h"
 #include "core/session/session.h"
 #include "gui/base/text.h"
 #include "gui/panels/parameter_panel.h"
@@ -23,7 +24,6 @@
 #include "gui/window/main_window.h"
 #include "tests/gui/fixture.h"
 #include "tests/sanitizers/cases.h"
-#include "core/draw/frame_overlay.h"
 
 namespace glint::gui {
 
@@ -73,7 +73,8 @@ class RandomTest : public QObject {
     std::filesystem::copy(std::string(GLINT_SOURCE_DIR "/sessions/") + name.toStdString(), copy,
                           std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing);
     window.open(copy_.filePath(name + QStringLiteral(".glint")));
-    QTRY_VERIFY_WITH_TIMEOUT(window.document().scene() && window.idle() && !window.document().stale(), 3 * testing_support::kWaitMs);
+    QTRY_VERIFY_WITH_TIMEOUT(window.document().scene() && window.idle() && !window.document().stale(),
+                             3 * testing_support::kWaitMs);
     const QList<QAction*> actions = window.actions().all();
     for (const auto& [start, reason] : leftOut())
       QVERIFY2(std::any_of(actions.begin(), actions.end(),

@@ -225,7 +225,8 @@ class SaveTest : public QObject {
       QWidget* modal = QApplication::activeModalWidget();
       if (auto* box = qobject_cast<QMessageBox*>(modal)) {
         if (box->objectName() == "inputRefusal") refusal = box->text();
-        return box->defaultButton() || box->buttons().size() == 1 ? box->buttons().first()->click() : box->button(QMessageBox::Yes)->click();
+        return box->defaultButton() || box->buttons().size() == 1 ? box->buttons().first()->click()
+                                                                  : box->button(QMessageBox::Yes)->click();
       }
       if (auto* dialog = qobject_cast<QFileDialog*>(modal)) {
         if (!refusal.isEmpty() || ++tried > 100) return dialog->reject();
@@ -268,7 +269,8 @@ class SaveTest : public QObject {
     QProcess dead;
     dead.start("sleep", {"600"});
     QVERIFY(dead.waitForStarted());
-    const QByteArray lock = QByteArray::number(dead.processId()) + "\nglint-inspector\n" + QSysInfo::machineHostName().toUtf8() + "\n";
+    const QByteArray lock =
+        QByteArray::number(dead.processId()) + "\nglint-inspector\n" + QSysInfo::machineHostName().toUtf8() + "\n";
     dead.kill();
     QVERIFY(dead.waitForFinished());
     {
@@ -303,8 +305,9 @@ class SaveTest : public QObject {
     window->open(session);
     QPushButton* allow = nullptr;
     QTRY_VERIFY_WITH_TIMEOUT((allow = button(*window, "Allow and open")) != nullptr, 20000);
-    QVERIFY2(bar(*window).contains("input.folders[0].folder") && bar(*window).contains("elsewhere") && !bar(*window).contains("--"),
-             qPrintable(bar(*window)));
+    QVERIFY2(
+        bar(*window).contains("input.folders[0].folder") && bar(*window).contains("elsewhere") && !bar(*window).contains("--"),
+        qPrintable(bar(*window)));
     QVERIFY(!window->document().scene());
     QTest::mouseClick(allow, Qt::LeftButton);
     QTRY_VERIFY_WITH_TIMEOUT(window->document().scene() && window->idle() && window->document().inspection(), 60000);
@@ -337,7 +340,8 @@ class SaveTest : public QObject {
     json["input"] = input;
     write(path("scene/received.glint"), QJsonDocument(json).toJson());
     QProcess program;
-    program.start(QStringLiteral(GLINT_INSPECTOR), {path("scene/received.glint"), "--screenshot", path("shot.png"), "--wait-idle"});
+    program.start(QStringLiteral(GLINT_INSPECTOR),
+                  {path("scene/received.glint"), "--screenshot", path("shot.png"), "--wait-idle"});
     QVERIFY(program.waitForFinished(120000));
     QCOMPARE(program.exitCode(), 2);
     const QByteArray said = program.readAllStandardError();

@@ -192,7 +192,7 @@ class SceneTreeTest : public QObject, SceneFixture {
     QCOMPARE(text(5), QString());
     tree_->view()->sortByColumn(SceneTreeModel::Effect, Qt::DescendingOrder);
     QCOMPARE(children(group(Kind::Camera)).mid(0, 3), (QStringList{"0002", "0000", "0001"}));
-    QCOMPARE(group(Kind::Camera).row(), 3);      // groups stay
+    QCOMPARE(group(Kind::Camera).row(), 3);                                   // groups stay
     tree_->view()->sortByColumn(SceneTreeModel::Effect, Qt::AscendingOrder);  // who harms; those without a number last again
     QCOMPARE(children(group(Kind::Camera)).mid(0, 3), (QStringList{"0001", "0000", "0002"}));
     QCOMPARE(group(Kind::Camera).row(), 3);

@@ -8,6 +8,7 @@
 #include <QStatusBar>
 #include <QTextDocument>
 
+#include "core/base/error_text.h"
 #include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/frame/frame_canvas.h"
@@ -20,7 +21,6 @@
 #include "gui/window/fit_on_screen.h"
 #include "gui/window/main_window.h"
 #include "tests/gui/fixture.h"
-#include "core/base/error_text.h"
 #include "viz/scene_questions.h"
 
 namespace glint::gui {

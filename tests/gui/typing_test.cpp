@@ -37,8 +37,10 @@ void type(QAbstractSpinBox* box, const char* text) {
 
 void turnWheel(QWidget* widget, int angle) {
   const QPointF at = widget->rect().center();
-  QWheelEvent wheel(at, widget->mapToGlobal(at.toPoint()), {}, QPoint(0, angle), Qt::NoButton, Qt::NoModifier, Qt::NoScrollPhase, false);
-  QSpontaneKeyEvent::setSpontaneous(&wheel);  // as from the window system: only then what a widget does not take goes on to its parent
+  QWheelEvent wheel(at, widget->mapToGlobal(at.toPoint()), {}, QPoint(0, angle), Qt::NoButton, Qt::NoModifier, Qt::NoScrollPhase,
+                    false);
+  QSpontaneKeyEvent::setSpontaneous(
+      &wheel);                   // as from the window system: only then what a widget does not take goes on to its parent
   qApp->notify(widget, &wheel);  // sendEvent would take the mark away
 }
 }  // namespace
@@ -51,8 +53,16 @@ class TypingTest : public QObject, WindowFixture {
       const char* typed;
       double expected;
     };
-    for (const Row& row : std::initializer_list<Row>{{"0.5", 0.5}, {"0,5", 0.5}, {" 12,25 ", 12.25}, {"-3,5", -3.5}, {"1,5e-3", 0.0015}, {"1e-10", 1e-10},
-                                                     {"0,500", 0.5}, {"7", 7}, {",5", 0.5}, {"1234,5", 1234.5}})
+    for (const Row& row : std::initializer_list<Row>{{"0.5", 0.5},
+                                                     {"0,5", 0.5},
+                                                     {" 12,25 ", 12.25},
+                                                     {"-3,5", -3.5},
+                                                     {"1,5e-3", 0.0015},
+                                                     {"1e-10", 1e-10},
+                                                     {"0,500", 0.5},
+                                                     {"7", 7},
+                                                     {",5", 0.5},
+                                                     {"1234,5", 1234.5}})
       QCOMPARE(numberFromText(row.typed).value_or(-1), row.expected);
     QString why;
     for (const char* typed : {"", "abc", "1,234", "1,234,567", "1.234,5", "1 2", "nan", "inf", "0x10", "1,,5"})
@@ -93,7 +103,8 @@ class TypingTest : public QObject, WindowFixture {
       QVERIFY2(complaint(whole).contains("12.5 is not a whole number"), qPrintable(complaint(whole)));
       const auto* label = panel.findChild<QLabel*>(QStringLiteral("complaint"));
       const QRect said = label->geometry();
-      QVERIFY2(panel.rect().contains(said), qPrintable(QStringLiteral("%1 %2 %3 %4").arg(said.x()).arg(said.y()).arg(said.width()).arg(said.height())));
+      QVERIFY2(panel.rect().contains(said),
+               qPrintable(QStringLiteral("%1 %2 %3 %4").arg(said.x()).arg(said.y()).arg(said.width()).arg(said.height())));
     }
     QLocale::setDefault(before);
   }
@@ -157,7 +168,8 @@ class TypingTest : public QObject, WindowFixture {
     window.centralWidget()->setFocus();
     int boxes = 0;
     for (QWidget* widget : window.findChildren<QWidget*>()) {
-      const bool holds = qobject_cast<QAbstractSpinBox*>(widget) || qobject_cast<QComboBox*>(widget) || qobject_cast<QSlider*>(widget);
+      const bool holds =
+          qobject_cast<QAbstractSpinBox*>(widget) || qobject_cast<QComboBox*>(widget) || qobject_cast<QSlider*>(widget);
       if (!holds || !widget->isVisible() || widget->hasFocus()) continue;
       ++boxes;
       QVERIFY2(widget->focusPolicy() != Qt::WheelFocus, qPrintable(widget->objectName()));
@@ -187,7 +199,6 @@ class TypingTest : public QObject, WindowFixture {
     turnWheel(source, -120);
     QCOMPARE(source->currentIndex(), 1);
   }
-
 };
 
 QObject* makeTypingTest() { return new TypingTest; }

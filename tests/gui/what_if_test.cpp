@@ -207,7 +207,9 @@ class WhatIfTest : public QObject {
   FramePanel& panel() { return *window_->findChild<FramePanel*>(); }
   PhotoLoader& loader() { return *panel().loader(); }
 
-  void settle() { QTRY_VERIFY_WITH_TIMEOUT(document().inspection() && window_->idle() && !panel().busy(), testing_support::kWaitMs); }
+  void settle() {
+    QTRY_VERIFY_WITH_TIMEOUT(document().inspection() && window_->idle() && !panel().busy(), testing_support::kWaitMs);
+  }
 
   void change(const WhatIf& w) {
     document().setWhatIf(w, "What-if");

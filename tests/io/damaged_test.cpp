@@ -109,24 +109,12 @@ std::string mutated(std::string bytes, std::mt19937& random) {
   for (std::size_t changes = 1 + below(4); changes > 0 && !bytes.empty(); --changes) {
     const std::size_t at = below(bytes.size()), length = std::min(bytes.size() - at, 1 + below(24));
     switch (below(8)) {
-      case 0:
-        bytes[at] = static_cast<char>(bytes[at] ^ (1 << below(8)));
-        break;
-      case 1:
-        bytes[at] = static_cast<char>(random());
-        break;
-      case 2:
-        bytes.erase(at, length);
-        break;
-      case 3:
-        bytes.insert(at, bytes.substr(below(bytes.size()), length));
-        break;
-      case 4:
-        bytes.resize(at);
-        break;
-      case 5:
-        std::fill_n(bytes.begin() + std::ptrdiff_t(at), length, below(2) ? '\xff' : '\0');
-        break;
+      case 0: bytes[at] = static_cast<char>(bytes[at] ^ (1 << below(8))); break;
+      case 1: bytes[at] = static_cast<char>(random()); break;
+      case 2: bytes.erase(at, length); break;
+      case 3: bytes.insert(at, bytes.substr(below(bytes.size()), length)); break;
+      case 4: bytes.resize(at); break;
+      case 5: std::fill_n(bytes.begin() + std::ptrdiff_t(at), length, below(2) ? '\xff' : '\0'); break;
       default: {  // a word becomes another one
         const std::size_t from = bytes.find_first_of(" \n", at);
         if (from == std::string::npos) break;

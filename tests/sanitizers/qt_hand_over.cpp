@@ -30,10 +30,12 @@ Function real(const char* name) {
 /// Calls another slot object. Its own memory passes from thread to thread unseen, hence no_sanitize.
 class HandedOver : public QtPrivate::QSlotObjectBase {
  public:
-  __attribute__((no_sanitize("thread"))) explicit HandedOver(QtPrivate::QSlotObjectBase* slot) : QSlotObjectBase(&run), slot_(slot) {}
+  __attribute__((no_sanitize("thread"))) explicit HandedOver(QtPrivate::QSlotObjectBase* slot)
+      : QSlotObjectBase(&run), slot_(slot) {}
 
  private:
-  __attribute__((no_sanitize("thread"))) static void run(int which, QSlotObjectBase* self, QObject* receiver, void** arguments, bool* same) {
+  __attribute__((no_sanitize("thread"))) static void run(int which, QSlotObjectBase* self, QObject* receiver, void** arguments,
+                                                         bool* same) {
     auto* const handed = static_cast<HandedOver*>(self);
     QtPrivate::QSlotObjectBase* const slot = handed->slot_;
     __tsan_acquire(slot);
@@ -67,7 +69,8 @@ class HandedRunnable : public QRunnable {
 
 bool QMetaObject::invokeMethodImpl(QObject* object, QtPrivate::QSlotObjectBase* slot, Qt::ConnectionType type, void* result) {
   using Function = bool (*)(QObject*, QtPrivate::QSlotObjectBase*, Qt::ConnectionType, void*);
-  static const auto function = real<Function>("_ZN11QMetaObject16invokeMethodImplEP7QObjectPN9QtPrivate15QSlotObjectBaseEN2Qt14ConnectionTypeEPv");
+  static const auto function =
+      real<Function>("_ZN11QMetaObject16invokeMethodImplEP7QObjectPN9QtPrivate15QSlotObjectBaseEN2Qt14ConnectionTypeEPv");
   __tsan_release(slot);
   return function(object, new HandedOver(slot), type, result);
 }

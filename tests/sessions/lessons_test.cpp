@@ -189,7 +189,8 @@ int mirrorPoints(const Eigen::Vector3d& eye, const Eigen::Vector3d& lamp) {
       const Eigen::Vector3d p(radius * std::cos(a), radius * std::sin(a), z);
       const Eigen::Vector3d n = Eigen::Vector3d(std::cos(a), std::sin(a), -slope).normalized();
       const Eigen::Vector3d v = (eye - p).normalized(), l = (lamp - p).normalized();
-      if (n.dot(v) > 0 && n.dot(l) > 0) alpha[std::size_t(i * kColumns + j)] = std::acos(std::min(1.0, n.dot((v + l).normalized())));
+      if (n.dot(v) > 0 && n.dot(l) > 0)
+        alpha[std::size_t(i * kColumns + j)] = std::acos(std::min(1.0, n.dot((v + l).normalized())));
     }
   int count = 0;
   for (int i = 1; i + 1 < kRows; ++i)

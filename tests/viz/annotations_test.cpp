@@ -19,10 +19,10 @@
 #include <string>
 #include <vector>
 
+#include "core/base/error_text.h"
 #include "tests/viz/image_checks.h"
 #include "viz/canvas.h"
 #include "viz/convert.h"
-#include "core/base/error_text.h"
 #include "viz/label_places.h"
 #include "viz/offscreen.h"
 #include "viz/scene_view.h"

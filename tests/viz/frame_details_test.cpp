@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Arrows, marks, picking and epipolar lines on the hand-built inspection: observed circles of 14 px, predicted ones of 15 px.
-#include <algorithm>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
-#include "tests/viz/small_inspection.h"
 #include "core/draw/epipolar_overlay.h"
+#include "tests/viz/small_inspection.h"
 #include "viz/frame_pick.h"
 #include "viz/timeline_data.h"
 

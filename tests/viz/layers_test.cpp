@@ -165,7 +165,8 @@ TEST(Layers, AConeReachesFromItsPlaceThroughTheContourToBeyondTheEllipsoid) {
     const std::string model = mirrored ? "dual" : "primal";
     const Eigen::Vector3d apex = mirrored ? view.seen->tangentPlane.reflected(eye) : eye;
     // A ball on the axis of the contour's cone: at the brightest point, or as far beyond it as the mirrored camera is before it.
-    const Eigen::Vector3d centre = mirrored ? 2 * view.seen->brightest.point.position - apex : view.seen->brightest.point.position;
+    const Eigen::Vector3d centre =
+        mirrored ? 2 * view.seen->brightest.point.position - apex : view.seen->brightest.point.position;
     constexpr double kBall = 0.05;
     Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
     place.translation() = centre;

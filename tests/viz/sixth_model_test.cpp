@@ -8,12 +8,12 @@
 #include <numbers>
 
 #include "core/diagnostics/conditioning.h"
+#include "core/draw/frame_overlay.h"
 #include "core/explain/explain.h"
 #include "core/model/models.h"
 #include "core/report/report.h"
 #include "core/tradeoff/tradeoff.h"
 #include "tests/core/inspect/exact_scene.h"
-#include "core/draw/frame_overlay.h"
 #include "viz/pictures.h"
 #include "viz/style.h"
 
@@ -114,7 +114,8 @@ TEST_F(SixthModel, IsScoredAndReported) {
 TEST_F(SixthModel, IsCheckedAndExplained) {
   const Inspection in = inspected(sphere(0.5));
   const std::vector<Conditioning> all = conditioningOf(in);
-  EXPECT_TRUE(std::any_of(all.begin(), all.end(), [](const Conditioning& c) { return c.model == "flat-mirror" && !c.findings.empty(); }));
+  EXPECT_TRUE(
+      std::any_of(all.begin(), all.end(), [](const Conditioning& c) { return c.model == "flat-mirror" && !c.findings.empty(); }));
   // What its traits say it assumes is said where the surface breaks it.
   const Explanation e = explain(in, 1, 0, "flat-mirror");
   EXPECT_FALSE(e.steps.empty());
@@ -128,8 +129,10 @@ TEST_F(SixthModel, IsDrawnInItsColour) {
   EXPECT_EQ(draw::modelColour("flat-mirror"), (draw::Colour{240 / 255.0, 228 / 255.0, 66 / 255.0}));
   const Inspection in = inspected(sphere(0.5));
   const draw::FrameOverlay overlay = draw::frameOverlay(in, 1, {});
-  EXPECT_TRUE(std::any_of(overlay.lines.begin(), overlay.lines.end(), [](const draw::OverlayLine& l) { return l.model == "flat-mirror"; }));
-  const Image ladder = viz::ladderPicture(in, 1, Failure{Reason::FrameUnreadable, ""}, 900, 500), plots = viz::plotsPicture(in, 900, 600);
+  EXPECT_TRUE(std::any_of(overlay.lines.begin(), overlay.lines.end(),
+                          [](const draw::OverlayLine& l) { return l.model == "flat-mirror"; }));
+  const Image ladder = viz::ladderPicture(in, 1, Failure{Reason::FrameUnreadable, ""}, 900, 500),
+              plots = viz::plotsPicture(in, 900, 600);
   EXPECT_EQ(ladder.width, 900);
   EXPECT_EQ(plots.width, 900);
 }

@@ -16,14 +16,14 @@
 #include <set>
 
 #include "core/base/outcome.h"
+#include "core/draw/epipolar_overlay.h"
 #include "core/draw/overlay_painter.h"
+#include "core/draw/plots.h"
 #include "tests/viz/image_checks.h"
 #include "tests/viz/perceptual.h"
 #include "tests/viz/small_inspection.h"
-#include "core/draw/epipolar_overlay.h"
 #include "viz/pictures.h"
 #include "viz/plot_export.h"
-#include "core/draw/plots.h"
 #include "viz/scene_view.h"
 
 namespace glint::viz {

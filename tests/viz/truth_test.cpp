@@ -6,14 +6,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/draw/plots.h"
+#include "core/inspect/frame_score.h"
 #include "tests/viz/image_checks.h"
 #include "tests/viz/small_inspection.h"
 #include "viz/camera_colours.h"
 #include "viz/layers.h"
-#include "core/inspect/frame_score.h"
 #include "viz/pictures.h"
 #include "viz/plot_export.h"
-#include "core/draw/plots.h"
 #include "viz/scene_legend.h"
 #include "viz/scene_questions.h"
 #include "viz/timeline_data.h"

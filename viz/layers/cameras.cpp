@@ -7,11 +7,11 @@
 
 #include <cmath>
 
-#include "viz/camera_colours.h"
 #include "core/draw/frame_overlay.h"
+#include "core/inspect/frame_score.h"
+#include "viz/camera_colours.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
-#include "core/inspect/frame_score.h"
 #include "viz/scene_questions.h"
 
 namespace glint::viz {

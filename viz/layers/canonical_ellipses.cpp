@@ -19,8 +19,7 @@ LayerContent canonicalEllipsesLayer(const LayerInput& in) {
                 line("semi-axis a", ellipse.semiAxes.x(), "px") + line("semi-axis b", ellipse.semiAxes.y(), "px") +
                 line("angle", ellipse.angle * 57.29577951308232, "deg");
     const double width = strong ? 3.0 : 2.0;
-    content.addOnSurface(lineActor(ellipseOnPlane(camera, plane, ellipse, 0), canonicalColour(), width), info, width,
-                         kEllipsePx);
+    content.addOnSurface(lineActor(ellipseOnPlane(camera, plane, ellipse, 0), canonicalColour(), width), info, width, kEllipsePx);
   };
   for (const TrainingView* view : in.views()) {
     if (!view->seen || !view->canonical || !view->canonical->ellipse) continue;

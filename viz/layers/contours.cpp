@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <set>
 
-#include "core/geometry/polyline.h"
 #include "core/draw/frame_overlay.h"
+#include "core/geometry/polyline.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
 

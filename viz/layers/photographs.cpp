@@ -32,7 +32,7 @@ LayerContent photographsLayer(const LayerInput& in) {
     content.remarks.push_back("photographs: " + std::to_string(chosen.size()) + " of " + std::to_string(n) + " cameras");
   std::vector<std::string> unreadable;
   for (const int index : chosen) {
-    if (!hasPhotograph(*in.inspection, index)) continue;  // nothing to read, so nothing that cannot be read
+    if (!hasPhotograph(*in.inspection, index)) continue;                  // nothing to read, so nothing that cannot be read
     if (in.eye != Eye::Outside && index == in.selection.frame) continue;  // it is drawn over the whole picture
     if (besideEye(in, index)) continue;
     const Frame& frame = in.frame(index);

@@ -37,8 +37,9 @@ TEST(Limits, AreNamedAndRaisedByName) {
 }
 
 TEST(Limits, WhatIsNoLimitOrNoNumberIsRefusedByName) {
-  for (const char* text : {"image.megapixels", "image.megapixels=", "image.megapixels=x", "image.megapixels=-1", "image.megapixels=0",
-                           "image.megapixels=nan", "image.megapixels=inf", "image.megapixels=1,5", "pixels=3", "=3", ""})
+  for (const char* text :
+       {"image.megapixels", "image.megapixels=", "image.megapixels=x", "image.megapixels=-1", "image.megapixels=0",
+        "image.megapixels=nan", "image.megapixels=inf", "image.megapixels=1,5", "pixels=3", "=3", ""})
     EXPECT_THAT(inputErrorOf([&] { setLimit(text); }), StartsWith(std::string("--limit ") + text)) << text;
   EXPECT_EQ(limitOf(Limit::ImageMegapixels), 200);
 }

@@ -91,7 +91,8 @@ TEST(RmsWithoutTail, IsTheRmsWhereNothingSticksOut) {
 
 TEST(RmsWithoutTail, BoundsAFewByHand) {
   // Two thirds are 1 or less, so that the last one counts as 2: (5 + 4) / 6.
-  for (const double wild : {2.0, 50.0, -1e12}) EXPECT_NEAR(rmsWithoutTail({1, wild, -1, 1, 1, -1}), std::sqrt(1.5), tolerance::kExact) << wild;
+  for (const double wild : {2.0, 50.0, -1e12})
+    EXPECT_NEAR(rmsWithoutTail({1, wild, -1, 1, 1, -1}), std::sqrt(1.5), tolerance::kExact) << wild;
   // A third exactly is a tail still, two fifths are not: (1 + 1 + 4) / 3, (3 + 2 * 81) / 5.
   EXPECT_NEAR(rmsWithoutTail({1, 9, 1}), std::sqrt(2.0), tolerance::kExact);
   EXPECT_NEAR(rmsWithoutTail({9, 1, 1, 9, 1}), std::sqrt(33.0), tolerance::kExact);

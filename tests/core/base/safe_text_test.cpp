@@ -19,15 +19,19 @@ TEST(WithoutControls, TerminalEscapesAreShown) {
   EXPECT_EQ(withoutControls("\x1b[31mred"), "\\x1B[31mred");
   EXPECT_EQ(withoutControls("bell\a, back\b, return\r"), "bell\\x07, back\\x08, return\\x0D");
   EXPECT_EQ(withoutControls(std::string("a\0b", 3)), "a\\x00b");
-  EXPECT_EQ(withoutControls("\xC2\x9B" "31m"), "\\x9B31m");                  // the same escape as one character (C1)
-  EXPECT_EQ(withoutControls("exe.\xE2\x80\xAEgnp"), "exe.\\u202Egnp");       // right to left
+  EXPECT_EQ(withoutControls("\xC2\x9B"
+                            "31m"),
+            "\\x9B31m");                                                // the same escape as one character (C1)
+  EXPECT_EQ(withoutControls("exe.\xE2\x80\xAEgnp"), "exe.\\u202Egnp");  // right to left
 }
 
 TEST(WithoutControls, BytesThatAreNoTextAreShown) {
-  EXPECT_EQ(withoutControls("a\xFF" "b"), "a\\xFFb");
-  EXPECT_EQ(withoutControls("\xC0\xAF"), "\\xC0\\xAF");                      // '/' in a longer form than needed
-  EXPECT_EQ(withoutControls("\xED\xA0\x80"), "\\xED\\xA0\\x80");             // a surrogate
-  EXPECT_EQ(withoutControls("\xF4\x90\x80\x80"), "\\xF4\\x90\\x80\\x80");    // beyond U+10FFFF
+  EXPECT_EQ(withoutControls("a\xFF"
+                            "b"),
+            "a\\xFFb");
+  EXPECT_EQ(withoutControls("\xC0\xAF"), "\\xC0\\xAF");                    // '/' in a longer form than needed
+  EXPECT_EQ(withoutControls("\xED\xA0\x80"), "\\xED\\xA0\\x80");           // a surrogate
+  EXPECT_EQ(withoutControls("\xF4\x90\x80\x80"), "\\xF4\\x90\\x80\\x80");  // beyond U+10FFFF
   EXPECT_EQ(withoutControls("cut \xE7\x81"), "cut \\xE7\\x81");
 }
 
@@ -101,8 +105,8 @@ TEST(CopyName, TheExtensionIsSafeToo) {
 
 TEST(FileName, DifferentIdsHaveDifferentNames) {
   const std::string longId(500, 'x');
-  const std::set<std::string> names{fileNameOf("a/b"), fileNameOf("a%2Fb"), fileNameOf("a%b"), fileNameOf("ab"),
-                                    fileNameOf(longId + "1"), fileNameOf(longId + "2")};
+  const std::set<std::string> names{fileNameOf("a/b"), fileNameOf("a%2Fb"),      fileNameOf("a%b"),
+                                    fileNameOf("ab"),  fileNameOf(longId + "1"), fileNameOf(longId + "2")};
   EXPECT_EQ(names.size(), 6u);
   for (const std::string& name : names) EXPECT_LE(name.size(), 200u);
 }

@@ -70,12 +70,21 @@ INSTANTIATE_TEST_SUITE_P(Rows, BadSetting,
 
 TEST(ParallelFor, VisitsEachIndexOnceAndCanBeStopped) {
   std::vector<std::atomic<int>> visits(1000);
-  parallelFor(1000, [&](int i) { ++visits[i]; }, {}, "test");
+  parallelFor(
+      1000, [&](int i) { ++visits[i]; }, {}, "test");
   for (const auto& v : visits) EXPECT_EQ(v, 1);
   std::atomic<int> done{0};
-  EXPECT_THROW(parallelFor(1000, [&](int) { ++done; }, [&](const StageEvent& e) { return e.done < 10; }, "test"), Stopped);
+  EXPECT_THROW(parallelFor(
+                   1000, [&](int) { ++done; }, [&](const StageEvent& e) { return e.done < 10; }, "test"),
+               Stopped);
   EXPECT_LT(done, 100);
-  EXPECT_THROW(parallelFor(10, [](int i) { if (i == 3) throw std::runtime_error("three"); }, {}, "test"), std::runtime_error);
+  EXPECT_THROW(parallelFor(
+                   10,
+                   [](int i) {
+                     if (i == 3) throw std::runtime_error("three");
+                   },
+                   {}, "test"),
+               std::runtime_error);
 }
 
 TEST(Outcome, HoldsAValueOrAReason) {

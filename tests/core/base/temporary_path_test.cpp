@@ -67,8 +67,9 @@ TEST(TemporaryPath, OfADeadProgramIsRemoved) {
 
 TEST(TemporaryPath, WhatIsNotAbandonedStays) {
   const TemporaryFolder folder;
-  const std::vector<std::string> users = {".run.1-2.tmp.glint", ".run.glint-1-2.tmp.a.b", ".run.glint-1.tmp",  ".run.glint-1-2.tmpx",
-                                          ".run.glint-a-2.tmp", "run.glint-1-2.tmp",      ".run.glint-1-2.TMP"};
+  const std::vector<std::string> users = {".run.1-2.tmp.glint",  ".run.glint-1-2.tmp.a.b", ".run.glint-1.tmp",
+                                          ".run.glint-1-2.tmpx", ".run.glint-a-2.tmp",     "run.glint-1-2.tmp",
+                                          ".run.glint-1-2.TMP"};
   for (const std::string& name : users) folder.write(name, "mine");
   fs::create_directory(folder / "elsewhere");
   folder.write("elsewhere/kept.txt", "mine");
@@ -121,8 +122,9 @@ TEST(TemporaryPath, LongNamesOfTargetsLeaveRoomForItsOwn) {
 
 TEST(TemporaryPath, AFolderThatIsNotThereIsNamed) {
   const TemporaryFolder folder;
-  EXPECT_THAT(testing_support::inputErrorOf([&] { TemporaryPath(folder / "none", folder / "none/x.txt", TemporaryPath::Kind::File); }),
-              testing::HasSubstr("none/x.txt: cannot be written: No such file"));
+  EXPECT_THAT(
+      testing_support::inputErrorOf([&] { TemporaryPath(folder / "none", folder / "none/x.txt", TemporaryPath::Kind::File); }),
+      testing::HasSubstr("none/x.txt: cannot be written: No such file"));
 }
 
 }  // namespace

@@ -73,7 +73,8 @@ TEST(Painter, TextsAreShortenedAndBrokenByTheirWidth) {
   EXPECT_EQ(painter.fitted("0000000000", 10, 6.36 * 4 + 0.2), "000\u2026");  // dots have 650 thousandths
   EXPECT_EQ(painter.fitted("\u03b1\u03b1\u03b1\u03b1", 10, 6.5 * 2 + 0.1), "\u03b1\u2026") << "whole letters";
   EXPECT_EQ(painter.fitted("abc", 10, 1), "");
-  EXPECT_EQ(painter.wrapped("one two  three", 10, painter.textWidth("one two", 10) + 0.1), (std::vector<std::string>{"one two", "three"}));
+  EXPECT_EQ(painter.wrapped("one two  three", 10, painter.textWidth("one two", 10) + 0.1),
+            (std::vector<std::string>{"one two", "three"}));
 }
 
 TEST(PlotPainter, EverySampleSaysItsValueUnderTheMouse) {
@@ -119,7 +120,8 @@ TEST(PlotPainter, ANotedSampleHasARingAndItsName) {
   const std::size_t at = svg.find(">balanced, exact</text>");
   ASSERT_NE(at, std::string::npos);
   const std::size_t x = svg.rfind(" x=\"", at);
-  EXPECT_LT(std::stod(svg.substr(x + 4)), places->placeOf(plot, 0, plot.series[0].points[1]).x()) << "at the right border it stands at the left";
+  EXPECT_LT(std::stod(svg.substr(x + 4)), places->placeOf(plot, 0, plot.series[0].points[1]).x())
+      << "at the right border it stands at the left";
 }
 
 /// Points that are near to each other: their names stay apart, and beside their points.
@@ -140,7 +142,8 @@ TEST(NotePlaces, NamesNeverLieOverOneAnother) {
       EXPECT_LT(std::abs(a.y + 0.5 * a.height - points[i].y()), 70);
       for (std::size_t j = 0; j < 3; ++j) {
         const Box& b = *places[j];
-        EXPECT_TRUE(i == j || a.x >= b.x + b.width || b.x >= a.x + a.width || a.y >= b.y + b.height || b.y >= a.y + a.height) << i << j;
+        EXPECT_TRUE(i == j || a.x >= b.x + b.width || b.x >= a.x + a.width || a.y >= b.y + b.height || b.y >= a.y + a.height)
+            << i << j;
         const Eigen::Vector2d& p = points[j];
         EXPECT_FALSE(p.x() > a.x && p.x() < a.x + a.width && p.y() > a.y && p.y() < a.y + a.height) << i << j;
       }

@@ -45,7 +45,8 @@ Inspection inspected(std::shared_ptr<Scene> scene, const std::string& train) {
 
 TEST(ExplainLight, AModelWithALightOfItsOwnShowsThatOne) {
   Inspection inspection = inspected(litScene(sphere(0.5), 6), "first:4");
-  const Eigen::Vector3d common = inspection.lightFor(0, "lamp")->light.position(), own = kLamp + Eigen::Vector3d(0.03, -0.02, 0.05);
+  const Eigen::Vector3d common = inspection.lightFor(0, "lamp")->light.position(),
+                        own = kLamp + Eigen::Vector3d(0.03, -0.02, 0.05);
   ModelResult other = inspection.models.at("canonical");  // found a light of its own from the same views
   other.model = "reflectance";
   other.fits.at(0).fit->model = "reflectance";

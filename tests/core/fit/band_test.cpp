@@ -55,7 +55,8 @@ ShiftAt bumps(double shift, unsigned seed) {
   std::uniform_real_distribution<double> turn(0, 2 * std::numbers::pi), swings(0.2, 0.8);
   const double fx = swings(engine), fz = swings(engine), px = turn(engine), pz = turn(engine);
   return [=](double place) -> Pixel {
-    return std::sqrt(2.0) * shift * Pixel(std::sin(2 * std::numbers::pi * fx * place + px), std::sin(2 * std::numbers::pi * fz * place + pz));
+    return std::sqrt(2.0) * shift *
+           Pixel(std::sin(2 * std::numbers::pi * fx * place + px), std::sin(2 * std::numbers::pi * fz * place + pz));
   };
 }
 
@@ -70,7 +71,8 @@ Simulated simulated(int views, double noise, const ShiftAt& shiftAt, unsigned se
     rounds.emplace_back(-0.5 + v / std::max(1.0, views - 1.0));
     const Pixel shift = shiftAt(-0.5 + v / std::max(1.0, views - 1.0));
     for (int i = 0; i < kPoints; ++i)
-      y(v * kPoints + i) = noise * gauss(engine) + shift.x() * std::cos(rounds.back().azimuth(i)) + shift.y() * std::sin(rounds.back().azimuth(i));
+      y(v * kPoints + i) =
+          noise * gauss(engine) + shift.x() * std::cos(rounds.back().azimuth(i)) + shift.y() * std::sin(rounds.back().azimuth(i));
     all.middleRows(v * kPoints, kPoints) = rounds.back().byParameter;
   }
   Simulated s;
@@ -80,8 +82,8 @@ Simulated simulated(int views, double noise, const ShiftAt& shiftAt, unsigned se
   s.chart = upper.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(4, 4));
   const Eigen::VectorXd r = y - all * s.parameters;
   for (int v = 0; v < views; ++v)
-    s.views.push_back({r.segment(v * kPoints, kPoints), rounds[std::size_t(v)].byParameter * s.chart, rounds[std::size_t(v)].shapes,
-                       Eigen::VectorXd::Constant(1, -0.5 + v / std::max(1.0, views - 1.0))});
+    s.views.push_back({r.segment(v * kPoints, kPoints), rounds[std::size_t(v)].byParameter * s.chart,
+                       rounds[std::size_t(v)].shapes, Eigen::VectorXd::Constant(1, -0.5 + v / std::max(1.0, views - 1.0))});
   return s;
 }
 
@@ -104,10 +106,12 @@ double inside(const Simulated& s, const Pixel& shift, bool placed) {
   std::vector<ViewResiduals> views = s.views;
   if (!placed)
     for (ViewResiduals& v : views) v.where.resize(0);
-  const std::vector<double> sigma = ViewEffects(views, 10).sigmaPx(other.byParameter * s.chart, other.shapes, Eigen::VectorXd::Constant(1, kBeyond));
+  const std::vector<double> sigma =
+      ViewEffects(views, 10).sigmaPx(other.byParameter * s.chart, other.shapes, Eigen::VectorXd::Constant(1, kBeyond));
   double in = 0;
   for (int i = 0; i < kPoints; ++i) {
-    const double error = other.byParameter.row(i).dot(s.parameters) - shift.x() * std::cos(other.azimuth(i)) - shift.y() * std::sin(other.azimuth(i));
+    const double error = other.byParameter.row(i).dot(s.parameters) - shift.x() * std::cos(other.azimuth(i)) -
+                         shift.y() * std::sin(other.azimuth(i));
     in += std::abs(error) <= kNormal95 * sigma[std::size_t(i)];
   }
   return in;
@@ -141,7 +145,8 @@ TEST(ViewEffects, FindsTheSizesOfNoiseAndOfShifts) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     const ViewEffects e(simulated(60, 0.3, 0.5, seed).views, 10);
     EXPECT_NEAR(e.noisePx(), 0.3, 0.3 * 0.05) << seed;  // 3000 points tell it to 1.3 %: four of those
-    EXPECT_NEAR(e.viewPx(), 0.5, 0.5 * 0.25) << seed;   // a shift has the mean square 0.5^2 over a round contour; 120 numbers tell it to 6.5 %
+    EXPECT_NEAR(e.viewPx(), 0.5, 0.5 * 0.25)
+        << seed;  // a shift has the mean square 0.5^2 over a round contour; 120 numbers tell it to 6.5 %
   }
 }
 
@@ -153,7 +158,8 @@ TEST(ViewEffects, ScalesWithTheResiduals) {
   const ViewEffects after(s.views, 70);
   EXPECT_NEAR(after.viewPx(), 7 * before.viewPx(), 1e-9);
   const Eigen::VectorXd there = Eigen::VectorXd::Constant(1, kBeyond);
-  const auto a = before.sigmaPx(other.byParameter, other.shapes, there), b = after.sigmaPx(other.byParameter, other.shapes, there);
+  const auto a = before.sigmaPx(other.byParameter, other.shapes, there),
+             b = after.sigmaPx(other.byParameter, other.shapes, there);
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(b[i], 7 * a[i], 1e-9 * b[i]);
 }
 
@@ -173,7 +179,8 @@ TEST(ViewEffects, BandsHoldAViewWhosePoseIsOff) {
 
 // A prediction far from the training views: what their fit took of the bumps is not in their residuals.
 TEST(ViewEffects, BandsHoldAViewFarAwayOnABumpySurface) {
-  EXPECT_LT(insideOnBumps(8, 0.1, 0.3, 100, false), 0.80) << "as if bumps were independent: the case has to be one where that fails";
+  EXPECT_LT(insideOnBumps(8, 0.1, 0.3, 100, false), 0.80)
+      << "as if bumps were independent: the case has to be one where that fails";
   EXPECT_GT(insideOnBumps(8, 0.1, 0.3, 100, true), 0.88);
   EXPECT_GT(insideOnBumps(20, 0.1, 0.3, 100, true), 0.88);
 }
@@ -199,7 +206,9 @@ std::vector<ViewCoefficients> line(int views, double sigma, double alike, double
   return result;
 }
 
-double weightOfIndependence(const std::vector<CorrelatedEffects>& effects) { return effects.front().length == 0 ? effects.front().weight : 0; }
+double weightOfIndependence(const std::vector<CorrelatedEffects>& effects) {
+  return effects.front().length == 0 ? effects.front().weight : 0;
+}
 double meanVariance(const std::vector<CorrelatedEffects>& effects) {
   double sum = 0;
   for (const CorrelatedEffects& e : effects) sum += e.weight * e.variance(0);
@@ -261,8 +270,10 @@ TEST(ViewEffects, DegenerateInputsStayFinite) {
   Simulated s = simulated(2, 0, 0, 1);  // nothing is off: no variance
   const Round other(0.9);
   const ViewEffects exact(s.views, 1);
-  for (const double sigma : exact.sigmaPx(other.byParameter * s.chart, other.shapes, Eigen::VectorXd::Constant(1, kBeyond))) EXPECT_LT(sigma, 1e-10);
-  EXPECT_EQ(contourShapes({Pixel(1, 0), Pixel(0, 1), Pixel(-1, 0)}, {0, 0.3, 0.6}).columns.cols(), 1) << "three points: an offset is all they tell";
+  for (const double sigma : exact.sigmaPx(other.byParameter * s.chart, other.shapes, Eigen::VectorXd::Constant(1, kBeyond)))
+    EXPECT_LT(sigma, 1e-10);
+  EXPECT_EQ(contourShapes({Pixel(1, 0), Pixel(0, 1), Pixel(-1, 0)}, {0, 0.3, 0.6}).columns.cols(), 1)
+      << "three points: an offset is all they tell";
   EXPECT_EQ(contourShapes({}, {}).columns.cols(), 0);
   EXPECT_THROW(ViewEffects({}, 1), std::invalid_argument);
 }
@@ -318,7 +329,8 @@ TEST(Band, HoldsAScaleThatIsOffByItsTolerance) {
   const Inspection silent = inspect(scene, q);
   q.settings.set("input.scale_tolerance", kOff);
   const Inspection stated = inspect(scene, q);
-  const BandScore without = *bandSummary(silent, silent.models.at("limit-angle")), with = *bandSummary(stated, stated.models.at("limit-angle"));
+  const BandScore without = *bandSummary(silent, silent.models.at("limit-angle")),
+                  with = *bandSummary(stated, stated.models.at("limit-angle"));
   EXPECT_LT(without.coverage, 0.8) << "the contours do not show a scale, or this scene is no test";
   EXPECT_GT(with.coverage, 0.85);
   double error = 0, count = 0;
@@ -327,7 +339,9 @@ TEST(Band, HoldsAScaleThatIsOffByItsTolerance) {
       for (const FrameComparison::Row& row : c.rows) error += row.metrics->contourErrorPx, count += 1;
   EXPECT_LT(with.sigmaPx, 3 * error / count) << "not wider than it must be";
   const std::vector<std::string> lines = bandLines(stated, stated.models.at("limit-angle"));
-  EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [](const std::string& l) { return l.find("scale of the surface off by up to 1 %") != std::string::npos; }));
+  EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [](const std::string& l) {
+    return l.find("scale of the surface off by up to 1 %") != std::string::npos;
+  }));
 }
 
 // The lobe that was asked for is that of the model reflectance. What the limit angle gets wrong is told by the lobe that fits.
@@ -348,7 +362,8 @@ TEST(Band, SaysThatAClippedHighlightTellsNoLevel) {
   const Inspection clipped = inspect(scene, request(0.1));
   EXPECT_GT(widest(clipped), 20 * widest(plain));
   const std::vector<std::string> lines = bandLines(clipped, clipped.models.at("limit-angle"));
-  EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [](const std::string& l) { return l.find("clipped") != std::string::npos; }));
+  EXPECT_TRUE(
+      std::any_of(lines.begin(), lines.end(), [](const std::string& l) { return l.find("clipped") != std::string::npos; }));
 }
 
 TEST(Band, IsNotComputedUnlessAskedFor) {

@@ -66,7 +66,9 @@ TEST_F(RefinedNormalsTest, HeldOutFramesGainForEveryModel) {
   for (const std::string& model : with.models) {
     EXPECT_LT(errorPct(refined, model), 0.5 * errorPct(plain, model)) << model;
     const std::vector<std::string>& remarks = refined.models.at(model).fits.at(0).fit->remarks;
-    EXPECT_TRUE(std::any_of(remarks.begin(), remarks.end(), [](const std::string& r) { return r.find("light.refine_normals") != std::string::npos; })) << model;
+    EXPECT_TRUE(std::any_of(remarks.begin(), remarks.end(), [](const std::string& r) {
+      return r.find("light.refine_normals") != std::string::npos;
+    })) << model;
   }
   const RefinedNormals& r = *refined.corrections.at({"lamp"}).normals;
   EXPECT_EQ(r.surface, "body");

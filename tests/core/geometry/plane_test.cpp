@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/geometry/plane.h"
-#include "tests/shared_data.h"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "tests/shared_data.h"
 #include "tests/tolerances.h"
 
 namespace glint {

@@ -46,7 +46,8 @@ Measured measured(const Blob& b) {
   footprint.centre = h.ellipse->centre;
   footprint.shape = h.ellipse->semiAxes.cwiseAbs2().asDiagonal();
   const std::vector<char> usable(image.data.size(), 1);
-  return {backgroundUncertaintyPct(image, usable, footprint, h.peakValue), 50 * std::abs(std::sqrt(h.areaPx2 / M_PI) / kRadius - 1)};
+  return {backgroundUncertaintyPct(image, usable, footprint, h.peakValue),
+          50 * std::abs(std::sqrt(h.areaPx2 / M_PI) / kRadius - 1)};
 }
 
 // The contour of a long-tailed lobe comes out too small, and the figure that is said covers the error without being many times it.

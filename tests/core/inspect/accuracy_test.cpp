@@ -103,8 +103,8 @@ TEST(AccuracyOfReflectance, SphereAnalyticAndMesh) {
       const Inspection i = run(scene, {"reflectance"}, train);
       EXPECT_LE(countedMeanPct(i, "reflectance"), bound) << file << " " << train;
       const ModelFit& fit = *i.models.at("reflectance").fits.at(0).fit;
-      EXPECT_EQ(fit.as<ReflectanceFit>()->lobe, Lobe::TorranceSparrow);  // about.json: BECKMANN
-      EXPECT_NEAR(fit.as<ReflectanceFit>()->roughness, 0.09, 1e-4);      // about.json: alpha
+      EXPECT_EQ(fit.as<ReflectanceFit>()->lobe, Lobe::TorranceSparrow);                           // about.json: BECKMANN
+      EXPECT_NEAR(fit.as<ReflectanceFit>()->roughness, 0.09, 1e-4);                               // about.json: alpha
       EXPECT_LT((fit.lightEstimate->position() - Eigen::Vector3d(1.1, -1.2, 1.5)).norm(), 3e-3);  // about.json, metres
     }
   }

@@ -137,7 +137,8 @@ TEST(HeldAgainst, HighlightsMovedByHandStayMoved) {
 TEST(HeldAgainst, WhereNothingIsObservedTheReasonTakesThePlaceOfErrors) {
   const auto scene = twoLevels();
   const Inspection earlier = inspect(scene, observationRequest());
-  const std::optional<Observation> seen = observeFrame(scene, observationRequest(0.7), kFrame, {}, &earlier);  // a level without a contour
+  const std::optional<Observation> seen =
+      observeFrame(scene, observationRequest(0.7), kFrame, {}, &earlier);  // a level without a contour
   ASSERT_TRUE(seen);
   ASSERT_TRUE(seen->evidence.failure);
   const Inspection now = heldAgainst(earlier, *seen);

@@ -34,7 +34,8 @@ void expectSameFrame(const Inspection& one, const Inspection& all, int frame) {
       EXPECT_EQ(got[i]->iou, wanted[i]->iou) << name;
       ASSERT_EQ(got[i]->prediction.highlights().size(), wanted[i]->prediction.highlights().size()) << name;
       for (std::size_t h = 0; h < got[i]->prediction.highlights().size(); ++h)
-        EXPECT_EQ(got[i]->prediction.highlights()[h].contour.points, wanted[i]->prediction.highlights()[h].contour.points) << name;
+        EXPECT_EQ(got[i]->prediction.highlights()[h].contour.points, wanted[i]->prediction.highlights()[h].contour.points)
+            << name;
     }
   }
 }
@@ -111,8 +112,8 @@ TEST(InspectOneFrame, KeepsWhatAnEarlierRunKnowsOfTheOthers) {
 
 TEST(InspectOneFrame, ALightThatOnlyOtherFramesShowIsNotLost) {
   // "right" is on in the last frame alone, which is held out and not the one that is looked at first.
-  const auto scene =
-      exactScene(sheet(0.2), {kOneFrameLeft, kOneFrameRight}, 8, [](int i) { return std::vector<std::string>{i == 7 ? "right" : "left"}; });
+  const auto scene = exactScene(sheet(0.2), {kOneFrameLeft, kOneFrameRight}, 8,
+                                [](int i) { return std::vector<std::string>{i == 7 ? "right" : "left"}; });
   const Inspection all = inspect(scene, oneFrameRequest()), one = inspectOneFrame(scene, oneFrameRequest(), 5);
   EXPECT_EQ(all.models.at("limit-angle").fits.size(), 2u);
   EXPECT_EQ(one.models.at("limit-angle").fits.size(), 1u);
@@ -121,7 +122,9 @@ TEST(InspectOneFrame, ALightThatOnlyOtherFramesShowIsNotLost) {
 }
 
 TEST(InspectOneFrame, LightsThatOnlyAllFramesTellApartTakeAllFrames) {
-  const auto scene = exactScene(sheet(0.3), {kOneFrameLeft, kOneFrameRight}, 8, [](int) { return std::vector<std::string>{"left", "right"}; });
+  const auto scene = exactScene(sheet(0.3), {kOneFrameLeft, kOneFrameRight}, 8, [](int) {
+    return std::vector<std::string>{"left", "right"};
+  });
   for (Frame& f : scene->frames)
     for (Highlight& h : f.highlights) h.light.clear();
   const Inspection all = inspect(scene, oneFrameRequest()), one = inspectOneFrame(scene, oneFrameRequest(), 6);

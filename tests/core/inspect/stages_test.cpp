@@ -28,7 +28,8 @@ InspectionRequest request(const std::vector<std::string>& models) {
 /// surfaces asked for.
 std::string counts(const WorkCounts& w) {
   std::string text;
-  for (const int n : {w.framesDetected, w.trainingViews, w.lights, w.canonicalContours, w.fits, w.predictions, w.comparisons, w.surfacesAsked})
+  for (const int n :
+       {w.framesDetected, w.trainingViews, w.lights, w.canonicalContours, w.fits, w.predictions, w.comparisons, w.surfacesAsked})
     text += std::to_string(n) + " ";
   return text;
 }

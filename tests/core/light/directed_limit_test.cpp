@@ -29,8 +29,10 @@ TEST(DirectedLimit, IsAnEllipseUnderALightStraightAbove) {
       const double expected = 1 / std::hypot(std::cos(azimuth) / longer, std::sin(azimuth) / kDirectedLimit);
       const Eigen::Vector3d origin(1 * scale, 2 * scale, 0);
       for (const double size : {1.0, -3e4})  // any multiple of (l, w) is the same light
-        EXPECT_NEAR(directedLimit(kDirectedLimit, extent, origin, tilted(azimuth), {0, 0, 1}, size * Eigen::Vector4d(scale, 2 * scale, r * scale, 1)),
-                    expected, 1e-10) << scale << " " << azimuth;  // extent(2, 2) cancels to round-off
+        EXPECT_NEAR(directedLimit(kDirectedLimit, extent, origin, tilted(azimuth), {0, 0, 1},
+                                  size * Eigen::Vector4d(scale, 2 * scale, r * scale, 1)),
+                    expected, 1e-10)
+            << scale << " " << azimuth;  // extent(2, 2) cancels to round-off
     }
   }
 }
@@ -38,18 +40,25 @@ TEST(DirectedLimit, IsAnEllipseUnderALightStraightAbove) {
 TEST(DirectedLimit, OfALightAtInfinityIsAngular) {
   Eigen::Matrix3d extent = Eigen::Matrix3d::Zero();
   extent(1, 1) = 0.01;
-  EXPECT_NEAR(directedLimit(kDirectedLimit, extent, {5, 6, 7}, tilted(M_PI / 2), {0, 0, 1}, {0, 0, 1, 0}), std::hypot(kDirectedLimit, 0.05), tolerance::kExact);
+  EXPECT_NEAR(directedLimit(kDirectedLimit, extent, {5, 6, 7}, tilted(M_PI / 2), {0, 0, 1}, {0, 0, 1, 0}),
+              std::hypot(kDirectedLimit, 0.05), tolerance::kExact);
   // The same from very far away, as an extent in metres.
-  EXPECT_NEAR(directedLimit(kDirectedLimit, 1e12 * extent, {5, 6, 7}, tilted(M_PI / 2), {0, 0, 1}, {0, 0, 1e6, 1}), std::hypot(kDirectedLimit, 0.05), 1e-6);
+  EXPECT_NEAR(directedLimit(kDirectedLimit, 1e12 * extent, {5, 6, 7}, tilted(M_PI / 2), {0, 0, 1}, {0, 0, 1e6, 1}),
+              std::hypot(kDirectedLimit, 0.05), 1e-6);
 }
 
 TEST(DirectedLimit, DegenerateInputsGiveAPositiveAngle) {
   const Eigen::Matrix3d none = Eigen::Matrix3d::Zero();
   EXPECT_DOUBLE_EQ(directedLimit(kDirectedLimit, none, {0, 0, 0}, tilted(1), {0, 0, 1}, {0, 0, 2, 1}), kDirectedLimit);
-  EXPECT_DOUBLE_EQ(directedLimit(kDirectedLimit, Eigen::Matrix3d::Identity(), {0, 0, 0}, {0, 0, 1}, {0, 0, 1}, {0, 0, 2, 1}), kDirectedLimit) << "no direction at the peak";
-  EXPECT_DOUBLE_EQ(directedLimit(kDirectedLimit, Eigen::Matrix3d::Identity(), {0, 0, 2}, tilted(1), {0, 0, 1}, {0, 0, 2, 1}), kDirectedLimit) << "at the light";
+  EXPECT_DOUBLE_EQ(directedLimit(kDirectedLimit, Eigen::Matrix3d::Identity(), {0, 0, 0}, {0, 0, 1}, {0, 0, 1}, {0, 0, 2, 1}),
+                   kDirectedLimit)
+      << "no direction at the peak";
+  EXPECT_DOUBLE_EQ(directedLimit(kDirectedLimit, Eigen::Matrix3d::Identity(), {0, 0, 2}, tilted(1), {0, 0, 1}, {0, 0, 2, 1}),
+                   kDirectedLimit)
+      << "at the light";
   for (const double azimuth : {0.0, 0.7, 2.0})
-    EXPECT_NEAR(directedLimit(kDirectedLimit, -Eigen::Matrix3d::Identity(), {0, 0, 0}, tilted(azimuth), {0, 0, 1}, {0, 0, 2, 1}), 0.1 * kDirectedLimit, tolerance::kExact);
+    EXPECT_NEAR(directedLimit(kDirectedLimit, -Eigen::Matrix3d::Identity(), {0, 0, 0}, tilted(azimuth), {0, 0, 1}, {0, 0, 2, 1}),
+                0.1 * kDirectedLimit, tolerance::kExact);
 }
 
 /// By central differences of directedLimit(), which the tests above hold to closed forms.

@@ -268,7 +268,8 @@ TEST(BundleLight, AFewWildPointsDoNotMatter) {
 /// A sphere whose normals are all alike around one point, as on a facet: alpha hardly changes over the image there.
 class Faceted : public TestSphere {
  public:
-  Faceted(const TestSphere& sphere, const SurfacePoint& middle, double radius) : TestSphere(sphere), middle_(middle), radius_(radius) {}
+  Faceted(const TestSphere& sphere, const SurfacePoint& middle, double radius)
+      : TestSphere(sphere), middle_(middle), radius_(radius) {}
   Outcome<SurfacePoint> firstHit(const Ray& ray) const override {
     Outcome<SurfacePoint> hit = TestSphere::firstHit(ray);
     if (hit && (hit->position - middle_.position).norm() < radius_) hit->normal = middle_.normal;

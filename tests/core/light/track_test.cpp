@@ -32,8 +32,8 @@ struct TwoLights {
     std::normal_distribution<double> normal(0, 1);
     for (int i = 0; i < 10; ++i) {
       const double a = 0.2 + 0.13 * i;
-      const Eigen::Vector3d eye = scale * Eigen::Vector3d(1.8 * std::cos(a), 1.8 * std::sin(a), 0.9),
-          forward = -eye.normalized(), right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
+      const Eigen::Vector3d eye = scale * Eigen::Vector3d(1.8 * std::cos(a), 1.8 * std::sin(a), 0.9), forward = -eye.normalized(),
+                            right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
       TrackedFrame frame;
       frame.camera.width = 640;
       frame.camera.height = 480;
@@ -104,7 +104,8 @@ TEST(AssignLights, ALightMayHaveSeveralHighlightsInAFrame) {
   ASSERT_GT(scene.frames[0].highlights.size(), 2u);
   EXPECT_EQ(scene.assign(), 2);
   for (std::size_t f = 0; f < scene.frames.size(); ++f)
-    for (std::size_t i = 0; i < scene.truth[f].size(); ++i) EXPECT_EQ(scene.frames[f].highlights[i].light, scene.truth[f][i]) << f;
+    for (std::size_t i = 0; i < scene.truth[f].size(); ++i)
+      EXPECT_EQ(scene.frames[f].highlights[i].light, scene.truth[f][i]) << f;
   TwoLights one(0.2, 1, "torus");
   for (std::size_t f = 0; f < one.frames.size(); ++f) {
     one.frames[f].lightsOn.clear();

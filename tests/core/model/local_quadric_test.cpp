@@ -346,7 +346,8 @@ TEST(SearchFromHints, FindsTheSamePointsAsTheGrid) {
       const Prediction hints = modelByName(model).predict(*fit, camera, surface.get(), kHints);
       ASSERT_EQ(grid.highlights().size(), hints.highlights().size()) << model;
       if (grid.highlights().empty()) continue;
-      EXPECT_LT((grid.highlights()[0].brightest.pixel - hints.highlights()[0].brightest.pixel).norm(), tolerance::kSolve) << model;
+      EXPECT_LT((grid.highlights()[0].brightest.pixel - hints.highlights()[0].brightest.pixel).norm(), tolerance::kSolve)
+          << model;
     }
   }
   // Two highlights in one training frame: no hints, so the grid is used.

@@ -82,7 +82,9 @@ TEST(Plausible, ATinyObservedHighlightTrainsNothing) {
     const Outcome<ModelFit> fit = modelByName(model).fit(input, {});
     ASSERT_FALSE(fit) << model;
     EXPECT_EQ(fit.failure().reason, Reason::TooFewViews) << model;
-    EXPECT_THAT(fit.failure().message(), HasSubstr("6 of 6 views could not be used, frame 0: no highlight: the highlight has a radius of")) << model;
+    EXPECT_THAT(fit.failure().message(),
+                HasSubstr("6 of 6 views could not be used, frame 0: no highlight: the highlight has a radius of"))
+        << model;
   }
 }
 
@@ -148,8 +150,10 @@ TEST(Plausible, NoiseOfSinglePointsIsNoFault) {
   EXPECT_TRUE(explaining(fitWith(std::vector<double>(6, 4.0)), used, false, kTenth));
   EXPECT_FALSE(explaining(fitWith(std::vector<double>(6, 4.3)), used, false, kTenth));
   // In units of a canonical contour that is five times as large.
-  EXPECT_TRUE(explaining(fitWith(std::vector<double>(6, 9.0)), std::vector<UsedContour>(6, UsedContour{20, 0, 5}), false, kTenth));
-  EXPECT_FALSE(explaining(fitWith(std::vector<double>(6, 11.0)), std::vector<UsedContour>(6, UsedContour{20, 0, 5}), false, kTenth));
+  EXPECT_TRUE(
+      explaining(fitWith(std::vector<double>(6, 9.0)), std::vector<UsedContour>(6, UsedContour{20, 0, 5}), false, kTenth));
+  EXPECT_FALSE(
+      explaining(fitWith(std::vector<double>(6, 11.0)), std::vector<UsedContour>(6, UsedContour{20, 0, 5}), false, kTenth));
 }
 
 TEST(Plausible, WhatIsLeftIsSaidInWords) {

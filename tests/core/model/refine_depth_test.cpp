@@ -37,7 +37,9 @@ class WrongDepth : public Surface {
   Outcome<Curvature> curvatureAt(const SurfacePoint&) const override { return Failure{Reason::NotSupported, ""}; }
   bool occluded(const SurfacePoint&, const Eigen::Vector3d&) const override { return false; }
   Eigen::AlignedBox3d bounds() const override { return truth_->bounds(); }
-  TriangleMesh tessellate(const Eigen::AlignedBox3d& region, int resolution) const override { return truth_->tessellate(region, resolution); }
+  TriangleMesh tessellate(const Eigen::AlignedBox3d& region, int resolution) const override {
+    return truth_->tessellate(region, resolution);
+  }
 
  private:
   std::optional<Eigen::Vector3d> reported(const Pixel& p) const {
@@ -66,7 +68,9 @@ struct Case {
       views.push_back({scene.cameras[i], surfaces.back().get(), h.contour.points, {}});
     }
   }
-  double lightError(const Light& light) const { return (light.position() - *scene.light.position).norm() / scene.light.position->norm(); }
+  double lightError(const Light& light) const {
+    return (light.position() - *scene.light.position).norm() / scene.light.position->norm();
+  }
 };
 
 constexpr double kError = 1e-2;  // of the depth, at the image's border
@@ -104,7 +108,9 @@ TEST(RefineDepth, Scale) {
     const Outcome<DepthRefinement> r = refineDepth(c.views, Light::at(1.1 * *c.scene.light.position), kPrior);
     ASSERT_TRUE(r) << scale;
     // The contours are traced anew at every scale, to 1e-9 px; the differences that give the normals keep 1e-9 of the depth.
-    EXPECT_LT((r->correction.coefficients - reference->correction.coefficients).norm(), 1e-3 * reference->correction.coefficients.norm()) << scale;
+    EXPECT_LT((r->correction.coefficients - reference->correction.coefficients).norm(),
+              1e-3 * reference->correction.coefficients.norm())
+        << scale;
     EXPECT_LT((r->light.position() / scale - reference->light.position()).norm(), 1e-4) << scale;
   }
 }

@@ -19,7 +19,8 @@ using namespace test;
 
 constexpr double kSlope = 0.005, kLength = 0.15;  // of the bumps: a third of a degree, an eighth of the shape
 constexpr double kPrior = 0.01;
-constexpr double kFacets = 5e-3;  // of the light's distance: what flat triangles under interpolated normals cost, twice as much as measured
+constexpr double kFacets =
+    5e-3;  // of the light's distance: what flat triangles under interpolated normals cost, twice as much as measured
 
 /// Exact contours of the true shape, seen on a mesh of it that has bumps.
 struct Case {
@@ -51,7 +52,9 @@ struct Case {
       }
     return std::sqrt(sum / count);
   }
-  double lightError(const Light& light) const { return (light.position() - *scene.light.position).norm() / scene.light.position->norm(); }
+  double lightError(const Light& light) const {
+    return (light.position() - *scene.light.position).norm() / scene.light.position->norm();
+  }
 };
 
 // Measured: normals along the contours 6.4 -> 1.6 mrad off, residual 0.51 -> 0.02 px, light 3.7 -> 2.2 % off.
@@ -152,7 +155,8 @@ TEST(RefineNormals, WhatTheModelExpectsBendsNothing) {
   Case c(ellipsoidScene(8), 0);
   Synthetic wider = c.scene;
   wider.limitAngle += kMore;
-  for (std::size_t i = 1; i < c.views.size(); i += 2) c.views[i].contour = resample(exactHighlightsOf(wider, wider.cameras[i])[0].contour, 72);
+  for (std::size_t i = 1; i < c.views.size(); i += 2)
+    c.views[i].contour = resample(exactHighlightsOf(wider, wider.cameras[i])[0].contour, 72);
   const Outcome<NormalRefinement> constant = refineNormals(c.views, c.start(), kPrior);
   ASSERT_TRUE(constant);
   EXPECT_GT(constant->plainRmsPx, 0.5) << "the test could not fail";
@@ -172,7 +176,9 @@ TEST(RefineNormals, Degenerate) {
   broken.views[1].contour[3].x() = std::nan("");
   EXPECT_EQ(refineNormals(broken.views, broken.start(), kPrior).failure().reason, Reason::NotFinite);
   const Case c(ellipsoidScene(8), kSlope);
-  EXPECT_EQ(refineNormals(c.views, c.start(), kPrior, {}, [](std::size_t, const Pixel&) { return std::nullopt; }).failure().reason, Reason::TooFewPoints);
+  EXPECT_EQ(
+      refineNormals(c.views, c.start(), kPrior, {}, [](std::size_t, const Pixel&) { return std::nullopt; }).failure().reason,
+      Reason::TooFewPoints);
   // Identical views: nothing tells a bump from a moved light, so that a common tilt stays open; the answer is finite.
   Synthetic same = ellipsoidScene(8);
   same.cameras.assign(4, same.cameras[3]);

@@ -42,7 +42,10 @@ Errors lightErrors(const Synthetic& s, double poseSigma, double noise, int seeds
     std::mt19937_64 engine(seed);
     std::vector<BundleView> views;
     for (std::size_t i = 0; i < s.cameras.size(); ++i)
-      views.push_back({disturbed(s.cameras[i], poseSigma, engine), surface.get(), withNoise(exact[i], noise, seed, int(i), 0).contour.points, {}});
+      views.push_back({disturbed(s.cameras[i], poseSigma, engine),
+                       surface.get(),
+                       withNoise(exact[i], noise, seed, int(i), 0).contour.points,
+                       {}});
     const Light start = Light::at(*s.light.position * 1.1);
     const Outcome<Bundle> b = bundleLight(views, start);
     const Outcome<PoseRefinement> r = refinePoses(views, start, priorPx);
@@ -59,7 +62,8 @@ Errors lightErrors(const Synthetic& s, double poseSigma, double noise, int seeds
 // Measured, 15 seeds, poses off by 0.5 px: the light's median error on the ellipsoid 2.2 % with the given poses, 0.5 % with refined ones.
 // A sphere may turn with light and cameras, so its contours cannot tell: 4.2 % and 4.8 %.
 TEST(RefinePoses, GainsWherePosesAreOff) {
-  const Errors ellipsoid = lightErrors(ellipsoidScene(6), 0.5, 0.1, 15, 0.5), sphere = lightErrors(sphereScene(6), 0.5, 0.1, 15, 0.5);
+  const Errors ellipsoid = lightErrors(ellipsoidScene(6), 0.5, 0.1, 15, 0.5),
+               sphere = lightErrors(sphereScene(6), 0.5, 0.1, 15, 0.5);
   RecordProperty("ellipsoid_plain", std::to_string(ellipsoid.plain));
   RecordProperty("ellipsoid_refined", std::to_string(ellipsoid.refined));
   EXPECT_LT(ellipsoid.refined, 0.5 * ellipsoid.plain);
@@ -93,7 +97,8 @@ TEST(RefinePoses, Scale) {
     EXPECT_EQ(r->cameras.size(), views.size());
     EXPECT_GT(r->movedPx, 0.01);
     if (scale == 1) first = r->bundle.light.position();
-    EXPECT_LT((r->bundle.light.position() / scale - first).norm(), 1e-4) << scale;  // both stop when a step moves less than 1e-4 sigma
+    EXPECT_LT((r->bundle.light.position() / scale - first).norm(), 1e-4)
+        << scale;  // both stop when a step moves less than 1e-4 sigma
   }
 }
 
@@ -101,7 +106,9 @@ TEST(RefinePoses, DegenerateInputsKeepTheBundlesReasons) {
   const auto surface = makeAnalytic(sphere(0.5));
   EXPECT_EQ(refinePoses({}, Light::at({0, 0, 1}), 0.3).failure().reason, Reason::TooFewPoints);
   const Camera camera = lookAt({2, 0, 0}, {0, 0, 0});
-  EXPECT_EQ(refinePoses({{camera, surface.get(), {{-900, -900}, {-901, -900}, {-900, -901}}, {}}}, Light::at({0, 0, 1}), 0.3).failure().reason,
+  EXPECT_EQ(refinePoses({{camera, surface.get(), {{-900, -900}, {-901, -900}, {-900, -901}}, {}}}, Light::at({0, 0, 1}), 0.3)
+                .failure()
+                .reason,
             Reason::PeakOffSurface);
   EXPECT_THROW((void)refinePoses({}, Light::at({0, 0, 1}), 0), std::invalid_argument);
 }

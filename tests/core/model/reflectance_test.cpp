@@ -71,7 +71,8 @@ TEST(Reflectance, FindsTheLobeAndPredictsOtherViews) {
     ASSERT_TRUE(fit) << fit.failure().message();
     EXPECT_EQ(fit->as<ReflectanceFit>()->lobe, lobe);
     EXPECT_NEAR(fit->as<ReflectanceFit>()->roughness, 0.12, 1e-4);
-    for (int i = 6; i < 8; ++i) EXPECT_LT(reflectanceErrorPct(s, *fit, s.geometry.cameras[i]), kPredictedPct) << nameOf(lobe) << " " << i;
+    for (int i = 6; i < 8; ++i)
+      EXPECT_LT(reflectanceErrorPct(s, *fit, s.geometry.cameras[i]), kPredictedPct) << nameOf(lobe) << " " << i;
   }
 }
 
@@ -112,7 +113,8 @@ TEST(Reflectance, FindsWideBeckmannLobes) {
         const Outcome<ModelFit> fit = modelByName("reflectance").fit(inputOf(s, 6), {});
         ASSERT_TRUE(fit) << round << " " << m << " " << level << " " << fit.failure().message();
         EXPECT_EQ(fit->as<ReflectanceFit>()->lobe, Lobe::TorranceSparrow) << round << " " << m << " " << level;
-        for (int i = 6; i < 8; ++i) EXPECT_LT(reflectanceErrorPct(s, *fit, s.geometry.cameras[i]), kWidePct) << round << " " << m << " " << level;
+        for (int i = 6; i < 8; ++i)
+          EXPECT_LT(reflectanceErrorPct(s, *fit, s.geometry.cameras[i]), kWidePct) << round << " " << m << " " << level;
       }
 }
 
@@ -142,7 +144,8 @@ TEST(Reflectance, SeveralLevelsNameTheLobe) {
           else
             v.levels.push_back({level, contour});
         }
-      const Outcome<ModelFit> fit = modelByName("reflectance").fit(input, settings), one = modelByName("reflectance").fit(input, {});
+      const Outcome<ModelFit> fit = modelByName("reflectance").fit(input, settings),
+                              one = modelByName("reflectance").fit(input, {});
       ASSERT_TRUE(fit && one);
       EXPECT_EQ(fit->as<ReflectanceFit>()->evidence, "levels");
       EXPECT_EQ(fit->as<ReflectanceFit>()->levels, std::vector<double>({0.3, 0.5, 0.7}));

@@ -157,7 +157,8 @@ TEST(RadianceStars, LimitAngleWithSeveralBrightestPoints) {
                      stars = modelByName("limit-angle").predict(fit, ring.camera, surface.get(), kStar);
     ASSERT_GE(whole.highlights().size(), 2u);
     expectSameContours(whole.highlights(), stars.highlights(), surface->describe(), 1e-3);
-    EXPECT_NE(whole.highlights()[0].contour.points.size(), stars.highlights()[0].contour.points.size()) << "the stars were not used";
+    EXPECT_NE(whole.highlights()[0].contour.points.size(), stars.highlights()[0].contour.points.size())
+        << "the stars were not used";
   }
 }
 

@@ -22,7 +22,8 @@ struct Outcomes {
   Light light;
 };
 
-Outcomes heldOutError(const TrueLight& light, int orders, double scale = 1, double noise = 0, const std::string& solver = "bundle") {
+Outcomes heldOutError(const TrueLight& light, int orders, double scale = 1, double noise = 0,
+                      const std::string& solver = "bundle") {
   Synthetic s = ellipsoidScene(11);
   s.light = light;
   s = moved(s, Eigen::Isometry3d::Identity(), 1);
@@ -74,8 +75,9 @@ Outcomes heldOutError(const TrueLight& light, int orders, double scale = 1, doub
     const Prediction p = model.predict(*fit, camera, surface.get(), settings);
     if (p.highlights().size() != 1) throw std::runtime_error("no prediction");
     const PredictedHighlight& h = p.highlights()[0];
-    result.errorPct += compareContours(highlight.contour, h.contour, h.gaps, h.ellipse, highlight.peak, h.brightest.pixel).contourErrorPct /
-                       double(heldOut.size());
+    result.errorPct +=
+        compareContours(highlight.contour, h.contour, h.gaps, h.ellipse, highlight.peak, h.brightest.pixel).contourErrorPct /
+        double(heldOut.size());
     if (noise > 0) {
       const std::vector<double> sigma = model.bandSigmaPx(*fit, h, camera, surface.get(), settings);
       EXPECT_EQ(sigma.size(), h.contour.points.size());
@@ -112,7 +114,8 @@ TEST(TubeLight, TheViewsChooseTheOrder) {
 }
 
 TEST(TubeLight, Scale) {
-  const Outcomes here = heldOutError(tube(0.8), 1), small = heldOutError(tube(0.8), 1, 1e-3), large = heldOutError(tube(0.8), 1, 1e3);
+  const Outcomes here = heldOutError(tube(0.8), 1), small = heldOutError(tube(0.8), 1, 1e-3),
+                 large = heldOutError(tube(0.8), 1, 1e3);
   EXPECT_NEAR(small.errorPct / here.errorPct, 1, 1e-2);
   EXPECT_NEAR(large.errorPct / here.errorPct, 1, 1e-2);
   EXPECT_LT((*large.extent * 1e-6 - *here.extent).norm(), 1e-3 * here.extent->norm());
@@ -208,7 +211,8 @@ std::vector<BundleView> viewsOfAnExtentAtInfinity(const std::shared_ptr<const Su
       if (!hit) return true;
       const SurfacePoint at = facing(*hit, eye);
       const Eigen::Vector3d v = (eye - at.position).normalized();
-      return incidentAngle(at.normal, direction, v) > directedLimit(limit, extent, at.position, at.normal, v, light.homogeneous());
+      return incidentAngle(at.normal, direction, v) >
+             directedLimit(limit, extent, at.position, at.normal, v, light.homogeneous());
     };
     BundleView view{camera, surface.get(), {}, *observedBrightestPoint(*surface, camera, peak)};
     for (int k = 0; k < 72; ++k) {
@@ -225,7 +229,8 @@ std::vector<BundleView> viewsOfAnExtentAtInfinity(const std::shared_ptr<const Su
 
 TEST(TubeLight, AtInfinityTheExtentIsFound) {
   const Eigen::Vector3d direction = Eigen::Vector3d(1.2, -1.0, 2.2).normalized(), axis = direction.unitOrthogonal();
-  const Eigen::Matrix3d extent = 0.02 * axis * axis.transpose();  // rad^2, against a limit of 0.1 rad: twice as wide along the axis
+  const Eigen::Matrix3d extent =
+      0.02 * axis * axis.transpose();  // rad^2, against a limit of 0.1 rad: twice as wide along the axis
   const auto surface = makeAnalytic(ellipsoidScene(1).surface);
   const std::vector<BundleView> views = viewsOfAnExtentAtInfinity(surface, direction, extent, 0.1, 8);
   BundleOptions options;

@@ -42,13 +42,16 @@ TEST(LevelSetSigma, OfACircleSeenFromAbove) {
 TEST(PolylineSigma, OfAGrowingCircle) {
   const auto circle = [](double radius, int n) {
     Polyline line{{}, true};
-    for (int i = 0; i < n; ++i) line.points.emplace_back(50 + radius * std::cos(2 * M_PI * i / n), 40 + radius * std::sin(2 * M_PI * i / n));
+    for (int i = 0; i < n; ++i)
+      line.points.emplace_back(50 + radius * std::cos(2 * M_PI * i / n), 40 + radius * std::sin(2 * M_PI * i / n));
     return line;
   };
   const double step = 0.25;
   for (const int other : {90, 400})  // the same vertices, and others
-    for (const double s : polylineSigmaPx(circle(20, 90), {{circle(20 + 3 * step, other), circle(20 - 3 * step, other)},
-                                                           {circle(20 - 4 * step, other), circle(20 + 4 * step, other)}}, step))
+    for (const double s : polylineSigmaPx(circle(20, 90),
+                                          {{circle(20 + 3 * step, other), circle(20 - 3 * step, other)},
+                                           {circle(20 - 4 * step, other), circle(20 + 4 * step, other)}},
+                                          step))
       EXPECT_NEAR(s, 5, 0.02) << other;  // chords of 90 vertices
   EXPECT_EQ(polylineSigmaPx(circle(20, 12), {}, step), std::vector<double>(12, 0.0));
 }

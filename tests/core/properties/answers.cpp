@@ -11,7 +11,8 @@ namespace {
 
 class Comparison {
  public:
-  Comparison(const Back& back, const std::string& scene, Differences& differences) : back_(back), scene_(scene), d_(differences) {}
+  Comparison(const Back& back, const std::string& scene, Differences& differences)
+      : back_(back), scene_(scene), d_(differences) {}
 
   void light(const std::string& model, const Light& a, const Light& b) {
     if (a.atInfinity() || b.atInfinity()) {
@@ -56,7 +57,8 @@ class Comparison {
 
 std::string textOf(const std::optional<Failure>& failure) { return failure ? failure->message() : "answered"; }
 
-const FrameComparison* comparisonOf(const Inspection& r, const ModelResult& model, const std::string& frame, const std::string& light) {
+const FrameComparison* comparisonOf(const Inspection& r, const ModelResult& model, const std::string& frame,
+                                    const std::string& light) {
   for (const FrameComparison& c : model.frames)
     if (c.light == light && r.scene->frames[static_cast<std::size_t>(c.frame)].id == frame) return &c;
   return nullptr;
@@ -70,9 +72,9 @@ void compareFits(const ModelFit& a, const ModelFit& b, const std::string& model,
   if (a.ellipsoid() && b.ellipsoid()) c.ellipsoid(model, *a.ellipsoid(), *b.ellipsoid());
   if (a.lightEstimate && b.lightEstimate) c.light(model, *a.lightEstimate, *b.lightEstimate);
   if (a.limitAngle() && b.limitAngle()) c.relative(model, Quantity::LimitAngle, *a.limitAngle(), *b.limitAngle());
-  if (const LimitAngleFit *p = a.as<LimitAngleFit>(), *q = b.as<LimitAngleFit>(); p && q)
+  if (const LimitAngleFit* p = a.as<LimitAngleFit>(), *q = b.as<LimitAngleFit>(); p && q)
     EXPECT_EQ(p->extent.has_value(), q->extent.has_value()) << place;
-  if (const ReflectanceFit *p = a.as<ReflectanceFit>(), *q = b.as<ReflectanceFit>(); p && q) {
+  if (const ReflectanceFit* p = a.as<ReflectanceFit>(), *q = b.as<ReflectanceFit>(); p && q) {
     EXPECT_EQ(p->lobe, q->lobe) << place;
     EXPECT_EQ(p->lightRadius > 0, q->lightRadius > 0) << place;
     EXPECT_EQ(p->lightSegment.has_value(), q->lightSegment.has_value()) << place;
@@ -80,8 +82,8 @@ void compareFits(const ModelFit& a, const ModelFit& b, const std::string& model,
   }
 }
 
-void compareFrames(const FrameComparison& a, const FrameComparison& b, const Back& back, const std::string& model, const std::string& frame,
-                   const std::string& place, Comparison& c) {
+void compareFrames(const FrameComparison& a, const FrameComparison& b, const Back& back, const std::string& model,
+                   const std::string& frame, const std::string& place, Comparison& c) {
   const auto &h = a.prediction.highlights(), &k = b.prediction.highlights();
   EXPECT_EQ(h.size(), k.size()) << place << ": " << textOf(a.prediction.failure()) << " | " << textOf(b.prediction.failure());
   for (std::size_t i = 0; i < std::min(h.size(), k.size()); ++i) c.contour(model, h[i].contour, k[i].contour, frame);
@@ -101,8 +103,9 @@ void compareFrames(const FrameComparison& a, const FrameComparison& b, const Bac
 }  // namespace
 
 const char* nameOf(Quantity quantity) {
-  constexpr const char* kNames[kQuantities] = {"light",           "limit angle",       "roughness",        "ellipsoid's centre", "ellipsoid's shape",
-                                               "contour, px",     "peak's error, px",  "contour's error, px", "ellipse's error, %", "IoU"};
+  constexpr const char* kNames[kQuantities] = {
+      "light",       "limit angle",      "roughness",           "ellipsoid's centre", "ellipsoid's shape",
+      "contour, px", "peak's error, px", "contour's error, px", "ellipse's error, %", "IoU"};
   return kNames[static_cast<int>(quantity)];
 }
 
@@ -121,7 +124,8 @@ void compare(const Inspection& a, const Inspection& b, const Back& back, const s
     const std::string place = scene + ": " + name;
     const ModelResult& other = b.models.at(name);
     for (const ModelResult::Fit& f : model.fits) {
-      const auto twin = std::find_if(other.fits.begin(), other.fits.end(), [&](const ModelResult::Fit& o) { return o.light == f.light; });
+      const auto twin =
+          std::find_if(other.fits.begin(), other.fits.end(), [&](const ModelResult::Fit& o) { return o.light == f.light; });
       ASSERT_TRUE(twin != other.fits.end()) << place;
       EXPECT_EQ(f.fit.has_value(), twin->fit.has_value()) << place << ": " << textOf(f.failure) << " | " << textOf(twin->failure);
       if (f.failure && twin->failure) {

@@ -61,13 +61,15 @@ class Properties : public testing::Test {
     InspectionRequest q;
     q.train.clear();
     for (const std::string& id : s.training) q.train += (q.train.empty() ? "" : ",") + id;
-    q.settings.set("fit.most_residual", 10.0);  // a plane's model on a sphere is wrong alike in both scenes: what moves along counts
+    q.settings.set("fit.most_residual",
+                   10.0);  // a plane's model on a sphere is wrong alike in both scenes: what moves along counts
     return q;
   }
   static const Inspection& answer(int number) {
     static std::map<int, Inspection> made;
     const auto found = made.find(number);
-    return found != made.end() ? found->second : made.emplace(number, inspect(scene(number).scene, requestFor(scene(number)))).first->second;
+    return found != made.end() ? found->second
+                               : made.emplace(number, inspect(scene(number).scene, requestFor(scene(number)))).first->second;
   }
   static fs::path folder_;
 };
@@ -95,7 +97,8 @@ constexpr double kStoppedPx = 641 * kStopped;
 /// An extent that the contours hardly show trades with the limit angle: little decides between them, and the round-off of the residuals moves
 /// the angle by a few parts in 1e8 (number 97: 1e-8 whatever the solver's tolerance is below 1e-13).
 constexpr double kTradedRoundOff = 1e-7;
-constexpr Tolerances kMoved{kStopped, kTradedRoundOff, kStopped, kStopped, kStoppedShape, kStoppedPx, kStoppedPx, kStoppedPx, 100 * kStopped, kStopped};
+constexpr Tolerances kMoved{kStopped,   kTradedRoundOff, kStopped,   kStopped,       kStoppedShape,
+                            kStoppedPx, kStoppedPx,      kStoppedPx, 100 * kStopped, kStopped};
 /// The fit of a lobe also stops where a step gains less than 1e-10 of the cost (radiance_problem.cpp). With 360 noisy points that
 /// is 2e-4 of a standard deviation, which is some 1e-3 of the light's distance.
 constexpr double kStoppedLobe = 1e-7, kStoppedLobePx = 641 * kStoppedLobe;
@@ -208,7 +211,8 @@ TEST_F(Properties, NumberOfPixels) {
     constexpr int kZoom = 2;
     const RandomScene other = zoomed(scene(i), kZoom);
     InspectionRequest q = requestFor(other);
-    for (const char* key : {"light.robust_px", "predict.seed_step", "predict.level_set_step"}) q.settings.set(key, kZoom * q.settings.number(key));
+    for (const char* key : {"light.robust_px", "predict.seed_step", "predict.level_set_step"})
+      q.settings.set(key, kZoom * q.settings.number(key));
     Back back;
     back.pixelFactor = Pixel::Constant(1.0 / kZoom);
     back.pixelOffset = Pixel::Constant((1.0 / kZoom - 1) / 2);
@@ -332,7 +336,8 @@ TEST_F(Properties, ScenesOfEveryKind) {
     ++tally[s.what.radiance ? "radiance" : "limit angle"];
   }
   for (const auto& [name, count] : tally) std::cout << count << " " << name << "\n";
-  for (const char* name : {"plane", "sphere", "cylinder", "ellipsoid", "mesh", "1 lights", "2 lights", "noisy", "exact", "radiance", "limit angle"})
+  for (const char* name :
+       {"plane", "sphere", "cylinder", "ellipsoid", "mesh", "1 lights", "2 lights", "noisy", "exact", "radiance", "limit angle"})
     EXPECT_GT(tally[name], 0) << name;
 }
 

@@ -39,7 +39,8 @@ class Random {
 
 /// A bumpy cap over a square, normals of its formula.
 TriangleMesh cap(Random& random) {
-  const double k1 = random.uniform(0.2, 0.8), k2 = random.uniform(0.1, 0.6), bump = random.uniform(0.001, 0.003), phase = random.uniform(0, 6);
+  const double k1 = random.uniform(0.2, 0.8), k2 = random.uniform(0.1, 0.6), bump = random.uniform(0.001, 0.003),
+               phase = random.uniform(0, 6);
   constexpr double kHalf = 0.9;
   constexpr int kCells = 48;
   TriangleMesh mesh;
@@ -65,9 +66,11 @@ std::filesystem::path writeMesh(const TriangleMesh& mesh, const std::filesystem:
   const std::filesystem::path file = folder / ("mesh" + std::to_string(number++) + ".ply");
   std::ofstream out(file);
   out << std::setprecision(17) << "ply\nformat ascii 1.0\nelement vertex " << mesh.vertices.size()
-      << "\nproperty double x\nproperty double y\nproperty double z\nproperty double nx\nproperty double ny\nproperty double nz\nelement face "
+      << "\nproperty double x\nproperty double y\nproperty double z\nproperty double nx\nproperty double ny\nproperty double "
+         "nz\nelement face "
       << mesh.triangles.size() << "\nproperty list uchar int vertex_indices\nend_header\n";
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) out << mesh.vertices[i].transpose() << " " << mesh.normals[i].transpose() << "\n";
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+    out << mesh.vertices[i].transpose() << " " << mesh.normals[i].transpose() << "\n";
   for (const Eigen::Vector3i& t : mesh.triangles) out << "3 " << t.transpose() << "\n";
   if (!out.flush()) throw std::runtime_error("cannot write " + file.string());
   return file;
@@ -191,7 +194,8 @@ struct Lamp {
 };
 
 /// One light's highlight in one view, nothing where it is not whole.
-std::optional<Highlight> highlightOf(const Surface& surface, const Camera& camera, const Lamp& lamp, const Draw& what, double width, Random& random) {
+std::optional<Highlight> highlightOf(const Surface& surface, const Camera& camera, const Lamp& lamp, const Draw& what,
+                                     double width, Random& random) {
   const Light light = Light::at(lamp.at);
   const Outcome<std::vector<BrightestPoint>> mirror = predictedBrightestPoints(surface, camera, light);
   if (!mirror || mirror->size() != 1) return std::nullopt;
@@ -258,13 +262,14 @@ const char* nameOf(Kind kind) {
 }
 
 std::string Draw::text() const {
-  return std::string(nameOf(kind)) + ", " + (lights == 1 ? "one light" : "two lights") + ", " + (noisy ? "noisy" : "exact") + " contours of " +
-         (radiance ? "radiance" : "the incident angle") + ", seed " + std::to_string(seed);
+  return std::string(nameOf(kind)) + ", " + (lights == 1 ? "one light" : "two lights") + ", " + (noisy ? "noisy" : "exact") +
+         " contours of " + (radiance ? "radiance" : "the incident angle") + ", seed " + std::to_string(seed);
 }
 
 Draw draw(int n, unsigned seed) {
   const int kind = n % kKinds, round = n / kKinds;
-  return {static_cast<Kind>(kind), 1 + round % 2, (kind + round + round / 2) % 2 == 1, (kind + round / 2 + round / 4) % 2 == 1, seed + static_cast<unsigned>(n)};
+  return {static_cast<Kind>(kind), 1 + round % 2, (kind + round + round / 2) % 2 == 1, (kind + round / 2 + round / 4) % 2 == 1,
+          seed + static_cast<unsigned>(n)};
 }
 
 RandomScene randomScene(const Draw& what, const std::filesystem::path& folder) {
@@ -286,7 +291,8 @@ RandomScene randomScene(const Draw& what, const std::filesystem::path& folder) {
     }
     std::vector<Lamp> lamps;
     for (int i = 0; i < what.lights; ++i)
-      lamps.push_back({i == 0 ? "left" : "right", {(i == 0 ? -1 : 1) * random.uniform(0.15, 0.35), random.uniform(-0.2, 0.2), random.uniform(1.2, 1.7)}});
+      lamps.push_back({i == 0 ? "left" : "right",
+                       {(i == 0 ? -1 : 1) * random.uniform(0.15, 0.35), random.uniform(-0.2, 0.2), random.uniform(1.2, 1.7)}});
     const double width = what.radiance ? random.uniform(0.05, 0.08) : random.uniform(0.04, 0.06);
     bool whole = true;
     for (int i = 0; i < kTraining + kHeldOut && whole; ++i) {
@@ -361,7 +367,8 @@ RandomScene mirrored(const RandomScene& s, const std::filesystem::path& folder) 
     c.camFromWorld.translation().x() *= -1;
     c.pixelFromRay(0, 1) *= -1;
     c.pixelFromRay(0, 2) = c.width - 1 - c.pixelFromRay(0, 2);
-    changePixels(f, [&](const Pixel& p) { return Pixel(c.width - 1 - p.x(), p.y()); }, true);
+    changePixels(
+        f, [&](const Pixel& p) { return Pixel(c.width - 1 - p.x(), p.y()); }, true);
   }
   return {s.what, scene, s.training, s.size};
 }
@@ -373,7 +380,8 @@ RandomScene zoomed(const RandomScene& s, int zoom) {
     f.camera.height *= zoom;
     f.camera.pixelFromRay.topRows<2>() *= zoom;
     f.camera.pixelFromRay.topRightCorner<2, 1>().array() += 0.5 * (zoom - 1);
-    changePixels(f, [&](const Pixel& p) -> Pixel { return zoom * p + Pixel::Constant(0.5 * (zoom - 1)); }, false);
+    changePixels(
+        f, [&](const Pixel& p) -> Pixel { return zoom * p + Pixel::Constant(0.5 * (zoom - 1)); }, false);
   }
   return {s.what, scene, s.training, s.size};
 }
@@ -390,10 +398,12 @@ RandomScene repeated(const RandomScene& s, const std::vector<int>& frames, bool 
   RandomScene result{s.what, scene, s.training, s.size};
   for (const int i : frames) {
     Frame again = s.scene->frames[static_cast<std::size_t>(i)];
-    if (std::find(s.training.begin(), s.training.end(), again.id) != s.training.end()) result.training.push_back(again.id + " again");
+    if (std::find(s.training.begin(), s.training.end(), again.id) != s.training.end())
+      result.training.push_back(again.id + " again");
     again.id += " again";
     if (turned)
-      for (Highlight& h : again.highlights) std::rotate(h.contour.points.begin(), h.contour.points.begin() + kContourPoints / 3, h.contour.points.end());
+      for (Highlight& h : again.highlights)
+        std::rotate(h.contour.points.begin(), h.contour.points.begin() + kContourPoints / 3, h.contour.points.end());
     scene->frames.push_back(std::move(again));
   }
   return result;

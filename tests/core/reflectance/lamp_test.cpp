@@ -54,7 +54,8 @@ TEST(SegmentLight, AgreesWithADenseQuadrature) {
 
 TEST(SegmentLight, DerivativesAgreeWithDifferences) {
   using Dual = ceres::Jet<double, 8>;
-  const Eigen::Vector3d p(0.1, -0.05, 0.02), n = Eigen::Vector3d(0.1, 0, 1).normalized(), v = Eigen::Vector3d(0.3, 0.2, 1).normalized();
+  const Eigen::Vector3d p(0.1, -0.05, 0.02), n = Eigen::Vector3d(0.1, 0, 1).normalized(),
+                                             v = Eigen::Vector3d(0.3, 0.2, 1).normalized();
   Eigen::Matrix<double, 8, 1> at;
   at << -0.5, -0.1, 1.4, 0.6, 0.2, 0.25, 0.1, -0.05;  // L, m, half axis
   const lobe::LampRule rule = lobe::lampRuleFor(lobe::LampShape::Segment, 2);
@@ -74,15 +75,16 @@ TEST(SegmentLight, DerivativesAgreeWithDifferences) {
       Eigen::Matrix<double, 8, 1> low = at, high = at;
       low(i) -= 1e-6;
       high(i) += 1e-6;
-      EXPECT_NEAR(total.v(i), (value(lobe, high) - value(lobe, low)) / 2e-6, 1e-6 * (1 + std::abs(total.v(i)))) << nameOf(lobe) << i;
+      EXPECT_NEAR(total.v(i), (value(lobe, high) - value(lobe, low)) / 2e-6, 1e-6 * (1 + std::abs(total.v(i))))
+          << nameOf(lobe) << i;
     }
   }
 }
 
 TEST(SegmentLight, SeenEndOnItSendsNothing) {
   const lobe::LampIn<double> lamp = lobe::inWorld(Lamp::segment({0, 0, 1}, {0, 0, 2}));
-  EXPECT_FALSE(lobe::logOfLamp<double>(Lobe::Ggx, 0.1, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitZ(), lamp,
-                                       lobe::lampRuleFor(lamp.shape, 1)));
+  EXPECT_FALSE(lobe::logOfLamp<double>(Lobe::Ggx, 0.1, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ(),
+                                       Eigen::Vector3d::UnitZ(), lamp, lobe::lampRuleFor(lamp.shape, 1)));
 }
 
 TEST(Lamp, KeepsItsInvariant) {

@@ -21,13 +21,13 @@ struct Scene {
   Eigen::Vector3d lamp{0.9, -0.5, 2.2};
   Lobe lobe = Lobe::Ggx;
   double roughness = 0.12;
-  double albedo = 0;     ///< of a matt base; 1 shows about half the peak's radiance
-  double tilt = 0;       ///< slope of a further light across the image, share of the peak over its width
-  double noise = 0;      ///< standard deviation, share of the peak
-  double clip = 0;       ///< share of the peak at which values end; 0 = never
+  double albedo = 0;  ///< of a matt base; 1 shows about half the peak's radiance
+  double tilt = 0;    ///< slope of a further light across the image, share of the peak over its width
+  double noise = 0;   ///< standard deviation, share of the peak
+  double clip = 0;    ///< share of the peak at which values end; 0 = never
   double blurPx = 0;
   int views = 4;
-  int sub = 3;           ///< samples across a pixel
+  int sub = 3;  ///< samples across a pixel
   unsigned seed = 1;
 };
 
@@ -36,7 +36,8 @@ constexpr double kFocal = 620;
 
 Camera cameraOf(const Scene& s, int i) {
   const double a = -0.5 + 1.1 * i / std::max(1, s.views - 1);
-  Camera c = test::lookAt(s.scale * Eigen::Vector3d(2.4 * std::sin(a), 0.4 - 0.3 * std::cos(2 * a), 2.4 * std::cos(a)), s.scale * Eigen::Vector3d(0.1, -0.06, 0.3));
+  Camera c = test::lookAt(s.scale * Eigen::Vector3d(2.4 * std::sin(a), 0.4 - 0.3 * std::cos(2 * a), 2.4 * std::cos(a)),
+                          s.scale * Eigen::Vector3d(0.1, -0.06, 0.3));
   c.width = kWidth;
   c.height = kHeight;
   c.pixelFromRay << kFocal, 0, (kWidth - 1) / 2.0, 0, kFocal, (kHeight - 1) / 2.0, 0, 0, 1;
@@ -50,7 +51,8 @@ struct Shade {
 std::optional<Shade> shade(const Scene& s, const Ray& ray) {
   const double radius = 0.5 * s.scale, b = ray.origin.dot(ray.direction), c = ray.origin.squaredNorm() - radius * radius;
   if (b * b < c) return std::nullopt;
-  const Eigen::Vector3d x = ray.at(-b - std::sqrt(b * b - c)), n = x / radius, v = -ray.direction, to = s.scale * s.lamp - x, l = to.normalized();
+  const Eigen::Vector3d x = ray.at(-b - std::sqrt(b * b - c)), n = x / radius, v = -ray.direction, to = s.scale * s.lamp - x,
+                        l = to.normalized();
   const double r2 = to.squaredNorm() / (s.scale * s.scale), cosL = n.dot(l), cosV = n.dot(v), m = s.roughness;
   if (cosL <= 0 || cosV <= 0) return Shade{};
   const Eigen::Vector3d h = (l + v).normalized();
@@ -125,7 +127,8 @@ Photograph photograph(const Scene& s, int view) {
   p.highlight.light = "lamp";
   p.highlight.ellipse = Ellipse{sum / above, {radius, radius}, 0};
   p.highlight.peak = sum / above;
-  for (int i = 0; i < 60; ++i) p.highlight.contour.points.push_back(sum / above + radius * Pixel(std::cos(i * 0.1047), std::sin(i * 0.1047)));
+  for (int i = 0; i < 60; ++i)
+    p.highlight.contour.points.push_back(sum / above + radius * Pixel(std::cos(i * 0.1047), std::sin(i * 0.1047)));
   p.highlight.contour.closed = true;
   p.highlight.areaPx2 = above;
   p.highlight.peakValue = p.top;
@@ -343,8 +346,8 @@ TEST(ContourWithLobe, NoiseOfSinglePixelsIsEvenedOut) {
   const Camera camera = cameraOf(s, 1);
   const LobeModel model{s.lobe, s.roughness, Light::at(s.lamp), 0};
   DetectOptions options;
-  const Outcome<std::vector<Highlight>> again = contourWithLobe(linearPixels(p.image, nullptr, 0), camera, *surfaceOf(s), 1, {p.highlight}, {},
-                                                                model, BackgroundKind::None, options);
+  const Outcome<std::vector<Highlight>> again = contourWithLobe(linearPixels(p.image, nullptr, 0), camera, *surfaceOf(s), 1,
+                                                                {p.highlight}, {}, model, BackgroundKind::None, options);
   ASSERT_TRUE(again) << again.failure().message();
   double sum = 0;
   for (const Pixel& at : again->front().contour.points) {
@@ -375,8 +378,8 @@ TEST(ContourWithLobe, AClippedHighlightKeepsItsContourAndNamesItsLevel) {
   ASSERT_TRUE(found->front().clipped);
   const LobeModel model{s.lobe, s.roughness, Light::at(s.lamp), 0};
   const Outcome<std::vector<Highlight>> again =
-      contourWithLobe(linearPixels(p.image, nullptr, options.clipValue), cameraOf(s, 1), *surfaceOf(s), 1, {found->front()}, {}, model,
-                      BackgroundKind::None, options);
+      contourWithLobe(linearPixels(p.image, nullptr, options.clipValue), cameraOf(s, 1), *surfaceOf(s), 1, {found->front()}, {},
+                      model, BackgroundKind::None, options);
   ASSERT_TRUE(again) << again.failure().message();
   const Highlight& h = again->front();
   EXPECT_TRUE(h.clipped);

@@ -23,7 +23,8 @@ const Eigen::Vector3d kAxis = Eigen::Vector3d(0.6, 0.8, 0);
 RadianceScene longLamp(Synthetic geometry, double scale = 1) {
   geometry.light = {};
   geometry.light.id = "tube";
-  geometry.light.segment = {Eigen::Vector3d(scale * (kMiddle - kHalfLength * kAxis)), Eigen::Vector3d(scale * (kMiddle + kHalfLength * kAxis))};
+  geometry.light.segment = {Eigen::Vector3d(scale * (kMiddle - kHalfLength * kAxis)),
+                            Eigen::Vector3d(scale * (kMiddle + kHalfLength * kAxis))};
   geometry.light.radius = 0.015 * scale;
   return radianceScene(std::move(geometry), Lobe::TorranceSparrow, kSegmentRoughness);
 }
@@ -34,7 +35,8 @@ struct Found {
 
 Found compared(const RadianceFit& fit, double scale = 1) {
   return {(fit.light.position() / scale - kMiddle).norm(),
-          std::asin(std::min(1.0, fit.lightHalfAxis.normalized().cross(kAxis).norm())) * 180 / M_PI, fit.lightHalfAxis.norm() / scale};
+          std::asin(std::min(1.0, fit.lightHalfAxis.normalized().cross(kAxis).norm())) * 180 / M_PI,
+          fit.lightHalfAxis.norm() / scale};
 }
 
 /// Off by a tenth of the distance and some degrees, as a triangulated light is.
@@ -50,10 +52,10 @@ TEST(FitSegment, NominalLampOfSixtyCentimetres) {
   ASSERT_TRUE(fit) << fit.failure().message();
   const Found f = compared(*fit);
   EXPECT_EQ(fit->lobe, Lobe::TorranceSparrow);
-  EXPECT_LT(f.centreM, 5e-3);                                    // "a few mm"
+  EXPECT_LT(f.centreM, 5e-3);  // "a few mm"
   EXPECT_LT(f.axisDeg, 0.5);
   EXPECT_NEAR(f.halfLength, kHalfLength, 0.01 * kHalfLength);
-  EXPECT_NEAR(fit->roughness, kSegmentRoughness, 0.01 * kSegmentRoughness);    // the tube's own width counts as the lobe's
+  EXPECT_NEAR(fit->roughness, kSegmentRoughness, 0.01 * kSegmentRoughness);  // the tube's own width counts as the lobe's
   EXPECT_LT(fit->rmsPx, 0.02);
 }
 
@@ -97,9 +99,12 @@ TEST(FitSegment, DegenerateAPointHasNoLength) {
     const RadianceScene s = radianceScene(ellipsoidScene(6), Lobe::TorranceSparrow, kSegmentRoughness);
     const Light near = Light::at(1.05 * *s.geometry.light.position);
     for (const std::vector<Lobe>& lobes : {kMicrofacets, std::vector<Lobe>{Lobe::Ggx}}) {
-      const auto fit = searchRadiance(lobes, radianceViews(s, noise, 7), near, widthOf(Lobe::TorranceSparrow, kSegmentRoughness, 0.5), {true, true});
+      const auto fit = searchRadiance(lobes, radianceViews(s, noise, 7), near,
+                                      widthOf(Lobe::TorranceSparrow, kSegmentRoughness, 0.5), {true, true});
       ASSERT_TRUE(fit) << fit.failure().message();
-      if (lobes.size() > 1) { EXPECT_EQ(fit->lightHalfAxis.norm(), 0) << noise; }
+      if (lobes.size() > 1) {
+        EXPECT_EQ(fit->lightHalfAxis.norm(), 0) << noise;
+      }
     }
   }
 }

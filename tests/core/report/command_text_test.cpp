@@ -2,7 +2,6 @@
 #include "core/report/command_text.h"
 
 #include <gtest/gtest.h>
-
 #include <unistd.h>
 
 #include <array>
@@ -48,8 +47,9 @@ TEST(CommandText, EveryPathIsAbsolute) {
   std::array<char, 4096> here{};
   ASSERT_NE(getcwd(here.data(), here.size()), nullptr);
   const std::string at = std::string(here.data()) + "/";
-  EXPECT_EQ(*commandOf(scene, q), "glint evaluate " + shellWord(at + "scene.json") + " --truth " + shellWord(at + "truth") + " --photographs " +
-                                      shellWord(at + "photos") + " --files " + shellWord("depth=" + at + "depth") + " --mesh " +
+  EXPECT_EQ(*commandOf(scene, q), "glint evaluate " + shellWord(at + "scene.json") + " --truth " + shellWord(at + "truth") +
+                                      " --photographs " + shellWord(at + "photos") + " --files " +
+                                      shellWord("depth=" + at + "depth") + " --mesh " +
                                       shellWord("a.ply=" + at + "meshes/a.ply"));
 }
 
@@ -83,15 +83,17 @@ TEST(CommandText, ExcludedFramesAreNamed) {
 
 /// Ids win over numbers: where the ids are numbers themselves, "1" is the frame of that id.
 TEST(CommandText, WhatNamesFramesIsReadBackAsTheSameFrames) {
-  for (const std::vector<std::string>& ids :
-       {std::vector<std::string>{"1", "2", "3", "4", "5", "6"}, {"5", "4", "3", "2", "1", "0"}, {"0-2", "1-3", "a-b", "3-4", "x", "2"},
-        {"0000", "0001", "0002", "0003", "0004", "0005"}}) {
+  for (const std::vector<std::string>& ids : {std::vector<std::string>{"1", "2", "3", "4", "5", "6"},
+                                              {"5", "4", "3", "2", "1", "0"},
+                                              {"0-2", "1-3", "a-b", "3-4", "x", "2"},
+                                              {"0000", "0001", "0002", "0003", "0004", "0005"}}) {
     const Scene scene = withIds(ids);
     for (unsigned set = 1; set < 64; ++set) {
       std::vector<int> frames;
       for (int i = 0; i < 6; ++i)
         if (set >> i & 1u) frames.push_back(i);
-      EXPECT_EQ(parseFrames(frameSpec(frames, scene), scene, "--exclude"), frames) << ids[0] << " " << set << ": " << frameSpec(frames, scene);
+      EXPECT_EQ(parseFrames(frameSpec(frames, scene), scene, "--exclude"), frames)
+          << ids[0] << " " << set << ": " << frameSpec(frames, scene);
     }
   }
 }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pixels against OpenCV's own readers, which share the decoding library but none of the code here; damaged files against silence.
-#include <png.h>
+#include "core/scene/image_decode.h"
 
 #include <gmock/gmock.h>
+#include <png.h>
 
 #include <cstdio>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include "core/scene/image_decode.h"
 #include "tests/core/scene/scene_fixture.h"
 
 namespace glint {
@@ -20,7 +20,8 @@ using testing::HasSubstr;
 cv::Mat ramp(int type, double largest) {
   cv::Mat m(48, 64, CV_MAKETYPE(CV_64F, CV_MAT_CN(type)));
   for (int y = 0; y < m.rows; ++y)
-    for (int x = 0; x < m.cols * m.channels(); ++x) m.ptr<double>(y)[x] = largest * (0.1 + 0.6 * (x * 7 % 191) / 191.0 + 0.3 * y / 48.0);
+    for (int x = 0; x < m.cols * m.channels(); ++x)
+      m.ptr<double>(y)[x] = largest * (0.1 + 0.6 * (x * 7 % 191) / 191.0 + 0.3 * y / 48.0);
   cv::Mat out;
   m.convertTo(out, type);
   return out;
@@ -68,7 +69,8 @@ TEST(ImageDecode, LegalFilesAreReadAsOpenCvReadsThem) {
   expectSame("PNG, 1 bit", encoded(".png", ramp(CV_8UC1, 255), {cv::IMWRITE_PNG_BILEVEL, 1}));
   expectSame("JPEG, colour", encoded(".jpg", ramp(CV_8UC3, 255)));
   expectSame("JPEG, grey", encoded(".jpg", ramp(CV_8UC1, 255)));
-  expectSame("JPEG, progressive", encoded(".jpg", ramp(CV_8UC3, 255), {cv::IMWRITE_JPEG_PROGRESSIVE, 1, cv::IMWRITE_JPEG_QUALITY, 60}));
+  expectSame("JPEG, progressive",
+             encoded(".jpg", ramp(CV_8UC3, 255), {cv::IMWRITE_JPEG_PROGRESSIVE, 1, cv::IMWRITE_JPEG_QUALITY, 60}));
   expectSame("TIFF, 16 bits", encoded(".tiff", ramp(CV_16UC3, 65535)));
   expectSame("TIFF, float", encoded(".tiff", ramp(CV_32FC3, 3), {cv::IMWRITE_TIFF_COMPRESSION, 1}));
   expectSame("EXR", encoded(".exr", ramp(CV_32FC3, 3)));
@@ -85,10 +87,13 @@ std::string interlacedPng(const cv::Mat& rgb) {
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   png_infop info = png_create_info_struct(png);
   png_set_write_fn(
-      png, &bytes, [](png_structp p, png_bytep data, png_size_t n) { static_cast<std::string*>(png_get_io_ptr(p))->append(reinterpret_cast<char*>(data), n); },
+      png, &bytes,
+      [](png_structp p, png_bytep data, png_size_t n) {
+        static_cast<std::string*>(png_get_io_ptr(p))->append(reinterpret_cast<char*>(data), n);
+      },
       nullptr);
-  png_set_IHDR(png, info, png_uint_32(rgb.cols), png_uint_32(rgb.rows), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_ADAM7, PNG_COMPRESSION_TYPE_DEFAULT,
-               PNG_FILTER_TYPE_DEFAULT);
+  png_set_IHDR(png, info, png_uint_32(rgb.cols), png_uint_32(rgb.rows), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_ADAM7,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   std::vector<png_bytep> rows;
   for (int y = 0; y < rgb.rows; ++y) rows.push_back(const_cast<png_bytep>(rgb.ptr(y)));
   png_set_rows(png, info, rows.data());
@@ -147,7 +152,8 @@ TEST(ImageDecode, GreyWhereDataAreMissingIsNoPicture) {
 
 TEST(ImageHeader, SaysTheSizeThatTheEncoderWrote) {
   for (const char* extension : {".png", ".jpg", ".tiff", ".exr", ".bmp", ".ppm", ".hdr", ".webp"}) {
-    const bool isFloat = std::string(extension) == ".exr" || std::string(extension) == ".hdr" || std::string(extension) == ".tiff";
+    const bool isFloat =
+        std::string(extension) == ".exr" || std::string(extension) == ".hdr" || std::string(extension) == ".tiff";
     const ImageHeader header = readImageHeader(encoded(extension, ramp(isFloat ? CV_32FC3 : CV_8UC3, isFloat ? 3 : 255)));
     EXPECT_EQ(header.problem, "") << extension;
     EXPECT_EQ(header.width, 64u) << extension;
@@ -165,7 +171,8 @@ TEST(ImageHeader, WhatIsNoImageIsSaid) {
   EXPECT_THAT(readImageHeader("").problem, HasSubstr("empty"));
   EXPECT_THAT(readImageHeader("GIF89a").problem, HasSubstr("not a supported image"));
   EXPECT_THAT(readImageHeader("P7\nWIDTH 4\n").problem, HasSubstr("not a supported image"));
-  for (const char* start : {"\x89PNG\r\n\x1a\n", "\xff\xd8", "BM", "P6\n", "#?RADIANCE\n", "II*"}) EXPECT_NE(readImageHeader(start).problem, "") << start;
+  for (const char* start : {"\x89PNG\r\n\x1a\n", "\xff\xd8", "BM", "P6\n", "#?RADIANCE\n", "II*"})
+    EXPECT_NE(readImageHeader(start).problem, "") << start;
 }
 
 }  // namespace

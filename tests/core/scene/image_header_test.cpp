@@ -42,7 +42,8 @@ TEST(TiffHeader, SizeIsThatOfTheFirstTagAsForTheDecoder) {
   EXPECT_EQ(once.width, 64u);
   EXPECT_EQ(once.height, 48u);
   // libtiff ignores a tag that stands there again: 60000 x 60000 would be decoded for 64 x 48.
-  const ImageHeader twice = readImageHeader(tiff({{kWidth, kLong, 60000}, {kHeight, kLong, 60000}, {kWidth, kLong, 64}, {kHeight, kLong, 48}}));
+  const ImageHeader twice =
+      readImageHeader(tiff({{kWidth, kLong, 60000}, {kHeight, kLong, 60000}, {kWidth, kLong, 64}, {kHeight, kLong, 48}}));
   EXPECT_EQ(twice.width, 60000u);
   EXPECT_EQ(twice.height, 60000u);
 }

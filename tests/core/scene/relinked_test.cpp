@@ -155,7 +155,8 @@ TEST(RelinkedMeshes, AreKeptByASessionRelativeToItself) {
   EXPECT_EQ(*opened.scene->surfaces.at("a").mesh, now);
   EXPECT_THAT(opened.session.meshes, ElementsAre(Pair("m/a.ply", now)));
   EXPECT_EQ(opened.warning, "");
-  EXPECT_EQ(*readScene(moved / "sessions/x.glint", allowingOutside()).surfaces.at("a2").mesh, now) << "a session is an input like a scene";
+  EXPECT_EQ(*readScene(moved / "sessions/x.glint", allowingOutside()).surfaces.at("a2").mesh, now)
+      << "a session is an input like a scene";
   // Gone again, it is asked for again, and what is given now counts.
   EXPECT_EQ(missingIn([&] { openSession(permitted(folder / "sessions/x.glint")); }).mesh(), folder / "else/a2.ply");
   Relinked instead;

@@ -227,7 +227,8 @@ TEST(ReadScene, AnUnknownKeyThatNestsAsDeepAsAllowedIsKept) {
   const TemporaryFolder folder;
   std::string deep = "1";
   for (int i = 0; i < 99; ++i) deep = "{\"a\":" + deep + "}";
-  const Scene scene = readScene(folder.write("scene.json", with(minimalScene(), "{\"glint_scene\"", "{\"flavour\": " + deep + ", \"glint_scene\"")));
+  const Scene scene = readScene(
+      folder.write("scene.json", with(minimalScene(), "{\"glint_scene\"", "{\"flavour\": " + deep + ", \"glint_scene\"")));
   writeScene(scene, folder / "again.json");
   EXPECT_EQ(readScene(folder / "again.json").unknownJson, scene.unknownJson);
 }
@@ -268,11 +269,13 @@ TEST(ReadScene, UnknownKeysThatWouldChangeTheGeometryAreRefused) {
            {"\"id\": \"a\"", "\"id\": \"a\", \"world_from_camera\": []", "frames[0].world_from_camera: "},
            {"{\"analytic\"", "{\"scale\": 2, \"analytic\"", "surfaces.ball.scale: "},
            {"{", "{\"coordinate_system\": \"y up\", ", "coordinate_system: "}}) {
-    const std::string error = inputErrorOf([&] { readScene(folder.write("scene.json", with(minimalScene(), row.from, row.to))); });
+    const std::string error =
+        inputErrorOf([&] { readScene(folder.write("scene.json", with(minimalScene(), row.from, row.to))); });
     EXPECT_THAT(error, HasSubstr(row.place)) << row.to;
     EXPECT_THAT(error, HasSubstr("is not supported")) << row.to;
   }
-  EXPECT_NO_THROW(readScene(folder.write("scene.json", with(minimalScene(), "\"cy\": 23.5", "\"cy\": 23.5, \"model\": \"OPENCV\""))));
+  EXPECT_NO_THROW(
+      readScene(folder.write("scene.json", with(minimalScene(), "\"cy\": 23.5", "\"cy\": 23.5, \"model\": \"OPENCV\""))));
 }
 
 TEST(ReadScene, RoundedRotationIsRepairedAndWarnedOf) {
@@ -364,12 +367,11 @@ TEST(ReadSceneJson, ARotationOfNineDigitsKeepsItsCameraInPlace) {
   const Eigen::Vector3d t = -(r * centre);
   std::ostringstream pose;
   pose << std::setprecision(17) << "[[";
-  for (int i = 0; i < 3; ++i)
-    pose << r(i, 0) << "," << r(i, 1) << "," << r(i, 2) << "," << t(i) << "],[";
+  for (int i = 0; i < 3; ++i) pose << r(i, 0) << "," << r(i, 1) << "," << r(i, 2) << "," << t(i) << "],[";
   pose << "0,0,0,1]]";
   const TemporaryFolder folder;
-  const Scene scene = readScene(
-      folder.write("scene.json", with(minimalScene(), "[[1,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,0,1]]", pose.str())));
+  const Scene scene =
+      readScene(folder.write("scene.json", with(minimalScene(), "[[1,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,0,1]]", pose.str())));
   const Eigen::Isometry3d& read = scene.frames[0].camera.camFromWorld;
   EXPECT_LT((scene.frames[0].camera.centreInWorld() - centre).norm(), 1e-8);
   EXPECT_LT((read.linear() * read.linear().transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-14);

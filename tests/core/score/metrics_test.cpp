@@ -36,7 +36,8 @@ TEST(ContourMetrics, ScaleChangesPixelsButNotPercent) {
   for (const double k : {0.02, 1.0, 40.0}) {
     const ContourMetrics m = compare(circle(300 * k, 200 * k, 50 * k), circle(303 * k, 200 * k, 50 * k));
     const ContourMetrics one = compare(circle(300, 200, 50), circle(303, 200, 50));
-    EXPECT_NEAR(m.contourErrorPct, one.contourErrorPct, 2e-3 * one.contourErrorPct) << k;  // the number of samples depends on the size
+    EXPECT_NEAR(m.contourErrorPct, one.contourErrorPct, 2e-3 * one.contourErrorPct)
+        << k;  // the number of samples depends on the size
     EXPECT_NEAR(m.contourErrorPx / k, one.contourErrorPx, 2e-3 * one.contourErrorPx) << k;
     EXPECT_NEAR(m.centreOffsetPx / k, 3, 1e-9);
   }
@@ -74,7 +75,7 @@ TEST(ContourMetrics, GapsAreNotBridgedForDistances) {
   // Observed to predicted: on the missing side the distance runs 0..5..0, mean 2.5, over a quarter of the length.
   EXPECT_NEAR(gap.contourErrorPx, 0.5 * 2.5 / 4, 1e-3);
   EXPECT_NEAR(gap.hausdorffPx, 5, 0.06);  // samples are 40/360 px apart, the nearest to the middle is half of that away
-  EXPECT_NEAR(gap.iou, 1, 1e-9);  // areas are closed over the gap
+  EXPECT_NEAR(gap.iou, 1, 1e-9);          // areas are closed over the gap
 }
 
 TEST(ContourMetrics, RepeatedPointsDoNotMatter) {

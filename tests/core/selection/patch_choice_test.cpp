@@ -23,8 +23,9 @@ struct Chosen {
   Selection selection;
 };
 
-Chosen patchChoiceOn(std::shared_ptr<const Scene> scene, std::optional<double> goodEnough = {}, const std::string& train = "spread:6",
-                double noisePx = 0, const std::vector<std::pair<std::string, std::string>>& settings = {}) {
+Chosen patchChoiceOn(std::shared_ptr<const Scene> scene, std::optional<double> goodEnough = {},
+                     const std::string& train = "spread:6", double noisePx = 0,
+                     const std::vector<std::pair<std::string, std::string>>& settings = {}) {
   InspectionRequest request;
   request.models.clear();
   request.train = train;
@@ -117,7 +118,7 @@ TEST(PatchChoice, ABentSurfaceKeepsExactWalks) {
 // contour that is off by fifteen diameters is no answer to it: `primal` would have been the only one to answer every view.
 TEST(PatchChoice, AUselessContourIsNoAnswer) {
   const Chosen c = patchChoiceOn(exactScene(torus(0.1), 6), {}, "spread:6", 0,
-                            {{"fit.lobe", "phong"}, {"fit.light_size", "point"}, {"light.bundle_points", "12"}});
+                                 {{"fit.lobe", "phong"}, {"fit.light_size", "point"}, {"light.bundle_points", "12"}});
   EXPECT_EQ(c.selection.model, "limit-angle") << selectionTable(c.selection);
   EXPECT_LT(c.selection.candidates[0].answered, 12);
   EXPECT_GE(c.selection.candidates[0].tried, 1);

@@ -56,7 +56,8 @@ Scene randomScene(unsigned seed, double noisePx) {
   const Lamp<Real> lamp = stability::lampOf<Real>(scene.light);
   std::normal_distribution<double> noise;  // a standard deviation of zero is none
   for (int i = 0; i < 6; ++i) {
-    const RealView<Real> view = stability::mirrorView(bent, lamp, uniform(-0.25, 0.25), uniform(-0.25, 0.25), uniform(1.2, 1.8), 800);
+    const RealView<Real> view =
+        stability::mirrorView(bent, lamp, uniform(-0.25, 0.25), uniform(-0.25, 0.25), uniform(1.2, 1.8), 800);
     View v{view.camera, stability::exactContour(bent, lamp, view, Real(limit), 60, 0.02), {}};
     const auto [x, y] = view.real.pixel(bent.point(view.u0, view.v0));
     v.peak = Pixel(static_cast<double>(x), static_cast<double>(y));
@@ -99,7 +100,7 @@ Scene rescaled(Scene s, double zoom, const Pixel& shift) {
 struct Answers {
   std::optional<Eigen::Vector3d> triangulated, bundled;  ///< world
   double limit = 0;
-  std::vector<Ellipse> outlines;           ///< of the linear, anchored and refined ellipsoid in every view's virtual camera
+  std::vector<Ellipse> outlines;  ///< of the linear, anchored and refined ellipsoid in every view's virtual camera
   std::vector<std::vector<Pixel>> canonical;
 };
 Answers solve(const Scene& scene, double robustPx = 1) {

@@ -249,7 +249,8 @@ TEST(Analytic, AContouredEllipsoidIsClosed) {
   AnalyticSpec spec;
   spec.type = "quadric";
   spec.matrix.diagonal() << 1 / 0.36, 1 / 0.1225, 1 / 0.0625, -1;
-  const TriangleMesh mesh = makeAnalytic(spec)->tessellate(Eigen::AlignedBox3d(Vector3d::Constant(-0.7), Vector3d::Constant(0.7)), 40);
+  const TriangleMesh mesh =
+      makeAnalytic(spec)->tessellate(Eigen::AlignedBox3d(Vector3d::Constant(-0.7), Vector3d::Constant(0.7)), 40);
   std::map<std::pair<int, int>, int> edges;
   double volume = 0;
   for (const Eigen::Vector3i& t : mesh.triangles) {

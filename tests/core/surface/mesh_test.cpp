@@ -47,12 +47,14 @@ TEST(Mesh, FarFromTheOriginNothingChanges) {
     std::uniform_real_distribution<double> u(-1, 1);
     int hits = 0, hidden = 0;
     for (int i = 0; i < 300; ++i) {
-      const Vector3d o = 2 * Vector3d(u(rng), u(rng), u(rng)).normalized(), to = 2 * Vector3d(u(rng), u(rng), u(rng)).normalized();
+      const Vector3d o = 2 * Vector3d(u(rng), u(rng), u(rng)).normalized(),
+                     to = 2 * Vector3d(u(rng), u(rng), u(rng)).normalized();
       const Vector3d d = (0.5 * Vector3d(u(rng), u(rng), 0.2 * u(rng)) - o).normalized();
       const Outcome<SurfacePoint> a = here->firstHit({o, d}), b = there->firstHit({o + far, d});
       if (!a || !b || a->element != b->element) continue;  // at an outline or an edge round-off decides
       ++hits;
-      EXPECT_LT((b->position - far - a->position).norm(), slack * (policy == NormalPolicy::Curved ? 10 : 1) / std::abs(a->normal.dot(d)));
+      EXPECT_LT((b->position - far - a->position).norm(),
+                slack * (policy == NormalPolicy::Curved ? 10 : 1) / std::abs(a->normal.dot(d)));
       EXPECT_LT((b->normal - a->normal).norm(), 1e-6);  // across 1e-9 m of triangles of 3 cm
       hidden += here->occluded(*a, to) != there->occluded(*b, to + far);
     }

@@ -260,10 +260,13 @@ TEST(BoundedParts, HoldAllThatIsSeen) {
   TriangleMesh coarse = torus(8), inward = torus(60), inner = torus(60), tilted = torus(60);
   for (Vector3d& n : inward.normals) n = -n;
   for (Vector3d& n : tilted.normals) n = (n + 0.5 * Vector3d::UnitZ()).normalized();  // seen from below, many point away
-  for (const auto& [mesh, eye, left] :
-       {std::tuple{torus(60), Vector3d(1.1, -1.6, 1.2), 0.65}, {coarse, Vector3d(1.1, -1.6, 1.2), 1.0}, {openTorus, Vector3d(1.1, -1.6, 1.2), 1.0},
-        {inward, Vector3d(1.1, -1.6, 1.2), 1.0}, {inner, Vector3d(0.5, 0, 0.05), 1.0}, {tilted, Vector3d(1.1, -1.6, -1.2), 1.0},
-        {torus(60), Vector3d(100, 50, -30), 0.65}}) {
+  for (const auto& [mesh, eye, left] : {std::tuple{torus(60), Vector3d(1.1, -1.6, 1.2), 0.65},
+                                        {coarse, Vector3d(1.1, -1.6, 1.2), 1.0},
+                                        {openTorus, Vector3d(1.1, -1.6, 1.2), 1.0},
+                                        {inward, Vector3d(1.1, -1.6, 1.2), 1.0},
+                                        {inner, Vector3d(0.5, 0, 0.05), 1.0},
+                                        {tilted, Vector3d(1.1, -1.6, -1.2), 1.0},
+                                        {torus(60), Vector3d(100, 50, -30), 0.65}}) {
     const auto surface = makeMesh(mesh, NormalPolicy::Interpolated);
     const auto& bounded = dynamic_cast<const BoundedParts&>(*surface);
     MirrorQuery everywhere = query(eye, Light::at({1, 0, 3}));

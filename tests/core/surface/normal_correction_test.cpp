@@ -83,8 +83,10 @@ TEST(CorrectedMesh, Degenerate) {
   const auto facets = makeMesh(square(4, 1), NormalPolicy::Facet);
   EXPECT_EQ(correctedMesh(*facets, NormalPolicy::Facet, c).failure().reason, Reason::NotSupported);
   const auto plane = makeMesh(square(4, 1), NormalPolicy::Interpolated);
-  EXPECT_THROW((void)correctedMesh(*plane, NormalPolicy::Interpolated, {{Vector3d::Zero()}, Eigen::VectorXd::Zero(2), 1}), std::invalid_argument);
-  EXPECT_THROW((void)correctedMesh(*plane, NormalPolicy::Interpolated, {{Vector3d::Zero()}, Eigen::VectorXd::Zero(1), 0}), std::invalid_argument);
+  EXPECT_THROW((void)correctedMesh(*plane, NormalPolicy::Interpolated, {{Vector3d::Zero()}, Eigen::VectorXd::Zero(2), 1}),
+               std::invalid_argument);
+  EXPECT_THROW((void)correctedMesh(*plane, NormalPolicy::Interpolated, {{Vector3d::Zero()}, Eigen::VectorXd::Zero(1), 0}),
+               std::invalid_argument);
   EXPECT_FALSE(NormalCorrection().changesAnything());
   EXPECT_FALSE((NormalCorrection{{Vector3d::Zero()}, Eigen::VectorXd::Zero(1), 1}.changesAnything()));
   EXPECT_TRUE(c.changesAnything());

@@ -19,7 +19,8 @@ std::string specWith(const std::string& render) {
   return R"({"glint_scene": 1, "camera": {"width": 48, "height": 40, "fx": 60, "fy": 60, "cx": 23.5, "cy": 19.5},
     "surfaces": {"body": {"analytic": {"type": "sphere", "radius": 0.5}}}, "lights": [{"id": "lamp", "position": [1, 0, 2]}],
     "path": {"orbit": {"centre": [0, 0, 0], "radius": 2, "from": 0, "to": 0, "height": 0.5, "count": 1}},
-    "render": {"roughness": 0.2, "diffuse": 0.5, )" + render + "}}";
+    "render": {"roughness": 0.2, "diffuse": 0.5, )" +
+         render + "}}";
 }
 
 std::vector<unsigned char> bytesOf(const std::filesystem::path& file) {

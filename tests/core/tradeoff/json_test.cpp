@@ -87,7 +87,8 @@ TEST(TradeoffHtml, IsSelfContainedAndEscaped) {
   EXPECT_THAT(html, HasSubstr("a &lt;b&gt;"));
   EXPECT_THAT(html, HasSubstr("why &amp; how"));
   EXPECT_THAT(html, HasSubstr("<svg"));
-  EXPECT_THAT(html, testing::ContainsRegex(">[a-z, ()]*chosen[)]?</text>")) << "the plot names the chosen setting, a preset or not";
+  EXPECT_THAT(html, testing::ContainsRegex(">[a-z, ()]*chosen[)]?</text>"))
+      << "the plot names the chosen setting, a preset or not";
   EXPECT_THAT(html, HasSubstr("prefers-color-scheme:dark"));
   EXPECT_THAT(html, HasSubstr("canonical, solver anchored, directions 24"));
   for (const char* outside : {"http://", "https://", "src=", "<link"})

@@ -26,14 +26,15 @@ const Knob* find(const std::vector<Knob>& knobs, const std::string& key) {
 // method.md section 12 names them.
 TEST(Knobs, AreTheOnesOfTheMethod) {
   const std::vector<Knob> knobs = knobsOf(Settings());
-  for (const char* key : {"surface.normals", "surface.rays", "light.solver", "fit.solver", "predict.directions", "predict.level_set_step",
-                          "predict.walk_tolerance"})
+  for (const char* key : {"surface.normals", "surface.rays", "light.solver", "fit.solver", "predict.directions",
+                          "predict.level_set_step", "predict.walk_tolerance"})
     EXPECT_NE(find(knobs, key), nullptr) << key;
   for (const Knob& k : knobs) EXPECT_NE(paramSpec(k.key).stage, "detect") << k.key;
   EXPECT_EQ(find(knobs, "predict.band"), nullptr) << "it changes no contour and is not timed";
   Settings loose;  // where it differs from its default as well
   loose.set("fit.most_residual", 0.3);
-  for (const Settings& s : {Settings(), loose}) EXPECT_EQ(find(knobsOf(s), "fit.most_residual"), nullptr) << "it decides what is an answer";
+  for (const Settings& s : {Settings(), loose})
+    EXPECT_EQ(find(knobsOf(s), "fit.most_residual"), nullptr) << "it decides what is an answer";
   EXPECT_THAT(texts(*find(knobs, "fit.solver")), ElementsAre("linear", "anchored", "refined"));
   EXPECT_THAT(texts(*find(knobs, "predict.directions")), ElementsAre("12", "18", "24", "36", "72"));
 }

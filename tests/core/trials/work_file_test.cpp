@@ -46,8 +46,9 @@ TEST(WorkFile, IsEmptyForAnotherKeyOrWhenItIsBroken) {
   }
   // Numbers that no int holds, and a reason that does not exist, are not taken for something else.
   const std::string start = R"({"glint_tradeoff_work":2,"key":"key","coarse":{"a":)";
-  for (const std::string result : {R"({"reason":3,"detail":""})", R"({"reason":"","detail":""})", R"({"reason":"too few view","detail":""})",
-                                    R"({"reason":null,"detail":""})", R"({"error_pct":"1","us":1,"predictions":""})"}) {
+  for (const std::string result :
+       {R"({"reason":3,"detail":""})", R"({"reason":"","detail":""})", R"({"reason":"too few view","detail":""})",
+        R"({"reason":null,"detail":""})", R"({"error_pct":"1","us":1,"predictions":""})"}) {
     folder.write("w", start + result + R"(},"full":{}})");
     EXPECT_EQ(WorkFile(folder / "w", "key").size(), 0) << result;
   }
