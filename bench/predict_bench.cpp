@@ -213,7 +213,7 @@ void canonicalContourOfOneView(benchmark::State& state) {
   TrainingView view = training().views[2];
   view.surface = std::shared_ptr<const Surface>(&surface(true), [](const Surface*) {});
   const Outcome<BrightestPoint> brightest = observedBrightestPoint(*view.surface, view.camera, view.highlight.peak);
-  view.brightest = *brightest;
+  view.seen->brightest = *brightest;
   const Settings settings;
   for (auto _ : state) {
     addCanonicalContour(view, training().light->light, settings);

@@ -34,7 +34,7 @@ Command evaluateCommand() {
       "  glint evaluate scene.json --models auto --good-enough-pct 0.5\n"
       "  glint evaluate scene.json --train 0-5 --json - --set fit.solver=anchored\n";
   c.declare = [a](Options& o) {
-    a->declare(o, "Models to compare: primal, dual, canonical, limit-angle, reflectance; or auto (default: all)");
+    a->declare(o, "Models to compare: " + modelNames() + "; or auto (default: all)");
     o.option(a->goodEnough, "--good-enough-pct", "E", "With --models auto: contour error in percent that is good enough");
     o.option(a->json, "--json", "FILE", "Write the whole evaluation as JSON (- = standard output)");
     o.option(a->csv, "--csv", "FILE", "Write CSV, one row per model, frame and highlight (- = standard output)");

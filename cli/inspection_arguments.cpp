@@ -6,11 +6,18 @@
 #include <filesystem>
 #include <sstream>
 
+#include "core/model/model.h"
 #include "core/scene/frame_spec.h"
 #include "core/session/session.h"
 #include "core/tradeoff/choice.h"
 
 namespace glint::cli {
+
+std::string modelNames() {
+  std::string names;
+  for (const std::string& id : modelIds()) names += (names.empty() ? "" : ", ") + id;
+  return names;
+}
 
 std::vector<std::string> splitList(const std::string& text, const std::string& flag) {
   std::vector<std::string> parts;
@@ -111,7 +118,7 @@ std::vector<std::string> unusedTrainingFrames(const Inspection& inspection) {
     std::optional<Failure> reason = inspection.evidence[frame].failure.value_or(Failure{Reason::NoHighlight, ""});
     for (const TrainingView& v : inspection.views) {
       if (v.frame != frame) continue;
-      reason = v.failure;
+      reason = v.failure();
       if (!reason) break;
     }
     if (reason) lines.push_back("frame " + inspection.scene->frames[frame].id + ": " + reason->message());
@@ -130,7 +137,7 @@ void warnOfUnusedTrainingFrames(const Inspection& inspection, const Context& con
 
 std::optional<Failure> noUsableView(const Inspection& inspection) {
   for (const TrainingView& v : inspection.views)
-    if (!v.failure) return std::nullopt;
+    if (v.seen) return std::nullopt;
   const std::vector<std::string> unused = unusedTrainingFrames(inspection);
   return Failure{Reason::TooFewViews, "no training frame could be used" + (unused.empty() ? "" : "; " + unused.front())};
 }

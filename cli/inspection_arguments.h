@@ -44,6 +44,9 @@ inline constexpr const char* kLevelRange = "must be a fraction of the peak, more
 /// InputError when the session has none.
 void applyPreset(const Session& session, const std::string& preset, InspectionRequest& request);
 
+/// Ids of all models, for help: "primal, dual, ...".
+std::string modelNames();
+
 /// "a,b,c" in parts; InputError (place `flag`) for an empty part.
 std::vector<std::string> splitList(const std::string& text, const std::string& flag);
 

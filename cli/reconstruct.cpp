@@ -69,7 +69,7 @@ Command reconstructCommand() {
       "  glint reconstruct scene.json --model canonical -o canonical.glint\n"
       "  glint reconstruct scene.json --model limit-angle --train spread:6 -o run.glint\n";
   c.declare = [a](Options& o) {
-    a->declare(o, "Model to fit: primal, dual, canonical, limit-angle or reflectance (default: all)");
+    a->declare(o, "Model to fit: " + modelNames() + " (default: all)");
     o.required(a->out, "-o,--out", "FILE.glint", "The session to write");
   };
   c.run = [a](const Context& context) -> int {

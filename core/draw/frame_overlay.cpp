@@ -2,8 +2,9 @@
 #include "core/draw/frame_overlay.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <functional>
+#include <utility>
 
 #include "core/base/error_text.h"
 #include "core/base/number_text.h"
@@ -66,6 +67,204 @@ std::string scoreText(const std::string& model, const FrameScore& score) {
   if (!score.reason.empty()) text += "  " + score.reason;
   return text;
 }
+
+/// The overlay of one frame, layer by layer; see frameOverlay.
+class FrameLayers {
+ public:
+  FrameLayers(const Inspection& inspection, int frame, const OverlayOptions& options)
+      : inspection_(inspection),
+        frame_(frame),
+        options_(options),
+        camera_(inspection.scene->frames[static_cast<std::size_t>(frame)].camera),
+        selected_(options.selection && options.selection->frame == frame ? &*options.selection : nullptr),
+        training_(inspection.isTraining(frame)),
+        heldOut_(inspection.isHeldOut(frame)) {}
+
+  FrameOverlay draw() {
+    if (static_cast<std::size_t>(frame_) < inspection_.evidence.size())
+      addEvidence(inspection_.evidence[static_cast<std::size_t>(frame_)]);
+    addObservedCanonical();
+    if (shown_(OverlayRole::LimitDirections)) addLimitDirections(inspection_, frame_, drawn_, selected_, overlay_.lines);
+    for (const std::string& model : modelsInOrder(inspection_, options_.models)) addModel(model);
+    raiseSelected();
+    if (selected_ && selected_->direction && shown_(OverlayRole::SelectedPoint))
+      addSelectedPoint(inspection_, *selected_, shown_, drawn_, overlay_.marks);
+    return std::move(overlay_);
+  }
+
+ private:
+  void addEvidence(const FrameEvidence& evidence) {
+    const std::vector<Highlight>& observed = evidence.scored();  // what the rows of the comparison refer to
+    for (std::size_t i = 0; i < observed.size(); ++i) addObserved(observed[i], static_cast<int>(i));
+    if (!evidence.failure) return;
+    if (evidence.failure->reason == Reason::FrameUnreadable) unreadable_ = evidence.failure;
+    overlay_.captions.push_back(
+        {kObserved, "", "observed: " + withoutFolder(evidence.failure->message(), *inspection_.scene), true, {}});
+  }
+
+  void addObserved(const Highlight& h, int index) {
+    OverlayLine line;
+    line.light = h.light;
+    line.highlight = index;
+    line.label = "observed" + (h.light.empty() ? std::string{} : " " + h.light);
+    if (shown_(OverlayRole::ObservedContour) && h.contour.points.size() > 1) {
+      line.role = OverlayRole::ObservedContour;
+      line.points = toPhotograph(camera_, h.contour.points);
+      line.closed = h.contour.closed;
+      line.colour = kObserved;
+      line.width = selected_ && selected_->highlight == index ? 3.5 : 2.5;
+      line.halo = true;
+      overlay_.lines.push_back(line);
+    }
+    if (shown_(OverlayRole::ObservedEllipse) && h.ellipse) {
+      line.colour = kObservedEllipse;
+      line.halo = false;
+      line.label = "ellipse of the observed contour";
+      addEllipse(OverlayRole::ObservedEllipse, *h.ellipse, Dash::Dashed, line);
+    }
+    if (shown_(OverlayRole::ObservedPeak)) {
+      OverlayMark mark;
+      mark.at = toPhotograph(camera_, {h.peak}).front();
+      mark.colour = kObserved;
+      mark.light = h.light;
+      mark.highlight = index;
+      mark.label = h.clipped ? "centre of a clipped highlight" : "observed peak";
+      overlay_.marks.push_back(mark);
+    }
+  }
+
+  /// The canonical contour of a training view lies on its tangent plane; its ellipse in the photograph is what the fit uses.
+  void addObservedCanonical() {
+    if (!shown_(OverlayRole::CanonicalEllipse) || !drawn_(canonicalModel().id())) return;
+    for (const TrainingView& view : inspection_.views) {
+      if (view.frame != frame_ || !view.canonical || !view.canonical->ellipse) continue;
+      OverlayLine line;
+      line.colour = canonicalColour();
+      line.label = "canonical ellipse on the tangent plane";
+      line.light = view.highlight.light;
+      addEllipse(OverlayRole::CanonicalEllipse, *view.canonical->ellipse, Dash::Dotted, line);
+    }
+  }
+
+  void addModel(const std::string& model) {
+    const ModelResult& result = inspection_.models.at(model);
+    const FrameScore score = frameScore(result, frame_);
+    const Colour roleColour = training_ ? kTraining : heldOut_ ? kHeldOut : kExcluded;
+    bool answered = false;
+    for (const FrameComparison& comparison : result.frames) {
+      if (comparison.frame != frame_) continue;
+      answered = true;
+      if (!drawn_(model)) continue;
+      OverlayLine line;
+      line.model = model;
+      line.light = comparison.light;
+      line.colour = options_.colourByRole ? roleColour : modelColour(model);
+      line.halo = options_.colourByRole;
+      line.label = model + (score.errorPct ? " " + errorText(*score.errorPct) + " %" : std::string{});
+      for (std::size_t i = 0; i < comparison.prediction.highlights().size(); ++i)
+        addPredicted(comparison, static_cast<int>(i), line);
+    }
+    if (answered)
+      addCaption(model, score);
+    else
+      addNoAnswer(model, result);
+  }
+
+  /// @param line  with model, light, colour and label
+  void addPredicted(const FrameComparison& comparison, int index, OverlayLine line) {
+    const PredictedHighlight& h = comparison.prediction.highlights()[static_cast<std::size_t>(index)];
+    const bool onPlane = h.canonical && h.canonical->ellipse;
+    line.highlight = index;
+    if (shown_(OverlayRole::PredictedContour)) {
+      line.role = OverlayRole::PredictedContour;
+      line.width = selected_ && selected_->model == line.model ? 2.75 : 1.75;
+      line.dash = training_ ? Dash::Solid : Dash::Dashed;
+      addPrediction(h, camera_, line, overlay_.lines);
+    }
+    if (shown_(OverlayRole::UncertaintyBand)) addBand(h, camera_, line, overlay_.lines);
+    line.halo = false;
+    if (shown_(OverlayRole::CanonicalEllipse) && !training_ && modelByName(line.model).hasOutlines() && onPlane)
+      addEllipse(OverlayRole::CanonicalEllipse, *h.canonical->ellipse, Dash::Dotted, line);
+    if (shown_(OverlayRole::ResidualArrows)) {
+      line.role = OverlayRole::ResidualArrows;
+      line.width = 1.25;
+      line.dash = Dash::Solid;
+      addResidualArrows(inspection_, comparison, index, camera_, line, options_.residualScale, overlay_.lines);
+    }
+    if (shown_(OverlayRole::PredictedEllipse) && h.ellipse) {
+      addEllipse(OverlayRole::PredictedEllipse, *h.ellipse, Dash::Dashed, line);
+      // On T, before the walk back onto the surface; the canonical layer has one there already.
+      if (onPlane && !shown_(OverlayRole::CanonicalEllipse))
+        addEllipse(OverlayRole::PredictedEllipse, *h.canonical->ellipse, Dash::Dotted, line);
+    }
+    if (shown_(OverlayRole::PredictedPeak) && h.brightest.pixel.allFinite()) addPredictedPeak(h, line);
+  }
+
+  void addPredictedPeak(const PredictedHighlight& h, const OverlayLine& of) {
+    OverlayMark mark;
+    mark.role = OverlayRole::PredictedPeak;
+    mark.at = toPhotograph(camera_, {h.brightest.pixel}).front();
+    mark.shape = MarkShape::Circle;
+    mark.colour = modelColour(of.model);
+    mark.size = 3.5;
+    mark.label = of.model + " brightest point";
+    mark.model = of.model;
+    mark.light = of.light;
+    mark.highlight = of.highlight;
+    overlay_.marks.push_back(mark);
+  }
+
+  void addEllipse(OverlayRole role, const Ellipse& ellipse, Dash dash, OverlayLine style) {
+    style.role = role;
+    style.points = toPhotograph(camera_, ellipse.sample(options_.ellipseSegments));
+    style.closed = true;
+    style.width = 1;
+    style.dash = dash;
+    overlay_.lines.push_back(std::move(style));
+  }
+
+  void addCaption(const std::string& model, FrameScore score) {
+    if (unreadable_ && score.reason == unreadable_->message()) {
+      score.reason = "not compared";  // why is said once, for the frame
+      score.spurious = 0;
+    }
+    // Drawn like a held-out frame's prediction, but it counts in no summary.
+    const bool excluded = !training_ && !heldOut_;
+    overlay_.captions.push_back({modelColour(model), model,
+                                 scoreText(model, score) + (excluded ? "   excluded, not evaluated" : ""),
+                                 score.matched == 0 || score.missed > 0 || score.spurious > 0, score});
+  }
+
+  void addNoAnswer(const std::string& model, const ModelResult& result) {
+    FrameScore none;
+    none.reason = "no prediction for this frame";
+    for (const ModelResult::Fit& fit : result.fits) {
+      if (fit.failure()) none.reason = fit.failure()->message();
+    }
+    overlay_.captions.push_back({modelColour(model), model, model + "  " + none.reason, true, none});
+  }
+
+  /// What is selected lies on top of what almost coincides with it.
+  void raiseSelected() {
+    if (!selected_ || selected_->model.empty()) return;
+    const auto other = [&](const auto& drawnThing) { return drawnThing.model != selected_->model; };
+    std::stable_partition(overlay_.lines.begin(), overlay_.lines.end(), other);
+    std::stable_partition(overlay_.marks.begin(), overlay_.marks.end(), other);
+  }
+
+  const Inspection& inspection_;
+  const int frame_;
+  const OverlayOptions& options_;
+  const Camera& camera_;
+  const Selection* const selected_;
+  const bool training_, heldOut_;
+  const std::function<bool(OverlayRole)> shown_ = [this](OverlayRole role) { return !options_.hidden.count(role); };
+  const std::function<bool(const std::string&)> drawn_ = [this](const std::string& model) {
+    return !options_.hiddenModels.count(model) && (options_.models.empty() || options_.models.count(model));
+  };
+  std::optional<Failure> unreadable_;
+  FrameOverlay overlay_;
+};
 
 }  // namespace
 
@@ -144,179 +343,7 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
   require(inspection.scene && frame >= 0 && frame < static_cast<int>(inspection.scene->frames.size()),
           "frameOverlay: no such frame");
   require(options.ellipseSegments >= 8, "frameOverlay: ellipseSegments < 8");
-  const Camera& camera = inspection.scene->frames[static_cast<std::size_t>(frame)].camera;
-  const auto shown = [&](OverlayRole role) { return !options.hidden.count(role); };
-  const auto ellipsePoints = [&](const Ellipse& e) { return toPhotograph(camera, e.sample(options.ellipseSegments)); };
-  FrameOverlay overlay;
-  const Selection* selected = options.selection && options.selection->frame == frame ? &*options.selection : nullptr;
-  const bool training = inspection.isTraining(frame);
-  const Colour roleColour = training ? kTraining : inspection.isHeldOut(frame) ? kHeldOut : kExcluded;
-  const auto drawn = [&](const std::string& model) {
-    return !options.hiddenModels.count(model) && (options.models.empty() || options.models.count(model));
-  };
-
-  std::optional<Failure> unreadable;
-  if (static_cast<std::size_t>(frame) < inspection.evidence.size()) {
-    const FrameEvidence& evidence = inspection.evidence[static_cast<std::size_t>(frame)];
-    const std::vector<Highlight>& observed = evidence.scored();  // what the rows of the comparison refer to
-    for (std::size_t i = 0; i < observed.size(); ++i) {
-      const Highlight& h = observed[i];
-      OverlayLine line;
-      line.light = h.light;
-      line.highlight = static_cast<int>(i);
-      line.label = "observed" + (h.light.empty() ? std::string{} : " " + h.light);
-      if (shown(OverlayRole::ObservedContour) && h.contour.points.size() > 1) {
-        line.role = OverlayRole::ObservedContour;
-        line.points = toPhotograph(camera, h.contour.points);
-        line.closed = h.contour.closed;
-        line.colour = kObserved;
-        line.width = selected && selected->highlight == static_cast<int>(i) ? 3.5 : 2.5;
-        line.halo = true;
-        overlay.lines.push_back(line);
-      }
-      if (shown(OverlayRole::ObservedEllipse) && h.ellipse) {
-        line.role = OverlayRole::ObservedEllipse;
-        line.points = ellipsePoints(*h.ellipse);
-        line.closed = true;
-        line.colour = kObservedEllipse;
-        line.width = 1;
-        line.halo = false;
-        line.dash = Dash::Dashed;
-        line.label = "ellipse of the observed contour";
-        overlay.lines.push_back(line);
-      }
-      if (shown(OverlayRole::ObservedPeak)) {
-        OverlayMark mark;
-        mark.at = toPhotograph(camera, {h.peak}).front();
-        mark.colour = kObserved;
-        mark.light = h.light;
-        mark.highlight = static_cast<int>(i);
-        mark.label = h.clipped ? "centre of a clipped highlight" : "observed peak";
-        overlay.marks.push_back(mark);
-      }
-    }
-    if (evidence.failure && evidence.failure->reason == Reason::FrameUnreadable) unreadable = evidence.failure;
-    if (evidence.failure)
-      overlay.captions.push_back(
-          {kObserved, "", "observed: " + withoutFolder(evidence.failure->message(), *inspection.scene), true, {}});
-  }
-  // The canonical contour of a training view lies on its tangent plane; its ellipse in the photograph is what the fit uses.
-  if (shown(OverlayRole::CanonicalEllipse)) {
-    for (const TrainingView& view : inspection.views) {
-      if (view.frame != frame || !view.canonical || !view.canonical->ellipse) continue;
-      if (!drawn(canonicalModel().id())) continue;
-      OverlayLine line;
-      line.role = OverlayRole::CanonicalEllipse;
-      line.points = ellipsePoints(*view.canonical->ellipse);
-      line.closed = true;
-      line.colour = canonicalColour();
-      line.width = 1;
-      line.dash = Dash::Dotted;
-      line.label = "canonical ellipse on the tangent plane";
-      line.light = view.highlight.light;
-      overlay.lines.push_back(line);
-    }
-  }
-  if (shown(OverlayRole::LimitDirections)) addLimitDirections(inspection, frame, drawn, selected, overlay.lines);
-  for (const std::string& model : modelsInOrder(inspection, options.models)) {
-    const ModelResult& result = inspection.models.at(model);
-    FrameScore score = frameScore(result, frame);
-    bool answered = false;
-    for (const FrameComparison& comparison : result.frames) {
-      if (comparison.frame != frame) continue;
-      answered = true;
-      if (!drawn(model)) continue;
-      for (std::size_t i = 0; i < comparison.prediction.highlights().size(); ++i) {
-        const PredictedHighlight& h = comparison.prediction.highlights()[i];
-        OverlayLine line;
-        line.model = model;
-        line.light = comparison.light;
-        line.highlight = static_cast<int>(i);
-        line.colour = options.colourByRole ? roleColour : modelColour(model);
-        line.halo = options.colourByRole;
-        line.label = model + (score.errorPct ? " " + errorText(*score.errorPct) + " %" : std::string{});
-        if (shown(OverlayRole::PredictedContour)) {
-          line.role = OverlayRole::PredictedContour;
-          line.width = selected && selected->model == model ? 2.75 : 1.75;
-          line.dash = training ? Dash::Solid : Dash::Dashed;
-          addPrediction(h, camera, line, overlay.lines);
-        }
-        if (shown(OverlayRole::UncertaintyBand)) addBand(h, camera, line, overlay.lines);
-        line.halo = false;
-        line.dash = Dash::Solid;
-        if (shown(OverlayRole::CanonicalEllipse) && !training && modelByName(model).hasOutlines() && h.canonical &&
-            h.canonical->ellipse) {
-          line.role = OverlayRole::CanonicalEllipse;
-          line.points = ellipsePoints(*h.canonical->ellipse);
-          line.closed = true;
-          line.width = 1;
-          line.dash = Dash::Dotted;
-          overlay.lines.push_back(line);
-        }
-        if (shown(OverlayRole::ResidualArrows)) {
-          line.role = OverlayRole::ResidualArrows;
-          line.width = 1.25;
-          line.dash = Dash::Solid;
-          addResidualArrows(inspection, comparison, static_cast<int>(i), camera, line, options.residualScale, overlay.lines);
-        }
-        if (shown(OverlayRole::PredictedEllipse) && h.ellipse) {
-          line.role = OverlayRole::PredictedEllipse;
-          line.points = ellipsePoints(*h.ellipse);
-          line.closed = true;
-          line.width = 1;
-          line.dash = Dash::Dashed;
-          overlay.lines.push_back(line);
-          // On T, before the walk back onto the surface; the canonical layer has one there already.
-          if (h.canonical && h.canonical->ellipse && !shown(OverlayRole::CanonicalEllipse)) {
-            line.points = ellipsePoints(*h.canonical->ellipse);
-            line.dash = Dash::Dotted;
-            overlay.lines.push_back(line);
-          }
-        }
-        if (shown(OverlayRole::PredictedPeak) && h.brightest.pixel.allFinite()) {
-          OverlayMark mark;
-          mark.role = OverlayRole::PredictedPeak;
-          mark.at = toPhotograph(camera, {h.brightest.pixel}).front();
-          mark.shape = MarkShape::Circle;
-          mark.colour = modelColour(model);
-          mark.size = 3.5;
-          mark.label = model + " brightest point";
-          mark.model = model;
-          mark.light = comparison.light;
-          mark.highlight = static_cast<int>(i);
-          overlay.marks.push_back(mark);
-        }
-      }
-    }
-    if (!answered) {
-      std::string reason = "no prediction for this frame";
-      for (const ModelResult::Fit& fit : result.fits) {
-        if (fit.failure()) reason = fit.failure()->message();
-      }
-      FrameScore none;
-      none.reason = reason;
-      overlay.captions.push_back({modelColour(model), model, model + "  " + reason, true, none});
-    } else {
-      if (unreadable && score.reason == unreadable->message()) {
-        score.reason = "not compared";  // why is said once, for the frame
-        score.spurious = 0;
-      }
-      // Drawn like a held-out frame's prediction, but it counts in no summary.
-      const bool excluded = !training && !inspection.isHeldOut(frame);
-      overlay.captions.push_back({modelColour(model), model,
-                                  scoreText(model, score) + (excluded ? "   excluded, not evaluated" : ""),
-                                  score.matched == 0 || score.missed > 0 || score.spurious > 0, score});
-    }
-  }
-  // What is selected lies on top of what almost coincides with it.
-  if (selected && !selected->model.empty()) {
-    const auto other = [&](const auto& drawnThing) { return drawnThing.model != selected->model; };
-    std::stable_partition(overlay.lines.begin(), overlay.lines.end(), other);
-    std::stable_partition(overlay.marks.begin(), overlay.marks.end(), other);
-  }
-  if (selected && selected->direction && shown(OverlayRole::SelectedPoint))
-    addSelectedPoint(inspection, *selected, shown, drawn, overlay.marks);
-  return overlay;
+  return FrameLayers(inspection, frame, options).draw();
 }
 
 }  // namespace glint::draw

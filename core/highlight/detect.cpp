@@ -362,8 +362,8 @@ class Detector {
     }
     std::vector<const Polyline*> outer;
     for (const IsoContour& contour : contours) {
-      if (signedArea(contour.line) < std::max(options_.minAreaPx2, 1e-9))
-        continue;  // holes are negative, lines without area none
+      // Holes are negative, lines without area none.
+      if (signedArea(contour.line) < std::max(options_.minAreaPx2, 1e-9)) continue;
       const Pixel& any = contour.line.points.front();
       if (std::any_of(outer.begin(), outer.end(), [&](const Polyline* o) { return contains(*o, any); })) continue;
       outer.push_back(&contour.line);

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "core/base/dense_algebra.h"
+#include "core/base/median.h"
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
 #include "core/base/residual_spread.h"
@@ -130,7 +131,7 @@ Attempt solve(std::vector<ContourEvidence>& points, Eigen::Vector4d start, bool 
   a.light = start.normalized();
   std::vector<double> angles;
   for (const ContourEvidence& e : points) angles.push_back(angle(e.at, a.light));
-  a.limit = median(angles);
+  a.limit = upperMedian(angles);
   if (!std::isfinite(a.limit)) return a;
   if (!reweighted(points, a, atInfinity, 0, options)) return a;
   keepBiases(points, a);
@@ -290,7 +291,7 @@ std::optional<Failure> withoutLimit(const std::vector<ContourEvidence>& points, 
     radii.push_back((e.pixel - sum / n).norm());
     limits.push_back(a.limit * e.pixelsPerRadian);
   }
-  if (a.limit > 0 && median(limits) > kLeastLimitShare * median(radii)) return std::nullopt;
+  if (a.limit > 0 && upperMedian(limits) > kLeastLimitShare * upperMedian(radii)) return std::nullopt;
   const std::string detail = formatted(
       "the limit angle comes out at %.2g deg: every contour point mirrors the light, so the contours do not determine it",
       a.limit * 180 / M_PI);

@@ -199,8 +199,8 @@ State fitted(const Problem& problem, const Basis& basis, double amplitude, State
     VectorXd right = VectorXd::Zero(n + m);
     for (Eigen::Index i = 0; i < n; ++i) {
       if (!used[std::size_t(i)]) continue;
-      const double root = std::sqrt(std::min(1.0, problem.robustPx / std::max(std::abs(at.residuals(i)), 1e-300))) /
-                          noise;  // no division by zero
+      const double size = std::max(std::abs(at.residuals(i)), 1e-300);  // no division by zero
+      const double root = std::sqrt(std::min(1.0, problem.robustPx / size)) / noise;
       rows.row(i) = root * at.jacobian.row(i);
       right(i) = -root * at.residuals(i);
     }

@@ -69,9 +69,9 @@ class Walk {
       if (!s) return ended();
       const double f = s->value - level_;
       if (!(std::abs(f) < kTrust * rise_)) return lost();
-      if (i > 0 && std::abs(u - before) > 1e-9 * u)
-        slope = (f - valueBefore) / (u - before);  // closer, the difference is round-off
-      if (!(slope > 0)) return lost();             // falling: not the first crossing
+      // Closer, the difference is round-off.
+      if (i > 0 && std::abs(u - before) > 1e-9 * u) slope = (f - valueBefore) / (u - before);
+      if (!(slope > 0)) return lost();  // falling: not the first crossing
       at = s->point;
       const double next = u - f / slope, lastStep = i > 0 ? step : 0.05;  // 0.05: what a neighbour's slope is worth
       if (!(std::abs(next - expected) < 2 * kTrust * expected)) return lost();

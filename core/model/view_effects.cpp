@@ -30,6 +30,7 @@ constexpr double kOpenDirection = 1e-9;  // a direction that moves no contour, t
 constexpr double kNormal95 = 1.959964;
 constexpr double kWidthTolerance = 0.01;  // of a half width: far below what a few views tell of it
 constexpr double kWildSigmas = 4;
+constexpr int kGroups = ContourShapes::kGroups;
 constexpr int kLow = 3;                // groups: offset, shift, stretch
 constexpr double kLeastWeight = 1e-3;  // of the evidence: what has less changes no band
 
@@ -59,6 +60,157 @@ double halfWidth95(const std::vector<Spread>& mixture) {
 }
 
 int groupOf(int order) { return order <= 2 ? order : order <= 5 ? 3 : 4; }
+
+/// What the training views tell of the parameters, and from where on a residual is wild.
+struct Information {
+  Eigen::MatrixXd matrix;   ///< sum of J' J
+  Eigen::MatrixXd byNoise;  ///< covariance of the parameters for unit noise, half half'
+  Eigen::MatrixXd half;
+  double points = 0;
+  double wildPx = 0;  ///< wild points must not pass for noise, nor for an error of their view
+
+  explicit Information(const std::vector<ViewResiduals>& views) {
+    const Eigen::Index parameters = views.front().byParameter.cols();
+    matrix = Eigen::MatrixXd::Zero(parameters, parameters);
+    std::vector<double> sizes;
+    for (const ViewResiduals& v : views) {
+      require(v.byParameter.cols() == parameters && v.residual.size() == v.byParameter.rows() &&
+                  v.residual.size() == v.shapes.columns.rows(),
+              "ViewEffects: sizes");
+      matrix += v.byParameter.transpose() * v.byParameter;
+      points += double(v.residual.size());
+      for (const double r : v.residual) sizes.push_back(std::abs(r));
+    }
+    require(!sizes.empty(), "ViewEffects: no residuals");
+    wildPx = std::max(kWildSigmas * 1.4826 * upperMedian(sizes), 1e-12);  // no division by zero
+
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix);
+    const double largest = parameters > 0 ? std::max(0.0, eigen.eigenvalues()(parameters - 1)) : 0;
+    Eigen::VectorXd inverse = Eigen::VectorXd::Zero(parameters), root = inverse;
+    for (Eigen::Index i = 0; i < parameters; ++i) {
+      const double e = eigen.eigenvalues()(i);
+      if (!(e > kOpenDirection * largest)) continue;
+      inverse(i) = 1 / std::max(e, kHeld * largest);
+      root(i) = 1 / std::sqrt(std::max(e, kHeld * largest));
+    }
+    byNoise = eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
+    half = eigen.eigenvectors() * root.asDiagonal();
+  }
+};
+
+/// tau^2 of the groups and noise^2, px^2.
+struct Variances {
+  double group[kGroups] = {};
+  double noise = 0;
+};
+
+/// Squares seen in every group, and what each source would make of them after the parameters took their share: with P the projector off
+/// the parameters, S_g and its expectation sum_h tau_h^2 tr(S_g' P N S_h S_h' P S_g) + noise^2 tr(S_g' P S_g), N the points of a view.
+/// The group after the last one is what no shape explains.
+class GroupSquares {
+ public:
+  GroupSquares(const std::vector<ViewResiduals>& views, const Information& information) {
+    taken_.assign(kGroups + 1, Eigen::MatrixXd::Zero(information.matrix.rows(), information.matrix.cols()));
+    takenWeighted_ = taken_;
+    const double wild = information.wildPx;
+    for (const ViewResiduals& v : views) {
+      const Eigen::VectorXd r = v.residual.cwiseMax(-wild).cwiseMin(wild), z = v.shapes.columns.transpose() * r;
+      const Eigen::MatrixXd j = v.shapes.columns.transpose() * v.byParameter, u = j * information.half;
+      const double n = double(r.size());
+      all_ += r.squaredNorm();
+      for (Eigen::Index k = 0; k < z.size(); ++k) {
+        const int g = v.shapes.group[std::size_t(k)];
+        seen_(g) += z(k) * z(k);
+        count_(g) += 1;
+        weighted_(g) += n;
+        taken_[std::size_t(g)] += u.row(k).transpose() * u.row(k);
+        takenWeighted_[std::size_t(g)] += n * u.row(k).transpose() * u.row(k);
+      }
+      coefficients_.push_back({z, j, v.shapes.group, n, v.where});
+    }
+    const Eigen::MatrixXd whole = information.half.transpose() * information.matrix * information.half;
+    seen_(kGroups) = std::max(0.0, all_ - seen_.head<kGroups>().sum());
+    count_(kGroups) = information.points - count_.head<kGroups>().sum();
+    taken_[kGroups] = whole;
+    for (int g = 0; g < kGroups; ++g) taken_[kGroups] -= taken_[std::size_t(g)];
+  }
+
+  const std::vector<ViewCoefficients>& coefficients() const { return coefficients_; }
+  double all() const { return all_; }
+  double noiseFreedom() const { return std::max(1.0, left(kGroups)); }
+  double freedom(int g) const { return weighted_(g) > 0 ? expected(g, g) / (weighted_(g) / count_(g)) : 0; }
+
+  /// Those that make the expected squares the ones seen. A group that would need a negative one counts as none.
+  Variances variances() const {
+    Variances v;
+    v.noise = seen_(kGroups) / noiseFreedom();
+    std::vector<int> active = beyondNoise(v.noise);
+    while (!active.empty()) {
+      const Eigen::Index m = Eigen::Index(active.size());
+      Eigen::MatrixXd system(m + 1, m + 1);
+      Eigen::VectorXd squares(m + 1);
+      for (Eigen::Index a = 0; a <= m; ++a) {
+        const int g = a < m ? active[std::size_t(a)] : kGroups;
+        for (Eigen::Index b = 0; b < m; ++b) system(a, b) = expected(g, active[std::size_t(b)]);
+        system(a, m) = left(g);
+        squares(a) = seen_(g);
+      }
+      const Eigen::VectorXd solution = system.colPivHouseholderQr().solve(squares);
+      Eigen::Index smallest = 0;
+      const double least = solution.head(m).minCoeff(&smallest);
+      if (solution.allFinite() && least > 0 && solution(m) >= 0) {
+        for (Eigen::Index a = 0; a < m; ++a) v.group[active[std::size_t(a)]] = solution(a);
+        v.noise = solution(m);
+        break;
+      }
+      if (solution.allFinite() && least > 0) {  // the noise came out below nothing: it is what the finest residuals show
+        for (Eigen::Index a = 0; a < m; ++a)
+          v.group[active[std::size_t(a)]] = std::max(0.0, (squares(a) - v.noise * system(a, m)) / system(a, a));
+        break;
+      }
+      active.erase(active.begin() + smallest);
+    }
+    return v;
+  }
+
+ private:
+  double left(int g) const { return count_(g) - taken_[std::size_t(g)].trace(); }
+  double expected(int g, int h) const {
+    const double crossed = (taken_[std::size_t(g)] * takenWeighted_[std::size_t(h)]).trace();
+    return g != h ? crossed : weighted_(g) - 2 * takenWeighted_[std::size_t(g)].trace() + crossed;
+  }
+
+  /// The groups whose squares noise alone does not explain.
+  std::vector<int> beyondNoise(double noise2) const {
+    std::vector<int> groups;
+    for (int g = 0; g < kGroups; ++g) {
+      const double free = left(g);
+      if (!(free > 0.5)) continue;
+      const double ratio = seen_(g) / free / std::max(noise2, 1e-300);  // no division by zero
+      const boost::math::fisher_f distribution(free, noiseFreedom());
+      if (ratio > boost::math::quantile(boost::math::complement(distribution, kSignificance))) groups.push_back(g);
+    }
+    return groups;
+  }
+
+  using Sums = Eigen::Matrix<double, kGroups + 1, 1>;
+  Sums seen_ = Sums::Zero(), count_ = seen_, weighted_ = seen_;
+  std::vector<Eigen::MatrixXd> taken_, takenWeighted_;
+  std::vector<ViewCoefficients> coefficients_;
+  double all_ = 0;
+};
+
+/// The Huber loss leaves more noise in the parameters than plain squares do where noise exceeds its scale: by this factor of the variance.
+double noiseOfLoss(const std::vector<ViewResiduals>& views, double robustPx, double points, double allSquares) {
+  double psi2 = 0, inside = 0;
+  for (const ViewResiduals& v : views)
+    for (const double e : v.residual) {
+      psi2 += std::pow(std::min(std::abs(e), robustPx), 2);
+      inside += std::abs(e) <= robustPx;
+    }
+  const double slope = std::max(inside, 1.0) / points;
+  return std::max(1.0, psi2 / points / (slope * slope) / std::max(allSquares / points, 1e-300));  // no division by zero
+}
 
 }  // namespace
 
@@ -100,121 +252,34 @@ ContourShapes contourShapes(const std::vector<Pixel>& normals, const std::vector
 }
 
 ViewEffects::ViewEffects(const std::vector<ViewResiduals>& views, double robustPx) {
-  constexpr int kGroups = ContourShapes::kGroups;
   require(!views.empty() && robustPx > 0, "ViewEffects: views");
-  const Eigen::Index parameters = views.front().byParameter.cols();
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(parameters, parameters);
-  double points = 0;
-  std::vector<double> sizes;
-  for (const ViewResiduals& v : views) {
-    require(v.byParameter.cols() == parameters && v.residual.size() == v.byParameter.rows() &&
-                v.residual.size() == v.shapes.columns.rows(),
-            "ViewEffects: sizes");
-    information += v.byParameter.transpose() * v.byParameter;
-    points += double(v.residual.size());
-    for (const double r : v.residual) sizes.push_back(std::abs(r));
-  }
-  require(!sizes.empty(), "ViewEffects: no residuals");
-  // Wild points must not pass for noise, nor for an error of their view.
-  const double wild = std::max(kWildSigmas * 1.4826 * upperMedian(sizes), 1e-12);  // no division by zero
-
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
-  const double largest = parameters > 0 ? std::max(0.0, eigen.eigenvalues()(parameters - 1)) : 0;
-  Eigen::VectorXd inverse = Eigen::VectorXd::Zero(parameters), root = inverse;
-  for (Eigen::Index i = 0; i < parameters; ++i) {
-    const double e = eigen.eigenvalues()(i);
-    if (!(e > kOpenDirection * largest)) continue;
-    inverse(i) = 1 / std::max(e, kHeld * largest);
-    root(i) = 1 / std::sqrt(std::max(e, kHeld * largest));
-  }
-  byNoise_ = eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
-  const Eigen::MatrixXd half = eigen.eigenvectors() * root.asDiagonal();
-
-  // Squares seen in every group, and what each source would make of them after the parameters took their share: with P the projector off
-  // the parameters, S_g and its expectation sum_h tau_h^2 tr(S_g' P N S_h S_h' P S_g) + noise^2 tr(S_g' P S_g), N the points of a view.
-  Eigen::Matrix<double, kGroups + 1, 1> seen = Eigen::Matrix<double, kGroups + 1, 1>::Zero(), count = seen, weighted = seen;
-  std::vector<Eigen::MatrixXd> taken(kGroups + 1, Eigen::MatrixXd::Zero(parameters, parameters)), takenWeighted = taken;
-  std::vector<ViewCoefficients> coefficients;
-  double allSquares = 0, psi2 = 0, inside = 0;
-  for (const ViewResiduals& v : views) {
-    const Eigen::VectorXd r = v.residual.cwiseMax(-wild).cwiseMin(wild), z = v.shapes.columns.transpose() * r;
-    const Eigen::MatrixXd j = v.shapes.columns.transpose() * v.byParameter, u = j * half;
-    const double n = double(r.size());
-    allSquares += r.squaredNorm();
-    for (const double e : v.residual) {
-      psi2 += std::pow(std::min(std::abs(e), robustPx), 2);
-      inside += std::abs(e) <= robustPx;
-    }
-    for (Eigen::Index k = 0; k < z.size(); ++k) {
-      const int g = v.shapes.group[std::size_t(k)];
-      seen(g) += z(k) * z(k);
-      count(g) += 1;
-      weighted(g) += n;
-      taken[std::size_t(g)] += u.row(k).transpose() * u.row(k);
-      takenWeighted[std::size_t(g)] += n * u.row(k).transpose() * u.row(k);
-    }
-    coefficients.push_back({z, j, v.shapes.group, n, v.where});
-  }
-  const Eigen::MatrixXd whole = half.transpose() * information * half;
-  seen(kGroups) = std::max(0.0, allSquares - seen.head<kGroups>().sum());
-  count(kGroups) = points - count.head<kGroups>().sum();
-  taken[kGroups] = whole;
-  for (int g = 0; g < kGroups; ++g) taken[kGroups] -= taken[std::size_t(g)];
-  const auto left = [&](int g) { return count(g) - taken[std::size_t(g)].trace(); };
-  const auto expected = [&](int g, int h) {
-    const double crossed = (taken[std::size_t(g)] * takenWeighted[std::size_t(h)]).trace();
-    return g != h ? crossed : weighted(g) - 2 * takenWeighted[std::size_t(g)].trace() + crossed;
-  };
-  noiseFreedom_ = std::max(1.0, left(kGroups));
-  double noise2 = seen(kGroups) / noiseFreedom_;
-  std::vector<int> active;
+  const Information information(views);
+  byNoise_ = information.byNoise;
+  const GroupSquares squares(views, information);
+  const Variances variances = squares.variances();
+  noiseFreedom_ = squares.noiseFreedom();
+  noise_ = std::sqrt(variances.noise);
   Case independent;
   for (int g = 0; g < kGroups; ++g) {
-    independent.freedom[g] = weighted(g) > 0 ? expected(g, g) / (weighted(g) / count(g)) : 0;
-    const double free = left(g);
-    if (!(free > 0.5)) continue;
-    const double ratio = seen(g) / free / std::max(noise2, 1e-300);  // no division by zero
-    const boost::math::fisher_f distribution(free, noiseFreedom_);
-    if (ratio > boost::math::quantile(boost::math::complement(distribution, kSignificance))) active.push_back(g);
+    independent.freedom[g] = squares.freedom(g);
+    independent.variance[g] = variances.group[g];
   }
-  while (!active.empty()) {
-    const Eigen::Index m = Eigen::Index(active.size());
-    Eigen::MatrixXd system(m + 1, m + 1);
-    Eigen::VectorXd squares(m + 1);
-    for (Eigen::Index a = 0; a <= m; ++a) {
-      const int g = a < m ? active[std::size_t(a)] : kGroups;
-      for (Eigen::Index b = 0; b < m; ++b) system(a, b) = expected(g, active[std::size_t(b)]);
-      system(a, m) = left(g);
-      squares(a) = seen(g);
-    }
-    const Eigen::VectorXd solution = system.colPivHouseholderQr().solve(squares);
-    Eigen::Index smallest = 0;
-    const double least = solution.head(m).minCoeff(&smallest);
-    if (solution.allFinite() && least > 0 && solution(m) >= 0) {
-      for (Eigen::Index a = 0; a < m; ++a) independent.variance[active[std::size_t(a)]] = solution(a);
-      noise2 = solution(m);
-      break;
-    }
-    if (solution.allFinite() && least > 0) {  // the noise came out below nothing: it is what the finest residuals show
-      for (Eigen::Index a = 0; a < m; ++a)
-        independent.variance[active[std::size_t(a)]] = std::max(0.0, (squares(a) - noise2 * system(a, m)) / system(a, a));
-      break;
-    }
-    active.erase(active.begin() + smallest);
-  }
-  noise_ = std::sqrt(noise2);
-  addPlaces(coefficients);
+  addPlaces(squares.coefficients());
+  addCases(squares.coefficients(), independent, variances.noise);
+  if (variances.noise > 0) byNoise_ *= noiseOfLoss(views, robustPx, information.points, squares.all());
+}
 
-  // Offset, shift and stretch of neighbours may go together; finer shapes hardly move the parameters.
+/// Offset, shift and stretch of neighbours may go together; finer shapes hardly move the parameters.
+void ViewEffects::addCases(const std::vector<ViewCoefficients>& views, const Case& independent, double noise2) {
   std::vector<int> low;
   for (int g = 0; g < kLow; ++g)
     if (independent.variance[g] > 0) low.push_back(g);
   Eigen::VectorXd start(low.size());
   for (std::size_t i = 0; i < low.size(); ++i) start(Eigen::Index(i)) = independent.variance[low[i]];
   bool placed = !low.empty();
-  for (const ViewResiduals& v : views) placed = placed && v.where.size() > 0 && v.where.size() == views.front().where.size();
+  for (const ViewCoefficients& v : views) placed = placed && v.where.size() > 0 && v.where.size() == views.front().where.size();
   if (placed) {
-    for (const CorrelatedEffects& e : correlatedEffects(coefficients, low, start, noise2)) {
+    for (const CorrelatedEffects& e : correlatedEffects(views, low, start, noise2)) {
       if (!(e.weight > kLeastWeight)) continue;
       Case c = independent;
       c.length = e.length;
@@ -226,7 +291,7 @@ ViewEffects::ViewEffects(const std::vector<ViewResiduals>& views, double robustP
       cases_.push_back(std::move(c));
     }
   } else {
-    cases_.push_back(std::move(independent));
+    cases_.push_back(independent);
   }
   double weights = 0;
   for (const Case& c : cases_) weights += c.weight;
@@ -235,10 +300,6 @@ ViewEffects::ViewEffects(const std::vector<ViewResiduals>& views, double robustP
     borrow(c);
     addParameters(c);
   }
-  // The Huber loss leaves more noise in the parameters than plain squares do where noise exceeds its scale.
-  const double slope = std::max(inside, 1.0) / points;
-  if (noise2 > 0)
-    byNoise_ *= std::max(1.0, psi2 / points / (slope * slope) / std::max(allSquares / points, 1e-300));  // no division by zero
 }
 
 /// Few views tell little of one size of error: offset, shift and stretch borrow from each other.
@@ -294,16 +355,15 @@ double ViewEffects::freedom(int group) const {
 }
 
 double ViewEffects::viewPx() const {
-  constexpr double kColumns[ContourShapes::kGroups] = {1, 2, 2, 6, 8};
+  constexpr double kColumns[kGroups] = {1, 2, 2, 6, 8};
   double sum = 0;
-  for (int g = 0; g < ContourShapes::kGroups; ++g) sum += kColumns[g] * variance(g);
+  for (int g = 0; g < kGroups; ++g) sum += kColumns[g] * variance(g);
   return std::sqrt(sum);
 }
 
 std::vector<double> ViewEffects::sigmaPx(const Eigen::MatrixXd& byParameter, const ContourShapes& shapes,
                                          const Eigen::VectorXd& where) const {
   require(byParameter.cols() == byNoise_.cols() && byParameter.rows() == shapes.columns.rows(), "ViewEffects::sigmaPx: sizes");
-  constexpr int kGroups = ContourShapes::kGroups;
   const Eigen::Index n = byParameter.rows();
   std::vector<std::vector<Spread>> mixtures(static_cast<std::size_t>(n));
   for (const Case& c : cases_) {

@@ -64,6 +64,7 @@ class ViewEffects {
   static void borrow(Case& c);
   static double likeness(const Case& c, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
   void addPlaces(const std::vector<ViewCoefficients>& views);
+  void addCases(const std::vector<ViewCoefficients>& views, const Case& independent, double noise2);
   void addParameters(Case& c) const;
   double mean(double (*of)(const Case&, int), int group) const;
 

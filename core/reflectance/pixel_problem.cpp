@@ -23,10 +23,9 @@ constexpr double kLargestBlurPx = 12;        // beyond it an image shows no cont
 constexpr int kFinerRules = 3;               // times that a lamp may outgrow its quadrature
 
 /// Steps of the differences by the squared radius and by the half axis: a small share of them.
-double sizeStep(const State& at) {
-  return std::max(kLeastSizeSquared, 1e-4 * at.radiusSquared);
-}  // second order stays below 1e-4
-double axisStep(const State& at) { return std::max(1e-7, 1e-4 * at.halfAxis.norm()); }
+/// The second order stays below 1e-4.
+double sizeStep(const State& at) { return std::max(kLeastSizeSquared, 1e-4 * at.radiusSquared); }
+double axisStep(const State& at) { return std::max(1e-7, 1e-4 * at.halfAxis.norm()); }  // likewise
 
 State stateOf(double const* const* parameters, lobe::LampShape shape) {
   State s;

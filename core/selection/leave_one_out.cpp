@@ -7,9 +7,11 @@
 
 #include "core/base/elapsed.h"
 #include "core/base/number_text.h"
+#include "core/base/parallel.h"
 #include "core/fit/training.h"
 #include "core/light/left_out.h"
 #include "core/model/plausible.h"
+#include "core/score/statistic.h"
 #include "core/surface/mesh_policy.h"
 
 namespace glint {
@@ -20,6 +22,19 @@ Answer failed(Failure failure) {
   a.failure = std::move(failure);
   a.predictUs = a.variation = std::nan("");
   return a;
+}
+
+/// Even without any error on the views that are left it would not be as good as the best.
+bool cannotWin(const std::vector<Answer>& answers, int tried, const RankingSoFar& known) {
+  double sum = 0;
+  int count = 0;
+  for (int i = 0; i < static_cast<int>(answers.size()); ++i) {
+    if (i < tried && answers[i].errorPct && !known.possible[i]) return false;  // here it knows more than the best
+    if (!known.possible[i]) continue;
+    ++count;
+    if (i < tried) sum += answers[i].countedPct();
+  }
+  return count > 0 && sum / count > known.best;
 }
 }  // namespace
 
@@ -118,6 +133,66 @@ std::vector<Fold> foldsOf(const Inspection& inspection, LeaveOut together) {
     all.push_back(std::move(fold));
   }
   return all;
+}
+
+double rankedPct(const std::vector<Answer>& answers, const std::vector<char>& possible) {
+  double sum = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < answers.size(); ++i)
+    if (possible[i]) sum += answers[i].countedPct(), ++count;
+  return count ? sum / count : std::nan("");
+}
+
+Candidate tryModel(const Inspection& inspection, const HighlightModel& model, std::vector<Fold>& folds,
+                   std::vector<Answer>& answers, const RankingSoFar& known, const ProgressFn& progress) {
+  Candidate c;
+  c.model = model.id();
+  c.views = static_cast<int>(folds.size());
+  answers.assign(folds.size(), {});
+  const Clock::time_point start = Clock::now();
+  // In groups of fixed size, so that what is given up does not depend on the number of threads.
+  constexpr int kGroup = 2;
+  int tried = 0;
+  while (tried < c.views && !cannotWin(answers, tried, known)) {
+    const int count = std::min(kGroup, c.views - tried);
+    const ProgressFn offset = [&](const StageEvent& e) { return report(progress, {e.stage, tried + e.done, c.views}); };
+    parallelFor(
+        count, [&](int i) { answers[tried + i] = leaveOut(folds[tried + i], model, inspection.request.settings); }, offset,
+        "leave one out " + c.model);
+    tried += count;
+  }
+  c.timeUs = microsecondsSince(start);
+  std::vector<double> errors, times;
+  for (int i = 0; i < tried; ++i) {
+    if (answers[i].errorPct) {
+      errors.push_back(*answers[i].errorPct);
+      times.push_back(answers[i].predictUs);
+    } else if (c.remark.empty()) {
+      c.remark = "without frame " + inspection.scene->frames[folds[i].left.frame].id + ": " + answers[i].failure->message();
+    }
+  }
+  c.tried = tried;
+  c.answered = static_cast<int>(errors.size());
+  double sum = 0, squares = 0;
+  for (const double e : errors) sum += e;
+  c.meanPct = errors.empty() ? std::nan("") : sum / double(errors.size());
+  for (const double e : errors) squares += (e - c.meanPct) * (e - c.meanPct);
+  c.standardErrorPct = errors.size() > 1 ? std::sqrt(squares / double(errors.size() - 1) / double(errors.size())) : std::nan("");
+  c.predictUs = statisticOf(times).median;
+  return c;
+}
+
+ExcessError excessOf(const std::vector<Answer>& a, const std::vector<Answer>& b, const std::vector<char>& possible) {
+  std::vector<double> d;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (possible[i]) d.push_back(a[i].countedPct() - b[i].countedPct());
+  ExcessError e;
+  const double n = static_cast<double>(d.size());
+  for (const double x : d) e.mean += x / n;
+  double squares = 0;
+  for (const double x : d) squares += (x - e.mean) * (x - e.mean);
+  if (n > 1) e.standardError = std::sqrt(squares / (n - 1) / n);
+  return e;
 }
 
 }  // namespace glint

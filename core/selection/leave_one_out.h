@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,6 +37,8 @@ struct Answer {
   double coverage = 0;          ///< of the one that was compared
   double variation = 0;         ///< the largest of all; NaN when nothing was walked on a patch
   bool boundToSurface = false;  ///< an ellipsoid of the highlight as it was seen, without the walk that takes the surface out
+  /// As it counts in the ranking.
+  double countedPct() const { return errorPct ? *errorPct : kNoPredictionPct; }
 };
 
 /// What is left out with a training view: its frame, or every frame from its place (core/light/left_out.h). A view from the same
@@ -49,6 +52,24 @@ Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Setting
 Answer leaveOut(Fold& fold, const HighlightModel& model, const Settings& settings);
 /// The last step of that alone, from a fit that is there.
 Answer predictLeft(const Fold& fold, const HighlightModel& model, const ModelFit& fit, const Settings& settings);
+
+/// What is known when a model is tried: its views need not all be tried once it cannot become the best any more.
+struct RankingSoFar {
+  std::vector<char> possible;  ///< by fold: some model answered it
+  /// Smallest ranked error of an eligible model, over the possible folds, with what another may be worse by.
+  double best = std::numeric_limits<double>::infinity();
+};
+/// Leaves out every fold in turn, as long as the model can become the best. @param answers  gets one per fold
+Candidate tryModel(const Inspection& inspection, const HighlightModel& model, std::vector<Fold>& folds,
+                   std::vector<Answer>& answers, const RankingSoFar& known, const ProgressFn& progress);
+/// Mean over the views that any model answers; NaN when there are none.
+double rankedPct(const std::vector<Answer>& answers, const std::vector<char>& possible);
+/// How much worse one model is than another, view by view.
+struct ExcessError {
+  double mean = 0, standardError = 0;  ///< %
+};
+ExcessError excessOf(const std::vector<Answer>& a, const std::vector<Answer>& b, const std::vector<char>& possible);
+
 /// The largest curvatureVariation of the highlights; NaN when none was walked on a patch.
 double variationOf(const Prediction& prediction);
 

@@ -6,10 +6,7 @@
 #include <limits>
 #include <set>
 
-#include "core/base/elapsed.h"
 #include "core/base/number_text.h"
-#include "core/base/parallel.h"
-#include "core/score/statistic.h"
 #include "core/selection/extrapolation.h"
 #include "core/selection/surface_assumption.h"
 
@@ -26,94 +23,6 @@ bool predictsOtherSurfaces(const Inspection& inspection) {
   for (int f = 0; f < static_cast<int>(frames.size()); ++f)
     if (inspection.isHeldOut(f) && !frames[f].surface.empty() && !seen.count(frames[f].surface)) return true;
   return false;
-}
-
-/// What is known when a model is tried: its views need not all be tried once it cannot become the best any more.
-struct Known {
-  std::vector<char> possible;  ///< by fold: some model answered it
-  /// Smallest ranked error of an eligible model, over the possible folds, with what another may be worse by.
-  double best = std::numeric_limits<double>::infinity();
-};
-
-/// Error of a view as it counts in the ranking.
-double countedPct(const Answer& a) { return a.errorPct ? *a.errorPct : kNoPredictionPct; }
-
-/// Mean over the views that any model answers; NaN when there are none.
-double rankedPct(const std::vector<Answer>& answers, const std::vector<char>& possible) {
-  double sum = 0;
-  int count = 0;
-  for (std::size_t i = 0; i < answers.size(); ++i)
-    if (possible[i]) sum += countedPct(answers[i]), ++count;
-  return count ? sum / count : std::nan("");
-}
-
-/// Even without any error on the views that are left it would not be as good as the best.
-bool cannotWin(const std::vector<Answer>& answers, int tried, const Known& known) {
-  double sum = 0;
-  int count = 0;
-  for (int i = 0; i < static_cast<int>(answers.size()); ++i) {
-    if (i < tried && answers[i].errorPct && !known.possible[i]) return false;  // here it knows more than the best
-    if (!known.possible[i]) continue;
-    ++count;
-    if (i < tried) sum += countedPct(answers[i]);
-  }
-  return count > 0 && sum / count > known.best;
-}
-
-Candidate tryModel(const Inspection& inspection, const HighlightModel& model, std::vector<Fold>& folds,
-                   std::vector<Answer>& answers, const Known& known, const ProgressFn& progress) {
-  Candidate c;
-  c.model = model.id();
-  c.views = static_cast<int>(folds.size());
-  answers.assign(folds.size(), {});
-  const Clock::time_point start = Clock::now();
-  // In groups of fixed size, so that what is given up does not depend on the number of threads.
-  constexpr int kGroup = 2;
-  int tried = 0;
-  while (tried < c.views && !cannotWin(answers, tried, known)) {
-    const int count = std::min(kGroup, c.views - tried);
-    const ProgressFn offset = [&](const StageEvent& e) { return report(progress, {e.stage, tried + e.done, c.views}); };
-    parallelFor(
-        count, [&](int i) { answers[tried + i] = leaveOut(folds[tried + i], model, inspection.request.settings); }, offset,
-        "leave one out " + c.model);
-    tried += count;
-  }
-  c.timeUs = microsecondsSince(start);
-  std::vector<double> errors, times;
-  for (int i = 0; i < tried; ++i) {
-    if (answers[i].errorPct) {
-      errors.push_back(*answers[i].errorPct);
-      times.push_back(answers[i].predictUs);
-    } else if (c.remark.empty()) {
-      c.remark = "without frame " + inspection.scene->frames[folds[i].left.frame].id + ": " + answers[i].failure->message();
-    }
-  }
-  c.tried = tried;
-  c.answered = static_cast<int>(errors.size());
-  double sum = 0, squares = 0;
-  for (const double e : errors) sum += e;
-  c.meanPct = errors.empty() ? std::nan("") : sum / double(errors.size());
-  for (const double e : errors) squares += (e - c.meanPct) * (e - c.meanPct);
-  c.standardErrorPct = errors.size() > 1 ? std::sqrt(squares / double(errors.size() - 1) / double(errors.size())) : std::nan("");
-  c.predictUs = statisticOf(times).median;
-  return c;
-}
-
-/// How much worse one model is than another, view by view.
-struct Excess {
-  double mean = 0, standardError = 0;  ///< %
-};
-Excess excessOf(const std::vector<Answer>& a, const std::vector<Answer>& b, const std::vector<char>& possible) {
-  std::vector<double> d;
-  for (std::size_t i = 0; i < a.size(); ++i)
-    if (possible[i]) d.push_back(countedPct(a[i]) - countedPct(b[i]));
-  Excess e;
-  const double n = static_cast<double>(d.size());
-  for (const double x : d) e.mean += x / n;
-  double squares = 0;
-  for (const double x : d) squares += (x - e.mean) * (x - e.mean);
-  if (n > 1) e.standardError = std::sqrt(squares / (n - 1) / n);
-  return e;
 }
 
 double atLeastNegligible(double pct) { return std::max(kNegligiblePct, pct); }
@@ -153,7 +62,24 @@ class Search {
   double leftOutPct(std::size_t m) const;
   void expect(std::size_t m);
   void choose(std::size_t m, double mostPct);
-  std::string outsideText() const;
+  std::string whereText() const;
+  /// What the choice stands on once all models were tried.
+  struct Decision {
+    std::size_t best = 0;                ///< least ranked error, and the surface does not contradict it
+    std::vector<std::size_t> plausible;  ///< as good in leave-one-out, from simple to rich
+    double slackPct = kNegligiblePct;    ///< what they may be worse by
+    std::size_t choice = 0;
+    bool ahead = false;  ///< the views to predict decided
+  };
+  std::optional<std::size_t> best(bool allowedBySurface) const;
+  void addRemark(std::size_t m, const std::string& text);
+  std::string whyNoAnswer() const;
+  bool chooseUnderTolerance();
+  bool heedContradictions(Decision& d);
+  void findPlausible(Decision& d);
+  void compareAhead(Decision& d);
+  std::string whyRefused(std::size_t choice) const;
+  std::string whyChosen(const Decision& d) const;
   void decide();
 
   const Inspection& inspection_;
@@ -166,7 +92,7 @@ class Search {
   std::vector<ViewToPredict> views_;
   SurfaceShape trained_;  ///< under the training highlights
   std::vector<Tried> tried_;
-  Known known_;
+  RankingSoFar known_;
   double noisePct_ = 0;  ///< of the observed contours
 };
 
@@ -181,7 +107,8 @@ void Search::choose(std::size_t m, double mostPct) {
   s_.patches = choosePatches(inspection_, *tried_[m].model, folds_, tried_[m].answers, mostPct, progress_);
 }
 
-std::string Search::outsideText() const {
+std::string Search::whereText() const {
+  if (s_.outside == 0) return "the views to predict lie among the training views";
   double farthest = 0, tested = 0;
   for (const ViewToPredict& v : views_)
     if (v.outside) farthest = std::max(farthest, v.distanceDeg), tested = std::max(tested, v.testedDeg);
@@ -360,7 +287,7 @@ void Search::expect(std::size_t m) {
     double sum = 0;
     for (const Fold& f : folds_) {
       const Answer a = predictLeft(f, *t.model, *t.outlook->fits.at(f.left.highlight.light), settings_);
-      sum += countedPct(a) / double(folds_.size());
+      sum += a.countedPct() / double(folds_.size());
     }
     common = std::min(common, std::sqrt(std::max(0.0, sum * sum - noisePct_ * noisePct_)));
     // Nothing was left out that could tell how far the fit is from others: another model does.
@@ -433,134 +360,166 @@ Selection Search::run() {
   return s_;
 }
 
-void Search::decide() {
-  const auto bestOf = [&](const auto& allowed) {
-    int best = -1;
-    for (std::size_t m = 0; m < tried_.size(); ++m)
-      if (tried_[m].eligible && allowed(m) && (best < 0 || ranked(m) < ranked(best))) best = static_cast<int>(m);
-    return best;
-  };
-  int best = bestOf([](std::size_t) { return true; });
-  if (best < 0) {
-    const bool onePlace = std::all_of(folds_.begin(), folds_.end(), [](const Fold& f) { return f.others.empty(); });
-    s_.why = s_.leftOut == 0 ? "No training view can be left out."
-             : onePlace      ? "Leaving out a training view leaves nothing to fit: each fit has views from one place only."
-                             : "No model predicted a left-out training view.";
-    return;
+std::optional<std::size_t> Search::best(bool allowedBySurface) const {
+  std::optional<std::size_t> least;
+  for (std::size_t m = 0; m < tried_.size(); ++m) {
+    if (!tried_[m].eligible || (allowedBySurface && !tried_[m].contradiction.empty())) continue;
+    if (!least || ranked(m) < ranked(*least)) least = m;
   }
-  if (goodEnough_)  // a view that nothing answers tells nothing about the models
-    for (std::size_t m = 0; m < tried_.size() && s_.model.empty(); ++m)
-      if (tried_[m].eligible && ranked(m) <= *goodEnough_ && s_.outside == 0) {
-        s_.why = "Simplest model under the stated tolerance of " + percentText(*goodEnough_) + ": " + s_.candidates[m].model +
-                 " has a leave-one-view-out error of " + percentText(ranked(m)) + " over the views that any model answers.";
-        s_.decidedBy = "leave-one-out";
-        choose(m, *goodEnough_);
-        return;
-      }
+  return least;
+}
 
+void Search::addRemark(std::size_t m, const std::string& text) {
+  std::string& remark = s_.candidates[m].remark;
+  remark = remark.empty() ? text : text + "; " + remark;
+}
+
+std::string Search::whyNoAnswer() const {
+  const bool onePlace = std::all_of(folds_.begin(), folds_.end(), [](const Fold& f) { return f.others.empty(); });
+  return s_.leftOut == 0 ? "No training view can be left out."
+         : onePlace      ? "Leaving out a training view leaves nothing to fit: each fit has views from one place only."
+                         : "No model predicted a left-out training view.";
+}
+
+/// Once more, now that it is known which views nothing answers: those tell nothing about the models.
+bool Search::chooseUnderTolerance() {
+  if (!goodEnough_ || s_.outside > 0) return false;
+  for (std::size_t m = 0; m < tried_.size(); ++m) {
+    if (!tried_[m].eligible || !(ranked(m) <= *goodEnough_)) continue;
+    s_.why = "Simplest model under the stated tolerance of " + percentText(*goodEnough_) + ": " + s_.candidates[m].model +
+             " has a leave-one-view-out error of " + percentText(ranked(m)) + " over the views that any model answers.";
+    s_.decidedBy = "leave-one-out";
+    choose(m, *goodEnough_);
+    return true;
+  }
+  return false;
+}
+
+/// The best that the surface allows, unless it is much worse. @return false: refused
+bool Search::heedContradictions(Decision& d) {
   // The surface under the training views and where the least assuming model that answered sees the highlights to come.
-  std::size_t seen = static_cast<std::size_t>(best);
+  std::size_t seen = d.best;
   for (std::size_t m = 0; m < tried_.size(); ++m)
     if (tried_[m].eligible && !tried_[m].ellipsoid && tried_[m].outlook && (tried_[seen].ellipsoid || ranked(m) < ranked(seen)))
       seen = m;
   const SurfaceShape shape = shapeUnder(seen);
   for (std::size_t m = 0; m < tried_.size(); ++m)
     if (tried_[m].eligible) checkAssumption(m, shape);
-  const int allowed = bestOf([&](std::size_t m) { return tried_[m].contradiction.empty(); });
-  if (allowed >= 0 && allowed != best) {
-    const Excess e = excessOf(tried_[allowed].answers, tried_[best].answers, known_.possible);
-    constexpr double kClear = 2;  // times as good, and standard errors
-    if (ranked(allowed) > kClear * atLeastNegligible(ranked(best)) && e.mean > kClear * e.standardError) {
-      s_.candidates[best].remark =
-          "kept although " + tried_[best].contradiction + ": every model that the surface allows has more than twice the error";
-      tried_[best].contradiction.clear();
-    } else {
-      best = allowed;
-    }
-  } else if (allowed < 0) {
-    s_.why = "Refused: the surface contradicts every model that answered. The best of them is " + s_.candidates[best].model +
-             ": " + tried_[best].contradiction + ".";
-    return;
+  const std::optional<std::size_t> allowed = best(true);
+  Tried& first = tried_[d.best];
+  if (!allowed) {
+    s_.why = "Refused: the surface contradicts every model that answered. The best of them is " + s_.candidates[d.best].model +
+             ": " + first.contradiction + ".";
+    return false;
   }
+  if (*allowed == d.best) return true;
+  const ExcessError e = excessOf(tried_[*allowed].answers, first.answers, known_.possible);
+  constexpr double kClear = 2;  // times as good, and standard errors
+  if (ranked(*allowed) > kClear * atLeastNegligible(ranked(d.best)) && e.mean > kClear * e.standardError) {
+    s_.candidates[d.best].remark =
+        "kept although " + first.contradiction + ": every model that the surface allows has more than twice the error";
+    first.contradiction.clear();
+  } else {
+    d.best = *allowed;
+  }
+  return true;
+}
 
-  const auto addRemark = [&](std::size_t m, const std::string& text) {
-    std::string& remark = s_.candidates[m].remark;
-    remark = remark.empty() ? text : text + "; " + remark;
-  };
-  std::vector<std::size_t> plausible;
-  double slack = kNegligiblePct;
+void Search::findPlausible(Decision& d) {
   for (std::size_t m = 0; m < tried_.size(); ++m) {
     if (!tried_[m].eligible) continue;
     if (!tried_[m].contradiction.empty()) {
       addRemark(m, "the surface contradicts it: " + tried_[m].contradiction);
       continue;
     }
-    const Excess e = excessOf(tried_[m].answers, tried_[best].answers, known_.possible);
+    const ExcessError e = excessOf(tried_[m].answers, tried_[d.best].answers, known_.possible);
     if (e.mean > atLeastNegligible(e.standardError)) {
       addRemark(m, "worse than the best by " + percentText(e.mean) + " in leave-one-out");
     } else {
-      plausible.push_back(m);
-      slack = std::max(slack, e.standardError);
+      d.plausible.push_back(m);
+      d.slackPct = std::max(d.slackPct, e.standardError);
     }
   }
-  std::size_t choice = plausible.front();
-  bool ahead = false;
-  if (!views_.empty()) {
-    compareOutlooks(plausible);
-    double least = std::numeric_limits<double>::infinity();
-    std::size_t leastOf = choice;
-    for (const std::size_t m : plausible)
-      if (const double x = s_.candidates[m].outlookPct; x < least) least = x, leastOf = m;
-    if (std::isfinite(least)) {
-      choice = leastOf;
-      for (const std::size_t m : plausible) {
-        const double x = atLeastNegligible(s_.candidates[m].outlookPct) / atLeastNegligible(least);
-        if (x <= kAsGood || (tried_[m].confirmed && x <= 2)) {
-          choice = m;
-          break;
-        }
-      }
-      for (const std::size_t m : plausible)
-        if (m < choice)
-          addRemark(m, "in the views to predict it is uncertain by " + percentText(s_.candidates[m].outlookPct) + ", " +
-                           s_.candidates[leastOf].model + " by " + percentText(least));
-      ahead = choice != plausible.front();
+  d.choice = d.plausible.front();
+}
+
+/// The simplest of the plausible models whose outlook is as good as the best.
+void Search::compareAhead(Decision& d) {
+  if (views_.empty()) return;
+  compareOutlooks(d.plausible);
+  double least = std::numeric_limits<double>::infinity();
+  std::size_t leastOf = d.choice;
+  for (const std::size_t m : d.plausible)
+    if (const double x = s_.candidates[m].outlookPct; x < least) least = x, leastOf = m;
+  if (!std::isfinite(least)) return;
+  d.choice = leastOf;
+  for (const std::size_t m : d.plausible) {
+    const double x = atLeastNegligible(s_.candidates[m].outlookPct) / atLeastNegligible(least);
+    if (x <= kAsGood || (tried_[m].confirmed && x <= 2)) {
+      d.choice = m;
+      break;
     }
   }
-  for (const std::size_t m : plausible) expect(m);
-  for (const std::size_t m : plausible)
-    if (s_.candidates[choice].expectedPct > kLargestExpectedPct &&
-        s_.candidates[m].expectedPct < s_.candidates[choice].expectedPct)
-      choice = m;
+  for (const std::size_t m : d.plausible)
+    if (m < d.choice)
+      addRemark(m, "in the views to predict it is uncertain by " + percentText(s_.candidates[m].outlookPct) + ", " +
+                       s_.candidates[leastOf].model + " by " + percentText(least));
+  d.ahead = d.choice != d.plausible.front();
+}
+
+std::string Search::whyRefused(std::size_t choice) const {
   const Candidate& c = s_.candidates[choice];
-  const std::string where = s_.outside > 0 ? outsideText() : std::string("the views to predict lie among the training views");
-  if (!(c.expectedPct <= kLargestExpectedPct)) {
-    s_.why = "Refused: the smallest expected error is " + percentText(c.expectedPct) + " of the diameter, of " + c.model +
-             ", above the limit of " + percentText(kLargestExpectedPct) + ". Its leave-one-view-out error is " +
-             errorText(choice) +
-             (s_.toPredict ? "; in the views to predict its contours are uncertain by " + percentText(c.outlookPct) + "; " + where
-                           : "") +
-             ".";
+  return "Refused: the smallest expected error is " + percentText(c.expectedPct) + " of the diameter, of " + c.model +
+         ", above the limit of " + percentText(kLargestExpectedPct) + ". Its leave-one-view-out error is " + errorText(choice) +
+         (s_.toPredict
+              ? "; in the views to predict its contours are uncertain by " + percentText(c.outlookPct) + "; " + whereText()
+              : "") +
+         ".";
+}
+
+std::string Search::whyChosen(const Decision& d) const {
+  const Candidate& c = s_.candidates[d.choice];
+  const std::string slack = d.slackPct > kNegligiblePct ? "one standard error of the difference"
+                                                        : "what contours resolve (" + percentText(kNegligiblePct) + ")";
+  const std::string leftOut = d.choice == d.best
+                                  ? c.model + " has the smallest leave-one-view-out error, " + errorText(d.choice)
+                                  : c.model + " has a leave-one-view-out error of " + errorText(d.choice) + ", within " + slack +
+                                        " of the best, " + s_.candidates[d.best].model + " with " + errorText(d.best);
+  const std::string why =
+      d.ahead ? "The views to predict decided: " + leftOut + "; there its contours are uncertain by " +
+                    percentText(c.outlookPct) + ", those of simpler models by more than " +
+                    percentText(kAsGood * atLeastNegligible(c.outlookPct)) + "; " + whereText()
+              : "Simplest model that is as good as the best: " + leftOut + "; " + whereText() +
+                    (std::isfinite(c.outlookPct) ? ", where its contours are uncertain by " + percentText(c.outlookPct) : "");
+  return why + "." + (goodEnough_ ? " No model reached the stated tolerance of " + percentText(*goodEnough_) + "." : "");
+}
+
+void Search::decide() {
+  const std::optional<std::size_t> first = best(false);
+  if (!first) {
+    s_.why = whyNoAnswer();
     return;
   }
-  for (const std::size_t m : plausible)
-    if (m > choice) addRemark(m, static_cast<int>(m) == best ? "best, but a simpler one is as good" : "a simpler one is as good");
-  const std::string slackText = slack > kNegligiblePct ? "one standard error of the difference"
-                                                       : "what contours resolve (" + percentText(kNegligiblePct) + ")";
-  const std::string leftOut = static_cast<int>(choice) == best
-                                  ? c.model + " has the smallest leave-one-view-out error, " + errorText(choice)
-                                  : c.model + " has a leave-one-view-out error of " + errorText(choice) + ", within " +
-                                        slackText + " of the best, " + s_.candidates[best].model + " with " + errorText(best);
-  s_.decidedBy = ahead || s_.outside > 0 ? "extrapolation" : "leave-one-out";
-  if (ahead)
-    s_.why = "The views to predict decided: " + leftOut + "; there its contours are uncertain by " + percentText(c.outlookPct) +
-             ", those of simpler models by more than " + percentText(kAsGood * atLeastNegligible(c.outlookPct)) + "; " + where +
-             ".";
-  else
-    s_.why = "Simplest model that is as good as the best: " + leftOut + "; " + where +
-             (std::isfinite(c.outlookPct) ? ", where its contours are uncertain by " + percentText(c.outlookPct) : "") + ".";
-  if (goodEnough_) s_.why += " No model reached the stated tolerance of " + percentText(*goodEnough_) + ".";
-  choose(choice, ranked(best) + slack);
+  if (chooseUnderTolerance()) return;
+  Decision d;
+  d.best = *first;
+  if (!heedContradictions(d)) return;
+  findPlausible(d);
+  compareAhead(d);
+  for (const std::size_t m : d.plausible) expect(m);
+  for (const std::size_t m : d.plausible)
+    if (s_.candidates[d.choice].expectedPct > kLargestExpectedPct &&
+        s_.candidates[m].expectedPct < s_.candidates[d.choice].expectedPct)
+      d.choice = m;
+  if (!(s_.candidates[d.choice].expectedPct <= kLargestExpectedPct)) {
+    s_.why = whyRefused(d.choice);
+    return;
+  }
+  for (const std::size_t m : d.plausible)
+    if (m > d.choice) addRemark(m, m == d.best ? "best, but a simpler one is as good" : "a simpler one is as good");
+  s_.decidedBy = d.ahead || s_.outside > 0 ? "extrapolation" : "leave-one-out";
+  s_.why = whyChosen(d);
+  choose(d.choice, ranked(d.best) + d.slackPct);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ Outcome<Measured> levelsCase(Lobe lobe, double m, double lowest) {
     fit.lightEstimate = light;
     fit.family = ReflectanceFit{lobe, m, q};
     const Prediction prediction = modelByName("reflectance").predict(fit, view.camera, surface.get(), Settings());
-    if (prediction.highlights().empty()) return prediction.failure().value_or(Failure{Reason::NoHighlight, ""});
+    if (prediction.highlights().empty()) return *prediction.failure();
     const PredictedHighlight& h = prediction.highlights().front();
     if (h.coverage < (wide ? 0.5 : 0.999)) {
       return Failure{Reason::SurfaceEnded, formatted("coverage too low at level %g", q)};

@@ -38,7 +38,7 @@ Outcome<Measured> limitAngleCase(const PredictionScene& p, const Light& light) {
   fit.lightEstimate = light;
   fit.family = LimitAngleFit{p.limit};
   const Prediction prediction = modelByName("limit-angle").predict(fit, s.camera, s.surface.get(), Settings());
-  if (prediction.highlights().empty()) return prediction.failure().value_or(Failure{Reason::NoHighlight, ""});
+  if (prediction.highlights().empty()) return *prediction.failure();
   const PredictedHighlight& h = prediction.highlights().front();
   if (h.coverage < 0.999) return Failure{Reason::SurfaceEnded, "coverage below 1"};
   double worst = 0;
@@ -113,7 +113,7 @@ Outcome<Measured> canonicalCase(const PredictionScene& p, const Light& light, do
   settings.set("predict.directions", 8);
   settings.set("predict.walk_tolerance", 1e-15);
   const Prediction prediction = modelByName("canonical").predict(fit, s.camera, s.surface.get(), settings);
-  if (prediction.highlights().empty()) return prediction.failure().value_or(Failure{Reason::NoHighlight, ""});
+  if (prediction.highlights().empty()) return *prediction.failure();
   const PredictedHighlight& h = prediction.highlights().front();
   // The reference starts at the true mirror point, not at the one found: the light's foot on the reflected path.
   const RealConic conic = mirroredOutline(e, s.real);
@@ -148,7 +148,7 @@ Outcome<Measured> dualCase(const PredictionScene& p, const Light& light, double 
   ModelFit fit;
   fit.family = EllipsoidFit{e.dual(), e};
   const Prediction prediction = modelByName("dual").predict(fit, s.camera, s.surface.get(), Settings());
-  if (prediction.highlights().empty()) return prediction.failure().value_or(Failure{Reason::NoHighlight, ""});
+  if (prediction.highlights().empty()) return *prediction.failure();
   const PredictedHighlight& h = prediction.highlights().front();
   const RealConic conic = mirroredOutline(e, s.real);
   double worst = 0;
@@ -179,7 +179,7 @@ Outcome<Measured> plateCase() {
   fit.lightEstimate = plate.light;
   fit.family = LimitAngleFit{0.1};
   const Prediction prediction = modelByName("limit-angle").predict(fit, plate.camera, plate.surface.get(), Settings());
-  if (prediction.highlights().empty()) return prediction.failure().value_or(Failure{Reason::NoHighlight, ""});
+  if (prediction.highlights().empty()) return *prediction.failure();
   const RealCamera<Real> real(plate.camera);
   const Real half = Real(0.04) / 2;
   std::pair<Real, Real> corner[4];
@@ -306,7 +306,7 @@ void addPredictionCases(Cases& cases) {
       const Ellipsoid e = ellipsoidAt(scene.light, 0.3);
       fit.family = EllipsoidFit{e.dual(), e};
       const Prediction p = modelByName("canonical").predict(fit, scene.camera, scene.surface.get(), Settings());
-      if (p.highlights().empty()) return p.failure().value_or(Failure{Reason::NotSupported, "unnamed"});
+      if (p.highlights().empty()) return *p.failure();
       return Measured{0};
     };
     cases.push_back(plate);
@@ -324,7 +324,7 @@ void addPredictionCases(Cases& cases) {
     const Prediction p =
         modelByName("limit-angle")
             .predict(fit, cameraTowards({0.2, 0.1, 1}, {0, 0, 0}, 800), makeAnalytic(specOf(0, false)).get(), Settings());
-    if (p.highlights().empty()) return p.failure().value_or(Failure{Reason::NotSupported, "unnamed"});
+    if (p.highlights().empty()) return *p.failure();
     return Measured{0};
   };
   cases.push_back(c);

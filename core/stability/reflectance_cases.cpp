@@ -43,7 +43,7 @@ Outcome<Measured> predictionCase(const RadianceScene& p, const Light& light) {
   fit.family = ReflectanceFit{p.lobe, p.roughness, 0.5};
   const auto surface = makeAnalytic(specOf(k, p.round));
   const Prediction prediction = modelByName("reflectance").predict(fit, view.camera, surface.get(), Settings());
-  if (prediction.highlights().empty()) return prediction.failure().value_or(Failure{Reason::NoHighlight, ""});
+  if (prediction.highlights().empty()) return *prediction.failure();
   const PredictedHighlight& h = prediction.highlights().front();
   if (h.coverage < 0.999) return Failure{Reason::SurfaceEnded, "coverage below 1"};
   double worst = 0;

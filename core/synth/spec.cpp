@@ -145,27 +145,17 @@ void addFrame(Scene& scene, const Camera& camera, const Eigen::Isometry3d& pose,
   scene.frames.push_back(std::move(frame));
 }
 
-}  // namespace
-
-SynthSpec readSynthSpec(const std::filesystem::path& file) {
-  const JsonNode root = JsonNode::parse(readFile(file, Limit::JsonMegabytes), file.string());
-  if (root.has("glint_session")) root.fail("is a session, not the specification of a synthetic scene");
-  SynthSpec spec;
-  Scene& scene = spec.scene;
-  scene.file = file;
-  scene.folder = std::filesystem::absolute(file).lexically_normal().parent_path();
-  scene.name = file.stem().string();
-  if (const auto n = root.find("name")) scene.name = n->text();
-  const Camera camera = readCameraJson(root.at("camera"));
-  const JsonNode lights = root.at("lights");
-  std::set<std::string> lightIds;
+void readLights(const JsonNode& lights, Scene& scene) {
+  std::set<std::string> ids;
   for (std::size_t i = 0; i < lights.size(); ++i) {
     scene.lights.push_back(readLightJson(lights.at(i)));
     const std::string& id = scene.lights.back().id;
-    if (!lightIds.insert(id).second) lights.at(i).at("id").fail("duplicate id '" + id + "'");
+    if (!ids.insert(id).second) lights.at(i).at("id").fail("duplicate id '" + id + "'");
   }
   if (scene.lights.empty()) lights.fail("is empty: a highlight needs a light");
-  const JsonNode surfaces = root.at("surfaces");
+}
+
+void readSurfaces(const JsonNode& surfaces, Scene& scene) {
   for (const std::string& id : surfaces.keys()) {
     const JsonNode node = surfaces.at(id);
     if (!isIdentifier(id)) node.fail("an id must not be empty and must not contain control characters");
@@ -180,70 +170,107 @@ SynthSpec readSynthSpec(const std::filesystem::path& file) {
     scene.surfaces[id] = source;
   }
   if (scene.surfaces.empty()) surfaces.fail("is empty");
+}
 
-  std::vector<std::string> order{scene.surfaces.begin()->first};
-  if (const auto steps = root.find("surface_steps")) {
-    const JsonNode name = steps->at("surface");
-    const auto base = scene.surfaces.find(name.text());
-    if (base == scene.surfaces.end()) name.fail("surface '" + name.text() + "' does not exist");
-    if (!base->second.analytic) name.fail("'" + name.text() + "' is a mesh: only analytic surfaces have parameters");
-    const AnalyticSpec original = *base->second.analytic;
-    const std::string prefix = base->first;
-    scene.surfaces.erase(base);
-    order.clear();
-    for (const double value : readSteps(*steps)) {
-      AnalyticSpec step = original;
-      setParameter(step, steps->at("parameter"), value);
-      if (step.type == "torus" && step.minorRadius >= step.majorRadius)
-        steps->fail("minor_radius " + shown(step.minorRadius) + " must be smaller than major_radius " + shown(step.majorRadius));
-      order.push_back(prefix + "_" + padded(order.size()));
-      scene.surfaces[order.back()].analytic = step;
-    }
-  } else if (scene.surfaces.size() > 1 && root.has("path")) {
-    surfaces.fail("a path needs exactly one surface");
+/// Puts one surface for each step in the place of the surface that is varied. @return their ids, in the order of the steps
+std::vector<std::string> stepSurface(const JsonNode& steps, Scene& scene) {
+  const JsonNode name = steps.at("surface");
+  const auto base = scene.surfaces.find(name.text());
+  if (base == scene.surfaces.end()) name.fail("surface '" + name.text() + "' does not exist");
+  if (!base->second.analytic) name.fail("'" + name.text() + "' is a mesh: only analytic surfaces have parameters");
+  const AnalyticSpec original = *base->second.analytic;
+  const std::string prefix = base->first;
+  scene.surfaces.erase(base);
+  std::vector<std::string> order;
+  for (const double value : readSteps(steps)) {
+    AnalyticSpec step = original;
+    setParameter(step, steps.at("parameter"), value);
+    if (step.type == "torus" && step.minorRadius >= step.majorRadius)
+      steps.fail("minor_radius " + shown(step.minorRadius) + " must be smaller than major_radius " + shown(step.majorRadius));
+    order.push_back(prefix + "_" + padded(order.size()));
+    scene.surfaces[order.back()].analytic = step;
   }
+  return order;
+}
+
+/// The frames as they are listed, once for each surface of `order`. @param stepped  `order` are steps, whatever surface a frame names
+void readFrames(const JsonNode& frames, const Camera& camera, const std::vector<std::string>& order, bool stepped, Scene& scene) {
+  std::set<std::string> ids;
+  for (const std::string& step : order)
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const JsonNode node = frames.at(i);
+      std::string surface = step;
+      if (const auto n = node.find("surface"); n && !stepped) {
+        surface = n->text();
+        if (!scene.surfaces.count(surface)) n->fail("surface '" + surface + "' does not exist");
+      }
+      addFrame(scene, camera, readPoseJson(node.at("camera_from_world")), surface);
+      Frame& frame = scene.frames.back();
+      if (const auto n = node.find("id"); n && order.size() == 1) {
+        frame.id = readIdJson(*n);
+        if (!ids.insert(frame.id).second) n->fail("duplicate id '" + frame.id + "'");
+      } else if (!ids.insert(frame.id).second) {
+        node.fail("the id '" + frame.id + "' of this frame already exists");
+      }
+      if (const auto n = node.find("lights_on")) {
+        frame.lightsOn.clear();
+        for (std::size_t k = 0; k < n->size(); ++k) frame.lightsOn.push_back(readIdJson(n->at(k)));
+      }
+    }
+  if (scene.frames.empty()) frames.fail("is empty");
+}
+
+ExactOptions readExact(const JsonNode& root) {
+  ExactOptions exact;
+  if (const auto n = root.find("contour")) {
+    if (n->text() == "limit-angle")
+      exact.kind = ContourKind::LimitAngle;
+    else if (n->text() != "radiance")
+      n->fail("'" + n->text() + "' is not one of: radiance, limit-angle");
+  }
+  if (const auto n = root.find("level")) exact.level = inRange(*n, kLeastLevel, kMostLevel);
+  if (const auto n = root.find("margin_px")) exact.marginPx = inRange(*n, 0, 10000);
+  if (exact.kind == ContourKind::LimitAngle) exact.limitAngle = inRange(root.at("limit_angle_deg"), 1e-6, 60) * M_PI / 180;
+  return exact;
+}
+
+}  // namespace
+
+SynthSpec readSynthSpec(const std::filesystem::path& file) {
+  const JsonNode root = JsonNode::parse(readFile(file, Limit::JsonMegabytes), file.string());
+  if (root.has("glint_session")) root.fail("is a session, not the specification of a synthetic scene");
+  SynthSpec spec;
+  Scene& scene = spec.scene;
+  scene.file = file;
+  scene.folder = std::filesystem::absolute(file).lexically_normal().parent_path();
+  scene.name = file.stem().string();
+  if (const auto n = root.find("name")) scene.name = n->text();
+  const Camera camera = readCameraJson(root.at("camera"));
+  readLights(root.at("lights"), scene);
+  const JsonNode surfaces = root.at("surfaces");
+  readSurfaces(surfaces, scene);
+  std::vector<std::string> order{scene.surfaces.begin()->first};
+  const auto steps = root.find("surface_steps");
+  if (steps)
+    order = stepSurface(*steps, scene);
+  else if (scene.surfaces.size() > 1 && root.has("path"))
+    surfaces.fail("a path needs exactly one surface");
+
+  const auto requireFew = [&](std::size_t cameras, const JsonNode& node) {
+    requireWithin(Limit::SynthFrames, double(order.size()) * double(cameras), file.string(), node.place());
+  };
   if (const auto path = root.find("path")) {
     const std::vector<Eigen::Isometry3d> poses = readPath(*path);
-    requireWithin(Limit::SynthFrames, double(order.size()) * double(poses.size()), file.string(), path->place());
+    requireFew(poses.size(), *path);
     for (const std::string& surface : order)
       for (const Eigen::Isometry3d& pose : poses) addFrame(scene, camera, pose, surface);
   } else {
     const JsonNode frames = root.at("frames");
-    requireWithin(Limit::SynthFrames, double(order.size()) * double(frames.size()), file.string(), frames.place());
-    std::set<std::string> frameIds;
-    for (const std::string& stepped : order)
-      for (std::size_t i = 0; i < frames.size(); ++i) {
-        const JsonNode node = frames.at(i);
-        std::string surface = stepped;
-        if (const auto n = node.find("surface"); n && !root.has("surface_steps")) {
-          surface = n->text();
-          if (!scene.surfaces.count(surface)) n->fail("surface '" + surface + "' does not exist");
-        }
-        addFrame(scene, camera, readPoseJson(node.at("camera_from_world")), surface);
-        if (const auto n = node.find("id"); n && order.size() == 1) {
-          scene.frames.back().id = readIdJson(*n);
-          if (!frameIds.insert(scene.frames.back().id).second) n->fail("duplicate id '" + scene.frames.back().id + "'");
-        } else if (!frameIds.insert(scene.frames.back().id).second) {
-          node.fail("the id '" + scene.frames.back().id + "' of this frame already exists");
-        }
-        if (const auto n = node.find("lights_on")) {
-          scene.frames.back().lightsOn.clear();
-          for (std::size_t k = 0; k < n->size(); ++k) scene.frames.back().lightsOn.push_back(readIdJson(n->at(k)));
-        }
-      }
-    if (scene.frames.empty()) frames.fail("is empty");
+    requireFew(frames.size(), frames);
+    readFrames(frames, camera, order, steps.has_value(), scene);
   }
 
-  if (const auto n = root.find("contour")) {
-    if (n->text() == "limit-angle")
-      spec.exact.kind = ContourKind::LimitAngle;
-    else if (n->text() != "radiance")
-      n->fail("'" + n->text() + "' is not one of: radiance, limit-angle");
-  }
-  if (const auto n = root.find("level")) spec.exact.level = inRange(*n, kLeastLevel, kMostLevel);
-  if (const auto n = root.find("margin_px")) spec.exact.marginPx = inRange(*n, 0, 10000);
-  if (spec.exact.kind == ContourKind::LimitAngle)
-    spec.exact.limitAngle = inRange(root.at("limit_angle_deg"), 1e-6, 60) * M_PI / 180;
+  spec.exact = readExact(root);
   if (const auto n = root.find("render")) {
     spec.material = readMaterial(*n);
     spec.render = readRender(*n);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/model/model.h"
 #include "gui/base/text.h"
 #include "gui/base/unit_text.h"
 
@@ -47,6 +48,14 @@ ExplainTexts read() {
 }  // namespace
 
 ExplainText::Words ExplainText::words(const QString& model) const {
+  const auto& steps = explainTexts().steps;
+  const bool named =
+      model.isEmpty() || model == toQString(canonicalModel().id()) ||
+      std::any_of(steps.begin(), steps.end(), [&](const ExplainText& step) { return step.ofModels.contains(model); });
+  if (!named && !ofModels.isEmpty()) {  // the words are those of another model
+    const HighlightModel* known = findModel(model.toStdString());
+    return {known ? toQString(known->assumption()) : QString(), {}};
+  }
   const Words own = ofModels.value(model);
   return {own.text.isEmpty() ? text : own.text, own.equation.isEmpty() ? equation : own.equation};
 }

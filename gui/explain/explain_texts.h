@@ -22,7 +22,7 @@ struct ExplainText {
   bool solo = false;              ///< of the selected frame alone: what belongs to the others would lie over it
   bool epipolar = false;          ///< with the epipolar lines of two frames side by side, which are no other step's geometry
   QMap<QString, Words> ofModels;  ///< where a model does something else: by its id, "" = as for the others
-  /// @param model  "" = none.
+  /// @param model  "" = none. Of a model that no step has words for: what the model assumes, where others have words of their own.
   Words words(const QString& model) const;
 };
 

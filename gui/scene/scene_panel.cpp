@@ -265,7 +265,7 @@ void ScenePanel::showEye() {
   const QString text = views_->eyeText();
   eyeBar_->setVisible(!text.isEmpty());
   eyeBar_->setToolTip(text);
-  if (checkActions_) checkActions_();
+  checkToggles();
 }
 
 // --- to the document ----------------------------------------------------------------------------------------------------
@@ -429,6 +429,16 @@ void ScenePanel::goToView(const QString& name) {
   views_->scheduleRender();
 }
 
+void ScenePanel::goToNextView() {
+  const QStringList names = savedViews();
+  if (names.isEmpty()) return;
+  const std::string now = toText(views_->active().viewPoint());
+  int next = 0;
+  for (int i = 0; i < names.size(); ++i)
+    if (document_.option(kSavedView + names[i].toStdString(), std::string()) == now) next = (i + 1) % names.size();
+  goToView(names[next]);
+}
+
 void ScenePanel::removeView(const QString& name) {
   // An option cannot be taken away; an empty one is none.
   document_.setOption(kSavedView + name.toStdString(), std::string(), tr("Delete %1").arg(shownText(name)));
@@ -437,26 +447,51 @@ void ScenePanel::removeView(const QString& name) {
 // --- actions --------------------------------------------------------------------------------------------------------------
 
 void ScenePanel::addActions(Actions& actions, QMenu* menu) {
-  const auto toggle = [this, &actions](const char* id, QMenu* in, const QString& title, const Actions::Look& look, auto run) {
-    return actions.addToggle(
-        QLatin1String(id), in, title,
-        [this, run](bool on) {
-          run(on);
-          if (checkActions_) checkActions_();  // one of a group that was on stays on
-        },
-        look);
-  };
   actions.add("view.frame-all", menu, tr("Show &everything"), [this] { frameAll(); }, {{Qt::Key_A}, "frame-all"});
   actions.add(
       "view.frame-selection", menu, tr("Show &selection"), [this] { frameSelection(); },
       {{int(Qt::SHIFT) | Qt::Key_A}, "frame-selection", tr("The selected highlight, ellipsoid or camera fills the 3D view")});
-  QAction* camera = toggle("view.look-through", menu, tr("Look through &camera"),
-                           {{Qt::Key_C}, "camera", tr("With the photograph over the scene; follows the selected frame")},
-                           [this](bool on) { setEye(on ? viz::Eye::Camera : viz::Eye::Outside); });
-  QAction* mirrored = toggle("view.look-through-virtual", menu, tr("Look through &virtual camera"),
-                             {{Qt::Key_V}, "virtual-camera", tr("Mirrored in the tangent plane: shows the side of the light")},
-                             [this](bool on) { setEye(on ? viz::Eye::VirtualCamera : viz::Eye::Outside); });
+  toggles_.camera = addToggle(actions, "view.look-through", menu, tr("Look through &camera"),
+                              {{Qt::Key_C}, "camera", tr("With the photograph over the scene; follows the selected frame")},
+                              [this](bool on) { setEye(on ? viz::Eye::Camera : viz::Eye::Outside); });
+  toggles_.mirrored = addToggle(actions, "view.look-through-virtual", menu, tr("Look through &virtual camera"),
+                                {{Qt::Key_V}, "virtual-camera", tr("Mirrored in the tangent plane: shows the side of the light")},
+                                [this](bool on) { setEye(on ? viz::Eye::VirtualCamera : viz::Eye::Outside); });
+  QMenu* axes = addAxesMenu(actions, menu);
+  QMenu* arrange = addArrangeMenu(actions, menu);
+  QMenu* colours = addColourMenu(actions, menu);
+  toggles_.solo = addToggle(actions, "view.solo", menu, tr("Only selected &frame"),
+                            {{int(Qt::SHIFT) | Qt::Key_S}, "solo", tr("Hides the other cameras and their objects")},
+                            [this](bool on) { setSwitch("scene/solo", on, on ? tr("Only selected frame") : tr("All frames")); });
+  actions.add("view.glyphs-larger", menu, tr("La&rger cameras and points"), [this] { scaleGlyphs(1.25); },
+              {{Qt::Key_BracketRight}});
+  actions.add("view.glyphs-smaller", menu, tr("S&maller cameras and points"), [this] { scaleGlyphs(0.8); },
+              {{Qt::Key_BracketLeft}});
+  checkToggles();
 
+  // The toolbar shows the same actions and menus.
+  bar_->insertAction(slider_, toggles_.camera);
+  bar_->insertAction(slider_, toggles_.mirrored);
+  addMenuButton(axes, "axes", tr("Axis views, projection, saved views"));
+  addMenuButton(arrange, "views", tr("One, two or four 3D views, or a wipe"));
+  addMenuButton(colours, "palette", tr("Camera colours"));
+  bar_->insertAction(slider_, toggles_.solo);
+  bar_->insertAction(slider_, actions.find("view.frame-selection"));
+  bar_->insertAction(slider_, actions.find("view.frame-all"));
+}
+
+QAction* ScenePanel::addToggle(Actions& actions, const char* id, QMenu* menu, const QString& title, const Actions::Look& look,
+                               const std::function<void(bool)>& run) {
+  return actions.addToggle(
+      QLatin1String(id), menu, title,
+      [this, run](bool on) {
+        run(on);
+        checkToggles();  // one of a group that was on stays on
+      },
+      look);
+}
+
+QMenu* ScenePanel::addAxesMenu(Actions& actions, QMenu* menu) {
   QMenu* axes = menu->addMenu(tr("Look &along"));
   const struct {
     const char *id, *title;
@@ -471,9 +506,9 @@ void ScenePanel::addActions(Actions& actions, QMenu* menu) {
   for (const auto& d : directions)
     actions.add(QLatin1String(d.id), axes, tr(d.title), [this, axis = d.axis] { lookAlong(axis); }, {{int(Qt::CTRL) | d.key}});
   axes->addSeparator();
-  QAction* parallel =
-      toggle("view.parallel", axes, tr("&Parallel projection"), {{Qt::Key_5}, {}, tr("Without perspective")},
-             [this](bool on) { setSwitch("scene/parallel", on, on ? tr("Parallel projection") : tr("Perspective")); });
+  toggles_.parallel =
+      addToggle(actions, "view.parallel", axes, tr("&Parallel projection"), {{Qt::Key_5}, {}, tr("Without perspective")},
+                [this](bool on) { setSwitch("scene/parallel", on, on ? tr("Parallel projection") : tr("Perspective")); });
   axes->addSeparator();
   actions.add("view.save-view", axes, tr("&Save this view"), [this] { saveView(); },
               {{QKeySequence("Shift+K")}, {}, tr("Stored with the session")});
@@ -487,18 +522,11 @@ void ScenePanel::addActions(Actions& actions, QMenu* menu) {
     }
     if (savedMenu_->isEmpty()) savedMenu_->addAction(tr("none"))->setEnabled(false);
   });
-  actions.add("view.next-view", axes, tr("&Next saved view"),
-              [this] {
-                const QStringList names = savedViews();
-                if (names.isEmpty()) return;
-                const std::string now = toText(views_->active().viewPoint());
-                int next = 0;
-                for (int i = 0; i < names.size(); ++i)
-                  if (document_.option(kSavedView + names[i].toStdString(), std::string()) == now) next = (i + 1) % names.size();
-                goToView(names[next]);
-              },
-              {{Qt::Key_K}});
+  actions.add("view.next-view", axes, tr("&Next saved view"), [this] { goToNextView(); }, {{Qt::Key_K}});
+  return axes;
+}
 
+QMenu* ScenePanel::addArrangeMenu(Actions& actions, QMenu* menu) {
   QMenu* arrange = menu->addMenu(tr("&3D views"));
   const struct {
     const char *id, *title;
@@ -507,71 +535,57 @@ void ScenePanel::addActions(Actions& actions, QMenu* menu) {
                       {"view.views-2", QT_TR_NOOP("&Two views side by side"), Arrangement::SideBySide},
                       {"view.views-4", QT_TR_NOOP("&Four views"), Arrangement::Grid},
                       {"view.views-wipe", QT_TR_NOOP("&Wipe between two views"), Arrangement::Wipe}};
-  QList<std::pair<QAction*, Arrangement>> arrangementActions;
   for (const auto& a : arrangements)
-    arrangementActions.append(
-        {toggle(a.id, arrange, tr(a.title), {}, [this, to = a.arrangement](bool) { setArrangement(to); }), a.arrangement});
+    toggles_.arrangements.append(
+        {addToggle(actions, a.id, arrange, tr(a.title), {}, [this, to = a.arrangement](bool) { setArrangement(to); }),
+         a.arrangement});
   arrange->addSeparator();
-  QAction* linked = toggle(
-      "view.link-views", arrange, tr("&Linked cameras"), {{int(Qt::CTRL) | Qt::Key_L}, {}, tr("All 3D views move together")},
-      [this](bool on) { setSwitch("scene/linked", on, on ? tr("Link the 3D views") : tr("Unlink the 3D views")); });
+  toggles_.linked = addToggle(actions, "view.link-views", arrange, tr("&Linked cameras"),
+                              {{int(Qt::CTRL) | Qt::Key_L}, {}, tr("All 3D views move together")}, [this](bool on) {
+                                setSwitch("scene/linked", on, on ? tr("Link the 3D views") : tr("Unlink the 3D views"));
+                              });
   actions.add("view.next-models", arrange, tr("Next &model in active view"), [this] { nextModels(); },
               {{Qt::Key_M}, {}, tr("Cycles through all models, then each alone")});
+  return arrange;
+}
 
+QMenu* ScenePanel::addColourMenu(Actions& actions, QMenu* menu) {
   QMenu* colours = menu->addMenu(tr("Colour cameras b&y"));
-  QList<std::pair<QAction*, QString>> colourActions;
   for (const auto& [by, title] : {std::pair("role", tr("&Role")), std::pair("model", tr("Best &model")),
                                   std::pair("error", tr("&Error")), std::pair("influence", tr("&Influence"))}) {
     const QString name = QLatin1String(by);
-    colourActions.append(
-        {toggle((std::string("view.colour-") + by).c_str(), colours, title, {}, [this, name](bool) { setColourBy(name); }),
-         name});
+    const std::string id = std::string("view.colour-") + by;
+    toggles_.colours.append(
+        {addToggle(actions, id.c_str(), colours, title, {}, [this, name](bool) { setColourBy(name); }), name});
   }
-  QAction* solo = toggle("view.solo", menu, tr("Only selected &frame"),
-                         {{int(Qt::SHIFT) | Qt::Key_S}, "solo", tr("Hides the other cameras and their objects")},
-                         [this](bool on) { setSwitch("scene/solo", on, on ? tr("Only selected frame") : tr("All frames")); });
-  actions.add("view.glyphs-larger", menu, tr("La&rger cameras and points"), [this] { scaleGlyphs(1.25); },
-              {{Qt::Key_BracketRight}});
-  actions.add("view.glyphs-smaller", menu, tr("S&maller cameras and points"), [this] { scaleGlyphs(0.8); },
-              {{Qt::Key_BracketLeft}});
+  return colours;
+}
 
-  checkActions_ = [=, this] {
-    const SceneOptions options = sceneOptions(document_);
-    const viz::Eye eye = options.views[std::size_t(options.linked ? 0 : views_->activeView())].eye;
-    camera->setChecked(eye == viz::Eye::Camera);
-    mirrored->setChecked(eye == viz::Eye::VirtualCamera);
-    parallel->setChecked(options.parallel);
-    solo->setChecked(options.solo);
-    linked->setChecked(options.linked);
-    linked->setEnabled(options.arrangement != Arrangement::Wipe);
-    for (const auto& [action, arrangement] : arrangementActions) action->setChecked(options.arrangement == arrangement);
-    const char* by = options.colours.by == viz::CameraColours::By::Error       ? "error"
-                     : options.colours.by == viz::CameraColours::By::Model     ? "model"
-                     : options.colours.by == viz::CameraColours::By::Influence ? "influence"
-                                                                               : "role";
-    for (const auto& [action, name] : colourActions) action->setChecked(name == QLatin1String(by));
-  };
-  checkActions_();
+void ScenePanel::addMenuButton(QMenu* menu, const char* iconName, const QString& tip) {
+  QAction* action = menu->menuAction();
+  action->setIcon(icon(QLatin1String(iconName)));
+  action->setProperty("glintIcon", QLatin1String(iconName));
+  action->setToolTip(tip);
+  bar_->insertAction(slider_, action);
+  qobject_cast<QToolButton*>(bar_->widgetForAction(action))->setPopupMode(QToolButton::InstantPopup);
+}
 
-  // The toolbar shows the same actions and menus.
-  const auto button = [&](QAction* action, QMenu* popup, const char* iconName, const QString& tip) {
-    if (popup) {
-      action = popup->menuAction();
-      action->setIcon(icon(QLatin1String(iconName)));
-      action->setProperty("glintIcon", QLatin1String(iconName));
-      action->setToolTip(tip);
-    }
-    bar_->insertAction(slider_, action);
-    if (popup) qobject_cast<QToolButton*>(bar_->widgetForAction(action))->setPopupMode(QToolButton::InstantPopup);
-  };
-  button(camera, nullptr, "", {});
-  button(mirrored, nullptr, "", {});
-  button(nullptr, axes, "axes", tr("Axis views, projection, saved views"));
-  button(nullptr, arrange, "views", tr("One, two or four 3D views, or a wipe"));
-  button(nullptr, colours, "palette", tr("Camera colours"));
-  button(solo, nullptr, "", {});
-  button(actions.find("view.frame-selection"), nullptr, "", {});
-  button(actions.find("view.frame-all"), nullptr, "", {});
+void ScenePanel::checkToggles() {
+  if (!toggles_.solo) return;
+  const SceneOptions options = sceneOptions(document_);
+  const viz::Eye eye = options.views[std::size_t(eyeView())].eye;
+  toggles_.camera->setChecked(eye == viz::Eye::Camera);
+  toggles_.mirrored->setChecked(eye == viz::Eye::VirtualCamera);
+  toggles_.parallel->setChecked(options.parallel);
+  toggles_.solo->setChecked(options.solo);
+  toggles_.linked->setChecked(options.linked);
+  toggles_.linked->setEnabled(options.arrangement != Arrangement::Wipe);
+  for (const auto& [action, arrangement] : toggles_.arrangements) action->setChecked(options.arrangement == arrangement);
+  const char* by = options.colours.by == viz::CameraColours::By::Error       ? "error"
+                   : options.colours.by == viz::CameraColours::By::Model     ? "model"
+                   : options.colours.by == viz::CameraColours::By::Influence ? "influence"
+                                                                             : "role";
+  for (const auto& [action, name] : toggles_.colours) action->setChecked(name == QLatin1String(by));
 }
 
 }  // namespace glint::gui

@@ -89,6 +89,14 @@ class ScenePanel : public QWidget {
   void followHistory();  ///< the undo stack's index has changed
   void showEye();
   void select(const viz::Picked& picked);
+  QAction* addToggle(Actions& actions, const char* id, QMenu* menu, const QString& title, const Actions::Look& look,
+                     const std::function<void(bool)>& run);
+  QMenu* addAxesMenu(Actions& actions, QMenu* menu);
+  QMenu* addArrangeMenu(Actions& actions, QMenu* menu);
+  QMenu* addColourMenu(Actions& actions, QMenu* menu);
+  void addMenuButton(QMenu* menu, const char* iconName, const QString& tip);
+  void checkToggles();  ///< after the options
+  void goToNextView();
   void setSwitch(const char* option, bool on, const QString& text);
   void scaleGlyphs(double factor);
   int eyeView() const;  ///< whose option says what is looked through
@@ -105,7 +113,12 @@ class ScenePanel : public QWidget {
   QList<QPointer<QSlider>> sizes_;  ///< of cameras and points: in the bar, and in the menu of what it has no room for
   QSlider* opacity_ = nullptr;
   QMenu* savedMenu_ = nullptr;
-  std::function<void()> checkActions_;
+  /// Actions that are on or off as the options say; null before addActions().
+  struct {
+    QAction *camera = nullptr, *mirrored = nullptr, *parallel = nullptr, *linked = nullptr, *solo = nullptr;
+    QList<std::pair<QAction*, Arrangement>> arrangements;
+    QList<std::pair<QAction*, QString>> colours;
+  } toggles_;
   int gesture_ = 0;
   std::optional<WhatIf> lampStart_;  ///< while a lamp is dragged
   bool framed_ = false;              ///< the picture was framed since the scene was opened

@@ -101,13 +101,16 @@ void UnreadableFiles::check() {
   const std::shared_ptr<const Inspection> in = document_.inspection();
   if (!in || in->given != document_.sharedScene()) return;
   FrameFileProblems found;
-  const auto look = [&](int frame, const std::optional<Failure>& failure, std::optional<FrameFile> usual) {
+  const auto look = [&](int frame, const Failure* failure, std::optional<FrameFile> usual) {
     if (!failure || failure->reason != Reason::FrameUnreadable) return;
     if (const auto kind = fileNamedIn(failure->detail, in->given->frames[std::size_t(frame)]); kind || usual)
       found[kind ? *kind : *usual].emplace(frame, failure->detail);
   };
-  for (std::size_t i = 0; i < in->evidence.size(); ++i) look(int(i), in->evidence[i].failure, FrameFile::Photograph);
-  for (const TrainingView& view : in->views) look(view.frame, view.failure(), {});
+  for (std::size_t i = 0; i < in->evidence.size(); ++i) {
+    const std::optional<Failure>& failure = in->evidence[i].failure;
+    look(int(i), failure ? &*failure : nullptr, FrameFile::Photograph);
+  }
+  for (const TrainingView& view : in->views) look(view.frame, view.seen ? nullptr : &view.seen.failure(), {});
   for (const auto& [name, model] : in->models)
     for (const FrameComparison& c : model.frames) look(c.frame, c.prediction.failure(), {});
   add(found);

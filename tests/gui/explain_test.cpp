@@ -57,6 +57,14 @@ class ExplainTest : public QObject {
     }
   }
 
+  /// Steps whose words depend on the model must not show those of another one.
+  void aModelWithoutWordsHasNotThoseOfAnother() {
+    for (const ExplainText& t : explainTexts().steps) {
+      QVERIFY2(t.words(QStringLiteral("canonical")).text == t.text, qPrintable(t.id));
+      QVERIFY2((t.words(QStringLiteral("a new model")).text == t.text) == t.ofModels.isEmpty(), qPrintable(t.id));
+    }
+  }
+
   void everyStepIsReachedForwardsAndBackAndIsOneStepOfUndo() {
     const auto before = window_->document().state().layers;
     window_->actions().find("explain.start")->trigger();

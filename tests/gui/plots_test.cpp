@@ -243,7 +243,7 @@ class PlotsTest : public QObject {
     for (auto& [name, model] : inspection.models) {
       ModelResult::Fit other = model.fits.front();
       other.light = "window";
-      other.failure = Failure{Reason::TooFewViews, "of the window"};
+      other.fit = Failure{Reason::TooFewViews, "of the window"};
       model.fits.push_back(other);
     }
     document_->setInspection(std::make_shared<const Inspection>(inspection), document_->request());

@@ -72,7 +72,7 @@ TEST(FrameOverlay, LensDistortionIsAppliedBecauseThePhotographHasIt) {
 TEST(FrameOverlay, GapsAreDottedAndNothingIsLost) {
   const TemporaryFolder folder;
   const auto inspection = smallInspection(folder.path());
-  PredictedHighlight& highlight = inspection->models["canonical"].frames[0].prediction.highlights()[0];
+  PredictedHighlight& highlight = inspection->models["canonical"].frames[0].prediction.editable()[0];
   highlight.gaps = {{70, 3}, {20, 21}};  // the first one runs over the end of the list
   const auto lines = ofRole(frameOverlay(*inspection, 0), OverlayRole::PredictedContour);
   ASSERT_EQ(lines.size(), 4u);

@@ -357,7 +357,7 @@ TEST(Layers, APredictionWithoutATangentPlaneHasNoBrightestPointOnTheSurface) {
     return n;
   };
   EXPECT_EQ(ofModel(), 2) << "a ball and its normal";
-  inspection->models["canonical"].frames[5].prediction.highlights()[0].tangentPlane.reset();
+  inspection->models["canonical"].frames[5].prediction.editable()[0].tangentPlane.reset();
   EXPECT_EQ(ofModel(), 0);
 }
 

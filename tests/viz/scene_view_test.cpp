@@ -271,7 +271,7 @@ TEST_F(SceneViewPicture, GapsOfAPredictionAreDotted) {
   const auto inkOf = [&](const std::vector<std::pair<int, int>>& gaps) {
     const auto inspection = smallInspection(folder_.path());
     for (FrameComparison& c : inspection->models.at("canonical").frames)
-      for (PredictedHighlight& h : c.prediction.highlights()) h.gaps = gaps;
+      for (PredictedHighlight& h : c.prediction.editable()) h.gaps = gaps;
     SceneView view;
     view.setInspection(inspection);
     view.setSelection({5, "", -1});

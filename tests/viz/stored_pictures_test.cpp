@@ -38,7 +38,7 @@ std::shared_ptr<const Inspection> inspectionApart(const std::filesystem::path& f
   for (FrameEvidence& evidence : inspection->evidence)
     for (Highlight& h : evidence.highlights) h.ellipse = Ellipse{h.peak, {11, 8}, 0.4};
   for (FrameComparison& comparison : inspection->models["canonical"].frames) {
-    PredictedHighlight& p = comparison.prediction.highlights().at(0);
+    PredictedHighlight& p = comparison.prediction.editable()[0];
     for (Pixel& vertex : p.contour.points) vertex = p.brightest.pixel + 1.35 * (vertex - p.brightest.pixel);
     p.ellipse = Ellipse{p.brightest.pixel, {25, 22}, 0.2};
     p.canonical->ellipse = Ellipse{p.brightest.pixel, {8, 5}, 1.2};

@@ -105,7 +105,7 @@ TEST(PolarResiduals, ScaleAndNoise) {
 TEST(PolarResiduals, DegenerateGapsBordersAndMisses) {
   const Polyline square{{{150, 150}, {250, 150}, {250, 250}, {150, 250}}, true};
   Inspection inspection = twoContours(circle({200, 200}, 40), square);
-  inspection.models["dual"].frames[0].prediction.highlights()[0].gaps = {{1, 2}};  // the right side only bridges
+  inspection.models["dual"].frames[0].prediction.editable()[0].gaps = {{1, 2}};  // the right side only bridges
   const PolarResidual r = polarResiduals(inspection, 0, "dual", 4)[0];
   EXPECT_TRUE(r.samples[0].value);   // up
   EXPECT_FALSE(r.samples[1].value);  // right

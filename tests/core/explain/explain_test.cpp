@@ -219,7 +219,7 @@ Inspection needle(const AnalyticSpec& surface, const std::string& model) {
   std::optional<Ellipsoid>& ellipsoid = std::get<EllipsoidFit>(result.fits.at(0).fit->family).ellipsoid;
   ellipsoid = Ellipsoid(ellipsoid->worldFromBody(), {0.02, 2.2, 0.015});
   for (FrameComparison& comparison : result.frames) {
-    PredictedHighlight& p = comparison.prediction.highlights().at(0);
+    PredictedHighlight& p = comparison.prediction.editable()[0];
     p.brightest.pixel = Pixel(-500, 100);
     ContourMetrics metrics;
     metrics.contourErrorPx = 600 + comparison.frame;

@@ -207,8 +207,8 @@ TEST(Inspect, AllTrainingFramesExcludedIsANamedFailure) {
   const Inspection r = inspect(scene, q);
   for (const auto& [name, model] : r.models) {
     ASSERT_EQ(model.fits.size(), 1u) << name;
-    ASSERT_TRUE(model.fits[0].failure) << name;
-    EXPECT_EQ(model.fits[0].failure->reason, Reason::TooFewViews) << name;
+    ASSERT_TRUE(model.fits[0].failure()) << name;
+    EXPECT_EQ(model.fits[0].failure()->reason, Reason::TooFewViews) << name;
     EXPECT_EQ(summarise(r, model).frames, 1) << name;
     EXPECT_FALSE(summarise(r, model).reason.empty());
   }

@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "core/inspect/inspection.h"
 #include "core/score/metrics.h"
@@ -29,6 +31,11 @@ ModelFit fitted(const std::string& model, const FitInput& input, const Settings&
 Prediction predicted(const std::string& model, const ModelFit& fit, const Synthetic& s, const Camera& camera,
                      const Settings& settings = {}) {
   return modelByName(model).predict(fit, camera, makeAnalytic(s.surface).get(), settings);
+}
+
+TEST(Models, EachHasAColourOfItsOwn) {
+  std::set<std::array<int, 3>> colours;
+  for (const auto& model : allModels()) EXPECT_TRUE(colours.insert(model->traits().rgb).second) << model->id();
 }
 
 /// Largest distance between two outlines, px. A model that is refused has none: then both must be refused.

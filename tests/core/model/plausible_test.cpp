@@ -100,7 +100,7 @@ TEST(Plausible, ALightBehindATrainingHighlightIsRefusedByFrame) {
   }
   std::vector<TrainingView> one = input.views;
   one.resize(1);
-  one[0].failure = Failure{Reason::PeakOffSurface, ""};
+  one[0].seen = Failure{Reason::PeakOffSurface, ""};
   EXPECT_FALSE(lightBehind(one, Light::at({0, 0, -40}))) << "what cannot be used has no say";
 }
 

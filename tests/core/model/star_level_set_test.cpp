@@ -71,7 +71,7 @@ TEST(RadianceStars, AreTheLevelSetOnAnAnalyticSurface) {
       for (const std::size_t i : {0, 3, 6}) {
         const auto stars = starsOf(fit, s.cameras[i], *surface);
         ASSERT_TRUE(stars) << nameOf(lobe) << " " << roughness << " " << i << ": " << stars.failure().message();
-        expectSameContours(modelByName("reflectance").predict(fit, s.cameras[i], surface.get(), {}).highlights, *stars,
+        expectSameContours(modelByName("reflectance").predict(fit, s.cameras[i], surface.get(), {}).highlights(), *stars,
                            nameOf(lobe), 1e-2);
       }
     }
@@ -86,7 +86,7 @@ TEST(RadianceStars, AreTheLevelSetOnAMesh) {
       const auto stars = starsOf(fit, s.cameras[i], *surface);
       ASSERT_TRUE(stars) << nameOf(lobe) << " " << i << ": " << stars.failure().message();
       // Kinks of the interpolated normals move a maximum by some thousandths of the region.
-      expectSameContours(modelByName("reflectance").predict(fit, s.cameras[i], surface.get(), {}).highlights, *stars,
+      expectSameContours(modelByName("reflectance").predict(fit, s.cameras[i], surface.get(), {}).highlights(), *stars,
                          nameOf(lobe), 0.05);
     }
   }
@@ -111,7 +111,7 @@ TEST(RadianceStars, Scale) {
     const ModelFit fit = radianceFit(lightOf(there.light), Lobe::TorranceSparrow, 0.1);
     const auto stars = starsOf(fit, there.cameras[1], *surface);
     ASSERT_TRUE(stars) << scale << " " << stars.failure().message();
-    expectSameContours(modelByName("reflectance").predict(fit, there.cameras[1], surface.get(), {}).highlights, *stars,
+    expectSameContours(modelByName("reflectance").predict(fit, there.cameras[1], surface.get(), {}).highlights(), *stars,
                        std::to_string(scale), 1e-2);
   }
 }
@@ -124,7 +124,7 @@ TEST(RadianceStars, OtherLights) {
                                 radianceFit(lightOf(s.light), Lobe::TorranceSparrow, 0.06, 0.2)}) {
       const auto stars = starsOf(fit, s.cameras[1], *surface);
       ASSERT_TRUE(stars) << surface->describe() << " " << stars.failure().message();
-      expectSameContours(modelByName("reflectance").predict(fit, s.cameras[1], surface.get(), {}).highlights, *stars,
+      expectSameContours(modelByName("reflectance").predict(fit, s.cameras[1], surface.get(), {}).highlights(), *stars,
                          surface->describe(), 0.05);
     }
 }

@@ -55,7 +55,7 @@ class Comparison {
   Differences& d_;
 };
 
-std::string textOf(const std::optional<Failure>& failure) { return failure ? failure->message() : "answered"; }
+std::string textOf(const Failure* failure) { return failure ? failure->message() : "answered"; }
 
 const FrameComparison* comparisonOf(const Inspection& r, const ModelResult& model, const std::string& frame,
                                     const std::string& light) {
@@ -72,8 +72,9 @@ void compareFits(const ModelFit& a, const ModelFit& b, const std::string& model,
   if (a.ellipsoid() && b.ellipsoid()) c.ellipsoid(model, *a.ellipsoid(), *b.ellipsoid());
   if (a.lightEstimate && b.lightEstimate) c.light(model, *a.lightEstimate, *b.lightEstimate);
   if (a.limitAngle() && b.limitAngle()) c.relative(model, Quantity::LimitAngle, *a.limitAngle(), *b.limitAngle());
-  if (const LimitAngleFit* p = a.as<LimitAngleFit>(), *q = b.as<LimitAngleFit>(); p && q)
+  if (const LimitAngleFit* p = a.as<LimitAngleFit>(), *q = b.as<LimitAngleFit>(); p && q) {
     EXPECT_EQ(p->extent.has_value(), q->extent.has_value()) << place;
+  }
   if (const ReflectanceFit* p = a.as<ReflectanceFit>(), *q = b.as<ReflectanceFit>(); p && q) {
     EXPECT_EQ(p->lobe, q->lobe) << place;
     EXPECT_EQ(p->lightRadius > 0, q->lightRadius > 0) << place;
@@ -127,9 +128,9 @@ void compare(const Inspection& a, const Inspection& b, const Back& back, const s
       const auto twin =
           std::find_if(other.fits.begin(), other.fits.end(), [&](const ModelResult::Fit& o) { return o.light == f.light; });
       ASSERT_TRUE(twin != other.fits.end()) << place;
-      EXPECT_EQ(f.fit.has_value(), twin->fit.has_value()) << place << ": " << textOf(f.failure) << " | " << textOf(twin->failure);
-      if (f.failure && twin->failure) {
-        EXPECT_EQ(f.failure->reason, twin->failure->reason) << place;
+      EXPECT_EQ(bool(f.fit), bool(twin->fit)) << place << ": " << textOf(f.failure()) << " | " << textOf(twin->failure());
+      if (f.failure() && twin->failure()) {
+        EXPECT_EQ(f.failure()->reason, twin->failure()->reason) << place;
       }
       if (!f.fit || !twin->fit) continue;
       ++d.fits[name];

@@ -100,7 +100,7 @@ TEST(WhatIf, SynthesisedContoursFollowTheLamp) {
   const Inspection result = inspect(scene, q);
   const Eigen::Vector3d expected(-0.2, 0.3, 1.6);
   const ModelResult::Fit& fit = result.models.at("reflectance").fits.at(0);
-  ASSERT_TRUE(fit.fit) << fit.failure->message();
+  ASSERT_TRUE(fit.fit) << fit.fit.failure().message();
   EXPECT_LT((fit.fit->lightEstimate->position() - expected).norm(), kSameModel * expected.norm());
   EXPECT_NEAR(fit.fit->as<ReflectanceFit>()->roughness, 0.08, 0.08 * 0.01);
   EXPECT_LT((*result.scene->lights[0].position - expected).norm(), kExactly) << "the picture shows the lamp where it was put";

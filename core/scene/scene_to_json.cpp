@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <map>
+#include <unordered_set>
+#include <utility>
+
+#include "core/base/json_dom.h"
+#include "core/scene/scene_json.h"
+
+namespace glint {
+namespace fs = std::filesystem;
+using json_dom::Json;
+
+namespace {
+
+Json toJson(const Eigen::VectorXd& v) {
+  Json j = Json::array();
+  for (Eigen::Index i = 0; i < v.size(); ++i) j.push_back(v[i]);
+  return j;
+}
+
+Json toJson(const Eigen::Matrix4d& m) {
+  Json j = Json::array();
+  for (int i = 0; i < 4; ++i) j.push_back(toJson(Eigen::VectorXd(m.row(i).transpose())));
+  return j;
+}
+
+Json toJson(const Camera& camera) {
+  const Eigen::Matrix3d& k = camera.pixelFromRay;
+  Json j = {{"width", camera.width}, {"height", camera.height}, {"fx", k(0, 0)},
+            {"fy", k(1, 1)},         {"cx", k(0, 2)},           {"cy", k(1, 2)}};
+  if (k(0, 1) != 0) j["skew"] = k(0, 1);
+  j["distortion"] = Json(camera.distortion);
+  return j;
+}
+
+bool sameIntrinsics(const Camera& a, const Camera& b) {
+  return a.width == b.width && a.height == b.height && a.pixelFromRay == b.pixelFromRay && a.distortion == b.distortion;
+}
+
+Json toJson(const AnalyticSpec& spec) {
+  Json j = {{"type", spec.type}};
+  if (spec.type == "sphere" || spec.type == "cylinder") j["radius"] = spec.radius;
+  if (spec.type == "ellipsoid") j["semi_axes"] = toJson(Eigen::VectorXd(spec.semiAxes));
+  if (spec.type == "sheet") {
+    j["curvature"] = spec.curvature;
+    if (spec.length) j["length"] = *spec.length;
+    if (spec.width) j["width"] = *spec.width;
+  }
+  if (spec.type == "torus") {
+    j["major_radius"] = spec.majorRadius;
+    j["minor_radius"] = spec.minorRadius;
+  }
+  if (spec.type == "quadric") j["matrix"] = toJson(spec.matrix);
+  j["world_from_surface"] = toJson(spec.worldFromSurface.matrix());
+  return j;
+}
+
+/// Puts kept unknown keys back; never overwrites a known one.
+void restore(Json& target, const Json& kept) {
+  std::unordered_set<std::string> known;
+  for (const auto& item : target.items()) known.insert(item.key());
+  for (const auto& item : kept.items()) {
+    if (!known.count(item.key())) {
+      json_dom::append(target, item.key(), item.value());
+      continue;
+    }
+    Json& old = target[item.key()];
+    if (old.is_object() && item.value().is_object()) restore(old, item.value());
+    if (old.is_array() && item.value().is_array())
+      for (std::size_t i = 0; i < std::min(old.size(), item.value().size()); ++i)
+        if (old[i].is_object()) restore(old[i], item.value()[i]);
+  }
+}
+
+Json toJson(const Highlight& h, const Camera& camera) {
+  Json j = Json::object();
+  if (!h.light.empty()) j["light"] = h.light;
+  j["level"] = h.level;
+  j["peak"] = toJson(Eigen::VectorXd(camera.distorted(h.peak)));
+  Json contour = Json::array();
+  for (const Pixel& p : h.contour.points) contour.push_back(toJson(Eigen::VectorXd(camera.distorted(p))));
+  j["contour"] = std::move(contour);
+  return j;
+}
+
+Json toJson(const TrueLight& light) {
+  Json j = {{"id", light.id}};
+  if (light.position) j["position"] = toJson(Eigen::VectorXd(*light.position));
+  if (light.direction) j["direction"] = toJson(Eigen::VectorXd(*light.direction));
+  if (light.segment)
+    j["segment"] = Json::array({toJson(Eigen::VectorXd((*light.segment)[0])), toJson(Eigen::VectorXd((*light.segment)[1]))});
+  if (light.radius > 0) j["radius"] = light.radius;
+  return j;
+}
+
+}  // namespace
+
+std::string sceneToJson(const Scene& scene, const fs::path& folder) {
+  // Of our own making: its limits were checked when the scene was read, and the grouping nests it a level deeper.
+  const Json kept = scene.unknownJson.empty() ? Json::object() : Json::parse(scene.unknownJson);
+  std::map<std::pair<std::string, std::string>, const Json*> keptById;  // the JSON library looks through all ids for one
+  for (const auto& group : kept.items())
+    for (const auto& item : group.value().items()) keptById.emplace(std::pair(group.key(), item.key()), &item.value());
+  const auto keptOf = [&](const char* group, const std::string& id) -> Json {
+    const auto found = keptById.find({group, id});
+    return found == keptById.end() ? Json::object() : *found->second;
+  };
+  const auto relative = [&](const fs::path& path, const std::string& place) {
+    const fs::path r = fs::absolute(path).lexically_normal().lexically_relative(folder);
+    if (r.empty()) throw InputError(path.string(), place, "has no path relative to " + folder.string());
+    return r.generic_string();
+  };
+  Json root = {{"glint_scene", 1}, {"name", scene.name}, {"units", "m"}};
+  const bool shared = std::all_of(scene.frames.begin(), scene.frames.end(),
+                                  [&](const Frame& f) { return sameIntrinsics(f.camera, scene.frames.front().camera); });
+  if (shared && !scene.frames.empty()) {
+    root["camera"] = toJson(scene.frames.front().camera);
+    if (kept.contains("camera")) restore(root["camera"], kept["camera"]);
+  }
+  root["frames"] = Json::array();
+  for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+    const Frame& frame = scene.frames[i];
+    const std::string place = "frames[" + std::to_string(i) + "].";
+    Json j = {{"id", frame.id}};
+    const auto path = [&](const char* key, const fs::path& p) {
+      if (!p.empty()) j[key] = relative(p, place + key);
+    };
+    path("image", frame.image);
+    path("radiance", frame.radiance);
+    path("depth", frame.depth);
+    if (frame.depthScale > 0) j["depth_scale"] = frame.depthScale;
+    path("normals", frame.normals);
+    path("mask", frame.mask);
+    if (!shared) j["camera"] = toJson(frame.camera);
+    j["camera_from_world"] = toJson(frame.camera.camFromWorld.matrix());
+    if (!frame.surface.empty()) j["surface"] = frame.surface;
+    if (!frame.lightsOn.empty()) j["lights_on"] = frame.lightsOn;
+    for (const Highlight& h : frame.highlights) j["highlights"].push_back(toJson(h, frame.camera));
+    restore(j, keptOf("frames", frame.id));
+    root["frames"].push_back(std::move(j));
+  }
+  root["surfaces"] = Json::object();
+  for (const auto& [id, source] : scene.surfaces) {
+    Json j = Json::object();
+    if (source.mesh) j["mesh"] = relative(*source.mesh, "surfaces." + id + ".mesh");
+    if (source.analytic) j["analytic"] = toJson(*source.analytic);
+    restore(j, keptOf("surfaces", id));
+    root["surfaces"][id] = std::move(j);
+  }
+  if (!scene.lights.empty()) {
+    root["lights"] = Json::array();
+    for (const TrueLight& light : scene.lights) {
+      Json j = toJson(light);
+      restore(j, keptOf("lights", light.id));
+      root["lights"].push_back(std::move(j));
+    }
+  }
+  if (kept.contains("scene")) restore(root, kept["scene"]);
+  return json_dom::textWithPaths(root, folder.string());
+}
+
+}  // namespace glint
