@@ -12,7 +12,7 @@ namespace glint {
 /// Reads a PLY, OBJ or STL mesh, recognised by content. Every count, index and length is checked against the file before it is
 /// used, nothing is allocated for what the file does not hold, and numbers are read the same in every locale.
 /// Polygons become fans of triangles around their first corner. A million triangles take about a second. Our own readers: those of PCL
-/// and VTK trust counts before they have looked at the file (and bring VTK into core).
+/// and VTK bring VTK into core, and do not name the place of a fault.
 /// @throw InputError (file; line in text, byte in binary files, and the element) when the file is missing, empty, none of the
 ///        three formats, truncated, longer than its header promises, or contradicts itself; when a face has fewer than three
 ///        corners or names a vertex, normal or texture coordinate that does not exist; when a coordinate is not a number below

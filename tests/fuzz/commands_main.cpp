@@ -177,6 +177,16 @@ struct Row {
 };
 using Table = std::map<std::string, Row>;
 
+void addTo(Row& sum, const Row& r) {
+  sum.runs += r.runs;
+  sum.answered += r.answered;
+  sum.wrong += r.wrong;
+  sum.cannot += r.cannot;
+  sum.findings += r.findings;
+  sum.slowest = std::max(sum.slowest, r.slowest);
+  sum.largest = std::max(sum.largest, r.largest);
+}
+
 void one(const Options& o, const fs::path& materials, const std::vector<const Victim*>& lots, long number, Table& table) {
   Rng rng = rngOf(o.seed, static_cast<std::uint64_t>(number));
   const Victim& v = *lots[below(rng, lots.size())];
@@ -258,14 +268,7 @@ void add(const fs::path& file, Table& table) {
     std::string rest;
     std::getline(in, rest);
     std::istringstream(rest) >> r.runs >> r.answered >> r.wrong >> r.cannot >> r.findings >> r.slowest >> r.largest;
-    Row& sum = table[name];
-    sum = {sum.runs + r.runs,
-           sum.answered + r.answered,
-           sum.wrong + r.wrong,
-           sum.cannot + r.cannot,
-           sum.findings + r.findings,
-           std::max(sum.slowest, r.slowest),
-           std::max(sum.largest, r.largest)};
+    addTo(table[name], r);
   }
 }
 
@@ -282,13 +285,7 @@ std::string markdown(const Table& table) {
   };
   for (const auto& [name, r] : table) {
     line(name, r);
-    all = {all.runs + r.runs,
-           all.answered + r.answered,
-           all.wrong + r.wrong,
-           all.cannot + r.cannot,
-           all.findings + r.findings,
-           std::max(all.slowest, r.slowest),
-           std::max(all.largest, r.largest)};
+    addTo(all, r);
   }
   line("all | ", all);
   return text;
