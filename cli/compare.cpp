@@ -27,7 +27,7 @@ Command compareCommand() {
     o.positional(a->a, "A.glint", "The first session");
     o.positional(a->b, "B.glint", "The second session");
     o.flag(a->all, "--all", "Also list equal values");
-    a->places.declare(o);
+    a->places.declareForSession(o);
     o.option(a->json, "--json", "FILE", "Write the comparison as JSON (- = standard output, replaces the text)");
   };
   c.run = [a](const Context& context) -> int {

@@ -25,7 +25,7 @@ Command infoCommand() {
       "  glint info scene.json                 the report as text\n"
       "  glint info DIR --json -               the same as JSON on standard output\n";
   c.declare = [a](Options& o) {
-    o.positional(a->input, "INPUT", "Scene file, folder that contains one, or session");
+    o.positional(a->input, "INPUT", "Scene file, capture of another program (COLMAP, nerfstudio ...), folder that contains one, or session");
     o.option(a->json, "--json", "FILE", "Write the report as JSON instead of text (- = standard output)");
     a->places.declare(o);
   };

@@ -53,7 +53,7 @@ std::pair<int, int> parseSize(const std::string& text) {
 }
 
 void PictureInput::declare(Options& o) {
-  o.positional(input, "FILE.glint|INPUT", "Session, scene file, or folder that contains one");
+  o.positional(input, "FILE.glint|INPUT", "Session, scene file, capture of another program, or folder that contains one");
   o.option(layers, "--layers", "LIST",
            "Scene layers to show or hide, in order: +rays,-surface; also all, none. Needs the equals sign: --layers=-surface");
   o.option(models, "--models", "A,B", "Models to compute and draw (default: the session's, else all)");

@@ -66,7 +66,7 @@ Command predictCommand() {
     o.option(a->out, "--out", "DIR", "Write contours, overlays and labels to this folder");
     o.option(a->masks, "--masks", "DIR", "Write masks and COCO labels of all frames to this new folder");
     o.option(a->json, "--json", "FILE", "Write predictions.json to this file (- = standard output, replaces the table)");
-    a->places.declare(o);
+    a->places.declareForSession(o);
   };
   c.run = [a](const Context& context) -> int {
     const OpenedSession opened = a->places.openSession(a->session);

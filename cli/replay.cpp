@@ -26,7 +26,7 @@ Command replayCommand() {
   c.declare = [a](Options& o) {
     o.positional(a->session, "FILE.glint", "The session to replay");
     o.flag(a->exact, "--exact", "Also compare the digest of all results");
-    a->places.declare(o);
+    a->places.declareForSession(o);
   };
   c.run = [a](const Context& context) -> int {
     const Session session = readSession(a->session);

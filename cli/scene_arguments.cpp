@@ -39,7 +39,24 @@ void SceneArguments::declarePlaces(Options& o) {
   o.repeated(meshFolders, "--meshes", "DIR", "Folder to search for meshes that are not in their place; may be repeated");
 }
 
+void SceneArguments::declareReading(Options& o) {
+  for (const ChoiceOption& option : choiceOptions()) o.option(reading[option.flag], option.flag, option.value, option.help);
+}
+
+InputChoices SceneArguments::choices() const {
+  InputChoices c;
+  for (const ChoiceOption& option : choiceOptions())
+    if (const auto given = reading.find(option.flag); given != reading.end() && !given->second.empty())
+      option.set(c, given->second);
+  return c;
+}
+
 void SceneArguments::declare(Options& o) {
+  declareReading(o);
+  declareForSession(o);
+}
+
+void SceneArguments::declareForSession(Options& o) {
   o.flag(allowOutside, "--allow-outside", "Accept paths outside the folders of the session and the scene file");
   declarePlaces(o);
 }
@@ -98,6 +115,8 @@ Scene SceneArguments::read(const std::string& input) const {
   options.meshes = r.meshes;
   options.meshFolders = r.meshFolders;
   options.folders = r.folders;
+  options.photographs.assign(photographs.begin(), photographs.end());
+  options.choices = choices();
   Scene scene = readScene(input, options);
   check(scene);
   return scene;
@@ -116,6 +135,10 @@ Session SceneArguments::readRequestOf(const std::string& file, bool withItsTruth
 }
 
 OpenedSession SceneArguments::openSession(const std::string& file) const {
+  if (!choices().none())
+    throw InputError(file, "",
+                     "is a session, which keeps how its input is read: --as, --surface, --camera, --units and the like "
+                     "are not for sessions");
   Session session = readSession(file);
   session.allowOutsidePaths = allowOutside;
   OpenedSession opened = glint::openSession(std::move(session), relinked());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -9,16 +10,21 @@
 
 namespace glint::cli {
 
-/// Where the files of a scene are that are not where it says; the same flags for every command that reads one.
+/// How an input is read, and where the files of a scene are that are not where it says; the same flags for every command that reads
+/// one.
 struct SceneArguments {
   bool allowOutside = false;
   std::vector<std::string> photographs;  ///< folders
   std::vector<std::string> files;        ///< KIND=DIR
   std::vector<std::string> mesh;         ///< NAME=FILE
   std::vector<std::string> meshFolders;
+  std::map<std::string, std::string> reading;  ///< how a capture of another program is read: texts of choiceOptions(), by flag
 
-  /// --photographs, --files, --mesh and --meshes; with `declare` also --allow-outside.
+  /// --photographs, --files, --mesh and --meshes.
   void declarePlaces(Options& options);
+  /// These and --allow-outside; a session keeps the rest.
+  void declareForSession(Options& options);
+  /// All.
   void declare(Options& options);
   /// A scene, or that of a session. InputError, also for a flag that the scene has no use for.
   Scene read(const std::string& input) const;
@@ -29,6 +35,8 @@ struct SceneArguments {
 
  private:
   Relinked relinked() const;
+  InputChoices choices() const;
+  void declareReading(Options& options);
   void lookIn(Scene& scene, FrameFile kind, const std::string& folder, const std::string& given) const;
   void check(Scene& scene) const;
 };

@@ -109,7 +109,7 @@ int run(int argc, char** argv) {
   window.show();
   window.applyLayout(command.layout);                        // dock sizes are known only now
   if (!command.size.isEmpty()) window.resize(command.size);  // a large window's docks may have kept it larger
-  if (!command.input.isEmpty()) window.open(command.input, command.frame);
+  if (!command.input.isEmpty()) window.open(command.input, command.frame, command.choices);
   setAnimationsWanted(command.run.isEmpty() && command.screenshot.isEmpty());  // a script waits for no movement
   if (!command.run.isEmpty()) window.runActions(command.run);
   if (!command.screenshot.isEmpty()) new Screenshot(window, command.screenshot, command.waitIdle);

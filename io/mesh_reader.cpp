@@ -9,6 +9,19 @@
 #include "io/stl_layout.h"
 
 namespace glint {
+namespace {
+
+/// JSON text with the keys of a glTF.
+bool isGltfText(std::string_view bytes) {
+  constexpr std::string_view kMark = "\xef\xbb\xbf";  // of UTF-8, which some editors put in front
+  if (bytes.starts_with(kMark)) bytes.remove_prefix(kMark.size());
+  const std::size_t first = bytes.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos || bytes[first] != '{') return false;
+  const auto has = [&](std::string_view key) { return bytes.find(key) != std::string_view::npos; };
+  return has("\"asset\"") && (has("\"meshes\"") || has("\"accessors\""));
+}
+
+}  // namespace
 
 MeshContent readMeshContent(const std::filesystem::path& file) { return parseMesh(readFile(file, Limit::MeshMegabytes), file); }
 
@@ -23,10 +36,11 @@ MeshContent parseMesh(std::string_view bytes, const std::filesystem::path& file)
   const std::size_t promised = io::stlBytesPromised(bytes);
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return parsePly(bytes, name);
   if (promised == bytes.size() && bytes.find('\0') != std::string_view::npos) return parseStlBinary(bytes, name);
+  if (bytes.starts_with("glTF") || isGltfText(bytes)) return parseGltf(bytes, file);
   if (solid) return parseStlText(bytes, name);
   if (namedStl) return parseStlBinary(bytes, name);
   if (bytes.find('\0') != std::string_view::npos || bytes.find("v ") == std::string_view::npos)
-    io::fail(name, "", "is not a mesh; supported: PLY, OBJ, STL");
+    io::fail(name, "", "is not a mesh; supported: PLY, OBJ, STL, glTF");
   return parseObj(bytes, name);
 }
 

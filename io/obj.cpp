@@ -18,7 +18,7 @@ class ObjReader {
   MeshContent read() {
     while (std::optional<std::string_view> line = lines_.next()) statement(whole(*line));
     checkReferences();
-    if (mesh_.triangles.empty()) io::fail(file_, "", "is not a mesh: neither PLY nor STL, and as OBJ it has no faces");
+    if (mesh_.triangles.empty()) io::fail(file_, "", "is not a mesh: neither PLY, STL nor glTF, and as OBJ it has no faces");
     takeNormals();
     return io::finished(std::move(mesh_), file_);
   }

@@ -25,7 +25,7 @@ namespace {
 constexpr int kCells = 64;  ///< across a distorted photograph: between the nodes distortion is taken as linear
 
 bool sameLens(const Camera& a, const Camera& b) {
-  return a.width == b.width && a.height == b.height && a.distortion == b.distortion && a.pixelFromRay == b.pixelFromRay;
+  return a.width == b.width && a.height == b.height && a.lens == b.lens && a.pixelFromRay == b.pixelFromRay;
 }
 
 }  // namespace

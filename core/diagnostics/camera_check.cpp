@@ -21,6 +21,7 @@ constexpr double kClearly = 0.5;        // of the residual as given: what is lef
 constexpr double kClearlyFlip = 0.2;    // mirrored images leave pixels where the right ones leave hundredths
 constexpr double kDetectionPx = 0.02;   // residuals as given below this are what detection leaves on good data
 constexpr double kGoodRadii = 0.01;     // residual over the contour's radius below which a light explains the contours
+constexpr double kOnlyRadii = 0.05;     // the same where no other hypothesis has any light
 constexpr double kLeastFocalPct = 0.3;  // of errors that are told: smaller ones hide in those of surfaces
 constexpr double kShiftSlackPx = 0.2;   // of what the highlights ask for about half a pixel
 constexpr double kHalfGain = 0.7;       // of a half's residual as given that a true change leaves at most; noise leaves all of it
@@ -165,17 +166,21 @@ class Check {
         {"mirrored left-right", true, false}, {"mirrored upside down", false, true}, {"turned by 180 degrees", true, true}};
     const Flip* best = nullptr;
     double bestPx = 0;
+    int explained = 0;
     for (const Flip& flip : kinds) {
       Change change;
       change.flipX = flip.x;
       change.flipY = flip.y;
       const std::optional<Fitted> fitted = fit(change, every(0, 1), {});
       add(std::string("images ") + flip.name, fitted);
+      explained += fitted.has_value();
       if (!fitted || (best && fitted->rmsPx >= bestPx)) continue;
       best = &flip;
       bestPx = fitted->rmsPx;
     }
-    if (!best || bestPx > kGoodRadii * radiusPx_ || (given && bestPx > kClearlyFlip * given->rmsPx)) return;
+    // Where no light explains anything else, coarse images may leave more.
+    const double good = !given && explained == 1 ? kOnlyRadii : kGoodRadii;
+    if (!best || bestPx > good * radiusPx_ || (given && bestPx > kClearlyFlip * given->rmsPx)) return;
     result_.findings.push_back(
         formatted("the images are %s: corrected, the highlights of %d frames fit one light to %.2g px; as given, ", best->name,
                   result_.views, bestPx) +

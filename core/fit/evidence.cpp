@@ -10,7 +10,7 @@
 #include "core/base/number_text.h"
 #include "core/base/safe_text.h"
 #include "core/geometry/distortion.h"
-#include "core/scene/bounded_json.h"
+#include "core/base/bounded_json.h"
 
 namespace glint {
 namespace {

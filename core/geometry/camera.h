@@ -3,8 +3,9 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <array>
 #include <optional>
+
+#include "core/geometry/lens.h"
 
 namespace glint {
 
@@ -29,16 +30,13 @@ struct Projection {
   }
 };
 
-/// Brown-Conrady lens distortion k1 k2 p1 p2 k3 (OpenCV order), all 0 = ideal.
-using Distortion = std::array<double, 5>;
-
 /// A calibrated camera. Axes: x right, y down, z forward (OpenCV).
 /// Invariant: pixelFromRay is upper triangular with positive focal lengths and (2,2) == 1;
 /// camFromWorld is rigid; width and height are positive.
 struct Camera {
   Eigen::Matrix3d pixelFromRay = Eigen::Matrix3d::Identity();      ///< K: pixels from camera-frame rays
   Eigen::Isometry3d camFromWorld = Eigen::Isometry3d::Identity();  ///< R, t of pixel ~ K (R X + t)
-  Distortion distortion{};
+  Lens lens;                                                       ///< ideal by default
   int width = 0, height = 0;
 
   Eigen::Vector3d centreInWorld() const;
@@ -50,11 +48,12 @@ struct Camera {
   std::optional<Pixel> project(const Eigen::Vector3d& pointInWorld) const;
   /// Depth along the optical axis, world units.
   double depth(const Eigen::Vector3d& pointInWorld) const;
-  bool hasDistortion() const;
-  /// Ideal pixel of a measured (distorted) one. Not finite where there is none (beyond the fold of a strong distortion): the
-  /// caller checks, or asks withoutDistortion (core/geometry/distortion.h), which names the reason.
+  bool hasDistortion() const { return !lens.isIdeal(); }
+  /// Ideal pixel of a measured (distorted) one. Not finite where there is none (beyond the fold of a strong distortion, or 90
+  /// degrees and more from the axis of a fisheye): the caller checks, or asks withoutDistortion (core/geometry/distortion.h), which
+  /// names the reason. Near 90 degrees it lies far outside of width x height.
   Pixel undistorted(const Pixel& measured) const;
-  /// Measured pixel of an ideal one (closed form).
+  /// Measured pixel of an ideal one (closed form). Not finite where the lens shows none, see distorted(Lens).
   Pixel distorted(const Pixel& ideal) const;
 };
 

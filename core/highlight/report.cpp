@@ -73,7 +73,8 @@ Image drawDetection(const Image& photograph, const Camera& camera, const std::ve
   };
   const auto draw = [&](const std::vector<Pixel>& points, const cv::Scalar& colour) {
     std::vector<cv::Point> line;
-    for (const Pixel& p : points) line.push_back(at(p));
+    for (const Pixel& p : points)
+      if (camera.distorted(p).allFinite()) line.push_back(at(p));  // an ellipse may reach where the lens shows nothing
     cv::polylines(canvas, line, true, colour, 1, cv::LINE_AA, kShift);
   };
   for (const Highlight& h : highlights) {

@@ -5,8 +5,9 @@
 #include <charconv>
 #include <filesystem>
 
+#include "core/base/permitted.h"
+#include "core/capture/capture.h"
 #include "core/scene/frame_spec.h"
-#include "core/scene/permitted.h"
 #include "core/scene/scene_files.h"
 
 namespace glint {
@@ -32,6 +33,8 @@ bool namesFilesOutside(const Scene& scene) {
   std::vector<std::filesystem::path> named{std::filesystem::absolute(scene.file).parent_path()};
   for (const FilesFolder& f : scene.folders) named.push_back(f.folder);
   for (const auto& [mesh, file] : scene.meshes) named.push_back(file);
+  for (const std::filesystem::path& folder : foldersOfCapture(scene.file)) named.push_back(folder);
+  if (!scene.choices.surfaceFile.empty()) named.push_back(scene.choices.surfaceFile);
   const std::vector<std::filesystem::path> files = filesOf(scene);
   return std::any_of(files.begin(), files.end(), [&](const std::filesystem::path& file) { return !liesIn(named, file); });
 }
@@ -84,6 +87,9 @@ Outcome<std::string> commandOf(const Scene& scene, const InspectionRequest& q) {
   for (const FilesFolder& f : scene.folders)
     command += f.kind == FrameFile::Photograph ? " --photographs " + place(f.folder)
                                                : " --files " + shellWord(nameOf(f.kind) + ("=" + absolute(f.folder)));
+  for (const ChoiceOption& option : choiceOptions())
+    if (const std::string choice = option.textOf(scene.choices); !choice.empty())
+      command += std::string(" ") + option.flag + " " + shellWord(choice);
   for (const auto& [named, file] : scene.meshes) command += " --mesh " + shellWord(named + "=" + absolute(file));
   return command;
 }

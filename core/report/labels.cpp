@@ -115,7 +115,8 @@ std::string cocoJson(const Inspection& inspection, const std::string& model, con
     const Camera& camera = inspection.scene->frames[c.frame].camera;
     for (const PredictedHighlight& h : c.prediction.highlights()) {
       Polyline drawn{{}, true};
-      for (const Pixel& p : h.contour.points) drawn.points.push_back(camera.distorted(p) + Pixel(0.5, 0.5));
+      for (const Pixel& p : h.contour.points)
+        if (const Pixel d = camera.distorted(p); d.allFinite()) drawn.points.push_back(d + Pixel(0.5, 0.5));
       if (drawn.points.size() < 3) continue;
       ordered_json polygon = ordered_json::array();
       Pixel low = drawn.points[0], high = low;

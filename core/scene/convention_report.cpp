@@ -10,6 +10,7 @@
 #include "core/base/json_text.h"
 #include "core/base/median.h"
 #include "core/base/number_text.h"
+#include "core/scene/geometry_check.h"
 #include "core/scene/mesh_file.h"
 #include "core/scene/scene_reader.h"
 #include "core/surface/analytic.h"
@@ -17,6 +18,8 @@
 namespace glint {
 namespace {
 using Json = nlohmann::ordered_json;
+
+constexpr int kLeastDepthSamples = 20;  // vertices compared with a depth map: fewer may all lie on an edge
 
 /// Part of an unbounded surface that the cameras may see: around the point nearest to their optical axes.
 Eigen::AlignedBox3d regionOfInterest(const Scene& scene, const Eigen::AlignedBox3d& bounds) {
@@ -92,13 +95,17 @@ void compareVertices(const TriangleMesh& mesh, const Frame& frame, const std::op
   }
   facts.seesSurface = facts.verticesInImage > 0 || looksAtATriangle(mesh, camera);
   if (!depth) return;
-  std::vector<double> differences;
+  std::vector<double> differences, ratios;
   for (const Nearest& cell : cells)
     if (std::isfinite(cell.depth))
-      if (const std::optional<double> d = depthAt(*depth, cell.pixel)) differences.push_back(std::abs(*d - cell.depth));
+      if (const std::optional<double> d = depthAt(*depth, cell.pixel)) {
+        differences.push_back(std::abs(*d - cell.depth));
+        ratios.push_back(*d / cell.depth);
+      }
   facts.depthSamples = static_cast<int>(differences.size());
   facts.depthMedian = quantile(differences, 0.5);
   facts.depthP95 = quantile(differences, 0.95);
+  facts.depthRatio = quantile(ratios, 0.5);
 }
 
 void countPixels(const Frame& frame, ConventionReport::FrameFacts& facts) {
@@ -160,8 +167,32 @@ void concludeGrids(const Scene& scene, ConventionReport& report) {
   }
 }
 
+/// Depth maps that contradict the surface: by one factor for all, which is their scale, or otherwise.
+void concludeDepth(const Scene& scene, int depthOff, double worstDepth, ConventionReport& report) {
+  constexpr double kSame = 0.03;  // of the factor, from frame to frame: vertices and pixels differ by less than a percent
+  std::vector<double> ratios;
+  double scale = 0;
+  for (const auto& f : report.frames) {
+    if (f.depthSamples <= kLeastDepthSamples) continue;
+    ratios.push_back(f.depthRatio);
+    scale = scene.frames[static_cast<std::size_t>(f.frame)].depthScale;
+  }
+  const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
+  const double factor = quantile(ratios, 0.5);
+  const std::string start = formatted("depth and surface disagree in %d of %zu frames", depthOff, report.frames.size());
+  if (!ratios.empty() && *most - *least < kSame * factor && std::abs(factor - 1) > kSame)
+    report.findings.push_back(start + formatted(": depth maps say %.4g times the depth of the surface in every frame", factor) +
+                              (scale > 0 ? formatted(" (depth_scale should be %.4g in place of %.4g)", scale / factor, scale)
+                                         : std::string(" (is the unit of one of them wrong?)")));
+  else
+    report.findings.push_back(start +
+                              formatted(" by up to %.3g m (distance along the ray instead of along the axis? a mesh that is "
+                                        "not in the frame of the cameras?)",
+                                        worstDepth));
+}
+
 /// Statements about the scene as a whole, each with the likely cause.
-void conclude(const Scene& scene, ConventionReport& report) {
+void conclude(const Scene& scene, const SightCheck& sight, ConventionReport& report) {
   int blind = 0, lookingAway = 0, withSurface = 0, bad = 0, depthOff = 0, notFinite = 0, negative = 0;
   std::string badId, notFiniteId, negativeId;
   double worstDepth = 0;
@@ -175,7 +206,7 @@ void conclude(const Scene& scene, ConventionReport& report) {
       ++blind;
     }
     const double limit = 0.01 * f.distance;
-    if (f.depthSamples > 20 && f.depthMedian > limit) {
+    if (f.depthSamples > kLeastDepthSamples && f.depthMedian > limit) {
       ++depthOff;
       worstDepth = std::max(worstDepth, f.depthMedian);
     }
@@ -186,17 +217,15 @@ void conclude(const Scene& scene, ConventionReport& report) {
   const int n = static_cast<int>(report.frames.size());
   if (blind) {
     std::string line = formatted("%d of %d cameras do not see their surface", blind, n);
-    if (2 * lookingAway > withSurface)
+    if (const SightHypothesis* h = sight.explanation())
+      line += formatted("; %d do once one mistake is undone: ", h->seeing) + h->mistake;
+    else if (2 * lookingAway > withSurface)
       line += ": they look away from it (camera axes must be x right, y down, z forward; OpenGL's point backwards)";
     else
       line += " (does the file contain the inverse of camera_from_world?)";
     report.findings.push_back(line);
   }
-  if (depthOff)
-    report.findings.push_back(
-        formatted("depth and surface disagree in %d of %d frames by up to %.3g m (unit, scale, or distance along the ray instead "
-                  "of along the axis?)",
-                  depthOff, n, worstDepth));
+  if (depthOff) concludeDepth(scene, depthOff, worstDepth, report);
   if (bad) report.findings.push_back(formatted("%d of %d frames have a file that cannot be used; first: ", bad, n) + badId);
   if (notFinite)
     report.findings.push_back(formatted("%d of %d frames contain NaN or infinite values; first: frame ", notFinite, n) +
@@ -217,7 +246,7 @@ class Triangles {
     std::map<std::string, TriangleMesh>& known = source.mesh ? read_ : made_;
     const auto found = known.find(id);
     if (found != known.end()) return found->second;
-    if (source.mesh) return known[id] = readMesh(*source.mesh);
+    if (source.mesh) return known[id] = readMesh(source);
     if (known.size() >= kMostMade) known.clear();
     const std::shared_ptr<const Surface> surface = makeAnalytic(*source.analytic);
     return known[id] = surface->tessellate(regionOfInterest(scene_, surface->bounds()), kSteps);
@@ -247,10 +276,8 @@ ConventionReport conventionReport(const Scene& scene, const ProgressFn& progress
   report.file = scene.file.string();
   report.recognisedAs = "scene";
   for (const auto& reader : sceneReaders())
-    if (!reader->recognise(scene.file).empty()) {
-      report.recognisedAs = reader->describe();
-      break;
-    }
+    if (reader->name() == scene.kind) report.recognisedAs = reader->describe();
+  report.facts = scene.facts;
   report.warnings = scene.warnings;
   report.lights = static_cast<int>(scene.lights.size());
   Triangles triangles(scene);
@@ -273,6 +300,10 @@ ConventionReport conventionReport(const Scene& scene, const ProgressFn& progress
       facts.grid = coordinateGrid(mesh.vertices);
       facts.side = medianSide(mesh);
     }
+    if (source.mesh)
+      if (const std::string sides = sidesOf(mesh); !sides.empty())
+        report.findings.push_back("the mesh of surface '" + id + "' has its sides reversed: " + sides +
+                                  " (Glint turns normals towards the camera; other programs may not)");
     facts.hasNormals = source.analytic.has_value() || !mesh.normals.empty();
     report.surfaces.push_back(facts);
   }
@@ -298,7 +329,10 @@ ConventionReport conventionReport(const Scene& scene, const ProgressFn& progress
     if (const auto normals = readNormals(frame); !normals) facts.problems.push_back(normals.failure().detail);
     report.frames.push_back(std::move(facts));
   }
-  conclude(scene, report);
+  conclude(scene, checkSight(scene, [&](const std::string& id) -> const TriangleMesh& { return triangles.of(id); }), report);
+  report.tracks = checkTracks(scene, progress);
+  if (report.tracks)
+    report.findings.insert(report.findings.end(), report.tracks->findings.begin(), report.tracks->findings.end());
   concludeGrids(scene, report);
   return report;
 }
@@ -325,6 +359,14 @@ std::string toText(const ConventionReport& r) {
                          : std::string("       -        -");
     out += line + "\n";
   }
+  if (r.tracks) {
+    out += formatted(
+        "\n  points    %d sparse points, seen %d times: projected %.2g px (median), %.2g px (95 %%) from where they were seen\n",
+        r.tracks->points, r.tracks->observations, r.tracks->medianPx, r.tracks->p95Px);
+    if (r.tracks->met > 0)
+      out += formatted("            %d of %d in front of the surface lie on it (depth within 1 %%)\n", r.tracks->onSurface,
+                       r.tracks->met);
+  }
   if (r.cameras && !r.cameras->hypotheses.empty()) {
     out += formatted("\n  cameras   from the highlights of %d frames: contours fit one light ", r.cameras->views);
     std::string separator;
@@ -336,6 +378,7 @@ std::string toText(const ConventionReport& r) {
   } else if (r.cameras) {
     out += "\n  cameras   not checked with highlights: " + r.cameras->whyNot + "\n";
   }
+  for (const std::string& f : r.facts) out += "fact: " + f + "\n";
   for (const std::string& w : r.warnings) out += "warning: " + w + "\n";
   for (const std::string& f : r.findings) out += "finding: " + f + "\n";
   if (r.findings.empty()) out += "All cameras see their surface; no problems found.\n";
@@ -384,6 +427,18 @@ std::string toJson(const ConventionReport& r) {
                     {"focal_pct", c.focalPct ? Json(*c.focalPct) : Json()},
                     {"shift_px", c.shiftPx ? Json(*c.shiftPx) : Json()}};
   }
+  j["points"] = Json();
+  if (r.tracks)
+    j["points"] = {{"points", r.tracks->points},
+                   {"observations", r.tracks->observations},
+                   {"behind", r.tracks->behind},
+                   {"median_px", r.tracks->medianPx},
+                   {"p95_px", r.tracks->p95Px},
+                   {"shift_px", {r.tracks->shiftPx.x(), r.tracks->shiftPx.y()}},
+                   {"met", r.tracks->met},
+                   {"on_surface", r.tracks->onSurface},
+                   {"depth_ratio", r.tracks->depthRatio}};
+  j["facts"] = r.facts;
   j["warnings"] = r.warnings;
   j["findings"] = r.findings;
   return prettyJson(j.dump(-1, ' ', false, Json::error_handler_t::replace));

@@ -8,6 +8,7 @@
 #include "core/base/progress.h"
 #include "core/scene/coordinate_grid.h"
 #include "core/scene/scene.h"
+#include "core/scene/track_check.h"
 
 namespace glint {
 
@@ -48,15 +49,18 @@ struct ConventionReport {
     double distance = 0;                   ///< m, camera to the centre of the surface's box; 0 without a surface
     int depthSamples = 0;                  ///< nearest vertices of 8-pixel cells compared with the depth map
     double depthMedian = 0, depthP95 = 0;  ///< m, |vertex depth - depth map|
+    double depthRatio = 0;                 ///< median of depth map / vertex depth
     long long pixels = 0, notFinite = 0, negative = 0;  ///< values of the linear image
     std::string source;                                 ///< "radiance" or "image", "" when the frame has neither
     std::vector<std::string> problems;                  ///< files that cannot be read, one line each
   };
   std::string recognisedAs, name, file;
+  std::vector<std::string> facts;  ///< what was recognised in a capture of another program and converted
   std::vector<std::string> warnings;
   std::vector<SurfaceFacts> surfaces;
   std::vector<FrameFacts> frames;
   int lights = 0;
+  std::optional<TrackCheck> tracks;    ///< of a capture with sparse points
   std::optional<CameraCheck> cameras;  ///< by its highlights, where they were asked
   std::vector<std::string> findings;   ///< what looks wrong, one line each, with the likely cause; empty = nothing found
 

@@ -5,8 +5,8 @@
 
 #include <string>
 
+#include "core/base/image_header.h"
 #include "core/base/outcome.h"
-#include "core/scene/image_header.h"
 
 namespace cv {
 class Mat;

@@ -14,6 +14,14 @@ TriangleMesh meshOf(MeshContent content) {
 
 TriangleMesh readMesh(const std::filesystem::path& file) { return meshOf(readMeshContent(file)); }
 
+TriangleMesh readMesh(const SurfaceSource& source) {
+  require(source.mesh.has_value(), "readMesh: the surface has no mesh");
+  TriangleMesh mesh = readMesh(*source.mesh);
+  if (source.metresPerUnit != 1)
+    for (Eigen::Vector3d& v : mesh.vertices) v *= source.metresPerUnit;
+  return mesh;
+}
+
 TriangleMesh meshOf(std::string_view bytes, const std::filesystem::path& file) { return meshOf(parseMesh(bytes, file)); }
 
 }  // namespace glint

@@ -6,16 +6,19 @@
 #include <string>
 #include <vector>
 
+#include "core/base/found_file.h"
 #include "core/base/outcome.h"
+#include "core/scene/input_choices.h"
 
 namespace glint {
 
-/// Where inputs are now that are not where a session or scene says; what is empty is where it says.
+/// Where inputs are now that are not where a session or scene says; what is empty is where it says. And how a capture is read.
 struct Relinked {
   std::filesystem::path scene = {};                          ///< of a session
   std::map<std::string, std::filesystem::path> meshes = {};  ///< by the path that the scene file writes
   std::vector<std::filesystem::path> meshFolders = {};       ///< in which those are looked for that are not in their place
   std::vector<std::filesystem::path> folders = {};           ///< in which the session may name files: those that a person named
+  InputChoices choices = {};                                 ///< for a capture that is opened, not for that of a session
   bool any() const { return !scene.empty() || !meshes.empty() || !meshFolders.empty(); }
 };
 
@@ -31,10 +34,6 @@ class MissingMesh : public InputError {
   std::string named_;
   std::filesystem::path mesh_;
 };
-
-/// The file under `folder` that shares the longest end of its path with `file` ("a/b/c.ply": FOLDER/a/b/c.ply, then
-/// FOLDER/b/c.ply, then FOLDER/c.ply); empty = none.
-std::filesystem::path sameUnder(const std::filesystem::path& folder, const std::filesystem::path& file);
 
 /// The folder in which to look for what lay beside `file`, now that it is `now`: `now` without the end that both paths share; its
 /// folder where they share none. sameUnder(folderOfMove(file, now), file) is `now` where the names agree.

@@ -7,7 +7,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/json_text.h"
 #include "core/base/limits.h"
-#include "core/scene/permitted.h"
+#include "core/base/permitted.h"
 #include "core/scene/scene_files.h"
 #include "core/scene/scene_json.h"
 #include "core/scene/scene_reader.h"
@@ -53,6 +53,7 @@ std::vector<fs::path> sortedFiles(const fs::path& folder, const std::string& ext
 
 class SceneFileReader final : public SceneReader {
  public:
+  std::string name() const override { return "scene"; }
   std::string describe() const override { return "scene file (scene.json, version 1)"; }
   fs::path recognise(const fs::path& input) const override {
     std::error_code error;
@@ -67,12 +68,19 @@ class SceneFileReader final : public SceneReader {
     return input.filename() == "scene.json" || isJsonObjectWith(input, "glint_scene") ? input : fs::path();
   }
   Scene read(const fs::path& file, const ReadOptions& options) const override {
+    InputChoices others = options.choices;
+    others.as.clear();
+    if (!others.none())
+      throw InputError(file.string(), "",
+                       "is a scene file, which says everything itself: --surface, --camera, --units and the "
+                       "like are for captures of other programs");
     return readSceneJson(readFile(file, Limit::JsonMegabytes), file, options);
   }
 };
 
 class SessionSceneReader final : public SceneReader {
  public:
+  std::string name() const override { return "session"; }
   std::string describe() const override { return "session (*.glint)"; }
   fs::path recognise(const fs::path& input) const override {
     std::error_code error;
@@ -86,6 +94,10 @@ class SessionSceneReader final : public SceneReader {
   Scene read(const fs::path& file, const ReadOptions& options) const override {
     const JsonNode root = JsonNode::parse(readFile(file, Limit::JsonMegabytes), file.string());
     readSessionVersion(root);
+    if (!options.choices.none())
+      throw InputError(file.string(), "",
+                       "is a session, which keeps how its input is read: --as, --surface, --camera, --units and "
+                       "the like are not for sessions");
     SessionInput input = readSessionInput(root, fs::absolute(file).lexically_normal().parent_path());
     for (const auto& given : options.meshes) input.meshes.erase(given.first);  // what the caller says comes first
     std::vector<fs::path> named = options.folders;
@@ -94,6 +106,9 @@ class SessionSceneReader final : public SceneReader {
     own.folders = foldersOfSession(file, input.scene, named);
     if (!options.allowOutsidePaths) requirePermitted(input, file.string(), own.folders);
     own.meshes.insert(input.meshes.begin(), input.meshes.end());
+    own.choices = input.choices;
+    for (const FilesFolder& f : input.folders)
+      if (f.kind == FrameFile::Photograph) own.photographs.push_back(f.folder);
     std::error_code ignored;  // what cannot be asked about is not there
     if (!fs::exists(input.scene, ignored))
       root.at("input").at("path").fail("the scene " + input.scene.string() + " does not exist");
@@ -104,80 +119,10 @@ class SessionSceneReader final : public SceneReader {
   }
 };
 
-std::string whatIsUnderstood() {
-  std::string all;
-  for (const auto& reader : sceneReaders()) all += (all.empty() ? "" : ", ") + reader->describe();
-  return all;
-}
-
 }  // namespace
 
 std::unique_ptr<const SceneReader> makeSceneFileReader() { return std::make_unique<SceneFileReader>(); }
 std::unique_ptr<const SceneReader> makeSessionSceneReader() { return std::make_unique<SessionSceneReader>(); }
-
-const std::vector<std::unique_ptr<const SceneReader>>& sceneReaders() {
-  static const std::vector<std::unique_ptr<const SceneReader>> readers = [] {
-    std::vector<std::unique_ptr<const SceneReader>> list;
-    list.push_back(makeSceneFileReader());
-    list.push_back(makeSessionSceneReader());
-    return list;
-  }();
-  return readers;
-}
-
-fs::path resolveInside(const fs::path& folder, const std::string& relative, const ReadOptions& options, const std::string& file,
-                       const std::string& place) {
-  if (relative.empty()) throw InputError(file, place, "the path is empty");
-  if (relative.find('\0') != std::string::npos) throw InputError(file, place, "the path contains a zero byte");
-  const fs::path path(relative);
-  const fs::path absolute = (path.is_absolute() ? path : folder / path).lexically_normal();
-  if (options.allowOutsidePaths || liesIn(options.folders, absolute)) return absolute;
-  if (path.is_absolute())
-    throw OutsidePath(file, place,
-                      "'" + relative + "' is absolute; paths must be relative to the file (--allow-outside accepts it)",
-                      realPath(absolute).parent_path());
-  if (!liesIn({folder}, folder / path))
-    throw OutsidePath(file, place, "'" + relative + "' leaves the folder of the file (--allow-outside accepts it)",
-                      realPath(absolute).parent_path());
-  return absolute;
-}
-
-namespace {
-
-Scene readRecognised(const fs::path& input, const ReadOptions& options, bool sessions) {
-  std::error_code error;
-  const fs::file_status status = fs::status(input, error);
-  if (!fs::exists(status)) throw InputError(input.string(), "", "no such file or folder");
-  for (const auto& reader : sceneReaders()) {
-    const fs::path file = reader->recognise(input);
-    if (file.empty()) continue;
-    if (!sessions && dynamic_cast<const SessionSceneReader*>(reader.get()) != nullptr)
-      throw InputError(file.string(), "", "is a session; the input of a session must be a scene");
-    return reader->read(file, options);
-  }
-  if (fs::is_directory(status)) {
-    const bool empty = fs::is_empty(input, error);
-    throw InputError(input.string(), "",
-                     std::string(empty ? "the folder is empty" : "nothing in this folder is recognised") +
-                         "; supported: " + whatIsUnderstood());
-  }
-  if (!fs::is_regular_file(status)) throw InputError(input.string(), "", "is a device or a pipe, not a file");
-  const bool empty = fs::file_size(input, error) == 0;
-  throw InputError(
-      input.string(), "",
-      std::string(empty ? "the file is empty" : "the content is not recognised") + "; supported: " + whatIsUnderstood());
-}
-
-}  // namespace
-
-Scene readScene(const fs::path& input, const ReadOptions& options) { return readRecognised(input, options, true); }
-Scene readSceneOfSession(const fs::path& input, const ReadOptions& options) { return readRecognised(input, options, false); }
-
-fs::path recognisedFile(const fs::path& input) {
-  for (const auto& reader : sceneReaders())
-    if (fs::path file = reader->recognise(input); !file.empty()) return file;
-  return {};
-}
 
 void writeScene(const Scene& scene, const fs::path& file) {
   const fs::path folder = fs::absolute(file).lexically_normal().parent_path();

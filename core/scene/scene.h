@@ -13,8 +13,10 @@
 
 #include "core/base/image.h"
 #include "core/base/outcome.h"
+#include "core/base/permitted.h"
 #include "core/geometry/camera.h"
 #include "core/highlight/highlight.h"
+#include "core/scene/input_choices.h"
 #include "core/surface/analytic.h"
 #include "core/surface/surface.h"
 
@@ -24,7 +26,8 @@ namespace glint {
 struct SurfaceSource {
   std::optional<std::filesystem::path> mesh;  ///< absolute
   std::optional<AnalyticSpec> analytic;
-  std::string named = {};  ///< the mesh's path as the scene file writes it; "" = no file has written it yet
+  std::string named = {};    ///< the mesh's path as the scene file writes it; "" = no file has written it yet
+  double metresPerUnit = 1;  ///< of the mesh's coordinates: 0.001 where the file is in millimetres
 };
 
 /// One captured view. Paths are absolute; empty = not given.
@@ -59,6 +62,7 @@ struct TrueLight {
 /// Everything a scene file says, checked. Images and surfaces are loaded on demand.
 struct Scene {
   std::string name;
+  std::string kind = "scene";        ///< how it was read, as InputChoices::as: "scene", "colmap", ...
   std::filesystem::path file;        ///< as opened
   std::filesystem::path folder;      ///< absolute folder of the file; all relative paths start here
   bool allowOutsidePaths = false;    ///< as it was read with (ReadOptions)
@@ -67,6 +71,10 @@ struct Scene {
   std::vector<Frame> frames;
   std::map<std::string, SurfaceSource> surfaces;
   std::vector<TrueLight> lights;
+  InputChoices choices;  ///< as it was read with; none of a scene file
+  std::vector<std::filesystem::path>
+      sources;                        ///< files besides `file` that say what a capture is (COLMAP's images.bin); absolute
+  std::vector<std::string> facts;     ///< what was recognised in a capture and converted, one line each
   std::vector<std::string> warnings;  ///< unknown keys and other oddities, one line each
   std::string
       unknownJson;  ///< unknown keys, kept for writing back, grouped by scene, camera, frames, surfaces, lights; "" = none
@@ -79,13 +87,19 @@ struct ReadOptions {
   std::map<std::string, std::filesystem::path> meshes = {};
   /// In which meshes are looked for, by the longest end of their path, that are not in their place.
   std::vector<std::filesystem::path> meshFolders = {};
+  /// In which photographs are looked for first, for captures whose files do not say the size of their images.
+  std::vector<std::filesystem::path> photographs = {};
+  InputChoices choices = {};  ///< for captures of other programs
+
+  PathRights rights() const { return {allowOutsidePaths, folders}; }
 };
 
-/// Reads any input that Glint knows, recognised by content. InputError with file, place and reason; MissingMesh, OutsidePath.
+/// Reads any input that Glint knows, recognised by content. InputError with file, place and reason; MissingMesh, OutsidePath,
+/// UndecidedInput (core/capture/capture.h).
 Scene readScene(const std::filesystem::path& input, const ReadOptions& options = {});
 /// The same for the input of a session, which must not be a session again.
 Scene readSceneOfSession(const std::filesystem::path& input, const ReadOptions& options = {});
-/// The file that `readScene` reads first for this input: of a folder the scene file or the session in it; "" = nothing is
+/// The file that `readScene` reads first for this input: of a folder the scene file, capture or session in it; "" = nothing is
 /// recognised.
 std::filesystem::path recognisedFile(const std::filesystem::path& input);
 /// Writes scene.json version 1 with relative paths, atomically. InputError when it cannot be written.

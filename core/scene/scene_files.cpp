@@ -15,6 +15,7 @@ std::vector<fs::path> filesOf(const Scene& scene) {
   const auto add = [&](const fs::path& p) {
     if (!p.empty() && seen.insert(p).second) paths.push_back(p);
   };
+  for (const fs::path& p : scene.sources) add(p);
   for (const auto& [id, source] : scene.surfaces)
     if (source.mesh) add(*source.mesh);
   for (const Frame& f : scene.frames)

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/scene/scene_json.h"
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 
+#include "core/base/bounded_json.h"
 #include "core/base/json_dom.h"
 #include "core/base/level_range.h"
 #include "core/base/limits.h"
-#include "core/scene/bounded_json.h"
+#include "core/geometry/distortion.h"
 #include "core/scene/relinked.h"
 #include "core/scene/scene_files.h"
 #include "core/scene/scene_reader.h"
@@ -81,7 +81,6 @@ const std::set<std::string> kSurfaceGeometry = {"world_from_surface",
                                                 "transform_matrix",
                                                 "pose",
                                                 "scale",
-                                                "units",
                                                 "offset",
                                                 "origin",
                                                 "rotation",
@@ -131,6 +130,36 @@ std::string readIdJson(const JsonNode& node) {
   return id;
 }
 
+namespace {
+
+LensModel readLensModel(const JsonNode& node) {
+  const std::string name = node.text();
+  if (const std::optional<LensModel> model = lensModelNamed(name)) return *model;
+  std::string known;
+  for (const LensModel model : kLensModels) known += std::string(known.empty() ? "" : ", ") + nameOf(model);
+  node.fail("'" + name + "' is not supported, only " + known);
+}
+
+/// "model" and "distortion" of a camera; ideal where neither stands.
+Lens readLens(const JsonNode& camera) {
+  Lens lens;
+  if (const auto model = camera.find("model")) lens.model = readLensModel(*model);
+  const auto distortion = camera.find("distortion");
+  if (!distortion) return lens;
+  const std::vector<double> values = boundedAll(*distortion, kLargestFactor).numbers();
+  const std::size_t count = static_cast<std::size_t>(parameterCountOf(lens.model));
+  const bool withoutK3 = lens.model == LensModel::OpenCv && values.size() == 4;  // as OpenCV takes them
+  if (values.size() != count && !withoutK3)
+    distortion->fail("must have " + std::to_string(count) + (count == 1 ? " number (" : " numbers (") + parametersOf(lens.model) +
+                     "), has " + std::to_string(values.size()));
+  std::copy(values.begin(), values.end(), lens.parameters.begin());
+  if (lens.model == LensModel::Fov && !(std::abs(lens.parameters[0]) < std::numbers::pi))
+    distortion->at(0).fail("must be between -pi and pi: omega is the lens's field of view");
+  return lens;
+}
+
+}  // namespace
+
 Camera readCameraJson(const JsonNode& node) {
   Camera camera;
   const auto size = [&](const char* key) {
@@ -157,42 +186,9 @@ Camera readCameraJson(const JsonNode& node) {
   camera.pixelFromRay(0, 2) = bounded(node.at("cx"), kFarthestPx);
   camera.pixelFromRay(1, 1) = focal("fy");
   camera.pixelFromRay(1, 2) = bounded(node.at("cy"), kFarthestPx);
-  if (const auto model = node.find("model"); model && model->text() != "OPENCV")
-    model->fail("'" + model->text() + "' is not supported, only OPENCV (distortion k1 k2 p1 p2 k3)");
   refuseGeometry(node, kCameraGeometry);
-  if (const auto d = node.find("distortion")) {
-    const std::vector<double> values = boundedAll(*d, kLargestFactor).numbers();
-    if (values.size() != 4 && values.size() != 5)
-      d->fail("must have 5 numbers (k1 k2 p1 p2 k3), has " + std::to_string(values.size()));
-    std::copy(values.begin(), values.end(), camera.distortion.begin());
-  }
+  camera.lens = readLens(node);
   return camera;
-}
-
-Eigen::Isometry3d readPoseJson(const JsonNode& node, std::string* warning) {
-  const Eigen::Matrix4d m = node.matrix4();
-  for (std::size_t i = 0; i < 3; ++i) bounded(node.at(i).at(3), kFarthest);
-  if (m.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) node.fail("must be rigid: the last row must be 0 0 0 1");
-  Eigen::Matrix3d r = m.topLeftCorner<3, 3>();
-  Eigen::Vector3d t = m.topRightCorner<3, 1>();
-  const double deviation = (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  // Typed with four digits it is still a rotation; worse, something else was meant. What is none to single precision is repaired.
-  if (!(deviation <= 1e-3)) node.fail("must be rigid: the 3x3 block is not a rotation");
-  if (r.determinant() < 0) node.fail("must be rigid: the 3x3 block is mirrored (determinant -1)");
-  // Far from the origin even the tenth digit moves the camera (by deviation * |t|): the centre c of R c + t = 0 is kept. 1e-8 of the unit
-  // of length moves no pixel.
-  if (deviation > 1e-6 || deviation * t.norm() > 1e-8) {
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Eigen::Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose();
-    t = rotation * r.inverse() * t;
-    r = rotation;
-    // What is a rotation to single precision was meant to be one.
-    if (warning && deviation > 1e-6) *warning = node.place() + ": not exactly a rotation, replaced by the nearest one";
-  }
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = r;
-  pose.translation() = t;
-  return pose;
 }
 
 AnalyticSpec readAnalyticJson(const JsonNode& node) {
@@ -262,6 +258,11 @@ Highlight readHighlight(const JsonNode& node, const Camera& camera) {
     h.level = n->number();
     if (!(h.level >= kLeastLevel && h.level <= kMostLevel)) n->fail("must be between 0.000001 and 0.999999");
   }
+  const auto ideal = [&camera](const JsonNode& point) {
+    const Outcome<Pixel> found = withoutDistortion(camera, pixel(point));
+    if (!found) point.fail("lies where the lens distortion cannot be removed: " + found.failure().detail);
+    return *found;
+  };
   const JsonNode contour = node.at("contour");
   const std::size_t n = contour.size();
   if (n < 5) contour.fail("must have at least 5 points, has " + std::to_string(n));
@@ -271,12 +272,9 @@ Highlight readHighlight(const JsonNode& node, const Camera& camera) {
     const Pixel measured = pixel(contour.at(i));
     h.touchesBorder = h.touchesBorder || measured.minCoeff() <= -kBorderPx || measured.x() >= camera.width - 1 + kBorderPx ||
                       measured.y() >= camera.height - 1 + kBorderPx;
-    h.contour.points.push_back(camera.undistorted(measured));
+    h.contour.points.push_back(ideal(contour.at(i)));
   }
-  h.peak = camera.undistorted(pixel(node.at("peak")));
-  if (!h.peak.allFinite()) node.at("peak").fail("lies where the lens distortion cannot be removed");
-  for (std::size_t i = 0; i < n; ++i)
-    if (!h.contour.points[i].allFinite()) contour.at(i).fail("lies where the lens distortion cannot be removed");
+  h.peak = ideal(node.at("peak"));
   // One orientation for all contours, whoever wrote them; the first point stays first.
   const double area = signedArea(h.contour);
   if (area < 0) std::reverse(h.contour.points.begin() + 1, h.contour.points.end());
@@ -300,7 +298,7 @@ Frame readFrame(const JsonNode& node, const FrameContext& context, Json& rest) {
   const auto path = [&](const char* key) -> fs::path {
     const auto n = node.find(key);
     if (!n || n->isNull()) return {};
-    return resolveInside(scene.folder, n->text(), context.options, n->file(), n->place());
+    return resolveInside(scene.folder, n->text(), context.options.rights(), n->file(), n->place());
   };
   frame.image = path("image");
   frame.radiance = path("radiance");
@@ -354,7 +352,7 @@ fs::path findMesh(const JsonNode& node, const FrameContext& context) {
   const auto moved = context.options.meshes.find(named);
   const fs::path place = moved != context.options.meshes.end()
                              ? fs::absolute(moved->second).lexically_normal()
-                             : resolveInside(context.scene.folder, named, context.options, node.file(), node.place());
+                             : resolveInside(context.scene.folder, named, context.options.rights(), node.file(), node.place());
   fs::path found = isThere(place) ? place : fs::path();
   for (const fs::path& folder : context.options.meshFolders)
     if (found.empty()) found = sameUnder(fs::absolute(folder), place);
@@ -363,12 +361,22 @@ fs::path findMesh(const JsonNode& node, const FrameContext& context) {
   return found;
 }
 
+double metresOf(const JsonNode& unit) {
+  if (unit.isNumber()) return positive(unit, kLargestFactor);
+  for (const double metres : {1.0, 0.01, 0.001})
+    if (unit.text() == unitOfMetres(metres)) return metres;
+  unit.fail("'" + unit.text() + "' is not one of: m, cm, mm, or a number of metres");
+}
+
 SurfaceSource readSurface(const JsonNode& node, const FrameContext& context, Json& rest) {
   SurfaceSource source;
   refuseGeometry(node, kSurfaceGeometry);
   if (const auto n = node.find("mesh")) {
     source.mesh = findMesh(*n, context);
     source.named = n->text();
+    if (const auto unit = node.find("units")) {
+      source.metresPerUnit = metresOf(*unit);
+    }
   }
   if (const auto n = node.find("analytic")) {
     source.analytic = readAnalyticJson(*n);
@@ -409,7 +417,7 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
     for (const std::string& id : n->keys()) {
       const JsonNode node = n->at(id);
       if (!isIdentifier(id)) node.fail("a surface needs a name without control characters");
-      Json rest = unknown.of(node, {"mesh", "analytic"});
+      Json rest = unknown.of(node, {"mesh", "analytic", "units"});
       scene.surfaces[id] = readSurface(node, context, rest);
       keep(surfaceRests, id, rest);
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/json_text.h"
+#include "core/geometry/pose_json.h"
 #include "core/scene/scene.h"
 
 namespace glint {
@@ -14,11 +15,9 @@ namespace glint {
 // The parts of scene.json (docs/formats.md, "Scene") that other documents share (synth SPEC.json, sessions). All throw
 // InputError with file, place and reason. Keys that a part does not know are left to the caller (JsonNode::unknownKeys).
 
-/// {"width", "height", "fx", "fy", "cx", "cy", "distortion"}: intrinsics only. Sizes 1 .. 65536; fx, fy > 0, so K is regular.
+/// {"width", "height", "fx", "fy", "cx", "cy", "skew", "model", "distortion"}: intrinsics only. Sizes 1 .. 65536; fx, fy > 0, so K
+/// is regular.
 Camera readCameraJson(const JsonNode& node);
-/// 4x4 rigid transform: finite, last row 0 0 0 1, rotation orthonormal to 1e-3 and right-handed. A rotation that is off by more
-/// than 1e-6 (printed with few digits) is replaced by the nearest one and `warning` says so.
-Eigen::Isometry3d readPoseJson(const JsonNode& node, std::string* warning = nullptr);
 /// A name of a frame, light or surface: not empty, no control characters.
 bool isIdentifier(const std::string& id);
 std::string readIdJson(const JsonNode& node);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/capture/capture.h"
 #include "core/scene/scene.h"
 
 namespace glint {
@@ -14,6 +15,8 @@ namespace glint {
 class SceneReader {
  public:
   virtual ~SceneReader() = default;
+  /// As InputChoices::as names it: "scene", "colmap"; "session".
+  virtual std::string name() const = 0;
   /// For a person: "scene file (scene.json, version 1)".
   virtual std::string describe() const = 0;
   /// The file to read when this reader understands `input` (a file, or a folder in which it looks), by content;
@@ -28,13 +31,8 @@ const std::vector<std::unique_ptr<const SceneReader>>& sceneReaders();
 
 std::unique_ptr<const SceneReader> makeSceneFileReader();     ///< scene.json
 std::unique_ptr<const SceneReader> makeSessionSceneReader();  ///< the scene that a session *.glint refers to
-
-/// The file that `key` of a document in `folder` names. `relative` is taken relative to the folder; the result is absolute
-/// and lexically normal, and may not exist.
-/// @throw InputError (file, place) when it is empty; OutsidePath when it is absolute or leaves the folder (by `..` or through a symbolic
-///        link), unless it lies in one of `options.folders` or `options.allowOutsidePaths` is true.
-std::filesystem::path resolveInside(const std::filesystem::path& folder, const std::string& relative, const ReadOptions& options,
-                                    const std::string& file, const std::string& place);
+/// A capture of another program; the reader lives as long as the program.
+std::unique_ptr<const SceneReader> makeCaptureSceneReader(const CaptureReader& reader);
 
 /// The first `n` bytes of a file; "" when it cannot be read. For recognising contents.
 std::string firstBytes(const std::filesystem::path& file, std::size_t n);

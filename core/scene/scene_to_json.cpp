@@ -30,12 +30,15 @@ Json toJson(const Camera& camera) {
   Json j = {{"width", camera.width}, {"height", camera.height}, {"fx", k(0, 0)},
             {"fy", k(1, 1)},         {"cx", k(0, 2)},           {"cy", k(1, 2)}};
   if (k(0, 1) != 0) j["skew"] = k(0, 1);
-  j["distortion"] = Json(camera.distortion);
+  const Lens& lens = camera.lens;
+  if (lens.model != LensModel::OpenCv) j["model"] = nameOf(lens.model);
+  j["distortion"] = Json::array();
+  for (int i = 0; i < parameterCountOf(lens.model); ++i) j["distortion"].push_back(lens.parameters[static_cast<std::size_t>(i)]);
   return j;
 }
 
 bool sameIntrinsics(const Camera& a, const Camera& b) {
-  return a.width == b.width && a.height == b.height && a.pixelFromRay == b.pixelFromRay && a.distortion == b.distortion;
+  return a.width == b.width && a.height == b.height && a.pixelFromRay == b.pixelFromRay && a.lens == b.lens;
 }
 
 Json toJson(const AnalyticSpec& spec) {
@@ -144,6 +147,10 @@ std::string sceneToJson(const Scene& scene, const fs::path& folder) {
   for (const auto& [id, source] : scene.surfaces) {
     Json j = Json::object();
     if (source.mesh) j["mesh"] = relative(*source.mesh, "surfaces." + id + ".mesh");
+    if (source.mesh && source.metresPerUnit != 1) {
+      const std::string unit = unitOfMetres(source.metresPerUnit);
+      j["units"] = unit == "cm" || unit == "mm" ? Json(unit) : Json(source.metresPerUnit);
+    }
     if (source.analytic) j["analytic"] = toJson(*source.analytic);
     restore(j, keptOf("surfaces", id));
     root["surfaces"][id] = std::move(j);

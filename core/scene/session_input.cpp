@@ -3,7 +3,8 @@
 
 #include <algorithm>
 
-#include "core/scene/permitted.h"
+#include "core/base/permitted.h"
+#include "core/capture/capture.h"
 #include "core/scene/scene_files.h"
 
 namespace glint {
@@ -54,6 +55,8 @@ SessionInput readSessionInput(const JsonNode& root, const fs::path& folder) {
   }
   if (const auto meshes = input.find("meshes"); meshes && !meshes->isNull())
     for (const std::string& named : meshes->keys()) result.meshes[named] = pathOf(meshes->at(named), folder);
+  if (const auto reading = input.find("reading"); reading && !reading->isNull())
+    result.choices = readInputChoices(*reading, folder);
   return result;
 }
 
@@ -62,6 +65,7 @@ std::vector<fs::path> foldersOfSession(const fs::path& session, const fs::path& 
   if (!session.empty()) folders.push_back(fs::absolute(session).lexically_normal().parent_path());
   std::error_code ignored;  // what cannot be asked about is a file
   folders.push_back(fs::is_directory(scene, ignored) ? scene : scene.parent_path());
+  for (fs::path& folder : foldersOfCapture(scene)) folders.push_back(std::move(folder));
   return folders;
 }
 
@@ -114,6 +118,8 @@ void requirePermitted(const SessionInput& input, const std::string& file, const 
   for (const auto& [named, mesh] : input.meshes)
     require(liesIn(permitted, mesh), mesh, file, "input.meshes." + named, "--mesh " + named + "=FILE",
             realPath(mesh).parent_path());
+  if (const fs::path& mesh = input.choices.surfaceFile; !mesh.empty())
+    require(liesIn(permitted, mesh), mesh, file, "input.reading.surface_file", "--meshes DIR", realPath(mesh).parent_path());
 }
 
 }  // namespace glint

@@ -13,7 +13,8 @@ namespace glint {
 
 /// 1: the first. 2: `tradeoff` may stand in it; a file of version 1 reads as one without. 3: `input.folders` for every kind of file and
 /// `view.more_cameras`; the one folder of photographs that older ones name (`input.photographs`) is the first of them.
-inline constexpr int kSessionVersion = 3;
+/// 4: `input.reading`, how a capture of another program is read.
+inline constexpr int kSessionVersion = 4;
 
 /// The version of a session's document. InputError when the document is no session (a scene is named as such), or of a version newer than
 /// this program's, or of one that never existed.
@@ -24,6 +25,7 @@ struct SessionInput {
   std::filesystem::path scene;                          ///< a file, see requireSceneFile(); may lie anywhere
   std::vector<FilesFolder> folders;                     ///< in which frames' files are looked for, in the session's order
   std::map<std::string, std::filesystem::path> meshes;  ///< by the path that the scene file writes
+  InputChoices choices;                                 ///< for a capture of another program
 };
 
 /// @param folder  of the session, absolute

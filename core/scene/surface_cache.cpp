@@ -79,7 +79,7 @@ struct SurfaceCache::Impl {
     if (it == sources.end()) return Failure{Reason::NoSurface, "surface '" + frame.surface + "' does not exist"};
     if (it->second.analytic) return makeAnalytic(*it->second.analytic);
     if (!it->second.mesh) return Failure{Reason::NoSurface, "surface '" + frame.surface + "' is neither a mesh nor analytic"};
-    TriangleMesh mesh = once(meshes, frame.surface, [&] { return readMesh(*it->second.mesh); });
+    TriangleMesh mesh = once(meshes, frame.surface, [&] { return readMesh(it->second); });
     try {
       return makeMesh(std::move(mesh), policy);
     } catch (const std::invalid_argument& e) {
@@ -97,7 +97,7 @@ SurfaceCache::SurfaceCache(const Scene& scene, const SurfaceCache& other) : Surf
   const auto sameMesh = [&](const std::string& id) {
     const auto mine = impl_->sources.find(id), theirs = other.impl_->sources.find(id);
     return mine != impl_->sources.end() && theirs != other.impl_->sources.end() && mine->second.mesh &&
-           mine->second.mesh == theirs->second.mesh;
+           mine->second.mesh == theirs->second.mesh && mine->second.metresPerUnit == theirs->second.metresPerUnit;
   };
   for (const auto& [id, mesh] : other.impl_->meshes)
     if (sameMesh(id)) impl_->meshes.emplace(id, mesh);

@@ -199,6 +199,7 @@ Session sessionOf(const Inspection& inspection, const ProgressFn& progress) {
   session.input = std::filesystem::absolute(scene.file).lexically_normal();
   session.allowOutsidePaths = scene.allowOutsidePaths;
   session.folders = scene.folders;
+  session.choices = scene.choices;
   session.meshes = scene.meshes;
   session.request = inspection.request;
   session.files = hashInputs(scene, inspection.request, progress);

@@ -8,11 +8,11 @@
 #include <set>
 
 #include "core/base/atomic_file.h"
+#include "core/base/bounded_json.h"
 #include "core/base/json_dom.h"
 #include "core/base/json_text.h"
+#include "core/base/permitted.h"
 #include "core/base/sha256.h"
-#include "core/scene/bounded_json.h"
-#include "core/scene/permitted.h"
 #include "core/scene/scene_files.h"
 #include "core/scene/scene_json.h"
 #include "core/scene/session_input.h"
@@ -207,6 +207,7 @@ Session parseSession(const std::string& json, const fs::path& file) {
   session.input = std::move(named.scene);
   session.folders = std::move(named.folders);
   session.meshes = std::move(named.meshes);
+  session.choices = std::move(named.choices);
   const JsonNode input = root.at("input");
   if (const auto n = input.find("files"))
     for (std::size_t i = 0; i < n->size(); ++i)
@@ -255,11 +256,16 @@ std::string sessionText(const Session& session, const fs::path& file) {
     return r.generic_string();
   };
   const auto hash = [](const std::string& hex) { return hex.empty() ? Json() : Json(hex); };
-  Json root = {{"glint_session", kSessionVersion}};
+  // A program of version 3 reads what does not need the newer one.
+  Json root = {{"glint_session", session.choices.none() ? 3 : kSessionVersion}};
   root["input"] = {{"path", relative(session.input)}, {"allow_outside", session.allowOutsidePaths}, {"files", Json::array()}};
   for (const FilesFolder& f : session.folders)
     root["input"]["folders"].push_back({{"of", nameOf(f.kind)}, {"folder", relative(f.folder)}});
   for (const auto& [named, mesh] : session.meshes) root["input"]["meshes"][named] = relative(mesh);
+  if (!session.choices.none()) {
+    const std::string surface = session.choices.surfaceFile.empty() ? "" : relative(session.choices.surfaceFile);
+    root["input"]["reading"] = Json::parse(inputChoicesJson(session.choices, surface));
+  }
   for (const SessionFile& f : session.files)
     root["input"]["files"].push_back({{"path", relative(f.path)}, {"sha256", hash(f.sha256)}});
 
@@ -372,7 +378,7 @@ OpenedSession openSession(Session given, const Relinked& instead) {
   options.allowOutsidePaths = session.allowOutsidePaths;
   options.folders = permittedFolders(session, instead);
   if (!session.allowOutsidePaths) {
-    SessionInput named{session.input, session.folders, session.meshes};
+    SessionInput named{session.input, session.folders, session.meshes, session.choices};
     for (const auto& given : instead.meshes) named.meshes.erase(given.first);
     requirePermitted(named, session.file.string(), options.folders);
     requirePermittedTruth(session, instead);
@@ -380,6 +386,9 @@ OpenedSession openSession(Session given, const Relinked& instead) {
   options.meshes = instead.meshes;
   options.meshes.insert(session.meshes.begin(), session.meshes.end());  // what is given now stays
   options.meshFolders = instead.meshFolders;
+  options.choices = session.choices;
+  for (const FilesFolder& f : session.folders)
+    if (f.kind == FrameFile::Photograph) options.photographs.push_back(f.folder);
   Scene scene = withFilesIn(readSceneOfSession(session.input, options), session.folders);
   if (!session.allowOutsidePaths) requirePermittedFiles(scene, session.folders, session.file.string(), options.folders);
   if (instead.any()) opened.warning = takeOver(session, scene, sceneWas, !instead.scene.empty());

@@ -102,7 +102,7 @@ void addBadNumberCases(Cases& cases) {
   add("pixel with lens distortion: NaN, inf, -inf", {Reason::NotFinite}, [] {
     return all([](double bad) {
       Camera c = plainCamera();
-      c.distortion = {-0.2, 0.05, 0, 0, 0};
+      c.lens.parameters = {-0.2, 0.05, 0, 0, 0};
       return failureOf(withoutDistortion(c, Pixel(bad, 3)));
     });
   });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
 
 #include "core/geometry/distortion.h"
 #include "core/geometry/plane.h"
@@ -62,12 +63,12 @@ struct RealLens {
   }
 };
 
-Outcome<Measured> lensCase(const Distortion& d, const Eigen::Vector2d& normalised) {
+Outcome<Measured> lensCase(const std::array<double, 5>& d, const Eigen::Vector2d& normalised) {
   Camera c;
   c.pixelFromRay << 800, 0, 320, 0, 800, 240, 0, 0, 1;
   c.width = 640;
   c.height = 480;
-  c.distortion = d;
+  std::copy(d.begin(), d.end(), c.lens.parameters.begin());
   const Pixel measured(320 + 800 * normalised.x(), 240 + 800 * normalised.y());
   const Outcome<Pixel> ideal = withoutDistortion(c, measured);
   if (!ideal) return ideal.failure();

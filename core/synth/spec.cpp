@@ -8,7 +8,7 @@
 #include "core/base/level_range.h"
 #include "core/base/limits.h"
 #include "core/base/number_text.h"
-#include "core/scene/bounded_json.h"
+#include "core/base/bounded_json.h"
 #include "core/scene/scene_json.h"
 #include "core/scene/scene_reader.h"
 #include "core/synth/synth.h"

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/scene/bounded_json.h"
+#include "core/base/bounded_json.h"
 
 namespace glint {
 using Json = nlohmann::ordered_json;

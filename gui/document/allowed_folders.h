@@ -5,7 +5,7 @@
 #include <QStringList>
 #include <string>
 
-#include "core/scene/permitted.h"
+#include "core/base/permitted.h"
 
 namespace glint::gui {
 

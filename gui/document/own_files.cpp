@@ -12,7 +12,7 @@
 
 #include "core/base/outcome.h"
 #include "core/base/sha256.h"
-#include "core/scene/permitted.h"
+#include "core/base/permitted.h"
 #include "core/scene/scene_files.h"
 #include "gui/document/document.h"
 

@@ -40,6 +40,11 @@ void Runner::open(const std::string& path, const Relinked& instead) {
     } catch (const MissingMesh& e) {
       say(e.mesh(), e.named());
       throw;
+    } catch (const UndecidedInput& e) {
+      const UndecidedPtr undecided =
+          std::make_shared<const Undecided>(Undecided{exactQString(path), e.question(), e.option(), e.answers(), instead});
+      token.deliver([this, undecided] { emit inputUndecided(undecided); });
+      throw;
     } catch (const OutsidePath& e) {
       const OutsidePtr outside = std::make_shared<const Outside>(Outside{exactQString(path), e.folder().string(), instead});
       token.deliver([this, outside] { emit outsideNamed(outside); });

@@ -5,7 +5,10 @@
 #include <QObject>
 #include <QString>
 #include <memory>
+#include <string>
+#include <vector>
 
+#include "core/capture/capture.h"
 #include "gui/base/job_queue.h"
 #include "gui/document/engine.h"
 
@@ -33,6 +36,16 @@ struct Outside {
   Relinked instead;    ///< that it was opened with
 };
 using OutsidePtr = std::shared_ptr<const Outside>;
+
+/// What the files of an input leave open, for a person to say.
+struct Undecided {
+  QString path;  ///< that was to be opened
+  UndecidedInput::Question question;
+  std::string option;                           ///< of the command line, that answers
+  std::vector<UndecidedInput::Answer> answers;  ///< the possible ones; none = any
+  Relinked instead;                             ///< that it was opened with
+};
+using UndecidedPtr = std::shared_ptr<const Undecided>;
 
 /// The only place that knows both Qt and the pipeline: opens inputs and computes inspections in jobs of its own.
 /// The newest request wins. A run that a newer request overtakes is stopped, except in its first `kGraceMs`: quick runs
@@ -83,6 +96,8 @@ class Runner : public QObject {
   void inputMissing(const glint::gui::MissingPtr& missing);
   /// With failed() after it: opening can be tried again when a person allows the folder.
   void outsideNamed(const glint::gui::OutsidePtr& outside);
+  /// With failed() after it: opening can be tried again with an answer.
+  void inputUndecided(const glint::gui::UndecidedPtr& undecided);
   void openFailed();  ///< after failed(): what ran for the scene on screen was stopped for nothing
   void stopped();     ///< by cancel()
   void saved(const QString& path, const QString& problem);  ///< `problem` is one line, "" = the file is written
@@ -109,3 +124,4 @@ Q_DECLARE_METATYPE(glint::gui::TradeoffPtr)
 Q_DECLARE_METATYPE(glint::gui::InfluencePtr)
 Q_DECLARE_METATYPE(glint::gui::MissingPtr)
 Q_DECLARE_METATYPE(glint::gui::OutsidePtr)
+Q_DECLARE_METATYPE(glint::gui::UndecidedPtr)

@@ -64,6 +64,7 @@ Opened openInput(const std::string& path, const Relinked& instead) {
     options.meshes = instead.meshes;
     options.meshFolders = instead.meshFolders;
     options.folders = instead.folders;
+    options.choices = instead.choices;
     opened.scene = std::make_shared<const Scene>(readScene(path, options));
     // A short scene opens too: the default would ask for more frames than there are.
     const int frames = int(opened.scene->frames.size());
@@ -117,6 +118,7 @@ void addState(Session& session, const Opened& opened) {
   const Scene& scene = *opened.scene;
   session.request = opened.request;
   session.folders = scene.folders;
+  session.choices = scene.choices;
   session.meshes = scene.meshes;
   if (opened.tradeoff) session.tradeoff = *opened.tradeoff;
   if (opened.session) {

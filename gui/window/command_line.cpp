@@ -17,6 +17,21 @@ QSize parseSize(const QString& text) {
     throw InputError("", "--size", "'" + text.toStdString() + "' is not WIDTHxHEIGHT between 320x240 and 16384x16384");
   return size;
 }
+/// Null where there is none of this name.
+const ChoiceOption* choiceOption(const QString& name) {
+  for (const ChoiceOption& option : choiceOptions())
+    if (name == QLatin1String(option.flag)) return &option;
+  return nullptr;
+}
+
+/// The options for captures, two lines each.
+QString choicesHelp() {
+  QString text;
+  for (const ChoiceOption& option : choiceOptions())
+    text += QStringLiteral("  %1 %2\n                        %3\n")
+                .arg(QLatin1String(option.flag), QLatin1String(option.value), QLatin1String(option.help));
+  return text;
+}
 }  // namespace
 
 CommandLine parseCommandLine(const QStringList& arguments) {
@@ -60,6 +75,8 @@ CommandLine parseCommandLine(const QStringList& arguments) {
       c.limits << value();
     else if (name == QStringLiteral("--wait-idle"))
       c.waitIdle = true;
+    else if (const ChoiceOption* option = choiceOption(name))
+      option->set(c.choices, value().toStdString());
     else if (name.startsWith('-') && name.size() > 1)
       throw InputError("", name.toStdString(), "unknown option; see --help");
     else if (c.input.isEmpty())
@@ -78,8 +95,8 @@ QString helpText() {
              "Usage: glint-inspector [INPUT] [options]\n\n"
              "Shows a specular highlight reconstruction step by step: surface, cameras, light and models in 3D, and the\n"
              "predicted and observed highlights in every frame.\n\n"
-             "  INPUT                 a scene file (scene.json), a session (*.glint) or a folder containing one;\n"
-             "                        default: start empty\n\n"
+             "  INPUT                 a scene file (scene.json), a session (*.glint), a capture of another program (COLMAP,\n"
+             "                        nerfstudio ...) or a folder containing one; default: start empty\n\n"
              "  --layout NAME         arrangement of the panels: %1\n"
              "  --theme light|dark    colours (default: dark)\n"
              "  --frame ID            frame to select: id, or number in the input (from 0)\n"
@@ -90,12 +107,13 @@ QString helpText() {
              "  --wait-idle           take the screenshot once everything is computed and drawn\n"
              "  --limit NAME=VALUE    raise a limit on the size of inputs, in its own unit; may be repeated:\n"
              "                        %2\n"
+             "%3"
              "  --version, -h, --help\n\n"
              "Exit codes: 0 done, 2 invalid input or request (one line on standard error says where).\n"
              "Needs a display. Without one, use a virtual display:\n"
              "  QT_QPA_PLATFORM=xcb xvfb-run -a -s \"-screen 0 1600x1000x24\" glint-inspector INPUT --screenshot out.png "
              "--wait-idle\n")
-      .arg(layoutNames().join(QStringLiteral(", ")), limits.join(QStringLiteral(", ")));
+      .arg(layoutNames().join(QStringLiteral(", ")), limits.join(QStringLiteral(", ")), choicesHelp());
 }
 
 }  // namespace glint::gui

@@ -5,13 +5,15 @@
 #include <QString>
 #include <QStringList>
 
+#include "core/scene/input_choices.h"
 #include "gui/base/theme.h"
 
 namespace glint::gui {
 
 /// The command line of `glint-inspector --help`, checked.
 struct CommandLine {
-  QString input;  ///< "" = empty state
+  QString input;         ///< "" = empty state
+  InputChoices choices;  ///< how it is read, where it is a capture of another program
   QString layout = QStringLiteral("debug");
   Theme theme = Theme::Dark;
   QString frame;       ///< frame id, or number where no id matches; "" = first

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/scene/permitted.h"
+#include "core/base/permitted.h"
 #include "core/scene/scene_files.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
@@ -183,7 +183,7 @@ void FileActions::reopen(const OpenedPtr& opened) {
 QString FileActions::whereIs(const QString& file, bool mesh, const QString& folder, QWidget* window) {
   const QString name = QFileInfo(file).fileName();
   QFileDialog dialog(window, tr("Where is %1?").arg(name), folder,
-                     (mesh ? tr("Same name (%1);;Meshes (*.ply *.obj *.stl);;All files (*)")
+                     (mesh ? tr("Same name (%1);;Meshes (*.ply *.obj *.stl *.gltf *.glb);;All files (*)")
                            : tr("Same name (%1);;Scenes (*.json);;All files (*)"))
                          .arg(name));
   dialog.setFileMode(QFileDialog::ExistingFile);

@@ -62,6 +62,7 @@
 #include "gui/window/scripted_actions.h"
 #include "gui/window/shortcut_dialog.h"
 #include "gui/window/start_page.h"
+#include "gui/window/undecided.h"
 #include "gui/window/unreadable_files.h"
 #include "gui/window/window_layout.h"
 
@@ -153,6 +154,9 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   });
   connect(&runner_, &Runner::outsideNamed, this, [this](const OutsidePtr& outside) {
     outside_ = outside;  // failed() comes next, and shows it
+  });
+  connect(&runner_, &Runner::inputUndecided, this, [this](const UndecidedPtr& undecided) {
+    undecided_ = undecided;  // failed() comes next, and shows it
   });
   connect(files_, &FileActions::notice, this, [this](const QString& line) {
     log(line);
@@ -443,9 +447,12 @@ void MainWindow::buildStatusLine() {
   statusBar()->addPermanentWidget(new JobStatus(document_, runner_));
 }
 
-void MainWindow::open(const QString& input, const QString& frame) {
+void MainWindow::open(const QString& input, const QString& frame, const InputChoices& choices) {
   files_->setFrameToSelect(frame);
-  files_->drop(input);  // as if it were dropped: a photograph selects its frame
+  if (choices.none()) return files_->drop(input);  // as if it were dropped: a photograph selects its frame
+  Relinked how;
+  how.choices = choices;
+  files_->openRelinked(input, how);
 }
 
 void MainWindow::applyLayout(const QString& name) { layout_->apply(name); }
@@ -518,6 +525,10 @@ void MainWindow::showProblem(const QString& oneLine) {
     messageBar_->showError(tr("%1. Open it anyway and let it use files in %2? Do this only if you trust its author.")
                                .arg(oneLine, shownText(exactQString(outside->folder))),
                            {{tr("Allow and open"), [this, outside] { files_->allow(outside); }}});
+  else if (const UndecidedPtr undecided = std::exchange(undecided_, {}))
+    messageBar_->showError(oneLine, answersTo(undecided, this, [this, path = undecided->path](const Relinked& with) {
+                             files_->openRelinked(path, with);
+                           }));
   else if (!unreadable_->offerMesh(oneLine))
     messageBar_->showError(oneLine);
   log(oneLine);

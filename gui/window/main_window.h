@@ -48,7 +48,8 @@ class MainWindow : public QMainWindow {
   explicit MainWindow(Engine engine, QWidget* parent = nullptr);
   ~MainWindow() override;
 
-  void open(const QString& input, const QString& frame = {});
+  /// @param choices  how a capture of another program is read
+  void open(const QString& input, const QString& frame = {}, const InputChoices& choices = {});
   void applyLayout(const QString& name);
   /// Runs actions by their ids, one after the other, each when everything is computed and shown; idle() is false meanwhile.
   /// InputError for an unknown id.
@@ -133,6 +134,8 @@ class MainWindow : public QMainWindow {
   UnreadableFiles* unreadable_ = nullptr;
   MissingPtr located_;  ///< was pointed at, and is being opened
   OutsidePtr outside_;  ///< a folder that the opening that failed last may not name; null = for another reason, or it was said
+  UndecidedPtr
+      undecided_;       ///< what the opening that failed last would have to be told; null = for another reason, or it was said
   MissingPtr missing_;  ///< why the opening that failed last did; null = for another reason, or it was said
   bool runFailed_ = false;  ///< the message bar shows why the last run failed
 };

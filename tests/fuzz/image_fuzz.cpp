@@ -3,7 +3,7 @@
 #include <opencv2/core.hpp>
 
 #include "core/scene/image_decode.h"
-#include "core/scene/image_header.h"
+#include "core/base/image_header.h"
 #include "tests/fuzz/readers.h"
 
 namespace glint::fuzz {

@@ -3,6 +3,7 @@
 #include "core/base/outcome.h"
 #include "io/mesh_reader.h"
 #include "tests/fuzz/readers.h"
+#include "tests/fuzz/scratch_file.h"
 #include "tests/io/mesh_texts.h"
 
 namespace glint::fuzz {
@@ -30,6 +31,13 @@ bool feedObj(const std::string& bytes) {
 }
 bool feedStl(const std::string& bytes) {
   return feed([&] { return parseMesh(bytes, "m.stl"); }, "m.stl");
+}
+// With a folder of its own, and a file there (body.ply) that a buffer may name.
+bool feedGltf(const std::string& bytes) {
+  return feed([&] { return parseGltf(bytes, scratch().path() / "m.gltf"); }, "m.gltf");
+}
+bool feedGlb(const std::string& bytes) {
+  return feed([&] { return parseGltf(bytes, scratch().path() / "m.glb"); }, "m.glb");
 }
 
 }  // namespace glint::fuzz

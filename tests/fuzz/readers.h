@@ -34,6 +34,17 @@ bool feedTrain(const std::string& bytes);
 bool feedPly(const std::string& bytes);  // mesh_fuzz.cpp
 bool feedObj(const std::string& bytes);
 bool feedStl(const std::string& bytes);
+bool feedGltf(const std::string& bytes);
+bool feedGlb(const std::string& bytes);
+bool feedColmapCameras(const std::string& bytes);  // capture_fuzz.cpp
+bool feedColmapImages(const std::string& bytes);
+bool feedColmapPoints(const std::string& bytes);
+bool feedColmapText(const std::string& bytes);
+bool feedNvm(const std::string& bytes);
+bool feedTransforms(const std::string& bytes);
+bool feedBundle(const std::string& bytes);
+bool feedTum(const std::string& bytes);
+bool feedBop(const std::string& bytes);
 bool feedImageHeader(const std::string& bytes);  // image_fuzz.cpp
 bool feedImage(const std::string& bytes);
 

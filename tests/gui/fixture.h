@@ -75,6 +75,7 @@ int runUntilKilled();  ///< see recovery_test.cpp
 QObject* makeTradeoffTest();
 QObject* makeTurnsTest();
 QObject* makeUnreadableTest();
+QObject* makeCapturesTest();
 QObject* makeRelinkedTest();
 QObject* makeWhatIfTest();
 QObject* makeWindowSizeTest();

@@ -41,6 +41,7 @@ int main(int argc, char** argv) {
       {"figure", makeFigureTest},
       {"comparison", makeComparisonTest},
       {"unreadable", makeUnreadableTest},
+      {"captures", makeCapturesTest},
       {"relinked", makeRelinkedTest},
       {"what_if", makeWhatIfTest},
       {"turns", makeTurnsTest},

@@ -76,8 +76,15 @@ std::string outcomeOf(const std::string& bytes, const fs::path& file) {
 }
 
 std::vector<std::string> goodFiles() {
-  return {plyText(), plyTextWithNormals(), plyBinary<float>("float", false), plyBinary<double>("double", true), objText(),
-          stlText(), stlBinary()};
+  return {plyText(),
+          plyTextWithNormals(),
+          plyBinary<float>("float", false),
+          plyBinary<double>("double", true),
+          objText(),
+          stlText(),
+          stlBinary(),
+          gltfText(),
+          glb()};
 }
 
 /// One to four changes such as disks, cables, editors and attackers make.
@@ -153,7 +160,8 @@ TEST(DamagedMeshes, ADecimalCommaChangesNothing) {
   for (std::string& f : files) {
     if (f.find("1 1 0") != std::string::npos) f = with(f, "1 1 0", "1.25 1e-3 0.5");
   }
-  for (int i = 0; i < 300; ++i) files.push_back(mutated(files[std::size_t(i) % 7], random));
+  const std::size_t good = files.size();
+  for (std::size_t i = 0; i < 300; ++i) files.push_back(mutated(files[i % good], random));
   std::vector<std::string> plain;
   for (const std::string& f : files) plain.push_back(outcomeOf(f, "m"));
   const CommaLocale comma;

@@ -39,7 +39,9 @@ TEST(MeshReader, EveryFormatGivesTheSameSquare) {
                                     {"double, big", plyBinary<double>("float64", true)},
                                     {"stl text", stlText()},
                                     {"stl binary", stlBinary()},
-                                    {"obj", objText()}})
+                                    {"obj", objText()},
+                                    {"gltf", gltfText()},
+                                    {"glb", glb()}})
     expectSquare(parsed(bytes), name);
 }
 
@@ -288,7 +290,7 @@ TEST(MeshReader, DamageIsNamedWithItsPlace) {
       {stlBinary().substr(0, 150), "byte 150, facet 1: the STL is truncated: its header declares 2 facets", "a.stl"},
       {stlBinary().substr(0, 60), "byte 60: the STL is truncated", "a.stl"},
       {stlBinary() + "more", "byte 184: unexpected data after the 2 facets", "a.stl"},
-      {"\x89PNG\r\n", "is not a mesh; supported: PLY, OBJ, STL"},
+      {"\x89PNG\r\n", "is not a mesh; supported: PLY, OBJ, STL, glTF"},
       {std::string("v \0 f", 5), "is not a mesh"},
   };
   for (const Case& c : cases) EXPECT_THAT(inputErrorOf([&] { parseMesh(c.bytes, c.name); }), HasSubstr(c.expected));

@@ -69,6 +69,44 @@ inline std::string objText() {
          "f -4//-1 -2//-1 -1//-1\n";
 }
 
+/// The document of a glTF whose buffer of 60 bytes has four positions and six indices.
+inline std::string gltfDocument(const std::string& uri) {
+  return "{ \"asset\": { \"version\": \"2.0\" },\n \"buffers\": [ { " + uri + "\"byteLength\": 60 } ],\n" +
+         R"( "bufferViews": [ { "buffer": 0, "byteLength": 48 }, { "buffer": 0, "byteOffset": 48, "byteLength": 12 } ],
+ "accessors": [ { "bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3" },
+  { "bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR" } ],
+ "meshes": [ { "primitives": [ { "attributes": { "POSITION": 0 }, "indices": 1 } ] } ],
+ "nodes": [ { "mesh": 0 } ], "scenes": [ { "nodes": [ 0 ] } ], "scene": 0 }
+)";
+}
+inline std::string gltfText() {
+  // By Python: base64.b64encode(struct.pack('<12f6H', 0,0,0, 1,0,0, 1,1,0, 0,1,0, 0,1,2, 0,2,3))
+  return gltfDocument(
+      "\"uri\": \"data:application/octet-stream;base64,"
+      "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAACAPwAAgD8AAAAAAAAAAAAAgD8AAAAAAAABAAIAAAACAAMA\",\n ");
+}
+
+/// A .glb file of a document and a binary chunk.
+inline std::string glbOf(std::string json, std::string binary) {
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  binary.resize((binary.size() + 3) / 4 * 4, '\0');
+  std::string bytes = "glTF";
+  put(bytes, std::uint32_t(2));
+  put(bytes, std::uint32_t(28 + json.size() + binary.size()));
+  put(bytes, std::uint32_t(json.size()));
+  bytes += "JSON" + json;
+  put(bytes, std::uint32_t(binary.size()));
+  bytes += "BIN" + std::string(1, '\0') + binary;
+  return bytes;
+}
+inline std::string glb() {
+  std::string binary;
+  for (const auto& corner : kSquare)
+    for (const double v : corner) put(binary, static_cast<float>(v));
+  for (const int i : {0, 1, 2, 0, 2, 3}) put(binary, std::uint16_t(i));
+  return glbOf(gltfDocument(""), binary);
+}
+
 /// What every mesh that was read must fulfil, whatever the bytes. "" when it does.
 inline std::string brokenPromise(const MeshContent& mesh) {
   if (mesh.triangles.empty()) return "no triangles";

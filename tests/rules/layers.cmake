@@ -140,7 +140,7 @@ foreach(folder IN LISTS folders)
   endif()
 endforeach()
 
-only_in("of core, only core/scene reads files through io" "\"io/" "/core/scene/" core/*.cpp)
+only_in("of core, only core/scene and core/capture read files through io" "\"io/" "/core/(scene|capture)/" core/*.cpp)
 only_in("fifty digits are for sources of core/stability" "\"core/stability/fifty_digits[.]h" "/core/stability/[^/]*[.]cpp$" core/*.cpp core/*.h viz/*.cpp gui/*.cpp
   cli/*.cpp)
 

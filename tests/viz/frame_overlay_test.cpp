@@ -59,7 +59,7 @@ TEST(FrameOverlay, LensDistortionIsAppliedBecauseThePhotographHasIt) {
   const TemporaryFolder folder;
   const auto inspection = smallInspection(folder.path());
   auto scene = std::make_shared<Scene>(*inspection->scene);
-  scene->frames[1].camera.distortion = {-0.2, 0.05, 1e-3, -5e-4, 0};
+  scene->frames[1].camera.lens.parameters = {-0.2, 0.05, 1e-3, -5e-4, 0};
   inspection->scene = scene;
   const Camera& camera = scene->frames[1].camera;
   const Pixel ideal = inspection->evidence[1].highlights[0].contour.points[5];

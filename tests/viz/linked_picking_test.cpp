@@ -185,7 +185,7 @@ TEST_F(LinkedPicking, TheMarkLiesInItsDirection) {
 
 TEST_F(LinkedPicking, DirectionsAreMeasuredInThePhotograph) {
   Camera camera = inspection_->scene->frames[0].camera;
-  camera.distortion = {-0.3, 0, 0, 0, 0};
+  camera.lens.parameters = {-0.3, 0, 0, 0, 0};
   Highlight highlight = inspection_->evidence[0].highlights[0];
   for (Pixel& p : highlight.contour.points) p += Pixel(60, 70);  // off the middle, where the lens bends
   const Pixel ideal = highlight.contour.points[9];

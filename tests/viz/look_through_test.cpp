@@ -30,7 +30,7 @@ constexpr double kAgreementPx = 0.5;  // what the view promises
 /// The camera of a frame with everything that a pinhole picture does not have by itself.
 void makeUneven(Camera& camera) {
   camera.pixelFromRay << 430, 0, 171, 0, 385, 108, 0, 0, 1;
-  camera.distortion = {-0.25, 0.08, 0.004, -0.003, 0};
+  camera.lens.parameters = {-0.25, 0.08, 0.004, -0.003, 0};
 }
 
 /// Closed form: the whole photograph as large as it fits, in the middle.

@@ -241,7 +241,7 @@ TEST(AddWalk, ItsPixelsAreThoseWhereTheCameraSeesTheWalkAlsoThroughALens) {
       SCOPED_TRACE(testing::Message() << (ball ? "ball" : "plane") << ", k1 " << k1);
       Told t = told(ball ? sphere(kRadius) : sheet(0));
       WalkStory& s = *t.story;
-      s.camera.distortion[0] = k1;
+      s.camera.lens.parameters[0] = k1;
       const int places = static_cast<int>(s.trace.onSurface.size());
       const auto lineOf = [](const FrameOverlay& overlay, const std::string& label) {
         for (const OverlayLine& l : overlay.lines)

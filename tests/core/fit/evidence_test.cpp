@@ -63,7 +63,7 @@ TEST(Evidence, NamesTheOnlyLightAndLeavesSeveralOpen) {
 
 TEST(Evidence, GivenContoursAreIdealAlreadyAndStayAsTheyAre) {
   Scene scene = oneFrame({circle(500, 400, 20)});
-  scene.frames[0].camera.distortion = {-0.2, 0.05, 1e-3, 1e-3, 0};
+  scene.frames[0].camera.lens.parameters = {-0.2, 0.05, 1e-3, 1e-3, 0};
   const FrameEvidence e = gatherEvidence(scene, 0, FrameSource::Radiance, {});
   EXPECT_EQ(e.highlights[0].contour.points, scene.frames[0].highlights[0].contour.points);
   EXPECT_EQ(e.highlights[0].peak, scene.frames[0].highlights[0].peak);

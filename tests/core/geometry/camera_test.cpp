@@ -49,10 +49,10 @@ TEST(Camera, RayProjectionAndCentreAgree) {
 TEST(Camera, DistortionAgreesWithOpenCv) {
   Camera c = example();
   c.pixelFromRay(0, 1) = 0;  // OpenCV knows no skew
-  c.distortion = {-0.21, 0.07, 0.001, -0.0015, 0.01};
+  c.lens.parameters = {-0.21, 0.07, 0.001, -0.0015, 0.01};
   ASSERT_TRUE(c.hasDistortion());
   const cv::Matx33d k(800, 0, 320, 0, 790, 240, 0, 0, 1);
-  const std::vector<double> d(c.distortion.begin(), c.distortion.end());
+  const std::vector<double> d(c.lens.parameters.begin(), c.lens.parameters.begin() + 5);
   for (const Pixel& ideal : {Pixel(320, 240), Pixel(10, 20), Pixel(600, 470), Pixel(50, 400)}) {
     std::vector<cv::Point2d> out;
     const std::vector<cv::Point3d> in{{(ideal.x() - 320) / 800, (ideal.y() - 240) / 790, 1.0}};

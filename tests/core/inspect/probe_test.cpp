@@ -61,7 +61,7 @@ TEST(ProbePixel, TakesThePixelAsTheLensMeasuredIt) {
   Inspection inspection = ballInFront();
   const Outcome<PixelProbe> ideal = probePixel(inspection, 0, {70, 40});
   auto scene = std::make_shared<Scene>(*inspection.scene);
-  scene->frames[0].camera.distortion[0] = 0.5;  // k1: the ideal 0.2 is measured at 0.2 (1 + 0.5 * 0.2^2) = 0.204
+  scene->frames[0].camera.lens.parameters[0] = 0.5;  // k1: the ideal 0.2 is measured at 0.2 (1 + 0.5 * 0.2^2) = 0.204
   inspection.scene = scene;
   const Outcome<PixelProbe> measured = probePixel(inspection, 0, {70.4, 40});
   ASSERT_TRUE(ideal && measured);

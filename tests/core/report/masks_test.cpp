@@ -63,12 +63,12 @@ TEST(MaskOf, IsCutAtTheBorderAndUnitesContours) {
 
 TEST(MaskOf, PutsLensDistortionBack) {
   Camera bent = camera(40, 30);
-  bent.distortion = {-0.5, 0, 0, 0, 0};
+  bent.lens.parameters = {-0.5, 0, 0, 0, 0};
   const Polyline square{{{36.5, 13.5}, {38.5, 13.5}, {38.5, 16.5}, {36.5, 16.5}}, true};
   // x_d = x (1 - 0.5 r^2): at 17.5 / 100 from the centre 1.5 % shorter, 0.27 px; the centre 37 stays in, and 38 falls out
   // of 38.22.
   EXPECT_EQ(maskOf({square}, bent).at(38, 15), 255);
-  bent.distortion = {-2, 0, 0, 0, 0};  // 38.5 -> 37.23
+  bent.lens.parameters = {-2, 0, 0, 0, 0};  // 38.5 -> 37.23
   EXPECT_EQ(maskOf({square}, bent).at(38, 15), 0);
   EXPECT_EQ(maskOf({square}, bent).at(37, 15), 255);
 }

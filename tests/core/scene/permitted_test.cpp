@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/scene/permitted.h"
+#include "core/base/permitted.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "core/scene/permitted.h"
+#include "core/base/permitted.h"
 #include "core/scene/scene.h"
 #include "core/session/session.h"
 #include "tests/core/scene/scene_fixture.h"

@@ -91,7 +91,7 @@ TEST(DepthMap, LargeHolesAndJumpsStayOpen) {
 TEST(DepthMap, LensDistortionIsRemoved) {
   const auto sphere = makeAnalytic(test::sphere(0.4));
   Camera camera = test::lookAt({0, -1.6, 0.2}, {0, 0, 0}, 200, 160, 120);
-  camera.distortion = {-0.2, 0.05, 0.001, -0.001, 0};
+  camera.lens.parameters = {-0.2, 0.05, 0.001, -0.001, 0};
   const auto map = makeDepthMap(depthOf(*sphere, camera), camera);
   ASSERT_TRUE(map);
   expectClose(**map, *sphere, camera, 1e-3, 1.5);

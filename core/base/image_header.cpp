@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/scene/image_header.h"
+#include "core/base/image_header.h"
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sizes that a decoder would take from elsewhere than the check before it: files written by hand, byte for byte.
-#include "core/scene/image_header.h"
+#include "core/base/image_header.h"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/scene/permitted.h"
+#include "core/base/permitted.h"
 
 #include <algorithm>
 
@@ -26,6 +26,23 @@ fs::path realPath(const fs::path& path) {
   fs::path real = fs::weakly_canonical(absolute, error);
   if (error) return absolute.lexically_normal();
   return real.has_filename() ? real : real.parent_path();  // "a/" is "a"
+}
+
+fs::path resolveInside(const fs::path& folder, const std::string& relative, const PathRights& rights, const std::string& file,
+                       const std::string& place) {
+  if (relative.empty()) throw InputError(file, place, "the path is empty");
+  if (relative.find('\0') != std::string::npos) throw InputError(file, place, "the path contains a zero byte");
+  const fs::path path(relative);
+  const fs::path absolute = (path.is_absolute() ? path : folder / path).lexically_normal();
+  if (rights.anywhere || liesIn(rights.folders, absolute)) return absolute;
+  if (path.is_absolute())
+    throw OutsidePath(file, place,
+                      "'" + relative + "' is absolute; paths must be relative to the file (--allow-outside accepts it)",
+                      realPath(absolute).parent_path());
+  if (!liesIn({folder}, folder / path))
+    throw OutsidePath(file, place, "'" + relative + "' leaves the folder of the file (--allow-outside accepts it)",
+                      realPath(absolute).parent_path());
+  return absolute;
 }
 
 }  // namespace glint

@@ -31,4 +31,17 @@ bool liesIn(const std::vector<std::filesystem::path>& folders, const std::filesy
 /// Absolute, with links followed as far as the path exists; the path itself where that cannot be told.
 std::filesystem::path realPath(const std::filesystem::path& path);
 
+/// Which files a file from others may name besides those in its own folder.
+struct PathRights {
+  bool anywhere = false;                            ///< --allow-outside
+  std::vector<std::filesystem::path> folders = {};  ///< those that a person named
+};
+
+/// The file that `place` of a document in `folder` names. `relative` is taken relative to the folder; the result is absolute
+/// and lexically normal, and may not exist.
+/// @throw InputError (file, place) when it is empty; OutsidePath when it is absolute or leaves the folder (by `..` or through a symbolic
+///        link), unless it lies in one of `rights.folders` or `rights.anywhere` is true.
+std::filesystem::path resolveInside(const std::filesystem::path& folder, const std::string& relative, const PathRights& rights,
+                                    const std::string& file, const std::string& place);
+
 }  // namespace glint

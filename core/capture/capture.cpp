@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/capture/capture.h"
+
+namespace glint {
+
+const char* UndecidedInput::option() const {
+  switch (question_) {
+    case Question::Reading: return "--as";
+    case Question::Surface: return "--surface";
+    case Question::Camera: return "--camera";
+    case Question::Object: return "--object";
+  }
+  return "";
+}
+
+std::vector<CaptureTrack> CaptureReader::tracks(const Capture&, const CaptureOptions&) const { return {}; }
+
+const std::vector<std::unique_ptr<const CaptureReader>>& captureReaders() {
+  static const std::vector<std::unique_ptr<const CaptureReader>> readers = [] {
+    std::vector<std::unique_ptr<const CaptureReader>> list;
+    list.push_back(makeColmapReader());
+    list.push_back(makeNvmReader());
+    list.push_back(makeNerfstudioReader());
+    list.push_back(makeTumReader());
+    list.push_back(makeBundlerReader());
+    list.push_back(makeBopReader());
+    return list;
+  }();
+  return readers;
+}
+
+const CaptureReader* captureReaderNamed(const std::string& name) {
+  for (const auto& reader : captureReaders())
+    if (reader->name() == name) return reader.get();
+  return nullptr;
+}
+
+std::vector<std::filesystem::path> foldersOfCapture(const std::filesystem::path& file) {
+  namespace fs = std::filesystem;
+  const fs::path own = fs::absolute(file).lexically_normal().parent_path();
+  const std::string name = own.filename().string(), name2 = own.parent_path().filename().string();
+  const auto isNumber = [](const std::string& s) { return !s.empty() && s.find_first_not_of("0123456789") == std::string::npos; };
+  if (name == "sparse" || name == "bundle") return {own.parent_path()};
+  if (name2 == "sparse" && isNumber(name)) return {own.parent_path().parent_path()};
+  std::vector<fs::path> folders;
+  if (file.filename() != "scene_camera.json") return folders;
+  std::error_code error;  // what cannot be listed has no models
+  for (fs::directory_iterator it(own.parent_path().parent_path(), error), end; !error && it != end; it.increment(error))
+    if (it->path().filename().string().rfind("models", 0) == 0 && it->is_directory(error)) folders.push_back(it->path());
+  return folders;
+}
+
+}  // namespace glint

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/outcome.h"
+#include "core/base/permitted.h"
+#include "core/geometry/camera.h"
+
+namespace glint {
+
+/// The files leave something open that a person can say: which reading of a folder is meant, which surface, camera or object.
+class UndecidedInput : public InputError {
+ public:
+  enum class Question { Reading, Surface, Camera, Object };
+  struct Answer {
+    std::string value;  ///< for the option: "colmap"; path of a mesh; "5"
+    std::string words;  ///< for a person; "" = the value
+  };
+  /// @param answers  the possible ones; none = any (a file; numbers)
+  UndecidedInput(const std::string& file, const std::string& reason, Question question, std::vector<Answer> answers)
+      : InputError(file, "", reason), question_(question), answers_(std::move(answers)) {}
+  Question question() const { return question_; }
+  const std::vector<Answer>& answers() const { return answers_; }
+  const char* option() const;  ///< that answers: "--as", "--surface", "--camera", "--object"
+
+ private:
+  Question question_;
+  std::vector<Answer> answers_;
+};
+
+/// One photograph with its camera, as another program left them on disk, in our conventions: (0, 0) is the centre of the first
+/// pixel, axes x right, y down, z forward, world to camera. Lengths are in the unit of the capture.
+struct CaptureView {
+  std::string name;                          ///< of the image, as the file writes it ("a/0003.jpg"); views are ordered by it
+  std::filesystem::path image, depth, mask;  ///< absolute; "" = not named. They need not exist
+  double depthScale = 0;                     ///< metres per stored unit of `depth`; 0 = not given
+  Camera camera;                             ///< with the size of its image
+};
+
+/// A mesh that the other program names itself (BOP's models).
+struct CaptureMesh {
+  std::filesystem::path file;  ///< absolute
+  double metresPerUnit = 1;
+};
+
+/// What was read, complete and checked: poses rigid, all numbers finite, names unique.
+struct Capture {
+  std::string kind;                            ///< name of the reader: "colmap", ...
+  std::filesystem::path file;                  ///< the one that was recognised; absolute
+  std::filesystem::path folder;                ///< absolute, the project's root: paths of images start here
+  std::vector<std::filesystem::path> sources;  ///< every file that was read for it but images, `file` first; absolute
+  double metresPerUnit = 1;                    ///< of poses and points; 1 where the program does not say
+  bool hasScale = false;                       ///< the program knows its unit (BOP, TUM); false: the scale is arbitrary (COLMAP)
+  std::vector<CaptureView> views;              ///< ordered, not empty
+  std::optional<CaptureMesh> mesh;
+  std::vector<std::string> facts;     ///< what was recognised and converted, one line each, for the report
+  std::vector<std::string> warnings;  ///< what a person should know, one line each
+};
+
+/// A sparse point and the pixels at which photographs show it, for checks of cameras against the program's own measurements.
+struct CaptureTrack {
+  struct Observation {
+    int view = 0;  ///< index in Capture::views
+    Pixel measured;
+  };
+  Eigen::Vector3d point;  ///< in the world of the views, in the unit of the capture
+  std::vector<Observation> seen;
+};
+
+/// What the files of other programs do not say, from the command line or a session.
+struct CaptureOptions {
+  PathRights rights;
+  std::vector<std::filesystem::path> photographs;  ///< folders in which images are looked for first
+  std::optional<Camera> camera;  ///< intrinsics of all views (TUM); its size is that of the images; pose ignored
+  std::string object;            ///< BOP: its number; "" = the only one
+  std::string world;             ///< nerfstudio: "original" undoes applied_transform; "" = as stored
+};
+
+/// One kind of input.
+class CaptureReader {
+ public:
+  virtual ~CaptureReader() = default;
+  virtual std::string name() const = 0;      ///< as `--as` takes it: "colmap"
+  virtual std::string describe() const = 0;  ///< for a person: "COLMAP model (text or binary)"
+  /// The file to read when this reader understands `input` (a file, or a folder in which it looks), by content; an empty path
+  /// otherwise. Never throws for an unreadable input.
+  virtual std::filesystem::path recognise(const std::filesystem::path& input) const = 0;
+  /// Reads what `recognise` returned. InputError with file, place ("line 12", "frames[3].transform_matrix", "byte 120") and reason.
+  virtual Capture read(const std::filesystem::path& file, const CaptureOptions& options) const = 0;
+  /// The sparse points of what `read` returned; empty where the program has none. InputError as `read`.
+  virtual std::vector<CaptureTrack> tracks(const Capture& capture, const CaptureOptions& options) const;
+};
+
+/// All of them, in the order in which they are asked.
+const std::vector<std::unique_ptr<const CaptureReader>>& captureReaders();
+/// Folders besides its own in which a capture may name files, by the path of the file that is recognised: the project's root of a
+/// COLMAP model in `sparse/0`, that of `bundle/bundle.out`, the folders of models of a BOP data set.
+std::vector<std::filesystem::path> foldersOfCapture(const std::filesystem::path& file);
+/// Null where there is none of this name.
+const CaptureReader* captureReaderNamed(const std::string& name);
+
+std::unique_ptr<const CaptureReader> makeColmapReader();
+std::unique_ptr<const CaptureReader> makeNvmReader();
+std::unique_ptr<const CaptureReader> makeNerfstudioReader();
+std::unique_ptr<const CaptureReader> makeTumReader();
+std::unique_ptr<const CaptureReader> makeBundlerReader();
+std::unique_ptr<const CaptureReader> makeBopReader();
+
+}  // namespace glint

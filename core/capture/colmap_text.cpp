@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <array>
+
+#include "core/capture/colmap_parts.h"
+#include "io/text_scan.h"
+
+// cameras.txt, images.txt and points3D.txt. An element of cameras and points is a line, an image two lines.
+
+namespace glint::capture::colmap {
+namespace {
+
+bool isCommentOrEmpty(std::string_view line) {
+  const std::string_view word = io::takeWord(line);
+  return word.empty() || word.front() == '#';
+}
+
+std::string_view withoutBlanksAround(std::string_view text) {
+  while (!text.empty() && io::isBlank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && io::isBlank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+/// Without a branch, for lines of hundreds of kilobytes: what is no printable character separates words.
+std::size_t wordsIn(std::string_view line) {
+  std::size_t words = 0;
+  unsigned char before = ' ';
+  for (const char c : line) {
+    const auto now = static_cast<unsigned char>(c);
+    words += (now > ' ') & (before <= ' ');
+    before = now;
+  }
+  return words;
+}
+
+/// The next word as a finite number.
+double takeNumber(std::string_view& line, const std::string& file, std::size_t number) {
+  const std::string_view word = io::takeWord(line);
+  const std::optional<double> value = io::numberOf(word);
+  if (!value || !std::isfinite(*value)) throw InputError(file, lineNo(number), io::quoted(word) + " is not a number");
+  return *value;
+}
+std::uint32_t takeNumber32(std::string_view& line, const std::string& file, std::size_t number) {
+  const std::string_view word = io::takeWord(line);
+  const std::optional<std::uint32_t> value = number32(word);
+  if (!value) throw InputError(file, lineNo(number), io::quoted(word) + " is not a whole number of 0 .. 4294967295");
+  return *value;
+}
+
+/// The first line of an image.
+ModelImage imageOf(std::string_view line, std::size_t number, const std::string& file, std::vector<std::string>& warnings) {
+  constexpr std::size_t kWords = 10;
+  ModelImage image;
+  image.place = lineNo(number);
+  if (const std::size_t words = wordsIn(line); words < kWords)
+    throw InputError(file, image.place,
+                     "should begin an image (IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME), but has " +
+                         counted(words, "entry", "entries"));
+  image.id = takeNumber32(line, file, number);
+  std::array<double, 7> pose{};
+  for (double& v : pose) v = takeNumber(line, file, number);
+  image.camFromWorld = poseOf(pose, file, image.place, warnings);
+  image.camera = takeNumber32(line, file, number);
+  image.name = checkedName(withoutBlanksAround(line), file, image.place);  // the rest, for a name may contain blanks
+  return image;
+}
+
+/// Calls `each` with x, y of every 2D point of a line.
+template <class Each>
+void readPixels(std::string_view line, std::size_t pixels, const std::string& file, const std::string& place, const Each& each) {
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const std::optional<double> x = io::numberOf(io::takeWord(line)), y = io::numberOf(io::takeWord(line));
+    const std::optional<std::int64_t> point = io::integerOf(io::takeWord(line));  // -1: none
+    if (!x || !y || !point) throw InputError(file, place, "its 2D point " + std::to_string(i) + " is not X, Y, POINT3D_ID");
+    each(*x, *y);
+  }
+}
+
+/// The second line of an image: how many 2D points it has. A file that lacks these lines would lose every second image, so a line
+/// that could be the first one of an image is read; long ones are counted.
+void countPixels(std::string_view line, std::size_t number, const std::string& file, ModelImage& image) {
+  const std::size_t words = wordsIn(line);
+  constexpr std::size_t kFirstLine = 8192;  // bytes; ten entries, one of them a path, are shorter
+  if (words % 3 != 0)
+    throw InputError(file, lineNo(number),
+                     "should hold the 2D points (X, Y, POINT3D_ID) of image " + io::quoted(image.name) + ", but has " +
+                         counted(words, "entry", "entries") + " (a line for them must be there even if it is empty)");
+  image.pixels = words / 3;
+  if (line.size() < kFirstLine) readPixels(line, image.pixels, file, lineNo(number), [](double, double) {});
+}
+
+}  // namespace
+
+std::vector<ModelCamera> readCamerasText(std::string_view bytes, const std::string& file) {
+  std::vector<ModelCamera> cameras;
+  io::Lines lines(bytes);
+  while (std::optional<std::string_view> line = lines.next()) {
+    if (isCommentOrEmpty(*line)) continue;
+    const std::size_t number = lines.number(), words = wordsIn(*line);
+    constexpr std::size_t kBefore = 4;  // CAMERA_ID, MODEL, WIDTH, HEIGHT
+    if (words < kBefore) throw InputError(file, lineNo(number), "is not CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS");
+    const std::uint32_t id = takeNumber32(*line, file, number);
+    const CameraModel& model = cameraModelOf(io::takeWord(*line), file, lineNo(number));
+    const std::uint32_t width = takeNumber32(*line, file, number), height = takeNumber32(*line, file, number);
+    std::vector<double> parameters(std::size_t(model.parameters()));
+    if (words - kBefore != parameters.size())
+      throw InputError(file, lineNo(number),
+                       std::string(model.name) + " has " + counted(parameters.size(), "parameter") + ", the line has " +
+                           std::to_string(words - kBefore));
+    for (double& p : parameters) p = takeNumber(*line, file, number);
+    cameras.push_back(cameraOf(id, model, width, height, parameters, file, lineNo(number)));
+  }
+  return cameras;
+}
+
+std::vector<ModelImage> readImagesText(std::string_view bytes, const std::string& file, std::vector<std::string>& warnings) {
+  std::vector<ModelImage> images;
+  io::Lines lines(bytes);
+  while (const auto first = lines.next()) {
+    if (isCommentOrEmpty(*first)) continue;
+    ModelImage image = imageOf(*first, lines.number(), file, warnings);
+    image.from = lines.at();
+    if (const auto second = lines.next()) {  // the last line may lack where it is empty
+      countPixels(*second, lines.number(), file, image);
+      image.size = second->size();
+    }
+    images.push_back(std::move(image));
+  }
+  return images;
+}
+
+std::vector<Pixel> pixelsOfText(std::string_view bytes, const ModelImage& image, const std::string& file) {
+  std::vector<Pixel> pixels;
+  pixels.reserve(image.pixels);
+  const auto place = [&] { return "image " + io::quoted(image.name); };
+  readPixels(bytes.substr(image.from, image.size), image.pixels, file, place(),
+             [&](double x, double y) { pixels.push_back(pixelAt(x, y, file, place)); });
+  return pixels;
+}
+
+void readPointsText(std::string_view bytes, const std::string& file, const EachPoint& each) {
+  io::Lines lines(bytes);
+  std::vector<TrackEntry> track;
+  while (const auto line = lines.next()) {
+    if (isCommentOrEmpty(*line)) continue;
+    constexpr std::size_t kBeforeTrack = 8;  // POINT3D_ID, X, Y, Z, R, G, B, ERROR
+    const std::size_t number = lines.number(), words = wordsIn(*line);
+    if (words < kBeforeTrack || words % 2 != 0)
+      throw InputError(file, lineNo(number),
+                       "is not POINT3D_ID, X, Y, Z, R, G, B, ERROR and a track of IMAGE_ID, POINT2D_IDX: it has " +
+                           counted(words, "entry", "entries"));
+    std::string_view rest = *line;
+    io::takeWord(rest);
+    const double x = takeNumber(rest, file, number), y = takeNumber(rest, file, number), z = takeNumber(rest, file, number);
+    const Eigen::Vector3d point = pointAt(x, y, z, file, [&] { return lineNo(number); });
+    for (int i = 0; i < 4; ++i) io::takeWord(rest);  // colour and error
+    track.resize((words - kBeforeTrack) / 2);
+    for (TrackEntry& entry : track) {
+      entry.image = takeNumber32(rest, file, number);
+      entry.pixel = takeNumber32(rest, file, number);
+    }
+    each(point, track);
+  }
+}
+
+}  // namespace glint::capture::colmap

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/scene/capture_scene.h"
+
+#include <algorithm>
+#include <map>
+
+#include "core/base/bounded_json.h"
+#include "core/base/found_file.h"
+#include "core/base/number_text.h"
+#include "core/scene/relinked.h"
+#include "core/scene/scene_json.h"
+#include "core/scene/scene_reader.h"
+
+namespace glint {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kSurfaceId = "surface";
+
+bool endsLikeAMesh(const fs::path& file) {
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return ending == ".ply" || ending == ".obj" || ending == ".stl" || ending == ".gltf" || ending == ".glb";
+}
+
+/// A PLY file whose header names no face: a cloud of points.
+bool isCloud(const fs::path& file) {
+  constexpr std::size_t kHeader = 4096;  // bytes; a longer header is that of a mesh with many properties
+  const std::string start = firstBytes(file, kHeader);
+  const std::size_t end = start.find("end_header");
+  return start.rfind("ply", 0) == 0 && end != std::string::npos && start.substr(0, end).find("element face") == std::string::npos;
+}
+
+/// Meshes directly in the folder, in the order of their names.
+std::vector<fs::path> meshesIn(const fs::path& folder) {
+  std::vector<fs::path> meshes;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    if (it->is_regular_file(error) && endsLikeAMesh(it->path()) && !isCloud(it->path())) meshes.push_back(it->path());
+  std::sort(meshes.begin(), meshes.end());
+  return meshes;
+}
+
+std::string listOf(const std::vector<fs::path>& files) {
+  constexpr std::size_t kMost = 8;  // as many as a person reads
+  std::string list;
+  for (std::size_t i = 0; i < std::min(files.size(), kMost); ++i) list += (i ? ", " : "") + files[i].filename().string();
+  return files.size() > kMost ? list + ", ..." : list;
+}
+
+UndecidedInput undecidedSurface(const fs::path& file, const std::string& reason, const std::vector<fs::path>& meshes) {
+  std::vector<UndecidedInput::Answer> answers;
+  for (const fs::path& mesh : meshes) answers.push_back({mesh.string(), mesh.filename().string()});
+  return {file.string(), reason, UndecidedInput::Question::Surface, std::move(answers)};
+}
+
+/// The mesh to take; "" = the frames' depth maps.
+fs::path meshOf(const Capture& capture, const InputChoices& choices) {
+  const bool anyDepth = std::any_of(capture.views.begin(), capture.views.end(), [](const auto& v) { return !v.depth.empty(); });
+  switch (choices.surface) {
+    case InputChoices::Surface::File: return choices.surfaceFile;
+    case InputChoices::Surface::Points:
+      throw InputError(capture.file.string(), "--surface points", "surfaces from points are not supported yet");
+    case InputChoices::Surface::Depth:
+      if (!anyDepth) throw InputError(capture.file.string(), "--surface depth", "no frame has a depth map");
+      return {};
+    case InputChoices::Surface::Default: break;
+  }
+  if (capture.mesh) return capture.mesh->file;
+  const std::vector<fs::path> meshes = meshesIn(capture.folder);
+  const auto isNamedMesh = [](const fs::path& p) { return p.stem() == "mesh"; };
+  const auto named = std::find_if(meshes.begin(), meshes.end(), isNamedMesh);
+  if (std::count_if(meshes.begin(), meshes.end(), isNamedMesh) == 1) return *named;
+  if (meshes.size() == 1) return meshes.front();
+  if (meshes.size() > 1)
+    throw undecidedSurface(capture.folder, "contains several meshes (" + listOf(meshes) + "); choose one by --surface FILE",
+                           meshes);
+  if (anyDepth) return {};
+  throw undecidedSurface(
+      capture.file, "names no surface, and there is no mesh in " + capture.folder.string() + "; name one by --surface FILE", {});
+}
+
+/// Names without folder and ending; with the folder where they repeat; as they are where they still do.
+std::vector<std::string> idsOf(const std::vector<CaptureView>& views) {
+  std::vector<std::string> ids(views.size());
+  for (std::size_t i = 0; i < views.size(); ++i) ids[i] = fs::path(views[i].name).stem().string();
+  const auto renameRepeated = [&](const auto& longer) {
+    std::map<std::string, int> count;
+    for (const std::string& id : ids) ++count[id];
+    for (std::size_t i = 0; i < views.size(); ++i)
+      if (count[ids[i]] > 1) ids[i] = longer(fs::path(views[i].name));
+  };
+  renameRepeated([](fs::path name) { return name.replace_extension().generic_string(); });
+  renameRepeated([](const fs::path& name) { return name.generic_string(); });
+  for (std::size_t i = 0; i < views.size(); ++i)
+    if (!isIdentifier(ids[i])) ids[i] = formatted("frame %zu", i);
+  return ids;
+}
+
+/// The mesh where it was relinked to, else in its place, else in one of the folders; Scene::meshes says where it is instead.
+fs::path meshWhereItIs(const fs::path& place, const std::string& named, const ReadOptions& options, Scene& scene) {
+  const auto isThere = [](const fs::path& file) {
+    std::error_code ignored;  // what cannot be asked about is not there
+    return fs::is_regular_file(file, ignored);
+  };
+  const auto moved = options.meshes.find(named);
+  fs::path found = moved != options.meshes.end() ? fs::absolute(moved->second).lexically_normal() : place;
+  if (!isThere(found)) found.clear();
+  for (const fs::path& folder : options.meshFolders)
+    if (found.empty()) found = sameUnder(fs::absolute(folder), place);
+  if (found.empty()) throw MissingMesh(scene.file.string(), "surface", named, place);
+  if (found != place) scene.meshes[named] = found;
+  return found;
+}
+
+}  // namespace
+
+CaptureOptions captureOptionsOf(const ReadOptions& options) {
+  CaptureOptions c;
+  c.rights = options.rights();
+  c.photographs = options.photographs;
+  if (!options.choices.camera.empty()) c.camera = cameraOfNumbers(options.choices.camera);
+  c.object = options.choices.object;
+  c.world = options.choices.world;
+  return c;
+}
+
+CaptureOptions captureOptionsOf(const Scene& scene) {
+  ReadOptions options;
+  options.allowOutsidePaths = scene.allowOutsidePaths;
+  options.choices = scene.choices;
+  for (const FilesFolder& f : scene.folders) {
+    options.folders.push_back(f.folder);
+    if (f.kind == FrameFile::Photograph) options.photographs.push_back(f.folder);
+  }
+  return captureOptionsOf(options);
+}
+
+Scene sceneOfCapture(const Capture& capture, const ReadOptions& options) {
+  const InputChoices& choices = options.choices;
+  Scene scene;
+  scene.kind = capture.kind;
+  scene.name = capture.folder.filename().string();
+  scene.file = capture.file;
+  scene.folder = capture.folder;
+  scene.allowOutsidePaths = options.allowOutsidePaths;
+  scene.choices = choices;
+  scene.choices.as = capture.kind;
+  scene.sources = capture.sources;
+  scene.facts = capture.facts;
+  scene.warnings = capture.warnings;
+  const double metres = choices.metresPerUnit.value_or(capture.metresPerUnit);
+  if (!capture.hasScale && !choices.metresPerUnit)
+    scene.facts.push_back("the unit of length is not known: it is taken as metres (--units says another)");
+
+  const fs::path mesh = meshOf(capture, choices);
+  if (!mesh.empty()) {
+    SurfaceSource source;
+    source.mesh = fs::absolute(mesh).lexically_normal();
+    source.named = source.mesh->lexically_relative(capture.folder).generic_string();
+    const bool own = capture.mesh && capture.mesh->file == mesh;
+    source.metresPerUnit = choices.surfaceMetresPerUnit.value_or(own ? capture.mesh->metresPerUnit : metres);
+    source.mesh = meshWhereItIs(*source.mesh, source.named, options, scene);
+    scene.surfaces[kSurfaceId] = source;
+    scene.facts.push_back("surface: " + source.named);
+  } else if (choices.surfaceMetresPerUnit) {
+    throw InputError(capture.file.string(), "--surface-units", "the surface is no mesh");
+  }
+
+  const std::vector<std::string> ids = idsOf(capture.views);
+  for (std::size_t i = 0; i < capture.views.size(); ++i) {
+    const CaptureView& view = capture.views[i];
+    Frame frame;
+    frame.id = ids[i];
+    frame.image = view.image;
+    frame.depth = view.depth;
+    frame.mask = view.mask;
+    frame.depthScale = view.depth.empty() ? 0 : choices.depthScale.value_or(view.depthScale);
+    frame.camera = view.camera;
+    frame.camera.camFromWorld.translation() *= metres;
+    if (!(frame.camera.camFromWorld.translation().cwiseAbs().maxCoeff() <= kFarthest))
+      throw InputError(capture.file.string(), view.name, "its camera is farther than 1e15 m from the origin");
+    if (!mesh.empty()) frame.surface = kSurfaceId;
+    scene.frames.push_back(std::move(frame));
+  }
+  return scene;
+}
+
+}  // namespace glint

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which reader understands an input.
+#include <algorithm>
+
+#include "core/scene/capture_scene.h"
+#include "core/scene/scene.h"
+#include "core/scene/scene_reader.h"
+
+namespace glint {
+namespace fs = std::filesystem;
+
+namespace {
+
+class CaptureSceneReader final : public SceneReader {
+ public:
+  explicit CaptureSceneReader(const CaptureReader& reader) : reader_(reader) {}
+  std::string name() const override { return reader_.name(); }
+  std::string describe() const override { return reader_.describe(); }
+  fs::path recognise(const fs::path& input) const override { return reader_.recognise(input); }
+  Scene read(const fs::path& file, const ReadOptions& options) const override {
+    return sceneOfCapture(reader_.read(file, captureOptionsOf(options)), options);
+  }
+
+ private:
+  const CaptureReader& reader_;
+};
+
+struct Reading {
+  std::string as, description;
+  fs::path file;
+};
+
+/// Every way to read the input. A scene.json in a folder leaves no other, and a session counts only where there is nothing else.
+std::vector<Reading> readingsOf(const fs::path& input) {
+  std::vector<Reading> all;
+  Reading session;
+  for (const auto& reader : sceneReaders()) {
+    fs::path file = reader->recognise(input);
+    if (file.empty()) continue;
+    Reading reading{reader->name(), reader->describe(), std::move(file)};
+    if (reading.as == "session") {
+      session = std::move(reading);
+      continue;
+    }
+    if (reading.as == "scene" && reading.file.filename() == "scene.json") return {std::move(reading)};
+    all.push_back(std::move(reading));
+  }
+  if (all.empty() && !session.file.empty()) all.push_back(std::move(session));
+  return all;
+}
+
+const SceneReader& readerNamed(const std::string& name) {
+  for (const auto& reader : sceneReaders())
+    if (reader->name() == name) return *reader;
+  std::string known;
+  for (const auto& reader : sceneReaders())
+    if (reader->name() != "session") known += (known.empty() ? "" : ", ") + reader->name();
+  throw InputError("", "--as " + name, "is not one of: " + known);
+}
+
+std::string whatIsUnderstood() {
+  std::string all;
+  for (const auto& reader : sceneReaders()) all += (all.empty() ? "" : ", ") + reader->describe();
+  return all;
+}
+
+[[noreturn]] void refuseSeveral(const fs::path& input, const std::vector<Reading>& readings) {
+  std::vector<UndecidedInput::Answer> answers;
+  std::string ways, flags;
+  for (const Reading& r : readings) {
+    ways += (ways.empty() ? "" : ", ") + r.description + " in " + r.file.filename().string();
+    flags += (flags.empty() ? "--as " : ", --as ") + r.as;
+    answers.push_back({r.as, r.description + " in " + r.file.filename().string()});
+  }
+  throw UndecidedInput(input.string(),
+                       "can be read in several ways (" + ways + "); choose one by " + flags + ", or name the file itself",
+                       UndecidedInput::Question::Reading, std::move(answers));
+}
+
+[[noreturn]] void refuseUnknown(const fs::path& input) {
+  std::error_code error;
+  const fs::file_status status = fs::status(input, error);
+  if (!fs::exists(status)) throw InputError(input.string(), "", "no such file or folder");
+  const bool folder = fs::is_directory(status);
+  if (!folder && !fs::is_regular_file(status)) throw InputError(input.string(), "", "is a device or a pipe, not a file");
+  const bool empty = folder ? fs::is_empty(input, error) : fs::file_size(input, error) == 0;
+  const std::string what = folder ? (empty ? "the folder is empty" : "nothing in this folder is recognised")
+                                  : (empty ? "the file is empty" : "the content is not recognised");
+  throw InputError(input.string(), "", what + "; supported: " + whatIsUnderstood());
+}
+
+/// The reader and the file for it.
+Reading chosenReading(const fs::path& input, const std::string& as) {
+  std::error_code error;
+  if (!fs::exists(input, error)) refuseUnknown(input);
+  if (!as.empty()) {
+    const SceneReader& reader = readerNamed(as);
+    const fs::path file = reader.recognise(input);
+    if (file.empty()) throw InputError(input.string(), "--as " + as, "contains no " + reader.describe());
+    return {as, reader.describe(), file};
+  }
+  std::vector<Reading> readings = readingsOf(input);
+  if (readings.empty()) refuseUnknown(input);
+  if (readings.size() > 1) refuseSeveral(input, readings);
+  return readings.front();
+}
+
+}  // namespace
+
+std::unique_ptr<const SceneReader> makeCaptureSceneReader(const CaptureReader& reader) {
+  return std::make_unique<CaptureSceneReader>(reader);
+}
+
+const std::vector<std::unique_ptr<const SceneReader>>& sceneReaders() {
+  static const std::vector<std::unique_ptr<const SceneReader>> readers = [] {
+    std::vector<std::unique_ptr<const SceneReader>> list;
+    list.push_back(makeSceneFileReader());
+    list.push_back(makeSessionSceneReader());
+    for (const auto& reader : captureReaders()) list.push_back(makeCaptureSceneReader(*reader));
+    return list;
+  }();
+  return readers;
+}
+
+Scene readScene(const fs::path& input, const ReadOptions& options) {
+  const Reading reading = chosenReading(input, options.choices.as);
+  return readerNamed(reading.as).read(reading.file, options);
+}
+
+Scene readSceneOfSession(const fs::path& input, const ReadOptions& options) {
+  const Reading reading = chosenReading(input, options.choices.as);
+  if (reading.as == "session")
+    throw InputError(reading.file.string(), "", "is a session; the input of a session must be a scene");
+  return readerNamed(reading.as).read(reading.file, options);
+}
+
+fs::path recognisedFile(const fs::path& input) {
+  const std::vector<Reading> readings = readingsOf(input);
+  return readings.empty() ? fs::path() : readings.front().file;
+}
+
+}  // namespace glint

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/window/undecided.h"
+
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QInputDialog>
+#include <QObject>
+
+#include "gui/base/text.h"
+
+namespace glint::gui {
+
+namespace {
+constexpr int kMostButtons = 4;  // as many as a line has room for; a dialog offers the others
+
+using Question = UndecidedInput::Question;
+using Open = std::function<void(const Relinked&)>;
+
+/// The options of the command line check and keep what a person says.
+void answer(const UndecidedPtr& undecided, const std::string& value, const Open& open) {
+  Relinked with = undecided->instead;
+  for (const ChoiceOption& option : choiceOptions())
+    if (undecided->option == option.flag) option.set(with.choices, value);
+  open(with);
+}
+
+QString titleOf(const UndecidedInput::Answer& answer, Question question) {
+  const QString words = toQString(answer.words.empty() ? answer.value : answer.words);
+  return question == Question::Reading ? QObject::tr("Open %1").arg(words) : words;
+}
+
+void chooseMesh(const UndecidedPtr& undecided, QWidget* window, const Open& open) {
+  const QFileInfo input(undecided->path);
+  const QString file =
+      QFileDialog::getOpenFileName(window, QObject::tr("Mesh of the object"), input.isDir() ? undecided->path : input.path(),
+                                   QObject::tr("Meshes (*.ply *.obj *.stl *.gltf *.glb);;All files (*)"));
+  if (!file.isEmpty()) answer(undecided, file.toStdString(), open);
+}
+
+void enterCamera(const UndecidedPtr& undecided, QWidget* window, const Open& open) {
+  QString text;
+  for (;;) {
+    bool entered = false;
+    text = QInputDialog::getText(window, QObject::tr("Intrinsics of the camera"),
+                                 QObject::tr("fx,fy,cx,cy or fx,fy,cx,cy,k1,k2,p1,p2,k3 in pixels;\n"
+                                             "(0,0) is the centre of the first pixel"),
+                                 QLineEdit::Normal, text, &entered);
+    if (!entered) return;
+    try {
+      return answer(undecided, text.remove(' ').toStdString(), open);
+    } catch (const InputError&) {
+      continue;  // the text stays, to be corrected
+    }
+  }
+}
+
+void chooseAnswer(const UndecidedPtr& undecided, QWidget* window, const Open& open) {
+  QStringList titles;
+  for (const UndecidedInput::Answer& a : undecided->answers) titles << titleOf(a, undecided->question);
+  bool chosen = false;
+  const QString title = QInputDialog::getItem(window, QObject::tr("Open"), QObject::tr("Which one?"), titles, 0, false, &chosen);
+  if (chosen) answer(undecided, undecided->answers[std::size_t(titles.indexOf(title))].value, open);
+}
+}  // namespace
+
+MessageBar::Answers answersTo(const UndecidedPtr& undecided, QWidget* window, const Open& open) {
+  MessageBar::Answers answers;
+  if (undecided->answers.size() > kMostButtons) {
+    answers << std::pair(QObject::tr("Choose…"), [=] { chooseAnswer(undecided, window, open); });
+  } else {
+    for (const UndecidedInput::Answer& a : undecided->answers)
+      answers << std::pair(titleOf(a, undecided->question), [=, value = a.value] { answer(undecided, value, open); });
+  }
+  if (undecided->question == Question::Surface)
+    answers << std::pair(QObject::tr("Choose mesh…"), [=] { chooseMesh(undecided, window, open); });
+  if (undecided->question == Question::Camera)
+    answers << std::pair(QObject::tr("Enter intrinsics…"), [=] { enterCamera(undecided, window, open); });
+  return answers;
+}
+
+}  // namespace glint::gui

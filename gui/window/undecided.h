@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+
+#include "gui/document/runner.h"
+#include "gui/window/message_bar.h"
+
+class QWidget;
+
+namespace glint::gui {
+
+/// Buttons for what the files leave open: one for each answer, and one that asks for a mesh or for intrinsics.
+/// @param open  opens the same input with this in addition
+MessageBar::Answers answersTo(const UndecidedPtr& undecided, QWidget* window, const std::function<void(const Relinked&)>& open);
+
+}  // namespace glint::gui
