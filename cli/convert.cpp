@@ -31,7 +31,8 @@ Command convertCommand() {
       "  glint convert scene.json -o DIR/transforms.json\n"
       "  glint convert scene.json -o DIR/sparse\n";
   c.declare = [a](Options& o) {
-    o.positional(a->input, "INPUT", "Scene file, capture of another program (COLMAP, nerfstudio ...), folder that contains one, or session");
+    o.positional(a->input, "INPUT",
+                 "Scene file, capture of another program (COLMAP, nerfstudio ...), folder that contains one, or session");
     o.required(a->output, "-o,--out,--output", "FILE", "transforms.json, a scene file (*.json), or a folder for a COLMAP model");
     a->places.declare(o);
   };

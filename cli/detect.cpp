@@ -78,7 +78,8 @@ Command detectCommand() {
       "  glint detect scene.json                          a table of all highlights\n"
       "  glint detect scene.json --source image --out DIR from the photographs, with overlays\n";
   c.declare = [a](Options& o) {
-    o.positional(a->input, "INPUT", "Scene file, capture of another program (COLMAP, nerfstudio ...), folder that contains one, or session");
+    o.positional(a->input, "INPUT",
+                 "Scene file, capture of another program (COLMAP, nerfstudio ...), folder that contains one, or session");
     o.option(a->level, "--level", "L",
              "Contour level: fraction of the strongest peak above its background (more than 0, less than 1)");
     o.choice(a->source, "--source", {"radiance", "image"}, "Pixels to use where a frame has both");

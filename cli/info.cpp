@@ -25,7 +25,8 @@ Command infoCommand() {
       "  glint info scene.json                 the report as text\n"
       "  glint info DIR --json -               the same as JSON on standard output\n";
   c.declare = [a](Options& o) {
-    o.positional(a->input, "INPUT", "Scene file, capture of another program (COLMAP, nerfstudio ...), folder that contains one, or session");
+    o.positional(a->input, "INPUT",
+                 "Scene file, capture of another program (COLMAP, nerfstudio ...), folder that contains one, or session");
     o.option(a->json, "--json", "FILE", "Write the report as JSON instead of text (- = standard output)");
     a->places.declare(o);
   };
@@ -34,7 +35,7 @@ Command infoCommand() {
     Outputs(a->input, scene).file(a->json, "--json", OutputKind::document("glint_info"));
     ConventionReport report = conventionReport(scene, context.progress());
     // Only a scene whose cameras see their surface has highlights that can be asked about the cameras.
-    if (report.findings.empty()) report.take(checkCameras(scene, context.progress()));
+    if (report.everyFrameSeesSurface()) report.take(checkCameras(scene, context.progress()));
     if (a->json.empty())
       context.print(toText(report));
     else

@@ -41,7 +41,8 @@ void applyPreset(const Session& session, const std::string& preset, InspectionRe
 }
 
 void InspectionArguments::declare(Options& o, const std::string& modelsHelp) {
-  o.positional(input, "INPUT", "Scene file, capture of another program (COLMAP, nerfstudio ...), folder that contains one, or session");
+  o.positional(input, "INPUT",
+               "Scene file, capture of another program (COLMAP, nerfstudio ...), folder that contains one, or session");
   o.option(models, "--models,--model", "NAME[,NAME...]", modelsHelp);
   o.option(train, "--train", "SPEC",
            "Training frames: numbers, ids or ranges (0-5,14), first:K, spread:K, or per-surface (default: the session's, else "

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <tuple>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/base/outcome.h"
 #include "io/gltf_data.h"
@@ -217,8 +220,8 @@ std::optional<GltfPart> partOf(GltfData& data, const JsonNode& primitive) {
   return part;
 }
 
-/// Normals go by the inverse transpose, up to a positive factor, and so stay at right angles to the surface where a node stretches,
-/// shears or mirrors it. As cofactors it exists for nodes without thickness, too.
+/// Normals go by the inverse transpose, up to a positive factor, and so stay at right angles to the surface where a node
+/// stretches it, shears it or mirrors it. As cofactors it exists for nodes without thickness, too.
 struct GltfTurn {
   Matrix3d normals;
   bool mirrored = false;

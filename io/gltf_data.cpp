@@ -128,8 +128,7 @@ void GltfData::readContainer(std::string_view bytes) {
     const std::string_view chunk = bytes.substr(from, size);
     if (!root_) {
       if (type != kJson) fail(file_, byteNo(at), "the first chunk of the glTF is not its JSON text");
-      const std::size_t end = chunk.find_last_not_of(std::string_view("\0 ", 2));  // some programs pad with zeros
-      root_ = JsonNode::parse(std::string(chunk.substr(0, end == std::string_view::npos ? 0 : end + 1)), file_);
+      root_ = JsonNode::parse(std::string(chunk), file_);
     } else if (type == kBinary && !binary_) {
       binary_ = chunk;
     }  // others belong to extensions

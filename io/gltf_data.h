@@ -43,8 +43,8 @@ struct GltfAccessor {
   GltfSparse sparse;
 };
 
-/// The document of a .gltf or .glb file, and the bytes that it names. A buffer is read when a mesh uses it: those of pictures never
-/// are. All functions throw InputError (file; a place such as `accessors[3].count`).
+/// The document of a .gltf or .glb file, and the bytes that it names. A buffer is read when a mesh uses it: those of pictures are
+/// not. All functions throw InputError (file; a place such as `accessors[3].count`).
 class GltfData {
  public:
   /// @param bytes  live longer than this

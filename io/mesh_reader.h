@@ -19,8 +19,8 @@ namespace glint {
 ///        1e30 in size; when there is no face.
 MeshContent readMeshContent(const std::filesystem::path& file);
 
-/// The same for bytes in memory. @param file  for messages; its extension tells a damaged STL from other binary files, and the buffers
-/// of a glTF lie in its folder.
+/// The same for bytes in memory. @param file  for messages; its extension tells a damaged STL from other binary files, and the
+/// buffers of a glTF lie in its folder.
 MeshContent parseMesh(std::string_view bytes, const std::filesystem::path& file);
 
 /// One format each; `parseMesh` chooses. PLY: ascii and binary of both byte orders, any scalar types, further properties and
@@ -32,13 +32,14 @@ MeshContent parseObj(std::string_view bytes, const std::string& file);
 /// STL: corners at the same place become one vertex; the facets' normals are not read (the winding says the same).
 MeshContent parseStlText(std::string_view bytes, const std::string& file);
 MeshContent parseStlBinary(std::string_view bytes, const std::string& file);
-/// glTF 2.0, as text (.gltf) or in a container (.glb): triangles, strips and fans of the default scene's meshes, each at the place of
-/// its node. Other scenes, points, lines, looks, cameras and animations are skipped: the shape is that at rest. Coordinates are taken
-/// as they are; the format says right-handed, y up, metres. A node that mirrors turns its triangles around, so that their outer side
-/// stays outside. Primitives with the same positions share their vertices; normals are read when every primitive has them. Buffers
-/// are in the file, or are files in its folder or below: no other file is ever opened.
-/// @throw InputError also when the nodes are no trees, for skins and morph targets in use, and, by name, for extensions without which
-///        the file cannot be understood (Draco, meshopt). KHR_mesh_quantization is read.
+/// glTF 2.0, as text (.gltf) or in a container (.glb): triangles, strips and fans of the default scene's meshes, each at the
+/// place of its node. Other scenes, points, lines, looks, cameras and animations are skipped: the shape is that at rest.
+/// Coordinates are taken as they are; the format says right-handed, y up, metres. A node that mirrors turns its triangles
+/// around, so that their outer side stays outside. Primitives with the same positions share their vertices; normals are read
+/// when every primitive has them. Buffers are in the file, or are files in its folder or below: no other file is ever opened.
+/// @throw InputError also when the nodes are no trees, for skins and morph targets in use, for meshes repeated so often that
+///        memory would no longer go with the file's size, and, by name, for extensions without which the file cannot be
+///        understood (Draco, meshopt). KHR_mesh_quantization is read.
 /// @see Khronos Group, glTF 2.0 Specification, 2021.
 MeshContent parseGltf(std::string_view bytes, const std::filesystem::path& file);
 

@@ -89,8 +89,8 @@ Eigen::Isometry3d bopPose(const JsonNode& rotation, const JsonNode& translation,
   Eigen::Matrix3d r = bopMatrix(rotation, kLargestFactor);
   Eigen::Vector3d t = lengths3(translation);
   const double deviation = (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  constexpr double kTyped = 1e-3,
-                   kSingle = 1e-6;  // three digits: less was not meant as a rotation; to single precision it is one
+  constexpr double kTyped = 1e-3;   // as readPoseJson: typed with four digits it is still a rotation
+  constexpr double kSingle = 1e-6;  // to single precision it is one
   if (!(deviation <= kTyped)) rotation.fail("is not a rotation");
   if (r.determinant() < 0) rotation.fail("is mirrored (determinant -1)");
   if (deviation > 0) {

@@ -208,9 +208,8 @@ void compareRigFrame(const RigFrame& frame, const Rigs& all, const std::string& 
     }
     ++counts.compared;
     if (!(poseDifference(*mounted->second * frame.rigFromWorld, image.camFromWorld) <= kPrinted))
-      throw InputError(
-          file, frame.place,
-          "the pose of image " + io::quoted(image.name) + " differs from that in the file of images by more than 1e-6");
+      throw InputError(file, frame.place,
+                       "the pose of image " + io::quoted(image.name) + " differs from that in the file of images");
   }
 }
 

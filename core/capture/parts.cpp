@@ -58,7 +58,7 @@ fs::path imagePlace(const std::string& name, const std::vector<fs::path>& folder
                     const std::string& file, const std::string& place) {
   require(!folders.empty(), "imagePlace: no folder");
   std::error_code ignored;  // what cannot be asked about is not there
-  fs::path below;  // the name without what leads out of a folder that a person named
+  fs::path below;           // the name without what leads out of a folder that a person named
   for (const fs::path& part : fs::path(name).relative_path())
     if (part != "..") below /= part;
   for (const fs::path& folder : options.photographs)

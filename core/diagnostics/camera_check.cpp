@@ -17,11 +17,11 @@ namespace glint {
 namespace {
 
 constexpr int kMostViews = 8, kLeastViews = 4;
-constexpr double kClearly = 0.5;        // of the residual as given: what is left by a change that is the truth is far less
-constexpr double kClearlyFlip = 0.2;    // mirrored images leave pixels where the right ones leave hundredths
-constexpr double kDetectionPx = 0.02;   // residuals as given below this are what detection leaves on good data
-constexpr double kGoodRadii = 0.01;     // residual over the contour's radius below which a light explains the contours
-constexpr double kOnlyRadii = 0.05;     // the same where no other hypothesis has any light
+constexpr double kClearly = 0.5;       // of the residual as given: what is left by a change that is the truth is far less
+constexpr double kClearlyFlip = 0.2;   // mirrored images leave pixels where the right ones leave hundredths
+constexpr double kDetectionPx = 0.02;  // residuals as given below this are what detection leaves on good data
+constexpr double kGoodRadii = 0.01;    // residual over the contour's radius below which a light explains the contours
+constexpr double kOnlyPx = 1;          // px; the same for coarse images, where no other hypothesis has any light; said as a guess
 constexpr double kLeastFocalPct = 0.3;  // of errors that are told: smaller ones hide in those of surfaces
 constexpr double kShiftSlackPx = 0.2;   // of what the highlights ask for about half a pixel
 constexpr double kHalfGain = 0.7;       // of a half's residual as given that a true change leaves at most; noise leaves all of it
@@ -179,11 +179,12 @@ class Check {
       bestPx = fitted->rmsPx;
     }
     // Where no light explains anything else, coarse images may leave more.
-    const double good = !given && explained == 1 ? kOnlyRadii : kGoodRadii;
-    if (!best || bestPx > good * radiusPx_ || (given && bestPx > kClearlyFlip * given->rmsPx)) return;
+    const double good = !given && explained == 1 ? std::max(kOnlyPx, kGoodRadii * radiusPx_) : kGoodRadii * radiusPx_;
+    if (!best || bestPx > good || (given && bestPx > kClearlyFlip * given->rmsPx)) return;
+    const bool sure = given || bestPx <= kGoodRadii * radiusPx_;
     result_.findings.push_back(
-        formatted("the images are %s: corrected, the highlights of %d frames fit one light to %.2g px; as given, ", best->name,
-                  result_.views, bestPx) +
+        std::string(sure ? "the images are " : "the images seem to be ") + best->name +
+        formatted(": corrected, the highlights of %d frames fit one light to %.2g px; as given, ", result_.views, bestPx) +
         (given ? formatted("only to %.2g px", given->rmsPx) : std::string("no light explains them")));
   }
 

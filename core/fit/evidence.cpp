@@ -6,11 +6,11 @@
 #include <random>
 
 #include "core/base/atomic_file.h"
+#include "core/base/bounded_json.h"
 #include "core/base/json_text.h"
 #include "core/base/number_text.h"
 #include "core/base/safe_text.h"
 #include "core/geometry/distortion.h"
-#include "core/base/bounded_json.h"
 
 namespace glint {
 namespace {

@@ -4,10 +4,11 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numbers>
 #include <vector>
+
+#include "core/base/number_text.h"
 
 namespace glint {
 
@@ -151,10 +152,8 @@ struct ThinPrism {
 Failure foldsBefore() { return {Reason::NotConverged, "no ideal pixel maps there: the lens distortion folds back before it"}; }
 
 Failure tooWide(double radians) {
-  char text[96];
-  std::snprintf(text, sizeof text, "is seen %.4g degrees from the optical axis; only less than 90 are supported",
-                radians * 180 / std::numbers::pi);
-  return {Reason::OutsideImage, text};
+  return {Reason::OutsideImage, formatted("is seen %.4g degrees from the optical axis; only less than 90 are supported",
+                                          radians * 180 / std::numbers::pi)};
 }
 
 /// The point that `map` takes to `target`, by a damped Newton's method.

@@ -106,6 +106,10 @@ void compareVertices(const TriangleMesh& mesh, const Frame& frame, const std::op
   facts.depthMedian = quantile(differences, 0.5);
   facts.depthP95 = quantile(differences, 0.95);
   facts.depthRatio = quantile(ratios, 0.5);
+  constexpr double kNear = 0.01;  // of the ratio: vertices and pixels of one place differ by less
+  const auto agreeing = std::count_if(ratios.begin(), ratios.end(),
+                                      [&](double r) { return std::abs(r - facts.depthRatio) < kNear * facts.depthRatio; });
+  if (!ratios.empty()) facts.depthRatioShare = double(agreeing) / double(ratios.size());
 }
 
 void countPixels(const Frame& frame, ConventionReport::FrameFacts& facts) {
@@ -170,17 +174,19 @@ void concludeGrids(const Scene& scene, ConventionReport& report) {
 /// Depth maps that contradict the surface: by one factor for all, which is their scale, or otherwise.
 void concludeDepth(const Scene& scene, int depthOff, double worstDepth, ConventionReport& report) {
   constexpr double kSame = 0.03;  // of the factor, from frame to frame: vertices and pixels differ by less than a percent
+  constexpr double kMost = 0.5;   // of a frame's samples at that factor: where the scale alone is wrong, all that are visible
   std::vector<double> ratios;
-  double scale = 0;
+  double scale = 0, share = 1;
   for (const auto& f : report.frames) {
     if (f.depthSamples <= kLeastDepthSamples) continue;
     ratios.push_back(f.depthRatio);
+    share = std::min(share, f.depthRatioShare);
     scale = scene.frames[static_cast<std::size_t>(f.frame)].depthScale;
   }
   const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
   const double factor = quantile(ratios, 0.5);
   const std::string start = formatted("depth and surface disagree in %d of %zu frames", depthOff, report.frames.size());
-  if (!ratios.empty() && *most - *least < kSame * factor && std::abs(factor - 1) > kSame)
+  if (ratios.size() > 1 && share > kMost && *most - *least < kSame * factor && std::abs(factor - 1) > kSame)
     report.findings.push_back(start + formatted(": depth maps say %.4g times the depth of the surface in every frame", factor) +
                               (scale > 0 ? formatted(" (depth_scale should be %.4g in place of %.4g)", scale / factor, scale)
                                          : std::string(" (is the unit of one of them wrong?)")));
@@ -263,6 +269,10 @@ class Triangles {
 
 bool ConventionReport::anyFrameSeesSurface() const {
   return std::any_of(frames.begin(), frames.end(), [](const FrameFacts& f) { return f.seesSurface; });
+}
+
+bool ConventionReport::everyFrameSeesSurface() const {
+  return std::all_of(frames.begin(), frames.end(), [](const FrameFacts& f) { return f.seesSurface; });
 }
 
 void ConventionReport::take(CameraCheck check) {

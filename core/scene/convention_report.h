@@ -50,6 +50,7 @@ struct ConventionReport {
     int depthSamples = 0;                  ///< nearest vertices of 8-pixel cells compared with the depth map
     double depthMedian = 0, depthP95 = 0;  ///< m, |vertex depth - depth map|
     double depthRatio = 0;                 ///< median of depth map / vertex depth
+    double depthRatioShare = 0;            ///< of the samples, those within 1 % of that median; others are of the far side
     long long pixels = 0, notFinite = 0, negative = 0;  ///< values of the linear image
     std::string source;                                 ///< "radiance" or "image", "" when the frame has neither
     std::vector<std::string> problems;                  ///< files that cannot be read, one line each
@@ -66,6 +67,7 @@ struct ConventionReport {
 
   void take(CameraCheck check);  ///< with its findings
   bool anyFrameSeesSurface() const;
+  bool everyFrameSeesSurface() const;
 };
 
 /// Reads every surface and every image once. InputError when a mesh cannot be read; Stopped.

@@ -58,9 +58,13 @@ const SceneReader& readerNamed(const std::string& name) {
   throw InputError("", "--as " + name, "is not one of: " + known);
 }
 
+/// In few words: a message has one line.
 std::string whatIsUnderstood() {
   std::string all;
-  for (const auto& reader : sceneReaders()) all += (all.empty() ? "" : ", ") + reader->describe();
+  for (const auto& reader : sceneReaders()) {
+    const std::string words = reader->describe();
+    all += (all.empty() ? "" : ", ") + words.substr(0, std::min(words.find(" ("), words.find(", ")));
+  }
   return all;
 }
 

@@ -18,7 +18,7 @@ struct TrackCheck {
   int points = 0, observations = 0;
   int behind = 0;                     ///< observations whose point is not in front of the camera
   double medianPx = 0, p95Px = 0;     ///< distance of a projected point from where it was seen, px
-  Eigen::Vector2d shiftPx{0, 0};  ///< median of seen - projected along x and y, px
+  Eigen::Vector2d shiftPx{0, 0};      ///< median of seen - projected along x and y, px
   int met = 0;                        ///< points of a sample whose line of sight meets the surface
   int onSurface = 0;                  ///< of them, those that lie on it: depths agree to 1 %
   double depthRatio = 0;              ///< median of distance to the surface / distance to the point; 0 = none met

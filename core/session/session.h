@@ -56,7 +56,7 @@ struct Session {
   std::optional<Recovery> recovery;  ///< set in autosaves only
   std::vector<FilesFolder> folders;  ///< in which frames' files are looked for before where the scene says; the last counts
   std::map<std::string, std::filesystem::path> meshes;  ///< absolute, those that lie elsewhere: by the path that the scene writes
-  InputChoices choices;  ///< how a capture of another program is read
+  InputChoices choices;                                 ///< how a capture of another program is read
   /// The session and its scene may name files outside their folders. The caller says so, never the file: reading leaves it false.
   bool allowOutsidePaths = false;
   std::vector<SessionFile> files;  ///< the scene file first, then everything that it names

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <utility>
 
 #include "core/geometry/distortion.h"
 #include "core/geometry/plane.h"
@@ -63,20 +65,56 @@ struct RealLens {
   }
 };
 
-Outcome<Measured> lensCase(const std::array<double, 5>& d, const Eigen::Vector2d& normalised) {
+/// A fisheye lens in fifty digits: the angle from the axis between 0 and `end`, where the lens rises, then its tangent.
+struct RealFisheye {
+  Real k1, k2, k3, k4, end;
+  std::pair<Real, Real> ideal(const Real& x, const Real& y, double& condition) const {
+    const Real radius = sqrt(x * x + y * y);
+    const auto seenAt = [&](const Real& t) { return t * (1 + t * t * (k1 + t * t * (k2 + t * t * (k3 + t * t * k4)))); };
+    const Real angle = rootBetween<Real>([&](const Real& t) { return seenAt(t) - radius; }, Real(0), end);
+    const Real h("1e-25"), slope = (seenAt(angle + h) - seenAt(angle)) / h, r = tan(angle);
+    condition = static_cast<double>(radius / slope * (1 + r * r) / r);
+    return {x * r / radius, y * r / radius};
+  }
+};
+
+/// The field-of-view model in fifty digits.
+struct RealFieldOfView {
+  Real omega;
+  std::pair<Real, Real> ideal(const Real& x, const Real& y, double& condition) const {
+    const Real radius = sqrt(x * x + y * y), t = tan(radius * omega), r = t / (2 * tan(omega / 2));
+    condition = static_cast<double>(radius * omega * (1 + t * t) / t);
+    return {x * r / radius, y * r / radius};
+  }
+};
+
+/// withoutDistortion against a lens of fifty digits.
+template <class Reference>
+Outcome<Measured> lensCase(const Lens& lens, const Reference& reference, const Eigen::Vector2d& normalised) {
   Camera c;
   c.pixelFromRay << 800, 0, 320, 0, 800, 240, 0, 0, 1;
   c.width = 640;
   c.height = 480;
-  std::copy(d.begin(), d.end(), c.lens.parameters.begin());
+  c.lens = lens;
   const Pixel measured(320 + 800 * normalised.x(), 240 + 800 * normalised.y());
   const Outcome<Pixel> ideal = withoutDistortion(c, measured);
   if (!ideal) return ideal.failure();
-  const RealLens lens{d[0], d[1], d[2], d[3], d[4]};
   double condition = 1;
-  const auto [x, y] = lens.ideal((Real(measured.x()) - 320) / 800, (Real(measured.y()) - 240) / 800, condition);
+  const auto [x, y] = reference.ideal((Real(measured.x()) - 320) / 800, (Real(measured.y()) - 240) / 800, condition);
   const Real dx = (Real(ideal->x()) - 320) / 800 - x, dy = (Real(ideal->y()) - 240) / 800 - y;
   return Measured{static_cast<double>(sqrt((dx * dx + dy * dy) / (x * x + y * y))), condition};
+}
+
+Outcome<Measured> brownCase(const std::array<double, 5>& d, const Eigen::Vector2d& normalised) {
+  return lensCase({LensModel::OpenCv, {d[0], d[1], d[2], d[3], d[4]}}, RealLens{d[0], d[1], d[2], d[3], d[4]}, normalised);
+}
+
+Outcome<Measured> fisheyeCase(const std::array<double, 4>& k, const Eigen::Vector2d& normalised, double end = 1.5707963) {
+  return lensCase({LensModel::OpenCvFisheye, {k[0], k[1], k[2], k[3]}}, RealFisheye{k[0], k[1], k[2], k[3], end}, normalised);
+}
+
+Outcome<Measured> fieldOfViewCase(double omega, const Eigen::Vector2d& normalised) {
+  return lensCase({LensModel::Fov, {omega}}, RealFieldOfView{omega}, normalised);
 }
 
 /// The mirror image of a point by P M, against the camera's own projection of the mirrored point.
@@ -90,6 +128,48 @@ Outcome<Measured> mirrorCase(const Eigen::Vector3d& onPlane, const Eigen::Vector
   const Pixel pixel = virtualCamera(c, plane).project(point);
   const Real dx = Real(pixel.x()) - x, dy = Real(pixel.y()) - y;
   return Measured{static_cast<double>(sqrt(dx * dx + dy * dy) / (sqrt(x * x + y * y) + 1)), condition};
+}
+
+Case lensFailure(const char* name, double parameter, const char* note, Reason reason, std::function<Outcome<Measured>()> run) {
+  Case c;
+  c.stage = "lens distortion";
+  c.name = name;
+  c.parameter = parameter;
+  c.note = note;
+  c.expect = Expect::Failure;
+  c.reasons = {reason};
+  c.run = std::move(run);
+  return c;
+}
+
+void addLensCases(Cases& cases) {
+  const Eigen::Vector2d aside(0.8, 0.6);
+  const auto add = [&](const char* name, double parameter, const char* note, auto run) {
+    cases.push_back(answerCase("lens distortion", name, parameter, 1e-9, note, run));
+  };
+  add("barrel, 0.94 of the way to the fold", 0.94, "", [=] {
+    return brownCase({-0.3, 0, 0, 0, 0}, 0.661 * aside);  // the fold shows at (2/3) sqrt(1 / 0.9) = 0.7027
+  });
+  add("barrel, 4e-7 before the fold", 4e-7, "Newton's method meets a slope of 1e-3 here", [=] {
+    return brownCase({-0.3, 0, 0, 0, 0}, 0.702727979 * aside);
+  });
+  add("wide angle with all five terms", 1.2, "", [=] { return brownCase({-0.32, 0.11, 1e-3, -8e-4, -0.011}, 0.6 * aside); });
+  add("pincushion at the corner of a wide angle", 0.4, "", [=] { return brownCase({0.4, 0.1, 0, 0, 0}, 2.5 * aside); });
+  add("fisheye, 89 degrees from the axis", 89, "", [=] {
+    return fisheyeCase({0.05, -0.01, 0.004, -0.0008}, 1.695471 * aside);  // 1.5533430 times 1.0914985
+  });
+  add("fisheye, 1e-6 before its fold", 1e-6, "", [=] {
+    return fisheyeCase({-0.3, 0, 0, 0}, (0.702728369 - 1e-6) * aside, 1.0540925);  // as a barrel, but of the angle
+  });
+  for (const auto& [name, omega] : {std::pair("field of view of 1e-8", 1e-8), std::pair("field of view of 3.1", 3.1)})
+    add(name, omega, "", [=, omega = omega] { return fieldOfViewCase(omega, 0.4 * aside); });
+  cases.push_back(lensFailure("beyond the fold", 0.8, "no ideal pixel is seen there", Reason::NotConverged, [=] {
+    return brownCase({-0.3, 0, 0, 0, 0}, 0.8 * aside);
+  }));
+  cases.push_back(
+      lensFailure("fisheye, 93 degrees from the axis", 93, "an ideal pixel is less than 90 from it", Reason::OutsideImage, [=] {
+        return fisheyeCase({0, 0, 0, 0}, 1.6231562 * aside);
+      }));
 }
 
 }  // namespace
@@ -118,29 +198,7 @@ void addCameraCases(Cases& cases) {
       "R X + t cancels six digits of the coordinates; over f / 100 px", [] {
         return projectAndBack(800, {1e6, 2e5, 5e5}, {0.1, -0.2, 1}, 1e6);
       });
-  add("lens distortion", "barrel, 0.94 of the way to the fold", 0.94, 1e-9, "", [] {
-    return lensCase({-0.3, 0, 0, 0, 0}, 0.661 * Eigen::Vector2d(0.8, 0.6));  // the fold shows at (2/3) sqrt(1 / 0.9) = 0.7027
-  });
-  add("lens distortion", "barrel, 4e-7 before the fold", 4e-7, 1e-9, "Newton's method meets a slope of 1e-3 here", [] {
-    return lensCase({-0.3, 0, 0, 0, 0}, 0.702727979 * Eigen::Vector2d(0.8, 0.6));
-  });
-  add("lens distortion", "wide angle with all five terms", 1.2, 1e-9, "", [] {
-    return lensCase({-0.32, 0.11, 1e-3, -8e-4, -0.011}, 0.6 * Eigen::Vector2d(0.8, 0.6));
-  });
-  add("lens distortion", "pincushion at the corner of a wide angle", 0.4, 1e-9, "", [] {
-    return lensCase({0.4, 0.1, 0, 0, 0}, 2.5 * Eigen::Vector2d(0.8, 0.6));
-  });
-  {
-    Case c;
-    c.stage = "lens distortion";
-    c.name = "beyond the fold";
-    c.parameter = 0.8;
-    c.note = "no ideal pixel is seen there";
-    c.expect = Expect::Failure;
-    c.reasons = {Reason::NotConverged};
-    c.run = [] { return lensCase({-0.3, 0, 0, 0, 0}, 0.8 * Eigen::Vector2d(0.8, 0.6)); };
-    cases.push_back(c);
-  }
+  addLensCases(cases);
   add("virtual camera", "mirror seen at 89.9 degrees", 89.9, 1e-9, "", [] {
     return mirrorCase({0, 0, 0}, {std::cos(0.001745), 0, std::sin(0.001745)}, {0.3, 0.2, 2}, {-0.1, 0.2, 0.1}, 1);
   });

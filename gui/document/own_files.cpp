@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "core/base/outcome.h"
-#include "core/base/sha256.h"
 #include "core/base/permitted.h"
+#include "core/base/sha256.h"
 #include "core/scene/scene_files.h"
 #include "gui/document/document.h"
 

@@ -176,7 +176,8 @@ TEST_F(SceneOnDisk, EmptyFolderIsCodeTwo) {
   const ProgramRun run = runGlint("info " + quoted(empty.path()));
   EXPECT_EQ(run.code, 2);
   EXPECT_EQ(run.errorLines(), 1) << run.err;
-  EXPECT_THAT(run.err, HasSubstr("the folder is empty; supported: scene file"));
+  EXPECT_THAT(run.err, HasSubstr("the folder is empty; supported: scene file, session, COLMAP model, NVM of VisualSFM, "
+                                 "transforms.json of nerfstudio, TUM RGB-D sequence, Bundler, BOP scene"));
 }
 
 TEST_F(SceneOnDisk, ConvertWritesASceneThatReadsBack) {

@@ -10,7 +10,7 @@
 #include "tests/io/allocation_meter.h"
 #include "tests/io/mesh_texts.h"
 
-namespace glint {
+namespace glint::gltf_tests {
 namespace {
 using namespace testing_support;
 using Eigen::Vector3d;
@@ -180,13 +180,18 @@ TEST(Gltf, SparseElementsStandInPlaceOfOthers) {
   sample.accessor(kFloat, 4, "VEC3", R"(,"bufferView":0)" + sparse);
   sample.accessor(kFloat, 4, "VEC3", sparse);  // of zeros
   sample.indices<std::uint8_t>(kUbyte, {0, 1, 2});
-  const auto positions = [&](int accessor) {
-    return parsed(sample.text(R"("meshes":[{"primitives":[{"indices":3,"attributes":{"POSITION":)" + std::to_string(accessor) +
-                              "}}]}]"))
-        .vertices;
+  const auto positions = [&](const std::string& primitives) {
+    return parsed(sample.text(R"("meshes":[{"primitives":[)" + primitives + "]}]")).vertices;
   };
-  EXPECT_THAT(positions(1), ElementsAre(Vector3d(0, 0, 0), Vector3d(7, 8, 9), Vector3d(0, 1, 0), Vector3d(-1, -2, -3)));
-  EXPECT_THAT(positions(2), ElementsAre(Vector3d(0, 0, 0), Vector3d(7, 8, 9), Vector3d(0, 0, 0), Vector3d(-1, -2, -3)));
+  const std::string replaced = R"({"attributes":{"POSITION":1},"indices":3})",
+                    ofZeros = R"({"attributes":{"POSITION":2},"indices":3})";
+  EXPECT_THAT(positions(replaced), ElementsAre(Vector3d(0, 0, 0), Vector3d(7, 8, 9), Vector3d(0, 1, 0), Vector3d(-1, -2, -3)));
+  const std::vector<Vector3d> both = positions(replaced + "," + ofZeros);
+  ASSERT_EQ(both.size(), 8u);
+  EXPECT_EQ(both[1], Vector3d(7, 8, 9));
+  EXPECT_EQ(both[2], Vector3d(0, 1, 0));
+  EXPECT_THAT(std::vector(both.begin() + 4, both.end()),
+              ElementsAre(Vector3d(0, 0, 0), Vector3d(7, 8, 9), Vector3d(0, 0, 0), Vector3d(-1, -2, -3)));
 }
 
 TEST(Gltf, QuantizedPositionsAndNormals) {
@@ -239,6 +244,10 @@ TEST(Gltf, NormalsStayAtRightAnglesAndOfLength1) {
     ASSERT_EQ(mesh.normals.size(), 3u) << tiny;
     expectNear(mesh.normals[0], Vector3d(1, 1, 0) / std::sqrt(2.0), 1e-7);
   }
+  // Much thinner than wide: (1,1,0) goes to (1,1e7,0).
+  const MeshContent thin = placed(R"(,"scale":[1,1e-7,1e-7])");
+  ASSERT_EQ(thin.normals.size(), 3u);
+  expectNear(thin.normals[0], Vector3d(1e-7, 1, 0));
   // Flat: what lies in the plane has no normal any more.
   EXPECT_TRUE(placed(R"(,"scale":[1,1,0])").normals.empty());
   EXPECT_EQ(placed(R"(,"scale":[0,1,1])").normals[0], Vector3d(1, 0, 0));
@@ -265,8 +274,8 @@ TEST(Gltf, TheDefaultSceneIsRead) {
     EXPECT_EQ(mesh.triangles.size(), mesh.vertices.size() / 3);
     return all;
   };
-  const std::string nodes =
-      R"(,"nodes":[{"mesh":0,"translation":[10,0,0]},{"mesh":0,"translation":[20,0,0]},{"children":[1,3]},{"mesh":0,"translation":[30,0,0]},{"camera":0}])";
+  const std::string nodes = R"(,"nodes":[{"mesh":0,"translation":[10,0,0]},{"mesh":0,"translation":[20,0,0]},{"children":[1,3]})"
+                            R"(,{"mesh":0,"translation":[30,0,0]},{"camera":0}])";
   EXPECT_THAT(xs(nodes + R"(,"scenes":[{"nodes":[0]},{"nodes":[4,2]}],"scene":1)"), ElementsAre(20, 30));
   EXPECT_THAT(xs(nodes + R"(,"scenes":[{"nodes":[0]},{"nodes":[2]}])"), ElementsAre(10));
   EXPECT_THAT(xs(nodes), ElementsAre(10, 20, 30));
@@ -296,6 +305,7 @@ TEST(Gltf, PrimitivesWithTheSamePositionsShareTheirVertices) {
   // One primitive without normals leaves the mesh without.
   const MeshContent half = primitives(R"(,"NORMAL":1)", "");
   EXPECT_TRUE(half.normals.empty());
+  EXPECT_TRUE(primitives("", R"(,"NORMAL":1)").normals.empty());
   EXPECT_EQ(half.vertices.size(), 4u);
 }
 
@@ -531,4 +541,4 @@ TEST(Gltf, MemoryStaysInProportion) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::gltf_tests

@@ -249,7 +249,7 @@ SCENES_ACCEPTED = {
                                   {"id": "c", "segment": [[0, 0, 1], [1, 0, 1]], "radius": 0.1}]),
 }
 SESSIONS_REFUSED = {
-    "a newer version": put("glint_session", 4),
+    "a newer version": put("glint_session", 5),
     "version 0": put("glint_session", 0),
     "no input": put("input", ...),
     "no path": put("input", "path", ...),

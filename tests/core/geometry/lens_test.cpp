@@ -352,8 +352,8 @@ TEST(VisualSfm, UndistortsByItsFormula) {
   EXPECT_FALSE(distorted(lens, {0, 10.0 / 9 + 1e-9}).allFinite());
 }
 
-// Beyond a pole a rational lens may show everything again, turned about. The denominators here first vanish at r^2 near 1 / 1849.7 and
-// 1 / 8238.2; the points are such that a search by samples finds an answer at 485 and 260.
+// Beyond a pole a rational lens may show everything again, turned about. The denominators here first vanish at r^2 near
+// 1 / 1849.7 and 1 / 8238.2; the points are such that a search by samples finds an answer at 485 and 260.
 TEST(Undistorted, ARationalLensDoesNotJumpOverItsPole) {
   struct Row {
     Lens lens;
@@ -385,8 +385,8 @@ TEST_P(SeenBeyondARightAngle, IsRefusedWithItsAngle) {
             "is seen " + std::string(GetParam().says) + " degrees from the optical axis; only less than 90 are supported");
 }
 
-// 93 degrees are 1.6231562 rad; with k1 = 0.1 they are measured at 1.6231562 (1 + 0.1 * 1.6231562^2) = 2.0507988. FOV with omega 1:
-// the angle whose tangent is tan(1.6) / (2 tan(0.5)), continued: 90 + atan(0.0319035 / 0.9995736) = 91.83 degrees.
+// 93 degrees are 1.6231562 rad; with k1 = 0.1 they are measured at 1.6231562 (1 + 0.1 * 1.6231562^2) = 2.0507988.
+// FOV with omega 1: the angle whose tangent is tan(1.6) / (2 tan(0.5)), continued: 90 + atan(0.0319035 / 0.9995736) degrees.
 INSTANTIATE_TEST_SUITE_P(Lens, SeenBeyondARightAngle,
                          testing::Values(Wide{"fisheye", {LensModel::OpenCvFisheye, {}}, 93 * kDegree, "93"},
                                          Wide{"one term", {LensModel::SimpleRadialFisheye, {0.1}}, 2.0507988, "93"},

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <iomanip>
 #include <sstream>
 
@@ -257,6 +260,97 @@ TEST(ReadScene, SkewIsPartOfTheCamera) {
   EXPECT_LT((bent.undistorted(measured) - expected).norm(), tolerance::kPixel);
 }
 
+/// The minimal scene with more keys in its camera.
+std::string withCamera(const std::string& more) { return with(minimalScene(), "\"cy\": 23.5", "\"cy\": 23.5, " + more); }
+
+struct LensRow {
+  const char* json;
+  LensModel model;
+  std::array<double, 8> parameters;
+  const char* written;  ///< the numbers of "distortion"
+};
+class LensOfAScene : public testing::TestWithParam<LensRow> {};
+
+TEST_P(LensOfAScene, IsReadAndWrittenBack) {
+  const TemporaryFolder folder;
+  const Scene scene = readScene(folder.write("scene.json", withCamera(GetParam().json)));
+  EXPECT_THAT(scene.warnings, ElementsAre());
+  const Lens expected{GetParam().model, GetParam().parameters};
+  EXPECT_EQ(scene.frames[0].camera.lens, expected);
+  writeScene(scene, folder / "again.json");
+  EXPECT_EQ(readScene(folder / "again.json").frames[0].camera.lens, expected);
+  std::string text = contentOf(folder / "again.json");
+  text.erase(std::remove_if(text.begin(), text.end(), [](unsigned char c) { return std::isspace(c); }), text.end());
+  EXPECT_THAT(text, HasSubstr("\"distortion\":[" + std::string(GetParam().written) + "]"));
+  // Scenes with the default model are written as before there were others.
+  EXPECT_EQ(text.find("\"model\"") == std::string::npos, GetParam().model == LensModel::OpenCv);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    ReadScene, LensOfAScene,
+    testing::Values(
+        LensRow{R"("skew": 0)", LensModel::OpenCv, {}, "0.0,0.0,0.0,0.0,0.0"},
+        LensRow{R"("distortion": [1,2,3,4])", LensModel::OpenCv, {1, 2, 3, 4}, "1.0,2.0,3.0,4.0,0.0"},
+        LensRow{R"("model": "OPENCV", "distortion": [1,2,3,4,5])", LensModel::OpenCv, {1, 2, 3, 4, 5}, "1.0,2.0,3.0,4.0,5.0"},
+        LensRow{R"("model": "FULL_OPENCV", "distortion": [1,2,3,4,5,6,7,8])",
+                LensModel::FullOpenCv,
+                {1, 2, 3, 4, 5, 6, 7, 8},
+                "1.0,2.0,3.0,4.0,5.0,6.0,7.0,8.0"},
+        LensRow{R"("model": "SIMPLE_RADIAL", "distortion": [0.5])", LensModel::SimpleRadial, {0.5}, "0.5"},
+        LensRow{R"("model": "RADIAL", "distortion": [0.5, 2])", LensModel::Radial, {0.5, 2}, "0.5,2.0"},
+        LensRow{
+            R"("model": "OPENCV_FISHEYE", "distortion": [1,2,3,4])", LensModel::OpenCvFisheye, {1, 2, 3, 4}, "1.0,2.0,3.0,4.0"},
+        LensRow{R"("model": "OPENCV_FISHEYE")", LensModel::OpenCvFisheye, {}, "0.0,0.0,0.0,0.0"},
+        LensRow{R"("model": "SIMPLE_RADIAL_FISHEYE", "distortion": [0.5])", LensModel::SimpleRadialFisheye, {0.5}, "0.5"},
+        LensRow{R"("model": "RADIAL_FISHEYE", "distortion": [0.5, 2])", LensModel::RadialFisheye, {0.5, 2}, "0.5,2.0"},
+        LensRow{R"("model": "FOV", "distortion": [-3.14])", LensModel::Fov, {-3.14}, "-3.14"},
+        LensRow{R"("model": "THIN_PRISM_FISHEYE", "distortion": [1,2,3,4,5,6,7,8])",
+                LensModel::ThinPrismFisheye,
+                {1, 2, 3, 4, 5, 6, 7, 8},
+                "1.0,2.0,3.0,4.0,5.0,6.0,7.0,8.0"},
+        LensRow{R"("model": "VISUALSFM", "distortion": [0.5])", LensModel::VisualSfm, {0.5}, "0.5"}));
+
+TEST(ReadScene, ALensIsRefusedWithWhatItNeeds) {
+  const TemporaryFolder folder;
+  const auto error = [&](const std::string& more) {
+    return inputErrorOf([&] { readScene(folder.write("scene.json", withCamera(more))); });
+  };
+  EXPECT_THAT(
+      error(R"("model": "FISHEYE")"),
+      HasSubstr("camera.model: 'FISHEYE' is not supported, only OPENCV, FULL_OPENCV, SIMPLE_RADIAL, RADIAL, OPENCV_FISHEYE, "
+                "SIMPLE_RADIAL_FISHEYE, RADIAL_FISHEYE, FOV, THIN_PRISM_FISHEYE, VISUALSFM"));
+  EXPECT_THAT(error(R"("model": "opencv")"), HasSubstr("camera.model: 'opencv' is not supported"));
+  EXPECT_THAT(error(R"("model": null)"), HasSubstr("camera.model: must be text"));
+  EXPECT_THAT(error(R"("distortion": [1,2,3])"), HasSubstr("camera.distortion: must have 5 numbers (k1 k2 p1 p2 k3), has 3"));
+  EXPECT_THAT(error(R"("distortion": [1,2,3,4,5,6])"), HasSubstr("must have 5 numbers (k1 k2 p1 p2 k3), has 6"));
+  EXPECT_THAT(error(R"("model": "OPENCV_FISHEYE", "distortion": [1,2,3,4,5])"),
+              HasSubstr("camera.distortion: must have 4 numbers (k1 k2 k3 k4), has 5"));
+  EXPECT_THAT(error(R"("model": "FULL_OPENCV", "distortion": [1,2,3,4])"),
+              HasSubstr("must have 8 numbers (k1 k2 p1 p2 k3 k4 k5 k6), has 4"));
+  EXPECT_THAT(error(R"("model": "SIMPLE_RADIAL", "distortion": [])"), HasSubstr("must have 1 number (k), has 0"));
+  EXPECT_THAT(error(R"("model": "RADIAL", "distortion": [1, 1e16])"), HasSubstr("camera.distortion[1]: is larger than 1e15"));
+  EXPECT_THAT(error(R"("model": "RADIAL", "distortion": [1, NaN])"), HasSubstr("camera.distortion[1]: "));
+  EXPECT_THAT(error(R"("model": "FOV", "distortion": [3.2])"), HasSubstr("camera.distortion[0]: must be between -pi and pi"));
+}
+
+// f = 80: what an ideal fisheye measures 16 px from the centre is seen 0.2 rad from the axis, ideally 80 tan(0.2) = 16.2168028 px
+// from the centre; 128 px are 1.6 rad, 91.67 degrees.
+TEST(ReadScene, AFisheyesHighlightsBecomeIdealPixels) {
+  const TemporaryFolder folder;
+  const auto sceneWith = [&](const char* peak) {
+    const std::string text = withCamera(R"("model": "OPENCV_FISHEYE")");
+    return folder.write("scene.json", with(text, "\"id\": \"a\"",
+                                           std::string(R"("id": "a", "highlights": [{"peak": )") + peak +
+                                               R"(, "contour": [[47.5, 23.5], [48, 24], [48, 25], [47, 25], [46, 24]]}])"));
+  };
+  const Scene scene = readScene(sceneWith("[31.5, 7.5]"));
+  const Highlight& h = scene.frames.at(0).highlights.at(0);
+  EXPECT_LT((h.peak - Pixel(31.5, 23.5 - 16.2168028)).norm(), 1e-6);  // its digits
+  EXPECT_LT((h.contour.points.at(0) - Pixel(31.5 + 16.2168028, 23.5)).norm(), 1e-6);
+  EXPECT_THAT(inputErrorOf([&] { readScene(sceneWith("[159.5, 23.5]")); }),
+              HasSubstr("frames[0].highlights[0].peak: lies where the lens distortion cannot be removed: is seen 91.67 degrees"));
+}
+
 TEST(ReadScene, UnknownKeysThatWouldChangeTheGeometryAreRefused) {
   const TemporaryFolder folder;
   struct Row {
@@ -265,7 +359,7 @@ TEST(ReadScene, UnknownKeysThatWouldChangeTheGeometryAreRefused) {
   for (const Row& row : std::initializer_list<Row>{
            {"\"cy\": 23.5", "\"cy\": 23.5, \"k4\": 0.1", "camera.k4: "},
            {"\"cy\": 23.5", "\"cy\": 23.5, \"Fov\": 0.1", "camera.Fov: "},
-           {"\"cy\": 23.5", "\"cy\": 23.5, \"model\": \"OPENCV_FISHEYE\"", "camera.model: 'OPENCV_FISHEYE' is not supported"},
+           {"\"cy\": 23.5", "\"cy\": 23.5, \"model\": \"EQUIRECTANGULAR\"", "camera.model: 'EQUIRECTANGULAR' is not supported"},
            {"\"id\": \"a\"", "\"id\": \"a\", \"world_from_camera\": []", "frames[0].world_from_camera: "},
            {"{\"analytic\"", "{\"scale\": 2, \"analytic\"", "surfaces.ball.scale: "},
            {"{", "{\"coordinate_system\": \"y up\", ", "coordinate_system: "}}) {
