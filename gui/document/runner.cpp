@@ -44,7 +44,8 @@ void Runner::open(const std::string& path, const Relinked& instead) {
       const UndecidedPtr undecided =
           std::make_shared<const Undecided>(Undecided{exactQString(path), e.question(), e.option(), e.answers(), instead});
       token.deliver([this, undecided] { emit inputUndecided(undecided); });
-      throw;
+      const std::string line = e.what();  // the part after the semicolon names options of the command line: buttons answer here
+      throw std::runtime_error(line.substr(0, line.rfind("; ")));
     } catch (const OutsidePath& e) {
       const OutsidePtr outside = std::make_shared<const Outside>(Outside{exactQString(path), e.folder().string(), instead});
       token.deliver([this, outside] { emit outsideNamed(outside); });

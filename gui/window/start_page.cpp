@@ -27,10 +27,11 @@ StartPage::StartPage(QWidget* parent) : QWidget(parent) {
   large.setPointSizeF(large.pointSizeF() * 1.8);
   title->setFont(large);
   column->addWidget(title);
-  auto* text = new QLabel(
-      tr("Open a scene to see its surface, cameras and highlights, the ellipsoids reconstructed from them,\n"
-         "and the predicted and observed highlights in every frame.\n\n"
-         "A scene is a scene.json, a session (*.glint) or a folder containing one.\nYou can also drop it on this window."));
+  auto* text =
+      new QLabel(tr("Open a scene to see its surface, cameras and highlights, the ellipsoids reconstructed from them,\n"
+                    "and the predicted and observed highlights in every frame.\n\n"
+                    "A scene is a scene.json, a session (*.glint), a capture of COLMAP, nerfstudio or another program,\n"
+                    "or a folder containing one. You can also drop it on this window."));
   text->setProperty("role", "faded");
   column->addWidget(text);
   auto* buttons = new QHBoxLayout;
