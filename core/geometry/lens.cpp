@@ -156,6 +156,10 @@ Failure tooWide(double radians) {
                                           radians * 180 / std::numbers::pi)};
 }
 
+Failure beyondHalfTurn() {
+  return {Reason::OutsideImage, "nothing is seen there: it lies beyond 180 degrees from the optical axis"};
+}
+
 /// The point that `map` takes to `target`, by a damped Newton's method.
 // Not OpenCV's undistortPoints: it answers beyond the fold, too, and does not say so.
 template <class Map>
@@ -217,8 +221,7 @@ Outcome<double> fisheyeAngle(const FisheyeRadius& lens, double radius) {
   const bool folds = high < kRightAngle;
   if (!folds && !(lens.at(high) >= radius)) high = lens.branchEnd(std::numbers::pi);
   if (!(lens.at(high) >= radius)) {
-    if (high < std::numbers::pi) return foldsBefore();
-    return Failure{Reason::NotConverged, "nothing is seen there: it lies beyond 180 degrees from the optical axis"};
+    return high < std::numbers::pi ? foldsBefore() : beyondHalfTurn();
   }
   double low = 0, theta = std::min(radius, high), last = std::numeric_limits<double>::infinity();
   constexpr int kMaxIterations = 1200;  // bisection alone needs some 60 for a usual lens, 1,100 down to the least double
@@ -265,7 +268,7 @@ Outcome<Vector2d> thinPrismUndistorted(const LensParameters& d, const Vector2d& 
   const Outcome<Vector2d> w = mapSolved(ThinPrism{d}, u);
   if (!w) return w.failure();
   const double theta = std::hypot(w->x(), w->y());
-  if (!(theta < std::numbers::pi)) return foldsBefore();
+  if (!(theta < std::numbers::pi)) return beyondHalfTurn();
   return pointAt(theta, *w, theta);
 }
 
@@ -286,8 +289,7 @@ Outcome<Vector2d> fovUndistorted(double omega, const Vector2d& u) {
   const double radius = std::hypot(u.x(), u.y());
   if (std::abs(omega) < kLeastOmega || !(radius > 0)) return u;
   const double angle = radius * std::abs(omega), scale = 2 * std::tan(std::abs(omega) / 2);
-  if (!(angle < std::numbers::pi))
-    return Failure{Reason::NotConverged, "nothing is seen there: it lies beyond 180 degrees from the optical axis"};
+  if (!(angle < std::numbers::pi)) return beyondHalfTurn();
   if (!(angle < kRightAngle)) return tooWide(std::atan2(std::sin(angle), scale * std::cos(angle)));
   return Vector2d(u * (std::tan(angle) / scale / radius));
 }

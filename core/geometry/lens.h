@@ -11,8 +11,8 @@
 namespace glint {
 
 /// How a lens bends rays, by COLMAP's names; the parameters stand in COLMAP's order after cx cy. A point of the camera's frame at
-/// (x, y, 1) is measured at (u, v), both without K; r^2 = x^2 + y^2, theta = atan(r). Without parameters (all 0) the fisheye models
-/// measure theta (x, y) / r, the others (x, y).
+/// (x, y, 1) is measured at (u, v), both without K; r^2 = x^2 + y^2, theta = atan(r). Without parameters (all 0) the fisheye
+/// models measure theta (x, y) / r, the others (x, y).
 enum class LensModel {
   OpenCv,               ///< k1 k2 p1 p2 k3: Brown-Conrady (Brown, Close-range camera calibration, 1971)
   FullOpenCv,           ///< k1 k2 p1 p2 k3 k4 k5 k6: OpenCV's rational model
@@ -48,18 +48,19 @@ struct Lens {
   friend bool operator==(const Lens&, const Lens&) = default;
 };
 
-/// (u, v) of (x, y). Not finite where the polynomial overflows, nor for VISUALSFM where the fold of its inverse comes first: such a
-/// lens shows no point so far from the axis.
+/// (u, v) of (x, y). Not finite where the polynomial overflows, nor for VISUALSFM where the fold of its inverse comes first: such
+/// a lens shows no point so far from the axis; nor for FOV unless omega is between -pi and pi.
 Eigen::Vector2d distorted(const Lens& lens, const Eigen::Vector2d& ideal);
 
 /// (x, y) of (u, v): the inverse, to 1e-14 of max(1, |(u, v)|), of fisheye models as a function of the angle.
 ///
 /// The polynomials fold back far from the centre, and beyond the fold they show nothing or show it twice. Only the branch that is
-/// connected with the centre is an answer; of VISUALSFM, which is stated the other way round, it ends where (x, y) folds back. Fisheye
-/// lenses see beyond 90 degrees, where no (x, y, 1) is. The branch of a fisheye polynomial in theta is found exactly, that of a
-/// polynomial in the plane by samples on the way from the centre.
+/// connected with the centre is an answer; of VISUALSFM, which is stated the other way round, it ends where (x, y) folds back.
+/// Fisheye lenses see beyond 90 degrees, where no (x, y, 1) is. The branch of a polynomial in theta and the pole of FULL_OPENCV
+/// are found exactly, other folds by samples on the way from the centre.
 /// @return  NotConverged where no point of that branch is measured at (u, v); OutsideImage where it is 90 degrees or more from
-///          the axis ("is seen 93 degrees from the optical axis; only less than 90 are supported"); NotFinite.
+///          the axis ("is seen 93 degrees from the optical axis; only less than 90 are supported") or lies beyond 180, where
+///          nothing is; NotFinite.
 Outcome<Eigen::Vector2d> undistorted(const Lens& lens, const Eigen::Vector2d& measured);
 
 }  // namespace glint

@@ -167,12 +167,12 @@ TEST_F(ReceivedSessions, ASpecificationIsNeitherASceneNorASession) {
 }
 
 TEST_F(ReceivedSessions, ANewerSessionIsRefusedByEveryCommand) {
-  session_["glint_session"] = 4;
+  session_["glint_session"] = 5;
   receive();
   for (const char* command : {"info", "predict", "evaluate", "replay", "detect --json -", "tradeoff"}) {
     const ProgramRun run = onReceived(command);
     EXPECT_EQ(run.code, 2) << command;
-    EXPECT_THAT(run.err, HasSubstr("version 4 is newer than this program supports")) << command;
+    EXPECT_THAT(run.err, HasSubstr("version 5 is newer than this program supports")) << command;
   }
 }
 

@@ -32,7 +32,7 @@ void checkView(const CaptureView& view) {
   requirePromise(c.width >= 1 && c.height >= 1, "an image without a size");
   requirePromise(c.pixelFromRay.allFinite() && c.pixelFromRay(0, 0) > 0 && c.pixelFromRay(1, 1) > 0, "a K that is none");
   const Eigen::Matrix3d r = c.camFromWorld.linear();
-  constexpr double kRotation = 1e-9;  // of elements that are at most 1
+  constexpr double kRotation = 2e-6;  // to single precision it was meant as a rotation, and stays (readPoseJson)
   requirePromise(c.camFromWorld.matrix().allFinite(), "a pose that is not finite");
   requirePromise((r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < kRotation && r.determinant() > 0,
                  "a pose that is not rigid");

@@ -254,6 +254,19 @@ TEST(Explain, AFitThatHasFailedIsSaidInEveryStepThatUsesIt) {
   }
 }
 
+/// The left border of a fisheye's picture is seen 1.8 rad from the axis: to the left every ideal pixel is in the picture.
+TEST(Explain, WhatAFisheyeSeesIsNotOutside) {
+  Inspection inspection = needle(sphere(0.5), "dual");
+  ASSERT_TRUE(breaks(stepOf(explain(inspection, 1, 0, "dual"), "projection"), "prediction-outside"));
+  Scene scene = *inspection.scene;
+  Camera& camera = scene.frames[1].camera;
+  const double middle = (camera.width - 1) / 2.0, focal = middle / 1.8;
+  camera.pixelFromRay << focal, 0, middle, 0, focal, (camera.height - 1) / 2.0, 0, 0, 1;
+  camera.lens.model = LensModel::OpenCvFisheye;
+  inspection.scene = std::make_shared<const Scene>(scene);
+  EXPECT_FALSE(breaks(stepOf(explain(inspection, 1, 0, "dual"), "projection"), "prediction-outside"));
+}
+
 /// Before the walk back onto a bulging surface the highlight is that of a flat mirror: the ellipse on T, which the views' own
 /// walks give as well. After it, it is the one that is seen.
 TEST(Explain, TheProjectionOfCanonicalIsOnTAndTheWalkBackIsWhatIsSeen) {

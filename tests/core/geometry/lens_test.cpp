@@ -409,7 +409,8 @@ TEST(Undistorted, NothingIsSeenBeyondAHalfTurn) {
        {Lens{LensModel::OpenCvFisheye, {}}, Lens{LensModel::ThinPrismFisheye, {}}, Lens{LensModel::Fov, {1}}}) {
     const Outcome<Vector2d> x = undistorted(lens, {3.2, 0});
     ASSERT_FALSE(x) << nameOf(lens.model);
-    EXPECT_EQ(x.failure().reason, Reason::NotConverged) << nameOf(lens.model);
+    EXPECT_EQ(x.failure().reason, Reason::OutsideImage) << nameOf(lens.model);
+    EXPECT_THAT(x.failure().detail, HasSubstr("beyond 180 degrees")) << nameOf(lens.model);
   }
 }
 

@@ -166,6 +166,24 @@ TEST(CocoJson, WithoutAPhotographTheFileNameIsTheFramesIdAndANoteSaysSo) {
   EXPECT_EQ(labels(mixed)["images"][2]["file_name"], scene.frames[2].id);
 }
 
+// With r = -1 the term of NVM shows nothing farther than (2/3) sqrt(1/3) = 0.385 from the axis, 38.5 px at f = 100. The contour
+// here reaches from 30 to 50 px; without a number there is no point of a polygon.
+TEST(CocoJson, LeavesOutWhatTheLensDoesNotShow) {
+  Inspection inspection = small();
+  Scene scene = *inspection.scene;
+  Camera& camera = scene.frames[0].camera;
+  camera.pixelFromRay << 100, 0, 0, 0, 100, 0, 0, 0, 1;
+  camera.lens = {LensModel::VisualSfm, {-1}};
+  inspection.scene = std::make_shared<const Scene>(scene);
+  FrameComparison& first = inspection.models.at("canonical").frames.at(0);
+  ASSERT_EQ(first.frame, 0);
+  first.prediction.editable()[0].contour = Polyline{{{30, 0}, {36, -4}, {50, 0}, {36, 4}}, true};
+  const nlohmann::json labels = nlohmann::json::parse(cocoJson(inspection, "canonical", {0}));
+  const nlohmann::json& polygon = labels.at("annotations").at(0).at("segmentation").at(0);
+  EXPECT_EQ(polygon.size(), 6u);
+  for (const nlohmann::json& number : polygon) EXPECT_TRUE(number.is_number());
+}
+
 TEST(WriteLabels, StoppedOrRefusedLeavesNothing) {
   const Inspection inspection = small();
   const fs::path parent = emptyFolder("stopped"), folder = parent / "labels";

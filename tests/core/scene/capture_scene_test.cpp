@@ -19,6 +19,7 @@ using testing::HasSubstr;
 using testing_support::inputErrorOf;
 using testing_support::minimalScene;
 using testing_support::TemporaryFolder;
+using testing_support::with;
 
 constexpr double kRoundOff = 1e-12;  // of numbers of order one
 
@@ -196,6 +197,16 @@ TEST(CaptureScene, MeshThatMovedIsFoundWhereItWasRelinked) {
   const Scene scene = readScene(folder.path(), options);
   EXPECT_EQ(*scene.surfaces.begin()->second.mesh, elsewhere / "found.ply");
   EXPECT_EQ(scene.meshes.at("gone.ply"), elsewhere / "found.ply");
+}
+
+/// 64 px at f = 20: the border of an equidistant picture is 1.6 rad from the axis.
+TEST(CaptureScene, WideLensesAreWarnedOf) {
+  TemporaryFolder folder;
+  const std::string narrow = with(minimalScene(), "\"cy\": 23.5", "\"cy\": 23.5, \"model\": \"OPENCV_FISHEYE\"");
+  const auto warnings = [&](const std::string& text) { return readScene(folder.write("scene.json", text)).warnings; };
+  EXPECT_THAT(warnings(with(with(narrow, "\"fx\": 80", "\"fx\": 20"), "\"fy\": 80", "\"fy\": 20")),
+              ElementsAre(HasSubstr("taken as outside of the image")));
+  EXPECT_THAT(warnings(with(with(narrow, "\"fx\": 80", "\"fx\": 800"), "\"fy\": 80", "\"fy\": 800")), ElementsAre());
 }
 
 TEST(CaptureScene, CameraNumbersAreChecked) {

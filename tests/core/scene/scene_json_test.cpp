@@ -274,7 +274,8 @@ class LensOfAScene : public testing::TestWithParam<LensRow> {};
 TEST_P(LensOfAScene, IsReadAndWrittenBack) {
   const TemporaryFolder folder;
   const Scene scene = readScene(folder.write("scene.json", withCamera(GetParam().json)));
-  EXPECT_THAT(scene.warnings, ElementsAre());
+  // Some of these lenses bend so much that the border of the picture is beyond any ideal one.
+  EXPECT_THAT(scene.warnings, testing::Each(HasSubstr("the lens sees more")));
   const Lens expected{GetParam().model, GetParam().parameters};
   EXPECT_EQ(scene.frames[0].camera.lens, expected);
   writeScene(scene, folder / "again.json");

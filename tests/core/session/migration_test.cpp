@@ -158,13 +158,29 @@ TEST(Migration, WrittenAgainItIsOfThisVersionAndMeansTheSame) {
   }
 }
 
+/// Written by hand from docs/formats.md: what version 4 adds.
+TEST(Migration, Version4SaysHowACaptureIsRead) {
+  const InputChoices c = readSession(fixture(4)).choices;
+  EXPECT_EQ(c.as, "colmap");
+  EXPECT_EQ(c.surface, InputChoices::Surface::File);
+  EXPECT_EQ(c.surfaceFile, (fixture(4).parent_path() / "meshes/object.ply").lexically_normal());
+  EXPECT_EQ(c.camera, (std::vector<double>{525, 526, 319.5, 239.5, 0.1, -0.2, 0.001, 0.002}));
+  EXPECT_EQ(c.object, "5");
+  EXPECT_EQ(c.metresPerUnit, 0.01);
+  EXPECT_EQ(c.surfaceMetresPerUnit, 0.001);
+  EXPECT_EQ(c.depthScale, 0.0002);
+  EXPECT_EQ(c.world, "original");
+  // Without it, a session is read as it always was.
+  EXPECT_TRUE(readSession(fixture(3)).choices.none());
+}
+
 TEST(Migration, ANewerOneIsRefusedAsNewerWhateverElseIsInIt) {
   const TemporaryFolder folder;
   for (const char* rest : {"", ", \"input\": 7, \"request\": {\"brand\": \"new\"}"}) {
-    const fs::path file = folder.write("x.glint", std::string("{\"glint_session\": 4") + rest + "}");
+    const fs::path file = folder.write("x.glint", std::string("{\"glint_session\": 5") + rest + "}");
     const std::string message = inputErrorOf([&] { readSession(file); });
     EXPECT_THAT(message, HasSubstr(file.string() + ": glint_session: "));
-    EXPECT_THAT(message, HasSubstr("version 4 is newer than this program supports (3)"));
+    EXPECT_THAT(message, HasSubstr("version 5 is newer than this program supports (4)"));
   }
 }
 

@@ -231,7 +231,7 @@ TEST_P(BadSessions, AreOneLineWithFilePlaceAndReason) {
 INSTANTIATE_TEST_SUITE_P(
     Session, BadSessions,
     testing::Values(
-        BadSession{"\"glint_session\": 3", "\"glint_session\": 4", "glint_session: ", "newer"},
+        BadSession{"\"glint_session\": 3", "\"glint_session\": 5", "glint_session: ", "newer"},
         BadSession{"\"glint_session\": 3", "\"glint_session\": 0", "glint_session: ", "does not exist"},
         BadSession{"\"train\"", "\"trian\"", "request.train: ", "missing"},
         BadSession{"\"source\": \"image\"", "\"source\": \"video\"", "request.source: ", "'video'"},
