@@ -91,17 +91,6 @@ void orderByName(Capture& capture) {
       throw InputError(capture.file.string(), "", "two images are called '" + capture.views[i].name + "'");
 }
 
-std::vector<Row> rowsOf(std::string_view text) {
-  std::vector<Row> rows;
-  io::Lines lines(text);
-  while (auto line = lines.next()) {
-    Row row{lines.number(), {}};
-    for (std::string_view word = io::takeWord(*line); !word.empty(); word = io::takeWord(*line)) row.words.push_back(word);
-    if (!row.words.empty() && row.words.front().front() != '#') rows.push_back(std::move(row));
-  }
-  return rows;
-}
-
 double numberAt(const Row& row, std::size_t word, const std::string& file) {
   if (word >= row.words.size())
     throw InputError(file, row.place(),

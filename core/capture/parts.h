@@ -41,13 +41,12 @@ std::array<int, 2> sizeOfImage(const std::filesystem::path& image, const std::st
 /// Sorts views by name (text order) and refuses two of one name.
 void orderByName(Capture& capture);
 
-/// Lines of a text with their numbers; a comment line (first word starts with '#') and an empty line are skipped.
+/// The words of one line of a text.
 struct Row {
   std::size_t number = 0;  ///< of its line, from 1
   std::vector<std::string_view> words;
   std::string place() const { return "line " + std::to_string(number); }
 };
-std::vector<Row> rowsOf(std::string_view text);
 /// The word as a number. InputError where it is missing or not a finite number ("needs 8 numbers, has 7").
 double numberAt(const Row& row, std::size_t word, const std::string& file);
 long long integerAt(const Row& row, std::size_t word, const std::string& file);

@@ -13,7 +13,7 @@
 
 namespace glint::capture {
 
-/// As rowsOf, one at a time: such a text has millions of words, and all of them at once take ten times its memory.
+/// Rows one at a time: such a text has millions of words, and all of them at once take ten times its memory.
 class RowReader {
  public:
   RowReader(std::string_view text, std::string file) : lines_(text), size_(text.size()), file_(std::move(file)) {}

@@ -51,7 +51,7 @@ Camera cameraOfNumbers(const std::vector<double>& numbers);
 
 /// `input.reading` of a session. @param folder  of the session, absolute: paths are relative to it. InputError.
 InputChoices readInputChoices(const JsonNode& node, const std::filesystem::path& folder);
-/// Its JSON text; paths as `pathText` writes them.
+/// Its JSON text. @param surfacePath  of `surfaceFile`, relative to the session's folder; "" = none
 std::string inputChoicesJson(const InputChoices& choices, const std::string& surfacePath);
 
 }  // namespace glint
