@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <filesystem>
+#include <utility>
 
 #include "cli/commands.h"
 #include "cli/scene_arguments.h"
+#include "core/scene/correction.h"
 #include "core/scene/export_capture.h"
 #include "core/scene/outputs.h"
 #include "core/scene/scene.h"
@@ -12,6 +14,7 @@ namespace glint::cli {
 Command convertCommand() {
   struct Arguments {
     std::string input, output;
+    std::vector<std::string> fixes;
     SceneArguments places;
   };
   const auto a = std::make_shared<Arguments>();
@@ -28,12 +31,14 @@ Command convertCommand() {
   c.examples =
       "  glint convert DIR -o DIR/scene.json\n"
       "  glint convert COLMAP --surface mesh.ply -o scene.json\n"
+      "  glint convert COLMAP --fix invert-poses -o corrected.json\n"
       "  glint convert scene.json -o DIR/transforms.json\n"
       "  glint convert scene.json -o DIR/sparse\n";
   c.declare = [a](Options& o) {
     o.positional(a->input, "INPUT",
                  "Scene file, capture of another program (COLMAP, nerfstudio ...), folder that contains one, or session");
     o.required(a->output, "-o,--out,--output", "FILE", "transforms.json, a scene file (*.json), or a folder for a COLMAP model");
+    o.repeated(a->fixes, "--fix", "NAME[=VALUE]", "Make a correction that `glint info` proposes: " + correctionNames());
     a->places.declare(o);
   };
   c.run = [a](const Context& context) -> int {
@@ -42,7 +47,8 @@ Command convertCommand() {
     const bool json = output.extension() == ".json", transforms = output.filename() == "transforms.json";
     if (!json && output.has_extension())
       throw InputError(a->output, "--out", "expected transforms.json, a scene file (*.json), or a folder for a COLMAP model");
-    const Scene scene = a->places.read(a->input);
+    Scene scene = a->places.read(a->input);
+    for (const std::string& fix : a->fixes) scene = corrected(std::move(scene), fix);
     for (const std::string& w : scene.warnings) context.warn(w);
     if (!json || transforms) {
       const Exported exported = transforms ? transformsOf(scene, output) : colmapOf(scene, output);

@@ -33,9 +33,7 @@ Command infoCommand() {
   c.run = [a](const Context& context) -> int {
     const Scene scene = a->places.read(a->input);
     Outputs(a->input, scene).file(a->json, "--json", OutputKind::document("glint_info"));
-    ConventionReport report = conventionReport(scene, context.progress());
-    // Only a scene whose cameras see their surface has highlights that can be asked about the cameras.
-    if (report.everyFrameSeesSurface()) report.take(checkCameras(scene, context.progress()));
+    const ConventionReport report = fullReport(scene, context.progress());
     if (a->json.empty())
       context.print(toText(report));
     else

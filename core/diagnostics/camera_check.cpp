@@ -249,19 +249,22 @@ class Check {
       return here && here->rmsPx < kClearly * given.rmsPx && !(other && other->rmsPx < here->rmsPx) &&
              bothHalvesGain(change, *here);
     };
-    if (byShift && std::abs(*result_.shiftPx - half.cx) < kShiftSlackPx && clear(atHalf, atFocal, half))
+    if (byShift && std::abs(*result_.shiftPx - half.cx) < kShiftSlackPx && clear(atHalf, atFocal, half)) {
+      result_.correction = principalPointCorrection(half.cx);
       result_.findings.push_back(
           formatted("the principal point is half a pixel off: the highlights of %d frames fit one light to %.2g px with %+.1f px "
                     "added to cx and cy; as given, only to %.2g px ",
                     result_.views, atHalf->rmsPx, half.cx, given.rmsPx) +
           (half.cx < 0 ? "(COLMAP and nerfstudio put (0.5, 0.5) at the centre of the first pixel; here it is (0, 0))"
                        : "(was half a pixel subtracted twice?)"));
-    else if (byFocal && std::abs(*result_.focalPct) >= kLeastFocalPct && clear(atFocal, atHalf, longer))
+    } else if (byFocal && std::abs(*result_.focalPct) >= kLeastFocalPct && clear(atFocal, atHalf, longer)) {
+      result_.correction = focalLengthCorrection(std::exp(longer.logFocal));
       result_.findings.push_back(formatted(
           "the focal length is wrong: the highlights of %d frames fit one light to %.2g px with one that is %.2g %% %s; as "
           "given, "
           "only to %.2g px (a wrong scale of the surface looks much the same)",
           result_.views, atFocal->rmsPx, std::abs(*result_.focalPct), *result_.focalPct > 0 ? "longer" : "shorter", given.rmsPx));
+    }
   }
 
   const Scene& scene_;
@@ -275,5 +278,11 @@ class Check {
 }  // namespace
 
 CameraCheck checkCameras(const Scene& scene, const ProgressFn& progress) { return Check(scene, progress).run(); }
+
+ConventionReport fullReport(const Scene& scene, const ProgressFn& progress) {
+  ConventionReport report = conventionReport(scene, progress);
+  if (report.everyFrameSeesSurface()) report.take(checkCameras(scene, progress));
+  return report;
+}
 
 }  // namespace glint

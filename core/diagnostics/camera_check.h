@@ -14,4 +14,8 @@ namespace glint {
 /// unsaid. Takes a second or two. Throws Stopped, and InputError where a surface cannot be read.
 CameraCheck checkCameras(const Scene& scene, const ProgressFn& progress = {});
 
+/// The convention report, and this check in it where every camera sees its surface: no other scene has highlights that can be asked
+/// about the cameras.
+ConventionReport fullReport(const Scene& scene, const ProgressFn& progress = {});
+
 }  // namespace glint

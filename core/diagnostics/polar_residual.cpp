@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "core/geometry/seen_window.h"
+
 namespace glint {
 namespace {
 
@@ -13,9 +15,7 @@ constexpr double kBorderPx = 1.0;  // detection's contours end within a pixel of
 
 double directionOf(int index, int count) { return -std::numbers::pi + 2 * std::numbers::pi * (index + 1) / count; }
 
-bool onBorder(const Pixel& p, const Camera& camera) {
-  return p.x() < kBorderPx || p.y() < kBorderPx || p.x() > camera.width - 1 - kBorderPx || p.y() > camera.height - 1 - kBorderPx;
-}
+bool onBorder(const Pixel& p, const Camera& camera) { return !isInPhotograph(camera, p, -kBorderPx); }
 
 double cross(const Pixel& a, const Pixel& b) { return a.x() * b.y() - a.y() * b.x(); }
 

@@ -13,8 +13,8 @@
 #include "core/diagnostics/conditioning.h"
 #include "core/explain/explain_case.h"
 #include "core/fit/training.h"
-#include "core/geometry/distortion.h"
 #include "core/geometry/epipolar.h"
+#include "core/geometry/seen_window.h"
 #include "core/highlight/peak.h"
 #include "core/light/estimate.h"
 
@@ -317,29 +317,14 @@ void addReason(const Case& c, ExplainStep& step) {
   step.broken.push_back({"primal-not-mirrored", numbers});
 }
 
-/// Borders of what the camera sees, as ideal pixels.
-Eigen::AlignedBox2d seenBy(const Camera& camera) {
-  constexpr double kBeyond = 1000;  // times as far from the centre: no highlight is looked for out there
-  const Pixel centre = camera.pixelFromRay.topRightCorner<2, 1>();
-  Eigen::AlignedBox2d seen;
-  for (const double x : {0.0, 0.5, 1.0})
-    for (const double y : {0.0, 0.5, 1.0}) {
-      const Pixel border(x * (camera.width - 1), y * (camera.height - 1));
-      if (const Outcome<Pixel> ideal = withoutDistortion(camera, border))
-        seen.extend(*ideal);
-      else if (ideal.failure().reason == Reason::OutsideImage)  // at 90 degrees: every ideal pixel on this side is in the picture
-        seen.extend(Pixel(centre + kBeyond * (border - centre)));
-    }
-  return seen;
-}
-
 /// What is wrong with the prediction for this highlight, so far that no number of it means anything.
 void addMisses(const Case& c, ExplainStep& step, bool withReason) {
   const PredictedHighlight* p = c.predicted();
   if (!p || !c.row) return;
   const std::size_t before = step.broken.size();
-  const Eigen::AlignedBox2d seen = seenBy(c.camera());
-  const double outside = seen.isEmpty() || !p->brightest.pixel.allFinite() ? 0 : seen.exteriorDistance(p->brightest.pixel);
+  const Pixel half(0.5, 0.5);  // to the centres of the outermost pixels
+  const Eigen::AlignedBox2d window = seenWindow(c.camera()), seen(window.min() + half, window.max() - half);
+  const double outside = !p->brightest.pixel.allFinite() ? 0 : seen.exteriorDistance(p->brightest.pixel);
   if (outside > 0) step.broken.push_back({"prediction-outside", {one("", "outside by", outside, "px")}});
   if (c.row->metrics && c.row->metrics->contourErrorPct > kOwnSizePct)
     step.broken.push_back(

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/seen_window.h"
 #include "core/model/models.h"
 #include "core/surface/level_set.h"
 
@@ -13,12 +14,13 @@ namespace {
 constexpr double kSameValue = 1e-7;  // rad, or log I: far above the round-off of a polished peak, far below any level
 
 /// Share of the outline, by length, that lies on the level set or on the surface's own edge rather than at the image margin.
-double coverageOf(const LevelSetComponent& c, const Camera& camera, double margin) {
+double coverageOf(const LevelSetComponent& c, const Eigen::AlignedBox2d& window, double margin) {
   const auto& p = c.outline.points;
   double total = 0, cut = 0;
   const auto atMargin = [&](const Pixel& q) {
-    return q.x() < 0.5 - margin || q.y() < 0.5 - margin || q.x() > camera.width - 1.5 + margin ||
-           q.y() > camera.height - 1.5 + margin;
+    constexpr double kNear = 1;  // px from where the field ends
+    return q.x() < window.min().x() + kNear - margin || q.y() < window.min().y() + kNear - margin ||
+           q.x() > window.max().x() - kNear + margin || q.y() > window.max().y() - kNear + margin;
   };
   for (std::size_t i = 0; i < p.size(); ++i) {
     const std::size_t j = (i + 1) % p.size();
@@ -66,18 +68,19 @@ Prediction predictLevelSet(const SurfaceField& field, const Camera& camera, cons
       if (hits[i]) values[i] = field.value(facing(*hits[i], eye));
     return values;
   };
-  std::vector<LevelSetComponent> components = traceLevelSets(exact, batch, field.level, camera.width, camera.height, options);
+  const Eigen::AlignedBox2d window = seenWindow(camera);
+  std::vector<LevelSetComponent> components = traceLevelSets(exact, batch, field.level, window, options);
   if (std::any_of(components.begin(), components.end(),
-                  [&](const LevelSetComponent& c) { return coverageOf(c, camera, 0) < 1; })) {
+                  [&](const LevelSetComponent& c) { return coverageOf(c, window, 0) < 1; })) {
     // The image cuts it: follow it beyond the border, so that the whole highlight is known.
-    options.marginPx = kMarginFraction * std::max(camera.width, camera.height);
-    components = traceLevelSets(exact, batch, field.level, camera.width, camera.height, options);
+    options.marginPx = kMarginFraction * window.sizes().maxCoeff();
+    components = traceLevelSets(exact, batch, field.level, window, options);
   }
   std::vector<PredictedHighlight> found;
   for (const LevelSetComponent& c : components) {
     PredictedHighlight h;
     h.contour = c.outline;
-    h.coverage = coverageOf(c, camera, options.marginPx);
+    h.coverage = coverageOf(c, window, options.marginPx);
     if (const Outcome<Ellipse> e = fitEllipse(c.outline.points)) h.ellipse = *e;
     if (const FieldPeak* peak = peakInside(field, c.outline)) {
       h.brightest = peak->point;
@@ -96,8 +99,8 @@ Prediction predictLevelSet(const SurfaceField& field, const Camera& camera, cons
   }
   if (!found.empty()) return found;
   const bool outside = !field.peaks.empty() && std::all_of(field.peaks.begin(), field.peaks.end(), [&](const FieldPeak& p) {
-    const Pixel& q = p.point.pixel;
-    return q.x() < -0.5 || q.y() < -0.5 || q.x() > camera.width - 0.5 || q.y() > camera.height - 0.5;
+    constexpr double kHalf = 0.5;  // px: the image ends at the outer edges of its pixels
+    return !isInPhotograph(camera, p.point.pixel, kHalf);
   });
   return outside ? Failure{Reason::OutsideImage, "the whole highlight lies outside the image"}
                  : Failure{Reason::NotReached, "no level set in the image"};

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/geometry/seen_window.h"
 #include "core/model/models.h"
 #include "core/model/pixel_sampler.h"
 #include "core/model/region_check.h"
@@ -320,19 +321,21 @@ Outcome<std::vector<PredictedHighlight>> starHighlights(const StarField& field, 
                                                         const std::vector<Summit>& summits, double level,
                                                         const Settings& settings) {
   const Eigen::Vector3d eye = camera.centreInWorld();
-  const Eigen::Vector2d size(camera.width, camera.height), half = Eigen::Vector2d::Constant(0.5);
+  const Eigen::AlignedBox2d window = seenWindow(camera);
+  const Eigen::Vector2d half = Eigen::Vector2d::Constant(0.5);
   const bool mayBeHidden = PixelSampler(field.value, camera, surface).follows();
-  const double margin = kMarginFraction * std::max(camera.width, camera.height);
+  const double margin = kMarginFraction * window.sizes().maxCoeff();
   bool cut = false;
   std::vector<StarOutline> outlines;
   std::vector<PredictedHighlight> highlights;
   for (const Summit& s : summits) {
-    if (!(s.pixel.minCoeff() >= 0) || !((size - s.pixel).minCoeff() >= 1)) return Failure{Reason::OutsideImage, "a maximum"};
+    if (!((s.pixel - window.min() - half).minCoeff() >= 0) || !((window.max() - half - s.pixel).minCoeff() >= 0))
+      return Failure{Reason::OutsideImage, "a maximum"};
     if (!(s.value < level)) continue;
     Outcome<StarOutline> outline = starAround(field, camera, surface, s, level, settings.integer("predict.directions"));
     if (!outline) return outline.failure();
     for (const Pixel& p : outline->pixels) {
-      const double outside = std::max((-half - p).maxCoeff(), (p - (size - half)).maxCoeff());
+      const double outside = std::max((window.min() - p).maxCoeff(), (p - window.max()).maxCoeff());
       if (outside >= margin) return Failure{Reason::OutsideImage, "the outline reaches beyond the margin"};
       cut = cut || outside > 0;
     }
@@ -359,7 +362,7 @@ Outcome<std::vector<PredictedHighlight>> starHighlights(const StarField& field, 
         return Failure{Reason::NotMonotonic, "the outline encloses another maximum"};
   const Eigen::Vector2d beyond = Eigen::Vector2d::Constant(cut ? margin : 0);
   if (const std::optional<Failure> other =
-          somethingElseInside(field, camera, surface, outlines, level, -half - beyond, size - half + beyond))
+          somethingElseInside(field, camera, surface, outlines, level, window.min() - beyond, window.max() + beyond))
     return *other;
   std::stable_sort(highlights.begin(), highlights.end(), [](const PredictedHighlight& a, const PredictedHighlight& b) {
     return std::abs(signedArea(a.contour)) > std::abs(signedArea(b.contour));

@@ -38,9 +38,10 @@ double curvatureAt(const Ellipse& e, const Pixel& p) {
 }
 
 /// Between the outermost pixel centres and the outermost pixels' outer edges, where cut contours run.
-bool onImageBorder(const Pixel& p, const Camera& camera) {
+bool onImageBorder(const Pixel& ideal, const Camera& camera) {
   constexpr double kWidthPx = 0.5 + 1e-6;  // the image ends half a pixel beyond the outermost centres; the rest is round-off
   const auto near = [](double v, double last) { return std::abs(v) <= kWidthPx || std::abs(v - last) <= kWidthPx; };
+  const Pixel p = camera.hasDistortion() ? camera.distorted(ideal) : ideal;
   return near(p.x(), camera.width - 1) || near(p.y(), camera.height - 1);
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/geometry/seen_window.h"
 #include "core/reflectance/light_radiance.h"
 #include "core/surface/occlusion.h"
 
@@ -22,9 +23,17 @@ constexpr double kFirstStridePx = 4, kLongestStridePx = 40;  // of steps uphill 
 constexpr double kFirstPatternPx = 4, kLeastPatternPx = 1e-4, kPatternShrink = 0.25;
 constexpr double kAtBorderPx = kStencilPx;  // closer to the border of its domain a climb goes on without derivatives
 
-/// How far inside the domain, px; negative outside.
-double depthInImage(const Pixel& p, const Camera& camera, double marginPx) {
-  return std::min({p.x(), p.y(), camera.width - 1 - p.x(), camera.height - 1 - p.y()}) + marginPx;
+/// How far inside the domain, px; negative outside. @param image  up to the centres of its outermost pixels
+double depthInImage(const Pixel& p, const Eigen::AlignedBox2d& image, double marginPx) {
+  return std::min({p.x() - image.min().x(), p.y() - image.min().y(), image.max().x() - p.x(), image.max().y() - p.y()}) +
+         marginPx;
+}
+
+/// What the camera sees, in ideal pixels, up to the centres of the outermost ones.
+Eigen::AlignedBox2d centresSeen(const Camera& camera) {
+  const Eigen::AlignedBox2d window = seenWindow(camera);
+  const Pixel half(0.5, 0.5);
+  return {window.min() + half, window.max() - half};
 }
 
 }  // namespace
@@ -38,6 +47,7 @@ RadianceField::RadianceField(const Surface& surface, const Camera& camera, Lobe 
                              const lobe::LampRule& rule)
     : surface_(surface),
       camera_(camera),
+      image_(centresSeen(camera)),
       eye_(camera.centreInWorld()),
       lobe_(lobe),
       roughness_(roughness),
@@ -56,7 +66,7 @@ double RadianceField::largestSizeRatio() const {
   for (int y = 0; y < kRows; ++y)
     for (int x = 0; x < kColumns; ++x) {
       const std::optional<SurfacePoint> p =
-          visible(Pixel((x + 0.5) / kColumns * (camera_.width - 1), (y + 0.5) / kRows * (camera_.height - 1)));
+          visible(image_.min() + Pixel((x + 0.5) / kColumns * image_.sizes().x(), (y + 0.5) / kRows * image_.sizes().y()));
       if (!p) continue;
       const double fall = fallOfLobe(*p);
       if (!std::isfinite(fall)) continue;
@@ -96,7 +106,7 @@ std::optional<double> RadianceField::at(const Pixel& p) const {
 
 std::optional<RadiancePeak> RadianceField::climb(Pixel p, double marginPx) const {
   const auto value = [&](const Pixel& q) -> std::optional<double> {
-    return depthInImage(q, camera_, marginPx) < 0 ? std::nullopt : at(q);
+    return depthInImage(q, image_, marginPx) < 0 ? std::nullopt : at(q);
   };
   std::optional<double> here = value(p);
   if (!here) return std::nullopt;
@@ -153,7 +163,7 @@ std::optional<RadiancePeak> RadianceField::climb(Pixel p, double marginPx) const
         moved = true;
         heading += (tried % 2 ? 1 : -1) * ((tried + 1) / 2);
         // The way along the border may be as long as the image.
-        if (tried == 0 && depthInImage(p, camera_, marginPx) < kAtBorderPx) pattern = std::min(2 * pattern, kLongestStridePx);
+        if (tried == 0 && depthInImage(p, image_, marginPx) < kAtBorderPx) pattern = std::min(2 * pattern, kLongestStridePx);
         tried = -1;
         ++step;
       }
@@ -161,12 +171,12 @@ std::optional<RadiancePeak> RadianceField::climb(Pixel p, double marginPx) const
   const std::optional<SurfacePoint> point = visible(p);
   if (!point) return std::nullopt;
   RadiancePeak peak{p, *point, *here};
-  if (depthInImage(p, camera_, marginPx) < kAtBorderPx) {
+  if (depthInImage(p, image_, marginPx) < kAtBorderPx) {
     // At the border of the domain: does the field rise outwards?
     Pixel outwards(0, 0);
     for (int i = 0; i < 2; ++i) {
-      const double last = (i == 0 ? camera_.width : camera_.height) - 1 + marginPx;
-      outwards(i) = p(i) + marginPx < kAtBorderPx ? -1 : last - p(i) < kAtBorderPx ? 1 : 0;
+      const double first = image_.min()(i) - marginPx, last = image_.max()(i) + marginPx;
+      outwards(i) = p(i) - first < kAtBorderPx ? -1 : last - p(i) < kAtBorderPx ? 1 : 0;
     }
     const std::optional<double> beyond = at(Pixel(p + kFirstStridePx * kStencilPx * outwards));
     peak.cut = beyond && *beyond > *here;
@@ -199,11 +209,13 @@ double RadianceField::fallOfLobe(const SurfacePoint& p) const {
 CoarseScan coarseScan(const Surface& surface, const Camera& camera, double stepPx) {
   CoarseScan scan;
   std::vector<Ray> rays;
-  const int columns = std::max(1, int(std::ceil((camera.width - 1) / stepPx)));
-  const int rows = std::max(1, int(std::ceil((camera.height - 1) / stepPx)));
+  const Eigen::AlignedBox2d image = centresSeen(camera);
+  const int columns = std::max(1, int(std::ceil(image.sizes().x() / stepPx)));
+  const int rows = std::max(1, int(std::ceil(image.sizes().y() / stepPx)));
   for (int y = 0; y <= rows; ++y)
     for (int x = 0; x <= columns; ++x) {
-      scan.pixels.emplace_back(double(x) / columns * (camera.width - 1), double(y) / rows * (camera.height - 1));
+      scan.pixels.emplace_back(image.min() +
+                               Pixel(double(x) / columns * image.sizes().x(), double(y) / rows * image.sizes().y()));
       rays.push_back(camera.ray(scan.pixels.back()));
     }
   scan.hits = surface.approximateHits(rays);
@@ -231,7 +243,7 @@ std::vector<RadiancePeak> RadianceField::peaksFrom(const std::vector<Pixel>& sta
     found.push_back(*peak);
   };
   for (const Pixel& s : starts)
-    if (depthInImage(s, camera_, 0) >= 0) add(s, 0);
+    if (depthInImage(s, image_, 0) >= 0) add(s, 0);
   if (scan) {
     std::optional<std::size_t> best;
     double brightest = -std::numeric_limits<double>::infinity();
@@ -249,12 +261,12 @@ std::vector<RadiancePeak> RadianceField::peaksFrom(const std::vector<Pixel>& sta
   std::stable_sort(found.begin(), found.end(), brighter);
   if (found.empty() || found.front().cut) {
     // The image's border is no maximum: it lies beyond.
-    const double margin = kPeakMargin * std::max(camera_.width, camera_.height);
+    const double margin = kPeakMargin * (image_.sizes().maxCoeff() + 1);
     std::vector<Pixel> from;
     for (const RadiancePeak& p : found)
       if (p.cut) from.push_back(p.pixel);
     for (const Pixel& s : starts)
-      if (depthInImage(s, camera_, 0) < 0) from.push_back(s);
+      if (depthInImage(s, image_, 0) < 0) from.push_back(s);
     found.erase(std::remove_if(found.begin(), found.end(), [](const RadiancePeak& p) { return p.cut; }), found.end());
     for (const Pixel& p : from) add(p, margin);
     std::stable_sort(found.begin(), found.end(), brighter);

@@ -72,6 +72,7 @@ class RadianceField {
 
   const Surface& surface_;
   const Camera& camera_;
+  Eigen::AlignedBox2d image_;  ///< seenWindow, up to the centres of its outermost pixels
   Eigen::Vector3d eye_;
   Lobe lobe_;
   double roughness_;

@@ -171,6 +171,18 @@ void concludeGrids(const Scene& scene, ConventionReport& report) {
   }
 }
 
+/// The metres per unit that somebody may have meant: measured ones are a few tenths of a percent off.
+double nearestDepthScale(double metresPerUnit) {
+  constexpr double kUsual[] = {1, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 2e-4, 5e-4};  // 2e-4: TUM RGB-D
+  constexpr double kNear = 0.02;
+  for (const double usual : kUsual)
+    if (std::abs(metresPerUnit / usual - 1) < kNear) return usual;
+  // What somebody chose has few digits; a measured one that is so near to such a number was it.
+  constexpr double kAsNear = 5e-4;
+  const double round = numberFrom(formatted("%.3g", metresPerUnit)).value_or(metresPerUnit);
+  return std::abs(metresPerUnit / round - 1) < kAsNear ? round : metresPerUnit;
+}
+
 /// Depth maps that contradict the surface: by one factor for all, which is their scale, or otherwise.
 void concludeDepth(const Scene& scene, int depthOff, double worstDepth, ConventionReport& report) {
   constexpr double kSame = 0.03;  // of the factor, from frame to frame: vertices and pixels differ by less than a percent
@@ -187,9 +199,11 @@ void concludeDepth(const Scene& scene, int depthOff, double worstDepth, Conventi
   const double factor = quantile(ratios, 0.5);
   const std::string start = formatted("depth and surface disagree in %d of %zu frames", depthOff, report.frames.size());
   if (ratios.size() > 1 && share > kMost && *most - *least < kSame * factor && std::abs(factor - 1) > kSame)
-    report.findings.push_back(start + formatted(": depth maps say %.4g times the depth of the surface in every frame", factor) +
-                              (scale > 0 ? formatted(" (depth_scale should be %.4g in place of %.4g)", scale / factor, scale)
-                                         : std::string(" (is the unit of one of them wrong?)")));
+    report.add(
+        start + formatted(": depth maps say %.4g times the depth of the surface in every frame", factor) +
+            (scale > 0 ? formatted(" (depth_scale should be %.4g in place of %.4g)", nearestDepthScale(scale / factor), scale)
+                       : std::string(" (is the unit of one of them wrong?)")),
+        scale > 0 ? std::optional(depthScaleCorrection(nearestDepthScale(scale / factor))) : std::nullopt);
   else
     report.findings.push_back(start +
                               formatted(" by up to %.3g m (distance along the ray instead of along the axis? a mesh that is "
@@ -223,13 +237,14 @@ void conclude(const Scene& scene, const SightCheck& sight, ConventionReport& rep
   const int n = static_cast<int>(report.frames.size());
   if (blind) {
     std::string line = formatted("%d of %d cameras do not see their surface", blind, n);
+    std::optional<Correction> correction;
     if (const SightHypothesis* h = sight.explanation())
-      line += formatted("; %d do once one mistake is undone: ", h->seeing) + h->mistake;
+      correction = h->undoing, line += formatted("; %d do once one mistake is undone: ", h->seeing) + h->mistake;
     else if (2 * lookingAway > withSurface)
       line += ": they look away from it (camera axes must be x right, y down, z forward; OpenGL's point backwards)";
     else
       line += " (does the file contain the inverse of camera_from_world?)";
-    report.findings.push_back(line);
+    report.add(line, correction);
   }
   if (depthOff) concludeDepth(scene, depthOff, worstDepth, report);
   if (bad) report.findings.push_back(formatted("%d of %d frames have a file that cannot be used; first: ", bad, n) + badId);
@@ -275,8 +290,13 @@ bool ConventionReport::everyFrameSeesSurface() const {
   return std::all_of(frames.begin(), frames.end(), [](const FrameFacts& f) { return f.seesSurface; });
 }
 
+void ConventionReport::add(std::string finding, std::optional<Correction> correction) {
+  if (correction) corrections.push_back({findings.size(), std::move(*correction)});
+  findings.push_back(std::move(finding));
+}
+
 void ConventionReport::take(CameraCheck check) {
-  findings.insert(findings.end(), check.findings.begin(), check.findings.end());
+  for (const std::string& f : check.findings) add(f, &f == &check.findings.back() ? check.correction : std::nullopt);
   cameras = std::move(check);
 }
 
@@ -342,7 +362,8 @@ ConventionReport conventionReport(const Scene& scene, const ProgressFn& progress
   conclude(scene, checkSight(scene, [&](const std::string& id) -> const TriangleMesh& { return triangles.of(id); }), report);
   report.tracks = checkTracks(scene, progress);
   if (report.tracks)
-    report.findings.insert(report.findings.end(), report.tracks->findings.begin(), report.tracks->findings.end());
+    for (const std::string& f : report.tracks->findings)
+      report.add(f, &f == &report.tracks->findings.back() ? report.tracks->correction : std::nullopt);
   concludeGrids(scene, report);
   return report;
 }
@@ -390,10 +411,25 @@ std::string toText(const ConventionReport& r) {
   }
   for (const std::string& f : r.facts) out += "fact: " + f + "\n";
   for (const std::string& w : r.warnings) out += "warning: " + w + "\n";
-  for (const std::string& f : r.findings) out += "finding: " + f + "\n";
+  for (std::size_t i = 0; i < r.findings.size(); ++i) {
+    out += "finding: " + r.findings[i] + "\n";
+    for (const auto& c : r.corrections)
+      if (c.finding == i) out += "  fix:   glint convert INPUT --fix " + c.correction.fix + " --out corrected.json\n";
+  }
   if (r.findings.empty()) out += "All cameras see their surface; no problems found.\n";
   return out;
 }
+
+namespace {
+void addConclusions(const ConventionReport& r, Json& j) {
+  j["facts"] = r.facts;
+  j["warnings"] = r.warnings;
+  j["findings"] = r.findings;
+  j["fixes"] = Json::array();
+  for (const auto& c : r.corrections)
+    j["fixes"].push_back({{"finding", c.finding}, {"fix", c.correction.fix}, {"words", c.correction.words}});
+}
+}  // namespace
 
 std::string toJson(const ConventionReport& r) {
   const auto vector = [](const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); };
@@ -448,9 +484,7 @@ std::string toJson(const ConventionReport& r) {
                    {"met", r.tracks->met},
                    {"on_surface", r.tracks->onSurface},
                    {"depth_ratio", r.tracks->depthRatio}};
-  j["facts"] = r.facts;
-  j["warnings"] = r.warnings;
-  j["findings"] = r.findings;
+  addConclusions(r, j);
   return prettyJson(j.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 

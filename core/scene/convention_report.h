@@ -7,6 +7,7 @@
 
 #include "core/base/progress.h"
 #include "core/scene/coordinate_grid.h"
+#include "core/scene/correction.h"
 #include "core/scene/scene.h"
 #include "core/scene/track_check.h"
 
@@ -21,11 +22,12 @@ struct CameraCheck {
     std::optional<double> rmsPx;  ///< of the contours' residuals; none where no light explains them
   };
   int views = 0;
-  std::vector<Hypothesis> hypotheses;  ///< the first one is "as given"; empty where the check did not run
-  std::string whyNot;                  ///< why it did not
-  std::optional<double> focalPct;      ///< the change of the focal length that fits best, percent
-  std::optional<double> shiftPx;       ///< the shift of the principal point, the same along x and y, that fits best
-  std::vector<std::string> findings;   ///< what is clear, one line each; mostly none
+  std::vector<Hypothesis> hypotheses;    ///< the first one is "as given"; empty where the check did not run
+  std::string whyNot;                    ///< why it did not
+  std::optional<double> focalPct;        ///< the change of the focal length that fits best, percent
+  std::optional<double> shiftPx;         ///< the shift of the principal point, the same along x and y, that fits best
+  std::vector<std::string> findings;     ///< what is clear, one line each; mostly none
+  std::optional<Correction> correction;  ///< that undoes the last finding
 };
 
 /// What a scene was understood to be, and tests of that understanding on its own data (docs/formats.md, "Conventions"): wrong
@@ -64,8 +66,14 @@ struct ConventionReport {
   std::optional<TrackCheck> tracks;    ///< of a capture with sparse points
   std::optional<CameraCheck> cameras;  ///< by its highlights, where they were asked
   std::vector<std::string> findings;   ///< what looks wrong, one line each, with the likely cause; empty = nothing found
+  struct Proposal {
+    std::size_t finding = 0;  ///< index in `findings`
+    Correction correction;
+  };
+  std::vector<Proposal> corrections;  ///< in the order of the findings; not every one has one
 
   void take(CameraCheck check);  ///< with its findings
+  void add(std::string finding, std::optional<Correction> correction = {});
   bool anyFrameSeesSurface() const;
   bool everyFrameSeesSurface() const;
 };

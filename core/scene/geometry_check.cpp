@@ -12,31 +12,18 @@ namespace {
 
 constexpr std::size_t kSightSample = 300;  // vertices: shares to a few percent
 
-struct Mistake {
-  const char* words;
-  double meshScale = 1;
-  bool inverse = false, turned = false;
+/// What is said of each of geometryCorrections(), in their order.
+constexpr std::array<const char*, 6> kMistakeWords{
+    "poses are camera to world: invert them",
+    "camera axes are OpenGL's, y up and z backwards: turn the y and z axes",
+    "poses are camera to world with OpenGL's axes, y up and z backwards: invert them and turn the y and z axes",
+    "the mesh is in millimetres and the poses are in metres: give its unit (surfaces.ID.units, --surface-units mm)",
+    "the mesh is in centimetres and the poses are in metres: give its unit (surfaces.ID.units, --surface-units cm)",
+    "the poses are in millimetres and the mesh is in metres: divide translations by 1000 (--units mm --surface-units m)",
 };
 
-constexpr std::array<Mistake, 6> kMistakes{{
-    {"poses are camera to world: invert them", 1, true, false},
-    {"camera axes are OpenGL's, y up and z backwards: turn the y and z axes", 1, false, true},
-    {"poses are camera to world with OpenGL's axes, y up and z backwards: invert them and turn the y and z axes", 1, true, true},
-    {"the mesh is in millimetres and the poses are in metres: give its unit (surfaces.ID.units, --surface-units mm)", 0.001,
-     false, false},
-    {"the mesh is in centimetres and the poses are in metres: give its unit (surfaces.ID.units, --surface-units cm)", 0.01, false,
-     false},
-    {"the poses are in millimetres and the mesh is in metres: divide translations by 1000 (--units mm --surface-units m)", 1000,
-     false, false},
-}};
-
-Camera withMistakeUndone(Camera camera, const Mistake& mistake) {
-  Eigen::Isometry3d pose = camera.camFromWorld;
-  const Eigen::Isometry3d turn(Eigen::AngleAxisd(EIGEN_PI, Eigen::Vector3d::UnitX()));
-  // Stored as camera to world, y up: camFromWorld = turn * stored^-1; stored as world to camera, y up: turn * stored.
-  if (mistake.inverse) pose = pose.inverse();
-  if (mistake.turned) pose = turn * pose;
-  camera.camFromWorld = pose;
+Camera withMistakeUndone(Camera camera, const GeometryCorrection& correction) {
+  camera.camFromWorld = correction.camFromWorld(camera.camFromWorld);
   return camera;
 }
 
@@ -83,14 +70,17 @@ SightCheck checkSight(const Scene& scene, const std::function<const TriangleMesh
   SightCheck check;
   std::map<std::string, std::vector<Eigen::Vector3d>> samples;
   for (const auto& [id, source] : scene.surfaces) samples[id] = sampleOf(trianglesOf(id));
-  for (const Mistake& mistake : kMistakes) check.undone.push_back({mistake.words, 0});
+  const std::vector<GeometryCorrection>& undoing = geometryCorrections();
+  require(undoing.size() == kMistakeWords.size(), "checkSight: a correction without words");
+  for (std::size_t i = 0; i < undoing.size(); ++i)
+    check.undone.push_back({kMistakeWords[i], {undoing[i].fix, undoing[i].words}, 0});
   for (const Frame& frame : scene.frames) {
     const auto points = samples.find(frame.surface);
     if (points == samples.end() || points->second.empty()) continue;
     ++check.frames;
     check.seeing += sees(frame.camera, points->second, 1);
-    for (std::size_t i = 0; i < kMistakes.size(); ++i)
-      check.undone[i].seeing += sees(withMistakeUndone(frame.camera, kMistakes[i]), points->second, kMistakes[i].meshScale);
+    for (std::size_t i = 0; i < undoing.size(); ++i)
+      check.undone[i].seeing += sees(withMistakeUndone(frame.camera, undoing[i]), points->second, undoing[i].meshScale);
   }
   std::stable_sort(check.undone.begin(), check.undone.end(),
                    [](const SightHypothesis& a, const SightHypothesis& b) { return a.seeing > b.seeing; });

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/scene/correction.h"
 #include "core/scene/scene.h"
 #include "core/surface/surface.h"
 
@@ -14,7 +15,8 @@ namespace glint {
 /// least half of the surface's vertices inside the image).
 struct SightHypothesis {
   std::string mistake;  ///< for a person, with what to do: "poses are camera to world (invert them)"
-  int seeing = 0;       ///< frames that see their surface once it is undone
+  Correction undoing;
+  int seeing = 0;  ///< frames that see their surface once it is undone
 };
 struct SightCheck {
   int frames = 0, seeing = 0;           ///< as given; frames with a surface of their scene

@@ -109,28 +109,6 @@ Reading chosenReading(const fs::path& input, const std::string& as) {
   return readings.front();
 }
 
-/// Predictions end where a picture of this size without lens would end; a wide lens sees more.
-Scene withWarningOfWideLenses(Scene scene) {
-  constexpr double kMore = 0.05;  // of the width or height: less is within what borders cost anyway
-  const auto isWide = [&](const Frame& frame) {
-    const Camera& c = frame.camera;
-    if (c.lens.model == LensModel::OpenCv || !c.hasDistortion()) return false;  // as it has always been
-    for (const Pixel& border : {Pixel(0, (c.height - 1) / 2.0), Pixel(c.width - 1, (c.height - 1) / 2.0),
-                                Pixel((c.width - 1) / 2.0, 0), Pixel((c.width - 1) / 2.0, c.height - 1)}) {
-      const Pixel ideal = c.undistorted(border);
-      if (!(ideal.x() > -kMore * c.width && ideal.y() > -kMore * c.height && ideal.x() < (1 + kMore) * c.width &&
-            ideal.y() < (1 + kMore) * c.height))
-        return true;
-    }
-    return false;
-  };
-  const auto wide = std::find_if(scene.frames.begin(), scene.frames.end(), isWide);
-  if (wide != scene.frames.end())
-    scene.warnings.push_back("frame " + wide->id + ": the lens sees more than a picture of this size without distortion would: " +
-                             "highlights in the outer part are taken as outside of the image");
-  return scene;
-}
-
 }  // namespace
 
 std::unique_ptr<const SceneReader> makeCaptureSceneReader(const CaptureReader& reader) {
@@ -150,14 +128,14 @@ const std::vector<std::unique_ptr<const SceneReader>>& sceneReaders() {
 
 Scene readScene(const fs::path& input, const ReadOptions& options) {
   const Reading reading = chosenReading(input, options.choices.as);
-  return withWarningOfWideLenses(readerNamed(reading.as).read(reading.file, options));
+  return readerNamed(reading.as).read(reading.file, options);
 }
 
 Scene readSceneOfSession(const fs::path& input, const ReadOptions& options) {
   const Reading reading = chosenReading(input, options.choices.as);
   if (reading.as == "session")
     throw InputError(reading.file.string(), "", "is a session; the input of a session must be a scene");
-  return withWarningOfWideLenses(readerNamed(reading.as).read(reading.file, options));
+  return readerNamed(reading.as).read(reading.file, options);
 }
 
 fs::path recognisedFile(const fs::path& input) {

@@ -82,6 +82,8 @@ void concludeCameras(TrackCheck& check) {
         formatted("the capture's own sparse points project (%.2f, %.2f) px beside where its photographs show "
                   "them: the principal point or the points are half a pixel off",
                   -check.shiftPx.x(), -check.shiftPx.y()));
+    if (check.shiftPx.x() * check.shiftPx.y() > 0)
+      check.correction = principalPointCorrection(std::copysign(0.5, check.shiftPx.x()));
   }
 }
 

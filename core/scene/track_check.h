@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/progress.h"
+#include "core/scene/correction.h"
 #include "core/scene/scene.h"
 
 namespace glint {
@@ -16,13 +17,14 @@ namespace glint {
 /// not pass through them.
 struct TrackCheck {
   int points = 0, observations = 0;
-  int behind = 0;                     ///< observations whose point is not in front of the camera
-  double medianPx = 0, p95Px = 0;     ///< distance of a projected point from where it was seen, px
-  Eigen::Vector2d shiftPx{0, 0};      ///< median of seen - projected along x and y, px
-  int met = 0;                        ///< points of a sample whose line of sight meets the surface
-  int onSurface = 0;                  ///< of them, those that lie on it: depths agree to 1 %
-  double depthRatio = 0;              ///< median of distance to the surface / distance to the point; 0 = none met
-  std::vector<std::string> findings;  ///< what looks wrong, one line each, with the likely cause
+  int behind = 0;                        ///< observations whose point is not in front of the camera
+  double medianPx = 0, p95Px = 0;        ///< distance of a projected point from where it was seen, px
+  Eigen::Vector2d shiftPx{0, 0};         ///< median of seen - projected along x and y, px
+  int met = 0;                           ///< points of a sample whose line of sight meets the surface
+  int onSurface = 0;                     ///< of them, those that lie on it: depths agree to 1 %
+  double depthRatio = 0;                 ///< median of distance to the surface / distance to the point; 0 = none met
+  std::vector<std::string> findings;     ///< what looks wrong, one line each, with the likely cause
+  std::optional<Correction> correction;  ///< that undoes the last finding
 };
 
 /// Nothing where the scene is no capture with sparse points. InputError where its files cannot be read again; Stopped.

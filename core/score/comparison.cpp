@@ -4,12 +4,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/seen_window.h"
+
 namespace glint {
 namespace {
 
-/// Sutherland-Hodgman against the rectangle of pixel centres [0, w-1] x [0, h-1], where detection's contours end.
+/// Of a line as the photograph measures it: places that the lens shows nowhere are left out.
+Polyline measured(const Polyline& ideal, const Camera& camera) {
+  Polyline line{{}, ideal.closed};
+  for (const Pixel& p : ideal.points)
+    if (const Pixel q = camera.distorted(p); q.allFinite()) line.points.push_back(q);
+  return line;
+}
+
+/// Sutherland-Hodgman against the rectangle of measured pixel centres [0, w-1] x [0, h-1], where detection's contours end.
 Polyline clippedToImage(const Polyline& line, const Camera& camera) {
-  Polyline result = line;
+  Polyline result = camera.hasDistortion() ? measured(line, camera) : line;
   const double edges[4] = {0, -(camera.width - 1.0), 0, -(camera.height - 1.0)};
   for (int side = 0; side < 4; ++side) {
     const int axis = side / 2;
@@ -25,13 +35,13 @@ Polyline clippedToImage(const Polyline& line, const Camera& camera) {
     }
     result = std::move(next);
   }
+  if (camera.hasDistortion())
+    for (Pixel& p : result.points) p = camera.undistorted(p);
   return result;
 }
 
 bool leavesImage(const Polyline& line, const Camera& camera) {
-  return std::any_of(line.points.begin(), line.points.end(), [&](const Pixel& p) {
-    return !(p.x() >= 0 && p.y() >= 0 && p.x() <= camera.width - 1 && p.y() <= camera.height - 1);
-  });
+  return std::any_of(line.points.begin(), line.points.end(), [&](const Pixel& p) { return !isInPhotograph(camera, p); });
 }
 
 std::optional<BandScore> bandScore(const Polyline& observed, const PredictedHighlight& h) {

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "core/geometry/plane.h"
+#include "core/geometry/seen_window.h"
 #include "core/surface/mirror_places.h"
 #include "core/surface/occlusion.h"
 
@@ -247,8 +248,9 @@ struct Window {
 };
 
 Window windowOf(const Surface& surface, const Camera& camera, double marginFraction) {
-  const Vector2d size(camera.width, camera.height);
-  Window window{-0.5 * Vector2d::Ones() - marginFraction * size, size - 0.5 * Vector2d::Ones() + marginFraction * size};
+  const Eigen::AlignedBox2d image = seenWindow(camera);
+  const Vector2d size = image.sizes();
+  Window window{image.min() - marginFraction * size, image.max() + marginFraction * size};
   const Eigen::AlignedBox3d box = surface.bounds();
   if (!box.sizes().allFinite()) return window;
   Eigen::AlignedBox2d seen;
@@ -515,8 +517,9 @@ Outcome<std::vector<BrightestPoint>> predictedBrightestPoints(const Surface& sur
           "predictedBrightestPoints: seedStepPx and maxIterations must be positive, marginFraction not negative");
   const Sighting sighting{surface, camera, light, camera.centreInWorld()};
   if (!sighting.eye.allFinite()) return Failure{Reason::NotFinite, "camera pose"};
-  const Vector2d size(camera.width, camera.height), half = 0.5 * Vector2d::Ones();
-  const Window image{-half - options.marginFraction * size, size - half + options.marginFraction * size};
+  const Eigen::AlignedBox2d photograph = seenWindow(camera);
+  const Vector2d size = photograph.sizes();
+  const Window image{photograph.min() - options.marginFraction * size, photograph.max() + options.marginFraction * size};
   const Window window = windowOf(surface, camera, options.marginFraction);
   if (window.empty()) return Failure{Reason::NoBrightestPoint, "off the surface: it is outside the image and its margin"};
   // A surface that is small in the picture still gets a grid of about 8 cells across.

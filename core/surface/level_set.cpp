@@ -435,13 +435,19 @@ std::optional<Component> traceAround(const PixelField& field, const PixelFieldBa
 
 std::vector<LevelSetComponent> traceLevelSets(const PixelField& field, const PixelFieldBatch& batch, double level, int width,
                                               int height, const LevelSetOptions& options) {
-  require(static_cast<bool>(field), "traceLevelSets: no field");
   require(width > 0 && height > 0, "traceLevelSets: width and height must be positive");
+  return traceLevelSets(field, batch, level, Box(Pixel(-0.5, -0.5), Pixel(width - 0.5, height - 0.5)), options);
+}
+
+std::vector<LevelSetComponent> traceLevelSets(const PixelField& field, const PixelFieldBatch& batch, double level,
+                                              const Eigen::AlignedBox2d& window, const LevelSetOptions& options) {
+  require(static_cast<bool>(field), "traceLevelSets: no field");
+  require(window.sizes().allFinite() && window.sizes().minCoeff() > 0, "traceLevelSets: the window must be finite and not empty");
   require(options.gridStepPx > 0 && options.sagittaPx > 0 && options.tolerancePx > 0 && options.marginPx >= 0,
           "traceLevelSets: gridStepPx, sagittaPx and tolerancePx must be positive, marginPx not negative");
   require(std::isfinite(level), "traceLevelSets: level must be finite");
-  const Box domain(Pixel(-0.5 - options.marginPx, -0.5 - options.marginPx),
-                   Pixel(width - 0.5 + options.marginPx, height - 0.5 + options.marginPx));
+  const Pixel margin(options.marginPx, options.marginPx);
+  const Box domain(window.min() - margin, window.max() + margin);
   const Region region(field, batch, level, domain);
 
   std::vector<Component> coarse = Grid(region, options.gridStepPx, false).trace(options.tolerancePx), components;

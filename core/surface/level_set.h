@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Geometry>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -33,6 +34,10 @@ struct LevelSetComponent {
 
 /// All components, largest first. Vertices are polished on `field` itself, whatever the batch returned.
 /// Components are whole regions: one that encloses several minima is returned once; holes are not returned.
+/// @param window  of the image, with the outer edges of its pixels (seenWindow, core/geometry/seen_window.h)
+std::vector<LevelSetComponent> traceLevelSets(const PixelField& field, const PixelFieldBatch& batch, double level,
+                                              const Eigen::AlignedBox2d& window, const LevelSetOptions& options = {});
+/// In an image without distortion.
 std::vector<LevelSetComponent> traceLevelSets(const PixelField& field, const PixelFieldBatch& batch, double level, int width,
                                               int height, const LevelSetOptions& options = {});
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/geometry/light.h"
+#include "core/geometry/seen_window.h"
 #include "core/surface/brightest_point.h"
 #include "core/surface/level_set.h"
 #include "core/surface/occlusion.h"
@@ -86,7 +87,8 @@ Outcome<std::vector<Highlight>> exactHighlights(const Surface& surface, const Ca
 
   std::vector<Candidate> peaks;
   BrightestPointOptions search;
-  search.marginFraction = std::max(search.marginFraction, options.marginPx / std::min(camera.width, camera.height));
+  const Eigen::AlignedBox2d window = seenWindow(camera);
+  search.marginFraction = std::max(search.marginFraction, options.marginPx / window.sizes().minCoeff());
   if (const Outcome<std::vector<BrightestPoint>> points = predictedBrightestPoints(surface, camera, centre, search)) {
     for (const BrightestPoint& point : *points) {
       const Pixel at = limit ? point.pixel : polishedMaximum(brightness, point.pixel).value_or(point.pixel);
@@ -95,10 +97,10 @@ Outcome<std::vector<Highlight>> exactHighlights(const Surface& surface, const Ca
   }
   // A light that is wide, or whose mirror point is hidden, may have its maximum elsewhere: the coarse grid of the image decides.
   if (!limit || peaks.empty()) {
-    constexpr int kGridPx = 16;
+    constexpr double kGridPx = 16;
     std::optional<Candidate> best;
-    for (int y = 0; y < camera.height; y += kGridPx)
-      for (int x = 0; x < camera.width; x += kGridPx)
+    for (double y = window.min().y() + 0.5; y < window.max().y(); y += kGridPx)
+      for (double x = window.min().x() + 0.5; x < window.max().x(); x += kGridPx)
         if (const std::optional<double> value = brightness(Pixel(x, y)); value && (!best || *value > best->value))
           best = Candidate{Pixel(x, y), *value};
     if (best &&
@@ -125,13 +127,18 @@ Outcome<std::vector<Highlight>> exactHighlights(const Surface& surface, const Ca
     return -*value;
   };
   std::vector<Highlight> highlights;
-  for (const LevelSetComponent& component : traceLevelSets(field, {}, threshold, camera.width, camera.height, trace)) {
+  for (const LevelSetComponent& component : traceLevelSets(field, {}, threshold, window, trace)) {
     Highlight h;
     h.light = light.id;
     h.level = options.level;
     h.contour = component.outline;
     h.areaPx2 = std::abs(signedArea(h.contour));
     if (h.contour.points.size() < 5 || !(h.areaPx2 > 0)) continue;
+    // The window of a wide lens has corners that the photograph does not show.
+    const auto shown = [&](const Pixel& p) { return isInPhotograph(camera, p, options.marginPx + 0.5); };
+    if (camera.hasDistortion() && std::none_of(h.contour.points.begin(), h.contour.points.end(), shown) &&
+        !shown(component.minimumAt))
+      continue;
     double value = -component.minimum;
     h.peak = component.minimumAt;
     const auto inside =
@@ -147,9 +154,7 @@ Outcome<std::vector<Highlight>> exactHighlights(const Surface& surface, const Ca
     }
     h.peakValue = limit ? 0 : std::exp(value);
     const double outer = options.marginPx - 1e-6;  // px: vertices on the border lie on it to the root finder's tolerance
-    for (const Pixel& p : h.contour.points)
-      h.touchesBorder =
-          h.touchesBorder || p.minCoeff() < -outer || p.x() > camera.width - 1 + outer || p.y() > camera.height - 1 + outer;
+    for (const Pixel& p : h.contour.points) h.touchesBorder = h.touchesBorder || !isInPhotograph(camera, p, outer);
     if (const Outcome<Ellipse> ellipse = fitEllipse(h.contour.points)) h.ellipse = *ellipse;
     highlights.push_back(std::move(h));
   }

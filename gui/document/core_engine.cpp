@@ -2,6 +2,7 @@
 #include <QCoreApplication>
 #include <filesystem>
 
+#include "core/diagnostics/camera_check.h"
 #include "core/trials/run.h"
 #include "gui/document/engine.h"
 #include "gui/document/session_file.h"
@@ -46,6 +47,7 @@ Engine coreEngine() {
   engine.influence = [](const Inspection& inspection, const ProgressFn& progress) {
     return measureInfluence(inspection, progress);
   };
+  engine.check = [](const Scene& scene, const ProgressFn& progress) { return fullReport(scene, progress); };
   engine.parseTrain = parseTrainSpec;
   return engine;
 }

@@ -11,6 +11,7 @@
 #include "core/diagnostics/influence.h"
 #include "core/inspect/inspection.h"
 #include "core/inspect/observation.h"
+#include "core/scene/convention_report.h"
 #include "core/scene/relinked.h"
 #include "core/selection/selection.h"
 #include "core/tradeoff/tradeoff.h"
@@ -68,6 +69,9 @@ struct Engine {
       tradeoff;
   /// As glint::measureInfluence: throws Stopped.
   std::function<Influence(const Inspection&, const ProgressFn&)> influence;
+  /// The convention report, with the check of cameras by their highlights; may be empty: then there is none. Throws Stopped and
+  /// InputError.
+  std::function<ConventionReport(const Scene&, const ProgressFn&)> check;
   /// As glint::parseTrainSpec: InputError for a specification that does not parse.
   std::function<TrainSpec(const std::string&, const Scene&)> parseTrain;
   /// Writes a session file atomically; InputError when it cannot be written, Stopped. It hashes every input file, so it takes

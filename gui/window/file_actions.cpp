@@ -149,6 +149,11 @@ void FileActions::open(const QString& path) {
   run(path, {});
 }
 
+void FileActions::openWritten(const QString& file) {
+  rememberFoldersOf(file);
+  open(file);
+}
+
 void FileActions::openRecovered(const QString& file, const QString& of) {
   if (!mayDiscard()) return;
   allowedFor_ = of;
@@ -278,8 +283,8 @@ bool FileActions::saveAsTo(QString path) {
   return answer == SaveRules::Answer::Write && saveTo(path);
 }
 
-/// The session that was written names what is on screen, which a person opened or pointed at: it opens again without a question.
-void FileActions::rememberFoldersOfSaved(const QString& session) {
+/// A session or scene that was written names what is on screen, which a person opened or pointed at: it opens again without a question.
+void FileActions::rememberFoldersOf(const QString& session) {
   const Scene& scene = *document_.scene();
   std::vector<std::filesystem::path> named;
   for (const FilesFolder& f : scene.folders) named.push_back(f.folder);
@@ -313,7 +318,7 @@ void FileActions::finishSave(const QString& path, const QString& problem) {
       document_.markSaved(path, saving_, savingTradeoff_);
       stamp_ = stampOf(path);
       rules_.follow(path, stamp_);
-      rememberFoldersOfSaved(path);
+      rememberFoldersOf(path);
     }
     remember(path);
     emit message(

@@ -34,6 +34,8 @@ class FileActions : public QObject {
   void setViewSource(std::function<void(Opened&)> addView) { addView_ = std::move(addView); }
 
  public slots:
+  /// A scene file that was just written from what is on screen: it may name files where those of the open scene are.
+  void openWritten(const QString& file);
   void openDialog();
   void openFolderDialog();
   /// What was dropped on the window: a folder, scene, session or figure is opened; a photograph selects its frame, in the open
@@ -76,7 +78,7 @@ class FileActions : public QObject {
   bool waitForSave();
   void remember(const QString& path);
   void run(const QString& path, Relinked instead);
-  void rememberFoldersOfSaved(const QString& session);
+  void rememberFoldersOf(const QString& session);
 
   const Engine& engine_;
   Document& document_;

@@ -53,6 +53,7 @@
 #include "gui/whatif/what_if_panel.h"
 #include "gui/window/changed_inputs.h"
 #include "gui/window/file_actions.h"
+#include "gui/window/input_report.h"
 #include "gui/window/job_status.h"
 #include "gui/window/message_bar.h"
 #include "gui/window/own_layouts.h"
@@ -117,6 +118,7 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
     runFailed_ = true;
     if (const MissingPtr located = std::exchange(located_, {}); !missing_) missing_ = located;  // it was not the right file
     showProblem(oneLine);
+    report_->start();
   });
   // Opening stopped what ran for the scene that stays open.
   connect(&runner_, &Runner::openFailed, this, [this] {
@@ -134,6 +136,7 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
     if (runFailed_) messageBar_->hide();  // its reason is gone
     runFailed_ = false;
     document_.setInspection(inspection, computedFor->request);
+    report_->start();
   });
   connect(&runner_, &Runner::frameFinished, &document_, &Document::setFrameInspection);
   connect(&document_, &Document::requestChanged, this, &MainWindow::recompute);
@@ -284,6 +287,11 @@ void MainWindow::buildDocks() {
   docks_.add("plots", tr("Plots"), plots_, Qt::BottomDockWidgetArea);
   log_ = new LogPanel;
   docks_.add("log", tr("Log"), log_, Qt::BottomDockWidgetArea, "errors");
+  report_ = new InputReport(engine_, document_, *files_, *messageBar_, this);
+  docks_.add("report", tr("Input report"), report_->panel(), Qt::BottomDockWidgetArea, "errors");
+  connect(report_, &InputReport::problem, this, &MainWindow::showProblem);
+  connect(report_, &InputReport::message, this, &MainWindow::log);
+  connect(report_, &InputReport::shown, this, [this] { docks_.bring(QStringLiteral("report")); });
   ladder_ = new LadderPanel(document_, *frame_->loader());
   docks_.add("ladder", tr("Ladder"), ladder_, Qt::BottomDockWidgetArea, "errors");
   tradeoff_ = new TradeoffPanel(document_);

@@ -23,6 +23,7 @@ class ExportActions;
 class ExplainPanel;
 class FileActions;
 class FramePanel;
+class InputReport;
 class LadderPanel;
 class LogPanel;
 class MessageBar;
@@ -68,6 +69,7 @@ class MainWindow : public QMainWindow {
   FileActions* files() { return files_; }
   ExportActions* exports() { return exports_; }
   ComparisonPanel* comparison() { return comparison_; }
+  InputReport* report() { return report_; }
   QString lastError() const { return lastError_; }
 
  signals:
@@ -127,6 +129,7 @@ class MainWindow : public QMainWindow {
   LadderPanel* ladder_ = nullptr;
   TradeoffPanel* tradeoff_ = nullptr;
   LogPanel* log_ = nullptr;
+  InputReport* report_ = nullptr;
   MessageBar* messageBar_ = nullptr;
   QLabel* probe_ = nullptr;
   QString lastError_;

@@ -76,6 +76,7 @@ QObject* makeTradeoffTest();
 QObject* makeTurnsTest();
 QObject* makeUnreadableTest();
 QObject* makeCapturesTest();
+QObject* makeInputReportTest();
 QObject* makeRelinkedTest();
 QObject* makeWhatIfTest();
 QObject* makeWindowSizeTest();

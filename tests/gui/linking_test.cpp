@@ -7,6 +7,7 @@
 #include <QSet>
 #include <QSignalSpy>
 #include <QTableView>
+#include <QTextDocument>
 #include <QToolButton>
 #include <QToolTip>
 

@@ -42,6 +42,7 @@ int main(int argc, char** argv) {
       {"comparison", makeComparisonTest},
       {"unreadable", makeUnreadableTest},
       {"captures", makeCapturesTest},
+      {"input_report", makeInputReportTest},
       {"relinked", makeRelinkedTest},
       {"what_if", makeWhatIfTest},
       {"turns", makeTurnsTest},

@@ -199,16 +199,6 @@ TEST(CaptureScene, MeshThatMovedIsFoundWhereItWasRelinked) {
   EXPECT_EQ(scene.meshes.at("gone.ply"), elsewhere / "found.ply");
 }
 
-/// 64 px at f = 20: the border of an equidistant picture is 1.6 rad from the axis.
-TEST(CaptureScene, WideLensesAreWarnedOf) {
-  TemporaryFolder folder;
-  const std::string narrow = with(minimalScene(), "\"cy\": 23.5", "\"cy\": 23.5, \"model\": \"OPENCV_FISHEYE\"");
-  const auto warnings = [&](const std::string& text) { return readScene(folder.write("scene.json", text)).warnings; };
-  EXPECT_THAT(warnings(with(with(narrow, "\"fx\": 80", "\"fx\": 20"), "\"fy\": 80", "\"fy\": 20")),
-              ElementsAre(HasSubstr("taken as outside of the image")));
-  EXPECT_THAT(warnings(with(with(narrow, "\"fx\": 80", "\"fx\": 800"), "\"fy\": 80", "\"fy\": 800")), ElementsAre());
-}
-
 TEST(CaptureScene, CameraNumbersAreChecked) {
   EXPECT_THAT(cameraNumbers("525,525,319.5,239.5", "--camera"), ElementsAre(525, 525, 319.5, 239.5));
   EXPECT_EQ(cameraNumbers("525,525,319.5,239.5,0.1,0.2,0.3,0.4", "--camera").size(), 8u);

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace glint {
+
+/// A change that undoes a likely mistake of the program that wrote a scene: what the convention report proposes, `glint convert
+/// --fix` makes and the inspector has a button for.
+struct Correction {
+  std::string fix;    ///< as --fix takes it: "invert-poses", "depth-scale=0.001"
+  std::string words;  ///< for a button: "Invert the poses"
+};
+
+/// How poses, or the mesh's unit, may have been meant.
+struct GeometryCorrection {
+  const char* fix;
+  const char* words;
+  double meshScale, poseScale;  ///< factors of the mesh's coordinates and of the camera's translation
+  bool inverse, turned;         ///< poses were stored as camera to world; with OpenGL's axes (y up, z backwards)
+  Eigen::Isometry3d camFromWorld(const Eigen::Isometry3d& asRead) const;
+};
+const std::vector<GeometryCorrection>& geometryCorrections();
+
+/// "Add +0.5 px to cx and cy": the principal point was stored with the other origin of pixels. @param px  0.5 or -0.5
+Correction principalPointCorrection(double px);
+/// @param factor  > 0, of fx and fy
+Correction focalLengthCorrection(double factor);
+/// @param metresPerUnit  > 0, of integer depth maps (scene.json's depth_scale)
+Correction depthScaleCorrection(double metresPerUnit);
+
+/// The scene with the correction made; images, meshes and measured highlights stay as they are.
+/// @throws InputError("--fix", ...)  where there is no such correction or its value is out of range
+Scene corrected(Scene scene, std::string_view fix);
+/// "invert-poses, turn-axes, ..., depth-scale=VALUE": for messages and help.
+std::string correctionNames();
+
+}  // namespace glint

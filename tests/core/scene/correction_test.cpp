@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Corrections of scenes against poses and places that were worked out by hand. tests/formats/fixes.py has the whole way.
+#include "core/scene/correction.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/core/scene/scene_fixture.h"
+
+namespace glint::correction_tests {
+using testing_support::inputErrorOf;
+using testing_support::minimalScene;
+using testing_support::TemporaryFolder;
+
+/// A quarter turn about z and a step along it: world to camera.
+Scene sceneWithPose(const TemporaryFolder& folder, const std::string& frameKeys = "") {
+  return readScene(folder.write("scene.json", R"({"glint_scene": 1,
+  "camera": {"width": 64, "height": 48, "fx": 80, "fy": 90, "cx": 31.5, "cy": 23.5, "skew": 0.5, "distortion": [0.1, 0, 0, 0, 0]},
+  "frames": [{"id": "a", )" + frameKeys +
+                                                  R"("camera_from_world": [[0,-1,0,1],[1,0,0,2],[0,0,1,4],[0,0,0,1]]}],
+  "surfaces": {"ball": {"analytic": {"type": "sphere", "radius": 0.4}}}})"));
+}
+
+Eigen::Matrix4d matrix(std::initializer_list<double> rows) {
+  return Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(rows.begin());
+}
+
+TEST(Corrections, PosesByHand) {
+  const TemporaryFolder folder;
+  const Scene scene = sceneWithPose(folder);
+  const auto poseAfter = [&](const char* fix) { return corrected(scene, fix).frames[0].camera.camFromWorld.matrix(); };
+  // R^T and -R^T t.
+  EXPECT_TRUE(poseAfter("invert-poses").isApprox(matrix({0, 1, 0, -2, -1, 0, 0, 1, 0, 0, 1, -4, 0, 0, 0, 1})));
+  // The second and third row change their signs.
+  EXPECT_TRUE(poseAfter("turn-axes").isApprox(matrix({0, -1, 0, 1, -1, 0, 0, -2, 0, 0, -1, -4, 0, 0, 0, 1})));
+  EXPECT_TRUE(poseAfter("invert-poses-and-turn-axes").isApprox(matrix({0, 1, 0, -2, 1, 0, 0, -1, 0, 0, -1, 4, 0, 0, 0, 1})));
+  EXPECT_TRUE(poseAfter("poses-mm").isApprox(matrix({0, -1, 0, 0.001, 1, 0, 0, 0.002, 0, 0, 1, 0.004, 0, 0, 0, 1})));
+}
+
+TEST(Corrections, IntrinsicsLeaveMeasuredHighlightsInPlace) {
+  const TemporaryFolder folder;
+  const Scene scene = sceneWithPose(
+      folder,
+      R"("highlights": [{"level": 0.5, "peak": [40, 30], "contour": [[38, 28], [42, 28], [42, 32], [40, 33], [38, 32]]}], )");
+  const Scene moved = corrected(scene, "principal-point=-0.5"), longer = corrected(scene, "focal-length=1.1");
+  EXPECT_DOUBLE_EQ(moved.frames[0].camera.pixelFromRay(0, 2), 31);
+  EXPECT_DOUBLE_EQ(moved.frames[0].camera.pixelFromRay(1, 2), 23);
+  EXPECT_DOUBLE_EQ(longer.frames[0].camera.pixelFromRay(0, 0), 88);
+  EXPECT_DOUBLE_EQ(longer.frames[0].camera.pixelFromRay(1, 1), 99);
+  EXPECT_DOUBLE_EQ(longer.frames[0].camera.pixelFromRay(0, 1), 0.55);
+  for (const Scene* changed : {&moved, &longer}) {
+    const Frame& f = changed->frames[0];
+    const Highlight& h = f.highlights.at(0);
+    EXPECT_LT((f.camera.distorted(h.peak) - Pixel(40, 30)).norm(), 1e-9);
+    EXPECT_LT((f.camera.distorted(h.contour.points.at(2)) - Pixel(42, 32)).norm(), 1e-9);
+  }
+}
+
+TEST(Corrections, UnitsOfMeshAndDepth) {
+  const TemporaryFolder folder;
+  folder.write("body.ply",
+               "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n"
+               "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  Scene scene = readScene(folder.write("scene.json", R"({"glint_scene": 1,
+  "camera": {"width": 64, "height": 48, "fx": 80, "fy": 80, "cx": 31.5, "cy": 23.5},
+  "frames": [{"id": "a", "surface": "body", "camera_from_world": [[1,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,0,1]]}],
+  "surfaces": {"body": {"mesh": "body.ply", "units": "cm"}}})"));
+  EXPECT_DOUBLE_EQ(corrected(scene, "mesh-mm").surfaces.at("body").metresPerUnit, 1e-5);  // on top of what the file says
+  EXPECT_NE(inputErrorOf([&] { corrected(scene, "depth-scale=0.001"); }).find("no frame has an integer depth map"),
+            std::string::npos);
+  scene.frames[0].depthScale = 0.005;
+  EXPECT_DOUBLE_EQ(corrected(scene, "depth-scale=0.001").frames[0].depthScale, 0.001);
+}
+
+TEST(Corrections, RefusesWhatItDoesNotKnow) {
+  const TemporaryFolder folder;
+  const Scene scene = sceneWithPose(folder);
+  for (const char* fix : {"", "invert", "invert-poses=1", "principal-point", "principal-point=", "principal-point=nan",
+                          "focal-length=0", "focal-length=-1", "depth-scale=1e300", "mesh-mm"})
+    EXPECT_NE(inputErrorOf([&] { corrected(scene, fix); }).find("--fix"), std::string::npos) << fix;
+}
+
+}  // namespace glint::correction_tests
