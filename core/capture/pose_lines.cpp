@@ -53,6 +53,7 @@ bool PoseLineReader::takeLine(std::string& line) {
     ended_ = true;
     throw InputError(name_, "", std::string("cannot be read: ") + e.code().message());
   }
+  arrived_ = std::chrono::steady_clock::now();
   if (line.size() > kLongestPoseLine)
     throw InputError(name_, place(), "is longer than " + std::to_string(kLongestPoseLine) + " bytes: no pose needs so many");
   return bytes > 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <istream>
@@ -53,6 +54,8 @@ class PoseLineReader {
   const std::string& id() const { return id_; }
   /// What a person should know about that line (a rotation that is one to three digits only); "" = nothing.
   const std::string& warning() const { return warning_; }
+  /// When the end of that line was read: what a live answer's time counts from.
+  std::chrono::steady_clock::time_point arrived() const { return arrived_; }
   /// Nothing more can be read: the end, or a failure of the file.
   bool ended() const { return ended_; }
 
@@ -66,6 +69,7 @@ class PoseLineReader {
   std::string name_;
   std::size_t number_ = 0;
   std::string id_, warning_;
+  std::chrono::steady_clock::time_point arrived_;
   bool ended_ = false;
 };
 
