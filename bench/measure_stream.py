@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Time of `glint predict --stream` from the end of a pose's line to its contours, and through both pipes, on a mesh of a million
-triangles: poses of a closed orbit, one after the other, the first 20 not counted. Prints a Markdown row for each setting: the medians
+triangles: poses of an orbit, one after the other, the first 20 not counted. Prints a Markdown row for each setting: the medians
 and the 99th percentiles.
 
     bench/measure_stream.py build/release/bin/glint [--poses N] [--preset NAME]
 
-The settings are those that presets `balanced` chose in docs/tradeoff.md; --preset measures the trade-off of this very scene first
-(minutes), and takes that preset. Exit code 1 when a median is above a millisecond."""
+The photographs are those of sessions/ellipsoid. The settings are what the preset `balanced` is in docs/tradeoff.md, of the mesh of a million
+triangles and of the vase; --preset measures the trade-off of this very scene first (minutes), and takes that preset. Exit code 1 when a median is above a millisecond."""
 import argparse
 import json
 import math
@@ -19,19 +19,19 @@ import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "resources" / "examples")]
-from large_scene import COLUMNS, ROWS, write_ellipsoid  # noqa: E402
+from large_scene import COLUMNS, ROWS, large_mesh  # noqa: E402
 from play_poses import Glint  # noqa: E402
 
 SETTINGS = [("limit-angle, contour star", ["--model", "limit-angle", "--set", "predict.contour=star"]),
             ("canonical", ["--model", "canonical"])]
-SEMI_AXES = (0.6, 0.35, 0.3)
+RADIUS, HEIGHT, FROM, TO = 2.0, 0.9, -2.2, 0.8  # of the orbit of sessions/ellipsoid
 WARM_UP = 20
 MOST_US = 1000
 
 
 def looking_at_centre(angle):
-    """A camera on the orbit of the frames, y down."""
-    eye = [1.9 * math.cos(angle), 1.9 * math.sin(angle), 0.9]
+    """A camera on the orbit of sessions/ellipsoid/spec.json, y down."""
+    eye = [RADIUS * math.cos(angle), RADIUS * math.sin(angle), HEIGHT]
     norm = math.dist(eye, [0, 0, 0])
     forward = [-x / norm for x in eye]
     right = [forward[1], -forward[0], 0]
@@ -43,23 +43,6 @@ def looking_at_centre(angle):
     return [row + [-sum(a * b for a, b in zip(row, eye))] for row in rows] + [[0, 0, 0, 1]]
 
 
-def make_scene(program, folder):
-    """Exact contours of the ellipsoid under a lamp; the surface is then the mesh."""
-    spec = {"glint_scene": 1, "name": "stream", "units": "m",
-            "camera": {"width": 640, "height": 480, "fx": 800, "fy": 800, "cx": 319.5, "cy": 239.5},
-            "surfaces": {"body": {"analytic": {"type": "ellipsoid", "semi_axes": SEMI_AXES}}},
-            "lights": [{"id": "lamp", "position": [1.5, -1.0, 2.2]}],
-            "path": {"cameras": [looking_at_centre(a) for a in (-1.9, -1.6, -1.3, -1.0, -0.7, -0.4, -0.1, 0.2)]},
-            "render": {"reflectance": "ggx", "roughness": 0.2, "diffuse": 0.05, "bits": 16, "samples": 1}}
-    (folder / "spec.json").write_text(json.dumps(spec), "utf-8")
-    subprocess.run([program, "synth", str(folder / "spec.json"), "-o", str(folder / "scene")], check=True)
-    scene = json.loads((folder / "scene" / "scene.json").read_text("utf-8"))
-    write_ellipsoid(folder / "scene" / "body.ply", SEMI_AXES)
-    scene["surfaces"] = {"body": {"mesh": "body.ply"}}
-    (folder / "scene" / "mesh.json").write_text(json.dumps(scene), "utf-8")
-    return folder / "scene" / "mesh.json"
-
-
 def percentile(values, share):
     return sorted(values)[min(len(values) - 1, int(share * len(values)))]
 
@@ -68,7 +51,7 @@ def measure(program, session, more, poses):
     glint = Glint(program, str(session), more)
     inside, outside, highlights = [], [], 0
     for n in range(WARM_UP + poses):
-        pose = {"id": "live-%d" % n, "time": n / 30, "camera_from_world": looking_at_centre(-1.9 + 2.1 * (n % 97) / 97)}
+        pose = {"id": "live-%d" % n, "time": n / 30, "camera_from_world": looking_at_centre(FROM + (TO - FROM) * (n % 97) / 97)}
         start = time.perf_counter()
         answer = glint.answer(pose)
         seconds = time.perf_counter() - start
@@ -90,17 +73,17 @@ def main():
     slow = False
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        scene = make_scene(arguments.glint, folder)
+        scene = large_mesh(folder)
         runs = []
         if arguments.preset:
-            session = folder / "scene" / "tradeoff.glint"
-            subprocess.run([arguments.glint, "tradeoff", str(scene), "--train", "first:6", "-o", str(session)], check=True,
+            session = folder / "tradeoff.glint"
+            subprocess.run([arguments.glint, "tradeoff", str(scene), "--train", "spread:6", "-o", str(session)], check=True,
                            stdout=subprocess.DEVNULL)
             runs.append(("preset " + arguments.preset, session, ["--preset", arguments.preset]))
         else:
             for number, (title, options) in enumerate(SETTINGS):
-                session = folder / "scene" / ("%d.glint" % number)
-                subprocess.run([arguments.glint, "reconstruct", str(scene), *options, "-o", str(session)], check=True,
+                session = folder / ("%d.glint" % number)
+                subprocess.run([arguments.glint, "reconstruct", str(scene), "--train", "spread:6", *options, "-o", str(session)], check=True,
                                stdout=subprocess.DEVNULL)
                 runs.append((title, session, []))
         print("| settings | triangles | poses | highlights | line to contours, median us | 99 % us | through both pipes, median us | 99 % us |")

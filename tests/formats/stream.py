@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`glint predict --stream` as a tracker meets it: answers at once, wrong lines and lost tracking, the end, nobody who reads, Ctrl-C.
 
-    tests/formats/stream.py GLINT SESSION      the session's frames share a camera and a surface"""
+    tests/formats/stream.py GLINT SESSION      sessions/ellipsoid/ellipsoid.glint: one camera, one surface"""
 import json
 import os
 import pathlib
@@ -112,6 +112,26 @@ def main():
         check(done.returncode == 2 and more[0].encode() in done.stderr, "%s: %s" % (more, done))
     done = subprocess.run([glint, "predict", session, "--poses", "-"], stdin=subprocess.DEVNULL, capture_output=True)
     check(done.returncode == 2 and b"needs --stream" in done.stderr, "--poses alone: %s" % done)
+
+    # Frames with surfaces of their own: a pose that is none of them has none, and says so.
+    several = session.parent.parent / "plane-to-cylinder" / "plane-to-cylinder.glint"
+    frame = json.loads((several.parent / "scene.json").read_text("utf-8"))["frames"][3]
+    process = start(glint, several)
+    known = ask(process, {"id": frame["id"], "camera_from_world": frame["camera_from_world"]})
+    unknown = ask(process, {"id": "live", "camera_from_world": frame["camera_from_world"]})
+    process.communicate(timeout=60)
+    check(known["frame"] == 3 and {h["model"] for h in known["highlights"]} == {"primal", "dual", "canonical", "limit-angle"},
+          "a frame with its own surface: %s" % known["failures"])
+    check({h["model"] for h in unknown["highlights"]} == {"primal"} and
+          all("no surface" in f["reason"] for f in unknown["failures"]) and unknown["failures"], "no surface: %s" % unknown)
+
+    # No model can be fitted: said before the first answer.
+    with tempfile.TemporaryDirectory() as name:
+        few = pathlib.Path(name) / "few.glint"
+        few.write_text(json.dumps({"glint_session": 3, "input": {"path": str((session.parent / "scene.json").resolve())},
+                                   "request": {"models": ["canonical"], "train": "0,1"}}), "utf-8")
+        done = subprocess.run([glint, "predict", few, "--stream", "--allow-outside"], input=json.dumps(pose).encode(), capture_output=True)
+        check(done.returncode == 3 and done.stdout == b"" and b"too few views" in done.stderr, "two views: %s" % done)
 
     # Nobody reads any more: it ends by itself, without a word.
     process = start(glint, session)
