@@ -166,6 +166,8 @@ def check_return(glint, session, coco, folder):
     check("elsewhere/x.png" in done.stderr and "1 of %d images" % len(corrected["images"]) in done.stderr, "unmatched images are listed: " + done.stderr)
     check("1 image has no label" in done.stderr, "a frame without labels is named: " + done.stderr)
     scene = json.loads(made.read_text("utf-8"))
+    # A peak is measured in the photograph, wherever the polygon was moved.
+    peaks = [[h["peak"] for h in frame["highlights"]] for frame in json.loads(run(glint, "detect", session, "--json", "-").stdout)["frames"]]
     lights = {c["id"]: c["name"].removeprefix("highlight ") for c in coco["categories"]}
     count = 0
     for number, frame in enumerate(scene["frames"][:-1]):
@@ -178,6 +180,7 @@ def check_return(glint, session, coco, folder):
             apart = max(min(math.dist(p, q) for q in got) for p in want)
             check(len(got) == len(want) and apart < 1e-9, "frame %d: contour %.3g px away" % (number, apart))
             check(inside([want], *h["peak"])[0], "frame %d: peak outside of its contour" % number)
+            check(min(math.dist(h["peak"], p) for p in peaks[number]) < 1e-9, "frame %d: the peak is not that of the photograph" % number)
             check(h["light"] == lights[a["category_id"]] and h["level"] == 0.5, "frame %d: light or level" % number)
             count += 1
     check(count >= 20, "only %d highlights came back" % count)

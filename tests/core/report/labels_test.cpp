@@ -11,6 +11,7 @@
 #include <random>
 #include <sstream>
 
+#include "core/fit/given_labels.h"
 #include "core/report/label_shapes.h"
 #include "core/report/masks.h"
 #include "core/report/yolo.h"
@@ -255,6 +256,60 @@ TEST(LabelFormatsFrom, NamesWhatItDoesNotKnow) {
   EXPECT_TRUE(two.yolo && two.coco && !two.masks);
   for (const char* wrong : {"", ",", "coco,png"})
     EXPECT_THAT(testing_support::inputErrorOf([&] { labelFormatsFrom(wrong); }), testing::HasSubstr("--labels")) << wrong;
+}
+
+/// Written, and read back as the highlights of a scene: the same contours, through the lens and back.
+TEST(WithLabels, GivesBackTheContoursThatWereWritten) {
+  Inspection inspection = cut().inspection;
+  Scene scene = *inspection.scene;
+  for (const int f : {1, 2, 3, 4}) scene.frames[std::size_t(f)].camera.lens.parameters = {0.05, -0.02, 1e-3, -1e-3, 0};
+  inspection.scene = std::make_shared<const Scene>(scene);
+  const std::string coco = cocoJson(inspection, "limit-angle", {1, 2, 3, 4});
+  const LabelledScene read = withLabels(scene, coco, "labels.json", {});
+  EXPECT_EQ(read.frames, 4);
+  EXPECT_EQ(read.highlights, 4);
+  EXPECT_TRUE(read.warnings.empty()) << read.warnings.front();
+  int compared = 0;
+  for (const FrameComparison& c : inspection.models.at("limit-angle").frames) {
+    if (c.frame < 1 || c.frame > 4) continue;
+    const std::vector<Highlight>& highlights = read.scene.frames[std::size_t(c.frame)].highlights;
+    ASSERT_EQ(highlights.size(), 1u);
+    EXPECT_EQ(highlights[0].light, "lamp");
+    // The peak of the scene's own highlight, which lies inside.
+    EXPECT_EQ(highlights[0].peak, scene.frames[std::size_t(c.frame)].highlights[0].peak);
+    for (const Pixel& p : c.prediction.highlights()[0].contour.points) {
+      double nearest = 1e9;
+      for (const Pixel& q : highlights[0].contour.points) nearest = std::min(nearest, (p - q).norm());
+      EXPECT_LT(nearest, 1e-7);  // a lens is undone to 1e-14 of the focal length's unit
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 100);
+}
+
+/// What people draw by hand: a triangle, two parts, another light, and nothing to find a peak in.
+TEST(WithLabels, ReadsWhatIsDrawnByHand) {
+  Scene scene = *cut().inspection.scene;
+  for (Frame& f : scene.frames) f.highlights.clear();
+  const std::string start = R"({"images": [{"id": 3, "file_name": "v1.png", "width": 640, "height": 480}],
+    "categories": [{"id": 1, "name": "lamp"}, {"id": 2, "name": "glare"}], "annotations": [)";
+  const auto label = [](int category, const std::string& polygons) {
+    return R"({"image_id": 3, "category_id": )" + std::to_string(category) + R"(, "segmentation": [)" + polygons + "]}";
+  };
+  const LabelledScene read =
+      withLabels(scene,
+                 start + label(1, "[10.5, 10.5, 16.5, 10.5, 10.5, 16.5]") + "," +
+                     label(2, "[0, 0, 2, 0, 2, 2], [100, 100, 140, 100, 140, 120, 120, 130, 100, 120]") + "]}",
+                 "drawn.json", {});
+  const std::vector<Highlight>& found = read.scene.frames[1].highlights;
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].light, "lamp");
+  EXPECT_GE(found[0].contour.points.size(), 5u);  // as many as a scene file needs
+  EXPECT_NEAR(found[0].areaPx2, 18, tolerance::kExact);
+  EXPECT_LT((found[0].peak - Pixel(12, 12)).norm(), 1e-9);  // a third of the way: the triangle's centroid
+  EXPECT_EQ(found[1].light, "");
+  EXPECT_NEAR(found[1].areaPx2, 40 * 20 + 40 * 10 / 2, tolerance::kExact);  // the larger of the two parts
+  EXPECT_EQ(read.warnings.size(), 3u);
 }
 
 }  // namespace
