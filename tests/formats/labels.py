@@ -189,6 +189,52 @@ def check_return(glint, session, coco, folder):
     check(scored["scored_against"] == "given contours", "the labels are used instead of detection: " + scored["scored_against"])
 
 
+STRIP = {"glint_scene": 1, "name": "strip", "units": "m",
+         "camera": {"width": 320, "height": 240, "fx": 400, "fy": 400, "cx": 159.5, "cy": 119.5},
+         "surfaces": {"body": {"analytic": {"type": "sheet", "curvature": 0.8, "length": 0.6, "width": 0.9}}},
+         "lights": [{"id": "lamp", "position": [0.3, -0.2, 1.8]}],
+         "path": {"orbit": {"centre": [0, 0, 0], "radius": 0.5, "height": 1.6, "from": 0, "to": 6, "count": 16}},
+         "render": {"reflectance": "ggx", "roughness": 0.15, "diffuse": 0.05, "bits": 32, "samples": 1}}
+
+
+def along_the_end(contour, pose):
+    """The share of a contour's length within a pixel of the strip's border, from the formula of its arc."""
+    camera, (curvature, half_length, half_width) = STRIP["camera"], (0.8, 0.3, 0.45)
+    corners = [(-1 + k / 20, -1) for k in range(40)] + [(1, -1 + k / 20) for k in range(40)]
+    corners += [(-s, -t) for s, t in corners]
+    border = []
+    for s, t in corners:
+        x, z = math.sin(curvature * half_length * s) / curvature, -(1 - math.cos(curvature * half_length * s)) / curvature
+        u, v, w = (row[0] * x + row[1] * half_width * t + row[2] * z + row[3] for row in pose[:3])
+        border.append((camera["cx"] + camera["fx"] * u / w, camera["cy"] + camera["fy"] * v / w))
+    whole = along = 0.0
+    for a, b in zip(contour, contour[1:] + contour[:1]):
+        whole += math.dist(a, b)
+        along += math.dist(a, b) if inside([border], (a[0] + b[0]) / 2, (a[1] + b[1]) / 2)[1] < 1 else 0
+    return along / whole
+
+
+def check_edges(glint, folder):
+    """Highlights at the end of a strip are marked, and no others: by the walks that fail there (canonical) as by what lies on both sides
+    of the contour (limit-angle). What is expected comes from the exact contours of the scene and the formula of the strip."""
+    (folder / "strip.json").write_text(json.dumps(STRIP), "utf-8")
+    run(glint, "synth", folder / "strip.json", "-o", folder / "strip")
+    run(glint, "reconstruct", folder / "strip", "--model", "canonical,limit-angle", "--train", "spread:8", "-o", folder / "strip" / "s.glint")
+    run(glint, "predict", folder / "strip" / "s.glint", "--labels", "coco", "--out", folder / "strip-labels")
+    scene = json.loads((folder / "strip" / "scene.json").read_text("utf-8"))
+    shares = [along_the_end([tuple(p) for p in f["highlights"][0]["contour"]], f["camera_from_world"]) for f in scene["frames"]]
+    check(3 <= sum(s > 0.05 for s in shares) <= 13, "some highlights are cut and some are not: %s" % shares)
+    for model in ("canonical", "limit-angle"):
+        coco = json.loads((folder / "strip-labels" / ("labels_%s.json" % model)).read_text("utf-8"))
+        check(len(coco["annotations"]) == len(shares), model + ": one label a frame")
+        for a in coco["annotations"]:
+            share, told = shares[a["image_id"]], a["attributes"]
+            if share == 0 or share > 0.05:  # in between a corner alone is cut
+                check(told["occluded"] == (share > 0), "%s, frame %d: %s, of %.3f at the end" % (model, a["image_id"], told, share))
+            if model == "limit-angle":
+                check(abs(told["edge_share"] - share) < 0.05, "frame %d: edge share %.3f, not %.3f" % (a["image_id"], told["edge_share"], share))
+
+
 def check_refusals(glint, session, coco, folder):
     def changed(change):
         other = json.loads(json.dumps(coco))
@@ -240,6 +286,7 @@ def main():
     check_yolo(out / "yolo" / "limit-angle", coco, len(coco["images"]))
     check_return(glint, session, coco, folder)
     check_refusals(glint, session, coco, folder)
+    check_edges(glint, folder)
     run(glint, "predict", session, "--labels", "yolo", "--frames", "0-1", "--out", folder / "two")
     check(sorted(p.name for p in (folder / "two").iterdir()) == ["yolo"], "what was asked for, and no more")
     check(len(list((folder / "two" / "yolo" / "dual" / "labels").iterdir())) == 2, "two frames, two files")
