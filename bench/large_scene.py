@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A million triangles to measure on: an ellipsoid with vertex normals, as binary PLY."""
 import array
+import json
 import math
+import pathlib
+import shutil
 import sys
 
 ROWS, COLUMNS = 500, 1000
@@ -33,3 +36,16 @@ def write_ellipsoid(file, semi_axes, world_from_surface=None):
               "".join(f"property float {k}\n" for k in ("x", "y", "z", "nx", "ny", "nz")) +
               f"element face {count}\nproperty list uchar int vertex_indices\nend_header\n")
     file.write_bytes(header.encode() + vertices.tobytes() + faces)
+
+
+def large_mesh(folder):
+    """The scene of sessions/ellipsoid with the ellipsoid as a mesh of a million triangles with vertex normals."""
+    session = pathlib.Path(__file__).resolve().parent.parent / "sessions" / "ellipsoid"
+    scene = json.loads((session / "scene.json").read_text("utf-8"))
+    (name, surface), = scene["surfaces"].items()
+    analytic = surface["analytic"]
+    write_ellipsoid(folder / "body.ply", analytic["semi_axes"], analytic.get("world_from_surface"))
+    scene["surfaces"] = {name: {"mesh": "body.ply"}}
+    shutil.copytree(session / "frames", folder / "frames")
+    (folder / "scene.json").write_text(json.dumps(scene), "utf-8")
+    return folder / "scene.json"

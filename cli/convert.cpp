@@ -4,6 +4,8 @@
 
 #include "cli/commands.h"
 #include "cli/scene_arguments.h"
+#include "core/base/number_text.h"
+#include "core/fit/given_labels.h"
 #include "core/scene/correction.h"
 #include "core/scene/export_capture.h"
 #include "core/scene/outputs.h"
@@ -11,9 +13,21 @@
 
 namespace glint::cli {
 
+namespace {
+
+/// The scene with the highlights of a COCO file; says what they are.
+Scene labelledBy(const std::string& file, const Scene& scene, const Context& context) {
+  LabelledScene labelled = withLabels(scene, std::filesystem::path(file), context.progress());
+  for (const std::string& w : labelled.warnings) context.warn(w);
+  context.print(formatted("%d highlights in %d frames\n", labelled.highlights, labelled.frames));
+  return std::move(labelled.scene);
+}
+
+}  // namespace
+
 Command convertCommand() {
   struct Arguments {
-    std::string input, output;
+    std::string input, output, labels;
     std::vector<std::string> fixes;
     SceneArguments places;
   };
@@ -27,11 +41,15 @@ Command convertCommand() {
       "file, with unknown keys of a scene kept), or a folder (COLMAP's text model). Paths are relative to the new file. Images "
       "and\n"
       "meshes stay in place. The last two hold cameras, and paths of images, depth maps and masks; a warning names what is left "
-      "out.";
+      "out.\n"
+      "--labels takes the polygons of a COCO file as the highlights of its frames: labels that were corrected by hand are "
+      "evidence\n"
+      "again. A highlight keeps the peak that the scene or the photograph shows inside of its polygon.";
   c.examples =
       "  glint convert DIR -o DIR/scene.json\n"
       "  glint convert COLMAP --surface mesh.ply -o scene.json\n"
       "  glint convert COLMAP --fix invert-poses -o corrected.json\n"
+      "  glint convert run.glint --labels corrected.json -o DIR/labelled.json\n"
       "  glint convert scene.json -o DIR/transforms.json\n"
       "  glint convert scene.json -o DIR/sparse\n";
   c.declare = [a](Options& o) {
@@ -39,6 +57,7 @@ Command convertCommand() {
                  "Scene file, capture of another program (COLMAP, nerfstudio ...), folder that contains one, or session");
     o.required(a->output, "-o,--out,--output", "FILE", "transforms.json, a scene file (*.json), or a folder for a COLMAP model");
     o.repeated(a->fixes, "--fix", "NAME[=VALUE]", "Make a correction that `glint info` proposes: " + correctionNames());
+    o.option(a->labels, "--labels", "FILE", "COCO polygons that become the highlights of the scene file");
     a->places.declare(o);
   };
   c.run = [a](const Context& context) -> int {
@@ -47,6 +66,8 @@ Command convertCommand() {
     const bool json = output.extension() == ".json", transforms = output.filename() == "transforms.json";
     if (!json && output.has_extension())
       throw InputError(a->output, "--out", "expected transforms.json, a scene file (*.json), or a folder for a COLMAP model");
+    if (!a->labels.empty() && (!json || transforms))
+      throw InputError(a->output, "--labels", "only a scene file (*.json) holds highlights");
     Scene scene = a->places.read(a->input);
     for (const std::string& fix : a->fixes) scene = corrected(std::move(scene), fix);
     for (const std::string& w : scene.warnings) context.warn(w);
@@ -57,6 +78,7 @@ Command convertCommand() {
       return kDone;
     }
     Outputs(a->input, scene).file(a->output, "--out", OutputKind::document("glint_scene"));
+    if (!a->labels.empty()) scene = labelledBy(a->labels, scene, context);
     writeScene(scene, output);
     try {
       readScene(output);

@@ -4,6 +4,7 @@
 
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
+#include "cli/predict_stream.h"
 #include "core/base/atomic_folder.h"
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
@@ -44,8 +45,19 @@ std::string predictionTable(const Inspection& inspection, const std::vector<int>
 
 Command predictCommand() {
   struct Arguments {
-    std::string session, frames, out, json, preset, masks;
+    std::string session, frames, out, json, preset, masks, labels, poses;
+    bool stream = false;
     SceneArguments places;
+    /// One answer a line leaves no room for others; poses come live or not at all.
+    void requireOneKindOfAnswer() const {
+      if (!labels.empty() && out.empty()) throw InputError("", "--labels", "needs --out DIR, the new folder for the labels");
+      if (!stream && !poses.empty())
+        throw InputError("", "--poses", "needs --stream: without it the scene's own frames are predicted");
+      for (const auto& [given, flag] : {std::pair(&frames, "--frames"), std::pair(&out, "--out"), std::pair(&masks, "--masks"),
+                                        std::pair(&labels, "--labels"), std::pair(&json, "--json")})
+        if (stream && !given->empty())
+          throw InputError("", flag, "cannot be combined with --stream, which answers on standard output");
+    }
   };
   const auto a = std::make_shared<Arguments>();
   Command c;
@@ -54,10 +66,17 @@ Command predictCommand() {
   c.description =
       "Opens a session, refits its models and predicts the highlights of the selected frames. --out writes predictions.json\n"
       "(contours in ideal pixels with their standard deviations, brightest points, coverage, failed directions with reasons),\n"
-      "one overlay PNG per frame, and labels_MODEL.json in COCO format for each model.";
+      "one overlay PNG per frame, and labels_MODEL.json in COCO format for each model.\n"
+      "With --labels, --out is a new folder with labels alone: labels_MODEL.json (coco), masks/, yolo/MODEL/.\n"
+      "--stream answers poses instead: for each line that it reads, JSON {\"id\", \"time\", \"camera_from_world\", \"camera\"} "
+      "or TUM\n"
+      "(time tx ty tz qx qy qz qw), it writes one line of JSON at once, until the input ends. A wrong line is answered with an\n"
+      "error, and the stream goes on.";
   c.examples =
       "  glint predict run.glint                       a table of all frames\n"
-      "  glint predict run.glint --frames 6-20 --out predicted\n";
+      "  glint predict run.glint --frames 6-20 --out predicted\n"
+      "  glint predict run.glint --labels coco,yolo --out labels\n"
+      "  tracker | glint predict run.glint --preset balanced --stream | viewer\n";
   c.declare = [a](Options& o) {
     o.positional(a->session, "FILE.glint", "A session written by `glint reconstruct` or the inspector");
     o.option(a->frames, "--frames", "SPEC", "Frames to predict: numbers, ids, ranges, first:K or spread:K (default: all)");
@@ -65,13 +84,22 @@ Command predictCommand() {
              "Take model and settings from the session's trade-off: fast, balanced, exact or chosen");
     o.option(a->out, "--out", "DIR", "Write contours, overlays and labels to this folder");
     o.option(a->masks, "--masks", "DIR", "Write masks and COCO labels of all frames to this new folder");
+    o.option(a->labels, "--labels", "LIST",
+             "Write labels to --out, a new folder, instead of contours and overlays: coco, masks, yolo, separated by commas");
     o.option(a->json, "--json", "FILE", "Write predictions.json to this file (- = standard output, replaces the table)");
+    o.flag(a->stream, "--stream", "Answer each pose that is read by one line of JSON on standard output");
+    o.option(a->poses, "--poses", "FILE", "With --stream: the poses, as JSON or TUM lines (default, and -: standard input)");
     a->places.declareForSession(o);
   };
   c.run = [a](const Context& context) -> int {
+    a->requireOneKindOfAnswer();
+    const std::optional<LabelFormats> formats = a->labels.empty() ? std::nullopt : std::optional(labelFormatsFrom(a->labels));
     const OpenedSession opened = a->places.openSession(a->session);
     for (const std::string& w : opened.session.warnings) context.warn(w);
     if (!opened.warning.empty()) context.warn(opened.warning);
+    InspectionRequest request = opened.session.request;
+    if (!a->preset.empty()) applyPreset(opened.session, a->preset, request);
+    if (a->stream) return answerPoses(opened, request, a->poses, context);
     const Scene& scene = *opened.scene;
     std::vector<int> frames;
     if (!a->frames.empty())
@@ -83,12 +111,11 @@ Command predictCommand() {
     std::vector<std::string> names = picturesOf(frames);
     for (const std::string& model : opened.session.request.models) names.push_back("labels_" + model + ".json");
     names.emplace_back("predictions.json");
-    outputs.inFolder(a->out, "--out", names, "predictions.json", "glint_predictions");
-    InspectionRequest request = opened.session.request;
-    if (!a->preset.empty()) applyPreset(opened.session, a->preset, request);
-    if (!a->out.empty() || !a->json.empty()) request.settings.set("predict.band", true);
+    if (!formats) outputs.inFolder(a->out, "--out", names, "predictions.json", "glint_predictions");
+    if ((!a->out.empty() && !formats) || !a->json.empty()) request.settings.set("predict.band", true);
     const Inspection result = inspect(opened.scene, request, context.progress());
-    if (!a->out.empty())
+    if (formats) writeLabels(result, a->out, context.progress(), *formats, frames);
+    if (!a->out.empty() && !formats)
       atomicFiles(a->out, "predictions.json", [&](const std::filesystem::path& folder) {
         parallelFor(
             static_cast<int>(frames.size()),

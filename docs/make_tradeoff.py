@@ -11,7 +11,6 @@ import argparse
 import json
 import pathlib
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -19,22 +18,10 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "bench"))
-from large_scene import write_ellipsoid  # noqa: E402
+from large_scene import large_mesh  # noqa: E402
 
 PAGE = ROOT / "docs/tradeoff.md"
 BEGIN, END = "<!-- {} begin -->", "<!-- {} end -->"
-
-
-def large_mesh(folder):
-    """The scene of sessions/ellipsoid with the ellipsoid as a mesh of a million triangles with vertex normals."""
-    scene = json.loads((ROOT / "sessions/ellipsoid/scene.json").read_text())
-    (name, surface), = scene["surfaces"].items()
-    analytic = surface["analytic"]
-    write_ellipsoid(folder / "body.ply", analytic["semi_axes"], analytic.get("world_from_surface"))
-    scene["surfaces"] = {name: {"mesh": "body.ply"}}
-    shutil.copytree(ROOT / "sessions/ellipsoid/frames", folder / "frames")
-    (folder / "scene.json").write_text(json.dumps(scene))
-    return folder / "scene.json"
 
 
 def setting(point):

@@ -13,11 +13,11 @@
 #include "core/fit/several_lights.h"
 #include "core/fit/training.h"
 #include "core/inspect/inspection.h"
+#include "core/inspect/live_prediction.h"
 #include "core/inspect/lobe_stage.h"
 #include "core/inspect/requested_evidence.h"
 #include "core/inspect/stage_inputs.h"
 #include "core/model/pixel_evidence.h"
-#include "core/model/plausible.h"
 #include "core/score/comparison.h"
 #include "core/surface/mesh_policy.h"
 
@@ -473,8 +473,6 @@ void Run::predictionsAndComparisons() {
       }
     }
     result.frames.resize(tasks.size());
-    // What needs no light needs nothing but the camera (method.md section 11): no surface is loaded for it.
-    const bool needsSurface = model.needsLight();
     std::atomic<int> predictions{0}, surfacesAsked{0};
     const std::vector<std::shared_ptr<const Band>> bands = bandsOf(model, result);
     parallelFor(
@@ -483,25 +481,13 @@ void Run::predictionsAndComparisons() {
           const auto [frame, f] = tasks[t];
           const ModelResult::Fit& fit = result.fits[f];
           const Camera& camera = r_.scene->frames[frame].camera;
-          Prediction prediction;
-          if (fit.fit) {
-            const Outcome<std::shared_ptr<const Surface>> found =
-                needsSurface ? surfaceFor(r_, frame, fit.light)
-                             : Outcome<std::shared_ptr<const Surface>>(std::shared_ptr<const Surface>());
-            const std::shared_ptr<const Surface> surface = found ? *found : nullptr;
-            surfacesAsked += needsSurface;
-            ++predictions;
-            const auto start = std::chrono::steady_clock::now();
-            prediction = model.predict(*fit.fit, camera, surface.get(), r_.request.settings);
-            prediction.timeUs = microsecondsSince(start);
-            dropTooSmall(prediction);
-            if (const std::shared_ptr<const Band>& band =
-                    bands[static_cast<std::size_t>(f)])  // not part of the time: no model needs it
-              for (PredictedHighlight& h : prediction.editable()) h.sigmaPx = band->sigmaPx(h, camera, surface.get());
-            if (const Failure* why = prediction.failure()) prediction = explained(frame, *why);
-          } else {
-            prediction = fit.fit.failure();
-          }
+          const std::shared_ptr<const Surface> surface = fit.fit ? surfaceOfModel(r_, model, frame, fit.light) : nullptr;
+          Prediction prediction = predictionFor(r_, fit, model, frame, camera, surface.get());
+          if (fit.fit) ++predictions;
+          if (fit.fit && model.needsLight()) ++surfacesAsked;
+          if (const std::shared_ptr<const Band>& band =
+                  bands[static_cast<std::size_t>(f)])  // not part of the time: no model needs it
+            for (PredictedHighlight& h : prediction.editable()) h.sigmaPx = band->sigmaPx(h, camera, surface.get());
           result.frames[t] = compareFrame(r_.evidence[frame], fit.light, camera, std::move(prediction));
           result.frames[t].fit = f;
         },

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/report/labels.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <system_error>
 
 #include "core/base/json_dom.h"
+#include "core/report/label_shapes.h"
 #include "core/report/warnings.h"
 
 namespace glint {
@@ -47,15 +47,6 @@ ordered_json highlightJson(const PredictedHighlight& h) {
   return j;
 }
 
-/// The file that shows a frame's highlights, relative to the scene; "" where there is none: the scene names no picture, the file is
-/// not there, or the highlights are synthesised and the photograph shows others.
-std::string photographOf(const Inspection& inspection, const Frame& frame) {
-  const std::filesystem::path file = frame.image.empty() ? frame.radiance : frame.image;
-  std::error_code ignored;  // what cannot be asked about is not there
-  if (file.empty() || inspection.request.whatIf.synthesise || !std::filesystem::exists(file, ignored)) return {};
-  return file.lexically_relative(inspection.scene->folder).generic_string();
-}
-
 }  // namespace
 
 std::string predictionsJson(const Inspection& inspection, const std::vector<int>& frames) {
@@ -84,60 +75,68 @@ std::string predictionsJson(const Inspection& inspection, const std::vector<int>
   return j.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
+namespace {
+
+/// One picture of a COCO file.
+ordered_json imageJson(const Inspection& inspection, int f, const LabelSet& labels) {
+  const Frame& frame = inspection.scene->frames[static_cast<std::size_t>(f)];
+  const std::string file = shownIn(inspection, frame);
+  ordered_json j = {
+      {"id", f}, {"file_name", file.empty() ? frame.id : file}, {"width", frame.camera.width}, {"height", frame.camera.height}};
+  if (file.empty()) j["note"] = "no photograph: file_name is the frame's id";
+  if (const auto why = labels.reasons.find(f); why != labels.reasons.end()) j["reason"] = why->second;
+  return j;
+}
+
+ordered_json annotationJson(const LabelShape& shape, int id) {
+  const Pixel corner(0.5, 0.5);  // COCO's origin is the corner of the first pixel
+  ordered_json polygon = ordered_json::array();
+  Eigen::AlignedBox2d box;
+  for (const Pixel& p : shape.polygon.points) {
+    const Pixel q = p + corner;
+    polygon.push_back(numberOrNull(q.x()));
+    polygon.push_back(numberOrNull(q.y()));
+    box.extend(q);
+  }
+  return {{"id", id},
+          {"image_id", shape.frame},
+          {"category_id", shape.light + 1},
+          {"segmentation", ordered_json::array({polygon})},
+          {"bbox", {box.min().x(), box.min().y(), box.sizes().x(), box.sizes().y()}},
+          {"area", shape.areaPx2},
+          {"iscrowd", 0},
+          {"attributes",
+           {{"coverage", numberOrNull(shape.coverage)},
+            {"truncated", shape.truncated},
+            {"occluded", shape.occluded},
+            {"edge_share", numberOrNull(shape.edgeShare)},
+            {"level", shape.level}}}};
+}
+
+}  // namespace
+
 std::string cocoJson(const Inspection& inspection, const std::string& model, const std::vector<int>& frames) {
+  const LabelSet labels = labelsOf(inspection, model, frames);
   ordered_json j;
   j["info"] = {{"description", "Specular highlights predicted by Glint, model " + model}};
   j["images"] = ordered_json::array();
-  j["annotations"] = ordered_json::array();
-  j["categories"] = ordered_json::array();
-  std::vector<std::string> lights;
   int without = 0;
   for (const int f : frames) {
-    const Frame& frame = inspection.scene->frames[f];
-    const std::string file = photographOf(inspection, frame);
-    without += file.empty();
-    j["images"].push_back({{"id", f},
-                           {"file_name", file.empty() ? frame.id : file},
-                           {"width", frame.camera.width},
-                           {"height", frame.camera.height}});
-    if (file.empty()) j["images"].back()["note"] = "no photograph: file_name is the frame's id";
+    j["images"].push_back(imageJson(inspection, f, labels));
+    without += j["images"].back().contains("note");
   }
   if (without > 0)
     j["info"]["note"] = std::to_string(without) + " of " + std::to_string(frames.size()) +
                         " images have no photograph that shows these highlights" +
                         (inspection.request.whatIf.synthesise ? " (their contours are synthesised)" : "") +
                         ": their file_name is the frame's id";
-  int id = 1;
-  for (const FrameComparison& c : inspection.models.at(model).frames) {
-    if (std::find(frames.begin(), frames.end(), c.frame) == frames.end()) continue;
-    auto light = std::find(lights.begin(), lights.end(), c.light);
-    if (light == lights.end()) light = lights.insert(lights.end(), c.light);
-    const Camera& camera = inspection.scene->frames[c.frame].camera;
-    for (const PredictedHighlight& h : c.prediction.highlights()) {
-      Polyline drawn{{}, true};
-      for (const Pixel& p : h.contour.points)
-        if (const Pixel d = camera.distorted(p); d.allFinite()) drawn.points.push_back(d + Pixel(0.5, 0.5));
-      if (drawn.points.size() < 3) continue;
-      ordered_json polygon = ordered_json::array();
-      Pixel low = drawn.points[0], high = low;
-      for (const Pixel& p : drawn.points) {
-        polygon.push_back(numberOrNull(p.x()));
-        polygon.push_back(numberOrNull(p.y()));
-        low = low.cwiseMin(p);
-        high = high.cwiseMax(p);
-      }
-      j["annotations"].push_back({{"id", id++},
-                                  {"image_id", c.frame},
-                                  {"category_id", static_cast<int>(light - lights.begin()) + 1},
-                                  {"segmentation", ordered_json::array({polygon})},
-                                  {"bbox", {low.x(), low.y(), high.x() - low.x(), high.y() - low.y()}},
-                                  {"area", std::abs(signedArea(drawn))},
-                                  {"iscrowd", 0}});
-    }
-  }
-  for (std::size_t i = 0; i < lights.size(); ++i)
+  j["annotations"] = ordered_json::array();
+  for (const LabelShape& shape : labels.shapes)
+    j["annotations"].push_back(annotationJson(shape, static_cast<int>(j["annotations"].size()) + 1));
+  j["categories"] = ordered_json::array();
+  for (std::size_t i = 0; i < labels.lights.size(); ++i)
     j["categories"].push_back(
-        {{"id", static_cast<int>(i) + 1}, {"name", "highlight " + lights[i]}, {"supercategory", "specular highlight"}});
+        {{"id", static_cast<int>(i) + 1}, {"name", categoryOf(labels.lights[i])}, {"supercategory", "specular highlight"}});
   return j.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

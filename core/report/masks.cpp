@@ -2,11 +2,13 @@
 #include "core/report/masks.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <set>
+#include <sstream>
 
 #include "core/base/atomic_file.h"
 #include "core/base/atomic_folder.h"
@@ -14,6 +16,7 @@
 #include "core/base/parallel.h"
 #include "core/geometry/polyline.h"
 #include "core/report/labels.h"
+#include "core/report/yolo.h"
 
 namespace glint {
 namespace {
@@ -114,7 +117,26 @@ Image maskOf(const std::vector<Polyline>& contours, const Camera& camera) {
   return mask;
 }
 
-void writeLabels(const Inspection& inspection, const fs::path& folder, const ProgressFn& progress) {
+LabelFormats labelFormatsFrom(const std::string& list) {
+  LabelFormats formats{false, false, false};
+  std::istringstream words(list);
+  for (std::string word; std::getline(words, word, ',');) {
+    if (word == "coco")
+      formats.coco = true;
+    else if (word == "masks")
+      formats.masks = true;
+    else if (word == "yolo")
+      formats.yolo = true;
+    else
+      throw InputError("", "--labels", "'" + word + "' is not one of: coco, masks, yolo");
+  }
+  if (!formats.coco && !formats.masks && !formats.yolo) throw InputError("", "--labels", "names no format: coco, masks, yolo");
+  return formats;
+}
+
+namespace {
+
+void writeMasks(const Inspection& inspection, const std::vector<int>& frames, const fs::path& out, const ProgressFn& progress) {
   std::set<std::string> lights;
   for (const FrameEvidence& e : inspection.evidence)
     for (const Highlight& h : e.scored())
@@ -122,44 +144,57 @@ void writeLabels(const Inspection& inspection, const fs::path& folder, const Pro
   for (const auto& [name, model] : inspection.models)
     for (const FrameComparison& c : model.frames) lights.insert(c.light);
   const std::map<std::string, std::string> folders = lightFolders(lights);
-  const std::vector<Task> tasks = tasksOf(inspection, lights);
-  std::vector<int> frames;
-  for (int f = 0; f < static_cast<int>(inspection.scene->frames.size()); ++f) frames.push_back(f);
+  std::vector<Task> tasks = tasksOf(inspection, lights);
+  const std::set<int> wanted(frames.begin(), frames.end());
+  tasks.erase(std::remove_if(tasks.begin(), tasks.end(), [&](const Task& t) { return !wanted.count(t.frame); }), tasks.end());
 
+  std::vector<std::string> of = {"observed"};
+  of.insert(of.end(), inspection.request.models.begin(), inspection.request.models.end());
+  for (const std::string& source : of)
+    for (const auto& [light, name] : folders) fs::create_directories(out / "masks" / source / name);
+  const auto fileOf = [&](const Task& t) {
+    const std::string name = formatted("%04d.png", t.frame);  // by position: an id may hold what no file name may
+    return fs::path("masks") / t.of / folders.at(t.light) / name;
+  };
+  std::vector<long long> pixels(tasks.size());
+  parallelFor(
+      static_cast<int>(tasks.size()),
+      [&](int i) {
+        const Task& t = tasks[static_cast<std::size_t>(i)];
+        const Image mask = maskOf(t.contours, inspection.scene->frames[static_cast<std::size_t>(t.frame)].camera);
+        pixels[static_cast<std::size_t>(i)] = std::count(mask.data.begin(), mask.data.end(), 255.f);
+        writeMask(mask, out / fileOf(t));
+      },
+      progress, "masks");
+  ordered_json j;
+  j["glint_masks"] = 1;
+  j["scene"] = inspection.scene->name;
+  j["masks"] = ordered_json::array();
+  for (std::size_t i = 0; i < tasks.size(); ++i)
+    j["masks"].push_back({{"frame", tasks[i].frame},
+                          {"id", inspection.scene->frames[static_cast<std::size_t>(tasks[i].frame)].id},
+                          {"light", tasks[i].light},
+                          {"of", tasks[i].of},
+                          {"file", fileOf(tasks[i]).generic_string()},
+                          {"pixels", pixels[i]},
+                          {"reason", tasks[i].reason}});
+  atomicWrite(out / "masks.json", j.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace
+
+void writeLabels(const Inspection& inspection, const fs::path& folder, const ProgressFn& progress, const LabelFormats& formats,
+                 const std::vector<int>& frames) {
+  std::vector<int> labelled = frames;
+  if (labelled.empty())
+    for (int f = 0; f < static_cast<int>(inspection.scene->frames.size()); ++f) labelled.push_back(f);
   atomicFolder(folder, [&](const fs::path& out) {
-    std::vector<std::string> of = {"observed"};
-    of.insert(of.end(), inspection.request.models.begin(), inspection.request.models.end());
-    for (const std::string& source : of)
-      for (const auto& [light, name] : folders) fs::create_directories(out / "masks" / source / name);
-    const auto fileOf = [&](const Task& t) {
-      const std::string name = formatted("%04d.png", t.frame);  // by position: an id may hold what no file name may
-      return fs::path("masks") / t.of / folders.at(t.light) / name;
-    };
-    std::vector<long long> pixels(tasks.size());
-    parallelFor(
-        static_cast<int>(tasks.size()),
-        [&](int i) {
-          const Task& t = tasks[static_cast<std::size_t>(i)];
-          const Image mask = maskOf(t.contours, inspection.scene->frames[static_cast<std::size_t>(t.frame)].camera);
-          pixels[static_cast<std::size_t>(i)] = std::count(mask.data.begin(), mask.data.end(), 255.f);
-          writeMask(mask, out / fileOf(t));
-        },
-        progress, "masks");
-    ordered_json j;
-    j["glint_masks"] = 1;
-    j["scene"] = inspection.scene->name;
-    j["masks"] = ordered_json::array();
-    for (std::size_t i = 0; i < tasks.size(); ++i)
-      j["masks"].push_back({{"frame", tasks[i].frame},
-                            {"id", inspection.scene->frames[static_cast<std::size_t>(tasks[i].frame)].id},
-                            {"light", tasks[i].light},
-                            {"of", tasks[i].of},
-                            {"file", fileOf(tasks[i]).generic_string()},
-                            {"pixels", pixels[i]},
-                            {"reason", tasks[i].reason}});
-    atomicWrite(out / "masks.json", j.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
-    for (const std::string& model : inspection.request.models)
-      atomicWrite(out / ("labels_" + model + ".json"), cocoJson(inspection, model, frames));
+    if (formats.masks) writeMasks(inspection, labelled, out, progress);
+    for (const std::string& model : inspection.request.models) {
+      if (!report(progress, {"labels " + model, 0, 0})) throw Stopped{};
+      if (formats.coco) atomicWrite(out / ("labels_" + model + ".json"), cocoJson(inspection, model, labelled));
+      if (formats.yolo) writeYolo(inspection, model, labelled, out / "yolo" / model);
+    }
   });
 }
 

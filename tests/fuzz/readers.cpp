@@ -31,6 +31,8 @@ const std::vector<Reader>& readers() {
       {"bundle", Form::Text, feedBundle},
       {"tum", Form::Text, feedTum},
       {"bop", Form::Json, feedBop},
+      {"poses", Form::Text, feedPoses},
+      {"labels", Form::Json, feedLabels},
       {"image_header", Form::Bytes, feedImageHeader},
       {"image", Form::Bytes, feedImage},
   };

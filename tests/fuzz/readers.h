@@ -45,6 +45,8 @@ bool feedTransforms(const std::string& bytes);
 bool feedBundle(const std::string& bytes);
 bool feedTum(const std::string& bytes);
 bool feedBop(const std::string& bytes);
+bool feedPoses(const std::string& bytes);  // live_fuzz.cpp
+bool feedLabels(const std::string& bytes);
 bool feedImageHeader(const std::string& bytes);  // image_fuzz.cpp
 bool feedImage(const std::string& bytes);
 

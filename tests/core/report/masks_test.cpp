@@ -172,15 +172,16 @@ TEST(CocoJson, LeavesOutWhatTheLensDoesNotShow) {
   Inspection inspection = small();
   Scene scene = *inspection.scene;
   Camera& camera = scene.frames[0].camera;
-  camera.pixelFromRay << 100, 0, 0, 0, 100, 0, 0, 0, 1;
+  camera.pixelFromRay << 100, 0, 0, 0, 100, 100, 0, 0, 1;
   camera.lens = {LensModel::VisualSfm, {-1}};
   inspection.scene = std::make_shared<const Scene>(scene);
   FrameComparison& first = inspection.models.at("canonical").frames.at(0);
   ASSERT_EQ(first.frame, 0);
-  first.prediction.editable()[0].contour = Polyline{{{30, 0}, {36, -4}, {50, 0}, {36, 4}}, true};
+  first.prediction.editable()[0].contour = Polyline{{{30, 100}, {36, 96}, {50, 100}, {36, 104}}, true};
   const nlohmann::json labels = nlohmann::json::parse(cocoJson(inspection, "canonical", {0}));
   const nlohmann::json& polygon = labels.at("annotations").at(0).at("segmentation").at(0);
   EXPECT_EQ(polygon.size(), 6u);
+  EXPECT_EQ(labels.at("annotations").at(0).at("attributes").at("truncated"), true);
   for (const nlohmann::json& number : polygon) EXPECT_TRUE(number.is_number());
 }
 

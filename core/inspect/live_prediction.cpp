@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/inspect/live_prediction.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/base/elapsed.h"
+#include "core/model/plausible.h"
+#include "core/surface/mesh_policy.h"
+
+namespace glint {
+namespace {
+
+bool sameIntrinsics(const Camera& a, const Camera& b) {
+  return a.pixelFromRay == b.pixelFromRay && a.lens == b.lens && a.width == b.width && a.height == b.height;
+}
+
+}  // namespace
+
+std::shared_ptr<const Surface> surfaceOfModel(const Inspection& inspection, const HighlightModel& model, int frame,
+                                              const std::string& light) {
+  if (!model.needsLight() || frame < 0) return nullptr;
+  Outcome<std::shared_ptr<const Surface>> found = surfaceFor(inspection, frame, light);
+  return found ? *std::move(found) : nullptr;
+}
+
+Prediction predictionFor(const Inspection& inspection, const ModelResult::Fit& fit, const HighlightModel& model, int frame,
+                         const Camera& camera, const Surface* surface) {
+  if (!fit.fit) return fit.fit.failure();
+  const Clock::time_point start = Clock::now();
+  Prediction prediction = model.predict(*fit.fit, camera, surface, inspection.request.settings);
+  prediction.timeUs = microsecondsSince(start);
+  dropTooSmall(prediction);
+  const Failure* const why = prediction.failure();
+  if (!why) return prediction;
+  if (why->reason != Reason::NoSurface) return *why;
+  if (frame < 0) return Failure{Reason::NoSurface, "the frames see different surfaces, and none of them has this id"};
+  // A step that missed the surface gets the reason why there is none: the file that cannot be read.
+  const auto given = inspection.surfaces->surfaceOf(frame, meshPolicy(inspection.request.settings));
+  return given ? *why : given.failure();
+}
+
+LivePredictor::LivePredictor(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn& progress) {
+  require(scene != nullptr && !scene->frames.empty(), "LivePredictor: no scene");
+  const TrainSpec train = parseTrainSpec(request.train, *scene);
+  // Fits need the training frames alone; of the predictions one is enough to load the surface and to build its trees.
+  inspection_ = inspectOneFrame(std::move(scene), request, train.frames.front(), progress);
+  const std::vector<Frame>& frames = inspection_.scene->frames;
+  const SurfaceCache& surfaces = *inspection_.surfaces;
+  bool oneCamera = true, oneSurface = true;
+  for (int f = 0; f < static_cast<int>(frames.size()); ++f) {
+    const Frame& frame = frames[static_cast<std::size_t>(f)];
+    frames_.emplace(frame.id, f);
+    oneCamera = oneCamera && sameIntrinsics(frame.camera, frames.front().camera);
+    oneSurface = oneSurface && surfaces.keyOf(f) == surfaces.keyOf(0);
+  }
+  if (oneCamera) sharedCamera_ = frames.front().camera;
+  if (oneSurface) anyFrameOfSurface_ = 0;
+}
+
+std::optional<Failure> LivePredictor::failure() const {
+  std::optional<Failure> first;
+  for (const std::string& name : inspection_.request.models)
+    for (const ModelResult::Fit& fit : inspection_.models.at(name).fits) {
+      if (fit.fit) return std::nullopt;
+      if (!first) first = Failure{fit.fit.failure().reason, name + ": " + fit.fit.failure().detail};
+    }
+  return first ? first : Failure{Reason::NoHighlight, "no training frame shows a highlight of a named light"};
+}
+
+Outcome<LiveAnswer> LivePredictor::predict(const std::string& id, const Eigen::Isometry3d& cameraFromWorld,
+                                           const std::optional<Camera>& camera) const {
+  LiveAnswer answer;
+  if (const auto found = frames_.find(id); found != frames_.end()) answer.frame = found->second;
+  const Scene& scene = *inspection_.scene;
+  if (camera)
+    answer.camera = *camera;
+  else if (answer.frame)
+    answer.camera = scene.frames[static_cast<std::size_t>(*answer.frame)].camera;
+  else if (sharedCamera_)
+    answer.camera = *sharedCamera_;
+  else
+    return Failure{Reason::NotSupported,
+                   "the frames have different cameras, and none of them has this id: the line needs a camera"};
+  answer.camera.camFromWorld = cameraFromWorld;
+  const std::optional<int> frame = answer.frame ? answer.frame : anyFrameOfSurface_;
+  for (const std::string& name : inspection_.request.models) {
+    const HighlightModel& model = modelByName(name);
+    for (const ModelResult::Fit& fit : inspection_.models.at(name).fits) {
+      if (fit.surface && frame && *fit.surface != inspection_.surfaces->keyOf(*frame)) continue;
+      if (answer.frame && !isOn(scene, inspection_.request.whatIf, *answer.frame, fit.light)) continue;
+      const std::shared_ptr<const Surface> surface = surfaceOfModel(inspection_, model, frame.value_or(-1), fit.light);
+      answer.highlights.push_back(
+          {name, fit.light, predictionFor(inspection_, fit, model, frame.value_or(-1), answer.camera, surface.get())});
+    }
+  }
+  return answer;
+}
+
+}  // namespace glint

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/inspect/inspection.h"
+
+namespace glint {
+
+/// The surface that a model's predictions of a light use in a frame; null for a model that needs nothing but the camera (method.md
+/// section 11), and where there is none.
+std::shared_ptr<const Surface> surfaceOfModel(const Inspection& inspection, const HighlightModel& model, int frame,
+                                              const std::string& light);
+
+/// What one fit predicts in a camera, on the surface of a frame of the scene; highlights that are too small to be told are dropped.
+/// `timeUs` is the model's own time, 0 of a failure. `inspect` and LivePredictor make every prediction here.
+/// @param frame    whose surface it is; < 0 = none is known: models that need one fail with NoSurface
+/// @param camera   the frame's own, or another one
+/// @param surface  surfaceOfModel(), which outlives the call
+Prediction predictionFor(const Inspection& inspection, const ModelResult::Fit& fit, const HighlightModel& model, int frame,
+                         const Camera& camera, const Surface* surface);
+
+/// Predictions of one fit in a camera that came live.
+struct LiveHighlights {
+  std::string model, light;
+  Prediction prediction;
+};
+
+struct LiveAnswer {
+  Camera camera;                           ///< that was predicted for
+  std::optional<int> frame;                ///< of the scene, whose id was given
+  std::vector<LiveHighlights> highlights;  ///< by model and light, those that failed too
+};
+
+/// Fits once, and predicts for poses that are in no scene, one after another: what a SLAM or AR program asks for.
+class LivePredictor {
+ public:
+  /// Fits the models of the request from its training frames. InputError as `inspect`; Stopped.
+  LivePredictor(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn& progress = {});
+
+  const Inspection& inspection() const { return inspection_; }
+  /// Why no pose can be answered: no model was fitted. Nothing where one was.
+  std::optional<Failure> failure() const;
+
+  /// @param id      of a frame of the scene: its surface and the lights that are on in it count, and its intrinsics. Another id: all
+  ///                fitted lights, and the surface and intrinsics that all frames share
+  /// @param camera  intrinsics and size, where they are given; its pose is not looked at
+  /// @return  NotSupported where the intrinsics are not known. That a surface is not known is the failure of a prediction.
+  Outcome<LiveAnswer> predict(const std::string& id, const Eigen::Isometry3d& cameraFromWorld,
+                              const std::optional<Camera>& camera) const;
+
+ private:
+  Inspection inspection_;
+  std::map<std::string, int> frames_;     ///< by id
+  std::optional<Camera> sharedCamera_;    ///< of all frames, but for the pose
+  std::optional<int> anyFrameOfSurface_;  ///< a frame, where all see the same surface
+};
+
+}  // namespace glint
