@@ -18,8 +18,10 @@
 namespace glint {
 namespace {
 
-constexpr double kVisibleCodes = 1.0 / 255;    // of 8 bits: what a screen can show at all
-constexpr double kMarkedCodes = 0.5 / 255;     // a mark tells every pixel whose code may be another one
+constexpr double kVisibleCodes = 1.0 / 255;  // of 8 bits: what a screen can show at all
+constexpr double kMarkedCodes = 0.5 / 255;   // a mark tells every pixel whose code may be another one
+constexpr float kFillUnit =
+    65536;  // OpenCV's fill adds up to two units to each value, which are for codes, not for light of about 1
 constexpr double kFillRadiusPx = 5;            // Telea's neighbourhood
 constexpr double kLeastShade = 0.05;           // of the mean shade: below, the ratio to it is noise
 constexpr double kPoorShading = 0.1;           // relative RMS from which the matt surface is a doubtful account of the frame
@@ -139,7 +141,7 @@ Outcome<Image> filled(const Canvas& canvas, cv::Mat& mask) {
     cv::Mat one(mask.rows, mask.cols, CV_32FC1);
     std::vector<float> seen;
     for (std::size_t i = 0; i < pixels; ++i) {
-      const float v = linear.data[3 * i + std::size_t(c)] / divisor[i];
+      const float v = kFillUnit * linear.data[3 * i + std::size_t(c)] / divisor[i];
       one.ptr<float>()[i] = std::isfinite(v) ? v : 0.f;
       if (surface && (*surface)[i] && !mask.data[i]) seen.push_back(v);
     }
@@ -153,7 +155,7 @@ Outcome<Image> filled(const Canvas& canvas, cv::Mat& mask) {
     for (int y = 0; y < box.height; ++y)
       for (int x = 0; x < box.width; ++x) {
         const std::size_t i = std::size_t(box.y + y) * std::size_t(mask.cols) + std::size_t(box.x + x);
-        if (mask.data[i]) result.data[3 * i + std::size_t(c)] = std::max(0.f, done.at<float>(y, x) * divisor[i]);
+        if (mask.data[i]) result.data[3 * i + std::size_t(c)] = std::max(0.f, done.at<float>(y, x) / kFillUnit * divisor[i]);
       }
   }
   return result;
