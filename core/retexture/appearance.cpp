@@ -289,10 +289,10 @@ const char* nameOf(HighlightAppearance::Kind kind) {
 
 Outcome<ContourStar> ContourStar::of(const Polyline& contour, const Pixel& around, const std::vector<std::pair<int, int>>& gaps) {
   ContourStar star;
-  star.centre_ = around;
-  if (!contains(contour, around)) star.centre_ = centroid(contour);
-  if (contour.points.size() < 3 || !star.centre_.allFinite() || !contains(contour, star.centre_))
-    return Failure{Reason::NotReached, "no place inside of the contour"};
+  const Failure none{Reason::NotReached, "no place inside of the contour"};
+  if (contour.points.size() < 3) return none;
+  star.centre_ = contains(contour, around) ? around : centroid(contour);
+  if (!star.centre_.allFinite() || !contains(contour, star.centre_)) return none;
   star.reach_.resize(kSectors);
   star.gap_.assign(kSectors, 0);
   for (std::size_t i = 0; i < kSectors; ++i) {

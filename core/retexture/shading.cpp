@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/base/median.h"
 #include "core/base/parallel.h"
@@ -79,7 +80,7 @@ Eigen::VectorXd nonNegative(const std::vector<ShadeSample>& samples, const std::
   }
   constexpr double kRidge = 1e-9;  // of the diagonal: a light that lights nothing, or two that cannot be told apart
   normal.diagonal() *= 1 + kRidge;
-  normal.diagonal().array() += kRidge * std::max(1e-300, normal.diagonal().maxCoeff());
+  normal.diagonal().array() += kRidge * std::max(std::numeric_limits<double>::min(), normal.diagonal().maxCoeff());
   std::vector<char> out(std::size_t(n), 0);
   Eigen::VectorXd solution = Eigen::VectorXd::Zero(n);
   for (Eigen::Index round = 0; round <= n; ++round) {
