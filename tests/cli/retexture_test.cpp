@@ -98,7 +98,9 @@ TEST_F(Retexture, TheFrameWithoutItsHighlightIsTheMattRendering) {
     const cv::Mat out = picture("o.png"), marks = picture("marks.png");
     for (int y = 0; y < out.rows; ++y)
       for (int x = 0; x < out.cols; ++x)
-        if (marks.at<cv::Vec3b>(y, x)[0] == 0) ASSERT_EQ(out.at<cv::Vec3b>(y, x), shiny.at<cv::Vec3b>(y, x)) << x << " " << y;
+        if (marks.at<cv::Vec3b>(y, x)[0] == 0) {
+          ASSERT_EQ(out.at<cv::Vec3b>(y, x), shiny.at<cv::Vec3b>(y, x)) << x << " " << y;
+        }
   }
 }
 
