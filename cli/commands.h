@@ -16,6 +16,7 @@ Command renderCommand();
 Command predictCommand();
 Command reconstructCommand();
 Command replayCommand();
+Command retextureCommand();
 Command settingsCommand();
 Command stabilityCommand();
 Command synthCommand();

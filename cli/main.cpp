@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
                                       detectCommand(),
                                       reconstructCommand(),
                                       predictCommand(),
+                                      retextureCommand(),
                                       evaluateCommand(),
                                       tradeoffCommand(),
                                       synthCommand(),

@@ -37,4 +37,14 @@ picture scene plane-to-cylinder 0045 scene
 picture ladder plane-to-cylinder 0045 ladder
 picture frame ellipsoid 0012 frame
 picture plots plane-to-cylinder 0045 plots
+# A checked texture for the vase; the frame beside it, and without its highlight.
+texture=$(mktemp --suffix=.png)
+PYTHONPATH=$root/tests/formats python3 -B -c 'import sys
+from pictures import png
+row = lambda y: b"".join(bytes((205, 225, 240) if (x // 32 + y // 32) % 2 else (225, 150, 70)) for x in range(256))
+open(sys.argv[1], "wb").write(png(256, 256, 3, 8, b"".join(row(y) for y in range(256))))' "$texture"
+vase() { "$bin/glint" retexture "$root/sessions/vase/vase.glint" --frame 0010 --model reflectance "${@:2}" -o "$out/$1.png"; }
+vase retexture --texture "$texture" --repeat 2
+vase retexture-removed --remove
+rm -f "$texture"
 if command -v mogrify > /dev/null; then mogrify -strip -colors 128 -define png:compression-level=9 "$out"/*.png; fi

@@ -227,6 +227,7 @@ std::vector<Victim> makeMaterials(const fs::path& program, const fs::path& folde
                                             "evaluate . " + limit + "--source image --json out/e.json --html out/e.html"};
   const std::vector<std::string> onSession = {"info run.glint",
                                               "predict run.glint --json out/p.json --out out/p --masks out/m",
+                                              "retexture run.glint --frame 1 --remove -o out/q.png",
                                               "replay run.glint",
                                               "evaluate run.glint --json out/e.json",
                                               "compare run.glint copy.glint --json out/c.json",
