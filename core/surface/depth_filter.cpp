@@ -46,7 +46,9 @@ SmoothDepth bilateralDepth(const Image& depth, const Camera& camera, double radi
 namespace {
 
 constexpr int kTerms = 6, kMoments = 15;
-constexpr int kLargestReachPx = 16;   // farther ones are sampled more coarsely: there are enough of them
+constexpr int kFirstReachPx =
+    12;  // farther neighbours are sampled more coarsely: the first round only says which points lie in a ball
+constexpr int kLastReachPx = 16;      // there are enough of them
 constexpr int kLeastQuadratic = 18;   // neighbours: three for each term
 constexpr int kLeastLinear = 9;       // the same for the three of a plane
 constexpr double kRidge = 1e-6;       // of the moments, against terms that the neighbours do not determine
@@ -61,13 +63,16 @@ struct Sums {
   double moment[kMoments] = {}, right[kTerms] = {};
   int count = 0;
 
-  void add(double x, double y, double v, double w) {
-    const double wx = w * x, wy = w * y, wxx = wx * x, wxy = wx * y, wyy = wy * y;
-    const double terms[kMoments] = {w,       wx,      wy,          wxx,         wxy,         wyy,         wxx * x,    wxx * y,
-                                    wxy * y, wyy * y, wxx * x * x, wxx * x * y, wxx * y * y, wxy * y * y, wyy * y * y};
+  /// One row of neighbours at y: its sums of w x^i, i <= 4, and of w v x^i, i <= 2.
+  void addRow(double y, const double (&row)[5], const double (&rowRight)[3], int n) {
+    const double y2 = y * y, y3 = y2 * y, y4 = y2 * y2;
+    const double terms[kMoments] = {row[0],      row[1],     row[0] * y,  row[2],      row[1] * y,
+                                    row[0] * y2, row[3],     row[2] * y,  row[1] * y2, row[0] * y3,
+                                    row[4],      row[3] * y, row[2] * y2, row[1] * y3, row[0] * y4};
     for (int k = 0; k < kMoments; ++k) moment[k] += terms[k];
-    for (int k = 0; k < kTerms; ++k) right[k] += terms[k] * v;
-    ++count;
+    const double rights[kTerms] = {rowRight[0], rowRight[1], rowRight[0] * y, rowRight[2], rowRight[1] * y, rowRight[0] * y2};
+    for (int k = 0; k < kTerms; ++k) right[k] += rights[k];
+    count += n;
   }
 
   template <int N>
@@ -95,28 +100,42 @@ struct Sums {
 /// One round of fits over a whole map.
 class Fitter {
  public:
-  /// @param shape  the depth that says which pixels lie in a ball: measured, or from the round before
-  Fitter(const Image& measured, const Image& shape, const Camera& camera, double radius)
-      : measured_(measured), shape_(shape), fx_(camera.pixelFromRay(0, 0)), fy_(camera.pixelFromRay(1, 1)), radius_(radius) {}
+  /// @param inverse  of the measured depths
+  /// @param shape    the depth that says which pixels lie in a ball: measured, or from the round before
+  Fitter(const std::vector<double>& inverse, const Image& shape, const Camera& camera, double radius, int reachPx)
+      : inverse_(inverse),
+        shape_(shape),
+        fx_(camera.pixelFromRay(0, 0)),
+        fy_(camera.pixelFromRay(1, 1)),
+        radius_(radius),
+        reachPx_(reachPx) {}
 
   std::optional<LocalFit> at(int x, int y) const {
     const double z = shape_.at(x, y);
-    const int reachX = std::max(2, int(radius_ * fx_ / z)), reachY = std::max(2, int(radius_ * fy_ / z));
-    const int step = (std::max(reachX, reachY) + kLargestReachPx - 1) / kLargestReachPx;
+    const double most = std::max(shape_.width, shape_.height);
+    const int reachX = int(std::clamp(radius_ * fx_ / z, 2.0, most)), reachY = int(std::clamp(radius_ * fy_ / z, 2.0, most));
+    const int step = (std::max(reachX, reachY) + reachPx_ - 1) / reachPx_;
     const double reach = std::max(reachX, reachY), ball = 1 / (radius_ * radius_), perX = z / fx_, perY = z / fy_;
     const double centre = 1 / z;  // values about it keep their digits
+    const int left = -std::min(reachX, x) / step * step, right = std::min(reachX, shape_.width - 1 - x);
     Sums sums;
-    for (int j = -reachY / step * step; j <= reachY; j += step) {
-      if (y + j < 0 || y + j >= measured_.height) continue;
-      for (int i = -reachX / step * step; i <= reachX; i += step) {
-        if (x + i < 0 || x + i >= measured_.width) continue;
-        const double n = shape_.at(x + i, y + j);
-        if (!(n > 0)) continue;
-        const double across = i * i * perX * perX + j * j * perY * perY, along = (n - z) * (n - z);
-        const double share = (across + along) * ball;
-        if (!(share < 1)) continue;
-        sums.add(i / reach, j / reach, 1 / double(measured_.at(x + i, y + j)) - centre, (1 - share) * (1 - share));
+    for (int j = -std::min(reachY, y) / step * step; j <= reachY && y + j < shape_.height; j += step) {
+      const std::size_t start = static_cast<std::size_t>(y + j) * shape_.width + x;
+      const double down = j * perY * j * perY;
+      double row[5] = {}, rowRight[3] = {};
+      int n = 0;
+      for (int i = left; i <= right; i += step) {
+        const double there = shape_.data[start + i];
+        if (!(there > 0)) continue;
+        const double along = there - z, across = i * perX;
+        const double rest = 1 - (across * across + down + along * along) * ball;
+        if (!(rest > 0)) continue;
+        const double w = rest * rest, u = i / reach, wu = w * u, wuu = wu * u, v = inverse_[start + i] - centre;
+        row[0] += w, row[1] += wu, row[2] += wuu, row[3] += wuu * u, row[4] += wuu * u * u;
+        rowRight[0] += w * v, rowRight[1] += wu * v, rowRight[2] += wuu * v;
+        ++n;
       }
+      if (n > 0) sums.addRow(j / reach, row, rowRight, n);
     }
     std::optional<LocalFit> fit;
     if (sums.count >= kLeastQuadratic) fit = sums.solve<kTerms>(reach);
@@ -128,9 +147,10 @@ class Fitter {
   }
 
  private:
-  const Image& measured_;
+  const std::vector<double>& inverse_;
   const Image& shape_;
   double fx_, fy_, radius_;
+  int reachPx_;
 };
 
 /// Towards the camera. The plane through the point: inverse depth = a X/Z + b Y/Z + c, hence a X + b Y + c Z = 1.
@@ -158,11 +178,13 @@ SmoothDepth fittedDepth(const Image& depth, const Camera& camera, double radius)
   require(depth.channels == 1 && radius > 0, "fittedDepth: one channel and a positive radius expected");
   // First about the points as measured, whose noise decides which of them lie in a ball; then about the smoothed ones.
   SmoothDepth result{depth, {}};
+  std::vector<double> inverse;
+  for (const float z : depth.data) inverse.push_back(z > 0 ? 1 / double(z) : 0);
   constexpr int kRounds = 2;
   for (int round = 0; round < kRounds; ++round) {
     const Image shape = result.depth;
-    const Fitter fitter(depth, shape, camera, radius);
     const bool last = round + 1 == kRounds;
+    const Fitter fitter(inverse, shape, camera, radius, last ? kLastReachPx : kFirstReachPx);
     if (last) result.normals.assign(depth.data.size(), Eigen::Vector3d::Zero());
     parallelFor(
         depth.height,
