@@ -127,15 +127,6 @@ std::string sceneToJson(const Scene& scene, const fs::path& folder) {
     root["camera"] = toJson(scene.frames.front().camera);
     if (kept.contains("camera")) restore(root["camera"], kept["camera"]);
   }
-  const std::optional<Camera> depthCamera = scene.frames.empty() ? std::nullopt : scene.frames.front().depthCamera;
-  const bool sharedDepth = depthCamera && std::all_of(scene.frames.begin(), scene.frames.end(), [&](const Frame& f) {
-                             return f.depthCamera && sameIntrinsics(*f.depthCamera, *depthCamera) &&
-                                    f.depthCamera->camFromWorld.matrix() == depthCamera->camFromWorld.matrix();
-                           });
-  if (sharedDepth) {
-    root["depth_camera"] = depthCameraJson(*depthCamera);
-    if (kept.contains("depth_camera")) restore(root["depth_camera"], kept["depth_camera"]);
-  }
   root["frames"] = Json::array();
   for (std::size_t i = 0; i < scene.frames.size(); ++i) {
     const Frame& frame = scene.frames[i];
@@ -151,7 +142,10 @@ std::string sceneToJson(const Scene& scene, const fs::path& folder) {
     path("normals", frame.normals);
     path("mask", frame.mask);
     if (!shared) j["camera"] = toJson(frame.camera);
-    if (frame.depthCamera && !sharedDepth) j["depth_camera"] = depthCameraJson(*frame.depthCamera);
+    if (frame.depthCamera) {
+      j["depth_camera"] = depthCameraJson(*frame.depthCamera);
+      if (kept.contains("depth_camera")) restore(j["depth_camera"], kept["depth_camera"]);
+    }
     j["camera_from_world"] = toJson(frame.camera.camFromWorld.matrix());
     if (!frame.surface.empty()) j["surface"] = frame.surface;
     if (!frame.lightsOn.empty()) j["lights_on"] = frame.lightsOn;
