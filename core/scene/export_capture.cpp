@@ -68,7 +68,8 @@ Exported transformsOf(const Scene& scene, const fs::path& file) {
     images.push_back(std::move(image));
   }
   if (otherDepth)
-    exported.leftOut.push_back(std::to_string(otherDepth) + " depth maps are left out: nerfstudio reads millimetres of the frame's own camera");
+    exported.leftOut.push_back(std::to_string(otherDepth) +
+                               " depth maps are left out: nerfstudio reads millimetres of the frame's own camera");
   if (outside) exported.leftOut.push_back(std::to_string(outside) + " images lie outside of " + folder.string());
   if (unnamed) exported.leftOut.push_back(std::to_string(unnamed) + " frames have no image; FRAME.png is written instead");
   exported.write = [images = std::move(images), file] {
