@@ -6,13 +6,14 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/base/depth_settings.h"
 #include "core/base/level_range.h"
 #include "core/base/outcome.h"
 
 namespace glint {
 
 const std::vector<ParamSpec>& allParams() {
-  static const std::vector<ParamSpec> params = {
+  static const std::vector<ParamSpec> others = {
       {"detect.level",
        "Contour level",
        "q",
@@ -459,6 +460,7 @@ const std::vector<ParamSpec>& allParams() {
        "The same for the focal length of all cameras, as a fraction: f (1 ± t_f). Uniform: σ² = d²/3.",
        "predict"},
   };
+  static const std::vector<ParamSpec> params = withDepthParams(others);
   return params;
 }
 

@@ -8,7 +8,7 @@ namespace glint {
 Outcome<std::shared_ptr<const Surface>> correctedDepthMap(const Frame& frame, MeshPolicy policy,
                                                           const DepthCorrection& correction) {
   if (!frame.surface.empty()) return Failure{Reason::NoSurface, "frame " + frame.id + " does not see its own depth"};
-  Outcome<std::optional<Image>> depth = readDepth(frame);
+  Outcome<std::optional<Image>> depth = readDepth(frame, policy.depth);
   if (!depth) return depth.failure();
   if (!*depth) return Failure{Reason::NoSurface, "frame " + frame.id + " has neither a surface nor depth"};
   Image& image = **depth;

@@ -139,6 +139,8 @@ Outcome<LightEstimate> estimateLight(const std::vector<TrainingView>& views, con
 Outcome<DepthRefinement> refineDepth(const std::vector<TrainingView>& views, const Light& start, const Settings& settings) {
   if (settings.text("light.solver") != "bundle")
     return Failure{Reason::NotSupported, "light.refine_depth needs light.solver=bundle"};
+  if (settings.integer("surface.depth_fuse") > 0)
+    return Failure{Reason::NotSupported, "light.refine_depth needs surface.depth_fuse=0: it corrects the frames' own maps"};
   std::vector<BundleView> bundleViews;
   for (const TrainingView& v : views)
     if (v.seen) bundleViews.push_back({v.camera, v.surface.get(), v.highlight.contour.points, v.seen->brightest});

@@ -417,6 +417,9 @@ void Run::modelFits() {
         fit->surface = g.key.surface;
         if (std::string merged = mergedRemark(*fit); !merged.empty()) fit->remarks.push_back(std::move(merged));
         if (std::string repeated = repeatedRemark(*fit); !repeated.empty()) fit->remarks.push_back(std::move(repeated));
+        if (r_.surfaces)
+          if (std::string fused = r_.surfaces->fusionRemark(fit->frames); !fused.empty())
+            fit->remarks.push_back(std::move(fused));
         if (const auto found = r_.corrections.find(g.key);
             found != r_.corrections.end() && found->second.normals && model.needsLight())
           fit->remarks.push_back(found->second.normals->remark());

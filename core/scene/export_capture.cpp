@@ -61,14 +61,15 @@ Exported transformsOf(const Scene& scene, const fs::path& file) {
     unnamed += image.name.empty();
     if (image.name.empty()) image.name = frame.id + ".png";
     outside += !image.name.empty() && image.name.starts_with("..");
-    if (frame.depthScale == kMillimetre)
+    if (frame.depthScale == kMillimetre && !frame.depthCamera)
       image.depth = pathFrom(frame.depth, folder);
     else
       otherDepth += !frame.depth.empty();
     images.push_back(std::move(image));
   }
   if (otherDepth)
-    exported.leftOut.push_back(std::to_string(otherDepth) + " depth maps are left out: nerfstudio reads millimetres");
+    exported.leftOut.push_back(std::to_string(otherDepth) +
+                               " depth maps are left out: nerfstudio reads millimetres of the frame's own camera");
   if (outside) exported.leftOut.push_back(std::to_string(outside) + " images lie outside of " + folder.string());
   if (unnamed) exported.leftOut.push_back(std::to_string(unnamed) + " frames have no image; FRAME.png is written instead");
   exported.write = [images = std::move(images), file] {

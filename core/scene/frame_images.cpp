@@ -12,6 +12,8 @@
 #include "core/scene/image_decode.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_files.h"
+#include "core/surface/depth_noise.h"
+#include "core/surface/depth_registration.h"
 
 namespace glint {
 namespace fs = std::filesystem;
@@ -171,7 +173,7 @@ std::string fileProblem(const fs::path& file, const Camera& camera) {
 
 std::string frameFileProblem(const Frame& frame, FrameFile kind) {
   switch (kind) {
-    case FrameFile::Depth: return fileProblem(frame.depth, frame.camera);
+    case FrameFile::Depth: return fileProblem(frame.depth, frame.depthCamera.value_or(frame.camera));
     case FrameFile::Normals: return fileProblem(frame.normals, frame.camera);
     case FrameFile::Mask: return fileProblem(frame.mask, frame.camera);
     case FrameFile::Photograph: break;
@@ -194,7 +196,7 @@ Outcome<std::optional<Image>> readMask(const Frame& frame) {
 
 Outcome<std::optional<Image>> readDepth(const Frame& frame) {
   if (frame.depth.empty()) return std::optional<Image>();
-  Outcome<Decoded> decoded = decode(frame.depth, frame.camera);
+  Outcome<Decoded> decoded = decode(frame.depth, frame.depthCamera.value_or(frame.camera));
   if (!decoded) return decoded.failure();
   const cv::Mat& m = decoded->pixels;
   if (m.channels() != 1)
@@ -202,8 +204,18 @@ Outcome<std::optional<Image>> readDepth(const Frame& frame) {
   if (!isFloat(m) && !(frame.depthScale > 0))
     return unreadable(frame.depth, "an integer depth image needs depth_scale (metres per unit)");
   const double scale = frame.depthScale > 0 ? frame.depthScale : 1.0;
-  return std::optional<Image>(
-      toImage(m, [&](double v) { return std::isfinite(v) && v > 0 ? static_cast<float>(v * scale) : 0.f; }));
+  Image depth = toImage(m, [&](double v) { return std::isfinite(v) && v > 0 ? static_cast<float>(v * scale) : 0.f; });
+  if (frame.depthCamera) depth = registeredDepth(depth, *frame.depthCamera, frame.camera);
+  return std::optional<Image>(std::move(depth));
+}
+
+Outcome<std::optional<Image>> readDepth(const Frame& frame, const DepthPolicy& policy) {
+  Outcome<std::optional<Image>> depth = readDepth(frame);
+  if (!depth || !*depth || policy.noise == 0) return depth;
+  unsigned seed = 2166136261u;  // FNV-1a: the same on every machine
+  for (const unsigned char c : frame.id) seed = (seed ^ c) * 16777619u;
+  addKinectNoise(**depth, policy.noise, seed + 7919u * static_cast<unsigned>(policy.seed));
+  return depth;
 }
 
 Outcome<std::optional<Image>> readNormals(const Frame& frame) {

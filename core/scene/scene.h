@@ -36,6 +36,8 @@ struct Frame {
   std::filesystem::path image, radiance, depth, normals, mask;
   double depthScale = 0;  ///< metres per stored unit; 0 = not given (then depth must be float)
   Camera camera;
+  /// Of `depth`, where a camera of its own took it; its camFromWorld is from the frame's camera, not from the world. Without it depth is as of `camera`.
+  std::optional<Camera> depthCamera;
   std::string surface;                ///< id in Scene::surfaces; "" = this frame's own depth map
   std::vector<std::string> lightsOn;  ///< empty = not stated
   std::vector<Highlight> highlights;  ///< given ones; used instead of detection when not empty
@@ -114,9 +116,12 @@ Outcome<Image> readLinear(const Frame& frame, FrameSource source);
 Outcome<Image> readPhotograph(const Frame& frame);
 /// 1 on the glossy object, 0 elsewhere; nothing when the frame has no mask. FrameUnreadable.
 Outcome<std::optional<Image>> readMask(const Frame& frame);
-/// Depth along the optical axis in metres, 0 = none (non-finite and negative values too); nothing when the frame has none.
+/// Depth along the optical axis in metres, 0 = none (non-finite and negative values too); nothing when the frame has none. That of a depth camera of
+/// its own is registered to the frame's camera (registeredDepth).
 /// FrameUnreadable, also for an integer image without `depth_scale`.
 Outcome<std::optional<Image>> readDepth(const Frame& frame);
+/// The depth as a trial wants it: with the policy's noise, whose stream is the frame's id's. As readDepth.
+Outcome<std::optional<Image>> readDepth(const Frame& frame, const DepthPolicy& policy);
 /// World normals, 3 channels (x y z), not normalised: as stored, or v / 65532 * 2 - 1 of a 16-bit image; nothing when the frame has none.
 Outcome<std::optional<Image>> readNormals(const Frame& frame);
 
@@ -133,6 +138,8 @@ class SurfaceCache {
   Outcome<std::shared_ptr<const Surface>> surfaceOf(int frame, MeshPolicy policy) const;
   /// A key that is equal for frames that see the same surface ("body"; "depth:0004" for a frame's own depth).
   std::string keyOf(int frame) const;
+  /// What the fusion of depth maps (DepthPolicy::fusedFrames) left out of these frames, in words; "" = nothing, or they were not loaded.
+  std::string fusionRemark(const std::vector<int>& frames) const;
 
   /// Depth maps kept for the next question, beside those that somebody holds. One of 1920 x 1080 takes several hundred MB.
   static constexpr int kDepthMapsKept = 2;

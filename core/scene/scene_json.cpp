@@ -178,8 +178,22 @@ Highlight readHighlight(const JsonNode& node, const Camera& camera) {
   return h;
 }
 
+/// Intrinsics of the camera that took the depth maps, with `camera_from_depth`; its camFromWorld is from the frame's camera.
+Camera readDepthCamera(const JsonNode& node) {
+  Camera camera = readCameraJson(node);
+  camera.camFromWorld = readPoseJson(node.at("camera_from_depth")).inverse();
+  return camera;
+}
+
+std::set<std::string> depthCameraKeys() {
+  std::set<std::string> keys = kCameraKeys;
+  keys.insert("camera_from_depth");
+  return keys;
+}
+
 struct FrameContext {
   const std::optional<Camera>& sharedCamera;
+  const std::optional<Camera>& sharedDepthCamera;
   const ReadOptions& options;
   Scene& scene;
   Unknown& unknown;
@@ -208,6 +222,12 @@ Frame readFrame(const JsonNode& node, const FrameContext& context, Json& rest) {
     frame.camera = *context.sharedCamera;
   } else {
     throw InputError(node.file(), node.place() + ".camera", "is missing, and the scene has no camera for all frames");
+  }
+  if (const auto n = node.find("depth_camera")) {
+    frame.depthCamera = readDepthCamera(*n);
+    keep(rest, "depth_camera", context.unknown.of(*n, depthCameraKeys()));
+  } else if (!frame.depth.empty()) {
+    frame.depthCamera = context.sharedDepthCamera;
   }
   std::string warning;
   frame.camera.camFromWorld = readPoseJson(node.at("camera_from_world"), &warning);
@@ -305,7 +325,12 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
     shared = readCameraJson(*n);
     keep(unknown.kept, "camera", unknown.of(*n, kCameraKeys));
   }
-  const FrameContext context{shared, options, scene, unknown};
+  std::optional<Camera> sharedDepth;
+  if (const auto n = root.find("depth_camera")) {
+    sharedDepth = readDepthCamera(*n);
+    keep(unknown.kept, "depth_camera", unknown.of(*n, depthCameraKeys()));
+  }
+  const FrameContext context{shared, sharedDepth, options, scene, unknown};
 
   Json surfaceRests = Json::object();
   if (const auto n = root.find("surfaces")) {
@@ -338,7 +363,7 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
   if (frames.size() == 0) frames.fail("is empty: a scene needs at least one frame");
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const JsonNode node = frames.at(i);
-    Json rest = unknown.of(node, {"id", "image", "radiance", "depth", "normals", "mask", "depth_scale", "camera",
+    Json rest = unknown.of(node, {"id", "image", "radiance", "depth", "normals", "mask", "depth_scale", "camera", "depth_camera",
                                   "camera_from_world", "surface", "lights_on", "highlights"});
     Frame frame = readFrame(node, context, rest);
     if (!frameIds.insert(frame.id).second) node.at("id").fail("duplicate id '" + frame.id + "'");
@@ -354,7 +379,7 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
     if (!scene.meshes.count(named))
       scene.warnings.push_back("no surface has the mesh '" + named + "' for which a file was given");
 
-  std::set<std::string> topKeys = {"glint_scene", "name", "units", "camera", "frames", "surfaces", "lights"};
+  std::set<std::string> topKeys = {"glint_scene", "name", "units", "camera", "depth_camera", "frames", "surfaces", "lights"};
   if (isMadeBySynth(root)) topKeys.insert(kMadeBy);
   const Json top = unknown.of(root, topKeys);
   keep(unknown.kept, "scene", top);

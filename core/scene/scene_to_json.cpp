@@ -37,6 +37,12 @@ Json toJson(const Camera& camera) {
   return j;
 }
 
+Json depthCameraJson(const Camera& camera) {
+  Json j = toJson(camera);
+  j["camera_from_depth"] = toJson(camera.camFromWorld.inverse().matrix());
+  return j;
+}
+
 bool sameIntrinsics(const Camera& a, const Camera& b) {
   return a.width == b.width && a.height == b.height && a.pixelFromRay == b.pixelFromRay && a.lens == b.lens;
 }
@@ -136,6 +142,10 @@ std::string sceneToJson(const Scene& scene, const fs::path& folder) {
     path("normals", frame.normals);
     path("mask", frame.mask);
     if (!shared) j["camera"] = toJson(frame.camera);
+    if (frame.depthCamera) {
+      j["depth_camera"] = depthCameraJson(*frame.depthCamera);
+      if (kept.contains("depth_camera")) restore(j["depth_camera"], kept["depth_camera"]);
+    }
     j["camera_from_world"] = toJson(frame.camera.camFromWorld.matrix());
     if (!frame.surface.empty()) j["surface"] = frame.surface;
     if (!frame.lightsOn.empty()) j["lights_on"] = frame.lightsOn;

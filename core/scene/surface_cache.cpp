@@ -5,17 +5,28 @@
 #include <map>
 #include <mutex>
 
+#include "core/base/number_text.h"
 #include "core/scene/mesh_file.h"
 #include "core/scene/scene.h"
 #include "core/surface/analytic.h"
+#include "core/surface/depth_filter.h"
+#include "core/surface/depth_fusion.h"
 #include "core/surface/depth_map.h"
 #include "core/surface/mesh.h"
 
 namespace glint {
 
 namespace {
+
 using SharedSurface = std::shared_ptr<const Surface>;
+
+/// Equal for equal policies alone.
+std::string textOf(const DepthPolicy& p) {
+  return formatted("|%d %d %.17g %d %d %.17g %d", static_cast<int>(p.smoothing), static_cast<int>(p.normals), p.radius,
+                   p.largestHolePx, p.fusedFrames, p.noise, p.seed);
 }
+
+}  // namespace
 
 struct SurfaceCache::Impl {
   std::vector<Frame> frames;
@@ -24,6 +35,7 @@ struct SurfaceCache::Impl {
   mutable std::map<std::string, std::shared_future<TriangleMesh>> meshes;              // by surface id, shared by the policies
   mutable std::map<std::string, std::shared_future<Outcome<SharedSurface>>> surfaces;  // by key and policy
   mutable std::list<std::string> recentDepthMaps;                                      // keys, the last used one first
+  mutable std::map<std::string, FusedDepth> fused;                                     // by frame id, without the depth itself
   mutable Statistics statistics;
 
   const Frame& frame(int index) const {
@@ -66,13 +78,36 @@ struct SurfaceCache::Impl {
     statistics.mostDepthMaps = std::max(statistics.mostDepthMaps, statistics.depthMaps);
   }
 
+  /// The depth of a frame with that of the nearest other frames averaged in; a frame whose depth cannot be read is no other frame.
+  Image fusedWithOthers(const Frame& frame, const Image& depth, const DepthMapOptions& options) const {
+    std::vector<std::pair<double, const Frame*>> near;
+    for (const Frame& other : frames)
+      if (other.id != frame.id && other.surface.empty() && !other.depth.empty())
+        near.emplace_back((other.camera.centreInWorld() - frame.camera.centreInWorld()).norm(), &other);
+    std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<DepthView> others;
+    for (const auto& [distance, other] : near) {
+      if (static_cast<int>(others.size()) == options.mesh.depth.fusedFrames) break;
+      if (Outcome<std::optional<Image>> read = readDepth(*other, options.mesh.depth); read && *read)
+        others.push_back({other->id, *std::move(*read), other->camera});
+    }
+    const double radius = options.mesh.depth.radius > 0 ? options.mesh.depth.radius : options.normalRadius * medianDepth(depth);
+    FusedDepth result = fusedDepth(depth, frame.camera, others, radius);
+    Image image = std::move(result.depth);
+    result.depth = {};
+    const std::lock_guard<std::mutex> lock(mutex);
+    fused.insert_or_assign(frame.id, std::move(result));
+    return image;
+  }
+
   Outcome<SharedSurface> load(const Frame& frame, MeshPolicy policy) const {
     if (frame.surface.empty()) {
-      const Outcome<std::optional<Image>> depth = readDepth(frame);
+      Outcome<std::optional<Image>> depth = readDepth(frame, policy.depth);
       if (!depth) return depth.failure();
       if (!*depth) return Failure{Reason::NoSurface, "frame " + frame.id + " has neither a surface nor depth"};
       DepthMapOptions options;
       options.mesh = policy;
+      if (policy.depth.fusedFrames > 0) **depth = fusedWithOthers(frame, **depth, options);
       return makeDepthMap(**depth, frame.camera, options);
     }
     const auto it = sources.find(frame.surface);
@@ -113,8 +148,9 @@ std::string SurfaceCache::keyOf(int index) const {
 
 Outcome<std::shared_ptr<const Surface>> SurfaceCache::surfaceOf(int index, MeshPolicy policy) const {
   const Frame& frame = impl_->frame(index);
-  const std::string key =
+  std::string key =
       keyOf(index) + "|" + std::to_string(static_cast<int>(policy.normals)) + std::to_string(static_cast<int>(policy.rays));
+  if (frame.surface.empty()) key += textOf(policy.depth);
   if (frame.surface.empty()) impl_->touch(key);
   return impl_->once(impl_->surfaces, key, [&] {
     {
@@ -123,6 +159,28 @@ Outcome<std::shared_ptr<const Surface>> SurfaceCache::surfaceOf(int index, MeshP
     }
     return impl_->load(frame, policy);
   });
+}
+
+std::string SurfaceCache::fusionRemark(const std::vector<int>& asked) const {
+  const std::lock_guard<std::mutex> lock(impl_->mutex);
+  std::string names;
+  int count = 0, alone = 0;
+  double most = 0;
+  for (const int index : asked) {
+    const auto found = impl_->fused.find(impl_->frame(index).id);
+    if (found == impl_->fused.end() || found->second.refused.empty()) continue;
+    constexpr int kNamed = 6;  // as many as a person reads
+    if (count++ < kNamed) names += (names.empty() ? "" : ", ") + found->first;
+    alone += found->second.used.empty();
+    most = std::max(most, found->second.disagreementM);
+  }
+  if (count == 0) return "";
+  constexpr double kMillimetres = 1000;
+  return formatted(
+      "the depth of %d of %zu frames differs from that of frames nearby by up to %.3g mm (%s%s): the object moved or bent "
+      "between them, or "
+      "poses are wrong; such frames were left out of the fusion, and %d frames kept their own depth alone",
+      count, asked.size(), kMillimetres * most, names.c_str(), count > 6 ? ", ..." : "", alone);
 }
 
 SurfaceCache::Statistics SurfaceCache::statistics() const {

@@ -11,6 +11,7 @@
 
 #include "core/geometry/plane.h"
 #include "core/geometry/seen_window.h"
+#include "core/surface/filled_parts.h"
 #include "core/surface/mirror_places.h"
 #include "core/surface/occlusion.h"
 
@@ -508,6 +509,8 @@ Outcome<BrightestPoint> observedBrightestPoint(const Surface& surface, const Cam
   if (!peak.allFinite()) return Failure{Reason::NotFinite, "peak"};
   const Outcome<SurfacePoint> hit = surface.firstHit(camera.ray(peak));
   if (!hit) return Failure{Reason::PeakOffSurface, hit.failure().message()};
+  if (const auto* parts = dynamic_cast<const FilledParts*>(&surface); parts && parts->filledAt(*hit))
+    return Failure{Reason::PeakOffSurface, "the depth map has a hole there: its depth was filled in, not measured"};
   return BrightestPoint{facing(*hit, camera.centreInWorld()), peak, 0.0};
 }
 

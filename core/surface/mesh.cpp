@@ -9,6 +9,7 @@
 #include <mutex>
 
 #include "core/geometry/plane.h"
+#include "core/surface/filled_parts.h"
 #include "core/surface/mesh_rays.h"
 #include "core/surface/mesh_topology.h"
 #include "core/surface/mirror_places.h"
@@ -43,13 +44,14 @@ struct Place {
   double u = 0, v = 0, t = 0;
 };
 
-class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces, public BoundedParts {
+class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces, public BoundedParts, public FilledParts {
  public:
-  MeshSurface(TriangleMesh mesh, MeshPolicy policy, bool manySearches)
+  MeshSurface(TriangleMesh mesh, MeshPolicy policy, bool manySearches, std::vector<char> filled)
       : policy_(policy.normals),
         single_(policy.rays == RayPrecision::Single && policy.normals != NormalPolicy::Curved),
         manySearches_(manySearches),
-        mesh_(std::move(mesh)) {
+        mesh_(std::move(mesh)),
+        filled_(std::move(filled)) {
     check();
     topology_ = topologyOf(mesh_);
     require(std::find(topology_.alive.begin(), topology_.alive.end(), 1) != topology_.alive.end(),
@@ -112,6 +114,12 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces, 
   std::optional<std::vector<SurfacePart>> partsThatMay(const MirrorQuery& query, double lightReach, const PartTest& test,
                                                        std::size_t most) const override;
 
+  bool filledAt(const SurfacePoint& p) const override {
+    if (filled_.empty() || p.element < 0 || p.element >= static_cast<int>(mesh_.triangles.size())) return false;
+    const Vector3i& t = mesh_.triangles[p.element];
+    return filled_[t.x()] || filled_[t.y()] || filled_[t.z()];
+  }
+
   AlignedBox3d bounds() const override { return bounds_; }
 
   TriangleMesh tessellate(const AlignedBox3d& region, int) const override {
@@ -136,6 +144,7 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces, 
  private:
   void check() const {
     require(mesh_.normals.empty() || mesh_.normals.size() == mesh_.vertices.size(), "mesh: as many normals as vertices, or none");
+    require(filled_.empty() || filled_.size() == mesh_.vertices.size(), "mesh: as many marks as vertices, or none");
     for (std::size_t i = 0; i < mesh_.vertices.size(); ++i)
       if (!mesh_.vertices[i].allFinite()) require(false, "mesh: vertex " + std::to_string(i) + " is not finite");
     const int count = static_cast<int>(mesh_.vertices.size());
@@ -326,6 +335,7 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces, 
   bool single_;  // Embree's own hits serve
   bool manySearches_;
   TriangleMesh mesh_;
+  std::vector<char> filled_;  ///< of vertices; empty = none is
   MeshTopology topology_;
   AlignedBox3d bounds_;
   Vector3d centre_{0, 0, 0};
@@ -488,8 +498,8 @@ Outcome<Curvature> MeshSurface::curvatureAt(const SurfacePoint& p) const {
 
 }  // namespace
 
-std::shared_ptr<const Surface> makeMesh(TriangleMesh mesh, MeshPolicy policy, bool manySearches) {
-  return std::make_shared<MeshSurface>(std::move(mesh), policy, manySearches);
+std::shared_ptr<const Surface> makeMesh(TriangleMesh mesh, MeshPolicy policy, bool manySearches, std::vector<char> filled) {
+  return std::make_shared<MeshSurface>(std::move(mesh), policy, manySearches, std::move(filled));
 }
 
 }  // namespace glint

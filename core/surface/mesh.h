@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "core/surface/surface.h"
 
@@ -30,6 +31,8 @@ namespace glint {
 ///   of them several times faster and surer; not worth it for a surface that one photograph uses.
 /// std::invalid_argument (with the index) for a vertex that is not finite or a corner out of range, when there is no
 /// triangle with an area, or when the mesh's normals are neither empty nor one per vertex.
-std::shared_ptr<const Surface> makeMesh(TriangleMesh mesh, MeshPolicy policy, bool manySearches = true);
+/// @param filled  one per vertex: not 0 = nobody measured it (FilledParts); empty = all were measured.
+std::shared_ptr<const Surface> makeMesh(TriangleMesh mesh, MeshPolicy policy, bool manySearches = true,
+                                        std::vector<char> filled = {});
 
 }  // namespace glint

@@ -11,6 +11,7 @@
 
 #include "core/base/outcome.h"
 #include "core/geometry/camera.h"
+#include "core/surface/depth_policy.h"
 
 namespace glint {
 
@@ -49,9 +50,10 @@ enum class RayPrecision { Double, Single };
 struct MeshPolicy {
   NormalPolicy normals = NormalPolicy::Interpolated;
   RayPrecision rays = RayPrecision::Double;
+  DepthPolicy depth = {};  ///< of surfaces that are made from depth maps
 
   MeshPolicy() = default;
-  MeshPolicy(NormalPolicy n, RayPrecision r = RayPrecision::Double) : normals(n), rays(r) {}
+  MeshPolicy(NormalPolicy n, RayPrecision r = RayPrecision::Double, DepthPolicy d = {}) : normals(n), rays(r), depth(d) {}
   auto operator<=>(const MeshPolicy&) const = default;
 };
 

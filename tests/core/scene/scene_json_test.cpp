@@ -38,6 +38,49 @@ TEST(ReadScene, MinimalFileWithItsDefaults) {
   EXPECT_TRUE(scene.unknownJson.empty());
 }
 
+const char* const kDepthCamera =
+    R"("depth_camera": {"width": 32, "height": 24, "fx": 40, "fy": 41, "cx": 15.5, "cy": 11.5, "maker": "x",
+  "camera_from_depth": [[1,0,0,0.025],[0,1,0,0],[0,0,1,0.5],[0,0,0,1]]}, )";
+
+TEST(ReadScene, DepthCameraOfOneFrameOrOfAll) {
+  const TemporaryFolder folder;
+  const std::string depth = with(minimalScene(), "\"id\": \"a\",", "\"id\": \"a\", \"depth\": \"d.png\",");
+  const std::string own = with(depth, "\"id\": \"a\",", std::string(kDepthCamera) + "\"id\": \"a\",");
+  const std::string shared = with(depth, "{", std::string("{") + kDepthCamera);
+  for (const std::string& text : {own, shared}) {
+    const Scene scene = readScene(folder.write("scene.json", text));
+    ASSERT_TRUE(scene.frames[0].depthCamera);
+    const Camera& camera = *scene.frames[0].depthCamera;
+    EXPECT_EQ(camera.width, 32);
+    EXPECT_EQ(camera.pixelFromRay(1, 1), 41);
+    // A point 1 m before the depth camera lies 1.5 m before the frame's and 25 mm to its right.
+    EXPECT_NEAR((camera.camFromWorld * Eigen::Vector3d(0.025, 0, 1.5) - Eigen::Vector3d(0, 0, 1)).norm(), 0, 1e-12);
+    // Written and read again it is the same, its unknown key too.
+    writeScene(scene, folder.path() / "again.json");
+    const Scene again = readScene(folder.path() / "again.json");
+    EXPECT_TRUE(again.frames[0].depthCamera->camFromWorld.isApprox(camera.camFromWorld, 1e-12));
+    EXPECT_EQ(again.frames[0].depthCamera->pixelFromRay, camera.pixelFromRay);
+    EXPECT_THAT(again.unknownJson, HasSubstr("maker"));
+  }
+  EXPECT_FALSE(readScene(folder.write("scene.json", depth)).frames[0].depthCamera);
+}
+
+TEST(ReadScene, DepthCameraWithoutPlaceIsRefused) {
+  const TemporaryFolder folder;
+  for (const auto& [from, to, expected] :
+       {std::array<const char*, 3>{"camera_from_depth", "depth_from_camera", "camera_from_depth"},
+        std::array<const char*, 3>{"[0,0,1,0.5]", "[0,0,2,0.5]", "camera_from_depth"},
+        std::array<const char*, 3>{"\"maker\"", "\"k1\"", "k1"}}) {
+    try {
+      (void)readScene(folder.write("scene.json", with(with(minimalScene(), "{", std::string("{") + kDepthCamera), from, to)));
+      FAIL() << to;
+    } catch (const InputError& e) {
+      EXPECT_THAT(e.what(), HasSubstr("depth_camera"));
+      EXPECT_THAT(e.what(), HasSubstr(expected));
+    }
+  }
+}
+
 TEST(ReadScene, FolderOpensItsSceneFile) {
   const TemporaryFolder folder;
   folder.write("scene.json", with(minimalScene(), "{", R"({"name": "right", )"));
