@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/lamps/scene_lamps.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/base/angle.h"
+#include "core/base/median.h"
+#include "core/base/number_text.h"
+#include "core/base/parallel.h"
+#include "core/fit/fit_engine.h"
+#include "core/geometry/plane.h"
+#include "core/light/estimate.h"
+
+namespace glint {
+namespace {
+
+constexpr double kContraryAngle = 6;     // degrees: no off-specular shift or blur turns a mirrored ray that far
+constexpr double kContrarySpread = 5;    // standard deviations of the other views' angles
+constexpr double kMadToSigma = 1.4826;   // of normal noise
+constexpr std::size_t kMostPairs = 300;  // of rays that are tried as the lamp: all of 25 views
+constexpr double kKnownInverse = 5;      // standard deviations of the inverse distance, as of ball lamps
+constexpr double kOffSpecularPx = 1.4;   // how far a peak was seen from its mirror point (method.md, section 15)
+
+struct SceneLight {
+  std::string id;
+  std::vector<int> views;   ///< indices into Inspection::views
+  std::vector<int> frames;  ///< in which it is on or seen
+};
+
+std::vector<SceneLight> lightsOf(const Inspection& r) {
+  std::vector<SceneLight> lights;
+  const auto lightOf = [&](const std::string& id) -> SceneLight& {
+    const auto at = std::find_if(lights.begin(), lights.end(), [&](const SceneLight& l) { return l.id == id; });
+    return at != lights.end() ? *at : *lights.insert(lights.end(), SceneLight{id, {}, {}});
+  };
+  for (const int frame : r.train.frames) {
+    if (!r.isTraining(frame)) continue;
+    std::set<std::string> here;
+    for (const std::string& id : r.scene->frames[static_cast<std::size_t>(frame)].lightsOn) {
+      lightOf(id);
+      here.insert(id);
+    }
+    for (std::size_t v = 0; v < r.views.size(); ++v) {
+      if (r.views[v].frame != frame || r.views[v].highlight.light.empty()) continue;
+      lightOf(r.views[v].highlight.light).views.push_back(static_cast<int>(v));
+      here.insert(r.views[v].highlight.light);
+    }
+    for (const std::string& id : here) lightOf(id).frames.push_back(frame);
+  }
+  return lights;
+}
+
+/// Angles between the mirrored rays and a light, rad.
+std::vector<double> anglesTo(const Light& light, const std::vector<ReflectedRay>& rays) {
+  std::vector<double> angles;
+  for (const ReflectedRay& r : rays) {
+    const Eigen::Vector3d to = light.directionFrom(r.origin);
+    angles.push_back(std::atan2(r.direction.cross(to).norm(), r.direction.dot(to)));
+  }
+  return angles;
+}
+
+/// Which of at least three rays go elsewhere than most of them.
+std::vector<bool> contraryRays(const std::vector<ReflectedRay>& rays) {
+  std::vector<bool> contrary(rays.size(), false);
+  if (rays.size() < 3) return contrary;
+  std::vector<double> best;
+  double least = 0;
+  const std::size_t pairs = rays.size() * (rays.size() - 1) / 2, stride = pairs / kMostPairs + 1;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    for (std::size_t j = i + 1; j < rays.size(); ++j) {
+      if (next++ % stride != 0) continue;
+      const Outcome<Triangulation> t = triangulateLight({rays[i], rays[j]});
+      if (!t) continue;
+      std::vector<double> angles = anglesTo(t->light, rays);
+      // The two that made it fit it: the middle of the others counts.
+      const double middle = upperMedian(angles);
+      if (!best.empty() && middle >= least) continue;
+      best = std::move(angles);
+      least = middle;
+    }
+  if (best.empty()) return contrary;
+  const double limit = std::max(radians(kContraryAngle), kContrarySpread * kMadToSigma * least);
+  for (std::size_t i = 0; i < rays.size(); ++i) contrary[i] = best[i] > limit;
+  return contrary;
+}
+
+/// Middle of the surfaces that the views see; of their brightest points where a surface has no bounds.
+Eigen::Vector3d middleOf(const std::vector<TrainingView>& views) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const TrainingView& v : views) {
+    const Eigen::AlignedBox3d box = v.surface->bounds();
+    const bool bounded = box.min().allFinite() && box.max().allFinite();
+    sum += bounded ? box.center() : v.seen->brightest.point.position;
+  }
+  return sum / static_cast<double>(views.size());
+}
+
+/// Direction and inverse distance of a light as seen from a point, with the covariance of (two tangent coordinates, inverse distance).
+struct SeenLight {
+  Eigen::Vector3d direction;
+  double inverse = 0;
+  Eigen::Matrix3d covariance;
+};
+SeenLight seenFrom(const Eigen::Vector3d& from, const Eigen::Vector4d& lw, const Eigen::MatrixXd& root) {
+  const Eigen::Vector3d q = lw.head<3>() - lw.w() * from;
+  const double length = q.norm();
+  SeenLight seen{q / length, lw.w() / length, {}};
+  Eigen::Matrix<double, 3, 4> slopes;
+  Eigen::Matrix<double, 3, 4> ofQ;
+  ofQ << Eigen::Matrix3d::Identity(), -from;
+  slopes.topRows<2>() = tangentBasis(seen.direction).transpose() * ofQ / length;
+  slopes.row(2) = -seen.inverse / length * seen.direction.transpose() * ofQ;
+  slopes(2, 3) += 1 / length;
+  const Eigen::MatrixXd moved = slopes * root.topRows<4>();
+  seen.covariance = moved * moved.transpose();
+  return seen;
+}
+
+class SceneLamp {
+ public:
+  SceneLamp(const Inspection& r, const SceneLight& light) : r_(r), light_(light) {}
+
+  LampAnswer run() {
+    a_.id = light_.id;
+    for (const int frame : light_.frames) a_.frames.push_back(idOf(frame));
+    gather();
+    if (views_.empty()) {
+      if (!a_.failure)
+        a_.failure = Failure{Reason::NoHighlight, "no frame shows a highlight of this lamp that can be told apart"};
+      return a_;
+    }
+    dropContrary();
+    a_.from = middleOf(views_);
+    if (!fromModel() && !fromBundle()) fromRays();
+    return a_;
+  }
+
+ private:
+  const std::string& idOf(int frame) const { return r_.scene->frames[static_cast<std::size_t>(frame)].id; }
+
+  void drop(const TrainingView& v, const std::string& reason) {
+    a_.dropped.push_back({idOf(v.frame), std::nullopt, v.camera.distorted(v.highlight.peak), reason});
+  }
+
+  void gather() {
+    for (const int v : light_.views) {
+      TrainingView view = r_.viewAsGiven(v);
+      if (view.seen) {
+        views_.push_back(std::move(view));
+        continue;
+      }
+      if (!a_.failure) a_.failure = Failure{view.failure()->reason, "frame " + idOf(view.frame) + ": " + view.failure()->detail};
+      drop(view, view.failure()->message());
+    }
+    if (!views_.empty()) a_.failure.reset();
+    whole_ = true;
+  }
+
+  void dropContrary() {
+    std::vector<ReflectedRay> rays;
+    for (const TrainingView& v : views_) rays.push_back(reflectedRay(v.seen->brightest, v.camera));
+    const std::vector<bool> contrary = contraryRays(rays);
+    std::vector<TrainingView> kept;
+    for (std::size_t i = 0; i < views_.size(); ++i)
+      if (contrary[i]) {
+        drop(views_[i], "contradicts the other frames: its mirrored ray passes far from the lamp that the others see");
+        whole_ = false;
+      } else {
+        kept.push_back(std::move(views_[i]));
+      }
+    views_ = std::move(kept);
+  }
+
+  bool fromModel() {
+    const Settings& settings = r_.request.settings;
+    LightFit lit = fitLight(views_, *r_.scene, *r_.surfaces, settings);
+    views_ = std::move(lit.views);
+    estimate_ = std::move(lit.light);
+    const auto known = r_.pixelFits.find(r_.keyFor(views_.front().frame, light_.id));
+    const bool use = whole_ && !lit.correction && known != r_.pixelFits.end() && known->second;
+    const Outcome<ModelFit> fit =
+        fitModel(radianceModel(), views_, estimate_, settings, use ? *known->second : std::shared_ptr<const PixelFit>());
+    if (!fit || !fit->lightEstimate || !fit->uncertainty) return false;
+    a_.solver = fit->solver;
+    a_.remarks = fit->remarks;
+    return place(*fit->lightEstimate, fit->uncertainty->root.topRows(4), fit->residualPx);
+  }
+
+  bool fromBundle() {
+    if (!estimate_) return false;
+    a_.solver = estimate_->solver;
+    if (estimate_->uncertainty) return place(estimate_->light, estimate_->uncertainty->root.topRows(4), estimate_->residualPx);
+    if (!estimate_->covariance || estimate_->light.atInfinity()) return false;
+    // Of a position as of homogeneous coordinates with w = 1: d(l / w) = dl.
+    Eigen::MatrixXd root = Eigen::MatrixXd::Zero(4, 3);
+    root.topRows<3>() = estimate_->covariance->llt().matrixL();
+    return place(Light::at(estimate_->light.position()), root * estimate_->light.homogeneous().w(), estimate_->residualPx);
+  }
+
+  /// @param root  of the homogeneous coordinates of length 1
+  bool place(const Light& light, const Eigen::MatrixXd& root, const std::vector<double>& residualPx) {
+    const Eigen::Vector4d& lw = light.homogeneous();
+    const SeenLight seen = seenFrom(*a_.from, lw, root);
+    const double sigma = std::sqrt(seen.covariance(2, 2));
+    if (!seen.covariance.allFinite() || !seen.direction.allFinite()) return false;
+    a_.direction = seen.direction;
+    a_.directionSigma = std::sqrt(seen.covariance.topLeftCorner<2, 2>().trace());
+    a_.highlights = static_cast<int>(views_.size());
+    double squares = 0;
+    for (const double px : residualPx) squares += px * px;
+    if (!residualPx.empty()) a_.residualPx = std::sqrt(squares / static_cast<double>(residualPx.size()));
+    if (!(seen.inverse > kKnownInverse * sigma)) {
+      const std::string nearest =
+          formatted("parallel rays: the lamp is farther away than its highlights can tell, at %.3g m or more (95 %%)",
+                    1 / (std::max(0.0, seen.inverse) + 1.645 * sigma));
+      a_.withoutPosition = views_.size() < 2 ? "one view leaves the distance open; " + nearest : nearest;
+      return true;
+    }
+    Eigen::Matrix<double, 3, 4> slopes;
+    slopes << Eigen::Matrix3d::Identity() / lw.w(), -lw.head<3>() / (lw.w() * lw.w());
+    const Eigen::MatrixXd moved = slopes * root;
+    a_.position = light.position();
+    a_.covariance = moved * moved.transpose();
+    return true;
+  }
+
+  /// The mean of the mirrored rays: all that is left.
+  void fromRays() {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    std::vector<Eigen::Vector3d> directions;
+    double turned = 0;
+    for (const TrainingView& v : views_) {
+      directions.push_back(reflectedRay(v.seen->brightest, v.camera).direction);
+      sum += directions.back();
+      const Outcome<BrightestPoint> beside =
+          observedBrightestPoint(*v.surface, v.camera, v.highlight.peak + Pixel(kOffSpecularPx, 0));
+      if (beside) turned = std::max(turned, (reflectedRay(*beside, v.camera).direction - directions.back()).norm());
+    }
+    const double n = static_cast<double>(views_.size());
+    if (!(sum.norm() > 0.5 * n)) {
+      a_.failure =
+          Failure{Reason::NotConverged, "the mirrored rays of " + std::to_string(views_.size()) + " views point everywhere"};
+      return;
+    }
+    a_.direction = sum.normalized();
+    double squares = 0;
+    for (const Eigen::Vector3d& d : directions) squares += (d - a_.direction).squaredNorm();
+    a_.directionSigma = std::max(turned, n > 1 ? std::sqrt(squares / (n - 1)) : 0);
+    a_.highlights = static_cast<int>(views_.size());
+    a_.solver = "mirror rays";
+    a_.withoutPosition = "only the mirrored rays of the peaks were used; " +
+                         (estimate_ ? std::string("no fit explains the contours") : estimate_.failure().message());
+  }
+
+  const Inspection& r_;
+  const SceneLight& light_;
+  std::vector<TrainingView> views_;
+  bool whole_ = true;  ///< all usable views count: the inspection's own fits are of them
+  Outcome<LightEstimate> estimate_ = Failure{Reason::NotReached, "not estimated"};
+  LampAnswer a_;
+};
+
+}  // namespace
+
+std::vector<LampAnswer> lampsOfScene(const Inspection& inspection, const ProgressFn& progress) {
+  const std::vector<SceneLight> lights = lightsOf(inspection);
+  std::vector<LampAnswer> answers(lights.size());
+  parallelFor(
+      static_cast<int>(lights.size()),
+      [&](int i) { answers[static_cast<std::size_t>(i)] = SceneLamp(inspection, lights[static_cast<std::size_t>(i)]).run(); },
+      progress, "lamps");
+  return answers;
+}
+
+}  // namespace glint
