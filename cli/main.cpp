@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
                                       predictCommand(),
                                       evaluateCommand(),
                                       tradeoffCommand(),
+                                      lightsCommand(),
                                       synthCommand(),
                                       convertCommand(),
                                       renderCommand(),
