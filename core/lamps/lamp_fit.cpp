@@ -246,8 +246,15 @@ void BallLampFit::addDistance(const LampInFit& lamp, const Eigen::MatrixXd& cova
 
 std::string BallLampFit::whyNoDistance(const LampInFit& lamp, double inverse, double sigma) const {
   if (!p_.camera) return "without a focal length the directions assume a distant camera, and no distance is known";
-  const std::string direction = "; the direction is that of a distant lamp";
-  if (lamp.unknowns.peaks.size() < 2) return "one ball in one view leaves the distance open" + direction;
+  std::string direction = "; the direction is that of a distant lamp";
+  if (lamp.unknowns.peaks.size() < 2) {
+    const MirrorBall ball = problem_->ball(lamp.unknowns.peaks.front().ball);
+    constexpr double kRadii = 20;  // a lamp at arm's length before a ball in a hand
+    if (const Outcome<MirrorRay> ray = mirrorRay(view_, ball, lamp.unknowns.peaks.front().peak))
+      direction += formatted(" (one at %g ball radii is seen %.2g degrees off from the ball's middle)", kRadii,
+                             degrees((ray->origin - ball.centre).cross(ray->direction).norm() / ball.radius / kRadii));
+    return "one ball in one view leaves the distance open" + direction;
+  }
   if (!lamp.unknowns.distanceFree) return "the balls lie in line with the lamp, which leaves the distance open" + direction;
   const double nearest = unit_ * problem_->scale() / (std::max(0.0, inverse) + kFarthest95 * sigma);
   return formatted("parallel rays: the lamp is farther away than the balls can tell, at %.3g %s or more (95 %%)", nearest,

@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -16,6 +17,7 @@
 #include "core/fit/training.h"
 #include "core/geometry/plane.h"
 #include "core/light/estimate.h"
+#include "core/light/left_out.h"
 
 namespace glint {
 namespace {
@@ -27,6 +29,7 @@ constexpr std::size_t kMostPairs = 300;  // of rays that are tried as the lamp: 
 constexpr double kKnownInverse = 5;      // standard deviations of the inverse distance, as of ball lamps
 constexpr int kMostLeftOut = 8;          // parts of the views that are left out in turn: a spread of eight is known to a quarter
 constexpr int kLeastLeftOut = 4;         // parts; fewer tell no spread
+constexpr double kViewErrorPx = 0.2;     // of one view among too few to tell: a good pose, surface and lobe leave that much
 constexpr double kOffSpecularPx = 1.4;   // how far a peak was seen from its mirror point (method.md, section 15)
 
 struct SceneLight {
@@ -258,24 +261,73 @@ class SceneLamp {
     return views;
   }
 
-  /// @param root  of the homogeneous coordinates of length 1. @param without  see leftOutCovariance()
-  bool place(const Light& light, const Eigen::MatrixXd& root, const std::vector<double>& residualPx,
-             const std::function<std::optional<Light>(const std::vector<bool>&)>& without) {
-    SeenLight seen = seenFrom(*a_.from, light, root);
-    if (!seen.covariance.allFinite() || !seen.direction.allFinite()) return false;
-    seen.covariance += leftOutCovariance(*a_.from, seen, views_.size(), without);
-    const double sigma = std::sqrt(seen.covariance(2, 2));
-    a_.direction = seen.direction;
-    a_.directionSigma = std::sqrt(seen.covariance.topLeftCorner<2, 2>().trace());
+  /// By how much the mirrored ray of a view turns when its peak moves by a pixel, rad.
+  double turnPerPixel(const TrainingView& v) const {
+    const Eigen::Vector3d here = reflectedRay(v.seen->brightest, v.camera).direction;
+    double most = 0;
+    for (const Pixel& by : {Pixel(1, 0), Pixel(-1, 0), Pixel(0, 1), Pixel(0, -1)})
+      if (const Outcome<BrightestPoint> b = observedBrightestPoint(*v.surface, v.camera, v.highlight.peak + by))
+        most = std::max(most, (reflectedRay(*b, v.camera).direction - here).norm());
+    return most;
+  }
+
+  /// Of (two tangent coordinates, inverse distance) where each view is off by kViewErrorPx on its own: what a few views cannot show themselves.
+  Eigen::Matrix3d assumedCovariance(const SeenLight& seen) const {
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+    for (const TrainingView& v : views_) {
+      const Eigen::Vector3d& at = v.seen->brightest.point.position;
+      const Eigen::Vector3d to = (seen.direction - seen.inverse * (at - *a_.from)).normalized();
+      Eigen::Matrix3d by;
+      by << tangentBasis(seen.direction), *a_.from - at;
+      const Eigen::Matrix<double, 2, 3> rows = tangentBasis(to).transpose() * by;
+      information += rows.transpose() * rows / std::pow(kViewErrorPx * turnPerPixel(v), 2);
+    }
+    return information.inverse();
+  }
+
+  void addResidual(const std::vector<double>& residualPx) {
     a_.highlights = static_cast<int>(views_.size());
     double squares = 0;
     for (const double px : residualPx) squares += px * px;
     if (!residualPx.empty()) a_.residualPx = std::sqrt(squares / static_cast<double>(residualPx.size()));
+  }
+
+  /// All views from one place see one ray: what a fit says of the distance along it is the lobe's shape, no evidence.
+  bool placeFromOneView(const Light& light, const Eigen::MatrixXd& root) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double variance = 0;
+    for (const TrainingView& v : views_) {
+      const SeenLight seen = seenFrom(v.seen->brightest.point.position, light, root);
+      sum += seen.direction;
+      const double assumed = kViewErrorPx * turnPerPixel(v);
+      variance = std::max(variance, seen.covariance.topLeftCorner<2, 2>().trace() + 2 * assumed * assumed);
+    }
+    if (!sum.allFinite() || !std::isfinite(variance)) return false;
+    a_.direction = sum.normalized();
+    a_.directionSigma = std::sqrt(variance);
+    a_.withoutPosition = "one view leaves the distance open; the direction is that of a distant lamp";
+    return true;
+  }
+
+  /// @param root  of the homogeneous coordinates of length 1. @param without  see leftOutCovariance()
+  bool place(const Light& light, const Eigen::MatrixXd& root, const std::vector<double>& residualPx,
+             const std::function<std::optional<Light>(const std::vector<bool>&)>& without) {
+    addResidual(residualPx);
+    if (countOf(placesOf(views_)) < 2) return placeFromOneView(light, root);
+    SeenLight seen = seenFrom(*a_.from, light, root);
+    if (!seen.covariance.allFinite() || !seen.direction.allFinite()) return false;
+    Eigen::Matrix3d ofViews = leftOutCovariance(*a_.from, seen, views_.size(), without);
+    const bool few = ofViews.isZero(0);
+    if (few) ofViews = assumedCovariance(seen);
+    seen.covariance += ofViews;
+    const double sigma = std::sqrt(seen.covariance(2, 2));
+    a_.direction = seen.direction;
+    a_.directionSigma = std::sqrt(seen.covariance.topLeftCorner<2, 2>().trace());
+    if (!std::isfinite(a_.directionSigma)) return false;
     if (!(seen.inverse > kKnownInverse * sigma)) {
-      const std::string nearest =
-          formatted("parallel rays: the lamp is farther away than its highlights can tell, at %.3g m or more (95 %%)",
-                    1 / (std::max(0.0, seen.inverse) + 1.645 * sigma));
-      a_.withoutPosition = views_.size() < 2 ? "one view leaves the distance open; " + nearest : nearest;
+      a_.withoutPosition = "parallel rays: the lamp is farther away than its highlights can tell";
+      const double nearest = 1 / (std::max(0.0, seen.inverse) + 1.645 * sigma);
+      if (!few && std::isfinite(nearest)) a_.withoutPosition += formatted(", at %.3g m or more (95 %%)", nearest);
       return true;
     }
     Eigen::Matrix3d slopes;
@@ -293,9 +345,7 @@ class SceneLamp {
     for (const TrainingView& v : views_) {
       directions.push_back(reflectedRay(v.seen->brightest, v.camera).direction);
       sum += directions.back();
-      const Outcome<BrightestPoint> beside =
-          observedBrightestPoint(*v.surface, v.camera, v.highlight.peak + Pixel(kOffSpecularPx, 0));
-      if (beside) turned = std::max(turned, (reflectedRay(*beside, v.camera).direction - directions.back()).norm());
+      turned = std::max(turned, kOffSpecularPx * turnPerPixel(v));
     }
     const double n = static_cast<double>(views_.size());
     if (!(sum.norm() > 0.5 * n)) {
