@@ -67,7 +67,7 @@ class BallLampFit {
 
   const BallPhotographs& p_;
   bool refine_;
-  BallView view_;
+  BallProjection view_;
   double unit_ = 1;
   Eigen::Vector3d reference_ = Eigen::Vector3d::Zero();
   std::optional<LampProblem> problem_;

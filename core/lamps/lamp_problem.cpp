@@ -20,7 +20,7 @@ constexpr double kLeastPivot = 1e-6;    // of the direction's: a distance that m
 
 }  // namespace
 
-LampProblem::LampProblem(BallView view, std::vector<BallParameters> balls, double scale)
+LampProblem::LampProblem(BallProjection view, std::vector<BallParameters> balls, double scale)
     : view_(std::move(view)), balls_(std::move(balls)), scale_(scale) {
   for (const BallParameters& b : balls_) roots_.push_back(b.covariance.llt().matrixL());
   z_ = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(balls_.size()));

@@ -29,9 +29,9 @@ struct LampUnknowns {
 class LampProblem {
  public:
   /// @param scale  length by which inverse distances become numbers of about 1 or less
-  LampProblem(BallView view, std::vector<BallParameters> balls, double scale);
+  LampProblem(BallProjection view, std::vector<BallParameters> balls, double scale);
 
-  const BallView& view() const { return view_; }
+  const BallProjection& view() const { return view_; }
   double scale() const { return scale_; }
   std::size_t ballCount() const { return balls_.size(); }
   /// Outlines: value + root(covariance) z.
@@ -68,7 +68,7 @@ class LampProblem {
 
  private:
   double costOf(const std::vector<LampUnknowns>& lamps) const;
-  BallView view_;
+  BallProjection view_;
   std::vector<BallParameters> balls_;
   std::vector<Eigen::Matrix3d> roots_;
   double scale_;

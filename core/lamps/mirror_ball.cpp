@@ -21,7 +21,7 @@ constexpr double kStepShare =
 constexpr int kMostRootSteps = 100;  // halving alone takes 53 to the last bit
 
 /// Signed angle of a tangent ray beyond the cone of the ball, in pixels along the outline's normal.
-double beyondOutline(const BallView& view, const Eigen::Vector3d& parameters, const Pixel& edge) {
+double beyondOutline(const BallProjection& view, const Eigen::Vector3d& parameters, const Pixel& edge) {
   const MirrorBall ball = ballOf(view, parameters);
   const double half = std::asin(std::min(1.0, ball.radius / ball.centre.norm()));
   const auto angle = [&](const Pixel& p) {
@@ -49,7 +49,7 @@ struct OutlineEquations {
                   circle = Eigen::Matrix3d::Zero();  ///< the second one of centre and radius of a circle
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
 };
-OutlineEquations outlineEquations(const BallView& view, const Eigen::Vector3d& at, const std::vector<EdgePoint>& edges) {
+OutlineEquations outlineEquations(const BallProjection& view, const Eigen::Vector3d& at, const std::vector<EdgePoint>& edges) {
   OutlineEquations e;
   const double step = kStepShare * std::max(1.0, at(2));
   for (const EdgePoint& p : edges) {
@@ -68,7 +68,7 @@ OutlineEquations outlineEquations(const BallView& view, const Eigen::Vector3d& a
   return e;
 }
 
-Outcome<BallParameters> coneParameters(const BallView& view, const RefinedOutline& outline) {
+Outcome<BallParameters> coneParameters(const BallProjection& view, const RefinedOutline& outline) {
   const std::vector<EdgePoint> edges = edgesOf(outline);
   BallParameters result;
   result.value << outline.outline.centre, outline.outline.radius;
@@ -94,18 +94,18 @@ Outcome<BallParameters> coneParameters(const BallView& view, const RefinedOutlin
 
 }  // namespace
 
-Pixel BallView::project(const Eigen::Vector3d& point) const {
+Pixel BallProjection::project(const Eigen::Vector3d& point) const {
   if (!camera) return point.head<2>();
   return Eigen::Vector3d(camera->pixelFromRay * point).hnormalized();
 }
 
-MirrorBall ballOf(const BallView& view, const Eigen::Vector3d& p) {
+MirrorBall ballOf(const BallProjection& view, const Eigen::Vector3d& p) {
   if (!view.camera) return {{p.x(), p.y(), 0}, p.z()};
   const Eigen::Matrix3d& k = view.camera->pixelFromRay;
   return {k.inverse() * Eigen::Vector3d(p.x(), p.y(), 1) * (k(0, 0) / p.z()), 1};
 }
 
-Outcome<BallParameters> ballParameters(const BallView& view, const RefinedOutline& outline) {
+Outcome<BallParameters> ballParameters(const BallProjection& view, const RefinedOutline& outline) {
   BallParameters result;
   result.value << outline.outline.centre, outline.outline.radius;
   result.covariance = outline.covariance;
@@ -113,7 +113,7 @@ Outcome<BallParameters> ballParameters(const BallView& view, const RefinedOutlin
   return view.camera ? coneParameters(view, outline) : Outcome<BallParameters>(result);
 }
 
-Outcome<MirrorRay> mirrorRay(const BallView& view, const MirrorBall& ball, const Pixel& peak) {
+Outcome<MirrorRay> mirrorRay(const BallProjection& view, const MirrorBall& ball, const Pixel& peak) {
   const Failure missed{Reason::PeakOffSurface, "the highlight lies outside of the ball's outline"};
   Eigen::Vector3d point;
   if (view.camera) {
@@ -132,7 +132,7 @@ Outcome<MirrorRay> mirrorRay(const BallView& view, const MirrorBall& ball, const
   return MirrorRay{point, (2 * n.dot(v) * n - v).normalized()};
 }
 
-std::optional<Pixel> mirrorPixel(const BallView& view, const MirrorBall& ball, const AimedLamp& lamp) {
+std::optional<Pixel> mirrorPixel(const BallProjection& view, const MirrorBall& ball, const AimedLamp& lamp) {
   const double w = lamp.inverseDistance;
   const Eigen::Vector3d toEye = view.camera ? Eigen::Vector3d(-ball.centre) : Eigen::Vector3d(0, 0, -1);
   const Eigen::Vector3d toLamp = lamp.from(ball.centre);

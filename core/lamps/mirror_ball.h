@@ -14,7 +14,7 @@ namespace glint {
 
 /// How the balls are seen. With a camera, which stands at the origin, lengths are in radii of the ball. Without one the rays are
 /// parallel to z and lengths are pixels: x and y of a point are its pixel.
-struct BallView {
+struct BallProjection {
   std::optional<Camera> camera;  ///< ideal pixels; pose and image size do not count
 
   /// From a point towards the camera, unit.
@@ -42,7 +42,7 @@ struct AimedLamp {
 
 /// A ball by three numbers of its image, px: with a camera the pixel of its centre and the focal length over the depth in radii; else
 /// centre and radius of its outline.
-MirrorBall ballOf(const BallView& view, const Eigen::Vector3d& parameters);
+MirrorBall ballOf(const BallProjection& view, const Eigen::Vector3d& parameters);
 
 /// Those numbers and their covariance from the outline of the ball. With a camera the outline is the cone of rays that touch the ball, sin(angle to its centre) =
 /// radius / distance, fitted to the points of the edge, or to the circle where there are none; the covariance has the excess that the outline's own has over
@@ -52,7 +52,7 @@ struct BallParameters {
   Eigen::Vector3d value = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< px^2
 };
-Outcome<BallParameters> ballParameters(const BallView& view, const RefinedOutline& outline);
+Outcome<BallParameters> ballParameters(const BallProjection& view, const RefinedOutline& outline);
 
 /// What the reflection law says of one peak.
 struct MirrorRay {
@@ -60,11 +60,11 @@ struct MirrorRay {
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< towards the lamp, unit
 };
 /// PeakOffSurface where the pixel's ray misses the ball.
-Outcome<MirrorRay> mirrorRay(const BallView& view, const MirrorBall& ball, const Pixel& peak);
+Outcome<MirrorRay> mirrorRay(const BallProjection& view, const MirrorBall& ball, const Pixel& peak);
 
 /// Where the ball mirrors the lamp: the root of 2 t = angle to the camera + angle to the lamp in the plane of the ball's centre, camera and lamp, t the
 /// angle of the normal there (Alhazen's problem). Nothing where the lamp lies behind the ball.
-std::optional<Pixel> mirrorPixel(const BallView& view, const MirrorBall& ball, const AimedLamp& lamp);
+std::optional<Pixel> mirrorPixel(const BallProjection& view, const MirrorBall& ball, const AimedLamp& lamp);
 
 /// The lamp that the rays of several balls meet at, or their common direction: least squares of the sine of the angles, homogeneous.
 /// @param reference  of the answer. @param scale  a length of the arrangement, such as the distance of the balls.

@@ -11,7 +11,7 @@ using namespace ball_scene;
 constexpr double kPixel = 1e-9;  // of coordinates up to 2000 px: a hundred ulp
 
 TEST(MirrorPixel, Nominal) {
-  const BallView view{camera()};
+  const BallProjection view{camera()};
   const MirrorBall ball{{-4, 1, 20}, 1};
   for (const Eigen::Vector3d& at : {Eigen::Vector3d(3, -8, 5), Eigen::Vector3d(-5, 0.5, 18), Eigen::Vector3d(-4.5, 2, -30)}) {
     const Eigen::Vector3d from = at - ball.centre;
@@ -25,7 +25,7 @@ TEST(MirrorPixel, Nominal) {
 TEST(MirrorPixel, DistantLampAndDistantCamera) {
   const MirrorBall ball{{300, 200, 0}, 100};
   const Eigen::Vector3d direction = Eigen::Vector3d(0.5, -0.6, -0.4).normalized();
-  const auto found = mirrorPixel(BallView{}, ball, {direction, 0, {}});
+  const auto found = mirrorPixel(BallProjection{}, ball, {direction, 0, {}});
   ASSERT_TRUE(found);
   const Eigen::Vector3d p = mirrorPoint(ball.centre, 100, {{0, 0, -1}, true}, {direction, true});
   EXPECT_LT((*found - p.head<2>()).norm(), kPixel);
@@ -36,12 +36,12 @@ TEST(MirrorPixel, DistantLampAndDistantCamera) {
 
 TEST(MirrorPixel, BehindTheBallIsNotSeen) {
   const MirrorBall ball{{0, 0, 20}, 1};
-  EXPECT_FALSE(mirrorPixel(BallView{camera()}, ball, {Eigen::Vector3d(0.01, 0, 1).normalized(), 1e-3, ball.centre}));
+  EXPECT_FALSE(mirrorPixel(BallProjection{camera()}, ball, {Eigen::Vector3d(0.01, 0, 1).normalized(), 1e-3, ball.centre}));
 }
 
 // A mirror shows the way back: the ray of the pixel that mirrorPixel() gives meets the lamp.
 TEST(MirrorRay, MeetsTheLamp) {
-  const BallView view{camera()};
+  const BallProjection view{camera()};
   const MirrorBall ball{{-4, 1, 20}, 1};
   const Eigen::Vector3d at(3, -8, 5);
   const auto ray = mirrorRay(view, ball, seenBy(camera(), mirrorPoint(ball.centre, 1, {}, {at})));
@@ -51,7 +51,7 @@ TEST(MirrorRay, MeetsTheLamp) {
 }
 
 TEST(MirrorRay, OutsideOfTheOutlineIsRefused) {
-  const auto ray = mirrorRay(BallView{}, {{100, 100, 0}, 50}, {151, 100});
+  const auto ray = mirrorRay(BallProjection{}, {{100, 100, 0}, 50}, {151, 100});
   ASSERT_FALSE(ray);
   EXPECT_EQ(ray.failure().reason, Reason::PeakOffSurface);
 }
@@ -60,9 +60,9 @@ TEST(MirrorRay, OutsideOfTheOutlineIsRefused) {
 TEST(BallParameters, ConeOfTheOutline) {
   for (const double scale : {1e-3, 1.0, 1e3}) {
     const Eigen::Vector3d centre = scale * Eigen::Vector3d(-0.4, 0.25, 1.3);
-    const auto b = ballParameters(BallView{camera()}, outlineOf(camera(), centre, 0.05 * scale, 0.1));
+    const auto b = ballParameters(BallProjection{camera()}, outlineOf(camera(), centre, 0.05 * scale, 0.1));
     ASSERT_TRUE(b);
-    EXPECT_LT((ballOf(BallView{camera()}, b->value).centre * 0.05 * scale - centre).norm(), 1e-9 * centre.norm());
+    EXPECT_LT((ballOf(BallProjection{camera()}, b->value).centre * 0.05 * scale - centre).norm(), 1e-9 * centre.norm());
   }
 }
 
@@ -70,9 +70,9 @@ TEST(BallParameters, NoBallHasAHugeOutline) {
   RefinedOutline o;
   o.outline = {{959.5, 539.5}, 1e7};
   o.covariance.setIdentity();
-  EXPECT_FALSE(ballParameters(BallView{camera()}, o));
+  EXPECT_FALSE(ballParameters(BallProjection{camera()}, o));
   o.outline.radius = std::nan("");
-  EXPECT_FALSE(ballParameters(BallView{}, o));
+  EXPECT_FALSE(ballParameters(BallProjection{}, o));
 }
 
 TEST(LampOfRays, MeetingPointAndInfinity) {
