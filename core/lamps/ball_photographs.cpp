@@ -129,6 +129,11 @@ class ShotReader {
       : s_(shots), outlines_(outlines), givenSigmaPx_(givenSigmaPx), progress_(progress) {}
 
   Outcome<PhotographLamps> run(BallPhotographs photographs) {
+    constexpr double kSquare = 1e-3;  // of the focal length: over an outline of 1000 px that is half a pixel
+    if (const std::optional<Camera>& c = photographs.camera; c && !c->hasDistortion()) {
+      const Eigen::Matrix3d& k = c->pixelFromRay;
+      if (std::abs(k(1, 1) / k(0, 0) - 1) < kSquare) outlineCamera_ = OutlineCamera{k(0, 0), {k(0, 2), k(1, 2)}};
+    }
     for (std::size_t k = 0; k < s_.balls.size(); ++k) {
       if (!report(progress_, {"outlines", static_cast<int>(k), static_cast<int>(s_.balls.size())})) throw Stopped{};
       Outcome<RefinedOutline> outline = outlineOf(k);
@@ -164,6 +169,8 @@ class ShotReader {
   double givenSigmaPx_;
   const ProgressFn& progress_;
   std::map<std::size_t, Image> size_;  ///< of each ball's photographs, without pixels
+  std::optional<OutlineCamera>
+      outlineCamera_;  ///< none where a lens bends outlines: its ellipse is then found from the edge points alone
   std::vector<BallOutline> found_;
   std::vector<std::string> warnings_;
 };
@@ -218,7 +225,7 @@ Outcome<RefinedOutline> ShotReader::outlineOf(std::size_t k) {
   const Eigen::Vector2d corner = cuttings.front().corner;
   std::vector<Image> images;
   for (Cutting& c : cuttings) images.push_back(std::move(c.image));
-  Outcome<RefinedOutline> refined = refineBallOutline(images, corner, ball.outline);
+  Outcome<RefinedOutline> refined = refineBallOutline(images, corner, ball.outline, outlineCamera_);
   if (refined) return refined;
   warnings_.push_back("the outline of ball " + std::to_string(k + 1) + " is taken as given: " + refined.failure().message());
   return given;
