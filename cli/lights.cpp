@@ -64,7 +64,7 @@ void sayWhatIsMissing(const LightsArguments& a, bool camera, LampsReport& report
   if (!camera)
     report.warnings.emplace_back(
         "no focal length (--camera; EXIF is not read): directions assume a distant camera, which costs up to about the angle "
-        "of the ball from the image's middle, and no positions are known");
+        "between the ball's far edge and the image's middle, and no positions are known");
   if (!camera && !a.ballRadius.empty()) report.warnings.emplace_back("--ball-radius has no use without --camera");
   if (camera && a.balls.size() > 1 && a.ballRadius.empty())
     report.warnings.emplace_back("all balls are taken to be of one size, whose radius is the unit of length");

@@ -14,6 +14,7 @@
 #include "core/base/parallel.h"
 #include "core/lamps/ball_highlights.h"
 #include "core/lamps/ball_outline.h"
+#include "core/lamps/glossy_ball.h"
 #include "core/scene/frame_spec.h"
 #include "core/scene/scene.h"
 
@@ -147,7 +148,10 @@ class ShotReader {
     if (!report(progress_, {"lamps", 0, 1})) throw Stopped{};
     Outcome<BallLamps> fit = fitBallLamps(photographs, outlines_ == Outlines::Fitted);
     if (!fit) return fit.failure();
-    return named(*std::move(fit), seen);
+    PhotographLamps result = named(*std::move(fit), seen);
+    if (s_.balls.size() == 1 && showsLobes(photographs.seen, found_.front()))
+      refineByLobe(s_, size_.at(0).width, size_.at(0).height, photographs.camera, result.fit, progress_);
+    return result;
   }
 
  private:
