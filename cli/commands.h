@@ -11,6 +11,7 @@ Command convertCommand();
 Command detectCommand();
 Command evaluateCommand();
 Command infoCommand();
+Command lightsCommand();
 Command movieCommand();
 Command renderCommand();
 Command predictCommand();

@@ -10,6 +10,7 @@
 #include "core/inspect/summary.h"
 #include "core/model/star.h"
 #include "core/report/band_text.h"
+#include "core/report/csv_text.h"
 #include "core/report/detection_error.h"
 #include "core/report/warnings.h"
 #include "core/what_if/json.h"
@@ -268,14 +269,6 @@ ordered_json trainingJson(const Inspection& inspection) {
 std::string cell(double v, const char* format = "%.4g") {
   if (!std::isfinite(v)) return "-";
   return formatted(format, v);
-}
-
-/// A CSV field: quoted when it holds a separator or a quote.
-std::string csvText(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + "\"";
 }
 
 }  // namespace

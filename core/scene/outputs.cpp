@@ -28,6 +28,12 @@ bool isMovie(const std::string& head) {
          (head.starts_with("RIFF") && head.compare(8, 4, "AVI ") == 0);
 }
 
+/// A first line of digits alone.
+bool isCount(const std::string& head) {
+  const std::size_t digits = head.find_first_not_of("0123456789");
+  return digits != 0 && digits != std::string::npos && (head[digits] == '\n' || head[digits] == '\r');
+}
+
 }  // namespace
 
 OutputKind OutputKind::document(const std::string& key) { return {Form::Document, key, "a JSON file with \"" + key + "\""}; }
@@ -35,6 +41,7 @@ OutputKind OutputKind::table(const std::string& start) { return {Form::Table, st
 OutputKind OutputKind::page() { return {Form::Page, "", "a page written by this command"}; }
 OutputKind OutputKind::png() { return {Form::Png, "", "a PNG file"}; }
 OutputKind OutputKind::movie() { return {Form::Movie, "", "a movie"}; }
+OutputKind OutputKind::lightPositions() { return {Form::LightPositions, "", "a list of light positions (.lp)"}; }
 
 bool OutputKind::holds(const fs::path& file) const {
   std::error_code ignored;  // what cannot be asked about is not empty
@@ -46,6 +53,7 @@ bool OutputKind::holds(const fs::path& file) const {
     case Form::Table: return head.starts_with(key_);
     case Form::Page: return head.starts_with("<!doctype html>") && head.find("<title>Glint") != std::string::npos;
     case Form::Png: return head.starts_with("\x89PNG\r\n\x1a\n");
+    case Form::LightPositions: return isCount(head);
     case Form::Movie: return head.size() >= 12 && isMovie(head);
   }
   return false;

@@ -18,13 +18,14 @@ class OutputKind {
   static OutputKind page();                            ///< HTML of this program
   static OutputKind png();
   static OutputKind movie();
+  static OutputKind lightPositions();  ///< .lp: a count, then as many lines
 
   /// Whether the file may be replaced by one of this kind: empty, or of this kind.
   bool holds(const std::filesystem::path& file) const;
   const std::string& words() const { return words_; }
 
  private:
-  enum class Form { Document, Table, Page, Png, Movie };
+  enum class Form { Document, Table, Page, Png, Movie, LightPositions };
   OutputKind(Form form, std::string key, std::string words) : form_(form), key_(std::move(key)), words_(std::move(words)) {}
   Form form_;
   std::string key_, words_;

@@ -98,6 +98,8 @@ std::vector<Workload> workloads(bool every) {
            "evaluate IN/scene.json --train first:4 --models canonical --json e.json --html e.html --csv e.csv"),
       make("detect", "detect IN/scene.json --out found --json d.json",
            "detect IN/scene.json --level 0.4 --out found --json d.json"),
+      make("lights", "lights IN/scene.json -o l.json -o l.csv -o l.lp",
+           "lights IN/scene.json --exclude 0 -o l.json -o l.csv -o l.lp"),
       make("tradeoff",
            "tradeoff IN/scene.json --train first:4 --models canonical --repeats 1 --max-trials 2 --json t.json --html t.html -o "
            "t.glint",

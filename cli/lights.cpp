@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "cli/commands.h"
+#include "cli/scene_arguments.h"
+#include "core/base/number_text.h"
+#include "core/lamps/ball_photographs.h"
+#include "core/lamps/scene_lamps.h"
+#include "core/report/lamps_report.h"
+#include "core/scene/frame_spec.h"
+#include "core/scene/outputs.h"
+
+namespace glint::cli {
+namespace {
+
+struct LightsArguments {
+  std::string input, json, ballRadius, exclude, source = "radiance", outlines = "fitted";
+  double outlineSigmaPx = 1;  // what a person who draws a circle gets right
+  std::vector<std::string> balls, set, out;
+  SceneArguments places;
+};
+
+OutputKind kindOf(const std::string& file) {
+  const std::string ending = std::filesystem::path(file).extension().string();
+  if (ending == ".json") return OutputKind::document("glint_lights");
+  if (ending == ".csv") return OutputKind::table(kLampsCsvHeader);
+  if (ending == ".lp") return OutputKind::lightPositions();
+  throw InputError(file, "-o", "the ending chooses what is written: .json, .csv or .lp");
+}
+
+void checkOutputs(const LightsArguments& a, Outputs outputs) {
+  for (const std::string& file : a.out) outputs.file(file, "-o", kindOf(file));
+  outputs.file(a.json, "--json", OutputKind::document("glint_lights"));
+}
+
+std::optional<double> radiusOf(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const std::optional<double> radius = numberFrom(text);
+  if (!radius || !(*radius > 0)) throw InputError("", "--ball-radius " + text, "expected a radius in metres, above 0");
+  return radius;
+}
+
+Outlines outlinesOf(const std::string& text) {
+  return text == "given" ? Outlines::Given : text == "edges" ? Outlines::Edges : Outlines::Fitted;
+}
+
+/// What only one of the two kinds of input has a use for.
+void refuseOthers(const LightsArguments& a) {
+  const bool balls = !a.balls.empty();
+  for (const auto& [flag, text] : a.places.reading)
+    if (balls && !text.empty() && flag != "--camera")
+      throw InputError("", flag + " " + text, "has no use with --ball: photographs of balls need no scene");
+  if (balls && !a.set.empty())
+    throw InputError("", "--set " + a.set.front(), "has no use with --ball: settings are those of scenes");
+  if (!balls && !a.ballRadius.empty()) throw InputError("", "--ball-radius", "is for photographs of balls: give --ball, too");
+  std::error_code ignored;  // what cannot be asked about is no folder
+  if (balls && !std::filesystem::is_directory(a.input, ignored))
+    throw InputError(a.input, "", "with --ball, INPUT is a folder of photographs");
+}
+
+void sayWhatIsMissing(const LightsArguments& a, bool camera, LampsReport& report) {
+  if (!camera)
+    report.warnings.emplace_back(
+        "no focal length (--camera; EXIF is not read): directions assume a distant camera, which costs up to about the angle "
+        "between the ball's far edge and the image's middle, and no positions are known");
+  if (!camera && !a.ballRadius.empty()) report.warnings.emplace_back("--ball-radius has no use without --camera");
+  if (camera && a.balls.size() > 1 && a.ballRadius.empty())
+    report.warnings.emplace_back("all balls are taken to be of one size, whose radius is the unit of length");
+  constexpr double kMuchMore = 2;  // what detection promises is right to about that
+  if (report.balls && report.balls->noiseFactor > kMuchMore)
+    report.warnings.push_back(
+        formatted("the highlights disagree %.2g times as much as their detection promises; every standard "
+                  "deviation is widened by that",
+                  report.balls->noiseFactor));
+}
+
+LampsReport ofBalls(const LightsArguments& a, const Context& context) {
+  std::vector<NamedBall> balls;
+  for (const std::string& text : a.balls) balls.push_back(namedBall(text));
+  const std::optional<double> radius = radiusOf(a.ballRadius);
+  if (!(a.outlineSigmaPx > 0 && std::isfinite(a.outlineSigmaPx)))
+    throw InputError("", "--outline-sigma", "expected a number of pixels above 0");
+  std::optional<Camera> camera;
+  if (const auto given = a.places.reading.find("--camera"); given != a.places.reading.end() && !given->second.empty())
+    camera = cameraOfNumbers(cameraNumbers(given->second, "--camera"));
+  const BallShots shots = ballShotsIn(a.input, balls, a.exclude);
+  checkOutputs(a, Outputs(shots.files()));
+  Outcome<PhotographLamps> found =
+      lampsOfShots(shots, camera, radius, outlinesOf(a.outlines), a.outlineSigmaPx, context.progress());
+  if (!found) throw CannotAnswer{found.failure()};
+  LampsReport report;
+  report.lengthUnit = !camera ? "" : radius ? "m" : "ball radius";
+  report.lamps = std::move(found->fit.lamps);
+  for (std::size_t i = 0; i < report.lamps.size(); ++i)
+    if (!report.lamps[i].failure) report.lines.push_back({found->fileNames[i], report.lamps[i].direction});
+  report.balls = std::move(found->fit);
+  report.warnings = found->warnings;
+  sayWhatIsMissing(a, camera.has_value(), report);
+  return report;
+}
+
+LampsReport ofScene(const LightsArguments& a, const Context& context) {
+  InspectionRequest request;
+  request.models.clear();  // evidence and views only
+  if (a.source == "image") request.source = FrameSource::Image;
+  for (const std::string& entry : a.set) {
+    const std::size_t equals = entry.find('=');
+    if (equals == std::string::npos) throw InputError("", "--set " + entry, "expected KEY=VALUE");
+    request.settings.setFromText(entry.substr(0, equals), entry.substr(equals + 1));
+  }
+  const auto scene = std::make_shared<const Scene>(a.places.read(a.input));
+  for (const std::string& w : scene->warnings) context.warn(w);
+  if (!a.exclude.empty()) request.excluded = parseFrames(a.exclude, *scene, "--exclude");
+  if (request.excluded.size() == scene->frames.size()) throw InputError("", "--exclude " + a.exclude, "excludes every frame");
+  request.train = "first:" + std::to_string(scene->frames.size());
+  checkOutputs(a, Outputs(a.input, *scene));
+  const Inspection inspection = inspect(scene, request, context.progress());
+  LampsReport report;
+  report.lengthUnit = "m";
+  report.lamps = lampsOfScene(inspection, context.progress());
+  const bool lines =
+      std::any_of(a.out.begin(), a.out.end(), [](const std::string& f) { return std::filesystem::path(f).extension() == ".lp"; });
+  if (lines) report.lines = lampLinesOf(*scene, report.lamps, report.warnings);
+  for (const LampAnswer& lamp : report.lamps)
+    if (!lamp.remarks.empty()) report.warnings.push_back(lamp.id + ": " + lamp.remarks.front());
+  return report;
+}
+
+void write(const LightsArguments& a, const LampsReport& report, const Context& context) {
+  for (const std::string& file : a.out) {
+    const std::string ending = std::filesystem::path(file).extension().string();
+    context.write(file, ending == ".json" ? lampsJson(report) : ending == ".csv" ? lampsCsv(report) : lampsLp(report));
+  }
+  if (!a.json.empty()) context.write(a.json, lampsJson(report));
+}
+
+int run(const LightsArguments& a, const Context& context) {
+  refuseOthers(a);
+  for (const std::string& file : a.out) kindOf(file);
+  LampsReport report = a.balls.empty() ? ofScene(a, context) : ofBalls(a, context);
+  report.input = a.input;
+  const LampAnswer* failed = nullptr;
+  int without = 0;
+  for (const LampAnswer& lamp : report.lamps)
+    if (lamp.failure) {
+      ++without;
+      if (!failed) failed = &lamp;
+    }
+  const int count = static_cast<int>(report.lamps.size());
+  if (failed && without < count)
+    report.warnings.insert(report.warnings.begin(), std::to_string(without) + " of " + std::to_string(count) +
+                                                        " lamps have no answer; first: " + failed->id + ": " +
+                                                        failed->failure->message());
+  write(a, report, context);
+  for (const std::string& w : report.warnings) context.warn(w);
+  if (a.json != "-") context.print(lampsTable(report));
+  if (count == 0) throw CannotAnswer{{Reason::NoLight, "no frame names or shows a lamp"}};
+  if (without == count)
+    throw CannotAnswer{{failed->failure->reason, "no lamp has an answer; first: " + failed->id + ": " + failed->failure->detail}};
+  return kDone;
+}
+
+}  // namespace
+
+Command lightsCommand() {
+  const auto a = std::make_shared<LightsArguments>();
+  Command c;
+  c.name = "lights";
+  c.summary = "Find where the lamps are, from highlights on known objects";
+  c.description =
+      "INPUT is a scene whose frames name their lamps, or, with --ball, a folder of photographs of mirror balls by one fixed\n"
+      "camera, one lamp in each. Each lamp gets a position with its covariance where the data determine a distance, else a\n"
+      "direction and the reason. Photographs: the camera is at the origin, x right, y down, z forward; without --camera\n"
+      "only directions are known. A shot cut into one folder for each ball: --ball DIR:CX,CY,R@X0,Y0, paired by file name;\n"
+      "the outline in pixels of the cut-out, X0,Y0 the place of its first pixel in the shot.";
+  c.examples =
+      "  glint lights scene.json -o lamps.json\n"
+      "  glint lights photographs --ball 536,477,421 -o lamps.lp -o lamps.csv\n"
+      "  glint lights . --ball left:536,477,421@0,50 --ball right:485,532,417@2750,0 --camera 4000,4000,1850,1000\n";
+  c.declare = [a](Options& o) {
+    o.positional(a->input, "INPUT", "Scene, capture, folder with one or session; with --ball a folder of photographs");
+    o.repeated(a->balls, "--ball", "[DIR:]CX,CY,R[@X0,Y0]",
+               "Outline of a mirror ball, px; DIR: folder of cut-outs, X0,Y0: their corner in the shot; may be repeated");
+    o.option(a->ballRadius, "--ball-radius", "M", "Radius of every ball, m (default: lengths are in ball radii)");
+    o.choice(a->outlines, "--outlines", {"fitted", "edges", "given"},
+             "Balls' outlines: fitted to edges and highlights, to the photographs' edges alone, or as given");
+    o.option(a->outlineSigmaPx, "--outline-sigma", "S", "Standard deviation of a given outline's centre and radius, px");
+    o.option(a->exclude, "--exclude", "SPEC", "Frames or photographs to leave out: numbers, ids or ranges");
+    o.choice(a->source, "--source", {"radiance", "image"}, "Pixels to use where a frame of a scene has both");
+    o.repeated(a->set, "--set", "KEY=VALUE", "Any setting of scenes by its dotted name (`glint settings`); may be repeated");
+    o.repeated(a->out, "-o,--out", "FILE", "Write .json, .csv or .lp (RTI), by the ending; may be repeated");
+    o.option(a->json, "--json", "FILE", "Write JSON to this file (- = standard output, replaces the table)");
+    a->places.declare(o);
+  };
+  c.run = [a](const Context& context) { return run(*a, context); };
+  return c;
+}
+
+}  // namespace glint::cli

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+
+#include "core/base/image.h"
+#include "core/base/outcome.h"
+#include "core/lamps/observation.h"
+
+namespace glint {
+
+/// The reflection of the lamp on a mirror ball.
+///
+/// The lamp's image is usually clipped, and scratches, dust and the lens surround it with streaks and stars. So its place is not where the light's mean lies,
+/// but the middle of the largest disc that fits into what is brighter than a level: streaks are narrower than the core and do not move it. Five levels
+/// close below the top tell how far the place can be relied on. All channels count (their least): streaks are coloured, the core is not.
+/// Everything else on the ball that is bright is dropped by name: the lamp's own streaks, smaller and dimmer things, the reflection of another ball (where a
+/// distant camera sees a ball of the same depth in this one; its highlights are images of the lamp, too), what lies at the outline.
+///
+/// @param photograph  8-bit values 0 to 255 as float, 1 or 3 channels.
+/// @param corner      the place of its first pixel in the shot.
+/// @param balls       the outlines of all balls in the shot. @param which  the ball to look at.
+/// @return  `frame` stays empty. The covariance has the scatter of the levels and the shape of the core, longer along a streak; it knows nothing of the outline.
+///          NoHighlight: nothing stands out; two that are equal; the largest lies where another ball is reflected, or at the outline; Clipped: as wide as a
+///          fifth of the ball's radius, so that the light has no single place; OutsideImage: cut by the photograph's border; NotFinite.
+Outcome<LampObservation> findLampHighlight(const Image& photograph, const Eigen::Vector2d& corner,
+                                           std::span<const BallOutline> balls, std::size_t which);
+
+}  // namespace glint

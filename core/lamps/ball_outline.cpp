@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/lamps/ball_outline.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "core/base/number_text.h"
+#include "core/lamps/ball_edges.h"
+
+namespace glint {
+namespace {
+
+constexpr double kSearchShare = 0.1;  // the start is right to a tenth of its radius
+constexpr double kLeastRadiusPx = 8;  // below it, a sector of the outline is shorter than a third of a pixel
+constexpr double kBlurShare =
+    1 / 280.;  // of the radius: where a ball fills the frame its edge is blurred by more pixels (1.5 of 420 measured)
+constexpr double kLeastBlurPx = 1.0, kMostBlurPx = 4.0;  // sampling; what a lens blurs at most
+constexpr double kFineReach = 16;                        // in blurs: what the first fit may be off
+constexpr int kTries = 1500;                        // circles through three edges: one in nine of good edges is met 150 times
+constexpr double kInlierShare = 0.006;              // of the radius, of the first circle: reflections lie beside the edge by more
+constexpr double kTogether = 0.5;                   // in blurs: edges of several photographs that are one
+constexpr double kInner = 0.7, kOuter = 1.3;        // in blurs: half width of the weights inside and outside of the outline
+constexpr int kLeastSectors = kOutlineSectors / 3;  // fewer leave a centre that a shadow's edge may draw aside
+constexpr int kWidestGap = kOutlineSectors * 5 / 9;  // 200 degrees: less than the other half of the outline
+constexpr double kCounts = 0.05;                     // weight from which an edge is one that was used
+constexpr double kLeastRcond = 1e-9;                 // of the normal matrix: below it a direction of the fit is free
+constexpr double kLeastTriangle = 1e-6;              // px^2, twice the area: three points on a line
+constexpr int kLeftOut = 12;                         // parts of the outline, each left out once
+
+/// One place of the outline in one sector.
+struct SectorEdge {
+  int sector = 0;
+  EdgePoint point;
+};
+
+struct WeightedEdge {
+  double residual = 0, weight = 0;
+};
+
+/// In every sector the outermost edge within `outer` of the outline, with those of other photographs that agree with it.
+std::vector<SectorEdge> outermost(const OutlineModel& model, const std::vector<BallEdge>& edges, double outer, double together) {
+  std::array<double, kOutlineSectors> top;
+  top.fill(-1e300);
+  std::vector<double> distance(edges.size());
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    distance[i] = model.distance(edges[i].place);
+    if (distance[i] < outer) top[edges[i].sector] = std::max(top[edges[i].sector], distance[i]);
+  }
+  std::array<SectorEdge, kOutlineSectors> mean{};
+  std::array<double, kOutlineSectors> sum{};
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const int s = edges[i].sector;
+    if (!(distance[i] < outer) || distance[i] < top[s] - together) continue;
+    const double w = 1 / (edges[i].sigmaPx * edges[i].sigmaPx);
+    mean[s].point.place += w * edges[i].place;
+    sum[s] += w;
+  }
+  std::vector<SectorEdge> result;
+  for (int s = 0; s < kOutlineSectors; ++s)
+    if (sum[s] > 0) result.push_back({s, {mean[s].point.place / sum[s], 1 / std::sqrt(sum[s])}});
+  return result;
+}
+
+/// Tukey's weight; narrower inside, where reflections lie.
+WeightedEdge weightedEdge(const OutlineModel& model, const Eigen::Vector2d& place, double unit) {
+  const double r = model.distance(place), t = r / (2 * unit * (r < 0 ? kInner : kOuter));
+  return {r, std::abs(t) < 1 ? (1 - t * t) * (1 - t * t) : 0.0};
+}
+
+/// One step of weighted Gauss-Newton. False where the edges do not determine one.
+bool outlineStep(OutlineModel& model, const std::vector<SectorEdge>& edges, double unit, int leftOut = -1) {
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (const SectorEdge& e : edges) {
+    if (leftOut >= 0 && e.sector * kLeftOut / kOutlineSectors == leftOut) continue;
+    const WeightedEdge w = weightedEdge(model, e.point.place, unit);
+    if (w.weight == 0) continue;
+    const Eigen::Vector3d row = model.derivatives(e.point.place);
+    normal += w.weight * row * row.transpose();
+    right -= w.weight * w.residual * row;
+  }
+  const Eigen::LDLT<Eigen::Matrix3d> solver(normal);
+  if (solver.info() != Eigen::Success || !(solver.rcond() > kLeastRcond)) return false;
+  const Eigen::Vector3d change = solver.solve(right);
+  if (!change.allFinite()) return false;
+  model.x += change;
+  return model.x[2] > 0;
+}
+
+/// From wide weights to narrow ones.
+bool fitOutline(OutlineModel& model, const std::vector<BallEdge>& edges, double blur, double widest) {
+  std::vector<double> widths;
+  for (double w = widest; w > 1; w *= 0.8) widths.push_back(w);
+  widths.insert(widths.end(), 12, 1.0);
+  for (const double width : widths)
+    for (int i = 0; i < 3; ++i)
+      if (!outlineStep(model, outermost(model, edges, 2 * kOuter * width * blur, kTogether * blur), width * blur)) return false;
+  return true;
+}
+
+/// The circle through three points; radius 0 where they lie on a line.
+Eigen::Vector3d circleThrough(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
+  Eigen::Matrix2d m;
+  m << (b - a).transpose(), (c - a).transpose();
+  if (std::abs(m.determinant()) < kLeastTriangle) return Eigen::Vector3d::Zero();
+  const Eigen::Vector2d centre = m.inverse() * (0.5 * Eigen::Vector2d((b - a).squaredNorm(), (c - a).squaredNorm()));
+  return {a.x() + centre.x(), a.y() + centre.y(), centre.norm()};
+}
+
+bool nearStart(const Eigen::Vector3d& circle, const BallOutline& start) {
+  return (circle.head<2>() - start.centre).norm() <= kSearchShare * start.radius &&
+         std::abs(circle[2] - start.radius) <= kSearchShare * start.radius;
+}
+
+/// The circle through three edges near most sectors' edges.
+std::optional<Eigen::Vector3d> firstCircle(const std::vector<BallEdge>& edges, const BallOutline& start) {
+  std::optional<Eigen::Vector3d> best;
+  double most = 0;
+  std::mt19937 random(20);  // any fixed number: the same answer every time
+  std::uniform_int_distribution<std::size_t> any(0, edges.size() - 1);
+  const double scale = std::max(kLeastBlurPx, kInlierShare * start.radius);
+  for (int i = 0; i < kTries; ++i) {
+    const Eigen::Vector3d c = circleThrough(edges[any(random)].place, edges[any(random)].place, edges[any(random)].place);
+    if (!(c[2] > 0) || !nearStart(c, start)) continue;
+    std::array<double, kOutlineSectors> near{};
+    for (const BallEdge& e : edges) {
+      const double t = ((e.place - c.head<2>()).norm() - c[2]) / (2 * scale);
+      if (std::abs(t) < 1) near[e.sector] = std::max(near[e.sector], (1 - t * t) * (1 - t * t));
+    }
+    double sum = 0;
+    for (const double n : near) sum += n;
+    if (sum > most) most = sum, best = c;
+  }
+  return best;
+}
+
+/// What the refined model leaves: the edges used, rms, and the covariance by leaving parts out.
+RefinedOutline assessOutline(const OutlineModel& model, const std::vector<SectorEdge>& edges, double blur) {
+  RefinedOutline result;
+  double sum = 0, squares = 0;
+  for (const SectorEdge& e : edges) {
+    const WeightedEdge w = weightedEdge(model, e.point.place, blur);
+    if (w.weight < kCounts) continue;
+    result.edge.push_back(e.point);
+    sum += w.weight;
+    squares += w.weight * w.residual * w.residual;
+  }
+  result.degreesOfFreedom = static_cast<int>(result.edge.size()) - 3;
+  result.residualPx = sum > 0 ? std::sqrt(squares / sum) : 0.0;
+  for (EdgePoint& p : result.edge) p.sigmaPx = std::max(p.sigmaPx, result.residualPx);
+  std::vector<Eigen::Vector3d> without;
+  for (int part = 0; part < kLeftOut; ++part) {
+    OutlineModel other = model;
+    bool fine = true;
+    for (int i = 0; fine && i < 10; ++i)
+      fine = outlineStep(other, edges, blur, part);  // Gauss-Newton from so near: converged to 1e-6 px
+    if (fine) without.push_back(other.x - model.x);
+  }
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& w : without) mean += w / static_cast<double>(without.size());
+  for (const Eigen::Vector3d& w : without) result.covariance += (w - mean) * (w - mean).transpose();
+  result.covariance *= (kLeftOut - 1.0) / kLeftOut;
+  return result;
+}
+
+/// The widest run of sectors without an edge.
+int widestGap(const OutlineModel& model, const std::vector<EdgePoint>& edge) {
+  std::array<bool, kOutlineSectors> has{};
+  for (const EdgePoint& p : edge) {
+    const Eigen::Vector2d d = p.place - model.x.head<2>();
+    const double turn = std::atan2(d.y(), d.x()) / (2 * std::numbers::pi) * kOutlineSectors;
+    has[(static_cast<int>(std::lround(turn)) + kOutlineSectors) % kOutlineSectors] = true;
+  }
+  int widest = 0, run = 0;
+  for (int i = 0; i < 2 * kOutlineSectors; ++i) widest = std::max(widest, run = has[i % kOutlineSectors] ? 0 : run + 1);
+  return std::min(widest, kOutlineSectors);
+}
+
+/// The circle of least squares to a model's outline: the model's own where it is one.
+BallOutline circleOf(const OutlineModel& model) {
+  if (!model.camera) return {model.x.head<2>(), model.x[2]};
+  OutlineModel circle{model.x, std::nullopt};
+  for (int round = 0; round < 5; ++round) {
+    Eigen::Vector3d change = Eigen::Vector3d::Zero();
+    for (int s = 0; s < kOutlineSectors; ++s) {  // equal angles: the normal matrix of a circle is diagonal, n/2, n/2, n
+      const double angle = 2 * std::numbers::pi * s / kOutlineSectors;
+      const Eigen::Vector2d outwards(std::cos(angle), std::sin(angle));
+      const double r = circle.distance(model.x.head<2>() + model.radiusAt(angle) * outwards);
+      change += r * Eigen::Vector3d(2 * outwards.x(), 2 * outwards.y(), 1) / kOutlineSectors;
+    }
+    circle.x += change;
+  }
+  return {circle.x.head<2>(), circle.x[2]};
+}
+
+void checkRequest(std::span<const Image> photographs, const BallOutline& start, const std::optional<OutlineCamera>& camera) {
+  require(!photographs.empty(), "refineBallOutline: no photograph");
+  for (const Image& p : photographs)
+    require(!p.empty() && (p.channels == 1 || p.channels == 3) && p.width == photographs[0].width &&
+                p.height == photographs[0].height,
+            "refineBallOutline: photographs of equal size with 1 or 3 channels");
+  require(start.centre.allFinite() && start.radius >= kLeastRadiusPx && std::isfinite(start.radius),
+          "refineBallOutline: a start of at least 8 px");
+  require(!camera || (camera->focalPx > 0 && std::isfinite(camera->focalPx) && camera->principal.allFinite()),
+          "refineBallOutline: a focal length above 0");
+}
+
+std::string ballText(const BallOutline& ball) {
+  return "the ball at " + formatted("%.0f, %.0f", ball.centre.x(), ball.centre.y());
+}
+
+/// The model fitted to the photographs; places are those of the photographs. Two finer looks after the first.
+Outcome<RefinedOutline> refineLinear(const std::vector<Image>& linear, const BallOutline& start,
+                                     const std::optional<OutlineCamera>& camera) {
+  const double blur = std::clamp(kBlurShare * start.radius, kLeastBlurPx, kMostBlurPx);
+  const double slant =
+      2 * std::numbers::pi / kOutlineSectors * kSearchShare * start.radius;  // of a centre that is off by a tenth
+  OutlineModel model{{start.centre.x(), start.centre.y(), start.radius}, std::nullopt};
+  const std::string ball = ballText(start);
+  std::vector<BallEdge> edges = ballEdges(linear, model, 2 * kSearchShare * start.radius, blur, slant);
+  const Failure nothing{Reason::TooFewPoints, ball + " has no outline to see"};
+  if (edges.size() < 3) return nothing;
+  const std::optional<Eigen::Vector3d> first = firstCircle(edges, start);
+  if (!first) return nothing;
+  model = {*first, camera};
+  const double wide = std::max(6.0, 2 * kInlierShare * start.radius / blur);
+  if (!fitOutline(model, edges, blur, wide)) return nothing;
+  for (int look = 0; look < 2; ++look) {
+    edges = ballEdges(linear, model, kFineReach * blur, blur, kTogether * blur);
+    if (!fitOutline(model, edges, blur, look == 0 ? 5.0 : 1.5)) return nothing;
+  }
+  RefinedOutline result = assessOutline(model, outermost(model, edges, 2 * kOuter * blur, kTogether * blur), blur);
+  result.outline = circleOf(model);
+  if (result.edge.size() < static_cast<std::size_t>(kLeastSectors))
+    return Failure{Reason::TooFewPoints, ball + " shows an outline in " + std::to_string(result.edge.size()) + " of " +
+                                             std::to_string(kOutlineSectors) + " directions; a third is needed"};
+  if (widestGap(model, result.edge) > kWidestGap)
+    return Failure{Reason::RankDeficient, ball + " shows its outline on one side only"};
+  if (!nearStart({result.outline.centre.x(), result.outline.centre.y(), result.outline.radius}, start))
+    return Failure{Reason::NotConverged, ball + ": the outline found lies more than a tenth of the radius from the one given"};
+  if (!result.covariance.allFinite()) return Failure{Reason::NotFinite, ball + ": the outline's covariance"};
+  return result;
+}
+
+}  // namespace
+
+Outcome<RefinedOutline> refineBallOutline(std::span<const Image> photographs, const Eigen::Vector2d& corner,
+                                          const BallOutline& start, const std::optional<OutlineCamera>& camera) {
+  checkRequest(photographs, start, camera);
+  for (const Image& p : photographs)
+    for (const float v : p.data)
+      if (!std::isfinite(v)) return Failure{Reason::NotFinite, "a pixel of the photograph of " + ballText(start)};
+  const Eigen::Vector2d nearest =
+      (start.centre - corner).cwiseMax(0.0).cwiseMin(Eigen::Vector2d(photographs[0].width - 1, photographs[0].height - 1));
+  if ((nearest - (start.centre - corner)).norm() > start.radius)
+    return Failure{Reason::OutsideImage, ballText(start) + " lies outside of its photograph"};
+  std::optional<OutlineCamera> shifted = camera;
+  if (shifted) shifted->principal -= corner;
+  Outcome<RefinedOutline> result = refineLinear(linearLight(photographs), {start.centre - corner, start.radius}, shifted);
+  if (!result) return result;
+  result->outline.centre += corner;
+  for (EdgePoint& p : result->edge) p.place += corner;
+  return result;
+}
+
+}  // namespace glint

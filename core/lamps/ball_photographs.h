@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/lamps/lamp_fit.h"
+
+namespace glint {
+
+/// A ball as a person names it: "[DIR:]CX,CY,R[@X0,Y0]".
+struct NamedBall {
+  std::string text;                                  ///< as typed
+  std::string folder;                                ///< of its photographs; "" = that of all
+  BallOutline outline;                               ///< in pixels of the shot: the corner is in it
+  Eigen::Vector2d corner = Eigen::Vector2d::Zero();  ///< of its photographs in the shot
+};
+/// InputError (place "--ball TEXT").
+NamedBall namedBall(const std::string& text);
+
+/// Which outlines count: fitted to the photographs' edges and to the highlights of several balls; to the edges alone; as typed.
+enum class Outlines { Fitted, Edges, Given };
+
+/// One shot: photographs with one file name, one for each ball where it was cut out of the shot.
+struct Shot {
+  std::string name;                          ///< of the files, with ending
+  std::string id;                            ///< without ending; with it where two shots would have one id
+  std::vector<std::filesystem::path> files;  ///< of each ball; empty = this ball has none
+};
+
+/// Balls and shots, before any picture is read.
+struct BallShots {
+  std::vector<NamedBall> balls;
+  std::vector<Shot> shots;  ///< by name
+  std::vector<std::filesystem::path> files() const;
+};
+
+/// The photographs in the folders that the balls name, by the endings of their names; `input` where a ball names none. A folder is looked for as it
+/// stands, and in `input`.
+/// @param exclude  a frame SPEC over the shots' ids; "" = none
+/// InputError: a folder is missing, has no photographs or could be two; a ball is named twice; `exclude`.
+BallShots ballShotsIn(const std::filesystem::path& input, const std::vector<NamedBall>& balls, const std::string& exclude);
+
+struct PhotographLamps {
+  BallLamps fit;                       ///< lamps in the order of the shots, each with its id
+  std::vector<std::string> fileNames;  ///< of each lamp: the shot's
+  std::vector<std::string> warnings;
+};
+
+/// Outlines, highlights and lamps of all shots. A shot that cannot be read or shows no highlight is a lamp without an answer.
+/// @param camera  see BallPhotographs
+/// @param givenSigmaPx  of centre and radius of an outline that is taken as typed
+/// @throw InputError where a ball lies outside of its photographs; Stopped
+/// @return  FrameUnreadable, NoHighlight where no shot says anything; what fitBallLamps() says
+Outcome<PhotographLamps> lampsOfShots(const BallShots& shots, const std::optional<Camera>& camera,
+                                      const std::optional<double>& ballRadius, Outlines outlines, double givenSigmaPx,
+                                      const ProgressFn& progress);
+
+}  // namespace glint

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/lamps/lamp_fit.h"
+#include "core/scene/scene.h"
+
+namespace glint {
+
+/// One photograph in a list of light positions (.lp).
+struct LampLine {
+  std::string file;                                       ///< name with ending
+  Eigen::Vector3d direction = -Eigen::Vector3d::UnitZ();  ///< in the camera's frame: x right, y down, z forward
+};
+
+/// What `glint lights` found.
+struct LampsReport {
+  std::string input;       ///< as the user named it
+  std::string lengthUnit;  ///< "m", "ball radius"; "" = no lengths are known
+  std::vector<LampAnswer> lamps;
+  std::vector<LampLine> lines;
+  std::optional<BallLamps> balls;     ///< of photographs of balls; its lamps are not read
+  std::vector<std::string> warnings;  ///< in words
+};
+
+/// One line for each frame of a scene in which exactly one lamp is on that has an answer, direction from the middle of the object. The others become a warning.
+/// @param lamps  of lampsOfScene()
+std::vector<LampLine> lampLinesOf(const Scene& scene, const std::vector<LampAnswer>& lamps, std::vector<std::string>& warnings);
+
+/// docs/formats.md, "lights --json". Numbers that are not finite become null.
+std::string lampsJson(const LampsReport& report);
+/// The first line of `lampsCsv`.
+extern const char* const kLampsCsvHeader;
+/// One row per lamp, with a header row.
+std::string lampsCsv(const LampsReport& report);
+/// A list of light positions as Relight and other RTI programs read it: the count, then for each photograph its name without blanks (each becomes '_')
+/// and the unit vector, x right, y up, z towards the camera.
+std::string lampsLp(const LampsReport& report);
+/// A plain-text table for people.
+std::string lampsTable(const LampsReport& report);
+
+}  // namespace glint
