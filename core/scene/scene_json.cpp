@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <set>
 
 #include "core/base/bounded_json.h"
 #include "core/base/json_dom.h"
 #include "core/base/level_range.h"
-#include "core/base/limits.h"
 #include "core/geometry/distortion.h"
 #include "core/scene/relinked.h"
 #include "core/scene/scene_files.h"
@@ -50,29 +48,7 @@ void keep(Json& target, const std::string& key, Json value) {
 const std::set<std::string> kCameraKeys = {"width", "height", "fx", "fy", "cx", "cy", "skew", "distortion", "model"};
 const std::set<std::string> kLightKeys = {"id", "position", "direction", "segment", "radius"};
 
-/// Keys that other programs write and that would move what a camera sees or where a surface is: to keep them and go on would answer for another
-/// scene. Matched without regard to case.
-const std::set<std::string> kCameraGeometry = {"k1",           "k2",          "k3",           "k4",           "k5",
-                                               "k6",           "p1",          "p2",           "s1",           "s2",
-                                               "s3",           "s4",          "omega",        "fov",          "shear",
-                                               "alpha_c",      "aspect",      "aspect_ratio", "pixel_aspect", "distortion_model",
-                                               "camera_model", "projection",  "fisheye",      "crop",         "crop_x",
-                                               "crop_y",       "offset_x",    "offset_y",     "binning",      "scale",
-                                               "rotation",     "orientation", "shift_x",      "shift_y",      "rolling_shutter"};
-const std::set<std::string> kFrameGeometry = {"world_from_camera",
-                                              "camera_to_world",
-                                              "world_to_camera",
-                                              "transform_matrix",
-                                              "transform",
-                                              "pose",
-                                              "scale",
-                                              "time_offset",
-                                              "world_from_object",
-                                              "object_from_world",
-                                              "camera_from_object",
-                                              "world_from_surface",
-                                              "surface_from_world",
-                                              "undistorted"};
+// As the keys of cameras and frames (core/geometry/camera_json.cpp): they would move a surface, or all of the scene.
 const std::set<std::string> kSurfaceGeometry = {"world_from_surface",
                                                 "world_from_mesh",
                                                 "surface_from_world",
@@ -90,14 +66,6 @@ const std::set<std::string> kSceneGeometry = {"scale",      "world_scale", "tran
                                               "handedness", "up",          "up_axis",   "convention",      "origin",
                                               "offset"};
 
-void refuseGeometry(const JsonNode& node, const std::set<std::string>& keys) {
-  for (const std::string& key : node.keys()) {
-    std::string lower = key;
-    std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    if (keys.count(lower)) node.at(key).fail("is not supported and would change the geometry");
-  }
-}
-
 std::set<std::string> analyticKeys(const std::string& type) {
   static const std::map<std::string, std::set<std::string>> keys = {{"plane", {}},
                                                                     {"sphere", {"radius"}},
@@ -113,82 +81,9 @@ std::set<std::string> analyticKeys(const std::string& type) {
 
 }  // namespace
 
-bool isIdentifier(const std::string& id) {
-  return !id.empty() &&
-         std::none_of(id.begin(), id.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
-}
-
 bool isMadeBySynth(const JsonNode& root) {
   const auto n = root.find(kMadeBy);
   return n && n->isString() && n->text() == kMadeBySynth;
-}
-
-std::string readIdJson(const JsonNode& node) {
-  const std::string id = node.text();
-  if (id.empty()) node.fail("must not be empty");
-  if (!isIdentifier(id)) node.fail("must not contain control characters");
-  return id;
-}
-
-namespace {
-
-LensModel readLensModel(const JsonNode& node) {
-  const std::string name = node.text();
-  if (const std::optional<LensModel> model = lensModelNamed(name)) return *model;
-  std::string known;
-  for (const LensModel model : kLensModels) known += std::string(known.empty() ? "" : ", ") + nameOf(model);
-  node.fail("'" + name + "' is not supported, only " + known);
-}
-
-/// "model" and "distortion" of a camera; ideal where neither stands.
-Lens readLens(const JsonNode& camera) {
-  Lens lens;
-  if (const auto model = camera.find("model")) lens.model = readLensModel(*model);
-  const auto distortion = camera.find("distortion");
-  if (!distortion) return lens;
-  const std::vector<double> values = boundedAll(*distortion, kLargestFactor).numbers();
-  const std::size_t count = static_cast<std::size_t>(parameterCountOf(lens.model));
-  const bool withoutK3 = lens.model == LensModel::OpenCv && values.size() == 4;  // as OpenCV takes them
-  if (values.size() != count && !withoutK3)
-    distortion->fail("must have " + std::to_string(count) + (count == 1 ? " number (" : " numbers (") + parametersOf(lens.model) +
-                     "), has " + std::to_string(values.size()));
-  std::copy(values.begin(), values.end(), lens.parameters.begin());
-  if (lens.model == LensModel::Fov && !(std::abs(lens.parameters[0]) < std::numbers::pi))
-    distortion->at(0).fail("must be between -pi and pi: omega is the lens's field of view");
-  return lens;
-}
-
-}  // namespace
-
-Camera readCameraJson(const JsonNode& node) {
-  Camera camera;
-  const auto size = [&](const char* key) {
-    const JsonNode n = node.at(key);
-    const int v = n.integer();
-    if (v < 1 || v > 65536) n.fail("must be 1 .. 65536 pixels");
-    return v;
-  };
-  camera.width = size("width");
-  camera.height = size("height");
-  constexpr double kMega = 1e6;
-  requireWithin(Limit::ImageMegapixels, double(camera.width) * camera.height / kMega, node.file(), node.place());
-  const auto focal = [&](const char* key) {
-    const JsonNode n = node.at(key);
-    const double v = n.number();
-    if (!(v > 0)) n.fail("must be positive (K would be singular or mirrored)");
-    return bounded(n, kFarthestPx);
-  };
-  // One by one: a failure inside a comma initialiser would leave it unfinished, and its destructor asserts.
-  camera.pixelFromRay.setIdentity();
-  camera.pixelFromRay(0, 0) = focal("fx");
-  const auto skew = node.find("skew");
-  camera.pixelFromRay(0, 1) = skew ? bounded(*skew, kFarthestPx) : 0.0;
-  camera.pixelFromRay(0, 2) = bounded(node.at("cx"), kFarthestPx);
-  camera.pixelFromRay(1, 1) = focal("fy");
-  camera.pixelFromRay(1, 2) = bounded(node.at("cy"), kFarthestPx);
-  refuseGeometry(node, kCameraGeometry);
-  camera.lens = readLens(node);
-  return camera;
 }
 
 AnalyticSpec readAnalyticJson(const JsonNode& node) {
@@ -293,7 +188,7 @@ struct FrameContext {
 Frame readFrame(const JsonNode& node, const FrameContext& context, Json& rest) {
   Frame frame;
   const Scene& scene = context.scene;
-  refuseGeometry(node, kFrameGeometry);
+  refuseFrameGeometry(node);
   frame.id = readIdJson(node.at("id"));
   const auto path = [&](const char* key) -> fs::path {
     const auto n = node.find(key);

@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "core/base/identifier.h"
 #include "core/base/json_text.h"
+#include "core/geometry/camera_json.h"
 #include "core/geometry/pose_json.h"
 #include "core/scene/scene.h"
 
@@ -15,12 +17,6 @@ namespace glint {
 // The parts of scene.json (docs/formats.md, "Scene") that other documents share (synth SPEC.json, sessions). All throw
 // InputError with file, place and reason. Keys that a part does not know are left to the caller (JsonNode::unknownKeys).
 
-/// {"width", "height", "fx", "fy", "cx", "cy", "skew", "model", "distortion"}: intrinsics only. Sizes 1 .. 65536; fx, fy > 0, so K
-/// is regular.
-Camera readCameraJson(const JsonNode& node);
-/// A name of a frame, light or surface: not empty, no control characters.
-bool isIdentifier(const std::string& id);
-std::string readIdJson(const JsonNode& node);
 /// {"type": ..., sizes, "world_from_surface"} with every size checked for the type.
 AnalyticSpec readAnalyticJson(const JsonNode& node);
 /// {"id", one of "position" | "direction" | "segment", "radius"}. A direction is normalised.
