@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kMillisecond = 1e-3;  // s: OpenCV counts milliseconds
-constexpr double kSameTime = 0.5e-3;  // s: half of the coarsest clock (Matroska counts milliseconds)
-constexpr int kMostSide = 65536;      // px, as of images
+constexpr double kSameTime = 0.5e-3;   // s: half of the coarsest clock (Matroska counts milliseconds)
+constexpr int kMostSide = 65536;       // px, as of images
 constexpr double kMegaPixel = 1e6;
 constexpr int kSeekAhead = 64;   // pictures: a decoder is sooner there by going on than by a seek to the key frame before
 constexpr int kKeptBefore = 16;  // pictures before the one that is asked for that are kept, for threads that run ahead of others
@@ -110,10 +110,9 @@ class OpenVideo {
       if (sought) next_ = p.index;
     }
     cv::Mat pixels;
-    if (!advance(p.index, pixels)) return damaged();
     // A seek counts by a constant rate, which telephones do not keep.
-    if (sought && !(std::abs(secondsOf(capture_) - p.seconds) < kSameTime))
-      if (!start() || !advance(p.index, pixels)) return damaged();
+    const bool there = advance(p.index, pixels) && (!sought || std::abs(secondsOf(capture_) - p.seconds) < kSameTime);
+    if (!there && !(sought && start() && advance(p.index, pixels))) return damaged();
     if (!sameTime(secondsOf(capture_), p))
       return videoUnreadable(file_, formatted("picture %d is of %.3f s, not of %.3f s", p.index, secondsOf(capture_), p.seconds));
     return pixels;
