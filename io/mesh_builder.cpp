@@ -16,19 +16,36 @@ const char* badCoordinate(const Eigen::Vector3d& v) {
   return v.cwiseAbs().maxCoeff() > kFarthest ? "is farther than 1e30 from the origin" : nullptr;
 }
 
+namespace {
+constexpr double kUnset = 1e-6;  // normals have length 1, whatever the scene's unit
+
+/// False where there is none to bring to length 1.
+bool madeUnit(Eigen::Vector3d& n) {
+  const double length = n.norm();
+  if (!(length > kUnset) || !std::isfinite(length)) return false;
+  n /= length;
+  return true;
+}
+}  // namespace
+
+CloudContent finished(CloudContent cloud, const std::string& file) {
+  if (cloud.points.empty()) fail(file, "", "the cloud has no points");
+  for (Eigen::Vector3d& n : cloud.normals)
+    if (!madeUnit(n)) {
+      cloud.normals.clear();
+      break;
+    }
+  return cloud;
+}
+
 MeshContent finished(MeshContent mesh, const std::string& file) {
   if (mesh.triangles.empty()) fail(file, "", "the mesh has no faces");
   if (mesh.normals.empty()) return mesh;
-  constexpr double kUnset = 1e-6;  // normals have length 1, whatever the scene's unit
   std::vector<char> lacking(mesh.vertices.size(), 0);
   bool any = false;
   for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
     Eigen::Vector3d& n = mesh.normals[i];
-    const double length = n.norm();
-    if (length > kUnset && std::isfinite(length)) {
-      n /= length;
-      continue;
-    }
+    if (madeUnit(n)) continue;
     lacking[i] = 1;
     any = true;
     n = Eigen::Vector3d::UnitZ();  // of a vertex that no triangle has: never asked

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "io/cloud_reader.h"
 #include "io/mesh_content.h"
 
 namespace glint::io {
@@ -43,5 +44,8 @@ class Fan {
 /// Refuses a mesh without triangles, brings normals to length 1, and drops them when a triangle's vertex has none.
 /// (Vertices of no triangle may lack one: mesh editors write NaN there.)
 MeshContent finished(MeshContent mesh, const std::string& file);
+
+/// Refuses a cloud without points, brings normals to length 1, and drops them when a point has none.
+CloudContent finished(CloudContent cloud, const std::string& file);
 
 }  // namespace glint::io

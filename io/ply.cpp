@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "io/binary.h"
+#include "io/cloud_reader.h"
 #include "io/mesh_builder.h"
 #include "io/mesh_reader.h"
 #include "io/text_scan.h"
@@ -72,7 +73,9 @@ struct Header {
   char lineEnd = '\n';
 };
 
-Header readHeader(std::string_view bytes, const std::string& file) {
+enum class Wanted { Mesh, Cloud };
+
+Header readHeader(std::string_view bytes, const std::string& file, Wanted wanted) {
   Header header;
   header.lineEnd = bytes.size() > 4 && bytes[3] == '\r' && bytes[4] != '\n' ? '\r' : '\n';
   io::Lines lines(bytes, header.lineEnd);
@@ -161,8 +164,9 @@ Header readHeader(std::string_view bytes, const std::string& file) {
   };
   if (!vertex) io::fail(file, "header", "the PLY has no element 'vertex'");
   if (!has(*vertex, kX) || !has(*vertex, kY) || !has(*vertex, kZ)) io::fail(file, "header", "the vertices lack x, y or z");
-  if (!face || face->count == 0) io::fail(file, "header", "the mesh has no faces");
-  if (!has(*face, kCorners)) io::fail(file, "header", "the faces have no list 'vertex_indices'");
+  if (wanted == Wanted::Cloud && face && face->count > 0) io::fail(file, "header", "has faces: it is a mesh, not a cloud");
+  if (wanted == Wanted::Mesh && (!face || face->count == 0)) io::fail(file, "header", "the mesh has no faces");
+  if (wanted == Wanted::Mesh && !has(*face, kCorners)) io::fail(file, "header", "the faces have no list 'vertex_indices'");
   header.size = lines.at();
   header.lines = lines.number();
   return header;
@@ -294,6 +298,7 @@ class PlyBody {
   PlyBody(Values values, const Header& header, const std::string& file)
       : values_(std::move(values)), header_(header), file_(file), fan_(mesh_.triangles) {}
 
+  /// Without triangles where the file has none.
   MeshContent read() {
     for (const Element& e : header_.elements)
       if (e.name == "vertex") vertexCount_ = e.count;
@@ -306,7 +311,7 @@ class PlyBody {
         others(e);
     }
     values_.end();
-    return io::finished(std::move(mesh_), file_);
+    return std::move(mesh_);
   }
 
  private:
@@ -392,12 +397,21 @@ class PlyBody {
   std::uint64_t vertexCount_ = 0;
 };
 
+MeshContent readPly(std::string_view bytes, const std::string& file, Wanted wanted) {
+  const Header header = readHeader(bytes, file, wanted);
+  if (header.format == Header::Format::Text) return PlyBody(TextValues(bytes, header, file), header, file).read();
+  return PlyBody(BinaryValues(bytes, header, file), header, file).read();
+}
+
 }  // namespace
 
 MeshContent parsePly(std::string_view bytes, const std::string& file) {
-  const Header header = readHeader(bytes, file);
-  if (header.format == Header::Format::Text) return PlyBody(TextValues(bytes, header, file), header, file).read();
-  return PlyBody(BinaryValues(bytes, header, file), header, file).read();
+  return io::finished(readPly(bytes, file, Wanted::Mesh), file);
+}
+
+CloudContent parsePlyCloud(std::string_view bytes, const std::string& file) {
+  MeshContent mesh = readPly(bytes, file, Wanted::Cloud);
+  return io::finished(CloudContent{std::move(mesh.vertices), std::move(mesh.normals), 0}, file);
 }
 
 }  // namespace glint

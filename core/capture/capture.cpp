@@ -9,6 +9,7 @@ const char* UndecidedInput::option() const {
     case Question::Surface: return "--surface";
     case Question::Camera: return "--camera";
     case Question::Object: return "--object";
+    case Question::Poses: return "--poses";
   }
   return "";
 }

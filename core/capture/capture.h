@@ -11,6 +11,7 @@
 
 #include "core/base/outcome.h"
 #include "core/base/permitted.h"
+#include "core/capture/video.h"
 #include "core/geometry/camera.h"
 
 namespace glint {
@@ -18,7 +19,7 @@ namespace glint {
 /// The files leave something open that a person can say: which reading of a folder is meant, which surface, camera or object.
 class UndecidedInput : public InputError {
  public:
-  enum class Question { Reading, Surface, Camera, Object };
+  enum class Question { Reading, Surface, Camera, Object, Poses };
   struct Answer {
     std::string value;  ///< for the option: "colmap"; path of a mesh; "5"
     std::string words;  ///< for a person; "" = the value
@@ -28,7 +29,7 @@ class UndecidedInput : public InputError {
       : InputError(file, "", reason), question_(question), answers_(std::move(answers)) {}
   Question question() const { return question_; }
   const std::vector<Answer>& answers() const { return answers_; }
-  const char* option() const;  ///< that answers: "--as", "--surface", "--camera", "--object"
+  const char* option() const;  ///< that answers: "--as", "--surface", "--camera", "--object", "--poses"
 
  private:
   Question question_;
@@ -40,6 +41,7 @@ class UndecidedInput : public InputError {
 struct CaptureView {
   std::string name;                          ///< of the image, as the file writes it ("a/0003.jpg"); views are ordered by it
   std::filesystem::path image, depth, mask;  ///< absolute; "" = not named. They need not exist
+  std::optional<VideoPicture> ofVideo;       ///< `image` is a video, and this is the picture of it
   double depthScale = 0;                     ///< metres per stored unit of `depth`; 0 = not given
   Camera camera;                             ///< with the size of its image
 };
@@ -81,6 +83,8 @@ struct CaptureOptions {
   std::optional<Camera> camera;  ///< intrinsics of all views (TUM); its size is that of the images; pose ignored
   std::string object;            ///< BOP: its number; "" = the only one
   std::string world;             ///< nerfstudio: "original" undoes applied_transform; "" = as stored
+  std::filesystem::path poses;   ///< of images and videos: TUM or JSON lines; absolute
+  bool posesByOrder = false;     ///< the n-th pose is that of the n-th picture
 };
 
 /// One kind of input.
@@ -112,5 +116,10 @@ std::unique_ptr<const CaptureReader> makeNerfstudioReader();
 std::unique_ptr<const CaptureReader> makeTumReader();
 std::unique_ptr<const CaptureReader> makeBundlerReader();
 std::unique_ptr<const CaptureReader> makeBopReader();
+
+/// A folder of images, and a video, whose poses `CaptureOptions::poses` names. Not among captureReaders(): nothing in such a folder
+/// says that it is a capture, so only who names the poses asks them.
+std::unique_ptr<const CaptureReader> makeImagesReader();
+std::unique_ptr<const CaptureReader> makeVideoReader();
 
 }  // namespace glint

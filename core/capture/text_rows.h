@@ -70,6 +70,11 @@ inline void addFew(std::vector<std::string>& warnings, const std::vector<std::st
   if (found.size() > shown) warnings.push_back("... and " + std::to_string(found.size() - shown) + " more like this");
 }
 
+/// "1 photograph", "7 photographs"
+inline std::string counted(std::size_t n, const char* one, const char* many) {
+  return std::to_string(n) + " " + (n == 1 ? one : many);
+}
+
 /// "'a.jpg', 'b.jpg', ... (12 in all)"
 inline std::string someOf(const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 8;  // names that a person still reads

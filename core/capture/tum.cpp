@@ -2,8 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <queue>
-#include <tuple>
 
 #include "core/base/atomic_file.h"
 #include "core/base/bounded_json.h"
@@ -12,6 +10,7 @@
 #include "core/capture/image_sizes.h"
 #include "core/capture/parts.h"
 #include "core/capture/text_rows.h"
+#include "core/capture/time_pairs.h"
 #include "io/text_scan.h"
 
 // The RGB-D benchmark of TUM (Sturm et al., IROS 2012). Lists of images: `timestamp path`. Trajectory: `timestamp tx ty tz qx
@@ -24,7 +23,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kTumPoses = "groundtruth.txt";
 constexpr const char* kTumDepth = "depth.txt";
-constexpr double kTumApart = 0.02 + 5e-7;      // s: TUM's own limit of 20 ms, to half of the last digit (1 us) of its times
 constexpr double kTumDepthScale = 1.0 / 5000;  // m per unit: the benchmark's 16-bit depth images
 
 /// One line of a list of images.
@@ -80,59 +78,6 @@ std::vector<TumPose> readTumPoses(const fs::path& file, std::size_t& lost) {
   return poses;
 }
 
-/// Index for which there is none.
-constexpr std::size_t kTumNone = static_cast<std::size_t>(-1);
-
-/// For each time the index of the one among `others` that belongs to it: again and again the two closest that are left become a
-/// pair, as long as they are at most kTumApart apart. That is what TUM's associate.py does with the table of all pairs.
-///
-/// On the line of time the two closest of different kind stand side by side (one between them would be closer to one of them),
-/// so neighbours are all that has to be looked at: the table is quadratic where a file repeats a time.
-std::vector<std::size_t> tumPairs(const std::vector<double>& times, const std::vector<double>& others) {
-  struct Moment {
-    double time;
-    bool isOther;
-    std::size_t index, before, after;
-  };
-  std::vector<Moment> line;
-  for (std::size_t i = 0; i < times.size(); ++i) line.push_back({times[i], false, i, 0, 0});
-  for (std::size_t i = 0; i < others.size(); ++i) line.push_back({others[i], true, i, 0, 0});
-  std::sort(line.begin(), line.end(), [](const Moment& a, const Moment& b) {
-    return std::tie(a.time, a.isOther, a.index) < std::tie(b.time, b.isOther, b.index);
-  });
-  struct Neighbours {
-    double apart;
-    std::size_t left, right;
-    bool operator>(const Neighbours& b) const { return std::tie(apart, left) > std::tie(b.apart, b.left); }
-  };
-  std::priority_queue<Neighbours, std::vector<Neighbours>, std::greater<>> closest;
-  const auto consider = [&](std::size_t left, std::size_t right) {
-    if (left == kTumNone || right >= line.size() || line[left].isOther == line[right].isOther) return;
-    const double apart = line[right].time - line[left].time;
-    if (apart <= kTumApart) closest.push({apart, left, right});
-  };
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    line[i].before = i - 1;  // of the first: kTumNone
-    line[i].after = i + 1;
-    consider(i, i + 1);
-  }
-  std::vector<std::size_t> pairs(times.size(), kTumNone);
-  std::vector<char> used(line.size());
-  while (!closest.empty()) {
-    const auto [apart, left, right] = closest.top();
-    closest.pop();
-    if (used[left] || used[right]) continue;
-    used[left] = used[right] = true;
-    const bool turned = line[left].isOther;
-    pairs[line[turned ? right : left].index] = line[turned ? left : right].index;
-    const std::size_t before = line[left].before, after = line[right].after;
-    if (before != kTumNone) line[before].after = after;
-    if (after < line.size()) line[after].before = before;
-    consider(before, after);
-  }
-  return pairs;
-}
-
 template <class Timed>
 std::vector<double> tumTimes(const std::vector<Timed>& list) {
   std::vector<double> times;
@@ -142,8 +87,6 @@ std::vector<double> tumTimes(const std::vector<Timed>& list) {
 
 /// "1305031102.175304": as many digits as TUM writes.
 std::string tumTime(double seconds) { return formatted("%.6f", seconds); }
-
-std::string tumCount(std::size_t n, const char* one, const char* many) { return std::to_string(n) + " " + (n == 1 ? one : many); }
 
 /// What `read` does, step by step.
 class TumReading {
@@ -186,10 +129,11 @@ class TumReading {
   void addViews(const std::string& poseFile) {
     const std::string file = capture_.file.string(), depthFile = (capture_.folder / kTumDepth).string();
     const std::vector<double> times = tumTimes(photographs_);
-    const std::vector<std::size_t> pose = tumPairs(times, tumTimes(poses_)), depth = tumPairs(times, tumTimes(depths_));
+    const std::vector<std::size_t> pose = capture::timePairs(times, tumTimes(poses_)),
+                                   depth = capture::timePairs(times, tumTimes(depths_));
     std::vector<std::string> odd;
     for (std::size_t i = 0; i < photographs_.size(); ++i) {
-      if (pose[i] == kTumNone) continue;
+      if (pose[i] == capture::kNoPair) continue;
       const TumImage& photograph = photographs_[i];
       const TumPose& p = poses_[pose[i]];
       farthestApart_ = std::max(farthestApart_, std::abs(p.time - photograph.time));
@@ -201,7 +145,7 @@ class TumReading {
           capture::unitQuaternion(p.xyzw[3], p.xyzw[0], p.xyzw[1], p.xyzw[2], poseFile, p.place, odd).toRotationMatrix();
       worldFromCam.translation() = p.position;
       view.camera.camFromWorld = worldFromCam.inverse();
-      if (depth[i] != kTumNone) {
+      if (depth[i] != capture::kNoPair) {
         // Not where photographs are looked for: sets name both kinds alike ("rgb/0.png", "depth/0.png").
         const TumImage& d = depths_[depth[i]];
         view.depth = resolveInside(capture_.folder, d.name, options_.rights, depthFile, d.place);
@@ -254,8 +198,9 @@ class TumReading {
   void report(bool hasDepth, std::size_t lost) {
     const std::size_t n = capture_.views.size();
     const Camera& camera = capture_.views.front().camera;
-    capture_.facts.push_back("TUM RGB-D: " + tumCount(n, "photograph", "photographs") + " of " + std::to_string(camera.width) +
-                             " x " + std::to_string(camera.height) + " pixels, " + tumCount(poses_.size(), "pose", "poses"));
+    capture_.facts.push_back("TUM RGB-D: " + capture::counted(n, "photograph", "photographs") + " of " +
+                             std::to_string(camera.width) + " x " + std::to_string(camera.height) + " pixels, " +
+                             capture::counted(poses_.size(), "pose", "poses"));
     capture_.facts.push_back(
         "poses are camera to world, quaternion w last, in metres; each photograph took the pose nearest in time" +
         formatted(" (%.1f ms at most), each pose once", 1e3 * farthestApart_));
@@ -263,19 +208,19 @@ class TumReading {
                              " distortion");
     if (hasDepth) {
       capture_.facts.push_back("depth is 16 bit, 5000 per metre, registered to the photographs: " + std::to_string(withDepth_) +
-                               " of " + tumCount(n, "photograph has", "photographs have") + " one");
+                               " of " + capture::counted(n, "photograph has", "photographs have") + " one");
       if (withDepth_ < n)
-        capture_.warnings.push_back(tumCount(n - withDepth_, "photograph has", "photographs have") +
+        capture_.warnings.push_back(capture::counted(n - withDepth_, "photograph has", "photographs have") +
                                     " no depth image within 20 ms");
     } else {
       capture_.facts.push_back(std::string("no ") + kTumDepth + ": no depth");
     }
     if (const std::size_t out = photographs_.size() - n; out > 0)
-      capture_.warnings.push_back(tumCount(out, "photograph of ", "photographs of ") + std::to_string(photographs_.size()) +
-                                  (out == 1 ? " has" : " have") + " no pose within 20 ms and " +
-                                  (out == 1 ? "is left out" : "are left out"));
+      capture_.warnings.push_back(capture::counted(out, "photograph of ", "photographs of ") +
+                                  std::to_string(photographs_.size()) + (out == 1 ? " has" : " have") +
+                                  " no pose within 20 ms and " + (out == 1 ? "is left out" : "are left out"));
     if (lost > 0)
-      capture_.warnings.push_back(std::string(kTumPoses) + ": " + tumCount(lost, "line holds", "lines hold") +
+      capture_.warnings.push_back(std::string(kTumPoses) + ": " + capture::counted(lost, "line holds", "lines hold") +
                                   " no finite pose (tracking was lost) and " + (lost == 1 ? "is" : "are") + " passed over");
   }
 

@@ -7,6 +7,7 @@
 #include "core/base/bounded_json.h"
 #include "core/base/found_file.h"
 #include "core/base/number_text.h"
+#include "core/scene/mesh_file.h"
 #include "core/scene/relinked.h"
 #include "core/scene/scene_json.h"
 #include "core/scene/scene_reader.h"
@@ -23,20 +24,12 @@ bool endsLikeAMesh(const fs::path& file) {
   return ending == ".ply" || ending == ".obj" || ending == ".stl" || ending == ".gltf" || ending == ".glb";
 }
 
-/// A PLY file whose header names no face: a cloud of points.
-bool isCloud(const fs::path& file) {
-  constexpr std::size_t kHeader = 4096;  // bytes; a longer header is that of a mesh with many properties
-  const std::string start = firstBytes(file, kHeader);
-  const std::size_t end = start.find("end_header");
-  return start.rfind("ply", 0) == 0 && end != std::string::npos && start.substr(0, end).find("element face") == std::string::npos;
-}
-
 /// Meshes directly in the folder, in the order of their names.
 std::vector<fs::path> meshesIn(const fs::path& folder) {
   std::vector<fs::path> meshes;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
-    if (it->is_regular_file(error) && endsLikeAMesh(it->path()) && !isCloud(it->path())) meshes.push_back(it->path());
+    if (it->is_regular_file(error) && endsLikeAMesh(it->path()) && !isCloudFile(it->path())) meshes.push_back(it->path());
   std::sort(meshes.begin(), meshes.end());
   return meshes;
 }
@@ -54,13 +47,12 @@ UndecidedInput undecidedSurface(const fs::path& file, const std::string& reason,
   return {file.string(), reason, UndecidedInput::Question::Surface, std::move(answers)};
 }
 
-/// The mesh to take; "" = the frames' depth maps.
+/// The mesh or cloud to take; "" = the frames' depth maps, or the sparse points.
 fs::path meshOf(const Capture& capture, const InputChoices& choices) {
   const bool anyDepth = std::any_of(capture.views.begin(), capture.views.end(), [](const auto& v) { return !v.depth.empty(); });
   switch (choices.surface) {
     case InputChoices::Surface::File: return choices.surfaceFile;
-    case InputChoices::Surface::Points:
-      throw InputError(capture.file.string(), "--surface points", "surfaces from points are not supported yet");
+    case InputChoices::Surface::Points: return {};
     case InputChoices::Surface::Depth:
       if (!anyDepth) throw InputError(capture.file.string(), "--surface depth", "no frame has a depth map");
       return {};
@@ -113,6 +105,24 @@ fs::path meshWhereItIs(const fs::path& place, const std::string& named, const Re
   return found;
 }
 
+/// The surface of the capture's own sparse points (`--surface points`). In units of its poses.
+SurfaceSource sparseSurface(const Capture& capture, const ReadOptions& options, double metresPerUnit) {
+  const std::vector<CaptureTrack> tracks = [&]() -> std::vector<CaptureTrack> {
+    const CaptureReader* reader = captureReaderNamed(capture.kind);
+    if (!reader) return {};
+    return reader->tracks(capture, captureOptionsOf(options));
+  }();
+  if (tracks.empty())
+    throw InputError(capture.file.string(), "--surface points", "it has no sparse points; name a cloud by --surface FILE");
+  auto cloud = std::make_shared<PointCloud>();
+  for (const CaptureTrack& track : tracks) cloud->points.push_back(metresPerUnit * track.point);
+  SurfaceSource source;
+  source.mesh = capture.file;
+  source.named = capture.file.filename().string();
+  source.points = std::move(cloud);
+  return source;
+}
+
 }  // namespace
 
 CaptureOptions captureOptionsOf(const ReadOptions& options) {
@@ -122,6 +132,8 @@ CaptureOptions captureOptionsOf(const ReadOptions& options) {
   if (!options.choices.camera.empty()) c.camera = cameraOfNumbers(options.choices.camera);
   c.object = options.choices.object;
   c.world = options.choices.world;
+  c.poses = options.choices.poses;
+  c.posesByOrder = options.choices.posesByOrder;
   return c;
 }
 
@@ -154,15 +166,21 @@ Scene sceneOfCapture(const Capture& capture, const ReadOptions& options) {
     scene.facts.push_back("the unit of length is not known: it is taken as metres (--units says another)");
 
   const fs::path mesh = meshOf(capture, choices);
-  if (!mesh.empty()) {
+  const bool onPoints = choices.surface == InputChoices::Surface::Points;
+  if (onPoints) {
+    scene.surfaces[kSurfaceId] = sparseSurface(capture, options, metres);
+    scene.facts.push_back(formatted("surface: made of the %zu sparse points", scene.surfaces[kSurfaceId].points->points.size()));
+  } else if (!mesh.empty()) {
     SurfaceSource source;
     source.mesh = fs::absolute(mesh).lexically_normal();
     source.named = source.mesh->lexically_relative(capture.folder).generic_string();
     const bool own = capture.mesh && capture.mesh->file == mesh;
     source.metresPerUnit = choices.surfaceMetresPerUnit.value_or(own ? capture.mesh->metresPerUnit : metres);
     source.mesh = meshWhereItIs(*source.mesh, source.named, options, scene);
+    source.isCloud = isCloudFile(*source.mesh);
     scene.surfaces[kSurfaceId] = source;
-    scene.facts.push_back("surface: " + source.named);
+    scene.facts.push_back("surface: " + source.named +
+                          (source.isCloud ? ", a cloud of points: the surface is made of them" : ""));
   } else if (choices.surfaceMetresPerUnit) {
     throw InputError(capture.file.string(), "--surface-units", "the surface is no mesh");
   }
@@ -175,12 +193,13 @@ Scene sceneOfCapture(const Capture& capture, const ReadOptions& options) {
     frame.image = view.image;
     frame.depth = view.depth;
     frame.mask = view.mask;
+    frame.ofVideo = view.ofVideo;
     frame.depthScale = view.depth.empty() ? 0 : choices.depthScale.value_or(view.depthScale);
     frame.camera = view.camera;
     frame.camera.camFromWorld.translation() *= metres;
     if (!(frame.camera.camFromWorld.translation().cwiseAbs().maxCoeff() <= kFarthest))
       throw InputError(capture.file.string(), view.name, "its camera is farther than 1e15 m from the origin");
-    if (!mesh.empty()) frame.surface = kSurfaceId;
+    if (onPoints || !mesh.empty()) frame.surface = kSurfaceId;
     scene.frames.push_back(std::move(frame));
   }
   return scene;

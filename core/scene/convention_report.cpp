@@ -260,13 +260,14 @@ void conclude(const Scene& scene, const SightCheck& sight, ConventionReport& rep
 /// made again, so that a scene of thousands of them, a line of JSON each, does not take a GB.
 class Triangles {
  public:
-  explicit Triangles(const Scene& scene) : scene_(scene) {}
+  Triangles(const Scene& scene, ConventionReport& report) : scene_(scene), report_(report) {}
   /// Valid until the next question.
   const TriangleMesh& of(const std::string& id) {
     const SurfaceSource& source = scene_.surfaces.at(id);
     std::map<std::string, TriangleMesh>& known = source.mesh ? read_ : made_;
     const auto found = known.find(id);
     if (found != known.end()) return found->second;
+    if (source.isCloud || source.points) return known[id] = ofPoints(id, source);
     if (source.mesh) return known[id] = readMesh(source);
     if (known.size() >= kMostMade) known.clear();
     const std::shared_ptr<const Surface> surface = makeAnalytic(*source.analytic);
@@ -274,9 +275,21 @@ class Triangles {
   }
 
  private:
+  /// Where no surface can be made, the points alone: whether the cameras see them is worth knowing.
+  TriangleMesh ofPoints(const std::string& id, const SurfaceSource& source) {
+    Outcome<PointSurface> made = readPointSurface(source);
+    if (made) {
+      report_.facts.push_back("surface '" + id + "' is made of points: " + made->facts.text());
+      return std::move(made->mesh);
+    }
+    report_.findings.push_back("no surface can be made of the points of '" + id + "': " + made.failure().message());
+    return {readCloud(source).points, {}, {}};
+  }
+
   static constexpr int kSteps = 64;             // along each side: 4,225 vertices, 300 kB
   static constexpr std::size_t kMostMade = 64;  // 20 MB; scenes have a few surfaces, and frames of one follow each other
   const Scene& scene_;
+  ConventionReport& report_;
   std::map<std::string, TriangleMesh> read_, made_;
 };
 
@@ -307,16 +320,19 @@ ConventionReport conventionReport(const Scene& scene, const ProgressFn& progress
   report.recognisedAs = "scene";
   for (const auto& reader : sceneReaders())
     if (reader->name() == scene.kind) report.recognisedAs = reader->describe();
+  if (scene.kind == "images") report.recognisedAs = "folder of images with poses";
+  if (scene.kind == "video") report.recognisedAs = "video with poses";
   report.facts = scene.facts;
   report.warnings = scene.warnings;
   report.lights = static_cast<int>(scene.lights.size());
-  Triangles triangles(scene);
+  Triangles triangles(scene, report);
   int done = 0;
   for (const auto& [id, source] : scene.surfaces) {
     if (!glint::report(progress, {"surface", done++, static_cast<int>(scene.surfaces.size())})) throw Stopped{};
     ConventionReport::SurfaceFacts facts;
     facts.id = id;
-    facts.kind = source.mesh ? "mesh" : "analytic " + source.analytic->type;
+    const bool ofPoints = source.isCloud || source.points;
+    facts.kind = ofPoints ? "points" : source.mesh ? "mesh" : "analytic " + source.analytic->type;
     const TriangleMesh& mesh = triangles.of(id);
     Eigen::AlignedBox3d box;
     for (const Eigen::Vector3d& v : mesh.vertices) box.extend(v);
@@ -326,11 +342,11 @@ ConventionReport conventionReport(const Scene& scene, const ProgressFn& progress
     }
     facts.vertices = static_cast<int>(mesh.vertices.size());
     facts.triangles = static_cast<int>(mesh.triangles.size());
-    if (source.mesh) {
+    if (source.mesh && !ofPoints) {
       facts.grid = coordinateGrid(mesh.vertices);
       facts.side = medianSide(mesh);
     }
-    if (source.mesh)
+    if (source.mesh && !ofPoints)
       if (const std::string sides = sidesOf(mesh); !sides.empty())
         report.findings.push_back("the mesh of surface '" + id + "' has its sides reversed: " + sides +
                                   " (Glint turns normals towards the camera; other programs may not)");

@@ -40,8 +40,11 @@ std::vector<std::string> leftOutOf(const Scene& scene) {
   return lines;
 }
 
-/// The photograph, else the radiance image.
-const fs::path& pictureOf(const Frame& frame) { return frame.image.empty() ? frame.radiance : frame.image; }
+/// The photograph, else the radiance image. A picture of a video is no file that others read.
+fs::path pictureOf(const Frame& frame) {
+  if (frame.ofVideo) return {};
+  return frame.image.empty() ? frame.radiance : frame.image;
+}
 
 std::string pathFrom(const fs::path& file, const fs::path& folder) {
   return file.empty() ? "" : fs::absolute(file).lexically_normal().lexically_relative(folder).generic_string();

@@ -66,6 +66,17 @@ Outcome<Decoded> decode(const fs::path& file, const Camera& camera) {
   return Decoded{std::move(*pixels), header.saysLinear};
 }
 
+/// The picture of a frame. Of a video all decoders give 8 bits.
+Outcome<Decoded> decode(const Frame& frame, const fs::path& file) {
+  if (!frame.ofVideo || file != frame.image) return decode(file, frame.camera);
+  const Outcome<cv::Mat> pixels = videoPicture(file, *frame.ofVideo);
+  if (!pixels) return pixels.failure();
+  if (pixels->cols != frame.camera.width || pixels->rows != frame.camera.height)
+    return unreadable(
+        file, wrongSize(static_cast<std::uint64_t>(pixels->cols), static_cast<std::uint64_t>(pixels->rows), frame.camera));
+  return Decoded{*pixels, false};
+}
+
 bool isFloat(const cv::Mat& m) { return m.depth() == CV_32F || m.depth() == CV_64F; }
 
 /// Every value through `map`, in the file's order.
@@ -133,7 +144,7 @@ Outcome<Image> readLinear(const Frame& frame, FrameSource source) {
   const bool useRadiance = frame.image.empty() || (source == FrameSource::Radiance && !frame.radiance.empty());
   const fs::path& file = useRadiance ? frame.radiance : frame.image;
   if (file.empty()) return Failure{Reason::FrameUnreadable, "frame " + frame.id + " has neither radiance nor image"};
-  Outcome<Decoded> decoded = decode(file, frame.camera);
+  Outcome<Decoded> decoded = decode(frame, file);
   if (!decoded) return decoded.failure();
   const cv::Mat& m = decoded->pixels;
   if (isFloat(m)) return floatImage(m);
@@ -149,7 +160,7 @@ Outcome<Image> readPhotograph(const Frame& frame) {
     if (!linear) return linear.failure();
     return toneMapped(*linear);
   }
-  Outcome<Decoded> decoded = decode(frame.image, frame.camera);
+  Outcome<Decoded> decoded = decode(frame, frame.image);
   if (!decoded) return decoded.failure();
   const cv::Mat& m = decoded->pixels;
   if (isFloat(m)) return toneMapped(floatImage(m));
@@ -178,6 +189,8 @@ std::string frameFileProblem(const Frame& frame, FrameFile kind) {
     case FrameFile::Mask: return fileProblem(frame.mask, frame.camera);
     case FrameFile::Photograph: break;
   }
+  if (frame.ofVideo)  // its pictures are looked at when they are decoded: that takes a pass over the video
+    return looksLikeVideo(frame.image) ? "" : frame.image.string() + ": is missing or no video";
   const std::string problem = fileProblem(frame.image, frame.camera);
   return problem.empty() ? fileProblem(frame.radiance, frame.camera) : problem;
 }

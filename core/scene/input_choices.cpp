@@ -18,6 +18,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::array<std::pair<const char*, double>, 3> kUnits{{{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}}};
 constexpr const char* kCameraForm = "expected fx,fy,cx,cy or fx,fy,cx,cy,k1,k2,p1,p2[,k3]";
+constexpr const char* kByOrder = "order";
 constexpr std::size_t kLongestChoice = 200;  // bytes of a name that a session gives: "colmap", "12", "original"
 
 /// As short as it can be without losing a bit.
@@ -51,6 +52,12 @@ std::string problemOfCamera(const std::vector<double>& v) {
   return "";
 }
 
+std::filesystem::path pathIn(const std::filesystem::path& folder, const JsonNode& node) {
+  const std::string path = node.text();
+  if (path.empty() || path.find('\0') != std::string::npos) node.fail("is not a path");
+  return (folder / std::filesystem::path(path)).lexically_normal();
+}
+
 std::string shortText(const JsonNode& node) {
   std::string text = node.text();
   if (text.empty() || text.size() > kLongestChoice || text.find('\0') != std::string::npos) node.fail("is not a name");
@@ -67,8 +74,20 @@ void setSurface(InputChoices& c, const std::string& text) {
   if (c.surface != InputChoices::Surface::File) return;
   std::error_code ignored;  // what cannot be asked about is not there
   if (!std::filesystem::is_regular_file(text, ignored))
-    throw InputError("", "--surface " + text, "no such file; expected a mesh, or depth");
+    throw InputError("", "--surface " + text, "no such file; expected a mesh or a cloud, depth, or points");
   c.surfaceFile = std::filesystem::absolute(text).lexically_normal();
+}
+
+void setPoses(InputChoices& c, const std::string& text) {
+  std::error_code ignored;  // what cannot be asked about is not there
+  if (!std::filesystem::is_regular_file(text, ignored))
+    throw InputError("", "--poses " + text, "no such file; expected TUM or JSON lines");
+  c.poses = std::filesystem::absolute(text).lexically_normal();
+}
+
+void setPosesBy(InputChoices& c, const std::string& text) {
+  if (text != kByOrder) throw InputError("", "--poses-by " + text, "expected order");
+  c.posesByOrder = true;
 }
 
 void setDepthScale(InputChoices& c, const std::string& text) {
@@ -85,11 +104,12 @@ const std::vector<ChoiceOption>& choiceOptions() {
   static const std::vector<ChoiceOption> options = {
       {"--as", "KIND", "Which input is meant where a folder holds several: scene, colmap, nvm, nerfstudio, tum, bundler, bop",
        [](C& c, Text t) { c.as = t; }, [](const C& c) { return c.as; }},
-      {"--surface", "FILE|depth",
-       "Surface of a capture: a mesh, or the frames' own depth maps (default: the one mesh in its folder, else depth)",
+      {"--surface", "FILE|depth|points",
+       "Surface of a capture: a mesh or cloud, the frames' own depth maps, or its sparse points (default: the one mesh in its "
+       "folder, else depth)",
        setSurface, surfaceText},
       {"--camera", "FX,FY,CX,CY[,K1,K2,P1,P2,K3]",
-       "Intrinsics of a capture that has none (TUM), px; (0,0) is the centre of the first pixel",
+       "Intrinsics of a capture that has none (TUM, images, videos), px; (0,0) is the centre of the first pixel",
        [](C& c, Text t) { c.camera = cameraNumbers(t, "--camera " + t); }, [](const C& c) { return commaList(c.camera); }},
       {"--object", "ID", "Object of a BOP scene", [](C& c, Text t) { c.object = t; }, [](const C& c) { return c.object; }},
       {"--units", "m|cm|mm|NUMBER", "Unit of a capture's poses, or metres per unit (default: the program's own, else m)",
@@ -101,7 +121,12 @@ const std::vector<ChoiceOption>& choiceOptions() {
       {"--depth-scale", "S", "Metres per stored unit of a capture's depth maps (default: the program's own)", setDepthScale,
        [](const C& c) { return c.depthScale ? shortestText(*c.depthScale) : std::string(); }},
       {"--world", "original", "nerfstudio: undo applied_transform and applied_scale", [](C& c, Text t) { c.world = t; },
-       [](const C& c) { return c.world; }}};
+       [](const C& c) { return c.world; }},
+      {"--poses", "FILE",
+       "Poses of a folder of images or of a video: TUM lines (paired by time), or JSON lines (by id; of a video by time)",
+       setPoses, [](const C& c) { return c.poses.string(); }},
+      {"--poses-by", "order", "The n-th pose is that of the n-th image (default: by id or time)", setPosesBy,
+       [](const C& c) { return std::string(c.posesByOrder ? kByOrder : ""); }}};
   return options;
 }
 
@@ -151,12 +176,7 @@ InputChoices readInputChoices(const JsonNode& node, const std::filesystem::path&
                 : surface == "points" ? InputChoices::Surface::Points
                                       : InputChoices::Surface::File;
   }
-  if (c.surface == InputChoices::Surface::File) {
-    const JsonNode n = node.at("surface_file");
-    const std::string path = n.text();
-    if (path.empty() || path.find('\0') != std::string::npos) n.fail("is not a path");
-    c.surfaceFile = (folder / std::filesystem::path(path)).lexically_normal();
-  }
+  if (c.surface == InputChoices::Surface::File) c.surfaceFile = pathIn(folder, node.at("surface_file"));
   if (const auto n = node.find("camera")) {
     c.camera = n->numbers();
     if (const std::string problem = problemOfCamera(c.camera); !problem.empty()) n->fail(problem);
@@ -166,10 +186,15 @@ InputChoices readInputChoices(const JsonNode& node, const std::filesystem::path&
   if (const auto n = node.find("surface_metres_per_unit")) c.surfaceMetresPerUnit = positive(*n, kLargestFactor);
   if (const auto n = node.find("depth_scale")) c.depthScale = positive(*n, kLargestFactor);
   if (const auto n = node.find("world")) c.world = shortText(*n);
+  if (const auto n = node.find("poses")) c.poses = pathIn(folder, *n);
+  if (const auto n = node.find("poses_by")) {
+    if (n->text() != kByOrder) n->fail("must be order");
+    c.posesByOrder = true;
+  }
   return c;
 }
 
-std::string inputChoicesJson(const InputChoices& c, const std::string& surfacePath) {
+std::string inputChoicesJson(const InputChoices& c, const std::function<std::string(const std::filesystem::path&)>& relative) {
   Json j = Json::object();
   if (!c.as.empty()) j["as"] = c.as;
   switch (c.surface) {
@@ -178,7 +203,7 @@ std::string inputChoicesJson(const InputChoices& c, const std::string& surfacePa
     case InputChoices::Surface::Points: j["surface"] = "points"; break;
     case InputChoices::Surface::File:
       j["surface"] = "file";
-      j["surface_file"] = surfacePath;
+      j["surface_file"] = relative(c.surfaceFile);
       break;
   }
   if (!c.camera.empty()) j["camera"] = c.camera;
@@ -187,6 +212,8 @@ std::string inputChoicesJson(const InputChoices& c, const std::string& surfacePa
   if (c.surfaceMetresPerUnit) j["surface_metres_per_unit"] = *c.surfaceMetresPerUnit;
   if (c.depthScale) j["depth_scale"] = *c.depthScale;
   if (!c.world.empty()) j["world"] = c.world;
+  if (!c.poses.empty()) j["poses"] = relative(c.poses);
+  if (c.posesByOrder) j["poses_by"] = kByOrder;
   return j.dump();
 }
 

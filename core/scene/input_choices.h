@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,8 @@ struct InputChoices {
   std::optional<double> surfaceMetresPerUnit;  ///< of the mesh; nothing = as the poses
   std::optional<double> depthScale;            ///< metres per stored unit of depth maps; nothing = what the program says
   std::string world;                           ///< nerfstudio: "original" = before applied_transform; "" = as stored
+  std::filesystem::path poses;                 ///< of a folder of images or a video: TUM or JSON lines; absolute; "" = none
+  bool posesByOrder = false;                   ///< the n-th pose is that of the n-th picture; only because a person says so
   bool none() const { return *this == InputChoices{}; }
   friend bool operator==(const InputChoices&, const InputChoices&) = default;
 };
@@ -51,7 +54,8 @@ Camera cameraOfNumbers(const std::vector<double>& numbers);
 
 /// `input.reading` of a session. @param folder  of the session, absolute: paths are relative to it. InputError.
 InputChoices readInputChoices(const JsonNode& node, const std::filesystem::path& folder);
-/// Its JSON text. @param surfacePath  of `surfaceFile`, relative to the session's folder; "" = none
-std::string inputChoicesJson(const InputChoices& choices, const std::string& surfacePath);
+/// Its JSON text. @param relative  the path of a file relative to the session's folder; asked for those that are named
+std::string inputChoicesJson(const InputChoices& choices,
+                             const std::function<std::string(const std::filesystem::path&)>& relative);
 
 }  // namespace glint

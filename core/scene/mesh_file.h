@@ -4,8 +4,9 @@
 #include <filesystem>
 #include <string_view>
 
+#include "core/base/progress.h"
 #include "core/scene/scene.h"
-#include "core/surface/surface.h"
+#include "core/surface/point_surface.h"
 
 namespace glint {
 
@@ -15,8 +16,15 @@ namespace glint {
 /// @throw InputError (file, place) when the file is missing, empty, not one of the four formats, truncated or longer than its
 ///        header promises, has no triangle, a coordinate that is not finite, or a face with a vertex that does not exist.
 TriangleMesh readMesh(const std::filesystem::path& file);
-/// The same of a surface, in metres. @pre it has a mesh
+/// The same of a surface, in metres; of points the surface that is made from them. @pre it has a mesh
+/// @throw InputError also where no surface can be made of the points, with the named reason
 TriangleMesh readMesh(const SurfaceSource& source);
+/// The points of a surface that is made of points (`isCloud` or `points`), in metres. InputError.
+PointCloud readCloud(const SurfaceSource& source);
+/// The surface of these points, with what was found about them. As surfaceOfPoints; InputError for the file.
+Outcome<PointSurface> readPointSurface(const SurfaceSource& source, const ProgressFn& progress = {});
+/// Whether a file holds points without triangles (PLY without faces, PCD), by its first bytes.
+bool isCloudFile(const std::filesystem::path& file);
 /// The same of a file's content; `file` is what messages name.
 TriangleMesh meshOf(std::string_view bytes, const std::filesystem::path& file);
 

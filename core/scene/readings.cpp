@@ -49,9 +49,22 @@ std::vector<Reading> readingsOf(const fs::path& input) {
   return all;
 }
 
+/// Those that only who names poses (`--poses`) asks: a folder of images alone is no capture.
+const std::vector<std::unique_ptr<const SceneReader>>& posedReaders() {
+  static const std::unique_ptr<const CaptureReader> images = makeImagesReader(), video = makeVideoReader();
+  static const std::vector<std::unique_ptr<const SceneReader>> readers = [] {
+    std::vector<std::unique_ptr<const SceneReader>> list;
+    list.push_back(makeCaptureSceneReader(*images));
+    list.push_back(makeCaptureSceneReader(*video));
+    return list;
+  }();
+  return readers;
+}
+
 const SceneReader& readerNamed(const std::string& name) {
-  for (const auto& reader : sceneReaders())
-    if (reader->name() == name) return *reader;
+  for (const auto* readers : {&sceneReaders(), &posedReaders()})
+    for (const auto& reader : *readers)
+      if (reader->name() == name) return *reader;
   std::string known;
   for (const auto& reader : sceneReaders())
     if (reader->name() != "session") known += (known.empty() ? "" : ", ") + reader->name();
@@ -86,6 +99,13 @@ std::string whatIsUnderstood() {
   const fs::file_status status = fs::status(input, error);
   if (!fs::exists(status)) throw InputError(input.string(), "", "no such file or folder");
   const bool folder = fs::is_directory(status);
+  for (const auto& reader : posedReaders())
+    if (!reader->recognise(input).empty())
+      throw UndecidedInput(input.string(),
+                           std::string(reader->name() == "video" ? "is or holds a video" : "is or holds images") +
+                               " and no cameras: name their poses by --poses FILE (TUM or JSON lines) and their intrinsics by "
+                               "--camera fx,fy,cx,cy[,k1,k2,p1,p2,k3]",
+                           UndecidedInput::Question::Poses, {});
   if (!folder && !fs::is_regular_file(status)) throw InputError(input.string(), "", "is a device or a pipe, not a file");
   const bool empty = folder ? fs::is_empty(input, error) : fs::file_size(input, error) == 0;
   const std::string what = folder ? (empty ? "the folder is empty" : "nothing in this folder is recognised")
@@ -93,10 +113,26 @@ std::string whatIsUnderstood() {
   throw InputError(input.string(), "", what + "; supported: " + whatIsUnderstood());
 }
 
+/// Of images or a video, because poses are given.
+Reading posedReading(const fs::path& input, const std::string& as) {
+  std::vector<Reading> readings;
+  for (const auto& reader : posedReaders())
+    if (fs::path file = reader->recognise(input); !file.empty() && (as.empty() || as == reader->name()))
+      readings.push_back({reader->name(), reader->describe(), std::move(file)});
+  if (readings.empty())
+    throw InputError(input.string(), "--poses",
+                     "is for a folder that holds images (PNG, JPEG, TIFF, EXR) or one video, and for a video; this is neither");
+  if (readings.size() > 1) refuseSeveral(input, readings);
+  return readings.front();
+}
+
 /// The reader and the file for it.
-Reading chosenReading(const fs::path& input, const std::string& as) {
+Reading chosenReading(const fs::path& input, const InputChoices& choices) {
+  const std::string& as = choices.as;
   std::error_code error;
   if (!fs::exists(input, error)) refuseUnknown(input);
+  if (!choices.poses.empty()) return posedReading(input, as);
+  if (choices.posesByOrder) throw InputError(input.string(), "--poses-by", "is for --poses FILE, which is missing");
   if (!as.empty()) {
     const SceneReader& reader = readerNamed(as);
     const fs::path file = reader.recognise(input);
@@ -127,12 +163,12 @@ const std::vector<std::unique_ptr<const SceneReader>>& sceneReaders() {
 }
 
 Scene readScene(const fs::path& input, const ReadOptions& options) {
-  const Reading reading = chosenReading(input, options.choices.as);
+  const Reading reading = chosenReading(input, options.choices);
   return readerNamed(reading.as).read(reading.file, options);
 }
 
 Scene readSceneOfSession(const fs::path& input, const ReadOptions& options) {
-  const Reading reading = chosenReading(input, options.choices.as);
+  const Reading reading = chosenReading(input, options.choices);
   if (reading.as == "session")
     throw InputError(reading.file.string(), "", "is a session; the input of a session must be a scene");
   return readerNamed(reading.as).read(reading.file, options);

@@ -14,6 +14,7 @@
 #include "core/base/image.h"
 #include "core/base/outcome.h"
 #include "core/base/permitted.h"
+#include "core/capture/video.h"
 #include "core/geometry/camera.h"
 #include "core/highlight/highlight.h"
 #include "core/scene/input_choices.h"
@@ -22,19 +23,25 @@
 
 namespace glint {
 
-/// Where a surface comes from: exactly one of the two is set.
+struct PointCloud;  // core/surface/point_surface.h
+
+/// Where a surface comes from: exactly one of mesh and analytic is set.
 struct SurfaceSource {
   std::optional<std::filesystem::path> mesh;  ///< absolute
   std::optional<AnalyticSpec> analytic;
   std::string named = {};    ///< the mesh's path as the scene file writes it; "" = no file has written it yet
   double metresPerUnit = 1;  ///< of the mesh's coordinates: 0.001 where the file is in millimetres
+  bool isCloud = false;      ///< `mesh` names points without triangles, from which the surface is made (surfaceOfPoints)
+  /// Those points where they are no file of their own (`--surface points`): in metres; `mesh` is then the file of the capture.
+  std::shared_ptr<const PointCloud> points = {};
 };
 
 /// One captured view. Paths are absolute; empty = not given.
 struct Frame {
   std::string id;
   std::filesystem::path image, radiance, depth, normals, mask;
-  double depthScale = 0;  ///< metres per stored unit; 0 = not given (then depth must be float)
+  std::optional<VideoPicture> ofVideo;  ///< `image` is a video, and this is the picture of it
+  double depthScale = 0;                ///< metres per stored unit; 0 = not given (then depth must be float)
   Camera camera;
   /// Of `depth`, where a camera of its own took it; its camFromWorld is from the frame's camera, not from the world. Without it depth is as of `camera`.
   std::optional<Camera> depthCamera;

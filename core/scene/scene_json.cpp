@@ -191,6 +191,16 @@ std::set<std::string> depthCameraKeys() {
   return keys;
 }
 
+constexpr double kMostVideoSeconds = 1e6;  // eleven days
+
+/// {"index", "seconds"} of a picture of the video that `image` names.
+VideoPicture readOfVideo(const JsonNode& node) {
+  VideoPicture picture{node.at("index").integer(), bounded(node.at("seconds"), kMostVideoSeconds)};
+  if (picture.index < 0 || picture.index >= kMostPictures) node.at("index").fail("is no picture of a video");
+  if (picture.seconds < 0) node.at("seconds").fail("must not be negative");
+  return picture;
+}
+
 struct FrameContext {
   const std::optional<Camera>& sharedCamera;
   const std::optional<Camera>& sharedDepthCamera;
@@ -210,6 +220,7 @@ Frame readFrame(const JsonNode& node, const FrameContext& context, Json& rest) {
     return resolveInside(scene.folder, n->text(), context.options.rights(), n->file(), n->place());
   };
   frame.image = path("image");
+  if (const auto n = node.find("of_video")) frame.ofVideo = readOfVideo(*n);
   frame.radiance = path("radiance");
   frame.depth = path("depth");
   frame.normals = path("normals");
@@ -286,8 +297,10 @@ double metresOf(const JsonNode& unit) {
 SurfaceSource readSurface(const JsonNode& node, const FrameContext& context, Json& rest) {
   SurfaceSource source;
   refuseGeometry(node, kSurfaceGeometry);
-  if (const auto n = node.find("mesh")) {
+  const auto mesh = node.find("mesh"), points = node.find("points");
+  if (const auto& n = points ? points : mesh) {
     source.mesh = findMesh(*n, context);
+    source.isCloud = points.has_value();
     source.named = n->text();
     if (const auto unit = node.find("units")) {
       source.metresPerUnit = metresOf(*unit);
@@ -297,7 +310,8 @@ SurfaceSource readSurface(const JsonNode& node, const FrameContext& context, Jso
     source.analytic = readAnalyticJson(*n);
     keep(rest, "analytic", context.unknown.of(*n, analyticKeys(source.analytic->type)));
   }
-  if (source.mesh.has_value() == source.analytic.has_value()) node.fail("needs exactly one of mesh, analytic");
+  if (int(mesh.has_value()) + int(points.has_value()) + int(source.analytic.has_value()) != 1)
+    node.fail("needs exactly one of mesh, points, analytic");
   return source;
 }
 
@@ -337,7 +351,7 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
     for (const std::string& id : n->keys()) {
       const JsonNode node = n->at(id);
       if (!isIdentifier(id)) node.fail("a surface needs a name without control characters");
-      Json rest = unknown.of(node, {"mesh", "analytic", "units"});
+      Json rest = unknown.of(node, {"mesh", "points", "analytic", "units"});
       scene.surfaces[id] = readSurface(node, context, rest);
       keep(surfaceRests, id, rest);
     }
@@ -363,8 +377,8 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
   if (frames.size() == 0) frames.fail("is empty: a scene needs at least one frame");
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const JsonNode node = frames.at(i);
-    Json rest = unknown.of(node, {"id", "image", "radiance", "depth", "normals", "mask", "depth_scale", "camera", "depth_camera",
-                                  "camera_from_world", "surface", "lights_on", "highlights"});
+    Json rest = unknown.of(node, {"id", "image", "of_video", "radiance", "depth", "normals", "mask", "depth_scale", "camera",
+                                  "depth_camera", "camera_from_world", "surface", "lights_on", "highlights"});
     Frame frame = readFrame(node, context, rest);
     if (!frameIds.insert(frame.id).second) node.at("id").fail("duplicate id '" + frame.id + "'");
     if (!lightIds.empty())

@@ -136,6 +136,7 @@ std::string sceneToJson(const Scene& scene, const fs::path& folder) {
       if (!p.empty()) j[key] = relative(p, place + key);
     };
     path("image", frame.image);
+    if (frame.ofVideo) j["of_video"] = {{"index", frame.ofVideo->index}, {"seconds", frame.ofVideo->seconds}};
     path("radiance", frame.radiance);
     path("depth", frame.depth);
     if (frame.depthScale > 0) j["depth_scale"] = frame.depthScale;
@@ -156,7 +157,13 @@ std::string sceneToJson(const Scene& scene, const fs::path& folder) {
   root["surfaces"] = Json::object();
   for (const auto& [id, source] : scene.surfaces) {
     Json j = Json::object();
-    if (source.mesh) j["mesh"] = relative(*source.mesh, "surfaces." + id + ".mesh");
+    const char* const kind = source.isCloud ? "points" : "mesh";
+    if (source.points)
+      throw InputError(
+          source.mesh->string(), "surfaces." + id,
+          "is made of the sparse points of a capture, which a scene file cannot name; write them as a PLY cloud and name "
+          "it by --surface FILE");
+    if (source.mesh) j[kind] = relative(*source.mesh, "surfaces." + id + "." + kind);
     if (source.mesh && source.metresPerUnit != 1) {
       const std::string unit = unitOfMetres(source.metresPerUnit);
       j["units"] = unit == "cm" || unit == "mm" ? Json(unit) : Json(source.metresPerUnit);

@@ -120,6 +120,8 @@ void requirePermitted(const SessionInput& input, const std::string& file, const 
             realPath(mesh).parent_path());
   if (const fs::path& mesh = input.choices.surfaceFile; !mesh.empty())
     require(liesIn(permitted, mesh), mesh, file, "input.reading.surface_file", "--meshes DIR", realPath(mesh).parent_path());
+  if (const fs::path& poses = input.choices.poses; !poses.empty())
+    require(liesIn(permitted, poses), poses, file, "input.reading.poses", "--photographs DIR", realPath(poses).parent_path());
 }
 
 }  // namespace glint

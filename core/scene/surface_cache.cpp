@@ -114,6 +114,11 @@ struct SurfaceCache::Impl {
     if (it == sources.end()) return Failure{Reason::NoSurface, "surface '" + frame.surface + "' does not exist"};
     if (it->second.analytic) return makeAnalytic(*it->second.analytic);
     if (!it->second.mesh) return Failure{Reason::NoSurface, "surface '" + frame.surface + "' is neither a mesh nor analytic"};
+    if (it->second.isCloud || it->second.points) {
+      Outcome<PointSurface> made = readPointSurface(it->second);
+      if (!made) return made.failure();
+      return makeMesh(std::move(made->mesh), policy);
+    }
     TriangleMesh mesh = once(meshes, frame.surface, [&] { return readMesh(it->second); });
     try {
       return makeMesh(std::move(mesh), policy);
@@ -132,7 +137,8 @@ SurfaceCache::SurfaceCache(const Scene& scene, const SurfaceCache& other) : Surf
   const auto sameMesh = [&](const std::string& id) {
     const auto mine = impl_->sources.find(id), theirs = other.impl_->sources.find(id);
     return mine != impl_->sources.end() && theirs != other.impl_->sources.end() && mine->second.mesh &&
-           mine->second.mesh == theirs->second.mesh && mine->second.metresPerUnit == theirs->second.metresPerUnit;
+           mine->second.mesh == theirs->second.mesh && mine->second.metresPerUnit == theirs->second.metresPerUnit &&
+           mine->second.isCloud == theirs->second.isCloud && mine->second.points == theirs->second.points;
   };
   for (const auto& [id, mesh] : other.impl_->meshes)
     if (sameMesh(id)) impl_->meshes.emplace(id, mesh);

@@ -263,8 +263,7 @@ std::string sessionText(const Session& session, const fs::path& file) {
     root["input"]["folders"].push_back({{"of", nameOf(f.kind)}, {"folder", relative(f.folder)}});
   for (const auto& [named, mesh] : session.meshes) root["input"]["meshes"][named] = relative(mesh);
   if (!session.choices.none()) {
-    const std::string surface = session.choices.surfaceFile.empty() ? "" : relative(session.choices.surfaceFile);
-    root["input"]["reading"] = Json::parse(inputChoicesJson(session.choices, surface));
+    root["input"]["reading"] = Json::parse(inputChoicesJson(session.choices, relative));
   }
   for (const SessionFile& f : session.files)
     root["input"]["files"].push_back({{"path", relative(f.path)}, {"sha256", hash(f.sha256)}});

@@ -188,4 +188,25 @@ bool feedBop(const std::string& bytes) {
   return feedCapture("bop", files);
 }
 
+/// Poses of two images, as TUM or JSON lines.
+bool feedPosedImages(const std::string& bytes) {
+  const fs::path folder = scratch().path() / "posed";
+  fs::create_directories(folder / "frames");
+  for (const char* image : {"1.000.png", "1.033.png"}) scratch().write(std::string("posed/frames/") + image, kImage);
+  scratch().write("posed/poses", bytes);
+  CaptureOptions options;
+  options.camera = cameraOfNumbers({80, 80, 1.5, 1});
+  options.poses = folder / "poses";
+  const auto reader = makeImagesReader();
+  bool read = false;
+  for (const bool byOrder : {false, true}) try {
+      options.posesByOrder = byOrder;
+      checkCapture(reader->read(folder / "frames/1.000.png", options), {});
+      read = true;
+    } catch (const InputError& e) {
+      checkRefusal(e, "");
+    }
+  return read;
+}
+
 }  // namespace glint::fuzz

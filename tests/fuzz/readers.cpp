@@ -22,6 +22,8 @@ const std::vector<Reader>& readers() {
       {"stl", Form::Text, feedStl},
       {"gltf", Form::Json, feedGltf},
       {"glb", Form::Bytes, feedGlb},
+      {"pcd", Form::Bytes, feedPcd},
+      {"ply_cloud", Form::Text, feedPlyCloud},
       {"colmap_cameras", Form::Bytes, feedColmapCameras},
       {"colmap_images", Form::Bytes, feedColmapImages},
       {"colmap_points", Form::Bytes, feedColmapPoints},
@@ -33,6 +35,7 @@ const std::vector<Reader>& readers() {
       {"bop", Form::Json, feedBop},
       {"poses", Form::Text, feedPoses},
       {"labels", Form::Json, feedLabels},
+      {"posed_images", Form::Text, feedPosedImages},
       {"image_header", Form::Bytes, feedImageHeader},
       {"image", Form::Bytes, feedImage},
   };

@@ -36,6 +36,8 @@ bool feedObj(const std::string& bytes);
 bool feedStl(const std::string& bytes);
 bool feedGltf(const std::string& bytes);
 bool feedGlb(const std::string& bytes);
+bool feedPcd(const std::string& bytes);
+bool feedPlyCloud(const std::string& bytes);
 bool feedColmapCameras(const std::string& bytes);  // capture_fuzz.cpp
 bool feedColmapImages(const std::string& bytes);
 bool feedColmapPoints(const std::string& bytes);
@@ -45,6 +47,7 @@ bool feedTransforms(const std::string& bytes);
 bool feedBundle(const std::string& bytes);
 bool feedTum(const std::string& bytes);
 bool feedBop(const std::string& bytes);
+bool feedPosedImages(const std::string& bytes);
 bool feedPoses(const std::string& bytes);  // live_fuzz.cpp
 bool feedLabels(const std::string& bytes);
 bool feedImageHeader(const std::string& bytes);  // image_fuzz.cpp

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scenes from images or a video with poses, and from points without triangles: what is read, written back, and kept by sessions.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "core/capture/capture.h"
+#include "core/scene/mesh_file.h"
+#include "core/session/session.h"
+#include "tests/core/capture/png_fixture.h"
+#include "tests/core/capture/video_fixture.h"
+#include "tests/core/scene/scene_fixture.h"
+
+namespace glint::posed_scene_tests {
+namespace {
+using testing::Contains;
+using testing::HasSubstr;
+using namespace testing_support;
+
+/// A flat square of 30 x 30 points in the plane z = 0, 1 cm apart.
+std::string cloudPly() {
+  std::ostringstream ply;
+  constexpr int kSide = 30;
+  ply << "ply\nformat ascii 1.0\nelement vertex " << kSide * kSide
+      << "\nproperty double x\nproperty double y\nproperty double z\nend_header\n";
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) ply << 0.01 * (x - kSide / 2) << ' ' << 0.01 * (y - kSide / 2) << " 0\n";
+  return ply.str();
+}
+
+struct Folder : TemporaryFolder {
+  Folder() {
+    cloud = write("cloud.ply", cloudPly());
+    poses = write("poses.txt", "0.04 0 0 -2 0 0 0 1\n0.2 0.1 0 -2 0 0 0 1\n");
+    options.choices.poses = poses;
+    options.choices.camera = {80, 80, 31.5, 23.5};
+    options.choices.surface = InputChoices::Surface::File;
+    options.choices.surfaceFile = cloud;
+  }
+  std::filesystem::path cloud, poses;
+  ReadOptions options;
+};
+
+TEST(PosedScene, WithoutPosesAFolderOfImagesSaysWhatIsMissing) {
+  const TemporaryFolder folder;
+  folder.write("frames/0.04.png", pngOfSize(64, 48));
+  try {
+    readScene(folder / "frames");
+    FAIL() << "not refused";
+  } catch (const UndecidedInput& e) {
+    EXPECT_EQ(e.question(), UndecidedInput::Question::Poses);
+    EXPECT_THAT(e.what(), HasSubstr("--poses FILE"));
+  }
+  ReadOptions options;
+  options.choices.posesByOrder = true;
+  EXPECT_THAT(inputErrorOf([&] { readScene(folder / "frames", options); }), HasSubstr("--poses FILE, which is missing"));
+  options.choices.poses = folder.write("poses.txt", "0.04 0 0 0 0 0 0 1\n");
+  folder.write("empty/scene.json", minimalScene());
+  EXPECT_THAT(inputErrorOf([&] { readScene(folder / "empty", options); }), HasSubstr("--poses"));
+}
+
+TEST(PosedScene, PicturesOfAVideoAreDecodedAndKeptInASceneFile) {
+  Folder folder;
+  ASSERT_TRUE(writeVideo(folder / "clip.avi", "MJPG", 20, 25));
+  const Scene scene = readScene(folder / "clip.avi", folder.options);
+  EXPECT_EQ(scene.kind, "video");
+  ASSERT_EQ(scene.frames.size(), 2u);
+  EXPECT_EQ(scene.frames[1].id, "000005");
+  writeScene(scene, folder / "out.json");
+  const Scene again = readScene(folder / "out.json");
+  constexpr double kGreyOff = 6 / 255.0;  // of lossy pictures
+  for (const Scene* s : {&scene, &again})
+    for (const auto& [frame, picture] : {std::pair(1, 5), {0, 1}}) {
+      ASSERT_TRUE(s->frames[std::size_t(frame)].ofVideo);
+      const Outcome<Image> image = readPhotograph(s->frames[std::size_t(frame)]);
+      ASSERT_TRUE(image) << image.failure().detail;
+      EXPECT_EQ(image->channels, 3);
+      EXPECT_NEAR(image->data[0], greyOf(picture) / 255.0, kGreyOff);
+    }
+}
+
+TEST(PosedScene, SessionKeepsThePoses) {
+  Folder folder;
+  folder.write("frames/0.04.png", pngOfSize(64, 48));
+  folder.write("frames/0.20.png", pngOfSize(64, 48));
+  folder.options.choices.posesByOrder = true;
+  const Scene scene = readScene(folder / "frames", folder.options);
+  EXPECT_EQ(scene.choices.as, "images");
+  EXPECT_THAT(scene.sources, Contains(folder.poses));
+  Session session;
+  session.input = scene.file;
+  session.choices = scene.choices;
+  session.request.models = {"limit-angle"};
+  session.request.train = "0";
+  writeSession(session, folder / "run.glint");
+  EXPECT_THAT(contentOf(folder / "run.glint"), HasSubstr("\"poses\": \"poses.txt\""));
+  const Session read = readSession(folder / "run.glint");
+  EXPECT_EQ(read.choices, scene.choices);
+  const Scene again = readScene(folder / "run.glint");
+  EXPECT_EQ(again.kind, "images");
+  ASSERT_EQ(again.frames.size(), 2u);
+  // A session from others may not look into a file anywhere.
+  const TemporaryFolder elsewhere;
+  session.choices.poses = elsewhere.write("poses.txt", contentOf(folder.poses));
+  writeSession(session, folder / "run.glint");
+  EXPECT_THAT(inputErrorOf([&] { readScene(folder / "run.glint"); }), HasSubstr("input.reading.poses"));
+}
+
+TEST(PosedScene, CloudIsASurfaceAndStaysOneInASceneFile) {
+  Folder folder;
+  folder.write("frames/0.04.png", pngOfSize(64, 48));
+  folder.options.choices.surfaceMetresPerUnit = 10;
+  const Scene scene = readScene(folder / "frames", folder.options);
+  EXPECT_TRUE(scene.surfaces.begin()->second.isCloud);
+  writeScene(scene, folder / "out.json");
+  EXPECT_THAT(contentOf(folder / "out.json"), HasSubstr("\"points\": \"cloud.ply\""));
+  for (const Scene& s : {scene, readScene(folder / "out.json")}) {
+    const auto surface = SurfaceCache(s).surfaceOf(0, {});
+    ASSERT_TRUE(surface) << surface.failure().message();
+    const Outcome<SurfacePoint> hit = (*surface)->firstHit({Eigen::Vector3d(0.5, 0.3, -2), Eigen::Vector3d::UnitZ()});
+    ASSERT_TRUE(hit);
+    EXPECT_NEAR(hit->position.z(), 0, 1e-9);
+    EXPECT_FALSE((*surface)->firstHit({Eigen::Vector3d(1.7, 0, -2), Eigen::Vector3d::UnitZ()})) << "beyond the points";
+  }
+}
+
+TEST(PosedScene, SparsePointsAreASurfaceOnlyWhenAskedForAndEnough) {
+  const TemporaryFolder folder;
+  folder.write("sparse/0/cameras.txt", "1 PINHOLE 64 48 80 80 32 24\n");
+  folder.write("sparse/0/images.txt", "1 1 0 0 0 0 0 2 1 a.png\n32 24 1\n2 1 0 0 0 0 0 3 1 b.png\n32 24 1\n");
+  folder.write("sparse/0/points3D.txt", "1 0 0 0 0 0 0 0.5 1 0 2 0\n");
+  EXPECT_THAT(inputErrorOf([&] { readScene(folder.path()); }), HasSubstr("--surface FILE"));
+  ReadOptions options;
+  options.choices.surface = InputChoices::Surface::Points;
+  const Scene scene = readScene(folder.path(), options);
+  ASSERT_TRUE(scene.surfaces.begin()->second.points);
+  EXPECT_EQ(scene.surfaces.begin()->second.points->points.size(), 1u);
+  const auto surface = SurfaceCache(scene).surfaceOf(0, {});
+  ASSERT_FALSE(surface);
+  EXPECT_EQ(surface.failure().reason, Reason::TooFewPoints);
+  EXPECT_THAT(inputErrorOf([&] { writeScene(scene, folder / "out.json"); }), HasSubstr("sparse points of a capture"));
+}
+
+}  // namespace
+}  // namespace glint::posed_scene_tests
