@@ -15,6 +15,17 @@ namespace glint::cli {
 
 namespace {
 
+constexpr const char* kDescription =
+    "Reads INPUT and writes what was understood, by the name of the output: transforms.json (nerfstudio), another *.json (a "
+    "scene\n"
+    "file, with unknown keys of a scene kept), or a folder (COLMAP's text model). Paths are relative to the new file. Images "
+    "and\n"
+    "meshes stay in place. The last two hold cameras, and paths of images, depth maps and masks; a warning names what is left "
+    "out.\n"
+    "--labels takes the polygons of a COCO file as the highlights of its frames: labels that were corrected by hand are "
+    "evidence\n"
+    "again. A highlight keeps the peak that the scene or the photograph shows inside of its polygon.";
+
 /// The scene with the highlights of a COCO file; says what they are.
 Scene labelledBy(const std::string& file, const Scene& scene, const Context& context) {
   LabelledScene labelled = withLabels(scene, std::filesystem::path(file), context.progress());
@@ -35,16 +46,7 @@ Command convertCommand() {
   Command c;
   c.name = "convert";
   c.summary = "Convert any input to a scene file, transforms.json or a COLMAP model";
-  c.description =
-      "Reads INPUT and writes what was understood, by the name of the output: transforms.json (nerfstudio), another *.json (a "
-      "scene\n"
-      "file, with unknown keys of a scene kept), or a folder (COLMAP's text model). Paths are relative to the new file. Images "
-      "and\n"
-      "meshes stay in place. The last two hold cameras, and paths of images, depth maps and masks; a warning names what is left "
-      "out.\n"
-      "--labels takes the polygons of a COCO file as the highlights of its frames: labels that were corrected by hand are "
-      "evidence\n"
-      "again. A highlight keeps the peak that the scene or the photograph shows inside of its polygon.";
+  c.description = kDescription;
   c.examples =
       "  glint convert DIR -o DIR/scene.json\n"
       "  glint convert COLMAP --surface mesh.ply -o scene.json\n"
