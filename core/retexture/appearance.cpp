@@ -26,6 +26,7 @@ constexpr double kNearContour = 0.1;  // of rho: pixels that count as being on t
 constexpr int kLeastNearContour = 5;
 constexpr double kStrengthUntil = 1.5;  // rho up to which pixels tell the strength: beyond, the background matters more
 constexpr double kSpreadWorthSaying = 0.15;
+constexpr double kUncertainWorthSaying = 0.25;  // % of the diameter: as `glint detect` warns
 constexpr double kTailWorthSaying = 0.01;
 
 Image channelOf(const Image& image, int channel) {
@@ -88,6 +89,7 @@ struct ViewSamples {
   std::vector<One> all;
   double onContour = 0;  ///< mean of the channels there
   bool clipped = false;
+  double uncertainPct = 0;  ///< of the contour, because what surrounds it may be the highlight's own tail
 };
 
 using RhoOf = std::function<std::optional<double>(const Pixel& ideal)>;
@@ -116,6 +118,11 @@ Outcome<ViewSamples> samplesOf(const TrainingView& v, const FramePixels& pixels,
   if (int(near.size()) < kLeastNearContour) return Failure{Reason::TooFewPoints, "too few unclipped pixels on the contour"};
   result.onContour = upperMedian(near);
   result.clipped = v.highlight.clipped;
+  Image mean(pixels.linear.width, pixels.linear.height, 1);
+  for (std::size_t i = 0; i < mean.data.size(); ++i)
+    mean.data[i] = (pixels.linear.data[3 * i] + pixels.linear.data[3 * i + 1] + pixels.linear.data[3 * i + 2]) / 3;
+  if (result.onContour > 0)
+    result.uncertainPct = backgroundUncertaintyPct(mean, usable, s->footprint, result.onContour / v.highlight.level);
   if (!(result.onContour > 0)) return Failure{Reason::NoHighlight, "the contour is no brighter than its background"};
   return result;
 }
@@ -203,6 +210,13 @@ Outcome<HighlightAppearance> learnProfile(const Inspection& in, const ModelFit& 
     if (const std::optional<Eigen::Vector3d> s = strengthIn(v, *profile)) strengths.push_back(*s);
   if (strengths.empty()) return Failure{Reason::NoHighlight, "the training frames show no strength above their background"};
   combine(strengths, a);
+  double uncertain = 0;
+  for (const ViewSamples& v : seen) uncertain = std::max(uncertain, v.uncertainPct);
+  if (uncertain > kUncertainWorthSaying)
+    a.remarks.emplace_back(
+        "what surrounds the highlight may be its own tail, which then counts as background: the highlight may be too narrow and "
+        "too "
+        "dim; reflectance, which knows its lobe, tells them apart");
   if (profile->observedFrom() > 0)
     a.remarks.push_back(
         formatted("the core is clipped in the training frames: inside %.0f %% of the contour its brightness continues "
