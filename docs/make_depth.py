@@ -239,7 +239,7 @@ def main():
         for name, lines in sections(maker, scenes)[2].items():
             start, end = f"<!-- {name} -->\n", f"<!-- end of {name} -->"
             if start not in text or end not in text:
-                fail(f"{page}: the marks of the table '{name}' are missing")
+                text += f"\n{start}{end}\n"
             text = text[:text.index(start) + len(start)] + lines + text[text.index(end):]
     page.write_text(text)
 
