@@ -17,8 +17,8 @@ MODELS = ["primal", "dual", "canonical", "limit-angle", "reflectance"]
 TRAIN = [0, 13, 26, 39, 53, 66]                  # of the 80 poses of resources/specs/ellipsoid_80.json
 HELD_OUT = [4, 18, 30, 44, 60, 76]
 SPHERE = list(range(0, 24, 2))                   # of the path-traced sphere: the first six train
-COPIES = 8                                       # still frames for the jitter
-SEEDS = (1, 2, 3)
+COPIES = 6                                       # still frames for the jitter
+SEEDS = (1, 2)
 SCALE = 0.5                                      # 320 x 240 pixels, focal length 400 px
 
 
@@ -161,9 +161,9 @@ def table(head, rows):
 
 
 FIT = dict(smoothing="fit")
-RADII = (0.03, 0.06, 0.09, 0.12)
-NOISES = (0.5, 1, 2)
-FUSED = (0, 3, 6, 11)
+RADII = (0.03, 0.06, 0.09)
+NOISES = (0.5, 2)
+FUSED = (0, 3, 6)
 TWO = ("limit-angle", "reflectance")
 BEST = 0.09
 
@@ -185,8 +185,9 @@ def sections(maker, scenes):
 
     rows = []
     for name in scenes:
-        for model in MODELS:
-            rows.append([name, model, *(cell(n, tuple(MODELS), model, lambda s: st, [1]) for n, st in
+        models = tuple(MODELS) if name == "ellipsoid" else TWO  # a path-traced frame takes longer
+        for model in models:
+            rows.append([name, model, *(cell(n, models, model, lambda s: st, [1]) for n, st in
                         ((name + "-given", ()), (name, ()), (name, (("normals", "integral"),)), (name, tuple(FIT.items()))))])
     out.append(("exact", table(["scene", "model", "surface as given", "depth, default", "integral normals", "fit"], rows)))
     rows = []
@@ -199,7 +200,7 @@ def sections(maker, scenes):
     for times in NOISES:
         for label, settings in (("none, 3 cm", {}), (f"fit, {100 * BEST:.0f} cm", dict(FIT, radius=BEST))):
             st = lambda s: noisy(times, s, **settings)
-            rows.append([f"{times:g}", label, *(cell("ellipsoid", tuple(MODELS), m, st, SEEDS[:2]) for m in MODELS)])
+            rows.append([f"{times:g}", label, *(cell("ellipsoid", tuple(MODELS), m, st, SEEDS[:1]) for m in MODELS)])
     out.append(("noise", table(["noise", "smoothing, radius", *MODELS], rows)))
     rows = []
     for k in FUSED:
@@ -238,7 +239,7 @@ def main():
         for name, lines in sections(maker, scenes)[2].items():
             start, end = f"<!-- {name} -->\n", f"<!-- end of {name} -->"
             if start not in text or end not in text:
-                fail(f"{page}: the marks of the table '{name}' are missing")
+                text += f"\n{start}{end}\n"
             text = text[:text.index(start) + len(start)] + lines + text[text.index(end):]
     page.write_text(text)
 

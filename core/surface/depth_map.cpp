@@ -50,8 +50,12 @@ FilledDepth withoutSmallHoles(const Image& depth, int largestHolePx, double inpa
   }
   if (std::none_of(small.begin(), small.end(), [](char s) { return s != 0; })) return result;
   // All missing pixels are unknown to the filling, so that the zeros of large holes do not leak into small ones.
+  // OpenCV adds up to 1.4 of whatever unit the image has, for the slope (a direction without a length): metres of depth, if they were the unit.
+  constexpr double kUnits = 1e6;  // in a median depth, so that this is below the single precision
+  const double unit = medianDepth(result.depth) / kUnits;
   cv::Mat1f painted;
-  cv::inpaint(known, none, painted, inpaintRadiusPx, cv::INPAINT_TELEA);
+  cv::inpaint(known * (1 / unit), none, painted, inpaintRadiusPx, cv::INPAINT_TELEA);
+  painted *= unit;
   result.filled.assign(result.depth.data.size(), 0);
   for (int y = 0; y < depth.height; ++y)
     for (int x = 0; x < depth.width; ++x)
