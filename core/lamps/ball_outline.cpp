@@ -27,7 +27,7 @@ constexpr int kTries = 1500;                  // circles through three edges: on
 constexpr double kInlierShare = 0.006;        // of the radius, of the first circle: reflections lie beside the edge by more
 constexpr double kTogether = 0.5;             // in blurs: edges of several photographs that are one
 constexpr double kCloseWidth = 2;             // in blurs: where noise would lead the wide weights outwards
-constexpr double kMuchMore = 1.5;             // of the support: a reflection may have a little more than the outline around it
+constexpr double kMuchMore = 1.25;            // of the support: a reflection may have a little more than the outline around it
 constexpr double kFirstWidth = 6;             // in blurs: reflections lie inside of the edge by as much
 constexpr double kInner = 0.7, kOuter = 1.3;  // in blurs: half width of the weights inside and outside of the outline
 constexpr int kLeastSectors = kOutlineSectors / 3;   // fewer leave a centre that a shadow's edge may draw aside

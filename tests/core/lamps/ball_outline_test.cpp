@@ -127,7 +127,7 @@ TEST(BallOutline, PhotographsUnderSeveralLampsAreUsedTogether) {
   const CutOut at(truth);
   std::vector<Image> photographs;
   for (int k = 0; k < 4;
-       ++k) {  // each lamp lights a third of the background, 0.5 degrees behind the ball's edge and farther; the room is dark
+       ++k) {  // each lamp lights a third of the background, up to 26 degrees from the optical axis; the room is dark
     scene.light = [k](const Eigen::Vector3d& d) { return d.z() > 0.9 && around(d, 90.0 * k + 30, 60) ? 0.12 : 0.002; };
     photographs.push_back(photograph(render(scene, at.corner, at.size, at.size, 3), 1.2, 1, k + 1, 92));
   }
@@ -135,7 +135,7 @@ TEST(BallOutline, PhotographsUnderSeveralLampsAreUsedTogether) {
   const auto found = refineBallOutline(photographs, at.corner, start);
   ASSERT_TRUE(found) << found.failure().message();
   std::printf("four lamps: error %.3f px\n", largestError(found->outline, truth));
-  EXPECT_LT(largestError(found->outline, truth), 3);
+  EXPECT_LT(largestError(found->outline, truth), 0.5);  // 0.25 measured: the rim reflects what is lit behind it
 }
 
 /// A bright, rough stand hides a quarter; a shadow runs up to the ball.
