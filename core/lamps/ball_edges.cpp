@@ -18,6 +18,7 @@ constexpr double kStepsPerBlur =
     3;  // samples along a line for each standard deviation of the blur: a parabola then finds the peak to 0.01 of it
 constexpr double kLeastSlope = 0.15;   // grey levels per px: half a level, which a JPEG rounds away, over the width of the blur
 constexpr double kOverNoise = 4;       // standard deviations; one sample of 16,000 of pure noise
+constexpr double kNoisier = 0.75;      // of all places three quarters are quieter: a black ball hides the noise of what is lit
 constexpr int kSectorNeighbours = 2;   // sectors to each side in which an edge goes on
 constexpr int kLeastNeighbours = 3;    // of four: one may be hidden by a speck
 constexpr double kOwnScatterPx = 0.5;  // of one sector's edge about its neighbours' line
@@ -44,13 +45,24 @@ double lightAt(const Image& image, const Eigen::Vector2d& p) {
          v * ((1 - u) * image.at(x, y + 1) + u * image.at(x + 1, y + 1));
 }
 
-/// Mean over the lines of one sector.
-std::vector<double> meanProfile(const Image& image, const std::vector<RadialLine>& lines, int samples, double spacing) {
-  std::vector<double> mean(samples, 0.0);
-  for (const RadialLine& l : lines)
-    for (int i = 0; i < samples; ++i)
-      mean[i] += lightAt(image, l.from + i * spacing * l.direction) / static_cast<double>(lines.size());
-  return mean;
+/// Over the lines of one sector: mean, and standard deviation of the mean.
+struct SectorProfile {
+  std::vector<double> mean, sigma;
+};
+
+SectorProfile sectorProfile(const Image& image, const std::vector<RadialLine>& lines, int samples, double spacing) {
+  const double n = static_cast<double>(lines.size());
+  SectorProfile profile{std::vector<double>(samples, 0.0), std::vector<double>(samples, 0.0)};
+  std::vector<double> values(lines.size());
+  for (int i = 0; i < samples; ++i) {
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+      values[k] = lightAt(image, lines[k].from + i * spacing * lines[k].direction);
+      profile.mean[i] += values[k] / n;
+    }
+    for (const double v : values) profile.sigma[i] += (v - profile.mean[i]) * (v - profile.mean[i]) / (n * (n - 1));
+    profile.sigma[i] = std::sqrt(profile.sigma[i]);
+  }
+  return profile;
 }
 
 /// The profile smoothed (first) and its derivative for each px (second), Gaussian of 3 samples; NaN at the ends.
@@ -203,22 +215,27 @@ std::vector<RadialLine> sectorLines(const OutlineModel& outline, int sector, dou
   return lines;
 }
 
-/// Every edge of one photograph, before neighbours are asked.
+/// Every edge of one photograph, before neighbours are asked. The noise is what the lines of a sector differ by: an edge that runs along the outline
+/// does not count as noise. White noise of the mean, sigma, has the slope sigma (4 sqrt(pi) blur^3)^-1/2 behind the derivative of a Gaussian.
 SectorEdges edgesOf(const Image& linear, const std::vector<std::vector<RadialLine>>& lines, int samples, double spacing) {
   std::vector<std::vector<double>> slopes(kOutlineSectors), codes(kOutlineSectors);
-  std::vector<double> all;
+  std::vector<double> noise;
   for (int s = 0; s < kOutlineSectors; ++s) {
-    auto [value, slope] = smoothedProfile(meanProfile(linear, lines[s], samples, spacing), spacing);
+    const SectorProfile profile = sectorProfile(linear, lines[s], samples, spacing);
+    auto [value, slope] = smoothedProfile(profile.mean, spacing);
     codes[s].resize(slope.size());
     for (std::size_t i = 0; i < slope.size(); ++i) {
-      codes[s][i] = std::abs(slope[i]) * 255 * codePerLinear(std::max(0.0, value[i]));
-      if (std::isfinite(codes[s][i])) all.push_back(codes[s][i]);
+      const double scale = 255 * codePerLinear(std::max(0.0, value[i]));
+      codes[s][i] = std::abs(slope[i]) * scale;
+      if (std::isfinite(value[i])) noise.push_back(profile.sigma[i] * scale);
     }
     slopes[s] = std::move(slope);
   }
   SectorEdges result;
-  if (all.empty()) return result;
-  const double threshold = std::max(kLeastSlope, kOverNoise * 1.4826 * upperMedian(all));
+  if (noise.empty()) return result;
+  const double usual = ranked(noise, static_cast<std::size_t>(kNoisier * static_cast<double>(noise.size() - 1)));
+  const double slopeOfNoise = std::sqrt(1 / (4 * std::sqrt(std::numbers::pi) * std::pow(kStepsPerBlur * spacing, 3))) * usual;
+  const double threshold = std::max(kLeastSlope, kOverNoise * slopeOfNoise);
   for (int s = 0; s < kOutlineSectors; ++s) result[s] = slopePeaks(slopes[s], codes[s], threshold, spacing);
   return result;
 }

@@ -23,11 +23,14 @@ constexpr double kBlurShare =
     1 / 280.;  // of the radius: where a ball fills the frame its edge is blurred by more pixels (1.5 of 420 measured)
 constexpr double kLeastBlurPx = 1.0, kMostBlurPx = 4.0;  // sampling; what a lens blurs at most
 constexpr double kFineReach = 16;                        // in blurs: what the first fit may be off
-constexpr int kTries = 1500;                        // circles through three edges: one in nine of good edges is met 150 times
-constexpr double kInlierShare = 0.006;              // of the radius, of the first circle: reflections lie beside the edge by more
-constexpr double kTogether = 0.5;                   // in blurs: edges of several photographs that are one
-constexpr double kInner = 0.7, kOuter = 1.3;        // in blurs: half width of the weights inside and outside of the outline
-constexpr int kLeastSectors = kOutlineSectors / 3;  // fewer leave a centre that a shadow's edge may draw aside
+constexpr int kTries = 1500;                  // circles through three edges: one in nine of good edges is met 150 times
+constexpr double kInlierShare = 0.006;        // of the radius, of the first circle: reflections lie beside the edge by more
+constexpr double kTogether = 0.5;             // in blurs: edges of several photographs that are one
+constexpr double kCloseWidth = 2;             // in blurs: where noise would lead the wide weights outwards
+constexpr double kMuchMore = 1.25;            // of the support: a reflection may have a little more than the outline around it
+constexpr double kFirstWidth = 6;             // in blurs: reflections lie inside of the edge by as much
+constexpr double kInner = 0.7, kOuter = 1.3;  // in blurs: half width of the weights inside and outside of the outline
+constexpr int kLeastSectors = kOutlineSectors / 3;   // fewer leave a centre that a shadow's edge may draw aside
 constexpr int kWidestGap = kOutlineSectors * 5 / 9;  // 200 degrees: less than the other half of the outline
 constexpr double kCounts = 0.05;                     // weight from which an edge is one that was used
 constexpr double kLeastRcond = 1e-9;                 // of the normal matrix: below it a direction of the fit is free
@@ -68,19 +71,24 @@ std::vector<SectorEdge> outermost(const OutlineModel& model, const std::vector<B
   return result;
 }
 
-/// Tukey's weight; narrower inside, where reflections lie.
-WeightedEdge weightedEdge(const OutlineModel& model, const Eigen::Vector2d& place, double unit) {
-  const double r = model.distance(place), t = r / (2 * unit * (r < 0 ? kInner : kOuter));
+/// Half widths of Tukey's weights, px. Narrower inside, where reflections lie; equal where noise hides which side that is.
+struct Widths {
+  double inner = 0, outer = 0;
+  Widths operator*(double times) const { return {inner * times, outer * times}; }
+};
+
+WeightedEdge weightedEdge(const OutlineModel& model, const Eigen::Vector2d& place, const Widths& widths) {
+  const double r = model.distance(place), t = r / (2 * (r < 0 ? widths.inner : widths.outer));
   return {r, std::abs(t) < 1 ? (1 - t * t) * (1 - t * t) : 0.0};
 }
 
 /// One step of weighted Gauss-Newton. False where the edges do not determine one.
-bool outlineStep(OutlineModel& model, const std::vector<SectorEdge>& edges, double unit, int leftOut = -1) {
+bool outlineStep(OutlineModel& model, const std::vector<SectorEdge>& edges, const Widths& widths, int leftOut = -1) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   for (const SectorEdge& e : edges) {
     if (leftOut >= 0 && e.sector * kLeftOut / kOutlineSectors == leftOut) continue;
-    const WeightedEdge w = weightedEdge(model, e.point.place, unit);
+    const WeightedEdge w = weightedEdge(model, e.point.place, widths);
     if (w.weight == 0) continue;
     const Eigen::Vector3d row = model.derivatives(e.point.place);
     normal += w.weight * row * row.transpose();
@@ -95,14 +103,35 @@ bool outlineStep(OutlineModel& model, const std::vector<SectorEdge>& edges, doub
 }
 
 /// From wide weights to narrow ones.
-bool fitOutline(OutlineModel& model, const std::vector<BallEdge>& edges, double blur, double widest) {
-  std::vector<double> widths;
-  for (double w = widest; w > 1; w *= 0.8) widths.push_back(w);
-  widths.insert(widths.end(), 12, 1.0);
-  for (const double width : widths)
+bool fitOutline(OutlineModel& model, const std::vector<BallEdge>& edges, double blur, const Widths& widths, double widest) {
+  std::vector<double> times;
+  for (double w = widest; w > 1; w *= 0.8) times.push_back(w);
+  times.insert(times.end(), 12, 1.0);
+  for (const double t : times)
     for (int i = 0; i < 3; ++i)
-      if (!outlineStep(model, outermost(model, edges, 2 * kOuter * width * blur, kTogether * blur), width * blur)) return false;
+      if (!outlineStep(model, outermost(model, edges, 2 * t * widths.outer, kTogether * blur), widths * t)) return false;
   return true;
+}
+
+/// How many sectors have an edge on the outline; those beside it count in part.
+double support(const OutlineModel& model, const std::vector<BallEdge>& edges, double blur, const Widths& widths) {
+  double sum = 0;
+  for (const SectorEdge& e : outermost(model, edges, 2 * widths.outer, kTogether * blur))
+    sum += weightedEdge(model, e.point.place, widths).weight;
+  return sum;
+}
+
+/// From wide weights outwards; with equal ones from close by, where these find clearly more of an outline. The widths that were used; nothing where
+/// neither fit holds.
+std::optional<Widths> settle(OutlineModel& model, const std::vector<BallEdge>& edges, double blur, double widest) {
+  const Widths outwards{kInner * blur, kOuter * blur}, equal{kOuter * blur, kOuter * blur};
+  OutlineModel close = model;
+  const double far = fitOutline(model, edges, blur, outwards, widest) ? support(model, edges, blur, outwards) : 0;
+  const double near = fitOutline(close, edges, blur, equal, kCloseWidth) ? support(close, edges, blur, equal) : 0;
+  if (far == 0 && near == 0) return std::nullopt;
+  if (near <= kMuchMore * far) return outwards;
+  model = close;
+  return equal;
 }
 
 /// The circle through three points; radius 0 where they lie on a line.
@@ -142,11 +171,11 @@ std::optional<Eigen::Vector3d> firstCircle(const std::vector<BallEdge>& edges, c
 }
 
 /// What the refined model leaves: the edges used, rms, and the covariance by leaving parts out.
-RefinedOutline assessOutline(const OutlineModel& model, const std::vector<SectorEdge>& edges, double blur) {
+RefinedOutline assessOutline(const OutlineModel& model, const std::vector<SectorEdge>& edges, const Widths& widths) {
   RefinedOutline result;
   double sum = 0, squares = 0;
   for (const SectorEdge& e : edges) {
-    const WeightedEdge w = weightedEdge(model, e.point.place, blur);
+    const WeightedEdge w = weightedEdge(model, e.point.place, widths);
     if (w.weight < kCounts) continue;
     result.edge.push_back(e.point);
     sum += w.weight;
@@ -160,7 +189,7 @@ RefinedOutline assessOutline(const OutlineModel& model, const std::vector<Sector
     OutlineModel other = model;
     bool fine = true;
     for (int i = 0; fine && i < 10; ++i)
-      fine = outlineStep(other, edges, blur, part);  // Gauss-Newton from so near: converged to 1e-6 px
+      fine = outlineStep(other, edges, widths, part);  // Gauss-Newton from so near: converged to 1e-6 px
     if (fine) without.push_back(other.x - model.x);
   }
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -186,16 +215,22 @@ int widestGap(const OutlineModel& model, const std::vector<EdgePoint>& edge) {
 /// The circle of least squares to a model's outline: the model's own where it is one.
 BallOutline circleOf(const OutlineModel& model) {
   if (!model.camera) return {model.x.head<2>(), model.x[2]};
+  std::array<Eigen::Vector2d, kOutlineSectors> outline;
+  for (int s = 0; s < kOutlineSectors; ++s) {
+    const double angle = 2 * std::numbers::pi * s / kOutlineSectors;
+    outline[s] = model.x.head<2>() + model.radiusAt(angle) * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+  }
   OutlineModel circle{model.x, std::nullopt};
   for (int round = 0; round < 5; ++round) {
-    Eigen::Vector3d change = Eigen::Vector3d::Zero();
-    for (int s = 0; s < kOutlineSectors; ++s) {  // equal angles: the normal matrix of a circle is diagonal, n/2, n/2, n
-      const double angle = 2 * std::numbers::pi * s / kOutlineSectors;
-      const Eigen::Vector2d outwards(std::cos(angle), std::sin(angle));
-      const double r = circle.distance(model.x.head<2>() + model.radiusAt(angle) * outwards);
-      change += r * Eigen::Vector3d(2 * outwards.x(), 2 * outwards.y(), 1) / kOutlineSectors;
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    for (int s = 0; s < kOutlineSectors; ++s) {  // weighted by length, so that the middle of an ellipse is its circle's
+      const double length = (outline[(s + 1) % kOutlineSectors] - outline[(s + kOutlineSectors - 1) % kOutlineSectors]).norm();
+      const Eigen::Vector3d row = circle.derivatives(outline[s]);
+      normal += length * row * row.transpose();
+      right -= length * circle.distance(outline[s]) * row;
     }
-    circle.x += change;
+    circle.x += normal.ldlt().solve(right);
   }
   return {circle.x.head<2>(), circle.x[2]};
 }
@@ -230,13 +265,15 @@ Outcome<RefinedOutline> refineLinear(const std::vector<Image>& linear, const Bal
   const std::optional<Eigen::Vector3d> first = firstCircle(edges, start);
   if (!first) return nothing;
   model = {*first, camera};
-  const double wide = std::max(6.0, 2 * kInlierShare * start.radius / blur);
-  if (!fitOutline(model, edges, blur, wide)) return nothing;
+  const double wide = std::max(kFirstWidth * blur, 2 * kInlierShare * start.radius) / blur;
+  std::optional<Widths> widths = settle(model, edges, blur, wide);
+  if (!widths) return nothing;
   for (int look = 0; look < 2; ++look) {
     edges = ballEdges(linear, model, kFineReach * blur, blur, kTogether * blur);
-    if (!fitOutline(model, edges, blur, look == 0 ? 5.0 : 1.5)) return nothing;
+    widths = settle(model, edges, blur, look == 0 ? kFirstWidth : kCloseWidth);
+    if (!widths) return nothing;
   }
-  RefinedOutline result = assessOutline(model, outermost(model, edges, 2 * kOuter * blur, kTogether * blur), blur);
+  RefinedOutline result = assessOutline(model, outermost(model, edges, 2 * widths->outer, kTogether * blur), *widths);
   result.outline = circleOf(model);
   if (result.edge.size() < static_cast<std::size_t>(kLeastSectors))
     return Failure{Reason::TooFewPoints, ball + " shows an outline in " + std::to_string(result.edge.size()) + " of " +

@@ -23,7 +23,7 @@ struct OutlineCamera {
 /// the codes between black and white stands a fifth of the light.
 /// A mirror shows what is behind it along its own edge, compressed, so that many edges are reflections. They lie inside of the outline, never outside. Hence
 /// in every sector the outermost edge counts that continues in its neighbours and lies near the outline; a circle (with a camera: the outline of a sphere) is
-/// fitted to these with Tukey's weights.
+/// fitted to these with Tukey's weights, narrower inside than outside; equal ones where these find clearly more of an outline (noise).
 /// What this cannot see: a rim that reflects its own background so well that nowhere and under no lamp it stands out. The outline is then too small there.
 ///
 /// @param photographs  one or more of equal size, 8-bit values 0 to 255 as float, 1 or 3 channels.

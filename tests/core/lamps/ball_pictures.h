@@ -77,7 +77,7 @@ inline cv::Mat render(const Scene& scene, const Eigen::Vector2d& corner, int wid
 
 /// What a camera makes of linear light: blur, sRGB (IEC 61966-2-1), noise in codes, clipping, and where a quality is given a JPEG.
 inline Image photograph(const cv::Mat& linear, double blurPx, double noise = 0, unsigned seed = 1, int jpeg = 0) {
-  cv::Mat blurred = linear;
+  cv::Mat blurred = linear.clone();  // OpenCV would blur a shared picture in its place
   if (blurPx > 0) cv::GaussianBlur(linear, blurred, {}, blurPx);
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0, 1);
