@@ -63,7 +63,7 @@ void refuseOthers(const LightsArguments& a) {
 void sayWhatIsMissing(const LightsArguments& a, bool camera, LampsReport& report) {
   if (!camera)
     report.warnings.emplace_back(
-        "no focal length (--camera; EXIF is not read): directions assume a distant camera, which costs up to about the angle "
+        "no focal length (neither --camera nor EXIF): directions assume a distant camera, which costs up to about the angle "
         "between the ball's far edge and the image's middle, and no positions are known");
   if (!camera && !a.ballRadius.empty()) report.warnings.emplace_back("--ball-radius has no use without --camera");
   if (camera && a.balls.size() > 1 && a.ballRadius.empty())
@@ -86,9 +86,12 @@ LampsReport ofBalls(const LightsArguments& a, const Context& context) {
   if (const auto given = a.places.reading.find("--camera"); given != a.places.reading.end() && !given->second.empty())
     camera = cameraOfNumbers(cameraNumbers(given->second, "--camera"));
   const BallShots shots = ballShotsIn(a.input, balls, a.exclude);
+  double filmMm = 0;
+  const bool focalAlone = !camera;
+  if (!camera) camera = cameraOfExif(shots, filmMm);
   checkOutputs(a, Outputs(shots.files()));
   Outcome<PhotographLamps> found =
-      lampsOfShots(shots, camera, radius, outlinesOf(a.outlines), a.outlineSigmaPx, context.progress());
+      lampsOfShots(shots, camera, focalAlone && camera, radius, outlinesOf(a.outlines), a.outlineSigmaPx, context.progress());
   if (!found) throw CannotAnswer{found.failure()};
   LampsReport report;
   report.lengthUnit = !camera ? "" : radius ? "m" : "ball radius";
@@ -97,6 +100,11 @@ LampsReport ofBalls(const LightsArguments& a, const Context& context) {
     if (!report.lamps[i].failure) report.lines.push_back({found->fileNames[i], report.lamps[i].direction});
   report.balls = std::move(found->fit);
   report.warnings = found->warnings;
+  if (focalAlone && camera)
+    report.warnings.push_back(
+        formatted("the focal length is that of EXIF, %g mm on 35 mm film, with the principal point in the "
+                  "middle and no lens distortion: directions only, good to about half a degree (--camera)",
+                  filmMm));
   sayWhatIsMissing(a, camera.has_value(), report);
   return report;
 }

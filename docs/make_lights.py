@@ -42,7 +42,8 @@ spread (`core.lamps` in the tests).
 What the data determine:
 - One ball: a direction. The lamp lies on the mirrored ray; seen from the ball's middle it is elsewhere by up to the angle at which the ball is seen from the lamp. `reason` says how much that is for a lamp at 20 radii.
 - Two balls or more, and `--camera`: a position, where the inverse distance is five standard deviations from 0; else `parallel rays`, and how far away the lamp is at least.
-- No focal length: directions under parallel rays. A ball beside the image's middle is then seen from the side, at an angle that is not taken into account. EXIF data are not read.
+- No focal length: directions under parallel rays. A ball beside the image's middle is then seen from the side, at an angle that is not taken into account.
+- The focal length of EXIF data alone (`FocalLengthIn35mmFilm`, whole shots): directions, with the principal point taken in the middle; 3 % of the focal length and 0.01 rad of the axis are in the standard deviation.
 
 A rough ball has wide highlights, whose middle is not the mirror point. Where they are wider than a twentieth of the radius, and there is one ball, its photographs also go through the fit of a scene; a lamp takes that
 direction where the lobe explains its highlight and agrees with the mirrored ray (`solver` then says so).

@@ -9,6 +9,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/bounded_json.h"
+#include "core/base/exif.h"
 #include "core/base/image_header.h"
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
@@ -376,11 +377,35 @@ BallShots ballShotsIn(const fs::path& input, const std::vector<NamedBall>& balls
   return result;
 }
 
-Outcome<PhotographLamps> lampsOfShots(const BallShots& shots, const std::optional<Camera>& camera,
+std::optional<Camera> cameraOfExif(const BallShots& shots, double& mm) {
+  for (const NamedBall& ball : shots.balls)
+    if (!ball.folder.empty() || !ball.corner.isZero(0)) return std::nullopt;
+  constexpr double kFilmDiagonal = 43.2666;  // mm, of 36 x 24
+  std::optional<Camera> camera;
+  for (const Shot* shot : {&shots.shots.front(), &shots.shots.back()}) {
+    try {
+      const std::string bytes = readFile(shot->files.front(), Limit::ImageMegabytes);
+      const ImageHeader header = readImageHeader(bytes);
+      const std::optional<double> focal = focalLength35mm(bytes);
+      if (!header.problem.empty() || !focal || (camera && *focal != mm)) return std::nullopt;
+      mm = *focal;
+      const Eigen::Vector2d size(double(header.width), double(header.height));
+      const double px = mm / kFilmDiagonal * size.norm();
+      camera.emplace();
+      camera->pixelFromRay << px, 0, (size.x() - 1) / 2, 0, px, (size.y() - 1) / 2, 0, 0, 1;
+    } catch (const InputError&) {
+      return std::nullopt;  // it is said where the photograph is looked at
+    }
+  }
+  return camera;
+}
+
+Outcome<PhotographLamps> lampsOfShots(const BallShots& shots, const std::optional<Camera>& camera, bool focalAlone,
                                       const std::optional<double>& ballRadius, Outlines outlines, double givenSigmaPx,
                                       const ProgressFn& progress) {
   BallPhotographs photographs;
   photographs.camera = camera;
+  photographs.focalAlone = focalAlone;
   photographs.ballRadius = ballRadius;
   return ShotReader(shots, outlines, givenSigmaPx, progress).run(std::move(photographs));
 }

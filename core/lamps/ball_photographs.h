@@ -44,6 +44,11 @@ struct BallShots {
 /// InputError: a folder is missing, has no photographs or could be two; a ball is named twice; `exclude`.
 BallShots ballShotsIn(const std::filesystem::path& input, const std::vector<NamedBall>& balls, const std::string& exclude);
 
+/// What EXIF data of whole shots say of the camera: the focal length; the principal point is taken in the middle, the lens as ideal. Nothing where a ball was cut
+/// out, where the first shot says nothing, or where the last one says something else.
+/// @param mm  becomes the focal length on 35 mm film
+std::optional<Camera> cameraOfExif(const BallShots& shots, double& mm);
+
 struct PhotographLamps {
   BallLamps fit;                       ///< lamps in the order of the shots, each with its id
   std::vector<std::string> fileNames;  ///< of each lamp: the shot's
@@ -51,11 +56,11 @@ struct PhotographLamps {
 };
 
 /// Outlines, highlights and lamps of all shots. A shot that cannot be read or shows no highlight is a lamp without an answer.
-/// @param camera  see BallPhotographs
+/// @param camera,focalAlone  see BallPhotographs
 /// @param givenSigmaPx  of centre and radius of an outline that is taken as typed
 /// @throw InputError where a ball lies outside of its photographs; Stopped
 /// @return  FrameUnreadable, NoHighlight where no shot says anything; what fitBallLamps() says
-Outcome<PhotographLamps> lampsOfShots(const BallShots& shots, const std::optional<Camera>& camera,
+Outcome<PhotographLamps> lampsOfShots(const BallShots& shots, const std::optional<Camera>& camera, bool focalAlone,
                                       const std::optional<double>& ballRadius, Outlines outlines, double givenSigmaPx,
                                       const ProgressFn& progress);
 

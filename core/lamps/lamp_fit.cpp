@@ -20,8 +20,10 @@ namespace {
 
 constexpr double kKnownDistance =
     5;  // standard deviations of the inverse: the distance is then good to a fifth, nearly symmetric
-constexpr double kFarthest95 = 1.645;  // one-sided bound of 95 %
-constexpr int kMostRounds = 5;         // of dropping; one or two are usual
+constexpr double kFarthest95 = 1.645;     // one-sided bound of 95 %
+constexpr double kExifFocalShare = 0.03;  // whole millimetres, rounded once more for the film's size
+constexpr double kExifMiddle = 0.01;      // rad: where the optical axis meets a sensor
+constexpr int kMostRounds = 5;            // of dropping; one or two are usual
 
 class BallLampFit {
  public:
@@ -217,6 +219,10 @@ void BallLampFit::describe(const LampInFit& lamp, std::size_t equation, LampAnsw
   a.highlights = static_cast<int>(lamp.unknowns.peaks.size());
   a.residualPx = misfitOf(*problem_, lamp.unknowns).rmsPx;
   a.directionSigma = std::sqrt(covariance.topLeftCorner<2, 2>().trace());
+  if (p_.focalAlone) {
+    const Eigen::Vector3d at = middleOf(lamp);
+    a.directionSigma = std::hypot(a.directionSigma, kExifFocalShare * at.head<2>().norm() / at.z(), kExifMiddle);
+  }
   addDistance(lamp, covariance, a);
   addSightings(lamp, a);
   addLeftOut(lamp, equation, a);
@@ -228,7 +234,7 @@ void BallLampFit::addDistance(const LampInFit& lamp, const Eigen::MatrixXd& cova
   if (p_.camera) a.from = unit_ * middle;
   const double inverse = aimed.inverseDistance * problem_->scale();
   const double sigma = lamp.unknowns.distanceFree ? std::sqrt(covariance(2, 2)) : 0;
-  if (!lamp.unknowns.distanceFree || !p_.camera || !(inverse > kKnownDistance * sigma)) {
+  if (!lamp.unknowns.distanceFree || !p_.camera || p_.focalAlone || !(inverse > kKnownDistance * sigma)) {
     a.withoutPosition = whyNoDistance(lamp, inverse, sigma);
     const std::optional<LampUnknowns> distant =
         inverse < 0 ? distantFrom(*problem_, lamp.unknowns) : std::optional(lamp.unknowns);
@@ -245,6 +251,8 @@ void BallLampFit::addDistance(const LampInFit& lamp, const Eigen::MatrixXd& cova
 }
 
 std::string BallLampFit::whyNoDistance(const LampInFit& lamp, double inverse, double sigma) const {
+  if (p_.focalAlone)
+    return "the focal length alone is known, by EXIF: middle of the image and lens are assumed, so no distance is given";
   if (!p_.camera) return "without a focal length the directions assume a distant camera, and no distance is known";
   std::string direction = "; the direction is that of a distant lamp";
   if (lamp.unknowns.peaks.size() < 2) {

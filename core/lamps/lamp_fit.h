@@ -14,6 +14,7 @@ namespace glint {
 /// What photographs of mirror balls by one fixed camera show. Places are measured pixels; with a camera that has a lens they are freed of it here.
 struct BallPhotographs {
   std::optional<Camera> camera;       ///< at the origin; none: distant, rays parallel to z
+  bool focalAlone = false;            ///< of the camera only the focal length is known, and that roughly: then directions only
   std::optional<double> ballRadius;   ///< m, of every ball; none: lengths are in radii
   std::vector<RefinedOutline> balls;  ///< without `edge` where an outline was taken as given
   std::vector<LampObservation> seen;  ///< at most one for each photograph and ball; every photograph has one lamp

@@ -123,6 +123,41 @@ TEST_F(OneBall, AShotWithoutALampIsLeftOut) {
   EXPECT_EQ(lights("--ball 151,129,101 --exclude 'shot 0,shot 1,shot 2'").code, 3);
 }
 
+// A tele lens of 2000 mm on 35 mm film: parallel rays, but for a hundredth of a radian.
+TEST_F(OneBall, TheFocalLengthOfExifGivesDirections) {
+  const TemporaryFolder shots;
+  for (std::size_t i = 0; i < lamps_.size(); ++i) {
+    const std::filesystem::path file = shots / (std::to_string(i) + ".jpg");
+    ASSERT_TRUE(cv::imwrite(file.string(), cv::imread((folder_ / ("shot " + std::to_string(i) + ".png")).string()),
+                            {cv::IMWRITE_JPEG_QUALITY, 98}));
+    std::string jpeg = contentOf(file);
+    const std::string tiff(
+        "MM\0\x2a\0\0\0\x08"                          // Exif 2.32: header,
+        "\0\1\x87\x69\0\4\0\0\0\1\0\0\0\x1a\0\0\0\0"  // a directory that points to another one,
+        "\0\1\xa4\x05\0\3\0\0\0\1\x07\xd0\0\0\0\0\0\0",
+        44);  // and that with FocalLengthIn35mmFilm = 2000
+    jpeg.insert(2, std::string("\xff\xe1\0\x34"
+                               "Exif\0\0",
+                               10) +
+                       tiff);
+    shots.write(std::to_string(i) + ".jpg", jpeg);
+  }
+  const ProgramRun run = runGlint("lights " + inQuotes(shots.path()) + " --ball 151,129,101 --json -");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("EXIF, 2000 mm"));
+  const Json j = Json::parse(run.out);
+  EXPECT_EQ(j["length_unit"], "ball radius");
+  constexpr double kTele = 0.7;  // degrees: the ball's radius is seen under 0.3
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Json& lamp = j["lights"][i];
+    EXPECT_TRUE(lamp["position"].is_null());
+    EXPECT_THAT(lamp["reason"].get<std::string>(), HasSubstr("EXIF"));
+    EXPECT_NEAR(lamp["from"][2], 2000 / 43.2666 * std::hypot(300, 260) / kRadius, 5);
+    EXPECT_LT(angleDeg(lamp["direction"], lamps_[i]), kTele) << i;
+    EXPECT_GT(lamp["direction_sigma_deg"], 0.5);
+  }
+}
+
 TEST_F(OneBall, WrongRequestsAreNamed) {
   const std::vector<std::pair<std::string, std::string>> wrong{
       {"--ball 151,129", "expected [DIR:]CX,CY,R[@X0,Y0]"},

@@ -2,6 +2,7 @@
 // Images and depth maps: the header that is checked before anything is decoded, and the decoders behind it.
 #include <opencv2/core.hpp>
 
+#include "core/base/exif.h"
 #include "core/base/image_header.h"
 #include "core/scene/image_decode.h"
 #include "tests/fuzz/readers.h"
@@ -16,6 +17,8 @@ ImageHeader checkedHeader(const std::string& bytes) {
   if (!header.problem.empty() && (header.width != 0 || header.height != 0))
     throw Finding{"a size beside the problem " + header.problem};
   if (header.channels < 0) throw Finding{"a negative number of channels"};
+  if (const std::optional<double> focal = focalLength35mm(bytes); focal && !(*focal >= 1 && *focal <= 65535))
+    throw Finding{"a focal length that no EXIF number can be"};
   return header;
 }
 
