@@ -23,6 +23,7 @@
 
 #include "core/base/number_text.h"
 #include "viz/label_places.h"
+#include "viz/text_lock.h"
 
 namespace glint::viz {
 namespace {
@@ -167,6 +168,7 @@ struct Annotations::Impl {
   void move(vtkTextActor* actor, double x, double y) const { actor->SetPosition(origin.x() + x, origin.y() + y); }
   Eigen::Vector2d sizeOf(vtkTextActor* actor) const {
     double size[2] = {0, 0};
+    const std::lock_guard lock(textMutex());
     actor->GetSize(renderer, size);
     return {size[0], size[1]};
   }

@@ -7,17 +7,18 @@
 #include <vtkFreeTypeTools.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
+#include <vtkRenderWindow.h>
 #include <vtkTextProperty.h>
 #include <vtkUnicodeString.h>
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "core/base/atomic_file.h"
 #include "core/base/outcome.h"
+#include "viz/text_lock.h"
 
 namespace glint::viz {
 namespace {
@@ -61,12 +62,6 @@ std::vector<std::vector<Eigen::Vector2d>> dashes(const std::vector<Eigen::Vector
   }
   if (drawing && piece.size() > 1) pieces.push_back(piece);
   return pieces;
-}
-
-/// VTK's FreeType tools are one instance with caches of its own and no lock; pictures are drawn by several threads.
-std::mutex& textMutex() {
-  static std::mutex mutex;
-  return mutex;
 }
 
 void setUp(vtkTextProperty* look, double sizePx, bool bold) {
@@ -117,6 +112,16 @@ int descentOf(double sizePx) {
 }
 
 }  // namespace
+
+std::recursive_mutex& textMutex() {
+  static std::recursive_mutex mutex;
+  return mutex;
+}
+
+void render(vtkRenderWindow* window) {
+  const std::lock_guard lock(textMutex());
+  window->Render();
+}
 
 struct Canvas::Impl {
   int width, height;

@@ -12,6 +12,7 @@
 #include "viz/convert.h"
 #include "viz/display_connection.h"
 #include "viz/scene_view.h"
+#include "viz/text_lock.h"
 
 namespace glint::viz {
 
@@ -60,7 +61,7 @@ Outcome<std::unique_ptr<DisplayConnection>> displayFor3D() {
 /// The picture over one background.
 Image pictureOver(vtkRenderer* renderer, vtkRenderWindow* window, double grey) {
   renderer->SetBackground(grey, grey, grey);
-  window->Render();
+  viz::render(window);
   return pictureOf(window);
 }
 
@@ -122,7 +123,7 @@ Image Offscreen::render(const SceneView& view, bool transparent) {
     image = withOpacity(black, pictureOver(renderer, window, 1));
     renderer->SetBackground(before.data());
   } else {
-    window->Render();
+    viz::render(window);
     image = pictureOf(window);
   }
   window->RemoveRenderer(view.renderer());

@@ -90,7 +90,7 @@ std::vector<ParamSpec> depthParams() {
        "surface"},
       {"surface.depth_seed",
        "Seed of the depth noise",
-       "",
+       "s",
        "",
        1,
        0,

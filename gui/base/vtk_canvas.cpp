@@ -16,6 +16,7 @@
 
 #include "gui/base/draw_turns.h"
 #include "gui/base/focus_frame.h"
+#include "viz/text_lock.h"
 
 namespace glint::gui {
 
@@ -101,7 +102,7 @@ void VtkCanvas::resizeEvent(QResizeEvent*) { fitWindow(); }
 bool VtkCanvas::upToDate() const { return drawnFor_ == size() && drawnRatio_ == devicePixelRatioF(); }
 
 void VtkCanvas::renderNow() {
-  if (prepare()) window_->Render();
+  if (prepare()) viz::render(window_);
 }
 
 void VtkCanvas::drawNext() {
@@ -110,7 +111,7 @@ void VtkCanvas::drawNext() {
     prepare();  // takes as long as a picture: the first one comes in another turn
     update();
   } else if (!upToDate()) {
-    window_->Render();
+    viz::render(window_);
   }
 }
 
@@ -125,7 +126,7 @@ void VtkCanvas::paintEvent(QPaintEvent*) {
     drawInTurn(this, [this] { drawNext(); });
   } else if (prepare() && !upToDate()) {
     painting_ = true;
-    window_->Render();
+    viz::render(window_);
     painting_ = false;
   }
   if (drawn_) fetch();

@@ -19,6 +19,7 @@
 #include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/vtk_canvas.h"
+#include "viz/text_lock.h"
 #include "viz/view_camera.h"
 
 namespace glint::gui {
@@ -268,14 +269,14 @@ void SceneViews::renderInTurn() {
   setMoving(true);
   full_.start();
   sinceRender_.start();
-  widget_->renderWindow()->Render();
+  viz::render(widget_->renderWindow());
   lastRenderMs_ = sinceRender_.restart();
 }
 
 void SceneViews::renderFull() {
   setMoving(false);
   sinceRender_.start();
-  widget_->renderWindow()->Render();
+  viz::render(widget_->renderWindow());
   fullMs_ = lastRenderMs_ = sinceRender_.restart();
 }
 
@@ -293,7 +294,7 @@ void SceneViews::renderMoving() {
   if (!widget_->isVisible()) return;
   setMoving(true);
   full_.start();
-  widget_->renderWindow()->Render();
+  viz::render(widget_->renderWindow());
 }
 
 void SceneViews::setBehind() {

@@ -322,7 +322,7 @@ class SameVerdict(InFolder):
             self.check(self.scene(), {f"{path} {key}": put(*path, key, 1)}, "scene.json", ("convert", "scene.json", "-o", "out.json"), False)
 
     def test_every_such_key_of_the_program_is_in_the_schema(self):
-        text = (root / "core/scene/scene_json.cpp").read_text(encoding="utf-8")
+        text = "".join((root / file).read_text(encoding="utf-8") for file in ("core/scene/scene_json.cpp", "core/geometry/camera_json.cpp"))
         schema = VALID["scene"].schema
         for name, part in (("Scene", schema), ("Camera", schema["$defs"]["camera"]), ("Frame", schema["$defs"]["frame"]),
                            ("Surface", schema["$defs"]["surface"])):
