@@ -34,7 +34,7 @@ std::vector<ParamSpec> depthParams() {
        {"plane", "integral"},
        "Normals of depth maps. Plane: fitted to the neighbours within the radius. Integral: from integral images over a square "
        "of that size, which is faster. "
-       "Smoothing by fit has normals of its own. N: eigenvector of Σ (P - P̄)(P - P̄)ᵀ with the smallest eigenvalue.",
+       "Smoothing by fit has normals of its own. C N = λ N with the smallest λ, C = Σ (P - P̄)(P - P̄)ᵀ.",
        "surface"},
       {"surface.depth_radius",
        "Depth radius",
