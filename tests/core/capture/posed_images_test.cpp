@@ -2,6 +2,7 @@
 // Folders of images, and videos, with a file of poses.
 #include <gmock/gmock.h>
 
+#include "core/base/number_text.h"
 #include "core/capture/capture.h"
 #include "tests/core/capture/png_fixture.h"
 #include "tests/core/capture/video_fixture.h"
@@ -41,7 +42,7 @@ std::string imagesError(const fs::path& folder, const CaptureOptions& options) {
 
 /// A line whose camera looks along the world's z from (x, 0, -2).
 std::string jsonLine(const std::string& id, double x, const std::string& more = "") {
-  return "{\"id\": \"" + id + "\"" + more + ", \"camera_from_world\": [[1,0,0," + std::to_string(-x) +
+  return "{\"id\": \"" + id + "\"" + more + ", \"camera_from_world\": [[1,0,0," + formatted("%.6f", -x) +
          "],[0,1,0,0],[0,0,1,2],[0,0,0,1]]}\n";
 }
 
