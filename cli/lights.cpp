@@ -50,7 +50,7 @@ Outlines outlinesOf(const std::string& text) {
 void refuseOthers(const LightsArguments& a) {
   const bool balls = !a.balls.empty();
   for (const auto& [flag, text] : a.places.reading)
-    if (balls && !text.empty() && flag != "--camera")
+    if (balls && !text.empty() && flag != "--camera" && flag != "--response")
       throw InputError("", flag + " " + text, "has no use with --ball: photographs of balls need no scene");
   if (balls && !a.set.empty())
     throw InputError("", "--set " + a.set.front(), "has no use with --ball: settings are those of scenes");
@@ -85,7 +85,8 @@ LampsReport ofBalls(const LightsArguments& a, const Context& context) {
   std::optional<Camera> camera;
   if (const auto given = a.places.reading.find("--camera"); given != a.places.reading.end() && !given->second.empty())
     camera = cameraOfNumbers(cameraNumbers(given->second, "--camera"));
-  const BallShots shots = ballShotsIn(a.input, balls, a.exclude);
+  BallShots shots = ballShotsIn(a.input, balls, a.exclude);
+  shots.response = responseOf(a.places.choices());
   double filmMm = 0;
   const bool focalAlone = !camera;
   if (!camera) camera = cameraOfExif(shots, filmMm);
@@ -100,6 +101,7 @@ LampsReport ofBalls(const LightsArguments& a, const Context& context) {
     if (!report.lamps[i].failure) report.lines.push_back({found->fileNames[i], report.lamps[i].direction});
   report.balls = std::move(found->fit);
   report.warnings = found->warnings;
+  if (const std::string doubt = shots.response.doubt(); !doubt.empty()) report.warnings.push_back(doubt);
   if (focalAlone && camera)
     report.warnings.push_back(
         formatted("the focal length is that of EXIF, %g mm on 35 mm film, with the principal point in the "

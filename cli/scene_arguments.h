@@ -26,6 +26,8 @@ struct SceneArguments {
   void declareForSession(Options& options);
   /// All.
   void declare(Options& options);
+  /// What `reading` says. InputError.
+  InputChoices choices() const;
   /// A scene, or that of a session. InputError, also for a flag that the scene has no use for.
   Scene read(const std::string& input) const;
   OpenedSession openSession(const std::string& file) const;
@@ -35,7 +37,6 @@ struct SceneArguments {
 
  private:
   Relinked relinked() const;
-  InputChoices choices() const;
   void declareReading(Options& options);
   void lookIn(Scene& scene, FrameFile kind, const std::string& folder, const std::string& given) const;
   void check(Scene& scene) const;

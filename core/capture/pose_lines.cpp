@@ -76,6 +76,7 @@ PoseLine PoseLineReader::fromJson(const std::string& line) {
     pose.cameraFromWorld = readPoseJson(matrix, &warning_);
     if (!warning_.empty()) warning_ = place() + ": " + warning_;
     if (const auto camera = root.find("camera"); camera && !camera->isNull()) {
+      if (camera->has("response")) camera->at("response").fail("is not read here: name it by --response");
       pose.camera = readCameraJson(*camera);
       pose.camera->camFromWorld = pose.cameraFromWorld;
     }

@@ -82,8 +82,9 @@ Failure unreadableShot(const fs::path& file, const std::string& reason) {
 }
 
 /// 0 to 255, three channels. @param like  a photograph whose size it must have; empty = any
-Outcome<Image> readShot(const fs::path& file, const Image* like) {
+Outcome<Image> readShot(const fs::path& file, const CameraResponse& response, const Image* like) {
   Frame frame;
+  frame.response = response;
   frame.id = file.filename().string();
   frame.image = file;
   try {
@@ -192,7 +193,7 @@ std::vector<Cutting> ShotReader::cuttingsForOutline(std::size_t k) {
   for (std::size_t i = 0; i < files.size() && cuttings.size() < most; i += cuttings.empty() ? 1 : stride) {
     if (!report(progress_, {"outlines", static_cast<int>(i), static_cast<int>(files.size())})) throw Stopped{};
     const auto known = size_.find(k);
-    Outcome<Image> image = readShot(files[i], known == size_.end() ? nullptr : &known->second);
+    Outcome<Image> image = readShot(files[i], s_.response, known == size_.end() ? nullptr : &known->second);
     if (!image) {
       if (!first) first = image.failure();
       continue;
@@ -258,7 +259,7 @@ ShotReader::Seen ShotReader::highlightsOf(const Shot& shot) {
       failed(k, {Reason::FrameUnreadable, "has no photograph of this name"});
       continue;
     }
-    if (shot.files[k] != last) image = readShot(last = shot.files[k], &size_.at(k));
+    if (shot.files[k] != last) image = readShot(last = shot.files[k], s_.response, &size_.at(k));
     if (!image) {
       failed(k, image.failure());
       continue;

@@ -8,6 +8,7 @@
 
 #include "core/base/progress.h"
 #include "core/lamps/lamp_fit.h"
+#include "core/scene/camera_response.h"
 
 namespace glint {
 
@@ -35,6 +36,7 @@ struct Shot {
 struct BallShots {
   std::vector<NamedBall> balls;
   std::vector<Shot> shots;  ///< by name
+  CameraResponse response;  ///< of all photographs
   std::vector<std::filesystem::path> files() const;
 };
 

@@ -185,6 +185,8 @@ Scene sceneOfCapture(const Capture& capture, const ReadOptions& options) {
     throw InputError(capture.file.string(), "--surface-units", "the surface is no mesh");
   }
 
+  const CameraResponse response = responseOf(choices);
+  if (const std::string doubt = response.doubt(); !doubt.empty()) scene.warnings.push_back(doubt);
   const std::vector<std::string> ids = idsOf(capture.views);
   for (std::size_t i = 0; i < capture.views.size(); ++i) {
     const CaptureView& view = capture.views[i];
@@ -196,6 +198,7 @@ Scene sceneOfCapture(const Capture& capture, const ReadOptions& options) {
     frame.ofVideo = view.ofVideo;
     frame.depthScale = view.depth.empty() ? 0 : choices.depthScale.value_or(view.depthScale);
     frame.camera = view.camera;
+    frame.response = response;
     frame.camera.camFromWorld.translation() *= metres;
     if (!(frame.camera.camFromWorld.translation().cwiseAbs().maxCoeff() <= kFarthest))
       throw InputError(capture.file.string(), view.name, "its camera is farther than 1e15 m from the origin");

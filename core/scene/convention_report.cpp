@@ -115,7 +115,7 @@ void compareVertices(const TriangleMesh& mesh, const Frame& frame, const std::op
 void countPixels(const Frame& frame, ConventionReport::FrameFacts& facts) {
   if (frame.radiance.empty() && frame.image.empty()) return;
   facts.source = frame.radiance.empty() ? "image" : "radiance";
-  const Outcome<Image> image = readLinear(frame, FrameSource::Radiance);
+  const Outcome<Image> image = readLinear(frame, FrameSource::Radiance, &facts.linear);
   if (!image) {
     facts.problems.push_back(image.failure().detail);
   } else {
@@ -384,6 +384,26 @@ ConventionReport conventionReport(const Scene& scene, const ProgressFn& progress
   return report;
 }
 
+namespace {
+/// How the pixels became linear: a line for each way, with the number of its frames.
+std::string lightLines(const ConventionReport& r) {
+  std::vector<std::pair<std::string, int>> ways;
+  for (const auto& f : r.frames) {
+    if (f.linear.empty()) continue;
+    const std::string way = (f.source == "radiance" ? "radiance, " : "") + f.linear;
+    const auto known = std::find_if(ways.begin(), ways.end(), [&](const auto& w) { return w.first == way; });
+    if (known == ways.end())
+      ways.emplace_back(way, 1);
+    else
+      ++known->second;
+  }
+  std::string out;
+  for (const auto& [way, n] : ways)
+    out += "  light     " + way + (ways.size() > 1 ? formatted(": %d frames", n) : std::string()) + "\n";
+  return out;
+}
+}  // namespace
+
 std::string toText(const ConventionReport& r) {
   std::string out = r.file + ": " + r.recognisedAs + "\n";
   out += "  name      " + r.name + "\n";
@@ -395,6 +415,7 @@ std::string toText(const ConventionReport& r) {
            formatted(": %s, %d vertices, %d triangles, %s normals, box %.4g %.4g %.4g .. %.4g %.4g %.4g\n", s.kind.c_str(),
                      s.vertices, s.triangles, s.hasNormals ? "with" : "without", s.lower.x(), s.lower.y(), s.lower.z(),
                      s.upper.x(), s.upper.y(), s.upper.z());
+  out += lightLines(r);
   out += "\n  frame       surface     inside image      depth - surface: median, 95 %     values: NaN, negative\n";
   for (const auto& f : r.frames) {
     std::string line = formatted("  %-11s %-11s ", f.id.c_str(), f.surface.empty() ? "(depth)" : f.surface.c_str());
@@ -472,6 +493,7 @@ std::string toJson(const ConventionReport& r) {
     one["depth_difference_m"] =
         f.depthSamples > 0 ? Json{{"samples", f.depthSamples}, {"median", f.depthMedian}, {"p95", f.depthP95}} : Json();
     one["source"] = f.source.empty() ? Json() : Json(f.source);
+    one["linear"] = f.linear.empty() ? Json() : Json(f.linear);
     one["not_finite"] = f.notFinite;
     one["negative"] = f.negative;
     one["problems"] = f.problems;

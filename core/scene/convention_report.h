@@ -55,6 +55,7 @@ struct ConventionReport {
     double depthRatioShare = 0;            ///< of the samples, those within 1 % of that median; others are of the far side
     long long pixels = 0, notFinite = 0, negative = 0;  ///< values of the linear image
     std::string source;                                 ///< "radiance" or "image", "" when the frame has neither
+    std::string linear;                                 ///< how the values became linear, in words (readLinear)
     std::vector<std::string> problems;                  ///< files that cannot be read, one line each
   };
   std::string recognisedAs, name, file;

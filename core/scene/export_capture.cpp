@@ -36,6 +36,8 @@ std::vector<std::string> leftOutOf(const Scene& scene) {
   say(count([](const Frame& f) { return !f.highlights.empty(); }), "highlights");
   say(count([](const Frame& f) { return !f.radiance.empty(); }), "radiance images");
   say(count([](const Frame& f) { return !f.normals.empty(); }), "normal maps");
+  if (const long n = count([](const Frame& f) { return f.response.isStated(); }))
+    lines.push_back("the camera response of " + std::to_string(n) + " frames is left out: name it by --response");
   if (!scene.lights.empty()) lines.push_back(std::to_string(scene.lights.size()) + " lights are left out");
   return lines;
 }

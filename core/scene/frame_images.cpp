@@ -102,17 +102,33 @@ Image floatImage(const cv::Mat& m) {
 }
 
 /// One value per code: 8- and 16-bit images have at most 65536.
-Image throughTable(const cv::Mat& m, const std::function<double(double)>& curve) {
-  const int largest = m.depth() == CV_8U ? 255 : 65535;
-  std::vector<float> table(static_cast<std::size_t>(largest) + 1);
-  for (int i = 0; i <= largest; ++i) table[static_cast<std::size_t>(i)] = static_cast<float>(curve(double(i) / largest));
-  Image image(m.cols, m.rows, m.channels());
+/// @param curve  of a code in 0..1 and its channel
+Image throughTable(const cv::Mat& m, const std::function<double(double, int)>& curve) {
+  const int largest = m.depth() == CV_8U ? 255 : 65535, channels = m.channels();
+  std::vector<float> table;
+  for (int i = 0; i <= largest; ++i)
+    for (int c = 0; c < channels; ++c) table.push_back(static_cast<float>(curve(double(i) / largest, c)));
+  Image image(m.cols, m.rows, channels);
   float* out = image.data.data();
   for (int y = 0; y < m.rows; ++y) {
-    for (int i = 0; i < m.cols * m.channels(); ++i)
-      *out++ = table[m.depth() == CV_8U ? m.ptr<std::uint8_t>(y)[i] : m.ptr<std::uint16_t>(y)[i]];
+    for (int i = 0; i < m.cols * channels; ++i) {
+      const int code = m.depth() == CV_8U ? m.ptr<std::uint8_t>(y)[i] : m.ptr<std::uint16_t>(y)[i];
+      *out++ = table[static_cast<std::size_t>(code * channels + i % channels)];
+    }
   }
   return image;
+}
+
+/// Where no response is stated.
+bool takenAsLinear(const Decoded& d) { return d.pixels.depth() == CV_16U && d.saysLinear; }
+
+std::string howLinear(const Frame& frame, const Decoded& d) {
+  if (isFloat(d.pixels))
+    return frame.response.isStated() ? "float values as stored (the response is of codes)" : "float values as stored";
+  return std::string(d.pixels.depth() == CV_8U ? "8-bit codes " : "16-bit codes ") + frame.response.words(takenAsLinear(d)) +
+         (frame.response.isStated() ? " (stated)"
+          : takenAsLinear(d)        ? ""
+                                    : " (default: no response is stated)");
 }
 
 bool isCode(const cv::Mat& m) { return m.depth() == CV_8U || m.depth() == CV_16U; }
@@ -139,7 +155,7 @@ Image toneMapped(const Image& linear) {
 
 }  // namespace
 
-Outcome<Image> readLinear(const Frame& frame, FrameSource source) {
+Outcome<Image> readLinear(const Frame& frame, FrameSource source, std::string* how) {
   // Where only one of the two exists there is nothing to choose.
   const bool useRadiance = frame.image.empty() || (source == FrameSource::Radiance && !frame.radiance.empty());
   const fs::path& file = useRadiance ? frame.radiance : frame.image;
@@ -147,11 +163,12 @@ Outcome<Image> readLinear(const Frame& frame, FrameSource source) {
   Outcome<Decoded> decoded = decode(frame, file);
   if (!decoded) return decoded.failure();
   const cv::Mat& m = decoded->pixels;
+  if (how) *how = howLinear(frame, *decoded);
   if (isFloat(m)) return floatImage(m);
   if (useRadiance) return unreadable(file, "radiance must be 32-bit float (give an 8- or 16-bit picture as image)");
   if (!isCode(m)) return unreadable(file, "the pixel type is not supported (8-bit, 16-bit or float)");
-  if (m.depth() == CV_16U && decoded->saysLinear) return throughTable(m, [](double v) { return v; });
-  return throughTable(m, linearFromSrgb);
+  return throughTable(
+      m, [&frame, linear = takenAsLinear(*decoded)](double v, int c) { return frame.response.lightOf(v, c, linear); });
 }
 
 Outcome<Image> readPhotograph(const Frame& frame) {
@@ -165,8 +182,11 @@ Outcome<Image> readPhotograph(const Frame& frame) {
   const cv::Mat& m = decoded->pixels;
   if (isFloat(m)) return toneMapped(floatImage(m));
   if (!isCode(m)) return unreadable(frame.image, "the pixel type is not supported (8-bit, 16-bit or float)");
-  if (m.depth() == CV_16U && decoded->saysLinear) return threeChannels(throughTable(m, srgbFromLinear));
-  return threeChannels(throughTable(m, [](double v) { return v; }));
+  const CameraResponse& response = frame.response;
+  const bool linear = takenAsLinear(*decoded);
+  if (response.kind() == CameraResponse::Kind::Srgb || (!response.isStated() && !linear))
+    return threeChannels(throughTable(m, [](double v, int) { return v; }));
+  return threeChannels(throughTable(m, [&](double v, int c) { return srgbFromLinear(response.lightOf(v, c, linear)); }));
 }
 
 namespace {

@@ -90,6 +90,15 @@ void setPosesBy(InputChoices& c, const std::string& text) {
   c.posesByOrder = true;
 }
 
+void setResponse(InputChoices& c, const std::string& text) {
+  const std::string place = "--response " + text;
+  std::error_code ignored;  // what cannot be asked about is not there
+  const bool isFile = !CameraResponse::named(text, "", place);
+  if (isFile && !std::filesystem::is_regular_file(text, ignored))
+    throw InputError("", place, "is neither srgb, linear, gamma:G, nor a file");
+  c.response = isFile ? std::filesystem::absolute(text).lexically_normal().string() : text;
+}
+
 void setDepthScale(InputChoices& c, const std::string& text) {
   const std::optional<double> value = io::numberOf(text);
   if (!value || !(*value > 0) || !(*value <= kLargestFactor))
@@ -126,7 +135,10 @@ const std::vector<ChoiceOption>& choiceOptions() {
        "Poses of a folder of images or of a video: TUM lines (paired by time), or JSON lines (by id; of a video by time)",
        setPoses, [](const C& c) { return c.poses.string(); }},
       {"--poses-by", "order", "The n-th pose is that of the n-th image (default: by id or time)", setPosesBy,
-       [](const C& c) { return std::string(c.posesByOrder ? kByOrder : ""); }}};
+       [](const C& c) { return std::string(c.posesByOrder ? kByOrder : ""); }},
+      {"--response", "srgb|linear|gamma:G|FILE",
+       "How the codes of a capture's images become linear light (default: by file type, mostly srgb)", setResponse,
+       [](const C& c) { return c.response; }}};
   return options;
 }
 
@@ -166,6 +178,18 @@ Camera cameraOfNumbers(const std::vector<double>& numbers) {
   return camera;
 }
 
+CameraResponse responseOf(const InputChoices& choices) {
+  if (choices.response.empty()) return {};
+  if (std::optional<CameraResponse> known = CameraResponse::named(choices.response, "", "--response " + choices.response))
+    return *known;
+  return CameraResponse::ofFile(choices.response);
+}
+
+std::filesystem::path responseFileOf(const InputChoices& choices) {
+  if (choices.response.empty() || CameraResponse::named(choices.response, "", "--response " + choices.response)) return {};
+  return choices.response;
+}
+
 InputChoices readInputChoices(const JsonNode& node, const std::filesystem::path& folder) {
   InputChoices c;
   if (const auto n = node.find("as")) c.as = shortText(*n);
@@ -191,6 +215,11 @@ InputChoices readInputChoices(const JsonNode& node, const std::filesystem::path&
     if (n->text() != kByOrder) n->fail("must be order");
     c.posesByOrder = true;
   }
+  if (const auto n = node.find("response")) {
+    c.response = shortText(*n);
+    if (!CameraResponse::named(c.response, n->file(), n->place())) n->fail("must be srgb, linear or gamma:G");
+  }
+  if (const auto n = node.find("response_file")) c.response = pathIn(folder, *n).string();
   return c;
 }
 
@@ -214,6 +243,10 @@ std::string inputChoicesJson(const InputChoices& c, const std::function<std::str
   if (!c.world.empty()) j["world"] = c.world;
   if (!c.poses.empty()) j["poses"] = relative(c.poses);
   if (c.posesByOrder) j["poses_by"] = kByOrder;
+  if (const std::filesystem::path file = responseFileOf(c); !file.empty())
+    j["response_file"] = relative(file);
+  else if (!c.response.empty())
+    j["response"] = c.response;
   return j.dump();
 }
 

@@ -9,6 +9,7 @@
 
 #include "core/base/json_text.h"
 #include "core/geometry/camera.h"
+#include "core/scene/camera_response.h"
 
 namespace glint {
 
@@ -26,6 +27,7 @@ struct InputChoices {
   std::string world;                           ///< nerfstudio: "original" = before applied_transform; "" = as stored
   std::filesystem::path poses;                 ///< of a folder of images or a video: TUM or JSON lines; absolute; "" = none
   bool posesByOrder = false;                   ///< the n-th pose is that of the n-th picture; only because a person says so
+  std::string response;  ///< of the images: "srgb", "linear", "gamma:G", or the absolute path of a file; "" = by file type
   bool none() const { return *this == InputChoices{}; }
   friend bool operator==(const InputChoices&, const InputChoices&) = default;
 };
@@ -51,6 +53,11 @@ std::string unitOfMetres(double metres);
 std::vector<double> cameraNumbers(const std::string& text, const std::string& option);
 /// Intrinsics of these numbers, without a size. @pre as cameraNumbers returns them
 Camera cameraOfNumbers(const std::vector<double>& numbers);
+
+/// InputError (place: the option), also where the file that it names is no response.
+CameraResponse responseOf(const InputChoices& choices);
+/// The file that it names; "" = none.
+std::filesystem::path responseFileOf(const InputChoices& choices);
 
 /// `input.reading` of a session. @param folder  of the session, absolute: paths are relative to it. InputError.
 InputChoices readInputChoices(const JsonNode& node, const std::filesystem::path& folder);

@@ -17,6 +17,7 @@
 #include "core/capture/video.h"
 #include "core/geometry/camera.h"
 #include "core/highlight/highlight.h"
+#include "core/scene/camera_response.h"
 #include "core/scene/input_choices.h"
 #include "core/surface/analytic.h"
 #include "core/surface/surface.h"
@@ -43,6 +44,7 @@ struct Frame {
   std::optional<VideoPicture> ofVideo;  ///< `image` is a video, and this is the picture of it
   double depthScale = 0;                ///< metres per stored unit; 0 = not given (then depth must be float)
   Camera camera;
+  CameraResponse response;  ///< of `image`
   /// Of `depth`, where a camera of its own took it; its camFromWorld is from the frame's camera, not from the world. Without it depth is as of `camera`.
   std::optional<Camera> depthCamera;
   std::string surface;                ///< id in Scene::surfaces; "" = this frame's own depth map
@@ -115,11 +117,13 @@ std::filesystem::path recognisedFile(const std::filesystem::path& input);
 void writeScene(const Scene& scene, const std::filesystem::path& file);
 
 enum class FrameSource { Radiance, Image };
-/// Linear image of a frame: the float radiance as stored, or the 8/16-bit image through the inverse sRGB curve
-/// (16-bit is taken as linear only if the file says so; else sRGB). Three channels stay three.
+/// Linear image of a frame: the float radiance as stored, or the 8/16-bit image through the camera's response (where none is
+/// stated, 16-bit is taken as linear only if the file says so; else sRGB). Three channels stay three.
+/// @param how  takes in words how the values became linear: "8-bit codes through the sRGB curve (default: no response is stated)"
 /// FrameUnreadable (missing, empty, truncated, another size than the camera's), with the file in the detail.
-Outcome<Image> readLinear(const Frame& frame, FrameSource source);
-/// The display image, 3 channels, sRGB 0..1 (tone-mapped radiance when there is no photograph).
+Outcome<Image> readLinear(const Frame& frame, FrameSource source, std::string* how = nullptr);
+/// The display image, 3 channels, sRGB 0..1: the codes as they are where they are sRGB, else their light in sRGB; tone-mapped
+/// radiance when there is no photograph.
 Outcome<Image> readPhotograph(const Frame& frame);
 /// 1 on the glossy object, 0 elsewhere; nothing when the frame has no mask. FrameUnreadable.
 Outcome<std::optional<Image>> readMask(const Frame& frame);

@@ -19,7 +19,7 @@ std::vector<fs::path> filesOf(const Scene& scene) {
   for (const auto& [id, source] : scene.surfaces)
     if (source.mesh) add(*source.mesh);
   for (const Frame& f : scene.frames)
-    for (const fs::path* p : {&f.image, &f.radiance, &f.depth, &f.normals, &f.mask}) add(*p);
+    for (const fs::path* p : {&f.image, &f.radiance, &f.depth, &f.normals, &f.mask, &f.response.file()}) add(*p);
   return paths;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "core/base/bounded_json.h"
 #include "core/base/json_dom.h"
@@ -45,7 +46,7 @@ void keep(Json& target, const std::string& key, Json value) {
   if (!value.empty()) json_dom::append(target, key, std::move(value));  // every key stands once
 }
 
-const std::set<std::string> kCameraKeys = {"width", "height", "fx", "fy", "cx", "cy", "skew", "distortion", "model"};
+const std::set<std::string> kCameraKeys = {"width", "height", "fx", "fy", "cx", "cy", "skew", "distortion", "model", "response"};
 const std::set<std::string> kLightKeys = {"id", "position", "direction", "segment", "radius"};
 
 // As the keys of cameras and frames (core/geometry/camera_json.cpp): they would move a surface, or all of the scene.
@@ -201,8 +202,18 @@ VideoPicture readOfVideo(const JsonNode& node) {
   return picture;
 }
 
+/// A camera and what its codes mean.
+using CameraOfFrames = std::pair<Camera, CameraResponse>;
+
+CameraOfFrames readCameraOfFrames(const JsonNode& node, const ReadOptions& options, Scene& scene) {
+  CameraOfFrames read{readCameraJson(node), readResponseJson(node, scene.folder, options.rights())};
+  if (const std::string doubt = read.second.doubt(); !doubt.empty())
+    scene.warnings.push_back(node.place() + ".response: " + doubt);
+  return read;
+}
+
 struct FrameContext {
-  const std::optional<Camera>& sharedCamera;
+  const std::optional<CameraOfFrames>& sharedCamera;
   const std::optional<Camera>& sharedDepthCamera;
   const ReadOptions& options;
   Scene& scene;
@@ -227,10 +238,10 @@ Frame readFrame(const JsonNode& node, const FrameContext& context, Json& rest) {
   frame.mask = path("mask");
   if (const auto n = node.find("depth_scale")) frame.depthScale = positive(*n, kLargestFactor);
   if (const auto n = node.find("camera")) {
-    frame.camera = readCameraJson(*n);
+    std::tie(frame.camera, frame.response) = readCameraOfFrames(*n, context.options, context.scene);
     keep(rest, "camera", context.unknown.of(*n, kCameraKeys));
   } else if (context.sharedCamera) {
-    frame.camera = *context.sharedCamera;
+    std::tie(frame.camera, frame.response) = *context.sharedCamera;
   } else {
     throw InputError(node.file(), node.place() + ".camera", "is missing, and the scene has no camera for all frames");
   }
@@ -334,9 +345,9 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
   if (const auto n = root.find("units"); n && n->text() != "m")
     n->fail("'" + n->text() + "' is not supported: lengths are in metres (\"m\")");
 
-  std::optional<Camera> shared;
+  std::optional<CameraOfFrames> shared;
   if (const auto n = root.find("camera")) {
-    shared = readCameraJson(*n);
+    shared = readCameraOfFrames(*n, options, scene);
     keep(unknown.kept, "camera", unknown.of(*n, kCameraKeys));
   }
   std::optional<Camera> sharedDepth;
@@ -388,6 +399,11 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
     scene.frames.push_back(std::move(frame));
   }
   keep(unknown.kept, "frames", frameRests);
+  if (shared && shared->second.isStated())
+    if (const auto n =
+            std::count_if(scene.frames.begin(), scene.frames.end(), [](const Frame& f) { return !f.response.isStated(); }))
+      scene.warnings.push_back("camera.response does not hold for " + std::to_string(n) +
+                               " frames with a camera of their own that states none");
 
   for (const auto& [named, place] : options.meshes)
     if (!scene.meshes.count(named))

@@ -120,11 +120,17 @@ std::string sceneToJson(const Scene& scene, const fs::path& folder) {
     if (r.empty()) throw InputError(path.string(), place, "has no path relative to " + folder.string());
     return r.generic_string();
   };
+  const auto response = [&](Json camera, const Frame& frame, const std::string& place) {
+    const CameraResponse& r = frame.response;
+    if (r.isStated()) camera["response"] = r.file().empty() ? r.text() : relative(r.file(), place + "response");
+    return camera;
+  };
   Json root = {{"glint_scene", 1}, {"name", scene.name}, {"units", "m"}};
-  const bool shared = std::all_of(scene.frames.begin(), scene.frames.end(),
-                                  [&](const Frame& f) { return sameIntrinsics(f.camera, scene.frames.front().camera); });
+  const bool shared = std::all_of(scene.frames.begin(), scene.frames.end(), [&](const Frame& f) {
+    return sameIntrinsics(f.camera, scene.frames.front().camera) && f.response == scene.frames.front().response;
+  });
   if (shared && !scene.frames.empty()) {
-    root["camera"] = toJson(scene.frames.front().camera);
+    root["camera"] = response(toJson(scene.frames.front().camera), scene.frames.front(), "camera.");
     if (kept.contains("camera")) restore(root["camera"], kept["camera"]);
   }
   root["frames"] = Json::array();
@@ -142,7 +148,7 @@ std::string sceneToJson(const Scene& scene, const fs::path& folder) {
     if (frame.depthScale > 0) j["depth_scale"] = frame.depthScale;
     path("normals", frame.normals);
     path("mask", frame.mask);
-    if (!shared) j["camera"] = toJson(frame.camera);
+    if (!shared) j["camera"] = response(toJson(frame.camera), frame, place + "camera.");
     if (frame.depthCamera) {
       j["depth_camera"] = depthCameraJson(*frame.depthCamera);
       if (kept.contains("depth_camera")) restore(j["depth_camera"], kept["depth_camera"]);

@@ -122,6 +122,9 @@ void requirePermitted(const SessionInput& input, const std::string& file, const 
     require(liesIn(permitted, mesh), mesh, file, "input.reading.surface_file", "--meshes DIR", realPath(mesh).parent_path());
   if (const fs::path& poses = input.choices.poses; !poses.empty())
     require(liesIn(permitted, poses), poses, file, "input.reading.poses", "--photographs DIR", realPath(poses).parent_path());
+  if (const fs::path response = responseFileOf(input.choices); !response.empty())
+    require(liesIn(permitted, response), response, file, "input.reading.response_file", "--photographs DIR",
+            realPath(response).parent_path());
 }
 
 }  // namespace glint

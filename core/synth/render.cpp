@@ -13,7 +13,6 @@
 #include "core/base/json_text.h"
 #include "core/base/parallel.h"
 #include "core/base/safe_text.h"
-#include "core/base/srgb.h"
 #include "core/scene/scene_json.h"
 #include "core/synth/output_folder.h"
 #include "core/synth/synth.h"
@@ -57,13 +56,13 @@ void degrade(Image& image, const RenderOptions& options, double sigma, unsigned 
   }
 }
 
-cv::Mat quantised(const Image& linear, int bits) {
+cv::Mat quantised(const Image& linear, const CameraResponse& response, int bits) {
   const double top = bits == 8 ? 255 : 65535;
   cv::Mat mat = matOf(linear), out;
   for (int y = 0; y < mat.rows; ++y)
     for (int x = 0; x < mat.cols; ++x)
       for (int c = 0; c < 3; ++c)
-        mat.at<cv::Vec3f>(y, x)[c] = static_cast<float>(srgbFromLinear(std::clamp(double(mat.at<cv::Vec3f>(y, x)[c]), 0.0, 1.0)));
+        mat.at<cv::Vec3f>(y, x)[c] = static_cast<float>(response.codeOf(double(mat.at<cv::Vec3f>(y, x)[c]), c));
   mat.convertTo(out, bits == 8 ? CV_8UC3 : CV_16UC3, top);  // rounds to nearest
   return out;
 }
@@ -253,7 +252,8 @@ void renderFrames(Scene& scene, const RenderOptions& render, const Material& mat
           for (std::size_t k = 0; k < photograph.data.size(); ++k)
             photograph.data[k] = static_cast<float>(exposure) * (r.diffuse.data[k] + r.specular.data[k / 3]);
           degrade(photograph, render, render.noise * exposure * top, static_cast<unsigned>(2 * i));
-          write(frame.image, "frames", photographExtension(render), quantised(photograph, render.bits), render.jpegQuality);
+          write(frame.image, "frames", photographExtension(render), quantised(photograph, frame.response, render.bits),
+                render.jpegQuality);
         }
         degrade(r.specular, render, render.noise * top, static_cast<unsigned>(2 * i + 1));
         cv::Mat mask;

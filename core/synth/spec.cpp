@@ -135,10 +135,16 @@ RenderOptions readRender(const JsonNode& render) {
   return options;
 }
 
-void addFrame(Scene& scene, const Camera& camera, const Eigen::Isometry3d& pose, const std::string& surface) {
+struct SynthCamera {
+  Camera camera;
+  CameraResponse response;
+};
+
+void addFrame(Scene& scene, const SynthCamera& of, const Eigen::Isometry3d& pose, const std::string& surface) {
   Frame frame;
   frame.id = padded(scene.frames.size());
-  frame.camera = camera;
+  frame.camera = of.camera;
+  frame.response = of.response;
   frame.camera.camFromWorld = pose;
   frame.surface = surface;
   for (const TrueLight& light : scene.lights) frame.lightsOn.push_back(light.id);
@@ -194,7 +200,8 @@ std::vector<std::string> stepSurface(const JsonNode& steps, Scene& scene) {
 }
 
 /// The frames as they are listed, once for each surface of `order`. @param stepped  `order` are steps, whatever surface a frame names
-void readFrames(const JsonNode& frames, const Camera& camera, const std::vector<std::string>& order, bool stepped, Scene& scene) {
+void readFrames(const JsonNode& frames, const SynthCamera& camera, const std::vector<std::string>& order, bool stepped,
+                Scene& scene) {
   std::set<std::string> ids;
   for (const std::string& step : order)
     for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -245,7 +252,9 @@ SynthSpec readSynthSpec(const std::filesystem::path& file) {
   scene.folder = std::filesystem::absolute(file).lexically_normal().parent_path();
   scene.name = file.stem().string();
   if (const auto n = root.find("name")) scene.name = n->text();
-  const Camera camera = readCameraJson(root.at("camera"));
+  const JsonNode cameraNode = root.at("camera");
+  const SynthCamera camera{readCameraJson(cameraNode), readResponseJson(cameraNode, scene.folder, {})};
+  if (!camera.response.file().empty()) cameraNode.at("response").fail("must be srgb, linear or gamma:G");
   readLights(root.at("lights"), scene);
   const JsonNode surfaces = root.at("surfaces");
   readSurfaces(surfaces, scene);

@@ -36,6 +36,7 @@ const std::vector<Reader>& readers() {
       {"poses", Form::Text, feedPoses},
       {"labels", Form::Json, feedLabels},
       {"posed_images", Form::Text, feedPosedImages},
+      {"response", Form::Text, feedResponse},
       {"image_header", Form::Bytes, feedImageHeader},
       {"image", Form::Bytes, feedImage},
   };
