@@ -103,6 +103,7 @@ class Maker:
         extra = ["--truth", str(self.truth)] if name.startswith("sphere") else []
         found = json.loads(run([self.glint, "evaluate", *self.arguments(name, models, settings), *extra, "--json", "-"]))
         result = {}
+        print(f"{name} {dict(settings)}", file=sys.stderr, flush=True)
         for model, r in found["models"].items():
             s = r["summary"]
             result[model] = (s["contour_error_pct"]["mean"], s["predicted"], s["frames"], s["peak_offset_px"]["mean"])
@@ -123,8 +124,8 @@ class Maker:
         mean = [statistics.fmean(p[k] for p in peaks) for k in (0, 1)]
         return math.sqrt(sum((p[0] - mean[0])**2 + (p[1] - mean[1])**2 for p in peaks) / (len(peaks) - 1)), len(peaks)
 
-    def work(self, keys, jitters):
-        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+    def work(self, keys, jitters, jobs):
+        with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
             scores = {k: pool.submit(self.score, k) for k in dict.fromkeys(keys)}
             stills = {j: pool.submit(self.jitter, j) for j in dict.fromkeys(jitters)}
             self.known = {k: f.result() for k, f in scores.items()}
@@ -222,6 +223,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--glint", default="build/release/bin/glint")
     parser.add_argument("--data", default=os.environ.get("GLINT_DATA", ""), help="folder with cycles/sphere; without it the path-traced rows are left out")
+    parser.add_argument("--jobs", type=int, default=2, help="programs at once")
     parser.add_argument("--out", default="docs/depth.md")
     a = parser.parse_args()
     root = pathlib.Path(__file__).resolve().parent.parent
@@ -235,7 +237,7 @@ def main():
             maker.truth = pathlib.Path(a.data) / "cycles/sphere/contours"
             maker.sphere(pathlib.Path(a.data).resolve())
             scenes.append("sphere")
-        maker.work(*sections(maker, scenes)[:2])
+        maker.work(*sections(maker, scenes)[:2], a.jobs)
         for name, lines in sections(maker, scenes)[2].items():
             start, end = f"<!-- {name} -->\n", f"<!-- end of {name} -->"
             if start not in text or end not in text:

@@ -6,29 +6,10 @@
 #include <limits>
 #include <optional>
 
+#include "core/base/numbers_in_bytes.h"
+
 namespace glint {
 namespace {
-
-/// Numbers at a place in a file; nothing where the file ends before.
-class Bytes {
- public:
-  Bytes(std::string_view bytes, bool bigEndian) : bytes_(bytes), big_(bigEndian) {}
-  std::optional<std::uint64_t> number(std::uint64_t at, int size) const {
-    if (at > bytes_.size() || bytes_.size() - at < static_cast<std::uint64_t>(size)) return std::nullopt;
-    std::uint64_t v = 0;
-    for (int i = 0; i < size; ++i) {
-      const auto byte =
-          static_cast<unsigned char>(bytes_[static_cast<std::size_t>(at) + static_cast<std::size_t>(big_ ? i : size - 1 - i)]);
-      v = v << 8 | byte;
-    }
-    return v;
-  }
-  std::uint64_t size() const { return bytes_.size(); }
-
- private:
-  std::string_view bytes_;
-  bool big_;
-};
 
 bool startsWith(std::string_view bytes, std::string_view start) { return bytes.substr(0, start.size()) == start; }
 
@@ -48,7 +29,7 @@ ImageHeader damaged(const ImageHeader& header, const std::string& what) {
 
 /// @see PNG specification, third edition, 5: chunks of length, type, data and checksum, from IHDR to IEND.
 ImageHeader pngHeader(std::string_view bytes, ImageHeader h) {
-  const Bytes in(bytes, true);
+  const NumbersInBytes in(bytes, true);
   constexpr std::uint64_t kSignature = 8, kAround = 12;  // bytes; of a chunk: length, type and checksum
   std::uint64_t at = kSignature;
   for (bool first = true;; first = false) {
@@ -72,7 +53,7 @@ ImageHeader pngHeader(std::string_view bytes, ImageHeader h) {
 
 /// @see ITU T.81, B.1: segments of a marker and a length up to the start of the scan; the frame header has the size.
 ImageHeader jpegHeader(std::string_view bytes, ImageHeader h) {
-  const Bytes in(bytes, true);
+  const NumbersInBytes in(bytes, true);
   // Where there is no end marker, half of the image is missing.
   if (bytes.rfind("\xff\xd9") == std::string_view::npos) return truncated(h);
   std::uint64_t at = 2;
@@ -80,7 +61,7 @@ ImageHeader jpegHeader(std::string_view bytes, ImageHeader h) {
     const std::optional<std::uint64_t> marker = in.number(at, 1);
     const std::optional<std::uint64_t> code = in.number(at + 1, 1);
     if (!marker || !code) return truncated(h);
-    // Bytes between segments, and any number of FF before a marker, are passed over as by every decoder.
+    // NumbersInBytes between segments, and any number of FF before a marker, are passed over as by every decoder.
     if (*marker != 0xff || *code == 0xff || *code == 0) {
       ++at;
       continue;
@@ -116,7 +97,7 @@ std::int64_t signed32(std::uint64_t v) { return static_cast<std::int32_t>(static
 
 /// @see OpenEXR File Layout: attributes (name, type, size, value) up to an empty name.
 std::optional<ExrFacts> exrFacts(std::string_view bytes) {
-  const Bytes in(bytes, false);
+  const NumbersInBytes in(bytes, false);
   ExrFacts facts;
   std::size_t at = 8;
   while (at < bytes.size() && bytes[at] != 0) {
@@ -145,7 +126,7 @@ std::optional<ExrFacts> exrFacts(std::string_view bytes) {
 /// renderers write for one image); the decoder judges the others.
 /// @see OpenEXR File Layout: offsets, blocks (y, size, data).
 bool exrBlocksLieInside(std::string_view bytes, std::uint64_t table) {
-  const Bytes in(bytes, false);
+  const NumbersInBytes in(bytes, false);
   constexpr std::uint64_t kBlockHead = 8;  // bytes
   // The table ends where the first block starts, so its length follows from the smallest offset in it.
   std::uint64_t smallest = bytes.size();
@@ -165,7 +146,7 @@ bool fitsImage(std::uint64_t blockWidth, std::uint64_t blockHeight, const ImageH
 }
 
 ImageHeader exrHeader(std::string_view bytes, ImageHeader h) {
-  const std::optional<std::uint64_t> version = Bytes(bytes, false).number(4, 4);
+  const std::optional<std::uint64_t> version = NumbersInBytes(bytes, false).number(4, 4);
   if (!version) return truncated(h);
   const std::optional<ExrFacts> facts = exrFacts(bytes);
   if (!facts) return truncated(h);
@@ -183,7 +164,7 @@ ImageHeader exrHeader(std::string_view bytes, ImageHeader h) {
 
 /// @see TIFF 6.0, 2: a directory of entries (tag, type, count, value).
 ImageHeader tiffHeader(std::string_view bytes, ImageHeader h) {
-  const Bytes in(bytes, startsWith(bytes, "MM"));
+  const NumbersInBytes in(bytes, startsWith(bytes, "MM"));
   const std::optional<std::uint64_t> directory = in.number(4, 4);
   const std::optional<std::uint64_t> entries = directory ? in.number(*directory, 2) : std::nullopt;
   if (!entries) return truncated(h);
@@ -214,7 +195,7 @@ ImageHeader tiffHeader(std::string_view bytes, ImageHeader h) {
 }
 
 ImageHeader bmpHeader(std::string_view bytes, ImageHeader h) {
-  const Bytes in(bytes, false);
+  const NumbersInBytes in(bytes, false);
   constexpr std::uint64_t kOldHeader = 12;  // bytes; sizes of 16 bits
   const std::optional<std::uint64_t> size = in.number(14, 4);
   if (!size) return truncated(h);
@@ -278,7 +259,7 @@ ImageHeader hdrHeader(std::string_view bytes, ImageHeader h) {
 
 /// @see WebP container specification: RIFF, then VP8 (lossy), VP8L (lossless) or VP8X (extended).
 ImageHeader webpHeader(std::string_view bytes, ImageHeader h) {
-  const Bytes in(bytes, false);
+  const NumbersInBytes in(bytes, false);
   const std::optional<std::uint64_t> size = in.number(4, 4);
   if (!size || *size > bytes.size() - 8 || !in.number(26, 4)) return truncated(h);
   const std::string_view kind = bytes.substr(12, 4);

@@ -21,6 +21,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using Kind = CameraResponse::Kind;
+namespace fs = std::filesystem;
 
 constexpr double kExact = 1e-12;  // of values in 0..1: a few roundings
 constexpr float kFloat = 1e-6f;   // a few ulp of float32 at 1
@@ -223,6 +224,29 @@ TEST(CameraResponse, FramesWithACameraOfTheirOwnHaveTheirOwnResponse) {
   EXPECT_THAT(scene.warnings,
               ElementsAre(HasSubstr("camera.response: the camera response gives"),
                           "camera.response does not hold for 1 frames with a camera of their own that states none"));
+}
+
+// --- of a capture: said by an option, kept by the session ---
+
+TEST(CameraResponse, ASessionKeepsTheOption) {
+  const TemporaryFolder folder;
+  const fs::path curve = folder.write("curve.csv", kColours);
+  const auto given = [](const std::string& text) {
+    InputChoices c;
+    for (const ChoiceOption& option : choiceOptions())
+      if (std::string(option.flag) == "--response") option.set(c, text);
+    return c;
+  };
+  for (const std::string& text : {std::string("srgb"), std::string("gamma:2.2"), curve.string()}) {
+    const InputChoices c = given(text);
+    const std::string json = inputChoicesJson(c, [&](const fs::path& p) { return p.lexically_relative(folder.path()).string(); });
+    const InputChoices again = readInputChoices(JsonNode::parse(json, "s.glint"), folder.path());
+    EXPECT_EQ(again, c) << json;
+    EXPECT_EQ(responseOf(again).text(), text);
+  }
+  EXPECT_THAT(inputErrorOf([&] { given("sRGB"); }), HasSubstr("--response sRGB: is neither srgb, linear, gamma:G, nor a file"));
+  EXPECT_THAT(inputErrorOf([&] { readInputChoices(JsonNode::parse(R"({"response": "curve.csv"})", "s.glint"), folder.path()); }),
+              HasSubstr("s.glint: response: must be srgb, linear or gamma:G"));
 }
 
 }  // namespace
