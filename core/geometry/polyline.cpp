@@ -116,6 +116,26 @@ std::vector<Pixel> resample(const Polyline& line, int n) {
   return out;
 }
 
+std::vector<Pixel> thinned(const Polyline& line, int n) {
+  require(n >= 1 && !line.points.empty(), "thinned: needs points");
+  const std::size_t count = line.points.size();
+  if (count <= static_cast<std::size_t>(n)) return line.points;
+  std::vector<double> at{0};  // arc length of each point, and of the end
+  for (std::size_t i = 1; i < count + (line.closed ? 1 : 0); ++i)
+    at.push_back(at.back() + (line.points[i % count] - line.points[i - 1]).norm());
+  const double step = at.back() / (line.closed ? n : std::max(1, n - 1));
+  std::vector<Pixel> out;
+  std::size_t next = 0;
+  for (int i = 0; i < n; ++i) {
+    std::size_t nearest = next;
+    while (nearest + 1 < count && std::abs(at[nearest + 1] - i * step) <= std::abs(at[nearest] - i * step)) ++nearest;
+    if (nearest >= count) break;
+    out.push_back(line.points[nearest]);
+    next = nearest + 1;
+  }
+  return out;
+}
+
 Polyline withoutRepeats(const Polyline& line, double tolerance) {
   Polyline out{{}, line.closed};
   for (const Pixel& p : line.points)

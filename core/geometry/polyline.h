@@ -24,6 +24,8 @@ double distance(const Polyline& line, const Pixel& p);  ///< px to the nearest p
 std::optional<double> reach(const Polyline& line, const Pixel& origin, double direction);
 /// n points equally spaced in arc length, first at the first point. Needs >= 1 point.
 std::vector<Pixel> resample(const Polyline& line, int n);
+/// Its own points nearest to those of `resample`, each once: at most n, in order. Exact where the points are exact and the chords are not.
+std::vector<Pixel> thinned(const Polyline& line, int n);
 /// Consecutive repeated points (closer than `tolerancePx`) removed.
 Polyline withoutRepeats(const Polyline& line, double tolerancePx = 1e-9);
 

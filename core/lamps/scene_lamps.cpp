@@ -188,6 +188,9 @@ class SceneLamp {
     for (const int v : light_.views) {
       TrainingView view = r_.viewAsGiven(v);
       if (view.seen) {
+        // The points of a given contour may be exact; points between them lie on chords, inside the contour.
+        Polyline& contour = view.highlight.contour;
+        if (view.highlight.fromScene) contour.points = thinned(contour, r_.request.settings.integer("light.bundle_points"));
         views_.push_back(std::move(view));
         continue;
       }

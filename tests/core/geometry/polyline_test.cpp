@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "tests/tolerances.h"
 
@@ -65,6 +67,30 @@ TEST(Polyline, ResampleIsEquallySpacedInArcLength) {
   const std::vector<Pixel> open = resample(kOpen, 8);
   EXPECT_NEAR((open[7] - Pixel(4, 3)).norm(), 0, kExact);
   EXPECT_THROW(resample(Polyline{}, 3), std::invalid_argument);
+}
+
+// A circle whose points crowd on one side: what is left are points of it, to the last bit, about as far from each other as they can be.
+TEST(Polyline, ThinnedKeepsItsOwnPoints) {
+  Polyline circle{{}, true};
+  for (int i = 0; i < 200; ++i) {
+    const double t = i < 100 ? i * 0.001 : 0.1 + (i - 100) * (2 * std::numbers::pi - 0.1) / 100;
+    circle.points.emplace_back(5 * std::cos(t), 5 * std::sin(t));
+  }
+  const std::vector<Pixel> p = thinned(circle, 40);
+  ASSERT_LE(p.size(), 40u);
+  EXPECT_GE(p.size(), 38u);  // the nearest point of two places may be one
+  auto from = circle.points.begin();
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    from = std::find(from, circle.points.end(), p[i]);
+    ASSERT_NE(from, circle.points.end()) << i;  // one of them, and in order
+    ++from;
+    const double gap = (p[(i + 1) % p.size()] - p[i]).norm();
+    EXPECT_LE(gap, 10 * std::numbers::pi / 40 + 0.35) << i;  // a fortieth of the circle and half a gap at each end
+  }
+  EXPECT_EQ(thinned(kRectangle, 100), kRectangle.points);
+  EXPECT_EQ(thinned(Polyline{{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}}, false}, 3), (std::vector<Pixel>{{0, 0}, {2, 0}, {4, 0}}));
+  EXPECT_EQ(thinned(Polyline{{{2, 2}, {2, 2}, {2, 2}}, true}, 1).size(), 1u);
+  EXPECT_THROW(thinned(Polyline{}, 3), std::invalid_argument);
 }
 
 TEST(Polyline, RepeatsAreRemovedAlsoAcrossTheEnd) {
