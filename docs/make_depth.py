@@ -199,19 +199,20 @@ def sections(maker, scenes):
     out.append(("radius", table(["smoothing", "radius", "limit-angle", "reflectance", "jitter of the peak"], rows)))
     rows = []
     for times in NOISES:
-        for label, settings in (("none, 3 cm", {}), (f"fit, {100 * BEST:.0f} cm", dict(FIT, radius=BEST))):
+        for label, settings in (("none, default", {}), ("bilateral, 6 cm", dict(smoothing="bilateral", radius=0.06)), ("fit, 6 cm", dict(FIT, radius=0.06))):
             st = lambda s: noisy(times, s, **settings)
             rows.append([f"{times:g}", label, *(cell("ellipsoid", tuple(MODELS), m, st, SEEDS[:1]) for m in MODELS)])
     out.append(("noise", table(["noise", "smoothing, radius", *MODELS], rows)))
     rows = []
     for k in FUSED:
-        for r in (0.06, BEST):
-            st = lambda s: noisy(1, s, fuse=k, radius=r, **FIT)
-            rows.append([str(k), f"{100 * r:.0f} cm", *(cell("ellipsoid", TWO, m, st, SEEDS) for m in TWO), still(st(1))])
-    out.append(("fusion", table(["frames fused", "radius", "limit-angle", "reflectance", "jitter of the peak"], rows)))
+        for smoothing, r in (("bilateral", 0.06), ("fit", 0.06), ("fit", BEST)):
+            st = lambda s: noisy(1, s, fuse=k, radius=r, smoothing=smoothing)
+            rows.append([str(k), f"{smoothing}, {100 * r:.0f} cm", *(cell("ellipsoid", TWO, m, st, SEEDS) for m in TWO), still(st(1))])
+    out.append(("fusion", table(["frames fused", "smoothing, radius", "limit-angle", "reflectance", "jitter of the peak"], rows)))
     if "sphere" in scenes:
         rows = []
-        for label, settings in (("none, 3 cm", {}), ("fit, 6 cm", dict(FIT, radius=0.06)), (f"fit, {100 * BEST:.0f} cm", dict(FIT, radius=BEST)),
+        bilateral = dict(smoothing="bilateral", radius=0.06)
+        for label, settings in (("none, default", {}), ("bilateral, 6 cm", bilateral), ("bilateral, 6 cm, 6 fused", dict(bilateral, fuse=6)), ("fit, 6 cm", dict(FIT, radius=0.06)), (f"fit, {100 * BEST:.0f} cm", dict(FIT, radius=BEST)),
                                 (f"fit, {100 * BEST:.0f} cm, 6 fused", dict(FIT, radius=BEST, fuse=6))):
             st = lambda s: noisy(1, s, **settings)
             rows.append([label, *(cell("sphere", TWO, m, st, SEEDS[:1]) for m in TWO)])

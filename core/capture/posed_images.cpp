@@ -8,6 +8,7 @@
 #include <map>
 
 #include "core/base/atomic_file.h"
+#include "core/base/exif.h"
 #include "core/base/number_text.h"
 #include "core/capture/capture.h"
 #include "core/capture/image_sizes.h"
@@ -15,6 +16,7 @@
 #include "core/capture/pose_lines.h"
 #include "core/capture/text_rows.h"
 #include "core/capture/time_pairs.h"
+#include "core/geometry/film_camera.h"
 #include "io/text_scan.h"
 
 namespace glint {
@@ -211,7 +213,8 @@ class PosedPictures {
     }
     if (!options_.camera)
       throw UndecidedInput(poseFile(),
-                           "says no intrinsics of '" + picture.name + "'; name them by --camera fx,fy,cx,cy[,k1,k2,p1,p2,k3]",
+                           "says no intrinsics of '" + picture.name + "'; name them by --camera fx,fy,cx,cy[,k1,k2,p1,p2,k3]" +
+                               hintOf(picture, size),
                            UndecidedInput::Question::Camera, {});
     if (!size_) {
       size_ = size;
@@ -223,6 +226,20 @@ class PosedPictures {
                                  (*size_)[0], (*size_)[1]));
     const Eigen::Matrix3d& k = options_.camera->pixelFromRay;
     return capture::cameraOf(size[0], size[1], k(0, 0), k(1, 1), k(0, 2), k(1, 2), options_.camera->lens, poseFile(), "--camera");
+  }
+
+  /// What EXIF says, for a person to take or not: it is never used unasked.
+  static std::string hintOf(const Picture& picture, const std::array<int, 2>& size) {
+    if (picture.ofVideo) return "";
+    try {
+      const std::optional<double> mm = focalLength35mm(readFile(picture.file, Limit::ImageMegabytes));
+      if (!mm) return "";
+      const Eigen::Matrix3d k = filmCamera(*mm, size[0], size[1]).pixelFromRay;
+      return formatted(" (EXIF: %g mm on 35 mm film, about --camera %.0f,%.0f,%g,%g without distortion)", *mm, k(0, 0), k(1, 1),
+                       k(0, 2), k(1, 2));
+    } catch (const InputError&) {
+      return "";  // it is said where the picture is read
+    }
   }
 
   void report() {

@@ -13,6 +13,7 @@
 #include "core/base/image_header.h"
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
+#include "core/geometry/film_camera.h"
 #include "core/lamps/ball_highlights.h"
 #include "core/lamps/ball_outline.h"
 #include "core/lamps/glossy_ball.h"
@@ -381,7 +382,6 @@ BallShots ballShotsIn(const fs::path& input, const std::vector<NamedBall>& balls
 std::optional<Camera> cameraOfExif(const BallShots& shots, double& mm) {
   for (const NamedBall& ball : shots.balls)
     if (!ball.folder.empty() || !ball.corner.isZero(0)) return std::nullopt;
-  constexpr double kFilmDiagonal = 43.2666;  // mm, of 36 x 24
   std::optional<Camera> camera;
   for (const Shot* shot : {&shots.shots.front(), &shots.shots.back()}) {
     try {
@@ -390,10 +390,7 @@ std::optional<Camera> cameraOfExif(const BallShots& shots, double& mm) {
       const std::optional<double> focal = focalLength35mm(bytes);
       if (!header.problem.empty() || !focal || (camera && *focal != mm)) return std::nullopt;
       mm = *focal;
-      const Eigen::Vector2d size(double(header.width), double(header.height));
-      const double px = mm / kFilmDiagonal * size.norm();
-      camera.emplace();
-      camera->pixelFromRay << px, 0, (size.x() - 1) / 2, 0, px, (size.y() - 1) / 2, 0, 0, 1;
+      camera = filmCamera(mm, static_cast<int>(header.width), static_cast<int>(header.height));
     } catch (const InputError&) {
       return std::nullopt;  // it is said where the photograph is looked at
     }

@@ -114,6 +114,21 @@ TEST(PosedImages, LineWithACameraOfItsOwn) {
   EXPECT_THAT(imagesError(folder.frames(), posedBy(folder / "poses.jsonl")), HasSubstr("64 x 48 pixels, 'a.png' 65 x 48"));
 }
 
+// What EXIF says is offered in the refusal, and not taken: 43.2666 mm of film have the diagonal of 3, 4, 5 for a lens as long.
+TEST(PosedImages, TheFocalLengthOfExifIsAHint) {
+  const Frames folder({});
+  const auto two = [](unsigned v) { return std::string{static_cast<char>(v >> 8), static_cast<char>(v & 0xFF)}; };
+  const auto four = [&](unsigned v) { return two(v >> 16) + two(v & 0xFFFF); };
+  const std::string exif = std::string("Exif\0\0MM", 8) + two(42) + four(8) + two(1) + two(0x8769) + two(4) + four(1) + four(26) +
+                           four(0) + two(1) + two(0xA405) + two(3) + four(1) + two(50) + two(0) + four(0);
+  const std::string frame = "\xFF\xC0" + two(11) + "\x08" + two(480) + two(640) + std::string("\1\1\x11\0", 4);
+  folder.write("frames/a.jpg", "\xFF\xD8\xFF\xE1" + two(static_cast<unsigned>(exif.size()) + 2) + exif + frame + "\xFF\xD9");
+  folder.write("poses.jsonl", jsonLine("a", 1));
+  // 50 / 43.2666 * 800 px = 924.5 px; the middle of 640 x 480 pixels is 319.5, 239.5.
+  EXPECT_THAT(imagesError(folder.frames(), posedBy(folder / "poses.jsonl", false)),
+              HasSubstr("(EXIF: 50 mm on 35 mm film, about --camera 925,925,319.5,239.5 without distortion)"));
+}
+
 TEST(PosedImages, OneCameraForImagesOfSeveralSizesIsRefused) {
   const Frames folder({"a.png", "b.png"});
   folder.write("frames/b.png", pngOfSize(32, 24));
