@@ -42,16 +42,16 @@ Command evaluateCommand() {
   };
   c.run = [a](const Context& context) -> int {
     InspectionRequest request = a->request();
-    const std::shared_ptr<const Scene> scene = a->scene(request);
+    ReportContext report;
+    const std::shared_ptr<const Scene> scene = a->scene(request, &report.levelReason);
     for (const std::string& w : scene->warnings) context.warn(w);
     Outputs outputs(a->input, *scene);
     outputs.file(a->json, "--json", OutputKind::document("glint_evaluation"));
     outputs.file(a->csv, "--csv", OutputKind::table(kEvaluationCsvHeader));
     outputs.file(a->html, "--html", OutputKind::page());
-    ReportContext report;
     report.input = a->input;
     Inspection result;
-    std::string text;
+    std::string text = report.levelReason.empty() ? "" : report.levelReason + "\n\n";
     // What was asked for on standard output must stay parseable there: the table then stays away.
     const bool tableToo = a->json != "-" && a->csv != "-" && a->html != "-";
     const auto write = [&] {
@@ -76,7 +76,7 @@ Command evaluateCommand() {
         throw CannotAnswer{*noUsableView(result)};
       }
       const Selection s = selectModel(result, goodEnough, context.progress());
-      text = selectionTable(s) + "\n";
+      text += selectionTable(s) + "\n";
       report.selection = s;
       if (s.model.empty()) {
         report.whyChosen = s.why;

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "core/fit/level_choice.h"
 #include "core/model/model.h"
 #include "core/scene/frame_spec.h"
 #include "core/session/session.h"
@@ -49,7 +50,9 @@ void InspectionArguments::declare(Options& o, const std::string& modelsHelp) {
            "first:6)");
   o.option(exclude, "--exclude", "SPEC",
            "Frames to exclude from training and scoring: numbers, ids or ranges (default: the session's, else none)");
-  o.option(level, "--level", "Q", "Contour level: fraction of the peak above the background (default: the session's, else 0.5)");
+  o.option(level, "--level", "Q",
+           "Contour level: fraction of the peak above the background, or auto: chosen by the training frames, with the reason "
+           "(default: the session's, else 0.5)");
   o.choice(source, "--source", {"", "radiance", "image"},
            "Pixels to use where a frame has both: float radiance or captured image (default: the session's, else radiance)");
   o.option(preset, "--preset", "NAME", "Take model and settings from the session's trade-off: fast, balanced, exact or chosen");
@@ -81,7 +84,7 @@ InspectionRequest InspectionArguments::request() const {
     if (equals == std::string::npos) throw InputError("", "--set " + entry, "expected KEY=VALUE");
     r.settings.setFromText(entry.substr(0, equals), entry.substr(equals + 1));
   }
-  if (!level.empty()) {
+  if (!level.empty() && level != kAutoLevel) {
     try {
       r.settings.setFromText("detect.level", level);
     } catch (const InputError& e) {
@@ -101,11 +104,22 @@ bool InspectionArguments::sets(const std::string& key) const {
   return std::any_of(set.begin(), set.end(), [&](const std::string& entry) { return entry.rfind(key + "=", 0) == 0; });
 }
 
-std::shared_ptr<const Scene> InspectionArguments::scene(InspectionRequest& request) const {
+std::shared_ptr<const Scene> InspectionArguments::scene(InspectionRequest& request, std::string* levelReason) const {
   auto scene = std::make_shared<const Scene>(places.read(input));
-  if (exclude.empty()) return scene;
-  request.excluded = parseFrames(exclude, *scene, "--exclude");
-  if (request.excluded.size() == scene->frames.size()) throw InputError("", "--exclude " + exclude, "excludes every frame");
+  if (!exclude.empty()) {
+    request.excluded = parseFrames(exclude, *scene, "--exclude");
+    if (request.excluded.size() == scene->frames.size()) throw InputError("", "--exclude " + exclude, "excludes every frame");
+  }
+  if (level == kAutoLevel) {
+    std::vector<int> frames = parseTrainSpec(request.train, *scene).frames;
+    std::erase_if(
+        frames, [&](int f) { return std::find(request.excluded.begin(), request.excluded.end(), f) != request.excluded.end(); });
+    if (frames.empty()) throw InputError("", "--level auto", "no training frame is left to choose a level by");
+    const Outcome<LevelChoice> choice = chooseLevel(*scene, frames, request.source, request.settings);
+    if (!choice) throw CannotAnswer{choice.failure()};
+    request.settings.set("detect.level", choice->level);
+    if (levelReason) *levelReason = choice->reason;
+  }
   return scene;
 }
 

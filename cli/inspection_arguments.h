@@ -33,10 +33,14 @@ struct InspectionArguments {
   InspectionRequest request() const;
   /// `--set` names this setting.
   bool sets(const std::string& key) const;
-  /// Reads the scene, and puts the frames of --exclude into the request: only the scene knows their ids. InputError.
-  std::shared_ptr<const Scene> scene(InspectionRequest& request) const;
+  /// Reads the scene, and puts the frames of --exclude and the level of --level auto into the request: only the scene knows them. InputError;
+  /// CannotAnswer where no training frame shows a highlight to choose a level by.
+  /// @param levelReason  optional: why this level; "" where it was not chosen here
+  std::shared_ptr<const Scene> scene(InspectionRequest& request, std::string* levelReason = nullptr) const;
 };
 
+/// Of --level: chosen for the sequence.
+inline constexpr const char* kAutoLevel = "auto";
 /// What --level takes, in words: as the scene reader.
 inline constexpr const char* kLevelRange = "must be a fraction of the peak, more than 0 and less than 1";
 

@@ -8,6 +8,7 @@
 #include "core/base/number_text.h"
 #include "core/lamps/ball_photographs.h"
 #include "core/lamps/scene_lamps.h"
+#include "core/report/lamps_on_csv.h"
 #include "core/report/lamps_report.h"
 #include "core/scene/frame_spec.h"
 #include "core/scene/outputs.h"
@@ -16,7 +17,7 @@ namespace glint::cli {
 namespace {
 
 struct LightsArguments {
-  std::string input, json, ballRadius, exclude, source = "radiance", outlines = "fitted";
+  std::string input, json, on, ballRadius, exclude, source = "radiance", outlines = "fitted";
   double outlineSigmaPx = 1;  // what a person who draws a circle gets right
   std::vector<std::string> balls, set, out;
   SceneArguments places;
@@ -33,6 +34,7 @@ OutputKind kindOf(const std::string& file) {
 void checkOutputs(const LightsArguments& a, Outputs outputs) {
   for (const std::string& file : a.out) outputs.file(file, "-o", kindOf(file));
   outputs.file(a.json, "--json", OutputKind::document("glint_lights"));
+  outputs.file(a.on, "--on", OutputKind::table(kLampsOnCsvHeader));
 }
 
 std::optional<double> radiusOf(const std::string& text) {
@@ -52,6 +54,7 @@ void refuseOthers(const LightsArguments& a) {
   for (const auto& [flag, text] : a.places.reading)
     if (balls && !text.empty() && flag != "--camera" && flag != "--response")
       throw InputError("", flag + " " + text, "has no use with --ball: photographs of balls need no scene");
+  if (balls && !a.on.empty()) throw InputError("", "--on", "has no use with --ball: one lamp is on in each photograph");
   if (balls && !a.set.empty())
     throw InputError("", "--set " + a.set.front(), "has no use with --ball: settings are those of scenes");
   if (!balls && !a.ballRadius.empty()) throw InputError("", "--ball-radius", "is for photographs of balls: give --ball, too");
@@ -111,6 +114,23 @@ LampsReport ofBalls(const LightsArguments& a, const Context& context) {
   return report;
 }
 
+/// Which lamps are on: their fits are of the frames that name theirs.
+void prepareOn(const Scene& scene, InspectionRequest& request) {
+  request.models = {levelSetModel().id()};
+  std::string frames;
+  for (std::size_t i = 0; i < scene.frames.size(); ++i)
+    if (!scene.frames[i].lightsOn.empty()) frames += (frames.empty() ? "" : ",") + std::to_string(i);
+  if (frames.empty()) throw CannotAnswer{{Reason::NoLight, "--on: no frame names a lamp (lights_on), so none can be told apart"}};
+  request.train = frames;
+}
+
+std::string writeOn(const LightsArguments& a, const Inspection& inspection, LampsReport& report, const Context& context) {
+  const LampsOn on = lampsOnIn(inspection, context.progress());
+  context.write(a.on, lampsOnCsv(on, *inspection.scene));
+  for (const std::string& w : on.warnings) report.warnings.push_back(w);
+  return lampsOnSummary(on);
+}
+
 LampsReport ofScene(const LightsArguments& a, const Context& context) {
   InspectionRequest request;
   request.models.clear();  // evidence and views only
@@ -125,11 +145,16 @@ LampsReport ofScene(const LightsArguments& a, const Context& context) {
   if (!a.exclude.empty()) request.excluded = parseFrames(a.exclude, *scene, "--exclude");
   if (request.excluded.size() == scene->frames.size()) throw InputError("", "--exclude " + a.exclude, "excludes every frame");
   request.train = "first:" + std::to_string(scene->frames.size());
+  if (!a.on.empty()) prepareOn(*scene, request);
   checkOutputs(a, Outputs(a.input, *scene));
   const Inspection inspection = inspect(scene, request, context.progress());
   LampsReport report;
   report.lengthUnit = "m";
   report.lamps = lampsOfScene(inspection, context.progress());
+  if (!a.on.empty()) {
+    const std::string summary = writeOn(a, inspection, report, context);
+    if (a.json != "-" && a.on != "-") context.print(summary);
+  }
   const bool lines =
       std::any_of(a.out.begin(), a.out.end(), [](const std::string& f) { return std::filesystem::path(f).extension() == ".lp"; });
   if (lines) report.lines = lampLinesOf(*scene, report.lamps, report.warnings);
@@ -165,7 +190,7 @@ int run(const LightsArguments& a, const Context& context) {
                                                         failed->failure->message());
   write(a, report, context);
   for (const std::string& w : report.warnings) context.warn(w);
-  if (a.json != "-") context.print(lampsTable(report));
+  if (a.json != "-" && a.on != "-") context.print(lampsTable(report));
   if (count == 0) throw CannotAnswer{{Reason::NoLight, "no frame names or shows a lamp"}};
   if (without == count)
     throw CannotAnswer{{failed->failure->reason, "no lamp has an answer; first: " + failed->id + ": " + failed->failure->detail}};
@@ -187,6 +212,7 @@ Command lightsCommand() {
       "the outline in pixels of the cut-out, X0,Y0 the place of its first pixel in the shot.";
   c.examples =
       "  glint lights scene.json -o lamps.json\n"
+      "  glint lights scene.json --on lamps-on.csv            which lamps are on in each frame\n"
       "  glint lights photographs --ball 536,477,421 -o lamps.lp -o lamps.csv\n"
       "  glint lights . --ball left:536,477,421@0,50 --ball right:485,532,417@2750,0 --camera 4000,4000,1850,1000\n";
   c.declare = [a](Options& o) {
@@ -201,6 +227,8 @@ Command lightsCommand() {
     o.choice(a->source, "--source", {"radiance", "image"}, "Pixels to use where a frame of a scene has both");
     o.repeated(a->set, "--set", "KEY=VALUE", "Any setting of scenes by its dotted name (`glint settings`); may be repeated");
     o.repeated(a->out, "-o,--out", "FILE", "Write .json, .csv or .lp (RTI), by the ending; may be repeated");
+    o.option(a->on, "--on", "FILE",
+             "Of a scene: write which lamps are on in each frame, with confidence, as CSV (- = standard output)");
     o.option(a->json, "--json", "FILE", "Write JSON to this file (- = standard output, replaces the table)");
     a->places.declare(o);
   };

@@ -76,11 +76,12 @@ Command reconstructCommand() {
     if (a->models == "auto")
       throw InputError("", "--model auto", "not available here; choose a model with `glint evaluate --models auto` first");
     InspectionRequest request = a->request();
-    const std::shared_ptr<const Scene> scene = a->scene(request);
+    std::string levelReason;
+    const std::shared_ptr<const Scene> scene = a->scene(request, &levelReason);
     for (const std::string& w : scene->warnings) context.warn(w);
     Outputs(a->input, *scene).file(a->out, "--out", OutputKind::document("glint_session"));
     const Inspection result = inspect(scene, request, context.progress());
-    std::string text;
+    std::string text = levelReason.empty() ? "" : levelReason + "\n";
     std::optional<Failure> first;
     bool any = false;
     for (const std::string& name : request.models)
@@ -97,6 +98,7 @@ Command reconstructCommand() {
     for (const std::string& w : warningsOf(result)) context.warn(w);
     Session session = sessionOf(result, context.progress());
     session.file = a->out;
+    session.notes = levelReason;
     writeSession(session, a->out);
     context.print(text);
     return kDone;

@@ -83,7 +83,8 @@ Command tradeoffCommand() {
       request.models.clear();
       for (const auto& m : allModels()) request.models.push_back(m->id());
     }
-    const std::shared_ptr<const Scene> scene = a->scene(request);
+    std::string levelReason;
+    const std::shared_ptr<const Scene> scene = a->scene(request, &levelReason);
     for (const std::string& w : scene->warnings) context.warn(w);
     Outputs outputs(a->input, *scene);
     outputs.file(a->json, "--json", OutputKind::document("glint_tradeoff"));
@@ -121,7 +122,7 @@ Command tradeoffCommand() {
     }
     std::error_code ignored;
     if (!options.workFile.empty()) std::filesystem::remove(options.workFile, ignored);
-    if (a->json != "-" && a->html != "-") context.print(tradeoffTable(t));
+    if (a->json != "-" && a->html != "-") context.print((levelReason.empty() ? "" : levelReason + "\n\n") + tradeoffTable(t));
     if (!t.chosen) throw CannotAnswer{{Reason::NotReached, t.reason}};
     return kDone;
   };

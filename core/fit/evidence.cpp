@@ -107,7 +107,8 @@ FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, 
     options.separatePeaks = lights.separate || frame.lightsOn.size() > 1;
     options.references = lights.references;
     for (PeakReference& r : options.references) r.peak = frame.camera.distorted(r.peak);
-    Outcome<std::vector<Highlight>> found = detectHighlights(*linear, mask->has_value() ? &**mask : nullptr, options);
+    Outcome<std::vector<Highlight>> found =
+        detectHighlights(*linear, mask->has_value() ? &**mask : nullptr, options, &evidence.rejected);
     if (!found) {
       evidence.failure = found.failure();
       return evidence;

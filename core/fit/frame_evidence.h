@@ -12,10 +12,11 @@ namespace glint {
 /// One frame's evidence.
 struct FrameEvidence {
   int frame = -1;
-  std::vector<Highlight> highlights;  ///< each with its light
-  std::optional<Failure> failure;     ///< why there are no highlights: NoHighlight, FrameUnreadable, ...
-  bool againstTruth = false;          ///< --truth is given: `truth` is scored, whatever was detected
-  std::vector<int> found;             ///< where lights are switched off: which of the highlights as found each one is; else empty
+  std::vector<Highlight> highlights;        ///< each with its light
+  std::optional<Failure> failure;           ///< why there are no highlights: NoHighlight, FrameUnreadable, ...
+  std::vector<RejectedCandidate> rejected;  ///< what detection saw and did not take, measured pixels
+  bool againstTruth = false;                ///< --truth is given: `truth` is scored, whatever was detected
+  std::vector<int> found;  ///< where lights are switched off: which of the highlights as found each one is; else empty
   /// Index among the highlights as found, which is what a what-if names them by.
   int asFound(int highlight) const { return found.empty() ? highlight : found[static_cast<std::size_t>(highlight)]; }
   std::vector<Highlight> truth;

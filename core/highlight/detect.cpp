@@ -11,19 +11,25 @@
 #include "core/highlight/highlight.h"
 #include "core/highlight/iso_contour.h"
 #include "core/highlight/peak.h"
+#include "core/highlight/pixel_noise.h"
+#include "core/highlight/tongues.h"
 
 namespace glint {
 namespace {
 
-constexpr double kCandidateShare = 0.8;  // candidates are searched somewhat below the level: their own background moves it
-constexpr int kClippedPixels = 3;        // fewer saturated pixels are single hot ones
-constexpr int kRoiMargin = 3;            // px around a candidate's box
-constexpr double kFirstRung = 0.9;       // of the strongest value: separate peaks are searched from here down,
-constexpr double kNextRung = 0.75;       // by steps small enough that a peak shows before it merges with a stronger one,
-constexpr double kLastRung = 0.02;       // to here; weaker ones drown in the tails of the strongest
-constexpr std::size_t kMostPeaks = 48;   // that are followed up: noise has many
-constexpr double kSamePeakPx = 1.5;      // of the same peak, found again
-constexpr double kBadReachPx = 1.5;      // an unusable pixel this near to a contour decides on its course
+constexpr double kCandidateShare = 0.8;    // candidates are searched somewhat below the level: their own background moves it
+constexpr int kClippedPixels = 3;          // fewer saturated pixels are single hot ones
+constexpr int kRoiMargin = 3;              // px around a candidate's box
+constexpr double kFirstRung = 0.9;         // of the strongest value: separate peaks are searched from here down,
+constexpr double kNextRung = 0.75;         // by steps small enough that a peak shows before it merges with a stronger one,
+constexpr double kLastRung = 0.02;         // to here; weaker ones drown in the tails of the strongest
+constexpr std::size_t kMostPeaks = 48;     // that are followed up: noise has many
+constexpr double kSamePeakPx = 1.5;        // of the same peak, found again
+constexpr std::size_t kMostRejected = 32;  // that are listed: noise has many
+constexpr double kNarrowPiece =
+    0.1;  // of the disc inside a clipped highlight: radius of a piece of its streaks, as withoutTongues cuts them
+constexpr double kBesidePx = 1.0;    // in discs inside a clipped highlight: its streaks end within that
+constexpr double kBadReachPx = 1.5;  // an unusable pixel this near to a contour decides on its course
 
 /// One channel, with what may and may not be used of it.
 struct Prepared {
@@ -87,23 +93,6 @@ Level robustLevel(const Prepared& p) {
   for (float& v : values) v = std::abs(v - static_cast<float>(level.median));
   level.spread = 1.4826 * ranked(values, values.size() / 2);
   return level;
-}
-
-/// Standard deviation of pixel noise from the median response of a second-difference mask, blind to smooth shading.
-/// @see Immerkaer, Fast noise variance estimation, CVIU 1996 (the mask; the median instead of the mean is for edges).
-double noiseOf(const Prepared& p) {
-  const int w = p.value.width, h = p.value.height;
-  std::vector<float> response;
-  const int stride = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(w) * h / 50000)));
-  for (int y = 1; y + 1 < h; y += stride)
-    for (int x = 1; x + 1 < w; x += stride) {
-      if (!p.usable[static_cast<std::size_t>(y) * w + x]) continue;
-      const auto v = [&](int dx, int dy) { return p.value.at(x + dx, y + dy); };
-      response.push_back(
-          std::abs(v(-1, -1) + v(1, -1) + v(-1, 1) + v(1, 1) - 2 * (v(0, -1) + v(0, 1) + v(-1, 0) + v(1, 0)) + 4 * v(0, 0)));
-    }
-  if (response.empty()) return 0;
-  return 1.4826 * upperMedian(std::move(response)) / 6.0;  // the mask's own norm is 6
 }
 
 /// A connected region that may hold one or more highlights, with its background removed.
@@ -189,9 +178,15 @@ class Detector {
  public:
   Detector(const Prepared& prepared, const DetectOptions& options) : p_(prepared), options_(options) {}
 
+  std::vector<RejectedCandidate> rejected() {
+    std::stable_sort(rejected_.begin(), rejected_.end(), [](const auto& a, const auto& b) { return a.areaPx2 > b.areaPx2; });
+    if (rejected_.size() > kMostRejected) rejected_.resize(kMostRejected);
+    return std::move(rejected_);
+  }
+
   Outcome<std::vector<Highlight>> run() {
     level_ = robustLevel(p_);
-    noise_ = noiseOf(p_);
+    noise_ = pixelNoise(p_.value, p_.usable);
     base_ = options_.removeBackground ? level_.median : 0.0;
     if (options_.separatePeaks) {
       if (const std::optional<Failure> failure = findSeparately()) return *failure;
@@ -205,7 +200,12 @@ class Detector {
       for (const Candidate& c : candidates_) trace(c);
     }
     removeRepeats();
-    std::erase_if(found_, [&](const Highlight& h) { return h.peakValue < options_.minRelativePeak * reference_ && !h.clipped; });
+    rejectNarrowPieces();
+    std::erase_if(found_, [&](const Highlight& h) {
+      if (h.clipped || h.peakValue >= options_.minRelativePeak * reference_) return false;
+      reject(h.contour, "much weaker than the strongest highlight");
+      return true;
+    });
     if (found_.empty()) {
       if (failedByBadPixels_ > 0)
         return Failure{Reason::NotFinite,
@@ -390,19 +390,23 @@ class Detector {
     const cv::Point at = strongestPixel(roi, region);
     if (!p_.usable[static_cast<std::size_t>(at.y + box.y) * p_.value.width + at.x + box.x] &&
         !p_.bad[static_cast<std::size_t>(at.y + box.y) * p_.value.width + at.x + box.x])
-      return;  // off the glossy object
+      return reject(moved(contour.line, box), "outside of the mask");
     if (touchesBad(p_, box, region)) {
       ++failedByBadPixels_;
-      return;
+      return reject(moved(contour.line, box), "touches pixels that are negative or not finite");
     }
     Highlight h;
     h.level = options_.level;
     const Pixel origin(box.x, box.y);
-    h.contour = contour.line;
-    for (Pixel& q : h.contour.points) q += origin;
-    h.areaPx2 = signedArea(h.contour);
+    h.contour = moved(contour.line, box);
     h.touchesBorder = onImageBorder(h.contour);
     h.clipped = saturatedNear(box, region);
+    if (h.clipped) {
+      TongueCut cut = withoutTongues(h.contour);
+      h.contour = std::move(cut.line);
+      h.cutPx2 = cut.cutPx2;
+    }
+    h.areaPx2 = signedArea(h.contour);
     if (const Outcome<Ellipse> ellipse = fitEllipse(h.contour.points)) h.ellipse = *ellipse;
     const Outcome<PeakFit> peak = fitPeak(roi, at.x, at.y, options_.peakWindowLevel);
     if (h.clipped) {
@@ -416,9 +420,39 @@ class Detector {
       h.peakValue = roi.at(at.x, at.y);
     }
     const double spread = std::max(noise_, options_.removeBackground ? candidate.background.spread : 0.0);
-    if (!h.clipped && h.peakValue < options_.minContrast * spread) return;
+    if (!h.clipped && h.peakValue < options_.minContrast * spread)
+      return reject(h.contour, "stands out of the background's noise or texture by too little");
     strength_.push_back(roi.at(at.x, at.y));
     found_.push_back(std::move(h));
+  }
+
+  static Polyline moved(Polyline line, const cv::Rect& box) {
+    for (Pixel& q : line.points) q += Pixel(box.x, box.y);
+    return line;
+  }
+
+  void reject(const Polyline& contour, const char* reason) {
+    rejected_.push_back({centroid(contour), std::abs(signedArea(contour)), reason});
+  }
+
+  /// Pieces of the streaks, grooves and reflections around a clipped highlight, which join it at another level.
+  void rejectNarrowPieces() {
+    std::vector<double> inside(found_.size());
+    for (std::size_t i = 0; i < found_.size(); ++i) inside[i] = largestDiscInside(found_[i].contour);
+    const auto isPieceOf = [&](std::size_t i, std::size_t core) {
+      return i != core && found_[core].clipped && inside[i] < kNarrowPiece * inside[core] &&
+             distance(found_[core].contour, centroid(found_[i].contour)) < kBesidePx * inside[core];
+    };
+    std::vector<Highlight> kept;
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+      bool piece = false;
+      for (std::size_t core = 0; core < found_.size(); ++core) piece = piece || isPieceOf(i, core);
+      if (piece)
+        reject(found_[i].contour, "narrow piece beside a clipped highlight: streak, groove or reflection");
+      else
+        kept.push_back(found_[i]);
+    }
+    found_ = std::move(kept);
   }
 
   bool onImageBorder(const Polyline& line) const {
@@ -451,12 +485,14 @@ class Detector {
   std::vector<Candidate> candidates_;
   std::vector<Highlight> found_;
   std::vector<double> strength_;  // one per entry of found_
+  std::vector<RejectedCandidate> rejected_;
   int failedByBadPixels_ = 0;
 };
 
 }  // namespace
 
-Outcome<std::vector<Highlight>> detectHighlights(const Image& linear, const Image* mask, const DetectOptions& options) {
+Outcome<std::vector<Highlight>> detectHighlights(const Image& linear, const Image* mask, const DetectOptions& options,
+                                                 std::vector<RejectedCandidate>* rejected) {
   require(linear.width > 0 && linear.height > 0 && (linear.channels == 1 || linear.channels == 3),
           "detectHighlights: 1 or 3 channels, not empty");
   require(!mask || (mask->width == linear.width && mask->height == linear.height), "detectHighlights: mask of another size");
@@ -467,7 +503,10 @@ Outcome<std::vector<Highlight>> detectHighlights(const Image& linear, const Imag
       return Failure{Reason::NotFinite, std::to_string(prepared.badCount) + " pixels are negative or not finite"};
     return Failure{Reason::NoHighlight, "the mask is empty"};
   }
-  return Detector(prepared, options).run();
+  Detector detector(prepared, options);
+  Outcome<std::vector<Highlight>> found = detector.run();
+  if (rejected) *rejected = detector.rejected();
+  return found;
 }
 
 }  // namespace glint

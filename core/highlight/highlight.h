@@ -31,6 +31,7 @@ struct Highlight {
   /// Where a known lobe says that the contour lies at another fraction of the true peak than `level`: clipped above the level.
   std::optional<double> trueLevel;
   bool touchesBorder = false;             ///< cut by the image border
+  double cutPx2 = 0;                      ///< area of streaks and other narrow tongues that were cut off; clipped highlights only
   bool fromScene = false;                 ///< given in the scene file, not detected
   std::vector<LevelContour> otherLevels;  ///< beside `contour`, where several levels are evidence (fit.evidence = levels)
 };
@@ -39,6 +40,13 @@ struct Highlight {
 struct PeakReference {
   Pixel peak;
   double value;
+};
+
+/// Something that stands out of the background and is no highlight, with the reason.
+struct RejectedCandidate {
+  Pixel place{0, 0};  ///< measured pixels, as of the image
+  double areaPx2 = 0;
+  std::string reason;  ///< in words
 };
 
 struct DetectOptions {
@@ -61,8 +69,12 @@ struct DetectOptions {
 /// @param linear  1 or 3 channels (3 are averaged), linear radiance. Non-finite or negative values are not used: where one
 ///                touches a highlight, that highlight fails.
 /// @param mask    optional, non-zero on the glossy object; same size.
+/// The contour of a clipped highlight lies on the slope around the core; narrow tongues of it (`withoutTongues`) are cut off, and narrow pieces
+/// beside it are rejected.
+/// @param rejected  optional: where candidates go that became no highlight, largest first, at most 32.
 /// @return at least one highlight, strongest first. NoHighlight; NotFinite (detail counts the bad pixels); Clipped never fails,
 /// it flags.
-Outcome<std::vector<Highlight>> detectHighlights(const Image& linear, const Image* mask, const DetectOptions& options);
+Outcome<std::vector<Highlight>> detectHighlights(const Image& linear, const Image* mask, const DetectOptions& options,
+                                                 std::vector<RejectedCandidate>* rejected = nullptr);
 
 }  // namespace glint

@@ -19,7 +19,22 @@ constexpr int kShift = 6;  // fractional bits of OpenCV's drawing functions
 
 Json pair(const Eigen::Vector2d& v) { return Json::array({v.x(), v.y()}); }
 
-Json toJson(const Highlight& h, double uncertaintyPct) {
+Json toJson(const HighlightQuality& q) {
+  return {{"sigma", q.contourSigmaPx()},
+          {"noise", q.noisePx},
+          {"background", q.backgroundPx},
+          {"blur", q.blurPx},
+          {"level", q.levelPx}};
+}
+
+Json toJson(const FrameBlur& blur) {
+  const Json direction = blur.motionPx > 0 ? Json(blur.directionRad * 180 / M_PI) : Json(nullptr);
+  return {{"sigma_px", blur.sigmaPx}, {"motion_px", blur.motionPx}, {"direction_deg", direction}, {"edges", blur.edges}};
+}
+
+Json toJson(const RejectedCandidate& r) { return {{"place", pair(r.place)}, {"area_px2", r.areaPx2}, {"reason", r.reason}}; }
+
+Json toJson(const Highlight& h, double uncertaintyPct, const HighlightQuality* quality) {
   Json j = Json::object();
   if (!h.light.empty()) j["light"] = h.light;
   j["level"] = h.level;
@@ -29,6 +44,12 @@ Json toJson(const Highlight& h, double uncertaintyPct) {
   j["clipped"] = h.clipped;
   j["touches_border"] = h.touchesBorder;
   j["background_uncertainty_pct"] = uncertaintyPct;
+  j["cut_px2"] = h.cutPx2;
+  if (quality) {
+    j["flags"] = quality->flags;
+    j["contour_px"] = toJson(*quality);
+    j["silhouette_share"] = quality->silhouetteShare;
+  }
   if (h.ellipse)
     j["ellipse"] = {{"centre", pair(h.ellipse->centre)},
                     {"semi_axes", pair(h.ellipse->semiAxes)},
@@ -44,15 +65,20 @@ Json toJson(const Highlight& h, double uncertaintyPct) {
 }  // namespace
 
 std::string detectionJson(const std::string& input, double level, const std::string& source,
-                          const std::vector<DetectedFrame>& frames) {
+                          const std::vector<DetectedFrame>& frames, const std::string& levelReason) {
   Json root = {{"glint_detection", 1}, {"input", input}, {"level", level}, {"source", source}};
+  if (!levelReason.empty()) root["level_reason"] = levelReason;
   Json list = Json::array();
   for (const DetectedFrame& frame : frames) {
     Json j = {
         {"id", frame.id}, {"status", frame.failure ? "failed" : "ok"}, {"reason", frame.failure ? frame.failure->message() : ""}};
     j["highlights"] = Json::array();
     for (std::size_t i = 0; i < frame.highlights.size(); ++i)
-      j["highlights"].push_back(toJson(frame.highlights[i], i < frame.uncertaintyPct.size() ? frame.uncertaintyPct[i] : 0));
+      j["highlights"].push_back(toJson(frame.highlights[i], i < frame.uncertaintyPct.size() ? frame.uncertaintyPct[i] : 0,
+                                       i < frame.quality.size() ? &frame.quality[i] : nullptr));
+    j["rejected"] = Json::array();
+    for (const RejectedCandidate& r : frame.rejected) j["rejected"].push_back(toJson(r));
+    j["blur"] = frame.blur ? toJson(*frame.blur) : Json(nullptr);
     list.push_back(std::move(j));
   }
   root["frames"] = std::move(list);

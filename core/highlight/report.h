@@ -9,7 +9,9 @@
 #include "core/base/image.h"
 #include "core/base/outcome.h"
 #include "core/geometry/camera.h"
+#include "core/highlight/frame_blur.h"
 #include "core/highlight/highlight.h"
+#include "core/highlight/quality.h"
 
 namespace glint {
 
@@ -17,17 +19,17 @@ namespace glint {
 struct DetectedFrame {
   std::string id;
   std::vector<Highlight> highlights;
-  std::vector<double>
-      uncertaintyPct;  ///< per highlight: of its contour, in percent of the diameter, because the lobe's tail is unknown
+  std::vector<double> uncertaintyPct;  ///< per highlight: of its contour, in percent of the diameter: the lobe's tail is unknown
+  std::vector<HighlightQuality> quality;    ///< per highlight
+  std::vector<RejectedCandidate> rejected;  ///< ideal pixels
+  std::optional<FrameBlur> blur;            ///< where the frame has edges that show one
   std::optional<Failure> failure;
 };
 
-/// JSON of `glint detect`: { "glint_detection": 1, "input", "level", "source", "frames": [{"id", "status", "reason",
-/// "highlights":
-/// [{"light", "level", "peak", "peak_value", "area_px2", "clipped", "touches_border", "background_uncertainty_pct", "ellipse": {"centre", "semi_axes",
-/// "angle_deg"}, "contour"}]}] }. Pixels are ideal ones. `light` is absent while unknown.
+/// JSON of `glint detect`: docs/formats.md, "detect --json". Pixels are ideal ones.
+/// @param levelReason  why this level; "" = the user chose it
 std::string detectionJson(const std::string& input, double level, const std::string& source,
-                          const std::vector<DetectedFrame>& frames);
+                          const std::vector<DetectedFrame>& frames, const std::string& levelReason = "");
 
 /// The photograph (3 channels, sRGB 0..1, any size) with each highlight's contour (green), ellipse (orange) and peak (cross; red
 /// when clipped), drawn anti-aliased at a scale of at least 2 so that sub-pixel positions can be seen.

@@ -300,6 +300,7 @@ std::string evaluationJson(const Inspection& inspection, const ReportContext& co
   j["excluded"] = inspection.request.excluded;
   j["training"] = trainingJson(inspection);
   j["level"] = inspection.request.settings.number("detect.level");
+  if (!context.levelReason.empty()) j["level_reason"] = context.levelReason;
   j["source"] = inspection.request.source == FrameSource::Image ? "image" : "radiance";
   j["settings"] = settingsJson(inspection.request.settings);
   if (!inspection.request.whatIf.none()) j["what_if"] = ordered_json::parse(whatIfJson(inspection.request.whatIf));

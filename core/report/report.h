@@ -15,6 +15,7 @@ struct ReportContext {
   std::string chosenModel;             ///< "" = none
   std::string whyChosen;               ///< one sentence
   std::optional<Selection> selection;  ///< what the automatic choice tried
+  std::string levelReason;             ///< why this contour level, where the program chose it; "" = it was given
   std::string program;                 ///< "glint 0.4.0"; "" = not said
 };
 
