@@ -112,7 +112,10 @@ TEST(HighlightQualities, SilhouettesAndStrangersOnASphere) {
   EXPECT_TRUE(q[0].flags.empty());
   EXPECT_TRUE(hasFlag(q[1], "not the lamp of the largest highlight"));
   EXPECT_TRUE(hasFlag(q[2], "at the silhouette"));
-  EXPECT_GT(q[2].silhouetteShare, 0.4);
+  // Two pixels outwards, at 11 px from its middle, which lies 73 px from the outline's: |(73 + 11 cos t, 11 sin t)| = R.
+  const double outline = 1000 * 0.8 / std::sqrt(100 - 0.64),
+               t = std::acos((outline * outline - 73 * 73 - 11 * 11) / (2 * 73 * 11));
+  EXPECT_NEAR(q[2].silhouetteShare, t / M_PI, 1.5 / 72);
   EXPECT_TRUE(hasFlag(q[3], "off the surface"));
   frame.lightsOn = {"lamp", "sun"};
   q = highlightQualities(frame, pixels, sphere.get(), {}, highlights);
