@@ -21,6 +21,7 @@ constexpr double kSilhouetteShare = 0.05;  // of the contour: less is a touch of
 constexpr double kMostOff = 0.5;           // of the contour: then the highlight lies beside the surface
 constexpr double kTenth = 0.1;             // of the level: the change that a clipped contour is tried with
 constexpr double kSameLampDeg = 5;  // two mirrored rays of one lamp: peaks of clipped highlights are off by that on a small ball
+constexpr double kWorthCutPx2 = 1;  // less is a corner
 constexpr double kWorthBlurShare = 0.01;  // of the radius: less blur moves the contour by less than detection does
 constexpr double kWorthBlurPx = 0.3;
 
@@ -143,7 +144,7 @@ std::vector<HighlightQuality> highlightQualities(const Frame& frame, const Linea
     HighlightQuality& q = qualities[i];
     if (h.contour.points.size() < 3) continue;
     if (h.clipped) q.flags.emplace_back("clipped core");
-    if (h.cutPx2 > 0) q.flags.push_back(formatted("streaks and narrow tongues cut off: %.0f px2", h.cutPx2));
+    if (h.cutPx2 > kWorthCutPx2) q.flags.push_back(formatted("streaks and narrow tongues cut off: %.0f px2", h.cutPx2));
     if (h.touchesBorder) q.flags.emplace_back("cut by the image's edge");
     measureContour(h, frame, pixels, noise, q);
     if (surface) lookAtSilhouette(h, frame.camera, *surface, q);

@@ -30,7 +30,9 @@ constexpr double kEndPx = 1.5;                         // of a profile: its flat
 constexpr double kSharpVariance = 1.0 / 6 + 1.0 / 12;  // px^2: of linear interpolation and of a pixel's square
 constexpr int kGridPx = 3;                             // edges nearer to each other share their pixels
 constexpr double kLeastMotionPx = 1.0;                 // less cannot be told from an anisotropic edge of pixels
-constexpr double kSure = 3;                            // standard errors
+constexpr double kSure =
+    4;  // times what the fit over the directions leaves: content that is soft in one direction looks like motion, but no cosine
+constexpr int kMotionDirections = 6;  // with edges enough, before motion is told from content
 
 struct EdgeImage {
   Image grey;
@@ -158,12 +160,12 @@ Outcome<FrameBlur> measureBlur(const Image& image, double clipValue) {
   const double turned = c.tail<2>().norm();
   const double error = (a * c - right.head(used)).norm() / std::sqrt(std::max(1, used - 3));
   const double motion = std::sqrt(24 * turned);  // L^2 / 12 = 2 A
-  if (motion >= kLeastMotionPx && turned > kSure * error / std::sqrt(used)) {
+  if (used >= kMotionDirections && motion >= kLeastMotionPx && turned > kSure * error) {
     blur.motionPx = motion;
     blur.directionRad = std::fmod(0.5 * std::atan2(c[2], c[1]) + M_PI, M_PI);
     blur.sigmaPx = std::sqrt(std::max(0.0, c[0] - turned));
   } else {
-    blur.sigmaPx = std::sqrt(std::max(0.0, c[0]));
+    blur.sigmaPx = std::sqrt(right.head(used).minCoeff());  // no direction is sharper than the blur
   }
   return blur;
 }

@@ -20,7 +20,8 @@ struct FrameBlur {
 };
 
 /// Measures step edges: along the gradient, the variance of the profile's derivative, less that of the interpolation and of a pixel. In each of eight
-/// directions the lower quartile counts, because soft shading is no blur; a fit of three coefficients over the directions parts motion from the rest.
+/// directions the lower quartile counts, because soft shading is no blur; a fit of three coefficients over the directions parts motion from the rest. Motion is
+/// told only where six directions follow the fit well; else the sharpest direction is the answer.
 /// It is the blur of what has edges: a moving object before a still wall is more blurred than this says.
 /// @param image    1 or 3 channels, linear. @param clipValue  edges that touch values at or above it are left out; 0 = none
 /// @return  TooFewPoints where fewer than four directions have edges enough; the direction of a blur is then not known, nor its size.
