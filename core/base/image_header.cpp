@@ -52,10 +52,8 @@ ImageHeader pngHeader(std::string_view bytes, ImageHeader h) {
 }
 
 /// @see ITU T.81, B.1: segments of a marker and a length up to the start of the scan; the frame header has the size.
-ImageHeader jpegHeader(std::string_view bytes, ImageHeader h) {
+ImageHeader jpegFrame(std::string_view bytes, ImageHeader h) {
   const NumbersInBytes in(bytes, true);
-  // Where there is no end marker, half of the image is missing.
-  if (bytes.rfind("\xff\xd9") == std::string_view::npos) return truncated(h);
   std::uint64_t at = 2;
   while (true) {
     const std::optional<std::uint64_t> marker = in.number(at, 1);
@@ -85,6 +83,11 @@ ImageHeader jpegHeader(std::string_view bytes, ImageHeader h) {
     }
     at += 2 + *length;
   }
+}
+
+ImageHeader jpegHeader(std::string_view bytes, ImageHeader h) {
+  // Where there is no end marker, half of the image is missing.
+  return bytes.rfind("\xff\xd9") == std::string_view::npos ? truncated(h) : jpegFrame(bytes, h);
 }
 
 /// What the attributes of an EXR's first part say.
@@ -302,6 +305,13 @@ const char* nameOf(ImageFormat format) {
     case ImageFormat::Webp: return "WebP";
   }
   return "";
+}
+
+std::optional<std::array<int, 2>> jpegSizeAtStart(std::string_view start) {
+  if (!startsWith(start, "\xff\xd8")) return std::nullopt;
+  const ImageHeader header = jpegFrame(start, {});
+  if (!header.problem.empty() || header.width < 1 || header.height < 1) return std::nullopt;
+  return std::array<int, 2>{int(header.width), int(header.height)};  // of 16 bits each
 }
 
 ImageHeader readImageHeader(std::string_view bytes) {

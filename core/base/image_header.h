@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -25,5 +27,9 @@ struct ImageHeader {
 /// Recognises the format by its first bytes, never by a name. Truncated files, chunks and tables that lie outside of the file, and blocks
 /// larger than the image are problems; so is what no decoder here is made for.
 ImageHeader readImageHeader(std::string_view bytes);
+
+/// Width and height of a JPEG, px, by its first bytes alone, which may end anywhere; nothing where it is none or they do not hold its frame
+/// header. Whether the rest of the file is there is not asked.
+std::optional<std::array<int, 2>> jpegSizeAtStart(std::string_view start);
 
 }  // namespace glint

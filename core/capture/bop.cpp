@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -14,6 +12,7 @@
 #include "core/capture/image_sizes.h"
 #include "core/capture/parts.h"
 #include "core/capture/text_rows.h"
+#include "core/geometry/typed_pose.h"
 #include "io/text_scan.h"
 
 // One scene of a data set in the format of BOP (Hodan et al., BOP: Benchmark for 6D Object Pose Estimation, ECCV 2018), as its
@@ -83,27 +82,14 @@ Eigen::Matrix3d bopMatrix(const JsonNode& node, double most) {
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(v.data());
 }
 
-/// Camera from model or world, mm. As readPoseJson: orthonormal to 1e-3 and right-handed. The nearest rotation is taken and the
-/// camera's centre kept; where it was off by more than 1e-6, `odd` says so.
+/// Camera from model or world, mm. As typedPose; where a rotation was repaired, `odd` says so.
 Eigen::Isometry3d bopPose(const JsonNode& rotation, const JsonNode& translation, std::vector<std::string>& odd) {
-  Eigen::Matrix3d r = bopMatrix(rotation, kLargestFactor);
-  Eigen::Vector3d t = lengths3(translation);
-  const double deviation = (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  constexpr double kTyped = 1e-3;   // as readPoseJson: typed with four digits it is still a rotation
-  constexpr double kSingle = 1e-6;  // to single precision it is one
-  if (!(deviation <= kTyped)) rotation.fail("is not a rotation");
-  if (r.determinant() < 0) rotation.fail("is mirrored (determinant -1)");
-  if (deviation > 0) {
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Eigen::Matrix3d nearest = svd.matrixU() * svd.matrixV().transpose();
-    t = nearest * r.inverse() * t;
-    r = nearest;
-    if (deviation > kSingle) odd.push_back(rotation.place() + ": not exactly a rotation, replaced by the nearest one");
-  }
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = r;
-  pose.translation() = t;
-  return pose;
+  const TypedPose typed = typedPose(bopMatrix(rotation, kLargestFactor), lengths3(translation));
+  if (typed.rotation == TypedRotation::NotARotation) rotation.fail("is not a rotation");
+  if (typed.rotation == TypedRotation::Mirrored) rotation.fail("is mirrored (determinant -1)");
+  if (typed.rotation == TypedRotation::Repaired)
+    odd.push_back(rotation.place() + ": not exactly a rotation, replaced by the nearest one");
+  return typed.pose;
 }
 
 double bopDepthScale(const JsonNode& camera) {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Bundler's bundle.out and list.txt (Snavely, Seitz, Szeliski, Photo tourism, SIGGRAPH 2006): words, whatever the lines.
-#include <Eigen/LU>
-#include <Eigen/SVD>
 
 #include "core/base/atomic_file.h"
 #include "core/base/number_text.h"
 #include "core/capture/text_rows.h"
+#include "core/geometry/typed_pose.h"
 
 namespace glint {
 namespace {
@@ -88,27 +87,20 @@ class BundlerWords {
   std::size_t word_ = 0;
 };
 
-/// Our pose of Bundler's, whose camera has y up and looks along -z. A rotation that was printed with few digits is replaced by
-/// the nearest one; the camera's centre stays.
-Eigen::Isometry3d bundlerPose(Eigen::Matrix3d r, Eigen::Vector3d t, const std::string& file, const std::string& place,
-                              std::vector<std::string>& repaired) {
-  constexpr double kTyped = 1e-3;   // three digits: fewer were not meant as a rotation
-  constexpr double kSingle = 1e-6;  // single precision is not worth a warning
-  constexpr double kShift = 1e-8;   // of the unit of length: moves no pixel
-  const double deviation = (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(deviation <= kTyped)) throw InputError(file, place, "the 3x3 matrix of the camera is not a rotation");
-  if (r.determinant() < 0) throw InputError(file, place, "the 3x3 matrix of the camera is mirrored (determinant -1)");
-  if (deviation > kSingle || deviation * t.norm() > kShift) {
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Eigen::Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose();
-    t = rotation * r.inverse() * t;
-    r = rotation;
-    if (deviation > kSingle) repaired.push_back(place + ": not exactly a rotation, replaced by the nearest one");
-  }
+/// Our pose of Bundler's, whose camera has y up and looks along -z. As typedPose: a rotation of few digits is replaced by the nearest one.
+Eigen::Isometry3d bundlerPose(const Eigen::Matrix3d& r, const Eigen::Vector3d& t, const std::string& file,
+                              const std::string& place, std::vector<std::string>& repaired) {
+  const TypedPose typed = typedPose(r, t);
+  if (typed.rotation == TypedRotation::NotARotation)
+    throw InputError(file, place, "the 3x3 matrix of the camera is not a rotation");
+  if (typed.rotation == TypedRotation::Mirrored)
+    throw InputError(file, place, "the 3x3 matrix of the camera is mirrored (determinant -1)");
+  if (typed.rotation == TypedRotation::Repaired)
+    repaired.push_back(place + ": not exactly a rotation, replaced by the nearest one");
   const Eigen::Vector3d flip(1, -1, -1);
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = flip.asDiagonal() * r;
-  pose.translation() = flip.cwiseProduct(t);
+  pose.linear() = flip.asDiagonal() * typed.pose.linear();
+  pose.translation() = flip.cwiseProduct(typed.pose.translation());
   return pose;
 }
 

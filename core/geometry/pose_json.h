@@ -8,8 +8,7 @@
 
 namespace glint {
 
-/// 4x4 rigid transform: finite, last row 0 0 0 1, rotation orthonormal to 1e-3 and right-handed. A rotation that is off by more
-/// than 1e-6 (printed with few digits) is replaced by the nearest one and `warning` says so.
+/// 4x4 rigid transform: finite, last row 0 0 0 1, the rest as typedPose takes it; `warning` says where a rotation was repaired.
 Eigen::Isometry3d readPoseJson(const JsonNode& node, std::string* warning = nullptr);
 
 }  // namespace glint

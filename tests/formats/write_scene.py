@@ -32,7 +32,9 @@ from wrong_conventions import MISTAKES
 FORMATS = {"scene": writers_posed.scene_json, "colmap_text": writers_sfm.colmap_text, "colmap_binary": writers_sfm.colmap_binary,
            "nvm": writers_sfm.nvm, "nerfstudio": writers_posed.nerfstudio, "nerfstudio_applied": writers_posed.nerfstudio_applied,
            "tum": writers_posed.tum, "bundler": writers_sfm.bundler, "bundler_flat": writers_sfm.bundler_flat,
-           "bop": writers_posed.bop, "bop_two_objects": writers_posed.bop_two_objects}
+           "bop": writers_posed.bop, "bop_two_objects": writers_posed.bop_two_objects,
+           "images_tum": writers_posed.images_tum, "images_json": writers_posed.images_json,
+           "video_tum": writers_posed.video_tum, "video_json": writers_posed.video_json}
 
 
 def camera_truth(view, points):

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""scene.json, nerfstudio, TUM RGB-D and BOP.
+"""scene.json, nerfstudio, TUM RGB-D, BOP, images and videos with poses.
 
 Sources: docs of nerfstudio, "Data conventions", and for applied_transform its parser of transforms.json; the page "File Formats"
 of the TUM RGB-D benchmark; the description of the BOP datasets.
 """
+import json
+import struct
+
 from exact_scene import World, dot, enlarged, length, product, quaternion_of, rotation_of, scaled, sub, times, transposed, unit
 from writers import (Case, Frame, NotExpressible, by_name, number, numbers, write, write_json, write_mesh, write_photograph,
                      write_points)
@@ -199,3 +202,109 @@ def bop(folder, scene):
 def bop_two_objects(folder, scene):
     """Two objects in every image; --object says which one is meant."""
     return Case("bop_two_objects", *bop_data(folder, scene, True), scene, 0.0001, ["--object", str(OBJECT)])
+
+
+# --- images and videos with the poses of a tracker ---
+
+def shared_camera(view):
+    return ["--camera", ",".join(map(number, (view.fx, view.fy, view.cx, view.cy)))]
+
+
+def images_tum(folder, scene):
+    """A folder of images whose names are times, with TUM lines of the first camera: each pose 4 ms beside its image, others between
+    them, and an image and a pose that are far from all."""
+    views = [view for view in scene.views if view.camera == 0]
+    start, step = 4711250000, 40000  # microseconds
+    lines, found = ["# time tx ty tz qx qy qz qw\n"], []
+    for k, view in enumerate(views):
+        time = start + k * step
+        beside = 4000 if k % 3 else -4000
+        lines += [tum_line(time + beside, view.rotation, view.centre()),
+                  tum_line(time + step // 2 - 3000, *between(view, views[(k + 1) % len(views)], 0.5))]
+        image = write_photograph(folder / "images" / f"{stamp(time)}.png", view)
+        found.append(Frame(image.stem, view, image))
+    write_photograph(folder / "images" / f"{stamp(start + 1000 * step)}.png", views[0])
+    lines.append(tum_line(start + 2000 * step, views[0].rotation, views[0].centre()))
+    poses = write(folder / "poses.txt", "".join(lines))
+    mesh = write_mesh(folder / "mesh.ply", scene.mesh, scene.mesh_comment)
+    return Case("images_tum", folder / "images", by_name(found), scene, None,
+                ["--poses", poses, *shared_camera(views[0]), "--surface", mesh])
+
+
+def pose_json(view, **more):
+    return json.dumps({**more, "camera_from_world": view.matrix()}) + "\n"
+
+
+def images_json(folder, scene):
+    """JSON lines in another order than the images, world to camera, each with its camera; one image without a line, one line
+    without an image."""
+    lines, found = [], []
+    for view in scene.views:
+        camera = {"width": view.width, "height": view.height, "fx": view.fx, "fy": view.fy, "cx": view.cx, "cy": view.cy}
+        lines.append(pose_json(view, id=view.name, camera=camera))
+        image = write_photograph(folder / "images" / f"{view.name}.png", view)
+        found.append(Frame(view.name, view, image))
+    write_photograph(folder / "images" / "without.png", scene.views[0])
+    lines.insert(3, pose_json(scene.views[0], id="of-no-image", time=7.5))
+    poses = write(folder / "poses.jsonl", "".join(reversed(lines)))
+    mesh = write_mesh(folder / "mesh.ply", scene.mesh, scene.mesh_comment)
+    return Case("images_json", folder / "images", by_name(found), scene, None, ["--poses", poses, "--surface", mesh])
+
+
+def avi(width, height, fps, pictures):
+    """An AVI file of pictures that are not compressed: rows from below, blue green red. Microsoft, "AVI RIFF File Reference"."""
+    def chunk(name, body):
+        return name + struct.pack("<I", len(body)) + body + b"\0" * (len(body) % 2)
+
+    def rows_list(name, body):
+        return chunk(b"LIST", name + body)
+
+    def stored(rgb):
+        row = 3 * width
+        lines = (rgb[at:at + row] for at in range(row * (height - 1), -1, -row))
+        filled = b"\0" * (-row % 4)
+        swapped = bytearray()
+        for line in lines:
+            turned = bytearray(row)
+            turned[0::3], turned[1::3], turned[2::3] = line[2::3], line[1::3], line[0::3]
+            swapped += turned + filled
+        return bytes(swapped)
+
+    frames = [stored(p) for p in pictures]
+    size = len(frames[0])
+    main_header = struct.pack("<14I", 1000000 // fps, size * fps, 0, 0x10, len(frames), 0, 1, size, width, height, 0, 0, 0, 0)
+    stream = struct.pack("<4s4sIHHIIIIIIII4H", b"vids", b"DIB ", 0, 0, 0, 0, 1, fps, 0, len(frames), size, 0xFFFFFFFF, 0,
+                         0, 0, width, height)
+    bitmap = struct.pack("<IiiHHIIiiII", 40, width, height, 1, 24, 0, size, 0, 0, 0, 0)
+    header = rows_list(b"hdrl", chunk(b"avih", main_header) +
+                       rows_list(b"strl", chunk(b"strh", stream) + chunk(b"strf", bitmap)))
+    index, at = b"", 4
+    for frame in frames:
+        index += struct.pack("<4sIII", b"00db", 0x10, at, len(frame))
+        at += 8 + len(frame)
+    body = b"AVI " + header + rows_list(b"movi", b"".join(chunk(b"00db", f) for f in frames)) + chunk(b"idx1", index)
+    return b"RIFF" + struct.pack("<I", len(body)) + body
+
+
+def video_case(folder, scene, name, lines_of):
+    """A video of 25 pictures per second that shows the views of the first camera; every second picture has a pose."""
+    views = [view for view in scene.views if view.camera == 0]
+    fps = 25
+    shown = [view for view in views for _ in range(2)]  # each twice: the second picture has no pose
+    file = write(folder / "video.avi", avi(views[0].width, views[0].height, fps, [v.pictures.photograph for v in shown]))
+    found = [Frame(f"{2 * k:06d}", view, file) for k, view in enumerate(views)]
+    poses = write(folder / "poses.txt", "".join(lines_of(views, 2 / fps)))
+    mesh = write_mesh(folder / "mesh.ply", scene.mesh, scene.mesh_comment)
+    return Case(name, file, found, scene, None, ["--poses", poses, *shared_camera(views[0]), "--surface", mesh])
+
+
+def video_tum(folder, scene):
+    """TUM lines, 6 ms beside the pictures."""
+    return video_case(folder, scene, "video_tum", lambda views, step: [
+        tum_line(round(1e6 * k * step) + 6000, view.rotation, view.centre()) for k, view in enumerate(views)])
+
+
+def video_json(folder, scene):
+    """JSON lines by time."""
+    return video_case(folder, scene, "video_json", lambda views, step: [
+        pose_json(view, id=f"pose {k}", time=k * step) for k, view in enumerate(views)])

@@ -74,19 +74,18 @@ def colmap_binary(folder, scene):
     for i, (_, kind, width, height, parameters) in cameras.items():
         data += struct.pack(f"<iiQQ{len(parameters)}d", i, kind, width, height, *parameters)
     write(model / "cameras.bin", data)
-    data = struct.pack("<Q", len(scene.views))
+    parts = [struct.pack("<Q", len(scene.views))]
     for i, quaternion, translation, camera, name, features in colmap_images(scene):
-        data += struct.pack("<I7dI", i, *quaternion, *translation, camera) + name.encode() + b"\0"
-        data += struct.pack("<Q", len(features))
-        for x, y, k in features:
-            data += struct.pack("<ddQ", x, y, NO_POINT if k is None else point_id(k))
-    write(model / "images.bin", data)
+        parts.append(struct.pack("<I7dI", i, *quaternion, *translation, camera) + name.encode() + b"\0")
+        parts.append(struct.pack("<Q", len(features)))
+        parts += (struct.pack("<ddQ", x, y, NO_POINT if k is None else point_id(k)) for x, y, k in features)
+    write(model / "images.bin", b"".join(parts))
     found = tracks(scene)
-    data = struct.pack("<Q", len(found))
+    parts = [struct.pack("<Q", len(found))]
     for k, seen in sorted(found.items(), reverse=True):
-        data += struct.pack("<Q3d3BdQ", point_id(k), *scene.sparse[k], GREY, GREY, GREY, 0.0, len(seen))
-        data += b"".join(struct.pack("<II", IMAGE_IDS[i], j) for i, j, _ in seen)
-    write(model / "points3D.bin", data)
+        parts.append(struct.pack("<Q3d3BdQ", point_id(k), *scene.sparse[k], GREY, GREY, GREY, 0.0, len(seen)))
+        parts += (struct.pack("<II", IMAGE_IDS[i], j) for i, j, _ in seen)
+    write(model / "points3D.bin", b"".join(parts))
     return colmap_case("colmap_binary", folder, scene)
 
 

@@ -55,5 +55,26 @@ TEST(TiffHeader, SizeOfATypeThatStandsElsewhereIsRefused) {
   EXPECT_EQ(header.width, 0u);
 }
 
+/// A note, and the frame header of a picture of 1920 x 1080 (ITU T.81, B.2.2: length, bits, height, width, components).
+const std::string kJpegStart =
+    std::string("\xff\xd8\xff\xe0\0\x06glin", 10) + std::string("\xff\xc0\0\x0b\x08\x04\x38\x07\x80\x01\x01\x11\0", 13);
+
+TEST(JpegStart, SaysTheSizeAsSoonAsTheFrameHeaderIsThere) {
+  const auto size = jpegSizeAtStart(kJpegStart);
+  ASSERT_TRUE(size);
+  EXPECT_EQ(*size, (std::array<int, 2>{1920, 1080}));
+  constexpr std::size_t kUpToComponents = 20;  // bytes: the size is read together with the number of components
+  for (std::size_t n = 0; n < kUpToComponents; ++n) EXPECT_FALSE(jpegSizeAtStart(kJpegStart.substr(0, n))) << n;
+  EXPECT_TRUE(jpegSizeAtStart(kJpegStart.substr(0, kUpToComponents)));
+}
+
+TEST(JpegStart, IsNoOtherFileAndNoEmptyPicture) {
+  EXPECT_FALSE(jpegSizeAtStart("\x89PNG"));
+  std::string empty = kJpegStart;
+  empty[17] = empty[18] = 0;  // the width
+  EXPECT_FALSE(jpegSizeAtStart(empty));
+  EXPECT_THAT(readImageHeader(kJpegStart).problem, HasSubstr("truncated")) << "the whole file is asked for its end";
+}
+
 }  // namespace
 }  // namespace glint

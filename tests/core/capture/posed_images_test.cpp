@@ -53,6 +53,19 @@ struct Frames : TemporaryFolder {
   fs::path frames() const { return *this / "frames"; }
 };
 
+TEST(PosedImages, ThePicturesOfAJpegAreNotAskedForToKnowItsSize) {
+  // A frame header of 64 x 48 (ITU T.81, B.2.2) and nothing behind it: opening thousands of photographs does not read them.
+  const std::string start = std::string("\xff\xd8\xff\xc0\0\x0b\x08\0\x30\0\x40\x01\x01\x11\0", 15);
+  const Frames folder({});
+  folder.write("frames/a.jpg", start);
+  const Capture capture = readImages(folder.frames(), posedBy(folder.write("poses.jsonl", jsonLine("a", 1))));
+  ASSERT_EQ(capture.views.size(), 1u);
+  EXPECT_EQ(capture.views[0].camera.width, 64);
+  EXPECT_EQ(capture.views[0].camera.height, 48);
+  folder.write("frames/a.jpg", start.substr(0, 8));
+  EXPECT_THAT(imagesError(folder.frames(), posedBy(folder / "poses.jsonl")), HasSubstr("truncated"));
+}
+
 TEST(PosedImages, JsonLinesGoByTheNameOfTheImageInAnyOrder) {
   const Frames folder({"b.png", "a.png", "c.d.png"});
   folder.write("frames/notes.txt", "no image");
