@@ -6,9 +6,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/base/number_text.h"
-#include "core/base/parallel.h"
 #include "core/model/reflectance_settings.h"
 #include "core/reflectance/radiance_field.h"
+#include "core/retexture/camera_pixels.h"
 #include "core/surface/occlusion.h"
 
 namespace glint {
@@ -30,17 +30,13 @@ using ShareAt = std::function<Share(const Pixel& ideal)>;
 void addTo(PredictedRadiance& sum, const Camera& camera, const ShareAt& share, const Eigen::Vector3d& strength, double blurPx,
            const ProgressFn& progress) {
   Image one(camera.width, camera.height, 1);
-  parallelFor(
-      camera.height,
-      [&](int y) {
-        for (int x = 0; x < camera.width; ++x) {
-          const Pixel ideal = camera.undistorted(Pixel(x, y));
-          if (!ideal.allFinite()) continue;
-          const Share s = share(ideal);
-          if (!std::isfinite(s.value) || s.value <= 0) continue;
-          one.at(x, y) = float(s.value);
-          if (s.extrapolated) sum.extrapolated[std::size_t(y) * std::size_t(camera.width) + std::size_t(x)] = 1;
-        }
+  forEachPixel(
+      camera,
+      [&](std::size_t i, const Pixel& ideal) {
+        const Share s = share(ideal);
+        if (!std::isfinite(s.value) || s.value <= 0) return;
+        one.data[i] = float(s.value);
+        if (s.extrapolated) sum.extrapolated[i] = 1;
       },
       progress, "highlight");
   if (blurPx > kLeastBlurPx) {

@@ -9,8 +9,8 @@
 
 #include "core/base/median.h"
 #include "core/base/number_text.h"
-#include "core/base/parallel.h"
 #include "core/base/srgb.h"
+#include "core/retexture/camera_pixels.h"
 #include "core/retexture/frame_pixels.h"
 #include "core/retexture/shading.h"
 #include "core/surface/mesh_policy.h"
@@ -206,21 +206,11 @@ Outcome<Image> shadeFor(const Canvas& canvas, const RetextureRequest& r, const P
 
 /// Texture coordinates per pixel; not finite off the surface.
 std::vector<Eigen::Vector2f> coordinatesIn(const Canvas& canvas, const TextureCoordinates& map, const ProgressFn& progress) {
-  const Camera& camera = canvas.camera;
-  const Eigen::Vector3d eye = camera.centreInWorld();
-  std::vector<Eigen::Vector2f> uv(std::size_t(camera.width) * std::size_t(camera.height),
+  std::vector<Eigen::Vector2f> uv(std::size_t(canvas.camera.width) * std::size_t(canvas.camera.height),
                                   Eigen::Vector2f::Constant(std::nanf("")));
-  parallelFor(
-      camera.height,
-      [&](int y) {
-        for (int x = 0; x < camera.width; ++x) {
-          const Pixel ideal = camera.undistorted(Pixel(x, y));
-          if (!ideal.allFinite()) continue;
-          const Outcome<SurfacePoint> hit = canvas.surface->firstHit(camera.ray(ideal));
-          if (hit) uv[std::size_t(y) * std::size_t(camera.width) + std::size_t(x)] = map.at(facing(*hit, eye)).cast<float>();
-        }
-      },
-      progress, "texture");
+  forEachSurfacePixel(
+      canvas.camera, *canvas.surface, [&](std::size_t i, const SurfacePoint& p) { uv[i] = map.at(p).cast<float>(); }, progress,
+      "texture");
   return uv;
 }
 
