@@ -95,11 +95,7 @@ Command detectCommand() {
     } catch (const InputError&) {
       throw InputError("", "--level", kLevelRange);
     }
-    for (const std::string& text : a->set) {
-      const std::size_t equals = text.find('=');
-      if (equals == std::string::npos) throw InputError("", "--set " + text, "expected KEY=VALUE");
-      settings.setFromText(text.substr(0, equals), text.substr(equals + 1));
-    }
+    applyEach(settings, a->set);
     Scene scene = a->places.read(a->input);
     for (const std::string& warning : scene.warnings) context.warn(warning);
     Outputs outputs(a->input, scene);

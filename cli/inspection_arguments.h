@@ -37,6 +37,9 @@ struct InspectionArguments {
   std::shared_ptr<const Scene> scene(InspectionRequest& request) const;
 };
 
+/// Every KEY=VALUE of --set, in its order. InputError for a text of another form, an unknown key or a value out of range.
+void applyEach(Settings& settings, const std::vector<std::string>& keysAndValues);
+
 /// What --level takes, in words: as the scene reader.
 inline constexpr const char* kLevelRange = "must be a fraction of the peak, more than 0 and less than 1";
 
