@@ -130,7 +130,7 @@ void addContours(const FrameComparison& c, PredictedRadiance& sum) {
 }  // namespace
 
 Outcome<PredictedRadiance> predictedRadiance(const Inspection& in, int frame, const std::string& model, const std::string& light,
-                                             const ProgressFn& progress) {
+                                             const ProgressFn& progress, LearnedAppearances* known) {
   require(in.scene && frame >= 0 && frame < int(in.scene->frames.size()), "predictedRadiance: no such frame");
   const auto result = in.models.find(model);
   require(result != in.models.end(), "predictedRadiance: no such model");
@@ -155,7 +155,7 @@ Outcome<PredictedRadiance> predictedRadiance(const Inspection& in, int frame, co
       continue;
     }
     const ModelResult::Fit& fit = fits[std::size_t(c.fit)];
-    Outcome<HighlightAppearance> appearance = learnAppearance(in, *fit.fit, fit.key());
+    Outcome<HighlightAppearance> appearance = known ? known->of(in, model, fit) : learnAppearance(in, *fit.fit, fit.key());
     std::optional<Failure> failed =
         appearance ? addLight(in, frame, c, *fit.fit, *appearance, sum, progress) : appearance.failure();
     if (failed) {
