@@ -63,6 +63,14 @@ void InspectionArguments::declare(Options& o, const std::string& modelsHelp) {
   places.declare(o);
 }
 
+void applyEach(Settings& settings, const std::vector<std::string>& keysAndValues) {
+  for (const std::string& text : keysAndValues) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos) throw InputError("", "--set " + text, "expected KEY=VALUE");
+    settings.setFromText(text.substr(0, equals), text.substr(equals + 1));
+  }
+}
+
 InspectionRequest InspectionArguments::request() const {
   InspectionRequest r;
   const bool isSession = std::filesystem::path(input).extension() == ".glint";
@@ -79,11 +87,7 @@ InspectionRequest InspectionArguments::request() const {
   }
   if (!train.empty()) r.train = train;
   if (!source.empty()) r.source = source == "image" ? FrameSource::Image : FrameSource::Radiance;
-  for (const std::string& entry : set) {
-    const std::size_t equals = entry.find('=');
-    if (equals == std::string::npos) throw InputError("", "--set " + entry, "expected KEY=VALUE");
-    r.settings.setFromText(entry.substr(0, equals), entry.substr(equals + 1));
-  }
+  applyEach(r.settings, set);
   if (!level.empty() && level != kAutoLevel) {
     try {
       r.settings.setFromText("detect.level", level);

@@ -39,6 +39,9 @@ struct InspectionArguments {
   std::shared_ptr<const Scene> scene(InspectionRequest& request, std::string* levelReason = nullptr) const;
 };
 
+/// Every KEY=VALUE of --set, in its order. InputError for a text of another form, an unknown key or a value out of range.
+void applyEach(Settings& settings, const std::vector<std::string>& keysAndValues);
+
 /// Of --level: chosen for the sequence.
 inline constexpr const char* kAutoLevel = "auto";
 /// What --level takes, in words: as the scene reader.

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "cli/commands.h"
+#include "cli/inspection_arguments.h"
 #include "cli/scene_arguments.h"
 #include "core/base/number_text.h"
 #include "core/lamps/ball_photographs.h"
@@ -135,11 +136,7 @@ LampsReport ofScene(const LightsArguments& a, const Context& context) {
   InspectionRequest request;
   request.models.clear();  // evidence and views only
   if (a.source == "image") request.source = FrameSource::Image;
-  for (const std::string& entry : a.set) {
-    const std::size_t equals = entry.find('=');
-    if (equals == std::string::npos) throw InputError("", "--set " + entry, "expected KEY=VALUE");
-    request.settings.setFromText(entry.substr(0, equals), entry.substr(equals + 1));
-  }
+  applyEach(request.settings, a.set);
   const auto scene = std::make_shared<const Scene>(a.places.read(a.input));
   for (const std::string& w : scene->warnings) context.warn(w);
   if (!a.exclude.empty()) request.excluded = parseFrames(a.exclude, *scene, "--exclude");

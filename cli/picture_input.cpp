@@ -84,11 +84,7 @@ PictureInput::Opened PictureInput::open(const Context& context) const {
   if (opened.scene->frames.empty()) throw CannotAnswer{{Reason::TooFewViews, input + ": the scene has no frames"}};
   if (!train.empty()) opened.request.train = train;
   if (!source.empty()) opened.request.source = source == "image" ? FrameSource::Image : FrameSource::Radiance;
-  for (const std::string& entry : set) {
-    const std::size_t equals = entry.find('=');
-    if (equals == std::string::npos) throw InputError("", "--set " + entry, "expected KEY=VALUE");
-    opened.request.settings.setFromText(entry.substr(0, equals), entry.substr(equals + 1));
-  }
+  applyEach(opened.request.settings, set);
   if (!models.empty()) {
     const std::vector<std::string> names = splitList(models, "--models");
     for (const std::string& name : names) modelByName(name);

@@ -46,6 +46,7 @@ std::string predictionTable(const Inspection& inspection, const std::vector<int>
 Command predictCommand() {
   struct Arguments {
     std::string session, frames, out, json, preset, masks, labels, poses;
+    std::vector<std::string> set;
     bool stream = false;
     SceneArguments places;
     /// One answer a line leaves no room for others; poses come live or not at all.
@@ -71,7 +72,7 @@ Command predictCommand() {
       "--stream answers poses instead: for each line that it reads, JSON {\"id\", \"time\", \"camera_from_world\", \"camera\"} "
       "or TUM\n"
       "(time tx ty tz qx qy qz qw), it writes one line of JSON at once, until the input ends. A wrong line is answered with an\n"
-      "error, and the stream goes on.";
+      "error, and the stream goes on. With --set predict.band=true contours have their standard deviations.";
   c.examples =
       "  glint predict run.glint                       a table of all frames\n"
       "  glint predict run.glint --frames 6-20 --out predicted\n"
@@ -87,6 +88,7 @@ Command predictCommand() {
     o.option(a->labels, "--labels", "LIST",
              "Write labels to --out, a new folder, instead of contours and overlays: coco, masks, yolo, separated by commas");
     o.option(a->json, "--json", "FILE", "Write predictions.json to this file (- = standard output, replaces the table)");
+    o.repeated(a->set, "--set", "KEY=VALUE", "Any setting by its dotted name; may be repeated");
     o.flag(a->stream, "--stream", "Answer each pose that is read by one line of JSON on standard output");
     o.option(a->poses, "--poses", "FILE", "With --stream: the poses, as JSON or TUM lines (default, and -: standard input)");
     a->places.declareForSession(o);
@@ -99,6 +101,7 @@ Command predictCommand() {
     if (!opened.warning.empty()) context.warn(opened.warning);
     InspectionRequest request = opened.session.request;
     if (!a->preset.empty()) applyPreset(opened.session, a->preset, request);
+    applyEach(request.settings, a->set);
     if (a->stream) return answerPoses(opened, request, a->poses, context);
     const Scene& scene = *opened.scene;
     std::vector<int> frames;

@@ -11,6 +11,7 @@
 #include "core/base/elapsed.h"
 #include "core/capture/pose_lines.h"
 #include "core/inspect/live_prediction.h"
+#include "core/report/band_text.h"
 #include "core/report/live_json.h"
 #include "core/report/warnings.h"
 
@@ -77,6 +78,8 @@ int answerPoses(const OpenedSession& opened, const InspectionRequest& request, c
   const LivePredictor predictor(opened.scene, request, context.progress());
   if (const std::optional<Failure> none = predictor.failure()) throw CannotAnswer{*none};
   for (const std::string& w : warningsOf(predictor.inspection())) context.warn(w);
+  for (const auto& [name, result] : predictor.inspection().models)
+    for (const std::string& line : bandLines(predictor.inspection(), result)) context.info(name + ": " + line);
   showWarnings();  // now: a live stream may never end
   context.info("ready: a line for each pose of " + input.name());
   PoseLineReader reader(input.stream(), input.name());

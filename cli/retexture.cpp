@@ -108,11 +108,7 @@ int run(const RetextureArguments& a, const Context& context) {
   if (frames.size() != 1) throw InputError("", "--frame", "\"" + a.frame + "\" must name exactly one frame");
   checkOutputs(a, scene);
   InspectionRequest request = opened.session.request;
-  for (const std::string& text : a.set) {
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos) throw InputError("", "--set " + text, "expected KEY=VALUE");
-    request.settings.setFromText(text.substr(0, equals), text.substr(equals + 1));
-  }
+  applyEach(request.settings, a.set);
   const std::string model = modelFor(a, opened.session);
   request.models = {model};
   const RetextureRequest wanted = requestOf(a, model, scene.frames[std::size_t(frames[0])].camera);

@@ -26,6 +26,7 @@ inspector look-through ellipsoid 0004 dark --run view.look-through
 inspector look-through-virtual ellipsoid 0004 dark --run view.look-through-virtual
 inspector four-views plane-to-cylinder 0045 dark --layout present --run view.views-4
 inspector two-frames ellipsoid 0004 dark --layout compare --run frame.side-by-side
+inspector inspector-retexture vase 0010 dark --layout present --run frame.retexture-removed
 inspector lesson-mirror lessons/mirror 0001 dark --run explain.step-virtual-camera
 inspector lesson-plane lessons/plane 0004 light --run explain.step-ellipsoid
 inspector lesson-sphere lessons/sphere 0000 dark

@@ -6,12 +6,12 @@
 
 #include "core/base/elapsed.h"
 #include "core/base/parallel.h"
-#include "core/fit/band.h"
 #include "core/fit/corrected_depth.h"
 #include "core/fit/evidence.h"
 #include "core/fit/fit_engine.h"
 #include "core/fit/several_lights.h"
 #include "core/fit/training.h"
+#include "core/inspect/fit_band.h"
 #include "core/inspect/inspection.h"
 #include "core/inspect/live_prediction.h"
 #include "core/inspect/lobe_stage.h"
@@ -143,7 +143,6 @@ class Run {
     return std::any_of(r_.request.models.begin(), r_.request.models.end(),
                        [&](const std::string& m) { return (modelByName(m).*needs)(); });
   }
-  FitInput fitInputOf(const HighlightModel& model, const Group& group) const;
   /// The views of a group on the surfaces as given, or as the fits see them.
   std::vector<TrainingView> viewsOf(const Group& group, bool asGiven) const;
   void correct(const Group& group, const SurfaceCorrection& correction, std::vector<TrainingView> corrected);
@@ -380,16 +379,6 @@ void Run::canonicalContours() {
   }
 }
 
-FitInput Run::fitInputOf(const HighlightModel& model, const Group& group) const {
-  std::vector<TrainingView> views = viewsOf(group, false);
-  // The stage's fit is of all views of the group: it serves where none of them lost its pixels since.
-  // Corrected normals are not those that the stage saw.
-  const bool known = havePixels(views) && !r_.corrections.count(group.key);
-  const auto light = r_.lights.find(group.key);
-  return fitInput(model, std::move(views), light == r_.lights.end() ? std::nullopt : std::optional(light->second),
-                  r_.request.settings, known ? pixelFitFor(r_, group.key) : nullptr);
-}
-
 void Run::modelFits() {
   r_.inputs.set(Stage::Fits, inputsText(r_.request.settings, {"fit"}, r_.inputs.of(Stage::Lights)));
   const std::vector<Group> all = groups();
@@ -407,7 +396,7 @@ void Run::modelFits() {
       ModelResult::Fit entry;
       entry.light = g.key.light;
       entry.surface = g.key.surface;
-      const FitInput input = fitInputOf(model, g);
+      const FitInput input = fitInputOf(r_, model, g.key);
       const auto start = std::chrono::steady_clock::now();
       Outcome<ModelFit> fit = model.fit(input, r_.request.settings);
       ++r_.work.fits;
@@ -436,15 +425,11 @@ std::vector<std::shared_ptr<const Band>> Run::bandsOf(const HighlightModel& mode
   std::vector<std::shared_ptr<const Band>> bands(result.fits.size());
   for (ModelResult::Fit& fit : result.fits) fit.bandRemarks.clear();
   if (!r_.request.settings.flag("predict.band")) return bands;
-  const std::vector<Group> all = groups();
   parallelFor(
       static_cast<int>(bands.size()),
       [&](int i) {
         ModelResult::Fit& fit = result.fits[static_cast<std::size_t>(i)];
-        const auto group = std::find_if(all.begin(), all.end(), [&](const Group& g) { return g.key == fit.key(); });
-        if (!fit.fit || group == all.end()) return;
-        FittedBand band = bandOf(model, *fit.fit, fitInputOf(model, *group), r_.request.settings,
-                                 model.needsLight() && r_.corrections.count(fit.key()) > 0);
+        FittedBand band = bandOf(r_, model, fit);
         bands[static_cast<std::size_t>(i)] = std::move(band.band);
         fit.bandRemarks = std::move(band.remarks);
       },

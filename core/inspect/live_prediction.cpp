@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/base/elapsed.h"
+#include "core/inspect/fit_band.h"
 #include "core/model/plausible.h"
 #include "core/surface/mesh_policy.h"
 
@@ -44,7 +45,17 @@ LivePredictor::LivePredictor(std::shared_ptr<const Scene> scene, const Inspectio
   require(scene != nullptr && !scene->frames.empty(), "LivePredictor: no scene");
   const TrainSpec train = parseTrainSpec(request.train, *scene);
   // Fits need the training frames alone; of the predictions one is enough to load the surface and to build its trees.
-  inspection_ = inspectOneFrame(std::move(scene), request, train.frames.front(), progress);
+  InspectionRequest fits = request;
+  fits.settings.set("predict.band", false);  // of the one prediction; that of the poses is below
+  inspection_ = inspectOneFrame(std::move(scene), fits, train.frames.front(), progress);
+  inspection_.request = request;
+  if (request.settings.flag("predict.band"))
+    for (auto& [name, result] : inspection_.models)
+      for (ModelResult::Fit& fit : result.fits) {
+        FittedBand band = bandOf(inspection_, modelByName(name), fit);
+        fit.bandRemarks = std::move(band.remarks);
+        if (band.band) bands_.emplace(std::pair(name, fit.key()), std::move(band.band));
+      }
   const std::vector<Frame>& frames = inspection_.scene->frames;
   const SurfaceCache& surfaces = *inspection_.surfaces;
   bool oneCamera = true, oneSurface = true;
@@ -90,8 +101,10 @@ Outcome<LiveAnswer> LivePredictor::predict(const std::string& id, const Eigen::I
       if (fit.surface && frame && *fit.surface != inspection_.surfaces->keyOf(*frame)) continue;
       if (answer.frame && !isOn(scene, inspection_.request.whatIf, *answer.frame, fit.light)) continue;
       const std::shared_ptr<const Surface> surface = surfaceOfModel(inspection_, model, frame.value_or(-1), fit.light);
-      answer.highlights.push_back(
-          {name, fit.light, predictionFor(inspection_, fit, model, frame.value_or(-1), answer.camera, surface.get())});
+      Prediction prediction = predictionFor(inspection_, fit, model, frame.value_or(-1), answer.camera, surface.get());
+      if (const auto band = bands_.find({name, fit.key()}); band != bands_.end())
+        for (PredictedHighlight& h : prediction.editable()) h.sigmaPx = band->second->sigmaPx(h, answer.camera, surface.get());
+      answer.highlights.push_back({name, fit.light, std::move(prediction)});
     }
   }
   return answer;

@@ -6,9 +6,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/inspect/inspection.h"
+#include "core/model/band.h"
 
 namespace glint {
 
@@ -40,7 +42,8 @@ struct LiveAnswer {
 /// Fits once, and predicts for poses that are in no scene, one after another: what a SLAM or AR program asks for.
 class LivePredictor {
  public:
-  /// Fits the models of the request from its training frames. InputError as `inspect`; Stopped.
+  /// Fits the models of the request from its training frames; with predict.band also the bands of their predictions, which take their time at
+  /// each pose. InputError as `inspect`; Stopped.
   LivePredictor(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn& progress = {});
 
   const Inspection& inspection() const { return inspection_; }
@@ -56,9 +59,10 @@ class LivePredictor {
 
  private:
   Inspection inspection_;
-  std::map<std::string, int> frames_;     ///< by id
-  std::optional<Camera> sharedCamera_;    ///< of all frames, but for the pose
-  std::optional<int> anyFrameOfSurface_;  ///< a frame, where all see the same surface
+  std::map<std::string, int> frames_;                                            ///< by id
+  std::optional<Camera> sharedCamera_;                                           ///< of all frames, but for the pose
+  std::optional<int> anyFrameOfSurface_;                                         ///< a frame, where all see the same surface
+  std::map<std::pair<std::string, FitKey>, std::shared_ptr<const Band>> bands_;  ///< by model and fit; none without predict.band
 };
 
 }  // namespace glint

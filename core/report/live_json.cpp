@@ -28,6 +28,10 @@ ordered_json liveHighlight(const LiveHighlights& of, const PredictedHighlight& h
     j["contour_measured"] = ordered_json::array();
     for (const Pixel& p : h.contour.points) j["contour_measured"].push_back(pixel(camera.distorted(p)));
   }
+  if (!h.sigmaPx.empty()) {
+    j["sigma_px"] = ordered_json::array();
+    for (const double sigma : h.sigmaPx) j["sigma_px"].push_back(numberOrNull(sigma));
+  }
   if (!h.gaps.empty()) {
     j["gaps"] = ordered_json::array();
     for (const auto& [from, to] : h.gaps) j["gaps"].push_back({from, to});

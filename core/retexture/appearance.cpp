@@ -229,6 +229,17 @@ Outcome<HighlightAppearance> learnProfile(const Inspection& in, const ModelFit& 
   return a;
 }
 
+/// log I at the brightest cell of the patches, whether used or not: what is used of a clipped core lies around it.
+double logPeakOf(const RadianceField& field, const std::vector<PixelPatch>& patches, double least) {
+  for (const PixelPatch& patch : patches)
+    for (std::size_t i = 0; i < patch.size(); ++i) {
+      if (!patch.onSurface[i]) continue;
+      const std::optional<double> log = field.at(SurfacePoint{patch.seen[i].position, patch.seen[i].normal});
+      if (log && *log > least) least = *log;
+    }
+  return least;
+}
+
 /// Strengths of a lobe in the patches of one training frame: I = strength x S + background, per channel.
 Outcome<Eigen::Vector3d> lobeStrength(const Inspection& in, const std::vector<const TrainingView*>& views, const LobeModel& model,
                                       BackgroundKind background, const FramePixels& pixels, double& logTop) {
@@ -255,8 +266,8 @@ Outcome<Eigen::Vector3d> lobeStrength(const Inspection& in, const std::vector<co
     const RadianceField field(*v.surface, v.camera, model.lobe, model.roughness, model.lamp);
     const std::optional<double> log = field.at(solved->front().topPoint);
     if (!log) return Failure{Reason::Occluded, "the highlight's brightest place is not lit"};
-    logTop = *log;
-    strength(c) = solved->front().strength;
+    if (c == 0) logTop = logPeakOf(field, patches, *log);
+    strength(c) = solved->front().strength * std::exp(logTop - *log);
   }
   return strength;
 }
@@ -363,6 +374,14 @@ Outcome<HighlightAppearance> learnAppearance(const Inspection& in, const ModelFi
   }
   if (views.empty()) return Failure{Reason::TooFewViews, "no training view shows the highlight"};
   return lobe ? learnLobe(in, fit, *lobe, key, views) : learnProfile(in, fit, views);
+}
+
+Outcome<HighlightAppearance> LearnedAppearances::of(const Inspection& in, const std::string& model, const ModelResult::Fit& fit) {
+  const bool same = in.given == given_ && in.inputs.same(Stage::Lobes, inputs_) && in.inputs.same(Stage::Fits, inputs_);
+  if (!same) known_.clear(), given_ = in.given, inputs_ = in.inputs;
+  const auto key = std::pair(model, fit.key());
+  if (const auto known = known_.find(key); known != known_.end()) return known->second;
+  return known_.emplace(key, learnAppearance(in, *fit.fit, fit.key())).first->second;
 }
 
 }  // namespace glint

@@ -3,9 +3,11 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/fit/fit_key.h"
@@ -55,6 +57,19 @@ const char* nameOf(HighlightAppearance::Kind kind);
 /// NotSupported where no training frame of the light has a photograph (a picture of codes, not radiance alone); the reason why the last view
 /// failed where none could be used.
 Outcome<HighlightAppearance> learnAppearance(const Inspection& inspection, const ModelFit& fit, const FitKey& key);
+
+/// Appearances that were learned before, for pictures one after another: learning reads the photographs of all training frames. Those of the
+/// newest inputs alone are kept. For one caller at a time.
+class LearnedAppearances {
+ public:
+  /// learnAppearance(), or what it said before of the same scene, model and inputs of the fits.
+  Outcome<HighlightAppearance> of(const Inspection& inspection, const std::string& model, const ModelResult::Fit& fit);
+
+ private:
+  std::shared_ptr<const Scene> given_;
+  StageInputs inputs_;
+  std::map<std::pair<std::string, FitKey>, Outcome<HighlightAppearance>> known_;
+};
 
 /// alpha of a visible point (normal towards the camera) over the limit angle, where the model's contour is 1; nothing where the light is
 /// behind the surface.

@@ -6,9 +6,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/base/number_text.h"
-#include "core/base/parallel.h"
 #include "core/model/reflectance_settings.h"
 #include "core/reflectance/radiance_field.h"
+#include "core/retexture/camera_pixels.h"
 #include "core/surface/occlusion.h"
 
 namespace glint {
@@ -30,17 +30,13 @@ using ShareAt = std::function<Share(const Pixel& ideal)>;
 void addTo(PredictedRadiance& sum, const Camera& camera, const ShareAt& share, const Eigen::Vector3d& strength, double blurPx,
            const ProgressFn& progress) {
   Image one(camera.width, camera.height, 1);
-  parallelFor(
-      camera.height,
-      [&](int y) {
-        for (int x = 0; x < camera.width; ++x) {
-          const Pixel ideal = camera.undistorted(Pixel(x, y));
-          if (!ideal.allFinite()) continue;
-          const Share s = share(ideal);
-          if (!std::isfinite(s.value) || s.value <= 0) continue;
-          one.at(x, y) = float(s.value);
-          if (s.extrapolated) sum.extrapolated[std::size_t(y) * std::size_t(camera.width) + std::size_t(x)] = 1;
-        }
+  forEachPixel(
+      camera,
+      [&](std::size_t i, const Pixel& ideal) {
+        const Share s = share(ideal);
+        if (!std::isfinite(s.value) || s.value <= 0) return;
+        one.data[i] = float(s.value);
+        if (s.extrapolated) sum.extrapolated[i] = 1;
       },
       progress, "highlight");
   if (blurPx > kLeastBlurPx) {
@@ -134,7 +130,7 @@ void addContours(const FrameComparison& c, PredictedRadiance& sum) {
 }  // namespace
 
 Outcome<PredictedRadiance> predictedRadiance(const Inspection& in, int frame, const std::string& model, const std::string& light,
-                                             const ProgressFn& progress) {
+                                             const ProgressFn& progress, LearnedAppearances* known) {
   require(in.scene && frame >= 0 && frame < int(in.scene->frames.size()), "predictedRadiance: no such frame");
   const auto result = in.models.find(model);
   require(result != in.models.end(), "predictedRadiance: no such model");
@@ -159,7 +155,7 @@ Outcome<PredictedRadiance> predictedRadiance(const Inspection& in, int frame, co
       continue;
     }
     const ModelResult::Fit& fit = fits[std::size_t(c.fit)];
-    Outcome<HighlightAppearance> appearance = learnAppearance(in, *fit.fit, fit.key());
+    Outcome<HighlightAppearance> appearance = known ? known->of(in, model, fit) : learnAppearance(in, *fit.fit, fit.key());
     std::optional<Failure> failed =
         appearance ? addLight(in, frame, c, *fit.fit, *appearance, sum, progress) : appearance.failure();
     if (failed) {

@@ -9,8 +9,8 @@
 
 #include "core/base/median.h"
 #include "core/base/number_text.h"
-#include "core/base/parallel.h"
 #include "core/base/srgb.h"
+#include "core/retexture/camera_pixels.h"
 #include "core/retexture/frame_pixels.h"
 #include "core/retexture/shading.h"
 #include "core/surface/mesh_policy.h"
@@ -22,9 +22,10 @@ constexpr double kVisibleCodes = 1.0 / 255;  // of 8 bits: what a screen can sho
 constexpr double kMarkedCodes = 0.5 / 255;   // a mark tells every pixel whose code may be another one
 constexpr float kFillUnit =
     65536;  // OpenCV's fill adds up to two units to each value, which are for codes, not for light of about 1
-constexpr double kFillRadiusPx = 5;            // Telea's neighbourhood
-constexpr double kLeastShade = 0.05;           // of the mean shade: below, the ratio to it is noise
-constexpr double kPoorShading = 0.1;           // relative RMS from which the matt surface is a doubtful account of the frame
+constexpr double kFillRadiusPx = 5;   // Telea's neighbourhood
+constexpr double kLeastShade = 0.05;  // of the mean shade: below, the ratio to it is noise
+constexpr double kPoorShading = 0.1;  // relative RMS from which the matt surface is a doubtful account of the frame
+constexpr double kLeastAround = 0.1;  // of the surface beside the mask: 22 % left filled to 46 dB, 7 % to 22 (docs/retexture.md)
 constexpr double kBeyondWorthSayingPx = 1;     // of an observed contour outside of the mask
 constexpr double kClippedWorthSaying = 0.001;  // of the changed pixels
 
@@ -115,7 +116,7 @@ std::vector<float> divisorOf(const Canvas& canvas) {
 }
 
 /// The frame with its masked pixels filled from around them. The mask keeps to the surface where that is known.
-Outcome<Image> filled(const Canvas& canvas, cv::Mat& mask) {
+Outcome<Image> filled(const Canvas& canvas, cv::Mat& mask, std::vector<std::string>& remarks) {
   const Image& linear = canvas.pixels->linear;
   const bool ratio = canvas.lambert && *canvas.lambert;
   const std::vector<char>* const surface = ratio ? &(*canvas.lambert)->onSurface : nullptr;
@@ -131,6 +132,11 @@ Outcome<Image> filled(const Canvas& canvas, cv::Mat& mask) {
   if (around == 0)
     return Failure{Reason::NoHighlight,
                    "the highlight covers all that the frame shows of the surface; nothing is left to fill from"};
+  if (const double left = double(around) / double(masked + around); surface && left < kLeastAround)
+    remarks.push_back(formatted(
+        "the highlight can be seen on %.1f %% of the surface: what is filled there is told from the few pixels that are left, "
+        "which may show it, too",
+        100 * (1 - left)));
   const std::vector<float> divisor = divisorOf(canvas);
   cv::Rect box = cv::boundingRect(mask);
   const int margin = int(2 * kFillRadiusPx) + 2;  // all that the fill looks at
@@ -169,7 +175,7 @@ Outcome<Image> withoutHighlight(const Canvas& canvas, const PredictedRadiance& h
   if (beyond > kBeyondWorthSayingPx)
     result.remarks.push_back(
         formatted("the observed highlight reaches %.0f px beyond the pixels that were filled; a rest of it remains", beyond));
-  return filled(canvas, mask);
+  return filled(canvas, mask, result.remarks);
 }
 
 float grey(const Image& image, std::size_t pixel) {
@@ -182,7 +188,8 @@ Outcome<Image> shadeFor(const Canvas& canvas, const RetextureRequest& r, const P
   if (r.shading == ShadingSource::Lambert && !lambert)
     return canvas.lambert
                ? Outcome<Image>(canvas.lambert->failure())
-               : Outcome<Image>(Failure{Reason::NoLight, "model " + r.model + " estimates no light; --shading frame needs none"});
+               : Outcome<Image>(Failure{Reason::NoLight,
+                                        "model " + r.model + " estimates no light; shading by the frame itself needs none"});
   if (lambert && r.shading != ShadingSource::Frame) {
     const LambertShading& l = **canvas.lambert;
     if (l.relativeRms > kPoorShading)
@@ -206,21 +213,11 @@ Outcome<Image> shadeFor(const Canvas& canvas, const RetextureRequest& r, const P
 
 /// Texture coordinates per pixel; not finite off the surface.
 std::vector<Eigen::Vector2f> coordinatesIn(const Canvas& canvas, const TextureCoordinates& map, const ProgressFn& progress) {
-  const Camera& camera = canvas.camera;
-  const Eigen::Vector3d eye = camera.centreInWorld();
-  std::vector<Eigen::Vector2f> uv(std::size_t(camera.width) * std::size_t(camera.height),
+  std::vector<Eigen::Vector2f> uv(std::size_t(canvas.camera.width) * std::size_t(canvas.camera.height),
                                   Eigen::Vector2f::Constant(std::nanf("")));
-  parallelFor(
-      camera.height,
-      [&](int y) {
-        for (int x = 0; x < camera.width; ++x) {
-          const Pixel ideal = camera.undistorted(Pixel(x, y));
-          if (!ideal.allFinite()) continue;
-          const Outcome<SurfacePoint> hit = canvas.surface->firstHit(camera.ray(ideal));
-          if (hit) uv[std::size_t(y) * std::size_t(camera.width) + std::size_t(x)] = map.at(facing(*hit, eye)).cast<float>();
-        }
-      },
-      progress, "texture");
+  forEachSurfacePixel(
+      canvas.camera, *canvas.surface, [&](std::size_t i, const SurfacePoint& p) { uv[i] = map.at(p).cast<float>(); }, progress,
+      "texture");
   return uv;
 }
 
@@ -311,7 +308,8 @@ ShadingSource shadingSourceNamed(const std::string& name) {
   return ShadingSource(at - kShadingSources.begin());
 }
 
-Outcome<Retextured> retexture(const Inspection& in, int frame, const RetextureRequest& r, const ProgressFn& progress) {
+Outcome<Retextured> retexture(const Inspection& in, int frame, const RetextureRequest& r, const ProgressFn& progress,
+                              LearnedAppearances* known) {
   require(in.scene && in.given && frame >= 0 && frame < int(in.scene->frames.size()), "retexture: no such frame");
   require(!r.albedo || (*r.albedo > 0 && *r.albedo <= 1), "retexture: an albedo above 0, at most 1");
   require(r.marginPx >= 0 && std::isfinite(r.marginPx), "retexture: a margin of 0 or more");
@@ -320,7 +318,7 @@ Outcome<Retextured> retexture(const Inspection& in, int frame, const RetextureRe
   require(!needsPicture || (r.picture.channels == 3 && !r.picture.empty()), "retexture: a colour picture");
   require(r.base != RetextureBase::Background || (r.picture.width == camera.width && r.picture.height == camera.height),
           "retexture: a background of the frame's size");
-  Outcome<PredictedRadiance> h = predictedRadiance(in, frame, r.model, r.light, progress);
+  Outcome<PredictedRadiance> h = predictedRadiance(in, frame, r.model, r.light, progress, known);
   if (!h) return h.failure();
   Canvas canvas{in, frame, camera, {}, {}, nullptr};
   if (in.surfaces)

@@ -64,13 +64,14 @@ struct Retextured {
 /// The mask: where H changes a code by kVisibleCodes or more, and the predicted contour, both dilated by marginPx.
 /// The frame's own mask, where there is one, bounds what is changed.
 ///
+/// @param known  as predictedRadiance().
 /// @param frame  of the inspection, which computed `request.model` for it.
 /// Failures of predictedRadiance(); FrameUnreadable and NotSupported of a frame whose photograph is needed (Texture, Removed) and missing;
 /// NoSurface for a texture without a surface; NoHighlight where the mask leaves nothing to fill from.
 /// std::invalid_argument for a picture of another size. Stopped.
 /// @see Telea, An image inpainting technique based on the fast marching method, Journal of Graphics Tools 2004.
 Outcome<Retextured> retexture(const Inspection& inspection, int frame, const RetextureRequest& request,
-                              const ProgressFn& progress = {});
+                              const ProgressFn& progress = {}, LearnedAppearances* known = nullptr);
 
 /// The marks as a picture: black, dark grey (half) and white.
 Image markPicture(const Retextured& result);

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/base/median.h"
-#include "core/base/parallel.h"
+#include "core/retexture/camera_pixels.h"
 #include "core/surface/occlusion.h"
 
 namespace glint {
@@ -30,26 +30,18 @@ Irradiance irradianceOf(const Surface& surface, const Camera& camera, const std:
   const std::size_t pixels = std::size_t(camera.width) * std::size_t(camera.height);
   Irradiance e{std::vector(lights.size(), std::vector<float>(pixels, 0.f)), std::vector<char>(pixels, 0)};
   const Eigen::Vector3d eye = camera.centreInWorld();
-  parallelFor(
-      camera.height,
-      [&](int y) {
-        for (int x = 0; x < camera.width; ++x) {
-          const Pixel ideal = camera.undistorted(Pixel(x, y));
-          if (!ideal.allFinite()) continue;
-          const Outcome<SurfacePoint> hit = surface.firstHit(camera.ray(ideal));
-          if (!hit) continue;
-          const SurfacePoint p = facing(*hit, eye);
-          const std::size_t i = std::size_t(y) * std::size_t(camera.width) + std::size_t(x);
-          e.onSurface[i] = 1;
-          for (std::size_t l = 0; l < lights.size(); ++l) {
-            const double cosine = p.normal.dot(lights[l].directionFrom(p.position));
-            if (!(cosine > 0)) continue;
-            const double squared = lights[l].atInfinity() ? 1 : (lights[l].position() - p.position).squaredNorm();
-            const double value = cosine / squared;
-            if (!std::isfinite(value)) continue;
-            const Eigen::Vector3d target = occlusionTarget(surface, p.position, lights[l], (eye - p.position).norm());
-            if (!surface.occluded(p, target)) e.byLight[l][i] = float(value);
-          }
+  forEachSurfacePixel(
+      camera, surface,
+      [&](std::size_t i, const SurfacePoint& p) {
+        e.onSurface[i] = 1;
+        for (std::size_t l = 0; l < lights.size(); ++l) {
+          const double cosine = p.normal.dot(lights[l].directionFrom(p.position));
+          if (!(cosine > 0)) continue;
+          const double squared = lights[l].atInfinity() ? 1 : (lights[l].position() - p.position).squaredNorm();
+          const double value = cosine / squared;
+          if (!std::isfinite(value)) continue;
+          const Eigen::Vector3d target = occlusionTarget(surface, p.position, lights[l], (eye - p.position).norm());
+          if (!surface.occluded(p, target)) e.byLight[l][i] = float(value);
         }
       },
       progress, "shading");

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/base/atomic_file.h"
+#include "core/highlight/report.h"
 #include "core/inspect/photograph.h"
 #include "core/report/command_text.h"
 #include "core/report/labels.h"
@@ -25,6 +26,8 @@
 #include "gui/export/folder_dialog.h"
 #include "gui/export/movie_actions.h"
 #include "gui/export/repro_actions.h"
+#include "gui/frame/frame_panel.h"
+#include "gui/frame/retexture_bar.h"
 #include "viz/pictures.h"
 
 namespace glint::gui {
@@ -55,6 +58,8 @@ void ExportActions::setViews(ScenePanel& scene, FramePanel& frame) {
   figures_ = new FigureActions(engine_, document_, scene, frame, long_, window_);
   connect(figures_, &FigureActions::problem, this, &ExportActions::problem);
   connect(figures_, &FigureActions::written, this, wrote);
+  retexture_ = frame.retexture();
+  connect(retexture_, &RetextureBar::saveRequested, this, &ExportActions::saveRetextured);
   movies_ = new MovieActions(document_, scene, frame, long_, window_);
   connect(movies_, &MovieActions::problem, this, &ExportActions::problem);
   connect(movies_, &MovieActions::written, this, wrote);
@@ -109,6 +114,9 @@ void ExportActions::addActions(Actions& actions, QMenu* menu) {
       return viz::plotsPicture(i, kFigureWidth, kFigureHeight, o);
     });
   });
+  if (retexture_)
+    actions.add("export.retexture", menu, tr("Re&textured frame…"), [this] { saveRetextured(); },
+                {{}, {}, tr("The picture that the frame view shows with Retexture on, whole, as `glint retexture` writes it")});
   menu->addSeparator();
   if (movies_) movies_->addActions(actions, menu);
   menu->addSeparator();
@@ -166,6 +174,15 @@ void ExportActions::addActions(Actions& actions, QMenu* menu) {
     QApplication::clipboard()->setText(diagnosticReport());
     emit message(tr("Diagnostic report copied to the clipboard; it contains no folder names of this computer"));
   });
+}
+
+void ExportActions::saveRetextured() {
+  const std::shared_ptr<const Retextured> result = retexture_->result();
+  if (!result)
+    return void(emit problem(retexture_->busy() ? tr("The retextured frame is still being computed")
+                                                : tr("There is no retextured frame; the frame view says why")));
+  ask(tr("Retextured frame"), QStringLiteral("retextured.png"), tr("Pictures (*.png)"),
+      [result]() -> Write { return [result](const QString& file) { glint::writePng(file.toStdString(), result->picture); }; });
 }
 
 void ExportActions::writeLabels(const QString& folder) {

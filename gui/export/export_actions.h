@@ -17,6 +17,7 @@ class FigureActions;
 class FramePanel;
 class MovieActions;
 class ReproActions;
+class RetextureBar;
 class ScenePanel;
 
 /// What leaves the program: figures with the session inside, reports, labels, the command line of what is on screen, a diagnostic
@@ -52,6 +53,8 @@ class ExportActions : public QObject {
  public slots:
   void copyCommand();
   void copyWindowCommand();
+  /// Asks for a file and writes what the frame view shows retextured.
+  void saveRetextured();
 
  signals:
   void problem(const QString& oneLine);
@@ -75,6 +78,7 @@ class ExportActions : public QObject {
   FigureActions* figures_ = nullptr;
   MovieActions* movies_ = nullptr;
   ReproActions* repro_;
+  RetextureBar* retexture_ = nullptr;
 };
 
 }  // namespace glint::gui

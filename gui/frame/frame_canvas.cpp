@@ -60,7 +60,7 @@ void FrameCanvas::setAwaited(const QString& words) {
 void FrameCanvas::setPicture(const FramePicture& picture) {
   const bool sameSize = picture.shown.size() == photograph_.size();
   picture_ = picture;
-  photograph_ = picture.shown;
+  compose();
   message_.clear();
   awaited_.clear();
   awaiting_.stop();
@@ -79,8 +79,41 @@ void FrameCanvas::setMessage(const QString& message) {
   awaited_.clear();
   awaiting_.stop();
   picture_ = {};
-  photograph_ = QImage();
+  compose();
   update();
+}
+
+void FrameCanvas::setCompared(const FramePicture& other, int from, const QString& left, const QString& right) {
+  if (other.shown.isNull() && other_.shown.isNull()) return;
+  other_ = other;
+  from_ = from;
+  leftName_ = left;
+  rightName_ = right;
+  const bool sized = !photograph_.isNull();
+  compose();
+  if (!sized && fitted_) fit();
+  update();
+}
+
+/// One picture of both, so that zooming and figures need not know of it.
+void FrameCanvas::compose() {
+  photograph_ = picture_.shown;
+  if (other_.shown.isNull()) return;
+  if (photograph_.isNull()) {
+    photograph_ = other_.shown;
+    return;
+  }
+  if (photograph_.size() != other_.shown.size()) return;
+  const int width = photograph_.width(), from = std::clamp(from_, 0, width);
+  photograph_ = photograph_.copy();
+  QPainter(&photograph_).drawImage(QPoint(from, 0), other_.shown, QRect(from, 0, width - from, photograph_.height()));
+}
+
+double FrameCanvas::dividerX() const { return widgetFromPixel({from_ - 0.5, 0}).x(); }
+
+bool FrameCanvas::nearDivider(const QPointF& at) const {
+  constexpr double kNearLinePx = 4;
+  return comparing() && !picture_.shown.isNull() && std::abs(at.x() - dividerX()) <= kNearLinePx;
 }
 
 void FrameCanvas::setOverlay(draw::FrameOverlay overlay) {
@@ -164,6 +197,7 @@ void FrameCanvas::draw(QPainter& painter) const {
     if (late) drawChip(painter, awaited_, caption_.isEmpty() ? 8 : 16 + painter.fontMetrics().height() + 6);
   }
   drawOverlay(painter);
+  if (comparing() && !picture_.shown.isNull()) drawDivider(painter);
   if (!photograph_.isNull() && !scale_.empty()) drawScale(painter);
   if (!caption_.isEmpty()) drawChip(painter, caption_, 8);
 }
@@ -175,6 +209,10 @@ void FrameCanvas::drawFigure(QPainter& painter, const QRectF& target, const QCol
   copy.resize(int(std::ceil(target.width() / scale)), int(std::ceil(target.height() / scale)));
   copy.picture_ = picture_;
   copy.photograph_ = photograph_;
+  copy.other_ = other_;
+  copy.from_ = from_;
+  copy.leftName_ = leftName_;
+  copy.rightName_ = rightName_;
   copy.scale_ = scale_;
   copy.message_ = message_;
   copy.caption_ = caption_;
@@ -206,7 +244,28 @@ void FrameCanvas::drawHeld(QPainter& painter) const {
 }
 
 void FrameCanvas::drawChip(QPainter& painter, const QString& text, int top) const {
-  const QRect chip = QRect({8, top}, painter.fontMetrics().size(0, text) + QSize(14, 6));
+  drawChip(painter, text, QRect({8, top}, painter.fontMetrics().size(0, text) + QSize(14, 6)));
+}
+
+void FrameCanvas::drawDivider(QPainter& painter) const {
+  const double x = dividerX();
+  const QPointF top(x, std::max(0.0, corner_.y())),
+      bottom(x, std::min(double(height()), corner_.y() + zoom_ * photograph_.height()));
+  painter.setRenderHint(QPainter::Antialiasing);
+  for (const auto& [colour, width] : {std::pair(kHalo, 3.0), std::pair(QColor(Qt::white), 1.0)}) {
+    painter.setPen(QPen(colour, width));
+    painter.drawLine(top, bottom);
+  }
+  constexpr int kBeside = 6;
+  const auto sizeOf = [&](const QString& text) { return painter.fontMetrics().size(0, text) + QSize(14, 6); };
+  const int y = std::min(height(), int(bottom.y())) - sizeOf(leftName_).height() - 8;
+  const QRect left(QPoint(int(x) - kBeside - sizeOf(leftName_).width(), y), sizeOf(leftName_));
+  const QRect right(QPoint(int(x) + kBeside, y), sizeOf(rightName_));
+  if (left.left() >= 0 && left.right() < width()) drawChip(painter, leftName_, left);
+  if (right.left() >= 0 && right.right() < width()) drawChip(painter, rightName_, right);
+}
+
+void FrameCanvas::drawChip(QPainter& painter, const QString& text, const QRect& chip) const {
   painter.setRenderHint(QPainter::Antialiasing);
   painter.setPen(Qt::NoPen);
   painter.setBrush(QColor(0, 0, 0, 170));
@@ -245,12 +304,18 @@ void FrameCanvas::drawScale(QPainter& painter) const {
 }
 
 void FrameCanvas::drawValues(QPainter& painter, const QRect& visible) const {
-  if (!picture_.values || !picture_.developed) return;
+  const int from = comparing() ? (picture_.shown.isNull() ? 0 : from_) : visible.right() + 1;
+  drawValues(painter, picture_, QRect(visible.topLeft(), QPoint(std::min(visible.right(), from - 1), visible.bottom())));
+  drawValues(painter, other_, QRect(QPoint(std::max(visible.left(), from), visible.top()), visible.bottomRight()));
+}
+
+void FrameCanvas::drawValues(QPainter& painter, const FramePicture& of, const QRect& visible) const {
+  if (!of.values || !of.developed || visible.isEmpty()) return;
   QFont small = font();
   small.setPixelSize(std::clamp(int(zoom_ / 4.6), 9, 18));
   painter.setFont(small);
-  for (const viz::PixelText& text : viz::pixelTexts(*picture_.values, picture_.kind, *picture_.developed, visible.left(),
-                                                    visible.top(), visible.right(), visible.bottom())) {
+  for (const viz::PixelText& text :
+       viz::pixelTexts(*of.values, of.kind, *of.developed, visible.left(), visible.top(), visible.right(), visible.bottom())) {
     QStringList lines;
     for (const std::string& line : text.lines) lines << QString::fromStdString(line);
     painter.setPen(text.dark ? QColor(0, 0, 0, 200) : QColor(255, 255, 255, 200));
@@ -312,7 +377,9 @@ void FrameCanvas::wheelEvent(QWheelEvent* e) {
 void FrameCanvas::mousePressEvent(QMouseEvent* e) {
   pressed_ = last_ = positionOf(*e);
   dragging_ = false;
-  held_ = tool_ && e->button() == Qt::LeftButton && !photograph_.isNull() &&
+  dividing_ = e->button() == Qt::LeftButton && nearDivider(pressed_);
+  divides_ = false;
+  held_ = !dividing_ && tool_ && e->button() == Qt::LeftButton && !photograph_.isNull() &&
           tool_->take(pixelFromWidget(pressed_), kNearScreenPx / zoom_, e->modifiers());
 }
 
@@ -320,7 +387,11 @@ void FrameCanvas::mouseMoveEvent(QMouseEvent* e) {
   const QPointF at = positionOf(*e);
   if (e->buttons() & (Qt::LeftButton | Qt::MiddleButton)) {
     if ((at - pressed_).manhattanLength() >= QApplication::startDragDistance()) dragging_ = true;
-    if (dragging_) {
+    if (dragging_ && dividing_) {
+      setCursor(Qt::SplitHCursor);
+      const double share = (pixelFromWidget(at).x() + 0.5) / photograph_.width();
+      emit dividerMoved(std::clamp(share, 0.0, 1.0), !std::exchange(divides_, true));
+    } else if (dragging_) {
       setCursor(Qt::ClosedHandCursor);
       if (held_) {
         tool_->carry(pixelFromWidget(at));
@@ -331,7 +402,11 @@ void FrameCanvas::mouseMoveEvent(QMouseEvent* e) {
         emit viewMoved();
       }
     }
-  } else if (tool_) {
+  } else if (nearDivider(at)) {
+    setCursor(Qt::SplitHCursor);
+  } else if (!tool_) {
+    unsetCursor();
+  } else {
     if (tool_->wouldTake(pixelFromWidget(at), kNearScreenPx / zoom_, e->modifiers()))
       setCursor(Qt::OpenHandCursor);
     else
@@ -344,6 +419,7 @@ void FrameCanvas::mouseMoveEvent(QMouseEvent* e) {
 void FrameCanvas::mouseReleaseEvent(QMouseEvent* e) {
   unsetCursor();
   if (std::exchange(held_, false)) tool_->release();
+  dividing_ = false;
   if (!dragging_ && e->button() == Qt::LeftButton && !photograph_.isNull()) {
     const Pixel p = pixelFromWidget(positionOf(*e));
     emit clicked(p.x(), p.y());
@@ -377,8 +453,8 @@ void FrameCanvas::probe(const QPointF& position) {
     return;
   }
   QString values;
-  if (picture_.values) {
-    values = QString::fromStdString(viz::valueText(*picture_.values, picture_.kind, index.x(), index.y()));
+  if (const FramePicture& shown = pictureAt(index.x()); shown.values) {
+    values = QString::fromStdString(viz::valueText(*shown.values, shown.kind, index.x(), index.y()));
   } else {
     const QColor c = photograph_.pixelColor(index);
     values = tr("sRGB %1 %2 %3").arg(c.red()).arg(c.green()).arg(c.blue());

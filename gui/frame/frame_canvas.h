@@ -37,6 +37,10 @@ class FrameCanvas : public QWidget {
   void setPicture(const FramePicture& picture);  ///< keeps the view where the size stays the same
   void setPhotograph(const QImage& photograph);  ///< a picture without numbers
   void setMessage(const QString& message);       ///< instead of a photograph
+  /// From a column on another picture of the same frame is drawn in the photograph's place, or all of it where there is no photograph; the line
+  /// between them can be dragged. One without pixels ends it. @param left, right  what is there, in chips beside the line
+  void setCompared(const FramePicture& other, int from, const QString& left, const QString& right);
+  bool comparing() const { return !other_.shown.isNull(); }
   /// What is drawn is another frame's photograph until the next picture or message: where that takes a moment, it is drawn faint,
   /// with these words.
   void setAwaited(const QString& words);
@@ -87,6 +91,8 @@ class FrameCanvas : public QWidget {
   void clicked(double x, double y);  ///< photograph pixel
   void zoomChanged(double zoom);
   void viewMoved();  ///< the user zoomed or panned
+  void dividerMoved(double share,
+                    bool begins);  ///< the line between photograph and compared picture is dragged; share of the width
 
  protected:
   void paintEvent(QPaintEvent*) override;
@@ -105,12 +111,25 @@ class FrameCanvas : public QWidget {
   void drawOverlay(QPainter& painter) const;
   void drawHeld(QPainter& painter) const;
   void drawValues(QPainter& painter, const QRect& visible) const;
+  void drawValues(QPainter& painter, const FramePicture& of, const QRect& visible) const;
   void drawScale(QPainter& painter) const;
   void drawChip(QPainter& painter, const QString& text, int top) const;
+  void drawChip(QPainter& painter, const QString& text, const QRect& chip) const;
+  void drawDivider(QPainter& painter) const;
+  void compose();
+  double dividerX() const;
+  bool nearDivider(const QPointF& at) const;
+  const FramePicture& pictureAt(int column) const {
+    return comparing() && (picture_.shown.isNull() || column >= from_) ? other_ : picture_;
+  }
   void probe(const QPointF& position);
 
   FramePicture picture_;
-  QImage photograph_;  ///< what is on screen
+  FramePicture other_;  ///< is compared with it
+  int from_ = 0;        ///< its first column
+  QString leftName_, rightName_;
+  bool dividing_ = false, divides_ = false;  ///< the line is held; it has begun to move
+  QImage photograph_;                        ///< what is on screen
   std::vector<viz::ScaleTick> scale_;
   QString message_, caption_, awaited_;
   QTimer awaiting_;  ///< runs until awaited_ is shown

@@ -26,6 +26,7 @@
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/hand_tool.h"
 #include "gui/frame/pair_bar.h"
+#include "gui/frame/retexture_bar.h"
 #include "viz/frame_pick.h"
 #include "viz/walk_story.h"
 
@@ -180,6 +181,9 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
   connect(sideBySide_, &QAction::triggered, this, [this](bool on) {
     document_.setOption("frame/side-by-side", on ? "on" : "off", on ? tr("Two frames side by side") : tr("One frame"));
   });
+  retextureTool_ = tool("retexture", tr("Retexture: the predicted highlight over another picture, or the frame without it (R)"));
+  retextureTool_->setCheckable(true);
+  connect(retextureTool_, &QAction::triggered, this, [this](bool on) { retexture_->setOn(on); });
   column->addWidget(bar);
   auto* content = new QWidget;
   auto* rows = new QVBoxLayout(content);
@@ -229,10 +233,13 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
   pair_ = new PairBar(document_);
   column->addWidget(pair_);
   column->addWidget(pair_->sentence());
+  retexture_ = new RetextureBar(document_, *canvas_, loader_);
+  column->addWidget(retexture_);
+  column->addWidget(retexture_->words());
 }
 
 void FramePanel::foldOverlays() {
-  const bool low = height() < (pair_->on() ? kRoomBesidePair : kRoomForOverlays);
+  const bool low = height() < (pair_->on() || retexture_->on() ? kRoomBesidePair : kRoomForOverlays);
   if (folded_->isHidden() != low) return;
   folded_->setVisible(low);
   for (QToolButton* toggle : toggles_) toggle->setVisible(!low);
@@ -244,6 +251,7 @@ void FramePanel::resizeEvent(QResizeEvent* e) {
   // In a low window the photograph keeps the largest share.
   switches_->setMost(std::max(30, height() * 28 / 100));
   captionsScroll_->setMost(std::max(40, height() * 28 / 100));
+  retexture_->setMostWords(std::max(40, height() * 12 / 100));
 }
 
 void FramePanel::changeEvent(QEvent* e) {
@@ -258,7 +266,7 @@ QString FramePanel::problemText(int frame, const QString& reason) const {
       .arg(nameText(scene.frames[std::size_t(frame)].id), toQString(withoutFolder(reason.toStdString(), scene)).remove(named));
 }
 
-bool FramePanel::busy() const { return refresh_.isActive() || loader_.busy() || secondLoader_.busy(); }
+bool FramePanel::busy() const { return refresh_.isActive() || loader_.busy() || secondLoader_.busy() || retexture_->busy(); }
 
 void FramePanel::showScene() {
   loader_.setScene(document_.sharedScene());
@@ -304,6 +312,7 @@ void FramePanel::showFrame() {
   showTitle();
   const bool two = document_.scene() && pair_->on();
   sideBySide_->setChecked(two);
+  retextureTool_->setChecked(retexture_->on());
   if (two != second_->isVisibleTo(this)) {
     second_->setVisible(two);
     second_->fit();
@@ -569,6 +578,7 @@ void FramePanel::addActions(Actions& actions, QMenu* menu) {
       document_.undoStack()->endMacro();
     });
   pair_->addActions(actions, menu->addMenu(tr("&Side by side")));
+  retexture_->addActions(actions, menu->addMenu(tr("Rete&xture")));
   showOverlay();
 }
 

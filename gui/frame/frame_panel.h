@@ -31,6 +31,7 @@ class FrameCanvas;
 class HandTool;
 class PairBar;
 class PanelScroll;
+class RetextureBar;
 
 /// The frame view: the selected frame's photograph or radiance with its overlay, beside it another frame when wished, a legend
 /// whose entries are toggles, and below it one line per model with its error or the reason for none, as a table whose squares
@@ -43,6 +44,7 @@ class FramePanel : public QWidget {
   FrameCanvas* secondCanvas() const { return second_; }
   const PairBar& pair() const { return *pair_; }  ///< what stands beside the selected frame
   PhotoLoader* loader() { return &loader_; }
+  RetextureBar* retexture() { return retexture_; }
   /// Something is still being read, developed or waiting to be drawn.
   bool busy() const;
   void addActions(Actions& actions, QMenu* menu);
@@ -90,7 +92,8 @@ class FramePanel : public QWidget {
   DevelopBar* develop_;
   PairBar* pair_;
   QLabel *title_, *role_, *zoom_, *captions_;
-  QAction* sideBySide_;
+  RetextureBar* retexture_;
+  QAction *sideBySide_, *retextureTool_;
   PanelScroll *switches_, *captionsScroll_;
   std::vector<QToolButton*> toggles_;             ///< one per draw::overlayLayers()
   std::map<std::string, QAction*> layerActions_;  ///< by layer name

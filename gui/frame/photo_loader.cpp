@@ -14,15 +14,14 @@ constexpr double kQuickPixels = 2e4;  // rendered in some 20 ms
 int quickStep(const Camera& camera) {
   return std::max(2, int(std::ceil(std::sqrt(double(camera.width) * camera.height / kQuickPixels))));
 }
+}  // namespace
 
-/// The picture's bytes without a copy; they live as long as the image.
 QImage imageOf(const std::shared_ptr<const viz::Picture8>& picture) {
   using Held = std::shared_ptr<const viz::Picture8>;
   return QImage(
       picture->rgb.data(), picture->width, picture->height, 3 * picture->width, QImage::Format_RGB888,
       [](void* held) { delete static_cast<Held*>(held); }, new Held(picture));
 }
-}  // namespace
 
 QString photographAwaited(const Scene& scene, int frame) {
   return QObject::tr("reading the photograph of %1").arg(nameText(scene.frames[std::size_t(frame)].id));

@@ -23,6 +23,9 @@ struct FramePicture {
   QImage shown;  ///< shares the pixels of `developed`
 };
 
+/// The picture's bytes without a copy; they live as long as the image.
+QImage imageOf(const std::shared_ptr<const viz::Picture8>& picture);
+
 /// What stands over the photograph of another frame meanwhile.
 QString photographAwaited(const Scene& scene, int frame);
 

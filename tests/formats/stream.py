@@ -115,6 +115,18 @@ def main():
     done = subprocess.run([glint, "predict", session, "--poses", "-"], stdin=subprocess.DEVNULL, capture_output=True)
     check(done.returncode == 2 and b"needs --stream" in done.stderr, "--poses alone: %s" % done)
 
+    # Standard deviations where they are asked for: of a frame's own pose those of `predict --json`.
+    frame = scene["frames"][3]
+    own = json.dumps({"id": frame["id"], "camera_from_world": frame["camera_from_world"]}).encode()
+    bands = [json.loads(subprocess.run([glint, "predict", session, "--stream", *more], input=own, capture_output=True).stdout)["highlights"]
+             for more in ([], ["--set", "predict.band=true"])]
+    check(bands[0] and not any("sigma_px" in h for h in bands[0]), "sigma_px without being asked for")
+    written = json.loads(subprocess.run([glint, "predict", session, "--frames", "3", "--json", "-"], capture_output=True).stdout)
+    listed = {name: [h["sigma_px"] for f in frames for h in f["highlights"]] for name, frames in written["models"].items()}
+    for h in bands[1]:
+        check(len(h["sigma_px"]) == len(h["contour"]) and h["sigma_px"] in listed[h["model"]], "sigma_px of %s" % h["model"])
+    check([h["contour"] for h in bands[0]] == [h["contour"] for h in bands[1]], "bands move no contour")
+
     # Frames with surfaces of their own: a pose that is none of them has none, and says so.
     several = session.parent.parent / "plane-to-cylinder" / "plane-to-cylinder.glint"
     frame = json.loads((several.parent / "scene.json").read_text("utf-8"))["frames"][3]

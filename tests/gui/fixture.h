@@ -78,6 +78,7 @@ QObject* makeUnreadableTest();
 QObject* makeCapturesTest();
 QObject* makeInputReportTest();
 QObject* makeRelinkedTest();
+QObject* makeRetextureTest();
 QObject* makeWhatIfTest();
 QObject* makeWindowSizeTest();
 QObject* makeCameraPickingTest();

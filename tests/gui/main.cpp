@@ -44,6 +44,7 @@ int main(int argc, char** argv) {
       {"captures", makeCapturesTest},
       {"input_report", makeInputReportTest},
       {"relinked", makeRelinkedTest},
+      {"retexture", makeRetextureTest},
       {"what_if", makeWhatIfTest},
       {"turns", makeTurnsTest},
       {"window_size", makeWindowSizeTest},

@@ -103,5 +103,61 @@ TEST(LivePredictor, WhatIsNotKnownIsNamed) {
   EXPECT_TRUE(LivePredictor(dark, levelSets()).failure());
 }
 
+/// 1.96 sigma hold the exact contour of a camera that is in no scene, in nine of ten vertices or more over several draws of the noise: correlated
+/// along a contour, so a single draw says little.
+TEST(LivePredictor, BandsHoldTheExactContour) {
+  const AnalyticSpec spec = sphere(1.0);
+  InspectionRequest request = levelSets();
+  request.settings.set("predict.band", true);
+  const Polyline exact = exactContours(spec, between(), kLamp).front().contour;
+  double inside = 0, all = 0, widest = 0;
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    const auto scene = exactScene(spec, 6);
+    std::mt19937_64 rng(seed);
+    std::normal_distribution<double> gauss(0, 0.3);
+    for (Frame& f : scene->frames)
+      for (Highlight& h : f.highlights)
+        for (Pixel& p : h.contour.points) p += Pixel(gauss(rng), gauss(rng));
+    const auto answer = LivePredictor(scene, request).predict("new", between().camFromWorld, std::nullopt);
+    ASSERT_TRUE(answer && answer->highlights.size() == 1);
+    const PredictedHighlight& h = answer->highlights[0].prediction.highlights().front();
+    ASSERT_EQ(h.sigmaPx.size(), h.contour.points.size());
+    for (std::size_t i = 0; i < h.sigmaPx.size(); ++i) {
+      ASSERT_GT(h.sigmaPx[i], 0);
+      inside += distance(exact, h.contour.points[i]) <= 1.96 * h.sigmaPx[i];
+      widest = std::max(widest, h.sigmaPx[i]);
+      ++all;
+    }
+  }
+  EXPECT_GT(inside / all, 0.9);
+  EXPECT_LT(widest, 0.3);  // a contour of six views with 72 points and more each is known better than one of its points
+}
+
+TEST(LivePredictor, BandsAreThoseOfTheSceneAndCostNothingUnlessAskedFor) {
+  const auto scene = exactScene(sphere(1.0), 7);
+  std::mt19937_64 rng(5);
+  std::normal_distribution<double> gauss(0, 0.3);
+  for (Frame& f : scene->frames)
+    for (Highlight& h : f.highlights)
+      for (Pixel& p : h.contour.points) p += Pixel(gauss(rng), gauss(rng));
+  InspectionRequest request = levelSets();
+  const auto plain = LivePredictor(scene, request).predict("v6", scene->frames[6].camera.camFromWorld, std::nullopt);
+  ASSERT_TRUE(plain);
+  EXPECT_TRUE(plain->highlights[0].prediction.highlights().front().sigmaPx.empty());
+  request.settings.set("predict.band", true);
+  const LivePredictor live(scene, request);
+  const auto banded = live.predict("v6", scene->frames[6].camera.camFromWorld, std::nullopt);
+  ASSERT_TRUE(banded);
+  const Inspection whole = inspect(scene, request);
+  const std::vector<FrameComparison>& frames = whole.models.at("limit-angle").frames;
+  const auto ofFrame = std::find_if(frames.begin(), frames.end(), [](const FrameComparison& c) { return c.frame == 6; });
+  ASSERT_NE(ofFrame, frames.end());
+  const PredictedHighlight &a = banded->highlights[0].prediction.highlights().front(),
+                           &b = ofFrame->prediction.highlights().front();
+  EXPECT_FALSE(b.sigmaPx.empty());
+  EXPECT_EQ(a.sigmaPx, b.sigmaPx);
+  EXPECT_EQ(live.inspection().models.at("limit-angle").fits[0].bandRemarks, whole.models.at("limit-angle").fits[0].bandRemarks);
+}
+
 }  // namespace
 }  // namespace glint::live_prediction_tests
