@@ -6,9 +6,7 @@
 #include "cli/commands.h"
 #include "cli/scene_arguments.h"
 #include "core/base/number_text.h"
-#include "core/lamps/ball_photographs.h"
-#include "core/lamps/scene_lamps.h"
-#include "core/report/lamps_report.h"
+#include "core/report/measured_lamps.h"
 #include "core/scene/frame_spec.h"
 #include "core/scene/outputs.h"
 
@@ -42,10 +40,6 @@ std::optional<double> radiusOf(const std::string& text) {
   return radius;
 }
 
-Outlines outlinesOf(const std::string& text) {
-  return text == "given" ? Outlines::Given : text == "edges" ? Outlines::Edges : Outlines::Fitted;
-}
-
 /// What only one of the two kinds of input has a use for.
 void refuseOthers(const LightsArguments& a) {
   const bool balls = !a.balls.empty();
@@ -60,58 +54,27 @@ void refuseOthers(const LightsArguments& a) {
     throw InputError(a.input, "", "with --ball, INPUT is a folder of photographs");
 }
 
-void sayWhatIsMissing(const LightsArguments& a, bool camera, LampsReport& report) {
-  if (!camera)
-    report.warnings.emplace_back(
-        "no focal length (neither --camera nor EXIF): directions assume a distant camera, which costs up to about the angle "
-        "between the ball's far edge and the image's middle, and no positions are known");
-  if (!camera && !a.ballRadius.empty()) report.warnings.emplace_back("--ball-radius has no use without --camera");
-  if (camera && a.balls.size() > 1 && a.ballRadius.empty())
-    report.warnings.emplace_back("all balls are taken to be of one size, whose radius is the unit of length");
-  constexpr double kMuchMore = 2;  // what detection promises is right to about that
-  if (report.balls && report.balls->noiseFactor > kMuchMore)
-    report.warnings.push_back(
-        formatted("the highlights disagree %.2g times as much as their detection promises; every standard "
-                  "deviation is widened by that",
-                  report.balls->noiseFactor));
-}
-
 LampsReport ofBalls(const LightsArguments& a, const Context& context) {
-  std::vector<NamedBall> balls;
-  for (const std::string& text : a.balls) balls.push_back(namedBall(text));
-  const std::optional<double> radius = radiusOf(a.ballRadius);
+  BallQuestion question;
+  question.input = a.input;
+  for (const std::string& text : a.balls) question.balls.push_back(namedBall(text));
+  question.exclude = a.exclude;
+  question.ballRadius = radiusOf(a.ballRadius);
+  question.outlines = outlinesOf(a.outlines);
+  question.outlineSigmaPx = a.outlineSigmaPx;
   if (!(a.outlineSigmaPx > 0 && std::isfinite(a.outlineSigmaPx)))
     throw InputError("", "--outline-sigma", "expected a number of pixels above 0");
-  std::optional<Camera> camera;
   if (const auto given = a.places.reading.find("--camera"); given != a.places.reading.end() && !given->second.empty())
-    camera = cameraOfNumbers(cameraNumbers(given->second, "--camera"));
-  const BallShots shots = ballShotsIn(a.input, balls, a.exclude);
-  double filmMm = 0;
-  const bool focalAlone = !camera;
-  if (!camera) camera = cameraOfExif(shots, filmMm);
+    question.camera = cameraOfNumbers(cameraNumbers(given->second, "--camera"));
+  const BallShots shots = ballShotsIn(a.input, question.balls, a.exclude);
   checkOutputs(a, Outputs(shots.files()));
-  Outcome<PhotographLamps> found =
-      lampsOfShots(shots, camera, focalAlone && camera, radius, outlinesOf(a.outlines), a.outlineSigmaPx, context.progress());
-  if (!found) throw CannotAnswer{found.failure()};
-  LampsReport report;
-  report.lengthUnit = !camera ? "" : radius ? "m" : "ball radius";
-  report.lamps = std::move(found->fit.lamps);
-  for (std::size_t i = 0; i < report.lamps.size(); ++i)
-    if (!report.lamps[i].failure) report.lines.push_back({found->fileNames[i], report.lamps[i].direction});
-  report.balls = std::move(found->fit);
-  report.warnings = found->warnings;
-  if (focalAlone && camera)
-    report.warnings.push_back(
-        formatted("the focal length is that of EXIF, %g mm on 35 mm film, with the principal point in the "
-                  "middle and no lens distortion: directions only, good to about half a degree (--camera)",
-                  filmMm));
-  sayWhatIsMissing(a, camera.has_value(), report);
-  return report;
+  Outcome<LampsReport> report = lampsReportOf(question, shots, context.progress());
+  if (!report) throw CannotAnswer{report.failure()};
+  return *std::move(report);
 }
 
 LampsReport ofScene(const LightsArguments& a, const Context& context) {
   InspectionRequest request;
-  request.models.clear();  // evidence and views only
   if (a.source == "image") request.source = FrameSource::Image;
   for (const std::string& entry : a.set) {
     const std::size_t equals = entry.find('=');
@@ -122,17 +85,12 @@ LampsReport ofScene(const LightsArguments& a, const Context& context) {
   for (const std::string& w : scene->warnings) context.warn(w);
   if (!a.exclude.empty()) request.excluded = parseFrames(a.exclude, *scene, "--exclude");
   if (request.excluded.size() == scene->frames.size()) throw InputError("", "--exclude " + a.exclude, "excludes every frame");
-  request.train = "first:" + std::to_string(scene->frames.size());
   checkOutputs(a, Outputs(a.input, *scene));
-  const Inspection inspection = inspect(scene, request, context.progress());
-  LampsReport report;
-  report.lengthUnit = "m";
-  report.lamps = lampsOfScene(inspection, context.progress());
+  const Inspection inspection = inspect(scene, lampsRequest(request, *scene), context.progress());
+  LampsReport report = lampsReportOf(inspection, a.input, context.progress());
   const bool lines =
       std::any_of(a.out.begin(), a.out.end(), [](const std::string& f) { return std::filesystem::path(f).extension() == ".lp"; });
   if (lines) report.lines = lampLinesOf(*scene, report.lamps, report.warnings);
-  for (const LampAnswer& lamp : report.lamps)
-    if (!lamp.remarks.empty()) report.warnings.push_back(lamp.id + ": " + lamp.remarks.front());
   return report;
 }
 
@@ -147,26 +105,11 @@ void write(const LightsArguments& a, const LampsReport& report, const Context& c
 int run(const LightsArguments& a, const Context& context) {
   refuseOthers(a);
   for (const std::string& file : a.out) kindOf(file);
-  LampsReport report = a.balls.empty() ? ofScene(a, context) : ofBalls(a, context);
-  report.input = a.input;
-  const LampAnswer* failed = nullptr;
-  int without = 0;
-  for (const LampAnswer& lamp : report.lamps)
-    if (lamp.failure) {
-      ++without;
-      if (!failed) failed = &lamp;
-    }
-  const int count = static_cast<int>(report.lamps.size());
-  if (failed && without < count)
-    report.warnings.insert(report.warnings.begin(), std::to_string(without) + " of " + std::to_string(count) +
-                                                        " lamps have no answer; first: " + failed->id + ": " +
-                                                        failed->failure->message());
+  const LampsReport report = a.balls.empty() ? ofScene(a, context) : ofBalls(a, context);
   write(a, report, context);
   for (const std::string& w : report.warnings) context.warn(w);
   if (a.json != "-") context.print(lampsTable(report));
-  if (count == 0) throw CannotAnswer{{Reason::NoLight, "no frame names or shows a lamp"}};
-  if (without == count)
-    throw CannotAnswer{{failed->failure->reason, "no lamp has an answer; first: " + failed->id + ": " + failed->failure->detail}};
+  if (const std::optional<Failure> nothing = nothingMeasured(report)) throw CannotAnswer{*nothing};
   return kDone;
 }
 
