@@ -20,16 +20,8 @@ struct LightsArguments {
   SceneArguments places;
 };
 
-OutputKind kindOf(const std::string& file) {
-  const std::string ending = std::filesystem::path(file).extension().string();
-  if (ending == ".json") return OutputKind::document("glint_lights");
-  if (ending == ".csv") return OutputKind::table(kLampsCsvHeader);
-  if (ending == ".lp") return OutputKind::lightPositions();
-  throw InputError(file, "-o", "the ending chooses what is written: .json, .csv or .lp");
-}
-
 void checkOutputs(const LightsArguments& a, Outputs outputs) {
-  for (const std::string& file : a.out) outputs.file(file, "-o", kindOf(file));
+  for (const std::string& file : a.out) outputs.file(file, "-o", lampsKind(file, "-o"));
   outputs.file(a.json, "--json", OutputKind::document("glint_lights"));
 }
 
@@ -95,16 +87,13 @@ LampsReport ofScene(const LightsArguments& a, const Context& context) {
 }
 
 void write(const LightsArguments& a, const LampsReport& report, const Context& context) {
-  for (const std::string& file : a.out) {
-    const std::string ending = std::filesystem::path(file).extension().string();
-    context.write(file, ending == ".json" ? lampsJson(report) : ending == ".csv" ? lampsCsv(report) : lampsLp(report));
-  }
+  for (const std::string& file : a.out) context.write(file, lampsText(report, file));
   if (!a.json.empty()) context.write(a.json, lampsJson(report));
 }
 
 int run(const LightsArguments& a, const Context& context) {
   refuseOthers(a);
-  for (const std::string& file : a.out) kindOf(file);
+  for (const std::string& file : a.out) lampsKind(file, "-o");
   const LampsReport report = a.balls.empty() ? ofScene(a, context) : ofBalls(a, context);
   write(a, report, context);
   for (const std::string& w : report.warnings) context.warn(w);

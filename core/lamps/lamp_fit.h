@@ -26,6 +26,7 @@ struct FittedBall {
   Eigen::Vector3d sigmaPx = Eigen::Vector3d::Zero();
   Eigen::Vector3d shiftPx = Eigen::Vector3d::Zero();  ///< from what the photographs' edges say
   std::optional<Eigen::Vector3d> centre;              ///< with a camera; m or radii
+  std::vector<Pixel> outline;                         ///< once around, as the photographs show it: measured px
   double edgeResidualPx = 0;     ///< rms of the edge's points along the outline's normal; 0 where the outline was taken as given
   int edgeDegreesOfFreedom = 0;  ///< of those
   int highlights = 0;            ///< on this ball that were used

@@ -51,15 +51,6 @@ std::string ballText(const NamedBall& ball) {
   return text;
 }
 
-std::string cameraText(const Camera& camera) {
-  const Eigen::Matrix3d& k = camera.pixelFromRay;
-  std::string text;
-  for (const double v : {k(0, 0), k(1, 1), k(0, 2), k(1, 2)}) text += (text.empty() ? "" : ",") + shortestText(v);
-  if (camera.hasDistortion())
-    for (int i = 0; i < kLensNumbers; ++i) text += "," + shortestText(camera.lens.parameters[static_cast<std::size_t>(i)]);
-  return text;
-}
-
 }  // namespace
 
 InspectionRequest lampsRequest(const InspectionRequest& asked, const Scene& scene) {
@@ -122,6 +113,28 @@ std::optional<Failure> nothingMeasured(const LampsReport& report) {
     if (!lamp.failure) return std::nullopt;
   const LampAnswer& first = report.lamps.front();
   return Failure{first.failure->reason, "no lamp has an answer; first: " + first.id + ": " + first.failure->detail};
+}
+
+OutputKind lampsKind(const std::string& file, const std::string& place) {
+  const std::string ending = std::filesystem::path(file).extension().string();
+  if (ending == ".json") return OutputKind::document("glint_lights");
+  if (ending == ".csv") return OutputKind::table(kLampsCsvHeader);
+  if (ending == ".lp") return OutputKind::lightPositions();
+  throw InputError(file, place, "the ending chooses what is written: .json, .csv or .lp");
+}
+
+std::string lampsText(const LampsReport& report, const std::string& file) {
+  const std::string ending = std::filesystem::path(file).extension().string();
+  return ending == ".json" ? lampsJson(report) : ending == ".csv" ? lampsCsv(report) : lampsLp(report);
+}
+
+std::string cameraText(const Camera& camera) {
+  const Eigen::Matrix3d& k = camera.pixelFromRay;
+  std::string text;
+  for (const double v : {k(0, 0), k(1, 1), k(0, 2), k(1, 2)}) text += (text.empty() ? "" : ",") + shortestText(v);
+  if (camera.hasDistortion())
+    for (int i = 0; i < kLensNumbers; ++i) text += "," + shortestText(camera.lens.parameters[static_cast<std::size_t>(i)]);
+  return text;
 }
 
 std::string lightsCommand(const BallQuestion& q) {

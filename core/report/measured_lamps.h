@@ -10,6 +10,7 @@
 #include "core/inspect/inspection.h"
 #include "core/lamps/ball_photographs.h"
 #include "core/report/lamps_report.h"
+#include "core/scene/outputs.h"
 
 // What `glint lights` and the inspector do to measure lamps: one way for both, so that both say the same.
 namespace glint {
@@ -45,6 +46,14 @@ Outcome<LampsReport> lampsReportOf(const BallQuestion& question, const BallShots
 
 /// Why there is no lamp at all; nothing where one has an answer.
 std::optional<Failure> nothingMeasured(const LampsReport& report);
+
+/// What a file of lamps is to be, by its ending: .json, .csv or .lp. InputError (file, `place`) for another one.
+OutputKind lampsKind(const std::string& file, const std::string& place);
+/// What is written there.
+std::string lampsText(const LampsReport& report, const std::string& file);
+
+/// As `--camera` takes it, to the last bit. @pre of cameraOfNumbers()
+std::string cameraText(const Camera& camera);
 
 /// The command line that asks the same. Camera and balls are written so that they are read back to the last bit.
 std::string lightsCommand(const BallQuestion& question);
