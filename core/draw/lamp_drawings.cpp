@@ -110,11 +110,11 @@ FrameOverlay ballOverlay(const BallOverlayInput& in) {
   return overlay;
 }
 
-double ballResidualScale(const BallLamps& fit) {
+double ballResidualScale(const std::vector<FittedBall>& balls, const std::vector<LampAnswer>& lamps) {
   double longest = 0, radius = std::numeric_limits<double>::infinity();
-  for (const LampAnswer& lamp : fit.lamps)
+  for (const LampAnswer& lamp : lamps)
     for (const LampSighting& s : lamp.sightings) longest = std::max(longest, s.residualPx.norm());
-  for (const FittedBall& ball : fit.balls) {
+  for (const FittedBall& ball : balls) {
     Eigen::AlignedBox2d box;
     for (const Pixel& p : ball.outline) box.extend(p);
     if (!box.isEmpty()) radius = std::min(radius, 0.5 * box.sizes().minCoeff());

@@ -27,7 +27,7 @@ FrameOverlay ballOverlay(const BallOverlayInput& in);
 
 /// By how much arrows are enlarged so that the longest of all photographs is at most an eighth of the smallest ball's radius:
 /// 1, 2, 5, 10, … 100. 1 where there is nothing to enlarge.
-double ballResidualScale(const BallLamps& fit);
+double ballResidualScale(const std::vector<FittedBall>& balls, const std::vector<LampAnswer>& lamps);
 
 /// Distance from the predicted to the seen highlight of every photograph and ball, as bars; rings: of the prediction from the
 /// other balls alone. A photograph without an answer has a cross.

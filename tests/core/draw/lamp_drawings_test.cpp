@@ -74,13 +74,13 @@ TEST(BallOverlay, WhatAPersonDrewIsThereBeforeAnythingIsMeasured) {
 // An eighth of 40 px is 5, ten times the longest residual of 0.5.
 TEST(BallResidualScale, KeepsArrowsShort) {
   BallLamps f = fit();
-  EXPECT_EQ(ballResidualScale(f), 10);
+  EXPECT_EQ(ballResidualScale(f.balls, f.lamps), 10);
   f.lamps[0].sightings[0].residualPx = {0, 7};
-  EXPECT_EQ(ballResidualScale(f), 1);
+  EXPECT_EQ(ballResidualScale(f.balls, f.lamps), 1);
   f.lamps[0].sightings[0].residualPx = {0, 1e-9};
-  EXPECT_EQ(ballResidualScale(f), 100);
+  EXPECT_EQ(ballResidualScale(f.balls, f.lamps), 100);
   f.lamps[0].sightings[0].residualPx = {0, 0};
-  EXPECT_EQ(ballResidualScale(f), 1);
+  EXPECT_EQ(ballResidualScale(f.balls, f.lamps), 1);
 }
 
 TEST(BallResidualPlot, HasABarForEveryHighlightAndACrossWithoutAnswer) {
