@@ -165,11 +165,7 @@ Settings settingsOf(const DetectArguments& a) {
       throw InputError("", "--level", kLevelRange);
     }
   }
-  for (const std::string& text : a.set) {
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos) throw InputError("", "--set " + text, "expected KEY=VALUE");
-    settings.setFromText(text.substr(0, equals), text.substr(equals + 1));
-  }
+  applyEach(settings, a.set);
   return settings;
 }
 

@@ -7,10 +7,8 @@
 #include "cli/inspection_arguments.h"
 #include "cli/scene_arguments.h"
 #include "core/base/number_text.h"
-#include "core/lamps/ball_photographs.h"
-#include "core/lamps/scene_lamps.h"
 #include "core/report/lamps_on_csv.h"
-#include "core/report/lamps_report.h"
+#include "core/report/measured_lamps.h"
 #include "core/scene/frame_spec.h"
 #include "core/scene/outputs.h"
 
@@ -24,16 +22,8 @@ struct LightsArguments {
   SceneArguments places;
 };
 
-OutputKind kindOf(const std::string& file) {
-  const std::string ending = std::filesystem::path(file).extension().string();
-  if (ending == ".json") return OutputKind::document("glint_lights");
-  if (ending == ".csv") return OutputKind::table(kLampsCsvHeader);
-  if (ending == ".lp") return OutputKind::lightPositions();
-  throw InputError(file, "-o", "the ending chooses what is written: .json, .csv or .lp");
-}
-
 void checkOutputs(const LightsArguments& a, Outputs outputs) {
-  for (const std::string& file : a.out) outputs.file(file, "-o", kindOf(file));
+  for (const std::string& file : a.out) outputs.file(file, "-o", lampsKind(file, "-o"));
   outputs.file(a.json, "--json", OutputKind::document("glint_lights"));
   outputs.file(a.on, "--on", OutputKind::table(kLampsOnCsvHeader));
 }
@@ -43,10 +33,6 @@ std::optional<double> radiusOf(const std::string& text) {
   const std::optional<double> radius = numberFrom(text);
   if (!radius || !(*radius > 0)) throw InputError("", "--ball-radius " + text, "expected a radius in metres, above 0");
   return radius;
-}
-
-Outlines outlinesOf(const std::string& text) {
-  return text == "given" ? Outlines::Given : text == "edges" ? Outlines::Edges : Outlines::Fitted;
 }
 
 /// What only one of the two kinds of input has a use for.
@@ -64,55 +50,24 @@ void refuseOthers(const LightsArguments& a) {
     throw InputError(a.input, "", "with --ball, INPUT is a folder of photographs");
 }
 
-void sayWhatIsMissing(const LightsArguments& a, bool camera, LampsReport& report) {
-  if (!camera)
-    report.warnings.emplace_back(
-        "no focal length (neither --camera nor EXIF): directions assume a distant camera, which costs up to about the angle "
-        "between the ball's far edge and the image's middle, and no positions are known");
-  if (!camera && !a.ballRadius.empty()) report.warnings.emplace_back("--ball-radius has no use without --camera");
-  if (camera && a.balls.size() > 1 && a.ballRadius.empty())
-    report.warnings.emplace_back("all balls are taken to be of one size, whose radius is the unit of length");
-  constexpr double kMuchMore = 2;  // what detection promises is right to about that
-  if (report.balls && report.balls->noiseFactor > kMuchMore)
-    report.warnings.push_back(
-        formatted("the highlights disagree %.2g times as much as their detection promises; every standard "
-                  "deviation is widened by that",
-                  report.balls->noiseFactor));
-}
-
 LampsReport ofBalls(const LightsArguments& a, const Context& context) {
-  std::vector<NamedBall> balls;
-  for (const std::string& text : a.balls) balls.push_back(namedBall(text));
-  const std::optional<double> radius = radiusOf(a.ballRadius);
+  BallQuestion question;
+  question.input = a.input;
+  for (const std::string& text : a.balls) question.balls.push_back(namedBall(text));
+  question.exclude = a.exclude;
+  question.ballRadius = radiusOf(a.ballRadius);
+  question.outlines = outlinesOf(a.outlines);
+  question.outlineSigmaPx = a.outlineSigmaPx;
   if (!(a.outlineSigmaPx > 0 && std::isfinite(a.outlineSigmaPx)))
     throw InputError("", "--outline-sigma", "expected a number of pixels above 0");
-  std::optional<Camera> camera;
   if (const auto given = a.places.reading.find("--camera"); given != a.places.reading.end() && !given->second.empty())
-    camera = cameraOfNumbers(cameraNumbers(given->second, "--camera"));
-  BallShots shots = ballShotsIn(a.input, balls, a.exclude);
+    question.camera = cameraOfNumbers(cameraNumbers(given->second, "--camera"));
+  BallShots shots = ballShotsIn(a.input, question.balls, a.exclude);
   shots.response = responseOf(a.places.choices());
-  double filmMm = 0;
-  const bool focalAlone = !camera;
-  if (!camera) camera = cameraOfExif(shots, filmMm);
   checkOutputs(a, Outputs(shots.files()));
-  Outcome<PhotographLamps> found =
-      lampsOfShots(shots, camera, focalAlone && camera, radius, outlinesOf(a.outlines), a.outlineSigmaPx, context.progress());
-  if (!found) throw CannotAnswer{found.failure()};
-  LampsReport report;
-  report.lengthUnit = !camera ? "" : radius ? "m" : "ball radius";
-  report.lamps = std::move(found->fit.lamps);
-  for (std::size_t i = 0; i < report.lamps.size(); ++i)
-    if (!report.lamps[i].failure) report.lines.push_back({found->fileNames[i], report.lamps[i].direction});
-  report.balls = std::move(found->fit);
-  report.warnings = found->warnings;
-  if (const std::string doubt = shots.response.doubt(); !doubt.empty()) report.warnings.push_back(doubt);
-  if (focalAlone && camera)
-    report.warnings.push_back(
-        formatted("the focal length is that of EXIF, %g mm on 35 mm film, with the principal point in the "
-                  "middle and no lens distortion: directions only, good to about half a degree (--camera)",
-                  filmMm));
-  sayWhatIsMissing(a, camera.has_value(), report);
-  return report;
+  Outcome<LampsReport> report = lampsReportOf(question, shots, context.progress());
+  if (!report) throw CannotAnswer{report.failure()};
+  return *std::move(report);
 }
 
 /// Which lamps are on: their fits are of the frames that name theirs.
@@ -134,20 +89,17 @@ std::string writeOn(const LightsArguments& a, const Inspection& inspection, Lamp
 
 LampsReport ofScene(const LightsArguments& a, const Context& context) {
   InspectionRequest request;
-  request.models.clear();  // evidence and views only
   if (a.source == "image") request.source = FrameSource::Image;
   applyEach(request.settings, a.set);
   const auto scene = std::make_shared<const Scene>(a.places.read(a.input));
   for (const std::string& w : scene->warnings) context.warn(w);
   if (!a.exclude.empty()) request.excluded = parseFrames(a.exclude, *scene, "--exclude");
   if (request.excluded.size() == scene->frames.size()) throw InputError("", "--exclude " + a.exclude, "excludes every frame");
-  request.train = "first:" + std::to_string(scene->frames.size());
-  if (!a.on.empty()) prepareOn(*scene, request);
+  InspectionRequest asked = lampsRequest(request, *scene);
+  if (!a.on.empty()) prepareOn(*scene, asked);
   checkOutputs(a, Outputs(a.input, *scene));
-  const Inspection inspection = inspect(scene, request, context.progress());
-  LampsReport report;
-  report.lengthUnit = "m";
-  report.lamps = lampsOfScene(inspection, context.progress());
+  const Inspection inspection = inspect(scene, asked, context.progress());
+  LampsReport report = lampsReportOf(inspection, a.input, context.progress());
   if (!a.on.empty()) {
     const std::string summary = writeOn(a, inspection, report, context);
     if (a.json != "-" && a.on != "-") context.print(summary);
@@ -155,42 +107,22 @@ LampsReport ofScene(const LightsArguments& a, const Context& context) {
   const bool lines =
       std::any_of(a.out.begin(), a.out.end(), [](const std::string& f) { return std::filesystem::path(f).extension() == ".lp"; });
   if (lines) report.lines = lampLinesOf(*scene, report.lamps, report.warnings);
-  for (const LampAnswer& lamp : report.lamps)
-    if (!lamp.remarks.empty()) report.warnings.push_back(lamp.id + ": " + lamp.remarks.front());
   return report;
 }
 
 void write(const LightsArguments& a, const LampsReport& report, const Context& context) {
-  for (const std::string& file : a.out) {
-    const std::string ending = std::filesystem::path(file).extension().string();
-    context.write(file, ending == ".json" ? lampsJson(report) : ending == ".csv" ? lampsCsv(report) : lampsLp(report));
-  }
+  for (const std::string& file : a.out) context.write(file, lampsText(report, file));
   if (!a.json.empty()) context.write(a.json, lampsJson(report));
 }
 
 int run(const LightsArguments& a, const Context& context) {
   refuseOthers(a);
-  for (const std::string& file : a.out) kindOf(file);
-  LampsReport report = a.balls.empty() ? ofScene(a, context) : ofBalls(a, context);
-  report.input = a.input;
-  const LampAnswer* failed = nullptr;
-  int without = 0;
-  for (const LampAnswer& lamp : report.lamps)
-    if (lamp.failure) {
-      ++without;
-      if (!failed) failed = &lamp;
-    }
-  const int count = static_cast<int>(report.lamps.size());
-  if (failed && without < count)
-    report.warnings.insert(report.warnings.begin(), std::to_string(without) + " of " + std::to_string(count) +
-                                                        " lamps have no answer; first: " + failed->id + ": " +
-                                                        failed->failure->message());
+  for (const std::string& file : a.out) lampsKind(file, "-o");
+  const LampsReport report = a.balls.empty() ? ofScene(a, context) : ofBalls(a, context);
   write(a, report, context);
   for (const std::string& w : report.warnings) context.warn(w);
   if (a.json != "-" && a.on != "-") context.print(lampsTable(report));
-  if (count == 0) throw CannotAnswer{{Reason::NoLight, "no frame names or shows a lamp"}};
-  if (without == count)
-    throw CannotAnswer{{failed->failure->reason, "no lamp has an answer; first: " + failed->id + ": " + failed->failure->detail}};
+  if (const std::optional<Failure> nothing = nothingMeasured(report)) throw CannotAnswer{*nothing};
   return kDone;
 }
 

@@ -4,6 +4,7 @@
 import argparse
 import json
 import math
+import os
 import pathlib
 import subprocess
 import sys
@@ -59,6 +60,12 @@ ball alone predicts it for a distant lamp, with outlines that were refined witho
 CHROME
 The published directions of one lamp differ by 0.41 to 1.75 degrees, most of which is one constant offset: the outlines. What is left across the line is the detection of clipped, star-shaped highlights. A constant parallax along the line is an
 outline's error or the lamps' distance; the photographs cannot tell which without a focal length.
+
+The inspector's window of balls (*File > Measure lamps from balls…*, [inspector](inspector.md#lamps)) on these photographs; `docs/make_lights.py --picture PROGRAM` draws it:
+
+![Two chrome balls, one lamp in each photograph](pictures/lamps-balls.png)
+
+Photograph: PSBox, Copyright (c) 2014 Ying Xiong, MIT licence.
 """
 
 LAMP = [1.5, -1.0, 2.2]
@@ -160,13 +167,26 @@ def rough_balls(program, folder):
     return rows
 
 
-def psbox(program, shared):
-    data = shared / "data/psbox"
+def psbox_balls(data, prefix):
     heights = {"LightProbe-1": 1000, "LightProbe-2": 950}
     balls = []
     for name, x0, y0 in PSBOX:
         x, y, radius = map(float, (data / name / "circle_data.txt").read_text().split())
-        balls += ["--ball", f"{data / name}:{x - 1},{heights[name] - y},{radius}@{x0},{y0}"]
+        balls += ["--ball", f"{prefix}{name}:{x - 1},{heights[name] - y},{radius}@{x0},{y0}"]
+    return balls
+
+
+def picture(inspector, shared, output):
+    """The window of balls on one photograph of psbox; needs xvfb-run."""
+    data = shared / "data/psbox"
+    environment = dict(os.environ, QT_QPA_PLATFORM="xcb")
+    subprocess.run(["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24", inspector, str(data), *psbox_balls(data, ""), "--exclude", "ref", "--frame",
+                    "Image_03", "--theme", "dark", "--screenshot", output, "--wait-idle"], env=environment, check=True)
+
+
+def psbox(program, shared):
+    data = shared / "data/psbox"
+    balls = psbox_balls(data, f"{data}/")
     rows, published = [], []
     columns = [[list(map(float, line.split())) for line in (data / n / "light_directions.txt").read_text().splitlines() if line.strip()]
                for n, _, _ in PSBOX]
@@ -197,7 +217,10 @@ def main():
     parser.add_argument("--program", default="build/release/bin/glint")
     parser.add_argument("--shared", default="../shared", type=pathlib.Path)
     parser.add_argument("--output", default="docs/lights.md", help="file to write; - prints it")
+    parser.add_argument("--picture", metavar="PROGRAM", help="draw docs/pictures/lamps-balls.png with this glint-inspector, and nothing else")
     a = parser.parse_args()
+    if a.picture:
+        return picture(a.picture, a.shared, "docs/pictures/lamps-balls.png")
     program = Program(a.program)
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)

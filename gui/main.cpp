@@ -17,6 +17,7 @@
 #include "core/scene/outputs.h"
 #include "gui/base/error_line.h"
 #include "gui/base/input_rules.h"
+#include "gui/lamps/lamps_in_window.h"
 #include "gui/scene/camera_glide.h"
 #include "gui/window/command_line.h"
 #include "gui/window/fit_on_screen.h"
@@ -52,6 +53,16 @@ std::unique_ptr<glint::viz::DisplayConnection> openDisplay() {
     throw glint::InputError("", "",
                             display.failure().detail + ", so no window can be shown; use a display, or xvfb-run (see --help)");
   return std::move(*display);
+}
+
+void openInput(glint::gui::MainWindow& window, const glint::gui::CommandLine& command) {
+  if (command.balls.isEmpty()) return window.open(command.input, command.frame, command.choices);
+  glint::BallQuestion question;
+  question.input = command.input.toStdString();
+  for (const QString& ball : command.balls) question.balls.push_back(glint::namedBall(ball.toStdString()));
+  question.exclude = command.exclude.toStdString();
+  if (!command.choices.camera.empty()) question.camera = glint::cameraOfNumbers(command.choices.camera);
+  window.lamps()->openBalls(question, command.frame);
 }
 
 bool starting = true;  ///< What Qt cannot do until its first window is the user's business, and no fault of the program.
@@ -109,7 +120,7 @@ int run(int argc, char** argv) {
   window.show();
   window.applyLayout(command.layout);                        // dock sizes are known only now
   if (!command.size.isEmpty()) window.resize(command.size);  // a large window's docks may have kept it larger
-  if (!command.input.isEmpty()) window.open(command.input, command.frame, command.choices);
+  if (!command.input.isEmpty()) openInput(window, command);
   setAnimationsWanted(command.run.isEmpty() && command.screenshot.isEmpty());  // a script waits for no movement
   if (!command.run.isEmpty()) window.runActions(command.run);
   if (!command.screenshot.isEmpty()) new Screenshot(window, command.screenshot, command.waitIdle);

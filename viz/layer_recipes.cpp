@@ -25,6 +25,7 @@ const std::vector<LayerRecipe>& layerRecipes() {
       {{"ellipsoids", "Ellipsoids", true}, kPlace | kOnModels | kOnPicked | kOnTheme, ellipsoidsLayer},
       {{"light", "Light (estimate)", true}, kPlace | kOnModels | kOnGlyphs | kOnPicked | kOnTheme, lightLayer},
       {{"true-light", "Light (truth)", true}, kOnScene | kOnSurface | kOnGlyphs | kOnHidden, trueLightLayer},
+      {{"measured-lamps", "Measured lamps", true}, kOnSurface | kOnGlyphs | kOnPicked | kOnHidden | kOnLamps, measuredLampsLayer},
       {{"rays", "Reflected rays", false}, kPlace | kOnFrame | kOnSolo | kOnGlyphs | kOnTheme, raysLayer},
       {{"observed-contours", "Observed contours", true},
        kPlace | kOnFrame | kOnHighlight | kOnPicked | kOnGlyphs | kOnTheme | kOnSolo,

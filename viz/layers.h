@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "core/inspect/inspection.h"
+#include "core/lamps/lamp_answer.h"
 #include "viz/convert.h"
 #include "viz/hidden_objects.h"
 #include "viz/scene_view.h"
@@ -97,8 +98,9 @@ struct LayerInput {
   Eye eye = Eye::Outside;            ///< other than Outside only where it is in effect
   std::optional<Plane> eyeMirror{};  ///< of the virtual camera that is looked through
   LayerCache* cache = nullptr;
-  std::shared_ptr<const WalkStory> walk{};  ///< that the walk layer shows; null = none
-  int walkStep = 0;                         ///< see WalkStory::at
+  std::shared_ptr<const WalkStory> walk{};                 ///< that the walk layer shows; null = none
+  int walkStep = 0;                                        ///< see WalkStory::at
+  std::shared_ptr<const std::vector<LampAnswer>> lamps{};  ///< measured; null = not
 
   const Frame& frame(int index) const { return inspection->scene->frames[static_cast<std::size_t>(index)]; }
   /// Whether what belongs to a frame is drawn: neither hidden nor left out by solo.
@@ -196,7 +198,8 @@ enum Dependency : unsigned {
   kOnSolo = 2048,
   kOnWalk = 4096,
   kOnScene = 8192,  ///< cameras and files: another scene, or a what-if that moves cameras
-  kOnHidden = 16384
+  kOnHidden = 16384,
+  kOnLamps = 32768  ///< measured anew
 };
 
 struct LayerRecipe {
@@ -220,6 +223,7 @@ LayerContent conesLayer(const LayerInput& in);              ///< from the camera
 LayerContent ellipsoidsLayer(const LayerInput& in);         ///< Q* of each model
 LayerContent lightLayer(const LayerInput& in);              ///< estimates
 LayerContent trueLightLayer(const LayerInput& in);          ///< truth, ringed and labelled
+LayerContent measuredLampsLayer(const LayerInput& in);      ///< places with their regions of 95 %, directions with their cones
 LayerContent raysLayer(const LayerInput& in);               ///< view rays and their reflections
 LayerContent observedContoursLayer(const LayerInput& in);   ///< cast onto the surface
 LayerContent predictedContoursLayer(const LayerInput& in);  ///< of the selected frame

@@ -76,6 +76,7 @@ SceneLegend legendOf(const LayerInput& in, const std::vector<ShownLayer>& layers
   if (drawn("observed-contours")) legend.entries.push_back({kObserved, "observed contour"});
   if (drawn("light")) legend.entries.push_back({kLightColour, "light (estimate)"});
   if (drawn("true-light")) legend.entries.push_back({kTruth, "light (truth)"});
+  if (drawn("measured-lamps")) legend.entries.push_back({kMeasuredLamp, "measured lamp, 95 % region"});
   std::string noEvidence;
   if (const auto at = static_cast<std::size_t>(in.selection.frame); at < in.inspection->evidence.size()) {
     const std::optional<Failure>& failure = in.inspection->evidence[at].scoringFailure();

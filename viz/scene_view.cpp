@@ -61,6 +61,7 @@ struct SceneView::Impl {
   std::set<std::string> models;
   std::vector<LayerState> layers{sceneLayers().size()};
   std::shared_ptr<LayerCache> cache;
+  std::shared_ptr<const std::vector<LampAnswer>> lamps;
   LayerInput input;
   std::vector<int> allFrames;  // input.frames, solo or not
   CameraColours colours;
@@ -126,6 +127,7 @@ struct SceneView::Impl {
     input.hidden = hidden;
     input.colours = colours;
     input.cache = cache.get();
+    input.lamps = lamps;
     input.glyphScale = glyphScale;
     input.surface.reset();
     input.surfaceKey.clear();
@@ -467,6 +469,13 @@ void SceneView::setWalk(std::shared_ptr<const WalkStory> walk, int step) {
   impl_->input.walk = std::move(walk);
   impl_->input.walkStep = step;
   impl_->mark(kOnWalk);
+}
+
+void SceneView::setLamps(std::shared_ptr<const std::vector<LampAnswer>> lamps) {
+  if (lamps == impl_->lamps) return;
+  impl_->lamps = std::move(lamps);
+  impl_->refreshInput();
+  impl_->mark(kOnLamps);
 }
 
 void SceneView::frameAll() { impl_->frameAll(); }

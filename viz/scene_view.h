@@ -20,6 +20,10 @@ class vtkImageData;
 class vtkRenderer;
 class vtkRenderWindow;
 
+namespace glint {
+struct LampAnswer;
+}
+
 namespace glint::viz {
 
 class LayerCache;
@@ -32,7 +36,7 @@ struct Layer {
   bool onByDefault = true;
 };
 /// surface, cameras, photographs, virtual-cameras, peaks, tangent-planes, canonical-ellipses, directions, walk, cones,
-/// ellipsoids, light, true-light, rays, observed-contours, predicted-contours.
+/// ellipsoids, light, true-light, measured-lamps, rays, observed-contours, predicted-contours.
 const std::vector<Layer>& sceneLayers();
 
 /// What lies under the mouse, with its numbers.
@@ -101,6 +105,9 @@ class SceneView {
 
   /// What the layer "walk" draws, as far as `step`; null = nothing.
   void setWalk(std::shared_ptr<const WalkStory> walk, int step);
+
+  /// What the layer "measured-lamps" draws; null = nothing. They stay until others come, also over another scene.
+  void setLamps(std::shared_ptr<const std::vector<LampAnswer>> lamps);
 
   /// A view from outside that holds the surface, the cameras and a light that is not far beyond them.
   void frameAll();

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/draw/colours.h"
+#include "core/draw/lamp_colour.h"
 #include "core/draw/selection.h"
 
 namespace glint::viz {

@@ -85,6 +85,7 @@ void refineByLobe(const BallShots& shots, int width, int height, const std::opti
     lamp.direction = found->direction;
     lamp.directionSigma = std::hypot(found->directionSigma, ofOutline);
     lamp.residualPx = found->residualPx;
+    lamp.degreesOfFreedom = found->degreesOfFreedom;
     lamp.solver = found->solver;
   }
 }

@@ -49,7 +49,10 @@ struct LampAnswer {
   double directionSigma = 0;            ///< rad: root of the mean square of the angle between this direction and the true one
   std::optional<Eigen::Vector3d> from;  ///< middle of the object; none without a focal length
   double residualPx = 0;                ///< root mean square over the highlights; 0 where nothing is redundant
+  double degreesOfFreedom = 0;          ///< behind the residual; 0 where nothing is redundant or nothing is known of it
   int highlights = 0;                   ///< used
+  /// Photographs of balls: the share of what is known of all outlines that this photograph's highlights bring; the edges bring the rest to 1.
+  std::optional<double> outlineShare;
   std::vector<DroppedSighting> dropped;
   std::vector<LampSighting> sightings;  ///< photographs of balls only
   std::optional<Parallax> parallax;

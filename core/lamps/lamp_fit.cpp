@@ -23,6 +23,7 @@ constexpr double kKnownDistance =
 constexpr double kFarthest95 = 1.645;     // one-sided bound of 95 %
 constexpr double kExifFocalShare = 0.03;  // whole millimetres, rounded once more for the film's size
 constexpr double kExifMiddle = 0.01;      // rad: where the optical axis meets a sensor
+constexpr int kOutlinePoints = 180;       // of a drawn outline: of a ball of 400 px, chords leave it by 0.06 px
 constexpr int kMostRounds = 5;            // of dropping; one or two are usual
 
 class BallLampFit {
@@ -60,6 +61,8 @@ class BallLampFit {
   void fit();
   bool fitTogether();
   BallLamps answer();
+  void addBallResiduals(BallLamps& result) const;
+  double outlineShareOf(const LampProblem::Eliminated& equations) const;
   void describe(const LampInFit& lamp, std::size_t equation, LampAnswer& answer) const;
   void addDistance(const LampInFit& lamp, const Eigen::MatrixXd& covariance, LampAnswer& answer) const;
   void addSightings(const LampInFit& lamp, LampAnswer& answer) const;
@@ -196,6 +199,11 @@ BallLamps BallLampFit::answer() {
     const Eigen::Matrix3d& root = problem_->rootOf(k);
     b.sigmaPx = (variance_ * root * ofOutlines_.block<3, 3>(at, at) * root.transpose()).diagonal().cwiseSqrt();
     if (p_.camera) b.centre = unit_ * problem_->ball(k).centre;
+    b.outline = outlinePixels(view_, b.parameters, kOutlinePoints);
+    if (p_.camera)
+      for (Pixel& p : b.outline) p = p_.camera->distorted(p);
+    b.edgeResidualPx = p_.balls[k].residualPx;
+    b.edgeDegreesOfFreedom = p_.balls[k].degreesOfFreedom;
     result.balls.push_back(b);
   }
   std::size_t equation = 0;
@@ -207,7 +215,37 @@ BallLamps BallLampFit::answer() {
     if (!lamp.failure) describe(lamp, equation++, a);
     result.lamps.push_back(std::move(a));
   }
+  addBallResiduals(result);
   return result;
+}
+
+/// Of each ball's highlights. Leverage: that of the lamp's own unknowns is what the redundant equations leave out, that of the outlines E C E^T.
+void BallLampFit::addBallResiduals(BallLamps& result) const {
+  std::size_t equation = 0;
+  for (std::size_t i = 0; i < lamps_.size(); ++i) {
+    if (lamps_[i].failure) continue;
+    const LampProblem::Eliminated& e = equations_[equation++];
+    Eigen::MatrixXd left = e.redundant * e.redundant.transpose();
+    if (refine_) {
+      const Eigen::MatrixXd byOutlines = e.redundant * e.outlinesRest;
+      left -= byOutlines * ofOutlines_ * byOutlines.transpose();
+    }
+    const std::vector<WeightedPeak>& peaks = lamps_[i].unknowns.peaks;
+    for (std::size_t p = 0; p < peaks.size(); ++p) {
+      FittedBall& ball = result.balls[peaks[p].ball];
+      ++ball.highlights;
+      ball.highlightDegreesOfFreedom += left.diagonal().segment<2>(2 * static_cast<Eigen::Index>(p)).sum();
+      ball.highlightResidualPx += result.lamps[i].sightings[p].residualPx.squaredNorm();
+    }
+  }
+  for (FittedBall& ball : result.balls)
+    if (ball.highlights > 0) ball.highlightResidualPx = std::sqrt(ball.highlightResidualPx / ball.highlights);
+}
+
+/// trace(C E^T E) over the number of unknowns: with I = C (I + sum E^T E), the shares of all photographs and that of the edges, trace(C), add up to 1.
+double BallLampFit::outlineShareOf(const LampProblem::Eliminated& e) const {
+  if (!refine_) return 0;
+  return (ofOutlines_ * e.outlinesRest.transpose() * e.outlinesRest).trace() / static_cast<double>(ofOutlines_.rows());
 }
 
 void BallLampFit::describe(const LampInFit& lamp, std::size_t equation, LampAnswer& a) const {
@@ -217,7 +255,10 @@ void BallLampFit::describe(const LampInFit& lamp, std::size_t equation, LampAnsw
   const Eigen::MatrixXd by = inverse * e.outlinesOwn;
   const Eigen::MatrixXd covariance = variance_ * (inverse * inverse.transpose() + by * ofOutlines_ * by.transpose());
   a.highlights = static_cast<int>(lamp.unknowns.peaks.size());
-  a.residualPx = misfitOf(*problem_, lamp.unknowns).rmsPx;
+  const Misfit misfit = misfitOf(*problem_, lamp.unknowns);
+  a.residualPx = misfit.rmsPx;
+  a.degreesOfFreedom = misfit.degreesOfFreedom;
+  a.outlineShare = outlineShareOf(e);
   a.directionSigma = std::sqrt(covariance.topLeftCorner<2, 2>().trace());
   if (p_.focalAlone) {
     const Eigen::Vector3d at = middleOf(lamp);

@@ -26,6 +26,14 @@ struct FittedBall {
   Eigen::Vector3d sigmaPx = Eigen::Vector3d::Zero();
   Eigen::Vector3d shiftPx = Eigen::Vector3d::Zero();  ///< from what the photographs' edges say
   std::optional<Eigen::Vector3d> centre;              ///< with a camera; m or radii
+  std::vector<Pixel> outline;                         ///< once around, as the photographs show it: measured px
+  double edgeResidualPx = 0;     ///< rms of the edge's points along the outline's normal; 0 where the outline was taken as given
+  int edgeDegreesOfFreedom = 0;  ///< of those
+  int highlights = 0;            ///< on this ball that were used
+  double highlightResidualPx = 0;  ///< their rms: seen less predicted
+  /// What the fit leaves free of their coordinates: the sum over them of 1 less the leverage, so that those of all balls, and of the outlines, add up to
+  /// those of the fit.
+  double highlightDegreesOfFreedom = 0;
 };
 
 struct BallLamps {

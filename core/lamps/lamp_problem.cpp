@@ -84,6 +84,7 @@ std::optional<LampProblem::Eliminated> LampProblem::eliminated(const LampUnknown
   e.right = turned.col(outlines).head(own);
   e.outlinesRest = turned.bottomLeftCorner(rows - own, outlines);
   e.rest = turned.col(outlines).tail(rows - own);
+  e.redundant = (qr.householderQ() * Eigen::MatrixXd::Identity(rows, rows)).rightCols(rows - own);
   return e;
 }
 

@@ -49,6 +49,7 @@ class LampProblem {
   struct Eliminated {
     Eigen::MatrixXd own, outlinesOwn, outlinesRest;  ///< R, T, E
     Eigen::VectorXd right, rest;                     ///< t, e
+    Eigen::MatrixXd redundant;  ///< residuals x redundant equations: e = redundant^T residuals, columns of length 1
   };
   std::optional<Eliminated> eliminated(const LampUnknowns& lamp) const;
   /// Whether the peaks say anything about the lamp's distance, beyond round-off.

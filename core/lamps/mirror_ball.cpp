@@ -113,6 +113,30 @@ Outcome<BallParameters> ballParameters(const BallProjection& view, const Refined
   return view.camera ? coneParameters(view, outline) : Outcome<BallParameters>(result);
 }
 
+std::vector<Pixel> outlinePixels(const BallProjection& view, const Eigen::Vector3d& parameters, int points) {
+  const MirrorBall ball = ballOf(view, parameters);
+  // Of the rays that touch, the points on the ball: a circle square to the way to its centre.
+  const double distance = ball.centre.norm();
+  Eigen::Vector3d middle = ball.centre, u = Eigen::Vector3d::UnitX(), v = Eigen::Vector3d::UnitY();
+  double radius = ball.radius;
+  if (view.camera) {
+    if (!(distance > ball.radius)) return {};
+    const double share = ball.radius / distance;
+    middle *= 1 - share * share;
+    radius *= std::sqrt(1 - share * share);
+    u = ball.centre.unitOrthogonal();
+    v = ball.centre.normalized().cross(u);
+  }
+  std::vector<Pixel> outline;
+  for (int k = 0; k < points; ++k) {
+    const double t = 2 * std::numbers::pi * k / points;
+    const Eigen::Vector3d p = middle + radius * (std::cos(t) * u + std::sin(t) * v);
+    if (view.camera && !(p.z() > 0)) return {};
+    outline.push_back(view.project(p));
+  }
+  return outline;
+}
+
 Outcome<MirrorRay> mirrorRay(const BallProjection& view, const MirrorBall& ball, const Pixel& peak) {
   const Failure missed{Reason::PeakOffSurface, "the highlight lies outside of the ball's outline"};
   Eigen::Vector3d point;

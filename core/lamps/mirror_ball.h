@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "core/base/outcome.h"
 #include "core/geometry/camera.h"
@@ -53,6 +54,10 @@ struct BallParameters {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< px^2
 };
 Outcome<BallParameters> ballParameters(const BallProjection& view, const RefinedOutline& outline);
+
+/// Points of the outline of such a ball, ideal px, once around: the circle, or where rays from the camera touch the ball.
+/// @param points  at least 3. Empty where the camera stands in the ball or a ray that touches it does not come forward.
+std::vector<Pixel> outlinePixels(const BallProjection& view, const Eigen::Vector3d& parameters, int points);
 
 /// What the reflection law says of one peak.
 struct MirrorRay {

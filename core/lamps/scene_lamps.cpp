@@ -228,6 +228,7 @@ class SceneLamp {
     if (!fit || !fit->lightEstimate || !fit->uncertainty) return false;
     a_.solver = fit->solver;
     a_.remarks = fit->remarks;
+    a_.degreesOfFreedom = fit->uncertainty->degreesOfFreedom;
     const auto near = std::make_shared<const ModelFit>(*fit);
     // Contours instead of pixels: what views have wrong moves both, and a fit takes a twentieth of the time.
     Settings ofContours = settings;
@@ -248,6 +249,7 @@ class SceneLamp {
       const Outcome<LightEstimate> other = estimateLight(part(kept), r_.request.settings);
       return other ? std::optional(other->light) : std::nullopt;
     };
+    a_.degreesOfFreedom = estimate_->uncertainty ? estimate_->uncertainty->degreesOfFreedom : 0;
     if (estimate_->uncertainty)
       return place(estimate_->light, estimate_->uncertainty->root.topRows(4), estimate_->residualPx, again);
     if (!estimate_->covariance || estimate_->light.atInfinity()) return false;
@@ -361,6 +363,7 @@ class SceneLamp {
     for (const Eigen::Vector3d& d : directions) squares += (d - a_.direction).squaredNorm();
     a_.directionSigma = std::max(turned, n > 1 ? std::sqrt(squares / (n - 1)) : 0);
     a_.highlights = static_cast<int>(views_.size());
+    a_.residualPx = a_.degreesOfFreedom = 0;  // of a fit that was not taken
     a_.solver = "mirror rays";
     a_.withoutPosition = "only the mirrored rays of the peaks were used; " +
                          (estimate_ ? std::string("no fit explains the contours") : estimate_.failure().message());

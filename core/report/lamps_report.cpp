@@ -17,6 +17,8 @@ const char* const kLampsCsvHeader =
     "id,status,reason,frames,x,y,z,cov_xx,cov_yy,cov_zz,cov_xy,cov_xz,cov_yz,direction_x,direction_y,direction_z,"
     "direction_sigma_deg,from_x,from_y,from_z,residual_px,highlights,dropped\n";
 
+std::string reasonOf(const LampAnswer& lamp) { return lamp.failure ? lamp.failure->message() : lamp.withoutPosition; }
+
 namespace {
 
 using json_dom::numberOrNull;
@@ -33,8 +35,6 @@ template <class Vector>
 Ordered lengthsOrNull(const std::optional<Vector>& v) {
   return v ? lengths(*v) : Ordered();
 }
-
-std::string reasonOf(const LampAnswer& lamp) { return lamp.failure ? lamp.failure->message() : lamp.withoutPosition; }
 
 Ordered ballNumber(const std::optional<std::size_t>& ball) { return ball ? Ordered(*ball + 1) : Ordered(); }
 
@@ -76,9 +76,11 @@ Ordered lampJson(const LampAnswer& lamp) {
                {"direction_sigma_deg", known ? numberOrNull(degrees(lamp.directionSigma)) : Ordered()},
                {"from", known ? lengthsOrNull(lamp.from) : Ordered()},
                {"residual_px", known ? numberOrNull(lamp.residualPx) : Ordered()},
+               {"degrees_of_freedom", known ? numberOrNull(lamp.degreesOfFreedom) : Ordered()},
                {"highlights", lamp.highlights},
                {"dropped", droppedJson(lamp)}};
   if (!lamp.solver.empty()) j["solver"] = lamp.solver;
+  if (lamp.outlineShare && known) j["outline_share"] = numberOrNull(*lamp.outlineShare);
   if (!lamp.sightings.empty()) j["sightings"] = sightingsJson(lamp);
   if (lamp.parallax)
     j["parallax"] = {{"balls", {lamp.parallax->from + 1, lamp.parallax->to + 1}},
@@ -136,7 +138,12 @@ std::string lampsJson(const LampsReport& report) {
       root["balls"].push_back({{"image", lengths(b.parameters)},
                                {"sigma_px", lengths(b.sigmaPx)},
                                {"moved_px", lengths(b.shiftPx)},
-                               {"centre", lengthsOrNull(b.centre)}});
+                               {"centre", lengthsOrNull(b.centre)},
+                               {"edge_residual_px", numberOrNull(b.edgeResidualPx)},
+                               {"edge_degrees_of_freedom", b.edgeDegreesOfFreedom},
+                               {"highlights", b.highlights},
+                               {"residual_px", numberOrNull(b.highlightResidualPx)},
+                               {"degrees_of_freedom", numberOrNull(b.highlightDegreesOfFreedom)}});
     root["noise_factor"] = report.balls->noiseFactor;
     root["degrees_of_freedom"] = report.balls->degreesOfFreedom;
   }

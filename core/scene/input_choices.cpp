@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/base/bounded_json.h"
 #include "core/base/outcome.h"
+#include "core/base/shortest_text.h"
 #include "io/text_scan.h"
 
 namespace glint {
@@ -20,12 +20,6 @@ constexpr std::array<std::pair<const char*, double>, 3> kUnits{{{"m", 1.0}, {"cm
 constexpr const char* kCameraForm = "expected fx,fy,cx,cy or fx,fy,cx,cy,k1,k2,p1,p2[,k3]";
 constexpr const char* kByOrder = "order";
 constexpr std::size_t kLongestChoice = 200;  // bytes of a name that a session gives: "colmap", "12", "original"
-
-/// As short as it can be without losing a bit.
-std::string shortestText(double v) {
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, v).ptr};
-}
 
 std::string commaList(const std::vector<double>& values) {
   std::string text;

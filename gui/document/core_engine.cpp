@@ -48,6 +48,14 @@ Engine coreEngine() {
     return measureInfluence(inspection, progress);
   };
   engine.check = [](const Scene& scene, const ProgressFn& progress) { return fullReport(scene, progress); };
+  engine.lamps = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, const std::string& input,
+                    const ProgressFn& progress, const Inspection* previous) {
+    const InspectionRequest asked = lampsRequest(request, *scene);
+    return lampsReportOf(inspect(std::move(scene), asked, progress, previous), input, progress);
+  };
+  engine.ballLamps = [](const BallQuestion& question, const ProgressFn& progress) {
+    return lampsReportOf(question, ballShotsIn(question.input, question.balls, question.exclude), progress);
+  };
   engine.parseTrain = parseTrainSpec;
   return engine;
 }

@@ -11,6 +11,7 @@
 #include "core/diagnostics/influence.h"
 #include "core/inspect/inspection.h"
 #include "core/inspect/observation.h"
+#include "core/report/measured_lamps.h"
 #include "core/scene/convention_report.h"
 #include "core/scene/relinked.h"
 #include "core/selection/selection.h"
@@ -72,6 +73,13 @@ struct Engine {
   /// The convention report, with the check of cameras by their highlights; may be empty: then there is none. Throws Stopped and
   /// InputError.
   std::function<ConventionReport(const Scene&, const ProgressFn&)> check;
+  /// What `glint lights` finds in a scene; may be empty: then nothing is found. Throws Stopped and InputError.
+  /// @param input  as the user named it
+  std::function<LampsReport(std::shared_ptr<const Scene>, const InspectionRequest&, const std::string& input, const ProgressFn&,
+                            const Inspection* previous)>
+      lamps;
+  /// What it finds in photographs of balls; may be empty. Throws Stopped and InputError.
+  std::function<Outcome<LampsReport>(const BallQuestion&, const ProgressFn&)> ballLamps;
   /// As glint::parseTrainSpec: InputError for a specification that does not parse.
   std::function<TrainSpec(const std::string&, const Scene&)> parseTrain;
   /// Writes a session file atomically; InputError when it cannot be written, Stopped. It hashes every input file, so it takes

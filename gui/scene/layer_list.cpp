@@ -20,6 +20,7 @@ const std::pair<const char*, draw::Colour> kColours[] = {{"virtual-cameras", dra
                                                          {"tangent-planes", draw::kVirtualCamera},
                                                          {"light", draw::kLightColour},
                                                          {"true-light", draw::kTruth},
+                                                         {"measured-lamps", draw::kMeasuredLamp},
                                                          {"observed-contours", draw::kObserved}};
 }  // namespace
 

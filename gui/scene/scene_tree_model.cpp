@@ -111,7 +111,7 @@ SceneTreeModel::SceneTreeModel(Document& document, QObject* parent)
     : QAbstractItemModel(parent),
       document_(document),
       groups_{{{Kind::Surface, tr("Surfaces"), {"surface"}, {}},
-               {Kind::Light, tr("Lights"), {"light", "true-light"}, {}},
+               {Kind::Light, tr("Lights"), {"light", "true-light", "measured-lamps"}, {}},
                {Kind::Ellipsoid, tr("Models"), {"ellipsoids", "cones", "predicted-contours"}, {}},
                {Kind::Camera, tr("Cameras"), {"cameras", "photographs", "virtual-cameras"}, {}}}} {
   connect(&document_, &Document::sceneOpened, this, &SceneTreeModel::rebuild);

@@ -133,6 +133,12 @@ void SceneViews::setLayerVisible(int view, const std::string& name, bool visible
   showLegends();
 }
 
+void SceneViews::setLamps(const std::shared_ptr<const std::vector<LampAnswer>>& lamps) {
+  lamps_ = lamps;
+  for (auto& view : views_) view->setLamps(lamps);
+  scheduleRender();
+}
+
 std::array<double, 4> SceneViews::placeOf(int view) const { return viewport(options_, view); }
 
 void SceneViews::setDark(bool dark) {
@@ -167,6 +173,7 @@ std::unique_ptr<viz::SceneView> SceneViews::copyOf(int at) {
   const SceneOptions::View& o = options_.views[std::size_t(at)];
   copy->setDarkBackground(dark_);
   copy->setInspection(inspection_);
+  copy->setLamps(lamps_);
   copy->setSelection(selection_);
   for (const viz::Layer& layer : viz::sceneLayers()) copy->setLayerVisible(layer.name, view(at).layerVisible(layer.name));
   copy->setModels(o.models);

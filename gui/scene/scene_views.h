@@ -56,6 +56,8 @@ class SceneViews : public QWidget {
   void setInspection(const std::shared_ptr<const Inspection>& inspection);
   void setSelection(const draw::Selection& selection);
   void setLayerVisible(int view, const std::string& name, bool visible);
+  /// What the layer "measured-lamps" draws; null = nothing.
+  void setLamps(const std::shared_ptr<const std::vector<LampAnswer>>& lamps);
   void setDark(bool dark);
   void apply(const SceneOptions& options);
   /// Draws soon; several changes in one turn of the event loop make one picture.
@@ -109,6 +111,7 @@ class SceneViews : public QWidget {
   std::array<std::unique_ptr<viz::SceneView>, kMostSceneViews> views_;
   std::array<bool, kMostSceneViews> own_{};  ///< a view that is not shown comes back where it stands
   std::shared_ptr<const Inspection> inspection_;
+  std::shared_ptr<const std::vector<LampAnswer>> lamps_;
   draw::Selection selection_;
   SceneOptions options_;
   VtkCanvas* widget_;

@@ -65,6 +65,10 @@ CommandLine parseCommandLine(const QStringList& arguments) {
       c.theme = theme == QStringLiteral("dark") ? Theme::Dark : Theme::Light;
     } else if (name == QStringLiteral("--frame"))
       c.frame = value();
+    else if (name == QStringLiteral("--ball"))
+      c.balls << value();
+    else if (name == QStringLiteral("--exclude"))
+      c.exclude = value();
     else if (name == QStringLiteral("--run"))
       c.run += value().split(',', Qt::SkipEmptyParts);
     else if (name == QStringLiteral("--screenshot"))
@@ -85,6 +89,9 @@ CommandLine parseCommandLine(const QStringList& arguments) {
       throw InputError("", "command line",
                        "more than one INPUT: '" + c.input.toStdString() + "' and '" + name.toStdString() + "'");
   }
+  if (!c.balls.isEmpty() && c.input.isEmpty()) throw InputError("", "--ball", "needs INPUT, a folder of photographs");
+  if (c.balls.isEmpty() && !c.exclude.isEmpty())
+    throw InputError("", "--exclude", "is for photographs of balls: give --ball, too");
   return c;
 }
 
@@ -100,6 +107,9 @@ QString helpText() {
              "  --layout NAME         arrangement of the panels: %1\n"
              "  --theme light|dark    colours (default: dark)\n"
              "  --frame ID            frame to select: id, or number in the input (from 0)\n"
+             "  --ball [DIR:]CX,CY,R[@X0,Y0]\n"
+             "                        INPUT is a folder of photographs of mirror balls: measure their lamps in a window of its\n"
+             "                        own, as `glint lights`; may be repeated. --camera and --exclude SPEC as there\n"
              "  --run ID[,ID...]      run actions by id once the scene is shown (explain.step-contour, view.panel-plots ...);\n"
              "                        an unknown id lists them all\n"
              "  --screenshot FILE     write the window as PNG and quit\n"

@@ -33,9 +33,10 @@
 #include "gui/explain/lessons.h"
 #include "gui/explain/walk_player.h"
 #include "gui/export/export_actions.h"
-#include "gui/frame/frame_canvas.h"
 #include "gui/frame/frame_panel.h"
 #include "gui/frame/ladder_panel.h"
+#include "gui/lamps/lamps_in_window.h"
+#include "gui/lamps/lamps_panel.h"
 #include "gui/panels/comparison_panel.h"
 #include "gui/panels/error_table.h"
 #include "gui/panels/log_panel.h"
@@ -44,7 +45,6 @@
 #include "gui/panels/setup_panel.h"
 #include "gui/panels/tradeoff_panel.h"
 #include "gui/plots/conditioning_panel.h"
-#include "gui/plots/plot_canvas.h"
 #include "gui/plots/plots_panel.h"
 #include "gui/scene/layer_list.h"
 #include "gui/scene/scene_panel.h"
@@ -52,6 +52,7 @@
 #include "gui/timeline/timeline.h"
 #include "gui/whatif/what_if_panel.h"
 #include "gui/window/changed_inputs.h"
+#include "gui/window/context_menus.h"
 #include "gui/window/file_actions.h"
 #include "gui/window/input_report.h"
 #include "gui/window/job_status.h"
@@ -312,6 +313,11 @@ void MainWindow::buildDocks() {
   docks_.add("comparison", tr("Comparison"), comparison_, Qt::BottomDockWidgetArea, "errors");
   connect(comparison_, &ComparisonPanel::problem, this, &MainWindow::showProblem);
   connect(comparison_, &ComparisonPanel::shown, this, [this] { docks_.bring(QStringLiteral("comparison")); });
+  lamps_ = new LampsInWindow(engine_, document_, *scene_, this);
+  docks_.add("lamps", tr("Lamps"), lamps_->panel(), Qt::BottomDockWidgetArea, "errors");
+  connect(lamps_, &LampsInWindow::problem, this, &MainWindow::showProblem);
+  connect(lamps_, &LampsInWindow::message, this, &MainWindow::tell);
+  connect(lamps_, &LampsInWindow::shown, this, [this] { docks_.bring(QStringLiteral("lamps")); });
   connect(plots_, &PlotsPanel::problem, this, &MainWindow::showProblem);
   connect(plots_, &PlotsPanel::shown, this, [this] { docks_.bring(QStringLiteral("plots")); });
   const auto measureInfluence = [this] {
@@ -391,6 +397,7 @@ void MainWindow::buildMenus() {
     docks_.bring(QStringLiteral("tradeoff"));
     press("measureTradeoff")();
   });
+  lamps_->addActions(actions_, plots, file);
 
   QMenu* view = menuBar()->addMenu(tr("&View"));
   scene_->addActions(actions_, view);
@@ -424,27 +431,7 @@ void MainWindow::buildMenus() {
       bar->addSeparator();
   }
   actions_.loadShortcuts();
-  offerMenus();
-}
-
-/// A click with the right button: what one does there most.
-void MainWindow::offerMenus() {
-  const auto offer = [this](QWidget* view, std::initializer_list<const char*> ids) {
-    for (const char* id : ids) {
-      QAction* action = *id ? actions_.find(QLatin1String(id)) : new QAction(view);
-      require(action != nullptr, std::string("offerMenus: no action named ") + id);
-      if (!*id) action->setSeparator(true);
-      view->addAction(action);
-    }
-    view->setContextMenuPolicy(Qt::ActionsContextMenu);
-  };
-  for (QWidget* canvas : frame_->findChildren<FrameCanvas*>())
-    offer(canvas, {"frame.highlight", "frame.fit", "frame.pixels", "frame.values", "", "frame.train", "frame.hold-out",
-                   "frame.exclude", "", "frame.hand", "frame.side-by-side", "", "export.frame"});
-  for (PlotCanvas* plot : plots_->findChildren<PlotCanvas*>())
-    offer(plot, {"plots.show-all", "", "plots.copy-png", "plots.copy-svg", "plots.copy-csv", "", "plots.save-svg",
-                 "plots.save-png", "plots.save-csv"});
-  offer(errors_->view(), {"edit.copy-error-rows", "", "export.csv", "export.json", "export.html"});
+  offerMenus(actions_, *frame_, *plots_, *errors_);
 }
 
 void MainWindow::buildStatusLine() {
@@ -511,10 +498,11 @@ bool MainWindow::idle() const { return script_->done() && quiet(); }
 
 bool MainWindow::quiet() const {
   return !runner_.busy() && !frame_->busy() && !timeline_->busy() && !scene_->busy() && plots_->idle() && !explain_->busy() &&
-         !exports_->busy() && !unreadable_->busy() && !observer_.busy() && !drawingsWait();
+         !exports_->busy() && !unreadable_->busy() && !lamps_->busy() && !observer_.busy() && !drawingsWait();
 }
 
 QPixmap MainWindow::picture() {
+  if (QWidget* balls = lamps_->shownBalls()) return balls->grab();
   if (centre_->currentWidget() == views_) scene_->renderNow();
   plots_->renderNow();
   return grab();

@@ -24,6 +24,7 @@ class ExplainPanel;
 class FileActions;
 class FramePanel;
 class InputReport;
+class LampsInWindow;
 class LadderPanel;
 class LogPanel;
 class MessageBar;
@@ -58,7 +59,7 @@ class MainWindow : public QMainWindow {
   void setTheme(Theme theme);
   /// Nothing runs and every panel shows the newest state.
   bool idle() const;
-  /// Renders the 3D view and returns the window's picture.
+  /// Renders the 3D view and returns the picture of the window, of that of balls where it is shown.
   QPixmap picture();
 
   Document& document() { return document_; }
@@ -70,6 +71,7 @@ class MainWindow : public QMainWindow {
   ExportActions* exports() { return exports_; }
   ComparisonPanel* comparison() { return comparison_; }
   InputReport* report() { return report_; }
+  LampsInWindow* lamps() { return lamps_; }
   QString lastError() const { return lastError_; }
 
  signals:
@@ -88,7 +90,6 @@ class MainWindow : public QMainWindow {
   void buildCentre();
   void buildDocks();
   void buildMenus();
-  void offerMenus();
   void buildStatusLine();
   void recompute();
   void showProblem(const QString& oneLine);
@@ -130,6 +131,7 @@ class MainWindow : public QMainWindow {
   TradeoffPanel* tradeoff_ = nullptr;
   LogPanel* log_ = nullptr;
   InputReport* report_ = nullptr;
+  LampsInWindow* lamps_ = nullptr;
   MessageBar* messageBar_ = nullptr;
   QLabel* probe_ = nullptr;
   QString lastError_;

@@ -77,6 +77,8 @@ QObject* makeTurnsTest();
 QObject* makeUnreadableTest();
 QObject* makeCapturesTest();
 QObject* makeInputReportTest();
+QObject* makeLampsTest();
+QObject* makeBallWindowTest();
 QObject* makeRelinkedTest();
 QObject* makeRetextureTest();
 QObject* makeWhatIfTest();

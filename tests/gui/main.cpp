@@ -43,6 +43,8 @@ int main(int argc, char** argv) {
       {"unreadable", makeUnreadableTest},
       {"captures", makeCapturesTest},
       {"input_report", makeInputReportTest},
+      {"lamps", makeLampsTest},
+      {"ball_window", makeBallWindowTest},
       {"relinked", makeRelinkedTest},
       {"retexture", makeRetextureTest},
       {"what_if", makeWhatIfTest},

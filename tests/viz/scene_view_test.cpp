@@ -16,6 +16,7 @@
 #include <numbers>
 #include <set>
 
+#include "core/lamps/lamp_answer.h"
 #include "tests/tolerances.h"
 #include "tests/viz/image_checks.h"
 #include "tests/viz/small_inspection.h"
@@ -52,6 +53,10 @@ class SceneViewPicture : public test::PictureTest {
 TEST_F(SceneViewPicture, EveryLayerIsSeenAndGoesAwayWhenItIsSwitchedOff) {
   SceneView view;
   view.setInspection(smallInspection(folder_.path()));
+  LampAnswer lamp;  // no inspection has measured ones
+  lamp.id = "measured";
+  lamp.direction = Eigen::Vector3d(-0.6, -0.8, 0);
+  view.setLamps(std::make_shared<const std::vector<LampAnswer>>(1, lamp));
   // Those that lie over others: they are switched on alone, below.
   const std::set<std::string> over{"walk", "cones"};
   for (const Layer& layer : sceneLayers()) view.setLayerVisible(layer.name, over.count(layer.name) == 0);

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <random>
+
+#include "core/lamps/ball_by_hand.h"
 #include "tests/core/lamps/ball_scene.h"
 
 namespace glint::mirror_ball_tests {
@@ -86,6 +90,68 @@ TEST(LampOfRays, MeetingPointAndInfinity) {
   const AimedLamp far = lampOfRays(rays, {1, 1, 1}, 5);
   EXPECT_LT(std::abs(far.inverseDistance), 1e-15);
   EXPECT_LT((far.direction - Eigen::Vector3d(0.6, 0, -0.8)).norm(), 1e-14);
+}
+
+// On the axis the outline is a circle of radius f tan(asin(1 / distance)).
+TEST(OutlinePixels, OnTheAxisAndBesideIt) {
+  BallProjection view{camera()};
+  const double f = 1500, depth = 8;
+  const Eigen::Vector3d onAxis(959.5, 539.5, f / depth);
+  for (const Pixel& p : outlinePixels(view, onAxis, 12))
+    EXPECT_NEAR((p - Pixel(959.5, 539.5)).norm(), f * std::tan(std::asin(1 / depth)), 1e-9);
+  // Beside it, the outline in the plane of axis and centre lies at the angles theta +- asin(1 / distance).
+  const Eigen::Vector3d beside(1459.5, 539.5, f / depth);
+  const double theta = std::atan2(500, f), half = std::asin(1 / (depth / std::cos(theta)));
+  double least = 1e9, most = 0;
+  for (const Pixel& p : outlinePixels(view, beside, 3600)) least = std::min(least, p.x()), most = std::max(most, p.x());
+  EXPECT_NEAR(least, 959.5 + f * std::tan(theta - half), 1e-3);  // of a chord of a tenth of a degree
+  EXPECT_NEAR(most, 959.5 + f * std::tan(theta + half), 1e-3);
+}
+
+TEST(OutlinePixels, DistantAndDegenerate) {
+  const std::vector<Pixel> circle = outlinePixels({}, {40, 30, 12}, 8);
+  ASSERT_EQ(circle.size(), 8U);
+  for (const Pixel& p : circle) EXPECT_NEAR((p - Pixel(40, 30)).norm(), 12, 1e-12);
+  EXPECT_TRUE(outlinePixels({camera()}, {959.5, 539.5, 1500 / 0.5}, 8).empty());  // the camera stands in the ball
+}
+
+TEST(CircleThrough, Nominal) {
+  const auto c = circleThrough({13, 4}, {3, 14}, {3 + 6, 4 + 8});
+  ASSERT_TRUE(c);
+  EXPECT_LT((c->centre - Eigen::Vector2d(3, 4)).norm(), 1e-12);
+  EXPECT_NEAR(c->radius, 10, 1e-12);
+}
+
+TEST(CircleThrough, Scale) {
+  for (const double s : {1e-3, 1e5}) {
+    const auto c = circleThrough(s * Eigen::Vector2d(13, 4), s * Eigen::Vector2d(3, 14), s * Eigen::Vector2d(9, 12));
+    ASSERT_TRUE(c);
+    EXPECT_NEAR(c->radius, s * 10, s * 1e-10);
+  }
+}
+
+// Clicks that are 0.5 px off, a third of the way around apart from each other, leave a radius of 300 px right to about as much.
+TEST(CircleThrough, Noise) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal(0, 0.5);
+  double squares = 0;
+  constexpr int kDraws = 1000;
+  for (int i = 0; i < kDraws; ++i) {
+    std::array<Eigen::Vector2d, 3> p;
+    for (int k = 0; k < 3; ++k) {
+      const double t = 2 * M_PI * k / 3 + 0.3;
+      p[std::size_t(k)] = Eigen::Vector2d(500, 400) + (300 + normal(random)) * Eigen::Vector2d(std::cos(t), std::sin(t));
+    }
+    squares += std::pow(circleThrough(p[0], p[1], p[2])->radius - 300, 2) / kDraws;
+  }
+  EXPECT_NEAR(std::sqrt(squares), 0.5 / std::sqrt(3.0), 0.03);  // the mean of three radial errors, to first order
+}
+
+TEST(CircleThrough, DegenerateIsRefusedByName) {
+  EXPECT_EQ(circleThrough({0, 0}, {1, 1}, {2, 2}).failure().reason, Reason::RankDeficient);
+  EXPECT_EQ(circleThrough({5, 5}, {5, 5}, {7, 2}).failure().reason, Reason::RankDeficient);
+  EXPECT_EQ(circleThrough({5, 5}, {5, 5}, {5, 5}).failure().reason, Reason::RankDeficient);
+  EXPECT_EQ(circleThrough({NAN, 5}, {1, 5}, {5, 2}).failure().reason, Reason::NotFinite);
 }
 
 }  // namespace glint::mirror_ball_tests

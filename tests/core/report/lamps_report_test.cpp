@@ -19,6 +19,8 @@ LampAnswer answered() {
   lamp.from = Eigen::Vector3d(0, 0, 2.7);
   lamp.residualPx = 0.3;
   lamp.highlights = 2;
+  lamp.degreesOfFreedom = 1.5;
+  lamp.outlineShare = 0.125;
   lamp.dropped.push_back({"001", 1, {4, 5}, "contradicts the other balls"});
   return lamp;
 }
@@ -63,6 +65,8 @@ TEST(LampsJson, HasTheKeysOfTheContract) {
   EXPECT_NEAR(a["direction_sigma_deg"], 0.57295779513, 1e-9);
   EXPECT_EQ(a["residual_px"], 0.3);
   EXPECT_EQ(a["highlights"], 2);
+  EXPECT_EQ(a["degrees_of_freedom"], 1.5);
+  EXPECT_EQ(a["outline_share"], 0.125);
   EXPECT_EQ(a["dropped"][0]["ball"], 2);
 }
 
@@ -82,6 +86,23 @@ TEST(LampsJson, WhatIsNotKnownIsNull) {
   EXPECT_EQ(j["lights"][1]["reason"], "no highlight: nothing, \"at all\"");
   for (const char* key : {"position", "direction", "direction_sigma_deg", "residual_px"})
     EXPECT_TRUE(j["lights"][1][key].is_null()) << key;
+}
+
+TEST(LampsJson, EachBallHasItsResiduals) {
+  LampsReport r = report();
+  r.balls.emplace();
+  FittedBall& b = r.balls->balls.emplace_back();
+  b.edgeResidualPx = 0.5;
+  b.edgeDegreesOfFreedom = 117;
+  b.highlights = 3;
+  b.highlightResidualPx = 0.25;
+  b.highlightDegreesOfFreedom = 1.75;
+  const json ball = json::parse(lampsJson(r))["balls"][0];
+  EXPECT_EQ(ball["edge_residual_px"], 0.5);
+  EXPECT_EQ(ball["edge_degrees_of_freedom"], 117);
+  EXPECT_EQ(ball["highlights"], 3);
+  EXPECT_EQ(ball["residual_px"], 0.25);
+  EXPECT_EQ(ball["degrees_of_freedom"], 1.75);
 }
 
 TEST(LampsCsv, HasOneRowForEachLamp) {

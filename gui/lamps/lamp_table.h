@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QTableView>
+#include <string>
+
+#include "core/report/lamps_report.h"
+#include "gui/base/rows_model.h"
+
+class QSortFilterProxyModel;
+
+namespace glint::gui {
+
+/// One row for each lamp: where it is and how surely, what its highlights leave, which were dropped, and why there is no more.
+class LampTable : public QTableView {
+  Q_OBJECT
+ public:
+  enum Column { Lamp, Answer, Position, Direction, Residual, Freedom, Highlights, Dropped, Why };
+  explicit LampTable(QWidget* parent = nullptr);
+  /// @param report  null = no rows
+  void show(const LampsReport* report);
+  /// The lamp is an index into the report's. -1 = none. Tells nobody.
+  void setCurrentLamp(int lamp);
+  int currentLamp() const;
+
+ signals:
+  void lampSelected(int lamp);  ///< by a person
+
+ private:
+  RowsModel* model_;
+  QSortFilterProxyModel* proxy_;
+  bool telling_ = false;
+};
+
+}  // namespace glint::gui

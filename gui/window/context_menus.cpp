@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/window/context_menus.h"
+
+#include <QAction>
+#include <QTableView>
+#include <initializer_list>
+#include <string>
+
+#include "core/base/outcome.h"
+#include "gui/frame/frame_canvas.h"
+#include "gui/frame/frame_panel.h"
+#include "gui/panels/error_table.h"
+#include "gui/plots/plot_canvas.h"
+#include "gui/plots/plots_panel.h"
+
+namespace glint::gui {
+
+void offerMenus(const Actions& actions, FramePanel& frame, PlotsPanel& plots, ErrorTable& errors) {
+  const auto offer = [&actions](QWidget* view, std::initializer_list<const char*> ids) {
+    for (const char* id : ids) {
+      QAction* action = *id ? actions.find(QLatin1String(id)) : new QAction(view);
+      require(action != nullptr, std::string("offerMenus: no action named ") + id);
+      if (!*id) action->setSeparator(true);
+      view->addAction(action);
+    }
+    view->setContextMenuPolicy(Qt::ActionsContextMenu);
+  };
+  for (QWidget* canvas : frame.findChildren<FrameCanvas*>())
+    offer(canvas, {"frame.highlight", "frame.fit", "frame.pixels", "frame.values", "", "frame.train", "frame.hold-out",
+                   "frame.exclude", "", "frame.hand", "frame.side-by-side", "", "export.frame"});
+  for (PlotCanvas* plot : plots.findChildren<PlotCanvas*>())
+    offer(plot, {"plots.show-all", "", "plots.copy-png", "plots.copy-svg", "plots.copy-csv", "", "plots.save-svg",
+                 "plots.save-png", "plots.save-csv"});
+  offer(errors.view(), {"edit.copy-error-rows", "", "export.csv", "export.json", "export.html"});
+}
+
+}  // namespace glint::gui

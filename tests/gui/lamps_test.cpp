@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Lamps measured in the window, by real clicks: the same to the last bit as what `glint lights` writes.
+#include <QAction>
+#include <QApplication>
+#include <QDialogButtonBox>
+#include <QFile>
+#include <QFileDialog>
+#include <QLabel>
+#include <QLineEdit>
+#include <QProcess>
+#include <QPushButton>
+#include <QTimer>
+
+#include "gui/lamps/lamp_table.h"
+#include "gui/lamps/lamps_in_window.h"
+#include "gui/lamps/lamps_panel.h"
+#include "gui/window/docks.h"
+#include "gui/window/main_window.h"
+#include "tests/gui/fixture.h"
+
+namespace glint::gui {
+
+namespace {
+
+const QString kTwoLamps = QStringLiteral(GLINT_SOURCE_DIR "/sessions/two-lamps/scene.json");
+
+QByteArray bytesOf(const QString& file) {
+  QFile f(file);
+  return f.open(QIODevice::ReadOnly) ? f.readAll() : QByteArray();
+}
+
+/// What the command line writes of the same input.
+QByteArray byCommand(const QStringList& arguments, const QString& output) {
+  QProcess program;
+  program.start(QStringLiteral(GLINT_CLI), QStringList{"lights"} + arguments + QStringList{"-o", output});
+  return program.waitForFinished(120000) && program.exitCode() == 0 ? bytesOf(output) : program.readAllStandardError();
+}
+
+/// Types a name into the dialog that opens next, and saves.
+void answerWith(QTimer& timer, const QString& file) {
+  QObject::connect(&timer, &QTimer::timeout, [file] {
+    auto* dialog = qobject_cast<QFileDialog*>(QApplication::activeModalWidget());
+    if (!dialog) return;
+    dialog->findChild<QLineEdit*>(QStringLiteral("fileNameEdit"))->setText(file);
+    QTest::mouseClick(dialog->findChild<QDialogButtonBox*>()->button(QDialogButtonBox::Save), Qt::LeftButton);
+  });
+  timer.start(50);
+}
+
+}  // namespace
+
+class LampsTest : public QObject {
+  Q_OBJECT
+ private slots:
+  void init() { folder_ = std::make_unique<QTemporaryDir>(); }
+
+  void theLampsOfASceneAreThoseOfTheCommand() {
+    MainWindow window(coreEngine());
+    window.resize(1500, 950);
+    window.show();
+    window.open(kTwoLamps);
+    QTRY_VERIFY_WITH_TIMEOUT(window.document().inspection() && window.idle(), 120000);
+    LampsPanel* panel = window.lamps()->panel();
+    QVERIFY(Docks::isBehind(panel));  // nothing is measured before a person asks
+    QVERIFY(!window.lamps()->ofScene()->lamps());
+    window.actions().find(QStringLiteral("lamps.measure"))->trigger();
+    QTRY_VERIFY_WITH_TIMEOUT(window.lamps()->ofScene()->lamps() && window.idle(), 120000);
+    QVERIFY(panel->isVisible() && !Docks::isBehind(panel));
+    const LampsPtr lamps = window.lamps()->ofScene()->lamps();
+    QCOMPARE(panel->table()->model()->rowCount(), int(lamps->lamps.size()));
+    QVERIFY(!panel->table()->accessibleName().isEmpty());
+
+    for (const char* ending : {"json", "csv"}) {
+      const QString file = folder_->filePath(QStringLiteral("window.") + ending);
+      QTimer answers;
+      answerWith(answers, file);
+      QTest::mouseClick(panel->findChild<QPushButton*>(QStringLiteral("saveLamps")), Qt::LeftButton);
+      const QByteArray expected = byCommand({kTwoLamps}, folder_->filePath(QStringLiteral("command.") + ending));
+      QVERIFY2(expected.size() > 100, expected);
+      QCOMPARE(bytesOf(file), expected);
+    }
+    selectsBothWays(window);
+    becomesStale(window);
+  }
+
+  void stoppingLeavesNothing() {
+    Engine engine = coreEngine();
+    std::atomic<bool> running{false};
+    engine.lamps = [&running](const std::shared_ptr<const Scene>&, const InspectionRequest&, const std::string&,
+                              const ProgressFn& go, const Inspection*) -> LampsReport {
+      running = true;
+      while (go({"lamps", 1, 3})) QThread::msleep(5);
+      throw Stopped{};
+    };
+    MainWindow window(engine);
+    window.show();
+    window.open(kTwoLamps);
+    QTRY_VERIFY_WITH_TIMEOUT(window.document().inspection() && window.idle(), 120000);
+    window.actions().find(QStringLiteral("lamps.measure"))->trigger();
+    QTRY_VERIFY(running);
+    auto* stop = window.lamps()->panel()->findChild<QPushButton*>(QStringLiteral("stopLamps"));
+    QTRY_VERIFY(stop->isVisible());
+    QTest::mouseClick(stop, Qt::LeftButton);
+    QTRY_VERIFY(window.idle());
+    QVERIFY(!window.lamps()->ofScene()->lamps());
+    QVERIFY(window.lamps()->panel()->findChild<QPushButton*>(QStringLiteral("measureLamps"))->isEnabled());
+    // Escape stops it, too.
+    running = false;
+    window.actions().find(QStringLiteral("lamps.measure"))->trigger();
+    QTRY_VERIFY(running);
+    window.actions().find(QStringLiteral("edit.stop"))->trigger();
+    QTRY_VERIFY(window.idle());
+  }
+
+  void aFailureIsOneLine() {
+    Engine engine = coreEngine();
+    engine.lamps = [](const std::shared_ptr<const Scene>&, const InspectionRequest&, const std::string&, const ProgressFn&,
+                      const Inspection*) -> LampsReport { throw InputError("a.png", "frame 3", "is damaged"); };
+    MainWindow window(engine);
+    window.show();
+    window.open(kTwoLamps);
+    QTRY_VERIFY_WITH_TIMEOUT(window.document().inspection() && window.idle(), 120000);
+    window.actions().find(QStringLiteral("lamps.measure"))->trigger();
+    QTRY_VERIFY2(window.lastError().contains("is damaged"), qPrintable(window.lastError()));
+    QVERIFY(!window.lamps()->ofScene()->lamps());
+  }
+
+ private:
+  void selectsBothWays(MainWindow& window) {
+    LampTable* table = window.lamps()->panel()->table();
+    const LampsPtr lamps = window.lamps()->ofScene()->lamps();
+    QVERIFY(lamps->lamps.size() >= 2);
+    for (int row = 0; row < 2; ++row) {
+      const QModelIndex cell = table->model()->index(row, LampTable::Lamp);
+      QTest::mouseClick(table->viewport(), Qt::LeftButton, {}, table->visualRect(cell).center());
+      QCOMPARE(window.document().selection().light, lamps->lamps[std::size_t(row)].id);
+    }
+    draw::Selection s = window.document().selection();
+    s.light = lamps->lamps[0].id;
+    window.document().select(s);
+    QCOMPARE(table->currentLamp(), 0);
+  }
+
+  /// Training frames are not what lamps depend on; the level is.
+  void becomesStale(MainWindow& window) {
+    auto* badge = window.lamps()->panel()->findChild<QLabel*>(QStringLiteral("staleBadge"));
+    QVERIFY(badge);
+    QVERIFY(window.document().setTrain("first:3"));
+    QTest::qWait(400);
+    QVERIFY(!badge->isVisible());
+    window.document().setSetting("detect.level", 0.4);
+    QTRY_VERIFY(badge->isVisible());
+    QTRY_VERIFY_WITH_TIMEOUT(window.idle(), 120000);
+  }
+
+  std::unique_ptr<QTemporaryDir> folder_;
+};
+
+QObject* makeLampsTest() { return new LampsTest; }
+
+}  // namespace glint::gui
+
+#include "lamps_test.moc"
