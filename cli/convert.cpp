@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -6,7 +7,7 @@
 #include "cli/scene_arguments.h"
 #include "core/base/number_text.h"
 #include "core/fit/given_labels.h"
-#include "core/scene/correction.h"
+#include "core/scene/corrected_files.h"
 #include "core/scene/export_capture.h"
 #include "core/scene/outputs.h"
 #include "core/scene/scene.h"
@@ -71,7 +72,10 @@ Command convertCommand() {
     if (!a->labels.empty() && (!json || transforms))
       throw InputError(a->output, "--labels", "only a scene file (*.json) holds highlights");
     Scene scene = a->places.read(a->input);
-    for (const std::string& fix : a->fixes) scene = corrected(std::move(scene), fix);
+    if ((!json || transforms) && std::count(a->fixes.begin(), a->fixes.end(), flipFacesCorrection().fix) > 0)
+      throw InputError(a->output, "--fix flip-faces", "only a scene file (*.json) names a mesh");
+    if (json && !transforms) Outputs(a->input, scene).file(a->output, "--out", OutputKind::document("glint_scene"));
+    scene = correctedFor(std::move(scene), a->fixes, output);
     for (const std::string& w : scene.warnings) context.warn(w);
     if (!json || transforms) {
       const Exported exported = transforms ? transformsOf(scene, output) : colmapOf(scene, output);
@@ -79,7 +83,6 @@ Command convertCommand() {
       exported.write();
       return kDone;
     }
-    Outputs(a->input, scene).file(a->output, "--out", OutputKind::document("glint_scene"));
     if (!a->labels.empty()) scene = labelledBy(a->labels, scene, context);
     writeScene(scene, output);
     try {

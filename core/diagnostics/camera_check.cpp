@@ -161,9 +161,11 @@ class Check {
     struct Flip {
       const char* name;
       bool x, y;
+      const char* remedy;
     };
-    const Flip kinds[] = {
-        {"mirrored left-right", true, false}, {"mirrored upside down", false, true}, {"turned by 180 degrees", true, true}};
+    const Flip kinds[] = {{"mirrored left-right", true, false, "-flop"},
+                          {"mirrored upside down", false, true, "-flip"},
+                          {"turned by 180 degrees", true, true, "-rotate 180"}};
     const Flip* best = nullptr;
     double bestPx = 0;
     int explained = 0;
@@ -185,7 +187,8 @@ class Check {
     result_.findings.push_back(
         std::string(sure ? "the images are " : "the images seem to be ") + best->name +
         formatted(": corrected, the highlights of %d frames fit one light to %.2g px; as given, ", result_.views, bestPx) +
-        (given ? formatted("only to %.2g px", given->rmsPx) : std::string("no light explains them")));
+        (given ? formatted("only to %.2g px", given->rmsPx) : std::string("no light explains them")) +
+        " (Glint does not rewrite photographs: ImageMagick's mogrify " + best->remedy + " does)");
   }
 
   static Change along(const Change& direction, double by) {

@@ -10,8 +10,10 @@
 #include "core/base/json_text.h"
 #include "core/base/median.h"
 #include "core/base/number_text.h"
+#include "core/scene/corrected_files.h"
 #include "core/scene/geometry_check.h"
 #include "core/scene/mesh_file.h"
+#include "core/scene/mesh_placement.h"
 #include "core/scene/scene_reader.h"
 #include "core/surface/analytic.h"
 
@@ -293,6 +295,19 @@ class Triangles {
   std::map<std::string, TriangleMesh> read_, made_;
 };
 
+bool startsWith(const ConventionReport::Proposal& p, const char* text) { return p.correction.fix.starts_with(text); }
+
+/// What the sparse points say about a mesh that is not where they are. They project to where they were seen: the poses are right.
+void place(const Scene& scene, const TriangleMesh& mesh, const ProgressFn& progress, ConventionReport& report) {
+  const auto ofUnit = [](const auto& p) { return startsWith(p, "mesh-") || startsWith(p, "poses-"); };
+  if (mesh.triangles.empty() || std::any_of(report.corrections.begin(), report.corrections.end(), ofUnit)) return;
+  MeshPlacement placement = placementOf(scene, mesh, report.tracks->sample, progress);
+  if (!placement.words.empty()) report.tracks->findings.back() += "; " + placement.words;
+  if (!placement.correction) return;
+  report.tracks->correction = std::move(placement.correction);
+  std::erase_if(report.corrections, [](const auto& p) { return startsWith(p, "invert-") || startsWith(p, "turn-"); });
+}
+
 }  // namespace
 
 bool ConventionReport::anyFrameSeesSurface() const {
@@ -348,8 +363,9 @@ ConventionReport conventionReport(const Scene& scene, const ProgressFn& progress
     }
     if (source.mesh && !ofPoints)
       if (const std::string sides = sidesOf(mesh); !sides.empty())
-        report.findings.push_back("the mesh of surface '" + id + "' has its sides reversed: " + sides +
-                                  " (Glint turns normals towards the camera; other programs may not)");
+        report.add("the mesh of surface '" + id + "' has its sides reversed: " + sides +
+                       " (Glint turns normals towards the camera; other programs may not)",
+                   source.isCloud ? std::nullopt : std::optional(flipFacesCorrection()));
     facts.hasNormals = source.analytic.has_value() || !mesh.normals.empty();
     report.surfaces.push_back(facts);
   }
@@ -377,9 +393,12 @@ ConventionReport conventionReport(const Scene& scene, const ProgressFn& progress
   }
   conclude(scene, checkSight(scene, [&](const std::string& id) -> const TriangleMesh& { return triangles.of(id); }), report);
   report.tracks = checkTracks(scene, progress);
-  if (report.tracks)
+  if (report.tracks) {
+    if (report.tracks->surfaceElsewhere && scene.surfaces.size() == 1)
+      place(scene, triangles.of(scene.surfaces.begin()->first), progress, report);
     for (const std::string& f : report.tracks->findings)
       report.add(f, &f == &report.tracks->findings.back() ? report.tracks->correction : std::nullopt);
+  }
   concludeGrids(scene, report);
   return report;
 }

@@ -2,12 +2,19 @@
 #include "core/scene/correction.h"
 
 #include <Eigen/Geometry>
+#include <array>
+#include <cmath>
 #include <optional>
 
 #include "core/base/number_text.h"
 
 namespace glint {
 namespace {
+
+constexpr const char* kMeshSimilarity = "mesh-similarity";
+constexpr const char* kSimilarityForm =
+    "expected mesh-similarity=S,RX,RY,RZ,TX,TY,TZ (from the mesh to the cameras' world: scale, rotation vector in radians, shift "
+    "in metres)";
 
 constexpr std::string_view kPrincipalPoint = "principal-point", kFocalLength = "focal-length", kDepthScale = "depth-scale";
 
@@ -62,6 +69,60 @@ void applyValue(Scene& scene, std::string_view name, double value) {
   if (name == kDepthScale && !any) throw InputError("--fix", std::string(name), "no frame has an integer depth map");
 }
 
+Similarity similarityFrom(std::string_view fix) {
+  const std::string whole(fix);
+  constexpr double kMostScale = 1e9, kMostShift = 1e12;  // as scene files: more is a typing error
+  std::array<double, 7> v{};
+  std::size_t from = std::min(fix.find('='), fix.size() - 1) + 1;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const std::size_t comma = fix.find(',', from);
+    if ((comma == std::string_view::npos) != (i + 1 == v.size())) throw InputError("--fix", whole, kSimilarityForm);
+    const std::optional<double> value = numberFrom(fix.substr(from, comma == std::string_view::npos ? comma : comma - from));
+    if (!value || !(std::abs(*value) <= kMostShift)) throw InputError("--fix", whole, kSimilarityForm);
+    v[i] = *value;
+    from = comma + 1;
+  }
+  if (!(v[0] >= 1 / kMostScale && v[0] <= kMostScale)) throw InputError("--fix", whole, "the scale is out of range");
+  const Eigen::Vector3d turn(v[1], v[2], v[3]);
+  if (!(turn.norm() <= 2 * EIGEN_PI)) throw InputError("--fix", whole, "the rotation is more than one turn (radians)");
+  Similarity s{v[0], Eigen::Matrix3d::Identity(), {v[4], v[5], v[6]}};
+  if (turn.norm() > 0) s.rotation = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+  return s;
+}
+
+void moveIntoMeshFrame(Frame& f, const Similarity& s) {
+  const Eigen::Isometry3d& pose = f.camera.camFromWorld;
+  Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
+  moved.linear() = Eigen::Quaterniond(Eigen::Matrix3d(pose.linear() * s.rotation)).normalized().toRotationMatrix();
+  moved.translation() = (pose.linear() * s.translation + pose.translation()) / s.scale;
+  f.camera.camFromWorld = moved;
+  f.depthScale /= s.scale;
+  if (f.depthCamera) f.depthCamera->camFromWorld.translation() /= s.scale;
+}
+
+/// The world becomes that of the mesh, in its unit: x_camera = R (s Q m + t) + r has the direction of R Q m + (R t + r) / s.
+void applySimilarity(Scene& scene, std::string_view fix) {
+  const Similarity s = similarityFrom(fix), back = s.inverse();
+  const auto refuse = [&](const std::string& why) { throw InputError("--fix", kMeshSimilarity, why); };
+  if (scene.surfaces.size() != 1)
+    refuse(formatted("the scene has %zu surfaces; it moves the cameras to a single one", scene.surfaces.size()));
+  if (!scene.surfaces.begin()->second.mesh || scene.surfaces.begin()->second.points)
+    refuse("the surface is no mesh of its own file");
+  for (Frame& f : scene.frames) {
+    if (!f.normals.empty()) refuse("frame " + f.id + " has a map of normals, which would have to turn, too");
+    if (!f.depth.empty() && !(f.depthScale > 0))
+      refuse("frame " + f.id + " has a depth map in floating point, in the unit of the cameras");
+    moveIntoMeshFrame(f, s);
+  }
+  for (TrueLight& light : scene.lights) {
+    if (light.position) light.position = back * *light.position;
+    if (light.direction) light.direction = s.rotation.transpose() * *light.direction;
+    if (light.segment)
+      for (Eigen::Vector3d& end : *light.segment) end = back * end;
+    light.radius /= s.scale;
+  }
+}
+
 }  // namespace
 
 Eigen::Isometry3d GeometryCorrection::camFromWorld(const Eigen::Isometry3d& asRead) const {
@@ -97,13 +158,31 @@ Correction depthScaleCorrection(double metresPerUnit) {
   return {valued(kDepthScale, metresPerUnit), formatted("Set depth_scale to %.4g", metresPerUnit)};
 }
 
+Correction meshSimilarityCorrection(const Similarity& s) {
+  const Eigen::AngleAxisd turn(s.rotation);
+  const Eigen::Vector3d r = turn.angle() * turn.axis(), &t = s.translation;
+  std::string value = std::string(kMeshSimilarity) + "=";
+  for (const double v : {s.scale, r.x(), r.y(), r.z(), t.x(), t.y(), t.z()})
+    value += (value.back() == '=' ? "" : ",") + formatted("%.12g", v);
+  return {value, "Move the cameras into the frame of the mesh"};
+}
+
 Scene corrected(Scene scene, std::string_view fix) {
   for (const GeometryCorrection& c : geometryCorrections())
     if (fix == c.fix) {
       applyGeometry(scene, c);
       return scene;
     }
+  if (fix == "mirror-photographs")
+    throw InputError(
+        "--fix", std::string(fix),
+        "Glint does not rewrite photographs: mirror the image files themselves, for example by ImageMagick's mogrify "
+        "-flop (left-right), -flip (upside down) or -rotate 180, and give their folder by --photographs");
   const std::size_t equals = fix.find('=');
+  if (fix.substr(0, equals) == kMeshSimilarity) {
+    applySimilarity(scene, fix);
+    return scene;
+  }
   for (const ValuedCorrection& c : kValued) {
     if (fix.substr(0, equals) != c.name) continue;
     const std::optional<double> value = equals == std::string_view::npos ? std::nullopt : numberFrom(fix.substr(equals + 1));
@@ -120,8 +199,8 @@ Scene corrected(Scene scene, std::string_view fix) {
 std::string correctionNames() {
   std::string names;
   for (const GeometryCorrection& c : geometryCorrections()) names += std::string(c.fix) + ", ";
-  for (const ValuedCorrection& c : kValued) names += std::string(c.name) + "=VALUE" + (&c == std::end(kValued) - 1 ? "" : ", ");
-  return names;
+  for (const ValuedCorrection& c : kValued) names += std::string(c.name) + "=VALUE, ";
+  return names + kMeshSimilarity + "=S,RX,RY,RZ,TX,TY,TZ, flip-faces";
 }
 
 }  // namespace glint

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/geometry/similarity.h"
 #include "core/scene/scene.h"
 
 namespace glint {
@@ -33,8 +34,12 @@ Correction focalLengthCorrection(double factor);
 /// @param metresPerUnit  > 0, of integer depth maps (scene.json's depth_scale)
 Correction depthScaleCorrection(double metresPerUnit);
 
+/// "Move the cameras into the frame of the mesh": the mesh stays as it is, poses take over its frame and its unit.
+/// @param camerasFromMesh  from the mesh to the world of the cameras, both in metres as they were read
+Correction meshSimilarityCorrection(const Similarity& camerasFromMesh);
+
 /// The scene with the correction made; images, meshes and measured highlights stay as they are.
-/// @throws InputError("--fix", ...)  where there is no such correction or its value is out of range
+/// @throws InputError("--fix", ...)  where there is no such correction, its value is out of range, or the scene has what it cannot change
 Scene corrected(Scene scene, std::string_view fix);
 /// "invert-poses, turn-axes, ..., depth-scale=VALUE": for messages and help.
 std::string correctionNames();

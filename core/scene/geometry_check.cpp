@@ -45,18 +45,6 @@ std::vector<Eigen::Vector3d> sampleOf(const TriangleMesh& mesh) {
   return points;
 }
 
-/// Every edge belongs to two triangles that run along it in opposite directions.
-bool isClosed(const TriangleMesh& mesh) {
-  std::vector<std::pair<int, int>> edges;
-  edges.reserve(3 * mesh.triangles.size());
-  for (const Eigen::Vector3i& t : mesh.triangles)
-    for (int k = 0; k < 3; ++k) edges.emplace_back(t[k], t[(k + 1) % 3]);
-  std::sort(edges.begin(), edges.end());
-  if (std::adjacent_find(edges.begin(), edges.end()) != edges.end()) return false;
-  return std::all_of(edges.begin(), edges.end(),
-                     [&](const auto& e) { return std::binary_search(edges.begin(), edges.end(), std::pair(e.second, e.first)); });
-}
-
 }  // namespace
 
 const SightHypothesis* SightCheck::explanation() const {
@@ -87,20 +75,43 @@ SightCheck checkSight(const Scene& scene, const std::function<const TriangleMesh
   return check;
 }
 
-std::string sidesOf(const TriangleMesh& mesh) {
+bool isClosed(const TriangleMesh& mesh) {
+  std::vector<std::pair<int, int>> edges;
+  edges.reserve(3 * mesh.triangles.size());
+  for (const Eigen::Vector3i& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k) edges.emplace_back(t[k], t[(k + 1) % 3]);
+  std::sort(edges.begin(), edges.end());
+  if (std::adjacent_find(edges.begin(), edges.end()) != edges.end()) return false;
+  return std::all_of(edges.begin(), edges.end(),
+                     [&](const auto& e) { return std::binary_search(edges.begin(), edges.end(), std::pair(e.second, e.first)); });
+}
+
+double signedVolume(const TriangleMesh& mesh) {
   double volume = 0;
-  std::size_t against = 0;
   for (const Eigen::Vector3i& t : mesh.triangles) {
     const Eigen::Vector3d &a = mesh.vertices[std::size_t(t[0])], &b = mesh.vertices[std::size_t(t[1])],
                           &c = mesh.vertices[std::size_t(t[2])];
     volume += (a - mesh.vertices.front()).dot((b - mesh.vertices.front()).cross(c - mesh.vertices.front()));
-    if (mesh.normals.empty()) continue;
+  }
+  return volume;
+}
+
+bool normalsAgainstFacets(const TriangleMesh& mesh) {
+  if (mesh.normals.empty()) return false;
+  std::size_t against = 0;
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    const Eigen::Vector3d &a = mesh.vertices[std::size_t(t[0])], &b = mesh.vertices[std::size_t(t[1])],
+                          &c = mesh.vertices[std::size_t(t[2])];
     const Eigen::Vector3d mean =
         mesh.normals[std::size_t(t[0])] + mesh.normals[std::size_t(t[1])] + mesh.normals[std::size_t(t[2])];
     against += (b - a).cross(c - a).dot(mean) < 0;
   }
-  if (2 * against > mesh.triangles.size()) return "the normals of its vertices point against its facets";
-  if (volume < 0 && isClosed(mesh)) return "it is closed, and its facets and normals point inwards";
+  return 2 * against > mesh.triangles.size();
+}
+
+std::string sidesOf(const TriangleMesh& mesh) {
+  if (normalsAgainstFacets(mesh)) return "the normals of its vertices point against its facets";
+  if (signedVolume(mesh) < 0 && isClosed(mesh)) return "it is closed, and its facets and normals point inwards";
   return "";
 }
 

@@ -30,5 +30,11 @@ SightCheck checkSight(const Scene& scene, const std::function<const TriangleMesh
 /// What is wrong with the sides of a mesh; "" = nothing. Facets of a closed mesh look inwards, or normals of vertices point
 /// against their facets.
 std::string sidesOf(const TriangleMesh& mesh);
+/// Every edge belongs to two triangles that run along it in opposite directions.
+bool isClosed(const TriangleMesh& mesh);
+/// Six times the volume between the facets and a vertex: of a closed mesh negative where they look inwards.
+double signedVolume(const TriangleMesh& mesh);
+/// Whether most facets have normals of their vertices on the other side. False without normals.
+bool normalsAgainstFacets(const TriangleMesh& mesh);
 
 }  // namespace glint

@@ -64,6 +64,15 @@ void compareSurface(const Scene& scene, const std::vector<CaptureTrack>& tracks,
   check.depthRatio = quantile(ratios, 0.5);
 }
 
+std::vector<SeenPoint> sampleOfTracks(const Scene& scene, const std::vector<CaptureTrack>& tracks) {
+  std::vector<SeenPoint> sample;
+  const std::size_t step = std::max<std::size_t>(1, tracks.size() / kMostPoints);
+  for (std::size_t i = 0; i < tracks.size(); i += step)
+    if (!tracks[i].seen.empty())
+      sample.push_back({tracks[i].point, scene.frames[std::size_t(tracks[i].seen.front().view)].camera.centreInWorld()});
+  return sample;
+}
+
 void concludeCameras(TrackCheck& check) {
   constexpr double kGood = 2;         // px: bundle adjustment leaves less than one
   constexpr double kHalfPixel = 0.3;  // px, along x and along y at once: a shift that no distortion or noise makes
@@ -92,12 +101,14 @@ void concludeSurface(TrackCheck& check) {
   constexpr double kFew = 0.05;     // of those that meet the surface
   constexpr double kWrongUnit = 5;  // a factor that no wrong pose makes
   if (check.points < kEnough) return;
-  if (check.met < kEnough) {
+  const bool few = check.met < kEnough;
+  check.surfaceElsewhere = few || check.onSurface < kFew * check.met;
+  if (few) {
     check.findings.push_back(
         formatted("only %d of the capture's sparse points are seen before or on the surface (is the mesh in "
                   "the frame of the cameras?)",
                   check.met));
-  } else if (check.onSurface < kFew * check.met) {
+  } else if (check.surfaceElsewhere) {
     const bool unit = check.depthRatio > kWrongUnit || check.depthRatio < 1 / kWrongUnit;
     check.findings.push_back(
         formatted("the surface passes through %d of the %d sparse points that it should: it lies at %.3g times their distance ",
@@ -126,6 +137,7 @@ std::optional<TrackCheck> checkTracks(const Scene& scene, const ProgressFn& prog
   if (check.findings.empty()) {  // what the cameras get wrong moves the surface as well
     compareSurface(scene, tracks, check);
     concludeSurface(check);
+    if (check.surfaceElsewhere) check.sample = sampleOfTracks(scene, tracks);
   }
   return check;
 }

@@ -6,7 +6,7 @@
 #include <QFileInfo>
 #include <QStandardPaths>
 
-#include "core/scene/correction.h"
+#include "core/scene/corrected_files.h"
 #include "core/scene/outputs.h"
 #include "gui/base/text.h"
 #include "gui/document/own_files.h"
@@ -65,7 +65,7 @@ void InputReport::fix(const Correction& correction) {
   if (file.isEmpty()) return;
   try {
     Outputs(document_.inputFile().toStdString(), *scene).file(file.toStdString(), "--out", OutputKind::document("glint_scene"));
-    writeScene(corrected(*scene, correction.fix), file.toStdString());
+    writeScene(correctedFor(*scene, {correction.fix}, file.toStdString()), file.toStdString());
   } catch (const InputError& e) {
     emit problem(toQString(e.what()));
     return;

@@ -71,11 +71,71 @@ TEST(Corrections, UnitsOfMeshAndDepth) {
   EXPECT_DOUBLE_EQ(corrected(scene, "depth-scale=0.001").frames[0].depthScale, 0.001);
 }
 
+/// A mesh, a frame with an integer depth map and a lamp. The numbers are worked out by hand.
+Scene sceneWithMesh(const TemporaryFolder& folder, const std::string& frameKeys) {
+  folder.write("body.ply",
+               "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n"
+               "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  return readScene(folder.write("scene.json", R"({"glint_scene": 1,
+  "camera": {"width": 64, "height": 48, "fx": 80, "fy": 80, "cx": 31.5, "cy": 23.5},
+  "frames": [{"id": "a", "surface": "body", )" + frameKeys +
+                                                  R"( "camera_from_world": [[0,-1,0,1],[1,0,0,2],[0,0,1,4],[0,0,0,1]]}],
+  "surfaces": {"body": {"mesh": "body.ply"}},
+  "lights": [{"id": "lamp", "position": [5, 6, 11], "radius": 0.2}, {"id": "sun", "direction": [0, 0, 1]}]})"));
+}
+
+TEST(Corrections, CamerasMoveIntoTheFrameOfTheMesh) {
+  const TemporaryFolder folder;
+  Scene scene = sceneWithMesh(folder, "");
+  scene.frames[0].depth = folder.path() / "depth.png";
+  scene.frames[0].depthScale = 0.001;
+  // World = 2 Q mesh + (1, 2, 3) with Q a quarter turn about x: y -> z, z -> -y. In the camera: R Q m + (R t + r) / 2 with
+  // R t + r = (-2 + 1, 1 + 2, 3 + 4).
+  const Scene moved = corrected(scene, "mesh-similarity=2,1.5707963267948966,0,0,1,2,3");
+  EXPECT_TRUE(moved.frames[0].camera.camFromWorld.matrix().isApprox(
+      matrix({0, 0, 1, -0.5, 1, 0, 0, 1.5, 0, 1, 0, 3.5, 0, 0, 0, 1}), 1e-12));
+  EXPECT_DOUBLE_EQ(moved.frames[0].depthScale, 0.0005);
+  // Q^T ((5, 6, 11) - t) / 2 = Q^T (2, 2, 4) = (2, 4, -2); the sun along z: (0, 1, 0).
+  EXPECT_TRUE(moved.lights[0].position->isApprox(Eigen::Vector3d(2, 4, -2), 1e-12));
+  EXPECT_DOUBLE_EQ(moved.lights[0].radius, 0.1);
+  EXPECT_TRUE(moved.lights[1].direction->isApprox(Eigen::Vector3d(0, 1, 0), 1e-12));
+  EXPECT_DOUBLE_EQ(moved.surfaces.at("body").metresPerUnit, 1);
+}
+
+TEST(Corrections, ASimilarityComesBackFromItsText) {
+  const TemporaryFolder folder;
+  const Scene scene = sceneWithMesh(folder, "");
+  Similarity s{1e-3, Eigen::AngleAxisd(2.5, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix(), {0.3, -40, 7}};
+  const Scene moved = corrected(scene, meshSimilarityCorrection(s).fix);
+  const Eigen::Isometry3d before = scene.frames[0].camera.camFromWorld, after = moved.frames[0].camera.camFromWorld;
+  for (const Eigen::Vector3d& m : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(100, -20, 300)})  // the same line of sight
+    EXPECT_TRUE((after * m).normalized().isApprox((before * (s * m)).normalized(), 1e-9));
+}
+
+TEST(Corrections, TheFrameOfTheMeshIsRefusedWhereFilesWouldHaveToChange) {
+  const TemporaryFolder folder;
+  const char* fix = "mesh-similarity=2,0,0,0,1,2,3";
+  const auto refusal = [&](const Scene& scene) { return inputErrorOf([&] { corrected(scene, fix); }); };
+  Scene scene = sceneWithMesh(folder, "");
+  scene.frames[0].depth = folder.path() / "depth.tiff";
+  EXPECT_NE(refusal(scene).find("floating point"), std::string::npos);
+  scene = sceneWithMesh(folder, "");
+  scene.frames[0].normals = folder.path() / "normals.tiff";
+  EXPECT_NE(refusal(scene).find("normals"), std::string::npos);
+  EXPECT_NE(refusal(sceneWithPose(folder)).find("no mesh"), std::string::npos);
+  scene = sceneWithMesh(folder, "");
+  scene.surfaces["other"] = scene.surfaces["body"];
+  EXPECT_NE(refusal(scene).find("2 surfaces"), std::string::npos);
+}
+
 TEST(Corrections, RefusesWhatItDoesNotKnow) {
   const TemporaryFolder folder;
   const Scene scene = sceneWithPose(folder);
-  for (const char* fix : {"", "invert", "invert-poses=1", "principal-point", "principal-point=", "principal-point=nan",
-                          "focal-length=0", "focal-length=-1", "depth-scale=1e300", "mesh-mm"})
+  for (const char* fix :
+       {"", "invert", "invert-poses=1", "principal-point", "principal-point=", "principal-point=nan", "focal-length=0",
+        "focal-length=-1", "depth-scale=1e300", "mesh-mm", "mesh-similarity", "mesh-similarity=", "mesh-similarity=1,0,0,0,0,0",
+        "mesh-similarity=1,0,0,0,0,0,0,0", "mesh-similarity=0,0,0,0,0,0,0", "mesh-similarity=-1,0,0,0,0,0,0",
+        "mesh-similarity=1,9,0,0,0,0,0", "mesh-similarity=1,0,0,0,nan,0,0", "mesh-similarity=1,0,0,0,0,0,1e300"})
     EXPECT_NE(inputErrorOf([&] { corrected(scene, fix); }).find("--fix"), std::string::npos) << fix;
 }
 
