@@ -215,7 +215,7 @@ camera, centroid of bright pixels, clicked outlines) give the place of each lamp
 
 {psbox}
 - Flagged: the mirrored ray does not meet that of the largest highlight, or it lies at the ball's silhouette or off the ball.
-- The constant shift is one of the clicked outlines and of the published centroids. What the lamps' directions are, and what is left across the line between the balls: [lights](lights.md).
+- The place is the centre of the ellipse of a clipped contour, not a peak. `glint lights` measures the core instead, refines the outlines, and checks one ball by the other: [lights](lights.md).
 """
 
 

@@ -20,13 +20,20 @@ constexpr std::array kTriedLevels{0.5, 0.4, 0.6, 0.3, 0.7};  // low ones lie in 
 constexpr std::size_t kMostFrames = 6;  // looked at: a level is for all, and each costs fifteen detections at most
 constexpr double kLevelStep = 0.1;      // of the level
 constexpr double kCentreShare = 0.02;   // of the longer semi-axis: the ellipse's centre is then fixed to one part in fifty
-constexpr double kLobeMargin = 1.1;     // over an ideal Gaussian lobe's change of its axes: others fall off more steeply
+constexpr double kLobeMargin = 1.15;    // over an ideal lobe's change of its axes: pixels, noise and bent surfaces add to it
 constexpr double kMostNoisePx = 0.5;    // on a single point of the contour
 
 struct FrameAtLevel {
   bool found = false, stable = false, clipped = false;
   double noisePx = 0;
 };
+
+/// By what share the radius of a lobe's contour changes with the level: the larger of a Gaussian's and of GGX's, q = (1 + (2^(1/2) - 1) r^2)^-2.
+double lobeChange(double level, double factor) {
+  const auto ggx = [](double q) { return std::sqrt(1 / std::sqrt(q) - 1); };
+  return std::max(std::abs(std::sqrt(std::log(factor * level) / std::log(level)) - 1),
+                  std::abs(ggx(factor * level) / ggx(level) - 1));
+}
 
 const Highlight* largestOf(const FrameEvidence& evidence) {
   const auto largest = std::max_element(evidence.highlights.begin(), evidence.highlights.end(),
@@ -58,7 +65,7 @@ FrameAtLevel lookAt(const Scene& scene, int frame, FrameSource source, const Set
       result.stable = false;
       break;
     }
-    const double lobe = std::abs(std::sqrt(std::log(factor * level) / std::log(level)) - 1) * kLobeMargin;
+    const double lobe = lobeChange(level, factor) * kLobeMargin;
     result.stable =
         result.stable && (other->ellipse->centre - h->ellipse->centre).norm() <= kCentreShare * h->ellipse->semiAxes.x();
     for (int axis = 0; axis < 2; ++axis)

@@ -22,7 +22,7 @@ struct LevelChoice {
 
 /// Chooses the level for `detect.level`, one for all frames (method.md section 1). Where the scene gives contours, theirs. Else levels are tried from
 /// 0.5 outwards (0.5, 0.4, 0.6, 0.3, 0.7) on up to six of the frames: the first at which the largest highlight of every frame is stable under a
-/// tenth of the level (ellipse's centre within 2 % of the longer semi-axis, axes as an ideal lobe's or less) and stands out of noise by more than
+/// tenth of the level (ellipse's centre within 2 % of the longer semi-axis, axes as an ideal lobe does, Gaussian or GGX) and stands out of noise by more than
 /// half a pixel's worth; else the one at which most are. Clipped highlights are contoured at a fraction of the clip value, so every level is below it.
 /// @param frames  that are looked at, by index
 /// @return  NoHighlight where none of them shows one; FrameUnreadable

@@ -68,6 +68,18 @@ TEST(ChooseLevel, NominalALobeIsStableAtTheDefault) {
   EXPECT_NE(choice->reason.find("stable in 6 of 6 frames"), std::string::npos) << choice->reason;
 }
 
+/// The long tail of GGX changes more with the level than a Gaussian lobe does.
+TEST(ChooseLevel, NominalALongTailIsStableToo) {
+  const TemporaryFolder folder;
+  const Outcome<LevelChoice> choice = chosen(sequence(folder, 2, [](const Pixel& p) {
+    const double r2 = ((p - Pixel(90, 75)) / 14).squaredNorm();
+    return std::pow(1 + (std::sqrt(2.0) - 1) * r2, -2);
+  }));
+  ASSERT_TRUE(choice) << choice.failure().message();
+  EXPECT_EQ(choice->level, 0.5);
+  EXPECT_EQ(choice->stable, 2) << choice->reason;
+}
+
 TEST(ChooseLevel, NominalAPlateauAtTheDefaultIsAvoided) {
   const TemporaryFolder folder;
   const Outcome<LevelChoice> choice = chosen(sequence(folder, 3, lobeOnPlateau));
