@@ -181,7 +181,7 @@ def picture(inspector, shared, output):
     data = shared / "data/psbox"
     environment = dict(os.environ, QT_QPA_PLATFORM="xcb")
     subprocess.run(["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24", inspector, str(data), *psbox_balls(data, ""), "--exclude", "ref", "--frame",
-                    "Image_03", "--theme", "dark", "--screenshot", output, "--wait-idle"], env=environment, check=True)
+                    "Image_11", "--theme", "dark", "--screenshot", output, "--wait-idle"], env=environment, check=True)
 
 
 def psbox(program, shared):
