@@ -48,6 +48,7 @@ BallResults::BallResults(QWidget* parent)
                               this)),
       residuals_(new PlotCanvas),
       shares_(new PlotCanvas) {
+  setAccessibleName(tr("What was measured"));
   balls_->setObjectName(QStringLiteral("ballTable"));
   balls_->setAccessibleName(tr("Residuals of each ball"));
   balls_->setModel(ballRows_);

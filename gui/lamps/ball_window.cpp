@@ -90,7 +90,9 @@ BallWindow::BallWindow(const Engine& engine, QWidget* parent)
   auto* top = new QSplitter(Qt::Horizontal);
   top->addWidget(photographColumn());
   top->addWidget(canvas_);
-  top->addWidget(new PanelScroll(controls_, {200, 150}));
+  auto* controls = new PanelScroll(controls_, {200, 150});
+  controls->setAccessibleName(tr("Balls and camera"));
+  top->addWidget(controls);
   top->setStretchFactor(1, 1);
   top->setSizes({kListWidth, kWindow.width() - kListWidth - kControlsWidth, kControlsWidth});
   auto* all = new QSplitter(Qt::Vertical);

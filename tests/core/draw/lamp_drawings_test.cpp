@@ -71,9 +71,10 @@ TEST(BallOverlay, WhatAPersonDrewIsThereBeforeAnythingIsMeasured) {
   EXPECT_EQ(overlay.marks.size(), 2U);
 }
 
-// An eighth of 40 px is 5, ten times the longest residual of 0.5.
+// An eighth of 40 px is 5, eleven times the longest residual of 0.45.
 TEST(BallResidualScale, KeepsArrowsShort) {
   BallLamps f = fit();
+  f.lamps[0].sightings[0].residualPx = {0.27, 0.36};
   EXPECT_EQ(ballResidualScale(f.balls, f.lamps), 10);
   f.lamps[0].sightings[0].residualPx = {0, 7};
   EXPECT_EQ(ballResidualScale(f.balls, f.lamps), 1);
