@@ -29,12 +29,21 @@ QString titleOf(const UndecidedInput::Answer& answer, Question question) {
   return question == Question::Reading ? QObject::tr("Open %1").arg(words) : words;
 }
 
-void chooseMesh(const UndecidedPtr& undecided, QWidget* window, const Open& open) {
+/// @param filter  as QFileDialog takes it
+void chooseFile(const UndecidedPtr& undecided, QWidget* window, const QString& title, const QString& filter, const Open& open) {
   const QFileInfo input(undecided->path);
-  const QString file =
-      QFileDialog::getOpenFileName(window, QObject::tr("Mesh of the object"), input.isDir() ? undecided->path : input.path(),
-                                   QObject::tr("Meshes (*.ply *.obj *.stl *.gltf *.glb);;All files (*)"));
+  const QString file = QFileDialog::getOpenFileName(window, title, input.isDir() ? undecided->path : input.path(), filter);
   if (!file.isEmpty()) answer(undecided, file.toStdString(), open);
+}
+
+void chooseMesh(const UndecidedPtr& undecided, QWidget* window, const Open& open) {
+  chooseFile(undecided, window, QObject::tr("Mesh of the object"),
+             QObject::tr("Meshes (*.ply *.obj *.stl *.gltf *.glb);;All files (*)"), open);
+}
+
+void choosePoses(const UndecidedPtr& undecided, QWidget* window, const Open& open) {
+  chooseFile(undecided, window, QObject::tr("Poses of the cameras: TUM lines, or JSON lines with camera_from_world"),
+             QObject::tr("Poses (*.txt *.tum *.json *.jsonl);;All files (*)"), open);
 }
 
 void enterCamera(const UndecidedPtr& undecided, QWidget* window, const Open& open) {
@@ -73,6 +82,8 @@ MessageBar::Answers answersTo(const UndecidedPtr& undecided, QWidget* window, co
   }
   if (undecided->question == Question::Surface)
     answers << std::pair(QObject::tr("Choose mesh…"), [=] { chooseMesh(undecided, window, open); });
+  if (undecided->question == Question::Poses)
+    answers << std::pair(QObject::tr("Choose poses…"), [=] { choosePoses(undecided, window, open); });
   if (undecided->question == Question::Camera)
     answers << std::pair(QObject::tr("Enter intrinsics…"), [=] { enterCamera(undecided, window, open); });
   return answers;

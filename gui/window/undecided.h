@@ -10,7 +10,7 @@ class QWidget;
 
 namespace glint::gui {
 
-/// Buttons for what the files leave open: one for each answer, and one that asks for a mesh or for intrinsics.
+/// Buttons for what the files leave open: one for each answer, and one that asks for a mesh, for poses or for intrinsics.
 /// @param open  opens the same input with this in addition
 MessageBar::Answers answersTo(const UndecidedPtr& undecided, QWidget* window, const std::function<void(const Relinked&)>& open);
 

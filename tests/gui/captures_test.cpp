@@ -105,6 +105,34 @@ class CapturesTest : public QObject {
     QCOMPARE(toQString(window.document().scene()->surfaces.begin()->second.mesh->string()), elsewhere.filePath("object.ply"));
   }
 
+  // A folder of images says neither poses nor intrinsics: two questions, one after the other.
+  void posesOfImagesAreChosen() {
+    QImage grey(64, 48, QImage::Format_Grayscale8);
+    grey.fill(100);
+    QVERIFY(QDir().mkpath(path("frames")) && grey.save(path("frames/1.0.png")) && grey.save(path("frames/2.0.png")));
+    put(path("frames/mesh.ply"), kMesh);
+    QTemporaryDir elsewhere;
+    put(elsewhere.filePath("tracked.txt"), "1.0 0 0 -2 0 0 0 1\n2.0 0 0 -3 0 0 0 1\n");
+    MainWindow window(coreEngine());
+    window.show();
+    window.open(path("frames"));
+    answerDialog<QFileDialog>([&](QFileDialog& dialog) {
+      dialog.findChild<QLineEdit*>(QStringLiteral("fileNameEdit"))->setText(elsewhere.filePath("tracked.txt"));
+      QTest::mouseClick(dialog.findChild<QDialogButtonBox*>()->button(QDialogButtonBox::Open), Qt::LeftButton);
+    });
+    QVERIFY2(press(window, QString::fromUtf8("Choose poses…")), qPrintable(window.lastError()));
+    timers_.reset();
+    answerDialog<QInputDialog>([](QInputDialog& dialog) {
+      dialog.setTextValue("80, 80, 31.5, 23.5");
+      dialog.accept();
+    });
+    QVERIFY2(press(window, QString::fromUtf8("Enter intrinsics…")), qPrintable(window.lastError()));
+    QTRY_VERIFY_WITH_TIMEOUT(window.document().scene() && window.idle(), 20000);
+    QCOMPARE(window.document().scene()->frames.size(), std::size_t(2));
+    QVERIFY(std::abs(window.document().scene()->frames[1].camera.centreInWorld().z() + 3) < 1e-12);
+    QCOMPARE(window.document().scene()->frames[0].camera.pixelFromRay(0, 0), 80.0);
+  }
+
   void intrinsicsAreAskedForAndAskedAgainWhenTheyAreNone() {
     putTum(path(""));
     MainWindow window(coreEngine());
