@@ -110,7 +110,9 @@ class LampsOnTest : public testing::Test {
       const Lamps& on = kOn[key.first];
       const bool is = std::find(on.begin(), on.end(), key.second) != on.end();
       EXPECT_TRUE(row.state != (is ? "off" : "on")) << "frame " << key.first << ", lamp " << key.second << ": " << row.state;
-      if (row.state == "on" || row.state == "off") EXPECT_GE(row.confidence, 0.95);
+      if (row.state == "on" || row.state == "off") {
+        EXPECT_GE(row.confidence, 0.95);
+      }
       count += row.state == (is ? "on" : "off");
     }
     return count;
