@@ -151,10 +151,13 @@ std::vector<HighlightQuality> highlightQualities(const Frame& frame, const Linea
     if (!blur || !h.ellipse) continue;
     q.blurPx = widenedBy(*blur, *h.ellipse, h.level);
     if (q.blurPx > std::max(kWorthBlurPx, kWorthBlurShare * h.ellipse->semiAxes.y()))
-      q.flags.push_back(blur->motionPx > 0
-                            ? formatted("moved by %.1f px along %.0f degrees during the exposure, blurred by %.1f px",
-                                        blur->motionPx, blur->directionRad * 180 / M_PI, blur->sigmaPx)
-                            : formatted("blurred by %.1f px", blur->sigmaPx));
+      q.flags.push_back(
+          blur->motionPx > 0
+              ? formatted("no edge of the frame is sharper than a motion of %.1f px along %.0f degrees and a blur of %.1f px: "
+                          "motion during the exposure, or nothing sharp is in view",
+                          blur->motionPx, blur->directionRad * 180 / M_PI, blur->sigmaPx)
+              : formatted("no edge of the frame is sharper than a blur of %.1f px: defocus, or nothing sharp is in view",
+                          blur->sigmaPx));
   }
   if (surface && frame.lightsOn.size() <= 1 && highlights.size() > 1) nameStrangers(frame, *surface, highlights, qualities);
   return qualities;

@@ -82,13 +82,13 @@ TEST(HighlightQualities, BlurWidensByWhatTheConvolutionSays) {
   blur.sigmaPx = 6;
   const HighlightQuality q = highlightQualities(frameOf(), pixelsOf(image), nullptr, blur, {detected(image, 0)}).front();
   EXPECT_NEAR(q.blurPx, std::sqrt(std::log(2.0)) * (kA - std::sqrt(kA * kA - 2 * 36)), 0.02);
-  EXPECT_TRUE(hasFlag(q, "blurred by 6.0 px"));
+  EXPECT_TRUE(hasFlag(q, "no edge of the frame is sharper than a blur of 6.0 px"));
   blur.sigmaPx = 0.2;
   EXPECT_TRUE(highlightQualities(frameOf(), pixelsOf(image), nullptr, blur, {detected(image, 0)}).front().flags.empty());
   blur.motionPx = 20;
   blur.directionRad = 0.5;
   EXPECT_TRUE(hasFlag(highlightQualities(frameOf(), pixelsOf(image), nullptr, blur, {detected(image, 0)}).front(),
-                      "moved by 20.0 px along 29 degrees"));
+                      "a motion of 20.0 px along 29 degrees"));
 }
 
 TEST(HighlightQualities, SilhouettesAndStrangersOnASphere) {
