@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <fstream>
 
+#include "core/base/number_text.h"
 #include "core/scene/geometry_check.h"
 #include "core/scene/mesh_file.h"
 #include "tests/core/scene/scene_fixture.h"
@@ -50,7 +51,7 @@ std::string asPly(const TriangleMesh& mesh) {
   ply += "element face 4\nproperty list uchar int vertex_indices\nend_header\n";
   for (std::size_t i = 0; i < 4; ++i) {
     for (const Vector3d& v : {mesh.vertices[i], mesh.normals[i]})
-      for (int k = 0; k < 3; ++k) ply += std::to_string(v[k]) + " ";
+      for (int k = 0; k < 3; ++k) ply += formatted("%.17g", v[k]) + " ";
     ply += "\n";
   }
   for (const Eigen::Vector3i& t : mesh.triangles)
