@@ -150,6 +150,18 @@ PlotPoint photographPoint(const LampAnswer& lamp, std::size_t index, double x, d
   return point;
 }
 
+/// Nothing but its axes.
+PlotData photographPlot(const std::vector<LampAnswer>& lamps, const char* id, const char* title, const char* values) {
+  PlotData plot;
+  plot.id = id;
+  plot.title = title;
+  plot.x = photographAxis(lamps);
+  plot.y.title = values;
+  plot.y.from = 0;
+  plot.noValue = "no answer";
+  return plot;
+}
+
 PlotPoint withoutAnswer(const LampAnswer& lamp, std::size_t index, double x) {
   PlotPoint point = photographPoint(lamp, index, x, std::numeric_limits<double>::quiet_NaN(), "no answer");
   if (lamp.failure) point.label += ": " + lamp.failure->message();
@@ -160,13 +172,7 @@ PlotPoint withoutAnswer(const LampAnswer& lamp, std::size_t index, double x) {
 }  // namespace
 
 PlotData ballResidualPlot(const std::vector<LampAnswer>& lamps, std::size_t balls) {
-  PlotData plot;
-  plot.id = "ball-residuals";
-  plot.title = "Residual of every highlight";
-  plot.x = photographAxis(lamps);
-  plot.y.title = "seen less predicted (px)";
-  plot.y.from = 0;
-  plot.noValue = "no answer";
+  PlotData plot = photographPlot(lamps, "ball-residuals", "Residual of every highlight", "seen less predicted (px)");
   if (lamps.empty()) plot.empty = "No photograph was measured.";
   if (balls == 1)
     plot.empty = "One ball: nothing is redundant, so no residual tells anything. A second ball in the same photographs does.";
@@ -204,13 +210,8 @@ PlotData ballResidualPlot(const std::vector<LampAnswer>& lamps, std::size_t ball
 
 PlotData outlineSharePlot(const std::vector<LampAnswer>& lamps) {
   constexpr double kPercent = 100;
-  PlotData plot;
-  plot.id = "outline-shares";
-  plot.title = "What each photograph says of the outlines";
-  plot.x = photographAxis(lamps);
-  plot.y.title = "share of information (%)";
-  plot.y.from = 0;
-  plot.noValue = "no answer";
+  PlotData plot =
+      photographPlot(lamps, "outline-shares", "What each photograph says of the outlines", "share of information (%)");
   PlotSeries bars;
   bars.name = "highlights of the photograph";
   bars.colour = kBallColours.front();

@@ -31,9 +31,10 @@ void sayHowManyFailed(LampsReport& report) {
 void sayWhatIsMissing(const BallQuestion& q, bool camera, LampsReport& report) {
   if (!camera)
     report.warnings.emplace_back(
-        "no focal length (neither --camera nor EXIF): directions assume a distant camera, which costs up to about the angle "
-        "between the ball's far edge and the image's middle, and no positions are known");
-  if (!camera && q.ballRadius) report.warnings.emplace_back("--ball-radius has no use without --camera");
+        "no focal length is known: directions assume a distant camera, which costs up to about the angle between the ball's far "
+        "edge and the image's middle, and lamps have no positions; state the camera to get them");
+  if (!camera && q.ballRadius)
+    report.warnings.emplace_back("the balls' radius has no use without a focal length: state the camera, too");
   if (camera && q.balls.size() > 1 && !q.ballRadius)
     report.warnings.emplace_back("all balls are taken to be of one size, whose radius is the unit of length");
   if (report.balls && report.balls->noiseFactor > kMuchMore)
@@ -101,7 +102,7 @@ Outcome<LampsReport> lampsReportOf(const BallQuestion& q, const BallShots& shots
   if (focalAlone)
     report.warnings.push_back(
         formatted("the focal length is that of EXIF, %g mm on 35 mm film, with the principal point in the "
-                  "middle and no lens distortion: directions only, good to about half a degree (--camera)",
+                  "middle and no lens distortion: directions only, good to about half a degree; state the camera for positions",
                   filmMm));
   sayWhatIsMissing(q, camera.has_value(), report);
   sayHowManyFailed(report);
