@@ -102,8 +102,8 @@ std::string whatIsUnderstood() {
   for (const auto& reader : posedReaders())
     if (!reader->recognise(input).empty())
       throw UndecidedInput(input.string(),
-                           std::string(reader->name() == "video" ? "is or holds a video" : "is or holds images") +
-                               " and no cameras; name their poses by --poses FILE (TUM or JSON lines) and their intrinsics by "
+                           std::string(reader->name() == "video" ? "a video without cameras" : "images without cameras") +
+                               "; name their poses by --poses FILE (TUM or JSON lines) and their intrinsics by "
                                "--camera fx,fy,cx,cy[,k1,k2,p1,p2,k3]",
                            UndecidedInput::Question::Poses, {});
   if (!folder && !fs::is_regular_file(status)) throw InputError(input.string(), "", "is a device or a pipe, not a file");

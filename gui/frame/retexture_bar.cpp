@@ -351,7 +351,7 @@ void RetextureBar::ask() {
   }
   if (wish.file.empty() && wish.request.base != RetextureBase::Removed)
     return problem(wish.request.base == RetextureBase::Texture
-                       ? tr("Choose a picture that becomes the surface's albedo.")
+                       ? tr("Choose a picture to put on the surface.")
                        : tr("Choose a picture of this frame without its highlight, of the same size."));
   if (!results || !results->models.count(wish.request.model)) {
     if (answer_.frame < 0) say(tr("There are no results of a model yet."));
