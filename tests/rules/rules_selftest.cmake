@@ -111,9 +111,9 @@ plant(layers.cmake viz/CMakeLists.txt "target_link_libraries(glint_viz PRIVATE g
 plant(layers.cmake tests/core/part/CMakeLists.txt "glint_add_test(NAME core_part SOURCES a_test.cpp ROOMS stability)\n")
 
 foreach(library VTK::RenderingCore VTK::CommonCore pcl_io "\${PCL_LIBRARIES}" "\${PCL_FEATURES_LIBRARIES}" pcl_features)
-  plant(layers.cmake core/CMakeLists.txt "target_link_libraries(glint_core INTERFACE ${library})\n")
+  plant(layers.cmake core/CMakeLists.txt "target_link_libraries(glint_shared_core INTERFACE ${library})\n")
 endforeach()
-plant(layers.cmake core/CMakeLists.txt "target_link_libraries(glint_core PRIVATE Qt5::Core)\n")
+plant(layers.cmake core/CMakeLists.txt "target_link_libraries(glint_shared_core PRIVATE Qt5::Core)\n")
 plant(layers.cmake viz/CMakeLists.txt "target_link_libraries(glint_viz PRIVATE Qt\${QT_VERSION_MAJOR}::Widgets)\n")
 
 string(REPEAT "int x();\n" 700 long)
