@@ -14,6 +14,7 @@
 #include "core/base/number_text.h"
 #include "core/base/safe_text.h"
 #include "core/base/task_memory.h"
+#include "core/base/version.h"
 
 namespace glint::cli {
 

@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
 #include "core/base/number_text.h"
+#include "core/base/version.h"
 #include "core/inspect/summary.h"
 #include "core/report/report.h"
 #include "core/report/warnings.h"

@@ -14,6 +14,7 @@
 #include "core/base/limits.h"
 #include "core/base/outcome.h"
 #include "core/base/task_memory.h"
+#include "core/base/version.h"
 #include "core/scene/outputs.h"
 #include "gui/base/error_line.h"
 #include "gui/base/input_rules.h"

@@ -51,7 +51,7 @@ const Lesson* lessonById(const QString& id) {
 QString lessonFile(const QString& id) {
   QStringList folders{qEnvironmentVariable("GLINT_LESSONS")};
   QDir folder(QCoreApplication::applicationDirPath());
-  folders << folder.filePath(QStringLiteral("../share/glint/lessons"));
+  folders << folder.filePath(QStringLiteral("../share/glint/sessions/lessons"));
   for (int up = 0; up < 4; ++up, folder.cdUp()) folders << folder.filePath(QStringLiteral("sessions/lessons"));
   for (const QString& path : folders) {
     if (path.isEmpty()) continue;

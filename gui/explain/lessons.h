@@ -21,7 +21,7 @@ struct Lesson {
 const QList<Lesson>& lessons();
 /// Null for an unknown id.
 const Lesson* lessonById(const QString& id);
-/// The lesson's session: in $GLINT_LESSONS, beside the program (share/glint/lessons), or in the source tree that the program was
+/// The lesson's session: in $GLINT_LESSONS, beside the program (share/glint/sessions/lessons), or in the source tree that the program was
 /// built in; "" when it is in none of them.
 QString lessonFile(const QString& id);
 
