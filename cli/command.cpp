@@ -15,6 +15,8 @@
 #include "core/base/safe_text.h"
 #include "core/base/task_memory.h"
 #include "core/base/version.h"
+#include "core/plugin/load.h"
+#include "viz/added_layer.h"
 
 namespace glint::cli {
 
@@ -151,16 +153,68 @@ void Options::choice(std::string& target, const std::string& flags, const std::v
 }
 void Options::flag(bool& target, const std::string& flags, const std::string& help) { parser_.app.add_flag(flags, target, help); }
 
-int runCommandLine(int argc, char** argv, const std::vector<Command>& commands) {
+namespace {
+
+/// The plugins that --plugin names, which are loaded before the commands are made: they list models and layers.
+std::vector<std::filesystem::path> namedPlugins(int argc, char** argv) {
+  const std::string flag = "--plugin";
+  std::vector<std::filesystem::path> files;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument == "--") break;
+    if (argument == flag && i + 1 < argc) files.emplace_back(argv[++i]);
+    if (argument.rfind(flag + "=", 0) == 0) files.emplace_back(argument.substr(flag.size() + 1));
+  }
+  return files;
+}
+
+/// Options that every command has.
+struct Everywhere {
+  std::vector<std::string> limits;
+  std::vector<std::string> plugins;  ///< loaded already
+  bool allWarnings = false;
+
+  void declare(CLI::App& app) {
+    const auto repeated = [&app](std::vector<std::string>& target, const char* flag, const char* type, const std::string& help) {
+      app.add_option(flag, target, help + "; may be repeated")->type_name(type)->expected(1)->take_all()->group(kEverywhere);
+    };
+    repeated(limits, "--limit", "NAME=VALUE", "Raise a limit on input size, in the unit of its name: " + limitNames());
+    repeated(plugins, "--plugin", "FILE",
+             "Load this plugin: a shared library that adds models, lobes, surfaces, readers or layers");
+    app.add_flag("--all-warnings", allWarnings, "Print each warning on a separate line (default: all on one line)")
+        ->group(kEverywhere);
+  }
+};
+
+/// What a command line that cannot be parsed ends with: a page that was asked for, or one line that says what is wrong.
+int answer(const CLI::App& app, const CLI::ParseError& e, const std::string& first, const std::vector<Command>& commands) {
+  if (e.get_exit_code() == 0) {  // --help, --version
+    std::ostringstream page;
+    app.exit(e, page, page);
+    Context().print(page.str());
+    return kDone;
+  }
+  const bool known = std::any_of(commands.begin(), commands.end(), [&](const Command& c) { return c.name == first; });
+  if (!known && !first.empty() && first[0] != '-')
+    return fail("'" + first + "' is not a command (see glint --help)", kWrongInput);
+  std::string who;
+  for (const CLI::App* sub : app.get_subcommands()) who = sub->get_name() + " ";
+  return fail(std::string(e.what()) + " (see glint " + who + "--help)", kWrongInput);
+}
+
+int run(int argc, char** argv, const std::vector<Command>& commands) {
   CLI::App app("Predicts specular highlights from a few images of a known scene.", "glint");
   app.formatter(std::make_shared<Page>());
-  app.set_version_flag("--version", std::string("glint ") + GLINT_VERSION);
+  app.set_version_flag("--version", std::string("glint ") + GLINT_VERSION + pluginLines());
   app.set_help_flag("-h,--help", "Show this page");
   app.require_subcommand(1);
   app.footer("`glint COMMAND --help` describes a command.\n" + std::string(kExitCodes));
   const Command* chosen = nullptr;
-  std::vector<std::string> limits;
-  bool allWarnings = false;
+  Everywhere everywhere;
+  app.add_option("--plugin", everywhere.plugins, "Load this plugin; also behind the command")
+      ->type_name("FILE")
+      ->expected(1)
+      ->take_all();
   for (const Command& command : commands) {
     CLI::App* sub = app.add_subcommand(command.name, command.summary);
     sub->formatter(std::make_shared<Page>());
@@ -171,37 +225,27 @@ int runCommandLine(int argc, char** argv, const std::vector<Command>& commands) 
     Options::Parser parser{*sub};
     Options options(parser);
     command.declare(options);
-    sub->add_option("--limit", limits,
-                    "Raise a limit on input size, in the unit of its name: " + limitNames() + "; may be repeated")
-        ->type_name("NAME=VALUE")
-        ->expected(1)
-        ->take_all()
-        ->group(kEverywhere);
-    sub->add_flag("--all-warnings", allWarnings, "Print each warning on a separate line (default: all on one line)")
-        ->group(kEverywhere);
+    everywhere.declare(*sub);
     sub->callback([&chosen, &command] { chosen = &command; });
   }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return answer(app, e, argc > 1 ? argv[1] : "", commands);
+  }
+  for (const std::string& limit : everywhere.limits) setLimit(limit);
+  showEachWarning(everywhere.allWarnings);
+  return chosen->run(Context());
+}
+
+}  // namespace
+
+int runCommandLine(int argc, char** argv, const std::function<std::vector<Command>()>& makeCommands) {
   return guarded([&]() -> int {
-    try {
-      app.parse(argc, argv);
-    } catch (const CLI::ParseError& e) {
-      if (e.get_exit_code() == 0) {  // --help, --version
-        std::ostringstream page;
-        app.exit(e, page, page);
-        Context().print(page.str());
-        return kDone;
-      }
-      const std::string first = argc > 1 ? argv[1] : "";
-      const bool known = std::any_of(commands.begin(), commands.end(), [&](const Command& c) { return c.name == first; });
-      if (!known && !first.empty() && first[0] != '-')
-        return fail("'" + first + "' is not a command (see glint --help)", kWrongInput);
-      std::string who;
-      for (const CLI::App* sub : app.get_subcommands()) who = sub->get_name() + " ";
-      return fail(std::string(e.what()) + " (see glint " + who + "--help)", kWrongInput);
-    }
-    for (const std::string& limit : limits) setLimit(limit);
-    showEachWarning(allWarnings);
-    return chosen->run(Context());
+    std::vector<std::string> refused = loadPlugins(namedPlugins(argc, argv));
+    for (std::string& line : viz::addPluginLayers()) refused.push_back(std::move(line));
+    for (const std::string& line : refused) Context().warn(line);
+    return run(argc, argv, makeCommands());
   });
 }
 

@@ -71,6 +71,6 @@ struct Command {
 
 /// Parses and runs; the whole of main. Never throws. Ctrl-C and SIGTERM end the program within 200 ms, also where the work
 /// does not ask for progress: temporary files of unfinished writes are removed then.
-int runCommandLine(int argc, char** argv, const std::vector<Command>& commands);
+int runCommandLine(int argc, char** argv, const std::function<std::vector<Command>()>& makeCommands);
 
 }  // namespace glint::cli

@@ -7,25 +7,28 @@ int main(int argc, char** argv) {
   // First of all: a Ctrl-C from here on ends the program in its own way, and threads inherit the blocked signals.
   const InterruptGuard interrupts;
   // The order is that of `glint --help`; one command a line, so that two additions merge.
-  const int code = runCommandLine(argc, argv,
-                                  {
-                                      infoCommand(),
-                                      detectCommand(),
-                                      reconstructCommand(),
-                                      predictCommand(),
-                                      retextureCommand(),
-                                      evaluateCommand(),
-                                      tradeoffCommand(),
-                                      lightsCommand(),
-                                      synthCommand(),
-                                      convertCommand(),
-                                      renderCommand(),
-                                      movieCommand(),
-                                      replayCommand(),
-                                      compareCommand(),
-                                      stabilityCommand(),
-                                      settingsCommand(),
-                                  });
+  const int code = runCommandLine(argc, argv, [] {
+    // clang-format off
+    return std::vector<Command>{
+        infoCommand(),
+        detectCommand(),
+        reconstructCommand(),
+        predictCommand(),
+        retextureCommand(),
+        evaluateCommand(),
+        tradeoffCommand(),
+        lightsCommand(),
+        synthCommand(),
+        convertCommand(),
+        renderCommand(),
+        movieCommand(),
+        replayCommand(),
+        compareCommand(),
+        stabilityCommand(),
+        settingsCommand(),
+    };
+    // clang-format on
+  });
   if (interrupted()) leaveAtOnce(code);
   return code;
 }

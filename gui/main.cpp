@@ -15,6 +15,7 @@
 #include "core/base/outcome.h"
 #include "core/base/task_memory.h"
 #include "core/base/version.h"
+#include "core/plugin/load.h"
 #include "core/scene/outputs.h"
 #include "gui/base/error_line.h"
 #include "gui/base/input_rules.h"
@@ -24,6 +25,7 @@
 #include "gui/window/fit_on_screen.h"
 #include "gui/window/main_window.h"
 #include "gui/window/screenshot.h"
+#include "viz/added_layer.h"
 #include "viz/display_connection.h"
 
 namespace {
@@ -66,6 +68,14 @@ void openInput(glint::gui::MainWindow& window, const glint::gui::CommandLine& co
   window.lamps()->openBalls(question, command.frame);
 }
 
+/// Prints a line for each that is refused.
+void loadPluginsOf(const glint::gui::CommandLine& command) {
+  std::vector<std::filesystem::path> files;
+  for (const QString& file : command.plugins) files.emplace_back(file.toStdString());
+  for (const std::string& line : glint::loadPlugins(files)) glint::gui::printErrorLine(line);
+  for (const std::string& line : glint::viz::addPluginLayers()) glint::gui::printErrorLine(line);
+}
+
 bool starting = true;  ///< What Qt cannot do until its first window is the user's business, and no fault of the program.
 
 int run(int argc, char** argv) {
@@ -74,7 +84,8 @@ int run(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) arguments << QString::fromLocal8Bit(argv[i]);
   const CommandLine command = parseCommandLine(arguments);
   if (command.help) return std::fputs(helpText().toUtf8().constData(), stdout) < 0;
-  if (command.version) return std::puts("glint-inspector " GLINT_VERSION) < 0;
+  loadPluginsOf(command);
+  if (command.version) return std::puts(("glint-inspector " GLINT_VERSION + glint::pluginLines()).c_str()) < 0;
   for (const QString& limit : command.limits) glint::setLimit(limit.toStdString());
   if (!platformDraws(argc, argv))
     throw glint::InputError("", "QT_QPA_PLATFORM",

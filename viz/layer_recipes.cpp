@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "core/plugin/load.h"
+#include "viz/added_layer.h"
 #include "viz/layers.h"
 
 namespace glint::viz {
 
-const std::vector<LayerRecipe>& layerRecipes() {
+namespace {
+
+std::vector<LayerRecipe>& registered() {
   constexpr unsigned kPlace = kOnInspection | kOnSurface | kOnHidden;  // everything that lies in the scene
-  static const std::vector<LayerRecipe> recipes{
+  static std::vector<LayerRecipe> recipes{
       {{"surface", "Surface", true}, kOnSurface | kOnHidden, surfaceLayer},
       {{"cameras", "Cameras", true},
        kPlace | kOnFrame | kOnModels | kOnGlyphs | kOnTheme | kOnEye | kOnColours | kOnSolo,
@@ -36,6 +42,39 @@ const std::vector<LayerRecipe>& layerRecipes() {
   };
   return recipes;
 }
+
+/// Keeps the layers of one plugin until all of them have been checked.
+class Staged final : public LayerRegistry {
+ public:
+  void add(const LayerRecipe& recipe) override {
+    const std::string& name = recipe.layer.name;
+    require(recipe.build != nullptr, "layer '" + name + "': it has no function");
+    for (const auto* list : {&registered(), &recipes})
+      for (const LayerRecipe& other : *list)
+        require(!name.empty() && other.layer.name != name, "layer '" + name + "': the name is taken or empty");
+    recipes.push_back(recipe);
+  }
+  std::vector<LayerRecipe> recipes;
+};
+
+}  // namespace
+
+std::vector<std::string> addPluginLayers() {
+  std::vector<std::string> refused;
+  for (const LoadedPlugin& plugin : loadedPlugins()) {
+    if (!plugin.declaration->addLayers) continue;
+    Staged staged;
+    try {
+      plugin.declaration->addLayers(staged);
+      registered().insert(registered().end(), staged.recipes.begin(), staged.recipes.end());
+    } catch (const std::exception& e) {
+      refused.push_back("layers of plugin '" + plugin.name + "' not added: " + e.what());
+    }
+  }
+  return refused;
+}
+
+const std::vector<LayerRecipe>& layerRecipes() { return registered(); }
 
 const std::vector<Layer>& sceneLayers() {
   static const std::vector<Layer> layers = [] {

@@ -7,7 +7,7 @@
 
 namespace glint {
 
-/// The text that `std::printf` would write, of any length: formatted("%.3g %%", 12.5). Numbers have a decimal point whatever
+/// The text that printf() of C would write, of any length: formatted("%.3g %%", 12.5). Numbers have a decimal point whatever
 /// locale the process or the thread has set (Qt sets the user's for the whole process). Safe from every thread. Not fmt: the compiler
 /// checks these formats at every call, and fmt's templates would be compiled in every file that writes a number.
 [[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);

@@ -6,13 +6,15 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/base/added_choice.h"
 #include "core/base/depth_settings.h"
 #include "core/base/level_range.h"
 #include "core/base/outcome.h"
 
 namespace glint {
 
-const std::vector<ParamSpec>& allParams() {
+namespace {
+std::vector<ParamSpec>& params() {
   static const std::vector<ParamSpec> others = {
       {"detect.level",
        "Contour level",
@@ -460,8 +462,17 @@ const std::vector<ParamSpec>& allParams() {
        "The same for the focal length of all cameras, as a fraction: f (1 ± t_f). Uniform: σ² = d²/3.",
        "predict"},
   };
-  static const std::vector<ParamSpec> params = withDepthParams(others);
-  return params;
+  static std::vector<ParamSpec> all = withDepthParams(others);
+  return all;
+}
+}  // namespace
+
+const std::vector<ParamSpec>& allParams() { return params(); }
+
+void addChoice(const std::string& key, const std::string& choice) {
+  const auto spec = std::find_if(params().begin(), params().end(), [&](const ParamSpec& p) { return p.key == key; });
+  require(spec != params().end() && !spec->choices.empty(), "addChoice: '" + key + "' is no setting with a list of values");
+  spec->choices.push_back(choice);
 }
 
 const ParamSpec& paramSpec(const std::string& key) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/capture/capture.h"
 
+#include "core/capture/added_reader.h"
+
 namespace glint {
 
 const char* UndecidedInput::option() const {
@@ -16,8 +18,9 @@ const char* UndecidedInput::option() const {
 
 std::vector<CaptureTrack> CaptureReader::tracks(const Capture&, const CaptureOptions&) const { return {}; }
 
-const std::vector<std::unique_ptr<const CaptureReader>>& captureReaders() {
-  static const std::vector<std::unique_ptr<const CaptureReader>> readers = [] {
+namespace {
+std::vector<std::unique_ptr<const CaptureReader>>& registered() {
+  static std::vector<std::unique_ptr<const CaptureReader>> readers = [] {
     std::vector<std::unique_ptr<const CaptureReader>> list;
     list.push_back(makeColmapReader());
     list.push_back(makeNvmReader());
@@ -28,6 +31,22 @@ const std::vector<std::unique_ptr<const CaptureReader>>& captureReaders() {
     return list;
   }();
   return readers;
+}
+}  // namespace
+
+const std::vector<std::unique_ptr<const CaptureReader>>& captureReaders() { return registered(); }
+
+void checkCaptureReader(const CaptureReader& reader) {
+  const std::string name = reader.name();
+  for (const char* other : {"", "scene", "session", "images", "video"})
+    require(name != other, "reader: the name '" + name + "' is taken or empty");
+  require(!captureReaderNamed(name), "reader: the name '" + name + "' is taken");
+}
+
+void addCaptureReader(std::unique_ptr<const CaptureReader> reader) {
+  require(reader != nullptr, "addCaptureReader: no reader");
+  checkCaptureReader(*reader);
+  registered().push_back(std::move(reader));
 }
 
 const CaptureReader* captureReaderNamed(const std::string& name) {

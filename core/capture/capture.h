@@ -117,7 +117,7 @@ std::unique_ptr<const CaptureReader> makeTumReader();
 std::unique_ptr<const CaptureReader> makeBundlerReader();
 std::unique_ptr<const CaptureReader> makeBopReader();
 
-/// A folder of images, and a video, whose poses `CaptureOptions::poses` names. Not among captureReaders(): nothing in such a folder
+/// A folder of images, and a video, whose poses CaptureOptions names (its `poses`). Not among captureReaders(): nothing in such a folder
 /// says that it is a capture, so only who names the poses asks them.
 std::unique_ptr<const CaptureReader> makeImagesReader();
 std::unique_ptr<const CaptureReader> makeVideoReader();

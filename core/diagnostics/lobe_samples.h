@@ -51,7 +51,7 @@ struct LobeOptions {
 /// (core/highlight/background.h). The lobe is fitted by least squares on log I weighted by I^2 (equal noise on I).
 /// @param linear   1 or 3 channels (averaged), linear radiance, distorted as the camera is.
 /// @param mask     optional, non-zero on the glossy object.
-/// @param contour  ideal px, with its ellipse. NotAnEllipse without one.
+/// @param highlight  ideal px, with its ellipse. NotAnEllipse without one.
 /// NoHighlight when nothing stands out of the background; TooFewPoints when no pixel is on the lit surface above the background.
 Outcome<LobeSamples> lobeSamples(const Image& linear, const Image* mask, const Highlight& highlight, const Camera& camera,
                                  const Surface& surface, const Light& light, const LobeOptions& options = {});

@@ -26,7 +26,7 @@ std::optional<Observation> observeFrame(std::shared_ptr<const Scene> scene, cons
                                         const ProgressFn& progress = {}, const Inspection* known = nullptr);
 
 /// What earlier results say about the frame, held against a newer observation of it: their fits and predictions, the new
-/// evidence, and errors between the two. Only this frame's: `ModelResult::oneFrame`.
+/// evidence, and errors between the two. Only this frame's, as ModelResult says (`oneFrame`).
 /// @param earlier  of the same scene as read
 Inspection heldAgainst(const Inspection& earlier, const Observation& observation);
 

@@ -45,7 +45,6 @@ Outcome<NormalisedContours> normalised(std::vector<ContourEvidence> points);
 /// As bundleLight() and leftOutErrors() for points whose rays were cast before: several solutions for the same views.
 /// @param evidence  of contoursOnSurfaces()
 /// @param views     how many there are
-/// @param places    of placesOf(), one per view
 Outcome<Bundle> bundleLight(const std::vector<ContourEvidence>& evidence, std::size_t views, const Light& start,
                             const BundleOptions& options);
 
@@ -53,6 +52,7 @@ Outcome<Bundle> bundleLight(const std::vector<ContourEvidence>& evidence, std::s
 /// rmsWithoutTail() of its points. NaN for a view without a point on its surface, and for all of them below five points.
 std::vector<double> typicalResidualsPx(const std::vector<ContourEvidence>& evidence, std::size_t views, const Light& light,
                                        double limitAngle);
+/// @param places    of placesOf(), one per view
 Outcome<LeftOutErrors> leftOutErrors(const std::vector<ContourEvidence>& evidence, const std::vector<int>& places,
                                      const Light& start, const BundleOptions& options, int atMost);
 

@@ -8,6 +8,7 @@
 #include "core/base/number_text.h"
 #include "core/base/settings.h"
 #include "core/model/model.h"
+#include "core/reflectance/added_lobe.h"
 #include "core/reflectance/fit.h"
 #include "core/reflectance/fit_search.h"
 
@@ -19,7 +20,7 @@ inline constexpr double kWidestStart = 1.3;  ///< rad, of the first guess of a l
 inline std::vector<Lobe> lobesOf(const Settings& settings) {
   const std::string& name = settings.text("fit.lobe");
   if (name != "auto") return {*lobeOf(name)};
-  return {Lobe::TorranceSparrow, Lobe::Ggx, Lobe::BlinnPhong, Lobe::Phong};
+  return allLobes();
 }
 
 /// The shapes of a lamp, beside a point, that `fit.light_size` admits.

@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "core/reflectance/added_lobe.h"
 #include "core/reflectance/lobe_width.h"
 #include "core/reflectance/segment_fit.h"
 
@@ -21,8 +22,6 @@ constexpr std::size_t kPromisingStarts = 6;  // of those that a short fit to few
 constexpr double kFarFromAnyLobe = 6;
 constexpr int kMostRounds = 3;  // of lobes that start again from a better one: each round must have found a better light
 constexpr double kNarrowestGuess = 1e-4, kWidestGuess = 1.0;  // roughness of first guesses
-
-bool isMicrofacet(Lobe lobe) { return lobe == Lobe::TorranceSparrow || lobe == Lobe::Ggx; }
 
 bool isBetter(const RadianceFit& a, const RadianceFit& b) { return a.poor != b.poor ? b.poor : a.cost < b.cost; }
 

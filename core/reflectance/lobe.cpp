@@ -6,6 +6,7 @@
 
 #include "core/base/outcome.h"
 #include "core/geometry/light.h"
+#include "core/reflectance/added_lobe.h"
 #include "core/reflectance/lobe_terms.h"
 
 namespace glint {
@@ -19,13 +20,15 @@ constexpr std::array<std::pair<Lobe, const char*>, 4> kNames{
 std::optional<Lobe> lobeOf(const std::string& name) {
   for (const auto& [lobe, text] : kNames)
     if (name == text) return lobe;
+  for (const Lobe lobe : allLobes())
+    if (name == nameOf(lobe)) return lobe;
   return std::nullopt;
 }
 
 const char* nameOf(Lobe lobe) {
   for (const auto& [known, text] : kNames)
     if (lobe == known) return text;
-  return "";
+  return addedLobeName(lobe);
 }
 
 double beckmannLambda(double roughness, double tanTheta) { return lobe::beckmannLambda(roughness, tanTheta * tanTheta); }

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "core/reflectance/added_lobe.h"
 #include "core/reflectance/lobe.h"
 
 namespace glint::lobe {
@@ -72,9 +73,14 @@ Terms<T> terms(Lobe lobe, const T& m, const Eigen::Vector3d& n, const Eigen::Mat
   if (lobe == Lobe::TorranceSparrow) {
     out.lobe = -tan2 / m2 - log(T(M_PI) * m2) - T(4.0) * logCosH;
     out.masking = -log1p(beckmannLambda<T>(m, tan2L) + beckmannLambda<T>(m, tan2V));
-  } else {
+  } else if (lobe == Lobe::Ggx) {
     out.lobe = T(-2.0) * log1p(tan2 / m2) - log(T(M_PI) * m2) - T(4.0) * logCosH;
     out.masking = -log1p(ggxLambda<T>(m, tan2L) + ggxLambda<T>(m, tan2V));
+  } else {
+    const LobeProfile& added = *profileOf(lobe);
+    out.lobe = addedDistribution<T>(added, m, tan2);
+    if (!added.isMicrofacet()) return out;
+    out.masking = -log1p(addedLambda<T>(added, m, tan2L) + addedLambda<T>(added, m, tan2V));
   }
   out.cosines = -log(T(4.0) * normal.dot(view));
   return out;
@@ -96,7 +102,13 @@ class LobeAt {
         normal_(normal.cast<T>()),
         view_(toCamera.cast<T>()) {
     using std::log;
-    if (lobe_ != Lobe::TorranceSparrow && lobe_ != Lobe::Ggx) return;
+    if (lobe_ != Lobe::TorranceSparrow && lobe_ != Lobe::Ggx) {
+      added_ = profileOf(lobe_);
+      if (!added_ || !added_->isMicrofacet()) return;
+      masking_ = T(1.0) + lambda(tanSquared<T>(normal_, view_));
+      constant_ = -log(T(4.0) * normal_.dot(view_));
+      return;
+    }
     masking_ = T(1.0) + lambda(tanSquared<T>(normal_, view_));
     constant_ = log(inverse_) - log(T(4 * M_PI) * normal_.dot(view_));
   }
@@ -112,6 +124,9 @@ class LobeAt {
               T(-0.25) * inverse_ * log1p(tanSquared<T>((T(2.0) * normal_.dot(toLight) * normal_ - toLight).eval(), view_))};
     const T tan2 = tanSquared<T>(normal_, (toLight + view_).eval());
     if (lobe_ == Lobe::BlinnPhong) return {T(1.0), T(1.0), -inverse_ * log1p(tan2)};
+    if (added_)
+      return {T(1.0), added_->isMicrofacet() ? T(masking_ + lambda(tanSquared<T>(normal_, toLight))) : T(1.0),
+              addedDistribution<T>(*added_, roughness_, tan2)};
     const T secant = T(1.0) + tan2;
     const T masking = masking_ + lambda(tanSquared<T>(normal_, toLight));
     if (lobe_ == Lobe::TorranceSparrow) return {secant * secant, masking, -tan2 * inverse_};
@@ -121,10 +136,12 @@ class LobeAt {
 
  private:
   T lambda(const T& tan2) const {
+    if (added_) return addedLambda<T>(*added_, roughness_, tan2);
     return lobe_ == Lobe::Ggx ? ggxLambda<T>(roughness_, tan2) : beckmannLambda<T>(roughness_, tan2);
   }
 
   Lobe lobe_;
+  const LobeProfile* added_ = nullptr;
   T roughness_, inverse_;  ///< m, 1 / m^2
   Eigen::Matrix<T, 3, 1> normal_, view_;
   T masking_{1.0}, constant_{0.0};

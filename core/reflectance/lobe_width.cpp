@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/outcome.h"
+#include "core/reflectance/added_lobe.h"
 
 namespace glint {
 namespace {
@@ -20,7 +21,18 @@ double fall(Lobe lobe, double m, double theta) {
     case Lobe::BlinnPhong: return -2 / (m * m) * logCos;
     case Lobe::Phong: return 2 * theta < M_PI / 2 ? -std::log(std::cos(2 * theta)) / (2 * m * m) : HUGE_VAL;
   }
-  return HUGE_VAL;
+  const LobeProfile& added = *profileOf(lobe);
+  return added.logDistribution(m, 0).value - added.logDistribution(m, t2).value;
+}
+
+/// A wider lobe falls less at one angle: bisection in log m.
+double addedRoughnessOf(Lobe lobe, double width, double depth) {
+  double low = std::log(1e-5), high = std::log(10.0);  // a mirror's, and a lobe that is wider than any hemisphere
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (fall(lobe, std::exp(middle), width) > depth ? low : high) = middle;
+  }
+  return std::exp(0.5 * (low + high));
 }
 
 }  // namespace
@@ -45,7 +57,7 @@ double roughnessOf(Lobe lobe, double width, double level) {
     case Lobe::BlinnPhong: return std::sqrt(-2 * logCos / depth);
     case Lobe::Phong: return std::sqrt(-std::log(std::cos(2 * std::min(width, 0.249 * M_PI))) / (2 * depth));
   }
-  return 0;
+  return addedRoughnessOf(lobe, width, depth);
 }
 
 }  // namespace glint

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <deque>
 
+#include "core/reflectance/added_lobe.h"
 #include "core/reflectance/pixel_problem.h"
 
 namespace glint {
@@ -63,8 +64,6 @@ double criterion(const Attempt& a, const patch::Normalised& evidence, Background
   // 1e-14: single precision of the images, squared, with some reserve.
   return n * std::log(a.cost / n + 1e-14) + unknowns * std::log(n);
 }
-
-bool isMicrofacet(Lobe lobe) { return lobe == Lobe::TorranceSparrow || lobe == Lobe::Ggx; }
 
 Lamp inWorld(const State& at, const patch::Normalised& n) {
   Eigen::Vector4d world;

@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/reflectance/added_lobe.h"
+
 namespace glint {
 namespace {
 
+constexpr float kNoBound = 1e30f;   // no part is ruled out
 constexpr float kRoundOff = 1e-4f;  // of log I in single precision: a dozen operations on numbers of up to some hundred
 
 /// cos theta_V (1 + Lambda(V)) grows with cos theta_V and stays above these where V is at the horizon: m/2 for GGX, m/(2
@@ -16,6 +19,7 @@ Eight leastShadowedCosine(Lobe lobe, float m, const Eight& cosView) {
     const float m2 = std::min(1.f, m * m);
     return 0.5f * (cosView + (cosView.square() * (1 - m2) + m2).sqrt());
   }
+  if (profileOf(lobe)) return cosView.max(1e-6f);  // a Lambda that is not known may be 0
   return cosView.max(0.27f * std::min(1.f, m));
 }
 
@@ -48,8 +52,13 @@ Eight largestLogRadiance(Lobe lobe, double roughness, const PartBounds& parts) {
       log = m <= 1 ? Eight(2 * (ofOneAnd(t) - ofOneAnd(t / m2)) - std::log(float(M_PI) * m2))
                    : Eight(Eight::Constant(4 * std::log(m) - std::log(float(M_PI) * m2)));
       break;
+    default: {  // one of a plugin, which does not rise with t
+      const LobeProfile& added = *profileOf(lobe);
+      if (roughness > kCheckedRoughness) return Eight::Constant(kNoBound);
+      for (Eigen::Index i = 0; i < log.size(); ++i) log[i] = float(added.logDistribution(roughness, std::max(0.f, t[i])).value);
+    }
   }
-  if (lobe == Lobe::TorranceSparrow || lobe == Lobe::Ggx) log -= (4 * leastShadowedCosine(lobe, m, parts.cosView)).log();
+  if (isMicrofacet(lobe)) log -= (4 * leastShadowedCosine(lobe, m, parts.cosView)).log();
   return log - parts.lightSquared.max(1e-37f).log() + kRoundOff * (1 + log.abs());  // 1e-37: the smallest floats
 }
 

@@ -10,10 +10,12 @@
 #include "core/base/bounded_json.h"
 #include "core/base/json_dom.h"
 #include "core/base/level_range.h"
+#include "core/base/number_text.h"
 #include "core/geometry/distortion.h"
 #include "core/scene/relinked.h"
 #include "core/scene/scene_files.h"
 #include "core/scene/scene_reader.h"
+#include "core/surface/added_shape.h"
 
 namespace glint {
 namespace fs = std::filesystem;
@@ -75,7 +77,11 @@ std::set<std::string> analyticKeys(const std::string& type) {
                                                                     {"sheet", {"curvature", "length", "width"}},
                                                                     {"torus", {"major_radius", "minor_radius"}},
                                                                     {"quadric", {"matrix"}}};
-  std::set<std::string> all = keys.at(type);
+  std::set<std::string> all;
+  if (const ShapeKind* const kind = addedShapeKind(type))
+    for (const ShapeNumber& n : kind->numbers()) all.insert(n.name);
+  else
+    all = keys.at(type);
   all.insert({"type", "world_from_surface"});
   return all;
 }
@@ -114,8 +120,20 @@ AnalyticSpec readAnalyticJson(const JsonNode& node) {
     if (!(size > 0)) matrix.fail("must not be zero");
     constexpr double kTyped = 1e-9;  // relative: more digits than a printed matrix has wrong
     if ((spec.matrix - spec.matrix.transpose()).cwiseAbs().maxCoeff() > kTyped * size) matrix.fail("must be symmetric");
+  } else if (const ShapeKind* const kind = addedShapeKind(spec.type)) {
+    for (const ShapeNumber& n : kind->numbers()) {
+      const auto given = node.find(n.name);
+      if (!given && n.byDefault) {
+        spec.numbers[n.name] = *n.byDefault;
+        continue;
+      }
+      const JsonNode number = node.at(n.name);
+      const double value = number.number();
+      if (!(value >= n.least && value <= n.most)) number.fail(formatted("%g is outside %g .. %g", value, n.least, n.most));
+      spec.numbers[n.name] = value;
+    }
   } else if (spec.type != "plane") {
-    type.fail("'" + spec.type + "' is not one of: plane, sphere, ellipsoid, cylinder, sheet, torus, quadric");
+    type.fail("'" + spec.type + "' is not one of: " + knownShapes());
   }
   if (const auto pose = node.find("world_from_surface")) spec.worldFromSurface = readPoseJson(*pose);
   return spec;

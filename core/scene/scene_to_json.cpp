@@ -61,6 +61,7 @@ Json toJson(const AnalyticSpec& spec) {
     j["minor_radius"] = spec.minorRadius;
   }
   if (spec.type == "quadric") j["matrix"] = toJson(spec.matrix);
+  for (const auto& [name, value] : spec.numbers) j[name] = value;
   j["world_from_surface"] = toJson(spec.worldFromSurface.matrix());
   return j;
 }

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,13 +14,14 @@ namespace glint {
 
 /// One analytic surface of scene.json (docs/formats.md, "Analytic surfaces"). Field meaning depends on `type`; lengths in metres.
 struct AnalyticSpec {
-  std::string type;                                  ///< plane, sphere, ellipsoid, cylinder, sheet, torus, quadric
-  double radius = 0;                                 ///< sphere, cylinder (axis = local y)
-  Eigen::Vector3d semiAxes{0, 0, 0};                 ///< ellipsoid
-  double curvature = 0;                              ///< sheet, 1/m, about local y, > 0 bends towards local -z; 0 = plane
-  std::optional<double> length, width;               ///< sheet: along the arc, along local y; both centred at the local origin
-  double majorRadius = 0, minorRadius = 0;           ///< torus, axis local z
+  std::string type;                         ///< plane, sphere, ellipsoid, cylinder, sheet, torus, quadric, or of a plugin
+  double radius = 0;                        ///< sphere, cylinder (axis = local y)
+  Eigen::Vector3d semiAxes{0, 0, 0};        ///< ellipsoid
+  double curvature = 0;                     ///< sheet, 1/m, about local y, > 0 bends towards local -z; 0 = plane
+  std::optional<double> length, width;      ///< sheet: along the arc, along local y; both centred at the local origin
+  double majorRadius = 0, minorRadius = 0;  ///< torus, axis local z
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Zero();  ///< quadric A, x^T A x = 0
+  std::map<std::string, double> numbers;             ///< of a type that a plugin added (added_shape.h)
   Eigen::Isometry3d worldFromSurface = Eigen::Isometry3d::Identity();
 };
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/base/number_text.h"
+#include "core/surface/added_shape.h"
 
 namespace glint {
 
@@ -370,8 +371,16 @@ std::unique_ptr<const AnalyticShape> makeShape(const AnalyticSpec& spec) {
     require(scale > 0, "analytic quadric: matrix must not be zero");
     return std::make_unique<GeneralQuadric>(symmetric / scale);
   }
-  require(false, "analytic surface: unknown type '" + spec.type + "'");
-  return nullptr;
+  const ShapeKind* const kind = addedShapeKind(spec.type);
+  require(kind != nullptr, "analytic surface: unknown type '" + spec.type + "'");
+  for (const ShapeNumber& n : kind->numbers()) {
+    const auto given = spec.numbers.find(n.name);
+    require(given != spec.numbers.end() && given->second >= n.least && given->second <= n.most,
+            "analytic " + spec.type + ": " + n.name + " is missing or out of its range");
+  }
+  std::unique_ptr<const AnalyticShape> shape = kind->make(spec.numbers);
+  require(shape != nullptr, "analytic " + spec.type + ": its plugin made nothing");
+  return shape;
 }
 
 }  // namespace glint

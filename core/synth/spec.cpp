@@ -9,6 +9,7 @@
 #include "core/base/level_range.h"
 #include "core/base/limits.h"
 #include "core/base/number_text.h"
+#include "core/reflectance/added_lobe.h"
 #include "core/scene/scene_json.h"
 #include "core/scene/scene_reader.h"
 #include "core/synth/synth.h"
@@ -104,7 +105,9 @@ Material readMaterial(const JsonNode& render) {
   Material material;
   if (const auto n = render.find("reflectance")) {
     const std::optional<Lobe> lobe = lobeOf(n->text());
-    if (!lobe) n->fail("'" + n->text() + "' is not one of: phong, blinn-phong, torrance-sparrow, ggx");
+    std::string all;
+    for (const Lobe known : allLobes()) all += (all.empty() ? "" : ", ") + std::string(nameOf(known));
+    if (!lobe) n->fail("'" + n->text() + "' is not one of: " + all);
     material.lobe = *lobe;
   }
   if (const auto n = render.find("roughness")) material.roughness = inRange(*n, 1e-4, 10);

@@ -39,7 +39,7 @@ struct SynthSpec {
 /// `margin_px` (exact contours are followed this far beyond the image); `path` in place of `frames`, with
 /// `cameras` (list of camera_from_world) or `orbit` {centre, radius, from, to, height, count}: camera i at centre + (radius cos
 /// a, radius sin a, height), a = from + (to - from) i / (count - 1) in radians, looking at the centre, image up = world +z;
-/// `surface_steps` {surface, parameter, values or from, to, count}: every value is one surface `<surface>_<step>` seen by every
+/// `surface_steps` {surface, parameter, values or from, to, count}: every value is one surface, `SURFACE_STEP`, seen by every
 /// camera, frame = cameras * step + camera.
 SynthSpec readSynthSpec(const std::filesystem::path& file);
 

@@ -14,6 +14,7 @@
 #include <memory>
 #include <utility>
 
+#include "core/reflectance/added_lobe.h"
 #include "core/reflectance/lobe.h"
 #include "gui/base/draw_turns.h"
 #include "gui/base/number_box.h"
@@ -54,8 +55,7 @@ WhatIfPanel::WhatIfPanel(Document& document, QWidget* parent)
   synthetic->addWidget(synthesise_, 1);
   lobe_->setObjectName(QStringLiteral("whatif.lobe"));
   lobe_->setToolTip(tr("Lobe of the synthesised contours"));
-  for (const Lobe lobe : {Lobe::TorranceSparrow, Lobe::Ggx, Lobe::BlinnPhong, Lobe::Phong})
-    lobe_->addItem(QLatin1String(nameOf(lobe)));
+  for (const Lobe lobe : allLobes()) lobe_->addItem(QString::fromStdString(nameOf(lobe)));
   synthetic->addWidget(lobe_);
   column->addLayout(synthetic);
   origin_->setObjectName(QStringLiteral("whatif.origin"));
@@ -132,7 +132,7 @@ QString WhatIfPanel::origin(const WhatIf& w) const {
     const QString why = toQString(whyNotFitted_);
     if (w.synthesise) return tr("No fitted lobe to compare with: %1").arg(why);
     return tr("Starts from the default lobe, %1 with m = %2: %3")
-        .arg(QLatin1String(nameOf(w.lobe)), numberText(w.roughness, kDigits), why);
+        .arg(QString::fromStdString(nameOf(w.lobe)), numberText(w.roughness, kDigits), why);
   }
   const QString lobe =
       tr("%1 with m = %2 (%3)")
@@ -256,7 +256,7 @@ void WhatIfPanel::refresh() {
   synthesise_->setChecked(w.synthesise);
   lobe_->setEnabled(w.synthesise);
   const WhatIf shown = started(w, true);  // also before it is switched on: what it starts from
-  lobe_->setCurrentIndex(lobe_->findText(QLatin1String(nameOf(shown.lobe))));
+  lobe_->setCurrentIndex(lobe_->findText(QString::fromStdString(nameOf(shown.lobe))));
   origin_->setText(scene && !whyNot ? origin(w) : QString());
   const std::string summary = summaryOf(w);
   summary_->setText(summary.empty() ? tr("No changes: scene as captured") : toQString(summary));

@@ -17,6 +17,11 @@ QSize parseSize(const QString& text) {
     throw InputError("", "--size", "'" + text.toStdString() + "' is not WIDTHxHEIGHT between 320x240 and 16384x16384");
   return size;
 }
+Theme themeOf(const QString& name) {
+  if (name != QStringLiteral("light") && name != QStringLiteral("dark"))
+    throw InputError("", "--theme", "'" + name.toStdString() + "' is not one of: light, dark");
+  return name == QStringLiteral("dark") ? Theme::Dark : Theme::Light;
+}
 /// Null where there is none of this name.
 const ChoiceOption* choiceOption(const QString& name) {
   for (const ChoiceOption& option : choiceOptions())
@@ -59,10 +64,7 @@ CommandLine parseCommandLine(const QStringList& arguments) {
             "", "--layout",
             "'" + c.layout.toStdString() + "' is not one of: " + layoutNames().join(QStringLiteral(", ")).toStdString());
     } else if (name == QStringLiteral("--theme")) {
-      const QString theme = value();
-      if (theme != QStringLiteral("light") && theme != QStringLiteral("dark"))
-        throw InputError("", "--theme", "'" + theme.toStdString() + "' is not one of: light, dark");
-      c.theme = theme == QStringLiteral("dark") ? Theme::Dark : Theme::Light;
+      c.theme = themeOf(value());
     } else if (name == QStringLiteral("--frame"))
       c.frame = value();
     else if (name == QStringLiteral("--ball"))
@@ -77,6 +79,8 @@ CommandLine parseCommandLine(const QStringList& arguments) {
       c.size = parseSize(value());
     else if (name == QStringLiteral("--limit"))
       c.limits << value();
+    else if (name == QStringLiteral("--plugin"))
+      c.plugins << value();
     else if (name == QStringLiteral("--wait-idle"))
       c.waitIdle = true;
     else if (const ChoiceOption* option = choiceOption(name))
@@ -117,6 +121,7 @@ QString helpText() {
              "  --wait-idle           take the screenshot once everything is computed and drawn\n"
              "  --limit NAME=VALUE    raise a limit on the size of inputs, in its own unit; may be repeated:\n"
              "                        %2\n"
+             "  --plugin FILE         load a plugin: models, lobes, surfaces, readers or layers; may be repeated\n"
              "%3"
              "  --version, -h, --help\n\n"
              "Exit codes: 0 done, 2 invalid input or request (one line on standard error says where).\n"

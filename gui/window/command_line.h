@@ -21,9 +21,10 @@ struct CommandLine {
   QString exclude;  ///< photographs of balls that are left out
   QString frame;    ///< frame id, or number where no id matches; "" = first
   QStringList run;  ///< ids of actions to run once the scene is shown
-  QString screenshot;  ///< PNG to write; "" = stay open
-  QSize size;          ///< empty = default
-  QStringList limits;  ///< "NAME=VALUE", for setLimit()
+  QString screenshot;   ///< PNG to write; "" = stay open
+  QSize size;           ///< empty = default
+  QStringList limits;   ///< "NAME=VALUE", for setLimit()
+  QStringList plugins;  ///< files to load
   bool waitIdle = false;
   bool help = false, version = false;
 };

@@ -51,6 +51,7 @@
 #include "gui/scene/scene_tree.h"
 #include "gui/timeline/timeline.h"
 #include "gui/whatif/what_if_panel.h"
+#include "gui/window/about.h"
 #include "gui/window/changed_inputs.h"
 #include "gui/window/context_menus.h"
 #include "gui/window/file_actions.h"
@@ -418,6 +419,7 @@ void MainWindow::buildMenus() {
                [this] { setTheme(currentTheme() == Theme::Dark ? Theme::Light : Theme::Dark); }, {{}, "theme"});
 
   explain_->addActions(actions_, menuBar()->addMenu(tr("E&xplain")));
+  actions_.add("help.about", menuBar()->addMenu(tr("&Help")), tr("&About Glint"), [this] { showAbout(this); });
 
   QToolBar* bar = addToolBar(tr("Tools"));
   bar->setObjectName(QStringLiteral("tools"));

@@ -31,9 +31,46 @@ foreach(layer core io viz)
 endforeach()
 
 install(TARGETS glint RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT glint)
-install(DIRECTORY resources/specs resources/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/glint COMPONENT glint)
-install(DIRECTORY sessions DESTINATION ${CMAKE_INSTALL_DATADIR}/glint COMPONENT glint)
+install(DIRECTORY resources/specs DESTINATION ${CMAKE_INSTALL_DATADIR}/glint COMPONENT glint)
+install(DIRECTORY resources/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/glint COMPONENT development USE_SOURCE_PERMISSIONS)
+install(DIRECTORY plugins/example DESTINATION ${CMAKE_INSTALL_DATADIR}/glint/examples/plugins COMPONENT development)
+install(DIRECTORY sessions DESTINATION ${CMAKE_INSTALL_DATADIR}/glint COMPONENT glint PATTERN "make_sessions.sh" EXCLUDE)
 install(FILES resources/scene.schema.json resources/session.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/glint COMPONENT glint)
 if(GLINT_GUI)
   install(TARGETS glint-inspector RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT inspector)
 endif()
+
+# Documentation of the headers: cmake --build <folder> --target api.
+find_program(GLINT_DOXYGEN doxygen)
+if(GLINT_DOXYGEN)
+  configure_file(resources/install/Doxyfile.in ${PROJECT_BINARY_DIR}/Doxyfile @ONLY)
+  add_custom_target(api COMMAND ${CMAKE_COMMAND} -E make_directory ${PROJECT_BINARY_DIR}/api COMMAND ${GLINT_DOXYGEN} ${PROJECT_BINARY_DIR}/Doxyfile
+    COMMAND ${CMAKE_COMMAND} -D FILE=${PROJECT_BINARY_DIR}/api/warnings.txt -P ${PROJECT_SOURCE_DIR}/resources/install/no_warnings.cmake VERBATIM)
+endif()
+
+# Manual pages and completion, from the programs' own help.
+set(glint_pages ${PROJECT_BINARY_DIR}/pages)
+find_program(GLINT_INSTALL_PYTHON python3)
+if(GLINT_INSTALL_PYTHON)
+  set(page_programs --glint $<TARGET_FILE:glint>)
+  set(page_targets glint)
+  if(GLINT_GUI)
+    list(APPEND page_programs --inspector $<TARGET_FILE:glint-inspector>)
+    list(APPEND page_targets glint-inspector)
+  endif()
+  add_custom_command(OUTPUT ${glint_pages}/glint.bash
+    COMMAND ${GLINT_INSTALL_PYTHON} -B ${PROJECT_SOURCE_DIR}/resources/install/make_pages.py ${page_programs} --out ${glint_pages}
+    DEPENDS ${page_targets} resources/install/make_pages.py VERBATIM)
+  add_custom_target(pages ALL DEPENDS ${glint_pages}/glint.bash)
+  install(DIRECTORY ${glint_pages}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT glint FILES_MATCHING PATTERN "glint*.1" PATTERN "glint-inspector.1" EXCLUDE)
+  install(FILES ${glint_pages}/glint.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME glint COMPONENT glint)
+endif()
+if(GLINT_GUI)
+  install(FILES ${glint_pages}/glint-inspector.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT inspector OPTIONAL)
+  install(FILES resources/install/glint-inspector.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT inspector)
+  install(FILES resources/install/glint-inspector.metainfo.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/metainfo COMPONENT inspector)
+  install(FILES resources/install/glint.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mime/packages COMPONENT inspector)
+  install(FILES resources/icons/glint.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps COMPONENT inspector)
+endif()
+
+include(resources/install/packages.cmake)
