@@ -17,8 +17,8 @@ namespace glint::gui {
 QString aboutText() {
   QString text =
       QObject::tr(
-          "Glint %1\n\nFinds specular highlights in photographs, predicts them in views that were not taken, and measures\n"
-          "the lamps that make them. Licence: BSD-3-Clause.\n\nQt %2\n")
+          "Glint %1\n\nFinds specular highlights in photographs, predicts them in views that were not taken, and measures "
+          "the lamps that make them. Licence: BSD-3-Clause.\n\nQt %2\n\n")
           .arg(QStringLiteral(GLINT_VERSION), QString::fromLatin1(qVersion()));
   const std::string plugins = pluginLines();
   text += plugins.empty() ? QObject::tr("No plugins are loaded.") : QString::fromStdString(plugins).trimmed();
@@ -40,6 +40,7 @@ void showAbout(QWidget* parent) {
   copy->setToolTip(QObject::tr("Copy this text, for a report of a fault"));
   QObject::connect(copy, &QPushButton::clicked, [] { QApplication::clipboard()->setText(aboutText()); });
   QObject::connect(buttons, &QDialogButtonBox::rejected, &dialog, &QDialog::reject);
+  buttons->button(QDialogButtonBox::Close)->setDefault(true);
   column->addWidget(buttons);
   dialog.exec();
 }

@@ -72,6 +72,21 @@ class ProgramTest : public QObject {
     QCOMPARE(QImage(file).size(), QSize(1200, 800));
   }
 
+  /// The example plugin: listed with its file, its layer drawn; one that cannot be loaded is refused by name.
+  void plugins() {
+    const Run listed = run({QStringLiteral("--plugin"), QStringLiteral(GLINT_EXAMPLE_PLUGIN), QStringLiteral("--version")});
+    QCOMPARE(listed.code, 0);
+    QVERIFY2(listed.out.contains(QStringLiteral("plugin example 1.0")) &&
+                 listed.out.contains(QStringLiteral("model flat-mirror")) &&
+                 listed.out.contains(QStringLiteral(GLINT_EXAMPLE_PLUGIN)),
+             qPrintable(listed.out));
+    const Run refused =
+        run({QStringLiteral("--plugin"), QStringLiteral(GLINT_SOURCE_DIR "/LICENSE"), QStringLiteral("--version")});
+    QCOMPARE(refused.code, 2);
+    QVERIFY2(refused.err.contains(QStringLiteral("LICENSE")) && refused.err.contains(QStringLiteral("cannot be loaded")),
+             qPrintable(refused.err));
+  }
+
   /// A sphere with given highlights, seen by three cameras, computed by the real pipeline; the 3D view must not be blank.
   void aScene() {
     const QString scene = folder_.filePath(QStringLiteral("scene.json"));

@@ -36,6 +36,7 @@ const std::map<QString, const char*>& leftOut() {
                                                   {"export.", "ask for a file, or change the clipboard only"},
                                                   {"edit.palette", "takes the keyboard"},
                                                   {"edit.shortcuts", "opens a dialog that waits for the user"},
+                                                  {"help.about", "opens a dialog that waits for the user"},
                                                   {"plots.save", "asks for a file"},
                                                   {"lamps.save", "asks for a file"},
                                                   {"lamps.balls", "asks for a folder"},
