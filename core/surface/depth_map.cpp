@@ -7,6 +7,14 @@
 #include <pcl/search/kdtree.h>
 #include <pcl/search/organized.h>
 
+// clang-format off
+// With their code: to load libpcl_features, which has it for all types of points, is a third of the start of `glint` (0.23 s of the processor,
+// without it 0.15 s).
+#include <pcl/features/impl/feature.hpp>
+#include <pcl/features/impl/integral_image_normal.hpp>
+#include <pcl/features/impl/normal_3d.hpp>
+// clang-format on
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
