@@ -6,24 +6,26 @@
 say() { printf 'glint: %s\n' "$*" >&2; }
 die() { say "$*"; exit 1; }
 
-# Names of the listed packages that are not installed.
+# missing_packages FILE: names of the packages listed there that are not installed.
 missing_packages() {
   local package status
   while read -r package; do
     case "$package" in ''|'#'*) continue ;; esac
     status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null) || status=
     [ "$status" = installed ] || echo "$package"
-  done < "$root/resources/setup/packages-debian12.txt"
+  done < "$1"
 }
 
-# Installs what is missing, and only that. Nothing is removed or upgraded on purpose: --no-remove makes apt refuse instead.
+# install_missing [FILE]: installs what is missing of a list, and only that. Nothing is removed or upgraded on purpose: --no-remove makes apt
+# refuse instead.
 install_missing() {
+  local list=${1:-$root/resources/setup/packages-debian12.txt}
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
-    say "no apt: the packages in resources/setup/packages-debian12.txt must be installed already"
+    say "no apt: the packages in ${list#"$root/"} must be installed already"
     return 0
   fi
   local missing
-  mapfile -t missing < <(missing_packages)
+  mapfile -t missing < <(missing_packages "$list")
   [ ${#missing[@]} -gt 0 ] || return 0
   local as_root=()
   if [ "$(id -u)" -ne 0 ]; then
