@@ -72,8 +72,8 @@ struct CaptureTrack {
     int view = 0;  ///< index in Capture::views
     Pixel measured;
   };
-  Eigen::Vector3d point;  ///< in the world of the views, in the unit of the capture
-  std::vector<Observation> seen;
+  Eigen::Vector3d point;          ///< in the world of the views, in the unit of the capture
+  std::vector<Observation> seen;  ///< empty where the program does not say who saw it (nerfstudio)
 };
 
 /// What the files of other programs do not say, from the command line or a session.

@@ -280,18 +280,21 @@ bool sameSurface(const Similarity& a, const Similarity& b, const NearestOnMesh& 
   return true;
 }
 
-/// Points that the mesh hides from the camera that saw them.
+/// Points that the mesh hides from the camera that saw them; of several that may have, from all.
 std::size_t hiddenPoints(const TriangleMesh& mesh, const Refinement& r, const Solution& s, double tolerance) {
   const std::shared_ptr<const Surface> surface = makeMesh(mesh, MeshPolicy{NormalPolicy::Facet}, false);
   const Similarity back = s.pointsFromMesh.inverse();
-  std::size_t hidden = 0;
-  for (const SeenPoint& p : r.points()) {
-    const Vector3d eye = back * p.eye, sight = back * p.point - eye;
-    if (!(sight.norm() > 0)) continue;
+  const auto hides = [&](const Vector3d& seen, const Vector3d& from) {
+    const Vector3d eye = back * from, sight = back * seen - eye;
+    if (!(sight.norm() > 0)) return false;
     const Outcome<SurfacePoint> hit = surface->firstHit({eye, sight.normalized()});
     // Twice: a point on a surface that is seen at a slant lies farther behind it than it is off.
-    hidden += hit && s.pointsFromMesh.scale * (sight.norm() - (hit->position - eye).norm()) > 2 * tolerance;
-  }
+    return hit && s.pointsFromMesh.scale * (sight.norm() - (hit->position - eye).norm()) > 2 * tolerance;
+  };
+  std::size_t hidden = 0;
+  for (const SeenPoint& p : r.points())
+    hidden += hides(p.point, p.eye) &&
+              std::all_of(p.orEyes.begin(), p.orEyes.end(), [&](const Vector3d& eye) { return hides(p.point, eye); });
   return hidden;
 }
 
@@ -423,7 +426,10 @@ std::string Registration::text() const {
 Outcome<Registration> registerMesh(const TriangleMesh& mesh, const std::vector<SeenPoint>& points, const ProgressFn& progress) {
   if (points.size() < kFewest)
     return Failure{Reason::TooFewPoints, formatted("%zu sparse points; %zu are needed on the object", points.size(), kFewest)};
-  const auto finite = [](const SeenPoint& p) { return p.point.allFinite() && p.eye.allFinite(); };
+  const auto finite = [](const SeenPoint& p) {
+    return p.point.allFinite() && p.eye.allFinite() &&
+           std::all_of(p.orEyes.begin(), p.orEyes.end(), [](const Vector3d& eye) { return eye.allFinite(); });
+  };
   if (!std::all_of(points.begin(), points.end(), finite)) return Failure{Reason::NotFinite, "a sparse point"};
   std::vector<SeenPoint> few = evenly(points, kMostPoints);
   const MeshSamples coarse(mesh, kCoarseSamples), fine(mesh, kFineSamples);

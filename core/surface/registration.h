@@ -15,7 +15,8 @@ namespace glint {
 
 /// A sparse point that a camera saw: nothing stands between the two.
 struct SeenPoint {
-  Eigen::Vector3d point, eye;  ///< in one frame and unit, that of the cameras
+  Eigen::Vector3d point, eye;                ///< in one frame and unit, that of the cameras
+  std::vector<Eigen::Vector3d> orEyes = {};  ///< of other cameras, where it is not known which of them saw it
 };
 
 /// Where a mesh of another frame and unit lies among points of its surface and of other things. Lengths in the points' unit.
@@ -27,7 +28,7 @@ struct Registration {
   double tolerance = 0;       ///< 2.5 standard deviations of the explained ones' distances
   double size = 0;            ///< of the mesh: diagonal of its box
   double spacing = 0;         ///< median distance of an explained point to the nearest other one
-  std::size_t hidden = 0;     ///< points that the mesh hides from the camera that saw them
+  std::size_t hidden = 0;     ///< points that the mesh hides from the camera that saw them, or from all that may have
   std::size_t second = 0;     ///< points that the best solution with the mesh elsewhere explains
   int alike = 0;              ///< other solutions that put the same surface in the same place: the shape is symmetric
   double sigma = 0;           ///< standard deviation of the mesh's least certain corner

@@ -187,6 +187,26 @@ TEST(RegisterMesh, AScanOfOnePartOfTheObjectIsNeverPutElsewhere) {
     EXPECT_EQ(r.failure().reason, Reason::NotConverged) << r.failure().message();
 }
 
+// Who saw a point is not always known: the nearest camera that has it in its image may be on the far side of the object.
+TEST(RegisterMesh, APointIsHiddenOnlyWhereItIsFromAllThatMayHaveSeenIt) {
+  const TriangleMesh mesh = body(lump);
+  const Similarity truth = anySimilarity(31, 0.5);
+  std::vector<SeenPoint> points = cloudOf(mesh, truth, {});
+  const Vector3d middle = truth * Vector3d(0.2, -0.1, 1.3);
+  for (std::size_t i = 0; i < points.size(); i += 3) {  // from the opposite side, through the object
+    points[i].orEyes = {points[i].eye};
+    points[i].eye = 2 * middle - points[i].eye;
+  }
+  const Outcome<Registration> r = registerMesh(mesh, points);
+  ASSERT_TRUE(r) << r.failure().message();
+  EXPECT_LT(errorOf(*r, truth, mesh), 1e-6) << r->text();
+  EXPECT_EQ(r->hidden, 0u);
+  for (SeenPoint& p : points) p.orEyes.clear();
+  const Outcome<Registration> hidden = registerMesh(mesh, points);
+  ASSERT_FALSE(hidden) << hidden->text();
+  EXPECT_THAT(hidden.failure().detail, HasSubstr("hides"));
+}
+
 TEST(RegisterMesh, ASymmetricShapeIsTheSameSurfaceTurned) {
   const TriangleMesh mesh = body(ellipsoid);
   const Similarity truth = anySimilarity(9, 4);
@@ -247,6 +267,9 @@ TEST(RegisterMesh, WhatIsNotFiniteIsRefusedByName) {
   const Outcome<Registration> r = registerMesh(mesh, points);
   ASSERT_FALSE(r);
   EXPECT_EQ(r.failure().reason, Reason::NotFinite);
+  points = cloudOf(mesh, {}, {});
+  points[7].orEyes = {{0, std::nan(""), 0}};
+  EXPECT_EQ(registerMesh(mesh, points).failure().reason, Reason::NotFinite);
 }
 
 }  // namespace
