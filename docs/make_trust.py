@@ -85,6 +85,13 @@ def cell(code):
     return code.replace("|", "\\|")
 
 
+def readers():
+    """Those that tests/run_fuzz feeds: one that came after the last run is missing on the page until it has run."""
+    script = root / "tests/run_fuzz"
+    named = re.search(r"^all=\(([^)]*)\)$", script.read_text(encoding="utf-8"), re.MULTILINE) if script.exists() else None
+    return named[1].split() if named else []
+
+
 def render():
     """The table and the details, and what is wrong with pieces."""
     found, problems = {}, []
@@ -107,7 +114,10 @@ def render():
             continue
         count, findings = (sum(row[key] for row in piece["rows"]) for key in ("count", "findings"))
         ran = piece["command"].replace("`", "'")
-        absent = [needed for needed in piece.get("needs", []) if needed not in {row["name"] for row in piece["rows"]}]
+        needs = piece.get("needs", [])
+        if name == "fuzz":
+            needs = needs + [reader for reader in readers() if reader not in needs]
+        absent = [needed for needed in needs if needed not in {row["name"] for row in piece["rows"]}]
         open_ = f" ({len(absent)} rows are missing)" if absent else ""
         head.append(f"| [{shown(piece['what'])}](#{name.replace('_', '-')}){open_} | {count:,} | {findings:,} | {piece['date']} | `{cell(ran)}` |")
         details += ["", f"### {name.replace('_', ' ')}", f"{shown(piece['what'])}. {piece['date']}, `{ran}`.", "",

@@ -12,6 +12,7 @@ const char* UndecidedInput::option() const {
     case Question::Camera: return "--camera";
     case Question::Object: return "--object";
     case Question::Poses: return "--poses";
+    case Question::PosesBy: return "--poses-by";
   }
   return "";
 }

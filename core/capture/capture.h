@@ -19,7 +19,7 @@ namespace glint {
 /// The files leave something open that a person can say: which reading of a folder is meant, which surface, camera or object.
 class UndecidedInput : public InputError {
  public:
-  enum class Question { Reading, Surface, Camera, Object, Poses };
+  enum class Question { Reading, Surface, Camera, Object, Poses, PosesBy };
   struct Answer {
     std::string value;  ///< for the option: "colmap"; path of a mesh; "5"
     std::string words;  ///< for a person; "" = the value
@@ -29,7 +29,7 @@ class UndecidedInput : public InputError {
       : InputError(file, "", reason), question_(question), answers_(std::move(answers)) {}
   Question question() const { return question_; }
   const std::vector<Answer>& answers() const { return answers_; }
-  const char* option() const;  ///< that answers: "--as", "--surface", "--camera", "--object", "--poses"
+  const char* option() const;  ///< that answers: "--as", "--surface", "--camera", "--object", "--poses", "--poses-by"
 
  private:
   Question question_;
@@ -72,8 +72,8 @@ struct CaptureTrack {
     int view = 0;  ///< index in Capture::views
     Pixel measured;
   };
-  Eigen::Vector3d point;  ///< in the world of the views, in the unit of the capture
-  std::vector<Observation> seen;
+  Eigen::Vector3d point;          ///< in the world of the views, in the unit of the capture
+  std::vector<Observation> seen;  ///< empty where the program does not say who saw it (nerfstudio)
 };
 
 /// What the files of other programs do not say, from the command line or a session.

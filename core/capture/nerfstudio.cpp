@@ -16,6 +16,7 @@
 #include "core/capture/image_sizes.h"
 #include "core/capture/parts.h"
 #include "core/geometry/pose_json.h"
+#include "io/cloud_reader.h"
 
 // transforms.json of nerfstudio, with what instant-ngp and the original NeRF data have besides.
 // https://docs.nerf.studio/quickstart/data_conventions.html
@@ -391,6 +392,36 @@ CaptureView readNerfFrame(const JsonNode& frame, NerfContext& context) {
   return view;
 }
 
+// ---- Points -----------------------------------------------------------------------------------------------------------------
+
+struct NerfPoints {
+  std::string named;
+  fs::path file;  ///< empty where it is not there: programs read the cameras without it
+};
+
+/// What ply_file_path names.
+std::optional<NerfPoints> nerfPointsOf(const JsonNode& root, const fs::path& folder, const CaptureOptions& options) {
+  const std::optional<JsonNode> node = givenNerfPath(root, "ply_file_path");
+  if (!node) return std::nullopt;
+  NerfPoints points{node->text(), resolveInside(folder, nerfPath(*node), options.rights, node->file(), node->place())};
+  std::error_code ignored;  // what cannot be asked about is not there
+  if (!fs::is_regular_file(points.file, ignored)) points.file.clear();
+  return points;
+}
+
+void addNerfPoints(const NerfContext& context, Capture& capture) {
+  const std::optional<NerfPoints> points = nerfPointsOf(context.root, context.folder, context.options);
+  if (!points) return;
+  if (points->file.empty()) {
+    capture.warnings.push_back("ply_file_path: there is no '" + points->named +
+                               "': the cameras cannot be compared with its points");
+    return;
+  }
+  capture.sources.push_back(points->file);
+  capture.facts.push_back("point cloud: '" + points->named + "', in the " + (context.undone ? "original" : "stored") +
+                          " world as the cameras; it does not say which images show a point");
+}
+
 // ---- Report -----------------------------------------------------------------------------------------------------------------
 
 std::string nerfFrames(int number) { return std::to_string(number) + (number == 1 ? " frame" : " frames"); }
@@ -418,8 +449,6 @@ void tellNerfFacts(const NerfContext& context, Capture& capture) {
   if (tally.floatDepths > 0)
     facts.push_back("depth: floating point, in the unit of the world, for " + nerfFrames(tally.floatDepths));
   if (tally.masks > 0) facts.push_back("masks: for " + nerfFrames(tally.masks));
-  if (const auto n = givenNerfPath(context.root, "ply_file_path"))
-    facts.push_back("point cloud: '" + n->text() + "', in the stored world; without tracks, so nothing is checked by it");
 }
 
 void tellNerfWarnings(const NerfContext& context, Capture& capture) {
@@ -431,8 +460,6 @@ void tellNerfWarnings(const NerfContext& context, Capture& capture) {
   if (tally.otherAngle.number > 0)
     warnings.push_back(tally.otherAngle.text() + ": the angle of view says another focal length than fl_x, fl_y, which are used");
   if (tally.arrays.number > 0) warnings.push_back(tally.arrays.text() + ": depth as a NumPy array is not read, left out");
-  if (context.undone && givenNerfPath(context.root, "ply_file_path"))
-    warnings.push_back("ply_file_path: the point cloud stays in the stored world, the cameras are in the original one");
   std::string placed;
   for (const char* key : {"scale", "offset", "aabb"})
     if (context.root.has(key)) placed += (placed.empty() ? "" : ", ") + std::string(key);
@@ -514,8 +541,31 @@ class NerfstudioReader final : public CaptureReader {
     for (std::size_t i = 0; i < frames.size(); ++i) capture.views.push_back(readNerfFrame(frames.at(i), context));
     capture::orderByName(capture);
     tellNerfFacts(context, capture);
+    addNerfPoints(context, capture);
     tellNerfWarnings(context, capture);
     return capture;
+  }
+
+  /// Of ply_file_path, without observations.
+  std::vector<CaptureTrack> tracks(const Capture& capture, const CaptureOptions& options) const override {
+    const JsonNode root = JsonNode::parse(readFile(capture.file, Limit::JsonMegabytes), capture.file.string());
+    const std::optional<NerfPoints> points = nerfPointsOf(root, capture.folder, options);
+    if (!points || points->file.empty()) return {};
+    std::optional<NerfWorld> undone;
+    if (options.world == "original") {
+      std::vector<std::string> told;  // by `read`
+      const auto scale = root.find("applied_scale");
+      undone = readOriginalWorld(root, scale ? positive(*scale, kLargestFactor) : 1, told);
+    }
+    std::vector<CaptureTrack> tracks;
+    for (const Eigen::Vector3d& p : readCloudContent(points->file).points) {
+      CaptureTrack track{p, {}};
+      if (undone) track.point = undone->rotation.transpose() * (p - undone->translation) / undone->scale;
+      if (!(track.point.cwiseAbs().maxCoeff() <= kFarthest))
+        throw InputError(points->file.string(), formatted("point %zu", tracks.size()), "is farther than 1e15 from the origin");
+      tracks.push_back(std::move(track));
+    }
+    return tracks;
   }
 };
 

@@ -144,44 +144,38 @@ class PosedPictures {
       pairs[i] = line->second;
     }
     if (std::all_of(pairs.begin(), pairs.end(), [](std::size_t p) { return p == capture::kNoPair; }))
-      throw InputError(poseFile(), "",
-                       "has no pose whose id is the name of an image without its ending (the first image is " +
-                           io::quoted(pictures_.front().name) + ", the first id " + io::quoted(poses_.front().id) + ")" +
-                           orByOrder());
+      refuseToPair("has no pose whose id is the name of an image without its ending (the first image is " +
+                   io::quoted(pictures_.front().name) + ", the first id " + io::quoted(poses_.front().id) + ")");
     return pairs;
   }
 
   std::vector<std::size_t> sameTime() const {
     std::vector<double> times, others;
     for (const PoseLine& p : poses_) {
-      if (!p.time)
-        throw InputError(poseFile(), "id " + io::quoted(p.id),
-                         "has no time: the poses of a video are paired by time" + orByOrder());
+      if (!p.time) refuseToPair("id " + io::quoted(p.id) + ": has no time: the poses of a video are paired by time");
       others.push_back(*p.time);
     }
     for (const Picture& p : pictures_) {
       if (!p.time)
-        throw InputError(poseFile(), "",
-                         "pairs its poses by time, but the name of the image " + io::quoted(p.name) +
-                             " is no time in seconds: rename the images, or write JSON lines with their names as ids" +
-                             orByOrder());
+        refuseToPair("pairs its poses by time, but the name of the image " + io::quoted(p.name) +
+                     " is no time in seconds: rename the images, or write JSON lines with their names as ids");
       times.push_back(*p.time);
     }
     const std::vector<std::size_t> pairs = capture::timePairs(times, others);
     if (std::all_of(pairs.begin(), pairs.end(), [](std::size_t p) { return p == capture::kNoPair; }))
-      throw InputError(poseFile(), "",
-                       "has no pose within 20 ms of any " + std::string(isVideo_ ? "picture" : "image") +
-                           formatted(" (the first %s is of %.6f s, the first pose of %.6f s)", isVideo_ ? "picture" : "image",
-                                     times.front(), others.front()) +
-                           orByOrder());
+      refuseToPair("has no pose within 20 ms of any " + std::string(isVideo_ ? "picture" : "image") +
+                   formatted(" (the first %s is of %.6f s, the first pose of %.6f s)", isVideo_ ? "picture" : "image",
+                             times.front(), others.front()));
     return pairs;
   }
 
-  /// Where it could be right, and then only: what to say.
-  std::string orByOrder() const {
-    return poses_.size() == pictures_.size() ? "; there are as many poses as " + std::string(isVideo_ ? "pictures" : "images") +
-                                                   ": --poses-by order pairs them in their order"
-                                             : "";
+  /// Offers the order where it could be right, and then only.
+  [[noreturn]] void refuseToPair(const std::string& reason) const {
+    if (poses_.size() != pictures_.size()) throw InputError(poseFile(), "", reason);
+    throw UndecidedInput(poseFile(),
+                         reason + "; there are as many poses as " + (isVideo_ ? "pictures" : "images") +
+                             ": --poses-by order pairs them in their order",
+                         UndecidedInput::Question::PosesBy, {{"order", "Pair them in their order"}});
   }
 
   void addViews(const std::vector<std::size_t>& pose, const std::optional<std::array<int, 2>>& size) {

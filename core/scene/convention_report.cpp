@@ -447,9 +447,12 @@ std::string toText(const ConventionReport& r) {
     out += line + "\n";
   }
   if (r.tracks) {
-    out += formatted(
-        "\n  points    %d sparse points, seen %d times: projected %.2g px (median), %.2g px (95 %%) from where they were seen\n",
-        r.tracks->points, r.tracks->observations, r.tracks->medianPx, r.tracks->p95Px);
+    out += formatted("\n  points    %d sparse points", r.tracks->points);
+    out += r.tracks->withTracks
+               ? formatted(", seen %d times: projected %.2g px (median), %.2g px (95 %%) from where they were seen\n",
+                           r.tracks->observations, r.tracks->medianPx, r.tracks->p95Px)
+               : formatted("; which images show them is not said: %d of %d lie inside of one\n", r.tracks->inView,
+                           r.tracks->sampled);
     if (r.tracks->met > 0)
       out += formatted("            %d of %d in front of the surface lie on it (depth within 1 %%)\n", r.tracks->onSurface,
                        r.tracks->met);
@@ -489,6 +492,7 @@ void addConclusions(const ConventionReport& r, Json& j) {
 
 std::string toJson(const ConventionReport& r) {
   const auto vector = [](const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); };
+  const auto vector2 = [](const Eigen::Vector2d& v) { return Json::array({v.x(), v.y()}); };
   Json j = {{"glint_info", 1}, {"input", r.file}, {"recognised_as", r.recognisedAs}, {"name", r.name}, {"lights", r.lights}};
   j["surfaces"] = Json::array();
   for (const auto& s : r.surfaces)
@@ -535,9 +539,10 @@ std::string toJson(const ConventionReport& r) {
     j["points"] = {{"points", r.tracks->points},
                    {"observations", r.tracks->observations},
                    {"behind", r.tracks->behind},
-                   {"median_px", r.tracks->medianPx},
-                   {"p95_px", r.tracks->p95Px},
-                   {"shift_px", {r.tracks->shiftPx.x(), r.tracks->shiftPx.y()}},
+                   {"median_px", r.tracks->withTracks ? Json(r.tracks->medianPx) : Json()},
+                   {"p95_px", r.tracks->withTracks ? Json(r.tracks->p95Px) : Json()},
+                   {"shift_px", r.tracks->withTracks ? vector2(r.tracks->shiftPx) : Json()},
+                   {"in_view", r.tracks->withTracks ? Json() : Json(r.tracks->inView)},
                    {"met", r.tracks->met},
                    {"on_surface", r.tracks->onSurface},
                    {"depth_ratio", r.tracks->depthRatio}};

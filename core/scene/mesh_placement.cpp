@@ -31,7 +31,12 @@ MeshPlacement placementOf(const Scene& scene, const TriangleMesh& mesh, const st
                           const ProgressFn& progress) {
   if (scene.surfaces.size() != 1 || scene.surfaces.begin()->second.points) return {"", {}};
   const Outcome<Registration> found = registerMesh(mesh, points, progress);
-  if (!found) return {"the place of the mesh among the sparse points was not found: " + found.failure().message(), {}};
+  if (!found)
+    return {
+        "the place of the mesh among the sparse points was not found: " + found.failure().message() +
+            " (a scan of a small part of the object, or a shape that turns onto itself, has to be laid onto the points by hand, "
+            "for example in MeshLab or CloudCompare)",
+        {}};
   const Correction correction = meshSimilarityCorrection(found->pointsFromMesh);
   try {
     const Scene moved = corrected(scene, correction.fix);

@@ -6,6 +6,7 @@
 
 #include "core/base/median.h"
 #include "core/base/number_text.h"
+#include "core/base/parallel.h"
 #include "core/capture/capture.h"
 #include "core/scene/capture_scene.h"
 
@@ -40,19 +41,63 @@ void compareObservations(const Scene& scene, const std::vector<CaptureTrack>& tr
   check.shiftPx = {quantile(shiftX, 0.5), quantile(shiftY, 0.5)};
 }
 
-void compareSurface(const Scene& scene, const std::vector<CaptureTrack>& tracks, TrackCheck& check) {
+/// A point of the sample and the frames that saw it. Where the program does not say which did: that have it in their image, the nearest
+/// camera first, from where the point's own side of the object is seen best.
+struct Sighting {
+  Eigen::Vector3d point;
+  std::vector<int> frames;
+};
+
+/// The nearest one and others spread over the distances: nearest ones alone stand side by side, and one thing hides a point from all.
+std::vector<int> framesWithInView(const Scene& scene, const Eigen::Vector3d& point) {
+  constexpr std::size_t kMost = 8;  // frames: who sees a point of the object is then among them, and each takes a ray
+  std::vector<std::pair<double, int>> having;
+  for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+    const Camera& camera = scene.frames[i].camera;
+    const std::optional<Pixel> ideal = camera.project(point);
+    const Pixel q = ideal ? camera.distorted(*ideal) : Pixel(-1, -1);
+    if (ideal && q.x() >= -0.5 && q.y() >= -0.5 && q.x() < camera.width - 0.5 && q.y() < camera.height - 0.5)
+      having.emplace_back((camera.centreInWorld() - point).norm(), static_cast<int>(i));
+  }
+  std::sort(having.begin(), having.end());
+  std::vector<int> frames;
+  const std::size_t n = std::min(kMost, having.size());
+  for (std::size_t k = 0; k < n; ++k) frames.push_back(having[k * having.size() / n].second);
+  return frames;
+}
+
+std::vector<Sighting> sightingsOf(const Scene& scene, const std::vector<CaptureTrack>& tracks, const ProgressFn& progress,
+                                  TrackCheck& check) {
+  const std::size_t step = std::max<std::size_t>(1, tracks.size() / kMostPoints);
+  std::vector<Sighting> sightings((tracks.size() + step - 1) / step);
+  parallelFor(
+      static_cast<int>(sightings.size()),
+      [&](int i) {
+        const CaptureTrack& track = tracks[std::size_t(i) * step];
+        Sighting& s = sightings[std::size_t(i)];
+        s.point = track.point;
+        if (!check.withTracks)
+          s.frames = framesWithInView(scene, track.point);
+        else if (!track.seen.empty())
+          s.frames = {track.seen.front().view};
+      },
+      progress, "sparse points");
+  check.sampled = static_cast<int>(sightings.size());
+  std::erase_if(sightings, [](const Sighting& s) { return s.frames.empty(); });
+  check.inView = static_cast<int>(sightings.size());
+  return sightings;
+}
+
+void compareSurface(const Scene& scene, const std::vector<Sighting>& sightings, TrackCheck& check) {
   constexpr double kAgree = 0.01;  // of the distance: sparse points scatter by some tenths of a percent
   const SurfaceCache surfaces(scene);
   std::vector<double> ratios;
-  const std::size_t step = std::max<std::size_t>(1, tracks.size() / kMostPoints);
-  for (std::size_t i = 0; i < tracks.size(); i += step) {
-    if (tracks[i].seen.empty()) continue;
-    const int frame = tracks[i].seen.front().view;
-    if (scene.frames[static_cast<std::size_t>(frame)].surface.empty()) return;  // depth maps are compared elsewhere
-    const Outcome<std::shared_ptr<const Surface>> surface = surfaces.surfaceOf(frame, {});
+  for (const Sighting& s : sightings) {
+    const Frame& frame = scene.frames[static_cast<std::size_t>(s.frames.front())];
+    if (frame.surface.empty()) return;  // depth maps are compared elsewhere
+    const Outcome<std::shared_ptr<const Surface>> surface = surfaces.surfaceOf(s.frames.front(), {});
     if (!surface) return;
-    const Eigen::Vector3d eye = scene.frames[static_cast<std::size_t>(frame)].camera.centreInWorld();
-    const Eigen::Vector3d sight = tracks[i].point - eye;
+    const Eigen::Vector3d eye = frame.camera.centreInWorld(), sight = s.point - eye;
     if (!(sight.norm() > 0)) continue;
     const Outcome<SurfacePoint> hit = (*surface)->firstHit({eye, sight.normalized()});
     if (!hit) continue;
@@ -64,12 +109,13 @@ void compareSurface(const Scene& scene, const std::vector<CaptureTrack>& tracks,
   check.depthRatio = quantile(ratios, 0.5);
 }
 
-std::vector<SeenPoint> sampleOfTracks(const Scene& scene, const std::vector<CaptureTrack>& tracks) {
+std::vector<SeenPoint> sampleOf(const Scene& scene, const std::vector<Sighting>& sightings) {
   std::vector<SeenPoint> sample;
-  const std::size_t step = std::max<std::size_t>(1, tracks.size() / kMostPoints);
-  for (std::size_t i = 0; i < tracks.size(); i += step)
-    if (!tracks[i].seen.empty())
-      sample.push_back({tracks[i].point, scene.frames[std::size_t(tracks[i].seen.front().view)].camera.centreInWorld()});
+  for (const Sighting& s : sightings) {
+    const auto eye = [&](int frame) { return scene.frames[static_cast<std::size_t>(frame)].camera.centreInWorld(); };
+    sample.push_back({s.point, eye(s.frames.front())});
+    for (std::size_t k = 1; k < s.frames.size(); ++k) sample.back().orEyes.push_back(eye(s.frames[k]));
+  }
   return sample;
 }
 
@@ -94,6 +140,15 @@ void concludeCameras(TrackCheck& check) {
     if (check.shiftPx.x() * check.shiftPx.y() > 0)
       check.correction = principalPointCorrection(std::copysign(0.5, check.shiftPx.x()));
   }
+}
+
+/// Points of which it is not known who saw them: each one was in at least two images, or it would not be there.
+void concludeView(TrackCheck& check) {
+  if (2 * check.inView >= check.sampled) return;
+  check.findings.push_back(
+      formatted("only %d of %d sparse points of a sample lie inside of any image (points of another world than the "
+                "cameras, or poses that are inverted?)",
+                check.inView, check.sampled));
 }
 
 void concludeSurface(TrackCheck& check) {
@@ -125,19 +180,29 @@ std::optional<TrackCheck> checkTracks(const Scene& scene, const ProgressFn& prog
   if (!report(progress, {"sparse points", 0, 1})) throw Stopped{};
   const CaptureOptions options = captureOptionsOf(scene);
   const Capture capture = reader->read(scene.file, options);
-  std::vector<CaptureTrack> tracks = reader->tracks(capture, options);
+  TrackCheck check;
+  std::vector<CaptureTrack> tracks;
+  try {
+    tracks = reader->tracks(capture, options);
+  } catch (const InputError& e) {  // nobody needs them but this check
+    check.findings.push_back(std::string("the sparse points cannot be read: ") + e.what());
+    return check;
+  }
   if (tracks.empty() || capture.views.size() != scene.frames.size()) return std::nullopt;
   const double metres = scene.choices.metresPerUnit.value_or(capture.metresPerUnit);
   for (CaptureTrack& track : tracks) track.point *= metres;
-  TrackCheck check;
   check.points = static_cast<int>(tracks.size());
+  check.withTracks = std::any_of(tracks.begin(), tracks.end(), [](const CaptureTrack& t) { return !t.seen.empty(); });
   compareObservations(scene, tracks, check);
-  if (!report(progress, {"sparse points", 1, 2})) throw Stopped{};
-  concludeCameras(check);
+  const std::vector<Sighting> sightings = sightingsOf(scene, tracks, progress, check);
+  if (check.withTracks)
+    concludeCameras(check);
+  else
+    concludeView(check);
   if (check.findings.empty()) {  // what the cameras get wrong moves the surface as well
-    compareSurface(scene, tracks, check);
+    compareSurface(scene, sightings, check);
     concludeSurface(check);
-    if (check.surfaceElsewhere) check.sample = sampleOfTracks(scene, tracks);
+    if (check.surfaceElsewhere) check.sample = sampleOf(scene, sightings);
   }
   return check;
 }

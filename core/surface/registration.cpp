@@ -16,6 +16,7 @@
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
 #include "core/surface/mesh.h"
+#include "core/surface/mesh_topology.h"
 #include "core/surface/registration_starts.h"
 
 namespace glint {
@@ -41,6 +42,8 @@ constexpr double kElsewhere = 0.02;        // of the mesh's size, that another s
 constexpr double kSameSurface = 0.005;     // of the mesh's size, from one to the other: no highlight tells them apart
 constexpr double kNearlyAsMany = 0.8;      // of the explained points: noise could turn the order
 constexpr double kMostHidden = 0.1;        // of the explained points; edges and noise hide a few
+constexpr double kAlong = 0.999;           // cosine of 2.6 degrees, from the normal: facets have none that is more exact
+constexpr double kElsewherePoint = 1e100;  // the distance of a point beside the border
 constexpr double kSlides = 1e-3;           // mean square of the motion across the surface over that of the motion
 constexpr double kMostUncertain = 0.02;    // of the mesh's size, standard deviation of a corner
 
@@ -77,9 +80,20 @@ class NearestOnMesh {
     std::vector<int> at(first_.begin(), first_.end() - 1);
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
       for (int k = 0; k < 3; ++k) around_[std::size_t(at[std::size_t(mesh.triangles[i][k])]++)] = static_cast<int>(i);
+    const MeshTopology topology = topologyOf(mesh);
+    ofBorder_.assign(mesh.vertices.size(), false);
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+      for (int k = 0; k < 3; ++k)
+        if (topology.alive[i] && topology.neighbours[i][k] < 0)
+          for (const int end : {k, (k + 1) % 3}) ofBorder_[std::size_t(mesh.triangles[i][end])] = true;
   }
   struct Foot {
-    Vector3d point, normal;  ///< of the triangle, unit; zero where it has no area
+    Vector3d point, normal;  ///< normal: of the triangle, unit; zero where it has no area
+    bool onBorder = false;   ///< the mesh ends there
+    /// Of a point at this offset from the foot: it lies on what the mesh does not show, beside its border.
+    bool isBeside(const Vector3d& away, const Vector3d& turnedNormal) const {
+      return onBorder && std::abs(away.dot(turnedNormal)) < kAlong * away.norm();
+    }
   };
   Foot operator()(const Vector3d& p) const {
     Vector3d best = Vector3d::Zero();
@@ -99,12 +113,26 @@ class NearestOnMesh {
         for (int n = first_[corner]; n < first_[corner + 1]; ++n) offer(around_[std::size_t(n)]);
       }
     }
-    if (on < 0) return {Vector3d::Constant(std::numeric_limits<double>::max()), Vector3d::Zero()};  // p is out of range
+    if (on < 0) return {Vector3d::Constant(std::numeric_limits<double>::max()), Vector3d::Zero(), false};  // p is out of range
     const auto& [a, b, c] = cornersOfTriangle(on);
-    return {best, (b - a).cross(c - a).normalized()};
+    return {best, (b - a).cross(c - a).normalized(), isOnBorder(best, on)};
   }
 
  private:
+  /// On a corner of the border, or between two of them: an edge from border to border is taken for one of it.
+  bool isOnBorder(const Vector3d& p, int triangle) const {
+    constexpr double kOnEdge = 1e-9;  // of the edge's length: nearestOnTriangle is as exact
+    const std::array<Vector3d, 3> corners = cornersOfTriangle(triangle);
+    for (int k = 0; k < 3; ++k) {
+      const int next = (k + 1) % 3;
+      const Eigen::Vector3i& t = mesh_.triangles[std::size_t(triangle)];
+      if (!ofBorder_[std::size_t(t[k])]) continue;
+      const Vector3d &a = corners[std::size_t(k)], along = corners[std::size_t(next)] - a;
+      if ((p - a).norm() <= kOnEdge * along.norm()) return true;
+      if (ofBorder_[std::size_t(t[next])] && (p - a).cross(along).norm() <= kOnEdge * along.squaredNorm()) return true;
+    }
+    return false;
+  }
   std::array<Vector3d, 3> cornersOfTriangle(int triangle) const {
     const Eigen::Vector3i& t = mesh_.triangles[std::size_t(triangle)];
     return {mesh_.vertices[std::size_t(t[0])], mesh_.vertices[std::size_t(t[1])], mesh_.vertices[std::size_t(t[2])]};
@@ -112,6 +140,7 @@ class NearestOnMesh {
   const TriangleMesh& mesh_;
   const MeshSamples& samples_;
   std::vector<int> first_, around_;  // triangles of a vertex: around_[first_[v]] to before around_[first_[v + 1]]
+  std::vector<bool> ofBorder_;       // of a vertex
 };
 
 std::vector<SeenPoint> evenly(const std::vector<SeenPoint>& points, std::size_t most) {
@@ -173,7 +202,7 @@ class Refinement {
     for (const SeenPoint& p : used) {
       const Vector3d q = back * p.point;
       const double least = box_.exteriorDistance(q);  // far points need no better
-      solution.distances.push_back(s.scale * (s.scale * least < 3 * scale ? (nearest_(q).point - q).norm() : least));
+      solution.distances.push_back(s.scale * (s.scale * least < 3 * scale ? distanceOf(q) : least));
     }
     solution.sigma = sigmaOf(solution.distances, 3 * scale);
     solution.logLikelihood = likelihood(solution);
@@ -197,10 +226,11 @@ class Refinement {
       const NearestOnMesh::Foot foot = nearest_(q);
       const Vector3d f = s * foot.point, away = p.point - f;
       const double r = away.norm();
-      if (distances) distances->push_back(r);
-      if (!(r < reach)) continue;
       Vector3d n = s.rotation * foot.normal;
-      if (std::abs(away.dot(n)) < 0.999 * r) n = away / r;  // beyond the border or over an edge
+      const bool beside = foot.isBeside(away, n);
+      if (distances) distances->push_back(beside ? kElsewherePoint : r);
+      if (!(r < reach) || beside) continue;
+      if (std::abs(away.dot(n)) < kAlong * r) n = away / r;  // over an edge
       Vector7 row;
       row << (f - middle).cross(n) / radius, n, n.dot(f - middle) / radius;
       const double w = std::pow(scale * scale / (scale * scale + r * r), 2);  // Geman and McClure
@@ -212,6 +242,10 @@ class Refinement {
   }
 
  private:
+  double distanceOf(const Vector3d& q) const {
+    const NearestOnMesh::Foot foot = nearest_(q);
+    return foot.isBeside(q - foot.point, foot.normal) ? kElsewherePoint : (q - foot.point).norm();
+  }
   static Similarity moved(const Similarity& s, const Vector7& step, const Vector3d& middle, double radius) {
     const Vector3d turn = step.head<3>();
     const Eigen::Matrix3d r =
@@ -280,18 +314,21 @@ bool sameSurface(const Similarity& a, const Similarity& b, const NearestOnMesh& 
   return true;
 }
 
-/// Points that the mesh hides from the camera that saw them.
+/// Points that the mesh hides from the camera that saw them; of several that may have, from all.
 std::size_t hiddenPoints(const TriangleMesh& mesh, const Refinement& r, const Solution& s, double tolerance) {
   const std::shared_ptr<const Surface> surface = makeMesh(mesh, MeshPolicy{NormalPolicy::Facet}, false);
   const Similarity back = s.pointsFromMesh.inverse();
-  std::size_t hidden = 0;
-  for (const SeenPoint& p : r.points()) {
-    const Vector3d eye = back * p.eye, sight = back * p.point - eye;
-    if (!(sight.norm() > 0)) continue;
+  const auto hides = [&](const Vector3d& seen, const Vector3d& from) {
+    const Vector3d eye = back * from, sight = back * seen - eye;
+    if (!(sight.norm() > 0)) return false;
     const Outcome<SurfacePoint> hit = surface->firstHit({eye, sight.normalized()});
     // Twice: a point on a surface that is seen at a slant lies farther behind it than it is off.
-    hidden += hit && s.pointsFromMesh.scale * (sight.norm() - (hit->position - eye).norm()) > 2 * tolerance;
-  }
+    return hit && s.pointsFromMesh.scale * (sight.norm() - (hit->position - eye).norm()) > 2 * tolerance;
+  };
+  std::size_t hidden = 0;
+  for (const SeenPoint& p : r.points())
+    hidden += hides(p.point, p.eye) &&
+              std::all_of(p.orEyes.begin(), p.orEyes.end(), [&](const Vector3d& eye) { return hides(p.point, eye); });
   return hidden;
 }
 
@@ -423,7 +460,10 @@ std::string Registration::text() const {
 Outcome<Registration> registerMesh(const TriangleMesh& mesh, const std::vector<SeenPoint>& points, const ProgressFn& progress) {
   if (points.size() < kFewest)
     return Failure{Reason::TooFewPoints, formatted("%zu sparse points; %zu are needed on the object", points.size(), kFewest)};
-  const auto finite = [](const SeenPoint& p) { return p.point.allFinite() && p.eye.allFinite(); };
+  const auto finite = [](const SeenPoint& p) {
+    return p.point.allFinite() && p.eye.allFinite() &&
+           std::all_of(p.orEyes.begin(), p.orEyes.end(), [](const Vector3d& eye) { return eye.allFinite(); });
+  };
   if (!std::all_of(points.begin(), points.end(), finite)) return Failure{Reason::NotFinite, "a sparse point"};
   std::vector<SeenPoint> few = evenly(points, kMostPoints);
   const MeshSamples coarse(mesh, kCoarseSamples), fine(mesh, kFineSamples);

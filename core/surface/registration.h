@@ -15,7 +15,8 @@ namespace glint {
 
 /// A sparse point that a camera saw: nothing stands between the two.
 struct SeenPoint {
-  Eigen::Vector3d point, eye;  ///< in one frame and unit, that of the cameras
+  Eigen::Vector3d point, eye;                ///< in one frame and unit, that of the cameras
+  std::vector<Eigen::Vector3d> orEyes = {};  ///< of other cameras, where it is not known which of them saw it
 };
 
 /// Where a mesh of another frame and unit lies among points of its surface and of other things. Lengths in the points' unit.
@@ -27,7 +28,7 @@ struct Registration {
   double tolerance = 0;       ///< 2.5 standard deviations of the explained ones' distances
   double size = 0;            ///< of the mesh: diagonal of its box
   double spacing = 0;         ///< median distance of an explained point to the nearest other one
-  std::size_t hidden = 0;     ///< points that the mesh hides from the camera that saw them
+  std::size_t hidden = 0;     ///< points that the mesh hides from the camera that saw them, or from all that may have
   std::size_t second = 0;     ///< points that the best solution with the mesh elsewhere explains
   int alike = 0;              ///< other solutions that put the same surface in the same place: the shape is symmetric
   double sigma = 0;           ///< standard deviation of the mesh's least certain corner
@@ -39,15 +40,17 @@ struct Registration {
 /// least squares of the distances to the triangles. Solutions are compared by the likelihood of the points if those on the mesh scatter
 /// about it evenly over its area and the others lie anywhere in the cloud's box: a mesh that is too large or too small explains less.
 ///
-/// Points off the object are no harm as long as 20 points, and a tenth, lie on it. The answer does not depend on the order of anything
+/// A mesh of a part of the object: points whose nearest place is its border lie on what it does not show, and do not draw it. Points off
+/// the object are no harm as long as 20 points, and a tenth, lie on the mesh. The answer does not depend on the order of anything
 /// and is the same at every call.
 ///
 /// @return TooFewPoints: fewer than 20, given or explained. NotConverged: no place explains the points, or the mesh would hide them
 ///         from their cameras. RankDeficient, "ambiguous ...": another place explains nearly as many, or the points let the mesh slide
 ///         or turn (a sphere, a cylinder, a plane). NotFinite. Stopped.
 /// @see Umeyama, Least-squares estimation of transformation parameters between two point patterns, IEEE TPAMI 13(4), 1991. Chetverikov
-///      et al., Robust Euclidean alignment of 3D point sets: the trimmed iterative closest point algorithm, IVC 23(3), 2005. Gelfand et
-///      al., Geometrically stable sampling for the ICP algorithm, 3DIM 2003 (directions in which a shape slides).
+///      et al., Robust Euclidean alignment of 3D point sets: the trimmed iterative closest point algorithm, IVC 23(3), 2005. Turk and Levoy,
+///      Zippered polygon meshes from range images, SIGGRAPH 1994, sec. 4 (points beside the border). Gelfand et al., Geometrically stable
+///      sampling for the ICP algorithm, 3DIM 2003 (directions in which a shape slides).
 Outcome<Registration> registerMesh(const TriangleMesh& mesh, const std::vector<SeenPoint>& points,
                                    const ProgressFn& progress = {});
 

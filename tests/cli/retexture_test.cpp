@@ -91,6 +91,68 @@ TEST_F(Retexture, ATailThatPassesForBackgroundIsWarnedOf) {
   }
 }
 
+/// An observed contour that reaches beyond what is filled, by as much as the picture of marks says.
+TEST_F(Retexture, ARestBesideWhatIsFilledIsWarnedOf) {
+  const std::string remove = "--frame 0002 --remove -o " + in("o.png") + " --marks " + in("marks.png");
+  const ProgramRun whole = retexture(remove);
+  ASSERT_EQ(whole.code, 0) << whole.err;
+  EXPECT_EQ(whole.err, "");
+  std::vector<cv::Point> filled;
+  cv::findNonZero(cv::imread((*made_ / "marks.png").string(), cv::IMREAD_GRAYSCALE), filled);
+  ASSERT_GT(filled.size(), 100u);
+  // A label of this frame, which is none of those that train: a ring 10 px around the pixels that were filled.
+  const cv::Scalar middle = cv::mean(filled);
+  const auto distance = [](const cv::Point2d& a, const cv::Point2d& b) { return std::hypot(a.x - b.x, a.y - b.y); };
+  double radius = 0, expected = 0;
+  for (const cv::Point& p : filled) radius = std::max(radius, distance(p, {middle[0], middle[1]}));
+  Json contour = Json::array();
+  for (int k = 0; k < 72; ++k) {
+    const cv::Point2d p(middle[0] + (radius + 10) * std::cos(k * M_PI / 36), middle[1] + (radius + 10) * std::sin(k * M_PI / 36));
+    contour.push_back({p.x, p.y});
+    double nearest = 1e9;
+    for (const cv::Point& f : filled) nearest = std::min(nearest, distance(f, p));
+    expected = std::max(expected, nearest);
+  }
+  fs::copy(*made_ / "shiny", *made_ / "labelled", fs::copy_options::recursive);
+  Json scene = Json::parse(contentOf(*made_ / "labelled/scene.json"));
+  scene["frames"][2]["highlights"] = {
+      {{"light", "lamp"}, {"level", 0.5}, {"peak", {middle[0], middle[1]}}, {"contour", std::move(contour)}}};
+  made_->write("labelled/scene.json", scene.dump());
+  const std::string session = in("labelled/own.glint");
+  ASSERT_EQ(runGlint("reconstruct " + in("labelled") + " --train spread:5 --model reflectance -o " + session).code, 0);
+  const ProgramRun run = runGlint("retexture " + session + " " + remove);
+  ASSERT_EQ(run.code, 0) << run.err;
+  const std::string words = "the observed highlight reaches ";
+  const std::size_t at = run.err.find(words);
+  ASSERT_NE(at, std::string::npos) << run.err;
+  EXPECT_NEAR(std::atof(run.err.c_str() + at + words.size()), expected, 1.5) << run.err;
+}
+
+/// A lobe so wide that next to nothing of the surface is free of it: how much is told by the pictures of mask and marks.
+TEST_F(Retexture, AHighlightAllOverTheSurfaceIsWarnedOf) {
+  Json spec = Json::parse(contentOf(*made_ / "shiny.json"));
+  spec["lights"][0]["position"] = {0.4, -1.6, 2.2};
+  spec["path"]["orbit"]["to"] = -0.8;
+  for (const auto& [key, value] : {std::pair("roughness", 0.6), {"diffuse", 0.2}, {"specular", 8.0}, {"exposure", 0.4}})
+    spec["render"][key] = value;
+  make(spec, "wide");
+  Json scene = Json::parse(contentOf(*made_ / "wide/scene.json"));
+  for (Json& frame : scene["frames"])
+    for (const char* key : {"highlights", "radiance", "depth", "normals", "mask"}) frame.erase(key);
+  made_->write("wide/scene.json", scene.dump());
+  ASSERT_EQ(runGlint("reconstruct " + in("wide") + " --train spread:5 --model reflectance -o " + in("wide/r.glint")).code, 0);
+  const ProgramRun run = runGlint("retexture " + in("wide/r.glint") + " --frame 0004 --all-warnings --remove -o " + in("o.png") +
+                                  " --marks " + in("marks.png"));
+  ASSERT_EQ(run.code, 0) << run.err;
+  const auto lit = [](const fs::path& file) { return cv::countNonZero(cv::imread(file.string(), cv::IMREAD_GRAYSCALE)); };
+  const double share = 100. * lit(*made_ / "marks.png") / lit(*made_ / "wide/mask/0004.png");
+  EXPECT_GT(share, 90);
+  const std::string words = "the highlight can be seen on ";
+  const std::size_t at = run.err.find(words);
+  ASSERT_NE(at, std::string::npos) << run.err;
+  EXPECT_NEAR(std::atof(run.err.c_str() + at + words.size()), share, 1) << run.err;
+}
+
 TEST_F(Retexture, HeldOutFramesAreTheRenderingItself) {
   struct Row {
     std::string model;

@@ -7,7 +7,7 @@ of the TUM RGB-D benchmark; the description of the BOP datasets.
 import json
 import struct
 
-from exact_scene import World, dot, enlarged, length, product, quaternion_of, rotation_of, scaled, sub, times, transposed, unit
+from exact_scene import World, dot, enlarged, length, product, quaternion_of, rotation_of, scaled, sub, times, tracks, transposed, unit
 from writers import (Case, Frame, NotExpressible, by_name, number, numbers, write, write_json, write_mesh, write_photograph,
                      write_points)
 
@@ -61,8 +61,13 @@ def same_for_all(scene, *names):
     return values.pop()
 
 
+def seen_points(scene):
+    """As nerfstudio takes them out of a COLMAP model, without their tracks: a point there was seen by two views at least."""
+    return [scene.sparse[k] for k in sorted(tracks(scene))]
+
+
 def nerfstudio(folder, scene):
-    """In the scene's own world. Focal lengths per frame, the rest for all; masks."""
+    """In the scene's own world. Focal lengths per frame, the rest for all; masks; sparse points."""
     frames, found = nerfstudio_frames(folder, scene, 1000)
     for view, frame in zip(scene.views, frames):
         write(folder / "masks" / f"{view.name}.png", view.pictures.mask_png())
@@ -70,7 +75,9 @@ def nerfstudio(folder, scene):
     width, height, cx, cy = same_for_all(scene, "width", "height", "cx", "cy")
     write_json(folder / "transforms.json", {"camera_model": "OPENCV", "w": width, "h": height,
                                             "cx": cx + CORNER, "cy": cy + CORNER,
-                                            "k1": 0.0, "k2": 0.0, "p1": 0.0, "p2": 0.0, "frames": frames})
+                                            "k1": 0.0, "k2": 0.0, "p1": 0.0, "p2": 0.0,
+                                            "ply_file_path": "sparse_pc.ply", "frames": frames})
+    write_points(folder / "sparse_pc.ply", seen_points(scene))
     write_mesh(folder / "mesh.ply", scene.mesh, scene.mesh_comment)
     return Case("nerfstudio", folder, by_name(found), scene, 0.001)
 
@@ -93,7 +100,7 @@ def nerfstudio_applied(folder, scene):
     write_json(folder / "transforms.json", {"camera_model": "PINHOLE",
                                             "applied_transform": applied, "applied_scale": APPLIED.scale,
                                             "ply_file_path": "sparse_pc.ply", "frames": frames})
-    write_points(folder / "sparse_pc.ply", saved.sparse)
+    write_points(folder / "sparse_pc.ply", seen_points(saved))
     write_mesh(folder / "mesh.ply", saved.mesh, scene.mesh_comment + ", moved by applied_transform and applied_scale")
     own = write_mesh(folder / "original" / "object.ply", scene.mesh, scene.mesh_comment)
     back = {view.name: view for view in scene.views}

@@ -172,7 +172,9 @@ bool feedColmapText(const std::string& bytes) {
   return feedCapture("colmap", parts(bytes, {"cameras.txt", "images.txt", "points3D.txt"}));
 }
 bool feedNvm(const std::string& bytes) { return feedCapture("nvm", {{"model.nvm", bytes}}); }
-bool feedTransforms(const std::string& bytes) { return feedCapture("nerfstudio", {{"transforms.json", bytes}}); }
+bool feedTransforms(const std::string& bytes) {  // in a folder of its own the points are no mesh beside mesh.ply, however damaged
+  return feedCapture("nerfstudio", parts(bytes, {"transforms.json", "points/sparse_pc.ply"}));
+}
 bool feedBundle(const std::string& bytes) { return feedCapture("bundler", parts(bytes, {"bundle.out", "list.txt"})); }
 bool feedTum(const std::string& bytes) { return feedCapture("tum", parts(bytes, {"rgb.txt", "groundtruth.txt", "depth.txt"})); }
 bool feedBop(const std::string& bytes) {

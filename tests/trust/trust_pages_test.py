@@ -5,6 +5,7 @@ like a whole, would be a machine that seems to have found nothing."""
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -135,9 +136,46 @@ class MakeTrust(unittest.TestCase):
         self.page()
         self.assertEqual(self.run_("--check").returncode, 0)
 
+    # A reader that is newer than the last run must not look as if it had been fed.
+    def testReadersThatWereNeverFedAreMissing(self):
+        (self.folder / "tests").mkdir()
+        (self.folder / "tests/run_fuzz").write_text("#!/bin/sh\nall=(ply nvm)\n", encoding="utf-8")
+        self.run_("row", self.pieces / "fuzz.json", "--what", "Readers", "--command", "tests/run_fuzz", "--row", "ply", "10", "0", "", "--needs=ply")
+        _, page = self.page()
+        self.assertIn("[Readers](#fuzz) (1 rows are missing) | 10 | 0 |", page)
+        self.assertIn("| nvm | missing | | |", page)
+
     def testTheShippedPageIsWhatItsPiecesGive(self):
         done = subprocess.run([sys.executable, root / "docs/make_trust.py", "--check"], text=True, capture_output=True)
         self.assertEqual(done.returncode, 0, done.stderr)
+
+
+class Readers(unittest.TestCase):
+    """A reader of files stands in five places. One that is left out of one of them would never be fed there."""
+
+    def setUp(self):
+        self.all = re.findall(r'^      \{"(\w+)", Form::', (root / "tests/fuzz/readers.cpp").read_text(encoding="utf-8"), re.MULTILINE)
+        self.assertGreater(len(self.all), 25)
+
+    def testTheNightlyScriptFeedsEveryOne(self):
+        listed = re.search(r"^all=\((.*)\)$", (root / "tests/run_fuzz").read_text(encoding="utf-8"), re.MULTILINE)[1].split()
+        self.assertEqual(sorted(listed), sorted(self.all))
+        self.assertIn("fuzz", re.search(r"^all=\((.*)\)$", (root / "tests/run_nightly").read_text(encoding="utf-8"), re.MULTILINE)[1].split())
+
+    def testEveryTestRunFeedsEveryOne(self):
+        loops = re.findall(r"^foreach\(reader (.*)\)$", (root / "tests/fuzz/CMakeLists.txt").read_text(encoding="utf-8"), re.MULTILINE)
+        self.assertEqual(sorted(" ".join(loops).split()), sorted(self.all))
+
+    def testEveryOneHasACorpus(self):
+        for reader in self.all:
+            corpus = root / "tests/fuzz/corpus" / ("image" if reader == "image_header" else reader)
+            self.assertTrue(corpus.is_dir() and any(corpus.iterdir()), reader)
+
+    def testThePageHasARowForEveryOne(self):
+        page = (root / "docs/trust.md").read_text(encoding="utf-8").replace("\\", "")
+        part = page[page.index("### fuzz"):page.index("### mutations")]
+        for reader in self.all:
+            self.assertIn(f"\n| {reader} | ", part)
 
 
 if __name__ == "__main__":

@@ -156,12 +156,26 @@ TEST(PosedImages, OrderCountsOnlyWhenAPersonSaysSo) {
   folder.write("poses.txt", "5.0 1 0 0" + line + "6.0 2 0 0" + line);
   CaptureOptions options = posedBy(folder / "poses.txt");
   EXPECT_THAT(imagesError(folder.frames(), options), AllOf(HasSubstr("no time in seconds"), HasSubstr("--poses-by order")));
+  try {
+    readImages(folder.frames(), options);
+    FAIL() << "poses were paired";
+  } catch (const UndecidedInput& e) {  // a person can say so: the window has a button
+    EXPECT_EQ(e.question(), UndecidedInput::Question::PosesBy);
+    EXPECT_STREQ(e.option(), "--poses-by");
+    ASSERT_EQ(e.answers().size(), 1u);
+    EXPECT_EQ(e.answers()[0].value, "order");
+  }
   options.posesByOrder = true;
   EXPECT_EQ(readImages(folder.frames(), options).views[1].camera.centreInWorld().x(), 2);
   folder.write("poses.txt", "5.0 1 0 0" + line);
   EXPECT_THAT(imagesError(folder.frames(), options), HasSubstr("1 pose for 2 images: by order they must be as many"));
   options.posesByOrder = false;
   EXPECT_THAT(imagesError(folder.frames(), options), AllOf(HasSubstr("no time in seconds"), Not(HasSubstr("--poses-by order"))));
+  try {
+    readImages(folder.frames(), options);
+  } catch (const InputError& e) {
+    EXPECT_EQ(dynamic_cast<const UndecidedInput*>(&e), nullptr) << "the order cannot be right: there is nothing to ask";
+  }
 }
 
 TEST(PosedImages, OrderIsRefusedWhereItIsNotCertain) {
