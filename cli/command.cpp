@@ -115,6 +115,9 @@ int guarded(const std::function<int()>& run) {
 void Options::positional(std::string& target, const std::string& name, const std::string& help) {
   parser_.app.add_option(name, target, help)->required()->type_name("");
 }
+void Options::positionals(std::vector<std::string>& target, const std::string& name, const std::string& help) {
+  parser_.app.add_option(name, target, help)->required()->type_name("")->expected(1, CLI::detail::expected_max_vector_size);
+}
 void Options::option(std::string& target, const std::string& flags, const std::string& type, const std::string& help) {
   named(parser_.app.add_option(flags, target, help), type);
 }

@@ -29,6 +29,8 @@ class Options {
   struct Parser;
   explicit Options(Parser& parser) : parser_(parser) {}
   void positional(std::string& target, const std::string& name, const std::string& help);  ///< required
+  /// One or more, in their order.
+  void positionals(std::vector<std::string>& target, const std::string& name, const std::string& help);
   void option(std::string& target, const std::string& flags, const std::string& type,
               const std::string& help);  ///< "-o,--out", "DIR"
   void required(std::string& target, const std::string& flags, const std::string& type, const std::string& help);

@@ -12,6 +12,7 @@ Command detectCommand();
 Command evaluateCommand();
 Command infoCommand();
 Command lightsCommand();
+Command mergeCommand();
 Command movieCommand();
 Command renderCommand();
 Command predictCommand();

@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
         retextureCommand(),
         evaluateCommand(),
         tradeoffCommand(),
+        mergeCommand(),
         lightsCommand(),
         synthCommand(),
         convertCommand(),

@@ -16,6 +16,7 @@
 #include "core/inspect/live_prediction.h"
 #include "core/inspect/lobe_stage.h"
 #include "core/inspect/requested_evidence.h"
+#include "core/inspect/shard.h"
 #include "core/inspect/stage_inputs.h"
 #include "core/model/pixel_evidence.h"
 #include "core/score/comparison.h"
@@ -56,6 +57,7 @@ struct Group {
 /// like that, so the second one is no further observation: it would only take weight from priors, and stand in for the first one where
 /// that is left out to judge a choice.
 bool sameObservation(const Inspection& r, int frame, int other) {
+  if (r.train.perSurface && r.surfaces->keyOf(frame) != r.surfaces->keyOf(other)) return false;  // they serve fits of their own
   const Frame &a = r.scene->frames[static_cast<std::size_t>(frame)], &b = r.scene->frames[static_cast<std::size_t>(other)];
   if (a.surface != b.surface || a.depth != b.depth || a.camera.pixelFromRay != b.camera.pixelFromRay ||
       a.camera.camFromWorld.matrix() != b.camera.camFromWorld.matrix())
@@ -67,14 +69,20 @@ bool sameObservation(const Inspection& r, int frame, int other) {
   });
 }
 
+/// Which frames are predicted; the training ones are looked at as well, and more where that is needed.
+struct Only {
+  std::optional<std::vector<int>> frames;  ///< sorted; nothing = every frame
+  bool wholeSurfaces = false;              ///< with every surface that they show they are all of its frames
+  bool predicts(int frame) const { return !frames || std::binary_search(frames->begin(), frames->end(), frame); }
+};
+
 class Run {
  public:
-  /// @param onlyFrame  as inspectOneFrame; -1 = every frame
-  Run(Inspection& result, const ProgressFn& progress, const Inspection* previous, int onlyFrame)
+  Run(Inspection& result, const ProgressFn& progress, const Inspection* previous, Only only)
       : r_(result),
         progress_(progress),
         previous_(previous && previous->given == result.given ? previous : nullptr),
-        onlyFrame_(onlyFrame) {}
+        only_(std::move(only)) {}
 
   void highlights();
   void lobes();
@@ -130,6 +138,7 @@ class Run {
     for (const int frame : r_.train.frames) {
       const std::vector<int>& excluded = r_.request.excluded;
       if (std::find(excluded.begin(), excluded.end(), frame) != excluded.end()) continue;
+      if (r_.keyFor(frame, fit.light).surface != fit.surface) continue;
       const std::vector<Highlight>& highlights = r_.evidence[std::size_t(frame)].highlights;
       if (std::none_of(highlights.begin(), highlights.end(), [&](const Highlight& h) { return h.light == fit.light; })) continue;
       if (std::any_of(r_.views.begin(), r_.views.end(), [&](const TrainingView& v) { return v.frame == frame; })) continue;
@@ -150,12 +159,13 @@ class Run {
 
   void gather(const std::vector<int>& frames);
   std::vector<int> framesToGather() const;
+  std::vector<int> framesLeft() const;
   bool lightsAreOpen() const { return lightsAreOpenIn(*r_.scene, r_.request); }
 
   Inspection& r_;
   const ProgressFn& progress_;
   const Inspection* previous_;
-  int onlyFrame_;
+  const Only only_;
 };
 
 void Run::highlights() {
@@ -179,17 +189,25 @@ void Run::highlights() {
   const std::vector<int> missing = framesToGather();
   if (missing.empty()) return;
   gather(missing);
+  if (only_.wholeSurfaces && !lightsKnownFrom(r_, *only_.frames)) gather(framesLeft());
   if (together) assignSeveralLights();
+}
+
+std::vector<int> Run::framesLeft() const {
+  std::vector<int> frames;
+  for (int i = 0; i < static_cast<int>(r_.evidence.size()); ++i)
+    if (r_.evidence[static_cast<std::size_t>(i)].frame < 0) frames.push_back(i);
+  return frames;
 }
 
 /// Frames whose evidence is not there yet and is asked for.
 std::vector<int> Run::framesToGather() const {
   std::vector<int> frames;
-  const bool all = onlyFrame_ < 0 || r_.train.perSurface || lightsAreOpen();
-  for (int i = 0; i < static_cast<int>(r_.evidence.size()); ++i) {
-    const bool wanted = all || i == onlyFrame_ || std::binary_search(r_.train.frames.begin(), r_.train.frames.end(), i);
-    if (wanted && r_.evidence[i].frame < 0) frames.push_back(i);
-  }
+  const bool trainingToo = !(r_.train.perSurface && only_.wholeSurfaces);  // those of other surfaces serve other fits
+  const bool all = !only_.frames || (r_.train.perSurface && trainingToo) || lightsAreOpen();
+  for (const int i : framesLeft())
+    if (all || only_.predicts(i) || (trainingToo && std::binary_search(r_.train.frames.begin(), r_.train.frames.end(), i)))
+      frames.push_back(i);
   return frames;
 }
 
@@ -450,9 +468,9 @@ void Run::predictionsAndComparisons() {
       int frame, fit;
     };
     std::vector<Task> tasks;
-    result.oneFrame = onlyFrame_ >= 0;
+    result.oneFrame = only_.frames.has_value();
     for (int frame = 0; frame < static_cast<int>(r_.scene->frames.size()); ++frame) {
-      if (result.oneFrame && frame != onlyFrame_) continue;
+      if (!only_.predicts(frame)) continue;
       for (int f = 0; f < static_cast<int>(result.fits.size()); ++f) {
         const ModelResult::Fit& fit = result.fits[f];
         if (fit.surface && *fit.surface != r_.surfaces->keyOf(frame)) continue;
@@ -515,7 +533,7 @@ std::shared_ptr<const Scene> whatIfScene(const std::shared_ptr<const Scene>& giv
 }
 
 Inspection run(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int onlyFrame, const ProgressFn& progress,
-               const Inspection* previous) {
+               const Inspection* previous, const Shard* shard = nullptr) {
   require(scene != nullptr, "inspect: no scene");
   Inspection result;
   result.given = scene;
@@ -535,7 +553,10 @@ Inspection run(std::shared_ptr<const Scene> scene, const InspectionRequest& requ
   if (request.noisePx > 0 && request.settings.text("fit.evidence") == "pixels")
     throw InputError("", "--noise-px", "noise is added to contours, which fit.evidence=pixels does not use");
   for (const std::string& m : request.models) modelByName(m);  // unknown names are refused before any work
-  Run run(result, progress, previous, onlyFrame);
+  Only only;
+  if (onlyFrame >= 0) only.frames = {onlyFrame};
+  if (shard) only = {framesOfShard(*shard, result), true};
+  Run run(result, progress, previous, std::move(only));
   run.highlights();
   run.lobes();
   run.changeHighlights();
@@ -557,6 +578,13 @@ Inspection inspectOneFrame(std::shared_ptr<const Scene> scene, const InspectionR
                            const ProgressFn& progress, const Inspection* previous) {
   require(scene && frame >= 0 && frame < static_cast<int>(scene->frames.size()), "inspectOneFrame: no such frame");
   return run(std::move(scene), request, frame, progress, previous);
+}
+
+Inspection inspectShard(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const Shard& shard,
+                        const ProgressFn& progress) {
+  Inspection result = run(std::move(scene), request, -1, progress, nullptr, &shard);
+  keepOwnSurfaces(result, framesOfShard(shard, result));
+  return result;
 }
 
 }  // namespace glint

@@ -4,36 +4,91 @@
 #include <algorithm>
 
 namespace glint {
+namespace {
 
-ModelSummary summarise(const Inspection& inspection, const ModelResult& result) {
+/// Why no frame was predicted.
+std::string reasonOf(const std::vector<ComparisonTally>& tallies, const std::string& fitFailure, const HeldOutFrames& heldOut,
+                     int frames) {
+  if (!fitFailure.empty()) return fitFailure;
+  for (const ComparisonTally& t : tallies)
+    if (!t.failure.empty()) return t.failure;
+  return heldOut.all == 0                    ? "no frame is held out"
+         : heldOut.unreadable == heldOut.all ? "no held-out frame can be read"
+         : frames == 0                       ? "no held-out frame has a highlight"
+                                             : "no frame was predicted";
+}
+
+}  // namespace
+
+ComparisonTally tallyOf(const FrameComparison& c) {
+  ComparisonTally t;
+  t.frame = c.frame;
+  t.predicted = !c.prediction.highlights().empty();
+  t.iou = c.iou;
+  t.timeUs = c.prediction.timeUs;
+  if (c.prediction.failure()) t.failure = c.prediction.failure()->message();
+  for (const FrameComparison::Row& row : c.rows) {
+    if (row.observed >= 0) t.observed = true;
+    if (row.failure && row.observed < 0 && row.predicted < 0) t.unreadable = true;
+    if (row.observed >= 0 && row.predicted >= 0)
+      ++t.matched;
+    else if (row.observed >= 0)
+      ++t.missed;
+    else if (row.predicted >= 0)
+      ++t.spurious;
+    if (row.band) t.bands.push_back(*row.band);
+    if (!row.metrics) continue;
+    const ContourMetrics& m = *row.metrics;
+    t.measured.push_back({m.contourErrorPct, m.contourErrorPx, m.ellipseErrorPct, m.hausdorffPx, m.peakOffsetPx,
+                          c.prediction.highlights()[row.predicted].coverage});
+  }
+  return t;
+}
+
+std::vector<ComparisonTally> talliesOf(const Inspection& inspection, const ModelResult& result) {
+  std::vector<ComparisonTally> tallies;
+  for (const FrameComparison& c : result.frames)
+    if (inspection.isHeldOut(c.frame)) tallies.push_back(tallyOf(c));
+  return tallies;
+}
+
+std::string firstFitFailure(const ModelResult& result) {
+  for (const ModelResult::Fit& f : result.fits)
+    if (f.failure()) return f.failure()->message();
+  return "";
+}
+
+HeldOutFrames heldOutFrames(const Inspection& inspection) {
+  HeldOutFrames frames;
+  for (std::size_t i = 0; i < inspection.evidence.size(); ++i) {
+    if (inspection.evidence[i].frame < 0 || !inspection.isHeldOut(static_cast<int>(i))) continue;
+    ++frames.all;
+    const std::optional<Failure>& failure = inspection.evidence[i].scoringFailure();
+    if (failure && failure->reason == Reason::FrameUnreadable) ++frames.unreadable;
+  }
+  return frames;
+}
+
+ModelSummary summaryOf(const std::vector<ComparisonTally>& tallies, const std::string& fitFailure, const HeldOutFrames& heldOut) {
   ModelSummary s;
   std::vector<double> pct, px, ellipse, hausdorff, peak, coverage, iou, time;
-  for (const FrameComparison& c : result.frames) {
-    if (!inspection.isHeldOut(c.frame)) continue;
-    const bool predicted = !c.prediction.highlights().empty();
-    bool observed = false, unreadable = false;
-    for (const FrameComparison::Row& row : c.rows) {
-      if (row.observed >= 0) observed = true;
-      if (row.failure && row.observed < 0 && row.predicted < 0) unreadable = true;
-      if (row.observed >= 0 && row.predicted >= 0)
-        ++s.matched;
-      else if (row.observed >= 0)
-        ++s.missed;
-      else if (row.predicted >= 0)
-        ++s.spurious;
-      if (!row.metrics) continue;
-      pct.push_back(row.metrics->contourErrorPct);
-      px.push_back(row.metrics->contourErrorPx);
-      ellipse.push_back(row.metrics->ellipseErrorPct);
-      hausdorff.push_back(row.metrics->hausdorffPx);
-      peak.push_back(row.metrics->peakOffsetPx);
-      coverage.push_back(c.prediction.highlights()[row.predicted].coverage);
+  for (const ComparisonTally& t : tallies) {
+    s.matched += t.matched;
+    s.missed += t.missed;
+    s.spurious += t.spurious;
+    for (const ComparisonTally::Measured& m : t.measured) {
+      pct.push_back(m.contourErrorPct);
+      px.push_back(m.contourErrorPx);
+      ellipse.push_back(m.ellipseErrorPct);
+      hausdorff.push_back(m.hausdorffPx);
+      peak.push_back(m.peakOffsetPx);
+      coverage.push_back(m.coverage);
     }
-    if (!observed && !unreadable) continue;  // nothing was there to predict; what was predicted is spurious
+    if (!t.observed && !t.unreadable) continue;  // nothing was there to predict; what was predicted is spurious
     ++s.frames;
-    if (predicted && observed) ++s.predicted;
-    if (observed) iou.push_back(c.iou);
-    time.push_back(c.prediction.timeUs);
+    if (t.predicted && t.observed) ++s.predicted;
+    if (t.observed) iou.push_back(t.iou);
+    time.push_back(t.timeUs);
   }
   s.answered = s.predicted > 0;
   s.contourErrorPct = statisticOf(pct);
@@ -46,30 +101,12 @@ ModelSummary summarise(const Inspection& inspection, const ModelResult& result) 
   s.timeUs = statisticOf(time);
   std::sort(time.begin(), time.end());
   s.timeP99Us = quantileOf(time, 0.99);
-  if (!s.answered) {
-    for (const ModelResult::Fit& f : result.fits)
-      if (f.failure()) {
-        s.reason = f.failure()->message();
-        return s;
-      }
-    for (const FrameComparison& c : result.frames)
-      if (inspection.isHeldOut(c.frame) && c.prediction.failure()) {
-        s.reason = c.prediction.failure()->message();
-        return s;
-      }
-    int heldOut = 0, unreadable = 0;
-    for (std::size_t i = 0; i < inspection.evidence.size(); ++i) {
-      if (!inspection.isHeldOut(static_cast<int>(i))) continue;
-      ++heldOut;
-      const std::optional<Failure>& failure = inspection.evidence[i].scoringFailure();
-      if (failure && failure->reason == Reason::FrameUnreadable) ++unreadable;
-    }
-    s.reason = heldOut == 0            ? "no frame is held out"
-               : unreadable == heldOut ? "no held-out frame can be read"
-               : s.frames == 0         ? "no held-out frame has a highlight"
-                                       : "no frame was predicted";
-  }
+  if (!s.answered) s.reason = reasonOf(tallies, fitFailure, heldOut, s.frames);
   return s;
+}
+
+ModelSummary summarise(const Inspection& inspection, const ModelResult& result) {
+  return summaryOf(talliesOf(inspection, result), firstFitFailure(result), heldOutFrames(inspection));
 }
 
 }  // namespace glint

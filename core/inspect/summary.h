@@ -23,4 +23,36 @@ struct ModelSummary {
 };
 ModelSummary summarise(const Inspection& inspection, const ModelResult& result);
 
+/// What one comparison adds to a summary: plain numbers, which another process may have measured.
+struct ComparisonTally {
+  int frame = -1;
+  bool predicted = false, observed = false;
+  bool unreadable = false;  ///< a row says why nothing could be compared
+  int matched = 0, missed = 0, spurious = 0;
+  double iou = 0, timeUs = 0;
+  std::string failure;  ///< of the prediction; "" = none
+  struct Measured {
+    double contourErrorPct = 0, contourErrorPx = 0, ellipseErrorPct = 0, hausdorffPx = 0, peakOffsetPx = 0, coverage = 0;
+  };
+  std::vector<Measured> measured;  ///< of each highlight with metrics
+  std::vector<BandScore> bands;    ///< of each matched highlight with a band
+};
+ComparisonTally tallyOf(const FrameComparison& comparison);
+
+/// Frames that count, whatever the model.
+struct HeldOutFrames {
+  int all = 0, unreadable = 0;
+};
+/// Held-out frames as the evidence of this inspection shows them; what was not looked at counts nothing.
+HeldOutFrames heldOutFrames(const Inspection& inspection);
+
+/// The same summary from tallies of all comparisons of held-out frames, in the order of the inspection.
+/// @param fitFailure  the first of the model's fits; "" = none failed
+ModelSummary summaryOf(const std::vector<ComparisonTally>& tallies, const std::string& fitFailure, const HeldOutFrames& heldOut);
+
+/// Tallies of a model's comparisons in held-out frames.
+std::vector<ComparisonTally> talliesOf(const Inspection& inspection, const ModelResult& result);
+/// The first failure among a model's fits; "" = none failed.
+std::string firstFitFailure(const ModelResult& result);
+
 }  // namespace glint

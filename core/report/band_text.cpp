@@ -5,22 +5,23 @@
 
 namespace glint {
 
-std::optional<BandScore> bandSummary(const Inspection& inspection, const ModelResult& result) {
+std::optional<BandScore> bandSummary(const std::vector<ComparisonTally>& tallies) {
   BandScore mean;
   double count = 0;
-  for (const FrameComparison& c : result.frames) {
-    if (!inspection.isHeldOut(c.frame)) continue;
-    for (const FrameComparison::Row& row : c.rows) {
-      if (!row.band) continue;
-      mean.sigmaPx += row.band->sigmaPx;
-      mean.coverage += row.band->coverage;
+  for (const ComparisonTally& tally : tallies)
+    for (const BandScore& band : tally.bands) {
+      mean.sigmaPx += band.sigmaPx;
+      mean.coverage += band.coverage;
       count += 1;
     }
-  }
   if (!(count > 0)) return std::nullopt;
   mean.sigmaPx /= count;
   mean.coverage /= count;
   return mean;
+}
+
+std::optional<BandScore> bandSummary(const Inspection& inspection, const ModelResult& result) {
+  return bandSummary(talliesOf(inspection, result));
 }
 
 std::vector<std::string> bandLines(const Inspection& inspection, const ModelResult& result) {

@@ -19,8 +19,12 @@ struct ReportContext {
   std::string program;                 ///< "glint 0.4.0"; "" = not said
 };
 
-/// The answered model with the smallest mean held-out contour error among those that predicted most frames; "" when none answered.
-std::string bestModel(const Inspection& inspection);
+/// The answered model with the smallest mean held-out contour error among those that predicted most frames.
+struct BestModel {
+  std::string model;  ///< "" = none answered
+  std::string why;    ///< one sentence; "" = none answered
+};
+BestModel bestModel(const Inspection& inspection);
 
 /// docs/formats.md, "evaluate --json". Numbers that are not finite become null.
 std::string evaluationJson(const Inspection& inspection, const ReportContext& context);

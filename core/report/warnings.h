@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,11 +13,12 @@ namespace glint {
 /// frames in which highlights of several lights are one, and the remarks of every fit after its model and light.
 std::vector<std::string> warningsOf(const Inspection& inspection);
 
+/// One remark of a fit as such a sentence.
+std::string fitWarning(const std::string& model, const std::string& light, const std::optional<std::string>& surface,
+                       const std::string& remark);
+
 /// What the predictions of held-out frames are scored against: "truth" (--truth), "given contours" (of the scene file) or "own detection" (of at
 /// least one held-out frame).
 std::string scoredAgainst(const Inspection& inspection);
-
-/// "0, 3, 7 and 5 more": at most eight frames by their numbers.
-std::string frameList(const std::vector<int>& frames);
 
 }  // namespace glint

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <numeric>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <random>
@@ -15,6 +16,8 @@
 #include "core/base/safe_text.h"
 #include "core/scene/scene_json.h"
 #include "core/synth/output_folder.h"
+#include "core/synth/part.h"
+#include "core/synth/part_files.h"
 #include "core/synth/synth.h"
 
 namespace glint {
@@ -199,15 +202,21 @@ bool isInPlace(const fs::path& mesh, const fs::path& place) {
   return fs::equivalent(mesh, place, ignored);
 }
 
-/// Relative to the scene's folder.
-std::vector<fs::path> filesWritten(const Scene& scene, const std::map<fs::path, std::string>& meshes,
-                                   const std::optional<RenderOptions>& render) {
-  std::vector<fs::path> files{"scene.json"};
+std::vector<int> allFrames(const Scene& scene) {
+  std::vector<int> frames(scene.frames.size());
+  std::iota(frames.begin(), frames.end(), 0);
+  return frames;
+}
+
+/// Of these frames, and the meshes; relative to the scene's folder.
+std::vector<fs::path> filesWritten(const Scene& scene, const std::vector<int>& frames,
+                                   const std::map<fs::path, std::string>& meshes, const std::optional<RenderOptions>& render) {
+  std::vector<fs::path> files;
   for (const auto& [mesh, name] : meshes)
     if (!isInPlace(mesh, scene.folder / "mesh" / name)) files.push_back(fs::path("mesh") / name);
   if (!render) return files;
-  for (const Frame& frame : scene.frames) {
-    const std::string name = fileNameOf(frame.id);
+  for (const int i : frames) {
+    const std::string name = fileNameOf(scene.frames[static_cast<std::size_t>(i)].id);
     if (render->bits != 32) files.push_back(fs::path("frames") / (name + photographExtension(*render)));
     for (const char* kind : {"radiance", "depth", "normals"}) files.push_back(fs::path(kind) / (name + ".tiff"));
     files.push_back(fs::path("mask") / (name + ".png"));
@@ -226,18 +235,19 @@ void copyMeshes(Scene& scene, const std::map<fs::path, std::string>& meshes, con
     if (source.mesh) source.mesh = scene.folder / "mesh" / meshes.at(*source.mesh);
 }
 
-/// Photographs, radiance, depth, normals and masks of all frames, written into `out`, which will be the scene's folder.
-void renderFrames(Scene& scene, const RenderOptions& render, const Material& material, const SurfaceCache& surfaces,
-                  const std::vector<double>& tops, const fs::path& out, const ProgressFn& progress) {
-  const double top = tops.empty() ? 0 : *std::max_element(tops.begin(), tops.end());
+/// Photographs, radiance, depth, normals and masks of these frames, written into `out`, which will be the scene's folder.
+/// @param top  the brightest value of the sequence
+void renderFrames(Scene& scene, const std::vector<int>& frames, const RenderOptions& render, const Material& material,
+                  const SurfaceCache& surfaces, double top, const fs::path& out, const ProgressFn& progress) {
   const double exposure = render.exposure > 0 ? render.exposure : (top > 0 ? 0.9 / top : 1);
   for (const char* name : {"frames", "radiance", "depth", "normals", "mask"}) {
     if (render.bits == 32 && std::string(name) == "frames") continue;
     makeFolder(out / name);
   }
   parallelFor(
-      static_cast<int>(scene.frames.size()),
-      [&](int i) {
+      static_cast<int>(frames.size()),
+      [&](int n) {
+        const int i = frames[static_cast<std::size_t>(n)];
         Frame& frame = scene.frames[static_cast<std::size_t>(i)];
         const Outcome<std::shared_ptr<const Surface>> surface = surfaces.surfaceOf(i, NormalPolicy::Curved);
         RenderedFrame r = renderFrame(**surface, frame.camera, lightsOf(scene, frame), material, render.samples);
@@ -272,18 +282,24 @@ std::string textOf(Scene scene) {
   return prettyJson(sceneToJson(scene, scene.folder));
 }
 
-}  // namespace
+/// What is known of a scene before anything is written.
+struct Traced {
+  Scene scene;     ///< with highlights, in its new folder
+  double top = 0;  ///< brightest value of the traced frames; 0 where nothing is rendered
+  std::map<fs::path, std::string> meshes;
+};
 
-Scene synthesise(const SynthSpec& spec, const fs::path& folder, const ProgressFn& progress) {
-  Scene scene = spec.scene;
-  // Everything that can be wrong with the specification is found before anything is written.
-  const SurfaceCache surfaces(spec.scene);
-  const int n = static_cast<int>(scene.frames.size());
-  std::vector<double> tops(static_cast<std::size_t>(n), 0);
+/// Highlights of these frames. Everything that can be wrong with the specification is found here.
+Traced traced(const SynthSpec& spec, const std::vector<int>& frames, const SurfaceCache& surfaces, const fs::path& folder,
+              const ProgressFn& progress) {
+  Traced result{spec.scene, 0, {}};
+  Scene& scene = result.scene;
+  std::vector<double> tops(frames.size(), 0);
   std::mutex warningMutex;
   parallelFor(
-      n,
-      [&](int i) {
+      static_cast<int>(frames.size()),
+      [&](int n) {
+        const int i = frames[static_cast<std::size_t>(n)];
         Frame& frame = scene.frames[static_cast<std::size_t>(i)];
         const Outcome<std::shared_ptr<const Surface>> surface = surfaces.surfaceOf(i, NormalPolicy::Curved);
         if (!surface) throw InputError(scene.file.string(), "frames[" + std::to_string(i) + "]", surface.failure().message());
@@ -298,23 +314,62 @@ Scene synthesise(const SynthSpec& spec, const fs::path& folder, const ProgressFn
             scene.warnings.push_back("frame " + frame.id + ", light " + light.id + ": " + found.failure().message());
           }
         }
-        if (spec.render) tops[static_cast<std::size_t>(i)] = brightest(**surface, frame, lights, spec.material);
+        if (spec.render) tops[static_cast<std::size_t>(n)] = brightest(**surface, frame, lights, spec.material);
       },
       progress, "highlights");
-
+  std::sort(scene.warnings.begin(), scene.warnings.end());
+  if (!tops.empty()) result.top = *std::max_element(tops.begin(), tops.end());
   scene.folder = fs::absolute(folder).lexically_normal();
   scene.file = scene.folder / "scene.json";
   if (std::error_code ignored; fs::equivalent(spec.scene.file, scene.file, ignored))
     throw InputError(scene.file.string(), "", "would overwrite the specification; choose another folder");
-  const std::map<fs::path, std::string> meshes = namesOfMeshes(scene);
-  requireSynthFolder(scene.folder, filesWritten(scene, meshes, spec.render));
+  result.meshes = namesOfMeshes(scene);
+  return result;
+}
+
+}  // namespace
+
+Scene synthesise(const SynthSpec& spec, const fs::path& folder, const ProgressFn& progress) {
+  const SurfaceCache surfaces(spec.scene);
+  const std::vector<int> frames = allFrames(spec.scene);
+  Traced t = traced(spec, frames, surfaces, folder, progress);
+  std::vector<fs::path> files = filesWritten(t.scene, frames, t.meshes, spec.render);
+  files.insert(files.begin(), t.scene.file.filename());
+  requireSynthFolder(t.scene.folder, files);
   atomicFiles(folder, "scene.json", [&](const fs::path& out) {
-    copyMeshes(scene, meshes, out);
-    if (spec.render) renderFrames(scene, *spec.render, spec.material, surfaces, tops, out, progress);
-    std::sort(scene.warnings.begin(), scene.warnings.end());
-    atomicWrite(out / scene.file.filename(), textOf(scene));
+    copyMeshes(t.scene, t.meshes, out);
+    if (spec.render) renderFrames(t.scene, frames, *spec.render, spec.material, surfaces, t.top, out, progress);
+    atomicWrite(out / t.scene.file.filename(), textOf(t.scene));
   });
-  return scene;
+  return t.scene;
+}
+
+SynthPart synthesisePart(const SynthSpec& spec, const fs::path& folder, const Shard& shard, const std::string& program,
+                         const ProgressFn& progress) {
+  const SurfaceCache surfaces(spec.scene);
+  const std::vector<int> all = allFrames(spec.scene);
+  const auto [first, end] = rangeOf(shard, static_cast<int>(all.size()));
+  const std::vector<int> own(all.begin() + first, all.begin() + end);
+  const bool needsAll = spec.render && (spec.render->exposure <= 0 || spec.render->noise > 0);
+  Traced t = traced(spec, needsAll ? all : own, surfaces, folder, progress);
+  if (needsAll) {
+    std::set<std::string> ids;
+    for (const int i : own) ids.insert("frame " + spec.scene.frames[static_cast<std::size_t>(i)].id + ", ");
+    const auto ofOthers = [&](const std::string& w) {
+      return w.rfind("frame ", 0) == 0 && !ids.count(w.substr(0, w.find(", ") + 2));
+    };
+    std::erase_if(t.scene.warnings, ofOthers);
+  }
+  const std::vector<fs::path> files = filesWritten(t.scene, own, t.meshes, spec.render);
+  const SynthPartFiles part(t.scene.folder, shard, files);
+  part.write([&](const fs::path& out) {
+    copyMeshes(t.scene, t.meshes, out);
+    if (spec.render) renderFrames(t.scene, own, *spec.render, spec.material, surfaces, t.top, out, progress);
+    return synthPartText({textOf(t.scene), spec.scene.file, needsAll ? t.top : 0, files, out}, shard, program, first, end);
+  });
+  SynthPart result{part.file(), static_cast<int>(own.size()), 0, t.scene.warnings};
+  for (const int i : own) result.highlights += static_cast<int>(t.scene.frames[static_cast<std::size_t>(i)].highlights.size());
+  return result;
 }
 
 }  // namespace glint

@@ -49,10 +49,40 @@ void requireHeldOutFrames(const Scene& scene, const InspectionRequest& request) 
 
 }  // namespace
 
+std::vector<std::string> namedModels(const std::vector<std::string>& named) {
+  std::vector<std::string> models;
+  for (const std::string& m : named) modelByName(m);
+  for (const auto& m : allModels())
+    if (std::count(named.begin(), named.end(), m->id())) models.push_back(m->id());
+  return models;
+}
+
+Tradeoff emptyTradeoff(const Scene& scene, const InspectionRequest& request, const TradeoffOptions& options) {
+  requireHeldOutFrames(scene, request);
+  Tradeoff t;
+  t.input = options.input;
+  t.trainSpec = request.train;
+  t.train = parseTrainSpec(request.train, scene).frames;
+  std::erase_if(t.train,
+                [&](int f) { return std::find(request.excluded.begin(), request.excluded.end(), f) != request.excluded.end(); });
+  for (const Knob& k : knobsOf(request.settings)) t.knobs.push_back(k.key);
+  return t;
+}
+
+std::string measurementText(const TradeoffBench& bench, int repeats) {
+  return "Time of a prediction: median over " + std::to_string(bench.timedFrames()) + " frames and " + std::to_string(repeats) +
+         " repeats, one thread, this machine. Fit: light, canonical contours and fit of all lights and surfaces, median of up "
+         "to " +
+         std::to_string(repeats) +
+         " repeats. Memory: peak resident size of the whole process while it fits and predicts all frames " +
+         (bench.memoryResets() ? "with this setting (the kernel's high-water mark, reset before)."
+                               : "since it started (the system does not allow resetting the mark).");
+}
+
 Tradeoff measureTradeoff(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const TradeoffOptions& options,
                          const ProgressFn& progress) {
   require(scene != nullptr, "measureTradeoff: no scene");
-  requireHeldOutFrames(*scene, request);
+  Tradeoff t = emptyTradeoff(*scene, request, options);
   StageEvent now{"tradeoff: highlights", 0, 0};
   // The stages of the pipeline report from several threads, one at a time, and only ask here whether to go on.
   const ProgressFn outer = [&](const StageEvent& e) {
@@ -61,19 +91,8 @@ Tradeoff measureTradeoff(std::shared_ptr<const Scene> scene, const InspectionReq
   };
   WorkFile work(options.workFile, options.workFile.empty() ? "" : workKey(*scene, request, options, outer));
 
-  Tradeoff t;
-  t.input = options.input;
-  t.trainSpec = request.train;
-  t.train = parseTrainSpec(request.train, *scene).frames;
-  std::erase_if(t.train,
-                [&](int f) { return std::find(request.excluded.begin(), request.excluded.end(), f) != request.excluded.end(); });
-  // One order, from simple to rich, whatever order the user named them in.
-  std::vector<std::string> models;
-  for (const std::string& m : request.models) modelByName(m);
-  for (const auto& m : allModels())
-    if (std::count(request.models.begin(), request.models.end(), m->id())) models.push_back(m->id());
+  const std::vector<std::string> models = namedModels(request.models);
   const std::vector<Knob> knobs = knobsOf(request.settings);
-  for (const Knob& k : knobs) t.knobs.push_back(k.key);
 
   TradeoffBench bench(scene, request, options.repeats, outer);
   int done = 0;
@@ -111,14 +130,7 @@ Tradeoff measureTradeoff(std::shared_ptr<const Scene> scene, const InspectionReq
     t.points.push_back(std::move(**point));
   }
   choosePoint(t, options.bound);
-  t.measurement =
-      "Time of a prediction: median over " + std::to_string(bench.timedFrames()) + " frames and " +
-      std::to_string(options.repeats) +
-      " repeats, one thread, this machine. Fit: light, canonical contours and fit of all lights and surfaces, median of up to " +
-      std::to_string(options.repeats) +
-      " repeats. Memory: peak resident size of the whole process while it fits and predicts all frames " +
-      (bench.memoryResets() ? "with this setting (the kernel's high-water mark, reset before)."
-                            : "since it started (the system does not allow resetting the mark).");
+  t.measurement = measurementText(bench, options.repeats);
   return t;
 }
 

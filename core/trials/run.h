@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/inspect/inspection.h"
 #include "core/tradeoff/choice.h"
@@ -20,6 +21,15 @@ struct TradeoffOptions {
       workFile;         ///< interrupted work is resumed from here; the caller removes it once the result is safe; empty = none
   std::string program;  ///< version: work of another one is not resumed
 };
+
+class TradeoffBench;
+
+/// The models that a request names, in one order, from simple to rich. InputError for an unknown one.
+std::vector<std::string> namedModels(const std::vector<std::string>& named);
+/// What is known before anything is measured. InputError where no frame is held out: every trial would fail, one after the other.
+Tradeoff emptyTradeoff(const Scene& scene, const InspectionRequest& request, const TradeoffOptions& options);
+/// How time and memory were measured, in words.
+std::string measurementText(const TradeoffBench& bench, int repeats);
 
 /// Measures what each sensible setting costs and gives on this input (method.md section 12): searchTrials on few frames, then a
 /// full measurement of what is left, then the front, the presets and the choice.
