@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/number_text.h"
 #include "tests/core/fit/painted_scene.h"
 
 /// Paint against highlights in rendered pictures: which is which is known from what was painted.
@@ -42,6 +43,12 @@ std::vector<Camera> shaken(std::vector<Camera> cameras, double px) {
   return cameras;
 }
 
+/// A row of docs/real.md.
+void row(const std::string& scene, const Judged& j) {
+  std::printf("motion: %s|%d|%d|%d|%d|%d|%d\n", scene.c_str(), j.all(true), j.count(true, Kind::Texture),
+              j.count(true, Kind::CannotTell), j.all(false), j.count(false, Kind::Texture), j.count(false, Kind::CannotTell));
+}
+
 bool anySays(const Judged& j, const std::string& words) {
   for (const std::vector<MotionVerdict>& frame : j.verdicts)
     for (const MotionVerdict& v : frame)
@@ -52,6 +59,7 @@ bool anySays(const Judged& j, const std::string& words) {
 TEST(HighlightMotion, NominalPaintIsRejectedAndHighlightsAreNot) {
   for (const Painted& p : {paintedBall(), paintedPlane()}) {
     const Judged j = judged(p);
+    row(p.surface.type == "sphere" ? "ball" : "plane", j);
     EXPECT_EQ(j.all(false), 12);
     EXPECT_EQ(j.count(false, Kind::Unremarkable), 12);
     EXPECT_GE(j.all(true), 18);
@@ -65,6 +73,7 @@ TEST(HighlightMotion, HighlightsAloneAreLeftAlone) {
   p.paint.clear();
   p.roughness = 0.2;
   const Judged j = judged(p);
+  row("ball without paint, roughness 0.2", j);
   EXPECT_EQ(j.all(false), 12);
   EXPECT_EQ(j.count(false, Kind::Unremarkable), 12);
 }
@@ -92,22 +101,26 @@ TEST(HighlightMotion, NoiseOfPicturesPosesAndSurfacesCostsAnswersAndMakesNoWrong
   Painted p = paintedBall();
   p.noise = 0.03;
   Judged j = judged(p);
+  row("ball, noise of the pixels 3 % of the paint", j);
   EXPECT_EQ(j.count(false, Kind::Texture), 0);
   EXPECT_GE(j.count(true, Kind::Texture), 16);
   p.noise = 0;
   for (const double px : {0.5, 2.0}) {
     j = judged(p, shaken(p.cameras, px));
+    row(formatted("ball, poses off by %g px", px), j);
     EXPECT_EQ(j.count(false, Kind::Texture), 0) << px;
     EXPECT_EQ(j.count(true, Kind::Texture) >= 16, px == 0.5) << px;
   }
   AnalyticSpec larger = p.surface;
   larger.radius *= 1.01;  // a third of a percent of the cameras' distance
   j = judged(p, {}, &larger);
+  row("ball, told 1 % larger than it is", j);
   EXPECT_EQ(j.count(false, Kind::Texture), 0);
   EXPECT_GE(j.count(true, Kind::Texture), 16);
   // 20 mm beside the surface paint moves as the highlight of a lamp 20 mm away from it.
   larger.radius = 1.04 * p.surface.radius;
   j = judged(p, {}, &larger);
+  row("ball, told 4 % larger than it is", j);
   EXPECT_EQ(j.count(true, Kind::Texture), 0);
   EXPECT_TRUE(anySays(j, "of the surface would do that too"));
 }
@@ -116,6 +129,7 @@ TEST(HighlightMotion, DegenerateCloseViewsCannotTell) {
   Painted p = paintedBall();
   p.cameras = arc(12, 3);
   Judged j = judged(p);
+  row("ball, arc of 3 degrees", j);
   EXPECT_EQ(j.count(true, Kind::CannotTell), 24);
   EXPECT_EQ(j.count(false, Kind::CannotTell), 12);
   EXPECT_TRUE(anySays(j, "the views are too close"));
@@ -130,6 +144,7 @@ TEST(HighlightMotion, AStillCameraUnderAMovingLampCannotTell) {
   p.cameras.assign(6, p.cameras.front());
   for (int i = 0; i < 6; ++i) p.lampIn.emplace_back(-0.6 + 0.25 * i, 0.4, 2.0);
   const Judged j = judged(p);
+  row("ball, 6 pictures, still camera, lamp moved", j);
   EXPECT_GT(j.count(true, Kind::CannotTell), 0);
   EXPECT_EQ(j.count(true, Kind::Texture) + j.count(false, Kind::Texture), 0);
 }
@@ -140,6 +155,7 @@ TEST(HighlightMotion, ATurningObjectUnderALampThatStandsWithTheCamera) {
   p.lampOnCamera = true;
   p.lamp.position = Eigen::Vector3d(0.5, -0.3, 0.2);
   const Judged j = judged(p);
+  row("ball that is turned before a still camera and lamp", j);
   EXPECT_GE(j.all(false), 10);
   EXPECT_EQ(j.count(false, Kind::Texture), 0);
   EXPECT_GE(j.count(true, Kind::Texture), j.all(true) - 2);
@@ -152,6 +168,7 @@ TEST(HighlightMotion, AHighlightOfALampCloseToTheSurfaceIsNotRejected) {
     for (const double height : {0.015, 0.03, 0.1}) {
       p.lamp.position = Eigen::Vector3d(0, 0, height);
       const Judged j = judged(p);
+      row(formatted("%s, roughness 0.35, lamp %g m above it", p.surface.type == "sphere" ? "ball" : "plane", height), j);
       EXPECT_EQ(j.all(false), 12) << height;
       EXPECT_EQ(j.count(false, Kind::Texture), 0) << height;
       EXPECT_GE(j.count(true, Kind::Texture), j.all(true) - 1) << height;
@@ -166,9 +183,36 @@ TEST(HighlightMotion, APatternOfSpotsWhoseTracksCross) {
   for (int x = -3; x <= 3; ++x)
     for (int y = -3; y <= 3; ++y) p.paint.push_back({onBall(0.08 * x, 0.08 * y), 0.02, 0.9});
   const Judged j = judged(p);
+  row("ball, rows of 49 like spots", j);
   EXPECT_GT(j.all(true), 100);
   EXPECT_EQ(j.count(false, Kind::Texture), 0);
   EXPECT_GT(j.count(true, Kind::Texture), 0);
+}
+
+/// What is found there by chance is not there in most views.
+TEST(HighlightMotion, ViewsThatDoNotFindItSpeakAgainstIt) {
+  Painted p = paintedBall();
+  p.paint = {{onBall(0, 0.2), 0.04, 1.0}};
+  Judged j = judged(p);
+  const auto paintIn = [&](std::size_t f) {
+    return static_cast<std::size_t>(std::find(j.painted[f].begin(), j.painted[f].end(), true) - j.painted[f].begin());
+  };
+  ASSERT_EQ(j.all(true), 12);
+  ASSERT_EQ(j.count(true, Kind::Texture), 12);
+  for (std::size_t f = 1; f < 12; ++f)
+    if (f != 5 && f != 9) j.evidence[f].highlights.erase(j.evidence[f].highlights.begin() + static_cast<long>(paintIn(f)));
+  const std::vector<int> panel{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+  const MotionVerdict v = motionVerdicts(j.scene, 0, panel, j.evidence, makeAnalytic(p.surface).get(), Settings()).at(paintIn(0));
+  EXPECT_NE(v.kind, Kind::Texture);
+}
+
+/// Five pictures from one place are one view.
+TEST(HighlightMotion, ViewsFromOneSideCountOnce) {
+  Painted p = paintedBall();
+  p.cameras = {p.cameras[0], p.cameras[6], p.cameras[6], p.cameras[6], p.cameras[6], p.cameras[6]};
+  const Judged j = judged(p);
+  EXPECT_GE(j.all(true), 10);
+  EXPECT_EQ(j.count(true, Kind::Texture), 0);
 }
 
 TEST(HighlightMotion, WithoutOtherViewsOrASurfaceNothingIsSaid) {
