@@ -12,6 +12,7 @@
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
 #include "core/fit/evidence.h"
+#include "core/fit/highlight_motion.h"
 #include "core/fit/highlight_quality.h"
 #include "core/fit/level_choice.h"
 #include "core/highlight/report.h"
@@ -53,28 +54,84 @@ std::shared_ptr<const Surface> surfaceIn(const Scene& scene, const SurfaceCache&
   }
 }
 
-DetectedFrame detectedIn(const Scene& scene, const SurfaceCache& surfaces, int index, FrameSource source,
-                         const Settings& settings) {
+/// One frame by itself.
+struct Seen {
+  FrameEvidence evidence;
+  std::shared_ptr<const Surface> surface;
+  std::vector<HighlightQuality> quality;
+  std::optional<FrameBlur> blur;
+};
+
+Seen seenIn(const Scene& scene, const SurfaceCache& surfaces, int index, FrameSource source, const Settings& settings) {
   const Frame& frame = scene.frames[static_cast<std::size_t>(index)];
-  FrameEvidence evidence = gatherEvidence(scene, index, source, settings);
+  Seen seen;
+  seen.evidence = gatherEvidence(scene, index, source, settings);
+  if (const Outcome<LinearPixels> pixels = pixelsOf(frame, source, settings)) {
+    seen.blur = blurOf(*pixels);
+    seen.surface = surfaceIn(scene, surfaces, index, settings);
+    seen.quality = highlightQualities(frame, *pixels, seen.surface.get(), seen.blur, seen.evidence.highlights);
+  }
+  return seen;
+}
+
+/// What the motion over all frames says goes to the flags, or takes a highlight out.
+void applyMotion(const std::vector<MotionVerdict>& verdicts, MotionUse use, const Camera& camera, Seen& seen) {
+  std::vector<HighlightQuality> kept;
+  for (std::size_t i = 0; i < seen.quality.size() && i < verdicts.size(); ++i) {
+    if (use == MotionUse::Reject && verdicts[i].kind == MotionVerdict::Kind::Texture) continue;
+    if (const std::string text = verdicts[i].text(); !text.empty()) seen.quality[i].flags.push_back(text);
+    kept.push_back(std::move(seen.quality[i]));
+  }
+  seen.quality = std::move(kept);
+  if (use == MotionUse::Reject) withholdTextures(seen.evidence, verdicts, camera);
+}
+
+DetectedFrame detectedIn(const Frame& frame, Seen seen) {
+  if (seen.surface && seen.quality.size() == seen.evidence.highlights.size())
+    flagStrangers(frame, *seen.surface, seen.evidence.highlights, seen.quality);
   DetectedFrame result;
   result.id = frame.id;
-  result.failure = std::move(evidence.failure);
-  for (RejectedCandidate& r : evidence.rejected) {
+  result.failure = std::move(seen.evidence.failure);
+  for (RejectedCandidate& r : seen.evidence.rejected) {
     r.place = frame.camera.undistorted(r.place);
     if (r.place.allFinite()) result.rejected.push_back(std::move(r));
   }
-  if (const Outcome<LinearPixels> pixels = pixelsOf(frame, source, settings)) {
-    result.blur = blurOf(*pixels);
-    const std::shared_ptr<const Surface> surface = surfaceIn(scene, surfaces, index, settings);
-    result.quality = highlightQualities(frame, *pixels, surface.get(), result.blur, evidence.highlights);
-    for (std::size_t i = 0; i < evidence.highlights.size(); ++i) {
-      const double diameter = std::sqrt(4 / M_PI * evidence.highlights[i].areaPx2);
-      result.uncertaintyPct.push_back(diameter > 0 ? 100 * result.quality[i].backgroundPx / diameter : 0);
-    }
+  result.blur = seen.blur;
+  result.highlights = std::move(seen.evidence.highlights);
+  result.quality = std::move(seen.quality);
+  for (std::size_t i = 0; i < result.quality.size(); ++i) {
+    const double diameter = std::sqrt(4 / M_PI * result.highlights[i].areaPx2);
+    result.uncertaintyPct.push_back(diameter > 0 ? 100 * result.quality[i].backgroundPx / diameter : 0);
   }
-  result.highlights = std::move(evidence.highlights);
   return result;
+}
+
+std::vector<DetectedFrame> detectAll(const Scene& scene, FrameSource source, const Settings& settings,
+                                     const ProgressFn& progress) {
+  const SurfaceCache surfaces(scene);
+  const int n = static_cast<int>(scene.frames.size());
+  std::vector<Seen> seen(scene.frames.size());
+  parallelFor(
+      n, [&](int i) { seen[static_cast<std::size_t>(i)] = seenIn(scene, surfaces, i, source, settings); }, progress, "detect");
+  std::vector<std::vector<MotionVerdict>> verdicts(seen.size());
+  if (motionUse(settings) != MotionUse::Off) {
+    const std::vector<std::vector<int>> panels = motionPanels(scene, surfaces);
+    std::vector<FrameEvidence> evidence;
+    for (const Seen& s : seen) evidence.push_back(s.evidence);
+    parallelFor(
+        n,
+        [&](int i) {
+          const auto k = static_cast<std::size_t>(i);
+          verdicts[k] = motionVerdicts(scene, i, panels[k], evidence, seen[k].surface.get(), settings);
+        },
+        progress, "motion");
+  }
+  std::vector<DetectedFrame> frames;
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    if (!verdicts[k].empty()) applyMotion(verdicts[k], motionUse(settings), scene.frames[k].camera, seen[k]);
+    frames.push_back(detectedIn(scene.frames[k], std::move(seen[k])));
+  }
+  return frames;
 }
 
 std::string flagsText(const DetectedFrame& frame, std::size_t i) {
@@ -183,12 +240,7 @@ int run(const DetectArguments& a, const Context& context) {
   for (Frame& frame : scene.frames) frame.highlights.clear();
   const FrameSource source = a.source == "image" ? FrameSource::Image : FrameSource::Radiance;
   const std::string why = setLevel(a, scene, source, settings, context);
-  const SurfaceCache surfaces(scene);
-  std::vector<DetectedFrame> frames(scene.frames.size());
-  parallelFor(
-      static_cast<int>(frames.size()),
-      [&](int i) { frames[static_cast<std::size_t>(i)] = detectedIn(scene, surfaces, i, source, settings); }, context.progress(),
-      "detect");
+  const std::vector<DetectedFrame> frames = detectAll(scene, source, settings, context.progress());
   const std::string json = detectionJson(a.input, settings.number("detect.level"), a.source, frames, why);
   if (!a.out.empty()) writeFolder(a, scene, frames, json, context);
   if (!a.json.empty()) context.write(a.json, json);
@@ -210,7 +262,8 @@ Command detectCommand() {
   c.description =
       "Detects the highlights in every frame and ignores those that the scene file gives: a log-quadratic peak, the diffuse\n"
       "background around it removed, and the sub-pixel iso-contour at a level relative to the strongest peak of the frame.\n"
-      "Streaks of clipped cores are cut off. Prints a table in ideal pixels, with what makes each highlight doubtful and what\n"
+      "Streaks of clipped cores are cut off. Bright texture, which stays on the surface while highlights move, is rejected.\n"
+      "Prints a table in ideal pixels, with what makes each highlight doubtful and what\n"
       "was rejected. --out also writes highlights.json and one overlay per frame.";
   c.examples =
       "  glint detect scene.json                          a table of all highlights\n"

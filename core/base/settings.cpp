@@ -88,6 +88,19 @@ std::vector<ParamSpec>& params() {
        "contours too small. Lobe: the lobe is fitted to the pixels of the training frames, and contours are found again over "
        "the background that remains. I = K S + B.",
        "detect"},
+      {"detect.motion",
+       "Bright texture",
+       "",
+       "",
+       std::string("reject"),
+       0,
+       0,
+       0,
+       {"reject", "flag", "off"},
+       "A bright spot that stays on its point of the surface in other views, where a highlight would have moved, is texture. "
+       "Reject: it is "
+       "no evidence. Flag: detect says so, and it stays evidence. Off: nothing is looked at. Given highlights are never doubted.",
+       "detect"},
       {"surface.normals",
        "Mesh normals",
        "N",

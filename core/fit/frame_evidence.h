@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/base/outcome.h"
@@ -9,12 +10,20 @@
 
 namespace glint {
 
+/// A bright spot that was detected and is paint (core/fit/highlight_motion.h): no evidence.
+struct WithheldTexture {
+  int place = 0;  ///< index among the highlights as detected
+  Highlight highlight;
+  std::string reason;  ///< as in FrameEvidence::rejected
+};
+
 /// One frame's evidence.
 struct FrameEvidence {
   int frame = -1;
   std::vector<Highlight> highlights;        ///< each with its light
   std::optional<Failure> failure;           ///< why there are no highlights: NoHighlight, FrameUnreadable, ...
   std::vector<RejectedCandidate> rejected;  ///< what detection saw and did not take, measured pixels
+  std::vector<WithheldTexture> textures;    ///< taken out of `highlights`, by rising place
   bool againstTruth = false;                ///< --truth is given: `truth` is scored, whatever was detected
   std::vector<int> found;  ///< where lights are switched off: which of the highlights as found each one is; else empty
   /// Index among the highlights as found, which is what a what-if names them by.

@@ -112,26 +112,6 @@ double disagreement(const ReflectedRay& a, const ReflectedRay& b) {
   return std::min(apart, std::atan2(miss, t.minCoeff()));
 }
 
-void nameStrangers(const Frame& frame, const Surface& surface, const std::vector<Highlight>& highlights,
-                   std::vector<HighlightQuality>& qualities) {
-  std::vector<std::optional<ReflectedRay>> rays;
-  std::optional<std::size_t> largest;
-  for (std::size_t i = 0; i < highlights.size(); ++i) {
-    const Outcome<BrightestPoint> b = observedBrightestPoint(surface, frame.camera, highlights[i].peak);
-    rays.push_back(b ? std::optional(reflectedRay(*b, frame.camera)) : std::nullopt);
-    if (b && (!largest || highlights[i].areaPx2 > highlights[*largest].areaPx2)) largest = i;
-  }
-  for (std::size_t i = 0; largest && i < highlights.size(); ++i) {
-    if (i == *largest || !rays[i]) continue;
-    const double deg = disagreement(*rays[*largest], *rays[i]) * 180 / M_PI;
-    if (deg > kSameLampDeg)
-      qualities[i].flags.push_back(formatted(
-          "not the lamp of the largest highlight (mirrored rays miss each other by %.0f degrees): another lamp, a reflection "
-          "or texture",
-          deg));
-  }
-}
-
 }  // namespace
 
 std::vector<HighlightQuality> highlightQualities(const Frame& frame, const LinearPixels& pixels, const Surface* surface,
@@ -159,8 +139,29 @@ std::vector<HighlightQuality> highlightQualities(const Frame& frame, const Linea
               : formatted("no edge of the frame is sharper than a blur of %.1f px: defocus, or nothing sharp is in view",
                           blur->sigmaPx));
   }
-  if (surface && frame.lightsOn.size() <= 1 && highlights.size() > 1) nameStrangers(frame, *surface, highlights, qualities);
   return qualities;
+}
+
+void flagStrangers(const Frame& frame, const Surface& surface, const std::vector<Highlight>& highlights,
+                   std::vector<HighlightQuality>& qualities) {
+  require(qualities.size() == highlights.size(), "flagStrangers: one quality for each highlight");
+  if (frame.lightsOn.size() > 1 || highlights.size() < 2) return;
+  std::vector<std::optional<ReflectedRay>> rays;
+  std::optional<std::size_t> largest;
+  for (std::size_t i = 0; i < highlights.size(); ++i) {
+    const Outcome<BrightestPoint> b = observedBrightestPoint(surface, frame.camera, highlights[i].peak);
+    rays.push_back(b ? std::optional(reflectedRay(*b, frame.camera)) : std::nullopt);
+    if (b && (!largest || highlights[i].areaPx2 > highlights[*largest].areaPx2)) largest = i;
+  }
+  for (std::size_t i = 0; largest && i < highlights.size(); ++i) {
+    if (i == *largest || !rays[i]) continue;
+    const double deg = disagreement(*rays[*largest], *rays[i]) * 180 / M_PI;
+    if (deg > kSameLampDeg)
+      qualities[i].flags.push_back(formatted(
+          "not the lamp of the largest highlight (mirrored rays miss each other by %.0f degrees): another lamp, a reflection "
+          "or texture",
+          deg));
+  }
 }
 
 }  // namespace glint

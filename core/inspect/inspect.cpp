@@ -9,6 +9,7 @@
 #include "core/fit/corrected_depth.h"
 #include "core/fit/evidence.h"
 #include "core/fit/fit_engine.h"
+#include "core/fit/highlight_motion.h"
 #include "core/fit/several_lights.h"
 #include "core/fit/training.h"
 #include "core/inspect/fit_band.h"
@@ -18,6 +19,7 @@
 #include "core/inspect/requested_evidence.h"
 #include "core/inspect/shard.h"
 #include "core/inspect/stage_inputs.h"
+#include "core/inspect/texture_stage.h"
 #include "core/model/pixel_evidence.h"
 #include "core/score/comparison.h"
 #include "core/surface/mesh_policy.h"
@@ -173,6 +175,7 @@ void Run::highlights() {
   const bool together = lightsAreOpen();
   r_.inputs.set(Stage::Evidence, evidenceInputs(q, together));
   r_.inputs.set(Stage::Lobes, lobeInputs(q, r_.train, together));
+  std::vector<int> judged;
   if (unchanged(Stage::Evidence)) {
     r_.evidence = previous_->evidence;
     for (const auto& [frame, before] : previous_->evidenceBefore) r_.evidence[std::size_t(frame)] = before;
@@ -181,16 +184,31 @@ void Run::highlights() {
     } else {
       for (std::size_t i = 0; i < previous_->detected.size(); ++i)
         if (previous_->detected[i].frame >= 0) r_.evidence[i] = previous_->detected[i];
+      if (!together)
+        for (FrameEvidence& e : r_.evidence) {
+          if (e.frame < 0) continue;
+          returnTextures(e);  // surfaces and poses may be others now
+          judged.push_back(e.frame);
+        }
     }
   } else {
     if (!q.truthFolder.empty()) requireTruthFolder(q.truthFolder, *r_.scene);
     r_.evidence.resize(r_.scene->frames.size());
   }
-  const std::vector<int> missing = framesToGather();
-  if (missing.empty()) return;
-  gather(missing);
-  if (only_.wholeSurfaces && !lightsKnownFrom(r_, *only_.frames)) gather(framesLeft());
-  if (together) assignSeveralLights();
+  std::vector<int> missing = framesToGather();
+  if (!missing.empty()) {
+    gather(missing);
+    if (only_.wholeSurfaces && !lightsKnownFrom(r_, *only_.frames)) {
+      const std::vector<int> left = framesLeft();
+      gather(left);
+      missing.insert(missing.end(), left.begin(), left.end());
+    }
+  }
+  judged.insert(judged.end(), missing.begin(), missing.end());
+  rejectTextures(
+      r_, judged, [this](int frame) { return surfaceOf(frame); }, [this](const std::vector<int>& more) { gather(more); },
+      progress_);
+  if (together && !missing.empty()) assignSeveralLights();
 }
 
 std::vector<int> Run::framesLeft() const {
@@ -214,7 +232,7 @@ std::vector<int> Run::framesToGather() const {
 void Run::gather(const std::vector<int>& frames) {
   const Scene& scene = *r_.scene;
   const InspectionRequest& q = r_.request;
-  r_.work.framesDetected = static_cast<int>(frames.size());
+  r_.work.framesDetected += static_cast<int>(frames.size());
   // Images live only inside one call: as many at once as there are threads, whatever the number of frames.
   std::atomic<int> held{0}, most{0};
   parallelFor(
@@ -225,7 +243,7 @@ void Run::gather(const std::vector<int>& frames) {
         r_.evidence[i] = evidenceFor(scene, i, q);
       },
       progress_, "detect");
-  r_.work.framesHeldAtOnce = most;
+  r_.work.framesHeldAtOnce = std::max<int>(r_.work.framesHeldAtOnce, most);
 }
 
 void Run::lobes() {
@@ -243,7 +261,9 @@ void Run::assignSeveralLights() {
   glint::assignSeveralLights(
       *r_.scene, r_.evidence, [&](int frame) { return surfaceOf(frame); },
       [&](int frame, const SeparateLights& lights) {
-        return gatherEvidence(*r_.scene, frame, r_.request.source, r_.request.settings, lights);
+        FrameEvidence again = gatherEvidence(*r_.scene, frame, r_.request.source, r_.request.settings, lights);
+        dropTextures(again, r_.evidence[static_cast<std::size_t>(frame)].textures);
+        return again;
       },
       progress_);
 }
@@ -424,6 +444,7 @@ void Run::modelFits() {
         fit->surface = g.key.surface;
         if (std::string merged = mergedRemark(*fit); !merged.empty()) fit->remarks.push_back(std::move(merged));
         if (std::string repeated = repeatedRemark(*fit); !repeated.empty()) fit->remarks.push_back(std::move(repeated));
+        if (std::string texture = textureRemark(r_); !texture.empty()) fit->remarks.push_back(std::move(texture));
         if (r_.surfaces)
           if (std::string fused = r_.surfaces->fusionRemark(fit->frames); !fused.empty())
             fit->remarks.push_back(std::move(fused));

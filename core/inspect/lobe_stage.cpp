@@ -8,6 +8,7 @@
 
 #include "core/base/parallel.h"
 #include "core/fit/evidence.h"
+#include "core/fit/highlight_motion.h"
 #include "core/fit/training.h"
 #include "core/inspect/requested_evidence.h"
 #include "core/inspect/stage_inputs.h"
@@ -23,10 +24,12 @@ bool trains(const Inspection& r, int frame) {
          std::find(r.request.excluded.begin(), r.request.excluded.end(), frame) == r.request.excluded.end();
 }
 
+/// What else is bright in the frame.
 std::vector<Highlight> ofOthers(const FrameEvidence& e, const std::string& light) {
   std::vector<Highlight> others;
   for (const Highlight& h : e.highlights)
     if (h.light != light) others.push_back(h);
+  for (const WithheldTexture& t : e.textures) others.push_back(t.highlight);
   return others;
 }
 
@@ -85,7 +88,8 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
       [&](int n) {
         const int f = frames[static_cast<std::size_t>(n)];
         const Frame& frame = r.scene->frames[static_cast<std::size_t>(f)];
-        const FrameEvidence evidence = sameLevel ? r.evidence[static_cast<std::size_t>(f)] : evidenceFor(*r.scene, f, half);
+        FrameEvidence evidence = sameLevel ? r.evidence[static_cast<std::size_t>(f)] : evidenceFor(*r.scene, f, half);
+        if (!sameLevel) dropTextures(evidence, r.evidence[static_cast<std::size_t>(f)].textures);
         const std::shared_ptr<const Surface> surface = surfaceOf(f);
         const Outcome<LinearPixels> pixels = pixelsOf(frame, r.request.source, r.request.settings);
         if (!surface || !pixels) return;

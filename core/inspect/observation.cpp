@@ -8,6 +8,7 @@
 
 #include "core/fit/corrected_depth.h"
 #include "core/fit/evidence.h"
+#include "core/fit/highlight_motion.h"
 #include "core/fit/several_lights.h"
 #include "core/inspect/lobe_stage.h"
 #include "core/inspect/requested_evidence.h"
@@ -32,6 +33,9 @@ std::optional<Observation> observeFrame(std::shared_ptr<const Scene> scene, cons
   seen.frame = frame;
   if (!report(progress, {"detect", 0, 1})) throw Stopped{};
   seen.evidence = evidenceFor(*seen.scene, frame, request);
+  // Only all frames tell texture; what was texture before most likely still is.
+  if (known && known->given == scene && motionUse(request.settings) == MotionUse::Reject)
+    dropTextures(seen.evidence, known->evidence[std::size_t(frame)].textures);
   if (known && known->given == scene && known->surfaces && request.settings.text("detect.background") == "lobe") {
     // The lobes of the earlier results, where the request would find the same ones.
     const auto surface = known->surfaces->surfaceOf(frame, meshPolicy(request.settings));

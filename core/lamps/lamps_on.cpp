@@ -10,6 +10,7 @@
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/fit/evidence.h"
+#include "core/fit/highlight_motion.h"
 #include "core/highlight/pixel_noise.h"
 #include "core/inspect/live_prediction.h"
 
@@ -181,7 +182,9 @@ FrameAnswer lookAt(const Inspection& r, const std::vector<const ModelResult::Fit
   }
   SeparateLights separate;
   separate.separate = true;
-  for (const Highlight& h : gatherEvidence(*r.scene, frame, r.request.source, r.request.settings, separate).highlights) {
+  FrameEvidence apart = gatherEvidence(*r.scene, frame, r.request.source, r.request.settings, separate);
+  dropTextures(apart, r.evidence[static_cast<std::size_t>(frame)].textures);
+  for (const Highlight& h : apart.highlights) {
     const Pixel middle = centroid(h.contour);
     const bool known = std::any_of(result.lamps.begin(), result.lamps.end(), [&](const PredictedLamp& lamp) {
       return std::any_of(lamp.contours.begin(), lamp.contours.end(), [&](const Polyline& c) {

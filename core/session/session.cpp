@@ -35,12 +35,14 @@ void migrateFrom1(const JsonNode& request, Settings& settings) {
 /// by hand that leaves settings out means today's defaults.
 bool writtenByProgram(const JsonNode& settings) { return settings.find("detect.clip") && settings.find("fit.solver"); }
 
-/// A program before the fit to pixels took the smooth background, fitted contours and refused no poor fit.
+/// A program before the fit to pixels took the smooth background, fitted contours and refused no poor fit. One before the test by motion took texture
+/// for highlights.
 void migrateFromBeforePixels(const JsonNode& request, Settings& settings) {
   const std::optional<JsonNode> stored = request.find("settings");
   if (!stored || !writtenByProgram(*stored)) return;
   if (!stored->find("detect.background")) settings.set("detect.background", std::string("smooth"));
   if (!stored->find("fit.evidence")) settings.set("fit.evidence", std::string("contours"));
+  if (!stored->find("detect.motion")) settings.set("detect.motion", std::string("off"));
   if (!stored->find("fit.most_residual")) settings.set("fit.most_residual", 10.0);  // no fit was refused for what it left
 }
 

@@ -90,6 +90,7 @@ const std::vector<Turn>& turns() {
 /// Settings of which no result depends, with the reason why they are settings all the same.
 const std::map<std::string, const char*>& changeNothing() {
   static const std::map<std::string, const char*> some{
+      {"detect.motion", "nothing is painted on the surfaces here; tests of core paint them"},
       {"surface.depth_fill", "the depth maps here have no holes; tests of core fill and leave some"}};
   return some;
 }

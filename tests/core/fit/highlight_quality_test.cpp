@@ -109,6 +109,7 @@ TEST(HighlightQualities, SilhouettesAndStrangersOnASphere) {
   const std::vector<Highlight> highlights{circle(100, 100, 12), circle(150, 120, 6), circle(183, 100, 9), circle(20, 20, 5)};
   const LinearPixels pixels = pixelsOf(lobeImage(1, 100));
   std::vector<HighlightQuality> q = highlightQualities(frame, pixels, sphere.get(), {}, highlights);
+  flagStrangers(frame, *sphere, highlights, q);
   EXPECT_TRUE(q[0].flags.empty());
   EXPECT_TRUE(hasFlag(q[1], "not the lamp of the largest highlight"));
   EXPECT_TRUE(hasFlag(q[2], "at the silhouette"));
@@ -119,6 +120,7 @@ TEST(HighlightQualities, SilhouettesAndStrangersOnASphere) {
   EXPECT_TRUE(hasFlag(q[3], "off the surface"));
   frame.lightsOn = {"lamp", "sun"};
   q = highlightQualities(frame, pixels, sphere.get(), {}, highlights);
+  flagStrangers(frame, *sphere, highlights, q);
   EXPECT_FALSE(hasFlag(q[1], "not the lamp"));
 }
 

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/inspect/inspection.h"
+#include "core/inspect/lobe_stage.h"
+
+namespace glint {
+
+/// Between detection and everything that uses its highlights: bright texture goes out of the evidence of these frames (detect.motion,
+/// core/fit/highlight_motion.h).
+/// @param frames  whose evidence was gathered, and is as detected
+/// @param gather  gathers further frames that have to be asked; they are judged as well. Not called while those that are there decide. Throws Stopped
+void rejectTextures(Inspection& inspection, std::vector<int> frames, const SurfaceOfFrame& surfaceOf,
+                    const std::function<void(const std::vector<int>&)>& gather, const ProgressFn& progress);
+
+/// Of a fit: how much bright texture its training frames show. "" where there is none.
+std::string textureRemark(const Inspection& inspection);
+
+}  // namespace glint
