@@ -11,6 +11,7 @@
 #include "core/base/number_text.h"
 #include "core/base/safe_text.h"
 #include "core/geometry/distortion.h"
+#include "core/highlight/clipped_skirt.h"
 
 namespace glint {
 namespace {
@@ -32,6 +33,21 @@ std::optional<Failure> toIdealPixels(Highlight& h, const Camera& camera) {
   if (const std::optional<Failure> failure = undistort(h.peak)) return failure;
   h.areaPx2 = std::abs(signedArea(h.contour));
   h.ellipse.reset();
+  if (!h.skirt) return std::nullopt;
+  auto skirt = std::make_shared<ClippedSkirt>(*h.skirt);
+  for (std::size_t i = 0; i < skirt->levels.size(); ++i) {
+    SkirtLevel& level = skirt->levels[i];
+    for (Pixel& p : level.contour.points)
+      if (undistort(p)) {  // lower levels reach farther out, where the lens may show nothing
+        skirt->levels.resize(i);
+        break;
+      }
+    if (i == skirt->levels.size()) break;
+    level.areaPx2 = std::abs(signedArea(level.contour));
+    level.ellipse.reset();
+    if (const Outcome<Ellipse> e = fitEllipse(level.contour.points)) level.ellipse = *e;
+  }
+  h.skirt = std::move(skirt);
   return std::nullopt;
 }
 
