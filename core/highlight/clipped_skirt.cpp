@@ -274,6 +274,7 @@ ClippedSkirt traceSkirt(const SkirtView& view) {
   require(view.corrected.channels == 1 && view.usable.size() == pixels && view.saturated.size() == pixels,
           "traceSkirt: one channel and maps of its size");
   ClippedSkirt skirt;
+  skirt.backgroundSigma = view.backgroundSigma;
   std::vector<float> clipped;
   for (std::size_t i = 0; i < pixels; ++i)
     if (view.saturated[i]) clipped.push_back(view.corrected.data[i]);
@@ -328,8 +329,10 @@ void noteContour(ClippedSkirt& skirt, double level, double reference, const Poly
   skirt.sigmaPx = 0;
   const double round = length(contour);
   if (!skirt.outsideCore || !(round > 0)) return;
-  const double lower = skirt.peak->areaAt(skirt.contourValue * std::exp(-skirt.peak->logSigma)),
-               higher = skirt.peak->areaAt(skirt.contourValue * std::exp(skirt.peak->logSigma));
+  // A background that is too high lowers the peak, too: the two add up.
+  const double off = skirt.peak->logSigma + (1 - level) * skirt.backgroundSigma / skirt.contourValue;
+  const double lower = skirt.peak->areaAt(skirt.contourValue * std::exp(-off)),
+               higher = skirt.peak->areaAt(skirt.contourValue * std::exp(off));
   skirt.sigmaPx = (lower - higher) / (2 * round);
 }
 

@@ -48,9 +48,10 @@ struct ClippedSkirt {
   std::string reason;              ///< in words: why they tell none, or why it is not relied on
   bool trusted = false;            ///< the peak is known well enough to set the level of contours
   double levelAsked = 0.5;
-  double contourValue = 0;   ///< at which the highlight's contour was taken, above the background
-  bool outsideCore = false;  ///< the contour lies at the level asked for, of the estimated peak, outside of the clipped core
-  double sigmaPx = 0;        ///< then: how far the peak's uncertainty moves the contour (standard deviation)
+  double contourValue = 0;     ///< at which the highlight's contour was taken, above the background
+  bool outsideCore = false;    ///< the contour lies at the level asked for, of the estimated peak, outside of the clipped core
+  double backgroundSigma = 0;  ///< of the background that was taken off
+  double sigmaPx = 0;          ///< then: how far the uncertainties of peak and background move the contour (standard deviation)
 };
 
 /// Fits the profile to the areas of several levels. log K, A0, p and an offset of the background are fitted for each of seven beta; the answers are averaged by
