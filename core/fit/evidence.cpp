@@ -147,6 +147,40 @@ FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, 
   return evidence;
 }
 
+Parting partEvidence(const Scene& scene, int index, FrameSource source, const Settings& settings, FrameEvidence& evidence) {
+  const auto because = [](std::string reason) {
+    Parting none;
+    none.reason = std::move(reason);
+    return none;
+  };
+  const Frame& frame = scene.frames[static_cast<std::size_t>(index)];
+  if (evidence.highlights.empty()) return because("there is no highlight");
+  if (std::any_of(evidence.highlights.begin(), evidence.highlights.end(), [](const Highlight& h) { return h.fromScene; }))
+    return because("the scene gives the highlights");
+  const Outcome<Image> linear = readLinear(frame, source);
+  if (!linear) return because(linear.failure().message());
+  const Outcome<std::optional<Image>> mask = readMask(frame);
+  if (!mask) return because(mask.failure().message());
+  std::vector<Highlight> measured = evidence.highlights;
+  if (frame.camera.hasDistortion())
+    for (Highlight& h : measured) {
+      for (Pixel& p : h.contour.points) p = frame.camera.distorted(p);
+      h.peak = frame.camera.distorted(h.peak);
+      h.ellipse.reset();
+      fitMissingEllipse(h);
+    }
+  DetectOptions options = detectOptionsFor(frame, source, settings);
+  options.separatePeaks = frame.lightsOn.size() > 1;
+  Parting parting = partHighlights(*linear, mask->has_value() ? &**mask : nullptr, options, measured);
+  if (!parting.parted) return parting;
+  for (Highlight& h : measured) {
+    if (const std::optional<Failure> failure = toIdealPixels(h, frame.camera)) return because(failure->message());
+    fitMissingEllipse(h);
+  }
+  evidence.highlights = std::move(measured);
+  return parting;
+}
+
 void requireTruthFolder(const std::string& folder, const Scene& scene) {
   std::error_code error;
   if (!std::filesystem::is_directory(folder, error)) throw InputError(folder, "--truth", "this folder does not exist");

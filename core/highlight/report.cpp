@@ -33,6 +33,19 @@ Json toJson(const FrameBlur& blur) {
   return {{"sigma_px", blur.sigmaPx}, {"motion_px", blur.motionPx}, {"direction_deg", direction}, {"edges", blur.edges}};
 }
 
+Json toJson(const Parting& parting) {
+  Json regions = Json::array();
+  for (const PartedRegion& r : parting.regions) {
+    const auto triple = [](const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); };
+    regions.push_back({{"channels", triple(r.channels)},
+                       {"lamp_colour", triple(r.lampColour)},
+                       {"angle_deg", r.angleDeg},
+                       {"noise", r.noise},
+                       {"leftover", r.leftover}});
+  }
+  return {{"parted", parting.parted}, {"reason", parting.reason}, {"highlights", std::move(regions)}};
+}
+
 Json toJson(const RejectedCandidate& r) { return {{"place", pair(r.place)}, {"area_px2", r.areaPx2}, {"reason", r.reason}}; }
 
 Json toJson(const Ellipse& e) {
@@ -109,6 +122,7 @@ std::string detectionJson(const std::string& input, double level, const std::str
                                        i < frame.quality.size() ? &frame.quality[i] : nullptr));
     j["rejected"] = Json::array();
     for (const RejectedCandidate& r : frame.rejected) j["rejected"].push_back(toJson(r));
+    j["parting"] = frame.parting ? toJson(*frame.parting) : Json(nullptr);
     j["blur"] = frame.blur ? toJson(*frame.blur) : Json(nullptr);
     list.push_back(std::move(j));
   }
